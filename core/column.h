@@ -22,15 +22,15 @@ namespace winnow {
 /// Whether a reservation also writes to each page of the new memory (prefaulting). The first real
 /// use then causes no page faults.
 enum class Pages : std::uint8_t {
-  untouched,  ///< only allocated
-  touched,    ///< allocated, and written to once per page
+  untouched,   ///< only allocated
+  prefaulted,  ///< allocated, and written to once per page
 };
 
 /// Writes a zero to every page of memory whose content is not needed.
-WINNOW_API void touch_pages(void* begin, std::size_t bytes) noexcept;
+WINNOW_API void prefault_pages(void* begin, std::size_t bytes) noexcept;
 
 /// The memory of a column: its address and its capacity.
-struct ColumnRoom {
+struct ColumnBlock {
   void* data = nullptr;      ///< null if nothing is allocated
   std::size_t capacity = 0;  ///< in elements
 };
@@ -38,18 +38,20 @@ struct ColumnRoom {
 /// Allocates room for at least `count` elements of `element` bytes each, in whole 64-byte lines,
 /// moves the first `size` elements of `old` to it and frees `old`. If the resource refuses, returns
 /// null data and leaves `old` as it was. O(size).
-[[nodiscard]] WINNOW_API ColumnRoom move_to_room(std::pmr::memory_resource& memory, ColumnRoom old,
-                                                 std::size_t size, std::size_t count,
-                                                 std::size_t element) noexcept;
+[[nodiscard]] WINNOW_API ColumnBlock reallocate_block(std::pmr::memory_resource& memory,
+                                                      ColumnBlock old, std::size_t size,
+                                                      std::size_t count,
+                                                      std::size_t element) noexcept;
 
-/// As `move_to_room`, but tries first to grow the capacity by half if that is more than `count`.
-[[nodiscard]] WINNOW_API ColumnRoom grow_room(std::pmr::memory_resource& memory, ColumnRoom old,
-                                              std::size_t size, std::size_t count,
-                                              std::size_t element) noexcept;
+/// As `reallocate_block`, but tries first to grow the capacity by half if that is more than
+/// `count`.
+[[nodiscard]] WINNOW_API ColumnBlock grow_block(std::pmr::memory_resource& memory, ColumnBlock old,
+                                                std::size_t size, std::size_t count,
+                                                std::size_t element) noexcept;
 
 /// Frees the memory of a column; does nothing if its data is null.
-WINNOW_API void release_room(std::pmr::memory_resource& memory, ColumnRoom room,
-                             std::size_t element) noexcept;
+WINNOW_API void free_block(std::pmr::memory_resource& memory, ColumnBlock room,
+                           std::size_t element) noexcept;
 
 /// One column of a structure of arrays. Its memory is 64-byte aligned and a whole number of 64-byte
 /// lines. If the memory resource refuses, functions return false instead of throwing.
@@ -64,7 +66,7 @@ class Column {
   static constexpr std::size_t kAlignment = 64;
   /// Largest number of elements whose size in bytes, rounded up to whole lines, fits in
   /// std::size_t.
-  static constexpr std::size_t kMost = (~std::size_t{0} - kAlignment + 1) / sizeof(T);
+  static constexpr std::size_t kMaxSize = (~std::size_t{0} - kAlignment + 1) / sizeof(T);
 
   /// Creates an empty column. Every allocation comes from `memory`, which must outlive the column.
   explicit Column(std::pmr::memory_resource* memory) noexcept : memory_(memory) {}
@@ -77,7 +79,7 @@ class Column {
   Column(const Column&) = delete;
   Column& operator=(const Column&) = delete;
   Column& operator=(Column&&) = delete;
-  ~Column() { release_room(*memory_, room(), sizeof(T)); }
+  ~Column() { free_block(*memory_, room(), sizeof(T)); }
 
   /// Returns a pointer to the first element; null if nothing is allocated.
   [[nodiscard]] T* data() noexcept { return data_; }
@@ -104,23 +106,23 @@ class Column {
   /// Ensures room for at least `count` elements, rounded up to whole lines. Returns false, and
   /// changes nothing, if the resource refuses.
   [[nodiscard]] bool reserve(std::size_t count) noexcept {
-    return count <= capacity_ || take(move_to_room(*memory_, room(), size_, count, sizeof(T)));
+    return count <= capacity_ || take(reallocate_block(*memory_, room(), size_, count, sizeof(T)));
   }
 
-  /// As above; with `Pages::touched`, also writes to all pages behind the last element.
+  /// As above; with `Pages::prefaulted`, also writes to all pages behind the last element.
   [[nodiscard]] bool reserve(std::size_t count, Pages pages) noexcept {
     if (!reserve(count)) return false;
-    if (pages == Pages::touched) touch();
+    if (pages == Pages::prefaulted) touch();
     return true;
   }
 
   /// Writes to the pages behind the last element.
-  void touch() noexcept { touch_pages(data_ + size_, capacity_bytes() - size_ * sizeof(T)); }
+  void touch() noexcept { prefault_pages(data_ + size_, capacity_bytes() - size_ * sizeof(T)); }
 
   /// As `reserve`, but grows by at least half if the resource allows, so that repeated growth costs
   /// O(1) per element.
   [[nodiscard]] bool grow(std::size_t count) noexcept {
-    return count <= capacity_ || take(grow_room(*memory_, room(), size_, count, sizeof(T)));
+    return count <= capacity_ || take(grow_block(*memory_, room(), size_, count, sizeof(T)));
   }
 
   /// Reduces the capacity to `count` elements, or to `size()` if that is more, rounded up to whole
@@ -128,7 +130,7 @@ class Column {
   [[nodiscard]] bool shrink(std::size_t count) noexcept {
     const std::size_t kept = count < size_ ? size_ : count;
     if (kept >= capacity_) return true;
-    if (kept != 0) return take(move_to_room(*memory_, room(), size_, kept, sizeof(T)));
+    if (kept != 0) return take(reallocate_block(*memory_, room(), size_, kept, sizeof(T)));
     release();
     return true;
   }
@@ -157,7 +159,7 @@ class Column {
 
   /// Removes all elements and frees the memory.
   void release() noexcept {
-    release_room(*memory_, room(), sizeof(T));
+    free_block(*memory_, room(), sizeof(T));
     data_ = nullptr;
     size_ = capacity_ = 0;
   }
@@ -180,9 +182,9 @@ class Column {
     return (capacity_ * sizeof(T) + kAlignment - 1) / kAlignment * kAlignment;
   }
 
-  [[nodiscard]] ColumnRoom room() const noexcept { return {data_, capacity_}; }
+  [[nodiscard]] ColumnBlock room() const noexcept { return {data_, capacity_}; }
   /// Adopts the room; returns false, and changes nothing, if its data is null.
-  [[nodiscard]] bool take(ColumnRoom room) noexcept {
+  [[nodiscard]] bool take(ColumnBlock room) noexcept {
     if (room.data == nullptr) return false;
     data_ = static_cast<T*>(room.data);
     capacity_ = room.capacity;

@@ -17,7 +17,7 @@ namespace winnow {
 namespace {
 
 // Maximum number of threads that share a call; more would stay idle.
-constexpr std::size_t kMostShares = 64;
+constexpr std::size_t kMaxShares = 64;
 
 /// Tasks divided into one contiguous range per thread. A thread takes tasks one by one from its own
 /// range, then from the ranges of others (work stealing): neighbouring tasks stay on one thread,
@@ -25,7 +25,7 @@ constexpr std::size_t kMostShares = 64;
 class SharedTasks {
  public:
   SharedTasks(std::size_t count, std::size_t threads, void* tasks, JobSystem::Task task) noexcept
-      : shares_(std::min({count, threads, kMostShares})), tasks_(tasks), task_(task) {
+      : shares_(std::min({count, threads, kMaxShares})), tasks_(tasks), task_(task) {
     for (std::size_t s = 0; s < shares_; ++s) {
       share_[s] = {.next = count * s / shares_, .end = count * (s + 1) / shares_};
     }
@@ -36,21 +36,21 @@ class SharedTasks {
   /// Runs tasks of range `own`, then of the other ranges, until all tasks have been started.
   void run(std::size_t own) noexcept {
     for (std::size_t k = 0; k < shares_; ++k) {
-      Share& share = share_[own + k < shares_ ? own + k : own + k - shares_];
+      TaskRange& share = share_[own + k < shares_ ? own + k : own + k - shares_];
       for (std::size_t i = take(share); i < share.end; i = take(share)) task_(tasks_, i);
     }
   }
 
  private:
-  struct alignas(64) Share {
+  struct alignas(64) TaskRange {
     std::size_t next;
     std::size_t end;
   };
-  static std::size_t take(Share& share) noexcept {
+  static std::size_t take(TaskRange& share) noexcept {
     return AtomicRef<std::size_t>(share.next).fetch_add(1, std::memory_order_relaxed);
   }
 
-  std::array<Share, kMostShares> share_;  // only the first shares_ are initialised
+  std::array<TaskRange, kMaxShares> share_;  // only the first shares_ are initialised
   const std::size_t shares_;
   void* const tasks_;
   const JobSystem::Task task_;

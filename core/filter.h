@@ -8,10 +8,10 @@
 namespace winnow {
 
 /// Returns true if the filters allow a pair of the two objects.
-[[nodiscard]] constexpr bool may_meet(const ObjectFilter& a, const ObjectFilter& b) noexcept {
+[[nodiscard]] constexpr bool filters_allow(const ObjectFilter& a, const ObjectFilter& b) noexcept {
   return (a.layers & b.mask) != 0 && (b.layers & a.mask) != 0 &&
-         (a.environment == b.environment || a.environment == kEveryEnvironment ||
-          b.environment == kEveryEnvironment);
+         (a.environment == b.environment || a.environment == kAllEnvironments ||
+          b.environment == kAllEnvironments);
 }
 
 /// Callback that accepts or rejects an object that a query would report. It is a plain function
@@ -29,7 +29,7 @@ struct ObjectPredicate {
 struct Filter {
   std::uint32_t layers = ~0U;  ///< layers that the query is in, one bit each; all by default
   std::uint32_t mask = ~0U;    ///< layers that it accepts
-  std::uint32_t environment = kEveryEnvironment;  ///< objects of other environments are skipped
+  std::uint32_t environment = kAllEnvironments;  ///< objects of other environments are skipped
   ObjectPredicate predicate{};  ///< called last, for objects that pass the rest of the filter
 
   /// Returns the layers, mask and environment as an ObjectFilter.

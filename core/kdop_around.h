@@ -18,7 +18,7 @@ template <int K>
   constexpr auto directions = kdop_directions<K>();
   constexpr float kUlp = 1.2e-7F;  // a little more than 2^-23
   // Smaller numbers may be flushed to 0.
-  constexpr float kLeast = std::numeric_limits<float>::min();
+  constexpr float kMinNormal = std::numeric_limits<float>::min();
   double center[3];
   double edge[3][3];  // half edges as vectors
   double size = 0.0;
@@ -47,8 +47,8 @@ template <int K>
     // which a partition treats as infinity.
     const float low = finite_float(middle - reach);
     const float high = finite_float(middle + reach);
-    result.min[s] = low - (std::abs(low) * kUlp + kLeast);
-    result.max[s] = high + (std::abs(high) * kUlp + kLeast);
+    result.min[s] = low - (std::abs(low) * kUlp + kMinNormal);
+    result.max[s] = high + (std::abs(high) * kUlp + kMinNormal);
   }
   return result;
 }

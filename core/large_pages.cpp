@@ -4,9 +4,9 @@
 #include <winnow/core/large_pages.h>
 
 #include <winnow/core/column.h>
-#include "core/memory/guarded.h"
+#include "core/memory/catch_bad_alloc.h"
 #include "core/memory/new_in.h"
-#include "core/memory/touch_each_page.h"
+#include "core/memory/prefault_each_page.h"
 #include "core/threads/mutex.h"
 
 #include <algorithm>
@@ -23,8 +23,8 @@ namespace winnow {
 namespace {
 
 constexpr std::size_t kLine = Column<std::byte>::kAlignment;
-constexpr std::size_t kMostAhead = std::size_t{32} << 20U;  // most that is mapped ahead of demand
-constexpr std::size_t kKept = std::size_t{8} << 20U;        // free bytes that are always kept
+constexpr std::size_t kMaxAhead = std::size_t{32} << 20U;  // most that is mapped ahead of demand
+constexpr std::size_t kKept = std::size_t{8} << 20U;       // free bytes that are always kept
 
 #if defined(__SANITIZE_ADDRESS__)
 constexpr bool kSanitized = true;
@@ -44,7 +44,7 @@ bool has_large_pages() noexcept {
   return length != 0 && std::string_view(text, length).find("[never]") == std::string_view::npos;
 }
 
-bool wants_large_pages() noexcept {
+bool large_pages_enabled() noexcept {
   const char* const wish = std::getenv("WINNOW_LARGE_PAGES");
   const bool refused = wish != nullptr && std::string_view(wish) == "0";
   return !kSanitized && !refused && has_large_pages();
@@ -188,7 +188,7 @@ MemoryRange* LargePages::Slabs::best_fit(std::size_t bytes, std::size_t alignmen
 // Maps a slab for a block, or for half of the bytes held if that is more, and returns its free
 // range. Null if the system refuses.
 MemoryRange* LargePages::Slabs::add_slab(std::size_t bytes) noexcept {
-  const std::size_t ahead = std::min(held_ / 2, kMostAhead);
+  const std::size_t ahead = std::min(held_ / 2, kMaxAhead);
   const std::size_t pages = whole(std::max(bytes, ahead), kPage);
   const MemoryRange slab{map_pages(pages), pages};
   if (slab.begin == nullptr) return nullptr;
@@ -284,10 +284,10 @@ void* LargePages::do_allocate(std::size_t bytes, std::size_t alignment) {
   if (!is_large(bytes, alignment)) return small_blocks_->allocate(bytes, alignment);
   // No system has that much memory, and rounding it up could overflow.
   void* const block = bytes > ~std::size_t{0} / 2 ? nullptr : slabs_->take(bytes, alignment);
-  if (block == nullptr) leave_without_memory();
+  if (block == nullptr) throw_bad_alloc();
   // Prefaults on this thread, because threads that write first to a page at the same time block
   // each other.
-  touch_each_page(block, bytes, kPage);
+  prefault_each_page(block, bytes, kPage);
   return block;
 }
 
@@ -297,7 +297,7 @@ void LargePages::do_deallocate(void* block, std::size_t bytes, std::size_t align
 }
 
 std::pmr::memory_resource* default_memory() noexcept {
-  static const bool wanted = wants_large_pages();
+  static const bool wanted = large_pages_enabled();
   std::pmr::memory_resource* const set = std::pmr::get_default_resource();
   if (!wanted || !set->is_equal(*std::pmr::new_delete_resource())) return set;
   // Never destroyed: objects with static lifetime may free memory at the end of the process.

@@ -7,10 +7,10 @@
 namespace winnow {
 
 /// Environment of objects that can form pairs with objects of every environment.
-inline constexpr std::uint32_t kEveryEnvironment = 0xFFFFFFFFU;
+inline constexpr std::uint32_t kAllEnvironments = 0xFFFFFFFFU;
 
 /// Restricts which objects form a pair. Two objects pair only if their environments are equal (or
-/// one is `kEveryEnvironment`), and each one's mask contains a layer of the other.
+/// one is `kAllEnvironments`), and each one's mask contains a layer of the other.
 struct ObjectFilter {
   std::uint32_t layers = 1;       ///< layers that the object is in, one bit each
   std::uint32_t mask = ~0U;       ///< layers of objects that it accepts

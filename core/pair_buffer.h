@@ -59,7 +59,7 @@ class WINNOW_API PairBuffer {
         links_(std::move(other.links_)),
         heads_(std::move(other.heads_)),
         places_(std::move(other.places_)),
-        state_(std::exchange(other.state_, State::loose)),
+        state_(std::exchange(other.state_, LinkState::loose)),
         may_link_(other.may_link_),
         provenance_(std::exchange(other.provenance_, {})) {}
 
@@ -96,7 +96,7 @@ class WINNOW_API PairBuffer {
   /// Removes all pairs: the next query is a full one. Memory is kept.
   void clear() noexcept {
     pairs_.clear();
-    state_ = State::loose;
+    state_ = LinkState::loose;
     provenance_ = {};
   }
 
@@ -105,7 +105,7 @@ class WINNOW_API PairBuffer {
 
   /// Returns the pairs for arbitrary changes; the next query is a full one.
   [[nodiscard]] Column<Pair>& edit() noexcept {
-    state_ = State::loose;
+    state_ = LinkState::loose;
     provenance_ = {};
     return pairs_;
   }
@@ -115,7 +115,7 @@ class WINNOW_API PairBuffer {
   /// for which it is false.
   template <typename IsFirst>
   [[nodiscard]] std::size_t partition(IsFirst&& is_first) noexcept {
-    state_ = State::loose;
+    state_ = LinkState::loose;
     std::size_t end = size();
     for (std::size_t i = 0; i < end;) {
       if (is_first(std::as_const(pairs_[i]))) {
@@ -137,7 +137,7 @@ class WINNOW_API PairBuffer {
   friend class LinkedPairs;
 
   /// Whether objects are linked to their pairs, or will be if few move again; see LinkedPairs.
-  enum class State : std::uint8_t { loose, few_moved, linked };
+  enum class LinkState : std::uint8_t { loose, few_moved, linked };
   struct Link {
     std::uint32_t next[2];
     std::uint32_t before[2];
@@ -150,7 +150,7 @@ class WINNOW_API PairBuffer {
   Column<Link> links_;
   Column<std::uint32_t> heads_;
   Column<std::uint32_t> places_;
-  State state_ = State::loose;
+  LinkState state_ = LinkState::loose;
   bool may_link_ = true;
   Provenance provenance_;
 };

@@ -30,7 +30,7 @@ namespace detail {
 
 /// Returns the orientation of a valid pose divided by its largest component, so that products of
 /// two components stay in the range of double. Exact for the identity.
-[[nodiscard]] inline Quaternion tame(const double (&orientation)[4]) noexcept {
+[[nodiscard]] inline Quaternion scale_to_unit_max(const double (&orientation)[4]) noexcept {
   double largest = 0.0;
   for (const double q : orientation) largest = std::fabs(q) > largest ? std::fabs(q) : largest;
   return {orientation[0] / largest, orientation[1] / largest, orientation[2] / largest,
@@ -38,14 +38,14 @@ namespace detail {
 }
 
 /// Returns a quaternion of length 1, up to rounding, with the same rotation. `q` is a result of
-/// `tame`.
+/// `scale_to_unit_max`.
 [[nodiscard]] inline Quaternion normalized(const Quaternion& q) noexcept {
   const double length = std::sqrt(detail::squared_length(q));
   return {q[0] / length, q[1] / length, q[2] / length, q[3] / length};
 }
 
-/// Returns the rotation matrix of a quaternion that `tame` returned. Exact for the identity and for
-/// half and quarter turns about the axes.
+/// Returns the rotation matrix of a quaternion that `scale_to_unit_max` returned. Exact for the
+/// identity and for half and quarter turns about the axes.
 [[nodiscard]] inline Mat3d rotation_of(const Quaternion& q) noexcept {
   return detail::scaled_rotation(q, 2.0 / detail::squared_length(q));
 }
@@ -56,7 +56,8 @@ namespace detail {
 }
 
 /// Returns the rotation that applies `inner` first, then `outer`.
-[[nodiscard]] inline Quaternion product(const Quaternion& outer, const Quaternion& inner) noexcept {
+[[nodiscard]] inline Quaternion multiply(const Quaternion& outer,
+                                         const Quaternion& inner) noexcept {
   const auto [w, x, y, z] = outer;
   return {w * inner[0] - x * inner[1] - y * inner[2] - z * inner[3],
           w * inner[1] + x * inner[0] + y * inner[3] - z * inner[2],

@@ -89,8 +89,9 @@ inline constexpr std::uint32_t kExponent = 0x7F800000U;
 
 /// Returns the float nearest to `value`, clamped to the finite floats. NaN stays NaN.
 [[nodiscard]] constexpr float finite_float(double value) noexcept {
-  constexpr auto kMost = static_cast<double>(std::numeric_limits<float>::max());
-  return static_cast<float>(value < -kMost ? -kMost : (kMost < value ? kMost : value));
+  constexpr auto kMaxFloat = static_cast<double>(std::numeric_limits<float>::max());
+  return static_cast<float>(value < -kMaxFloat ? -kMaxFloat
+                                               : (kMaxFloat < value ? kMaxFloat : value));
 }
 
 /// Returns the largest double that is <= the exact a + b, if the sum is finite. If the host flushes

@@ -113,7 +113,8 @@ Status Partition::update(std::span<const Key> keys, const BoxView& boxes) {
   return logged(state_ == nullptr ? status_ : state_->update(keys, boxes), "Partition::update");
 }
 
-Status Partition::update(std::span<const Key> keys, const BoxView& boxes, const Entries& entries) {
+Status Partition::update(std::span<const Key> keys, const BoxView& boxes,
+                         const IndexSubset& entries) {
   const DefaultEnvironment environment;
   return logged(state_ == nullptr ? status_ : state_->update(keys, boxes, entries),
                 "Partition::update");

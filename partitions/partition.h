@@ -8,12 +8,12 @@
 #include <winnow/core/cast.h>
 #include <winnow/core/column.h>
 #include <winnow/core/debug_draw.h>
-#include <winnow/core/entries.h>
 #include <winnow/core/execution.h>
 #include <winnow/core/export.h>
 #include <winnow/core/filter.h>
 #include <winnow/core/footprint.h>
 #include <winnow/core/hits.h>
+#include <winnow/core/index_subset.h>
 #include <winnow/core/kdop.h>
 #include <winnow/core/key.h>
 #include <winnow/core/large_pages.h>
@@ -181,7 +181,7 @@ class WINNOW_API Partition final {
   /// Gives new boxes only to the listed or masked entries of `keys` and `boxes`, so that a caller
   /// that has arrays of all its objects need not copy the entries together. `invalid_argument` for
   /// an index out of range, `size_mismatch` for a mask of another length.
-  Status update(std::span<const Key> keys, const BoxView& boxes, const Entries& entries);
+  Status update(std::span<const Key> keys, const BoxView& boxes, const IndexSubset& entries);
 
   /// Adds one object per sphere. `unsupported_volume` unless `volume()` is Volume::sphere. A
   /// partition of spheres or k-DOPs that is given boxes stores the tightest volume around each; for

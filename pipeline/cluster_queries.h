@@ -58,14 +58,14 @@ struct NearestProbe {
 
 /// Queries of one rank. The filter must not have a predicate (`unsupported`).
 template <typename Question>
-struct ClusterQuestions {
+struct ClusterQueryBatch {
   std::span<const Question> questions;  ///< queries of that rank
   Filter filter{};                      ///< filter of all of them
 };
 
 /// Results of one rank: answers [first[i], first[i + 1]) belong to query i.
 template <typename Answer>
-struct ClusterAnswers {
+struct ClusterResults {
   std::span<const Answer> answers;     ///< results of all queries, in the order of the queries
   std::span<const std::size_t> first;  ///< number of queries + 1 entries
 };
@@ -88,27 +88,28 @@ class WINNOW_API ClusterQueries {
 
   /// Finds the hit of least t of each ray; among equal t, the least name. A ray is sent to the
   /// ranks whose regions it crosses.
-  Status closest(std::span<const ClusterQuestions<ShapeRay>> rays, std::span<Status> answers);
+  Status closest(std::span<const ClusterQueryBatch<ShapeRay>> rays, std::span<Status> answers);
   /// Finds the first hit on every body that each ray hits, sorted by t, then by name.
-  Status all(std::span<const ClusterQuestions<ShapeRay>> rays, std::span<Status> answers);
+  Status all(std::span<const ClusterQueryBatch<ShapeRay>> rays, std::span<Status> answers);
   /// Finds out for each ray whether it hits anything.
-  Status any(std::span<const ClusterQuestions<ShapeRay>> rays, std::span<Status> answers);
+  Status any(std::span<const ClusterQueryBatch<ShapeRay>> rays, std::span<Status> answers);
   /// Finds every body that shares a point with each shape, sorted by name. A shape is sent to the
   /// ranks whose regions its box overlaps.
-  Status overlap(std::span<const ClusterQuestions<ShapeProbe>> shapes, std::span<Status> answers);
+  Status overlap(std::span<const ClusterQueryBatch<ShapeProbe>> shapes, std::span<Status> answers);
   /// Finds the bodies nearest to each point, sorted by distance, then by name. A point is sent to
   /// all ranks.
-  Status nearest(std::span<const ClusterQuestions<NearestProbe>> points, std::span<Status> answers);
+  Status nearest(std::span<const ClusterQueryBatch<NearestProbe>> points,
+                 std::span<Status> answers);
 
   /// Returns the results of the last `closest` or `all` of a hosted rank.
-  [[nodiscard]] ClusterAnswers<ClusterHit> hits(std::uint32_t rank) const noexcept;
+  [[nodiscard]] ClusterResults<ClusterHit> hits(std::uint32_t rank) const noexcept;
   /// Returns the results of the last `any` of a hosted rank: nonzero for each ray that hits
   /// something.
   [[nodiscard]] std::span<const std::uint8_t> blocked(std::uint32_t rank) const noexcept;
   /// Returns the results of the last `overlap` of a hosted rank.
-  [[nodiscard]] ClusterAnswers<ClusterOverlap> overlaps(std::uint32_t rank) const noexcept;
+  [[nodiscard]] ClusterResults<ClusterOverlap> overlaps(std::uint32_t rank) const noexcept;
   /// Returns the results of the last `nearest` of a hosted rank.
-  [[nodiscard]] ClusterAnswers<ClusterDistance> neighbours(std::uint32_t rank) const noexcept;
+  [[nodiscard]] ClusterResults<ClusterDistance> neighbours(std::uint32_t rank) const noexcept;
 
  private:
   /// Null if memory was refused.

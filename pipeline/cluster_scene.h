@@ -32,8 +32,9 @@ struct ClusterSceneBatch {
 
 /// Options of a cluster of scenes, fixed at construction.
 struct ClusterSceneOptions {
-  /// Options of the scene of each rank. `carry_over` must be 0, `warm_start` and `seamless_floors`
-  /// must be false; otherwise the status of the cluster is `invalid_argument`.
+  /// Options of the scene of each rank. `carry_over` must be 0, `warm_start` and
+  /// `suppress_ghost_contacts` must be false; otherwise the status of the cluster is
+  /// `invalid_argument`.
   SceneOptions scene{};
   /// See ClusterOptions::imbalance.
   double imbalance = 1.1;

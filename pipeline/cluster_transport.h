@@ -14,7 +14,7 @@ namespace winnow {
 
 /// A plane that divides a region of space. The cuts of a cluster form a binary tree, root first;
 /// its leaves are ranks.
-struct RegionCut {
+struct SplitPlane {
   float at = 0.0F;         ///< finite; smaller coordinates are below the plane
   std::uint32_t axis = 0;  ///< 0, 1 or 2
   /// Children: below the plane, and at or above it. Each is the index of another cut, or `~rank`,
@@ -30,7 +30,7 @@ struct CutWork {
 };
 
 /// A message from one rank to another: columns, sent from where they are stored.
-struct Parcel {
+struct RankMessage {
   std::uint32_t from = 0;                               ///< sending rank
   std::uint32_t to = 0;                                 ///< receiving rank
   std::array<std::span<const std::byte>, 4> columns{};  ///< each of its own type
@@ -44,7 +44,7 @@ struct Parcel {
 };
 
 /// A function that a process runs while messages are in transit.
-struct Meanwhile {
+struct OverlappedWork {
   void (*work)(void* context) noexcept = nullptr;  ///< null: nothing
   void* context = nullptr;                         ///< passed to `work`
 
@@ -79,8 +79,8 @@ class WINNOW_API Transport {
   /// messages to hosted ranks, sorted by `to`, then by `from`. They are valid until the next
   /// exchange, as long as the sent data of this process are not moved. Calls `meanwhile` once
   /// unless an error occurred, preferably when all sends are under way.
-  virtual Status exchange(std::span<const Parcel> sent, std::span<const Parcel>& received,
-                          const Meanwhile& meanwhile) = 0;
+  virtual Status exchange(std::span<const RankMessage> sent, std::span<const RankMessage>& received,
+                          const OverlappedWork& meanwhile) = 0;
 
   /// Replaces each number of `sums` by its sum, and each number of `greatest` by its maximum, over
   /// all processes.
@@ -88,7 +88,7 @@ class WINNOW_API Transport {
 
   /// Partitions space so that the ranks get about equal work: `ranks() - 1` cuts, the same on every
   /// process. `work` has one entry per hosted rank. The position of the planes affects no result.
-  virtual Status cut(std::span<const CutWork> work, std::span<RegionCut> cuts) = 0;
+  virtual Status cut(std::span<const CutWork> work, std::span<SplitPlane> cuts) = 0;
 
  protected:
   Transport() = default;
@@ -106,14 +106,14 @@ class WINNOW_API LoopbackTransport final : public Transport {
   [[nodiscard]] std::uint32_t ranks() const noexcept override { return ranks_; }
   [[nodiscard]] std::uint32_t first_hosted() const noexcept override { return 0; }
   [[nodiscard]] std::uint32_t hosted() const noexcept override { return ranks_; }
-  Status exchange(std::span<const Parcel> sent, std::span<const Parcel>& received,
-                  const Meanwhile& meanwhile) override;
+  Status exchange(std::span<const RankMessage> sent, std::span<const RankMessage>& received,
+                  const OverlappedWork& meanwhile) override;
   Status reduce(std::span<std::uint64_t> sums, std::span<std::uint64_t> greatest) override;
-  Status cut(std::span<const CutWork> work, std::span<RegionCut> cuts) override;
+  Status cut(std::span<const CutWork> work, std::span<SplitPlane> cuts) override;
 
  private:
   std::uint32_t ranks_;
-  std::vector<Parcel> parcels_;
+  std::vector<RankMessage> parcels_;
 };
 
 }  // namespace winnow

@@ -180,7 +180,7 @@ class WINNOW_API CompositePool final : public MidPhase {
  private:
   [[nodiscard]] bool can_be_child(ShapeId id) const noexcept;
   [[nodiscard]] bool has_solids() const noexcept;
-  [[nodiscard]] Status tell(mid::IdSet& set, ShapeId surface, bool now) noexcept;
+  [[nodiscard]] Status set_flag(mid::IdSet& set, ShapeId surface, bool now) noexcept;
   /// Returns the state, which is created for the first shape: a pool without shapes takes no
   /// memory. Null if memory is refused.
   [[nodiscard]] mid::Composites* state() noexcept;

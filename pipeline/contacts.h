@@ -6,9 +6,9 @@
 #include <winnow/core/column.h>
 #include <winnow/core/export.h>
 #include <winnow/core/footprint.h>
+#include <winnow/core/indexed_view.h>
 #include <winnow/core/key.h>
 #include <winnow/core/large_pages.h>
-#include <winnow/core/looked_up.h>
 #include <winnow/pipeline/contact_types.h>
 
 #include <cstdint>
@@ -64,9 +64,9 @@ struct PartLookup {
 };
 
 /// Client data of one body of each pair. Used like a span: size(), [i], begin(), end().
-using DataColumn = LookedUp<DataLookup>;
+using DataColumn = IndexedView<DataLookup>;
 /// Part of one shape in each manifold. Used like a span.
-using PartColumn = LookedUp<PartLookup>;
+using PartColumn = IndexedView<PartLookup>;
 
 /// Result of `Scene::collide`, in columns: pairs of bodies, sorted by the kinds of their shapes,
 /// then by body; for each pair its manifolds; for each manifold its points. A pair of convex shapes

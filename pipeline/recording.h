@@ -24,7 +24,7 @@
 namespace winnow {
 
 struct RecorderState;
-struct PassedPairs;
+struct AcceptedPairs;
 enum class RecordedCall : std::uint8_t;
 
 /// Destination of a recording: a function that takes the next bytes and returns false on failure.
@@ -119,7 +119,7 @@ class WINNOW_API RecordedPartition {
                 std::span<Key> keys);
   Status update(std::span<const Key> keys, const BoxView& boxes);
   Status update(Key key, const Aabb& box);
-  Status update(std::span<const Key> keys, const BoxView& boxes, const Entries& entries);
+  Status update(std::span<const Key> keys, const BoxView& boxes, const IndexSubset& entries);
   Status update(std::span<const Key> keys, std::span<const Sphere> spheres);
   template <int K>
   Status update(std::span<const Key> keys, std::span<const Kdop<K>> kdops);
@@ -158,7 +158,7 @@ class WINNOW_API RecordedPartition {
   Partition partition_;
   /// Returns the number of the recorded query whose result the buffer holds; 0 if it is none of the
   /// last ones.
-  [[nodiscard]] std::uint64_t asked_as(const PairBuffer& out) const noexcept;
+  [[nodiscard]] std::uint64_t source_query(const PairBuffer& out) const noexcept;
   void note_asked(const PairBuffer& out) const noexcept;
 
   /// Buffers' contents after the last pair queries; query i is at i % kAskedPairs.
@@ -181,10 +181,11 @@ struct RecordedShape {
 /// recorded.
 ///
 /// The recording ends with `unsupported` on: a body whose shape is in another MidPhase, is
-/// one-sided or a solid, or has a support function; SceneOptions::seamless_floors; and a `collide`
-/// into Contacts that this scene filled, but not in its last `collide`. So use one Contacts per
-/// scene; it may be cleared, filled by another scene in between, or loaded by `load_contacts`.
-/// RecordedQueries, RecordedSweep and RecordedSensors record the other queries of a scene.
+/// one-sided or a solid, or has a support function; SceneOptions::suppress_ghost_contacts; and a
+/// `collide` into Contacts that this scene filled, but not in its last `collide`. So use one
+/// Contacts per scene; it may be cleared, filled by another scene in between, or loaded by
+/// `load_contacts`. RecordedQueries, RecordedSweep and RecordedSensors record the other queries of
+/// a scene.
 class WINNOW_API RecordedScene {
  public:
   /// Creates a scene without composite shapes. The recorder must outlive it.
@@ -203,7 +204,7 @@ class WINNOW_API RecordedScene {
   /// Accesses the scene, for const calls that are not recorded.
   [[nodiscard]] const Scene* operator->() const noexcept { return &scene_; }
   /// Reserves memory. Not recorded, because it does not change results.
-  Status reserve(const SceneRoom& room, Pages pages = Pages::untouched) {
+  Status reserve(const SceneCapacity& room, Pages pages = Pages::untouched) {
     return scene_.reserve(room, pages);
   }
 
@@ -222,7 +223,7 @@ class WINNOW_API RecordedScene {
   Status set_filter(Key key, const ObjectFilter& filter);
   Status set_offsets(Key key, const ContactOffsets& offsets);
   Status set_layer(Key key, std::uint16_t layer);
-  Status set_layers_meet(std::uint16_t a, std::uint16_t b, bool meet = true);
+  Status set_layers_collide(std::uint16_t a, std::uint16_t b, bool meet = true);
   Status set_ignored(Key a, Key b, bool ignored = true);
   Status set_ignored(std::span<const KeyPair> pairs, bool ignored = true);
   void set_predicate(const PairPredicate& predicate) noexcept;
@@ -240,7 +241,7 @@ class WINNOW_API RecordedScene {
                 const CompositePool* composites) noexcept;
   /// Clock of the `collide` that filled contacts, and serial number of its pairs.
   using Asked = std::pair<std::uint32_t, std::uint64_t>;
-  [[nodiscard]] static Asked asked_as(const Contacts& contacts) noexcept;
+  [[nodiscard]] static Asked source_query(const Contacts& contacts) noexcept;
   [[nodiscard]] bool is_filled_by_this(const Contacts& contacts) const noexcept;
 
   [[nodiscard]] bool can_hold(ShapeId id) const noexcept;
@@ -266,12 +267,12 @@ class WINNOW_API RecordedScene {
   std::uint64_t composites_seen_;
   Scene scene_;
   /// Recorded shapes by id, in the recorder's memory.
-  Column<RecordedShape> known_;
+  Column<RecordedShape> recorded_shapes_;
   std::uint32_t shapes_recorded_ = 0;
   std::uint32_t sensors_recorded_ = 0;
   Asked asked_;
   /// Pairs that the predicate accepted, in the recorder's memory; null without a predicate.
-  PassedPairs* passed_ = nullptr;
+  AcceptedPairs* passed_ = nullptr;
 };
 
 /// SceneQueries that are recorded; see SceneQueries for each function. A query is recorded with its

@@ -10,7 +10,7 @@ namespace winnow {
 /// orientation is start.orientation, rotated about the direction of `turn` by t * |turn|.
 struct RigidMotion {
   /// Largest rotation in radians: about 160,000 turns.
-  static constexpr double kMostTurn = 1e6;
+  static constexpr double kMaxTurn = 1e6;
 
   Pose start;                          ///< pose at time 0
   double travel[3] = {0.0, 0.0, 0.0};  ///< displacement from time 0 to time 1
@@ -32,7 +32,7 @@ struct RigidMotion {
                                                             double duration) noexcept;
 
   /// True if the start is valid, all numbers and the last position are finite, and the rotation is
-  /// at most kMostTurn.
+  /// at most kMaxTurn.
   [[nodiscard]] WINNOW_API bool is_valid() const noexcept;
 
   /// Returns the pose at a time in [0, 1]; the motion must be valid. If the body rotates, the

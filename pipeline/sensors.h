@@ -39,7 +39,7 @@ struct SensedBody {
 
 /// A body that the previous `sense` found and the last one did not. Keys of removed objects are
 /// stale.
-struct LeftSensor {
+struct ExitedBody {
   Key sensor;                  ///< key of the sensor
   Key body;                    ///< key of the body in the scene
   ClientData sensor_data = 0;  ///< client data of the sensor
@@ -88,7 +88,7 @@ class WINNOW_API Sensors {
   /// Returns the sensed bodies, sorted by the ids of sensors, then of bodies.
   [[nodiscard]] std::span<const SensedBody> sensed() const noexcept;
   /// Returns the bodies that left, in the same order.
-  [[nodiscard]] std::span<const LeftSensor> left() const noexcept;
+  [[nodiscard]] std::span<const ExitedBody> left() const noexcept;
 
   /// Returns the number of sensors.
   [[nodiscard]] std::size_t size() const noexcept;

@@ -25,7 +25,7 @@ namespace winnow {
 namespace impact {
 struct Impact;
 }  // namespace impact
-class PartTraversal;
+class SubShapeQuery;
 
 /// Moving bodies: body i has shape shapes[i] and moves by motions[i].
 struct MovingBodies {
@@ -109,7 +109,7 @@ class WINNOW_API ImpactResult {
                                           std::span<const BodyPair> pairs,
                                           const ImpactOptions& options, ImpactResult& result);
   [[nodiscard]] bool resize(std::size_t count) noexcept;
-  void find_stretch(const PartTraversal& parts, const MovingBodies& bodies,
+  void find_stretch(const SubShapeQuery& parts, const MovingBodies& bodies,
                     std::span<const BodyPair> pairs, const ImpactOptions& options,
                     std::size_t first, std::size_t end);
   void write(std::size_t i, const impact::Impact& impact, std::uint32_t part_a,

@@ -12,13 +12,13 @@
 #include <winnow/core/capsule.h>
 #include <winnow/core/cast.h>
 #include <winnow/core/debug_draw.h>
-#include <winnow/core/entries.h>
 #include <winnow/core/execution.h>
 #include <winnow/core/filter.h>
 #include <winnow/core/footprint.h>
 #include <winnow/core/frustum.h>
 #include <winnow/core/hits.h>
 #include <winnow/core/hooks.h>
+#include <winnow/core/index_subset.h>
 #include <winnow/core/kdop.h>
 #include <winnow/core/kdop_around.h>
 #include <winnow/core/key.h>

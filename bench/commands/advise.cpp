@@ -12,7 +12,7 @@ namespace winnow::bench {
 namespace {
 
 constexpr std::size_t kAdviceFrames = 41;
-constexpr std::size_t kMostFrames = 201;
+constexpr std::size_t kMaxFrames = 201;
 
 class Advise final : public RowsCommand {
  public:
@@ -55,8 +55,8 @@ void Advise::measure() {
   const std::size_t count = scene.objects(target_.objects.value_or(kSceneObjects));
   const Partitions partitions = partitions_for(partitions_, count);
   if (frames_ == 0) {
-    frames_ = scene.is_recording() ? std::min(scene.recording->frames.size(), kMostFrames)
-                                   : kAdviceFrames;
+    frames_ =
+        scene.is_recording() ? std::min(scene.recording->frames.size(), kMaxFrames) : kAdviceFrames;
   }
   plan(1);
   declare_advice(results);

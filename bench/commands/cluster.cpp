@@ -118,7 +118,7 @@ int ClusterCommand::run() {
     run_over(transport, true);
     return kDone;
   }
-  if (!MpiSession::is_there()) {
+  if (!MpiSession::is_available()) {
     throw ArgumentError(
         "--ranks needs MPI and Zoltan, but this tool was built without them (Debian: "
         "libopenmpi-dev, libtrilinos-zoltan-dev); --virtual-ranks needs neither");

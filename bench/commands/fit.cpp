@@ -24,7 +24,7 @@ struct Fit {
   std::vector<double> moving{1.0, 0.05, 0.01};
   std::size_t frames = 0;
   std::string isa;
-  bool checks_alone = false;
+  bool only_checks = false;
   std::string figures;
 
   int run();
@@ -126,7 +126,7 @@ int Fit::run() {
   }
   const std::vector<CostSample> samples = measured();
   print_regret(samples, present_costs(), "chosen structure / best structure, present constants");
-  if (checks_alone) return kDone;
+  if (only_checks) return kDone;
   const FittedCosts fitted = fit_costs(samples);
   print_regret(samples, fitted.costs, "chosen structure / best structure, fitted constants");
   print_costs(fitted);
@@ -147,7 +147,7 @@ Command add_fit(CLI::App& app) {
   number(*sub, "--frames", fit->frames, 0, 1e6,
          "Number of frames; 0: chosen by the number of objects");
   add_isa_option(*sub, fit->isa);
-  sub->add_flag("--check", fit->checks_alone,
+  sub->add_flag("--check", fit->only_checks,
                 "Evaluate the present constants instead of fitting new ones");
   sub->add_option("--figures", fit->figures,
                   "Evaluate the choice by times measured elsewhere: a CSV file with the columns "

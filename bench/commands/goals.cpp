@@ -3,8 +3,8 @@
 #include "bench/common/json.h"
 #include "bench/common/progress.h"
 #include "bench/common/table.h"
-#include "bench/goals/asks.h"
 #include "bench/goals/evaluate.h"
+#include "bench/goals/goal_entries.h"
 
 #include <algorithm>
 #include <iostream>
@@ -15,7 +15,7 @@ namespace {
 struct Goals {
   std::string topic;
   std::string json;
-  std::size_t worst_of = Lab::kWorstOf;
+  std::size_t worst_of = MeasurementCache::kWorstOf;
 
   void add_options(CLI::App& app) {
     one_of(app, "--topic", topic, {kTopics.begin(), kTopics.end()}, "Only this topic");
@@ -26,19 +26,19 @@ struct Goals {
   [[nodiscard]] int run() const;
 
  private:
-  [[nodiscard]] std::vector<Goal> measure_all(Lab& lab) const;
+  [[nodiscard]] std::vector<Goal> measure_all(MeasurementCache& measurement_cache) const;
 };
 
-std::vector<Goal> Goals::measure_all(Lab& lab) const {
+std::vector<Goal> Goals::measure_all(MeasurementCache& measurement_cache) const {
   std::vector<Json> wanted;
-  for (Json& ask : parse_asks(kGoalsJson)) {
+  for (Json& ask : parse_goals(kGoalsJson)) {
     if (topic.empty() || ask["topic"] == topic) wanted.push_back(std::move(ask));
   }
   std::vector<Goal> goals;
   Progress progress(wanted.size());
   for (const Json& ask : wanted) {
     progress.step(ask["topic"].get<std::string>() + ": " + ask["what"].get<std::string>());
-    for (Goal& goal : evaluate(ask, lab)) goals.push_back(std::move(goal));
+    for (Goal& goal : evaluate(ask, measurement_cache)) goals.push_back(std::move(goal));
   }
   return goals;
 }
@@ -77,9 +77,9 @@ Json goal_json(const Goal& goal) {
 }
 
 int Goals::run() const {
-  Lab lab(worst_of);
-  const std::vector<Goal> goals = measure_all(lab);
-  const Spread machine = lab.machine_ms();
+  MeasurementCache measurement_cache(worst_of);
+  const std::vector<Goal> goals = measure_all(measurement_cache);
+  const Spread machine = measurement_cache.machine_ms();
   if (machine.max > 0.0) {
     std::cout << "reference sweep during the run: " << short_number(machine.min) << " to "
               << short_number(machine.max) << " ms, median " << short_number(machine.median)

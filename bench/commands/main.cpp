@@ -37,9 +37,9 @@ int run_tool(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    const bool asked_for_help = error.get_exit_code() == 0;
+    const bool is_help = error.get_exit_code() == 0;
     app.exit(error);
-    return asked_for_help ? kDone : kBadArgument;
+    return is_help ? kDone : kBadArgument;
   }
   check_isa_of_environment();
   for (const Command& command : commands) {

@@ -258,7 +258,7 @@ class Queries final : public RowsCommand {
            "Number of rays in a set; sets of slower queries are smaller");
     number(app, "--rounds", asked_.rounds, 1, 1000,
            "Number of rounds; all contenders take turns in each");
-    const auto names = question_set_names();
+    const auto names = query_set_names();
     one_of(app, "--set", asked_.sets, {names.begin(), names.end()}, "Sets of queries");
     add_seed_option(app, asked_.seed);
     add_rows_options(app);
@@ -314,7 +314,7 @@ class Volumes final : public RowsCommand {
   }
 
   SceneOrRecording scene_;
-  VolumeQuestion asked_;
+  VolumeRowOptions asked_;
   std::vector<std::string> settings_;
 };
 

@@ -27,7 +27,7 @@ namespace {
 constexpr std::size_t kRecorded = 10;
 constexpr std::size_t kReports = 20;
 /// Greatest relative rise of the energy that counts as an integration error.
-constexpr double kMostRise = 1e-3;
+constexpr double kMaxRise = 1e-3;
 
 /// Selects every structure or barrier.
 constexpr const char* kAll = "all";
@@ -101,7 +101,7 @@ class Simulate final : public RowsCommand {
   [[nodiscard]] FlowFacts facts(const FlowRun& run) const;
   void write_flow_page(const FlowFacts& facts) const;
 
-  FlowQuestion asked_{.objects = 10'000, .steps = 2'000, .threads = usual_threads().back()};
+  FlowRowOptions asked_{.objects = 10'000, .steps = 2'000, .threads = usual_threads().back()};
   std::string mesh_;
   std::string out_;
   std::string record_;
@@ -109,7 +109,7 @@ class Simulate final : public RowsCommand {
   std::string barrier_;
   CLI::Option* objects_ = nullptr;
   CLI::Option* steps_ = nullptr;
-  double seconds_ = StandingQuestion{}.seconds;
+  double seconds_ = StandingRowOptions{}.seconds;
 };
 
 void Simulate::add_options(CLI::App& app) {
@@ -210,7 +210,7 @@ void Simulate::measure_barriers() {
   plan(names.size());
   Arenas(asked_.threads).run(asked_.threads, [&] {
     for (const std::string& name : names) {
-      BarrierQuestion asked{.scene = name, .threads = asked_.threads};
+      BarrierRowOptions asked{.scene = name, .threads = asked_.threads};
       if (steps_->count() != 0) asked.steps = asked_.steps;
       if (objects_->count() != 0) asked.size = asked_.objects;
       step(name, [&] {
@@ -260,7 +260,7 @@ void Simulate::measure() {
     const FlowFacts all = facts(run);
     for (const auto& [what, much] : all) std::cout << what << ": " << much << '\n';
     if (!out_.empty()) write_flow_page(all);
-    if (run.faults().total() != 0 || run.history().greatest_rise() >= kMostRise) fail();
+    if (run.faults().total() != 0 || run.history().greatest_rise() >= kMaxRise) fail();
   });
 }
 

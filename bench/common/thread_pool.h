@@ -94,8 +94,8 @@ class ThreadPool {
   // A frame has many short batches in quick succession: sleeping between them would cost more than
   // they do, so this spins for a while. Returns true if a new batch was signalled.
   [[nodiscard]] bool wait_awake(std::uint32_t seen) const {
-    constexpr int kLooks = 200;
-    for (int look = 0; look < kLooks; ++look) {
+    constexpr int kSpinChecks = 200;
+    for (int look = 0; look < kSpinChecks; ++look) {
       if (signal_.load() != seen) return true;
       std::this_thread::yield();
     }

@@ -33,8 +33,8 @@ void PartitionEngine::frame(std::span<const std::uint32_t> changed_rows,
   if (changed_rows.size() == known) {
     require(partition_.update(keys_, old_boxes), partition_.name(), "update");
   } else {
-    require(partition_.update(keys_, old_boxes, Entries::listed(changed_rows)), partition_.name(),
-            "update");
+    require(partition_.update(keys_, old_boxes, IndexSubset::listed(changed_rows)),
+            partition_.name(), "update");
   }
   if (all_boxes.size() > known) {
     keys_.resize(all_boxes.size());

@@ -15,10 +15,10 @@ namespace winnow::bench {
 namespace {
 
 /// Most box tests for one run on a partition that tests every box per query.
-constexpr double kMostTests = 2e8;
+constexpr double kMaxTests = 2e8;
 
 void require(Status status) {
-  if (status != Status::ok) throw Refusal(to_string(status));
+  if (status != Status::ok) throw QueryError(to_string(status));
 }
 
 template <typename Variant>
@@ -40,14 +40,14 @@ Found to_found(const Hit& hit) noexcept {
 PartitionQueries::PartitionQueries(std::string_view name, int threads)
     : partition_(make_named(name, {.memory = &memory_, .execution = execution_for(threads)})) {}
 
-bool PartitionQueries::takes(const QuestionSet& set, Asking asking) const {
-  return asking == Asking::single || !set.rays.empty() ||
-         (!set.boxes.empty() && set.want == Want::overlap);
+bool PartitionQueries::takes(const QuerySet& set, QueryMode asking) const {
+  return asking == QueryMode::single || !set.rays.empty() ||
+         (!set.boxes.empty() && set.query_type == QueryType::overlap);
 }
 
 std::size_t PartitionQueries::most_questions() const {
   if (!partition_.name().ends_with("NSquared")) return QueryEngine::most_questions();
-  const double count = kMostTests / static_cast<double>(std::max<std::size_t>(1, keys_.size()));
+  const double count = kMaxTests / static_cast<double>(std::max<std::size_t>(1, keys_.size()));
   return std::max<std::size_t>(16, static_cast<std::size_t>(count));
 }
 
@@ -60,17 +60,17 @@ void PartitionQueries::start(std::span<const Aabb> boxes) {
 
 /// Calls `visit(results)` after each query, with a Hit, a HitBuffer or an OverlapBuffer.
 template <typename Visit>
-void PartitionQueries::ask_each(const QuestionSet& set, std::size_t begin, std::size_t end,
+void PartitionQueries::run_each(const QuerySet& set, std::size_t begin, std::size_t end,
                                 Buffers& buffers, Visit&& visit) const {
   const Partition& partition = partition_;
   const auto cast_one = [&](const Cast& cast) {
-    if (set.want == Want::all) {
+    if (set.query_type == QueryType::all) {
       require(partition.all(cast, buffers.hits));
       visit(buffers.hits);
       return;
     }
-    require(set.want == Want::any ? partition.any(cast, buffers.hit)
-                                  : partition.closest(cast, buffers.hit));
+    require(set.query_type == QueryType::any ? partition.any(cast, buffers.hit)
+                                             : partition.closest(cast, buffers.hit));
     visit(buffers.hit);
   };
   const auto overlap_one = [&](const Region& region) {
@@ -84,7 +84,7 @@ void PartitionQueries::ask_each(const QuestionSet& set, std::size_t begin, std::
       cast_one(to_cast(set.casts[i]));
     } else if (!set.regions.empty()) {
       overlap_one(to_region(set.regions[i]));
-    } else if (set.want == Want::overlap) {
+    } else if (set.query_type == QueryType::overlap) {
       overlap_one(set.boxes[i]);
     } else {
       constexpr float kAnyDistance = std::numeric_limits<float>::infinity();
@@ -95,34 +95,35 @@ void PartitionQueries::ask_each(const QuestionSet& set, std::size_t begin, std::
 }
 
 /// Runs one batched query; the results are in `buffers_`.
-void PartitionQueries::ask_batch(const QuestionSet& set, std::size_t count) {
+void PartitionQueries::run_batch(const QuerySet& set, std::size_t count) {
   const Partition& partition = partition_;
   if (set.rays.empty()) {
     require(partition.overlap(std::span(set.boxes).first(count), buffers_.pairs));
     return;
   }
   const RayBatch rays(std::span(set.rays).first(count));
-  if (set.want == Want::all) {
+  if (set.query_type == QueryType::all) {
     require(partition.all(rays, buffers_.hits));
     return;
   }
   buffers_.keys.resize(count);
   buffers_.t.resize(count);
   const HitColumns columns{.key = buffers_.keys.data(), .t = buffers_.t.data()};
-  require(set.want == Want::any ? partition.any(rays, columns) : partition.closest(rays, columns));
+  require(set.query_type == QueryType::any ? partition.any(rays, columns)
+                                           : partition.closest(rays, columns));
 }
 
-std::uint64_t PartitionQueries::run(const QuestionSet& set, Asking asking, std::size_t count) {
-  if (asking == Asking::batch) {
-    ask_batch(set, count);
+std::uint64_t PartitionQueries::run(const QuerySet& set, QueryMode asking, std::size_t count) {
+  if (asking == QueryMode::batch) {
+    run_batch(set, count);
     if (set.rays.empty()) return buffers_.pairs.size();
-    if (set.want == Want::all) return buffers_.hits.size();
+    if (set.query_type == QueryType::all) return buffers_.hits.size();
     return count - static_cast<std::uint64_t>(
                        std::count(buffers_.keys.begin(), buffers_.keys.end(), Key{}));
   }
   const auto run_part = [&](std::size_t begin, std::size_t end, Buffers& buffers) {
     std::uint64_t found = 0;
-    ask_each(set, begin, end, buffers, [&](const auto& results) {
+    run_each(set, begin, end, buffers, [&](const auto& results) {
       if constexpr (std::is_same_v<std::decay_t<decltype(results)>, Hit>) {
         found += results ? 1U : 0U;
       } else {
@@ -139,14 +140,14 @@ std::uint64_t PartitionQueries::run(const QuestionSet& set, Asking asking, std::
   return found;
 }
 
-Answers PartitionQueries::answers(const QuestionSet& set, Asking asking, std::size_t count) {
-  Answers result;
-  if (asking == Asking::batch) {
-    ask_batch(set, count);
+QueryResults PartitionQueries::answers(const QuerySet& set, QueryMode asking, std::size_t count) {
+  QueryResults result;
+  if (asking == QueryMode::batch) {
+    run_batch(set, count);
     gather(set, count, result);
     return result;
   }
-  ask_each(set, 0, count, buffers_, [&](const auto& results) {
+  run_each(set, 0, count, buffers_, [&](const auto& results) {
     using Results = std::decay_t<decltype(results)>;
     if constexpr (std::is_same_v<Results, Hit>) {
       if (results) result.add(to_found(results));
@@ -161,7 +162,7 @@ Answers PartitionQueries::answers(const QuestionSet& set, Asking asking, std::si
 }
 
 /// Adds the results of the last batch to `answers`.
-void PartitionQueries::gather(const QuestionSet& set, std::size_t count, Answers& answers) {
+void PartitionQueries::gather(const QuerySet& set, std::size_t count, QueryResults& answers) {
   std::vector<Pair> pairs;
   if (set.rays.empty()) pairs.assign(buffers_.pairs.begin(), buffers_.pairs.end());
   std::sort(pairs.begin(), pairs.end());
@@ -169,7 +170,7 @@ void PartitionQueries::gather(const QuestionSet& set, std::size_t count, Answers
   for (std::size_t i = 0; i < count; ++i) {
     if (set.rays.empty()) {
       for (; pair != pairs.end() && pair->first == i; ++pair) answers.add({pair->second, 0.0F});
-    } else if (set.want == Want::all) {
+    } else if (set.query_type == QueryType::all) {
       for (const Hit& hit : buffers_.hits.of(i)) answers.add(to_found(hit));
     } else if (buffers_.keys[i].id != kNoObject) {
       answers.add({buffers_.keys[i].id, buffers_.t[i]});

@@ -20,12 +20,13 @@ class PartitionQueries final : public QueryEngine {
 
   [[nodiscard]] std::string name() const override { return std::string(partition_.name()); }
   /// True unless the partition does not support such queries.
-  [[nodiscard]] bool takes(const QuestionSet& set, Asking asking) const override;
+  [[nodiscard]] bool takes(const QuerySet& set, QueryMode asking) const override;
   [[nodiscard]] std::size_t most_questions() const override;
   void start(std::span<const Aabb> boxes) override;
-  /// Throws Refusal if the partition returns an error.
-  std::uint64_t run(const QuestionSet& set, Asking asking, std::size_t count) override;
-  [[nodiscard]] Answers answers(const QuestionSet& set, Asking asking, std::size_t count) override;
+  /// Throws QueryError if the partition returns an error.
+  std::uint64_t run(const QuerySet& set, QueryMode asking, std::size_t count) override;
+  [[nodiscard]] QueryResults answers(const QuerySet& set, QueryMode asking,
+                                     std::size_t count) override;
 
   [[nodiscard]] Partition& partition() noexcept { return partition_; }
   /// The memory resource of the partition and of the buffers of single-threaded queries.
@@ -45,10 +46,10 @@ class PartitionQueries final : public QueryEngine {
   };
 
   template <typename Visit>
-  void ask_each(const QuestionSet& set, std::size_t begin, std::size_t end, Buffers& buffers,
+  void run_each(const QuerySet& set, std::size_t begin, std::size_t end, Buffers& buffers,
                 Visit&& visit) const;
-  void ask_batch(const QuestionSet& set, std::size_t count);
-  void gather(const QuestionSet& set, std::size_t count, Answers& answers);
+  void run_batch(const QuerySet& set, std::size_t count);
+  void gather(const QuerySet& set, std::size_t count, QueryResults& answers);
 
   CountingResource memory_;
   Partition partition_;

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <winnow/core/aabb.h>
-#include "bench/scenes/question_set.h"
+#include "bench/scenes/query_set.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -13,10 +13,10 @@
 namespace winnow::bench {
 
 /// Queries are run by one call each, or by one call for many.
-enum class Asking { single, batch };
+enum class QueryMode { single, batch };
 
 /// Thrown by an engine that fails at queries that it supports; the text is the reason.
-class Refusal : public std::runtime_error {
+class QueryError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
@@ -37,7 +37,7 @@ class QueryEngine {
   [[nodiscard]] virtual std::string name() const = 0;
 
   /// True if the engine supports these queries, single or batched.
-  [[nodiscard]] virtual bool takes(const QuestionSet& set, Asking asking) const = 0;
+  [[nodiscard]] virtual bool takes(const QuerySet& set, QueryMode asking) const = 0;
 
   /// Number of queries of a set that can be run in reasonable time.
   [[nodiscard]] virtual std::size_t most_questions() const {
@@ -50,11 +50,11 @@ class QueryEngine {
 
   /// Runs the first `count` queries of the set and returns the number of objects found. Results are
   /// written where a caller can read them, and overwritten by the next query or batch.
-  virtual std::uint64_t run(const QuestionSet& set, Asking asking, std::size_t count) = 0;
+  virtual std::uint64_t run(const QuerySet& set, QueryMode asking, std::size_t count) = 0;
 
   /// Runs the queries and returns the results. Not timed; single queries run on one thread.
-  [[nodiscard]] virtual Answers answers(const QuestionSet& set, Asking asking,
-                                        std::size_t count) = 0;
+  [[nodiscard]] virtual QueryResults answers(const QuerySet& set, QueryMode asking,
+                                             std::size_t count) = 0;
 
  protected:
   QueryEngine() = default;

@@ -13,7 +13,7 @@ namespace winnow::bench {
 
 /// The result of a ray query: the first hit on the mesh; whether there is any; or the first hit of
 /// every body, sorted (a list of one, as there is one mesh).
-enum class RayWant { closest, any, all };
+enum class RayQueryType { closest, any, all };
 
 /// Base of everything that casts rays at one triangle mesh: winnow and other libraries. The harness
 /// times `run` from outside, on one thread.
@@ -30,9 +30,9 @@ class RayEngine {
   [[nodiscard]] virtual std::size_t bytes() const = 0;
   /// Stores the rays for the next `run`, converted to the engine's types. Not timed.
   virtual void take(std::span<const ShapeRay> rays) = 0;
-  virtual void run(RayWant want, Asking asking) = 0;
+  virtual void run(RayQueryType want, QueryMode asking) = 0;
   /// Returns the ray parameter t of each ray's first hit in the last `run`, infinity without a hit.
-  /// For RayWant::any a hit has t = 0. Not timed.
+  /// For RayQueryType::any a hit has t = 0. Not timed.
   [[nodiscard]] virtual std::vector<double> hits() const = 0;
 
  protected:

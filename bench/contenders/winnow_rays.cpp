@@ -32,9 +32,9 @@ class WinnowRays final : public RayEngine {
     t_.assign(rays.size(), 0.0);
   }
 
-  void run(RayWant want, Asking asking) override {
-    want_ = want;
-    if (asking == Asking::batch) {
+  void run(RayQueryType want, QueryMode asking) override {
+    query_type_ = want;
+    if (asking == QueryMode::batch) {
       run_batch();
     } else {
       for (std::size_t i = 0; i < rays_.size(); ++i) run_one(i);
@@ -44,7 +44,7 @@ class WinnowRays final : public RayEngine {
   [[nodiscard]] std::vector<double> hits() const override {
     std::vector<double> result(rays_.size(), std::numeric_limits<double>::infinity());
     for (std::size_t i = 0; i < result.size(); ++i) {
-      if (key_[i] != Key{}) result[i] = want_ == RayWant::any ? 0.0 : t_[i];
+      if (key_[i] != Key{}) result[i] = query_type_ == RayQueryType::any ? 0.0 : t_[i];
     }
     return result;
   }
@@ -59,11 +59,12 @@ class WinnowRays final : public RayEngine {
     SceneHit hit;
     std::span<const SceneHit> hits;
     Status status = Status::ok;
-    if (want_ == RayWant::all) {
-      status = ask_.all(rays_[i], hits);
+    if (query_type_ == RayQueryType::all) {
+      status = queries_.all(rays_[i], hits);
       if (!hits.empty()) hit = hits.front();
     } else {
-      status = want_ == RayWant::any ? ask_.any(rays_[i], hit) : ask_.closest(rays_[i], hit);
+      status = query_type_ == RayQueryType::any ? queries_.any(rays_[i], hit)
+                                                : queries_.closest(rays_[i], hit);
     }
     need(status, "a ray");
     put(i, hit);
@@ -72,15 +73,15 @@ class WinnowRays final : public RayEngine {
   void run_batch() {
     const SceneHitColumns columns{.key = key_.data(), .t = t_.data()};
     SceneHitLists lists;
-    switch (want_) {
-      case RayWant::closest:
-        return need(ask_.closest(rays_, columns), "rays");
-      case RayWant::any:
-        return need(ask_.any(rays_, columns), "rays");
-      case RayWant::all:
+    switch (query_type_) {
+      case RayQueryType::closest:
+        return need(queries_.closest(rays_, columns), "rays");
+      case RayQueryType::any:
+        return need(queries_.any(rays_, columns), "rays");
+      case RayQueryType::all:
         break;
     }
-    need(ask_.all(rays_, lists), "rays");
+    need(queries_.all(rays_, lists), "rays");
     for (std::size_t i = 0; i < rays_.size(); ++i) {
       put(i, lists.first[i] == lists.first[i + 1] ? SceneHit{} : lists.hits[lists.first[i]]);
     }
@@ -89,9 +90,9 @@ class WinnowRays final : public RayEngine {
   ShapePool shapes_;
   CompositePool composites_{shapes_};
   Scene scene_{shapes_, {.composites = &composites_}};
-  SceneQueries ask_{scene_};
+  SceneQueries queries_{scene_};
   std::span<const ShapeRay> rays_;
-  RayWant want_ = RayWant::closest;
+  RayQueryType query_type_ = RayQueryType::closest;
   std::vector<Key> key_;
   std::vector<double> t_;
 };

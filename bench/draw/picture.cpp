@@ -35,8 +35,8 @@ Picture::Picture(std::string scene, const Stage& stage, const PictureOptions& op
       partition_(stage.partition().name()),
       all_pairs_(stage.pairs().size()),
       reported_(stage.reported()),
-      rays_(ask_rays(stage.partition(), options.rays)),
-      boxes_(ask_boxes(stage.partition(), options.boxes)) {
+      rays_(query_rays(stage.partition(), options.rays)),
+      boxes_(query_boxes(stage.partition(), options.boxes)) {
   const Partition& partition = stage.partition();
   const DebugDrawOptions drawing{.labels = options.labels, .max_depth = options.max_depth};
   require_ok(partition.debug_draw(sketch_, drawing), "debug_draw");
@@ -68,10 +68,10 @@ void Picture::draw_contacts(std::span<const RecordedContact> contacts) {
 void Picture::choose_objects(std::size_t most) {
   const std::size_t all = sketch_.objects().size();
   std::vector<bool> hit(all);
-  for (const RayAnswer& answer : rays_) {
+  for (const RayResult& answer : rays_) {
     for (const Hit& h : answer.hits) hit[h.key.id] = true;
   }
-  for (const BoxAnswer& answer : boxes_) {
+  for (const BoxResult& answer : boxes_) {
     for (const ObjectId id : answer.inside) hit[id] = true;
     for (const ObjectId id : answer.crossing) hit[id] = true;
   }
@@ -102,13 +102,13 @@ Json Picture::counts() const {
   }
   std::size_t ray_hits = 0;
   std::size_t rays_that_hit = 0;
-  for (const RayAnswer& answer : rays_) {
+  for (const RayResult& answer : rays_) {
     ray_hits += answer.hits.size();
     rays_that_hit += static_cast<bool>(answer.closest);
   }
   std::size_t inside = 0;
   std::size_t crossing = 0;
-  for (const BoxAnswer& answer : boxes_) {
+  for (const BoxResult& answer : boxes_) {
     inside += answer.inside.size();
     crossing += answer.crossing.size();
   }
@@ -177,7 +177,7 @@ std::string Picture::places_of(std::span<const ObjectId> ids) const {
 
 Json Picture::questions_data() const {
   Json rays = Json::array();
-  for (const RayAnswer& answer : rays_) {
+  for (const RayResult& answer : rays_) {
     std::vector<ObjectId> ids;
     std::vector<float> ts;
     for (const Hit& hit : answer.hits) {
@@ -194,7 +194,7 @@ Json Picture::questions_data() const {
     rays.push_back(std::move(ray));
   }
   Json boxes = Json::array();
-  for (const BoxAnswer& answer : boxes_) {
+  for (const BoxResult& answer : boxes_) {
     boxes.push_back({{"box", base64_of(std::span<const Aabb>(&answer.box, 1))},
                      {"inside", places_of(answer.inside)},
                      {"crossing", places_of(answer.crossing)}});

@@ -51,8 +51,8 @@ class Picture {
   std::size_t all_pairs_;
   std::size_t reported_;
   Sketch sketch_;
-  std::vector<RayAnswer> rays_;
-  std::vector<BoxAnswer> boxes_;
+  std::vector<RayResult> rays_;
+  std::vector<BoxResult> boxes_;
 
   std::vector<ObjectId> drawn_;       // ascending
   std::vector<ClientData> data_;      // of each object in drawn_

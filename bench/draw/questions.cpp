@@ -45,11 +45,11 @@ Aabb parse_box(const std::string& text) {
   return box;
 }
 
-std::vector<RayAnswer> ask_rays(const Partition& partition, std::span<const Ray> rays) {
-  std::vector<RayAnswer> answers;
+std::vector<RayResult> query_rays(const Partition& partition, std::span<const Ray> rays) {
+  std::vector<RayResult> answers;
   HitBuffer hits;
   for (const Ray& ray : rays) {
-    RayAnswer answer{.ray = ray, .closest = {}, .hits = {}};
+    RayResult answer{.ray = ray, .closest = {}, .hits = {}};
     require_ok(partition.closest(Cast(ray), answer.closest), "closest");
     require_ok(partition.all(Cast(ray), hits), "all");
     answer.hits.assign(hits.begin(), hits.end());
@@ -58,8 +58,8 @@ std::vector<RayAnswer> ask_rays(const Partition& partition, std::span<const Ray>
   return answers;
 }
 
-std::vector<BoxAnswer> ask_boxes(const Partition& partition, std::span<const Aabb> boxes) {
-  std::vector<BoxAnswer> answers;
+std::vector<BoxResult> query_boxes(const Partition& partition, std::span<const Aabb> boxes) {
+  std::vector<BoxResult> answers;
   OverlapBuffer found;
   for (const Aabb& box : boxes) {
     require_ok(partition.overlap(Region(box), found, {}, Order::canonical), "overlap");

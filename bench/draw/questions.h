@@ -8,13 +8,13 @@
 
 namespace winnow::bench {
 
-struct RayAnswer {
+struct RayResult {
   Ray ray;
   Hit closest;
   std::vector<Hit> hits;  ///< all hits, sorted by t
 };
 
-struct BoxAnswer {
+struct BoxResult {
   Aabb box;
   std::vector<ObjectId> inside;
   std::vector<ObjectId> crossing;
@@ -26,9 +26,9 @@ struct BoxAnswer {
 [[nodiscard]] Aabb parse_box(const std::string& text);
 
 /// Runs the queries. Throws std::runtime_error if the partition returns an error.
-[[nodiscard]] std::vector<RayAnswer> ask_rays(const Partition& partition,
-                                              std::span<const Ray> rays);
-[[nodiscard]] std::vector<BoxAnswer> ask_boxes(const Partition& partition,
-                                               std::span<const Aabb> boxes);
+[[nodiscard]] std::vector<RayResult> query_rays(const Partition& partition,
+                                                std::span<const Ray> rays);
+[[nodiscard]] std::vector<BoxResult> query_boxes(const Partition& partition,
+                                                 std::span<const Aabb> boxes);
 
 }  // namespace winnow::bench

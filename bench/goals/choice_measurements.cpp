@@ -1,9 +1,9 @@
 // Measurements for goals about AutoPartition: its first frames, its frames after a scene changes,
 // and its worst frames, each compared with the best partition. goals/measurements.cpp lists them.
 
-#include "bench/goals/asked_scenes.h"
 #include "bench/goals/measurements.h"
-#include "bench/goals/undisturbed.h"
+#include "bench/goals/race_minima.h"
+#include "bench/goals/scenes_of.h"
 #include "bench/measure/race.h"
 #include "bench/scenes/scene.h"
 
@@ -88,7 +88,8 @@ double worst_hitch(std::span<const double> frames) {
 
 }  // namespace
 
-void measure_first_frames(const Json& options, Lab& /*lab*/, Measured& measured) {
+void measure_first_frames(const Json& options, MeasurementCache& /*measurement_cache*/,
+                          Measured& measured) {
   measured.results.declare({"first_frames",
                             "choice",
                             "the first frames of AutoPartition over those of the best",
@@ -98,10 +99,10 @@ void measure_first_frames(const Json& options, Lab& /*lab*/, Measured& measured)
                              {"best", "best", "", Better::neither, Format::text},
                              {"best_ms", "its time", "ms"}}});
   const int threads = options.at("threads");
-  for (const NamedScene& scene : asked_scenes(options, measured)) {
+  for (const NamedScene& scene : scenes_of(options, measured)) {
     const std::size_t objects = scene.objects(options.value("objects", std::size_t{0}));
     const auto runs =
-        undisturbed([&] { return scene.source(objects, 1); }, {"all"}, kSettlingFrames, threads);
+        race_minima([&] { return scene.source(objects, 1); }, {"all"}, kSettlingFrames, threads);
     const OwnAndBest of(runs, 0, kSettlingFrames);
     measured.results.add("first_frames", {{"scene", scene.name},
                                           {"objects", objects},
@@ -113,7 +114,8 @@ void measure_first_frames(const Json& options, Lab& /*lab*/, Measured& measured)
   }
 }
 
-void measure_changes(const Json& options, Lab& /*lab*/, Measured& measured) {
+void measure_changes(const Json& options, MeasurementCache& /*measurement_cache*/,
+                     Measured& measured) {
   measured.results.declare({"changes",
                             "choice",
                             "what AutoPartition loses after a scene has turned into another",
@@ -124,7 +126,7 @@ void measure_changes(const Json& options, Lab& /*lab*/, Measured& measured) {
   const std::size_t each = options.at("frames_each");
   const std::size_t objects = options.at("objects");
   const auto runs =
-      undisturbed([&] { return std::make_unique<TurningScene>(scenes, objects, each); }, {"all"},
+      race_minima([&] { return std::make_unique<TurningScene>(scenes, objects, each); }, {"all"},
                   each * scenes.size(), options.at("threads"));
   for (std::size_t turn = 1; turn < scenes.size(); ++turn) {
     const OwnAndBest of(runs, turn * each, (turn + 1) * each);
@@ -137,7 +139,8 @@ void measure_changes(const Json& options, Lab& /*lab*/, Measured& measured) {
   }
 }
 
-void measure_worst_frames(const Json& options, Lab& lab, Measured& measured) {
+void measure_worst_frames(const Json& options, MeasurementCache& measurement_cache,
+                          Measured& measured) {
   measured.results.declare({"worst_frames",
                             "scenes",
                             "the worst of many frames over the median one, and over the median of "
@@ -149,11 +152,11 @@ void measure_worst_frames(const Json& options, Lab& lab, Measured& measured) {
                              {"median_ms", "median", "ms"},
                              {"frames", "frames", ""}}});
   const int threads = options.at("threads");
-  for (const NamedScene& scene : asked_scenes(options, measured)) {
+  for (const NamedScene& scene : scenes_of(options, measured)) {
     const std::size_t objects = scene.objects(options.value("objects", std::size_t{0}));
     const auto runs =
-        undisturbed([&] { return scene.source(objects, 1); }, options.at("partitions"),
-                    kSettlingFrames + lab.worst_of(), threads);
+        race_minima([&] { return scene.source(objects, 1); }, options.at("partitions"),
+                    kSettlingFrames + measurement_cache.worst_of(), threads);
     for (const Run& run : runs) {
       const std::vector<double> working = working_frames(run);
       if (working.empty()) continue;

@@ -1,14 +1,14 @@
 // Evaluates goals: picks figures from the rows that measurements made, combines them, and compares
-// the result with the bound. commands/goals.cpp calls `evaluate` for each entry; goals/lab.cpp runs
-// the measurements.
+// the result with the bound. commands/goals.cpp calls `evaluate` for each entry;
+// goals/measurement_cache.cpp runs the measurements.
 
 #include "bench/goals/evaluate.h"
 
 #include <winnow/simd/isa.h>
 #include "bench/common/table.h"
-#include "bench/goals/asks.h"
-#include "bench/rows/filled.h"
+#include "bench/goals/goal_entries.h"
 #include "bench/rows/machine.h"
+#include "bench/rows/template_text.h"
 
 #include <algorithm>
 #include <optional>
@@ -22,7 +22,7 @@ constexpr double kUnanswered = 1e6;
 /// Milliseconds of the reference sweep on the machine on which the other libraries were timed.
 constexpr double kReferenceMachineMs = 23.0;
 
-struct AskFigure {
+struct GoalFigure {
   double value = 0.0;
   std::string from;  ///< the rows that gave it
 };
@@ -90,8 +90,8 @@ class Rows {
   std::vector<const Measured*> from_;
 };
 
-AskFigure sum_of(const std::vector<const Json*>& rows, const std::string& value) {
-  AskFigure sum;
+GoalFigure sum_of(const std::vector<const Json*>& rows, const std::string& value) {
+  GoalFigure sum;
   for (const Json* row : rows) {
     const double one = value_of(*row, value);
     if (one == 0.0) continue;
@@ -103,14 +103,14 @@ AskFigure sum_of(const std::vector<const Json*>& rows, const std::string& value)
 }
 
 /// Returns the exponent of growth of `value` with "objects".
-AskFigure exponent_of(const std::vector<const Json*>& rows, const std::string& value) {
+GoalFigure exponent_of(const std::vector<const Json*>& rows, const std::string& value) {
   std::vector<GrowthPoint> points;
   for (const Json* row : rows) points.push_back({value_of(*row, "objects"), value_of(*row, value)});
   return {fitted_exponent(points), "of " + std::to_string(rows.size()) + " rows"};
 }
 
 /// Applies the figure's rule to its rows; nothing if there are none.
-std::optional<AskFigure> picked(const Json& figure, const Rows& rows, const Json& narrowed) {
+std::optional<GoalFigure> picked(const Json& figure, const Rows& rows, const Json& narrowed) {
   for (const char* rule : {"least", "most", "sum", "exponent", "the"}) {
     if (!figure.contains(rule)) continue;
     const std::string value = figure[rule];
@@ -127,18 +127,18 @@ std::optional<AskFigure> picked(const Json& figure, const Rows& rows, const Json
                                          : value_of(*a, value) < value_of(*b, value);
     });
     const double number = value_of(*best, value);
-    return AskFigure{number, short_id(*best) + " " + short_number(number)};
+    return GoalFigure{number, short_id(*best) + " " + short_number(number)};
   }
   throw std::runtime_error("goals.json: no figure: " + figure.dump());
 }
 
-std::optional<AskFigure> figure_of(const Json& figure, const Rows& rows, const Json& narrowed) {
-  if (figure.is_number()) return AskFigure{figure.get<double>(), ""};
+std::optional<GoalFigure> figure_of(const Json& figure, const Rows& rows, const Json& narrowed) {
+  if (figure.is_number()) return GoalFigure{figure.get<double>(), ""};
   const auto existing = [&](double ms) {
-    return AskFigure{ms * rows.scale(),
-                     "existing " + short_number(ms) + " x " + short_number(rows.scale())};
+    return GoalFigure{ms * rows.scale(),
+                      "existing " + short_number(ms) + " x " + short_number(rows.scale())};
   };
-  std::optional<AskFigure> found;
+  std::optional<GoalFigure> found;
   if (figure.contains("existing")) {
     found = existing(figure["existing"]);
   } else if (figure.contains("least_of")) {
@@ -171,7 +171,7 @@ std::vector<Json> combinations_of(const Json& keys, const Json& value, const Row
 }
 
 /// Returns the measured value for these keys; nothing if a figure has no row.
-std::optional<AskFigure> measured_of(const Json& ask, const Rows& rows, const Json& narrowed) {
+std::optional<GoalFigure> measured_of(const Json& ask, const Rows& rows, const Json& narrowed) {
   auto value = figure_of(ask["value"], rows, narrowed);
   if (!value || !ask.contains("over")) return value;
   const auto over = figure_of(ask["over"], rows, narrowed);
@@ -182,30 +182,30 @@ std::optional<AskFigure> measured_of(const Json& ask, const Rows& rows, const Js
 }
 
 /// Returns the measured value of each combination of these keys that has one.
-std::vector<AskFigure> measured_by(const Json& keys, const Json& ask, const Rows& rows,
-                                   const Json& narrowed) {
-  std::vector<AskFigure> figures;
+std::vector<GoalFigure> measured_by(const Json& keys, const Json& ask, const Rows& rows,
+                                    const Json& narrowed) {
+  std::vector<GoalFigure> figures;
   for (const Json& one : combinations_of(keys, ask["value"], rows, narrowed)) {
     if (auto figure = measured_of(ask, rows, one)) figures.push_back(std::move(*figure));
   }
   return figures;
 }
 
-std::optional<AskFigure> condensed_of(const Json& ask, const Rows& rows, const Json& narrowed,
-                                      bool at_least) {
+std::optional<GoalFigure> aggregate(const Json& ask, const Rows& rows, const Json& narrowed,
+                                    bool at_least) {
   const bool worst = ask.contains("worst_by");
   if (!worst && !ask.contains("median_by")) return measured_of(ask, rows, narrowed);
   auto figures = measured_by(ask[worst ? "worst_by" : "median_by"], ask, rows, narrowed);
   if (figures.empty()) return std::nullopt;
-  const auto better = [&](const AskFigure& a, const AskFigure& b) {
+  const auto better = [&](const GoalFigure& a, const GoalFigure& b) {
     return at_least ? a.value > b.value : a.value < b.value;
   };
   if (worst) return *std::max_element(figures.begin(), figures.end(), better);
   std::vector<double> values;
-  for (const AskFigure& figure : figures) values.push_back(figure.value);
-  const AskFigure& last = *std::max_element(figures.begin(), figures.end(), better);
-  return AskFigure{median_of(values), "of " + std::to_string(values.size()) + ", the worst " +
-                                          short_number(last.value) + " of " + last.from};
+  for (const GoalFigure& figure : figures) values.push_back(figure.value);
+  const GoalFigure& last = *std::max_element(figures.begin(), figures.end(), better);
+  return GoalFigure{median_of(values), "of " + std::to_string(values.size()) + ", the worst " +
+                                           short_number(last.value) + " of " + last.from};
 }
 
 /// Returns nothing if the entry is optional and has no value or bound.
@@ -215,7 +215,7 @@ std::optional<Goal> goal_of(const Json& ask, const Rows& rows, const Json& narro
             .unit = ask["unit"],
             .at_least = ask.contains("at_least")};
   const auto bound = figure_of(ask[goal.at_least ? "at_least" : "at_most"], rows, narrowed);
-  const auto value = condensed_of(ask, rows, narrowed, goal.at_least);
+  const auto value = aggregate(ask, rows, narrowed, goal.at_least);
   if ((!bound || !value) && ask.value("optional", false)) return std::nullopt;
   goal.asked = bound ? bound->value : 0.0;
   goal.measured = value ? value->value : goal.at_least ? 0.0 : kUnanswered;
@@ -226,13 +226,13 @@ std::optional<Goal> goal_of(const Json& ask, const Rows& rows, const Json& narro
 
 }  // namespace
 
-std::vector<Goal> evaluate(const Json& ask, Lab& lab) {
+std::vector<Goal> evaluate(const Json& ask, MeasurementCache& measurement_cache) {
   const Json& measure = ask["measure"];
   const Json requests = measure.is_array() ? measure : Json::array({measure});
   std::vector<const Measured*> from;
   std::string fault;
   for (const Json& request : requests) {
-    const Measured& one = lab.measured(request);
+    const Measured& one = measurement_cache.measured(request);
     if (one.absent) return {};
     if (fault.empty()) fault = one.fault;
     from.push_back(&one);

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "bench/goals/lab.h"
+#include "bench/goals/measurement_cache.h"
 
 #include <string>
 #include <vector>
@@ -46,6 +46,6 @@ struct Goal {
 ///
 /// An object may have "divided_by": number. A goal without a value fails. There are no goals if
 /// this machine lacks what is measured. Throws std::runtime_error if an entry is malformed.
-[[nodiscard]] std::vector<Goal> evaluate(const Json& ask, Lab& lab);
+[[nodiscard]] std::vector<Goal> evaluate(const Json& ask, MeasurementCache& measurement_cache);
 
 }  // namespace winnow::bench

@@ -1,12 +1,13 @@
 // The measurements that goals refer to by name. Each reads its options, runs a function of
-// bench/rows or bench/measure, and stores rows. goals/lab.cpp calls them through `find_measurer`.
+// bench/rows or bench/measure, and stores rows. goals/measurement_cache.cpp calls them through
+// `find_measurer`.
 
 #include "bench/goals/measurements.h"
 
 #include "bench/contenders/partitions.h"
-#include "bench/goals/asked_scenes.h"
+#include "bench/goals/scenes_of.h"
+#include "bench/measure/partition_costs.h"
 #include "bench/measure/query_costs.h"
-#include "bench/measure/upkeep.h"
 #include "bench/questions/hard_cases.h"
 #include "bench/rows/accuracy_rows.h"
 #include "bench/rows/advice_rows.h"
@@ -18,9 +19,9 @@
 #include "bench/rows/hard_case_rows.h"
 #include "bench/rows/host_rows.h"
 #include "bench/rows/kernel_rows.h"
+#include "bench/rows/library_comparison_rows.h"
 #include "bench/rows/machine.h"
 #include "bench/rows/motion_rows.h"
-#include "bench/rows/peer_rows.h"
 #include "bench/rows/query_rows.h"
 #include "bench/rows/ray_rows.h"
 #include "bench/rows/scene_rows.h"
@@ -44,7 +45,7 @@ std::size_t frames_of_goal(std::size_t objects) {
 
 /// Throughput, interleaved. Default: every partition that suits the size, on 1 and 2 threads, on
 /// the active instruction set; "yardstick" adds the yardstick library.
-void goal_frames(const Json& options, Lab& /*lab*/, Measured& measured) {
+void goal_frames(const Json& options, MeasurementCache& /*measurement_cache*/, Measured& measured) {
   declare_frames(measured.results);
   MeasureOptions how{.objects = options.at("objects"), .machine_clock = true};
   how.partitions = options.value("partitions", how.partitions);
@@ -52,18 +53,19 @@ void goal_frames(const Json& options, Lab& /*lab*/, Measured& measured) {
   how.frames = options.value("frames", frames_of_goal(how.objects));
   how.yardstick = options.value("yardstick", false);
   if (options.contains("isas")) how.isas.assign(available_isas().begin(), available_isas().end());
-  for (const NamedScene& scene : asked_scenes(options, measured)) {
+  for (const NamedScene& scene : scenes_of(options, measured)) {
     measured.machine_ms = add_frame_race(measured.results, scene, how).machine_ms;
   }
 }
 
 /// Other libraries and partitions, on 1 and 2 threads; each takes at most "seconds", and a frame at
 /// most "frame_seconds".
-void goal_beside_peers(const Json& options, Lab& /*lab*/, Measured& measured) {
+void goal_beside_peers(const Json& options, MeasurementCache& /*measurement_cache*/,
+                       Measured& measured) {
   measured.absent = !has_peers();
   if (measured.absent) return;
   declare_beside_peers(measured.results);
-  for (const NamedScene& scene : asked_scenes(options, measured)) {
+  for (const NamedScene& scene : scenes_of(options, measured)) {
     measured.machine_ms =
         add_beside_peers(
             measured.results, scene,
@@ -78,9 +80,9 @@ void goal_beside_peers(const Json& options, Lab& /*lab*/, Measured& measured) {
 }
 
 /// First frames of every partition that suits the size.
-void goal_cold(const Json& options, Lab& /*lab*/, Measured& measured) {
+void goal_cold(const Json& options, MeasurementCache& /*measurement_cache*/, Measured& measured) {
   declare_cold(measured.results);
-  for (const NamedScene& scene : asked_scenes(options, measured)) {
+  for (const NamedScene& scene : scenes_of(options, measured)) {
     const std::size_t objects = scene.objects(options.value("objects", std::size_t{0}));
     for (const int threads : options.at("threads")) {
       add_cold(measured.results, scene, objects, 1, partitions_for({"all"}, objects).taken,
@@ -90,30 +92,32 @@ void goal_cold(const Json& options, Lab& /*lab*/, Measured& measured) {
 }
 
 /// Frames on a simple thread pool compared with oneTBB.
-void goal_hosts(const Json& options, Lab& /*lab*/, Measured& measured) {
+void goal_hosts(const Json& options, MeasurementCache& /*measurement_cache*/, Measured& measured) {
   declare_hosts(measured.results);
-  for (const NamedScene& scene : asked_scenes(options, measured)) {
+  for (const NamedScene& scene : scenes_of(options, measured)) {
     add_hosts(measured.results, scene, options.at("objects"), 1, options.at("partitions"), 2);
   }
 }
 
 /// Queries with and without filters, for every partition that suits the size.
-void goal_filters(const Json& options, Lab& /*lab*/, Measured& measured) {
+void goal_filters(const Json& options, MeasurementCache& /*measurement_cache*/,
+                  Measured& measured) {
   declare_filters(measured.results);
   const std::size_t objects = options.at("objects");
-  for (const NamedScene& scene : asked_scenes(options, measured)) {
+  for (const NamedScene& scene : scenes_of(options, measured)) {
     add_filters(measured.results, scene, objects, 1, partitions_for({"all"}, objects).taken);
   }
 }
 
 /// Compares the pairs of every partition, instruction set and number of threads with the reference.
-void goal_same_pairs(const Json& options, Lab& /*lab*/, Measured& measured) {
+void goal_same_pairs(const Json& options, MeasurementCache& /*measurement_cache*/,
+                     Measured& measured) {
   measured.results.declare({"same_pairs",
                             "engine",
                             "runs against the reference",
                             {"scene", "objects", "partition", "threads", "isa"},
                             {{"differs", "finds other pairs", "", Better::less}}});
-  for (const NamedScene& scene : asked_scenes(options, measured)) {
+  for (const NamedScene& scene : scenes_of(options, measured)) {
     MeasureOptions how{.scene = scene.argument,
                        .recording = scene.recording.get(),
                        .objects = scene.objects(options.value("objects", std::size_t{1})),
@@ -133,7 +137,7 @@ void goal_same_pairs(const Json& options, Lab& /*lab*/, Measured& measured) {
   }
 }
 
-void goal_keys(const Json& options, Lab& /*lab*/, Measured& measured) {
+void goal_keys(const Json& options, MeasurementCache& /*measurement_cache*/, Measured& measured) {
   declare_keys(measured.results);
   for (const std::string& partition : testing_partitions()) {
     for (const std::size_t objects : options.at("objects")) {
@@ -142,15 +146,16 @@ void goal_keys(const Json& options, Lab& /*lab*/, Measured& measured) {
   }
 }
 
-void goal_limits(const Json& options, Lab& lab, Measured& measured) {
+void goal_limits(const Json& options, MeasurementCache& measurement_cache, Measured& measured) {
   Json frames = Json::object();
   frames["frames"] = options;
-  measured.results = lab.measured(frames).results;
+  measured.results = measurement_cache.measured(frames).results;
   declare_limits(measured.results);
   add_limit(measured.results, options.at("scene"), options.at("objects"));
 }
 
-void goal_kernels(const Json& options, Lab& /*lab*/, Measured& measured) {
+void goal_kernels(const Json& options, MeasurementCache& /*measurement_cache*/,
+                  Measured& measured) {
   const auto isas = isa_names();
   measured.absent = std::find(isas.begin(), isas.end(), options.at("isa")) == isas.end();
   if (measured.absent) return;
@@ -158,9 +163,9 @@ void goal_kernels(const Json& options, Lab& /*lab*/, Measured& measured) {
   add_kernels(measured.results, 9);
 }
 
-void goal_advice(const Json& options, Lab& /*lab*/, Measured& measured) {
+void goal_advice(const Json& options, MeasurementCache& /*measurement_cache*/, Measured& measured) {
   declare_advice(measured.results);
-  for (const NamedScene& scene : asked_scenes(options, measured)) {
+  for (const NamedScene& scene : scenes_of(options, measured)) {
     const std::size_t objects = scene.objects(options.value("objects", std::size_t{0}));
     const std::size_t frames = scene.is_recording()
                                    ? std::min<std::size_t>(scene.recording->frames.size(), 200)
@@ -171,10 +176,11 @@ void goal_advice(const Json& options, Lab& /*lab*/, Measured& measured) {
 }
 
 /// Queries of one partition and of other libraries, on one thread.
-void goal_queries(const Json& options, Lab& /*lab*/, Measured& measured) {
+void goal_queries(const Json& options, MeasurementCache& /*measurement_cache*/,
+                  Measured& measured) {
   declare_queries(measured.results);
   measured.machine_ms =
-      add_queries(measured.results, asked_scenes(options, measured).front(),
+      add_queries(measured.results, scenes_of(options, measured).front(),
                   {.objects = options.at("objects"),
                    .partitions = {options.at("partition")},
                    .rays = 50'000,
@@ -184,13 +190,14 @@ void goal_queries(const Json& options, Lab& /*lab*/, Measured& measured) {
           .machine_ms;
 }
 
-void goal_frusta(const Json& options, Lab& /*lab*/, Measured& measured) {
+void goal_frusta(const Json& options, MeasurementCache& /*measurement_cache*/, Measured& measured) {
   declare_queries(measured.results);
   add_frusta(measured.results, options.at("objects"), 15);
 }
 
 /// Allocations of every partition when the same queries are repeated.
-void goal_second_rounds(const Json& options, Lab& /*lab*/, Measured& measured) {
+void goal_second_rounds(const Json& options, MeasurementCache& /*measurement_cache*/,
+                        Measured& measured) {
   measured.results.declare({"second_rounds",
                             "queries",
                             "allocations when asked again",
@@ -206,7 +213,7 @@ void goal_second_rounds(const Json& options, Lab& /*lab*/, Measured& measured) {
 }
 
 /// Partitions after many removals and insertions, compared with new ones.
-void goal_churn(const Json& options, Lab& /*lab*/, Measured& measured) {
+void goal_churn(const Json& options, MeasurementCache& /*measurement_cache*/, Measured& measured) {
   measured.results.declare({"churn",
                             "queries",
                             "a worn partition over a fresh one",
@@ -221,7 +228,8 @@ void goal_churn(const Json& options, Lab& /*lab*/, Measured& measured) {
 }
 
 /// Frames with pair events in which a share of the objects moves.
-void goal_pair_events(const Json& options, Lab& /*lab*/, Measured& measured) {
+void goal_pair_events(const Json& options, MeasurementCache& /*measurement_cache*/,
+                      Measured& measured) {
   measured.results.declare({"pair_events",
                             "queries",
                             "frames with pair events",
@@ -237,7 +245,8 @@ void goal_pair_events(const Json& options, Lab& /*lab*/, Measured& measured) {
 }
 
 /// Consecutive frames in which few objects move, or move little.
-void goal_quiet_frames(const Json& options, Lab& /*lab*/, Measured& measured) {
+void goal_quiet_frames(const Json& options, MeasurementCache& /*measurement_cache*/,
+                       Measured& measured) {
   measured.results.declare({"quiet_frames",
                             "scenes",
                             "frames in a row in which the same objects move",
@@ -256,7 +265,7 @@ void goal_quiet_frames(const Json& options, Lab& /*lab*/, Measured& measured) {
 }
 
 /// One partition with many environments compared with one partition per environment.
-void goal_worlds(const Json& options, Lab& /*lab*/, Measured& measured) {
+void goal_worlds(const Json& options, MeasurementCache& /*measurement_cache*/, Measured& measured) {
   measured.results.declare({"worlds",
                             "queries",
                             "many small worlds",
@@ -272,7 +281,7 @@ void goal_worlds(const Json& options, Lab& /*lab*/, Measured& measured) {
 
 /// Pairs of one kind, and the other libraries. On one thread, and also on two if the pairs do not
 /// fit the caches.
-void goal_pairs(const Json& options, Lab& /*lab*/, Measured& measured) {
+void goal_pairs(const Json& options, MeasurementCache& /*measurement_cache*/, Measured& measured) {
   const std::string name = options.at("kind");
   const PairKind* kind = find_pair_kind(name);
   if (kind == nullptr) throw std::runtime_error("no kind of pairs " + name);
@@ -282,15 +291,15 @@ void goal_pairs(const Json& options, Lab& /*lab*/, Measured& measured) {
       add_pair_times(measured.results,
                      {.kind = *kind,
                       .pairs = pairs,
-                      .contenders = {.threads = pairs > kMostPairsInCache ? std::vector<int>{1, 2}
-                                                                          : std::vector<int>{1},
+                      .contenders = {.threads = pairs > kMaxPairsInCache ? std::vector<int>{1, 2}
+                                                                         : std::vector<int>{1},
                                      .peers = true}},
                      PairKeys::settings)
           .machine_ms;
 }
 
 /// Errors of one tier on all kinds of pairs.
-void goal_errors(const Json& options, Lab& /*lab*/, Measured& measured) {
+void goal_errors(const Json& options, MeasurementCache& /*measurement_cache*/, Measured& measured) {
   const auto pairs = options.at("pairs").get<std::map<std::string, std::size_t>>();
   declare_pair_errors(measured.results);
   for (const PairKind& kind : main_pair_kinds()) {
@@ -309,7 +318,8 @@ void goal_errors(const Json& options, Lab& /*lab*/, Measured& measured) {
 
 /// Pair queries whose answers were derived by reasoning, from the files of a folder, in both orders
 /// of the pair.
-void goal_hard_cases(const Json& options, Lab& /*lab*/, Measured& measured) {
+void goal_hard_cases(const Json& options, MeasurementCache& /*measurement_cache*/,
+                     Measured& measured) {
   declare_hard_cases(measured.results);
   const std::string folder = options.at("folder");
   std::error_code absent;
@@ -324,7 +334,8 @@ void goal_hard_cases(const Json& options, Lab& /*lab*/, Measured& measured) {
 }
 
 /// Moving pairs of one kind.
-void goal_impacts(const Json& options, Lab& /*lab*/, Measured& measured) {
+void goal_impacts(const Json& options, MeasurementCache& /*measurement_cache*/,
+                  Measured& measured) {
   const std::string name = options.at("kind");
   const PairKind* kind = find_pair_kind(name);
   if (kind == nullptr) throw std::runtime_error("no kind of pairs " + name);
@@ -337,19 +348,21 @@ void goal_impacts(const Json& options, Lab& /*lab*/, Measured& measured) {
   }
 }
 
-void goal_features(const Json& options, Lab& /*lab*/, Measured& measured) {
+void goal_features(const Json& options, MeasurementCache& /*measurement_cache*/,
+                   Measured& measured) {
   declare_motion(measured.results);
   add_feature_impacts(measured.results, options.at("pairs"), 5, 1);
 }
 
-void goal_barriers(const Json& options, Lab& /*lab*/, Measured& measured) {
+void goal_barriers(const Json& options, MeasurementCache& /*measurement_cache*/,
+                   Measured& measured) {
   declare_barriers(measured.results);
   for (const std::string& scene : barrier_names()) {
     add_barrier(measured.results, {.scene = scene, .steps = options.at("steps")});
   }
 }
 
-void goal_sweeps(const Json& options, Lab& /*lab*/, Measured& measured) {
+void goal_sweeps(const Json& options, MeasurementCache& /*measurement_cache*/, Measured& measured) {
   declare_motion(measured.results);
   for (const int threads : options.at("threads").get<std::vector<int>>()) {
     add_swept_scene(
@@ -358,25 +371,28 @@ void goal_sweeps(const Json& options, Lab& /*lab*/, Measured& measured) {
   }
 }
 
-void goal_scenes(const Json& options, Lab& /*lab*/, Measured& measured) {
+void goal_scenes(const Json& options, MeasurementCache& /*measurement_cache*/, Measured& measured) {
   declare_scenes(measured.results);
   measured.machine_ms = add_scene_race(measured.results, {.scene = options.at("scene"),
                                                           .resting = options.at("resting")})
                             .machine_ms;
 }
 
-void goal_scene_costs(const Json& options, Lab& /*lab*/, Measured& measured) {
+void goal_scene_costs(const Json& options, MeasurementCache& /*measurement_cache*/,
+                      Measured& measured) {
   declare_scenes(measured.results);
   add_scene_costs(measured.results, {.scene = options.at("scene")});
 }
 
-void goal_tori(const Json& /*options*/, Lab& /*lab*/, Measured& measured) {
+void goal_tori(const Json& /*options*/, MeasurementCache& /*measurement_cache*/,
+               Measured& measured) {
   declare_scenes(measured.results);
   measured.machine_ms = add_tori(measured.results, 11, true, true).machine_ms;
 }
 
 /// Rays through a mesh of some kind and size.
-void goal_mesh_rays(const Json& options, Lab& /*lab*/, Measured& measured) {
+void goal_mesh_rays(const Json& options, MeasurementCache& /*measurement_cache*/,
+                    Measured& measured) {
   declare_mesh_rays(measured.results);
   measured.machine_ms = add_mesh_rays(measured.results, {.mesh = options.at("mesh"),
                                                          .triangles = options.at("triangles")})
@@ -384,7 +400,8 @@ void goal_mesh_rays(const Json& options, Lab& /*lab*/, Measured& measured) {
 }
 
 /// A frame of the granular flow, compared with the sum of its phases measured one by one.
-void goal_flow_frames(const Json& options, Lab& /*lab*/, Measured& measured) {
+void goal_flow_frames(const Json& options, MeasurementCache& /*measurement_cache*/,
+                      Measured& measured) {
   measured.results.declare({"flow_frames",
                             "pipeline",
                             "a frame of a flow, and its phases alone",
@@ -406,7 +423,8 @@ void goal_flow_frames(const Json& options, Lab& /*lab*/, Measured& measured) {
 }
 
 /// A long granular flow: allocations, energy, and contacts compared with brute force.
-void goal_flow_soak(const Json& options, Lab& /*lab*/, Measured& measured) {
+void goal_flow_soak(const Json& options, MeasurementCache& /*measurement_cache*/,
+                    Measured& measured) {
   declare_flows(measured.results);
   declare_flow_checks(measured.results);
   add_flow(measured.results, {.shape = options.at("shape"),

@@ -100,7 +100,8 @@ void require_done(int status) {
 
 }  // namespace
 
-void measure_default_report(const Json& /*options*/, Lab& /*lab*/, Measured& measured) {
+void measure_default_report(const Json& /*options*/, MeasurementCache& /*measurement_cache*/,
+                            Measured& measured) {
   declare_process(measured.results);
   const Stopwatch clock;
   ReportProcess report({});
@@ -110,7 +111,8 @@ void measure_default_report(const Json& /*options*/, Lab& /*lab*/, Measured& mea
   add_trace(measured.results, report);
 }
 
-void measure_lone_report(const Json& /*options*/, Lab& /*lab*/, Measured& measured) {
+void measure_lone_report(const Json& /*options*/, MeasurementCache& /*measurement_cache*/,
+                         Measured& measured) {
   declare_process(measured.results);
   ReportProcess report({"--quick", "--no-peers"});
   require_done(report.process().wait());
@@ -120,7 +122,8 @@ void measure_lone_report(const Json& /*options*/, Lab& /*lab*/, Measured& measur
                  missing.empty() ? "" : missing[0].get<std::string>());
 }
 
-void measure_killed_report(const Json& /*options*/, Lab& /*lab*/, Measured& measured) {
+void measure_killed_report(const Json& /*options*/, MeasurementCache& /*measurement_cache*/,
+                           Measured& measured) {
   declare_process(measured.results);
   ReportProcess report({"--quick", "--no-peers"});
   while (report.process().runs() && report.rows() == 0) {

@@ -1,6 +1,6 @@
 // Runs narrow-phase engines on pairs with reference results and computes the errors of their
-// distances, depths and normals. bench/rows/accuracy_rows.cpp calls `measure_accuracy`; truths.cpp
-// gives the reference results.
+// distances, depths and normals. bench/rows/accuracy_rows.cpp calls `measure_accuracy`;
+// ground_truth.cpp gives the reference results.
 
 #include "bench/measure/accuracy.h"
 
@@ -19,7 +19,7 @@ namespace winnow::bench {
 
 namespace {
 
-constexpr double kMostDegrees = 0.01;
+constexpr double kMaxDegrees = 0.01;
 
 double degrees_between(const double (&a)[3], const double (&b)[3]) {
   const Eigen::Vector3d u(a[0], a[1], a[2]);
@@ -90,7 +90,7 @@ Accuracy summary_of(std::span<const PairError> errors) {
     sum.wrong += one.wrong ? 1 : 0;
     sum.missing += one.missing ? 1 : 0;
     sum.beyond_bound += one.beyond_bound ? 1 : 0;
-    sum.normals_off += one.degrees > kMostDegrees ? 1 : 0;
+    sum.normals_off += one.degrees > kMaxDegrees ? 1 : 0;
     if (!std::isnan(one.degrees)) degrees.push_back(one.degrees);
     if (std::isnan(one.error)) continue;
     all.push_back(one.error);

@@ -2,7 +2,7 @@
 
 #include "bench/common/sample.h"
 #include "bench/contenders/narrow_engine.h"
-#include "bench/measure/truths.h"
+#include "bench/measure/ground_truth.h"
 #include "bench/scenes/pair_set.h"
 
 #include <cstddef>

@@ -22,12 +22,12 @@ std::string about(double value) {
 }
 
 /// Description of a partition, for the reason of its speed.
-struct Nature {
+struct SceneNature {
   std::string_view partition;
   std::string_view what;
 };
 
-constexpr Nature kNatures[] = {
+constexpr SceneNature kNatures[] = {
     {"NSquared", "reports all pairs without a look at the boxes"},
     {"BoundsNSquared", "tests each object against every other, with no structure to keep"},
     {"SweepAndPrune", "sweeps strips that are kept sorted"},
@@ -61,7 +61,7 @@ std::string why(const Partition& partition, const Run& run, double median_ms) {
   const Statistics s = partition.statistics();
   const auto n = static_cast<double>(std::max<std::size_t>(1, s.objects));
   std::string text(partition.name());
-  for (const Nature& nature : kNatures) {
+  for (const SceneNature& nature : kNatures) {
     if (nature.partition == partition.name()) text = nature.what;
   }
   text += ": " + about(static_cast<double>(s.last_tests) / n) + " tests of 16 boxes an object";

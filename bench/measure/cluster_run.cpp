@@ -1,5 +1,5 @@
-// Runs a recording or scene on the ranks of a cluster, as pairs of boxes (BoxRanks) or contacts of
-// bodies (BodyRanks). commands/cluster.cpp and bench/rows/cluster_rows.cpp call `run_cluster`.
+// Runs a recording or scene on the ranks of a cluster, as pairs of boxes (BoxCluster) or contacts
+// of bodies (BodyCluster). commands/cluster.cpp and bench/rows/cluster_rows.cpp call `run_cluster`.
 
 #include "bench/measure/cluster_run.h"
 
@@ -34,8 +34,8 @@ Status add_all(const std::vector<Batch>& batches, Ranks& ranks) {
 }
 
 /// A cluster of boxes.
-struct BoxRanks {
-  BoxRanks(Transport& transport, const Execution& execution)
+struct BoxCluster {
+  BoxCluster(Transport& transport, const Execution& execution)
       : cluster(transport, {.execution = execution}) {}
 
   void see(std::span<const Aabb>) const noexcept {}
@@ -58,8 +58,8 @@ struct BoxRanks {
 };
 
 /// A cluster of bodies.
-struct BodyRanks {
-  BodyRanks(Transport& transport, const Execution& execution, ContactLevel asked)
+struct BodyCluster {
+  BodyCluster(Transport& transport, const Execution& execution, ContactLevel asked)
       : cluster(transport, pool, {.scene = {.execution = execution}}), level(asked) {}
 
   /// Adds the shapes of new bodies. Every process adds all of them, in the order of rows.
@@ -269,13 +269,13 @@ double ClusterRun::median_ms() const {
   return median_of(std::span(ms).subspan(ms.size() > 1 ? 1 : 0));
 }
 
-ClusterRun run_cluster(FrameSource& source, Transport& transport, const ClusterOrder& order,
+ClusterRun run_cluster(FrameSource& source, Transport& transport, const ClusterRunOptions& order,
                        const Execution& execution) {
   if (order.level.has_value()) {
-    BodyRanks ranks(transport, execution, *order.level);
+    BodyCluster ranks(transport, execution, *order.level);
     return run_ranks(source, transport, order.frames, ranks);
   }
-  BoxRanks ranks(transport, execution);
+  BoxCluster ranks(transport, execution);
   return run_ranks(source, transport, order.frames, ranks);
 }
 

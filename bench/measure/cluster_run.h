@@ -40,7 +40,7 @@ struct ClusterRun {
 };
 
 /// Limits and contact level of a run.
-struct ClusterOrder {
+struct ClusterRunOptions {
   std::size_t frames = 1;  ///< limit
   /// Unset: pairs of boxes. Otherwise contacts of bodies at this level; a body has the size of its
   /// first box and follows the box's centre.
@@ -52,7 +52,7 @@ struct ClusterOrder {
 /// and fingerprints, are not timed. Throws std::runtime_error if the cluster returns an error.
 /// Collective: all processes must call it.
 [[nodiscard]] ClusterRun run_cluster(FrameSource& source, Transport& transport,
-                                     const ClusterOrder& order, const Execution& execution);
+                                     const ClusterRunOptions& order, const Execution& execution);
 
 /// Returns the box as a body's shape, with half the edges, and its centre as a pose.
 [[nodiscard]] BoxShape box_shape_of(const Aabb& box) noexcept;

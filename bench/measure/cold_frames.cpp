@@ -97,7 +97,7 @@ struct FirstFrames {
   [[nodiscard]] double write_to_pages(std::size_t bytes) {
     fresh.forget();
     const Stopwatch clock;
-    touch_pages(fresh.begin(), std::min(bytes, fresh.bytes()));
+    prefault_pages(fresh.begin(), std::min(bytes, fresh.bytes()));
     return clock.ms();
   }
   /// As `run`, but reserves room for the objects and `count` pairs before the frame.
@@ -111,8 +111,8 @@ struct FirstFrames {
     const double reserved = before.ms();
     const Stopwatch clock;
     const Parts parts = run_frame(boxes, partition, keys, pairs, clock);
-    if (pages == Pages::touched) frames.reserve_ms.push_back(reserved);
-    (pages == Pages::touched ? frames.ready_ms : frames.reserved_ms).push_back(parts.found);
+    if (pages == Pages::prefaulted) frames.reserve_ms.push_back(reserved);
+    (pages == Pages::prefaulted ? frames.ready_ms : frames.reserved_ms).push_back(parts.found);
     return summarize(pairs.pairs(), boxes);
   }
 };
@@ -139,7 +139,7 @@ ColdRace race_cold_frames(std::span<const Aabb> boxes, const std::vector<std::st
   }
   FirstFrames frames{boxes, threads};
   ReusedMemory untouched(room_for(boxes.size()));
-  ReusedMemory touched(room_for(boxes.size()));
+  ReusedMemory prefaulted(room_for(boxes.size()));
   const std::unique_ptr<Engine> yardstick = with_yardstick ? make_yardstick(threads) : nullptr;
   std::vector<PairSummary> found;
   const auto run_all = [&] {
@@ -151,8 +151,8 @@ ColdRace race_cold_frames(std::span<const Aabb> boxes, const std::vector<std::st
     }
     for (ColdFrames& one : race.frames) {
       if (one.memory == kTouched) {
-        touched.rewind();
-        found.push_back(frames.run(one, touched));
+        prefaulted.rewind();
+        found.push_back(frames.run(one, prefaulted));
         continue;
       }
       const auto on_fresh_pages = [&](const auto& run) {
@@ -166,7 +166,7 @@ ColdRace race_cold_frames(std::span<const Aabb> boxes, const std::vector<std::st
       };
       on_fresh_pages([&](auto& memory) { return frames.run(one, memory); });
       const std::size_t pairs = found.back().reported;
-      for (const Pages pages : {Pages::untouched, Pages::touched}) {
+      for (const Pages pages : {Pages::untouched, Pages::prefaulted}) {
         on_fresh_pages(
             [&](auto& memory) { return frames.run_reserved(one, memory, pairs, pages); });
       }

@@ -1,7 +1,7 @@
 // Compares the results of query engines with each other and with a test of every box in double.
-// query_race.cpp calls it; judge.cpp decides doubtful cases.
+// query_race.cpp calls it; reference_queries.cpp decides doubtful cases.
 
-#include "bench/measure/judge.h"
+#include "bench/measure/reference_queries.h"
 
 #include <algorithm>
 #include <cmath>
@@ -63,14 +63,14 @@ Comparison compare_each(std::size_t questions, CompareOne&& compare_one) {
   return result;
 }
 
-Finding compare_one_exactly(const Judge& judge, const QuestionSet& set, std::size_t i,
+Finding compare_one_exactly(const ReferenceQueries& judge, const QuerySet& set, std::size_t i,
                             std::span<const Found> expected, std::span<const Found> got) {
-  if (set.want == Want::any) {
+  if (set.query_type == QueryType::any) {
     if (expected.empty() != got.empty()) return {"only one of them found any"};
     if (got.empty() || judge.verdict(set, i, got[0].row, kDoubleRounding).possible) return {};
     return {named(got[0].row) + " is not hit"};
   }
-  if (set.want == Want::overlap) {
+  if (set.query_type == QueryType::overlap) {
     if (sorted_by_row(expected) == sorted_by_row(got)) return {};
     return {std::to_string(got.size()) + " objects, expected " + std::to_string(expected.size()) +
             (expected.size() == got.size() ? " others" : "")};
@@ -84,23 +84,24 @@ Finding compare_one_exactly(const Judge& judge, const QuestionSet& set, std::siz
 }
 
 /// Checks an object that only one engine found.
-Finding judge_lone(const Judge& judge, const QuestionSet& set, std::size_t i, const Found& found) {
+Finding check_unmatched(const ReferenceQueries& judge, const QuerySet& set, std::size_t i,
+                        const Found& found) {
   const Verdict verdict = judge.verdict(set, i, found.row, kFloatRounding);
   if (verdict.possible && !verdict.certain) return {{}, true};
   return {named(found.row) + (verdict.certain ? " is missing" : " should not be there")};
 }
 
-Finding compare_closest(const Judge& judge, const QuestionSet& set, std::size_t i,
+Finding compare_closest(const ReferenceQueries& judge, const QuerySet& set, std::size_t i,
                         std::span<const Found> expected, std::span<const Found> got) {
   if (expected.empty() && got.empty()) return {};
   const bool both = !expected.empty() && !got.empty();
   if (both && same_t(static_cast<double>(expected[0].t), static_cast<double>(got[0].t))) return {};
   // The smaller t belongs to an object that the other engine did not find.
   const bool got_first = expected.empty() || (both && got[0].t < expected[0].t);
-  return judge_lone(judge, set, i, got_first ? got[0] : expected[0]);
+  return check_unmatched(judge, set, i, got_first ? got[0] : expected[0]);
 }
 
-Finding compare_sets(const Judge& judge, const QuestionSet& set, std::size_t i,
+Finding compare_sets(const ReferenceQueries& judge, const QuerySet& set, std::size_t i,
                      std::span<const Found> expected, std::span<const Found> got) {
   if (!in_order(got) || !in_order(expected)) return {"the hits are not in order"};
   const std::vector<Found> a = sorted_by_row(expected);
@@ -110,7 +111,7 @@ Finding compare_sets(const Judge& judge, const QuestionSet& set, std::size_t i,
                                 by_row);
   Finding finding;
   for (const Found& found : lone) {
-    const Finding one = judge_lone(judge, set, i, found);
+    const Finding one = check_unmatched(judge, set, i, found);
     if (!one.wrong.empty()) return one;
     finding.undecided = true;
   }
@@ -134,15 +135,16 @@ Finding compare_nearest(std::span<const Found> expected, std::span<const Found> 
 }
 
 /// The reference for one query: every box tested in double.
-struct Force {
+struct ExhaustiveResult {
   std::vector<std::uint32_t> certain;
   double least_t = std::numeric_limits<double>::infinity();  ///< of the certain rows
-  std::vector<double> distances;                             ///< for Want::nearest, sorted
+  std::vector<double> distances;                             ///< for QueryType::nearest, sorted
 
-  Force(const Judge& judge, const QuestionSet& set, std::size_t i, std::size_t objects) {
+  ExhaustiveResult(const ReferenceQueries& judge, const QuerySet& set, std::size_t i,
+                   std::size_t objects) {
     for (std::uint32_t row = 0; row < objects; ++row) {
       const Verdict verdict = judge.verdict(set, i, row, kDoubleRounding);
-      if (set.want == Want::nearest) distances.push_back(verdict.t);
+      if (set.query_type == QueryType::nearest) distances.push_back(verdict.t);
       if (!verdict.certain) continue;
       certain.push_back(row);
       least_t = std::min(least_t, verdict.t);
@@ -151,30 +153,30 @@ struct Force {
   }
 };
 
-Finding check_found(const Judge& judge, const QuestionSet& set, std::size_t i,
+Finding check_found(const ReferenceQueries& judge, const QuerySet& set, std::size_t i,
                     std::span<const Found> got) {
   for (const Found& found : got) {
     const Verdict verdict = judge.verdict(set, i, found.row, kDoubleRounding);
     if (!verdict.possible) return {named(found.row) + " should not be there"};
-    if (set.want == Want::any) continue;
+    if (set.query_type == QueryType::any) continue;
     if (!same_t(static_cast<double>(found.t), verdict.t))
       return {named(found.row) + " at another t"};
   }
   return {};
 }
 
-Finding compare_one_by_force(const Judge& judge, const QuestionSet& set, std::size_t i,
+Finding compare_one_by_force(const ReferenceQueries& judge, const QuerySet& set, std::size_t i,
                              std::size_t objects, std::span<const Found> got) {
   if (Finding finding = check_found(judge, set, i, got); !finding.wrong.empty()) return finding;
-  const Force force(judge, set, i, objects);
-  if (set.want == Want::nearest) {
+  const ExhaustiveResult force(judge, set, i, objects);
+  if (set.query_type == QueryType::nearest) {
     if (got.size() != std::min(set.count, objects)) return {"another number of objects"};
     for (std::size_t k = 0; k < got.size(); ++k) {
       if (!same_t(static_cast<double>(got[k].t), force.distances[k])) return {"other distances"};
     }
     return {};
   }
-  if (set.want == Want::all || set.want == Want::overlap) {
+  if (set.query_type == QueryType::all || set.query_type == QueryType::overlap) {
     if (!in_order(got)) return {"the hits are not in order"};
     const std::vector<Found> sorted = sorted_by_row(got);
     for (const std::uint32_t row : force.certain) {
@@ -185,31 +187,31 @@ Finding compare_one_by_force(const Judge& judge, const QuestionSet& set, std::si
     return {};
   }
   if (got.empty() && !force.certain.empty()) return {"nothing found"};
-  const bool late =
-      set.want == Want::closest && !got.empty() && static_cast<double>(got[0].t) > force.least_t;
+  const bool late = set.query_type == QueryType::closest && !got.empty() &&
+                    static_cast<double>(got[0].t) > force.least_t;
   if (late && !same_t(static_cast<double>(got[0].t), force.least_t)) return {"not the closest"};
   return {};
 }
 
 }  // namespace
 
-Comparison compare_exactly(const Judge& judge, const QuestionSet& set, const Answers& expected,
-                           const Answers& got) {
+Comparison compare_exactly(const ReferenceQueries& judge, const QuerySet& set,
+                           const QueryResults& expected, const QueryResults& got) {
   return compare_each(std::min(expected.questions(), got.questions()), [&](std::size_t i) {
     return compare_one_exactly(judge, set, i, expected.of(i), got.of(i));
   });
 }
 
-Comparison compare_in_float(const Judge& judge, const QuestionSet& set, const Answers& expected,
-                            const Answers& got) {
+Comparison compare_in_float(const ReferenceQueries& judge, const QuerySet& set,
+                            const QueryResults& expected, const QueryResults& got) {
   return compare_each(std::min(expected.questions(), got.questions()), [&](std::size_t i) {
-    switch (set.want) {
-      case Want::closest:
+    switch (set.query_type) {
+      case QueryType::closest:
         return compare_closest(judge, set, i, expected.of(i), got.of(i));
-      case Want::any:
+      case QueryType::any:
         if (expected.of(i).empty() == got.of(i).empty()) return Finding{};
-        return judge_lone(judge, set, i, got.of(i).empty() ? expected.of(i)[0] : got.of(i)[0]);
-      case Want::nearest:
+        return check_unmatched(judge, set, i, got.of(i).empty() ? expected.of(i)[0] : got.of(i)[0]);
+      case QueryType::nearest:
         return compare_nearest(expected.of(i), got.of(i));
       default:
         return compare_sets(judge, set, i, expected.of(i), got.of(i));
@@ -217,8 +219,8 @@ Comparison compare_in_float(const Judge& judge, const QuestionSet& set, const An
   });
 }
 
-Comparison compare_by_force(const Judge& judge, const QuestionSet& set, std::size_t objects,
-                            const Answers& got, std::size_t most) {
+Comparison compare_by_force(const ReferenceQueries& judge, const QuerySet& set, std::size_t objects,
+                            const QueryResults& got, std::size_t most) {
   return compare_each(std::min(most, got.questions()), [&](std::size_t i) {
     return compare_one_by_force(judge, set, i, objects, got.of(i));
   });

@@ -10,11 +10,11 @@ namespace winnow::bench {
 namespace {
 
 constexpr int kTries = 11;
-constexpr int kThere = 1000;      // round trips per try
-constexpr int kPatience = 10000;  // failed reads before yielding, longer than any usual delay
+constexpr int kThere = 1000;       // round trips per try
+constexpr int kSpinLimit = 10000;  // failed reads before yielding, longer than any usual delay
 
 /// Two threads that pass a number back and forth.
-class Rally {
+class PingPong {
  public:
   void answer() noexcept {
     for (int ball = 1; ball < 2 * kTries * kThere; ball += 2) {
@@ -37,7 +37,7 @@ class Rally {
   // Yields if the other thread's core is taken by another program.
   void wait_for(int ball) const noexcept {
     for (int looks = 0; ball_.load(std::memory_order_acquire) != ball; ++looks) {
-      if (looks > kPatience) std::this_thread::yield();
+      if (looks > kSpinLimit) std::this_thread::yield();
     }
   }
   alignas(64) std::atomic<int> ball_{0};
@@ -47,7 +47,7 @@ class Rally {
 
 double core_distance_ns() {
   if (std::thread::hardware_concurrency() < 2) return 0.0;
-  Rally rally;
+  PingPong rally;
   std::thread other([&] { rally.answer(); });
   std::vector<double> tries;
   for (int i = 0; i < kTries; ++i) tries.push_back(rally.serve(i));

@@ -49,7 +49,7 @@ class SomeMoving final : public FrameSource {
 };
 
 /// Mean without the slowest 2 % of the values, which other load on the machine may have disturbed.
-double mean_without_strays(std::vector<double> values) {
+double mean_without_outliers(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   values.resize(values.size() - values.size() / 50);
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
@@ -101,9 +101,9 @@ double least_of(const std::vector<double>& times) {
 }
 
 /// Predicted times of the frames of all samples, and the cost of choosing by them.
-class Judgement {
+class ChoiceLoss {
  public:
-  Judgement(const std::vector<CostSample>& samples, const std::vector<StructureCosts>& costs)
+  ChoiceLoss(const std::vector<CostSample>& samples, const std::vector<StructureCosts>& costs)
       : samples_(samples) {
     for (const CostSample& sample : samples) {
       terms_.push_back(frame_terms(sample.features, sample.work, sample.pairs));
@@ -163,9 +163,9 @@ void choose_better(const std::vector<CostSample>& samples, std::vector<Structure
   constexpr double kAtLast = 0.01;
   constexpr int kRounds = 12;
   // First value for constants that are zero: a hundredth of the nanoseconds of a typical object.
-  constexpr double kLeast = 0.01;
+  constexpr double kMinTerm = 0.01;
   if (samples.empty()) return;
-  Judgement judgement(samples, costs);
+  ChoiceLoss judgement(samples, costs);
   const auto terms = frame_terms(samples[0].features, samples[0].work, samples[0].pairs);
   double loss = judgement.loss();
   for (double step = kAtFirst; step > kAtLast; step /= 1.5) {
@@ -175,7 +175,7 @@ void choose_better(const std::vector<CostSample>& samples, std::vector<Structure
         for (const CostTerm& term : terms) {
           for (const double factor : {1.0 + step, 1.0 / (1.0 + step)}) {
             const double held = costs[k].*term.constant;
-            costs[k].*term.constant = std::max(held, factor > 1.0 ? kLeast : 0.0) * factor;
+            costs[k].*term.constant = std::max(held, factor > 1.0 ? kMinTerm : 0.0) * factor;
             judgement.update(k, costs[k]);
             const double now = judgement.loss();
             if (now < loss) {
@@ -227,7 +227,7 @@ CostSample measure_costs(FrameSource& scene, double moving, std::size_t frames) 
   for (const std::string& name : names) {
     for (const Advised& one : advice.ranking) {
       if (one.partition != name) continue;
-      const double mean = mean_without_strays(one.settled);
+      const double mean = mean_without_outliers(one.settled);
       sample.frame.push_back(1e6 * 0.5 * (one.median_ms + mean));
       sample.first.push_back(1e6 * one.first_ms);
     }

@@ -26,7 +26,7 @@ constexpr std::array<std::string_view, 5> kSettings{"1 % apart", "mixed", "stati
 constexpr std::array<std::string_view, 5> kQuestions{"all move", "few move", "another", "rays",
                                                      "boxes"};
 enum Setting : std::size_t { one_percent, mixed, still, never_mixed, never_apart };
-enum Question : std::size_t { all_move, few_move, another, rays, boxes };
+enum QueryCase : std::size_t { all_move, few_move, another, rays, boxes };
 
 /// Returns the filter of an object. `middle` divides the boxes on x into two sets.
 ObjectFilter filter_of(std::size_t setting, std::size_t object, const Aabb& box, float middle) {
@@ -70,9 +70,9 @@ Filter asking(std::size_t setting) {
 using FoundPairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
 
 /// A partition that follows a scene and runs one query per frame.
-class Asked {
+class FilteredPartition {
  public:
-  Asked(std::string_view partition, std::size_t question, std::span<const Aabb> first)
+  FilteredPartition(std::string_view partition, std::size_t question, std::span<const Aabb> first)
       : question_(question),
         boxes_(first.begin(), first.end()),
         other_boxes_(first.rbegin(), first.rend()),
@@ -191,9 +191,9 @@ class Asked {
     return all;
   }
 
-  [[nodiscard]] bool lets_meet(const ObjectFilter& a, std::span<const ObjectFilter> of,
-                               std::uint32_t id) const {
-    return filters_.empty() || may_meet(a, of[id]);
+  [[nodiscard]] bool may_pair(const ObjectFilter& a, std::span<const ObjectFilter> of,
+                              std::uint32_t id) const {
+    return filters_.empty() || filters_allow(a, of[id]);
   }
 
   std::size_t question_;
@@ -212,7 +212,7 @@ class Asked {
   FoundPairs hits_;
 };
 
-FoundPairs Asked::truth() const {
+FoundPairs FilteredPartition::truth() const {
   // Keys are given in order, so ids are the indices of the objects.
   Partition all = make_named("BoundsNSquared", {.execution = Execution::serial()});
   std::vector<Key> keys(boxes_.size());
@@ -225,7 +225,7 @@ FoundPairs Asked::truth() const {
       need(all.all(Cast(ray(i)), hits), "rays");
       std::uint32_t first = kNoObject;
       for (const Hit& hit : hits.hits()) {
-        if (first == kNoObject && lets_meet(filter_.object(), filters_, hit.key.id)) {
+        if (first == kNoObject && may_pair(filter_.object(), filters_, hit.key.id)) {
           first = hit.key.id;
         }
       }
@@ -247,7 +247,7 @@ FoundPairs Asked::truth() const {
                                : question_ == boxes ? filter_.object()
                                                     : filters_[pair.first];
     const auto& of = question_ == another ? other_filters_ : filters_;
-    if (lets_meet(first, of, pair.second)) found.emplace_back(pair.first, pair.second);
+    if (may_pair(first, of, pair.second)) found.emplace_back(pair.first, pair.second);
   }
   std::ranges::sort(found);
   return found;
@@ -262,8 +262,9 @@ std::size_t differences(const FoundPairs& a, const FoundPairs& b) {
 
 /// Returns milliseconds by contestant and round. A different one starts each round, since the first
 /// runs with caches and branch predictors as left by the others.
-std::vector<std::vector<double>> time_in_turns(const std::vector<std::unique_ptr<Asked>>& all,
-                                               FrameSource& source, std::size_t rounds) {
+std::vector<std::vector<double>> time_interleaved(
+    const std::vector<std::unique_ptr<FilteredPartition>>& all, FrameSource& source,
+    std::size_t rounds) {
   std::vector<std::vector<double>> ms(all.size());
   for (std::size_t round = 0; round < kWarmingRounds + rounds; ++round) {
     (void)source.advance();
@@ -291,12 +292,12 @@ std::vector<FilterRow> race_filters(const MakeFrames& frames, std::string_view p
   std::vector<FilterRow> rows;
   for (std::size_t question = 0; question < kQuestions.size(); ++question) {
     const auto source = frames();
-    std::vector<std::unique_ptr<Asked>> all;
+    std::vector<std::unique_ptr<FilteredPartition>> all;
     for (std::size_t i = 0; i <= kSettings.size(); ++i) {
-      all.push_back(std::make_unique<Asked>(partition, question, source->boxes()));
+      all.push_back(std::make_unique<FilteredPartition>(partition, question, source->boxes()));
       if (i != 0) all.back()->set_filters(i - 1);
     }
-    const auto ms = time_in_turns(all, *source, rounds);
+    const auto ms = time_interleaved(all, *source, rounds);
     for (std::size_t i = 1; i < all.size(); ++i) {
       rows.push_back({std::string(kSettings[i - 1]), std::string(kQuestions[question]), ms[0],
                       ms[i], differences(all[i]->found(), all[i]->truth())});

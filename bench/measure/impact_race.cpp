@@ -1,7 +1,7 @@
 #include "bench/measure/impact_race.h"
 
+#include "bench/common/interleaved_runs.h"
 #include "bench/common/need.h"
-#include "bench/common/turns.h"
 #include "bench/contenders/reference_sweep.h"
 #include "bench/contenders/winnow_impacts.h"
 #include "bench/contenders/winnow_narrow.h"
@@ -15,7 +15,7 @@
 namespace winnow::bench {
 namespace {
 
-constexpr int kLooks = 64;
+constexpr int kSampleTimes = 64;
 /// winnow's default tolerance.
 constexpr double kLoose = 1e-6;
 /// Effect of rounding of the motions on gaps, in radii.
@@ -34,8 +34,8 @@ double timed_ns(std::size_t pairs, const auto& work) {
 ImpactJudge::ImpactJudge(const MovingPairSet& set)
     : set_(set), poses_(set.motions.size()), overlap_(set.middle->pairs.size(), kEndless) {
   std::vector<double> times(set.middle->pairs.size());
-  for (int look = 0; look <= kLooks; ++look) {
-    std::fill(times.begin(), times.end(), static_cast<double>(look) / kLooks);
+  for (int look = 0; look <= kSampleTimes; ++look) {
+    std::fill(times.begin(), times.end(), static_cast<double>(look) / kSampleTimes);
     const NarrowResult& found = distances_at(times);
     for (std::size_t k = 0; k < found.size(); ++k) {
       const std::uint32_t i = found.pair_of(k);
@@ -119,7 +119,7 @@ ImpactMeasurement measure_impacts(const ImpactRaceOptions& options) {
   distances.start(*set.middle);
   MachineClock clock;
   clock.tick();
-  auto ns = take_turns(engines.size() + 1, options.rounds, 1, [&](std::size_t, std::size_t i) {
+  auto ns = run_interleaved(engines.size() + 1, options.rounds, 1, [&](std::size_t, std::size_t i) {
     return timed_ns(pairs.size(), [&] {
       if (i == engines.size()) {
         distances.run(ContactLevel::distance, pairs);

@@ -3,8 +3,8 @@
 
 #include "bench/measure/kernel_race.h"
 
+#include "bench/common/interleaved_runs.h"
 #include "bench/common/sample.h"
-#include "bench/common/turns.h"
 #include "bench/measure/isa_guard.h"
 #include "bench/scenes/cameras.h"
 #include "bench/scenes/scene.h"
@@ -265,7 +265,7 @@ std::vector<KernelTiming> race_kernels(std::size_t rounds, const std::string& te
     for (const Isa isa : available_isas()) timings.push_back({.kernel = kernel.name, .isa = isa});
   }
   std::vector<std::uint32_t> room(2 * (kRoom + kSinkSlack));
-  auto ns = take_turns(timings.size(), rounds, 0, [&](std::size_t, std::size_t i) {
+  auto ns = run_interleaved(timings.size(), rounds, 0, [&](std::size_t, std::size_t i) {
     const Kernel& kernel = kernels[i / available_isas().size()];
     IsaGuard::choose(timings[i].isa);
     const ThreadStopwatch once;

@@ -42,7 +42,7 @@ void MpiSession::abort() {
   std::_Exit(EXIT_FAILURE);
 }
 
-bool MpiSession::is_there() noexcept {
+bool MpiSession::is_available() noexcept {
   return true;
 }
 
@@ -58,7 +58,7 @@ void MpiSession::abort() {
   std::_Exit(EXIT_FAILURE);
 }
 
-bool MpiSession::is_there() noexcept {
+bool MpiSession::is_available() noexcept {
   return false;
 }
 

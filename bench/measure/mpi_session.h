@@ -21,7 +21,7 @@ class MpiSession {
   [[noreturn]] static void abort();
 
   /// Returns true if the tool was built with MPI and Zoltan.
-  [[nodiscard]] static bool is_there() noexcept;
+  [[nodiscard]] static bool is_available() noexcept;
   /// Returns true if mpirun started this process.
   [[nodiscard]] static bool is_started() noexcept;
 

@@ -3,8 +3,8 @@
 
 #include "bench/measure/narrow_race.h"
 
+#include "bench/common/interleaved_runs.h"
 #include "bench/common/timed.h"
-#include "bench/common/turns.h"
 #include "bench/contenders/reference_sweep.h"
 #include "bench/contenders/winnow_narrow.h"
 #include "bench/peers/peers.h"
@@ -131,8 +131,8 @@ std::vector<NarrowTiming> race_pairs(const PairSet& set, ContactLevel level,
   Arenas arenas(most_threads);
   std::vector<NarrowAnswer> expected;
   for (PairEntry& entry : entries) entry.check(expected, options, arenas);
-  auto ns = take_turns(entries.size(), options.rounds, 0,
-                       [&](std::size_t, std::size_t i) { return entries[i].time(arenas); });
+  auto ns = run_interleaved(entries.size(), options.rounds, 0,
+                            [&](std::size_t, std::size_t i) { return entries[i].time(arenas); });
   std::vector<NarrowTiming> timings;
   for (std::size_t i = 0; i < entries.size(); ++i) {
     timings.push_back(std::move(entries[i].timing()));
@@ -165,7 +165,7 @@ NarrowMeasurement measure_narrow(const NarrowMeasureOptions& options) {
   measured.pairs = options.pairs;
   const auto set = make_pair_set(options.kind, {.pairs = options.pairs,
                                                 .seed = options.seed,
-                                                .scattered = options.pairs > kMostPairsInCache,
+                                                .scattered = options.pairs > kMaxPairsInCache,
                                                 .upright = options.upright});
   std::vector<NarrowContender> contenders = narrow_contenders(*set, options.contenders);
   MachineClock clock;

@@ -69,7 +69,7 @@ struct NarrowRaceOptions {
                                                    const NarrowRaceOptions& options);
 
 /// Sets with more pairs than this do not fit the caches; their bodies are in random order.
-inline constexpr std::size_t kMostPairsInCache = 16'384;
+inline constexpr std::size_t kMaxPairsInCache = 16'384;
 
 /// Options of a race on the pairs of one kind.
 struct NarrowMeasureOptions {

@@ -1,10 +1,10 @@
 #include "bench/measure/query_costs.h"
 
+#include "bench/common/interleaved_runs.h"
 #include "bench/common/sample.h"
-#include "bench/common/turns.h"
 #include "bench/contenders/partition_queries.h"
 #include "bench/measure/column_read.h"
-#include "bench/scenes/question_set.h"
+#include "bench/scenes/query_set.h"
 #include "bench/scenes/scene.h"
 
 #include <algorithm>
@@ -57,7 +57,7 @@ FrustumCosts measure_frustum_costs(const std::vector<std::string>& partitions,
   const auto scene = make_scene("uniform", objects, 1);
   const std::span<const Aabb> boxes = scene->boxes();
   const std::vector<std::string> names{set};
-  const QuestionSet questions = make_question_sets(boxes, 50'000, 1, names).front();
+  const QuerySet questions = make_query_sets(boxes, 50'000, 1, names).front();
   const Columns columns(boxes);
   std::vector<std::unique_ptr<PartitionQueries>> engines;
   for (const std::string& name : partitions) {
@@ -66,11 +66,11 @@ FrustumCosts measure_frustum_costs(const std::vector<std::string>& partitions,
   }
   FrustumCosts costs;
   const auto number = static_cast<double>(questions.size());
-  costs.ms = take_turns(engines.size() + 1, rounds, 0, [&](std::size_t, std::size_t i) {
+  costs.ms = run_interleaved(engines.size() + 1, rounds, 0, [&](std::size_t, std::size_t i) {
     if (i == engines.size()) return columns.time();
-    (void)engines[i]->run(questions, Asking::single, std::min<std::size_t>(4, questions.size()));
+    (void)engines[i]->run(questions, QueryMode::single, std::min<std::size_t>(4, questions.size()));
     const ThreadStopwatch clock;
-    const auto found = engines[i]->run(questions, Asking::single, questions.size());
+    const auto found = engines[i]->run(questions, QueryMode::single, questions.size());
     costs.found_a_question = static_cast<double>(found) / number;
     return clock.ms() / number;
   });
@@ -82,14 +82,14 @@ std::vector<SecondRound> measure_second_rounds(std::string_view partition, std::
   PartitionQueries engine(partition, 1);
   engine.start(scene->boxes());
   std::vector<SecondRound> rounds;
-  for (const QuestionSet& set : make_question_sets(scene->boxes(), 2000, 1)) {
-    for (const Asking asking : {Asking::single, Asking::batch}) {
+  for (const QuerySet& set : make_query_sets(scene->boxes(), 2000, 1)) {
+    for (const QueryMode asking : {QueryMode::single, QueryMode::batch}) {
       if (!engine.takes(set, asking)) continue;
       const std::size_t count = std::min(set.size(), engine.most_questions());
       (void)engine.run(set, asking, count);
       const std::size_t before = engine.memory().allocations();
       (void)engine.run(set, asking, count);
-      rounds.push_back({set.name + (asking == Asking::single ? "" : ", as a batch"),
+      rounds.push_back({set.name + (asking == QueryMode::single ? "" : ", as a batch"),
                         engine.memory().allocations() - before});
     }
   }

@@ -15,8 +15,8 @@ struct FrustumCosts {
   double found_a_question = 0;  ///< mean number of objects
 };
 
-/// Runs the queries of a set (see question_set_names) on the first frame of `uniform`, on one
-/// thread. Throws Refusal.
+/// Runs the queries of a set (see query_set_names) on the first frame of `uniform`, on one
+/// thread. Throws QueryError.
 [[nodiscard]] FrustumCosts measure_frustum_costs(const std::vector<std::string>& partitions,
                                                  const std::string& set, std::size_t objects,
                                                  std::size_t rounds = 15);
@@ -27,7 +27,7 @@ struct SecondRound {
   std::size_t allocations = 0;
 };
 
-/// Runs all sets, singly and as a batch, on `uniform`, on one thread. Throws Refusal.
+/// Runs all sets, singly and as a batch, on `uniform`, on one thread. Throws QueryError.
 [[nodiscard]] std::vector<SecondRound> measure_second_rounds(std::string_view partition,
                                                              std::size_t objects);
 

@@ -27,11 +27,11 @@ struct SetEntry {
   QueryRun run;
 };
 
-std::uint64_t fingerprint_of_answers(const QuestionSet& set, const Answers& answers) {
+std::uint64_t fingerprint_of_answers(const QuerySet& set, const QueryResults& answers) {
   std::uint64_t sum = 0;
   for (std::size_t q = 0; q < answers.questions(); ++q) {
     for (const Found& found : answers.of(q)) {
-      const std::uint32_t row = set.want == Want::any ? 0 : found.row;
+      const std::uint32_t row = set.query_type == QueryType::any ? 0 : found.row;
       sum += mix(std::uint64_t{q} << 32U | row);
     }
   }
@@ -40,11 +40,11 @@ std::uint64_t fingerprint_of_answers(const QuestionSet& set, const Answers& answ
 
 class SetRace {
  public:
-  SetRace(std::span<const Aabb> boxes, const QuestionSet& set,
-          std::vector<QueryContender>& contenders, const QueryRaceOptions& options, Arenas& arenas)
+  SetRace(std::span<const Aabb> boxes, const QuerySet& set, std::vector<QueryContender>& contenders,
+          const QueryRaceOptions& options, Arenas& arenas)
       : boxes_(boxes), set_(set), options_(options), arenas_(arenas) {
     for (QueryContender& contender : contenders) {
-      for (const Asking asking : {Asking::single, Asking::batch}) {
+      for (const QueryMode asking : {QueryMode::single, QueryMode::batch}) {
         if (!contender.engine->takes(set, asking)) continue;
         QueryRun run{.engine = contender.engine->name(),
                      .set = set.name,
@@ -58,11 +58,11 @@ class SetRace {
 
   /// Runs each contender once, compares the results, and warms up.
   void check() {
-    const Judge judge(boxes_);
-    std::optional<Answers> expected;
+    const ReferenceQueries judge(boxes_);
+    std::optional<QueryResults> expected;
     for (SetEntry& entry : entries_) {
       try {
-        Answers got = entry.engine->answers(set_, entry.run.asking, entry.run.questions);
+        QueryResults got = entry.engine->answers(set_, entry.run.asking, entry.run.questions);
         entry.run.fingerprint = fingerprint_of_answers(set_, got);
         if (expected) {
           entry.run.comparison = entry.in_float ? compare_in_float(judge, set_, *expected, got)
@@ -71,7 +71,7 @@ class SetRace {
           entry.run.comparison = compare_by_force(judge, set_, boxes_.size(), got, options_.judged);
           expected = std::move(got);
         }
-      } catch (const Refusal& refusal) {
+      } catch (const QueryError& refusal) {
         entry.run.refusal = refusal.what();
       }
     }
@@ -97,7 +97,7 @@ class SetRace {
 
  private:
   std::span<const Aabb> boxes_;
-  const QuestionSet& set_;
+  const QuerySet& set_;
   const QueryRaceOptions& options_;
   Arenas& arenas_;
   std::vector<SetEntry> entries_;
@@ -105,15 +105,14 @@ class SetRace {
 
 }  // namespace
 
-std::vector<QueryRun> race_queries(std::span<const Aabb> boxes,
-                                   const std::vector<QuestionSet>& sets,
+std::vector<QueryRun> race_queries(std::span<const Aabb> boxes, const std::vector<QuerySet>& sets,
                                    std::vector<QueryContender>& contenders,
                                    const QueryRaceOptions& options) {
   std::vector<QueryRun> runs;
   Arenas arenas(options.threads);
   arenas.run(options.threads, [&] {
     for (QueryContender& contender : contenders) contender.engine->start(boxes);
-    for (const QuestionSet& set : sets) {
+    for (const QuerySet& set : sets) {
       if (options.clock != nullptr) options.clock->tick();
       SetRace race(boxes, set, contenders, options, arenas);
       race.check();
@@ -143,7 +142,7 @@ QueryMeasurement measure_queries(const QueryMeasureOptions& options) {
   MachineClock clock(options.machine_clock);
   const QueryRaceOptions race{
       .rounds = options.rounds, .threads = options.threads, .clock = &clock};
-  const auto sets = make_question_sets(boxes, options.rays, options.seed, options.sets);
+  const auto sets = make_query_sets(boxes, options.rays, options.seed, options.sets);
   result.runs = race_queries(boxes, sets, contenders, race);
   clock.tick();
   result.machine_ms = clock.median_ms();

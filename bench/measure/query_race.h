@@ -3,7 +3,7 @@
 #include "bench/common/sample.h"
 #include "bench/contenders/query_engine.h"
 #include "bench/contenders/reference_sweep.h"
-#include "bench/measure/judge.h"
+#include "bench/measure/reference_queries.h"
 #include "bench/recordings/recording.h"
 
 #include <cstddef>
@@ -24,11 +24,11 @@ struct QueryContender {
 struct QueryRun {
   std::string engine;
   std::string set;
-  Asking asking = Asking::single;
+  QueryMode asking = QueryMode::single;
   int threads = 1;
   std::size_t questions = 0;
   std::uint64_t found = 0;  ///< number of objects, over all queries
-  /// Hash over query and object of all results; for Want::any, over the queries with a result.
+  /// Hash over query and object of all results; for QueryType::any, over the queries with a result.
   std::uint64_t fingerprint = 0;
   std::vector<double> ms{};  ///< one entry per round
   Comparison comparison{};   ///< with the first partition that supports the set
@@ -54,7 +54,7 @@ struct QueryRaceOptions {
 /// load on the machine hardly affects; on several it is wall-clock time. The engines must not have
 /// been started.
 [[nodiscard]] std::vector<QueryRun> race_queries(std::span<const Aabb> boxes,
-                                                 const std::vector<QuestionSet>& sets,
+                                                 const std::vector<QuerySet>& sets,
                                                  std::vector<QueryContender>& contenders,
                                                  const QueryRaceOptions& options);
 

@@ -1,8 +1,8 @@
 #include "bench/measure/ray_race.h"
 
+#include "bench/common/interleaved_runs.h"
 #include "bench/common/random.h"
 #include "bench/common/timed.h"
-#include "bench/common/turns.h"
 #include "bench/contenders/reference_sweep.h"
 #include "bench/contenders/winnow_rays.h"
 #include "bench/peers/peers.h"
@@ -91,9 +91,9 @@ RayMeasurement measure_rays(const RayRaceOptions& options) {
   MachineClock clock(options.machine_clock);
   clock.tick();
   Arenas arenas(1);
-  for (const RayWant want : {RayWant::closest, RayWant::any, RayWant::all}) {
-    for (const Asking asking : {Asking::single, Asking::batch}) {
-      auto ms = take_turns(engines.size(), options.rounds, 1, [&](std::size_t, std::size_t i) {
+  for (const RayQueryType want : {RayQueryType::closest, RayQueryType::any, RayQueryType::all}) {
+    for (const QueryMode asking : {QueryMode::single, QueryMode::batch}) {
+      auto ms = run_interleaved(engines.size(), options.rounds, 1, [&](std::size_t, std::size_t i) {
         engines[i]->take(rays);
         return timed(1, arenas, [&] { engines[i]->run(want, asking); });
       });

@@ -3,8 +3,8 @@
 
 #include "bench/measure/scene_race.h"
 
+#include "bench/common/interleaved_runs.h"
 #include "bench/common/timed.h"
-#include "bench/common/turns.h"
 #include "bench/contenders/reference_sweep.h"
 #include "bench/peers/peers.h"
 
@@ -31,7 +31,7 @@ std::size_t count_differing(MeshEngine::TrianglePairs& a, MeshEngine::TrianglePa
 
 }  // namespace
 
-std::vector<SceneTiming> race_scene(const BodySet& set, const Stray& by,
+std::vector<SceneTiming> race_scene(const BodySet& set, const PoseNoise& by,
                                     std::span<SceneContender> contenders, std::size_t frames) {
   int most_threads = 1;
   std::vector<SceneTiming> timings;
@@ -42,8 +42,8 @@ std::vector<SceneTiming> race_scene(const BodySet& set, const Stray& by,
   Arenas arenas(most_threads);
   for (const SceneContender& contender : contenders) contender.engine->start(set);
   std::vector<Pose> poses;
-  auto ms = take_turns(contenders.size(), frames, kWarming, [&](std::size_t f, std::size_t i) {
-    if (i == 0) stray(set, by, f, poses);
+  auto ms = run_interleaved(contenders.size(), frames, kWarming, [&](std::size_t f, std::size_t i) {
+    if (i == 0) apply_pose_noise(set, by, f, poses);
     return timed(contenders[i].threads, arenas, [&] { contenders[i].engine->frame(poses); });
   });
   for (std::size_t i = 0; i < contenders.size(); ++i) {
@@ -59,7 +59,7 @@ std::vector<MeshTiming> race_meshes(std::span<const std::unique_ptr<MeshEngine>>
   const Triangles torus = make_race_torus();
   Arenas arenas(1);
   const auto turns = [&](std::size_t warming, const auto& work) {
-    return take_turns(engines.size(), rounds, warming, [&](std::size_t, std::size_t i) {
+    return run_interleaved(engines.size(), rounds, warming, [&](std::size_t, std::size_t i) {
       return timed(1, arenas, [&] { work(*engines[i]); });
     });
   };

@@ -30,7 +30,7 @@ struct SceneTiming {
 
 /// Runs all contenders on the same frames in turns; two further frames before them are not timed.
 /// On one thread the time is CPU time of the thread, on several wall-clock time.
-[[nodiscard]] std::vector<SceneTiming> race_scene(const BodySet& set, const Stray& by,
+[[nodiscard]] std::vector<SceneTiming> race_scene(const BodySet& set, const PoseNoise& by,
                                                   std::span<SceneContender> contenders,
                                                   std::size_t frames);
 

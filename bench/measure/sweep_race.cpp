@@ -2,9 +2,9 @@
 
 #include <winnow/pipeline/contacts.h>
 #include <winnow/pipeline/scene_sweep.h>
+#include "bench/common/interleaved_runs.h"
 #include "bench/common/need.h"
 #include "bench/common/timed.h"
-#include "bench/common/turns.h"
 #include "bench/contenders/partitions.h"
 #include "bench/scenes/body_scenes.h"
 #include "bench/scenes/random_shapes.h"
@@ -41,9 +41,9 @@ class SweptHeap {
   }
 
   void next_frame(std::uint64_t frame) {
-    stray(*set_, kMoving, frame, poses_);
+    apply_pose_noise(*set_, kMoving, frame, poses_);
     need(scene_.move(keys_, poses_), "poses");
-    stray(*set_, kMoving, frame + 1, ends_);
+    apply_pose_noise(*set_, kMoving, frame + 1, ends_);
     fast_keys_.clear();
     fast_ends_.clear();
     for (std::size_t i = 0; i < keys_.size(); ++i) {
@@ -87,7 +87,7 @@ SweepTiming measure_sweeps(const SweepRaceOptions& options) {
   SweptHeap heap(options);
   Arenas arenas(options.threads);
   SweepTiming timing;
-  auto ms = take_turns(3, options.frames, 2, [&](std::size_t frame, std::size_t turn) {
+  auto ms = run_interleaved(3, options.frames, 2, [&](std::size_t frame, std::size_t turn) {
     if (turn == 0) heap.next_frame(frame);
     const double taken = timed(options.threads, arenas, [&] {
       if (turn == 0) heap.collide();

@@ -45,7 +45,7 @@ class Contestant {
 
   /// Inserts the volumes, before the first frame.
   void begin(const Solids& solids) {
-    make_(solids.when_margins_were_left(margin_));
+    make_(solids.boxes_at_last_refit(margin_));
     need(put_(partition_, keys_), "volumes");
   }
   /// Runs one frame.

@@ -88,7 +88,7 @@ class BulletNarrow final : public NarrowAdapter<BulletNarrow> {
 
   [[nodiscard]] std::string name() const override { return "Bullet"; }
 
-  [[nodiscard]] static Answerer answerer(const PairKind& kind, ContactLevel level) {
+  [[nodiscard]] static PairFunction pair_function(const PairKind& kind, ContactLevel level) {
     using enum ShapeKind;
     // A scaled btMultiSphereShape does not help: it has other support points than an ellipsoid.
     if (kind.a == ellipsoid || kind.b == ellipsoid) return nullptr;

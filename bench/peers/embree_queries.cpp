@@ -103,11 +103,11 @@ class EmbreeQueries final : public QueryEngine {
 
   [[nodiscard]] std::string name() const override { return "Embree"; }
 
-  [[nodiscard]] bool takes(const QuestionSet& set, Asking asking) const override {
+  [[nodiscard]] bool takes(const QuerySet& set, QueryMode asking) const override {
     const auto is_sphere = [](const auto& region) {
       return std::holds_alternative<Sphere>(region);
     };
-    return asking == Asking::single && set.casts.empty() &&
+    return asking == QueryMode::single && set.casts.empty() &&
            std::all_of(set.regions.begin(), set.regions.end(), is_sphere);
   }
 
@@ -129,7 +129,7 @@ class EmbreeQueries final : public QueryEngine {
     rtcCommitScene(scene_);
   }
 
-  std::uint64_t run(const QuestionSet& set, Asking /*asking*/, std::size_t count) override {
+  std::uint64_t run(const QuerySet& set, QueryMode /*asking*/, std::size_t count) override {
     if (tbb::this_task_arena::max_concurrency() == 1) return run_part(set, 0, count);
     std::atomic<std::uint64_t> found{0};
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 64), [&](const auto& range) {
@@ -138,9 +138,9 @@ class EmbreeQueries final : public QueryEngine {
     return found;
   }
 
-  [[nodiscard]] Answers answers(const QuestionSet& set, Asking /*asking*/,
-                                std::size_t count) override {
-    Answers result;
+  [[nodiscard]] QueryResults answers(const QuerySet& set, QueryMode /*asking*/,
+                                     std::size_t count) override {
+    QueryResults result;
     for (std::size_t i = 0; i < count; ++i) {
       for (const Found& found : ask(set, i, hits_.local())) result.add(found);
       result.next();
@@ -185,7 +185,7 @@ class EmbreeQueries final : public QueryEngine {
     state.id = arguments->primID;
   }
 
-  std::uint64_t run_part(const QuestionSet& set, std::size_t begin, std::size_t end) {
+  std::uint64_t run_part(const QuerySet& set, std::size_t begin, std::size_t end) {
     Hits& hits = hits_.local();
     std::uint64_t found = 0;
     for (std::size_t i = begin; i < end; ++i) found += ask(set, i, hits).size();
@@ -193,13 +193,13 @@ class EmbreeQueries final : public QueryEngine {
   }
 
   /// Runs one query; the results are in `hits`.
-  std::span<const Found> ask(const QuestionSet& set, std::size_t i, Hits& hits) {
+  std::span<const Found> ask(const QuerySet& set, std::size_t i, Hits& hits) {
     hits.clear();
     if (!set.rays.empty()) {
-      cast(set.rays[i], set.want, hits);
+      cast(set.rays[i], set.query_type, hits);
     } else if (!set.regions.empty()) {
       find_in_ball(std::get<Sphere>(set.regions[i]), hits);
-    } else if (set.want == Want::nearest) {
+    } else if (set.query_type == QueryType::nearest) {
       find_nearest(set.boxes[i].min, set.count, hits);
     } else {
       find_in_box(set.boxes[i], hits);
@@ -207,8 +207,8 @@ class EmbreeQueries final : public QueryEngine {
     return hits;
   }
 
-  void cast(const Ray& ray, Want want, Hits& hits) {
-    RayContext context(ray, want == Want::all ? &hits : nullptr);
+  void cast(const Ray& ray, QueryType query_type, Hits& hits) {
+    RayContext context(ray, query_type == QueryType::all ? &hits : nullptr);
     RTCRayHit state{};
     state.ray = {ray.origin.x(),
                  ray.origin.y(),
@@ -223,13 +223,13 @@ class EmbreeQueries final : public QueryEngine {
                  0U,
                  0U};
     state.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    if (want == Want::any) {
+    if (query_type == QueryType::any) {
       rtcOccluded1(scene_, &context.context, &state.ray);
       if (state.ray.tfar < 0.0F) hits.push_back({state.ray.id, 0.0F});
       return;
     }
     rtcIntersect1(scene_, &context.context, &state);
-    if (want == Want::all) {
+    if (query_type == QueryType::all) {
       std::sort(hits.begin(), hits.end(), [](const Found& a, const Found& b) { return a.t < b.t; });
     } else if (state.hit.geomID != RTC_INVALID_GEOMETRY_ID) {
       hits.push_back({state.hit.primID, state.ray.tfar});

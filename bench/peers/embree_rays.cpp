@@ -74,14 +74,14 @@ class EmbreeRays final : public RayEngine {
     }
   }
 
-  void run(RayWant want, Asking asking) override {
-    any_ = want == RayWant::any;
+  void run(RayQueryType want, QueryMode asking) override {
+    any_ = want == RayQueryType::any;
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     const auto count = static_cast<unsigned>(rays_.size());
-    if (asking == Asking::batch && any_) {
+    if (asking == QueryMode::batch && any_) {
       rtcOccluded1M(scene_, &context, occluded_.data(), count, sizeof(RTCRay));
-    } else if (asking == Asking::batch) {
+    } else if (asking == QueryMode::batch) {
       rtcIntersect1M(scene_, &context, rays_.data(), count, sizeof(RTCRayHit));
     } else if (any_) {
       for (RTCRay& ray : occluded_) rtcOccluded1(scene_, &context, &ray);

@@ -34,12 +34,12 @@ template <typename Solver>
 class FclNarrow final : public NarrowAdapter<FclNarrow<Solver>> {
  public:
   using Self = FclNarrow<Solver>;
-  using Answerer = typename NarrowAdapter<Self>::Answerer;
+  using PairFunction = typename NarrowAdapter<Self>::PairFunction;
   static constexpr bool kLibccd = std::is_same_v<Solver, fcl::detail::GJKSolver_libccd<double>>;
 
   [[nodiscard]] std::string name() const override { return kLibccd ? "FCL libccd" : "FCL indep"; }
 
-  [[nodiscard]] static Answerer answerer(const PairKind& kind, ContactLevel level) {
+  [[nodiscard]] static PairFunction pair_function(const PairKind& kind, ContactLevel level) {
     using enum ShapeKind;
     // FCL has no tapered capsules and does not support user shapes.
     for (const ShapeKind missing : {tapered_capsule, support}) {
@@ -99,7 +99,8 @@ class FclNarrow final : public NarrowAdapter<FclNarrow<Solver>> {
     Corners corners;
   };
 
-  static Answerer pick(ContactLevel level, Answerer boolean, Answerer distance, Answerer manifold) {
+  static PairFunction pick(ContactLevel level, PairFunction boolean, PairFunction distance,
+                           PairFunction manifold) {
     switch (level) {
       case ContactLevel::boolean:
         return boolean;
@@ -112,7 +113,7 @@ class FclNarrow final : public NarrowAdapter<FclNarrow<Solver>> {
 
   /// Selects the function for a shape A and a second kind, which is not before A in order.
   template <typename A>
-  static Answerer with_second(ShapeKind b, ContactLevel level) {
+  static PairFunction with_second(ShapeKind b, ContactLevel level) {
     switch (b) {
       case ShapeKind::sphere:
         return of_shapes<A, SphereGeometry>(level);
@@ -137,13 +138,13 @@ class FclNarrow final : public NarrowAdapter<FclNarrow<Solver>> {
 
   /// FCL has no distances from half-spaces.
   template <typename A>
-  static Answerer over_plane(ContactLevel level) {
+  static PairFunction over_plane(ContactLevel level) {
     return pick(level, &Self::template verdict<A, HalfSpaceGeometry>, nullptr,
                 &Self::template contacts<A, HalfSpaceGeometry>);
   }
 
   template <typename A, typename B>
-  static Answerer of_shapes(ContactLevel level) {
+  static PairFunction of_shapes(ContactLevel level) {
     return pick(level, &Self::template verdict<A, B>, &Self::template distance<A, B>,
                 &Self::template contacts<A, B>);
   }
@@ -173,7 +174,7 @@ class FclNarrow final : public NarrowAdapter<FclNarrow<Solver>> {
   }
 
   /// EPA of the solver "indep" returns negative depths, and normals in the axes of a.
-  static void put_right(fcl::ContactPoint<double>& contact, const Transform& a) {
+  static void normalize_contact(fcl::ContactPoint<double>& contact, const Transform& a) {
     if (contact.penetration_depth >= 0.0) return;
     contact.penetration_depth = -contact.penetration_depth;
     contact.normal = a.linear() * contact.normal;
@@ -181,7 +182,7 @@ class FclNarrow final : public NarrowAdapter<FclNarrow<Solver>> {
 
   void write_contacts(bool overlap, const Body& a, NarrowAnswer& answer) {
     answer = {};
-    for (auto& contact : contacts_) put_right(contact, a.at);
+    for (auto& contact : contacts_) normalize_contact(contact, a.at);
     answer.overlap = overlap;
     answer.contacts = static_cast<std::uint32_t>(contacts_.size());
     if (contacts_.empty()) return;
@@ -195,7 +196,7 @@ class FclNarrow final : public NarrowAdapter<FclNarrow<Solver>> {
   }
 
   template <typename Shape>
-  bool meets_triangle(const Body& body, const Body& triangle, Contacts* contacts) {
+  bool overlaps_triangle(const Body& body, const Body& triangle, Contacts* contacts) {
     const auto& at = triangle.corners;
     fcl::ContactPoint<double> contact;
     const bool wanted = contacts != nullptr;
@@ -218,9 +219,9 @@ class FclNarrow final : public NarrowAdapter<FclNarrow<Solver>> {
   template <typename A, typename B>
   bool intersect(const Body& a, const Body& b, Contacts* contacts) {
     if constexpr (std::is_same_v<B, Corners>) {
-      return meets_triangle<A>(a, b, contacts);
+      return overlaps_triangle<A>(a, b, contacts);
     } else if constexpr (std::is_same_v<A, Corners>) {
-      const bool overlap = meets_triangle<B>(b, a, contacts);
+      const bool overlap = overlaps_triangle<B>(b, a, contacts);
       if (overlap && contacts != nullptr) contacts->back().normal = -contacts->back().normal;
       return overlap;
     } else {

@@ -16,7 +16,7 @@ using Object = fcl::CollisionObject<double>;
 using Mesh = fcl::BVHModel<fcl::OBBRSS<double>>;
 
 /// Above the number of contacts of any pair.
-constexpr std::size_t kMostContacts = 100'000;
+constexpr std::size_t kMaxContacts = 100'000;
 
 std::shared_ptr<Mesh> make_model(const Triangles& triangles) {
   auto model = std::make_shared<Mesh>();
@@ -68,7 +68,7 @@ class FclScene final : public SceneEngine {
  private:
   static bool meet(Object* a, Object* b, void* data) {
     auto& scene = *static_cast<FclScene*>(data);
-    const fcl::CollisionRequest<double> request(kMostContacts, true);
+    const fcl::CollisionRequest<double> request(kMaxContacts, true);
     scene.result_.clear();
     fcl::collide(a, b, request, scene.result_);
     scene.finds_.touching += scene.result_.isCollision() ? 1 : 0;
@@ -97,7 +97,7 @@ class FclMesh final : public MeshEngine {
   }
 
   void collide(const Pose& a, const Pose& b) override {
-    const fcl::CollisionRequest<double> request(kMostContacts, true);
+    const fcl::CollisionRequest<double> request(kMaxContacts, true);
     result_.clear();
     fcl::collide(model_.get(), transform_of(a), model_.get(), transform_of(b), request, result_);
   }

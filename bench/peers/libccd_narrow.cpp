@@ -243,7 +243,7 @@ class LibccdNarrow final : public NarrowAdapter<LibccdNarrow> {
 
   [[nodiscard]] std::string name() const override { return portals_ ? "libccd MPR" : "libccd GJK"; }
 
-  [[nodiscard]] static Answerer answerer(const PairKind& kind, ContactLevel level) {
+  [[nodiscard]] static PairFunction pair_function(const PairKind& kind, ContactLevel level) {
     // A half-space has no support points.
     if (kind.b == ShapeKind::half_space) return nullptr;
     switch (level) {

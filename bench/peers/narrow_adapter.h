@@ -7,20 +7,20 @@
 
 namespace winnow::bench {
 
-/// Base of narrow-phase adapters: Adapter::answerer selects a function for one pair by kind and
-/// level, and this class calls it for each pair and stores the answers.
+/// Base of narrow-phase adapters: Adapter::pair_function selects a function for one pair by kind
+/// and level, and this class calls it for each pair and stores the answers.
 template <typename Adapter>
 class NarrowAdapter : public NarrowEngine {
  public:
-  using Answerer = void (Adapter::*)(const BodyPair&, NarrowAnswer&);
+  using PairFunction = void (Adapter::*)(const BodyPair&, NarrowAnswer&);
 
   [[nodiscard]] bool takes(const PairKind& kind, ContactLevel level) const final {
-    return Adapter::answerer(kind, level) != nullptr;
+    return Adapter::pair_function(kind, level) != nullptr;
   }
 
   void run(ContactLevel level, std::span<const BodyPair> pairs) final {
     answers_.resize(pairs.size());
-    const Answerer one = Adapter::answerer(kind_, level);
+    const PairFunction one = Adapter::pair_function(kind_, level);
     auto& adapter = static_cast<Adapter&>(*this);
     for (std::size_t i = 0; i < pairs.size(); ++i) (adapter.*one)(pairs[i], answers_[i]);
   }

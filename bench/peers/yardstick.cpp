@@ -18,16 +18,16 @@ static_assert(sizeof(::Box) == sizeof(Aabb) && sizeof(Pair) == sizeof(u64));
 /// Reserves addresses for all possible pairs: the prototype writes without checking capacity.
 std::unique_ptr<AddressRange> room_for_pairs(std::size_t objects) {
   constexpr std::size_t kSlack = 64;  // the prototype stores whole vectors
-  constexpr std::size_t kMost = std::size_t{1} << 40U;
-  const std::size_t pairs = std::min(objects * (objects + 1) / 2, kMost);
+  constexpr std::size_t kMaxPairs = std::size_t{1} << 40U;
+  const std::size_t pairs = std::min(objects * (objects + 1) / 2, kMaxPairs);
   return std::make_unique<AddressRange>((pairs + kSlack) * sizeof(u64));
 }
 
 class YardstickEngine final : public Engine {
  public:
-  explicit YardstickEngine(int threads) : threads_(std::min(threads, kMostThreads)) {
+  explicit YardstickEngine(int threads) : threads_(std::min(threads, kMaxThreads)) {
     sweep_.k = 5;  // strips of five mean extents
-    if (threads > kMostThreads) arena_ = std::make_unique<tbb::task_arena>(kMostThreads);
+    if (threads > kMaxThreads) arena_ = std::make_unique<tbb::task_arena>(kMaxThreads);
   }
 
   [[nodiscard]] std::string name() const override { return std::string(kYardstickName); }
@@ -74,7 +74,7 @@ class YardstickEngine final : public Engine {
   }
 
  private:
-  static constexpr int kMostThreads = 2;  // the prototype has arrays of two
+  static constexpr int kMaxThreads = 2;  // the prototype has arrays of two
 
   [[nodiscard]] u64* room_of(int t) const { return reinterpret_cast<u64*>(room_[t]->begin()); }
   void make_room(std::size_t objects) {
@@ -87,7 +87,7 @@ class YardstickEngine final : public Engine {
   std::unique_ptr<tbb::task_arena> arena_;  // used if there are more threads than it supports
   SG4<true> sweep_;
   Outs found_;  // only the ends of the pairs are used
-  std::array<std::unique_ptr<AddressRange>, kMostThreads> room_;
+  std::array<std::unique_ptr<AddressRange>, kMaxThreads> room_;
   std::size_t objects_ = 0;
   mutable std::vector<Pair> joined_;
 };

@@ -86,7 +86,7 @@ std::string fault_of_ray(const Json& question, const Json& answer) {
 
 }  // namespace
 
-CaseVerdict judge_case(const Json& question, const Json& answer, double promised) {
+CaseVerdict check_hard_case(const Json& question, const Json& answer, double promised) {
   const Json& expect = member(question, "expect");
   const Json status = expect.contains("status") ? expect["status"] : Json("ok");
   CaseVerdict verdict;
@@ -104,7 +104,7 @@ CaseVerdict judge_case(const Json& question, const Json& answer, double promised
   return verdict;
 }
 
-double promised_error(NarrowTier tier) {
+double guaranteed_error(NarrowTier tier) {
   return tier == NarrowTier::robust ? 4e-7 : 1e-12;
 }
 

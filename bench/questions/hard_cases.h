@@ -32,10 +32,11 @@ struct CaseVerdict {
 
 /// Compares an answer with the expectation in its question. `promised` is the largest allowed error
 /// of a distance, relative to the sizes of both shapes plus the distance.
-[[nodiscard]] CaseVerdict judge_case(const Json& question, const Json& answer, double promised);
+[[nodiscard]] CaseVerdict check_hard_case(const Json& question, const Json& answer,
+                                          double promised);
 
-/// Returns the largest error that a tier guarantees, in the units of `judge_case`.
-[[nodiscard]] double promised_error(NarrowTier tier);
+/// Returns the largest error that a tier guarantees, in the units of `check_hard_case`.
+[[nodiscard]] double guaranteed_error(NarrowTier tier);
 
 /// Returns the questions with a and b swapped and expected normals negated; questions that lack
 /// either shape are copied unchanged.

@@ -18,9 +18,9 @@ Json list(double x, double y, double z) {
 }
 
 /// Collects the bodies and pairs of all questions and stores each answer in its question's row.
-class Questionnaire {
+class QueryBatch {
  public:
-  explicit Questionnaire(std::size_t count) : answers_(count) {}
+  explicit QueryBatch(std::size_t count) : answers_(count) {}
 
   void add(std::size_t row, const Json& question) {
     Json& answer = answers_[row];
@@ -28,17 +28,17 @@ class Questionnaire {
     answer["id"] = is_object && question.contains("id") ? question["id"] : Json();
     Status status = Status::invalid_argument;
     if (is_object && question.contains("ray")) {
-      status = ask_ray(question, answer);
+      status = compute_ray(question, answer);
     } else if (is_object && question.contains("motion")) {
       status = answer_motion(question, answer);
     } else if (is_object && question.contains("a") && question.contains("b")) {
       const bool moves = has_end_pose(question["a"]) || has_end_pose(question["b"]);
-      status = moves ? ask_impact(question, answer) : add_pair(row, question);
+      status = moves ? compute_impact(question, answer) : add_pair(row, question);
     }
     if (status != Status::ok) refuse(answer, status);
   }
 
-  void ask_pairs(NarrowTier tier) {
+  void compute_pairs(NarrowTier tier) {
     NarrowPhase phase;
     NarrowResult result;
     const NarrowOptions options{.level = ContactLevel::distance, .tier = tier};
@@ -73,7 +73,7 @@ class Questionnaire {
     return Status::ok;
   }
 
-  Status ask_ray(const Json& question, Json& answer) {
+  Status compute_ray(const Json& question, Json& answer) {
     ShapeRay ray;
     ShapeId shape;
     Pose pose;
@@ -91,7 +91,7 @@ class Questionnaire {
     return Status::ok;
   }
 
-  Status ask_impact(const Json& question, Json& answer) {
+  Status compute_impact(const Json& question, Json& answer) {
     ShapeId shape[2];
     RigidMotion motion[2];
     CompositePool composites(pool_);
@@ -158,9 +158,9 @@ class Questionnaire {
 }  // namespace
 
 Json answer(const Json& questions, NarrowTier tier) {
-  Questionnaire questionnaire(questions.size());
+  QueryBatch questionnaire(questions.size());
   for (std::size_t i = 0; i < questions.size(); ++i) questionnaire.add(i, questions[i]);
-  questionnaire.ask_pairs(tier);
+  questionnaire.compute_pairs(tier);
   return questionnaire.take();
 }
 

@@ -17,9 +17,9 @@ namespace {
 /// Returns the size in bytes of a file with this many frames, or the largest number if that exceeds
 /// 64 bits. Both counts have 31 bits, so their product does not overflow.
 std::uint64_t file_size(std::uint64_t objects, std::uint64_t frames) {
-  constexpr std::uint64_t kMost = std::numeric_limits<std::uint64_t>::max();
+  constexpr std::uint64_t kMaxSize = std::numeric_limits<std::uint64_t>::max();
   const std::uint64_t boxes = frames * objects;
-  return boxes > (kMost - kHeaderSize) / kBoxSize ? kMost : kHeaderSize + boxes * kBoxSize;
+  return boxes > (kMaxSize - kHeaderSize) / kBoxSize ? kMaxSize : kHeaderSize + boxes * kBoxSize;
 }
 
 class Reader {

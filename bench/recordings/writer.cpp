@@ -8,7 +8,7 @@
 namespace winnow::bench {
 namespace {
 
-constexpr std::size_t kMost = std::numeric_limits<std::int32_t>::max();
+constexpr std::size_t kMaxCount = std::numeric_limits<std::int32_t>::max();
 
 void put_text(std::span<std::byte> header, std::size_t at, const std::string& text) {
   std::memcpy(header.data() + at, text.data(), std::min(text.size(), kTextSize - 1));
@@ -27,7 +27,7 @@ void write_recording(const std::string& path, FrameSource& source, const std::st
   if (objects != source.objects()) {
     throw RecordingError(path + ": the format takes the same objects in every frame");
   }
-  if (objects > kMost || steps > kMost) {
+  if (objects > kMaxCount || steps > kMaxCount) {
     throw RecordingError(path + ": the format takes at most 2^31-1 objects and frames");
   }
   std::ofstream file(path, std::ios::binary | std::ios::trunc);

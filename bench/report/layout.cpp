@@ -7,8 +7,8 @@
 #include "bench/common/sample.h"
 #include "bench/common/table.h"
 #include "bench/peers/yardstick.h"
-#include "bench/rows/filled.h"
 #include "bench/rows/machine.h"
+#include "bench/rows/template_text.h"
 
 #include <algorithm>
 #include <cmath>
@@ -58,7 +58,7 @@ void mark_best(CellTable& table, bool less) {
 }
 
 /// Largest number of series that a reader can tell apart in one plot.
-constexpr std::size_t kMostSeries = 12;
+constexpr std::size_t kMaxSeries = 12;
 
 double median_height(const PlotSeries& series) {
   std::vector<double> heights;
@@ -66,25 +66,25 @@ double median_height(const PlotSeries& series) {
   return median_of(heights);
 }
 
-/// Keeps the kMostSeries best series in their order and adds that to the title.
+/// Keeps the kMaxSeries best series in their order and adds that to the title.
 void thin_out(Plot& plot, bool more_is_better) {
   const std::size_t all = plot.series.size();
-  if (all <= kMostSeries) return;
+  if (all <= kMaxSeries) return;
   std::vector<double> medians;
   for (const PlotSeries& one : plot.series) {
     medians.push_back(more_is_better ? -median_height(one) : median_height(one));
   }
   std::vector<double> ranked = medians;
   std::sort(ranked.begin(), ranked.end());
-  const double last = ranked[kMostSeries - 1];
+  const double last = ranked[kMaxSeries - 1];
   std::size_t at = 0;
   std::size_t kept = 0;
   std::erase_if(plot.series, [&](const PlotSeries&) {
-    const bool keep = medians[at++] <= last && kept < kMostSeries;
+    const bool keep = medians[at++] <= last && kept < kMaxSeries;
     kept += keep ? 1 : 0;
     return !keep;
   });
-  plot.title += ": the best " + grouped(kMostSeries) + " of " + grouped(all);
+  plot.title += ": the best " + grouped(kMaxSeries) + " of " + grouped(all);
 }
 
 /// Returns the Pareto front: the points that no other point beats in both x and y.

@@ -148,10 +148,10 @@ void measure_keys(Results& results, std::size_t objects, bool quick) {
 }
 
 /// Returns the races of volumes, in the partition in which all volumes are compared.
-std::vector<VolumeQuestion> volume_questions(const ReportOptions& options) {
-  VolumeQuestion asked{.objects = objects_up_to(options, 10'000), .seed = options.seed};
+std::vector<VolumeRowOptions> volume_questions(const ReportOptions& options) {
+  VolumeRowOptions asked{.objects = objects_up_to(options, 10'000), .seed = options.seed};
   asked.frames = options.quick ? 2 : volume_frames(asked.objects);
-  std::vector<VolumeQuestion> all;
+  std::vector<VolumeRowOptions> all;
   // All boxes of built-in scenes are axis-aligned, so that one scene represents all.
   for (const NamedScene& scene : few_scenes(options, {"uniform"})) {
     all.push_back(asked);
@@ -167,7 +167,7 @@ std::vector<VolumeQuestion> volume_questions(const ReportOptions& options) {
   return all;
 }
 
-void add_volume_step(ReportSteps& steps, const VolumeQuestion& asked, const std::string& table) {
+void add_volume_step(ReportSteps& steps, const VolumeRowOptions& asked, const std::string& table) {
   constexpr double kEach = 3e-5;  // seconds for each object and frame
   steps.push_back(
       {(asked.setting == "scene" ? asked.scene.name : asked.setting) + " in " + asked.partition,
@@ -181,11 +181,11 @@ void plan_every_scene(const ReportOptions& options, ReportSteps& steps) {
   for (const NamedScene& scene : options.scenes) names.push_back(scene.name);
   const auto scenes = names == main_scenes() ? named_scenes(scene_names()) : options.scenes;
   for (const NamedScene& scene : scenes) {
-    EverySceneQuestion asked{.scene = scene,
-                             .objects = scene.objects(objects_up_to(options, 10'000)),
-                             .seed = options.seed,
-                             .threads = options.threads.front(),
-                             .yardstick = options.yardstick};
+    EverySceneOptions asked{.scene = scene,
+                            .objects = scene.objects(objects_up_to(options, 10'000)),
+                            .seed = options.seed,
+                            .threads = options.threads.front(),
+                            .yardstick = options.yardstick};
     if (options.quick) asked.frames = kSettlingFrames + 3;
     steps.push_back({named(scene, asked.objects) + ", worst frames",
                      0.05 + 1e-8 * static_cast<double>(asked.frames * asked.objects * 60),
@@ -267,7 +267,7 @@ ReportSteps plan_memory(const ReportOptions& options) {
 ReportSteps plan_ranks(const ReportOptions& options) {
   ReportSteps steps;
   for (const NamedScene& scene : few_scenes(options, {"uniform", "clustered"})) {
-    ClusterQuestion asked{.scene = scene, .ranks = {1, 2, 3, 8, 64, 512}, .seed = options.seed};
+    ClusterRowOptions asked{.scene = scene, .ranks = {1, 2, 3, 8, 64, 512}, .seed = options.seed};
     asked.is_uniform = scene.name == "uniform" && !scene.is_recording();
     if (options.quick) {
       asked.objects = 500;
@@ -283,8 +283,8 @@ ReportSteps plan_ranks(const ReportOptions& options) {
 ReportSteps plan_volumes(const ReportOptions& options) {
   ReportSteps steps;
   const auto all = volume_questions(options);
-  for (const VolumeQuestion& asked : all) add_volume_step(steps, asked, "volumes");
-  for (VolumeQuestion asked : all) {
+  for (const VolumeRowOptions& asked : all) add_volume_step(steps, asked, "volumes");
+  for (VolumeRowOptions asked : all) {
     if (asked.setting != "cubes" && !asked.scene.is_recording()) continue;
     for (const std::string_view partition : volume_partitions()) {
       const bool is_quadratic = partition == "BoundsNSquared" && asked.objects > 2000;
@@ -294,8 +294,8 @@ ReportSteps plan_volumes(const ReportOptions& options) {
       add_volume_step(steps, asked, "volumes");
     }
   }
-  VolumeQuestion cubes = *std::find_if(
-      all.begin(), all.end(), [](const VolumeQuestion& one) { return one.setting == "cubes"; });
+  VolumeRowOptions cubes = *std::find_if(
+      all.begin(), all.end(), [](const VolumeRowOptions& one) { return one.setting == "cubes"; });
   // Distances an object moves in a frame, in edge lengths, at which margins are compared.
   for (const double step : {0.001, 0.003, 0.01, 0.03, 0.1}) {
     if (options.quick && step != 0.001 && step != 0.1) continue;

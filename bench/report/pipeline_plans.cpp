@@ -190,7 +190,7 @@ ReportSteps plan_motion(const ReportOptions& options) {
                      add_feature_impacts(results, pairs, rounds, seed);
                    }});
   for (const std::string& scene : barrier_names()) {
-    BarrierQuestion asked{.scene = scene};
+    BarrierRowOptions asked{.scene = scene};
     if (options.quick) {
       asked.steps = 5;
       asked.size = 8;
@@ -237,7 +237,7 @@ ReportSteps plan_pipeline(const ReportOptions& options) {
                      add_tori(results, rounds, peers, false);
                    }});
   for (const std::string& shape : flow_shape_names()) {
-    FlowQuestion asked{.shape = shape, .seed = options.seed};
+    FlowRowOptions asked{.shape = shape, .seed = options.seed};
     if (options.quick) {
       asked.objects = 60;
       asked.steps = 200;
@@ -248,7 +248,7 @@ ReportSteps plan_pipeline(const ReportOptions& options) {
   }
   for (const StandingScene scene : kStandingScenes) {
     for (const bool reduced : {false, true}) {
-      const StandingQuestion asked{scene, reduced, options.quick ? 2.0 : 60.0};
+      const StandingRowOptions asked{scene, reduced, options.quick ? 2.0 : 60.0};
       steps.push_back({name_of(scene), 0.03 * asked.seconds, [asked](Results& results) {
                          if (!add_standing(results, asked)) {
                            throw std::runtime_error(name_of(asked.scene) + " does not stand");

@@ -5,8 +5,8 @@
 
 #include "bench/common/table.h"
 #include "bench/peers/yardstick.h"
-#include "bench/rows/filled.h"
 #include "bench/rows/machine.h"
+#include "bench/rows/template_text.h"
 
 #include <algorithm>
 #include <cmath>

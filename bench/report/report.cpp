@@ -113,17 +113,17 @@ std::string document_text(const Json& document) {
   return text + "\n}\n";
 }
 
-std::sig_atomic_t volatile g_asked_to_stop = 0;
+std::sig_atomic_t volatile g_stop_requested = 0;
 
 /// While an object of this class exists, the first SIGINT or SIGTERM stops the report after the
 /// current step; a second one ends the process.
 class StopSignals {
  public:
   StopSignals() {
-    g_asked_to_stop = 0;
+    g_stop_requested = 0;
     struct sigaction action {};
     action.sa_handler = [](int) {
-      g_asked_to_stop = 1;
+      g_stop_requested = 1;
       constexpr std::string_view kWord =
           "\nwinnow: stopping after the step that runs; once more stops at once\n";
       if (::write(STDERR_FILENO, kWord.data(), kWord.size()) < 0) return;
@@ -139,7 +139,7 @@ class StopSignals {
     sigaction(SIGTERM, &old_terminate_, nullptr);
   }
 
-  [[nodiscard]] static bool asked() noexcept { return g_asked_to_stop != 0; }
+  [[nodiscard]] static bool asked() noexcept { return g_stop_requested != 0; }
 
  private:
   struct sigaction old_interrupt_ {};

@@ -4,8 +4,8 @@
 #include "bench/report/trace.h"
 
 #include "bench/pages/html.h"
-#include "bench/rows/filled.h"
 #include "bench/rows/results.h"
+#include "bench/rows/template_text.h"
 
 #include <algorithm>
 #include <cmath>

@@ -41,7 +41,7 @@ Json figures_of(const Accuracy& one) {
 void add_shown(Json& row, const std::string& of) {
   const auto at = row.find("worst_" + of);
   if (at == row.end()) return;
-  row["worst_" + of + "_or_floor"] = std::max(at->get<double>(), kLeastErrorShown);
+  row["worst_" + of + "_or_floor"] = std::max(at->get<double>(), kMinErrorShown);
 }
 
 void add_columns(std::vector<ValueColumn>& columns, const std::string& of, const std::string& label,

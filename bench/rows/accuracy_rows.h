@@ -12,7 +12,7 @@ namespace winnow::bench {
 // Pairs of shapes: the time and the error of a narrow-phase result.
 
 /// Plots replace smaller errors by this value, because logarithmic axes have no 0.
-inline constexpr double kLeastErrorShown = 1e-17;
+inline constexpr double kMinErrorShown = 1e-17;
 
 /// Keys that identify the rows of a race or of errors.
 enum class PairKeys {

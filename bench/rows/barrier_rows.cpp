@@ -9,7 +9,7 @@
 namespace winnow::bench {
 namespace {
 
-std::string barrier_command(const BarrierQuestion& asked) {
+std::string barrier_command(const BarrierRowOptions& asked) {
   std::string text = "bench/run simulate --barrier " + asked.scene + " --steps " +
                      std::to_string(asked.steps) + " --threads " + std::to_string(asked.threads) +
                      " --isa " + isa_name();
@@ -30,7 +30,7 @@ std::vector<double> run(Simulation& simulation, std::size_t steps) {
 }
 
 template <typename Simulation>
-bool add_row(Results& results, const BarrierQuestion& asked, const Simulation& simulation,
+bool add_row(Results& results, const BarrierRowOptions& asked, const Simulation& simulation,
              const std::vector<double>& ms, Json row) {
   row["scene"] = asked.scene;
   row["steps"] = simulation.steps();
@@ -60,7 +60,7 @@ void declare_barriers(Results& results) {
                     {"fingerprint", "all bits", "", Better::neither, Format::text}}});
 }
 
-bool add_barrier(Results& results, const BarrierQuestion& asked) {
+bool add_barrier(Results& results, const BarrierRowOptions& asked) {
   const Execution execution = asked.threads == 1 ? Execution::serial() : Execution::parallel();
   if (asked.scene == "cloth") {
     ClothOptions options{.execution = execution};

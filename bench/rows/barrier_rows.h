@@ -9,7 +9,7 @@
 namespace winnow::bench {
 
 /// A simulation of fast motion in which nothing may tunnel through anything.
-struct BarrierQuestion {
+struct BarrierRowOptions {
   std::string scene = "funnel";  ///< see barrier_names()
   std::size_t steps = 200;
   /// Number of bodies, or of vertices along an edge of the cloth; 0 chooses a size that suits the
@@ -21,7 +21,7 @@ struct BarrierQuestion {
 /// Declares barriers.
 void declare_barriers(Results& results);
 /// Runs one simulation and adds its row. Returns false if something tunnelled.
-bool add_barrier(Results& results, const BarrierQuestion& asked);
+bool add_barrier(Results& results, const BarrierRowOptions& asked);
 
 /// Returns "funnel", "blade", "cloth".
 [[nodiscard]] std::vector<std::string> barrier_names();

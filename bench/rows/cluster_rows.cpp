@@ -35,7 +35,7 @@ BoxSpread spread_of_boxes(const FrameSource& source) {
   return {count / volume, edges / (3.0 * count)};
 }
 
-std::string cluster_command(const ClusterQuestion& asked, std::uint32_t ranks) {
+std::string cluster_command(const ClusterRowOptions& asked, std::uint32_t ranks) {
   std::string words = "bench/run cluster " + shell_word(asked.scene.argument);
   if (!asked.scene.is_recording()) words += " --objects " + std::to_string(asked.objects);
   if (asked.seed != 1) words += " --seed " + std::to_string(asked.seed);
@@ -44,7 +44,7 @@ std::string cluster_command(const ClusterQuestion& asked, std::uint32_t ranks) {
 }
 
 /// Adds the ghosts that the formula predicts for sizes that no single machine can hold.
-void add_model(Results& results, const ClusterQuestion& asked, const BoxSpread& spread) {
+void add_model(Results& results, const ClusterRowOptions& asked, const BoxSpread& spread) {
   struct Size {
     std::uint64_t objects;
     std::uint64_t ranks;
@@ -75,7 +75,7 @@ bool are_same(const ClusterRun& a, const ClusterRun& b) {
   return same;
 }
 
-void add_run(Results& results, const ClusterQuestion& asked, std::uint32_t ranks,
+void add_run(Results& results, const ClusterRowOptions& asked, std::uint32_t ranks,
              const ClusterRun& run, bool same, const BoxSpread& spread) {
   const ClusterStatistics& last = run.frames.back().statistics;
   const std::size_t count = asked.scene.objects(asked.objects);
@@ -128,7 +128,7 @@ double ghosts_by_formula(double objects, double ranks, double density, double ed
   return std::pow(1.0 + edge / side, 3.0) - 1.0;
 }
 
-void add_cluster_runs(Results& results, const ClusterQuestion& asked) {
+void add_cluster_runs(Results& results, const ClusterRowOptions& asked) {
   ClusterRun one;
   bool all_same = true;
   for (const std::uint32_t ranks : asked.ranks) {

@@ -11,7 +11,7 @@ namespace winnow::bench {
 
 /// A scene on virtual ranks within this process. The counts of objects held and bytes sent equal
 /// those with one process for each rank.
-struct ClusterQuestion {
+struct ClusterRowOptions {
   NamedScene scene;
   std::size_t objects = 20'000;
   std::size_t frames = 6;
@@ -24,7 +24,7 @@ struct ClusterQuestion {
 /// Declares cluster_runs and cluster_model.
 void declare_cluster_runs(Results& results);
 /// Adds the rows. Throws std::runtime_error if a number of ranks finds other pairs than one rank.
-void add_cluster_runs(Results& results, const ClusterQuestion& asked);
+void add_cluster_runs(Results& results, const ClusterRowOptions& asked);
 
 /// Returns the number of ghosts for each body that a rank owns, if `ranks` ranks share a cube with
 /// `objects` evenly spread boxes of edge `edge`, `density` of them in a unit of volume. The ghosts

@@ -32,7 +32,7 @@ void declare_every_scene(Results& results) {
                     {"pairs", "pairs", "", Better::neither, Format::count}}});
 }
 
-void add_every_scene(Results& results, const EverySceneQuestion& asked) {
+void add_every_scene(Results& results, const EverySceneOptions& asked) {
   const Measurement raced = measure({.scene = asked.scene.argument,
                                      .recording = asked.scene.recording.get(),
                                      .objects = asked.objects,

@@ -8,7 +8,7 @@
 
 namespace winnow::bench {
 
-struct EverySceneQuestion {
+struct EverySceneOptions {
   NamedScene scene;
   std::size_t objects = 10'000;
   std::uint64_t seed = 1;
@@ -21,6 +21,6 @@ struct EverySceneQuestion {
 void declare_every_scene(Results& results);
 /// Adds the rows of all partitions without a size limit. Throws std::runtime_error after that if
 /// not all found the same pairs.
-void add_every_scene(Results& results, const EverySceneQuestion& asked);
+void add_every_scene(Results& results, const EverySceneOptions& asked);
 
 }  // namespace winnow::bench

@@ -20,7 +20,7 @@ constexpr std::pair<const char*, FlowShape> kFlowShapes[] = {
 /// Number of steps of a flow that get a row.
 constexpr std::size_t kFlowRows = 200;
 
-Json with_keys(const FlowQuestion& asked, Json row) {
+Json with_keys(const FlowRowOptions& asked, Json row) {
   row["shape"] = asked.shape;
   row["objects"] = asked.objects;
   row["command"] = "bench/run simulate --shape " + asked.shape + " --objects " +
@@ -31,7 +31,7 @@ Json with_keys(const FlowQuestion& asked, Json row) {
 }
 
 /// Adds the times of the second half of the flow, when bodies touch each other.
-void add_phases(Results& results, const FlowQuestion& asked, const FlowHistory& history) {
+void add_phases(Results& results, const FlowRowOptions& asked, const FlowHistory& history) {
   std::vector<std::pair<Json, std::string>> added;
   double sum = 0.0;
   for (const FlowPhase& phase : kFlowPhases) {
@@ -53,7 +53,7 @@ void add_phases(Results& results, const FlowQuestion& asked, const FlowHistory& 
   }
 }
 
-void add_samples(Results& results, const FlowQuestion& asked, const FlowHistory& history) {
+void add_samples(Results& results, const FlowRowOptions& asked, const FlowHistory& history) {
   const std::vector<FlowSample>& samples = history.samples();
   const std::size_t every = std::max<std::size_t>(1, samples.size() / kFlowRows);
   for (std::size_t i = 0; i < samples.size(); i += every) {
@@ -115,7 +115,7 @@ void declare_flow_checks(Results& results) {
                     {"doubled", "contacts doubled", "", Better::less, Format::count}}});
 }
 
-FlowOptions flow_options(const FlowQuestion& asked) {
+FlowOptions flow_options(const FlowRowOptions& asked) {
   FlowOptions options;
   options.objects = asked.objects;
   options.shape = flow_shape_named(asked.shape);
@@ -124,7 +124,7 @@ FlowOptions flow_options(const FlowQuestion& asked) {
   return options;
 }
 
-void add_flow(Results& results, const FlowQuestion& asked, const FlowRun& run) {
+void add_flow(Results& results, const FlowRowOptions& asked, const FlowRun& run) {
   const FlowHistory& history = run.history();
   add_phases(results, asked, history);
   add_samples(results, asked, history);
@@ -146,7 +146,7 @@ void add_flow(Results& results, const FlowQuestion& asked, const FlowRun& run) {
                               {"doubled", run.faults().doubled}});
 }
 
-void add_flow(Results& results, const FlowQuestion& asked) {
+void add_flow(Results& results, const FlowRowOptions& asked) {
   FlowRun run(flow_options(asked), asked.steps, asked.check);
   for (std::size_t i = 0; i < asked.steps; ++i) run.step();
   add_flow(results, asked, run);

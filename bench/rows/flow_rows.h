@@ -10,7 +10,7 @@
 namespace winnow::bench {
 
 /// Parameters of a flow.
-struct FlowQuestion {
+struct FlowRowOptions {
   std::string shape = "mixed";  ///< see flow_shape_names()
   std::size_t objects = 500;
   std::size_t steps = 3000;
@@ -24,11 +24,11 @@ void declare_flows(Results& results);
 /// Declares flow_checks: memory, and a comparison of the contacts with a test of all pairs.
 void declare_flow_checks(Results& results);
 
-[[nodiscard]] FlowOptions flow_options(const FlowQuestion& asked);
+[[nodiscard]] FlowOptions flow_options(const FlowRowOptions& asked);
 /// Adds the rows of a flow that has run, and of its checks if they are declared.
-void add_flow(Results& results, const FlowQuestion& asked, const FlowRun& run);
+void add_flow(Results& results, const FlowRowOptions& asked, const FlowRun& run);
 /// Runs a flow and adds its rows.
-void add_flow(Results& results, const FlowQuestion& asked);
+void add_flow(Results& results, const FlowRowOptions& asked);
 
 [[nodiscard]] std::vector<std::string> flow_shape_names();
 /// Throws std::invalid_argument if there is no shape of this name.

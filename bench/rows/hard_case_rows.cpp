@@ -1,6 +1,6 @@
 // Rows about hard cases: counts the right and wrong answers of winnow's tiers and of other
-// libraries. bench/commands, bench/goals and bench/report call these functions; judge_case() in
-// bench/questions compares single answers.
+// libraries. bench/commands, bench/goals and bench/report call these functions; check_hard_case()
+// in bench/questions compares single answers.
 
 #include "bench/rows/hard_case_rows.h"
 
@@ -149,20 +149,20 @@ Json to_json(const Json& question, const NarrowAnswer& answer, double sign) {
           {"normal", std::move(normal)}, {"error_bound", "inf"}};
 }
 
-CaseVerdict ask_peer(NarrowEngine& engine, const PeerCase& asked, const Json& question) {
-  const bool tells_distance = engine.takes(asked.set.kind, ContactLevel::distance);
+CaseVerdict query_library(NarrowEngine& engine, const PeerCase& asked, const Json& question) {
+  const bool reports_distance = engine.takes(asked.set.kind, ContactLevel::distance);
   try {
     engine.start(asked.set);
-    engine.run(tells_distance ? ContactLevel::distance : ContactLevel::manifold, asked.set.pairs);
+    engine.run(reports_distance ? ContactLevel::distance : ContactLevel::manifold, asked.set.pairs);
   } catch (const std::exception&) {
     return {.fault = "exception"};
   }
   const NarrowAnswer answer = engine.answer(0);
   // An engine without distances reports only that the pair is separate, so only that is compared.
-  if (!tells_distance && !question["expect"]["overlap"].get<bool>()) {
+  if (!reports_distance && !question["expect"]["overlap"].get<bool>()) {
     return {.fault = answer.overlap ? kFalseContact : ""};
   }
-  return judge_case(question, to_json(question, answer, asked.sign), kPeersError);
+  return check_hard_case(question, to_json(question, answer, asked.sign), kPeersError);
 }
 
 void add_peers(const Json& questions, std::vector<HardCaseTally>& tallies) {
@@ -178,7 +178,7 @@ void add_peers(const Json& questions, std::vector<HardCaseTally>& tallies) {
           (needs_origin && !asked->around_origin)) {
         ++peers[i].not_taken;
       } else {
-        peers[i].add(ask_peer(*fresh[i], *asked, question));
+        peers[i].add(query_library(*fresh[i], *asked, question));
       }
     }
   }
@@ -192,7 +192,7 @@ std::vector<HardCaseTally> judge_hard_cases(const Json& questions, bool peers) {
     HardCaseTally tally{.engine = std::string(to_text(tier))};
     const Json answers = answer(questions, tier);
     for (std::size_t i = 0; i < questions.size(); ++i) {
-      tally.add(judge_case(questions[i], answers[i], promised_error(tier)));
+      tally.add(check_hard_case(questions[i], answers[i], guaranteed_error(tier)));
     }
     tallies.push_back(std::move(tally));
   }

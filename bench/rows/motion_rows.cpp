@@ -11,7 +11,7 @@ namespace winnow::bench {
 namespace {
 
 /// Plots replace smaller gaps by this value, because logarithmic axes have no 0.
-constexpr double kLeastGapShown = 1e-12;
+constexpr double kMinGapShown = 1e-12;
 
 std::string impacts_command(const ImpactRaceOptions& options) {
   std::string text = "bench/run impacts --what pairs --kind " + std::string(options.kind.name) +
@@ -84,7 +84,7 @@ ImpactMeasurement add_impacts(Results& results, const ImpactRaceOptions& options
              {"false_share", share_of(timing.missed + timing.late, timing.judged)},
              {"median_gap", timing.median_gap},
              {"worst_gap", timing.worst_gap},
-             {"worst_gap_or_floor", std::max(timing.worst_gap, kLeastGapShown)},
+             {"worst_gap_or_floor", std::max(timing.worst_gap, kMinGapShown)},
              {"command", is_peer(timing.engine) ? with_peers(command) : command}};
     results.add("impacts", std::move(row));
   }

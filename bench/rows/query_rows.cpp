@@ -27,7 +27,7 @@ Json query_row_of(const QueryRun& run) {
   for (const double ms : run.ms) ns.push_back(1e6 * ms / questions);
   return {{"set", run.set},
           {"engine", run.engine},
-          {"asked", run.asking == Asking::single ? "single" : "batch"},
+          {"asked", run.asking == QueryMode::single ? "single" : "batch"},
           {"threads", run.threads},
           {"ns", to_value(ns)},
           {"found", run.found_a_question()},

@@ -17,7 +17,7 @@ void declare_queries(Results& results);
 QueryMeasurement add_queries(Results& results, const NamedScene& scene,
                              QueryMeasureOptions options);
 
-/// Adds frustum queries compared with reading every box. Throws Refusal.
+/// Adds frustum queries compared with reading every box. Throws QueryError.
 void add_frusta(Results& results, std::size_t objects, std::size_t rounds);
 
 }  // namespace winnow::bench

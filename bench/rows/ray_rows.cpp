@@ -3,7 +3,7 @@
 namespace winnow::bench {
 namespace {
 
-const char* name_of(RayWant want) {
+const char* name_of(RayQueryType want) {
   constexpr const char* kNames[] = {"closest", "any", "all"};
   return kNames[static_cast<int>(want)];
 }
@@ -35,7 +35,7 @@ RayMeasurement add_mesh_rays(Results& results, const RayRaceOptions& options) {
   for (const RayTiming& timing : measured.timings) {
     Json row = mesh;
     row["want"] = name_of(timing.want);
-    row["asking"] = timing.asking == Asking::single ? "single" : "batch";
+    row["asking"] = timing.asking == QueryMode::single ? "single" : "batch";
     row["engine"] = timing.engine;
     row["ns"] = to_value(timing.ns);
     row["hits"] = timing.hits;

@@ -13,7 +13,7 @@ namespace {
 /// Simulated seconds in which the contact springs take up the weight.
 constexpr double kSettling = 1.0;
 
-std::string command_of(const StandingQuestion& asked) {
+std::string command_of(const StandingRowOptions& asked) {
   return "bench/run simulate --standing " + name_of(asked.scene) + " --seconds " +
          short_number(asked.seconds) + " --threads " + std::to_string(asked.threads) + " --isa " +
          isa_name();
@@ -40,7 +40,7 @@ void declare_standing(Results& results) {
         {"fingerprint", "all bodies' bits", "", Better::neither, Format::text}}});
 }
 
-bool add_standing(Results& results, const StandingQuestion& asked) {
+bool add_standing(Results& results, const StandingRowOptions& asked) {
   StandingOptions options;
   options.contact_reduction = asked.reduced;
   options.execution = asked.threads == 1 ? Execution::serial() : Execution::parallel();

@@ -11,7 +11,7 @@ namespace winnow::bench {
 /// A stable structure with edges of about 1 drifts by less than this after it has settled.
 inline constexpr double kStandingDrift = 0.02;
 
-struct StandingQuestion {
+struct StandingRowOptions {
   StandingScene scene = StandingScene::stack;
   bool reduced = false;
   double seconds = 60.0;
@@ -21,7 +21,7 @@ struct StandingQuestion {
 /// Declares standing: structures that a solver keeps upright.
 void declare_standing(Results& results);
 /// Simulates one structure and adds its row. Returns false if it moved too far.
-bool add_standing(Results& results, const StandingQuestion& asked);
+bool add_standing(Results& results, const StandingRowOptions& asked);
 
 [[nodiscard]] std::vector<std::string> standing_names();
 /// Throws std::invalid_argument if there is no structure of this name.

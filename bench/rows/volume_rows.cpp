@@ -43,7 +43,7 @@ Json volume_row_of(const VolumeRow& row, const VolumeRow& boxes) {
   return values;
 }
 
-std::string volumes_command(const VolumeQuestion& asked, double step) {
+std::string volumes_command(const VolumeRowOptions& asked, double step) {
   std::string text = "bench/run volumes --setting " + asked.setting;
   const bool recorded = asked.setting == "scene" && asked.scene.is_recording();
   if (asked.setting == "scene") {
@@ -70,7 +70,7 @@ void declare_volumes(Results& results) {
                    volume_values()});
 }
 
-void add_volumes(Results& results, const VolumeQuestion& asked, const std::string& table) {
+void add_volumes(Results& results, const VolumeRowOptions& asked, const std::string& table) {
   VolumeSetting made = make_volume_setting(asked.setting, {.scene = asked.scene.argument,
                                                            .recording = asked.scene.recording.get(),
                                                            .objects = asked.objects,

@@ -14,7 +14,7 @@ namespace winnow::bench {
 inline constexpr const char* kVolumesPartition = "LinearBvh";
 
 /// A race of volumes on one setting.
-struct VolumeQuestion {
+struct VolumeRowOptions {
   std::string setting{};  ///< see volume_setting_names()
   NamedScene scene{};     ///< for the setting "scene"
   std::size_t objects = 10'000;
@@ -29,7 +29,7 @@ void declare_volumes(Results& results);
 
 /// Adds a row for each volume; `margins` gets only rows of boxes. Throws std::runtime_error after
 /// that if a volume missed overlapping pairs.
-void add_volumes(Results& results, const VolumeQuestion& asked,
+void add_volumes(Results& results, const VolumeRowOptions& asked,
                  const std::string& table = "volumes");
 
 }  // namespace winnow::bench

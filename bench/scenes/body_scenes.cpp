@@ -200,7 +200,8 @@ std::unique_ptr<BodySet> make_landscape(std::size_t bodies, std::uint32_t cells,
   return set;
 }
 
-void stray(const BodySet& set, const Stray& by, std::uint64_t frame, std::vector<Pose>& poses) {
+void apply_pose_noise(const BodySet& set, const PoseNoise& by, std::uint64_t frame,
+                      std::vector<Pose>& poses) {
   poses = set.poses;
   Random random(mix(frame));
   for (Pose& pose : poses) {

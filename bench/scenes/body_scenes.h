@@ -26,19 +26,20 @@ namespace winnow::bench {
 
 /// Largest displacement of a scene's bodies from their poses, along each axis and about it (in
 /// radians).
-struct Stray {
+struct PoseNoise {
   double along = 0.0;
   double about = 0.0;
 };
 /// Every object moves a little.
-inline constexpr Stray kMoving{0.005, 0.005};
+inline constexpr PoseNoise kMoving{0.005, 0.005};
 /// Bodies at rest apart from noise, as a solver leaves them; smaller than the distance up to which
 /// contacts are carried over.
-inline constexpr Stray kResting{1e-5, 1e-5};
+inline constexpr PoseNoise kResting{1e-5, 1e-5};
 inline constexpr double kCarryOver = 2e-4;
 
 /// Returns the poses of a frame: each body's pose with a random displacement.
-void stray(const BodySet& set, const Stray& by, std::uint64_t frame, std::vector<Pose>& poses);
+void apply_pose_noise(const BodySet& set, const PoseNoise& by, std::uint64_t frame,
+                      std::vector<Pose>& poses);
 
 /// Returns a torus of 20,000 triangles.
 /// A pose of a second torus, and the number of pairs of triangles that then intersect.

@@ -34,18 +34,18 @@ class FewMovers final : public BodyScene {
 };
 
 /// Bodies that jitter about fixed positions, except every hundredth, which does not move.
-class Trembling final : public BodyScene {
+class Jittering final : public BodyScene {
  public:
-  Trembling(const Walls& walls, std::vector<Body> bodies, std::uint64_t seed)
+  Jittering(const Walls& walls, std::vector<Body> bodies, std::uint64_t seed)
       : BodyScene("jitter", walls, std::move(bodies), seed) {
-    for (const Body& body : bodies_) homes_.push_back(body.centre);
+    for (const Body& body : bodies_) rest_positions_.push_back(body.centre);
   }
 
   bool advance() override {
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
       if (i % 100 == 99) continue;
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        bodies_[i].centre[axis] = homes_[i][axis] + random_.in(-kTremor, kTremor);
+        bodies_[i].centre[axis] = rest_positions_[i][axis] + random_.in(-kJitter, kJitter);
       }
       place(i);
     }
@@ -53,9 +53,9 @@ class Trembling final : public BodyScene {
   }
 
  private:
-  static constexpr double kTremor = 1e-5;  // in edges
+  static constexpr double kJitter = 1e-5;  // in edges
 
-  std::vector<Vector> homes_;
+  std::vector<Vector> rest_positions_;
 };
 
 }  // namespace
@@ -77,7 +77,7 @@ std::unique_ptr<FrameSource> make_jitter(std::size_t objects, std::uint64_t seed
   }
   Walls around = walls;  // with room for the jitter
   for (double& low : around.low) low -= kStep;
-  return std::make_unique<Trembling>(around, std::move(bodies), seed);
+  return std::make_unique<Jittering>(around, std::move(bodies), seed);
 }
 
 }  // namespace winnow::bench

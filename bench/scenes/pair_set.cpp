@@ -44,9 +44,9 @@ class PairDrawing {
     draw_bodies();
     for (const BodyPair& pair : set_.pairs) place(pair);
     if (options_.nearest > 0.0) {
-      bring_near();
+      place_near_contact();
     } else {
-      draw_lots();
+      draw_until_half_overlap();
     }
     for (Pose& pose : set_.poses) {
       for (double& x : pose.position) x += options_.offset.value_or(0.0);
@@ -55,7 +55,7 @@ class PairDrawing {
 
  private:
   /// Places pairs again until every second one overlaps.
-  void draw_lots() {
+  void draw_until_half_overlap() {
     std::vector<std::uint32_t> open(set_.pairs.size());
     std::iota(open.begin(), open.end(), 0U);
     for (int attempt = 0;; ++attempt) {
@@ -150,7 +150,7 @@ class PairDrawing {
 
   /// Finds the touching position on each line by bisection, all pairs at once, and places the
   /// bodies near it.
-  void bring_near() {
+  void place_near_contact() {
     std::vector<std::uint32_t> which(set_.pairs.size());
     std::iota(which.begin(), which.end(), 0U);
     std::vector<Line> lines;
@@ -162,7 +162,8 @@ class PairDrawing {
       ratio = std::max(ratio, reach / small_radius(pair));
     }
     for (double width = ratio; width > kTouching; width *= 0.5) {
-      for (std::size_t k = 0; k < which.size(); ++k) stand(which[k], lines[k], lines[k].middle());
+      for (std::size_t k = 0; k < which.size(); ++k)
+        place_on_line(which[k], lines[k], lines[k].middle());
       const std::vector<std::uint8_t> overlap = overlaps(which);
       for (std::size_t k = 0; k < which.size(); ++k) {
         Line& line = lines[k];
@@ -174,7 +175,7 @@ class PairDrawing {
       const double small = small_radius(pair);
       const double least = 2 * k < which.size() ? kNearAtAll : options_.nearest;
       const double by = small * least * power(1.0 / least, random_.unit());
-      stand(which[k], lines[k], lines[k].outside + ((k & 1U) != 0 ? -by : by));
+      place_on_line(which[k], lines[k], lines[k].outside + ((k & 1U) != 0 ? -by : by));
     }
   }
 
@@ -182,7 +183,7 @@ class PairDrawing {
     return std::min(set_.radius[pair.a], set_.radius[pair.b]);
   }
 
-  void stand(std::uint32_t i, const Line& line, double distance) {
+  void place_on_line(std::uint32_t i, const Line& line, double distance) {
     const BodyPair& pair = set_.pairs[i];
     for (int axis = 0; axis < 3; ++axis) {
       set_.poses[pair.b].position[axis] =

@@ -17,7 +17,7 @@ class Pile final : public BodyScene {
  public:
   Pile(const Walls& walls, std::vector<Body> bodies, std::vector<Vector> homes, const Aabb& ground,
        std::uint64_t seed)
-      : BodyScene("pile", walls, std::move(bodies), seed), homes_(std::move(homes)) {
+      : BodyScene("pile", walls, std::move(bodies), seed), rest_positions_(std::move(homes)) {
     boxes_[0] = ground;
     world_.merge(ground);
   }
@@ -26,8 +26,8 @@ class Pile final : public BodyScene {
     for (std::size_t i = 1; i < bodies_.size(); ++i) {
       Walls around;
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        around.low[axis] = homes_[i][axis] - kJitter;
-        around.high[axis] = homes_[i][axis] + kJitter;
+        around.low[axis] = rest_positions_[i][axis] - kJitter;
+        around.high[axis] = rest_positions_[i][axis] + kJitter;
       }
       drift(bodies_[i], around);
       place(i);
@@ -36,7 +36,7 @@ class Pile final : public BodyScene {
   }
 
  private:
-  std::vector<Vector> homes_;
+  std::vector<Vector> rest_positions_;
 };
 
 /// Bodies that fall along straight paths, bounce at the end and come to rest there.

@@ -42,7 +42,7 @@ void Solids::add(const OrientedBox& box, const double* quaternion) {
   boxes_.push_back(box);
   poses_.push_back(pose);
   ids_.push_back(shape_of(box.half));
-  way_.push_back(way.cast<float>());
+  velocity_.push_back(way.cast<float>());
 }
 
 ShapeId Solids::shape_of(const Eigen::Vector3f& half) {
@@ -100,15 +100,16 @@ std::vector<Aabb> Solids::bounds() const {
   return bounds;
 }
 
-std::vector<OrientedBox> Solids::when_margins_were_left(float share) const {
+std::vector<OrientedBox> Solids::boxes_at_last_refit(float share) const {
   Random random(boxes_.size());
   std::vector<OrientedBox> then = boxes_;
   for (std::size_t i = 0; i < then.size(); ++i) {
     const Aabb box = then[i].bounds();
-    const float fastest = way_[i].cwiseAbs().maxCoeff();
+    const float fastest = velocity_[i].cwiseAbs().maxCoeff();
     const auto since = static_cast<float>(random.in(0.0, 1.0));
     if (!(fastest > 0.0F)) continue;
-    then[i].center -= since * share * as_eigen(box.max - box.min).maxCoeff() / fastest * way_[i];
+    then[i].center -=
+        since * share * as_eigen(box.max - box.min).maxCoeff() / fastest * velocity_[i];
   }
   return then;
 }
@@ -126,7 +127,7 @@ void Solids::follow(std::span<const Aabb> boxes) {
 
 void Solids::advance(double step) {
   for (std::size_t i = 0; i < boxes_.size(); ++i) {
-    put(i, boxes_[i].center + static_cast<float>(step) * way_[i]);
+    put(i, boxes_[i].center + static_cast<float>(step) * velocity_[i]);
   }
 }
 

@@ -30,7 +30,7 @@ class Solids {
   /// Returns each object's box at the time, drawn at random for each, at which it last left a
   /// margin of this share of its bounds' longest edge. This is the state of fat AABBs in a scene
   /// that has been moving for long.
-  [[nodiscard]] std::vector<OrientedBox> when_margins_were_left(float share) const;
+  [[nodiscard]] std::vector<OrientedBox> boxes_at_last_refit(float share) const;
   [[nodiscard]] const ShapePool& shapes() const noexcept { return shapes_; }
   [[nodiscard]] Bodies bodies() const noexcept { return {ids_, poses_}; }
 
@@ -49,7 +49,7 @@ class Solids {
   std::vector<OrientedBox> boxes_;
   std::vector<Pose> poses_;
   std::vector<ShapeId> ids_;
-  std::vector<Eigen::Vector3f> way_;
+  std::vector<Eigen::Vector3f> velocity_;
   std::vector<std::size_t> row_;  // row of each object's box in `of_boxes`
   ShapePool shapes_;
 };

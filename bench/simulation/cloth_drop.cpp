@@ -27,7 +27,7 @@ constexpr double kSliding = 0.2;
 /// Share of the time until an impact up to which a step goes.
 constexpr double kBeforeTouch = 0.9;
 /// Number of times that displacements are cut vertex by vertex before all are cut together.
-constexpr int kMostCuts = 8;
+constexpr int kMaxCuts = 8;
 
 /// Returns an upper bound of the distance of a triangle from the origin: the least distance of many
 /// of its points.
@@ -93,27 +93,27 @@ void ClothDrop::make_cloth() {
 void ClothDrop::find_near() {
   const double thickness = kThickness * kSide / static_cast<double>(options_.side - 1);
   need(mesh_.move(place_, place_, thickness), "the cloth");
-  stays_.clear();
+  separations_.clear();
   for (const FeaturePair kind : {FeaturePair::vertex_face, FeaturePair::edge_edge}) {
     const auto take = [&](std::span<const MeshProximity> chunk) {
       for (const MeshProximity& near : chunk) {
         const Vec3d apart = near.point[1] - near.point[0];
         const double length = apart.norm();
         if (!(length > 0.0)) continue;
-        Stay stay{{}, near.weight, apart / length};
+        SeparationConstraint separation{{}, near.weight, apart / length};
         if (kind == FeaturePair::vertex_face) {
-          stay.vertex[0] = near.features.first;
+          separation.vertex[0] = near.features.first;
           for (std::size_t k = 0; k < 3; ++k) {
-            stay.vertex[k + 1] = corners_[3 * near.features.second + k];
+            separation.vertex[k + 1] = corners_[3 * near.features.second + k];
           }
         } else {
           const auto first = mesh_.edge(near.features.first);
           const auto second = mesh_.edge(near.features.second);
-          stay.vertex = {first[0], first[1], second[0], second[1]};
+          separation.vertex = {first[0], first[1], second[0], second[1]};
         }
         const std::size_t own = kind == FeaturePair::vertex_face ? 1 : 2;
-        for (std::size_t k = 0; k < own; ++k) stay.weight[k] = -stay.weight[k];
-        stays_.push_back(stay);
+        for (std::size_t k = 0; k < own; ++k) separation.weight[k] = -separation.weight[k];
+        separations_.push_back(separation);
       }
     };
     need(mesh_.self_proximity(kind, thickness, take), "what is near");
@@ -129,18 +129,18 @@ void ClothDrop::relax(const Link& link) {
   next_[link.b] -= by;
 }
 
-void ClothDrop::keep_apart(const Stay& stay) {
+void ClothDrop::solve_separation(const SeparationConstraint& separation) {
   const double thickness = kThickness * kSide / static_cast<double>(options_.side - 1);
   double along = 0.0;
   double squares = 0.0;
   for (std::size_t k = 0; k < 4; ++k) {
-    along += stay.weight[k] * stay.normal.dot(next_[stay.vertex[k]]);
-    squares += stay.weight[k] * stay.weight[k];
+    along += separation.weight[k] * separation.normal.dot(next_[separation.vertex[k]]);
+    squares += separation.weight[k] * separation.weight[k];
   }
   if (!(along < thickness) || !(squares > 0.0)) return;
   const double by = (thickness - along) / squares;
   for (std::size_t k = 0; k < 4; ++k) {
-    next_[stay.vertex[k]] += stay.normal * (by * stay.weight[k]);
+    next_[separation.vertex[k]] += separation.normal * (by * separation.weight[k]);
   }
 }
 
@@ -163,7 +163,7 @@ void ClothDrop::keep_outside(Vec3d& vertex) const {
 void ClothDrop::solve() {
   for (int i = 0; i < kRelaxations; ++i) {
     for (const Link& one : links_) relax(one);
-    for (const Stay& stay : stays_) keep_apart(stay);
+    for (const SeparationConstraint& separation : separations_) solve_separation(separation);
     for (Vec3d& vertex : next_) {
       if (options_.swept) keep_outside(vertex);
     }
@@ -223,7 +223,7 @@ void ClothDrop::step() {
   }
   double earliest = 1.0;
   bool touches = options_.swept && find_touches(earliest);
-  for (int cuts = 0; touches && cuts < kMostCuts; ++cuts) {
+  for (int cuts = 0; touches && cuts < kMaxCuts; ++cuts) {
     for (std::size_t i = 0; i < place_.size(); ++i) {
       next_[i] = place_[i] + (next_[i] - place_[i]) * share_[i];
     }

@@ -56,7 +56,7 @@ class ClothDrop {
   };
   /// Two features that are close to each other. The sum of weight[i] times vertex[i], projected on
   /// the normal, must be at least the thickness.
-  struct Stay {
+  struct SeparationConstraint {
     std::array<std::uint32_t, 4> vertex;
     std::array<double, 4> weight;
     Vec3d normal;
@@ -67,7 +67,7 @@ class ClothDrop {
   void find_near();
   void solve();
   void relax(const Link& link);
-  void keep_apart(const Stay& stay);
+  void solve_separation(const SeparationConstraint& separation);
   [[nodiscard]] double least_radius() const noexcept;
   [[nodiscard]] bool is_on_ball(const Vec3d& vertex) const noexcept;
   void keep_outside(Vec3d& vertex) const;
@@ -86,7 +86,7 @@ class ClothDrop {
   std::vector<Vec3d> next_;
   std::vector<Vec3d> velocity_;
   std::vector<double> share_;
-  std::vector<Stay> stays_;
+  std::vector<SeparationConstraint> separations_;
   std::size_t steps_ = 0;
   std::size_t impacts_ = 0;
   std::size_t cut_short_ = 0;

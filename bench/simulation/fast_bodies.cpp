@@ -30,9 +30,9 @@ constexpr double kFunnelSpeed = 600.0;
 constexpr double kBlade[3] = {5.0, 0.01, 1.0};
 constexpr double kRoom = 6.0;
 /// A step is cut short after this many impacts per body.
-constexpr std::size_t kMostImpacts = 50;
+constexpr std::size_t kMaxImpacts = 50;
 /// The check samples the blade's frame this many times per radian of its rotation.
-constexpr double kLooksPerRadian = 40.0;
+constexpr double kSamplesPerRadian = 40.0;
 
 Vec3 position_of(const Pose& pose) {
   return Vec3::Map(pose.position);
@@ -154,7 +154,7 @@ void FastBodies::step() {
       if (impact.time == share) collide(impact);
     }
     left *= 1.0 - share;
-    if (++found < kMostImpacts * bodies_.size()) continue;
+    if (++found < kMaxImpacts * bodies_.size()) continue;
     ++cut_short_;
     break;
   }
@@ -187,7 +187,7 @@ bool FastBodies::passes_funnel(const Vec3& from, const Vec3& to) const {
 bool FastBodies::passes_blade(const RigidMotion& body, const RigidMotion& blade,
                               double share) const {
   const auto looks =
-      static_cast<int>(std::ceil(kLooksPerRadian * share * Vec3::Map(blade.turn).norm())) + 1;
+      static_cast<int>(std::ceil(kSamplesPerRadian * share * Vec3::Map(blade.turn).norm())) + 1;
   const auto seen = [&](int look) {
     const double time = share * look / looks;
     const Pose at = blade.at(time);

@@ -14,7 +14,7 @@ namespace winnow::bench {
 namespace {
 
 /// Largest number of pairs of bodies that are tested.
-constexpr double kMostPairs = 1e8;
+constexpr double kMaxRowPairs = 1e8;
 
 /// Two rows, the smaller first. Rows from objects() on are the mesh's triangles.
 struct RowPair {
@@ -31,7 +31,7 @@ class Check {
       : flow_(flow), contacts_(contacts), objects_(flow.objects()) {
     const auto objects = static_cast<double>(objects_);
     const double pairs = objects * (objects + static_cast<double>(flow.mesh().size()));
-    stride_ = static_cast<std::size_t>(std::ceil(std::max(1.0, pairs / kMostPairs)));
+    stride_ = static_cast<std::size_t>(std::ceil(std::max(1.0, pairs / kMaxRowPairs)));
   }
 
   [[nodiscard]] FlowFaults run() const {

@@ -34,7 +34,7 @@ LogHook set_log_hook(LogHook hook) noexcept {
   return log_hook.exchange(hook);
 }
 
-void tell_refusal(Status status, const char* call) noexcept {
+void log_refusal(Status status, const char* call) noexcept {
   const LogHook hook = log_hook.load(std::memory_order_acquire);
   if (hook == nullptr) return;
   hook({.kind = LogEntry::Kind::refusal,
@@ -43,8 +43,8 @@ void tell_refusal(Status status, const char* call) noexcept {
         .status = status});
 }
 
-void tell_choice(std::string_view before, std::string_view now, std::string_view reason,
-                 std::size_t objects) noexcept {
+void log_choice(std::string_view before, std::string_view now, std::string_view reason,
+                std::size_t objects) noexcept {
   const LogHook hook = log_hook.load(std::memory_order_acquire);
   if (hook == nullptr) return;
   hook({.kind = LogEntry::Kind::choice,

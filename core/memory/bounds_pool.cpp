@@ -3,7 +3,7 @@
 
 #include "core/memory/bounds_pool.h"
 
-#include "core/sort/stretches.h"
+#include "core/sort/parallel_ranges.h"
 
 #include <algorithm>
 
@@ -41,10 +41,10 @@ void gather(const T* from, const std::uint32_t* order, std::size_t begin, std::s
 template <typename T>
 void gather(const T* from, std::span<const std::uint32_t> order, T* to, T missing,
             const Execution& execution) {
-  for_even_stretches(execution, order.size(), kRowsPerTask,
-                     [&](std::size_t begin, std::size_t end) {
-                       gather(from, order.data(), begin, end, to, missing);
-                     });
+  for_each_even_range(execution, order.size(), kRowsPerTask,
+                      [&](std::size_t begin, std::size_t end) {
+                        gather(from, order.data(), begin, end, to, missing);
+                      });
 }
 
 // Reorders words in place.
@@ -52,10 +52,10 @@ void reorder_words(std::uint32_t* words, std::span<const std::uint32_t> order, C
                    std::uint32_t missing, const Execution& execution) {
   const std::uint32_t* const sorted = words_of(spare);
   gather(words, order, words_of(spare), missing, execution);
-  for_even_stretches(execution, order.size(), kRowsPerTask,
-                     [&](std::size_t begin, std::size_t end) {
-                       std::copy(sorted + begin, sorted + end, words + begin);
-                     });
+  for_each_even_range(execution, order.size(), kRowsPerTask,
+                      [&](std::size_t begin, std::size_t end) {
+                        std::copy(sorted + begin, sorted + end, words + begin);
+                      });
 }
 
 }  // namespace
@@ -164,12 +164,12 @@ void BoundsPool::reorder_ids(std::span<const std::uint32_t> order, Column<float>
   if (!ascend) return reorder_words(ids_.data(), order, spare, kNoObject, execution);
   // Ids ascend by one from row to row, and need not be read.
   const ObjectId first = ids_[0];
-  for_even_stretches(execution, order.size(), kRowsPerTask,
-                     [&](std::size_t begin, std::size_t end) {
-                       for (std::size_t i = begin; i < end; ++i) {
-                         ids_[i] = order[i] == kNoObject ? kNoObject : first + order[i];
-                       }
-                     });
+  for_each_even_range(execution, order.size(), kRowsPerTask,
+                      [&](std::size_t begin, std::size_t end) {
+                        for (std::size_t i = begin; i < end; ++i) {
+                          ids_[i] = order[i] == kNoObject ? kNoObject : first + order[i];
+                        }
+                      });
 }
 
 void BoundsPool::reorder_tail(std::size_t begin, std::span<const std::uint32_t> order,

@@ -3,7 +3,7 @@
 #include "core/memory/key_table.h"
 
 #include "core/memory/columns.h"
-#include "core/sort/stretches.h"
+#include "core/sort/parallel_ranges.h"
 
 #include <algorithm>
 
@@ -54,22 +54,22 @@ void KeyTable::acquire(std::uint32_t row, std::span<const ClientData> data, std:
   stamps_.set_size(slots);
   rows_.set_size(slots);
   data_.set_size(slots);
-  for_even_stretches(execution, slots - first, kKeysPerTask,
-                     [&](std::size_t begin, std::size_t end) {
-                       for (std::size_t slot = first + begin; slot < first + end; ++slot) {
-                         const std::size_t i = reused + slot - first;
-                         stamps_[slot] = stamp_ | 1U;
-                         rows_[slot] = row_at(i);
-                         data_[slot] = data_of(i);
-                         keys[i] = {static_cast<ObjectId>(slot), stamps_[slot]};
-                       }
-                     });
+  for_each_even_range(execution, slots - first, kKeysPerTask,
+                      [&](std::size_t begin, std::size_t end) {
+                        for (std::size_t slot = first + begin; slot < first + end; ++slot) {
+                          const std::size_t i = reused + slot - first;
+                          stamps_[slot] = stamp_ | 1U;
+                          rows_[slot] = row_at(i);
+                          data_[slot] = data_of(i);
+                          keys[i] = {static_cast<ObjectId>(slot), stamps_[slot]};
+                        }
+                      });
   live_ += slots - first;
 }
 
 // The loops of the next three functions have no unpredictable branches.
 
-KeyTable::RunOfKeys KeyTable::look_at(std::span<const Key> keys) const noexcept {
+KeyTable::KeysCheck KeyTable::check_keys(std::span<const Key> keys) const noexcept {
   if (keys.empty()) return {};
   std::uint32_t falls = 0;
   for (std::size_t i = 1; i < keys.size(); ++i) falls |= keys[i - 1].id < keys[i].id ? 0U : 1U;

@@ -6,7 +6,7 @@
 #include <winnow/core/execution.h>
 #include <winnow/core/key.h>
 #include <winnow/core/status.h>
-#include "core/memory/key_tags.h"
+#include "core/memory/partition_tag_pool.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -57,11 +57,11 @@ class KeyTable {
     return key.id < stamps_.size() && stamps_[key.id] == key.stamp && (key.stamp & 1U) != 0;
   }
   /// Results of `is_valid` for a sequence of keys.
-  struct RunOfKeys {
+  struct KeysCheck {
     bool valid = true;      ///< all keys are valid
     bool ascending = true;  ///< ids ascend strictly
   };
-  [[nodiscard]] RunOfKeys look_at(std::span<const Key> keys) const noexcept;
+  [[nodiscard]] KeysCheck check_keys(std::span<const Key> keys) const noexcept;
   [[nodiscard]] bool is_live(ObjectId id) const noexcept {
     return id < stamps_.size() && (stamps_[id] & 1U) != 0;
   }
@@ -142,7 +142,7 @@ class KeyTable {
     return (stamp_ | kGenerationMask) - stamp_;
   }
 
-  static constexpr unsigned kGenerationBits = 32 - KeyTags::kBits;
+  static constexpr unsigned kGenerationBits = 32 - PartitionTagPool::kBits;
   static constexpr std::uint32_t kGenerationMask = (1U << kGenerationBits) - 1;
 
   Column<std::uint32_t> stamps_;
@@ -151,7 +151,7 @@ class KeyTable {
   std::size_t live_ = 0;
   std::size_t free_count_ = 0;
   ObjectId first_free_ = kNoObject;
-  KeyTags tags_;
+  PartitionTagPool tags_;
   std::uint32_t stamp_;  // under a tag of this table, see `stamp`
 };
 

@@ -15,7 +15,7 @@ CountingSort::CountingSort(std::span<const std::uint32_t> bucket, std::span<std:
 
 // Calls body(index, first row, end) for the range of rows of each thread.
 template <typename Body>
-void CountingSort::for_each_stretch(Body&& body) const {
+void CountingSort::for_each_row_range(Body&& body) const {
   execution_.for_each(threads_, [&](std::size_t i) {
     body(i, bucket_.size() * i / threads_, bucket_.size() * (i + 1) / threads_);
   });
@@ -29,7 +29,7 @@ void CountingSort::count() noexcept {
 }
 
 void CountingSort::count_few() noexcept {
-  for_each_stretch([&](std::size_t stretch, std::size_t first, std::size_t end) {
+  for_each_row_range([&](std::size_t range, std::size_t first, std::size_t end) {
     // Consecutive rows are often in one bucket. With four arrays of counts, an increment does not
     // depend on the one before.
     std::array<Counts, 4> counts;
@@ -38,7 +38,7 @@ void CountingSort::count_few() noexcept {
       if (bucket_[row] != kNone) ++counts[row % counts.size()][bucket_[row]];
     }
     for (std::size_t b = 0; b < buckets_; ++b) {
-      counts_[stretch][b] = counts[0][b] + counts[1][b] + counts[2][b] + counts[3][b];
+      counts_[range][b] = counts[0][b] + counts[1][b] + counts[2][b] + counts[3][b];
     }
   });
   for (std::size_t b = 0; b < buckets_; ++b) {
@@ -68,8 +68,8 @@ void CountingSort::place_few(std::uint32_t* order) noexcept {
     std::uint32_t next = start_[b];
     for (std::size_t i = 0; i < threads_; ++i) next += std::exchange(counts_[i][b], next);
   }
-  for_each_stretch([&](std::size_t stretch, std::size_t first, std::size_t end) {
-    Counts& next = counts_[stretch];
+  for_each_row_range([&](std::size_t range, std::size_t first, std::size_t end) {
+    Counts& next = counts_[range];
     if (buckets_ == 1) {
       // The destination needs no lookup, and does not depend on the row before.
       std::uint32_t* to = order + next[0];
@@ -96,14 +96,15 @@ CountingSort::Buckets CountingSort::equal_rows(std::size_t owner) const noexcept
 }
 
 void CountingSort::place_many(std::uint32_t* order) noexcept {
-  std::array<Buckets, kMostOwners> share;
+  std::array<Buckets, kMaxOwners> share;
   for (std::size_t i = 0; i < threads_; ++i) share[i] = equal_rows(i);
   execution_.for_each(threads_, [&](std::size_t owner) {
     const auto [first, end] = share[owner];
     if (first == end) return;
     const std::uint32_t begin = start_[first];
-    for_own_rows(bucket_, first, end, threads_,
-                 [&](std::uint32_t row, std::uint32_t bucket) { order[start_[bucket]++] = row; });
+    for_rows_of_owner(bucket_, first, end, threads_, [&](std::uint32_t row, std::uint32_t bucket) {
+      order[start_[bucket]++] = row;
+    });
     // After placing, start_[b] is the end of bucket b, which is the beginning of bucket b + 1.
     std::copy_backward(start_.data() + first, start_.data() + end - 1, start_.data() + end);
     start_[first] = begin;

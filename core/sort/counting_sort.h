@@ -1,7 +1,7 @@
 #pragma once
 
 #include <winnow/core/execution.h>
-#include "core/sort/own_rows.h"
+#include "core/sort/scatter_by_owner.h"
 
 #include <array>
 #include <cstddef>
@@ -44,7 +44,7 @@ class CountingSort {
 
   [[nodiscard]] bool has_few() const noexcept { return buckets_ <= kFewBuckets; }
   template <typename Body>
-  void for_each_stretch(Body&& body) const;
+  void for_each_row_range(Body&& body) const;
   void count_few() noexcept;
   void place_few(std::uint32_t* order) noexcept;
   void place_many(std::uint32_t* order) noexcept;
@@ -55,7 +55,7 @@ class CountingSort {
   const Execution& execution_;
   const std::size_t buckets_;
   const std::size_t threads_;
-  std::array<Counts, kMostOwners> counts_;  // one per range of rows
+  std::array<Counts, kMaxOwners> counts_;  // one per range of rows
 };
 
 }  // namespace winnow

@@ -9,13 +9,13 @@ namespace {
 
 // Long digits need fewer passes; with short digits the ends of all buckets stay in the cache.
 // Threads that share a pass synchronise after it, and so prefer fewer passes.
-constexpr unsigned kMostDigitBits = 11;
+constexpr unsigned kMaxDigitBits = 11;
 constexpr unsigned kShortDigitBits = 9;
-constexpr std::size_t kMostDigits = std::size_t{1} << kMostDigitBits;
+constexpr std::size_t kMaxDigits = std::size_t{1} << kMaxDigitBits;
 constexpr std::size_t kMaxChunks = 8;
 constexpr std::size_t kItemsPerChunk = 4096;
 
-using Histogram = std::array<std::uint32_t, kMostDigits>;
+using Histogram = std::array<std::uint32_t, kMaxDigits>;
 
 struct Digit {
   unsigned shift;
@@ -66,8 +66,8 @@ struct Digits {
 // All passes on one thread; the digits of all passes are counted in one scan.
 std::uint64_t* sort_serially(std::uint64_t* items, std::uint64_t* spare, std::size_t count,
                              unsigned bits, unsigned first_bit) {
-  constexpr std::size_t kMostPasses = (64 + kShortDigitBits - 1) / kShortDigitBits;
-  std::array<std::array<std::uint32_t, std::size_t{1} << kShortDigitBits>, kMostPasses> start;
+  constexpr std::size_t kMaxPasses = (64 + kShortDigitBits - 1) / kShortDigitBits;
+  std::array<std::array<std::uint32_t, std::size_t{1} << kShortDigitBits>, kMaxPasses> start;
   const Digits digits(bits, kShortDigitBits);
   if (count == 0 || digits.passes == 0) return items;
   const std::size_t values = std::size_t{1} << digits.length;
@@ -98,7 +98,7 @@ std::uint64_t* radix_sort(std::uint64_t* items, std::uint64_t* spare, std::size_
   const std::size_t chunks =
       std::min({kMaxChunks, count / kItemsPerChunk, execution.concurrency()});
   if (chunks <= 1) return sort_serially(items, spare, count, bits, first_bit);
-  const Digits digits(bits, kMostDigitBits);
+  const Digits digits(bits, kMaxDigitBits);
   for (unsigned shift = 0; shift < bits; shift += digits.length) {
     const Digit digit{first_bit + shift, std::size_t{1} << std::min(digits.length, bits - shift)};
     pass(items, spare, count, digit, chunks, execution);

@@ -14,7 +14,7 @@ class Lock {
   Lock() noexcept = default;
   explicit Lock(Mutex&) noexcept : owns_(true) {}
   [[nodiscard]] static Lock deferred(Mutex&) noexcept { return {}; }
-  [[nodiscard]] static Lock if_free(Mutex& mutex) noexcept { return Lock(mutex); }
+  [[nodiscard]] static Lock try_acquire(Mutex& mutex) noexcept { return Lock(mutex); }
   void lock() noexcept { owns_ = true; }
   [[nodiscard]] bool owns_lock() const noexcept { return owns_; }
 
@@ -34,7 +34,7 @@ class Lock : public std::unique_lock<Mutex> {
   /// Does not lock until `lock` is called.
   [[nodiscard]] static Lock deferred(Mutex& mutex) noexcept { return {mutex, std::defer_lock}; }
   /// Locks if the mutex is free; `owns_lock` returns the result.
-  [[nodiscard]] static Lock if_free(Mutex& mutex) { return {mutex, std::try_to_lock}; }
+  [[nodiscard]] static Lock try_acquire(Mutex& mutex) { return {mutex, std::try_to_lock}; }
 
  private:
   using std::unique_lock<Mutex>::unique_lock;

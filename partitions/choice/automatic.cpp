@@ -23,7 +23,7 @@ constexpr double kWorthwhile = 0.85;
 // The first choice minimizes the cost of the build plus this many frames.
 constexpr double kFramesAhead = 16.0;
 // The sample is renewed after this many moves per object.
-constexpr std::size_t kMovesToLook = 32;
+constexpr std::size_t kMovesToRecheck = 32;
 // If fewer than one object in kQuiet moved, costs are predicted only every kQuietFrames frames.
 constexpr std::size_t kQuiet = 256;
 constexpr std::size_t kQuietFrames = 16;
@@ -32,11 +32,11 @@ constexpr std::size_t kQuietFrames = 16;
 constexpr std::size_t kFew = 192;
 constexpr std::size_t kFewFrames = 8;
 // Refreshes without a choice after a memory allocation failed.
-constexpr std::size_t kPatience = 64;
+constexpr std::size_t kRefreshesAfterFailure = 64;
 // Up to this many objects brute force cannot lose by more than a prediction costs.
 constexpr std::size_t kTooFew = 32;
 // Limit of the count of times a structure was left. At this count its price is out of reach.
-constexpr std::uint8_t kMostOften = 32;
+constexpr std::uint8_t kMaxOften = 32;
 // The first change to a structure that is clearly cheaper is made once it would have saved 1 /
 // 2^kTrust of its price, because most scenes go on like their last frames for at least eight times
 // as long. Each further change needs twice the share.
@@ -65,7 +65,7 @@ bool is_brute_force(StructureKind kind) noexcept {
   return kind.info()->costs->square > 0;
 }
 
-bool far_apart(std::size_t a, std::size_t b) noexcept {
+bool differ_much(std::size_t a, std::size_t b) noexcept {
   return a > 2 * b + 64 || b > 2 * a + 64;
 }
 
@@ -97,22 +97,22 @@ class AutomaticChoice final : public Chooser {
   }
   [[nodiscard]] StructureKind choose(const Rows& rows, StructureKind now,
                                      const Wear& wear) noexcept override {
-    before_ = wanted_ = now;
+    before_ = chosen_kind_ = now;
     build_due_ = false;
     ++frames_;
-    if (waiting_ != 0) {
-      --waiting_;
+    if (refreshes_to_wait_ != 0) {
+      --refreshes_to_wait_;
     } else if (rows.size() != 0 && rows.pool().volume() == Volume::aabb && !is_quiet(rows)) {
-      look(rows, wear);
+      predict(rows, wear);
       frames_ = 0;
     }
-    return wanted_;
+    return chosen_kind_;
   }
-  void refused() noexcept override { waiting_ = kPatience; }
+  void refused() noexcept override { refreshes_to_wait_ = kRefreshesAfterFailure; }
   void refreshed(const Rows& rows, StructureKind now, std::uint64_t builds) noexcept override {
     if (now != before_) note_change();
-    if (wanted_ != before_) held_ = 0;
-    if (wanted_ != before_ || build_due_) builds_seen_ = builds;
+    if (chosen_kind_ != before_) held_ = 0;
+    if (chosen_kind_ != before_ || build_due_) builds_seen_ = builds;
     changed_ = 0;
     chosen_ = rows.size() != 0;
   }
@@ -139,8 +139,8 @@ class AutomaticChoice final : public Chooser {
            (frames_ < kFewFrames && rows.size() <= kFew);
   }
   [[nodiscard]] FrameWork take_frame(std::size_t live) noexcept;
-  void look(const Rows& rows, const Wear& wear) noexcept;
-  void guess(FrameWork frame) noexcept;
+  void predict(const Rows& rows, const Wear& wear) noexcept;
+  void choose_first(FrameWork frame) noexcept;
   void consider(const FrameWork& frame, const Wear& wear, bool scattered) noexcept;
   void note_new_objects(const Wear& wear) noexcept;
   void note_wear(const Wear& wear, bool scattered) noexcept;
@@ -149,11 +149,11 @@ class AutomaticChoice final : public Chooser {
   [[nodiscard]] double cost_of(const PredictedCosts& costs, std::size_t candidate) const noexcept;
 
   StructureKind before_;  // the structure before this refresh, and the chosen one
-  StructureKind wanted_;
+  StructureKind chosen_kind_;
   SceneFeatures features_;
   // By candidate: savings not yet spent, and how often the structure was left.
   PredictedCosts::List saved_{};
-  std::array<std::uint8_t, kMostCandidates> left_{};
+  std::array<std::uint8_t, kMaxCandidates> left_{};
   // Moving average: share of refreshes in which an update scattered all objects.
   double scattered_share_ = 0.0;
   // Moving averages over the other refreshes, for trees and for cells: the share that built, and
@@ -166,13 +166,13 @@ class AutomaticChoice final : public Chooser {
   std::size_t held_ = 0;  // refreshes with the current structure, up to a limit
   std::string_view reason_ = "nothing to choose by yet";
   std::uint64_t changes_ = 0;
-  std::size_t objects_seen_ = 0;    // at the last sample
-  std::size_t unseen_ = 0;          // changes since the last sample
-  std::size_t pairs_seen_ = 0;      // at the last sample
-  std::size_t objects_before_ = 0;  // at the last prediction
-  std::size_t frames_ = 0;          // refreshes since then, including this one
-  std::size_t waiting_ = 0;         // refreshes without a choice that are left after a failed
-                                    // allocation
+  std::size_t objects_seen_ = 0;       // at the last sample
+  std::size_t unseen_ = 0;             // changes since the last sample
+  std::size_t pairs_seen_ = 0;         // at the last sample
+  std::size_t objects_before_ = 0;     // at the last prediction
+  std::size_t frames_ = 0;             // refreshes since then, including this one
+  std::size_t refreshes_to_wait_ = 0;  // refreshes without a choice that are left after a failed
+                                       // allocation
   bool chosen_ = false;
   bool build_due_ = false;  // in the last refresh, for every structure
 };
@@ -199,7 +199,7 @@ FrameWork AutomaticChoice::take_frame(std::size_t live) noexcept {
   return frame;
 }
 
-void AutomaticChoice::look(const Rows& rows, const Wear& wear) noexcept {
+void AutomaticChoice::predict(const Rows& rows, const Wear& wear) noexcept {
   const std::size_t live = objects_before_ = rows.size();
   const FrameWork frame = take_frame(live);
   note_new_objects(wear);
@@ -213,8 +213,8 @@ void AutomaticChoice::look(const Rows& rows, const Wear& wear) noexcept {
   if (pairs_seen_ == 0) pairs_seen_ = pairs;
   // If most objects were inserted or removed, every structure needs a build.
   const bool other_scene = !chosen_ || live > 2 * before || 2 * live < before;
-  if (other_scene || far_apart(live, objects_seen_) || far_apart(pairs, pairs_seen_) ||
-      unseen_ / kMovesToLook > live) {
+  if (other_scene || differ_much(live, objects_seen_) || differ_much(pairs, pairs_seen_) ||
+      unseen_ / kMovesToRecheck > live) {
     features_ = sample_scene(rows.pool(), live);
     objects_seen_ = live;
     unseen_ = 0;
@@ -223,13 +223,13 @@ void AutomaticChoice::look(const Rows& rows, const Wear& wear) noexcept {
   features_.objects = live;
   const bool scattered = chosen_ && !other_scene && !rows.regions().built;
   build_due_ = other_scene || scattered;
-  if (other_scene) guess(frame);
-  if (chosen_ && wanted_ == before_) consider(frame, wear, scattered);
+  if (other_scene) choose_first(frame);
+  if (chosen_ && chosen_kind_ == before_) consider(frame, wear, scattered);
 }
 
 // The first prediction assumes that everything moves. It assumes a query for all pairs if there
 // were no other queries.
-void AutomaticChoice::guess(FrameWork frame) noexcept {
+void AutomaticChoice::choose_first(FrameWork frame) noexcept {
   frame.changed = features_.objects;
   if (frame.casts + frame.regions + frame.nearest == 0) frame.pair_queries = 1;
   const PredictedCosts costs(features_, frame,
@@ -238,9 +238,9 @@ void AutomaticChoice::guess(FrameWork frame) noexcept {
   const std::size_t best =
       features_.objects <= kTooFew ? number_of_brute_force() : costs.cheapest(kFramesAhead);
   if (left_[best] != 0) return;
-  wanted_ = candidates()[best];
-  reason_ = is_brute_force(wanted_) ? "so few objects that no structure pays"
-                                    : "the least cost expected from a sample of the scene";
+  chosen_kind_ = candidates()[best];
+  reason_ = is_brute_force(chosen_kind_) ? "so few objects that no structure pays"
+                                         : "the least cost expected from a sample of the scene";
 }
 
 // New objects are appended behind the sorted rows until a build is due. The first objects of a
@@ -259,7 +259,7 @@ void AutomaticChoice::note_new_objects(const Wear& wear) noexcept {
 // built. Brute force never builds, so it measures neither.
 void AutomaticChoice::note_wear(const Wear& wear, bool scattered) noexcept {
   const std::size_t own = has_cells(before_) ? 1 : 0;
-  const bool tells = !is_brute_force(before_);
+  const bool can_compare = !is_brute_force(before_);
   const auto frames = static_cast<double>(frames_);
   const std::uint64_t built = wear.builds - builds_seen_;
   const double builds = std::min(1.0, static_cast<double>(built) / frames);
@@ -271,7 +271,7 @@ void AutomaticChoice::note_wear(const Wear& wear, bool scattered) noexcept {
   const double weight = std::max(kRecent, 1.0 / (3.0 + static_cast<double>(held_)));
   scattered_share_ += weight * ((scattered ? 1.0 : 0.0) - scattered_share_);
   for (std::size_t kind = 0; kind < build_share_.size() && !scattered; ++kind) {
-    if (tells && kind == own) {
+    if (can_compare && kind == own) {
       build_share_[kind] += weight * (builds - build_share_[kind]);
       worn_[kind] += weight * (worn - worn_[kind]);
     } else {
@@ -279,7 +279,7 @@ void AutomaticChoice::note_wear(const Wear& wear, bool scattered) noexcept {
       worn_[kind] -= kForgotten * worn_[kind];
     }
   }
-  held_ += held_ < kPatience ? 1 : 0;
+  held_ += held_ < kRefreshesAfterFailure ? 1 : 0;
   builds_seen_ = wear.builds;
   excess_seen_ = wear.excess;
 }
@@ -318,7 +318,7 @@ void AutomaticChoice::consider(const FrameWork& frame, const Wear& wear, bool sc
     best = k;
   }
   if (best == now) return;
-  wanted_ = candidates()[best];
+  chosen_kind_ = candidates()[best];
   const double by_queries = costs.queries_of(now) - costs.queries_of(best);
   const double by_pairs = held - cost_of(costs, best) - by_queries;
   reason_ = by_queries > by_pairs ? "cheaper for the queries that are asked"
@@ -331,7 +331,7 @@ void AutomaticChoice::note_change() noexcept {
   if (!chosen_) return;
   ++changes_;
   std::uint8_t& left = left_[number_of(before_)];
-  if (left < kMostOften) ++left;
+  if (left < kMaxOften) ++left;
 }
 
 constexpr StructureInfo kInfo{

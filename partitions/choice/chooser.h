@@ -16,18 +16,18 @@ namespace winnow {
 class QueryCounter {
  public:
   void add(std::size_t count) noexcept {
-    if (count_.load(std::memory_order_relaxed) < kMost) {
+    if (count_.load(std::memory_order_relaxed) < kMaxCount) {
       count_.fetch_add(count, std::memory_order_relaxed);
     }
   }
   [[nodiscard]] std::size_t take() noexcept {
     if (count_.load(std::memory_order_relaxed) == 0) return 0;
     const std::size_t count = count_.exchange(0, std::memory_order_relaxed);
-    return count < kMost ? count : kMost;
+    return count < kMaxCount ? count : kMaxCount;
   }
 
  private:
-  static constexpr std::size_t kMost = std::size_t{1} << 16U;
+  static constexpr std::size_t kMaxCount = std::size_t{1} << 16U;
   std::atomic<std::size_t> count_{0};
 };
 
@@ -76,7 +76,7 @@ class Chooser {
   /// Counts inserted objects, which are also counted as changes.
   void note_new(std::size_t count) noexcept { new_ += count; }
   void note(QueryKind kind, std::size_t count) noexcept {
-    asked_[static_cast<std::size_t>(kind)].add(count);
+    queries_[static_cast<std::size_t>(kind)].add(count);
   }
   /// Stores the number of pairs that the last query for all pairs found.
   void note_pairs(std::size_t pairs) noexcept { pairs_.store(pairs, std::memory_order_relaxed); }
@@ -85,7 +85,7 @@ class Chooser {
   ~Chooser() = default;
 
   [[nodiscard]] std::size_t take(QueryKind kind) noexcept {
-    return asked_[static_cast<std::size_t>(kind)].take();
+    return queries_[static_cast<std::size_t>(kind)].take();
   }
 
   std::size_t changed_ = 0;            // objects changed since the last refresh
@@ -93,7 +93,7 @@ class Chooser {
   std::atomic<std::size_t> pairs_{0};  // result of the last query for all pairs
 
  private:
-  QueryCounter asked_[kQueryKinds];
+  QueryCounter queries_[kQueryKinds];
 };
 
 }  // namespace winnow

@@ -13,12 +13,12 @@ namespace {
 constexpr double kNearest = 4.0;  // cost of a nearest query in rays or boxes
 
 struct Candidates {
-  std::array<StructureKind, kMostCandidates> kinds;
+  std::array<StructureKind, kMaxCandidates> kinds;
   std::size_t count = 0;
 
   Candidates() noexcept {
     for (const StructureKind kind : all_structures()) {
-      if (kind.info()->costs != nullptr && count < kMostCandidates) kinds[count++] = kind;
+      if (kind.info()->costs != nullptr && count < kMaxCandidates) kinds[count++] = kind;
     }
   }
 };
@@ -81,7 +81,7 @@ PredictedCosts::PredictedCosts(const SceneFeatures& scene, const FrameWork& fram
                       kNearest * static_cast<double>(frame.nearest);
   for (std::size_t k = 0; k < candidates().size(); ++k) {
     const StructureCosts& c = *candidates()[k].info()->costs;
-    queries_[k] = others * (c.ask + c.ask_level * level_of(scene) + c.scan * n);
+    queries_[k] = others * (c.query + c.query_level * level_of(scene) + c.scan * n);
     if (others > 0.0) queries_[k] += c.rows * changed_of(scene, frame);
     total_[k] = sum_of(frame_costs, c) + queries_[k];
     build_[k] = sum_of(build_costs, c);

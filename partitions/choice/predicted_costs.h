@@ -12,7 +12,7 @@
 namespace winnow {
 
 /// The candidates of the automatic choice: the members of all_structures() that have costs.
-inline constexpr std::size_t kMostCandidates = 16;
+inline constexpr std::size_t kMaxCandidates = 16;
 [[nodiscard]] std::span<const StructureKind> candidates() noexcept;
 
 /// The work of one frame.
@@ -58,7 +58,7 @@ inline constexpr std::size_t kBuildTerms = 2;
 /// - for all pairs after little has moved: one query per object that moved (`moved`, `level`,
 ///   `square`), the update of its share of the pairs (`pair`), and a read of the flags of the
 ///   others (`rest`);
-/// - for every other query (a nearest query counts four times): `ask`, `ask_level` for each
+/// - for every other query (a nearest query counts four times): `query`, `query_level` for each
 ///   doubling of the number of objects, and without a tree `scan` per object. A tree over the rows
 ///   of cells and strips is refitted first (`rows`, per object that moved).
 ///
@@ -77,7 +77,7 @@ inline constexpr std::size_t kBuildTerms = 2;
 /// of pairs.
 class PredictedCosts {
  public:
-  using List = std::array<double, kMostCandidates>;
+  using List = std::array<double, kMaxCandidates>;
 
   /// `pairs` is the number of pairs of the scene.
   PredictedCosts(const SceneFeatures& scene, const FrameWork& frame, double pairs) noexcept;

@@ -1,6 +1,6 @@
 #include "partitions/choice/sample_scene.h"
 
-#include "core/sort/end_values.h"
+#include "core/sort/order_statistics.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,11 +11,11 @@
 namespace winnow {
 namespace {
 
-// The sample has one row in eight, but at least 64 and at most kMost.
-constexpr std::size_t kMost = 512;
+// The sample has one row in eight, but at least 64 and at most kMaxSampled.
+constexpr std::size_t kMaxSampled = 512;
 constexpr double kUnbounded = 1e30;
 constexpr std::size_t kCells = 64;
-constexpr double kMostPairs = 16.0;  // per object; larger estimates are mostly wrong
+constexpr double kMaxPairs = 16.0;  // per object; larger estimates are mostly wrong
 
 // Exact at powers of two and linear between them: within 0.09 of log2, but identical on every
 // machine.
@@ -26,17 +26,17 @@ double rough_log2(double value) noexcept {
 }
 
 /// Columns of the sampled boxes.
-struct Sample {
+struct BoxSample {
   std::size_t count = 0;
-  std::array<std::array<float, kMost>, 3> low;
-  std::array<std::array<float, kMost>, 3> edge;
-  std::array<float, kMost> longest;
+  std::array<std::array<float, kMaxSampled>, 3> low;
+  std::array<std::array<float, kMaxSampled>, 3> edge;
+  std::array<float, kMaxSampled> longest;
 
-  Sample(const BoundsPool& pool, std::size_t live) noexcept {
-    const std::size_t wanted = std::clamp<std::size_t>(live / 8, 64, kMost);
+  BoxSample(const BoundsPool& pool, std::size_t live) noexcept {
+    const std::size_t wanted = std::clamp<std::size_t>(live / 8, 64, kMaxSampled);
     const std::size_t step = std::max<std::size_t>(1, pool.rows() / wanted);
     const std::array<const float*, 6> box = box_columns(pool);
-    for (std::size_t row = step / 2; row < pool.rows() && count < kMost; row += step) {
+    for (std::size_t row = step / 2; row < pool.rows() && count < kMaxSampled; row += step) {
       if (pool.ids()[row] == kNoObject) continue;
       longest[count] = 0.0F;
       for (std::size_t a = 0; a < 3; ++a) {
@@ -49,12 +49,12 @@ struct Sample {
   }
 
   // The value below which `share` of the sample lies. Fast only near either end.
-  [[nodiscard]] double quantile(const std::array<float, kMost>& values,
+  [[nodiscard]] double quantile(const std::array<float, kMaxSampled>& values,
                                 double share) const noexcept {
     const auto at = static_cast<std::size_t>(share * static_cast<double>(count - 1));
     const std::span<const float> all(values.data(), count);
-    return static_cast<double>(share < 0.5 ? value_near_end(all, at, std::less<>())
-                                           : value_near_end(all, count - 1 - at, std::greater<>()));
+    return static_cast<double>(share < 0.5 ? value_of_rank(all, at, std::less<>())
+                                           : value_of_rank(all, count - 1 - at, std::greater<>()));
   }
 
   [[nodiscard]] double mean_edge(std::size_t axis) const noexcept {
@@ -96,7 +96,7 @@ void divide(std::array<Axis, 3>& axes, const std::array<double, 3>& room) noexce
   for (std::size_t a = 0; a < 3; ++a) axes[a].divide(roomy(room[a]) ? kEach[count] : 1);
 }
 
-double crowding_of(const Sample& sample, const std::array<Axis, 3>& axes) noexcept {
+double crowding_of(const BoxSample& sample, const std::array<Axis, 3>& axes) noexcept {
   std::array<std::uint32_t, kCells> in_cell{};
   std::size_t cells = 1;
   for (const Axis& axis : axes) cells *= axis.cells;
@@ -118,7 +118,7 @@ double crowding_of(const Sample& sample, const std::array<Axis, 3>& axes) noexce
 
 SceneFeatures sample_scene(const BoundsPool& pool, std::size_t live) noexcept {
   SceneFeatures features{.objects = live};
-  Sample sample(pool, live);
+  BoxSample sample(pool, live);
   if (sample.count < 2) return features;
   std::array<Axis, 3> axes;
   double pairs_of_one = 0.5 * static_cast<double>(live);
@@ -136,7 +136,7 @@ SceneFeatures sample_scene(const BoundsPool& pool, std::size_t live) noexcept {
   divide(axes, features.room);
   const double likelier = crowding_of(sample, axes);
   features.crowding = rough_log2(likelier);
-  features.pairs = std::min({pairs_of_one * likelier, kMostPairs, 0.5 * static_cast<double>(live)});
+  features.pairs = std::min({pairs_of_one * likelier, kMaxPairs, 0.5 * static_cast<double>(live)});
   return features;
 }
 

@@ -1,6 +1,6 @@
 // Runs the stages of a plan: the structure orders its regular rows (Structure::plan), then the
 // remaining rows are ordered for the tree, by the structure (order_rest), by environment
-// (tree/environment_order.h) or by k-d cuts (tree/kd_order.h). SpatialIndex calls it (builds.cpp).
+// (tree/environment_order.h) or by k-d cuts (tree/kd_order.h). SpatialIndex calls it (rebuild.cpp).
 
 #include "partitions/index/order_plan.h"
 
@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t kSlack = 4 * kBlockRows;
 // This many cuts of a row take as long as one visit of the row.
 constexpr std::size_t kCutsPerRow = 2;
-constexpr std::size_t kMostWork = std::numeric_limits<std::size_t>::max() / kCutsPerRow;
+constexpr std::size_t kMaxWork = std::numeric_limits<std::size_t>::max() / kCutsPerRow;
 
 }  // namespace
 
@@ -37,7 +37,7 @@ bool OrderPlan::start(Rows& rows, Structure& structure, std::size_t room, KdPart
   structure_ = &structure;
   planned_rows_ = rows.pool().rows();
   planned_objects_ = rows.size();
-  part_ = Part::structure;
+  part_ = PlanStage::structure;
   stage_ = 0;
   resumed_ = false;
   parts_ = parts;
@@ -45,8 +45,8 @@ bool OrderPlan::start(Rows& rows, Structure& structure, std::size_t room, KdPart
   // Cells would mix the environments, and each object would be tested against objects of all of
   // them. The nodes of the tree store environments, so the tree keeps them apart.
   if (rows.filters().has_environments()) {
-    structure.leave_all(row_plan());
-    part_ = Part::rest;
+    structure.put_all_in_rest(row_plan());
+    part_ = PlanStage::rest;
   }
   return true;
 }
@@ -54,7 +54,7 @@ bool OrderPlan::start(Rows& rows, Structure& structure, std::size_t room, KdPart
 bool OrderPlan::advance(std::size_t work) noexcept {
   sort_moves();
   // If nothing is left for the tree, the rest takes no work.
-  const auto is_as_good_as_ready = [&] { return part_ == Part::rest && rest_.empty(); };
+  const auto is_as_good_as_ready = [&] { return part_ == PlanStage::rest && rest_.empty(); };
   while ((work != 0 && !ready()) || is_as_good_as_ready()) {
     if (!run_stage(work)) return false;
   }
@@ -65,23 +65,23 @@ bool OrderPlan::advance(std::size_t work) noexcept {
 // Returns false if an allocation fails.
 bool OrderPlan::run_stage(std::size_t& work) noexcept {
   switch (part_) {
-    case Part::structure: {
+    case PlanStage::structure: {
       const Planned planned = structure_->plan(row_plan(), stage_++);
-      if (planned == Planned::done) part_ = Part::rest;
+      if (planned == Planned::done) part_ = PlanStage::rest;
       // A structure that leaves all rows to the tree takes no work.
       if (planned == Planned::goes_on || !order_.empty()) work -= std::min(work, planned_rows_);
       return planned != Planned::out_of_memory;
     }
-    case Part::rest:
+    case PlanStage::rest:
       return begin_rest(work);
-    case Part::cuts: {
-      const bool done = cuts_.advance(work > kMostWork ? work : kCutsPerRow * work,
+    case PlanStage::cuts: {
+      const bool done = cuts_.advance(work > kMaxWork ? work : kCutsPerRow * work,
                                       rows_->execution_for(rest_.size()));
       work = 0;
       if (done) append_rest();
       return true;
     }
-    case Part::ready:
+    case PlanStage::ready:
       return true;
   }
   return false;
@@ -101,7 +101,7 @@ bool OrderPlan::begin_rest(std::size_t& work) noexcept {
   while (order_.size() % kBlockRows != 0) (void)order_.push_back(kNoObject);
   const Execution execution = rows_->execution_for(rest.size());
   if (rows_->filters().has_environments()) {
-    part_ = Part::ready;
+    part_ = PlanStage::ready;
     const ObjectFilter* const filters = rows_->filters().data();
     return order_.grow(order_.size() + rest.size()) &&
            sort_by_environment_and_place(pool, filters, rest, items_, order_.end(), points_,
@@ -110,14 +110,14 @@ bool OrderPlan::begin_rest(std::size_t& work) noexcept {
   }
   const Structure::Ordered ordered = structure_->order_rest(rest, order_);
   if (ordered != Structure::Ordered::none) {
-    part_ = Part::ready;
+    part_ = PlanStage::ready;
     return ordered == Structure::Ordered::done;
   }
   if (!order_.grow(order_.size() + rest.size()) ||
       !cuts_.start(pool, rest, order_.end(), points_, execution, parts_)) {
     return false;
   }
-  part_ = Part::cuts;
+  part_ = PlanStage::cuts;
   if (rest.size() <= kBlockRows) append_rest();
   return true;
 }
@@ -125,7 +125,7 @@ bool OrderPlan::begin_rest(std::size_t& work) noexcept {
 void OrderPlan::append_rest() noexcept {
   std::copy(rest_.begin(), rest_.end(), order_.end());
   order_.set_size(order_.size() + rest_.size());
-  part_ = Part::ready;
+  part_ = PlanStage::ready;
 }
 
 bool OrderPlan::complete() noexcept {
@@ -167,7 +167,7 @@ void OrderPlan::drop() noexcept {
   if (rows_ != nullptr) rows_->regions().planned = 0;
   rows_ = nullptr;
   structure_ = nullptr;
-  part_ = Part::structure;
+  part_ = PlanStage::structure;
 }
 
 void OrderPlan::release() noexcept {

@@ -47,7 +47,7 @@ class OrderPlan {
 
   /// True from `start` until `drop`.
   [[nodiscard]] bool underway() const noexcept { return structure_ != nullptr; }
-  [[nodiscard]] bool ready() const noexcept { return part_ == Part::ready; }
+  [[nodiscard]] bool ready() const noexcept { return part_ == PlanStage::ready; }
   /// The structure that the plan is for.
   [[nodiscard]] Structure* structure() const noexcept { return structure_; }
   /// The plan covers the rows below this, which existed at `start`.
@@ -87,7 +87,7 @@ class OrderPlan {
   }
 
  private:
-  enum class Part : std::uint8_t { structure, rest, cuts, ready };
+  enum class PlanStage : std::uint8_t { structure, rest, cuts, ready };
   [[nodiscard]] bool run_stage(std::size_t& work) noexcept;
   [[nodiscard]] bool begin_rest(std::size_t& work) noexcept;
   void append_rest() noexcept;
@@ -99,7 +99,7 @@ class OrderPlan {
   std::size_t planned_rows_ = 0;
   std::size_t planned_objects_ = 0;
   std::size_t regular_ = 0;
-  Part part_ = Part::structure;
+  PlanStage part_ = PlanStage::structure;
   unsigned stage_ = 0;
   bool resumed_ = false;  // rows may have become empty since the start
   KdParts parts_ = KdParts::tiles;

@@ -1,5 +1,5 @@
 // Refresh, refit and views of SpatialIndex. refresh() is called once per frame that changed rows:
-// it builds (builds.cpp), or moves rows that no longer fit to the tail and refits the trees.
+// it builds (rebuild.cpp), or moves rows that no longer fit to the tail and refits the trees.
 
 #include "partitions/index/spatial_index.h"
 
@@ -15,7 +15,7 @@ namespace {
 
 // After a plan whose order was out of date when it was taken, this many builds are not planned
 // ahead.
-constexpr std::size_t kWaitAfterMistake = 4;
+constexpr std::size_t kBuildsAfterMistake = 4;
 
 }  // namespace
 
@@ -25,7 +25,7 @@ SpatialIndex::SpatialIndex(std::pmr::memory_resource* memory, Rows& rows,
       rows_(rows),
       tree_(memory),
       regular_tree_(memory),
-      waiting_(memory),
+      spare_structures_(memory),
       spare_(memory),
       tail_order_(memory),
       build_budget_(build_budget),
@@ -33,22 +33,22 @@ SpatialIndex::SpatialIndex(std::pmr::memory_resource* memory, Rows& rows,
       departures_(memory) {}
 
 SpatialIndex::~SpatialIndex() {
-  give_up_plan();
-  end_waiting();
+  drop_plan();
+  end_spares();
   end({kind_, structure_});
 }
 
 Status SpatialIndex::refresh() {
   rows_.pad();
-  exchange_refused_ = false;
+  swap_refused_ = false;
   // A plan is invalid once its rows were reordered.
-  if (rows_.regions().planned == 0 || rows_.filters().has_environments()) give_up_plan();
-  note_lull();
+  if (rows_.regions().planned == 0 || rows_.filters().has_environments()) drop_plan();
+  note_quiet_refresh();
   Status status = Status::ok;
   if (needs_build()) {
     status = build();
-  } else if (plan_.ready() && !plan_waits()) {
-    status = take_order(true);
+  } else if (plan_.ready() && !plan_paused()) {
+    status = apply_plan(true);
     if (status == Status::ok) status = absorb_changes(true);
   } else {
     status = absorb_changes(false);
@@ -76,7 +76,7 @@ Status SpatialIndex::absorb_changes(bool all) {
   RowSelection& misfits = rows_.selection();
   if (!misfits.start(limit) || (any_row && !make_room_for_misfits())) return Status::out_of_memory;
   if (tail() > limit || !collect_misfits(any_row, room)) {
-    if (all) unforeseen_ = kWaitAfterMistake;
+    if (all) builds_without_planning_ = kBuildsAfterMistake;
     return build();
   }
   // A row that no longer fits a planned order may have moved long ago, so its block is not in the
@@ -85,15 +85,15 @@ Status SpatialIndex::absorb_changes(bool all) {
   if (!move_to_tail(misfits.entries()) || !sort_tail() || !refit_trees()) {
     return Status::out_of_memory;
   }
-  if (is_torn()) return build();
+  if (is_scattered()) return build();
   const std::uint64_t builds = builds_;
-  const Status status = look_for_strays();
+  const Status status = find_outliers();
   if (status != Status::ok || builds_ != builds) return status;
   if (!is_next_frame()) return Status::ok;
   tail_growth_.note(tail());
   wear_growth_.note(excess_tests());
   departures_.note_refresh();
-  go_on_planning();
+  continue_planning();
   return Status::ok;
 }
 
@@ -101,23 +101,23 @@ Status SpatialIndex::absorb_changes(bool all) {
 // forecasts of builds extrapolate growth per frame.
 bool SpatialIndex::is_next_frame() const noexcept {
   const ChangeList& stale = rows_.stale();
-  const bool asked = questioned_.exchange(false, std::memory_order_relaxed);
+  const bool asked = queried_.exchange(false, std::memory_order_relaxed);
   return asked || stale.all() || 4 * stale.ids().size() >= rows_.size();
 }
 
 // If most objects jumped, one query of a tree in the old order would cost as much as many builds.
 // The sizes of the leaves show it before the query. Slow wear is detected by counting tests.
-bool SpatialIndex::is_torn() const noexcept {
-  constexpr float kTorn = 2.0F;
-  constexpr float kTornOfPrice = 0.1F;  // a lower limit if a build is cheap
+bool SpatialIndex::is_scattered() const noexcept {
+  constexpr float kScattered = 2.0F;
+  constexpr float kScatterOfPrice = 0.1F;  // a lower limit if a build is cheap
   const float price = static_cast<float>(structure_->build_price());
   // A query tests nearly all of so few blocks, whatever the order of their rows.
   constexpr std::size_t kFewBlocks = 12;
   if (tree_.blocks() <= kFewBlocks) return false;
   // Cells and strips detect objects that leave them; the tree beside them holds mixed rows.
   if (rows_.regions().regular != 0 || !rows_.stale().all()) return false;
-  const float torn = std::min(kTorn, 1.0F + kTornOfPrice * price);
-  return built_edge_ > 0.0F && tree_.typical_edge() > torn * built_edge_;
+  const float scattered = std::min(kScattered, 1.0F + kScatterOfPrice * price);
+  return built_edge_ > 0.0F && tree_.typical_edge() > scattered * built_edge_;
 }
 
 bool SpatialIndex::make_room_for_misfits() noexcept {
@@ -146,7 +146,7 @@ bool SpatialIndex::move_to_tail(std::span<const std::uint32_t> rows) noexcept {
   if (rows.empty()) return true;
   // Reserves the room of all moves until the next build: growing copies every column.
   const std::size_t needed = rows_.pool().rows() + rows.size();
-  const std::size_t room = rows_.regions().ordered + most_in_tail(rows_.size());
+  const std::size_t room = rows_.regions().ordered + max_in_tail(rows_.size());
   if (!rows_.reserve_rows(std::max(room, needed))) return false;
   if (plan_.underway()) {
     for (const std::uint32_t row : rows) plan_.note_move(row, rows_.pool().ids()[row]);
@@ -284,10 +284,10 @@ bool SpatialIndex::query(const QueryBatch& batch, PairSink& sink) const noexcept
 }
 
 void SpatialIndex::note_work(std::uint64_t tests, std::uint64_t queries,
-                             Asked asked) const noexcept {
-  questioned_.store(true, std::memory_order_relaxed);
+                             PairQueryKind asked) const noexcept {
+  queried_.store(true, std::memory_order_relaxed);
   // The first query after a build defines the cost on a fresh structure.
-  std::atomic<std::uint64_t>& base = asked == Asked::all ? full_base_ : moved_base_;
+  std::atomic<std::uint64_t>& base = asked == PairQueryKind::all ? full_base_ : moved_base_;
   const std::uint64_t each = tests / queries + 1;
   std::uint64_t expected = 0;
   if (base.compare_exchange_strong(expected, each, std::memory_order_relaxed)) return;
@@ -321,26 +321,26 @@ void SpatialIndex::add_bytes(Footprint& footprint) const noexcept {
   footprint.scratch += bytes_of(spare_, tail_order_);
   footprint.scratch += plan_.bytes();
   footprint.scratch += departures_.bytes();
-  footprint.scratch += waiting_.bytes();
+  footprint.scratch += spare_structures_.bytes();
   structure_->add_bytes(footprint);
-  const auto add = [&](const Held& one) {
+  const auto add = [&](const OwnedStructure& one) {
     if (one.structure == nullptr) return;
     footprint.structure += {one.kind.info()->bytes, one.kind.info()->bytes};
     one.structure->add_bytes(footprint);
   };
   add(next_);
-  for (const Held& one : waiting_) add(one);
+  for (const OwnedStructure& one : spare_structures_) add(one);
 }
 
 void SpatialIndex::release_scratch() noexcept {
-  give_up_plan();
+  drop_plan();
   release_columns(spare_, tail_order_);
   plan_.release();
 }
 
 void SpatialIndex::release_memory() noexcept {
   reserved_ = false;
-  end_waiting();
+  end_spares();
   release_scratch();
   structure_->release_scratch();
   if (rows_.size() != 0) return;

@@ -2,9 +2,9 @@
 
 #include <winnow/core/debug_draw.h>
 #include <winnow/partitions/structures.h>
-#include "partitions/index/departures.h"
 #include "partitions/index/order_plan.h"
 #include "partitions/index/query_view.h"
+#include "partitions/index/rebuild_forecast.h"
 #include "partitions/rows/rows.h"
 #include "partitions/structures/structure.h"
 #include "partitions/tree/block_tree.h"
@@ -21,8 +21,8 @@ namespace winnow {
 struct Statistics;
 
 /// Finds rows: owns the structure over the regular rows (see RowRegions) and a block tree over all
-/// other rows, and keeps both up to date while rows change. PartitionState calls it; builds.cpp,
-/// exchange.cpp, strays.cpp and debug_draw.cpp implement parts of it.
+/// other rows, and keeps both up to date while rows change. PartitionState calls it; rebuild.cpp,
+/// structure_swap.cpp, outliers.cpp and debug_draw.cpp implement parts of it.
 ///
 /// All rows behind the regular rows are leaves of the block tree: objects that do not suit the
 /// structure (oversize, unbounded, in overfull cells), objects inserted since the last build, and
@@ -80,14 +80,14 @@ class SpatialIndex {
   Status refresh_as(StructureKind kind, bool& refused);
   /// True while the order of another structure is being planned. The plan is dropped if the rows
   /// are reordered in the meantime.
-  [[nodiscard]] bool exchanging() const noexcept { return next_.structure != nullptr; }
+  [[nodiscard]] bool swap_is_planned() const noexcept { return next_.structure != nullptr; }
   /// True if the last refresh dropped that plan because an allocation failed.
-  [[nodiscard]] bool exchange_refused() const noexcept { return exchange_refused_; }
+  [[nodiscard]] bool swap_refused() const noexcept { return swap_refused_; }
 
   /// To be called before queries other than pairs that follow a change.
-  void note_asked() const noexcept {
-    asked_.fetch_add(1, std::memory_order_relaxed);
-    questioned_.store(true, std::memory_order_relaxed);
+  void note_query() const noexcept {
+    queried_refreshes_.fetch_add(1, std::memory_order_relaxed);
+    queried_.store(true, std::memory_order_relaxed);
   }
   /// True if one thread has to call `refresh_queries` before queries other than pairs.
   [[nodiscard]] bool queries_stale() const noexcept {
@@ -104,8 +104,8 @@ class SpatialIndex {
 
   /// Notes the cost of `queries` pair queries, in tests of 16 volumes. `all`: every object was
   /// queried; `moved`: only objects that moved.
-  enum class Asked : std::uint8_t { all, moved };
-  void note_work(std::uint64_t tests, std::uint64_t queries, Asked asked) const noexcept;
+  enum class PairQueryKind : std::uint8_t { all, moved };
+  void note_work(std::uint64_t tests, std::uint64_t queries, PairQueryKind asked) const noexcept;
   /// Wear: extra tests of pair queries since the last build, compared with a fresh structure.
   [[nodiscard]] std::uint64_t excess_tests() const noexcept {
     return excess_.load(std::memory_order_relaxed);
@@ -125,53 +125,53 @@ class SpatialIndex {
 
  private:
   /// A structure and its kind; `structure` may be null.
-  struct Held {
+  struct OwnedStructure {
     StructureKind kind{};
     Structure* structure = nullptr;
   };
   [[nodiscard]] Structure* make(StructureKind kind) noexcept;
-  void end(const Held& one) noexcept;
-  void put_by(const Held& one) noexcept;
+  void end(const OwnedStructure& one) noexcept;
+  void stash(const OwnedStructure& one) noexcept;
   [[nodiscard]] bool reserve_order(std::size_t rows, std::size_t behind, Pages pages) noexcept;
-  [[nodiscard]] bool let_wait(const Held& one) noexcept;
-  [[nodiscard]] bool have_wait(std::span<const StructureKind> kinds) noexcept;
-  void end_waiting() noexcept;
+  [[nodiscard]] bool store_spare(const OwnedStructure& one) noexcept;
+  [[nodiscard]] bool make_spares(std::span<const StructureKind> kinds) noexcept;
+  void end_spares() noexcept;
   void install(Structure* structure, StructureKind kind) noexcept;
   [[nodiscard]] bool needs_build() const noexcept;
   [[nodiscard]] static std::size_t tail_limit(std::size_t objects) noexcept {
     return objects / 16 + 64;
   }
   /// The maximum size of a tail: it holds no object twice.
-  [[nodiscard]] static std::size_t most_in_tail(std::size_t objects) noexcept {
+  [[nodiscard]] static std::size_t max_in_tail(std::size_t objects) noexcept {
     return std::min(tail_limit(objects), objects);
   }
   /// Rows that a build reserves for the tail.
   [[nodiscard]] static std::size_t spare_rows(const Structure& structure,
                                               std::size_t objects) noexcept {
-    return (structure.prunes_rows() ? 2 : 1) * most_in_tail(objects);
+    return (structure.prunes_rows() ? 2 : 1) * max_in_tail(objects);
   }
   [[nodiscard]] std::size_t spare_rows(const Structure& structure) const noexcept {
     return spare_rows(structure, rows_.size());
   }
   [[nodiscard]] std::size_t tail() const noexcept;
-  [[nodiscard]] bool wants_grouping() const noexcept;
+  [[nodiscard]] bool needs_grouping() const noexcept;
   Status build();
   /// `moved`: objects may have moved since the plan was started.
-  Status take_order(bool moved);
+  Status apply_plan(bool moved);
   [[nodiscard]] bool start_plan(Structure& structure) noexcept;
-  [[nodiscard]] KdParts wanted_parts(const Structure& structure) const noexcept;
-  void take_next_structure() noexcept;
+  [[nodiscard]] KdParts needed_parts(const Structure& structure) const noexcept;
+  void install_planned_structure() noexcept;
   Status build_flat();
   Status absorb_changes(bool all);
   [[nodiscard]] bool is_next_frame() const noexcept;
-  [[nodiscard]] bool is_torn() const noexcept;
+  [[nodiscard]] bool is_scattered() const noexcept;
   [[nodiscard]] bool make_room_for_misfits() noexcept;
   [[nodiscard]] bool collect_misfits(bool any_row, std::size_t most) noexcept;
   [[nodiscard]] std::size_t ordered_blocks() const noexcept;
   [[nodiscard]] std::size_t wide_blocks() const noexcept;
-  Status look_for_strays();
-  [[nodiscard]] bool collect_strays(std::size_t limit) noexcept;
-  Status take_out_strays();
+  Status find_outliers();
+  [[nodiscard]] bool collect_outliers(std::size_t limit) noexcept;
+  Status move_outliers_to_tail();
   bool move_to_tail(std::span<const std::uint32_t> rows) noexcept;
   bool sort_tail() noexcept;
   bool sort_by_place(std::span<std::uint32_t> rows, std::uint32_t* room) noexcept;
@@ -185,12 +185,12 @@ class SpatialIndex {
   [[nodiscard]] bool plans_ahead() const noexcept;
   [[nodiscard]] std::size_t planning_work(const Structure& structure) const noexcept;
   [[nodiscard]] std::size_t changed() const noexcept;
-  void note_lull() noexcept;
-  [[nodiscard]] bool plan_waits() const noexcept;
-  void go_on_planning() noexcept;
+  void note_quiet_refresh() noexcept;
+  [[nodiscard]] bool plan_paused() const noexcept;
+  void continue_planning() noexcept;
   [[nodiscard]] bool build_is_near() const noexcept;
-  [[nodiscard]] std::uint64_t most_wear() const noexcept;
-  void give_up_plan() noexcept;
+  [[nodiscard]] std::uint64_t max_wear() const noexcept;
+  void drop_plan() noexcept;
 
   std::pmr::memory_resource* memory_;
   Rows& rows_;
@@ -201,11 +201,12 @@ class SpatialIndex {
   // Serves all queries other than pairs. Unless the structure prunes rows or is flat it is built
   // for the first such query.
   mutable BlockTree regular_tree_;
-  Column<Held> waiting_;            // reserved structures for later use, with their memory
-  mutable float leaf_edge_ = 0.0F;  // edge of a typical block
+  Column<OwnedStructure> spare_structures_;  // reserved structures for later use, with their memory
+  mutable float leaf_edge_ = 0.0F;           // edge of a typical block
   mutable std::atomic<bool> queries_stale_{true};
-  mutable std::atomic<std::size_t> asked_{0};    // refreshes for such queries since the last build
-  mutable std::atomic<bool> questioned_{false};  // any query since the last refresh
+  mutable std::atomic<std::size_t> queried_refreshes_{
+      0};                                     // refreshes for such queries since the last build
+  mutable std::atomic<bool> queried_{false};  // any query since the last refresh
 
   float built_edge_ = 0.0F;      // edge of a typical leaf of the tree after the build
   std::size_t known_wide_ = 0;   // blocks that are wide, but not because of outliers
@@ -213,7 +214,7 @@ class SpatialIndex {
   bool tail_changed_ = false;    // rows of the tail were reordered
   bool order_changed_ = false;   // other rows were reordered, too
   bool reserved_ = false;        // memory is reserved for every structure
-  bool exchange_refused_ = false;
+  bool swap_refused_ = false;
 
   Column<float> spare_;               // scratch for permuting columns
   Column<std::uint32_t> tail_order_;  // scratch for sorting the tail
@@ -221,15 +222,15 @@ class SpatialIndex {
   // Planning ahead.
   const std::size_t build_budget_;
   OrderPlan plan_;
-  Held next_;  // the structure of the plan, if it will replace the current one
-  Departures departures_;
-  Growth tail_growth_;
-  Growth wear_growth_;
+  OwnedStructure next_;  // the structure of the plan, if it will replace the current one
+  DepartureForecast departures_;
+  GrowthForecast tail_growth_;
+  GrowthForecast wear_growth_;
   std::size_t refreshes_before_plan_ = 0;  // refreshes between the last build and the start of the
                                            // plan
   std::size_t changed_at_plan_ = 0;        // objects changed in the refresh that started the plan
-  std::size_t lull_ = 0;                   // consecutive refreshes with far fewer changes
-  std::size_t unforeseen_ = 0;             // builds left until plans are made ahead again
+  std::size_t quiet_refreshes_ = 0;        // consecutive refreshes with far fewer changes
+  std::size_t builds_without_planning_ = 0;  // builds left until plans are made ahead again
 
   // Wear, in tests of 16 volumes: the cost of one query on a fresh structure (for all objects, for
   // moved objects), and the excess of the queries since then.

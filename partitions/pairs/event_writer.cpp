@@ -1,5 +1,6 @@
 // Computes the events of a pair query: both frames are sorted and merged, or a linked buffer passes
-// its changes directly (`tell`). Called by the pair queries in self_pairs.cpp and calm_pairs.cpp.
+// its changes directly (`take_changes`). Called by the pair queries in self_pairs.cpp and
+// resting_pairs.cpp.
 
 #include "partitions/pairs/event_writer.h"
 
@@ -70,7 +71,7 @@ bool EventWriter::hold_all(const PairBuffer& out) noexcept {
   } else if (!sort_into(events_.before_, out.pairs())) {
     return false;
   }
-  held_ = Held::all;
+  held_ = HeldPairs::all;
   return true;
 }
 
@@ -82,7 +83,7 @@ bool EventWriter::hold_moved(PairBuffer& out, const std::uint64_t* moved) noexce
   }
   events_.dropped_.clear();
   if (!PairTracker::drop(out, moved, events_.dropped_)) return false;
-  held_ = Held::dropped;
+  held_ = HeldPairs::dropped;
   kept_ = out.size();
   return sort_into(events_.before_, {events_.dropped_.data(), events_.dropped_.size()});
 }
@@ -121,9 +122,9 @@ bool EventWriter::compare(PairBuffer& out, std::span<const ObjectId> moved, bool
   return give_client_data() && reserve_frame(moved, all);
 }
 
-bool EventWriter::tell(const PairBuffer& out, std::span<const Pair> begun,
-                       std::span<const std::uint32_t> ended,
-                       std::span<const ObjectId> moved) noexcept {
+bool EventWriter::take_changes(const PairBuffer& out, std::span<const Pair> begun,
+                               std::span<const std::uint32_t> ended,
+                               std::span<const ObjectId> moved) noexcept {
   PairEvents& e = events_;
   e.begun_.clear();
   e.ended_.clear();
@@ -238,11 +239,11 @@ bool EventWriter::undo(PairBuffer& out, PairBuffer::Provenance provenance) noexc
   e.after_is_all_ = false;
   if (!follows_) return false;
   Pair* const pairs = PairTracker::data(out);
-  if (held_ == Held::kept || held_ == Held::dropped) PairTracker::set_size(out, kept_);
-  if (held_ == Held::dropped) {
+  if (held_ == HeldPairs::kept || held_ == HeldPairs::dropped) PairTracker::set_size(out, kept_);
+  if (held_ == HeldPairs::dropped) {
     std::ranges::copy(e.dropped_, pairs + kept_);
     PairTracker::set_size(out, kept_ + e.dropped_.size());
-  } else if (held_ == Held::all) {
+  } else if (held_ == HeldPairs::all) {
     std::ranges::transform(e.before_, pairs, [](std::uint64_t pair) {
       return Pair{first_of(pair), second_of(pair)};
     });

@@ -12,7 +12,7 @@
 namespace winnow {
 
 /// Finds the pairs that begin and end in one query. Call order: a `hold` function before the buffer
-/// changes, then `compare` or `tell`, which compare the new pairs with the old ones, then
+/// changes, then `compare` or `take_changes`, which compare the new pairs with the old ones, then
 /// `take_frame`. Pairs are compared by keys: the stamps of the last frame show whether an id
 /// belongs to the same object. The stamps change only in `take_frame`, which cannot fail. If a
 /// query fails for lack of memory, `undo` restores the last frame, and the next query compares with
@@ -36,7 +36,7 @@ class EventWriter {
   /// No pair ends, or ended pairs stay in the buffer until nothing can fail any more.
   void hold_none(const PairBuffer& out) noexcept {
     kept_ = follows_ ? out.size() : 0;
-    held_ = Held::kept;
+    held_ = HeldPairs::kept;
   }
 
   /// Fills the events and orders the buffer: persisting pairs first, then begun ones. `moved` are
@@ -46,9 +46,9 @@ class EventWriter {
 
   /// As above for a linked buffer, which passes its changes: the begun pairs, which are the last
   /// ones of `out`, and the indices of the ended pairs. O(begun + ended + moved).
-  [[nodiscard]] bool tell(const PairBuffer& out, std::span<const Pair> begun,
-                          std::span<const std::uint32_t> ended,
-                          std::span<const ObjectId> moved) noexcept;
+  [[nodiscard]] bool take_changes(const PairBuffer& out, std::span<const Pair> begun,
+                                  std::span<const std::uint32_t> ended,
+                                  std::span<const ObjectId> moved) noexcept;
   /// Notes whether ids of `moved` belong to another object than in the last frame.
   void find_renewed(std::span<const ObjectId> moved) noexcept {
     other_keys_ = any_other_key(moved, false);
@@ -81,7 +81,7 @@ class EventWriter {
  private:
   /// Location of the pairs of the last frame: `kept`: the first `kept_` in the buffer; `dropped`:
   /// those and dropped_; `all`: before_.
-  enum class Held : std::uint8_t { nothing, kept, dropped, all };
+  enum class HeldPairs : std::uint8_t { nothing, kept, dropped, all };
 
   [[nodiscard]] bool sort_into(Column<std::uint64_t>& list, std::span<const Pair> pairs) noexcept;
   [[nodiscard]] bool merge(Pair*& to) noexcept;
@@ -101,7 +101,7 @@ class EventWriter {
   bool other_keys_ = false;  // an id belongs to another object than in the last frame
   bool follows_ = false;     // the events describe the frame that the buffer holds
   std::size_t kept_ = 0;     // pairs at the front of the buffer that persist
-  Held held_ = Held::nothing;
+  HeldPairs held_ = HeldPairs::nothing;
   std::span<const ObjectId> moved_;  // ids whose stamps take_frame stores
   bool all_ = false;                 // store the stamps of all ids
 };

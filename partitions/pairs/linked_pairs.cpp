@@ -1,5 +1,5 @@
 // Linking a PairBuffer and changing it in place; the class comment in linked_pairs.h describes the
-// method. Called by the linked and resting pair queries (self_pairs.cpp, calm_pairs.cpp).
+// method. Called by the linked and resting pair queries (self_pairs.cpp, resting_pairs.cpp).
 
 #include "partitions/pairs/linked_pairs.h"
 
@@ -51,11 +51,12 @@ bool LinkedPairs::pays(std::size_t moved, std::size_t objects) const noexcept {
 }
 
 bool LinkedPairs::is_due(std::size_t moved, std::size_t objects) const noexcept {
-  return out_.state_ != PairBuffer::State::loose && pays(moved, objects);
+  return out_.state_ != PairBuffer::LinkState::loose && pays(moved, objects);
 }
 
-void LinkedPairs::loosen(std::size_t moved, std::size_t objects) noexcept {
-  out_.state_ = pays(moved, objects) ? PairBuffer::State::few_moved : PairBuffer::State::loose;
+void LinkedPairs::unlink_pairs(std::size_t moved, std::size_t objects) noexcept {
+  out_.state_ =
+      pays(moved, objects) ? PairBuffer::LinkState::few_moved : PairBuffer::LinkState::loose;
 }
 
 bool LinkedPairs::cover_objects(std::size_t slots) noexcept {
@@ -68,11 +69,11 @@ bool LinkedPairs::cover_objects(std::size_t slots) noexcept {
 }
 
 bool LinkedPairs::link(std::size_t slots) noexcept {
-  if (out_.state_ == PairBuffer::State::linked) return cover_objects(slots);
+  if (out_.state_ == PairBuffer::LinkState::linked) return cover_objects(slots);
   out_.heads_.clear();
   out_.links_.clear();
   if (!cover_objects(slots) || !out_.links_.reserve(out_.size())) return false;
-  out_.state_ = PairBuffer::State::linked;
+  out_.state_ = PairBuffer::LinkState::linked;
   return true;
 }
 

@@ -33,7 +33,7 @@ class LinkedPairs {
   /// few moved in the last frame or the buffer is linked already.
   [[nodiscard]] bool is_due(std::size_t moved, std::size_t objects) const noexcept;
   [[nodiscard]] static bool is_linked(const PairBuffer& out) noexcept {
-    return out.state_ == PairBuffer::State::linked;
+    return out.state_ == PairBuffer::LinkState::linked;
   }
   /// False if linking is forbidden, or there are more pairs than a link can encode.
   [[nodiscard]] bool can_link() const noexcept {
@@ -45,9 +45,9 @@ class LinkedPairs {
   /// Links all remaining pairs of a linked buffer.
   void link_rest() noexcept { link_next(out_.size()); }
   /// Notes that pairs change by other means in a frame with `moved` moved objects.
-  void loosen(std::size_t moved, std::size_t objects) noexcept;
+  void unlink_pairs(std::size_t moved, std::size_t objects) noexcept;
   /// Notes that all pairs were found again.
-  void loosen() noexcept { out_.state_ = PairBuffer::State::loose; }
+  void unlink_pairs() noexcept { out_.state_ = PairBuffer::LinkState::loose; }
 
   /// Compares the old and new pairs of the moved objects (also a bitmap, `is_moved`). The pairs
   /// from `kept` on were found in this frame; only begun ones stay there. Collects the indices of

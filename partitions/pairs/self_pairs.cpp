@@ -6,7 +6,7 @@
 //   full         otherwise
 //
 // Resting and linked also require a tracked buffer, Order::fast, and events, if any, of the same
-// frame. The resting way is in calm_pairs.cpp. Tasks write through PairWriter; EventWriter finds
+// frame. The resting way is in resting_pairs.cpp. Tasks write through PairWriter; EventWriter finds
 // events.
 
 #include "core/hooks/log.h"
@@ -44,7 +44,7 @@ QueryBatch volume_batch(const Rows& rows, std::size_t begin, std::size_t end) no
   batch.id = view.id;
   batch.filter = view.filter;
   batch.environments = view.environments;
-  batch.meets_all = view.all_meet;
+  batch.matches_all = view.all_match;
   batch.begin = static_cast<std::uint32_t>(begin);
   batch.end = static_cast<std::uint32_t>(end);
   return batch;
@@ -78,7 +78,7 @@ struct PartitionState::SelfTasks {
   /// Returns the largest number of tasks for that many rows.
   [[nodiscard]] static std::size_t most(std::size_t rows) noexcept {
     const std::size_t groups = rows / (16 * kBlockRows) + 2;
-    return std::min(kMostTasks, rows) + std::min(2 * kTreeTasks, groups) +
+    return std::min(kMaxTasks, rows) + std::min(2 * kTreeTasks, groups) +
            std::min(kTreeTasks, rows / kQueriesPerTask + 1);
   }
   [[nodiscard]] std::size_t count() const noexcept { return regular + tree + cross; }
@@ -122,14 +122,15 @@ Status Partition::self_pairs(PairEvents& events, const PairOptions& options) con
 
 Status PartitionState::reserve_pairs(PairBuffer& out, std::size_t pairs,
                                      Pages pages) const noexcept {
-  const std::size_t tasks = SelfTasks::most(steadily([this] { return rows.pool().capacity(); }));
+  const std::size_t tasks =
+      SelfTasks::most(with_stable_index([this] { return rows.pool().capacity(); }));
   return PairWriter::reserve(out, pairs, tasks, rows.execution(), pages) ? Status::ok
                                                                          : Status::out_of_memory;
 }
 
 bool PartitionState::reserve_events(PairEvents& out, std::size_t pairs,
                                     Pages pages) const noexcept {
-  const std::size_t objects = steadily([this] { return rows.keys().capacity(); });
+  const std::size_t objects = with_stable_index([this] { return rows.keys().capacity(); });
   return EventWriter::reserve(out, pairs, objects, pages);
 }
 
@@ -144,12 +145,12 @@ Status PartitionState::find_self_pairs(PairBuffer& out, const PairOptions& optio
 Status PartitionState::answer_self_pairs(PairBuffer& out, const PairOptions& options,
                                          EventWriter* events) const {
   // Only one buffer is tracked at a time. A query concurrent with a tracked one is not tracked.
-  Lock lock = Lock::if_free(tracker_mutex_);
+  Lock lock = Lock::try_acquire(tracker_mutex_);
   const bool all = !options.incremental || out.empty();
   const bool tracked = lock.owns_lock() && options.incremental;
   Status status = refresh();
-  const bool calm = status == Status::ok && tracked && stays_calm(out, options, events);
-  if (status == Status::ok && deferred_.active() && !calm) {
+  const bool resting = status == Status::ok && tracked && can_stay_deferred(out, options, events);
+  if (status == Status::ok && deferred_.active() && !resting) {
     if (!lock.owns_lock()) lock.lock();
     end_deferring();
     status = refresh();
@@ -157,15 +158,16 @@ Status PartitionState::answer_self_pairs(PairBuffer& out, const PairOptions& opt
   const bool all_anew = tracked && !can_update(out);
   if (status == Status::ok) {
     note(QueryKind::pairs, 1);
-    status = calm ? calm_self_pairs(out, events) : track_self_pairs(out, options, tracked, events);
+    status =
+        resting ? resting_self_pairs(out, events) : track_self_pairs(out, options, tracked, events);
   }
   if (status != Status::ok) {
-    undo_self_pairs(out, calm, events);
+    undo_self_pairs(out, resting, events);
     return status;
   }
   pairs_.last_pairs.store(out.size(), std::memory_order_relaxed);
   if (tracked || events != nullptr) take_frame(out, tracked, events);
-  if (all_anew) begin_calm(out, options);
+  if (all_anew) try_start_resting(out, options);
   if (chooser_ == nullptr) return Status::ok;
   if (all) note(QueryKind::all_pairs, 1);
   // The number of pairs after a predicate is no feature of the scene.
@@ -187,13 +189,13 @@ void PartitionState::take_frame(PairBuffer& out, bool tracked, EventWriter* even
 // After a failure the buffer is empty or, if events follow it, holds the pairs of the last frame.
 // In both cases the next query is a full one, so that its result does not depend on which
 // allocation failed.
-void PartitionState::undo_self_pairs(PairBuffer& out, bool calm,
+void PartitionState::undo_self_pairs(PairBuffer& out, bool resting,
                                      EventWriter* events) const noexcept {
   // Some watched pairs may already have the state of the frame that failed.
-  if (calm) pairs_.tracked_serial = 0;
+  if (resting) pairs_.tracked_serial = 0;
   const PairBuffer::Provenance untracked{pairs_.identity, ++pairs_.last_serial};
   if (events == nullptr || !events->undo(out, untracked)) return out.clear();
-  LinkedPairs(out).loosen();
+  LinkedPairs(out).unlink_pairs();
 }
 
 bool PartitionState::can_update_in_place(const PairBuffer& out, const PairOptions& options,
@@ -208,7 +210,7 @@ Status PartitionState::track_self_pairs(PairBuffer& out, const PairOptions& opti
   if (tracked && can_update_in_place(out, options, events) && update_in_place(out)) {
     return linked_self_pairs(out, options.predicate, events);
   }
-  const bool update = tracked && can_update(out) && (events != nullptr || asks_few(out));
+  const bool update = tracked && can_update(out) && (events != nullptr || queries_few(out));
   return redo_self_pairs(out, options, update, events);
 }
 
@@ -216,7 +218,7 @@ Status PartitionState::track_self_pairs(PairBuffer& out, const PairOptions& opti
 // query is O(n^2). Otherwise the limit decreases with the number of pairs per object, which are
 // dropped and found again, and with cells, because a full query visits consecutive cells without
 // searching them.
-bool PartitionState::asks_few(const PairBuffer& out) const noexcept {
+bool PartitionState::queries_few(const PairBuffer& out) const noexcept {
   constexpr std::size_t kFlat = 4;
   constexpr std::size_t kTree = 8;
   constexpr std::size_t kCells = 10;
@@ -240,16 +242,17 @@ Status PartitionState::linked_self_pairs(PairBuffer& out, const PairPredicate& p
   const std::span<const ObjectId> moved = rows.moved().ids();
   if (moved.empty()) {
     pairs_.last_tests.store(0, std::memory_order_relaxed);
-    return events == nullptr || events->tell(out, {}, {}, {}) ? Status::ok : Status::out_of_memory;
+    return events == nullptr || events->take_changes(out, {}, {}, {}) ? Status::ok
+                                                                      : Status::out_of_memory;
   }
   const std::size_t kept = out.size();
   if (events != nullptr) events->hold_none(out);
-  if (const Status status = ask_moved(out, predicate); status != Status::ok) return status;
+  if (const Status status = query_moved(out, predicate); status != Status::ok) return status;
   if (events != nullptr) events->find_renewed(moved);
   const auto renewed = [&](ObjectId id) { return events != nullptr && events->is_renewed(id); };
   LinkedPairs linked(out);
   if (!linked.compare(kept, moved, rows.moved().bits(), renewed) || !linked.sort() ||
-      (events != nullptr && !events->tell(out, linked.begun(), linked.ended(), moved))) {
+      (events != nullptr && !events->take_changes(out, linked.begun(), linked.ended(), moved))) {
     return Status::out_of_memory;
   }
   linked.apply();
@@ -260,9 +263,9 @@ Status PartitionState::redo_self_pairs(PairBuffer& out, const PairOptions& optio
                                        EventWriter* events) const {
   LinkedPairs linked(out);
   if (update) {
-    linked.loosen(rows.moved().ids().size(), rows.size());
+    linked.unlink_pairs(rows.moved().ids().size(), rows.size());
   } else {
-    linked.loosen();
+    linked.unlink_pairs();
   }
   const Status status = update ? incremental_self_pairs(out, options.predicate, events)
                                : full_self_pairs(out, options.predicate, events);
@@ -299,7 +302,7 @@ Status PartitionState::full_self_pairs(PairBuffer& out, const PairPredicate& pre
   });
   if (status != Status::ok) return status;
   pairs_.full_queries.fetch_add(1, std::memory_order_relaxed);
-  note_work(writer.tests(), 1, SpatialIndex::Asked::all);
+  note_work(writer.tests(), 1, SpatialIndex::PairQueryKind::all);
   return Status::ok;
 }
 
@@ -334,7 +337,7 @@ Status PartitionState::incremental_self_pairs(PairBuffer& out, const PairPredica
   } else if (!events->hold_moved(out, rows.moved().bits())) {
     return Status::out_of_memory;
   }
-  return ask_moved(out, predicate);
+  return query_moved(out, predicate);
 }
 
 // Selects the rows of the live objects that moved. False if memory is refused.
@@ -352,7 +355,7 @@ bool PartitionState::list_moved() const noexcept {
 }
 
 // Appends all pairs of the objects that moved.
-Status PartitionState::ask_moved(PairBuffer& out, const PairPredicate& predicate) const {
+Status PartitionState::query_moved(PairBuffer& out, const PairPredicate& predicate) const {
   if (!list_moved()) return Status::out_of_memory;
   RowSelection& asking = rows.selection();
   const std::size_t count = asking.list.size();
@@ -370,12 +373,12 @@ Status PartitionState::ask_moved(PairBuffer& out, const PairPredicate& predicate
   });
   asking.unmark();
   if (status != Status::ok) return status;
-  note_work(writer.tests(), std::max<std::size_t>(1, count), SpatialIndex::Asked::moved);
+  note_work(writer.tests(), std::max<std::size_t>(1, count), SpatialIndex::PairQueryKind::moved);
   return Status::ok;
 }
 
 void PartitionState::note_work(std::uint64_t tests, std::uint64_t queries,
-                               SpatialIndex::Asked asked) const noexcept {
+                               SpatialIndex::PairQueryKind asked) const noexcept {
   pairs_.last_tests.store(tests, std::memory_order_relaxed);
   index.note_work(tests, queries, asked);
 }
@@ -393,9 +396,10 @@ Status Partition::pairs_with(const Partition& other, PairBuffer& out,
   if (const Status status = mine.settle(); status != Status::ok) return status;
   if (const Status status = theirs.settle(); status != Status::ok) return status;
   // Query with the smaller side: each query costs about the logarithm of the other side.
-  const Status status = size() <= other.size()
-                            ? mine.ask(theirs, HitMode::query_first, options.predicate, out)
-                            : theirs.ask(mine, HitMode::query_second, options.predicate, out);
+  const Status status =
+      size() <= other.size()
+          ? mine.query_other(theirs, HitMode::query_first, options.predicate, out)
+          : theirs.query_other(mine, HitMode::query_second, options.predicate, out);
   const std::size_t slots =
       std::max(mine.rows.keys().slot_count(), theirs.rows.keys().slot_count());
   if (status == Status::ok && (options.order == Order::fast || PairTracker::sort(out, slots))) {
@@ -405,20 +409,20 @@ Status Partition::pairs_with(const Partition& other, PairBuffer& out,
   return Status::out_of_memory;
 }
 
-Status PartitionState::ask(const PartitionState& other, HitMode mode,
-                           const PairPredicate& predicate, PairBuffer& out) const {
+Status PartitionState::query_other(const PartitionState& other, HitMode mode,
+                                   const PairPredicate& predicate, PairBuffer& out) const {
   const Execution execution = rows.execution_for(rows.pool().rows());
   PairWriter writer(out, execution, predicate);
   const std::size_t tasks = ceil_divide(rows.pool().rows(), kQueriesPerTask);
   const RowView view = rows.view();
-  const bool meets_all = surely_meet(view.span, other.rows.view().span);
+  const bool matches_all = surely_match(view.span, other.rows.view().span);
   return writer.append(tasks, [&](std::size_t task, PairSink& sink) {
     const std::size_t begin = task * kQueriesPerTask;
     QueryBatch batch;
     std::copy_n(view.column, 6, batch.column);
     batch.filter = view.filter;
     batch.environments = view.environments;
-    batch.meets_all = meets_all;
+    batch.matches_all = matches_all;
     batch.id = view.id;
     batch.begin = static_cast<std::uint32_t>(begin);
     batch.end = static_cast<std::uint32_t>(std::min(rows.pool().rows(), begin + kQueriesPerTask));

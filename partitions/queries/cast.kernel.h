@@ -19,7 +19,7 @@ namespace winnow {
 /// reciprocal is infinite, and the origins are moved outward by one float, so that 0 * infinity
 /// occurs only without a hit. An axis whose motion is too slow for a float reciprocal uses the
 /// values of the fastest axis; only the test in double tests it.
-struct Sweep {
+struct KernelCast {
   float near_origin[3];
   float far_origin[3];
   float inverse[3];
@@ -41,11 +41,11 @@ struct Sweep {
   const void* shape = nullptr;
 };
 
-/// Largest number of sweeps in one joint traversal. Their directions must satisfy `same_way`.
-inline constexpr std::uint32_t kMostSweeps = 64;
+/// Largest number of sweeps in one joint traversal. Their directions must satisfy `same_octant`.
+inline constexpr std::uint32_t kMaxSweeps = 64;
 
 /// True if two sweeps reach the same columns of boxes first.
-static inline bool same_way(const Sweep& a, const Sweep& b) {
+static inline bool same_octant(const KernelCast& a, const KernelCast& b) {
   bool same = true;
   for (int i = 0; i < 3; ++i) {
     same = same && a.near_column[i] == b.near_column[i] && a.far_column[i] == b.far_column[i] &&
@@ -55,24 +55,24 @@ static inline bool same_way(const Sweep& a, const Sweep& b) {
 }
 
 /// Largest number of results that sort_few sorts.
-inline constexpr std::uint32_t kMostSorted = 64;
+inline constexpr std::uint32_t kMaxSorted = 64;
 
 /// Result of a sweep without a hit.
 inline constexpr std::uint64_t kNoHit = ~std::uint64_t{0};
 
 /// A result is (bits of t) << 32 | id. Because t >= 0, integers sort by t, then by id.
 struct CastKernels {
-  /// Finds the least hit of each of `count` <= kMostSweeps sweeps.
-  void (*closest)(const QueryView&, const Sweep*, std::uint32_t count, const QueryFilter&,
+  /// Finds the least hit of each of `count` <= kMaxSweeps sweeps.
+  void (*closest)(const QueryView&, const KernelCast*, std::uint32_t count, const QueryFilter&,
                   std::uint64_t* best);
-  /// Finds any hit of each of `count` <= kMostSweeps sweeps.
-  void (*any)(const QueryView&, const Sweep*, std::uint32_t count, const QueryFilter&,
+  /// Finds any hit of each of `count` <= kMaxSweeps sweeps.
+  void (*any)(const QueryView&, const KernelCast*, std::uint32_t count, const QueryFilter&,
               std::uint64_t* found);
-  /// Finds all hits of `count` <= kMostSweeps sweeps, unsorted. Writes two pairs per hit:
-  /// (question[s], id) and (bits of t, 0). False if the sink is full.
-  bool (*all)(const QueryView&, const Sweep*, std::uint32_t count, const std::uint32_t* question,
+  /// Finds all hits of `count` <= kMaxSweeps sweeps, unsorted. Writes two pairs per hit:
+  /// (query[s], id) and (bits of t, 0). False if the sink is full.
+  bool (*all)(const QueryView&, const KernelCast*, std::uint32_t count, const std::uint32_t* query,
               const QueryFilter&, PairSink&);
-  /// Sorts at most kMostSorted results.
+  /// Sorts at most kMaxSorted results.
   void (*sort_few)(std::uint64_t* results, std::uint32_t size);
 };
 

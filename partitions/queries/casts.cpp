@@ -3,11 +3,11 @@
 
 #include "core/threads/float_environment.h"
 #include "partitions/pairs/pair_writer.h"
+#include "partitions/queries/box_intersection.h"
 #include "partitions/queries/cast.kernel.h"
 #include "partitions/queries/hit_writer.h"
 #include "partitions/queries/query_filter.h"
 #include "partitions/queries/sweep.h"
-#include "partitions/queries/touch.h"
 #include "partitions/state/partition_state.h"
 
 #include <algorithm>
@@ -35,7 +35,7 @@ class PreparedCast {
   PreparedCast& operator=(const PreparedCast&) = delete;
 
   [[nodiscard]] bool valid() const noexcept { return valid_; }
-  [[nodiscard]] const Sweep& sweep() const noexcept { return sweep_; }
+  [[nodiscard]] const KernelCast& sweep() const noexcept { return sweep_; }
 
  private:
   void prepare(const Ray& ray) noexcept { make_sweep(sweep_, ray); }
@@ -63,7 +63,7 @@ class PreparedCast {
   }
 
   bool valid_;
-  Sweep sweep_;
+  KernelCast sweep_;
   MovingCapsule capsule_;
 };
 
@@ -105,26 +105,26 @@ class RayGroup {
 
   /// Prepares the next group. False if there is none.
   bool next() noexcept {
-    questions_ = left_;
+    query_numbers_ = left_;
     count_ = 0;
-    while (left_ != end_ && count_ < kMostSweeps) {
+    while (left_ != end_ && count_ < kMaxSweeps) {
       make_sweep(sweep_[count_], rays_[*left_]);
-      if (count_ != 0 && !same_way(sweep_[0], sweep_[count_])) break;
+      if (count_ != 0 && !same_octant(sweep_[0], sweep_[count_])) break;
       ++count_;
       ++left_;
     }
     return count_ != 0;
   }
-  [[nodiscard]] const Sweep* sweeps() const noexcept { return sweep_.data(); }
+  [[nodiscard]] const KernelCast* sweeps() const noexcept { return sweep_.data(); }
   [[nodiscard]] std::uint32_t count() const noexcept { return count_; }
   /// Per sweep, the index of its ray in the batch.
-  [[nodiscard]] const std::uint32_t* questions() const noexcept { return questions_; }
+  [[nodiscard]] const std::uint32_t* query_numbers() const noexcept { return query_numbers_; }
 
  private:
   const RayBatch& rays_;
   std::array<std::uint32_t, kGroup> question_;
-  std::array<Sweep, kMostSweeps> sweep_;
-  const std::uint32_t* questions_ = nullptr;
+  std::array<KernelCast, kMaxSweeps> sweep_;
+  const std::uint32_t* query_numbers_ = nullptr;
   const std::uint32_t* left_;
   const std::uint32_t* end_;
   std::uint32_t count_ = 0;
@@ -142,8 +142,8 @@ Hit hit_or_null(const KeyTable& keys, std::uint64_t result) noexcept {
 }
 
 /// A kernel that finds one hit per sweep.
-using FindHits = void (*)(const QueryView&, const Sweep*, std::uint32_t count, const QueryFilter&,
-                          std::uint64_t* found);
+using FindHits = void (*)(const QueryView&, const KernelCast*, std::uint32_t count,
+                          const QueryFilter&, std::uint64_t* found);
 
 Status find_hit(const PartitionState& state, FindHits find, const Cast& cast, Hit& hit,
                 const Filter& filter) {
@@ -154,7 +154,7 @@ Status find_hit(const PartitionState& state, FindHits find, const Cast& cast, Hi
     return status;
   }
   const KernelFilter wanted(filter, view, state.rows.keys());
-  if (wanted.meets_nothing()) return Status::ok;
+  if (wanted.matches_nothing()) return Status::ok;
   std::uint64_t found = kNoHit;
   find(view, &prepared.sweep(), 1, wanted.wanted(), &found);
   hit = hit_or_null(state.rows.keys(), found);
@@ -171,7 +171,7 @@ Status find_hits(const PartitionState& state, FindHits find, const RayBatch& ray
   }
   const KeyTable& keys = state.rows.keys();
   const KernelFilter wanted(filter, view, keys);
-  if (wanted.meets_nothing()) {
+  if (wanted.matches_nothing()) {
     for (std::size_t i = 0; i < rays.count; ++i) write_columns(hits, i, {});
     return Status::ok;
   }
@@ -179,11 +179,11 @@ Status find_hits(const PartitionState& state, FindHits find, const RayBatch& ray
   constexpr std::size_t kTask = kGroup / 4;
   state.rows.execution().for_each((rays.count + kTask - 1) / kTask, [&](std::size_t task) {
     RayGroup group(rays, task * kTask, std::min(rays.count, (task + 1) * kTask));
-    std::array<std::uint64_t, kMostSweeps> found;
+    std::array<std::uint64_t, kMaxSweeps> found;
     while (group.next()) {
       find(view, group.sweeps(), group.count(), wanted.wanted(), found.data());
       for (std::uint32_t i = 0; i < group.count(); ++i) {
-        write_columns(hits, group.questions()[i], hit_or_null(keys, found[i]));
+        write_columns(hits, group.query_numbers()[i], hit_or_null(keys, found[i]));
       }
     }
   });
@@ -232,9 +232,9 @@ Status Partition::all(const Cast& cast, HitBuffer& hits, const Filter& filter) c
   const Execution here = Execution::serial();
   PairWriter writer(HitWriter::found(hits), here);
   const Status status = writer.append(1, [&](std::size_t, PairSink& sink) {
-    const std::uint32_t question = 0;
-    return wanted.meets_nothing() ||
-           cast_kernels().all(view, &prepared.sweep(), 1, &question, wanted.wanted(), sink);
+    const std::uint32_t query = 0;
+    return wanted.matches_nothing() ||
+           cast_kernels().all(view, &prepared.sweep(), 1, &query, wanted.wanted(), sink);
   });
   if (status == Status::ok && HitWriter::finish(hits, 0, 1, keys, here)) return Status::ok;
   hits.clear();
@@ -263,8 +263,8 @@ Status Partition::all(const RayBatch& rays, HitBuffer& hits, const Filter& filte
     const Status status = writer.append(groups, [&](std::size_t task, PairSink& sink) {
       const std::size_t begin = first + task * kGroup;
       RayGroup group(rays, begin, std::min(last, begin + kGroup));
-      while (!wanted.meets_nothing() && group.next()) {
-        if (!cast_kernels().all(view, group.sweeps(), group.count(), group.questions(),
+      while (!wanted.matches_nothing() && group.next()) {
+        if (!cast_kernels().all(view, group.sweeps(), group.count(), group.query_numbers(),
                                 wanted.wanted(), sink)) {
           return false;
         }

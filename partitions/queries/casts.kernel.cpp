@@ -1,4 +1,4 @@
-// Kernels of casts: closest, any and all hits of up to kMostSweeps sweeps. casts.cpp calls them;
+// Kernels of casts: closest, any and all hits of up to kMaxSweeps sweeps. casts.cpp calls them;
 // the tests of boxes and the joint traversal are in sweep.wide.h, the ordered descent in
 // descent.wide.h.
 
@@ -12,8 +12,9 @@ namespace {
 /// Calls found(t, id) for every row from `first_row` on that the sweep touches before `limit`.
 /// `found` returns false to end the descent.
 template <typename Found>
-bool test_rows(const QueryView& view, const Sweep& sweep, const SweepTest& probe,
-               const Wanted& wanted, std::uint32_t first_row, const float& limit, Found&& found) {
+bool test_rows(const QueryView& view, const KernelCast& sweep, const SweepTest& probe,
+               const CandidateFilter& wanted, std::uint32_t first_row, const float& limit,
+               Found&& found) {
   const ExactSweepTest exact(sweep, view.column);
   Mask16 mask = wanted.rows(first_row, probe.test(view.column, first_row, limit));
   for (; mask != 0; mask &= mask - 1) {
@@ -32,13 +33,14 @@ inline std::uint64_t hit_of(double t, std::uint32_t id) {
 /// Keeps the least hit of every sweep.
 class NearestHits {
  public:
-  NearestHits(const Sweep* sweeps, const Wanted& wanted, std::uint64_t* best, float* limit)
+  NearestHits(const KernelCast* sweeps, const CandidateFilter& wanted, std::uint64_t* best,
+              float* limit)
       : sweeps_(sweeps), wanted_(wanted), best_(best), limit_(limit) {}
 
   static bool make_room() { return true; }
   void touched(std::uint32_t s, double t, std::uint32_t id) {
     const std::uint64_t hit = hit_of(t, id);
-    if (wanted_.asks_caller() && (hit >= best_[s] || !wanted_.accepts(id))) return;
+    if (wanted_.has_predicate() && (hit >= best_[s] || !wanted_.accepts(id))) return;
     // Branchless: the comparison is unpredictable.
     const std::uint64_t best = hit < best_[s] ? hit : best_[s];
     best_[s] = best;
@@ -49,8 +51,8 @@ class NearestHits {
   }
 
  private:
-  const Sweep* sweeps_;
-  const Wanted& wanted_;
+  const KernelCast* sweeps_;
+  const CandidateFilter& wanted_;
   std::uint64_t* best_;
   float* limit_;
 };
@@ -58,7 +60,7 @@ class NearestHits {
 /// Keeps the first found hit of every sweep, and ends that sweep.
 class AnyHits {
  public:
-  AnyHits(const Sweep*, const Wanted& wanted, std::uint64_t* found, float* limit)
+  AnyHits(const KernelCast*, const CandidateFilter& wanted, std::uint64_t* found, float* limit)
       : wanted_(wanted), found_(found), limit_(limit) {}
 
   static bool make_room() { return true; }
@@ -72,7 +74,7 @@ class AnyHits {
   // Every sweep begins at t >= 0.
   static constexpr float kBeforeAll = -1.0F;
 
-  const Wanted& wanted_;
+  const CandidateFilter& wanted_;
   std::uint64_t* found_;
   float* limit_;
 };
@@ -80,10 +82,10 @@ class AnyHits {
 /// Traces the first segment of all sweeps together, then each sweep without a hit there on its own.
 /// The segment reaches about as far as the first hits in a scene of even density.
 template <typename Hits>
-class StretchAndRest {
+class FirstSegmentThenRest {
  public:
-  StretchAndRest(const QueryView& view, const Sweep* sweeps, std::uint32_t count,
-                 const QueryFilter& filter, std::uint64_t* found)
+  FirstSegmentThenRest(const QueryView& view, const KernelCast* sweeps, std::uint32_t count,
+                       const QueryFilter& filter, std::uint64_t* found)
       : view_(view),
         sweeps_(sweeps),
         wanted_(view, filter),
@@ -91,7 +93,7 @@ class StretchAndRest {
         count_(count) {
     // Without trees all rows are tested anyway.
     const float edge = view.leaf_edge;
-    const float stretch = edge > 0.0F ? kStretch * edge : __builtin_inff();
+    const float stretch = edge > 0.0F ? kSegment * edge : __builtin_inff();
     for (std::uint32_t s = 0; s < count; ++s) {
       found[s] = kNoHit;
       from_[s] = sweeps[s].from;
@@ -122,7 +124,7 @@ class StretchAndRest {
   }
 
  private:
-  static constexpr float kStretch = 0.4F;
+  static constexpr float kSegment = 0.4F;
 
   /// True if nothing of the sweep is left, or its hit lies before the end of the segment by more
   /// than the rounding of the tests.
@@ -131,28 +133,27 @@ class StretchAndRest {
   }
 
   const QueryView& view_;
-  const Sweep* sweeps_;
-  const Wanted wanted_;
+  const KernelCast* sweeps_;
+  const CandidateFilter wanted_;
   Hits hits_;
   std::uint32_t count_;
-  float from_[kMostSweeps];
-  float limit_[kMostSweeps];
-  float end_[kMostSweeps];
-  float last_[kMostSweeps];
+  float from_[kMaxSweeps];
+  float limit_[kMaxSweeps];
+  float end_[kMaxSweeps];
+  float last_[kMaxSweeps];
 };
 
-void closest(const QueryView& view, const Sweep* sweeps, std::uint32_t count,
+void closest(const QueryView& view, const KernelCast* sweeps, std::uint32_t count,
              const QueryFilter& filter, std::uint64_t* best) {
-  StretchAndRest<NearestHits>(view, sweeps, count, filter, best)
-      .run([&](const SweepTest& probe, const Wanted& wanted, const float& limit, auto&& test) {
-        visit_in_order(view, probe, wanted, limit, test);
-      });
+  FirstSegmentThenRest<NearestHits>(view, sweeps, count, filter, best)
+      .run([&](const SweepTest& probe, const CandidateFilter& wanted, const float& limit,
+               auto&& test) { visit_in_order(view, probe, wanted, limit, test); });
 }
 
 /// A single sweep needs no joint traversal.
-void any_of_one(const QueryView& view, const Sweep& sweep, const QueryFilter& filter,
+void any_of_one(const QueryView& view, const KernelCast& sweep, const QueryFilter& filter,
                 std::uint64_t& found) {
-  const Wanted wanted(view, filter);
+  const CandidateFilter wanted(view, filter);
   const SweepTest probe(sweep);
   const float limit = scaled_limit(sweep, sweep.max_t);
   found = kNoHit;
@@ -165,11 +166,11 @@ void any_of_one(const QueryView& view, const Sweep& sweep, const QueryFilter& fi
   });
 }
 
-void any(const QueryView& view, const Sweep* sweeps, std::uint32_t count, const QueryFilter& filter,
-         std::uint64_t* found) {
+void any(const QueryView& view, const KernelCast* sweeps, std::uint32_t count,
+         const QueryFilter& filter, std::uint64_t* found) {
   if (count == 1) return any_of_one(view, sweeps[0], filter, found[0]);
-  StretchAndRest<AnyHits>(view, sweeps, count, filter, found)
-      .run([&](const SweepTest& probe, const Wanted& wanted, float limit, auto&& test) {
+  FirstSegmentThenRest<AnyHits>(view, sweeps, count, filter, found)
+      .run([&](const SweepTest& probe, const CandidateFilter& wanted, float limit, auto&& test) {
         visit_in_row_order(view, probe, wanted, limit, test);
       });
 }
@@ -177,14 +178,14 @@ void any(const QueryView& view, const Sweep* sweeps, std::uint32_t count, const 
 /// Writes every hit.
 class AllHits {
  public:
-  AllHits(const Wanted& wanted, const std::uint32_t* question, PairSink& sink)
-      : wanted_(wanted), question_(question), sink_(sink) {}
+  AllHits(const CandidateFilter& wanted, const std::uint32_t* query, PairSink& sink)
+      : wanted_(wanted), query_(query), sink_(sink) {}
 
   /// A hit takes two pairs. A sink with room has it for 272 pairs, enough for 128 hits.
   bool make_room() { return has_room(sink_); }
   void touched(std::uint32_t s, double t, std::uint32_t id) {
     if (!wanted_.accepts(id)) return;
-    sink_.cursor[0] = question_[s];
+    sink_.cursor[0] = query_[s];
     sink_.cursor[1] = id;
     sink_.cursor[2] = order_of_rounded_down(t);
     sink_.cursor[3] = 0;
@@ -192,21 +193,21 @@ class AllHits {
   }
 
  private:
-  const Wanted& wanted_;
-  const std::uint32_t* question_;
+  const CandidateFilter& wanted_;
+  const std::uint32_t* query_;
   PairSink& sink_;
 };
 
-bool all(const QueryView& view, const Sweep* sweeps, std::uint32_t count,
-         const std::uint32_t* question, const QueryFilter& filter, PairSink& sink) {
-  const Wanted wanted(view, filter);
-  float from[kMostSweeps];
-  float limit[kMostSweeps];
+bool all(const QueryView& view, const KernelCast* sweeps, std::uint32_t count,
+         const std::uint32_t* query, const QueryFilter& filter, PairSink& sink) {
+  const CandidateFilter wanted(view, filter);
+  float from[kMaxSweeps];
+  float limit[kMaxSweeps];
   for (std::uint32_t s = 0; s < count; ++s) {
     from[s] = sweeps[s].from;
     limit[s] = scaled_limit(sweeps[s], sweeps[s].max_t);
   }
-  AllHits hits(wanted, question, sink);
+  AllHits hits(wanted, query, sink);
   return JointSweeps<AllHits>(view, sweeps, from, limit, wanted, hits).run(count);
 }
 
@@ -215,14 +216,14 @@ bool all(const QueryView& view, const Sweep* sweeps, std::uint32_t count,
 /// bits, so that all are distinct. An insertion sort then orders elements that differ only in the
 /// other bits.
 void sort_few(std::uint64_t* results, std::uint32_t size) {
-  constexpr std::uint32_t kLeastNormal = 0x00800000U;  // denormals may compare as zero
-  alignas(64) float key[kMostSorted];
-  std::uint64_t copy[kMostSorted];
+  constexpr std::uint32_t kMinNormal = 0x00800000U;  // denormals may compare as zero
+  alignas(64) float key[kMaxSorted];
+  std::uint64_t copy[kMaxSorted];
   const std::uint32_t blocks = (size + kLanes - 1) / kLanes;
   for (std::uint32_t i = 0; i < size; ++i) {
     copy[i] = results[i];
     const auto t = static_cast<std::uint32_t>(results[i] >> 33U);
-    key[i] = value_of(((t & ~(kMostSorted - 1)) | i) + kLeastNormal);
+    key[i] = value_of(((t & ~(kMaxSorted - 1)) | i) + kMinNormal);
   }
   for (std::uint32_t i = size; i < blocks * kLanes; ++i) key[i] = __builtin_inff();
   for (std::uint32_t i = 0; i < size; ++i) {

@@ -7,14 +7,15 @@
 #include "partitions/index/query_view.h"
 #include "partitions/tree/hits.wide.h"
 #include "partitions/tree/traversal.wide.h"
-#include "simd/lanes/positive.h"
+#include "simd/lanes/positive_min_max.h"
 
 namespace winnow::WINNOW_ISA_NAME {
 
 /// Filters the nodes and rows that a query may return.
-class Wanted {
+class CandidateFilter {
  public:
-  Wanted(const QueryView& view, const QueryFilter& filter) : view_(view), filter_(filter) {}
+  CandidateFilter(const QueryView& view, const QueryFilter& filter)
+      : view_(view), filter_(filter) {}
 
   [[nodiscard]] Mask16 nodes(const TreeShape& tree, std::uint32_t level, std::uint32_t first_node,
                              Mask16 candidates) const {
@@ -27,7 +28,7 @@ class Wanted {
                         range_of(filter_.object));
   }
   /// True if the caller has a predicate.
-  [[nodiscard]] bool asks_caller() const { return filter_.accept != nullptr; }
+  [[nodiscard]] bool has_predicate() const { return filter_.accept != nullptr; }
   /// Returns the result of the caller's predicate.
   [[nodiscard]] bool accepts(std::uint32_t id) const {
     return filter_.accept == nullptr || filter_.accept(filter_.context, id);
@@ -59,19 +60,19 @@ inline std::uint32_t order_of_rounded_down(double value) {
 }
 
 /// Upper bound of the order of a node; a larger value means that there is no node.
-inline constexpr float kMostOrder = 1e38F;
+inline constexpr float kMaxOrder = 1e38F;
 
 /// The open nodes of a nearest-first descent. Each level stores the 16 siblings opened last, with a
 /// key each; siblings with keys up to gone_to_ are done. A key is the node's order with the lane in
 /// its low four bits, so that keys of siblings are distinct; keys are never denormal, which may
 /// compare as zero. Probe: `Mask16 test(columns, at, limit, Floats& order)`, where order is in [0,
-/// kMostOrder], and infinite in lanes that fail.
+/// kMaxOrder], and infinite in lanes that fail.
 template <typename Probe>
 class OpenNodes {
  public:
   /// `limit` may be lowered between visits.
-  OpenNodes(const QueryView& view, const TreeShape& tree, const Probe& probe, const Wanted& wanted,
-            const float& limit)
+  OpenNodes(const QueryView& view, const TreeShape& tree, const Probe& probe,
+            const CandidateFilter& wanted, const float& limit)
       : view_(view), tree_(tree), probe_(probe), wanted_(wanted), limit_(limit) {}
 
   [[gnu::always_inline]] bool open(std::uint32_t level, std::uint32_t first_node,
@@ -102,7 +103,7 @@ class OpenNodes {
       const std::uint32_t nearest = reduce_min_positive(left);
       if (nearest <= last) {
         go_to(nearest, level);
-        const Mask16 others = bits((key > Floats(gone_to_[level])) & (key <= Floats(kMostKey)));
+        const Mask16 others = bits((key > Floats(gone_to_[level])) & (key <= Floats(kMaxKey)));
         open_ ^= (others == 0 ? 1U : 0U) << level;
         node = first_node_[level] + nearest % kLanes;
         return true;
@@ -113,21 +114,21 @@ class OpenNodes {
   }
 
  private:
-  static constexpr float kLeastOrder = 0x1p-100F;
-  static constexpr float kMostKey = kMostOrder * (1.0F + 0x1p-18F);
+  static constexpr float kMinOrder = 0x1p-100F;
+  static constexpr float kMaxKey = kMaxOrder * (1.0F + 0x1p-18F);
 
   static Floats key_of(const Floats& order) {
     alignas(64) static constexpr std::uint32_t kEach[kLanes] = {0, 1, 2,  3,  4,  5,  6,  7,
                                                                 8, 9, 10, 11, 12, 13, 14, 15};
     const Floats positive =
-        smaller_positive(max(order, Floats(kLeastOrder)), Floats(kLargest<float>));
+        smaller_positive(max(order, Floats(kMinOrder)), Floats(kLargest<float>));
     const Floats without_number(value_of(~(kLanes - 1U)));
     return (positive & without_number) | Floats::load(reinterpret_cast<const float*>(kEach));
   }
   /// Upper bound of the keys of nodes within the limit.
   [[nodiscard]] float last_key() const {
-    const float most = limit_ < kMostOrder ? limit_ : kMostOrder;
-    return value_of(order_of(most > kLeastOrder ? most : kLeastOrder) | (kLanes - 1U));
+    const float most = limit_ < kMaxOrder ? limit_ : kMaxOrder;
+    return value_of(order_of(most > kMinOrder ? most : kMinOrder) | (kLanes - 1U));
   }
   // always_inline: compilers remove calls of functions that only prefetch.
   /// Prefetches the rows of blocks that are visited later.
@@ -145,7 +146,7 @@ class OpenNodes {
   const QueryView& view_;
   const TreeShape& tree_;
   const Probe& probe_;
-  const Wanted& wanted_;
+  const CandidateFilter& wanted_;
   const float& limit_;
   /// A bit per level that has remaining siblings.
   std::uint32_t open_ = 0;
@@ -157,7 +158,7 @@ class OpenNodes {
 /// Visits all blocks that the probe reaches within a limit, in row order. `visit(first_row)`
 /// returns false to end the traversal.
 template <typename Probe, typename Visit>
-bool visit_in_row_order(const QueryView& view, const Probe& probe, const Wanted& wanted,
+bool visit_in_row_order(const QueryView& view, const Probe& probe, const CandidateFilter& wanted,
                         float limit, Visit&& visit) {
   for (std::uint32_t block = 0; block < view.flat_blocks; ++block) {
     if (!visit(block * kLanes)) return false;
@@ -182,7 +183,7 @@ bool visit_in_row_order(const QueryView& view, const Probe& probe, const Wanted&
 /// Visits blocks that the probe reaches within `limit`, approximately nearest first. A visit may
 /// lower the limit. `visit(first_row)` returns false to end the descent.
 template <typename Probe, typename Visit>
-bool visit_in_order(const QueryView& view, const Probe& probe, const Wanted& wanted,
+bool visit_in_order(const QueryView& view, const Probe& probe, const CandidateFilter& wanted,
                     const float& limit, Visit&& visit) {
   for (std::uint32_t block = 0; block < view.flat_blocks; ++block) {
     if (!visit(block * kLanes)) return false;

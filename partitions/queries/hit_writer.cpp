@@ -9,13 +9,13 @@ namespace winnow {
 namespace {
 
 /// A hit as the cast kernels write it.
-struct Found {
-  std::uint32_t question;
+struct FoundHit {
+  std::uint32_t query;
   ObjectId id;
   std::uint32_t t_bits;
 
-  Found(const Pair* pairs, std::size_t i) noexcept
-      : question(pairs[2 * i].first), id(pairs[2 * i].second), t_bits(pairs[2 * i + 1].first) {}
+  FoundHit(const Pair* pairs, std::size_t i) noexcept
+      : query(pairs[2 * i].first), id(pairs[2 * i].second), t_bits(pairs[2 * i + 1].first) {}
   [[nodiscard]] std::uint64_t order() const noexcept {
     return static_cast<std::uint64_t>(t_bits) << 32U | id;
   }
@@ -24,21 +24,21 @@ struct Found {
 void sort(std::uint64_t* begin, std::uint64_t* end) noexcept {
   const auto size = static_cast<std::size_t>(end - begin);
   if (size < 2) return;
-  if (size <= kMostSorted) {
+  if (size <= kMaxSorted) {
     cast_kernels().sort_few(begin, static_cast<std::uint32_t>(size));
   } else {
     std::sort(begin, end);
   }
 }
 
-/// Returns the index of the first hit of this or a later question. Hits are sorted by group of
-/// questions.
-std::size_t first_of(const Pair* pairs, std::size_t hits, std::size_t question) noexcept {
+/// Returns the index of the first hit of this or a later query. Hits are sorted by group of
+/// queries.
+std::size_t first_of(const Pair* pairs, std::size_t hits, std::size_t query) noexcept {
   std::size_t low = 0;
   std::size_t high = hits;
   while (low < high) {
     const std::size_t middle = low + (high - low) / 2;
-    if (Found(pairs, middle).question < question) {
+    if (FoundHit(pairs, middle).query < query) {
       low = middle + 1;
     } else {
       high = middle;
@@ -49,9 +49,9 @@ std::size_t first_of(const Pair* pairs, std::size_t hits, std::size_t question) 
 
 }  // namespace
 
-bool HitWriter::start(HitBuffer& out, std::size_t questions) noexcept {
+bool HitWriter::start(HitBuffer& out, std::size_t queries) noexcept {
   out.clear();
-  if (!out.start_.resize(questions + 1)) return false;
+  if (!out.start_.resize(queries + 1)) return false;
   out.start_[0] = 0;
   return true;
 }
@@ -77,8 +77,8 @@ void HitWriter::finish_group(HitBuffer& out, std::size_t first, std::size_t last
   std::array<std::size_t, kGroup + 1> start;
   std::fill_n(start.begin(), last - first + 1, 0);
   std::size_t end = begin;
-  for (; end < found && Found(pairs, end).question < last; ++end) {
-    ++start[Found(pairs, end).question - first + 1];
+  for (; end < found && FoundHit(pairs, end).query < last; ++end) {
+    ++start[FoundHit(pairs, end).query - first + 1];
   }
   start[0] = begin;
   for (std::size_t q = 0; q < last - first; ++q) {
@@ -86,10 +86,10 @@ void HitWriter::finish_group(HitBuffer& out, std::size_t first, std::size_t last
     out.start_[first + q + 1] = hits_before + start[q + 1];
   }
   for (std::size_t i = begin; i < end; ++i) {
-    const Found hit(pairs, i);
-    out.keys_[start[hit.question - first]++] = hit.order();
+    const FoundHit hit(pairs, i);
+    out.keys_[start[hit.query - first]++] = hit.order();
   }
-  // Each start has advanced to the start of the next question.
+  // Each start has advanced to the start of the next query.
   std::uint64_t* const order = out.keys_.data();
   for (std::size_t q = 0; q < last - first; ++q) {
     sort(order + (q == 0 ? begin : start[q - 1]), order + start[q]);

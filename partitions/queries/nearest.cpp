@@ -55,7 +55,7 @@ Status Partition::nearest(const Aabb& from, std::size_t count, float radius, Hit
   Column<std::uint64_t>& entries = HitWriter::heap(hits);
   entries.clear();
   NearestHeap heap = heap_in(entries, count);
-  const bool done = wanted.meets_nothing() || count == 0 ||
+  const bool done = wanted.matches_nothing() || count == 0 ||
                     nearest_kernels().nearest(view, query, wanted.wanted(), heap);
   entries.set_size(heap.size);
   if (done && HitWriter::write_heap(hits, keys)) return Status::ok;

@@ -23,7 +23,7 @@ class DistanceProbe {
     }
     const Floats below = square * 0.999999F;
     const LaneMask<float> near = (below <= limit) & (box.low[0] <= kLargest<float>);
-    order = or_infinity(near, min(below, kMostOrder));
+    order = or_infinity(near, min(below, kMaxOrder));
     return bits(near);
   }
 
@@ -92,7 +92,7 @@ class Heap {
 bool nearest(const QueryView& view, const NearestQuery& query, const QueryFilter& filter,
              NearestHeap& nearest_heap) {
   const DistanceProbe probe(query);
-  const Wanted wanted(view, filter);
+  const CandidateFilter wanted(view, filter);
   Heap heap(nearest_heap);
   float limit = square_limit(query.radius);
   return visit_in_order(view, probe, wanted, limit, [&](std::uint32_t first_row) {

@@ -127,7 +127,7 @@ Status Partition::overlap(const Region& region, OverlapBuffer& objects, const Fi
     return status;
   }
   const KernelFilter wanted(filter, view, state_->rows.keys());
-  if (wanted.meets_nothing()) return Status::ok;
+  if (wanted.matches_nothing()) return Status::ok;
   OverlapWriter writer(objects);
   if (prepared.run(view, wanted.wanted(), writer.sinks()) && writer.finish(order)) {
     return Status::ok;
@@ -143,7 +143,7 @@ Status Partition::overlap(const BoxView& boxes, PairBuffer& out, const Filter& f
   if (state_ == nullptr) return status_;
   const Execution& execution = state_->rows.execution();
   const BoxSource source{boxes};
-  if (boxes.count > kMaxObjects || !all_valid(source, EntryList(boxes.count), execution)) {
+  if (boxes.count > kMaxObjects || !all_valid(source, UpdateSubset(boxes.count), execution)) {
     return Status::invalid_argument;
   }
   QueryView view;
@@ -153,7 +153,7 @@ Status Partition::overlap(const BoxView& boxes, PairBuffer& out, const Filter& f
   }
   const SpatialIndex& index = state_->index;
   const KernelFilter wanted(filter, view, state_->rows.keys());
-  if (wanted.meets_nothing()) return Status::ok;
+  if (wanted.matches_nothing()) return Status::ok;
   const ObjectFilter asking = filter.object();
   const QueryFilter* accepted = &wanted.wanted();
   PairWriter writer(out, execution, accepting_second(accepted));
@@ -168,7 +168,7 @@ Status Partition::overlap(const BoxView& boxes, PairBuffer& out, const Filter& f
     // True is always safe, and costs one test.
     batch.environments = true;
     batch.one_filter = true;
-    batch.meets_all = !wanted.wanted().by_object;
+    batch.matches_all = !wanted.wanted().by_object;
     return index.query(batch, sink);
   });
   const std::size_t slots = std::max(state_->rows.keys().slot_count(), boxes.count);

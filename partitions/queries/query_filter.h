@@ -16,10 +16,10 @@ class KernelFilter {
     asking.add(wanted_.object);
     // If the partition stores no filters, every object has the default filter, so one test decides
     // for all.
-    const bool meets_all = surely_meet(asking, view.span);
+    const bool matches_all = surely_match(asking, view.span);
     const bool filtered = view.filter.layers != nullptr;
-    wanted_.by_object = filtered && !meets_all;
-    meets_nothing_ = !filtered && !meets_all;
+    wanted_.by_object = filtered && !matches_all;
+    matches_nothing_ = !filtered && !matches_all;
     if (predicate_.accept == nullptr) return;
     wanted_.context = this;
     wanted_.accept = [](const void* context, std::uint32_t id) noexcept {
@@ -31,14 +31,14 @@ class KernelFilter {
   KernelFilter(const KernelFilter&) = delete;
   KernelFilter& operator=(const KernelFilter&) = delete;
 
-  [[nodiscard]] bool meets_nothing() const noexcept { return meets_nothing_; }
+  [[nodiscard]] bool matches_nothing() const noexcept { return matches_nothing_; }
   [[nodiscard]] const QueryFilter& wanted() const noexcept { return wanted_; }
 
  private:
   QueryFilter wanted_;
   ObjectPredicate predicate_;
   const KeyTable& keys_;
-  bool meets_nothing_ = false;
+  bool matches_nothing_ = false;
 };
 
 }  // namespace winnow

@@ -13,7 +13,7 @@ enum class Containment : std::uint8_t { apart, crossing, inside };
 
 /// Test in double of the box of a row (six floats), for rows that the float tests leave undecided.
 struct ExactRegion {
-  Containment (*meets)(const void* region, const float* box) = nullptr;
+  Containment (*classify)(const void* region, const float* box) = nullptr;
   const void* region = nullptr;
 };
 
@@ -50,7 +50,7 @@ struct BallRegion {
 
 /// The volume that a box sweeps.
 struct SweptRegion {
-  Sweep sweep;
+  KernelCast sweep;
   ExactRegion exact;
 };
 

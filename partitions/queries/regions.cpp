@@ -1,10 +1,11 @@
 // Preparation of regions for the kernels: each kind of region becomes a set of planes, a ball or a
-// swept box, with the test in double that decides in the end (touch.h). Called by overlaps.cpp.
+// swept box, with the test in double that decides in the end (box_intersection.h). Called by
+// overlaps.cpp.
 
 #include "partitions/queries/regions.h"
 
+#include "partitions/queries/box_intersection.h"
 #include "partitions/queries/sweep.h"
-#include "partitions/queries/touch.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -53,11 +54,11 @@ bool PreparedRegion::run(const QueryView& view, const QueryFilter& filter,
                          RegionSinks& sinks) const {
   const RegionKernels& kernels = region_kernels();
   switch (kind_) {
-    case Kind::planes:
+    case RegionKind::planes:
       return kernels.planes(view, planes_, filter, sinks);
-    case Kind::ball:
+    case RegionKind::ball:
       return kernels.ball(view, ball_, filter, sinks);
-    case Kind::swept:
+    case RegionKind::swept:
       return kernels.swept(view, swept_, filter, sinks);
   }
   return true;
@@ -72,7 +73,7 @@ void PreparedRegion::within(const Aabb& box) noexcept {
 
 void PreparedRegion::prune_by(const Eigen::Vector3d& normal, double offset, double size) noexcept {
   planes_.planes = wide_.data();
-  if (planes_.count == kMostPlanes) {
+  if (planes_.count == kMaxPlanes) {
     planes_.more = true;
     return;
   }
@@ -110,16 +111,16 @@ Status PreparedRegion::prepare(const OrientedBox& box) noexcept {
     prune_by(normal, reach - normal.dot(center), size);
     prune_by(-normal, reach + normal.dot(center), size);
   }
-  planes_.exact = {meet_oriented_box, &box};
+  planes_.exact = {classify_oriented_box, &box};
   return Status::ok;
 }
 
 Status PreparedRegion::prepare(const Sphere& sphere) noexcept {
   if (!sphere.is_valid()) return Status::invalid_argument;
-  kind_ = Kind::ball;
+  kind_ = RegionKind::ball;
   for (int i = 0; i < 3; ++i) ball_.center[i] = sphere.center[i];
   ball_.radius = sphere.radius;
-  ball_.exact = {meet_sphere, &sphere};
+  ball_.exact = {classify_sphere, &sphere};
   return Status::ok;
 }
 
@@ -128,15 +129,15 @@ Status PreparedRegion::prepare(const Capsule& capsule) noexcept {
   // The ball at one end, swept to the other.
   const Eigen::Vector3d along = capsule.b.cast<double>() - capsule.a.cast<double>();
   if (along.isZero(0.0)) {
-    kind_ = Kind::ball;
+    kind_ = RegionKind::ball;
     for (int i = 0; i < 3; ++i) ball_.center[i] = capsule.a[i];
     ball_.radius = capsule.radius;
-    ball_.exact = {meet_capsule, &capsule};
+    ball_.exact = {classify_capsule, &capsule};
     return Status::ok;
   }
-  kind_ = Kind::swept;
+  kind_ = RegionKind::swept;
   make_sweep(swept_.sweep, Sphere{capsule.a, capsule.radius}.bounds(), along, 0.0, 1.0);
-  swept_.exact = {meet_capsule, &capsule};
+  swept_.exact = {classify_capsule, &capsule};
   return Status::ok;
 }
 
@@ -155,7 +156,7 @@ Status PreparedRegion::prepare(const std::span<const Plane>& planes) noexcept {
   }
   exact_planes_ = planes;
   planes_.planes_decide = !planes_.more;
-  planes_.exact = {meet_planes, &exact_planes_};
+  planes_.exact = {classify_planes, &exact_planes_};
   return Status::ok;
 }
 

@@ -24,7 +24,7 @@ class PreparedRegion {
                          RegionSinks& sinks) const;
 
  private:
-  enum class Kind : std::uint8_t { planes, ball, swept };
+  enum class RegionKind : std::uint8_t { planes, ball, swept };
 
   Status prepare(const Vec3f& point) noexcept;
   Status prepare(const Aabb& box) noexcept;
@@ -37,15 +37,15 @@ class PreparedRegion {
   void prune_by(const Eigen::Vector3d& normal, double offset, double size) noexcept;
 
   // If there are more planes, only the first ones prune; the test in double uses all.
-  static constexpr std::size_t kMostPlanes = 16;
+  static constexpr std::size_t kMaxPlanes = 16;
 
-  Kind kind_ = Kind::planes;
+  RegionKind kind_ = RegionKind::planes;
   Status status_;
   PlaneRegion planes_;
   BallRegion ball_;
   SweptRegion swept_;
   std::span<const Plane> exact_planes_;
-  std::array<WidePlane, kMostPlanes> wide_;
+  std::array<WidePlane, kMaxPlanes> wide_;
 };
 
 }  // namespace winnow

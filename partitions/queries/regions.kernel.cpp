@@ -13,7 +13,7 @@ namespace {
 
 /// Result of a float test of 16 boxes: `met`: may overlap the region; `inside`: certainly inside;
 /// `open`: needs the exact test.
-struct Met {
+struct OverlapMasks {
   Mask16 met = 0;
   Mask16 inside = 0;
   Mask16 open = 0;
@@ -36,7 +36,7 @@ class RowsInBox {
   explicit RowsInBox(const PlaneRegion& region) : region_(region) {}
 
   /// False if there are so many rows that testing the planes on all rows is cheaper.
-  bool collect(const QueryView& view, const Wanted& wanted, std::uint32_t begin,
+  bool collect(const QueryView& view, const CandidateFilter& wanted, std::uint32_t begin,
                std::uint32_t end) {
     // Scattered rows cost about three times as much as the rows of a block.
     const unsigned most = (end - begin) * (kLanes / 4);
@@ -95,7 +95,7 @@ class FrustumScan {
   }
 
   /// False if none of the 16 boxes from `at` on overlaps the region.
-  [[nodiscard]] bool may_meet(std::size_t at) const {
+  [[nodiscard]] bool may_overlap(std::size_t at) const {
     const Box16 box = load_slabs<3>(column_, at);
     Mask16 met = overlap(box, region_.low, region_.high);
     const Floats below = -kSweepTiny - multiply_add(reach_of(box), rounding_, margin_);
@@ -127,9 +127,10 @@ class PlaneProbe {
 
   [[nodiscard]] const ExactRegion& exact() const { return region_.exact; }
 
-  [[nodiscard, gnu::always_inline]] Met test(const float* const* column, std::size_t at) const {
+  [[nodiscard, gnu::always_inline]] OverlapMasks test(const float* const* column,
+                                                      std::size_t at) const {
     const Box16 box = load_slabs<3>(column, at);
-    Met result;
+    OverlapMasks result;
     result.met = overlap(box, region_.low, region_.high);
     if (result.met == 0) return result;
     const Floats slack = region_.count != 0 ? rounding_of(box) : Floats(0.0F);
@@ -150,7 +151,7 @@ class PlaneProbe {
  private:
   /// `surely`: boxes that reach inside all planes by more than the rounding error.
   void find_inside(const Box16& box, const float* const* column, std::size_t at,
-                   const Floats& slack, Mask16 surely, Met& result) const {
+                   const Floats& slack, Mask16 surely, OverlapMasks& result) const {
     result.open = result.met;
     if (region_.more) return;
     result.inside = result.met;
@@ -195,7 +196,8 @@ class BallProbe {
 
   [[nodiscard]] const ExactRegion& exact() const { return region_.exact; }
 
-  [[nodiscard, gnu::always_inline]] Met test(const float* const* column, std::size_t at) const {
+  [[nodiscard, gnu::always_inline]] OverlapMasks test(const float* const* column,
+                                                      std::size_t at) const {
     // kMore exceeds the rounding of both sides; kTiny covers squares that underflow.
     constexpr float kMore = 1.000002F;
     constexpr float kTiny = 1e-36F;
@@ -216,7 +218,7 @@ class BallProbe {
     // An infinite square cannot prove that a box lies inside.
     const float finite_square = square < kLargest<float> ? square : kLargest<float>;
     const Mask16 live = bits(box.low[0] <= kLargest<float>);
-    Met result;
+    OverlapMasks result;
     result.met = bits(near <= square * kMore) & live;
     result.inside = bits(far * kMore <= finite_square) & result.met;
     result.open = result.met & ~result.inside;
@@ -236,7 +238,8 @@ class SweptProbe {
 
   [[nodiscard]] const ExactRegion& exact() const { return region_.exact; }
 
-  [[nodiscard, gnu::always_inline]] Met test(const float* const* column, std::size_t at) const {
+  [[nodiscard, gnu::always_inline]] OverlapMasks test(const float* const* column,
+                                                      std::size_t at) const {
     Floats enter;
     const Mask16 met = test_.test(column, at, limit_, enter);
     return {met, 0, met};
@@ -295,9 +298,9 @@ class RegionTraversal {
     GatheredRows gathered;
     for (unsigned first_place = 0; first_place < rows.size(); first_place += kLanes) {
       const Mask16 present = gathered.load(view_, rows, first_place);
-      Met found = probe_.test(gathered.column, 0);
+      OverlapMasks found = probe_.test(gathered.column, 0);
       found.met &= present;
-      if (!take_met(found, gathered.id, gathered.column, 0)) return false;
+      if (!add_overlapping(found, gathered.id, gathered.column, 0)) return false;
     }
     return true;
   }
@@ -309,7 +312,7 @@ class RegionTraversal {
     unsigned count = 0;
     for (std::uint32_t block = begin; block < end; ++block) {
       passed[count] = block * kLanes;
-      count += scan.may_meet(passed[count]) ? 1U : 0U;
+      count += scan.may_overlap(passed[count]) ? 1U : 0U;
     }
     for (unsigned i = 0; i < count; ++i) {
       if (!test_rows(passed[i])) return false;
@@ -322,7 +325,7 @@ class RegionTraversal {
     return traverse<kMaxTreeLevels>(
         tree.levels,
         [&](std::uint32_t level, std::uint32_t first_node) {
-          const Met found = probe_.test(tree.node[level], first_node);
+          const OverlapMasks found = probe_.test(tree.node[level], first_node);
           inside[level] = found.inside;
           return wanted_.nodes(tree, level, first_node, found.met);
         },
@@ -349,24 +352,25 @@ class RegionTraversal {
   }
 
   [[gnu::always_inline]] bool test_rows(std::uint32_t first_row) {
-    Met found = probe_.test(view_.column, first_row);
+    OverlapMasks found = probe_.test(view_.column, first_row);
     found.met = wanted_.rows(first_row, found.met);
-    return take_met(found, view_.id + first_row, view_.column, first_row);
+    return add_overlapping(found, view_.id + first_row, view_.column, first_row);
   }
 
   /// Writes the matches among 16 rows with these ids and with boxes in the columns from `at` on.
-  bool take_met(Met found, const std::uint32_t* id, const float* const* column, std::size_t at) {
+  bool add_overlapping(OverlapMasks found, const std::uint32_t* id, const float* const* column,
+                       std::size_t at) {
     if (found.met == 0) return true;
     found.inside &= found.met;
     const ExactRegion& exact = probe_.exact();
-    if (exact.meets != nullptr) {
+    if (exact.classify != nullptr) {
       for (Mask16 rest = found.met & found.open; rest != 0; rest &= rest - 1) {
         const unsigned lane = first(rest);
         float box[6];
         for (int c = 0; c < 6; ++c) box[c] = column[c][at + lane];
-        const Containment meeting = exact.meets(exact.region, box);
-        if (meeting == Containment::apart) found.met &= ~(1U << lane);
-        if (meeting == Containment::inside) found.inside |= 1U << lane;
+        const Containment containment = exact.classify(exact.region, box);
+        if (containment == Containment::apart) found.met &= ~(1U << lane);
+        if (containment == Containment::inside) found.inside |= 1U << lane;
       }
     }
     return write(sinks_.inside, id, found.inside) &&
@@ -386,7 +390,7 @@ class RegionTraversal {
 
   const QueryView& view_;
   const Probe& probe_;
-  const Wanted wanted_;
+  const CandidateFilter wanted_;
   const bool chosen_;
   RegionSinks& sinks_;
 };
@@ -400,7 +404,7 @@ bool run(const QueryView& view, const Region& region, const QueryFilter& filter,
 
 bool flat_boxes(const QueryView& view, const QueryBatch& batch, const QueryFilter& filter,
                 PairSink& sink) {
-  const Wanted wanted(view, filter);
+  const CandidateFilter wanted(view, filter);
   for (std::uint32_t b = 0; b < view.flat_blocks; ++b) {
     const Box16 rows = load_slabs<3>(view.column, b * kLanes);
     const Uints ids = Uints::load_unaligned(view.id + b * kLanes);

@@ -15,7 +15,7 @@ constexpr double kSlowest = 0x1p-120;
 
 }  // namespace
 
-void make_sweep(Sweep& s, const Aabb& box, const Eigen::Vector3d& direction, double min_t,
+void make_sweep(KernelCast& s, const Aabb& box, const Eigen::Vector3d& direction, double min_t,
                 double max_t) noexcept {
   s.touch = nullptr;
   s.shape = nullptr;

@@ -9,11 +9,11 @@ namespace winnow {
 
 /// Prepares the sweep of a box along direction * [min_t, max_t]; the direction is not zero. Writes
 /// in place, because copying a struct that was just written stalls on its stores.
-void make_sweep(Sweep& sweep, const Aabb& box, const Eigen::Vector3d& direction, double min_t,
+void make_sweep(KernelCast& sweep, const Aabb& box, const Eigen::Vector3d& direction, double min_t,
                 double max_t) noexcept;
 
 /// A ray is the sweep of a point.
-inline void make_sweep(Sweep& sweep, const Ray& ray) noexcept {
+inline void make_sweep(KernelCast& sweep, const Ray& ray) noexcept {
   make_sweep(sweep, Aabb{ray.origin, ray.origin}, ray.direction.cast<double>(),
              static_cast<double>(ray.min_t), static_cast<double>(ray.max_t));
 }

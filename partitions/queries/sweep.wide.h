@@ -15,7 +15,7 @@ inline constexpr float kSweepSlack = 1.0000006F;
 inline constexpr float kSweepTiny = 1e-37F;
 
 /// Returns an upper bound of the scaled float t of any hit at or before t.
-inline float scaled_limit(const Sweep& sweep, double t) {
+inline float scaled_limit(const KernelCast& sweep, double t) {
   const double scaled = t * sweep.scale * static_cast<double>(kSweepSlack) + 2e-37;
   // Converting a value beyond float is undefined; infinity replaces it.
   return scaled < 3e38 ? static_cast<float>(scaled) * kSweepSlack : __builtin_inff();
@@ -24,9 +24,9 @@ inline float scaled_limit(const Sweep& sweep, double t) {
 /// Float test of 16 boxes against one sweep.
 class SweepTest {
  public:
-  explicit SweepTest(const Sweep& sweep) : SweepTest(sweep, sweep.from) {}
+  explicit SweepTest(const KernelCast& sweep) : SweepTest(sweep, sweep.from) {}
   /// Starts at a later scaled t.
-  SweepTest(const Sweep& sweep, float from) : sweep_(sweep), from_(from) {
+  SweepTest(const KernelCast& sweep, float from) : sweep_(sweep), from_(from) {
     for (int i = 0; i < 3; ++i) {
       near_origin_[i] = Floats(sweep.near_origin[i]);
       far_origin_[i] = Floats(sweep.far_origin[i]);
@@ -35,7 +35,7 @@ class SweepTest {
   }
 
   /// Returns the boxes from `at` on that may be touched at a scaled t <= limit. `enter` gets a
-  /// lower bound of t, at most kMostOrder, and infinity for the other boxes.
+  /// lower bound of t, at most kMaxOrder, and infinity for the other boxes.
   [[gnu::always_inline]] Mask16 test(const float* const* column, std::size_t at, float limit,
                                      Floats& enter) const {
     const float* const near[3] = {column[sweep_.near_column[0]], column[sweep_.near_column[1]],
@@ -64,7 +64,7 @@ class SweepTest {
     // `limit` is the first operand: if padding makes `late` NaN, `last` is NaN and the box fails.
     const Floats last = min(Floats(limit), late);
     const Mask16 touched = bits(enter <= last);
-    enter = or_infinity(enter <= last, min(enter, kMostOrder));
+    enter = or_infinity(enter <= last, min(enter, kMaxOrder));
     return touched;
   }
 
@@ -73,7 +73,7 @@ class SweepTest {
     return (Floats::load(end) - origin) * inverse;
   }
 
-  const Sweep& sweep_;
+  const KernelCast& sweep_;
   Floats near_origin_[3];
   Floats far_origin_[3];
   Floats inverse_[3];
@@ -84,8 +84,8 @@ class SweepTest {
 /// is below 4e-16.
 class ExactSweepTest {
  public:
-  /// Also serves other sweeps that satisfy `same_way` with this one.
-  ExactSweepTest(const Sweep& sweep, const float* const* column) : column_(column) {
+  /// Also serves other sweeps that satisfy `same_octant` with this one.
+  ExactSweepTest(const KernelCast& sweep, const float* const* column) : column_(column) {
     for (int i = 0; i < 3; ++i) {
       near_[i] = column[sweep.exact_near_column[i]];
       far_[i] = column[(sweep.exact_near_column[i] + 3) % 6];
@@ -93,7 +93,7 @@ class ExactSweepTest {
   }
 
   /// Returns the first t at which the sweep touches the box of row r, or a negative number.
-  [[nodiscard]] double touch(const Sweep& sweep, std::size_t r) const {
+  [[nodiscard]] double touch(const KernelCast& sweep, std::size_t r) const {
     double enter = sweep.min_t;
     double exit = sweep.max_t;
     for (int i = 0; i < 3; ++i) {
@@ -120,7 +120,7 @@ class ExactSweepTest {
   const float* far_[3];
 };
 
-/// Joint traversal of the trees with many sweeps, which must satisfy `same_way`, so that the
+/// Joint traversal of the trees with many sweeps, which must satisfy `same_octant`, so that the
 /// columns to test are chosen once per loop.
 ///
 /// `Hits` receives touched rows: `void touched(sweep, t, id)`, and `bool make_room()` before at
@@ -130,8 +130,8 @@ template <typename Hits>
 class JointSweeps {
  public:
   /// `from` and `limit` are the scaled interval of each sweep; `hits` may lower limits.
-  JointSweeps(const QueryView& view, const Sweep* sweeps, const float* from, const float* limit,
-              const Wanted& wanted, Hits& hits)
+  JointSweeps(const QueryView& view, const KernelCast* sweeps, const float* from,
+              const float* limit, const CandidateFilter& wanted, Hits& hits)
       : view_(view), sweeps_(sweeps), from_(from), limit_(limit), wanted_(wanted), hits_(hits) {}
 
   /// Traces sweeps [0, count).
@@ -159,7 +159,7 @@ class JointSweeps {
     const float* near[3];
     const float* far[3];
 
-    Ways(const Sweep& sweep, const float* const* column) {
+    Ways(const KernelCast& sweep, const float* const* column) {
       for (int i = 0; i < 3; ++i) {
         near[i] = column[sweep.near_column[i]];
         far[i] = column[sweep.far_column[i]];
@@ -182,15 +182,15 @@ class JointSweeps {
     return wanted_.nodes(*tree_, level, first_node, touching(ways, s, first_node));
   }
 
-  bool visit(const OpenList& blocks) {
-    const Ways ways(sweeps_[blocks.question[0]], view_.column);
+  bool visit(const QueryNodeList& blocks) {
+    const Ways ways(sweeps_[blocks.query[0]], view_.column);
     for (unsigned k = 0; k < blocks.size; ++k) {
       const std::uint32_t first_row = (tree_->first_block + blocks.at[k]) * kLanes;
       if (rows_.full() && !touch_rows()) return false;
       __builtin_prefetch(view_.id + first_row);
       if (k + kAhead < blocks.size) fetch(blocks.at[k + kAhead]);
-      const Mask16 mask = touching(ways, blocks.question[k], first_row);
-      rows_.add(blocks.question[k], first_row, wanted_.rows(first_row, mask));
+      const Mask16 mask = touching(ways, blocks.query[k], first_row);
+      rows_.add(blocks.query[k], first_row, wanted_.rows(first_row, mask));
     }
     return true;
   }
@@ -211,7 +211,7 @@ class JointSweeps {
     const ExactSweepTest exact(sweeps_[0], view_.column);
     for (unsigned k = 0; k < rows_.size; ++k) {
       if (k % kHitsAtOnce == 0 && !hits_.make_room()) return false;
-      const std::uint32_t s = rows_.question[k];
+      const std::uint32_t s = rows_.query[k];
       const std::uint32_t row = rows_.at[k];
       const double t = exact.touch(sweeps_[s], row);
       if (t >= 0.0) hits_.touched(s, t, view_.id[row]);
@@ -222,13 +222,13 @@ class JointSweeps {
 
   const QueryView& view_;
   const TreeShape* tree_ = nullptr;
-  const Sweep* sweeps_;
+  const KernelCast* sweeps_;
   const float* from_;
   const float* limit_;
-  const Wanted& wanted_;
+  const CandidateFilter& wanted_;
   Hits& hits_;
   JointTraversal<JointSweeps> traversal_{*this};
-  OpenList rows_;
+  QueryNodeList rows_;
 };
 
 }  // namespace winnow::WINNOW_ISA_NAME

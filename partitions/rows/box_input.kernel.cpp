@@ -1,5 +1,5 @@
 // Kernels of box input: validate given boxes, write them into the columns of rows, and compare
-// given boxes with stored ones. Called by the sources in volume_source.h and by DeferredBoxes.
+// given boxes with stored ones. Called by the sources in volume_source.h and by VerletSkin.
 
 #include "partitions/rows/box_input.kernel.h"
 #include "simd/lanes/boxes.h"
@@ -168,14 +168,14 @@ void write_in_order(const float* floats, std::size_t count, float* const* column
 Floats minus_longest_edge(const Box16& box) {
   // Infinite ends are stored as the largest float, so every finite end is at most the float below
   // it.
-  constexpr float kMost = 0x1.fffffcp127F;
-  static_assert(kMost < kLargest<float>);
+  constexpr float kMaxFinite = 0x1.fffffcp127F;
+  static_assert(kMaxFinite < kLargest<float>);
   Floats least = Floats(0.0F);
   for (int axis = 0; axis < 3; ++axis) {
     Floats edge = box.low[axis] - box.high[axis];
     edge = or_infinity(-kLargest<float> <= edge, edge);
-    edge = or_infinity(box.high[axis] <= kMost, edge);
-    edge = or_infinity(-kMost <= box.low[axis], edge);
+    edge = or_infinity(box.high[axis] <= kMaxFinite, edge);
+    edge = or_infinity(-kMaxFinite <= box.low[axis], edge);
     least = min(least, edge);
   }
   return least;

@@ -13,17 +13,17 @@ struct FilterSpan {
   std::uint32_t every_layers = ~0U;  ///< layers of all objects
   std::uint32_t any_mask = 0;        ///< mask bits of at least one object
   std::uint32_t every_mask = ~0U;    ///< mask bits of all objects
-  bool mute = false;                 ///< some object has no layer or an empty mask
-  bool apart = false;      ///< some object has an environment other than 0 and kEveryEnvironment
-  bool everywhere = true;  ///< all objects have kEveryEnvironment
+  bool any_unpairable = false;       ///< some object has no layer or an empty mask
+  bool apart = false;      ///< some object has an environment other than 0 and kAllEnvironments
+  bool everywhere = true;  ///< all objects have kAllEnvironments
 
   void add(const ObjectFilter& filter) noexcept {
     any_layers |= filter.layers;
     every_layers &= filter.layers;
     any_mask |= filter.mask;
     every_mask &= filter.mask;
-    const bool of_every = filter.environment == kEveryEnvironment;
-    mute = mute || filter.layers == 0 || filter.mask == 0;
+    const bool of_every = filter.environment == kAllEnvironments;
+    any_unpairable = any_unpairable || filter.layers == 0 || filter.mask == 0;
     apart = apart || (filter.environment != 0 && !of_every);
     everywhere = everywhere && of_every;
   }
@@ -42,8 +42,9 @@ static inline bool surely_share(std::uint32_t any, std::uint32_t every, std::uin
 
 /// True if every object of one span is certain to pass the filters of every object of the other.
 /// False means unknown.
-static inline bool surely_meet(const FilterSpan& a, const FilterSpan& b) noexcept {
-  return !a.mute && !b.mute && (a.everywhere || b.everywhere || !(a.apart || b.apart)) &&
+static inline bool surely_match(const FilterSpan& a, const FilterSpan& b) noexcept {
+  return !a.any_unpairable && !b.any_unpairable &&
+         (a.everywhere || b.everywhere || !(a.apart || b.apart)) &&
          surely_share(a.any_layers, a.every_layers, b.any_mask, b.every_mask) &&
          surely_share(b.any_layers, b.every_layers, a.any_mask, a.every_mask);
 }

@@ -7,7 +7,7 @@ namespace winnow {
 namespace {
 
 bool is_apart(const ObjectFilter& filter) noexcept {
-  return filter.environment != 0 && filter.environment != kEveryEnvironment;
+  return filter.environment != 0 && filter.environment != kAllEnvironments;
 }
 
 }  // namespace

@@ -51,7 +51,7 @@ class FilterTable {
   /// `note_build`.
   [[nodiscard]] FilterSpan span() const noexcept;
 
-  /// False if all objects have environment 0 or kEveryEnvironment. True otherwise, even if all
+  /// False if all objects have environment 0 or kAllEnvironments. True otherwise, even if all
   /// share one.
   [[nodiscard]] bool has_environments() const noexcept { return apart_ != 0; }
 
@@ -69,7 +69,7 @@ class FilterTable {
  private:
   Column<ObjectFilter> filters_;
   std::size_t slots_ = 0;    // entries once in use
-  std::size_t apart_ = 0;    // objects with an environment other than 0 and kEveryEnvironment
+  std::size_t apart_ = 0;    // objects with an environment other than 0 and kAllEnvironments
   std::size_t changed_ = 0;  // environment changes since the last build
   FilterSpan span_;          // of all objects, while in use
   bool span_grown_ = false;  // the span may cover filters that no object has any more

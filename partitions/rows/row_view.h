@@ -34,7 +34,7 @@ struct RowView {
   FilterColumns filter;       ///< by row; rows without an object have no layer
   bool environments = false;  ///< false if all objects share one environment
   FilterSpan span;            ///< of all objects' filters
-  bool all_meet = false;      ///< every two objects pass each other's filters
+  bool all_match = false;     ///< every two objects pass each other's filters
   /// Changes whenever a row gets another object or an object another filter.
   std::uint64_t arrangement = 0;
 };
@@ -62,7 +62,7 @@ struct QueryBatch {
   FilterColumns filter;                  ///< of the queries: by row, or entry 0 for all
   bool one_filter = false;
   bool environments = false;  ///< false if all queries share one environment
-  bool meets_all = false;     ///< every query passes the filters of every candidate
+  bool matches_all = false;   ///< every query passes the filters of every candidate
 };
 
 }  // namespace winnow

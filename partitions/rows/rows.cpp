@@ -4,7 +4,7 @@
 #include "partitions/rows/rows.h"
 
 #include "core/memory/columns.h"
-#include "core/sort/own_rows.h"
+#include "core/sort/scatter_by_owner.h"
 #include "partitions/rows/volume_source.h"
 
 #include <algorithm>
@@ -264,7 +264,7 @@ RowView Rows::view() const noexcept {
   view.filter = pool_.filters();
   view.environments = filters_.has_environments();
   view.span = filters_.span();
-  view.all_meet = surely_meet(view.span, view.span);
+  view.all_match = surely_match(view.span, view.span);
   view.arrangement = arrangement_;
   return view;
 }

@@ -11,10 +11,10 @@
 #include "core/memory/bounds_pool.h"
 #include "core/memory/key_table.h"
 #include "partitions/rows/change_list.h"
-#include "partitions/rows/entry_list.h"
 #include "partitions/rows/filter_table.h"
 #include "partitions/rows/row_selection.h"
 #include "partitions/rows/row_view.h"
+#include "partitions/rows/update_subset.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -32,7 +32,7 @@ class Rows;
 struct VolumeInput {
   Volume volume;
   Status (Rows::*insert)(const BoxView&, std::span<const ClientData>, std::span<Key>);
-  Status (Rows::*update)(const EntryList&, const BoxView&);
+  Status (Rows::*update)(const UpdateSubset&, const BoxView&);
   Status (Rows::*update_one)(Key, const BoxView&);
 };
 
@@ -73,7 +73,7 @@ class Rows {
        const Margin& margin) noexcept;
 
   Status insert(const BoxView& boxes, std::span<const ClientData> data, std::span<Key> keys);
-  Status update(const EntryList& entries, const BoxView& boxes);
+  Status update(const UpdateSubset& entries, const BoxView& boxes);
   Status update(Key key, const Aabb& box);
   /// As above with spheres or k-DOPs; `unsupported_volume` if another volume is stored.
   template <typename V>
@@ -82,7 +82,7 @@ class Rows {
   Status update(std::span<const Key> keys, std::span<const V> volumes);
 
   /// Returns the status that an update with these boxes would have.
-  [[nodiscard]] Status check(const EntryList& entries, const BoxView& boxes) const;
+  [[nodiscard]] Status check(const UpdateSubset& entries, const BoxView& boxes) const;
   /// Gives every row the box at the index of its object's id, if there is one.
   void write_by_id(const BoxView& boxes) noexcept;
 
@@ -149,7 +149,7 @@ class Rows {
   /// their position at the build; 0: always.
   void note_build(float far) noexcept {
     filters_.note_build({pool_.ids(), pool_.rows()});
-    far_ = far;
+    order_reach_ = far;
   }
 
   /// Shared scratch for selecting rows; overwritten by the next selection.
@@ -167,37 +167,37 @@ class Rows {
   template <typename Source, typename Stored>
   Status insert_boxes(const BoxView& boxes, std::span<const ClientData> data, std::span<Key> keys);
   template <typename Source, typename Stored>
-  Status update_boxes(const EntryList& entries, const BoxView& boxes);
+  Status update_boxes(const UpdateSubset& entries, const BoxView& boxes);
   template <typename Source, typename Stored>
   Status update_box(Key key, const BoxView& box);
   template <typename Stored, typename Source>
   Status insert_from(const Source& source, std::size_t count, std::span<const ClientData> data,
                      std::span<Key> keys);
-  [[nodiscard]] KeyTable::RunOfKeys look_at(const EntryList& entries, std::size_t begin,
-                                            std::size_t end) const noexcept;
+  [[nodiscard]] KeyTable::KeysCheck check_keys(const UpdateSubset& entries, std::size_t begin,
+                                               std::size_t end) const noexcept;
   template <typename Source>
-  Status check_update(const Source& source, std::size_t volumes, const EntryList& entries,
+  Status check_update(const Source& source, std::size_t volumes, const UpdateSubset& entries,
                       bool& ascending) const;
   template <typename Stored, typename Source>
-  Status update_from(const Source& source, std::size_t volumes, const EntryList& entries);
+  Status update_from(const Source& source, std::size_t volumes, const UpdateSubset& entries);
   template <typename Stored, typename Source>
   Status update_one(const Source& source, Key key);
   template <typename Source>
-  Status write(const Source& source, const EntryList& entries, bool ascending);
-  bool goes_by_rows(const EntryList& entries, bool ascending, BoxOfId& entry_of);
+  Status write(const Source& source, const UpdateSubset& entries, bool ascending);
+  bool goes_by_rows(const UpdateSubset& entries, bool ascending, BoxOfId& entry_of);
   template <typename Source>
-  [[nodiscard]] bool scatters(const Source& source, std::span<const Key> keys) const noexcept;
+  [[nodiscard]] bool order_is_lost(const Source& source, std::span<const Key> keys) const noexcept;
   template <typename Source>
   void write_all(const Source& source, std::span<const Key> keys);
   template <typename Source, typename Visit>
   void for_rows(const Source& source, const EntryOfRow& entry_of, const Visit& visit);
   template <typename Visit>
-  void for_entries(const EntryList& entries, bool ascending, const Visit& visit);
+  void for_entries(const UpdateSubset& entries, bool ascending, const Visit& visit);
   template <typename Source>
   void write_new(const Source& source, std::span<const Key> keys, std::size_t first,
                  std::size_t begin, std::size_t end);
-  void note_stale(const EntryList& entries) noexcept;
-  void note_left(const EntryList& entries, bool by_rows, std::size_t slots) noexcept;
+  void note_stale(const UpdateSubset& entries) noexcept;
+  void note_left(const UpdateSubset& entries, bool by_rows, std::size_t slots) noexcept;
 
   Execution execution_;
   Margin margin_;
@@ -206,7 +206,7 @@ class Rows {
   KeyTable keys_;
   FilterTable filters_;
   RowRegions regions_;
-  float far_ = 0.0F;
+  float order_reach_ = 0.0F;
   bool changed_ = false;
   std::uint64_t arrangement_ = 1;  // see RowView
   ChangeList stale_;

@@ -52,7 +52,7 @@ constexpr bool kMayStay = requires(const Source& source) {
 };
 
 /// Returns the smallest and largest id of the entries.
-std::ranges::minmax_result<ObjectId> ends_of_ids(const EntryList& entries,
+std::ranges::minmax_result<ObjectId> ends_of_ids(const UpdateSubset& entries,
                                                  bool ascending) noexcept {
   if (ascending) return {entries.key(0).id, entries.key(entries.count - 1).id};
   std::ranges::minmax_result<ObjectId> ends{entries.key(0).id, entries.key(0).id};
@@ -69,7 +69,7 @@ Status Rows::insert(const BoxView& boxes, std::span<const ClientData> data, std:
   return (this->*input_.insert)(boxes, data, keys);
 }
 
-Status Rows::update(const EntryList& entries, const BoxView& boxes) {
+Status Rows::update(const UpdateSubset& entries, const BoxView& boxes) {
   return (this->*input_.update)(entries, boxes);
 }
 
@@ -98,7 +98,7 @@ Status Rows::insert_from(const Source& source, std::size_t count, std::span<cons
                          std::span<Key> keys) {
   if (keys.size() != count || (!data.empty() && data.size() != count)) return Status::size_mismatch;
   if (count > kMaxObjects - keys_.size()) return Status::too_many_objects;
-  if (!all_valid(source, EntryList(count), execution_)) return Status::invalid_bounds;
+  if (!all_valid(source, UpdateSubset(count), execution_)) return Status::invalid_bounds;
   if (!make_room(keys_.size() + count)) return Status::out_of_memory;
   if (count == 0) return Status::ok;
   const std::size_t first = pool_.rows();
@@ -131,12 +131,12 @@ void Rows::write_new(const Source& source, std::span<const Key> keys, std::size_
 }
 
 /// Checks the keys of entries [begin, end), whose indices are consecutive.
-KeyTable::RunOfKeys Rows::look_at(const EntryList& entries, std::size_t begin,
-                                  std::size_t end) const noexcept {
-  if (end - begin >= EntryList::kLongRun) {
-    return keys_.look_at(entries.keys.subspan(entries[begin], end - begin));
+KeyTable::KeysCheck Rows::check_keys(const UpdateSubset& entries, std::size_t begin,
+                                     std::size_t end) const noexcept {
+  if (end - begin >= UpdateSubset::kLongRun) {
+    return keys_.check_keys(entries.keys.subspan(entries[begin], end - begin));
   }
-  KeyTable::RunOfKeys run;
+  KeyTable::KeysCheck run;
   for (std::size_t j = begin; j < end; ++j) {
     run.valid &= keys_.is_valid(entries.key(j));
     run.ascending &= j == begin || entries.key(j - 1).id < entries.key(j).id;
@@ -146,7 +146,7 @@ KeyTable::RunOfKeys Rows::look_at(const EntryList& entries, std::size_t begin,
 
 /// Returns the status of an invalid update; sets `ascending` if ids strictly ascend.
 template <typename Source>
-Status Rows::check_update(const Source& source, std::size_t volumes, const EntryList& entries,
+Status Rows::check_update(const Source& source, std::size_t volumes, const UpdateSubset& entries,
                           bool& ascending) const {
   if (entries.keys.size() != volumes) return Status::size_mismatch;
   std::atomic<bool> known{true};
@@ -157,7 +157,7 @@ Status Rows::check_update(const Source& source, std::size_t volumes, const Entry
     for (std::size_t next = begin; begin < end; begin = next) {
       next = entries.run_end(begin, end);
       if (next + kFetchAhead < end) __builtin_prefetch(&entries.keys[entries[next + kFetchAhead]]);
-      const KeyTable::RunOfKeys run = look_at(entries, begin, next);
+      const KeyTable::KeysCheck run = check_keys(entries, begin, next);
       ok &= run.valid;
       up &= run.ascending && (begin == 0 || entries.key(begin - 1).id < entries.key(begin).id);
     }
@@ -170,7 +170,7 @@ Status Rows::check_update(const Source& source, std::size_t volumes, const Entry
 }
 
 template <typename Stored, typename Source>
-Status Rows::update_from(const Source& source, std::size_t volumes, const EntryList& entries) {
+Status Rows::update_from(const Source& source, std::size_t volumes, const UpdateSubset& entries) {
   bool ascending = false;
   const Status status = check_update(source, volumes, entries, ascending);
   if (status != Status::ok || entries.count == 0) return status;
@@ -199,7 +199,7 @@ Status Rows::update_one(const Source& source, Key key) {
 /// rows change: it reads entries in arbitrary order but writes each column in order, which touches
 /// a sixth of the cache lines. A table maps ids to entries unless they correspond one to one. False
 /// if a key occurs twice, because its entries must be written in order.
-bool Rows::goes_by_rows(const EntryList& entries, bool ascending, BoxOfId& entry_of) {
+bool Rows::goes_by_rows(const UpdateSubset& entries, bool ascending, BoxOfId& entry_of) {
   const std::size_t count = entries.count;
   if (2 * count <= pool_.rows()) return false;
   const auto [first, last] = ends_of_ids(entries, ascending);
@@ -225,7 +225,7 @@ bool Rows::goes_by_rows(const EntryList& entries, bool ascending, BoxOfId& entry
 }
 
 template <typename Source>
-Status Rows::write(const Source& source, const EntryList& entries, bool ascending) {
+Status Rows::write(const Source& source, const UpdateSubset& entries, bool ascending) {
   const PoolColumns columns(pool_);
   BoxOfId entry_of_id{};
   const bool by_rows = goes_by_rows(entries, ascending, entry_of_id);
@@ -249,7 +249,7 @@ Status Rows::write(const Source& source, const EntryList& entries, bool ascendin
   } else {
     note_stale(entries);
     const bool all = by_rows && entries.number == nullptr && entries.count == keys_.size();
-    if (all && scatters(source, entries.keys)) {
+    if (all && order_is_lost(source, entries.keys)) {
       write_all(source, entries.keys);
       return Status::ok;
     }
@@ -269,11 +269,11 @@ Status Rows::write(const Source& source, const EntryList& entries, bool ascendin
 /// True if most objects move far and in different directions, so that the order of the rows is
 /// worthless. Decided from a sample.
 template <typename Source>
-bool Rows::scatters(const Source& source, std::span<const Key> keys) const noexcept {
+bool Rows::order_is_lost(const Source& source, std::span<const Key> keys) const noexcept {
   constexpr std::size_t kSample = 64;
   // With few rows the order does not matter.
   constexpr std::size_t kFewRows = 256;
-  if (!regions_.built || !(far_ > 0.0F) || keys.size() < kFewRows) return false;
+  if (!regions_.built || !(order_reach_ > 0.0F) || keys.size() < kFewRows) return false;
   float volume[kMaxColumns];
   float* columns[kMaxColumns];
   for (std::size_t c = 0; c < pool_.columns(); ++c) columns[c] = volume + c;
@@ -289,8 +289,9 @@ bool Rows::scatters(const Source& source, std::span<const Key> keys) const noexc
       const float step = volume[a] - pool_.column(a)[row];
       const float edge = volume[3 + a] - volume[a];
       // Steps are compared with the previous sample's, because a common motion keeps the order.
-      // They must also exceed both objects' edges, because far_ may stem from much smaller objects.
-      far |= std::abs(step - before[a]) > std::max({far_, edge, edge_before[a]});
+      // They must also exceed both objects' edges, because order_reach_ may stem from much smaller
+      // objects.
+      far |= std::abs(step - before[a]) > std::max({order_reach_, edge, edge_before[a]});
       before[a] = step;
       edge_before[a] = edge;
     }
@@ -313,7 +314,7 @@ void Rows::write_all(const Source& source, std::span<const Key> keys) {
   disorder();
 }
 
-void Rows::note_stale(const EntryList& entries) noexcept {
+void Rows::note_stale(const UpdateSubset& entries) noexcept {
   if (entries.count > stale_.limit()) {
     stale_.add_all();
   } else {
@@ -324,7 +325,7 @@ void Rows::note_stale(const EntryList& entries) noexcept {
 
 /// Adds the objects whose bits are set in the selection to `stale` and clears the bits, which are
 /// indexed by row or by entry.
-void Rows::note_left(const EntryList& entries, bool by_rows, std::size_t slots) noexcept {
+void Rows::note_left(const UpdateSubset& entries, bool by_rows, std::size_t slots) noexcept {
   bool any = false;
   for (std::size_t w = 0; w < bitmap_words(slots); ++w) {
     for (std::uint64_t bits = std::exchange(selection_.bits[w], 0); bits != 0; bits &= bits - 1) {
@@ -362,7 +363,7 @@ void Rows::for_rows(const Source& source, const EntryOfRow& entry_of, const Visi
 /// Calls visit(entry, its row, j) for the j-th entry. Threads never share an aligned group of 64
 /// entries, so that `visit` may set bit j of a bitmap.
 template <typename Visit>
-void Rows::for_entries(const EntryList& entries, bool ascending, const Visit& visit) {
+void Rows::for_entries(const UpdateSubset& entries, bool ascending, const Visit& visit) {
   const std::size_t count = entries.count;
   const auto go = [&](std::size_t begin, std::size_t end) {
     for (std::size_t j = begin; j < end; ++j) {
@@ -379,7 +380,7 @@ void Rows::for_entries(const EntryList& entries, bool ascending, const Visit& vi
   }
 }
 
-Status Rows::check(const EntryList& entries, const BoxView& boxes) const {
+Status Rows::check(const UpdateSubset& entries, const BoxView& boxes) const {
   bool ascending = false;
   return check_update(BoxSource{boxes}, boxes.count, entries, ascending);
 }
@@ -401,7 +402,7 @@ Status Rows::insert_boxes(const BoxView& boxes, std::span<const ClientData> data
 }
 
 template <typename Source, typename Stored>
-Status Rows::update_boxes(const EntryList& entries, const BoxView& boxes) {
+Status Rows::update_boxes(const UpdateSubset& entries, const BoxView& boxes) {
   return update_from<Stored>(Source{boxes}, boxes.count, entries);
 }
 

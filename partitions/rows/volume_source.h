@@ -11,9 +11,9 @@
 #include <winnow/core/sphere.h>
 #include <winnow/core/volume.h>
 #include "core/memory/bounds_pool.h"
-#include "core/sort/stretches.h"
+#include "core/sort/parallel_ranges.h"
 #include "partitions/rows/box_input.kernel.h"
-#include "partitions/rows/entry_list.h"
+#include "partitions/rows/update_subset.h"
 
 #include <algorithm>
 #include <atomic>
@@ -48,12 +48,12 @@ inline constexpr std::size_t kFetchAhead = 12;
 /// Calls work(begin, end) for ranges that cover [0, count), in parallel.
 template <typename Work>
 void for_ranges(const Execution& execution, std::size_t count, Work&& work) {
-  for_even_stretches(execution, count, kEntriesPerTask, work);
+  for_each_even_range(execution, count, kEntriesPerTask, work);
 }
 
 /// True if all entries are legal.
 template <typename Source>
-[[nodiscard]] bool all_valid(const Source& source, const EntryList& entries,
+[[nodiscard]] bool all_valid(const Source& source, const UpdateSubset& entries,
                              const Execution& execution) {
   std::atomic<bool> valid{true};
   for_ranges(execution, entries.count, [&](std::size_t begin, std::size_t end) {
@@ -105,7 +105,7 @@ struct BoxSource {
            boxes.max[0] == first + 3 && boxes.max[1] == first + 4 && boxes.max[2] == first + 5;
   }
   /// True if entries [begin, end) are legal. Tests 16 packed boxes at a time.
-  [[nodiscard]] bool valid_entries(const EntryList& entries, std::size_t begin,
+  [[nodiscard]] bool valid_entries(const UpdateSubset& entries, std::size_t begin,
                                    std::size_t end) const noexcept {
     if (packed()) {
       const float* const floats = boxes.min[0];

@@ -1,5 +1,5 @@
 // Mutations, refresh and bookkeeping of a partition. Pair queries are in pairs/self_pairs.cpp and
-// pairs/calm_pairs.cpp; other queries, in queries/, call `prepare`.
+// pairs/resting_pairs.cpp; other queries, in queries/, call `prepare`.
 
 #include "partitions/state/partition_state.h"
 
@@ -21,7 +21,7 @@ std::uint64_t next_identity() noexcept {
 }  // namespace
 
 PairTracking::PairTracking(std::pmr::memory_resource* memory) noexcept
-    : identity(next_identity()), calm(memory) {}
+    : identity(next_identity()), resting(memory) {}
 
 PartitionState::PartitionState(std::pmr::memory_resource* resource, const PartitionOptions& options,
                                const VolumeInput& input) noexcept
@@ -62,7 +62,7 @@ bool PartitionState::set_structure(StructureKind given) noexcept {
   }
   if (!is_first && index.structure().tests_volumes() != tested) {
     // The structures differ in the pairs that they report, so the tracked buffer is out of date.
-    pairs_.calm.end();
+    pairs_.resting.end();
     pairs_.tracked_serial = 0;
   }
   if (chooser_ != nullptr) chooser_->end(memory);
@@ -78,7 +78,7 @@ Status PartitionState::insert(const BoxView& boxes, std::span<const ClientData> 
   if (status == Status::ok && deferred_.active() && !deferred_.insert(keys, boxes)) {
     end_deferring();
   }
-  pairs_.calm.disturb(keys.size(), rows.size());
+  pairs_.resting.disturb(keys.size(), rows.size());
   note_changes(keys.size());
   if (chooser_ != nullptr) chooser_->note_new(keys.size());
   return status;
@@ -86,7 +86,7 @@ Status PartitionState::insert(const BoxView& boxes, std::span<const ClientData> 
 
 Status PartitionState::remove(std::span<const Key> keys) {
   const Status status = rows.remove(keys);
-  pairs_.calm.disturb(keys.size(), rows.size());
+  pairs_.resting.disturb(keys.size(), rows.size());
   note_changes(keys.size());
   return status;
 }
@@ -105,8 +105,8 @@ Status PartitionState::reserve(std::size_t objects, Pages pages) {
   const std::span<const StructureKind> later =
       chooser_ == nullptr ? std::span<const StructureKind>() : chooser_->range();
   const bool reserved =
-      status == Status::ok && index.reserve(most, pages, later) && pairs_.calm.reserve(pages);
-  if (reserved && pages == Pages::touched) rows.touch();
+      status == Status::ok && index.reserve(most, pages, later) && pairs_.resting.reserve(pages);
+  if (reserved && pages == Pages::prefaulted) rows.touch();
   note_changes(0);
   return status == Status::ok && !reserved ? Status::out_of_memory : status;
 }
@@ -114,12 +114,12 @@ Status PartitionState::reserve(std::size_t objects, Pages pages) {
 Status PartitionState::set_filter(std::span<const Key> keys,
                                   std::span<const ObjectFilter> filters) {
   const Status status = rows.set_filter(keys, filters);
-  pairs_.calm.disturb(keys.size(), rows.size());
+  pairs_.resting.disturb(keys.size(), rows.size());
   note_changes(0);
   return status;
 }
 
-Status PartitionState::update(const EntryList& entries, const BoxView& boxes) {
+Status PartitionState::update(const UpdateSubset& entries, const BoxView& boxes) {
   if (!deferred_.active()) {
     const Status status = rows.update(entries, boxes);
     note_changes(entries.count);
@@ -129,14 +129,14 @@ Status PartitionState::update(const EntryList& entries, const BoxView& boxes) {
   if (deferred_.active()) {
     note_changes(0);
   } else {
-    pairs_.calm.end();
+    pairs_.resting.end();
     note_changes(entries.count);
   }
   return status;
 }
 
 Status PartitionState::update(std::span<const Key> keys, const BoxView& boxes,
-                              const Entries& entries) {
+                              const IndexSubset& entries) {
   if (!entries.is_mask()) {
     const auto is_one = [&](std::uint32_t number) { return number < keys.size(); };
     if (!std::ranges::all_of(entries.numbers(), is_one)) return Status::invalid_argument;
@@ -162,7 +162,7 @@ Status PartitionState::update(Key key, const Aabb& box) {
 }
 
 Status PartitionState::bounds(std::span<const Key> keys, std::span<Aabb> boxes) const noexcept {
-  if (!rows.keys().look_at(keys).valid) return Status::invalid_key;
+  if (!rows.keys().check_keys(keys).valid) return Status::invalid_key;
   Lock lock = Lock::deferred(refresh_mutex_);
   if (stale_.load(std::memory_order_acquire) || deferred_.active()) lock.lock();
   if (!deferred_.active()) {
@@ -170,7 +170,7 @@ Status PartitionState::bounds(std::span<const Key> keys, std::span<Aabb> boxes) 
     return Status::ok;
   }
   for (std::size_t i = 0; i < keys.size(); ++i) {
-    const DeferredBoxes::Box& given = deferred_.given()[keys[i].id];
+    const VerletSkin::Box& given = deferred_.given()[keys[i].id];
     boxes[i] = {Vec3f(given.min), Vec3f(given.max)};
   }
   return Status::ok;
@@ -183,7 +183,7 @@ void PartitionState::end_deferring() const noexcept {
   const Lock lock(refresh_mutex_);
   auto& self = const_cast<PartitionState&>(*this);
   if (deferred_.write(self.rows)) self.note_changes(rows.size());
-  pairs_.calm.end();
+  pairs_.resting.end();
   deferred_.drop();
 }
 
@@ -219,7 +219,7 @@ Status PartitionState::refresh() const {
 Status PartitionState::make_ready() const {
   if (stale_.load(std::memory_order_acquire)) {
     const Lock lock(refresh_mutex_);
-    if (index.builds() == 0) index.note_asked();
+    if (index.builds() == 0) index.note_query();
   }
   return refresh();
 }
@@ -227,7 +227,7 @@ Status PartitionState::make_ready() const {
 Status PartitionState::refresh_now() {
   const StructureKind now = index.kind();
   // While an exchange of the structure is planned, the choice is not revised.
-  const bool choosing = chooser_ != nullptr && !index.exchanging();
+  const bool choosing = chooser_ != nullptr && !index.swap_is_planned();
   const StructureKind wanted =
       choosing
           ? chooser_->choose(rows, now, {index.builds(), index.excess_tests(), index.tail_limit()})
@@ -239,7 +239,7 @@ Status PartitionState::refresh_now() {
   } else if (rows.changed()) {
     status = index.refresh();
   }
-  if (refused || (chooser_ != nullptr && index.exchange_refused())) chooser_->refused();
+  if (refused || (chooser_ != nullptr && index.swap_refused())) chooser_->refused();
   if (status != Status::ok) return status;
   rows.settle(pairs_.tracked_serial != 0);
   if (chooser_ == nullptr) return Status::ok;
@@ -247,7 +247,7 @@ Status PartitionState::refresh_now() {
   if (index.kind() != now) {
     StructureChoice choice;
     chooser_->report(choice);
-    tell_choice(now.name(), index.kind().name(), choice.reason, rows.size());
+    log_choice(now.name(), index.kind().name(), choice.reason, rows.size());
   }
   return Status::ok;
 }
@@ -257,7 +257,7 @@ void PartitionState::note(QueryKind kind, std::size_t count) const noexcept {
 }
 
 Status PartitionState::prepare(QueryKind kind, std::size_t count, QueryView& view) const {
-  if (stale_.load(std::memory_order_acquire)) index.note_asked();
+  if (stale_.load(std::memory_order_acquire)) index.note_query();
   if (const Status status = settle(); status != Status::ok) return status;
   note(kind, count);
   if (index.queries_stale()) {
@@ -272,7 +272,7 @@ Status PartitionState::prepare(QueryKind kind, std::size_t count, QueryView& vie
 
 void PartitionState::clear() noexcept {
   deferred_.drop();
-  pairs_.calm.end();
+  pairs_.resting.end();
   rows.clear();
   pairs_.tracked_serial = 0;
   if (chooser_ != nullptr) chooser_->clear();
@@ -282,7 +282,7 @@ void PartitionState::clear() noexcept {
 void PartitionState::release_memory() noexcept {
   end_deferring();
   deferred_.release();
-  pairs_.calm.release();
+  pairs_.resting.release();
   near_.release();
   listed_.release();
   index.release_memory();
@@ -307,18 +307,18 @@ Footprint PartitionState::footprint() const noexcept {
   result.bounds += deferred_.bytes();
   result.scratch += listed_.bytes();
   result.scratch += near_.footprint().total();
-  result.structure += pairs_.calm.bytes();
+  result.structure += pairs_.resting.bytes();
   return result;
 }
 
 bool PartitionState::is_exact() const noexcept {
   return rows.pool().volume() == Volume::aabb && rows.margin().is_none() &&
-         steadily([&] { return index.structure().tests_volumes(); });
+         with_stable_index([&] { return index.structure().tests_volumes(); });
 }
 
 Statistics PartitionState::statistics() const noexcept {
   Statistics s;
-  steadily([&] { index.add_statistics(s); });
+  with_stable_index([&] { index.add_statistics(s); });
   s.full_queries = pairs_.full_queries.load(std::memory_order_relaxed);
   s.incremental_queries = pairs_.incremental_queries.load(std::memory_order_relaxed);
   s.last_tests = pairs_.last_tests.load(std::memory_order_relaxed);
@@ -327,7 +327,7 @@ Statistics PartitionState::statistics() const noexcept {
 }
 
 StructureChoice PartitionState::choice() const noexcept {
-  return steadily([&] {
+  return with_stable_index([&] {
     StructureChoice choice;
     choice.structure = index.kind();
     choice.reason = "as it was asked for";

@@ -8,9 +8,9 @@
 #include "partitions/choice/chooser.h"
 #include "partitions/index/query_view.h"
 #include "partitions/index/spatial_index.h"
-#include "partitions/rows/deferred_boxes.h"
 #include "partitions/rows/rows.h"
-#include "partitions/state/calm.h"
+#include "partitions/rows/verlet_skin.h"
+#include "partitions/state/resting.h"
 
 #include <atomic>
 #include <cstddef>
@@ -33,7 +33,7 @@ struct PairTracking {
   std::atomic<std::uint64_t> incremental_queries{0};
   std::atomic<std::uint64_t> last_tests{0};
   std::atomic<std::uint64_t> last_pairs{0};
-  Calm calm;
+  RestDetector resting;
 };
 
 /// All data of a partition.
@@ -59,8 +59,8 @@ class PartitionState {
   Status reserve_pairs(PairBuffer& out, std::size_t pairs, Pages pages) const noexcept;
   [[nodiscard]] bool reserve_events(PairEvents& out, std::size_t pairs, Pages pages) const noexcept;
   Status set_filter(std::span<const Key> keys, std::span<const ObjectFilter> filters);
-  Status update(const EntryList& entries, const BoxView& boxes);
-  Status update(std::span<const Key> keys, const BoxView& boxes, const Entries& entries);
+  Status update(const UpdateSubset& entries, const BoxView& boxes);
+  Status update(std::span<const Key> keys, const BoxView& boxes, const IndexSubset& entries);
   Status update(Key key, const Aabb& box);
   Status bounds(std::span<const Key> keys, std::span<Aabb> boxes) const noexcept;
 
@@ -80,20 +80,20 @@ class PartitionState {
   Status prepare(QueryKind kind, std::size_t count, QueryView& view) const;
   void note(QueryKind kind, std::size_t count) const noexcept;
 
-  /// Calls look() while no other thread can reorder rows or exchange the structure.
-  template <typename Look>
-  auto steadily(Look&& look) const {
+  /// Calls call() while no other thread can reorder rows or exchange the structure.
+  template <typename Call>
+  auto with_stable_index(Call&& call) const {
     Lock lock = Lock::deferred(refresh_mutex_);
     if (stale_.load(std::memory_order_acquire)) lock.lock();
-    return look();
+    return call();
   }
 
   [[nodiscard]] Status find_self_pairs(PairBuffer& out, const PairOptions& options,
                                        PairEvents* events) const;
   /// Appends the pairs (object of this, object of other). Queries `other` with every object of
   /// this.
-  Status ask(const PartitionState& other, HitMode mode, const PairPredicate& predicate,
-             PairBuffer& out) const;
+  Status query_other(const PartitionState& other, HitMode mode, const PairPredicate& predicate,
+                     PairBuffer& out) const;
 
   [[nodiscard]] bool is_exact() const noexcept;
   [[nodiscard]] Footprint footprint() const noexcept;
@@ -118,16 +118,16 @@ class PartitionState {
                                 EventWriter* events) const;
   Status linked_self_pairs(PairBuffer& out, const PairPredicate& predicate,
                            EventWriter* events) const;
-  Status ask_moved(PairBuffer& out, const PairPredicate& predicate) const;
+  Status query_moved(PairBuffer& out, const PairPredicate& predicate) const;
   [[nodiscard]] bool list_moved() const noexcept;
-  void begin_calm(PairBuffer& out, const PairOptions& options) const noexcept;
+  void try_start_resting(PairBuffer& out, const PairOptions& options) const noexcept;
   [[nodiscard]] bool watch_all(std::size_t most) const noexcept;
-  [[nodiscard]] bool stays_calm(const PairBuffer& out, const PairOptions& options,
-                                const EventWriter* events) const noexcept;
-  Status calm_self_pairs(PairBuffer& out, EventWriter* events) const;
+  [[nodiscard]] bool can_stay_deferred(const PairBuffer& out, const PairOptions& options,
+                                       const EventWriter* events) const noexcept;
+  Status resting_self_pairs(PairBuffer& out, EventWriter* events) const;
   [[nodiscard]] bool keep_near(PairBuffer& out, std::size_t kept) const noexcept;
-  Status ask_near(std::span<const std::uint32_t> asking, PairBuffer& out,
-                  std::uint64_t& tests) const;
+  Status query_near(std::span<const std::uint32_t> asking, PairBuffer& out,
+                    std::uint64_t& tests) const;
   [[nodiscard]] bool watch_rows(std::size_t begin, std::size_t end,
                                 std::size_t stride) const noexcept;
   [[nodiscard]] bool is_watched(const Pair& pair) const noexcept;
@@ -139,19 +139,19 @@ class PartitionState {
   Status track_self_pairs(PairBuffer& out, const PairOptions& options, bool tracked,
                           EventWriter* events) const;
   void take_frame(PairBuffer& out, bool tracked, EventWriter* events) const noexcept;
-  void undo_self_pairs(PairBuffer& out, bool calm, EventWriter* events) const noexcept;
+  void undo_self_pairs(PairBuffer& out, bool resting, EventWriter* events) const noexcept;
   [[nodiscard]] bool can_update_in_place(const PairBuffer& out, const PairOptions& options,
                                          const EventWriter* events) const noexcept;
   bool finish_pairs(PairBuffer& out, Order order, bool all, EventWriter* events) const noexcept;
   [[nodiscard]] bool can_update(const PairBuffer& out) const noexcept;
-  [[nodiscard]] bool asks_few(const PairBuffer& out) const noexcept;
+  [[nodiscard]] bool queries_few(const PairBuffer& out) const noexcept;
   bool run_self_task(const SelfTasks& tasks, std::size_t task, PairSink& sink) const noexcept;
   void note_work(std::uint64_t tests, std::uint64_t queries,
-                 SpatialIndex::Asked asked) const noexcept;
+                 SpatialIndex::PairQueryKind asked) const noexcept;
 
   Chooser* chooser_ = nullptr;
   mutable PairTracking pairs_;
-  mutable DeferredBoxes deferred_;
+  mutable VerletSkin deferred_;
   mutable PairBuffer near_;       // scratch for finding the pairs to watch
   Column<std::uint32_t> listed_;  // entries of a mask
   mutable Mutex refresh_mutex_;

@@ -21,10 +21,10 @@ struct StructureCosts {
   /// A refresh that scatters all objects, per object, including the build; replaces `keep`. 0: the
   /// sum of both.
   double anew = 0;
-  double ask = 0;        ///< per ray or region; a nearest query counts four times
-  double ask_level = 0;  ///< such a query, for each doubling of the number of objects
-  double scan = 0;       ///< such a query, per object, if there is no tree
-  double rows = 0;       ///< a frame with such queries, per object that moved
+  double query = 0;        ///< per ray or region; a nearest query counts four times
+  double query_level = 0;  ///< such a query, for each doubling of the number of objects
+  double scan = 0;         ///< such a query, per object, if there is no tree
+  double rows = 0;         ///< a frame with such queries, per object that moved
 };
 
 }  // namespace winnow

@@ -9,7 +9,7 @@ std::string_view StructureKind::name() const noexcept {
   return info_ == nullptr ? std::string_view() : info_->name;
 }
 
-void Structure::leave_all(const RowPlan& plan) const noexcept {
+void Structure::put_all_in_rest(const RowPlan& plan) const noexcept {
   if (plan.objects == plan.rows) {
     plan.rest.set_size(plan.rest.size() + plan.rows);
     std::iota(plan.rest.end() - plan.rows, plan.rest.end(), 0U);

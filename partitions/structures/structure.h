@@ -28,7 +28,7 @@ class Structure;
 struct StructureCosts;
 
 /// With fewer objects the tree finds all pairs sooner than cells are built.
-inline constexpr std::size_t kFewestInCells = 256;
+inline constexpr std::size_t kMinInCells = 256;
 
 /// Constructor arguments of a structure: the rows, and the tree over the regular rows, which
 /// SpatialIndex maintains. Both outlive the structure.
@@ -132,7 +132,7 @@ class Structure {
     return room.points.reserve(kd_scratch(room.objects), room.pages);
   }
   /// The maximum number of holes that a plan leaves.
-  [[nodiscard]] virtual std::size_t most_holes() const noexcept { return 0; }
+  [[nodiscard]] virtual std::size_t max_holes() const noexcept { return 0; }
 
   /// Computes the regular rows and their order, one stage per call, starting with stage 0. Each
   /// stage takes about as long as one pass over all rows. The default implementation makes every
@@ -143,11 +143,11 @@ class Structure {
   /// longer fit are found then. Until `finish_build` the structure answers queries in the order of
   /// the last build. An unfinished plan is dropped.
   [[nodiscard]] virtual Planned plan(const RowPlan& plan, unsigned) noexcept {
-    leave_all(plan);
+    put_all_in_rest(plan);
     return Planned::done;
   }
   /// Makes every live row part of the rest.
-  void leave_all(const RowPlan& plan) const noexcept;
+  void put_all_in_rest(const RowPlan& plan) const noexcept;
   /// Returns the current row of the object that was in `row` when the plan was started, or `row` if
   /// the object was removed. O(log moves) for rows that have become empty.
   [[nodiscard]] std::size_t row_now(const RowPlan& plan, std::size_t row) const noexcept;
@@ -173,12 +173,12 @@ class Structure {
   // Rows that no longer fit.
 
   /// A box, current or predicted.
-  struct Place {
+  struct ObjectBox {
     std::array<float, 3> low;
     std::array<float, 3> high;
   };
-  [[nodiscard]] Place place_of(std::size_t row) const noexcept {
-    Place place;
+  [[nodiscard]] ObjectBox place_of(std::size_t row) const noexcept {
+    ObjectBox place;
     for (std::size_t a = 0; a < 3; ++a) {
       place.low[a] = pool().column(a)[row];
       place.high[a] = pool().column(3 + a)[row];
@@ -187,7 +187,7 @@ class Structure {
   }
   /// True if the object in this regular row would still fit the row's cell if its box were the
   /// given place.
-  [[nodiscard]] virtual bool fits(std::size_t, const Place&) const noexcept { return true; }
+  [[nodiscard]] virtual bool fits(std::size_t, const ObjectBox&) const noexcept { return true; }
   /// Appends the regular rows that no longer fit, after any rows may have changed. `room` has space
   /// for all regular rows. Returns false and appends nothing if there are more than `most`, or if a
   /// sample predicts more.

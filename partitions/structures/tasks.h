@@ -11,12 +11,12 @@
 
 namespace winnow {
 
-inline constexpr std::size_t kMostTasks = 64;
+inline constexpr std::size_t kMaxTasks = 64;
 
 /// Divides units of work into at most `most` tasks of about equal size.
 struct TaskCut {
   std::size_t units = 0;
-  std::size_t most = kMostTasks;
+  std::size_t most = kMaxTasks;
 
   [[nodiscard]] std::size_t tasks() const noexcept { return std::min(most, units); }
   /// The first unit of a task; for task == tasks() the number of units.
@@ -37,7 +37,7 @@ template <typename Offset, typename Find>
   constexpr std::size_t kOneIn = 8;
   constexpr std::size_t kFewRows = 32;  // a sample of one row in this many is too small to decide
   const std::size_t tasks = cut.tasks();
-  std::array<std::size_t, kMostTasks> found{};
+  std::array<std::size_t, kMaxTasks> found{};
   const auto room = [&](std::size_t task) { return scratch + offset(cut.first(task)); };
   const auto run = [&](std::size_t task) {
     found[task] = find(cut.first(task), cut.first(task + 1), room(task));

@@ -17,9 +17,10 @@ class BlockPairs {
  public:
   BlockPairs(const RowView& rows, PairSink& sink) : rows_(rows), sink_(sink), filters_(rows) {}
 
-  /// Starts with rows [begin, end). Pairs within the block are found unless `apart`. Returns false
-  /// if all rows are holes. `filtered`: filters must be tested on hits.
-  bool start(std::uint32_t begin, std::uint32_t end, bool apart = false, bool filtered = true) {
+  /// Starts with rows [begin, end). Pairs within the block are found unless `excludes_self_pairs`.
+  /// Returns false if all rows are holes. `filtered`: filters must be tested on hits.
+  bool start(std::uint32_t begin, std::uint32_t end, bool excludes_self_pairs = false,
+             bool filtered = true) {
     at_ = begin;
     behind_ = end;
     next_ = end / kLanes;
@@ -34,7 +35,7 @@ class BlockPairs {
       high_[a] = reduce_max(Floats::load(own_[3 + a]));
     }
     if (!(low_[0] <= high_[0])) return false;
-    if (!apart) test_self();
+    if (!excludes_self_pairs) test_self();
     return true;
   }
 
@@ -150,7 +151,7 @@ class BlockPairs {
     const Uints own_layers = Uints::load_unaligned(layers + at_);
     const Uints own_masks = Uints::load_unaligned(masks + at_);
     return write_hits([&](Mask16 mask, std::uint32_t row) {
-      return mask & sharing(own_layers, masks[row]) & sharing(own_masks, layers[row]);
+      return mask & test_bits(own_layers, masks[row]) & test_bits(own_masks, layers[row]);
     });
   }
 
@@ -193,7 +194,7 @@ class BlockPairs {
 
   const RowView& rows_;
   PairSink& sink_;
-  const AskingFilters filters_;
+  const QueryFilters filters_;
   alignas(64) float own_[6][kLanes];
   bool filtered_ = false;
   std::uint32_t at_ = 0;

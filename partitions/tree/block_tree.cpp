@@ -96,7 +96,7 @@ bool BlockTree::reserve(std::size_t blocks, Pages pages) noexcept {
   const std::size_t floats = floats_of(levels_over(blocks_with_room(blocks)));
   if (!shape_.reserve(1) || !nodes_.reserve(floats, pages)) return false;
   // Existing nodes may have moved.
-  if (!nodes_.empty() && !shape_.empty()) aim_boxes(shape_[0]);
+  if (!nodes_.empty() && !shape_.empty()) set_box_pointers(shape_[0]);
   return true;
 }
 
@@ -104,12 +104,12 @@ bool BlockTree::lay_boxes(TreeShape& shape) noexcept {
   const std::size_t total = floats_of(shape);
   if (!nodes_.grow(total)) return false;
   nodes_.set_size(total);
-  aim_boxes(shape);
+  set_box_pointers(shape);
   return true;
 }
 
 // Sets the pointers of the shape to its nodes, and empties the nodes behind them.
-void BlockTree::aim_boxes(TreeShape& shape) noexcept {
+void BlockTree::set_box_pointers(TreeShape& shape) noexcept {
   const TreeShape room = levels_over(laid_out_);
   float* at = nodes_.data();
   for (std::uint32_t level = 0; level < shape.levels; ++level) {

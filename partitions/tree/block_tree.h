@@ -85,7 +85,7 @@ class BlockTree {
 
  private:
   [[nodiscard]] bool lay_boxes(TreeShape& shape) noexcept;
-  void aim_boxes(TreeShape& shape) noexcept;
+  void set_box_pointers(TreeShape& shape) noexcept;
 
   Column<float> nodes_;
   Column<std::uint32_t> filters_;

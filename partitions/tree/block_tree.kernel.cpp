@@ -70,7 +70,7 @@ class LeafPairs {
   /// Adds all pairs within a leaf.
   bool add_self(std::uint32_t leaf) {
     const FilterRange range = range_of(tree_.filters[0], leaf);
-    if (!may_meet(range, range)) return true;
+    if (!filters_allow(range, range)) return true;
     return add_rows(leaf * kLanes, leaf, 0x7FFFU);
   }
 
@@ -204,26 +204,26 @@ class LeafFilter {
   LeafFilter(const TreeView& tree, std::uint32_t leaf) {
     if constexpr (!Filtered) return;
     own_ = range_of(tree.filters[0], leaf);
-    meets_all_ = surely_meet(span_of(tree.filters[0], leaf), tree.rows.span);
+    matches_all_ = surely_match(span_of(tree.filters[0], leaf), tree.rows.span);
   }
 
   /// True if no row of the leaf matches another row of it.
-  [[nodiscard]] bool apart() const { return decides() && !may_meet(own_, own_); }
+  [[nodiscard]] bool excludes_self_pairs() const { return decides() && !filters_allow(own_, own_); }
 
   /// True if filters must be tested on hits of the leaf's rows. Testing all is cheaper than
   /// predicting which can be skipped.
-  [[nodiscard]] bool decides() const { return Filtered && !meets_all_; }
+  [[nodiscard]] bool decides() const { return Filtered && !matches_all_; }
 
   /// Returns the nodes of `met` whose filters may match the leaf; their layers and masks are at
   /// `at`.
-  [[nodiscard]] Mask16 let_through(const std::uint32_t* layers, const std::uint32_t* mask,
-                                   std::uint32_t at, Mask16 met) const {
+  [[nodiscard]] Mask16 passing_lanes(const std::uint32_t* layers, const std::uint32_t* mask,
+                                     std::uint32_t at, Mask16 met) const {
     return decides() ? met & matching_lanes(layers, mask, at, own_) : met;
   }
 
  private:
   FilterRange own_{};
-  bool meets_all_ = false;
+  bool matches_all_ = false;
 };
 
 /// Returns the 16 nodes from `first_node` on that a box overlaps. Force-inlined, because a call
@@ -266,12 +266,13 @@ class NearGroups {
   bool for_each(const float* low, const float* high, const LeafFilter<Filtered>& filter,
                 Visit&& visit) {
     if (tree_.levels == 1) return visit(0);
-    if (!complete_) return ask_tree(low, high, filter, visit);
+    if (!complete_) return search_tree(low, high, filter, visit);
     for (unsigned at = 0; at < count_; at += kLanes) {
       const float* const columns[6] = {box_[0], box_[1], box_[2], box_[3], box_[4], box_[5]};
       ++sink_.tests;
       const Mask16 touched = overlap(load_slabs<3>(columns, at), low, high);
-      for (Mask16 met = filter.let_through(layers_, mask_, at, touched); met != 0; met &= met - 1) {
+      for (Mask16 met = filter.passing_lanes(layers_, mask_, at, touched); met != 0;
+           met &= met - 1) {
         if (!visit(group_[at + first(met)])) return false;
       }
     }
@@ -294,14 +295,14 @@ class NearGroups {
   }
 
   template <typename Visit>
-  bool ask_tree(const float* low, const float* high, const LeafFilter<Filtered>& filter,
-                Visit& visit) {
+  bool search_tree(const float* low, const float* high, const LeafFilter<Filtered>& filter,
+                   Visit& visit) {
     const auto test = [&](std::uint32_t level, std::uint32_t first_node) {
       const Mask16 touched = touched_nodes(tree_, sink_, level, first_node, low, high);
       // Nodes on higher levels are pruned only by position: testing their filters costs more.
       const NodeFilters& nodes = tree_.filters[1];
       return level > 1 ? touched
-                       : filter.let_through(nodes.layers, nodes.mask, first_node, touched);
+                       : filter.passing_lanes(nodes.layers, nodes.mask, first_node, touched);
     };
     return traverse_from(tree_, 1, first_, test, visit);
   }
@@ -329,11 +330,11 @@ bool find_pairs_of_leaves(const TreeView& tree, std::uint32_t begin, std::uint32
     if (leaf % kLanes == 0) near.find(leaf / kLanes);
     const std::uint32_t row = (tree.first_block + leaf) * kLanes;
     const LeafFilter<Filtered> filter(tree, leaf);
-    if (!pairs.start(row, row + kLanes, filter.apart(), filter.decides())) continue;
+    if (!pairs.start(row, row + kLanes, filter.excludes_self_pairs(), filter.decides())) continue;
     const auto visit = [&](std::uint32_t group) {
       const Mask16 touched =
           touched_nodes(tree, sink, 0, group * kLanes, pairs.low(), pairs.high());
-      Mask16 leaves = filter.let_through(filters.layers, filters.mask, group * kLanes, touched);
+      Mask16 leaves = filter.passing_lanes(filters.layers, filters.mask, group * kLanes, touched);
       if (group == leaf / kLanes) leaves &= ~lanes_below(leaf % kLanes + 1);
       return pairs.add_blocks(tree.first_block + group * kLanes, leaves);
     };
@@ -350,9 +351,9 @@ bool self_pairs(const TreeView& tree, std::uint32_t begin, std::uint32_t end, Pa
 
 /// Runs the boxes of a batch down the tree together.
 template <bool Filtered>
-class BoxQuestions {
+class BoxQueries {
  public:
-  BoxQuestions(const TreeView& tree, const QueryBatch& batch, PairSink& sink)
+  BoxQueries(const TreeView& tree, const QueryBatch& batch, PairSink& sink)
       : tree_(tree),
         batch_(batch),
         sink_(sink),
@@ -368,7 +369,7 @@ class BoxQuestions {
   }
 
  private:
-  friend JointTraversal<BoxQuestions>;
+  friend JointTraversal<BoxQueries>;
   struct Nothing {};
 
   [[nodiscard]] static Nothing prepare(const TreeShape&, std::uint32_t, std::uint32_t) {
@@ -386,9 +387,9 @@ class BoxQuestions {
     return mask;
   }
 
-  bool visit(const OpenList& blocks) {
+  bool visit(const QueryNodeList& blocks) {
     for (unsigned k = 0; k < blocks.size; ++k) {
-      const std::uint32_t row = blocks.question[k];
+      const std::uint32_t row = blocks.query[k];
       const std::uint32_t at = (tree_.first_block + blocks.at[k]) * kLanes;
       const QueryBox q(batch_.column, row);
       if (!hits_.make_room()) return false;
@@ -401,18 +402,18 @@ class BoxQuestions {
   const TreeView& tree_;
   const QueryBatch& batch_;
   PairSink& sink_;
-  const AskingFilters filters_;
+  const QueryFilters filters_;
   // True if there are several environments, which may overlap in space: then filters are tested on
   // all levels. Otherwise higher levels are pruned only by position.
   const bool apart_;
   HitList<Filtered> hits_;
-  JointTraversal<BoxQuestions> traversal_{*this};
+  JointTraversal<BoxQueries> traversal_{*this};
 };
 
 struct TreeQuery {
   template <bool Filtered>
   static bool run(const TreeView& tree, const QueryBatch& batch, PairSink& sink) {
-    return BoxQuestions<Filtered>(tree, batch, sink).run();
+    return BoxQueries<Filtered>(tree, batch, sink).run();
   }
 };
 

@@ -3,7 +3,7 @@
 
 #include "partitions/tree/coarse_cut.h"
 
-#include "core/sort/stretches.h"
+#include "core/sort/parallel_ranges.h"
 
 #include <algorithm>
 
@@ -13,31 +13,31 @@ WINNOW_DEFINE_KERNELS(CoarseCutKernels, coarse_cut_kernels)
 
 namespace {
 
-constexpr std::size_t kMostStretches = 64;
+constexpr std::size_t kMaxRanges = 64;
 
 /// Ranges of the points; each is read and written by one task.
-struct CoarseStretches {
-  static constexpr std::size_t kLeast = 16384;
+struct CoarseRanges {
+  static constexpr std::size_t kMinLength = 16384;
 
   std::size_t count;
   std::size_t length;
   const Execution& execution;
 
-  CoarseStretches(std::size_t points, const Execution& e)
-      : count(points), length(even_stretch(points, kLeast, kMostStretches)), execution(e) {}
+  CoarseRanges(std::size_t points, const Execution& e)
+      : count(points), length(even_range_length(points, kMinLength, kMaxRanges)), execution(e) {}
 
   /// Calls body(range index, begin, end).
   template <typename Body>
   void for_each(Body&& body) const {
-    for_stretches(execution, count, length,
-                  [&](std::size_t begin, std::size_t end) { body(begin / length, begin, end); });
+    for_each_range(execution, count, length,
+                   [&](std::size_t begin, std::size_t end) { body(begin / length, begin, end); });
   }
 };
 
-bool plan_cells(const KdSet& set, std::size_t wanted, const CoarseStretches& stretches,
+bool plan_cells(const KdSet& set, std::size_t wanted, const CoarseRanges& stretches,
                 CoarseCells& plan) {
-  std::array<std::array<float, 3>, kMostStretches> least;
-  std::array<std::array<float, 3>, kMostStretches> greatest;
+  std::array<std::array<float, 3>, kMaxRanges> least;
+  std::array<std::array<float, 3>, kMaxRanges> greatest;
   stretches.for_each([&](std::size_t s, std::size_t begin, std::size_t end) {
     for (std::size_t a = 0; a < 3; ++a) {
       coarse_cut_kernels().reach(set.at[a] + begin, end - begin, least[s][a], greatest[s][a]);
@@ -51,15 +51,15 @@ bool plan_cells(const KdSet& set, std::size_t wanted, const CoarseStretches& str
     }
   }
   const auto cells =
-      static_cast<std::uint32_t>(std::clamp<std::size_t>(wanted, 1, kMostCoarseCells));
+      static_cast<std::uint32_t>(std::clamp<std::size_t>(wanted, 1, kMaxCoarseCells));
   return coarse_cut_kernels().plan(set.at, set.count, least[0].data(), greatest[0].data(), cells,
                                    plan);
 }
 
-using CoarsePlaces = std::array<std::array<std::uint32_t, kMostCoarseCells>, kMostStretches>;
+using CoarsePlaces = std::array<std::array<std::uint32_t, kMaxCoarseCells>, kMaxRanges>;
 
 // Turns the sizes of cells within ranges into the ranges' output positions.
-void place_stretches(CoarsePlaces& places, std::size_t stretches, CoarseSizes& sizes) {
+void place_ranges(CoarsePlaces& places, std::size_t stretches, CoarseSizes& sizes) {
   std::uint32_t next = 0;
   for (std::size_t c = 0; c < sizes.size(); ++c) {
     const std::uint32_t first = next;
@@ -75,7 +75,7 @@ void place_stretches(CoarsePlaces& places, std::size_t stretches, CoarseSizes& s
 }  // namespace
 
 bool cut_in_cells(KdSet& set, std::size_t wanted, const Execution& execution, CoarseSizes& sizes) {
-  const CoarseStretches stretches(set.count, execution);
+  const CoarseRanges stretches(set.count, execution);
   CoarseCells plan;
   if (!plan_cells(set, wanted, stretches, plan)) return false;
   auto* const cell = reinterpret_cast<std::uint8_t*>(set.at_room[2]);
@@ -84,7 +84,7 @@ bool cut_in_cells(KdSet& set, std::size_t wanted, const Execution& execution, Co
     places[s].fill(0);
     coarse_cut_kernels().assign(plan, set.at, begin, end, cell, places[s].data());
   });
-  place_stretches(places, (stretches.count - 1) / stretches.length + 1, sizes);
+  place_ranges(places, (stretches.count - 1) / stretches.length + 1, sizes);
   stretches.for_each([&](std::size_t s, std::size_t begin, std::size_t end) {
     auto next = places[s];
     for (std::size_t i = begin; i < end; ++i) {

@@ -11,10 +11,10 @@
 namespace winnow {
 
 /// The number of points in each cell.
-using CoarseSizes = std::array<std::uint32_t, kMostCoarseCells>;
+using CoarseSizes = std::array<std::uint32_t, kMaxCoarseCells>;
 
 /// Sorts a set of at least some ten thousand points into about `wanted` cells (at most
-/// kMostCoarseCells), one after another: slabs, lines and cells with equal numbers of points,
+/// kMaxCoarseCells), one after another: slabs, lines and cells with equal numbers of points,
 /// estimated from a sample (compare Leutenegger, Lopez and Edgington, "STR: a simple and efficient
 /// algorithm for R-tree packing", ICDE 1997). Takes two passes over the points; binary cuts would
 /// take one pass for each doubling of the number of cells. Swaps point columns of the set with its

@@ -1,10 +1,10 @@
 // Kernels of coarse_cut.cpp: plan cells from a sample and assign points to them.
 
 #include "partitions/tree/coarse_cut.kernel.h"
+#include "partitions/tree/axis_extent.wide.h"
 #include "partitions/tree/equal_parts.wide.h"
-#include "partitions/tree/reach.wide.h"
 #include "simd/lanes/lanes.h"
-#include "simd/lanes/load_some.h"
+#include "simd/lanes/load_partial.h"
 
 namespace winnow {
 namespace WINNOW_ISA_NAME {
@@ -16,7 +16,7 @@ constexpr std::size_t kStep = static_cast<std::size_t>(kLanes);
 constexpr std::size_t kSample = 4096;
 
 void reach(const float* x, std::size_t count, float& least, float& greatest) {
-  const Reach of = Reach::of(x, count);
+  const AxisExtent of = AxisExtent::of(x, count);
   least = of.low;
   greatest = of.high;
 }
@@ -31,7 +31,7 @@ struct CoarseParts {
   CoarseParts(const float* length, std::uint32_t wanted) {
     const float longest = length[0];
     const auto all = static_cast<float>(wanted);
-    if (longest > kLeastReach) {
+    if (longest > kMinExtent) {
       const float m = length[1] / longest;
       const float s = length[2] / longest;
       // Rounded roots.
@@ -44,7 +44,7 @@ struct CoarseParts {
     lines = lines == 0 ? 1 : lines;
     while (slabs * lines > wanted) --(lines > 1 ? lines : slabs);
     cells = (2 * wanted + slabs * lines) / (2 * slabs * lines);
-    while (slabs * lines * cells > kMostCoarseCells) --cells;
+    while (slabs * lines * cells > kMaxCoarseCells) --cells;
   }
 };
 
@@ -76,8 +76,8 @@ struct CoarseSample {
 template <typename RowOf>
 void cut_rows(const CoarseSample& sample, int k, std::uint32_t rows, std::uint32_t parts,
               const RowOf& row_of, std::uint8_t (*part)[kPlacesPerAxis]) {
-  std::uint32_t points[kMostCoarseCells][kPlacesPerAxis];
-  std::uint32_t all[kMostCoarseCells] = {};
+  std::uint32_t points[kMaxCoarseCells][kPlacesPerAxis];
+  std::uint32_t all[kMaxCoarseCells] = {};
   __builtin_memset(points, 0, rows * sizeof points[0]);
   for (std::size_t i = 0; i < sample.count; ++i) {
     const std::uint32_t row = row_of(i);
@@ -94,7 +94,7 @@ void cut_rows(const CoarseSample& sample, int k, std::uint32_t rows, std::uint32
   }
 }
 
-bool is_heaped(const CoarseSample& sample, int k) {
+bool is_concentrated(const CoarseSample& sample, int k) {
   std::uint32_t points[kPlacesPerAxis] = {};
   for (std::size_t i = 0; i < sample.count; ++i) ++points[sample.place[k][i]];
   return most_at_a_place(points) > sample.count / 32 + kStep;
@@ -104,7 +104,7 @@ bool plan(const float* const* at, std::size_t count, const float* least, const f
           std::uint32_t wanted, CoarseCells& plan) {
   float length[3];
   int order[3];
-  for (int a = 0; a < 3; ++a) length[a] = Reach{least[a], greatest[a]}.half();
+  for (int a = 0; a < 3; ++a) length[a] = AxisExtent{least[a], greatest[a]}.half();
   order_by_length(length, order);
   const float sorted[3] = {length[order[0]], length[order[1]], length[order[2]]};
   const CoarseParts parts(sorted, wanted);
@@ -118,7 +118,7 @@ bool plan(const float* const* at, std::size_t count, const float* least, const f
   const CoarseSample sample(plan, at, count);
   const std::uint32_t cuts[3] = {parts.slabs, parts.lines, parts.cells};
   for (int k = 0; k < 3; ++k) {
-    if (cuts[k] != 1 && is_heaped(sample, k)) return false;
+    if (cuts[k] != 1 && is_concentrated(sample, k)) return false;
   }
   const auto slab_of = [&](std::size_t i) -> std::uint32_t {
     return plan.slab[sample.place[0][i]];
@@ -140,7 +140,7 @@ void assign(const CoarseCells& plan, const float* const* at, std::size_t begin, 
   for (std::size_t i = begin; i < end; i += kStep) {
     const std::size_t here = end - i < kStep ? end - i : kStep;
     for (int k = 0; k < 3; ++k) {
-      const Floats x = load_some(at[plan.axis[k]] + i, here);
+      const Floats x = load_partial(at[plan.axis[k]] + i, here);
       places_of(x, plan.half_low[k], plan.scale[k]).store(place[k]);
     }
     for (std::size_t lane = 0; lane < here; ++lane) {

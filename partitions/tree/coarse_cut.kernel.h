@@ -7,7 +7,7 @@
 
 namespace winnow {
 
-inline constexpr std::uint32_t kMostCoarseCells = 64;
+inline constexpr std::uint32_t kMaxCoarseCells = 64;
 
 /// Cells with about equal numbers of points: the shortest axis is cut into slabs, slabs into lines,
 /// and lines into cells. Alternate rows run backwards, so that successive cells are neighbours.
@@ -19,8 +19,8 @@ struct CoarseCells {
   float scale[3] = {};
   std::uint32_t cells = 0;
   std::uint8_t slab[kPlaces];
-  std::uint8_t line[kMostCoarseCells][kPlaces];  ///< by slab
-  std::uint8_t cell[kMostCoarseCells][kPlaces];  ///< by line
+  std::uint8_t line[kMaxCoarseCells][kPlaces];  ///< by slab
+  std::uint8_t cell[kMaxCoarseCells][kPlaces];  ///< by line
 };
 
 struct CoarseCutKernels {

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "partitions/tree/reach.wide.h"
+#include "partitions/tree/axis_extent.wide.h"
+#include "simd/lanes/float_to_uint.h"
 #include "simd/lanes/lanes.h"
-#include "simd/lanes/truncated.h"
 
 #include <cstdint>
 
@@ -15,13 +15,13 @@ inline constexpr std::uint32_t kPlacesPerAxis = 1U << kPlaceBits;
 
 /// The number of places per length, for half of an axis' range.
 inline float places_per(float half_reach) {
-  return half_reach > kLeastReach ? static_cast<float>(kPlacesPerAxis) / half_reach : 0.0F;
+  return half_reach > kMinExtent ? static_cast<float>(kPlacesPerAxis) / half_reach : 0.0F;
 }
 
 /// The places of points on an axis, clamped to its range.
 inline Uints places_of(const Floats& x, float half_low, float scale) {
   const Floats at = (0.5F * x - Floats(half_low)) * scale;
-  return truncated(min(max(at, Floats(0.0F)), Floats(static_cast<float>(kPlacesPerAxis - 1))));
+  return float_to_uint(min(max(at, Floats(0.0F)), Floats(static_cast<float>(kPlacesPerAxis - 1))));
 }
 
 /// Assigns to every place a part of [0, parts), each with about equally many of `all` points.

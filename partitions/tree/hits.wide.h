@@ -8,7 +8,7 @@
 #include "partitions/tree/block_tree.kernel.h"
 #include "simd/lanes/boxes.h"
 #include "simd/lanes/compress.h"
-#include "simd/lanes/shared_bits.h"
+#include "simd/lanes/test_bits.h"
 
 namespace winnow::WINNOW_ISA_NAME {
 
@@ -22,7 +22,7 @@ struct FilterRange {
 };
 
 [[gnu::always_inline]] inline FilterRange range_of(const ObjectFilter& f) {
-  const std::uint32_t first = f.environment == kEveryEnvironment ? 0U : f.environment;
+  const std::uint32_t first = f.environment == kAllEnvironments ? 0U : f.environment;
   return {f.layers, f.mask, first, f.environment};
 }
 
@@ -34,7 +34,7 @@ struct FilterRange {
 
 /// True if an object of one range may pass the filter of an object of the other; exact for two
 /// objects.
-[[gnu::always_inline]] inline bool may_meet(const FilterRange& a, const FilterRange& b) {
+[[gnu::always_inline]] inline bool filters_allow(const FilterRange& a, const FilterRange& b) {
   // Branchless, because layers are unpredictable.
   return static_cast<bool>(static_cast<unsigned>((a.layers & b.mask) != 0) &
                            static_cast<unsigned>((b.layers & a.mask) != 0) &
@@ -49,25 +49,25 @@ static inline FilterSpan span_of(const NodeFilters& nodes, std::uint32_t i) {
   span.every_layers = nodes.every_layers[i];
   span.any_mask = nodes.mask[i];
   span.every_mask = nodes.every_mask[i];
-  span.mute = (span.every_layers | span.every_mask) == 0;
+  span.any_unpairable = (span.every_layers | span.every_mask) == 0;
   span.everywhere = false;
   return span;
 }
 
 /// The lanes whose value is below, or above, a number.
 [[gnu::always_inline]] inline Mask16 below(const Uints& v, std::uint32_t number) {
-  return sharing(Uints(number) - min(v, Uints(number)), ~0U);
+  return test_bits(Uints(number) - min(v, Uints(number)), ~0U);
 }
 [[gnu::always_inline]] inline Mask16 above(const Uints& v, std::uint32_t number) {
-  return sharing(v - min(v, Uints(number)), ~0U);
+  return test_bits(v - min(v, Uints(number)), ~0U);
 }
 
 /// The lanes from `at` on whose layers and mask match `q`.
 [[gnu::always_inline]] inline Mask16 matching_lanes(const std::uint32_t* layers,
                                                     const std::uint32_t* mask, std::size_t at,
                                                     const FilterRange& q) {
-  return sharing(Uints::load_unaligned(layers + at), q.mask) &
-         sharing(Uints::load_unaligned(mask + at), q.layers);
+  return test_bits(Uints::load_unaligned(layers + at), q.mask) &
+         test_bits(Uints::load_unaligned(mask + at), q.layers);
 }
 
 /// Returns the candidate rows from `first_row` on, none of them empty, whose filters match `q`.
@@ -75,12 +75,13 @@ static inline FilterSpan span_of(const NodeFilters& nodes, std::uint32_t i) {
 [[gnu::always_inline]] inline Mask16 passing_rows(const FilterColumns& own, bool environments,
                                                   std::uint32_t first_row, Mask16 candidates,
                                                   const FilterRange& q) {
-  if (own.layers == nullptr) return may_meet(range_of(ObjectFilter{}), q) ? candidates : Mask16{0};
+  if (own.layers == nullptr)
+    return filters_allow(range_of(ObjectFilter{}), q) ? candidates : Mask16{0};
   const Mask16 met = candidates & matching_lanes(own.layers, own.mask, first_row, q);
   // Without environments all objects are in environment 0 or in every environment.
   if (!environments && q.first_environment == 0) return met;
   const Uints last = Uints::load_unaligned(own.environment + first_row);
-  const Mask16 of_one = sharing(Uints(kEveryEnvironment) - last, ~0U);
+  const Mask16 of_one = test_bits(Uints(kAllEnvironments) - last, ~0U);
   const Mask16 behind = above(last, q.last_environment) & of_one;
   return met & ~behind & ~below(last, q.first_environment);
 }
@@ -96,7 +97,7 @@ static inline FilterSpan span_of(const NodeFilters& nodes, std::uint32_t i) {
                                                    const FilterRange& q) {
   const NodeFilters& nodes = tree.filters[level];
   if (nodes.layers == nullptr) {
-    return may_meet(range_of(ObjectFilter{}), q) ? candidates : Mask16{0};
+    return filters_allow(range_of(ObjectFilter{}), q) ? candidates : Mask16{0};
   }
   const Mask16 met = candidates & matching_lanes(nodes.layers, nodes.mask, first_node, q);
   // Without environments all objects are in environment 0 or in every environment.
@@ -113,8 +114,8 @@ inline constexpr int kBallRadius = 9;
 /// Tests spheres against one sphere. The right side of |distance|^2 <= (r1 + r2)^2 is enlarged by
 /// more than the rounding of both sides (a few ulp each), so touching spheres are never missed. If
 /// a square overflows or underflows the test still errs towards a hit.
-[[gnu::always_inline]] inline Mask16 balls_meet(const Floats* center, const Floats& radius,
-                                                const float* other, float other_radius) {
+[[gnu::always_inline]] inline Mask16 spheres_overlap_one(const Floats* center, const Floats& radius,
+                                                         const float* other, float other_radius) {
   constexpr float kSlack = 1.000002F;
   constexpr float kTiny = 1e-37F;
   Floats square = Floats(-kTiny);
@@ -153,12 +154,12 @@ inline Mask16 spheres_overlap(const RowView& rows, std::uint32_t at, const float
     other[axis] = query[kBallCenter + axis][r];
   }
   const Floats radius = Floats::load_unaligned(rows.column[kBallRadius] + at);
-  return mask & balls_meet(center, radius, other, query[kBallRadius][r]);
+  return mask & spheres_overlap_one(center, radius, other, query[kBallRadius][r]);
 }
 
 /// True if pairs of these rows must be tested by their filters.
 inline bool are_filtered(const RowView& rows) {
-  return rows.filter.layers != nullptr && !rows.all_meet;
+  return rows.filter.layers != nullptr && !rows.all_match;
 }
 
 /// False if the sink is full and cannot grow.
@@ -186,12 +187,12 @@ inline Mask16 reported_lanes(const std::uint64_t* moved, std::uint32_t r, std::u
 }
 
 /// Filters of querying rows, by row.
-struct AskingFilters {
+struct QueryFilters {
   FilterColumns filter;
   std::uint32_t step = 1;  // 0: one filter for all
 
-  explicit AskingFilters(const RowView& rows) : filter(rows.filter) {}
-  explicit AskingFilters(const QueryBatch& batch)
+  explicit QueryFilters(const RowView& rows) : filter(rows.filter) {}
+  explicit QueryFilters(const QueryBatch& batch)
       : filter(batch.filter), step(batch.one_filter ? 0U : 1U) {}
 
   [[nodiscard, gnu::always_inline]] FilterRange of(std::uint32_t row) const {
@@ -220,8 +221,8 @@ inline void report(HitMode mode, Mask16 mask, const std::uint32_t* ids, std::uin
 /// The lanes with non-empty sets of bits that certainly share a bit with each of some other sets
 /// (see surely_share).
 inline Mask16 surely_sharing(const Uints& sets, std::uint32_t any, std::uint32_t every) {
-  const Mask16 lack_one = sharing(Uints(any) - (sets & Uints(any)), ~0U);
-  return sharing(sets, every) | ((~lack_one | ~sharing(sets, ~every)) & sharing(sets, ~0U));
+  const Mask16 lack_one = test_bits(Uints(any) - (sets & Uints(any)), ~0U);
+  return test_bits(sets, every) | ((~lack_one | ~test_bits(sets, ~every)) & test_bits(sets, ~0U));
 }
 
 /// Divides the rows of a batch into rows that certainly match all objects and other rows.
@@ -234,7 +235,7 @@ class SplitBatch {
     for (std::uint32_t k = begin; k < end; k += kLanes) {
       const SomeFilters some(batch, k, end);
       Mask16 sure = 0;
-      if (!all.mute) {
+      if (!all.any_unpairable) {
         sure = surely_sharing(some.masks, all.any_layers, all.every_layers) &
                surely_sharing(some.layers, all.any_mask, all.every_mask);
       }
@@ -245,11 +246,11 @@ class SplitBatch {
   }
 
   /// The rows that certainly match all objects, or the others.
-  [[nodiscard]] QueryBatch part(const QueryBatch& batch, bool meets_all) const {
+  [[nodiscard]] QueryBatch part(const QueryBatch& batch, bool matches_all) const {
     QueryBatch part = batch;
-    part.rows = row_[meets_all ? 1 : 0];
+    part.rows = row_[matches_all ? 1 : 0];
     part.begin = 0;
-    part.end = count_[meets_all ? 1 : 0];
+    part.end = count_[matches_all ? 1 : 0];
     return part;
   }
 
@@ -273,7 +274,7 @@ class SplitBatch {
         Uints::load_unaligned(batch.filter.environment + begin).store_unaligned(environment);
         return;
       }
-      const AskingFilters filters(batch);
+      const QueryFilters filters(batch);
       std::uint32_t row[kLanes] = {};
       std::uint32_t layer[kLanes] = {};
       std::uint32_t mask[kLanes] = {};
@@ -295,8 +296,8 @@ class SplitBatch {
       Mask16 found = 0;
       for (Mask16 left = lanes; left != 0; left &= left - 1) {
         const std::uint32_t own = environment[first(left)];
-        const bool meets_all = own == kEveryEnvironment || (own == 0 && !apart);
-        found |= static_cast<Mask16>(meets_all) << first(left);
+        const bool matches_all = own == kAllEnvironments || (own == 0 && !apart);
+        found |= static_cast<Mask16>(matches_all) << first(left);
       }
       return found;
     }
@@ -321,7 +322,7 @@ template <typename Kernel, bool Filtered, typename View>
 template <typename Kernel, typename View>
 inline bool with_filters(const View& view, const QueryBatch& batch, PairSink& sink) {
   const bool filtered = view.rows.filter.layers != nullptr || batch.filter.layers != nullptr;
-  if (!filtered || batch.meets_all) return run_kernel<Kernel, false>(view, batch, sink);
+  if (!filtered || batch.matches_all) return run_kernel<Kernel, false>(view, batch, sink);
   if (batch.one_filter) return run_kernel<Kernel, true>(view, batch, sink);
   for (std::uint32_t k = batch.begin; k < batch.end; k += SplitBatch::kRoom) {
     const SplitBatch split(view.rows, batch, k);
@@ -435,7 +436,7 @@ class HitList {
   const std::uint32_t* query_id_;
   const HitMode mode_;
   const std::uint64_t* const moved_;  // null in other modes
-  const AskingFilters filters_;
+  const QueryFilters filters_;
   PairSink& sink_;
   unsigned size_ = 0;
   std::uint32_t row_[kRoom];

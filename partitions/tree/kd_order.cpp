@@ -3,7 +3,7 @@
 
 #include "partitions/tree/kd_order.h"
 
-#include "core/sort/stretches.h"
+#include "core/sort/parallel_ranges.h"
 #include "partitions/tree/coarse_cut.h"
 #include "partitions/tree/kd_order.kernel.h"
 #include "partitions/tree/tile_order.kernel.h"
@@ -44,7 +44,7 @@ bool sort_in_tiles(const KdSet& set) {
 
 // Cuts a set until tiles or blocks are left.
 void finish_part(KdSet set, KdParts parts) {
-  while (parts != KdParts::blocks && set.count >= kFewestInTiles) {
+  while (parts != KdParts::blocks && set.count >= kMinInTiles) {
     if (set.count <= kTiledPart && sort_in_tiles(set)) return;
     finish_part(kd_order_kernels().split(set), parts);
   }
@@ -84,12 +84,12 @@ bool KdCuts::start(const BoundsPool& pool, std::span<std::uint32_t> rows, std::u
   open_ = 0;
   parts_ = parts;
   // Smaller sets are tiled as parts.
-  whole_ = parts != KdParts::blocks && count > kTiledPart && count <= kMostInTiles;
-  coarse_ = parts == KdParts::cells && count > kMostInTiles;
+  whole_ = parts != KdParts::blocks && count > kTiledPart && count <= kMaxInTiles;
+  coarse_ = parts == KdParts::cells && count > kMaxInTiles;
   if (count <= kBlockRows) return true;
   sets_[open_++] = {0, static_cast<std::uint32_t>(count)};
   const std::array<const float*, 6> boxes = box_columns(pool);
-  for_even_stretches(execution, count, kPointsPerTask, [&](std::size_t begin, std::size_t end) {
+  for_each_even_range(execution, count, kPointsPerTask, [&](std::size_t begin, std::size_t end) {
     kd_order_kernels().centres(boxes.data(), rows.data(), begin, end, at_);
   });
   return true;
@@ -126,7 +126,7 @@ void KdCuts::cut_coarsely(std::size_t& work, const Execution& execution) {
 // more sets.
 bool KdCuts::cut_widest(std::size_t& work, const Execution& execution) {
   const std::size_t before = open_;
-  if (2 * before > kMostSets) return false;
+  if (2 * before > kMaxSets) return false;
   execution.for_each(before, [&](std::size_t i) {
     Set& first = sets_[i];
     Set& second = sets_[before + i];

@@ -50,7 +50,7 @@ class KdCuts {
   bool advance(std::size_t work, const Execution& execution);
 
  private:
-  static constexpr std::size_t kMostSets = 64;
+  static constexpr std::size_t kMaxSets = 64;
 
   /// A range of rows that is still to be cut.
   struct Set {
@@ -66,7 +66,7 @@ class KdCuts {
   std::uint32_t* room_ = nullptr;
   float* at_[3] = {};
   float* at_room_[3] = {};
-  std::array<Set, kMostSets> sets_;
+  std::array<Set, kMaxSets> sets_;
   std::size_t open_ = 0;
   KdParts parts_ = KdParts::tiles;
   // Pending first steps: tile all rows at once; or, if there are more, divide them into cells.

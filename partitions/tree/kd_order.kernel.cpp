@@ -2,17 +2,17 @@
 // the bin that contains the cut.
 
 #include "partitions/tree/kd_order.kernel.h"
-#include "partitions/tree/reach.wide.h"
+#include "partitions/tree/axis_extent.wide.h"
 #include "simd/lanes/compress.h"
-#include "simd/lanes/load_some.h"
-#include "simd/lanes/truncated.h"
+#include "simd/lanes/float_to_uint.h"
+#include "simd/lanes/load_partial.h"
 
 namespace winnow {
 namespace WINNOW_ISA_NAME {
 namespace {
 
 constexpr std::size_t kStep = static_cast<std::size_t>(kLanes);
-constexpr std::uint32_t kMostBins = 256;
+constexpr std::uint32_t kMaxBins = 256;
 constexpr std::size_t kFewToRank = 2 * kStep;
 
 Mask16 lanes_of(std::size_t left) {
@@ -25,9 +25,9 @@ struct Bins {
   float scale;
   std::uint32_t count;
 
-  Bins(const Reach& reach, std::size_t points) : half_low(0.5F * reach.low), count(kMostBins) {
+  Bins(const AxisExtent& reach, std::size_t points) : half_low(0.5F * reach.low), count(kMaxBins) {
     while (4 * count > points && count > kStep) count /= 2;
-    scale = reach.half() > kLeastReach ? static_cast<float>(count) / reach.half() : 0.0F;
+    scale = reach.half() > kMinExtent ? static_cast<float>(count) / reach.half() : 0.0F;
   }
   /// Returns a number in [0, count]; its integer part is the bin, and the last bin includes its
   /// upper end.
@@ -36,7 +36,7 @@ struct Bins {
 
 /// The number of points of a set in each bin.
 struct BinSizes {
-  std::uint32_t size[2][kMostBins];  // of even and odd lanes, so that increments are independent
+  std::uint32_t size[2][kMaxBins];  // of even and odd lanes, so that increments are independent
 
   BinSizes(const Bins& bins, const float* x, std::size_t count) {
     for (std::uint32_t b = 0; b < bins.count; ++b) size[0][b] = size[1][b] = 0;
@@ -44,7 +44,7 @@ struct BinSizes {
     alignas(64) std::uint32_t bin[kLanes];
     for (std::size_t i = 0; i < count; i += kStep) {
       const std::size_t here = count - i < kStep ? count - i : kStep;
-      truncated(bins.place(load_some(x + i, here))).store(bin);
+      float_to_uint(bins.place(load_partial(x + i, here))).store(bin);
       for (std::size_t lane = 0; lane < here; ++lane) {
         ++size[lane & 1U][bin[lane] < last ? bin[lane] : last];
       }
@@ -68,8 +68,9 @@ struct Points16 {
   Floats at[3];
   Uints row;
 
-  Points16(const KdSet& set, std::size_t i, std::size_t left) : row(load_some(set.row + i, left)) {
-    for (int a = 0; a < 3; ++a) at[a] = load_some(set.at[a] + i, left);
+  Points16(const KdSet& set, std::size_t i, std::size_t left)
+      : row(load_partial(set.row + i, left)) {
+    for (int a = 0; a < 3; ++a) at[a] = load_partial(set.at[a] + i, left);
   }
   /// Appends the points of a mask. Writes whole registers, but never beyond `to.end`.
   void write(Mask16 mask, SplitColumns& to) const {
@@ -147,7 +148,7 @@ void rank(const KdSet& set, int axis, std::size_t begin, std::size_t end) {
 
 /// Moves the first `cut` points on an axis to the front. Counts points in bins, and repeats with
 /// finer bins only for the bin that contains the cut.
-void select(const KdSet& set, int axis, Reach reach, std::size_t cut) {
+void select(const KdSet& set, int axis, AxisExtent reach, std::size_t cut) {
   std::size_t begin = 0;
   std::size_t end = set.count;
   while (end - begin > kFewToRank) {
@@ -163,7 +164,7 @@ void select(const KdSet& set, int axis, Reach reach, std::size_t cut) {
     if (last == cut) return;
     begin = first;
     end = last;
-    reach = Reach::of(x + begin, end - begin);
+    reach = AxisExtent::of(x + begin, end - begin);
   }
   rank(set, axis, begin, end);
 }
@@ -177,9 +178,9 @@ std::size_t cut_of(std::size_t count) {
 
 KdSet split(KdSet& set) {
   int axis = 0;
-  Reach widest = Reach::of(set.at[0], set.count);
+  AxisExtent widest = AxisExtent::of(set.at[0], set.count);
   for (int a = 1; a < 3; ++a) {
-    const Reach reach = Reach::of(set.at[a], set.count);
+    const AxisExtent reach = AxisExtent::of(set.at[a], set.count);
     if (!(reach.half() > widest.half())) continue;
     widest = reach;
     axis = a;

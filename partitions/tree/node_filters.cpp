@@ -68,7 +68,7 @@ Joined join_rows(const RowView& rows, std::size_t begin) noexcept {
     const std::uint32_t mute = layers[i] == 0 || mask[i] == 0 ? kLast : 0;
     joined.every_layers &= hole | (layers[i] & ~mute);
     joined.every_mask &= hole | (mask[i] & ~mute);
-    const std::uint32_t from = environment[i] == kEveryEnvironment ? 0 : environment[i];
+    const std::uint32_t from = environment[i] == kAllEnvironments ? 0 : environment[i];
     joined.first = std::min(joined.first, hole | from);
     joined.last = std::max(joined.last, environment[i] & ~hole);
     differ |= ~hole & ((layers[i] ^ layers[lead]) | (mask[i] ^ mask[lead]) |

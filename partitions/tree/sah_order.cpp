@@ -3,8 +3,8 @@
 
 #include "partitions/tree/sah_order.h"
 
-#include "core/sort/split_jobs.h"
-#include "core/sort/stretches.h"
+#include "core/sort/parallel_divide.h"
+#include "core/sort/parallel_ranges.h"
 
 #include <algorithm>
 #include <array>
@@ -21,10 +21,10 @@ namespace {
 constexpr std::size_t kAxes = 4;  // the fourth is size
 constexpr std::uint32_t kBins = 64;
 constexpr std::uint32_t kSahWorthSharing = 4096;
-constexpr std::size_t kBoxesPerStretch = 8192;
+constexpr std::size_t kBoxesPerRange = 8192;
 constexpr std::size_t kFewToSample = 4096;  // of more boxes a sample determines the range of keys
 constexpr std::size_t kSampleStep = 8;
-constexpr float kLeastRange = 1e-30F;  // keys within this range count as equal
+constexpr float kMinRange = 1e-30F;  // keys within this range count as equal
 
 /// Four floats in a register.
 using Quad [[gnu::vector_size(16)]] = float;
@@ -63,9 +63,9 @@ float key_on(const SahBox& box, std::size_t axis) noexcept {
 
 /// A copy of a box in non-overlapping loads, each of which matches one earlier store, so that store
 /// forwarding works.
-class CarriedBox {
+class BoxInRegisters {
  public:
-  explicit CarriedBox(const SahBox& box) noexcept {
+  explicit BoxInRegisters(const SahBox& box) noexcept {
     const auto* const bytes = reinterpret_cast<const unsigned char*>(&box);
     std::memcpy(&head_, bytes, 16);
     std::memcpy(&middle_, bytes + 16, 8);
@@ -99,8 +99,8 @@ struct SahExtent {
     high = most(high, other.high);
   }
   [[nodiscard]] double edge(std::size_t a) const {
-    constexpr double kMost = 1e38;
-    return std::min(kMost, static_cast<double>(high[a]) - static_cast<double>(low[a]));
+    constexpr double kMaxExtent = 1e38;
+    return std::min(kMaxExtent, static_cast<double>(high[a]) - static_cast<double>(low[a]));
   }
   /// Half of the surface plus `margin` times the edges, for queries of that size: in flat and thin
   /// sets the surface does not suffice.
@@ -139,7 +139,7 @@ struct SahBins {
     half_low = 0.5F * low;
     for (std::size_t axis = 0; axis < kAxes; ++axis) {
       const float range = 0.5F * high[axis] - half_low[axis];
-      scale[axis] = range > kLeastRange ? static_cast<float>(count) / range : 0.0F;
+      scale[axis] = range > kMinRange ? static_cast<float>(count) / range : 0.0F;
     }
     if (scale[3] != 0.0F) axes = kAxes;
   }
@@ -202,7 +202,7 @@ class Builder {
   void run() {
     SahJob all{0, static_cast<std::uint32_t>(boxes_.size()), 0};
     while (all.subtrees() > 16) ++all.level;
-    run_split_jobs(
+    divide_in_parallel(
         all, kSahWorthSharing, execution_, [this](SahJob& job) { return split(job); },
         [this](const SahJob& job) { finish(job); });
   }
@@ -251,8 +251,8 @@ class Builder {
     std::size_t found = 0;
     for (SahBox& box : boxes) {
       const bool is_first = first(box);
-      const CarriedBox own(box);
-      CarriedBox(boxes[found]).put(box);
+      const BoxInRegisters own(box);
+      BoxInRegisters(boxes[found]).put(box);
       own.put(boxes[found]);
       found += is_first ? 1 : 0;
     }
@@ -341,7 +341,7 @@ bool append_in_sah_order(const BoundsPool& pool, std::span<const std::uint32_t> 
   const std::size_t at = order.size();
   if (!scratch.resize(count) || !order.resize(at + count)) return false;
   if (count == 0) return true;
-  for_stretches(execution, count, kBoxesPerStretch, [&](std::size_t begin, std::size_t end) {
+  for_each_range(execution, count, kBoxesPerRange, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       SahBox& box = scratch[i];
       for (std::size_t a = 0; a < 3; ++a) {
@@ -352,7 +352,7 @@ bool append_in_sah_order(const BoundsPool& pool, std::span<const std::uint32_t> 
     }
   });
   Builder({scratch.data(), count}, execution).run();
-  for_stretches(execution, count, kBoxesPerStretch, [&](std::size_t begin, std::size_t end) {
+  for_each_range(execution, count, kBoxesPerRange, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) order[at + i] = scratch[i].row;
     // Sorts the rows of a block, so that their order does not depend on the partitioning.
     for (std::size_t i = begin; i < end; i += kBlockRows) {

@@ -1,8 +1,8 @@
 // Sorts rows into tiles by counting; kd_order.cpp calls it for sets of some thousand rows.
 
 #include "partitions/tree/tile_order.kernel.h"
+#include "partitions/tree/axis_extent.wide.h"
 #include "partitions/tree/equal_parts.wide.h"
-#include "partitions/tree/reach.wide.h"
 #include "simd/lanes/lanes.h"
 
 namespace winnow {
@@ -10,15 +10,16 @@ namespace WINNOW_ISA_NAME {
 namespace {
 
 constexpr std::size_t kStep = static_cast<std::size_t>(kLanes);
-constexpr std::uint32_t kMostParts = 12;
-constexpr std::uint32_t kMostLines = kMostParts * kMostParts;
+constexpr std::uint32_t kMaxParts = 12;
+constexpr std::uint32_t kMaxLines = kMaxParts * kMaxParts;
 
 /// One axis of the points.
 struct TileAxis {
   const float* x;
-  Reach reach;
+  AxisExtent reach;
 
-  TileAxis(const float* points, std::size_t count) : x(points), reach(Reach::of(points, count)) {}
+  TileAxis(const float* points, std::size_t count)
+      : x(points), reach(AxisExtent::of(points, count)) {}
 
   /// Writes the place of each point (see equal_parts.wide.h).
   void find_places(std::size_t count, std::uint8_t* place) const {
@@ -41,15 +42,15 @@ struct TileCuts {
   TileCuts(const TileAxis& fast_axis, const TileAxis& mid_axis, const TileAxis& slow_axis,
            std::size_t count) {
     const float longest = fast_axis.reach.half();
-    if (longest > kLeastReach) {
+    if (longest > kMinExtent) {
       const float m = mid_axis.reach.half() / longest;
       const float s = slow_axis.reach.half() / longest;
       const float tiles = static_cast<float>(count) / static_cast<float>(kLanes);
       // Rounded roots of tiles s^2 / m, and of the tiles per slab times m.
       const auto half = [](std::uint32_t n) { return static_cast<float>(n) + 0.5F; };
-      while (slow < kMostParts && half(slow) * half(slow) * half(slow) * m < tiles * s * s) ++slow;
+      while (slow < kMaxParts && half(slow) * half(slow) * half(slow) * m < tiles * s * s) ++slow;
       const float slabs = slow == 0 ? 1.0F : static_cast<float>(slow);
-      while (mid < kMostParts && half(mid) * half(mid) * slabs < tiles * m) ++mid;
+      while (mid < kMaxParts && half(mid) * half(mid) * slabs < tiles * m) ++mid;
     }
     slow = slow == 0 ? 1 : slow;
     mid = mid == 0 ? 1 : mid;
@@ -76,7 +77,7 @@ class Tiles {
     const std::uint32_t parts[3] = {kPartsOfLine, cuts.mid, cuts.slow};
     for (int k = 0; k < 3; ++k) {
       axis[order[k]].find_places(count_, place_[k]);
-      if (parts[k] != 1 && is_heaped(place_[k], parts[k])) return false;
+      if (parts[k] != 1 && is_concentrated(place_[k], parts[k])) return false;
     }
     find_lines(cuts);
     place_rows(cuts.slow * cuts.mid);
@@ -88,18 +89,18 @@ class Tiles {
   [[nodiscard]] std::uint32_t step() const { return count_ < 512 ? 1 : 4; }
 
   /// The sampled one of four varies: with a fixed one, objects of alternating kinds would alias.
-  template <typename Look>
-  void for_sample(const Look& look) const {
+  template <typename Visit>
+  void for_sample(const Visit& visit) const {
     const std::uint32_t rest = step() - 1;
     std::uint32_t turn = 0;
     for (std::size_t i = 0; i + rest < count_; i += rest + 1, turn += 0x9E3779B1U) {
-      look(i + (turn >> 30U & rest));
+      visit(i + (turn >> 30U & rest));
     }
   }
 
   /// True if too many points are at one place for tiles to separate them. One part of an axis may
   /// be twice as large as intended, since the other axes cut it further.
-  [[nodiscard]] bool is_heaped(const std::uint8_t* place, std::uint32_t parts) const {
+  [[nodiscard]] bool is_concentrated(const std::uint8_t* place, std::uint32_t parts) const {
     std::uint32_t points[kPlacesPerAxis] = {};
     for_sample([&](std::size_t i) { ++points[place[i]]; });
     return most_at_a_place(points) * step() > 2 * count_ / parts + kStep;
@@ -107,8 +108,8 @@ class Tiles {
 
   /// Odd lines run backwards, so that successive lines are neighbours.
   void find_lines(const TileCuts& cuts) {
-    std::uint32_t points[kMostParts + 1][kPlacesPerAxis];
-    std::uint32_t* const slow_points = points[kMostParts];
+    std::uint32_t points[kMaxParts + 1][kPlacesPerAxis];
+    std::uint32_t* const slow_points = points[kMaxParts];
     for (std::uint32_t p = 0; p < kPlacesPerAxis; ++p) slow_points[p] = 0;
     std::uint32_t all = 0;
     for_sample([&](std::size_t i) {
@@ -117,12 +118,12 @@ class Tiles {
     });
     std::uint32_t slab[kPlacesPerAxis];
     cut_equally(slow_points, all, cuts.slow, slab);
-    std::uint32_t in_slab[kMostParts] = {};
+    std::uint32_t in_slab[kMaxParts] = {};
     for (std::uint32_t p = 0; p < kPlacesPerAxis; ++p) in_slab[slab[p]] += slow_points[p];
     __builtin_memset(points, 0, cuts.slow * sizeof points[0]);
     for_sample([&](std::size_t i) { ++points[slab[place_[2][i]]][place_[1][i]]; });
     std::uint32_t part[kPlacesPerAxis];
-    std::uint32_t line[kMostParts][kPlacesPerAxis];
+    std::uint32_t line[kMaxParts][kPlacesPerAxis];
     for (std::uint32_t s = 0; s < cuts.slow; ++s) {
       cut_equally(points[s], in_slab[s], cuts.mid, part);
       for (std::uint32_t p = 0; p < kPlacesPerAxis; ++p) {
@@ -141,7 +142,7 @@ class Tiles {
   }
 
   void place_rows(std::uint32_t lines) {
-    std::uint16_t next[kMostLines * kPlacesPerAxis];
+    std::uint16_t next[kMaxLines * kPlacesPerAxis];
     const std::uint32_t keys = lines << step_bits_;
     __builtin_memset(next, 0, keys * sizeof next[0]);
     for (std::size_t i = 0; i < count_; ++i) ++next[key_[i]];

@@ -16,8 +16,8 @@ struct TileSet {
   std::size_t count = 0;
 };
 
-inline constexpr std::size_t kFewestInTiles = 64;
-inline constexpr std::size_t kMostInTiles = 16384;
+inline constexpr std::size_t kMinInTiles = 64;
+inline constexpr std::size_t kMaxInTiles = 16384;
 
 /// Orders some thousand rows for a block tree only by counting, instead of cutting from the top
 /// down (compare sort-tile-recursive packing: Leutenegger, Lopez and Edgington, "STR: a simple and
@@ -26,7 +26,7 @@ inline constexpr std::size_t kMostInTiles = 16384;
 /// longest axis. Successive lines run in opposite directions, so that a block that starts in one
 /// line may end in the next. Pairs take some percent more tests than after cuts.
 struct TileOrderKernels {
-  /// Sorts `kFewestInTiles` to `kMostInTiles` rows. Returns false and changes nothing if too many
+  /// Sorts `kMinInTiles` to `kMaxInTiles` rows. Returns false and changes nothing if too many
   /// rows are in too small a part of their range.
   bool (*sort)(const TileSet&);
 };

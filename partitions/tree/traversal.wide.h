@@ -49,9 +49,9 @@ bool traverse_from(const TreeShape& tree, std::uint32_t bottom, std::uint32_t fr
       [&](std::uint32_t level, std::uint32_t first_node) {
         Mask16 hits = test(level, first_node);
         // Skips nodes that end before `from`.
-        const std::uint32_t first_wanted = from >> (4 * (level - bottom));
-        if (first_wanted > first_node) {
-          const std::uint32_t skip = first_wanted - first_node;
+        const std::uint32_t first_needed = from >> (4 * (level - bottom));
+        if (first_needed > first_node) {
+          const std::uint32_t skip = first_needed - first_node;
           hits &= ~lanes_below(skip < kLanes ? skip : kLanes);
         }
         return hits;
@@ -63,17 +63,17 @@ bool traverse_from(const TreeShape& tree, std::uint32_t bottom, std::uint32_t fr
 }
 
 /// Pairs of a query and a node (or row) that are still to be processed.
-struct OpenList {
+struct QueryNodeList {
   static constexpr unsigned kRoom = 256;
 
   unsigned size = 0;
-  std::uint32_t question[kRoom + kLanes];
+  std::uint32_t query[kRoom + kLanes];
   std::uint32_t at[kRoom + kLanes];
 
   /// True if there may be no room for 16 more.
   [[nodiscard]] bool full() const { return size > kRoom - kLanes; }
   void add(std::uint32_t q, std::uint32_t first_at, Mask16 mask) {
-    Uints(q).store_unaligned(question + size);
+    Uints(q).store_unaligned(query + size);
     size += compress_store(mask, count_from(first_at), at + size);
   }
 };
@@ -83,23 +83,23 @@ struct OpenList {
 /// higher level has nodes left. The number of children that pass is unpredictable and each test has
 /// a long latency; long loops hide both. The order of visits is unspecified.
 ///
-/// `Questions` provides `auto prepare(tree, level, first query)`, which computes constants of a
+/// `Queries` provides `auto prepare(tree, level, first query)`, which computes constants of a
 /// loop; `Mask16 test(prepared, query, level, first of 16 nodes)`; and `bool visit(blocks)`, which
 /// processes a list of reached blocks and returns false to stop the traversal.
-template <typename Questions>
+template <typename Queries>
 class JointTraversal {
  public:
-  explicit JointTraversal(Questions& questions) : questions_(questions) {}
+  explicit JointTraversal(Queries& queries) : queries_(queries) {}
 
-  /// Runs queries question_of(0), ..., question_of(count - 1). Returns false if a visit stopped it.
-  template <typename QuestionOf>
-  bool run(const TreeShape& tree, std::uint32_t count, QuestionOf&& question_of) {
+  /// Runs queries query_of(0), ..., query_of(count - 1). Returns false if a visit stopped it.
+  template <typename QueryOf>
+  bool run(const TreeShape& tree, std::uint32_t count, QueryOf&& query_of) {
     if (count == 0) return true;
     tree_ = &tree;
     const std::uint32_t top = tree.levels - 1;
-    const auto prepared = questions_.prepare(tree, top, question_of(0U));
+    const auto prepared = queries_.prepare(tree, top, query_of(0U));
     for (std::uint32_t k = 0; k < count; ++k) {
-      if (!test(prepared, question_of(k), top, 0)) return false;
+      if (!test(prepared, query_of(k), top, 0)) return false;
     }
     for (std::uint32_t level = top + 1; level-- > 0;) {
       if (!drain(level)) return false;
@@ -113,37 +113,38 @@ class JointTraversal {
   bool test(const Prepared& prepared, std::uint32_t q, std::uint32_t level,
             std::uint32_t first_node) {
     if (open_[level].full() && !drain(level)) return false;
-    open_[level].add(q, first_node, questions_.test(prepared, q, level, first_node));
+    open_[level].add(q, first_node, queries_.test(prepared, q, level, first_node));
     return true;
   }
 
   bool drain(std::uint32_t level) {
-    OpenList& open = open_[level];
+    QueryNodeList& open = open_[level];
     if (open.size == 0) return true;
     if (level == 0) {
-      if (!questions_.visit(open)) return false;
+      if (!queries_.visit(open)) return false;
     } else {
-      const auto prepared = questions_.prepare(*tree_, level - 1, open.question[0]);
+      const auto prepared = queries_.prepare(*tree_, level - 1, open.query[0]);
       for (unsigned k = 0; k < open.size; ++k) {
-        if (!test(prepared, open.question[k], level - 1, open.at[k] * kLanes)) return false;
+        if (!test(prepared, open.query[k], level - 1, open.at[k] * kLanes)) return false;
       }
     }
     open.size = 0;
     return true;
   }
 
-  Questions& questions_;
+  Queries& queries_;
   const TreeShape* tree_ = nullptr;
-  OpenList open_[kMaxTreeLevels];
+  QueryNodeList open_[kMaxTreeLevels];
 };
 
 /// Visits nodes of level 0 approximately in the order of a measure, the nearest child first.
-/// `Waiting` stores open nodes: `bool open(level, first of 16 nodes, node)` tests 16 nodes, returns
-/// the one to continue with in `node` and stores the others, or returns false if none passes; `bool
-/// take(level, node)` removes the next stored node, or returns false if there is none. visit(node)
-/// returns false to stop the descent.
-template <typename Waiting, typename Visit>
-[[gnu::always_inline]] inline bool descend(std::uint32_t levels, Waiting& waiting, Visit&& visit) {
+/// `OpenNodeStore` stores open nodes: `bool open(level, first of 16 nodes, node)` tests 16 nodes,
+/// returns the one to continue with in `node` and stores the others, or returns false if none
+/// passes; `bool take(level, node)` removes the next stored node, or returns false if there is
+/// none. visit(node) returns false to stop the descent.
+template <typename OpenNodeStore, typename Visit>
+[[gnu::always_inline]] inline bool descend(std::uint32_t levels, OpenNodeStore& open_nodes,
+                                           Visit&& visit) {
   // The children of this node are opened next; a node of level 0 is visited.
   std::uint32_t level = levels;
   std::uint32_t node = 0;
@@ -151,10 +152,10 @@ template <typename Waiting, typename Visit>
     bool reached = true;
     while (reached && level != 0) {
       --level;
-      reached = waiting.open(level, node * kLanes, node);
+      reached = open_nodes.open(level, node * kLanes, node);
     }
     if (reached && !visit(node)) return false;
-  } while (waiting.take(level, node));
+  } while (open_nodes.take(level, node));
   return true;
 }
 

@@ -223,7 +223,7 @@ typedef struct winnow_scene_counts {
   uint64_t part_pairs;  ///< narrow phase, pairs of parts
   uint64_t part_recomputed;
   uint64_t part_exact;
-  uint64_t balls_apart;  ///< body_pairs skipped because their bounding spheres are disjoint
+  uint64_t rejected_by_spheres;  ///< body_pairs skipped because their bounding spheres are disjoint
 } winnow_scene_counts;
 WINNOW_C_API winnow_status winnow_scene_statistics(const winnow_scene* scene,
                                                    winnow_scene_counts* statistics);

@@ -17,12 +17,12 @@ struct WorkItem {
 };
 
 /// A possible cut, with its quality.
-struct Candidate {
-  RegionCut cut;
+struct CutCandidate {
+  SplitPlane cut;
   std::size_t cut_in_two = 0;
   float length = 0.0F;  // extent of the centres along the axis
 
-  [[nodiscard]] bool is_better_than(const Candidate& other) const noexcept {
+  [[nodiscard]] bool is_better_than(const CutCandidate& other) const noexcept {
     if (cut_in_two != other.cut_in_two) return cut_in_two < other.cut_in_two;
     return length > other.length;
   }
@@ -30,14 +30,14 @@ struct Candidate {
 
 class Bisection {
  public:
-  Bisection(std::vector<WorkItem> items, std::span<RegionCut> cuts)
+  Bisection(std::vector<WorkItem> items, std::span<SplitPlane> cuts)
       : items_(std::move(items)), cuts_(cuts) {}
 
   /// Cuts the region of some ranks; returns the index of the root of the new cuts.
   std::int32_t cut(std::span<WorkItem> items, std::uint32_t first, std::uint32_t count) {
     if (count == 1) return ~static_cast<std::int32_t>(first);
     const std::uint32_t below = count / 2;
-    RegionCut cut = best_cut(items, below, count);
+    SplitPlane cut = best_cut(items, below, count);
     const auto number = static_cast<std::int32_t>(made_++);
     const int axis = static_cast<int>(cut.axis);
     const auto middle = std::partition(items.begin(), items.end(), [&](const WorkItem& item) {
@@ -53,18 +53,18 @@ class Bisection {
   std::span<WorkItem> items() noexcept { return items_; }
 
  private:
-  static RegionCut best_cut(std::span<WorkItem> items, std::uint32_t below, std::uint32_t count) {
-    Candidate best;
+  static SplitPlane best_cut(std::span<WorkItem> items, std::uint32_t below, std::uint32_t count) {
+    CutCandidate best;
     for (std::uint32_t axis = 0; axis < 3; ++axis) {
-      const Candidate candidate = candidate_on(items, axis, below, count);
+      const CutCandidate candidate = candidate_on(items, axis, below, count);
       if (axis == 0 || candidate.is_better_than(best)) best = candidate;
     }
     return best.cut;
   }
 
-  static Candidate candidate_on(std::span<WorkItem> items, std::uint32_t axis, std::uint32_t below,
-                                std::uint32_t count) {
-    Candidate candidate;
+  static CutCandidate candidate_on(std::span<WorkItem> items, std::uint32_t axis,
+                                   std::uint32_t below, std::uint32_t count) {
+    CutCandidate candidate;
     candidate.cut.axis = axis;
     if (items.empty()) return candidate;
     candidate.cut.at = quantile(items, static_cast<int>(axis), below, count);
@@ -107,13 +107,13 @@ class Bisection {
   }
 
   std::vector<WorkItem> items_;
-  std::span<RegionCut> cuts_;
+  std::span<SplitPlane> cuts_;
   std::size_t made_ = 0;
 };
 
 }  // namespace
 
-void bisect(std::span<const CutWork> work, std::span<RegionCut> cuts) {
+void bisect(std::span<const CutWork> work, std::span<SplitPlane> cuts) {
   std::vector<WorkItem> items;
   for (const CutWork& part : work) {
     for (std::size_t i = 0; i < part.boxes.size(); ++i) {

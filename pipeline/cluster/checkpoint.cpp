@@ -73,7 +73,7 @@ std::vector<BodyRecord> records_of(std::span<const BodyDefinition> bodies) {
   return records;
 }
 
-std::uint64_t told_by(const ClusterSceneBatch& batch) noexcept {
+std::uint64_t digest_of_batch(const ClusterSceneBatch& batch) noexcept {
   Digest told;
   told.add_array(batch.names);
   for (const BodyDefinition& body : batch.bodies) {

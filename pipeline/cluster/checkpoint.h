@@ -25,7 +25,7 @@ struct RecordBatch {
 /// Converts definitions to records of new bodies.
 [[nodiscard]] std::vector<BodyRecord> records_of(std::span<const BodyDefinition> bodies);
 /// Returns a digest of all bits of a batch.
-[[nodiscard]] std::uint64_t told_by(const ClusterSceneBatch& batch) noexcept;
+[[nodiscard]] std::uint64_t digest_of_batch(const ClusterSceneBatch& batch) noexcept;
 
 /// Appends the checkpoint of one rank: see FORMATS.md, "Checkpoints of clusters".
 [[nodiscard]] Status write_checkpoint(std::span<const BodyName> names,

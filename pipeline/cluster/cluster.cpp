@@ -3,7 +3,7 @@
 
 #include <winnow/pipeline/cluster.h>
 
-#include "core/memory/guarded.h"
+#include "core/memory/catch_bad_alloc.h"
 #include "core/threads/float_environment.h"
 #include "pipeline/cluster/rank_bodies.h"
 #include "pipeline/cluster/rank_group.h"
@@ -23,7 +23,7 @@ struct ClusterState : RankGroup {
   }
 
   [[nodiscard]] Status settle();
-  [[nodiscard]] Status deliver(const Meanwhile& meanwhile = {});
+  [[nodiscard]] Status deliver(const OverlappedWork& meanwhile = {});
   [[nodiscard]] Status take_names_of(std::span<const ClusterBatch> batches,
                                      std::span<Status> answers);
   [[nodiscard]] Status add(std::span<const ClusterBatch> batches, std::span<Status> answers);
@@ -37,14 +37,14 @@ struct ClusterState : RankGroup {
 ClusterState::ClusterState(Transport& given, const ClusterOptions& with)
     : RankGroup(given, with.imbalance, with.memory) {
   for (std::uint32_t i = 0; i < given.hosted(); ++i)
-    bodies.emplace_back(first + i, is_alone(), with);
+    bodies.emplace_back(first + i, is_single_rank(), with);
   if (with.structure == StructureKind{}) status = Status::invalid_argument;
 }
 
 /// Sends bodies to the ranks that they belong to, and copies to the ranks that they overlap.
 Status ClusterState::settle() {
   const Regions before = regions;
-  was_cut = wants_cut && !is_alone();
+  was_cut = wants_cut && !is_single_rank();
   if (was_cut) {
     std::vector<CutWork> work;
     for (RankBodies& one : bodies) work.push_back(one.cut_work());
@@ -65,9 +65,9 @@ Status ClusterState::settle() {
 }
 
 /// Exchanges the packed parcels, and applies the received ones.
-Status ClusterState::deliver(const Meanwhile& meanwhile) {
-  std::span<const Parcel> received;
-  Status answer = is_alone() ? Status::ok : exchange(received, meanwhile);
+Status ClusterState::deliver(const OverlappedWork& meanwhile) {
+  std::span<const RankMessage> received;
+  Status answer = is_single_rank() ? Status::ok : exchange(received, meanwhile);
   for (std::uint32_t i = 0; i < bodies.size() && answer == Status::ok; ++i) {
     answer = bodies[i].receive(parcels_for(received, first + i));
   }
@@ -97,7 +97,7 @@ Status ClusterState::add(std::span<const ClusterBatch> batches, std::span<Status
   for (std::size_t i = 0; i < bodies.size() && answer == Status::ok; ++i) {
     answers[i] = bodies[i].check(batches[i]);
   }
-  if (answer == Status::ok && !is_alone()) answer = take_names_of(batches, answers);
+  if (answer == Status::ok && !is_single_rank()) answer = take_names_of(batches, answers);
   for (std::size_t i = 0; i < bodies.size() && answer == Status::ok; ++i) {
     if (answers[i] == Status::ok) answer = bodies[i].insert(batches[i]);
   }
@@ -140,8 +140,8 @@ Status ClusterState::digest(ClusterDigest& digest) {
 }
 
 Cluster::Cluster(Transport& transport, const ClusterOptions& options) noexcept
-    : state_(guarded([&] { return new ClusterState(transport, options); },
-                     static_cast<ClusterState*>(nullptr))) {}
+    : state_(catch_bad_alloc([&] { return new ClusterState(transport, options); },
+                             static_cast<ClusterState*>(nullptr))) {}
 
 Cluster::~Cluster() {
   delete state_;

@@ -7,7 +7,7 @@
 #include <winnow/pipeline/scene_queries.h>
 #include "core/threads/float_environment.h"
 #include "pipeline/cluster/cluster_scene_state.h"
-#include "pipeline/cluster/outbox.h"
+#include "pipeline/cluster/send_queue.h"
 #include "pipeline/composites/parts.h"
 #include "pipeline/rays/shape_entries.h"
 #include "pipeline/scene/scene_state.h"
@@ -26,7 +26,7 @@ struct AnswerLists {
   std::vector<Answer> answers;
   std::vector<std::size_t> first;
 
-  [[nodiscard]] ClusterAnswers<Answer> view() const noexcept { return {answers, first}; }
+  [[nodiscard]] ClusterResults<Answer> view() const noexcept { return {answers, first}; }
 };
 
 template <typename Answer>
@@ -42,7 +42,7 @@ struct NumberedAnswer {
 };
 
 /// The scene of a rank, with an object for queries.
-struct AskedScene {
+struct RankQueries {
   const RankScene& rank;
   SceneQueries queries;
 };
@@ -67,7 +67,7 @@ struct RayAll {
     group.regions.ranks_of(ray, ranks);
   }
   template <typename Give>
-  static Status answer(AskedScene& scene, std::span<const ShapeRay> rays, const Filter& filter,
+  static Status answer(RankQueries& scene, std::span<const ShapeRay> rays, const Filter& filter,
                        Give&& give) {
     SceneHitLists lists;
     const Status status = scene.queries.all(ShapeRayBatch(rays), lists, filter);
@@ -119,7 +119,7 @@ struct HitColumnsOfRays {
 struct RayClosest : RayAll {
   static constexpr CollectiveCall kCall = CollectiveCall::closest;
   template <typename Give>
-  static Status answer(AskedScene& scene, std::span<const ShapeRay> rays, const Filter& filter,
+  static Status answer(RankQueries& scene, std::span<const ShapeRay> rays, const Filter& filter,
                        Give&& give) {
     // Cast the whole ray: the last digits of its hits depend on where it ends.
     constexpr double kBehind = 1.0 + 1e-6;
@@ -157,7 +157,7 @@ struct RayClosest : RayAll {
 struct RayAny : RayAll {
   static constexpr CollectiveCall kCall = CollectiveCall::any;
   template <typename Give>
-  static Status answer(AskedScene& scene, std::span<const ShapeRay> rays, const Filter& filter,
+  static Status answer(RankQueries& scene, std::span<const ShapeRay> rays, const Filter& filter,
                        Give&& give) {
     std::vector<double> ts(rays.size());
     const Status status =
@@ -183,7 +183,7 @@ struct ProbeOverlap {
     group.regions.ranks_of(rank.box_around(probe.shape, probe.pose), ranks);
   }
   template <typename Give>
-  static Status answer(AskedScene& scene, std::span<const ShapeProbe> probes, const Filter& filter,
+  static Status answer(RankQueries& scene, std::span<const ShapeProbe> probes, const Filter& filter,
                        Give&& give) {
     for (std::size_t i = 0; i < probes.size(); ++i) {
       std::span<const SceneOverlap> bodies;
@@ -211,7 +211,7 @@ struct PointNearest {
     for (std::uint32_t rank = 0; rank < group.ranks; ++rank) ranks[rank] = rank;
   }
   template <typename Give>
-  static Status answer(AskedScene& scene, std::span<const NearestProbe> probes,
+  static Status answer(RankQueries& scene, std::span<const NearestProbe> probes,
                        const Filter& filter, Give&& give) {
     for (std::size_t i = 0; i < probes.size(); ++i) {
       const NearestProbe& probe = probes[i];
@@ -243,13 +243,13 @@ struct PointNearest {
 
 /// One collective query of one kind.
 template <typename Kind>
-class Asking {
+class CollectiveQuery {
  public:
   using Question = typename Kind::Question;
   using Answer = typename Kind::Answer;
   using Numbered = NumberedAnswer<Answer>;
 
-  Asking(ClusterSceneState& cluster, std::span<const ClusterQuestions<Question>> asked)
+  CollectiveQuery(ClusterSceneState& cluster, std::span<const ClusterQueryBatch<Question>> asked)
       : cluster_(cluster), asked_(asked), sent_(asked.size()), answered_(asked.size()) {}
 
   /// Fills `lists`, and sets the status of each hosted rank.
@@ -260,7 +260,7 @@ class Asking {
       answers[i] = check(i);
       if (answers[i] == Status::ok) send(i);
     }
-    std::span<const Parcel> received;
+    std::span<const RankMessage> received;
     Status status = cluster_.exchange(received);
     if (status != Status::ok) return status;
     std::uint64_t worst[] = {static_cast<std::uint64_t>(settled)};
@@ -277,7 +277,7 @@ class Asking {
   }
 
  private:
-  struct Posted {
+  struct AddressedQuery {
     std::uint32_t to;
     std::uint32_t number;
   };
@@ -302,39 +302,40 @@ class Asking {
   }
 
   void send(std::size_t i) {
-    std::vector<Posted> posted;
+    std::vector<AddressedQuery> posted;
     std::vector<std::uint32_t> ranks;
     const auto questions = asked_[i].questions;
     for (std::uint32_t number = 0; number < questions.size(); ++number) {
       Kind::find_ranks(cluster_, cluster_.scenes[i], questions[number], ranks);
       for (const std::uint32_t to : ranks) posted.push_back({to, number});
     }
-    std::ranges::stable_sort(posted, {}, &Posted::to);
+    std::ranges::stable_sort(posted, {}, &AddressedQuery::to);
     Sent& sent = sent_[i];
     sent.filter = asked_[i].filter.object();
-    for (const Posted& one : posted) {
+    for (const AddressedQuery& one : posted) {
       sent.questions.push_back(questions[one.number]);
       sent.numbers.push_back(one.number);
     }
-    const std::span<const Posted> all(posted);
-    for_each_receiver(all, std::span<const Posted>(), [&](std::uint32_t to, auto ones, auto) {
-      const auto at = static_cast<std::size_t>(ones.data() - all.data());
-      cluster_.parcels.push_back(
-          {rank_of(i),
-           to,
-           {std::as_bytes(std::span(sent.questions).subspan(at, ones.size())),
-            std::as_bytes(std::span(sent.numbers).subspan(at, ones.size())),
-            std::as_bytes(std::span(&sent.filter, 1))}});
-    });
+    const std::span<const AddressedQuery> all(posted);
+    for_each_receiver(all, std::span<const AddressedQuery>(),
+                      [&](std::uint32_t to, auto ones, auto) {
+                        const auto at = static_cast<std::size_t>(ones.data() - all.data());
+                        cluster_.parcels.push_back(
+                            {rank_of(i),
+                             to,
+                             {std::as_bytes(std::span(sent.questions).subspan(at, ones.size())),
+                              std::as_bytes(std::span(sent.numbers).subspan(at, ones.size())),
+                              std::as_bytes(std::span(&sent.filter, 1))}});
+                      });
   }
 
   /// Runs the queries that were sent to a hosted rank.
-  [[nodiscard]] Status answer(std::size_t i, std::span<const Parcel> received) {
-    AskedScene scene{cluster_.scenes[i], SceneQueries(cluster_.scenes[i].scene())};
+  [[nodiscard]] Status answer(std::size_t i, std::span<const RankMessage> received) {
+    RankQueries scene{cluster_.scenes[i], SceneQueries(cluster_.scenes[i].scene())};
     std::vector<Numbered>& out = answered_[i];
     std::vector<std::pair<std::uint32_t, std::size_t>> begins;
     Status status = Status::ok;
-    for (const Parcel& parcel : parcels_for(received, rank_of(i))) {
+    for (const RankMessage& parcel : parcels_for(received, rank_of(i))) {
       const auto numbers = column_of<std::uint32_t>(parcel, 1);
       const ObjectFilter by = column_of<ObjectFilter>(parcel, 2).front();
       begins.emplace_back(parcel.from, out.size());
@@ -356,10 +357,10 @@ class Asking {
 
   /// Sorts the results that a hosted rank received, and removes duplicates: each rank that holds a
   /// body reports it.
-  void gather(std::size_t i, std::span<const Parcel> received, Status answered,
+  void gather(std::size_t i, std::span<const RankMessage> received, Status answered,
               AnswerLists<Answer>& lists) const {
     std::vector<Numbered> all;
-    for (const Parcel& parcel : parcels_for(received, rank_of(i))) {
+    for (const RankMessage& parcel : parcels_for(received, rank_of(i))) {
       const auto part = column_of<Numbered>(parcel, 0);
       all.insert(all.end(), part.begin(), part.end());
     }
@@ -382,7 +383,7 @@ class Asking {
   }
 
   ClusterSceneState& cluster_;
-  std::span<const ClusterQuestions<Question>> asked_;
+  std::span<const ClusterQueryBatch<Question>> asked_;
   std::vector<Sent> sent_;
   std::vector<std::vector<Numbered>> answered_;
 };
@@ -398,16 +399,16 @@ struct ClusterQueryState {
   AnswersOfRanks<ClusterDistance> distances;
 
   template <typename Kind>
-  Status ask(std::span<const ClusterQuestions<typename Kind::Question>> asked,
+  Status ask(std::span<const ClusterQueryBatch<typename Kind::Question>> asked,
              std::span<Status> answers, AnswersOfRanks<typename Kind::Answer>& lists) {
     const std::size_t hosted = cluster == nullptr ? 0 : cluster->scenes.size();
     const bool fit = asked.size() == hosted && answers.size() == hosted;
     const Status status = collective(cluster, Kind::kCall, [&] {
-      if (fit) return Asking<Kind>(*cluster, asked).run(lists, answers);
+      if (fit) return CollectiveQuery<Kind>(*cluster, asked).run(lists, answers);
       // The call is collective: other processes need this one to take part, with no queries.
-      const std::vector<ClusterQuestions<typename Kind::Question>> nothing(hosted);
+      const std::vector<ClusterQueryBatch<typename Kind::Question>> nothing(hosted);
       std::vector<Status> ignored(hosted);
-      return Asking<Kind>(*cluster, nothing).run(lists, ignored);
+      return CollectiveQuery<Kind>(*cluster, nothing).run(lists, ignored);
     });
     return status == Status::ok && !fit ? Status::size_mismatch : status;
   }
@@ -427,21 +428,21 @@ ClusterQueries::~ClusterQueries() {
   delete state_;
 }
 
-Status ClusterQueries::closest(std::span<const ClusterQuestions<ShapeRay>> rays,
+Status ClusterQueries::closest(std::span<const ClusterQueryBatch<ShapeRay>> rays,
                                std::span<Status> answers) {
   const DefaultEnvironment environment;
   if (state_ == nullptr) return Status::out_of_memory;
   return state_->ask<RayClosest>(rays, answers, state_->hits);
 }
 
-Status ClusterQueries::all(std::span<const ClusterQuestions<ShapeRay>> rays,
+Status ClusterQueries::all(std::span<const ClusterQueryBatch<ShapeRay>> rays,
                            std::span<Status> answers) {
   const DefaultEnvironment environment;
   if (state_ == nullptr) return Status::out_of_memory;
   return state_->ask<RayAll>(rays, answers, state_->hits);
 }
 
-Status ClusterQueries::any(std::span<const ClusterQuestions<ShapeRay>> rays,
+Status ClusterQueries::any(std::span<const ClusterQueryBatch<ShapeRay>> rays,
                            std::span<Status> answers) {
   const DefaultEnvironment environment;
   if (state_ == nullptr) return Status::out_of_memory;
@@ -458,23 +459,23 @@ Status ClusterQueries::any(std::span<const ClusterQuestions<ShapeRay>> rays,
   return Status::ok;
 }
 
-Status ClusterQueries::overlap(std::span<const ClusterQuestions<ShapeProbe>> shapes,
+Status ClusterQueries::overlap(std::span<const ClusterQueryBatch<ShapeProbe>> shapes,
                                std::span<Status> answers) {
   const DefaultEnvironment environment;
   if (state_ == nullptr) return Status::out_of_memory;
   return state_->ask<ProbeOverlap>(shapes, answers, state_->overlaps);
 }
 
-Status ClusterQueries::nearest(std::span<const ClusterQuestions<NearestProbe>> points,
+Status ClusterQueries::nearest(std::span<const ClusterQueryBatch<NearestProbe>> points,
                                std::span<Status> answers) {
   const DefaultEnvironment environment;
   if (state_ == nullptr) return Status::out_of_memory;
   return state_->ask<PointNearest>(points, answers, state_->distances);
 }
 
-ClusterAnswers<ClusterHit> ClusterQueries::hits(std::uint32_t rank) const noexcept {
+ClusterResults<ClusterHit> ClusterQueries::hits(std::uint32_t rank) const noexcept {
   const auto* const lists = state_ == nullptr ? nullptr : state_->of(state_->hits, rank);
-  return lists == nullptr ? ClusterAnswers<ClusterHit>{} : lists->view();
+  return lists == nullptr ? ClusterResults<ClusterHit>{} : lists->view();
 }
 
 std::span<const std::uint8_t> ClusterQueries::blocked(std::uint32_t rank) const noexcept {
@@ -482,14 +483,14 @@ std::span<const std::uint8_t> ClusterQueries::blocked(std::uint32_t rank) const 
   return rays == nullptr ? std::span<const std::uint8_t>{} : std::span(*rays);
 }
 
-ClusterAnswers<ClusterOverlap> ClusterQueries::overlaps(std::uint32_t rank) const noexcept {
+ClusterResults<ClusterOverlap> ClusterQueries::overlaps(std::uint32_t rank) const noexcept {
   const auto* const lists = state_ == nullptr ? nullptr : state_->of(state_->overlaps, rank);
-  return lists == nullptr ? ClusterAnswers<ClusterOverlap>{} : lists->view();
+  return lists == nullptr ? ClusterResults<ClusterOverlap>{} : lists->view();
 }
 
-ClusterAnswers<ClusterDistance> ClusterQueries::neighbours(std::uint32_t rank) const noexcept {
+ClusterResults<ClusterDistance> ClusterQueries::neighbours(std::uint32_t rank) const noexcept {
   const auto* const lists = state_ == nullptr ? nullptr : state_->of(state_->distances, rank);
-  return lists == nullptr ? ClusterAnswers<ClusterDistance>{} : lists->view();
+  return lists == nullptr ? ClusterResults<ClusterDistance>{} : lists->view();
 }
 
 }  // namespace winnow

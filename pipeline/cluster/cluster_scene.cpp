@@ -4,7 +4,7 @@
 #include <winnow/pipeline/cluster_scene.h>
 
 #include "core/memory/byte_stream.h"
-#include "core/memory/guarded.h"
+#include "core/memory/catch_bad_alloc.h"
 #include "core/threads/float_environment.h"
 #include "pipeline/cluster/cluster_scene_state.h"
 
@@ -17,7 +17,7 @@ ClusterSceneState::ClusterSceneState(Transport& given, const ShapePool& shapes,
     scenes.emplace_back(first + i, ranks, shapes, options.scene);
   }
   const SceneOptions& scene = options.scene;
-  if (scene.carry_over != 0.0 || scene.warm_start || scene.seamless_floors ||
+  if (scene.carry_over != 0.0 || scene.warm_start || scene.suppress_ghost_contacts ||
       !scenes.front().is_good()) {
     status = Status::invalid_argument;
   }
@@ -30,7 +30,7 @@ Status ClusterSceneState::settle() {
     if (found == Status::ok) found = one.refresh();
   }
   const Regions before = regions;
-  was_cut = wants_cut && !is_alone();
+  was_cut = wants_cut && !is_single_rank();
   if (was_cut) {
     std::vector<CutWork> work;
     for (RankScene& one : scenes) work.push_back(one.cut_work());
@@ -48,8 +48,8 @@ Status ClusterSceneState::settle() {
 
 /// Exchanges the packed parcels, and applies the received ones.
 Status ClusterSceneState::deliver() {
-  std::span<const Parcel> received;
-  Status answer = is_alone() ? Status::ok : exchange(received);
+  std::span<const RankMessage> received;
+  Status answer = is_single_rank() ? Status::ok : exchange(received);
   for (std::uint32_t i = 0; i < scenes.size() && answer == Status::ok; ++i) {
     answer = scenes[i].receive(parcels_for(received, first + i));
   }
@@ -75,7 +75,7 @@ Status ClusterSceneState::take_names_of(std::span<const std::span<const BodyName
     freed.emplace_back(removed.emplace_back(scenes[i].take_removed()));
     asked.push_back(answers[i] == Status::ok ? wanted[i] : std::span<const BodyName>{});
   }
-  return is_alone() ? Status::ok : take_names(freed, asked, answers);
+  return is_single_rank() ? Status::ok : take_names(freed, asked, answers);
 }
 
 Status ClusterSceneState::add(std::span<const ClusterSceneBatch> batches,
@@ -137,7 +137,7 @@ Status ClusterSceneState::replicate(const ClusterSceneBatch& batch, Status& refu
   for (const BodyDefinition& body : batch.bodies) {
     if (refused == Status::ok && body.motion != Motion::fixed) refused = Status::unsupported;
   }
-  answer = agree(told_by(batch), refused);
+  answer = agree(digest_of_batch(batch), refused);
   if (answer != Status::ok || refused != Status::ok) return answer;
   // Rank 0 requests the names for all ranks.
   std::vector<Status> answers(scenes.size(), Status::ok);
@@ -183,8 +183,8 @@ Status ClusterSceneState::collide(ContactLevel level) {
 /// Takes part in the exchanges even after an error on this process, which the other ranks get only
 /// later.
 Status ClusterSceneState::agree_on_events() {
-  std::span<const Parcel> received;
-  if (!is_alone()) {
+  std::span<const RankMessage> received;
+  if (!is_single_rank()) {
     for (RankScene& one : scenes) one.events().ask(parcels);
     Status answer = exchange(received);
     if (answer != Status::ok) return answer;
@@ -269,8 +269,8 @@ ClusterDigest digest_of(const Contacts& contacts) noexcept {
 
 ClusterScene::ClusterScene(Transport& transport, const ShapePool& shapes,
                            const ClusterSceneOptions& options) noexcept
-    : state_(guarded([&] { return new ClusterSceneState(transport, shapes, options); },
-                     static_cast<ClusterSceneState*>(nullptr))) {}
+    : state_(catch_bad_alloc([&] { return new ClusterSceneState(transport, shapes, options); },
+                             static_cast<ClusterSceneState*>(nullptr))) {}
 
 ClusterScene::~ClusterScene() {
   delete state_;

@@ -1,6 +1,6 @@
 #include <winnow/pipeline/cluster_transport.h>
 
-#include "core/memory/guarded.h"
+#include "core/memory/catch_bad_alloc.h"
 #include "pipeline/cluster/bisection.h"
 
 #include <algorithm>
@@ -11,16 +11,17 @@ namespace winnow {
 LoopbackTransport::LoopbackTransport(std::uint32_t ranks) noexcept
     : ranks_(std::clamp(ranks, 1U, 65'536U)) {}
 
-Status LoopbackTransport::exchange(std::span<const Parcel> sent, std::span<const Parcel>& received,
-                                   const Meanwhile& meanwhile) {
+Status LoopbackTransport::exchange(std::span<const RankMessage> sent,
+                                   std::span<const RankMessage>& received,
+                                   const OverlappedWork& meanwhile) {
   meanwhile();
   const auto keep = [&] {
     parcels_.assign(sent.begin(), sent.end());
     return Status::ok;
   };
-  const Status kept = guarded(keep, Status::out_of_memory);
+  const Status kept = catch_bad_alloc(keep, Status::out_of_memory);
   if (kept != Status::ok) return kept;
-  std::sort(parcels_.begin(), parcels_.end(), [](const Parcel& a, const Parcel& b) {
+  std::sort(parcels_.begin(), parcels_.end(), [](const RankMessage& a, const RankMessage& b) {
     return std::tie(a.to, a.from) < std::tie(b.to, b.from);
   });
   received = parcels_;
@@ -31,12 +32,12 @@ Status LoopbackTransport::reduce(std::span<std::uint64_t>, std::span<std::uint64
   return Status::ok;
 }
 
-Status LoopbackTransport::cut(std::span<const CutWork> work, std::span<RegionCut> cuts) {
+Status LoopbackTransport::cut(std::span<const CutWork> work, std::span<SplitPlane> cuts) {
   const auto cut_all = [&] {
     bisect(work, cuts);
     return Status::ok;
   };
-  return guarded(cut_all, Status::out_of_memory);
+  return catch_bad_alloc(cut_all, Status::out_of_memory);
 }
 
 }  // namespace winnow

@@ -1,7 +1,7 @@
 #include "pipeline/cluster/contact_events.h"
 
 #include "pipeline/cluster/name_table.h"
-#include "pipeline/cluster/outbox.h"
+#include "pipeline/cluster/send_queue.h"
 
 #include <algorithm>
 #include <iterator>
@@ -14,16 +14,16 @@ std::uint32_t ContactEvents::keeper_of(const TouchingPair& pair) const noexcept 
 }
 
 /// Adds one parcel per receiver: begun pairs, then ended pairs.
-void ContactEvents::post(std::vector<Posted>& begun, std::vector<Posted>& ended, Columns& columns,
-                         std::vector<Parcel>& parcels) const {
+void ContactEvents::post(std::vector<AddressedPair>& begun, std::vector<AddressedPair>& ended,
+                         Columns& columns, std::vector<RankMessage>& parcels) const {
   columns.begun.clear();
   columns.ended.clear();
   std::sort(begun.begin(), begun.end());
   std::sort(ended.begin(), ended.end());
-  for (const Posted& one : begun) columns.begun.push_back(one.pair);
-  for (const Posted& one : ended) columns.ended.push_back(one.pair);
-  const std::span<const Posted> all_begun(begun);
-  const std::span<const Posted> all_ended(ended);
+  for (const AddressedPair& one : begun) columns.begun.push_back(one.pair);
+  for (const AddressedPair& one : ended) columns.ended.push_back(one.pair);
+  const std::span<const AddressedPair> all_begun(begun);
+  const std::span<const AddressedPair> all_ended(ended);
   for_each_receiver(all_begun, all_ended, [&](std::uint32_t to, auto ones, auto others) {
     const auto i = static_cast<std::size_t>(ones.data() - begun.data());
     const auto k = static_cast<std::size_t>(others.data() - ended.data());
@@ -34,19 +34,19 @@ void ContactEvents::post(std::vector<Posted>& begun, std::vector<Posted>& ended,
   });
 }
 
-void ContactEvents::ask(std::vector<Parcel>& parcels) {
-  post(begun_in_doubt_, ended_in_doubt_, asked_, parcels);
+void ContactEvents::ask(std::vector<RankMessage>& parcels) {
+  post(begun_uncertain_, ended_uncertain_, asked_, parcels);
 }
 
-void ContactEvents::answer(std::span<const Parcel> asked, std::vector<Parcel>& parcels) {
-  struct Told {
+void ContactEvents::answer(std::span<const RankMessage> asked, std::vector<RankMessage>& parcels) {
+  struct SentPairs {
     TouchingPair pair;
     std::uint32_t by;
-    bool operator<(const Told& other) const noexcept { return pair < other.pair; }
+    bool operator<(const SentPairs& other) const noexcept { return pair < other.pair; }
   };
-  std::vector<Told> begun;
-  std::vector<Told> ended;
-  for (const Parcel& parcel : asked) {
+  std::vector<SentPairs> begun;
+  std::vector<SentPairs> ended;
+  for (const RankMessage& parcel : asked) {
     for (const TouchingPair& pair : column_of<TouchingPair>(parcel, 0)) {
       begun.push_back({pair, parcel.from});
     }
@@ -57,24 +57,24 @@ void ContactEvents::answer(std::span<const Parcel> asked, std::vector<Parcel>& p
   std::sort(begun.begin(), begun.end());
   std::sort(ended.begin(), ended.end());
   // The lists have been sent: reuse them.
-  begun_in_doubt_.clear();
-  ended_in_doubt_.clear();
-  for (const Told& one : begun) {
+  begun_uncertain_.clear();
+  ended_uncertain_.clear();
+  for (const SentPairs& one : begun) {
     if (std::binary_search(ended.begin(), ended.end(), one)) {
-      begun_in_doubt_.push_back({one.by, one.pair});
+      begun_uncertain_.push_back({one.by, one.pair});
     }
   }
-  for (const Told& one : ended) {
+  for (const SentPairs& one : ended) {
     if (std::binary_search(begun.begin(), begun.end(), one)) {
-      ended_in_doubt_.push_back({one.by, one.pair});
+      ended_uncertain_.push_back({one.by, one.pair});
     }
   }
-  post(begun_in_doubt_, ended_in_doubt_, answered_, parcels);
+  post(begun_uncertain_, ended_uncertain_, answered_, parcels);
 }
 
-void ContactEvents::conclude(std::span<const Parcel> answers) {
+void ContactEvents::conclude(std::span<const RankMessage> answers) {
   std::vector<TouchingPair> went_on;
-  for (const Parcel& parcel : answers) {
+  for (const RankMessage& parcel : answers) {
     for (const TouchingPair& pair : column_of<TouchingPair>(parcel, 0)) {
       const auto at = std::lower_bound(touching_.begin(), touching_.end(), pair);
       persisted_[static_cast<std::size_t>(at - touching_.begin())] = 1;

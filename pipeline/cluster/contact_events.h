@@ -42,11 +42,11 @@ class ContactEvents {
   void compare(std::vector<TouchingPair>& now, std::span<const Knowledge> knowledge,
                WasLocal&& was_local);
   /// Step 1: sends the pairs that may have begun or ended to their keepers.
-  void ask(std::vector<Parcel>& parcels);
+  void ask(std::vector<RankMessage>& parcels);
   /// Step 2, as keeper: returns the pairs that are in both lists.
-  void answer(std::span<const Parcel> asked, std::vector<Parcel>& parcels);
+  void answer(std::span<const RankMessage> asked, std::vector<RankMessage>& parcels);
   /// Step 3: marks the returned pairs as persisting.
-  void conclude(std::span<const Parcel> answers);
+  void conclude(std::span<const RankMessage> answers);
 
   /// For each pair that touches now: not 0 if it touched before.
   [[nodiscard]] std::span<const std::uint8_t> persisted() const noexcept { return persisted_; }
@@ -60,10 +60,11 @@ class ContactEvents {
 
  private:
   /// A pair to be sent to its keeper, or back to a rank.
-  struct Posted {
+  struct AddressedPair {
     std::uint32_t to;
     TouchingPair pair;
-    friend constexpr auto operator<=>(const Posted&, const Posted&) noexcept = default;
+    friend constexpr auto operator<=>(const AddressedPair&,
+                                      const AddressedPair&) noexcept = default;
   };
 
   [[nodiscard]] std::uint32_t keeper_of(const TouchingPair& pair) const noexcept;
@@ -72,16 +73,16 @@ class ContactEvents {
     std::vector<TouchingPair> begun;
     std::vector<TouchingPair> ended;
   };
-  void post(std::vector<Posted>& begun, std::vector<Posted>& ended, Columns& columns,
-            std::vector<Parcel>& parcels) const;
+  void post(std::vector<AddressedPair>& begun, std::vector<AddressedPair>& ended, Columns& columns,
+            std::vector<RankMessage>& parcels) const;
 
   std::uint32_t rank_;
   std::uint32_t ranks_;
   std::vector<TouchingPair> touching_;
   std::vector<std::uint8_t> persisted_;
   std::vector<TouchingPair> ended_;
-  std::vector<Posted> begun_in_doubt_;
-  std::vector<Posted> ended_in_doubt_;
+  std::vector<AddressedPair> begun_uncertain_;
+  std::vector<AddressedPair> ended_uncertain_;
   Columns asked_;
   Columns answered_;
 };
@@ -91,11 +92,11 @@ void ContactEvents::compare(std::vector<TouchingPair>& now, std::span<const Know
                             WasLocal&& was_local) {
   persisted_.assign(now.size(), 0);
   ended_.clear();
-  begun_in_doubt_.clear();
-  ended_in_doubt_.clear();
+  begun_uncertain_.clear();
+  ended_uncertain_.clear();
   const auto end_pair = [&](const TouchingPair& pair) {
     ended_.push_back(pair);
-    if (!was_local(pair)) ended_in_doubt_.push_back({keeper_of(pair), pair});
+    if (!was_local(pair)) ended_uncertain_.push_back({keeper_of(pair), pair});
   };
   auto before = touching_.cbegin();
   for (std::size_t i = 0; i < now.size(); ++i) {
@@ -106,7 +107,7 @@ void ContactEvents::compare(std::vector<TouchingPair>& now, std::span<const Know
       persisted_[i] = 1;
       ++before;
     } else if (knowledge[i] == Knowledge::none) {
-      begun_in_doubt_.push_back({keeper_of(now[i]), now[i]});
+      begun_uncertain_.push_back({keeper_of(now[i]), now[i]});
     }
   }
   while (before != touching_.cend()) end_pair(*before++);

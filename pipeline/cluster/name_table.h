@@ -34,7 +34,7 @@ class NameTable {
   explicit NameTable(std::pmr::memory_resource* memory) : places_(memory) {}
 
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
-  [[nodiscard]] std::size_t bytes() const noexcept { return places_.capacity() * sizeof(Place); }
+  [[nodiscard]] std::size_t bytes() const noexcept { return places_.capacity() * sizeof(Slot); }
 
   /// Returns the number of a name; kNone if there is none.
   [[nodiscard]] std::uint32_t find(std::uint64_t name) const noexcept {
@@ -43,7 +43,7 @@ class NameTable {
 
   /// Prefetches the entry that `find` reads first.
   void fetch(std::uint64_t name) const noexcept {
-    if (!places_.empty()) __builtin_prefetch(&places_[home_of(name)]);
+    if (!places_.empty()) __builtin_prefetch(&places_[first_slot_of(name)]);
   }
 
   /// Reserves memory for `count` names in total.
@@ -51,9 +51,9 @@ class NameTable {
     std::size_t places = places_.empty() ? 16 : places_.size();
     while (count * 4 > places * 3) places *= 2;
     if (places == places_.size()) return;
-    std::pmr::vector<Place> old(places, Place{}, places_.get_allocator());
+    std::pmr::vector<Slot> old(places, Slot{}, places_.get_allocator());
     old.swap(places_);
-    for (const Place& place : old) {
+    for (const Slot& place : old) {
       if (place.number != kNone) places_[place_of(place.name)] = place;
     }
   }
@@ -61,7 +61,7 @@ class NameTable {
   /// Sets the number of a name, whether or not it had one.
   void set(std::uint64_t name, std::uint32_t number) {
     reserve(size_ + 1);
-    Place& place = places_[place_of(name)];
+    Slot& place = places_[place_of(name)];
     if (place.number == kNone) ++size_;
     place = {name, number};
   }
@@ -72,8 +72,8 @@ class NameTable {
     std::size_t gap = place_of(name);
     for (std::size_t i = next(gap); places_[i].number != kNone; i = next(i)) {
       // An entry whose hash slot is behind the gap can stay.
-      const std::size_t home = home_of(places_[i].name);
-      if (((i - home) & mask()) < ((i - gap) & mask())) continue;
+      const std::size_t first_slot = first_slot_of(places_[i].name);
+      if (((i - first_slot) & mask()) < ((i - gap) & mask())) continue;
       places_[gap] = places_[i];
       gap = i;
     }
@@ -82,23 +82,23 @@ class NameTable {
   }
 
  private:
-  struct Place {
+  struct Slot {
     std::uint64_t name = 0;
     std::uint32_t number = kNone;
   };
 
   [[nodiscard]] std::size_t mask() const noexcept { return places_.size() - 1; }
   [[nodiscard]] std::size_t next(std::size_t i) const noexcept { return (i + 1) & mask(); }
-  [[nodiscard]] std::size_t home_of(std::uint64_t name) const noexcept {
+  [[nodiscard]] std::size_t first_slot_of(std::uint64_t name) const noexcept {
     return scattered(name) & mask();
   }
   [[nodiscard]] std::size_t place_of(std::uint64_t name) const noexcept {
-    std::size_t i = home_of(name);
+    std::size_t i = first_slot_of(name);
     while (places_[i].number != kNone && places_[i].name != name) i = next(i);
     return i;
   }
 
-  std::pmr::vector<Place> places_;
+  std::pmr::vector<Slot> places_;
   std::size_t size_ = 0;
 };
 

@@ -3,7 +3,7 @@
 #include "pipeline/cluster/rank_bodies.h"
 
 #include "partitions/rows/volume_source.h"
-#include "pipeline/cluster/work_shares.h"
+#include "pipeline/cluster/load_balance.h"
 
 #include <algorithm>
 #include <array>
@@ -233,33 +233,34 @@ std::uint8_t RankBodies::flags_of(const Aabb& box, bool owned) const noexcept {
 }
 
 void RankBodies::send_removals(const Regions& regions) {
-  outbox_.clear();
+  send_queue_.clear();
   changes_.clear();
-  const auto is_removed = [this](const Moved& moved) {
+  const auto is_removed = [this](const MovedBox& moved) {
     return partition_.contains(moved.key) && (flags_[moved.key.id] & kRemoved) != 0;
   };
-  const auto rest = std::stable_partition(moved_.begin(), moved_.end(),
-                                          [&](const Moved& moved) { return !is_removed(moved); });
-  for (auto moved = rest; moved != moved_.end(); ++moved) tell(*moved, Aabb{}, regions, regions);
+  const auto rest = std::stable_partition(
+      moved_.begin(), moved_.end(), [&](const MovedBox& moved) { return !is_removed(moved); });
+  for (auto moved = rest; moved != moved_.end(); ++moved)
+    add_messages(*moved, Aabb{}, regions, regions);
   moved_.erase(rest, moved_.end());
 }
 
 void RankBodies::send(const Regions& before, const Regions& now, bool regions_changed) {
   region_ = now.of(rank_);
-  outbox_.clear();
+  send_queue_.clear();
   changes_.clear();
   arrived_.clear();
   departed_.clear();
   works_.clear();
   if (regions_changed) note_all_that_cross();
   // A single rank removes bodies at once, without sending that.
-  std::erase_if(moved_, [this](const Moved& moved) { return !partition_.contains(moved.key); });
+  std::erase_if(moved_, [this](const MovedBox& moved) { return !partition_.contains(moved.key); });
   asked_.clear();
-  for (const Moved& moved : moved_) asked_.push_back(moved.key);
+  for (const MovedBox& moved : moved_) asked_.push_back(moved.key);
   (void)find_boxes();
   for (std::size_t i = 0; i < moved_.size(); ++i) {
     const bool removed = (flags_[moved_[i].key.id] & kRemoved) != 0;
-    tell(moved_[i], removed ? Aabb{} : boxes_[i], before, now);
+    add_messages(moved_[i], removed ? Aabb{} : boxes_[i], before, now);
   }
   moved_.clear();
 }
@@ -282,14 +283,15 @@ void RankBodies::note_all_that_cross() {
   }
 }
 
-void RankBodies::tell(const Moved& moved, const Aabb& box, const Regions& before,
-                      const Regions& now) {
+void RankBodies::add_messages(const MovedBox& moved, const Aabb& box, const Regions& before,
+                              const Regions& now) {
   const ObjectId id = moved.key.id;
   const bool removed = (flags_[id] & kRemoved) != 0;
   const std::uint32_t owner = removed ? rank_ : now.owner(centre_of(box));
   before.ranks_of(moved.told, ranks_before_);
   now.ranks_of(box, ranks_now_);
-  outbox_.tell(rank_, {names_[id], owner, box == moved.told}, box, ranks_before_, ranks_now_);
+  send_queue_.add_messages(rank_, {names_[id], owner, box == moved.told}, box, ranks_before_,
+                           ranks_now_);
 
   const bool stays = std::binary_search(ranks_now_.begin(), ranks_now_.end(), rank_);
   if (owner != rank_) departed_.push_back(names_[id]);
@@ -307,33 +309,33 @@ void RankBodies::tell(const Moved& moved, const Aabb& box, const Regions& before
   }
 }
 
-Status RankBodies::receive(std::span<const Parcel> parcels) {
+Status RankBodies::receive(std::span<const RankMessage> parcels) {
   // Apply removals first: a name may be added again in the same exchange.
   take_gone<Aabb>(parcels, table_, [&](std::uint32_t id) {
     changes_.dropped.push_back(partition_.key_of(id));
     flags_[id] = 0;
     --ghosts_;
   });
-  for (const Parcel& parcel : parcels) take(BodyNews<Aabb>(parcel));
+  for (const RankMessage& parcel : parcels) take(BodyMessages<Aabb>(parcel));
   return apply_changes();
 }
 
-void RankBodies::take(const BodyNews<Aabb>& news) {
-  for (std::size_t i = 0; i < news.names.size(); ++i) {
-    if (i + kFetchAhead < news.names.size()) table_.fetch(news.names[i + kFetchAhead]);
-    const bool belongs = news.belongs[i] != 0;
-    const std::uint32_t id = table_.find(news.names[i]);
+void RankBodies::take(const BodyMessages<Aabb>& incoming) {
+  for (std::size_t i = 0; i < incoming.names.size(); ++i) {
+    if (i + kFetchAhead < incoming.names.size()) table_.fetch(incoming.names[i + kFetchAhead]);
+    const bool belongs = incoming.belongs[i] != 0;
+    const std::uint32_t id = table_.find(incoming.names[i]);
     if (id == NameTable::kNone) {
-      changes_.add_fresh(news, i);
+      changes_.add_fresh(incoming, i);
       continue;
     }
     const Key key = partition_.key_of(id);
     changes_.keys.push_back(key);
-    changes_.places.push_back(news.contents[i]);
-    flags_[id] = flags_of(news.contents[i], belongs);
+    changes_.places.push_back(incoming.contents[i]);
+    flags_[id] = flags_of(incoming.contents[i], belongs);
     if (!belongs) continue;
     --ghosts_;
-    arrived_.push_back({news.names[i], key});
+    arrived_.push_back({incoming.names[i], key});
   }
 }
 

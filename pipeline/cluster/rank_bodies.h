@@ -3,8 +3,8 @@
 #include <winnow/partitions/partition.h>
 #include <winnow/pipeline/cluster.h>
 #include "pipeline/cluster/name_table.h"
-#include "pipeline/cluster/outbox.h"
 #include "pipeline/cluster/regions.h"
+#include "pipeline/cluster/send_queue.h"
 
 #include <cstdint>
 #include <memory_resource>
@@ -38,9 +38,9 @@ class RankBodies {
   /// Prepares what other ranks hold from now on, and what they hold no longer: for changed bodies,
   /// or for all bodies if the regions changed.
   void send(const Regions& before, const Regions& now, bool regions_changed);
-  void pack(std::vector<Parcel>& parcels) { outbox_.pack(rank_, parcels); }
+  void pack(std::vector<RankMessage>& parcels) { send_queue_.pack(rank_, parcels); }
   /// Applies parcels of other ranks, and removes what this rank holds no longer.
-  [[nodiscard]] Status receive(std::span<const Parcel> parcels);
+  [[nodiscard]] Status receive(std::span<const RankMessage> parcels);
 
   /// Updates the structure for the own bodies while parcels are in transit, so that little remains
   /// to be done when the copies arrive.
@@ -82,7 +82,7 @@ class RankBodies {
     kBelow = kBelowX | kBelowY | kBelowZ,
   };
   /// A body whose box may differ from the box that was last sent to other ranks.
-  struct Moved {
+  struct MovedBox {
     Key key;
     Aabb told;  // the box last sent; empty if there is none
   };
@@ -102,8 +102,9 @@ class RankBodies {
   void add_rows(std::span<const BodyName> names, std::span<const Key> keys);
   void note_all_that_cross();
   /// Sends one body with its current box; an empty box for a removed body.
-  void tell(const Moved& moved, const Aabb& box, const Regions& before, const Regions& now);
-  void take(const BodyNews<Aabb>& news);
+  void add_messages(const MovedBox& moved, const Aabb& box, const Regions& before,
+                    const Regions& now);
+  void take(const BodyMessages<Aabb>& incoming);
   [[nodiscard]] Status apply_changes();
 
   std::uint32_t rank_;
@@ -115,13 +116,13 @@ class RankBodies {
   std::pmr::vector<std::uint8_t> flags_;  // by id
   NameTable table_;                       // to ids
   std::size_t ghosts_ = 0;
-  std::vector<Moved> moved_;
+  std::vector<MovedBox> moved_;
   std::vector<BodyName> removed_;
   std::vector<ClusterBody> arrived_;
   std::vector<BodyName> departed_;
   std::pmr::vector<Pair> sorted_;   // the pairs in canonical order, if that is requested
   std::span<const Pair> reported_;  // in found_ or sorted_
-  Outbox<Aabb> outbox_;
+  SendQueue<Aabb> send_queue_;
   BodyChanges<Aabb, Aabb> changes_;
   std::vector<std::uint32_t> works_;  // by id
   std::vector<std::uint32_t> works_of_owned_;

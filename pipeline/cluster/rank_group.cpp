@@ -4,10 +4,10 @@
 
 namespace winnow {
 
-std::span<const Parcel> parcels_for(std::span<const Parcel> parcels, std::uint32_t rank) {
+std::span<const RankMessage> parcels_for(std::span<const RankMessage> parcels, std::uint32_t rank) {
   // clang 14 cannot read std::ranges::subrange.
-  const auto begin = std::ranges::lower_bound(parcels, rank, {}, &Parcel::to);
-  return {begin, std::ranges::upper_bound(begin, parcels.end(), rank, {}, &Parcel::to)};
+  const auto begin = std::ranges::lower_bound(parcels, rank, {}, &RankMessage::to);
+  return {begin, std::ranges::upper_bound(begin, parcels.end(), rank, {}, &RankMessage::to)};
 }
 
 RankGroup::RankGroup(Transport& given, double imbalance_bound, std::pmr::memory_resource* memory)
@@ -19,8 +19,9 @@ RankGroup::RankGroup(Transport& given, double imbalance_bound, std::pmr::memory_
   if (!(imbalance_bound >= 1.0)) status = Status::invalid_argument;
 }
 
-Status RankGroup::exchange(std::span<const Parcel>& received, const Meanwhile& meanwhile) {
-  for (const Parcel& parcel : parcels) {
+Status RankGroup::exchange(std::span<const RankMessage>& received,
+                           const OverlappedWork& meanwhile) {
+  for (const RankMessage& parcel : parcels) {
     if (parcel.from == parcel.to) continue;
     bytes_ += parcel.bytes();
     ++messages_;
@@ -31,7 +32,7 @@ Status RankGroup::exchange(std::span<const Parcel>& received, const Meanwhile& m
 }
 
 Status RankGroup::cut_space(std::span<const CutWork> work) {
-  std::vector<RegionCut> cuts(ranks - 1);
+  std::vector<SplitPlane> cuts(ranks - 1);
   const Status answer = transport.cut(work, cuts);
   if (answer == Status::ok) regions = Regions(cuts);
   ++statistics.cuts;
@@ -41,7 +42,7 @@ Status RankGroup::cut_space(std::span<const CutWork> work) {
 Status RankGroup::take_names(std::span<const std::span<const BodyName>> freed,
                              std::span<const std::span<const BodyName>> wanted,
                              std::span<Status> answers) {
-  std::span<const Parcel> received;
+  std::span<const RankMessage> received;
   for (std::size_t i = 0; i < names.size(); ++i) {
     for (const BodyName name : freed[i]) names[i].forget(name);
     names[i].ask(wanted[i], parcels);
@@ -97,7 +98,7 @@ void RankGroup::decide_on_cut() {
   constexpr double kHelped = 0.98;
   constexpr double kWorse = 1.05;
   const double now = statistics.imbalance;
-  wants_cut = !is_alone() && now > imbalance_ &&
+  wants_cut = !is_single_rank() && now > imbalance_ &&
               (was_cut ? now < kHelped * after_cut_ : now > kWorse * after_cut_);
   if (was_cut) after_cut_ = now;
 }

@@ -1,8 +1,8 @@
 #pragma once
 
 #include <winnow/pipeline/cluster.h>
-#include "core/memory/guarded.h"
-#include "pipeline/cluster/name_directory.h"
+#include "core/memory/catch_bad_alloc.h"
+#include "pipeline/cluster/id_directory.h"
 #include "pipeline/cluster/regions.h"
 
 #include <algorithm>
@@ -25,18 +25,19 @@ struct RankCounts {
 };
 
 /// Returns the parcels for one rank; they are sorted by receiver.
-[[nodiscard]] std::span<const Parcel> parcels_for(std::span<const Parcel> parcels,
-                                                  std::uint32_t rank);
+[[nodiscard]] std::span<const RankMessage> parcels_for(std::span<const RankMessage> parcels,
+                                                       std::uint32_t rank);
 
 /// The ranks of a cluster, as seen by this process: communication, regions, the directory of names,
 /// and statistics. Base of ClusterState and ClusterSceneState, which add the bodies.
 struct RankGroup {
   RankGroup(Transport& given, double imbalance_bound, std::pmr::memory_resource* memory);
 
-  [[nodiscard]] bool is_alone() const noexcept { return ranks == 1; }
+  [[nodiscard]] bool is_single_rank() const noexcept { return ranks == 1; }
 
   /// Sends `parcels`, and counts the bytes and messages between different ranks.
-  [[nodiscard]] Status exchange(std::span<const Parcel>& received, const Meanwhile& meanwhile = {});
+  [[nodiscard]] Status exchange(std::span<const RankMessage>& received,
+                                const OverlappedWork& meanwhile = {});
   /// Computes new regions. `work` has one entry for each hosted rank.
   [[nodiscard]] Status cut_space(std::span<const CutWork> work);
   /// Reserves names for the hosted ranks and frees others, one list for each rank. A rank gets
@@ -53,9 +54,9 @@ struct RankGroup {
   std::uint32_t ranks;
   std::uint32_t first;
   Status status = Status::ok;
-  std::deque<NameDirectory> names;
+  std::deque<IdDirectory> names;
   Regions regions;
-  std::vector<Parcel> parcels;
+  std::vector<RankMessage> parcels;
   ClusterStatistics statistics;
   // State of that decision, the same on every process.
   bool wants_cut = true;
@@ -92,7 +93,7 @@ Status collective(State* state, CollectiveCall which, Call&& call) noexcept {
   if (state == nullptr) return Status::out_of_memory;
   if (state->status != Status::ok) return state->status;
   state->transport.begin(static_cast<std::uint32_t>(which));
-  return state->status = guarded(call, Status::out_of_memory);
+  return state->status = catch_bad_alloc(call, Status::out_of_memory);
 }
 
 /// Runs a call of one rank. If it is refused, it has changed nothing.
@@ -102,7 +103,7 @@ Status on_rank(State* state, std::uint32_t rank, Call&& call) noexcept {
   if (state->status != Status::ok) return state->status;
   auto* const hosted = state->find(rank);
   if (hosted == nullptr) return Status::invalid_argument;
-  return guarded([&] { return call(*hosted); }, Status::out_of_memory);
+  return catch_bad_alloc([&] { return call(*hosted); }, Status::out_of_memory);
 }
 
 }  // namespace winnow

@@ -2,8 +2,8 @@
 
 #include "pipeline/cluster/rank_scene.h"
 
-#include "core/memory/guarded.h"
-#include "pipeline/cluster/work_shares.h"
+#include "core/memory/catch_bad_alloc.h"
+#include "pipeline/cluster/load_balance.h"
 #include "pipeline/scene/contact_frame.h"
 #include "pipeline/scene/scene_state.h"
 #include "pipeline/shapes/pair_order.h"
@@ -28,7 +28,7 @@ RankScene::RankScene(std::uint32_t rank, std::uint32_t ranks, const ShapePool& s
       contacts_(options.memory),
       events_(rank, ranks),
       table_(options.memory) {
-  if (scene_.state_ == nullptr || contacts_.state_ == nullptr) leave_without_memory();
+  if (scene_.state_ == nullptr || contacts_.state_ == nullptr) throw_bad_alloc();
   selection_.wants = [](const void* self, std::uint32_t a, std::uint32_t b) {
     return static_cast<const RankScene*>(self)->reports(a, b);
   };
@@ -236,20 +236,20 @@ void RankScene::note_changed_composites() {
 }
 
 void RankScene::send_removals(const Regions& regions) {
-  outbox_.clear();
+  send_queue_.clear();
   changes_.clear();
-  const auto is_removed = [this](const Moved& moved) {
+  const auto is_removed = [this](const MovedBody& moved) {
     return (flags_[moved.key.id] & kRemoved) != 0;
   };
-  const auto rest = std::stable_partition(moved_.begin(), moved_.end(),
-                                          [&](const Moved& moved) { return !is_removed(moved); });
-  for (auto moved = rest; moved != moved_.end(); ++moved) tell(*moved, regions, regions);
+  const auto rest = std::stable_partition(
+      moved_.begin(), moved_.end(), [&](const MovedBody& moved) { return !is_removed(moved); });
+  for (auto moved = rest; moved != moved_.end(); ++moved) add_messages(*moved, regions, regions);
   moved_.erase(rest, moved_.end());
 }
 
 void RankScene::send(const Regions& before, const Regions& now, bool regions_changed) {
   region_ = now.of(rank_);
-  outbox_.clear();
+  send_queue_.clear();
   changes_.clear();
   arrived_.clear();
   departed_.clear();
@@ -259,7 +259,7 @@ void RankScene::send(const Regions& before, const Regions& now, bool regions_cha
     // Other pairs are reported by this rank now.
     state().pairs.clear();
   }
-  for (const Moved& moved : moved_) tell(moved, before, now);
+  for (const MovedBody& moved : moved_) add_messages(moved, before, now);
   moved_.clear();
 }
 
@@ -271,7 +271,7 @@ void RankScene::note_all_that_cross() {
   }
 }
 
-void RankScene::tell(const Moved& moved, const Regions& before, const Regions& now) {
+void RankScene::add_messages(const MovedBody& moved, const Regions& before, const Regions& now) {
   const ObjectId id = moved.key.id;
   flags_[id] = static_cast<std::uint8_t>(flags_[id] & ~kMoved);
   const bool removed = (flags_[id] & kRemoved) != 0;
@@ -282,8 +282,8 @@ void RankScene::tell(const Moved& moved, const Regions& before, const Regions& n
   const std::uint32_t owner = removed ? rank_ : now.owner(centre_of(box));
   before.ranks_of(moved.told, ranks_before_);
   now.ranks_of(box, ranks_now_);
-  outbox_.tell(rank_, {names_[id], owner, !moved.has_changed}, record_of(id), ranks_before_,
-               ranks_now_);
+  send_queue_.add_messages(rank_, {names_[id], owner, !moved.has_changed}, record_of(id),
+                           ranks_before_, ranks_now_);
   if (owner != rank_) {
     departed_.push_back(names_[id]);
     --owned_;
@@ -304,33 +304,33 @@ void RankScene::tell(const Moved& moved, const Regions& before, const Regions& n
   }
 }
 
-Status RankScene::receive(std::span<const Parcel> parcels) {
+Status RankScene::receive(std::span<const RankMessage> parcels) {
   // Apply removals first: a name may be added again in the same exchange.
   take_gone<BodyRecord>(parcels, table_, [&](std::uint32_t id) {
     changes_.dropped.push_back(state().keys.key_of(id));
     flags_[id] = 0;
     --ghosts_;
   });
-  for (const Parcel& parcel : parcels) take(BodyNews<BodyRecord>(parcel));
+  for (const RankMessage& parcel : parcels) take(BodyMessages<BodyRecord>(parcel));
   return apply_changes();
 }
 
 /// For a body that is here already, another rank has sent a new pose, or that it belongs here now.
-void RankScene::take(const BodyNews<BodyRecord>& news) {
-  for (std::size_t i = 0; i < news.names.size(); ++i) {
-    const std::uint32_t id = table_.find(news.names[i]);
+void RankScene::take(const BodyMessages<BodyRecord>& incoming) {
+  for (std::size_t i = 0; i < incoming.names.size(); ++i) {
+    const std::uint32_t id = table_.find(incoming.names[i]);
     if (id == NameTable::kNone) {
-      changes_.add_fresh(news, i);
+      changes_.add_fresh(incoming, i);
       continue;
     }
     const Key key = state().keys.key_of(id);
     changes_.keys.push_back(key);
-    changes_.places.push_back(news.contents[i].pose);
-    if (news.belongs[i] == 0) continue;
+    changes_.places.push_back(incoming.contents[i].pose);
+    if (incoming.belongs[i] == 0) continue;
     flags_[id] |= kOwned;
     --ghosts_;
     ++owned_;
-    arrived_.push_back({news.names[i], key});
+    arrived_.push_back({incoming.names[i], key});
   }
 }
 
@@ -450,7 +450,7 @@ void RankScene::show_events() {
   };
   for (const TouchingPair& pair : events_.ended()) {
     if (!shown.ended.push_back({key_by_name(pair.a), key_by_name(pair.b), pair.a, pair.b})) {
-      leave_without_memory();
+      throw_bad_alloc();
     }
   }
 }
@@ -458,7 +458,7 @@ void RankScene::show_events() {
 RankCounts RankScene::counts() const noexcept {
   const SceneStatistics& found = scene_.statistics();
   return {owned_, ghosts_, contacts_.size(), departed_.size(),
-          scene_.size() + (found.body_pairs - found.balls_apart) + found.primitive_pairs};
+          scene_.size() + (found.body_pairs - found.rejected_by_spheres) + found.primitive_pairs};
 }
 
 void RankScene::measure_work() {

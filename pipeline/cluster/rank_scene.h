@@ -7,9 +7,9 @@
 #include <winnow/pipeline/cluster_scene.h>
 #include "pipeline/cluster/contact_events.h"
 #include "pipeline/cluster/name_table.h"
-#include "pipeline/cluster/outbox.h"
 #include "pipeline/cluster/rank_group.h"
 #include "pipeline/cluster/regions.h"
+#include "pipeline/cluster/send_queue.h"
 #include "pipeline/scene/body_pairs.h"
 
 #include <cstdint>
@@ -76,9 +76,9 @@ class RankScene {
   /// Prepares what other ranks hold from now on, and what they hold no longer: for changed bodies,
   /// or for all bodies if the regions changed.
   void send(const Regions& before, const Regions& now, bool regions_changed);
-  void pack(std::vector<Parcel>& parcels) { outbox_.pack(rank_, parcels); }
+  void pack(std::vector<RankMessage>& parcels) { send_queue_.pack(rank_, parcels); }
   /// Applies parcels of other ranks, and removes what this rank holds no longer.
-  [[nodiscard]] Status receive(std::span<const Parcel> parcels);
+  [[nodiscard]] Status receive(std::span<const RankMessage> parcels);
 
   // Contacts.
 
@@ -125,7 +125,7 @@ class RankScene {
     kSettled = 64,     // at the last collide belonged to this rank and did not cross
   };
   /// A body that other ranks may need to be sent.
-  struct Moved {
+  struct MovedBody {
     Key key;
     Aabb told;         // the box last sent; empty if there is none
     bool has_changed;  // false if only the regions changed
@@ -155,8 +155,8 @@ class RankScene {
   void note(ObjectId id, bool has_changed);
   void note_all_that_cross();
   void note_changed_composites();
-  void tell(const Moved& moved, const Regions& before, const Regions& now);
-  void take(const BodyNews<BodyRecord>& news);
+  void add_messages(const MovedBody& moved, const Regions& before, const Regions& now);
+  void take(const BodyMessages<BodyRecord>& incoming);
   [[nodiscard]] Status apply_changes();
   void sort_names();
   void compare_contacts();
@@ -174,11 +174,11 @@ class RankScene {
   NameTable table_;                  // to ids
   std::size_t owned_ = 0;
   std::size_t ghosts_ = 0;
-  std::vector<Moved> moved_;
+  std::vector<MovedBody> moved_;
   std::vector<BodyName> removed_;
   std::vector<ClusterBody> arrived_;
   std::vector<BodyName> departed_;
-  Outbox<BodyRecord> outbox_;
+  SendQueue<BodyRecord> send_queue_;
   BodyChanges<Pose, BodyRecord> changes_;
   // Order of pairs: all bodies by name, bodies added since then, and the tables for `selection_`.
   std::vector<NamedId> by_name_;

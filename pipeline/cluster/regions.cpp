@@ -15,7 +15,7 @@ constexpr std::uint32_t rank_at(std::int32_t side) noexcept {
 
 }  // namespace
 
-Regions::Regions(std::span<const RegionCut> cuts) : cuts_(cuts.begin(), cuts.end()) {
+Regions::Regions(std::span<const SplitPlane> cuts) : cuts_(cuts.begin(), cuts.end()) {
   const Aabb all{Vec3f::constant(-kInfinity), Vec3f::constant(kInfinity)};
   boxes_.resize(cuts.size() + 1);
   set_boxes(root(), all);
@@ -26,7 +26,7 @@ void Regions::set_boxes(std::int32_t side, const Aabb& box) {
     boxes_[rank_at(side)] = box;
     return;
   }
-  const RegionCut& cut = cuts_[static_cast<std::size_t>(side)];
+  const SplitPlane& cut = cuts_[static_cast<std::size_t>(side)];
   const int axis = static_cast<int>(cut.axis);
   Aabb part = box;
   part.max[axis] = std::min(box.max[axis], std::nextafter(cut.at, -kInfinity));
@@ -39,7 +39,7 @@ void Regions::set_boxes(std::int32_t side, const Aabb& box) {
 std::uint32_t Regions::owner(const Vec3f& point) const noexcept {
   std::int32_t side = root();
   while (side >= 0) {
-    const RegionCut& cut = cuts_[static_cast<std::size_t>(side)];
+    const SplitPlane& cut = cuts_[static_cast<std::size_t>(side)];
     side = cut.sides[point[static_cast<int>(cut.axis)] < cut.at ? 0 : 1];
   }
   return rank_at(side);
@@ -55,7 +55,7 @@ void Regions::ranks_of(const Aabb& box, std::vector<std::uint32_t>& ranks) const
 void Regions::add_ranks(std::int32_t side, const Aabb& box,
                         std::vector<std::uint32_t>& ranks) const {
   while (side >= 0) {
-    const RegionCut& cut = cuts_[static_cast<std::size_t>(side)];
+    const SplitPlane& cut = cuts_[static_cast<std::size_t>(side)];
     const int axis = static_cast<int>(cut.axis);
     const bool below = box.min[axis] < cut.at;
     const bool above = !(box.max[axis] < cut.at);
@@ -77,7 +77,7 @@ void Regions::add_ranks(std::int32_t side, const ShapeRay& ray, double low, doub
                         std::vector<std::uint32_t>& ranks) const {
   constexpr double kSlack = 1e-9;
   while (side >= 0) {
-    const RegionCut& cut = cuts_[static_cast<std::size_t>(side)];
+    const SplitPlane& cut = cuts_[static_cast<std::size_t>(side)];
     const double at = static_cast<double>(cut.at);
     const double origin = ray.origin[cut.axis];
     const double direction = ray.direction[cut.axis];

@@ -46,7 +46,7 @@ namespace winnow {
 class Regions {
  public:
   /// Regions given by cuts. Without cuts there is one rank, which has all of space.
-  explicit Regions(std::span<const RegionCut> cuts = {});
+  explicit Regions(std::span<const SplitPlane> cuts = {});
 
   /// Returns the rank whose region contains a point. O(depth of the cuts).
   [[nodiscard]] std::uint32_t owner(const Vec3f& point) const noexcept;
@@ -67,7 +67,7 @@ class Regions {
   void add_ranks(std::int32_t side, const ShapeRay& ray, double low, double high,
                  std::vector<std::uint32_t>& ranks) const;
 
-  std::vector<RegionCut> cuts_;
+  std::vector<SplitPlane> cuts_;
   std::vector<Aabb> boxes_;
 };
 

@@ -34,7 +34,8 @@ void take_out(Entry*& first, Entry* entry) noexcept {
 
 // Builds the tree of a compound: one degenerate triangle per child, with two opposite corners of
 // the child's box as vertices.
-[[nodiscard]] Status plant(const Compound& compound, std::pmr::memory_resource* memory) noexcept {
+[[nodiscard]] Status build_child_tree(const Compound& compound,
+                                      std::pmr::memory_resource* memory) noexcept {
   Column<std::uint32_t> corners(memory);
   const std::size_t count = compound.count;
   if (!corners.resize(3 * count)) return Status::out_of_memory;
@@ -48,32 +49,32 @@ void take_out(Entry*& first, Entry* entry) noexcept {
                               std::span<const std::uint32_t>(corners.data(), corners.size()));
 }
 
-/// Box of a shape at a pose.
-[[nodiscard]] Box bounds_of(const Composites& all, ShapeId id, const Mat& rotation,
-                            const Vec& position) noexcept {
+/// Box3 of a shape at a pose.
+[[nodiscard]] Box3 bounds_of(const Composites& all, ShapeId id, const Mat& rotation,
+                             const Vec& position) noexcept {
   if (!id.is_composite()) {
     return box_under(all.shapes.tables(), id, rotation, position, 0.0);
   }
   if (const MeshEntry* const mesh = all.mesh(id)) {
     const Mat linear = rotation * Eigen::Map<const Vec>(mesh->scale).asDiagonal();
-    return box_under(Box::of(mesh->shared->mesh.bounds()), linear, position, 0.0);
+    return box_under(Box3::of(mesh->shared->mesh.bounds()), linear, position, 0.0);
   }
   if (const HeightField* const field = all.field(id)) {
-    return box_under(Box::of(field->bounds()), rotation, position, 0.0);
+    return box_under(Box3::of(field->bounds()), rotation, position, 0.0);
   }
-  Box box;
+  Box3 box;
   const Compound* const compound = all.compound(id);
   if (compound == nullptr) return box;
   for (std::uint32_t i = 0; i < compound->count; ++i) {
     const CompoundChild& child = compound->children[i];
     const Eigen::Map<const Vec> at(child.pose.position);
-    const Mat turned = rotation_of(tame(child.pose.orientation));
+    const Mat turned = rotation_of(scale_to_unit_max(child.pose.orientation));
     box.merge(bounds_of(all, child.shape, rotation * turned, position + rotation * at));
   }
   return box;
 }
-[[nodiscard]] Box bounds_of(const Composites& all, ShapeId id, const Pose& pose) noexcept {
-  return bounds_of(all, id, rotation_of(tame(pose.orientation)),
+[[nodiscard]] Box3 bounds_of(const Composites& all, ShapeId id, const Pose& pose) noexcept {
+  return bounds_of(all, id, rotation_of(scale_to_unit_max(pose.orientation)),
                    Eigen::Map<const Vec>(pose.position));
 }
 
@@ -198,7 +199,7 @@ Status Composites::new_compound(std::span<const CompoundChild> children, Compoun
   if (has_surfaces) {
     new (parts_of + count) std::uint32_t(part);
     compound->first_part = parts_of;
-    put_first(first_of_surfaces, compound);
+    put_first(first_compound_with_surfaces, compound);
   }
   const Status status = fit(*compound);
   if (status != Status::ok) {
@@ -214,7 +215,7 @@ Status Composites::fit(Compound& compound) noexcept {
   compound.radius = 0.0;
   for (std::uint32_t i = 0; i < compound.count; ++i) {
     const CompoundChild& child = compound.children[i];
-    const Box box = bounds_of(*this, child.shape, child.pose);
+    const Box3 box = bounds_of(*this, child.shape, child.pose);
     compound.boxes[i] = Aabb::outward(box.min, box.max);
     compound.bounds.merge(compound.boxes[i]);
     const double farthest =
@@ -223,10 +224,10 @@ Status Composites::fit(Compound& compound) noexcept {
   }
   if (compound.tree != nullptr) compound.tree->~TriangleMesh();
   compound.tree = nullptr;
-  if (compound.count <= kFlatChildren || !Box::of(compound.bounds).is_finite()) return Status::ok;
+  if (compound.count <= kFlatChildren || !Box3::of(compound.bounds).is_finite()) return Status::ok;
   // new_compound allocated room for the tree behind the compound.
   compound.tree = new (&compound + 1) TriangleMesh(memory);
-  const Status status = plant(compound, memory);
+  const Status status = build_child_tree(compound, memory);
   if (status == Status::ok) return status;
   compound.tree->~TriangleMesh();
   compound.tree = nullptr;
@@ -234,7 +235,7 @@ Status Composites::fit(Compound& compound) noexcept {
 }
 
 void Composites::release(Compound* compound) noexcept {
-  if (compound->has_surfaces()) take_out(first_of_surfaces, compound);
+  if (compound->has_surfaces()) take_out(first_compound_with_surfaces, compound);
   if (compound->tree != nullptr) compound->tree->~TriangleMesh();
   const std::size_t bytes = compound->bytes;
   memory->deallocate(compound, bytes, alignof(std::max_align_t));
@@ -377,10 +378,10 @@ Status CompositePool::set_one_sided(ShapeId surface, bool one_sided) {
   if (!contains(surface) || surface.composite_kind() == CompositeKind::compound) {
     return Status::invalid_key;
   }
-  return tell(state_->one_sided, surface, one_sided);
+  return set_flag(state_->one_sided, surface, one_sided);
 }
 
-Status CompositePool::tell(mid::IdSet& set, ShapeId surface, bool now) noexcept {
+Status CompositePool::set_flag(mid::IdSet& set, ShapeId surface, bool now) noexcept {
   if (set.has(surface) == now) return Status::ok;
   if (!now) set.remove(surface);
   if (now && !set.add(surface)) return Status::out_of_memory;
@@ -395,7 +396,7 @@ Status CompositePool::set_solid(ShapeId id, bool solid) {
     const Status status = mid::check_solid(*state_, id);
     if (status != Status::ok) return status;
   }
-  return tell(state_->solid, id, solid);
+  return set_flag(state_->solid, id, solid);
 }
 
 bool CompositePool::is_solid(ShapeId id) const noexcept {
@@ -470,7 +471,7 @@ bool CompositePool::contains(ShapeId id) const noexcept {
 Aabb CompositePool::bounds(ShapeId id, const Pose& pose) const noexcept {
   const DefaultEnvironment environment;
   if (!contains(id)) return {};
-  const mid::Box box = mid::bounds_of(*state_, id, pose);
+  const mid::Box3 box = mid::bounds_of(*state_, id, pose);
   return Aabb::outward(box.min, box.max);
 }
 

@@ -4,8 +4,8 @@
 #include <winnow/pipeline/composite_pool.h>
 
 #include "core/hooks/log.h"
+#include "core/memory/free_list_io.h"
 #include "core/memory/new_in.h"
-#include "core/memory/saved_places.h"
 #include "core/memory/snapshot_frame.h"
 #include "core/threads/float_environment.h"
 #include "pipeline/composites/composites.h"
@@ -20,7 +20,7 @@ constexpr std::uint32_t kCompositesVersion = 1;
 
 /// Writes each mesh entry: the index of its shared mesh, the mesh itself if the index is new, and
 /// its scale.
-void put_meshes(ByteWriter& out, const mid::Places<mid::MeshEntry>& meshes,
+void put_meshes(ByteWriter& out, const mid::SlotTable<mid::MeshEntry>& meshes,
                 Column<const mid::SharedMesh*>& known) {
   for (const mid::MeshEntry& entry : meshes.entries) {
     if (entry.shared == nullptr) continue;
@@ -49,14 +49,14 @@ void put_ids(ByteWriter& out, const mid::IdSet& ids) {
 
 void put_composites(ByteWriter& out, const mid::Composites& all,
                     Column<const mid::SharedMesh*>& known) {
-  put_places(out, all.meshes.entries.size(), all.meshes.free);
+  write_slots(out, all.meshes.entries.size(), all.meshes.free);
   put_meshes(out, all.meshes, known);
-  put_places(out, all.fields.entries.size(), all.fields.free);
+  write_slots(out, all.fields.entries.size(), all.fields.free);
   for (const HeightField* const field : all.fields.entries) {
     if (field == nullptr) continue;
     out.put_nested([&](Column<std::byte>& to) { return field->save(to); });
   }
-  put_places(out, all.compounds.entries.size(), all.compounds.free);
+  write_slots(out, all.compounds.entries.size(), all.compounds.free);
   for (const mid::Compound* const compound : all.compounds.entries) {
     if (compound != nullptr) put_children(out, *compound);
   }
@@ -125,8 +125,8 @@ class CompositesReader {
     }
   }
   template <typename Entry, typename Read>
-  [[nodiscard]] Status read_all(mid::Places<Entry>& places, const Entry& nothing, Read&& read) {
-    ReadPlaces saved(all_.memory);
+  [[nodiscard]] Status read_all(mid::SlotTable<Entry>& places, const Entry& nothing, Read&& read) {
+    SlotReader saved(all_.memory);
     if (!saved.read(in_) || !saved.open(in_, places.entries, places.free, nothing)) {
       return status_of(in_);
     }
@@ -219,7 +219,7 @@ Status CompositePool::load(std::span<const std::byte> saved, const Execution& ex
       status = CompositesReader(in, fresh, *all, execution).run();
     }
   }
-  if (status != Status::ok) return logged(refused_as(status), "CompositePool::load");
+  if (status != Status::ok) return logged(snapshot_status(status), "CompositePool::load");
   if (fresh.state_ != nullptr) fresh.state_->revision = revision() + 1;
   std::swap(state_, fresh.state_);
   return Status::ok;

@@ -1,8 +1,8 @@
 #pragma once
 
-// Storage of a CompositePool, and the functions that its members forward to: `expand` (expand.cpp,
-// search.cpp), `smooth` (smooth.cpp), `reduce` (reduce.cpp), and the traversals of queries
-// (visits.cpp, rays.cpp).
+// Storage of a CompositePool, and the functions that its members forward to: `expand`
+// (find_primitive_pairs.cpp, primitive_pair_search.cpp), `smooth` (internal_edges.cpp), `reduce`
+// (manifold_reduction.cpp), and the traversals of queries (composite_traversal.cpp, rays.cpp).
 
 #include <winnow/core/column.h>
 #include <winnow/pipeline/composite_pool.h>
@@ -95,8 +95,8 @@ struct Compound {
 
 /// Entries of one kind of shape, and a free list. A free entry must convert to false.
 template <typename Entry>
-struct Places {
-  explicit Places(std::pmr::memory_resource* memory) noexcept : entries(memory), free(memory) {}
+struct SlotTable {
+  explicit SlotTable(std::pmr::memory_resource* memory) noexcept : entries(memory), free(memory) {}
 
   Column<Entry> entries;
   Column<std::uint32_t> free;
@@ -192,14 +192,15 @@ struct Composites {
   /// As above, for all compounds with a child for which `is_changed(id)` is true.
   template <typename IsChanged>
   void fit_users(IsChanged&& is_changed) noexcept {
-    for (Compound* compound = first_of_surfaces; compound != nullptr; compound = compound->next) {
+    for (Compound* compound = first_compound_with_surfaces; compound != nullptr;
+         compound = compound->next) {
       if (has_child(*compound, is_changed)) (void)fit(*compound);
     }
   }
   /// True if the surface is a child of a compound.
   [[nodiscard]] bool is_child(ShapeId surface) const noexcept {
     const auto is_this = [&](ShapeId id) { return id == surface; };
-    const Compound* compound = first_of_surfaces;
+    const Compound* compound = first_compound_with_surfaces;
     while (compound != nullptr && !has_child(*compound, is_this)) compound = compound->next;
     return compound != nullptr;
   }
@@ -207,13 +208,13 @@ struct Composites {
 
   const ShapePool& shapes;
   std::pmr::memory_resource* memory;
-  Places<MeshEntry> meshes;
-  Places<HeightField*> fields;
-  Places<Compound*> compounds;
+  SlotTable<MeshEntry> meshes;
+  SlotTable<HeightField*> fields;
+  SlotTable<Compound*> compounds;
   IdSet one_sided;  ///< surfaces with one-sided triangles
   IdSet solid;      ///< solid meshes
   SharedMesh* first_mesh = nullptr;
-  Compound* first_of_surfaces = nullptr;
+  Compound* first_compound_with_surfaces = nullptr;
   std::uint64_t revision = 0;
 
  private:

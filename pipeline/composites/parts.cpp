@@ -6,7 +6,7 @@
 #include <winnow/core/rounding.h>
 #include "pipeline/shapes/extent.h"
 #include "pipeline/shapes/frame.h"
-#include "pipeline/shapes/front.h"
+#include "pipeline/shapes/one_sided.h"
 
 #include <algorithm>
 #include <cmath>
@@ -29,7 +29,7 @@ PreciseBox placed_box(const Aabb& box, const double position[3]) noexcept {
 }
 
 PreciseBox triangle_box(const TriangleShape& triangle, const Pose& pose) noexcept {
-  const Eigen::Matrix3d turn = rotation_of_unit(normalized(tame(pose.orientation)));
+  const Eigen::Matrix3d turn = rotation_of_unit(normalized(scale_to_unit_max(pose.orientation)));
   PreciseBox box;
   double scale = 0.0;
   for (int k = 0; k < 3; ++k) {
@@ -67,7 +67,7 @@ PartTables::PartTables(const ShapePool& pool) noexcept
   tables_.count[static_cast<std::size_t>(ShapeKind::sphere)] = 2;
 }
 
-ShapeId PartTables::put(std::size_t slot, const ConvexPart& part) noexcept {
+ShapeId PartTables::put(std::size_t slot, const SubShape& part) noexcept {
   const ShapeKind kind = part.shape.kind();
   const auto index = static_cast<std::uint32_t>(slot);
   if (kind == ShapeKind::triangle) {
@@ -83,19 +83,19 @@ ShapeId PartTables::put(std::size_t slot, const ConvexPart& part) noexcept {
   return part.shape;
 }
 
-bool PartTraversal::contains(ShapeId shape) const noexcept {
+bool SubShapeQuery::contains(ShapeId shape) const noexcept {
   if (shape.is_composite()) return composites_ != nullptr && composites_->contains(shape);
   return shapes_.contains(shape);
 }
 
-PreciseBox PartTraversal::box(const PlacedShape& placed) const noexcept {
+PreciseBox SubShapeQuery::box(const PlacedShape& placed) const noexcept {
   const Pose here = at_origin(placed.pose);
   const Aabb local = placed.shape.is_composite() ? composites_->bounds(placed.shape, here)
                                                  : shapes_.bounds(placed.shape, here);
   return placed_box(local, placed.pose.position);
 }
 
-PreciseBox PartTraversal::box(const ConvexPart& part) const noexcept {
+PreciseBox SubShapeQuery::box(const SubShape& part) const noexcept {
   if (part.triangle != nullptr) return triangle_box(*part.triangle, part.pose);
   if (part.ball != nullptr) {
     const Vector3d center = Vector3d::Map(part.pose.position);
@@ -104,10 +104,10 @@ PreciseBox PartTraversal::box(const ConvexPart& part) const noexcept {
   return box(PlacedShape{part.shape, part.pose});
 }
 
-void PartTraversal::traverse(const PlacedShape& placed, BoxSweep sweep, double limit, bool near,
+void SubShapeQuery::traverse(const PlacedShape& placed, BoxSweep sweep, double limit, bool near,
                              PartVisitor visitor) const {
   if (!placed.shape.is_composite()) {
-    visitor.visit(visitor.context, ConvexPart{placed.shape, placed.pose}, limit);
+    visitor.visit(visitor.context, SubShape{placed.shape, placed.pose}, limit);
     return;
   }
   // If the sweep is unbounded, clip it to the box of the shape. Computed only then, because the box
@@ -133,14 +133,15 @@ void PartTraversal::traverse(const PlacedShape& placed, BoxSweep sweep, double l
   }
 }
 
-bool stands_unturned(const ConvexPart& part) noexcept {
+bool is_unrotated(const SubShape& part) noexcept {
   const double* const q = part.pose.orientation;
   return part.triangle->rounding == 0.0 && q[1] == 0.0 && q[2] == 0.0 && q[3] == 0.0;
 }
 
-bool stands_behind(const PreciseBox& box, const ConvexPart& part) noexcept {
+bool is_behind_triangle(const PreciseBox& box, const SubShape& part) noexcept {
   if (part.front == 0) return false;
-  const Eigen::Matrix3d turn = rotation_of_unit(normalized(tame(part.pose.orientation)));
+  const Eigen::Matrix3d turn =
+      rotation_of_unit(normalized(scale_to_unit_max(part.pose.orientation)));
   const Vector3d first = Vector3d::Map(part.triangle->vertex[0]);
   const Vector3d normal = (Vector3d::Map(part.triangle->vertex[1]) - first)
                               .cross(Vector3d::Map(part.triangle->vertex[2]) - first);

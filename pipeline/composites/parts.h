@@ -6,8 +6,8 @@
 #include <winnow/core/pose.h>
 #include <winnow/pipeline/mid_phase.h>
 #include <winnow/pipeline/shape_pool.h>
-#include "pipeline/shapes/difference.h"
 #include "pipeline/shapes/extent.h"
+#include "pipeline/shapes/two_diff.h"
 
 #include <Eigen/Core>
 #include <cmath>
@@ -34,7 +34,7 @@ struct PlacedShape {
 };
 
 /// A convex shape in a query: a whole body, a primitive of a body, or a point.
-struct ConvexPart {
+struct SubShape {
   ShapeId shape;
   Pose pose;
   std::uint32_t part = kWholeShape;
@@ -55,7 +55,7 @@ class PartTables {
   PartTables& operator=(const PartTables&) = delete;
 
   /// Stores a part in slot 0 or 1 and returns its id in `tables`.
-  [[nodiscard]] ShapeId put(std::size_t slot, const ConvexPart& part) noexcept;
+  [[nodiscard]] ShapeId put(std::size_t slot, const SubShape& part) noexcept;
   [[nodiscard]] const ShapeTables& tables() const noexcept { return tables_; }
 
  private:
@@ -66,9 +66,9 @@ class PartTables {
 };
 
 /// Traverses the parts of shapes; a convex shape is its own only part.
-class PartTraversal {
+class SubShapeQuery {
  public:
-  PartTraversal(const ShapePool& shapes, const MidPhase* composites) noexcept
+  SubShapeQuery(const ShapePool& shapes, const MidPhase* composites) noexcept
       : shapes_(shapes), composites_(composites) {}
 
   [[nodiscard]] const ShapePool& shapes() const noexcept { return shapes_; }
@@ -89,7 +89,7 @@ class PartTraversal {
   }
   /// Returns a box that contains the shape.
   [[nodiscard]] PreciseBox box(const PlacedShape& placed) const noexcept;
-  [[nodiscard]] PreciseBox box(const ConvexPart& part) const noexcept;
+  [[nodiscard]] PreciseBox box(const SubShape& part) const noexcept;
 
   /// Calls visit(part, limit) for every part that the sweep may hit, roughly in order of time.
   /// `visit` returns the limit of t for the rest of the traversal; a negative limit ends it.
@@ -157,8 +157,8 @@ class PartTraversal {
   }
 
  private:
-  [[nodiscard]] static ConvexPart part_of(const Primitive& primitive) noexcept {
-    ConvexPart part{primitive.shape, primitive.pose, primitive.part};
+  [[nodiscard]] static SubShape part_of(const Primitive& primitive) noexcept {
+    SubShape part{primitive.shape, primitive.pose, primitive.part};
     if (primitive.shape.kind() == ShapeKind::triangle) part.triangle = &primitive.triangle;
     part.front = primitive.front;
     return part;
@@ -178,12 +178,12 @@ class PartTraversal {
     }
   };
   struct PartVisitor {
-    double (*visit)(void* context, const ConvexPart& part, double limit);
+    double (*visit)(void* context, const SubShape& part, double limit);
     void* context;
   };
   template <typename Visit>
   static PartVisitor visitor(Visit& visit) noexcept {
-    return {[](void* context, const ConvexPart& part, double limit) {
+    return {[](void* context, const SubShape& part, double limit) {
               return (*static_cast<Visit*>(context))(part, limit);
             },
             &visit};
@@ -196,10 +196,10 @@ class PartTraversal {
 };
 
 /// True if `triangle` has no rounding and its pose has no rotation.
-[[nodiscard]] bool stands_unturned(const ConvexPart& part) noexcept;
+[[nodiscard]] bool is_unrotated(const SubShape& part) noexcept;
 
 /// True if the part is a one-sided triangle and the centre of the box is behind it.
-[[nodiscard]] bool stands_behind(const PreciseBox& box, const ConvexPart& part) noexcept;
+[[nodiscard]] bool is_behind_triangle(const PreciseBox& box, const SubShape& part) noexcept;
 
 [[nodiscard]] inline bool is_finite(const double point[3]) noexcept {
   return std::isfinite(point[0]) && std::isfinite(point[1]) && std::isfinite(point[2]);

@@ -3,10 +3,10 @@
 // Intersections are computed by pipeline/mesh (mesh_rays.h, height_grid.h).
 
 #include "pipeline/composites/composites.h"
-#include "pipeline/composites/placed_body.h"
+#include "pipeline/composites/transformed_shape.h"
 #include "pipeline/mesh/height_grid.h"
 #include "pipeline/mesh/mesh_rays.h"
-#include "pipeline/shapes/difference.h"
+#include "pipeline/shapes/two_diff.h"
 
 #include <algorithm>
 #include <bit>
@@ -17,11 +17,11 @@ namespace {
 
 /// Transforms a normal from the frame of the surface to the world, and normalises it.
 [[nodiscard]] Vec unit_under(const SurfaceFrame& frame, const Vec& normal) noexcept {
-  const Eigen::Map<const Mat> transposed(frame.to_own[0]);
+  const Eigen::Map<const Mat> transposed(frame.world_to_local[0]);
   const auto times = [&](const Vec& of) {
     return Vec(transposed.col(0).dot(of), transposed.col(1).dot(of), transposed.col(2).dot(of));
   };
-  const Vec plain = frame.is_turned ? times(normal) : normal;
+  const Vec plain = frame.is_rotated ? times(normal) : normal;
   const double square = plain.squaredNorm();
   constexpr double kSafe = 1e200;
   if (square > 1.0 / kSafe && square < kSafe) return plain * (1.0 / std::sqrt(square));
@@ -30,10 +30,10 @@ namespace {
 
 /// Returns the power of two that scales a positive x into [1/2, 1).
 [[nodiscard]] double scale_to_one(double x) noexcept {
-  constexpr std::uint64_t kMostExponent = 2045;
+  constexpr std::uint64_t kMaxExponent = 2045;
   const std::uint64_t exponent = std::bit_cast<std::uint64_t>(x) >> 52;
-  if (exponent != 0 && exponent < kMostExponent) {
-    return std::bit_cast<double>((kMostExponent - exponent) << 52);
+  if (exponent != 0 && exponent < kMaxExponent) {
+    return std::bit_cast<double>((kMaxExponent - exponent) << 52);
   }
   int power = 0;
   std::frexp(x, &power);
@@ -57,22 +57,22 @@ namespace {
 /// A body and a ray, both relative to `about`. The rounding error of the ray's origin is moved to
 /// the position of the body.
 struct NearBody {
-  NearBody(const PlacedBody& placed, const Vec& about, const ShapeRay& of) noexcept
+  NearBody(const TransformedShape& placed, const Vec& about, const ShapeRay& of) noexcept
       : ray(of), body(placed) {
-    const Difference between = difference(of.origin, about.data());
+    const TwoDiff between = difference(of.origin, about.data());
     std::copy_n(between.difference, 3, ray.origin);
     body.position = (placed.position - about) - Vec::Map(between.rest);
   }
 
   ShapeRay ray;
-  PlacedBody body;
+  TransformedShape body;
 };
 
 /// A surface as the target of rays. Visitors get primitives relative to `about`.
 struct RayTarget {
-  RayTarget(const PlacedBody& placed, const Vec& show_about) noexcept
+  RayTarget(const TransformedShape& placed, const Vec& show_about) noexcept
       : body(placed), about(show_about) {
-    const bool is_mesh = body.kind == PlacedBody::Kind::mesh;
+    const bool is_mesh = body.kind == TransformedShape::Kind::mesh;
     const Aabb bounds = is_mesh ? body.shared->mesh.bounds() : body.field->bounds();
     Vec corner;
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -80,20 +80,20 @@ struct RayTarget {
           static_cast<double>(std::max(std::abs(bounds.min[axis]), std::abs(bounds.max[axis])));
     }
     Vec::Map(frame.position) = body.position;
-    Mat::Map(frame.to_own[0]) = body.to_local;
-    frame.is_turned = body.to_local != Mat::Identity();
+    Mat::Map(frame.world_to_local[0]) = body.to_local;
+    frame.is_rotated = body.to_local != Mat::Identity();
     frame.reach = corner.maxCoeff();
     frame.size = (body.to_world.cwiseAbs() * corner).sum();
   }
 
-  const PlacedBody& body;
+  const TransformedShape& body;
   const Vec& about;
   SurfaceFrame frame;
 };
 
 /// Transforms a vector to the frame of the surface; sums in the order of the columns.
 void turn_into(const SurfaceFrame& frame, const double (&v)[3], double (&own)[3]) noexcept {
-  const auto& column = frame.to_own;
+  const auto& column = frame.world_to_local;
   for (int i = 0; i < 3; ++i) {
     own[i] = column[0][i] * v[0] + column[1][i] * v[1] + column[2][i] * v[2];
   }
@@ -102,7 +102,7 @@ void turn_into(const SurfaceFrame& frame, const double (&v)[3], double (&own)[3]
 [[nodiscard]] double largest_turned(const SurfaceFrame& frame, const double (&v)[3]) noexcept {
   double largest = 0.0;
   for (int i = 0; i < 3; ++i) {
-    const auto part = [&](int k) { return std::abs(frame.to_own[k][i]) * std::abs(v[k]); };
+    const auto part = [&](int k) { return std::abs(frame.world_to_local[k][i]) * std::abs(v[k]); };
     largest = std::max(largest, part(0) + part(1) + part(2));
   }
   return largest;
@@ -123,8 +123,8 @@ template <std::uint32_t Room>
   double start[3];
   for (int i = 0; i < 3; ++i) start[i] = ray.origin[i] - frame.position[i];
   const double fastest = largest_of(ray.direction);
-  if (!(largest_of(start) < kMostRayLength && frame.size < kMostRayLength &&
-        fastest < kMostRayLength && fastest > 1.0 / kMostRayLength)) {
+  if (!(largest_of(start) < kMaxRayLength && frame.size < kMaxRayLength &&
+        fastest < kMaxRayLength && fastest > 1.0 / kMaxRayLength)) {
     return false;
   }
   // The closest approach to the surface's origin is at t = towards / square.
@@ -140,7 +140,7 @@ template <std::uint32_t Room>
   double way[3];
   double from[3];
   double coordinate = 0.0;
-  if (frame.is_turned) {
+  if (frame.is_rotated) {
     turn_into(frame, ray.direction, way);
     turn_into(frame, start, from);
     coordinate = largest_turned(frame, start);
@@ -149,7 +149,7 @@ template <std::uint32_t Room>
     std::copy_n(start, 3, from);
     coordinate = largest_of(start);
   }
-  const double stretch = scale_to_one(frame.is_turned ? largest_of(way) : fastest);
+  const double stretch = scale_to_one(frame.is_rotated ? largest_of(way) : fastest);
   for (int axis = 0; axis < 3; ++axis) {
     own.ray.origin[axis][lane] = from[axis];
     own.ray.direction[axis][lane] = way[axis] * stretch;
@@ -161,7 +161,7 @@ template <std::uint32_t Room>
 }
 
 /// Converts t of the caller to t of the ray in the frame of a surface ("own" t).
-struct OwnTime {
+struct LocalRayTime {
   double shift;
   /// 1 / stretch, a power of two.
   double unit;
@@ -186,9 +186,9 @@ struct OwnTime {
 
 /// Traces up to `Room` rays through a surface and reports the triangles that they hit.
 template <std::uint32_t Room>
-class RayGuides {
+class RayPacket {
  public:
-  RayGuides(const RayTarget& target, std::span<const ShapeRay> rays,
+  RayPacket(const RayTarget& target, std::span<const ShapeRay> rays,
             const RayVisitor& visitor) noexcept
       : target_(target), rays_(rays), visitor_(visitor) {}
 
@@ -203,7 +203,9 @@ class RayGuides {
   [[nodiscard]] std::uint64_t place() noexcept;
   void go_through_mesh();
   void go_through_field(std::uint32_t i);
-  [[nodiscard]] OwnTime time(std::uint32_t i) const noexcept { return {own_.shift[i], unit_[i]}; }
+  [[nodiscard]] LocalRayTime time(std::uint32_t i) const noexcept {
+    return {own_.shift[i], unit_[i]};
+  }
   // Functions that report triangles return the new own limit.
   [[nodiscard]] double meet(std::uint32_t i, std::uint32_t slot, const SurfaceHit& found,
                             double own_before);
@@ -223,12 +225,12 @@ class RayGuides {
   alignas(kRayAlignment<Room>) double own_limit_[Room];
   RayColumns<Room> world_;
   SurfaceRayColumns<Room> own_;
-  /// See OwnTime.
+  /// See LocalRayTime.
   double unit_[Room];
 };
 
 template <std::uint32_t Room>
-void RayGuides<Room>::add(std::size_t ray, double limit) noexcept {
+void RayPacket<Room>::add(std::size_t ray, double limit) noexcept {
   if constexpr (Room != 1) {
     const ShapeRay& asked = rays_[ray];
     for (int axis = 0; axis < 3; ++axis) {
@@ -242,7 +244,7 @@ void RayGuides<Room>::add(std::size_t ray, double limit) noexcept {
 }
 
 template <std::uint32_t Room>
-std::uint64_t RayGuides<Room>::place() noexcept {
+std::uint64_t RayPacket<Room>::place() noexcept {
   if constexpr (Room == 1) {
     return 1;
   } else {
@@ -259,7 +261,7 @@ std::uint64_t RayGuides<Room>::place() noexcept {
 
 template <std::uint32_t Room>
 template <typename Elsewhere>
-void RayGuides<Room>::go(Elsewhere&& elsewhere) {
+void RayPacket<Room>::go(Elsewhere&& elsewhere) {
   if (count_ == 0) return;
   for (std::uint64_t left = place(); left != 0; left &= left - 1) {
     const auto i = static_cast<std::uint32_t>(std::countr_zero(left));
@@ -271,12 +273,12 @@ void RayGuides<Room>::go(Elsewhere&& elsewhere) {
   }
   for (std::uint32_t i = 0; i < count_; ++i) {
     unit_[i] = 1.0 / own_.stretch[i];
-    const OwnTime own = time(i);
+    const LocalRayTime own = time(i);
     own_limit_[i] = limit_[i] >= 0.0 ? own.first_limit(limit_[i], target_.frame.reach) : -1.0;
     own_.low[i] = own(0.0);
     own_.high[i] = own(rays_[number_[i]].max_t);
   }
-  if (target_.body.kind == PlacedBody::Kind::mesh) {
+  if (target_.body.kind == TransformedShape::Kind::mesh) {
     go_through_mesh();
   } else {
     for (std::uint32_t i = 0; i < count_; ++i) go_through_field(i);
@@ -285,12 +287,12 @@ void RayGuides<Room>::go(Elsewhere&& elsewhere) {
 }
 
 template <std::uint32_t Room>
-void RayGuides<Room>::go_through_mesh() {
+void RayPacket<Room>::go_through_mesh() {
   const RaySlotVisitor visitor{
       [](void* context, std::uint32_t ray, std::uint32_t slot, const SurfaceHit& found,
-         double limit) { return static_cast<RayGuides*>(context)->meet(ray, slot, found, limit); },
+         double limit) { return static_cast<RayPacket*>(context)->meet(ray, slot, found, limit); },
       [](void* context, std::uint32_t ray, std::uint32_t slot, double limit) {
-        return static_cast<RayGuides*>(context)->look(ray, slot, limit);
+        return static_cast<RayPacket*>(context)->look(ray, slot, limit);
       },
       this};
   if constexpr (Room == 1) {
@@ -301,10 +303,10 @@ void RayGuides<Room>::go_through_mesh() {
 }
 
 template <std::uint32_t Room>
-void RayGuides<Room>::go_through_field(std::uint32_t i) {
+void RayPacket<Room>::go_through_field(std::uint32_t i) {
   if (own_limit_[i] < 0.0) return;
-  struct Way {
-    RayGuides* guides;
+  struct FieldRay {
+    RayPacket* guides;
     std::uint32_t ray;
   } way{this, i};
   const SurfaceRay ray = own_[i];
@@ -313,7 +315,7 @@ void RayGuides<Room>::go_through_field(std::uint32_t i) {
   const Vec high = start.array() + ray.slack;
   height_sweep(grid_of(*target_.body.field), low.data(), high.data(), ray.direction, own_limit_[i],
                {[](void* context, const std::uint32_t* slots, std::uint32_t count, double limit) {
-                  const Way& on = *static_cast<Way*>(context);
+                  const FieldRay& on = *static_cast<FieldRay*>(context);
                   for (std::uint32_t k = 0; k < count && limit >= 0.0; ++k) {
                     limit = on.guides->show(on.ray, slots[k], limit);
                   }
@@ -323,7 +325,7 @@ void RayGuides<Room>::go_through_field(std::uint32_t i) {
 }
 
 template <std::uint32_t Room>
-double RayGuides<Room>::show(std::uint32_t i, std::uint32_t slot, double own_before) {
+double RayPacket<Room>::show(std::uint32_t i, std::uint32_t slot, double own_before) {
   double corner[3][3];
   if (!target_.body.own_corners(slot, corner)) return own_before;
   SurfaceHit found;
@@ -332,14 +334,14 @@ double RayGuides<Room>::show(std::uint32_t i, std::uint32_t slot, double own_bef
       break;
     case Crossing::found:
       return meet(i, slot, found, own_before);
-    case Crossing::doubtful:
+    case Crossing::uncertain:
       return look(i, slot, own_before);
   }
   return own_before;
 }
 
 template <std::uint32_t Room>
-double RayGuides<Room>::meet(std::uint32_t i, std::uint32_t slot, const SurfaceHit& found,
+double RayPacket<Room>::meet(std::uint32_t i, std::uint32_t slot, const SurfaceHit& found,
                              double own_before) {
   ShapeHit hit;
   hit.hit = true;
@@ -356,7 +358,7 @@ double RayGuides<Room>::meet(std::uint32_t i, std::uint32_t slot, const SurfaceH
 }
 
 template <std::uint32_t Room>
-double RayGuides<Room>::look(std::uint32_t i, std::uint32_t slot, double own_before) {
+double RayPacket<Room>::look(std::uint32_t i, std::uint32_t slot, double own_before) {
   Primitive primitive;
   const NearBody near(target_.body, target_.about, rays_[number_[i]]);
   if (!near.body.primitive(slot, primitive)) return own_before;
@@ -364,7 +366,7 @@ double RayGuides<Room>::look(std::uint32_t i, std::uint32_t slot, double own_bef
 }
 
 template <std::uint32_t Room>
-double RayGuides<Room>::after(std::uint32_t i, double limit, double own_before) noexcept {
+double RayPacket<Room>::after(std::uint32_t i, double limit, double own_before) noexcept {
   const double before = limit_[i];
   limit_[i] = limit;
   return time(i).after(before, limit, own_before);
@@ -372,8 +374,8 @@ double RayGuides<Room>::after(std::uint32_t i, double limit, double own_before) 
 
 /// Calls `visitor.look` for all primitives whose boxes ray `number` hits; for a compound that has
 /// surfaces, calls `children` instead.
-void look_at_all(const NearBody& near, std::size_t number, const RayVisitor& visitor,
-                 const ChildVisitor& children) {
+void visit_all_on_ray(const NearBody& near, std::size_t number, const RayVisitor& visitor,
+                      const ChildVisitor& children) {
   // Relative growth of the ray's box before the box tests, which round coordinates.
   constexpr double kGrowth = 0x1p-47;
   const Eigen::Map<const Vec> from(near.ray.origin);
@@ -385,13 +387,13 @@ void look_at_all(const NearBody& near, std::size_t number, const RayVisitor& vis
     sweep.direction[i] = near.ray.direction[i];
   }
   sweep.max_t = near.ray.max_t;
-  struct Looking {
+  struct ChildRay {
     const RayVisitor& visitor;
     std::size_t number;
   } looking{visitor, number};
   visit(near.body, sweep,
         {[](void* context, const Primitive& primitive, double most) {
-           const Looking& by = *static_cast<Looking*>(context);
+           const ChildRay& by = *static_cast<ChildRay*>(context);
            return by.visitor.look(by.visitor.context, by.number, primitive, most);
          },
          &looking},
@@ -399,21 +401,21 @@ void look_at_all(const NearBody& near, std::size_t number, const RayVisitor& vis
 }
 
 /// One ray, number 0, through a mesh that was prepared by `place`.
-class LoneRay {
+class SingleRay {
  public:
-  LoneRay(const Composites& all, const RaySurface& surface, const ShapeRay& ray, double limit,
-          const RayVisitor& visitor) noexcept
+  SingleRay(const Composites& all, const RaySurface& surface, const ShapeRay& ray, double limit,
+            const RayVisitor& visitor) noexcept
       : all_(all), surface_(surface), ray_(ray), visitor_(visitor), limit_(limit) {}
 
   void go();
 
  private:
-  [[nodiscard]] OwnTime time() const noexcept { return {own_.shift[0], unit_}; }
+  [[nodiscard]] LocalRayTime time() const noexcept { return {own_.shift[0], unit_}; }
   [[nodiscard]] NearBody near() const noexcept {
-    const PlacedBody body = PlacedBody::at(all_, surface_.shape, surface_.pose);
+    const TransformedShape body = TransformedShape::at(all_, surface_.shape, surface_.pose);
     return {body, body.position, ray_};
   }
-  // As in RayGuides.
+  // As in RayPacket.
   [[nodiscard]] double meet(std::uint32_t slot, const SurfaceHit& found, double own_before);
   [[nodiscard]] double look(std::uint32_t slot, double own_before);
   [[nodiscard]] double after(double limit, double own_before) noexcept {
@@ -428,24 +430,24 @@ class LoneRay {
   const RayVisitor& visitor_;
   double limit_;
   double unit_ = 1.0;
-  LoneSurfaceRay own_;
+  SingleSurfaceRay own_;
 };
 
-void LoneRay::go() {
-  if (!place_ray(surface_.frame, ray_, 0, own_)) return look_at_all(near(), 0, visitor_, {});
+void SingleRay::go() {
+  if (!place_ray(surface_.frame, ray_, 0, own_)) return visit_all_on_ray(near(), 0, visitor_, {});
   unit_ = 1.0 / own_.stretch[0];
   own_.low[0] = time()(0.0);
   own_.high[0] = time()(ray_.max_t);
   mesh_ray(*surface_.mesh, own_, time().first_limit(limit_, surface_.frame.reach),
            {[](void* context, std::uint32_t, std::uint32_t slot, const SurfaceHit& found,
-               double limit) { return static_cast<LoneRay*>(context)->meet(slot, found, limit); },
+               double limit) { return static_cast<SingleRay*>(context)->meet(slot, found, limit); },
             [](void* context, std::uint32_t, std::uint32_t slot, double limit) {
-              return static_cast<LoneRay*>(context)->look(slot, limit);
+              return static_cast<SingleRay*>(context)->look(slot, limit);
             },
             this});
 }
 
-double LoneRay::meet(std::uint32_t slot, const SurfaceHit& found, double own_before) {
+double SingleRay::meet(std::uint32_t slot, const SurfaceHit& found, double own_before) {
   ShapeHit hit;
   hit.hit = true;
   hit.t = own_.shift[0] + found.t * own_.stretch[0];
@@ -460,7 +462,7 @@ double LoneRay::meet(std::uint32_t slot, const SurfaceHit& found, double own_bef
   return after(visitor_.meet(visitor_.context, 0, number, hit, limit_), own_before);
 }
 
-double LoneRay::look(std::uint32_t slot, double own_before) {
+double SingleRay::look(std::uint32_t slot, double own_before) {
   Primitive primitive;
   if (!near().body.primitive(slot, primitive)) return own_before;
   return after(visitor_.look(visitor_.context, 0, primitive, limit_), own_before);
@@ -470,9 +472,9 @@ template <std::uint32_t Room>
 void guide_rays(const RayTarget& target, std::span<const ShapeRay> rays, const double* limits,
                 const RayVisitor& visitor) {
   const auto look = [&](std::size_t ray) {
-    look_at_all(NearBody(target.body, target.about, rays[ray]), ray, visitor, {});
+    visit_all_on_ray(NearBody(target.body, target.about, rays[ray]), ray, visitor, {});
   };
-  RayGuides<Room> guides(target, rays, visitor);
+  RayPacket<Room> guides(target, rays, visitor);
   for (std::size_t i = 0; i < rays.size(); ++i) {
     if (!(limits[i] >= 0.0)) continue;
     guides.add(i, limits[i]);
@@ -482,23 +484,24 @@ void guide_rays(const RayTarget& target, std::span<const ShapeRay> rays, const d
 }
 
 /// Visitors get primitives relative to `about`.
-void visit_surface(const PlacedBody& surface, const Vec& about, std::span<const ShapeRay> rays,
-                   const double* limits, const RayVisitor& visitor) {
+void visit_surface(const TransformedShape& surface, const Vec& about,
+                   std::span<const ShapeRay> rays, const double* limits,
+                   const RayVisitor& visitor) {
   const RayTarget target(surface, about);
-  const bool is_alone = rays.size() == 1;
-  (is_alone ? guide_rays<1> : guide_rays<kRaysAtOnce>)(target, rays, limits, visitor);
+  const bool is_single = rays.size() == 1;
+  (is_single ? guide_rays<1> : guide_rays<kRaysAtOnce>)(target, rays, limits, visitor);
 }
 
 /// Traces ray `number` through a child of a compound that has surfaces; both are relative to the
 /// compound. Returns the new limit.
-[[nodiscard]] double visit_child(const PlacedBody& child, const ShapeRay& ray, std::size_t number,
-                                 double limit, const RayVisitor& visitor) {
+[[nodiscard]] double visit_child(const TransformedShape& child, const ShapeRay& ray,
+                                 std::size_t number, double limit, const RayVisitor& visitor) {
   if (!child.is_surface()) {
     Primitive primitive;
     (void)child.primitive(0, primitive);
     return visitor.look(visitor.context, number, primitive, limit);
   }
-  struct Passing {
+  struct ForwardedRay {
     const RayVisitor& to;
     std::size_t number;
     double limit;
@@ -506,11 +509,11 @@ void visit_surface(const PlacedBody& surface, const Vec& about, std::span<const 
   visit_surface(
       child, Vec::Zero(), {&ray, 1}, &limit,
       {[](void* context, std::size_t, std::uint32_t part, const ShapeHit& hit, double most) {
-         Passing& by = *static_cast<Passing*>(context);
+         ForwardedRay& by = *static_cast<ForwardedRay*>(context);
          return by.limit = by.to.meet(by.to.context, by.number, part, hit, most);
        },
        [](void* context, std::size_t, const Primitive& primitive, double most) {
-         Passing& by = *static_cast<Passing*>(context);
+         ForwardedRay& by = *static_cast<ForwardedRay*>(context);
          return by.limit = by.to.look(by.to.context, by.number, primitive, most);
        },
        &passing});
@@ -524,7 +527,7 @@ constexpr double kLimitRoom = 1.0 + 0x1p-20;
 
 void visit_rays(const Composites& all, ShapeId id, const Pose& pose, std::span<const ShapeRay> rays,
                 const double* limits, const RayVisitor& visitor) {
-  const PlacedBody body = PlacedBody::at(all, id, pose);
+  const TransformedShape body = TransformedShape::at(all, id, pose);
   if (body.is_surface()) return visit_surface(body, body.position, rays, limits, visitor);
   for (std::size_t i = 0; i < rays.size(); ++i) {
     if (!(limits[i] >= 0.0)) continue;
@@ -534,13 +537,13 @@ void visit_rays(const Composites& all, ShapeId id, const Pose& pose, std::span<c
       limit = visit_child(near.body.child(number), near.ray, i, limit, visitor);
       return limit * kLimitRoom;
     };
-    look_at_all(near, i, visitor, ChildVisitor::of(show_child));
+    visit_all_on_ray(near, i, visitor, ChildVisitor::of(show_child));
   }
 }
 
 bool place(const Composites& all, ShapeId id, const Pose& pose, RaySurface& surface) noexcept {
   if (all.mesh(id) == nullptr) return false;
-  const PlacedBody body = PlacedBody::at(all, id, pose);
+  const TransformedShape body = TransformedShape::at(all, id, pose);
   const RayTarget target(body, body.position);
   surface = {.shape = id,
              .pose = pose,
@@ -553,7 +556,7 @@ bool place(const Composites& all, ShapeId id, const Pose& pose, RaySurface& surf
 
 void visit_ray(const Composites& all, const RaySurface& surface, const ShapeRay& ray, double limit,
                const RayVisitor& visitor) {
-  if (limit >= 0.0) LoneRay(all, surface, ray, limit, visitor).go();
+  if (limit >= 0.0) SingleRay(all, surface, ray, limit, visitor).go();
 }
 
 }  // namespace winnow::mid

@@ -21,7 +21,7 @@ namespace {
 /// overlaps itself. Works in the frame of the mesh.
 class Winding {
  public:
-  Winding(const PlacedBody& body, const Vec& at) noexcept : body_(body), at_(at) {
+  Winding(const TransformedShape& body, const Vec& at) noexcept : body_(body), at_(at) {
     const Vec corner = body.bounds.min.cwiseAbs().cwiseMax(body.bounds.max.cwiseAbs());
     slack_ = kRaySlack * (at.cwiseAbs().maxCoeff() + corner.maxCoeff());
   }
@@ -31,40 +31,40 @@ class Winding {
   /// all directions are inconclusive, as for points on the surface, the solid angle decides.
   [[nodiscard]] bool is_inside() noexcept {
     // Directions that are unlikely to be parallel to edges. The largest component is in [1/2, 1).
-    static constexpr double kWays[][3] = {{0.2718, 0.5312, 0.8147},    {-0.6180, 0.9134, -0.3090},
-                                          {0.9058, -0.1270, -0.4142},  {-0.3219, -0.7321, 0.6324},
-                                          {0.0975, 0.2785, -0.5469},   {-0.9575, -0.2113, 0.1576},
-                                          {0.4853, -0.8003, -0.14189}, {-0.1419, 0.4218, 0.9157}};
-    for (const double(&way)[3] : kWays) {
+    static constexpr double kDirections[][3] = {
+        {0.2718, 0.5312, 0.8147},    {-0.6180, 0.9134, -0.3090}, {0.9058, -0.1270, -0.4142},
+        {-0.3219, -0.7321, 0.6324},  {0.0975, 0.2785, -0.5469},  {-0.9575, -0.2113, 0.1576},
+        {0.4853, -0.8003, -0.14189}, {-0.1419, 0.4218, 0.9157}};
+    for (const double(&direction)[3] : kDirections) {
       crossings_ = 0;
-      in_doubt_ = false;
-      shoot(way);
-      if (!in_doubt_) return crossings_ > 0;
+      is_uncertain_ = false;
+      shoot(direction);
+      if (!is_uncertain_) return crossings_ > 0;
     }
     return solid_angle() > 2.0 * std::numbers::pi;
   }
 
  private:
-  void shoot(const double (&way)[3]) noexcept {
-    LoneSurfaceRay lone;
+  void shoot(const double (&direction)[3]) noexcept {
+    SingleSurfaceRay single;
     for (int axis = 0; axis < 3; ++axis) {
-      lone.ray.origin[axis][0] = at_[axis];
-      lone.ray.direction[axis][0] = way[axis];
+      single.ray.origin[axis][0] = at_[axis];
+      single.ray.direction[axis][0] = direction[axis];
     }
-    lone.slack[0] = slack_;
-    lone.shift[0] = 0.0;
-    lone.stretch[0] = 1.0;
-    lone.low[0] = 0.0;
-    lone.high[0] = std::numeric_limits<double>::infinity();
-    ray_ = lone[0];
+    single.slack[0] = slack_;
+    single.shift[0] = 0.0;
+    single.stretch[0] = 1.0;
+    single.low[0] = 0.0;
+    single.high[0] = std::numeric_limits<double>::infinity();
+    ray_ = single[0];
     mesh_ray(
-        *body_.mesh, lone, lone.high[0],
+        *body_.mesh, single, single.high[0],
         {[](void* context, std::uint32_t, std::uint32_t slot, const SurfaceHit&, double limit) {
            static_cast<Winding*>(context)->cross(slot);
            return limit;
          },
          [](void* context, std::uint32_t, std::uint32_t, double) {
-           static_cast<Winding*>(context)->in_doubt_ = true;
+           static_cast<Winding*>(context)->is_uncertain_ = true;
            return -1.0;
          },
          this});
@@ -92,42 +92,44 @@ class Winding {
     return sum;
   }
 
-  const PlacedBody& body_;
+  const TransformedShape& body_;
   const Vec at_;
   double slack_;
   SurfaceRay ray_;
   int crossings_ = 0;
-  bool in_doubt_ = false;
+  bool is_uncertain_ = false;
 };
 
 /// `body` is a solid mesh; `point` is in world coordinates.
-[[nodiscard]] bool is_in_mesh(const PlacedBody& body, const Vec& point) noexcept {
+[[nodiscard]] bool is_in_mesh(const TransformedShape& body, const Vec& point) noexcept {
   const Vec own = body.to_local * (point - body.position);
   const bool in_box = (own.array() >= body.bounds.min.array()).all() &&
                       (own.array() <= body.bounds.max.array()).all();
   return in_box && Winding(body, own).is_inside();
 }
 
-/// Calls look(body) for each child of a compound that has surfaces, or for the body itself, until
+/// Calls visit(body) for each child of a compound that has surfaces, or for the body itself, until
 /// it returns true. Returns whether it did.
-template <typename Look>
-[[nodiscard]] bool any_body(const PlacedBody& body, Look&& look) {
-  if (!body.has_surfaces()) return look(body);
+template <typename Visit>
+[[nodiscard]] bool any_body(const TransformedShape& body, Visit&& visit) {
+  if (!body.has_surfaces()) return visit(body);
   for (std::uint32_t i = 0; i < body.compound->count; ++i) {
-    if (look(body.child(i))) return true;
+    if (visit(body.child(i))) return true;
   }
   return false;
 }
 
-[[nodiscard]] bool is_in_solid(const PlacedBody& body, const Vec& point) noexcept {
-  return any_body(body, [&](const PlacedBody& one) {
-    return one.kind == PlacedBody::Kind::mesh && one.all.is_solid(one.id) && is_in_mesh(one, point);
+[[nodiscard]] bool is_in_solid(const TransformedShape& body, const Vec& point) noexcept {
+  return any_body(body, [&](const TransformedShape& one) {
+    return one.kind == TransformedShape::Kind::mesh && one.all.is_solid(one.id) &&
+           is_in_mesh(one, point);
   });
 }
 
 /// Finds a point of part `number`. `body` must not be a compound that has surfaces. Returns false
 /// for shapes that no solid can contain: half-spaces, and triangles of holes.
-[[nodiscard]] bool find_point(const PlacedBody& body, std::uint32_t number, Vec& point) noexcept {
+[[nodiscard]] bool find_point(const TransformedShape& body, std::uint32_t number,
+                              Vec& point) noexcept {
   if (body.is_surface()) {
     Corners corners{};
     const bool found = body.corners(number, corners);
@@ -143,15 +145,16 @@ template <typename Look>
   return part.shape.kind() != ShapeKind::half_space;
 }
 
-/// Calls look(point) for one point of each connected piece of a body, until it returns true: a
+/// Calls visit(point) for one point of each connected piece of a body, until it returns true: a
 /// vertex of a surface, a point of each child of other compounds.
-template <typename Look>
-[[nodiscard]] bool any_point(const PlacedBody& body, Look&& look) {
-  return any_body(body, [&](const PlacedBody& one) {
-    const std::uint32_t points = one.kind == PlacedBody::Kind::compound ? one.compound->count : 1;
+template <typename Visit>
+[[nodiscard]] bool any_point(const TransformedShape& body, Visit&& visit) {
+  return any_body(body, [&](const TransformedShape& one) {
+    const std::uint32_t points =
+        one.kind == TransformedShape::Kind::compound ? one.compound->count : 1;
     for (std::uint32_t i = 0; i < points; ++i) {
       Vec point;
-      if (find_point(one, i, point) && look(point)) return true;
+      if (find_point(one, i, point) && visit(point)) return true;
     }
     return false;
   });
@@ -160,7 +163,7 @@ template <typename Look>
 }  // namespace
 
 Status check_solid(const Composites& all, ShapeId id) noexcept {
-  const PlacedBody body = PlacedBody::at(all, id, {});
+  const TransformedShape body = TransformedShape::at(all, id, {});
   Column<std::uint32_t> neighbours(all.memory);
   if (!find_neighbours(*body.mesh, neighbours)) return Status::out_of_memory;
   Vec about = Vec::Zero();
@@ -170,7 +173,7 @@ Status check_solid(const Composites& all, ShapeId id) noexcept {
     (void)body.own_corners(slot, corner);
     if (is_segment(corner)) continue;
     for (std::uint32_t edge = 0; edge < 3; ++edge) {
-      if ((neighbours[3 * slot + edge] & kSameWay) != 0) return Status::invalid_shape;
+      if ((neighbours[3 * slot + edge] & kSameDirection) != 0) return Status::invalid_shape;
     }
     if (slot == 0) about = Vec::Map(corner[0]);
     volume += (Vec::Map(corner[0]) - about)
@@ -180,13 +183,13 @@ Status check_solid(const Composites& all, ShapeId id) noexcept {
 }
 
 bool holds(const Composites& all, ShapeId id, const Pose& pose, const double point[3]) noexcept {
-  return is_in_solid(PlacedBody::at(all, id, pose), Vec::Map(point));
+  return is_in_solid(TransformedShape::at(all, id, pose), Vec::Map(point));
 }
 
 bool holds(const Composites& all, ShapeId id, const Pose& pose, ShapeId other,
            const Pose& other_pose) noexcept {
-  const PlacedBody solid = PlacedBody::at(all, id, pose);
-  return any_point(PlacedBody::at(all, other, other_pose),
+  const TransformedShape solid = TransformedShape::at(all, id, pose);
+  return any_point(TransformedShape::at(all, other, other_pose),
                    [&](const Vec& point) { return is_in_solid(solid, point); });
 }
 

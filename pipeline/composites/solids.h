@@ -1,6 +1,6 @@
 #pragma once
 
-#include "pipeline/composites/placed_body.h"
+#include "pipeline/composites/transformed_shape.h"
 
 #include <cstdint>
 

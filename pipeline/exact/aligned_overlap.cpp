@@ -289,12 +289,12 @@ class FlatTriangle {
     if (height_.sign() > 0) return ExactVerdict::separated;
     const int turn = cross(vertex_[1] - vertex_[0], vertex_[2] - vertex_[0]).sign();
     if (height_.sign() < 0 || turn == 0) return ExactVerdict::undecided;
-    const bool meet = is_disc_ ? meets_disc(turn) : meets_rectangle(turn);
-    return meet ? ExactVerdict::touching : ExactVerdict::separated;
+    const bool overlap = is_disc_ ? overlaps_disc(turn) : overlaps_rectangle(turn);
+    return overlap ? ExactVerdict::touching : ExactVerdict::separated;
   }
 
  private:
-  [[nodiscard]] bool meets_rectangle(int turn) const noexcept {
+  [[nodiscard]] bool overlaps_rectangle(int turn) const noexcept {
     for (int e = 0; e < 2; ++e) {
       bool below = true;
       bool above = true;
@@ -316,7 +316,7 @@ class FlatTriangle {
     return true;
   }
 
-  [[nodiscard]] bool meets_disc(int turn) const noexcept {
+  [[nodiscard]] bool overlaps_disc(int turn) const noexcept {
     const Dyadic square = half_[0] * half_[0];
     bool inside = true;
     for (int i = 0; i < 3; ++i) {

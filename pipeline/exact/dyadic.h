@@ -88,21 +88,21 @@ class Dyadic {
   [[nodiscard]] bool is_short() const noexcept { return size_ == 0; }
   /// True for short numbers whose mantissa fits 63 bits, so that products of two of them are short.
   [[nodiscard]] bool is_word() const noexcept {
-    constexpr int kMost = 62;
-    return is_short() && mantissa_ >> kMost == mantissa_ >> 127U;
+    constexpr int kMaxBits = 62;
+    return is_short() && mantissa_ >> kMaxBits == mantissa_ >> 127U;
   }
   /// True if `mantissa` fits a short number.
   [[nodiscard]] static bool fits(Wide mantissa) noexcept {
-    constexpr int kMost = 125;
-    return mantissa >> kMost == mantissa >> 127U;
+    constexpr int kMaxBits = 125;
+    return mantissa >> kMaxBits == mantissa >> 127U;
   }
   /// Brings two short numbers to a common exponent; returns false if one then no longer fits.
   [[nodiscard]] static bool align(Wide& a, Wide& b, int shift) noexcept {
-    constexpr int kMostShift = 125;
+    constexpr int kMaxShift = 125;
     Wide& larger = shift >= 0 ? a : b;
     const int up = shift >= 0 ? shift : -shift;
     if (up == 0) return true;
-    if (up >= kMostShift) return false;
+    if (up >= kMaxShift) return false;
     const Wide shifted = larger << up;
     if (!fits(shifted) || shifted >> up != larger) return false;
     larger = shifted;

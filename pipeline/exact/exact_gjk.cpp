@@ -36,13 +36,13 @@ struct ExactSimplex {
 }
 
 /// The points of a simplex selected by a bit mask.
-struct Face {
+struct SimplexFace {
   int count = 0;
   int index[4] = {};
 };
 
-[[nodiscard]] Face face_of(unsigned mask) noexcept {
-  Face face;
+[[nodiscard]] SimplexFace face_of(unsigned mask) noexcept {
+  SimplexFace face;
   for (int i = 0; i < 4; ++i) {
     if ((mask >> i & 1U) != 0) face.index[face.count++] = i;
   }
@@ -50,7 +50,7 @@ struct Face {
 }
 
 [[nodiscard]] bool is_nearest(const ExactSimplex& s, unsigned mask, ExactVector& toward) noexcept {
-  const Face face = face_of(mask);
+  const SimplexFace face = face_of(mask);
   const ExactVector& first = s.point[face.index[0]];
   bool faces = true;
   switch (face.count) {

@@ -126,21 +126,21 @@ namespace {
   return half_spaces_verdict(shape, half_space_pose, tables.half_spaces[other.index()], other_pose);
 }
 
-/// The minimum, over the directions passed to `look` and their opposites, of the height of the
+/// The minimum, over the directions passed to `test_axis` and their opposites, of the height of the
 /// Minkowski difference of two rounded cores. A negative minimum proves that they are disjoint.
-class LeastHeight {
+class MinHeight {
  public:
   /// `direction` is not zero; it is tested first.
-  LeastHeight(const CoreDifference& difference, const Dyadic& rounding,
-              const ExactVector& direction) noexcept
+  MinHeight(const CoreDifference& difference, const Dyadic& rounding,
+            const ExactVector& direction) noexcept
       : difference_(difference), rounding_(rounding), least_(height_along(direction)) {
-    look_along(-direction);
+    test_direction(-direction);
   }
 
-  void look(const ExactVector& direction) noexcept {
+  void test_axis(const ExactVector& direction) noexcept {
     if (is_zero(direction)) return;
-    look_along(direction);
-    look_along(-direction);
+    test_direction(direction);
+    test_direction(-direction);
   }
   [[nodiscard]] int sign() const noexcept { return least_.sign(); }
 
@@ -149,7 +149,7 @@ class LeastHeight {
     return difference_.height_bound(direction) +
            rounding_ * difference_.scale() * root_above(dot(direction, direction));
   }
-  void look_along(const ExactVector& direction) noexcept {
+  void test_direction(const ExactVector& direction) noexcept {
     const Dyadic height = height_along(direction);
     if (compare(height, least_) < 0) least_ = height;
   }
@@ -167,11 +167,11 @@ class LeastHeight {
                                              const Dyadic& rounding, const ExactVector& direction,
                                              bool are_boxes) noexcept {
   if (!difference.heights_in_range()) return ExactVerdict::undecided;
-  LeastHeight least(difference, rounding, direction);
+  MinHeight least(difference, rounding, direction);
   for (int i = 0; i < 3; ++i) {
-    least.look(difference.axis_a(i));
-    least.look(difference.axis_b(i));
-    for (int k = 0; k < 3; ++k) least.look(cross(difference.axis_a(i), difference.axis_b(k)));
+    least.test_axis(difference.axis_a(i));
+    least.test_axis(difference.axis_b(i));
+    for (int k = 0; k < 3; ++k) least.test_axis(cross(difference.axis_a(i), difference.axis_b(k)));
   }
   if (least.sign() < 0) return ExactVerdict::separated;
   if (!are_boxes || rounding.sign() != 0) return ExactVerdict::undecided;

@@ -242,7 +242,7 @@ std::uint32_t answer_job(NarrowJob& job) {
 /// Level boolean in two passes: float first, which handles twice as many pairs per block, then
 /// double for the pairs that float could not decide.
 template <typename Kind, NarrowKernel in_double>
-std::uint32_t answer_sure_first(NarrowJob& job) {
+std::uint32_t answer_in_two_passes(NarrowJob& job) {
   if (job.count <= Doubles::kCount) return in_double(job);
   NarrowJob part = job;
   const std::uint32_t doubtful = answer_job<Kind, float, kBoolean>(part);

@@ -4,7 +4,7 @@
 // scalars instead of SIMD lanes.
 
 #include "pipeline/kernels/answers.wide.h"
-#include "simd/lanes/alone.h"
+#include "simd/lanes/scalar_lane.h"
 
 namespace winnow::WINNOW_ISA_NAME {
 
@@ -12,22 +12,22 @@ namespace winnow::WINNOW_ISA_NAME {
 /// uses them.
 template <typename Kind, int L>
 std::uint32_t answer_one_or_many(NarrowJob& job) {
-  return job.count == 1 ? answer_job<Kind, Alone, L>(job) : answer_job<Kind, double, L>(job);
+  return job.count == 1 ? answer_job<Kind, ScalarLane, L>(job) : answer_job<Kind, double, L>(job);
 }
 
-/// The kernel table of a kind whose class also supports scalars. `MostAlone`: kManifold if a single
-/// manifold is computed with scalars too; some algorithms for several contacts need more than one
-/// lane. `SureFirst`: level boolean makes a first pass in float, which does not pay if loading the
-/// shapes takes longer than the test.
-template <typename Kind, int MostAlone = kManifold, bool SureFirst = true>
+/// The kernel table of a kind whose class also supports scalars. `MaxScalarLevel`: kManifold if a
+/// single manifold is computed with scalars too; some algorithms for several contacts need more
+/// than one lane. `TwoPasses`: level boolean makes a first pass in float, which does not pay if
+/// loading the shapes takes longer than the test.
+template <typename Kind, int MaxScalarLevel = kManifold, bool TwoPasses = true>
 constexpr NarrowKernels closed_form_kernels_of() {
   constexpr NarrowKernel boolean = [] {
     constexpr NarrowKernel in_double = answer_one_or_many<Kind, kBoolean>;
-    if constexpr (SureFirst) return answer_sure_first<Kind, in_double>;
+    if constexpr (TwoPasses) return answer_in_two_passes<Kind, in_double>;
     return in_double;
   }();
   constexpr NarrowKernel manifold = [] {
-    if constexpr (MostAlone == kManifold) return answer_one_or_many<Kind, kManifold>;
+    if constexpr (MaxScalarLevel == kManifold) return answer_one_or_many<Kind, kManifold>;
     return answer_job<Kind, double, kManifold>;
   }();
   return {{boolean, answer_one_or_many<Kind, kDistance>, manifold}};

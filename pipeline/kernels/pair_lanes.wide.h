@@ -135,14 +135,15 @@ template <typename T>
 /// a rotation matrix. The factor is NaN if the quaternion is not finite, or so short or long that
 /// squares leave T's range.
 template <typename T>
-struct Turn {
+struct ScaledQuaternion {
   Lanes<T> w;
   Vec3<T> v;
   Lanes<T> scale;
 };
 
 template <typename Side, typename T>
-[[gnu::always_inline]] inline Turn<T> load_turn(const NarrowJob& job, const PairBlock<T>& block) {
+[[gnu::always_inline]] inline ScaledQuaternion<T> load_turn(const NarrowJob& job,
+                                                            const PairBlock<T>& block) {
   constexpr T limit = sizeof(T) == sizeof(double) ? T(1e250) : T(1e25F);
   Lanes<T> q[4];
   load_columns([&](int lane) { return job.poses[Side::body(block.pairs[lane])].orientation; }, q);
@@ -154,7 +155,7 @@ template <typename Side, typename T>
 
 /// The local z axis in world axes.
 template <typename T>
-[[gnu::always_inline]] inline Vec3<T> axis_z(const Turn<T>& q) {
+[[gnu::always_inline]] inline Vec3<T> axis_z(const ScaledQuaternion<T>& q) {
   return {(q.v.x * q.v.z + q.w * q.v.y) * q.scale, (q.v.y * q.v.z - q.w * q.v.x) * q.scale,
           Lanes<T>(T(1)) - (q.v.x * q.v.x + q.v.y * q.v.y) * q.scale};
 }
@@ -176,7 +177,7 @@ struct Rotation {
 };
 
 template <typename T>
-[[gnu::always_inline]] inline Rotation<T> rotation(const Turn<T>& q) {
+[[gnu::always_inline]] inline Rotation<T> rotation(const ScaledQuaternion<T>& q) {
   const Lanes<T> one(T(1));
   const Vec3<T> v = q.v * q.scale;
   const Lanes<T> xx = v.x * q.v.x;
@@ -211,7 +212,7 @@ struct BoxLanes {
 
 /// Cylinders and cones, which have the same parameters.
 template <typename T>
-struct SpunLanes {
+struct RevolvedLanes {
   Lanes<T> radius;
   Lanes<T> half_length;
   Lanes<T> rounding;
@@ -272,9 +273,9 @@ template <typename Side, typename T>
 }
 
 template <typename Side, typename T, typename Shape>
-[[gnu::always_inline]] inline SpunLanes<T> load_spun(const NarrowJob& job,
-                                                     const PairBlock<T>& block,
-                                                     const Shape* table) {
+[[gnu::always_inline]] inline RevolvedLanes<T> load_revolved(const NarrowJob& job,
+                                                             const PairBlock<T>& block,
+                                                             const Shape* table) {
   Lanes<T> r[3];
   load_shapes<Side>(job, block, table, r);
   return {r[0], r[1], r[2]};

@@ -1,7 +1,7 @@
 #include "core/threads/float_environment.h"
 #include "pipeline/kernels/link.h"
 #include "pipeline/shapes/hull_builder.h"
-#include "pipeline/shapes/put_shape.h"
+#include "pipeline/shapes/shape_pool_put.h"
 
 namespace winnow {
 
@@ -46,7 +46,7 @@ Status ShapePool::add_built_hull(const PointView& points, const HullFaces& faces
                                  ShapeId& id) {
   const DefaultEnvironment environment;
   return put_hull(rounding, id,
-                  [&](HullShape& hull) { return hull_as_built(points, faces, memory_, hull); });
+                  [&](HullShape& hull) { return rebuild_hull(points, faces, memory_, hull); });
 }
 
 }  // namespace winnow

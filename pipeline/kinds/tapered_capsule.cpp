@@ -1,6 +1,6 @@
 #include "core/threads/float_environment.h"
 #include "pipeline/kernels/link.h"
-#include "pipeline/shapes/put_shape.h"
+#include "pipeline/shapes/shape_pool_put.h"
 
 namespace winnow {
 

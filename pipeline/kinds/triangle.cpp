@@ -1,7 +1,7 @@
 #include <winnow/pipeline/mid_phase.h>
 #include "core/threads/float_environment.h"
 #include "pipeline/kernels/link.h"
-#include "pipeline/shapes/put_shape.h"
+#include "pipeline/shapes/shape_pool_put.h"
 
 #include <cmath>
 

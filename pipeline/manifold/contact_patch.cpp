@@ -1,8 +1,8 @@
-// Contact points of two patches (contact_patch.h). patch_meetings.cpp finds the corners of the
+// Contact points of two patches (contact_patch.h). polygon_clip.cpp finds the corners of the
 // intersection of the projections; this file chooses at most four of them and writes them.
 
 #include "pipeline/manifold/contact_patch.h"
-#include "pipeline/manifold/patch_meetings.h"
+#include "pipeline/manifold/polygon_clip.h"
 
 #include <algorithm>
 #include <cmath>
@@ -19,7 +19,7 @@ constexpr double kTiedArea = 1e-3;
 constexpr double kTiedShare = 0.05;
 
 /// A contact point projected along the normal, and its depth.
-struct SeenPlace {
+struct ProjectedPoint {
   double x;
   double y;
   double depth;
@@ -29,12 +29,13 @@ struct SeenPlace {
 ///
 /// Ties between equally good points, as in regular polygons, are broken by a direction that is
 /// fixed in a body: so the choice does not change while the body jitters.
-class Places {
+class PointSelection {
  public:
   static constexpr std::uint32_t kRoom = 2 * kOutlineVertices;
   using Chosen = std::uint32_t[kManifoldPoints];
 
-  explicit Places(const double (&direction)[2]) noexcept : direction_{direction[0], direction[1]} {}
+  explicit PointSelection(const double (&direction)[2]) noexcept
+      : direction_{direction[0], direction[1]} {}
 
   void add(double x, double y, double depth) noexcept {
     place_[count_] = {x, y, depth};
@@ -91,16 +92,16 @@ class Places {
   // Returns the number of distinct points.
   std::uint32_t spread(Chosen& kept) noexcept {
     kept[0] = farthest([](std::uint32_t) { return true; });
-    const SeenPlace& p = place_[kept[0]];
+    const ProjectedPoint& p = place_[kept[0]];
     for (std::uint32_t i = 0; i < count_; ++i) {
       extent_ = std::max(extent_, squared_distance(p, place_[i]));
     }
-    kept[1] = largest([&](const SeenPlace& x) { return squared_distance(p, x); });
-    const SeenPlace& q = place_[kept[1]];
-    kept[2] = largest([&](const SeenPlace& x) { return std::abs(area(p, q, x)); });
-    const SeenPlace& r = place_[kept[2]];
+    kept[1] = largest([&](const ProjectedPoint& x) { return squared_distance(p, x); });
+    const ProjectedPoint& q = place_[kept[1]];
+    kept[2] = largest([&](const ProjectedPoint& x) { return std::abs(area(p, q, x)); });
+    const ProjectedPoint& r = place_[kept[2]];
     const double turn = area(p, q, r) < 0.0 ? -1.0 : 1.0;
-    kept[3] = largest([&](const SeenPlace& x) {
+    kept[3] = largest([&](const ProjectedPoint& x) {
       return -std::min({turn * area(p, q, x), turn * area(q, r, x), turn * area(r, p, x)});
     });
     std::uint32_t count = 1;
@@ -134,23 +135,24 @@ class Places {
            area(place_[i[0]], place_[i[2]], place_[i[3]]);
   }
   // Twice the area of a triangle, positive if it is counter-clockwise.
-  [[nodiscard]] static double area(const SeenPlace& a, const SeenPlace& b,
-                                   const SeenPlace& c) noexcept {
+  [[nodiscard]] static double area(const ProjectedPoint& a, const ProjectedPoint& b,
+                                   const ProjectedPoint& c) noexcept {
     return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
   }
-  [[nodiscard]] static double squared_distance(const SeenPlace& a, const SeenPlace& b) noexcept {
+  [[nodiscard]] static double squared_distance(const ProjectedPoint& a,
+                                               const ProjectedPoint& b) noexcept {
     return (b.x - a.x) * (b.x - a.x) + (b.y - a.y) * (b.y - a.y);
   }
 
   double direction_[2];
-  SeenPlace place_[kRoom];
+  ProjectedPoint place_[kRoom];
   double along_[kRoom];
   std::uint32_t count_ = 0;
   /// Largest squared distance from the first chosen point.
   double extent_ = 0.0;
 };
 
-ContactPoint write(const PatchMeeting& m, const PatchFrame& frame, const double rounding[2]) {
+ContactPoint write(const ClipPoint& m, const PatchFrame& frame, const double rounding[2]) {
   const double top = m.height[0] + rounding[0];
   const double bottom = m.height[1] - rounding[1];
   const double middle = 0.5 * (top + bottom);
@@ -166,30 +168,31 @@ ContactPoint write(const PatchMeeting& m, const PatchFrame& frame, const double 
 
 /// Corners of the intersection of two patches that are within the margin, in order around it, and
 /// the deepest one.
-struct SharedPatch {
+struct PatchIntersection {
   PatchFrame frame;
-  PatchMeetings corners;
+  ClipPoints corners;
   double rounding[2];
   std::uint32_t deepest = 0;
   /// Breaks ties; fixed in one of the bodies. Set only if there are more corners than a manifold
   /// has.
   double direction[2] = {0.0, 0.0};
 
-  SharedPatch(const Patch& a, const Patch& b, const double normal[3], double margin) noexcept
+  PatchIntersection(const SupportingFeature& a, const SupportingFeature& b, const double normal[3],
+                    double margin) noexcept
       : frame(normal), corners(0.0), rounding{a.rounding, b.rounding} {
-    meet({a, frame, 1.0}, {b, frame, -1.0}, margin);
+    intersect({a, frame, 1.0}, {b, frame, -1.0}, margin);
   }
-  SharedPatch(const SeenFaces& faces, double margin) noexcept
+  PatchIntersection(const ProjectedFaces& faces, double margin) noexcept
       : frame(faces), corners(0.0), rounding{faces.rounding[0], faces.rounding[1]} {
-    meet({faces, 0}, {faces, 1}, margin);
+    intersect({faces, 0}, {faces, 1}, margin);
   }
 
   /// Writes the deepest corner and the corners that span the largest area with it.
   std::uint32_t write_widest(ContactPoint* out) const noexcept {
     if (corners.count <= kManifoldPoints) return write_all(out);
-    Places places(direction);
+    PointSelection places(direction);
     for (std::uint32_t i = 0; i < corners.count; ++i) {
-      const PatchMeeting& m = corners.point[i];
+      const ClipPoint& m = corners.point[i];
       places.add(m.x, m.y, rise(m));
     }
     std::uint32_t chosen[kManifoldPoints];
@@ -214,9 +217,9 @@ struct SharedPatch {
     return write(corners.point[i], frame, rounding);
   }
 
-  void meet(const Outline& a, const Outline& b, double margin) noexcept {
+  void intersect(const Outline& a, const Outline& b, double margin) noexcept {
     corners.same = kSamePlace * std::max(a.size, b.size);
-    find_meetings(a, b, corners);
+    intersect_patches(a, b, corners);
     find_deepest();
     drop_beyond(margin);
     if (corners.count > kManifoldPoints) (is_finer(b, a) ? b : a).find_direction(direction);
@@ -230,7 +233,7 @@ struct SharedPatch {
     return p.size < kSmaller * q.size;
   }
 
-  [[nodiscard]] static double rise(const PatchMeeting& m) noexcept {
+  [[nodiscard]] static double rise(const ClipPoint& m) noexcept {
     return m.height[0] - m.height[1];
   }
 
@@ -256,24 +259,26 @@ struct SharedPatch {
   }
 };
 
-static_assert(kSharedCorners == 2 * kOutlineVertices);
+static_assert(kMaxIntersectionCorners == 2 * kOutlineVertices);
 
 }  // namespace
 
-std::uint32_t contact_patch(const Patch& a, const Patch& b, const double normal[3], double margin,
-                            ContactPoint* out) noexcept {
+std::uint32_t contact_patch(const SupportingFeature& a, const SupportingFeature& b,
+                            const double normal[3], double margin, ContactPoint* out) noexcept {
   if (a.count == 0 || b.count == 0) return 0;
-  return SharedPatch(a, b, normal, margin).write_widest(out);
+  return PatchIntersection(a, b, normal, margin).write_widest(out);
 }
 
-std::uint32_t seen_contacts(const SeenFaces& faces, double margin, ContactPoint* out) noexcept {
-  return SharedPatch(faces, margin).write_widest(out);
+std::uint32_t projected_contacts(const ProjectedFaces& faces, double margin,
+                                 ContactPoint* out) noexcept {
+  return PatchIntersection(faces, margin).write_widest(out);
 }
 
-std::uint32_t shared_corners(const Patch& a, const Patch& b, const double normal[3], double margin,
-                             ContactPoint* out) noexcept {
+std::uint32_t intersection_corners(const SupportingFeature& a, const SupportingFeature& b,
+                                   const double normal[3], double margin,
+                                   ContactPoint* out) noexcept {
   if (a.count == 0 || b.count == 0) return 0;
-  return SharedPatch(a, b, normal, margin).write_all(out);
+  return PatchIntersection(a, b, normal, margin).write_all(out);
 }
 
 double tied_depth(const ContactPoint* points, std::uint32_t count) noexcept {
@@ -289,13 +294,13 @@ double tied_depth(const ContactPoint* points, std::uint32_t count) noexcept {
   return kTiedDepth * std::sqrt(square);
 }
 
-std::uint32_t standing_corners(const Patch& patch, const double up[3], double highest,
+std::uint32_t corners_on_plane(const SupportingFeature& patch, const double up[3], double highest,
                                std::uint32_t* corner) noexcept {
   const PatchFrame frame(up);
   const Outline outline(patch, frame, -1.0);
   double direction[2];
   outline.find_direction(direction);
-  Places places(direction);
+  PointSelection places(direction);
   std::uint32_t within[kOutlineVertices];
   std::uint32_t count = 0;
   for (std::uint32_t i = 0; i < outline.count; ++i) {
@@ -312,13 +317,13 @@ std::uint32_t standing_corners(const Patch& patch, const double up[3], double hi
 
 namespace {
 
-Patch view(const FlatPatch& p) {
+SupportingFeature view(const FlatFeature& p) {
   return {p.vertex, p.vertex_feature, p.edge_feature, p.count, p.feature, p.rounding};
 }
 
 // The vertex positions are not set.
-FlatPatch named(const FaceNames& names, double rounding) {
-  FlatPatch patch;
+FlatFeature named(const FaceNames& names, double rounding) {
+  FlatFeature patch;
   patch.count = names.count;
   patch.feature = names.face;
   patch.rounding = rounding;
@@ -329,7 +334,7 @@ FlatPatch named(const FaceNames& names, double rounding) {
 
 }  // namespace
 
-FlatPatch box_patch(const BoxFrame& box, const double normal[3]) noexcept {
+FlatFeature box_patch(const BoxFrame& box, const double normal[3]) noexcept {
   double rise[3];
   for (int i = 0; i < 3; ++i) rise[i] = dot(box.axis[i], normal);
   std::uint32_t i = std::abs(rise[1]) > std::abs(rise[0]) ? 1 : 0;
@@ -338,7 +343,7 @@ FlatPatch box_patch(const BoxFrame& box, const double normal[3]) noexcept {
   const std::uint32_t l = (i + 2) % 3;
   const bool up = rise[i] > 0.0;
   const FaceNames& names = kFaceNames[2 * i + (up ? 1 : 0)];
-  FlatPatch patch = named(names, box.rounding);
+  FlatFeature patch = named(names, box.rounding);
   for (std::uint32_t c = 0; c < 4; ++c) {
     const double arm_i = up ? box.half[i] : -box.half[i];
     const double arm_k = kPlusCorner[c][0] ? box.half[k] : -box.half[k];
@@ -351,26 +356,26 @@ FlatPatch box_patch(const BoxFrame& box, const double normal[3]) noexcept {
   return patch;
 }
 
-FlatPatch triangle_patch(const TriangleFrame& triangle) noexcept {
-  FlatPatch patch = named(kFaceNames[kTriangleFace], triangle.rounding);
+FlatFeature triangle_patch(const TriangleFrame& triangle) noexcept {
+  FlatFeature patch = named(kFaceNames[kTriangleFace], triangle.rounding);
   for (std::uint32_t i = 0; i < 3; ++i) std::copy_n(triangle.vertex[i], 3, patch.vertex[i]);
   return patch;
 }
 
-std::uint32_t flat_contacts(const FlatPatch& a, const FlatPatch& b, const double normal[3],
+std::uint32_t flat_contacts(const FlatFeature& a, const FlatFeature& b, const double normal[3],
                             double margin, ContactPoint* out) noexcept {
   return contact_patch(view(a), view(b), normal, margin, out);
 }
 
-double deepest_point(const Patch& a, const Patch& b, const double normal[3],
+double deepest_point(const SupportingFeature& a, const SupportingFeature& b, const double normal[3],
                      double point[3]) noexcept {
   const PatchFrame frame(normal);
   const Outline outline[2] = {{a, frame, 1.0}, {b, frame, -1.0}};
-  PatchMeetings m(kSamePlace * std::max(outline[0].size, outline[1].size));
-  find_meetings(outline[0], outline[1], m);
-  const PatchMeeting* best = m.point;
+  ClipPoints m(kSamePlace * std::max(outline[0].size, outline[1].size));
+  intersect_patches(outline[0], outline[1], m);
+  const ClipPoint* best = m.point;
   for (std::uint32_t i = 1; i < m.count; ++i) {
-    const PatchMeeting& p = m.point[i];
+    const ClipPoint& p = m.point[i];
     if (p.height[0] - p.height[1] > best->height[0] - best->height[1]) best = &p;
   }
   for (int r = 0; r < 3; ++r) {
@@ -381,7 +386,7 @@ double deepest_point(const Patch& a, const Patch& b, const double normal[3],
   return meets ? best->height[0] - best->height[1] : -std::numeric_limits<double>::infinity();
 }
 
-double deepest_point(const FlatPatch& a, const FlatPatch& b, const double normal[3],
+double deepest_point(const FlatFeature& a, const FlatFeature& b, const double normal[3],
                      double point[3]) noexcept {
   return deepest_point(view(a), view(b), normal, point);
 }

@@ -51,17 +51,17 @@ inline constexpr double kSampleTilt = 0.04;
 inline constexpr double kSampleLevel = 1e-6;
 
 /// Two capsules lie side by side if the squared sine of the angle between them is less than
-/// kBesideSquare, their overlap along the axis is longer than kLeastBeside times the sum of their
-/// half lengths, and an end of the overlap is less deep than the pair by at most kHardlyLess times
-/// the sum of the radii. They then have two contacts instead of one.
+/// kBesideSquare, their overlap along the axis is longer than kMinOverlapLength times the sum of
+/// their half lengths, and an end of the overlap is less deep than the pair by at most
+/// kEndDepthTolerance times the sum of the radii. They then have two contacts instead of one.
 inline constexpr double kBesideSquare = 0.01;
-inline constexpr double kLeastBeside = 1e-3;
-inline constexpr double kHardlyLess = 1e-3;
+inline constexpr double kMinOverlapLength = 1e-3;
+inline constexpr double kEndDepthTolerance = 1e-3;
 
 /// Supporting feature of a core: the feature farthest along (for a) or against (for b) the contact
 /// normal. One vertex, an edge, or a convex polygon in order around its boundary, of either
 /// winding. Vertices are relative to the position of body a, in world axes.
-struct Patch {
+struct SupportingFeature {
   const double (*vertex)[3];
   /// Feature numbers of the vertices, and of the edges from vertex i to the next. The two number
   /// spaces may overlap.
@@ -84,8 +84,8 @@ struct Patch {
 /// only for a patch without vertices. Deterministic. Uses at most 16 vertices per patch: larger
 /// patches are reduced to the outermost and the deepest ones. All numbers must be finite, and no
 /// product of four lengths may overflow.
-std::uint32_t contact_patch(const Patch& a, const Patch& b, const double normal[3], double margin,
-                            ContactPoint* out) noexcept;
+std::uint32_t contact_patch(const SupportingFeature& a, const SupportingFeature& b,
+                            const double normal[3], double margin, ContactPoint* out) noexcept;
 
 /// Depths that differ by less than this share of the extent of a patch count as equal. Among points
 /// of equal depth, the choice is stable while bodies jitter by some 1e-4 radians; the first point
@@ -98,7 +98,7 @@ double tied_depth(const ContactPoint* points, std::uint32_t count) noexcept;
 /// Chooses the corners of a patch that touch an unbounded plane with normal `up`, as contact_patch
 /// would: among corners no higher than `highest` along `up`. Writes the numbers of at most
 /// kManifoldPoints corners, the lowest first, and returns how many.
-std::uint32_t standing_corners(const Patch& patch, const double up[3], double highest,
+std::uint32_t corners_on_plane(const SupportingFeature& patch, const double up[3], double highest,
                                std::uint32_t* corner) noexcept;
 
 /// A segment whose ends are closer to a side of a polygon than this share of the smaller size
@@ -106,11 +106,12 @@ std::uint32_t standing_corners(const Patch& patch, const double up[3], double hi
 inline constexpr double kAlongSide = 1.5e-4;
 
 /// Maximal number of corners of the intersection of two patches.
-inline constexpr std::uint32_t kSharedCorners = 32;
+inline constexpr std::uint32_t kMaxIntersectionCorners = 32;
 /// As contact_patch, but returns all corners of the intersection that are within `margin`, the
-/// deepest first. `out` has room for kSharedCorners.
-std::uint32_t shared_corners(const Patch& a, const Patch& b, const double normal[3], double margin,
-                             ContactPoint* out) noexcept;
+/// deepest first. `out` has room for kMaxIntersectionCorners.
+std::uint32_t intersection_corners(const SupportingFeature& a, const SupportingFeature& b,
+                                   const double normal[3], double margin,
+                                   ContactPoint* out) noexcept;
 
 // Patches of boxes and triangles, one pair at a time, in double.
 
@@ -130,7 +131,7 @@ struct TriangleFrame {
 };
 
 /// A patch that stores up to four vertices with their feature numbers.
-struct FlatPatch {
+struct FlatFeature {
   double vertex[4][3];
   std::uint32_t vertex_feature[4];
   std::uint32_t edge_feature[4];
@@ -142,12 +143,12 @@ struct FlatPatch {
 /// Returns the face of a box that faces `normal`. Vertices are numbered by the bits x > 0, y > 0, z
 /// > 0; edges by 4 x their axis plus the bits of the other axes; faces by 2 x their axis plus the
 /// sign.
-[[nodiscard]] FlatPatch box_patch(const BoxFrame& box, const double normal[3]) noexcept;
+[[nodiscard]] FlatFeature box_patch(const BoxFrame& box, const double normal[3]) noexcept;
 /// Returns the triangle: vertices 0 to 2, edge i from vertex i to the next, face 0.
-[[nodiscard]] FlatPatch triangle_patch(const TriangleFrame& triangle) noexcept;
+[[nodiscard]] FlatFeature triangle_patch(const TriangleFrame& triangle) noexcept;
 
 /// contact_patch of two such patches.
-std::uint32_t flat_contacts(const FlatPatch& a, const FlatPatch& b, const double normal[3],
+std::uint32_t flat_contacts(const FlatFeature& a, const FlatFeature& b, const double normal[3],
                             double margin, ContactPoint* out) noexcept;
 
 /// Face number of a triangle in kernels; a box has faces 0 to 5.
@@ -156,7 +157,7 @@ inline constexpr std::uint32_t kTriangleFace = 6;
 /// Two faces projected along their normal, one of several pairs that a kernel computed: the
 /// outlines of box_patch or triangle_patch without feature ids, neither thin nor steep. Each number
 /// is in one of the rows from `rows` on, which are `kStride` apart.
-struct SeenFaces {
+struct ProjectedFaces {
   static constexpr std::uint32_t kStride = 8;
   /// Rows of a face. The coordinates of corner i are i rows further.
   enum Row : std::uint8_t {
@@ -181,14 +182,15 @@ struct SeenFaces {
 };
 
 /// contact_patch of these faces.
-std::uint32_t seen_contacts(const SeenFaces& faces, double margin, ContactPoint* out) noexcept;
+std::uint32_t projected_contacts(const ProjectedFaces& faces, double margin,
+                                 ContactPoint* out) noexcept;
 
 /// Finds the point of a where two patches overlap deepest along the normal, and returns the depth
 /// of the cores there, without rounding. If the projections do not overlap, finds the point where
 /// they are closest, and returns minus infinity. Both patches must have vertices.
-double deepest_point(const Patch& a, const Patch& b, const double normal[3],
+double deepest_point(const SupportingFeature& a, const SupportingFeature& b, const double normal[3],
                      double point[3]) noexcept;
-double deepest_point(const FlatPatch& a, const FlatPatch& b, const double normal[3],
+double deepest_point(const FlatFeature& a, const FlatFeature& b, const double normal[3],
                      double point[3]) noexcept;
 
 }  // namespace winnow

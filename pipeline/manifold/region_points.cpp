@@ -13,9 +13,9 @@ namespace winnow {
 namespace {
 
 /// Relative to the span of a region: points whose distances differ by less than kTiedSpan count as
-/// equally far, and a point outside of the hull by less than kLeastWider is not chosen.
+/// equally far, and a point outside of the hull by less than kMinWider is not chosen.
 constexpr double kTiedSpan = 1e-3;
-constexpr double kLeastWider = 1e-4;
+constexpr double kMinWider = 1e-4;
 /// Points within this many times the tie tolerance of each other count as one place.
 constexpr double kPlaces = 4.0;
 
@@ -154,7 +154,7 @@ double RegionPoints::distance_from_hull(const Point& p, const Chosen& hull,
 
 // The first point is already chosen. Returns the number of chosen points.
 std::uint32_t RegionPoints::spread(Chosen& chosen, double span) const noexcept {
-  const double least = std::max(tie_, kLeastWider * span);
+  const double least = std::max(tie_, kMinWider * span);
   const double slack = std::max(tie_, kTiedSpan * span);
   std::uint32_t count = 1;
   for (; count < kManifoldPoints; ++count) {
@@ -182,12 +182,12 @@ double RegionPoints::span_from(std::uint32_t point) const noexcept {
 // Parts that share a side may report the same place several times, and a part beside it may report
 // almost the same place: take the deepest of these points.
 const RegionPoints::Point& RegionPoints::deepest_at(const Point& place) const noexcept {
-  constexpr double kPlace = 16.0;
+  constexpr double kPositionTies = 16.0;
   const Point* best = &place;
   for (std::uint32_t i = 0; i < count_; ++i) {
     const Point& p = point_[i];
-    const bool is_there =
-        std::abs(p.x - place.x) <= kPlace * tie_ && std::abs(p.y - place.y) <= kPlace * tie_;
+    const bool is_there = std::abs(p.x - place.x) <= kPositionTies * tie_ &&
+                          std::abs(p.y - place.y) <= kPositionTies * tie_;
     if (is_there && p.contact.depth - best->contact.depth > static_cast<float>(tie_)) best = &p;
   }
   return *best;

@@ -1,10 +1,10 @@
 #pragma once
 
 // Chooses the points of one contact region from the manifolds that are merged into it. Called by
-// composites/reduce.cpp.
+// composites/manifold_reduction.cpp.
 
 #include <winnow/pipeline/contact_types.h>
-#include "pipeline/manifold/patch_meetings.h"
+#include "pipeline/manifold/polygon_clip.h"
 
 #include <cstdint>
 

@@ -74,7 +74,7 @@ std::uint32_t moved(std::uint32_t from, int by) {
 }
 
 /// A minimum and a maximum height.
-struct Heights {
+struct HeightRange {
   float low = std::numeric_limits<float>::infinity();
   float high = -std::numeric_limits<float>::infinity();
 
@@ -89,8 +89,9 @@ bool has_all(const float (&height)[4]) {
            std::isnan(height[3]));
 }
 
-Heights over_squares(const HeightGrid& grid, std::uint32_t tile_column, std::uint32_t tile_row) {
-  Heights result;
+HeightRange over_squares(const HeightGrid& grid, std::uint32_t tile_column,
+                         std::uint32_t tile_row) {
+  HeightRange result;
   const std::uint32_t last_row = std::min(grid.square_rows(), (tile_row + 1) * kTileSquares);
   const std::uint32_t last_column =
       std::min(grid.square_columns(), (tile_column + 1) * kTileSquares);
@@ -106,10 +107,10 @@ Heights over_squares(const HeightGrid& grid, std::uint32_t tile_column, std::uin
   return result;
 }
 
-Heights over_tiles(const HeightPyramid& pyramid, std::uint32_t level, std::uint32_t tile_column,
-                   std::uint32_t tile_row, const float* low, const float* high) {
+HeightRange over_tiles(const HeightPyramid& pyramid, std::uint32_t level, std::uint32_t tile_column,
+                       std::uint32_t tile_row, const float* low, const float* high) {
   const HeightPyramid::Level& below = pyramid.level[level - 1];
-  Heights result;
+  HeightRange result;
   const std::uint32_t last_row = std::min(below.rows, (tile_row + 1) * kTileTiles);
   const std::uint32_t last_column = std::min(below.columns, (tile_column + 1) * kTileTiles);
   for (std::uint32_t row = tile_row * kTileTiles; row < last_row; ++row) {
@@ -159,8 +160,8 @@ void fit_tiles(const HeightGrid& grid, const TileRange& squares, float* low, flo
     for (std::uint32_t row = squares.low[1] / span; row <= (squares.high[1] - 1) / span; ++row) {
       for (std::uint32_t column = squares.low[0] / span; column <= (squares.high[0] - 1) / span;
            ++column) {
-        const Heights heights = level == 0 ? over_squares(grid, column, row)
-                                           : over_tiles(pyramid, level, column, row, low, high);
+        const HeightRange heights = level == 0 ? over_squares(grid, column, row)
+                                               : over_tiles(pyramid, level, column, row, low, high);
         const std::size_t at = tiles.first + std::size_t{row} * tiles.columns + column;
         low[at] = heights.low;
         high[at] = heights.high;

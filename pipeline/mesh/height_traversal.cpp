@@ -1,5 +1,6 @@
 // Searches a height field's tile pyramid: all triangles in a box, or triangles in order of time of
-// impact or distance. composites/search.cpp and composites/visits.cpp call these.
+// impact or distance. composites/primitive_pair_search.cpp and composites/composite_traversal.cpp
+// call these.
 
 #include "pipeline/mesh/box_measures.h"
 #include "pipeline/mesh/height_grid.h"
@@ -74,7 +75,7 @@ struct GridSweep {
   double limit;
 
   [[nodiscard]] double measure(const GridBox& box) const {
-    return meeting_time(min, max, direction, limit, box.low, box.high);
+    return swept_box_time(min, max, direction, limit, box.low, box.high);
   }
   [[nodiscard]] bool within(double measure) const {
     return measure <= limit && measure < kInfinity;

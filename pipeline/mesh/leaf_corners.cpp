@@ -47,10 +47,10 @@ class LeafVertices {
 
 bool LeafCorners::take(const MeshView& view) noexcept {
   const std::uint32_t leaves = view.count[0];
-  const auto each_corner = [&](std::uint32_t leaf, auto&& look) {
+  const auto each_corner = [&](std::uint32_t leaf, auto&& visit) {
     for (std::uint32_t i = 0; i < kLeafCorners; ++i) {
       const std::size_t slot = std::size_t{leaf} * kMeshFanout + i % kMeshFanout;
-      look(i, view.corner[i / kMeshFanout][slot]);
+      visit(i, view.corner[i / kMeshFanout][slot]);
     }
   };
   std::uint32_t blocks = leaves;

@@ -9,26 +9,26 @@
 #include "pipeline/mesh/mesh_view.h"
 #include "pipeline/mesh/surface_rays.h"
 #include "pipeline/shapes/difference_of_products.h"
-#include "simd/lanes/corners.h"
+#include "simd/lanes/triangle_lanes.h"
 #include "simd/lanes/vectors.h"
 
 namespace winnow::WINNOW_ISA_NAME::mesh {
 
-[[gnu::always_inline]] inline double taxicab(const Numbers& v) {
+[[gnu::always_inline]] inline double norm_l1(const ScalarVec3& v) {
   return abs(v.x) + abs(v.y) + abs(v.z);
 }
-[[gnu::always_inline]] inline double dot(const Numbers& a, const Numbers& b) {
+[[gnu::always_inline]] inline double dot(const ScalarVec3& a, const ScalarVec3& b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
 /// Cross product of two edges of a triangle. If cancellation removes at most three bits, plain
 /// products are accurate enough; else difference_of_products is used.
-[[gnu::always_inline]] inline Numbers normal_of(const Numbers& a, const Numbers& b) {
-  const Numbers plus{a.y * b.z, a.z * b.x, a.x * b.y};
-  const Numbers minus{a.z * b.y, a.x * b.z, a.y * b.x};
-  const Numbers normal = plus - minus;
-  constexpr double kLeastLeft = 0.125;
-  if (taxicab(normal) > kLeastLeft * (taxicab(plus) + taxicab(minus))) [[likely]]
+[[gnu::always_inline]] inline ScalarVec3 normal_of(const ScalarVec3& a, const ScalarVec3& b) {
+  const ScalarVec3 plus{a.y * b.z, a.z * b.x, a.x * b.y};
+  const ScalarVec3 minus{a.z * b.y, a.x * b.z, a.y * b.x};
+  const ScalarVec3 normal = plus - minus;
+  constexpr double kMinLeft = 0.125;
+  if (norm_l1(normal) > kMinLeft * (norm_l1(plus) + norm_l1(minus))) [[likely]]
     return normal;
   return {difference_of_products(a.y, b.z, a.z, b.y), difference_of_products(a.z, b.x, a.x, b.z),
           difference_of_products(a.x, b.y, a.y, b.x)};
@@ -44,34 +44,34 @@ namespace winnow::WINNOW_ISA_NAME::mesh {
   const V direction{ray.direction[0], ray.direction[1], ray.direction[2]};
   const V from = V{corner[0], corner[1], corner[2]} - origin;
   const V next{of_next(from.x), of_next(from.y), of_next(from.z)};
-  const D length = taxicab(from);
+  const D length = norm_l1(from);
   const D after = of_next(length);
   const D far = length + after + of_next(after);
-  const D doubt = taxicab(direction) * far * (D(0x1p-48) * far + D(4.0 * ray.slack));
+  const D error_bound = norm_l1(direction) * far * (D(0x1p-48) * far + D(4.0 * ray.slack));
   const D volume = dot(winnow::WINNOW_ISA_NAME::cross(from, direction), next);
-  const Mask16 above = bits(volume > doubt) & kThreeCorners;
-  const Mask16 below = bits(volume < -doubt) & kThreeCorners;
+  const Mask16 above = bits(volume > error_bound) & kThreeCorners;
+  const Mask16 below = bits(volume < -error_bound) & kThreeCorners;
   if (above != 0 && below != 0) return Crossing::none;
-  return above == kThreeCorners || below == kThreeCorners ? Crossing::found : Crossing::doubtful;
+  return above == kThreeCorners || below == kThreeCorners ? Crossing::found : Crossing::uncertain;
 }
 
 /// Given that the ray's line crosses the triangle, tests whether it does so within [ray.low,
 /// ray.high].
 [[gnu::always_inline]] inline Crossing cross_plane(const SurfaceRay& ray,
-                                                   const Numbers (&corner)[3], SurfaceHit& hit) {
-  const Numbers start{ray.origin[0], ray.origin[1], ray.origin[2]};
-  const Numbers way{ray.direction[0], ray.direction[1], ray.direction[2]};
-  const Numbers from = corner[0] - start;
-  const Numbers a = corner[1] - corner[0];
-  const Numbers b = corner[2] - corner[0];
-  const Numbers normal = normal_of(a, b);
+                                                   const ScalarVec3 (&corner)[3], SurfaceHit& hit) {
+  const ScalarVec3 start{ray.origin[0], ray.origin[1], ray.origin[2]};
+  const ScalarVec3 way{ray.direction[0], ray.direction[1], ray.direction[2]};
+  const ScalarVec3 from = corner[0] - start;
+  const ScalarVec3 a = corner[1] - corner[0];
+  const ScalarVec3 b = corner[2] - corner[0];
+  const ScalarVec3 normal = normal_of(a, b);
   const double rate = dot(normal, way);
   const double t = dot(normal, from) / rate;
   // Upper bound on the distances of all corners from the ray's origin.
-  const double far = 3.0 * taxicab(from) + taxicab(a) + taxicab(b);
-  const double error = taxicab(normal) * (2.0 * ray.slack + 0x1p-48 * far) / abs(rate);
+  const double far = 3.0 * norm_l1(from) + norm_l1(a) + norm_l1(b);
+  const double error = norm_l1(normal) * (2.0 * ray.slack + 0x1p-48 * far) / abs(rate);
   if (t < ray.low - error || t > ray.high + error) return Crossing::none;
-  if (!(t > ray.low + error && t < ray.high - error)) return Crossing::doubtful;
+  if (!(t > ray.low + error && t < ray.high - error)) return Crossing::uncertain;
   hit.t = t;
   const double side = rate > 0.0 ? -1.0 : 1.0;
   hit.normal[0] = side * normal.x;
@@ -85,7 +85,7 @@ namespace winnow::WINNOW_ISA_NAME::mesh {
 [[gnu::always_inline]] inline Crossing cross_slot(const SurfaceRay& ray, const MeshView& mesh,
                                                   std::uint32_t slot, bool is_sure,
                                                   SurfaceHit& hit) {
-  Numbers corner[3];
+  ScalarVec3 corner[3];
   const float* at[3];
   for (std::size_t k = 0; k < 3; ++k) {
     at[k] = mesh.vertex + std::size_t{3} * corner_of(mesh, k, slot);
@@ -105,7 +105,7 @@ namespace winnow::WINNOW_ISA_NAME::mesh {
 inline Crossing cross_triangle(const SurfaceRay& ray, const double (&corner)[3][3],
                                SurfaceHit& hit) {
   CornerDoubles by_axis[3];
-  Numbers corners[3];
+  ScalarVec3 corners[3];
   for (int k = 0; k < 3; ++k) {
     by_axis[k] = join_corners(corner[0][k], corner[1][k], corner[2][k]);
     corners[k] = {corner[k][0], corner[k][1], corner[k][2]};

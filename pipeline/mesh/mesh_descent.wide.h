@@ -129,8 +129,8 @@ class NearMeasure {
                             0.5 * job_.max[2] - 0.5 * job_.min[2]};
     Doubles lengths(0.0);
     const Doubles whole = square_to(corner, middle, lengths);
-    const Doubles far = taxicab(middle) + taxicab(half) + taxicab(corner[0]) + taxicab(corner[1]) +
-                        taxicab(corner[2]);
+    const Doubles far = norm_l1(middle) + norm_l1(half) + norm_l1(corner[0]) + norm_l1(corner[1]) +
+                        norm_l1(corner[2]);
     const Doubles least = whole * Doubles(1.0 - 0x1p-20) - Doubles(0x1p-44) * lengths * lengths -
                           Doubles(0x1p-75) * far * far;
     const Doubles gap =
@@ -160,7 +160,7 @@ class NearMeasure {
     const Vec3<double> a = point - corner[0];
     const Vec3<double> b = point - corner[1];
     const Vec3<double> c = point - corner[2];
-    lengths = taxicab(ab) + taxicab(bc) + taxicab(ca) + taxicab(a);
+    lengths = norm_l1(ab) + norm_l1(bc) + norm_l1(ca) + norm_l1(a);
     const Doubles edges =
         min(min(square_to_edge(a, ab), square_to_edge(b, bc)), square_to_edge(c, ca));
     const Vec3<double> normal = cross(bc, ca);
@@ -171,8 +171,8 @@ class NearMeasure {
     const Doubles height = dot(normal, a);
     // The plane of a triangle with hardly any area is unreliable, and a triangle without area may
     // stand for its box (trees over other objects): return 0 for both.
-    constexpr double kLeastSize = 1e-250;
-    const auto has_plane = size > Doubles(kLeastSize);
+    constexpr double kMinSize = 1e-250;
+    const auto has_plane = size > Doubles(kMinSize);
     const Doubles plane = height * height / size;
     return select(has_plane, select(is_over & (plane < edges), plane, edges), zero);
   }
@@ -261,8 +261,8 @@ class OpenMeshNodes {
 
 /// Passes a leaf's triangles within the limit to the visitor.
 template <typename Measure>
-inline void show_leaf(const MeshView& mesh, std::uint32_t leaf, Measure& measure,
-                      const SlotVisitor& visitor) {
+inline void visit_leaf(const MeshView& mesh, std::uint32_t leaf, Measure& measure,
+                       const SlotVisitor& visitor) {
   const Corners16 corners = load_corners(mesh, leaf);
   const Box16 box = box_of(corners);
   const std::uint32_t first_slot = leaf * kMeshFanout;
@@ -291,11 +291,12 @@ inline void show_leaf(const MeshView& mesh, std::uint32_t leaf, Measure& measure
 
 /// Passes the triangles within the measure's limit to the visitor, nearest leaf first.
 template <typename Measure>
-inline void show_in_order(const MeshView& mesh, Measure& measure, const SlotVisitor& visitor) {
+inline void visit_nearest_first(const MeshView& mesh, Measure& measure,
+                                const SlotVisitor& visitor) {
   if (!(measure.limit() >= 0.0)) return;
   OpenMeshNodes<Measure> open(mesh, measure);
   descend(mesh.levels, open, [&](std::uint32_t leaf) {
-    show_leaf(mesh, leaf, measure, visitor);
+    visit_leaf(mesh, leaf, measure, visitor);
     return true;
   });
 }

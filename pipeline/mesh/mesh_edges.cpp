@@ -86,7 +86,7 @@ void join(const std::uint64_t* begin, const std::uint64_t* end, Column<std::uint
   if (segments - begin == 2) {
     const auto first = static_cast<std::uint32_t>(begin[0]);
     const auto second = static_cast<std::uint32_t>(begin[1]);
-    const std::uint32_t same = ((first ^ second) & kUpward) == 0 ? kSameWay : 0U;
+    const std::uint32_t same = ((first ^ second) & kUpward) == 0 ? kSameDirection : 0U;
     neighbour_of(neighbours, begin[0]) = (second & kCode) | same;
     neighbour_of(neighbours, begin[1]) = (first & kCode) | same;
   }
@@ -172,9 +172,9 @@ bool is_active(const MeshView& mesh, const EdgeBend& bend, std::size_t slot, std
   read(mesh, slot, edge, u);
   read(mesh, slot, (edge + 1) % 3, v);
   read(mesh, slot, (edge + 2) % 3, p);
-  const std::uint32_t other = neighbour & ~kSameWay;
+  const std::uint32_t other = neighbour & ~kSameDirection;
   read(mesh, other >> 2U, ((other & 3U) + 2) % 3, q);
-  return bend.is_active(u, v, p, q, (neighbour & kSameWay) == 0);
+  return bend.is_active(u, v, p, q, (neighbour & kSameDirection) == 0);
 }
 
 }  // namespace
@@ -192,7 +192,7 @@ void mark_active_edges(const MeshView& mesh, const Column<std::uint32_t>& neighb
         continue;
       }
       // Visit each pair once; both triangles get the same result.
-      const std::uint32_t other = neighbour & ~kSameWay;
+      const std::uint32_t other = neighbour & ~kSameDirection;
       if (other < 4 * slot + edge || is_active(mesh, bend, slot, edge, neighbour)) continue;
       triangle[slot] &= ~(1U << (kActiveEdgeShift + edge));
       triangle[other >> 2U] &= ~(1U << (kActiveEdgeShift + (other & 3U)));

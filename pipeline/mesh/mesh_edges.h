@@ -10,7 +10,7 @@ namespace winnow {
 /// Flag in a result of find_neighbours. For an edge of a slot with exactly one neighbour, entry 3 *
 /// slot + edge is 4 * slot + edge of the other triangle, plus this bit if both triangles traverse
 /// the edge in the same direction, that is if they are wound inconsistently.
-inline constexpr std::uint32_t kSameWay = 1U << 30U;
+inline constexpr std::uint32_t kSameDirection = 1U << 30U;
 /// A border, or an edge shared by more than two triangles.
 inline constexpr std::uint32_t kNoNeighbour = ~0U;
 /// All edges of a triangle that is a segment, if a triangle with area has that segment as an edge.

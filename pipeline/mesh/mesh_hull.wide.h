@@ -34,7 +34,7 @@ struct HullCorners {
                Floats(hull.offset[i]);
       };
       at[k] = {row(0), row(1), row(2)};
-      sum += taxicab(at[k]);
+      sum += norm_l1(at[k]);
     }
     // Corners and heights accumulate about forty roundings of numbers no larger than these.
     reach = Floats(hull.reach) + (sum + Floats(hull.largest)) * Floats(0x1p-18F);

@@ -6,7 +6,7 @@
 #include "pipeline/mesh/mesh_view.h"
 #include "simd/lanes/boxes.h"
 #include "simd/lanes/compress.h"
-#include "simd/lanes/places.h"
+#include "simd/lanes/permute.h"
 #include "simd/lanes/rows.h"
 
 namespace winnow::WINNOW_ISA_NAME::mesh {
@@ -71,14 +71,14 @@ struct Corners16 {
   return block == 0 ? leaf : std::size_t{mesh.count[0]} + mesh.leaf_more[leaf];
 }
 
-/// Calls look(block, its vertices) for each block.
-template <int Blocks, typename Look>
+/// Calls visit(block, its vertices) for each block.
+template <int Blocks, typename Visit>
 [[gnu::always_inline]] inline void each_vertex_block(const MeshView& mesh, std::uint32_t leaf,
-                                                     Look&& look) {
+                                                     Visit&& visit) {
   for (int block = 0; block < Blocks; ++block) {
     Floats vertex[3];
     load_points(mesh.vertex, mesh.leaf_vertex + block_of(mesh, leaf, block) * kMeshFanout, vertex);
-    look(block, vertex);
+    visit(block, vertex);
   }
 }
 
@@ -103,7 +103,7 @@ template <int Blocks>
   });
   Corners16 corners;
   for (std::size_t k = 0; k < 3; ++k) {
-    const LanePlaces places(places_of(mesh, leaf, k));
+    const LanePermutation places(places_of(mesh, leaf, k));
     for (int axis = 0; axis < 3; ++axis) corners.at[k][axis] = places.pick(at[axis]);
   }
   return corners;

@@ -158,12 +158,12 @@ class NearPairTraversal {
     found_.size = 0;
     // The direction in node units. Along it boxes extend as far as their corners.
     float along[3];
-    float doubt = slack_;
+    float error_bound = slack_;
     Floats own_reach(0.0F);
     for (int axis = 0; axis < 3; ++axis) {
       along[axis] = visitor_.direction[axis] * a_.step[axis] * job_.scale;
       const float size = along[axis] < 0.0F ? -along[axis] : along[axis];
-      doubt += size;
+      error_bound += size;
       own_reach +=
           Floats(along[axis]) * (along[axis] < 0.0F ? children.low[axis] : children.high[axis]);
     }
@@ -174,7 +174,7 @@ class NearPairTraversal {
         reach += along[axis] * (along[axis] < 0.0F ? nodes_.high[axis][j] : nodes_.low[axis][j]);
       }
       const Mask16 parted =
-          bits(Floats(reach) - own_reach > Floats((most_ + doubt) * (1.0F + 0x1p-14F)));
+          bits(Floats(reach) - own_reach > Floats((most_ + error_bound) * (1.0F + 0x1p-14F)));
       if ((lanes & ~parted) == 0) continue;
       const float low[3] = {nodes_.low[0][j], nodes_.low[1][j], nodes_.low[2][j]};
       const float high[3] = {nodes_.high[0][j], nodes_.high[1][j], nodes_.high[2][j]};
@@ -246,8 +246,8 @@ class NearPairTraversal {
     for (Mask16 rest = present(b_.triangle_count, first_b); rest != 0; rest &= rest - 1) {
       const unsigned j = first(rest);
       // Exceeds the rounding of sums of three products of coordinates, and of the corners of b.
-      const Floats doubt = (size + Floats(other_size[j])) * Floats(0x1p-19F) + Floats(slack_);
-      const Floats reach = (Floats(most_) + doubt) * Floats(1.0F + 0x1p-14F);
+      const Floats error_bound = (size + Floats(other_size[j])) * Floats(0x1p-19F) + Floats(slack_);
+      const Floats reach = (Floats(most_) + error_bound) * Floats(1.0F + 0x1p-14F);
       Mask16 hits = ~bits(Floats(other_reach[j]) - own_reach > reach) & leaf.lanes;
       if (hits == 0) continue;
       const float grow = slack_ + other_size[j] * 0x1p-20F;

@@ -90,9 +90,9 @@ struct BallCorners {
 }
 
 /// Collects the few remaining triangles of one leaf after another, and tests sixteen at a time.
-class TriangleSieve {
+class TriangleBatch {
  public:
-  TriangleSieve(const MeshBoxJob& job, SlotSink& out) : job_(job), out_(out) {}
+  TriangleBatch(const MeshBoxJob& job, SlotSink& out) : job_(job), out_(out) {}
 
   void add(const Corners16& corners, Mask16 hits, std::uint32_t first_slot) {
     for (int k = 0; k < 3; ++k) {
@@ -159,11 +159,11 @@ template <typename Show>
 
 inline void find_overlaps(const MeshView& mesh, const MeshBoxJob& job, SlotSink& out) {
   if (job.has_ball || job.hull.shape != nullptr) {
-    TriangleSieve sieve(job, out);
+    TriangleBatch batch(job, out);
     visit_box(mesh, job, [&](const Corners16& corners, Mask16 hits, std::uint32_t first_slot) {
-      sieve.add(corners, hits, first_slot);
+      batch.add(corners, hits, first_slot);
     });
-    sieve.finish();
+    batch.finish();
     return;
   }
   visit_box(mesh, job, [&](const Corners16&, Mask16 hits, std::uint32_t first_slot) {

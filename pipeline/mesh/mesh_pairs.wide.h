@@ -38,7 +38,7 @@ struct PairLeaf {
   /// Sum of the absolute values of the two products whose difference is `normal`.
   Floats size[3];
   /// Rounding error of distances from the plane due to the extent of the triangle itself.
-  Floats doubt;
+  Floats offset_error;
 };
 
 /// Triangles of a leaf of b, of which one at a time is broadcast. Their planes are computed on
@@ -55,11 +55,11 @@ struct PlacedTriangles {
   /// 32 u times the distance that a corner of a triangle with an overlapping box may have from one
   /// of these corners, plus 2 u times the coordinate. Multiplied by `size` of the other triangle,
   /// it bounds the error of distances from that triangle's plane.
-  alignas(64) float doubt[3][kLanes];
+  alignas(64) float offset_error[3][kLanes];
   alignas(64) float normal[3][kLanes];
   /// Error bound of the normal. Multiplied by such a distance, it bounds the error of distances
   /// from this triangle's plane.
-  alignas(64) float wobble[3][kLanes];
+  alignas(64) float normal_error[3][kLanes];
   /// Extent plus slack.
   alignas(64) float reach[3][kLanes];
   /// How far the slack extends along the normal, plus the rounding of the corner that distances are
@@ -104,10 +104,10 @@ inline void add_planes(PairLeaf& out) {
     last_edge[axis] = out.corners.at[2][axis] - out.corners.at[0][axis];
   }
   cross_sizes(first_edge, last_edge, out.normal, out.size);
-  out.doubt = Floats(kTiny);
+  out.offset_error = Floats(kTiny);
   for (int axis = 0; axis < 3; ++axis) {
     const Floats extent = out.box.high[axis] - out.box.low[axis];
-    out.doubt += out.size[axis] * extent * Floats(32.0F * kUlp);
+    out.offset_error += out.size[axis] * extent * Floats(32.0F * kUlp);
   }
 }
 
@@ -168,7 +168,7 @@ inline void add_planes(const MeshPairJob& job, PlacedTriangles& out) {
                           largest[axis] * Floats(2.0F * kUlp));
     normal[axis].store(out.normal[axis]);
     (error * Floats(2.0F) + abs(normal[axis]) * Floats(32.0F * kUlp) + Floats(kTiny))
-        .store(out.wobble[axis]);
+        .store(out.normal_error[axis]);
   }
   thickness.store(out.thickness);
 }
@@ -189,7 +189,7 @@ inline void place_triangles(const MeshView& b, const MeshPairJob& job, std::uint
     const Floats reach = (high - low) + grow;
     reach.store(out.reach[axis]);
     (reach * Floats(32.0F * kUlp) + largest * Floats(2.0F * kUlp) + Floats(kTiny))
-        .store(out.doubt[axis]);
+        .store(out.offset_error[axis]);
     for (int k = 0; k < 3; ++k) corners.at[k][axis].store(out.corner[k][axis]);
   }
   out.lanes = present(b.triangle_count, leaf * kMeshFanout);
@@ -206,12 +206,14 @@ inline void place_triangles(const MeshView& b, const MeshPairJob& job, std::uint
 }
 
 /// The triangles of the leaf, among `boxes`, that no triangle plane separates from triangle j.
-[[gnu::always_inline]] inline Mask16 unparted(const PairLeaf& leaf, const PlacedTriangles& placed,
-                                              const MeshPairJob& job, unsigned j, Mask16 boxes) {
+[[gnu::always_inline]] inline Mask16 not_separated(const PairLeaf& leaf,
+                                                   const PlacedTriangles& placed,
+                                                   const MeshPairJob& job, unsigned j,
+                                                   Mask16 boxes) {
   const Floats zero(0.0F);
   Floats above_leaf[3] = {zero, zero, zero};
   Floats above_placed[3] = {zero, zero, zero};
-  Floats leaf_bound = leaf.doubt;
+  Floats leaf_bound = leaf.offset_error;
   Floats placed_bound(placed.thickness[j]);
   for (int axis = 0; axis < 3; ++axis) {
     const Floats origin = leaf.corners.at[0][axis];
@@ -221,10 +223,10 @@ inline void place_triangles(const MeshView& b, const MeshPairJob& job, std::uint
       above_leaf[k] += leaf.normal[axis] * (Floats(placed.corner[k][axis][j]) - origin);
       above_placed[k] += normal * (leaf.corners.at[k][axis] - other_origin);
     }
-    leaf_bound += leaf.size[axis] * Floats(placed.doubt[axis][j]) +
+    leaf_bound += leaf.size[axis] * Floats(placed.offset_error[axis][j]) +
                   abs(leaf.normal[axis]) * Floats(job.scaled_slack[axis]);
     const Floats extent = leaf.box.high[axis] - leaf.box.low[axis];
-    placed_bound += Floats(placed.wobble[axis][j]) * (extent + Floats(placed.reach[axis][j]));
+    placed_bound += Floats(placed.normal_error[axis][j]) * (extent + Floats(placed.reach[axis][j]));
   }
   return boxes & ~bits(aside(above_leaf, leaf_bound) | aside(above_placed, placed_bound));
 }
@@ -438,7 +440,7 @@ class PairTraversal {
       if (boxes == 0) continue;
       if (!leaf.has_planes) add_planes(leaf);
       if (!placed_.has_planes) add_planes(job_, placed_);
-      const Mask16 hits = unparted(leaf, placed_, job_, j, boxes);
+      const Mask16 hits = not_separated(leaf, placed_, job_, j, boxes);
       if (hits != 0) put(leaf_a * kMeshFanout, hits, leaf_b * kMeshFanout + j);
     }
   }

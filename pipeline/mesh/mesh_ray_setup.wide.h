@@ -13,13 +13,13 @@
 namespace winnow::WINNOW_ISA_NAME::mesh {
 
 /// Error bound, in node units, of a bound converted in float to the parameter tau (see ReadyRays).
-inline constexpr double kUnitDoubt = 0.05;
+inline constexpr double kUnitError = 0.05;
 /// A ray that moves by fewer units per tau counts as static on that axis: it moves by less than
-/// kUnitDoubt while it crosses the mesh.
-inline constexpr double kStandingRate = 0.01;
-inline constexpr double kStandingInverse = 1e30;
+/// kUnitError while it crosses the mesh.
+inline constexpr double kStaticRate = 0.01;
+inline constexpr double kStaticInverse = 1e30;
 /// A larger slack would also leave all triangles uncertain, so slack is clamped to this.
-inline constexpr double kMostSlack = 1e200;
+inline constexpr double kMaxSlack = 1e200;
 
 // Constants for rays measured in float from their own origin; u is half an ulp of 1.
 
@@ -30,36 +30,36 @@ inline constexpr float kNearUnits = 0x1p22F;
 /// plus a fraction of the largest bound. 32 u covers 12 roundings, or 24 in a directed rounding
 /// mode.
 inline constexpr float kNearShare = 0x1p-19F;
-inline constexpr float kNearDoubt = 0.5F;
+inline constexpr float kNearError = 0.5F;
 
 /// A vector of three scalars.
-struct Numbers {
+struct ScalarVec3 {
   double x;
   double y;
   double z;
 
-  [[gnu::always_inline]] friend Numbers operator+(const Numbers& a, const Numbers& b) {
+  [[gnu::always_inline]] friend ScalarVec3 operator+(const ScalarVec3& a, const ScalarVec3& b) {
     return {a.x + b.x, a.y + b.y, a.z + b.z};
   }
-  [[gnu::always_inline]] friend Numbers operator-(const Numbers& a, const Numbers& b) {
+  [[gnu::always_inline]] friend ScalarVec3 operator-(const ScalarVec3& a, const ScalarVec3& b) {
     return {a.x - b.x, a.y - b.y, a.z - b.z};
   }
-  [[gnu::always_inline]] friend Numbers operator*(const Numbers& a, double s) {
+  [[gnu::always_inline]] friend ScalarVec3 operator*(const ScalarVec3& a, double s) {
     return {a.x * s, a.y * s, a.z * s};
   }
 };
 
 /// Traits for eight rays in lanes.
-struct RaysInLanes {
+struct LaneRays {
   static constexpr std::uint32_t kRoom = kRaysAtOnce;
   using Number = Doubles;
   using Vector = Vec3<double>;
 };
 /// Traits for one ray in scalars.
-struct RayInNumbers {
+struct ScalarRay {
   static constexpr std::uint32_t kRoom = 1;
   using Number = double;
-  using Vector = Numbers;
+  using Vector = ScalarVec3;
 };
 
 // Functions that both variants are written in.
@@ -169,27 +169,26 @@ template <typename OnEntries>
                                                 std::uint32_t first, SurfaceRays& own) {
   using D = Doubles;
   using V = Vec3<double>;
-  constexpr double kLeast = 1e-300;
+  constexpr double kMinLength = 1e-300;
   const V direction = load<V>(world.direction, first);
   const V start = load<V>(world.origin, first) - spread<V>(frame.position);
   const D fastest = largest_of(abs_of(direction));
   const D square = dot(direction, direction);
   const D towards = -dot(start, direction);
-  const V way = times(frame.to_own, direction);
+  const V way = times(frame.world_to_local, direction);
   const D longest = largest_of(abs_of(way));
   const D stretch = D(0.5) / power_of(longest);
-  store(times(frame.to_own, start), own.ray.origin, first);
+  store(times(frame.world_to_local, start), own.ray.origin, first);
   store(way * stretch, own.ray.direction, first);
-  const D coordinate =
-      largest_of(times(frame.to_own, abs_of(start), [](const D& entries) { return abs(entries); }));
+  const D coordinate = largest_of(
+      times(frame.world_to_local, abs_of(start), [](const D& entries) { return abs(entries); }));
   store(D(kRaySlack) * (coordinate + D(frame.reach)), own.slack + first);
   store(D(0.0), own.shift + first);
   store(stretch, own.stretch + first);
   const auto near = towards <= D(4.0 * frame.size) * (square / fastest);
-  const auto tame = (largest_of(abs_of(start)) < D(kMostRayLength)) &
-                    (fastest < D(kMostRayLength)) & (fastest > D(1.0 / kMostRayLength)) &
-                    (longest > D(kLeast)) & (longest < D(1.0 / kLeast)) &
-                    (D(frame.size) < D(kMostRayLength));
+  const auto tame = (largest_of(abs_of(start)) < D(kMaxRayLength)) & (fastest < D(kMaxRayLength)) &
+                    (fastest > D(1.0 / kMaxRayLength)) & (longest > D(kMinLength)) &
+                    (longest < D(1.0 / kMinLength)) & (D(frame.size) < D(kMaxRayLength));
   return ~bits(near & tame);
 }
 
@@ -245,7 +244,7 @@ template <typename L>
 
 /// Computes the part of [0, limit] in which a ray is within bounds on one axis, grown by its slack.
 template <typename L>
-struct AxisPassage {
+struct AxisInterval {
   const L slack;
   const L limit;
 
@@ -257,29 +256,29 @@ struct AxisPassage {
     const L zero(0.0);
     const L near = least - slack - from;
     const L far = most + slack - from;
-    const auto stands = way == zero;
+    const auto is_static = way == zero;
     const auto beside = (near > zero) | (far < zero);
     const L a = near * inverse;
     const L b = far * inverse;
     const L in = select(b < a, b, a) * L(1.0 - 0x1p-48);
     const L out = select(a < b, b, a) * L(1.0 + 0x1p-48);
-    leaves = select((out < limit) & !stands, out, limit);
-    leaves = select(stands & beside, L(-1.0), leaves);
-    return select((zero < in) & !stands, in, zero);
+    leaves = select((out < limit) & !is_static, out, limit);
+    leaves = select(is_static & beside, L(-1.0), leaves);
+    return select((zero < in) & !is_static, in, zero);
   }
 };
 
 /// Coefficients for a ray passing bounds on one axis. `from` is its position and `grow` the growth
 /// of boxes, in node units; `given` is the time in tau per unit.
 template <typename L>
-struct AxisWay {
+struct AxisCoefficients {
   L inverse;
   L near;
   L far;
 
-  [[gnu::always_inline]] AxisWay(const L& from, const L& given, const L& grow) {
+  [[gnu::always_inline]] AxisCoefficients(const L& from, const L& given, const L& grow) {
     inverse =
-        select(abs(given) <= L(1.0 / kStandingRate), given, with_sign(L(kStandingInverse), given));
+        select(abs(given) <= L(1.0 / kStaticRate), given, with_sign(L(kStaticInverse), given));
     const L forward_grow = with_sign(grow, inverse);
     near = (-from - forward_grow) * inverse;
     far = (-from + forward_grow) * inverse;
@@ -291,7 +290,7 @@ struct AxisWay {
 ///
 /// A bound q becomes q * inverse + near in float: three or four roundings, each of half an ulp of
 /// at most (65536 + |from| + grow) * |inverse|. Within the mesh's box, grown by the slack, this is
-/// less than kUnitDoubt plus 2^-20 of the slack.
+/// less than kUnitError plus 2^-20 of the slack.
 template <typename Rays>
 [[gnu::always_inline]] inline Mask16 make_ready(const MeshSpan& mesh,
                                                 const SurfaceRayColumns<Rays::kRoom>& rays,
@@ -308,8 +307,8 @@ template <typename Rays>
   const D one(1.0);
   const V inverse = by_axis([](const D& way) { return D(1.0) / way; }, direction);
   V leaves;
-  const AxisPassage<D> passage{own_slack, most};
-  const D in = largest_of(by_axis(passage, start, direction, inverse, spread<V>(mesh.least),
+  const AxisInterval<D> interval{own_slack, most};
+  const D in = largest_of(by_axis(interval, start, direction, inverse, spread<V>(mesh.least),
                                   spread<V>(mesh.most), leaves));
   const Mask16 come = bits((in <= least_of(leaves)) & (most >= D(0.0)));
   if (come == 0) return come;
@@ -317,7 +316,7 @@ template <typename Rays>
   const V moved = direction * in;
   const V from = start + moved;
   const D farthest = largest_of(abs_of(start) + abs_of(moved));
-  const D slack = min(D(kMostSlack), own_slack + D(0x1p-51) * farthest);
+  const D slack = min(D(kMaxSlack), own_slack + D(0x1p-51) * farthest);
   // No ray is in the box, grown by the slack, for longer than twice this.
   const D extent(mesh.extent);
   const auto is_slack = slack > D(0x1p-10) * extent;
@@ -332,8 +331,8 @@ template <typename Rays>
       [&](const D& place, const D& time, const D& low, const D& step, const D& units, D& in_units,
           D& grown, D& to_near, D& to_far) {
         in_units = (place - low) * units;
-        grown = D(kUnitDoubt) + D(1.001) * slack * units;
-        const AxisWay<D> way(in_units, step * time * pace, grown);
+        grown = D(kUnitError) + D(1.001) * slack * units;
+        const AxisCoefficients<D> way(in_units, step * time * pace, grown);
         to_near = way.near;
         to_far = way.far;
         return way.inverse;
@@ -356,23 +355,24 @@ template <typename Rays>
 ///
 /// The position takes three roundings, its inverse as many, and a bound's conversion to tau four,
 /// each of at most |at| and the largest bound.
-[[gnu::always_inline]] inline bool make_near_ready(const MeshSpan& mesh, const LoneSurfaceRay& ray,
+[[gnu::always_inline]] inline bool make_near_ready(const MeshSpan& mesh,
+                                                   const SingleSurfaceRay& ray,
                                                    ReadyRays<1>& ready) {
   const auto& start = ray.ray.origin;
   const auto& way = ray.ray.direction;
   const double slack = ray.slack[0];
   const FloatAxes units = load_axes(mesh.float_units);
-  const Numbers from{start[0][0] - mesh.low[0], start[1][0] - mesh.low[1],
-                     start[2][0] - mesh.low[2]};
+  const ScalarVec3 from{start[0][0] - mesh.low[0], start[1][0] - mesh.low[1],
+                        start[2][0] - mesh.low[2]};
   const FloatAxes at = float_axes(from.x, from.y, from.z) * units;
   const FloatAxes away = absolute(at);
   if (!(are_all_below(away, kNearUnits) && slack <= 0x1p-10 * mesh.extent)) return false;
   const FloatAxes rate = float_axes(way[0][0], way[1][0], way[2][0]);
   const FloatAxes given = load_axes(mesh.float_inverse) / rate;
   const FloatAxes inverse = signed_as(
-      lesser_axes(absolute(given), spread_axes(static_cast<float>(kStandingInverse))), rate);
+      lesser_axes(absolute(given), spread_axes(static_cast<float>(kStaticInverse))), rate);
   const FloatAxes grow = spread_axes(static_cast<float>(1.001 * slack)) * units +
-                         (away * spread_axes(kNearShare) + spread_axes(kNearDoubt));
+                         (away * spread_axes(kNearShare) + spread_axes(kNearError));
   const FloatAxes forward_grow = signed_as(grow, inverse);
   ready.entry[0] = 0.0;
   ready.pace[0] = mesh.pace;

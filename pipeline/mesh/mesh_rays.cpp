@@ -24,7 +24,7 @@ void mesh_rays(const MeshView& mesh, const SurfaceRays& rays, const double* limi
   mesh_kernels().rays(mesh, rays, limits, count, visitor);
 }
 
-void mesh_ray(const MeshView& mesh, const LoneSurfaceRay& ray, double limit,
+void mesh_ray(const MeshView& mesh, const SingleSurfaceRay& ray, double limit,
               const RaySlotVisitor& visitor) noexcept {
   if (mesh.triangle_count != 0) mesh_kernels().ray(mesh, ray, limit, visitor);
 }

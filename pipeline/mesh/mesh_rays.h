@@ -6,7 +6,7 @@
 
 namespace winnow {
 
-/// Tests whether the ray crosses a triangle at a t in [low, high]. Returns `doubtful` if rounding
+/// Tests whether the ray crosses a triangle at a t in [low, high]. Returns `uncertain` if rounding
 /// or the ray's slack may change the result.
 [[nodiscard]] Crossing cross_triangle(const SurfaceRay& ray, const double (&corner)[3][3],
                                       SurfaceHit& hit) noexcept;
@@ -21,7 +21,7 @@ namespace winnow {
 void mesh_rays(const MeshView& mesh, const SurfaceRays& rays, const double* limits,
                std::uint32_t count, const RaySlotVisitor& visitor) noexcept;
 /// As above, for one ray, with index 0.
-void mesh_ray(const MeshView& mesh, const LoneSurfaceRay& ray, double limit,
+void mesh_ray(const MeshView& mesh, const SingleSurfaceRay& ray, double limit,
               const RaySlotVisitor& visitor) noexcept;
 
 }  // namespace winnow

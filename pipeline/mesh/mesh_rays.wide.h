@@ -13,8 +13,8 @@
 #include "partitions/tree/traversal.wide.h"
 #include "pipeline/mesh/mesh_crossing.wide.h"
 #include "pipeline/mesh/mesh_ray_setup.wide.h"
-#include "simd/lanes/packed.h"
-#include "simd/lanes/positive.h"
+#include "simd/lanes/packed_points.h"
+#include "simd/lanes/positive_min_max.h"
 
 namespace winnow::WINNOW_ISA_NAME::mesh {
 
@@ -40,16 +40,16 @@ struct LineTriangles {
 /// twice its square.
 [[gnu::always_inline]] inline LineTriangles around_line(const CornersAcross& at, float wrong,
                                                         float surely) {
-  const auto taxicab = [&](int k) { return abs(at.x[k]) + abs(at.y[k]); };
-  const Floats doubt = multiply_add(taxicab(0) + taxicab(1) + taxicab(2), Floats(wrong),
-                                    Floats(2.1F * wrong * wrong));
+  const auto norm_l1 = [&](int k) { return abs(at.x[k]) + abs(at.y[k]); };
+  const Floats error_bound = multiply_add(norm_l1(0) + norm_l1(1) + norm_l1(2), Floats(wrong),
+                                          Floats(2.1F * wrong * wrong));
   const Floats a = at.x[2] * at.y[1] - at.y[2] * at.x[1];
   const Floats b = at.x[0] * at.y[2] - at.y[0] * at.x[2];
   const Floats c = at.x[1] * at.y[0] - at.y[1] * at.x[0];
   const Floats most = max(max(a, b), c);
   const Floats least = min(min(a, b), c);
-  const Floats beyond = doubt + Floats(surely);
-  const LaneMask<float> misses = (most > doubt) & (least < -doubt);
+  const Floats beyond = error_bound + Floats(surely);
+  const LaneMask<float> misses = (most > error_bound) & (least < -error_bound);
   const LaneMask<float> sure = (least > beyond) | (most < -beyond);
   return {~bits(misses) & 0xFFFFU, bits(sure)};
 }
@@ -127,7 +127,7 @@ class RayLine {
     }
     CornersAcross at;
     for (std::size_t k = 0; k < 3; ++k) {
-      const LanePlaces places(places_of(mesh, leaf, k));
+      const LanePermutation places(places_of(mesh, leaf, k));
       at.x[k] = places.pick(x);
       at.y[k] = places.pick(y);
     }
@@ -192,7 +192,7 @@ struct RayNode {
 /// it has no other work meanwhile. Control flow uses branches rather than select: branch prediction
 /// lets the processor start the next step early.
 template <bool Alone>
-class RayWalk {
+class RayTraversal {
  public:
   static constexpr std::uint32_t kRoom = Alone ? 1 : kRaysAtOnce;
 
@@ -205,8 +205,8 @@ class RayWalk {
     rays_ = &rays;
     ray_ = ray;
     for (std::uint32_t axis = 0; axis < 3; ++axis) {
-      const auto bits_of_way = __builtin_bit_cast(std::uint64_t, own.ray.direction[axis][ray]);
-      const auto upper = static_cast<std::uint32_t>(bits_of_way >> 63U);
+      const auto direction_bits = __builtin_bit_cast(std::uint64_t, own.ray.direction[axis][ray]);
+      const auto upper = static_cast<std::uint32_t>(direction_bits >> 63U);
       near_bound_[axis] = (axis + 3U * upper) * kMeshFanout;
       far_bound_[axis] = (axis + 3U - 3U * upper) * kMeshFanout;
     }
@@ -225,7 +225,7 @@ class RayWalk {
     const auto at = 31U - static_cast<std::uint32_t>(__builtin_clz(open_));
     const Floats key = Floats::load(key_[at]);
     const std::uint32_t nearest =
-        reduce_min_positive(select(key > Floats(gone_to_[at]), key, Floats(kNobody)));
+        reduce_min_positive(select(key > Floats(gone_to_[at]), key, Floats(kClosedKey)));
     gone_to_[at] = __builtin_bit_cast(float, nearest);
     open_ ^= (is_open(key, gone_to_[at]) ^ 1U) << at;
     return node_of(nearest, level_[at], first_node_[at]);
@@ -234,7 +234,7 @@ class RayWalk {
   [[gnu::always_inline]] RayNode enter_inner(const MeshView& mesh, const RayNode& node) {
     return meet(mesh, node.level - 1, node.number * kLanes);
   }
-  [[nodiscard, gnu::always_inline]] bool is_anyone_waiting() const { return open_ != 0; }
+  [[nodiscard, gnu::always_inline]] bool has_open_nodes() const { return open_ != 0; }
   /// Runs the whole traversal of one ray. If triangles have boxes, a leaf's triangles are tested
   /// after the next nodes, while its vertices are being fetched; else nearly all data of a leaf are
   /// already in cache.
@@ -252,7 +252,7 @@ class RayWalk {
           return;
         }
       }
-      if (!is_anyone_waiting()) return;
+      if (!has_open_nodes()) return;
       node = take_next();
     }
   }
@@ -268,7 +268,7 @@ class RayWalk {
   }
   /// The step to take if there is no next node.
   [[nodiscard, gnu::always_inline]] RayStep next_step() const {
-    return is_anyone_waiting() ? kTakeNext : kEnd;
+    return has_open_nodes() ? kTakeNext : kEnd;
   }
   [[gnu::always_inline]] RayStep enter_inner(const MeshView& mesh) {
     return step_to(enter_inner(mesh, node_));
@@ -276,40 +276,42 @@ class RayWalk {
   /// Finds the triangles of the current leaf to test; returns false if there are none. Their
   /// vertices must be fetched next.
   [[gnu::always_inline]] bool enter_leaf(const MeshView& mesh) {
-    asked_ = ask(mesh, node_);
-    return asked_.triangles != 0;
+    candidates_ = select_triangles(mesh, node_);
+    return candidates_.triangles != 0;
   }
   /// Prefetches the data of the current leaf that are read first. Nodes are few enough to be in
   /// cache.
   [[gnu::always_inline]] void fetch_leaf(const MeshView& mesh) const { fetch(mesh, node_.number); }
   [[gnu::always_inline]] void fetch_vertices(const MeshView& mesh) const {
-    fetch_vertices(mesh, asked_);
+    fetch_vertices(mesh, candidates_);
   }
   /// As enter_leaf, for triangles without boxes: returns false if the line crosses none. Prefetches
   /// the vertices of the first triangle only, since there are hardly ever more.
   [[gnu::always_inline]] bool find_triangles(const MeshView& mesh) {
     const LineTriangles line = line_.near(mesh, node_.number);
-    asked_ = {node_.number, node_.entry, triangles_of(mesh, node_.number) & line.may, line.sure};
-    fetch_vertices(mesh, node_.number * kMeshFanout + first(asked_.triangles | 1U << (kLanes - 1)));
+    candidates_ = {node_.number, node_.entry, triangles_of(mesh, node_.number) & line.may,
+                   line.sure};
+    fetch_vertices(mesh,
+                   node_.number * kMeshFanout + first(candidates_.triangles | 1U << (kLanes - 1)));
     __builtin_prefetch(mesh.triangle + node_.number * kMeshFanout);
-    return asked_.triangles != 0;
+    return candidates_.triangles != 0;
   }
   /// Returns false if the visitor ends the ray.
   [[gnu::always_inline]] bool cross_triangles(const MeshView& mesh, const RaySlotVisitor& visitor) {
-    return cross_triangles(mesh, asked_, visitor);
+    return cross_triangles(mesh, candidates_, visitor);
   }
 
  private:
-  static constexpr float kLeastTau = 0x1p-100F;
-  static constexpr float kMostTau = 1e38F;
-  /// The key of a node that is not open; more than kMostTau.
-  static constexpr float kNobody = __FLT_MAX__;
+  static constexpr float kMinTau = 0x1p-100F;
+  static constexpr float kMaxTau = 1e38F;
+  /// The key of a node that is not open; more than kMaxTau.
+  static constexpr float kClosedKey = __FLT_MAX__;
   /// Keys distinguish this many nodes.
   static constexpr std::uint32_t kNumbers = 2 * kLanes;
 
   /// A leaf to be tested: the time at which the ray enters it, the triangles that it may cross, and
   /// a subset that it certainly crosses.
-  struct Asked {
+  struct LeafCandidates {
     std::uint32_t leaf = 0;
     float entry = 0.0F;
     Mask16 triangles = 0;
@@ -317,12 +319,12 @@ class RayWalk {
   };
 
   void go_through_boxes(const MeshView& mesh, RayNode node, const RaySlotVisitor& visitor) {
-    Asked before;
+    LeafCandidates before;
     for (;;) {
       while (node.is_inner()) node = enter_inner(mesh, node);
-      Asked now;
+      LeafCandidates now;
       if (node.is_some()) {
-        now = ask(mesh, node);
+        now = select_triangles(mesh, node);
         if (now.triangles != 0) fetch_vertices(mesh, now);
       }
       if (before.triangles != 0 && before.entry <= last_ &&
@@ -330,7 +332,7 @@ class RayWalk {
         return;
       }
       before = now;
-      if (is_anyone_waiting()) {
+      if (has_open_nodes()) {
         node = take_next();
       } else {
         if (now.triangles == 0) return;
@@ -342,8 +344,8 @@ class RayWalk {
   void set_last(double limit) {
     limit_ = limit;
     const double rest = (limit - rays_->entry[place()]) * rays_->pace[place()] * (1.0 + 0x1p-20);
-    const float most = rest < 1e38 ? static_cast<float>(rest) : kMostTau;
-    last_ = most > kLeastTau ? most : kLeastTau;
+    const float most = rest < 1e38 ? static_cast<float>(rest) : kMaxTau;
+    last_ = most > kMinTau ? most : kMinTau;
     last_key_ =
         __builtin_bit_cast(float, __builtin_bit_cast(std::uint32_t, last_) | (kNumbers - 1U));
   }
@@ -363,7 +365,7 @@ class RayWalk {
   /// The boxes, of sixteen in columns at `bounds`, that the ray intersects, and when it enters
   /// them.
   [[gnu::always_inline]] LaneMask<float> enter(const std::uint16_t* bounds, Floats& in) const {
-    in = Floats(kLeastTau);
+    in = Floats(kMinTau);
     Floats out(last_);
     for (int axis = 0; axis < 3; ++axis) {
       const Floats inverse(rays_->inverse[axis][place()]);
@@ -386,7 +388,7 @@ class RayWalk {
     const LaneMask<float> met = enter(mesh.node[level] + std::size_t{6} * first_node, in);
     const Floats each = Floats::load(reinterpret_cast<const float*>(kEach + number));
     const Floats without_number(__builtin_bit_cast(float, ~(kNumbers - 1U)));
-    key = select(met, (in & without_number) | each, Floats(kNobody));
+    key = select(met, (in & without_number) | each, Floats(kClosedKey));
     Mask16 hits = bits(met);
     if (first_node + kLanes > mesh.count[level]) [[unlikely]] {
       hits &= leave_out(present(mesh.count[level], first_node), hits, key);
@@ -403,7 +405,7 @@ class RayWalk {
       return there;
     alignas(64) float one[kLanes];
     key.store(one);
-    for (Mask16 rest = hits & ~there; rest != 0; rest &= rest - 1) one[first(rest)] = kNobody;
+    for (Mask16 rest = hits & ~there; rest != 0; rest &= rest - 1) one[first(rest)] = kClosedKey;
     key = Floats::load(one);
     return there;
   }
@@ -489,14 +491,15 @@ class RayWalk {
     return present(mesh.triangle_count, first_slot);
   }
   /// Finds the triangles of a leaf to test; if triangles have boxes, tests these first.
-  [[gnu::always_inline]] Asked ask(const MeshView& mesh, const RayNode& leaf) const {
-    Asked asked{leaf.number, leaf.entry, triangles_of(mesh, leaf.number), 0};
-    if (mesh.box == nullptr) return asked;
+  [[gnu::always_inline]] LeafCandidates select_triangles(const MeshView& mesh,
+                                                         const RayNode& leaf) const {
+    LeafCandidates candidates{leaf.number, leaf.entry, triangles_of(mesh, leaf.number), 0};
+    if (mesh.box == nullptr) return candidates;
     Floats in;
     const std::uint32_t first_slot = leaf.number * kMeshFanout;
-    asked.triangles &= bits(enter(mesh.box + std::size_t{6} * first_slot, in));
-    if (!Alone && asked.triangles != 0) fetch_corners(mesh, leaf.number);
-    return asked;
+    candidates.triangles &= bits(enter(mesh.box + std::size_t{6} * first_slot, in));
+    if (!Alone && candidates.triangles != 0) fetch_corners(mesh, leaf.number);
+    return candidates;
   }
 
   /// Prefetches vertices of a leaf that lists them, before it is determined which triangles are
@@ -516,22 +519,24 @@ class RayWalk {
       __builtin_prefetch(mesh.vertex + std::size_t{3} * corner_of(mesh, k, slot));
     }
   }
-  [[gnu::always_inline]] static void fetch_vertices(const MeshView& mesh, const Asked& asked) {
-    const std::uint32_t first_slot = asked.leaf * kMeshFanout;
-    for (Mask16 rest = asked.triangles; rest != 0; rest &= rest - 1) {
+  [[gnu::always_inline]] static void fetch_vertices(const MeshView& mesh,
+                                                    const LeafCandidates& candidates) {
+    const std::uint32_t first_slot = candidates.leaf * kMeshFanout;
+    for (Mask16 rest = candidates.triangles; rest != 0; rest &= rest - 1) {
       fetch_vertices(mesh, first_slot + first(rest));
     }
     __builtin_prefetch(mesh.triangle + first_slot);
   }
 
-  bool cross_triangles(const MeshView& mesh, const Asked& asked, const RaySlotVisitor& visitor) {
-    const std::uint32_t first_slot = asked.leaf * kMeshFanout;
-    for (Mask16 rest = asked.triangles; rest != 0; rest &= rest - 1) {
+  bool cross_triangles(const MeshView& mesh, const LeafCandidates& candidates,
+                       const RaySlotVisitor& visitor) {
+    const std::uint32_t first_slot = candidates.leaf * kMeshFanout;
+    for (Mask16 rest = candidates.triangles; rest != 0; rest &= rest - 1) {
       const std::uint32_t lane = first(rest);
       const std::uint32_t slot = first_slot + lane;
       SurfaceHit hit;
       const Crossing crossing =
-          cross_slot((*own_)[place()], mesh, slot, (asked.sure >> lane & 1U) != 0, hit);
+          cross_slot((*own_)[place()], mesh, slot, (candidates.sure >> lane & 1U) != 0, hit);
       if (crossing == Crossing::none) continue;
       const double limit = crossing == Crossing::found
                                ? visitor.meet(visitor.context, ray_, slot, hit, limit_)
@@ -558,7 +563,7 @@ class RayWalk {
   float last_key_;
   /// For rays side by side: the next node, and the last leaf to be tested.
   RayNode node_;
-  Asked asked_;
+  LeafCandidates candidates_;
   /// Open nodes, in blocks of up to sixteen: one block per level except the top one, which may have
   /// two; the lowest level last. Bit i of `open_` is set if nodes of block i are left.
   std::uint32_t open_;
@@ -566,7 +571,8 @@ class RayWalk {
   std::uint32_t first_node_[kMaxMeshLevels];
   float gone_to_[kMaxMeshLevels];
   /// Keys: the bits of the positive float at which a node is entered, which sort like the float,
-  /// with the last five bits replaced by the node's number; kNobody for nodes that the ray misses.
+  /// with the last five bits replaced by the node's number; kClosedKey for nodes that the ray
+  /// misses.
   alignas(64) float key_[kMaxMeshLevels][kLanes];
 };
 
@@ -577,14 +583,14 @@ class WaitingRays {
               std::uint32_t count)
       : mesh_(mesh), rays_(rays), limits_(limits) {
     for (std::uint32_t first = 0; first < count; first += kRayLanes) {
-      const Mask16 come = make_ready<RaysInLanes>(mesh.span, rays, limits, first, ready_);
+      const Mask16 come = make_ready<LaneRays>(mesh.span, rays, limits, first, ready_);
       come_ |= std::uint64_t{come} << first;
     }
     if (count < kRaysAtOnce) come_ &= (std::uint64_t{1} << count) - 1U;
   }
 
   /// Starts the next ray that does not miss the mesh; returns false if there is none.
-  [[gnu::always_inline]] bool start(RayWalk<false>& walk, RayStep& step) {
+  [[gnu::always_inline]] bool start(RayTraversal<false>& walk, RayStep& step) {
     if (come_ == 0) return false;
     const auto ray = static_cast<std::uint32_t>(__builtin_ctzll(come_));
     come_ &= come_ - 1;
@@ -631,9 +637,9 @@ class RaysSideBySide {
 
  private:
   static constexpr std::uint32_t kWalks = 32;
-  using Walk = RayWalk<false>;
+  using Walk = RayTraversal<false>;
   /// Rays whose next step is of one kind.
-  struct Waiting {
+  struct StepQueue {
     std::uint32_t count = 0;
     Walk* walk[kWalks] = {};
 
@@ -660,13 +666,13 @@ class RaysSideBySide {
     put(walk, step);
   }
   [[gnu::always_inline]] void put(Walk& walk, RayStep step) {
-    Waiting& waiting = steps_[step];
+    StepQueue& waiting = steps_[step];
     waiting.walk[waiting.count++] = &walk;
   }
   /// Processes all rays whose next step is of this kind.
   template <typename Step>
   [[gnu::always_inline]] void each(RayStep kind, Step&& step) {
-    const Waiting now = steps_[kind];
+    const StepQueue now = steps_[kind];
     steps_[kind].count = 0;
     for (Walk* const walk : now) step(*walk);
   }
@@ -675,26 +681,26 @@ class RaysSideBySide {
   const RaySlotVisitor& visitor_;
   WaitingRays& waiting_;
   std::uint32_t going_ = 0;
-  Waiting steps_[kRaySteps];
+  StepQueue steps_[kRaySteps];
   Walk walk_[kWalks];
 };
 
 /// Passes to the visitor the triangles that each ray may cross, nearest leaf first.
-inline void show_on_rays(const MeshView& mesh, const SurfaceRays& rays, const double* limits,
-                         std::uint32_t count, const RaySlotVisitor& visitor) {
+inline void trace_rays(const MeshView& mesh, const SurfaceRays& rays, const double* limits,
+                       std::uint32_t count, const RaySlotVisitor& visitor) {
   WaitingRays waiting(mesh, rays, limits, count);
   RaysSideBySide(mesh, visitor, waiting).run();
 }
 /// As above, for one ray.
-inline void show_on_ray(const MeshView& mesh, const LoneSurfaceRay& ray, double limit,
-                        const RaySlotVisitor& visitor) {
+inline void trace_ray(const MeshView& mesh, const SingleSurfaceRay& ray, double limit,
+                      const RaySlotVisitor& visitor) {
   if (!(limit >= 0.0)) return;
   ReadyRays<1> ready;
   if (!make_near_ready(mesh.span, ray, ready) &&
-      make_ready<RayInNumbers>(mesh.span, ray, &limit, 0, ready) == 0) {
+      make_ready<ScalarRay>(mesh.span, ray, &limit, 0, ready) == 0) {
     return;
   }
-  RayWalk<true> walk;
+  RayTraversal<true> walk;
   walk.go(mesh, walk.start(mesh, ray, ready, 0, limit), visitor);
 }
 

@@ -205,9 +205,10 @@ void mesh_overlap_pairs(const MeshView& a, const MeshView& b, const MeshPlacemen
 }
 
 void mesh_near_pairs(const MeshView& a, const MeshView& b, const MeshPlacement& b_in_a,
-                     const double doubt[3], double limit, const SlotPairVisitor& visitor) noexcept {
+                     const double error_bound[3], double limit,
+                     const SlotPairVisitor& visitor) noexcept {
   if (a.triangle_count == 0 || b.triangle_count == 0 || !(limit >= 0.0)) return;
-  mesh_kernels().near_pairs(a, b, pair_job(a, b, b_in_a, doubt), limit, visitor);
+  mesh_kernels().near_pairs(a, b, pair_job(a, b, b_in_a, error_bound), limit, visitor);
 }
 
 void mesh_sweep(const MeshView& mesh, const double min[3], const double max[3],

@@ -51,10 +51,11 @@ void mesh_overlap_pairs(const MeshView& a, const MeshView& b, const MeshPlacemen
                         const double margin[3], SlotPairSink& out) noexcept;
 
 /// Passes to the visitor pairs of triangles that may be no farther apart than `limit`, in lengths
-/// of a, once b is placed in the frame of a. `doubt[k]` bounds the error of b's position on axis k.
-/// A negative limit ends the traversal.
+/// of a, once b is placed in the frame of a. `error_bound[k]` bounds the error of b's position on
+/// axis k. A negative limit ends the traversal.
 void mesh_near_pairs(const MeshView& a, const MeshView& b, const MeshPlacement& b_in_a,
-                     const double doubt[3], double limit, const SlotPairVisitor& visitor) noexcept;
+                     const double error_bound[3], double limit,
+                     const SlotPairVisitor& visitor) noexcept;
 
 // The traversals below pass to the visitor slots of one leaf at a time, or some of them, nearest
 // first. The limit that it returns replaces the old one; a negative limit ends the traversal.
@@ -163,7 +164,7 @@ struct MeshKernels {
                               std::uint32_t count, SurfaceRays& own);
   void (*rays)(const MeshView& mesh, const SurfaceRays& rays, const double* limits,
                std::uint32_t count, const RaySlotVisitor& visitor);
-  void (*ray)(const MeshView& mesh, const LoneSurfaceRay& ray, double limit,
+  void (*ray)(const MeshView& mesh, const SingleSurfaceRay& ray, double limit,
               const RaySlotVisitor& visitor);
   Crossing (*cross)(const SurfaceRay& ray, const double (&corner)[3][3], SurfaceHit& hit);
   void (*near)(const MeshView& mesh, const MeshNearJob& job, double limit,

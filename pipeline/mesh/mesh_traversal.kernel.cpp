@@ -15,7 +15,7 @@ void find_pairs(const MeshView& a, const MeshView& b, const MeshPairJob& job, Sl
 void show_swept(const MeshView& mesh, const MeshSweepJob& job, double limit,
                 const SlotVisitor& visitor) {
   SweepMeasure measure(job, limit);
-  show_in_order(mesh, measure, visitor);
+  visit_nearest_first(mesh, measure, visitor);
 }
 
 void show_near_pairs(const MeshView& a, const MeshView& b, const MeshPairJob& job, double limit,
@@ -26,7 +26,7 @@ void show_near_pairs(const MeshView& a, const MeshView& b, const MeshPairJob& jo
 void show_near(const MeshView& mesh, const MeshNearJob& job, double limit,
                const SlotVisitor& visitor) {
   NearMeasure measure(job, limit);
-  show_in_order(mesh, measure, visitor);
+  visit_nearest_first(mesh, measure, visitor);
 }
 
 }  // namespace
@@ -35,8 +35,8 @@ void show_near(const MeshView& mesh, const MeshNearJob& job, double limit,
 extern const MeshKernels WINNOW_KERNEL_TABLE(mesh_kernels) = {
     WINNOW_ISA_NAME::mesh::find_overlaps, WINNOW_ISA_NAME::mesh::find_pairs,
     WINNOW_ISA_NAME::mesh::show_swept,    WINNOW_ISA_NAME::mesh::show_near_pairs,
-    WINNOW_ISA_NAME::mesh::place_rays,    WINNOW_ISA_NAME::mesh::show_on_rays,
-    WINNOW_ISA_NAME::mesh::show_on_ray,   WINNOW_ISA_NAME::mesh::cross_triangle,
+    WINNOW_ISA_NAME::mesh::place_rays,    WINNOW_ISA_NAME::mesh::trace_rays,
+    WINNOW_ISA_NAME::mesh::trace_ray,     WINNOW_ISA_NAME::mesh::cross_triangle,
     WINNOW_ISA_NAME::mesh::show_near,
 };
 

@@ -4,7 +4,7 @@
 #include "pipeline/mesh/mesh_tree.h"
 
 #include "core/memory/bounds_pool.h"
-#include "core/sort/stretches.h"
+#include "core/sort/parallel_ranges.h"
 #include "partitions/tree/kd_order.h"
 
 #include <algorithm>
@@ -45,11 +45,11 @@ bool has_boxes(const MeshView& view) {
   return view.vertex_count > view.triangle_count;
 }
 
-/// Calls look(at) for each index into the vertex list of a leaf.
-template <typename Look>
-void each_listed(const MeshView& view, std::size_t leaf, Look&& look) {
+/// Calls visit(at) for each index into the vertex list of a leaf.
+template <typename Visit>
+void each_listed(const MeshView& view, std::size_t leaf, Visit&& visit) {
   const auto each = [&](std::size_t block, std::size_t blocks) {
-    for (std::size_t at = block * kMeshFanout; at < (block + blocks) * kMeshFanout; ++at) look(at);
+    for (std::size_t at = block * kMeshFanout; at < (block + blocks) * kMeshFanout; ++at) visit(at);
   };
   each(leaf, 1);
   if (view.leaf_more == nullptr) return;
@@ -57,15 +57,15 @@ void each_listed(const MeshView& view, std::size_t leaf, Look&& look) {
        view.leaf_more[leaf + 1] - view.leaf_more[leaf]);
 }
 
-/// Calls look(number) for the vertices of a leaf; for shared vertices once, if leaves list theirs.
-template <typename Look>
-void each_vertex(const MeshView& view, std::size_t leaf, Look&& look) {
+/// Calls visit(number) for the vertices of a leaf; for shared vertices once, if leaves list theirs.
+template <typename Visit>
+void each_vertex(const MeshView& view, std::size_t leaf, Visit&& visit) {
   if (view.corner[0] == nullptr) {
-    return each_listed(view, leaf, [&](std::size_t at) { look(view.leaf_vertex[at]); });
+    return each_listed(view, leaf, [&](std::size_t at) { visit(view.leaf_vertex[at]); });
   }
   for (const std::uint32_t* const column : view.corner) {
     const std::uint32_t* const own = column + leaf * kMeshFanout;
-    for (std::size_t i = 0; i < kMeshFanout; ++i) look(own[i]);
+    for (std::size_t i = 0; i < kMeshFanout; ++i) visit(own[i]);
   }
 }
 
@@ -249,7 +249,7 @@ bool order_triangles(const float* vertex, const std::uint32_t* const corner[3],
   Column<float> scratch(order.memory());
   if (!pool.reserve_exact(count) || !room.reserve(count)) return false;
   pool.append(count);
-  for_stretches(execution, count, kTrianglesPerStretch, [&](std::size_t first, std::size_t end) {
+  for_each_range(execution, count, kTrianglesPerStretch, [&](std::size_t first, std::size_t end) {
     for (std::size_t i = first; i < end; ++i) {
       box_triangle(pool, vertex, corner, i);
       order[i] = static_cast<std::uint32_t>(i);
@@ -290,7 +290,7 @@ void fit_mesh_levels(MeshView& view, std::uint16_t* words, std::uint32_t* points
   choose_scale(view, low, high);
   view.span = span_of(view);
   const std::size_t leaves = view.count[0];
-  for_stretches(execution, leaves, kLeavesPerStretch, [&](std::size_t first, std::size_t end) {
+  for_each_range(execution, leaves, kLeavesPerStretch, [&](std::size_t first, std::size_t end) {
     fit_leaves(view, words, points, first, end);
   });
   pad_levels(view, words);

@@ -17,7 +17,7 @@ inline constexpr std::uint32_t kRaysAtOnce = 64;
 inline constexpr std::uint32_t kRayLanes = 8;
 
 /// Products of the components of longer vectors may leave the range of double.
-inline constexpr double kMostRayLength = 1e150;
+inline constexpr double kMaxRayLength = 1e150;
 /// Slack relative to coordinates: a few roundings of a ray's transformation to a surface's frame,
 /// and of triangles' transformation to the world.
 inline constexpr double kRaySlack = 0x1p-46;
@@ -67,9 +67,9 @@ struct SurfaceRayColumns {
 };
 
 using SurfaceRays = SurfaceRayColumns<kRaysAtOnce>;
-using LoneSurfaceRay = SurfaceRayColumns<1>;
+using SingleSurfaceRay = SurfaceRayColumns<1>;
 
-enum class Crossing : std::uint8_t { none, found, doubtful };
+enum class Crossing : std::uint8_t { none, found, uncertain };
 
 struct SurfaceHit {
   double t;

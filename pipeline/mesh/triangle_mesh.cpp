@@ -246,7 +246,7 @@ Status TriangleMesh::State::check_read() noexcept {
   }
   const auto is_neighbour = [&](std::uint32_t code) {
     if (code == kNoNeighbour || code == kCoveredEdge) return true;
-    const std::uint32_t edge = code & ~kSameWay;
+    const std::uint32_t edge = code & ~kSameDirection;
     return edge >> 2U < count && (edge & 3U) < 3;
   };
   const bool fits = neighbours.empty() || neighbours.size() == 3 * count;

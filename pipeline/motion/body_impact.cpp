@@ -1,14 +1,14 @@
 // Impact search for bodies with composite shapes. A composite shape is traversed in its own frame,
-// in which it is at rest and the other shape moves. Passage computes a swept box that contains the
-// other shape for an interval; the traversal visits parts in the order in which the box touches
-// them, so that an impact found limits the rest. If the box touches many parts because the relative
-// path bends, the interval is halved, and the earlier half is searched first. The contacts at the
-// start are computed only after an impact was found.
+// in which it is at rest and the other shape moves. RelativeMotionBounds computes a swept box that
+// contains the other shape for an interval; the traversal visits parts in the order in which the
+// box touches them, so that an impact found limits the rest. If the box touches many parts because
+// the relative path bends, the interval is halved, and the earlier half is searched first. The
+// contacts at the start are computed only after an impact was found.
 
 #include "pipeline/motion/body_impact.h"
 
 #include "pipeline/motion/part_pair.h"
-#include "pipeline/motion/passage.h"
+#include "pipeline/motion/relative_motion_bounds.h"
 
 #include <algorithm>
 
@@ -16,7 +16,7 @@ namespace winnow::impact {
 namespace {
 
 /// Limit on the halvings of an interval.
-constexpr int kMostHalvings = 12;
+constexpr int kMaxHalvings = 12;
 /// An interval is halved if its box touches more parts than this,
 constexpr int kFewParts = 8;
 /// and its growth plus, for two composite shapes, its length exceed this fraction of the radius.
@@ -38,7 +38,7 @@ void grow(double by, BoxSweep& box) noexcept {
 
 class BodyImpactSearch {
  public:
-  BodyImpactSearch(const PartTraversal& parts, const MovingShape& a, const MovingShape& b,
+  BodyImpactSearch(const SubShapeQuery& parts, const MovingShape& a, const MovingShape& b,
                    const ImpactRequest& request) noexcept
       : parts_(parts),
         a_(a),
@@ -49,32 +49,32 @@ class BodyImpactSearch {
   [[nodiscard]] BodyImpact run();
 
  private:
-  void meet(const MovingShape& a, const MovingShape& b, const Interval& within);
+  void search_parts(const MovingShape& a, const MovingShape& b, const Interval& within);
   void walk(const MovingShape& walked, const MovingShape& other, bool mirrored,
-            const Passage& passage, const Interval& given, int halvings);
-  [[nodiscard]] bool meets_many(const MovingShape& walked, const BoxSweep& way) const;
+            const RelativeMotionBounds& passage, const Interval& given, int halvings);
+  [[nodiscard]] bool overlaps_many(const MovingShape& walked, const BoxSweep& way) const;
   void test(const MovingShape& a, const MovingShape& b, const Interval& within);
   [[nodiscard]] bool is_left_out(const ShapeTables& tables, const MovingPart& a,
                                  const MovingPart& b, const BodyImpact& found, double from);
-  void note_contacts();
+  void record_contacts();
 
-  const PartTraversal& parts_;
+  const SubShapeQuery& parts_;
   const MovingShape& a_;
   const MovingShape& b_;
   const ImpactRequest& request_;
   BodyImpact found_;
   RestingContacts resting_;
-  bool has_noted_ = false;
+  bool has_recorded_ = false;
   /// Pairs of parts are recorded as contacts instead of being tested.
-  bool notes_ = false;
+  bool records_ = false;
 };
 
 void BodyImpactSearch::test(const MovingShape& a, const MovingShape& b, const Interval& within) {
   PartPair pair(parts_.shapes());
   const MovingPart moving_a = pair.put(0, a);
   const MovingPart moving_b = pair.put(1, b);
-  if (notes_) {
-    resting_.note(pair.tables(), moving_a, moving_b);
+  if (records_) {
+    resting_.record(pair.tables(), moving_a, moving_b);
     return;
   }
   // A recorded contact plane is cheaper to test than an impact search.
@@ -94,40 +94,41 @@ void BodyImpactSearch::test(const MovingShape& a, const MovingShape& b, const In
 bool BodyImpactSearch::is_left_out(const ShapeTables& tables, const MovingPart& a,
                                    const MovingPart& b, const BodyImpact& found, double from) {
   if (request_.touch == StartTouch::meets) return false;
-  if (request_.touch == StartTouch::left_out) {
+  if (request_.touch == StartTouch::ignored) {
     if (touches_at_start(found.impact)) return true;
     if (from > 0.0 && share_a_point(tables, a, b)) return true;
   }
   // Parts that separate were dropped before, once contacts were recorded.
-  if (has_noted_) return false;
-  note_contacts();
+  if (has_recorded_) return false;
+  record_contacts();
   return resting_.part(tables, a, b);
 }
 
-void BodyImpactSearch::note_contacts() {
-  has_noted_ = notes_ = true;
-  meet(a_, b_, {0.0, 0.0});
-  notes_ = false;
+void BodyImpactSearch::record_contacts() {
+  has_recorded_ = records_ = true;
+  search_parts(a_, b_, {0.0, 0.0});
+  records_ = false;
 }
 
 /// Bodies that overlap at the start are reported without a search for contacts.
 BodyImpact BodyImpactSearch::run() {
-  meet(a_, b_, request_.within);
+  search_parts(a_, b_, request_.within);
   const bool may_slide =
       request_.touch == StartTouch::meets && found_.impact.hit && !touches_at_start(found_.impact);
   if (!may_slide) return found_;
-  note_contacts();
+  record_contacts();
   if (resting_.is_empty()) return found_;
   const std::uint32_t samples = found_.impact.samples;
   found_ = {};
   found_.impact.samples = samples;
-  meet(a_, b_, request_.within);
+  search_parts(a_, b_, request_.within);
   return found_;
 }
 
 /// Traverses the larger one of two composite shapes first, against the swept box of the other; then
 /// the other one against the swept boxes of the parts found.
-void BodyImpactSearch::meet(const MovingShape& a, const MovingShape& b, const Interval& within) {
+void BodyImpactSearch::search_parts(const MovingShape& a, const MovingShape& b,
+                                    const Interval& within) {
   const bool of_a = a.shape.shape.is_composite();
   const bool of_b = b.shape.shape.is_composite();
   if (!of_a && !of_b) {
@@ -137,50 +138,50 @@ void BodyImpactSearch::meet(const MovingShape& a, const MovingShape& b, const In
   const bool mirrored = !of_a || (of_b && b.radius > a.radius);
   const MovingShape& walked = mirrored ? b : a;
   const MovingShape& other = mirrored ? a : b;
-  walk(walked, other, mirrored, Passage(parts_, walked.motion, other), within, 0);
+  walk(walked, other, mirrored, RelativeMotionBounds(parts_, walked.motion, other), within, 0);
 }
 
-bool BodyImpactSearch::meets_many(const MovingShape& walked, const BoxSweep& way) const {
+bool BodyImpactSearch::overlaps_many(const MovingShape& walked, const BoxSweep& way) const {
   int count = 0;
   parts_.met(PlacedShape{walked.shape.shape, Pose{}}, way,
-             [&](const ConvexPart&, double limit) { return ++count > kFewParts ? -1.0 : limit; });
+             [&](const SubShape&, double limit) { return ++count > kFewParts ? -1.0 : limit; });
   return count > kFewParts;
 }
 
 void BodyImpactSearch::walk(const MovingShape& walked, const MovingShape& other, bool mirrored,
-                            const Passage& passage, const Interval& given, int halvings) {
-  const Interval within = notes_ ? given : before(given, found_);
+                            const RelativeMotionBounds& passage, const Interval& given,
+                            int halvings) {
+  const Interval within = records_ ? given : before(given, found_);
   if (within.first > within.last) return;
   BoxSweep way = passage.sweep(within);
-  if (notes_) grow(request_.tolerance * other.own_radius, way);
+  if (records_) grow(request_.tolerance * other.own_radius, way);
   // For two composite shapes, a long path also brings many pairs of parts near each other.
   const double length = other.shape.shape.is_composite() ? Vec::Map(way.direction).norm() : 0.0;
-  if (halvings < kMostHalvings && passage.bend(within) + length > kLoose * other.own_radius &&
-      meets_many(walked, way)) {
+  if (halvings < kMaxHalvings && passage.bend(within) + length > kLoose * other.own_radius &&
+      overlaps_many(walked, way)) {
     const double middle = 0.5 * (within.first + within.last);
     walk(walked, other, mirrored, passage, {within.first, middle}, halvings + 1);
     walk(walked, other, mirrored, passage, {middle, within.last}, halvings + 1);
     return;
   }
   const double width = within.last - within.first;
-  parts_.met(PlacedShape{walked.shape.shape, Pose{}}, way,
-             [&](const ConvexPart& part, double limit) {
-               const MovingShape own = moving_part(parts_, part, walked.motion);
-               const Interval left_of = notes_ ? within : before(within, found_);
-               meet(mirrored ? other : own, mirrored ? own : other, left_of);
-               if (notes_) return limit;
-               const double left = before(within, found_).last - within.first;
-               return left < width ? std::min(limit, left / width * (1.0 + 4.0 * solver::kEpsilon))
-                                   : limit;
-             });
+  parts_.met(PlacedShape{walked.shape.shape, Pose{}}, way, [&](const SubShape& part, double limit) {
+    const MovingShape own = moving_part(parts_, part, walked.motion);
+    const Interval left_of = records_ ? within : before(within, found_);
+    search_parts(mirrored ? other : own, mirrored ? own : other, left_of);
+    if (records_) return limit;
+    const double left = before(within, found_).last - within.first;
+    return left < width ? std::min(limit, left / width * (1.0 + 4.0 * solver::kEpsilon)) : limit;
+  });
 }
 
 }  // namespace
 
-BodyImpact find_body_impact(const PartTraversal& parts, const MovingBody& a, const MovingBody& b,
+BodyImpact find_body_impact(const SubShapeQuery& parts, const MovingBody& a, const MovingBody& b,
                             const ImpactRequest& request) {
   const MovingShape shape = whole_shape(parts, b.shape, b.motion);
-  const Interval window = Passage(parts, a.motion, shape).window(parts.radius(a.shape));
+  const Interval window =
+      RelativeMotionBounds(parts, a.motion, shape).window(parts.radius(a.shape));
   ImpactRequest inside = request;
   inside.within = {std::max(window.first, request.within.first),
                    std::min(window.last, request.within.last)};
@@ -188,7 +189,7 @@ BodyImpact find_body_impact(const PartTraversal& parts, const MovingBody& a, con
   return find_impact_of_balls(parts, a, b, inside);
 }
 
-BodyImpact find_impact_of_balls(const PartTraversal& parts, const MovingBody& a,
+BodyImpact find_impact_of_balls(const SubShapeQuery& parts, const MovingBody& a,
                                 const MovingBody& b, const ImpactRequest& request) {
   const MovingShape first = whole_shape(parts, a.shape, a.motion);
   const MovingShape second = whole_shape(parts, b.shape, b.motion);

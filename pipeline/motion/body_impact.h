@@ -52,10 +52,10 @@ struct ImpactRequest {
 /// bodies overlap at the start and StartTouch makes this an impact, the parts that overlap most
 /// deeply are reported. Parts of a composite shape that slide or separate along a contact of the
 /// bodies at the start do not collide: see RestingContacts.
-[[nodiscard]] BodyImpact find_body_impact(const PartTraversal& parts, const MovingBody& a,
+[[nodiscard]] BodyImpact find_body_impact(const SubShapeQuery& parts, const MovingBody& a,
                                           const MovingBody& b, const ImpactRequest& request);
 /// As above, for an interval in which the bounding balls of the two bodies overlap.
-[[nodiscard]] BodyImpact find_impact_of_balls(const PartTraversal& parts, const MovingBody& a,
+[[nodiscard]] BodyImpact find_impact_of_balls(const SubShapeQuery& parts, const MovingBody& a,
                                               const MovingBody& b, const ImpactRequest& request);
 
 }  // namespace winnow::impact

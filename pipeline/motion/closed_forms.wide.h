@@ -18,7 +18,7 @@ namespace winnow::WINNOW_ISA_NAME::impact {
 
 /// The vector from the closest point of a to the closest point of b, and the point of a relative to
 /// a's centre.
-struct ClosestWay {
+struct ClosestVector {
   Vector way;
   Vector on_a;
 };
@@ -50,7 +50,7 @@ struct Meridian {
   const auto square_to = [&](const Meridian& q) {
     return (q.away - p.away) * (q.away - p.away) + (q.z - p.z) * (q.z - p.z);
   };
-  const Truth is_base = square_to(base) < square_to(side);
+  const DoubleMask is_base = square_to(base) < square_to(side);
   return {select(is_base, base.away, side.away), select(is_base, base.z, side.z)};
 }
 
@@ -60,19 +60,19 @@ struct Meridian {
 [[gnu::always_inline]] inline Meridian nearest_of_taper(const Vector& half, const Meridian& p) {
   const Doubles zero(0.0);
   const Doubles one(1.0);
-  const Truth up = half.z >= zero;
+  const DoubleMask up = half.z >= zero;
   const Doubles height = abs(half.z);
   const Doubles z = select(up, p.z, -p.z);
   const Doubles length = height + height;
-  const Truth is_ball = half.x >= length;
+  const DoubleMask is_ball = half.x >= length;
   const Doubles sine = select(is_ball, zero, half.x / length);
   const Doubles cosine = sqrt((one - sine) * (one + sine));
   // Relative to the point.
   const Doubles over = z + height;
   const Doubles along = cosine * over + sine * p.away;
   const Doubles outside = cosine * p.away - sine * over;
-  const Truth low = (!is_ball) & (along <= zero);
-  const Truth side = (!is_ball) & (along > zero) & (along < cosine * length);
+  const DoubleMask low = (!is_ball) & (along <= zero);
+  const DoubleMask side = (!is_ball) & (along > zero) & (along < cosine * length);
   const Doubles from_ball = sqrt(p.away * p.away + (z - height) * (z - height));
   const Doubles share = half.x / from_ball;
   const Doubles away = select(low, zero, select(side, p.away - outside * cosine, p.away * share));
@@ -93,8 +93,8 @@ static inline Vector nearest_of_ellipsoid(const Vector& radius, const Vector& p)
 }
 
 /// The closest point of a core that is round about its z axis.
-[[gnu::always_inline]] inline Vector nearest_of_spun(const CoreTable& table, const Vector& half,
-                                                     const Vector& p) {
+[[gnu::always_inline]] inline Vector nearest_of_revolved(const CoreTable& table, const Vector& half,
+                                                         const Vector& p) {
   const Meridian here{sqrt(p.x * p.x + p.y * p.y), p.z};
   const Meridian nearest = table.kind == ShapeKind::cylinder ? nearest_of_cylinder(half, here)
                            : table.kind == ShapeKind::cone   ? nearest_of_cone(half, here)
@@ -114,7 +114,7 @@ static inline Vector nearest_of_ellipsoid(const Vector& radius, const Vector& p)
     case ShapeKind::cylinder:
     case ShapeKind::cone:
     case ShapeKind::tapered_capsule:
-      return nearest_of_spun(table, core.half, p);
+      return nearest_of_revolved(table, core.half, p);
     case ShapeKind::ellipsoid:
       return nearest_of_ellipsoid(core.half, p);
     default:
@@ -158,7 +158,7 @@ static inline round::NearestCandidate<double> nearest_of_triangle(const MovingCo
   return nearest;
 }
 
-[[gnu::always_inline]] inline ClosestWay closest_way(const CorePair& pair) {
+[[gnu::always_inline]] inline ClosestVector closest_vector(const CorePair& pair) {
   const Doubles zero(0.0);
   const bool is_point = pair.table_a.kind == ShapeKind::sphere;
   if (pair.table_b.kind == ShapeKind::sphere) return {pair.between, zero_vector()};
@@ -206,7 +206,7 @@ static inline ClosestLanes closest_to_half_space(const CorePair& pair, Mask16 la
 /// functions along the vector between the closest points.
 static inline ClosestLanes closest_by_form(const CorePair& pair, Mask16 lanes) {
   if (pair.table_b.kind == ShapeKind::half_space) return closest_to_half_space(pair, lanes);
-  const ClosestWay closest = closest_way(pair);
+  const ClosestVector closest = closest_vector(pair);
   ClosestLanes found;
   found.between = closest.way;
   found.upper = length(closest.way);
@@ -230,14 +230,14 @@ static inline ClosestLanes closest_by_form(const CorePair& pair, Mask16 lanes) {
 struct FeatureAcross {
   Doubles square;
   /// The feature is an edge or a face, along which the closest point moves.
-  Truth goes;
+  DoubleMask goes;
 };
 
 [[gnu::always_inline]] inline FeatureAcross across_segment(const MovingCore& core,
                                                            const Vector& point,
                                                            const Vector& velocity) {
   const Vector& axis = core.axes.z;
-  const Truth inside = abs(dot(point, axis)) < core.half.z * Doubles(1.0 - 1e-9);
+  const DoubleMask inside = abs(dot(point, axis)) < core.half.z * Doubles(1.0 - 1e-9);
   const Doubles along = select(inside, dot(velocity, axis), Doubles(0.0));
   return {dot(velocity, velocity) - along * along, inside};
 }
@@ -249,14 +249,14 @@ struct FeatureAcross {
                                                             const Vector& velocity) {
   const Doubles zero(0.0);
   const Doubles slope = dot(axis, velocity);
-  Truth one = zero > zero;
-  Truth two = one;
+  DoubleMask one = zero > zero;
+  DoubleMask two = one;
   Doubles along = zero;
   for (int i = 0; i < 3; ++i) {
     const Vector edge = core.corner[(i + 1) % 3] - core.corner[i];
     const Doubles square = dot(edge, edge);
     const Doubles across = dot(edge, axis);
-    const Truth is_square = across * across <= square * Doubles(1e-18);
+    const DoubleMask is_square = across * across <= square * Doubles(1e-18);
     const Doubles share = dot(edge, velocity);
     const Doubles on = share * share / select(square > zero, square, Doubles(1.0));
     along = max(along, select(is_square, on, zero));

@@ -12,7 +12,7 @@ inline constexpr int kSlots = hull::kSlots;
 
 /// The points of both cores that form the simplex, each in its core's frame. Slot 0 is in use if
 /// any is.
-struct WitnessLanes {
+struct SimplexLanes {
   Vector a[kSlots];
   Vector b[kSlots];
   /// 1 where the slot is in use, else 0.
@@ -122,26 +122,26 @@ struct FarthestPoint {
     const hull::Simplex<double>& others, const Vector& w) {
   const Doubles zero(0.0);
   const Doubles one(1.0);
-  const Truth none = zero > one;
+  const DoubleMask none = zero > one;
   const Vector edge = select(others.present[0], others.point[0] - w, zero_vector());
   const Doubles square = dot(edge, edge);
   const Doubles reach = -dot(edge, w);
   const Doubles t = min(reach / max(square, Doubles(hull::kVanishing<double>)), one);
   const Vector x = w + edge * t;
-  const Truth nearer = (reach > zero) & (dot(x, x) < dot(w, w));
-  const Truth repeated = others.present[0] & (square <= zero);
+  const DoubleMask nearer = (reach > zero) & (dot(x, x) < dot(w, w));
+  const DoubleMask repeated = others.present[0] & (square <= zero);
   return {select(nearer, x, w), {nearer, none, none}, none, none, repeated};
 }
 
 /// The nearest feature that contains the new point, computed only for as many points as the largest
 /// simplex of all lanes has.
 [[nodiscard]] static inline hull::SimplexNearest<double> nearest_feature(
-    const hull::Simplex<double>& others, const Vector& w, const Truth& lanes) {
+    const hull::Simplex<double>& others, const Vector& w, const DoubleMask& lanes) {
   if (bits(lanes & (others.present[1] | others.present[2])) != 0) {
     return hull::nearest_of(others, w);
   }
   if (bits(lanes & others.present[0]) != 0) return nearest_of_edge(others, w);
-  const Truth none = lanes & !lanes;
+  const DoubleMask none = lanes & !lanes;
   return {w, {none, none, none}, none, none, none};
 }
 
@@ -157,20 +157,20 @@ struct FarthestPoint {
   return others;
 }
 
-[[nodiscard]] static inline Truth holds_more_than(const hull::Simplex<double>& simplex,
-                                                  const hull::Simplex<double>& others) {
-  Truth more = simplex.present[0] & !others.present[0];
+[[nodiscard]] static inline DoubleMask holds_more_than(const hull::Simplex<double>& simplex,
+                                                       const hull::Simplex<double>& others) {
+  DoubleMask more = simplex.present[0] & !others.present[0];
   for (int s = 1; s < kSlots; ++s) more = more | (simplex.present[s] & !others.present[s]);
   return more;
 }
 
 /// In lanes in `moves`, replaces the simplex by its nearest feature.
-static inline void keep(const hull::SimplexNearest<double>& nearest, const Truth& moves,
+static inline void keep(const hull::SimplexNearest<double>& nearest, const DoubleMask& moves,
                         const FarthestPoint& added, hull::Simplex<double>& simplex,
-                        WitnessLanes& witness) {
-  Truth placed = !moves;
+                        SimplexLanes& witness) {
+  DoubleMask placed = !moves;
   for (int s = 0; s < kSlots; ++s) {
-    const Truth take = (!placed) & (!nearest.keep[s]);
+    const DoubleMask take = (!placed) & (!nearest.keep[s]);
     placed = placed | take;
     simplex.point[s] = select(take, added.w, simplex.point[s]);
     witness.a[s] = select(take, added.of_a, witness.a[s]);
@@ -199,14 +199,14 @@ struct Shares {
   Doubles along[2];
   const Vector from = gap - simplex.point[0];
   for (int i = 0; i < 2; ++i) {
-    const Truth present = simplex.present[i + 1];
+    const DoubleMask present = simplex.present[i + 1];
     edge[i] = select(present, simplex.point[i + 1] - simplex.point[0], zero_vector());
     square[i] = select(present, dot(edge[i], edge[i]), one);
     along[i] = dot(edge[i], from);
   }
   const Doubles mixed = dot(edge[0], edge[1]);
   const Doubles area = square[0] * square[1] - mixed * mixed;
-  const Truth wide = area > square[0] * square[1] * Doubles(1e-14);
+  const DoubleMask wide = area > square[0] * square[1] * Doubles(1e-14);
   const Doubles over = one / select(wide, area, one);
   return {select(wide, (along[0] * square[1] - along[1] * mixed) * over, along[0] / square[0]),
           select(wide, (along[1] * square[0] - along[0] * mixed) * over, zero)};
@@ -214,11 +214,11 @@ struct Shares {
 
 class ClosestSearch {
  public:
-  ClosestSearch(const CorePair& pair, const ClosestOptions& options, WitnessLanes& witness)
+  ClosestSearch(const CorePair& pair, const ClosestOptions& options, SimplexLanes& witness)
       : pair_(pair), options_(options), witness_(witness) {}
 
   /// Runs at most `most_steps` steps; the bounds are valid in any case.
-  [[nodiscard]] ClosestLanes run(const Truth& lanes, int most_steps) {
+  [[nodiscard]] ClosestLanes run(const DoubleMask& lanes, int most_steps) {
     begin();
     open_ = lanes;
     for (int step = 0; bits(open_) != 0 && step < most_steps; ++step) advance();
@@ -241,7 +241,7 @@ class ClosestSearch {
     found_.axis = zero_vector();
     found_.high_a = found_.high_b = zero;
     for (int s = 0; s < kSlots; ++s) simplex_.present[s] = witness_.present[s] > zero;
-    const Truth kept = simplex_.present[0];
+    const DoubleMask kept = simplex_.present[0];
     fresh_ = !kept;
     begun_anew_ = zero > zero;
     gap_ = from;
@@ -275,28 +275,28 @@ class ClosestSearch {
     const Doubles share = select(left > options_.precise, Doubles(options_.share), Doubles(0.0));
     const Doubles known = max(options_.noise, share * left) * distance;
     const hull::Simplex<double> others = without(simplex_, w);
-    const Truth ends =
+    const DoubleMask ends =
         (gain <= Doubles(kRounding) * distance * left) & holds_more_than(simplex_, others);
-    const Truth close = (!fresh_) & ((gain <= known) | ends);
+    const DoubleMask close = (!fresh_) & ((gain <= known) | ends);
     if (bits(open_ & !close) == 0) {
       open_ = fresh_ & !fresh_;
       return;
     }
     const hull::SimplexNearest<double> nearest = nearest_feature(others, w, open_);
     const Doubles next_square = dot(nearest.point, nearest.point);
-    const Truth stuck = (!fresh_) & (!close) & (!nearest.inside) & (next_square >= square);
-    const Truth moves = open_ & !(close | stuck | nearest.inside);
+    const DoubleMask stuck = (!fresh_) & (!close) & (!nearest.inside) & (next_square >= square);
+    const DoubleMask moves = open_ & !(close | stuck | nearest.inside);
     keep(nearest, moves, {own_a, own_b, w}, simplex_, witness_);
     gap_ = select(moves, nearest.point, gap_);
     fresh_ = fresh_ & !moves;
-    const Truth lost = open_ & stuck & (gain > known * Doubles(kLost)) & !begun_anew_;
+    const DoubleMask lost = open_ & stuck & (gain > known * Doubles(kLost)) & !begun_anew_;
     open_ = moves | lost;
     if (bits(lost) != 0) begin_anew(lost);
   }
 
   /// Keeps the axis with the largest lower bound.
   void note(const Doubles& distance, const Doubles& reach, const Vector& on_a, const Vector& on_b) {
-    const Truth better = open_ & (reach > found_.lower * distance);
+    const DoubleMask better = open_ & (reach > found_.lower * distance);
     const Doubles over = Doubles(1.0) / distance;
     const Vector axis = gap_ * over;
     found_.lower = select(better, reach * over, found_.lower);
@@ -305,10 +305,10 @@ class ClosestSearch {
     found_.high_b = select(better, -dot(axis, on_b), found_.high_b);
   }
 
-  void begin_anew(const Truth& lanes) {
+  void begin_anew(const DoubleMask& lanes) {
     begun_anew_ = begun_anew_ | lanes;
     fresh_ = fresh_ | lanes;
-    for (Truth& present : simplex_.present) present = present & !lanes;
+    for (DoubleMask& present : simplex_.present) present = present & !lanes;
   }
 
   void finish() {
@@ -322,15 +322,15 @@ class ClosestSearch {
 
   const CorePair& pair_;
   const ClosestOptions& options_;
-  WitnessLanes& witness_;
+  SimplexLanes& witness_;
   ClosestLanes found_;
   hull::Simplex<double> simplex_;
   /// The vector between the closest points found; at first any direction.
   Vector gap_;
   /// There is no simplex yet.
-  Truth fresh_;
-  Truth open_;
-  Truth begun_anew_;
+  DoubleMask fresh_;
+  DoubleMask open_;
+  DoubleMask begun_anew_;
 };
 
 }  // namespace winnow::WINNOW_ISA_NAME::impact

@@ -8,7 +8,7 @@
 #include "core/memory/bounds_pool.h"
 #include "core/memory/columns.h"
 #include "core/memory/new_in.h"
-#include "core/sort/stretches.h"
+#include "core/sort/parallel_ranges.h"
 #include "core/threads/float_environment.h"
 #include "partitions/tree/block_tree.h"
 #include "partitions/tree/kd_order.h"
@@ -24,12 +24,12 @@
 namespace winnow {
 namespace {
 
-constexpr std::size_t kMostFaces = std::size_t{1} << 28U;
-constexpr std::size_t kMostVertices = 0x7FFFFFFF;
+constexpr std::size_t kMaxFaces = std::size_t{1} << 28U;
+constexpr std::size_t kMaxVertices = 0x7FFFFFFF;
 constexpr std::size_t kRowsPerStretch = 8192;
 constexpr std::size_t kPairsPerStretch = 512;
 /// Query rows per unit of work.
-constexpr std::uint32_t kRowsAsking = 256;
+constexpr std::uint32_t kQueryRows = 256;
 /// Differences of numbers up to this size, and differences of those, stay in the range of double.
 constexpr double kFarthest = 0x1p1020;
 
@@ -52,8 +52,8 @@ bool are_near_enough(const PointView& points) noexcept {
 /// Clamps to the finite floats: infinite bounds would overlap the empty boxes that pad the last
 /// block.
 float bound(float x) noexcept {
-  constexpr float kMost = std::numeric_limits<float>::max();
-  return std::clamp(x, -kMost, kMost);
+  constexpr float kMaxFloat = std::numeric_limits<float>::max();
+  return std::clamp(x, -kMaxFloat, kMaxFloat);
 }
 
 bool share_a_number(const std::uint32_t* a, const std::uint32_t* b) noexcept {
@@ -88,24 +88,24 @@ class FeatureRows {
   template <std::size_t Corners>
   void fit(const FeatureRows& vertices, const std::uint32_t* corner,
            const Execution& execution) noexcept {
-    for_stretches(execution, boxes.rows(), kRowsPerStretch,
-                  [&](std::size_t begin, std::size_t end) {
-                    for (std::size_t row = begin; row < end; ++row) {
-                      const std::uint32_t* const own = corner + Corners * boxes.ids()[row];
-                      for (std::size_t axis = 0; axis < 3; ++axis) {
-                        const float* const low = vertices.boxes.column(axis);
-                        const float* const high = vertices.boxes.column(3 + axis);
-                        float least = low[own[0]];
-                        float most = high[own[0]];
-                        for (std::size_t k = 1; k < Corners; ++k) {
-                          least = std::min(least, low[own[k]]);
-                          most = std::max(most, high[own[k]]);
-                        }
-                        boxes.column(axis)[row] = least;
-                        boxes.column(3 + axis)[row] = most;
-                      }
-                    }
-                  });
+    for_each_range(execution, boxes.rows(), kRowsPerStretch,
+                   [&](std::size_t begin, std::size_t end) {
+                     for (std::size_t row = begin; row < end; ++row) {
+                       const std::uint32_t* const own = corner + Corners * boxes.ids()[row];
+                       for (std::size_t axis = 0; axis < 3; ++axis) {
+                         const float* const low = vertices.boxes.column(axis);
+                         const float* const high = vertices.boxes.column(3 + axis);
+                         float least = low[own[0]];
+                         float most = high[own[0]];
+                         for (std::size_t k = 1; k < Corners; ++k) {
+                           least = std::min(least, low[own[k]]);
+                           most = std::max(most, high[own[k]]);
+                         }
+                         boxes.column(axis)[row] = least;
+                         boxes.column(3 + axis)[row] = most;
+                       }
+                     }
+                   });
   }
 
   /// Writes the ids in spatial order of the current boxes to `order`.
@@ -147,24 +147,24 @@ Status stream(const DeformableMeshOptions& options, std::uint32_t units, Walk&& 
 /// Streams the overlapping pairs of query rows (in `order`, if it is not null) and rows of a tree
 /// to `take`.
 template <typename Take>
-Status ask(const DeformableMeshOptions& options, const FeatureRows& asked,
-           const FeatureRows& asking, const std::uint32_t* order, Take& take) noexcept {
-  if (asked.boxes.rows() == 0) return Status::ok;
-  const TreeView tree = asked.tree.view(asked.view());
-  const auto rows = static_cast<std::uint32_t>(asking.boxes.rows());
+Status query_tree(const DeformableMeshOptions& options, const FeatureRows& tree_rows,
+                  const FeatureRows& query_rows, const std::uint32_t* order, Take& take) noexcept {
+  if (tree_rows.boxes.rows() == 0) return Status::ok;
+  const TreeView tree = tree_rows.tree.view(tree_rows.view());
+  const auto rows = static_cast<std::uint32_t>(query_rows.boxes.rows());
   QueryBatch batch;
-  const RowView own = asking.view();
+  const RowView own = query_rows.view();
   std::copy_n(own.column, 6, batch.column);
   batch.id = own.id;
   batch.rows = order;
   batch.mode = HitMode::query_first;
   const auto walk = [&](std::uint32_t begin, std::uint32_t end, PairSink& sink) {
     QueryBatch stretch = batch;
-    stretch.begin = begin * kRowsAsking;
-    stretch.end = std::min(rows, end * kRowsAsking);
+    stretch.begin = begin * kQueryRows;
+    stretch.end = std::min(rows, end * kQueryRows);
     return block_tree_kernels().query(tree, stretch, sink);
   };
-  return stream(options, (rows + kRowsAsking - 1) / kRowsAsking, walk, take);
+  return stream(options, (rows + kQueryRows - 1) / kQueryRows, walk, take);
 }
 
 }  // namespace
@@ -256,22 +256,22 @@ bool DeformableMesh::State::link() noexcept {
 /// union, because rounding is monotonic.
 void DeformableMesh::State::fit(const DeformableMeshOptions& options) noexcept {
   const double half = 0.5 * distance;
-  for_stretches(options.execution, vertices.boxes.rows(), kRowsPerStretch,
-                [&](std::size_t begin, std::size_t past) {
-                  for (std::size_t axis = 0; axis < 3; ++axis) {
-                    float* const low = vertices.boxes.column(axis);
-                    float* const high = vertices.boxes.column(3 + axis);
-                    const double origin = options.origin[axis];
-                    for (std::size_t i = begin; i < past; ++i) {
-                      const double a = start.coordinate(i, axis);
-                      const double b = end.coordinate(i, axis);
-                      const double least = add_down(std::min(a, b), -origin);
-                      const double most = add_up(std::max(a, b), -origin);
-                      low[i] = bound(round_down(half > 0.0 ? add_down(least, -half) : least));
-                      high[i] = bound(round_up(half > 0.0 ? add_up(most, half) : most));
-                    }
-                  }
-                });
+  for_each_range(options.execution, vertices.boxes.rows(), kRowsPerStretch,
+                 [&](std::size_t begin, std::size_t past) {
+                   for (std::size_t axis = 0; axis < 3; ++axis) {
+                     float* const low = vertices.boxes.column(axis);
+                     float* const high = vertices.boxes.column(3 + axis);
+                     const double origin = options.origin[axis];
+                     for (std::size_t i = begin; i < past; ++i) {
+                       const double a = start.coordinate(i, axis);
+                       const double b = end.coordinate(i, axis);
+                       const double least = add_down(std::min(a, b), -origin);
+                       const double most = add_up(std::max(a, b), -origin);
+                       low[i] = bound(round_down(half > 0.0 ? add_down(least, -half) : least));
+                       high[i] = bound(round_up(half > 0.0 ? add_up(most, half) : most));
+                     }
+                   }
+                 });
   faces.fit<3>(vertices, face_corners.data(), options.execution);
   edges.fit<2>(vertices, edge_ends.data(), options.execution);
 }
@@ -288,7 +288,7 @@ DeformableMesh::~DeformableMesh() {
 Status DeformableMesh::build(const PointView& rest, const IndexView& triangles) noexcept {
   const DefaultEnvironment environment;
   if (triangles.count == 0 || rest.count == 0) return Status::invalid_shape;
-  if (triangles.count > kMostFaces || rest.count > kMostVertices) return Status::too_many_objects;
+  if (triangles.count > kMaxFaces || rest.count > kMaxVertices) return Status::too_many_objects;
   if (!has_three_columns(rest) || (triangles.wide == nullptr && triangles.narrow == nullptr) ||
       options_.chunk == 0) {
     return Status::invalid_argument;
@@ -364,7 +364,7 @@ Status DeformableMesh::find_self(FeaturePair kind,
     const auto groups = static_cast<std::uint32_t>(state_->edges.tree.groups());
     return stream(options_, groups, walk, take);
   }
-  return ask(options_, state_->faces, state_->vertices, state_->vertex_order.data(), take);
+  return query_tree(options_, state_->faces, state_->vertices, state_->vertex_order.data(), take);
 }
 
 Status DeformableMesh::find_with(const DeformableMesh& other, FeaturePair kind,
@@ -376,9 +376,10 @@ Status DeformableMesh::find_with(const DeformableMesh& other, FeaturePair kind,
   }
   const auto take = [&](std::span<Pair> pairs) { chunks.take(chunks.context, pairs); };
   if (kind == FeaturePair::edge_edge) {
-    return ask(options_, other.state_->edges, state_->edges, nullptr, take);
+    return query_tree(options_, other.state_->edges, state_->edges, nullptr, take);
   }
-  return ask(options_, other.state_->faces, state_->vertices, state_->vertex_order.data(), take);
+  return query_tree(options_, other.state_->faces, state_->vertices, state_->vertex_order.data(),
+                    take);
 }
 
 bool DeformableMesh::is_moved() const noexcept {
@@ -404,13 +405,13 @@ Status DeformableMesh::find_faces(const Aabb& box,
                                   const ResultChunks<Pair>& chunks) const noexcept {
   const DefaultEnvironment environment;
   const auto take = [&](std::span<Pair> pairs) { chunks.take(chunks.context, pairs); };
-  FeatureRows asking(options_.memory);
-  if (!asking.make(1)) return Status::out_of_memory;
+  FeatureRows query_rows(options_.memory);
+  if (!query_rows.make(1)) return Status::out_of_memory;
   for (int axis = 0; axis < 3; ++axis) {
-    asking.boxes.column(static_cast<std::size_t>(axis))[0] = bound(box.min[axis]);
-    asking.boxes.column(static_cast<std::size_t>(axis) + 3)[0] = bound(box.max[axis]);
+    query_rows.boxes.column(static_cast<std::size_t>(axis))[0] = bound(box.min[axis]);
+    query_rows.boxes.column(static_cast<std::size_t>(axis) + 3)[0] = bound(box.max[axis]);
   }
-  return ask(options_, state_->faces, asking, nullptr, take);
+  return query_tree(options_, state_->faces, query_rows, nullptr, take);
 }
 
 namespace {
@@ -476,11 +477,11 @@ Status DeformableMesh::find_impacts(const DeformableMesh* other, FeaturePair kin
   const State& a = *state_;
   const State& b = *second.state_;
   const auto take = [&](std::span<const Pair> pairs) {
-    for_stretches(options_.execution, pairs.size(), kPairsPerStretch,
-                  [&](std::size_t begin, std::size_t end) {
-                    find_times(kind, pairs.subspan(begin, end - begin), a, b, options,
-                               times.data() + begin);
-                  });
+    for_each_range(options_.execution, pairs.size(), kPairsPerStretch,
+                   [&](std::size_t begin, std::size_t end) {
+                     find_times(kind, pairs.subspan(begin, end - begin), a, b, options,
+                                times.data() + begin);
+                   });
     for (std::size_t i = 0; i < pairs.size(); ++i) {
       if (times[i] <= 1.0) results.add({pairs[i], times[i]});
     }
@@ -488,7 +489,7 @@ Status DeformableMesh::find_impacts(const DeformableMesh* other, FeaturePair kin
   const Status status =
       other == nullptr ? self_candidates(kind, take) : candidates_with(*other, kind, take);
   if (status != Status::ok) return status;
-  results.hand_over();
+  results.flush();
   return Status::ok;
 }
 
@@ -506,16 +507,16 @@ Status DeformableMesh::find_near(const DeformableMesh* other, FeaturePair kind, 
     return Status::out_of_memory;
   }
   const auto take = [&](std::span<const Pair> pairs) {
-    for_stretches(options_.execution, pairs.size(), kPairsPerStretch,
-                  [&](std::size_t begin, std::size_t end) {
-                    for (std::size_t i = begin; i < end; ++i) {
-                      const auto vertex = vertices_of(kind, pairs[i], *state_, *second.state_);
-                      near[i] = {};
-                      near[i].features = pairs[i];
-                      find_nearest_points(
-                          kind, points_of(kind, vertex, state_->end, second.state_->end), near[i]);
-                    }
-                  });
+    for_each_range(options_.execution, pairs.size(), kPairsPerStretch,
+                   [&](std::size_t begin, std::size_t end) {
+                     for (std::size_t i = begin; i < end; ++i) {
+                       const auto vertex = vertices_of(kind, pairs[i], *state_, *second.state_);
+                       near[i] = {};
+                       near[i].features = pairs[i];
+                       find_nearest_points(
+                           kind, points_of(kind, vertex, state_->end, second.state_->end), near[i]);
+                     }
+                   });
     for (std::size_t i = 0; i < pairs.size(); ++i) {
       if (near[i].distance <= thickness) results.add(near[i]);
     }
@@ -523,7 +524,7 @@ Status DeformableMesh::find_near(const DeformableMesh* other, FeaturePair kind, 
   const Status status =
       other == nullptr ? self_candidates(kind, take) : candidates_with(*other, kind, take);
   if (status != Status::ok) return status;
-  results.hand_over();
+  results.flush();
   return Status::ok;
 }
 

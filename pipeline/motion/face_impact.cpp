@@ -1,7 +1,7 @@
 #include "pipeline/motion/face_impact.h"
 
+#include "pipeline/motion/deterministic_trig.h"
 #include "pipeline/motion/part_pair.h"
-#include "pipeline/motion/turn.h"
 #include "pipeline/shapes/frame.h"
 
 #include <algorithm>
@@ -10,13 +10,13 @@ namespace winnow::impact {
 namespace {
 
 /// An interval is halved if paths bend by more than this fraction of the face's extent,
-constexpr double kLooseWay = 0.1;
+constexpr double kLooseBend = 0.1;
 /// but at most this often.
-constexpr int kMostCuts = 12;
+constexpr int kMaxCuts = 12;
 
 class FaceImpactSearch {
  public:
-  FaceImpactSearch(const PartTraversal& parts, const MovingBody& body, const MovingFace& face,
+  FaceImpactSearch(const SubShapeQuery& parts, const MovingBody& body, const MovingFace& face,
                    double tolerance) noexcept
       : parts_(parts), body_(body), face_(face), tolerance_(tolerance) {
     Vec::Map(motion_.start.position) = face.start[0];
@@ -44,7 +44,7 @@ class FaceImpactSearch {
   [[nodiscard]] Vec seen(const Vec& start, const Vec& end, double time) const noexcept;
   [[nodiscard]] PreciseBox way(const Interval& within, double& bend) const noexcept;
 
-  const PartTraversal& parts_;
+  const SubShapeQuery& parts_;
   const MovingBody& body_;
   const MovingFace& face_;
   const double tolerance_;
@@ -57,7 +57,7 @@ class FaceImpactSearch {
 void FaceImpactSearch::test(const MovingShape& part, const Interval& within) noexcept {
   PartPair pair(parts_.shapes());
   const MovingPart moving = pair.put(0, part);
-  ConvexPart own;
+  SubShape own;
   own.shape = ShapeId::of(ShapeKind::triangle, 0);
   own.triangle = &triangle_;
   MovingPart face = pair.put(1, {own, motion_, 0.0, 0.0, 0.0});
@@ -70,7 +70,7 @@ void FaceImpactSearch::test(const MovingShape& part, const Interval& within) noe
 /// A corner at a time, in the body's frame.
 Vec FaceImpactSearch::seen(const Vec& start, const Vec& end, double time) const noexcept {
   const Pose pose = body_.motion.at(time);
-  const Eigen::Matrix3d axes = rotation_of(tame(pose.orientation));
+  const Eigen::Matrix3d axes = rotation_of(scale_to_unit_max(pose.orientation));
   const Vec corner = start + time * (end - start);
   return axes.transpose() * (corner - Vec::Map(pose.position));
 }
@@ -104,14 +104,14 @@ void FaceImpactSearch::walk(const Interval& given, int halvings) {
   double bend = 0.0;
   const PreciseBox box = way(within, bend);
   const double extent = (box.max - box.min).maxCoeff();
-  if (halvings < kMostCuts && bend > kLooseWay * extent) {
+  if (halvings < kMaxCuts && bend > kLooseBend * extent) {
     const double middle = 0.5 * (within.first + within.last);
     walk({within.first, middle}, halvings + 1);
     walk({middle, within.last}, halvings + 1);
     return;
   }
   parts_.met(PlacedShape{body_.shape, Pose{}}, box.standing(),
-             [&](const ConvexPart& part, double limit) {
+             [&](const SubShape& part, double limit) {
                test(moving_part(parts_, part, body_.motion), before(within, found_));
                return limit;
              });
@@ -119,7 +119,7 @@ void FaceImpactSearch::walk(const Interval& given, int halvings) {
 
 }  // namespace
 
-BodyImpact find_face_impact(const PartTraversal& parts, const MovingBody& body,
+BodyImpact find_face_impact(const SubShapeQuery& parts, const MovingBody& body,
                             const MovingFace& face, double tolerance) {
   return FaceImpactSearch(parts, body, face, tolerance).run();
 }

@@ -15,7 +15,7 @@ struct MovingFace {
 };
 
 /// The first impact of a body (as `a`) and a face; as `find_body_impact`.
-[[nodiscard]] BodyImpact find_face_impact(const PartTraversal& parts, const MovingBody& body,
+[[nodiscard]] BodyImpact find_face_impact(const SubShapeQuery& parts, const MovingBody& body,
                                           const MovingFace& face, double tolerance);
 
 }  // namespace winnow::impact

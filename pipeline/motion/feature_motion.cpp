@@ -329,7 +329,7 @@ bool read_motion(FeaturePair kind, const std::array<Vec3d, 4>& start,
   double largest = 0.0;
   for_each_number(motion, [&](double& x) { largest = std::max(largest, std::abs(x)); });
   if (!(largest <= std::numeric_limits<double>::max())) return false;
-  if (largest > 0.0 && (largest < kLeastScaled || largest > kMostScaled)) scale(motion, largest);
+  if (largest > 0.0 && (largest < kMinScaled || largest > kMaxScaled)) scale(motion, largest);
   find_reach(motion);
   return true;
 }

@@ -107,7 +107,7 @@ std::uint32_t may_touch(const double* const* columns, std::size_t first, double 
   const auto measure = [&](const FeatureVector& v) {
     size = max(size, largest(v));
     // max ignores NaN, so test for it here.
-    numbers = numbers & (taxicab(v) <= Doubles(kLargest<double>));
+    numbers = numbers & (norm_l1(v) <= Doubles(kLargest<double>));
   };
   for (int k = 0; k < Corners; ++k) {
     measure(start.corner[k]);
@@ -117,7 +117,7 @@ std::uint32_t may_touch(const double* const* columns, std::size_t first, double 
     measure(start.edge[k]);
     measure(end.edge[k]);
   }
-  numbers = numbers & (size <= Doubles(kMostScaled)) & (size >= Doubles(kLeastScaled));
+  numbers = numbers & (size <= Doubles(kMaxScaled)) & (size >= Doubles(kMinScaled));
   const Doubles least = Doubles(separation * (1.0 + 0x1p-50));
   const LaneMask<double> apart =
       apart_on(start, end, least, [](const FeatureVector& v) { return v.x; }) |

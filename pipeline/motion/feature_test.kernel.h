@@ -11,8 +11,8 @@ namespace winnow {
 inline constexpr std::size_t kFeatureLanes = 8;
 
 /// Squares and cubes of numbers between these stay in the range of double.
-inline constexpr double kLeastScaled = 0x1p-200;
-inline constexpr double kMostScaled = 0x1p200;
+inline constexpr double kMinScaled = 0x1p-200;
+inline constexpr double kMaxScaled = 0x1p200;
 /// Bound on the loss by underflow of products.
 inline constexpr double kLostByUnderflow = 1e-300;
 /// Error bound of the coefficients of the volume that four points span, and of values interpolated

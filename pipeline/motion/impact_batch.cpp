@@ -80,14 +80,14 @@ class StartDistances {
   /// Stores the impact of each pair that certainly overlaps where the callback, given the query's
   /// index, returns; clears the stage.
   template <typename Known>
-  void run(Known&& known) noexcept {
-    if (job_.count != 0) answer(known);
+  void run(Known&& decided) noexcept {
+    if (job_.count != 0) answer(decided);
     job_.count = 0;
   }
 
  private:
   template <typename Known>
-  void answer(Known& known) noexcept {
+  void answer(Known& decided) noexcept {
     const NarrowKernels* const kernels =
         narrow_kernels(shapes_[pairs_[0].a].kind(), shapes_[pairs_[0].b].kind());
     if (kernels == nullptr) return;
@@ -95,7 +95,7 @@ class StartDistances {
     for (std::uint32_t i = 0; i < left; ++i) distance_[uncertified_[i]] = 1.0;
     for (std::size_t i = 0; i < job_.count; ++i) {
       if (!(distance_[i] <= 0.0)) continue;
-      Impact& found = known(queries_[i]);
+      Impact& found = decided(queries_[i]);
       found = {true,
                0.0,
                distance_[i],
@@ -177,16 +177,16 @@ void ImpactBatch::find_starts(const ImpactJob& job) noexcept {
   };
   if (std::ranges::none_of(asked, at_start)) return;
   StartDistances starts(tables_);
-  const auto known = [&](std::size_t query) -> Impact& {
-    verdicts_[query] = ImpactVerdict::known;
+  const auto decided = [&](std::size_t query) -> Impact& {
+    verdicts_[query] = ImpactVerdict::decided;
     return found_[query];
   };
   for (const std::uint16_t query : asked) {
     if (!at_start(query)) continue;
-    if (starts.is_full()) starts.run(known);
+    if (starts.is_full()) starts.run(decided);
     starts.add(query, queries_[query]);
   }
-  starts.run(known);
+  starts.run(decided);
 }
 
 void ImpactBatch::search(std::size_t i) noexcept {

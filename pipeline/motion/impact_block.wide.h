@@ -1,18 +1,18 @@
 #pragma once
 
 // State of pairs of moving cores, one per lane, and the writing of their results. ImpactStep,
-// StraightStart and StraightStep derive from BlockStep. A sample is one evaluation of the closest
+// LinearToiSat and LinearToiGjk derive from BlockStep. A sample is one evaluation of the closest
 // points or of the gap along an axis, at one time.
 
 #include "pipeline/motion/closed_forms.wide.h"
-#include "pipeline/motion/smooth_guess.wide.h"
+#include "pipeline/motion/secant_direction.wide.h"
 
 namespace winnow::WINNOW_ISA_NAME::impact {
 
 /// A pair within the tolerance for more samples than this counts as an impact.
-inline constexpr double kMostLooksWithin = 64.0;
+inline constexpr double kMaxLaneSamplesWithin = 64.0;
 /// A pair that needs more samples is left to the scalar search (ImpactSearch).
-inline constexpr double kMostLaneLooks = 256.0;
+inline constexpr double kMaxLaneSamples = 256.0;
 /// Fraction of the tolerance: pairs that do not rotate are not advanced to smaller gaps.
 inline constexpr double kNearEnough = 0.375;
 /// Gaps below this many times the noise count as closed.
@@ -47,17 +47,17 @@ struct PairLanes {
   /// Number of samples within the tolerance, as in ImpactSearch.
   Doubles within;
   /// Number of samples.
-  Doubles looks;
+  Doubles samples;
   /// 1 while the pair is not decided.
   Doubles active;
-  WitnessLanes witness;
+  SimplexLanes witness;
   /// For pairs that do not rotate and use guesses (has_guesses).
   TriedLanes tried;
-  /// For pairs that do not rotate and use earlier directions (looks_back): the unit direction with
-  /// the largest gap, once there is a simplex; and the vector from a's support point to b's along
-  /// it, without the vector between the centres.
+  /// For pairs that do not rotate and use earlier directions (uses_earlier_axes): the unit
+  /// direction with the largest gap, once there is a simplex; and the vector from a's support point
+  /// to b's along it, without the vector between the centres.
   Vector best;
-  Vector best_way;
+  Vector best_support;
   /// For pairs that rotate: the relative speed; the gap, slope and bend of the last sample; the
   /// time of the next sample; and the rest as in ImpactSearch.
   Doubles speed;
@@ -75,7 +75,7 @@ struct PairBlockTables {
   CoreTable a;
   CoreTable b;
   /// Index of the query in each lane.
-  std::uint32_t query[kWidth];
+  std::uint32_t query[kDoubleLanes];
 };
 
 struct ImpactBlock {
@@ -86,7 +86,7 @@ struct ImpactBlock {
 /// Whether earlier directions help: the vector between points that nearly touch is short, and
 /// rounding changes its direction much. This happens with rims at any tolerance, with other shapes
 /// at small ones.
-[[nodiscard]] inline bool looks_back(const ImpactJob& job, ShapeKind a, ShapeKind b) {
+[[nodiscard]] inline bool uses_earlier_axes(const ImpactJob& job, ShapeKind a, ShapeKind b) {
   constexpr double kSmall = 2e-7;
   const auto has_rim = [](ShapeKind kind) {
     return kind == ShapeKind::cylinder || kind == ShapeKind::cone || kind == ShapeKind::support;
@@ -95,22 +95,22 @@ struct ImpactBlock {
 }
 
 /// A sample of the pairs.
-struct LookLanes {
+struct SampleLanes {
   ClosestLanes closest;
   Vector between;
   Doubles noise;
   Doubles gap;
   Doubles most;
   Doubles slope;
-  Truth parted;
+  DoubleMask parted;
 };
 
 /// The time until which pairs that do not rotate are separated along an axis.
-[[nodiscard]] inline Doubles free_along(const PairLanes& p, const LookLanes& look) {
-  const Doubles target = min(p.tolerance * Doubles(0.25), look.gap * Doubles(0.5));
-  const Truth closes = look.slope < Doubles(0.0);
-  const Doubles step = (look.gap - target) / select(closes, -look.slope, Doubles(1.0));
-  const Doubles until = p.time + step * Doubles(1.0 - 8.0 * kPlace);
+[[nodiscard]] inline Doubles free_along(const PairLanes& p, const SampleLanes& sample) {
+  const Doubles target = min(p.tolerance * Doubles(0.25), sample.gap * Doubles(0.5));
+  const DoubleMask closes = sample.slope < Doubles(0.0);
+  const Doubles step = (sample.gap - target) / select(closes, -sample.slope, Doubles(1.0));
+  const Doubles until = p.time + step * Doubles(1.0 - 8.0 * kDoubleEpsilon);
   return select(closes & (until < p.last), until, p.last);
 }
 
@@ -122,7 +122,7 @@ class Answers {
   /// Not decided; disjoint before `time`.
   void put_unsure(Mask16 lanes, const Doubles& time) {
     if (lanes == 0) return;
-    alignas(64) double times[kWidth];
+    alignas(64) double times[kDoubleLanes];
     time.store(times);
     for (; lanes != 0; lanes &= lanes - 1) {
       const unsigned lane = first(lanes);
@@ -134,28 +134,28 @@ class Answers {
   void put_apart(Mask16 lanes) {
     for (; lanes != 0; lanes &= lanes - 1) {
       const std::uint32_t query = tables_.query[first(lanes)];
-      job_.verdicts[query] = ImpactVerdict::known;
+      job_.verdicts[query] = ImpactVerdict::decided;
       job_.found[query] = kNone;
     }
   }
 
-  void put_meeting(Mask16 lanes, const PairLanes& p, const LookLanes& look) {
+  void put_impact(Mask16 lanes, const PairLanes& p, const SampleLanes& sample) {
     if (lanes == 0) return;
-    const Doubles distance = look.closest.upper;
+    const Doubles distance = sample.closest.upper;
     const Doubles gap = distance - p.roundings;
     const Vector normal = has_closed_form(tables_.a.kind, tables_.b.kind)
-                              ? look.closest.axis
-                              : look.closest.between * (Doubles(1.0) / distance);
-    const Vector point = look.closest.on_a + normal * p.a.rounding;
-    const Doubles error = max(look.most - gap, gap - look.gap);
+                              ? sample.closest.axis
+                              : sample.closest.between * (Doubles(1.0) / distance);
+    const Vector point = sample.closest.on_a + normal * p.a.rounding;
+    const Doubles error = max(sample.most - gap, gap - sample.gap);
     const Doubles columns[] = {
         p.time, positive_part(gap), error, normal.x, normal.y, normal.z, point.x, point.y, point.z};
-    alignas(64) double stage[9][kWidth];
+    alignas(64) double stage[9][kDoubleLanes];
     for (int k = 0; k < 9; ++k) columns[k].store(stage[k]);
     for (; lanes != 0; lanes &= lanes - 1) {
       const unsigned lane = first(lanes);
       const std::uint32_t query = tables_.query[lane];
-      job_.verdicts[query] = ImpactVerdict::known;
+      job_.verdicts[query] = ImpactVerdict::decided;
       job_.found[query] = {true,
                            stage[0][lane],
                            stage[1][lane],
@@ -185,24 +185,24 @@ class BlockStep {
 
   /// Gaps up to this size count as closed.
   [[nodiscard]] Doubles closed() const {
-    return max(p_.tolerance, look_.noise * Doubles(kClosedNoise));
+    return max(p_.tolerance, sample_.noise * Doubles(kClosedNoise));
   }
   /// Noise of gaps at the relative position `between`.
   [[nodiscard]] Doubles noise_at(const Vector& between) const {
-    return p_.still_noise + Doubles(32.0 * kPlace) * (taxicab(between) + p_.sizes);
+    return p_.still_noise + Doubles(32.0 * kDoubleEpsilon) * (norm_l1(between) + p_.sizes);
   }
-  void end_unsure(const Truth& lanes) {
+  void end_unsure(const DoubleMask& lanes) {
     answers_.put_unsure(bits(active_ & lanes), p_.time);
     active_ = active_ & !lanes;
   }
-  void end_apart(const Truth& lanes) {
+  void end_apart(const DoubleMask& lanes) {
     answers_.put_apart(bits(active_ & lanes));
     active_ = active_ & !lanes;
   }
   /// Counts the sample; stores and returns the lanes that continue.
-  [[nodiscard]] Mask16 go_on() {
-    p_.looks += Doubles(1.0);
-    end_unsure(p_.looks >= Doubles(kMostLaneLooks));
+  [[nodiscard]] Mask16 continuing_lanes() {
+    p_.samples += Doubles(1.0);
+    end_unsure(p_.samples >= Doubles(kMaxLaneSamples));
     p_.active = one_where(active_);
     return bits(active_);
   }
@@ -210,8 +210,8 @@ class BlockStep {
   PairLanes& p_;
   const PairBlockTables& tables_;
   Answers answers_;
-  Truth active_;
-  LookLanes look_;
+  DoubleMask active_;
+  SampleLanes sample_;
 };
 
 }  // namespace winnow::WINNOW_ISA_NAME::impact

@@ -7,8 +7,8 @@
 #include "pipeline/motion/impact_lanes.kernel.h"
 
 #include "pipeline/motion/impact_block.wide.h"
-#include "pipeline/motion/straight_start.wide.h"
-#include "pipeline/motion/straight_step.wide.h"
+#include "pipeline/motion/linear_toi_gjk.wide.h"
+#include "pipeline/motion/linear_toi_sat.wide.h"
 
 namespace winnow {
 namespace WINNOW_ISA_NAME::impact {
@@ -19,7 +19,7 @@ constexpr double kGoodEnough = 0.3;
 /// Initial target for the gap at the next sample, relative to the current gap.
 constexpr double kFirstAim = 0.03;
 /// Limit on the steps of one GJK search; only rounding could require more.
-constexpr int kMostSteps = 32;
+constexpr int kMaxSteps = 32;
 /// Products of six lengths between these stay in the range of double without losing digits.
 constexpr double kShortest = 1e-40;
 constexpr double kLongest = 1e40;
@@ -28,16 +28,16 @@ constexpr double kLongest = 1e40;
 /// target by `above` at the start and by `then` at the end; at fraction s it is at most 4 `sag` s
 /// (1 - s) below its chord. The result is needed only in `lanes`.
 [[gnu::always_inline]] inline Doubles share_above(const Doubles& above, const Doubles& then,
-                                                  const Doubles& sag, const Truth& lanes) {
+                                                  const Doubles& sag, const DoubleMask& lanes) {
   const Doubles zero(0.0);
   const Doubles one(1.0);
   const Doubles square = sag * Doubles(4.0);
   const Doubles linear = then - above - square;
   const Doubles discriminant = linear * linear - square * above * Doubles(4.0);
   // NaN proves nothing.
-  const Truth known = square < Doubles(kLargest<double>);
-  const Truth stays = (then >= zero) & ((linear >= zero) | (discriminant < zero) |
-                                        (-linear >= square * Doubles(2.0)));
+  const DoubleMask known = square < Doubles(kLargest<double>);
+  const DoubleMask stays = (then >= zero) & ((linear >= zero) | (discriminant < zero) |
+                                             (-linear >= square * Doubles(2.0)));
   if (bits(lanes & !(stays & known)) == 0) return one;
   const Doubles root = above * Doubles(2.0) / (sqrt(positive_part(discriminant)) - linear);
   const Doubles share = select(root >= zero, root * Doubles(1.0 - 1e-12), zero);
@@ -72,7 +72,7 @@ struct TurningAlong {
   const Doubles across = length(cross(axis, core.axis));
   const Doubles swept = max(along * core.low, along * core.high) + across * core.reach;
   return {select(core.angle > Doubles(0.0), swept, high),
-          core.angle * core.angle * (across + Doubles(kAxisDoubt)) * core.reach};
+          core.angle * core.angle * (across + Doubles(kAxisError)) * core.reach};
 }
 
 /// Bound for the gap along an axis that rotates uniformly from `from` to `to` during `width`, which
@@ -88,7 +88,7 @@ struct TurningAlong {
   const Doubles swing_b = p.b.reach * p.b.angle;
   const Doubles way = width * p.speed;
   const Doubles speed = way + width * (swing_a + swing_b);
-  const Doubles below = rate * (taxicab(between) + way + p.sizes) + speed;
+  const Doubles below = rate * (norm_l1(between) + way + p.sizes) + speed;
   const Doubles all = width * width * (swing_a * p.a.angle + swing_b * p.b.angle) +
                       rate * speed * Doubles(2.0) + rate * rate * below;
   return select(turned <= Doubles(1.0), all, Doubles(__builtin_inf()));
@@ -107,39 +107,39 @@ class ImpactStep : BlockStep {
   [[nodiscard]] Mask16 run() {
     const Vector axis = p_.axis;
     const Doubles gap = p_.gap;
-    look();
+    sample();
     advance(axis, gap);
     decide();
-    return go_on();
+    return continuing_lanes();
   }
 
  private:
   /// Samples the lanes at their next time.
-  void look() {
+  void sample() {
     place(tables_.a, p_.next, p_.a);
     place(tables_.b, p_.next, p_.b);
-    look_.between = p_.start + p_.travel * p_.next;
-    look_.noise = noise_at(look_.between);
-    const CorePair pair{tables_.a, tables_.b, p_.a, p_.b, look_.between};
+    sample_.between = p_.start + p_.travel * p_.next;
+    sample_.noise = noise_at(sample_.between);
+    const CorePair pair{tables_.a, tables_.b, p_.a, p_.b, sample_.between};
     if (!has_plane_) then_ = gap_along(pair);
-    look_.closest = closest_points(pair);
-    const ClosestLanes& closest = look_.closest;
-    look_.gap = closest.lower - p_.roundings - look_.noise;
-    look_.most = closest.upper - p_.roundings + look_.noise;
-    if (has_plane_) then_ = look_.gap;
-    look_.slope = dot(closest.axis, p_.travel) +
-                  speed_along(tables_.b, p_.b, closest.axis, closest.on_b) -
-                  speed_along(tables_.a, p_.a, closest.axis, closest.on_a);
-    look_.parted = look_.gap > Doubles(0.0);
+    sample_.closest = closest_points(pair);
+    const ClosestLanes& closest = sample_.closest;
+    sample_.gap = closest.lower - p_.roundings - sample_.noise;
+    sample_.most = closest.upper - p_.roundings + sample_.noise;
+    if (has_plane_) then_ = sample_.gap;
+    sample_.slope = dot(closest.axis, p_.travel) +
+                    speed_along(tables_.b, p_.b, closest.axis, closest.on_b) -
+                    speed_along(tables_.a, p_.a, closest.axis, closest.on_a);
+    sample_.parted = sample_.gap > Doubles(0.0);
   }
 
   [[nodiscard]] ClosestLanes closest_points(const CorePair& pair) {
     if (has_closed_form(tables_.a.kind, tables_.b.kind))
       return closest_by_form(pair, bits(active_));
     const Doubles precise = p_.tolerance * Doubles(2.0);
-    const Doubles enough = look_.noise * Doubles(kEnough);
+    const Doubles enough = sample_.noise * Doubles(kEnough);
     const ClosestOptions options{kGoodEnough, p_.roundings, precise, enough};
-    return ClosestSearch(pair, options, p_.witness).run(active_, coarse_ ? 1 : kMostSteps);
+    return ClosestSearch(pair, options, p_.witness).run(active_, coarse_ ? 1 : kMaxSteps);
   }
 
   /// The gap at the current placement along the axis of the last sample.
@@ -148,61 +148,62 @@ class ImpactStep : BlockStep {
     if (proves == 0) return Doubles(0.0);
     const Doubles high = pair.height(tables_.a, p_.a, p_.axis, proves) +
                          pair.height(tables_.b, p_.b, -p_.axis, proves);
-    return dot(p_.axis, look_.between) - high - p_.roundings - look_.noise;
+    return dot(p_.axis, sample_.between) - high - p_.roundings - sample_.noise;
   }
 
   /// Advances the time as far as is proved from the last sample, which had gap `gap` along `axis`.
   /// Lanes that are proved up to the new sample adopt it.
   void advance(const Vector& axis, const Doubles& gap) {
-    const Truth proves = p_.proves > Doubles(0.0);
+    const DoubleMask proves = p_.proves > Doubles(0.0);
     if (bits(active_ & proves) == 0) {
-      whole_ = active_;
+      fully_proved_ = active_;
       p_.time = p_.next;
       p_.curve = Doubles(0.0);
       // Lanes that the coarse sample does not separate are sampled again.
-      if (coarse_) whole_ = whole_ & look_.parted;
-      end_unsure(whole_ & !look_.parted);
+      if (coarse_) fully_proved_ = fully_proved_ & sample_.parted;
+      end_unsure(fully_proved_ & !sample_.parted);
       forget_touching();
       return;
     }
     const Doubles width = p_.next - p_.time;
     const Doubles apart = proved(axis, gap, width);
-    const Truth whole = (!proves) | (apart >= p_.next);
+    const DoubleMask whole = (!proves) | (apart >= p_.next);
     const Doubles left = p_.touching;
-    p_.touching = select(proves & !look_.parted, min(left, p_.time + width * Doubles(0.75)), left);
+    p_.touching =
+        select(proves & !sample_.parted, min(left, p_.time + width * Doubles(0.75)), left);
     learn(gap, width, proves & whole);
     // Lanes that are not proved up to the new sample continue from the proved time.
     const Doubles reached = max(apart, p_.free);
-    const Truth stands = proves & (!whole) & (reached <= p_.time);
-    end_unsure(stands);
-    whole_ = whole;
+    const DoubleMask is_stuck = proves & (!whole) & (reached <= p_.time);
+    end_unsure(is_stuck);
+    fully_proved_ = whole;
     p_.time = select(whole, p_.next, reached);
     end_apart(((!whole) & (p_.time >= p_.last)) | (p_.time > p_.until));
     // Touching, or too close for double to decide.
-    end_unsure(whole & !look_.parted);
+    end_unsure(whole & !sample_.parted);
     p_.next = p_.time;
     p_.proves = Doubles(0.0);
     forget_touching();
   }
 
   /// Adapts the choice of the next sample to the gap found at the end of a step.
-  void learn(const Doubles& gap, const Doubles& width, const Truth& lanes) {
+  void learn(const Doubles& gap, const Doubles& width, const DoubleMask& lanes) {
     const Doubles half(0.5);
     // One division instead of two.
     const Doubles both = Doubles(1.0) / (gap * width);
     const Doubles over = both * width;
-    const Doubles share = look_.gap * over;
+    const Doubles share = sample_.gap * over;
     const Doubles expected = gap + width * (p_.slope + p_.curve * width * half);
     // The error of a linear prediction is proportional to the square of the step, and so to the
     // square of the relative gap; of one with curvature, to the cube.
-    Doubles aim = abs(look_.gap - expected) * over * share * Doubles(4.0);
+    Doubles aim = abs(sample_.gap - expected) * over * share * Doubles(4.0);
     if (is_exact_) {
       aim = aim * share;
       // The second derivative, at the end, of the cubic with the gaps and slopes at both ends.
       const Doubles apiece = both * gap;
-      const Doubles mean = (look_.gap - gap) * apiece;
+      const Doubles mean = (sample_.gap - gap) * apiece;
       const Doubles curve =
-          (p_.slope + look_.slope * Doubles(2.0) - mean * Doubles(3.0)) * Doubles(2.0) * apiece;
+          (p_.slope + sample_.slope * Doubles(2.0) - mean * Doubles(3.0)) * Doubles(2.0) * apiece;
       p_.curve = select(lanes, curve, Doubles(0.0));
     }
     const Doubles bounded =
@@ -217,18 +218,18 @@ class ImpactStep : BlockStep {
   /// The time until which the pair is certainly disjoint: along the axis of the last sample, or
   /// along an axis that rotates from it to the axis of the new one.
   [[nodiscard]] Doubles proved(const Vector& axis, const Doubles& gap, const Doubles& way) const {
-    const Doubles width = way * Doubles(1.0 + 4.0 * kPlace);
-    const Doubles least = select(look_.parted & (look_.gap < gap), look_.gap, gap);
+    const Doubles width = way * Doubles(1.0 + 4.0 * kDoubleEpsilon);
+    const Doubles least = select(sample_.parted & (sample_.gap < gap), sample_.gap, gap);
     const Doubles target = min(p_.tolerance * Doubles(0.25), least * Doubles(0.5));
     const Doubles eighth(0.125);
     const Doubles above = gap - target;
-    const Truth asked = active_ & (p_.proves > Doubles(0.0));
+    const DoubleMask asked = active_ & (p_.proves > Doubles(0.0));
     Doubles share = share_above(above, then_ - target, p_.bend * width * width * eighth, asked);
     if (bits(asked & !(share >= Doubles(1.0))) == 0) return p_.next;
     if (has_plane_) return reached(share, way);
-    const Doubles bent = bend_between(p_, axis, look_.closest.axis, width, look_.between);
-    const Doubles turning = share_above(above, look_.gap - target, bent * eighth, asked);
-    share = select(look_.parted & (turning > share), turning, share);
+    const Doubles bent = bend_between(p_, axis, sample_.closest.axis, width, sample_.between);
+    const Doubles turning = share_above(above, sample_.gap - target, bent * eighth, asked);
+    share = select(sample_.parted & (turning > share), turning, share);
     return reached(share, way);
   }
   /// The time at a fraction of the way to the next sample.
@@ -238,35 +239,35 @@ class ImpactStep : BlockStep {
 
   /// For lanes with a new sample: detects an impact or chooses the time of the next sample.
   void decide() {
-    const Truth looked = active_ & whole_;
-    if (bits(looked) == 0) return;
-    const Truth near = looked & (look_.most <= closed());
-    const Truth meets = look_.gap + look_.slope * (p_.last - p_.time) <= Doubles(0.0);
-    p_.within = select(near & !meets, p_.within + Doubles(1.0), p_.within);
-    const Truth met = near & (meets | (p_.within > Doubles(kMostLooksWithin)));
-    answers_.put_meeting(bits(met), p_, look_);
+    const DoubleMask sampled = active_ & fully_proved_;
+    if (bits(sampled) == 0) return;
+    const DoubleMask near = sampled & (sample_.most <= closed());
+    const DoubleMask will_touch = sample_.gap + sample_.slope * (p_.last - p_.time) <= Doubles(0.0);
+    p_.within = select(near & !will_touch, p_.within + Doubles(1.0), p_.within);
+    const DoubleMask met = near & (will_touch | (p_.within > Doubles(kMaxLaneSamplesWithin)));
+    answers_.put_impact(bits(met), p_, sample_);
     active_ = active_ & !met;
     if (bits(active_) == 0) return;
-    const ClosestLanes& c = look_.closest;
+    const ClosestLanes& c = sample_.closest;
     const TurningAlong of_a = turning_along(tables_.a, p_.a, c.axis, c.high_a);
     const TurningAlong of_b = has_plane_ ? turning_plane(of_a.acceleration)
                                          : turning_along(tables_.b, p_.b, -c.axis, c.high_b);
     const Doubles free = free_until(of_a.high + of_b.high);
     const Doubles bend = of_a.acceleration + of_b.acceleration;
-    end_apart(looked & ((free >= p_.last) | (free > p_.until)));
-    const Doubles next = next_look(bend);
-    const Truth freely = next <= free;
+    end_apart(sampled & ((free >= p_.last) | (free > p_.until)));
+    const Doubles next = next_sample_time(bend);
+    const DoubleMask freely = next <= free;
     const Doubles moved = select(freely, free, p_.time);
     // No double is left between.
-    end_unsure(looked & freely & (moved <= p_.time));
-    p_.axis = select(looked, c.axis, p_.axis);
-    p_.gap = select(looked, look_.gap, p_.gap);
-    p_.slope = select(looked, look_.slope, p_.slope);
-    p_.bend = select(looked, bend, p_.bend);
-    p_.free = select(looked, free, p_.free);
-    p_.time = select(looked, moved, p_.time);
-    p_.next = select(looked, select(freely, free, next), p_.next);
-    p_.proves = one_where(looked & !freely);
+    end_unsure(sampled & freely & (moved <= p_.time));
+    p_.axis = select(sampled, c.axis, p_.axis);
+    p_.gap = select(sampled, sample_.gap, p_.gap);
+    p_.slope = select(sampled, sample_.slope, p_.slope);
+    p_.bend = select(sampled, bend, p_.bend);
+    p_.free = select(sampled, free, p_.free);
+    p_.time = select(sampled, moved, p_.time);
+    p_.next = select(sampled, select(freely, free, next), p_.next);
+    p_.proves = one_where(sampled & !freely);
   }
 
   /// Bounds for a half-space along its normal n, which rotates with it; the swept volume is
@@ -274,14 +275,14 @@ class ImpactStep : BlockStep {
   /// derivative is n'' . P + 2 n' . P' + n . P''. `counted` is the part of the last term that is
   /// already included: the acceleration of a along the current n.
   [[nodiscard]] TurningAlong turning_plane(const Doubles& counted) const {
-    const Doubles& high = look_.closest.high_b;
+    const Doubles& high = sample_.closest.high_b;
     if (!tables_.b.turns) return {high, Doubles(0.0)};
-    const Truth turns = p_.b.angle > Doubles(0.0);
+    const DoubleMask turns = p_.b.angle > Doubles(0.0);
     const Vector end = p_.start + p_.travel * p_.last;
-    const Doubles far = max(length(look_.between), length(end)) + p_.a.size;
+    const Doubles far = max(length(sample_.between), length(end)) + p_.a.size;
     const Doubles fast = p_.speed + p_.a.angle * p_.a.reach;
     const Doubles rate =
-        p_.b.angle * (length(cross(look_.closest.axis, p_.b.axis)) + Doubles(kAxisDoubt));
+        p_.b.angle * (length(cross(sample_.closest.axis, p_.b.axis)) + Doubles(kAxisError));
     const Doubles of_a = p_.a.angle * p_.a.angle * p_.a.reach;
     const Doubles bend =
         rate * (p_.b.angle * far + fast * Doubles(2.0)) + positive_part(of_a - counted);
@@ -291,30 +292,30 @@ class ImpactStep : BlockStep {
   /// The time until which the swept volumes are disjoint; `high` is the sum of their supports, from
   /// both centres.
   [[nodiscard]] Doubles free_until(const Doubles& high) const {
-    const Vector& axis = look_.closest.axis;
-    const Doubles swept = dot(axis, look_.between) - high - p_.roundings - look_.noise -
-                          min(p_.tolerance * Doubles(0.25), look_.gap * Doubles(0.5));
-    const Truth apart = swept > Doubles(0.0);
+    const Vector& axis = sample_.closest.axis;
+    const Doubles swept = dot(axis, sample_.between) - high - p_.roundings - sample_.noise -
+                          min(p_.tolerance * Doubles(0.25), sample_.gap * Doubles(0.5));
+    const DoubleMask apart = swept > Doubles(0.0);
     if (bits(active_ & apart) == 0) return p_.time;
     const Doubles closing = -dot(axis, p_.travel);
-    const Truth closes = closing > Doubles(0.0);
+    const DoubleMask closes = closing > Doubles(0.0);
     const Doubles step = swept / select(closes, closing, Doubles(1.0));
-    const Doubles until = p_.time + step * Doubles(1.0 - 8.0 * kPlace);
+    const Doubles until = p_.time + step * Doubles(1.0 - 8.0 * kDoubleEpsilon);
     return select(apart, select(closes & (until < p_.last), until, p_.last), p_.time);
   }
 
   /// The time at which the gap is expected to have fallen to a fraction of itself, but no later
   /// than a proof may reach. `bend`: between two times, the gap along the axis is below its chord
   /// by at most half of this times the product of the times to both ends.
-  [[nodiscard]] Doubles next_look(const Doubles& bend) const {
+  [[nodiscard]] Doubles next_sample_time(const Doubles& bend) const {
     const Doubles zero(0.0);
     const Doubles one(1.0);
     const Doubles end = min(p_.last, p_.touching);
     Doubles step = end - p_.time;
-    const Truth falls = look_.slope < zero;
-    const Doubles aim = max(p_.tolerance * Doubles(0.5), p_.aim * look_.gap);
-    const Doubles fall = max(look_.gap - aim, look_.gap * Doubles(0.25));
-    Doubles speed = -look_.slope;
+    const DoubleMask falls = sample_.slope < zero;
+    const Doubles aim = max(p_.tolerance * Doubles(0.5), p_.aim * sample_.gap);
+    const Doubles fall = max(sample_.gap - aim, sample_.gap * Doubles(0.25));
+    Doubles speed = -sample_.slope;
     if (is_exact_) {
       const Doubles square = speed * speed - p_.curve * fall * Doubles(2.0);
       speed = (speed + sqrt(positive_part(square))) * Doubles(0.5);
@@ -322,17 +323,17 @@ class ImpactStep : BlockStep {
     // If the slope is constant, a proof succeeds if half of the bend times the square of the step
     // is less than the square of the sum of the roots of the gaps at both ends. The second gap is
     // `rest` times the first; `root` is slightly less than the root of `rest`.
-    const Truth bends = bend > zero;
-    const Doubles depth = select(bends, look_.gap * bend, one);
+    const DoubleMask bends = bend > zero;
+    const Doubles depth = select(bends, sample_.gap * bend, one);
     const Doubles rate = select(falls, speed, one);
     const Doubles both = one / (rate * depth);
     const Doubles reached = fall * depth * both;
     step = select(falls & (reached < step), reached, step);
     const Doubles steep = sqrt(Doubles(2.0) * rate * both);
-    const Doubles left = one + look_.slope * steep;
+    const Doubles left = one + sample_.slope * steep;
     const Doubles rest = select(left > zero, select(left < one, left, one), zero);
     const Doubles root = rest * (Doubles(1.5) - rest * Doubles(0.5));
-    const Doubles most = look_.gap * steep * Doubles(0.95) * (one + root);
+    const Doubles most = sample_.gap * steep * Doubles(0.95) * (one + root);
     step = select(bends & (most < step), most, step);
     return min(p_.time + step, end);
   }
@@ -343,7 +344,7 @@ class ImpactStep : BlockStep {
   bool has_plane_;
   bool coarse_;
   /// The pair is proved disjoint up to the new sample.
-  Truth whole_;
+  DoubleMask fully_proved_;
   /// The gap at the new sample along the axis of the last one.
   Doubles then_;
 };
@@ -357,7 +358,7 @@ class ImpactLoad {
 
   /// Returns the lanes that are active.
   [[nodiscard]] Mask16 run() {
-    for (int lane = 0; lane < kWidth; ++lane) {
+    for (int lane = 0; lane < kDoubleLanes; ++lane) {
       const std::uint32_t at = first_ + static_cast<std::uint32_t>(lane);
       tables_.query[lane] = job_.order[at < job_.count ? at : job_.count - 1];
       query_[lane] = &job_.queries[tables_.query[lane]];
@@ -366,8 +367,8 @@ class ImpactLoad {
         index_[side][lane] = query_[lane]->shape[side].index();
       }
     }
-    Truth usable = load_cores();
-    usable = usable & load_way();
+    DoubleMask usable = load_cores();
+    usable = usable & load_positions();
     measure_pair();
     usable = usable & (p_.sizes > Doubles(kShortest)) & (span_ < Doubles(kLongest));
     begin(usable);
@@ -375,8 +376,8 @@ class ImpactLoad {
   }
 
  private:
-  [[nodiscard]] Truth load_cores() {
-    Truth usable = Doubles(0.0) < Doubles(1.0);
+  [[nodiscard]] DoubleMask load_cores() {
+    DoubleMask usable = Doubles(0.0) < Doubles(1.0);
     for (int side = 0; side < 2; ++side) {
       CoreTable& table = side == 0 ? tables_.a : tables_.b;
       MovingCore& core = side == 0 ? p_.a : p_.b;
@@ -399,7 +400,7 @@ class ImpactLoad {
   }
 
   /// Loads positions and travel; returns the lanes in which they are certainly valid.
-  [[nodiscard]] Truth load_way() {
+  [[nodiscard]] DoubleMask load_positions() {
     constexpr double kFarthest = 1e300;
     Vector position[2];
     Vector travel[2];
@@ -410,7 +411,7 @@ class ImpactLoad {
       position[side] = {row[0], row[1], row[2]};
       load_rows4([&](int lane) { return motion_[side][lane] + kTravelAt; }, row);
       travel[side] = {row[0], row[1], row[2]};
-      far += taxicab(position[side]) + taxicab(travel[side]);
+      far += norm_l1(position[side]) + norm_l1(travel[side]);
     }
     p_.start = position[1] - position[0];
     p_.travel = travel[1] - travel[0];
@@ -423,14 +424,14 @@ class ImpactLoad {
   void measure_pair() {
     p_.roundings = p_.a.rounding + p_.b.rounding;
     p_.sizes = p_.a.size + p_.b.size;
-    const Doubles way = taxicab(p_.start) + taxicab(p_.travel);
+    const Doubles way = norm_l1(p_.start) + norm_l1(p_.travel);
     span_ = way + p_.sizes;
-    p_.still_noise =
-        Doubles(kPlace) * (way * Doubles(8.0) +
-                           (Doubles(64.0) + (p_.a.angle + p_.b.angle) * Doubles(4.0)) * p_.sizes);
+    p_.still_noise = Doubles(kDoubleEpsilon) *
+                     (way * Doubles(8.0) +
+                      (Doubles(64.0) + (p_.a.angle + p_.b.angle) * Doubles(4.0)) * p_.sizes);
     // A half-space's normal is rotated with rounding, which moves points far from its position.
     if (has_half_space()) {
-      p_.still_noise += Doubles(kPlace) * (Doubles(64.0) + p_.b.angle * Doubles(4.0)) * way;
+      p_.still_noise += Doubles(kDoubleEpsilon) * (Doubles(64.0) + p_.b.angle * Doubles(4.0)) * way;
     }
     const Doubles least = min(p_.a.extent, p_.b.extent);
     const Doubles most = max(p_.a.extent, p_.b.extent);
@@ -441,12 +442,12 @@ class ImpactLoad {
 
   /// Clips the time to the interval in which the bounding balls overlap. Returns the lanes in which
   /// it is not empty.
-  [[nodiscard]] Truth cut_to_window() {
+  [[nodiscard]] DoubleMask cut_to_window() {
     const Doubles zero(0.0);
     if (has_half_space()) return p_.time <= p_.until;
     const Doubles square = dot(p_.travel, p_.travel);
-    const Doubles radius = p_.sizes + span_ * Doubles(64.0 * kPlace);
-    const Truth moves = square > Doubles(1e-60) * span_ * span_;
+    const Doubles radius = p_.sizes + span_ * Doubles(64.0 * kDoubleEpsilon);
+    const DoubleMask moves = square > Doubles(1e-60) * span_ * span_;
     const Doubles over = Doubles(1.0) / select(moves, square, Doubles(1.0));
     const Doubles nearest = select(moves, -dot(p_.start, p_.travel) * over, zero);
     const Vector between = p_.start + p_.travel * nearest;
@@ -466,16 +467,16 @@ class ImpactLoad {
       p_.witness.present[i] = zero;
     }
     const Vector between = p_.start + p_.travel * p_.time;
-    const Truth there = dot(between, between) > zero;
+    const DoubleMask there = dot(between, between) > zero;
     p_.axis = select(there, between, Vector{Doubles(1.0), zero, zero});
-    p_.best = p_.best_way = zero_vector();
+    p_.best = p_.best_support = zero_vector();
     if (has_guesses(tables_.a.kind, tables_.b.kind)) p_.tried.clear();
   }
 
-  void begin(const Truth& usable) {
+  void begin(const DoubleMask& usable) {
     const Doubles zero(0.0);
-    const Truth near = cut_to_window();
-    p_.proves = p_.within = p_.looks = zero;
+    const DoubleMask near = cut_to_window();
+    p_.proves = p_.within = p_.samples = zero;
     if (!has_closed_form(tables_.a.kind, tables_.b.kind)) begin_search();
     if (!is_straight(job_)) {
       p_.speed = length(p_.travel);
@@ -487,13 +488,14 @@ class ImpactLoad {
       p_.aim = Doubles(kFirstAim);
     }
     Answers answers(job_, tables_);
-    const Mask16 here = lanes_below(job_.count - first_ < kWidth ? job_.count - first_ : kWidth);
+    const Mask16 here =
+        lanes_below(job_.count - first_ < kDoubleLanes ? job_.count - first_ : kDoubleLanes);
     answers.put_unsure(bits(!usable) & here, zero);
     answers.put_apart(bits(usable & !near) & here);
-    const Mask16 go_on = bits(usable & near) & here;
-    alignas(64) double active[kWidth];
-    for (int lane = 0; lane < kWidth; ++lane) {
-      active[lane] = static_cast<double>(go_on >> lane & 1U);
+    const Mask16 continuing_lanes = bits(usable & near) & here;
+    alignas(64) double active[kDoubleLanes];
+    for (int lane = 0; lane < kDoubleLanes; ++lane) {
+      active[lane] = static_cast<double>(continuing_lanes >> lane & 1U);
     }
     p_.active = Doubles::load(active);
   }
@@ -502,10 +504,10 @@ class ImpactLoad {
   std::uint32_t first_;
   PairLanes& p_;
   PairBlockTables& tables_;
-  const ImpactQuery* query_[kWidth];
+  const ImpactQuery* query_[kDoubleLanes];
   /// By side and lane: the numbers of the motion, and the index of the shape.
-  const double* motion_[2][kWidth];
-  std::uint32_t index_[2][kWidth];
+  const double* motion_[2][kDoubleLanes];
+  std::uint32_t index_[2][kDoubleLanes];
   Doubles span_;
 };
 
@@ -516,7 +518,7 @@ template <std::size_t First, std::size_t Last, typename Members>
   const auto* const source = reinterpret_cast<const double*>(&from) + lane_from;
   auto* const target = reinterpret_cast<double*>(&to) + lane_to;
 #pragma GCC unroll 64
-  for (std::size_t i = First / sizeof(double); i < Last / sizeof(double); i += kWidth) {
+  for (std::size_t i = First / sizeof(double); i < Last / sizeof(double); i += kDoubleLanes) {
     target[i] = source[i];
   }
 }
@@ -557,18 +559,19 @@ inline void move_lane(const ImpactJob& job, const ImpactBlock& from, unsigned la
   constexpr std::size_t kWitness = offsetof(PairLanes, witness);
   constexpr std::size_t kTried = offsetof(PairLanes, tried);
   constexpr std::size_t kBest = offsetof(PairLanes, best);
-  constexpr std::size_t kLook = offsetof(PairLanes, speed);
+  constexpr std::size_t kSpeed = offsetof(PairLanes, speed);
   move_members<kStart, kWitness>(source, lane_from, target, lane_to);
   if (!has_closed_form(tables.a.kind, tables.b.kind)) {
     move_members<kWitness, kTried>(source, lane_from, target, lane_to);
     if (is_straight(job)) {
       const bool guesses = has_guesses(tables.a.kind, tables.b.kind);
       if (guesses) move_members<kTried, kBest>(source, lane_from, target, lane_to);
-      const bool back = looks_back(job, tables.a.kind, tables.b.kind);
-      if (back) move_members<kBest, kLook>(source, lane_from, target, lane_to);
+      const bool back = uses_earlier_axes(job, tables.a.kind, tables.b.kind);
+      if (back) move_members<kBest, kSpeed>(source, lane_from, target, lane_to);
     }
   }
-  if (!is_straight(job)) move_members<kLook, sizeof(PairLanes)>(source, lane_from, target, lane_to);
+  if (!is_straight(job))
+    move_members<kSpeed, sizeof(PairLanes)>(source, lane_from, target, lane_to);
   move_hull(tables.a, lane_from, to.tables.a, lane_to);
   move_hull(tables.b, lane_from, to.tables.b, lane_to);
   to.tables.a.own[lane_to] = tables.a.own[lane_from];
@@ -585,15 +588,15 @@ class ImpactRounds {
     const ShapeKind b = query.shape[1].kind();
     searches_ = !has_closed_form(a, b);
     has_start_ = has_start(a, b);
-    tries_elsewhere_ = searches_ && (has_guesses(a, b) || looks_back(job, a, b));
+    tries_elsewhere_ = searches_ && (has_guesses(a, b) || uses_earlier_axes(job, a, b));
   }
 
   void run() {
     for (fill(); count_ > 0;) {
       for (std::uint32_t i = 0; i < count_; ++i) {
-        if (active_[i] != 0) look(i, false);
+        if (active_[i] != 0) sample(i, false);
       }
-      close_ranks();
+      compact_lanes();
       if (count_ <= blocks_when_filled()) fill();
     }
   }
@@ -615,34 +618,34 @@ class ImpactRounds {
   void fill() {
     while (next_ < job_.count && count_ < kBlocks) {
       const std::uint32_t at = next_;
-      next_ += kWidth;
+      next_ += kDoubleLanes;
       if (ImpactLoad(job_, at, block_[count_]).run() == 0) continue;
-      look(count_, true);
+      sample(count_, true);
       if (active_[count_] == 0) continue;
       ++count_;
-      close_ranks();
+      compact_lanes();
     }
   }
 
-  void look(std::uint32_t i, bool first) {
+  void sample(std::uint32_t i, bool first) {
     ImpactBlock& block = block_[i];
     if (!is_straight(job_)) {
       active_[i] = ImpactStep(job_, block, first).run();
     } else if (first && has_start_) {
-      active_[i] = StraightStart(job_, block).run();
+      active_[i] = LinearToiSat(job_, block).run();
     } else if (tries_elsewhere_) {
-      active_[i] = StraightStep<true>(job_, block).run();
+      active_[i] = LinearToiGjk<true>(job_, block).run();
     } else {
-      active_[i] = StraightStep<false>(job_, block).run();
+      active_[i] = LinearToiGjk<false>(job_, block).run();
     }
   }
 
   /// Moves active lanes from the last blocks to the first ones, so that as few blocks as possible
   /// are in use.
-  void close_ranks() {
+  void compact_lanes() {
     std::uint32_t lanes = 0;
     for (std::uint32_t i = 0; i < count_; ++i) lanes += winnow::WINNOW_ISA_NAME::count(active_[i]);
-    const std::uint32_t needed = (lanes + kWidth - 1) / kWidth;
+    const std::uint32_t needed = (lanes + kDoubleLanes - 1) / kDoubleLanes;
     // Moving lanes takes as long as several samples in closed form.
     if (!searches_ && needed * 4 > count_ * 3) return;
     std::uint32_t to = 0;
@@ -659,9 +662,9 @@ class ImpactRounds {
 
   const ImpactJob& job_;
   bool searches_;
-  /// For pairs that do not rotate: the first step is StraightStart.
+  /// For pairs that do not rotate: the first step is LinearToiSat.
   bool has_start_;
-  /// For pairs that do not rotate: steps are StraightStep<true>.
+  /// For pairs that do not rotate: steps are LinearToiGjk<true>.
   bool tries_elsewhere_;
   /// The first query that is not loaded yet.
   std::uint32_t next_ = 0;

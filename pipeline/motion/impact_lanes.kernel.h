@@ -19,7 +19,7 @@ struct ImpactQuery {
 
 enum class ImpactVerdict : std::uint8_t {
   unsure,  ///< the lanes cannot decide; disjoint before the time
-  known,
+  decided,
   invalid,  ///< a motion is not valid; the lanes report this as unsure at time 0
 };
 

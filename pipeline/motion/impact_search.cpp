@@ -27,13 +27,13 @@ namespace winnow::impact {
 namespace {
 
 using solver::GjkResult;
+using solver::GjkSimplex;
 using solver::kEpsilon;
-using solver::Simplex;
 
 constexpr double kUnbounded = std::numeric_limits<double>::infinity();
-constexpr std::uint32_t kMostLooks = 200'000;
+constexpr std::uint32_t kMaxSamples = 200'000;
 /// A pair within the tolerance for more samples than this counts as an impact.
-constexpr std::uint32_t kMostWithin = 64;
+constexpr std::uint32_t kMaxSamplesWithin = 64;
 /// Relative accuracy of distances, except for the last one.
 constexpr double kGoodEnough = 1e-3;
 
@@ -47,7 +47,7 @@ constexpr double kGoodEnough = 1e-3;
 }
 
 /// A sample of the pair: bounds at one time.
-struct Look {
+struct PairSample {
   /// Certainly separated along `axis` by `gap` > 0; along an unspecified axis if `axis` is zero.
   bool parted = false;
   Vec axis = Vec::Zero();
@@ -66,7 +66,7 @@ struct Look {
 class Witness {
  public:
   [[nodiscard]] bool is_there() const noexcept { return count_ > 0 && age_ < kOldest; }
-  void take(const solver::Core& a, const solver::Core& b, const Simplex& simplex) noexcept {
+  void take(const solver::Core& a, const solver::Core& b, const GjkSimplex& simplex) noexcept {
     age_ = is_there() ? age_ + 1 : 0;
     count_ = simplex.count;
     for (std::size_t i = 0; i < static_cast<std::size_t>(count_); ++i) {
@@ -74,8 +74,8 @@ class Witness {
       of_b_[i] = b.rotation.transpose() * (simplex.point[i].b - b.center);
     }
   }
-  [[nodiscard]] Simplex placed(const solver::Core& a, const solver::Core& b) const noexcept {
-    Simplex simplex;
+  [[nodiscard]] GjkSimplex placed(const solver::Core& a, const solver::Core& b) const noexcept {
+    GjkSimplex simplex;
     simplex.count = count_;
     for (std::size_t i = 0; i < static_cast<std::size_t>(count_); ++i) {
       simplex.point[i].a = a.center + a.rotation * of_a_[i];
@@ -109,26 +109,26 @@ class ImpactSearch {
 
   [[nodiscard]] Impact run() noexcept;
   /// Number of distance computations.
-  [[nodiscard]] std::uint32_t looks() const noexcept { return looks_; }
+  [[nodiscard]] std::uint32_t samples() const noexcept { return samples_; }
 
  private:
-  [[nodiscard]] static Impact met(double time, const PairAnswer& answer,
-                                  const double (&from)[3]) noexcept;
-  [[nodiscard]] Impact meet_at(double time, Look& look) noexcept;
-  [[nodiscard]] Impact near_at(double time, Look& look) noexcept;
+  [[nodiscard]] static Impact impact_from(double time, const PairAnswer& answer,
+                                          const double (&from)[3]) noexcept;
+  [[nodiscard]] Impact impact_at(double time, PairSample& sample) noexcept;
+  [[nodiscard]] Impact impact_of_sample(double time, PairSample& sample) noexcept;
   [[nodiscard]] Impact start() const noexcept;
   [[nodiscard]] PairAnswer answer_at(double time, Pose& pose_a) const noexcept;
-  [[nodiscard]] Look look(double time) noexcept;
-  void look_at_half_space(Look& result) const noexcept;
+  [[nodiscard]] PairSample sample(double time) noexcept;
+  void sample_half_space(PairSample& result) const noexcept;
   [[nodiscard]] GjkResult closest_points(double share) const noexcept;
-  void look_at_cores(double share, Look& result) noexcept;
-  void look_closer(double time, Look& result) const noexcept;
-  [[nodiscard]] double free_until(double time, double end, const Look& look) const noexcept;
-  [[nodiscard]] double next(double from, double end, const Look& look) const noexcept;
-  [[nodiscard]] double proved(double from, const Look& first, double to,
-                              const Look& second) const noexcept;
-  [[nodiscard]] bool has_met(double time, double end, const Look& look) noexcept;
-  [[nodiscard]] double advance(double time, double end, Look& look, bool& known) noexcept;
+  void sample_cores(double share, PairSample& result) noexcept;
+  void sample_accurately(double time, PairSample& result) const noexcept;
+  [[nodiscard]] double free_until(double time, double end, const PairSample& sample) const noexcept;
+  [[nodiscard]] double next(double from, double end, const PairSample& sample) const noexcept;
+  [[nodiscard]] double proved(double from, const PairSample& first, double to,
+                              const PairSample& second) const noexcept;
+  [[nodiscard]] bool is_impact(double time, double end, const PairSample& sample) noexcept;
+  [[nodiscard]] double advance(double time, double end, PairSample& sample, bool& known) noexcept;
 
   const ShapeTables& tables_;
   const MovingPart& a_;
@@ -144,10 +144,10 @@ class ImpactSearch {
   double aim_ = 0.1;
   /// Number of samples within the tolerance.
   std::uint32_t within_ = 0;
-  std::uint32_t looks_ = 0;
+  std::uint32_t samples_ = 0;
 };
 
-void ImpactSearch::look_at_half_space(Look& result) const noexcept {
+void ImpactSearch::sample_half_space(PairSample& result) const noexcept {
   const solver::Core& a = pair_.a();
   const solver::Core& b = pair_.b();
   result.axis = -b.normal;
@@ -162,7 +162,7 @@ void ImpactSearch::look_at_half_space(Look& result) const noexcept {
 
 /// GJK, started from the simplex of the last sample if there is one.
 GjkResult ImpactSearch::closest_points(double share) const noexcept {
-  const double noise = solver::kEnough * pair_.problem().noise();
+  const double noise = solver::kConvergence * pair_.problem().noise();
   const solver::Core& b = pair_.b();
   if (witness_.is_there()) {
     return gjk(pair_.a(), b, witness_.placed(pair_.a(), b), noise, kUnbounded, share,
@@ -173,7 +173,7 @@ GjkResult ImpactSearch::closest_points(double share) const noexcept {
 }
 
 /// Samples by GJK, which ends once the gap has the relative accuracy `share`.
-void ImpactSearch::look_at_cores(double share, Look& result) noexcept {
+void ImpactSearch::sample_cores(double share, PairSample& result) noexcept {
   const solver::Core& b = pair_.b();
   const double noise = pair_.noise();
   const GjkResult found = closest_points(share);
@@ -208,35 +208,35 @@ PairAnswer ImpactSearch::answer_at(double time, Pose& pose_a) const noexcept {
 }
 
 /// Samples by the narrow phase, if GJK does not find the closest points.
-void ImpactSearch::look_closer(double time, Look& result) const noexcept {
+void ImpactSearch::sample_accurately(double time, PairSample& result) const noexcept {
   Pose pose_a;
   const PairAnswer found = answer_at(time, pose_a);
   const solver::Scale scaled(pair_.problem().exponent);
   const double distance = scaled(found.distance);
-  const double doubt = scaled(found.error_bound) + pair_.noise();
+  const double error = scaled(found.error_bound) + pair_.noise();
   const Vec axis = Vec::Map(found.normal);
-  result.most = distance + doubt;
+  result.most = distance + error;
   result.axis = axis;
   result.gap = pair_.gap(axis);
-  if (!(result.gap > 0.0) && distance - doubt > 0.0) {
+  if (!(result.gap > 0.0) && distance - error > 0.0) {
     result.axis.setZero();
-    result.gap = distance - doubt;
+    result.gap = distance - error;
   }
   result.on_a = Vec::Map(found.point).unaryExpr(scaled) - axis * pair_.a().rounding;
   result.between = axis * (distance + pair_.roundings());
   result.slope = pair_.parting(axis, result.on_a, result.on_a + result.between - pair_.b().center);
 }
 
-Look ImpactSearch::look(double time) noexcept {
-  ++looks_;
+PairSample ImpactSearch::sample(double time) noexcept {
+  ++samples_;
   pair_.place(time);
-  Look result;
+  PairSample result;
   if (pair_.has_half_space()) {
-    look_at_half_space(result);
+    sample_half_space(result);
   } else {
-    look_at_cores(kGoodEnough, result);
+    sample_cores(kGoodEnough, result);
     const bool vague = !(result.gap > 0.0) && result.most > 4.0 * pair_.noise();
-    if (vague) look_closer(time, result);
+    if (vague) sample_accurately(time, result);
   }
   result.parted = result.gap > 0.0;
   return result;
@@ -259,18 +259,18 @@ double share_above(double above, double then, double sag) noexcept {
 
 /// The time of the sample after `from`: when the gap is expected to have fallen to a fraction of
 /// itself, but no later than a proof may reach.
-double ImpactSearch::next(double from, double end, const Look& look) const noexcept {
+double ImpactSearch::next(double from, double end, const PairSample& sample) const noexcept {
   double step = end - from;
-  if (look.slope < 0.0) {
-    const double aim = std::max(0.5 * tolerance_, aim_ * look.gap);
-    step = std::min(step, std::max(look.gap - aim, 0.25 * look.gap) / -look.slope);
+  if (sample.slope < 0.0) {
+    const double aim = std::max(0.5 * tolerance_, aim_ * sample.gap);
+    step = std::min(step, std::max(sample.gap - aim, 0.25 * sample.gap) / -sample.slope);
   }
-  const double curvature = pair_.curvature(look.axis);
+  const double curvature = pair_.curvature(sample.axis);
   if (curvature > 0.0) {
     // If the slope is constant, a proof succeeds if half of the curvature times the square of the
     // step is less than the square of the sum of the roots of the gaps at both ends.
-    const double flat = std::sqrt(2.0 * look.gap / curvature);
-    const double left = 1.0 + look.slope * flat / look.gap;
+    const double flat = std::sqrt(2.0 * sample.gap / curvature);
+    const double left = 1.0 + sample.slope * flat / sample.gap;
     step = std::min(step, 0.95 * flat * (1.0 + std::sqrt(std::clamp(left, 0.0, 1.0))));
   }
   return std::min(from + step, end);
@@ -279,8 +279,8 @@ double ImpactSearch::next(double from, double end, const Look& look) const noexc
 /// The time, between `from` and `to`, until which the pair is certainly disjoint: along the axis of
 /// the first sample, or along an axis that rotates from it to the axis of the second. The pair is
 /// placed at `to`.
-double ImpactSearch::proved(double from, const Look& first, double to,
-                            const Look& second) const noexcept {
+double ImpactSearch::proved(double from, const PairSample& first, double to,
+                            const PairSample& second) const noexcept {
   const double width = (to - from) * (1.0 + 4.0 * kEpsilon);
   const double least = second.parted ? std::min(first.gap, second.gap) : first.gap;
   const double target = std::min(0.25 * tolerance_, 0.5 * least);
@@ -298,19 +298,20 @@ double ImpactSearch::proved(double from, const Look& first, double to,
 
 /// The time until which the swept volumes are disjoint; if the sample has no axis, a bound from the
 /// speed only.
-double ImpactSearch::free_until(double time, double end, const Look& look) const noexcept {
-  if (look.axis.isZero(0.0)) {
-    return std::min(end, time + 0.5 * look.gap / pair_.most_closing());
+double ImpactSearch::free_until(double time, double end, const PairSample& sample) const noexcept {
+  if (sample.axis.isZero(0.0)) {
+    return std::min(end, time + 0.5 * sample.gap / pair_.most_closing());
   }
-  const double swept = pair_.swept_gap(look.axis) - std::min(0.25 * tolerance_, 0.5 * look.gap);
+  const double swept = pair_.swept_gap(sample.axis) - std::min(0.25 * tolerance_, 0.5 * sample.gap);
   if (!(swept > 0.0)) return time;
-  const double closing = pair_.swept_closing(look.axis);
+  const double closing = pair_.swept_closing(sample.axis);
   return closing > 0.0 ? std::min(end, time + swept / closing * (1.0 - 8.0 * kEpsilon)) : end;
 }
 
 /// Converts an answer at a time; `from` is the position that shape a's points are relative to, from
 /// the position of its body.
-Impact ImpactSearch::met(double time, const PairAnswer& answer, const double (&from)[3]) noexcept {
+Impact ImpactSearch::impact_from(double time, const PairAnswer& answer,
+                                 const double (&from)[3]) noexcept {
   Impact impact;
   impact.hit = true;
   impact.time = time;
@@ -325,12 +326,12 @@ Impact ImpactSearch::met(double time, const PairAnswer& answer, const double (&f
 
 /// The impact at a time at which the pair is placed: disjoint before, and here within the tolerance
 /// or too close for double to decide.
-Impact ImpactSearch::meet_at(double time, Look& look) noexcept {
-  if (look.parted) return near_at(time, look);
+Impact ImpactSearch::impact_at(double time, PairSample& sample) noexcept {
+  if (sample.parted) return impact_of_sample(time, sample);
   if (time == 0.0) return start();
   Pose pose_a;
   const PairAnswer answer = answer_at(time, pose_a);
-  Impact impact = met(time, answer, pose_a.position);
+  Impact impact = impact_from(time, answer, pose_a.position);
   impact.gap = std::max(impact.gap, 0.0);
   impact.error_bound += unscaled(pair_.problem(), pair_.noise());
   return impact;
@@ -338,18 +339,18 @@ Impact ImpactSearch::meet_at(double time, Look& look) noexcept {
 
 /// The impact from a sample that separates the shapes. Polytopes are sampled again if their closest
 /// points are not accurate yet.
-Impact ImpactSearch::near_at(double time, Look& look) noexcept {
+Impact ImpactSearch::impact_of_sample(double time, PairSample& sample) noexcept {
   const bool polytopes = pair_.a().is_polytope() && pair_.b().is_polytope();
-  if (polytopes && look.most - look.gap > 4.0 * pair_.noise()) look_at_cores(0.0, look);
+  if (polytopes && sample.most - sample.gap > 4.0 * pair_.noise()) sample_cores(0.0, sample);
   const solver::Problem& problem = pair_.problem();
-  const double gap = look.between.norm() - pair_.roundings();
-  const Vec normal = solver::unit(look.between);
-  const Vec point = look.on_a + normal * pair_.a().rounding + pair_.arm();
+  const double gap = sample.between.norm() - pair_.roundings();
+  const Vec normal = solver::unit(sample.between);
+  const Vec point = sample.on_a + normal * pair_.a().rounding + pair_.arm();
   Impact impact;
   impact.hit = true;
   impact.time = time;
   impact.gap = unscaled(problem, std::max(gap, 0.0));
-  impact.error_bound = unscaled(problem, std::max(look.most - gap, gap - look.gap));
+  impact.error_bound = unscaled(problem, std::max(sample.most - gap, gap - sample.gap));
   Vec::Map(impact.normal) = normal;
   for (int i = 0; i < 3; ++i) impact.point[i] = unscaled(problem, point[i]);
   return impact;
@@ -361,38 +362,38 @@ Impact ImpactSearch::start() const noexcept {
   const Pose& start_a = a_.motion.start;
   const Pose& start_b = b_.motion.start;
   if (a_.arm.isZero(0.0) && b_.arm.isZero(0.0)) {
-    return met(0.0, distance_of(tables_, a_.shape, start_a, b_.shape, start_b), kHere);
+    return impact_from(0.0, distance_of(tables_, a_.shape, start_a, b_.shape, start_b), kHere);
   }
   Pose pose_a;
   const PairAnswer answer = answer_at(0.0, pose_a);
-  return met(0.0, answer, pose_a.position);
+  return impact_from(0.0, answer, pose_a.position);
 }
 
 /// Returns whether the pair is within the tolerance and is expected to touch before the end, or has
 /// been within it for many samples.
-bool ImpactSearch::has_met(double time, double end, const Look& look) noexcept {
-  if (look.most > std::max(tolerance_, 8.0 * pair_.noise())) return false;
-  return look.gap + look.slope * (end - time) <= 0.0 || ++within_ > kMostWithin;
+bool ImpactSearch::is_impact(double time, double end, const PairSample& sample) noexcept {
+  if (sample.most > std::max(tolerance_, 8.0 * pair_.noise())) return false;
+  return sample.gap + sample.slope * (end - time) <= 0.0 || ++within_ > kMaxSamplesWithin;
 }
 
 /// One step from `time`, where the pair is placed. Returns the time until which the pair is
-/// certainly disjoint. If there is a sample at that time, `look` becomes this and `known` is set.
-double ImpactSearch::advance(double time, double end, Look& look, bool& known) noexcept {
+/// certainly disjoint. If there is a sample at that time, `sample` becomes this and `known` is set.
+double ImpactSearch::advance(double time, double end, PairSample& sample, bool& known) noexcept {
   known = false;
-  const double free = free_until(time, end, look);
-  if (free >= end || look.axis.isZero(0.0)) return free;
-  const double to = next(time, std::min(end, touching_), look);
+  const double free = free_until(time, end, sample);
+  if (free >= end || sample.axis.isZero(0.0)) return free;
+  const double to = next(time, std::min(end, touching_), sample);
   if (to <= free) return free;
-  const Look there = this->look(to);
-  const double apart = proved(time, look, to, there);
+  const PairSample there = this->sample(to);
+  const double apart = proved(time, sample, to, there);
   if (!there.parted) touching_ = std::min(touching_, time + 0.75 * (to - time));
   if (apart < to) return std::max(apart, free);
   // The error of a linear prediction is proportional to the square of the step, and so to the
   // square of the relative gap.
-  const double expected = look.gap + look.slope * (to - time);
-  aim_ = std::clamp(4.0 * std::abs(there.gap - expected) / look.gap * there.gap / look.gap, 1e-9,
-                    0.25);
-  look = there;
+  const double expected = sample.gap + sample.slope * (to - time);
+  aim_ = std::clamp(4.0 * std::abs(there.gap - expected) / sample.gap * there.gap / sample.gap,
+                    1e-9, 0.25);
+  sample = there;
   known = there.parted;
   return to;
 }
@@ -407,17 +408,17 @@ Impact ImpactSearch::run() noexcept {
     if (at_start.gap <= 0.0 || pair_.touches_soon()) return at_start;
   }
   double time = first;
-  Look now;
+  PairSample now;
   bool known = false;
   while (true) {
-    if (!known) now = look(time);
-    if (!now.parted || has_met(time, last, now)) return meet_at(time, now);
+    if (!known) now = sample(time);
+    if (!now.parted || is_impact(time, last, now)) return impact_at(time, now);
     const double free = advance(time, last, now, known);
     if (free >= last || free > until_) return {};
     // No double is left between, or too many samples were taken.
-    if (free <= time || looks_ >= kMostLooks) {
-      now = look(time);
-      return meet_at(time, now);
+    if (free <= time || samples_ >= kMaxSamples) {
+      now = sample(time);
+      return impact_at(time, now);
     }
     time = free;
     if (time >= touching_) touching_ = kUnbounded;
@@ -440,7 +441,7 @@ Impact find_impact(const ShapeTables& tables, const MovingPart& a, const MovingP
   const auto search = [&](const MovingPart& first, const MovingPart& second) {
     ImpactSearch impacts(tables, first, second, tolerance, within, until);
     Impact found = impacts.run();
-    found.samples = impacts.looks();
+    found.samples = impacts.samples();
     return found;
   };
   if (!solver::is_prepared_mirrored(a.shape.kind(), b.shape.kind())) return search(a, b);

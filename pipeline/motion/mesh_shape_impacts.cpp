@@ -3,10 +3,10 @@
 
 #include <winnow/pipeline/deformable_mesh.h>
 
-#include "core/sort/stretches.h"
+#include "core/sort/parallel_ranges.h"
 #include "core/threads/float_environment.h"
 #include "pipeline/motion/face_impact.h"
-#include "pipeline/motion/passage.h"
+#include "pipeline/motion/relative_motion_bounds.h"
 #include "pipeline/motion/result_chunk.h"
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t kFacesPerStretch = 16;
 
-[[nodiscard]] Status status_of(const PartTraversal& parts, const MeshObstacle& obstacle,
+[[nodiscard]] Status status_of(const SubShapeQuery& parts, const MeshObstacle& obstacle,
                                const ImpactOptions& options) noexcept {
   if (!(options.tolerance > 0.0 && options.tolerance <= 1.0)) return Status::invalid_argument;
   if (obstacle.shape.is_composite() && options.composites == nullptr) return Status::unsupported;
@@ -25,12 +25,12 @@ constexpr std::size_t kFacesPerStretch = 16;
 }
 
 /// The bounding box of the whole motion, relative to `origin`.
-[[nodiscard]] Aabb box_of_way(const PartTraversal& parts, const MeshObstacle& obstacle,
-                              const Vec3d& origin) noexcept {
+[[nodiscard]] Aabb swept_box(const SubShapeQuery& parts, const MeshObstacle& obstacle,
+                             const Vec3d& origin) noexcept {
   const RigidMotion frame = RigidMotion::standing(Pose::at(origin.x(), origin.y(), origin.z()));
   const impact::MovingShape whole = impact::whole_shape(parts, obstacle.shape, obstacle.motion);
   const PreciseBox box =
-      impact::Passage(parts, frame, whole).box({0.0, 1.0}).grown(obstacle.separation);
+      impact::RelativeMotionBounds(parts, frame, whole).box({0.0, 1.0}).grown(obstacle.separation);
   return Aabb::outward(box.min, box.max);
 }
 
@@ -57,7 +57,7 @@ Status DeformableMesh::find_shape_impacts(
     const MeshObstacle& obstacle, const ImpactOptions& options,
     const ResultChunks<MeshShapeImpact>& chunks) const noexcept {
   const DefaultEnvironment environment;
-  const PartTraversal parts(obstacle.shapes, options.composites);
+  const SubShapeQuery parts(obstacle.shapes, options.composites);
   if (!is_moved() || !(obstacle.separation >= 0.0 && obstacle.separation <= 0.5 * reach())) {
     return Status::invalid_argument;
   }
@@ -69,7 +69,7 @@ Status DeformableMesh::find_shape_impacts(
   if (!results.reserve(options_.chunk) || !found.resize(options_.chunk)) {
     return Status::out_of_memory;
   }
-  const auto look = [&](std::uint32_t number) {
+  const auto impact_of = [&](std::uint32_t number) {
     std::array<Vec3d, 3> start;
     std::array<Vec3d, 3> end;
     place_face(number, start, end);
@@ -83,18 +83,19 @@ Status DeformableMesh::find_shape_impacts(
                                     options.tolerance);
   };
   const auto take = [&](std::span<const Pair> faces) {
-    for_stretches(options_.execution, faces.size(), kFacesPerStretch,
-                  [&](std::size_t begin, std::size_t end) {
-                    for (std::size_t i = begin; i < end; ++i) found[i] = look(faces[i].second);
-                  });
+    for_each_range(options_.execution, faces.size(), kFacesPerStretch,
+                   [&](std::size_t begin, std::size_t end) {
+                     for (std::size_t i = begin; i < end; ++i)
+                       found[i] = impact_of(faces[i].second);
+                   });
     for (std::size_t i = 0; i < faces.size(); ++i) {
       if (found[i].impact.hit) results.add(shown(faces[i].second, obstacle, found[i]));
     }
   };
   const Status status =
-      find_faces(box_of_way(parts, obstacle, options_.origin), ResultChunks<Pair>(take));
+      find_faces(swept_box(parts, obstacle, options_.origin), ResultChunks<Pair>(take));
   if (status != Status::ok) return status;
-  results.hand_over();
+  results.flush();
   return Status::ok;
 }
 

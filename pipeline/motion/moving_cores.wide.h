@@ -4,24 +4,24 @@
 // axis through the body's position, their placement at a time, and their support functions. Used by
 // all impact kernels beside this file.
 
-#include "pipeline/kernels/own_support.wide.h"
 #include "pipeline/kernels/pair_lanes.wide.h"
+#include "pipeline/kernels/user_support.wide.h"
 #include "pipeline/motion/impact_lanes.kernel.h"
 
 namespace winnow::WINNOW_ISA_NAME::impact {
 
 using Vector = Vec3<double>;
-using Truth = LaneMask<double>;
+using DoubleMask = LaneMask<double>;
 
-inline constexpr int kWidth = Doubles::kCount;
+inline constexpr int kDoubleLanes = Doubles::kCount;
 /// The distance from 1 to the next double.
-inline constexpr double kPlace = 0x1p-52;
+inline constexpr double kDoubleEpsilon = 0x1p-52;
 /// Axes that differ by less count as equal; the difference is covered by the noise.
-inline constexpr double kAxisDoubt = 16.0 * kPlace;
+inline constexpr double kAxisError = 16.0 * kDoubleEpsilon;
 /// In radians: hulls that rotate farther are measured by their vertices (measure_turning_hulls).
 inline constexpr double kFarTurn = 2.0;
 /// Hulls with at most this many vertices have them copied to lanes.
-inline constexpr int kFewVertices = 2 * kWidth;
+inline constexpr int kFewVertices = 2 * kDoubleLanes;
 
 [[gnu::always_inline]] inline Vector zero_vector() {
   const Doubles zero(0.0);
@@ -33,7 +33,7 @@ inline constexpr int kFewVertices = 2 * kWidth;
 [[gnu::always_inline]] inline Doubles positive_part(const Doubles& v) {
   return max(v, Doubles(0.0));
 }
-[[gnu::always_inline]] inline Doubles one_where(const Truth& mask) {
+[[gnu::always_inline]] inline Doubles one_where(const DoubleMask& mask) {
   return select(mask, Doubles(1.0), Doubles(0.0));
 }
 
@@ -69,8 +69,8 @@ struct SineCosineLanes {
   // For a multiple of 1/4 this rounds down to an integer.
   const Doubles turns = nearest_whole(quarters * Doubles(0.25) - Doubles(0.375));
   const Doubles quarter = quarters - turns * Doubles(4.0);
-  const Truth back = quarter > Doubles(1.5);
-  const Truth odd = (quarter == Doubles(1.0)) | (quarter == Doubles(3.0));
+  const DoubleMask back = quarter > Doubles(1.5);
+  const DoubleMask odd = (quarter == Doubles(1.0)) | (quarter == Doubles(3.0));
   const Doubles s = select(odd, cosine, sine);
   const Doubles c = select(odd, -sine, cosine);
   return {select(back, -s, s), select(back, -c, c)};
@@ -92,7 +92,7 @@ struct Orientation {
 }
 
 [[gnu::always_inline]] inline Rotation<double> rotation_of(const Orientation& q) {
-  return rotation(Turn<double>{q.w, q.v, Doubles(2.0)});
+  return rotation(ScaledQuaternion<double>{q.w, q.v, Doubles(2.0)});
 }
 
 /// Offsets of the members of RigidMotion, in doubles.
@@ -144,12 +144,12 @@ struct CoreTable {
   /// Whether the core rotates: never for spheres, for half-spaces only in jobs of
   /// ImpactMotion::plane_turns.
   bool turns;
-  const HullShape* hull[kWidth];
-  const SupportShape* own[kWidth];
+  const HullShape* hull[kDoubleLanes];
+  const SupportShape* own[kDoubleLanes];
   /// For hulls of which none has more than kFewVertices vertices: the number of vertex rows; the
   /// last rows may repeat vertices. Else 0.
   int rows;
-  alignas(64) double vertex[kFewVertices][3][kWidth];
+  alignas(64) double vertex[kFewVertices][3][kDoubleLanes];
 };
 
 /// Copies the vertices of a lane's hull to `rows` rows.
@@ -167,14 +167,14 @@ static inline void copy_few_vertices(CoreTable& table) {
   for (const HullShape* hull : table.hull) {
     most = hull->vertex_count > most ? hull->vertex_count : most;
   }
-  table.rows = most > kFewVertices ? 0 : most > kWidth ? kFewVertices : kWidth;
+  table.rows = most > kFewVertices ? 0 : most > kDoubleLanes ? kFewVertices : kDoubleLanes;
   for (int k = 0; k < 3; ++k) {
     for (int row = 0; row < table.rows; row += 4) {
-      const double* from[kWidth];
-      for (int lane = 0; lane < kWidth; ++lane) {
+      const double* from[kDoubleLanes];
+      for (int lane = 0; lane < kDoubleLanes; ++lane) {
         const HullShape& hull = *table.hull[lane];
-        // Padding to a multiple of kWidth repeats vertex 0.
-        const bool has = (row & kWidth) < static_cast<int>(hull.vertex_count);
+        // Padding to a multiple of kDoubleLanes repeats vertex 0.
+        const bool has = (row & kDoubleLanes) < static_cast<int>(hull.vertex_count);
         from[lane] = hull.vertex[k] + (has ? row : 0);
       }
       Doubles four[4];
@@ -189,12 +189,12 @@ static inline void copy_few_vertices(CoreTable& table) {
 static inline Vector farthest_of_few(const CoreTable& table, const Vector& d) {
   Doubles most(-__builtin_inf());
   Vector point = zero_vector();
-  for (int place = 0; place < kWidth; ++place) {
-    for (int row = place; row < table.rows; row += kWidth) {
+  for (int place = 0; place < kDoubleLanes; ++place) {
+    for (int row = place; row < table.rows; row += kDoubleLanes) {
       const Vector v{Doubles::load(table.vertex[row][0]), Doubles::load(table.vertex[row][1]),
                      Doubles::load(table.vertex[row][2])};
       const Doubles value = v.x * d.x + v.y * d.y + v.z * d.z;
-      const Truth higher = value > most;
+      const DoubleMask higher = value > most;
       most = select(higher, value, most);
       point = select(higher, v, point);
     }
@@ -205,11 +205,11 @@ static inline Vector farthest_of_few(const CoreTable& table, const Vector& d) {
 /// Support point of each lane's hull, in the hull's frame.
 static inline Vector farthest_of_hulls(const CoreTable& table, const Vector& direction,
                                        Mask16 lanes) {
-  alignas(64) double d[3][kWidth];
-  alignas(64) double best[kWidth][kWidth];
-  alignas(64) double where[kWidth][kWidth];
+  alignas(64) double d[3][kDoubleLanes];
+  alignas(64) double best[kDoubleLanes][kDoubleLanes];
+  alignas(64) double where[kDoubleLanes][kDoubleLanes];
   if (lanes != kAllLanes<double>) {
-    for (int lane = 0; lane < kWidth; ++lane) {
+    for (int lane = 0; lane < kDoubleLanes; ++lane) {
       Doubles(0.0).store(best[lane]);
       Doubles(0.0).store(where[lane]);
     }
@@ -217,7 +217,7 @@ static inline Vector farthest_of_hulls(const CoreTable& table, const Vector& dir
   direction.x.store(d[0]);
   direction.y.store(d[1]);
   direction.z.store(d[2]);
-  alignas(64) static constexpr double kSteps[kWidth] = {0, 1, 2, 3, 4, 5, 6, 7};
+  alignas(64) static constexpr double kSteps[kDoubleLanes] = {0, 1, 2, 3, 4, 5, 6, 7};
   const Doubles steps = Doubles::load(kSteps);
   for (Mask16 rest = lanes; rest != 0; rest &= rest - 1) {
     const unsigned lane = first(rest);
@@ -228,20 +228,20 @@ static inline Vector farthest_of_hulls(const CoreTable& table, const Vector& dir
     Doubles most(-__builtin_inf());
     Doubles at = steps;
     Doubles here = steps;
-    for (std::uint32_t row = 0; row < hull.vertex_count; row += kWidth) {
+    for (std::uint32_t row = 0; row < hull.vertex_count; row += kDoubleLanes) {
       const Doubles value = Doubles::load(hull.vertex[0] + row) * x +
                             Doubles::load(hull.vertex[1] + row) * y +
                             Doubles::load(hull.vertex[2] + row) * z;
-      const Truth higher = value > most;
+      const DoubleMask higher = value > most;
       most = select(higher, value, most);
       at = select(higher, here, at);
-      here += Doubles(kWidth);
+      here += Doubles(kDoubleLanes);
     }
     most.store(best[lane]);
     at.store(where[lane]);
   }
-  Doubles value[kWidth];
-  Doubles index[kWidth];
+  Doubles value[kDoubleLanes];
+  Doubles index[kDoubleLanes];
   for (int half = 0; half < 2; ++half) {
     Doubles four[4];
     load_rows4([&](int lane) { return best[lane] + 4 * half; }, four);
@@ -249,13 +249,13 @@ static inline Vector farthest_of_hulls(const CoreTable& table, const Vector& dir
     load_rows4([&](int lane) { return where[lane] + 4 * half; }, four);
     for (int k = 0; k < 4; ++k) index[4 * half + k] = four[k];
   }
-  for (int k = 1; k < kWidth; ++k) {
-    const Truth higher = value[k] > value[0];
+  for (int k = 1; k < kDoubleLanes; ++k) {
+    const DoubleMask higher = value[k] > value[0];
     value[0] = select(higher, value[k], value[0]);
     index[0] = select(higher, index[k], index[0]);
   }
-  alignas(64) double number[kWidth];
-  alignas(64) double vertex[3][kWidth] = {};
+  alignas(64) double number[kDoubleLanes];
+  alignas(64) double vertex[3][kDoubleLanes] = {};
   index[0].store(number);
   for (Mask16 rest = lanes; rest != 0; rest &= rest - 1) {
     const unsigned lane = first(rest);
@@ -269,12 +269,12 @@ static inline Vector farthest_of_hulls(const CoreTable& table, const Vector& dir
 }
 
 /// Support point of each lane's user shape.
-static inline Vector farthest_of_own(const CoreTable& table, const Vector& direction,
-                                     Mask16 lanes) {
-  alignas(64) double d[3][kWidth];
-  alignas(64) double point[3][kWidth] = {};
+static inline Vector farthest_of_user_shape(const CoreTable& table, const Vector& direction,
+                                            Mask16 lanes) {
+  alignas(64) double d[3][kDoubleLanes];
+  alignas(64) double point[3][kDoubleLanes] = {};
   const Doubles size = length(direction);
-  const Truth has_size = size > Doubles(0.0);
+  const DoubleMask has_size = size > Doubles(0.0);
   select(has_size, direction.x / size, Doubles(1.0)).store(d[0]);
   select(has_size, direction.y / size, Doubles(0.0)).store(d[1]);
   select(has_size, direction.z / size, Doubles(0.0)).store(d[2]);
@@ -282,7 +282,7 @@ static inline Vector farthest_of_own(const CoreTable& table, const Vector& direc
     const unsigned lane = first(lanes);
     const double along[3] = {d[0][lane], d[1][lane], d[2][lane]};
     double x[3];
-    own_point(*table.own[lane], along, x);
+    user_point(*table.own[lane], along, x);
     for (int k = 0; k < 3; ++k) point[k][lane] = x[k];
   }
   return {Doubles::load(point[0]), Doubles::load(point[1]), Doubles::load(point[2])};
@@ -297,7 +297,7 @@ static inline Vector farthest_of_own(const CoreTable& table, const Vector& direc
 
 [[gnu::always_inline]] inline Vector farthest_of_corners(const MovingCore& core, const Vector& d) {
   const Doubles on[3] = {dot(core.corner[0], d), dot(core.corner[1], d), dot(core.corner[2], d)};
-  const Truth is_first = (on[0] >= on[1]) & (on[0] >= on[2]);
+  const DoubleMask is_first = (on[0] >= on[1]) & (on[0] >= on[2]);
   return select(is_first, core.corner[0], select(on[1] >= on[2], core.corner[1], core.corner[2]));
 }
 
@@ -358,7 +358,7 @@ static inline Vector farthest_of_taper(const Vector& half, const Vector& d) {
     case ShapeKind::tapered_capsule:
       return farthest_of_taper(core.half, d);
     case ShapeKind::support:
-      return farthest_of_own(table, d, lanes);
+      return farthest_of_user_shape(table, d, lanes);
     default:
       return table.rows > 0 ? farthest_of_few(table, d) : farthest_of_hulls(table, d, lanes);
   }
@@ -423,9 +423,9 @@ static inline Doubles reach_of(const CoreTable& table, const MovingCore& core, c
 }
 
 /// The maximum of each row; row i belongs to lane i.
-static inline Doubles greatest_of_rows(const double (&row)[kWidth][kWidth]) {
+static inline Doubles greatest_of_rows(const double (&row)[kDoubleLanes][kDoubleLanes]) {
   Doubles most(-__builtin_inf());
-  for (int half = 0; half < kWidth; half += 4) {
+  for (int half = 0; half < kDoubleLanes; half += 4) {
     Doubles four[4];
     load_rows4([&](int lane) { return row[lane] + half; }, four);
     for (const Doubles& values : four) most = max(most, values);
@@ -442,10 +442,10 @@ static inline void measure_turning_hulls(const CoreTable& table, const Vector& w
   core.reach = length(cross(core.half, w)) + radius;
   core.low = height - radius;
   core.high = height + radius;
-  const Truth far = core.angle > Doubles(kFarTurn);
+  const DoubleMask far = core.angle > Doubles(kFarTurn);
   if (bits(far) == 0) return;
-  alignas(64) double axis[3][kWidth];
-  alignas(64) double found[3][kWidth][kWidth] = {};
+  alignas(64) double axis[3][kDoubleLanes];
+  alignas(64) double found[3][kDoubleLanes][kDoubleLanes] = {};
   w.x.store(axis[0]);
   w.y.store(axis[1]);
   w.z.store(axis[2]);
@@ -457,7 +457,7 @@ static inline void measure_turning_hulls(const CoreTable& table, const Vector& w
     Doubles high(-__builtin_inf());
     Doubles low(-__builtin_inf());
     // Padding repeats vertex 0.
-    for (std::uint32_t row = 0; row < hull.vertex_count; row += kWidth) {
+    for (std::uint32_t row = 0; row < hull.vertex_count; row += kDoubleLanes) {
       const Vector v{Doubles::load(hull.vertex[0] + row), Doubles::load(hull.vertex[1] + row),
                      Doubles::load(hull.vertex[2] + row)};
       const Vector arm = cross(v, about);
@@ -554,14 +554,14 @@ template <typename Index>
       break;
     }
     case ShapeKind::support: {
-      for (int lane = 0; lane < kWidth; ++lane) {
+      for (int lane = 0; lane < kDoubleLanes; ++lane) {
         table.own[lane] = &tables.supports[index(lane)];
       }
       core.rounding = load_rows1([&](int lane) { return &table.own[lane]->rounding; });
       break;
     }
     default: {
-      for (int lane = 0; lane < kWidth; ++lane) {
+      for (int lane = 0; lane < kDoubleLanes; ++lane) {
         table.hull[lane] = &tables.hulls[index(lane)];
       }
       Doubles middle[4];
@@ -587,7 +587,7 @@ static inline void measure(const CoreTable& table, MovingCore& core) {
     core.extent = side * Doubles(0.5) + core.rounding;
   } else if (table.kind == ShapeKind::hull) {
     core.extent = load_rows1([&](int lane) { return &table.hull[lane]->radius; }) + core.rounding;
-    core.size = taxicab(core.half) + core.extent;
+    core.size = norm_l1(core.half) + core.extent;
   } else if (table.kind == ShapeKind::cylinder || table.kind == ShapeKind::cone) {
     core.extent = sqrt(core.half.x * core.half.x + core.half.z * core.half.z) + core.rounding;
     core.size = core.extent;
@@ -618,20 +618,20 @@ inline void bring_to_world(MovingCore& core) {
 /// Loads the rotation of a core whose sizes are computed, and its orientation at the start. Returns
 /// the lanes in which this part of the motion is certainly valid and in the range of double.
 template <typename Row>
-[[gnu::always_inline]] inline Truth load_turn(const CoreTable& table, Row&& motion,
-                                              MovingCore& core) {
+[[gnu::always_inline]] inline DoubleMask load_turn(const CoreTable& table, Row&& motion,
+                                                   MovingCore& core) {
   constexpr double kLongest = 1e200;
-  constexpr double kLeastAngle = 1e-100;
+  constexpr double kMinAngle = 1e-100;
   const Doubles zero(0.0);
   const Doubles one(1.0);
   core.angle = core.reach = zero;
   Doubles q[4];
   load_rows4([&](int lane) { return motion(lane) + kOrientationAt; }, q);
   const Doubles square = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
-  Truth usable = (square > Doubles(1.0 / kLongest)) & (square < Doubles(kLongest));
+  DoubleMask usable = (square > Doubles(1.0 / kLongest)) & (square < Doubles(kLongest));
   // A sphere's core does not rotate, but its body may, which is validated below.
   if (!table.turns && table.kind != ShapeKind::sphere) {
-    core.axes = rotation(Turn<double>{q[0], {q[1], q[2], q[3]}, Doubles(2.0) / square});
+    core.axes = rotation(ScaledQuaternion<double>{q[0], {q[1], q[2], q[3]}, Doubles(2.0) / square});
     if (table.in_world) bring_to_world(core);
     return usable;
   }
@@ -639,13 +639,13 @@ template <typename Row>
   load_rows4([&](int lane) { return motion(lane) + kTurnAt - 1; }, row);
   const Vector about{row[1], row[2], row[3]};
   const Doubles turn = dot(about, about);
-  usable = usable & (turn <= Doubles(RigidMotion::kMostTurn * RigidMotion::kMostTurn));
+  usable = usable & (turn <= Doubles(RigidMotion::kMaxTurn * RigidMotion::kMaxTurn));
   if (!table.turns) return usable;
   const Doubles shrink = one / sqrt(square);
   const Orientation from{q[0] * shrink, Vector{q[1], q[2], q[3]} * shrink};
   core.from = from;
   const Doubles angle = sqrt(turn);
-  const Truth turns = angle > Doubles(kLeastAngle);
+  const DoubleMask turns = angle > Doubles(kMinAngle);
   core.angle = select(turns, angle, zero);
   core.axis = select(turns, about * (one / angle), Vector{zero, zero, one});
   const Vector own = rotation_of(from).to_local(core.axis);
@@ -656,7 +656,7 @@ template <typename Row>
     core.low = dot(own, farthest(table, core, -own, kAllLanes<double>));
     core.high = dot(own, farthest(table, core, own, kAllLanes<double>));
   }
-  core.reach = core.reach * Doubles(1.0 + kAxisDoubt);
+  core.reach = core.reach * Doubles(1.0 + kAxisError);
   return usable;
 }
 

@@ -3,9 +3,9 @@
 
 #include "pipeline/motion/moving_pair.h"
 
-#include "pipeline/motion/turn.h"
-#include "pipeline/shapes/difference.h"
+#include "pipeline/motion/deterministic_trig.h"
 #include "pipeline/shapes/hypotenuse.h"
+#include "pipeline/shapes/two_diff.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,10 +15,10 @@
 namespace winnow::impact {
 namespace {
 
+using solver::AxisRange;
 using solver::Core;
 using solver::CoreKind;
 using solver::kEpsilon;
-using solver::Range;
 
 constexpr double kForever = std::numeric_limits<double>::infinity();
 /// Squares above this keep all their digits.
@@ -139,7 +139,7 @@ void take_drift(Core& core, const Vec* drift, const solver::Scale& scaled,
 TurningCore turning(Core& core, const RigidMotion& motion, const Vec& arm) noexcept {
   TurningCore result;
   if (core.kind == CoreKind::point && arm.isZero(0.0)) return result;
-  result.from = normalized(tame(motion.start.orientation));
+  result.from = normalized(scale_to_unit_max(motion.start.orientation));
   result.first_arm = arm;
   if (core.kind == CoreKind::half_space) {
     take_arm(core, result.from, arm);
@@ -161,7 +161,7 @@ TurningCore turning(Core& core, const RigidMotion& motion, const Vec& arm) noexc
   if (core.kind == CoreKind::half_space) return result;
   result.reach =
       (reach_of(core, local_axis) + result.arm.cross(result.axis).norm()) * (1.0 + kSameAxis);
-  const Range range = project(core, local_axis);
+  const AxisRange range = project(core, local_axis);
   const double height = result.arm.dot(result.axis);
   result.along = {height + range.low, height + range.high};
   return result;
@@ -247,7 +247,7 @@ MovingPair::MovingPair(const ShapeTables& tables, const MovingPart& a,
                        const MovingPart& b) noexcept {
   const RigidMotion& of_a = a.motion;
   const RigidMotion& of_b = b.motion;
-  const Difference apart = difference(of_b.start.position, of_a.start.position);
+  const TwoDiff apart = difference(of_b.start.position, of_a.start.position);
   const Vec start = Vec::Map(apart.difference);
   const Vec way = Vec::Map(of_b.travel) - Vec::Map(of_a.travel);
   const Vec end = start + way;

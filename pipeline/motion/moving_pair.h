@@ -51,7 +51,7 @@ struct TurningCore {
   /// Upper bound on the distance of the core's points from the axis.
   double reach = 0.0;
   /// The range of the core along the axis, from the body's position.
-  solver::Range along{0.0, 0.0};
+  solver::AxisRange along{0.0, 0.0};
   /// From the body's position to the shape's at the start.
   Vec first_arm = Vec::Zero();
   /// From the body's position to the centre, where the core is placed. Zero for a half-space, whose

@@ -23,12 +23,12 @@ class PairStream {
       : buffer_(memory), chunk_(chunk), take_(take) {}
 
   [[nodiscard]] bool reserve() noexcept {
-    if (chunk_ > Column<Pair>::kMost - kSinkSlack || !buffer_.reserve(chunk_ + kSinkSlack)) {
+    if (chunk_ > Column<Pair>::kMaxSize - kSinkSlack || !buffer_.reserve(chunk_ + kSinkSlack)) {
       return false;
     }
     sink_.owner = this;
     sink_.grow = [](PairSink& sink) {
-      static_cast<PairStream*>(sink.owner)->hand_on();
+      static_cast<PairStream*>(sink.owner)->flush();
       return true;
     };
     aim();
@@ -37,7 +37,7 @@ class PairStream {
 
   [[nodiscard]] PairSink& sink() noexcept { return sink_; }
 
-  void hand_on() noexcept {
+  void flush() noexcept {
     const auto* const begin = reinterpret_cast<const std::uint32_t*>(buffer_.data());
     const auto count = static_cast<std::size_t>(sink_.cursor - begin) / 2;
     for (std::size_t i = 0; i < count; i += chunk_) {
@@ -59,9 +59,9 @@ class PairStream {
 };
 
 /// A buffer for the pairs of some units of a walk; the walk stops if it is full.
-class PairRoom {
+class BoundedPairBuffer {
  public:
-  explicit PairRoom(std::pmr::memory_resource* memory) noexcept : buffer_(memory) {}
+  explicit BoundedPairBuffer(std::pmr::memory_resource* memory) noexcept : buffer_(memory) {}
   [[nodiscard]] bool reserve(std::size_t pairs) noexcept {
     room_ = pairs;
     return buffer_.reserve(pairs + kSinkSlack);
@@ -95,19 +95,20 @@ template <typename Walk, typename Take>
                                 std::size_t chunk, std::uint32_t units, Walk&& walk,
                                 Take&& take) noexcept {
   constexpr std::uint32_t kSides = 8;
-  constexpr std::size_t kLeastRoom = 256;
+  constexpr std::size_t kMinRoom = 256;
   PairStream stream(memory, chunk, take);
   if (!stream.reserve()) return false;
   const std::size_t room = chunk / kSides;
-  if (units < 2 || room < kLeastRoom || execution.concurrency() < 2) {
+  if (units < 2 || room < kMinRoom || execution.concurrency() < 2) {
     if (units != 0) walk(0U, units, stream.sink());
-    stream.hand_on();
+    stream.flush();
     return true;
   }
-  std::array<PairRoom, kSides> sides{PairRoom(memory), PairRoom(memory), PairRoom(memory),
-                                     PairRoom(memory), PairRoom(memory), PairRoom(memory),
-                                     PairRoom(memory), PairRoom(memory)};
-  for (PairRoom& side : sides) {
+  std::array<BoundedPairBuffer, kSides> sides{BoundedPairBuffer(memory), BoundedPairBuffer(memory),
+                                              BoundedPairBuffer(memory), BoundedPairBuffer(memory),
+                                              BoundedPairBuffer(memory), BoundedPairBuffer(memory),
+                                              BoundedPairBuffer(memory), BoundedPairBuffer(memory)};
+  for (BoundedPairBuffer& side : sides) {
     if (!side.reserve(room)) return false;
   }
   std::uint32_t width = 1;
@@ -122,7 +123,7 @@ template <typename Walk, typename Take>
       most = std::max(most, sides[k].fits() ? sides[k].pairs().size() : 2 * room);
       if (!sides[k].fits()) {
         walk(begin(k), begin(k + 1), stream.sink());
-        stream.hand_on();
+        stream.flush();
       } else if (!sides[k].pairs().empty()) {
         take(sides[k].pairs());
       }

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "pipeline/motion/passage.h"
+#include "pipeline/motion/relative_motion_bounds.h"
 
 namespace winnow::impact {
 
@@ -14,7 +14,7 @@ class PartPair {
   /// Adds a part. A triangle of a surface keeps its corners in the body's frame, where they are bit
   /// for bit equal to its neighbours' corners, so that nothing passes between neighbours.
   [[nodiscard]] MovingPart put(std::size_t slot, const MovingShape& moving) noexcept {
-    ConvexPart part = moving.shape;
+    SubShape part = moving.shape;
     MovingPart result{part.shape, moving.motion};
     TriangleShape own;
     if (part.triangle != nullptr && is_unturned(part.pose)) {
@@ -24,10 +24,10 @@ class PartPair {
       }
       part.triangle = &own;
     } else if (part.part != kWholeShape) {
-      const Quaternion turn = normalized(tame(moving.motion.start.orientation));
+      const Quaternion turn = normalized(scale_to_unit_max(moving.motion.start.orientation));
       const Eigen::Matrix3d to_world = rotation_of_unit(turn);
       result.arm = to_world * Vec::Map(part.pose.position);
-      const Quaternion q = product(turn, normalized(tame(part.pose.orientation)));
+      const Quaternion q = multiply(turn, normalized(scale_to_unit_max(part.pose.orientation)));
       std::copy(q.begin(), q.end(), result.motion.start.orientation);
     }
     result.shape = tables_.put(slot, part);

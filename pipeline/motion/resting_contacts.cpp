@@ -103,7 +103,7 @@ bool RestingContacts::find(const ShapeTables& tables, OrderedPair& ordered,
     }
   }
   contact = {ordered.turned(best), unscaled(pair.problem(), gap + pair.noise()),
-             gap > 0.0 && touch_ != StartTouch::is_entered};
+             gap > 0.0 && touch_ != StartTouch::impact_unless_sliding};
   return contact.apart || touch_ != StartTouch::meets;
 }
 
@@ -113,11 +113,11 @@ void RestingContacts::keep(const Contact& contact) noexcept {
     if (contact.gap < known.gap) known = contact;
     return;
   }
-  if (count_ < kMost) contacts_[count_++] = contact;
+  if (count_ < kMaxContacts) contacts_[count_++] = contact;
 }
 
-void RestingContacts::note(const ShapeTables& tables, const MovingPart& a,
-                           const MovingPart& b) noexcept {
+void RestingContacts::record(const ShapeTables& tables, const MovingPart& a,
+                             const MovingPart& b) noexcept {
   OrderedPair pair(tables, a, b);
   Contact contact;
   if (find(tables, pair, contact)) keep(contact);
@@ -145,7 +145,7 @@ bool RestingContacts::part(const ShapeTables& tables, const MovingPart& a,
   if (std::any_of(contacts_.begin(), contacts_.begin() + count_, by)) return true;
   // If the store is full, also test the parts' own contact.
   Contact own;
-  return count_ == kMost && find(tables, pair, own) && by(own);
+  return count_ == kMaxContacts && find(tables, pair, own) && by(own);
 }
 
 }  // namespace winnow::impact

@@ -10,9 +10,9 @@ namespace winnow::impact {
 
 /// How shapes that overlap at the start of their motions are treated.
 enum class StartTouch : std::uint8_t {
-  meets,      ///< an impact at time 0
-  left_out,   ///< no impact
-  is_entered  ///< an impact at time 0 unless they slide or separate there
+  meets,                 ///< an impact at time 0
+  ignored,               ///< no impact
+  impact_unless_sliding  ///< an impact at time 0 unless they slide or separate there
 };
 
 /// The contacts of two bodies at the start of their motions. Bodies slide or separate at a contact
@@ -26,7 +26,7 @@ class RestingContacts {
       : share_(share), length_(length), touch_(touch) {}
 
   /// Records the contact of two convex parts, if they have one.
-  void note(const ShapeTables& tables, const MovingPart& a, const MovingPart& b) noexcept;
+  void record(const ShapeTables& tables, const MovingPart& a, const MovingPart& b) noexcept;
   /// Returns whether no contact was recorded.
   [[nodiscard]] bool is_empty() const noexcept { return count_ == 0; }
   /// Returns whether two parts slide or separate along their own contact or along a recorded one.
@@ -52,13 +52,13 @@ class RestingContacts {
 
   /// Contacts beyond these are not stored; a motion that slides along them may then hit other
   /// parts.
-  static constexpr std::size_t kMost = 8;
+  static constexpr std::size_t kMaxContacts = 8;
 
   double share_;
   double length_;
   StartTouch touch_;
   std::size_t count_ = 0;
-  std::array<Contact, kMost> contacts_;
+  std::array<Contact, kMaxContacts> contacts_;
 };
 
 }  // namespace winnow::impact

@@ -18,10 +18,10 @@ class ResultChunk {
     return results_.reserve(most);
   }
   void add(const Result& result) noexcept {
-    if (results_.size() == most_) hand_over();
+    if (results_.size() == most_) flush();
     static_cast<void>(results_.push_back(result));
   }
-  void hand_over() noexcept {
+  void flush() noexcept {
     if (!results_.empty()) chunks_.take(chunks_.context, {results_.data(), results_.size()});
     results_.clear();
   }

@@ -1,7 +1,7 @@
 #include <winnow/core/rotation.h>
 #include <winnow/pipeline/rigid_motion.h>
 #include "core/threads/float_environment.h"
-#include "pipeline/motion/turn.h"
+#include "pipeline/motion/deterministic_trig.h"
 
 #include <algorithm>
 #include <cmath>
@@ -32,9 +32,9 @@ RigidMotion RigidMotion::between(const Pose& start, const Pose& end) noexcept {
     if (!end.is_valid()) motion.turn[0] = std::numeric_limits<double>::quiet_NaN();
     return motion;
   }
-  const Quaternion from = normalized(tame(start.orientation));
-  const Quaternion to = normalized(tame(end.orientation));
-  Quaternion way = product(to, {from[0], -from[1], -from[2], -from[3]});
+  const Quaternion from = normalized(scale_to_unit_max(start.orientation));
+  const Quaternion to = normalized(scale_to_unit_max(end.orientation));
+  Quaternion way = multiply(to, {from[0], -from[1], -from[2], -from[3]});
   if (way[0] < 0.0) {
     for (double& x : way) x = -x;
   }
@@ -67,7 +67,7 @@ bool RigidMotion::is_valid() const noexcept {
     sum += (travel[i] - travel[i]) + (end - end);
     square += turn[i] * turn[i];
   }
-  return start.is_valid() && sum == 0.0 && square <= kMostTurn * kMostTurn;
+  return start.is_valid() && sum == 0.0 && square <= kMaxTurn * kMaxTurn;
 }
 
 Pose RigidMotion::at(double time) const noexcept {
@@ -77,7 +77,8 @@ Pose RigidMotion::at(double time) const noexcept {
   const double angle = impact::length_of(turn);
   if (angle == 0.0) return pose;
   const double axis[3] = {turn[0] / angle, turn[1] / angle, turn[2] / angle};
-  const Quaternion q = impact::turned(normalized(tame(start.orientation)), axis, time * angle);
+  const Quaternion q =
+      impact::turned(normalized(scale_to_unit_max(start.orientation)), axis, time * angle);
   std::copy(q.begin(), q.end(), pose.orientation);
   return pose;
 }

@@ -2,7 +2,7 @@
 // with composite shapes to find_body_impact.
 
 #include <winnow/pipeline/time_of_impact.h>
-#include "core/sort/stretches.h"
+#include "core/sort/parallel_ranges.h"
 #include "core/threads/float_environment.h"
 #include "pipeline/motion/body_impact.h"
 #include "pipeline/motion/impact_batch.h"
@@ -34,7 +34,7 @@ class KnownShapes {
 };
 
 /// Does not validate motions of convex shapes, which ImpactBatch does.
-[[nodiscard]] Status status_of(const PartTraversal& parts, const MovingBodies& bodies,
+[[nodiscard]] Status status_of(const SubShapeQuery& parts, const MovingBodies& bodies,
                                const ImpactOptions& options, const BodyPair& pair) noexcept {
   for (const std::uint32_t body : {pair.a, pair.b}) {
     const ShapeId shape = bodies.shapes[body];
@@ -98,7 +98,7 @@ Footprint ImpactResult::footprint() const noexcept {
 }
 
 /// Solves pairs [first, end), at most as many as fit a batch.
-void ImpactResult::find_stretch(const PartTraversal& parts, const MovingBodies& bodies,
+void ImpactResult::find_stretch(const SubShapeQuery& parts, const MovingBodies& bodies,
                                 std::span<const BodyPair> pairs, const ImpactOptions& options,
                                 std::size_t first, std::size_t end) {
   impact::ImpactBatch batch(parts.shapes().tables(), options.tolerance);
@@ -144,11 +144,11 @@ Status time_of_impact(const ShapePool& shapes, const MovingBodies& bodies,
       pairs, [count](const BodyPair& pair) { return pair.a < count && pair.b < count; });
   if (!exist) return refuse(Status::invalid_argument);
   if (!result.resize(pairs.size())) return refuse(Status::out_of_memory);
-  const PartTraversal parts(shapes, options.composites);
-  for_stretches(options.execution, pairs.size(), impact::ImpactBatch::kRoom,
-                [&](std::size_t first, std::size_t end) {
-                  result.find_stretch(parts, bodies, pairs, options, first, end);
-                });
+  const SubShapeQuery parts(shapes, options.composites);
+  for_each_range(options.execution, pairs.size(), impact::ImpactBatch::kRoom,
+                 [&](std::size_t first, std::size_t end) {
+                   result.find_stretch(parts, bodies, pairs, options, first, end);
+                 });
   return Status::ok;
 }
 

@@ -2,7 +2,7 @@
 
 #include <winnow/core/execution.h>
 #include <winnow/pipeline/narrow_result.h>
-#include "core/sort/stretches.h"
+#include "core/sort/parallel_ranges.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -13,13 +13,13 @@ namespace winnow {
 /// answers.size() entries.
 inline void find_slots(const NarrowResult& answers, const Execution& execution,
                        std::uint32_t* slots) noexcept {
-  constexpr std::size_t kAnswersPerStretch = 8192;
-  for_stretches(execution, answers.size(), kAnswersPerStretch,
-                [&](std::size_t first, std::size_t end) {
-                  for (std::size_t i = first; i < end; ++i) {
-                    slots[answers.pair_of(i)] = static_cast<std::uint32_t>(i);
-                  }
-                });
+  constexpr std::size_t kAnswersPerRange = 8192;
+  for_each_range(execution, answers.size(), kAnswersPerRange,
+                 [&](std::size_t first, std::size_t end) {
+                   for (std::size_t i = first; i < end; ++i) {
+                     slots[answers.pair_of(i)] = static_cast<std::uint32_t>(i);
+                   }
+                 });
 }
 
 }  // namespace winnow

@@ -7,9 +7,9 @@
 #include "core/hooks/stage_scope.h"
 #include "core/memory/columns.h"
 #include "core/memory/new_in.h"
-#include "core/sort/stretches.h"
+#include "core/sort/parallel_ranges.h"
 #include "core/threads/float_environment.h"
-#include "pipeline/narrow/question.h"
+#include "pipeline/narrow/validate_options.h"
 #include "pipeline/shapes/pair_order.h"
 #include "pipeline/solver/solver.h"
 
@@ -44,10 +44,10 @@ struct KindCodes {
 constexpr KindCodes kKindCodes;
 
 // Pairs per parallel task.
-[[nodiscard]] constexpr std::size_t stretch_of(std::size_t pairs) noexcept {
-  constexpr std::size_t kLeast = 16384;
-  constexpr std::size_t kMostStretches = 64;
-  return even_stretch(pairs, kLeast, kMostStretches);
+[[nodiscard]] constexpr std::size_t range_size(std::size_t pairs) noexcept {
+  constexpr std::size_t kMinPairs = 16384;
+  constexpr std::size_t kMaxRanges = 64;
+  return even_range_length(pairs, kMinPairs, kMaxRanges);
 }
 
 // True if all of a, b < limit <= 2^31. Only sums and ors, so that every compiler vectorizes it.
@@ -75,7 +75,7 @@ constexpr KindCodes kKindCodes;
   constexpr std::size_t kShapesPerTask = 65536;
   const std::uint32_t base = kind << ShapeId::kIndexBits;
   std::atomic<std::uint32_t> any_outside{0};
-  for_even_stretches(
+  for_each_even_range(
       execution, shapes.size(), kShapesPerTask, [&](std::size_t first, std::size_t end) {
         std::uint32_t outside = 0;
         for (const ShapeId& id : shapes.subspan(first, end - first)) {  // copies do not vectorize
@@ -94,7 +94,7 @@ constexpr KindCodes kKindCodes;
 class PairBuckets {
  public:
   explicit PairBuckets(std::pmr::memory_resource* memory) noexcept
-      : sorted_(memory), codes_(memory), looks_(memory) {}
+      : sorted_(memory), codes_(memory), tasks_(memory) {}
 
   /// Sorts the pairs, unless they are in order already; order[i] becomes the input index of sorted
   /// pair i. Returns `invalid_argument` for a body that does not exist, `invalid_key` for a shape
@@ -106,7 +106,7 @@ class PairBuckets {
   [[nodiscard]] const BodyPair* pairs() const noexcept { return pairs_; }
   /// True if some pair has its bodies swapped.
   [[nodiscard]] bool any_mirrored() const noexcept { return any_mirrored_; }
-  [[nodiscard]] Bytes bytes() const noexcept { return bytes_of(sorted_, codes_, looks_); }
+  [[nodiscard]] Bytes bytes() const noexcept { return bytes_of(sorted_, codes_, tasks_); }
 
  private:
   /// The range of the pair codes that occur.
@@ -120,7 +120,7 @@ class PairBuckets {
     }
   };
   /// The result of a task that checks and counts a range of the pairs.
-  struct Look {
+  struct TaskCounts {
     Status status;
     std::uint32_t bad_body;
     std::uint32_t mirrored;
@@ -144,22 +144,22 @@ class PairBuckets {
                   std::span<const BodyPair> pair, Column<std::uint32_t>& order,
                   Column<NarrowRun>& runs, std::uint32_t& bad_body);
   template <typename Body>
-  void for_looks(std::span<const BodyPair> pairs, const Execution& execution, Body&& body);
+  void for_tasks(std::span<const BodyPair> pairs, const Execution& execution, Body&& body);
   template <typename Note>
   void for_codes(const ShapeTables& tables, std::span<const ShapeId> shapes,
-                 std::span<const BodyPair> pairs, std::size_t first, Look& look,
+                 std::span<const BodyPair> pairs, std::size_t first, TaskCounts& task,
                  Note&& note) noexcept;
-  void look_at(const ShapeTables& tables, std::span<const ShapeId> shapes,
-               std::span<const BodyPair> pairs, std::size_t first, Look& look) noexcept;
+  void count_pairs(const ShapeTables& tables, std::span<const ShapeId> shapes,
+                   std::span<const BodyPair> pairs, std::size_t first, TaskCounts& task) noexcept;
   Status sum_up(std::uint32_t& bad_body) noexcept;
-  void find_places() noexcept;
-  void place(std::span<const BodyPair> pairs, std::size_t first, Look& look,
+  void find_offsets() noexcept;
+  void place(std::span<const BodyPair> pairs, std::size_t first, TaskCounts& task,
              std::uint32_t* order) noexcept;
   Status add_runs(Column<NarrowRun>& runs) const;
 
   Column<BodyPair> sorted_;
   Column<std::uint8_t> codes_;
-  Column<Look> looks_;
+  Column<TaskCounts> tasks_;
   std::uint32_t counts_[KindPairs::kCount] = {};
   Codes there_;
   const BodyPair* pairs_ = nullptr;
@@ -179,35 +179,38 @@ Status PairBuckets::sort(const ShapeTables& tables, std::span<const ShapeId> sha
   there_ = {};
   // If the pool holds only one kind, the kinds of the pairs need not be read. Checking the shapes
   // of all bodies instead pays only if there are not too many bodies per pair.
-  constexpr std::size_t kLook = 8;  // estimated cost of classifying a pair, in checks of a body
+  constexpr std::size_t kClassifyCost =
+      8;  // estimated cost of classifying a pair, in checks of a body
   const std::uint32_t only =
-      shapes.size() / kLook <= pairs.size() ? only_kind(tables) : kShapeKinds;
+      shapes.size() / kClassifyCost <= pairs.size() ? only_kind(tables) : kShapeKinds;
   const bool one_kind = only != kShapeKinds && all_are(shapes, only, tables.count[only], execution);
-  const std::size_t looks =
-      (pairs.size() + stretch_of(pairs.size()) - 1) / stretch_of(pairs.size());
-  if (!order.resize(pairs.size()) || !looks_.resize(looks) ||
+  const std::size_t tasks =
+      (pairs.size() + range_size(pairs.size()) - 1) / range_size(pairs.size());
+  if (!order.resize(pairs.size()) || !tasks_.resize(tasks) ||
       (!one_kind && !codes_.resize(pairs.size()))) {
     return Status::out_of_memory;
   }
-  for_looks(pairs, execution, [&](std::span<const BodyPair> some, std::size_t first, Look& look) {
-    look.clear();
-    std::iota(order.data() + first, order.data() + first + some.size(),
-              static_cast<std::uint32_t>(first));
-    if (!all_below(some, static_cast<std::uint32_t>(shapes.size()))) {
-      look.status = Status::invalid_argument;
-    } else if (one_kind) {
-      look.add(KindPairs::index(only, only), static_cast<std::uint32_t>(some.size()));
-    } else {
-      look_at(tables, shapes, some, first, look);
-    }
-  });
+  for_tasks(pairs, execution,
+            [&](std::span<const BodyPair> some, std::size_t first, TaskCounts& task) {
+              task.clear();
+              std::iota(order.data() + first, order.data() + first + some.size(),
+                        static_cast<std::uint32_t>(first));
+              if (!all_below(some, static_cast<std::uint32_t>(shapes.size()))) {
+                task.status = Status::invalid_argument;
+              } else if (one_kind) {
+                task.add(KindPairs::index(only, only), static_cast<std::uint32_t>(some.size()));
+              } else {
+                count_pairs(tables, shapes, some, first, task);
+              }
+            });
   if (const Status status = sum_up(bad_body); status != Status::ok) return status;
   if (there_.low >= there_.high && !any_mirrored_) return add_runs(runs);
   if (!sorted_.resize(pairs.size())) return Status::out_of_memory;
-  find_places();
-  for_looks(pairs, execution, [&](std::span<const BodyPair> some, std::size_t first, Look& look) {
-    place(some, first, look, order.data());
-  });
+  find_offsets();
+  for_tasks(pairs, execution,
+            [&](std::span<const BodyPair> some, std::size_t first, TaskCounts& task) {
+              place(some, first, task, order.data());
+            });
   pairs_ = sorted_.data();
   return add_runs(runs);
 }
@@ -242,13 +245,13 @@ Status PairBuckets::take_one(const ShapeTables& tables, std::span<const ShapeId>
   return Status::ok;
 }
 
-// Calls body(pairs, index of the first, look) for each range of the pairs, in parallel.
+// Calls body(pairs, index of the first, task) for each range of the pairs, in parallel.
 template <typename Body>
-void PairBuckets::for_looks(std::span<const BodyPair> pairs, const Execution& execution,
+void PairBuckets::for_tasks(std::span<const BodyPair> pairs, const Execution& execution,
                             Body&& body) {
-  const std::size_t length = stretch_of(pairs.size());
-  for_stretches(execution, pairs.size(), length, [&](std::size_t first, std::size_t end) {
-    body(pairs.subspan(first, end - first), first, looks_[first / length]);
+  const std::size_t length = range_size(pairs.size());
+  for_each_range(execution, pairs.size(), length, [&](std::size_t first, std::size_t end) {
+    body(pairs.subspan(first, end - first), first, tasks_[first / length]);
   });
 }
 
@@ -256,7 +259,7 @@ void PairBuckets::for_looks(std::span<const BodyPair> pairs, const Execution& ex
 // bodies exist.
 template <typename Note>
 void PairBuckets::for_codes(const ShapeTables& tables, std::span<const ShapeId> shapes,
-                            std::span<const BodyPair> pairs, std::size_t first, Look& look,
+                            std::span<const BodyPair> pairs, std::size_t first, TaskCounts& task,
                             Note&& note) noexcept {
   std::uint32_t limit[KindCodes::kKinds] = {};
   std::copy_n(tables.count, kShapeKinds, limit);
@@ -264,8 +267,8 @@ void PairBuckets::for_codes(const ShapeTables& tables, std::span<const ShapeId> 
     const ShapeId a = shapes[pairs[i].a];
     const ShapeId b = shapes[pairs[i].b];
     if (a.index() >= limit[a.kind_index()] || b.index() >= limit[b.kind_index()]) [[unlikely]] {
-      look.bad_body = a.index() >= limit[a.kind_index()] ? pairs[i].a : pairs[i].b;
-      look.status = Status::invalid_key;
+      task.bad_body = a.index() >= limit[a.kind_index()] ? pairs[i].a : pairs[i].b;
+      task.status = Status::invalid_key;
       return;
     }
     const std::uint8_t code = kKindCodes.of[a.kind_index()][b.kind_index()];
@@ -274,13 +277,14 @@ void PairBuckets::for_codes(const ShapeTables& tables, std::span<const ShapeId> 
   }
 }
 
-void PairBuckets::look_at(const ShapeTables& tables, std::span<const ShapeId> shapes,
-                          std::span<const BodyPair> pairs, std::size_t first, Look& look) noexcept {
+void PairBuckets::count_pairs(const ShapeTables& tables, std::span<const ShapeId> shapes,
+                              std::span<const BodyPair> pairs, std::size_t first,
+                              TaskCounts& task) noexcept {
   constexpr std::size_t kFew = 192;
   if (pairs.size() < kFew) {
-    return for_codes(tables, shapes, pairs, first, look, [&](std::size_t, std::uint32_t code) {
-      look.add(code & (kMirrored - 1U), 1);
-      look.mirrored += code / kMirrored;
+    return for_codes(tables, shapes, pairs, first, task, [&](std::size_t, std::uint32_t code) {
+      task.add(code & (kMirrored - 1U), 1);
+      task.mirrored += code / kMirrored;
     });
   }
   // Two tables in turn: with one, runs of equal codes would make each increment depend on the one
@@ -288,29 +292,29 @@ void PairBuckets::look_at(const ShapeTables& tables, std::span<const ShapeId> sh
   constexpr std::size_t kTurns = 2;
   std::uint32_t counts[kTurns][kMirrored + KindPairs::kCount];
   for (auto& some : counts) std::ranges::fill(some, 0U);
-  for_codes(tables, shapes, pairs, first, look,
+  for_codes(tables, shapes, pairs, first, task,
             [&](std::size_t i, std::uint32_t code) { ++counts[i % kTurns][code]; });
   for (std::uint32_t code = 0; code < KindPairs::kCount; ++code) {
     const std::uint32_t mirrored = counts[0][code | kMirrored] + counts[1][code | kMirrored];
     const std::uint32_t all = counts[0][code] + counts[1][code] + mirrored;
-    if (all != 0) look.add(code, all);
-    look.mirrored += mirrored;
+    if (all != 0) task.add(code, all);
+    task.mirrored += mirrored;
   }
 }
 
 // A body that does not exist takes precedence over a shape that does not exist, and leaves bad_body
 // unset.
 Status PairBuckets::sum_up(std::uint32_t& bad_body) noexcept {
-  const Look* refused = nullptr;
-  for (const Look& look : looks_) {
-    if (look.status == Status::invalid_argument) return Status::invalid_argument;
-    if (refused == nullptr && look.status != Status::ok) refused = &look;
-    any_mirrored_ = any_mirrored_ || look.mirrored != 0;
-    for (std::uint32_t code = look.codes.low; code <= look.codes.high; ++code) {
-      counts_[code] += look.counts[code];
+  const TaskCounts* refused = nullptr;
+  for (const TaskCounts& task : tasks_) {
+    if (task.status == Status::invalid_argument) return Status::invalid_argument;
+    if (refused == nullptr && task.status != Status::ok) refused = &task;
+    any_mirrored_ = any_mirrored_ || task.mirrored != 0;
+    for (std::uint32_t code = task.codes.low; code <= task.codes.high; ++code) {
+      counts_[code] += task.counts[code];
     }
-    there_.low = std::min(there_.low, look.codes.low);
-    there_.high = std::max(there_.high, look.codes.high);
+    there_.low = std::min(there_.low, task.codes.low);
+    there_.high = std::max(there_.high, task.codes.high);
   }
   if (refused == nullptr) return Status::ok;
   bad_body = refused->bad_body;
@@ -318,18 +322,18 @@ Status PairBuckets::sum_up(std::uint32_t& bad_body) noexcept {
 }
 
 // Turns the counts into the first place of each task's pairs, by code.
-void PairBuckets::find_places() noexcept {
+void PairBuckets::find_offsets() noexcept {
   std::uint32_t next = 0;
   for (std::uint32_t code = there_.low; code <= there_.high; ++code) {
-    for (Look& look : looks_) next += std::exchange(look.counts[code], next);
+    for (TaskCounts& task : tasks_) next += std::exchange(task.counts[code], next);
   }
 }
 
-void PairBuckets::place(std::span<const BodyPair> pairs, std::size_t first, Look& look,
+void PairBuckets::place(std::span<const BodyPair> pairs, std::size_t first, TaskCounts& task,
                         std::uint32_t* order) noexcept {
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     const std::uint32_t code = codes_[first + i];
-    const std::uint32_t at = look.counts[code & (kMirrored - 1U)]++;
+    const std::uint32_t at = task.counts[code & (kMirrored - 1U)]++;
     const BodyPair pair = pairs[i];
     sorted_[at] = (code & kMirrored) != 0 ? BodyPair{pair.b, pair.a} : pair;
     order[at] = static_cast<std::uint32_t>(first + i);
@@ -368,7 +372,7 @@ constexpr std::size_t kManyBodies = 65536;
   return std::min(pairs, kWave * kJobPairs) * kManifoldPoints + chunks * kContactSlack;
 }
 // Room for the largest chunk in a call of this many pairs.
-[[nodiscard]] std::size_t most_room_for(std::size_t pairs) noexcept {
+[[nodiscard]] std::size_t max_room_for(std::size_t pairs) noexcept {
   return room_for(std::min<std::size_t>(kJobPairs, pairs));
 }
 
@@ -588,7 +592,7 @@ Status NarrowPhase::State::collide(const Call& call, NarrowResult& result) {
   const bool are_matched = call.bodies.shapes.size() == call.bodies.poses.size() &&
                            (options.margins.empty() || options.margins.size() == call.pairs.size());
   if (!are_matched) return Status::size_mismatch;
-  if (!can_be_asked(options)) return Status::invalid_argument;
+  if (!are_valid(options)) return Status::invalid_argument;
   const Status status = buckets.sort(call.tables, call.bodies.shapes, call.pairs, options.execution,
                                      result.order_, result.runs_, call.bad_body);
   if (status != Status::ok) return status;
@@ -614,7 +618,7 @@ Status NarrowPhase::State::run(const Call& call, NarrowResult& result) {
   // A chunk needs room for the most contacts that it may find. With this much spare room, a later
   // call that finds no more contacts than this one does not allocate.
   if (call.options.level == ContactLevel::manifold && call.options.execution.concurrency() == 1 &&
-      !result.contacts_.grow(result.contacts() + most_room_for(call.pairs.size()))) {
+      !result.contacts_.grow(result.contacts() + max_room_for(call.pairs.size()))) {
     return Status::out_of_memory;
   }
   call.statistics.pairs = call.pairs.size();
@@ -655,7 +659,7 @@ bool NarrowPhase::State::answer_wave(const Call& call, std::span<Chunk> wave,
     call.options.execution.for_each(
         wave.size(), [&](std::size_t i) { call.answer(wave[i], result, any_mirrored); });
   } else if (call.options.execution.concurrency() == 1) {
-    const std::size_t room = most_room_for(call.pairs.size());
+    const std::size_t room = max_room_for(call.pairs.size());
     for (Chunk& chunk : wave) {
       if (!result.contacts_.grow(result.contacts() + room)) return false;
       chunk.job.contacts = writer_to(result.contacts_, result.contacts());

@@ -1,6 +1,6 @@
 #include <winnow/pipeline/narrow_result.h>
 #include "pipeline/kernels/kernels.h"
-#include "pipeline/narrow/steady_column.h"
+#include "pipeline/narrow/tight_growth.h"
 
 namespace winnow {
 ContactColumns::ContactColumns(std::pmr::memory_resource* memory) noexcept
@@ -45,16 +45,16 @@ bool NarrowResult::resize(std::size_t count, ContactLevel level) noexcept {
   if (count != 0 && count == size() && level == level_) return true;
   const bool distances = level != ContactLevel::boolean;
   const auto size_of = [count](bool has) { return has ? count : 0; };
-  bool ok = resize_steadily(overlap_, size_of(!distances)) &&
-            resize_steadily(distance_, size_of(distances)) &&
-            resize_steadily(error_bound_, size_of(distances));
-  for (Column<double>& column : normal_) ok = ok && resize_steadily(column, size_of(distances));
+  bool ok = resize_tightly(overlap_, size_of(!distances)) &&
+            resize_tightly(distance_, size_of(distances)) &&
+            resize_tightly(error_bound_, size_of(distances));
+  for (Column<double>& column : normal_) ok = ok && resize_tightly(column, size_of(distances));
   for (Column<double>& column : point_) {
-    ok = ok && resize_steadily(column, size_of(level == ContactLevel::distance));
+    ok = ok && resize_tightly(column, size_of(level == ContactLevel::distance));
   }
   const bool manifolds = level == ContactLevel::manifold;
-  ok = ok && resize_steadily(contact_first_, size_of(manifolds)) &&
-       resize_steadily(contact_count_, size_of(manifolds));
+  ok = ok && resize_tightly(contact_first_, size_of(manifolds)) &&
+       resize_tightly(contact_count_, size_of(manifolds));
   level_ = level;
   return ok;
 }

@@ -2,7 +2,7 @@
 // certify the answer, the much slower solver.
 
 #include "core/threads/float_environment.h"
-#include "pipeline/narrow/question.h"
+#include "pipeline/narrow/validate_options.h"
 #include "pipeline/shapes/pair_order.h"
 #include "pipeline/solver/solver.h"
 
@@ -119,7 +119,7 @@ Status collide(const ShapeTables& tables, ShapeId a, const Pose& pose_a, ShapeId
                const Pose& pose_b, const NarrowOptions& options, PairAnswer& answer) noexcept {
   const DefaultEnvironment environment;
   if (options.margins.size() > 1) return Status::size_mismatch;
-  if (!can_be_asked(options)) return Status::invalid_argument;
+  if (!are_valid(options)) return Status::invalid_argument;
   if (!holds(tables, a) || !holds(tables, b)) return Status::invalid_key;
   if (!is_mirrored(a, b)) {
     OnePair pair(tables, a, pose_a, b, pose_b, options);

@@ -354,7 +354,7 @@ WaitingBlocks& waiting_blocks() {
 
 }  // namespace
 
-std::pair<void*, py::capsule> KeptBlocks::take(std::size_t bytes) {
+std::pair<void*, py::capsule> BlockCache::take(std::size_t bytes) {
   using Block = WaitingBlocks::Block;
   waiting_blocks().reserve();
   auto held = std::make_unique<Block>(waiting_blocks().take(bytes));

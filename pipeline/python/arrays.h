@@ -210,10 +210,10 @@ template <typename T>
 /// A cache of memory blocks of large arrays. A block that is no longer used goes to the next array
 /// of about its size, so that a steady frame has no page faults, which cost more than most queries.
 /// Keeps a few blocks. Thread-safe.
-class KeptBlocks {
+class BlockCache {
  public:
   /// Smaller arrays come from the allocator, whose pages are mapped already.
-  static constexpr std::size_t kLeastBytes = std::size_t{1} << 16U;
+  static constexpr std::size_t kMinBytes = std::size_t{1} << 16U;
 
   /// Returns a block of at least `bytes` bytes, and the capsule that releases it. Needs the GIL.
   [[nodiscard]] static std::pair<void*, py::capsule> take(std::size_t bytes);
@@ -226,8 +226,8 @@ template <typename T, typename... Counts>
                                        static_cast<py::ssize_t>(columns)...};
   std::size_t bytes = sizeof(T) * count;
   ((bytes *= static_cast<std::size_t>(columns)), ...);
-  if (bytes < KeptBlocks::kLeastBytes) return py::array_t<T>(shape);
-  auto [block, owner] = KeptBlocks::take(bytes);
+  if (bytes < BlockCache::kMinBytes) return py::array_t<T>(shape);
+  auto [block, owner] = BlockCache::take(bytes);
   return py::array_t<T>(shape, static_cast<T*>(block), owner);
 }
 [[nodiscard]] inline Key* keys_in(py::array_t<std::uint64_t>& array) {

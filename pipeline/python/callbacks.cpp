@@ -48,11 +48,11 @@ void Raised::keep() noexcept {
   PyErr_WriteUnraisable(nullptr);
 }
 
-Raised::Meanwhile::~Meanwhile() {
+Raised::CallScope::~CallScope() {
   if (--all_.calls_ == 0) const py::object gone = std::exchange(all_.last_, py::object());
 }
 
-void Raised::Meanwhile::raise() const {
+void Raised::CallScope::raise() const {
   if (all_.count_ != before_) python::raise(py::object(all_.last_));
 }
 

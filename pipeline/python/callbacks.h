@@ -26,7 +26,7 @@ class InCallback {
   InCallback& operator=(const InCallback&) = delete;
 
   /// Throws `unsupported` on such a thread: its caller holds locks that the call would block on.
-  static void refuse() {
+  static void forbid() {
     if (depth_ != 0) {
       throw Refusal(Status::unsupported, "a function that winnow calls cannot call winnow");
     }
@@ -66,7 +66,7 @@ class Raised {
   /// Returns work(), or raises the exception that was stored meanwhile.
   template <typename Work>
   auto during(Work&& work) {
-    const Meanwhile meanwhile(*this);
+    const CallScope meanwhile(*this);
     try {
       auto answer = std::forward<Work>(work)();
       meanwhile.raise();
@@ -78,12 +78,12 @@ class Raised {
   }
 
  private:
-  class Meanwhile {
+  class CallScope {
    public:
-    explicit Meanwhile(Raised& all) noexcept : all_(all), before_(all.count_) { ++all_.calls_; }
-    ~Meanwhile();
-    Meanwhile(const Meanwhile&) = delete;
-    Meanwhile& operator=(const Meanwhile&) = delete;
+    explicit CallScope(Raised& all) noexcept : all_(all), before_(all.count_) { ++all_.calls_; }
+    ~CallScope();
+    CallScope(const CallScope&) = delete;
+    CallScope& operator=(const CallScope&) = delete;
     void raise() const;
 
    private:

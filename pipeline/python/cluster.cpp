@@ -4,7 +4,7 @@
 
 #include "pipeline/python/arrays.h"
 #include "pipeline/python/choices.h"
-#include "pipeline/python/made.h"
+#include "pipeline/python/init_checks.h"
 #include "pipeline/python/partition.h"
 #include "pipeline/python/ranks.h"
 #include "pipeline/python/refusal.h"

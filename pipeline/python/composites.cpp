@@ -1,8 +1,8 @@
 // Triangle meshes, height fields and compounds of the class Shapes.
 
+#include "pipeline/python/batch.h"
 #include "pipeline/python/entry_columns.h"
 #include "pipeline/python/locks.h"
-#include "pipeline/python/questions.h"
 #include "pipeline/python/refusal.h"
 #include "pipeline/python/shared_shapes.h"
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "pipeline/python/arrays.h"
-#include "pipeline/python/made.h"
+#include "pipeline/python/init_checks.h"
 
 #include <winnow/core/debug_draw.h>
 

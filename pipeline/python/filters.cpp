@@ -67,7 +67,7 @@ void add_filters(py::module_& module) {
            "needs the GIL: some microseconds a call. It must return the same result each time and "
            "must not call winnow (unsupported); the query raises its exceptions. `layer`, for "
            "queries of a scene: finds bodies in layers that collide with this layer, see "
-           "Scene.set_layers_meet.")
+           "Scene.set_layers_collide.")
       .def_property_readonly("layers", [](const PythonFilter& f) { return f.filter.layers; })
       .def_property_readonly("mask", [](const PythonFilter& f) { return f.filter.mask; })
       .def_property_readonly("environment",

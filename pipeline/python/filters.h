@@ -3,7 +3,7 @@
 // The class Filter, and its use by queries of partitions and scenes.
 
 #include "pipeline/python/callbacks.h"
-#include "pipeline/python/made.h"
+#include "pipeline/python/init_checks.h"
 #include "pipeline/python/partition.h"
 #include "pipeline/python/shared_scene.h"
 

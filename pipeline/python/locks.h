@@ -17,7 +17,7 @@ namespace winnow::python {
 /// Runs body() with shared access.
 template <typename Body>
 auto reading(std::shared_mutex& mutex, Body&& body) {
-  InCallback::refuse();
+  InCallback::forbid();
   const WithoutGil release;
   const std::shared_lock lock(mutex);
   return std::forward<Body>(body)();
@@ -28,7 +28,7 @@ auto reading(std::shared_mutex& mutex, Body&& body) {
 template <typename Body>
 auto reading_two(std::shared_mutex& a, std::shared_mutex& b, Body&& body) {
   const bool in_order = std::less<>()(&a, &b);
-  InCallback::refuse();
+  InCallback::forbid();
   const WithoutGil release;
   const std::shared_lock first(in_order ? a : b);
   std::shared_lock<std::shared_mutex> second;
@@ -39,7 +39,7 @@ auto reading_two(std::shared_mutex& a, std::shared_mutex& b, Body&& body) {
 /// Runs body() with exclusive access.
 template <typename Body>
 auto changing(std::shared_mutex& mutex, Body&& body) {
-  InCallback::refuse();
+  InCallback::forbid();
   const WithoutGil release;
   const std::unique_lock lock(mutex);
   return std::forward<Body>(body)();

@@ -139,7 +139,7 @@ PYBIND11_MODULE(_core, module) {
   module.attr("NULL_KEY") = ~std::uint64_t{0} >> 32U;
   module.attr("NO_OBJECT") = kNoObject;
   module.attr("WHOLE_SHAPE") = kWholeShape;
-  module.attr("EVERY_ENVIRONMENT") = kEveryEnvironment;
+  module.attr("EVERY_ENVIRONMENT") = kAllEnvironments;
   module.def("outward", &outward, py::arg("lower"), py::arg("upper"), py::arg("origin"),
              "The smallest float boxes, (n, 3) float32 each, that contain boxes in double, "
              "measured from `origin`, (n, 3) or (3,): for worlds far from 0.");

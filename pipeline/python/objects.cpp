@@ -59,7 +59,8 @@ void update_boxes(SharedPartition& p, py::handle key_array, py::handle lower, py
   }
   const Integers<std::uint32_t> numbers(entry_numbers(entries), "entries");
   change_objects(p, numbers.count(), "update", [&] {
-    return p.partition.update(keys.keys(), boxes.view(p.room), Entries::listed(numbers.values()));
+    return p.partition.update(keys.keys(), boxes.view(p.room),
+                              IndexSubset::listed(numbers.values()));
   });
 }
 

@@ -70,7 +70,7 @@ namespace {
 }
 
 void reserve(SharedPartition& p, std::size_t objects, std::size_t pairs, bool touch) {
-  const Pages pages = touch ? Pages::touched : Pages::untouched;
+  const Pages pages = touch ? Pages::prefaulted : Pages::untouched;
   accept(changing(p.mutex,
                   [&] {
                     const Status status = p.partition.reserve(objects, pages);

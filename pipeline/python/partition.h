@@ -3,7 +3,7 @@
 #include "pipeline/python/arrays.h"
 #include "pipeline/python/callbacks.h"
 #include "pipeline/python/choices.h"
-#include "pipeline/python/made.h"
+#include "pipeline/python/init_checks.h"
 #include "pipeline/python/pool.h"
 #include "pipeline/python/recordable.h"
 
@@ -66,7 +66,7 @@ class Exported : public NeedsInit {
   }
   /// Locks out other threads that fill it or make arrays of it. Blocks without the GIL.
   [[nodiscard]] std::unique_lock<std::mutex> hold() const {
-    InCallback::refuse();
+    InCallback::forbid();
     const WithoutGil release;
     return std::unique_lock(mutex_);
   }

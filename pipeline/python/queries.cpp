@@ -1,9 +1,9 @@
 // Queries of a partition, in batches: rays, swept volumes, regions and nearest objects.
 
+#include "pipeline/python/batch.h"
 #include "pipeline/python/filters.h"
 #include "pipeline/python/locks.h"
 #include "pipeline/python/partition.h"
-#include "pipeline/python/questions.h"
 #include "pipeline/python/volumes.h"
 
 #include <winnow/core/cast.h>
@@ -83,8 +83,8 @@ class FreshHits {
 }
 
 /// Directions and ranges of t of swept volumes.
-struct Sweeps {
-  Sweeps(py::handle directions, py::handle least, py::handle most)
+struct CastBatch {
+  CastBatch(py::handle directions, py::handle least, py::handle most)
       : direction(directions, "directions", {3}),
         min_t(least, "min_t", {}, true),
         max_t(most, "max_t", {}, true) {
@@ -173,7 +173,7 @@ class RayInput {
 
  private:
   Numbers origin_;
-  Sweeps sweeps_;
+  CastBatch sweeps_;
 };
 
 [[nodiscard]] py::object cast_rays(const SharedPartition& p, py::handle origins,
@@ -208,7 +208,7 @@ class RayInput {
 [[nodiscard]] py::object cast_boxes(const SharedPartition& p, py::handle lower, py::handle upper,
                                     py::handle directions, const std::string& find,
                                     py::handle min_t, py::handle max_t, const Filter& filter) {
-  const Sweeps sweeps(directions, min_t, max_t);
+  const CastBatch sweeps(directions, min_t, max_t);
   Numbers low(lower, "lower", {3});
   Numbers high(upper, "upper", {3});
   low.expect(sweeps.count());
@@ -221,7 +221,7 @@ class RayInput {
                                       py::handle radii, py::handle directions,
                                       const std::string& find, py::handle min_t, py::handle max_t,
                                       const Filter& filter) {
-  const Sweeps sweeps(directions, min_t, max_t);
+  const CastBatch sweeps(directions, min_t, max_t);
   Numbers center(centers, "centers", {3});
   Numbers radius(radii, "radii", {}, true);
   center.expect(sweeps.count());
@@ -235,7 +235,7 @@ class RayInput {
                                        py::handle radii, py::handle directions,
                                        const std::string& find, py::handle min_t, py::handle max_t,
                                        const Filter& filter) {
-  const Sweeps sweeps(directions, min_t, max_t);
+  const CastBatch sweeps(directions, min_t, max_t);
   Numbers from(a, "a", {3});
   Numbers to(b, "b", {3});
   Numbers radius(radii, "radii", {}, true);

@@ -36,8 +36,8 @@ class PythonTransport final : public Transport {
   [[nodiscard]] std::uint32_t first_hosted() const noexcept override { return rank_; }
   [[nodiscard]] std::uint32_t hosted() const noexcept override { return 1; }
 
-  Status exchange(std::span<const Parcel> sent, std::span<const Parcel>& received,
-                  const Meanwhile& meanwhile) override {
+  Status exchange(std::span<const RankMessage> sent, std::span<const RankMessage>& received,
+                  const OverlappedWork& meanwhile) override {
     // alltoall blocks, so meanwhile() cannot run during it.
     meanwhile();
     const Status status = asking([&] { exchange_lists(sent); });
@@ -60,7 +60,7 @@ class PythonTransport final : public Transport {
       }
     });
   }
-  Status cut(std::span<const CutWork> work, std::span<RegionCut> cuts) override {
+  Status cut(std::span<const CutWork> work, std::span<SplitPlane> cuts) override {
     Status status = Status::ok;
     const Status asked = asking([&] {
       const py::list all = gather(bytes_of(std::as_bytes(work.front().boxes)),
@@ -120,10 +120,10 @@ class PythonTransport final : public Transport {
     if (all.size() != ranks_) throw py::value_error("allgather: one of each rank is wanted");
     return all;
   }
-  void exchange_lists(std::span<const Parcel> sent) {
+  void exchange_lists(std::span<const RankMessage> sent) {
     parcels_.clear();
     std::vector<py::object> out(ranks_, py::none());
-    for (const Parcel& parcel : sent) {
+    for (const RankMessage& parcel : sent) {
       if (parcel.to == rank_) {
         parcels_.push_back(parcel);
         continue;
@@ -140,12 +140,12 @@ class PythonTransport final : public Transport {
     columns_.reserve(std::size_t{4} * ranks_);
     for (std::uint32_t from = 0; from < ranks_; ++from) take_from(from, told[from]);
     std::sort(parcels_.begin(), parcels_.end(),
-              [](const Parcel& a, const Parcel& b) { return a.from < b.from; });
+              [](const RankMessage& a, const RankMessage& b) { return a.from < b.from; });
   }
   void take_from(std::uint32_t from, const py::object& one) {
     if (one.is_none() || from == rank_) return;
     const auto columns = one.cast<std::tuple<py::bytes, py::bytes, py::bytes, py::bytes>>();
-    Parcel parcel{from, rank_, {}};
+    RankMessage parcel{from, rank_, {}};
     const auto show = [&](std::size_t c, const py::bytes& bytes) {
       // Copied, to align 8-byte numbers.
       const auto text = static_cast<std::string_view>(bytes);
@@ -165,7 +165,7 @@ class PythonTransport final : public Transport {
   std::uint32_t rank_;
   LoopbackTransport cutter_;  // splits what all ranks have sent
   std::vector<std::vector<std::uint64_t>> columns_;
-  std::vector<Parcel> parcels_;
+  std::vector<RankMessage> parcels_;
   py::object raised_;
 };
 

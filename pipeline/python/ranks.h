@@ -40,7 +40,7 @@ class Ranks {
   template <typename Body>
   void call(Body&& body, const char* name) {
     Status status = Status::ok;
-    InCallback::refuse();
+    InCallback::forbid();
     {
       const WithoutGil release;
       const std::lock_guard lock(mutex_);

@@ -3,7 +3,7 @@
 // Partitions, scenes and their companions that are either recorded or not, with one interface for
 // both. recordings.cpp provides the recorder.
 
-#include "pipeline/python/made.h"
+#include "pipeline/python/init_checks.h"
 #include "pipeline/python/refusal.h"
 
 #include <winnow/pipeline/recording.h>
@@ -172,7 +172,7 @@ class RecordableScene : public RecordableWorld<Scene, RecordedScene> {
   void clear() {
     on([](auto& s) { s.clear(); });
   }
-  Status reserve(const SceneRoom& room, Pages pages) {
+  Status reserve(const SceneCapacity& room, Pages pages) {
     return on([&](auto& s) { return s.reserve(room, pages); });
   }
   Status move(std::span<const Key> keys, const PoseView& poses) {
@@ -193,8 +193,8 @@ class RecordableScene : public RecordableWorld<Scene, RecordedScene> {
   Status set_layer(Key key, std::uint16_t layer) {
     return on([&](auto& s) { return s.set_layer(key, layer); });
   }
-  Status set_layers_meet(std::uint16_t a, std::uint16_t b, bool meet) {
-    return on([&](auto& s) { return s.set_layers_meet(a, b, meet); });
+  Status set_layers_collide(std::uint16_t a, std::uint16_t b, bool meet) {
+    return on([&](auto& s) { return s.set_layers_collide(a, b, meet); });
   }
   Status set_ignored(std::span<const KeyPair> pairs, bool ignored) {
     return on([&](auto& s) { return s.set_ignored(pairs, ignored); });

@@ -34,7 +34,7 @@ namespace {
 }
 
 void close(SharedRecorder& r) {
-  InCallback::refuse();
+  InCallback::forbid();
   const auto closed = [&] {
     const WithoutGil release;
     return r.recorder.close();
@@ -100,7 +100,7 @@ void add_recordings(py::module_& module) {
       .def(
           "end_frame",
           [](SharedRecorder& r) {
-            InCallback::refuse();
+            InCallback::forbid();
             const WithoutGil release;
             r.recorder.end_frame();
           },

@@ -176,7 +176,7 @@ struct SensedTable : EmptyIfZero {
 
 [[nodiscard]] SensedTable sense(SharedSensors& s) {
   std::vector<SensedBody> in;
-  std::vector<LeftSensor> out;
+  std::vector<ExitedBody> out;
   accept(changing_sensors(s,
                           [&] {
                             const Status status = s.sensors.sense();
@@ -194,8 +194,8 @@ struct SensedTable : EmptyIfZero {
           sensed.column<std::uint64_t>(offsetof(SensedBody, sensor_data)),
           sensed.column<std::uint64_t>(offsetof(SensedBody, body_data)),
           sensed.column<std::uint8_t>(offsetof(SensedBody, event)),
-          left.rows<std::uint64_t>(offsetof(LeftSensor, sensor), 2),
-          left.rows<std::uint64_t>(offsetof(LeftSensor, sensor_data), 2)};
+          left.rows<std::uint64_t>(offsetof(ExitedBody, sensor), 2),
+          left.rows<std::uint64_t>(offsetof(ExitedBody, sensor_data), 2)};
 }
 
 using SensorsClass = py::class_<SharedSensors, std::shared_ptr<SharedSensors>>;

@@ -1,5 +1,5 @@
-// The class Scene: bodies and collide. Other members are in meetings.cpp, sweeps.cpp,
-// scene_questions.cpp and snapshots.cpp.
+// The class Scene: bodies and collide. Other members are in pair_filter.cpp, sweeps.cpp,
+// scene_queries.cpp and snapshots.cpp.
 
 #include "pipeline/python/shared_scene.h"
 
@@ -71,7 +71,7 @@ namespace {
 [[nodiscard]] std::shared_ptr<SharedScene> make_scene(const std::shared_ptr<SharedShapes>& shapes,
                                                       double margin, const std::string& tier,
                                                       double carry_over, bool contact_reduction,
-                                                      bool seamless_floors, bool warm_start,
+                                                      bool suppress_ghost_contacts, bool warm_start,
                                                       const std::vector<std::string>& structures,
                                                       bool parallel, std::size_t build_budget,
                                                       const RecorderPointer& recorder) {
@@ -79,14 +79,14 @@ namespace {
   expect_length(carry_over, "carry_over");
   options.carry_over = carry_over;
   options.contact_reduction = contact_reduction;
-  options.seamless_floors = seamless_floors;
+  options.suppress_ghost_contacts = suppress_ghost_contacts;
   options.warm_start = warm_start;
   options.build_budget = build_budget;
   return std::make_shared<SharedScene>(shapes, options, recorder);
 }
 
-void reserve(SharedScene& s, const SceneRoom& room, HeldContacts* contacts, bool touch) {
-  const Pages pages = touch ? Pages::touched : Pages::untouched;
+void reserve(SharedScene& s, const SceneCapacity& room, HeldContacts* contacts, bool touch) {
+  const Pages pages = touch ? Pages::prefaulted : Pages::untouched;
   std::unique_lock<std::mutex> filling;
   Contacts* out = nullptr;
   if (contacts != nullptr) {
@@ -271,7 +271,7 @@ void set_predicate(SharedScene& s, const py::object& function) {
   py::dict result;
   result["boxes_updated"] = stats.boxes_updated;
   result["body_pairs"] = stats.body_pairs;
-  result["balls_apart"] = stats.balls_apart;
+  result["rejected_by_spheres"] = stats.rejected_by_spheres;
   result["carried"] = stats.carried;
   result["primitive_pairs"] = stats.primitive_pairs;
   result["convex"] = narrow_statistics(stats.convex);
@@ -313,13 +313,14 @@ void add_bodies_to(SceneClass& scene) {
   scene
       .def(py::init(&make_scene), arg("shapes").none(false), py::kw_only(), arg("margin") = 0.0,
            arg("tier") = "robust", arg("carry_over") = 0.0, arg("contact_reduction") = false,
-           arg("seamless_floors") = false, arg("warm_start") = false,
+           arg("suppress_ghost_contacts") = false, arg("warm_start") = false,
            arg("structures") = std::vector<std::string>(kMotions, "LinearBvh"),
            arg("parallel") = true, arg("build_budget") = 0, arg("recorder") = py::none(),
            "An empty scene. Pairs at most `margin` apart are contacts too; a pair that has moved "
            "less than `carry_over` keeps its contacts; both are lengths. `tier` as in NarrowPhase. "
            "`contact_reduction`: one manifold for each contact region of composite shapes, instead "
-           "of one for each pair of parts; `seamless_floors`: suppresses ghost contacts at the "
+           "of one for each pair of parts; `suppress_ghost_contacts`: suppresses ghost contacts at "
+           "the "
            "seams between flush fixed bodies; `warm_start`: contacts include their indices in the "
            "last frame. `structures` of fixed, dynamic and sleeping bodies; `build_budget`: rows "
            "of planned work per refresh, 0 for as many as are needed in time. `recorder`: records "
@@ -381,7 +382,8 @@ void add_scene(py::module_& module) {
       .def("set_predicate", &set_predicate, arg("predicate"),
            "Sets `predicate(first, second)`, which decides for each pair of bodies, by id, that "
            "their filters allow; None accepts all. Calls come from any working thread, one at a "
-           "time, because each needs the GIL: some microseconds a pair. Layers (`set_layers_meet`) "
+           "time, because each needs the GIL: some microseconds a pair. Layers "
+           "(`set_layers_collide`) "
            "and `set_ignored` have no such cost. It must return the same result each time, because "
            "it is not called in each frame: set it again to have all pairs tested again. It must "
            "not call winnow (unsupported). `collide` and sweeps raise its exceptions; contacts "
@@ -419,7 +421,7 @@ void add_scene(py::module_& module) {
       "Reserves the memory for a first `collide` with these numbers of bodies of convex shapes, of "
       "pairs whose boxes overlap, and of touching pairs; `contacts` reserves for these, their "
       "manifolds and points. `touch` writes to each page.");
-  add_meetings(module, scene);
+  add_pair_filter(module, scene);
   add_sweeps(module, scene);
   add_scene_queries(module, scene);
   add_scene_snapshots(scene);

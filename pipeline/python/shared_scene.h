@@ -97,7 +97,7 @@ using SceneClass = py::class_<SharedScene, std::shared_ptr<SharedScene>>;
 /// Adds Contacts.
 void add_contacts(py::module_& module);
 /// Adds pair filters, offsets, and groups of contacts.
-void add_meetings(py::module_& module, SceneClass& scene);
+void add_pair_filter(py::module_& module, SceneClass& scene);
 /// Adds sweeps.
 void add_sweeps(py::module_& module, SceneClass& scene);
 /// Adds Sensors.

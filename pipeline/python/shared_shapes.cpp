@@ -2,8 +2,8 @@
 
 #include "pipeline/python/shared_shapes.h"
 
+#include "pipeline/python/batch.h"
 #include "pipeline/python/locks.h"
-#include "pipeline/python/questions.h"
 #include "pipeline/python/refusal.h"
 #include "pipeline/python/snapshots.h"
 

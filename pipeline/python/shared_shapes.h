@@ -2,8 +2,8 @@
 
 #include "pipeline/python/arrays.h"
 #include "pipeline/python/callbacks.h"
+#include "pipeline/python/init_checks.h"
 #include "pipeline/python/locks.h"
-#include "pipeline/python/made.h"
 
 #include <winnow/pipeline/composite_pool.h>
 #include <winnow/pipeline/shape_pool.h>

@@ -40,7 +40,7 @@ constexpr double kParallelRate = 1e-15;
 
 }  // namespace
 
-void FirstEntry::meet(const LocalRay& ray, const RaySpan& span) noexcept {
+void FirstEntry::merge_span(const LocalRay& ray, const RaySpan& span) noexcept {
   if (span.is_empty() || span.out < ray.low - kGrazing / ray.speed) return;
   inside = inside || span.in < ray.low;
   const double entry = std::max(span.in, ray.low);

@@ -199,8 +199,8 @@ class ConeCrossing {
 /// it. If the ray grazes, each step only halves the remaining distance; kMaxSteps allows for
 /// halving a double down to the tolerance.
 template <typename Core>
-void meet_rounded(const LocalRay& ray, const Core& core, double rounding, double t,
-                  FirstEntry& entry) noexcept {
+void merge_rounded(const LocalRay& ray, const Core& core, double rounding, double t,
+                   FirstEntry& entry) noexcept {
   constexpr int kMaxSteps = 200;
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const bool begins = t <= ray.low;
@@ -215,7 +215,7 @@ void meet_rounded(const LocalRay& ray, const Core& core, double rounding, double
       // takes precedence.
       if (entry.found && !(rate < -1e-6 * ray.speed)) return;
       const bool inside = begins && step == 0 && rest < 0.0;
-      entry.meet(ray, {inside ? -kInfinity : t, kInfinity, clear.away});
+      entry.merge_span(ray, {inside ? -kInfinity : t, kInfinity, clear.away});
       return;
     }
     t = next;
@@ -232,7 +232,8 @@ void meet_rounded(const LocalRay& ray, const Core& core, double rounding, double
 [[nodiscard]] FirstEntry enter_axis(const LocalRay& ray, double half_length,
                                     double radius) noexcept {
   FirstEntry entry;
-  entry.meet(ray, capsule_span(ray, {0.0, 0.0, -half_length}, {0.0, 0.0, half_length}, radius));
+  entry.merge_span(ray,
+                   capsule_span(ray, {0.0, 0.0, -half_length}, {0.0, 0.0, half_length}, radius));
   return entry;
 }
 
@@ -240,7 +241,7 @@ void meet_rounded(const LocalRay& ray, const Core& core, double rounding, double
 
 FirstEntry enter(const LocalRay& ray, const SphereShape& sphere, double scale) noexcept {
   FirstEntry entry;
-  entry.meet(ray, ball_span(ray, Vector3d::Zero(), scale * sphere.radius));
+  entry.merge_span(ray, ball_span(ray, Vector3d::Zero(), scale * sphere.radius));
   return entry;
 }
 
@@ -254,19 +255,19 @@ FirstEntry enter(const LocalRay& ray, const CylinderShape& cylinder, double scal
   const double rounding = scale * cylinder.rounding;
   if (radius == 0.0) return enter_axis(ray, half, rounding);
   FirstEntry entry;
-  const auto meet = [&](double r, double h) {
-    entry.meet(ray, common(tube_span(ray, r), slab_span(ray, -h, h)));
+  const auto merge_span = [&](double r, double h) {
+    entry.merge_span(ray, common(tube_span(ray, r), slab_span(ray, -h, h)));
   };
   if (rounding == 0.0) {
-    meet(radius, half);
+    merge_span(radius, half);
     return entry;
   }
   const RaySpan hull =
       common(tube_span(ray, radius + rounding), slab_span(ray, -half - rounding, half + rounding));
   if (hull.is_empty()) return entry;
-  meet(radius + rounding, half);
-  meet(radius, half + rounding);
-  meet_rounded(ray, CylinderCore{radius, half}, rounding, std::max(hull.in, ray.low), entry);
+  merge_span(radius + rounding, half);
+  merge_span(radius, half + rounding);
+  merge_rounded(ray, CylinderCore{radius, half}, rounding, std::max(hull.in, ray.low), entry);
   return entry;
 }
 
@@ -283,7 +284,7 @@ FirstEntry enter(const LocalRay& ray, const ConeShape& cone, double scale) noexc
   if (rounding == 0.0 && std::min(core.sine, core.cosine) < kPlump) {
     const RaySpan around = common(tube_span(ray, radius), slab_span(ray, -half, half));
     if (around.is_empty()) return entry;
-    meet_rounded(ray, core, kGrazing, std::max(around.in, ray.low), entry);
+    merge_rounded(ray, core, kGrazing, std::max(around.in, ray.low), entry);
     if (entry.found && !entry.inside) {
       entry.normal = core.outward(ray.at(entry.t), ray.direction);
     }
@@ -292,7 +293,7 @@ FirstEntry enter(const LocalRay& ray, const ConeShape& cone, double scale) noexc
   if (rounding == 0.0) {
     const RaySpan sides =
         half > 0.0 ? ConeCrossing(ray, core).span(ray.speed) : tube_span(ray, radius);
-    entry.meet(ray, common(slab_span(ray, -half, half), sides));
+    entry.merge_span(ray, common(slab_span(ray, -half, half), sides));
     return entry;
   }
   const RaySpan hull =
@@ -300,8 +301,8 @@ FirstEntry enter(const LocalRay& ray, const ConeShape& cone, double scale) noexc
   if (hull.is_empty()) return entry;
   // The base, extruded by the rounding: a ray can graze along it, where Newton's method is
   // inaccurate.
-  entry.meet(ray, common(tube_span(ray, radius), slab_span(ray, -half - rounding, -half)));
-  meet_rounded(ray, core, rounding, std::max(hull.in, ray.low), entry);
+  entry.merge_span(ray, common(tube_span(ray, radius), slab_span(ray, -half - rounding, -half)));
+  merge_rounded(ray, core, rounding, std::max(hull.in, ray.low), entry);
   return entry;
 }
 
@@ -312,12 +313,12 @@ FirstEntry enter(const LocalRay& ray, const TaperedCapsuleShape& taper, double s
   if (low == high) return enter_axis(ray, half, low);
   const Vector3d end(0.0, 0.0, half);
   FirstEntry entry;
-  if (high - low < 2.0 * half) entry.meet(ray, ball_span(ray, -end, low));
-  if (low - high < 2.0 * half) entry.meet(ray, ball_span(ray, end, high));
+  if (high - low < 2.0 * half) entry.merge_span(ray, ball_span(ray, -end, low));
+  if (low - high < 2.0 * half) entry.merge_span(ray, ball_span(ray, end, high));
   if (std::fabs(high - low) >= 2.0 * half) return entry;
   const RaySpan hull = capsule_span(ray, -end, end, std::max(low, high));
   if (hull.is_empty() || hull.out < ray.low) return entry;
-  meet_rounded(ray, TaperSurface(low, high, half), 0.0, std::max(hull.in, ray.low), entry);
+  merge_rounded(ray, TaperSurface(low, high, half), 0.0, std::max(hull.in, ray.low), entry);
   return entry;
 }
 
@@ -336,8 +337,8 @@ using Eigen::Vector3d;
 }
 
 /// The twelve edges of a box, as capsules.
-void meet_box_edges(const LocalRay& ray, const Vector3d& half, double radius,
-                    FirstEntry& entry) noexcept {
+void merge_box_edges(const LocalRay& ray, const Vector3d& half, double radius,
+                     FirstEntry& entry) noexcept {
   for (int k = 0; k < 3; ++k) {
     for (unsigned signs = 0; signs < 4; ++signs) {
       Vector3d a = half;
@@ -345,7 +346,7 @@ void meet_box_edges(const LocalRay& ray, const Vector3d& half, double radius,
       if ((signs & 2U) != 0) a[(k + 2) % 3] = -a[(k + 2) % 3];
       Vector3d b = a;
       b[k] = -b[k];
-      entry.meet(ray, capsule_span(ray, a, b, radius));
+      entry.merge_span(ray, capsule_span(ray, a, b, radius));
     }
   }
 }
@@ -401,12 +402,13 @@ FirstEntry enter(const LocalRay& ray, const BoxShape& box, double scale) noexcep
   const double rounding = scale * box.rounding;
   FirstEntry entry;
   if (rounding == 0.0) {
-    entry.meet(ray, box_span(ray, half));
+    entry.merge_span(ray, box_span(ray, half));
     return entry;
   }
   if (box_span(ray, half + Vector3d::Constant(rounding)).is_empty()) return entry;
-  for (int k = 0; k < 3; ++k) entry.meet(ray, box_span(ray, half + rounding * Vector3d::Unit(k)));
-  meet_box_edges(ray, half, rounding, entry);
+  for (int k = 0; k < 3; ++k)
+    entry.merge_span(ray, box_span(ray, half + rounding * Vector3d::Unit(k)));
+  merge_box_edges(ray, half, rounding, entry);
   return entry;
 }
 
@@ -417,12 +419,12 @@ FirstEntry enter(const LocalRay& ray, const TriangleShape& triangle, double scal
   const Vector3d area = accurate_cross(vertex[1] - vertex[0], vertex[2] - vertex[0]);
   FirstEntry entry;
   if (area.stableNorm() > 0.0) {
-    entry.meet(ray, prism_span(ray, vertex, area.stableNormalized(), -rounding, rounding));
+    entry.merge_span(ray, prism_span(ray, vertex, area.stableNormalized(), -rounding, rounding));
     // Edges have no normal of their own; they add nothing if the face is hit.
     if (entry.found && rounding == 0.0) return entry;
   }
   for (std::size_t i = 0; i < 3; ++i) {
-    entry.meet(ray, capsule_span(ray, vertex[i], vertex[(i + 1) % 3], rounding));
+    entry.merge_span(ray, capsule_span(ray, vertex[i], vertex[(i + 1) % 3], rounding));
   }
   return entry;
 }
@@ -432,21 +434,21 @@ FirstEntry enter(const LocalRay& ray, const HullShape& hull, double scale) noexc
   const double rounding = scale * hull.rounding;
   FirstEntry entry;
   if (hull.dimension == 0) {
-    entry.meet(ray, ball_span(ray, scaled.vertex(0), rounding));
+    entry.merge_span(ray, ball_span(ray, scaled.vertex(0), rounding));
     return entry;
   }
   if (hull.dimension == 3) {
     if (rounding > 0.0 && scaled.solid(ray, rounding).is_empty()) return entry;
-    entry.meet(ray, scaled.solid(ray, 0.0));
+    entry.merge_span(ray, scaled.solid(ray, 0.0));
     if (rounding == 0.0) return entry;
   }
   for (const HullFace& face : scaled.faces()) {
-    entry.meet(ray, scaled.over(ray, face, rounding));
+    entry.merge_span(ray, scaled.over(ray, face, rounding));
   }
   if (entry.found && rounding == 0.0) return entry;
   for (const HullEdge& edge : scaled.edges()) {
-    entry.meet(ray, capsule_span(ray, scaled.vertex(edge.vertex[0]), scaled.vertex(edge.vertex[1]),
-                                 rounding));
+    entry.merge_span(ray, capsule_span(ray, scaled.vertex(edge.vertex[0]),
+                                       scaled.vertex(edge.vertex[1]), rounding));
   }
   return entry;
 }

@@ -51,7 +51,7 @@ struct FirstEntry {
   double t = std::numeric_limits<double>::infinity();
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
 
-  void meet(const LocalRay& ray, const RaySpan& span) noexcept;
+  void merge_span(const LocalRay& ray, const RaySpan& span) noexcept;
 };
 
 /// Clips a ray by half-spaces. Exits are moved out by the grazing distance, so that rays through

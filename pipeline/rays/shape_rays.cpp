@@ -119,7 +119,7 @@ template <typename Shape>
 void cast(const Shape& shape, const Pose& pose, const ShapeRay& ray, ShapeHit& hit) noexcept {
   constexpr bool kBounded = !std::is_same_v<Shape, HalfSpaceShape>;
   const RelativeRay relative = approach(ray, pose, size_of(shape), kBounded);
-  const Eigen::Matrix3d turn = rotation_of_unit(normalized(tame(pose.orientation)));
+  const Eigen::Matrix3d turn = rotation_of_unit(normalized(scale_to_unit_max(pose.orientation)));
   LocalRay local;
   local.origin = turn.transpose() * relative.origin;
   local.direction = turn.transpose() * relative.direction;

@@ -48,7 +48,7 @@ class SupportTarget {
 /// the remaining distance.
 [[nodiscard]] FirstEntry approach_core(const LocalRay& ray, const SupportCore& core,
                                        double scale) noexcept {
-  constexpr int kMostSteps = 200;
+  constexpr int kMaxSteps = 200;
   const double rounding = scale * core.rounding;
   FirstEntry entry;
   const RaySpan ball = ball_span(ray, Vector3d::Zero(), scale * core.radius + rounding);
@@ -56,7 +56,7 @@ class SupportTarget {
   SupportTarget target(core, scale);
   double t = std::max(ball.in, ray.low);
   Vector3d normal = Vector3d::Zero();
-  for (int step = 0; step < kMostSteps; ++step) {
+  for (int step = 0; step < kMaxSteps; ++step) {
     const Foreground seen = target.seen_from(ray.at(t));
     const double rest = seen.distance - rounding;
     if (!seen.inside) normal = seen.normal;
@@ -68,7 +68,7 @@ class SupportTarget {
       continue;
     }
     const bool begins = step == 0 && t <= ray.low && (seen.inside || rest < 0.0);
-    entry.meet(ray, {begins ? -kNoEnd : t, kNoEnd, normal});
+    entry.merge_span(ray, {begins ? -kNoEnd : t, kNoEnd, normal});
     return entry;
   }
   return entry;
@@ -88,7 +88,7 @@ FirstEntry enter(const LocalRay& ray, const EllipsoidShape& ellipsoid, double sc
   RaySpan span = ball_span(stretched, Vector3d::Zero(), 1.0);
   span.normal = span.normal.cwiseQuotient(radius).stableNormalized();
   FirstEntry entry;
-  entry.meet(ray, span);
+  entry.merge_span(ray, span);
   return entry;
 }
 

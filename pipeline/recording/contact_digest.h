@@ -14,7 +14,7 @@ namespace winnow {
 
 /// Adds a computed column as if its values were an array in memory.
 template <typename Lookup>
-void add_to(Digest& digest, const LookedUp<Lookup>& values) noexcept {
+void add_to(Digest& digest, const IndexedView<Lookup>& values) noexcept {
   constexpr std::size_t kBytes = sizeof(values[0]);
   constexpr std::size_t kPerWord = sizeof(std::uint64_t) / kBytes;
   std::uint64_t word = 0;

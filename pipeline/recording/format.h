@@ -68,7 +68,7 @@ enum class RecordedCall : std::uint8_t {
 
   set_offsets,
   set_layer,
-  set_layers_meet,
+  set_layers_collide,
 
   // Since version 2.
   set_predicate,
@@ -107,7 +107,7 @@ enum class RecordedCall : std::uint8_t {
 
 /// Returns the last call of a version; nullopt for an unknown version.
 [[nodiscard]] constexpr std::optional<RecordedCall> last_call_of(std::uint32_t version) noexcept {
-  if (version == 1) return RecordedCall::set_layers_meet;
+  if (version == 1) return RecordedCall::set_layers_collide;
   if (version == 2) return RecordedCall::ask_nearest;
   if (version == 3) return RecordedCall::sweep_motions;
   if (version == 4) return RecordedCall::ask_any_contact_of_sets;

@@ -100,14 +100,14 @@ void put_hit(CallWriter& call, const Filter& filter, const Hit& hit) {
 
 /// A query for the pairs of one partition. It updates the result of query `before`, or of none.
 /// `follows` is set if its events continue from the same frame.
-struct PairQuestion {
+struct RecordedPairQuery {
   PairForm form;
   std::uint64_t before;
   bool follows = false;
 
-  PairQuestion(PairForm asked, std::uint64_t number) noexcept : form(asked), before(number) {}
-  PairQuestion(PairForm asked, std::uint64_t number, const PairEvents& events,
-               const PairBuffer& held) noexcept
+  RecordedPairQuery(PairForm asked, std::uint64_t number) noexcept : form(asked), before(number) {}
+  RecordedPairQuery(PairForm asked, std::uint64_t number, const PairEvents& events,
+                    const PairBuffer& held) noexcept
       : form(asked),
         before(number),
         follows(number != 0 && EventWriter::provenance(events) == PairTracker::provenance(held)) {}
@@ -197,7 +197,7 @@ Status RecordedPartition::update(Key key, const Aabb& box) {
 }
 
 Status RecordedPartition::update(std::span<const Key> keys, const BoxView& boxes,
-                                 const Entries& entries) {
+                                 const IndexSubset& entries) {
   const Status status = partition_.update(keys, boxes, entries);
   if (status != Status::ok) return status;
   const auto for_each = [&](const auto& visit) {
@@ -296,7 +296,7 @@ Status RecordedPartition::refresh() const {
 // A pair query updates what its buffer holds. The order of its results depends on which query
 // filled the buffer, and on whether the events belong to the same frame.
 
-std::uint64_t RecordedPartition::asked_as(const PairBuffer& out) const noexcept {
+std::uint64_t RecordedPartition::source_query(const PairBuffer& out) const noexcept {
   const PairBuffer::Provenance held = PairTracker::provenance(out);
   for (std::uint64_t number = questions_; held.serial != 0 && number != 0; --number) {
     if (number + kAskedPairs == questions_) break;
@@ -310,7 +310,7 @@ void RecordedPartition::note_asked(const PairBuffer& out) const noexcept {
 }
 
 Status RecordedPartition::self_pairs(PairBuffer& out, const PairOptions& options) const {
-  const PairQuestion question(PairForm::buffer, asked_as(out));
+  const RecordedPairQuery question(PairForm::buffer, source_query(out));
   const Status status = partition_.self_pairs(out, options);
   if (status != Status::ok) return status;
   CallWriter call(recorder_, RecordedCall::self_pairs, world_);
@@ -321,7 +321,7 @@ Status RecordedPartition::self_pairs(PairBuffer& out, const PairOptions& options
 
 Status RecordedPartition::self_pairs(PairBuffer& out, PairEvents& events,
                                      const PairOptions& options) const {
-  const PairQuestion question(PairForm::buffer_and_events, asked_as(out), events, out);
+  const RecordedPairQuery question(PairForm::buffer_and_events, source_query(out), events, out);
   const Status status = partition_.self_pairs(out, events, options);
   if (status != Status::ok) return status;
   CallWriter call(recorder_, RecordedCall::self_pairs, world_);
@@ -332,7 +332,7 @@ Status RecordedPartition::self_pairs(PairBuffer& out, PairEvents& events,
 
 Status RecordedPartition::self_pairs(PairEvents& events, const PairOptions& options) const {
   const PairBuffer& own = EventWriter::own_buffer(events);
-  const PairQuestion question(PairForm::events, asked_as(own), events, own);
+  const RecordedPairQuery question(PairForm::events, source_query(own), events, own);
   const Status status = partition_.self_pairs(events, options);
   if (status != Status::ok) return status;
   CallWriter call(recorder_, RecordedCall::self_pairs, world_);

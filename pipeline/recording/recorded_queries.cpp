@@ -1,7 +1,7 @@
 // RecordedQueries: forwards each query to SceneQueries, and writes successful queries with a digest
 // of their results to the recording.
 
-#include "pipeline/recording/passed.h"
+#include "pipeline/recording/predicate_log.h"
 #include "pipeline/recording/query_digest.h"
 
 namespace winnow {
@@ -48,7 +48,7 @@ RecordedQueries::RecordedQueries(RecordedScene& scene, std::pmr::memory_resource
 template <typename Ask, typename Write>
 Status RecordedQueries::record(RecordedCall question, const Filter& filter, Ask&& ask,
                                Write&& write) {
-  PassedObjects passed(filter, passed_);
+  AcceptedObjects passed(filter, passed_);
   const Status status = ask(passed.filter());
   if (status != Status::ok) return status;
   if (!passed.is_complete()) scene_.refuse(Status::out_of_memory);

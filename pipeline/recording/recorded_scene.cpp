@@ -6,7 +6,7 @@
 #include "pipeline/narrow/tier_number.h"
 #include "pipeline/recording/composite_bytes.h"
 #include "pipeline/recording/contact_digest.h"
-#include "pipeline/recording/passed.h"
+#include "pipeline/recording/predicate_log.h"
 #include "pipeline/scene/contact_frame.h"
 #include "pipeline/scene/scene_state.h"
 #include "pipeline/shapes/hull_bytes.h"
@@ -85,7 +85,7 @@ void put_kept(CallWriter& call, std::span<const std::uint32_t> before,
 }
 
 /// Number of a shape that was removed or replaced.
-constexpr std::uint32_t kForgotten = ~0U;
+constexpr std::uint32_t kRemovedShape = ~0U;
 
 SceneOptions with_composites(SceneOptions options, const CompositePool& composites) noexcept {
   options.composites = &composites;
@@ -110,8 +110,8 @@ RecordedScene::RecordedScene(Recorder& recorder, const ShapePool& shapes,
       composites_(composites),
       composites_seen_(composites == nullptr ? 0 : composites->revision()),
       scene_(shapes, options),
-      known_(recorder.memory_) {
-  if (options.seamless_floors) refuse(Status::unsupported);
+      recorded_shapes_(recorder.memory_) {
+  if (options.suppress_ghost_contacts) refuse(Status::unsupported);
   CallWriter call(recorder_, RecordedCall::make_scene, world_);
   for (const StructureKind& structure : options.structures) {
     call.put_text(structure.name()).put(structure.parameter());
@@ -126,7 +126,7 @@ RecordedScene::~RecordedScene() {
   if (recorder_ == nullptr) return;
   const Lock lock(recorder_->mutex);
   delete_in(recorder_->block.memory(), passed_);
-  known_.release();
+  recorded_shapes_.release();
 }
 
 /// Ends the recording with an error.
@@ -145,9 +145,9 @@ bool RecordedScene::can_hold(ShapeId id) const noexcept {
 
 RecordedShape* RecordedScene::find_shape(ShapeId id) noexcept {
   RecordedShape* const at = std::lower_bound(
-      known_.begin(), known_.end(), id.bits,
+      recorded_shapes_.begin(), recorded_shapes_.end(), id.bits,
       [](const RecordedShape& shape, std::uint32_t bits) { return shape.id.bits < bits; });
-  return at != known_.end() && at->id == id ? at : nullptr;
+  return at != recorded_shapes_.end() && at->id == id ? at : nullptr;
 }
 
 void RecordedScene::describe(RecordedShape& shape) const noexcept {
@@ -171,10 +171,10 @@ std::uint32_t RecordedScene::number_of(ShapeId id) noexcept {
   }
   if (id.is_composite()) follow_composites();
   RecordedShape* const at = find_shape(id);
-  if (at != nullptr && id.is_composite() && at->number != kForgotten) return at->number;
+  if (at != nullptr && id.is_composite() && at->number != kRemovedShape) return at->number;
   RecordedShape shape{id, 0, 0, 0};
   describe(shape);
-  if (at != nullptr && at->number != kForgotten && at->digest == shape.digest) return at->number;
+  if (at != nullptr && at->number != kRemovedShape && at->digest == shape.digest) return at->number;
   if (id.is_composite()) {
     for (const CompoundChild& child : composites_->children(id)) (void)number_of(child.shape);
   }
@@ -190,12 +190,12 @@ std::uint32_t RecordedScene::number_of(ShapeId id) noexcept {
 
 void RecordedScene::know(const RecordedShape& shape) noexcept {
   const Lock lock(recorder_->mutex);
-  if (!known_.push_back(shape)) return recorder_->fail(Status::out_of_memory);
+  if (!recorded_shapes_.push_back(shape)) return recorder_->fail(Status::out_of_memory);
   const auto by_id = [](const RecordedShape& a, const RecordedShape& b) {
     return a.id.bits < b.id.bits;
   };
-  std::rotate(std::upper_bound(known_.begin(), known_.end() - 1, shape, by_id), known_.end() - 1,
-              known_.end());
+  std::rotate(std::upper_bound(recorded_shapes_.begin(), recorded_shapes_.end() - 1, shape, by_id),
+              recorded_shapes_.end() - 1, recorded_shapes_.end());
 }
 
 void RecordedScene::record_shape(const RecordedShape& shape) noexcept {
@@ -213,7 +213,8 @@ void RecordedScene::record_shape(const RecordedShape& shape) noexcept {
 
 void RecordedScene::record_composite(const RecordedShape& shape) noexcept {
   CallWriter call(recorder_, RecordedCall::add_composite, world_);
-  Column<std::byte> bytes(known_.memory());  // allocates from the recorder's memory, under its lock
+  Column<std::byte> bytes(
+      recorded_shapes_.memory());  // allocates from the recorder's memory, under its lock
   const Status status = save_composite(*composites_, shape.id, bytes);
   if (status != Status::ok) return call.give_up(status);
   call.put(shape.id.composite_kind());
@@ -237,7 +238,7 @@ void RecordedScene::follow_composites() noexcept {
   if (composites_->revision() == composites_seen_) return;
   composites_seen_ = composites_->revision();
   bool told = false;
-  for (RecordedShape& known : known_) {
+  for (RecordedShape& known : recorded_shapes_) {
     if (!known.id.is_composite()) continue;
     RecordedShape now = known;
     if (composites_->contains(known.id)) {
@@ -245,8 +246,8 @@ void RecordedScene::follow_composites() noexcept {
       describe(now);
     }
     if (!composites_->contains(known.id) || now.form != known.form) {
-      known.number = kForgotten;
-    } else if (now.digest != known.digest && known.number != kForgotten) {
+      known.number = kRemovedShape;
+    } else if (now.digest != known.digest && known.number != kRemovedShape) {
       known = now;
       told = true;
       CallWriter(recorder_, RecordedCall::change_composite, world_)
@@ -355,10 +356,10 @@ Status RecordedScene::set_layer(Key key, std::uint16_t layer) {
   return status;
 }
 
-Status RecordedScene::set_layers_meet(std::uint16_t a, std::uint16_t b, bool meet) {
-  const Status status = scene_.set_layers_meet(a, b, meet);
+Status RecordedScene::set_layers_collide(std::uint16_t a, std::uint16_t b, bool meet) {
+  const Status status = scene_.set_layers_collide(a, b, meet);
   if (status == Status::ok) {
-    CallWriter(recorder_, RecordedCall::set_layers_meet, world_).put(a).put(b).put(meet);
+    CallWriter(recorder_, RecordedCall::set_layers_collide, world_).put(a).put(b).put(meet);
   }
   return status;
 }
@@ -391,18 +392,19 @@ Status RecordedScene::set_ignored(std::span<const KeyPair> pairs, bool ignored) 
 void RecordedScene::set_predicate(const PairPredicate& predicate) noexcept {
   if (recorder_ != nullptr && passed_ == nullptr) {
     const Lock lock(recorder_->mutex);
-    passed_ = new_in<PassedPairs>(recorder_->block.memory(), *recorder_);
+    passed_ = new_in<AcceptedPairs>(recorder_->block.memory(), *recorder_);
     if (passed_ == nullptr) recorder_->fail(Status::out_of_memory);
   }
   if (passed_ != nullptr) passed_->pairs.clear();
-  scene_.set_predicate(passed_ == nullptr ? predicate : passed_->listen_to(predicate));
+  scene_.set_predicate(passed_ == nullptr ? predicate : passed_->wrap(predicate));
   CallWriter(recorder_, RecordedCall::set_predicate, world_).put(predicate.accept != nullptr);
 }
 
 // Recorded before the query, so that a player has the accepted pairs when it runs the query.
 void RecordedScene::record_passed() noexcept {
   if (passed_ == nullptr || passed_->asked.accept == nullptr) return;
-  CallWriter(recorder_, RecordedCall::pairs_passed, world_).put_array(each_once(passed_->pairs));
+  CallWriter(recorder_, RecordedCall::pairs_passed, world_)
+      .put_array(sorted_unique(passed_->pairs));
   passed_->pairs.clear();
 }
 
@@ -410,7 +412,8 @@ void RecordedScene::record_passed() noexcept {
 // pairs are kept until the next collide, so that each query has its own.
 void RecordedScene::show_passed() noexcept {
   if (passed_ == nullptr || passed_->asked.accept == nullptr) return;
-  CallWriter(recorder_, RecordedCall::pairs_passed, world_).put_array(each_once(passed_->pairs));
+  CallWriter(recorder_, RecordedCall::pairs_passed, world_)
+      .put_array(sorted_unique(passed_->pairs));
 }
 
 // A query that failed is not recorded, but the scene may have cached pairs that its predicate
@@ -428,7 +431,7 @@ Status RecordedScene::refresh() {
   return status;
 }
 
-RecordedScene::Asked RecordedScene::asked_as(const Contacts& contacts) noexcept {
+RecordedScene::Asked RecordedScene::source_query(const Contacts& contacts) noexcept {
   return {contacts.state().clock, contacts.state().pairs_serial};
 }
 
@@ -442,14 +445,14 @@ bool RecordedScene::is_filled_by_this(const Contacts& contacts) const noexcept {
 Status RecordedScene::collide(ContactLevel level, Contacts& contacts) {
   follow_composites();
   const bool filled = is_filled_by_this(contacts);
-  const bool continues = filled && asked_as(contacts) == asked_;
+  const bool continues = filled && source_query(contacts) == asked_;
   const Status status = scene_.collide(level, contacts);
   if (status != Status::ok) {
     forget_passed();
     return status;
   }
   if (filled && !continues) refuse(Status::unsupported);
-  asked_ = asked_as(contacts);
+  asked_ = source_query(contacts);
   record_passed();
   CallWriter call(recorder_, RecordedCall::collide, world_);
   call.put(level).put(continues);
@@ -471,18 +474,18 @@ Status RecordedScene::load(std::span<const std::byte> saved) {
   if (status != Status::ok) return status;
   asked_ = {};
   if (passed_ != nullptr) passed_->pairs.clear();
-  if (scene_.state_->options.seamless_floors) refuse(Status::unsupported);
+  if (scene_.state_->options.suppress_ghost_contacts) refuse(Status::unsupported);
   follow_composites();
   for_live(scene_.state_->keys.stamps(),
            [&](ObjectId body) { (void)number_of(scene_.state_->shape[body]); });
   CallWriter call(recorder_, RecordedCall::load_scene, world_);
   call.put_array(saved);
-  const auto count = std::count_if(known_.begin(), known_.end(), [](const RecordedShape& shape) {
-    return shape.number != kForgotten;
-  });
+  const auto count =
+      std::count_if(recorded_shapes_.begin(), recorded_shapes_.end(),
+                    [](const RecordedShape& shape) { return shape.number != kRemovedShape; });
   call.put(static_cast<std::uint64_t>(count));
-  for (const RecordedShape& shape : known_) {
-    if (shape.number != kForgotten) call.put(shape.id.bits).put(shape.number);
+  for (const RecordedShape& shape : recorded_shapes_) {
+    if (shape.number != kRemovedShape) call.put(shape.id.bits).put(shape.number);
   }
   put_kept(call, {before.data(), before.size()}, scene_.state_->keys.stamps());
   return status;
@@ -491,7 +494,7 @@ Status RecordedScene::load(std::span<const std::byte> saved) {
 Status RecordedScene::load_contacts(std::span<const std::byte> saved, Contacts& contacts) {
   const Status status = scene_.load_contacts(saved, contacts);
   if (status != Status::ok) return status;
-  asked_ = asked_as(contacts);
+  asked_ = source_query(contacts);
   CallWriter(recorder_, RecordedCall::load_contacts, world_).put_array(saved);
   return status;
 }

@@ -32,7 +32,7 @@ inline void add_to(Digest& digest, const Sensors& sensors) noexcept {
     digest.add(static_cast<std::uint64_t>(in.event));
   }
   digest.add(std::uint64_t{sensors.sensed().size()});
-  for (const LeftSensor& out : sensors.left()) {
+  for (const ExitedBody& out : sensors.left()) {
     digest.add(std::uint64_t{out.sensor.id} << 32U | out.body.id);
     digest.add(out.sensor_data);
     digest.add(out.body_data);

@@ -148,9 +148,9 @@ Status ReplayState::update(ReplayedWorld& of) {
 }
 
 /// Returns the result that a query updates; if it updates none, the oldest result, cleared.
-AskedPairs& ReplayState::asked_as(ReplayedWorld& of, std::uint64_t number) noexcept {
-  AskedPairs* oldest = of.asked.data();
-  for (AskedPairs& one : of.asked) {
+ReplayedPairs& ReplayState::source_query(ReplayedWorld& of, std::uint64_t number) noexcept {
+  ReplayedPairs* oldest = of.asked.data();
+  for (ReplayedPairs& one : of.asked) {
     if (number != 0 && one.number == number) return one;
     if (one.number < oldest->number) oldest = &one;
   }
@@ -168,7 +168,7 @@ Status ReplayState::self_pairs(ReplayedWorld& of) {
   const bool follows = in.get_bool();
   asked.predicate = filter.read_passed_pairs(in);
   if (!in.ok()) return reading();
-  AskedPairs& to = asked_as(of, before);
+  ReplayedPairs& to = source_query(of, before);
   if (!follows && form != PairForm::buffer) to.events.clear();
   to.number = ++of.questions;
   const Partition& partition = *of.partition;

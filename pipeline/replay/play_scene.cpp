@@ -110,11 +110,11 @@ Status ReplayState::change_scene(RecordedCall call, ReplayedWorld& of) {
       const auto layer = in.get<std::uint16_t>();
       return in.ok() ? scene.set_layer(key, layer) : reading();
     }
-    case RecordedCall::set_layers_meet: {
+    case RecordedCall::set_layers_collide: {
       const auto a = in.get<std::uint16_t>();
       const auto b = in.get<std::uint16_t>();
       const bool meet = in.get_bool();
-      return in.ok() ? scene.set_layers_meet(a, b, meet) : reading();
+      return in.ok() ? scene.set_layers_collide(a, b, meet) : reading();
     }
     case RecordedCall::set_ignored: {
       const bool ignored = in.get_bool();

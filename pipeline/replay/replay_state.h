@@ -16,8 +16,9 @@
 namespace winnow {
 
 /// Result of a pair query, which a later query may update.
-struct AskedPairs {
-  explicit AskedPairs(std::pmr::memory_resource* memory) noexcept : pairs(memory), events(memory) {}
+struct ReplayedPairs {
+  explicit ReplayedPairs(std::pmr::memory_resource* memory) noexcept
+      : pairs(memory), events(memory) {}
 
   PairBuffer pairs;
   PairEvents events;
@@ -37,9 +38,9 @@ struct ReplayedSensors {
 struct ReplayedWorld {
   static constexpr std::size_t kAskedPairs = 16;
   template <std::size_t... I>
-  [[nodiscard]] static std::array<AskedPairs, kAskedPairs> all_asked(
+  [[nodiscard]] static std::array<ReplayedPairs, kAskedPairs> all_asked(
       std::pmr::memory_resource* memory, std::index_sequence<I...>) noexcept {
-    return {((void)I, AskedPairs(memory))...};
+    return {((void)I, ReplayedPairs(memory))...};
   }
 
   explicit ReplayedWorld(std::pmr::memory_resource* memory) noexcept
@@ -58,8 +59,8 @@ struct ReplayedWorld {
   ReplayedWorld& operator=(const ReplayedWorld&) = delete;
 
   std::optional<Partition> partition;
-  std::array<AskedPairs, kAskedPairs> asked;  // results of the last queries, at least
-  std::uint64_t questions = 0;                // number of pair queries
+  std::array<ReplayedPairs, kAskedPairs> asked;  // results of the last queries, at least
+  std::uint64_t questions = 0;                   // number of pair queries
   PairBuffer other_pairs;
   HitBuffer hits;
   OverlapBuffer objects;
@@ -102,7 +103,8 @@ struct ReplayState {
   [[nodiscard]] Status change_partition(RecordedCall call, ReplayedWorld& of);
   [[nodiscard]] Status insert(ReplayedWorld& into);
   [[nodiscard]] Status update(ReplayedWorld& of);
-  [[nodiscard]] static AskedPairs& asked_as(ReplayedWorld& of, std::uint64_t number) noexcept;
+  [[nodiscard]] static ReplayedPairs& source_query(ReplayedWorld& of,
+                                                   std::uint64_t number) noexcept;
   [[nodiscard]] Status self_pairs(ReplayedWorld& of);
   [[nodiscard]] Status pairs_with(ReplayedWorld& of);
   [[nodiscard]] Status cast(RecordedCall call, ReplayedWorld& of);

@@ -4,9 +4,9 @@
 
 #include "pipeline/scene/body_pairs.h"
 
+#include "core/sort/parallel_ranges.h"
 #include "core/sort/radix_sort.h"
-#include "core/sort/stretches.h"
-#include "pipeline/narrow/steady_column.h"
+#include "pipeline/narrow/tight_growth.h"
 
 #include <algorithm>
 #include <bit>
@@ -15,12 +15,12 @@
 namespace winnow {
 namespace {
 
-constexpr std::size_t kPairsPerStretch = 8192;
+constexpr std::size_t kPairsPerRange = 8192;
 constexpr std::size_t kBits = 64;
-constexpr std::size_t kWordsPerStretch = kPairsPerStretch / kBits;
+constexpr std::size_t kWordsPerRange = kPairsPerRange / kBits;
 
-[[nodiscard]] std::size_t stretches_of(const BodyPairs::Source& source) noexcept {
-  return (source.pairs.size() + kPairsPerStretch - 1) / kPairsPerStretch;
+[[nodiscard]] std::size_t ranges_of(const BodyPairs::Source& source) noexcept {
+  return (source.pairs.size() + kPairsPerRange - 1) / kPairsPerRange;
 }
 
 /// Packs a pair into a sort key.
@@ -57,15 +57,15 @@ template <typename Is>
 /// Calls body(source, range number, first, end) for ranges of the pairs of all sources, one source
 /// after the other.
 template <typename Body>
-void for_source_stretches(std::span<const BodyPairs::Source> sources, const Execution& execution,
-                          Body&& body) {
+void for_source_ranges(std::span<const BodyPairs::Source> sources, const Execution& execution,
+                       Body&& body) {
   std::size_t before = 0;
   for (const BodyPairs::Source& source : sources) {
-    for_stretches(execution, source.pairs.size(), kPairsPerStretch,
-                  [&](std::size_t first, std::size_t end) {
-                    body(source, before + first / kPairsPerStretch, first, end);
-                  });
-    before += stretches_of(source);
+    for_each_range(execution, source.pairs.size(), kPairsPerRange,
+                   [&](std::size_t first, std::size_t end) {
+                     body(source, before + first / kPairsPerRange, first, end);
+                   });
+    before += ranges_of(source);
   }
 }
 
@@ -74,15 +74,14 @@ void for_source_stretches(std::span<const BodyPairs::Source> sources, const Exec
 Status BodyPairs::assign(std::span<const Source> sources, const Known& known,
                          const Execution& execution) {
   std::size_t stretches = 0;
-  for (const Source& source : sources) stretches += stretches_of(source);
-  if (!resize_steadily(wanted_, stretches * kWordsPerStretch) ||
-      !resize_steadily(counts_, stretches)) {
+  for (const Source& source : sources) stretches += ranges_of(source);
+  if (!resize_tightly(wanted_, stretches * kWordsPerRange) || !resize_tightly(counts_, stretches)) {
     clear();
     return Status::out_of_memory;
   }
   are_all_ = known.balls == nullptr;
   choose(sources, known, execution);
-  if (!resize_steadily(items_[0], size_) || !resize_steadily(items_[1], size_)) {
+  if (!resize_tightly(items_[0], size_) || !resize_tightly(items_[1], size_)) {
     clear();
     return Status::out_of_memory;
   }
@@ -100,10 +99,10 @@ Status BodyPairs::assign(std::span<const Source> sources, const Known& known,
 // Chooses the pairs to be kept, and computes where each range of pairs writes.
 void BodyPairs::choose(std::span<const Source> sources, const Known& known,
                        const Execution& execution) noexcept {
-  for_source_stretches(
+  for_source_ranges(
       sources, execution,
       [&](const Source& source, std::size_t stretch, std::size_t first, std::size_t end) {
-        std::uint64_t* word = wanted_.data() + stretch * kWordsPerStretch;
+        std::uint64_t* word = wanted_.data() + stretch * kWordsPerRange;
         Count sum{};
         for (; first < end; first += kBits) {
           const std::size_t count = std::min(end - first, kBits);
@@ -136,10 +135,10 @@ void BodyPairs::pack(std::span<const Source> sources, const Known& known,
                      const Execution& execution) noexcept {
   const Packing packing{bits_};
   const PairSelection* const selection = known.selection;
-  for_source_stretches(
+  for_source_ranges(
       sources, execution,
       [&](const Source& source, std::size_t stretch, std::size_t first, std::size_t end) {
-        const std::uint64_t* word = wanted_.data() + stretch * kWordsPerStretch;
+        const std::uint64_t* word = wanted_.data() + stretch * kWordsPerRange;
         std::uint64_t* item = items_[0].data() + counts_[stretch].taken;
         for (; first < end; first += kBits) {
           for (std::uint64_t bits = *word++; bits != 0; bits &= bits - 1) {
@@ -156,14 +155,14 @@ void BodyPairs::pack(std::span<const Source> sources, const Known& known,
 
 // The last range of each source may be partly filled.
 bool BodyPairs::reserve_choice(std::size_t count, Pages pages) noexcept {
-  const std::size_t stretches = count / kPairsPerStretch + kMostSources;
-  return wanted_.reserve(stretches * kWordsPerStretch, pages) && counts_.reserve(stretches, pages);
+  const std::size_t stretches = count / kPairsPerRange + kMaxSources;
+  return wanted_.reserve(stretches * kWordsPerRange, pages) && counts_.reserve(stretches, pages);
 }
 
 void BodyPairs::name_bodies(const PairSelection& selection, const Execution& execution) noexcept {
   std::uint64_t* const items = items_[sorted_].data();
   const std::uint64_t bodies = (std::uint64_t{1} << 2 * bits_) - 1;
-  for_stretches(execution, size_, kPairsPerStretch, [&](std::size_t first, std::size_t end) {
+  for_each_range(execution, size_, kPairsPerRange, [&](std::size_t first, std::size_t end) {
     for (std::size_t i = first; i < end; ++i) {
       const BodyPair places = (*this)[i];
       items[i] = (items[i] & ~bodies) | std::uint64_t{selection.body[places.a]} << bits_ |

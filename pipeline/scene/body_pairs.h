@@ -52,16 +52,16 @@ struct BodyBall {
 
 /// True only if the balls are disjoint; rounding never makes it true.
 [[nodiscard]] inline bool are_apart(const BodyBall& a, const BodyBall& b) noexcept {
-  // kSlack bounds the relative error of the sum of squares of float differences; kLeast covers
+  // kSlack bounds the relative error of the sum of squares of float differences; kMinSquare covers
   // squares that underflow.
   constexpr float kSlack = 1.0F + 0x1p-19F;
-  constexpr float kLeast = 1e-36F;
+  constexpr float kMinSquare = 1e-36F;
   const float x = a.center[0] - b.center[0];
   const float y = a.center[1] - b.center[1];
   const float z = a.center[2] - b.center[2];
   const float reach = a.radius + b.radius;
   // NaN compares false.
-  return x * x + y * y + z * z > reach * reach * kSlack + kLeast;
+  return x * x + y * y + z * z > reach * reach * kSlack + kMinSquare;
 }
 
 /// On a rank of a cluster: replaces the order of bodies by their numbers with an order that all
@@ -93,7 +93,7 @@ class BodyPairs {
     }
   };
 
-  static constexpr std::size_t kMostSources = 3;
+  static constexpr std::size_t kMaxSources = 3;
 
   /// Data of bodies, by number.
   struct Known {
@@ -106,7 +106,7 @@ class BodyPairs {
     const PairSelection* selection;
   };
 
-  /// Replaces the pairs with the pairs of at most kMostSources sources. O(n).
+  /// Replaces the pairs with the pairs of at most kMaxSources sources. O(n).
   Status assign(std::span<const Source> sources, const Known& known, const Execution& execution);
 
   /// Reserves for `count` pairs. Returns false if memory is refused.

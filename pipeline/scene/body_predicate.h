@@ -14,7 +14,7 @@ struct BodyPredicate {
   /// must outlive the query.
   [[nodiscard]] PairOptions options() const noexcept {
     PairOptions options;
-    if (scene.meets_all()) return options;
+    if (scene.accepts_all()) return options;
     options.predicate = {[](void* context, ObjectId first, ObjectId second) {
                            const auto& asked = *static_cast<const BodyPredicate*>(context);
                            return asked.scene.may_pair(asked.first_body[first],

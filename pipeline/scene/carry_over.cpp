@@ -1,9 +1,9 @@
 // Carry-over: pairs that have hardly moved since their contacts were computed keep them; points and
 // normals rotate with body a. `remember` stores how far each pair may move, `decide` compares.
-// Called by Collision::run (collide.cpp) and the tasks in show_contacts.cpp.
+// Called by Collision::run (collide.cpp) and the tasks in write_contacts.cpp.
 
 #include <winnow/core/rotation.h>
-#include "pipeline/narrow/steady_column.h"
+#include "pipeline/narrow/tight_growth.h"
 #include "pipeline/scene/collision.h"
 #include "pipeline/scene/motion_bound.h"
 
@@ -34,7 +34,7 @@ struct PoseChange {
   // R(to) R(from)^T for unit quaternions.
   PoseChange(const double (&to)[4], const double (&from)[4]) noexcept
       : m(rotation_of_unit(
-            product({to[0], to[1], to[2], to[3]}, {from[0], -from[1], -from[2], -from[3]}))) {}
+            multiply({to[0], to[1], to[2], to[3]}, {from[0], -from[1], -from[2], -from[3]}))) {}
 
   template <typename T>
   void apply(Column<T> (&column)[3], std::uint32_t i) const noexcept {
@@ -56,9 +56,9 @@ bool Collision::match_carried() {
   const std::size_t pairs = pair_count();
   same_pairs_ = same_level_ && c.pairs_serial == scene_.pairs.serial() &&
                 c.records.size() == pairs && c.carried.size() == pairs;
-  if (!resize_steadily(c.origin, pairs)) return false;
+  if (!resize_tightly(c.origin, pairs)) return false;
   if (same_pairs_) return true;
-  if (!resize_steadily(c.old_record, pairs)) return false;
+  if (!resize_tightly(c.old_record, pairs)) return false;
   match(c.records);
   return true;
 }
@@ -75,9 +75,9 @@ bool Collision::decide() {
     for (std::uint32_t i = first; i < end; ++i) {
       const BodyPair pair = scene_.pairs[i];
       const std::uint32_t record = same_pairs_ ? i : c.old_record[i];
-      Origin origin = origin_of_fresh(pair);
+      ContactSource origin = origin_of_fresh(pair);
       if (may_keep && record != kNoEntry && is_carried_over(pair) && keep(i, record)) {
-        origin = Origin::carried;
+        origin = ContactSource::carried;
         ++count;
       }
       c.origin[i] = static_cast<std::uint8_t>(origin);
@@ -154,7 +154,7 @@ void Collision::turn(CarriedPair& carried, std::uint32_t shown, const double (&t
 float Collision::carry_limit(std::uint32_t pair, std::uint32_t shown) const noexcept {
   const double carry_over = scene_.options.carry_over;
   const double clear = shown == kNoEntry ? std::max(clearance(pair), 0.0) : carry_over;
-  return round_down(origin_of(pair) == Origin::convex ? clear : std::min(clear, carry_over));
+  return round_down(origin_of(pair) == ContactSource::convex ? clear : std::min(clear, carry_over));
 }
 
 // Returns a lower bound on the distance beyond the margin of a pair that is not in contact. For
@@ -169,7 +169,7 @@ double Collision::clearance(std::uint32_t pair) const noexcept {
                     level_ == ContactLevel::manifold ? 0.5 * beyond : 0.0);
   };
   double least = std::numeric_limits<double>::infinity();
-  if (origin_of(pair) == Origin::convex) {
+  if (origin_of(pair) == ContactSource::convex) {
     least = of(scene_.answers, source_of(pair));
   } else {
     const std::uint32_t* const first = scene_.parts->pairs.first.data() + source_of(pair);
@@ -186,7 +186,7 @@ void Collision::remember(std::uint32_t pair, std::uint32_t shown) noexcept {
   const BodyPair bodies = scene_.pairs[pair];
   c.records.bits[pair] = scene_.pairs.order(pair).bits;
   c.records.shown[pair] = shown;
-  if (origin_of(pair) == Origin::carried) {
+  if (origin_of(pair) == ContactSource::carried) {
     if (!same_pairs_) c.carried[pair] = c.carried_before[c.old_record[pair]];
     return;
   }

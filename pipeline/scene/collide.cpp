@@ -4,10 +4,10 @@
 
 #include "core/hooks/log.h"
 #include "core/hooks/stage_scope.h"
-#include "core/sort/stretches.h"
+#include "core/sort/parallel_ranges.h"
 #include "core/threads/float_environment.h"
 #include "pipeline/narrow/answer_slots.h"
-#include "pipeline/narrow/steady_column.h"
+#include "pipeline/narrow/tight_growth.h"
 #include "pipeline/scene/collision.h"
 
 #include <algorithm>
@@ -28,7 +28,7 @@ Status Scene::collide(ContactLevel level, Contacts& contacts) {
   Status status = state_->find_pairs(level == ContactLevel::pairs);
   if (status == Status::ok) {
     state_->statistics.body_pairs = state_->pairs.size() + state_->pairs.apart();
-    state_->statistics.balls_apart = state_->pairs.apart();
+    state_->statistics.rejected_by_spheres = state_->pairs.apart();
     status = Collision(*state_, *contacts.state_, level).run();
   }
   if (status == Status::ok) {
@@ -47,7 +47,7 @@ Collision::Collision(SceneState& scene, ContactsState& contacts, ContactLevel le
       level_(level),
       carries_(scene.options.carry_over > 0.0 && level >= ContactLevel::distance),
       reduces_(scene.options.contact_reduction && level == ContactLevel::manifold),
-      remembers_places_(scene.options.warm_start),
+      stores_positions_(scene.options.warm_start),
       same_scene_(contacts.scene == scene.serial),
       same_level_(same_scene_ && contacts.level == level) {}
 
@@ -55,27 +55,27 @@ namespace {
 
 /// Lets a column use the storage of another column during the lifetime of this object.
 template <typename T>
-class Lodger {
+class BorrowedStorage {
  public:
   /// Borrows only if `may`, the column is empty and both have the same memory resource.
-  Lodger(Column<T>& column, Column<T>& room, bool may) noexcept
+  BorrowedStorage(Column<T>& column, Column<T>& room, bool may) noexcept
       : column_(column),
         room_(room),
-        lodges_(may && column.empty() && column.memory() == room.memory()) {
-    if (!lodges_) return;
+        is_borrowed_(may && column.empty() && column.memory() == room.memory()) {
+    if (!is_borrowed_) return;
     room_.clear();
     column_.swap(room_);
   }
-  Lodger(const Lodger&) = delete;
-  Lodger& operator=(const Lodger&) = delete;
-  ~Lodger() {
-    if (lodges_) column_.swap(room_);
+  BorrowedStorage(const BorrowedStorage&) = delete;
+  BorrowedStorage& operator=(const BorrowedStorage&) = delete;
+  ~BorrowedStorage() {
+    if (is_borrowed_) column_.swap(room_);
   }
 
  private:
   Column<T>& column_;
   Column<T>& room_;
-  bool lodges_;
+  bool is_borrowed_;
 };
 
 }  // namespace
@@ -84,8 +84,8 @@ Status Collision::run() {
   if (!same_scene_) contacts_.clear();
   // These records are needed only during the call. With carry-over or sleeping pairs they persist
   // and cannot be in borrowed storage.
-  const Lodger records(contacts_.records.bits, scene_.pairs.spare(),
-                       !carries_ && contacts_.dormant_records.size() == 0);
+  const BorrowedStorage records(contacts_.records.bits, scene_.pairs.spare(),
+                                !carries_ && contacts_.dormant_records.size() == 0);
   contacts_.scene = scene_.serial;
   contacts_.level = level_;
   contacts_.carried_count = 0;
@@ -94,7 +94,7 @@ Status Collision::run() {
   if (decide()) {
     if (const Status status = show(); status != Status::ok) return status;
     match_points();
-  } else if (!keep_places()) {
+  } else if (!store_positions()) {
     return Status::out_of_memory;
   }
   if (!note_bodies()) return Status::out_of_memory;
@@ -107,7 +107,7 @@ Status Collision::run() {
 // One batch with seamless floors, because they compare all contacts of a body.
 std::uint32_t Collision::batch_size(const SceneOptions& options, std::size_t pairs) noexcept {
   const auto all = static_cast<std::uint32_t>(pairs);
-  return options.seamless_floors ? all : std::min(all, kPairsPerBatch);
+  return options.suppress_ghost_contacts ? all : std::min(all, kPairsPerBatch);
 }
 
 // Rounded up to a power of two, so that a few more pairs need no new allocation.
@@ -118,7 +118,7 @@ std::size_t Collision::batch_room(const SceneOptions& options, std::size_t pairs
 
 Status Collision::show() {
   if (!open_frame()) return Status::out_of_memory;
-  Place end;
+  Cursor end;
   const std::uint32_t step = batch_size(scene_.options, pair_count());
   batch_end_ = 0;
   do {
@@ -143,7 +143,7 @@ Status Collision::answer() {
   for (const Status status : {answer_convex(), answer_composite()}) {
     if (status != Status::ok) return status;
   }
-  return drop_seams() ? Status::ok : Status::out_of_memory;
+  return drop_ghost_contacts() ? Status::ok : Status::out_of_memory;
 }
 
 // Lists the pairs that need new contacts, convex and composite ones separately.
@@ -161,9 +161,9 @@ bool Collision::list_pairs() {
     if (!carries_) {
       contacts_.origin[i - known_from_] = static_cast<std::uint8_t>(origin_of_fresh(pair));
     }
-    const Origin origin = origin_of(i);
-    if (origin == Origin::carried) continue;
-    Column<BodyPair>& list = origin == Origin::convex ? scene_.convex : scene_.composite;
+    const ContactSource origin = origin_of(i);
+    if (origin == ContactSource::carried) continue;
+    Column<BodyPair>& list = origin == ContactSource::convex ? scene_.convex : scene_.composite;
     contacts_.source[i - batch_first_] = static_cast<std::uint32_t>(list.size());
     if (!list.push_back(pair)) return false;
   }
@@ -180,7 +180,7 @@ namespace {
 // Computes the index of the result for each input pair.
 [[nodiscard]] bool invert(const NarrowResult& answers, const Execution& execution,
                           Column<std::uint32_t>& slots) noexcept {
-  if (!resize_steadily(slots, answers.size())) return false;
+  if (!resize_tightly(slots, answers.size())) return false;
   find_slots(answers, execution, slots.data());
   return true;
 }

@@ -4,8 +4,8 @@
 // the file that implements it.
 
 #include "pipeline/scene/contact_frame.h"
+#include "pipeline/scene/ghost_contacts.h"
 #include "pipeline/scene/scene_state.h"
-#include "pipeline/scene/seams.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -36,10 +36,10 @@ class Collision {
 
  private:
   /// Where a pair's contacts come from.
-  enum class Origin : std::uint8_t { carried, convex, composite };
-  using Place = ContactFrame::Place;
+  enum class ContactSource : std::uint8_t { carried, convex, composite };
+  using Cursor = ContactFrame::Cursor;
 
-  // Records of pairs from the last call (pair_memory.cpp).
+  // Records of pairs from the last call (pair_records.cpp).
   [[nodiscard]] bool wake_dormant();
   void merge_dormant() noexcept;
   [[nodiscard]] bool list_records();
@@ -50,7 +50,7 @@ class Collision {
   [[nodiscard]] bool sleeps(const BodyPair& pair) const noexcept;
   /// True if index `shown` is a sleeping pair: those follow the pairs of the last frame.
   [[nodiscard]] bool has_slept(std::uint32_t shown) const noexcept {
-    return shown >= shown_last_ && shown != kNoEntry;
+    return shown >= last_pairs_ && shown != kNoEntry;
   }
   [[nodiscard]] bool note_bodies();
 
@@ -69,7 +69,7 @@ class Collision {
   [[nodiscard]] bool reserve_history() noexcept;
   void match_points() noexcept;
   void match_points(std::uint32_t shown) noexcept;
-  [[nodiscard]] bool keep_places() noexcept;
+  [[nodiscard]] bool store_positions() noexcept;
   void note_poses() noexcept;
 
   // Batches and the narrow phase (collide.cpp).
@@ -94,36 +94,36 @@ class Collision {
   void rest_parts() noexcept;
   void rest_regions(const BodyPair& bodies, std::size_t pair) noexcept;
 
-  // Seamless floors (seams.cpp).
+  // Seamless floors (ghost_contacts.cpp).
   class FloorWriter;
   [[nodiscard]] bool is_carried_over(const BodyPair& pair) const noexcept;
   [[nodiscard]] bool list_floor_contacts();
-  void drop_seams_of(FloorContact* first, FloorContact* end) noexcept;
+  void drop_ghost_contacts_of(FloorContact* first, FloorContact* end) noexcept;
   [[nodiscard]] bool list_floor_answer(const NarrowResult& answers, FloorContact::Source source,
                                        std::uint32_t at, const double* offset, FloorWriter& writer);
   [[nodiscard]] bool list_floor_parts(std::uint32_t pair, FloorWriter& writer);
   [[nodiscard]] bool list_floor_regions(std::uint32_t pair, FloorWriter& writer);
-  [[nodiscard]] bool drop_seams();
+  [[nodiscard]] bool drop_ghost_contacts();
   void drop(const FloorContact& seam) noexcept;
   void close_regions() noexcept;
 
-  // Output of the frame (show_contacts.cpp).
-  [[nodiscard]] bool reads_last_manifolds() const noexcept { return carries_ || remembers_places_; }
+  // Output of the frame (write_contacts.cpp).
+  [[nodiscard]] bool reads_last_manifolds() const noexcept { return carries_ || stores_positions_; }
   [[nodiscard]] bool open_frame();
-  [[nodiscard]] bool close(const Place& end);
-  [[nodiscard]] bool show_batch(Place& end);
-  [[nodiscard]] bool grow_frame(const Place& end);
+  [[nodiscard]] bool close(const Cursor& end);
+  [[nodiscard]] bool show_batch(Cursor& end);
+  [[nodiscard]] bool grow_frame(const Cursor& end);
   [[nodiscard]] bool reserve_next();
   /// Index of a pair's contacts in the last frame, or kNoEntry.
   [[nodiscard]] std::uint32_t shown_before(std::uint32_t pair) const noexcept;
-  [[nodiscard]] std::uint32_t carried_stretch(std::uint32_t pair, std::uint32_t end) const noexcept;
-  [[nodiscard]] Origin origin_of_fresh(const BodyPair& pair) const noexcept {
+  [[nodiscard]] std::uint32_t carried_range(std::uint32_t pair, std::uint32_t end) const noexcept;
+  [[nodiscard]] ContactSource origin_of_fresh(const BodyPair& pair) const noexcept {
     const bool is_composite =
         scene_.shape[pair.a].is_composite() || scene_.shape[pair.b].is_composite();
-    return is_composite ? Origin::composite : Origin::convex;
+    return is_composite ? ContactSource::composite : ContactSource::convex;
   }
-  [[nodiscard]] Origin origin_of(std::uint32_t pair) const noexcept {
-    return static_cast<Origin>(contacts_.origin[pair - known_from_]);
+  [[nodiscard]] ContactSource origin_of(std::uint32_t pair) const noexcept {
+    return static_cast<ContactSource>(contacts_.origin[pair - known_from_]);
   }
   /// Index in SceneState::convex or composite of a pair that is not carried over. For a convex pair
   /// this is also the index of its result, because convex pairs are listed by kinds.
@@ -131,24 +131,24 @@ class Collision {
     return contacts_.source[pair - batch_first_];
   }
   [[nodiscard]] bool is_fresh_convex(std::uint32_t pair) const noexcept;
-  [[nodiscard]] Place extent(std::uint32_t pair) const noexcept;
-  [[nodiscard]] Place count(std::uint32_t first, std::uint32_t end) const noexcept;
-  void write_task(std::uint32_t first, std::uint32_t end, Place at) noexcept;
+  [[nodiscard]] Cursor extent(std::uint32_t pair) const noexcept;
+  [[nodiscard]] Cursor count(std::uint32_t first, std::uint32_t end) const noexcept;
+  void write_task(std::uint32_t first, std::uint32_t end, Cursor at) noexcept;
   [[nodiscard]] bool touches(const NarrowResult& answers, std::size_t at) const noexcept;
   void write_bodies(std::span<const std::uint32_t> pairs, std::uint32_t to) noexcept;
   void write_all(std::uint32_t first, std::uint32_t end, std::uint32_t to) noexcept;
-  void write_convex(std::uint32_t first, std::uint32_t end, Place& at) noexcept;
-  void write_answers(std::span<const std::uint32_t> pairs, Place& at) noexcept;
-  void write_composite(std::uint32_t pair, const Place& to) noexcept;
+  void write_convex(std::uint32_t first, std::uint32_t end, Cursor& at) noexcept;
+  void write_answers(std::span<const std::uint32_t> pairs, Cursor& at) noexcept;
+  void write_composite(std::uint32_t pair, const Cursor& to) noexcept;
   /// Value of Contacts::previous_pair: sleeping pairs were not in the last frame.
-  [[nodiscard]] std::uint32_t place_before(std::uint32_t shown) const noexcept {
+  [[nodiscard]] std::uint32_t last_point_of(std::uint32_t shown) const noexcept {
     return has_slept(shown) ? kNoContact : shown;
   }
   void write_manifold(const NarrowResult& answers, std::size_t at, const double* offset,
-                      Place& to) noexcept;
+                      Cursor& to) noexcept;
   void write_points(const NarrowResult& answers, std::size_t at, const double* offset,
                     std::uint32_t& to) noexcept;
-  void write_region(const ContactRegion& region, Place& to) noexcept;
+  void write_region(const ContactRegion& region, Cursor& to) noexcept;
   [[nodiscard]] bool write_runs();
 
   [[nodiscard]] std::uint32_t pair_count() const noexcept {
@@ -180,13 +180,13 @@ class Collision {
   /// Manifolds of composite shapes are merged into contact regions.
   bool reduces_;
   /// SceneOptions::warm_start: previous indices of contacts are required.
-  bool remembers_places_;
+  bool stores_positions_;
   /// Pairs with at most this distance are in contact.
   double limit_ = 0.0;
   /// Number of pairs in the contacts before this call; and including sleeping pairs that may have
   /// woken.
-  std::uint32_t shown_last_ = 0;
-  std::uint32_t known_last_ = 0;
+  std::uint32_t last_pairs_ = 0;
+  std::uint32_t last_records_ = 0;
   /// The contacts were last filled by this scene; and at this level.
   bool same_scene_;
   bool same_level_;

@@ -16,7 +16,7 @@
 namespace winnow {
 
 struct SceneOptions;
-struct SceneRoom;
+struct SceneCapacity;
 
 /// No index.
 inline constexpr std::uint32_t kNoEntry = ~0U;
@@ -66,12 +66,12 @@ struct ContactFrame {
   [[nodiscard]] Bytes bytes() const noexcept;
 
   /// A write position: the next pair, manifold and point.
-  struct Place {
+  struct Cursor {
     std::uint32_t pair = 0;
     std::uint32_t manifold = 0;
     std::uint32_t point = 0;
 
-    Place& operator+=(const Place& other) noexcept {
+    Cursor& operator+=(const Cursor& other) noexcept {
       pair += other.pair;
       manifold += other.manifold;
       point += other.point;
@@ -79,14 +79,14 @@ struct ContactFrame {
     }
   };
   /// Number of pairs, manifolds and points in pairs [first, first + count).
-  [[nodiscard]] Place extent(std::uint32_t first, std::uint32_t count = 1) const noexcept;
+  [[nodiscard]] Cursor extent(std::uint32_t first, std::uint32_t count = 1) const noexcept;
   /// Copies pairs [first, first + count) of another frame of the same level to a position, with
   /// manifolds and points but not runs. If the other frame has only pairs, the copies have no
   /// manifolds.
   void copy(const ContactFrame& other, std::uint32_t first, std::uint32_t count,
-            const Place& to) noexcept;
+            const Cursor& to) noexcept;
   /// Writes the last elements of manifold_first and point_first.
-  void close(ContactLevel level, const Place& end) noexcept;
+  void close(ContactLevel level, const Cursor& end) noexcept;
 
  private:
   /// Calls make(column, count) for every column except runs and points, until it returns false.
@@ -94,7 +94,7 @@ struct ContactFrame {
   [[nodiscard]] bool make_columns(ContactLevel level, bool parts, std::size_t pair_count,
                                   std::size_t manifold_count, Make&& make) noexcept;
   void copy_points(const ContactFrame& other, std::uint32_t first, std::uint32_t count,
-                   const Place& to) noexcept;
+                   const Cursor& to) noexcept;
 };
 
 /// Records of pairs from one `collide` to the next, in the order of pairs: of the pairs in contact,
@@ -214,20 +214,20 @@ struct ContactsState {
   std::size_t carried_count = 0;
 
   /// By pair of the scene or batch: its record of the last call; its index in the input of the
-  /// narrow phase; and its Collision::Origin.
+  /// narrow phase; and its Collision::ContactSource.
   Column<std::uint32_t> old_record;
   Column<std::uint32_t> source;
   Column<std::uint8_t> origin;
   /// By pair of the last frame: 1 if the pair is in the new frame too.
   Column<std::uint8_t> shown_again;
   /// Counts by task, which become the write positions of the tasks.
-  Column<ContactFrame::Place> sums;
+  Column<ContactFrame::Cursor> sums;
   /// In the last call all pairs persisted and none ended.
   bool is_settled = false;
 
   void clear() noexcept;
   /// Implements Scene::reserve_contacts (reserve.cpp).
-  [[nodiscard]] bool reserve(const SceneRoom& room, const SceneOptions& options,
+  [[nodiscard]] bool reserve(const SceneCapacity& room, const SceneOptions& options,
                              Pages pages) noexcept;
 };
 

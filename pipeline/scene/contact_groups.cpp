@@ -5,7 +5,7 @@
 
 #include "core/memory/columns.h"
 #include "core/sort/counting_sort.h"
-#include "core/sort/stretches.h"
+#include "core/sort/parallel_ranges.h"
 #include "core/threads/atomic_ref.h"
 #include "pipeline/scene/contact_frame.h"
 #include "pipeline/scene/scene_state.h"
@@ -112,19 +112,19 @@ Status Scene::islands(const Contacts& contacts, ContactGroups& out) const {
     return Status::out_of_memory;
   }
   const BodySets sets(out.of_body_);
-  for_stretches(state_->options.execution, pairs.size(), kPairsPerJoin,
-                [&](std::size_t first, std::size_t end) {
-                  for (std::size_t i = first; i < end; ++i) {
-                    if (!pairs.is_movable(i, 0) || !pairs.is_movable(i, 1)) continue;
-                    sets.join(pairs.frame.key[0][i].id, pairs.frame.key[1][i].id);
-                  }
-                });
-  for_stretches(state_->options.execution, pairs.size(), kPairsPerJoin,
-                [&](std::size_t first, std::size_t end) {
-                  for (std::size_t i = first; i < end; ++i) {
-                    out.group_[i] = sets.first_of(pairs.movable(i));
-                  }
-                });
+  for_each_range(state_->options.execution, pairs.size(), kPairsPerJoin,
+                 [&](std::size_t first, std::size_t end) {
+                   for (std::size_t i = first; i < end; ++i) {
+                     if (!pairs.is_movable(i, 0) || !pairs.is_movable(i, 1)) continue;
+                     sets.join(pairs.frame.key[0][i].id, pairs.frame.key[1][i].id);
+                   }
+                 });
+  for_each_range(state_->options.execution, pairs.size(), kPairsPerJoin,
+                 [&](std::size_t first, std::size_t end) {
+                   for (std::size_t i = first; i < end; ++i) {
+                     out.group_[i] = sets.first_of(pairs.movable(i));
+                   }
+                 });
   // Replaces root bodies with island numbers, in the order of the first pairs.
   std::fill(out.of_body_.begin(), out.of_body_.end(), kNoContact);
   std::uint32_t islands = 0;

@@ -1,12 +1,12 @@
 // Warm starts: finds the index of each contact in the last frame. Pairs match by key; points match
 // by primitives and features, and the remaining ones by position on either body. Collision
-// (collide.cpp, show_contacts.cpp) calls this.
+// (collide.cpp, write_contacts.cpp) calls this.
 
 #include "pipeline/scene/contact_history.h"
 
 #include <winnow/core/eigen.h>
 #include <winnow/core/rotation.h>
-#include "core/sort/stretches.h"
+#include "core/sort/parallel_ranges.h"
 #include "pipeline/scene/collision.h"
 
 #include <Eigen/Core>
@@ -131,12 +131,13 @@ class PointMatch {
 
 /// Poses of two bodies now and in the last frame; measures how far a point has moved on either
 /// body. Points are relative to the position of the first body.
-class PairPlaces {
+class PairPoints {
  public:
-  PairPlaces(const Pose (&now)[2], const Pose (&before)[2]) noexcept {
+  PairPoints(const Pose (&now)[2], const Pose (&before)[2]) noexcept {
     for (std::size_t side = 0; side < 2; ++side) {
-      back_[side] = as_eigen(rotation_of(tame(now[side].orientation))).transpose();
-      back_before_[side] = as_eigen(rotation_of(tame(before[side].orientation))).transpose();
+      back_[side] = as_eigen(rotation_of(scale_to_unit_max(now[side].orientation))).transpose();
+      back_before_[side] =
+          as_eigen(rotation_of(scale_to_unit_max(before[side].orientation))).transpose();
       for (int k = 0; k < 3; ++k) {
         from_[side][k] = now[0].position[k] - now[side].position[k];
         from_before_[side][k] = before[0].position[k] - before[side].position[k];
@@ -178,7 +179,7 @@ bool ContactHistory::reserve(std::size_t pairs, std::size_t points, std::size_t 
 }
 
 bool Collision::begin_history() noexcept {
-  if (!remembers_places_) return true;
+  if (!stores_positions_) return true;
   ContactHistory& history = contacts_.history;
   if (!history.taken.resize(contacts_.before.points.size()) ||
       !history.pose.grow(scene_.pose.size())) {
@@ -192,25 +193,25 @@ bool Collision::begin_history() noexcept {
 // Resizes to the frame.
 bool Collision::grow_history() noexcept {
   ContactHistory& history = contacts_.history;
-  return !remembers_places_ || (history.pair.resize(contacts_.frame.pairs()) &&
+  return !stores_positions_ || (history.pair.resize(contacts_.frame.pairs()) &&
                                 history.point.resize(contacts_.frame.points.size()));
 }
 
 // Reserves for the next call, which flags this frame's points.
 bool Collision::reserve_history() noexcept {
-  return !remembers_places_ || contacts_.history.taken.reserve(contacts_.frame.points.size());
+  return !stores_positions_ || contacts_.history.taken.reserve(contacts_.frame.points.size());
 }
 
 // Matches the points of all pairs of the frame.
 void Collision::match_points() noexcept {
-  if (!remembers_places_) return;
+  if (!stores_positions_) return;
   if (level_ == ContactLevel::manifold) {
-    for_stretches(scene_.options.execution, contacts_.frame.pairs(), kPairsPerTask,
-                  [&](std::size_t first, std::size_t end) {
-                    for (std::size_t i = first; i < end; ++i) {
-                      match_points(static_cast<std::uint32_t>(i));
-                    }
-                  });
+    for_each_range(scene_.options.execution, contacts_.frame.pairs(), kPairsPerTask,
+                   [&](std::size_t first, std::size_t end) {
+                     for (std::size_t i = first; i < end; ++i) {
+                       match_points(static_cast<std::uint32_t>(i));
+                     }
+                   });
   }
   note_poses();
 }
@@ -226,18 +227,18 @@ void Collision::match_points(std::uint32_t shown) noexcept {
   PointMatch match(frame, before, history, shown);
   match.by_part();
   if (reduces_ && !match.is_done()) match.by_feature();
-  if (match.is_done() || match.left_over() > kMostLeftOver) return;
+  if (match.is_done() || match.left_over() > kMaxUnmatched) return;
   const std::uint32_t bodies[2] = {frame.key[0][shown].id, frame.key[1][shown].id};
   const double reach =
-      kSamePlaceShare * std::min(scene_.radius(bodies[0]), scene_.radius(bodies[1]));
-  match.by_place(PairPlaces({scene_.pose[bodies[0]], scene_.pose[bodies[1]]},
+      kSamePointFraction * std::min(scene_.radius(bodies[0]), scene_.radius(bodies[1]));
+  match.by_place(PairPoints({scene_.pose[bodies[0]], scene_.pose[bodies[1]]},
                             {history.pose[bodies[0]], history.pose[bodies[1]]}),
                  reach);
 }
 
 // Called if the frame stays as it is: every contact keeps its index.
-bool Collision::keep_places() noexcept {
-  if (!remembers_places_) return true;
+bool Collision::store_positions() noexcept {
+  if (!stores_positions_) return true;
   ContactHistory& history = contacts_.history;
   if (!history.pose.grow(scene_.pose.size())) return false;
   if (!history.is_same) {
@@ -254,14 +255,14 @@ void Collision::note_poses() noexcept {
   Column<Pose>& known = contacts_.history.pose;
   const std::size_t old = known.size();
   known.set_size(scene_.pose.size());
-  for_stretches(scene_.options.execution, known.size(), kBodiesPerCopy,
-                [&](std::size_t first, std::size_t end) {
-                  for (std::size_t body = first; body < end; ++body) {
-                    if (body >= old || scene_.moved_at[body] > contacts_.clock) {
-                      known[body] = scene_.pose[body];
-                    }
-                  }
-                });
+  for_each_range(scene_.options.execution, known.size(), kBodiesPerCopy,
+                 [&](std::size_t first, std::size_t end) {
+                   for (std::size_t body = first; body < end; ++body) {
+                     if (body >= old || scene_.moved_at[body] > contacts_.clock) {
+                       known[body] = scene_.pose[body];
+                     }
+                   }
+                 });
 }
 
 }  // namespace winnow

@@ -11,11 +11,11 @@ namespace winnow {
 
 /// A point that has no feature match may have moved by at most this share of the smaller body's
 /// radius, measured on the body on which it moved less, to match a point of the last frame.
-inline constexpr double kSamePlaceShare = 0.02;
+inline constexpr double kSamePointFraction = 0.02;
 
 /// If a pair has more unmatched points of the last frame than this, its points are matched by
 /// feature only: matching by position is quadratic.
-inline constexpr std::uint32_t kMostLeftOver = 256;
+inline constexpr std::uint32_t kMaxUnmatched = 256;
 
 /// Maps the pairs and points of a ContactFrame to their indices in the frame before, for warm
 /// starts. Empty if the scene does not request it.

@@ -3,9 +3,9 @@
 // Collision calls this after the narrow phase. None of it runs in a scene without offsets.
 
 #include "core/hooks/log.h"
-#include "core/sort/stretches.h"
+#include "core/sort/parallel_ranges.h"
 #include "core/threads/float_environment.h"
-#include "pipeline/narrow/steady_column.h"
+#include "pipeline/narrow/tight_growth.h"
 #include "pipeline/scene/collision.h"
 
 #include <cmath>
@@ -15,7 +15,7 @@ namespace winnow {
 namespace {
 
 constexpr double kLargestLength = std::numeric_limits<double>::max();
-constexpr std::size_t kOffsetPairsPerStretch = 256;
+constexpr std::size_t kOffsetPairsPerRange = 256;
 /// Relative rounding error of a sum of two doubles.
 constexpr double kSumError = 0x1p-52;
 
@@ -88,7 +88,7 @@ bool Collision::find_margins(const Column<BodyPair>& pairs, double more, PairMar
   margins = std::min(scene_.options.margin + more, kLargestLength);
   if (!scene_.has_offsets()) return true;
   Column<double>& gaps = scene_.gaps;
-  if (!resize_steadily(gaps, pairs.size())) return false;
+  if (!resize_tightly(gaps, pairs.size())) return false;
   double largest = 0.0;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     gaps[i] = std::min(scene_.gap_of(pairs[i]) + more, kLargestLength);
@@ -103,7 +103,7 @@ bool Collision::find_part_margins(PairMargins& margins) {
   if (!scene_.has_offsets()) return true;
   const PrimitivePairs& parts = scene_.parts->pairs;
   Column<double>& gaps = scene_.parts->gaps;
-  if (!resize_steadily(gaps, parts.pairs.size())) return false;
+  if (!resize_tightly(gaps, parts.pairs.size())) return false;
   double largest = 0.0;
   for (std::size_t i = 0; i < scene_.composite.size(); ++i) {
     const double gap = scene_.gap_of(scene_.composite[i]);
@@ -125,25 +125,25 @@ void Collision::trim(double gap, std::uint32_t at, const NarrowColumns& answers)
 void Collision::trim_convex() noexcept {
   if (level_ < ContactLevel::distance || !scene_.has_offsets()) return;
   const NarrowColumns answers = scene_.answers.columns();
-  for_stretches(scene_.options.execution, scene_.convex.size(), kOffsetPairsPerStretch,
-                [&](std::size_t first, std::size_t end) {
-                  for (auto i = static_cast<std::uint32_t>(first); i < end; ++i) {
-                    trim(scene_.gaps[i], i, answers);
-                    rest(scene_.convex[i], i, answers);
-                  }
-                });
+  for_each_range(scene_.options.execution, scene_.convex.size(), kOffsetPairsPerRange,
+                 [&](std::size_t first, std::size_t end) {
+                   for (auto i = static_cast<std::uint32_t>(first); i < end; ++i) {
+                     trim(scene_.gaps[i], i, answers);
+                     rest(scene_.convex[i], i, answers);
+                   }
+                 });
 }
 
 void Collision::trim_parts() noexcept {
   if (level_ < ContactLevel::distance || !scene_.has_offsets()) return;
   const PartAnswers& parts = *scene_.parts;
   const NarrowColumns answers = scene_.parts->answers.columns();
-  for_stretches(scene_.options.execution, parts.gaps.size(), kOffsetPairsPerStretch,
-                [&](std::size_t first, std::size_t end) {
-                  for (std::size_t k = first; k < end; ++k) {
-                    trim(parts.gaps[k], parts.slot[k], answers);
-                  }
-                });
+  for_each_range(scene_.options.execution, parts.gaps.size(), kOffsetPairsPerRange,
+                 [&](std::size_t first, std::size_t end) {
+                   for (std::size_t k = first; k < end; ++k) {
+                     trim(parts.gaps[k], parts.slot[k], answers);
+                   }
+                 });
 }
 
 // Measures distance and points from the surfaces moved by the rest offsets.
@@ -170,20 +170,20 @@ void Collision::rest(const BodyPair& bodies, std::uint32_t at,
 void Collision::rest_parts() noexcept {
   if (level_ < ContactLevel::distance || !scene_.has_offsets()) return;
   const NarrowColumns answers = scene_.parts->answers.columns();
-  for_stretches(scene_.options.execution, scene_.composite.size(), kOffsetPairsPerStretch,
-                [&](std::size_t first, std::size_t end) {
-                  for (std::size_t i = first; i < end; ++i) {
-                    const BodyPair& bodies = scene_.composite[i];
-                    if (reduces_) {
-                      rest_regions(bodies, i);
-                      continue;
-                    }
-                    const std::uint32_t* const of = scene_.parts->pairs.first.data() + i;
-                    for (std::uint32_t k = of[0]; k < of[1]; ++k) {
-                      rest(bodies, scene_.parts->slot[k], answers);
-                    }
-                  }
-                });
+  for_each_range(scene_.options.execution, scene_.composite.size(), kOffsetPairsPerRange,
+                 [&](std::size_t first, std::size_t end) {
+                   for (std::size_t i = first; i < end; ++i) {
+                     const BodyPair& bodies = scene_.composite[i];
+                     if (reduces_) {
+                       rest_regions(bodies, i);
+                       continue;
+                     }
+                     const std::uint32_t* const of = scene_.parts->pairs.first.data() + i;
+                     for (std::uint32_t k = of[0]; k < of[1]; ++k) {
+                       rest(bodies, scene_.parts->slot[k], answers);
+                     }
+                   }
+                 });
 }
 
 void Collision::rest_regions(const BodyPair& bodies, std::size_t pair) noexcept {

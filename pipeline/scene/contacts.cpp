@@ -1,11 +1,11 @@
 // ContactFrame's columns, and the public interface of Contacts, which only reads them.
-// Scene::collide fills them (show_contacts.cpp).
+// Scene::collide fills them (write_contacts.cpp).
 
 #include <winnow/pipeline/contacts.h>
 
 #include "core/memory/columns.h"
 #include "core/memory/new_in.h"
-#include "pipeline/narrow/steady_column.h"
+#include "pipeline/narrow/tight_growth.h"
 #include "pipeline/scene/contact_frame.h"
 
 #include <algorithm>
@@ -61,7 +61,7 @@ bool ContactFrame::make_columns(ContactLevel level, bool parts, std::size_t pair
 bool ContactFrame::resize(ContactLevel level, std::size_t pair_count, std::size_t manifold_count,
                           std::size_t point_count) noexcept {
   const auto resize_one = [](auto& column, std::size_t count) {
-    return resize_steadily(column, count);
+    return resize_tightly(column, count);
   };
   if (!make_columns(level, with_parts, pair_count, manifold_count, resize_one) ||
       !points.grow(point_count)) {
@@ -91,7 +91,7 @@ bool ContactFrame::reserve(ContactLevel level, bool parts, std::size_t pair_coun
       !points.grow(point_count)) {
     return false;
   }
-  if (pages == Pages::touched) points.touch();
+  if (pages == Pages::prefaulted) points.touch();
   return true;
 }
 
@@ -173,8 +173,8 @@ Bytes ContactFrame::bytes() const noexcept {
   return sum;
 }
 
-ContactFrame::Place ContactFrame::extent(std::uint32_t first, std::uint32_t count) const noexcept {
-  Place extent{count, 0, 0};
+ContactFrame::Cursor ContactFrame::extent(std::uint32_t first, std::uint32_t count) const noexcept {
+  Cursor extent{count, 0, 0};
   if (manifold_first.empty()) return extent;
   const std::uint32_t begin = manifold_first[first];
   const std::uint32_t end = manifold_first[first + count];
@@ -184,7 +184,7 @@ ContactFrame::Place ContactFrame::extent(std::uint32_t first, std::uint32_t coun
 }
 
 void ContactFrame::copy(const ContactFrame& other, std::uint32_t first, std::uint32_t count,
-                        const Place& to) noexcept {
+                        const Cursor& to) noexcept {
   for (int side = 0; side < 2; ++side) {
     copy_range(other.key[side], first, count, key[side], to.pair);
   }
@@ -215,7 +215,7 @@ void ContactFrame::copy(const ContactFrame& other, std::uint32_t first, std::uin
 }
 
 void ContactFrame::copy_points(const ContactFrame& other, std::uint32_t first, std::uint32_t count,
-                               const Place& to) noexcept {
+                               const Cursor& to) noexcept {
   const std::uint32_t begin = other.point_first[first];
   const std::uint32_t number = other.point_first[first + count] - begin;
   for (std::uint32_t m = 0; m < count; ++m) {
@@ -228,7 +228,7 @@ void ContactFrame::copy_points(const ContactFrame& other, std::uint32_t first, s
   copy_range(other.points.feature, begin, number, points.feature, to.point);
 }
 
-void ContactFrame::close(ContactLevel level, const Place& end) noexcept {
+void ContactFrame::close(ContactLevel level, const Cursor& end) noexcept {
   if (level != ContactLevel::pairs) manifold_first[end.pair] = end.manifold;
   if (level == ContactLevel::manifold) point_first[end.manifold] = end.point;
 }

@@ -21,7 +21,7 @@ class LayerMatrix {
 
   explicit LayerMatrix(std::pmr::memory_resource* memory) noexcept : apart_(memory) {}
 
-  [[nodiscard]] bool all_meet() const noexcept { return apart_.empty(); }
+  [[nodiscard]] bool all_collide() const noexcept { return apart_.empty(); }
   [[nodiscard]] bool meet(std::uint32_t a, std::uint32_t b) const noexcept {
     if (a >= width_ || b >= width_) return true;
     return (apart_[word(a, b)] >> b % kBits & 1U) == 0;
@@ -29,7 +29,7 @@ class LayerMatrix {
 
   /// Grows the matrix to include `layer`. Returns false and changes nothing if memory is refused.
   /// O(layers^2).
-  [[nodiscard]] bool reach(std::uint32_t layer) noexcept {
+  [[nodiscard]] bool grow_to(std::uint32_t layer) noexcept {
     if (layer < width_) return true;
     const std::uint32_t old = width_ / kBits;
     const std::uint32_t wide = (layer / kBits + 1);
@@ -47,7 +47,7 @@ class LayerMatrix {
     return true;
   }
 
-  /// Requires both layers within the width of the matrix (see `reach`).
+  /// Requires both layers within the width of the matrix (see `grow_to`).
   void set(std::uint32_t a, std::uint32_t b, bool meet) noexcept {
     const std::uint32_t pair[2] = {a, b};
     for (int side = 0; side < 2; ++side) {
@@ -66,9 +66,9 @@ class LayerMatrix {
   /// symmetric.
   [[nodiscard]] Restored restore(std::span<const std::uint64_t> words) noexcept {
     std::uint32_t wide = 0;
-    while (std::size_t{wide} * wide * kBits < words.size() && wide < kMostWords) ++wide;
+    while (std::size_t{wide} * wide * kBits < words.size() && wide < kMaxWords) ++wide;
     if (std::size_t{wide} * wide * kBits != words.size()) return Restored::refused;
-    if (wide != 0 && !reach(wide * kBits - 1)) return Restored::out_of_memory;
+    if (wide != 0 && !grow_to(wide * kBits - 1)) return Restored::out_of_memory;
     for (std::uint32_t a = 0; a < width_; ++a) {
       for (std::uint32_t b = a; b < width_; ++b) {
         if ((words[word(a, b)] >> b % kBits & 1U) != 0) set(a, b, false);
@@ -86,7 +86,7 @@ class LayerMatrix {
 
  private:
   static constexpr std::uint32_t kBits = 64;
-  static constexpr std::uint32_t kMostWords = kSceneLayers / kBits;
+  static constexpr std::uint32_t kMaxWords = kSceneLayers / kBits;
 
   [[nodiscard]] std::size_t word(std::uint32_t row, std::uint32_t column) const noexcept {
     return std::size_t{row} * (width_ / kBits) + column / kBits;

@@ -22,16 +22,16 @@ constexpr std::size_t kFewRows = 64;
   return bodies + std::max(kFewRows, bodies / 4);
 }
 
-[[nodiscard]] std::size_t bodies_of(const SceneRoom& room) noexcept {
+[[nodiscard]] std::size_t bodies_of(const SceneCapacity& room) noexcept {
   return std::accumulate(std::begin(room.bodies), std::end(room.bodies), std::size_t{0});
 }
 
 // Number of pairs in Contacts.
-[[nodiscard]] std::size_t shown_pairs(const SceneRoom& room) noexcept {
+[[nodiscard]] std::size_t shown_pairs(const SceneCapacity& room) noexcept {
   return room.level == ContactLevel::pairs ? room.pairs : room.touching;
 }
 
-[[nodiscard]] Status check(const SceneRoom& room) noexcept {
+[[nodiscard]] Status check(const SceneCapacity& room) noexcept {
   if (room.level > ContactLevel::manifold) return Status::invalid_argument;
   const bool too_many =
       std::ranges::any_of(room.bodies, [](auto n) { return n >= kMaxBodies; }) ||
@@ -47,7 +47,7 @@ template <typename... T>
 
 }  // namespace
 
-Status Scene::reserve(const SceneRoom& room, Pages pages) {
+Status Scene::reserve(const SceneCapacity& room, Pages pages) {
   const DefaultEnvironment environment;
   if (state_ == nullptr) return Status::out_of_memory;
   if (!state_->options_are_good) return Status::invalid_argument;
@@ -55,7 +55,7 @@ Status Scene::reserve(const SceneRoom& room, Pages pages) {
   return good == Status::ok ? state_->reserve(room, pages) : good;
 }
 
-Status Scene::reserve_contacts(Contacts& out, const SceneRoom& room, Pages pages) const {
+Status Scene::reserve_contacts(Contacts& out, const SceneCapacity& room, Pages pages) const {
   const DefaultEnvironment environment;
   if (state_ == nullptr || out.state_ == nullptr) return Status::out_of_memory;
   if (const Status good = check(room); good != Status::ok) return good;
@@ -63,22 +63,22 @@ Status Scene::reserve_contacts(Contacts& out, const SceneRoom& room, Pages pages
 }
 
 // Partitions come last, because a new partition is visible to callers.
-Status SceneState::reserve(const SceneRoom& room, Pages pages) {
+Status SceneState::reserve(const SceneCapacity& room, Pages pages) {
   if (!reserve_bodies(room, pages)) return Status::out_of_memory;
   const Status status = reserve_answers(room, pages);
   return status == Status::ok ? reserve_sets(room, pages) : status;
 }
 
-bool SceneState::reserve_bodies(const SceneRoom& room, Pages pages) noexcept {
+bool SceneState::reserve_bodies(const SceneCapacity& room, Pages pages) noexcept {
   const std::size_t bodies = bodies_of(room);
   if (!reserve(bodies > keys.size() ? bodies - keys.size() : 0)) return false;
   // One call may move all bodies, and gives boxes to one set at a time.
   const std::size_t largest = *std::ranges::max_element(room.bodies);
   if (!reserve_all(largest, pages, boxes, boxes_of, boxes_body) ||
-      !reserve_all(bodies, pages, chosen) || !reserve_all(bodies, pages, left)) {
+      !reserve_all(bodies, pages, chosen) || !reserve_all(bodies, pages, old_keys)) {
     return false;
   }
-  if (pages == Pages::touched) {
+  if (pages == Pages::prefaulted) {
     keys.touch();
     touch_columns(shape, pose, motion, place, ball, moved_at, shaped_at, stale, is_stale);
     anchor.touch();
@@ -86,7 +86,7 @@ bool SceneState::reserve_bodies(const SceneRoom& room, Pages pages) noexcept {
   return true;
 }
 
-Status SceneState::reserve_sets(const SceneRoom& room, Pages pages) {
+Status SceneState::reserve_sets(const SceneCapacity& room, Pages pages) {
   bool is_new[kMotions] = {};
   Status status = Status::ok;
   for (std::size_t i = 0; i < kMotions && status == Status::ok; ++i) {
@@ -110,7 +110,7 @@ Status SceneState::reserve_sets(const SceneRoom& room, Pages pages) {
   return status;
 }
 
-Status SceneState::reserve_answers(const SceneRoom& room, Pages pages) {
+Status SceneState::reserve_answers(const SceneCapacity& room, Pages pages) {
   if (!pairs.reserve(room.pairs, pages)) return Status::out_of_memory;
   if (room.level == ContactLevel::pairs) return Status::ok;
   const std::size_t batch = Collision::batch_size(options, room.pairs);
@@ -143,7 +143,7 @@ Status SceneState::reserve_answers(const SceneRoom& room, Pages pages) {
   if (!points.grow(found + std::size_t{kJobPairs} * kManifoldPoints + kContactSlack)) {
     return Status::out_of_memory;
   }
-  if (pages == Pages::touched) points.touch();
+  if (pages == Pages::prefaulted) points.touch();
   return Status::ok;
 }
 
@@ -164,7 +164,7 @@ bool SceneState::list_rehearsal(std::size_t kinds, std::size_t count) noexcept {
   return true;
 }
 
-bool ContactsState::reserve(const SceneRoom& room, const SceneOptions& options,
+bool ContactsState::reserve(const SceneCapacity& room, const SceneOptions& options,
                             Pages pages) noexcept {
   const bool carries = options.carry_over > 0.0 && room.level >= ContactLevel::distance;
   const bool remembers_places = options.warm_start;
@@ -196,7 +196,7 @@ bool ContactsState::reserve(const SceneRoom& room, const SceneOptions& options,
   const std::size_t told = room.level == ContactLevel::pairs ? 0 : looked_at;
   // Without carry-over and sleeping pairs, `records` and `records_before` share one column, of
   // which only `bits` is used. If the scene and the contacts have the same memory resource, the
-  // column is borrowed from the scene (see Lodger in collide.cpp).
+  // column is borrowed from the scene (see BorrowedStorage in collide.cpp).
   const bool two_orders = carries || may_sleep;
   const bool one_order = two_orders || frame.event.memory() != options.memory;
   return reserve_all(shown, pages, ended, shown_again) &&

@@ -1,5 +1,5 @@
 // The public interface of Scene: checks arguments and calls SceneState (scene_state.cpp). Other
-// members of Scene are in collide.cpp, meetings.cpp, contact_offsets.cpp, contact_groups.cpp,
+// members of Scene are in collide.cpp, pair_filter.cpp, contact_offsets.cpp, contact_groups.cpp,
 // reserve.cpp, scene_snapshot.cpp and contacts_snapshot.cpp.
 
 #include <winnow/pipeline/scene.h>
@@ -104,7 +104,7 @@ SceneState::SceneState(const ShapePool& pool, const SceneOptions& given) noexcep
       boxes_of(given.memory),
       boxes_body(given.memory),
       chosen(given.memory),
-      left(given.memory),
+      old_keys(given.memory),
       sets{SceneSet(given.memory), SceneSet(given.memory), SceneSet(given.memory)},
       serial(next_serial()),
       pairs(given.memory),
@@ -338,7 +338,7 @@ SceneFootprint Scene::footprint() const noexcept {
        {s.shape.bytes(),    s.pose.bytes(),       s.motion.bytes(),   s.place.bytes(),
         s.moved_at.bytes(), s.shaped_at.bytes(),  s.anchor.bytes(),   s.ball.bytes(),
         s.offsets.bytes(),  s.stale.bytes(),      s.is_stale.bytes(), s.boxes.bytes(),
-        s.boxes_of.bytes(), s.boxes_body.bytes(), s.chosen.bytes(),   s.left.bytes(),
+        s.boxes_of.bytes(), s.boxes_body.bytes(), s.chosen.bytes(),   s.old_keys.bytes(),
         s.ignored.bytes(),  s.ignores.bytes(),    s.layer.bytes(),    s.layers.bytes()}) {
     footprint.bodies += bytes;
   }

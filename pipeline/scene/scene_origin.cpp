@@ -15,7 +15,7 @@ constexpr double kWorthMoving = 8.0;
 /// Beyond this, differences to the origin could overflow floats.
 constexpr double kFarthestOrigin = 0x1p120;
 
-double median_of(std::array<double, ScenePlaces::kMost> values, std::size_t count) noexcept {
+double median_of(std::array<double, BodySample::kMaxSamples> values, std::size_t count) noexcept {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(count / 2);
   std::nth_element(values.begin(), middle, values.begin() + static_cast<std::ptrdiff_t>(count));
   return *middle;
@@ -23,20 +23,20 @@ double median_of(std::array<double, ScenePlaces::kMost> values, std::size_t coun
 
 }  // namespace
 
-void ScenePlaces::add(const double position[3], double radius) noexcept {
+void BodySample::add(const double position[3], double radius) noexcept {
   if (is_full() || !std::isfinite(radius)) return;
   for (std::size_t axis = 0; axis < 3; ++axis) position_[axis][count_] = position[axis];
   radius_[count_++] = radius;
 }
 
-Eigen::Vector3d ScenePlaces::origin(const Eigen::Vector3d& current) const noexcept {
+Eigen::Vector3d BodySample::origin(const Eigen::Vector3d& current) const noexcept {
   if (count_ == 0) return current;
   const double radius = median_of(radius_, count_);
   Eigen::Vector3d middle;
   double spread = radius;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const double at = median_of(position_[axis], count_);
-    std::array<double, kMost> apart;
+    std::array<double, kMaxSamples> apart;
     for (std::size_t i = 0; i < count_; ++i) apart[i] = std::abs(position_[axis][i] - at);
     spread = std::max(spread, median_of(apart, count_));
     middle[static_cast<Eigen::Index>(axis)] = at;

@@ -11,13 +11,13 @@ namespace winnow {
 /// Boxes are floats: at 1e8 floats are 8 apart, and the boxes of unit spheres there would all
 /// overlap. Boxes that are measured from a point among the bodies, rounded outward from double, are
 /// as tight as near (0, 0, 0).
-class ScenePlaces {
+class BodySample {
  public:
-  static constexpr std::size_t kMost = 32;
+  static constexpr std::size_t kMaxSamples = 32;
 
   /// Adds a body with its bounding radius. Bodies of infinite radius are ignored.
   void add(const double position[3], double radius) noexcept;
-  [[nodiscard]] bool is_full() const noexcept { return count_ == kMost; }
+  [[nodiscard]] bool is_full() const noexcept { return count_ == kMaxSamples; }
 
   /// Returns the origin for boxes. This is `current`, unless the median of the body positions is so
   /// far from it that (1) the float spacing there exceeds 2^-10 of the median radius, and (2) the
@@ -27,8 +27,8 @@ class ScenePlaces {
   [[nodiscard]] Eigen::Vector3d origin(const Eigen::Vector3d& current) const noexcept;
 
  private:
-  std::array<std::array<double, kMost>, 3> position_;
-  std::array<double, kMost> radius_;
+  std::array<std::array<double, kMaxSamples>, 3> position_;
+  std::array<double, kMaxSamples> radius_;
   std::size_t count_ = 0;
 };
 

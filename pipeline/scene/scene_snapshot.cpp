@@ -41,7 +41,7 @@ void put_options(ByteWriter& out, const SceneOptions& options) noexcept {
   out.put(options.carry_over);
   out.put(options.contact_reduction);
   out.put(options.warm_start);
-  out.put(options.seamless_floors);
+  out.put(options.suppress_ghost_contacts);
 }
 
 void read_options(ByteReader& in, SceneOptions& options) noexcept {
@@ -50,7 +50,7 @@ void read_options(ByteReader& in, SceneOptions& options) noexcept {
   options.carry_over = in.get<double>();
   options.contact_reduction = in.get_bool();
   options.warm_start = in.get_bool();
-  options.seamless_floors = in.get_bool();
+  options.suppress_ghost_contacts = in.get_bool();
 }
 
 [[nodiscard]] bool sees_composites(const SceneState& scene) noexcept {
@@ -60,7 +60,7 @@ void read_options(ByteReader& in, SceneOptions& options) noexcept {
 
 void put_clocks(ByteWriter& out, const SceneState& scene) noexcept {
   out.put_bytes(scene.origin.data(), 3 * sizeof(double));
-  out.put(std::uint64_t{scene.boxes_since_look});
+  out.put(std::uint64_t{scene.boxes_since_sampling});
   out.put(scene.boxes_updated);
   out.put(scene.clock);
   out.put(scene.regroupings);
@@ -69,7 +69,7 @@ void put_clocks(ByteWriter& out, const SceneState& scene) noexcept {
 
 void read_clocks(ByteReader& in, SceneState& scene) noexcept {
   (void)in.get_bytes(scene.origin.data(), 3 * sizeof(double));
-  scene.boxes_since_look = static_cast<std::size_t>(in.get<std::uint64_t>());
+  scene.boxes_since_sampling = static_cast<std::size_t>(in.get<std::uint64_t>());
   scene.boxes_updated = in.get<std::uint64_t>();
   scene.clock = in.get<std::uint32_t>();
   scene.regroupings = in.get<std::uint64_t>();
@@ -312,7 +312,7 @@ void take_over(SceneState& scene, SceneState& read, const ReadKeys& keys) noexce
   }
   scene.pairs.clear();
   scene.origin = read.origin;
-  scene.boxes_since_look = read.boxes_since_look;
+  scene.boxes_since_sampling = read.boxes_since_sampling;
   scene.boxes_updated = read.boxes_updated;
   // Contacts that were filled before do not match the new serial.
   scene.serial = read.serial;

@@ -5,10 +5,10 @@
 #include "pipeline/scene/scene_state.h"
 
 #include "core/hooks/stage_scope.h"
-#include "core/sort/stretches.h"
+#include "core/sort/parallel_ranges.h"
 #include "partitions/state/box_partition.h"
 #include "pipeline/composites/parts.h"
-#include "pipeline/narrow/steady_column.h"
+#include "pipeline/narrow/tight_growth.h"
 #include "pipeline/scene/body_predicate.h"
 #include "pipeline/scene/motion_bound.h"
 #include "pipeline/scene/scene_origin.h"
@@ -21,12 +21,12 @@
 namespace winnow {
 namespace {
 
-constexpr std::size_t kBodiesPerStretch = 256;
+constexpr std::size_t kBodiesPerRange = 256;
 constexpr std::size_t kFewBoxes = 128;
 // Boxes computed before they are given to their partition: few enough to use little memory beside
 // the bodies, enough to occupy many threads.
 constexpr std::size_t kBoxesPerBatch = 16384;
-constexpr std::size_t kPlacesPerCall = 512;
+constexpr std::size_t kKeysPerCall = 512;
 
 // A buffer that grows while pairs are found grows by half. The number of pairs is about the same in
 // most frames, so the unused part is freed. If the smaller allocation is refused, the larger one
@@ -79,7 +79,7 @@ Status SceneState::make_partition_of(Motion which) {
 }
 
 double SceneState::radius(std::uint32_t body) const noexcept {
-  return PartTraversal(shapes, options.composites).radius(shape[body]);
+  return SubShapeQuery(shapes, options.composites).radius(shape[body]);
 }
 
 PlainBox SceneState::bounds_from(const Eigen::Vector3d& from, ShapeId id, const Pose& at,
@@ -109,13 +109,13 @@ bool SceneState::has_one_origin() const noexcept {
   });
 }
 
-// Samples at most ScenePlaces::kMost bodies, at equal steps of ids.
+// Samples at most BodySample::kMaxSamples bodies, at equal steps of ids.
 void SceneState::choose_origin() noexcept {
-  boxes_since_look = 0;
+  boxes_since_sampling = 0;
   if (keeps_origin) return;
   const std::size_t slots = keys.slot_count();
-  const std::size_t step = slots / ScenePlaces::kMost + 1;
-  ScenePlaces places;
+  const std::size_t step = slots / BodySample::kMaxSamples + 1;
+  BodySample places;
   for (std::size_t body = 0; body < slots; body += step) {
     const auto id = static_cast<std::uint32_t>(body);
     if (keys.is_live(id)) places.add(pose[id].position, radius(id));
@@ -144,12 +144,12 @@ BodyBall SceneState::ball_from(const Eigen::Vector3d& from, std::uint32_t body) 
 
 void SceneState::set_balls(std::span<const std::uint32_t> bodies,
                            const Eigen::Vector3d& from) noexcept {
-  for_stretches(options.execution, bodies.size(), kBodiesPerStretch,
-                [&](std::size_t first, std::size_t end) {
-                  for (const std::uint32_t body : bodies.subspan(first, end - first)) {
-                    ball[body] = ball_from(from, body);
-                  }
-                });
+  for_each_range(options.execution, bodies.size(), kBodiesPerRange,
+                 [&](std::size_t first, std::size_t end) {
+                   for (const std::uint32_t body : bodies.subspan(first, end - first)) {
+                     ball[body] = ball_from(from, body);
+                   }
+                 });
 }
 
 // A view of `boxes`.
@@ -176,7 +176,7 @@ Status SceneState::place_bodies(Motion which, std::span<const std::uint32_t> bod
     if (!anchor.empty()) anchor[body] = with_unit_turn(pose[body]);
   }
   set_balls(bodies, target.origin);
-  boxes_since_look += bodies.size();
+  boxes_since_sampling += bodies.size();
   return Status::ok;
 }
 
@@ -214,13 +214,13 @@ void SceneState::displace(Motion which, std::span<const Key> places) {
 
 // In chunks on the stack, so that it needs no memory.
 void SceneState::take_out(std::span<const Key> given, Motion which) {
-  Key places[kPlacesPerCall];
+  Key places[kKeysPerCall];
   std::size_t count = 0;
   for (const Key& key : given) {
     if (motion[key.id] != which) continue;
     places[count++] = place[key.id];
     keys.release(key.id);
-    if (count == kPlacesPerCall) displace(which, {places, std::exchange(count, 0)});
+    if (count == kKeysPerCall) displace(which, {places, std::exchange(count, 0)});
   }
   displace(which, {places, count});
 }
@@ -352,24 +352,24 @@ Status SceneState::move_to_set(std::span<const Key> given, Motion to) {
   }
   const std::span<const std::uint32_t> bodies{chosen.data(), chosen.size()};
   if (bodies.empty()) return Status::ok;
-  if (!left.resize(bodies.size())) return Status::out_of_memory;
-  for (std::size_t i = 0; i < bodies.size(); ++i) left[i] = place[bodies[i]];
+  if (!old_keys.resize(bodies.size())) return Status::out_of_memory;
+  for (std::size_t i = 0; i < bodies.size(); ++i) old_keys[i] = place[bodies[i]];
   Status status = place_bodies(to, bodies);
   if (status != Status::ok) return status;
   for (std::size_t i = 0; i < bodies.size() && status == Status::ok; ++i) {
     ObjectFilter filter;
-    status = set(motion[bodies[i]]).partition->filter(left[i], filter);
+    status = set(motion[bodies[i]]).partition->filter(old_keys[i], filter);
     if (status == Status::ok && filter != ObjectFilter{}) {
       status = set(to).partition->set_filter(place[bodies[i]], filter);
     }
   }
   if (status != Status::ok) {
     take_back(bodies, to);
-    for (std::size_t i = 0; i < bodies.size(); ++i) place[bodies[i]] = left[i];
+    for (std::size_t i = 0; i < bodies.size(); ++i) place[bodies[i]] = old_keys[i];
     return status;
   }
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    displace(motion[bodies[i]], {&left[i], 1});
+    displace(motion[bodies[i]], {&old_keys[i], 1});
     motion[bodies[i]] = to;
   }
   ++regroupings;
@@ -394,8 +394,8 @@ Status SceneState::refresh() {
     }
   }
   // The sampling is as frequent as box updates and so costs little beside them.
-  if (boxes_since_look >= std::max(kFewBoxes, keys.size() / 2)) choose_origin();
-  if (is_fresh()) return Status::ok;
+  if (boxes_since_sampling >= std::max(kFewBoxes, keys.size() / 2)) choose_origin();
+  if (is_up_to_date()) return Status::ok;
   const StageScope stage(WorkStage::refresh);
   for (std::size_t which = 0; which < kMotions; ++which) {
     const Status status = refresh_set(static_cast<Motion>(which));
@@ -442,8 +442,8 @@ Status SceneState::renew_boxes(SceneSet& target) {
   const std::size_t count = chosen.size();
   if (count == 0) return Status::ok;
   if (!boxes.resize(count) || !boxes_of.resize(count)) return Status::out_of_memory;
-  for_stretches(
-      options.execution, count, kBodiesPerStretch, [&](std::size_t first, std::size_t end) {
+  for_each_range(
+      options.execution, count, kBodiesPerRange, [&](std::size_t first, std::size_t end) {
         for (std::size_t i = first; i < end; ++i) {
           const std::uint32_t body = chosen[i];
           boxes[i] =
@@ -457,7 +457,7 @@ Status SceneState::renew_boxes(SceneSet& target) {
     for (const std::uint32_t body : chosen) anchor[body] = with_unit_turn(pose[body]);
   }
   set_balls({chosen.data(), count}, origin);
-  boxes_since_look += count;
+  boxes_since_sampling += count;
   boxes_updated += count;
   ++target.changes;
   return Status::ok;
@@ -473,7 +473,7 @@ Status SceneState::find_pairs(bool all) {
   }
   if (!changed) return Status::ok;
   const SceneSet& dynamic = set(Motion::dynamic);
-  static_assert(kMotions <= BodyPairs::kMostSources);
+  static_assert(kMotions <= BodyPairs::kMaxSources);
   BodyPairs::Source sources[kMotions];
   std::size_t count = 0;
   for (SceneSet& other : sets) {

@@ -9,8 +9,8 @@
 #include "core/memory/new_in.h"
 #include "partitions/pairs/linked_pairs.h"
 #include "pipeline/scene/body_pairs.h"
+#include "pipeline/scene/ghost_contacts.h"
 #include "pipeline/scene/layers.h"
-#include "pipeline/scene/seams.h"
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -115,21 +115,21 @@ struct SceneState {
   /// Scratch: bodies of one set that a call works on, and the keys that they had in their
   /// partition.
   Column<std::uint32_t> chosen;
-  Column<Key> left;
+  Column<Key> old_keys;
   template <typename Visit>
   void visit_box_columns(Visit&& visit) noexcept {
     visit(boxes);
     visit(boxes_of);
     visit(boxes_body);
     visit(chosen);
-    visit(left);
+    visit(old_keys);
   }
 
   SceneSet sets[kMotions];
-  /// World point from which boxes are measured; see ScenePlaces.
+  /// World point from which boxes are measured; see BodySample.
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();
   /// Boxes computed since choose_origin last sampled the bodies.
-  std::size_t boxes_since_look = 0;
+  std::size_t boxes_since_sampling = 0;
   /// Fixes the origin, for ranks of a cluster: all ranks measure boxes from one point.
   bool keeps_origin = false;
   /// Unique in this process.
@@ -153,7 +153,7 @@ struct SceneState {
   Column<double> gaps;
   /// Results for `composite`; created for the first such pair.
   PartAnswers* parts = nullptr;
-  /// Used only with SceneOptions::seamless_floors.
+  /// Used only with SceneOptions::suppress_ghost_contacts.
   Column<FloorContact> floor_contacts;
   /// Scratch: the order of one body's floor contacts.
   Column<std::uint32_t> floor_order;
@@ -174,7 +174,7 @@ struct SceneState {
   }
   /// False if no body has a composite shape. May stay true after the last such body was removed.
   [[nodiscard]] bool has_composites() const noexcept;
-  [[nodiscard]] bool is_fresh() const noexcept { return stale.empty() && has_one_origin(); }
+  [[nodiscard]] bool is_up_to_date() const noexcept { return stale.empty() && has_one_origin(); }
   /// False while the boxes of some set are measured from a former origin.
   [[nodiscard]] bool has_one_origin() const noexcept;
   void choose_origin() noexcept;
@@ -189,10 +189,10 @@ struct SceneState {
   [[nodiscard]] double gap_of(const BodyPair& pair) const noexcept;
   [[nodiscard]] bool reserve(std::size_t fresh) noexcept;
   /// Implements Scene::reserve (reserve.cpp).
-  [[nodiscard]] Status reserve(const SceneRoom& room, Pages pages);
-  [[nodiscard]] bool reserve_bodies(const SceneRoom& room, Pages pages) noexcept;
-  [[nodiscard]] Status reserve_sets(const SceneRoom& room, Pages pages);
-  [[nodiscard]] Status reserve_answers(const SceneRoom& room, Pages pages);
+  [[nodiscard]] Status reserve(const SceneCapacity& room, Pages pages);
+  [[nodiscard]] bool reserve_bodies(const SceneCapacity& room, Pages pages) noexcept;
+  [[nodiscard]] Status reserve_sets(const SceneCapacity& room, Pages pages);
+  [[nodiscard]] Status reserve_answers(const SceneCapacity& room, Pages pages);
   [[nodiscard]] bool list_rehearsal(std::size_t kinds, std::size_t count) noexcept;
   [[nodiscard]] Key acquire(const BodyDefinition& body) noexcept;
   [[nodiscard]] Status settle(std::span<const BodyDefinition> bodies, std::span<const Key> given);
@@ -233,9 +233,9 @@ struct SceneState {
   /// Finds all pairs whose boxes overlap, or (`all` false) only those whose bounding balls overlap
   /// too.
   [[nodiscard]] Status find_pairs(bool all);
-  /// Filters of pairs beyond sets and object filters (meetings.cpp).
-  [[nodiscard]] bool meets_all() const noexcept {
-    return ignored.empty() && layers.all_meet() && predicate.accept == nullptr;
+  /// Filters of pairs beyond sets and object filters (pair_filter.cpp).
+  [[nodiscard]] bool accepts_all() const noexcept {
+    return ignored.empty() && layers.all_collide() && predicate.accept == nullptr;
   }
   [[nodiscard]] bool begin_layers() noexcept;
   [[nodiscard]] std::uint16_t layer_of(std::uint32_t body) const noexcept {
@@ -244,7 +244,7 @@ struct SceneState {
   [[nodiscard]] bool may_pair(ObjectId a, ObjectId b) const noexcept;
   /// True if `collide` would make a pair of two live bodies, provided that their boxes overlap:
   /// tests sets, filters, layers, ignored pairs and the predicate.
-  [[nodiscard]] bool would_pair(ObjectId a, ObjectId b) const noexcept;
+  [[nodiscard]] bool accepts_pair(ObjectId a, ObjectId b) const noexcept;
   [[nodiscard]] ObjectFilter filter_of(ObjectId body) const noexcept;
   [[nodiscard]] bool is_ignored(ObjectId a, ObjectId b) const noexcept;
   [[nodiscard]] bool add_ignored(std::span<const KeyPair> told) noexcept;
@@ -255,7 +255,7 @@ struct SceneState {
     ignored.set_size(static_cast<std::size_t>(end - ignored.begin()));
   }
   /// Makes the next `collide` find all pairs again.
-  void ask_again() noexcept;
+  void invalidate_pairs() noexcept;
 };
 
 /// Limits the box columns of a scene on destruction: shrinks the columns that grew beyond one

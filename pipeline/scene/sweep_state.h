@@ -1,15 +1,15 @@
 #pragma once
 
-// The state of a SceneSweep. scene_sweep.cpp drives it: swept_ways.cpp computes boxes of the moving
-// bodies' paths and finds candidate pairs, swept_impacts.cpp finds their first impacts.
+// The state of a SceneSweep. scene_sweep.cpp drives it: swept_bounds.cpp computes boxes of the
+// moving bodies' paths and finds candidate pairs, swept_impacts.cpp finds their first impacts.
 
 #include <winnow/core/column.h>
 #include <winnow/core/pose.h>
 #include <winnow/partitions/partition.h>
 #include <winnow/pipeline/scene_sweep.h>
-#include "core/sort/stretches.h"
+#include "core/sort/parallel_ranges.h"
 #include "pipeline/motion/body_impact.h"
-#include "pipeline/motion/passage.h"
+#include "pipeline/motion/relative_motion_bounds.h"
 #include "pipeline/scene/scene_state.h"
 #include "pipeline/scene/swept_balls.h"
 
@@ -23,11 +23,11 @@
 namespace winnow {
 
 inline constexpr std::uint32_t kNoMover = ~0U;
-inline constexpr std::size_t kMoversPerStretch = 64;
+inline constexpr std::size_t kMoversPerRange = 64;
 
 /// Part `index` of the `count` equal intervals of time into which a body's path is split; each part
 /// has its own box.
-struct WayPiece {
+struct SweptPiece {
   std::uint32_t mover;
   std::uint8_t index;
   std::uint8_t count;
@@ -35,7 +35,7 @@ struct WayPiece {
   bool bullet;
 
   /// True if the two time intervals overlap.
-  [[nodiscard]] bool meets(const WayPiece& other) const noexcept {
+  [[nodiscard]] bool meets(const SweptPiece& other) const noexcept {
     return index * other.count <= (other.index + 1) * count &&
            other.index * count <= (index + 1) * other.count;
   }
@@ -97,7 +97,7 @@ struct SweepState {
 
   Scene& scene;
   SceneState& bodies;
-  PartTraversal parts;
+  SubShapeQuery parts;
   Partition ways;
   /// By mover: its motion, its body and its bounding ball. By body: its mover, or kNoMover.
   Column<RigidMotion> motions;
@@ -115,7 +115,7 @@ struct SweepState {
   Column<PlainBox> boxes;
   Column<Key> piece_keys;
   /// By object id of `ways`.
-  Column<WayPiece> pieces;
+  Column<SweptPiece> pieces;
   PairBuffer pairs;
   /// Pairs of bodies as (smaller id << 32 | larger id), sorted.
   Column<std::uint64_t> candidates;
@@ -144,10 +144,10 @@ struct SweepState {
   /// Calls body(mover) in parallel for every mover that has a motion.
   template <typename Body>
   void for_movers(Body&& body) const {
-    for_stretches(bodies.options.execution, motions.size(), kMoversPerStretch,
-                  [&](std::size_t begin, std::size_t end) {
-                    for (std::size_t mover = begin; mover < end; ++mover) body(mover);
-                  });
+    for_each_range(bodies.options.execution, motions.size(), kMoversPerRange,
+                   [&](std::size_t begin, std::size_t end) {
+                     for (std::size_t mover = begin; mover < end; ++mover) body(mover);
+                   });
   }
   [[nodiscard]] MovingBall ball_of(const RigidMotion& motion, std::uint32_t body) const noexcept {
     const double(&at)[3] = motion.start.position;
@@ -159,7 +159,7 @@ struct SweepState {
             static_cast<std::uint32_t>(candidates[candidate])};
   }
 
-  // Boxes and candidates (swept_ways.cpp).
+  // Boxes and candidates (swept_bounds.cpp).
 
   [[nodiscard]] Status take_bodies(std::span<const Key> keys) noexcept;
   [[nodiscard]] bool choose_drift() noexcept;
@@ -170,20 +170,20 @@ struct SweepState {
     Eigen::Vector3d::Map(frame.travel) = drift;
     return frame;
   }
-  [[nodiscard]] impact::MovingShape way_of(std::size_t mover) const noexcept {
+  [[nodiscard]] impact::MovingShape path_of(std::size_t mover) const noexcept {
     const double radius = balls[mover].radius;
     return {{bodies.shape[movers[mover]], {}}, motions[mover], radius, radius, 0.0};
   }
   [[nodiscard]] bool count_pieces() noexcept;
-  void box_way(std::uint32_t mover) noexcept;
-  [[nodiscard]] Status box_ways(const SweepOptions& options);
+  void box_path(std::uint32_t mover) noexcept;
+  [[nodiscard]] Status box_paths(const SweepOptions& options);
   void name_pieces(std::uint32_t mover, const SweepOptions& options) noexcept;
   [[nodiscard]] Status set_filters();
   template <typename Body>
   [[nodiscard]] Status collect(Body&& second_body);
   [[nodiscard]] bool sort_candidates() noexcept;
   [[nodiscard]] Status find_pairs_among(const SweepOptions& options);
-  [[nodiscard]] bool is_met(Motion motion, const SweepOptions& options) const noexcept;
+  [[nodiscard]] bool is_included(Motion motion, const SweepOptions& options) const noexcept;
   [[nodiscard]] Status find_pairs_with(Motion motion, const SweepOptions& options);
 
   // Impacts of candidates (swept_impacts.cpp).

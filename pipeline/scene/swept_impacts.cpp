@@ -1,12 +1,12 @@
 // First impacts of candidate pairs. A pair whose bounding balls do not overlap in time is skipped.
 // With `first_only`, pairs are processed in rounds, ordered by the time at which their balls
 // overlap, and a pair is skipped once both bodies have an earlier impact. SceneSweep
-// (scene_sweep.cpp) calls this after swept_ways.cpp.
+// (scene_sweep.cpp) calls this after swept_bounds.cpp.
 
 #include "core/sort/radix_sort.h"
 #include "pipeline/motion/impact_batch.h"
 #include "pipeline/scene/sweep_state.h"
-#include "pipeline/shapes/difference.h"
+#include "pipeline/shapes/two_diff.h"
 
 #include <algorithm>
 #include <array>
@@ -17,7 +17,7 @@
 namespace winnow {
 namespace {
 
-constexpr std::size_t kCandidatesPerStretch = 256;
+constexpr std::size_t kCandidatesPerRange = 256;
 /// Pairs in a round. The impacts of a round may exclude pairs of later rounds.
 constexpr std::size_t kPairsPerRound = 1024;
 /// Bits of the time by which candidates are sorted, in steps.
@@ -68,7 +68,7 @@ void SweepState::find_impacts(std::span<const SweptPair> asked, const SweepOptio
     const auto [a, b] = bodies_of(asked[i].candidate);
     const impact::ImpactRequest request{
         options.tolerance, approach_of(a, b, 0.0).window(), 1.0,
-        options.touching ? impact::StartTouch::meets : impact::StartTouch::left_out};
+        options.touching ? impact::StartTouch::meets : impact::StartTouch::ignored};
     answer(i, impact::find_impact_of_balls(parts, {bodies.shape[a], motion(i, a)},
                                            {bodies.shape[b], motion(i, b)}, request));
   };
@@ -96,15 +96,15 @@ Status SweepState::find_all(const SweepOptions& options) {
   if (!found.resize(candidates.size()) || !hits.resize(candidates.size())) {
     return Status::out_of_memory;
   }
-  for_stretches(bodies.options.execution, candidates.size(), impact::ImpactBatch::kRoom,
-                [&](std::size_t begin, std::size_t end) {
-                  std::array<SweptPair, impact::ImpactBatch::kRoom> asked;
-                  for (std::size_t i = begin; i < end; ++i) {
-                    asked[i - begin] = {static_cast<std::uint32_t>(i), 1.0};
-                  }
-                  find_impacts({asked.data(), end - begin}, options, found.data() + begin,
-                               hits.data() + begin);
-                });
+  for_each_range(bodies.options.execution, candidates.size(), impact::ImpactBatch::kRoom,
+                 [&](std::size_t begin, std::size_t end) {
+                   std::array<SweptPair, impact::ImpactBatch::kRoom> asked;
+                   for (std::size_t i = begin; i < end; ++i) {
+                     asked[i - begin] = {static_cast<std::uint32_t>(i), 1.0};
+                   }
+                   find_impacts({asked.data(), end - begin}, options, found.data() + begin,
+                                hits.data() + begin);
+                 });
   for (std::uint32_t i = 0; i < candidates.size(); ++i) {
     if (hits[i] != 0 && !order.push_back({found[i].impact.time, i, i})) {
       return Status::out_of_memory;
@@ -128,13 +128,13 @@ std::uint64_t SweepState::chance_of(std::size_t candidate, double tolerance) con
 Status SweepState::list_chances(double tolerance) {
   const std::size_t count = candidates.size();
   if (!chances.resize(count)) return Status::out_of_memory;
-  for_stretches(bodies.options.execution, count, kCandidatesPerStretch,
-                [&](std::size_t begin, std::size_t end) {
-                  for (std::size_t i = begin; i < end; ++i) {
-                    if (i + kPairsAhead < end) fetch_ball(i + kPairsAhead);
-                    chances[i] = chance_of(i, tolerance);
-                  }
-                });
+  for_each_range(bodies.options.execution, count, kCandidatesPerRange,
+                 [&](std::size_t begin, std::size_t end) {
+                   for (std::size_t i = begin; i < end; ++i) {
+                     if (i + kPairsAhead < end) fetch_ball(i + kPairsAhead);
+                     chances[i] = chance_of(i, tolerance);
+                   }
+                 });
   std::uint64_t* const end = std::remove(chances.begin(), chances.end(), kNoChance);
   const auto size = static_cast<std::size_t>(end - chances.begin());
   const std::uint64_t* const sorted =
@@ -206,11 +206,11 @@ Status SweepState::find_first(const SweepOptions& options) {
   std::fill(first.begin(), first.end(), kNoImpact);
   for (std::size_t at = 0; at < chances.size();) {
     if (!list_round(at)) return Status::out_of_memory;
-    for_stretches(bodies.options.execution, round.size(), impact::ImpactBatch::kRoom,
-                  [&](std::size_t begin, std::size_t end) {
-                    find_impacts({round.data() + begin, end - begin}, options,
-                                 answers.data() + begin, hits.data() + begin);
-                  });
+    for_each_range(bodies.options.execution, round.size(), impact::ImpactBatch::kRoom,
+                   [&](std::size_t begin, std::size_t end) {
+                     find_impacts({round.data() + begin, end - begin}, options,
+                                  answers.data() + begin, hits.data() + begin);
+                   });
     for (std::size_t i = 0; i < round.size(); ++i) {
       if (hits[i] != 0) keep_first(round[i].candidate, answers[i]);
     }
@@ -257,12 +257,12 @@ bool SweepState::show_impacts() noexcept {
     return std::tuple(a.time, a.candidate) < std::tuple(b.time, b.candidate);
   });
   if (!impacts.resize(order.size())) return false;
-  for_stretches(bodies.options.execution, order.size(), kMoversPerStretch,
-                [&](std::size_t begin, std::size_t end) {
-                  for (std::size_t i = begin; i < end; ++i) {
-                    impacts[i] = shown(candidates[order[i].candidate], found[order[i].at]);
-                  }
-                });
+  for_each_range(bodies.options.execution, order.size(), kMoversPerRange,
+                 [&](std::size_t begin, std::size_t end) {
+                   for (std::size_t i = begin; i < end; ++i) {
+                     impacts[i] = shown(candidates[order[i].candidate], found[order[i].at]);
+                   }
+                 });
   std::fill(first.begin(), first.end(), kNoImpact);
   for (std::uint32_t i = 0; i < order.size(); ++i) {
     for (const std::uint32_t body : bodies_of(order[i].candidate)) {

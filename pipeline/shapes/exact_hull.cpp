@@ -25,13 +25,13 @@ constexpr double kUnderflow = 1e-300;
 
 /// Six times the signed volume of the tetrahedron (a, b, c, d). `volume` is rounded, `sign` is
 /// exact: positive if a, b, c are counter-clockwise seen from d.
-struct Side {
+struct PlaneSide {
   double volume;
   int sign;
 };
 
-[[nodiscard]] Side side_of(const Vector3d& a, const Vector3d& b, const Vector3d& c,
-                           const Vector3d& d) noexcept {
+[[nodiscard]] PlaneSide side_of(const Vector3d& a, const Vector3d& b, const Vector3d& c,
+                                const Vector3d& d) noexcept {
   constexpr double kShare = 7.8e-16;
   const Vector3d u = a - d;
   const Vector3d v = b - d;
@@ -91,7 +91,7 @@ class Quickhull {
     std::uint32_t across[3];        // the face across the edge from vertex[i] to the next vertex
     std::uint32_t outside = kNone;  // head of the list of points beyond this face; the farthest one
     double height = 0.0;  // distance of `outside` from the plane, times twice the face's area
-    std::uint32_t looked_at = 0;  // the find_horizon call that computed is_seen
+    std::uint32_t tested_in_round = 0;  // the find_horizon call that computed is_seen
     bool is_seen = false;
     bool alive = true;
   };
@@ -102,7 +102,7 @@ class Quickhull {
     std::uint32_t beyond;
   };
 
-  [[nodiscard]] Side side(const Face& face, std::uint32_t point) const noexcept {
+  [[nodiscard]] PlaneSide side(const Face& face, std::uint32_t point) const noexcept {
     return side_of(points_[face.vertex[0]], points_[face.vertex[1]], points_[face.vertex[2]],
                    points_[point]);
   }
@@ -174,7 +174,7 @@ class Quickhull {
   void assign(std::uint32_t point) {
     for (const std::uint32_t made : made_) {
       Face& face = faces_[made];
-      const Side found = side(face, point);
+      const PlaneSide found = side(face, point);
       if (found.sign <= 0) continue;
       if (face.outside == kNone || found.volume > face.height) {
         next_[point] = face.outside;
@@ -208,10 +208,10 @@ class Quickhull {
   }
 
   /// Returns whether the face is visible from the point. Computed once per point and face.
-  bool look(std::uint32_t at, std::uint32_t point) {
+  bool is_visible(std::uint32_t at, std::uint32_t point) {
     Face& face = faces_[at];
-    if (face.looked_at != looks_) {
-      face.looked_at = looks_;
+    if (face.tested_in_round != visibility_round_) {
+      face.tested_in_round = visibility_round_;
       face.is_seen = side(face, point).sign > 0;
       if (face.is_seen) {
         seen_.push_back(at);
@@ -225,14 +225,14 @@ class Quickhull {
   /// one loop, because a point in a face's plane does not see the face, and a point on the line of
   /// an edge sees neither of its faces.
   void find_horizon(std::uint32_t first, std::uint32_t point) {
-    ++looks_;
+    ++visibility_round_;
     seen_.clear();
     horizon_.clear();
-    look(first, point);
+    is_visible(first, point);
     for (std::size_t k = 0; k < seen_.size(); ++k) {
       for (std::uint32_t i = 0; i < 3; ++i) {
         const Face face = faces_[seen_[k]];
-        if (look(face.across[i], point)) continue;
+        if (is_visible(face.across[i], point)) continue;
         horizon_.push_back({face.vertex[i], face.vertex[(i + 1) % 3], face.across[i]});
       }
     }
@@ -273,7 +273,7 @@ class Quickhull {
   std::pmr::vector<std::uint32_t> seen_;
   std::pmr::vector<HorizonEdge> horizon_;
   std::pmr::vector<std::uint32_t> made_;  // faces made for the current point
-  std::uint32_t looks_ = 0;
+  std::uint32_t visibility_round_ = 0;
 };
 
 }  // namespace

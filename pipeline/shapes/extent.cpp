@@ -46,17 +46,18 @@ struct UnitDirection {
   }
 };
 
-[[nodiscard]] Extent symmetric(double reach) noexcept {
+[[nodiscard]] SupportExtent symmetric(double reach) noexcept {
   return {-reach, reach, reach};
 }
 
-[[nodiscard]] Extent rounded(const Extent& core, double rounding) noexcept {
+[[nodiscard]] SupportExtent rounded(const SupportExtent& core, double rounding) noexcept {
   return {core.low - rounding, core.high + rounding, core.scale + rounding};
 }
 
 // Vertex columns are padded to a multiple of 16 with copies of vertex 0. Four independent minima
 // and maxima hide the latency of the comparisons.
-[[nodiscard]] Extent of_vertices(const HullShape& hull, const Vec& d, double scale) noexcept {
+[[nodiscard]] SupportExtent of_vertices(const HullShape& hull, const Vec& d,
+                                        double scale) noexcept {
   constexpr std::uint32_t kBlock = 4;
   double low[kBlock];
   double high[kBlock];
@@ -76,8 +77,8 @@ struct UnitDirection {
           std::max({high[0], high[1], high[2], high[3]}), scale};
 }
 
-[[nodiscard]] Extent of_corners(const TriangleShape& triangle, const Vec& d) noexcept {
-  Extent extent{kInfinity, -kInfinity, 0.0};
+[[nodiscard]] SupportExtent of_corners(const TriangleShape& triangle, const Vec& d) noexcept {
+  SupportExtent extent{kInfinity, -kInfinity, 0.0};
   for (const auto& corner : triangle.vertex) {
     const Eigen::Map<const Vec> v(corner);
     const double at = v.dot(d);
@@ -88,12 +89,13 @@ struct UnitDirection {
   return extent;
 }
 
-/// Extent of a cone's core. `side` is the disc's extent along d, `tip` the apex's.
-[[nodiscard]] Extent of_cone(double side, double tip) noexcept {
+/// SupportExtent of a cone's core. `side` is the disc's extent along d, `tip` the apex's.
+[[nodiscard]] SupportExtent of_cone(double side, double tip) noexcept {
   return {std::min(tip, -side - tip), std::max(tip, side - tip), side + std::abs(tip)};
 }
 
-[[nodiscard]] Extent of_taper(const TaperedCapsuleShape& taper, double up, double length) noexcept {
+[[nodiscard]] SupportExtent of_taper(const TaperedCapsuleShape& taper, double up,
+                                     double length) noexcept {
   const double low = taper.half_length * up;
   const double first = taper.radius[0] * length;
   const double second = taper.radius[1] * length;
@@ -102,7 +104,8 @@ struct UnitDirection {
 }
 
 template <typename Direction>
-[[nodiscard]] Extent of_support(const SupportCore& core, const Direction& direction) noexcept {
+[[nodiscard]] SupportExtent of_support(const SupportCore& core,
+                                       const Direction& direction) noexcept {
   const Vec unit = direction.unit();
   const double length = direction.length();
   return {length * unit.dot(core.farthest(-unit)), length * unit.dot(core.farthest(unit)),
@@ -110,8 +113,8 @@ template <typename Direction>
 }
 
 template <typename Direction>
-[[nodiscard]] Extent extent_along(const ShapeTables& tables, ShapeId shape,
-                                  const Direction& direction) noexcept {
+[[nodiscard]] SupportExtent extent_along(const ShapeTables& tables, ShapeId shape,
+                                         const Direction& direction) noexcept {
   const Vec& d = direction.d;
   const std::uint32_t i = shape.index();
   switch (shape.kind()) {
@@ -161,7 +164,7 @@ template <typename Direction>
 }
 
 /// Finite only if the axis equals the half-space's normal or its opposite bit for bit.
-[[nodiscard]] Extent of_half_space(const HalfSpaceShape& shape, const Vec& axis) noexcept {
+[[nodiscard]] SupportExtent of_half_space(const HalfSpaceShape& shape, const Vec& axis) noexcept {
   const Eigen::Map<const Vec> n(shape.normal);
   const bool is_above = axis == n;
   const bool is_below = axis == -n;
@@ -172,9 +175,9 @@ template <typename Direction>
 // Upper bound on the length of v that neither overflows nor underflows; at most sqrt(3) times the
 // length.
 [[nodiscard]] double length_bound(const Vec& v) noexcept {
-  constexpr double kLeast = 1e-150;
+  constexpr double kMinLength = 1e-150;
   const double length = v.norm();
-  return length > kLeast && length < 1.0 / kLeast ? length : v.lpNorm<1>();
+  return length > kMinLength && length < 1.0 / kMinLength ? length : v.lpNorm<1>();
 }
 
 // position + reach, rounded up. `reach` may be infinite.
@@ -182,15 +185,15 @@ template <typename Direction>
   return std::isinf(reach) ? reach : add_up(position, reach);
 }
 
-[[nodiscard]] Box finished(const Vec& center, const Vec& half, const Vec& noise) noexcept {
-  Box box{center - half - noise, center + half + noise};
-  box.settle();
+[[nodiscard]] Box3 finished(const Vec& center, const Vec& half, const Vec& noise) noexcept {
+  Box3 box{center - half - noise, center + half + noise};
+  box.replace_nan_bounds();
   return box;
 }
 
 }  // namespace
 
-Extent extent(const ShapeTables& tables, ShapeId shape, const Vec& d) noexcept {
+SupportExtent extent(const ShapeTables& tables, ShapeId shape, const Vec& d) noexcept {
   return extent_along(tables, shape, AnyDirection{d});
 }
 
@@ -210,21 +213,21 @@ double lowest(const ShapeTables& tables, ShapeId shape, const Vec& d) noexcept {
   return *std::min_element(low, low + kBlock) - hull.rounding * d.norm();
 }
 
-Box box_under(const ShapeTables& tables, ShapeId shape, const Mat& linear, const Vec& offset,
-              double grow) noexcept {
-  Box box;
+Box3 box_under(const ShapeTables& tables, ShapeId shape, const Mat& linear, const Vec& offset,
+               double grow) noexcept {
+  Box3 box;
   for (int i = 0; i < 3; ++i) {
     const Vec row = linear.row(i);
-    const Extent reach = extent(tables, shape, row);
+    const SupportExtent reach = extent(tables, shape, row);
     const double out = grow * row.norm() + kSlack * (reach.scale + std::abs(offset[i]));
     box.min[i] = offset[i] + reach.low - out;
     box.max[i] = offset[i] + reach.high + out;
   }
-  box.settle();
+  box.replace_nan_bounds();
   return box;
 }
 
-Box box_under(const Box& box, const Mat& linear, const Vec& offset, double grow) noexcept {
+Box3 box_under(const Box3& box, const Mat& linear, const Vec& offset, double grow) noexcept {
   const Vec center = 0.5 * box.min + 0.5 * box.max;
   const Vec half = 0.5 * box.max - 0.5 * box.min;
   const Mat size = linear.cwiseAbs();
@@ -314,15 +317,16 @@ double rounding_of(const ShapeTables& tables, ShapeId shape) noexcept {
 Aabb ShapePool::bounds(ShapeId id, const Pose& pose) const noexcept {
   const DefaultEnvironment environment;
   // A sphere needs no rotation.
-  const mid::Mat turn = id.kind() == ShapeKind::sphere
-                            ? mid::Mat(mid::Mat::Identity())
-                            : mid::Mat(rotation_of_unit(normalized(tame(pose.orientation))));
+  const mid::Mat turn =
+      id.kind() == ShapeKind::sphere
+          ? mid::Mat(mid::Mat::Identity())
+          : mid::Mat(rotation_of_unit(normalized(scale_to_unit_max(pose.orientation))));
   Aabb box;
   for (int axis = 0; axis < 3; ++axis) {
     const mid::Vec row = turn.row(axis);
-    const mid::Extent reach = id.kind() == ShapeKind::half_space
-                                  ? mid::of_half_space(tables_.half_spaces[id.index()], row)
-                                  : mid::extent_along(tables_, id, mid::UnitDirection{row});
+    const mid::SupportExtent reach = id.kind() == ShapeKind::half_space
+                                         ? mid::of_half_space(tables_.half_spaces[id.index()], row)
+                                         : mid::extent_along(tables_, id, mid::UnitDirection{row});
     // Covers the rounding of the rotation and of the sums below.
     const double slack = mid::kSlack * reach.scale;
     box.max[axis] = round_up(mid::end_of(pose.position[axis], reach.high + slack));

@@ -7,26 +7,26 @@
 namespace winnow::mid {
 
 /// The range of d . x over a shape, and the magnitude of the numbers it was computed from.
-struct Extent {
+struct SupportExtent {
   double low;
   double high;
   double scale;
 };
 
-/// Extent along any finite direction d, in the shape's own frame. The error is a few roundings of
-/// `scale`. Infinite for a half-space.
-[[nodiscard]] Extent extent(const ShapeTables& tables, ShapeId shape, const Vec& d) noexcept;
+/// SupportExtent along any finite direction d, in the shape's own frame. The error is a few
+/// roundings of `scale`. Infinite for a half-space.
+[[nodiscard]] SupportExtent extent(const ShapeTables& tables, ShapeId shape, const Vec& d) noexcept;
 
-/// Extent::low only.
+/// SupportExtent::low only.
 [[nodiscard]] double lowest(const ShapeTables& tables, ShapeId shape, const Vec& d) noexcept;
 
 /// An AABB of { linear * x + offset : x in the shape }, for a convex shape, grown by the image of a
 /// ball of radius `grow` and by a bound on rounding errors.
-[[nodiscard]] Box box_under(const ShapeTables& tables, ShapeId shape, const Mat& linear,
-                            const Vec& offset, double grow) noexcept;
+[[nodiscard]] Box3 box_under(const ShapeTables& tables, ShapeId shape, const Mat& linear,
+                             const Vec& offset, double grow) noexcept;
 /// As above for the points of a box.
-[[nodiscard]] Box box_under(const Box& box, const Mat& linear, const Vec& offset,
-                            double grow) noexcept;
+[[nodiscard]] Box3 box_under(const Box3& box, const Mat& linear, const Vec& offset,
+                             double grow) noexcept;
 
 /// Upper bound on the distance of the shape's points from its origin, up to a few roundings;
 /// infinite for a half-space.

@@ -19,27 +19,27 @@ inline constexpr double kSlack = 1e-14;
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// An axis-aligned box in double; infinite bounds are legal.
-struct Box {
+struct Box3 {
   Vec min = Vec::Constant(kInfinity);
   Vec max = Vec::Constant(-kInfinity);
 
-  [[nodiscard]] static Box of(const Aabb& box) noexcept {
+  [[nodiscard]] static Box3 of(const Aabb& box) noexcept {
     return {box.min.cast<double>(), box.max.cast<double>()};
   }
   [[nodiscard]] bool is_finite() const noexcept { return min.allFinite() && max.allFinite(); }
   /// Returns whether the closed boxes overlap; true if a bound is NaN, so that no pair is missed.
-  [[nodiscard]] bool meets(const Box& other) const noexcept {
+  [[nodiscard]] bool meets(const Box3& other) const noexcept {
     for (int i = 0; i < 3; ++i) {
       if (min[i] > other.max[i] || other.min[i] > max[i]) return false;
     }
     return true;
   }
-  void merge(const Box& other) noexcept {
+  void merge(const Box3& other) noexcept {
     min = min.cwiseMin(other.min);
     max = max.cwiseMax(other.max);
   }
   /// Sums of opposite infinities are NaN; such bounds become infinite.
-  void settle() noexcept {
+  void replace_nan_bounds() noexcept {
     for (int i = 0; i < 3; ++i) {
       if (!(min[i] <= kInfinity)) min[i] = -kInfinity;
       if (!(max[i] >= -kInfinity)) max[i] = kInfinity;
@@ -49,8 +49,8 @@ struct Box {
 
 /// Clamps each coordinate to the finite doubles.
 [[nodiscard]] inline Vec finite(const Vec& v) noexcept {
-  constexpr double kMost = std::numeric_limits<double>::max();
-  return v.cwiseMin(kMost).cwiseMax(-kMost);
+  constexpr double kMaxDouble = std::numeric_limits<double>::max();
+  return v.cwiseMin(kMaxDouble).cwiseMax(-kMaxDouble);
 }
 
 [[nodiscard]] inline Pose pose_of(const Vec& position, const Quaternion& orientation) noexcept {

@@ -3,7 +3,7 @@
 // ShapePool::add_hull (kinds/hull.cpp) calls both.
 
 #include "pipeline/shapes/hull_builder.h"
-#include "core/memory/guarded.h"
+#include "core/memory/catch_bad_alloc.h"
 #include "pipeline/exact/exact_vector.h"
 #include "pipeline/shapes/accurate_cross.h"
 
@@ -265,9 +265,9 @@ constexpr double kRoundings = 1e-15;
 }
 
 // Allocates cache-line-aligned parts of a block. Without a block it only counts bytes.
-class Block {
+class HullBlock {
  public:
-  explicit Block(std::byte* base) : base_(base) {}
+  explicit HullBlock(std::byte* base) : base_(base) {}
 
   template <typename T>
   T* take(std::size_t count) {
@@ -294,7 +294,7 @@ struct HullColumns {
   std::uint32_t* neighbour;
 };
 
-HullColumns lay_out(Block& block, const HullShape& hull) {
+HullColumns lay_out(HullBlock& block, const HullShape& hull) {
   HullColumns c{};
   for (auto& column : c.vertex) column = block.take<double>(padded(hull.vertex_count));
   for (auto& column : c.vertex_float) column = block.take<float>(padded(hull.vertex_count));
@@ -322,7 +322,7 @@ class OwnedBlock {
   OwnedBlock& operator=(const OwnedBlock&) = delete;
 
   [[nodiscard]] std::byte* base() const { return base_; }
-  void hand_over() { base_ = nullptr; }
+  void release() { base_ = nullptr; }
 
  private:
   Memory memory_;
@@ -349,14 +349,14 @@ class Assembly {
                       : hull_.face_count == 2 ? 2
                                               : 3;
     OwnedBlock owned(memory, hull_bytes(hull_));
-    Block block(owned.base());
+    HullBlock block(owned.base());
     c_ = lay_out(block, hull_);
     write_vertices();
     write_edges();
     write_neighbours();
     if (!write_faces()) return Status::invalid_shape;
     publish();
-    owned.hand_over();
+    owned.release();
     hull = hull_;
     return Status::ok;
   }
@@ -583,8 +583,8 @@ Status take_faces(std::span<const Eigen::Vector3d> points, const HullFaces& face
 }
 
 // Does not merge: merging faces that are already merged could change their order.
-[[nodiscard]] Status build_again(const PointView& given, const HullFaces& faces,
-                                 std::pmr::memory_resource* memory, HullShape& hull) {
+[[nodiscard]] Status rebuild_without_merging(const PointView& given, const HullFaces& faces,
+                                             std::pmr::memory_resource* memory, HullShape& hull) {
   std::pmr::monotonic_buffer_resource scratch(memory);
   const std::pmr::vector<Eigen::Vector3d> points = copied(given, &scratch);
   HullSurface surface(&scratch);
@@ -603,12 +603,14 @@ Status take_faces(std::span<const Eigen::Vector3d> points, const HullFaces& face
 
 Status hull_of_faces(const PointView& given, const HullFaces& faces,
                      std::pmr::memory_resource* memory, HullShape& hull) {
-  return guarded([&] { return build_of_faces(given, faces, memory, hull); }, Status::out_of_memory);
+  return catch_bad_alloc([&] { return build_of_faces(given, faces, memory, hull); },
+                         Status::out_of_memory);
 }
 
-Status hull_as_built(const PointView& given, const HullFaces& faces,
-                     std::pmr::memory_resource* memory, HullShape& hull) {
-  return guarded([&] { return build_again(given, faces, memory, hull); }, Status::out_of_memory);
+Status rebuild_hull(const PointView& given, const HullFaces& faces,
+                    std::pmr::memory_resource* memory, HullShape& hull) {
+  return catch_bad_alloc([&] { return rebuild_without_merging(given, faces, memory, hull); },
+                         Status::out_of_memory);
 }
 
 std::pmr::vector<Eigen::Vector3d> copied(const PointView& points,
@@ -633,7 +635,7 @@ HullShape point_hull() noexcept {
 
 std::size_t hull_bytes(const HullShape& hull) noexcept {
   if (hull.vertex[0] != nullptr && hull.vertex[0] == point_hull().vertex[0]) return 0;
-  Block block(nullptr);
+  HullBlock block(nullptr);
   lay_out(block, hull);
   return block.used();
 }

@@ -19,8 +19,8 @@ Status hull_of_points(const PointView& points, std::pmr::memory_resource* memory
 Status hull_of_faces(const PointView& points, const HullFaces& faces,
                      std::pmr::memory_resource* memory, HullShape& hull);
 /// Rebuilds a hull from the vertices and faces of a built hull, without merging faces.
-Status hull_as_built(const PointView& points, const HullFaces& faces,
-                     std::pmr::memory_resource* memory, HullShape& hull);
+Status rebuild_hull(const PointView& points, const HullFaces& faces,
+                    std::pmr::memory_resource* memory, HullShape& hull);
 
 /// Copies the points into contiguous vectors.
 [[nodiscard]] std::pmr::vector<Eigen::Vector3d> copied(const PointView& points,

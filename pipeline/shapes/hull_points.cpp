@@ -2,7 +2,7 @@
 // (exact_hull for solids, monotone chain for polygons) and passes it to assemble_hull
 // (hull_builder.cpp).
 
-#include "core/memory/guarded.h"
+#include "core/memory/catch_bad_alloc.h"
 #include "pipeline/shapes/accurate_cross.h"
 #include "pipeline/shapes/exact_hull.h"
 #include "pipeline/shapes/hull_builder.h"
@@ -170,7 +170,7 @@ Status assemble_solid(std::span<const Eigen::Vector3d> given, const Points& poin
 }  // namespace
 
 Status hull_of_points(const PointView& all, std::pmr::memory_resource* memory, HullShape& hull) {
-  return guarded([&] { return build_of_points(all, memory, hull); }, Status::out_of_memory);
+  return catch_bad_alloc([&] { return build_of_points(all, memory, hull); }, Status::out_of_memory);
 }
 
 }  // namespace winnow

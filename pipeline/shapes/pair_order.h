@@ -58,8 +58,8 @@ struct KindPairs {
 /// witness point relative to body a, `way` the vector from a's point to b's, `apart` b's position
 /// minus a's. Clamped to the finite doubles.
 [[nodiscard]] inline double mirrored_point(double x, double way, double apart) noexcept {
-  static constexpr double kMost = std::numeric_limits<double>::max();
-  const auto finite = [](double v) { return std::clamp(v, -kMost, kMost); };
+  static constexpr double kMaxDouble = std::numeric_limits<double>::max();
+  const auto finite = [](double v) { return std::clamp(v, -kMaxDouble, kMaxDouble); };
   return finite(finite(x + way) - finite(apart));
 }
 

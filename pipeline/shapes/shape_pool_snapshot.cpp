@@ -1,7 +1,7 @@
 #include <winnow/pipeline/shape_pool.h>
 
 #include "core/hooks/log.h"
-#include "core/memory/saved_places.h"
+#include "core/memory/free_list_io.h"
 #include "core/memory/snapshot_frame.h"
 #include "core/threads/float_environment.h"
 #include "pipeline/shapes/hull_builder.h"
@@ -74,7 +74,7 @@ Status ShapePool::save(Column<std::byte>& out) const {
   const Status status = write_snapshot(out, kShapesMagic, kShapesVersion, [&](ByteWriter& writer) {
     writer.put(kShapeKinds);
     for_tables(*this, *this, [&](const auto& table, const auto&) {
-      put_places(writer, table.shapes.size(), table.free);
+      write_slots(writer, table.shapes.size(), table.free);
       for (std::size_t i = 0; i < table.shapes.size(); ++i) {
         if (table.live[i] != 0) put_shape(writer, table.shapes[i]);
       }
@@ -92,7 +92,7 @@ Status ShapePool::load(std::span<const std::byte> saved) {
   Status status = in.get<std::uint32_t>() == kShapeKinds ? Status::ok : Status::invalid_argument;
   for_tables(fresh, fresh, [&](auto& table, auto&) {
     using Shape = std::remove_reference_t<decltype(table.shapes[0])>;
-    ReadPlaces places(memory_);
+    SlotReader places(memory_);
     if (status != Status::ok || !places.read(in)) return;
     if (!places.open(in, table.shapes, table.free, nothing<Shape>())) return;
     if (!table.live.resize(places.size())) {
@@ -106,7 +106,7 @@ Status ShapePool::load(std::span<const std::byte> saved) {
   });
   if (!in.ok()) status = status_of(in);
   if (status == Status::ok && !in.rest().empty()) status = Status::invalid_argument;
-  if (status != Status::ok) return logged(refused_as(status), "ShapePool::load");
+  if (status != Status::ok) return logged(snapshot_status(status), "ShapePool::load");
   for_tables(*this, fresh, [](auto& table, auto& read) {
     table.shapes.swap(read.shapes);
     table.live.swap(read.live);

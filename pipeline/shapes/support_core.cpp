@@ -45,7 +45,8 @@ constexpr double kLongest = std::numeric_limits<double>::max();
   return {out.x(), out.y(), std::clamp(out.z() + end, -kLongest, kLongest)};
 }
 
-[[nodiscard]] Vector3d farthest_of_own(const void* shape, const Vector3d& direction) noexcept {
+[[nodiscard]] Vector3d farthest_of_user_shape(const void* shape,
+                                              const Vector3d& direction) noexcept {
   const auto& own = *static_cast<const SupportShape*>(shape);
   Vector3d point = Vector3d::Zero();
   if (own.function == nullptr) return point;
@@ -77,7 +78,7 @@ SupportCore support_core(const TaperedCapsuleShape& shape) noexcept {
 }
 
 SupportCore support_core(const SupportShape& shape) noexcept {
-  return {farthest_of_own, &shape, ShapeKind::support, shape.radius, shape.rounding};
+  return {farthest_of_user_shape, &shape, ShapeKind::support, shape.radius, shape.rounding};
 }
 
 SupportCore support_core(const ShapeTables& tables, ShapeId id) noexcept {

@@ -32,7 +32,7 @@ struct Span {
 };
 
 template <typename Body>
-void for_differences(const Simplex& simplex, Body&& body) {
+void for_differences(const GjkSimplex& simplex, Body&& body) {
   for (std::size_t i = 1; i < static_cast<std::size_t>(simplex.count); ++i) {
     for (std::size_t k = 0; k < i; ++k) {
       body(Vec(simplex.point[i].a - simplex.point[k].a));
@@ -41,11 +41,11 @@ void for_differences(const Simplex& simplex, Body&& body) {
   }
 }
 
-void look_at_products(const Core& a, const Core& b, AxisSearch& search) noexcept {
+void test_products(const Core& a, const Core& b, AxisSearch& search) noexcept {
   for (std::uint32_t i = 0; i < direction_count(a); ++i) {
     const Vec e = unit(direction(a, i));
     for (std::uint32_t k = 0; k < direction_count(b); ++k) {
-      search.look(perpendicular(e, unit(direction(b, k))));
+      search.test_axis(perpendicular(e, unit(direction(b, k))));
     }
   }
 }
@@ -67,15 +67,15 @@ Arc arc(const Core& core, std::uint32_t i) noexcept {
 /// Returns false only if the arc of a and the reversed arc of b certainly do not cross on the Gauss
 /// map; the edges then make no face of the Minkowski difference.
 bool may_cross(const Arc& a, const Arc& b) noexcept {
-  constexpr double kDoubt = 1e-9;
+  constexpr double kCrossTolerance = 1e-9;
   const double b0 = -b.normal[0].dot(a.direction);
   const double b1 = -b.normal[1].dot(a.direction);
   const double a0 = a.normal[0].dot(b.direction);
   const double a1 = a.normal[1].dot(b.direction);
-  return b0 * b1 <= kDoubt && a0 * a1 <= kDoubt;
+  return b0 * b1 <= kCrossTolerance && a0 * a1 <= kCrossTolerance;
 }
 
-void look_at_hull_products(const Problem& problem, AxisSearch& search) noexcept {
+void test_hull_products(const Problem& problem, AxisSearch& search) noexcept {
   const Core& a = problem.a;
   const Core& b = problem.b;
   for (std::uint32_t i = 0; i < edge_count(a); ++i) {
@@ -91,7 +91,7 @@ void look_at_hull_products(const Problem& problem, AxisSearch& search) noexcept 
       const double between = n.dot(of_b.point - of_a.point) * (outward < 0.0 ? -1.0 : 1.0);
       const bool sure = std::abs(outward) > 1e-6;
       if (sure && between < search.separation() - problem.noise()) continue;
-      search.look(n);
+      search.test_axis(n);
     }
   }
 }
@@ -102,11 +102,11 @@ bool is_solid_hull(const Core& core) noexcept {
 
 }  // namespace
 
-void AxisSearch::look(const Vec& axis) noexcept {
+void AxisSearch::test_axis(const Vec& axis) noexcept {
   if (axis == Vec::Zero()) return;
   const double offset = axis.dot(b_.center - a_.center);
-  const Range a = project(a_, axis);
-  const Range b = project(b_, axis);
+  const AxisRange a = project(a_, axis);
+  const AxisRange b = project(b_, axis);
   const double forward = offset + b.low - a.high;
   const double backward = a.low - b.high - offset;
   if (forward > separation_) {
@@ -119,32 +119,32 @@ void AxisSearch::look(const Vec& axis) noexcept {
   }
 }
 
-void look_at_simplex(const GjkResult& found, AxisSearch& search) noexcept {
+void test_simplex(const GjkResult& found, AxisSearch& search) noexcept {
   Span span;
   for_differences(found.simplex, [&](const Vec& d) { span.offer(d); });
   if (span.length == 0.0) return;
   span.first = unit(span.first);
   for_differences(found.simplex, [&](const Vec& d) { span.offer_second(d); });
-  search.look(without(found.between, span.first));
-  if (span.area > 0.0) search.look(perpendicular(span.first, span.second));
+  search.test_axis(without(found.between, span.first));
+  if (span.area > 0.0) search.test_axis(perpendicular(span.first, span.second));
 }
 
-void look_at_normals(const Problem& problem, AxisSearch& search) noexcept {
+void test_normals(const Problem& problem, AxisSearch& search) noexcept {
   for (const Core* core : {&problem.a, &problem.b}) {
-    for (std::uint32_t i = 0; i < normal_count(*core); ++i) search.look(normal(*core, i));
+    for (std::uint32_t i = 0; i < normal_count(*core); ++i) search.test_axis(normal(*core, i));
   }
 }
 
-bool look_at_features(const Problem& problem, AxisSearch& search) noexcept {
+bool test_features(const Problem& problem, AxisSearch& search) noexcept {
   const Core& a = problem.a;
   const Core& b = problem.b;
-  look_at_normals(problem, search);
+  test_normals(problem, search);
   const std::uint64_t products = std::uint64_t{direction_count(a)} * direction_count(b);
-  if (products > kMostEdgePairs) return false;
+  if (products > kMaxEdgePairs) return false;
   if (is_solid_hull(a) && is_solid_hull(b)) {
-    look_at_hull_products(problem, search);
+    test_hull_products(problem, search);
   } else {
-    look_at_products(a, b, search);
+    test_products(a, b, search);
   }
   return true;
 }
@@ -157,17 +157,17 @@ bool is_round(const Core& core) noexcept {
 }
 
 /// Tests the two normals of a cone's side in the plane of its axis and `across`.
-void look_at_side(const Core& core, const Vec& across, AxisSearch& search) noexcept {
+void test_side(const Core& core, const Vec& across, AxisSearch& search) noexcept {
   if (core.kind != CoreKind::cone) return;
   const Vec out = across * (2.0 * core.half.z());
   const Vec up = core.rotation.col(2) * core.half.x();
-  search.look(unit(out + up));
-  search.look(unit(out - up));
+  search.test_axis(unit(out + up));
+  search.test_axis(unit(out - up));
 }
 
 }  // namespace
 
-double turn_of_revolution(const Problem& problem) noexcept {
+double sine_between_axes(const Problem& problem) noexcept {
   const Core& a = problem.a;
   const Core& b = problem.b;
   if (!is_round(a) || !is_round(b)) return std::numeric_limits<double>::infinity();
@@ -175,7 +175,7 @@ double turn_of_revolution(const Problem& problem) noexcept {
   return a.rotation.col(2).cross(b.rotation.col(2)).norm();
 }
 
-void look_at_revolution(const Problem& problem, AxisSearch& search) noexcept {
+void test_revolution(const Problem& problem, AxisSearch& search) noexcept {
   const Core& a = problem.a;
   const Core& b = problem.b;
   const Core& first = a.kind != CoreKind::point ? a : b;
@@ -188,10 +188,10 @@ void look_at_revolution(const Problem& problem, AxisSearch& search) noexcept {
     across = without(problem.tie_axes.col(i), axis);
     if (across != Vec::Zero()) break;
   }
-  search.look(axis);
-  search.look(across);
-  look_at_side(a, across, search);
-  look_at_side(b, across, search);
+  search.test_axis(axis);
+  search.test_axis(across);
+  test_side(a, across, search);
+  test_side(b, across, search);
 }
 
 }  // namespace winnow::solver

@@ -15,7 +15,7 @@ class AxisSearch {
   AxisSearch(const Core& a, const Core& b) noexcept : a_(a), b_(b) {}
 
   /// Tests the axis and its opposite; ignores a zero vector.
-  void look(const Vec& axis) noexcept;
+  void test_axis(const Vec& axis) noexcept;
 
   [[nodiscard]] const Vec& axis() const noexcept { return axis_; }
   [[nodiscard]] double separation() const noexcept { return separation_; }
@@ -30,31 +30,31 @@ class AxisSearch {
 /// Tests axes that the features of a simplex give: perpendicular to the span of its points on a and
 /// on b. These are right to rounding even if the vector between the closest points is too short to
 /// have an accurate direction.
-void look_at_simplex(const GjkResult& found, AxisSearch& search) noexcept;
+void test_simplex(const GjkResult& found, AxisSearch& search) noexcept;
 
 /// Tests the face normals and caps of both cores.
-void look_at_normals(const Problem& problem, AxisSearch& search) noexcept;
+void test_normals(const Problem& problem, AxisSearch& search) noexcept;
 
 /// Tests the face normals of both cores and the cross products of their edges; for cylinders and
 /// cones the caps and the axis. If polytopes overlap, one of these axes is the axis of least depth;
 /// if they do not, one of these separates them. For two hulls only edge pairs that make a face of
 /// the Minkowski difference are tested (Gregorius, "The separating axis test between convex
 /// polyhedra", 2013), and only if they may beat the best axis so far. O(edges of a x edges of b);
-/// returns false if that exceeds kMostEdgePairs and the products of edges were left out.
-bool look_at_features(const Problem& problem, AxisSearch& search) noexcept;
+/// returns false if that exceeds kMaxEdgePairs and the products of edges were left out.
+bool test_features(const Problem& problem, AxisSearch& search) noexcept;
 
-/// The largest number of edge products that look_at_features tests.
-inline constexpr std::uint64_t kMostEdgePairs = 4'000'000;
+/// The largest number of edge products that test_features tests.
+inline constexpr std::uint64_t kMaxEdgePairs = 4'000'000;
 
 /// Returns the sine of the angle between the axes of two points, segments, cylinders or cones: 0 if
 /// one is a point, infinity for other cores.
-[[nodiscard]] double turn_of_revolution(const Problem& problem) noexcept;
+[[nodiscard]] double sine_between_axes(const Problem& problem) noexcept;
 
 /// Tests the axes for points, segments, cylinders and cones whose axes are parallel. Their
 /// Minkowski difference is then a body of revolution, its section through the origin is a polygon,
 /// and the axis of least depth is a normal of that polygon; all of them are tested. If the axes are
 /// not quite parallel, the best axis is within twice the sine of their angle times the size of b's
 /// core.
-void look_at_revolution(const Problem& problem, AxisSearch& search) noexcept;
+void test_revolution(const Problem& problem, AxisSearch& search) noexcept;
 
 }  // namespace winnow::solver

@@ -117,7 +117,7 @@ Vec support(const Core& core, const Vec& direction) noexcept {
   return core.center + core.rotation * local;
 }
 
-Range project(const Core& core, const Vec& n) noexcept {
+AxisRange project(const Core& core, const Vec& n) noexcept {
   switch (core.kind) {
     case CoreKind::point:
       return {0.0, 0.0};
@@ -153,7 +153,7 @@ Range project(const Core& core, const Vec& n) noexcept {
       return {d.dot(farthest_point(core, -u)), d.dot(farthest_point(core, u))};
     }
     default: {
-      Range range{};
+      AxisRange range{};
       farthest_vertex(*core.hull, d, range.high);
       farthest_vertex(*core.hull, -d, range.low);
       range.low = -range.low * core.unit[0] * core.unit[1];

@@ -61,7 +61,7 @@ struct Core {
   [[nodiscard]] bool is_polytope() const noexcept { return kind < CoreKind::cylinder; }
 };
 
-struct Range {
+struct AxisRange {
   double low;
   double high;
 };
@@ -74,7 +74,7 @@ std::uint32_t farthest_vertex(const HullShape& hull, const Vec& d, double& value
 [[nodiscard]] Vec support(const Core& core, const Vec& direction) noexcept;
 
 /// Smallest and largest n . (x - center) over the core.
-[[nodiscard]] Range project(const Core& core, const Vec& n) noexcept;
+[[nodiscard]] AxisRange project(const Core& core, const Vec& n) noexcept;
 
 /// As `project`, but returns only the largest.
 [[nodiscard]] double highest(const Core& core, const Vec& n) noexcept;
@@ -130,9 +130,9 @@ std::uint32_t farthest_vertex(const HullShape& hull, const Vec& d, double& value
 
 inline constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
-/// Fractions of a pair's noise (see Problem::noise). Iterations end if at most kEnough of it can be
-/// gained; distances that differ by less than kHardly of it count as equal.
-inline constexpr double kEnough = 0.125;
-inline constexpr double kHardly = 0.25;
+/// Fractions of a pair's noise (see Problem::noise). Iterations end if at most kConvergence of it
+/// can be gained; distances that differ by less than kTieTolerance of it count as equal.
+inline constexpr double kConvergence = 0.125;
+inline constexpr double kTieTolerance = 0.25;
 
 }  // namespace winnow::solver

@@ -26,7 +26,7 @@ struct ClosestPoints {
   double square = std::numeric_limits<double>::infinity();
 };
 
-constexpr std::uint64_t kMostPairs = 4'000'000;
+constexpr std::uint64_t kMaxFeaturePairs = 4'000'000;
 
 /// The part of a polytope that contains the closest point: axis . x >= `from`.
 struct Slab {
@@ -88,7 +88,7 @@ bool edges(const Slab& a, const Slab& b, ClosestPoints& best) noexcept {
     const Vec p = vertex(a.core, a0);
     const Vec e = vertex(a.core, a1) - p;
     pairs += count_b;
-    if (pairs > kMostPairs) return false;
+    if (pairs > kMaxFeaturePairs) return false;
     for (std::uint32_t k = 0; k < count_b; ++k) {
       const auto [b0, b1] = ends(b.core, k);
       if (!b.has(b0) && !b.has(b1)) continue;
@@ -127,7 +127,7 @@ bool corners_faces(const Slab& corners, const Slab& faces, bool flip,
     if (!corners.has(i)) continue;
     const Vec x = vertex(corners.core, i);
     pairs += face_count(faces.core);
-    if (pairs > kMostPairs) return false;
+    if (pairs > kMaxFeaturePairs) return false;
     for (std::uint32_t face = 0; face < face_count(faces.core); ++face) {
       const Vec n = face_normal(faces.core, face);
       const double height = n.dot(x - vertex(faces.core, face_vertex(faces.core, face, 0)));
@@ -143,7 +143,7 @@ bool corners_faces(const Slab& corners, const Slab& faces, bool flip,
 /// against edges. The cores are at least `lower` apart along the unit axis from a to b, and at most
 /// `upper` apart: only features that reach into the two slabs that can contain the closest points
 /// are tested. O(features of a x features of b in the slabs); returns false if that is above
-/// kMostPairs.
+/// kMaxFeaturePairs.
 bool closest_features(const Core& a, const Core& b, const Vec& axis, double lower, double upper,
                       double noise, ClosestPoints& points) noexcept {
   const double depth = upper - lower + noise;
@@ -185,7 +185,7 @@ CoreDistance half_space_distance(const Problem& problem) noexcept {
 
 /// Tests axes for pairs of segments, points and triangles without area: perpendicular to their
 /// line.
-void look_across_line(const Problem& problem, AxisSearch& search) noexcept {
+void test_across_line(const Problem& problem, AxisSearch& search) noexcept {
   Vec line = Vec::Zero();
   for (const Core* core : {&problem.a, &problem.b}) {
     const bool is_line =
@@ -196,7 +196,7 @@ void look_across_line(const Problem& problem, AxisSearch& search) noexcept {
     }
   }
   // Two points have no line: every axis is perpendicular to it.
-  for (int i = 0; i < 3; ++i) search.look(without(problem.tie_axes.col(i), line));
+  for (int i = 0; i < 3; ++i) search.test_axis(without(problem.tie_axes.col(i), line));
 }
 
 /// Replaces the axis by the first of +x, -x, +y, -y, +z, -z of the caller's frame that separates as
@@ -205,7 +205,7 @@ void break_ties(const Problem& problem, double separated, Vec& axis) noexcept {
   for (int i = 0; i < 6; ++i) {
     const Vec candidate = problem.tie_axes.col(i / 2) * (i % 2 == 0 ? 1.0 : -1.0);
     const double along = separation(problem.a, problem.b, candidate);
-    if (along < separated - kHardly * problem.noise()) continue;
+    if (along < separated - kTieTolerance * problem.noise()) continue;
     axis = candidate;
     return;
   }
@@ -220,7 +220,7 @@ void refine_curved(const Core& a, const Core& b, const Vec& axis, double noise,
   for (const auto& [x, y] :
        {std::pair{&straight_a, &straight_b}, {&straight_a, &b}, {&a, &straight_b}}) {
     const GjkResult straight =
-        gjk(*x, *y, axis, kEnough * noise, std::numeric_limits<double>::infinity());
+        gjk(*x, *y, axis, kConvergence * noise, std::numeric_limits<double>::infinity());
     if (!straight.contact && !(straight.upper < found.upper)) continue;
     found.simplex = straight.simplex;
     found.between = straight.between;
@@ -242,21 +242,22 @@ CoreDistance distance_along(const Problem& problem, const Vec& axis) noexcept {
 }
 
 /// Returns a point that is on both cores once b has been moved by `depth` along the axis.
-Vec meeting_point(const Problem& problem, const Vec& axis, double depth) noexcept {
+Vec contact_point(const Problem& problem, const Vec& axis, double depth) noexcept {
   const Core& a = problem.a;
   const double noise = problem.noise();
   Core moved = problem.b;
   moved.center += axis * depth;
-  GjkResult met = gjk(a, moved, axis, kEnough * noise, std::numeric_limits<double>::infinity());
-  Vec x = met.simplex.on_a();
+  GjkResult gjk_result =
+      gjk(a, moved, axis, kConvergence * noise, std::numeric_limits<double>::infinity());
+  Vec x = gjk_result.simplex.on_a();
   // If the simplex is a flat tetrahedron, the origin is inside, but its weights are inaccurate.
-  met.upper = met.simplex.closest().norm();
-  if (met.upper > kHardly * noise && a.is_polytope() && moved.is_polytope()) {
+  gjk_result.upper = gjk_result.simplex.closest().norm();
+  if (gjk_result.upper > kTieTolerance * noise && a.is_polytope() && moved.is_polytope()) {
     ClosestPoints points;
-    if (closest_features(a, moved, axis, 0.0, met.upper, noise, points)) x = points.on_a;
-  } else if (met.upper > kHardly * noise) {
-    refine_curved(a, moved, axis, noise, met);
-    x = met.simplex.on_a();
+    if (closest_features(a, moved, axis, 0.0, gjk_result.upper, noise, points)) x = points.on_a;
+  } else if (gjk_result.upper > kTieTolerance * noise) {
+    refine_curved(a, moved, axis, noise, gjk_result);
+    x = gjk_result.simplex.on_a();
   }
   return x + axis * (project(a, axis).high - axis.dot(x - a.center));
 }
@@ -270,7 +271,7 @@ CoreDistance closest(const Problem& problem, const GjkResult& start, const AxisS
   found.on_a = start.simplex.on_a();
   double gap = upper - search.separation();
   const bool polytopes = problem.a.is_polytope() && problem.b.is_polytope();
-  if (gap > kHardly * noise && polytopes) {
+  if (gap > kTieTolerance * noise && polytopes) {
     ++counts.bounded;
     ClosestPoints points;
     if (closest_features(problem.a, problem.b, search.axis(), search.separation(), upper, noise,
@@ -308,9 +309,9 @@ double inscribed_depth(const Problem& problem) noexcept {
   const Core a = inscribed(problem.a);
   const Core b = inscribed(problem.b);
   const Vec start = b.center == Vec::Zero() ? Vec(problem.tie_axes.col(0)) : b.center;
-  const GjkResult met =
-      gjk(a, b, start, kEnough * problem.noise(), std::numeric_limits<double>::infinity());
-  return a.rounding + b.rounding - (met.contact ? 0.0 : met.upper);
+  const GjkResult gjk_result =
+      gjk(a, b, start, kConvergence * problem.noise(), std::numeric_limits<double>::infinity());
+  return a.rounding + b.rounding - (gjk_result.contact ? 0.0 : gjk_result.upper);
 }
 
 /// For cores of revolution whose axes cross and are nearly parallel, so that many directions are
@@ -320,7 +321,7 @@ double gap_of_round(const Problem& problem, double turn, double gap, AxisSearch&
   constexpr double kNearlyParallel = 1e-6;
   const double depth = -search.separation();
   if (turn <= kNearlyParallel) {
-    look_at_revolution(problem, search);
+    test_revolution(problem, search);
     gap = std::min(gap - depth - search.separation(), 2.0 * turn * problem.b.half.norm());
   }
   return std::min(gap, -search.separation() - inscribed_depth(problem));
@@ -328,18 +329,18 @@ double gap_of_round(const Problem& problem, double turn, double gap, AxisSearch&
 
 /// Tests the axis that the expanding polytope gives, and if needed the features. Returns by how
 /// much the depth along the best axis may exceed the true depth.
-double look_by_expansion(const Problem& problem, const GjkResult& start, double turn,
+double test_by_expansion(const Problem& problem, const GjkResult& start, double turn,
                          AxisSearch& search, SolverCounts& counts) noexcept {
   const double noise = problem.noise();
   const bool polytopes = problem.a.is_polytope() && problem.b.is_polytope();
   const double tolerance = polytopes ? noise : kSmoothTolerance * problem.size;
-  const DepthBounds bounds = expand(problem.a, problem.b, start.simplex, noise, tolerance);
-  search.look(bounds.axis);
+  const DepthBounds bounds = expand_polytope(problem.a, problem.b, start.simplex, noise, tolerance);
+  search.test_axis(bounds.axis);
   double gap = -search.separation() - bounds.lower;
   if (polytopes && !(gap > 4.0 * noise)) return gap;
   if (polytopes) ++counts.bounded;
-  const bool all = look_at_features(problem, search);
-  look_across_line(problem, search);
+  const bool all = test_features(problem, search);
+  test_across_line(problem, search);
   gap = polytopes && all ? 0.0 : -search.separation() - bounds.lower;
   if (polytopes || !(gap > 2.0 * tolerance)) return gap;
   if (std::isfinite(turn)) gap = gap_of_round(problem, turn, gap, search);
@@ -351,8 +352,8 @@ double look_by_expansion(const Problem& problem, const GjkResult& start, double 
 /// overlap either, up to rounding. No axis is better.
 bool touch_along_normal(const Problem& problem, AxisSearch& search) noexcept {
   if (normal_count(problem.a) + normal_count(problem.b) > kFewProducts) return false;
-  look_at_normals(problem, search);
-  return search.separation() >= -kHardly * problem.noise();
+  test_normals(problem, search);
+  return search.separation() >= -kTieTolerance * problem.noise();
 }
 
 /// The depth along the best axis, or the distance if that axis separates the cores.
@@ -364,18 +365,18 @@ CoreDistance penetration(const Problem& problem, const GjkResult& start, Contact
   const bool polytopes = a.is_polytope() && b.is_polytope();
   AxisSearch search(a, b);
   double gap = 0.0;
-  const double turn = turn_of_revolution(problem);
+  const double turn = sine_between_axes(problem);
   const bool few = std::uint64_t{direction_count(a)} * direction_count(b) <= kFewProducts &&
                    normal_count(a) + normal_count(b) <= kFewProducts;
   if (touch_along_normal(problem, search)) {
     gap = 0.0;
   } else if (polytopes && few) {
-    look_at_features(problem, search);
-    look_across_line(problem, search);
+    test_features(problem, search);
+    test_across_line(problem, search);
   } else if (turn <= kParallel) {
-    look_at_revolution(problem, search);
+    test_revolution(problem, search);
   } else {
-    gap = look_by_expansion(problem, start, turn, search, counts);
+    gap = test_by_expansion(problem, start, turn, search, counts);
   }
   CoreDistance found;
   found.axis = search.axis();
@@ -383,7 +384,7 @@ CoreDistance penetration(const Problem& problem, const GjkResult& start, Contact
   break_ties(problem, found.distance, found.axis);
   found.doubt = noise + std::max(gap, 0.0);
   if (level != ContactLevel::boolean) {
-    found.on_a = meeting_point(problem, found.axis, -found.distance);
+    found.on_a = contact_point(problem, found.axis, -found.distance);
   }
   return found;
 }
@@ -420,7 +421,7 @@ CoreDistance core_distance(const Problem& problem, ContactLevel level, double en
   const Vec start = b.center == Vec::Zero() ? Vec(problem.tie_axes.col(0)) : b.center;
   // Level boolean needs no more than that the rounded cores overlap.
   const double near = level == ContactLevel::boolean ? a.rounding + b.rounding - 2.0 * noise : 0.0;
-  GjkResult found = gjk(a, b, start, kEnough * noise, enough, 0.0, 0.0, near);
+  GjkResult found = gjk(a, b, start, kConvergence * noise, enough, 0.0, 0.0, near);
   if (found.bounded) ++counts.bounded;
   CoreDistance answer;
   if (found.far) {
@@ -437,12 +438,12 @@ CoreDistance core_distance(const Problem& problem, ContactLevel level, double en
   }
   if (found.contact) return penetration(problem, found, level, counts);
   AxisSearch search(a, b);
-  search.look(found.axis);
-  search.look(unit(found.between));
-  if (found.upper - search.separation() > kEnough * noise) look_at_simplex(found, search);
+  search.test_axis(found.axis);
+  search.test_axis(unit(found.between));
+  if (found.upper - search.separation() > kConvergence * noise) test_simplex(found, search);
   const bool polytopes = a.is_polytope() && b.is_polytope();
-  if (found.upper - search.separation() > kEnough * noise) {
-    const bool all = look_at_features(problem, search);
+  if (found.upper - search.separation() > kConvergence * noise) {
+    const bool all = test_features(problem, search);
     if (!polytopes) refine_curved(a, b, search.axis(), noise, found);
     if (search.separation() <= 0.0 && (all || !polytopes)) {
       // If no axis separates polytopes, they overlap, whatever GJK found. Other cores overlap if
@@ -450,7 +451,7 @@ CoreDistance core_distance(const Problem& problem, ContactLevel level, double en
       const CoreDistance inside = penetration(problem, found, level, counts);
       const bool proved = inside.distance + inside.doubt < -found.upper;
       if (polytopes || found.upper <= noise || proved) return inside;
-      search.look(inside.axis);
+      search.test_axis(inside.axis);
     }
   }
   return closest(problem, found, search, counts);

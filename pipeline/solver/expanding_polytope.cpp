@@ -1,6 +1,6 @@
 // The expanding polytope algorithm (EPA): InnerPolytope stores the polytope and attaches points to
-// it, Expansion feeds it with support points of b - a. Called by core_distance.cpp for cores that
-// overlap.
+// it, PolytopeExpansion feeds it with support points of b - a. Called by core_distance.cpp for
+// cores that overlap.
 
 #include "pipeline/solver/expanding_polytope.h"
 
@@ -78,8 +78,8 @@ class InnerPolytope {
   bool find_horizon(const Vec& w, std::uint16_t seen) noexcept;
   [[nodiscard]] double triangle_distance(std::uint16_t p, std::uint16_t q,
                                          std::uint16_t r) const noexcept;
-  [[nodiscard]] bool is_seen(const Vec& w, const Face& face, std::uint16_t from,
-                             std::uint16_t to) const noexcept;
+  [[nodiscard]] bool is_visible(const Vec& w, const Face& face, std::uint16_t from,
+                                std::uint16_t to) const noexcept;
   void push(std::uint16_t face) noexcept;
   std::uint16_t pop() noexcept;
   void compact() noexcept;
@@ -150,7 +150,7 @@ bool InnerPolytope::add_face(std::uint16_t p, std::uint16_t q, std::uint16_t r,
   // Rounding error of the plane's distance. It is large for slivers; for these the distance of the
   // triangle itself is a better lower bound, unless the triangle is on the wrong side of the
   // origin.
-  const double doubt = kEnough * noise_ / area * std::max({le, lf, lg});
+  const double doubt = kConvergence * noise_ / area * std::max({le, lf, lg});
   face.low = offset - std::max(doubt, noise_);
   if (doubt > noise_ && offset >= -doubt)
     face.low = std::max(face.low, triangle_distance(p, q, r) - noise_);
@@ -241,11 +241,11 @@ bool InnerPolytope::attach(const Vec& w, std::uint16_t seen) noexcept {
 
 /// True if w is above the face, or in its plane and on the line of the side between `from` and
 /// `to`: a new face over that side would have no area.
-bool InnerPolytope::is_seen(const Vec& w, const Face& face, std::uint16_t from,
-                            std::uint16_t to) const noexcept {
+bool InnerPolytope::is_visible(const Vec& w, const Face& face, std::uint16_t from,
+                               std::uint16_t to) const noexcept {
   const double above = height(face, w);
-  if (above > kEnough * noise_) return true;
-  if (above < -kEnough * noise_) return false;
+  if (above > kConvergence * noise_) return true;
+  if (above < -kConvergence * noise_) return false;
   const Vec side = points_[to] - points_[from];
   const Vec out = w - points_[from];
   return side.cross(out).squaredNorm() <= 1e-16 * side.squaredNorm() * out.squaredNorm();
@@ -279,7 +279,7 @@ bool InnerPolytope::find_horizon(const Vec& w, std::uint16_t seen) noexcept {
     if (!other.alive) continue;
     const std::uint16_t from = face.point[k];
     const std::uint16_t to = face.point[(k + 1U) % 3];
-    if (is_seen(w, other, from, to)) {
+    if (is_visible(w, other, from, to)) {
       if (depth == visits.size()) return false;
       std::uint8_t entered = 0;
       while (entered < 2 && other.point[entered] != to) ++entered;
@@ -297,14 +297,14 @@ bool InnerPolytope::find_horizon(const Vec& w, std::uint16_t seen) noexcept {
 }
 
 /// Grows a polytope inside the Minkowski difference b - a.
-class Expansion {
+class PolytopeExpansion {
  public:
-  Expansion(const Core& a, const Core& b, double noise) noexcept
+  PolytopeExpansion(const Core& a, const Core& b, double noise) noexcept
       : a_(a), b_(b), noise_(noise), inner_(noise) {}
 
   /// Completes the simplex to a tetrahedron. Returns false if the difference is flat; bounds() then
   /// holds its normal and depth 0.
-  bool begin(const Simplex& simplex) noexcept;
+  bool begin(const GjkSimplex& simplex) noexcept;
   void grow(double tolerance) noexcept;
   [[nodiscard]] const DepthBounds& bounds() const noexcept { return bounds_; }
 
@@ -325,7 +325,7 @@ class Expansion {
 
 /// Adds the support point along the direction if it is farther than the points so far. These all
 /// have the same coordinate along that direction.
-bool Expansion::add_farther(const Vec& direction) noexcept {
+bool PolytopeExpansion::add_farther(const Vec& direction) noexcept {
   if (direction == Vec::Zero()) return false;
   const Vec w = support_along(direction);
   if (direction.dot(w - inner_.point(0)) <= noise_) return false;
@@ -333,18 +333,18 @@ bool Expansion::add_farther(const Vec& direction) noexcept {
   return true;
 }
 
-bool Expansion::add_along(const Vec& direction, const Vec& opposite) noexcept {
+bool PolytopeExpansion::add_along(const Vec& direction, const Vec& opposite) noexcept {
   return add_farther(direction) || add_farther(opposite);
 }
 
-bool Expansion::flat_along(const Vec& n) noexcept {
+bool PolytopeExpansion::flat_along(const Vec& n) noexcept {
   const double forward = n.dot(support_along(n));
   const double backward = -n.dot(support_along(-n));
   bounds_.axis = std::abs(forward) <= std::abs(backward) ? Vec(-n) : n;
   return false;
 }
 
-bool Expansion::begin(const Simplex& simplex) noexcept {
+bool PolytopeExpansion::begin(const GjkSimplex& simplex) noexcept {
   for (std::size_t i = 0; i < static_cast<std::size_t>(simplex.count); ++i) {
     inner_.add(simplex.point[i].w);
   }
@@ -371,7 +371,7 @@ bool Expansion::begin(const Simplex& simplex) noexcept {
   return inner_.make_tetrahedron() || flat_along(n);
 }
 
-void Expansion::grow(double tolerance) noexcept {
+void PolytopeExpansion::grow(double tolerance) noexcept {
   // The depth along the best axis so far.
   double upper = std::numeric_limits<double>::infinity();
   // The smallest `low` of the settled faces.
@@ -389,7 +389,7 @@ void Expansion::grow(double tolerance) noexcept {
       bounds_.axis = -face.normal;
     }
     if (upper - bounds_.lower <= tolerance) break;
-    if (inner_.height(face, w) <= kEnough * noise_) {
+    if (inner_.height(face, w) <= kConvergence * noise_) {
       settled = std::min(settled, face.low);
       inner_.settle(nearest);
       continue;
@@ -404,9 +404,9 @@ void Expansion::grow(double tolerance) noexcept {
 
 }  // namespace
 
-DepthBounds expand(const Core& a, const Core& b, const Simplex& simplex, double noise,
-                   double tolerance) noexcept {
-  Expansion expansion(a, b, noise);
+DepthBounds expand_polytope(const Core& a, const Core& b, const GjkSimplex& simplex, double noise,
+                            double tolerance) noexcept {
+  PolytopeExpansion expansion(a, b, noise);
   if (expansion.begin(simplex)) expansion.grow(tolerance);
   return expansion.bounds();
 }

@@ -20,7 +20,7 @@ struct DepthBounds {
 ///
 /// `simplex` contains the origin, up to rounding; it is completed to a tetrahedron. If the
 /// difference of the cores is flat, the depth is 0 along its normal. `noise`: as in gjk.
-[[nodiscard]] DepthBounds expand(const Core& a, const Core& b, const Simplex& simplex, double noise,
-                                 double tolerance) noexcept;
+[[nodiscard]] DepthBounds expand_polytope(const Core& a, const Core& b, const GjkSimplex& simplex,
+                                          double noise, double tolerance) noexcept;
 
 }  // namespace winnow::solver

@@ -12,12 +12,12 @@ namespace winnow::solver {
 namespace {
 
 /// A point of the simplex as weights of its corners, and the squared distance from the origin.
-struct Candidate {
+struct SimplexPoint {
   std::array<double, 4> weight{};
   double square = std::numeric_limits<double>::infinity();
 };
 
-void offer(const Simplex& s, const std::array<double, 4>& weight, Candidate& best) noexcept {
+void offer(const GjkSimplex& s, const std::array<double, 4>& weight, SimplexPoint& best) noexcept {
   Vec v = Vec::Zero();
   for (int i = 0; i < s.count; ++i) {
     const auto k = static_cast<std::size_t>(i);
@@ -27,7 +27,7 @@ void offer(const Simplex& s, const std::array<double, 4>& weight, Candidate& bes
   if (square < best.square) best = {weight, square};
 }
 
-void try_segment(const Simplex& s, std::size_t i, std::size_t j, Candidate& best) noexcept {
+void try_segment(const GjkSimplex& s, std::size_t i, std::size_t j, SimplexPoint& best) noexcept {
   const Vec& p = s.point[i].w;
   const Vec& q = s.point[j].w;
   const Vec edge = q - p;
@@ -50,8 +50,8 @@ void try_segment(const Simplex& s, std::size_t i, std::size_t j, Candidate& best
   offer(s, weight, best);
 }
 
-void try_triangle(const Simplex& s, std::size_t i, std::size_t j, std::size_t k,
-                  Candidate& best) noexcept {
+void try_triangle(const GjkSimplex& s, std::size_t i, std::size_t j, std::size_t k,
+                  SimplexPoint& best) noexcept {
   const Vec& p = s.point[i].w;
   const Vec& q = s.point[j].w;
   const Vec& r = s.point[k].w;
@@ -77,7 +77,7 @@ void try_triangle(const Simplex& s, std::size_t i, std::size_t j, std::size_t k,
   if (ar <= 0.0 || sliver) try_segment(s, i, j, best);
 }
 
-void try_tetrahedron(Simplex& s, Candidate& best) noexcept {
+void try_tetrahedron(GjkSimplex& s, SimplexPoint& best) noexcept {
   constexpr std::size_t kFace[4][3] = {{1, 2, 3}, {0, 2, 3}, {0, 1, 3}, {0, 1, 2}};
   std::array<double, 4> weight{};
   std::array<bool, 4> beyond{};
@@ -118,26 +118,26 @@ void try_tetrahedron(Simplex& s, Candidate& best) noexcept {
 
 }  // namespace
 
-Vec Simplex::closest() const noexcept {
+Vec GjkSimplex::closest() const noexcept {
   Vec v = Vec::Zero();
   for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) v += weight[i] * point[i].w;
   return v;
 }
 
-Vec Simplex::on_a() const noexcept {
+Vec GjkSimplex::on_a() const noexcept {
   Vec v = Vec::Zero();
   for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) v += weight[i] * point[i].a;
   return v;
 }
 
-Vec Simplex::on_b() const noexcept {
+Vec GjkSimplex::on_b() const noexcept {
   Vec v = Vec::Zero();
   for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) v += weight[i] * point[i].b;
   return v;
 }
 
-void reduce(Simplex& simplex) noexcept {
-  Candidate best;
+void reduce(GjkSimplex& simplex) noexcept {
+  SimplexPoint best;
   simplex.inside = false;
   switch (simplex.count) {
     case 1:
@@ -176,7 +176,7 @@ DifferencePoint support_towards(const Core& a, const Core& b, const Vec& v) noex
   return p;
 }
 
-bool holds(const Simplex& simplex, const Vec& w) noexcept {
+bool holds(const GjkSimplex& simplex, const Vec& w) noexcept {
   for (int i = 0; i < simplex.count; ++i) {
     if (simplex.point[static_cast<std::size_t>(i)].w == w) return true;
   }
@@ -186,7 +186,7 @@ bool holds(const Simplex& simplex, const Vec& w) noexcept {
 /// Runs GJK from the closest point of the simplex in `result`.
 void iterate(const Core& a, const Core& b, double noise, double enough, double share,
              double roundings, double near, GjkResult& result) noexcept {
-  Simplex& simplex = result.simplex;
+  GjkSimplex& simplex = result.simplex;
   Vec v = simplex.closest();
   result.lower = -std::numeric_limits<double>::infinity();
   result.bounded = true;
@@ -214,7 +214,7 @@ void iterate(const Core& a, const Core& b, double noise, double enough, double s
       result.bounded = false;
       break;
     }
-    const Simplex before = simplex;
+    const GjkSimplex before = simplex;
     simplex.point[static_cast<std::size_t>(simplex.count++)] = p;
     reduce(simplex);
     const Vec next = simplex.closest();
@@ -247,7 +247,7 @@ GjkResult gjk(const Core& a, const Core& b, const Vec& start, double noise, doub
   return result;
 }
 
-GjkResult gjk(const Core& a, const Core& b, const Simplex& start, double noise, double enough,
+GjkResult gjk(const Core& a, const Core& b, const GjkSimplex& start, double noise, double enough,
               double share, double roundings) noexcept {
   GjkResult result;
   result.simplex = start;

@@ -14,7 +14,7 @@ struct DifferencePoint {
 };
 
 /// Up to four points and the convex combination of them that is closest to the origin.
-struct Simplex {
+struct GjkSimplex {
   std::array<DifferencePoint, 4> point;
   std::array<double, 4> weight{};
   int count = 0;
@@ -30,10 +30,10 @@ struct Simplex {
 /// that it does not need. The region is chosen by signed volumes, areas and lengths (Montanari,
 /// Petrinic, Barbieri, "Improving the GJK algorithm", 2017); if one of these is too small to have a
 /// certain sign, all sides are tried and the closest wins.
-void reduce(Simplex& simplex) noexcept;
+void reduce(GjkSimplex& simplex) noexcept;
 
 struct GjkResult {
-  Simplex simplex;
+  GjkSimplex simplex;
   /// The vector from a to b between the closest points found; zero if `contact`.
   Vec between = Vec::Zero();
   /// The length of `between`, and the best separation along any direction tested: the distance of
@@ -64,7 +64,7 @@ struct GjkResult {
                             double near = 0.0) noexcept;
 /// As above, but starts from a simplex of points of both cores, such as the result before the cores
 /// moved a little.
-[[nodiscard]] GjkResult gjk(const Core& a, const Core& b, const Simplex& start, double noise,
+[[nodiscard]] GjkResult gjk(const Core& a, const Core& b, const GjkSimplex& start, double noise,
                             double enough, double share, double roundings) noexcept;
 
 }  // namespace winnow::solver

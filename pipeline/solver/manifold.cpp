@@ -1,11 +1,11 @@
 // Supporting features of cores, and contact manifolds of single pairs; see manifold.h. Called by
-// the solver and by composites/smooth.cpp and reduce.cpp.
+// the solver and by composites/internal_edges.cpp and manifold_reduction.cpp.
 
 #include "pipeline/solver/manifold.h"
 
 #include <winnow/core/rounding.h>
 #include "pipeline/manifold/contact_patch.h"
-#include "pipeline/manifold/patch_meetings.h"
+#include "pipeline/manifold/polygon_clip.h"
 #include "pipeline/shapes/directions_around.h"
 #include "pipeline/shapes/hypotenuse.h"
 
@@ -191,7 +191,7 @@ namespace {
 
 /// Keeps the points that are in the plane of the three points that span the most. Returns their
 /// number.
-std::uint32_t keep_level(Vec* x, std::uint32_t count) noexcept {
+std::uint32_t keep_coplanar(Vec* x, std::uint32_t count) noexcept {
   if (count < 4) return count;
   const Vec far = *std::max_element(x + 1, x + count, [&](const Vec& p, const Vec& q) {
     return (p - x[0]).norm() < (q - x[0]).norm();
@@ -220,7 +220,7 @@ void SupportingPatch::add_samples(const Core& core, const Vec& outward) noexcept
   const Vec side = without(core.rotation.col(axis), outward);
   const Vec u = side * kOffAxes[0] + outward.cross(side) * kOffAxes[1];
   const Vec v = outward.cross(u);
-  const Range width[2] = {project(core, u), project(core, v)};
+  const AxisRange width[2] = {project(core, u), project(core, v)};
   const double apart =
       1.5 * kSampleTilt * std::max(width[0].high - width[0].low, width[1].high - width[1].low);
   Vec kept[kSamples];
@@ -238,7 +238,7 @@ void SupportingPatch::add_samples(const Core& core, const Vec& outward) noexcept
     take(support(core, outward + (u * c + v * s) * kSampleTilt));
   }
   if (count == 1) kept[0] = support(core, outward);
-  count = keep_level(kept, count);
+  count = keep_coplanar(kept, count);
   for (std::uint32_t i = 0; i < count; ++i) add(kept[i], i, i);
 }
 
@@ -262,8 +262,8 @@ float as_float(const Problem& problem, double length) noexcept {
 }
 
 /// The contact point that follows from the distance result only.
-ContactPoint own_point(const Problem& problem, const Vec& point, const Vec& normal,
-                       double distance) noexcept {
+ContactPoint single_contact(const Problem& problem, const Vec& point, const Vec& normal,
+                            double distance) noexcept {
   const Vec middle = point + normal * (0.5 * distance);
   const Vec on_a = point - normal * problem.a.rounding;
   const Vec on_b = point + normal * (distance + problem.b.rounding);
@@ -278,8 +278,8 @@ ContactPoint own_point(const Problem& problem, const Vec& point, const Vec& norm
 /// Contacts of two segments at both ends of the range in which they lie side by side, if they are
 /// within the margin, the deeper one first; as in the kernels. Returns 0 if they are not side by
 /// side.
-std::uint32_t side_by_side(const Problem& problem, const Vec& normal, double distance,
-                           double margin, ContactPoint* out) noexcept {
+std::uint32_t parallel_segment_contacts(const Problem& problem, const Vec& normal, double distance,
+                                        double margin, ContactPoint* out) noexcept {
   const Core& a = problem.a;
   const Core& b = problem.b;
   const Vec u = a.rotation.col(2);
@@ -290,7 +290,7 @@ std::uint32_t side_by_side(const Problem& problem, const Vec& normal, double dis
   const double reach = half_b * std::abs(u.dot(w));
   const double ends[2] = {std::max(u.dot(c) - reach, -half_a), std::min(u.dot(c) + reach, half_a)};
   const bool beside = u.cross(w).squaredNorm() < kBesideSquare &&
-                      ends[1] - ends[0] > (half_a + half_b) * kLeastBeside;
+                      ends[1] - ends[0] > (half_a + half_b) * kMinOverlapLength;
   if (!beside) return 0;
   Vec foot[2][2];
   double apart[2];
@@ -301,7 +301,7 @@ std::uint32_t side_by_side(const Problem& problem, const Vec& normal, double dis
     apart[i] = (foot[i][1] - foot[i][0]).norm() - a.rounding - b.rounding;
   }
   const double behind = std::min(apart[0], apart[1]) - distance;
-  if (!(behind <= (a.rounding + b.rounding) * kHardlyLess)) return 0;
+  if (!(behind <= (a.rounding + b.rounding) * kEndDepthTolerance)) return 0;
   const int first = apart[1] < apart[0] ? 1 : 0;
   std::uint32_t count = 0;
   for (const int i : {first, 1 - first}) {
@@ -318,7 +318,7 @@ std::uint32_t side_by_side(const Problem& problem, const Vec& normal, double dis
 
 /// Calls `contacts` with the two supporting features, and returns its result.
 template <typename Contacts>
-std::uint32_t meet_features(const Problem& problem, const Vec& normal, Contacts&& contacts) {
+std::uint32_t with_features(const Problem& problem, const Vec& normal, Contacts&& contacts) {
   const SupportingPatch a(problem.a, normal);
   if (problem.b.kind != CoreKind::half_space) {
     return contacts(a.view(), SupportingPatch(problem.b, -normal).view());
@@ -328,14 +328,15 @@ std::uint32_t meet_features(const Problem& problem, const Vec& normal, Contacts&
                   SupportingPatch::of_half_space(problem.b, problem.a.center, reach).view());
 }
 
-std::uint32_t meet(const Problem& problem, const Vec& normal, double distance, double margin,
-                   ContactPoint* out) noexcept {
+std::uint32_t feature_contacts(const Problem& problem, const Vec& normal, double distance,
+                               double margin, ContactPoint* out) noexcept {
   if (problem.a.kind == CoreKind::segment && problem.b.kind == CoreKind::segment) {
-    return side_by_side(problem, normal, distance, margin, out);
+    return parallel_segment_contacts(problem, normal, distance, margin, out);
   }
-  return meet_features(problem, normal, [&](const Patch& a, const Patch& b) {
-    return contact_patch(a, b, normal.data(), margin, out);
-  });
+  return with_features(problem, normal,
+                       [&](const SupportingFeature& a, const SupportingFeature& b) {
+                         return contact_patch(a, b, normal.data(), margin, out);
+                       });
 }
 
 }  // namespace
@@ -353,32 +354,33 @@ void make_manifold(const Problem& problem, const Vec& point, double distance, do
                    PairAnswer& answer) noexcept {
   const Vec normal = Vec::Map(answer.normal);
   // Lengths are about 1: only the depth of two half-spaces, which is unbounded, exceeds 8.
-  const ContactPoint own = own_point(problem, point, normal, std::max(distance, -8.0));
-  const bool alone = touches_in_a_point(problem.a) || touches_in_a_point(problem.b) ||
-                     problem.a.kind == CoreKind::half_space;
+  const ContactPoint single = single_contact(problem, point, normal, std::max(distance, -8.0));
+  const bool is_single_point = touches_in_a_point(problem.a) || touches_in_a_point(problem.b) ||
+                               problem.a.kind == CoreKind::half_space;
   ContactPoint* contacts = answer.contacts;
-  std::uint32_t count = alone ? 0 : meet(problem, normal, distance, margin, contacts);
+  std::uint32_t count =
+      is_single_point ? 0 : feature_contacts(problem, normal, distance, margin, contacts);
   // The closest point replaces the deepest point of the features if they miss it by a little (as
   // caps with 16 corners do), are farther than the margin, or touch in only one point. If they miss
   // it by much, it is inserted before them. No point becomes deeper than it, and the first has its
   // depth.
-  const double miss = std::abs(double{contacts[0].depth} - double{own.depth});
+  const double miss = std::abs(double{contacts[0].depth} - double{single.depth});
   const bool near = count > 0 && double{contacts[0].depth} >= -margin;
   if (near && count > 1 && miss > 1e-2 * problem.size) {
     count = std::min(count + 1, kManifoldPoints);
     std::copy_backward(contacts, contacts + count - 1, contacts + count);
-    contacts[0] = own;
+    contacts[0] = single;
   } else if (!near || count == 1 ||
              miss > std::max(4e-7 * problem.size, tied_depth(contacts, count))) {
-    const std::uint64_t feature = near ? contacts[0].feature : own.feature;
-    contacts[0] = own;
+    const std::uint64_t feature = near ? contacts[0].feature : single.feature;
+    contacts[0] = single;
     contacts[0].feature = feature;
     count = std::max(count, 1U);
   }
-  contacts[0].depth = own.depth;
+  contacts[0].depth = single.depth;
   answer.contact_count = count;
   for (std::uint32_t i = 0; i < count; ++i) {
-    contacts[i].depth = std::min(contacts[i].depth, own.depth);
+    contacts[i].depth = std::min(contacts[i].depth, single.depth);
     for (float& x : contacts[i].position) {
       x = as_float(problem, static_cast<double>(x));
     }
@@ -386,11 +388,12 @@ void make_manifold(const Problem& problem, const Vec& point, double distance, do
   }
 }
 
-std::uint32_t shared_corners(const Problem& problem, const Vec& normal, double margin,
-                             ContactPoint* out) noexcept {
-  return meet_features(problem, normal, [&](const Patch& a, const Patch& b) {
-    return winnow::shared_corners(a, b, normal.data(), margin, out);
-  });
+std::uint32_t intersection_corners(const Problem& problem, const Vec& normal, double margin,
+                                   ContactPoint* out) noexcept {
+  return with_features(problem, normal,
+                       [&](const SupportingFeature& a, const SupportingFeature& b) {
+                         return winnow::intersection_corners(a, b, normal.data(), margin, out);
+                       });
 }
 
 }  // namespace winnow::solver

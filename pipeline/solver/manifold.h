@@ -32,7 +32,7 @@ class SupportingPatch {
   /// A square on the face of a half-space around the projection of `middle`, `reach` to each side.
   static SupportingPatch of_half_space(const Core& core, const Vec& middle, double reach) noexcept;
 
-  [[nodiscard]] Patch view() const noexcept {
+  [[nodiscard]] SupportingFeature view() const noexcept {
     return {vertex_, vertex_feature_.data(), edge_feature_.data(), count_, feature_, rounding_};
   }
 
@@ -62,8 +62,8 @@ void make_manifold(const Problem& problem, const Vec& point, double distance, do
                    PairAnswer& answer) noexcept;
 
 /// Finds all corners of the intersection of the supporting features along `normal`; a manifold
-/// keeps at most four of them. In units of the problem. `out` has room for kSharedCorners.
-std::uint32_t shared_corners(const Problem& problem, const Vec& normal, double margin,
-                             ContactPoint* out) noexcept;
+/// keeps at most four of them. In units of the problem. `out` has room for kMaxIntersectionCorners.
+std::uint32_t intersection_corners(const Problem& problem, const Vec& normal, double margin,
+                                   ContactPoint* out) noexcept;
 
 }  // namespace winnow::solver

@@ -47,8 +47,8 @@ Vec outward_of_ellipsoid(const Vec& radius, const Vec& q) noexcept {
   double s = 0.0;
   for (int i = 0; i < 3; ++i) s = shape.excess[i] > 0.0 ? s : hypotenuse(s, weight[i]);
   // The sum is convex and falls with s: Newton's method from the left never passes the root.
-  constexpr int kMostSteps = 200;
-  for (int step = 0; step < kMostSteps; ++step) {
+  constexpr int kMaxSteps = 200;
+  for (int step = 0; step < kMaxSteps; ++step) {
     double sum = -1.0;
     double slope = 0.0;
     for (int i = 0; i < 3; ++i) {

@@ -109,7 +109,7 @@ void set_units(int exponent, Core& core) noexcept {
 void place(const ShapeTables& tables, ShapeId id, const Pose& pose, const Lengths& lengths,
            int exponent, const Scale& scale, Core& core) noexcept {
   core.kind = lengths.kind;
-  core.rotation = rotation_of(tame(pose.orientation));
+  core.rotation = rotation_of(scale_to_unit_max(pose.orientation));
   for (int i = 0; i < 3; ++i) core.half[i] = scale(lengths.half[i]);
   core.rounding = scale(lengths.rounding);
   core.size = core.half.norm() + core.rounding;
@@ -170,8 +170,8 @@ double largest_length(const ShapeTables& tables, ShapeId a, ShapeId b) noexcept 
 
 double unscaled(const Problem& problem, double length) noexcept {
   if (!std::isfinite(length)) return length;
-  constexpr double kMost = std::numeric_limits<double>::max();
-  return std::clamp(Scale(-problem.exponent)(length), -kMost, kMost);
+  constexpr double kLargestDouble = std::numeric_limits<double>::max();
+  return std::clamp(Scale(-problem.exponent)(length), -kLargestDouble, kLargestDouble);
 }
 
 }  // namespace winnow::solver

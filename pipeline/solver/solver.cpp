@@ -17,7 +17,7 @@ using solver::CoreDistance;
 using solver::Problem;
 using solver::Vec;
 
-struct Question {
+struct PairQuery {
   const ShapeTables& tables;
   ShapeId a;
   const Pose& pose_a;
@@ -36,11 +36,11 @@ bool is_solved_mirrored(ShapeId a, const Pose& pose_a, ShapeId b, const Pose& po
 }
 
 /// Decides the sign of a distance by exact arithmetic if double cannot.
-void settle_sign(const Question& ask, const Problem& problem, const Vec& axis, double& distance,
+void settle_sign(const PairQuery& query, const Problem& problem, const Vec& axis, double& distance,
                  SolverCounts& counts) noexcept {
   ++counts.exact;
   const double direction[3] = {axis.x(), axis.y(), axis.z()};
-  switch (exact_overlap(ask.tables, ask.a, ask.pose_a, ask.b, ask.pose_b, direction)) {
+  switch (exact_overlap(query.tables, query.a, query.pose_a, query.b, query.pose_b, direction)) {
     case ExactVerdict::separated:
       distance = std::max(distance, std::numeric_limits<double>::denorm_min());
       break;
@@ -62,10 +62,10 @@ void put(const Problem& problem, const Vec& from, double to[3]) noexcept {
   for (int i = 0; i < 3; ++i) to[i] = unscaled(problem, from[i]);
 }
 
-PairAnswer solve(const Question& ask, bool mirrored, ContactLevel level, double margin,
+PairAnswer solve(const PairQuery& query, bool mirrored, ContactLevel level, double margin,
                  SolverCounts& counts) noexcept {
   Problem problem;
-  prepare(ask.tables, ask.a, ask.pose_a, ask.b, ask.pose_b, mirrored, problem);
+  prepare(query.tables, query.a, query.pose_a, query.b, query.pose_b, mirrored, problem);
   const double roundings = problem.a.rounding + problem.b.rounding;
   double enough = std::numeric_limits<double>::infinity();
   if (level != ContactLevel::distance) {
@@ -82,7 +82,7 @@ PairAnswer solve(const Question& ask, bool mirrored, ContactLevel level, double 
   answer.distance = unscaled(problem, scaled);
   answer.error_bound = unscaled(problem, found.doubt);
   if (!found.far && std::isfinite(found.doubt) && std::abs(scaled) <= found.doubt) {
-    settle_sign(ask, problem, found.axis, answer.distance, counts);
+    settle_sign(query, problem, found.axis, answer.distance, counts);
   }
   answer.overlap = answer.distance <= 0.0;
   Vec::Map(answer.normal) = found.axis;

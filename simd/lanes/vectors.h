@@ -26,7 +26,7 @@ struct Vec3 {
 
 /// Sum of the absolute coordinates (L1 norm).
 template <typename T, int Parts>
-[[gnu::always_inline]] inline Lanes<T, Parts> taxicab(const Vec3<T, Parts>& v) {
+[[gnu::always_inline]] inline Lanes<T, Parts> norm_l1(const Vec3<T, Parts>& v) {
   return abs(v.x) + abs(v.y) + abs(v.z);
 }
 

@@ -9,8 +9,8 @@
 #include "bench/rows/every_scene_rows.h"
 #include "bench/rows/filter_rows.h"
 #include "bench/rows/host_rows.h"
+#include "bench/rows/library_comparison_rows.h"
 #include "bench/rows/machine.h"
-#include "bench/rows/peer_rows.h"
 #include "bench/scenes/scene.h"
 
 #include <gtest/gtest.h>

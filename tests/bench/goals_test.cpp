@@ -1,8 +1,8 @@
 // Tests of `winnow goals`: how a goal is computed from rows, and that the file of goals can be
 // read.
 
-#include "bench/goals/asks.h"
 #include "bench/goals/evaluate.h"
+#include "bench/goals/goal_entries.h"
 #include "bench/goals/measurements.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,8 @@ namespace winnow::bench {
 namespace {
 
 /// Declares two kinds at two levels, and another library for one of them.
-void measure_example(const Json& options, Lab& /*lab*/, Measured& measured) {
+void measure_example(const Json& options, MeasurementCache& /*measurement_cache*/,
+                     Measured& measured) {
   if (options.contains("refuse")) throw std::runtime_error("refused");
   measured.absent = options.contains("absent");
   measured.machine_ms = 46.0;  // twice as slow as the machine of the other libraries
@@ -33,11 +34,11 @@ void measure_example(const Json& options, Lab& /*lab*/, Measured& measured) {
 }
 
 std::vector<Goal> goals_of(const std::string& ask) {
-  const auto asks = parse_asks(R"({"lists": {}, "asks": [{"topic": "engine", "what": "{kind}",)"
-                               R"( "unit": "ns", "measure": {"example": {}}, )" +
-                               ask + "}]}");
-  Lab lab;
-  return evaluate(asks.at(0), lab);
+  const auto asks = parse_goals(R"({"lists": {}, "asks": [{"topic": "engine", "what": "{kind}",)"
+                                R"( "unit": "ns", "measure": {"example": {}}, )" +
+                                ask + "}]}");
+  MeasurementCache measurement_cache;
+  return evaluate(asks.at(0), measurement_cache);
 }
 
 TEST(Goals, goal_computes_the_least_most_and_sum) {
@@ -98,16 +99,16 @@ TEST(Goals, goal_without_rows_fails_unless_optional) {
   ASSERT_EQ(goals_of(nobody).size(), 1U);
   EXPECT_FALSE(goals_of(nobody).at(0).holds());
   EXPECT_TRUE(goals_of(nobody + R"(, "optional": true)").empty());
-  Lab lab;
+  MeasurementCache measurement_cache;
   Json ask{{"topic", "engine"}, {"what", ""}, {"unit", ""}, {"value", 1}, {"at_least", 0}};
   ask["measure"] = {{"example", {{"refuse", true}}}};
-  EXPECT_FALSE(evaluate(ask, lab).at(0).holds());
+  EXPECT_FALSE(evaluate(ask, measurement_cache).at(0).holds());
   ask["measure"] = {{"example", {{"absent", true}}}};
-  EXPECT_TRUE(evaluate(ask, lab).empty());
+  EXPECT_TRUE(evaluate(ask, measurement_cache).empty());
 }
 
 TEST(Asks, asks_with_lists_expand_to_all_combinations) {
-  const auto asks = parse_asks(R"({"lists": {"sizes": [{"objects": 1000}, {"objects": 20}]},
+  const auto asks = parse_goals(R"({"lists": {"sizes": [{"objects": 1000}, {"objects": 20}]},
     "asks": [{"topic": "engine", "each": ["sizes", [{"threads": 1}, {"threads": 2}]],
               "only": {"objects": [1000]}, "what": "{objects} objects, {threads}", "unit": "",
               "measure": {"example": {"objects": "{objects}"}}, "value": 1, "at_most": 1}]})");
@@ -117,8 +118,8 @@ TEST(Asks, asks_with_lists_expand_to_all_combinations) {
 }
 
 TEST(Asks, asks_of_the_goals_file_are_read) {
-  EXPECT_GT(parse_asks(kGoalsJson).size(), 300U);
-  EXPECT_THROW((void)parse_asks(R"({"lists": {}, "asks": [{"topic": "none"}]})"),
+  EXPECT_GT(parse_goals(kGoalsJson).size(), 300U);
+  EXPECT_THROW((void)parse_goals(R"({"lists": {}, "asks": [{"topic": "none"}]})"),
                std::runtime_error);
 }
 

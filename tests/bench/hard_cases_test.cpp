@@ -2,8 +2,8 @@
 
 #include "bench/questions/hard_cases.h"
 #include <winnow/simd/isa.h>
-#include "bench/questions/hard_case_files.h"
 #include "bench/questions/questions.h"
+#include "bench/questions/hard_case_files.h"
 #include "tests/support/config.h"
 
 #include <gtest/gtest.h>
@@ -48,7 +48,8 @@ int count_faults(const Json& questions, NarrowTier tier, bool report) {
   EXPECT_EQ(answers.size(), questions.size());
   int faults = 0;
   for (std::size_t i = 0; i < questions.size(); ++i) {
-    const std::string what = judge_case(questions[i], answers[i], promised_error(tier)).fault;
+    const std::string what =
+        check_hard_case(questions[i], answers[i], guaranteed_error(tier)).fault;
     if (what.empty()) continue;
     ++faults;
     if (report) {
@@ -120,15 +121,15 @@ TEST(HardCaseVerdicts, verdict_reports_the_size_of_the_error) {
                {"distance", 2.0 + 4e-3},
                {"normal", {1, 0, 0}},
                {"error_bound", "inf"}};
-  const CaseVerdict verdict = judge_case(question, said, 1e-4);
+  const CaseVerdict verdict = check_hard_case(question, said, 1e-4);
   EXPECT_EQ(verdict.fault, "distance");
   EXPECT_NEAR(verdict.error, 1e-3, 1e-12);
   EXPECT_NEAR(verdict.over_allowed, 10.0, 1e-9);
   said["overlap"] = true;
-  EXPECT_EQ(judge_case(question, said, 1e-2).fault, kFalseContact);
+  EXPECT_EQ(check_hard_case(question, said, 1e-2).fault, kFalseContact);
   said["distance"] = "nan";
   said["overlap"] = false;
-  EXPECT_EQ(judge_case(question, said, 1e-2).fault, "no distance");
+  EXPECT_EQ(check_hard_case(question, said, 1e-2).fault, "no distance");
 }
 
 std::string family_of(const testing::TestParamInfo<Path>& file) {

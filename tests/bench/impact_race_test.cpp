@@ -12,9 +12,9 @@ namespace winnow::bench {
 namespace {
 
 /// Returns one fixed answer for every pair.
-class Stubborn final : public ImpactEngine {
+class FixedImpact final : public ImpactEngine {
  public:
-  explicit Stubborn(const ImpactAnswer& answer) : answer_(answer) {}
+  explicit FixedImpact(const ImpactAnswer& answer) : answer_(answer) {}
   [[nodiscard]] std::string name() const override { return "stubborn"; }
   [[nodiscard]] bool takes(const PairKind&, PairTurn) const override { return true; }
   void start(const MovingPairSet&) override {}
@@ -52,11 +52,11 @@ TEST(ImpactRace, winnow_has_no_faults_on_any_motion) {
 TEST(ImpactRace, missed_late_and_early_answers_are_counted) {
   const MovingPairSet set =
       make_moving_pairs(*find_pair_kind("box-box"), PairTurn::little, {.pairs = kPairs});
-  Stubborn blind({false, 1.0});
+  FixedImpact blind({false, 1.0});
   EXPECT_GE(judged(set, blind).missed, kPairs / 2);
-  Stubborn late({true, 0.6});
+  FixedImpact late({true, 0.6});
   EXPECT_GE(judged(set, late).late, kPairs / 2);
-  Stubborn early({true, 0.0});
+  FixedImpact early({true, 0.0});
   const ImpactTiming timing = judged(set, early);
   EXPECT_EQ(timing.loose, kPairs);
   EXPECT_EQ(timing.late + timing.missed, 0U);

@@ -99,10 +99,10 @@ std::string name_of(const testing::TestParamInfo<PairKind>& kind) {
 INSTANTIATE_TEST_SUITE_P(Kinds, PairSets, testing::ValuesIn(kinds()), name_of);
 
 /// Returns one given answer for every pair.
-class Parrot final : public NarrowEngine {
+class FixedAnswer final : public NarrowEngine {
  public:
-  explicit Parrot(NarrowAnswer answer) : answer_(answer) {}
-  [[nodiscard]] std::string name() const override { return "parrot"; }
+  explicit FixedAnswer(NarrowAnswer answer) : answer_(answer) {}
+  [[nodiscard]] std::string name() const override { return "fixed"; }
   [[nodiscard]] bool takes(const PairKind&, ContactLevel) const override { return true; }
   void start(const PairSet&) override {}
   void run(ContactLevel, std::span<const BodyPair>) override {}
@@ -114,8 +114,8 @@ class Parrot final : public NarrowEngine {
 
 Accuracy judged(const NarrowAnswer& answer, const PairTruth& truth) {
   const auto set = make_pair_set(pair_kinds().front(), {.pairs = 1});
-  Parrot parrot(answer);
-  return judge_engine(parrot, ContactLevel::distance, *set, std::span(&truth, 1));
+  FixedAnswer fixed(answer);
+  return judge_engine(fixed, ContactLevel::distance, *set, std::span(&truth, 1));
 }
 
 const PairTruth kApart{.known = true,
@@ -171,7 +171,7 @@ TEST(NarrowRace, verdicts_that_differ_from_the_first_are_counted) {
   const auto set = make_pair_set(pair_kinds().front(), {.pairs = kPairs});
   std::vector<NarrowContender> contenders;
   contenders.push_back({std::make_unique<WinnowNarrow>(NarrowTier::robust, 1), 1});
-  contenders.push_back({std::make_unique<Parrot>(NarrowAnswer{.overlap = true}), 1});
+  contenders.push_back({std::make_unique<FixedAnswer>(NarrowAnswer{.overlap = true}), 1});
   for (const NarrowContender& contender : contenders) contender.engine->start(*set);
   const auto timings = race_pairs(*set, ContactLevel::boolean, contenders, {.rounds = 1});
   ASSERT_EQ(timings.size(), 2U);

@@ -24,7 +24,7 @@ std::vector<QueryRun> race_on(const std::string& scene, std::vector<QueryContend
     contenders.push_back({std::make_unique<PartitionQueries>(name, threads), false});
   }
   for (auto& peer : make_query_peers()) contenders.push_back({std::move(peer), true});
-  const auto sets = make_question_sets(source->boxes(), 200, 9);
+  const auto sets = make_query_sets(source->boxes(), 200, 9);
   return race_queries(source->boxes(), sets, contenders,
                       {.rounds = 1, .threads = threads, .judged = 200});
 }
@@ -41,7 +41,7 @@ TEST_P(Race, every_engine_has_the_same_answers) {
           << run.engine << ": " << run.set << ": " << run.comparison.first;
     }
     // Each set is put to every engine singly, and to the partitions rays and boxes also in batches.
-    EXPECT_GE(runs.size(), all_partitions().size() * (question_set_names().size() + 7));
+    EXPECT_GE(runs.size(), all_partitions().size() * (query_set_names().size() + 7));
   }
 }
 
@@ -65,8 +65,8 @@ TEST(Race, timed_round_has_the_hits_that_were_compared) {
 /// Two unit boxes in a row and one ray, which passes through both or misses both.
 class Comparisons : public testing::Test {
  protected:
-  static Answers answers(std::initializer_list<Found> found) {
-    Answers result;
+  static QueryResults answers(std::initializer_list<Found> found) {
+    QueryResults result;
     for (const Found& one : found) result.add(one);
     result.next();
     return result;
@@ -82,19 +82,19 @@ class Comparisons : public testing::Test {
   Comparison by_force(std::initializer_list<Found> got) const {
     return compare_by_force(judge_, set_, boxes_.size(), answers(got), 1);
   }
-  void ask(Want want, float height) {
+  void ask(QueryType query_type, float height) {
     set_ = {};
-    set_.want = want;
+    set_.query_type = query_type;
     set_.rays.push_back({.origin = {-1.0F, height, 0.5F}});
   }
 
   std::vector<Aabb> boxes_{{{0, 0, 0}, {1, 1, 1}}, {{2, 0, 0}, {3, 1, 1}}};
-  Judge judge_{boxes_};
-  QuestionSet set_;
+  ReferenceQueries judge_{boxes_};
+  QuerySet set_;
 };
 
 TEST_F(Comparisons, missing_false_and_misplaced_hits_are_noticed) {
-  ask(Want::all, 0.5F);
+  ask(QueryType::all, 0.5F);
   EXPECT_TRUE(by_force({{0, 1.0F}, {1, 3.0F}}).agree());
   EXPECT_FALSE(by_force({{0, 1.0F}}).agree());
   EXPECT_FALSE(by_force({{1, 3.0F}, {0, 1.0F}}).agree());
@@ -102,14 +102,14 @@ TEST_F(Comparisons, missing_false_and_misplaced_hits_are_noticed) {
   EXPECT_FALSE(exactly({{0, 1.0F}, {1, 3.0F}}, {{0, 1.0F}}).agree());
   EXPECT_FALSE(exactly({{0, 1.0F}, {1, 3.0F}}, {{1, 3.0F}, {0, 1.0F}}).agree());
   EXPECT_FALSE(in_float({{0, 1.0F}, {1, 3.0F}}, {{0, 1.0F}}).agree());
-  ask(Want::all, 2.0F);
+  ask(QueryType::all, 2.0F);
   EXPECT_TRUE(by_force({}).agree());
   EXPECT_FALSE(by_force({{0, 1.0F}}).agree());
   EXPECT_FALSE(in_float({}, {{0, 1.0F}}).agree());
 }
 
 TEST_F(Comparisons, hit_that_is_not_the_closest_is_noticed) {
-  ask(Want::closest, 0.5F);
+  ask(QueryType::closest, 0.5F);
   EXPECT_TRUE(by_force({{0, 1.0F}}).agree());
   EXPECT_FALSE(by_force({{1, 3.0F}}).agree());
   EXPECT_FALSE(by_force({}).agree());
@@ -119,11 +119,11 @@ TEST_F(Comparisons, hit_that_is_not_the_closest_is_noticed) {
 }
 
 TEST_F(Comparisons, rounding_is_allowed_to_float_engines_only) {
-  ask(Want::closest, 0.5F);
+  ask(QueryType::closest, 0.5F);
   const float later = std::nextafter(1.0F, 2.0F);
   EXPECT_TRUE(in_float({{0, 1.0F}}, {{0, later}}).agree());
   EXPECT_FALSE(exactly({{0, 1.0F}}, {{0, later}}).agree());
-  ask(Want::closest, 1.0F);  // along an edge: a ray that is computed in float may miss
+  ask(QueryType::closest, 1.0F);  // along an edge: a ray that is computed in float may miss
   boxes_[0].max.y() = boxes_[1].max.y() = std::nextafter(1.0F, 2.0F);
   set_.rays[0].direction = {1.0F, 1e-9F, 0.0F};
   const Comparison grazing = in_float({{0, 1.0F}}, {});

@@ -53,7 +53,7 @@ TEST(VolumeRace, tighter_volumes_report_fewer_pairs_and_miss_none) {
 TEST(VolumeRace, margins_begin_at_different_times) {
   constexpr float kShare = 0.2F;
   const Solids solids = Solids::rods(200, 1);
-  const std::vector<OrientedBox> then = solids.when_margins_were_left(kShare);
+  const std::vector<OrientedBox> then = solids.boxes_at_last_refit(kShare);
   double sum = 0.0;
   for (std::size_t i = 0; i < then.size(); ++i) {
     const OrientedBox& now = solids.boxes()[i];

@@ -12,8 +12,8 @@
 #include <winnow/pipeline/scene_queries.h>
 #include <winnow/pipeline/sensors.h>
 #include "pipeline/c/binding/arguments.h"
+#include "pipeline/c/binding/layout_compatible.h"
 #include "pipeline/c/binding/options.h"
-#include "pipeline/c/binding/twins.h"
 
 #include <cstdio>
 #include <string>
@@ -145,12 +145,13 @@ Members members(const DebugDrawOptions& o) {
 }
 Members members(const SceneOptions& o) {
   const auto& [memory, execution, structures, margin, tier, carry_over, contact_reduction,
-               seamless_floors, warm_start, build_budget, composites] = o;
+               suppress_ghost_contacts, warm_start, build_budget, composites] = o;
   return list(
-      "memory execution structures margin tier carry_over contact_reduction seamless_floors "
+      "memory execution structures margin tier carry_over contact_reduction "
+      "suppress_ghost_contacts "
       "warm_start build_budget composites",
-      memory, execution, structures, margin, tier, carry_over, contact_reduction, seamless_floors,
-      warm_start, build_budget, composites);
+      memory, execution, structures, margin, tier, carry_over, contact_reduction,
+      suppress_ghost_contacts, warm_start, build_budget, composites);
 }
 Members members(const NarrowOptions& o) {
   const auto& [level, tier, margin, execution, margins] = o;
@@ -196,7 +197,7 @@ Members members(const SensorDefinition& o) {
   return list("shape pose layers mask environment carrier data", shape, pose, filter.layers,
               filter.mask, filter.environment, carrier, data);
 }
-Members members(const SceneRoom& o) {
+Members members(const SceneCapacity& o) {
   const auto& [bodies, pairs, level, touching, manifolds, points] = o;
   return list("bodies pairs level touching manifolds points", bodies, pairs, level, touching,
               manifolds, points);
@@ -285,27 +286,27 @@ void show_all_options() {
 /// Structs whose default is not all zeros.
 void show_definitions() {
   const winnow_object_filter object = WINNOW_OBJECT_FILTER;
-  show("ObjectFilter", ObjectFilter{}, {{"macro", *c::twin(&object)}});
+  show("ObjectFilter", ObjectFilter{}, {{"macro", *c::as_cpp(&object)}});
   const winnow_filter filter = WINNOW_FILTER;
   show("Filter", Filter{}, {{"macro", c::filter_of(&filter)}, {"null", c::filter_of(nullptr)}});
   const winnow_body_definition body = WINNOW_BODY_DEFINITION;
-  show("BodyDefinition", BodyDefinition{}, {{"macro", *c::twin(&body)}});
+  show("BodyDefinition", BodyDefinition{}, {{"macro", *c::as_cpp(&body)}});
   const winnow_sensor_definition sensor = WINNOW_SENSOR_DEFINITION;
-  show("SensorDefinition", SensorDefinition{}, {{"macro", *c::twin(&sensor)}});
+  show("SensorDefinition", SensorDefinition{}, {{"macro", *c::as_cpp(&sensor)}});
   const winnow_shape_ray ray = WINNOW_SHAPE_RAY;
-  show("ShapeRay", ShapeRay{}, {{"macro", *c::twin(&ray)}});
+  show("ShapeRay", ShapeRay{}, {{"macro", *c::as_cpp(&ray)}});
   const winnow_scene_room room = WINNOW_SCENE_ROOM;
-  const SceneRoom of_c{{room.bodies[0], room.bodies[1], room.bodies[2]},
-                       room.pairs,
-                       static_cast<ContactLevel>(room.level),
-                       room.touching,
-                       room.manifolds,
-                       room.points};
-  show("SceneRoom", SceneRoom{}, {{"macro", of_c}});
+  const SceneCapacity of_c{{room.bodies[0], room.bodies[1], room.bodies[2]},
+                           room.pairs,
+                           static_cast<ContactLevel>(room.level),
+                           room.touching,
+                           room.manifolds,
+                           room.points};
+  show("SceneCapacity", SceneCapacity{}, {{"macro", of_c}});
   const winnow_shape_cast cast = WINNOW_SHAPE_CAST;
   show("ShapeCast", ShapeCast{},
        {{"macro", ShapeCast{{cast.shape},
-                            *c::twin(&cast.pose),
+                            *c::as_cpp(&cast.pose),
                             {cast.direction[0], cast.direction[1], cast.direction[2]},
                             cast.max_t}}});
   const winnow_height_samples heights = WINNOW_HEIGHT_SAMPLES;

@@ -33,7 +33,7 @@ static void note_answers(const trace* t, const winnow_impact_result* result) {
   }
 }
 
-static void ask_impacts(const trace* t) {
+static void query_impacts(const trace* t) {
   const winnow_shape ball = {WINNOW_SHAPE_SPHERE, {.sphere = {0.5}}};
   const winnow_shape box = {WINNOW_SHAPE_BOX, {.box = {{0.5, 0.25, 1.0}, 0.0}}};
   const winnow_body_pair pairs[kPairs] = {{0, 1}, {1, 2}, {2, 0}, {0, 0}};
@@ -99,7 +99,7 @@ static void note_entry(const winnow_log_entry* entry) {
   note(told, "objects", entry->objects);
 }
 
-static void ask_hooks(const trace* t) {
+static void query_hooks(const trace* t) {
   const winnow_shape ball = {WINNOW_SHAPE_SPHERE, {.sphere = {0.5}}};
   winnow_shape_pool* shapes = NULL;
   winnow_scene* scene = NULL;
@@ -128,7 +128,7 @@ static void ask_hooks(const trace* t) {
   winnow_shape_pool_destroy(shapes);
 }
 
-void ask_impacts_in_c(const trace* t) {
-  ask_impacts(t);
-  ask_hooks(t);
+void run_impacts_in_c(const trace* t) {
+  query_impacts(t);
+  query_hooks(t);
 }

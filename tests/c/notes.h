@@ -29,12 +29,12 @@ class Notes {
 };
 
 // The scenarios of the C files, run through the C++ interface.
-void ask_partitions_in_cpp(const trace* t);
-void ask_volumes_in_cpp(const trace* t);
-void ask_shapes_in_cpp(const trace* t);
-void ask_narrow_phase_in_cpp(const trace* t);
-void ask_scenes_in_cpp(const trace* t);
-void ask_watchers_in_cpp(const trace* t);
-void ask_impacts_in_cpp(const trace* t);
+void run_partitions_in_cpp(const trace* t);
+void run_volumes_in_cpp(const trace* t);
+void run_shapes_in_cpp(const trace* t);
+void run_narrow_phase_in_cpp(const trace* t);
+void run_scenes_in_cpp(const trace* t);
+void run_watchers_in_cpp(const trace* t);
+void run_impacts_in_cpp(const trace* t);
 
 }  // namespace winnow::test

@@ -90,7 +90,7 @@ static winnow_box_view column_view(void) {
   return view;
 }
 
-static void ask_objects(const trace* t, winnow_partition* partition) {
+static void query_objects(const trace* t, winnow_partition* partition) {
   size_t size = 0;
   OK(winnow_partition_size(partition, &size));
   note(t, "size", size);
@@ -121,7 +121,7 @@ static void ask_objects(const trace* t, winnow_partition* partition) {
   note(t, "filter", filter.environment);
 }
 
-static void ask_pairs(const trace* t, winnow_partition* partition, const winnow_memory* memory) {
+static void query_pairs(const trace* t, winnow_partition* partition, const winnow_memory* memory) {
   winnow_pair_buffer* pairs = NULL;
   winnow_pair_buffer* copy = NULL;
   winnow_pair_events* events = NULL;
@@ -193,7 +193,7 @@ static void ask_pairs(const trace* t, winnow_partition* partition, const winnow_
   winnow_pair_buffer_destroy(pairs);
 }
 
-static void ask_casts(const trace* t, const winnow_partition* partition,
+static void query_casts(const trace* t, const winnow_partition* partition,
                       const winnow_memory* memory) {
   winnow_hit_buffer* hits = NULL;
   winnow_hit hit;
@@ -264,7 +264,7 @@ static void ask_casts(const trace* t, const winnow_partition* partition,
   winnow_hit_buffer_destroy(hits);
 }
 
-static void ask_regions(const trace* t, const winnow_partition* partition,
+static void query_regions(const trace* t, const winnow_partition* partition,
                         const winnow_memory* memory) {
   winnow_overlap_buffer* found = NULL;
   winnow_pair_buffer* pairs = NULL;
@@ -330,7 +330,7 @@ static void count_text(void* context, const float at[3], const char* text, size_
   *(size_t*)context += length;
 }
 
-static void ask_state(const trace* t, winnow_partition* partition) {
+static void query_state(const trace* t, winnow_partition* partition) {
   OK(winnow_partition_refresh(partition));
   bool is_exact = false;
   winnow_volume volume = -1;
@@ -360,7 +360,7 @@ static void ask_state(const trace* t, winnow_partition* partition) {
   note(t, "drawn", drawn);
 }
 
-void ask_partitions_in_c(const trace* t) {
+void run_partitions_in_c(const trace* t) {
   size_t outstanding = 0;
   size_t tasks = 0;
   const winnow_memory memory = counted_in(&outstanding);
@@ -380,11 +380,11 @@ void ask_partitions_in_c(const trace* t) {
   fill_columns(0);
   winnow_box_view view = column_view();
   OK(winnow_partition_insert(partition, &view, data, keys));
-  ask_objects(t, partition);
-  ask_pairs(t, partition, &memory);
-  ask_casts(t, partition, &memory);
-  ask_regions(t, partition, &memory);
-  ask_state(t, partition);
+  query_objects(t, partition);
+  query_pairs(t, partition, &memory);
+  query_casts(t, partition, &memory);
+  query_regions(t, partition, &memory);
+  query_state(t, partition);
 
   const winnow_structure_kind bvh = {WINNOW_LINEAR_BVH, 0.0F};
   OK(winnow_partition_create(bvh, NULL, &other));
@@ -414,7 +414,7 @@ void ask_partitions_in_c(const trace* t) {
   note(t, "outstanding", outstanding);
 }
 
-void ask_volumes_in_c(const trace* t) {
+void run_volumes_in_c(const trace* t) {
   winnow_threads* threads = NULL;
   winnow_partition_options options = WINNOW_PARTITION_OPTIONS;
   winnow_pair_options canonical = WINNOW_PAIR_OPTIONS;

@@ -31,31 +31,31 @@ void expect_same(Scenario in_c, Scenario in_cpp) {
 }
 
 TEST(CInterface, partitions_give_the_results_of_cpp) {
-  expect_same(ask_partitions_in_c, ask_partitions_in_cpp);
+  expect_same(run_partitions_in_c, run_partitions_in_cpp);
 }
 
 TEST(CInterface, spheres_and_kdops_give_the_results_of_cpp) {
-  expect_same(ask_volumes_in_c, ask_volumes_in_cpp);
+  expect_same(run_volumes_in_c, run_volumes_in_cpp);
 }
 
 TEST(CInterface, shapes_give_the_results_of_cpp) {
-  expect_same(ask_shapes_in_c, ask_shapes_in_cpp);
+  expect_same(run_shapes_in_c, run_shapes_in_cpp);
 }
 
 TEST(CInterface, pairs_of_shapes_give_the_results_of_cpp) {
-  expect_same(ask_narrow_phase_in_c, ask_narrow_phase_in_cpp);
+  expect_same(run_narrow_phase_in_c, run_narrow_phase_in_cpp);
 }
 
 TEST(CInterface, scenes_give_the_results_of_cpp) {
-  expect_same(ask_scenes_in_c, ask_scenes_in_cpp);
+  expect_same(run_scenes_in_c, run_scenes_in_cpp);
 }
 
 TEST(CInterface, sensors_and_sweeps_give_the_results_of_cpp) {
-  expect_same(ask_watchers_in_c, ask_watchers_in_cpp);
+  expect_same(run_watchers_in_c, run_watchers_in_cpp);
 }
 
 TEST(CInterface, motions_and_hooks_give_the_results_of_cpp) {
-  expect_same(ask_impacts_in_c, ask_impacts_in_cpp);
+  expect_same(run_impacts_in_c, run_impacts_in_cpp);
 }
 
 /// Returns all pairs of a dense row of boxes.

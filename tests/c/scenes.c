@@ -79,7 +79,7 @@ static bool is_even(void* context, winnow_key key, uint64_t value) {
   return key.id % 2 == 0;
 }
 
-static void ask_rays(const trace* t, winnow_scene_queries* ask) {
+static void query_rays(const trace* t, winnow_scene_queries* ask) {
   winnow_filter filter = WINNOW_FILTER;
   filter.accept = is_even;
   const winnow_shape_ray ray = {{3.2, 1.3, 5}, {0.1, 0.2, -1}, 20};
@@ -131,7 +131,7 @@ static void ask_rays(const trace* t, winnow_scene_queries* ask) {
   note_hits(t, "all of rays", hits, first[kRays]);
 }
 
-static void ask_shapes_of(const trace* t, winnow_scene_queries* ask, winnow_shape_id ball,
+static void query_shapes_of(const trace* t, winnow_scene_queries* ask, winnow_shape_id ball,
                           const winnow_key* keys) {
   const winnow_shape_cast cast = {ball, {{3.2, 1.3, 5}, {1, 0, 0, 0}}, {0.1, 0.2, -1}, 20};
   winnow_pose pose = WINNOW_POSE;
@@ -201,7 +201,7 @@ static void count_box(void* context, const winnow_aabb* box, winnow_colour colou
   ++*(size_t*)context;
 }
 
-static void ask_state(const trace* t, winnow_scene* scene, const winnow_key* keys) {
+static void query_state(const trace* t, winnow_scene* scene, const winnow_key* keys) {
   size_t size = 0;
   bool contains = false;
   winnow_body_definition body = WINNOW_BODY_DEFINITION;
@@ -237,7 +237,7 @@ static void ask_state(const trace* t, winnow_scene* scene, const winnow_key* key
   winnow_scene_counts counts = {.size = sizeof counts};
   OK(winnow_scene_statistics(scene, &counts));
   note(t, "statistics", counts.body_pairs);
-  note(t, "statistics", counts.balls_apart);
+  note(t, "statistics", counts.rejected_by_spheres);
   note(t, "statistics", counts.convex_pairs);
   note(t, "statistics", counts.part_pairs);
 }
@@ -319,7 +319,7 @@ static void save_and_load(const trace* t, winnow_shape_pool* pool,
   for (size_t i = 0; i < kParts; ++i) winnow_snapshot_destroy(saved[i]);
 }
 
-void ask_scenes_in_c(const trace* t) {
+void run_scenes_in_c(const trace* t) {
   size_t outstanding = 0;
   const winnow_memory memory = counted_in(&outstanding);
   winnow_shape_pool* pool = NULL;
@@ -358,7 +358,7 @@ void ask_scenes_in_c(const trace* t) {
     OK(winnow_scene_collide(scene, level, contacts));
     note_columns(t, contacts);
   }
-  ask_state(t, scene, keys);
+  query_state(t, scene, keys);
 
   winnow_pose poses[kBodies];
   for (size_t i = 0; i < kBodies; ++i) pose_of(i, 1, poses[i].position, poses[i].orientation);
@@ -391,8 +391,8 @@ void ask_scenes_in_c(const trace* t) {
   OK(winnow_scene_refresh(scene));
   winnow_scene_queries* ask = NULL;
   OK(winnow_scene_queries_create(scene, NULL, &ask));
-  ask_rays(t, ask);
-  ask_shapes_of(t, ask, convex[0], keys);
+  query_rays(t, ask);
+  query_shapes_of(t, ask, convex[0], keys);
   winnow_scene_queries_destroy(ask);
   save_and_load(t, pool, composites, scene, contacts);
 

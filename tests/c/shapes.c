@@ -12,7 +12,7 @@ static void note_box(const trace* t, const char* what, const winnow_aabb* box) {
   }
 }
 
-/* A user shape, given by a support function; equals the cube in shapes_twin.cpp. */
+/* A user shape, given by a support function; equals the cube in shapes_reference.cpp. */
 static void farthest_of_cube(const void* context, const double* direction, double* point) {
   const double half = *(const double*)context;
   for (int i = 0; i < 3; ++i) point[i] = direction[i] < 0 ? -half : half;
@@ -79,7 +79,7 @@ void make_composites(const trace* t, winnow_composite_pool* pool, const winnow_s
   OK(winnow_composite_pool_add_compound(pool, children, 3, &ids[3]));
 }
 
-void ask_shapes_in_c(const trace* t) {
+void run_shapes_in_c(const trace* t) {
   size_t outstanding = 0;
   const winnow_memory memory = counted_in(&outstanding);
   winnow_shape_pool* pool = NULL;
@@ -226,7 +226,7 @@ static void note_pair(const trace* t, winnow_contact_level level,
   }
 }
 
-void ask_narrow_phase_in_c(const trace* t) {
+void run_narrow_phase_in_c(const trace* t) {
   size_t outstanding = 0;
   const winnow_memory memory = counted_in(&outstanding);
   winnow_shape_pool* pool = NULL;

@@ -29,13 +29,13 @@ extern "C" {
 #endif
 
 /* The scenarios in C. A call that fails is noted by its own text. */
-void ask_partitions_in_c(const trace* t);
-void ask_volumes_in_c(const trace* t);
-void ask_shapes_in_c(const trace* t);
-void ask_narrow_phase_in_c(const trace* t);
-void ask_scenes_in_c(const trace* t);
-void ask_watchers_in_c(const trace* t);
-void ask_impacts_in_c(const trace* t);
+void run_partitions_in_c(const trace* t);
+void run_volumes_in_c(const trace* t);
+void run_shapes_in_c(const trace* t);
+void run_narrow_phase_in_c(const trace* t);
+void run_scenes_in_c(const trace* t);
+void run_watchers_in_c(const trace* t);
+void run_impacts_in_c(const trace* t);
 
 #ifdef __cplusplus
 }

@@ -34,7 +34,7 @@ static void note_groups(const trace* t, const winnow_contact_groups* groups) {
        winnow_contact_groups_pairs(groups, size, &column, &count) == WINNOW_INVALID_ARGUMENT);
 }
 
-static void ask_groups(const trace* t, winnow_scene* scene, const winnow_key* keys) {
+static void query_groups(const trace* t, winnow_scene* scene, const winnow_key* keys) {
   winnow_contacts* contacts = NULL;
   winnow_contact_groups* groups = NULL;
   winnow_footprint bytes = {.size = sizeof bytes};
@@ -82,7 +82,7 @@ static void note_sensed(const trace* t, const winnow_sensors* sensors) {
   }
 }
 
-static void ask_sensors(const trace* t, winnow_scene* scene, winnow_shape_id ball,
+static void query_sensors(const trace* t, winnow_scene* scene, winnow_shape_id ball,
                         const winnow_key* keys) {
   size_t outstanding = 0;
   const winnow_memory memory = counted_in(&outstanding);
@@ -143,7 +143,7 @@ static void note_impacts(const trace* t, const winnow_scene_sweep* sweep) {
   for (size_t i = 0; i < count; ++i) note(t, "first impact", first[i]);
 }
 
-static void ask_sweep(const trace* t, winnow_scene* scene, const winnow_key* keys) {
+static void query_sweep(const trace* t, winnow_scene* scene, const winnow_key* keys) {
   enum { kMoving = 3 };
   winnow_scene_sweep* sweep = NULL;
   winnow_sweep_options options = WINNOW_SWEEP_OPTIONS;
@@ -169,7 +169,7 @@ static void ask_sweep(const trace* t, winnow_scene* scene, const winnow_key* key
   winnow_scene_sweep_destroy(sweep);
 }
 
-void ask_watchers_in_c(const trace* t) {
+void run_watchers_in_c(const trace* t) {
   winnow_shape_pool* pool = NULL;
   winnow_scene* scene = NULL;
   winnow_shape_id ball = WINNOW_NO_SHAPE;
@@ -177,9 +177,9 @@ void ask_watchers_in_c(const trace* t) {
   OK(winnow_shape_pool_create(NULL, &pool));
   OK(winnow_scene_create(pool, NULL, &scene));
   add_balls(t, pool, scene, &ball, keys);
-  ask_groups(t, scene, keys);
-  ask_sensors(t, scene, ball, keys);
-  ask_sweep(t, scene, keys);
+  query_groups(t, scene, keys);
+  query_sensors(t, scene, ball, keys);
+  query_sweep(t, scene, keys);
   winnow_scene_destroy(scene);
   winnow_shape_pool_destroy(pool);
 }

@@ -1,4 +1,4 @@
-// Column: alignment, growth, touched pages, refused memory, and sizes that overflow.
+// Column: alignment, growth, prefaulted pages, refused memory, and sizes that overflow.
 
 #include <gtest/gtest.h>
 #include <winnow/core/column.h>
@@ -52,11 +52,11 @@ TEST(Column, growth_keeps_the_content) {
 TEST(Column, reserve_with_touched_pages_keeps_the_content) {
   CountingMemory memory;
   Column<Odd> column(&memory);
-  ASSERT_TRUE(column.reserve(0, Pages::touched));
+  ASSERT_TRUE(column.reserve(0, Pages::prefaulted));
   for (std::size_t i = 0; i < 1000; ++i) {
     ASSERT_TRUE(column.push_back({{static_cast<std::uint8_t>(i)}}));
     if (i % 100 == 0) {
-      ASSERT_TRUE(column.reserve(2 * i, Pages::touched));
+      ASSERT_TRUE(column.reserve(2 * i, Pages::prefaulted));
     }
   }
   for (std::size_t i = 0; i < 1000; ++i) {
@@ -161,7 +161,7 @@ TEST(Column, reserve_whose_bytes_overflow_is_refused) {
   const std::size_t before = memory.outstanding();
   for (const std::size_t count :
        {std::size_t{1} << 61U, (std::size_t{1} << 61U) + 1, std::size_t{1} << 63U, ~std::size_t{0},
-        Column<std::uint64_t>::kMost, Column<std::uint64_t>::kMost + 1}) {
+        Column<std::uint64_t>::kMaxSize, Column<std::uint64_t>::kMaxSize + 1}) {
     EXPECT_FALSE(column.reserve(count));
     EXPECT_FALSE(column.grow(count));
     EXPECT_FALSE(column.resize(count));

@@ -1,5 +1,5 @@
-// KeyTable and KeyTags: keys are never given twice, by reuse, clear or restore; stale and foreign
-// keys are invalid; refused memory changes nothing.
+// KeyTable and PartitionTagPool: keys are never given twice, by reuse, clear or restore; stale and
+// foreign keys are invalid; refused memory changes nothing.
 
 #include "core/memory/key_table.h"
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@
 namespace winnow::test {
 namespace {
 
-constexpr std::uint32_t kGenerations = 1U << (32U - KeyTags::kBits);
+constexpr std::uint32_t kGenerations = 1U << (32U - PartitionTagPool::kBits);
 
 std::vector<Key> fill(KeyTable& table, std::uint32_t count) {
   EXPECT_TRUE(table.reserve(table.size() + count));
@@ -71,21 +71,21 @@ TEST(KeyTable, batch_check_finds_invalid_and_unordered_keys) {
   CountingMemory memory;
   KeyTable table(&memory);
   const std::vector<Key> keys = fill(table, 40);
-  const auto look_at = [&](std::vector<Key> some) {
-    const KeyTable::RunOfKeys run = table.look_at(some);
+  const auto check_keys = [&](std::vector<Key> some) {
+    const KeyTable::KeysCheck run = table.check_keys(some);
     return std::pair(run.valid, run.ascending);
   };
-  EXPECT_EQ(look_at({}), std::pair(true, true));
-  EXPECT_EQ(look_at(keys), std::pair(true, true));
-  EXPECT_EQ(look_at({keys[3], keys[5]}), std::pair(true, true));
-  EXPECT_EQ(look_at({keys[5], keys[5]}), std::pair(true, false));
-  EXPECT_EQ(look_at({keys[5], keys[4]}), std::pair(true, false));
-  EXPECT_FALSE(look_at({keys[38], keys[39], Key{40, keys[0].stamp}}).first);
-  EXPECT_FALSE(look_at({Key{}, Key{}}).first);
-  EXPECT_FALSE(look_at({keys[0], Key{}}).first);
+  EXPECT_EQ(check_keys({}), std::pair(true, true));
+  EXPECT_EQ(check_keys(keys), std::pair(true, true));
+  EXPECT_EQ(check_keys({keys[3], keys[5]}), std::pair(true, true));
+  EXPECT_EQ(check_keys({keys[5], keys[5]}), std::pair(true, false));
+  EXPECT_EQ(check_keys({keys[5], keys[4]}), std::pair(true, false));
+  EXPECT_FALSE(check_keys({keys[38], keys[39], Key{40, keys[0].stamp}}).first);
+  EXPECT_FALSE(check_keys({Key{}, Key{}}).first);
+  EXPECT_FALSE(check_keys({keys[0], Key{}}).first);
   table.release(keys[20].id);
-  EXPECT_FALSE(look_at(keys).first);
-  EXPECT_TRUE(look_at({keys.begin(), keys.begin() + 20}).first);
+  EXPECT_FALSE(check_keys(keys).first);
+  EXPECT_TRUE(check_keys({keys.begin(), keys.begin() + 20}).first);
 }
 
 TEST(KeyTable, batch_check_equals_the_check_of_each) {
@@ -109,7 +109,7 @@ TEST(KeyTable, batch_check_equals_the_check_of_each) {
     if (!some.empty() && round % 7 == 0) some.back().id = 300;
     if (!some.empty() && round % 3 == 0)
       std::swap(some[random() % some.size()], some[random() % some.size()]);
-    const KeyTable::RunOfKeys run = table.look_at(some);
+    const KeyTable::KeysCheck run = table.check_keys(some);
     const auto is_valid = [&](Key key) { return table.is_valid(key); };
     EXPECT_EQ(run.valid, std::ranges::all_of(some, is_valid));
     const auto falls = [](Key a, Key b) { return a.id >= b.id; };
@@ -190,8 +190,9 @@ TEST(KeyTable, uneven_use_of_slots_gives_no_key_twice) {
 
 TEST(KeyTable, worn_slot_is_retired_without_free_tags) {
   CountingMemory memory;
-  std::vector<std::unique_ptr<KeyTags>> all;
-  for (std::uint32_t i = 0; i < KeyTags::kMost; ++i) all.push_back(std::make_unique<KeyTags>());
+  std::vector<std::unique_ptr<PartitionTagPool>> all;
+  for (std::uint32_t i = 0; i < PartitionTagPool::kMaxTags; ++i)
+    all.push_back(std::make_unique<PartitionTagPool>());
   KeyTable table(&memory);
   const Key first = fill(table, 1)[0];
   Key last = first;
@@ -218,13 +219,13 @@ TEST(KeyTable, worn_slot_is_retired_without_free_tags) {
   }
 }
 
-TEST(KeyTags, live_tags_are_unique) {
-  std::vector<std::unique_ptr<KeyTags>> alive;
+TEST(PartitionTagPool, live_tags_are_unique) {
+  std::vector<std::unique_ptr<PartitionTagPool>> alive;
   std::set<std::uint32_t> taken;
   std::mt19937 random(5);
   for (int step = 0; step < 300'000; ++step) {
     if (alive.size() < 100'000 && random() % 3 != 0) {
-      alive.push_back(std::make_unique<KeyTags>());
+      alive.push_back(std::make_unique<PartitionTagPool>());
       ASSERT_TRUE(taken.insert(alive.back()->latest()).second);
     } else if (!alive.empty()) {
       std::swap(alive[random() % alive.size()], alive.back());
@@ -235,27 +236,27 @@ TEST(KeyTags, live_tags_are_unique) {
   EXPECT_GT(alive.size(), 90'000U);
 }
 
-TEST(KeyTags, freed_tag_is_reused_late) {
+TEST(PartitionTagPool, freed_tag_is_reused_late) {
   std::uint32_t gone = 0;
   {
-    const KeyTags tags;
+    const PartitionTagPool tags;
     gone = tags.latest();
   }
-  for (std::uint32_t i = 0; i + 1 < KeyTags::kMost / 2; ++i) {
-    const KeyTags tags;
+  for (std::uint32_t i = 0; i + 1 < PartitionTagPool::kMaxTags / 2; ++i) {
+    const PartitionTagPool tags;
     ASSERT_NE(tags.latest(), gone) << "after " << i;
   }
 }
 
 #if WINNOW_TEST_THREADS
-TEST(KeyTags, threads_get_different_tags) {
+TEST(PartitionTagPool, threads_get_different_tags) {
   constexpr std::size_t kThreads = 4;
-  std::vector<std::vector<std::unique_ptr<KeyTags>>> made(kThreads);
+  std::vector<std::vector<std::unique_ptr<PartitionTagPool>>> made(kThreads);
   std::vector<std::thread> threads;
   for (auto& mine : made) {
     threads.emplace_back([&mine] {
       for (int i = 0; i < 5000; ++i) {
-        mine.push_back(std::make_unique<KeyTags>());
+        mine.push_back(std::make_unique<PartitionTagPool>());
         if (i % 3 == 0) mine.erase(mine.begin());
         if (i % 5 == 1) {
           EXPECT_TRUE(mine.front()->renew());

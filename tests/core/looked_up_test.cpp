@@ -1,5 +1,5 @@
 #include <gtest/gtest.h>
-#include <winnow/core/looked_up.h>
+#include <winnow/core/indexed_view.h>
 
 #include <algorithm>
 #include <cstddef>
@@ -15,12 +15,12 @@ struct Square {
   int operator()(std::size_t i) const { return factor * static_cast<int>(i * i); }
 };
 
-using Squares = LookedUp<Square>;
+using Squares = IndexedView<Square>;
 
 static_assert(std::random_access_iterator<Squares::iterator>);
 static_assert(std::is_same_v<Squares::value_type, int>);
 
-TEST(LookedUp, view_reads_like_a_span) {
+TEST(IndexedView, view_reads_like_a_span) {
   const Squares squares(Square{2}, 5);
   EXPECT_EQ(squares.size(), 5U);
   EXPECT_FALSE(squares.empty());
@@ -33,7 +33,7 @@ TEST(LookedUp, view_reads_like_a_span) {
   EXPECT_EQ(Squares(Square{2}, 0).begin(), Squares(Square{2}, 0).end());
 }
 
-TEST(LookedUp, iterators_move_in_both_directions) {
+TEST(IndexedView, iterators_move_in_both_directions) {
   const Squares squares(Square{1}, 9);
   Squares::iterator at = squares.begin() + 4;
   EXPECT_EQ(*at, 16);

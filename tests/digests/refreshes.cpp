@@ -123,8 +123,8 @@ class Life {
     }
   }
 
-  /// As move(), but passes all boxes and an Entries that selects the moved ones; the other boxes
-  /// are invalid.
+  /// As move(), but passes all boxes and an IndexSubset that selects the moved ones; the other
+  /// boxes are invalid.
   void move_listed(std::size_t stride, int way, bool masked) {
     std::vector<Aabb> boxes = boxes_;
     std::vector<std::uint32_t> list;
@@ -140,7 +140,8 @@ class Life {
       list.push_back(static_cast<std::uint32_t>(i));
       mask[i / 64] |= std::uint64_t{1} << i % 64;
     }
-    note(partition_.update(keys_, boxes, masked ? Entries::masked(mask) : Entries::listed(list)));
+    note(partition_.update(keys_, boxes,
+                           masked ? IndexSubset::masked(mask) : IndexSubset::listed(list)));
   }
 
   /// How the boxes of jittering objects are passed to the partition.
@@ -200,7 +201,7 @@ class Life {
   }
 
   /// Makes invalid calls, which must change nothing.
-  void ask_badly() {
+  void query_badly() {
     std::vector<Key> keys(keys_.begin(), keys_.begin() + 3);
     std::vector<Aabb> boxes(boxes_.begin() + 3, boxes_.begin() + 6);
     keys.push_back(keys.front());
@@ -240,7 +241,7 @@ class Life {
   }
 
   /// Queries into an empty buffer, as a new caller does.
-  void ask_anew() {
+  void query_anew() {
     pairs_.clear();
     ask();
   }
@@ -365,7 +366,7 @@ void churn(Life& life) {
     life.move_listed(frame % 3 == 0 ? 3 : 1, 2, frame % 2 == 0);
     if (frame % 5 == 1) life.remove(frame % 2 == 0 ? 3 : 11);
     if (frame % 5 == 3) life.insert(150);
-    if (frame % 7 == 2) life.ask_badly();
+    if (frame % 7 == 2) life.query_badly();
     if (frame % 10 == 4) life.draw();
     if (frame == 17) life.restart();
     if (frame == 17) life.look();
@@ -385,7 +386,7 @@ void sift(Life& life) {
     if (frame == 2) life.filter(3, {.layers = 2U, .mask = 5U, .environment = 0});
     if (frame == 5) life.part(3);
     if (frame == 8) life.insert(200);
-    if (frame == 10) life.filter(2, {.layers = 1U, .mask = ~0U, .environment = kEveryEnvironment});
+    if (frame == 10) life.filter(2, {.layers = 1U, .mask = ~0U, .environment = kAllEnvironments});
     if (frame == 12) life.remove(5);
     if (frame == 13) life.filter(1, {});
     life.ask();
@@ -405,7 +406,7 @@ void rest(Life& life) {
     if (frame % 17 == 8) life.insert(9);
     if (frame % 17 == 12) life.remove(150);
     if (frame == 20) life.filter(180, {.layers = 1U, .mask = 6U, .environment = 0});
-    if (frame == 28) life.ask_badly();
+    if (frame == 28) life.query_badly();
     if (frame == 32) life.move_listed(80, 8, true);
     if (frame == 45) life.look();
     if (frame == 70) life.move(2, 16);
@@ -460,7 +461,7 @@ void regroup(Life& life, std::size_t count) {
   life.ask();
   life.filter(3, {.layers = ~0U, .mask = ~0U, .environment = 2}, count / 2);
   life.ask();
-  life.ask_anew();
+  life.query_anew();
 }
 
 /// In each frame one object more moves, until all of them move.

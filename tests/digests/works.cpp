@@ -211,8 +211,9 @@ void scene(const Execution& execution, Digest& digest) {
       digest.add(contacts.distance()[m]);
     }
     const SceneStatistics& counts = world.statistics();
-    for (const std::uint64_t number : {counts.boxes_updated, counts.body_pairs, counts.balls_apart,
-                                       counts.carried, counts.primitive_pairs}) {
+    for (const std::uint64_t number :
+         {counts.boxes_updated, counts.body_pairs, counts.rejected_by_spheres, counts.carried,
+          counts.primitive_pairs}) {
       digest.add(number);
     }
     digest.add(counts.convex);

@@ -40,7 +40,7 @@ int main() {
   // [frames]
   winnow::PairEvents events;
   partition.self_pairs(pairs, events);
-  partition.update(keys, boxes, winnow::Entries::listed(moved));  // or Entries::masked
+  partition.update(keys, boxes, winnow::IndexSubset::listed(moved));  // or IndexSubset::masked
   partition.self_pairs(pairs, events);  // if few objects moved, only their pairs are recomputed
   for (const winnow::KeyPair& pair : events.begun()) meet(pair);
   for (const winnow::KeyPair& pair : events.ended()) part(pair);

@@ -18,7 +18,7 @@ namespace {
 
 using Saved = std::vector<std::byte>;
 
-constexpr std::size_t kMostMemory = std::size_t{64} << 20U;
+constexpr std::size_t kMaxMemory = std::size_t{64} << 20U;
 
 /// Writes the correct size and digest into a checkpoint.
 void seal_checkpoint(Saved& bytes) {
@@ -59,7 +59,7 @@ void restore(Saved bytes) {
 
 void load_field(Saved bytes) {
   seal_snapshot(bytes);
-  LimitedMemory memory(kMostMemory);
+  LimitedMemory memory(kMaxMemory);
   HeightField field(&memory);
   if (field.load(bytes) != Status::ok) return;
   Column<std::byte> again(&memory);

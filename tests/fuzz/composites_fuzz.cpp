@@ -81,8 +81,8 @@ class Exhibit {
   void take_field(Bytes& bytes);
   void update_field(Bytes& bytes);
   void read_field();
-  void ask_ray(Bytes& bytes, SceneQueries& queries, const Pose& pose);
-  void ask_shape(Bytes& bytes, SceneQueries& queries, Key body, const Pose& pose);
+  void query_ray(Bytes& bytes, SceneQueries& queries, const Pose& pose);
+  void query_shape(Bytes& bytes, SceneQueries& queries, Key body, const Pose& pose);
 
   CountingMemory memory_;
   ShapePool shapes_;
@@ -202,7 +202,7 @@ void Exhibit::change(Bytes& bytes) {
   update_field(bytes);
 }
 
-void Exhibit::ask_ray(Bytes& bytes, SceneQueries& queries, const Pose& pose) {
+void Exhibit::query_ray(Bytes& bytes, SceneQueries& queries, const Pose& pose) {
   ShapeRay ray;
   for (double& x : ray.origin) x = 0.25 * bytes.tame();
   for (double& x : ray.direction) x = 0.25 * bytes.tame();
@@ -227,7 +227,7 @@ void Exhibit::ask_ray(Bytes& bytes, SceneQueries& queries, const Pose& pose) {
   WINNOW_HOLDS(std::abs(hit.t - first) <= 1e-9 * (1.0 + first));
 }
 
-void Exhibit::ask_shape(Bytes& bytes, SceneQueries& queries, Key body, const Pose& pose) {
+void Exhibit::query_shape(Bytes& bytes, SceneQueries& queries, Key body, const Pose& pose) {
   ShapeId box;
   WINNOW_HOLDS(shapes_.add(BoxShape{{bytes.extent(), bytes.extent(), bytes.extent()}, 0.0}, box) ==
                Status::ok);
@@ -267,8 +267,8 @@ void Exhibit::ask(Bytes& bytes) {
   WINNOW_HOLDS(scene.add({.shape = id_, .pose = pose}, body) == Status::ok);
   WINNOW_HOLDS(scene.refresh() == Status::ok);
   SceneQueries queries(scene);
-  ask_ray(bytes, queries, pose);
-  ask_shape(bytes, queries, body, pose);
+  query_ray(bytes, queries, pose);
+  query_shape(bytes, queries, body, pose);
 }
 
 }  // namespace

@@ -40,7 +40,7 @@ struct Tally {
 };
 Tally tally;
 
-constexpr std::size_t kMostBodies = 14;
+constexpr std::size_t kMaxBodies = 14;
 constexpr std::size_t kContacts = 2;
 
 class ContactsProgram {
@@ -118,7 +118,7 @@ SceneOptions ContactsProgram::some_options(Bytes& bytes, const EveryShape& shape
   if (!bytes.chance(3)) options.carry_over = 0.0625;
   options.warm_start = bytes.chance(2);
   options.contact_reduction = bytes.chance(2);
-  options.seamless_floors = bytes.chance(4);
+  options.suppress_ghost_contacts = bytes.chance(4);
   if (bytes.chance(8)) options.tier = NarrowTier::reference;
   return options;
 }
@@ -158,7 +158,7 @@ ModelBody* ContactsProgram::some_body(Bytes& bytes) {
 
 void ContactsProgram::add(Bytes& bytes) {
   for (std::size_t count = 1 + bytes.below(5); count > 0; --count) {
-    if (world_.bodies.size() >= kMostBodies) return;
+    if (world_.bodies.size() >= kMaxBodies) return;
     ModelBody body;
     body.definition.shape = some_shape(bytes);
     body.definition.pose = some_pose(bytes);
@@ -256,7 +256,7 @@ void ContactsProgram::part(Bytes& bytes) {
     default: {
       a->definition.layer = static_cast<std::uint16_t>(bytes.below(3));
       WINNOW_HOLDS(scene_->set_layer(a->key, a->definition.layer) == Status::ok);
-      WINNOW_HOLDS(scene_->set_layers_meet(1, 2, !apart) == Status::ok);
+      WINNOW_HOLDS(scene_->set_layers_collide(1, 2, !apart) == Status::ok);
       if (apart) {
         world_.layers_apart.insert({1, 2});
       } else {

@@ -142,8 +142,8 @@ void rest(ModelManifold& manifold, ContactLevel level, double rest_a, double res
   }
 }
 
-[[nodiscard]] ModelManifolds ask_convex(const ModelScene& world, ContactLevel level,
-                                        const ModelBody& a, const ModelBody& b) {
+[[nodiscard]] ModelManifolds query_convex(const ModelScene& world, ContactLevel level,
+                                          const ModelBody& a, const ModelBody& b) {
   const BodyDefinition& one = a.definition;
   const BodyDefinition& other = b.definition;
   const double gap = world.gap(a, b);
@@ -166,8 +166,8 @@ void rest(ModelManifold& manifold, ContactLevel level, double rest_a, double res
 
 /// Returns the contacts of a new scene of only these two bodies, without any state of earlier
 /// frames.
-[[nodiscard]] ModelManifolds ask_scene(const ModelScene& world, ContactLevel level,
-                                       const ModelBody& a, const ModelBody& b) {
+[[nodiscard]] ModelManifolds query_scene(const ModelScene& world, ContactLevel level,
+                                         const ModelBody& a, const ModelBody& b) {
   Scene scene(world.shapes, {.execution = Execution::serial(),
                              .structures = {n_squared(), n_squared(), n_squared()},
                              .margin = world.options.margin,
@@ -192,7 +192,7 @@ bool ModelScene::may_pair(const ModelBody& a, const ModelBody& b) const {
   const BodyDefinition& one = a.definition;
   const BodyDefinition& other = b.definition;
   return (one.motion == Motion::dynamic || other.motion == Motion::dynamic) &&
-         may_meet(one.filter, other.filter) && !ignored.contains(names_of(a, b)) &&
+         filters_allow(one.filter, other.filter) && !ignored.contains(names_of(a, b)) &&
          !layers_apart.contains(std::minmax(one.layer, other.layer));
 }
 
@@ -205,7 +205,7 @@ double ModelScene::gap(const ModelBody& a, const ModelBody& b) const {
 }
 
 double ModelScene::radius(const ModelBody& body) const {
-  return PartTraversal(shapes, &composites).radius(body.definition.shape);
+  return SubShapeQuery(shapes, &composites).radius(body.definition.shape);
 }
 
 bool PairReference::Inputs::operator==(const Inputs& other) const {
@@ -228,8 +228,8 @@ const ModelManifolds& PairReference::contacts(const ModelScene& world, ContactLe
     const bool is_far =
         centers > 1.001 * (world.radius(a) + world.radius(b) + world.gap(a, b)) + 1e-9;
     answer.manifolds = is_far             ? ModelManifolds{}
-                       : are_convex(a, b) ? ask_convex(world, level, a, b)
-                                          : ask_scene(world, level, a, b);
+                       : are_convex(a, b) ? query_convex(world, level, a, b)
+                                          : query_scene(world, level, a, b);
   }
   return answer.manifolds;
 }
@@ -305,7 +305,7 @@ void ContactsModel::check(const ModelScene& world, const Scene& scene, ContactLe
 bool ContactsModel::keeps_manifolds(const ModelScene& world, ContactLevel level,
                                     const Sides& pair) const {
   return world.options.carry_over > 0.0 && level >= ContactLevel::distance &&
-         !(world.options.seamless_floors && (is_floor(pair.a) || is_floor(pair.b)));
+         !(world.options.suppress_ghost_contacts && (is_floor(pair.a) || is_floor(pair.b)));
 }
 
 namespace {
@@ -324,7 +324,7 @@ class WholeScene {
       keys_[body->definition.data] = key;
     }
     for (const auto& [a, b] : world.layers_apart) {
-      WINNOW_HOLDS(scene_.set_layers_meet(a, b, false) == Status::ok);
+      WINNOW_HOLDS(scene_.set_layers_collide(a, b, false) == Status::ok);
     }
     for (const auto& [a, b] : world.ignored) {
       WINNOW_HOLDS(scene_.set_ignored(keys_.at(a), keys_.at(b)) == Status::ok);
@@ -367,7 +367,7 @@ void ContactsModel::check_pairs(const ModelScene& world, ContactLevel level,
     at[std::minmax(contacts.data_a()[i], contacts.data_b()[i])] = i;
   }
   std::optional<WholeScene> whole;
-  if (world.options.seamless_floors && level >= ContactLevel::distance) {
+  if (world.options.suppress_ghost_contacts && level >= ContactLevel::distance) {
     whole.emplace(world, level);
   }
   for (auto first = world.bodies.begin(); first != world.bodies.end(); ++first) {

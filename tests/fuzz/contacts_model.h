@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "tests/pipeline/history_twin.h"
+#include "tests/pipeline/history_reference.h"
 
 namespace winnow::test {
 
@@ -152,7 +152,7 @@ class ContactsModel {
   std::optional<ContactLevel> level_;
   KeptPairs shown_;
   KeptPairs dormant_;
-  HistoryTwin history_;
+  HistoryReference history_;
 };
 
 }  // namespace winnow::test

@@ -43,13 +43,13 @@ class Game {
   void update(Bytes& bytes);
   void remove(Bytes& bytes);
   void filter(Bytes& bytes);
-  void ask_pairs();
-  void ask_ray(Bytes& bytes);
-  void ask_box(Bytes& bytes);
+  void query_pairs();
+  void query_ray(Bytes& bytes);
+  void query_box(Bytes& bytes);
 
   /// Runs `say(player)` for every player; the results must be equal.
   template <typename Say>
-  void all_say(const Say& say) {
+  void all_return(const Say& say) {
     std::optional<decltype(say(players_[0]))> first;
     for (Player& player : players_) {
       auto said = player.threads.run([&] { return say(player); });
@@ -95,7 +95,7 @@ void Game::insert(Bytes& bytes) {
     }
   }
   std::vector<Key> keys(boxes.size());
-  all_say([&](Player& player) {
+  all_return([&](Player& player) {
     WINNOW_HOLDS(player.partition.insert(boxes, {}, keys) == Status::ok);
     std::vector<ObjectId> ids;
     for (const Key& key : keys) ids.push_back(key.id);
@@ -111,14 +111,14 @@ void Game::update(Bytes& bytes) {
     box = bytes.box();
     if (!box.is_valid()) box = bytes.tame_box();
   }
-  all_say([&](Player& player) {
+  all_return([&](Player& player) {
     return player.partition.update(keys_of(player, ids), boxes) == Status::ok;
   });
 }
 
 void Game::remove(Bytes& bytes) {
   const std::vector<ObjectId> ids = some(bytes);
-  all_say(
+  all_return(
       [&](Player& player) { return player.partition.remove(keys_of(player, ids)) == Status::ok; });
   std::erase_if(live_, [&](ObjectId id) { return std::ranges::find(ids, id) != ids.end(); });
 }
@@ -130,26 +130,26 @@ void Game::filter(Bytes& bytes) {
     one = {1U << bytes.below(3), static_cast<unsigned>(bytes.below(8)),
            static_cast<unsigned>(bytes.below(3))};
   }
-  all_say([&](Player& player) {
+  all_return([&](Player& player) {
     return player.partition.set_filter(keys_of(player, ids), filters) == Status::ok;
   });
 }
 
-void Game::ask_pairs() {
-  all_say([](Player& player) {
+void Game::query_pairs() {
+  all_return([](Player& player) {
     WINNOW_HOLDS(player.partition.self_pairs(player.pairs, {.order = Order::canonical}) ==
                  Status::ok);
     return std::vector<Pair>(player.pairs.begin(), player.pairs.end());
   });
 }
 
-void Game::ask_ray(Bytes& bytes) {
+void Game::query_ray(Bytes& bytes) {
   Ray ray;
   for (int axis = 0; axis < 3; ++axis) {
     ray.origin[axis] = bytes.wild();
     ray.direction[axis] = static_cast<float>(bytes.tame());
   }
-  all_say([&](Player& player) {
+  all_return([&](Player& player) {
     HitBuffer hits;
     std::vector<std::pair<ObjectId, double>> said;
     if (player.partition.all(ray, hits) != Status::ok) return said;
@@ -158,9 +158,9 @@ void Game::ask_ray(Bytes& bytes) {
   });
 }
 
-void Game::ask_box(Bytes& bytes) {
+void Game::query_box(Bytes& bytes) {
   const Aabb box = bytes.box();
-  all_say([&](Player& player) {
+  all_return([&](Player& player) {
     PairBuffer found;
     std::vector<Pair> said;
     const Status status = player.partition.overlap(BoxView({&box, 1}), found, {}, Order::canonical);
@@ -181,11 +181,11 @@ void Game::step(Bytes& bytes) {
     case 4:
       return remove(bytes);
     case 5:
-      return bytes.chance(2) ? filter(bytes) : ask_box(bytes);
+      return bytes.chance(2) ? filter(bytes) : query_box(bytes);
     case 6:
-      return ask_ray(bytes);
+      return query_ray(bytes);
     default:
-      return ask_pairs();
+      return query_pairs();
   }
 }
 

@@ -12,7 +12,7 @@
 #include "tests/fuzz/bytes.h"
 #include "tests/fuzz/target.h"
 #include "tests/pipeline/feature_oracle.h"
-#include "tests/pipeline/motion_twin.h"
+#include "tests/pipeline/motion_reference.h"
 #include "tests/support/config.h"
 #include "tests/support/counting_memory.h"
 

@@ -10,7 +10,7 @@
 #include "tests/fuzz/bytes.h"
 #include "tests/fuzz/target.h"
 #include "tests/support/counting_memory.h"
-#include "tests/support/twin.h"
+#include "tests/support/reference.h"
 
 namespace winnow::test {
 namespace {
@@ -24,7 +24,7 @@ struct Given {
   ObjectFilter filter{};
 };
 
-bool sphere_meets(const Sphere& sphere, const Aabb& box) {
+bool sphere_overlaps(const Sphere& sphere, const Aabb& box) {
   const Vec3d c = sphere.center.cast<double>();
   const Vec3d nearest = c.max(box.min.cast<double>()).min(box.max.cast<double>());
   const auto r = static_cast<double>(sphere.radius);
@@ -32,11 +32,11 @@ bool sphere_meets(const Sphere& sphere, const Aabb& box) {
 }
 
 /// Returns true if the pair must be reported.
-bool must_meet(const Given& a, const Given& b) {
-  if (!may_meet(a.filter, b.filter) || !a.box.overlaps(b.box)) return false;
+bool must_pair(const Given& a, const Given& b) {
+  if (!filters_allow(a.filter, b.filter) || !a.box.overlaps(b.box)) return false;
   if (a.sphere && b.sphere) return a.sphere->overlaps(*b.sphere);
-  if (a.sphere) return sphere_meets(*a.sphere, b.box);
-  return !b.sphere || sphere_meets(*b.sphere, a.box);
+  if (a.sphere) return sphere_overlaps(*a.sphere, b.box);
+  return !b.sphere || sphere_overlaps(*b.sphere, a.box);
 }
 
 bool by_ids(const KeyPair& a, const KeyPair& b) {
@@ -103,7 +103,7 @@ class Model {
   void empty_or_reserve(Bytes& bytes);
   void misuse(Bytes& bytes, const Model& other);
   void query_events();
-  void query_changes_alone();
+  void query_only_changes();
 
   [[nodiscard]] std::vector<Key> some_keys(Bytes& bytes) const;
   [[nodiscard]] std::vector<Aabb> some_boxes(Bytes& bytes, std::size_t count) const;
@@ -123,7 +123,7 @@ class Model {
   PairEvents events_;
   std::vector<KeyPair> tracked_pairs_;  // of the last frame, sorted by keys
   PairEvents alone_;
-  std::vector<KeyPair> alone_pairs_;
+  std::vector<KeyPair> only_changes_pairs_;
 };
 
 std::vector<Key> Model::some_keys(Bytes& bytes) const {
@@ -233,7 +233,8 @@ void Model::update_entries(Bytes& bytes) {
     words[i / 64] |= 1ULL << i % 64;
     boxes[i] = bytes.tame_box();
   }
-  const Entries entries = bytes.chance(2) ? Entries::listed(listed) : Entries::masked(words);
+  const IndexSubset entries =
+      bytes.chance(2) ? IndexSubset::listed(listed) : IndexSubset::masked(words);
   WINNOW_HOLDS(partition_.update(keys, boxes, entries) == Status::ok);
   for (const std::uint32_t i : listed) {
     Given& given = objects_.at(keys[i].id);
@@ -258,7 +259,7 @@ void Model::set_filters(Bytes& bytes) {
     ObjectFilter filter;
     const std::size_t choice = bytes.below(8);
     if (choice < 4)
-      filter.environment = choice == 3 ? kEveryEnvironment : static_cast<unsigned>(choice);
+      filter.environment = choice == 3 ? kAllEnvironments : static_cast<unsigned>(choice);
     if (choice >= 4) filter = {1U << choice % 3, static_cast<unsigned>(bytes.below(8)), 0};
     filters.push_back(filter);
     objects_.at(key.id).filter = filter;
@@ -308,7 +309,7 @@ void Model::misuse(Bytes& bytes, const Model& other) {
   WINNOW_HOLDS(partition_.remove(twice) == Status::invalid_key);
   WINNOW_HOLDS(partition_.update(twice, BoxView({boxes, 1})) == Status::size_mismatch);
   const std::uint32_t none[] = {1};
-  WINNOW_HOLDS(partition_.update({&live, 1}, BoxView({boxes, 1}), Entries::listed(none)) ==
+  WINNOW_HOLDS(partition_.update({&live, 1}, BoxView({boxes, 1}), IndexSubset::listed(none)) ==
                Status::invalid_argument);
   Aabb wild{{bytes.wild(), bytes.wild(), bytes.wild()}, {bytes.wild(), bytes.wild(), bytes.wild()}};
   if (wild.is_valid()) return;
@@ -344,13 +345,13 @@ void Model::check_pairs(std::span<const Pair> got) const {
   for (const auto& [id, given] : objects_) (void)partition_.bounds(given.key, stored[id]);
   for (auto a = objects_.begin(); a != objects_.end(); ++a) {
     for (auto b = std::next(a); b != objects_.end(); ++b) {
-      const bool must = must_meet(a->second, b->second);
+      const bool must = must_pair(a->second, b->second);
       if (at == pairs.end() || *at != Pair{a->first, b->first}) {
         WINNOW_HOLDS(!must);
         continue;
       }
       ++at;
-      WINNOW_HOLDS(may_meet(a->second.filter, b->second.filter));
+      WINNOW_HOLDS(filters_allow(a->second.filter, b->second.filter));
       WINNOW_HOLDS(must || !partition_.is_exact());
       WINNOW_HOLDS(!prunes || stored[a->first].overlaps(stored[b->first]));
     }
@@ -384,7 +385,7 @@ void Model::check_events(const PairEvents& events, std::vector<KeyPair>& before,
 void Model::query(Bytes& bytes) {
   // A pair buffer is updated in place until another buffer receives the full result.
   if (bytes.chance(2)) return query_events();
-  if (bytes.chance(4)) return query_changes_alone();
+  if (bytes.chance(4)) return query_only_changes();
   PairBuffer fresh;
   const Order order = bytes.chance(2) ? Order::canonical : Order::fast;
   WINNOW_HOLDS(partition_.self_pairs(fresh, {.order = order, .incremental = false}) == Status::ok);
@@ -410,11 +411,11 @@ void Model::query_events() {
   }));
 }
 
-void Model::query_changes_alone() {
+void Model::query_only_changes() {
   WINNOW_HOLDS(partition_.self_pairs(alone_) == Status::ok);
   PairBuffer all;
   WINNOW_HOLDS(partition_.self_pairs(all, {.incremental = false}) == Status::ok);
-  check_events(alone_, alone_pairs_, keyed(all.pairs()));
+  check_events(alone_, only_changes_pairs_, keyed(all.pairs()));
 }
 
 void Model::check_cross(const Model& other) const {
@@ -426,8 +427,8 @@ void Model::check_cross(const Model& other) const {
   for (const auto& [a, mine] : objects_) {
     for (const auto& [b, theirs] : other.objects_) {
       const bool got = std::binary_search(pairs.begin(), pairs.end(), Pair{a, b});
-      WINNOW_HOLDS(got || !must_meet(mine, theirs));
-      WINNOW_HOLDS(!got || may_meet(mine.filter, theirs.filter));
+      WINNOW_HOLDS(got || !must_pair(mine, theirs));
+      WINNOW_HOLDS(!got || filters_allow(mine.filter, theirs.filter));
     }
   }
 }

@@ -10,7 +10,7 @@
 namespace winnow::test {
 namespace {
 
-constexpr std::size_t kMostMemory = std::size_t{256} << 20U;
+constexpr std::size_t kMaxMemory = std::size_t{256} << 20U;
 
 std::string text_of(std::span<const std::byte> bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
@@ -18,7 +18,7 @@ std::string text_of(std::span<const std::byte> bytes) {
 
 void play(Bytes8 bytes) {
   seal(bytes);
-  LimitedMemory memory(kMostMemory);
+  LimitedMemory memory(kMaxMemory);
   RecordingPlayer player(bytes, {.memory = &memory, .execution = Execution::serial()});
   const Status status = player.play_all();
   WINNOW_HOLDS(status != Status::ok || player.differences() <= player.questions());
@@ -26,7 +26,7 @@ void play(Bytes8 bytes) {
 
 void load(Bytes8 bytes) {
   seal_snapshot(bytes);
-  LimitedMemory memory(kMostMemory);
+  LimitedMemory memory(kMaxMemory);
   Partition partition(linear_bvh(), {.memory = &memory, .execution = Execution::serial()});
   if (partition.load(bytes) == Status::ok) {
     PairBuffer pairs(&memory);
@@ -63,7 +63,7 @@ struct FuzzedScene {
 void load_scene(const Bytes8& saved) {
   Bytes8 bytes = saved;
   seal_snapshot(bytes);
-  LimitedMemory memory(kMostMemory);
+  LimitedMemory memory(kMaxMemory);
   ShapePool shapes(&memory);
   Column<std::byte> again(&memory);
   if (shapes.load(bytes) == Status::ok) WINNOW_HOLDS(shapes.save(again) == Status::ok);

@@ -118,7 +118,7 @@ Filter Pairing::some_filter(Bytes& bytes) {
   if (!bytes.chance(3)) return filter;
   filter.layers = static_cast<unsigned>(bytes.below(8));
   filter.mask = static_cast<unsigned>(bytes.below(8));
-  filter.environment = bytes.chance(2) ? kEveryEnvironment : static_cast<unsigned>(bytes.below(3));
+  filter.environment = bytes.chance(2) ? kAllEnvironments : static_cast<unsigned>(bytes.below(3));
   if (bytes.chance(2)) {
     filter.predicate.accept = [](void*, Key key, ClientData) { return key.id % 3 != 0; };
   }
@@ -130,7 +130,7 @@ std::vector<Object> Pairing::seen(const Filter& filter) const {
   for (const auto& [id, object] : objects_) {
     const bool accepted =
         filter.predicate.accept == nullptr || filter.predicate.accept(nullptr, a_.key_of(id), 0);
-    if (accepted && may_meet(filter.object(), object.filter)) seen.push_back(object);
+    if (accepted && filters_allow(filter.object(), object.filter)) seen.push_back(object);
   }
   return seen;
 }

@@ -40,7 +40,7 @@ struct Meeting {
   }
   friend bool operator==(const Meeting& x, const Meeting& y) { return (x <=> y) == 0; }
 };
-using Meetings = std::set<Meeting>;
+using BodyPairSet = std::set<Meeting>;
 
 class Play {
  public:
@@ -63,10 +63,10 @@ class Play {
   void check_fresh(ContactLevel level);
   void check_carried(const Contacts& fresh) const;
   void ask(Bytes& bytes);
-  void ask_ray(Bytes& bytes, SceneQueries& queries);
-  void ask_cast(Bytes& bytes, SceneQueries& queries);
-  void ask_overlap(Bytes& bytes, SceneQueries& queries);
-  void ask_distance(SceneQueries& queries);
+  void query_ray(Bytes& bytes, SceneQueries& queries);
+  void query_cast(Bytes& bytes, SceneQueries& queries);
+  void query_overlap(Bytes& bytes, SceneQueries& queries);
+  void query_distance(SceneQueries& queries);
 
   [[nodiscard]] Pose some_pose(Bytes& bytes) const {
     Pose pose = bytes.pose();
@@ -83,8 +83,8 @@ class Play {
   std::unique_ptr<Scene> scene_;
   Contacts contacts_;
   std::map<Key, BodyDefinition, KeyOrder> bodies_;
-  Meetings shown_;    // by the last frame
-  Meetings dormant_;  // pairs of two bodies that have rested since they were reported
+  BodyPairSet shown_;    // by the last frame
+  BodyPairSet dormant_;  // pairs of two bodies that have rested since they were reported
   ContactLevel level_ = ContactLevel::pairs;
   std::uint64_t named_ = 0;
 };
@@ -209,7 +209,7 @@ Meeting Play::meeting(Key a, Key b) const {
 }
 
 void Play::check_events() {
-  Meetings before = shown_;
+  BodyPairSet before = shown_;
   // Contacts of another level do not continue the dormant pairs.
   if (level_ == contacts_.level()) before.insert(dormant_.begin(), dormant_.end());
   level_ = contacts_.level();
@@ -223,7 +223,7 @@ void Play::check_events() {
     const BodyDefinition& b = bodies_.at(contacts_.b()[i]);
     WINNOW_HOLDS(a.data == contacts_.data_a()[i] && b.data == contacts_.data_b()[i]);
     WINNOW_HOLDS(a.motion == Motion::dynamic || b.motion == Motion::dynamic);
-    WINNOW_HOLDS(may_meet(a.filter, b.filter));
+    WINNOW_HOLDS(filters_allow(a.filter, b.filter));
   }
   for (const EndedContact& pair : contacts_.ended()) {
     const auto [a, b] =
@@ -312,7 +312,7 @@ double Play::distance(ShapeId a, const Pose& at_a, ShapeId b, const Pose& at_b) 
   return result.distance()[0];
 }
 
-void Play::ask_ray(Bytes& bytes, SceneQueries& queries) {
+void Play::query_ray(Bytes& bytes, SceneQueries& queries) {
   ShapeRay ray;
   for (double& x : ray.origin) x = 0.25 * bytes.tame() + far_;
   for (double& x : ray.direction) x = bytes.tame();
@@ -342,7 +342,7 @@ void Play::ask_ray(Bytes& bytes, SceneQueries& queries) {
   }
 }
 
-void Play::ask_cast(Bytes& bytes, SceneQueries& queries) {
+void Play::query_cast(Bytes& bytes, SceneQueries& queries) {
   ShapeCast cast{.shape = shapes_.ids[bytes.below(shapes_.convex)], .pose = some_pose(bytes)};
   double square = 0.0;
   for (double& x : cast.direction) {
@@ -371,7 +371,7 @@ void Play::ask_cast(Bytes& bytes, SceneQueries& queries) {
   }
 }
 
-void Play::ask_overlap(Bytes& bytes, SceneQueries& queries) {
+void Play::query_overlap(Bytes& bytes, SceneQueries& queries) {
   const ShapeId shape = shapes_.ids[bytes.below(shapes_.ids.size())];
   const Pose pose = some_pose(bytes);
   std::span<const SceneOverlap> found;
@@ -388,7 +388,7 @@ void Play::ask_overlap(Bytes& bytes, SceneQueries& queries) {
   }
 }
 
-void Play::ask_distance(SceneQueries& queries) {
+void Play::query_distance(SceneQueries& queries) {
   if (bodies_.size() < 2) return;
   const auto& [a, body_a] = *bodies_.begin();
   const auto& [b, body_b] = *bodies_.rbegin();
@@ -405,13 +405,13 @@ void Play::ask(Bytes& bytes) {
   SceneQueries queries(*scene_);
   switch (bytes.below(4)) {
     case 0:
-      return ask_ray(bytes, queries);
+      return query_ray(bytes, queries);
     case 1:
-      return ask_cast(bytes, queries);
+      return query_cast(bytes, queries);
     case 2:
-      return ask_overlap(bytes, queries);
+      return query_overlap(bytes, queries);
     default:
-      return ask_distance(queries);
+      return query_distance(queries);
   }
 }
 

@@ -53,7 +53,7 @@ struct MovingWorld {
                                   .execution = execution,
                                   .margin = 0.05,
                                   .contact_reduction = true,
-                                  .seamless_floors = true,
+                                  .suppress_ghost_contacts = true,
                                   .warm_start = true,
                                   .composites = &few_shapes().composites}),
         contacts(memory),
@@ -146,12 +146,12 @@ struct MovingWorld {
 using MovingCalls = std::vector<Call<MovingWorld>>;
 
 void add_bodies_and_layers(MovingCalls& calls) {
-  static constexpr SceneRoom kRoom{.bodies = {10, 40, 0},
-                                   .pairs = 200,
-                                   .level = ContactLevel::manifold,
-                                   .touching = 200,
-                                   .manifolds = 400,
-                                   .points = 800};
+  static constexpr SceneCapacity kRoom{.bodies = {10, 40, 0},
+                                       .pairs = 200,
+                                       .level = ContactLevel::manifold,
+                                       .touching = 200,
+                                       .manifolds = 400,
+                                       .points = 800};
   calls.push_back({"reserve", [](auto& w) { return w.scene.reserve(kRoom); }});
   calls.push_back(
       {"reserve contacts", [](auto& w) { return w.scene.reserve_contacts(w.contacts, kRoom); }});
@@ -163,7 +163,7 @@ void add_bodies_and_layers(MovingCalls& calls) {
                    }});
   calls.push_back({"contacts", [](auto& w) { return w.collide(); }});
   calls.push_back({"offsets", [](auto& w) { return w.scene.set_offsets(w.keys[2], {0.2, 0.1}); }});
-  calls.push_back({"layers", [](auto& w) { return w.scene.set_layers_meet(3, 70, false); }});
+  calls.push_back({"layers", [](auto& w) { return w.scene.set_layers_collide(3, 70, false); }});
   calls.push_back({"layer", [](auto& w) { return w.scene.set_layer(w.keys[1], 3); }});
   calls.push_back({"another layer", [](auto& w) { return w.scene.set_layer(w.keys[0], 70); }});
   calls.push_back({"contacts with offsets", [](auto& w) { return w.collide(); }});

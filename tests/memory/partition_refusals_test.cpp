@@ -118,7 +118,7 @@ Status self_pairs(PartitionWorld& w, Order order) {
   return status;
 }
 
-Status changes_alone(PartitionWorld& w) {
+Status only_changes(PartitionWorld& w) {
   return w.partition.self_pairs(w.alone);
 }
 
@@ -130,14 +130,14 @@ void add_changes(Calls& calls) {
                      return insert(w, w.partition, std::span(script().boxes).first(100));
                    }});
   calls.push_back({"pairs", [](auto& w) { return self_pairs(w, Order::fast); }});
-  calls.push_back({"only changes", changes_alone});
+  calls.push_back({"only changes", only_changes});
   calls.push_back({"update some", [](auto& w) {
                      const std::vector<std::uint32_t> listed{1, 5, 9, 60};
                      return w.partition.update(w.keys, std::span(script().later).first(100),
-                                               Entries::listed(listed));
+                                               IndexSubset::listed(listed));
                    }});
   calls.push_back({"pairs after moves", [](auto& w) { return self_pairs(w, Order::fast); }});
-  calls.push_back({"only changes after moves", changes_alone});
+  calls.push_back({"only changes after moves", only_changes});
   calls.push_back({"filter", [](auto& w) {
                      const ObjectFilter filters[] = {{2, 2, 0}, {1, 3, 1}};
                      return w.partition.set_filter(std::span(w.keys).first(2), filters);
@@ -225,7 +225,7 @@ void add_upkeep(Calls& calls) {
       {"refresh of the other structure", [](auto& w) { return w.partition.refresh(); }});
   calls.push_back(
       {"pairs of the other structure", [](auto& w) { return self_pairs(w, Order::canonical); }});
-  calls.push_back({"reserve", [](auto& w) { return w.partition.reserve(600, Pages::touched); }});
+  calls.push_back({"reserve", [](auto& w) { return w.partition.reserve(600, Pages::prefaulted); }});
   calls.push_back(
       {"reserve of pairs", [](auto& w) { return w.partition.reserve_pairs(w.pairs, 20'000); }});
   calls.push_back({"clear", [](auto& w) {

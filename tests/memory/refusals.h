@@ -53,13 +53,13 @@ class RefusedPlay {
   /// Returns the number of refused requests. Records the total over all plays of the process as a
   /// property of the running test.
   std::size_t check() {
-    play_twin();
+    play_reference();
     for (std::size_t call = 0; call < calls_.size() && !testing::Test::HasFailure(); ++call) {
       SCOPED_TRACE(std::string("call ") + std::to_string(call) + ", " + calls_[call].name);
       for (const bool once : {true, false}) {
         std::size_t k = is_quick() && !once ? 1 : 0;
         while (refuse(call, k, once)) k += step_after(k);
-        EXPECT_LT(k, kMost) << "the call never stops requesting memory";
+        EXPECT_LT(k, kMaxRequests) << "the call never stops requesting memory";
       }
     }
     refused_to_all_plays += refused_;
@@ -68,7 +68,7 @@ class RefusedPlay {
   }
 
  private:
-  static constexpr std::size_t kMost = 2000;
+  static constexpr std::size_t kMaxRequests = 2000;
 
   /// Reduced runs skip most of the many requests. The quickest runs refuse even requests only once,
   /// and odd requests together with all that follow.
@@ -92,7 +92,7 @@ class RefusedPlay {
     return digest;
   }
 
-  void play_twin() {
+  void play_reference() {
     CountingMemory memory;
     const auto world = make(memory);
     truths_.push_back(digest(*world));
@@ -127,7 +127,7 @@ class RefusedPlay {
       EXPECT_EQ(run(*world, i), Status::ok) << "later, " << calls_[i].name;
     }
     EXPECT_TRUE(digest(*world) == truths_.back()) << "differs from the run without refusals";
-    if (!testing::Test::HasFailure() && k < kMost) return true;
+    if (!testing::Test::HasFailure() && k < kMaxRequests) return true;
     ADD_FAILURE() << "request " << k << (once ? " only" : " and all later ones");
     return false;
   }

@@ -6,14 +6,14 @@
 namespace winnow_mutants {
 namespace {
 
-constexpr int kMost = 100'000;
+constexpr int kMaxMutants = 100'000;
 
 /// Appends the numbers of the executed mutants to the file that WINNOW_MUTANTS_REACHED names.
 void write_reached() {
   const char* path = std::getenv("WINNOW_MUTANTS_REACHED");
   std::FILE* file = path == nullptr ? nullptr : std::fopen(path, "a");
   if (file == nullptr) return;
-  for (int i = 0; i < kMost; ++i) {
+  for (int i = 0; i < kMaxMutants; ++i) {
     if (reached[i] != 0) std::fprintf(file, "%d\n", i);
   }
   std::fclose(file);
@@ -27,7 +27,7 @@ int chosen_mutant() {
 
 }  // namespace
 
-unsigned char reached[kMost];
+unsigned char reached[kMaxMutants];
 const int chosen = chosen_mutant();
 
 void note(int mutant) noexcept {

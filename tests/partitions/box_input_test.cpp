@@ -88,8 +88,8 @@ TEST_P(BoxInput, boxes_are_copied_and_distant_ones_found) {
 
 // Returns the value that rows store for an infinite end.
 float stored_end(float end) {
-  constexpr float kMost = std::numeric_limits<float>::max();
-  return std::clamp(end, -kMost, kMost);
+  constexpr float kLargestFloat = std::numeric_limits<float>::max();
+  return std::clamp(end, -kLargestFloat, kLargestFloat);
 }
 
 // Compares with the test of a single box: no decision here needs rounding, so the lanes must agree
@@ -175,8 +175,8 @@ TEST_P(BoxInput, rows_get_only_the_boxes_of_their_objects) {
       for (std::size_t c = 0; c < kFloats; ++c) {
         float expected = 77.0F;
         if (number != ~0U) {
-          constexpr float kMost = std::numeric_limits<float>::max();
-          expected = std::clamp(boxes[number * kFloats + c], -kMost, kMost);
+          constexpr float kLargestFloat = std::numeric_limits<float>::max();
+          expected = std::clamp(boxes[number * kFloats + c], -kLargestFloat, kLargestFloat);
         }
         ASSERT_EQ(columns[c][row], expected) << row << " " << c;
       }

@@ -91,7 +91,7 @@ TEST_P(Environments, objects_that_change_environment_pair_correctly) {
     }
     for (int i = 0; i < 8; ++i) {
       const std::uint32_t to =
-          random.chance(0.2) ? kEveryEnvironment : static_cast<std::uint32_t>(random.below(9));
+          random.chance(0.2) ? kAllEnvironments : static_cast<std::uint32_t>(random.below(9));
       world.set_filter(keys[random.below(keys.size())], {1, ~0U, to});
     }
     while (keys.size() > 120) {
@@ -108,7 +108,7 @@ TEST_P(Environments, object_of_every_environment_pairs_with_all) {
   Worlds worlds(config(), 8, 25);
   World& world = worlds.together();
   const Key ground = world.insert(Aabb{{-100, -100, -100}, {100, 100, 100}});
-  world.set_filter(ground, {1, 1, kEveryEnvironment});
+  world.set_filter(ground, {1, 1, kAllEnvironments});
   PairBuffer buffer;
   ASSERT_TRUE(world.agrees(buffer));
   const auto touches_ground = [&](const Pair& p) {

@@ -27,11 +27,11 @@ std::vector<Filter> askers() {
   return {Filter{},
           with(1, 1, 0),
           with(kOther, ~0U, 0),
-          with(~0U, kOther, kEveryEnvironment),
+          with(~0U, kOther, kAllEnvironments),
           with(~0U, ~kOther, 0),
           with(1, ~0U, 5),
-          with(0, ~0U, kEveryEnvironment),
-          with(~0U, 0, kEveryEnvironment)};
+          with(0, ~0U, kAllEnvironments),
+          with(~0U, 0, kAllEnvironments)};
 }
 
 class FilterChanges : public Conformance {
@@ -59,7 +59,8 @@ class FilterChanges : public Conformance {
     std::vector<std::pair<std::uint32_t, ObjectId>> expected;
     for (std::uint32_t i = 0; i < boxes.size(); ++i) {
       for (const auto& [id, entry] : world_.entries()) {
-        if (!boxes[i].overlaps(entry.box) || !may_meet(filter.object(), entry.filter)) continue;
+        if (!boxes[i].overlaps(entry.box) || !filters_allow(filter.object(), entry.filter))
+          continue;
         expected.emplace_back(i, id);
       }
     }
@@ -89,7 +90,7 @@ class FilterChanges : public Conformance {
         Partition alone(bounds_n_squared(), {.execution = Execution::serial()});
         Key key;
         Hit hit;
-        if (!may_meet(filter.object(), entry.filter)) continue;
+        if (!filters_allow(filter.object(), entry.filter)) continue;
         ASSERT_EQ(alone.insert(entry.box, 0, key), Status::ok);
         ASSERT_EQ(alone.closest(Cast(ray), hit), Status::ok);
         if (hit) expected.push_back(id);
@@ -169,7 +170,7 @@ TEST_P(FilterChanges, environments_set_after_layers_count) {
   const std::vector<Key> keys = world_.insert(boxes);
   for (std::size_t i = 0; i < keys.size(); i += 4) world_.set_filter(keys[i], {kOther, ~0U, 0});
   expect_right_answers();
-  for (const std::uint32_t environment : {5U, kEveryEnvironment, 7U, 0U}) {
+  for (const std::uint32_t environment : {5U, kAllEnvironments, 7U, 0U}) {
     for (std::size_t i = 0; i < keys.size(); i += 3) {
       world_.set_filter(keys[i], {1, ~0U, environment});
       if (i == 3) expect_right_answers();
@@ -183,7 +184,7 @@ TEST_P(FilterChanges, environments_set_after_layers_count) {
 
 TEST_P(FilterChanges, every_environment_pairs_across_partitions) {
   const std::vector<Key> keys = world_.insert(uniform_boxes(scaled(200)));
-  world_.set_filter(keys[0], {1, ~0U, kEveryEnvironment});
+  world_.set_filter(keys[0], {1, ~0U, kAllEnvironments});
   World other(config());
   const std::vector<Key> other_keys = other.insert(uniform_boxes(scaled(200), 2));
   other.set_filter(other_keys, std::vector<ObjectFilter>(other_keys.size(), {1, ~0U, 5}));

@@ -22,7 +22,7 @@ ObjectFilter any_filter(Random& random) {
   const auto mask = static_cast<std::uint32_t>(random.below(16)) | 0x80000000U;
   const std::size_t environment = random.below(4);
   return {layers, mask,
-          environment == 3 ? kEveryEnvironment : static_cast<std::uint32_t>(environment)};
+          environment == 3 ? kAllEnvironments : static_cast<std::uint32_t>(environment)};
 }
 
 std::vector<ObjectFilter> any_filters(std::size_t count, Random& random) {
@@ -114,7 +114,8 @@ TEST_P(Filters, pairs_with_applies_filters_of_both_partitions) {
         if (other_filtered) other.set_filter(other_keys, any_filters(other_keys.size(), random));
         const bool exact = mine.partition().is_exact() && other.partition().is_exact();
         const auto meet = [](const World& a, const World& b, const Pair& pair) {
-          return may_meet(a.entries().at(pair.first).filter, b.entries().at(pair.second).filter);
+          return filters_allow(a.entries().at(pair.first).filter,
+                               b.entries().at(pair.second).filter);
         };
         ASSERT_EQ(mine.pairs_with(other.partition(), buffer), Status::ok);
         EXPECT_TRUE(
@@ -290,7 +291,7 @@ TEST_P(FiltersOfVolumes, volumes_pair_only_if_filters_allow) {
       ASSERT_NO_FATAL_FAILURE(filtered.ask(boxes));
       std::vector<Pair> expected;
       for (const Pair& pair : plain.pairs) {
-        if (may_meet(filters[pair.first], filters[pair.second])) expected.push_back(pair);
+        if (filters_allow(filters[pair.first], filters[pair.second])) expected.push_back(pair);
       }
       ASSERT_TRUE(std::ranges::equal(filtered.pairs, expected));
     }

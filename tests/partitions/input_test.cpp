@@ -179,8 +179,8 @@ TEST_P(Input, entries_may_select_from_columns_of_all) {
         some_keys.push_back(keys[2][i]);
         some_boxes.push_back(next[i]);
       }
-      ASSERT_EQ(listed.update(keys[0], next, Entries::listed(numbers)), Status::ok);
-      ASSERT_EQ(masked.update(keys[1], next, Entries::masked(words)), Status::ok);
+      ASSERT_EQ(listed.update(keys[0], next, IndexSubset::listed(numbers)), Status::ok);
+      ASSERT_EQ(masked.update(keys[1], next, IndexSubset::masked(words)), Status::ok);
       ASSERT_EQ(plain.update(some_keys, some_boxes), Status::ok);
       PairBuffer pairs[3];
       for (std::size_t p = 0; p < 3; ++p) {
@@ -197,7 +197,7 @@ TEST_P(Input, entries_may_select_from_columns_of_all) {
     }
     // Entries may be in any order; the last of repeated entries counts, which is equal here.
     const std::vector<std::uint32_t> back{9, 3, 9, 1};
-    EXPECT_EQ(listed.update(keys[0], boxes, Entries::listed(back)), Status::ok);
+    EXPECT_EQ(listed.update(keys[0], boxes, IndexSubset::listed(back)), Status::ok);
   }
 }
 
@@ -244,7 +244,7 @@ TEST_P(Input, runs_of_entries_in_any_order_are_right) {
           ASSERT_EQ(plain.update(keys[1][i], next[i]), Status::ok);
         }
       }
-      ASSERT_EQ(listed.update(keys[0], next, Entries::listed(numbers)), Status::ok);
+      ASSERT_EQ(listed.update(keys[0], next, IndexSubset::listed(numbers)), Status::ok);
       for (std::size_t i = 0; i < boxes.size(); ++i) {
         Aabb box;
         Aabb same;
@@ -264,13 +264,13 @@ TEST_P(Input, invalid_entries_change_nothing) {
   const std::vector<std::uint32_t> first_two{0, 1};
   const std::vector<std::uint64_t> few;
   Partition& partition = world.partition();
-  EXPECT_EQ(partition.update(keys, next, Entries::listed(beyond)), Status::invalid_argument);
-  EXPECT_EQ(partition.update(keys, next, Entries::masked(few)), Status::size_mismatch);
+  EXPECT_EQ(partition.update(keys, next, IndexSubset::listed(beyond)), Status::invalid_argument);
+  EXPECT_EQ(partition.update(keys, next, IndexSubset::masked(few)), Status::size_mismatch);
   next.pop_back();
-  EXPECT_EQ(partition.update(keys, next, Entries::listed(first_two)), Status::size_mismatch);
+  EXPECT_EQ(partition.update(keys, next, IndexSubset::listed(first_two)), Status::size_mismatch);
   next.push_back({{1, 0, 0}, {0, 1, 1}});
   next[1] = next.back();
-  EXPECT_EQ(partition.update(keys, next, Entries::listed(first_two)), Status::invalid_bounds);
+  EXPECT_EQ(partition.update(keys, next, IndexSubset::listed(first_two)), Status::invalid_bounds);
   EXPECT_TRUE(world.holds_its_objects());
   EXPECT_TRUE(world.agrees());
 }
@@ -292,13 +292,13 @@ TEST_P(Input, invalid_box_anywhere_in_a_list_changes_nothing) {
     for (const std::uint32_t at : every_third) {
       std::vector<Aabb> next = boxes;
       next[at] = wrong;
-      ASSERT_EQ(world.partition().update(keys, next, Entries::listed(every_third)),
+      ASSERT_EQ(world.partition().update(keys, next, IndexSubset::listed(every_third)),
                 Status::invalid_bounds);
     }
     // A box that no entry selects is not read.
     std::vector<Aabb> next = boxes;
     next[1] = wrong;
-    EXPECT_EQ(world.partition().update(keys, next, Entries::listed(every_third)), Status::ok);
+    EXPECT_EQ(world.partition().update(keys, next, IndexSubset::listed(every_third)), Status::ok);
   }
   EXPECT_TRUE(world.holds_its_objects());
   EXPECT_TRUE(world.agrees());

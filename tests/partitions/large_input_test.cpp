@@ -16,13 +16,13 @@ namespace {
 constexpr std::size_t kObjects = 20000;
 
 /// Two partitions with the same objects: one gets batches, the other single calls.
-struct Twins {
+struct PartitionAndReference {
   Partition together;
   Partition alone;
   std::vector<Key> keys;
   std::vector<Key> other_keys;
 
-  explicit Twins(const PartitionOptions& options)
+  explicit PartitionAndReference(const PartitionOptions& options)
       : together(bounds_n_squared(), options), alone(bounds_n_squared(), options) {}
 
   void insert(const BoxView& boxes) {
@@ -77,7 +77,7 @@ TEST(LargeInput, batch_insert_equals_single_inserts) {
   for (const PartitionOptions& options : all_options()) {
     for (const BoxView& view :
          {BoxView(boxes), BoxView({at(0), at(1), at(2)}, {at(3), at(4), at(5)}, kObjects)}) {
-      Twins twins(options);
+      PartitionAndReference twins(options);
       ASSERT_NO_FATAL_FAILURE(twins.insert(view));
       twins.expect_alike();
     }
@@ -87,7 +87,7 @@ TEST(LargeInput, batch_insert_equals_single_inserts) {
 TEST(LargeInput, batch_update_equals_single_updates) {
   std::vector<Aabb> boxes = uniform_boxes(kObjects);
   for (const PartitionOptions& options : all_options()) {
-    Twins twins(options);
+    PartitionAndReference twins(options);
     ASSERT_NO_FATAL_FAILURE(twins.insert(boxes));
     std::uint64_t seed = 2;
     const auto update = [&](std::vector<std::size_t> which, const char* what) {
@@ -123,7 +123,7 @@ TEST(LargeInput, batch_update_equals_single_updates) {
 TEST(LargeInput, one_invalid_box_changes_nothing) {
   const std::vector<Aabb> boxes = uniform_boxes(kObjects);
   for (const PartitionOptions& options : all_options()) {
-    Twins twins(options);
+    PartitionAndReference twins(options);
     ASSERT_NO_FATAL_FAILURE(twins.insert(boxes));
     for (const std::size_t bad : {std::size_t{0}, std::size_t{10001}, kObjects - 1}) {
       std::vector<Aabb> next = uniform_boxes(kObjects, 2);

@@ -272,7 +272,7 @@ TEST_P(Memory, reserve_suffices_for_any_placement_of_objects) {
 // Wrong values in the padding, or nodes and cells that were left behind, would show in a query that
 // has nothing to refresh.
 TEST_P(Memory, reserve_keeps_the_content) {
-  for (const Pages pages : {Pages::untouched, Pages::touched}) {
+  for (const Pages pages : {Pages::untouched, Pages::prefaulted}) {
     World world(config(), &memory_);
     PairBuffer buffer;
     std::vector<Aabb> boxes = mixed_boxes(333);
@@ -296,7 +296,7 @@ TEST_P(Memory, reserve_keeps_the_content) {
 TEST_P(Memory, release_memory_returns_the_reserve) {
   World world(config(), &memory_);
   const std::size_t empty = memory_.outstanding();
-  ASSERT_EQ(world.partition().reserve(3000, Pages::touched), Status::ok);
+  ASSERT_EQ(world.partition().reserve(3000, Pages::prefaulted), Status::ok);
   EXPECT_TRUE(footprint_is_exact(world));
   world.partition().release_memory();
   EXPECT_EQ(memory_.outstanding(), empty);

@@ -114,7 +114,7 @@ TEST_P(OutOfMemory, refused_single_insert_changes_nothing) {
 TEST_P(OutOfMemory, refused_reserve_changes_nothing) {
   const std::vector<Aabb> boxes = uniform_boxes(90);
   refuse_each_request([&] { fill_anew(boxes); },
-                      [&] { return world_.partition().reserve(1000, Pages::touched); },
+                      [&] { return world_.partition().reserve(1000, Pages::prefaulted); },
                       [&] {
                         expect_intact();
                         // There is nothing to refresh.

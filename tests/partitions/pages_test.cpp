@@ -54,9 +54,9 @@ TEST_P(Touched, reserve_touches_all_pages_of_a_frame) {
   World world(config(), &pages);
   PairBuffer buffer(&pages);
   const std::vector<Aabb> boxes = mixed_boxes(world.partition().is_exact() ? 4000 : 400);
-  ASSERT_EQ(world.partition().reserve(boxes.size(), Pages::touched), Status::ok);
+  ASSERT_EQ(world.partition().reserve(boxes.size(), Pages::prefaulted), Status::ok);
   const std::size_t pairs = world.partition().is_exact() ? 200'000 : boxes.size() * boxes.size();
-  ASSERT_EQ(world.partition().reserve_pairs(buffer, pairs, Pages::touched), Status::ok);
+  ASSERT_EQ(world.partition().reserve_pairs(buffer, pairs, Pages::prefaulted), Status::ok);
   const std::ptrdiff_t before = pages.written();
   EXPECT_GT(before, 20);
   world.insert(boxes);

@@ -388,7 +388,7 @@ TEST_P(Events, client_data_memory_is_taken_only_on_request) {
   std::vector<Aabb> boxes = uniform_boxes(scene_size(300));
   const std::vector<ClientData> data = random_data(boxes.size(), 5);
   const std::vector<Key> keys = world.insert(boxes, data);
-  const std::vector<Key> twin_keys = twin.insert(boxes, data);
+  const std::vector<Key> reference_keys = twin.insert(boxes, data);
   PairEvents without;
   PairEvents with({.memory = std::pmr::get_default_resource(), .client_data = true});
   Random random(2);
@@ -402,7 +402,7 @@ TEST_P(Events, client_data_memory_is_taken_only_on_request) {
               without.footprint().scratch.used + boxes.size() * sizeof(ClientData));
     move(motion, boxes, random);
     world.update(keys, boxes);
-    twin.update(twin_keys, boxes);
+    twin.update(reference_keys, boxes);
   }
 }
 

@@ -294,16 +294,16 @@ TEST_P(PlannedBuilds, pair_order_is_equal_on_one_thread) {
   alone.threads = 1;
   World twin(alone);
   const std::vector<Key> keys = world.insert(drift.boxes);
-  const std::vector<Key> twin_keys = twin.insert(drift.boxes);
+  const std::vector<Key> reference_keys = twin.insert(drift.boxes);
   PairBuffer buffer;
-  PairBuffer twin_buffer;
+  PairBuffer reference_buffer;
   for (int frame = 0; frame < kFrames; ++frame) {
     drift.go_on();
     world.update(keys, drift.boxes);
-    twin.update(twin_keys, drift.boxes);
+    twin.update(reference_keys, drift.boxes);
     ASSERT_EQ(world.self_pairs(buffer), Status::ok);
-    ASSERT_EQ(twin.self_pairs(twin_buffer), Status::ok);
-    ASSERT_TRUE(std::ranges::equal(buffer.pairs(), twin_buffer.pairs())) << "frame " << frame;
+    ASSERT_EQ(twin.self_pairs(reference_buffer), Status::ok);
+    ASSERT_TRUE(std::ranges::equal(buffer.pairs(), reference_buffer.pairs())) << "frame " << frame;
   }
 }
 

@@ -96,7 +96,7 @@ std::vector<Key> some_keys(const World& world, std::uint64_t choice, std::size_t
 ObjectFilter some_filter(std::uint64_t choice) {
   if (choice % 5 == 0) return {};
   const auto bits = static_cast<std::uint32_t>(choice);
-  const std::uint32_t environment = bits / 64 % 4 == 3 ? kEveryEnvironment : bits / 64 % 4;
+  const std::uint32_t environment = bits / 64 % 4 == 3 ? kAllEnvironments : bits / 64 % 4;
   return {1U << bits % 3, bits / 8 % 8, environment};
 }
 

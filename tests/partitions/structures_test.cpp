@@ -75,13 +75,13 @@ TEST(Structures, exchange_keeps_keys_filters_pairs_and_events) {
   World twin(config);
   std::vector<Aabb> boxes = mixed_boxes(400);
   const std::vector<Key> keys = world.insert(boxes);
-  const std::vector<Key> twin_keys = twin.insert(boxes);
+  const std::vector<Key> reference_keys = twin.insert(boxes);
   world.set_filter(keys[7], {.environment = 3});
-  twin.set_filter(twin_keys[7], {.environment = 3});
+  twin.set_filter(reference_keys[7], {.environment = 3});
   PairBuffer pairs;
-  PairBuffer twin_pairs;
+  PairBuffer reference_pairs;
   PairEvents events;
-  PairEvents twin_events;
+  PairEvents reference_events;
   Random random(23);
   const PairOptions canonical{.order = Order::canonical};
   for (const StructureKind from : all_structures()) {
@@ -91,13 +91,14 @@ TEST(Structures, exchange_keeps_keys_filters_pairs_and_events) {
         ASSERT_EQ(world.partition().set_structure(kind), Status::ok);
         (void)move(Motion::few, boxes, random);
         world.update(keys, boxes);
-        twin.update(twin_keys, boxes);
+        twin.update(reference_keys, boxes);
         ASSERT_EQ(world.partition().self_pairs(pairs, events, canonical), Status::ok);
-        ASSERT_EQ(twin.partition().self_pairs(twin_pairs, twin_events, canonical), Status::ok);
-        ASSERT_EQ(pairs.size(), twin_pairs.size()) << from.name() << " to " << to.name();
-        ASSERT_EQ(events.begun().size(), twin_events.begun().size());
-        ASSERT_EQ(events.ended().size(), twin_events.ended().size());
-        ASSERT_EQ(events.persisting(), twin_events.persisting());
+        ASSERT_EQ(twin.partition().self_pairs(reference_pairs, reference_events, canonical),
+                  Status::ok);
+        ASSERT_EQ(pairs.size(), reference_pairs.size()) << from.name() << " to " << to.name();
+        ASSERT_EQ(events.begun().size(), reference_events.begun().size());
+        ASSERT_EQ(events.ended().size(), reference_events.ended().size());
+        ASSERT_EQ(events.persisting(), reference_events.persisting());
         ASSERT_TRUE(world.holds_its_objects());
       }
     }

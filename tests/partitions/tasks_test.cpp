@@ -1,6 +1,6 @@
 #include "partitions/structures/tasks.h"
 #include <gtest/gtest.h>
-#include "core/sort/stretches.h"
+#include "core/sort/parallel_ranges.h"
 
 #include <atomic>
 #include <cstddef>
@@ -75,17 +75,17 @@ TEST(AppendInOrder, one_row_over_the_limit_is_reported) {
 TEST(EvenStretches, stretches_are_even_for_eight_threads) {
   for (const std::size_t longest : {1U, 64U, 100U, 8192U, 16384U}) {
     for (const std::size_t count : {0U, 1U, 63U, 64U, 65U, 8193U, 16385U, 100000U, 1000003U}) {
-      const std::size_t length = even_stretch(count, longest);
+      const std::size_t length = even_range_length(count, longest);
       ASSERT_GE(length, 1U);
       ASSERT_LE(length, longest);
       std::vector<std::size_t> sizes((count + length - 1) / length);
-      for_even_stretches(
+      for_each_even_range(
           Execution::serial(), count, longest,
           [&](std::size_t begin, std::size_t end) { sizes[begin / length] = end - begin; });
       EXPECT_EQ(std::accumulate(sizes.begin(), sizes.end(), std::size_t{0}), count);
     }
   }
-  EXPECT_EQ(even_stretch(100000, 16384), 12544U);
+  EXPECT_EQ(even_range_length(100000, 16384), 12544U);
 }
 
 }  // namespace

@@ -12,8 +12,8 @@
 #include "tests/support/hosts.h"
 #include "tests/support/motion.h"
 #include "tests/support/random.h"
+#include "tests/support/reference.h"
 #include "tests/support/scenes.h"
-#include "tests/support/twin.h"
 #include "tests/support/world.h"
 
 namespace winnow::test {

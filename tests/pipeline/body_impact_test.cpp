@@ -10,9 +10,9 @@
 #include <limits>
 #include <vector>
 
-#include "pipeline/motion/passage.h"
+#include "pipeline/motion/relative_motion_bounds.h"
 #include "pipeline/solver/solver.h"
-#include "tests/pipeline/motion_twin.h"
+#include "tests/pipeline/motion_reference.h"
 #include "tests/support/meshes.h"
 
 namespace winnow::test {
@@ -21,22 +21,22 @@ namespace {
 constexpr double kTolerance = 1e-6;
 
 /// A convex primitive in the frame of its body.
-struct TwinPart {
+struct ReferencePart {
   ShapeId shape;
   Pose pose;
 };
 
 /// A shape of the library and the list of its convex primitives.
-struct TwinShape {
+struct ReferenceShape {
   ShapeId shape;
-  std::vector<TwinPart> parts;
+  std::vector<ReferencePart> parts;
   double radius = 0.0;
 };
 
 /// Small shapes of all kinds with their primitives.
-class TwinShapes {
+class ReferenceShapes {
  public:
-  TwinShapes() {
+  ReferenceShapes() {
     for (const MeshData& mesh : {torus(5, 4), gear(4), degenerate_soup(12, 3)}) {
       add_mesh(mesh, {1.0, 1.0, 1.0});
       add_mesh(mesh, {-0.5, 1.0, 2.0});
@@ -50,7 +50,7 @@ class TwinShapes {
 
   ShapePool pool;
   CompositePool composites{pool};
-  std::vector<TwinShape> shapes;
+  std::vector<ReferenceShape> shapes;
   /// Number of composite shapes, which come first in `shapes`.
   std::size_t composite_count = 0;
 
@@ -61,8 +61,8 @@ class TwinShapes {
     EXPECT_EQ(pool.add(shape, id), Status::ok);
     return id;
   }
-  void put(ShapeId id, std::vector<TwinPart> parts) {
-    const PartTraversal traversal(pool, &composites);
+  void put(ShapeId id, std::vector<ReferencePart> parts) {
+    const SubShapeQuery traversal(pool, &composites);
     shapes.push_back({id, std::move(parts), traversal.radius(id)});
   }
   void add_mesh(const MeshData& mesh, const std::array<double, 3>& scale) {
@@ -70,7 +70,7 @@ class TwinShapes {
     ShapeId scaled;
     ASSERT_EQ(composites.add_mesh(mesh.points(), mesh.indices(), id), Status::ok);
     ASSERT_EQ(composites.add_scaled(id, scale, scaled), Status::ok);
-    std::vector<TwinPart> parts;
+    std::vector<ReferencePart> parts;
     for (std::size_t i = 0; i < mesh.triangles(); ++i) {
       TriangleShape triangle;
       for (std::size_t k = 0; k < 3; ++k) {
@@ -89,7 +89,7 @@ class TwinShapes {
     const HeightSamples samples{.heights = heights, .columns = 4, .rows = 4};
     ASSERT_EQ(composites.add_height_field(samples, id), Status::ok);
     const HeightField& field = *composites.height_field(id);
-    std::vector<TwinPart> parts;
+    std::vector<ReferencePart> parts;
     for (std::uint32_t i = 0; i < field.triangles(); ++i) {
       TriangleShape triangle;
       if (field.triangle(i, triangle)) parts.push_back({added(triangle), {}});
@@ -111,14 +111,14 @@ class TwinShapes {
         {added(TriangleShape{{{0, 0, 0}, {0, 1, 0}, {0, 0, 1}}}), at(0.5, 0.5, 0.5, 1)}};
     ShapeId id;
     ASSERT_EQ(composites.add_compound(children, id), Status::ok);
-    std::vector<TwinPart> parts;
+    std::vector<ReferencePart> parts;
     for (const CompoundChild& child : children) parts.push_back({child.shape, child.pose});
     put(id, std::move(parts));
   }
   /// Adds a compound of a mesh, a ball and the height field.
   void add_compound_of_surfaces() {
-    const TwinShape& mesh = shapes[0];
-    const TwinShape& field = shapes[shapes.size() - 2];
+    const ReferenceShape& mesh = shapes[0];
+    const ReferenceShape& field = shapes[shapes.size() - 2];
     Pose poses[3] = {Pose::at(0.3, -0.2, 0.1), Pose::at(-0.8, 0, 0), Pose::at(0, 0.5, -1)};
     poses[0].orientation[1] = 0.6;
     poses[2].orientation[3] = -0.4;
@@ -127,10 +127,10 @@ class TwinShapes {
         {mesh.shape, poses[0]}, {ball, poses[1]}, {field.shape, poses[2]}};
     ShapeId id;
     ASSERT_EQ(composites.add_compound(children, id), Status::ok);
-    std::vector<TwinPart> parts;
-    for (const TwinPart& part : mesh.parts) parts.push_back({part.shape, poses[0]});
+    std::vector<ReferencePart> parts;
+    for (const ReferencePart& part : mesh.parts) parts.push_back({part.shape, poses[0]});
     parts.push_back({ball, poses[1]});
-    for (const TwinPart& part : field.parts) parts.push_back({part.shape, poses[2]});
+    for (const ReferencePart& part : field.parts) parts.push_back({part.shape, poses[2]});
     put(id, std::move(parts));
   }
   void add_convex() {
@@ -147,9 +147,9 @@ class TwinShapes {
 };
 
 /// Two moving bodies.
-struct MovingTwins {
-  const TwinShapes& all;
-  const TwinShape* shape[2];
+struct MovingReference {
+  const ReferenceShapes& all;
+  const ReferenceShape* shape[2];
   RigidMotion motion[2];
 
   [[nodiscard]] DistanceAt distance(double time) const {
@@ -157,8 +157,8 @@ struct MovingTwins {
     for (int k = 0; k < 2; ++k) body[k] = place_at(motion[k], time, motion[0].start.position);
     DistanceAt least{std::numeric_limits<double>::infinity(), 0.0};
     SolverCounts counts;
-    for (const TwinPart& a : shape[0]->parts) {
-      for (const TwinPart& b : shape[1]->parts) {
+    for (const ReferencePart& a : shape[0]->parts) {
+      for (const ReferencePart& b : shape[1]->parts) {
         const PairAnswer answer =
             solve_pair(all.pool.tables(), a.shape, placed(body[0], a.pose), b.shape,
                        placed(body[1], b.pose), ContactLevel::distance, 0.0, counts);
@@ -191,9 +191,9 @@ struct MovingTwins {
   }
 
   [[nodiscard]] static Pose placed(const Pose& body, const Pose& part) {
-    const Quaternion turn = normalized(tame(body.orientation));
+    const Quaternion turn = normalized(scale_to_unit_max(body.orientation));
     const Eigen::Matrix3d axes = rotation_of_unit(turn);
-    const Quaternion q = product(turn, normalized(tame(part.orientation)));
+    const Quaternion q = multiply(turn, normalized(scale_to_unit_max(part.orientation)));
     const Eigen::Vector3d at = axes * Eigen::Vector3d::Map(part.position);
     Pose pose;
     for (int i = 0; i < 3; ++i) pose.position[i] = body.position[i] + at[i];
@@ -215,9 +215,9 @@ void make_motion(Random& random, double size, double most_turn, RigidMotion& mot
 }
 
 /// Returns motions that bring the bodies near each other at some time.
-MovingTwins moving_twins(const TwinShapes& all, const TwinShape& a, const TwinShape& b,
-                         Random& random) {
-  MovingTwins twins{all, {&a, &b}, {}};
+MovingReference moving_reference(const ReferenceShapes& all, const ReferenceShape& a,
+                                 const ReferenceShape& b, Random& random) {
+  MovingReference twins{all, {&a, &b}, {}};
   for (RigidMotion& motion : twins.motion) {
     make_motion(random, std::min(twins.size(), 5.0), 3.0, motion);
   }
@@ -231,7 +231,7 @@ MovingTwins moving_twins(const TwinShapes& all, const TwinShape& a, const TwinSh
 struct SingleImpact {
   ImpactResult result;
 
-  explicit SingleImpact(const MovingTwins& twins) {
+  explicit SingleImpact(const MovingReference& twins) {
     const ShapeId shapes[2] = {twins.shape[0]->shape, twins.shape[1]->shape};
     constexpr BodyPair kPair[1] = {{0, 1}};
     const ImpactOptions options{.tolerance = kTolerance, .composites = &twins.all.composites};
@@ -241,7 +241,8 @@ struct SingleImpact {
   }
 };
 
-void check(const MovingTwins& twins, std::size_t looks, std::size_t& unproved, std::size_t& hits) {
+void check(const MovingReference& twins, std::size_t looks, std::size_t& unproved,
+           std::size_t& hits) {
   const SingleImpact single(twins);
   const ImpactResult& found = single.result;
   const double time = found.time()[0];
@@ -262,7 +263,7 @@ void check(const MovingTwins& twins, std::size_t looks, std::size_t& unproved, s
 }
 
 TEST(BodyImpact, composite_with_convex_is_never_late) {
-  const TwinShapes all;
+  const ReferenceShapes all;
   Random random(81);
   std::size_t unproved = 0;
   std::size_t hits = 0;
@@ -272,7 +273,8 @@ TEST(BodyImpact, composite_with_convex_is_never_late) {
     const std::size_t other =
         all.composite_count + random.below(all.shapes.size() - all.composite_count);
     SCOPED_TRACE(testing::Message() << n << ": " << composite << " " << other);
-    const MovingTwins twins = moving_twins(all, all.shapes[composite], all.shapes[other], random);
+    const MovingReference twins =
+        moving_reference(all, all.shapes[composite], all.shapes[other], random);
     check(twins, 200, unproved, hits);
   }
   EXPECT_LE(unproved, count / 4);
@@ -280,7 +282,7 @@ TEST(BodyImpact, composite_with_convex_is_never_late) {
 }
 
 TEST(BodyImpact, composite_with_composite_is_never_late) {
-  const TwinShapes all;
+  const ReferenceShapes all;
   Random random(82);
   std::size_t unproved = 0;
   std::size_t hits = 0;
@@ -289,7 +291,7 @@ TEST(BodyImpact, composite_with_composite_is_never_late) {
     const std::size_t a = random.below(all.composite_count);
     const std::size_t b = random.below(all.composite_count);
     SCOPED_TRACE(testing::Message() << n << ": " << a << " " << b);
-    check(moving_twins(all, all.shapes[a], all.shapes[b], random), 30, unproved, hits);
+    check(moving_reference(all, all.shapes[a], all.shapes[b], random), 30, unproved, hits);
   }
   EXPECT_GE(hits, count / 12);
 }
@@ -341,7 +343,7 @@ TEST(BodyImpact, point_at_shared_edge_or_vertex_hits_mesh) {
     const Eigen::Vector3d target =
         corner[0].cast<double>() * (1.0 - share) + corner[1].cast<double>() * share;
     const Pose there =
-        MovingTwins::placed(of_mesh.at(0.5), Pose::at(target[0], target[1], target[2]));
+        MovingReference::placed(of_mesh.at(0.5), Pose::at(target[0], target[1], target[2]));
     RigidMotion of_point;
     for (int i = 0; i < 3; ++i) {
       of_point.travel[i] = random.uniform(-5, 5);
@@ -357,17 +359,17 @@ TEST(BodyImpact, point_at_shared_edge_or_vertex_hits_mesh) {
 }
 
 TEST(BodyImpact, swept_boxes_contain_whole_motion) {
-  const TwinShapes all;
-  const PartTraversal parts(all.pool, &all.composites);
+  const ReferenceShapes all;
+  const SubShapeQuery parts(all.pool, &all.composites);
   Random random(84);
   for (std::size_t n = scaled(400); n-- != 0;) {
-    const TwinShape& shape = all.shapes[random.below(all.shapes.size() - 1)];
+    const ReferenceShape& shape = all.shapes[random.below(all.shapes.size() - 1)];
     RigidMotion frame;
     RigidMotion motion;
     make_motion(random, 3.0, 3.0, frame);
     make_motion(random, 3.0, 3.0, motion);
     // Either the whole shape, or one primitive far from the position of its body.
-    std::vector<TwinPart> shown = shape.parts;
+    std::vector<ReferencePart> shown = shape.parts;
     if (shown.size() > 1 && random.chance(0.5)) {
       shown = {shape.parts[random.below(shape.parts.size())]};
       for (double& x : shown[0].pose.position) x = random.uniform(-20, 20);
@@ -376,7 +378,7 @@ TEST(BodyImpact, swept_boxes_contain_whole_motion) {
         shown.size() == shape.parts.size()
             ? impact::whole_shape(parts, shape.shape, motion)
             : impact::moving_part(parts, {shown[0].shape, shown[0].pose, 0}, motion);
-    const impact::Passage passage(parts, frame, moving);
+    const impact::RelativeMotionBounds passage(parts, frame, moving);
     const double first = random.unit();
     const double last = random.uniform(first, 1.0);
     const PreciseBox all_time = passage.box({first, last});
@@ -389,10 +391,10 @@ TEST(BodyImpact, swept_boxes_contain_whole_motion) {
       inverse.orientation[0] = at.orientation[0];
       Pose seen = motion.at(time);
       for (int i = 0; i < 3; ++i) seen.position[i] -= at.position[i];
-      const Pose there = MovingTwins::placed(inverse, seen);
+      const Pose there = MovingReference::placed(inverse, seen);
       const double share = sweep.max_t * t;
-      for (const TwinPart& part : shown) {
-        const Pose placed = MovingTwins::placed(there, part.pose);
+      for (const ReferencePart& part : shown) {
+        const Pose placed = MovingReference::placed(there, part.pose);
         const PreciseBox box = parts.box(PlacedShape{part.shape, placed});
         for (int i = 0; i < 3; ++i) {
           // The pool stores bounds of shapes as floats.
@@ -408,15 +410,15 @@ TEST(BodyImpact, swept_boxes_contain_whole_motion) {
 }
 
 TEST(BodyImpact, results_match_on_threads_and_bad_pairs_fail) {
-  const TwinShapes all;
+  const ReferenceShapes all;
   Random random(85);
   std::vector<ShapeId> shapes;
   std::vector<RigidMotion> motions;
   std::vector<BodyPair> pairs;
   for (std::size_t n = 0; n < 200; ++n) {
-    const TwinShape& a = all.shapes[random.below(all.composite_count)];
-    const TwinShape& b = all.shapes[random.below(all.shapes.size() - 1)];
-    const MovingTwins twins = moving_twins(all, a, b, random);
+    const ReferenceShape& a = all.shapes[random.below(all.composite_count)];
+    const ReferenceShape& b = all.shapes[random.below(all.shapes.size() - 1)];
+    const MovingReference twins = moving_reference(all, a, b, random);
     for (int k = 0; k < 2; ++k) {
       shapes.push_back(twins.shape[k]->shape);
       motions.push_back(twins.motion[k]);

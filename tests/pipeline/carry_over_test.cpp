@@ -154,7 +154,7 @@ TEST(CarryOver, ghost_contact_of_dynamic_floor_is_reported) {
   ShapeId ball;
   ASSERT_EQ(shapes.add(BoxShape{{1, 1, 0.5}, 0.0}, tile), Status::ok);
   ASSERT_EQ(shapes.add(SphereShape{0.5}, ball), Status::ok);
-  Scene scene(shapes, {.carry_over = kCarryOver, .seamless_floors = true});
+  Scene scene(shapes, {.carry_over = kCarryOver, .suppress_ghost_contacts = true});
   Key floor;
   Key beside;
   Key key;

@@ -61,7 +61,7 @@ FlatAnswer flat_of(const SceneDistance& body) {
 
 /// Compares the answers of a cluster's rank with the answers of one scene.
 template <typename Answer>
-void expect_answers(const ClusterAnswers<Answer>& found, std::size_t question,
+void expect_answers(const ClusterResults<Answer>& found, std::size_t question,
                     const std::vector<FlatAnswer>& expected) {
   ASSERT_GT(found.first.size(), question + 1);
   std::vector<FlatAnswer> flat;
@@ -98,8 +98,8 @@ std::vector<std::vector<Question>> questions_of(std::uint32_t ranks, Random& ran
 }
 
 template <typename Question>
-std::vector<ClusterQuestions<Question>> batches_of(const std::vector<std::vector<Question>>& all) {
-  std::vector<ClusterQuestions<Question>> batches;
+std::vector<ClusterQueryBatch<Question>> batches_of(const std::vector<std::vector<Question>>& all) {
+  std::vector<ClusterQueryBatch<Question>> batches;
   for (const auto& questions : all) {
     batches.push_back({questions, {}});
     if (batches.size() % 2 == 0) batches.back().filter = {.layers = 1, .mask = 2};
@@ -176,13 +176,13 @@ TEST(ClusterRays, tied_hits_return_least_name) {
   ASSERT_EQ(cluster.add(batches, answers), Status::ok);
   ClusterQueries queries(cluster);
   const ShapeRay ray{.origin = {0, 0.3, 0}, .direction = {1, 0, 0}, .max_t = 10};
-  std::vector<ClusterQuestions<ShapeRay>> rays(4);
+  std::vector<ClusterQueryBatch<ShapeRay>> rays(4);
   rays[2].questions = std::span(&ray, 1);
   ASSERT_EQ(queries.closest(rays, answers), Status::ok);
   ASSERT_EQ(queries.hits(2).answers.size(), 1U);
   EXPECT_EQ(queries.hits(2).answers[0].name, 3U);
   const NearestProbe probe{.point = {0, 0.3, 0}, .count = 2};
-  std::vector<ClusterQuestions<NearestProbe>> probes(4);
+  std::vector<ClusterQueryBatch<NearestProbe>> probes(4);
   probes[1].questions = std::span(&probe, 1);
   ASSERT_EQ(queries.nearest(probes, answers), Status::ok);
   ASSERT_EQ(queries.neighbours(1).answers.size(), 2U);
@@ -246,12 +246,12 @@ TEST(ClusterNeighbours, neighbours_match_one_scene) {
   }
 }
 
-TEST(ClusterQuestions, bad_queries_fail_only_on_their_rank) {
+TEST(ClusterQueryBatch, bad_queries_fail_only_on_their_rank) {
   ClusterQueryWorld world(3);
   ClusterQueries queries(world.world_.cluster());
   const ShapeRay bad{.direction = {0, 0, 0}};
   const ShapeRay good{.origin = {3, 3, 9}, .direction = {0, 0, -1}, .max_t = 20};
-  std::vector<ClusterQuestions<ShapeRay>> rays(3);
+  std::vector<ClusterQueryBatch<ShapeRay>> rays(3);
   rays[0].questions = std::span(&bad, 1);
   rays[1].questions = rays[2].questions = std::span(&good, 1);
   rays[2].filter.predicate.accept = [](void*, Key, ClientData) { return true; };
@@ -266,14 +266,14 @@ TEST(ClusterQuestions, bad_queries_fail_only_on_their_rank) {
   EXPECT_EQ(queries.closest({}, std::span(answers)), Status::size_mismatch);
   const ShapeProbe no_shape{};
   const ShapeProbe no_pose{world.shapes_.movable[0], Pose::at(NAN, 0, 0)};
-  std::vector<ClusterQuestions<ShapeProbe>> probes(3);
+  std::vector<ClusterQueryBatch<ShapeProbe>> probes(3);
   probes[0].questions = std::span(&no_shape, 1);
   probes[1].questions = std::span(&no_pose, 1);
   ASSERT_EQ(queries.overlap(probes, answers), Status::ok);
   EXPECT_EQ(answers[0], Status::invalid_key);
   EXPECT_EQ(answers[1], Status::invalid_pose);
   const NearestProbe behind{.radius = -1.0};
-  std::vector<ClusterQuestions<NearestProbe>> points(3);
+  std::vector<ClusterQueryBatch<NearestProbe>> points(3);
   points[1].questions = std::span(&behind, 1);
   ASSERT_EQ(queries.nearest(points, answers), Status::ok);
   EXPECT_EQ(answers[1], Status::invalid_argument);
@@ -300,7 +300,7 @@ TEST(ClusterSceneFaults, transport_failure_fails_every_later_call) {
     ClusterQueries queries(cluster);
     std::vector<ClusterSceneBatch> batches(3);
     batches[1] = {names, bodies};
-    std::vector<ClusterQuestions<ShapeRay>> rays(3);
+    std::vector<ClusterQueryBatch<ShapeRay>> rays(3);
     rays[2].questions = std::span(&ray, 1);
     Status answers[3];
     ClusterDigest digest;
@@ -328,7 +328,7 @@ TEST(ClusterSceneFaults, transport_failure_fails_every_later_call) {
 TEST(ClusterRegions, ray_reaches_regions_of_its_points) {
   Random random(50);
   for (int round = 0; round < 20; ++round) {
-    std::vector<RegionCut> cuts;
+    std::vector<SplitPlane> cuts;
     for (std::int32_t i = 0; i < 15; ++i) {
       // A complete binary tree: cut i has the children 2i + 1 and 2i + 2, and the leaves are ranks.
       const auto side = [](std::int32_t k) { return k < 15 ? k : ~(k - 15); };

@@ -51,10 +51,11 @@ void run_frames(const std::vector<Aabb>& boxes, std::uint32_t ranks, double step
 TEST(Cluster, exchange_calls_meanwhile_callback) {
   LoopbackTransport transport(3);
   const std::uint64_t number = 7;
-  const Parcel sent[] = {{2, 0, {std::as_bytes(std::span(&number, 1))}}};
-  std::span<const Parcel> received;
+  const RankMessage sent[] = {{2, 0, {std::as_bytes(std::span(&number, 1))}}};
+  std::span<const RankMessage> received;
   int calls = 0;
-  const Meanwhile meanwhile{[](void* context) noexcept { ++*static_cast<int*>(context); }, &calls};
+  const OverlappedWork meanwhile{[](void* context) noexcept { ++*static_cast<int*>(context); },
+                                 &calls};
   ASSERT_EQ(transport.exchange(sent, received, meanwhile), Status::ok);
   EXPECT_EQ(calls, 1);
   ASSERT_EQ(received.size(), 1U);
@@ -336,7 +337,7 @@ TEST(ClusterRegions, box_overlaps_regions_of_its_points) {
       box.max = box.min.max(Vec3f(number(), number(), number()));
     }
     const std::vector<std::uint32_t> works(boxes.size(), 1);
-    std::vector<RegionCut> cuts(transport.ranks() - 1);
+    std::vector<SplitPlane> cuts(transport.ranks() - 1);
     const CutWork work{boxes, works};
     ASSERT_EQ(transport.cut(std::span(&work, 1), cuts), Status::ok);
     const Regions regions(cuts);

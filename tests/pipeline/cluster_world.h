@@ -18,14 +18,14 @@ class FailingTransport final : public Transport {
   [[nodiscard]] std::uint32_t ranks() const noexcept override { return inner_.ranks(); }
   [[nodiscard]] std::uint32_t first_hosted() const noexcept override { return 0; }
   [[nodiscard]] std::uint32_t hosted() const noexcept override { return inner_.ranks(); }
-  Status exchange(std::span<const Parcel> sent, std::span<const Parcel>& received,
-                  const Meanwhile& meanwhile) override {
+  Status exchange(std::span<const RankMessage> sent, std::span<const RankMessage>& received,
+                  const OverlappedWork& meanwhile) override {
     return fails() ? Status::communication_failed : inner_.exchange(sent, received, meanwhile);
   }
   Status reduce(std::span<std::uint64_t> sums, std::span<std::uint64_t> greatest) override {
     return fails() ? Status::communication_failed : inner_.reduce(sums, greatest);
   }
-  Status cut(std::span<const CutWork> work, std::span<RegionCut> cuts) override {
+  Status cut(std::span<const CutWork> work, std::span<SplitPlane> cuts) override {
     return fails() ? Status::communication_failed : inner_.cut(work, cuts);
   }
 

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "tests/pipeline/pair_answers.h"
+#include "tests/pipeline/pair_results.h"
 #include "tests/pipeline/pair_scenes.h"
 #include "tests/support/random.h"
 
@@ -91,7 +91,7 @@ void add_aligned_pairs(PairScene& scene, std::vector<double>& depth, Random& ran
     Pose& first = scene.poses[scene.poses.size() - 2];
     Pose& second = scene.poses.back();
     std::copy_n(lean.begin(), 4, first.orientation);
-    std::copy_n(product(lean, turn).begin(), 4, second.orientation);
+    std::copy_n(multiply(lean, turn).begin(), 4, second.orientation);
     const auto rotation = rotation_of(lean);
     for (int k = 0; k < 3; ++k) second.position[k] = rotation(k, 2) * along;
     depth.push_back(deep);
@@ -129,7 +129,7 @@ TEST(CoincidentCentres, round_shapes_separate_sideways_almost_without_solver) {
     EXPECT_LE(std::abs(answers[i].distance + depth[i]), answers[i].error_bound) << i;
     for (const std::uint32_t body : {scene.pairs[i].a, scene.pairs[i].b}) {
       if (scene.shapes[body].kind() != ShapeKind::capsule) continue;
-      const auto rotation = rotation_of(tame(scene.poses[body].orientation));
+      const auto rotation = rotation_of(scale_to_unit_max(scene.poses[body].orientation));
       double along = 0.0;
       for (int k = 0; k < 3; ++k) along += rotation(k, 2) * answers[i].normal[k];
       EXPECT_NEAR(along, 0.0, 1e-12) << i;

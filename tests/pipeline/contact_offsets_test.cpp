@@ -27,9 +27,9 @@ void give_offsets(SceneWorld& world) {
 }
 
 /// The single-pair answer at the contact margin of the pair. Tests shift it by the rest offsets.
-struct PairTwin {
-  PairTwin(const SceneWorld& world, const BodyDefinition& a, const BodyDefinition& b,
-           NarrowTier tier, ContactLevel level)
+struct CorePairReference {
+  CorePairReference(const SceneWorld& world, const BodyDefinition& a, const BodyDefinition& b,
+                    NarrowTier tier, ContactLevel level)
       : rest{a.offsets.rest, b.offsets.rest} {
     const double gap = kMargin + (a.offsets.contact + b.offsets.contact);
     EXPECT_EQ(collide(world.pool, a.shape, a.pose, b.shape, b.pose, {level, tier, gap}, answer),
@@ -41,7 +41,7 @@ struct PairTwin {
 };
 
 /// Compares bit by bit: the points of a manifold depend only on the pair and its contact margin.
-void expect_points(const Contacts& contacts, std::size_t m, const PairTwin& twin) {
+void expect_points(const Contacts& contacts, std::size_t m, const CorePairReference& twin) {
   const std::uint32_t first = contacts.point_first()[m];
   ASSERT_EQ(contacts.point_first()[m + 1] - first, twin.answer.contact_count);
   const double between = 0.5 * (twin.rest[0] - twin.rest[1]);
@@ -61,7 +61,7 @@ void expect_points(const Contacts& contacts, std::size_t m, const PairTwin& twin
 }
 
 void expect_pair(const SceneWorld& world, const Contacts& contacts, std::size_t i,
-                 const PairTwin& twin) {
+                 const CorePairReference& twin) {
   const std::uint32_t m = contacts.manifold_first()[i];
   EXPECT_EQ(contacts.distance()[m], twin.answer.distance - (twin.rest[0] + twin.rest[1]));
   EXPECT_GE(contacts.error_bound()[m], twin.answer.error_bound);
@@ -80,7 +80,7 @@ const BodyDefinition& body_of(const SceneWorld& world, ClientData data) {
 }
 
 /// Checks that the scene shows exactly the pairs within their own contact margin.
-void expect_as_alone(const SceneWorld& world, const Contacts& contacts, NarrowTier tier) {
+void expect_same_as_core_pairs(const SceneWorld& world, const Contacts& contacts, NarrowTier tier) {
   std::set<Names> near;
   for (const auto& [pair, distance] : world.touching(kMargin + 0.9)) {
     const BodyDefinition& a = body_of(world, pair.first);
@@ -89,8 +89,8 @@ void expect_as_alone(const SceneWorld& world, const Contacts& contacts, NarrowTi
   }
   EXPECT_EQ(shown(contacts), near);
   for (std::size_t i = 0; i < contacts.size(); ++i) {
-    const PairTwin twin(world, body_of(world, contacts.data_a()[i]),
-                        body_of(world, contacts.data_b()[i]), tier, contacts.level());
+    const CorePairReference twin(world, body_of(world, contacts.data_a()[i]),
+                                 body_of(world, contacts.data_b()[i]), tier, contacts.level());
     expect_pair(world, contacts, i, twin);
   }
 }
@@ -104,7 +104,7 @@ TEST(ContactOffsets, pairs_with_offsets_match_single_queries) {
     Contacts contacts;
     for (const ContactLevel level : {ContactLevel::distance, ContactLevel::manifold}) {
       ASSERT_EQ(scene.collide(level, contacts), Status::ok);
-      expect_as_alone(world, contacts, tier);
+      expect_same_as_core_pairs(world, contacts, tier);
     }
   }
 }

@@ -25,7 +25,7 @@ struct TestPatch {
   std::vector<std::uint32_t> vertex_ids = {};
   std::vector<std::uint32_t> edge_ids = {};
 
-  Patch view() {
+  SupportingFeature view() {
     vertex_ids.clear();
     edge_ids.clear();
     for (std::uint32_t i = 0; i < points.size(); ++i) {

@@ -229,8 +229,8 @@ struct Reduced {
     solver::Problem problem;
     solver::prepare(pairs.tables(world.shapes), pairs.shapes[of.a], pairs.poses[of.a],
                     pairs.shapes[of.b], pairs.poses[of.b], false, problem);
-    ContactPoint corners[kSharedCorners];
-    const std::uint32_t count = solver::shared_corners(problem, normal(i), 8.0, corners);
+    ContactPoint corners[kMaxIntersectionCorners];
+    const std::uint32_t count = solver::intersection_corners(problem, normal(i), 8.0, corners);
     const auto unit = static_cast<float>(std::ldexp(1.0, problem.exponent));
     for (ContactPoint& corner : std::span(corners, count)) {
       for (float& x : corner.position) x *= unit;

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/pipeline/pair_answers.h"
+#include "tests/pipeline/pair_results.h"
 #include "tests/pipeline/pair_scenes.h"
 #include "tests/support/config.h"
 #include "tests/support/random.h"
@@ -33,12 +33,12 @@ PairScene pair_of(const A& a, const B& b, const Pose& pose_a, const Pose& pose_b
   return scene;
 }
 
-PairAnswers answer_to(const PairScene& scene, ContactLevel level, double margin = 0.0) {
+PairResults answer_to(const PairScene& scene, ContactLevel level, double margin = 0.0) {
   return ask(scene, {.level = level, .margin = margin}).at(0);
 }
 
 /// Returns the depths of the contacts, deepest first.
-std::vector<float> depths(const PairAnswers& answer) {
+std::vector<float> depths(const PairResults& answer) {
   std::vector<float> depth;
   for (const ContactPoint& contact : answer.contacts) depth.push_back(contact.depth);
   std::sort(depth.begin(), depth.end(), std::greater<>());
@@ -57,7 +57,7 @@ constexpr double kRightAngle = 1.5707963267948966;
 TEST(CurvedKernels, upright_cylinder_on_plane_has_four_rim_points) {
   const PairScene scene =
       pair_of(CylinderShape{1.0, 2.0, 0.0}, HalfSpaceShape{}, Pose::at(0, 0, 1.5), Pose{});
-  const PairAnswers answer = answer_to(scene, ContactLevel::manifold);
+  const PairResults answer = answer_to(scene, ContactLevel::manifold);
   EXPECT_EQ(answer.distance, -0.5);
   ASSERT_EQ(answer.contacts.size(), 4U);
   for (const ContactPoint& contact : answer.contacts) {
@@ -73,7 +73,7 @@ TEST(CurvedKernels, upright_cylinder_on_plane_has_four_rim_points) {
 TEST(CurvedKernels, lying_cylinder_on_plane_has_two_points) {
   const PairScene scene = pair_of(CylinderShape{1.0, 2.0, 0.25}, HalfSpaceShape{},
                                   turned_about_x(kRightAngle, 1.0), Pose{});
-  const PairAnswers answer = answer_to(scene, ContactLevel::manifold);
+  const PairResults answer = answer_to(scene, ContactLevel::manifold);
   EXPECT_NEAR(answer.distance, -0.25, 1e-15);
   ASSERT_EQ(answer.contacts.size(), 2U);
   EXPECT_NEAR(std::abs(answer.contacts[0].position[1] - answer.contacts[1].position[1]), 4.0, 1e-6);
@@ -81,11 +81,11 @@ TEST(CurvedKernels, lying_cylinder_on_plane_has_two_points) {
 
 TEST(CurvedKernels, cone_on_plane_rests_on_base_or_tip) {
   const ConeShape cone{1.0, 1.0, 0.0};
-  const PairAnswers base = answer_to(pair_of(cone, HalfSpaceShape{}, Pose::at(0, 0, 1.25), Pose{}),
+  const PairResults base = answer_to(pair_of(cone, HalfSpaceShape{}, Pose::at(0, 0, 1.25), Pose{}),
                                      ContactLevel::manifold, 0.5);
   EXPECT_EQ(base.distance, 0.25);
   EXPECT_EQ(depths(base), std::vector<float>(4, -0.25F));
-  const PairAnswers tip =
+  const PairResults tip =
       answer_to(pair_of(cone, HalfSpaceShape{}, turned_about_x(2 * kRightAngle, 0.5), Pose{}),
                 ContactLevel::manifold);
   EXPECT_NEAR(tip.distance, -0.5, 1e-15);
@@ -96,7 +96,7 @@ TEST(CurvedKernels, ball_beside_cone_has_distance_from_side) {
   // The side has a slope of 45 degrees and is sqrt(1/2) from (1, 0, 0).
   const PairScene scene =
       pair_of(SphereShape{0.25}, ConeShape{1.0, 0.5, 0.0}, Pose::at(1, 0, 0.5), Pose{});
-  const PairAnswers answer = answer_to(scene, ContactLevel::distance);
+  const PairResults answer = answer_to(scene, ContactLevel::distance);
   EXPECT_NEAR(answer.distance, std::sqrt(0.5) - 0.25, 1e-15);
   EXPECT_NEAR(answer.normal[0], -std::sqrt(0.5), 1e-15);
   EXPECT_NEAR(answer.normal[2], -std::sqrt(0.5), 1e-15);
@@ -105,7 +105,7 @@ TEST(CurvedKernels, ball_beside_cone_has_distance_from_side) {
 TEST(CurvedKernels, cylinder_in_box_top_has_least_depth) {
   const PairScene scene = pair_of(BoxShape{{4, 4, 1}, 0.0}, CylinderShape{1.0, 1.0, 0.0}, Pose{},
                                   Pose::at(0.5, 0, 1.75));
-  const PairAnswers answer = answer_to(scene, ContactLevel::manifold);
+  const PairResults answer = answer_to(scene, ContactLevel::manifold);
   EXPECT_NEAR(answer.distance, -0.25, 1e-9);
   EXPECT_NEAR(answer.normal[2], 1.0, 1e-9);
   ASSERT_EQ(answer.contacts.size(), 4U);
@@ -119,7 +119,7 @@ TEST(CurvedKernels, crossed_separate_cylinders_have_distance_of_sides) {
     pose.position[0] = 1.75;
     return pose;
   }());
-  const PairAnswers answer = answer_to(scene, ContactLevel::distance);
+  const PairResults answer = answer_to(scene, ContactLevel::distance);
   EXPECT_NEAR(answer.distance, 0.75, 1e-12);
   EXPECT_NEAR(answer.normal[0], 1.0, 1e-7);
 }
@@ -186,7 +186,7 @@ TEST(CurvedKernels, ellipsoid_on_plane_has_distance_of_lowest_point) {
   // The turn by a right angle about x makes the second axis upright.
   const PairScene scene = pair_of(HalfSpaceShape{{0.0, 0.0, 1.0}, 0.5}, EllipsoidShape{{1, 3, 2}},
                                   Pose{}, turned_about_x(kRightAngle, 3.25));
-  const PairAnswers answer = answer_to(scene, ContactLevel::manifold);
+  const PairResults answer = answer_to(scene, ContactLevel::manifold);
   EXPECT_NEAR(answer.distance, -0.25, 1e-15);
   EXPECT_NEAR(answer.normal[2], 1.0, 1e-15);
   ASSERT_EQ(answer.contacts.size(), 1U);
@@ -201,7 +201,7 @@ TEST(CurvedKernels, ball_by_ellipsoid_matches_closed_form) {
   for (const double away : {1.0, -0.125}) {
     const Pose at = Pose::at(surface[0] + away * out[0], surface[1] + away * out[1], 0);
     const PairScene scene = pair_of(SphereShape{0.25}, EllipsoidShape{{2.0, 1.0, 4.0}}, at, Pose{});
-    const PairAnswers answer = answer_to(scene, ContactLevel::distance);
+    const PairResults answer = answer_to(scene, ContactLevel::distance);
     EXPECT_NEAR(answer.distance, away - 0.25, 4e-15);
     EXPECT_LE(answer.error_bound, 1e-13);
     for (int k = 0; k < 2; ++k) EXPECT_NEAR(answer.normal[k], -out[k], 1e-14);
@@ -227,7 +227,7 @@ TEST(CurvedKernels, ball_beside_tapered_capsule_has_distance_from_side) {
   // On either side of the middle of the side, (2, 0, 1.5).
   for (const double away : {1.0, -0.125}) {
     const Pose at = Pose::at(2.0 + 0.8 * away, 0, 1.5 + 0.6 * away);
-    const PairAnswers answer =
+    const PairResults answer =
         answer_to(pair_of(SphereShape{0.25}, kTaper, at, Pose{}), ContactLevel::distance);
     EXPECT_NEAR(answer.distance, away - 0.25, 4e-15);
     EXPECT_LE(answer.error_bound, 1e-13);
@@ -243,7 +243,7 @@ TEST(CurvedKernels, lying_tapered_capsule_on_plane_has_two_points) {
   lying.orientation[0] = std::cos(half);
   lying.orientation[2] = std::sin(half);
   const PairScene scene = pair_of(HalfSpaceShape{}, kTaper, Pose{}, lying);
-  const PairAnswers answer = answer_to(scene, ContactLevel::manifold);
+  const PairResults answer = answer_to(scene, ContactLevel::manifold);
   EXPECT_NEAR(answer.distance, -0.25, 4e-15);
   ASSERT_EQ(answer.contacts.size(), 2U);
   for (const ContactPoint& contact : answer.contacts) {
@@ -339,7 +339,7 @@ TEST(CurvedKernels, nearly_coaxial_cylinders_stay_within_error_bounds) {
     const CylinderShape b{random.uniform(0.25, 0.5), random.uniform(1.5, 3.0), 0.0};
     Pose pose = turned_about_x(lean, random.uniform(-0.1, 0.1));
     for (int k = 0; k < 2; ++k) pose.position[k] = lean * random.uniform(-1.0, 1.0);
-    const PairAnswers answer = answer_to(pair_of(a, b, Pose{}, pose), ContactLevel::distance);
+    const PairResults answer = answer_to(pair_of(a, b, Pose{}, pose), ContactLevel::distance);
     double least = a.half_length + b.half_length;
     for (int around = 0; around < 2000; ++around) {
       for (int up = -2; up <= 2; ++up) {
@@ -529,7 +529,7 @@ TEST_P(CurvedPairs, contacts_lie_on_both_surfaces) {
   expect_contacts_on_both_surfaces(scene);
 }
 
-void expect_hardly_any_solved(const PairScene& scene) {
+void expect_few_solved(const PairScene& scene) {
   for (const ContactLevel level :
        {ContactLevel::boolean, ContactLevel::distance, ContactLevel::manifold}) {
     NarrowPhase narrow;
@@ -543,7 +543,7 @@ void expect_hardly_any_solved(const PairScene& scene) {
 }
 
 TEST_P(CurvedPairs, ordinary_pairs_rarely_need_solver) {
-  expect_hardly_any_solved(scene_of(PairStyle::ordinary, 2000));
+  expect_few_solved(scene_of(PairStyle::ordinary, 2000));
 }
 
 /// Stands bodies upright in a tilted frame: turned about their own axes, upside down or not, boxes
@@ -551,11 +551,11 @@ TEST_P(CurvedPairs, ordinary_pairs_rarely_need_solver) {
 void make_upright(PairScene& scene, const Quaternion& lean, Random& random) {
   for (std::size_t i = 0; i < scene.poses.size(); ++i) {
     const double spin = random.uniform(0.0, 2.0 * kRightAngle);
-    Quaternion turn = product(lean, {std::cos(spin), 0.0, 0.0, std::sin(spin)});
-    if (random.below(2) == 0) turn = product(turn, {0.0, 1.0, 0.0, 0.0});
+    Quaternion turn = multiply(lean, {std::cos(spin), 0.0, 0.0, std::sin(spin)});
+    if (random.below(2) == 0) turn = multiply(turn, {0.0, 1.0, 0.0, 0.0});
     if (scene.shapes[i].kind() == box) {
       constexpr Quaternion kFaces[] = {{1, 0, 0, 0}, {0.5, 0.5, 0.5, 0.5}, {0.5, -0.5, -0.5, -0.5}};
-      turn = product(turn, kFaces[random.below(3)]);
+      turn = multiply(turn, kFaces[random.below(3)]);
     }
     std::copy_n(turn.begin(), 4, scene.poses[i].orientation);
   }
@@ -582,7 +582,7 @@ TEST_P(CurvedPairs, upright_pairs_rarely_need_solver) {
   Random random(19);
   PairScene scene = scene_of(PairStyle::ordinary, 2000);
   make_upright(scene, {1, 0, 0, 0}, random);
-  expect_hardly_any_solved(scene);
+  expect_few_solved(scene);
 }
 
 TEST_P(CurvedPairs, answers_match_on_every_isa) {
@@ -591,7 +591,7 @@ TEST_P(CurvedPairs, answers_match_on_every_isa) {
     const PairScene scene = scene_of(style, scaled(200));
     for (const ContactLevel level :
          {ContactLevel::boolean, ContactLevel::distance, ContactLevel::manifold}) {
-      std::vector<PairAnswers> expected;
+      std::vector<PairResults> expected;
       for (const Isa isa : available_isas()) {
         const IsaScope scope(isa);
         const auto answers = ask(scene, options(level, NarrowTier::robust));

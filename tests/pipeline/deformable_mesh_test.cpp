@@ -65,9 +65,9 @@ std::vector<MeshStep> sample_steps() {
 }
 
 /// Edges, boxes and features computed directly from their definition.
-class MeshTwin {
+class MeshReference {
  public:
-  MeshTwin(const MeshStep& step, const Vec3d& origin, double distance) : step_(step) {
+  MeshReference(const MeshStep& step, const Vec3d& origin, double distance) : step_(step) {
     std::set<std::pair<std::uint32_t, std::uint32_t>> edges;
     for (std::size_t i = 0; i < step.corners.size(); i += 3) {
       for (std::size_t k = 0; k < 3; ++k) {
@@ -113,8 +113,8 @@ class MeshTwin {
   std::vector<Aabb> boxes_;
 };
 
-std::vector<Pair> candidates_by_force(FeaturePair kind, const MeshTwin& a, const MeshTwin& b,
-                                      bool self) {
+std::vector<Pair> candidates_by_force(FeaturePair kind, const MeshReference& a,
+                                      const MeshReference& b, bool self) {
   std::vector<Pair> pairs;
   for (std::size_t i = 0; i < a.count(kind, false); ++i) {
     const auto first = a.feature(kind, false, i);
@@ -166,7 +166,7 @@ TEST(DeformableMeshes, each_edge_is_stored_once) {
   for (const MeshStep& step : sample_steps()) {
     DeformableMesh mesh;
     ASSERT_EQ(step.build(mesh), Status::ok);
-    const MeshTwin twin(step, {}, 0.0);
+    const MeshReference twin(step, {}, 0.0);
     ASSERT_EQ(mesh.edges(), twin.edges());
     EXPECT_EQ(mesh.triangles(), step.corners.size() / 3);
     EXPECT_EQ(mesh.vertices(), step.start.size());
@@ -181,7 +181,7 @@ TEST(DeformableMeshes, self_candidates_are_exactly_overlapping_boxes) {
       DeformableMesh mesh({.origin = origin});
       ASSERT_EQ(step.build(mesh), Status::ok);
       ASSERT_EQ(step.move(mesh, distance), Status::ok);
-      const MeshTwin twin(step, origin, distance);
+      const MeshReference twin(step, origin, distance);
       for (const FeaturePair kind : kMeshFeaturePairs) {
         EXPECT_EQ(in_order(candidates_of(mesh, kind)), candidates_by_force(kind, twin, twin, true));
       }
@@ -201,8 +201,8 @@ TEST(DeformableMeshes, candidates_with_mesh_are_exactly_overlapping_boxes) {
   for (const FeaturePair kind : kMeshFeaturePairs) {
     const auto found =
         collected<Pair>([&](auto&& take) { return first.candidates_with(second, kind, take); });
-    EXPECT_EQ(in_order(found),
-              candidates_by_force(kind, MeshTwin(a, {}, 0.1), MeshTwin(b, {}, 0.0), false));
+    EXPECT_EQ(in_order(found), candidates_by_force(kind, MeshReference(a, {}, 0.1),
+                                                   MeshReference(b, {}, 0.0), false));
     EXPECT_FALSE(found.empty());
   }
 }
@@ -242,7 +242,7 @@ TEST(DeformableMeshes, self_impacts_match_single_queries) {
     ASSERT_EQ(step.build(mesh), Status::ok);
     const double separation = 1e-3;
     ASSERT_EQ(step.move(mesh, separation), Status::ok);
-    const MeshTwin twin(step, {}, 0.0);
+    const MeshReference twin(step, {}, 0.0);
     for (const FeaturePair kind : kMeshFeaturePairs) {
       for (const double least : {0.0, separation}) {
         const FeatureImpactOptions options{.min_separation = least};
@@ -301,7 +301,7 @@ TEST(DeformableMeshes, proximity_returns_near_features_and_witness_points) {
     ASSERT_EQ(step.build(mesh), Status::ok);
     ASSERT_EQ(step.move(mesh, thickness), Status::ok);
     const double digits = 1e-9 + 1e-14 * origin.norm();
-    const MeshTwin twin(step, origin, thickness);
+    const MeshReference twin(step, origin, thickness);
     for (const FeaturePair kind : kMeshFeaturePairs) {
       std::set<Pair> near;
       for (const MeshProximity& one : collected<MeshProximity>(

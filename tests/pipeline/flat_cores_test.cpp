@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "tests/pipeline/flat_pairs.h"
-#include "tests/pipeline/pair_answers.h"
+#include "tests/pipeline/pair_results.h"
 #include "tests/pipeline/reproduction.h"
 #include "tests/support/config.h"
 #include "tests/support/random.h"
@@ -23,12 +23,12 @@ namespace {
 constexpr double kMargin = 0.25;
 
 /// Returns the result of the single-pair function.
-PairAnswers ask_alone(const PairScene& scene, BodyPair pair, const NarrowOptions& options) {
+PairResults answer_of_one(const PairScene& scene, BodyPair pair, const NarrowOptions& options) {
   PairAnswer answer;
   EXPECT_EQ(collide(scene.pool, scene.shapes[pair.a], scene.poses[pair.a], scene.shapes[pair.b],
                     scene.poses[pair.b], options, answer),
             Status::ok);
-  PairAnswers all;
+  PairResults all;
   all.overlap = answer.overlap;
   all.distance = answer.distance;
   all.error_bound = answer.error_bound;
@@ -42,7 +42,7 @@ class Judge {
  public:
   explicit Judge(const PairScene& scene) : scene_(scene) {}
 
-  void judge(std::size_t i, const PairAnswers& truth, const PairAnswers& answer,
+  void judge(std::size_t i, const PairResults& truth, const PairResults& answer,
              const NarrowOptions& options, const std::string& how) {
     if (answer.overlap != truth.overlap) complain(wrong_, "wrong verdict", i, truth, answer, how);
     if (options.level == ContactLevel::boolean) return;
@@ -62,8 +62,8 @@ class Judge {
   [[nodiscard]] int beyond() const { return beyond_; }
 
  private:
-  void complain(int& count, const char* what, std::size_t i, const PairAnswers& truth,
-                const PairAnswers& answer, const std::string& how) {
+  void complain(int& count, const char* what, std::size_t i, const PairResults& truth,
+                const PairResults& answer, const std::string& how) {
     ++count;
     if (wrong_ + beyond_ > 3) return;
     ADD_FAILURE() << what << ", " << how << ": " << answer.overlap << " " << answer.distance
@@ -110,7 +110,7 @@ TEST_P(FlatCores, all_levels_match_solver) {
       const auto answers = ask(scene, options);
       for (std::size_t i = 0; i < truths.size(); ++i) {
         judge.judge(i, truths[i], answers[i], options, how);
-        judge.judge(i, truths[i], ask_alone(scene, scene.pairs[i], options), options,
+        judge.judge(i, truths[i], answer_of_one(scene, scene.pairs[i], options), options,
                     how + ", alone");
       }
     }
@@ -120,7 +120,7 @@ TEST_P(FlatCores, all_levels_match_solver) {
   RecordProperty("pairs", static_cast<int>(scene.pairs.size()));
   RecordProperty("overlapping",
                  static_cast<int>(std::count_if(truths.begin(), truths.end(),
-                                                [](const PairAnswers& t) { return t.overlap; })));
+                                                [](const PairResults& t) { return t.overlap; })));
   RecordProperty("wrong", judge.wrong());
   RecordProperty("beyond", judge.beyond());
 }

@@ -1,5 +1,5 @@
 // The kernels of boxes and triangles compared with a plain reference implementation in long double
-// (flat_twin.h).
+// (flat_reference.h).
 
 #include <winnow/pipeline/shape_pool.h>
 #include <winnow/simd/isa.h>
@@ -12,7 +12,7 @@
 #include <limits>
 #include <vector>
 
-#include "tests/pipeline/flat_twin.h"
+#include "tests/pipeline/flat_reference.h"
 #include "tests/support/config.h"
 #include "tests/support/random.h"
 
@@ -35,7 +35,7 @@ struct Scene {
     poses.push_back(pose);
     return static_cast<std::uint32_t>(shapes.size() - 1);
   }
-  [[nodiscard]] FlatTwin twin(std::uint32_t body, const double origin[3]) const {
+  [[nodiscard]] FlatReference twin(std::uint32_t body, const double origin[3]) const {
     const ShapeId id = shapes[body];
     if (id.kind() == ShapeKind::box) {
       return {pool.tables().boxes[id.index()], poses[body], origin};
@@ -173,55 +173,55 @@ Scene hostile_scene(ShapeKind a, ShapeKind b, std::size_t count) {
 }
 
 // Returns the sum of all lengths of a pair.
-double scale_of(const FlatTwin& a, const FlatTwin& b) {
+double scale_of(const FlatReference& a, const FlatReference& b) {
   long double scale = a.rounding + b.rounding;
-  for (const FlatTwin* t : {&a, &b}) {
+  for (const FlatReference* t : {&a, &b}) {
     for (const LongVector& v : t->vertices) scale = std::max(scale, v.lpNorm<1>());
   }
   return static_cast<double>(scale);
 }
 
-struct Twins {
-  FlatTwin a;
-  FlatTwin b;
+struct FlatReferences {
+  FlatReference a;
+  FlatReference b;
   long double distance;
   double scale;
 
-  Twins(const Scene& scene, std::size_t i)
+  FlatReferences(const Scene& scene, std::size_t i)
       : a(scene.twin(scene.pairs[i].a, scene.poses[scene.pairs[i].a].position)),
         b(scene.twin(scene.pairs[i].b, scene.poses[scene.pairs[i].a].position)),
         distance(signed_distance(a, b)),
         scale(scale_of(a, b)) {}
 };
 
-std::vector<Twins> twins_of(const Scene& scene) {
-  std::vector<Twins> twins;
+std::vector<FlatReferences> references_of(const Scene& scene) {
+  std::vector<FlatReferences> twins;
   for (std::size_t i = 0; i < scene.pairs.size(); ++i) twins.emplace_back(scene, i);
   return twins;
 }
 
 // Relative error of the reference implementation: a few roundings.
-constexpr long double kTwinError = 1e-17L;
+constexpr long double kReferenceError = 1e-17L;
 
-void expect_overlaps(const std::vector<Twins>& twins, const Answers& answers) {
+void expect_overlaps(const std::vector<FlatReferences>& twins, const Answers& answers) {
   for (std::size_t i = 0; i < twins.size(); ++i) {
     if (!answers.certified[i]) continue;
-    const double doubt = twins[i].scale * static_cast<double>(kTwinError);
+    const double doubt = twins[i].scale * static_cast<double>(kReferenceError);
     if (std::abs(twins[i].distance) <= doubt) continue;
     ASSERT_EQ(answers.overlap[i], twins[i].distance <= 0.0L ? 1 : 0)
         << i << " distance " << static_cast<double>(twins[i].distance);
   }
 }
 
-void expect_distances(const std::vector<Twins>& twins, const Answers& answers) {
+void expect_distances(const std::vector<FlatReferences>& twins, const Answers& answers) {
   for (std::size_t i = 0; i < twins.size(); ++i) {
     if (!answers.certified[i]) continue;
-    const Twins& t = twins[i];
+    const FlatReferences& t = twins[i];
     const double d = answers.distance[i];
-    const double doubt = answers.bound[i] + t.scale * static_cast<double>(64 * kTwinError);
+    const double doubt = answers.bound[i] + t.scale * static_cast<double>(64 * kReferenceError);
     ASSERT_NEAR(d, static_cast<double>(t.distance), doubt) << i;
     ASSERT_LE(answers.bound[i], 4e-12 * t.scale) << i;
-    if (std::abs(t.distance) > kTwinError * t.scale) {
+    if (std::abs(t.distance) > kReferenceError * t.scale) {
       ASSERT_EQ(d <= 0.0, t.distance <= 0.0L) << i;
     }
     const LongVector n = answers.normal_of(i);
@@ -233,15 +233,16 @@ void expect_distances(const std::vector<Twins>& twins, const Answers& answers) {
     const LongVector on_a = answers.point_of(i);
     const LongVector on_b = on_a + n * d;
     const double slack = t.scale * 1e-6;
-    ASSERT_LE(static_cast<double>(signed_distance(t.a, FlatTwin(on_a))), slack) << i;
-    ASSERT_LE(static_cast<double>(signed_distance(t.b, FlatTwin(on_b))), slack) << i;
+    ASSERT_LE(static_cast<double>(signed_distance(t.a, FlatReference(on_a))), slack) << i;
+    ASSERT_LE(static_cast<double>(signed_distance(t.b, FlatReference(on_b))), slack) << i;
   }
 }
 
-void expect_manifolds(const std::vector<Twins>& twins, const Answers& answers, double margin) {
+void expect_manifolds(const std::vector<FlatReferences>& twins, const Answers& answers,
+                      double margin) {
   for (std::size_t i = 0; i < twins.size(); ++i) {
     if (!answers.certified[i]) continue;
-    const Twins& t = twins[i];
+    const FlatReferences& t = twins[i];
     const double d = answers.distance[i];
     const double tolerance = answers.bound[i] + t.scale * 1e-6;
     if (d > margin) {
@@ -250,7 +251,7 @@ void expect_manifolds(const std::vector<Twins>& twins, const Answers& answers, d
       continue;
     }
     ASSERT_NEAR(d, static_cast<double>(t.distance),
-                answers.bound[i] + t.scale * static_cast<double>(64 * kTwinError))
+                answers.bound[i] + t.scale * static_cast<double>(64 * kReferenceError))
         << i;
     ASSERT_GE(answers.count[i], 1U) << i;
     ASSERT_LE(answers.count[i], kManifoldPoints) << i;
@@ -261,8 +262,8 @@ void expect_manifolds(const std::vector<Twins>& twins, const Answers& answers, d
       ASSERT_LE(answers.depth[p], answers.depth[first] + tolerance) << i;
       const LongVector x(answers.position[0][p], answers.position[1][p], answers.position[2][p]);
       const double half = 0.5 * std::abs(static_cast<double>(answers.depth[p]));
-      ASSERT_LE(static_cast<double>(signed_distance(t.a, FlatTwin(x))), half + off) << i;
-      ASSERT_LE(static_cast<double>(signed_distance(t.b, FlatTwin(x))), half + off) << i;
+      ASSERT_LE(static_cast<double>(signed_distance(t.a, FlatReference(x))), half + off) << i;
+      ASSERT_LE(static_cast<double>(signed_distance(t.b, FlatReference(x))), half + off) << i;
     }
   }
 }
@@ -279,7 +280,7 @@ std::string name_of(const ::testing::TestParamInfo<Kinds>& info) {
 }
 
 void expect_all_right(const Scene& scene) {
-  const std::vector<Twins> twins = twins_of(scene);
+  const std::vector<FlatReferences> twins = references_of(scene);
   for (const Isa isa : available_isas()) {
     const IsaScope scope(isa);
     expect_overlaps(twins, run(scene, ContactLevel::boolean));

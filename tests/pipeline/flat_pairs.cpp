@@ -126,12 +126,12 @@ class FlatMaker {
   }
 
   LyingShape own(int d, double size, double round) {
-    OwnSet& set = scene_.own.emplace_back();
-    set.form = static_cast<OwnSet::Form>(random_.below(4));
+    UserShape& set = scene_.own.emplace_back();
+    set.form = static_cast<UserShape::Form>(random_.below(4));
     // A drum is round about z.
-    const bool lies = set.form == OwnSet::drum && d == 1;
+    const bool lies = set.form == UserShape::drum && d == 1;
     for (int k = 0; k < std::min(d, 3); ++k) set.size[lies ? 2 - k : k] = length(size);
-    if (set.form == OwnSet::corners) {
+    if (set.form == UserShape::corners) {
       for (const Eigen::Vector3d& x : corners(d, 1 + random_.below(8), size)) {
         set.corner.insert(set.corner.end(), x.begin(), x.end());
       }

@@ -73,11 +73,11 @@ TEST_F(Hooks, scene_stages_are_ordered_and_nested) {
   EXPECT_TRUE(is_nested && under_way.empty());
   // The balls are solved before the triangle is found. Partitions refresh and build on the first
   // query of pairs.
-  std::vector<WorkStage> shapes_alone;
+  std::vector<WorkStage> shape_stages;
   for (const WorkStage stage : begun) {
-    if (stage >= WorkStage::mid_phase) shapes_alone.push_back(stage);
+    if (stage >= WorkStage::mid_phase) shape_stages.push_back(stage);
   }
-  EXPECT_EQ(shapes_alone, (std::vector<WorkStage>{WorkStage::narrow_phase, WorkStage::mid_phase,
+  EXPECT_EQ(shape_stages, (std::vector<WorkStage>{WorkStage::narrow_phase, WorkStage::mid_phase,
                                                   WorkStage::narrow_phase, WorkStage::contacts}));
   for (const WorkStage stage : {WorkStage::refresh, WorkStage::build, WorkStage::pairs}) {
     EXPECT_NE(std::ranges::find(begun, stage), begun.end()) << to_string(stage);

@@ -28,9 +28,9 @@ TEST(Hypotenuse, error_is_at_most_one_ulp) {
 }
 
 TEST(Hypotenuse, extreme_numbers_do_not_overflow_or_underflow) {
-  constexpr double kLeast = 0x1p-1074;
+  constexpr double kSmallestDouble = 0x1p-1074;
   EXPECT_EQ(hypotenuse(0.0, -0.0), 0.0);
-  EXPECT_EQ(hypotenuse(3 * kLeast, 4 * kLeast), 5 * kLeast);
+  EXPECT_EQ(hypotenuse(3 * kSmallestDouble, 4 * kSmallestDouble), 5 * kSmallestDouble);
   EXPECT_EQ(hypotenuse(-0x1.8p1022, 0x1p1023), 0x1.4p1023);
   EXPECT_EQ(hypotenuse(DBL_MAX, 1.0), DBL_MAX);
 }

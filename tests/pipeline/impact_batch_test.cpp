@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "pipeline/motion/impact_search.h"
-#include "tests/pipeline/motion_twin.h"
+#include "tests/pipeline/motion_reference.h"
 
 namespace winnow::test {
 namespace {

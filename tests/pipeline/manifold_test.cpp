@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/pipeline/pair_answers.h"
+#include "tests/pipeline/pair_results.h"
 #include "tests/pipeline/pair_scenes.h"
 #include "tests/support/config.h"
 #include "tests/support/random.h"
@@ -79,14 +79,14 @@ PairScene resting_boxes(std::size_t count, double least_tilt, double most_tilt, 
   return scene;
 }
 
-double depth_of(const PairAnswers& answer) {
+double depth_of(const PairResults& answer) {
   double deepest = -std::numeric_limits<double>::infinity();
   for (const ContactPoint& c : answer.contacts) deepest = std::max<double>(deepest, c.depth);
   return deepest;
 }
 
 /// Returns the number of points of `of` that have no counterpart in `in`.
-std::size_t unmatched_points(const PairAnswers& of, const PairAnswers& in, double tolerance) {
+std::size_t unmatched_points(const PairResults& of, const PairResults& in, double tolerance) {
   const auto near = [&](const ContactPoint& c, const ContactPoint& d) {
     double apart = std::abs(double{c.depth} - double{d.depth});
     for (int i = 0; i < 3; ++i) {
@@ -109,7 +109,7 @@ TEST(Manifolds, slightly_tilted_cubes_have_four_points) {
   scene.poses = {Pose{}, pose_of(turn.normalized(), {0.1, 0.1, 1.99})};
   scene.pairs = {{0, 1}};
   for (const NarrowTier tier : kTiers) {
-    const PairAnswers answer = ask(scene, {.tier = tier}).at(0);
+    const PairResults answer = ask(scene, {.tier = tier}).at(0);
     EXPECT_EQ(answer.contacts.size(), 4U);
     for (const ContactPoint& contact : answer.contacts) EXPECT_NEAR(contact.depth, 0.01, 5e-4);
   }
@@ -126,7 +126,7 @@ TEST(Manifolds, box_given_as_hull_matches_box) {
         SCOPED_TRACE(std::string(to_string(isa)) + " tilted by " + std::to_string(tilt[1]));
         const auto answers = ask(scene, {.tier = tier, .margin = kMargin});
         for (std::size_t i = 0; i < answers.size(); ++i) {
-          const PairAnswers& as_boxes = answers[i / 4 * 4];
+          const PairResults& as_boxes = answers[i / 4 * 4];
           ASSERT_GE(as_boxes.contacts.size(), 2U) << i;
           ASSERT_EQ(answers[i].contacts.size(), as_boxes.contacts.size()) << i;
           // If two axes or two corners are equally good, either may be chosen.
@@ -176,7 +176,7 @@ TEST(Manifolds, capsule_deep_in_hull_has_deepest_point) {
   std::copy_n(other, 4, scene.poses[1].orientation);
   scene.pairs = {{0, 1}};
   for (const NarrowTier tier : kTiers) {
-    const PairAnswers answer = ask(scene, {.tier = tier}).at(0);
+    const PairResults answer = ask(scene, {.tier = tier}).at(0);
     EXPECT_EQ(answer.contacts.size(), 2U);
     EXPECT_NEAR(depth_of(answer), 0.0708781, 1e-6);
   }
@@ -273,7 +273,7 @@ TEST(Manifolds, points_include_deepest_and_respect_margin) {
         SCOPED_TRACE(std::string(to_string(style)) + " margin " + std::to_string(margin));
         const auto answers = ask(scene, {.tier = tier, .margin = margin});
         for (std::size_t i = 0; i < answers.size(); ++i) {
-          const PairAnswers& answer = answers[i];
+          const PairResults& answer = answers[i];
           ASSERT_EQ(answer.contacts.empty(), answer.distance > margin) << i;
           if (answer.contacts.empty()) continue;
           const double reach = extent(scene, scene.pairs[i]) + std::abs(answer.distance);
@@ -328,9 +328,9 @@ class Neighbours {
   void solve() { solved_ = ask(scene_, {.tier = NarrowTier::reference, .margin = kMargin}); }
 
   /// Returns true if the manifold matches one of those added as number `place`.
-  [[nodiscard]] bool have(const PairAnswers& found, std::size_t place, double tolerance) const {
+  [[nodiscard]] bool have(const PairResults& found, std::size_t place, double tolerance) const {
     const auto first = solved_.begin() + static_cast<std::ptrdiff_t>(place * kCount);
-    return std::any_of(first, first + kCount, [&](const PairAnswers& solved) {
+    return std::any_of(first, first + kCount, [&](const PairResults& solved) {
       return found.contacts.size() == solved.contacts.size() &&
              unmatched_points(found, solved, tolerance) == 0;
     });
@@ -339,7 +339,7 @@ class Neighbours {
  private:
   PairScene& scene_;
   Random random_;
-  std::vector<PairAnswers> solved_;
+  std::vector<PairResults> solved_;
 };
 
 TEST_P(ManifoldsOf, lanes_match_solver) {

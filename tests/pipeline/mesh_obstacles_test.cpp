@@ -1,5 +1,5 @@
 // Impacts of deformable meshes with moving rigid shapes, compared with distances at sampled times
-// that together cover the whole step (motion_twin.h).
+// that together cover the whole step (motion_reference.h).
 
 #include <gtest/gtest.h>
 #include <winnow/pipeline/composite_pool.h>
@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "pipeline/solver/solver.h"
-#include "tests/pipeline/motion_twin.h"
+#include "tests/pipeline/motion_reference.h"
 #include "tests/support/config.h"
 #include "tests/support/meshes.h"
 #include "tests/support/random.h"
@@ -56,10 +56,10 @@ struct Obstacle {
   double reach;
 };
 
-class ObstacleTwin {
+class ObstacleReference {
  public:
-  ObstacleTwin(const ShapePool& pool, const Obstacle& obstacle, const RigidMotion& motion,
-               const BendingSoup& soup)
+  ObstacleReference(const ShapePool& pool, const Obstacle& obstacle, const RigidMotion& motion,
+                    const BendingSoup& soup)
       : tables_(pool.tables()), obstacle_(obstacle), motion_(motion), soup_(soup) {
     tables_.triangles = triangles_.data();
     triangles_.assign(pool.tables().triangles, pool.tables().triangles + triangle_count(pool));
@@ -209,7 +209,7 @@ TEST(MeshObstacles, impacts_are_never_late_and_within_tolerance) {
           EXPECT_TRUE(met.emplace(impact.face, impact).second);
         }
         hits += met.size();
-        ObstacleTwin twin(obstacles.pool, obstacle, motion, soup);
+        ObstacleReference twin(obstacles.pool, obstacle, motion, soup);
         for (std::uint32_t face = 0; face < faces; ++face) {
           const auto found = met.find(face);
           const double until = found == met.end() ? 1.0 : found->second.time;
@@ -237,7 +237,7 @@ TEST(MeshObstacles, impacts_keep_requested_separation) {
   ASSERT_EQ(soup.put(mesh, 0.2), Status::ok);
   for (const Obstacle& obstacle : obstacles.all) {
     const RigidMotion motion = random_motion({}, 1.0, random);
-    ObstacleTwin twin(obstacles.pool, obstacle, motion, soup);
+    ObstacleReference twin(obstacles.pool, obstacle, motion, soup);
     for (const MeshShapeImpact& impact :
          impacts_of(mesh, {obstacles.pool, obstacle.shape, motion, 0.1},
                     {.composites = &obstacles.composites})) {

@@ -23,7 +23,7 @@ namespace {
 using Real = long double;
 using Point = std::array<Real, 3>;
 
-struct TwinTriangle {
+struct ReferenceTriangle {
   Point corner[3];
 
   [[nodiscard]] Real low(std::size_t axis) const {
@@ -35,8 +35,8 @@ struct TwinTriangle {
 };
 
 /// Returns the placed triangles of a mesh by slot.
-std::vector<TwinTriangle> twin(const MeshView& mesh, const MeshPlacement& placement = {}) {
-  std::vector<TwinTriangle> result(mesh.triangle_count);
+std::vector<ReferenceTriangle> twin(const MeshView& mesh, const MeshPlacement& placement = {}) {
+  std::vector<ReferenceTriangle> result(mesh.triangle_count);
   for (std::size_t slot = 0; slot < result.size(); ++slot) {
     for (std::size_t k = 0; k < 3; ++k) {
       for (std::size_t row = 0; row < 3; ++row) {
@@ -63,13 +63,13 @@ Real dot(const Point& a, const Point& b) {
 }
 
 /// Returns the gap between a and b, b grown by the margin, along an axis. Negative if they overlap.
-Real gap_along(const TwinTriangle& a, const TwinTriangle& b, const double margin[3],
+Real gap_along(const ReferenceTriangle& a, const ReferenceTriangle& b, const double margin[3],
                const Point& axis) {
   const Real length = std::sqrt(dot(axis, axis));
   if (length == 0) return -1;
   Real ends[2][2];
   for (int side = 0; side < 2; ++side) {
-    const TwinTriangle& t = side == 0 ? a : b;
+    const ReferenceTriangle& t = side == 0 ? a : b;
     const Real x = dot(axis, t.corner[0]);
     const Real y = dot(axis, t.corner[1]);
     const Real z = dot(axis, t.corner[2]);
@@ -81,7 +81,7 @@ Real gap_along(const TwinTriangle& a, const TwinTriangle& b, const double margin
   return (std::max(ends[0][0] - ends[1][1], ends[1][0] - ends[0][1]) - grow) / length;
 }
 
-Real box_gap(const TwinTriangle& a, const TwinTriangle& b, const double margin[3]) {
+Real box_gap(const ReferenceTriangle& a, const ReferenceTriangle& b, const double margin[3]) {
   Real result = -1;
   for (std::size_t k = 0; k < 3; ++k) {
     const Real between = std::max(a.low(k) - b.high(k), b.low(k) - a.high(k));
@@ -92,7 +92,7 @@ Real box_gap(const TwinTriangle& a, const TwinTriangle& b, const double margin[3
 
 /// Returns the largest gap along the frame's axes and the normals, and with `all` also along cross
 /// products of edges. If the triangles, one of them grown, overlap, no gap is positive.
-Real gap(const TwinTriangle& a, const TwinTriangle& b, const double margin[3], bool all) {
+Real gap(const ReferenceTriangle& a, const ReferenceTriangle& b, const double margin[3], bool all) {
   Real result = box_gap(a, b, margin);
   if (result > 0) return result;
   Point edges[2][3];
@@ -207,7 +207,7 @@ void expect_pairs(const TriangleMesh& a, const TriangleMesh& b, const MeshPlacem
 
 /// Returns the distance of a point from a triangle: from its plane if the projection is inside,
 /// else from an edge.
-Real distance(const TwinTriangle& t, const Point& point) {
+Real distance(const ReferenceTriangle& t, const Point& point) {
   const auto& c = t.corner;
   const Point normal = cross(minus(c[1], c[0]), minus(c[2], c[0]));
   const Real length = std::sqrt(dot(normal, normal));
@@ -317,8 +317,8 @@ struct Seen {
 
 /// Returns the time when the box [min, max] starts to overlap a triangle's box, or infinity if it
 /// does not until the limit.
-Real meeting_time(const TwinTriangle& triangle, const double min[3], const double max[3],
-                  const double direction[3], Real limit, Real slack) {
+Real swept_box_time(const ReferenceTriangle& triangle, const double min[3], const double max[3],
+                    const double direction[3], Real limit, Real slack) {
   Real first = 0;
   Real last = limit;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -364,12 +364,12 @@ TEST_F(Meshes, sweep_visits_all_triangles_until_limit) {
       EXPECT_EQ(set.size(), shown.size());
       Real earliest = std::numeric_limits<Real>::infinity();
       for (std::uint32_t slot = 0; slot < triangles.size(); ++slot) {
-        const Real time = meeting_time(triangles[slot], min, max, direction, limit, 0);
+        const Real time = swept_box_time(triangles[slot], min, max, direction, limit, 0);
         earliest = std::min(earliest, time);
         EXPECT_TRUE(time > static_cast<Real>(limit) || std::isinf(time) || set.count(slot) != 0);
         if (set.count(slot) == 0 || slow) continue;
         EXPECT_FALSE(
-            std::isinf(meeting_time(triangles[slot], min, max, direction, limit, r * 1e-9)))
+            std::isinf(swept_box_time(triangles[slot], min, max, direction, limit, r * 1e-9)))
             << "visited a triangle that the sweep never reaches";
       }
       // The visitor returns the earliest time after the first leaf. The traversal may then visit
@@ -379,7 +379,7 @@ TEST_F(Meshes, sweep_visits_all_triangles_until_limit) {
       EXPECT_LE(seen.slots.size(), shown.size());
       if (!shown.empty()) {
         EXPECT_TRUE(std::any_of(seen.slots.begin(), seen.slots.end(), [&](std::uint32_t slot) {
-          return meeting_time(triangles[slot], min, max, direction, limit, 0) == earliest;
+          return swept_box_time(triangles[slot], min, max, direction, limit, 0) == earliest;
         }));
       }
       seen = {{}, -1.0, false};
@@ -390,7 +390,7 @@ TEST_F(Meshes, sweep_visits_all_triangles_until_limit) {
 }
 
 /// Returns a random point of a triangle, sometimes on an edge or a corner.
-Eigen::Vector3d point_of(const TwinTriangle& triangle, Random& random) {
+Eigen::Vector3d point_of(const ReferenceTriangle& triangle, Random& random) {
   double weight[3];
   for (double& w : weight) w = random.chance(0.3) ? 0.0 : random.uniform(0, 1);
   const double sum = weight[0] + weight[1] + weight[2];
@@ -405,8 +405,8 @@ Eigen::Vector3d point_of(const TwinTriangle& triangle, Random& random) {
   return point;
 }
 
-LoneSurfaceRay lone(const SurfaceRay& ray) {
-  LoneSurfaceRay result{};
+SingleSurfaceRay lone(const SurfaceRay& ray) {
+  SingleSurfaceRay result{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     result.ray.origin[axis][0] = ray.origin[axis];
     result.ray.direction[axis][0] = ray.direction[axis];
@@ -638,7 +638,7 @@ TEST_F(Meshes, near_pairs_are_visited_for_any_direction) {
 
 /// Returns the points of a triangle's edges nearest to a point, and the projection onto the
 /// triangle if it is inside.
-std::vector<Point> nearest_points(const TwinTriangle& triangle, const Point& to) {
+std::vector<Point> nearest_points(const ReferenceTriangle& triangle, const Point& to) {
   const auto& corner = triangle.corner;
   const auto along = [](const Point& from, const Point& way, Real share) {
     return Point{from[0] + share * way[0], from[1] + share * way[1], from[2] + share * way[2]};
@@ -702,7 +702,7 @@ TEST_F(Meshes, triangles_near_box_are_visited_at_any_scale) {
         return std::sqrt(square);
       };
       for (std::uint32_t slot = 0; slot < triangles.size(); ++slot) {
-        const TwinTriangle& triangle = triangles[slot];
+        const ReferenceTriangle& triangle = triangles[slot];
         Real least = std::numeric_limits<Real>::infinity();
         for (const Point& point : nearest_points(triangle, middle)) {
           const auto at = [&](std::size_t axis) { return point[axis]; };

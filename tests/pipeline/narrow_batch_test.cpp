@@ -9,7 +9,7 @@
 #include <numeric>
 #include <vector>
 
-#include "tests/pipeline/pair_answers.h"
+#include "tests/pipeline/pair_results.h"
 #include "tests/pipeline/pair_scenes.h"
 #include "tests/pipeline/reproduction.h"
 #include "tests/support/config.h"
@@ -40,7 +40,7 @@ PairScene shuffled_scene(std::size_t count) {
 
 class Batches : public testing::Test {
  protected:
-  void expect_same(const std::vector<PairAnswers>& there, const std::vector<PairAnswers>& again,
+  void expect_same(const std::vector<PairResults>& there, const std::vector<PairResults>& again,
                    const std::string& what) const {
     ASSERT_EQ(there.size(), again.size());
     int faults = 0;
@@ -62,7 +62,7 @@ TEST_F(Batches, answers_match_on_every_isa_and_thread_count) {
   for (const NarrowTier tier : kTiers) {
     for (const ContactLevel level : kLevels) {
       NarrowOptions options{.level = level, .tier = tier, .margin = kMargin};
-      std::vector<PairAnswers> first;
+      std::vector<PairResults> first;
       {
         const IsaScope scope(available_isas().front());
         first = ask(scene_, options);
@@ -91,7 +91,7 @@ TEST_F(Batches, batch_position_and_earlier_calls_change_nothing) {
       NarrowPhase phase;
       NarrowResult result;
       // Batches of many sizes put the pairs into different lanes and at the ends of batches.
-      std::vector<PairAnswers> apart;
+      std::vector<PairResults> apart;
       const std::span<const BodyPair> pairs(scene_.pairs);
       for (std::size_t at = 0, size = 1; at < pairs.size(); at += size, size = size % 37 + 1) {
         size = std::min(size, pairs.size() - at);
@@ -113,10 +113,10 @@ TEST_F(Batches, batch_of_one_matches_large_batch) {
     const auto options_of = [tier](ContactLevel level) {
       return NarrowOptions{.level = level, .tier = tier, .margin = kMargin};
     };
-    std::vector<std::vector<PairAnswers>> together;
+    std::vector<std::vector<PairResults>> together;
     for (const ContactLevel level : kLevels) together.push_back(ask(scene_, options_of(level)));
-    std::vector<PairAnswers> alone;
-    std::vector<PairAnswers> expected;
+    std::vector<PairResults> alone;
+    std::vector<PairResults> expected;
     // The levels alternate in one result.
     for (std::size_t i = 0; i < scene_.pairs.size(); ++i) {
       const std::size_t level = i / 2 % 3;
@@ -133,13 +133,13 @@ TEST_F(Batches, batch_of_one_matches_large_batch) {
 }
 
 /// Returns the answer of the single-pair function for pair i.
-PairAnswers ask_one(const PairScene& scene, std::size_t i, const NarrowOptions& options) {
+PairResults answer_of_one(const PairScene& scene, std::size_t i, const NarrowOptions& options) {
   const BodyPair pair = scene.pairs[i];
   PairAnswer answer;
   EXPECT_EQ(collide(scene.pool, scene.shapes[pair.a], scene.poses[pair.a], scene.shapes[pair.b],
                     scene.poses[pair.b], options, answer),
             Status::ok);
-  PairAnswers answers;
+  PairResults answers;
   answers.overlap = answer.overlap;
   if (options.level == ContactLevel::boolean) return answers;
   answers.distance = answer.distance;
@@ -161,9 +161,9 @@ TEST_F(Batches, per_pair_margins_match_single_queries) {
   }
   for (const NarrowTier tier : kTiers) {
     for (const ContactLevel level : kLevels) {
-      std::vector<PairAnswers> alone;
+      std::vector<PairResults> alone;
       for (std::size_t i = 0; i < scene_.pairs.size(); ++i) {
-        alone.push_back(ask_one(scene_, i, {level, tier, margins[i]}));
+        alone.push_back(answer_of_one(scene_, i, {level, tier, margins[i]}));
       }
       for (const Isa isa : available_isas()) {
         const IsaScope scope(isa);
@@ -178,11 +178,12 @@ TEST_F(Batches, single_pair_function_matches_narrow_phase) {
   for (const NarrowTier tier : kTiers) {
     for (const ContactLevel level : kLevels) {
       const NarrowOptions options{.level = level, .tier = tier, .margin = kMargin};
-      std::vector<PairAnswers> alone(scene_.pairs.size());
+      std::vector<PairResults> alone(scene_.pairs.size());
       // The function is safe to call from several threads.
       const auto work = Execution::parallel();
       Threads(3).run([&] {
-        work.for_each(alone.size(), [&](std::size_t i) { alone[i] = ask_one(scene_, i, options); });
+        work.for_each(alone.size(),
+                      [&](std::size_t i) { alone[i] = answer_of_one(scene_, i, options); });
       });
       expect_same(ask(scene_, options), alone, "one pair");
     }
@@ -191,9 +192,9 @@ TEST_F(Batches, single_pair_function_matches_narrow_phase) {
 
 void expect_same_verdicts(const PairScene& scene) {
   const NarrowOptions options{.level = ContactLevel::boolean};
-  const std::vector<PairAnswers> together = ask(scene, options);
+  const std::vector<PairResults> together = ask(scene, options);
   for (std::size_t i = 0; i < scene.pairs.size(); ++i) {
-    if (ask_one(scene, i, options).overlap == together[i].overlap) continue;
+    if (answer_of_one(scene, i, options).overlap == together[i].overlap) continue;
     ADD_FAILURE() << "in a batch they " << (together[i].overlap ? "overlap" : "are apart") << "\n"
                   << reproduction(scene, scene.pairs[i]);
     return;
@@ -246,8 +247,8 @@ TEST(OnePair, verdict_matches_batch_for_off_centre_shapes) {
   add(ConeShape{0.3, 0.4, 0.05});
   add(EllipsoidShape{{0.3, 0.2, 0.4}});
   add(CapsuleShape{0.2, 0.4});
-  const OwnSet& aside = scene.own.emplace_back(
-      OwnSet{OwnSet::corners, {}, {1.0, 0.0, 0.0, 1.2, 0.1, 0.0, 1.1, -0.2, 0.1, 1.0, 0.1, 0.3}});
+  const UserShape& aside = scene.own.emplace_back(UserShape{
+      UserShape::corners, {}, {1.0, 0.0, 0.0, 1.2, 0.1, 0.0, 1.1, -0.2, 0.1, 1.0, 0.1, 0.3}});
   ShapeId own;
   ASSERT_EQ(scene.pool.add(shape_of(aside, 0.01), own), Status::ok);
   ShapeId nested;
@@ -297,8 +298,8 @@ TEST_F(Batches, contact_levels_agree) {
         ask(scene_, {.level = ContactLevel::manifold, .tier = tier, .margin = kMargin});
     int faults = 0;
     for (std::size_t i = 0; i < scene_.pairs.size(); ++i) {
-      const PairAnswers& d = distances[i];
-      const PairAnswers& m = manifolds[i];
+      const PairResults& d = distances[i];
+      const PairResults& m = manifolds[i];
       const double slack = d.error_bound + m.error_bound;
       bool good = yes_no[i].overlap == d.overlap && m.overlap == d.overlap;
       good = good && d.overlap == (d.distance <= 0.0);
@@ -321,7 +322,7 @@ TEST_F(Batches, deepest_contact_within_margin_matches_distance) {
       const auto answers = ask(scene_, {.tier = tier, .margin = margin});
       int faults = 0;
       for (std::size_t i = 0; i < answers.size(); ++i) {
-        const PairAnswers& m = answers[i];
+        const PairResults& m = answers[i];
         if (m.distance > margin) continue;
         double deepest = -std::numeric_limits<double>::infinity();
         for (const ContactPoint& c : m.contacts) {

@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-#include "tests/pipeline/pair_answers.h"
+#include "tests/pipeline/pair_results.h"
 #include "tests/pipeline/pair_scenes.h"
 #include "tests/support/config.h"
 #include "tests/support/counting_memory.h"

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/pipeline/pair_answers.h"
+#include "tests/pipeline/pair_results.h"
 #include "tests/pipeline/pair_scenes.h"
 #include "tests/pipeline/reproduction.h"
 #include "tests/support/random.h"
@@ -71,8 +71,8 @@ TEST_P(Properties, swapped_bodies_give_mirrored_answers) {
     const auto there = ask(scene_, distances(tier));
     const auto again = ask(back, distances(tier));
     for (std::size_t i = 0; i < there.size(); ++i) {
-      const PairAnswers& p = there[i];
-      const PairAnswers& q = again[i];
+      const PairResults& p = there[i];
+      const PairResults& q = again[i];
       // Coincident centres have no canonical order, and the search on rims depends on the order.
       const bool exactly =
           !is_curved(scene_, scene_.pairs[i]) && between(scene_, scene_.pairs[i]).norm() > 0.0;
@@ -281,8 +281,8 @@ TEST(Sizes, powers_of_two_keep_verdict_and_distance) {
         const auto answers = ask(scene, options);
         int complaints = 0;
         for (std::size_t i = 0; i < truth.size(); ++i) {
-          const PairAnswers& p = truth[i];
-          const PairAnswers& q = answers[i];
+          const PairResults& p = truth[i];
+          const PairResults& q = answers[i];
           const double apart = std::abs(std::ldexp(q.distance, -exponent) - p.distance);
           const bool near = apart <= 1.001 * (std::ldexp(q.error_bound, -exponent) + p.error_bound);
           if (q.overlap == p.overlap && (level != ContactLevel::distance || near)) continue;

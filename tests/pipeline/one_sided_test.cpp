@@ -1,7 +1,7 @@
 // One-sided triangles: shapes in front get the results for two-sided triangles, shapes behind get
 // none, and no normal points to the back.
 
-#include "pipeline/shapes/front.h"
+#include "pipeline/shapes/one_sided.h"
 #include "tests/pipeline/composite_world.h"
 
 #include <gtest/gtest.h>
@@ -33,7 +33,7 @@ struct FacingTriangle {
 
 /// Returns the triangle of a primitive of a surface.
 [[nodiscard]] FacingTriangle facing(const Primitive& part) {
-  const Eigen::Matrix3d turn = rotation_of(tame(part.pose.orientation));
+  const Eigen::Matrix3d turn = rotation_of(scale_to_unit_max(part.pose.orientation));
   const Vec at = Vec::Map(part.pose.position);
   Vec corner[3];
   for (int k = 0; k < 3; ++k) corner[k] = at + turn * Vec::Map(part.triangle.vertex[k]);
@@ -60,7 +60,7 @@ struct FacingWorld : CompositeWorld {
     }
   }
 
-  [[nodiscard]] bool stands_behind(std::uint32_t shape, const Primitive& part) const {
+  [[nodiscard]] bool is_behind_triangle(std::uint32_t shape, const Primitive& part) const {
     const Aabb box = shapes.bounds(body[shape], pose[shape]);
     Vec min;
     Vec max;
@@ -76,7 +76,7 @@ struct FacingWorld : CompositeWorld {
 };
 
 /// Returns the triangles in the primitive pairs of pair i.
-[[nodiscard]] std::set<std::uint32_t> parts_met(const FacingWorld& world, std::size_t i,
+[[nodiscard]] std::set<std::uint32_t> parts_hit(const FacingWorld& world, std::size_t i,
                                                 double margin) {
   PrimitivePairs found;
   const BodyPair pair[] = {world.pairs[i]};
@@ -93,12 +93,12 @@ TEST(OneSided, mid_phase_drops_triangles_seen_from_behind) {
   const FacingWorld front(true);
   std::size_t behind = 0;
   for (std::size_t i = 0; i < both.pairs.size(); ++i) {
-    std::set<std::uint32_t> expected = parts_met(both, i, 0.1);
+    std::set<std::uint32_t> expected = parts_hit(both, i, 0.1);
     for (const Primitive& part : parts_of(front, front.body[2 * i], front.pose[2 * i])) {
       ASSERT_NE(part.front, 0);
-      if (front.stands_behind(front.pairs[i].b, part)) behind += expected.erase(part.part);
+      if (front.is_behind_triangle(front.pairs[i].b, part)) behind += expected.erase(part.part);
     }
-    EXPECT_EQ(parts_met(front, i, 0.1), expected);
+    EXPECT_EQ(parts_hit(front, i, 0.1), expected);
   }
   EXPECT_GT(behind, 10U);
 }
@@ -156,12 +156,12 @@ TEST(OneSided, compound_of_one_surface_matches_surface) {
     }
     EXPECT_GT(met, 30U);
     for (std::size_t i = 0; i < world.pairs.size(); ++i) {
-      const std::set<std::uint32_t> expected = parts_met(world, i, 0.1);
+      const std::set<std::uint32_t> expected = parts_hit(world, i, 0.1);
       const CompoundChild child[] = {{world.body[2 * i], {}}};
       ShapeId compound;
       ASSERT_EQ(world.composites.add_compound(child, compound), Status::ok);
       world.body[2 * i] = compound;
-      EXPECT_EQ(parts_met(world, i, 0.1), expected);
+      EXPECT_EQ(parts_hit(world, i, 0.1), expected);
     }
   }
 }

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "bench/oracle/oracle.h"
-#include "tests/pipeline/pair_answers.h"
+#include "tests/pipeline/pair_results.h"
 #include "tests/pipeline/pair_scenes.h"
 #include "tests/pipeline/reproduction.h"
 
@@ -39,12 +39,13 @@ std::vector<oracle::Truth> truths_of(const PairScene& scene) {
   return truths;
 }
 
-std::vector<PairAnswers> ask_tier(const PairScene& scene, NarrowTier tier, ContactLevel level) {
+std::vector<PairResults> answer_of_tier(const PairScene& scene, NarrowTier tier,
+                                        ContactLevel level) {
   return ask(scene, {.level = level, .tier = tier, .margin = 1e-3});
 }
 
 /// Returns the fault of an answer, or an empty string.
-std::string fault(const oracle::Truth& truth, const PairAnswers& answer, const Promise& promise,
+std::string fault(const oracle::Truth& truth, const PairResults& answer, const Promise& promise,
                   bool is_distance) {
   if (!truth.known) return {};
   if (answer.overlap != truth.overlap) {
@@ -73,7 +74,7 @@ std::string fault(const oracle::Truth& truth, const PairAnswers& answer, const P
 }
 
 void expect_faultless(const PairScene& scene, const std::vector<oracle::Truth>& truths,
-                      const std::vector<PairAnswers>& answers, const Promise& promise,
+                      const std::vector<PairResults>& answers, const Promise& promise,
                       ContactLevel level) {
   int faults = 0;
   for (std::size_t i = 0; i < scene.pairs.size(); ++i) {
@@ -121,7 +122,7 @@ TEST_P(Oracle, tiers_and_levels_match_oracle) {
   for (const oracle::Truth& truth : truths) EXPECT_TRUE(truth.known || round);
   for (const Promise& promise : kPromises) {
     for (const ContactLevel level : {ContactLevel::boolean, ContactLevel::distance}) {
-      expect_faultless(scene, truths, ask_tier(scene, promise.tier, level), promise, level);
+      expect_faultless(scene, truths, answer_of_tier(scene, promise.tier, level), promise, level);
     }
   }
 }

@@ -108,11 +108,11 @@ class Maker {
   }
 
   /// Adds a user shape of a random form.
-  const OwnSet& own_set(double size, const double (&half)[3]) {
-    OwnSet& set = scene_.own.emplace_back();
-    set.form = static_cast<OwnSet::Form>(random_.below(4));
+  const UserShape& user_shape(double size, const double (&half)[3]) {
+    UserShape& set = scene_.own.emplace_back();
+    set.form = static_cast<UserShape::Form>(random_.below(4));
     std::copy_n(half, 3, set.size);
-    if (set.form == OwnSet::corners) {
+    if (set.form == UserShape::corners) {
       for (const Eigen::Vector3d& x : hull_points(size)) {
         set.corner.insert(set.corner.end(), x.begin(), x.end());
       }
@@ -160,7 +160,7 @@ class Maker {
         status = scene_.pool.add(TaperedCapsuleShape{{half[0], half[1]}, half[2]}, id);
         break;
       case ShapeKind::support:
-        status = scene_.pool.add(shape_of(own_set(size, half), round), id);
+        status = scene_.pool.add(shape_of(user_shape(size, half), round), id);
         break;
       default:
         status = Status::unsupported;

@@ -10,7 +10,7 @@
 #include <ostream>
 #include <vector>
 
-#include "tests/pipeline/own_sets.h"
+#include "tests/pipeline/user_shapes.h"
 #include "tests/support/random.h"
 
 namespace winnow::test {
@@ -21,7 +21,7 @@ struct PairScene {
       : pool(memory) {}
 
   /// User shapes that the pool refers to; their addresses do not change.
-  std::deque<OwnSet> own;
+  std::deque<UserShape> own;
   ShapePool pool;
   std::vector<ShapeId> shapes;
   std::vector<Pose> poses;

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "tests/pipeline/hull_brute_force.h"
-#include "tests/pipeline/pair_answers.h"
+#include "tests/pipeline/pair_results.h"
 #include "tests/pipeline/pair_scenes.h"
 #include "tests/support/config.h"
 #include "tests/support/random.h"
@@ -111,7 +111,7 @@ TEST(ParallelCubes, slightly_turned_cubes_touch_edge_on_edge) {
   put({0.9999999999999988, kTurn, kTurn, kTurn}, {1.9, 0.1, 0.1}, scene);
   scene.pairs = {{0, 1}};
   for (const ContactLevel level : {ContactLevel::distance, ContactLevel::manifold}) {
-    const PairAnswers answer = ask(scene, {.level = level}).at(0);
+    const PairResults answer = ask(scene, {.level = level}).at(0);
     // Computed from the cross products of edges in a hundred digits. The best face normal is 6e-9
     // off.
     EXPECT_NEAR(answer.distance, -0.1000001096965479, answer.error_bound);

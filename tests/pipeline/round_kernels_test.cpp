@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "tests/pipeline/pair_scenes.h"
-#include "tests/pipeline/round_twin.h"
+#include "tests/pipeline/round_reference.h"
 #include "tests/support/config.h"
 #include "tests/support/random.h"
 
@@ -110,16 +110,17 @@ PairScene scene_of(Kind kind, PairStyle style, std::size_t count, std::uint64_t 
   return scene;
 }
 
-struct Twins {
-  Twins(const PairScene& scene, BodyPair pair) {
+struct ReferencePair {
+  ReferencePair(const PairScene& scene, BodyPair pair) {
     const Pose& pose = scene.poses[pair.a];
-    a = make_twin(scene.pool.tables(), scene.shapes[pair.a], pose, pose.position);
-    b = make_twin(scene.pool.tables(), scene.shapes[pair.b], scene.poses[pair.b], pose.position);
-    distance = twin_distance(a, b);
-    scale = twin_scale(a, b);
+    a = make_reference(scene.pool.tables(), scene.shapes[pair.a], pose, pose.position);
+    b = make_reference(scene.pool.tables(), scene.shapes[pair.b], scene.poses[pair.b],
+                       pose.position);
+    distance = reference_distance(a, b);
+    scale = reference_scale(a, b);
   }
-  TwinShape a;
-  TwinShape b;
+  ReferenceShape a;
+  ReferenceShape b;
   long double distance;
   long double scale;
 };
@@ -155,7 +156,7 @@ TEST_P(RoundKernels, certified_signs_match_reference) {
         ++unknown;
         continue;
       }
-      const Twins twins(scene, scene.pairs[i]);
+      const ReferencePair twins(scene, scene.pairs[i]);
       ASSERT_EQ(answers.overlap[i] != 0, twins.distance <= 0) << i << " " << twins.distance;
     }
     if (style == PairStyle::ordinary) {
@@ -173,7 +174,7 @@ TEST_P(RoundKernels, distances_stay_within_error_bounds) {
         ++unknown;
         continue;
       }
-      const Twins twins(scene, scene.pairs[i]);
+      const ReferencePair twins(scene, scene.pairs[i]);
       const long double d = answers.column[0][i];
       const double bound = answers.column[1][i];
       ASSERT_LE(std::abs(d - twins.distance), bound) << i << " " << d;
@@ -191,15 +192,15 @@ TEST_P(RoundKernels, normals_separate_and_points_lie_on_shapes) {
     const Answers answers(scene, GetParam(), 1);
     for (std::size_t i = 0; i < scene.pairs.size(); ++i) {
       if (answers.certified[i] == 0) continue;
-      const Twins twins(scene, scene.pairs[i]);
+      const ReferencePair twins(scene, scene.pairs[i]);
       const LongVector n = answers.normal(i);
       const long double close = 1e-5L * (twins.scale + std::abs(twins.distance));
       ASSERT_NEAR(static_cast<double>(n.norm()), 1.0, 1e-14) << i;
-      ASSERT_LE(twin_overlap_along(twins.a, twins.b, n), -twins.distance + close) << i;
+      ASSERT_LE(reference_overlap_along(twins.a, twins.b, n), -twins.distance + close) << i;
       const LongVector on_a = answers.point(i);
       const LongVector on_b = on_a + n * static_cast<long double>(answers.column[0][i]);
-      ASSERT_LE(twin_distance(twins.a, on_a), close) << i;
-      ASSERT_LE(twin_distance(twins.b, on_b), close) << i;
+      ASSERT_LE(reference_distance(twins.a, on_a), close) << i;
+      ASSERT_LE(reference_distance(twins.b, on_b), close) << i;
     }
   });
 }
@@ -215,7 +216,7 @@ TEST_P(RoundKernels, contacts_lie_between_surfaces_and_include_deepest) {
       ASSERT_EQ(answers.contacts[i], 0U) << i;
       continue;
     }
-    const Twins twins(scene, scene.pairs[i]);
+    const ReferencePair twins(scene, scene.pairs[i]);
     const long double close = 2e-6L * twins.scale;
     const double d = answers.column[0][i];
     ASSERT_EQ(answers.contacts[i] > 0, d <= kMargin) << i << " " << d;
@@ -228,8 +229,8 @@ TEST_P(RoundKernels, contacts_lie_between_surfaces_and_include_deepest) {
       // Both points of two nearly parallel capsules get the depth of the closest point.
       const long double aside = answers.contacts[i] > 1 ? 1e-3L * twins.scale : 0.0L;
       const long double half = std::abs(depth) * 0.5L + close + aside;
-      ASSERT_LE(twin_distance(twins.a, p), half) << i;
-      ASSERT_LE(twin_distance(twins.b, p), half) << i;
+      ASSERT_LE(reference_distance(twins.a, p), half) << i;
+      ASSERT_LE(reference_distance(twins.b, p), half) << i;
       for (std::uint32_t j = answers.first[i]; j < k; ++j) {
         ASSERT_NE(answers.feature[j], answers.feature[k]) << i;
       }

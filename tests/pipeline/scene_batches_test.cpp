@@ -42,7 +42,7 @@ class DenseWorld {
   /// With seamless floors a scene solves all pairs in one batch. No body here is a floor, so that
   /// the option changes nothing else.
   [[nodiscard]] SceneOptions options(bool at_once) const {
-    return {.seamless_floors = at_once, .warm_start = true, .composites = &composites_};
+    return {.suppress_ghost_contacts = at_once, .warm_start = true, .composites = &composites_};
   }
   [[nodiscard]] SceneWorld& world() { return world_; }
   void stir() {
@@ -78,7 +78,7 @@ void expect_batches_are_what_is_answered_at_once(ContactLevel level, double carr
   for (int frame = 0; frame < 2; ++frame) {
     ASSERT_EQ(one.collide(level, of_one), Status::ok);
     ASSERT_EQ(other.collide(level, of_other), Status::ok);
-    ASSERT_GT(one.statistics().body_pairs - one.statistics().balls_apart, kManyPairs);
+    ASSERT_GT(one.statistics().body_pairs - one.statistics().rejected_by_spheres, kManyPairs);
     ASSERT_EQ(digest(of_one), digest(of_other)) << frame;
     ASSERT_EQ(of_one.ended().size(), of_other.ended().size());
     dense.stir();
@@ -277,7 +277,7 @@ TEST(SceneBoundingBalls, bounding_balls_reject_no_contact) {
       ASSERT_EQ(scene.add(bodies, keys), Status::ok);
       Contacts near;
       ASSERT_EQ(scene.collide(ContactLevel::pairs, near), Status::ok);
-      EXPECT_EQ(scene.statistics().balls_apart, 0U);
+      EXPECT_EQ(scene.statistics().rejected_by_spheres, 0U);
       std::vector<ShapeId> shapes;
       std::vector<Pose> poses;
       for (const BodyDefinition& body : bodies) {
@@ -309,7 +309,7 @@ TEST(SceneBoundingBalls, bounding_balls_reject_no_contact) {
       EXPECT_EQ(shown, expected) << place.size << ", " << place.offset;
       EXPECT_EQ(scene.statistics().body_pairs, near.size());
       if (place.size >= 1e-3) {
-        EXPECT_GT(scene.statistics().balls_apart, 0U);
+        EXPECT_GT(scene.statistics().rejected_by_spheres, 0U);
       }
     }
   }

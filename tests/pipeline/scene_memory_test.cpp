@@ -34,7 +34,7 @@ void expect_within_bounds(const Contacts& contacts, const SceneWorld& world, dou
 
 /// Returns the number of pairs in the last `collide` that bounding balls did not reject.
 [[nodiscard]] std::uint64_t unrejected_pairs(const Scene& scene) {
-  return scene.statistics().body_pairs - scene.statistics().balls_apart;
+  return scene.statistics().body_pairs - scene.statistics().rejected_by_spheres;
 }
 
 TEST(CarryOver, touching_pairs_are_reported_within_error_bounds) {
@@ -259,7 +259,7 @@ TEST(SceneBytes, refused_memory_changes_nothing) {
 }
 
 /// Two equal scenes. The first one survives a refused call.
-struct Twins {
+struct TwoScenes {
   CountingMemory memory;
   SceneWorld world{60, 23};
   SceneWorld other_world{60, 23};
@@ -297,7 +297,7 @@ TEST(SceneBytes, ids_after_refused_add_match_unrefused_scene) {
   for (const bool once : {false, true}) {
     std::size_t refused = 0;
     for (std::size_t granted = 0; granted < 100; ++granted) {
-      Twins twins;
+      TwoScenes twins;
       refused += twins.was_refused(granted, once, add_all) ? 1 : 0;
       EXPECT_EQ(twins.world.keys.size(), twins.other_world.keys.size());
       for (std::size_t i = 0; i < twins.world.keys.size(); ++i) {
@@ -314,7 +314,7 @@ TEST(SceneBytes, refused_set_motion_changes_no_body) {
   for (const Motion to : {Motion::fixed, Motion::dynamic, Motion::sleeping}) {
     std::size_t refused = 0;
     for (std::size_t granted = 0; granted < 60; ++granted) {
-      Twins twins;
+      TwoScenes twins;
       ASSERT_EQ(add_all(twins.scene, twins.world), Status::ok);
       ASSERT_EQ(add_all(twins.other, twins.other_world), Status::ok);
       const auto change = [&](Scene& scene, SceneWorld& world) {

@@ -200,7 +200,7 @@ void ask(TinyWorld& world, Bits& bits, SceneTally& tally) {
 }
 
 /// Moves a box through each body, and measures the distance of each body from the next.
-void ask_moving(TinyWorld& world, Bits& bits, SceneTally& tally) {
+void query_moving(TinyWorld& world, Bits& bits, SceneTally& tally) {
   SceneQueries queries(world.scene());
   for (std::size_t i = 0; i < TinyWorld::kBodies; ++i) {
     double place[3];
@@ -270,7 +270,7 @@ TEST_P(SceneModes, float_modes_do_not_change_results) {
     const FloatModeScope scope(mode);
     TinyWorld world(GetParam(), mesh_size, execution);
     ask(world, bits, tally);
-    ask_moving(world, bits, tally);
+    query_moving(world, bits, tally);
     sweep(world, bits, tally);
     collide(world, bits, tally);
     return tally;

@@ -358,7 +358,7 @@ PairAnswer brute_distance(const QueryWorld& world, ShapeId a, const Pose& pose_a
 }
 
 /// Checks casts of convex or of composite shapes.
-void expect_casts_meet(bool composite, std::size_t casts) {
+void expect_casts_hit(bool composite, std::size_t casts) {
   for (const double center : kCenters) {
     Random random(2);
     QueryWorld world;
@@ -402,11 +402,11 @@ void expect_casts_meet(bool composite, std::size_t casts) {
 }
 
 TEST(SceneQueries, convex_casts_match_brute_force) {
-  expect_casts_meet(false, 24);
+  expect_casts_hit(false, 24);
 }
 
 TEST(SceneQueries, composite_casts_match_brute_force) {
-  expect_casts_meet(true, 6);
+  expect_casts_hit(true, 6);
 }
 
 TEST(SceneQueries, overlaps_match_brute_force) {

@@ -27,7 +27,7 @@ constexpr ContactLevel kLevels[] = {ContactLevel::pairs, ContactLevel::boolean,
 }
 
 /// Raises each size to the size in this frame.
-void widen(SceneRoom& room, const Scene& scene, const Contacts& contacts) {
+void widen(SceneCapacity& room, const Scene& scene, const Contacts& contacts) {
   for (std::size_t i = 0; i < kMotions; ++i) {
     room.bodies[i] = std::max(room.bodies[i], scene.size(static_cast<Motion>(i)));
   }
@@ -37,8 +37,8 @@ void widen(SceneRoom& room, const Scene& scene, const Contacts& contacts) {
   room.points = std::max(room.points, contacts.points());
 }
 
-[[nodiscard]] SceneRoom room_of_first_frame(SceneWorld& world, ContactLevel level) {
-  SceneRoom room{.level = level};
+[[nodiscard]] SceneCapacity room_of_first_frame(SceneWorld& world, ContactLevel level) {
+  SceneCapacity room{.level = level};
   Scene scene(world.pool);
   Contacts contacts;
   EXPECT_EQ(add_all(scene, world), Status::ok);
@@ -52,14 +52,14 @@ TEST(SceneReserve, first_frame_allocates_nothing) {
     for (const bool parallel : {false, true}) {
       for (const double carry_over : {0.0, 0.01}) {
         SceneWorld world = plain_world(scaled(700), 41);
-        const SceneRoom room = room_of_first_frame(world, level);
+        const SceneCapacity room = room_of_first_frame(world, level);
         CountingMemory memory;
         CountingMemory results;
         Scene scene(world.pool, {.memory = &memory,
                                  .execution = execution_of(parallel),
                                  .carry_over = carry_over,
                                  .warm_start = true});
-        SceneRoom wide = room;
+        SceneCapacity wide = room;
         // The carry-over enlarges boxes and thus the number of pairs.
         wide.pairs += room.pairs / 2;
         Contacts contacts(&results);
@@ -68,12 +68,12 @@ TEST(SceneReserve, first_frame_allocates_nothing) {
         EXPECT_EQ(scene.footprint().total().reserved, memory.outstanding());
         EXPECT_EQ(contacts.footprint().total().reserved, results.outstanding());
         const std::size_t asked = memory.requests();
-        const std::size_t results_asked = results.requests();
+        const std::size_t result_requests = results.requests();
         ASSERT_EQ(add_all(scene, world), Status::ok);
         EXPECT_EQ(memory.requests(), asked) << "while adding bodies";
         ASSERT_EQ(scene.collide(level, contacts), Status::ok);
         EXPECT_EQ(memory.requests(), asked) << static_cast<int>(level) << parallel << carry_over;
-        EXPECT_EQ(results.requests(), results_asked) << static_cast<int>(level) << carry_over;
+        EXPECT_EQ(results.requests(), result_requests) << static_cast<int>(level) << carry_over;
         EXPECT_GT(contacts.size(), world.bodies.size() / 4);
         EXPECT_EQ(scene.footprint().total().reserved, memory.outstanding());
         EXPECT_EQ(contacts.footprint().total().reserved, results.outstanding());
@@ -116,7 +116,7 @@ TEST(SceneReserve, reserved_contacts_never_allocate_while_bodies_change) {
   const std::size_t frames = scaled(300);
   for (const ContactLevel level : kLevels) {
     for (const bool parallel : {false, true}) {
-      SceneRoom room{.level = level};
+      SceneCapacity room{.level = level};
       for (const bool measuring : {true, false}) {
         SceneWorld world = plain_world(300, 43);
         CountingMemory memory;
@@ -154,8 +154,8 @@ TEST(SceneReserve, reserved_contacts_never_allocate_while_bodies_change) {
 TEST(SceneReserve, refused_memory_changes_nothing) {
   WINNOW_TEST_NEEDS_EXCEPTIONS();
   SceneWorld world = plain_world(80, 53);
-  SceneWorld twin_world = plain_world(80, 53);
-  const SceneRoom room{
+  SceneWorld reference_world = plain_world(80, 53);
+  const SceneCapacity room{
       .bodies = {300, 300, 300}, .pairs = 900, .touching = 500, .manifolds = 500, .points = 1500};
   std::size_t refused = 0;
   for (const bool filled : {false, true}) {
@@ -163,12 +163,12 @@ TEST(SceneReserve, refused_memory_changes_nothing) {
       CountingMemory memory;
       CountingMemory results;
       Scene scene(world.pool, {.memory = &memory, .execution = Execution::serial()});
-      Scene twin(twin_world.pool, {.execution = Execution::serial()});
+      Scene twin(reference_world.pool, {.execution = Execution::serial()});
       Contacts contacts(&results);
       Contacts truth;
       if (filled) {
         ASSERT_EQ(add_all(scene, world), Status::ok);
-        ASSERT_EQ(add_all(twin, twin_world), Status::ok);
+        ASSERT_EQ(add_all(twin, reference_world), Status::ok);
         ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
         ASSERT_EQ(twin.collide(ContactLevel::manifold, truth), Status::ok);
       }
@@ -188,7 +188,7 @@ TEST(SceneReserve, refused_memory_changes_nothing) {
       }
       if (!filled) {
         ASSERT_EQ(add_all(scene, world), Status::ok);
-        ASSERT_EQ(add_all(twin, twin_world), Status::ok);
+        ASSERT_EQ(add_all(twin, reference_world), Status::ok);
       }
       ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
       ASSERT_EQ(twin.collide(ContactLevel::manifold, truth), Status::ok);

@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "tests/pipeline/own_sets.h"
 #include "tests/pipeline/query_world.h"
+#include "tests/pipeline/user_shapes.h"
 #include "tests/support/config.h"
 
 namespace winnow::test {
@@ -33,7 +33,7 @@ class RuledWorld {
       if (random.chance(0.6)) body.motion = Motion::dynamic;
       if (random.chance(0.4)) body.filter.layers = random.chance(0.5) ? 2U : 3U;
       if (random.chance(0.4)) body.filter.mask = random.chance(0.5) ? 1U : 2U;
-      if (random.chance(0.2)) body.filter.environment = random.chance(0.3) ? kEveryEnvironment : 1U;
+      if (random.chance(0.2)) body.filter.environment = random.chance(0.3) ? kAllEnvironments : 1U;
       body.layer = static_cast<std::uint16_t>(random.below(3));
     }
     world_.add_to_scene({.execution = Execution::serial()});
@@ -50,7 +50,7 @@ class RuledWorld {
   }
 
   /// By all that the scene was told, not by what it made of that.
-  [[nodiscard]] bool may_meet(std::size_t a, std::size_t b) const {
+  [[nodiscard]] bool filters_allow(std::size_t a, std::size_t b) const {
     const BodyDefinition& one = world_.bodies[a];
     const BodyDefinition& other = world_.bodies[b];
     if (a == b || (one.motion != Motion::dynamic && other.motion != Motion::dynamic)) return false;
@@ -58,20 +58,20 @@ class RuledWorld {
     if ((other.filter.layers & one.filter.mask) == 0) return false;
     const std::uint32_t in = one.filter.environment;
     const std::uint32_t of = other.filter.environment;
-    if (in != of && in != kEveryEnvironment && of != kEveryEnvironment) return false;
+    if (in != of && in != kAllEnvironments && of != kAllEnvironments) return false;
     if (one.layer + other.layer == 2 && one.layer != other.layer) return false;
     if (ignored_.contains({std::min(a, b), std::max(a, b)})) return false;
     return !has_predicate_ || !is_rejected(keys()[a].id, keys()[b].id);
   }
   [[nodiscard]] bool takes(PairRules rules, std::size_t a, std::size_t b) const {
-    return a != b && (rules == PairRules::none || may_meet(a, b));
+    return a != b && (rules == PairRules::none || filters_allow(a, b));
   }
 
  private:
   static bool is_rejected(ObjectId a, ObjectId b) { return (a + b) % 7 == 0; }
 
   void add_own(Random& random) {
-    for (const OwnSet::Form form : {OwnSet::block, OwnSet::drum, OwnSet::egg}) {
+    for (const UserShape::Form form : {UserShape::block, UserShape::drum, UserShape::egg}) {
       world_.shapes.own.push_back({form, {0.9, 0.9, 1.4}, {}});
       ShapeId id;
       ASSERT_EQ(world_.shapes.pool.add(shape_of(world_.shapes.own.back(), 0.1), id), Status::ok);
@@ -84,7 +84,7 @@ class RuledWorld {
   }
   void tell(Random& random) {
     Scene& scene = *world_.scene;
-    ASSERT_EQ(scene.set_layers_meet(0, 2, false), Status::ok);
+    ASSERT_EQ(scene.set_layers_collide(0, 2, false), Status::ok);
     for (std::size_t n = 0; n < 3 * size(); ++n) {
       const std::size_t a = random.below(size());
       const std::size_t b = random.below(size());
@@ -204,7 +204,7 @@ TEST(SceneRules, distance_considers_pairs_of_collide) {
       for (std::size_t b = 0; b < world.size(); ++b) {
         SceneDistance found;
         ASSERT_EQ(queries.distance(world.keys()[a], world.keys()[b], found), Status::ok);
-        ASSERT_EQ(static_cast<bool>(found), world.may_meet(a, b)) << a << ' ' << b;
+        ASSERT_EQ(static_cast<bool>(found), world.filters_allow(a, b)) << a << ' ' << b;
         if (!found) continue;
         EXPECT_EQ(found.distance, world.distance(a, b));
         const Ids pair = std::minmax(world.keys()[a].id, world.keys()[b].id);

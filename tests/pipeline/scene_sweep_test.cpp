@@ -52,7 +52,7 @@ struct SweptWorld {
     EXPECT_EQ(scene->set_ignored(world.keys[0], world.keys[2]), Status::ok);
   }
 
-  [[nodiscard]] bool may_meet(std::size_t a, std::size_t b, SweepPairs which) const {
+  [[nodiscard]] bool filters_allow(std::size_t a, std::size_t b, SweepPairs which) const {
     const auto is_bullet = [&](std::size_t i) { return i % 2 == 0 && bullets[i / 2] != 0; };
     const BodyDefinition& of_a = world.bodies[a];
     const BodyDefinition& of_b = world.bodies[b];
@@ -63,7 +63,7 @@ struct SweptWorld {
                         ((fixed || bullet) && which == SweepPairs::bullets_and_fixed);
     return wanted && (a % 2 == 0 || b % 2 == 0) && !(a == 0 && b == 2) &&
            (of_a.motion == Motion::dynamic || of_b.motion == Motion::dynamic) &&
-           winnow::may_meet(of_a.filter, of_b.filter);
+           winnow::filters_allow(of_a.filter, of_b.filter);
   }
   /// Returns for each pair its time of impact, computed separately.
   [[nodiscard]] std::map<Names, double> truth(SweepPairs which) const {
@@ -76,7 +76,7 @@ struct SweptWorld {
     std::vector<BodyPair> pairs;
     for (std::uint32_t a = 0; a < shapes.size(); ++a) {
       for (std::uint32_t b = a + 1; b < shapes.size(); ++b) {
-        if (may_meet(a, b, which)) pairs.push_back({a, b});
+        if (filters_allow(a, b, which)) pairs.push_back({a, b});
       }
     }
     ImpactResult result;

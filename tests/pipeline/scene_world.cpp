@@ -58,7 +58,7 @@ std::map<Names, double> SceneWorld::touching(double margin) const {
     for (std::size_t j = i + 1; j < bodies.size(); ++j) {
       const BodyDefinition& a = bodies[i];
       const BodyDefinition& b = bodies[j];
-      if (removed[i] || removed[j] || !may_meet(a.filter, b.filter)) continue;
+      if (removed[i] || removed[j] || !filters_allow(a.filter, b.filter)) continue;
       if (a.motion != Motion::dynamic && b.motion != Motion::dynamic) continue;
       double square = 0.0;
       for (int k = 0; k < 3; ++k) {

@@ -149,7 +149,7 @@ TEST(Sensors, overlaps_arrivals_and_departures_match_brute_force) {
       last = at;
     }
     SensedSet left;
-    for (const LeftSensor& out : room.sensors.left()) {
+    for (const ExitedBody& out : room.sensors.left()) {
       left.insert({stamped(out.sensor), stamped(out.body)});
     }
     SensedSet gone;

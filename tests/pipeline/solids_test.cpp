@@ -192,7 +192,7 @@ TEST(Solids, inside_test_matches_winding_number) {
         if (is_on_surface(mesh, own)) continue;
         const bool is_inside = std::lround(winding(mesh, own)) != 0;
         const Pose pose = random_pose(random.chance(0.5) ? 10.0 : 1e5, random);
-        const Eigen::Matrix3d turn = rotation_of(tame(pose.orientation));
+        const Eigen::Matrix3d turn = rotation_of(scale_to_unit_max(pose.orientation));
         const Vec stretched = own.cwiseProduct(Vec::Map(scale.data()));
         const Vec world = Vec::Map(pose.position) + turn * stretched;
         (is_inside ? inside : outside) += 1;

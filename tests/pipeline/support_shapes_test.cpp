@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "tests/pipeline/floor_contacts.h"
-#include "tests/pipeline/pair_answers.h"
+#include "tests/pipeline/pair_results.h"
 #include "tests/pipeline/pair_scenes.h"
 #include "tests/support/random.h"
 
@@ -131,7 +131,7 @@ struct SamePairs {
       known[i] = old;
     }
   }
-  [[nodiscard]] std::vector<PairAnswers> truth(const NarrowOptions& options) const {
+  [[nodiscard]] std::vector<PairResults> truth(const NarrowOptions& options) const {
     NarrowPhase narrow;
     NarrowResult result;
     EXPECT_EQ(narrow.collide(scene.pool, {known, scene.poses}, scene.pairs, options, result),
@@ -143,7 +143,7 @@ struct SamePairs {
   std::vector<ShapeId> known;
 };
 
-void expect_alike(const PairAnswers& one, const PairAnswers& known) {
+void expect_alike(const PairResults& one, const PairResults& known) {
   const double bound = one.error_bound + known.error_bound;
   EXPECT_LE(std::abs(one.distance - known.distance), bound);
   EXPECT_LT(one.error_bound, 1e-4);
@@ -153,7 +153,7 @@ void expect_alike(const PairAnswers& one, const PairAnswers& known) {
   }
 }
 
-void expect_deepest_point(const PairAnswers& answer) {
+void expect_deepest_point(const PairResults& answer) {
   ASSERT_FALSE(answer.contacts.empty());
   double deepest = -kEndless;
   for (const ContactPoint& point : answer.contacts) {
@@ -261,7 +261,7 @@ double length(Random& random) {
 }
 
 template <typename A, typename B>
-PairAnswers answer_to(const A& a, const Pose& pose_a, const B& b, const Pose& pose_b) {
+PairResults answer_to(const A& a, const Pose& pose_a, const B& b, const Pose& pose_b) {
   PairScene scene;
   scene.shapes.resize(2);
   EXPECT_EQ(scene.pool.add(a, scene.shapes[0]), Status::ok);
@@ -269,10 +269,10 @@ PairAnswers answer_to(const A& a, const Pose& pose_a, const B& b, const Pose& po
   scene.poses = {pose_a, pose_b};
   scene.pairs = {{0, 1}};
   const auto answers = ask(scene, {.level = ContactLevel::distance});
-  return answers.empty() ? PairAnswers{} : answers[0];
+  return answers.empty() ? PairResults{} : answers[0];
 }
 
-void expect_truth(const PairAnswers& answer, Real truth) {
+void expect_truth(const PairResults& answer, Real truth) {
   EXPECT_LE(std::abs(static_cast<Real>(answer.distance) - truth),
             static_cast<Real>(answer.error_bound));
   EXPECT_EQ(answer.overlap, truth <= 0.0L);
@@ -320,7 +320,7 @@ TEST(Ellipsoids, shallow_ellipsoid_depths_are_accurate) {
             .normalized();
     const Eigen::Vector3d top = r.cwiseProduct(r.cwiseProduct(out)) / r.cwiseProduct(out).norm();
     const Eigen::Vector3d at = 2.0 * top - random.uniform(1e-6, 0.2) * out;
-    const PairAnswers answer = answer_to(shape, Pose{}, shape, Pose::at(at.x(), at.y(), at.z()));
+    const PairResults answer = answer_to(shape, Pose{}, shape, Pose::at(at.x(), at.y(), at.z()));
     expect_truth(answer, from_ellipsoid(difference, at.cast<Real>()));
     EXPECT_LT(answer.error_bound, 1e-13);
   }
@@ -367,7 +367,7 @@ TEST(Ellipsoids, vanishing_radii_give_finite_results) {
     Pose at;
     for (double& x : at.position) x = any();
     const EllipsoidShape shape{{any(), any(), any()}};
-    const PairAnswers answer = answer_to(SphereShape{any()}, Pose{}, shape, at);
+    const PairResults answer = answer_to(SphereShape{any()}, Pose{}, shape, at);
     EXPECT_TRUE(std::isfinite(answer.distance) && std::isfinite(answer.error_bound));
     EXPECT_NEAR(answer.normal.norm(), 1.0, 1e-12);
   }
@@ -578,7 +578,7 @@ TEST(SupportShapes, functions_that_become_invalid_give_finite_results) {
       faulty.fault = fault;
       for (const ContactLevel level :
            {ContactLevel::boolean, ContactLevel::distance, ContactLevel::manifold}) {
-        for (const PairAnswers& answer : ask(scene, {.level = level, .margin = 0.1})) {
+        for (const PairResults& answer : ask(scene, {.level = level, .margin = 0.1})) {
           EXPECT_TRUE(std::isfinite(answer.distance) && answer.normal.allFinite() &&
                       answer.point.allFinite() && !(answer.error_bound < 0.0));
         }

@@ -1,5 +1,5 @@
 // Times of impact of moving shapes, compared with closed forms, and with a proof by distances that
-// the shapes are apart at every earlier time (motion_twin.h).
+// the shapes are apart at every earlier time (motion_reference.h).
 
 #include <gtest/gtest.h>
 #include <winnow/pipeline/time_of_impact.h>
@@ -11,7 +11,7 @@
 #include <numbers>
 #include <vector>
 
-#include "tests/pipeline/motion_twin.h"
+#include "tests/pipeline/motion_reference.h"
 #include "tests/support/platform.h"
 
 namespace winnow::test {

@@ -1,8 +1,8 @@
 // Indices of pairs and points in the last frame, compared with a reference implementation that
-// stores the whole frame and searches all of it (history_twin.h).
+// stores the whole frame and searches all of it (history_reference.h).
 
 #include "tests/pipeline/composite_world.h"
-#include "tests/pipeline/history_twin.h"
+#include "tests/pipeline/history_reference.h"
 #include "tests/pipeline/scene_world.h"
 
 #include <gtest/gtest.h>
@@ -155,7 +155,7 @@ TEST(WarmStart, previous_indices_match_reference) {
       Scene scene(world.shapes(), options);
       world.fill(scene);
       Contacts contacts;
-      HistoryTwin twin;
+      HistoryReference twin;
       for (int frame = 0; frame < 40; ++frame) {
         const ContactLevel level =
             frame % 13 == 12 ? ContactLevel::distance : ContactLevel::manifold;

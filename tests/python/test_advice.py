@@ -3,7 +3,7 @@
 import numpy as np
 import winnow
 from test_hostile import refused
-from worlds import random_boxes, twin_pairs
+from worlds import random_boxes, reference_pairs
 
 
 def frames(count=6, objects=200):
@@ -22,7 +22,7 @@ def test_structures_are_ranked_by_median_time():
     assert medians == sorted(medians) and min(medians) > 0
     assert advice.best == advice.ranking[0].structure
     assert advice.objects == 200 and advice.frames == 6
-    assert advice.pairs == np.mean([len(twin_pairs(*boxes)) for boxes in frames()])
+    assert advice.pairs == np.mean([len(reference_pairs(*boxes)) for boxes in frames()])
     assert advice.chosen in winnow.structures() and advice.reason
     for one in advice.ranking:
         assert one.worst_ms >= one.median_ms and one.first_ms > 0 and one.bytes > 0

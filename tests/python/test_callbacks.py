@@ -11,7 +11,7 @@ import pytest
 import winnow
 from test_hostile import refused
 from test_narrow import poses_at
-from worlds import pair_set, random_boxes, twin_pairs
+from worlds import pair_set, random_boxes, reference_pairs
 
 
 class Odd(Exception):
@@ -30,7 +30,7 @@ class Untrue:
 def box_world(count=300):
     lower, upper = random_boxes(51, count)
     partition = winnow.Partition()
-    return partition, partition.insert(lower, upper), twin_pairs(lower, upper), lower, upper
+    return partition, partition.insert(lower, upper), reference_pairs(lower, upper), lower, upper
 
 
 def test_predicate_selects_pairs():
@@ -121,7 +121,7 @@ def test_predicate_selects_pairs_of_bodies():
 def test_query_layer_selects_bodies():
     _, scene, keys, places = ball_world()
     scene.set_layer(keys[::2], 100)
-    scene.set_layers_meet([[7, 100]], False)
+    scene.set_layers_collide([[7, 100]], False)
     hits = scene.nearest(places, 3, filter=winnow.Filter(layer=7))
     assert len(hits.data) and (hits.data % 2 == 1).all()
     both = winnow.Filter(layer=7, accept=lambda key, data: data > 9)

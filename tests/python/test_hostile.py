@@ -8,7 +8,7 @@ import winnow
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as numbers
-from worlds import pair_set, random_boxes, twin_pairs
+from worlds import pair_set, random_boxes, reference_pairs
 
 DTYPES = st.sampled_from(["f4", "f8", "f2", "i4", "u1", "i8", "?", "c8", "O", "S3", ">f4", "g"])
 SHAPES = numbers.array_shapes(min_dims=0, max_dims=3, min_side=0, max_side=5)
@@ -45,7 +45,7 @@ REFUSALS = (winnow.StatusError, TypeError, MemoryError)
 def small_world():
     lower, upper = random_boxes(31, 20)
     partition = winnow.Partition()
-    return partition, partition.insert(lower, upper), twin_pairs(lower, upper)
+    return partition, partition.insert(lower, upper), reference_pairs(lower, upper)
 
 
 @given(any_array(), any_array(), any_array())
@@ -275,4 +275,4 @@ def test_threads_may_query_and_change_at_once():
         thread.join()
     assert not failures
     partition.update(keys, lower, upper)
-    assert pair_set(partition.self_pairs()) == twin_pairs(lower, upper)
+    assert pair_set(partition.self_pairs()) == reference_pairs(lower, upper)

@@ -51,17 +51,17 @@ def test_layers_collide_by_default(row):
     scene.set_layer(keys[::2], 4095)
     scene.set_layer(keys[1::2], np.arange(5) + 1000)
     assert touching(scene) == NEIGHBOURS
-    scene.set_layers_meet([[4095, 1000], [1003, 4095]], False)
-    assert scene.layers_meet([[1000, 4095], [1001, 4095], [7, 7]]).tolist() == [False, True, True]
+    scene.set_layers_collide([[4095, 1000], [1003, 4095]], False)
+    assert scene.layers_collide([[1000, 4095], [1001, 4095], [7, 7]]).tolist() == [False, True, True]
     apart = {(0, 1), (1, 2), (6, 7), (7, 8)}
     assert touching(scene) == NEIGHBOURS - apart
-    scene.set_layers_meet([[1000, 4095]])
+    scene.set_layers_collide([[1000, 4095]])
     assert touching(scene) == NEIGHBOURS - {(6, 7), (7, 8)}
     assert scene.bodies(keys)["layer"].tolist()[:4] == [4095, 1000, 4095, 1001]
     extra = scene.add(ball, [[50, 0, 0]], layer=12)
     assert scene.bodies(extra)["layer"].tolist() == [12]
     refused("invalid_argument", scene.set_layer, keys, 4096)
-    refused("invalid_argument", scene.set_layers_meet, [[0, 4096]])
+    refused("invalid_argument", scene.set_layers_collide, [[0, 4096]])
     refused("invalid_key", scene.set_layer, np.append(keys[:1], NULL), [5, 6])
     refused("size_mismatch", scene.set_layer, keys, [1, 2])
     assert scene.bodies(keys[:1])["layer"].tolist() == [4095]
@@ -188,7 +188,7 @@ def test_seamless_floors_have_no_ghost_contacts():
     for seamless in (False, True):
         random = np.random.default_rng(94)
         shapes = winnow.Shapes()
-        scene = winnow.Scene(shapes, margin=0.03, seamless_floors=seamless)
+        scene = winnow.Scene(shapes, margin=0.03, suppress_ghost_contacts=seamless)
         tile = shapes.add_boxes([2, 2, 1])
         scene.add(tile, [[x, y, -1] for x in (-2, 2) for y in (-2, 2)], "fixed")
         slider = scene.add(shapes.add_boxes([0.5, 0.4, 0.3]), [[0, 0, 9]])
@@ -286,8 +286,8 @@ def test_any_arrays_are_accepted_or_refused(first, second, third, number):
         lambda: scene.set_offsets(first, second, third),
         lambda: scene.set_layer(keys, first),
         lambda: scene.set_layer(first, number),
-        lambda: scene.set_layers_meet(first, False),
-        lambda: scene.layers_meet(first),
+        lambda: scene.set_layers_collide(first, False),
+        lambda: scene.layers_collide(first),
         lambda: scene.set_ignored(first),
         lambda: scene.is_ignored(first),
         lambda: scene.add(ids, np.zeros((2, 3)), contact=first, rest=second, layer=third),

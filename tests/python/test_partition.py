@@ -5,7 +5,7 @@ import gc
 import numpy as np
 import pytest
 import winnow
-from worlds import pair_set, random_boxes, twin_pairs
+from worlds import pair_set, random_boxes, reference_pairs
 
 
 def filled(lower, upper, structure="LinearBvh", **options):
@@ -30,7 +30,7 @@ def test_every_structure_and_volume_finds_all_pairs(structure, volume):
     lower, upper = random_boxes(1, 200)
     partition, _ = filled(lower, upper, structure, volume=volume)
     found = pair_set(partition.self_pairs())
-    truth = twin_pairs(lower, upper)
+    truth = reference_pairs(lower, upper)
     assert found >= truth
     assert partition.volume == volume and partition.structure == structure
     if partition.is_exact:
@@ -46,7 +46,7 @@ def test_pairs_follow_moves_on_fresh_and_held_arrays():
         if frame % 3 == 2:
             held.clear()
         pairs = partition.self_pairs()
-        assert pair_set(pairs) == twin_pairs(lower, upper)
+        assert pair_set(pairs) == reference_pairs(lower, upper)
         held.append((pairs, pairs.copy()))
         for shown, as_it_was in held:
             assert np.array_equal(shown, as_it_was)
@@ -103,7 +103,7 @@ def test_floats_of_any_stride_are_read_in_place():
     for low, high in cases:
         assert winnow.boxes_address(low, high) == low.ctypes.data
         partition, _ = filled(low, high)
-        assert pair_set(partition.self_pairs()) == twin_pairs(low, high)
+        assert pair_set(partition.self_pairs()) == reference_pairs(low, high)
 
 
 def test_unsuitable_arrays_are_copied():
@@ -120,7 +120,7 @@ def test_unsuitable_arrays_are_copied():
         (lower.tolist(), upper.tolist()),
     ]:
         partition, _ = filled(low, high)
-        assert pair_set(partition.self_pairs()) == twin_pairs(lower, upper)
+        assert pair_set(partition.self_pairs()) == reference_pairs(lower, upper)
 
 
 def test_doubles_are_rounded_outward():
@@ -231,7 +231,7 @@ def test_pairs_with_another_partition_and_itself_are_right():
     lower, upper = random_boxes(10, 150)
     one, _ = filled(lower[:100], upper[:100])
     other, _ = filled(lower[100:], upper[100:], "SweepAndPrune")
-    truth = {(a, b - 100) for a, b in twin_pairs(lower, upper) if a < 100 <= b}
+    truth = {(a, b - 100) for a, b in reference_pairs(lower, upper) if a < 100 <= b}
     assert pair_set(one.pairs_with(other)) == truth
     assert pair_set(other.pairs_with(one)) == {(b, a) for a, b in truth}
     assert len(one.pairs_with(one)) >= 100
@@ -255,7 +255,7 @@ def test_exchanged_structure_keeps_the_objects():
     assert not partition.is_exact
     partition.refresh()
     assert partition.choice()["objects"] == 200
-    truth = twin_pairs(lower, upper)
+    truth = reference_pairs(lower, upper)
     for name in winnow.structures():
         partition.set_structure(name)
         assert pair_set(partition.self_pairs()) >= truth

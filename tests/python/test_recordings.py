@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from test_hostile import REFUSALS, any_array, refused
 from test_narrow import CUBE, poses_at
-from worlds import pair_set, random_boxes, twin_pairs
+from worlds import pair_set, random_boxes, reference_pairs
 
 
 @pytest.fixture
@@ -63,7 +63,7 @@ def test_partitions_are_recorded_and_replayed(file):
     found = partition.self_pairs()
     plain = winnow.Partition()
     plain.insert(lower, upper)
-    assert pair_set(plain.self_pairs()) == twin_pairs(lower, upper)
+    assert pair_set(plain.self_pairs()) == reference_pairs(lower, upper)
     assert len(found) > 0
     refused("unsupported", partition.pairs_with, plain)
     refused("unsupported", plain.pairs_with, partition)
@@ -87,7 +87,7 @@ def test_scenes_are_recorded_and_replayed(file):
     keys = scene.add(
         ids[np.arange(60) % 3], random.uniform(-2, 2, (60, 3)), contact=0.01, layer=np.arange(60) % 4
     )
-    scene.set_layers_meet([[1, 2]], False)
+    scene.set_layers_collide([[1, 2]], False)
     scene.set_ignored([[keys[0], keys[1]]])
     contacts = winnow.Contacts()
     touching = []

@@ -21,7 +21,7 @@ def pair_set(pairs):
     return {(int(a), int(b)) for a, b in pairs}
 
 
-def twin_pairs(lower, upper):
+def reference_pairs(lower, upper):
     first, second = np.nonzero(np.triu(overlapping(lower, upper, lower, upper), 1))
     return set(zip(first.tolist(), second.tolist()))
 

@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
-#include "tests/support/cast_twin.h"
-#include "tests/support/region_twin.h"
-#include "tests/support/twin.h"
+#include "tests/support/cast_reference.h"
+#include "tests/support/reference.h"
+#include "tests/support/region_reference.h"
 
 namespace winnow::test {
 

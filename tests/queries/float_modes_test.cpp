@@ -100,7 +100,7 @@ std::vector<Ray> rays_among(const std::vector<Cast>& casts) {
   return rays;
 }
 
-void ask_rays(const Partition& partition, const std::vector<Ray>& rays, Answers& answers) {
+void query_rays(const Partition& partition, const std::vector<Ray>& rays, Answers& answers) {
   HitBuffer all;
   const Status status = partition.all(RayBatch(rays), all);
   EXPECT_EQ(status, Status::ok);
@@ -121,7 +121,7 @@ void ask_rays(const Partition& partition, const std::vector<Ray>& rays, Answers&
   }
 }
 
-Wanted wanted_of(const CastCandidates& candidates, bool one) {
+Wanted expected_of(const CastCandidates& candidates, bool one) {
   Wanted wanted{{}, one};
   for (const auto& candidate : candidates) {
     if (candidate.truth.must) wanted.all.push_back(candidate.id);
@@ -145,16 +145,16 @@ Questions casts_of(const QuestionSet& set) {
       answers.push_back(answer_of({&closest, 1}));
       answers.push_back(answer_of({&any, 1}));
     }
-    ask_rays(partition, rays, answers);
+    query_rays(partition, rays, answers);
     return answers;
   };
   for (const CastCandidates& truth : set.cast_truths) {
-    for (const bool one : {false, true, true}) questions.wanted.push_back(wanted_of(truth, one));
+    for (const bool one : {false, true, true}) questions.wanted.push_back(expected_of(truth, one));
   }
   for (const bool one : {false, true, true}) {
     for (std::size_t i = 0; i < set.casts.size(); ++i) {
       if (!std::holds_alternative<Ray>(set.casts[i])) continue;
-      questions.wanted.push_back(wanted_of(set.cast_truths[i], one));
+      questions.wanted.push_back(expected_of(set.cast_truths[i], one));
     }
   }
   return questions;
@@ -193,7 +193,7 @@ Questions regions_of(const QuestionSet& set) {
   return questions;
 }
 
-Wanted wanted_of(const std::vector<Pair>& pairs) {
+Wanted expected_of(const std::vector<Pair>& pairs) {
   Wanted wanted;
   for (const Pair& pair : pairs) {
     wanted.all.push_back(std::uint64_t{pair.first} << 32U | pair.second);
@@ -202,7 +202,7 @@ Wanted wanted_of(const std::vector<Pair>& pairs) {
 }
 
 template <typename Bound>
-Wanted wanted_among(const std::vector<Bound>& bounds) {
+Wanted expected_among(const std::vector<Bound>& bounds) {
   Wanted wanted;
   for (std::size_t first = 0; first < bounds.size(); ++first) {
     for (std::size_t second = first + 1; second < bounds.size(); ++second) {
@@ -215,7 +215,7 @@ Wanted wanted_among(const std::vector<Bound>& bounds) {
 constexpr PairOptions kCanonical{.order = Order::canonical};
 
 template <typename Bound>
-Answer ask_volumes(std::string_view structure, Volume volume, const std::vector<Bound>& bounds) {
+Answer query_volumes(std::string_view structure, Volume volume, const std::vector<Bound>& bounds) {
   Partition partition(structure_named(structure),
                       {.execution = Execution::serial(), .volume = volume});
   std::vector<Key> keys(bounds.size());
@@ -235,10 +235,10 @@ Questions pairs_of_volumes(const QuestionSet& set, std::string_view structure) {
     kdops.push_back(Kdop<26>::around(box));
   }
   questions.ask = [spheres, kdops, structure](const Partition&) {
-    return Answers{ask_volumes(structure, Volume::sphere, spheres),
-                   ask_volumes(structure, Volume::kdop26, kdops)};
+    return Answers{query_volumes(structure, Volume::sphere, spheres),
+                   query_volumes(structure, Volume::kdop26, kdops)};
   };
-  questions.wanted = {wanted_among(spheres), wanted_among(kdops)};
+  questions.wanted = {expected_among(spheres), expected_among(kdops)};
   return questions;
 }
 
@@ -266,10 +266,10 @@ Questions pairs_of(const QuestionSet& set, std::string_view structure) {
     return answers;
   };
   const std::vector<Object> other_objects = numbered(others);
-  questions.wanted.push_back(wanted_of(true_pairs(set.objects)));
+  questions.wanted.push_back(expected_of(true_pairs(set.objects)));
   questions.wanted.push_back(questions.wanted.back());
-  questions.wanted.push_back(wanted_of(cross_pairs(set.objects, other_objects)));
-  questions.wanted.push_back(wanted_of(cross_pairs(other_objects, set.objects)));
+  questions.wanted.push_back(expected_of(cross_pairs(set.objects, other_objects)));
+  questions.wanted.push_back(expected_of(cross_pairs(other_objects, set.objects)));
   return questions;
 }
 

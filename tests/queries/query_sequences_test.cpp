@@ -115,7 +115,7 @@ class Play {
     std::vector<Object> all = world_.objects();
     std::erase_if(all, [&](const Object& object) {
       const auto at = filters_.find(object.id);
-      return !may_meet(at == filters_.end() ? ObjectFilter{} : at->second, filter.object());
+      return !filters_allow(at == filters_.end() ? ObjectFilter{} : at->second, filter.object());
     });
     return all;
   }

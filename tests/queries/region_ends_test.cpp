@@ -35,7 +35,7 @@ struct Boxes {
   }
 };
 
-void expect_meeting(const Boxes& boxes, const Region& region) {
+void expect_overlap(const Boxes& boxes, const Region& region) {
   for (const StructureKind structure : {bounds_n_squared(), linear_bvh(), flat_grid()}) {
     SCOPED_TRACE(structure.name());
     Partition partition(structure);
@@ -73,12 +73,12 @@ Boxes boxes_at_ball(int axes) {
 
 TEST(RegionEnds, spheres_overlap_exactly_at_their_surface) {
   const Boxes boxes = boxes_at_ball(3);
-  expect_meeting(boxes, Sphere{{0, 0, 0}, static_cast<float>(kRadius)});
-  expect_meeting(boxes, Capsule{{0, 0, 0}, {0, 0, 0}, static_cast<float>(kRadius)});
+  expect_overlap(boxes, Sphere{{0, 0, 0}, static_cast<float>(kRadius)});
+  expect_overlap(boxes, Capsule{{0, 0, 0}, {0, 0, 0}, static_cast<float>(kRadius)});
 }
 
 TEST(RegionEnds, capsules_overlap_exactly_at_their_surface) {
-  expect_meeting(boxes_at_ball(2), Capsule{{0, 0, -5000}, {0, 0, 5000}, float{kRadius}});
+  expect_overlap(boxes_at_ball(2), Capsule{{0, 0, -5000}, {0, 0, 5000}, float{kRadius}});
 }
 
 TEST(RegionEnds, planes_separate_exactly_at_their_surface) {
@@ -105,11 +105,11 @@ TEST(RegionEnds, planes_separate_exactly_at_their_surface) {
           boxes.add({corner - Vec3f::constant(64.0F), corner}, at == x);
         }
       }
-      expect_meeting(boxes, std::span<const Plane>(planes));
+      expect_overlap(boxes, std::span<const Plane>(planes));
       if (count != 6) continue;
       Frustum frustum;
       std::ranges::copy(planes, frustum.planes.begin());
-      expect_meeting(boxes, frustum);
+      expect_overlap(boxes, frustum);
     }
   }
 }

@@ -64,13 +64,13 @@ void move_some(RecordedPartition& partition, Crowd& crowd, Random& random, int f
     EXPECT_EQ(partition.update(crowd.keys, boxes), Status::ok);
     return;
   }
-  EXPECT_EQ(partition.update(crowd.keys, boxes, Entries::listed(moved)), Status::ok);
+  EXPECT_EQ(partition.update(crowd.keys, boxes, IndexSubset::listed(moved)), Status::ok);
   std::vector<std::uint64_t> mask(crowd.keys.size() / 64 + 1, 0x123456789ABCDEFU);
   mask.resize((crowd.keys.size() + 63) / 64);
-  EXPECT_EQ(partition.update(crowd.keys, boxes, Entries::masked(mask)), Status::ok);
+  EXPECT_EQ(partition.update(crowd.keys, boxes, IndexSubset::masked(mask)), Status::ok);
 }
 
-void ask_casts(const RecordedPartition& partition, Random& random) {
+void query_casts(const RecordedPartition& partition, Random& random) {
   HitBuffer hits;
   Hit hit;
   std::vector<Ray> rays(20);
@@ -95,7 +95,7 @@ void ask_casts(const RecordedPartition& partition, Random& random) {
   EXPECT_EQ(partition.nearest({{3, 3, 3}, {4, 4, 4}}, 7, 9.0F, hits, some), Status::ok);
 }
 
-void ask_overlaps(const RecordedPartition& partition) {
+void query_overlaps(const RecordedPartition& partition) {
   OverlapBuffer objects;
   PairBuffer pairs;
   const Filter some{.predicate = {kNotThirds, nullptr}};
@@ -159,8 +159,8 @@ void record_partition(Recorder& recorder, StructureKind structure, std::size_t c
     EXPECT_EQ(partition.pairs_with(other, cross), Status::ok);
     EXPECT_EQ(partition.self_pairs(cross, {.predicate = {kNotAlike, nullptr}}), Status::ok);
     EXPECT_EQ(partition.refresh(), Status::ok);
-    ask_casts(partition, random);
-    ask_overlaps(partition);
+    query_casts(partition, random);
+    query_overlaps(partition);
     recorder.end_frame();
   }
   partition.clear();
@@ -276,19 +276,19 @@ void change_bodies(RecordedScene& scene, SceneWorld& world, Landscape& landscape
 }
 
 /// Predicates of pairs and of bodies.
-struct Wishes {
+struct ModulusPredicate {
   ObjectId modulus = 3;
 
   [[nodiscard]] PairPredicate pairs() {
     return {[](void* context, ObjectId first, ObjectId second) {
-              return (first + second) % static_cast<Wishes*>(context)->modulus != 0;
+              return (first + second) % static_cast<ModulusPredicate*>(context)->modulus != 0;
             },
             this};
   }
   [[nodiscard]] Filter bodies() {
     Filter filter;
     filter.predicate = {[](void* context, Key key, ClientData) {
-                          return key.id % static_cast<Wishes*>(context)->modulus != 0;
+                          return key.id % static_cast<ModulusPredicate*>(context)->modulus != 0;
                         },
                         this};
     return filter;
@@ -338,7 +338,7 @@ void cast_all(RecordedQueries& ask, SceneWorld& world, ShapeId shape, const Filt
 }
 
 /// Makes every kind of query of a scene.
-void ask_all(RecordedQueries& ask, SceneWorld& world, ShapeId shape, const Filter& filter) {
+void query_all(RecordedQueries& ask, SceneWorld& world, ShapeId shape, const Filter& filter) {
   cast_all(ask, world, shape, filter);
   std::span<const SceneOverlap> bodies;
   EXPECT_EQ(ask.overlap(shape, world.random_pose(), bodies, filter), Status::ok);
@@ -457,7 +457,7 @@ void record_scene(Recorder& recorder, std::size_t count, int frames, const Scene
   RecordedSweep sweep(scene);
   const ShapeId watching[] = {world.shapes[0], landscape.ids[0], round[0], landscape.ids[3]};
   Watch watch(scene, watching);
-  Wishes wishes;
+  ModulusPredicate predicate;
   for (int frame = 0; frame < frames; ++frame) {
     world.stir(0.05);
     std::vector<Pose> poses;
@@ -465,11 +465,11 @@ void record_scene(Recorder& recorder, std::size_t count, int frames, const Scene
     EXPECT_EQ(scene.move(world.keys, poses), Status::ok);
     change_bodies(scene, world, landscape, frame);
     EXPECT_EQ(scene.refresh(), Status::ok);
-    wishes.modulus = frame < 4 ? 3 : 5;
-    if (frame == 2 || frame == 4) scene.set_predicate(wishes.pairs());
+    predicate.modulus = frame < 4 ? 3 : 5;
+    if (frame == 2 || frame == 4) scene.set_predicate(predicate.pairs());
     if (frame == 6) scene.set_predicate({});
     const ShapeId by_frame[] = {world.shapes[1], round[1], landscape.ids[3], landscape.ids[0]};
-    ask_all(ask, world, by_frame[frame % 4], frame % 2 == 0 ? Filter{} : wishes.bodies());
+    query_all(ask, world, by_frame[frame % 4], frame % 2 == 0 ? Filter{} : predicate.bodies());
     const auto level = frame == 6 ? ContactLevel::distance : ContactLevel::manifold;
     sweep_all(sweep, world, frame % 2 == 1);
     EXPECT_EQ(scene.collide(level, contacts), Status::ok);

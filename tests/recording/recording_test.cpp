@@ -186,10 +186,10 @@ TEST(ProgramRecordings, loaded_contacts_end_the_recording) {
 }
 
 /// A predicate that rejects pairs of some bodies.
-struct Bouncer {
+struct RejectingPredicate {
   [[nodiscard]] PairPredicate predicate() {
     return {[](void* context, ObjectId first, ObjectId second) {
-              const auto& of = *static_cast<const Bouncer*>(context);
+              const auto& of = *static_cast<const RejectingPredicate*>(context);
               return !of.out[first] && !of.out[second];
             },
             this};
@@ -199,14 +199,14 @@ struct Bouncer {
 };
 
 TEST(ProgramRecordings, predicates_after_a_refused_query_are_replayed) {
-  enum class Then { asked_again, another_predicate, another_body };
-  for (const Then then : {Then::asked_again, Then::another_predicate, Then::another_body}) {
+  enum class Then { queried_again, another_predicate, another_body };
+  for (const Then then : {Then::queried_again, Then::another_predicate, Then::another_body}) {
     Bytes8 bytes;
     Recorder recorder(kept_in(bytes));
     {
       RecordedRow row(recorder);
-      Bouncer all;
-      Bouncer most;
+      RejectingPredicate all;
+      RejectingPredicate most;
       most.out[4] = true;
       row.scene.set_predicate(all.predicate());
       CountingMemory memory;
@@ -223,7 +223,7 @@ TEST(ProgramRecordings, predicates_after_a_refused_query_are_replayed) {
         all.out[key.id] = true;
       }
       row.ask(contacts);
-      EXPECT_EQ(contacts.size(), then == Then::asked_again ? 29U : 27U);
+      EXPECT_EQ(contacts.size(), then == Then::queried_again ? 29U : 27U);
     }
     ASSERT_EQ(recorder.close(), Status::ok);
     expect_same_everywhere(bytes);

@@ -168,7 +168,7 @@ void happen(Scene& scene, Random& random, int number) {
   EXPECT_EQ(scene.set_filter(key(n + 11), {.layers = 2, .mask = ~2U}), Status::ok);
   EXPECT_EQ(scene.set_offsets(key(n + 14), {.contact = 0.03, .rest = 0.01}), Status::ok);
   EXPECT_EQ(scene.set_layer(key(n + 8), 70), Status::ok);
-  EXPECT_EQ(scene.set_layers_meet(70, 0, number % 2 == 0), Status::ok);
+  EXPECT_EQ(scene.set_layers_collide(70, 0, number % 2 == 0), Status::ok);
   EXPECT_EQ(scene.body(key(n + 12), body), Status::ok);
   EXPECT_EQ(scene.set_shape(key(n + 13), body.shape), Status::ok);
 }
@@ -230,7 +230,7 @@ void live(Stage& stage, std::size_t count) {
 std::vector<SceneOptions> kinds_of_scenes() {
   return {{},
           {.margin = 0.05, .carry_over = 0.01, .contact_reduction = true, .warm_start = true},
-          {.seamless_floors = true}};
+          {.suppress_ghost_contacts = true}};
 }
 
 TEST(SceneSnapshots, loaded_scene_continues_bit_identical) {

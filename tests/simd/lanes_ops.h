@@ -1,8 +1,8 @@
 #pragma once
 
-// Wraps every operation of simd/lanes/lanes.h, alone.h, boxes.h, compress.h, places.h and
-// positive.h in a function on plain pointers, so that tests can compare each instruction set with a
-// scalar loop. Arrays have 16 elements unless stated otherwise.
+// Wraps every operation of simd/lanes/lanes.h, scalar_lane.h, boxes.h, compress.h, permute.h and
+// positive_min_max.h in a function on plain pointers, so that tests can compare each instruction
+// set with a scalar loop. Arrays have 16 elements unless stated otherwise.
 
 #include "simd/kernels/kernels.h"
 
@@ -56,12 +56,12 @@ struct LanesOps {
   void (*larger_positive)(const float* a, const float* b, float* out);
   void (*smaller_positive)(const float* a, const float* b, float* out);
   std::uint32_t (*reduce_min_positive)(const float* in);
-  /// Writes kAloneResults results of two doubles, on the scalar path and in lanes.
+  /// Writes kScalarResults results of two doubles, on the scalar path and in lanes.
   void (*alone)(double a, double b, double* out);
   void (*not_alone)(double a, double b, double* out);
   const char* isa_name;
 };
-inline constexpr int kAloneResults = 20;
+inline constexpr int kScalarResults = 20;
 
 WINNOW_KERNELS(LanesOps, lanes_ops);
 

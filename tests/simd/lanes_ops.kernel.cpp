@@ -1,13 +1,13 @@
 // The operations of lanes_ops.h, compiled once for each instruction set; lanes_test.cpp calls them.
 
-#include "simd/lanes/alone.h"
 #include "simd/lanes/boxes.h"
 #include "simd/lanes/compress.h"
 #include "simd/lanes/lanes.h"
-#include "simd/lanes/packed.h"
-#include "simd/lanes/places.h"
-#include "simd/lanes/positive.h"
+#include "simd/lanes/packed_points.h"
+#include "simd/lanes/permute.h"
+#include "simd/lanes/positive_min_max.h"
 #include "simd/lanes/rows.h"
+#include "simd/lanes/scalar_lane.h"
 
 #include "tests/simd/lanes_ops.h"
 
@@ -70,7 +70,7 @@ float reduce_min_lanes(const float* in) {
 float reduce_max_lanes(const float* in) {
   return reduce_max(Floats::load_unaligned(in));
 }
-/// Writes kAloneResults results of two numbers that fill all lanes.
+/// Writes kScalarResults results of two numbers that fill all lanes.
 template <typename T>
 void do_all(double first, double second, double* out) {
   const Lanes<T> a = Lanes<T>(T(first));
@@ -144,7 +144,7 @@ template <int Blocks>
 void pick_lanes(const float* from, const std::uint8_t* place, float* out) {
   Floats block[Blocks];
   for (int k = 0; k < Blocks; ++k) block[k] = Floats::load_unaligned(from + k * kLanes);
-  LanePlaces(place).pick(block).store_unaligned(out);
+  LanePermutation(place).pick(block).store_unaligned(out);
 }
 template <unsigned Limit>
 bool are_below_limit(const std::uint8_t* place) {
@@ -204,7 +204,7 @@ const LanesOps WINNOW_KERNEL_TABLE(lanes_ops){
     .larger_positive = isa::larger_positive_lanes,
     .smaller_positive = isa::smaller_positive_lanes,
     .reduce_min_positive = isa::reduce_min_positive_lanes,
-    .alone = isa::do_all<isa::Alone>,
+    .alone = isa::do_all<isa::ScalarLane>,
     .not_alone = isa::do_all<double>,
     .isa_name = WINNOW_TEXT(WINNOW_ISA_NAME),
 };

@@ -267,8 +267,8 @@ TEST_P(LaneOps, scalar_path_equals_the_lanes) {
   for (int round = 0; round < 20000; ++round) {
     const double a = draw();
     const double b = draw();
-    std::array<double, kAloneResults> alone{};
-    std::array<double, kAloneResults> lanes{};
+    std::array<double, kScalarResults> alone{};
+    std::array<double, kScalarResults> lanes{};
     ops().alone(a, b, alone.data());
     ops().not_alone(a, b, lanes.data());
     for (std::size_t i = 0; i < alone.size(); ++i) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// Wraps every operation of simd/lanes/rows.h and corners.h in a function on plain pointers.
+// Wraps every operation of simd/lanes/rows.h and triangle_lanes.h in a function on plain pointers.
 
 #include "simd/kernels/kernels.h"
 

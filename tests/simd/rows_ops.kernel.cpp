@@ -1,7 +1,7 @@
 #include "tests/simd/rows_ops.h"
 
-#include "simd/lanes/corners.h"
 #include "simd/lanes/rows.h"
+#include "simd/lanes/triangle_lanes.h"
 
 namespace winnow::WINNOW_ISA_NAME {
 namespace {

@@ -57,7 +57,7 @@ class PartitionSoak {
   std::uint64_t followed_ = 0;  // remaining frames in which the loaded copy is compared
 
   std::vector<Object> model_;  // dense, in no order
-  std::set<Pair> told_;        // pairs that are active by the events
+  std::set<Pair> active_;      // pairs that are active by the events
   Motion motion_ = Motion::little;
   double wanted_ = 0.0;  // number of objects
 
@@ -154,7 +154,7 @@ void PartitionSoak::refilter() {
 void PartitionSoak::begin_lap() {
   partition_.clear();
   model_.clear();
-  told_.clear();
+  active_.clear();
   events_.clear();
   followed_ = 0;
   random_ = Random(plan_.seed);
@@ -208,10 +208,10 @@ void PartitionSoak::tell() {
   tally_.operations +=
       gone_.size() + moved_.size() + refiltered_.size() + come_.size() + 1 /* the query */;
   for (const KeyPair& pair : events_.ended()) {
-    require(told_.erase({pair.first.id, pair.second.id}) == 1, "a pair ended that had not begun");
+    require(active_.erase({pair.first.id, pair.second.id}) == 1, "a pair ended that had not begun");
   }
   for (const KeyPair& pair : events_.begun()) {
-    require(told_.insert({pair.first.id, pair.second.id}).second, "a pair began twice");
+    require(active_.insert({pair.first.id, pair.second.id}).second, "a pair began twice");
   }
 }
 
@@ -224,9 +224,9 @@ void PartitionSoak::check() {
   const std::vector<Pair> truth = true_pairs(model_);
   const auto right = right_pairs(pairs_.pairs(), truth, partition_.is_exact());
   require(right, right.message());
-  require(told_.size() == pairs_.size() &&
+  require(active_.size() == pairs_.size() &&
               std::all_of(pairs_.begin(), pairs_.end(),
-                          [&](const Pair& pair) { return told_.contains(pair); }),
+                          [&](const Pair& pair) { return active_.contains(pair); }),
           "events and pairs differ");
   require(partition_.size() == model_.size(), "another number of objects");
   check_boxes();
@@ -263,11 +263,11 @@ void PartitionSoak::save() {
 
 void PartitionSoak::follow() {
   threads_.run([&] { tell(loaded_, true); });
-  const auto ask_canonical = [&](Partition& partition) {
+  const auto query_canonical = [&](Partition& partition) {
     return threads_.run(
         [&] { return partition.self_pairs(loaded_pairs_, {.order = Order::canonical}); });
   };
-  require(ask_canonical(loaded_) == Status::ok, "self_pairs was refused");
+  require(query_canonical(loaded_) == Status::ok, "self_pairs was refused");
   std::vector<Pair> mine(pairs_.begin(), pairs_.end());
   std::sort(mine.begin(), mine.end());
   require(std::ranges::equal(mine, loaded_pairs_), "the loaded partition finds other pairs");

@@ -37,7 +37,7 @@ class SceneSoak {
   void change(std::size_t i);
   void tell(const Event& event, Scene& scene, std::size_t which);
   void collide(Scene& scene, Contacts& contacts);
-  void tell_events();
+  void report_events();
   void check();
   void save();
   void follow();
@@ -177,7 +177,7 @@ void SceneSoak::collide(Scene& scene, Contacts& contacts) {
 
 /// Checks events: pairs begin if they were neither reported nor dormant; pairs that are no longer
 /// reported end or become dormant.
-void SceneSoak::tell_events() {
+void SceneSoak::report_events() {
   std::set<Names> before = shown_;
   before.insert(dormant_.begin(), dormant_.end());
   shown_.clear();
@@ -252,7 +252,7 @@ SoakTally SceneSoak::run() {
     for (const Event& event : events_) tell(event, scene_, 0);
     collide(scene_, contacts_);
     times_.end();
-    tell_events();
+    report_events();
     tally_.operations += events_.size() + 1;
     if (followed_ != 0) {
       follow();

@@ -11,7 +11,7 @@ namespace {
 
 // More than any machine has. Refused here, since sanitizers would end the process instead of
 // throwing.
-constexpr std::size_t kMost = ~std::size_t{0} >> (sizeof(std::size_t) > 4 ? 24U : 1U);
+constexpr std::size_t kMaxBytes = ~std::size_t{0} >> (sizeof(std::size_t) > 4 ? 24U : 1U);
 
 }  // namespace
 
@@ -67,7 +67,7 @@ void* CountingMemory::do_allocate(std::size_t bytes, std::size_t alignment) {
 #if WINNOW_TEST_THREADS
   if (std::this_thread::get_id() != owner_) ++requests_from_elsewhere_;
 #endif
-  const bool too_many = bytes > kMost || outstanding_ + bytes > limit_;
+  const bool too_many = bytes > kMaxBytes || outstanding_ + bytes > limit_;
   if (too_many || (request >= refuse_from_ && request < refuse_to_)) {
     ++refusals_;
     refuse_memory();

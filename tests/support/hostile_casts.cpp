@@ -8,7 +8,7 @@
 #include <cmath>
 #include <limits>
 
-#include "tests/support/cast_twin.h"
+#include "tests/support/cast_reference.h"
 
 namespace winnow::test {
 namespace {

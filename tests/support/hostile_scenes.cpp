@@ -11,8 +11,8 @@
 #include <utility>
 
 #include "tests/support/random.h"
+#include "tests/support/reference.h"
 #include "tests/support/scenes.h"
-#include "tests/support/twin.h"
 
 namespace winnow::test {
 namespace {

@@ -17,12 +17,15 @@ std::vector<float> of_both_signs(const std::vector<float>& sizes) {
 }
 
 std::vector<TinyScene> make_scenes() {
-  constexpr float kLeast = std::numeric_limits<float>::denorm_min();
+  constexpr float kSmallestFloat = std::numeric_limits<float>::denorm_min();
   constexpr float kNormal = std::numeric_limits<float>::min();
-  const std::vector<float> denormal{kLeast, 2 * kLeast, 3 * kLeast,
-                                    1e-42F, 1e-40F,     1e-40F + kLeast};
-  const std::vector<float> border{kLeast,         kNormal - kLeast, kNormal, kNormal + kLeast,
-                                  1.5F * kNormal, 2 * kNormal,      1e-37F};
+  const std::vector<float> denormal{
+      kSmallestFloat, 2 * kSmallestFloat,     3 * kSmallestFloat, 1e-42F,
+      1e-40F,         1e-40F + kSmallestFloat};
+  const std::vector<float> border{kSmallestFloat, kNormal - kSmallestFloat,
+                                  kNormal,        kNormal + kSmallestFloat,
+                                  1.5F * kNormal, 2 * kNormal,
+                                  1e-37F};
   std::vector<float> mixed{1.0F, std::nextafter(1.0F, 2.0F), 0x1p-103F, 3e-32F};
   mixed.insert(mixed.end(), denormal.begin(), denormal.end());
   mixed.insert(mixed.end(), border.begin(), border.end());

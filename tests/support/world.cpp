@@ -145,13 +145,13 @@ testing::AssertionResult World::agrees(PairBuffer& buffer, const PairOptions& op
 }
 
 testing::AssertionResult World::has_pairs(const PairBuffer& buffer) const {
-  if (const auto meet = may_all_meet(buffer.pairs()); !meet) return meet;
+  if (const auto meet = may_all_pair(buffer.pairs()); !meet) return meet;
   return right_pairs(buffer.pairs(), true_pairs(objects()), partition_.is_exact());
 }
 
-testing::AssertionResult World::may_all_meet(std::span<const Pair> pairs) const {
+testing::AssertionResult World::may_all_pair(std::span<const Pair> pairs) const {
   for (const Pair& pair : pairs) {
-    if (!may_meet(entries_.at(pair.first).filter, entries_.at(pair.second).filter)) {
+    if (!filters_allow(entries_.at(pair.first).filter, entries_.at(pair.second).filter)) {
       return testing::AssertionFailure() << "the filters of " << pair << " reject it";
     }
   }

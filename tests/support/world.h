@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "tests/support/config.h"
-#include "tests/support/twin.h"
+#include "tests/support/reference.h"
 
 namespace winnow::test {
 
@@ -71,7 +71,7 @@ class World {
   /// Returns true if the pairs are right.
   [[nodiscard]] testing::AssertionResult has_pairs(const PairBuffer& buffer) const;
   /// Returns true if the filters of all pairs' objects accept each other.
-  [[nodiscard]] testing::AssertionResult may_all_meet(std::span<const Pair> pairs) const;
+  [[nodiscard]] testing::AssertionResult may_all_pair(std::span<const Pair> pairs) const;
 
  private:
   std::map<ObjectId, Entry> entries_;

@@ -47,7 +47,7 @@ class BruteForce : public Structure {
   [[nodiscard]] bool reserve(const BuildRoom&) noexcept override { return true; }
 
   [[nodiscard]] std::size_t pair_tasks() const noexcept override {
-    return std::min(kMostTasks, pool().blocks());
+    return std::min(kMaxTasks, pool().blocks());
   }
   bool run_pair_task(std::size_t task, PairSink& sink) const noexcept override {
     return kernel_for_(pool().volume())
@@ -103,7 +103,7 @@ constexpr StructureCosts kCosts{.frame = 60,
                                 .moved = 150,
                                 .rest = 1.5,
                                 .build = 42,
-                                .ask = 120,
+                                .query = 120,
                                 .scan = 0.75};
 constexpr StructureInfo kNSquared = structure_info<NSquared>("NSquared");
 constexpr StructureInfo kBoundsNSquared = structure_info<BoundsNSquared>("BoundsNSquared", &kCosts);

@@ -94,7 +94,7 @@ struct SphereTest {
     return q;
   }
   [[gnu::always_inline]] static Mask16 test(const Block& b, const Query& q) {
-    return balls_meet(b.center, b.radius, q.center, q.radius);
+    return spheres_overlap_one(b.center, b.radius, q.center, q.radius);
   }
 };
 
@@ -192,7 +192,7 @@ bool filtered_block_pair(const FlatView& view, std::uint32_t a, Mask16 asking, s
   }
   sink.tests += count(asking);
   if (any == 0) return true;
-  const AskingFilters filters(view.rows);
+  const QueryFilters filters(view.rows);
   const Uints ids = Uints::load_unaligned(view.rows.id + b_row);
   for (Mask16 left = asking; left != 0; left &= left - 1) {
     const unsigned i = first(left);
@@ -250,7 +250,7 @@ struct FlatQuery {
 
   template <bool Filtered>
   static bool run(const FlatView& view, const QueryBatch& batch, PairSink& sink) {
-    const AskingFilters filters(batch);
+    const QueryFilters filters(batch);
     for (std::uint32_t k = batch.begin; k < batch.end; ++k) {
       const std::uint32_t row = batch.rows != nullptr ? batch.rows[k] : k;
       if (batch.id[row] == kNoId) continue;

@@ -11,15 +11,15 @@
 namespace winnow {
 namespace {
 
-struct Extent {
+struct BoundedInterval {
   float low = kEndless;
   float high = -kEndless;
 };
 
 // Returns the range of the finite bounds of the first `count` rows; the whole axis if there are
 // none.
-Extent bounded_part(const RowView& rows, std::size_t axis, std::size_t count) noexcept {
-  Extent part;
+BoundedInterval bounded_part(const RowView& rows, std::size_t axis, std::size_t count) noexcept {
+  BoundedInterval part;
   for (std::size_t row = 0; row < count; ++row) {
     for (const float end : {rows.column[axis][row], rows.column[3 + axis][row]}) {
       if (!(std::abs(end) < FLT_MAX)) continue;
@@ -27,7 +27,7 @@ Extent bounded_part(const RowView& rows, std::size_t axis, std::size_t count) no
       part.high = std::max(part.high, end);
     }
   }
-  return part.low <= part.high ? part : Extent{-kEndless, kEndless};
+  return part.low <= part.high ? part : BoundedInterval{-kEndless, kEndless};
 }
 
 class CellPicture {
@@ -64,7 +64,7 @@ class CellPicture {
   }
 
   std::array<CellAxis, 3> axes_;
-  std::array<Extent, 3> whole_;
+  std::array<BoundedInterval, 3> whole_;
 };
 
 // The arrow is beside the cells and a little longer than they are, so that it does not cross them.

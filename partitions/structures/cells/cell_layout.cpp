@@ -4,8 +4,8 @@
 
 #include "partitions/structures/cells/cell_layout.h"
 
-#include "core/sort/end_values.h"
-#include "core/sort/stretches.h"
+#include "core/sort/order_statistics.h"
+#include "core/sort/parallel_ranges.h"
 #include "partitions/structures/cells/cell_layout.kernel.h"
 #include "partitions/structures/roots.h"
 
@@ -22,10 +22,10 @@ WINNOW_DEFINE_KERNELS(CellLayoutKernels, cell_layout_kernels)
 namespace {
 
 constexpr float kUnbounded = 1e30F;
-constexpr double kMostCells = 2048;  // on an axis
-constexpr double kLeastWidening = 1.02;
+constexpr double kMaxCells = 2048;  // on an axis
+constexpr double kMinWidening = 1.02;
 constexpr double kTreeQuery = 14.0;  // tests of 16 volumes per object in the tree
-constexpr std::size_t kRowsPerStretch = 8192;
+constexpr std::size_t kRowsPerRange = 8192;
 constexpr std::size_t kRowsPerSample = 64;  // the sample has one row in this many, within its
                                             // limits
 
@@ -67,17 +67,17 @@ SceneSample::SceneSample(const BoundsPool& pool, std::size_t live,
                          const Execution& execution) noexcept
     : objects(live) {
   if (live == 0) return;
-  std::array<std::uint32_t, kMost> rows;
+  std::array<std::uint32_t, kMaxSampled> rows;
   choose_rows(pool, rows);
-  if (count != 0) execution.for_each(3, [&](std::size_t a) { look_along(a, pool, rows); });
+  if (count != 0) execution.for_each(3, [&](std::size_t a) { sample_along(a, pool, rows); });
 }
 
 void SceneSample::choose_rows(const BoundsPool& pool,
-                              std::array<std::uint32_t, kMost>& rows) noexcept {
-  const std::size_t wanted = std::clamp(pool.rows() / kRowsPerSample, kLeast, kMost);
+                              std::array<std::uint32_t, kMaxSampled>& rows) noexcept {
+  const std::size_t wanted = std::clamp(pool.rows() / kRowsPerSample, kMinSampled, kMaxSampled);
   const std::size_t step = std::max<std::size_t>(1, pool.rows() / wanted);
   const auto take = [&](std::size_t row) { rows[count++] = static_cast<std::uint32_t>(row); };
-  if (pool.rows() <= kMost) {
+  if (pool.rows() <= kMaxSampled) {
     // Select by ids: if a few objects return to former positions they get the same cells again,
     // whatever the order of rows.
     const auto k = static_cast<unsigned>(std::bit_width(step)) - 1;
@@ -86,15 +86,15 @@ void SceneSample::choose_rows(const BoundsPool& pool,
       if (id != kNoObject && (k == 0 || id * 0x9E3779B1U >> (32 - k) == 0)) take(row);
     }
   } else {
-    for (std::size_t row = step / 2; row < pool.rows() && count < kMost; row += step) {
+    for (std::size_t row = step / 2; row < pool.rows() && count < kMaxSampled; row += step) {
       if (pool.ids()[row] != kNoObject) take(row);
     }
   }
 }
 
-void SceneSample::look_along(std::size_t a, const BoundsPool& pool,
-                             const std::array<std::uint32_t, kMost>& rows) noexcept {
-  std::array<float, kMost> ends{};
+void SceneSample::sample_along(std::size_t a, const BoundsPool& pool,
+                               const std::array<std::uint32_t, kMaxSampled>& rows) noexcept {
+  std::array<float, kMaxSampled> ends{};
   double sum = 0.0;
   std::size_t bounded = 0;
   for (std::size_t i = 0; i < count; ++i) {
@@ -106,9 +106,10 @@ void SceneSample::look_along(std::size_t a, const BoundsPool& pool,
   }
   mean_edge[a] = sum / static_cast<double>(std::max<std::size_t>(1, bounded));
   const std::span<const float> values(ends.data(), count);
-  const auto [least, most] = pool.rows() <= kMost ? ends_of(pool, a) : std::ranges::minmax(values);
+  const auto [least, most] =
+      pool.rows() <= kMaxSampled ? ends_of(pool, a) : std::ranges::minmax(values);
   // Outliers must not stretch the cells.
-  const RangeOfMost range(values);
+  const InterquantileRange range(values);
   low[a] = std::max(least, static_cast<float>(std::max(range.low, -3e38)));
   high[a] = std::min(most, static_cast<float>(std::min(range.high, 3e38)));
 }
@@ -150,7 +151,7 @@ struct CellLayout::Trial {
       cells[a] = 1.0;
       width[a] = 0.0;
       if (!divided[a] || (d.sweep_fast_axis && a == fast)) continue;
-      width[a] = std::max(reach[a] * (1.0 + 2.0 * d.slack_share), s.range(a) / kMostCells);
+      width[a] = std::max(reach[a] * (1.0 + 2.0 * d.slack_share), s.range(a) / kMaxCells);
       if (a != fast) width[a] = std::max(width[a], std::min(s.range(a), block_edge(s, d, n)));
       total *= s.range(a) / width[a];
       ++free_axes;
@@ -158,7 +159,7 @@ struct CellLayout::Trial {
     if (free_axes == 0) return;
     const double most = d.most_cells(n);
     // If an axis is reduced to one cell, the other axes must be widened more.
-    for (double least = 1.0; total > most || least == 1.0; least = kLeastWidening) {
+    for (double least = 1.0; total > most || least == 1.0; least = kMinWidening) {
       const double widen = total > most ? root(free_axes, total / most) : 1.0;
       total = 1.0;
       for (std::size_t a = 0; a < 3; ++a) {
@@ -216,7 +217,7 @@ struct CellLayout::Trial {
 
 bool CellLayout::choose(const SceneSample& s, const CellDemand& d) noexcept {
   usable_ = false;
-  if (s.objects < kFewestInCells || s.count < 8) return true;
+  if (s.objects < kMinInCells || s.count < 8) return true;
   // The axis with the most room in units of the objects' edges prunes best; its cells are
   // consecutive in memory.
   std::size_t fast = 0;
@@ -224,7 +225,7 @@ bool CellLayout::choose(const SceneSample& s, const CellDemand& d) noexcept {
   for (std::size_t a = 1; a < 3; ++a) {
     if (room(a) > room(fast)) fast = a;
   }
-  std::array<std::array<float, SceneSample::kMost>, 3> edges_of = s.edge;
+  std::array<std::array<float, SceneSample::kMaxSampled>, 3> edges_of = s.edge;
   std::array<float, 3> least{};
   for (std::size_t a = 0; a < 3; ++a) {
     least[a] = *std::min_element(s.edge[a].begin(), s.edge[a].begin() + s.count);
@@ -284,7 +285,7 @@ bool CellLayout::lay_edges(const Trial& trial, const SceneSample& s) noexcept {
   edges_.clear();
   if (!edges_.resize(total)) return false;
   usable_ = true;
-  aim_axes();
+  set_axis_pointers();
   float* at = edges_.data();
   for (CellAxis& axis : axes_) {
     float* const from = at;
@@ -317,7 +318,7 @@ bool CellLayout::lay_edges(const Trial& trial, const SceneSample& s) noexcept {
 }
 
 // Sets the pointers of the axes to the bounds of their cells.
-void CellLayout::aim_axes() noexcept {
+void CellLayout::set_axis_pointers() noexcept {
   const float* at = edges_.data();
   for (CellAxis& axis : axes_) {
     axis.from = at;
@@ -328,22 +329,22 @@ void CellLayout::aim_axes() noexcept {
 
 bool CellLayout::reserve(std::size_t cells, Pages pages) noexcept {
   // At most all cells on one axis, or the maximum on each.
-  const std::size_t ends = std::min(cells + 2, 3 * (static_cast<std::size_t>(kMostCells) + 1));
+  const std::size_t ends = std::min(cells + 2, 3 * (static_cast<std::size_t>(kMaxCells) + 1));
   if (!edges_.reserve(2 * ends, pages)) return false;
-  if (!edges_.empty()) aim_axes();
+  if (!edges_.empty()) set_axis_pointers();
   return true;
 }
 
 void CellLayout::find_cells(const BoundsPool& pool, std::uint32_t* cell,
                             const Execution& execution) const noexcept {
   const std::array<const float*, 6> columns = box_columns(pool);
-  for_even_stretches(execution, pool.rows(), kRowsPerStretch,
-                     [&](std::size_t begin, std::size_t end) {
-                       cell_layout_kernels().cells(columns.data(), axes_.data(), begin, end, cell);
-                     });
+  for_each_even_range(execution, pool.rows(), kRowsPerRange,
+                      [&](std::size_t begin, std::size_t end) {
+                        cell_layout_kernels().cells(columns.data(), axes_.data(), begin, end, cell);
+                      });
 }
 
-std::uint32_t CellLayout::cell_of(const Structure::Place& box) const noexcept {
+std::uint32_t CellLayout::cell_of(const Structure::ObjectBox& box) const noexcept {
   std::uint32_t cell = 0;
   for (std::size_t k = 3; k-- > 0;) {
     const CellAxis& axis = axes_[k];
@@ -354,7 +355,7 @@ std::uint32_t CellLayout::cell_of(const Structure::Place& box) const noexcept {
   return cell;
 }
 
-bool CellLayout::fits(const Structure::Place& box, std::uint32_t cell) const noexcept {
+bool CellLayout::fits(const Structure::ObjectBox& box, std::uint32_t cell) const noexcept {
   for (const CellAxis& axis : axes_) {
     const float low = box.low[axis.axis];
     const std::uint32_t c = cell % axis.count;
@@ -365,7 +366,7 @@ bool CellLayout::fits(const Structure::Place& box, std::uint32_t cell) const noe
   return true;
 }
 
-bool CellLayout::fits(const Structure::Place& box, std::size_t row,
+bool CellLayout::fits(const Structure::ObjectBox& box, std::size_t row,
                       const Column<std::uint32_t>& start) const noexcept {
   // Usually the box's lower corner still lies in the cell of the row.
   const std::uint32_t own = cell_of(box);

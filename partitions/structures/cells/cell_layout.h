@@ -20,15 +20,15 @@ inline constexpr float kEndless = std::numeric_limits<float>::infinity();
 
 /// Positions and sizes of a sample of a scene's objects, for the layout of cells.
 struct SceneSample {
-  static constexpr std::size_t kLeast = 256;
-  static constexpr std::size_t kMost = 2048;
+  static constexpr std::size_t kMinSampled = 256;
+  static constexpr std::size_t kMaxSampled = 2048;
 
   /// Samples the pool, of which `live` rows hold objects.
   SceneSample(const BoundsPool& pool, std::size_t live, const Execution& execution) noexcept;
 
   std::size_t objects = 0;  ///< live rows of the pool
   std::size_t count = 0;    ///< rows in the sample
-  std::array<std::array<float, kMost>, 3> edge;
+  std::array<std::array<float, kMaxSampled>, 3> edge;
   std::array<float, 3> low{};  ///< range of lower bounds, without outliers
   std::array<float, 3> high{};
   std::array<double, 3> mean_edge{};  ///< of the bounded edges
@@ -38,9 +38,9 @@ struct SceneSample {
   }
 
  private:
-  void choose_rows(const BoundsPool& pool, std::array<std::uint32_t, kMost>& rows) noexcept;
-  void look_along(std::size_t axis, const BoundsPool& pool,
-                  const std::array<std::uint32_t, kMost>& rows) noexcept;
+  void choose_rows(const BoundsPool& pool, std::array<std::uint32_t, kMaxSampled>& rows) noexcept;
+  void sample_along(std::size_t axis, const BoundsPool& pool,
+                    const std::array<std::uint32_t, kMaxSampled>& rows) noexcept;
 };
 
 /// Requirements of a structure for its layout.
@@ -86,11 +86,11 @@ class CellLayout {
   void find_cells(const BoundsPool& pool, std::uint32_t* cell,
                   const Execution& execution) const noexcept;
   /// Returns the cell for a box, or kNoCell if the box is too large.
-  [[nodiscard]] std::uint32_t cell_of(const Structure::Place& box) const noexcept;
+  [[nodiscard]] std::uint32_t cell_of(const Structure::ObjectBox& box) const noexcept;
   /// True if the box may stay in the cell.
-  [[nodiscard]] bool fits(const Structure::Place& box, std::uint32_t cell) const noexcept;
+  [[nodiscard]] bool fits(const Structure::ObjectBox& box, std::uint32_t cell) const noexcept;
   /// As above for the cell of the row; cell c holds rows [start[c], start[c + 1]).
-  [[nodiscard]] bool fits(const Structure::Place& box, std::size_t row,
+  [[nodiscard]] bool fits(const Structure::ObjectBox& box, std::size_t row,
                           const Column<std::uint32_t>& start) const noexcept;
 
   /// Swaps two layouts with the same memory resource.
@@ -102,7 +102,7 @@ class CellLayout {
  private:
   struct Trial;
   [[nodiscard]] bool lay_edges(const Trial& trial, const SceneSample& sample) noexcept;
-  void aim_axes() noexcept;
+  void set_axis_pointers() noexcept;
 
   std::array<CellAxis, 3> axes_;
   Column<float> edges_;

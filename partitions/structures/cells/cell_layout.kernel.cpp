@@ -1,5 +1,5 @@
 #include "partitions/structures/cells/cell_layout.kernel.h"
-#include "simd/lanes/truncated.h"
+#include "simd/lanes/float_to_uint.h"
 
 namespace winnow {
 namespace WINNOW_ISA_NAME {
@@ -9,7 +9,7 @@ namespace {
 Uints number_on(const CellAxis& axis, const Floats& x) {
   const Floats place = (x - axis.origin) * axis.inverse;
   const Floats last = Floats(static_cast<float>(axis.count - 1));
-  return truncated(min(max(place, Floats(0.0F)), last));
+  return float_to_uint(min(max(place, Floats(0.0F)), last));
 }
 
 void cells(const float* const* column, const CellAxis* axes, std::size_t begin, std::size_t end,

@@ -67,14 +67,15 @@ class CellStructure : public Structure {
 
   /// Rows outside cells query all cells that they cross. If they are more than a tenth of the
   /// scene, the tree is better for all rows.
-  [[nodiscard]] static bool are_too_many_apart(std::size_t apart, const RowPlan& plan) noexcept {
+  [[nodiscard]] static bool are_too_many_outside_cells(std::size_t apart,
+                                                       const RowPlan& plan) noexcept {
     return apart > plan.objects / 10;
   }
   /// Discards the plan's lists and makes every live row part of the rest.
-  void leave_cells(const RowPlan& plan) const noexcept {
+  void move_all_to_rest(const RowPlan& plan) const noexcept {
     plan.regular.clear();
     plan.rest.clear();
-    leave_all(plan);
+    put_all_in_rest(plan);
   }
 
   /// Appends live rows without a cell in the plan's list to the rest; `regular` rows have one.
@@ -94,7 +95,7 @@ class CellStructure : public Structure {
     // With fewer rows, starting a task costs more than finding the pairs.
     constexpr std::size_t kRowsOfTask = 128;
     if (regular_rows() == 0) return {};
-    return {pair_units(), std::min(kMostTasks, regular_rows() / kRowsOfTask + 1)};
+    return {pair_units(), std::min(kMaxTasks, regular_rows() / kRowsOfTask + 1)};
   }
 };
 

@@ -38,7 +38,7 @@ class FlatGrid final : public CellStructure {
   [[nodiscard]] Planned plan(const RowPlan& plan, unsigned stage) noexcept override;
   [[nodiscard]] std::size_t plan_passes() const noexcept override { return 2; }
   void finish_build(const RowPlan& plan, bool moved) noexcept override;
-  [[nodiscard]] bool fits(std::size_t row, const Place& place) const noexcept override;
+  [[nodiscard]] bool fits(std::size_t row, const ObjectBox& place) const noexcept override;
   [[nodiscard]] std::size_t places() const noexcept override;
   [[nodiscard]] std::uint32_t first_row(std::uint32_t line) const noexcept override;
   std::size_t write_misfits(std::uint32_t begin, std::uint32_t end,
@@ -79,7 +79,7 @@ Planned FlatGrid::choose_cells(const RowPlan& plan) noexcept {
   const SceneSample sample(pool(), plan.objects, execution());
   if (!planned_.choose(sample, kDemand)) return Planned::out_of_memory;
   if (!planned_.usable()) {
-    leave_all(plan);
+    put_all_in_rest(plan);
     return Planned::done;
   }
   if (!plan.list.resize(plan.rows) || !planned_start_.resize(planned_.cells() + 1)) {
@@ -95,7 +95,8 @@ void FlatGrid::sort_by_cell(const RowPlan& plan) noexcept {
   sort.count();
   if (drop_overfull(sort, plan)) sort.count();
   plan.regular.set_size(sort.find_starts());
-  if (are_too_many_apart(plan.objects - plan.regular.size(), plan)) return leave_cells(plan);
+  if (are_too_many_outside_cells(plan.objects - plan.regular.size(), plan))
+    return move_all_to_rest(plan);
   sort.place(plan.regular.data());
   list_rest(plan.regular.size(), plan);
 }
@@ -117,7 +118,7 @@ void FlatGrid::finish_build(const RowPlan&, bool) noexcept {
   start_.swap(planned_start_);
 }
 
-bool FlatGrid::fits(std::size_t row, const Place& place) const noexcept {
+bool FlatGrid::fits(std::size_t row, const ObjectBox& place) const noexcept {
   return layout_.fits(place, row, start_);
 }
 
@@ -177,7 +178,7 @@ constexpr StructureCosts kCosts{.has_cells = true,
                                 .rest = 0.4,
                                 .build = 20,
                                 .anew = 20,
-                                .ask_level = 36,
+                                .query_level = 36,
                                 .rows = 1.5};
 constexpr StructureInfo kInfo = structure_info<FlatGrid>("FlatGrid", &kCosts);
 

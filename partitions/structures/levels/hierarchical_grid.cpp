@@ -2,8 +2,8 @@
 // line and cell, and dispatches to the kernels of hierarchical_grid.kernel.cpp.
 
 #include <winnow/partitions/debug_colours.h>
+#include "core/sort/parallel_ranges.h"
 #include "core/sort/radix_sort.h"
-#include "core/sort/stretches.h"
 #include "partitions/structures/cells/cell_structure.h"
 #include "partitions/structures/costs.h"
 #include "partitions/structures/levels/hierarchical_grid.kernel.h"
@@ -29,12 +29,12 @@ namespace {
 constexpr std::size_t kCrowd = 512;
 // Objects per cell of a line.
 constexpr std::size_t kInCell = 4;
-constexpr std::size_t kRowsPerStretch = 8192;
-constexpr std::size_t kLinesPerStretch = 512;
+constexpr std::size_t kRowsPerRange = 8192;
+constexpr std::size_t kLinesPerRange = 512;
 // A level has a table of lines if it has at most one line for two objects, plus this many.
 constexpr std::size_t kMoreLines = 16;
 // Padding behind the rows of each level and of the last level, up to the next whole block.
-constexpr std::size_t kMostHoles = (kMostLevels + 1) * kBlockRows;
+constexpr std::size_t kMaxHoles = (kMaxLevels + 1) * kBlockRows;
 
 // A colour for each level that is distinct from other debug colours: from the palette of Okabe and
 // Ito, as they are, and darker from the sixth level on.
@@ -89,7 +89,7 @@ Aabb cell_box(const GridLevel& g, const GridLine& line, std::uint32_t number, st
 /// Returns the position nearest to x whose step lies within the range, or NaN, which is near no
 /// position, if floats are too coarse there to find one.
 float nearest_within(const LevelAxis& axis, const StepRange& steps, float x) noexcept {
-  constexpr int kMostTries = 4;
+  constexpr int kMaxTries = 4;
   const std::uint32_t step = cell_at(axis, x);
   const bool below = step < steps.first;
   if (!below && step <= steps.last) return x;
@@ -97,7 +97,7 @@ float nearest_within(const LevelAxis& axis, const StepRange& steps, float x) noe
   x = static_cast<float>(static_cast<double>(axis.origin) +
                          static_cast<double>(edge) / static_cast<double>(axis.inverse));
   const float inwards = below ? FLT_MAX : -FLT_MAX;
-  for (int i = 0; i < kMostTries; ++i) {
+  for (int i = 0; i < kMaxTries; ++i) {
     const std::uint32_t own = cell_at(axis, x);
     if (own >= steps.first && own <= steps.last) return x;
     x = std::nextafter(x, inwards);
@@ -133,11 +133,11 @@ class HierarchicalGrid final : public CellStructure {
 
  private:
   [[nodiscard]] bool reserve(const BuildRoom& room) noexcept override;
-  [[nodiscard]] std::size_t most_holes() const noexcept override { return kMostHoles; }
+  [[nodiscard]] std::size_t max_holes() const noexcept override { return kMaxHoles; }
   [[nodiscard]] Planned plan(const RowPlan& plan, unsigned stage) noexcept override;
   [[nodiscard]] std::size_t plan_passes() const noexcept override { return 4; }
   void finish_build(const RowPlan& plan, bool moved) noexcept override;
-  [[nodiscard]] bool fits(std::size_t row, const Place& place) const noexcept override;
+  [[nodiscard]] bool fits(std::size_t row, const ObjectBox& place) const noexcept override;
   [[nodiscard]] std::size_t places() const noexcept override { return used_.line.size(); }
   [[nodiscard]] std::uint32_t first_row(std::uint32_t line) const noexcept override {
     return start_[used_.line[line].cell];
@@ -208,10 +208,10 @@ class HierarchicalGrid final : public CellStructure {
   [[nodiscard]] Planned begin_plan(const RowPlan& plan) noexcept;
   template <typename T>
   [[nodiscard]] bool make_room(Column<T>& column, std::size_t count) noexcept;
-  [[nodiscard]] bool leave_spare(std::size_t objects) noexcept;
+  [[nodiscard]] bool add_spare_cells(std::size_t objects) noexcept;
   void sort_by_level(const SizeClasses& classes, const RowPlan& plan) noexcept;
   /// The steps of planning a level, in order.
-  enum class Step : std::uint8_t { places, sort, lines };
+  enum class PlanStep : std::uint8_t { places, sort, lines };
   [[nodiscard]] bool run_step(const RowPlan& plan) noexcept;
   [[nodiscard]] std::span<const std::uint32_t> rows_of_level(const RowPlan& plan) const noexcept;
   template <typename Visit>
@@ -224,10 +224,10 @@ class HierarchicalGrid final : public CellStructure {
   bool add_line(std::size_t begin, std::size_t end, const RowPlan& plan);
   void fill_cells(std::span<std::uint32_t> start, const GridLine& line, std::size_t begin,
                   std::size_t end, const RowPlan& plan) noexcept;
-  static void leave_crowds(std::span<std::uint32_t> start, const RowPlan& plan) noexcept;
+  static void move_crowds_to_rest(std::span<std::uint32_t> start, const RowPlan& plan) noexcept;
   bool rank_lines(GridLevel& level);
-  void bring_keys_home(std::uint32_t begin, std::uint32_t end) noexcept;
-  [[nodiscard]] std::uint32_t line_of(const GridLevel& level, const Place& place,
+  void clamp_keys_to_cells(std::uint32_t begin, std::uint32_t end) noexcept;
+  [[nodiscard]] std::uint32_t line_of(const GridLevel& level, const ObjectBox& place,
                                       std::size_t row) const noexcept;
   [[nodiscard]] LevelsView view() const noexcept;
 
@@ -237,10 +237,10 @@ class HierarchicalGrid final : public CellStructure {
                        // row's cell
 
   // While planning: the first row of each level, and the progress of the plan.
-  std::array<std::uint32_t, kMostLevels + 1> first_of_level_{};
+  std::array<std::uint32_t, kMaxLevels + 1> first_of_level_{};
   std::size_t all_levels_ = 0;
   std::size_t level_ = 0;
-  Step step_ = Step::places;
+  PlanStep step_ = PlanStep::places;
   bool grew_ = false;  // columns of lines and cells grew since the last finished plan
   Sorted sorted_;
 };
@@ -253,7 +253,7 @@ struct LinePlace {
   std::uint32_t step;
 };
 
-LinePlace place_on(const GridLevel& g, const Structure::Place& box) noexcept {
+LinePlace place_on(const GridLevel& g, const Structure::ObjectBox& box) noexcept {
   const std::uint32_t mid = cell_at(g.mid, box.low[g.mid.axis]);
   const std::uint32_t slow = cell_at(g.slow, box.low[g.slow.axis]);
   const std::uint32_t step = cell_at(g.fast, box.low[g.fast.axis]);
@@ -266,16 +266,16 @@ constexpr std::size_t kFewToSort = 128;
 
 // A level's table of lines has at most half as many entries as objects, plus a constant.
 constexpr std::size_t most_ranks(std::size_t objects) noexcept {
-  return objects / 2 + kMostLevels * (kMoreLines + 1);
+  return objects / 2 + kMaxLevels * (kMoreLines + 1);
 }
 
 // Every object may have its own line and cell.
 bool HierarchicalGrid::reserve(const BuildRoom& room) noexcept {
   const std::size_t objects = room.objects;
-  return reserve_cells(room, objects, objects + kMostHoles) &&
+  return reserve_cells(room, objects, objects + kMaxHoles) &&
          room.items.reserve(2 * objects, room.pages) &&
-         key_.reserve(objects + kMostHoles, room.pages) &&
-         planned_.level.reserve(kMostLevels, room.pages) &&
+         key_.reserve(objects + kMaxHoles, room.pages) &&
+         planned_.level.reserve(kMaxLevels, room.pages) &&
          planned_.line.reserve(objects, room.pages) &&
          planned_.number.reserve(objects, room.pages) &&
          planned_.rank.reserve(most_ranks(objects), room.pages);
@@ -290,7 +290,7 @@ Planned HierarchicalGrid::plan(const RowPlan& plan, unsigned stage) noexcept {
   }
   if (level_ < all_levels_) return Planned::goes_on;
   key_.set_size(plan.regular.size() + kBlockRows);
-  if (!make_room(planned_start_, planned_start_.size() + 1) || !leave_spare(plan.objects)) {
+  if (!make_room(planned_start_, planned_start_.size() + 1) || !add_spare_cells(plan.objects)) {
     return Planned::out_of_memory;
   }
   (void)planned_start_.push_back(static_cast<std::uint32_t>(plan.regular.size()));
@@ -306,7 +306,7 @@ bool HierarchicalGrid::make_room(Column<T>& column, std::size_t count) noexcept 
 }
 
 // Reserves room for more lines and cells in later builds: their number varies in a moving scene.
-bool HierarchicalGrid::leave_spare(std::size_t objects) noexcept {
+bool HierarchicalGrid::add_spare_cells(std::size_t objects) noexcept {
   if (!std::exchange(grew_, false)) return true;
   const auto leave = [](auto& column, std::size_t most) {
     const std::size_t size = column.size();
@@ -322,28 +322,28 @@ Planned HierarchicalGrid::begin_plan(const RowPlan& plan) noexcept {
   planned_start_.clear();
   // The first build has no more rows than objects. Later builds of a moving scene have a varying
   // number; this is enough for nearly all of them.
-  const std::size_t first = plan.objects + kMostHoles;
+  const std::size_t first = plan.objects + kMaxHoles;
   const std::size_t later = std::max(rows, plan.objects + plan.objects / 8 + 256);
   if (!plan.list.reserve(rows <= first ? first : later)) return Planned::out_of_memory;
   plan.list.set_size(rows);
-  for_even_stretches(execution(), rows, kRowsPerStretch, [&](std::size_t begin, std::size_t end) {
+  for_each_even_range(execution(), rows, kRowsPerRange, [&](std::size_t begin, std::size_t end) {
     level_rows_kernels().octaves(box_columns(pool()).data(), begin, end, plan.list.data());
   });
   const SizeClasses classes(pool(), {plan.list.data(), rows}, execution());
-  if (classes.objects() < kFewestInCells) {
-    leave_all(plan);
+  if (classes.objects() < kMinInCells) {
+    put_all_in_rest(plan);
     return Planned::done;
   }
   // Sized by objects, not rows, so that a later build of as many objects does not allocate.
   const std::size_t count = classes.objects();
-  const std::size_t room = count + kMostHoles;
+  const std::size_t room = count + kMaxHoles;
   if (!key_.reserve(room) || !plan.regular.reserve(room + kBlockRows) ||
-      !plan.items.resize(2 * count) || !planned_.level.reserve(kMostLevels)) {
+      !plan.items.resize(2 * count) || !planned_.level.reserve(kMaxLevels)) {
     return Planned::out_of_memory;
   }
   sort_by_level(classes, plan);
   level_ = 0;
-  step_ = Step::places;
+  step_ = PlanStep::places;
   return Planned::goes_on;
 }
 
@@ -358,10 +358,11 @@ void HierarchicalGrid::sort_by_level(const SizeClasses& classes, const RowPlan& 
     level[o] = own < all_levels_ ? static_cast<std::uint32_t>(own) : CountingSort::kNone;
   }
   Column<std::uint32_t>& list = plan.list;
-  for_even_stretches(execution(), list.size(), kRowsPerStretch,
-                     [&](std::size_t begin, std::size_t end) {
-                       for (std::size_t row = begin; row < end; ++row) list[row] = level[list[row]];
-                     });
+  for_each_even_range(execution(), list.size(), kRowsPerRange,
+                      [&](std::size_t begin, std::size_t end) {
+                        for (std::size_t row = begin; row < end; ++row)
+                          list[row] = level[list[row]];
+                      });
   CountingSort sort({list.data(), list.size()}, std::span(first_of_level_).first(all_levels_ + 1),
                     execution());
   sort.count();
@@ -380,17 +381,17 @@ std::span<const std::uint32_t> HierarchicalGrid::rows_of_level(const RowPlan& pl
 // Returns false if an allocation fails.
 bool HierarchicalGrid::run_step(const RowPlan& plan) noexcept {
   switch (step_) {
-    case Step::places:
+    case PlanStep::places:
       find_places(plan);
-      step_ = Step::sort;
+      step_ = PlanStep::sort;
       // Sorting with unpacked keys reads positions again, so it must run before any object moves.
       if (!sorted_.packed) sort_places(plan);
       return sorted_.packed || lay_lines(plan);
-    case Step::sort:
+    case PlanStep::sort:
       sort_places(plan);
-      step_ = Step::lines;
+      step_ = PlanStep::lines;
       return true;
-    case Step::lines:
+    case PlanStep::lines:
       return lay_lines(plan);
   }
   return false;
@@ -425,8 +426,8 @@ void HierarchicalGrid::find_places(const RowPlan& plan) noexcept {
              .line_bits = static_cast<unsigned>(std::bit_width(last_line)),
              .step_bits = static_cast<unsigned>(std::bit_width(level.steps))};
   sorted_.packed = sorted_.line_bits + sorted_.step_bits <= 32;
-  for_even_stretches(
-      execution(), rows.size(), kRowsPerStretch, [&](std::size_t begin, std::size_t end) {
+  for_each_even_range(
+      execution(), rows.size(), kRowsPerRange, [&](std::size_t begin, std::size_t end) {
         level_rows_kernels().places(level, box_columns(pool()).data(), rows.data(), begin, end,
                                     sorted_.step_bits, !sorted_.packed, plan.items.data());
       });
@@ -457,7 +458,7 @@ void HierarchicalGrid::sort_places(const RowPlan& plan) noexcept {
   if (!own.packed) {
     for (std::size_t i = 0; i < own.count; ++i) {
       const auto row = static_cast<std::uint32_t>(sorted[i]);
-      const Place place = place_of(row_now(plan, row));
+      const ObjectBox place = place_of(row_now(plan, row));
       const std::uint32_t line = place_on(planned_.level[planned_.levels], place).line;
       sorted[i] = std::uint64_t{line} << 32U | row;
     }
@@ -486,7 +487,7 @@ bool HierarchicalGrid::lay_lines(const RowPlan& plan) noexcept {
   level.end_row = static_cast<std::uint32_t>(plan.regular.size());
   level.end_line = static_cast<std::uint32_t>(planned_.line.size());
   ++level_;
-  step_ = Step::places;
+  step_ = PlanStep::places;
   if (level.end_row == level.first_row) return true;
   // No block of rows belongs to two levels.
   while (plan.regular.size() % kBlockRows != 0) {
@@ -552,11 +553,12 @@ void HierarchicalGrid::fill_cells(std::span<std::uint32_t> start, const GridLine
   std::uint32_t* const rows = plan.regular.data() + first;
   for (std::size_t i = begin; i < end; ++i) rows[i - begin] = sorted.row(i);
   plan.regular.set_size(behind);
-  if (most > kCrowd) leave_crowds(start, plan);
+  if (most > kCrowd) move_crowds_to_rest(start, plan);
 }
 
 // Moves overfull cells of a line, whose rows are the last ones, to the rest.
-void HierarchicalGrid::leave_crowds(std::span<std::uint32_t> start, const RowPlan& plan) noexcept {
+void HierarchicalGrid::move_crowds_to_rest(std::span<std::uint32_t> start,
+                                           const RowPlan& plan) noexcept {
   std::uint32_t* const rows = plan.regular.data();
   const auto behind = static_cast<std::uint32_t>(plan.regular.size());
   std::uint32_t to = start.front();
@@ -603,15 +605,15 @@ void HierarchicalGrid::finish_build(const RowPlan&, bool moved) noexcept {
     std::copy(low + level.first_row, low + level.end_row, key_.data() + level.first_row);
   }
   if (!moved || regular_rows() == 0) return;
-  for_stretches(
-      execution(), used_.line.size(), kLinesPerStretch, [&](std::size_t begin, std::size_t end) {
-        bring_keys_home(static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end));
+  for_each_range(
+      execution(), used_.line.size(), kLinesPerRange, [&](std::size_t begin, std::size_t end) {
+        clamp_keys_to_cells(static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end));
       });
 }
 
 // Objects may have moved since they were assigned to cells. A key outside its cell becomes the
 // nearest position within the cell, so that an object near its key is near its cell.
-void HierarchicalGrid::bring_keys_home(std::uint32_t begin, std::uint32_t end) noexcept {
+void HierarchicalGrid::clamp_keys_to_cells(std::uint32_t begin, std::uint32_t end) noexcept {
   const GridLevel* level = used_.level.data();
   for (std::uint32_t l = begin; l < end; ++l) {
     while (l >= level->end_line) ++level;
@@ -629,7 +631,7 @@ void HierarchicalGrid::bring_keys_home(std::uint32_t begin, std::uint32_t end) n
 }
 
 // Returns the stored line that holds a row of the level, whose object is at `place`.
-std::uint32_t HierarchicalGrid::line_of(const GridLevel& g, const Place& place,
+std::uint32_t HierarchicalGrid::line_of(const GridLevel& g, const ObjectBox& place,
                                         std::size_t row) const noexcept {
   const Column<GridLine>& lines = used_.line;
   const auto holds = [&](std::uint32_t line) {
@@ -647,7 +649,7 @@ std::uint32_t HierarchicalGrid::line_of(const GridLevel& g, const Place& place,
   return static_cast<std::uint32_t>(after - lines.begin()) - 1;
 }
 
-bool HierarchicalGrid::fits(std::size_t row, const Place& place) const noexcept {
+bool HierarchicalGrid::fits(std::size_t row, const ObjectBox& place) const noexcept {
   std::size_t l = 0;
   while (row >= used_.level[l].end_row) ++l;
   const GridLevel& g = used_.level[l];
@@ -731,8 +733,8 @@ constexpr StructureCosts kCosts{.has_cells = true,
                                 .rest = 0.4,
                                 .build = 56,
                                 .anew = 37,
-                                .ask = 40,
-                                .ask_level = 24,
+                                .query = 40,
+                                .query_level = 24,
                                 .rows = 1.0};
 constexpr StructureInfo kInfo = structure_info<HierarchicalGrid>("HierarchicalGrid", &kCosts);
 

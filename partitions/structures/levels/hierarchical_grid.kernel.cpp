@@ -67,9 +67,9 @@ template <typename Visit>
 }
 
 /// Tests which rows may stay in one cell of an axis.
-class Keeping {
+class CellBoundsTest {
  public:
-  Keeping(const RowView& rows, const LevelAxis& axis, std::uint32_t cell)
+  CellBoundsTest(const RowView& rows, const LevelAxis& axis, std::uint32_t cell)
       : low_(rows.column[axis.axis]),
         high_(rows.column[3 + axis.axis]),
         axis_(axis),
@@ -139,9 +139,9 @@ struct Levels {
     for (std::uint32_t l = begin; l < end; ++l) {
       while (l >= level->end_line) ++level;
       const LineCells cells = cells_of_line(*level, grid.number[l]);
-      const Keeping mids(grid.rows, level->mid, cells.mid);
-      const Keeping slows(grid.rows, level->slow, cells.slow);
-      const Keeping fasts(grid.rows, level->fast, 0);
+      const CellBoundsTest mids(grid.rows, level->mid, cells.mid);
+      const CellBoundsTest slows(grid.rows, level->slow, cells.slow);
+      const CellBoundsTest fasts(grid.rows, level->fast, 0);
       const GridLine& line = grid.line[l];
       found += write_misfits(
           grid.rows, grid.start[line.cell], grid.start[line.cell + line.last_cell + 1], out + found,

@@ -2,8 +2,8 @@
 
 #include "partitions/structures/levels/level_layout.h"
 
-#include "core/sort/end_values.h"
-#include "core/sort/stretches.h"
+#include "core/sort/order_statistics.h"
+#include "core/sort/parallel_ranges.h"
 #include "partitions/structures/roots.h"
 
 #include <algorithm>
@@ -18,9 +18,9 @@ namespace {
 constexpr double kSlackOfCell = 0.1;
 // The width of lines in edges of a cube that holds a block of rows.
 constexpr double kLineWidth = 0.95;
-constexpr double kLeastWidth = 0.25;      // in longest edges
-constexpr double kMostLines = 1U << 15U;  // along an axis
-constexpr unsigned kMostStepBits = 20;
+constexpr double kMinWidth = 0.25;       // in longest edges
+constexpr double kMaxLines = 1U << 15U;  // along an axis
+constexpr unsigned kMaxStepBits = 20;
 constexpr double kStepsInCell = 8.0;
 
 // Index of the i-th sample of one row in `step`, at a hashed offset: rows are in the order of
@@ -30,7 +30,7 @@ std::size_t sampled(std::size_t i, std::size_t step) noexcept {
   return i * step + static_cast<std::size_t>((hash >> 32U) % step);
 }
 
-struct Range {
+struct CoordinateRange {
   double low = 0.0;
   double high = 0.0;
   [[nodiscard]] double length() const { return high - low; }
@@ -38,14 +38,15 @@ struct Range {
 
 // The range of lower bounds on an axis, from a sample. Outliers must not stretch cells.
 template <typename RowOf>
-Range range_of(const BoundsPool& pool, std::size_t axis, std::size_t count, RowOf&& row_of) {
-  constexpr std::size_t kLeast = 64;
-  constexpr std::size_t kMost = 512;
-  std::array<float, kMost> low;
-  const std::size_t wanted = std::clamp(count / 8, kLeast, kMost);
+CoordinateRange range_of(const BoundsPool& pool, std::size_t axis, std::size_t count,
+                         RowOf&& row_of) {
+  constexpr std::size_t kMinSampled = 64;
+  constexpr std::size_t kMaxSampled = 512;
+  std::array<float, kMaxSampled> low;
+  const std::size_t wanted = std::clamp(count / 8, kMinSampled, kMaxSampled);
   const std::size_t step = std::max<std::size_t>(1, count / wanted);
   std::size_t n = 0;
-  for (std::size_t i = 0; i < count / step && n < kMost; ++i) {
+  for (std::size_t i = 0; i < count / step && n < kMaxSampled; ++i) {
     const std::size_t row = row_of(sampled(i, step));
     if (pool.ids()[row] != kNoObject) low[n++] = pool.column(axis)[row];
   }
@@ -54,14 +55,14 @@ Range range_of(const BoundsPool& pool, std::size_t axis, std::size_t count, RowO
   const auto [least, most] = std::ranges::minmax(ends);
   const double first = static_cast<double>(least);
   const double last = static_cast<double>(most);
-  const RangeOfMost range(ends);
+  const InterquantileRange range(ends);
   return {std::max(first, range.low), std::min(last, range.high)};
 }
 
 // Estimates the mean number of objects in the cube of a raster that contains an object, including
 // itself. The mean is over objects, so crowded cubes weigh more.
-double company(const BoundsPool& pool, std::span<const std::uint32_t> rows,
-               const std::array<Range, 3>& range, double edge) {
+double mean_objects_per_cube(const BoundsPool& pool, std::span<const std::uint32_t> rows,
+                             const std::array<CoordinateRange, 3>& range, double edge) {
   constexpr std::size_t kSlots = 16384;
   std::array<std::uint8_t, kSlots> cube{};
   const std::size_t wanted = std::clamp<std::size_t>(rows.size() / 32, 256, 4096);
@@ -91,10 +92,10 @@ double company(const BoundsPool& pool, std::span<const std::uint32_t> rows,
 
 std::array<float, 3> longest_edges(const BoundsPool& pool, std::span<const std::uint32_t> rows,
                                    const Execution& execution) {
-  constexpr std::size_t kMostStretches = 64;
-  const std::size_t length = std::max<std::size_t>(8192, rows.size() / kMostStretches + 1);
-  std::array<std::array<float, 3>, kMostStretches> part{};
-  for_stretches(execution, rows.size(), length, [&](std::size_t begin, std::size_t end) {
+  constexpr std::size_t kMaxRanges = 64;
+  const std::size_t length = std::max<std::size_t>(8192, rows.size() / kMaxRanges + 1);
+  std::array<std::array<float, 3>, kMaxRanges> part{};
+  for_each_range(execution, rows.size(), length, [&](std::size_t begin, std::size_t end) {
     float* const own = part[begin / length].data();
     level_rows_kernels().longest(box_columns(pool).data(), rows.data(), begin, end, own);
   });
@@ -105,7 +106,8 @@ std::array<float, 3> longest_edges(const BoundsPool& pool, std::span<const std::
   return longest;
 }
 
-void lay_axis(LevelAxis& axis, const Range& range, double cells, double longest, double width) {
+void lay_axis(LevelAxis& axis, const CoordinateRange& range, double cells, double longest,
+              double width) {
   const double inverse = cells / range.length();
   // An axis with little extent is not divided.
   if (!(cells > 1.0) || !(inverse < FLT_MAX)) {
@@ -129,7 +131,7 @@ void lay_axis(LevelAxis& axis, const Range& range, double cells, double longest,
 void lay_level(const BoundsPool& pool, std::span<const std::uint32_t> rows,
                const std::array<float, 3>& least_longest, const Execution& execution,
                GridLevel& level) noexcept {
-  std::array<Range, 3> range;
+  std::array<CoordinateRange, 3> range;
   std::array<double, 3> length{};
   std::array<float, 3> longest = longest_edges(pool, rows, execution);
   for (std::size_t a = 0; a < 3; ++a) {
@@ -140,7 +142,7 @@ void lay_level(const BoundsPool& pool, std::span<const std::uint32_t> rows,
   double width = edge_for(kRowsOfBlock, static_cast<double>(rows.size()), length);
   // In crowded scenes, narrows the cells until an object's cube holds about one block of rows.
   for (int i = 0; i < 6 && width > 0.0; ++i) {
-    const double found = company(pool, rows, range, width);
+    const double found = mean_objects_per_cube(pool, rows, range, width);
     if (found < 1.6 * kRowsOfBlock) break;
     width *= root(3, kRowsOfBlock / found);
   }
@@ -156,13 +158,13 @@ void lay_level(const BoundsPool& pool, std::span<const std::uint32_t> rows,
     const std::size_t a = axis->axis;
     // Cells much smaller than the objects would not prune more.
     const double edge = static_cast<double>(longest[a]);
-    const double wide = std::max(width, kLeastWidth * edge);
-    lay_axis(*axis, range[a], std::min(kMostLines, std::floor(length[a] / wide)), edge, wide);
+    const double wide = std::max(width, kMinWidth * edge);
+    lay_axis(*axis, range[a], std::min(kMaxLines, std::floor(length[a] / wide)), edge, wide);
   }
   level.mids = static_cast<std::uint32_t>(level.mid.last) + 1;
   const double steps = kStepsInCell * length[level.fast.axis] / width;
   unsigned bits = 0;
-  while (bits < kMostStepBits && static_cast<double>(1U << bits) < steps) ++bits;
+  while (bits < kMaxStepBits && static_cast<double>(1U << bits) < steps) ++bits;
   lay_axis(level.fast, range[level.fast.axis], bits > 2 ? static_cast<double>(1U << bits) : 1.0,
            static_cast<double>(longest[level.fast.axis]), width);
   level.steps = static_cast<std::uint32_t>(level.fast.last);

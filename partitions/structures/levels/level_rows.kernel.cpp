@@ -2,7 +2,7 @@
 // build.
 
 #include "partitions/structures/levels/level_rows.kernel.h"
-#include "simd/lanes/truncated.h"
+#include "simd/lanes/float_to_uint.h"
 
 namespace winnow {
 namespace WINNOW_ISA_NAME {
@@ -67,7 +67,7 @@ void write_cells(const LevelAxis& axis, const Floats& x, std::uint32_t* cell) {
     return;
   }
   const Floats place = (x - axis.origin) * axis.inverse;
-  truncated(min(max(place, Floats(0.0F)), Floats(axis.last))).store(cell);
+  float_to_uint(min(max(place, Floats(0.0F)), Floats(axis.last))).store(cell);
 }
 
 void places(const GridLevel& level, const float* const* boxes, const std::uint32_t* rows,

@@ -3,7 +3,7 @@
 
 #include "partitions/structures/levels/size_classes.h"
 
-#include "core/sort/stretches.h"
+#include "core/sort/parallel_ranges.h"
 #include "partitions/structures/roots.h"
 
 #include <algorithm>
@@ -19,14 +19,14 @@ constexpr double kPerLine = 0.7;
 constexpr double kPerLevel = 7.0;
 // One object in kSampled, within the limits below, is sampled for the positions of a class.
 constexpr std::size_t kSampled = 8;
-constexpr std::size_t kLeastSampled = 256;
-constexpr std::size_t kMostSampled = 4096;
+constexpr std::size_t kMinSampled = 256;
+constexpr std::size_t kMaxSampled = 4096;
 // The maximum number of ranges of rows, which threads process.
-constexpr std::size_t kMostSizeStretches = 16;
+constexpr std::size_t kMaxSizeRanges = 16;
 
-std::size_t stretch_of(std::size_t rows) noexcept {
-  constexpr std::size_t kLeastRows = 8192;
-  return even_stretch(rows, kLeastRows, kMostSizeStretches);
+std::size_t range_length(std::size_t rows) noexcept {
+  constexpr std::size_t kMinRows = 8192;
+  return even_range_length(rows, kMinRows, kMaxSizeRanges);
 }
 
 // The lengths of ranges over which n evenly spread objects have these sums of positions and of
@@ -98,9 +98,9 @@ SizeClasses::SizeClasses(const BoundsPool& pool, std::span<const std::uint32_t> 
   // A histogram for each row number modulo 4, so that successive increments are independent.
   using Quarters = std::array<std::array<std::uint32_t, kOctaves>, 4>;
   // Only entries of existing ranges of rows are initialized.
-  std::array<Quarters, kMostSizeStretches> part;
-  const std::size_t length = stretch_of(octave.size());
-  for_stretches(execution, octave.size(), length, [&](std::size_t begin, std::size_t end) {
+  std::array<Quarters, kMaxSizeRanges> part;
+  const std::size_t length = range_length(octave.size());
+  for_each_range(execution, octave.size(), length, [&](std::size_t begin, std::size_t end) {
     Quarters& quarter = part[begin / length];
     quarter = {};
     for (std::size_t row = begin; row < end; ++row) ++quarter[row % 4][octave[row]];
@@ -130,15 +130,15 @@ void SizeClasses::measure(const BoundsPool& pool, std::span<const std::uint32_t>
   for (std::size_t o = 0; o < kOctaves; ++o) class_at[o] = static_cast<std::uint8_t>(class_of(o));
   for (std::size_t c = 0; c < kClasses; ++c) {
     const std::size_t count = class_[c].count;
-    step[c] = 1 + count / std::clamp(count / kSampled, kLeastSampled, kMostSampled);
+    step[c] = 1 + count / std::clamp(count / kSampled, kMinSampled, kMaxSampled);
   }
   // The only class, if all objects are of one class.
   const auto holds = [](const Class& c) { return c.count != 0; };
   const auto only = static_cast<std::size_t>(std::ranges::find_if(class_, holds) - class_.begin());
   const bool one_class = std::ranges::count_if(class_, holds) == 1;
-  std::array<std::array<Sample, kClasses>, kMostSizeStretches> part;
-  const std::size_t length = stretch_of(octave.size());
-  for_stretches(execution, octave.size(), length, [&](std::size_t begin, std::size_t end) {
+  std::array<std::array<Sample, kClasses>, kMaxSizeRanges> part;
+  const std::size_t length = range_length(octave.size());
+  for_each_range(execution, octave.size(), length, [&](std::size_t begin, std::size_t end) {
     part[begin / length] = {};
     if (one_class) {
       // As the loop below, without a dependency between successive rows.
@@ -282,7 +282,7 @@ void SizeClasses::join() noexcept {
         where = k;
       }
     }
-    if (!(best < 0.0) && count <= kMostLevels) break;
+    if (!(best < 0.0) && count <= kMaxLevels) break;
     group[where] = group_of(group[where + 1].first, group[where].last);
     std::copy(group.begin() + static_cast<std::ptrdiff_t>(where) + 2,
               group.begin() + static_cast<std::ptrdiff_t>(count),

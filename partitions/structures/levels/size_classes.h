@@ -15,7 +15,7 @@ inline constexpr double kRowsOfBlock = 16.0;
 /// How far objects of a level may drift, as a share of the longest edge of the level.
 inline constexpr double kSlackOfEdge = 0.2;
 
-inline constexpr std::size_t kMostLevels = 16;
+inline constexpr std::size_t kMaxLevels = 16;
 
 /// Counts objects by octaves of size, descending from the largest, and joins octaves into levels.
 class SizeClasses {

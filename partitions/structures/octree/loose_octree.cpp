@@ -2,8 +2,8 @@
 // nodes over them. Queries run on the block tree over the regular rows (tree/block_tree.h).
 
 #include <winnow/partitions/debug_colours.h>
+#include "core/sort/parallel_ranges.h"
 #include "core/sort/radix_sort.h"
-#include "core/sort/stretches.h"
 #include "partitions/structures/cells/cell_structure.h"
 #include "partitions/structures/octree/loose_octree_cells.h"
 
@@ -16,7 +16,7 @@ namespace winnow {
 namespace {
 
 constexpr std::size_t kRowsPerTask = 16384;
-constexpr std::size_t kFewestNodes = 64;
+constexpr std::size_t kMinNodes = 64;
 // Computing the keys takes about as long as two other passes over the rows.
 constexpr unsigned kKeyStages = 2;
 constexpr std::size_t kRowsOfGroup = 16 * kBlockRows;  // in a node of the tree over the rows
@@ -24,7 +24,7 @@ constexpr std::size_t kRowsOfGroup = 16 * kBlockRows;  // in a node of the tree 
 constexpr std::size_t kLongRun = 48;
 
 // An upper bound of the rows in most builds of a moving scene.
-constexpr std::size_t mostly_all(std::size_t objects) {
+constexpr std::size_t usual_row_limit(std::size_t objects) {
   return objects + objects / 8 + 256;
 }
 
@@ -61,7 +61,7 @@ class LooseTree : public CellStructure {
   [[nodiscard]] std::size_t plan_passes() const noexcept override { return kKeyStages + 3; }
   void finish_build(const RowPlan& plan, bool moved) noexcept override;
   [[nodiscard]] bool prunes_rows() const noexcept override { return true; }
-  [[nodiscard]] bool fits(std::size_t row, const Place& place) const noexcept override;
+  [[nodiscard]] bool fits(std::size_t row, const ObjectBox& place) const noexcept override;
   [[nodiscard]] std::size_t places() const noexcept override { return used_.node.size(); }
   [[nodiscard]] std::uint32_t first_row(std::uint32_t node) const noexcept override {
     return start_[node];
@@ -90,8 +90,8 @@ class LooseTree : public CellStructure {
     [[nodiscard]] Bytes bytes() const noexcept { return bytes_of(node, bounds); }
 
     LooseOctreeCells cells;
-    Column<std::uint32_t> node;               // level and Morton code
-    Column<LooseOctreeCells::Bounds> bounds;  // of each node's loose cell
+    Column<std::uint32_t> node;                   // level and Morton code
+    Column<LooseOctreeCells::CellBounds> bounds;  // of each node's loose cell
   };
 
   [[nodiscard]] Planned choose_cells(const RowPlan& plan) noexcept;
@@ -116,8 +116,8 @@ LooseTree::LooseTree(const StructureInput& input, std::size_t axes) noexcept
 
 // Every object may have its own node.
 bool LooseTree::reserve(const BuildRoom& room) noexcept {
-  const std::size_t nodes = room.objects + kFewestNodes;
-  const std::size_t rows = mostly_all(room.objects);
+  const std::size_t nodes = room.objects + kMinNodes;
+  const std::size_t rows = usual_row_limit(room.objects);
   return reserve_cells(room, nodes, 0) && room.items.reserve(2 * rows, room.pages) &&
          planned_.node.reserve(nodes, room.pages) && planned_.bounds.reserve(nodes, room.pages);
 }
@@ -142,11 +142,11 @@ Planned LooseTree::choose_cells(const RowPlan& plan) noexcept {
   planned_start_.clear();
   const SceneSample sample(pool(), plan.objects, execution());
   if (!planned_.cells.choose(sample, axes_, loose_)) {
-    leave_all(plan);
+    put_all_in_rest(plan);
     return Planned::done;
   }
-  const std::size_t most_rows = std::max(plan.rows, mostly_all(plan.objects));
-  const std::size_t nodes = plan.objects / 8 + kFewestNodes;
+  const std::size_t most_rows = std::max(plan.rows, usual_row_limit(plan.objects));
+  const std::size_t nodes = plan.objects / 8 + kMinNodes;
   if (!plan.items.reserve(2 * most_rows) || !planned_.node.reserve(nodes) ||
       !planned_start_.reserve(nodes) || !planned_.bounds.reserve(nodes)) {
     return Planned::out_of_memory;
@@ -159,7 +159,7 @@ void LooseTree::find_keys(const RowPlan& plan, std::size_t first, std::size_t la
   std::uint64_t* const items = plan.items.data();
   const ObjectId* const ids = pool().ids();
   constexpr std::size_t kTogether = 256;
-  for_even_stretches(
+  for_each_even_range(
       execution(), last - first, kRowsPerTask, [&](std::size_t begin, std::size_t end) {
         std::array<std::uint32_t, kTogether> key;
         for (std::size_t from = first + begin; from < first + end; from += kTogether) {
@@ -223,7 +223,7 @@ void LooseTree::finish_build(const RowPlan&, bool) noexcept {
   start_.swap(planned_start_);
 }
 
-bool LooseTree::fits(std::size_t row, const Place& place) const noexcept {
+bool LooseTree::fits(std::size_t row, const ObjectBox& place) const noexcept {
   const auto after = std::upper_bound(start_.begin(), start_.end(), row);
   const auto node = static_cast<std::size_t>(after - start_.begin() - 1);
   return used_.cells.holds(used_.bounds[node], place);
@@ -259,7 +259,7 @@ void LooseTree::draw(DebugDraw& draw) const {
       contents.merge(stored_box(rows.column, row));
     }
     if (!contents.is_valid()) continue;  // only holes
-    const LooseOctreeCells::Bounds bounds = used_.cells.cell_bounds(used_.node[node]);
+    const LooseOctreeCells::CellBounds bounds = used_.cells.cell_bounds(used_.node[node]);
     Aabb cell = contents;
     for (std::size_t k = 0; k < used_.cells.axes(); ++k) {
       cell.min[used_.cells.axis(k)] = bounds.low[k];

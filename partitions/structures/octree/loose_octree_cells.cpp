@@ -91,7 +91,7 @@ std::uint32_t morton_code(std::uint32_t place, unsigned levels) noexcept {
 }  // namespace
 
 bool LooseOctreeCells::choose(const SceneSample& sample, std::size_t axes, float loose) noexcept {
-  if (sample.objects < kFewestInCells || sample.count < 8) return false;
+  if (sample.objects < kMinInCells || sample.count < 8) return false;
   const double cells = static_cast<double>(sample.objects) / kObjectsInCell;
   std::array<double, 3> range{};
   for (std::size_t a = 0; a < 3; ++a) range[a] = sample.range(a) + sample.mean_edge[a];
@@ -207,11 +207,11 @@ std::uint32_t LooseOctreeCells::code_of(std::uint32_t key) const noexcept {
          (axes_ == 3 ? morton_code<3>(place, level) : morton_code<2>(place, level));
 }
 
-LooseOctreeCells::Bounds LooseOctreeCells::bounds_of(std::uint32_t code,
-                                                     double reach) const noexcept {
+LooseOctreeCells::CellBounds LooseOctreeCells::bounds_of(std::uint32_t code,
+                                                         double reach) const noexcept {
   const std::uint32_t level = code >> kLevelShift;
   const double edge = std::ldexp(edge_, -static_cast<int>(level));
-  Bounds bounds{};
+  CellBounds bounds{};
   for (std::size_t k = 0; k < axes_; ++k) {
     std::uint32_t cell = 0;
     for (std::uint32_t bit = 0; bit < level; ++bit) cell |= (code >> (bit * axes_ + k) & 1U) << bit;
@@ -222,7 +222,7 @@ LooseOctreeCells::Bounds LooseOctreeCells::bounds_of(std::uint32_t code,
   return bounds;
 }
 
-bool LooseOctreeCells::hold(const Bounds& bounds, const BoundsPool& pool, std::size_t begin,
+bool LooseOctreeCells::hold(const CellBounds& bounds, const BoundsPool& pool, std::size_t begin,
                             std::size_t end) const noexcept {
   unsigned outside = 0;
   for (std::size_t k = 0; k < axes_; ++k) {
@@ -238,7 +238,8 @@ bool LooseOctreeCells::hold(const Bounds& bounds, const BoundsPool& pool, std::s
   return outside == 0;
 }
 
-bool LooseOctreeCells::holds(const Bounds& bounds, const Structure::Place& box) const noexcept {
+bool LooseOctreeCells::holds(const CellBounds& bounds,
+                             const Structure::ObjectBox& box) const noexcept {
   for (std::size_t k = 0; k < axes_; ++k) {
     const std::size_t a = axis_[k];
     if (box.low[a] < bounds.low[k] || box.high[a] > bounds.high[k]) return false;

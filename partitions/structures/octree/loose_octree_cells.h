@@ -39,48 +39,49 @@ class LooseOctreeCells {
   /// quadtrees", CACM 25(12), 1982) of a key's cell.
   [[nodiscard]] std::uint32_t code_of(std::uint32_t key) const noexcept;
 
-  /// Bounds for the boxes of a cell, by divided axis.
-  struct Bounds {
+  /// CellBounds for the boxes of a cell, by divided axis.
+  struct CellBounds {
     std::array<float, 3> low;
     std::array<float, 3> high;
   };
   /// The bounds of the cell with this level and Morton code; loose_bounds returns the loose cell.
-  [[nodiscard]] Bounds cell_bounds(std::uint32_t code) const noexcept {
+  [[nodiscard]] CellBounds cell_bounds(std::uint32_t code) const noexcept {
     return bounds_of(code, 0.0);
   }
-  [[nodiscard]] Bounds loose_bounds(std::uint32_t code) const noexcept {
+  [[nodiscard]] CellBounds loose_bounds(std::uint32_t code) const noexcept {
     return bounds_of(code, reach_ + kSpare);
   }
 
   /// True if the boxes of rows [begin, end) lie within the bounds. Empty rows always do.
-  [[nodiscard]] bool hold(const Bounds& bounds, const BoundsPool& pool, std::size_t begin,
+  [[nodiscard]] bool hold(const CellBounds& bounds, const BoundsPool& pool, std::size_t begin,
                           std::size_t end) const noexcept;
 
   /// As above, for one box.
-  [[nodiscard]] bool holds(const Bounds& bounds, const Structure::Place& box) const noexcept;
+  [[nodiscard]] bool holds(const CellBounds& bounds,
+                           const Structure::ObjectBox& box) const noexcept;
 
-  /// The number of divided axes; axis(k) is the axis of entry k of Bounds.
+  /// The number of divided axes; axis(k) is the axis of entry k of CellBounds.
   [[nodiscard]] std::size_t axes() const noexcept { return axes_; }
   [[nodiscard]] std::uint32_t axis(std::size_t k) const noexcept { return axis_[k]; }
   [[nodiscard]] std::uint32_t levels() const noexcept { return finest_ + 1; }
 
  private:
-  [[nodiscard]] Bounds bounds_of(std::uint32_t code, double reach) const noexcept;
+  [[nodiscard]] CellBounds bounds_of(std::uint32_t code, double reach) const noexcept;
   using BoxColumns = std::array<const float*, 6>;  // lower bounds, then upper bounds
   [[nodiscard]] std::uint32_t level_of(float longest) const noexcept;
   template <typename Curve>
   void find_some_keys(const BoxColumns& box, std::size_t first, std::size_t count,
                       std::uint32_t* key) const noexcept;
 
-  static constexpr std::size_t kMostLevels = 15;
+  static constexpr std::size_t kMaxLevels = 15;
   static constexpr std::size_t kTogether = 128;
 
   std::array<std::uint32_t, 3> axis_{};
   std::array<double, 3> origin_{};
-  double edge_ = 0.0;                          // of the root
-  double scale_ = 0.0;                         // finest places per unit of length
-  double reach_ = 1.0;                         // beyond a cell on either side, in its edges
-  std::array<double, kMostLevels> longest_{};  // maximum edge of a box, by level
+  double edge_ = 0.0;                         // of the root
+  double scale_ = 0.0;                        // finest places per unit of length
+  double reach_ = 1.0;                        // beyond a cell on either side, in its edges
+  std::array<double, kMaxLevels> longest_{};  // maximum edge of a box, by level
   std::size_t axes_ = 3;
   unsigned bits_ = 9;  // of a place, by axis
   std::uint32_t finest_ = 0;

@@ -49,10 +49,10 @@ float key_of(SweepItem item) noexcept {
 
 // Sorts items by key and row, with bins of equal width that mostly hold one item each.
 void sort_by_keys(std::span<SweepItem> items, SweepItem* room) noexcept {
-  constexpr std::size_t kMostKeyBins = 1024;
+  constexpr std::size_t kMaxKeyBins = 1024;
   constexpr std::size_t kFewInBin = 12;
-  constexpr float kLeastReach = 1e-30F;  // a smaller extent counts as one position
-  const std::size_t bins = std::min(kMostKeyBins, std::bit_ceil(items.size()));
+  constexpr float kMinExtent = 1e-30F;  // a smaller extent counts as one position
+  const std::size_t bins = std::min(kMaxKeyBins, std::bit_ceil(items.size()));
   float low = kInfinity;
   float high = -kInfinity;
   for (const SweepItem item : items) {
@@ -61,11 +61,11 @@ void sort_by_keys(std::span<SweepItem> items, SweepItem* room) noexcept {
   }
   // Halved values, because the extent of arbitrary floats could overflow.
   const float reach = 0.5F * high - 0.5F * low;
-  const float scale = reach > kLeastReach ? 0.999F * static_cast<float>(bins) / reach : 0.0F;
+  const float scale = reach > kMinExtent ? 0.999F * static_cast<float>(bins) / reach : 0.0F;
   const auto bin_of = [&](SweepItem item) {
     return static_cast<std::size_t>((0.5F * key_of(item) - 0.5F * low) * scale);
   };
-  std::array<std::uint32_t, kMostKeyBins> next;
+  std::array<std::uint32_t, kMaxKeyBins> next;
   std::fill_n(next.begin(), bins, 0U);
   for (const SweepItem item : items) ++next[bin_of(item)];
   const std::uint32_t most = *std::max_element(next.begin(), next.begin() + bins);
@@ -98,7 +98,7 @@ class SweepAndPrune final : public CellStructure {
   [[nodiscard]] Planned plan(const RowPlan& plan, unsigned stage) noexcept override;
   [[nodiscard]] std::size_t plan_passes() const noexcept override { return 4; }
   void finish_build(const RowPlan& plan, bool moved) noexcept override;
-  [[nodiscard]] bool fits(std::size_t row, const Place& place) const noexcept override;
+  [[nodiscard]] bool fits(std::size_t row, const ObjectBox& place) const noexcept override;
   [[nodiscard]] std::size_t places() const noexcept override { return layout_.cells(); }
   [[nodiscard]] std::uint32_t first_row(std::uint32_t strip) const noexcept override {
     return start_[strip];
@@ -115,7 +115,7 @@ class SweepAndPrune final : public CellStructure {
   [[nodiscard]] Planned choose_strips(const RowPlan& plan) noexcept;
   [[nodiscard]] Planned fill_strips(const RowPlan& plan) noexcept;
   [[nodiscard]] bool sort_strips(const RowPlan& plan, std::size_t begin, std::size_t end) noexcept;
-  void drop_crowded(const RowPlan& plan) noexcept;
+  void move_crowded_to_rest(const RowPlan& plan) noexcept;
   [[nodiscard]] float crowd_window() const noexcept;
   [[nodiscard]] StripView view() const noexcept;
 
@@ -148,8 +148,8 @@ Planned SweepAndPrune::plan(const RowPlan& plan, unsigned stage) noexcept {
       return Planned::goes_on;
     default:
       crowded_ |= sort_strips(plan, half, planned_.cells());
-      if (crowded_) drop_crowded(plan);
-      if (are_too_many_apart(plan.rest.size(), plan)) leave_cells(plan);
+      if (crowded_) move_crowded_to_rest(plan);
+      if (are_too_many_outside_cells(plan.rest.size(), plan)) move_all_to_rest(plan);
       return Planned::done;
   }
 }
@@ -159,7 +159,7 @@ Planned SweepAndPrune::choose_strips(const RowPlan& plan) noexcept {
   const SceneSample sample(pool(), plan.objects, execution());
   if (!planned_.choose(sample, kDemand)) return Planned::out_of_memory;
   if (!planned_.usable()) {
-    leave_all(plan);
+    put_all_in_rest(plan);
     return Planned::done;
   }
   const std::size_t rows = plan.rows;
@@ -176,8 +176,8 @@ Planned SweepAndPrune::fill_strips(const RowPlan& plan) noexcept {
                       execution());
   strips.count();
   plan.regular.set_size(strips.find_starts());
-  if (are_too_many_apart(plan.objects - plan.regular.size(), plan)) {
-    leave_cells(plan);
+  if (are_too_many_outside_cells(plan.objects - plan.regular.size(), plan)) {
+    move_all_to_rest(plan);
     return Planned::done;
   }
   strips.place(plan.regular.data());
@@ -221,7 +221,7 @@ bool SweepAndPrune::sort_strips(const RowPlan& plan, std::size_t first, std::siz
 
 // Moves crowded objects to the rest. If many objects start within one window on the sweep axis, as
 // when half of a scene is tiny, a sweep would test all of them; the tree prunes these better.
-void SweepAndPrune::drop_crowded(const RowPlan& plan) noexcept {
+void SweepAndPrune::move_crowded_to_rest(const RowPlan& plan) noexcept {
   const float window = crowd_window();
   const SweepItem* const items = plan.items.data();
   std::uint32_t kept = 0;
@@ -263,7 +263,7 @@ void SweepAndPrune::finish_build(const RowPlan& plan, bool) noexcept {
   std::fill_n(key_.data() + regular_rows(), kPadding, kInfinity);
 }
 
-bool SweepAndPrune::fits(std::size_t row, const Place& place) const noexcept {
+bool SweepAndPrune::fits(std::size_t row, const ObjectBox& place) const noexcept {
   const float low = place.low[layout_.axis(0).axis];
   return low >= key_[row] - layout_.drift() && low <= key_[row] + layout_.drift() &&
          layout_.fits(place, row, start_);
@@ -322,7 +322,7 @@ constexpr StructureCosts kCosts{.has_cells = true,
                                 .rest = 0.24,
                                 .build = 53,
                                 .anew = 37,
-                                .ask_level = 32,
+                                .query_level = 32,
                                 .rows = 1.5};
 constexpr StructureInfo kInfo = structure_info<SweepAndPrune>("SweepAndPrune", &kCosts);
 

@@ -71,12 +71,12 @@ std::uint32_t first_reaching(const StripView& strips, std::uint32_t at, std::uin
 
 /// The neighbouring strips after one strip, and for each the first row that the strip's next blocks
 /// may reach. Blocks of a strip ascend by key, so these rows only advance.
-struct Sweeps {
+struct StripSweeps {
   const StripView& strips;
   const NeighbourLines others;
   std::uint32_t from[4];
 
-  Sweeps(const StripView& view, std::uint32_t strip)
+  StripSweeps(const StripView& view, std::uint32_t strip)
       : strips(view), others(view.axis[1], view.axis[2], strip) {
     for (int k = 0; k < others.count; ++k) from[k] = strips.start[others.line[k]];
   }
@@ -108,7 +108,7 @@ struct Strips {
     for (std::uint32_t strip = begin; strip < end; ++strip) {
       const std::uint32_t last = strips.start[strip + 1];
       if (strips.start[strip] == last) continue;
-      Sweeps sweeps(strips, strip);
+      StripSweeps sweeps(strips, strip);
       for (std::uint32_t r = strips.start[strip]; r < last; r += kLanes) {
         const std::uint32_t behind = last - r < kLanes ? last : r + kLanes;
         if (!pairs.start(r, behind)) continue;

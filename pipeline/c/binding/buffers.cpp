@@ -2,7 +2,7 @@
 
 #include "pipeline/c/binding/arguments.h"
 #include "pipeline/c/binding/handles.h"
-#include "pipeline/c/binding/twins.h"
+#include "pipeline/c/binding/layout_compatible.h"
 
 using namespace winnow::c;
 
@@ -17,14 +17,14 @@ void winnow_pair_buffer_destroy(winnow_pair_buffer* buffer) {
 winnow_status winnow_pair_buffer_pairs(const winnow_pair_buffer* buffer, const winnow_pair** pairs,
                                        size_t* count) {
   if (!are_given(buffer, pairs, count)) return WINNOW_INVALID_ARGUMENT;
-  show(buffer->value.pairs(), pairs, count);
+  return_array(buffer->value.pairs(), pairs, count);
   return WINNOW_OK;
 }
 
 winnow_status winnow_pair_buffer_reserve(winnow_pair_buffer* buffer, size_t count,
                                          winnow_pages pages) {
   winnow::Pages touch{};
-  if (buffer == nullptr || !read_choice(pages, winnow::Pages::touched, touch)) {
+  if (buffer == nullptr || !read_choice(pages, winnow::Pages::prefaulted, touch)) {
     return WINNOW_INVALID_ARGUMENT;
   }
   return buffer->value.reserve(count, touch) ? WINNOW_OK : WINNOW_OUT_OF_MEMORY;
@@ -72,28 +72,28 @@ void winnow_pair_events_destroy(winnow_pair_events* events) {
 winnow_status winnow_pair_events_begun(const winnow_pair_events* events,
                                        const winnow_key_pair** pairs, size_t* count) {
   if (!are_given(events, pairs, count)) return WINNOW_INVALID_ARGUMENT;
-  show(events->value.begun(), pairs, count);
+  return_array(events->value.begun(), pairs, count);
   return WINNOW_OK;
 }
 
 winnow_status winnow_pair_events_ended(const winnow_pair_events* events,
                                        const winnow_key_pair** pairs, size_t* count) {
   if (!are_given(events, pairs, count)) return WINNOW_INVALID_ARGUMENT;
-  show(events->value.ended(), pairs, count);
+  return_array(events->value.ended(), pairs, count);
   return WINNOW_OK;
 }
 
 winnow_status winnow_pair_events_begun_data(const winnow_pair_events* events,
                                             const winnow_client_data_pair** data, size_t* count) {
   if (!are_given(events, data, count)) return WINNOW_INVALID_ARGUMENT;
-  show(events->value.begun_data(), data, count);
+  return_array(events->value.begun_data(), data, count);
   return WINNOW_OK;
 }
 
 winnow_status winnow_pair_events_ended_data(const winnow_pair_events* events,
                                             const winnow_client_data_pair** data, size_t* count) {
   if (!are_given(events, data, count)) return WINNOW_INVALID_ARGUMENT;
-  show(events->value.ended_data(), data, count);
+  return_array(events->value.ended_data(), data, count);
   return WINNOW_OK;
 }
 
@@ -126,7 +126,7 @@ void winnow_hit_buffer_destroy(winnow_hit_buffer* buffer) {
 winnow_status winnow_hit_buffer_hits(const winnow_hit_buffer* buffer, const winnow_hit** hits,
                                      size_t* count) {
   if (!are_given(buffer, hits, count)) return WINNOW_INVALID_ARGUMENT;
-  show(buffer->value.hits(), hits, count);
+  return_array(buffer->value.hits(), hits, count);
   return WINNOW_OK;
 }
 
@@ -141,7 +141,7 @@ winnow_status winnow_hit_buffer_of(const winnow_hit_buffer* buffer, size_t quest
   if (!are_given(buffer, hits, count) || question >= buffer->value.questions()) {
     return WINNOW_INVALID_ARGUMENT;
   }
-  show(buffer->value.of(question), hits, count);
+  return_array(buffer->value.of(question), hits, count);
   return WINNOW_OK;
 }
 
@@ -174,7 +174,7 @@ void winnow_overlap_buffer_destroy(winnow_overlap_buffer* buffer) {
 winnow_status winnow_overlap_buffer_ids(const winnow_overlap_buffer* buffer, const uint32_t** ids,
                                         size_t* count, size_t* inside) {
   if (!are_given(buffer, ids, count, inside)) return WINNOW_INVALID_ARGUMENT;
-  show(buffer->value.ids(), ids, count);
+  return_array(buffer->value.ids(), ids, count);
   *inside = buffer->value.inside().size();
   return WINNOW_OK;
 }

@@ -4,8 +4,8 @@
 
 #include "pipeline/c/binding/arguments.h"
 #include "pipeline/c/binding/handles.h"
+#include "pipeline/c/binding/layout_compatible.h"
 #include "pipeline/c/binding/options.h"
-#include "pipeline/c/binding/twins.h"
 #include "pipeline/c/binding/views.h"
 
 #include <winnow/pipeline/height_field.h>
@@ -120,7 +120,7 @@ winnow_status winnow_composite_pool_add_compound(winnow_composite_pool* pool,
                                                  size_t count, winnow_shape_id* id) {
   if (!are_given(pool, id) || !is_array(children, count)) return WINNOW_INVALID_ARGUMENT;
   winnow::ShapeId made;
-  const winnow::Status status = pool->value.add_compound(twins(children, count), made);
+  const winnow::Status status = pool->value.add_compound(as_cpp_span(children, count), made);
   return added(status, made, id);
 }
 
@@ -149,8 +149,8 @@ winnow_status winnow_composite_pool_bounds(const winnow_composite_pool* pool, wi
                                            const winnow_pose* pose, winnow_aabb* box) {
   if (!are_given(pool, pose, box)) return WINNOW_INVALID_ARGUMENT;
   if (!pool->value.contains({id})) return WINNOW_INVALID_KEY;
-  if (!twin(pose)->is_valid()) return WINNOW_INVALID_POSE;
-  *twin(box) = pool->value.bounds({id}, *twin(pose));
+  if (!as_cpp(pose)->is_valid()) return WINNOW_INVALID_POSE;
+  *as_cpp(box) = pool->value.bounds({id}, *as_cpp(pose));
   return WINNOW_OK;
 }
 
@@ -202,7 +202,7 @@ winnow_status winnow_composite_pool_children(const winnow_composite_pool* pool, 
   if (!pool->value.contains(asked) || asked.composite_kind() != winnow::CompositeKind::compound) {
     return WINNOW_INVALID_KEY;
   }
-  show(pool->value.children(asked), children, count);
+  return_array(pool->value.children(asked), children, count);
   return WINNOW_OK;
 }
 

@@ -6,7 +6,7 @@
 #include "pipeline/c/binding/arguments.h"
 #include "pipeline/c/binding/columns.h"
 #include "pipeline/c/binding/handles.h"
-#include "pipeline/c/binding/twins.h"
+#include "pipeline/c/binding/layout_compatible.h"
 
 #include <algorithm>
 
@@ -26,13 +26,13 @@ namespace {
   winnow_contact_columns shown{};
   shown.level = static_cast<winnow_contact_level>(contacts.level());
   std::size_t same = 0;
-  show(contacts.a(), &shown.a, &shown.pairs);
-  show(contacts.b(), &shown.b, &same);
+  return_array(contacts.a(), &shown.a, &shown.pairs);
+  return_array(contacts.b(), &shown.b, &same);
   shown.data_a = handle.data[0].data();
   shown.data_b = handle.data[1].data();
   shown.event = reinterpret_cast<const std::uint8_t*>(contacts.event().data());
-  show(contacts.runs(), &shown.runs, &shown.run_count);
-  show(contacts.ended(), &shown.ended, &shown.ended_count);
+  return_array(contacts.runs(), &shown.runs, &shown.run_count);
+  return_array(contacts.ended(), &shown.ended, &shown.ended_count);
   shown.carried = contacts.carried();
   shown.manifold_first = column(contacts.manifold_first());
   shown.manifolds = contacts.manifolds();
@@ -50,7 +50,7 @@ namespace {
   return shown;
 }
 
-[[nodiscard]] bool read_room(const winnow_scene_room* given, SceneRoom& room) noexcept {
+[[nodiscard]] bool read_room(const winnow_scene_room* given, SceneCapacity& room) noexcept {
   winnow_scene_room own{};
   if (given == nullptr || !read_sized(given, own) ||
       !read_choice(own.level, ContactLevel::manifold, room.level)) {
@@ -124,10 +124,10 @@ winnow_status winnow_scene_collide(winnow_scene* scene, winnow_contact_level lev
 
 winnow_status winnow_scene_reserve(winnow_scene* scene, const winnow_scene_room* room,
                                    winnow_pages pages) {
-  winnow::SceneRoom read;
+  winnow::SceneCapacity read;
   winnow::Pages touch{};
   if (scene == nullptr || !read_room(room, read) ||
-      !read_choice(pages, winnow::Pages::touched, touch)) {
+      !read_choice(pages, winnow::Pages::prefaulted, touch)) {
     return WINNOW_INVALID_ARGUMENT;
   }
   return answer(scene->value.reserve(read, touch));
@@ -135,10 +135,10 @@ winnow_status winnow_scene_reserve(winnow_scene* scene, const winnow_scene_room*
 
 winnow_status winnow_scene_reserve_contacts(const winnow_scene* scene, winnow_contacts* contacts,
                                             const winnow_scene_room* room, winnow_pages pages) {
-  winnow::SceneRoom read;
+  winnow::SceneCapacity read;
   winnow::Pages touch{};
   if (!are_given(scene, contacts) || !read_room(room, read) ||
-      !read_choice(pages, winnow::Pages::touched, touch)) {
+      !read_choice(pages, winnow::Pages::prefaulted, touch)) {
     return WINNOW_INVALID_ARGUMENT;
   }
   return answer(scene->value.reserve_contacts(contacts->value, read, touch));

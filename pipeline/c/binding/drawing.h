@@ -8,9 +8,9 @@
 namespace winnow::c {
 
 /// Draws with the callbacks of a winnow_debug_draw.
-class Drawing final : public DebugDraw {
+class CallbackDraw final : public DebugDraw {
  public:
-  explicit Drawing(const winnow_debug_draw& draw) noexcept;
+  explicit CallbackDraw(const winnow_debug_draw& draw) noexcept;
 
   void box(const Aabb& box, Colour colour) override;
   void line(const Vec3f& from, const Vec3f& to, Colour colour) override;

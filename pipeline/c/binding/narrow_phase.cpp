@@ -5,8 +5,8 @@
 #include "pipeline/c/binding/arguments.h"
 #include "pipeline/c/binding/columns.h"
 #include "pipeline/c/binding/handles.h"
+#include "pipeline/c/binding/layout_compatible.h"
 #include "pipeline/c/binding/options.h"
-#include "pipeline/c/binding/twins.h"
 #include "pipeline/c/binding/views.h"
 
 namespace winnow::c {
@@ -31,7 +31,7 @@ namespace {
   shown.level = static_cast<winnow_contact_level>(result.level());
   shown.answers = result.size();
   shown.pair_of = result.order().data();
-  show(result.runs(), &shown.runs, &shown.run_count);
+  return_array(result.runs(), &shown.runs, &shown.run_count);
   shown.overlap = column(result.overlap());
   shown.distance = column(result.distance());
   shown.error_bound = column(result.error_bound());
@@ -97,7 +97,7 @@ winnow_status winnow_narrow_phase_collide(winnow_narrow_phase* narrow,
   const winnow::Status status = read_poses(&bodies->poses, narrow->room, all.poses);
   if (status != winnow::Status::ok) return answer(status);
   return answer(
-      narrow->value.collide(shapes->value, all, twins(pairs, count), read, result->value));
+      narrow->value.collide(shapes->value, all, as_cpp_span(pairs, count), read, result->value));
 }
 
 winnow_status winnow_narrow_phase_bad_body(const winnow_narrow_phase* narrow, uint32_t* body) {
@@ -129,6 +129,6 @@ winnow_status winnow_collide(const winnow_shape_pool* shapes, winnow_shape_id a,
   if (!are_given(shapes, pose_a, pose_b, answer) || !read_options(options, read)) {
     return WINNOW_INVALID_ARGUMENT;
   }
-  return winnow::c::answer(
-      winnow::collide(shapes->value, {a}, *twin(pose_a), {b}, *twin(pose_b), read, *twin(answer)));
+  return winnow::c::answer(winnow::collide(shapes->value, {a}, *as_cpp(pose_a), {b},
+                                           *as_cpp(pose_b), read, *as_cpp(answer)));
 }

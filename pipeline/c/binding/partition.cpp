@@ -1,12 +1,12 @@
-// C binding of Partition: options, objects and state. Queries are in partition_questions.cpp.
+// C binding of Partition: options, objects and state. Queries are in partition_queries.cpp.
 
 #include <winnow/c/partition.h>
 
 #include "pipeline/c/binding/arguments.h"
 #include "pipeline/c/binding/handles.h"
+#include "pipeline/c/binding/layout_compatible.h"
 #include "pipeline/c/binding/options.h"
 #include "pipeline/c/binding/structures.h"
-#include "pipeline/c/binding/twins.h"
 #include "pipeline/c/binding/views.h"
 
 #include <winnow/core/kdop.h>
@@ -68,9 +68,9 @@ namespace {
   return {data, data == nullptr ? 0 : count};
 }
 
-[[nodiscard]] Entries entries_of(const winnow_entries& given) noexcept {
-  return given.words != nullptr ? Entries::masked({given.words, given.count})
-                                : Entries::listed({given.numbers, given.count});
+[[nodiscard]] IndexSubset entries_of(const winnow_entries& given) noexcept {
+  return given.words != nullptr ? IndexSubset::masked({given.words, given.count})
+                                : IndexSubset::listed({given.numbers, given.count});
 }
 
 /// Calls `use` with the array as K-DOPs of compile-time K, if `k` is a valid one.
@@ -186,7 +186,7 @@ winnow_status winnow_partition_insert(winnow_partition* partition, const winnow_
   const winnow::Status status = read_boxes(boxes, nullptr, partition->room, view);
   if (status != winnow::Status::ok) return answer(status);
   return answer(
-      partition->value.insert(view, data_of(data, boxes->count), twins(keys, boxes->count)));
+      partition->value.insert(view, data_of(data, boxes->count), as_cpp_span(keys, boxes->count)));
 }
 
 winnow_status winnow_partition_update(winnow_partition* partition, const winnow_key* keys,
@@ -202,12 +202,12 @@ winnow_status winnow_partition_update(winnow_partition* partition, const winnow_
   if (entries == nullptr) {
     const winnow::Status status = read_boxes(boxes, nullptr, partition->room, view);
     if (status != winnow::Status::ok) return answer(status);
-    return answer(partition->value.update(twins(keys, count), view));
+    return answer(partition->value.update(as_cpp_span(keys, count), view));
   }
-  const winnow::Entries some = entries_of(*entries);
+  const winnow::IndexSubset some = entries_of(*entries);
   const winnow::Status status = read_boxes(boxes, &some, partition->room, view);
   if (status != winnow::Status::ok) return answer(status);
-  return answer(partition->value.update(twins(keys, count), view, some));
+  return answer(partition->value.update(as_cpp_span(keys, count), view, some));
 }
 
 winnow_status winnow_partition_insert_spheres(winnow_partition* partition,
@@ -216,8 +216,8 @@ winnow_status winnow_partition_insert_spheres(winnow_partition* partition,
   if (partition == nullptr || !is_array(spheres, count) || !is_array(keys, count)) {
     return WINNOW_INVALID_ARGUMENT;
   }
-  return answer(
-      partition->value.insert(twins(spheres, count), data_of(data, count), twins(keys, count)));
+  return answer(partition->value.insert(as_cpp_span(spheres, count), data_of(data, count),
+                                        as_cpp_span(keys, count)));
 }
 
 winnow_status winnow_partition_update_spheres(winnow_partition* partition, const winnow_key* keys,
@@ -225,7 +225,7 @@ winnow_status winnow_partition_update_spheres(winnow_partition* partition, const
   if (partition == nullptr || !is_array(spheres, count) || !is_array(keys, count)) {
     return WINNOW_INVALID_ARGUMENT;
   }
-  return answer(partition->value.update(twins(keys, count), twins(spheres, count)));
+  return answer(partition->value.update(as_cpp_span(keys, count), as_cpp_span(spheres, count)));
 }
 
 winnow_status winnow_partition_insert_kdops(winnow_partition* partition, uint32_t k,
@@ -235,7 +235,7 @@ winnow_status winnow_partition_insert_kdops(winnow_partition* partition, uint32_
     return WINNOW_INVALID_ARGUMENT;
   }
   return answer(with_kdops(k, kdops, count, [&](auto given) {
-    return partition->value.insert(given, data_of(data, count), twins(keys, count));
+    return partition->value.insert(given, data_of(data, count), as_cpp_span(keys, count));
   }));
 }
 
@@ -246,14 +246,14 @@ winnow_status winnow_partition_update_kdops(winnow_partition* partition, uint32_
     return WINNOW_INVALID_ARGUMENT;
   }
   return answer(with_kdops(k, kdops, count, [&](auto given) {
-    return partition->value.update(twins(keys, count), given);
+    return partition->value.update(as_cpp_span(keys, count), given);
   }));
 }
 
 winnow_status winnow_partition_remove(winnow_partition* partition, const winnow_key* keys,
                                       size_t count) {
   if (partition == nullptr || !is_array(keys, count)) return WINNOW_INVALID_ARGUMENT;
-  return answer(partition->value.remove(twins(keys, count)));
+  return answer(partition->value.remove(as_cpp_span(keys, count)));
 }
 
 winnow_status winnow_partition_clear(winnow_partition* partition) {
@@ -272,7 +272,7 @@ winnow_status winnow_partition_release_memory(winnow_partition* partition) {
 winnow_status winnow_partition_reserve(winnow_partition* partition, size_t objects,
                                        winnow_pages pages) {
   winnow::Pages touch{};
-  if (partition == nullptr || !read_choice(pages, winnow::Pages::touched, touch)) {
+  if (partition == nullptr || !read_choice(pages, winnow::Pages::prefaulted, touch)) {
     return WINNOW_INVALID_ARGUMENT;
   }
   return answer(partition->value.reserve(objects, touch));
@@ -287,14 +287,14 @@ winnow_status winnow_partition_size(const winnow_partition* partition, size_t* s
 winnow_status winnow_partition_contains(const winnow_partition* partition, winnow_key key,
                                         bool* contains) {
   if (!are_given(partition, contains)) return WINNOW_INVALID_ARGUMENT;
-  *contains = partition->asked->contains(*twin(&key));
+  *contains = partition->asked->contains(*as_cpp(&key));
   return WINNOW_OK;
 }
 
 winnow_status winnow_partition_bounds(const winnow_partition* partition, winnow_key key,
                                       winnow_aabb* box) {
   if (!are_given(partition, box)) return WINNOW_INVALID_ARGUMENT;
-  return answer(partition->asked->bounds(*twin(&key), *twin(box)));
+  return answer(partition->asked->bounds(*as_cpp(&key), *as_cpp(box)));
 }
 
 winnow_status winnow_partition_bounds_of(const winnow_partition* partition, const winnow_key* keys,
@@ -302,19 +302,19 @@ winnow_status winnow_partition_bounds_of(const winnow_partition* partition, cons
   if (partition == nullptr || !is_array(keys, count) || !is_array(boxes, count)) {
     return WINNOW_INVALID_ARGUMENT;
   }
-  return answer(partition->asked->bounds(twins(keys, count), twins(boxes, count)));
+  return answer(partition->asked->bounds(as_cpp_span(keys, count), as_cpp_span(boxes, count)));
 }
 
 winnow_status winnow_partition_client_data(const winnow_partition* partition, winnow_key key,
                                            uint64_t* data) {
   if (!are_given(partition, data)) return WINNOW_INVALID_ARGUMENT;
-  return answer(partition->asked->client_data(*twin(&key), *data));
+  return answer(partition->asked->client_data(*as_cpp(&key), *data));
 }
 
 winnow_status winnow_partition_key_of(const winnow_partition* partition, uint32_t id,
                                       winnow_key* key) {
   if (!are_given(partition, key)) return WINNOW_INVALID_ARGUMENT;
-  *twin(key) = partition->asked->key_of(id);
+  *as_cpp(key) = partition->asked->key_of(id);
   return WINNOW_OK;
 }
 
@@ -323,13 +323,13 @@ winnow_status winnow_partition_set_filter(winnow_partition* partition, const win
   if (partition == nullptr || !is_array(keys, count) || !is_array(filters, count)) {
     return WINNOW_INVALID_ARGUMENT;
   }
-  return answer(partition->value.set_filter(twins(keys, count), twins(filters, count)));
+  return answer(partition->value.set_filter(as_cpp_span(keys, count), as_cpp_span(filters, count)));
 }
 
 winnow_status winnow_partition_filter(const winnow_partition* partition, winnow_key key,
                                       winnow_object_filter* filter) {
   if (!are_given(partition, filter)) return WINNOW_INVALID_ARGUMENT;
-  return answer(partition->asked->filter(*twin(&key), *twin(filter)));
+  return answer(partition->asked->filter(*as_cpp(&key), *as_cpp(filter)));
 }
 
 winnow_status winnow_partition_footprint(const winnow_partition* partition,

@@ -5,9 +5,9 @@
 #include "pipeline/c/binding/arguments.h"
 #include "pipeline/c/binding/drawing.h"
 #include "pipeline/c/binding/handles.h"
+#include "pipeline/c/binding/layout_compatible.h"
 #include "pipeline/c/binding/options.h"
 #include "pipeline/c/binding/structures.h"
-#include "pipeline/c/binding/twins.h"
 #include "pipeline/c/binding/views.h"
 
 namespace winnow::c {
@@ -63,12 +63,12 @@ winnow_status winnow_scene_add(winnow_scene* scene, const winnow_body_definition
   if (scene == nullptr || !is_array(bodies, count) || !is_array(keys, count)) {
     return WINNOW_INVALID_ARGUMENT;
   }
-  return answer(scene->value.add(twins(bodies, count), twins(keys, count)));
+  return answer(scene->value.add(as_cpp_span(bodies, count), as_cpp_span(keys, count)));
 }
 
 winnow_status winnow_scene_remove(winnow_scene* scene, const winnow_key* keys, size_t count) {
   if (scene == nullptr || !is_array(keys, count)) return WINNOW_INVALID_ARGUMENT;
-  return answer(scene->value.remove(twins(keys, count)));
+  return answer(scene->value.remove(as_cpp_span(keys, count)));
 }
 
 winnow_status winnow_scene_clear(winnow_scene* scene) {
@@ -84,36 +84,37 @@ winnow_status winnow_scene_move(winnow_scene* scene, const winnow_key* keys, siz
   winnow::PoseView view;
   const winnow::Status status = read_poses(poses, scene->room, view);
   if (status != winnow::Status::ok) return answer(status);
-  return answer(scene->value.move(twins(keys, count), view));
+  return answer(scene->value.move(as_cpp_span(keys, count), view));
 }
 
 winnow_status winnow_scene_set_motion(winnow_scene* scene, const winnow_key* keys, size_t count,
                                       uint8_t motion) {
   if (scene == nullptr || !is_array(keys, count)) return WINNOW_INVALID_ARGUMENT;
-  return answer(scene->value.set_motion(twins(keys, count), static_cast<winnow::Motion>(motion)));
+  return answer(
+      scene->value.set_motion(as_cpp_span(keys, count), static_cast<winnow::Motion>(motion)));
 }
 
 winnow_status winnow_scene_set_shape(winnow_scene* scene, winnow_key key, winnow_shape_id shape) {
   if (scene == nullptr) return WINNOW_INVALID_ARGUMENT;
-  return answer(scene->value.set_shape(*twin(&key), {shape}));
+  return answer(scene->value.set_shape(*as_cpp(&key), {shape}));
 }
 
 winnow_status winnow_scene_set_filter(winnow_scene* scene, winnow_key key,
                                       const winnow_object_filter* filter) {
   if (!are_given(scene, filter)) return WINNOW_INVALID_ARGUMENT;
-  return answer(scene->value.set_filter(*twin(&key), *twin(filter)));
+  return answer(scene->value.set_filter(*as_cpp(&key), *as_cpp(filter)));
 }
 
 winnow_status winnow_scene_set_ignored(winnow_scene* scene, const winnow_key_pair* pairs,
                                        size_t count, bool ignored) {
   if (scene == nullptr || !is_array(pairs, count)) return WINNOW_INVALID_ARGUMENT;
-  return answer(scene->value.set_ignored(twins(pairs, count), ignored));
+  return answer(scene->value.set_ignored(as_cpp_span(pairs, count), ignored));
 }
 
 winnow_status winnow_scene_is_ignored(const winnow_scene* scene, winnow_key a, winnow_key b,
                                       bool* ignored) {
   if (!are_given(scene, ignored)) return WINNOW_INVALID_ARGUMENT;
-  *ignored = scene->value.is_ignored(*twin(&a), *twin(&b));
+  *ignored = scene->value.is_ignored(*as_cpp(&a), *as_cpp(&b));
   return WINNOW_OK;
 }
 
@@ -134,19 +135,19 @@ winnow_status winnow_scene_size_of(const winnow_scene* scene, uint8_t motion, si
 
 winnow_status winnow_scene_contains(const winnow_scene* scene, winnow_key key, bool* contains) {
   if (!are_given(scene, contains)) return WINNOW_INVALID_ARGUMENT;
-  *contains = scene->value.contains(*twin(&key));
+  *contains = scene->value.contains(*as_cpp(&key));
   return WINNOW_OK;
 }
 
 winnow_status winnow_scene_body(const winnow_scene* scene, winnow_key key,
                                 winnow_body_definition* body) {
   if (!are_given(scene, body)) return WINNOW_INVALID_ARGUMENT;
-  return answer(scene->value.body(*twin(&key), *twin(body)));
+  return answer(scene->value.body(*as_cpp(&key), *as_cpp(body)));
 }
 
 winnow_status winnow_scene_key_of(const winnow_scene* scene, uint32_t id, winnow_key* key) {
   if (!are_given(scene, key)) return WINNOW_INVALID_ARGUMENT;
-  *twin(key) = scene->value.key_of(id);
+  *as_cpp(key) = scene->value.key_of(id);
   return WINNOW_OK;
 }
 
@@ -179,7 +180,7 @@ winnow_status winnow_scene_debug_draw(const winnow_scene* scene, const winnow_de
                                       const winnow_debug_draw_options* options) {
   winnow::DebugDrawOptions read;
   if (!are_given(scene, draw) || !read_options(options, read)) return WINNOW_INVALID_ARGUMENT;
-  Drawing drawing(*draw);
+  CallbackDraw drawing(*draw);
   return answer(scene->value.debug_draw(drawing, read));
 }
 
@@ -204,7 +205,7 @@ winnow_status winnow_scene_statistics(const winnow_scene* scene, winnow_scene_co
   const winnow::SceneStatistics& own = scene->value.statistics();
   write_sized({0, own.boxes_updated, own.body_pairs, own.carried, own.primitive_pairs,
                own.convex.pairs, own.convex.recomputed, own.convex.exact, own.parts.pairs,
-               own.parts.recomputed, own.parts.exact, own.balls_apart},
+               own.parts.recomputed, own.parts.exact, own.rejected_by_spheres},
               *statistics);
   return WINNOW_OK;
 }

@@ -4,14 +4,14 @@
 
 #include "pipeline/c/binding/arguments.h"
 #include "pipeline/c/binding/handles.h"
-#include "pipeline/c/binding/twins.h"
+#include "pipeline/c/binding/layout_compatible.h"
 #include "pipeline/c/binding/views.h"
 
 namespace winnow::c {
 namespace {
 
 [[nodiscard]] SceneHitColumns columns_of(const winnow_scene_hit_columns& given) noexcept {
-  return {twin(given.key),
+  return {as_cpp(given.key),
           given.data,
           given.part,
           given.t,
@@ -24,7 +24,7 @@ template <typename OfCpp, typename OfC, typename Ask>
 [[nodiscard]] winnow_status answer_list(const OfC** first, std::size_t* count, Ask&& ask) noexcept {
   std::span<const OfCpp> found;
   const Status status = ask(found);
-  if (status == Status::ok) show(found, first, count);
+  if (status == Status::ok) return_array(found, first, count);
   return answer(status);
 }
 
@@ -44,7 +44,7 @@ template <typename Ask>
 [[nodiscard]] ShapeCast cast_of(const winnow_shape_cast& given, bool touching) noexcept {
   const double(&direction)[3] = given.direction;
   return {{given.shape},
-          *twin(&given.pose),
+          *as_cpp(&given.pose),
           {direction[0], direction[1], direction[2]},
           given.max_t,
           touching};
@@ -56,7 +56,7 @@ template <typename Ask>
                                          winnow_scene_hit* hit) noexcept {
   if (!are_given(queries, cast, hit)) return WINNOW_INVALID_ARGUMENT;
   return answer(
-      queries->value.closest(cast_of(*cast, touching), *twin(hit), filter_of(filter), tolerance));
+      queries->value.closest(cast_of(*cast, touching), *as_cpp(hit), filter_of(filter), tolerance));
 }
 
 [[nodiscard]] winnow_status all_cast(winnow_scene_queries* queries, const winnow_shape_cast* cast,
@@ -95,13 +95,13 @@ winnow_status winnow_scene_queries_closest(winnow_scene_queries* queries,
                                            const winnow_shape_ray* ray, const winnow_filter* filter,
                                            winnow_scene_hit* hit) {
   if (!are_given(queries, ray, hit)) return WINNOW_INVALID_ARGUMENT;
-  return answer(queries->value.closest(*twin(ray), *twin(hit), filter_of(filter)));
+  return answer(queries->value.closest(*as_cpp(ray), *as_cpp(hit), filter_of(filter)));
 }
 
 winnow_status winnow_scene_queries_any(winnow_scene_queries* queries, const winnow_shape_ray* ray,
                                        const winnow_filter* filter, winnow_scene_hit* hit) {
   if (!are_given(queries, ray, hit)) return WINNOW_INVALID_ARGUMENT;
-  return answer(queries->value.any(*twin(ray), *twin(hit), filter_of(filter)));
+  return answer(queries->value.any(*as_cpp(ray), *as_cpp(hit), filter_of(filter)));
 }
 
 winnow_status winnow_scene_queries_all(winnow_scene_queries* queries, const winnow_shape_ray* ray,
@@ -109,7 +109,7 @@ winnow_status winnow_scene_queries_all(winnow_scene_queries* queries, const winn
                                        size_t* count) {
   if (!are_given(queries, ray, hits, count)) return WINNOW_INVALID_ARGUMENT;
   return answer_list<winnow::SceneHit>(hits, count, [&](auto& found) {
-    return queries->value.all(*twin(ray), found, filter_of(filter));
+    return queries->value.all(*as_cpp(ray), found, filter_of(filter));
   });
 }
 
@@ -144,8 +144,8 @@ winnow_status winnow_scene_queries_all_rays(winnow_scene_queries* queries,
   });
   if (status != WINNOW_OK) return status;
   std::size_t count = 0;
-  show(lists.hits, hits, &count);
-  show(lists.first, first, &count);
+  return_array(lists.hits, hits, &count);
+  return_array(lists.first, first, &count);
   return WINNOW_OK;
 }
 
@@ -182,7 +182,7 @@ winnow_status winnow_scene_queries_overlap(winnow_scene_queries* queries, winnow
                                            const winnow_scene_overlap** bodies, size_t* count) {
   if (!are_given(queries, pose, bodies, count)) return WINNOW_INVALID_ARGUMENT;
   return answer_list<winnow::SceneOverlap>(bodies, count, [&](auto& found) {
-    return queries->value.overlap({shape}, *twin(pose), found, filter_of(filter));
+    return queries->value.overlap({shape}, *as_cpp(pose), found, filter_of(filter));
   });
 }
 
@@ -192,7 +192,7 @@ winnow_status winnow_scene_queries_distance(winnow_scene_queries* queries, winno
   winnow::PairRules taken{};
   if (!are_given(queries, answer) || !read_rules(rules, taken)) return WINNOW_INVALID_ARGUMENT;
   return winnow::c::answer(
-      queries->value.distance(*twin(&a), *twin(&b), *twin(answer), limit, taken));
+      queries->value.distance(*as_cpp(&a), *as_cpp(&b), *as_cpp(answer), limit, taken));
 }
 
 winnow_status winnow_scene_queries_nearest(winnow_scene_queries* queries, const double point[3],
@@ -212,8 +212,8 @@ winnow_status winnow_scene_queries_least_distance(winnow_scene_queries* queries,
   winnow::PairRules taken{};
   if (!are_given(queries, answer) || !read_rules(rules, taken)) return WINNOW_INVALID_ARGUMENT;
   if (!is_array(a, count_a) || !is_array(b, count_b)) return WINNOW_INVALID_ARGUMENT;
-  return winnow::c::answer(queries->value.least_distance(twins(a, count_a), twins(b, count_b),
-                                                         *twin(answer), limit, taken));
+  return winnow::c::answer(queries->value.least_distance(
+      as_cpp_span(a, count_a), as_cpp_span(b, count_b), *as_cpp(answer), limit, taken));
 }
 
 winnow_status winnow_scene_queries_overlaps(winnow_scene_queries* queries, const winnow_key* a,
@@ -226,7 +226,8 @@ winnow_status winnow_scene_queries_overlaps(winnow_scene_queries* queries, const
   }
   if (!is_array(a, count_a) || !is_array(b, count_b)) return WINNOW_INVALID_ARGUMENT;
   return answer_list<winnow::KeyPair>(pairs, count, [&](auto& found) {
-    return queries->value.overlaps(twins(a, count_a), twins(b, count_b), found, most, taken);
+    return queries->value.overlaps(as_cpp_span(a, count_a), as_cpp_span(b, count_b), found, most,
+                                   taken);
   });
 }
 
@@ -237,8 +238,8 @@ winnow_status winnow_scene_queries_any_contact(winnow_scene_queries* queries, co
   winnow::PairRules taken{};
   if (!are_given(queries, pair) || !read_rules(rules, taken)) return WINNOW_INVALID_ARGUMENT;
   if (!is_array(a, count_a) || !is_array(b, count_b)) return WINNOW_INVALID_ARGUMENT;
-  return answer(
-      queries->value.any_contact(twins(a, count_a), twins(b, count_b), *twin(pair), margin, taken));
+  return answer(queries->value.any_contact(as_cpp_span(a, count_a), as_cpp_span(b, count_b),
+                                           *as_cpp(pair), margin, taken));
 }
 
 winnow_status winnow_scene_queries_any_contact_in_scene(winnow_scene_queries* queries,
@@ -246,7 +247,7 @@ winnow_status winnow_scene_queries_any_contact_in_scene(winnow_scene_queries* qu
                                                         winnow_key_pair* pair) {
   winnow::PairRules taken{};
   if (!are_given(queries, pair) || !read_rules(rules, taken)) return WINNOW_INVALID_ARGUMENT;
-  return answer(queries->value.any_contact(*twin(pair), margin, taken));
+  return answer(queries->value.any_contact(*as_cpp(pair), margin, taken));
 }
 
 winnow_status winnow_scene_queries_footprint(const winnow_scene_queries* queries,

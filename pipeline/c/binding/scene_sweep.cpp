@@ -5,8 +5,8 @@
 #include "pipeline/c/binding/arguments.h"
 #include "pipeline/c/binding/columns.h"
 #include "pipeline/c/binding/handles.h"
+#include "pipeline/c/binding/layout_compatible.h"
 #include "pipeline/c/binding/options.h"
-#include "pipeline/c/binding/twins.h"
 #include "pipeline/c/binding/views.h"
 
 namespace winnow::c {
@@ -52,13 +52,13 @@ winnow_status winnow_scene_sweep_sweep(winnow_scene_sweep* sweep, const winnow_k
   winnow::PoseView view;
   const winnow::Status status = read_poses(ends, sweep->room, view);
   if (status != winnow::Status::ok) return answer(status);
-  return answer(sweep->value.sweep(twins(keys, count), view, read));
+  return answer(sweep->value.sweep(as_cpp_span(keys, count), view, read));
 }
 
 winnow_status winnow_scene_sweep_impacts(const winnow_scene_sweep* sweep,
                                          const winnow_scene_impact** impacts, size_t* count) {
   if (!are_given(sweep, impacts, count)) return WINNOW_INVALID_ARGUMENT;
-  show(sweep->value.impacts(), impacts, count);
+  return_array(sweep->value.impacts(), impacts, count);
   return WINNOW_OK;
 }
 

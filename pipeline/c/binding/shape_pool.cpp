@@ -4,7 +4,7 @@
 
 #include "pipeline/c/binding/arguments.h"
 #include "pipeline/c/binding/handles.h"
-#include "pipeline/c/binding/twins.h"
+#include "pipeline/c/binding/layout_compatible.h"
 #include "pipeline/c/binding/views.h"
 
 #include <winnow/pipeline/shape_rays.h>
@@ -237,8 +237,8 @@ winnow_status winnow_shape_pool_bounds(const winnow_shape_pool* pool, winnow_sha
                                        const winnow_pose* pose, winnow_aabb* box) {
   if (!are_given(pool, pose, box)) return WINNOW_INVALID_ARGUMENT;
   if (!pool->value.contains({id})) return WINNOW_INVALID_KEY;
-  if (!twin(pose)->is_valid()) return WINNOW_INVALID_POSE;
-  *twin(box) = pool->value.bounds({id}, *twin(pose));
+  if (!as_cpp(pose)->is_valid()) return WINNOW_INVALID_POSE;
+  *as_cpp(box) = pool->value.bounds({id}, *as_cpp(pose));
   return WINNOW_OK;
 }
 
@@ -277,7 +277,7 @@ winnow_status winnow_cast_ray(const winnow_shape_pool* pool, winnow_shape_id sha
   if (!pool->value.contains({shape})) return WINNOW_INVALID_KEY;
   winnow::ShapeHit met;
   const winnow::Status status =
-      winnow::cast_ray(pool->value.tables(), {shape}, *twin(pose), *twin(ray), met);
+      winnow::cast_ray(pool->value.tables(), {shape}, *as_cpp(pose), *as_cpp(ray), met);
   if (status == winnow::Status::ok) {
     *hit = {met.hit, met.t, {met.normal[0], met.normal[1], met.normal[2]}};
   }

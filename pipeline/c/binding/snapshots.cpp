@@ -4,7 +4,7 @@
 
 #include "pipeline/c/binding/arguments.h"
 #include "pipeline/c/binding/handles.h"
-#include "pipeline/c/binding/twins.h"
+#include "pipeline/c/binding/layout_compatible.h"
 
 struct winnow_snapshot : winnow::c::Handle {
   using Handle::Handle;

@@ -2,7 +2,7 @@
 
 #include <winnow/c/core.h>
 
-#include "core/memory/guarded.h"
+#include "core/memory/catch_bad_alloc.h"
 #include "pipeline/c/binding/arguments.h"
 
 #include <winnow/core/execution.h>
@@ -48,8 +48,8 @@ winnow_status winnow_threads_create(size_t count, winnow_threads** threads) {
     return WINNOW_INVALID_ARGUMENT;
   }
   if (count > 1 && WINNOW_HAVE_TBB == 0) return WINNOW_UNSUPPORTED;
-  winnow_threads* const made = winnow::guarded([&] { return new winnow_threads(count); },
-                                               static_cast<winnow_threads*>(nullptr));
+  winnow_threads* const made = winnow::catch_bad_alloc([&] { return new winnow_threads(count); },
+                                                       static_cast<winnow_threads*>(nullptr));
   if (made == nullptr) return WINNOW_OUT_OF_MEMORY;
   *threads = made;
   return WINNOW_OK;

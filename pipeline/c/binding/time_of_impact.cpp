@@ -5,8 +5,8 @@
 #include "pipeline/c/binding/arguments.h"
 #include "pipeline/c/binding/columns.h"
 #include "pipeline/c/binding/handles.h"
+#include "pipeline/c/binding/layout_compatible.h"
 #include "pipeline/c/binding/options.h"
-#include "pipeline/c/binding/twins.h"
 
 namespace winnow::c {
 
@@ -22,7 +22,7 @@ namespace {
 
 [[nodiscard]] winnow_status made(const RigidMotion& motion, winnow_rigid_motion* out) noexcept {
   if (!motion.is_valid()) return WINNOW_INVALID_POSE;
-  *twin(out) = motion;
+  *as_cpp(out) = motion;
   return WINNOW_OK;
 }
 
@@ -52,7 +52,7 @@ using namespace winnow::c;
 winnow_status winnow_rigid_motion_between(const winnow_pose* start, const winnow_pose* end,
                                           winnow_rigid_motion* motion) {
   if (!are_given(start, end, motion)) return WINNOW_INVALID_ARGUMENT;
-  return made(winnow::RigidMotion::between(*twin(start), *twin(end)), motion);
+  return made(winnow::RigidMotion::between(*as_cpp(start), *as_cpp(end)), motion);
 }
 
 winnow_status winnow_rigid_motion_by_velocities(const winnow_pose* start, const double linear[3],
@@ -61,14 +61,15 @@ winnow_status winnow_rigid_motion_by_velocities(const winnow_pose* start, const 
   if (!are_given(start, motion) || !are_given(linear, angular)) return WINNOW_INVALID_ARGUMENT;
   const double ways[2][3] = {{linear[0], linear[1], linear[2]},
                              {angular[0], angular[1], angular[2]}};
-  return made(winnow::RigidMotion::by_velocities(*twin(start), ways[0], ways[1], duration), motion);
+  return made(winnow::RigidMotion::by_velocities(*as_cpp(start), ways[0], ways[1], duration),
+              motion);
 }
 
 winnow_status winnow_rigid_motion_at(const winnow_rigid_motion* motion, double time,
                                      winnow_pose* pose) {
   if (!are_given(motion, pose) || !(time >= 0.0 && time <= 1.0)) return WINNOW_INVALID_ARGUMENT;
-  if (!twin(motion)->is_valid()) return WINNOW_INVALID_POSE;
-  *twin(pose) = twin(motion)->at(time);
+  if (!as_cpp(motion)->is_valid()) return WINNOW_INVALID_POSE;
+  *as_cpp(pose) = as_cpp(motion)->at(time);
   return WINNOW_OK;
 }
 
@@ -106,7 +107,7 @@ winnow_status winnow_time_of_impact(const winnow_shape_pool* shapes,
     return WINNOW_INVALID_ARGUMENT;
   }
   const winnow::MovingBodies all{{shape_ids(bodies->shapes), bodies->count},
-                                 twins(bodies->motions, bodies->count)};
+                                 as_cpp_span(bodies->motions, bodies->count)};
   return answer(
-      winnow::time_of_impact(shapes->value, all, twins(pairs, count), read, result->value));
+      winnow::time_of_impact(shapes->value, all, as_cpp_span(pairs, count), read, result->value));
 }

@@ -45,7 +45,7 @@ template <typename Number, std::size_t kColumns>
 /// Calls `read(i)` for each of the selected entries below `count`. Skips indices that are out of
 /// range: the partition refuses them later.
 template <typename Read>
-void for_entries(const Entries* entries, std::size_t count, Read&& read) noexcept {
+void for_entries(const IndexSubset* entries, std::size_t count, Read&& read) noexcept {
   if (entries == nullptr) {
     for (std::size_t i = 0; i < count; ++i) read(i);
   } else if (!entries->is_mask()) {
@@ -111,7 +111,7 @@ void for_entries(const Entries* entries, std::size_t count, Read&& read) noexcep
 
 }  // namespace
 
-Status read_boxes(const winnow_box_view* given, const Entries* entries, Column<float>& room,
+Status read_boxes(const winnow_box_view* given, const IndexSubset* entries, Column<float>& room,
                   BoxView& boxes) noexcept {
   if (given == nullptr || !is_number(given->number) || !are_columns(given->min, given->count) ||
       !are_columns(given->max, given->count)) {
@@ -123,7 +123,7 @@ Status read_boxes(const winnow_box_view* given, const Entries* entries, Column<f
     boxes = BoxView(columns_of<float>(given->min), columns_of<float>(given->max), count, stride);
     return Status::ok;
   }
-  if (count > Column<float>::kMost / 6 || !room.resize(6 * count)) return Status::out_of_memory;
+  if (count > Column<float>::kMaxSize / 6 || !room.resize(6 * count)) return Status::out_of_memory;
   float* const to = room.data();
   for_entries(entries, count, [&](std::size_t i) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -187,7 +187,7 @@ Status read_points(const winnow_point_view* given, Column<double>& room,
   PointView view;
   if (const Status status = read_points(given, view); status != Status::ok) return status;
   const std::size_t count = given->count;
-  if (count > Column<double>::kMost / 3 || !room.resize(3 * count)) return Status::out_of_memory;
+  if (count > Column<double>::kMaxSize / 3 || !room.resize(3 * count)) return Status::out_of_memory;
   for (std::size_t i = 0; i < count; ++i) {
     for (std::size_t axis = 0; axis < 3; ++axis) room[3 * i + axis] = view.coordinate(i, axis);
   }

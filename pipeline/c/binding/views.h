@@ -4,7 +4,7 @@
 #include <winnow/c/volumes.h>
 #include <winnow/core/box_view.h>
 #include <winnow/core/column.h>
-#include <winnow/core/entries.h>
+#include <winnow/core/index_subset.h>
 #include <winnow/core/point_view.h>
 #include <winnow/core/pose_view.h>
 #include <winnow/core/status.h>
@@ -20,7 +20,7 @@ namespace winnow::c {
 // column is missing; `out_of_memory`.
 
 /// Boxes in double are rounded outward. If `entries` is not null, only those entries are read.
-[[nodiscard]] Status read_boxes(const winnow_box_view* given, const Entries* entries,
+[[nodiscard]] Status read_boxes(const winnow_box_view* given, const IndexSubset* entries,
                                 Column<float>& room, BoxView& boxes) noexcept;
 [[nodiscard]] Status read_poses(const winnow_pose_view* given, Column<Pose>& room,
                                 PoseView& poses) noexcept;

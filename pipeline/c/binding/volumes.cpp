@@ -4,8 +4,8 @@
 
 #include "pipeline/c/binding/arguments.h"
 #include "pipeline/c/binding/drawing.h"
+#include "pipeline/c/binding/layout_compatible.h"
 #include "pipeline/c/binding/options.h"
-#include "pipeline/c/binding/twins.h"
 
 #include <winnow/core/kdop_around.h>
 
@@ -23,27 +23,27 @@ void write_kdop(const OrientedBox& box, float* slabs) noexcept {
 
 }  // namespace
 
-Drawing::Drawing(const winnow_debug_draw& draw) noexcept : draw_(draw) {}
+CallbackDraw::CallbackDraw(const winnow_debug_draw& draw) noexcept : draw_(draw) {}
 
-void Drawing::box(const Aabb& box, Colour colour) {
+void CallbackDraw::box(const Aabb& box, Colour colour) {
   if (draw_.box == nullptr) return;
   winnow_aabb shown;
-  *twin(&shown) = box;
+  *as_cpp(&shown) = box;
   draw_.box(draw_.context, &shown, of(colour));
 }
 
-void Drawing::line(const Vec3f& from, const Vec3f& to, Colour colour) {
+void CallbackDraw::line(const Vec3f& from, const Vec3f& to, Colour colour) {
   if (draw_.line != nullptr) draw_.line(draw_.context, from.data(), to.data(), of(colour));
 }
 
-void Drawing::sphere(const Sphere& sphere, Colour colour) {
+void CallbackDraw::sphere(const Sphere& sphere, Colour colour) {
   if (draw_.sphere == nullptr) return;
   winnow_sphere shown;
-  *twin(&shown) = sphere;
+  *as_cpp(&shown) = sphere;
   draw_.sphere(draw_.context, &shown, of(colour));
 }
 
-void Drawing::text(const Vec3f& at, std::string_view text, Colour colour) {
+void CallbackDraw::text(const Vec3f& at, std::string_view text, Colour colour) {
   if (draw_.text == nullptr) return;
   draw_.text(draw_.context, at.data(), text.data(), text.size(), of(colour));
 }
@@ -67,8 +67,8 @@ winnow_status winnow_aabb_outward(const double min[3], const double max[3], cons
   if (!are_given(min, max, box)) return WINNOW_INVALID_ARGUMENT;
   const Eigen::Vector3d low(min);
   const Eigen::Vector3d high(max);
-  *twin(box) = origin == nullptr ? winnow::Aabb::outward(low, high)
-                                 : winnow::Aabb::outward(low, high, Eigen::Vector3d(origin));
+  *as_cpp(box) = origin == nullptr ? winnow::Aabb::outward(low, high)
+                                   : winnow::Aabb::outward(low, high, Eigen::Vector3d(origin));
   return WINNOW_OK;
 }
 
@@ -96,7 +96,7 @@ winnow_status winnow_frustum_perspective(const float eye[3], const float forward
       winnow::Frustum::perspective(Eigen::Vector3f(eye), Eigen::Vector3f(forward),
                                    Eigen::Vector3f(up), vertical_fov, aspect, near_t, far_t);
   if (!made.is_valid()) return WINNOW_INVALID_ARGUMENT;
-  *twin(frustum) = made;
+  *as_cpp(frustum) = made;
   return WINNOW_OK;
 }
 
@@ -111,6 +111,6 @@ winnow_status winnow_frustum_from_matrix(const double clip_from_world[16], int32
   const Eigen::Matrix4d matrix = Eigen::Map<const ByRows>(clip_from_world);
   const winnow::Frustum made = winnow::Frustum::from_matrix(matrix, depth);
   if (!made.is_valid()) return WINNOW_INVALID_ARGUMENT;
-  *twin(frustum) = made;
+  *as_cpp(frustum) = made;
   return WINNOW_OK;
 }

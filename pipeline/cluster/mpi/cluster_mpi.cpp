@@ -3,7 +3,7 @@
 
 #include <winnow/pipeline/cluster_mpi.h>
 
-#include "core/memory/guarded.h"
+#include "core/memory/catch_bad_alloc.h"
 #include "pipeline/cluster/mpi/mpi.h"
 #include "pipeline/cluster/mpi/zoltan_cuts.h"
 
@@ -36,10 +36,10 @@ constexpr int kHeaderWords = sizeof(Header) / sizeof(std::uint64_t);
 struct CutTask {
   std::vector<Aabb> boxes;
   std::vector<std::uint32_t> works;
-  std::vector<RegionCut> cuts;
+  std::vector<SplitPlane> cuts;
 
   [[nodiscard]] Status run(MPI_Comm communicator) noexcept {
-    return guarded(
+    return catch_bad_alloc(
         [&] {
           return cut_by_zoltan(communicator, {boxes, works}, cuts);
         },
@@ -112,10 +112,10 @@ class MpiTransport final : public Transport {
   [[nodiscard]] std::uint32_t hosted() const noexcept override { return 1; }
 
   void begin(std::uint32_t call) noexcept override { call_ = call; }
-  Status exchange(std::span<const Parcel> sent, std::span<const Parcel>& received,
-                  const Meanwhile& meanwhile) override;
+  Status exchange(std::span<const RankMessage> sent, std::span<const RankMessage>& received,
+                  const OverlappedWork& meanwhile) override;
   Status reduce(std::span<std::uint64_t> sums, std::span<std::uint64_t> greatest) override;
-  Status cut(std::span<const CutWork> work, std::span<RegionCut> cuts) override;
+  Status cut(std::span<const CutWork> work, std::span<SplitPlane> cuts) override;
 
  private:
   /// Waits for the first `count` requests; fails after the time limit.
@@ -123,16 +123,16 @@ class MpiTransport final : public Transport {
   /// Waits for all requests.
   [[nodiscard]] Status finish();
   /// Begins a step: sends headers with the sizes of the parcels.
-  void start(Step step, std::span<const Parcel> sent = {});
+  void start(Step step, std::span<const RankMessage> sent = {});
   /// Waits for the headers, the first request; fails unless all ranks take the same step.
-  [[nodiscard]] Status meet();
+  [[nodiscard]] Status synchronize();
   /// A whole step in which no parcels are sent.
-  [[nodiscard]] Status meet(Step step);
-  [[nodiscard]] Status cut_in_time(const CutWork& work, std::span<RegionCut> cuts);
+  [[nodiscard]] Status synchronize(Step step);
+  [[nodiscard]] Status cut_in_time(const CutWork& work, std::span<SplitPlane> cuts);
   /// After a failed step MPI may still write to the receive buffers: leaks them.
   void leave_buffers() noexcept;
   void start_receiving();
-  void start_sending(const Parcel& parcel);
+  void start_sending(const RankMessage& parcel);
   void keep(int result) noexcept { failed_ = failed_ || result != MPI_SUCCESS; }
   [[nodiscard]] MPI_Request& new_request() { return requests_.emplace_back(MPI_REQUEST_NULL); }
 
@@ -149,7 +149,7 @@ class MpiTransport final : public Transport {
   std::vector<Header> out_;           // by rank
   std::vector<Header> in_;            // by rank
   std::vector<std::uint64_t> words_;  // received columns, or sums
-  std::vector<Parcel> parcels_;
+  std::vector<RankMessage> parcels_;
 };
 
 Status MpiTransport::wait_for(std::size_t count) {
@@ -175,18 +175,18 @@ Status MpiTransport::finish() {
   return status;
 }
 
-void MpiTransport::start(Step step, std::span<const Parcel> sent) {
+void MpiTransport::start(Step step, std::span<const RankMessage> sent) {
   const Header header{std::uint64_t{call_} << 8U | static_cast<std::uint64_t>(step), {}};
   out_.assign(ranks_, header);
   in_.assign(ranks_, header);
-  for (const Parcel& parcel : sent) {
+  for (const RankMessage& parcel : sent) {
     for (std::size_t c = 0; c < 4; ++c) out_[parcel.to].sizes[c] = parcel.columns[c].size();
   }
   keep(MPI_Ialltoall(out_.data(), kHeaderWords, MPI_UINT64_T, in_.data(), kHeaderWords,
                      MPI_UINT64_T, communicator_, &new_request()));
 }
 
-Status MpiTransport::meet() {
+Status MpiTransport::synchronize() {
   const Status status = wait_for(1);
   if (status != Status::ok) return status;
   const std::uint64_t step = out_[rank_].step;
@@ -194,15 +194,15 @@ Status MpiTransport::meet() {
   return failed_ ? Status::communication_failed : Status::ok;
 }
 
-Status MpiTransport::meet(Step step) {
+Status MpiTransport::synchronize(Step step) {
   start(step);
-  const Status status = meet();
+  const Status status = synchronize();
   requests_.clear();
   return status;
 }
 
 void MpiTransport::leave_buffers() noexcept {
-  (void)guarded(
+  (void)catch_bad_alloc(
       [&] {
         (void)new std::vector<Header>(std::move(out_));
         (void)new std::vector<Header>(std::move(in_));
@@ -222,7 +222,7 @@ void MpiTransport::start_receiving() {
   for (std::uint32_t from = 0; from < ranks_; ++from) {
     const auto& sizes = in_[from].sizes;
     if (from == rank_ || sum_of(in_[from]) == 0) continue;
-    Parcel& parcel = parcels_.emplace_back(Parcel{from, rank_, {}});
+    RankMessage& parcel = parcels_.emplace_back(RankMessage{from, rank_, {}});
     ColumnsType columns;
     for (std::size_t c = 0; c < 4; ++c) {
       parcel.columns[c] = {place, sizes[c]};
@@ -236,7 +236,7 @@ void MpiTransport::start_receiving() {
   }
 }
 
-void MpiTransport::start_sending(const Parcel& parcel) {
+void MpiTransport::start_sending(const RankMessage& parcel) {
   ColumnsType columns;
   for (const auto& column : parcel.columns) columns.add(column.data(), column.size());
   MPI_Datatype type = columns.make();
@@ -245,12 +245,13 @@ void MpiTransport::start_sending(const Parcel& parcel) {
   MPI_Type_free(&type);
 }
 
-Status MpiTransport::exchange(std::span<const Parcel> sent, std::span<const Parcel>& received,
-                              const Meanwhile& meanwhile) {
+Status MpiTransport::exchange(std::span<const RankMessage> sent,
+                              std::span<const RankMessage>& received,
+                              const OverlappedWork& meanwhile) {
   if (failed_) return Status::communication_failed;
   parcels_.clear();
   start(Step::exchange, sent);
-  for (const Parcel& parcel : sent) {
+  for (const RankMessage& parcel : sent) {
     if (parcel.to == rank_) {
       parcels_.push_back(parcel);
     } else if (parcel.bytes() != 0) {
@@ -259,17 +260,17 @@ Status MpiTransport::exchange(std::span<const Parcel> sent, std::span<const Parc
   }
   meanwhile();
   // The sends may not complete before the receiver has posted its receives.
-  const Status status = meet();
+  const Status status = synchronize();
   if (status != Status::ok) return status;
   start_receiving();
-  std::ranges::sort(parcels_, {}, &Parcel::from);
+  std::ranges::sort(parcels_, {}, &RankMessage::from);
   received = parcels_;
   return finish();
 }
 
 Status MpiTransport::reduce(std::span<std::uint64_t> sums, std::span<std::uint64_t> greatest) {
   if (failed_) return Status::communication_failed;
-  Status status = meet(Step::reduce);
+  Status status = synchronize(Step::reduce);
   if (status != Status::ok) return status;
   words_.assign(sums.begin(), sums.end());
   words_.insert(words_.end(), greatest.begin(), greatest.end());
@@ -290,10 +291,10 @@ Status MpiTransport::reduce(std::span<std::uint64_t> sums, std::span<std::uint64
 
 // Zoltan has no time limit. After the second step each rank has seen that all ranks have arrived,
 // so a rank that is late or makes another call is detected before.
-Status MpiTransport::cut(std::span<const CutWork> work, std::span<RegionCut> cuts) {
+Status MpiTransport::cut(std::span<const CutWork> work, std::span<SplitPlane> cuts) {
   if (failed_) return Status::communication_failed;
   for (const Step step : {Step::arrive, Step::cut}) {
-    const Status status = meet(step);
+    const Status status = synchronize(step);
     if (status != Status::ok) return status;
   }
   const Status status = has_threads_ ? cut_in_time(work.front(), cuts)
@@ -303,7 +304,7 @@ Status MpiTransport::cut(std::span<const CutWork> work, std::span<RegionCut> cut
 }
 
 // Calls Zoltan on a thread, which is abandoned if it takes too long.
-Status MpiTransport::cut_in_time(const CutWork& work, std::span<RegionCut> cuts) {
+Status MpiTransport::cut_in_time(const CutWork& work, std::span<SplitPlane> cuts) {
   const auto task = std::make_shared<CutTask>();
   task->boxes.assign(work.boxes.begin(), work.boxes.end());
   task->works.assign(work.works.begin(), work.works.end());

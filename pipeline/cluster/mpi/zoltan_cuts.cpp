@@ -17,21 +17,21 @@ namespace winnow {
 namespace {
 
 /// Data for Zoltan's callbacks: scaled centres, and works.
-struct Asked {
+struct CutRequest {
   const CutWork& work;
   std::array<double, 3> scale;
 
-  static const Asked& of(void* data) noexcept { return *static_cast<const Asked*>(data); }
+  static const CutRequest& of(void* data) noexcept { return *static_cast<const CutRequest*>(data); }
 };
 
 int count_of(void* data, int* error) {
   *error = ZOLTAN_OK;
-  return static_cast<int>(Asked::of(data).work.boxes.size());
+  return static_cast<int>(CutRequest::of(data).work.boxes.size());
 }
 
 void list_of(void* data, int, int, ZOLTAN_ID_PTR global, ZOLTAN_ID_PTR local, int, float* weights,
              int* error) {
-  const CutWork& work = Asked::of(data).work;
+  const CutWork& work = CutRequest::of(data).work;
   for (std::size_t i = 0; i < work.boxes.size(); ++i) {
     global[i] = local[i] = static_cast<ZOLTAN_ID_TYPE>(i);
     weights[i] = static_cast<float>(work.works[i]);
@@ -46,7 +46,7 @@ int dimensions_of(void*, int* error) {
 
 void places_of(void* data, int, int, int count, ZOLTAN_ID_PTR, ZOLTAN_ID_PTR local, int,
                double* places, int* error) {
-  const Asked& asked = Asked::of(data);
+  const CutRequest& asked = CutRequest::of(data);
   for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
     const Vec3f centre = centre_of(asked.work.boxes[local[i]]);
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -84,7 +84,8 @@ class TreeOfBoxes {
     std::array<double, 3> high;
   };
 
-  TreeOfBoxes(std::vector<Box> boxes, const std::array<double, 3>& scale, std::span<RegionCut> cuts)
+  TreeOfBoxes(std::vector<Box> boxes, const std::array<double, 3>& scale,
+              std::span<SplitPlane> cuts)
       : boxes_(std::move(boxes)), scale_(scale), cuts_(cuts) {}
 
   /// Separates some ranks by cuts; returns false if no plane separates them.
@@ -93,7 +94,7 @@ class TreeOfBoxes {
       side = ~static_cast<std::int32_t>(ranks.front());
       return true;
     }
-    RegionCut cut;
+    SplitPlane cut;
     std::size_t below = 0;
     for (std::uint32_t axis = 0; axis < 3 && below == 0; ++axis) {
       below = first_below(ranks, axis, cut);
@@ -110,7 +111,7 @@ class TreeOfBoxes {
   /// Sorts ranks along an axis. Returns how many are below the first plane that separates them, or
   /// 0 if there is none.
   std::size_t first_below(std::span<std::uint32_t> ranks, std::uint32_t axis,
-                          RegionCut& cut) const {
+                          SplitPlane& cut) const {
     std::sort(ranks.begin(), ranks.end(), [&](std::uint32_t a, std::uint32_t b) {
       return boxes_[a].low[axis] != boxes_[b].low[axis]
                  ? boxes_[a].low[axis] < boxes_[b].low[axis]
@@ -130,7 +131,7 @@ class TreeOfBoxes {
 
   std::vector<Box> boxes_;
   std::array<double, 3> scale_;
-  std::span<RegionCut> cuts_;
+  std::span<SplitPlane> cuts_;
   std::size_t made_ = 0;
 };
 
@@ -144,7 +145,7 @@ class Zoltan {
 
   [[nodiscard]] Zoltan_Struct* state() const noexcept { return state_; }
 
-  [[nodiscard]] bool cut(Asked& asked) {
+  [[nodiscard]] bool cut(CutRequest& asked) {
     if (state_ == nullptr) return false;
     constexpr const char* kParameters[][2] = {{"DEBUG_LEVEL", "0"},     {"LB_METHOD", "RCB"},
                                               {"KEEP_CUTS", "1"},       {"OBJ_WEIGHT_DIM", "1"},
@@ -169,8 +170,8 @@ class Zoltan {
 
 }  // namespace
 
-Status cut_by_zoltan(MPI_Comm communicator, const CutWork& work, std::span<RegionCut> cuts) {
-  Asked asked{work, {}};
+Status cut_by_zoltan(MPI_Comm communicator, const CutWork& work, std::span<SplitPlane> cuts) {
+  CutRequest asked{work, {}};
   const Status measured = measure_scale(communicator, work, asked.scale);
   if (measured != Status::ok) return measured;
   Zoltan zoltan(communicator);

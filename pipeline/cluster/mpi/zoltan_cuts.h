@@ -12,6 +12,6 @@ namespace winnow {
 /// leaves are ranks. On each axis, centres are scaled by the mean extent of the boxes, so that cuts
 /// intersect few boxes.
 [[nodiscard]] Status cut_by_zoltan(MPI_Comm communicator, const CutWork& work,
-                                   std::span<RegionCut> cuts);
+                                   std::span<SplitPlane> cuts);
 
 }  // namespace winnow

@@ -2,14 +2,14 @@
 
 // Runs the jobs of the curved kernels: pairs are placed, searched by GJK in lanes of double
 // (curved_search.wide.h), and finished one at a time (curved_depth, parallel_depth, curved_patch).
-// Level boolean first tries the faster overlap tests of hull/one_verdict.wide.h.
+// Level boolean first tries the faster overlap tests of hull/single_overlap_test.wide.h.
 
 #include "pipeline/kernels/curved/curved_depth.wide.h"
 #include "pipeline/kernels/curved/curved_patch.wide.h"
 #include "pipeline/kernels/curved/curved_search.wide.h"
 #include "pipeline/kernels/curved/parallel_depth.wide.h"
 #include "pipeline/kernels/hull/hull_finish.wide.h"
-#include "pipeline/kernels/hull/one_verdict.wide.h"
+#include "pipeline/kernels/hull/single_overlap_test.wide.h"
 #include "pipeline/kernels/kernels.h"
 
 namespace winnow::WINNOW_ISA_NAME::curved {
@@ -44,7 +44,7 @@ class CurvedAnswers {
   static std::uint32_t run(NarrowJob& job) {
     if constexpr (Level == 0) {
       // Float decides most pairs.
-      return hull::answer_in_doubt<CurvedAnswers>(job, verdicts(job));
+      return hull::answer_uncertified<CurvedAnswers>(job, overlap_test(job));
     } else {
       CurvedAnswers answers(job);
       for (std::uint32_t i = 0; i < job.count; ++i) {
@@ -63,10 +63,10 @@ class CurvedAnswers {
   static constexpr double kLoose = 1e-10;
   /// The largest error bound of an answer, relative to the sizes, and the same for user shapes.
   static constexpr double kCertified = 1e-9;
-  static constexpr double kCertifiedOwn = 4e-7;
+  static constexpr double kCertifiedUser = 4e-7;
 
   template <typename Answers>
-  friend std::uint32_t hull::answer_in_doubt(NarrowJob& job, std::uint32_t count);
+  friend std::uint32_t hull::answer_uncertified(NarrowJob& job, std::uint32_t count);
 
   explicit CurvedAnswers(NarrowJob& job) : job_(job) {}
 
@@ -95,7 +95,7 @@ class CurvedAnswers {
 
   /// Rounding, and user shapes whose points contradict each other, may make the lower bound exceed
   /// the upper one. The size of the difference bounds the error in both cases.
-  static double doubt_between(double lower, double upper) { return __builtin_fabs(upper - lower); }
+  static double width_between(double lower, double upper) { return __builtin_fabs(upper - lower); }
 
   void give_up(std::uint32_t i) { job_.uncertified[uncertified_++] = i; }
 
@@ -122,7 +122,7 @@ class CurvedAnswers {
       write_normal(pair, normal, world);
       job_.distance[pair.index] = (pair.lower - pair.rounding) * pair.unit;
       job_.error_bound[pair.index] =
-          (doubt_between(pair.lower, pair.upper) + kRoundingError * (pair.size + pair.rounding)) *
+          (width_between(pair.lower, pair.upper) + kRoundingError * (pair.size + pair.rounding)) *
           pair.unit;
       job_.contact_first[pair.index] = job_.contacts.size;
       job_.contact_count[pair.index] = 0;
@@ -133,7 +133,7 @@ class CurvedAnswers {
   bool write_apart(CurvedPair& pair) {
     if (pair.upper - pair.lower > kLoose * pair.upper) end_in_triangle(pair);
     const double error =
-        doubt_between(pair.lower, pair.upper) + kRoundingError * (pair.size + pair.rounding);
+        width_between(pair.lower, pair.upper) + kRoundingError * (pair.size + pair.rounding);
     // An error of the length implies an error of the direction: this keeps it below 0.01 degrees.
     if (!(error <= 1e-8 * pair.upper)) return false;
     double normal[3];
@@ -174,7 +174,7 @@ class CurvedAnswers {
   template <typename Depth>
   bool write_depth(const CurvedPair& pair, const Depth& depth, const double* normal,
                    const double* point) {
-    const double error = doubt_between(depth.lower(), depth.upper()) +
+    const double error = width_between(depth.lower(), depth.upper()) +
                          2.0 * kRoundingError * (pair.size + pair.rounding);
     // The cores overlap if the depth is certainly positive.
     return error < depth.upper() && write(pair, -depth.upper(), error, normal, point);
@@ -185,7 +185,7 @@ class CurvedAnswers {
              const double* point) {
     const double distance = apart - pair.rounding;
     if (!(error < __builtin_fabs(distance))) return false;
-    const double widest = has_own(pair) ? kCertifiedOwn : kCertified;
+    const double widest = has_user_shape(pair) ? kCertifiedUser : kCertified;
     if (!(error <= widest * (pair.size + pair.rounding))) return false;
     if constexpr (Level == 0) {
       job_.overlap[pair.index] = distance <= 0.0;

@@ -21,28 +21,28 @@ class CurvedDepth {
   /// Tolerance of the depth relative to the sizes, and the largest gap that is accepted if the
   /// polytope's storage is full.
   static constexpr double kTolerance = 4e-10;
-  static constexpr double kMostDoubt = 8e-10;
+  static constexpr double kMaxGap = 8e-10;
   /// As above for user shapes, whose curvature is unknown. Relative to the measured extent of the
   /// difference, since the radius that the user gives may be far larger.
-  static constexpr double kOwnTolerance = 3.5e-7;
-  static constexpr double kOwnDoubt = 3.8e-7;
+  static constexpr double kUserTolerance = 3.5e-7;
+  static constexpr double kUserMaxGap = 3.8e-7;
 
   /// Starts from the four points around the origin that the search found; returns false if the
   /// polytope outgrows its storage or is too flat.
   bool find(const CurvedPair& pair) {
     pair_ = &pair;
-    own_ = has_own(pair);
+    has_user_shape_ = has_user_shape(pair);
     points_ = 0;
     faces_ = 0;
     for (int i = 0; i < 4; ++i) add_point(pair.difference[i], pair.on_first[i]);
     reach_ = reach_of_points();
-    tolerance_ = own_ ? kOwnTolerance * reach_ : kTolerance;
+    tolerance_ = has_user_shape_ ? kUserTolerance * reach_ : kTolerance;
     if (!begin()) return false;
     minima_ = 0;
     best_height_ = __builtin_inf();
     sure_ = __builtin_inf();
     is_minimum_ = false;
-    next_look_ = kFirstLook;
+    next_try_ = kFirstTry;
     leads_ = true;
     nearest_ = find_nearest();
     for (;;) {
@@ -54,12 +54,13 @@ class CurvedDepth {
         nearest_ = find_nearest();
         continue;
       }
-      if (!own_ || !measure_nearer_to_best()) {
-        const Look look = look_at_face();
-        if (look == Look::again) continue;
-        if (look != Look::grows) return look == Look::proves;
+      if (!has_user_shape_ || !measure_nearer_to_best()) {
+        const FaceOutcome outcome = test_face();
+        if (outcome == FaceOutcome::again) continue;
+        if (outcome != FaceOutcome::grows) return outcome == FaceOutcome::proves;
       }
-      if (points_ == kMostPoints) return end_full(own_ ? kOwnDoubt * reach_ : kMostDoubt);
+      if (points_ == kMaxFacePoints)
+        return end_full(has_user_shape_ ? kUserMaxGap * reach_ : kMaxGap);
       if (!grow(add_point(growth_.w, growth_.mine))) return false;
     }
   }
@@ -92,9 +93,9 @@ class CurvedDepth {
  private:
   static constexpr std::uint32_t kWidth = Doubles::kCount;
   /// A minimum is searched for when the gap between the bounds, relative to the upper one, is below
-  /// kFirstLook; this limit is multiplied by kNextLook each time.
-  static constexpr double kFirstLook = 0.2;
-  static constexpr double kNextLook = 0.2;
+  /// kFirstTry; this limit is multiplied by kTryFactor each time.
+  static constexpr double kFirstTry = 0.2;
+  static constexpr double kTryFactor = 0.2;
   /// Tangents of the widest and the narrowest angle around a minimum within which it is tested to
   /// be certain, and the rounding error of cosines.
   static constexpr double kWidest = 1.0;
@@ -109,41 +110,41 @@ class CurvedDepth {
   /// this fraction of the tolerance.
   static constexpr double kNearerShare = 0.7;
   static constexpr double kNearerRise = 0.1;
-  static constexpr std::uint32_t kMostMinima = 8;
-  static constexpr std::uint32_t kMostPoints = 128;
+  static constexpr std::uint32_t kMaxMinima = 8;
+  static constexpr std::uint32_t kMaxFacePoints = 128;
   /// A polytope of p points has 2 p - 4 faces.
-  static constexpr std::uint32_t kMostFaces = 2 * kMostPoints;
+  static constexpr std::uint32_t kMaxFaces = 2 * kMaxFacePoints;
   /// The largest number of visible faces. More of their sides are tested than are kept.
-  static constexpr std::uint32_t kMostSeen = 30;
-  static constexpr std::uint32_t kMostSides = 3 * kMostSeen + 1;
+  static constexpr std::uint32_t kMaxVisible = 30;
+  static constexpr std::uint32_t kMaxSides = 3 * kMaxVisible + 1;
   /// A face is visible from a point above its plane, or below it by at most this.
   static constexpr double kLevel = 1e-15;
   /// The foot of the origin counts as inside a face if no barycentric weight is below this.
   static constexpr double kInside = -1e-7;
 
   /// The outcome of testing the nearest face.
-  enum class Look : std::uint8_t { grows, again, proves, fails };
+  enum class FaceOutcome : std::uint8_t { grows, again, proves, fails };
 
   /// Determines the point by which the polytope grows at the nearest face, unless the face proves
   /// the depth or becomes closed.
-  Look look_at_face() {
+  FaceOutcome test_face() {
     measure();
     // If several faces are coplanar, use the one that contains the foot of the origin.
     if (upper_ - lower_ <= tolerance_) {
       turn_to_foot();
       measure();
       if (upper_ - lower_ <= tolerance_) {
-        if (has_foot()) return Look::proves;
-        return look_for_minimum() ? Look::again : Look::fails;
+        if (has_foot()) return FaceOutcome::proves;
+        return find_minimum() ? FaceOutcome::again : FaceOutcome::fails;
       }
     }
-    if (leads_ && upper_ - lower_ <= next_look_ * upper_) {
-      const bool has_minimum = look_for_minimum();
-      if (has_minimum && is_closed(face_)) return Look::again;
-      if (own_) leads_ = look_for_tangent() || has_minimum;
-      next_look_ *= kNextLook;
+    if (leads_ && upper_ - lower_ <= next_try_ * upper_) {
+      const bool has_minimum = find_minimum();
+      if (has_minimum && is_closed(face_)) return FaceOutcome::again;
+      if (has_user_shape_) leads_ = find_tangent_minimum() || has_minimum;
+      next_try_ *= kTryFactor;
     }
-    return Look::grows;
+    return FaceOutcome::grows;
   }
 
   /// A point of the difference, and the first's point in it.
@@ -240,7 +241,7 @@ class CurvedDepth {
       Doubles(__builtin_inf()).store(distance_ + faces_);
       Doubles(__builtin_inf()).store(open_ + faces_);
     }
-    seen_by_[faces_] = 0;
+    visible_from_[faces_] = 0;
     return faces_++;
   }
 
@@ -292,8 +293,8 @@ class CurvedDepth {
   /// Connects the new faces with each other and with the faces across. Returns false unless the
   /// sides form rings, in which at each corner one side ends and one begins.
   bool join(const Side* side, std::uint32_t count) {
-    std::uint64_t begins[kMostPoints / 64] = {};
-    std::uint64_t ends[kMostPoints / 64] = {};
+    std::uint64_t begins[kMaxFacePoints / 64] = {};
+    std::uint64_t ends[kMaxFacePoints / 64] = {};
     for (std::uint32_t i = 0; i < count; ++i) {
       begins[side[i].p / 64] |= std::uint64_t{1} << side[i].p % 64;
       ends[side[i].q / 64] |= std::uint64_t{1} << side[i].q % 64;
@@ -301,7 +302,7 @@ class CurvedDepth {
       into_[side[i].q] = side[i].face;
     }
     int corners = 0;
-    for (std::uint32_t word = 0; word < kMostPoints / 64; ++word) {
+    for (std::uint32_t word = 0; word < kMaxFacePoints / 64; ++word) {
       if (begins[word] != ends[word]) return false;
       corners += __builtin_popcountll(begins[word]);
     }
@@ -329,8 +330,8 @@ class CurvedDepth {
 
   /// Searches for a local minimum near the nearest face and keeps it; returns false if there is
   /// none.
-  bool look_for_minimum() {
-    if (minima_ == kMostMinima) return false;
+  bool find_minimum() {
+    if (minima_ == kMaxMinima) return false;
     const double* corner[3];
     const double* mine[3];
     for (int i = 0; i < 3; ++i) {
@@ -344,7 +345,7 @@ class CurvedDepth {
     double on_first[3];
     difference_point(*pair_, found.normal(), w, on_first);
     const double height = dot3(found.normal(), w);
-    const double least = found.least_of_ball();
+    const double least = found.ball_lower_bound();
     if (height - least <= tolerance_) {
       keep(found, kAllAround, height, least);
       return true;
@@ -383,7 +384,7 @@ class CurvedDepth {
   /// Searches near the nearest face for a minimum below the best so far, without a range in which
   /// it is certain. If its point is above the face, the polytope grows by this point instead.
   /// Returns false if no minimum is found.
-  bool look_for_tangent() {
+  bool find_tangent_minimum() {
     const double near[3] = {normal_[0][face_], normal_[1][face_], normal_[2][face_]};
     if (best_height_ < __builtin_inf() && dot3(near, best_normal_) > kSameMinimum) return true;
     TangentMinimum found;
@@ -438,7 +439,7 @@ class CurvedDepth {
     nearest_open_ = -hull::largest_lane(-nearest.least);
     alignas(64) double row[kWidth];
     nearest.row.store(row);
-    nearest_ = kMostFaces;
+    nearest_ = kMaxFaces;
     for (Mask16 at = bits(nearest.least == Doubles(nearest_open_)); at != 0; at &= at - 1) {
       const std::uint32_t lane = first(at);
       const std::uint32_t face = static_cast<std::uint32_t>(row[lane]) + lane;
@@ -457,21 +458,21 @@ class CurvedDepth {
   /// to their outline. The outline has two sides more than the number of faces removed, minus two
   /// for each point inside it; such a point is level with the new one and its neighbours.
   bool grow(std::uint32_t to) {
-    const std::uint32_t count = find_seen(to);
+    const std::uint32_t count = find_visible(to);
     if (count == 0) return false;
-    Side side[kMostSides];
+    Side side[kMaxSides];
     std::uint32_t sides = 0;
     for (std::uint32_t i = 0; i < count; ++i) {
-      const std::uint32_t f = seen_[i];
+      const std::uint32_t f = visible_[i];
       for (std::uint32_t e = 0; e < 3; ++e) {
         // Branchless: the branch would be mispredicted.
         side[sides] = {vertex_[f][e], vertex_[f][e == 2 ? 0 : e + 1], across_[f][e], 0};
-        sides += seen_by_[across_[f][e] / 4] != to ? 1U : 0U;
+        sides += visible_from_[across_[f][e] / 4] != to ? 1U : 0U;
       }
     }
-    if (sides < 3 || sides > count + 2 || faces_ + 2 > kMostFaces) return false;
-    for (std::uint32_t i = 0; i < sides; ++i) side[i].face = i < count ? seen_[i] : add_slot();
-    for (std::uint32_t i = sides; i < count; ++i) close_slot(seen_[i]);
+    if (sides < 3 || sides > count + 2 || faces_ + 2 > kMaxFaces) return false;
+    for (std::uint32_t i = 0; i < sides; ++i) side[i].face = i < count ? visible_[i] : add_slot();
+    for (std::uint32_t i = sides; i < count; ++i) close_slot(visible_[i]);
     return set_faces(side, sides, to) && join(side, sides) &&
            (sides == count + 2 || is_one_ring(side, sides));
   }
@@ -494,7 +495,7 @@ class CurvedDepth {
 
   /// Lists the faces visible from a point, and the nearest face; returns their number, or 0 if
   /// there are too many.
-  std::uint32_t find_seen(std::uint32_t by) {
+  std::uint32_t find_visible(std::uint32_t by) {
     const double* w = point_[by];
     const Vec3<double> x{w[0], w[1], w[2]};
     const Doubles level(kLevel);
@@ -510,10 +511,10 @@ class CurvedDepth {
                                     (number + Doubles(static_cast<double>(row)) == near);
       left.add(select(goes, Doubles(__builtin_inf()), Doubles::load(open_ + row)), row);
       for (Mask16 sees = bits(goes); sees != 0; sees &= sees - 1) {
-        if (count == kMostSeen) return 0;
+        if (count == kMaxVisible) return 0;
         const std::uint32_t f = row + first(sees);
-        seen_by_[f] = by;
-        seen_[count++] = f;
+        visible_from_[f] = by;
+        visible_[count++] = f;
       }
     }
     take_nearest(left);
@@ -563,9 +564,9 @@ class CurvedDepth {
 
   const CurvedPair* pair_ = nullptr;
   /// The pair has a user shape.
-  bool own_ = false;
+  bool has_user_shape_ = false;
   /// The relative gap of the bounds below which a minimum is searched for next.
-  double next_look_ = 0.0;
+  double next_try_ = 0.0;
   /// True while searches for minima are worthwhile. If the points of user shapes give no minimum at
   /// first, they hardly ever do later, and each attempt takes a dozen support points.
   bool leads_ = true;
@@ -576,8 +577,8 @@ class CurvedDepth {
   double best_height_;
   double sure_;
   std::uint32_t minima_ = 0;
-  double sure_around_[kMostMinima][3];
-  double sure_cosine_[kMostMinima];
+  double sure_around_[kMaxMinima][3];
+  double sure_cosine_[kMaxMinima];
   bool is_minimum_ = false;
   /// Lower bound of the extent of the difference, and the tolerance of the depth.
   double reach_ = 0.0;
@@ -592,24 +593,24 @@ class CurvedDepth {
   double upper_ = 0.0;
   double lower_ = 0.0;
   /// Padded to four, so that points are loaded as rows of four.
-  double point_[kMostPoints][4];
-  double mine_[kMostPoints][3];
+  double point_[kMaxFacePoints][4];
+  double mine_[kMaxFacePoints][3];
   /// By point: the new face whose first edge begins there, and the new face whose first edge ends
   /// there.
-  std::uint32_t from_[kMostPoints];
-  std::uint32_t into_[kMostPoints];
+  std::uint32_t from_[kMaxFacePoints];
+  std::uint32_t into_[kMaxFacePoints];
   /// Slots from faces_ to the end of its block of lanes have infinite distances.
   std::uint32_t faces_ = 0;
-  std::uint32_t vertex_[kMostFaces][3];
+  std::uint32_t vertex_[kMaxFaces][3];
   /// The edge on the other side of the edge from vertex i to the next.
-  std::uint32_t across_[kMostFaces][3];
+  std::uint32_t across_[kMaxFaces][3];
   /// The last point that saw a face; 0, which never sees a face, if there is none.
-  std::uint32_t seen_by_[kMostFaces];
-  std::uint32_t seen_[kMostSeen];
-  alignas(64) double normal_[3][kMostFaces] = {};
-  alignas(64) double distance_[kMostFaces];
+  std::uint32_t visible_from_[kMaxFaces];
+  std::uint32_t visible_[kMaxVisible];
+  alignas(64) double normal_[3][kMaxFaces] = {};
+  alignas(64) double distance_[kMaxFaces];
   /// As distance_, but infinite for closed faces.
-  alignas(64) double open_[kMostFaces];
+  alignas(64) double open_[kMaxFaces];
 };
 
 }  // namespace winnow::WINNOW_ISA_NAME::curved

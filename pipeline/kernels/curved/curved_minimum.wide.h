@@ -27,7 +27,7 @@
 // proportion. The side of a tapered capsule is the side of the cone between its tip and the circle
 // where the larger ball begins; the ball is an ellipsoid.
 
-#include "pipeline/kernels/curved/simple_sum.wide.h"
+#include "pipeline/kernels/curved/local_minkowski_sum.wide.h"
 
 namespace winnow::WINNOW_ISA_NAME::curved {
 
@@ -56,16 +56,16 @@ class LocalMinimum {
     sign_ = apart ? -1.0 : 1.0;
     for (int k = 0; k < 3; ++k) normal_[k] = near[k];
     take_points(corner, mine);
-    is_flat_ = lie_flat(0) || lie_flat(1);
+    is_flat_ = find_flat_part(0) || find_flat_part(1);
     if (is_flat_) return true;
     sum_.discs = 0;
     sum_.segments = 0;
     sum_.ellipsoids = 0;
     if (!add_side(0)) return false;
-    sum_.own_discs = sum_.discs;
-    sum_.own_ellipsoids = sum_.ellipsoids;
-    sum_.own_segments = sum_.segments;
-    return add_side(1) && approach() && meet_segments();
+    sum_.first_discs = sum_.discs;
+    sum_.first_ellipsoids = sum_.ellipsoids;
+    sum_.first_segments = sum_.segments;
+    return add_side(1) && approach() && touch_segments();
   }
 
   /// True if no direction is less deep up to the angle with this tangent from the minimum.
@@ -80,13 +80,13 @@ class LocalMinimum {
       add_square(e, across, sum_.disc[i].radius / (sine + tangent), q);
     }
     for (std::uint32_t i = 0; i < sum_.ellipsoids; ++i) {
-      const SimpleSum::Ellipsoid& s = sum_.ellipsoid[i];
+      const LocalMinkowskiSum::Ellipsoid& s = sum_.ellipsoid[i];
       const double most = largest_of(largest_of(s.radius[0], s.radius[1]), s.radius[2]);
       const EllipsoidHeight height(s, normal_);
       add_ellipsoid_rise(e, s, height, height.length + most * tangent, q);
     }
     for (std::uint32_t i = 0; i < sum_.segments; ++i) {
-      const SimpleSum::Segment& s = sum_.segment[i];
+      const LocalMinkowskiSum::Segment& s = sum_.segment[i];
       const double share = s.radius > 0.0 ? 0.5 : 1.0;
       add_square(e, s.along, 2.0 * share * inside_[i] / tangent, q);
       if (!(s.radius > 0.0)) continue;
@@ -101,9 +101,9 @@ class LocalMinimum {
   /// Lower bound of all depths if the simple part is a ball swept along segments, and the depth is
   /// at most the ball's radius: the radius minus the distance of the origin from the centre of the
   /// touching ball. Negative if there is no such bound.
-  [[nodiscard]] double least_of_ball() const {
+  [[nodiscard]] double ball_lower_bound() const {
     double radius = 0.0;
-    if (is_flat_ || !is_moved_ball(radius)) return -1.0;
+    if (is_flat_ || !is_swept_ball(radius)) return -1.0;
     const double below = height_ - radius;
     return below > 0.0 ? -1.0 : radius - __builtin_sqrt(below * below + miss_ * miss_);
   }
@@ -121,7 +121,7 @@ class LocalMinimum {
       for (int k = 0; k < 3; ++k) x[k] = height_ * normal_[k];
       return;
     }
-    met(x);
+    sum_support(x);
     for (std::uint32_t i = 0; i < sum_.segments; ++i) {
       for (int k = 0; k < 3; ++k) x[k] += at_[i] * sum_.segment[i].along[k];
     }
@@ -134,30 +134,30 @@ class LocalMinimum {
       return;
     }
     for (int k = 0; k < 3; ++k) point[k] = sum_.mine[k];
-    for (std::uint32_t i = 0; i < sum_.own_discs; ++i) {
+    for (std::uint32_t i = 0; i < sum_.first_discs; ++i) {
       double rim[3];
       rim_of(sum_.disc[i], rim);
       for (int k = 0; k < 3; ++k) point[k] += rim[k];
     }
-    for (std::uint32_t i = 0; i < sum_.own_ellipsoids; ++i) {
+    for (std::uint32_t i = 0; i < sum_.first_ellipsoids; ++i) {
       double x[3];
       touch_of(sum_.ellipsoid[i], x);
       for (int k = 0; k < 3; ++k) point[k] += x[k];
     }
-    for (std::uint32_t i = 0; i < sum_.own_segments; ++i) {
+    for (std::uint32_t i = 0; i < sum_.first_segments; ++i) {
       for (int k = 0; k < 3; ++k) point[k] += at_[i] * sum_.segment[i].along[k];
     }
   }
 
  private:
-  static constexpr int kMostSteps = 6;
+  static constexpr int kMaxSteps = 6;
   /// Steps square the error, so after a step this short nothing is left to gain; a step longer than
   /// kWideStep fails.
   static constexpr double kLastStep = 1e-7;
   static constexpr double kWideStep = 0.5;
-  /// Below kLeastSine, discs count as flat and segments as parallel. Below kFlatSine a disc may be
+  /// Below kMinSine, discs count as flat and segments as parallel. Below kFlatSine a disc may be
   /// touched on its flat side.
-  static constexpr double kLeastSine = 1e-3;
+  static constexpr double kMinSine = 1e-3;
   static constexpr double kFlatSine = 0.4;
   /// Above this sine, the perpendicular component of a direction loses no digits.
   static constexpr double kSteepSine = 0.25;
@@ -183,14 +183,15 @@ class LocalMinimum {
 
   // Flat parts: a cap, or a face that contains all three points.
 
-  bool lie_flat(int side) {
+  bool find_flat_part(int side) {
     const NearPoints& points = side_[side];
     if (points.is_smooth()) return false;
     const SidePlace place(*pair_, side == 1);
-    return points.is_round() ? lie_on_cap(points, place, side) : lie_on_face(points, place, side);
+    return points.is_round() ? find_flat_cap(points, place, side)
+                             : find_flat_face(points, place, side);
   }
 
-  bool lie_on_cap(const NearPoints& points, const SidePlace& place, int side) {
+  bool find_flat_cap(const NearPoints& points, const SidePlace& place, int side) {
     const int high = points.high();
     const bool is_cone = points.form->kind == ShapeKind::cone;
     if (high != 0 && (high != 3 || is_cone)) return false;
@@ -202,13 +203,13 @@ class LocalMinimum {
     const double middle[3] = {0.0, 0.0, z * points.form->number[2]};
     double at[3];
     place.point(middle, at);
-    return meet_flat(n, side, at, [&](const double* foot) {
+    return touch_flat(n, side, at, [&](const double* foot) {
       const double away[3] = {foot[0] - at[0], foot[1] - at[1], foot[2] - at[2]};
       return points.form->number[0] - __builtin_sqrt(dot3(away, away));
     });
   }
 
-  bool lie_on_face(const NearPoints& points, const SidePlace& place, int side) {
+  bool find_flat_face(const NearPoints& points, const SidePlace& place, int side) {
     if (are_same(points.at[0], points.at[1]) || are_same(points.at[1], points.at[2]) ||
         are_same(points.at[2], points.at[0])) {
       return false;
@@ -222,7 +223,7 @@ class LocalMinimum {
     double n[3];
     cross3(e[0], e[1], n);
     const double area = __builtin_sqrt(dot3(n, n));
-    if (!(area > kLeastSine * __builtin_sqrt(dot3(e[0], e[0]) * dot3(e[1], e[1])))) return false;
+    if (!(area > kMinSine * __builtin_sqrt(dot3(e[0], e[0]) * dot3(e[1], e[1])))) return false;
     const double sign = dot3(n, normal_) < 0.0 ? -1.0 : 1.0;
     for (double& x : n) x *= sign / area;
     // If the cores are apart, their distance is measured to a point of the face, so the face must
@@ -230,7 +231,7 @@ class LocalMinimum {
     for (int i = 0; i < 2 && sign_ < 0.0; ++i) {
       if (!(__builtin_fabs(dot3(n, e[i])) <= kLevelFace)) return false;
     }
-    return meet_flat(n, side, at[0], [&](const double* foot) {
+    return touch_flat(n, side, at[0], [&](const double* foot) {
       double least = __builtin_inf();
       for (int i = 0; i < 3; ++i) {
         double inward[3];
@@ -247,7 +248,7 @@ class LocalMinimum {
   /// other core's support point, or by the mean of its three points if these are equally far.
   /// inside(x) is the distance of a point x of the plane from the border.
   template <typename Inside>
-  bool meet_flat(const double* n, int side, const double* at, Inside&& inside) {
+  bool touch_flat(const double* n, int side, const double* at, Inside&& inside) {
     const SidePlace place(*pair_, side == 0);
     double w[3];
     double mine[3];
@@ -255,19 +256,19 @@ class LocalMinimum {
     difference_point(*pair_, n, w, mine);
     for (int k = 0; k < 3; ++k) other[k] = side == 0 ? w[k] - mine[k] : mine[k];
     const double farthest = dot3(n, other);
-    if (meet_flat_at(n, side, at, other, inside)) return true;
+    if (touch_flat_at(n, side, at, other, inside)) return true;
     for (double& x : other) x = 0.0;
     for (const double(&x)[3] : side_[1 - side].at) {
       double placed[3];
       place.point(x, placed);
       for (int k = 0; k < 3; ++k) other[k] += placed[k] / 3.0;
     }
-    return dot3(n, other) >= farthest - kLevel && meet_flat_at(n, side, at, other, inside);
+    return dot3(n, other) >= farthest - kLevel && touch_flat_at(n, side, at, other, inside);
   }
 
   template <typename Inside>
-  bool meet_flat_at(const double* n, int side, const double* at, const double* other,
-                    Inside&& inside) {
+  bool touch_flat_at(const double* n, int side, const double* at, const double* other,
+                     Inside&& inside) {
     height_ = dot3(n, at) + dot3(n, other);
     double foot[3];
     for (int k = 0; k < 3; ++k) foot[k] = height_ * n[k] - other[k];
@@ -313,7 +314,7 @@ class LocalMinimum {
     add_point(end, place, side);
     if (is_cone && is_side) return add_cone_side(radius, 2.0 * half, axis, place);
     if (!is_cone || high == 0) {
-      SimpleSum::Disc& disc = sum_.disc[sum_.discs++];
+      LocalMinkowskiSum::Disc& disc = sum_.disc[sum_.discs++];
       disc.radius = radius;
       place.direction(axis, disc.axis);
     }
@@ -321,14 +322,14 @@ class LocalMinimum {
     return !is_side || add_edge(along, place);
   }
 
-  bool add_ellipsoid(const Form& form, const SidePlace& place, int side) {
+  bool add_ellipsoid(const CoreDesc& form, const SidePlace& place, int side) {
     add_point(form.center, place, side);
     set_ellipsoid(form.number, form.number[3], place);
     return true;
   }
 
   void set_ellipsoid(const double* radius, double off, const SidePlace& place) {
-    SimpleSum::Ellipsoid& s = sum_.ellipsoid[sum_.ellipsoids++];
+    LocalMinkowskiSum::Ellipsoid& s = sum_.ellipsoid[sum_.ellipsoids++];
     for (int k = 0; k < 3; ++k) {
       double axis[3] = {0.0, 0.0, 0.0};
       axis[k] = 1.0;
@@ -376,7 +377,7 @@ class LocalMinimum {
     const double length = __builtin_sqrt(dot3(along, along));
     if (!(length > 0.0)) return false;
     const double unit[3] = {along[0] / length, along[1] / length, along[2] / length};
-    SimpleSum::Segment& s = sum_.segment[sum_.segments++];
+    LocalMinkowskiSum::Segment& s = sum_.segment[sum_.segments++];
     place.direction(unit, s.axis);
     for (int k = 0; k < 3; ++k) s.along[k] = s.axis[k];
     s.cosine = 0.0;
@@ -388,7 +389,7 @@ class LocalMinimum {
 
   /// The axis points to the tip; the segment runs from the tip to the rim.
   bool add_cone_side(double radius, double height, const double* axis, const SidePlace& place) {
-    SimpleSum::Segment& s = sum_.segment[sum_.segments++];
+    LocalMinkowskiSum::Segment& s = sum_.segment[sum_.segments++];
     place.direction(axis, s.axis);
     s.length = __builtin_sqrt(radius * radius + height * height);
     s.cosine = radius / s.length;
@@ -402,7 +403,7 @@ class LocalMinimum {
   double sine_of(const double* axis, double* across) const {
     cross3(axis, normal_, across);
     const double sine = __builtin_sqrt(dot3(across, across));
-    const double over = 1.0 / largest_of(sine, kLeastSine);
+    const double over = 1.0 / largest_of(sine, kMinSine);
     for (int k = 0; k < 3; ++k) across[k] *= over;
     return sine;
   }
@@ -424,13 +425,13 @@ class LocalMinimum {
   }
 
   /// From the centre of a disc to its support point along the normal.
-  void rim_of(const SimpleSum::Disc& disc, double* rim) const {
+  void rim_of(const LocalMinkowskiSum::Disc& disc, double* rim) const {
     out_of(disc.axis, rim);
     for (int k = 0; k < 3; ++k) rim[k] *= disc.radius;
   }
 
   /// From the centre of an ellipsoid to its support point along the normal.
-  void touch_of(const SimpleSum::Ellipsoid& ellipsoid, double* x) const {
+  void touch_of(const LocalMinkowskiSum::Ellipsoid& ellipsoid, double* x) const {
     const EllipsoidHeight height(ellipsoid, normal_);
     const double over = 1.0 / largest_of(height.length, 1e-150);
     for (int k = 0; k < 3; ++k) x[k] = -ellipsoid.off * normal_[k];
@@ -441,7 +442,7 @@ class LocalMinimum {
   }
 
   /// The sum's support point along the normal, at the start of its segments.
-  void met(double* w) const {
+  void sum_support(double* w) const {
     for (int k = 0; k < 3; ++k) w[k] = sum_.point[k];
     for (std::uint32_t i = 0; i < sum_.discs; ++i) {
       double rim[3];
@@ -466,7 +467,8 @@ class LocalMinimum {
 
   /// Adds the rise of an ellipsoid over its tangent plane, less the erosion. `length` is an upper
   /// bound of the length of the stretched direction.
-  static void add_ellipsoid_rise(const double (*e)[3], const SimpleSum::Ellipsoid& ellipsoid,
+  static void add_ellipsoid_rise(const double (*e)[3],
+                                 const LocalMinkowskiSum::Ellipsoid& ellipsoid,
                                  const EllipsoidHeight& height, double length, double* q) {
     double across[2][3];
     for (int i = 0; i < 2; ++i) height.turn(ellipsoid, e[i], across[i]);
@@ -477,26 +479,26 @@ class LocalMinimum {
 
   bool set_normal(const double* n) {
     const double length = __builtin_sqrt(dot3(n, n));
-    if (!(length > kLeastSine)) return false;
+    if (!(length > kMinSine)) return false;
     for (int k = 0; k < 3; ++k) normal_[k] = n[k] / length;
     return true;
   }
 
   /// True if the minimum is determined: by two of discs and segments, by a cone's side, which is
   /// both, or by an ellipsoid.
-  [[nodiscard]] bool is_stiff() const {
+  [[nodiscard]] bool is_determined() const {
     const bool has_cone_side = sum_.segments > 0 && sum_.segment[0].radius > 0.0;
     return has_cone_side || sum_.ellipsoids > 0 || sum_.segments + sum_.discs >= 2;
   }
 
   /// True if the sum is a ball swept along segments; adds to `radius` its radius.
-  bool is_moved_ball(double& radius) const {
+  bool is_swept_ball(double& radius) const {
     if (sum_.discs > 0 || sum_.ellipsoids == 0) return false;
     for (std::uint32_t i = 0; i < sum_.segments; ++i) {
       if (sum_.segment[i].radius > 0.0) return false;
     }
     for (std::uint32_t i = 0; i < sum_.ellipsoids; ++i) {
-      const SimpleSum::Ellipsoid& s = sum_.ellipsoid[i];
+      const LocalMinkowskiSum::Ellipsoid& s = sum_.ellipsoid[i];
       if (s.radius[0] != s.radius[1] || s.radius[0] != s.radius[2] || s.off != 0.0) return false;
       radius += s.radius[0];
     }
@@ -514,15 +516,15 @@ class LocalMinimum {
   /// over the normals of the side).
   bool approach() {
     double radius = 0.0;
-    if (sum_.segments == 0 && is_moved_ball(radius)) {
+    if (sum_.segments == 0 && is_swept_ball(radius)) {
       leave_ball();
       return true;
     }
-    if (sum_.segments > 2 || !is_stiff()) return false;
+    if (sum_.segments > 2 || !is_determined()) return false;
     if (sum_.segments > 0 && !move_on_circle(normal_)) return false;
     if (sum_.segments == 2 && are_parallel()) take_amid_second();
-    if (sum_.segments == 2) return meet_both();
-    for (int i = 0; i < kMostSteps; ++i) {
+    if (sum_.segments == 2) return align_with_both();
+    for (int i = 0; i < kMaxSteps; ++i) {
       double step[3];
       if (!next_step(step)) return false;
       const double square = dot3(step, step);
@@ -536,20 +538,20 @@ class LocalMinimum {
 
   /// True for two parallel edges or sides of cylinders.
   [[nodiscard]] bool are_parallel() const {
-    const SimpleSum::Segment& s = sum_.segment[0];
-    const SimpleSum::Segment& t = sum_.segment[1];
+    const LocalMinkowskiSum::Segment& s = sum_.segment[0];
+    const LocalMinkowskiSum::Segment& t = sum_.segment[1];
     double out[3];
     cross3(s.axis, t.axis, out);
-    return !(s.radius > 0.0) && !(t.radius > 0.0) && dot3(out, out) <= kLeastSine * kLeastSine;
+    return !(s.radius > 0.0) && !(t.radius > 0.0) && dot3(out, out) <= kMinSine * kMinSine;
   }
 
   /// Replaces the second segment by one of its points: the point for which the touching point on
   /// the first segment is nearest to its middle.
   void take_amid_second() {
-    const SimpleSum::Segment& s = sum_.segment[0];
-    const SimpleSum::Segment& t = sum_.segment[1];
+    const LocalMinkowskiSum::Segment& s = sum_.segment[0];
+    const LocalMinkowskiSum::Segment& t = sum_.segment[1];
     double w[3];
-    met(w);
+    sum_support(w);
     const double wanted = -(0.5 * s.length + dot3(w, s.axis)) / dot3(t.axis, s.axis);
     const double least = wanted > 0.0 ? wanted : 0.0;
     const double at = least < t.length ? least : t.length;
@@ -559,25 +561,25 @@ class LocalMinimum {
 
   /// Moves to the nearest normal along which all of the first segment is equally far.
   bool move_on_circle(const double* to) {
-    const SimpleSum::Segment& s = sum_.segment[0];
+    const LocalMinkowskiSum::Segment& s = sum_.segment[0];
     const double along = dot3(s.axis, to);
     double across[3];
     for (int k = 0; k < 3; ++k) across[k] = to[k] - along * s.axis[k];
     const double length = __builtin_sqrt(dot3(across, across));
-    if (!(length > kLeastSine)) return false;
+    if (!(length > kMinSine)) return false;
     const double scale = s.sine / length;
     for (int k = 0; k < 3; ++k) normal_[k] = s.cosine * s.axis[k] + scale * across[k];
     return true;
   }
 
   /// Moves to the normal along which both segments are level; there are two, the nearer is taken.
-  bool meet_both() {
-    const SimpleSum::Segment& s = sum_.segment[0];
-    const SimpleSum::Segment& t = sum_.segment[1];
+  bool align_with_both() {
+    const LocalMinkowskiSum::Segment& s = sum_.segment[0];
+    const LocalMinkowskiSum::Segment& t = sum_.segment[1];
     double out[3];
     cross3(s.axis, t.axis, out);
     const double square = dot3(out, out);
-    if (!(square > kLeastSine * kLeastSine)) return false;
+    if (!(square > kMinSine * kMinSine)) return false;
     const double both = dot3(s.axis, t.axis);
     const double x = (s.cosine - both * t.cosine) / square;
     const double y = (t.cosine - both * s.cosine) / square;
@@ -592,26 +594,26 @@ class LocalMinimum {
   /// Returns false if the depth has no minimum along the step.
   bool next_step(double* step) const {
     double w[3];
-    met(w);
+    sum_support(w);
     const double height = dot3(w, normal_);
     double e[2][3];
     span_across(normal_, e);
     double q[3] = {-height, 0.0, -height};
     if (sum_.segments == 1) {
       // Along the circle of normals, which curves towards its own centre.
-      const SimpleSum::Segment& s = sum_.segment[0];
+      const LocalMinkowskiSum::Segment& s = sum_.segment[0];
       sine_of(s.axis, e[0]);
       q[0] = -(height - s.cosine * dot3(w, s.axis)) / (s.sine * s.sine);
     }
     for (std::uint32_t i = 0; i < sum_.discs; ++i) {
       double across[3];
       const double sine = sine_of(sum_.disc[i].axis, across);
-      if (!(sine > kLeastSine)) return false;
+      if (!(sine > kMinSine)) return false;
       add_square(e, across, sum_.disc[i].radius / sine, q);
     }
     for (std::uint32_t i = 0; i < sum_.ellipsoids; ++i) {
       const EllipsoidHeight at(sum_.ellipsoid[i], normal_);
-      if (!(at.length > kLeastSine * kLeastSine)) return false;
+      if (!(at.length > kMinSine * kMinSine)) return false;
       add_ellipsoid_rise(e, sum_.ellipsoid[i], at, at.length, q);
     }
     if (!(q[0] > 0.0)) return false;
@@ -629,7 +631,7 @@ class LocalMinimum {
   }
 
   /// Sets the line of a cone's side that touches, from the tip on.
-  void turn_to_normal(SimpleSum::Segment& s) const {
+  void turn_to_normal(LocalMinkowskiSum::Segment& s) const {
     double out[3];
     out_of(s.axis, out);
     for (int k = 0; k < 3; ++k) s.along[k] = s.cosine * out[k] - s.sine * s.axis[k];
@@ -637,13 +639,13 @@ class LocalMinimum {
 
   /// Computes the touching point on each segment, where the foot of the origin is; returns false if
   /// it is beyond an end.
-  bool meet_segments() {
+  bool touch_segments() {
     const std::uint32_t count = sum_.segments;
     for (std::uint32_t i = 0; i < count; ++i) {
       if (sum_.segment[i].radius > 0.0) turn_to_normal(sum_.segment[i]);
     }
     double w[3];
-    met(w);
+    sum_support(w);
     height_ = dot3(w, normal_);
     if (!(sign_ * height_ > 0.0)) return false;
     double across[3];
@@ -652,7 +654,7 @@ class LocalMinimum {
                              count > 1 ? dot3(across, sum_.segment[1].along) : 0.0};
     const double both = count > 1 ? dot3(sum_.segment[0].along, sum_.segment[1].along) : 0.0;
     const double det = 1.0 - both * both;
-    if (!(det > kLeastSine * kLeastSine)) return false;
+    if (!(det > kMinSine * kMinSine)) return false;
     at_[0] = (both * slope[1] - slope[0]) / det;
     at_[1] = (both * slope[0] - slope[1]) / det;
     for (std::uint32_t i = 0; i < count; ++i) {
@@ -667,7 +669,7 @@ class LocalMinimum {
 
   const CurvedPair* pair_;
   NearPoints side_[2];
-  SimpleSum sum_;
+  LocalMinkowskiSum sum_;
   double sign_;
   double normal_[3];
   double height_;

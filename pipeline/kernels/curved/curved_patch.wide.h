@@ -73,7 +73,7 @@ class CurvedPatch {
     }
   }
 
-  [[nodiscard]] Patch view() const {
+  [[nodiscard]] SupportingFeature view() const {
     return {vertex_, vertex_feature_, edge_feature_, count_, feature_, form_.rounding * pair_.unit};
   }
 
@@ -210,7 +210,7 @@ class CurvedPatch {
     constexpr std::uint32_t kSamples = 8;
     double across[2][3];
     directions_across(d, across);
-    const double apart = apart_of_samples(*form_.own, across, pair_.scale);
+    const double apart = sample_tolerance(*form_.own, across, pair_.scale);
     double kept[kSamples][3];
     std::uint32_t count = 0;
     for (std::uint32_t i = 0; i < kSamples; ++i) {
@@ -227,13 +227,13 @@ class CurvedPatch {
       count = at < count ? count : count + 1;
     }
     if (count == 1) farthest(form_, d, pair_.scale, kept[0]);
-    count = keep_level(kept, count);
+    count = keep_coplanar(kept, count);
     for (std::uint32_t i = 0; i < count; ++i) add({kept[i][0], kept[i][1], kept[i][2]}, i, i);
   }
 
   /// Keeps the points that are in the plane of the three points that span the most. Returns their
   /// number.
-  static std::uint32_t keep_level(double (*x)[3], std::uint32_t count) {
+  static std::uint32_t keep_coplanar(double (*x)[3], std::uint32_t count) {
     if (count < 4) return count;
     std::uint32_t far = 1;
     for (std::uint32_t i = 2; i < count; ++i) {
@@ -270,7 +270,7 @@ class CurvedPatch {
   }
 
   const CurvedPair& pair_;
-  const Form& form_;
+  const CoreDesc& form_;
   bool of_first_;
   std::uint32_t count_ = 0;
   std::uint32_t feature_ = 0;
@@ -281,7 +281,7 @@ class CurvedPatch {
 
 /// Feature number of a single contact point, at a point of the core in its frame; as in the kernels
 /// of round shapes.
-static inline std::uint32_t point_feature(const Form& form, const double* at, double size) {
+static inline std::uint32_t point_feature(const CoreDesc& form, const double* at, double size) {
   const auto side = [&](int k) {
     const double near = form.number[k] - 1e-9 * size;
     return at[k] >= near ? 1 : (at[k] <= -near ? -1 : 0);
@@ -291,7 +291,7 @@ static inline std::uint32_t point_feature(const Form& form, const double* at, do
   return static_cast<std::uint32_t>(13 + side(0) + 3 * side(1) + 9 * side(2));
 }
 
-static inline bool touches_in_a_point(const Form& form) {
+static inline bool touches_in_a_point(const CoreDesc& form) {
   return form.kind == ShapeKind::sphere || form.kind == ShapeKind::ellipsoid;
 }
 

@@ -55,15 +55,15 @@ static inline bool weigh_thin_triangle(const double (*corner)[3], double* weight
 
 class CurvedSearch {
  public:
-  /// At least one pair; all pairs have the same kinds. `for_verdict`: the search stops with state
+  /// At least one pair; all pairs have the same kinds. `overlap_only`: the search stops with state
   /// inside as soon as the roundings certainly overlap.
-  CurvedSearch(CurvedPair* pairs, std::uint32_t count, bool for_verdict)
+  CurvedSearch(CurvedPair* pairs, std::uint32_t count, bool overlap_only)
       : next_(pairs),
         end_(pairs + count),
-        for_verdict_(for_verdict),
+        overlap_only_(overlap_only),
         kind_{pairs->first.kind, pairs->second.kind},
-        looks_(may_have_features(*pairs)),
-        lanes_(has_own(*pairs)) {}
+        tries_features_(may_have_features(*pairs)),
+        lanes_(has_user_shape(*pairs)) {}
 
   void run() {
     for (int lane = 0; lane < kWidth; ++lane) refill(lane);
@@ -72,17 +72,17 @@ class CurvedSearch {
       for (; done != 0; done &= done - 1) {
         const int lane = static_cast<int>(first(done));
         hand_back(lane);
-        ask_around(lane);
-        if (goes_again(lane)) {
+        confirm_inside(lane);
+        if (needs_restart(lane)) {
           start(lane, kAskew);
-          begin_beside(lane);
+          add_unrelated_support(lane);
         } else {
           refill(lane);
         }
       }
       for (Mask16 rest = active_; rest != 0; rest &= rest - 1) {
         const int lane = static_cast<int>(first(rest));
-        if (looks_ && is_near(lane) && ends_on_features(lane)) refill(lane);
+        if (tries_features_ && is_near(lane) && ends_on_features(lane)) refill(lane);
       }
     }
   }
@@ -90,7 +90,7 @@ class CurvedSearch {
  private:
   using Search = hull::SearchLanes<double, true>;
   static constexpr int kWidth = Search::kWidth;
-  static constexpr double kDoubt = 1e-14;
+  static constexpr double kLengthError = 1e-14;
   /// Ratio of the lower to the upper bound of the distance from which features are tried.
   static constexpr double kNear = 0.75;
   /// Closest features are accepted if the bounds of the distance differ by at most this.
@@ -101,7 +101,7 @@ class CurvedSearch {
   static constexpr double kWellInside = 1e-6;
 
   static constexpr double kAskew[3] = {0.3125, -0.234375, 0.171875};
-  static constexpr double kBeside[3] = {-0.21875, 0.15625, 0.40625};
+  static constexpr double kUnrelated[3] = {-0.21875, 0.15625, 0.40625};
 
   void refill(int lane) {
     if (next_ == end_) {
@@ -111,16 +111,16 @@ class CurvedSearch {
     CurvedPair& pair = *next_++;
     active_ |= 1U << lane;
     pair_[lane] = &pair;
-    const Form* const forms[2] = {&pair.first, &pair.second};
+    const CoreDesc* const forms[2] = {&pair.first, &pair.second};
     for (int side = 0; side < 2; ++side) {
       for (int i = 0; i < hull::kCoreNumbers; ++i) number_[side][i][lane] = forms[side]->number[i];
     }
     for (int i = 0; i < 9; ++i) lanes_.turn[i][lane] = pair.turn[i];
     for (int i = 0; i < 3; ++i) lanes_.shift[i][lane] = pair.shift[i];
-    const double far = pair.far * pair.scale + pair.rounding + kDoubt;
+    const double far = pair.far * pair.scale + pair.rounding + kLengthError;
     lanes_.far[lane] = far * far;
-    const double near = pair.rounding - kDoubt;
-    lanes_.near[lane] = for_verdict_ && near > 0.0 ? near * near : -1.0;
+    const double near = pair.rounding - kLengthError;
+    lanes_.near[lane] = overlap_only_ && near > 0.0 ? near * near : -1.0;
     is_askew_[lane] = false;
     constexpr double straight[3] = {0.0, 0.0, 0.0};
     start(lane, straight);
@@ -128,7 +128,7 @@ class CurvedSearch {
 
   /// If shapes are aligned, the origin may be on an edge or a face of the simplex although the
   /// cores overlap. A second search from another start avoids that.
-  bool goes_again(int lane) {
+  bool needs_restart(int lane) {
     if (pair_[lane]->state != CurvedState::close || is_askew_[lane]) return false;
     is_askew_[lane] = true;
     return true;
@@ -136,9 +136,9 @@ class CurvedSearch {
 
   /// Tests whether the origin is certainly inside. If the depth is needed this is left to the
   /// second search, because a polytope that starts from its simplex takes fewer steps.
-  void ask_around(int lane) {
+  void confirm_inside(int lane) {
     CurvedPair& pair = *pair_[lane];
-    if (pair.state != CurvedState::close || !(for_verdict_ || is_askew_[lane])) return;
+    if (pair.state != CurvedState::close || !(overlap_only_ || is_askew_[lane])) return;
     if (is_surrounded(pair)) pair.state = CurvedState::inside;
   }
 
@@ -191,10 +191,10 @@ class CurvedSearch {
 
   /// Adds a support point along an unrelated direction: for two balls, all points that are found
   /// from one starting direction are in one plane with the origin.
-  void begin_beside(int lane) {
+  void add_unrelated_support(int lane) {
     double w[3];
     double mine[3];
-    difference_point(*pair_[lane], kBeside, w, mine);
+    difference_point(*pair_[lane], kUnrelated, w, mine);
     for (int k = 0; k < 3; ++k) {
       lanes_.slot[0][k][lane] = w[k];
       lanes_.slot_mine[0][k][lane] = mine[k];
@@ -243,7 +243,7 @@ class CurvedSearch {
 
   /// The curvature of a user shape is unknown, but it is round more often than not.
   static bool may_have_features(const CurvedPair& pair) {
-    if (!has_own(pair)) return true;
+    if (!has_user_shape(pair)) return true;
     const ShapeKind kind = pair.first.kind;
     return kind == ShapeKind::sphere || kind == ShapeKind::ellipsoid || kind == ShapeKind::support;
   }
@@ -263,7 +263,8 @@ class CurvedSearch {
     const double length = __builtin_sqrt(lanes_.square[lane]);
     double near[3];
     for (int k = 0; k < 3; ++k) near[k] = -lanes_.gap[k][lane] / length;
-    const bool ends = has_own(pair) ? ends_on_tangent(pair, near) : ends_on_sum(lane, pair, near);
+    const bool ends =
+        has_user_shape(pair) ? ends_on_tangent(pair, near) : ends_on_sum(lane, pair, near);
     if (!ends) return false;
     for (int k = 0; k < 3; ++k) pair.gap[k] = pair.difference[0][k];
     pair.count = 1;
@@ -304,7 +305,7 @@ class CurvedSearch {
     }
     pair.upper = __builtin_sqrt(dot3(pair.difference[0], pair.difference[0]));
     pair.lower = -found.height();
-    return pair.upper - pair.lower <= Search::kOwnGain * pair.upper;
+    return pair.upper - pair.lower <= Search::kUserGain * pair.upper;
   }
 
   /// Copies the points of the simplex and the points of the first in them; returns their number.
@@ -335,10 +336,10 @@ class CurvedSearch {
 
   CurvedPair* next_;
   CurvedPair* end_;
-  bool for_verdict_;
+  bool overlap_only_;
   Mask16 active_ = 0;
   ShapeKind kind_[2];
-  bool looks_;
+  bool tries_features_;
   CurvedPair* pair_[kWidth] = {};
   bool is_askew_[kWidth] = {};
   alignas(64) double number_[2][hull::kCoreNumbers][kWidth] = {};

@@ -21,18 +21,18 @@ class TangentMinimum {
     for (int k = 0; k < 3; ++k) from_[k] = near[k];
     span_across(from_, across_);
     const double start[2] = {0.0, 0.0};
-    look(start);
-    if (!take_bends()) return false;
-    for (int i = 0; i < kMostSteps; ++i) {
+    evaluate(start);
+    if (!estimate_hessian()) return false;
+    for (int i = 0; i < kMaxSteps; ++i) {
       double step[2];
       if (!next_step(step)) return false;
       const double before[2] = {slope_[0], slope_[1]};
       const double next[2] = {at_[0] + step[0], at_[1] + step[1]};
       if (!(dot2(next, next) <= kWidest * kWidest)) return false;
-      look(next);
+      evaluate(next);
       if (dot2(slope_, slope_) <= miss * miss) return apart ? height_ < 0.0 : height_ > 0.0;
       if (!(dot2(slope_, slope_) < dot2(before, before))) return false;
-      learn(step, before);
+      broyden_update(step, before);
     }
     return false;
   }
@@ -45,7 +45,7 @@ class TangentMinimum {
   [[nodiscard]] const double* point() const { return mine_; }
 
  private:
-  static constexpr int kMostSteps = 12;
+  static constexpr int kMaxSteps = 12;
   /// Largest distance of the support point from the normal, relative to the extent of the
   /// difference.
   static constexpr double kMiss = 1e-9;
@@ -55,7 +55,7 @@ class TangentMinimum {
   static constexpr double kAside = 0x1p-10;
 
   /// Evaluates the direction at the given tangents of angles from the start.
-  void look(const double* at) {
+  void evaluate(const double* at) {
     for (int k = 0; k < 3; ++k) {
       normal_[k] = from_[k] + at[0] * across_[0][k] + at[1] * across_[1][k];
     }
@@ -71,36 +71,36 @@ class TangentMinimum {
   }
 
   /// Computes the second derivatives by differences, column by column.
-  bool take_bends() {
+  bool estimate_hessian() {
     const double slope[2] = {slope_[0], slope_[1]};
     for (int i = 0; i < 2; ++i) {
       const double aside[2] = {i == 0 ? kAside : 0.0, i == 0 ? 0.0 : kAside};
-      look(aside);
-      for (int k = 0; k < 2; ++k) bend_[k][i] = (slope_[k] - slope[k]) / kAside;
+      evaluate(aside);
+      for (int k = 0; k < 2; ++k) hessian_[k][i] = (slope_[k] - slope[k]) / kAside;
     }
-    const double mixed = 0.5 * (bend_[0][1] + bend_[1][0]);
-    bend_[0][1] = bend_[1][0] = mixed;
+    const double mixed = 0.5 * (hessian_[0][1] + hessian_[1][0]);
+    hessian_[0][1] = hessian_[1][0] = mixed;
     at_[0] = at_[1] = 0.0;
     slope_[0] = slope[0];
     slope_[1] = slope[1];
-    return bend_[0][0] > 0.0 && bend_[0][0] * bend_[1][1] > mixed * mixed;
+    return hessian_[0][0] > 0.0 && hessian_[0][0] * hessian_[1][1] > mixed * mixed;
   }
 
   bool next_step(double* step) const {
-    const double det = bend_[0][0] * bend_[1][1] - bend_[0][1] * bend_[1][0];
+    const double det = hessian_[0][0] * hessian_[1][1] - hessian_[0][1] * hessian_[1][0];
     if (!(det > 0.0)) return false;
-    step[0] = (bend_[0][1] * slope_[1] - bend_[1][1] * slope_[0]) / det;
-    step[1] = (bend_[1][0] * slope_[0] - bend_[0][0] * slope_[1]) / det;
+    step[0] = (hessian_[0][1] * slope_[1] - hessian_[1][1] * slope_[0]) / det;
+    step[1] = (hessian_[1][0] * slope_[0] - hessian_[0][0] * slope_[1]) / det;
     return true;
   }
 
   /// Broyden's update: makes the second derivatives match the change along the step.
-  void learn(const double* step, const double* before) {
+  void broyden_update(const double* step, const double* before) {
     const double square = dot2(step, step);
     if (!(square > 0.0)) return;
     for (int k = 0; k < 2; ++k) {
-      const double miss = slope_[k] - before[k] - dot2(bend_[k], step);
-      for (int i = 0; i < 2; ++i) bend_[k][i] += miss * step[i] / square;
+      const double miss = slope_[k] - before[k] - dot2(hessian_[k], step);
+      for (int i = 0; i < 2; ++i) hessian_[k][i] += miss * step[i] / square;
     }
   }
 
@@ -109,7 +109,7 @@ class TangentMinimum {
   double across_[2][3];
   double at_[2];
   double slope_[2];
-  double bend_[2][2];
+  double hessian_[2][2];
   double normal_[3];
   double difference_[3];
   double mine_[3];

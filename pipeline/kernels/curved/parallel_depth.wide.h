@@ -15,16 +15,16 @@ class ParallelDepth {
  public:
   /// For cores that overlap; returns false if they are not parallel, or of other kinds.
   bool find(const CurvedPair& pair) {
-    const bool is_placed = pair.first.kind == ShapeKind::box    ? stand_in_box(pair)
-                           : pair.second.kind == ShapeKind::box ? stand_beside_box(pair)
-                                                                : stand_beside(pair);
+    const bool is_placed = pair.first.kind == ShapeKind::box    ? place_box_first(pair)
+                           : pair.second.kind == ShapeKind::box ? place_box_second(pair)
+                                                                : place_axes(pair);
     if (!is_placed) return false;
     upper_ = __builtin_inf();
-    look(1.0, 0.0);
-    look(0.0, 1.0);
-    look(0.0, -1.0);
-    look_across(first_, 1.0);
-    look_across(second_, -1.0);
+    test_direction(1.0, 0.0);
+    test_direction(0.0, 1.0);
+    test_direction(0.0, -1.0);
+    test_side_normal(first_, 1.0);
+    test_side_normal(second_, -1.0);
     if (!(upper_ >= 0.0)) return false;
     lower_ = upper_ - 2.0 * askew_ * pair.size;
     return true;
@@ -91,10 +91,10 @@ class ParallelDepth {
   };
 
   /// Sets the plane of two axes.
-  bool stand_beside(const CurvedPair& pair) {
+  bool place_axes(const CurvedPair& pair) {
     const double axis[3] = {pair.turn[2], pair.turn[5], pair.turn[8]};
-    if (!set_up(axis, 2) || !set_spun(pair.first, 1.0, first_) ||
-        !set_spun(pair.second, axis[2], second_)) {
+    if (!set_up(axis, 2) || !set_revolved(pair.first, 1.0, first_) ||
+        !set_revolved(pair.second, axis[2], second_)) {
       return false;
     }
     const double* s = pair.shift;
@@ -109,10 +109,10 @@ class ParallelDepth {
   }
 
   /// The first is a box, and the second's axis is parallel to one of its axes.
-  bool stand_in_box(const CurvedPair& pair) {
+  bool place_box_first(const CurvedPair& pair) {
     const double axis[3] = {pair.turn[2], pair.turn[5], pair.turn[8]};
     const int along = longest(axis);
-    if (!set_up(axis, along) || !set_spun(pair.second, axis[along], second_)) return false;
+    if (!set_up(axis, along) || !set_revolved(pair.second, axis[along], second_)) return false;
     const int side[2] = {(along + 1) % 3, (along + 2) % 3};
     const double* half = pair.first.number;
     const Rectangle seen(half[side[0]], half[side[1]], pair.shift[side[0]], pair.shift[side[1]]);
@@ -128,10 +128,10 @@ class ParallelDepth {
   }
 
   /// The second is a box, and the first's axis is parallel to one of its axes.
-  bool stand_beside_box(const CurvedPair& pair) {
+  bool place_box_second(const CurvedPair& pair) {
     const double axis[3] = {pair.turn[6], pair.turn[7], pair.turn[8]};
     const int along = longest(axis);
-    if (!set_up(axis, along) || !set_spun(pair.first, 1.0, first_)) return false;
+    if (!set_up(axis, along) || !set_revolved(pair.first, 1.0, first_)) return false;
     up_[0] = up_[1] = 0.0;
     up_[2] = 1.0;
     const int side[2] = {(along + 1) % 3, (along + 2) % 3};
@@ -213,7 +213,7 @@ class ParallelDepth {
 
   /// Sets the outline of a core of revolution whose axis points up or down; returns false for other
   /// kinds.
-  static bool set_spun(const Form& form, double upright, Outline& outline) {
+  static bool set_revolved(const CoreDesc& form, double upright, Outline& outline) {
     const double* n = form.number;
     const bool is_cone = form.kind == ShapeKind::cone;
     if (!is_cone && form.kind != ShapeKind::cylinder && form.kind != ShapeKind::capsule) {
@@ -226,7 +226,7 @@ class ParallelDepth {
   }
 
   /// Tests a direction in the plane, of length 1.
-  void look(double aside, double up) {
+  void test_direction(double aside, double up) {
     const double n[2] = {aside, up};
     const double back[2] = {-aside, -up};
     const double depth = first_.height(n) + second_.height(back) - dot2(n, away_);
@@ -236,11 +236,11 @@ class ParallelDepth {
     normal_[1] = up;
   }
   /// Tests the normal of the sloping side of an outline, outward (sign 1) or inward (sign -1).
-  void look_across(const Outline& outline, double sign) {
+  void test_side_normal(const Outline& outline, double sign) {
     const double rise = 2.0 * outline.half;
     const double slope = outline.lower[1] - outline.upper[1];
     const double length = __builtin_sqrt(rise * rise + slope * slope);
-    if (length > 0.0) look(rise / length, sign * slope / length);
+    if (length > 0.0) test_direction(rise / length, sign * slope / length);
   }
 
   Outline first_;

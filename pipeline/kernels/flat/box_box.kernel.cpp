@@ -24,10 +24,10 @@ enum BoxPlace {
 
 // Called for both sides in a loop: with narrow lanes, unrolled code would make up most of the
 // kernel.
-[[gnu::noinline]] void see_boxes(const Stage<double, kCount>& rows, SeenPairs& seen) {
+[[gnu::noinline]] void project_boxes(const Stage<double, kCount>& rows, ProjectedPairs& seen) {
   const Lanes<double> zero(0.0);
   const Doubles3 normal = rows.vector(kNormal);
-  seen.look_along(normal);
+  seen.set_projection(normal);
   for (int side = 0; side < 2; ++side) {
     const bool is_b = side == 1;
     const int axes = is_b ? kAxesB : kAxesA;
@@ -57,8 +57,8 @@ struct BoxStage {
   [[nodiscard]] double rounding(int side, unsigned lane) const {
     return stage.value[kRoundingA + side][lane];
   }
-  void see(SeenPairs& seen) const { see_boxes(stage, seen); }
-  void patches(unsigned lane, FlatPatch& a, FlatPatch& b, double (&normal)[3]) const {
+  void see(ProjectedPairs& seen) const { project_boxes(stage, seen); }
+  void patches(unsigned lane, FlatFeature& a, FlatFeature& b, double (&normal)[3]) const {
     BoxFrame box_a;
     BoxFrame box_b;
     stage.get(kAxesA, 9, lane, &box_a.axis[0][0]);
@@ -227,9 +227,9 @@ struct BoxBox {
   template <typename T>
   [[gnu::always_inline]] static Mask16 overlap(NarrowJob& job, const PairBlock<T>& block) {
     const BoxPair<T> pair = box_pair(job, block);
-    const Lanes<T> slack = verdict_slack(pair.scale);
+    const Lanes<T> slack = overlap_slack(pair.scale);
     const Lanes<T> reach = slack + pair.rounding_a + pair.rounding_b;
-    const Mask16 valid = bits(in_verdict_range(pair.scale));
+    const Mask16 valid = bits(in_overlap_range(pair.scale));
     const Lanes<T> face = largest_face_separation(pair);
     Mask16 known = bits(face > reach);
     Mask16 over = 0;

@@ -40,7 +40,7 @@ struct BoxTrianglePair {
     const BoxLanes<T> box = load_box<SideA>(job, block);
     half = box.half;
     box_rounding = box.rounding;
-    scale = taxicab(offset) + b.scale + taxicab(half) + box_rounding;
+    scale = norm_l1(offset) + b.scale + norm_l1(half) + box_rounding;
     b.move(frame.to_local(offset));
   }
 
@@ -254,7 +254,7 @@ template <typename T>
   const Vec3<T> foot = vertex - step;
   const Vec3<T> corner{sign_or_one(n.x) * pair.half.x, sign_or_one(n.y) * pair.half.y,
                        sign_or_one(n.z) * pair.half.z};
-  const LaneMask<T> on_box = taxicab(foot - clamp_to(foot, pair.half)) <= near;
+  const LaneMask<T> on_box = norm_l1(foot - clamp_to(foot, pair.half)) <= near;
   const LaneMask<T> on_triangle = pair.b.is_over(corner, select(apart, zero, near));
 
   // The edge of the box parallel to its axis, through the corner.
@@ -269,7 +269,7 @@ template <typename T>
   const Lanes<T> s = clamp_to((dot(f, f) * re - ef * rf) / axis.length2, dot(pair.half, e));
   const Lanes<T> t = clamp_unit((ef * re - rf) / axis.length2);
   const PointPair<T> edges{middle + e * s, axis.start + f * t};
-  const LaneMask<T> crossing = apart | (taxicab(edges.b - edges.a - step) <= near);
+  const LaneMask<T> crossing = apart | (norm_l1(edges.b - edges.a - step) <= near);
 
   AxisPoints<T> p;
   p.points.a = select(of_box, foot, select(of_face, corner, edges.a));
@@ -291,11 +291,12 @@ enum BoxTrianglePlace {
   kCount
 };
 
-[[gnu::noinline]] void see_box_and_triangle(const Stage<double, kCount>& rows, SeenPairs& seen) {
+[[gnu::noinline]] void project_box_and_triangle(const Stage<double, kCount>& rows,
+                                                ProjectedPairs& seen) {
   const Lanes<double> zero(0.0);
   const Doubles3 normal = rows.vector(kNormal);
   const Doubles3 axis[3] = {rows.vector(kAxes), rows.vector(kAxes + 3), rows.vector(kAxes + 6)};
-  seen.look_along(normal);
+  seen.set_projection(normal);
   seen.see(face_of_box(axis, rows.vector(kHalf), {zero, zero, zero}, normal), 0);
   seen.see(face_of_triangle(rows.vector(kVertices), rows.vector(kVertices + 3),
                             rows.vector(kVertices + 6)),
@@ -320,8 +321,8 @@ struct BoxTriangleStage {
   [[nodiscard]] double rounding(int side, unsigned lane) const {
     return stage.value[kBoxRounding + side][lane];
   }
-  void see(SeenPairs& seen) const { see_box_and_triangle(stage, seen); }
-  void patches(unsigned lane, FlatPatch& a, FlatPatch& b, double (&normal)[3]) const {
+  void see(ProjectedPairs& seen) const { project_box_and_triangle(stage, seen); }
+  void patches(unsigned lane, FlatFeature& a, FlatFeature& b, double (&normal)[3]) const {
     BoxFrame box;
     TriangleFrame triangle;
     stage.get(kAxes, 9, lane, &box.axis[0][0]);
@@ -378,8 +379,8 @@ struct BoxTriangle {
   template <typename T>
   [[gnu::always_inline]] static Mask16 overlap(NarrowJob& job, const PairBlock<T>& block) {
     const BoxTrianglePair<T> pair(job, block);
-    const Lanes<T> slack = verdict_slack(pair.scale);
-    const Mask16 valid = bits(in_verdict_range(pair.scale));
+    const Lanes<T> slack = overlap_slack(pair.scale);
+    const Mask16 valid = bits(in_overlap_range(pair.scale));
     const Lanes<T> reach = slack + pair.box_rounding + pair.b.rounding;
     const Lanes<T> face = max(pair.face(0), max(pair.face(1), pair.face(2)));
     const Lanes<T> above = pair.over_triangle();

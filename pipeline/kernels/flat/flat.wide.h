@@ -12,7 +12,7 @@
 // A pair type provides scale, offset, along, to_world and its roundings, and the functions
 // best_axis, axis_points and closest_by_vertices; a Staged type holds its lanes in memory.
 
-#include "pipeline/kernels/flat/seen_faces.wide.h"
+#include "pipeline/kernels/flat/projected_faces.wide.h"
 #include "pipeline/kernels/one_pair.wide.h"
 #include "pipeline/manifold/contact_patch.h"
 
@@ -99,7 +99,7 @@ template <typename T>
 
 /// True if bodies at the same position are to be swapped; decided by their shapes, then by their
 /// orientations.
-inline bool turn_concentric(const NarrowJob& job, const BodyPair& pair) {
+inline bool swap_concentric(const NarrowJob& job, const BodyPair& pair) {
   const std::uint32_t shape_a = job.shapes[pair.a].bits;
   const std::uint32_t shape_b = job.shapes[pair.b].bits;
   if (shape_a != shape_b) return shape_b < shape_a;
@@ -127,7 +127,7 @@ struct OrderedBlock {
       const double* b = job.poses[pair.b].position;
       int i = 0;
       while (i < 2 && a[i] == b[i]) ++i;
-      const bool turn = a[i] == b[i] ? turn_concentric(job, pair) : b[i] < a[i];
+      const bool turn = a[i] == b[i] ? swap_concentric(job, pair) : b[i] < a[i];
       pairs[lane] = turn ? BodyPair{pair.b, pair.a} : pair;
       sign[lane] = turn ? T(-1) : T(1);
     }
@@ -202,13 +202,13 @@ struct PlacedTriangle {
   [[gnu::always_inline]] void place(const TriangleLanes<T>& shape, const Rotation<T>& turn) {
     for (int i = 0; i < 3; ++i) {
       edge[i] = turn.to_world(shape.vertex[(i + 1) % 3] - shape.vertex[i]);
-      length[i] = taxicab(edge[i]);
+      length[i] = norm_l1(edge[i]);
     }
     vertex[0] = turn.to_world(shape.vertex[0]);
     vertex[1] = turn.to_world(shape.vertex[1]);
     vertex[2] = turn.to_world(shape.vertex[2]);
     rounding = shape.rounding;
-    scale = taxicab(vertex[0]) + taxicab(vertex[1]) + taxicab(vertex[2]) + rounding;
+    scale = norm_l1(vertex[0]) + norm_l1(vertex[1]) + norm_l1(vertex[2]) + rounding;
     const LaneMask<T> longest_0 = (length[0] >= length[1]) & (length[0] >= length[2]);
     const LaneMask<T> longest_1 = length[1] >= length[2];
     const Vec3<T> after[3] = {edge[1], edge[2], edge[0]};
@@ -245,20 +245,20 @@ struct PlacedTriangle {
   }
 };
 
-/// Writes the contacts of the `touching` lanes, computed by `meet(lane, points)`, in the caller's
-/// order; writes empty ranges for all other lanes of the block. `offset` of a lane is from a to b
-/// in the kernel's order; `sign` is -1 if the caller's order is the opposite.
-template <typename Meet>
+/// Writes the contacts of the `touching` lanes, computed by `find_contacts(lane, points)`, in the
+/// caller's order; writes empty ranges for all other lanes of the block. `offset` of a lane is from
+/// a to b in the kernel's order; `sign` is -1 if the caller's order is the opposite.
+template <typename FindContacts>
 inline void write_patch_contacts(NarrowJob& job, const PairBlock<double>& block, Mask16 touching,
                                  const double (*offset)[Doubles::kCount], const double* sign,
-                                 Meet&& meet) {
+                                 FindContacts&& find_contacts) {
   ContactWriter& out = job.contacts;
   for (unsigned lane = 0; lane < block.count; ++lane) {
     job.contact_first[block.first + lane] = out.size;
     std::uint32_t count = 0;
     if ((touching >> lane & 1U) != 0) {
       ContactPoint points[kManifoldPoints];
-      count = meet(lane, points);
+      count = find_contacts(lane, points);
       const bool turned = sign[lane] < 0.0;
       for (std::uint32_t k = 0; k < count; ++k, ++out.size) {
         const ContactPoint& p = points[k];
@@ -365,8 +365,8 @@ inline void correct_points(const Pair& pair, CoreAnswer<T>& answer, Mask16 lanes
   point.put(0, answer.point);
   for (; lanes != 0; lanes &= lanes - 1) {
     const unsigned lane = first(lanes);
-    FlatPatch a;
-    FlatPatch b;
+    FlatFeature a;
+    FlatFeature b;
     double normal[3];
     double p[3];
     stage.patches(lane, a, b, normal);
@@ -427,14 +427,14 @@ template <int L, typename Staged, typename Pair, typename Axis, typename T>
 
 /// Returns the contacts of a pair, or the one point where its faces are closest.
 template <typename Staged>
-inline std::uint32_t contacts_of(const Staged& stage, const SeenPairs& seen, unsigned lane,
+inline std::uint32_t contacts_of(const Staged& stage, const ProjectedPairs& seen, unsigned lane,
                                  double margin, ContactPoint* points) {
   if (seen.is_plain(lane)) {
-    return seen_contacts(seen.faces(lane, stage.rounding(0, lane), stage.rounding(1, lane)), margin,
-                         points);
+    return projected_contacts(seen.faces(lane, stage.rounding(0, lane), stage.rounding(1, lane)),
+                              margin, points);
   }
-  FlatPatch a;
-  FlatPatch b;
+  FlatFeature a;
+  FlatFeature b;
   double normal[3];
   stage.patches(lane, a, b, normal);
   return flat_contacts(a, b, normal, margin, points);
@@ -451,7 +451,7 @@ template <typename Staged>
   Stage<double, 2> expected;
   expected.put(0, core.distance);
   expected.put(1, core.error_bound + scale * Doubles(kDeepest));
-  SeenPairs seen;
+  ProjectedPairs seen;
   if (touching != 0) stage.see(seen);
   Mask16 missed = 0;
   write_patch_contacts(job, given, touching, stage.offset(), sign,
@@ -503,14 +503,14 @@ template <typename Staged, typename T, typename Pair>
 
 /// The error bound of level boolean. The float pass rounds its inputs first, which doubles it.
 template <typename T>
-[[gnu::always_inline]] inline Lanes<T> verdict_slack(const Lanes<T>& scale) {
+[[gnu::always_inline]] inline Lanes<T> overlap_slack(const Lanes<T>& scale) {
   return scale * Lanes<T>(kFirstPass<T> ? T(T(2) * kFlatSlack<T>) : kFlatSlack<T>);
 }
 
 /// The lanes in which level boolean can compare products of three lengths without overflow or
 /// underflow.
 template <typename T>
-[[gnu::always_inline]] inline LaneMask<T> in_verdict_range(const Lanes<T>& scale) {
+[[gnu::always_inline]] inline LaneMask<T> in_overlap_range(const Lanes<T>& scale) {
   if constexpr (!kFirstPass<T>) return in_range(scale * scale);
   return (scale > Lanes<T>(T(1e-8F))) & (scale < Lanes<T>(T(1e8F)));
 }
@@ -521,7 +521,7 @@ template <typename Staged, typename T, typename Pair>
 [[gnu::always_inline]] inline Mask16 answer_overlaps(NarrowJob& job, const PairBlock<T>& block,
                                                      const Pair& pair, const LaneMask<T>& apart,
                                                      const LaneMask<T>& over) {
-  const Mask16 valid = bits(in_verdict_range(pair.scale));
+  const Mask16 valid = bits(in_overlap_range(pair.scale));
   Mask16 hit = bits(over);
   Mask16 known = hit | bits(apart);
   if constexpr (!kFirstPass<T>) {

@@ -23,7 +23,7 @@ struct TrianglePair {
     offset = load_offset(job, block);
     a.place(load_triangle<SideA>(job, block), rotation(load_turn<SideA>(job, block)));
     b.place(load_triangle<SideB>(job, block), rotation(load_turn<SideB>(job, block)));
-    scale = a.scale + b.scale + taxicab(offset);
+    scale = a.scale + b.scale + norm_l1(offset);
     b.move(offset);
   }
 
@@ -242,7 +242,7 @@ template <typename T>
   const Lanes<T> s = clamp_unit((dot(f, f) * re - ef * rf) / axis.length2);
   const Lanes<T> t = clamp_unit((ef * re - dot(e, e) * rf) / axis.length2);
   const PointPair<T> edges{axis.start_a + e * s, axis.start_b + f * t};
-  const LaneMask<T> crossing = apart | (taxicab(edges.b - edges.a - step) <= near);
+  const LaneMask<T> crossing = apart | (norm_l1(edges.b - edges.a - step) <= near);
 
   AxisPoints<T> p;
   p.points.a = select(of_face, select(of_a, vertex_b - step, vertex_a), edges.a);
@@ -264,8 +264,8 @@ enum TrianglePlace {
   kCount
 };
 
-[[gnu::noinline]] void see_triangles(const Stage<double, kCount>& rows, SeenPairs& seen) {
-  seen.look_along(rows.vector(kNormal));
+[[gnu::noinline]] void project_triangles(const Stage<double, kCount>& rows, ProjectedPairs& seen) {
+  seen.set_projection(rows.vector(kNormal));
   for (int side = 0; side < 2; ++side) {
     const int at = side == 0 ? kA : kB;
     seen.see(face_of_triangle(rows.vector(at), rows.vector(at + 3), rows.vector(at + 6)), side);
@@ -291,8 +291,8 @@ struct TriangleStage {
   [[nodiscard]] double rounding(int side, unsigned lane) const {
     return stage.value[kRoundingA + side][lane];
   }
-  void see(SeenPairs& seen) const { see_triangles(stage, seen); }
-  void patches(unsigned lane, FlatPatch& a, FlatPatch& b, double (&normal)[3]) const {
+  void see(ProjectedPairs& seen) const { project_triangles(stage, seen); }
+  void patches(unsigned lane, FlatFeature& a, FlatFeature& b, double (&normal)[3]) const {
     TriangleFrame frame_a;
     TriangleFrame frame_b;
     stage.get(kA, 9, lane, &frame_a.vertex[0][0]);
@@ -320,8 +320,8 @@ struct TriangleTriangle {
   template <typename T>
   [[gnu::always_inline]] static Mask16 overlap(NarrowJob& job, const PairBlock<T>& block) {
     const TrianglePair<T> pair(job, block);
-    const Lanes<T> slack = verdict_slack(pair.scale);
-    const Mask16 valid = bits(in_verdict_range(pair.scale));
+    const Lanes<T> slack = overlap_slack(pair.scale);
+    const Mask16 valid = bits(in_overlap_range(pair.scale));
     // The axes are not normalized. An axis is at most as long as the product of its edges: if its
     // value exceeds the slack and roundings times that product, the triangles are apart.
     const Lanes<T> reach = slack + pair.a.rounding + pair.b.rounding;

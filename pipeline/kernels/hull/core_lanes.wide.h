@@ -40,14 +40,14 @@ constexpr int core_numbers(ShapeKind kind) {
 /// If the component of a direction perpendicular to an axis is shorter, the direction counts as
 /// parallel to the axis.
 template <typename T>
-inline constexpr T kLeastAcross = sizeof(T) == sizeof(double) ? T(1e-150) : T(1e-30F);
+inline constexpr T kMinAcross = sizeof(T) == sizeof(double) ? T(1e-150) : T(1e-30F);
 
 /// The point of a rim at height z in the direction of d; the centre of the rim if d is along the
 /// axis.
 template <typename T>
 [[gnu::always_inline]] static inline Vec3<T> rim_point(const Lanes<T>& radius, const Vec3<T>& d,
                                                        const Lanes<T>& across, const Lanes<T>& z) {
-  const Lanes<T> over = radius / max(across, Lanes<T>(kLeastAcross<T>));
+  const Lanes<T> over = radius / max(across, Lanes<T>(kMinAcross<T>));
   return {d.x * over, d.y * over, z};
 }
 
@@ -57,9 +57,9 @@ template <typename T>
 [[gnu::always_inline]] static inline Vec3<T> ellipsoid_point(const Lanes<T>* n, const Vec3<T>& d) {
   const Vec3<T> stretched{n[0] * d.x, n[1] * d.y, n[2] * d.z};
   const Lanes<T> most = max(max(abs(stretched.x), abs(stretched.y)), abs(stretched.z));
-  const Vec3<T> share = stretched * (Lanes<T>(T(1)) / max(most, Lanes<T>(kLeastAcross<T>)));
+  const Vec3<T> share = stretched * (Lanes<T>(T(1)) / max(most, Lanes<T>(kMinAcross<T>)));
   const Lanes<T> over = Lanes<T>(T(1)) / max(sqrt(dot(share, share)), Lanes<T>(T(1)));
-  const Lanes<T> off = n[3] / max(sqrt(dot(d, d)), Lanes<T>(kLeastAcross<T>));
+  const Lanes<T> off = n[3] / max(sqrt(dot(d, d)), Lanes<T>(kMinAcross<T>));
   return {n[0] * share.x * over - off * d.x, n[1] * share.y * over - off * d.y,
           n[2] * share.z * over - off * d.z};
 }
@@ -70,7 +70,7 @@ template <typename T>
   const Lanes<T> zero(T(0));
   const Lanes<T> length = sqrt(dot(d, d));
   const LaneMask<T> on_tip = (n[2] - n[1]) * d.z >= n[0] * length;
-  const Lanes<T> over = n[0] / max(length, Lanes<T>(kLeastAcross<T>));
+  const Lanes<T> over = n[0] / max(length, Lanes<T>(kMinAcross<T>));
   return select(on_tip, Vec3<T>{zero, zero, n[2]},
                 Vec3<T>{d.x * over, d.y * over, n[1] + d.z * over});
 }

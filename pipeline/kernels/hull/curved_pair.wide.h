@@ -5,12 +5,12 @@
 
 #include "pipeline/kernels/hull/core_lanes.wide.h"
 #include "pipeline/kernels/hull/hull_pair.wide.h"
-#include "pipeline/kernels/own_support.wide.h"
+#include "pipeline/kernels/user_support.wide.h"
 
 namespace winnow::WINNOW_ISA_NAME::curved {
 
 /// The core of a shape in its own frame.
-struct Form {
+struct CoreDesc {
   ShapeKind kind;
   /// The same numbers as in CoreLanes.
   double number[hull::kCoreNumbers];
@@ -36,8 +36,8 @@ enum class CurvedState : std::uint32_t {
 
 /// The first is body a of the pair, or body b if `swapped` is set.
 struct CurvedPair {
-  Form first;
-  Form second;
+  CoreDesc first;
+  CoreDesc second;
   /// Transform from the frame of the second to the frame of the first: x -> turn x + shift, where
   /// `turn` has rows.
   double turn[9];
@@ -73,7 +73,7 @@ struct CurvedPair {
 };
 
 /// True if the pair has a user shape, of which only the support function is available.
-static inline bool has_own(const CurvedPair& pair) {
+static inline bool has_user_shape(const CurvedPair& pair) {
   return pair.second.kind == ShapeKind::support;
 }
 
@@ -112,7 +112,7 @@ static inline void directions_across(const double* d, double (*across)[3]) {
 
 /// Sets the core, without scaling, and returns an upper bound on the distance of its points from
 /// its origin.
-static inline double describe(const ShapeTables& tables, ShapeId id, Form& form) {
+static inline double make_core(const ShapeTables& tables, ShapeId id, CoreDesc& form) {
   form.kind = id.kind();
   form.hull = nullptr;
   form.own = nullptr;
@@ -208,8 +208,8 @@ static inline bool place_pair(const NarrowJob& job, BodyPair bodies, CurvedPair&
   pair.swapped = ids[0].kind() == ids[1].kind() && comes_second(pose_a, pose_b);
   const Pose& first = pair.swapped ? pose_b : pose_a;
   const Pose& second = pair.swapped ? pose_a : pose_b;
-  double size = describe(*job.tables, ids[pair.swapped ? 1 : 0], pair.first) +
-                describe(*job.tables, ids[pair.swapped ? 0 : 1], pair.second);
+  double size = make_core(*job.tables, ids[pair.swapped ? 1 : 0], pair.first) +
+                make_core(*job.tables, ids[pair.swapped ? 0 : 1], pair.second);
   double frame[9];
   double axes[9];
   if (!hull::rotation_of(first.orientation, frame) ||
@@ -239,7 +239,7 @@ static inline bool place_pair(const NarrowJob& job, BodyPair bodies, CurvedPair&
           frame[i] * axes[k] + frame[3 + i] * axes[3 + k] + frame[6 + i] * axes[6 + k];
     }
   }
-  for (Form* form : {&pair.first, &pair.second}) {
+  for (CoreDesc* form : {&pair.first, &pair.second}) {
     for (double& x : form->number) x *= scale;
     for (double& x : form->center) x *= scale;
     form->rounding *= scale;
@@ -257,9 +257,9 @@ static inline void hull_support(const HullShape& shape, const T* d, T scale, T* 
 
 /// Support point of a core for which there is no lane code: a hull or a user shape.
 template <typename T>
-static inline void single_support(const Form& form, const T* d, T scale, T* x) {
+static inline void single_support(const CoreDesc& form, const T* d, T scale, T* x) {
   if (form.kind == ShapeKind::support) {
-    own_support(*form.own, d, scale, x);
+    user_support(*form.own, d, scale, x);
   } else {
     hull_support(*form.hull, d, scale, x);
   }

@@ -7,7 +7,7 @@
 namespace winnow::WINNOW_ISA_NAME::curved {
 
 /// The support point of a core along d, in its frame.
-static inline void farthest(const Form& form, const double* d, double scale, double* x) {
+static inline void farthest(const CoreDesc& form, const double* d, double scale, double* x) {
   const double* n = form.number;
   const auto towards = [](double along, double half) { return along < 0.0 ? -half : half; };
   switch (form.kind) {

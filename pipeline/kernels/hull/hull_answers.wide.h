@@ -2,12 +2,12 @@
 
 // Runs the jobs of the hull kernels: pairs are placed, searched by GJK in float lanes
 // (hull_search.wide.h), and then finished one at a time in double (hull_depth, hull_finish,
-// hull_contacts). Level boolean first tries the faster overlap tests of one_verdict.wide.h.
+// hull_contacts). Level boolean first tries the faster overlap tests of single_overlap_test.wide.h.
 
 #include "pipeline/kernels/hull/hull_contacts.wide.h"
 #include "pipeline/kernels/hull/hull_finish.wide.h"
 #include "pipeline/kernels/hull/hull_search.wide.h"
-#include "pipeline/kernels/hull/one_verdict.wide.h"
+#include "pipeline/kernels/hull/single_overlap_test.wide.h"
 #include "pipeline/kernels/kernels.h"
 
 namespace winnow::WINNOW_ISA_NAME::hull {
@@ -26,7 +26,7 @@ class HullAnswers {
   static std::uint32_t run(NarrowJob& job) {
     if constexpr (Level == 0) {
       // Most pairs are decided by these tests.
-      return answer_in_doubt<HullAnswers>(job, curved::verdicts(job));
+      return answer_uncertified<HullAnswers>(job, curved::overlap_test(job));
     } else {
       HullAnswers answers(job);
       for (std::uint32_t i = 0; i < job.count; ++i) {
@@ -41,7 +41,7 @@ class HullAnswers {
   static constexpr std::uint32_t kChunk = Shapes::kRoom;
 
   template <typename Answers>
-  friend std::uint32_t answer_in_doubt(NarrowJob& job, std::uint32_t count);
+  friend std::uint32_t answer_uncertified(NarrowJob& job, std::uint32_t count);
 
   explicit HullAnswers(NarrowJob& job) : job_(job) {}
 
@@ -73,8 +73,8 @@ class HullAnswers {
     pair.far = Level == 0 ? 0.0 : __builtin_inf();
     if (Level == 2) pair.far = job_.margin_of(i) < kFarthest ? job_.margin_of(i) : kFarthest;
     return shapes_.place(job_, job_.pairs[i], slot, pair) &&
-           pair.first->vertex_count <= kMostHullVertices &&
-           pair.second->vertex_count <= kMostHullVertices;
+           pair.first->vertex_count <= kMaxHullVertices &&
+           pair.second->vertex_count <= kMaxHullVertices;
   }
 
   void give_up(std::uint32_t i) { job_.uncertified[uncertified_++] = i; }
@@ -120,7 +120,7 @@ class HullAnswers {
       double world[3];
       write_normal(pair, core.normal, world);
       if constexpr (Level == 2) {
-        const double doubt = error + kContactDoubt * (pair.size + pair.rounding);
+        const double doubt = error + kContactError * (pair.size + pair.rounding);
         return contacts(pair, {core.normal, world, job_.margin_of(pair.index), distance, doubt},
                         core.winner);
       } else {
@@ -136,7 +136,7 @@ class HullAnswers {
 
   static constexpr double kCertified = 1e-12;
   /// Contacts are stored as floats: a few units in the last place.
-  static constexpr double kContactDoubt = 4e-7;
+  static constexpr double kContactError = 4e-7;
 
   void write_normal(const HullPair& pair, const double* local, double* world) {
     turn3(pair.frame, local, world);
@@ -161,26 +161,26 @@ class HullAnswers {
 
   /// As above, if parallel features touch. Returns false if the deepest point is not among theirs;
   /// the solver must answer then.
-  bool write_shared_point(const HullPair& pair, const HullContacts& ask,
+  bool write_shared_point(const HullPair& pair, const HullContacts& input,
                           const HullCandidate* winner) {
     double point[3];
-    if (!point_of_features<Shapes::kSimpleSecond>(pair, ask, winner, point)) return false;
+    if (!point_of_features<Shapes::kSimpleSecond>(pair, input, winner, point)) return false;
     for (int k = 0; k < 3; ++k) job_.point[k][pair.index] = point[k];
     return true;
   }
 
   /// Returns false if no contact is as deep as the pair; the solver must answer then.
-  bool contacts(const HullPair& pair, const HullContacts& ask, const HullCandidate* winner) {
+  bool contacts(const HullPair& pair, const HullContacts& input, const HullCandidate* winner) {
     job_.contact_first[pair.index] = job_.contacts.size;
     job_.contact_count[pair.index] = 0;
-    if (!(ask.distance <= ask.margin)) return true;
+    if (!(input.distance <= input.margin)) return true;
     if constexpr (Shapes::kPointSecond) {
-      write_point_contact(pair, ask, winner, job_.contacts);
+      write_point_contact(pair, input, winner, job_.contacts);
       job_.contact_count[pair.index] = 1;
       return true;
     }
     const std::uint32_t count =
-        write_contacts<Shapes::kSimpleSecond>(pair, ask, winner, job_.contacts);
+        write_contacts<Shapes::kSimpleSecond>(pair, input, winner, job_.contacts);
     job_.contact_count[pair.index] = count;
     return count > 0;
   }
@@ -191,7 +191,7 @@ class HullAnswers {
                            static_cast<double>(pair.gap[2])};
     const double length = __builtin_sqrt(dot3(gap, gap));
     const double scale = 1.0 / static_cast<double>(pair.scale);
-    // Slightly less than HullSearch::kDoubt; the rest covers roundings here.
+    // Slightly less than HullSearch::kLengthError; the rest covers roundings here.
     constexpr double doubt = 5.5e-6;
     const double lower = (static_cast<double>(pair.lower) / length - doubt) * scale;
     const double upper = (length + doubt) * scale;

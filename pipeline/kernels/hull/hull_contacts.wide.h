@@ -55,7 +55,7 @@ class HullPatch {
       best = side;
     }
     if (best != kNoFeature) return face(best);
-    edge_alone(index);
+    use_only_edge(index);
   }
 
   /// As above, with the edge given by its ends. Calls `across` if there is no such edge.
@@ -97,15 +97,15 @@ class HullPatch {
     const std::uint32_t face_index = face_across(hull_, outward_, x, slack);
     if (face_index != kNoFeature) return face(face_index);
     const std::uint32_t other = neighbour_across(hull_, direction, vertex, x);
-    if (other != kNoFeature) return edge_alone(find_edge(hull_, vertex, other));
-    vertex_alone(vertex);
+    if (other != kNoFeature) return use_only_edge(find_edge(hull_, vertex, other));
+    use_only_vertex(vertex);
   }
 
   /// Sets all of a simple shape: the face that faces the normal best at any angle, a segment, or a
   /// point.
   void whole() {
-    if (hull_.dimension == 0) return vertex_alone(0);
-    if (hull_.dimension == 1) return edge_alone(0);
+    if (hull_.dimension == 0) return use_only_vertex(0);
+    if (hull_.dimension == 1) return use_only_edge(0);
     std::uint32_t best = 0;
     for (std::uint32_t i = 1; i < hull_.face_count; ++i) {
       const bool better =
@@ -115,7 +115,7 @@ class HullPatch {
     face(best);
   }
 
-  [[nodiscard]] Patch patch() const {
+  [[nodiscard]] SupportingFeature patch() const {
     return {vertex_, vertex_feature_, edge_feature_, count_, feature_, hull_.rounding};
   }
 
@@ -126,7 +126,7 @@ class HullPatch {
     for (int k = 0; k < 3; ++k) direction[k] = static_cast<float>(outward_[k]);
   }
 
-  void edge_alone(std::uint32_t index) {
+  void use_only_edge(std::uint32_t index) {
     const std::uint32_t* ends = hull_.edges[index].vertex;
     count_ = 0;
     add(ends[0] < ends[1] ? ends[0] : ends[1], index);
@@ -134,7 +134,7 @@ class HullPatch {
     feature_ = hull_.face_count + index;
   }
 
-  void vertex_alone(std::uint32_t vertex) {
+  void use_only_vertex(std::uint32_t vertex) {
     count_ = 0;
     add(vertex, 0);
     feature_ = hull_.face_count + hull_.edge_count + vertex;
@@ -206,18 +206,18 @@ struct HullContacts {
 /// Writes the contacts of a pair and returns their number; 0 if the features do not overlap at the
 /// depth of the pair.
 template <bool Simple>
-static inline std::uint32_t write_contacts(const HullPair& pair, const HullContacts& ask,
+static inline std::uint32_t write_contacts(const HullPair& pair, const HullContacts& input,
                                            const HullCandidate* winner, ContactWriter& writer) {
-  HullPatch first(pair, ask.normal, true);
-  HullPatch second(pair, ask.normal, false);
+  HullPatch first(pair, input.normal, true);
+  HullPatch second(pair, input.normal, false);
   find_features<Simple>(pair, winner, first, second);
   ContactPoint points[kManifoldPoints];
-  const std::uint32_t count =
-      contact_patch(pair.swapped ? second.patch() : first.patch(),
-                    pair.swapped ? first.patch() : second.patch(), ask.world, ask.margin, points);
+  const std::uint32_t count = contact_patch(pair.swapped ? second.patch() : first.patch(),
+                                            pair.swapped ? first.patch() : second.patch(),
+                                            input.world, input.margin, points);
   if (count == 0) return 0;
-  const double miss = __builtin_fabs(static_cast<double>(points[0].depth) + ask.distance);
-  if (!(miss <= ask.doubt)) return 0;
+  const double miss = __builtin_fabs(static_cast<double>(points[0].depth) + input.distance);
+  if (!(miss <= input.doubt)) return 0;
   for (std::uint32_t i = 0; i < count; ++i) {
     const std::uint32_t to = writer.size + i;
     for (int k = 0; k < 3; ++k) writer.position[k][to] = points[i].position[k];
@@ -232,21 +232,21 @@ static inline std::uint32_t write_contacts(const HullPair& pair, const HullConta
 /// determine it. Returns false if the features do not overlap at the depth of the pair, up to
 /// `doubt`.
 template <bool Simple>
-static inline bool point_of_features(const HullPair& pair, const HullContacts& ask,
+static inline bool point_of_features(const HullPair& pair, const HullContacts& input,
                                      const HullCandidate* winner, double* point) {
-  HullPatch first(pair, ask.normal, true);
-  HullPatch second(pair, ask.normal, false);
+  HullPatch first(pair, input.normal, true);
+  HullPatch second(pair, input.normal, false);
   find_features<Simple>(pair, winner, first, second);
-  const Patch a = pair.swapped ? second.patch() : first.patch();
-  const Patch b = pair.swapped ? first.patch() : second.patch();
-  const double depth = deepest_point(a, b, ask.world, point) + a.rounding + b.rounding;
-  for (int k = 0; k < 3; ++k) point[k] += a.rounding * ask.world[k];
-  return __builtin_fabs(depth + ask.distance) <= ask.doubt;
+  const SupportingFeature a = pair.swapped ? second.patch() : first.patch();
+  const SupportingFeature b = pair.swapped ? first.patch() : second.patch();
+  const double depth = deepest_point(a, b, input.world, point) + a.rounding + b.rounding;
+  for (int k = 0; k < 3; ++k) point[k] += a.rounding * input.world[k];
+  return __builtin_fabs(depth + input.distance) <= input.doubt;
 }
 
 /// Returns the feature of the first that is closest to a point: the face of least depth, or the
 /// feature that the closest vertices span.
-static inline std::uint32_t feature_at_point(const HullPair& pair, const HullContacts& ask,
+static inline std::uint32_t feature_at_point(const HullPair& pair, const HullContacts& input,
                                              const HullCandidate* winner) {
   const auto id = [](FeatureKind kind, std::uint32_t number) {
     return static_cast<std::uint32_t>(kind) << kFeatureKindShift | number;
@@ -262,26 +262,26 @@ static inline std::uint32_t feature_at_point(const HullPair& pair, const HullCon
     float x[3];
     vertex_at(hull, v, x);
     const float slack = kFloatError * static_cast<float>(pair.size);
-    const std::uint32_t face = face_across(hull, ask.normal, x, slack);
+    const std::uint32_t face = face_across(hull, input.normal, x, slack);
     if (face != kNoFeature) return id(FeatureKind::face, face);
   }
   return id(FeatureKind::vertex, v);
 }
 
 /// Writes the single contact of a second shape whose core is a point, halfway between the surfaces.
-static inline void write_point_contact(const HullPair& pair, const HullContacts& ask,
+static inline void write_point_contact(const HullPair& pair, const HullContacts& input,
                                        const HullCandidate* winner, ContactWriter& writer) {
   double center[3];
   to_world(pair, pair.shift, center);
   // Moves back towards the first, which is body a unless they are swapped.
-  const double back = pair.second->rounding + 0.5 * ask.distance;
+  const double back = pair.second->rounding + 0.5 * input.distance;
   const double reach = pair.swapped ? back : -back;
   const std::uint32_t to = writer.size++;
   for (int k = 0; k < 3; ++k) {
-    writer.position[k][to] = static_cast<float>(center[k] + reach * ask.world[k]);
+    writer.position[k][to] = static_cast<float>(center[k] + reach * input.world[k]);
   }
-  writer.depth[to] = static_cast<float>(-ask.distance);
-  const std::uint64_t feature = feature_at_point(pair, ask, winner);
+  writer.depth[to] = static_cast<float>(-input.distance);
+  const std::uint64_t feature = feature_at_point(pair, input, winner);
   writer.feature[to] = pair.swapped ? feature : feature << 32U;
 }
 

@@ -50,26 +50,26 @@ struct HullCandidate {
 
 class HullDepth {
  public:
-  static constexpr std::uint32_t kMostFaces = 512;
-  static constexpr std::uint32_t kMostCandidates = 24;
+  static constexpr std::uint32_t kMaxFaces = 512;
+  static constexpr std::uint32_t kMaxCandidates = 24;
 
   /// Finds the candidates. Returns false if there are more than fit, or if the result is not
   /// certain.
   bool find(const HullPair& pair) {
-    if (pair.first->dimension != 3 || pair.first->face_count > kMostFaces ||
-        pair.second->face_count > kMostFaces) {
+    if (pair.first->dimension != 3 || pair.first->face_count > kMaxFaces ||
+        pair.second->face_count > kMaxFaces) {
       return false;
     }
     slack_ = 2.0F * kFloatError * static_cast<float>(pair.size);
     best_ = __builtin_sqrtf(pair.depth_squared) / pair.scale * 1.00001F + slack_;
     count_ = 0;
     records_ = 0;
-    tie_.face = kMostFaces;
+    tie_.face = kMaxFaces;
     place(pair);
     close_faces(second_);
     measure_open_faces();
     close_faces(first_);
-    return best_ + slack_ > 0.0F && follow_arcs() && count_ <= kMostCandidates;
+    return best_ + slack_ > 0.0F && follow_arcs() && count_ <= kMaxCandidates;
   }
 
   [[nodiscard]] float best() const { return best_; }
@@ -80,7 +80,7 @@ class HullDepth {
 
  private:
   /// Three edges for two faces.
-  static constexpr std::uint32_t kMostEdges = kMostFaces / 2 * 3;
+  static constexpr std::uint32_t kMaxEdges = kMaxFaces / 2 * 3;
 
   /// A hull whose faces are tested against the vertices of the other hull.
   struct Side {
@@ -96,7 +96,7 @@ class HullDepth {
     std::uint32_t known_count;
     /// For each face, bits of the known points that are higher along its normal than the best
     /// depth; 0.0F if there are none.
-    alignas(64) float closed[kMostFaces];
+    alignas(64) float closed[kMaxFaces];
   };
 
   /// One bit of `closed`, in a bit pattern that is a normal float.
@@ -196,8 +196,8 @@ class HullDepth {
     for (int k = 0; k < 3; ++k) record.normal[k] = plane[k][face];
     record.offset = plane[3][face];
     record.face = face;
-    meet(record);
-    if (record.depth <= best_ + slack_) find_tie(record);
+    find_support(record);
+    if (record.depth <= best_ + slack_) find_tied_vertices(record);
     // This face stays a candidate up to a slightly larger depth, for the arcs that `is_tied_end`
     // leaves to HullTies.
     propose_face(HullCandidate::Kind::first_face, face, record.depth, kTie * slack_);
@@ -205,7 +205,7 @@ class HullDepth {
 
   /// If several vertices of the second are lowest along a face's normal, up to the errors of float,
   /// stores their mean.
-  void find_tie(const HullDirection& face) {
+  void find_tied_vertices(const HullDirection& face) {
     float local[3];
     turn_back3(first_.turn, face.normal, local);
     for (float& x : local) x = -x;
@@ -220,7 +220,7 @@ class HullDepth {
 
   /// True if an arc begins at the tied face, and the mean of its tied vertices is deeper than the
   /// best depth at the other end, and so in between, too.
-  [[nodiscard]] bool is_below_tie(const HullEdge& edge) const {
+  [[nodiscard]] bool is_deeper_than_tie(const HullEdge& edge) const {
     const std::uint32_t* face = edge.face;
     if (face[0] != tie_.face && face[1] != tie_.face) return false;
     if (!(tie_.depth > slack_) || tie_.depth > best_ + slack_) return false;
@@ -231,7 +231,7 @@ class HullDepth {
   }
 
   /// Finds the supporting vertex of the second against a direction, and the depth along it.
-  [[gnu::always_inline]] void meet(HullDirection& direction) const {
+  [[gnu::always_inline]] void find_support(HullDirection& direction) const {
     float local[3];
     turn_back3(first_.turn, direction.normal, local);
     for (float& x : local) x = -x;
@@ -266,13 +266,13 @@ class HullDepth {
 
   /// Adds a candidate. If there is no room, first drops candidates that have become too deep.
   void propose(const HullCandidate& candidate) {
-    if (count_ >= kMostCandidates) drop_deep();
-    if (count_ < kMostCandidates) candidates_[count_] = candidate;
+    if (count_ >= kMaxCandidates) drop_deep();
+    if (count_ < kMaxCandidates) candidates_[count_] = candidate;
     ++count_;
   }
 
   void drop_deep() {
-    if (count_ > kMostCandidates) return;
+    if (count_ > kMaxCandidates) return;
     std::uint32_t kept = 0;
     for (std::uint32_t i = 0; i < count_; ++i) {
       if (candidates_[i].depth <= best_ + slack_) candidates_[kept++] = candidates_[i];
@@ -283,11 +283,11 @@ class HullDepth {
   /// Searches all arcs of the first that no single known point closes at both ends.
   bool follow_arcs() {
     const HullShape& hull = *first_.hull;
-    if (hull.edge_count > kMostEdges) return false;
+    if (hull.edge_count > kMaxEdges) return false;
     const std::uint32_t count = list_open_arcs(hull);
     for (std::uint32_t i = 0; i < count; ++i) {
       const HullEdge& edge = hull.edges[open_[i]];
-      if (is_deep(edge) || is_below_tie(edge)) continue;
+      if (is_deep(edge) || is_deeper_than_tie(edge)) continue;
       const HullDirection& a = measured(edge.face[0]);
       const HullDirection& b = measured(edge.face[1]);
       if (a.vertex == b.vertex || is_deep(edge)) continue;
@@ -306,7 +306,7 @@ class HullDepth {
   }
 
   /// Fills open_. Measures the faces that are not closed, except the neighbours of a tied face that
-  /// is_below_tie excludes.
+  /// is_deeper_than_tie excludes.
   std::uint32_t list_open_arcs(const HullShape& hull) {
     std::uint32_t count = 0;
     for (std::uint32_t e = 0; e < hull.edge_count; ++e) {
@@ -319,7 +319,7 @@ class HullDepth {
     }
     for (std::uint32_t i = 0; i < count; ++i) {
       const HullEdge& edge = hull.edges[open_[i]];
-      if (is_below_tie(edge)) continue;
+      if (is_deeper_than_tie(edge)) continue;
       for (const std::uint32_t face : edge.face) {
         if (closed_by(face) == 0) measured(face);
       }
@@ -435,11 +435,11 @@ class HullDepth {
     HullDirection middle;
     float weight[2];
     float lowest = 0.0F;
-    const Verdict verdict = cut(from, to, arc.is_whole(), middle, weight, lowest);
-    if (verdict == Verdict::lost) return false;
+    const ArcDepth arc_depth = cut(from, to, arc.is_whole(), middle, weight, lowest);
+    if (arc_depth == ArcDepth::lost) return false;
     arc.vertex[0] = from.vertex;
     arc.vertex[1] = to.vertex;
-    if (verdict == Verdict::deep) {
+    if (arc_depth == ArcDepth::deep) {
       // The ends of a whole arc are candidates, and HullTies searches around them.
       if (!arc.is_whole()) propose_arc(arc, from.depth < to.depth ? from.depth : to.depth);
       return true;
@@ -474,45 +474,45 @@ class HullDepth {
   /// Heights that differ by less than this fraction of the slack are tied.
   static constexpr float kTie = 0.25F;
 
-  enum class Verdict : std::uint8_t { deep, near, lost };
+  enum class ArcDepth : std::uint8_t { deep, near, lost };
 
   /// Bounds the heights along an arc from below by the two points found at its ends. The bound is
   /// smallest in the direction in which both have the same height, or at an end, which has been
   /// measured. If it is near the best depth, measures the depth in that direction. Any direction
   /// between the ends gives a valid bound, as heights are concave: between it and an end, that
   /// end's point is at least as high as at the lower of the two.
-  Verdict cut(const HullDirection& a, const HullDirection& b, bool whole, HullDirection& middle,
-              float* weight, float& lowest) {
+  ArcDepth cut(const HullDirection& a, const HullDirection& b, bool whole, HullDirection& middle,
+               float* weight, float& lowest) {
     const float cosine = dot3(a.normal, b.normal);
-    if (!(cosine > -0.98F)) return Verdict::lost;
+    if (!(cosine > -0.98F)) return ArcDepth::lost;
     const float a_at_b = b.offset - dot3(b.normal, a.point);
     const float b_at_a = a.offset - dot3(a.normal, b.point);
     float p = b.depth - a_at_b;
     float q = a.depth - b_at_a;
     p = p > 0.0F ? p : 0.0F;
     q = q > 0.0F ? q : 0.0F;
-    if (!(p + q > 0.0F)) return Verdict::deep;
+    if (!(p + q > 0.0F)) return ArcDepth::deep;
     const float height_a = p * a.depth + q * a_at_b;
     const float height_b = p * b_at_a + q * b.depth;
     const float height = height_a < height_b ? height_a : height_b;
     const float square = p * p + q * q + 2.0F * p * q * cosine;
     const float limit = best_ + slack_ * (p + q) / __builtin_sqrtf(square);
-    if (height > 0.0F && height * height > limit * limit * square) return Verdict::deep;
+    if (height > 0.0F && height * height > limit * limit * square) return ArcDepth::deep;
     const float scale = 1.0F / __builtin_sqrtf(square);
     weight[0] = p * scale;
     weight[1] = q * scale;
     lowest = height * scale;
     if (whole && (is_tied_end(a, b_at_a, lowest) || is_tied_end(b, a_at_b, lowest))) {
-      return Verdict::deep;
+      return ArcDepth::deep;
     }
     for (int k = 0; k < 3; ++k) {
       middle.normal[k] = weight[0] * a.normal[k] + weight[1] * b.normal[k];
     }
     middle.offset = weight[0] * a.offset + weight[1] * b.offset;
     middle.face = a.face;
-    meet(middle);
+    find_support(middle);
     best_ = middle.depth < best_ ? middle.depth : best_;
-    return Verdict::near;
+    return ArcDepth::near;
   }
 
   /// A face of the first along which the depth is near the smallest, and the mean of the vertices
@@ -530,10 +530,10 @@ class HullDepth {
   float slack_;
   std::uint32_t count_;
   std::uint32_t records_;
-  HullCandidate candidates_[kMostCandidates];
-  std::uint32_t open_[kMostEdges + 1];
-  std::uint16_t record_of_[kMostFaces] = {};
-  HullDirection record_[kMostFaces];
+  HullCandidate candidates_[kMaxCandidates];
+  std::uint32_t open_[kMaxEdges + 1];
+  std::uint16_t record_of_[kMaxFaces] = {};
+  HullDirection record_[kMaxFaces];
 };
 
 }  // namespace winnow::WINNOW_ISA_NAME::hull

@@ -151,8 +151,8 @@ static inline void finish_depth(const HullPair& pair, const HullDepth& found,
   HullMeasure measure(pair);
   double best = __builtin_inf();
   double lower = best;
-  double depth[HullDepth::kMostCandidates];
-  double least[HullDepth::kMostCandidates];
+  double depth[HullDepth::kMaxCandidates];
+  double least[HullDepth::kMaxCandidates];
   answer.winner = nullptr;
   for (std::uint32_t i = 0; i < found.count(); ++i) {
     const HullCandidate& c = found.candidate(i);
@@ -241,7 +241,7 @@ class HullTouch {
   }
 
   /// True if a point of the touching plane is on the first or the second.
-  [[nodiscard]] bool lies_on(bool first, const double* x) const {
+  [[nodiscard]] bool is_on(bool first, const double* x) const {
     if (first) return contains(*pair_.first, x, rounding_);
     double across[3];
     for (int k = 0; k < 3; ++k) {
@@ -273,13 +273,13 @@ static inline bool touching_point(const HullPair& pair, HullDistance& answer) {
   const HullTouch touch(pair, answer);
   const bool first = kind == Kind::second_face;
   const std::uint32_t tied = touch.find_middle(first, answer.point);
-  if ((kind != Kind::arc && tied == 1) || touch.lies_on(!first, answer.point)) return true;
+  if ((kind != Kind::arc && tied == 1) || touch.is_on(!first, answer.point)) return true;
   double other[3];
   touch.find_middle(!first, other);
   for (int k = 0; k < 3; ++k) answer.point[k] = 0.5 * (answer.point[k] + other[k]);
-  if (touch.lies_on(true, answer.point) && touch.lies_on(false, answer.point)) return true;
+  if (touch.is_on(true, answer.point) && touch.is_on(false, answer.point)) return true;
   for (int k = 0; k < 3; ++k) answer.point[k] = other[k];
-  return touch.lies_on(first, answer.point);
+  return touch.is_on(first, answer.point);
 }
 
 }  // namespace winnow::WINNOW_ISA_NAME::hull

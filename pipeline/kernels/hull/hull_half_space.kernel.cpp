@@ -3,7 +3,7 @@
 
 #include "pipeline/kernels/hull/hull_features.wide.h"
 #include "pipeline/kernels/kernels.h"
-#include "pipeline/kernels/round/over_plane.wide.h"
+#include "pipeline/kernels/round/half_space_common.wide.h"
 #include "simd/lanes/rows.h"
 
 namespace winnow {
@@ -14,12 +14,12 @@ using hull::kNoFeature;
 
 /// Vertices of a hull that stand on a plane: the lowest vertex, and the vertices of the face or
 /// edge at it that faces the plane, if they are at most `reach` higher. If there are more than
-/// four, standing_corners chooses; the first is then hardly higher than the lowest.
-class StandingPoints {
+/// four, corners_on_plane chooses; the first is then hardly higher than the lowest.
+class HullPointsOnPlane {
  public:
-  static constexpr std::uint32_t kMost = kManifoldPoints;
+  static constexpr std::uint32_t kMaxPoints = kManifoldPoints;
 
-  StandingPoints(const HullShape& shape, const double* up, std::uint32_t lowest, double reach)
+  HullPointsOnPlane(const HullShape& shape, const double* up, std::uint32_t lowest, double reach)
       : shape_(shape), up_(up) {
     add(lowest);
     double bottom[3];
@@ -54,7 +54,7 @@ class StandingPoints {
   }
 
   void take_face(const HullFace& face) {
-    if (face.count > kMost) return take_widest(face);
+    if (face.count > kMaxPoints) return take_widest(face);
     for (std::uint32_t i = 0; i < face.count; ++i) {
       const std::uint32_t vertex = shape_.loop[face.first + i];
       if (vertex != vertex_[0]) add_within(vertex);
@@ -74,8 +74,8 @@ class StandingPoints {
       hull::vertex_at(shape_, vertex[size], point[size]);
       ++size;
     }
-    const Patch patch{point, vertex, edge, size, 0, 0.0};
-    const std::uint32_t found = standing_corners(patch, up_, limit_, vertex_);
+    const SupportingFeature patch{point, vertex, edge, size, 0, 0.0};
+    const std::uint32_t found = corners_on_plane(patch, up_, limit_, vertex_);
     if (found > 0) count_ = found;
   }
 
@@ -83,15 +83,15 @@ class StandingPoints {
   const double* up_;
   double limit_ = 0.0;
   std::uint32_t count_ = 0;
-  std::uint32_t vertex_[kMost + 1] = {};
+  std::uint32_t vertex_[kMaxPoints + 1] = {};
 };
 
 /// The plane in the frames of the hulls, also stored lane by lane, and the numbers of each hull
 /// other than its vertices.
 template <typename T>
 struct PlaneUnderHull {
-  Plane<T> plane;
-  Turn<T> turn;
+  PlacedPlane<T> plane;
+  ScaledQuaternion<T> turn;
   Rotation<T> axes;
   Vec3<T> up;
   alignas(64) T normal[3][Lanes<T>::kCount];
@@ -120,7 +120,7 @@ struct PlaneUnderHull {
 
   /// Sets the members that all feet share.
   template <int Count>
-  [[gnu::always_inline]] void set_common(Feet<T, Count>& feet) const {
+  [[gnu::always_inline]] void set_common(LowestPoints<T, Count>& feet) const {
     feet.rounding = Lanes<T>::load(rounding);
     feet.normal = plane.normal;
     feet.scale = plane.scale + feet.rounding + Lanes<T>::load(reach) + doubt(turn);
@@ -131,17 +131,17 @@ struct HullOverPlane {
   template <typename T, int L>
   [[gnu::always_inline]] static Mask16 block(NarrowJob& job, const PairBlock<T>& block) {
     if constexpr (L == kManifold) {
-      return FeetAnswers<4>::write<L>(job, block, feet<T, 4>(job, block));
+      return LowestPointAnswers<4>::write<L>(job, block, feet<T, 4>(job, block));
     } else if constexpr (L == kBoolean && sizeof(T) == sizeof(float)) {
-      return FeetAnswers<1>::write<L>(job, block, heights(job, block));
+      return LowestPointAnswers<1>::write<L>(job, block, heights(job, block));
     } else {
-      return FeetAnswers<1>::write<L>(job, block, feet<T, 1>(job, block));
+      return LowestPointAnswers<1>::write<L>(job, block, feet<T, 1>(job, block));
     }
   }
 
   /// Computes only the heights of the lowest vertices.
-  [[gnu::noinline]] static Feet<float, 1> heights(const NarrowJob& job,
-                                                  const PairBlock<float>& block) {
+  [[gnu::noinline]] static LowestPoints<float, 1> heights(const NarrowJob& job,
+                                                          const PairBlock<float>& block) {
     PlaneUnderHull<float> under(job, block);
     alignas(64) float low[kLanes][kLanes];
     for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
@@ -153,17 +153,18 @@ struct HullOverPlane {
       }
       least.store(low[lane]);
     }
-    Feet<float, 1> r;
+    LowestPoints<float, 1> r;
     r.height[0] = under.plane.height + reduce_min_rows(low[0]);
     under.set_common(r);
     return r;
   }
 
   template <typename T, int Count>
-  [[gnu::noinline]] static Feet<T, Count> feet(const NarrowJob& job, const PairBlock<T>& block) {
+  [[gnu::noinline]] static LowestPoints<T, Count> feet(const NarrowJob& job,
+                                                       const PairBlock<T>& block) {
     constexpr std::uint32_t kWidth = Lanes<T>::kCount;
     PlaneUnderHull<T> under(job, block);
-    const Plane<T>& plane = under.plane;
+    const PlacedPlane<T>& plane = under.plane;
     const auto& normal = under.normal;
     alignas(64) T height[kWidth];
     plane.height.store(height);
@@ -190,7 +191,7 @@ struct HullOverPlane {
         std::uint32_t found = 1;
         hull_vertex(shape, lowest, 0, lane, vertex, name);
         if (room >= 0.0) {
-          const StandingPoints print(shape, d, lowest, room);
+          const HullPointsOnPlane print(shape, d, lowest, room);
           found = print.count();
           for (std::uint32_t i = 0; i < found; ++i) {
             hull_vertex(shape, print.vertex(i), i, lane, vertex, name);
@@ -202,7 +203,7 @@ struct HullOverPlane {
         }
       }
     }
-    Feet<T, Count> r;
+    LowestPoints<T, Count> r;
     for (int i = 0; i < Count; ++i) {
       const Vec3<T> local{Lanes<T>::load(vertex[i][0]), Lanes<T>::load(vertex[i][1]),
                           Lanes<T>::load(vertex[i][2])};

@@ -70,7 +70,7 @@ struct HullPair {
 inline constexpr double kSmallestHull = 1e-8;
 inline constexpr double kLargestHull = 1e8;
 /// The search stores vertex numbers in 16 bits.
-inline constexpr std::uint32_t kMostHullVertices = 65535;
+inline constexpr std::uint32_t kMaxHullVertices = 65535;
 
 /// Bound of the rounding errors of lengths computed in double from a HullPair, relative to size:
 /// some forty operations of half a unit each.

@@ -16,9 +16,9 @@ namespace winnow::WINNOW_ISA_NAME::hull {
 template <typename Seconds>
 class HullSearch {
  public:
-  /// `for_verdict`: the search stops with state inside as soon as the roundings certainly overlap.
-  HullSearch(HullPair* pairs, std::uint32_t count, bool for_verdict)
-      : next_(pairs), end_(pairs + count), for_verdict_(for_verdict) {}
+  /// `overlap_only`: the search stops with state inside as soon as the roundings certainly overlap.
+  HullSearch(HullPair* pairs, std::uint32_t count, bool overlap_only)
+      : next_(pairs), end_(pairs + count), overlap_only_(overlap_only) {}
 
   void run() {
     for (int lane = 0; lane < kLanes; ++lane) refill(lane);
@@ -33,9 +33,9 @@ class HullSearch {
   }
 
  private:
-  static constexpr std::uint32_t kMostSteps = 48;
+  static constexpr std::uint32_t kMaxSteps = 48;
   /// Number of steps after a restart from outside.
-  static constexpr std::uint32_t kSinkSteps = 8;
+  static constexpr std::uint32_t kRestartSteps = 8;
   /// Distance of the restart's goal from the origin, relative to the lowest height found.
   static constexpr float kOutside = 1.25F;
   /// Scaled; if its nearest point is closer, the simplex counts as touching the origin.
@@ -44,7 +44,7 @@ class HullSearch {
   static constexpr float kNoGain = 4e-7F;
   /// Scaled error of a support's height, which may be below the highest by kLaneBits units in the
   /// last place.
-  static constexpr float kDoubt = 6e-6F;
+  static constexpr float kLengthError = 6e-6F;
 
   void refill(int lane) {
     if (next_ == end_) {
@@ -58,14 +58,14 @@ class HullSearch {
     seconds_.put(lane, pair);
     scale_[lane] = pair.scale;
     const auto scaled = [&](double length) { return static_cast<float>(length) * pair.scale; };
-    const float far = scaled(pair.far + pair.rounding) + kDoubt;
+    const float far = scaled(pair.far + pair.rounding) + kLengthError;
     far_[lane] = far * far;
-    const float near = scaled(pair.rounding) - kDoubt;
-    near_[lane] = for_verdict_ && near > 0.0F ? near * near : -1.0F;
+    const float near = scaled(pair.rounding) - kLengthError;
+    near_[lane] = overlap_only_ && near > 0.0F ? near * near : -1.0F;
     depth_[lane] = __builtin_inff();
     for (int s = 0; s < kSlots; ++s) present_[s][lane] = 0.0F;
     fresh_[lane] = 1.0F;
-    sinking_[lane] = 0.0F;
+    restarted_[lane] = 0.0F;
     for (int k = 0; k < 3; ++k) goal_[k][lane] = 0.0F;
     pair.trail_length = 0;
     steps_[lane] = 0;
@@ -114,14 +114,15 @@ class HullSearch {
     const Vec3<float> gap{Floats::load(gap_[0]), Floats::load(gap_[1]), Floats::load(gap_[2])};
     const Floats square = Floats::load(square_);
     const LaneMask<float> fresh = Floats::load(fresh_) > zero;
-    const LaneMask<float> sinking = Floats::load(sinking_) > zero;
+    const LaneMask<float> restarted = Floats::load(restarted_) > zero;
     Floats name;
     const Vec3<float> w = support(gap, name);
     const Floats height = dot(gap, w);
     const LaneMask<float> ahead = height > zero;
-    const LaneMask<float> far = ahead & (height * height > Floats::load(far_) * square) & !sinking;
+    const LaneMask<float> far =
+        ahead & (height * height > Floats::load(far_) * square) & !restarted;
     height.store(height_along_);
-    if (!for_verdict_) note_depth(w, gap, square, height);
+    if (!overlap_only_) note_depth(w, gap, square, height);
 
     const Floats gain = square - height;
     const LaneMask<float> no_gain =
@@ -134,7 +135,7 @@ class HullSearch {
     const LaneMask<float> inside = nearest.inside & !far;
     const LaneMask<float> moves = !(far | stuck | inside);
     keep(simplex, nearest, moves, w, name, gap, next_square);
-    const Mask16 sinking_bits = bits(sinking);
+    const Mask16 restarted_bits = bits(restarted);
     const Mask16 far_bits = bits(far) & active_;
     const Mask16 stuck_bits = bits(stuck) & active_;
     const Mask16 inside_bits = bits(inside) & active_;
@@ -143,21 +144,21 @@ class HullSearch {
     const Mask16 touch_bits =
         bits(next_square <= Floats(kTouching * kTouching)) & move & ~near_bits;
     mark(far_bits, HullState::far);
-    mark(stuck_bits & ~sinking_bits, HullState::apart);
-    mark(stuck_bits & sinking_bits, HullState::close);
+    mark(stuck_bits & ~restarted_bits, HullState::apart);
+    mark(stuck_bits & restarted_bits, HullState::close);
     mark(inside_bits & bits(nearest.deep), HullState::inside);
     mark(inside_bits & ~bits(nearest.deep), HullState::close);
     mark(near_bits, HullState::inside);
     mark(touch_bits, HullState::close);
     Mask16 done = far_bits | stuck_bits | inside_bits | near_bits | touch_bits;
-    if (!for_verdict_) done &= ~sink(inside_bits & ~sinking_bits);
-    return done | give_up(active_ & ~done, sinking_bits);
+    if (!overlap_only_) done &= ~restart_from_outside(inside_bits & ~restarted_bits);
+    return done | give_up(active_ & ~done, restarted_bits);
   }
 
   /// Restarts the lanes whose origin is inside: the goal becomes a point outside, near the lowest
   /// support. Returns the lanes that have such a point.
-  Mask16 sink(Mask16 lanes) {
-    Mask16 sunk = 0;
+  Mask16 restart_from_outside(Mask16 lanes) {
+    Mask16 restarts = 0;
     for (; lanes != 0; lanes &= lanes - 1) {
       const unsigned lane = first(lanes);
       const float depth = __builtin_sqrtf(depth_[lane]);
@@ -174,11 +175,11 @@ class HullSearch {
       square_[lane] = square;
       for (int s = 0; s < kSlots; ++s) present_[s][lane] = 0.0F;
       fresh_[lane] = 1.0F;
-      sinking_[lane] = 1.0F;
-      steps_[lane] = kMostSteps - kSinkSteps;
-      sunk |= 1U << lane;
+      restarted_[lane] = 1.0F;
+      steps_[lane] = kMaxSteps - kRestartSteps;
+      restarts |= 1U << lane;
     }
-    return sunk;
+    return restarts;
   }
 
   /// Keeps the lowest height of the difference over the origin, and its direction.
@@ -198,13 +199,13 @@ class HullSearch {
   }
 
   /// Ends searches that exceed the step limit.
-  Mask16 give_up(Mask16 lanes, Mask16 sinking) {
+  Mask16 give_up(Mask16 lanes, Mask16 restarted) {
     Mask16 late = 0;
     for (; lanes != 0; lanes &= lanes - 1) {
       const unsigned lane = first(lanes);
-      if (++steps_[lane] < kMostSteps) continue;
+      if (++steps_[lane] < kMaxSteps) continue;
       late |= 1U << lane;
-      pair_[lane]->state = (sinking >> lane & 1U) != 0 ? HullState::close : HullState::apart;
+      pair_[lane]->state = (restarted >> lane & 1U) != 0 ? HullState::close : HullState::apart;
     }
     return late;
   }
@@ -267,7 +268,7 @@ class HullSearch {
 
   HullPair* next_;
   HullPair* end_;
-  bool for_verdict_;
+  bool overlap_only_;
   Mask16 active_ = 0;
   FarthestVertices firsts_;
   Seconds seconds_;
@@ -278,7 +279,7 @@ class HullSearch {
   alignas(64) float near_[kLanes] = {};
   alignas(64) float fresh_[kLanes] = {};
   /// 1 if the origin is inside and the search continues from the point `goal_` outside.
-  alignas(64) float sinking_[kLanes] = {};
+  alignas(64) float restarted_[kLanes] = {};
   alignas(64) float goal_[3][kLanes] = {};
   alignas(64) float lowest_[3][kLanes] = {};
   alignas(64) float depth_[kLanes] = {};

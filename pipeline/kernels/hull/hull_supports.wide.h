@@ -3,7 +3,7 @@
 // Support points for sixteen pairs of hulls, one pair per lane: the vertex of the first that is
 // farthest against a direction, and the point of the second farthest along it. Hulls are processed
 // one after the other, sixteen vertices at a time; the few vertices of simple shapes are processed
-// in all lanes at once. Used by hull_search.wide.h and verdicts.wide.h.
+// in all lanes at once. Used by hull_search.wide.h and overlap_test.wide.h.
 
 #include "pipeline/kernels/hull/hull_pair.wide.h"
 #include "simd/lanes/rows.h"

@@ -44,7 +44,7 @@ class HullTies {
   [[nodiscard]] const double* normal() const { return normal_; }
 
  private:
-  static constexpr int kMostParts = 16;
+  static constexpr int kMaxParts = 16;
 
   /// Part of an arc between two directions, and the supporting vertices of the second there.
   struct Part {
@@ -104,7 +104,7 @@ class HullTies {
     second_vertex_at(pair_, last, theirs);
     if (is_deep(theirs, from, to)) return true;
     const double* ends[2] = {from, to};
-    Part stack[kMostParts];
+    Part stack[kMaxParts];
     for (int i = 0; i < 2; ++i) {
       for (int k = 0; k < 3; ++k) stack[0].end[i][k] = ends[i][k];
     }
@@ -112,9 +112,9 @@ class HullTies {
     stack[0].vertex[1] = last;
     int height = 1;
     for (int looked = 0; height > 0; ++looked) {
-      if (looked == kMostParts || height + 1 >= kMostParts) return false;
+      if (looked == kMaxParts || height + 1 >= kMaxParts) return false;
       const Part part = stack[--height];
-      look(edge, part, stack, height);
+      bound_part(edge, part, stack, height);
     }
     return true;
   }
@@ -133,7 +133,7 @@ class HullTies {
   }
 
   /// Bounds a part of an arc, or pushes its halves on the stack if a third vertex is nearer.
-  void look(std::uint32_t edge, const Part& part, Part* stack, int& height) {
+  void bound_part(std::uint32_t edge, const Part& part, Part* stack, int& height) {
     double w[2][3];
     for (int i = 0; i < 2; ++i) {
       double theirs[3];

@@ -1,7 +1,7 @@
 #pragma once
 
 // Loads the shapes of a block of pairs as cores in float lanes. For hulls and user shapes only
-// their bounds are loaded, not their points. Used by verdicts.wide.h.
+// their bounds are loaded, not their points. Used by overlap_test.wide.h.
 
 #include "pipeline/kernels/hull/core_lanes.wide.h"
 #include "pipeline/kernels/hull/hull_pair.wide.h"
@@ -64,8 +64,8 @@ template <typename Side>
 }
 
 template <typename Side>
-[[gnu::noinline]] static void load_own_sets(const NarrowJob& job, const PairBlock<float>& block,
-                                            LoadedCores& to) {
+[[gnu::noinline]] static void load_user_shapes(const NarrowJob& job, const PairBlock<float>& block,
+                                               LoadedCores& to) {
   Floats r[2];
   stage_numbers<Side>(
       job, block,
@@ -102,20 +102,20 @@ template <typename Side>
 }
 
 template <typename Side, typename Shape>
-[[gnu::always_inline]] static inline void load_spun_cores(const NarrowJob& job,
-                                                          const PairBlock<float>& block,
-                                                          const Shape* table, LoadedCores& to) {
-  const SpunLanes<float> spun = load_spun<Side>(job, block, table);
+[[gnu::always_inline]] static inline void load_revolved_cores(const NarrowJob& job,
+                                                              const PairBlock<float>& block,
+                                                              const Shape* table, LoadedCores& to) {
+  const RevolvedLanes<float> revolved = load_revolved<Side>(job, block, table);
   Floats* n = to.core.number;
-  n[0] = spun.radius;
-  n[2] = spun.half_length;
-  to.rounding = spun.rounding;
+  n[0] = revolved.radius;
+  n[2] = revolved.half_length;
+  to.rounding = revolved.rounding;
   to.inner = min(n[0], n[2]);
   if constexpr (__is_same(Shape, ConeShape)) {
     // The distance of the side from the middle of the axis.
     const Floats height = n[2] + n[2];
     const Floats slant = sqrt(n[0] * n[0] + height * height);
-    to.inner = n[0] * (n[2] / max(slant, Floats(kLeastAcross<float>)));
+    to.inner = n[0] * (n[2] / max(slant, Floats(kMinAcross<float>)));
   }
 }
 
@@ -166,7 +166,7 @@ template <typename Side>
   }
   to.rounding = triangle.rounding;
   to.center = (v[0] + v[1] + v[2]) * Floats(1.0F / 3.0F);
-  to.reach = max(max(taxicab(v[0]), taxicab(v[1])), taxicab(v[2]));
+  to.reach = max(max(norm_l1(v[0]), norm_l1(v[1])), norm_l1(v[2]));
 }
 
 /// All shapes are of one kind.
@@ -190,10 +190,10 @@ template <typename Side>
       load_boxes<Side>(job, block, to);
       break;
     case ShapeKind::cylinder:
-      load_spun_cores<Side>(job, block, job.tables->cylinders, to);
+      load_revolved_cores<Side>(job, block, job.tables->cylinders, to);
       break;
     case ShapeKind::cone:
-      load_spun_cores<Side>(job, block, job.tables->cones, to);
+      load_revolved_cores<Side>(job, block, job.tables->cones, to);
       break;
     case ShapeKind::ellipsoid:
       load_ellipsoids<Side>(job, block, to);
@@ -203,7 +203,7 @@ template <typename Side>
     case ShapeKind::triangle:
       return load_triangles<Side>(job, block, to);
     case ShapeKind::support:
-      return load_own_sets<Side>(job, block, to);
+      return load_user_shapes<Side>(job, block, to);
     default:
       return load_hulls<Side>(job, block, to);
   }

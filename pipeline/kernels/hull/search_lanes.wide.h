@@ -2,7 +2,7 @@
 
 // Steps of GJK (Gilbert, Johnson, Keerthi 1988), one search per lane. The last support along the
 // direction found bounds the distance from below; the point of the difference found bounds it from
-// above. Used by verdicts.wide.h and by the curved kernels (curved_search.wide.h).
+// above. Used by overlap_test.wide.h and by the curved kernels (curved_search.wide.h).
 
 #include "pipeline/kernels/hull/core_lanes.wide.h"
 #include "pipeline/kernels/hull/simplex.wide.h"
@@ -28,18 +28,18 @@ class SearchLanes {
   using Column = T[kWidth];
 
   static constexpr bool kIsDouble = sizeof(T) == sizeof(double);
-  static constexpr std::uint32_t kMostSteps = kIsDouble ? 60 : 20;
+  static constexpr std::uint32_t kMaxSteps = kIsDouble ? 60 : 20;
   /// If the gap between the bounds is smaller, it counts as closed; kNoTurn is the same for squares
   /// of angles.
   static constexpr T kNoGain = kIsDouble ? T(2e-15) : T(4e-7F);
   static constexpr T kNoTurn = kIsDouble ? T(1e-13) : T(1e-5F);
   /// User shapes: relative gap at which the search ends. The directions then differ by less than
   /// 0.003 degrees.
-  static constexpr T kOwnGain = T(1e-9);
+  static constexpr T kUserGain = T(1e-9);
   /// If its nearest point is closer, the simplex counts as touching the origin.
   static constexpr T kTouching = kIsDouble ? T(1e-13) : T(2e-6F);
 
-  explicit SearchLanes(bool own) : enough_(own ? kOwnGain : T(0)) {}
+  explicit SearchLanes(bool own) : enough_(own ? kUserGain : T(0)) {}
 
   /// Starts without a simplex; the caller sets the first direction.
   void start(int lane) {
@@ -146,7 +146,7 @@ class SearchLanes {
     Mask16 r = 0;
     for (; lanes != 0; lanes &= lanes - 1) {
       const unsigned lane = first(lanes);
-      if (++steps[lane] >= kMostSteps) r |= 1U << lane;
+      if (++steps[lane] >= kMaxSteps) r |= 1U << lane;
     }
     return r;
   }

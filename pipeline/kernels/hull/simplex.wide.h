@@ -10,14 +10,14 @@ namespace winnow::WINNOW_ISA_NAME::hull {
 inline constexpr int kSlots = 3;
 
 /// For lengths about 1. kVanishing: squares up to this count as zero. kThin: the smallest squared
-/// sine of a triangle that has a normal. kDoubtful: squared heights up to this may be rounding
+/// sine of a triangle that has a normal. kNoiseSquare: squared heights up to this may be rounding
 /// errors.
 template <typename T>
 inline constexpr T kVanishing = sizeof(T) == sizeof(double) ? T(1e-200) : T(1e-30F);
 template <typename T>
 inline constexpr T kThin = sizeof(T) == sizeof(double) ? T(1e-26) : T(1e-12F);
 template <typename T>
-inline constexpr T kDoubtful = sizeof(T) == sizeof(double) ? T(1e-24) : T(1e-10F);
+inline constexpr T kNoiseSquare = sizeof(T) == sizeof(double) ? T(1e-24) : T(1e-10F);
 
 /// kExact: nearest points must be upper bounds of the distance as computed. kNarrow: the smallest
 /// squared height of a triangle in that case.
@@ -116,7 +116,7 @@ static inline SimplexNearest<T> nearest_of(const Simplex<T>& simplex, const Vec3
   const Lanes<T> side = sign_or_one(volume);
   const Vec3<T> across = normal[0] + normal[1] + normal[2];
   const Lanes<T> opposite = (volume + height[0] + height[1] + height[2]) * side;
-  const Lanes<T> doubt(kDoubtful<T>);
+  const Lanes<T> doubt(kNoiseSquare<T>);
   r.inside = abs(volume) > zero;
   r.inside = r.inside & (opposite > zero);
   r.deep = opposite * opposite > doubt * dot(across, across);

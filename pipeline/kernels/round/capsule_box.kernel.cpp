@@ -78,7 +78,7 @@ struct Overlap {
   Lanes<T> distance;
   /// Unit, from the segment to the box, in the frame of the box.
   Lanes<T> normal[3];
-  /// True if the sines between the axis and the edges of the box are 0, or at least kLeastSine.
+  /// True if the sines between the axis and the edges of the box are 0, or at least kMinSine.
   LaneMask<T> sharp;
 };
 
@@ -97,7 +97,7 @@ template <typename T>
     }
   }
   const Lanes<T> parallel(T(64) * kEpsilon<T> * kEpsilon<T>);
-  const Lanes<T> least(kLeastSine<T> * kLeastSine<T>);
+  const Lanes<T> least(kMinSine<T> * kMinSine<T>);
   for (int i = 0; i < 3; ++i) {
     const int j = (i + 1) % 3;
     const int k = (i + 2) % 3;
@@ -167,8 +167,8 @@ struct CapsuleBoxSolution {
 template <typename T>
 [[gnu::noinline]] CapsuleBoxSolution<T> solve(const NarrowJob& job, const PairBlock<T>& block) {
   const Vec3<T> c = load_offset(job, block);
-  const Turn<T> turn_a = load_turn<SideA>(job, block);
-  const Turn<T> turn_b = load_turn<SideB>(job, block);
+  const ScaledQuaternion<T> turn_a = load_turn<SideA>(job, block);
+  const ScaledQuaternion<T> turn_b = load_turn<SideB>(job, block);
   const CapsuleLanes<T> capsule = load_capsule<SideA>(job, block);
   const BoxLanes<T> box = load_box<SideB>(job, block);
   CapsuleBoxSolution<T> r;
@@ -182,7 +182,7 @@ template <typename T>
 
   const Lanes<T> both = capsule.radius + box.rounding;
   const Lanes<T> scale =
-      taxicab(c) + taxicab(box.half) + capsule.half_length + both + doubt(turn_a) + doubt(turn_b);
+      norm_l1(c) + norm_l1(box.half) + capsule.half_length + both + doubt(turn_a) + doubt(turn_b);
   const Overlap<T> overlap = least_overlap(r.scene);
   const Lanes<T> s = closest_place(r.scene);
   const Vec3<T> w = towards_box(r.scene, s);
@@ -224,8 +224,8 @@ struct FacingBox {
 /// The range of the segment that is over the face of the box, projected along the normal. The
 /// contacts at its ends equal the contacts that contact_patch finds for the segment and the face.
 template <typename T>
-[[gnu::always_inline]] inline LyingStretch<T> stretch_over(const CapsuleBoxSolution<T>& r,
-                                                           const FacingBox<T>& face) {
+[[gnu::always_inline]] inline ContactRange<T> range_over(const CapsuleBoxSolution<T>& r,
+                                                         const FacingBox<T>& face) {
   const CapsuleAndBox<T>& p = r.scene;
   const Lanes<T> zero(T(0));
   const Lanes<T> one(T(1));
@@ -262,32 +262,32 @@ template <typename T>
     return select(abs(s) >= p.half, segment_feature(s, p.half), cut);
   };
   const Lanes<T> both = r.radius + r.radius_b;
-  LyingStretch<T> stretch{{low, high},
-                          {base + rise * low - both, base + rise * high - both},
-                          {name(low, Lanes<T>(T(3))), name(high, Lanes<T>(T(4)))},
-                          zero > one};
-  stretch.lies = two_ends(stretch, r.proof, Vec3<T>{p.axis[0], p.axis[1], p.axis[2]}, r.normal);
-  return stretch;
+  ContactRange<T> range{{low, high},
+                        {base + rise * low - both, base + rise * high - both},
+                        {name(low, Lanes<T>(T(3))), name(high, Lanes<T>(T(4)))},
+                        zero > one};
+  range.lies = two_ends(range, r.proof, Vec3<T>{p.axis[0], p.axis[1], p.axis[2]}, r.normal);
+  return range;
 }
 
 template <typename T>
-[[gnu::always_inline]] inline void write_touches(NarrowJob& job, const PairBlock<T>& block,
-                                                 const CapsuleBoxSolution<T>& r,
-                                                 const CertifiedLanes<T>& answer) {
+[[gnu::always_inline]] inline void write_point_contacts(NarrowJob& job, const PairBlock<T>& block,
+                                                        const CapsuleBoxSolution<T>& r,
+                                                        const CertifiedLanes<T>& answer) {
   const Lanes<T> zero(T(0));
   const CapsuleAndBox<T>& p = r.scene;
   const Vec3<T> axis = r.axes.to_world(Vec3<T>{p.axis[0], p.axis[1], p.axis[2]});
   const FacingBox<T> face({r.normal.x, r.normal.y, r.normal.z});
-  const LyingStretch<T> stretch = stretch_over(r, face);
+  const ContactRange<T> range = range_over(r, face);
   const Vec3<T> towards{select(face.is_axis[0], r.normal.x, zero),
                         select(face.is_axis[1], r.normal.y, zero),
                         select(face.is_axis[2], r.normal.z, zero)};
-  const Lanes<T> name = select(stretch.lies, box_feature(towards), box_feature(r.normal));
+  const Lanes<T> name = select(range.lies, box_feature(towards), box_feature(r.normal));
   const auto contact = [&](const Lanes<T>& s, const Lanes<T>& d, const Lanes<T>& feature) {
     return ContactLanes<T>{axis * s + answer.normal * (r.radius + d * Lanes<T>(T(0.5))), -d,
                            feature, name, 0};
   };
-  write_stretch(job, block, answer, stretch, r.s, segment_feature(r.s, p.half), contact);
+  write_range(job, block, answer, range, r.s, segment_feature(r.s, p.half), contact);
 }
 
 struct CapsuleBox {
@@ -302,7 +302,7 @@ struct CapsuleBox {
       const Vec3<T> foot =
           r.axes.to_world(Vec3<T>{p.axis[0] * r.s, p.axis[1] * r.s, p.axis[2] * r.s});
       write_certified<L>(job, block, answer, foot, r.radius);
-      if constexpr (L == kManifold) write_touches(job, block, r, answer);
+      if constexpr (L == kManifold) write_point_contacts(job, block, r, answer);
       return ~answer.certified;
     }
   }

@@ -19,7 +19,7 @@ struct Couple {
   Lanes<T> radius[2];
   Lanes<T> half[2];
   SegmentFeet<T> feet;
-  WitnessLanes<T> witness;
+  CoreGapLanes<T> witness;
   /// axis[0] x axis[1]
   Vec3<T> across;
 };
@@ -34,8 +34,8 @@ template <typename T>
 [[gnu::always_inline]] inline Couple<T> load_couple(const NarrowJob& job,
                                                     const PairBlock<T>& block) {
   const Vec3<T> offset = load_offset(job, block);
-  const Turn<T> turn_a = load_turn<SideA>(job, block);
-  const Turn<T> turn_b = load_turn<SideB>(job, block);
+  const ScaledQuaternion<T> turn_a = load_turn<SideA>(job, block);
+  const ScaledQuaternion<T> turn_b = load_turn<SideB>(job, block);
   const CapsuleLanes<T> a = load_capsule<SideA>(job, block);
   const CapsuleLanes<T> b = load_capsule<SideB>(job, block);
   const Vec3<T> axis_a = axis_z(turn_a);
@@ -56,7 +56,7 @@ template <typename T>
                    r.across, Lanes<T>(T(1)) / dot(r.across, r.across));
   const Lanes<T> radius = r.radius[0] + r.radius[1];
   r.witness = {r.c + r.axis[1] * r.feet.t - r.axis[0] * r.feet.s, radius,
-               taxicab(r.c) + r.half[0] + r.half[1] + radius + doubt(turn_a) + doubt(turn_b)};
+               norm_l1(r.c) + r.half[0] + r.half[1] + radius + doubt(turn_a) + doubt(turn_b)};
   return r;
 }
 
@@ -115,11 +115,11 @@ template <typename T>
   Touch<T> ends[2] = {touch_at(p, low), touch_at(p, high)};
   // The deeper end replaces the closest point if that is hardly deeper, relative to the radii.
   // Otherwise the capsules cross and have one contact.
-  constexpr T hardly = static_cast<T>(kHardlyLess);
+  constexpr T hardly = static_cast<T>(kEndDepthTolerance);
   const Lanes<T> behind = min(ends[0].distance, ends[1].distance) - answer.distance;
   const LaneMask<T> side_by_side =
       are_parallel(p) &
-      (high - low > (p.half[0] + p.half[1]) * Lanes<T>(static_cast<T>(kLeastBeside))) &
+      (high - low > (p.half[0] + p.half[1]) * Lanes<T>(static_cast<T>(kMinOverlapLength))) &
       (behind <= p.witness.radius * Lanes<T>(hardly));
   ends[0].distance -= behind;
   ends[1].distance -= behind;
@@ -137,14 +137,14 @@ template <typename T>
 /// For segments that touch: if they cross or are collinear, the normal is perpendicular to both.
 /// Left out are parallel segments with the same center, whose order in the couple is undefined.
 template <typename T>
-[[gnu::noinline]] CertifiedLanes<T> part_couple(Couple<T> p, CertifiedLanes<T> answer) {
+[[gnu::noinline]] CertifiedLanes<T> separate_couple(Couple<T> p, CertifiedLanes<T> answer) {
   const Lanes<T> square = dot(p.across, p.across);
-  const LaneMask<T> crosses = square > Lanes<T>(kLeastSine<T> * kLeastSine<T>);
+  const LaneMask<T> crosses = square > Lanes<T>(kMinSine<T> * kMinSine<T>);
   const LaneMask<T> in_line =
       (square <= Lanes<T>(kNoSineSquare<T>)) & (dot(p.c, p.c) > Lanes<T>(T(0)));
   const Vec3<T> across =
       select(crosses, p.across * (Lanes<T>(T(1)) / sqrt(square)), any_across(p.axis[0]));
-  part_across(answer, p.witness, across, crosses | in_line);
+  separate_across(answer, p.witness, across, crosses | in_line);
   return answer;
 }
 
@@ -158,7 +158,7 @@ struct CapsuleCapsule {
       CertifiedLanes<T> answer =
           answer_distance(p.witness, p.witness.scale * Lanes<T>(T(kShortest)));
       if ((~answer.certified & block.lanes()) != 0) [[unlikely]] {
-        answer = part_couple(p, answer);
+        answer = separate_couple(p, answer);
       }
       answer.normal = select(p.swapped, -answer.normal, answer.normal);
       const Lanes<T> radius = select(p.swapped, p.radius[1], p.radius[0]);

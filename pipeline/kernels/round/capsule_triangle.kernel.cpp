@@ -28,19 +28,19 @@ struct CapsuleAndTriangle {
 /// cross products of the segment with the edges. If the closest points are not inside an edge or
 /// the face, the normal is their difference.
 template <typename T>
-struct Verdict {
-  Gap<T> gap;
+struct BestPrismAxis {
+  AxisGap<T> gap;
   /// Position on the segment where the cores touch if they are moved apart along the normal of the
   /// prism.
   Lanes<T> s;
   Lanes<T> feature;
-  /// True if no normal of the prism was computed from a sine below kLeastSine.
+  /// True if no normal of the prism was computed from a sine below kMinSine.
   LaneMask<T> sharp;
 };
 
 template <typename T>
-[[gnu::always_inline]] inline void try_axis(Verdict<T>& v, const LaneMask<T>& valid,
-                                            const Gap<T>& gap, const Lanes<T>& s,
+[[gnu::always_inline]] inline void try_axis(BestPrismAxis<T>& v, const LaneMask<T>& valid,
+                                            const AxisGap<T>& gap, const Lanes<T>& s,
                                             const Lanes<T>& feature) {
   const LaneMask<T> better = valid & (gap.distance > v.gap.distance);
   v.gap.distance = select(better, gap.distance, v.gap.distance);
@@ -50,16 +50,16 @@ template <typename T>
 }
 
 template <typename T>
-[[gnu::always_inline]] inline Verdict<T> prism_verdict(const CapsuleAndTriangle<T>& p,
-                                                       const SegmentFeet<T> (&feet)[3]) {
+[[gnu::always_inline]] inline BestPrismAxis<T> best_prism_axis(const CapsuleAndTriangle<T>& p,
+                                                               const SegmentFeet<T> (&feet)[3]) {
   const Lanes<T> zero(T(0));
   const Lanes<T> one(T(1));
   const TriangleView<T>& b = p.triangle;
-  const Lanes<T> least(kLeastSine<T> * kLeastSine<T>);
-  Verdict<T> v{{Lanes<T>(T(-__builtin_inff())), {zero, zero, zero}}, zero, zero, zero < one};
+  const Lanes<T> least(kMinSine<T> * kMinSine<T>);
+  BestPrismAxis<T> v{{Lanes<T>(T(-__builtin_inff())), {zero, zero, zero}}, zero, zero, zero < one};
   const Vec3<T> n = b.normal * (one / sqrt(b.normal_square));
   const Lanes<T> rise = dot(n, p.axis);
-  const Gap<T> flat = gap_along(b, n, p.half * abs(rise));
+  const AxisGap<T> flat = gap_along(b, n, p.half * abs(rise));
   // The deepest end.
   const Lanes<T> end = select(dot(flat.normal, p.axis) < zero, -p.half, p.half);
   try_axis(v, has_normal(b), flat, end, Lanes<T>(T(7)));
@@ -114,7 +114,7 @@ template <typename T>
     feet[i] = closest_feet(p.axis, p.half, {b.vertex[i], b.edge[i], b.square[i], zero, one},
                            p.across[i], p.across_over[i] * p.across_over[i]);
   }
-  Verdict<T> v = prism_verdict(p, feet);
+  BestPrismAxis<T> v = best_prism_axis(p, feet);
   const NearestCandidate<T> nearest = nearest_points(p, feet);
   const Lanes<T> length = sqrt(nearest.square);
   const Vec3<T> n = nearest.w * (one / length);
@@ -139,8 +139,8 @@ template <typename T>
 [[gnu::noinline]] CapsuleTriangleSolution<T> solve(const NarrowJob& job,
                                                    const PairBlock<T>& block) {
   const Vec3<T> c = load_offset(job, block);
-  const Turn<T> turn_a = load_turn<SideA>(job, block);
-  const Turn<T> turn_b = load_turn<SideB>(job, block);
+  const ScaledQuaternion<T> turn_a = load_turn<SideA>(job, block);
+  const ScaledQuaternion<T> turn_b = load_turn<SideB>(job, block);
   const CapsuleLanes<T> capsule = load_capsule<SideA>(job, block);
   const TriangleLanes<T> triangle = load_triangle<SideB>(job, block);
   CapsuleTriangleSolution<T> r;
@@ -156,7 +156,7 @@ template <typename T>
     p.across_square[i] = dot(p.across[i], p.across[i]);
     p.across_over[i] = Lanes<T>(T(1)) / sqrt(p.across_square[i]);
   }
-  prove(r, taxicab(c) + largest(triangle) + capsule.half_length + capsule.radius +
+  prove(r, norm_l1(c) + largest(triangle) + capsule.half_length + capsule.radius +
                triangle.rounding + doubt(turn_a) + doubt(turn_b));
   return r;
 }
@@ -164,7 +164,7 @@ template <typename T>
 /// The range of the segment that is over the triangle, projected along the normal. The contacts at
 /// its ends equal the contacts that contact_patch finds for the two.
 template <typename T>
-[[gnu::always_inline]] inline LyingStretch<T> stretch_over(const CapsuleTriangleSolution<T>& r) {
+[[gnu::always_inline]] inline ContactRange<T> range_over(const CapsuleTriangleSolution<T>& r) {
   const Lanes<T> zero(T(0));
   const Lanes<T> one(T(1));
   const CapsuleAndTriangle<T>& p = r.scene;
@@ -205,25 +205,25 @@ template <typename T>
   const Lanes<T> over = one / facing;
   const Lanes<T> base = dot(b.normal, b.vertex[0]) * over - r.radius - r.radius_b;
   const Lanes<T> rise = -dot(b.normal, p.axis) * over;
-  LyingStretch<T> stretch{{low, high},
-                          {base + rise * low, base + rise * high},
-                          {feature[0], feature[1]},
-                          facing * facing > b.normal_square * Lanes<T>(T(kSteepSquare))};
-  stretch.lies = stretch.lies & two_ends(stretch, r.proof, p.axis, r.normal);
-  return stretch;
+  ContactRange<T> range{{low, high},
+                        {base + rise * low, base + rise * high},
+                        {feature[0], feature[1]},
+                        facing * facing > b.normal_square * Lanes<T>(T(kSteepSquare))};
+  range.lies = range.lies & two_ends(range, r.proof, p.axis, r.normal);
+  return range;
 }
 
 template <typename T>
-[[gnu::always_inline]] inline void write_touches(NarrowJob& job, const PairBlock<T>& block,
-                                                 const CapsuleTriangleSolution<T>& r,
-                                                 const CertifiedLanes<T>& answer) {
+[[gnu::always_inline]] inline void write_point_contacts(NarrowJob& job, const PairBlock<T>& block,
+                                                        const CapsuleTriangleSolution<T>& r,
+                                                        const CertifiedLanes<T>& answer) {
   const CapsuleAndTriangle<T>& p = r.scene;
   const Vec3<T> axis = r.axes.to_world(p.axis);
   const auto contact = [&](const Lanes<T>& s, const Lanes<T>& d, const Lanes<T>& feature) {
     const Vec3<T> position = axis * s + answer.normal * (r.radius + d * Lanes<T>(T(0.5)));
     return ContactLanes<T>{position, -d, segment_feature(s, p.half), feature, 0};
   };
-  write_stretch(job, block, answer, stretch_over(r), r.s, r.feature, contact);
+  write_range(job, block, answer, range_over(r), r.s, r.feature, contact);
 }
 
 struct CapsuleTriangle {
@@ -236,7 +236,7 @@ struct CapsuleTriangle {
       const CertifiedLanes<T> answer = answer_proven(r.proof, r.axes.to_world(r.normal));
       const Vec3<T> foot = r.axes.to_world(r.scene.axis * r.s);
       write_certified<L>(job, block, answer, foot, r.radius);
-      if constexpr (L == kManifold) write_touches(job, block, r, answer);
+      if constexpr (L == kManifold) write_point_contacts(job, block, r, answer);
       return ~answer.certified;
     }
   }

@@ -14,13 +14,14 @@ template <typename T>
 
 /// The support point of an ellipsoid and its height along the direction.
 template <typename T>
-struct Reach {
+struct EllipsoidSupport {
   Lanes<T> height;
   Vec3<T> point;
 };
 
 template <typename T>
-[[gnu::always_inline]] inline Reach<T> reach_of(const Vec3<T>& radius, const Vec3<T>& direction) {
+[[gnu::always_inline]] inline EllipsoidSupport<T> reach_of(const Vec3<T>& radius,
+                                                           const Vec3<T>& direction) {
   const Vec3<T> stretched = times(radius, direction);
   const Lanes<T> height = sqrt(dot(stretched, stretched));
   const Lanes<T> least(sizeof(T) == sizeof(double) ? T(1e-150) : T(1e-18F));

@@ -1,17 +1,18 @@
 // The kernels of half-spaces with spheres, capsules, boxes and triangles. They compute the heights
-// of the vertices over the plane; over_plane.wide.h turns these into answers.
+// of the vertices over the plane; half_space_common.wide.h turns these into answers.
 
 #include "pipeline/kernels/kernels.h"
-#include "pipeline/kernels/round/over_plane.wide.h"
+#include "pipeline/kernels/round/half_space_common.wide.h"
 
 namespace winnow {
 namespace WINNOW_ISA_NAME::round {
 namespace {
 
-struct SphereFeet {
+struct SphereLowestPoints {
   template <typename T>
-  [[gnu::noinline]] static Feet<T, 1> feet(const NarrowJob& job, const PairBlock<T>& block) {
-    const Plane<T> plane = load_plane<SideB>(job, block);
+  [[gnu::noinline]] static LowestPoints<T, 1> feet(const NarrowJob& job,
+                                                   const PairBlock<T>& block) {
+    const PlacedPlane<T> plane = load_plane<SideB>(job, block);
     const Lanes<T> radius = load_sphere<SideA>(job, block);
     const Lanes<T> zero(T(0));
     return {{{zero, zero, zero}}, {plane.height},      {zero}, radius,
@@ -21,7 +22,7 @@ struct SphereFeet {
 
 template <typename T>
 struct CapsuleOverPlane {
-  Plane<T> plane;
+  PlacedPlane<T> plane;
   Lanes<T> radius;
   /// From the middle to the upper end of the core, and its component along the normal.
   Vec3<T> arm;
@@ -30,7 +31,7 @@ struct CapsuleOverPlane {
 
   [[gnu::always_inline]] CapsuleOverPlane(const NarrowJob& job, const PairBlock<T>& block) {
     plane = load_plane<SideB>(job, block);
-    const Turn<T> turn = load_turn<SideA>(job, block);
+    const ScaledQuaternion<T> turn = load_turn<SideA>(job, block);
     const CapsuleLanes<T> a = load_capsule<SideA>(job, block);
     radius = a.radius;
     arm = axis_z(turn) * a.half_length;
@@ -39,22 +40,24 @@ struct CapsuleOverPlane {
   }
 };
 
-struct CapsuleFeet {
+struct CapsuleLowestPoints {
   template <typename T>
-  [[gnu::noinline]] static Feet<T, 2> feet(const NarrowJob& job, const PairBlock<T>& block) {
+  [[gnu::noinline]] static LowestPoints<T, 2> feet(const NarrowJob& job,
+                                                   const PairBlock<T>& block) {
     const CapsuleOverPlane<T> a(job, block);
-    Feet<T, 2> feet{{a.arm, -a.arm},
-                    {a.plane.height + a.rise, a.plane.height - a.rise},
-                    {Lanes<T>(T(1)), Lanes<T>(T(2))},
-                    a.radius,
-                    a.plane.normal,
-                    a.scale};
+    LowestPoints<T, 2> feet{{a.arm, -a.arm},
+                            {a.plane.height + a.rise, a.plane.height - a.rise},
+                            {Lanes<T>(T(1)), Lanes<T>(T(2))},
+                            a.radius,
+                            a.plane.normal,
+                            a.scale};
     sort_two(feet, 0, 1);
     return feet;
   }
 
   template <typename T>
-  [[gnu::noinline]] static Feet<T, 1> lowest(const NarrowJob& job, const PairBlock<T>& block) {
+  [[gnu::noinline]] static LowestPoints<T, 1> lowest(const NarrowJob& job,
+                                                     const PairBlock<T>& block) {
     const CapsuleOverPlane<T> a(job, block);
     return {{a.arm * sign_or_one(-a.rise)},
             {a.plane.height - abs(a.rise)},
@@ -65,28 +68,28 @@ struct CapsuleFeet {
   }
 
   template <typename T>
-  [[gnu::noinline]] static LeastHeight<T> least(const NarrowJob& job, const PairBlock<T>& block) {
+  [[gnu::noinline]] static LowestHeight<T> least(const NarrowJob& job, const PairBlock<T>& block) {
     const CapsuleOverPlane<T> a(job, block);
     return {a.plane.height - abs(a.rise), a.radius, a.scale};
   }
 };
 
-struct TriangleFeet {
-  /// Feet in the order of the vertices.
+struct TriangleLowestPoints {
+  /// LowestPoints in the order of the vertices.
   template <typename T>
-  [[gnu::always_inline]] static Feet<T, 3> in_order(const NarrowJob& job,
-                                                    const PairBlock<T>& block) {
-    const Plane<T> plane = load_plane<SideB>(job, block);
-    const Turn<T> turn = load_turn<SideA>(job, block);
+  [[gnu::always_inline]] static LowestPoints<T, 3> in_order(const NarrowJob& job,
+                                                            const PairBlock<T>& block) {
+    const PlacedPlane<T> plane = load_plane<SideB>(job, block);
+    const ScaledQuaternion<T> turn = load_turn<SideA>(job, block);
     const TriangleLanes<T> a = load_triangle<SideA>(job, block);
     const Rotation<T> axes = rotation(turn);
-    Feet<T, 3> feet;
+    LowestPoints<T, 3> feet;
     Lanes<T> reach(T(0));
     for (int i = 0; i < 3; ++i) {
       feet.foot[i] = axes.to_world(a.vertex[i]);
       feet.height[i] = plane.height + dot(plane.normal, feet.foot[i]);
       feet.feature[i] = Lanes<T>(T(1 + i));
-      reach = max(reach, taxicab(a.vertex[i]));
+      reach = max(reach, norm_l1(a.vertex[i]));
     }
     feet.rounding = a.rounding;
     feet.normal = plane.normal;
@@ -95,8 +98,9 @@ struct TriangleFeet {
   }
 
   template <typename T>
-  [[gnu::noinline]] static Feet<T, 3> feet(const NarrowJob& job, const PairBlock<T>& block) {
-    Feet<T, 3> feet = in_order(job, block);
+  [[gnu::noinline]] static LowestPoints<T, 3> feet(const NarrowJob& job,
+                                                   const PairBlock<T>& block) {
+    LowestPoints<T, 3> feet = in_order(job, block);
     sort_two(feet, 0, 1);
     sort_two(feet, 1, 2);
     sort_two(feet, 0, 1);
@@ -104,8 +108,9 @@ struct TriangleFeet {
   }
 
   template <typename T>
-  [[gnu::noinline]] static Feet<T, 1> lowest(const NarrowJob& job, const PairBlock<T>& block) {
-    const Feet<T, 3> all = in_order(job, block);
+  [[gnu::noinline]] static LowestPoints<T, 1> lowest(const NarrowJob& job,
+                                                     const PairBlock<T>& block) {
+    const LowestPoints<T, 3> all = in_order(job, block);
     Vec3<T> foot = all.foot[0];
     Lanes<T> height = all.height[0];
     for (int i = 1; i < 3; ++i) {
@@ -117,8 +122,8 @@ struct TriangleFeet {
   }
 
   template <typename T>
-  [[gnu::noinline]] static LeastHeight<T> least(const NarrowJob& job, const PairBlock<T>& block) {
-    const Feet<T, 3> all = in_order(job, block);
+  [[gnu::noinline]] static LowestHeight<T> least(const NarrowJob& job, const PairBlock<T>& block) {
+    const LowestPoints<T, 3> all = in_order(job, block);
     return {min(min(all.height[0], all.height[1]), all.height[2]), all.rounding, all.scale};
   }
 };
@@ -126,7 +131,7 @@ struct TriangleFeet {
 /// A box over a plane, given by its half axes.
 template <typename T>
 struct BoxOverPlane {
-  Plane<T> plane;
+  PlacedPlane<T> plane;
   Lanes<T> cosine[3];       // of the axes with the normal
   LaneMask<T> negative[3];  // half axes that are reversed so that they point down
   Vec3<T> down[3];
@@ -136,7 +141,7 @@ struct BoxOverPlane {
 
   [[gnu::always_inline]] BoxOverPlane(const NarrowJob& job, const PairBlock<T>& block) {
     plane = load_plane<SideB>(job, block);
-    const Turn<T> turn = load_turn<SideA>(job, block);
+    const ScaledQuaternion<T> turn = load_turn<SideA>(job, block);
     const BoxLanes<T> a = load_box<SideA>(job, block);
     const Rotation<T> axes = rotation(turn);
     const Vec3<T> arm[3] = {axes.x * a.half.x, axes.y * a.half.y, axes.z * a.half.z};
@@ -152,7 +157,7 @@ struct BoxOverPlane {
       rise[i] = abs(rises);
     }
     rounding = a.rounding;
-    scale = plane.scale + a.rounding + taxicab(a.half) + doubt(turn);
+    scale = plane.scale + a.rounding + norm_l1(a.half) + doubt(turn);
   }
 
   [[gnu::always_inline]] Vec3<T> lowest() const { return down[0] + down[1] + down[2]; }
@@ -161,11 +166,12 @@ struct BoxOverPlane {
   }
 };
 
-struct BoxFeet {
+struct BoxLowestPoints {
   /// The four vertices of the face that is turned most towards the plane, the lowest first and the
   /// one opposite to it last. The feature of a vertex has bit i set if coordinate i is negative.
   template <typename T>
-  [[gnu::noinline]] static Feet<T, 4> feet(const NarrowJob& job, const PairBlock<T>& block) {
+  [[gnu::noinline]] static LowestPoints<T, 4> feet(const NarrowJob& job,
+                                                   const PairBlock<T>& block) {
     BoxOverPlane<T> box(job, block);
     const Vec3<T> corner = box.lowest();
     const Lanes<T> height = box.height();
@@ -197,26 +203,28 @@ struct BoxFeet {
     const Vec3<T>* const down = box.down;
     const Lanes<T>* const rise = box.rise;
     const Lanes<T> two(T(2));
-    Feet<T, 4> feet{{corner, corner - down[0] * two, corner - down[1] * two,
-                     corner - (down[0] + down[1]) * two},
-                    {height, height + rise[0] * two, height + rise[1] * two,
-                     height + (rise[0] + rise[1]) * two},
-                    {lowest, lowest + flip[0], lowest + flip[1], lowest + flip[0] + flip[1]},
-                    box.rounding,
-                    box.plane.normal,
-                    box.scale};
+    LowestPoints<T, 4> feet{
+        {corner, corner - down[0] * two, corner - down[1] * two,
+         corner - (down[0] + down[1]) * two},
+        {height, height + rise[0] * two, height + rise[1] * two,
+         height + (rise[0] + rise[1]) * two},
+        {lowest, lowest + flip[0], lowest + flip[1], lowest + flip[0] + flip[1]},
+        box.rounding,
+        box.plane.normal,
+        box.scale};
     sort_two(feet, 1, 2);
     return feet;
   }
 
   template <typename T>
-  [[gnu::noinline]] static Feet<T, 1> lowest(const NarrowJob& job, const PairBlock<T>& block) {
+  [[gnu::noinline]] static LowestPoints<T, 1> lowest(const NarrowJob& job,
+                                                     const PairBlock<T>& block) {
     const BoxOverPlane<T> box(job, block);
     return {{box.lowest()}, {box.height()}, {}, box.rounding, box.plane.normal, box.scale};
   }
 
   template <typename T>
-  [[gnu::noinline]] static LeastHeight<T> least(const NarrowJob& job, const PairBlock<T>& block) {
+  [[gnu::noinline]] static LowestHeight<T> least(const NarrowJob& job, const PairBlock<T>& block) {
     const BoxOverPlane<T> box(job, block);
     return {box.height(), box.rounding, box.scale};
   }
@@ -227,15 +235,15 @@ struct BoxFeet {
 
 extern const NarrowKernels WINNOW_KERNEL_TABLE(sphere_half_space_kernels) =
     WINNOW_ISA_NAME::closed_form_kernels_of<
-        WINNOW_ISA_NAME::round::OverPlane<WINNOW_ISA_NAME::round::SphereFeet, 1>>();
+        WINNOW_ISA_NAME::round::OverPlane<WINNOW_ISA_NAME::round::SphereLowestPoints, 1>>();
 extern const NarrowKernels WINNOW_KERNEL_TABLE(capsule_half_space_kernels) =
     WINNOW_ISA_NAME::closed_form_kernels_of<
-        WINNOW_ISA_NAME::round::OverPlane<WINNOW_ISA_NAME::round::CapsuleFeet, 2>>();
+        WINNOW_ISA_NAME::round::OverPlane<WINNOW_ISA_NAME::round::CapsuleLowestPoints, 2>>();
 extern const NarrowKernels WINNOW_KERNEL_TABLE(box_half_space_kernels) =
     WINNOW_ISA_NAME::closed_form_kernels_of<
-        WINNOW_ISA_NAME::round::OverPlane<WINNOW_ISA_NAME::round::BoxFeet, 4>>();
+        WINNOW_ISA_NAME::round::OverPlane<WINNOW_ISA_NAME::round::BoxLowestPoints, 4>>();
 extern const NarrowKernels WINNOW_KERNEL_TABLE(triangle_half_space_kernels) =
     WINNOW_ISA_NAME::closed_form_kernels_of<
-        WINNOW_ISA_NAME::round::OverPlane<WINNOW_ISA_NAME::round::TriangleFeet, 4>>();
+        WINNOW_ISA_NAME::round::OverPlane<WINNOW_ISA_NAME::round::TriangleLowestPoints, 4>>();
 
 }  // namespace winnow

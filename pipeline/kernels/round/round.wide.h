@@ -19,9 +19,9 @@ inline constexpr double kShortest = 1e-9;
 /// overlapping cores, and the error of the depth along it relative to the pair's scale: a few
 /// roundings divided by the sine.
 template <typename T>
-inline constexpr T kLeastSine = T(1) / T(128);
+inline constexpr T kMinSine = T(1) / T(128);
 template <typename T>
-inline constexpr T kRoundSlack = T(8) * kEpsilon<T> / kLeastSine<T>;
+inline constexpr T kRoundSlack = T(8) * kEpsilon<T> / kMinSine<T>;
 
 /// If the square of the sine of two directions is smaller, their cross product consists of rounding
 /// errors.
@@ -30,7 +30,7 @@ inline constexpr T kNoSineSquare = T(16) * kEpsilon<T>* kEpsilon<T>;
 
 /// The vector between the closest points of two cores.
 template <typename T>
-struct WitnessLanes {
+struct CoreGapLanes {
   /// From the point on core a to the point on core b; its error is at most kRoundings * epsilon *
   /// scale.
   Vec3<T> w;
@@ -53,7 +53,7 @@ template <typename T>
 /// the error 2 |w| e, and |w| <= scale.
 template <typename T>
 [[gnu::always_inline]] inline Mask16 answer_overlap(const NarrowJob& job, const PairBlock<T>& block,
-                                                    const WitnessLanes<T>& witness) {
+                                                    const CoreGapLanes<T>& witness) {
   const Lanes<T> square = witness.scale * witness.scale;
   const Lanes<T> excess = dot(witness.w, witness.w) - witness.radius * witness.radius;
   const Lanes<T> error = square * Lanes<T>(T(4 * kRoundings) * kEpsilon<T>);
@@ -81,7 +81,7 @@ template <typename T>
 
 /// Levels distance and manifold. `shortest` is the smallest |w| that gives a normal.
 template <typename T>
-[[gnu::always_inline]] inline CertifiedLanes<T> answer_distance(const WitnessLanes<T>& witness,
+[[gnu::always_inline]] inline CertifiedLanes<T> answer_distance(const CoreGapLanes<T>& witness,
                                                                 const Lanes<T>& shortest) {
   const Lanes<T> length = sqrt(dot(witness.w, witness.w));
   const Lanes<T> distance = length - witness.radius;
@@ -112,9 +112,10 @@ template <typename T>
 /// If cores without thickness share a point, up to rounding, and a direction `across` perpendicular
 /// to both exists, no direction separates them sooner: it becomes the normal.
 template <typename T>
-[[gnu::always_inline]] inline void part_across(CertifiedLanes<T>& answer,
-                                               const WitnessLanes<T>& witness,
-                                               const Vec3<T>& across, const LaneMask<T>& known) {
+[[gnu::always_inline]] inline void separate_across(CertifiedLanes<T>& answer,
+                                                   const CoreGapLanes<T>& witness,
+                                                   const Vec3<T>& across,
+                                                   const LaneMask<T>& known) {
   const Lanes<T> rounding = answer.error_bound;
   const LaneMask<T> touch = known & (dot(witness.w, witness.w) <= rounding * rounding);
   answer.normal = select(touch, across, answer.normal);
@@ -203,7 +204,7 @@ struct ProofLanes {
   Lanes<T> low;
   /// The distance of two points of the shapes, or minus the depth along some direction.
   Lanes<T> high;
-  /// As in WitnessLanes.
+  /// As in CoreGapLanes.
   Lanes<T> scale;
   /// The lanes in which the direction is well defined.
   LaneMask<T> unique;
@@ -249,7 +250,7 @@ template <typename T>
 
 /// 0, or NaN if the orientation is not usable.
 template <typename T>
-[[gnu::always_inline]] inline Lanes<T> doubt(const Turn<T>& turn) {
+[[gnu::always_inline]] inline Lanes<T> doubt(const ScaledQuaternion<T>& turn) {
   return turn.scale - turn.scale;
 }
 
@@ -336,13 +337,13 @@ template <typename T>
 /// The largest sum of a vertex' absolute coordinates.
 template <typename T>
 [[gnu::always_inline]] inline Lanes<T> largest(const TriangleLanes<T>& triangle) {
-  return max(taxicab(triangle.vertex[0]),
-             max(taxicab(triangle.vertex[1]), taxicab(triangle.vertex[2])));
+  return max(norm_l1(triangle.vertex[0]),
+             max(norm_l1(triangle.vertex[1]), norm_l1(triangle.vertex[2])));
 }
 
 /// The best direction so far along which two cores are apart.
 template <typename T>
-struct Gap {
+struct AxisGap {
   /// The separation, negative if the cores overlap.
   Lanes<T> distance;
   /// Unit, from a to b.
@@ -351,7 +352,7 @@ struct Gap {
 
 /// Keeps the direction along which the cores are farther apart.
 template <typename T>
-[[gnu::always_inline]] inline void widen(Gap<T>& gap, const LaneMask<T>& valid,
+[[gnu::always_inline]] inline void widen(AxisGap<T>& gap, const LaneMask<T>& valid,
                                          const Lanes<T>& distance, const Vec3<T>& normal) {
   const LaneMask<T> better = valid & (distance > gap.distance);
   gap.distance = select(better, distance, gap.distance);
@@ -361,8 +362,8 @@ template <typename T>
 /// The separation of a triangle from a segment along a unit direction or its opposite, whichever is
 /// larger. `reach` is half the extent of the segment along it; its middle is the origin.
 template <typename T>
-[[gnu::always_inline]] inline Gap<T> gap_along(const TriangleView<T>& b, const Vec3<T>& n,
-                                               const Lanes<T>& reach) {
+[[gnu::always_inline]] inline AxisGap<T> gap_along(const TriangleView<T>& b, const Vec3<T>& n,
+                                                   const Lanes<T>& reach) {
   const Lanes<T> x = dot(b.vertex[0], n);
   const Lanes<T> y = dot(b.vertex[1], n);
   const Lanes<T> z = dot(b.vertex[2], n);
@@ -439,7 +440,7 @@ template <typename T>
 }
 
 /// Relative to the pair's scale. Contacts closer than kOnePlace are one contact. The end of a
-/// stretch counts as the deepest point if its depth differs by at most kSameDepth from the depth of
+/// range counts as the deepest point if its depth differs by at most kSameDepth from the depth of
 /// the pair.
 inline constexpr double kOnePlace = 1e-9;
 inline constexpr double kSameDepth = 4e-7;
@@ -449,48 +450,48 @@ inline constexpr double kSteepSquare = 1e-12;
 /// The part of a segment that is over a face, seen along the normal: the parameters of its two
 /// ends, the distances of the shapes there, and the features of contacts there.
 template <typename T>
-struct LyingStretch {
+struct ContactRange {
   Lanes<T> at[2];
   Lanes<T> distance[2];
   Lanes<T> feature[2];
   LaneMask<T> lies;
 };
 
-/// True if the stretch deserves two contacts: its ends are distinct, and one of them is the deepest
+/// True if the range deserves two contacts: its ends are distinct, and one of them is the deepest
 /// point of the pair. `u` is the segment's direction, `normal` the projection direction.
 template <typename T>
-[[gnu::always_inline]] inline LaneMask<T> two_ends(const LyingStretch<T>& stretch,
+[[gnu::always_inline]] inline LaneMask<T> two_ends(const ContactRange<T>& range,
                                                    const ProofLanes<T>& proof, const Vec3<T>& u,
                                                    const Vec3<T>& normal) {
   const Vec3<T> across = u - normal * dot(u, normal);
   const Lanes<T> square = dot(across, across);
-  const Lanes<T> length = stretch.at[1] - stretch.at[0];
+  const Lanes<T> length = range.at[1] - range.at[0];
   const Lanes<T> place = proof.scale * Lanes<T>(T(kOnePlace));
-  const Lanes<T> deepest = min(stretch.distance[0], stretch.distance[1]);
+  const Lanes<T> deepest = min(range.distance[0], range.distance[1]);
   return (square > Lanes<T>(T(kSteepSquare))) & (length > Lanes<T>(T(0))) &
          (length * length * square > place * place) &
          (abs(deepest - proof.high) <= proof.scale * Lanes<T>(T(kSameDepth)));
 }
 
-/// Writes contacts at the ends of the stretch that are within the margin. If there is no stretch,
+/// Writes contacts at the ends of the range that are within the margin. If there is no range,
 /// or neither end is within the margin, writes one at `s` with `feature`. `contact(s, distance,
 /// feature)` makes a contact.
 template <typename T, typename Contact>
-[[gnu::always_inline]] inline void write_stretch(NarrowJob& job, const PairBlock<T>& block,
-                                                 const CertifiedLanes<T>& answer,
-                                                 const LyingStretch<T>& stretch, const Lanes<T>& s,
-                                                 const Lanes<T>& feature, Contact&& contact) {
+[[gnu::always_inline]] inline void write_range(NarrowJob& job, const PairBlock<T>& block,
+                                               const CertifiedLanes<T>& answer,
+                                               const ContactRange<T>& range, const Lanes<T>& s,
+                                               const Lanes<T>& feature, Contact&& contact) {
   const Lanes<T> margin = margins_of(job, block);
-  const LaneMask<T> near_low = stretch.lies & (stretch.distance[0] <= margin);
-  const LaneMask<T> near_high = stretch.lies & (stretch.distance[1] <= margin);
+  const LaneMask<T> near_low = range.lies & (range.distance[0] <= margin);
+  const LaneMask<T> near_high = range.lies & (range.distance[1] <= margin);
   const auto nearer_end = [&](const Lanes<T>(&ends)[2], const Lanes<T>& neither)
       __attribute__((always_inline)) {
     return select(near_low, ends[0], select(near_high, ends[1], neither));
   };
   ContactLanes<T> contacts[2] = {
-      contact(nearer_end(stretch.at, s), nearer_end(stretch.distance, answer.distance),
-              nearer_end(stretch.feature, feature)),
-      contact(stretch.at[1], stretch.distance[1], stretch.feature[1])};
+      contact(nearer_end(range.at, s), nearer_end(range.distance, answer.distance),
+              nearer_end(range.feature, feature)),
+      contact(range.at[1], range.distance[1], range.feature[1])};
   contacts[0].lanes = bits(answer.distance <= margin) & answer.certified & block.lanes();
   contacts[1].lanes = bits(near_low & near_high) & contacts[0].lanes;
   write_contacts(job, block, contacts);

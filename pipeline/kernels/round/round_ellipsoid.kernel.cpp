@@ -2,7 +2,7 @@
 
 #include "pipeline/kernels/kernels.h"
 #include "pipeline/kernels/round/ellipsoid_surface.wide.h"
-#include "pipeline/kernels/round/over_plane.wide.h"
+#include "pipeline/kernels/round/half_space_common.wide.h"
 
 namespace winnow {
 namespace WINNOW_ISA_NAME::round {
@@ -34,7 +34,7 @@ struct SphereEllipsoid {
   template <typename T>
   [[gnu::noinline]] static Solution<T> solve(const NarrowJob& job, const PairBlock<T>& block) {
     const Vec3<T> c = load_offset(job, block);
-    const Turn<T> turn = load_turn<SideB>(job, block);
+    const ScaledQuaternion<T> turn = load_turn<SideB>(job, block);
     const Lanes<T> ra = load_sphere<SideA>(job, block);
     const EllipsoidLanes<T> shape = load_ellipsoid(job, block);
     const Rotation<T> axes = rotation(turn);
@@ -42,7 +42,7 @@ struct SphereEllipsoid {
     const SurfaceView<T> view = view_surface(shape.radius, {abs(p.x), abs(p.y), abs(p.z)});
     const Vec3<T> sign{sign_or_one(p.x), sign_or_one(p.y), sign_or_one(p.z)};
     const Lanes<T> rounding = ra + shape.rounding;
-    const Lanes<T> scale = taxicab(c) + taxicab(shape.radius) + rounding + doubt(turn);
+    const Lanes<T> scale = norm_l1(c) + norm_l1(shape.radius) + rounding + doubt(turn);
     const Lanes<T> length = dot(view.outward, view.outward);
     return {{view.low - rounding, view.high - rounding, scale, length > Lanes<T>(T(0.5))},
             -axes.to_world(times(sign, view.outward)),
@@ -74,13 +74,13 @@ struct HalfSpaceEllipsoid {
   /// Not inlined: all levels share it.
   template <typename T>
   [[gnu::noinline]] static Solution<T> solve(const NarrowJob& job, const PairBlock<T>& block) {
-    const Plane<T> plane = load_plane<SideA>(job, block);
-    const Turn<T> turn = load_turn<SideB>(job, block);
+    const PlacedPlane<T> plane = load_plane<SideA>(job, block);
+    const ScaledQuaternion<T> turn = load_turn<SideB>(job, block);
     const EllipsoidLanes<T> shape = load_ellipsoid(job, block);
     const Rotation<T> axes = rotation(turn);
-    const Reach<T> reach = reach_of(shape.radius, axes.to_local(-plane.normal));
+    const EllipsoidSupport<T> reach = reach_of(shape.radius, axes.to_local(-plane.normal));
     const Lanes<T> height = plane.height - reach.height;
-    const Lanes<T> scale = plane.scale + taxicab(shape.radius) + shape.rounding + doubt(turn);
+    const Lanes<T> scale = plane.scale + norm_l1(shape.radius) + shape.rounding + doubt(turn);
     return {height - shape.rounding, scale * Lanes<T>(T(kRoundings) * kEpsilon<T>), scale,
             plane.normal, plane.to_b + axes.to_world(reach.point) - plane.normal * height};
   }

@@ -2,7 +2,7 @@
 // two balls, or the conical side between them.
 
 #include "pipeline/kernels/kernels.h"
-#include "pipeline/kernels/round/over_plane.wide.h"
+#include "pipeline/kernels/round/half_space_common.wide.h"
 
 namespace winnow {
 namespace WINNOW_ISA_NAME::round {
@@ -25,7 +25,7 @@ template <typename T>
 
 /// The features of the lower and the upper ball; the feature of the side is 0.
 template <typename T>
-inline constexpr T kBallNames[2] = {T(2), T(1)};
+inline constexpr T kBallFeatures[2] = {T(2), T(1)};
 
 struct SphereTaper {
   /// In the plane of the point and the axis, a line touches both balls, at the same angle with the
@@ -36,7 +36,7 @@ struct SphereTaper {
     const Lanes<T> zero(T(0));
     const Lanes<T> one(T(1));
     const Vec3<T> c = load_offset(job, block);
-    const Turn<T> turn = load_turn<SideB>(job, block);
+    const ScaledQuaternion<T> turn = load_turn<SideB>(job, block);
     const Lanes<T> ra = load_sphere<SideA>(job, block);
     const TaperLanes<T> shape = load_taper(job, block);
     const Rotation<T> axes = rotation(turn);
@@ -61,15 +61,15 @@ struct SphereTaper {
     // A point on the axis has no radial direction; `unique` excludes the cases that need one.
     const Lanes<T> outward = select(away > zero, radial / away, zero);
     const Lanes<T> scale =
-        taxicab(c) + length + max(shape.radius[0], shape.radius[1]) + ra + doubt(turn);
-    return {
-        select(side, to_side, to_ball) - ra,
-        scale * Lanes<T>(T(kRoundings) * kEpsilon<T>),
-        scale,
-        -axes.to_world(Vec3<T>{p.x * outward, p.y * outward, axial}),
-        select(side, away, from_ball) > scale * Lanes<T>(T(kShortest)),
-        ra,
-        select(side, zero, select(low, Lanes<T>(kBallNames<T>[0]), Lanes<T>(kBallNames<T>[1])))};
+        norm_l1(c) + length + max(shape.radius[0], shape.radius[1]) + ra + doubt(turn);
+    return {select(side, to_side, to_ball) - ra,
+            scale * Lanes<T>(T(kRoundings) * kEpsilon<T>),
+            scale,
+            -axes.to_world(Vec3<T>{p.x * outward, p.y * outward, axial}),
+            select(side, away, from_ball) > scale * Lanes<T>(T(kShortest)),
+            ra,
+            select(side, zero,
+                   select(low, Lanes<T>(kBallFeatures<T>[0]), Lanes<T>(kBallFeatures<T>[1])))};
   }
 
   template <typename T, int L>
@@ -97,8 +97,8 @@ struct HalfSpaceTaper {
   /// Not inlined: all levels share it.
   template <typename T>
   [[gnu::noinline]] static Solution<T> solve(const NarrowJob& job, const PairBlock<T>& block) {
-    const Plane<T> plane = load_plane<SideA>(job, block);
-    const Turn<T> turn = load_turn<SideB>(job, block);
+    const PlacedPlane<T> plane = load_plane<SideA>(job, block);
+    const ScaledQuaternion<T> turn = load_turn<SideB>(job, block);
     const TaperLanes<T> shape = load_taper(job, block);
     const Vec3<T>& c = plane.to_b;
     const Vec3<T>& normal = plane.normal;
@@ -108,7 +108,7 @@ struct HalfSpaceTaper {
     const Lanes<T> distance[2] = {height - up - shape.radius[0], height + up - shape.radius[1]};
     const LaneMask<T> low = distance[0] <= distance[1];
     const Vec3<T> foot[2] = {c - half - normal * (height - up), c + half - normal * (height + up)};
-    const Lanes<T> name[2] = {Lanes<T>(kBallNames<T>[0]), Lanes<T>(kBallNames<T>[1])};
+    const Lanes<T> name[2] = {Lanes<T>(kBallFeatures<T>[0]), Lanes<T>(kBallFeatures<T>[1])};
     const Lanes<T> rise = abs(shape.radius[0] - shape.radius[1]);
     const Lanes<T> scale =
         plane.scale + shape.half_length + max(shape.radius[0], shape.radius[1]) + doubt(turn);
@@ -129,15 +129,15 @@ struct HalfSpaceTaper {
     } else {
       const CertifiedLanes<T> answer = answer_along(r.normal, r.distance[0], r.bound, r.scale);
       write_certified<L>(job, block, answer, r.foot[0], Lanes<T>(T(0)));
-      if constexpr (L == kManifold) write_touches(job, block, r, answer);
+      if constexpr (L == kManifold) write_point_contacts(job, block, r, answer);
       return ~answer.certified;
     }
   }
 
   template <typename T>
-  [[gnu::always_inline]] static void write_touches(NarrowJob& job, const PairBlock<T>& block,
-                                                   const Solution<T>& r,
-                                                   const CertifiedLanes<T>& answer) {
+  [[gnu::always_inline]] static void write_point_contacts(NarrowJob& job, const PairBlock<T>& block,
+                                                          const Solution<T>& r,
+                                                          const CertifiedLanes<T>& answer) {
     const Lanes<T> zero(T(0));
     CertifiedLanes<T> second = answer;
     second.distance = r.distance[1];

@@ -8,7 +8,7 @@ namespace {
 
 /// The signed distance of a point from the core of a box.
 template <typename T>
-struct BoxView {
+struct BoxSurfaceView {
   /// Negative inside, by the distance to the nearest face.
   Lanes<T> distance;
   /// Unit, towards the box (if inside: away from the nearest face), in the box's frame.
@@ -21,7 +21,7 @@ struct BoxView {
 
 /// `p` is in the box's frame.
 template <typename T>
-[[gnu::always_inline]] inline BoxView<T> view_box(const Vec3<T>& p, const Vec3<T>& half) {
+[[gnu::always_inline]] inline BoxSurfaceView<T> view_box(const Vec3<T>& p, const Vec3<T>& half) {
   const Lanes<T> zero(T(0));
   const Lanes<T> one(T(1));
   const Vec3<T> w{clamp(p.x, -half.x, half.x) - p.x, clamp(p.y, -half.y, half.y) - p.y,
@@ -46,7 +46,7 @@ template <typename T>
 template <typename T>
 struct SphereBoxSolution {
   Rotation<T> axes;
-  BoxView<T> view;
+  BoxSurfaceView<T> view;
   Lanes<T> sphere_radius;
   Lanes<T> distance;
   Lanes<T> scale;
@@ -56,7 +56,7 @@ template <typename T>
 [[gnu::always_inline]] inline SphereBoxSolution<T> solve(const NarrowJob& job,
                                                          const PairBlock<T>& block) {
   const Vec3<T> c = load_offset(job, block);
-  const Turn<T> turn = load_turn<SideB>(job, block);
+  const ScaledQuaternion<T> turn = load_turn<SideB>(job, block);
   const BoxLanes<T> box = load_box<SideB>(job, block);
   SphereBoxSolution<T> r;
   r.sphere_radius = load_sphere<SideA>(job, block);
@@ -65,7 +65,7 @@ template <typename T>
   r.axes = rotation(turn);
   r.view = view_box(-r.axes.to_local(c), box.half);
   const Lanes<T> radius = r.sphere_radius + box.rounding;
-  r.scale = taxicab(c) + taxicab(box.half) + radius + doubt(turn);
+  r.scale = norm_l1(c) + norm_l1(box.half) + radius + doubt(turn);
   r.distance = r.view.distance - radius;
   return r;
 }

@@ -9,7 +9,7 @@ struct SphereCapsule {
   template <typename T, int L>
   [[gnu::always_inline]] static Mask16 block(NarrowJob& job, const PairBlock<T>& block) {
     const Vec3<T> c = load_offset(job, block);
-    const Turn<T> turn = load_turn<SideB>(job, block);
+    const ScaledQuaternion<T> turn = load_turn<SideB>(job, block);
     const Lanes<T> ra = load_sphere<SideA>(job, block);
     const CapsuleLanes<T> capsule = load_capsule<SideB>(job, block);
 
@@ -17,14 +17,14 @@ struct SphereCapsule {
     const Vec3<T> axis = axis_z(turn);
     const Lanes<T> t = clamp(-dot(c, axis), -capsule.half_length, capsule.half_length);
     const Lanes<T> radius = ra + capsule.radius;
-    const WitnessLanes<T> witness{c + axis * t, radius,
-                                  taxicab(c) + capsule.half_length + radius + doubt(turn)};
+    const CoreGapLanes<T> witness{c + axis * t, radius,
+                                  norm_l1(c) + capsule.half_length + radius + doubt(turn)};
     if constexpr (L == kBoolean) {
       return answer_overlap(job, block, witness);
     } else {
       CertifiedLanes<T> answer = answer_distance(witness, witness.scale * Lanes<T>(T(kShortest)));
       if ((~answer.certified & block.lanes()) != 0) [[unlikely]] {
-        part_across(answer, witness, any_across(axis), witness.scale > Lanes<T>(T(0)));
+        separate_across(answer, witness, any_across(axis), witness.scale > Lanes<T>(T(0)));
       }
       return write_ball<L>(job, block, answer, ra, segment_feature(t, capsule.half_length));
     }

@@ -11,7 +11,7 @@ struct SphereSphere {
     const Vec3<T> c = load_offset(job, block);
     const Lanes<T> ra = load_sphere<SideA>(job, block);
     const Lanes<T> radius = ra + load_sphere<SideB>(job, block);
-    const WitnessLanes<T> witness{c, radius, taxicab(c) + radius};
+    const CoreGapLanes<T> witness{c, radius, norm_l1(c) + radius};
     if constexpr (L == kBoolean) {
       return answer_overlap(job, block, witness);
     } else {

@@ -25,15 +25,15 @@ template <typename T>
 /// The direction along which origin and triangle are farthest apart: the normal, or, where
 /// `is_away`, the direction of the closest point if that is better.
 template <typename T>
-[[gnu::always_inline]] inline Gap<T> widest_gap(const TriangleView<T>& b, const Vec3<T>& w,
-                                                const Lanes<T>& length,
-                                                const LaneMask<T>& is_away) {
+[[gnu::always_inline]] inline AxisGap<T> widest_gap(const TriangleView<T>& b, const Vec3<T>& w,
+                                                    const Lanes<T>& length,
+                                                    const LaneMask<T>& is_away) {
   const Lanes<T> zero(T(0));
   const Lanes<T> one(T(1));
   const Vec3<T> n = w * (one / length);
   const Lanes<T> along = min(min(dot(b.vertex[0], n), dot(b.vertex[1], n)), dot(b.vertex[2], n));
-  Gap<T> gap{select(is_away, along, Lanes<T>(T(-1e30F))), n};
-  const Gap<T> flat = gap_along(b, b.normal * (one / sqrt(b.normal_square)), zero);
+  AxisGap<T> gap{select(is_away, along, Lanes<T>(T(-1e30F))), n};
+  const AxisGap<T> flat = gap_along(b, b.normal * (one / sqrt(b.normal_square)), zero);
   widen(gap, has_normal(b), flat.distance, flat.normal);
   return gap;
 }
@@ -51,7 +51,7 @@ struct SphereTriangleSolution {
 template <typename T>
 [[gnu::noinline]] SphereTriangleSolution<T> solve(const NarrowJob& job, const PairBlock<T>& block) {
   const Vec3<T> c = load_offset(job, block);
-  const Turn<T> turn = load_turn<SideB>(job, block);
+  const ScaledQuaternion<T> turn = load_turn<SideB>(job, block);
   const Lanes<T> ra = load_sphere<SideA>(job, block);
   const TriangleLanes<T> triangle = load_triangle<SideB>(job, block);
 
@@ -60,10 +60,10 @@ template <typename T>
   const NearestCandidate<T> nearest = nearest_point(view);
   const Lanes<T> length = sqrt(nearest.square);
   const Lanes<T> radius = ra + triangle.rounding;
-  const Lanes<T> scale = taxicab(c) + largest(triangle) + radius + doubt(turn);
+  const Lanes<T> scale = norm_l1(c) + largest(triangle) + radius + doubt(turn);
   // If the sphere's centre is on the triangle, up to rounding, the normal is the triangle's.
   const LaneMask<T> is_away = length > scale * Lanes<T>(T(kRoundings) * kEpsilon<T>);
-  const Gap<T> gap = widest_gap(view, nearest.w, length, is_away);
+  const AxisGap<T> gap = widest_gap(view, nearest.w, length, is_away);
   const LaneMask<T> unique =
       (length > scale * Lanes<T>(T(kShortest))) | ((!is_away) & has_normal(view));
   return {{gap.distance - radius, length - radius, scale, unique},

@@ -1,6 +1,6 @@
 // SceneQueries: rays and moving shapes. Partitions find the bodies whose boxes the swept box
-// overlaps (see SweptBox for why none is missed) and call a predicate (LookingFilter), which tests
-// the exact shapes through BodyMeeting or, for rays on meshes, PartTraversal. Sets of a few
+// overlaps (see SweptBox for why none is missed) and call a predicate (BodyCandidateFilter), which
+// tests the exact shapes through BodyContact or, for rays on meshes, SubShapeQuery. Sets of a few
 // composite bodies are tested directly, without their partitions; "crowds" below are all other
 // sets.
 
@@ -35,7 +35,7 @@ using mid::kInfinity;
 /// enlarged by more than both, so it contains the true box at every t. A body's box in the
 /// partition contains the body. The first piece is at most 2^10 times as long as the coordinates at
 /// its start, and each further piece at most 2^10 times the distance to its start: so the box is
-/// too large by at most 2^-14 of the distance from the start. After kMostPieces pieces, or at the
+/// too large by at most 2^-14 of the distance from the start. After kMaxPieces pieces, or at the
 /// end of the range of float, the rest of the path is tested as one box that contains it.
 class SweptBox {
  public:
@@ -76,7 +76,7 @@ class SweptBox {
 
 /// A piece is at most this many times as long as the distance from the start to its beginning.
 constexpr double kPieceGrowth = 0x1p10;
-constexpr int kMostPieces = 5;
+constexpr int kMaxPieces = 5;
 /// Slightly below the range of float.
 constexpr double kFarthest = 0x1p120;
 
@@ -99,7 +99,7 @@ bool SweptBox::next() noexcept {
   if (is_rest_ || (pieces_ != 0 && to_ >= last_)) return false;
   from_ = to_;
   to_ = std::min(last_, kPieceGrowth * std::max({reach_, from_, 1.0}));
-  is_rest_ = pieces_ == kMostPieces || !(reach_ + to_ < kFarthest);
+  is_rest_ = pieces_ == kMaxPieces || !(reach_ + to_ < kFarthest);
   ++pieces_;
   if (is_rest_) to_ = last_;
   return true;
@@ -145,9 +145,9 @@ Aabb SweptBox::rest(double limit) const noexcept {
     sum.max[i] += slack + 0x1p-47 * std::abs(sum.max[i]);
   }
   Aabb box;
-  constexpr float kMost = std::numeric_limits<float>::max();
-  box.min = round_down(sum.min).min(Vec3f::constant(kMost));
-  box.max = round_up(sum.max).max(Vec3f::constant(-kMost));
+  constexpr float kMaxFloat = std::numeric_limits<float>::max();
+  box.min = round_down(sum.min).min(Vec3f::constant(kMaxFloat));
+  box.max = round_up(sum.max).max(Vec3f::constant(-kMaxFloat));
   return box;
 }
 
@@ -158,7 +158,7 @@ bool is_before(const SceneHit& a, const SceneHit& b) noexcept {
 /// Results for bodies that were tested and may be found again, because a partition calls the
 /// predicate once per piece of the path. Direct-mapped: of two bodies with the same entry the later
 /// one stays.
-class Memo {
+class ResultCache {
  public:
   /// Returns the result for the body, or null.
   [[nodiscard]] const bool* find(std::uint32_t body) const noexcept {
@@ -194,8 +194,8 @@ bool is_few(const SceneState& scene, const SceneSet& set) noexcept {
 /// Calls look(body) for all bodies of such sets that pass the filter. Returns true if there are
 /// other sets, whose partitions must be queried.
 template <typename Look>
-[[nodiscard]] bool look_at_few(const SceneState& scene, const Filter& filter, Look& look) {
-  const LookingFilter looking(scene, filter, look);
+[[nodiscard]] bool test_small_sets(const SceneState& scene, const Filter& filter, Look& look) {
+  const BodyCandidateFilter looking(scene, filter, look);
   bool has_crowd = false;
   for (const SceneSet& set : scene.sets) {
     if (!is_few(scene, set)) {
@@ -223,17 +223,17 @@ void order_hits(Column<SceneHit>& hits, std::size_t before) noexcept {
 }
 
 /// One query: a swept shape in the scene.
-class CastQuestion {
+class CastQuery {
  public:
-  CastQuestion(QueryState& state, const SweptShape& swept, const Filter& filter) noexcept
+  CastQuery(QueryState& state, const SweptShape& swept, const Filter& filter) noexcept
       : state_(state), swept_(swept), filter_(filter), limit_(swept.max_t()) {}
 
   Status closest(SceneHit& hit);
   /// Appends the hits to the hits of earlier rays.
   Status all();
-  /// As `all`, for crowds only: `look_at_few` found the hits from `before` on.
+  /// As `all`, for crowds only: `test_small_sets` found the hits from `before` on.
   Status all_in_crowds(std::size_t before);
-  /// As `closest`, for crowds only: `look_at_few` found `body`, or kNoObject, at time t. Leaves
+  /// As `closest`, for crowds only: `test_small_sets` found `body`, or kNoObject, at time t. Leaves
   /// `hit` unchanged unless there is a better one.
   Status closest_in_crowds(std::uint32_t body, double t, SceneHit& hit);
   Status any_in_crowds(SceneHit& hit);
@@ -242,10 +242,10 @@ class CastQuestion {
   [[nodiscard]] SweptBox swept_box() const noexcept;
   [[nodiscard]] bool found() const noexcept { return body_ != kNoObject; }
   [[nodiscard]] bool meets(std::uint32_t body, double limit, bool any,
-                           BodyMeeting& meeting) const noexcept {
+                           BodyContact& meeting) const noexcept {
     return meeting.find(state_.parts, swept_, state_.placed(body), limit, any);
   }
-  [[nodiscard]] SceneHit shown(std::uint32_t body, const BodyMeeting& meeting) const noexcept;
+  [[nodiscard]] SceneHit shown(std::uint32_t body, const BodyContact& meeting) const noexcept;
   /// Tests bodies in crowds only.
   Status closest_in_crowds();
   /// Returns true if this body becomes the closest hit.
@@ -257,7 +257,7 @@ class CastQuestion {
   template <typename Ask>
   [[nodiscard]] Status each_crowd(Ask&& ask) const;
   template <typename Look>
-  [[nodiscard]] Status look_at_rest(const Partition& partition, const SweptBox& path, Look& look);
+  [[nodiscard]] Status test_rest(const Partition& partition, const SweptBox& path, Look& look);
 
   QueryState& state_;
   const SweptShape& swept_;
@@ -265,11 +265,11 @@ class CastQuestion {
   /// The body of the earliest hit so far, and its time, or else the last t.
   std::uint32_t body_ = kNoObject;
   double limit_;
-  BodyMeeting best_;
-  Memo memo_;
+  BodyContact best_;
+  ResultCache memo_;
 };
 
-SweptBox CastQuestion::swept_box() const noexcept {
+SweptBox CastQuery::swept_box() const noexcept {
   // The slack of the path covers the rounding.
   const Vector3d start = Vector3d::Map(swept_.start());
   return {{start + swept_.extent().min, start + swept_.extent().max},
@@ -278,16 +278,16 @@ SweptBox CastQuestion::swept_box() const noexcept {
           swept_.max_t()};
 }
 
-SceneHit CastQuestion::shown(std::uint32_t body, const BodyMeeting& meeting) const noexcept {
+SceneHit CastQuery::shown(std::uint32_t body, const BodyContact& meeting) const noexcept {
   SceneHit hit = meeting.hit(swept_);
   hit.key = state_.scene.keys.key_of(body);
   hit.data = state_.scene.keys.client_data(body);
   return hit;
 }
 
-bool CastQuestion::improves(std::uint32_t body) noexcept {
+bool CastQuery::improves(std::uint32_t body) noexcept {
   if (const bool* const known = memo_.find(body)) return *known;
-  BodyMeeting meeting;
+  BodyContact meeting;
   bool better = meets(body, limit_, false, meeting);
   // Equal t are ordered by the bodies' ids.
   if (better && found() && meeting.t() == limit_) better = body < body_;
@@ -300,7 +300,7 @@ bool CastQuestion::improves(std::uint32_t body) noexcept {
 }
 
 template <typename Ask>
-Status CastQuestion::each_crowd(Ask&& ask) const {
+Status CastQuery::each_crowd(Ask&& ask) const {
   for (const SceneSet& set : state_.scene.sets) {
     if (!set.partition.has_value() || is_few(state_.scene, set)) continue;
     if (const Status status = ask(*set.partition); status != Status::ok) return status;
@@ -310,12 +310,12 @@ Status CastQuestion::each_crowd(Ask&& ask) const {
 
 /// Tests bodies on the rest of a path that is too long for casts.
 template <typename Look>
-Status CastQuestion::look_at_rest(const Partition& partition, const SweptBox& path, Look& look) {
+Status CastQuery::test_rest(const Partition& partition, const SweptBox& path, Look& look) {
   auto look_only = [&](std::uint32_t body) {
     look(body);
     return false;
   };
-  LookingFilter looking(state_.scene, filter_, look_only);
+  BodyCandidateFilter looking(state_.scene, filter_, look_only);
   return partition.overlap(path.rest(limit_), state_.objects, looking.filter());
 }
 
@@ -324,18 +324,18 @@ Status CastQuestion::look_at_rest(const Partition& partition, const SweptBox& pa
 /// nearest box that counted, and every box before that has been tested. The remaining boxes, from
 /// there to the hit on the exact shape, are tested in the second traversal. Both are short if boxes
 /// are tight.
-Status CastQuestion::closest_in_crowds() {
+Status CastQuery::closest_in_crowds() {
   SweptBox path = swept_box();
   auto look = [&](std::uint32_t body) { return improves(body); };
   auto look_only = [&](std::uint32_t body) {
     improves(body);
     return false;
   };
-  LookingFilter first(state_.scene, filter_, look);
-  LookingFilter second(state_.scene, filter_, look_only);
+  BodyCandidateFilter first(state_.scene, filter_, look);
+  BodyCandidateFilter second(state_.scene, filter_, look_only);
   while (path.next() && !(found() && limit_ < path.begin())) {
     const Status status = each_crowd([&](const Partition& partition) {
-      if (path.is_rest()) return look_at_rest(partition, path, look);
+      if (path.is_rest()) return test_rest(partition, path, look);
       Hit box;
       BoxCast cast = path.cast(limit_);
       Status asked = partition.closest(cast, box, first.filter());
@@ -350,15 +350,15 @@ Status CastQuestion::closest_in_crowds() {
   return Status::ok;
 }
 
-Status CastQuestion::closest(SceneHit& hit) {
+Status CastQuery::closest(SceneHit& hit) {
   auto look = [&](std::uint32_t body) { return improves(body); };
-  const bool has_crowd = look_at_few(state_.scene, filter_, look);
+  const bool has_crowd = test_small_sets(state_.scene, filter_, look);
   const Status status = has_crowd ? closest_in_crowds() : Status::ok;
   if (status == Status::ok) hit = found() ? shown(body_, best_) : SceneHit{};
   return status;
 }
 
-Status CastQuestion::closest_in_crowds(std::uint32_t body, double t, SceneHit& hit) {
+Status CastQuery::closest_in_crowds(std::uint32_t body, double t, SceneHit& hit) {
   body_ = body;
   if (found()) limit_ = t;
   const Status status = closest_in_crowds();
@@ -366,7 +366,7 @@ Status CastQuestion::closest_in_crowds(std::uint32_t body, double t, SceneHit& h
   return status;
 }
 
-Status CastQuestion::any_in_crowds(SceneHit& hit) {
+Status CastQuery::any_in_crowds(SceneHit& hit) {
   auto look = [&](std::uint32_t body) {
     if (found()) return true;
     if (const bool* const known = memo_.find(body)) return *known;
@@ -375,11 +375,11 @@ Status CastQuestion::any_in_crowds(SceneHit& hit) {
     return true;
   };
   SweptBox path = swept_box();
-  LookingFilter looking(state_.scene, filter_, look);
+  BodyCandidateFilter looking(state_.scene, filter_, look);
   while (!found() && path.next()) {
     const Status status = each_crowd([&](const Partition& partition) {
       if (found()) return Status::ok;
-      if (path.is_rest()) return look_at_rest(partition, path, look);
+      if (path.is_rest()) return test_rest(partition, path, look);
       Hit box;
       return partition.any(path.cast(limit_), box, looking.filter());
     });
@@ -389,39 +389,39 @@ Status CastQuestion::any_in_crowds(SceneHit& hit) {
   return Status::ok;
 }
 
-Status CastQuestion::all() {
+Status CastQuery::all() {
   const std::size_t before = state_.hits.size();
   bool has_room = true;
   auto look = [&](std::uint32_t body) {
     has_room = adds(body) && has_room;
     return false;
   };
-  const bool has_crowd = look_at_few(state_.scene, filter_, look);
+  const bool has_crowd = test_small_sets(state_.scene, filter_, look);
   if (!has_room) return Status::out_of_memory;
   if (has_crowd) return all_in_crowds(before);
   order_hits(state_.hits, before);
   return Status::ok;
 }
 
-bool CastQuestion::adds(std::uint32_t body) {
+bool CastQuery::adds(std::uint32_t body) {
   if (memo_.find(body) != nullptr) return true;
   memo_.note(body, false);
-  BodyMeeting meeting;
+  BodyContact meeting;
   return !meets(body, swept_.max_t(), false, meeting) ||
          state_.hits.push_back(shown(body, meeting));
 }
 
-Status CastQuestion::all_in_crowds(std::size_t before) {
+Status CastQuery::all_in_crowds(std::size_t before) {
   bool has_room = true;
   auto look = [&](std::uint32_t body) {
     has_room = adds(body) && has_room;
     return false;
   };
   SweptBox path = swept_box();
-  LookingFilter looking(state_.scene, filter_, look);
+  BodyCandidateFilter looking(state_.scene, filter_, look);
   while (path.next()) {
     const Status status = each_crowd([&](const Partition& partition) {
-      if (path.is_rest()) return look_at_rest(partition, path, look);
+      if (path.is_rest()) return test_rest(partition, path, look);
       return partition.all(path.cast(swept_.max_t()), state_.boxes, looking.filter());
     });
     if (status != Status::ok) return status;
@@ -437,17 +437,17 @@ struct RayInScene {
   const ShapeRay& ray;
 
   /// True if the ray hits a convex part of a body by t = most.
-  [[nodiscard]] bool meets(std::uint32_t body, const ConvexPart& part, double most,
-                           RayMeetsBody& meeting) const {
+  [[nodiscard]] bool meets(std::uint32_t body, const SubShape& part, double most,
+                           BodyRayHit& meeting) const {
     const RaySweep swept(state.scene.shapes, ray);
-    const Difference from = difference(ray.origin, state.scene.pose[body].position);
-    SweepMeeting found;
+    const TwoDiff from = difference(ray.origin, state.scene.pose[body].position);
+    SweepContact found;
     if (!swept.meets(from.difference, part, most, {}, found)) return false;
-    meeting = RayMeetsBody::at(body, part.part, found.t, found.normal);
+    meeting = BodyRayHit::at(body, part.part, found.t, found.normal);
     return true;
   }
   /// Fills in a hit, which must be a null hit.
-  void show(const RayMeetsBody& best, SceneHit& hit) const noexcept {
+  void show(const BodyRayHit& best, SceneHit& hit) const noexcept {
     if (best.body == kNoObject) return;
     hit.key = state.scene.keys.key_of(best.body);
     hit.data = state.scene.keys.client_data(best.body);
@@ -455,7 +455,7 @@ struct RayInScene {
     hit.t = best.t;
     // Summed in an order that keeps precision for distant bodies.
     const double* const base = state.scene.pose[best.body].position;
-    const Difference from = difference(ray.origin, base);
+    const TwoDiff from = difference(ray.origin, base);
     for (int k = 0; k < 3; ++k) {
       hit.normal[k] = best.normal[k];
       hit.point[k] = base[k] + (from.difference[k] + best.t * ray.direction[k]);
@@ -464,23 +464,23 @@ struct RayInScene {
 };
 
 /// Tests a ray on crowds. `hit` is the result so far and changes only if there is a better one.
-[[nodiscard]] Status ask_crowds(QueryState& state, const ShapeRay& ray, const Filter& filter,
-                                const RayMeetsBody& best, bool any, SceneHit& hit) {
+[[nodiscard]] Status query_crowds(QueryState& state, const ShapeRay& ray, const Filter& filter,
+                                  const BodyRayHit& best, bool any, SceneHit& hit) {
   if (any && best.body != kNoObject) return Status::ok;
   const RaySweep swept(state.scene.shapes, ray);
-  CastQuestion question(state, swept, filter);
+  CastQuery question(state, swept, filter);
   return any ? question.any_in_crowds(hit) : question.closest_in_crowds(best.body, best.t, hit);
 }
 
-/// Tests a single ray on a body that `look_at_few` found, up to the limit.
-void meet_alone(QueryState& state, const RayInScene& asked, std::uint32_t body, bool any,
-                RayMeetsBody& best, double& limit) {
+/// Tests a single ray on a body that `test_small_sets` found, up to the limit.
+void test_ray(QueryState& state, const RayInScene& asked, std::uint32_t body, bool any,
+              BodyRayHit& best, double& limit) {
   const auto meet = [&](std::size_t, std::uint32_t part, const ShapeHit& found, double) {
-    best.improve(RayMeetsBody::at(body, part, found.t, found.normal), any, limit);
+    best.improve(BodyRayHit::at(body, part, found.t, found.normal), any, limit);
     return limit;
   };
-  const auto look_at = [&](std::size_t, const ConvexPart& part, double most) {
-    RayMeetsBody meeting;
+  const auto look_at = [&](std::size_t, const SubShape& part, double most) {
+    BodyRayHit meeting;
     if (!asked.meets(body, part, std::min(most, limit), meeting)) return std::min(most, limit);
     best.improve(meeting, any, limit);
     return limit;
@@ -494,17 +494,17 @@ void meet_alone(QueryState& state, const RayInScene& asked, std::uint32_t body, 
 }
 
 /// Finds the first hit of a single ray, or with `any` any hit. The ray must be valid.
-Status ask_alone(QueryState& state, const ShapeRay& ray, const Filter& filter, bool any,
+Status query_ray(QueryState& state, const ShapeRay& ray, const Filter& filter, bool any,
                  SceneHit& hit) {
   const RayInScene asked{state, ray};
-  RayMeetsBody best;
+  BodyRayHit best;
   best.body = kNoObject;
   double limit = ray.max_t;
   auto look = [&](std::uint32_t body) {
-    meet_alone(state, asked, body, any, best, limit);
+    test_ray(state, asked, body, any, best, limit);
     return false;
   };
-  const bool has_crowd = look_at_few(state.scene, filter, look);
+  const bool has_crowd = test_small_sets(state.scene, filter, look);
   if (!has_crowd) {
     hit = SceneHit{};
     asked.show(best, hit);
@@ -512,32 +512,32 @@ Status ask_alone(QueryState& state, const ShapeRay& ray, const Filter& filter, b
   }
   SceneHit found;
   asked.show(best, found);
-  const Status status = ask_crowds(state, ray, filter, best, any, found);
+  const Status status = query_crowds(state, ray, filter, best, any, found);
   if (status == Status::ok) hit = found;
   return status;
 }
 
 /// Writes the hits of a single ray on all bodies into the state's `hits`.
-Status ask_all_alone(QueryState& state, const ShapeRay& ray, const Filter& filter) {
+Status query_all_one_by_one(QueryState& state, const ShapeRay& ray, const Filter& filter) {
   const RayInScene asked{state, ray};
   state.hits.clear();
   bool has_room = true;
   auto look = [&](std::uint32_t body) {
-    RayMeetsBody best;
+    BodyRayHit best;
     best.body = kNoObject;
     double limit = ray.max_t;
-    meet_alone(state, asked, body, false, best, limit);
+    test_ray(state, asked, body, false, best, limit);
     if (best.body == kNoObject) return false;
     SceneHit hit;
     asked.show(best, hit);
     has_room = state.hits.push_back(hit) && has_room;
     return false;
   };
-  const bool has_crowd = look_at_few(state.scene, filter, look);
+  const bool has_crowd = test_small_sets(state.scene, filter, look);
   if (!has_room) return Status::out_of_memory;
   if (has_crowd) {
     const RaySweep swept(state.scene.shapes, ray);
-    return CastQuestion(state, swept, filter).all_in_crowds(0);
+    return CastQuery(state, swept, filter).all_in_crowds(0);
   }
   order_hits(state.hits, 0);
   return Status::ok;
@@ -552,12 +552,12 @@ class RaysTogether {
   /// Finds the first hits, or with `any` any hits, of rays [first, first + count) of a batch. They
   /// must be valid.
   Status ask(const ShapeRayBatch& rays, std::size_t first, std::size_t count, bool any);
-  /// Lists each ray's first hits on all bodies that `look_at_few` finds, sorted by ray, in the
+  /// Lists each ray's first hits on all bodies that `test_small_sets` finds, sorted by ray, in the
   /// state's `few`, and sets whether there are crowds.
   Status list_few(const ShapeRayBatch& rays, std::size_t first, std::size_t count, bool& has_crowd);
   [[nodiscard]] const SceneHit& hit(std::size_t i) const noexcept { return hit_[i]; }
   /// Returns hit `at` of ray i of the group.
-  [[nodiscard]] SceneHit shown(std::size_t i, const RayMeetsBody& at) const noexcept {
+  [[nodiscard]] SceneHit shown(std::size_t i, const BodyRayHit& at) const noexcept {
     SceneHit hit;
     RayInScene{state_, ray_[i]}.show(at, hit);
     return hit;
@@ -565,7 +565,7 @@ class RaysTogether {
 
  private:
   void start(const ShapeRayBatch& rays, std::size_t first, std::size_t count, bool any) noexcept;
-  void meet_few(std::uint32_t body);
+  void test_rays(std::uint32_t body);
 
   QueryState& state_;
   const Filter& filter_;
@@ -575,17 +575,17 @@ class RaysTogether {
   ShapeRay ray_[kRaysAtOnce];
   /// Time of the first hit so far, or the end of the ray; with `any`, negative after a hit.
   double limit_[kRaysAtOnce];
-  RayMeetsBody best_[kRaysAtOnce];
+  BodyRayHit best_[kRaysAtOnce];
   SceneHit hit_[kRaysAtOnce];
 };
 
-void RaysTogether::meet_few(std::uint32_t body) {
+void RaysTogether::test_rays(std::uint32_t body) {
   const auto meet = [&](std::size_t i, std::uint32_t part, const ShapeHit& hit, double) {
-    best_[i].improve(RayMeetsBody::at(body, part, hit.t, hit.normal), any_, limit_[i]);
+    best_[i].improve(BodyRayHit::at(body, part, hit.t, hit.normal), any_, limit_[i]);
     return limit_[i];
   };
-  const auto look = [&](std::size_t i, const ConvexPart& part, double limit) {
-    RayMeetsBody meeting;
+  const auto look = [&](std::size_t i, const SubShape& part, double limit) {
+    BodyRayHit meeting;
     const double most = std::min(limit, limit_[i]);
     if (!RayInScene{state_, ray_[i]}.meets(body, part, most, meeting)) return most;
     best_[i].improve(meeting, any_, limit_[i]);
@@ -609,14 +609,14 @@ Status RaysTogether::ask(const ShapeRayBatch& rays, std::size_t first, std::size
                          bool any) {
   start(rays, first, count, any);
   auto look = [&](std::uint32_t body) {
-    meet_few(body);
+    test_rays(body);
     return false;
   };
-  const bool has_crowd = look_at_few(state_.scene, filter_, look);
+  const bool has_crowd = test_small_sets(state_.scene, filter_, look);
   for (std::size_t i = 0; i < count; ++i) hit_[i] = shown(i, best_[i]);
   if (!has_crowd) return Status::ok;
   for (std::size_t i = 0; i < count; ++i) {
-    const Status status = ask_crowds(state_, ray_[i], filter_, best_[i], any_, hit_[i]);
+    const Status status = query_crowds(state_, ray_[i], filter_, best_[i], any_, hit_[i]);
     if (status != Status::ok) return status;
   }
   return Status::ok;
@@ -629,13 +629,13 @@ Status RaysTogether::list_few(const ShapeRayBatch& rays, std::size_t first, std:
   bool has_room = true;
   auto look = [&](std::uint32_t body) {
     start(rays, first, count, false);
-    meet_few(body);
+    test_rays(body);
     for (std::size_t i = 0; i < count; ++i) {
       if (best_[i].body != kNoObject) has_room = few.push_back({first + i, best_[i]}) && has_room;
     }
     return false;
   };
-  has_crowd = look_at_few(state_.scene, filter_, look);
+  has_crowd = test_small_sets(state_.scene, filter_, look);
   const auto is_earlier = [](const RayHit& a, const RayHit& b) { return a.ray < b.ray; };
   // The hits of one body are in order already.
   const bool is_ordered = std::is_sorted(few.begin(), few.end(), is_earlier);
@@ -649,14 +649,14 @@ bool is_valid(const double (&direction)[3], double max_t) noexcept {
 }
 
 Status check(const QueryState* state, const ShapeRay& ray) noexcept {
-  if (const Status status = QueryState::may_ask(state); status != Status::ok) {
+  if (const Status status = QueryState::check_state(state); status != Status::ok) {
     return status;
   }
   return is_valid(ray) ? Status::ok : Status::invalid_argument;
 }
 
 Status check(const QueryState* state, const ShapeRayBatch& rays) noexcept {
-  if (const Status status = QueryState::may_ask(state); status != Status::ok) {
+  if (const Status status = QueryState::check_state(state); status != Status::ok) {
     return status;
   }
   for (std::size_t i = 0; i < rays.count; ++i) {
@@ -682,8 +682,8 @@ void put(const SceneHitColumns& columns, std::size_t row, const SceneHit& hit) n
 }
 
 /// Finds one hit for each ray.
-Status ask_each(QueryState* state, const ShapeRayBatch& rays, const Filter& filter,
-                const SceneHitColumns& hits, bool any) {
+Status query_each(QueryState* state, const ShapeRayBatch& rays, const Filter& filter,
+                  const SceneHitColumns& hits, bool any) {
   Status status = check(state, rays);
   if (status != Status::ok) return status;
   RaysTogether group(*state, filter);
@@ -696,14 +696,14 @@ Status ask_each(QueryState* state, const ShapeRayBatch& rays, const Filter& filt
   return Status::ok;
 }
 
-Status ask_one(QueryState* state, const ShapeRay& ray, const Filter& filter, SceneHit& hit,
-               bool any) {
+Status query_one(QueryState* state, const ShapeRay& ray, const Filter& filter, SceneHit& hit,
+                 bool any) {
   const Status status = check(state, ray);
-  return status == Status::ok ? ask_alone(*state, ray, filter, any, hit) : status;
+  return status == Status::ok ? query_ray(*state, ray, filter, any, hit) : status;
 }
 
 /// Writes all hits of valid rays into the state's `hits`, and where the hits of each ray begin.
-Status ask_all(QueryState& state, const ShapeRayBatch& rays, const Filter& filter) {
+Status query_all(QueryState& state, const ShapeRayBatch& rays, const Filter& filter) {
   Column<std::size_t>& first = state.hits_first;
   state.hits.clear();
   if (!first.resize(rays.count + 1)) return Status::out_of_memory;
@@ -722,7 +722,7 @@ Status ask_all(QueryState& state, const ShapeRayBatch& rays, const Filter& filte
       if (has_crowd) {
         const ShapeRay ray = rays[k];
         const RaySweep swept(state.scene.shapes, ray);
-        status = CastQuestion(state, swept, filter).all_in_crowds(first[k]);
+        status = CastQuery(state, swept, filter).all_in_crowds(first[k]);
         if (status != Status::ok) return status;
       } else {
         order_hits(state.hits, first[k]);
@@ -734,7 +734,7 @@ Status ask_all(QueryState& state, const ShapeRayBatch& rays, const Filter& filte
 }
 
 Status check(const QueryState* state, const ShapeCast& cast, double tolerance) noexcept {
-  if (const Status status = QueryState::may_ask(state); status != Status::ok) {
+  if (const Status status = QueryState::check_state(state); status != Status::ok) {
     return status;
   }
   if (!state->parts.contains(cast.shape)) return Status::invalid_key;
@@ -759,19 +759,19 @@ Status ask_cast(QueryState* state, const ShapeCast& cast, double tolerance, Ask&
 
 Status SceneQueries::closest(const ShapeRay& ray, SceneHit& hit, const Filter& filter) {
   const DefaultEnvironment environment;
-  return ask_one(state_, ray, filter, hit, false);
+  return query_one(state_, ray, filter, hit, false);
 }
 
 Status SceneQueries::any(const ShapeRay& ray, SceneHit& hit, const Filter& filter) {
   const DefaultEnvironment environment;
-  return ask_one(state_, ray, filter, hit, true);
+  return query_one(state_, ray, filter, hit, true);
 }
 
 Status SceneQueries::all(const ShapeRay& ray, std::span<const SceneHit>& hits,
                          const Filter& filter) {
   const DefaultEnvironment environment;
   if (const Status status = check(state_, ray); status != Status::ok) return status;
-  const Status status = ask_all_alone(*state_, ray, filter);
+  const Status status = query_all_one_by_one(*state_, ray, filter);
   if (status == Status::ok) hits = {state_->hits.data(), state_->hits.size()};
   return status;
 }
@@ -779,19 +779,19 @@ Status SceneQueries::all(const ShapeRay& ray, std::span<const SceneHit>& hits,
 Status SceneQueries::closest(const ShapeRayBatch& rays, const SceneHitColumns& hits,
                              const Filter& filter) {
   const DefaultEnvironment environment;
-  return ask_each(state_, rays, filter, hits, false);
+  return query_each(state_, rays, filter, hits, false);
 }
 
 Status SceneQueries::any(const ShapeRayBatch& rays, const SceneHitColumns& hits,
                          const Filter& filter) {
   const DefaultEnvironment environment;
-  return ask_each(state_, rays, filter, hits, true);
+  return query_each(state_, rays, filter, hits, true);
 }
 
 Status SceneQueries::all(const ShapeRayBatch& rays, SceneHitLists& hits, const Filter& filter) {
   const DefaultEnvironment environment;
   if (const Status status = check(state_, rays); status != Status::ok) return status;
-  const Status status = ask_all(*state_, rays, filter);
+  const Status status = query_all(*state_, rays, filter);
   if (status != Status::ok) return status;
   const Column<std::size_t>& first = state_->hits_first;
   hits = {{state_->hits.data(), state_->hits.size()}, {first.data(), first.size()}};
@@ -802,7 +802,7 @@ Status SceneQueries::closest(const ShapeCast& cast, SceneHit& hit, const Filter&
                              double tolerance) {
   const DefaultEnvironment environment;
   return ask_cast(state_, cast, tolerance, [&](const SweptShape& swept) {
-    return CastQuestion(*state_, swept, filter).closest(hit);
+    return CastQuery(*state_, swept, filter).closest(hit);
   });
 }
 
@@ -811,7 +811,7 @@ Status SceneQueries::all(const ShapeCast& cast, std::span<const SceneHit>& hits,
   const DefaultEnvironment environment;
   const Status status = ask_cast(state_, cast, tolerance, [&](const SweptShape& swept) {
     state_->hits.clear();
-    return CastQuestion(*state_, swept, filter).all();
+    return CastQuery(*state_, swept, filter).all();
   });
   if (status == Status::ok) hits = {state_->hits.data(), state_->hits.size()};
   return status;

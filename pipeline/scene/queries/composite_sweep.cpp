@@ -1,6 +1,6 @@
 #include "pipeline/scene/queries/composite_sweep.h"
 
-#include "pipeline/scene/queries/two_shapes.h"
+#include "pipeline/scene/queries/shape_distance.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,19 +10,19 @@ namespace winnow {
 /// A fixed convex part relative to the start of the composite shape, so that the parts of both keep
 /// full precision far from the origin. The rounding error of the difference is added to the shape's
 /// pose, where it is small.
-class CompositeSweep::Approach {
+class CompositeSweep::PartSearch {
  public:
-  Approach(const CompositeSweep& sweep, const double from[3], const ConvexPart& part) noexcept
+  PartSearch(const CompositeSweep& sweep, const double from[3], const SubShape& part) noexcept
       : sweep_(sweep), standing_(part), moving_{sweep.cast_.shape, sweep.cast_.pose} {
-    const Difference apart = difference(part.pose.position, from);
+    const TwoDiff apart = difference(part.pose.position, from);
     for (int i = 0; i < 3; ++i) {
       standing_.pose.position[i] = apart.difference[i];
       moving_.pose.position[i] = -apart.rest[i];
     }
-    standing_.thickness = corner_doubt(standing_);
+    standing_.thickness = corner_error(standing_);
   }
 
-  /// Calls look(own part, limit), as PartTraversal::met does, for own parts that may touch the
+  /// Calls look(own part, limit), as SubShapeQuery::met does, for own parts that may touch the
   /// fixed part by then, or come within `more` of it.
   template <typename Look>
   void each(double limit, Look&& look, double more = 0.0) const {
@@ -30,13 +30,13 @@ class CompositeSweep::Approach {
   }
 
   /// True if one part is a one-sided triangle and the other is behind it.
-  [[nodiscard]] bool any_is_behind(const ConvexPart& own) const noexcept {
+  [[nodiscard]] bool any_is_behind(const SubShape& own) const noexcept {
     return any_stands_behind(sweep_.parts_, own, standing_);
   }
 
-  [[nodiscard]] CastPair pair(PartTables& tables, const ConvexPart& own) const noexcept {
-    ConvexPart thick = own;
-    thick.thickness = corner_doubt(own);
+  [[nodiscard]] CastPair pair(PartTables& tables, const SubShape& own) const noexcept {
+    SubShape thick = own;
+    thick.thickness = corner_error(own);
     CastPair pair;
     pair.moving = tables.put(0, thick);
     pair.from = own.pose;
@@ -66,32 +66,32 @@ class CompositeSweep::Approach {
   }
 
   const CompositeSweep& sweep_;
-  ConvexPart standing_;
+  SubShape standing_;
   PlacedShape moving_;
 };
 
-CompositeSweep::CompositeSweep(const PartTraversal& parts, const ShapeCast& cast,
+CompositeSweep::CompositeSweep(const SubShapeQuery& parts, const ShapeCast& cast,
                                double tolerance) noexcept
     : SweptShape(parts.box(PlacedShape{cast.shape, at_origin(cast.pose)}), cast, tolerance),
       parts_(parts),
       cast_(cast) {}
 
-void CompositeSweep::note_contact(const double from[3], const ConvexPart& part,
+void CompositeSweep::note_contact(const double from[3], const SubShape& part,
                                   impact::RestingContacts& resting) const noexcept {
-  const Approach approach(*this, from, part);
-  auto note = [&](const ConvexPart& own, double most) {
+  const PartSearch approach(*this, from, part);
+  auto record = [&](const SubShape& own, double most) {
     PartTables tables(parts_.shapes());
-    CastMotions(approach.pair(tables, own), max_t()).note(tables.tables(), resting);
+    CastMotions(approach.pair(tables, own), max_t()).record(tables.tables(), resting);
     return most;
   };
-  approach.each(0.0, note, tolerance());
+  approach.each(0.0, record, tolerance());
 }
 
-bool CompositeSweep::meets(const double from[3], const ConvexPart& part, double limit,
-                           const KnownMeetings& known, SweepMeeting& meeting) const noexcept {
-  const Approach approach(*this, from, part);
+bool CompositeSweep::meets(const double from[3], const SubShape& part, double limit,
+                           const EarlierContacts& known, SweepContact& meeting) const noexcept {
+  const PartSearch approach(*this, from, part);
   bool found = false;
-  approach.each(limit, [&](const ConvexPart& own, double most) {
+  approach.each(limit, [&](const SubShape& own, double most) {
     PartTables tables(parts_.shapes());
     CastPair pair = approach.pair(tables, own);
     pair.max_t = most = std::min(most, limit);
@@ -104,21 +104,21 @@ bool CompositeSweep::meets(const double from[3], const ConvexPart& part, double 
     if (!cast_shape(tables.tables(), pair, tolerance(), touch)) return most;
     if (found && touch.t == limit && meeting.own_part < own.part) return most;
     found = true;
-    meeting = meeting_of(touch);
+    meeting = contact_of(touch);
     meeting.own_part = own.part;
     return limit = touch.t;
   });
   return found;
 }
 
-void CompositeSweep::describe(const double from[3], const ConvexPart& part,
-                              SweepMeeting& meeting) const noexcept {
-  const Approach approach(*this, from, part);
-  approach.each(max_t(), [&](const ConvexPart& own, double most) {
+void CompositeSweep::describe(const double from[3], const SubShape& part,
+                              SweepContact& meeting) const noexcept {
+  const PartSearch approach(*this, from, part);
+  approach.each(max_t(), [&](const SubShape& own, double most) {
     if (own.part != meeting.own_part) return most;
     PartTables tables(parts_.shapes());
     const CastPair pair = approach.pair(tables, own);
-    describe_meeting(tables.tables(), pair, part, meeting);
+    describe_contact(tables.tables(), pair, part, meeting);
     return -1.0;
   });
 }

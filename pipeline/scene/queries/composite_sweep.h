@@ -9,19 +9,19 @@ namespace winnow {
 /// cast. The cast must outlive this object.
 class CompositeSweep final : public SweptShape {
  public:
-  CompositeSweep(const PartTraversal& parts, const ShapeCast& cast, double tolerance) noexcept;
-  void note_contact(const double from[3], const ConvexPart& part,
+  CompositeSweep(const SubShapeQuery& parts, const ShapeCast& cast, double tolerance) noexcept;
+  void note_contact(const double from[3], const SubShape& part,
                     impact::RestingContacts& resting) const noexcept override;
-  [[nodiscard]] bool meets(const double from[3], const ConvexPart& part, double limit,
-                           const KnownMeetings& known,
-                           SweepMeeting& meeting) const noexcept override;
-  void describe(const double from[3], const ConvexPart& part,
-                SweepMeeting& meeting) const noexcept override;
+  [[nodiscard]] bool meets(const double from[3], const SubShape& part, double limit,
+                           const EarlierContacts& known,
+                           SweepContact& meeting) const noexcept override;
+  void describe(const double from[3], const SubShape& part,
+                SweepContact& meeting) const noexcept override;
 
  private:
-  class Approach;
+  class PartSearch;
 
-  const PartTraversal& parts_;
+  const SubShapeQuery& parts_;
   const ShapeCast& cast_;
 };
 

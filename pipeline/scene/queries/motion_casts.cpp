@@ -1,11 +1,11 @@
 // SceneQueries: shapes that move and turn. The path is boxed in one or more pieces; partitions find
-// the bodies whose boxes overlap each piece and call a predicate (LookingFilter), which tests the
-// exact shapes (motion/body_impact.h).
+// the bodies whose boxes overlap each piece and call a predicate (BodyCandidateFilter), which tests
+// the exact shapes (motion/body_impact.h).
 
 #include <winnow/core/aabb.h>
 #include "core/threads/float_environment.h"
 #include "pipeline/motion/body_impact.h"
-#include "pipeline/motion/passage.h"
+#include "pipeline/motion/relative_motion_bounds.h"
 #include "pipeline/scene/queries/queries.h"
 
 #include <algorithm>
@@ -23,10 +23,10 @@ namespace {
 }
 
 /// One query: a shape that moves and turns through the scene.
-class MotionQuestion {
+class MotionQuery {
  public:
-  MotionQuestion(QueryState& state, const MotionCast& cast, const Filter& filter,
-                 double tolerance) noexcept
+  MotionQuery(QueryState& state, const MotionCast& cast, const Filter& filter,
+              double tolerance) noexcept
       : state_(state),
         cast_(cast),
         filter_(filter),
@@ -55,11 +55,11 @@ class MotionQuestion {
   const double tolerance_;
   const RigidMotion frame_;
   const impact::MovingShape moving_;
-  const impact::Passage way_;
+  const impact::RelativeMotionBounds way_;
 };
 
 template <typename Look>
-Status MotionQuestion::each_piece(const double& limit, Look&& look) {
+Status MotionQuery::each_piece(const double& limit, Look&& look) {
   const std::uint32_t pieces = way_.piece_count();
   for (std::uint32_t i = 0; i < pieces; ++i) {
     const impact::Interval within = impact::piece_of(i, pieces);
@@ -69,7 +69,7 @@ Status MotionQuestion::each_piece(const double& limit, Look&& look) {
       look(body, within);
       return false;
     };
-    LookingFilter looking(state_.scene, filter_, look_at);
+    BodyCandidateFilter looking(state_.scene, filter_, look_at);
     const Aabb region = Aabb::outward(box.min, box.max);
     const Status status = state_.each_partition([&](const Partition& partition) {
       return partition.overlap(region, state_.objects, looking.filter());
@@ -79,12 +79,12 @@ Status MotionQuestion::each_piece(const double& limit, Look&& look) {
   return Status::ok;
 }
 
-SceneHit MotionQuestion::hit_of(std::uint32_t body, const impact::Interval& within,
-                                double until) const {
+SceneHit MotionQuery::hit_of(std::uint32_t body, const impact::Interval& within,
+                             double until) const {
   const PlacedShape placed = state_.placed(body);
   const RigidMotion stands = RigidMotion::standing(placed.pose);
   const impact::StartTouch touch =
-      cast_.touching ? impact::StartTouch::meets : impact::StartTouch::is_entered;
+      cast_.touching ? impact::StartTouch::meets : impact::StartTouch::impact_unless_sliding;
   const impact::BodyImpact found =
       impact::find_body_impact(state_.parts, {cast_.shape, cast_.motion}, {placed.shape, stands},
                                {tolerance_, within, until, touch});
@@ -103,7 +103,7 @@ SceneHit MotionQuestion::hit_of(std::uint32_t body, const impact::Interval& with
   return hit;
 }
 
-Status MotionQuestion::closest(SceneHit& hit) {
+Status MotionQuery::closest(SceneHit& hit) {
   SceneHit best;
   best.t = 1.0;
   const Status status = each_piece(best.t, [&](std::uint32_t body, const impact::Interval& within) {
@@ -115,7 +115,7 @@ Status MotionQuestion::closest(SceneHit& hit) {
 }
 
 /// A body may be hit in two consecutive pieces; the first hit counts.
-Status MotionQuestion::all() {
+Status MotionQuery::all() {
   Column<SceneHit>& hits = state_.hits;
   hits.clear();
   bool has_room = true;
@@ -136,7 +136,7 @@ Status MotionQuestion::all() {
 }
 
 Status check(const QueryState* state, const MotionCast& cast, double tolerance) noexcept {
-  if (const Status status = QueryState::may_ask(state); status != Status::ok) return status;
+  if (const Status status = QueryState::check_state(state); status != Status::ok) return status;
   if (!state->parts.contains(cast.shape)) return Status::invalid_key;
   if (!cast.shape.is_composite() && cast.shape.kind() == ShapeKind::half_space) {
     return Status::unsupported;
@@ -152,14 +152,14 @@ Status SceneQueries::closest(const MotionCast& cast, SceneHit& hit, const Filter
   const DefaultEnvironment environment;
   const Status status = check(state_, cast, tolerance);
   if (status != Status::ok) return status;
-  return MotionQuestion(*state_, cast, filter, tolerance).closest(hit);
+  return MotionQuery(*state_, cast, filter, tolerance).closest(hit);
 }
 
 Status SceneQueries::all(const MotionCast& cast, std::span<const SceneHit>& hits,
                          const Filter& filter, double tolerance) {
   const DefaultEnvironment environment;
   Status status = check(state_, cast, tolerance);
-  if (status == Status::ok) status = MotionQuestion(*state_, cast, filter, tolerance).all();
+  if (status == Status::ok) status = MotionQuery(*state_, cast, filter, tolerance).all();
   if (status == Status::ok) hits = {state_->hits.data(), state_->hits.size()};
   return status;
 }

@@ -1,7 +1,7 @@
 #pragma once
 
 // Shared by the queries of a scene: the state of SceneQueries, filters and ray hits.
-// scene_queries.cpp, casts.cpp, motion_casts.cpp and two_sets.cpp implement the queries.
+// scene_queries.cpp, casts.cpp, motion_casts.cpp and set_distance.cpp implement the queries.
 
 #include <winnow/pipeline/scene_queries.h>
 #include "pipeline/composites/parts.h"
@@ -13,19 +13,19 @@
 namespace winnow {
 
 /// A ray's hit on a body; `body` is kNoObject if there is none.
-struct RayMeetsBody {
+struct BodyRayHit {
   std::uint32_t body;
   std::uint32_t part;
   double t;
   double normal[3];
 
-  [[nodiscard]] static RayMeetsBody at(std::uint32_t body, std::uint32_t part, double t,
-                                       const double (&normal)[3]) noexcept {
+  [[nodiscard]] static BodyRayHit at(std::uint32_t body, std::uint32_t part, double t,
+                                     const double (&normal)[3]) noexcept {
     return {body, part, t, {normal[0], normal[1], normal[2]}};
   }
   /// Replaces this hit with `other` if that is earlier and within the limit, and lowers the limit
   /// to its t; with `any`, to below zero, which ends the query.
-  void improve(const RayMeetsBody& other, bool any, double& limit) noexcept {
+  void improve(const BodyRayHit& other, bool any, double& limit) noexcept {
     if (other.t > limit) return;
     // Equal t are ordered by the bodies' ids, then by part.
     if (body != kNoObject && other.t == t &&
@@ -40,7 +40,7 @@ struct RayMeetsBody {
 /// A hit of one ray of several.
 struct RayHit {
   std::size_t ray;
-  RayMeetsBody at;
+  BodyRayHit at;
 };
 
 /// A small direct-mapped cache of meshes that MidPhase::place prepared for single rays. If two
@@ -48,7 +48,7 @@ struct RayHit {
 class RaySurfaces {
  public:
   /// Returns the prepared mesh of a body at its present pose, or null if the body is not a mesh.
-  [[nodiscard]] const RaySurface* find(const PartTraversal& parts, const SceneState& scene,
+  [[nodiscard]] const RaySurface* find(const SubShapeQuery& parts, const SceneState& scene,
                                        std::uint32_t body) {
     RaySurface& kept = kept_[body % kEntries];
     const ShapeId shape = scene.shape[body];
@@ -91,9 +91,10 @@ struct QueryState {
         overlapping(memory) {}
 
   const SceneState& scene;
-  PartTraversal parts;
+  SubShapeQuery parts;
   RaySurfaces surfaces;
-  /// Results of the partitions. Bodies are tested inside the partition's query, by LookingFilter.
+  /// Results of the partitions. Bodies are tested inside the partition's query, by
+  /// BodyCandidateFilter.
   HitBuffer boxes;
   OverlapBuffer objects;
   /// Results of the last query.
@@ -114,13 +115,13 @@ struct QueryState {
     return {scene.shape[body], scene.pose[body]};
   }
   /// The check that every query begins with: refuses a scene that changed after its last refresh.
-  [[nodiscard]] static Status may_ask(const QueryState* state) noexcept {
+  [[nodiscard]] static Status check_state(const QueryState* state) noexcept {
     if (state == nullptr) return Status::out_of_memory;
     const SceneState& scene = state->scene;
     const MidPhase* const composites = scene.options.composites;
     const bool has_changed =
         composites != nullptr && composites->revision() != scene.composites_seen;
-    return scene.is_fresh() && !has_changed ? Status::ok : Status::invalid_argument;
+    return scene.is_up_to_date() && !has_changed ? Status::ok : Status::invalid_argument;
   }
   /// Calls ask(partition) for each partition until a call does not return ok.
   template <typename Ask>
@@ -137,18 +138,18 @@ struct QueryState {
 /// `Look`, bool(std::uint32_t body), for each body that passes; its result is returned to the
 /// partition. So no list of candidates is needed.
 template <typename Look>
-class LookingFilter {
+class BodyCandidateFilter {
  public:
-  LookingFilter(const SceneState& scene, const Filter& filter, Look& look) noexcept
+  BodyCandidateFilter(const SceneState& scene, const Filter& filter, Look& look) noexcept
       : scene_(scene), filter_(filter), look_(look) {}
-  LookingFilter(const LookingFilter&) = delete;
-  LookingFilter& operator=(const LookingFilter&) = delete;
+  BodyCandidateFilter(const BodyCandidateFilter&) = delete;
+  BodyCandidateFilter& operator=(const BodyCandidateFilter&) = delete;
 
   [[nodiscard]] Filter filter() noexcept {
     Filter result = filter_;
     result.predicate.context = this;
     result.predicate.accept = [](void* context, Key, ClientData body) {
-      return static_cast<LookingFilter*>(context)->accept(static_cast<std::uint32_t>(body));
+      return static_cast<BodyCandidateFilter*>(context)->accept(static_cast<std::uint32_t>(body));
     };
     return result;
   }
@@ -157,7 +158,7 @@ class LookingFilter {
   void show(const Partition& partition, std::uint32_t body) const {
     ObjectFilter own;
     const Status status = partition.filter(scene_.place[body], own);
-    if (status == Status::ok && may_meet(filter_.object(), own)) (void)accept(body);
+    if (status == Status::ok && filters_allow(filter_.object(), own)) (void)accept(body);
   }
 
  private:

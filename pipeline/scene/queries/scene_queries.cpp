@@ -1,11 +1,11 @@
-// SceneQueries: bodies that overlap a shape, and bodies nearest to a point. two_shapes.h tests the
-// candidates that the partitions find.
+// SceneQueries: bodies that overlap a shape, and bodies nearest to a point. shape_distance.h tests
+// the candidates that the partitions find.
 
 #include <winnow/core/rounding.h>
 #include "core/memory/new_in.h"
 #include "core/threads/float_environment.h"
 #include "pipeline/scene/queries/queries.h"
-#include "pipeline/scene/queries/two_shapes.h"
+#include "pipeline/scene/queries/shape_distance.h"
 #include "pipeline/shapes/frame.h"
 #include "pipeline/solver/solver.h"
 
@@ -31,19 +31,19 @@ bool has_lesser_id(const SceneDistance& a, const SceneDistance& b) noexcept {
 /// Finds the bodies nearest to a point. First tests the bodies with the nearest boxes; the last one
 /// of the `count` nearest among them limits the distance, and then all other bodies whose boxes are
 /// within this distance are tested.
-class NearestQuestion {
+class NearestBodiesQuery {
  public:
-  NearestQuestion(QueryState& state, const double* point, const Filter& filter) noexcept
+  NearestBodiesQuery(QueryState& state, const double* point, const Filter& filter) noexcept
       : state_(state), filter_(filter) {
     std::copy_n(point, 3, from_.pose.position);
     // Clamping to the range of float makes no box farther away.
-    constexpr auto kMost = static_cast<double>(std::numeric_limits<float>::max());
+    constexpr auto kMaxFloat = static_cast<double>(std::numeric_limits<float>::max());
     const Vector3d& origin = state.scene.origin;
     Vector3d low;
     Vector3d high;
     for (int i = 0; i < 3; ++i) {
-      low[i] = std::clamp(add_down(point[i], -origin[i]), -kMost, kMost);
-      high[i] = std::clamp(add_up(point[i], -origin[i]), -kMost, kMost);
+      low[i] = std::clamp(add_down(point[i], -origin[i]), -kMaxFloat, kMaxFloat);
+      high[i] = std::clamp(add_up(point[i], -origin[i]), -kMaxFloat, kMaxFloat);
     }
     box_ = Aabb::outward(low, high);
   }
@@ -54,16 +54,16 @@ class NearestQuestion {
   void look(std::uint32_t body);
   /// Tests the bodies with the nearest boxes within the radius, and lowers the radius to the last
   /// distance that is still of interest.
-  [[nodiscard]] Status look_at_nearest(const Partition& partition);
+  [[nodiscard]] Status test_nearest(const Partition& partition);
   /// Tests all other bodies within the radius. The first `known` results, sorted by id, are of
   /// bodies that were tested.
-  [[nodiscard]] Status look_within(const Partition& partition, std::size_t known);
+  [[nodiscard]] Status test_within(const Partition& partition, std::size_t known);
   [[nodiscard]] float reach() const noexcept;
 
   QueryState& state_;
   const Filter& filter_;
   const SphereShape point_;
-  ConvexPart from_{ShapeId::of(ShapeKind::sphere, 0), {}, kWholeShape, nullptr, &point_};
+  SubShape from_{ShapeId::of(ShapeKind::sphere, 0), {}, kWholeShape, nullptr, &point_};
   Aabb box_;
   std::size_t count_ = 0;
   double radius_ = 0.0;
@@ -72,7 +72,7 @@ class NearestQuestion {
   bool is_cut_ = false;
 };
 
-void NearestQuestion::look(std::uint32_t body) {
+void NearestBodiesQuery::look(std::uint32_t body) {
   SceneDistance answer;
   if (!ClosestParts(state_.parts).find(from_, state_.placed(body), radius_, answer)) return;
   answer.key = state_.scene.keys.key_of(body);
@@ -81,13 +81,13 @@ void NearestQuestion::look(std::uint32_t body) {
 }
 
 /// Adds the error bound of the solver's distance to a box boundary.
-float NearestQuestion::reach() const noexcept {
+float NearestBodiesQuery::reach() const noexcept {
   return round_up(std::max(radius_, 0.0) * (1.0 + 1e-9));
 }
 
-Status NearestQuestion::look_at_nearest(const Partition& partition) {
+Status NearestBodiesQuery::test_nearest(const Partition& partition) {
   auto take = [](std::uint32_t) { return true; };
-  LookingFilter taking(state_.scene, filter_, take);
+  BodyCandidateFilter taking(state_.scene, filter_, take);
   const Status status = partition.nearest(box_, count_, reach(), state_.boxes, taking.filter());
   if (status != Status::ok) return status;
   for (const Hit& hit : state_.boxes) look(static_cast<std::uint32_t>(hit.data));
@@ -101,7 +101,7 @@ Status NearestQuestion::look_at_nearest(const Partition& partition) {
   return Status::ok;
 }
 
-Status NearestQuestion::look_within(const Partition& partition, std::size_t known) {
+Status NearestBodiesQuery::test_within(const Partition& partition, std::size_t known) {
   auto look_once = [&](std::uint32_t body) {
     const SceneDistance* const first = state_.distances.begin();
     SceneDistance same;
@@ -109,23 +109,23 @@ Status NearestQuestion::look_within(const Partition& partition, std::size_t know
     if (!std::binary_search(first, first + known, same, has_lesser_id)) look(body);
     return false;
   };
-  LookingFilter looking(state_.scene, filter_, look_once);
+  BodyCandidateFilter looking(state_.scene, filter_, look_once);
   return partition.nearest(box_, ~std::size_t{0}, reach(), state_.boxes, looking.filter());
 }
 
-Status NearestQuestion::ask(std::size_t count, double radius) {
+Status NearestBodiesQuery::ask(std::size_t count, double radius) {
   Column<SceneDistance>& found = state_.distances;
   found.clear();
   if (count == 0) return Status::ok;
   count_ = count;
   radius_ = radius;
   Status status =
-      state_.each_partition([&](const Partition& partition) { return look_at_nearest(partition); });
+      state_.each_partition([&](const Partition& partition) { return test_nearest(partition); });
   if (status == Status::ok && is_cut_) {
     const std::size_t known = found.size();
     std::sort(found.begin(), found.end(), has_lesser_id);
     status = state_.each_partition(
-        [&](const Partition& partition) { return look_within(partition, known); });
+        [&](const Partition& partition) { return test_within(partition, known); });
   }
   if (!has_room_) status = Status::out_of_memory;
   if (status != Status::ok) return status;
@@ -168,7 +168,7 @@ Footprint SceneQueries::footprint() const noexcept {
 Status SceneQueries::overlap(ShapeId shape, const Pose& pose, std::span<const SceneOverlap>& bodies,
                              const Filter& filter) {
   const DefaultEnvironment environment;
-  if (const Status status = QueryState::may_ask(state_); status != Status::ok) return status;
+  if (const Status status = QueryState::check_state(state_); status != Status::ok) return status;
   QueryState& state = *state_;
   if (!state.parts.contains(shape)) return Status::invalid_key;
   if (!pose.is_valid()) return Status::invalid_pose;
@@ -185,7 +185,7 @@ Status SceneQueries::overlap(ShapeId shape, const Pose& pose, std::span<const Sc
     }
     return false;
   };
-  LookingFilter looking(state.scene, filter, look);
+  BodyCandidateFilter looking(state.scene, filter, look);
   const PlainBox around = state.scene.bounds_from(state.scene.origin, shape, pose, 0.0);
   const Aabb box{Eigen::Vector3f::Map(around.min), Eigen::Vector3f::Map(around.max)};
   Status status = state.each_partition([&](const Partition& partition) {
@@ -201,9 +201,9 @@ Status SceneQueries::overlap(ShapeId shape, const Pose& pose, std::span<const Sc
 Status SceneQueries::nearest(const double point[3], std::size_t count, double radius,
                              std::span<const SceneDistance>& bodies, const Filter& filter) {
   const DefaultEnvironment environment;
-  if (const Status status = QueryState::may_ask(state_); status != Status::ok) return status;
+  if (const Status status = QueryState::check_state(state_); status != Status::ok) return status;
   if (!is_finite(point) || !(radius >= 0.0)) return Status::invalid_argument;
-  const Status status = NearestQuestion(*state_, point, filter).ask(count, radius);
+  const Status status = NearestBodiesQuery(*state_, point, filter).ask(count, radius);
   if (status == Status::ok) bodies = {state_->distances.data(), state_->distances.size()};
   return status;
 }

@@ -75,7 +75,7 @@ struct SensorsState {
   Column<SensorDefinition> sensors;
   Column<SensedBody> sensed;
   Column<SensedBody> before;
-  Column<LeftSensor> left;
+  Column<ExitedBody> left;
   /// One for each thread in use so far.
   Column<Watch*> watches;
 
@@ -251,7 +251,7 @@ std::span<const SensedBody> Sensors::sensed() const noexcept {
   return {state_->sensed.data(), state_->sensed.size()};
 }
 
-std::span<const LeftSensor> Sensors::left() const noexcept {
+std::span<const ExitedBody> Sensors::left() const noexcept {
   if (state_ == nullptr) return {};
   return {state_->left.data(), state_->left.size()};
 }

@@ -34,7 +34,7 @@ using solver::Problem;
 using solver::Vec;
 
 /// The bracket is halved every other time, so doubles are exhausted before this.
-constexpr std::uint32_t kMostSamples = 256;
+constexpr std::uint32_t kMaxSeparationSamples = 256;
 
 /// Position of the fixed shape relative to the moving one, accurate to the last bit on a path of
 /// any length.
@@ -46,7 +46,7 @@ class Path {
     for (int i = 0; i < 3; ++i) {
       step_[i] = std::ldexp(direction[i], -exponent_);
     }
-    const Difference apart = difference(pair.pose.position, pair.from.position);
+    const TwoDiff apart = difference(pair.pose.position, pair.from.position);
     between_ = Vec::Map(apart.difference);
     lost_ = Vec::Map(apart.rest);
     speed_ = step_.norm();
@@ -94,7 +94,7 @@ class Path {
 };
 
 /// The pair at one time.
-struct PartedAt {
+struct SeparationSample {
   /// Certainly apart by `gap` > 0 along `normal`, which points from the moving to the fixed shape.
   bool parted = false;
   double gap = 0.0;
@@ -129,10 +129,10 @@ class Advancement {
   [[nodiscard]] bool search() noexcept;
   [[nodiscard]] bool touches_at_start() noexcept;
   [[nodiscard]] double next(std::uint32_t step) const noexcept;
-  [[nodiscard]] PartedAt sample(double t, bool any_plane) noexcept;
+  [[nodiscard]] SeparationSample sample(double t, bool any_plane) noexcept;
   [[nodiscard]] bool is_free_to_end() noexcept;
-  void face(const Vec& axis, PartedAt& sample) const noexcept;
-  [[nodiscard]] double surely_apart(const Problem& problem, PartedAt& sample) noexcept;
+  void face(const Vec& axis, SeparationSample& sample) const noexcept;
+  [[nodiscard]] double surely_apart(const Problem& problem, SeparationSample& sample) noexcept;
   void prepare_at(double t) noexcept;
 
   const ShapeTables& tables_;
@@ -180,13 +180,13 @@ void Advancement::prepare_at(double t) noexcept {
 /// touch as far as double precision can decide. The gap is verified for the plane itself and does
 /// not rely on the solver's distance. The plane has about the widest gap, unless `any_plane` is
 /// enough.
-PartedAt Advancement::sample(double t, bool any_plane) noexcept {
+SeparationSample Advancement::sample(double t, bool any_plane) noexcept {
   ++steps_;
   prepare_at(t);
   const Problem& problem = problem_;
   const double roundings = problem.a.rounding + problem.b.rounding;
   const double noise = problem.noise();
-  PartedAt result;
+  SeparationSample result;
   double gap = 0.0;
   if (problem.b.kind == CoreKind::half_space) {
     const CoreDistance found = core_distance(problem, ContactLevel::boolean, kInfinity, counts_);
@@ -195,7 +195,7 @@ PartedAt Advancement::sample(double t, bool any_plane) noexcept {
   } else {
     const bool is_known = !normal_.isZero(0.0);
     const Vec start = is_known ? Vec(mirrored_ ? -normal_ : normal_) : problem.b.center;
-    const GjkResult found = gjk(problem.a, problem.b, start, solver::kEnough * noise,
+    const GjkResult found = gjk(problem.a, problem.b, start, solver::kConvergence * noise,
                                 any_plane ? roundings + 2.0 * noise : kInfinity);
     if (found.contact || found.upper + noise <= roundings) return result;
     gap = found.lower - roundings - noise;
@@ -209,14 +209,14 @@ PartedAt Advancement::sample(double t, bool any_plane) noexcept {
   return result;
 }
 
-void Advancement::face(const Vec& axis, PartedAt& sample) const noexcept {
+void Advancement::face(const Vec& axis, SeparationSample& sample) const noexcept {
   sample.normal = mirrored_ ? Vec(-axis) : axis;
   sample.closing = sample.normal.dot(path_.step()) + 4.0 * kEpsilon * path_.speed();
 }
 
 /// For pairs whose separation GJK cannot prove. Without a good plane the closing speed is the full
 /// speed.
-double Advancement::surely_apart(const Problem& problem, PartedAt& sample) noexcept {
+double Advancement::surely_apart(const Problem& problem, SeparationSample& sample) noexcept {
   const CoreDistance found = core_distance(problem, ContactLevel::boolean, kInfinity, counts_);
   if (found.overlaps) return 0.0;
   face(found.axis, sample);
@@ -253,13 +253,13 @@ double Advancement::next(std::uint32_t step) const noexcept {
   return std::min(std::max(t, std::nextafter(free_until_, kInfinity)), path_.end());
 }
 
-/// True if a plane with the normal `parting` separates the pair at the end, while they approach
-/// along it.
+/// True if a plane with the normal `separating_direction` separates the pair at the end, while they
+/// approach along it.
 bool Advancement::is_free_to_end() noexcept {
-  const Vec parting = Vec::Map(pair_.parting);
-  if (parting.isZero(0.0) || !(path_.end() < kInfinity)) return false;
-  normal_ = -parting;
-  const PartedAt found = sample(path_.end(), true);
+  const Vec separating_direction = Vec::Map(pair_.separating_direction);
+  if (separating_direction.isZero(0.0) || !(path_.end() < kInfinity)) return false;
+  normal_ = -separating_direction;
+  const SeparationSample found = sample(path_.end(), true);
   normal_.setZero();
   return found.parted && found.closing > 8.0 * kEpsilon * path_.speed();
 }
@@ -268,8 +268,8 @@ bool Advancement::search() noexcept {
   if (is_free_to_end()) return false;
   double t = path_.begin();
   free_until_ = t;
-  for (std::uint32_t step = 0; step < kMostSamples; ++step) {
-    const PartedAt found = sample(t, false);
+  for (std::uint32_t step = 0; step < kMaxSeparationSamples; ++step) {
+    const SeparationSample found = sample(t, false);
     if (!found.parted) {
       if (t == 0.0) return touches_at_start();
       touching_ = std::min(touching_, t);

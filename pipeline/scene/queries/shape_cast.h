@@ -22,7 +22,7 @@ struct CastPair {
   /// A candidate for a separating direction, or zero: the normal of the plane that separates the
   /// moving shape at max_t from another part that it touches there. If a plane with this normal
   /// separates the pair at max_t, and they approach along it, they do not touch before.
-  double parting[3] = {0.0, 0.0, 0.0};
+  double separating_direction[3] = {0.0, 0.0, 0.0};
 };
 
 struct CastTouch {

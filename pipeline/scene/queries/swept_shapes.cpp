@@ -1,4 +1,4 @@
-// SweptShape, RaySweep and ShapeSweep, and BodyMeeting, which finds a sweep's first contact with a
+// SweptShape, RaySweep and ShapeSweep, and BodyContact, which finds a sweep's first contact with a
 // body. Most triangles are excluded by a separating plane before the exact cast (shape_cast.cpp).
 
 #include "pipeline/scene/queries/swept_shapes.h"
@@ -30,8 +30,8 @@ BoxSweep sweep_from(const SweptShape& swept, const double from[3], double limit,
   return sweep;
 }
 
-SweepMeeting meeting_at(const ShapeRay& ray, const ShapeHit& hit) noexcept {
-  SweepMeeting meeting;
+SweepContact contact_at(const ShapeRay& ray, const ShapeHit& hit) noexcept {
+  SweepContact meeting;
   meeting.t = hit.t;
   for (int i = 0; i < 3; ++i) {
     meeting.normal[i] = hit.normal[i];
@@ -68,9 +68,9 @@ Vector3d closest_point(const Vector3d (&corner)[3], const Vector3d& p) noexcept 
 /// True if the ray certainly misses a triangle, grown by `doubt`, of a body without rotation: the
 /// signed volumes of the ray and each side have different signs (Platis, Theoharis, "Fast
 /// ray-tetrahedron intersection using Pluecker coordinates", 2003), beyond their rounding.
-bool passes_by(const double from[3], const double direction[3], const ConvexPart& part,
+bool passes_by(const double from[3], const double direction[3], const SubShape& part,
                double doubt) noexcept {
-  if (!stands_unturned(part)) return false;
+  if (!is_unrotated(part)) return false;
   const Vector3d d = Vector3d::Map(direction);
   const Vector3d first = Vector3d::Map(part.pose.position) - Vector3d::Map(from);
   const Vector3d a = first + Vector3d::Map(part.triangle->vertex[0]);
@@ -86,16 +86,16 @@ bool passes_by(const double from[3], const double direction[3], const ConvexPart
 
 }  // namespace
 
-SweepMeeting meeting_of(const CastTouch& touch) noexcept {
-  SweepMeeting meeting;
+SweepContact contact_of(const CastTouch& touch) noexcept {
+  SweepContact meeting;
   meeting.t = touch.t;
   meeting.overlaps_at_start = touch.overlaps_at_start;
   std::copy_n(touch.normal, 3, meeting.normal);
   return meeting;
 }
 
-void describe_meeting(const ShapeTables& tables, const CastPair& pair, const ConvexPart& part,
-                      SweepMeeting& meeting) noexcept {
+void describe_contact(const ShapeTables& tables, const CastPair& pair, const SubShape& part,
+                      SweepContact& meeting) noexcept {
   CastTouch touch;
   touch.t = meeting.t;
   touch.overlaps_at_start = meeting.overlaps_at_start;
@@ -114,8 +114,9 @@ CastMotions::CastMotions(const CastPair& pair, double max_t) noexcept
   is_finite_ = moving_.motion.is_valid();
 }
 
-void CastMotions::note(const ShapeTables& tables, impact::RestingContacts& resting) const noexcept {
-  if (is_finite_) resting.note(tables, moving_, standing_);
+void CastMotions::record(const ShapeTables& tables,
+                         impact::RestingContacts& resting) const noexcept {
+  if (is_finite_) resting.record(tables, moving_, standing_);
 }
 
 bool CastMotions::part(const ShapeTables& tables,
@@ -123,10 +124,10 @@ bool CastMotions::part(const ShapeTables& tables,
   return is_finite_ && resting.part(tables, moving_, standing_);
 }
 
-void SweptShape::note_contact(const double[3], const ConvexPart&,
+void SweptShape::note_contact(const double[3], const SubShape&,
                               impact::RestingContacts&) const noexcept {}
 
-double corner_doubt(const ConvexPart& part) noexcept {
+double corner_error(const SubShape& part) noexcept {
   if (part.triangle == nullptr) return 0.0;
   double size = Vector3d::Map(part.pose.position).cwiseAbs().sum();
   for (const auto& corner : part.triangle->vertex) {
@@ -138,49 +139,49 @@ double corner_doubt(const ConvexPart& part) noexcept {
 RaySweep::RaySweep(const ShapePool& shapes, const ShapeRay& ray) noexcept
     : SweptShape(ray), shapes_(shapes), ray_(ray) {}
 
-bool RaySweep::meets(const double from[3], const ConvexPart& part, double limit,
-                     const KnownMeetings& /*known*/, SweepMeeting& meeting) const noexcept {
-  const double thickness = corner_doubt(part);
+bool RaySweep::meets(const double from[3], const SubShape& part, double limit,
+                     const EarlierContacts& /*known*/, SweepContact& meeting) const noexcept {
+  const double thickness = corner_error(part);
   if (part.triangle != nullptr && passes_by(from, ray_.direction, part, thickness)) return false;
   const Vector3d start = Vector3d::Map(from);
-  if (stands_behind({start, start}, part)) return false;
+  if (is_behind_triangle({start, start}, part)) return false;
   // Tests the whole ray: whether the thick triangle is used must not depend on the limit.
   ShapeRay ray = ray_;
   std::copy_n(from, 3, ray.origin);
   if (!enters(ray, part, meeting)) {
     if (thickness == 0.0) return false;
-    ConvexPart thick = part;
+    SubShape thick = part;
     thick.thickness = thickness;
     if (!enters(ray, thick, meeting)) return false;
   }
   return meeting.t <= limit;
 }
 
-void RaySweep::describe(const double[3], const ConvexPart&, SweepMeeting&) const noexcept {}
+void RaySweep::describe(const double[3], const SubShape&, SweepContact&) const noexcept {}
 
-bool RaySweep::enters(const ShapeRay& ray, const ConvexPart& part,
-                      SweepMeeting& meeting) const noexcept {
+bool RaySweep::enters(const ShapeRay& ray, const SubShape& part,
+                      SweepContact& meeting) const noexcept {
   PartTables tables(shapes_);
   const ShapeId shape = tables.put(0, part);
   ShapeHit hit;
   const Status status = cast_ray(tables.tables(), shape, part.pose, ray, hit);
   if (status != Status::ok || !hit.hit) return false;
-  meeting = meeting_at(ray, hit);
+  meeting = contact_at(ray, hit);
   return true;
 }
 
-ShapeSweep::ShapeSweep(const PartTraversal& parts, const ShapeCast& cast, double tolerance) noexcept
+ShapeSweep::ShapeSweep(const SubShapeQuery& parts, const ShapeCast& cast, double tolerance) noexcept
     : SweptShape(parts.box(PlacedShape{cast.shape, at_origin(cast.pose)}), cast, tolerance),
       shapes_(parts.shapes()),
       cast_(cast),
-      to_shape_(as_eigen(rotation_of(tame(cast.pose.orientation))).transpose()),
+      to_shape_(as_eigen(rotation_of(scale_to_unit_max(cast.pose.orientation))).transpose()),
       middle_(0.5 * (extent().min + extent().max)) {}
 
 // Tests the plane of the triangle, and planes along the motion through its sides. These separate
 // most triangles that are beside the path or beyond the first hit.
-bool ShapeSweep::passes_by(const double from[3], const ConvexPart& part, double limit,
+bool ShapeSweep::passes_by(const double from[3], const SubShape& part, double limit,
                            double& free_until) const noexcept {
-  if (!stands_unturned(part)) return false;
+  if (!is_unrotated(part)) return false;
   Vector3d corner[3];
   Vector3d side[3];
   for (int k = 0; k < 3; ++k) corner[k] = Vector3d::Map(part.triangle->vertex[k]);
@@ -190,10 +191,10 @@ bool ShapeSweep::passes_by(const double from[3], const ConvexPart& part, double 
   const double size = start.cwiseAbs().sum() + extent().min.cwiseAbs().sum() +
                       extent().max.cwiseAbs().sum() + corner[0].cwiseAbs().sum() +
                       corner[1].cwiseAbs().sum() + corner[2].cwiseAbs().sum();
-  const double doubt_of_all = mid::kSlack * size + 4.0 * corner_doubt(part);
+  const double doubt_of_all = mid::kSlack * size + 4.0 * corner_error(part);
   // Returns how far the shape is above or below the whole triangle along an axis, at the start.
   const auto gap = [&](const Vector3d& axis, double& side_of) {
-    const mid::Extent own = mid::extent(shapes_.tables(), cast_.shape, to_shape_ * axis);
+    const mid::SupportExtent own = mid::extent(shapes_.tables(), cast_.shape, to_shape_ * axis);
     const double at = axis.dot(start);
     const double heights[3] = {axis.dot(corner[0]), axis.dot(corner[1]), axis.dot(corner[2])};
     const double above = at + own.low - *std::max_element(heights, heights + 3);
@@ -220,14 +221,14 @@ bool ShapeSweep::passes_by(const double from[3], const ConvexPart& part, double 
 }
 
 CastPair ShapeSweep::pair(PartTables& tables, const double from[3],
-                          const ConvexPart& part) const noexcept {
+                          const SubShape& part) const noexcept {
   CastPair pair;
   pair.moving = tables.put(0, {cast_.shape, cast_.pose});
   pair.from = cast_.pose;
   std::copy_n(from, 3, pair.from.position);
   std::copy_n(cast_.direction, 3, pair.direction);
-  ConvexPart thick = part;
-  thick.thickness = corner_doubt(part);
+  SubShape thick = part;
+  thick.thickness = corner_error(part);
   pair.standing = tables.put(1, thick);
   pair.pose = part.pose;
   return pair;
@@ -239,9 +240,9 @@ PreciseBox ShapeSweep::box_at(const double from[3]) const noexcept {
 }
 
 // If the shape approaches a plane, anything behind the plane is behind it at all earlier times.
-bool ShapeSweep::is_beyond(const ConvexPart& part, const SweepMeeting& before) const noexcept {
+bool ShapeSweep::is_beyond(const SubShape& part, const SweepContact& before) const noexcept {
   const Vector3d normal = Vector3d::Map(before.normal);
-  if (!stands_unturned(part)) return false;
+  if (!is_unrotated(part)) return false;
   const Vector3d position = Vector3d::Map(part.pose.position);
   double top = -mid::kInfinity;
   double size = 0.0;
@@ -250,12 +251,12 @@ bool ShapeSweep::is_beyond(const ConvexPart& part, const SweepMeeting& before) c
     top = std::max(top, normal.dot(at));
     size = std::max(size, at.cwiseAbs().sum());
   }
-  return top + mid::kSlack * size + 4.0 * corner_doubt(part) < before.height;
+  return top + mid::kSlack * size + 4.0 * corner_error(part) < before.height;
 }
 
-bool ShapeSweep::is_beside(const double from[3], const ConvexPart& part,
+bool ShapeSweep::is_beside(const double from[3], const SubShape& part,
                            double limit) const noexcept {
-  if (!stands_unturned(part)) return false;
+  if (!is_unrotated(part)) return false;
   const Vector3d way = Vector3d::Map(direction());
   // Relative to the shape's position at t = limit.
   const Vector3d to_part = Vector3d::Map(part.pose.position) - Vector3d::Map(from) - limit * way;
@@ -270,10 +271,10 @@ bool ShapeSweep::is_beside(const double from[3], const ConvexPart& part,
   if (!(axis.dot(way) < -mid::kSlack * axis.cwiseAbs().sum() * way.cwiseAbs().sum())) return false;
   const double low = mid::extent(shapes_.tables(), cast_.shape, to_shape_ * axis).low;
   const double top = std::max({axis.dot(corner[0]), axis.dot(corner[1]), axis.dot(corner[2])});
-  return low - top > (4.0 * mid::kSlack * size + 4.0 * corner_doubt(part)) * axis.cwiseAbs().sum();
+  return low - top > (4.0 * mid::kSlack * size + 4.0 * corner_error(part)) * axis.cwiseAbs().sum();
 }
 
-void ShapeSweep::set_height(const double from[3], SweepMeeting& meeting) const noexcept {
+void ShapeSweep::set_height(const double from[3], SweepContact& meeting) const noexcept {
   const Vector3d normal = Vector3d::Map(meeting.normal);
   const Vector3d way = Vector3d::Map(direction());
   const Vector3d start = Vector3d::Map(from);
@@ -286,71 +287,72 @@ void ShapeSweep::set_height(const double from[3], SweepMeeting& meeting) const n
   meeting.height = normal.dot(start) - meeting.t * closing + low - mid::kSlack * sizes;
 }
 
-void ShapeSweep::note_contact(const double from[3], const ConvexPart& part,
+void ShapeSweep::note_contact(const double from[3], const SubShape& part,
                               impact::RestingContacts& resting) const noexcept {
   PartTables tables(shapes_);
-  CastMotions(pair(tables, from, part), max_t()).note(tables.tables(), resting);
+  CastMotions(pair(tables, from, part), max_t()).record(tables.tables(), resting);
 }
 
-bool ShapeSweep::meets(const double from[3], const ConvexPart& part, double limit,
-                       const KnownMeetings& known, SweepMeeting& meeting) const noexcept {
-  const SweepMeeting* const before = known.before;
+bool ShapeSweep::meets(const double from[3], const SubShape& part, double limit,
+                       const EarlierContacts& known, SweepContact& meeting) const noexcept {
+  const SweepContact* const before = known.before;
   double free_until = 0.0;
   if (part.triangle != nullptr) {
     if (before != nullptr && is_beyond(part, *before)) return false;
     if (passes_by(from, part, limit, free_until)) return false;
     if (before != nullptr && is_beside(from, part, limit)) return false;
-    if (part.front != 0 && stands_behind(box_at(from), part)) return false;
+    if (part.front != 0 && is_behind_triangle(box_at(from), part)) return false;
   }
   PartTables tables(shapes_);
   CastPair asked = pair(tables, from, part);
   asked.max_t = limit;
   asked.free_until = free_until;
   if (before != nullptr && !before->overlaps_at_start)
-    std::copy_n(before->normal, 3, asked.parting);
+    std::copy_n(before->normal, 3, asked.separating_direction);
   if (known.resting != nullptr &&
       CastMotions(asked, max_t()).part(tables.tables(), *known.resting)) {
     return false;
   }
   CastTouch touch;
   if (!cast_shape(tables.tables(), asked, tolerance(), touch)) return false;
-  meeting = meeting_of(touch);
+  meeting = contact_of(touch);
   set_height(from, meeting);
   return true;
 }
 
-void ShapeSweep::describe(const double from[3], const ConvexPart& part,
-                          SweepMeeting& meeting) const noexcept {
+void ShapeSweep::describe(const double from[3], const SubShape& part,
+                          SweepContact& meeting) const noexcept {
   PartTables tables(shapes_);
   const CastPair asked = pair(tables, from, part);
-  describe_meeting(tables.tables(), asked, part, meeting);
+  describe_contact(tables.tables(), asked, part, meeting);
 }
 
-void BodyMeeting::take(const ConvexPart& part, const SweepMeeting& meeting) noexcept {
+void BodyContact::take(const SubShape& part, const SweepContact& meeting) noexcept {
   meeting_ = meeting;
   part_ = part;
   if (part.triangle != nullptr) triangle_ = *part.triangle;
 }
 
-void BodyMeeting::note_contacts(const PartTraversal& parts, const SweptShape& swept,
+void BodyContact::note_contacts(const SubShapeQuery& parts, const SweptShape& swept,
                                 const PlacedShape& placed,
                                 impact::RestingContacts& resting) const noexcept {
-  auto note = [&](const ConvexPart& part, double most) {
+  auto record = [&](const SubShape& part, double most) {
     swept.note_contact(from_, part, resting);
     return most;
   };
-  parts.met(placed, sweep_from(swept, from_, 0.0, swept.tolerance()), note);
+  parts.met(placed, sweep_from(swept, from_, 0.0, swept.tolerance()), record);
 }
 
-bool BodyMeeting::find(const PartTraversal& parts, const SweptShape& swept, const PlacedShape& body,
+bool BodyContact::find(const SubShapeQuery& parts, const SweptShape& swept, const PlacedShape& body,
                        double limit, bool any) noexcept {
-  SweepMeeting meeting;
-  impact::RestingContacts resting(0.0, swept.tolerance(), impact::StartTouch::is_entered);
-  const impact::RestingContacts* const at_rest = swept.meets_at_start() ? nullptr : &resting;
+  SweepContact meeting;
+  impact::RestingContacts resting(0.0, swept.tolerance(),
+                                  impact::StartTouch::impact_unless_sliding);
+  const impact::RestingContacts* const at_rest = swept.hits_at_start() ? nullptr : &resting;
   if (!body.shape.is_composite()) {
     std::copy_n(swept.start(), 3, from_);
     std::fill_n(base_, 3, 0.0);
-    const ConvexPart whole{body.shape, body.pose};
+    const SubShape whole{body.shape, body.pose};
     if (at_rest != nullptr) swept.note_contact(from_, whole, resting);
     if (!swept.meets(from_, whole, limit, {nullptr, at_rest}, meeting)) return false;
     take(whole, meeting);
@@ -359,22 +361,22 @@ bool BodyMeeting::find(const PartTraversal& parts, const SweptShape& swept, cons
   // Relative to the body, so that parts keep full precision far from the origin. The rounding error
   // of the difference is added to the pose, where it is small.
   std::copy_n(body.pose.position, 3, base_);
-  const Difference start = difference(swept.start(), base_);
+  const TwoDiff start = difference(swept.start(), base_);
   std::copy_n(start.difference, 3, from_);
   PlacedShape placed = body;
   for (int i = 0; i < 3; ++i) placed.pose.position[i] = -start.rest[i];
   if (at_rest != nullptr) note_contacts(parts, swept, placed, resting);
   bool found = false;
-  const auto improve = [&](const ConvexPart& part) {
+  const auto improve = [&](const SubShape& part) {
     if (found && meeting.t == meeting_.t && part_.part < part.part) return limit;
     found = true;
     limit = meeting.t;
     take(part, meeting);
     return any ? -1.0 : limit;
   };
-  auto look = [&](const ConvexPart& part, double most) {
+  auto look = [&](const SubShape& part, double most) {
     most = std::min(most, limit);
-    const SweptShape::KnownMeetings known{found ? &meeting_ : nullptr, at_rest};
+    const SweptShape::EarlierContacts known{found ? &meeting_ : nullptr, at_rest};
     return swept.meets(from_, part, most, known, meeting) ? improve(part) : most;
   };
   if (swept.ray() == nullptr) {
@@ -386,10 +388,10 @@ bool BodyMeeting::find(const PartTraversal& parts, const SweptShape& swept, cons
     if (hit.t > limit) return limit;
     ShapeRay own = ray;
     std::copy_n(from_, 3, own.origin);
-    meeting = meeting_at(own, hit);
+    meeting = contact_at(own, hit);
     return improve({body.shape, placed.pose, part});
   };
-  const auto look_by_ray = [&](std::size_t, const ConvexPart& part, double most) {
+  const auto look_by_ray = [&](std::size_t, const SubShape& part, double most) {
     return look(part, most);
   };
   const double end = limit;
@@ -397,10 +399,10 @@ bool BodyMeeting::find(const PartTraversal& parts, const SweptShape& swept, cons
   return found;
 }
 
-SceneHit BodyMeeting::hit(const SweptShape& swept) const noexcept {
-  ConvexPart part = part_;
+SceneHit BodyContact::hit(const SweptShape& swept) const noexcept {
+  SubShape part = part_;
   if (part.triangle != nullptr) part.triangle = &triangle_;
-  SweepMeeting meeting = meeting_;
+  SweepContact meeting = meeting_;
   swept.describe(from_, part, meeting);
   SceneHit hit;
   hit.t = meeting.t;

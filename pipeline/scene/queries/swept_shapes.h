@@ -1,7 +1,7 @@
 #pragma once
 
 // Rays and shapes that move along a line without turning, tested against the parts of one body.
-// casts.cpp calls BodyMeeting::find for each candidate body.
+// casts.cpp calls BodyContact::find for each candidate body.
 
 #include <winnow/pipeline/scene_queries.h>
 #include "pipeline/composites/parts.h"
@@ -12,7 +12,7 @@ namespace winnow {
 
 /// The first contact of a swept shape with a convex part, in the part's coordinates: world axes,
 /// relative to the body's position.
-struct SweepMeeting {
+struct SweepContact {
   double t = 0.0;
   /// For shapes: the normal of a separating plane, until `SweptShape::describe` replaces it with
   /// the surface normal.
@@ -26,10 +26,10 @@ struct SweepMeeting {
 };
 
 /// Converts the result of a cast; normal and point of the surface are left for `describe`.
-[[nodiscard]] SweepMeeting meeting_of(const CastTouch& touch) noexcept;
+[[nodiscard]] SweepContact contact_of(const CastTouch& touch) noexcept;
 /// Computes normal and point of a contact of this pair, whose fixed shape is the part.
-void describe_meeting(const ShapeTables& tables, const CastPair& pair, const ConvexPart& part,
-                      SweepMeeting& meeting) noexcept;
+void describe_contact(const ShapeTables& tables, const CastPair& pair, const SubShape& part,
+                      SweepContact& meeting) noexcept;
 
 /// The motions of a pair over the whole cast, which ends at `max_t`.
 class CastMotions {
@@ -37,7 +37,7 @@ class CastMotions {
   CastMotions(const CastPair& pair, double max_t) noexcept;
 
   /// Records the contact of the two at the start.
-  void note(const ShapeTables& tables, impact::RestingContacts& resting) const noexcept;
+  void record(const ShapeTables& tables, impact::RestingContacts& resting) const noexcept;
   /// True if the pair has contacts at the start along which it slides or separates.
   [[nodiscard]] bool part(const ShapeTables& tables,
                           const impact::RestingContacts& resting) const noexcept;
@@ -53,7 +53,7 @@ inline constexpr double kSweptBoxGrowth = 0x1p-47;
 
 /// Upper bound on the distance between copies of a common corner of adjacent triangles, each
 /// rounded at its own place. Triangles that are this thick leave no gaps between them.
-[[nodiscard]] double corner_doubt(const ConvexPart& part) noexcept;
+[[nodiscard]] double corner_error(const SubShape& part) noexcept;
 
 /// A ray, or a shape that moves along a line without turning.
 class SweptShape {
@@ -72,26 +72,26 @@ class SweptShape {
   /// The contact may be early by this length.
   [[nodiscard]] double tolerance() const noexcept { return tolerance_; }
   /// False if contacts at the start, along which it slides or separates, are not hits.
-  [[nodiscard]] bool meets_at_start() const noexcept { return meets_at_start_; }
+  [[nodiscard]] bool hits_at_start() const noexcept { return hits_at_start_; }
   /// Records its contact with a part at the start.
-  virtual void note_contact(const double from[3], const ConvexPart& part,
+  virtual void note_contact(const double from[3], const SubShape& part,
                             impact::RestingContacts& resting) const noexcept;
 
   /// Earlier results for the body whose parts are tested.
-  struct KnownMeetings {
+  struct EarlierContacts {
     /// A contact with another part at the limit, or null.
-    const SweepMeeting* before = nullptr;
+    const SweepContact* before = nullptr;
     /// Contacts with the body at the start if they are not hits, else null.
     const impact::RestingContacts* resting = nullptr;
   };
   /// True if it touches the part by t = limit, starting at `from`.
-  [[nodiscard]] virtual bool meets(const double from[3], const ConvexPart& part, double limit,
-                                   const KnownMeetings& known,
-                                   SweepMeeting& meeting) const noexcept = 0;
+  [[nodiscard]] virtual bool meets(const double from[3], const SubShape& part, double limit,
+                                   const EarlierContacts& known,
+                                   SweepContact& meeting) const noexcept = 0;
   /// Computes normal and point of a contact. This costs more than its time, so it is done only for
   /// the contact that is returned.
-  virtual void describe(const double from[3], const ConvexPart& part,
-                        SweepMeeting& meeting) const noexcept = 0;
+  virtual void describe(const double from[3], const SubShape& part,
+                        SweepContact& meeting) const noexcept = 0;
 
  protected:
   SweptShape(const PreciseBox& extent, const ShapeCast& cast, double tolerance) noexcept
@@ -100,7 +100,7 @@ class SweptShape {
         direction_(cast.direction),
         max_t_(cast.max_t),
         tolerance_(tolerance),
-        meets_at_start_(cast.touching) {}
+        hits_at_start_(cast.touching) {}
   explicit SweptShape(const ShapeRay& ray) noexcept
       : extent_{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()},
         start_(ray.origin),
@@ -113,7 +113,7 @@ class SweptShape {
   const double* direction_;
   double max_t_;
   double tolerance_ = 0.0;
-  bool meets_at_start_ = true;
+  bool hits_at_start_ = true;
 };
 
 /// A ray, which must outlive this object.
@@ -121,15 +121,15 @@ class RaySweep final : public SweptShape {
  public:
   RaySweep(const ShapePool& shapes, const ShapeRay& ray) noexcept;
   [[nodiscard]] const ShapeRay* ray() const noexcept override { return &ray_; }
-  [[nodiscard]] bool meets(const double from[3], const ConvexPart& part, double limit,
-                           const KnownMeetings& known,
-                           SweepMeeting& meeting) const noexcept override;
-  void describe(const double from[3], const ConvexPart& part,
-                SweepMeeting& meeting) const noexcept override;
+  [[nodiscard]] bool meets(const double from[3], const SubShape& part, double limit,
+                           const EarlierContacts& known,
+                           SweepContact& meeting) const noexcept override;
+  void describe(const double from[3], const SubShape& part,
+                SweepContact& meeting) const noexcept override;
 
  private:
-  [[nodiscard]] bool enters(const ShapeRay& ray, const ConvexPart& part,
-                            SweepMeeting& meeting) const noexcept;
+  [[nodiscard]] bool enters(const ShapeRay& ray, const SubShape& part,
+                            SweepContact& meeting) const noexcept;
 
   const ShapePool& shapes_;
   const ShapeRay& ray_;
@@ -138,30 +138,30 @@ class RaySweep final : public SweptShape {
 /// A convex shape. The cast must outlive this object.
 class ShapeSweep final : public SweptShape {
  public:
-  ShapeSweep(const PartTraversal& parts, const ShapeCast& cast, double tolerance) noexcept;
-  void note_contact(const double from[3], const ConvexPart& part,
+  ShapeSweep(const SubShapeQuery& parts, const ShapeCast& cast, double tolerance) noexcept;
+  void note_contact(const double from[3], const SubShape& part,
                     impact::RestingContacts& resting) const noexcept override;
-  [[nodiscard]] bool meets(const double from[3], const ConvexPart& part, double limit,
-                           const KnownMeetings& known,
-                           SweepMeeting& meeting) const noexcept override;
-  void describe(const double from[3], const ConvexPart& part,
-                SweepMeeting& meeting) const noexcept override;
+  [[nodiscard]] bool meets(const double from[3], const SubShape& part, double limit,
+                           const EarlierContacts& known,
+                           SweepContact& meeting) const noexcept override;
+  void describe(const double from[3], const SubShape& part,
+                SweepContact& meeting) const noexcept override;
 
  private:
   /// True if a plane proves that the shape does not reach the triangle by t = limit. If false, may
   /// raise `free_until`, a time until which they do not touch.
-  [[nodiscard]] bool passes_by(const double from[3], const ConvexPart& part, double limit,
+  [[nodiscard]] bool passes_by(const double from[3], const SubShape& part, double limit,
                                double& free_until) const noexcept;
   /// As passes_by, with the plane of a contact with another part at t = limit.
-  [[nodiscard]] bool is_beyond(const ConvexPart& part, const SweepMeeting& before) const noexcept;
+  [[nodiscard]] bool is_beyond(const SubShape& part, const SweepContact& before) const noexcept;
   /// As passes_by, with the plane between the shape's centre and the triangle.
-  [[nodiscard]] bool is_beside(const double from[3], const ConvexPart& part,
+  [[nodiscard]] bool is_beside(const double from[3], const SubShape& part,
                                double limit) const noexcept;
-  void set_height(const double from[3], SweepMeeting& meeting) const noexcept;
+  void set_height(const double from[3], SweepContact& meeting) const noexcept;
   /// The box of the shape at its start.
   [[nodiscard]] PreciseBox box_at(const double from[3]) const noexcept;
   [[nodiscard]] CastPair pair(PartTables& tables, const double from[3],
-                              const ConvexPart& part) const noexcept;
+                              const SubShape& part) const noexcept;
 
   const ShapePool& shapes_;
   const ShapeCast& cast_;
@@ -172,12 +172,12 @@ class ShapeSweep final : public SweptShape {
 };
 
 /// A contact with a body, with the data to describe it.
-class BodyMeeting {
+class BodyContact {
  public:
   /// Finds the swept shape's first contact with the body by t = limit; if times are equal, the one
   /// with the smallest part number. With `any`, the contact that is found first. Returns false if
   /// there is none.
-  [[nodiscard]] bool find(const PartTraversal& parts, const SweptShape& swept,
+  [[nodiscard]] bool find(const SubShapeQuery& parts, const SweptShape& swept,
                           const PlacedShape& body, double limit, bool any) noexcept;
 
   [[nodiscard]] double t() const noexcept { return meeting_.t; }
@@ -186,13 +186,13 @@ class BodyMeeting {
   [[nodiscard]] SceneHit hit(const SweptShape& swept) const noexcept;
 
  private:
-  void take(const ConvexPart& part, const SweepMeeting& meeting) noexcept;
+  void take(const SubShape& part, const SweepContact& meeting) noexcept;
   /// Records the contacts with a composite body at the start.
-  void note_contacts(const PartTraversal& parts, const SweptShape& swept, const PlacedShape& placed,
+  void note_contacts(const SubShapeQuery& parts, const SweptShape& swept, const PlacedShape& placed,
                      impact::RestingContacts& resting) const noexcept;
 
-  SweepMeeting meeting_;
-  ConvexPart part_;
+  SweepContact meeting_;
+  SubShape part_;
   TriangleShape triangle_;
   /// Start of the sweep, relative to the body's position; and the body's position in the world.
   double from_[3] = {0.0, 0.0, 0.0};

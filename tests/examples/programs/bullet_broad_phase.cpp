@@ -143,8 +143,9 @@ class WinnowBroadPhase final : public btBroadphaseInterface {
   }
   void send_moves() {
     if (moved_.empty()) return;
-    check(partition_.update(keys_, boxes_, winnow::Entries::listed(moved_)) == winnow::Status::ok,
-          "boxes move");
+    check(
+        partition_.update(keys_, boxes_, winnow::IndexSubset::listed(moved_)) == winnow::Status::ok,
+        "boxes move");
     moved_.clear();
   }
 

@@ -118,7 +118,7 @@ int main(int argc, char** argv) {
     town.step();
     const winnow::Frustum camera = town.camera(frame);
     race.time("winnow", [&] {
-      check(partition.update(keys, town.boxes, winnow::Entries::listed(town.moving)) ==
+      check(partition.update(keys, town.boxes, winnow::IndexSubset::listed(town.moving)) ==
                 winnow::Status::ok,
             "objects move");
       check(partition.overlap(camera, seen) == winnow::Status::ok, "the camera looks");

@@ -85,7 +85,7 @@ class WinnowChecker {
       check(scene_.add({.shape = shape,
                         .pose = pose_of(box.pose),
                         .motion = winnow::Motion::fixed,
-                        .filter = {.layers = kCell, .environment = winnow::kEveryEnvironment}},
+                        .filter = {.layers = kCell, .environment = winnow::kAllEnvironments}},
                        key) == winnow::Status::ok,
             "it is added");
     }

@@ -20,8 +20,8 @@ int main() {
   std::pmr::unsynchronized_pool_resource arena;  // or your engine's: a std::pmr::memory_resource
   winnow::Partition partition(winnow::linear_bvh(), {.memory = &arena});
   winnow::PairBuffer pairs(&arena);  // every class takes one
-  partition.reserve(10'000, winnow::Pages::touched);
-  partition.reserve_pairs(pairs, 20'000, winnow::Pages::touched);
+  partition.reserve(10'000, winnow::Pages::prefaulted);
+  partition.reserve_pairs(pairs, 20'000, winnow::Pages::prefaulted);
   partition.insert(boxes, {}, keys);                                 // does not allocate
   partition.self_pairs(pairs);                                       // does not allocate either
   const std::size_t bytes = partition.footprint().total().reserved;  // exact, to the byte

@@ -51,7 +51,7 @@ int main() {
     for (const winnow::SensedBody& in : sensors.sensed()) {
       if (in.event == winnow::ContactEvent::begun) ++entered;
     }
-    for (const winnow::LeftSensor& out : sensors.left()) {
+    for (const winnow::ExitedBody& out : sensors.left()) {
       if (out.sensor == trap) ++left;  // keys of removed bodies are stale here
     }
     // [end]

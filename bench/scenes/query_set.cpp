@@ -1,0 +1,158 @@
+// Draws seeded sets of partition queries about given boxes: ray casts, overlap tests, swept volumes
+// and nearest objects. Query races and their references run them.
+
+#include "bench/scenes/query_set.h"
+
+#include <winnow/core/eigen.h>
+#include "bench/common/random.h"
+#include "bench/scenes/cameras.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+
+namespace winnow::bench {
+namespace {
+
+constexpr std::array<std::string_view, 14> kNames{
+    "ray closest", "ray any",      "ray all",    "ray all near", "box 1",
+    "box 5",       "box 20",       "frustum 1%", "frustum 50%",  "sphere",
+    "swept box",   "swept sphere", "nearest 1",  "nearest 16"};
+
+class QuerySetBuilder {
+ public:
+  QuerySetBuilder(std::span<const Aabb> boxes, std::size_t rays, std::uint64_t seed)
+      : boxes_(boxes), world_(world_of(boxes)), rays_(rays), seed_(seed) {
+    double sum = 0.0;
+    std::size_t finite = 0;
+    for (const Aabb& box : boxes) {
+      const Eigen::Vector3d edges = (box.max - box.min).cast<double>();
+      if (!edges.allFinite()) continue;
+      sum += edges.sum();
+      ++finite;
+    }
+    // If all objects are points, queries still need a size.
+    edge_ = sum > 0.0
+                ? sum / (3.0 * static_cast<double>(finite))
+                : 0.01 * (as_eigen(world_.max) - as_eigen(world_.min)).cast<double>().maxCoeff();
+  }
+
+  QuerySet make(std::string_view name) {
+    random_ = Random(seed_);
+    QuerySet set;
+    set.name = name;
+    if (name.starts_with("ray")) return rays(std::move(set));
+    if (name == "box 1") return overlaps(std::move(set), 1.0, rays_);
+    if (name == "box 5") return overlaps(std::move(set), 5.0, rays_ / 10);
+    if (name == "box 20") return overlaps(std::move(set), 20.0, rays_ / 100);
+    if (name == "frustum 1%") return frusta(std::move(set), 0.01, rays_ / 1000);
+    if (name == "frustum 50%") return frusta(std::move(set), 0.5, rays_ / 5000);
+    if (name == "sphere") return spheres(std::move(set));
+    if (name.starts_with("swept")) return casts(std::move(set));
+    if (name == "nearest 1") return nearest(std::move(set), 1);
+    if (name == "nearest 16") return nearest(std::move(set), 16);
+    throw std::runtime_error("there is no set of questions " + std::string(name));
+  }
+
+ private:
+  static std::size_t at_least_one(std::size_t count) { return std::max<std::size_t>(1, count); }
+
+  Eigen::Vector3f point() {
+    Eigen::Vector3f p;
+    for (int axis = 0; axis < 3; ++axis) {
+      p[axis] = static_cast<float>(
+          random_.in(static_cast<double>(world_.min[axis]), static_cast<double>(world_.max[axis])));
+    }
+    return p;
+  }
+
+  Aabb cube(double edges) {
+    const auto half = static_cast<float>(0.5 * edges * edge_);
+    const Eigen::Vector3f center = point();
+    return {center.array() - half, center.array() + half};
+  }
+
+  QuerySet rays(QuerySet set) {
+    set.query_type = set.name == "ray closest" ? QueryType::closest
+                     : set.name == "ray any"   ? QueryType::any
+                                               : QueryType::all;
+    for (std::size_t i = 0; i < rays_; ++i) {
+      Ray& ray = set.rays.emplace_back();
+      ray.origin = point();
+      ray.direction = random_direction(random_);
+      if (set.name == "ray all near") ray.max_t = static_cast<float>(10.0 * edge_);
+    }
+    return set;
+  }
+
+  QuerySet overlaps(QuerySet set, double edges, std::size_t count) {
+    set.query_type = QueryType::overlap;
+    for (std::size_t i = 0; i < at_least_one(count); ++i) set.boxes.push_back(cube(edges));
+    return set;
+  }
+
+  QuerySet frusta(QuerySet set, double share, std::size_t count) {
+    set.query_type = QueryType::overlap;
+    for (std::size_t i = 0; i < std::clamp<std::size_t>(count, 1, 100); ++i) {
+      set.regions.emplace_back(camera_that_sees(share, boxes_, world_, random_));
+    }
+    return set;
+  }
+
+  QuerySet spheres(QuerySet set) {
+    set.query_type = QueryType::overlap;
+    for (std::size_t i = 0; i < at_least_one(rays_ / 10); ++i) {
+      set.regions.emplace_back(Sphere{point(), static_cast<float>(2.5 * edge_)});
+    }
+    return set;
+  }
+
+  QuerySet casts(QuerySet set) {
+    set.query_type = QueryType::closest;
+    for (std::size_t i = 0; i < at_least_one(rays_ / 10); ++i) {
+      if (set.name == "swept box") {
+        BoxCast cast{.box = cube(0.5)};
+        cast.direction = random_direction(random_);
+        set.casts.emplace_back(cast);
+      } else {
+        SphereCast cast{.sphere = {point(), static_cast<float>(0.25 * edge_)}};
+        cast.direction = random_direction(random_);
+        set.casts.emplace_back(cast);
+      }
+    }
+    return set;
+  }
+
+  QuerySet nearest(QuerySet set, std::size_t count) {
+    set.query_type = QueryType::nearest;
+    set.count = count;
+    for (std::size_t i = 0; i < at_least_one(rays_ / 10); ++i) set.boxes.push_back(cube(0.0));
+    return set;
+  }
+
+  std::span<const Aabb> boxes_;
+  Aabb world_;
+  double edge_ = 1.0;
+  std::size_t rays_;
+  std::uint64_t seed_;
+  Random random_{0};
+};
+
+}  // namespace
+
+std::span<const std::string_view> query_set_names() noexcept {
+  return kNames;
+}
+
+std::vector<QuerySet> make_query_sets(std::span<const Aabb> boxes, std::size_t rays,
+                                      std::uint64_t seed, std::span<const std::string> names) {
+  QuerySetBuilder asker(boxes, rays, seed);
+  std::vector<QuerySet> sets;
+  for (const std::string& name : names) sets.push_back(asker.make(name));
+  if (!names.empty()) return sets;
+  for (const std::string_view name : kNames) sets.push_back(asker.make(name));
+  return sets;
+}
+
+}  // namespace winnow::bench

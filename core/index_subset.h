@@ -1,0 +1,43 @@
+#pragma once
+
+#include <winnow/core/export.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+namespace winnow {
+
+/// A subset of the entries of per-object arrays, for calls that process only this subset: the
+/// caller need not copy these entries into smaller arrays. It copies nothing and must not outlive
+/// the span that it was made from.
+class IndexSubset {
+ public:
+  /// Selects entries by index, in any order.
+  [[nodiscard]] static IndexSubset listed(std::span<const std::uint32_t> numbers) noexcept {
+    return {numbers, {}, false};
+  }
+  /// Selects entries by a bit mask with one word per 64 entries: entry i is selected if bit i % 64
+  /// of word i / 64 is set. Bits behind the last entry are ignored.
+  [[nodiscard]] static IndexSubset masked(std::span<const std::uint64_t> words) noexcept {
+    return {{}, words, true};
+  }
+
+  /// True if `words` selects the entries, false if `numbers` does.
+  [[nodiscard]] bool is_mask() const noexcept { return is_mask_; }
+  /// Returns the indices of the selected entries; empty for a mask.
+  [[nodiscard]] std::span<const std::uint32_t> numbers() const noexcept { return numbers_; }
+  /// Returns the bit mask of the selected entries; empty for a list.
+  [[nodiscard]] std::span<const std::uint64_t> words() const noexcept { return words_; }
+
+ private:
+  IndexSubset(std::span<const std::uint32_t> numbers, std::span<const std::uint64_t> words,
+              bool is_mask) noexcept
+      : numbers_(numbers), words_(words), is_mask_(is_mask) {}
+
+  std::span<const std::uint32_t> numbers_;
+  std::span<const std::uint64_t> words_;
+  bool is_mask_;
+};
+
+}  // namespace winnow

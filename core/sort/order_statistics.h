@@ -1,0 +1,42 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <functional>
+#include <span>
+
+namespace winnow {
+
+/// Upper bound of the ranks that `value_of_rank` accepts.
+inline constexpr std::size_t kMaxRank = 64;
+
+/// Returns the value of rank `at`, below kMaxRank, in the order of `before`; there must be more
+/// than `at` values. Near an end, most values take one comparison, which branch prediction guesses
+/// right.
+template <typename Before>
+[[nodiscard]] float value_of_rank(std::span<const float> values, std::size_t at,
+                                  Before before) noexcept {
+  std::array<float, kMaxRank> end;
+  std::partial_sort_copy(values.begin(), values.end(), end.begin(), end.begin() + at + 1, before);
+  return end[at];
+}
+
+/// Range of most of some values: from the 2 % to the 98 % quantile, extended by half its length on
+/// either side.
+struct InterquantileRange {
+  double low;
+  double high;
+
+  /// Requires at least one value, and fewer than 50 * kMaxRank.
+  explicit InterquantileRange(std::span<const float> values) noexcept {
+    const std::size_t at = values.size() / 50;
+    const double q02 = static_cast<double>(value_of_rank(values, at, std::less<>()));
+    const double q98 = static_cast<double>(value_of_rank(values, at, std::greater<>()));
+    const double margin = 0.5 * (q98 - q02);
+    low = q02 - margin;
+    high = q98 + margin;
+  }
+};
+
+}  // namespace winnow

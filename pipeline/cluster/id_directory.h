@@ -1,0 +1,62 @@
+#pragma once
+
+#include <winnow/pipeline/cluster_transport.h>
+#include "pipeline/cluster/name_table.h"
+
+#include <cstdint>
+#include <memory_resource>
+#include <span>
+#include <vector>
+
+namespace winnow {
+
+/// One rank's part of a distributed directory of all names, which ensures that no name is used
+/// twice on any ranks. The hash of a name selects the rank that stores it (its keeper). Adding
+/// names takes three exchanges: ranks send names to the keepers, keepers return refusals, and a
+/// rank with any refusal withdraws all of its names.
+class IdDirectory {
+ public:
+  IdDirectory(std::uint32_t rank, std::uint32_t ranks, std::pmr::memory_resource* memory)
+      : rank_(rank), ranks_(ranks), names_(memory) {}
+
+  /// Frees a name; sent with the next call of `ask`.
+  void forget(std::uint64_t name) { forgotten_.push_back(name); }
+
+  /// Step 1: requests names from their keepers.
+  void ask(std::span<const std::uint64_t> names, std::vector<RankMessage>& parcels);
+  /// Step 2, as keeper: refuses ranks that request a stored name, or a name that another rank
+  /// requests too.
+  void answer(std::span<const RankMessage> asked, std::vector<RankMessage>& parcels);
+  /// Step 3: returns true if nothing was refused; else sends withdrawals to the requested keepers.
+  [[nodiscard]] bool conclude(std::span<const RankMessage> refusals,
+                              std::vector<RankMessage>& parcels);
+  /// As keeper, stores the names of the ranks that did not withdraw.
+  void keep(std::span<const RankMessage> taken_back);
+
+  [[nodiscard]] std::size_t bytes() const noexcept { return names_.bytes(); }
+
+ private:
+  struct Wanted {
+    std::uint64_t name;
+    std::uint32_t from;
+    friend constexpr auto operator<=>(const Wanted&, const Wanted&) noexcept = default;
+  };
+
+  [[nodiscard]] std::uint32_t keeper_of(std::uint64_t name) const noexcept {
+    // Uses other bits of the hash than NameTable.
+    return static_cast<std::uint32_t>((scattered(name) >> 32U) % ranks_);
+  }
+  void sort_by_keeper(std::vector<std::uint64_t>& names) const;
+
+  std::uint32_t rank_;
+  std::uint32_t ranks_;
+  NameTable names_;
+  std::vector<std::uint64_t> forgotten_;
+  // Data of the sent parcels; must stay in place until the next exchange.
+  std::vector<std::uint64_t> sent_;
+  std::vector<std::uint64_t> sent_forgotten_;
+  std::vector<std::uint32_t> asked_;  // ranks that names were requested from
+  std::vector<Wanted> wanted_;
+};
+
+}  // namespace winnow

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <winnow/core/aabb.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+namespace winnow {
+
+/// Compares boxes by their longest edge. The work of a pair is charged to the smaller body, because
+/// copies of the larger one follow it to any rank.
+[[nodiscard]] inline bool is_larger(const Aabb& box, const Aabb& than) noexcept {
+  const auto edge = [](const Aabb& of) {
+    const Vec3f edges = of.max - of.min;
+    return std::max({edges.x(), edges.y(), edges.z()});
+  };
+  return edge(box) > edge(than);
+}
+
+/// Distributes the work of a rank over the bodies that belong to it, in proportion to `counts`,
+/// each at least 1. So all of them share the work for the rank's copies. `counts`, the result and
+/// `is_owned` are indexed by id.
+template <typename IsOwned>
+[[nodiscard]] std::vector<std::uint32_t> shares_of(std::span<const std::uint64_t> counts,
+                                                   IsOwned&& is_owned, std::uint64_t work) {
+  constexpr std::uint64_t kScale = 16;
+  constexpr std::uint64_t kMaxShare = std::numeric_limits<std::uint32_t>::max();
+  std::uint64_t sum = 0;
+  for (std::size_t id = 0; id < counts.size(); ++id) sum += is_owned(id) ? counts[id] : 0;
+  std::vector<std::uint32_t> shares(counts.size(), 1);
+  if (sum == 0) return shares;
+  const double scale = static_cast<double>(kScale * work) / static_cast<double>(sum);
+  for (std::size_t id = 0; id < counts.size(); ++id) {
+    const auto scaled = static_cast<std::uint64_t>(static_cast<double>(counts[id]) * scale);
+    shares[id] = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(scaled, 1, kMaxShare));
+  }
+  return shares;
+}
+
+}  // namespace winnow

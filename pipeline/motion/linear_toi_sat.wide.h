@@ -1,0 +1,298 @@
+#pragma once
+
+// The first sample of pairs that do not rotate, by the separating axis test (SAT). Two convex
+// polyhedra are separated along the normal of a face or the cross product of an edge of each
+// (Gottschalk, Lin, Manocha, "OBBTree", 1996). Along each of these the gap changes linearly: the
+// last one to close gives the time of impact, and one that opens before it proves that there is
+// none. Round shapes can touch along other directions, too; for them the result is a good starting
+// point. The gap along any direction is valid. impact_lanes.kernel.cpp runs this step;
+// linear_toi_gjk.wide.h continues.
+
+#include "pipeline/motion/closed_forms.wide.h"
+#include "pipeline/motion/impact_block.wide.h"
+
+namespace winnow::WINNOW_ISA_NAME::impact {
+
+/// Pairs of kinds (in the solver's order) for which this step saves time.
+[[nodiscard]] constexpr bool has_start(ShapeKind a, ShapeKind b) {
+  const auto has_edges = [](ShapeKind kind) {
+    return kind == ShapeKind::box || kind == ShapeKind::triangle || kind == ShapeKind::capsule ||
+           kind == ShapeKind::cylinder;
+  };
+  if (has_closed_form(a, b)) return false;
+  return (has_edges(a) && has_edges(b)) || (a == ShapeKind::box && b == ShapeKind::cone);
+}
+
+/// Directions of the faces and edges of a core, in world axes, of any length; for round cores,
+/// their axis.
+struct AxisCore {
+  const CoreTable& table;
+  const MovingCore& core;
+  Vector normal[3];
+  int normals;
+  Vector edge[3];
+  int edges;
+
+  AxisCore(const CoreTable& of_table, const MovingCore& of_core) : table(of_table), core(of_core) {
+    const Rotation<double>& axes = core.axes;
+    if (table.kind == ShapeKind::box) {
+      normals = edges = 3;
+      normal[0] = edge[0] = axes.x;
+      normal[1] = edge[1] = axes.y;
+      normal[2] = edge[2] = axes.z;
+    } else if (table.kind == ShapeKind::triangle) {
+      edges = 3;
+      for (int i = 0; i < 3; ++i) edge[i] = core.corner[(i + 1) % 3] - core.corner[i];
+      normals = 1;
+      normal[0] = cross(edge[0], edge[1]);
+    } else {
+      normals = table.kind == ShapeKind::capsule ? 0 : 1;
+      edges = 1;
+      normal[0] = edge[0] = axes.z;
+    }
+  }
+
+  /// Support along a direction and its opposite, from the centre.
+  [[gnu::always_inline]] void reach(const Vector& n, Doubles& high, Doubles& low) const {
+    switch (table.kind) {
+      case ShapeKind::triangle: {
+        const Doubles on[3] = {dot(n, core.corner[0]), dot(n, core.corner[1]),
+                               dot(n, core.corner[2])};
+        high = max(max(on[0], on[1]), on[2]);
+        low = min(min(on[0], on[1]), on[2]);
+        return;
+      }
+      case ShapeKind::box:
+        high = height_of_box(core, n);
+        break;
+      case ShapeKind::capsule:
+        high = height_of_segment(core, n);
+        break;
+      default: {
+        const Doubles along = dot(n, core.axes.z);
+        const Doubles up = along * core.half.z;
+        const Doubles rim = core.half.x * sqrt(positive_part(dot(n, n) - along * along));
+        if (table.kind == ShapeKind::cone) {
+          high = max(up, rim - up);
+          low = min(up, -rim - up);
+          return;
+        }
+        high = abs(up) + rim;
+      }
+    }
+    low = -high;
+  }
+
+  /// The point of the core nearest to `p`, both relative to its centre.
+  [[nodiscard]] Vector nearest(const Vector& p) const {
+    switch (table.kind) {
+      case ShapeKind::triangle:
+        return p + nearest_of_triangle(core, -p, zero_vector(), Doubles(0.0), true).w;
+      case ShapeKind::capsule:
+        return core.axes.z * round::clamp(dot(p, core.axes.z), -core.half.z, core.half.z);
+      default:
+        return core.axes.to_world(nearest_to(table, core, core.axes.to_local(p)));
+    }
+  }
+};
+
+/// A gap along a direction and its rate of change, both multiplied by the direction's length.
+struct ChangingGap {
+  Vector along;
+  Doubles gap;
+  Doubles rate;
+};
+
+/// The directions of faces and edges along which two cores may first touch.
+class SeparatingAxes {
+ public:
+  SeparatingAxes(const AxisCore& a, const AxisCore& b, const Vector& between, const PairLanes& p)
+      : a_(a),
+        b_(b),
+        between_(between),
+        travel_(p.travel),
+        roundings_(p.roundings),
+        is_rounded_(bits(p.roundings > Doubles(0.0)) != 0) {
+    const Doubles zero(0.0);
+    closing = {zero_vector(), zero, Doubles(1.0)};
+    opening = {zero_vector(), Doubles(-1.0), zero};
+    edge_a = edge_b = zero_vector();
+    is_face_of_a = is_of_edges = zero > zero;
+    for (int i = 0; i < a.normals; ++i) is_face_of_a = is_face_of_a | closes_last(a.normal[i]);
+    for (int i = 0; i < b.normals; ++i) is_face_of_a = is_face_of_a & !closes_last(b.normal[i]);
+    for (int i = 0; i < a.edges; ++i) {
+      for (int k = 0; k < b.edges; ++k) {
+        const DoubleMask last = closes_last(cross(a.edge[i], b.edge[k]));
+        is_of_edges = is_of_edges | last;
+        edge_a = select(last, a.edge[i], edge_a);
+        edge_b = select(last, b.edge[k], edge_b);
+      }
+    }
+  }
+
+  /// The lanes in which a gap opens before the last of the others has closed.
+  [[nodiscard]] DoubleMask pass() const {
+    return opening.gap * closing.rate + closing.gap * opening.rate > Doubles(0.0);
+  }
+
+  /// The gap that closes last among open gaps, and the gap that opens first. Initially: a gap of 0
+  /// that closes, and a closed gap that does not change.
+  ChangingGap closing;
+  ChangingGap opening;
+  /// If the gap that closes last is not of two edges: its direction is the normal of a face of a.
+  DoubleMask is_face_of_a;
+  /// Its direction is the cross product of these edges.
+  DoubleMask is_of_edges;
+  Vector edge_a;
+  Vector edge_b;
+
+ private:
+  /// Tests both senses of a direction: in one the gap closes, in the other it opens. Returns the
+  /// lanes in which it closes later than all before.
+  [[gnu::always_inline]] DoubleMask closes_last(const Vector& n) {
+    Doubles high_a;
+    Doubles low_a;
+    Doubles high_b;
+    Doubles low_b;
+    a_.reach(n, high_a, low_a);
+    b_.reach(n, high_b, low_b);
+    const Doubles rounding = is_rounded_ ? roundings_ * length(n) : Doubles(0.0);
+    const Doubles between = dot(n, between_);
+    const Doubles ahead = between + low_b - high_a - rounding;
+    const Doubles behind = low_a - high_b - between - rounding;
+    const Doubles speed = dot(n, travel_);
+    const DoubleMask comes = speed < Doubles(0.0);
+    const Doubles rate = abs(speed);
+    const ChangingGap closes{select(comes, n, -n), select(comes, ahead, behind), rate};
+    const ChangingGap opens{select(comes, -n, n), select(comes, behind, ahead), rate};
+    take(opens.gap * opening.rate > opening.gap * rate, opens, opening);
+    const DoubleMask last = closes.gap * closing.rate > closing.gap * rate;
+    take(last, closes, closing);
+    return last;
+  }
+  [[gnu::always_inline]] static void take(const DoubleMask& where, const ChangingGap& gap,
+                                          ChangingGap& kept) {
+    kept.along = select(where, gap.along, kept.along);
+    kept.gap = select(where, gap.gap, kept.gap);
+    kept.rate = select(where, gap.rate, kept.rate);
+  }
+
+  const AxisCore& a_;
+  const AxisCore& b_;
+  const Vector& between_;
+  const Vector& travel_;
+  const Doubles& roundings_;
+  bool is_rounded_;
+};
+
+/// The first step of a block. Lanes that it does not end continue at the time to which it has
+/// advanced them.
+class LinearToiSat : BlockStep {
+ public:
+  LinearToiSat(const ImpactJob& job, ImpactBlock& block)
+      : BlockStep(job, block), a_(tables_.a, p_.a), b_(tables_.b, p_.b) {}
+
+  /// Returns the lanes that continue.
+  [[nodiscard]] Mask16 run() {
+    sample_.between = p_.start + p_.travel * p_.time;
+    const SeparatingAxes axes(a_, b_, sample_.between, p_);
+    const DoubleMask closes = active_ & (axes.closing.gap > Doubles(0.0));
+    try_along(axes.closing.along);
+    apart_ = closes & sample_.parted;
+    move_on();
+    if (bits(active_ & axes.pass()) != 0) part(axes);
+    if (bits(active_ & apart_) != 0) touch(axes);
+    return continuing_lanes();
+  }
+
+ private:
+  /// Samples the gap along a direction.
+  void try_along(const Vector& direction) {
+    const CorePair pair{tables_.a, tables_.b, p_.a, p_.b, sample_.between};
+    Vector own_a;
+    Vector own_b;
+    pair.facing(direction, bits(active_), own_a, own_b);
+    ClosestLanes& closest = sample_.closest;
+    closest.on_a = pair.on_a(own_a);
+    closest.on_b = pair.on_b(own_b);
+    closest.axis = direction * (Doubles(1.0) / length(direction));
+    sample_.slope = dot(closest.axis, p_.travel);
+    judge();
+  }
+  /// Recomputes the gap at the current time.
+  void judge() {
+    ClosestLanes& closest = sample_.closest;
+    sample_.noise = noise_at(sample_.between);
+    closest.lower = dot(closest.axis, sample_.between + closest.on_b - closest.on_a);
+    sample_.gap = closest.lower - p_.roundings - sample_.noise;
+    sample_.parted = sample_.gap > Doubles(0.0);
+  }
+
+  /// Advances the lanes to the time at which the tested direction no longer shows a gap.
+  void move_on() {
+    const Doubles free = free_along(p_, sample_);
+    end_apart(apart_ & ((free >= p_.last) | (free > p_.until)));
+    const DoubleMask far = sample_.gap > p_.tolerance * Doubles(kNearEnough);
+    p_.axis = select(active_ & apart_, sample_.closest.axis, p_.axis);
+    p_.time = select(active_ & apart_ & far, free, p_.time);
+    sample_.between = p_.start + p_.travel * p_.time;
+  }
+
+  /// Ends lanes that are separated from now on along the direction that opens.
+  void part(const SeparatingAxes& axes) {
+    const SampleLanes closing = sample_;
+    try_along(axes.opening.along);
+    end_apart(axes.pass() & sample_.parted & (sample_.slope >= Doubles(0.0)));
+    sample_ = closing;
+  }
+
+  /// Ends lanes in which points near the expected contact are within the tolerance.
+  void touch(const SeparatingAxes& axes) {
+    judge();
+    ClosestLanes& closest = sample_.closest;
+    find_points(place_of(axes), active_);
+    // If faces or edges are parallel, the first corner may not be opposite the other shape.
+    const DoubleMask again = active_ & apart_ & !is_near();
+    if (bits(again) != 0) find_points(closest.on_a + closest.between, again);
+    const DoubleMask will_touch = sample_.gap + sample_.slope * (p_.last - p_.time) <= Doubles(0.0);
+    const DoubleMask met = active_ & apart_ & sample_.parted & is_near() & will_touch;
+    answers_.put_impact(bits(met), p_, sample_);
+    active_ = active_ & !met;
+    p_.axis = select(active_ & apart_ & (closest.upper > Doubles(0.0)), closest.between, p_.axis);
+  }
+
+  /// The expected contact, relative to the centre of a: a corner that touches a face, or the
+  /// crossing of two edges.
+  [[nodiscard]] Vector place_of(const SeparatingAxes& axes) const {
+    const ClosestLanes& closest = sample_.closest;
+    const Vector corner_b = sample_.between + closest.on_b;
+    const Vector way = corner_b - closest.on_a;
+    const Doubles mixed = dot(axes.edge_a, axes.edge_b);
+    const Doubles square = dot(axes.edge_b, axes.edge_b);
+    const Doubles area = dot(axes.edge_a, axes.edge_a) * square - mixed * mixed;
+    const Doubles share = (dot(axes.edge_a, way) * square - mixed * dot(axes.edge_b, way)) /
+                          select(area > Doubles(0.0), area, Doubles(1.0));
+    const Vector on_edge = closest.on_a + axes.edge_a * share;
+    return select(axes.is_of_edges, on_edge, select(axes.is_face_of_a, corner_b, closest.on_a));
+  }
+
+  /// In some lanes, sets the point of a closest to a place, and the point of b closest to that
+  /// point.
+  void find_points(const Vector& place, const DoubleMask& lanes) {
+    ClosestLanes& closest = sample_.closest;
+    const Vector on_a = a_.nearest(place);
+    const Vector between = sample_.between + b_.nearest(on_a - sample_.between) - on_a;
+    closest.on_a = select(lanes, on_a, closest.on_a);
+    closest.between = select(lanes, between, closest.between);
+    closest.upper = length(closest.between);
+    sample_.most = closest.upper - p_.roundings + sample_.noise;
+  }
+  [[nodiscard]] DoubleMask is_near() const { return sample_.most <= closed(); }
+
+  AxisCore a_;
+  AxisCore b_;
+  /// The direction that closes last shows a gap.
+  DoubleMask apart_;
+};
+
+}  // namespace winnow::WINNOW_ISA_NAME::impact

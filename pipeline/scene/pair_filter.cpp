@@ -1,0 +1,182 @@
+// Filters of pairs beyond sets and object filters: layers, ignored pairs and the caller's
+// predicate. SceneState::find_pairs and SceneSweep apply them through `may_pair`.
+
+#include "core/hooks/log.h"
+#include "pipeline/scene/scene_state.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace winnow {
+namespace {
+
+/// Marks an ignored pair for removal. Ids are below kMaxBodies and leave this bit free.
+constexpr std::uint64_t kMark = std::uint64_t{1} << 63U;
+
+[[nodiscard]] std::uint64_t pair_number(ObjectId a, ObjectId b) noexcept {
+  return std::uint64_t{std::min(a, b)} << 32U | std::max(a, b);
+}
+
+}  // namespace
+
+Status Scene::set_ignored(Key a, Key b, bool ignored) {
+  const KeyPair pair{a, b};
+  return set_ignored({&pair, 1}, ignored);
+}
+
+Status Scene::set_ignored(std::span<const KeyPair> pairs, bool ignored) {
+  if (state_ == nullptr) return Status::out_of_memory;
+  SceneState& s = *state_;
+  for (const KeyPair& pair : pairs) {
+    if (!s.keys.is_valid(pair.first) || !s.keys.is_valid(pair.second)) return Status::invalid_key;
+    if (pair.first == pair.second) return Status::invalid_argument;
+  }
+  if (pairs.empty()) return Status::ok;
+  if (ignored) {
+    if (!s.add_ignored(pairs)) return Status::out_of_memory;
+  } else {
+    const auto number_of = [](std::uint64_t pair) { return pair & ~kMark; };
+    for (const KeyPair& pair : pairs) {
+      const std::uint64_t number = pair_number(pair.first.id, pair.second.id);
+      std::uint64_t* const at =
+          std::ranges::lower_bound(s.ignored.begin(), s.ignored.end(), number, {}, number_of);
+      if (at != s.ignored.end() && number_of(*at) == number) *at |= kMark;
+    }
+    s.drop_ignored([](std::uint64_t pair) { return (pair & kMark) != 0; });
+  }
+  s.invalidate_pairs();
+  return Status::ok;
+}
+
+/// Merges new pairs into the sorted list.
+bool SceneState::add_ignored(std::span<const KeyPair> told) noexcept {
+  const std::size_t before = ignored.size();
+  const std::size_t all = before + told.size();
+  const std::size_t known = ignores.size();
+  if (!ignored.grow(all + told.size()) || !ignores.grow(shape.size())) return false;
+  ignores.set_size(shape.size());
+  std::fill(ignores.begin() + known, ignores.end(), std::uint8_t{0});
+  // The new pairs are sorted beyond the end of the merged list.
+  ignored.set_size(all + told.size());
+  std::uint64_t* const added = ignored.data() + all;
+  for (std::size_t i = 0; i < told.size(); ++i) {
+    added[i] = pair_number(told[i].first.id, told[i].second.id);
+    ignores[told[i].first.id] = ignores[told[i].second.id] = 1;
+  }
+  std::sort(added, added + told.size());
+  std::size_t old = before;
+  std::size_t own = told.size();
+  for (std::size_t to = all; own > 0; --to) {
+    const bool takes_old = old > 0 && ignored[old - 1] > added[own - 1];
+    ignored[to - 1] = takes_old ? ignored[--old] : added[--own];
+  }
+  const std::uint64_t* const end = std::unique(ignored.begin(), ignored.begin() + all);
+  ignored.set_size(static_cast<std::size_t>(end - ignored.begin()));
+  return true;
+}
+
+bool Scene::is_ignored(Key a, Key b) const noexcept {
+  return contains(a) && contains(b) && state_->is_ignored(a.id, b.id);
+}
+
+void Scene::set_predicate(const PairPredicate& predicate) noexcept {
+  if (state_ == nullptr) return;
+  state_->predicate = predicate;
+  state_->invalidate_pairs();
+}
+
+bool SceneState::is_ignored(ObjectId a, ObjectId b) const noexcept {
+  const auto may_be = [&](ObjectId body) { return body < ignores.size() && ignores[body] != 0; };
+  return may_be(a) && may_be(b) &&
+         std::binary_search(ignored.begin(), ignored.end(), pair_number(a, b));
+}
+
+Status Scene::set_layers_collide(std::uint16_t a, std::uint16_t b, bool meet) {
+  if (state_ == nullptr) return logged(Status::out_of_memory, "Scene::set_layers_collide");
+  if (std::max(a, b) >= kSceneLayers) {
+    return logged(Status::invalid_argument, "Scene::set_layers_collide");
+  }
+  SceneState& s = *state_;
+  if (s.layers.meet(a, b) == meet) return Status::ok;
+  if (!s.layers.grow_to(std::max(a, b))) {
+    return logged(Status::out_of_memory, "Scene::set_layers_collide");
+  }
+  s.layers.set(a, b, meet);
+  s.invalidate_pairs();
+  return Status::ok;
+}
+
+bool Scene::layers_collide(std::uint16_t a, std::uint16_t b) const noexcept {
+  return state_ == nullptr || state_->layers.meet(a, b);
+}
+
+Status Scene::set_layer(Key key, std::uint16_t layer) {
+  if (state_ == nullptr) return logged(Status::out_of_memory, "Scene::set_layer");
+  SceneState& s = *state_;
+  if (!s.keys.is_valid(key)) return logged(Status::invalid_key, "Scene::set_layer");
+  if (layer >= kSceneLayers) return logged(Status::invalid_argument, "Scene::set_layer");
+  if (s.layer_of(key.id) == layer) return Status::ok;
+  if (!s.begin_layers()) return logged(Status::out_of_memory, "Scene::set_layer");
+  s.layer[key.id] = layer;
+  s.invalidate_pairs();
+  return Status::ok;
+}
+
+std::uint16_t Scene::layer(Key key) const noexcept {
+  return contains(key) ? state_->layer_of(key.id) : std::uint16_t{0};
+}
+
+// From the first layer other than 0 on, the column has an element for every body.
+bool SceneState::begin_layers() noexcept {
+  if (with_layers) return true;
+  if (!layer.grow(shape.capacity())) return false;
+  with_layers = true;
+  layer.set_size(shape.size());
+  std::fill(layer.begin(), layer.end(), std::uint16_t{0});
+  return true;
+}
+
+bool SceneState::may_pair(ObjectId a, ObjectId b) const noexcept {
+  if (!layers.meet(layer_of(a), layer_of(b))) return false;
+  if (is_ignored(a, b)) return false;
+  return predicate.accept == nullptr || predicate.accept(predicate.context, a, b);
+}
+
+bool SceneState::accepts_pair(ObjectId a, ObjectId b) const noexcept {
+  if (motion[a] != Motion::dynamic) std::swap(a, b);
+  if (a == b || motion[a] != Motion::dynamic || !filters_allow(filter_of(a), filter_of(b)))
+    return false;
+  // The predicate gets the two bodies in the order in which partitions return them.
+  if (motion[b] == Motion::dynamic && place[b].id < place[a].id) std::swap(a, b);
+  return may_pair(a, b);
+}
+
+ObjectFilter SceneState::filter_of(ObjectId body) const noexcept {
+  ObjectFilter filter;
+  (void)set(motion[body]).partition->filter(place[body], filter);
+  return filter;
+}
+
+// Forgets the ignored pairs of removed bodies, because new bodies will get their ids.
+void SceneState::forget_ignored(std::span<const Key> removed) noexcept {
+  bool was_said = false;
+  for (const Key& key : removed) {
+    if (key.id >= ignores.size()) continue;
+    was_said = was_said || ignores[key.id] != 0;
+    ignores[key.id] = 0;
+  }
+  if (!was_said) return;
+  drop_ignored([&](std::uint64_t pair) {
+    return !keys.is_live(static_cast<ObjectId>(pair >> 32U)) ||
+           !keys.is_live(static_cast<ObjectId>(pair));
+  });
+}
+
+void SceneState::invalidate_pairs() noexcept {
+  for (SceneSet& set : sets) {
+    set.with_dynamic.clear();
+    ++set.changes;
+  }
+}
+
+}  // namespace winnow

@@ -1,0 +1,349 @@
+// SceneQueries on two bodies or two sets of bodies: distance, overlaps and any_contact. The boxes
+// in the partitions select pairs; shape_distance.h tests them.
+
+#include <winnow/core/rounding.h>
+#include "core/threads/float_environment.h"
+#include "pipeline/scene/queries/box_gaps.kernel.h"
+#include "pipeline/scene/queries/queries.h"
+#include "pipeline/scene/queries/shape_distance.h"
+
+#include <cmath>
+#include <limits>
+
+namespace winnow {
+
+WINNOW_DEFINE_KERNELS(BoxGapsKernels, box_gaps_kernels)
+
+namespace {
+
+/// Covers the rounding of squared box distances (three squares of float differences) and the error
+/// of the solver's distance to a box boundary.
+constexpr double kSquareSlack = 1e-5;
+
+[[nodiscard]] Aabb box_of(const SceneState& scene, std::uint32_t body) noexcept {
+  Aabb box;
+  (void)scene.set(scene.motion[body]).partition->bounds(scene.place[body], box);
+  return box;
+}
+
+/// The boxes of a set of bodies, and their distances from other boxes. Uses the boxes in the
+/// partitions, which contain the bodies.
+class SetBoxes {
+ public:
+  explicit SetBoxes(QueryState& state) noexcept : state_(state) {}
+
+  /// Returns false if memory is refused.
+  [[nodiscard]] bool take(std::span<const Key> keys) noexcept {
+    constexpr std::size_t kLanes = 16;
+    count_ = keys.size();
+    const std::size_t whole = (count_ + kLanes - 1) / kLanes * kLanes;
+    if (!state_.bounds.resize(6 * whole) || !state_.gaps.resize(whole)) return false;
+    float* column[6];
+    for (std::size_t k = 0; k < 6; ++k) {
+      column[k] = state_.bounds.data() + k * whole;
+      bounds_[k] = column[k];
+      std::fill(column[k] + count_, column[k] + whole, 0.0F);
+    }
+    for (std::size_t i = 0; i < count_; ++i) {
+      const Aabb box = box_of(state_.scene, keys[i].id);
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        column[axis][i] = box.min[axis];
+        column[3 + axis][i] = box.max[axis];
+      }
+    }
+    return true;
+  }
+  /// Returns lower bounds on the squared distances of the set's bodies from a body.
+  [[nodiscard]] std::span<const float> squared_gaps(Key from) noexcept {
+    const Aabb box = box_of(state_.scene, from.id);
+    const float low[3] = {box.min[0], box.min[1], box.min[2]};
+    const float high[3] = {box.max[0], box.max[1], box.max[2]};
+    box_gaps_kernels().squared(bounds_, count_, low, high, state_.gaps.data());
+    return {state_.gaps.data(), count_};
+  }
+
+ private:
+  QueryState& state_;
+  const float* bounds_[6] = {};
+  std::size_t count_ = 0;
+};
+
+[[nodiscard]] bool do_rules_take(const SceneState& scene, PairRules rules, std::uint32_t a,
+                                 std::uint32_t b) noexcept {
+  return rules == PairRules::none || scene.accepts_pair(a, b);
+}
+
+/// Pairs of bodies of two sets that the rules accept, except pairs of a body with itself.
+class SetPairs {
+ public:
+  SetPairs(QueryState& state, std::span<const Key> a, std::span<const Key> b,
+           PairRules rules) noexcept
+      : scene_(state.scene), a_(a), b_(b), rules_(rules), boxes_(state) {}
+
+  [[nodiscard]] bool find_boxes() noexcept { return boxes_.take(b_); }
+  [[nodiscard]] bool is_one_set() const noexcept {
+    return a_.data() == b_.data() && a_.size() == b_.size();
+  }
+
+  /// Returns the pair with the nearest boxes, if their distance is at most `most`.
+  [[nodiscard]] KeyPair nearest(double most) noexcept {
+    KeyPair found;
+    double least = square_of(most);
+    for (const Key a : a_) {
+      const std::span<const float> gaps = boxes_.squared_gaps(a);
+      for (std::size_t i = 0; i < gaps.size(); ++i) {
+        const auto gap = static_cast<double>(gaps[i]);
+        if (!(gap < least || (gap == least && found.first == Key{}))) continue;
+        if (!takes(a, b_[i])) continue;
+        least = gap;
+        found = {a, b_[i]};
+      }
+    }
+    return found;
+  }
+
+  /// Calls look(body of a, body of b) for pairs whose boxes are at most most() apart, until it
+  /// returns false; most() may decrease meanwhile. With `once`, and if both sets are the same, each
+  /// pair occurs once.
+  template <typename Most, typename Look>
+  void each_within(Most&& most, Look&& look, bool once = false) {
+    double least = square_of(most());
+    const bool skips = once && is_one_set();
+    for (std::size_t k = 0; k < a_.size(); ++k) {
+      const Key a = a_[k];
+      const std::span<const float> gaps = boxes_.squared_gaps(a);
+      for (std::size_t i = skips ? k + 1 : 0; i < gaps.size(); ++i) {
+        if (!(static_cast<double>(gaps[i]) <= least) || !takes(a, b_[i])) continue;
+        if (!look(a, b_[i])) return;
+        least = square_of(most());
+      }
+    }
+  }
+
+ private:
+  [[nodiscard]] bool takes(Key a, Key b) const noexcept {
+    return a != b && do_rules_take(scene_, rules_, a.id, b.id);
+  }
+  [[nodiscard]] static double square_of(double gap) noexcept {
+    return gap * gap * (1.0 + kSquareSlack);
+  }
+
+  const SceneState& scene_;
+  std::span<const Key> a_;
+  std::span<const Key> b_;
+  PairRules rules_;
+  SetBoxes boxes_;
+};
+
+/// True if two bodies overlap, or are at most `margin` apart. Tests for overlap first: that result
+/// is exact, so that a wider margin never loses a contact.
+[[nodiscard]] bool are_near(const QueryState& state, std::uint32_t a, std::uint32_t b,
+                            double margin) noexcept {
+  const PlacedShape first = state.placed(a);
+  const PlacedShape second = state.placed(b);
+  std::uint32_t part = kWholeShape;
+  if (do_overlap(state.parts, first, second, part)) return true;
+  SceneDistance found;
+  return margin > 0.0 && ClosestParts(state.parts).find(first, second, margin, found);
+}
+
+/// Finds contacts of one body of the scene after the other, by id, up to the first body that has
+/// one. The bodies before it have none, so pairs with them need no test.
+class ContactOfBody {
+ public:
+  ContactOfBody(QueryState& state, double margin, PairRules rules) noexcept
+      : state_(state), margin_(margin), rules_(rules) {}
+
+  /// True if bodies of this motion are tested one after the other: every pair contains one of them.
+  [[nodiscard]] bool looks_at(Motion motion) const noexcept {
+    return rules_ == PairRules::none || motion == Motion::dynamic;
+  }
+
+  /// `other` is kNoObject if there is none.
+  [[nodiscard]] Status find(std::uint32_t body, std::uint32_t& other) {
+    const SceneState& scene = state_.scene;
+    std::uint32_t least = kNoObject;
+    auto look = [&](std::uint32_t next) {
+      const bool was_looked_at = next <= body && looks_at(scene.motion[next]);
+      if (was_looked_at || next >= least || !do_rules_take(scene, rules_, body, next)) return false;
+      if (are_near(state_, body, next, margin_)) least = next;
+      return false;
+    };
+    Filter filter;
+    if (rules_ == PairRules::scene) {
+      // Lets the partitions skip subtrees of bodies that the filters exclude.
+      const ObjectFilter own = scene.filter_of(body);
+      filter = {.layers = own.layers, .mask = own.mask, .environment = own.environment};
+    }
+    BodyCandidateFilter looking(scene, filter, look);
+    const Aabb box = reach_of(body);
+    const Status status = state_.each_partition([&](const Partition& partition) {
+      return partition.overlap(box, state_.objects, looking.filter());
+    });
+    if (status == Status::ok) other = least;
+    return status;
+  }
+
+ private:
+  /// Grows the body's box by the margin and the error bound of the solver's distance to a box
+  /// boundary.
+  [[nodiscard]] Aabb reach_of(std::uint32_t body) const noexcept {
+    const Aabb box = box_of(state_.scene, body);
+    const double reach = margin_ * (1.0 + 1e-9);
+    Aabb wide;
+    for (int axis = 0; axis < 3; ++axis) {
+      wide.min[axis] = round_down(add_down(static_cast<double>(box.min[axis]), -reach));
+      wide.max[axis] = round_up(add_up(static_cast<double>(box.max[axis]), reach));
+    }
+    return wide;
+  }
+
+  QueryState& state_;
+  double margin_;
+  PairRules rules_;
+};
+
+/// Finds the closest pair of two sets. Starts with the pair whose boxes are nearest: few other
+/// pairs have boxes that are nearer than these two bodies are.
+class ClosestBodies {
+ public:
+  ClosestBodies(QueryState& state, double limit) noexcept : state_(state), limit_(limit) {}
+
+  [[nodiscard]] SetDistance find(SetPairs& pairs) {
+    const KeyPair nearest = pairs.nearest(reach());
+    if (nearest.first == Key{}) return best_;
+    look(nearest.first, nearest.second);
+    pairs.each_within([&] { return reach(); },
+                      [&](Key a, Key b) {
+                        look(a, b);
+                        return true;
+                      });
+    return best_;
+  }
+
+ private:
+  /// Never negative, because overlapping boxes may have bodies of any depth.
+  [[nodiscard]] double reach() const noexcept { return std::max(limit_, 0.0); }
+
+  /// If distances are equal, the pair that is first in the order of ids is kept.
+  void look(Key a, Key b) noexcept {
+    SceneDistance found;
+    ClosestParts parts(state_.parts);
+    if (!parts.find(state_.placed(a.id), state_.placed(b.id), limit_, found)) return;
+    const std::pair ids(a.id, b.id);
+    if (best_ && found.distance == limit_ && std::pair(best_.a.id, best_.to.key.id) <= ids) return;
+    found.key = b;
+    found.data = state_.scene.keys.client_data(b.id);
+    best_ = {a, state_.scene.keys.client_data(a.id), found};
+    limit_ = found.distance;
+  }
+
+  QueryState& state_;
+  double limit_;
+  SetDistance best_;
+};
+
+[[nodiscard]] Status check_sets(const QueryState* state, std::span<const Key> a,
+                                std::span<const Key> b, PairRules rules) noexcept {
+  if (const Status status = QueryState::check_state(state); status != Status::ok) return status;
+  if (rules > PairRules::none) return Status::invalid_argument;
+  const auto is_there = [&](Key key) { return state->scene.keys.is_valid(key); };
+  const bool all =
+      std::all_of(a.begin(), a.end(), is_there) && std::all_of(b.begin(), b.end(), is_there);
+  return all ? Status::ok : Status::invalid_key;
+}
+
+[[nodiscard]] bool is_margin(double margin) noexcept {
+  return margin >= 0.0 && std::isfinite(margin);
+}
+
+}  // namespace
+
+Status SceneQueries::distance(Key a, Key b, SceneDistance& answer, double limit, PairRules rules) {
+  const DefaultEnvironment environment;
+  if (const Status status = check_sets(state_, {&a, 1}, {&b, 1}, rules); status != Status::ok) {
+    return status;
+  }
+  if (std::isnan(limit)) return Status::invalid_argument;
+  SceneDistance found;
+  ClosestParts parts(state_->parts);
+  if (do_rules_take(state_->scene, rules, a.id, b.id) &&
+      parts.find(state_->placed(a.id), state_->placed(b.id), limit, found)) {
+    found.key = b;
+    found.data = state_->scene.keys.client_data(b.id);
+    answer = found;
+  } else {
+    answer = {};
+  }
+  return Status::ok;
+}
+
+Status SceneQueries::least_distance(std::span<const Key> a, std::span<const Key> b,
+                                    SetDistance& answer, double limit, PairRules rules) {
+  const DefaultEnvironment environment;
+  if (const Status status = check_sets(state_, a, b, rules); status != Status::ok) return status;
+  if (std::isnan(limit)) return Status::invalid_argument;
+  SetPairs pairs(*state_, a, b, rules);
+  if (!pairs.find_boxes()) return Status::out_of_memory;
+  answer = ClosestBodies(*state_, limit).find(pairs);
+  return Status::ok;
+}
+
+Status SceneQueries::overlaps(std::span<const Key> a, std::span<const Key> b,
+                              std::span<const KeyPair>& pairs, std::size_t most, PairRules rules) {
+  const DefaultEnvironment environment;
+  if (const Status status = check_sets(state_, a, b, rules); status != Status::ok) return status;
+  Column<KeyPair>& found = state_->overlapping;
+  found.clear();
+  SetPairs all(*state_, a, b, rules);
+  bool has_room = all.find_boxes();
+  const auto look = [&](Key first, Key second) {
+    std::uint32_t part = kWholeShape;
+    if (do_overlap(state_->parts, state_->placed(first.id), state_->placed(second.id), part)) {
+      has_room = found.push_back({first, second});
+    }
+    return has_room && found.size() < most;
+  };
+  if (has_room && most != 0) all.each_within([] { return 0.0; }, look);
+  if (!has_room) return Status::out_of_memory;
+  pairs = {found.data(), found.size()};
+  return Status::ok;
+}
+
+Status SceneQueries::any_contact(std::span<const Key> a, std::span<const Key> b, KeyPair& pair,
+                                 double margin, PairRules rules) {
+  const DefaultEnvironment environment;
+  if (const Status status = check_sets(state_, a, b, rules); status != Status::ok) return status;
+  if (!is_margin(margin)) return Status::invalid_argument;
+  SetPairs all(*state_, a, b, rules);
+  if (!all.find_boxes()) return Status::out_of_memory;
+  KeyPair found;
+  const auto look = [&](Key first, Key second) {
+    if (!are_near(*state_, first.id, second.id, margin)) return true;
+    found = {first, second};
+    return false;
+  };
+  all.each_within([&] { return margin; }, look, true);
+  pair = found;
+  return Status::ok;
+}
+
+Status SceneQueries::any_contact(KeyPair& pair, double margin, PairRules rules) {
+  const DefaultEnvironment environment;
+  if (const Status status = check_sets(state_, {}, {}, rules); status != Status::ok) return status;
+  if (!is_margin(margin)) return Status::invalid_argument;
+  const SceneState& scene = state_->scene;
+  ContactOfBody contact(*state_, margin, rules);
+  for (std::uint32_t body = 0; body < scene.keys.slot_count(); ++body) {
+    if (!scene.keys.is_live(body) || !contact.looks_at(scene.motion[body])) continue;
+    std::uint32_t other = kNoObject;
+    if (const Status status = contact.find(body, other); status != Status::ok) return status;
+    if (other == kNoObject) continue;
+    pair = {scene.keys.key_of(body), scene.keys.key_of(other)};
+    return Status::ok;
+  }
+  pair = {};
+  return Status::ok;
+}
+
+}  // namespace winnow

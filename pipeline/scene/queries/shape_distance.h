@@ -1,0 +1,212 @@
+#pragma once
+
+// Overlap and closest points of two placed shapes, including composite ones. scene_queries.cpp and
+// set_distance.cpp call this; parts are solved by the narrow phase.
+
+#include <winnow/pipeline/narrow_phase.h>
+#include <winnow/pipeline/scene_queries.h>
+#include "pipeline/composites/parts.h"
+#include "pipeline/shapes/triangle_direction.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace winnow {
+
+[[nodiscard]] inline PairAnswer solve_parts(const SubShapeQuery& parts, const SubShape& a,
+                                            const SubShape& b, ContactLevel level) noexcept {
+  PartTables tables(parts.shapes());
+  const ShapeId first = tables.put(0, a);
+  const ShapeId second = tables.put(1, b);
+  PairAnswer answer;
+  static_cast<void>(
+      collide(tables.tables(), first, a.pose, second, b.pose, {.level = level}, answer));
+  return answer;
+}
+
+/// True if one part is a one-sided triangle and the other is behind it, so that they do not
+/// collide.
+[[nodiscard]] inline bool any_stands_behind(const SubShapeQuery& parts, const SubShape& a,
+                                            const SubShape& b) noexcept {
+  return (a.front != 0 && is_behind_triangle(parts.box(b), a)) ||
+         (b.front != 0 && is_behind_triangle(parts.box(a), b));
+}
+
+/// Two shapes, moved so that the first one's position is the origin if one of them is composite:
+/// their parts then keep full precision far from the world's origin. Convex pairs are not moved.
+struct Pairing {
+  PlacedShape a;
+  PlacedShape b;
+  double base[3] = {0.0, 0.0, 0.0};
+
+  Pairing(const PlacedShape& first, const PlacedShape& second) noexcept : a(first), b(second) {
+    if (!a.shape.is_composite() && !b.shape.is_composite()) return;
+    std::copy_n(a.pose.position, 3, base);
+    b.pose = relative(b.pose, base);
+    a.pose = relative(a.pose, base);
+  }
+};
+
+/// True if a separating axis proves that a ball is farther than a limit from a triangle of a
+/// surface. False proves nothing.
+[[nodiscard]] inline bool is_farther(const SubShape& ball, const SubShape& triangle,
+                                     double limit) noexcept {
+  using mid::Vec;
+  if (!is_unrotated(triangle)) return false;
+  const TriangleShape& shape = *triangle.triangle;
+  const Vec first = Vec::Map(shape.vertex[0]);
+  const Vec ab = Vec::Map(shape.vertex[1]) - first;
+  const Vec ac = Vec::Map(shape.vertex[2]) - first;
+  const Vec at = Vec::Map(ball.pose.position);
+  const Vec corner = Vec::Map(triangle.pose.position);
+  const Vec from = (at - corner) - first;
+  const Vec axis = mid::direction_to(from, ab, ac);
+  const double gap = axis.dot(from) - std::max({0.0, axis.dot(ab), axis.dot(ac)});
+  const double scale =
+      at.lpNorm<1>() + corner.lpNorm<1>() + first.lpNorm<1>() + ab.lpNorm<1>() + ac.lpNorm<1>();
+  const double radii = ball.ball->radius + triangle.thickness;
+  return gap > (std::max(limit, 0.0) + radii + 4.0 * mid::kSlack * scale) * axis.norm();
+}
+
+/// True if one shape is a solid that contains the other; tests a single point of the other.
+[[nodiscard]] inline bool any_holds(const SubShapeQuery& parts, const PlacedShape& a,
+                                    const PlacedShape& b) noexcept {
+  return parts.holds(a, b) || parts.holds(b, a);
+}
+
+/// True if the surfaces overlap; `part` is then a part of b that does.
+[[nodiscard]] inline bool do_parts_overlap(const SubShapeQuery& parts, const Pairing& pair,
+                                           std::uint32_t& part) noexcept {
+  bool found = false;
+  auto look = [&](const SubShape& a, const SubShape& b) {
+    found =
+        !any_stands_behind(parts, a, b) && solve_parts(parts, a, b, ContactLevel::boolean).overlap;
+    if (found) part = b.part;
+    return !found;
+  };
+  if (parts.pairs(pair.a, pair.b, look)) return found;
+  auto look_about = [&](const SubShape& a, double) {
+    parts.met(pair.b, parts.box(a).standing(),
+              [&](const SubShape& b, double) { return look(a, b) ? 0.0 : -1.0; });
+    return found ? -1.0 : 0.0;
+  };
+  // The box of a compound b would visit all its children; a single part a needs no such box.
+  if (!pair.a.shape.is_composite()) {
+    look_about({pair.a.shape, pair.a.pose}, 0.0);
+  } else {
+    parts.met(pair.a, parts.box(pair.b).standing(), look_about);
+  }
+  return found;
+}
+
+/// True if the shapes overlap; `part` is then a part of b that does, or kWholeShape if one is
+/// inside the other, a solid.
+[[nodiscard]] inline bool do_overlap(const SubShapeQuery& parts, const PlacedShape& first,
+                                     const PlacedShape& second, std::uint32_t& part) noexcept {
+  const Pairing pair(first, second);
+  if (do_parts_overlap(parts, pair, part)) return true;
+  part = kWholeShape;
+  return any_holds(parts, pair.a, pair.b);
+}
+
+/// Finds the closest parts of two shapes, within a limit.
+class ClosestParts {
+ public:
+  explicit ClosestParts(const SubShapeQuery& parts) noexcept : parts_(parts) {}
+
+  /// Returns false if the distance exceeds the limit.
+  bool find(const PlacedShape& first, const PlacedShape& second, double limit,
+            SceneDistance& answer) noexcept {
+    const Pairing pair(first, second);
+    const bool held = any_holds(parts_, pair.a, pair.b);
+    return find_parts(pair, held ? mid::kInfinity : limit, answer) &&
+           (!held || is_within(limit, answer));
+  }
+  /// As above, for a part that belongs to no shape, such as a point.
+  bool find(SubShape first, PlacedShape second, double limit, SceneDistance& answer) noexcept {
+    double base[3] = {0.0, 0.0, 0.0};
+    if (second.shape.is_composite()) {
+      std::copy_n(first.pose.position, 3, base);
+      second.pose = relative(second.pose, base);
+      first.pose = relative(first.pose, base);
+    }
+    const bool held = parts_.holds(second, first.pose.position);
+    begin(base, held ? mid::kInfinity : limit, answer);
+    look_about(first, second);
+    return found_ && (!held || is_within(limit, answer));
+  }
+
+ private:
+  bool find_parts(const Pairing& pair, double limit, SceneDistance& answer) noexcept {
+    begin(pair.base, limit, answer);
+    std::fill_n(answer.normal, 3, 0.0);
+    auto look_at = [&](const SubShape& a, const SubShape& b, double) {
+      look(a, b);
+      return reach();
+    };
+    if (parts_.near_pairs(pair.a, pair.b, reach(), answer.normal, look_at)) return found_;
+    // The box of a compound b would visit all its children; a single part a needs no such box.
+    if (!pair.a.shape.is_composite()) {
+      look_about({pair.a.shape, pair.a.pose}, pair.b);
+    } else {
+      parts_.near(pair.a, parts_.box(pair.b), reach(),
+                  [&](const SubShape& a, double) { return look_about(a, pair.b); });
+    }
+    return found_;
+  }
+  /// For a shape inside a solid: turns the distance from the surface into a depth. Returns false if
+  /// it exceeds the limit.
+  [[nodiscard]] static bool is_within(double limit, SceneDistance& answer) noexcept {
+    if (answer.distance > 0.0) {
+      answer.distance = -answer.distance;
+      for (double& component : answer.normal) component = -component;
+    }
+    return answer.distance <= limit;
+  }
+  void begin(const double* base, double limit, SceneDistance& answer) noexcept {
+    found_ = false;
+    limit_ = limit;
+    answer_ = &answer;
+    base_ = base;
+  }
+  /// Boxes beyond this are skipped. Never negative, because overlapping boxes may have parts of any
+  /// depth.
+  [[nodiscard]] double reach() const noexcept { return std::max(limit_, 0.0); }
+  double look_about(const SubShape& a, const PlacedShape& second) noexcept {
+    parts_.near(second, parts_.box(a), reach(), [&](const SubShape& b, double) {
+      look(a, b);
+      return reach();
+    });
+    return reach();
+  }
+  void look(const SubShape& a, const SubShape& b) noexcept {
+    if (a.ball != nullptr && b.triangle != nullptr && is_farther(a, b, limit_)) return;
+    const PairAnswer pair = solve_parts(parts_, a, b, ContactLevel::distance);
+    if (!(pair.distance <= limit_) || any_stands_behind(parts_, a, b)) return;
+    SceneDistance& answer = *answer_;
+    if (found_ && pair.distance == limit_ &&
+        std::pair(answer.part, answer.part_a) <= std::pair(b.part, a.part)) {
+      return;
+    }
+    found_ = true;
+    limit_ = pair.distance;
+    answer.distance = pair.distance;
+    answer.error_bound = pair.error_bound;
+    answer.part_a = a.part;
+    answer.part = b.part;
+    for (int i = 0; i < 3; ++i) {
+      answer.normal[i] = pair.normal[i];
+      const double on_a = a.pose.position[i] + pair.point[i];
+      answer.point_a[i] = base_[i] + on_a;
+      answer.point_b[i] = base_[i] + (on_a + pair.distance * pair.normal[i]);
+    }
+  }
+
+  const SubShapeQuery& parts_;
+  double limit_ = 0.0;
+  bool found_ = false;
+  SceneDistance* answer_ = nullptr;
+  const double* base_ = nullptr;
+};
+
+}  // namespace winnow
