@@ -8,8 +8,8 @@
 
 #include "bench/common/errors.h"
 #include "bench/common/json.h"
-#include "bench/questions/questions.h"
 #include "bench/questions/hard_cases.h"
+#include "bench/questions/questions.h"
 #include "bench/report/compare.h"
 #include "bench/report/markdown.h"
 #include "bench/report/report.h"

@@ -1,8 +1,8 @@
 // Casts and regions at the boxes of a scene, ordinary and extreme, with their right results;
 // created once per process for all tests of queries.
 
-#include <winnow/core/eigen.h>
 #include "tests/queries/questions.h"
+#include <winnow/core/eigen.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
