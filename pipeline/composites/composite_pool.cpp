@@ -49,7 +49,7 @@ void take_out(Entry*& first, Entry* entry) noexcept {
                               std::span<const std::uint32_t>(corners.data(), corners.size()));
 }
 
-/// Box3 of a shape at a pose.
+/// The box of a shape at a pose.
 [[nodiscard]] Box3 bounds_of(const Composites& all, ShapeId id, const Mat& rotation,
                              const Vec& position) noexcept {
   if (!id.is_composite()) {

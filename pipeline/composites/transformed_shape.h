@@ -66,7 +66,7 @@ struct TransformedShape {
   [[nodiscard]] bool has_surfaces() const noexcept {
     return kind == Kind::compound && compound->has_surfaces();
   }
-  /// Box3 of the whole body, grown by `margin` in world units, in the frame of `other`.
+  /// The box of the whole body, grown by `margin` in world units, in the frame of `other`.
   [[nodiscard]] Box3 box_in(const TransformedShape& other, double margin) const noexcept;
   [[nodiscard]] PlacedPart part(std::uint32_t number) const noexcept;
   [[nodiscard]] Quaternion part_turn(std::uint32_t number) const noexcept;
@@ -107,7 +107,7 @@ struct TransformedShape {
   const SharedMesh* shared = nullptr;
   const HeightField* field = nullptr;
   const Compound* compound = nullptr;
-  /// Box3 of a composite shape in its own frame.
+  /// The box of a composite shape in its own frame.
   Box3 bounds;
 
  private:
@@ -175,7 +175,7 @@ struct PlacedMesh {
   double margin[3];
 };
 
-/// Box3 of a part, grown by `margin` in world units, in the frame of `other`.
+/// The box of a part, grown by `margin` in world units, in the frame of `other`.
 [[nodiscard]] Box3 box_of(const PlacedPart& part, const TransformedShape& other,
                           double margin) noexcept;
 
