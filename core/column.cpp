@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::size_t kLine = Column<std::byte>::kAlignment;
 
-/// Size of an allocation in bytes; the size of an element need not divide a line.
+/// Returns the bytes of `count` elements, rounded up to whole lines.
 std::size_t whole_lines(std::size_t count, std::size_t element) noexcept {
   return (count * element + kLine - 1) / kLine * kLine;
 }

@@ -28,7 +28,8 @@ inline constexpr std::uint64_t kMaxObjects = 0xFFFFFFFEULL;
 /// generation left, and the id continues with another tag. `std::hash` accepts keys.
 struct Key {
   ObjectId id = kNoObject;  ///< index of the object in its partition
-  /// Distinguishes it from earlier objects with this index, and from objects of other partitions.
+  /// Distinguishes the object from earlier objects with this index and from objects of other
+  /// partitions.
   std::uint32_t stamp = 0;
 
   /// True if both belong to the same object of the same partition.

@@ -30,9 +30,9 @@ struct Pair {
 /// The caller's array of pairs, reused from frame to frame. If it is passed to the same partition
 /// again, the query starts from the previous frame's pairs. If few objects moved, only their pairs
 /// are recomputed. If very few objects moved in two consecutive frames, the buffer also links each
-/// object to its pairs, which takes 16 bytes per pair and 4 per object, and a frame then visits no
-/// other pairs. Any other use (another partition, `clear`, `edit`) makes the next query a full one.
-/// The set of pairs is the same in all cases. Not thread-safe.
+/// object to its pairs, and a frame visits only the pairs of objects that moved. Links take 16
+/// bytes per pair and 4 per object. Any other use (another partition, `clear`, `edit`) makes the
+/// next query a full one. The set of pairs is the same in all cases. Not thread-safe.
 class WINNOW_API PairBuffer {
  public:
   /// Identifies the complete query that wrote the content; 0 is none.
@@ -112,7 +112,7 @@ class WINNOW_API PairBuffer {
 
   /// Moves all pairs for which `is_first(pair)` is true before all others, and returns their
   /// number. The next query can still start from these pairs. O(pairs), with one swap for each pair
-  /// for which it is false.
+  /// for which `is_first` is false.
   template <typename IsFirst>
   [[nodiscard]] std::size_t partition(IsFirst&& is_first) noexcept {
     state_ = LinkState::loose;

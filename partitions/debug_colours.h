@@ -18,7 +18,8 @@ inline constexpr Colour kCellColour{86, 180, 233, 255};     ///< a cell or strip
 inline constexpr Colour kContentsColour{0, 114, 178, 255};  ///< box around the contents of a cell
 inline constexpr Colour kAxisColour{240, 228, 66, 255};  ///< the axis that is swept or runs fastest
 
-/// By depth, nearest the root first. A million objects need four levels, so the steps are wide.
+/// Colours of nodes by depth, the root first. Trees are shallow (four levels for a million
+/// objects), so successive colours differ much.
 inline constexpr std::array<Colour, 8> kNodeColours{{{253, 231, 37, 255},
                                                      {94, 201, 98, 255},
                                                      {33, 145, 140, 255},

@@ -54,8 +54,8 @@ struct PartitionOptions {
   /// work is then spread over the refreshes before the rebuild is due; the same holds for a change
   /// of structure by `automatic()`. A build processes each row two to five times. 0: the partition
   /// chooses the number so that planning takes two fifths of the refreshes that the last order
-  /// lasted. The largest number: no planning, a build runs at once when it is due. The budget
-  /// counts rows, never time, so that results are the same on every machine.
+  /// lasted. The largest value of the type: no planning, a build runs at once when it is due. The
+  /// budget counts rows, never time, so that results are the same on every machine.
   std::size_t build_budget = 0;
 };
 
@@ -69,8 +69,9 @@ enum class Order : std::uint8_t {
 /// Options of a pair query.
 struct PairOptions {
   Order order = Order::fast;  ///< order of the written pairs
-  /// Updates the pairs that the buffer already holds from the objects that moved since, if that is
-  /// cheaper. False: finds all pairs again.
+  /// True: if it is cheaper, a query keeps the pairs that the buffer already holds, except the
+  /// pairs of objects that moved since; it finds only these again. False: a query finds all pairs
+  /// again.
   bool incremental = true;
   /// Called for every pair that the objects' filters let pass. An incremental query does not call
   /// it again for pairs of objects that did not move.
@@ -154,11 +155,12 @@ class WINNOW_API Partition final {
   /// Exchanges the structure; the next refresh builds the new one. `automatic()` starts its choice
   /// anew. `invalid_argument` for a kind without a structure.
   Status set_structure(StructureKind structure);
-  /// Returns the structure that `automatic()` has chosen; for any other structure, that structure.
+  /// Returns the structure that `automatic()` has chosen, and the reason. With any other structure,
+  /// returns the structure of the partition.
   [[nodiscard]] StructureChoice choice() const noexcept;
 
   /// True if `self_pairs` reports exactly the pairs whose given boxes overlap: the structure tests
-  /// bounds, and they are boxes without a margin.
+  /// volumes, and the volumes are boxes without a margin.
   [[nodiscard]] bool is_exact() const noexcept;
   /// Returns the bounding volume of the options.
   [[nodiscard]] Volume volume() const noexcept;
@@ -172,9 +174,9 @@ class WINNOW_API Partition final {
   /// Adds one object.
   Status insert(const Aabb& box, ClientData data, Key& key);
   /// Gives each object a new box. If a key occurs twice, its last box counts. `size_mismatch`,
-  /// `invalid_key` and `invalid_bounds` change nothing. With a margin, an object counts as not
-  /// moved and its stored box stays, if the new box lies within the stored one and the stored one
-  /// is at most four margins longer on each axis (two per side).
+  /// `invalid_key` and `invalid_bounds` change nothing. With a margin, the stored box stays and the
+  /// object does not count as moved if the stored box contains the new box and is at most four
+  /// margins longer on each axis (two per side).
   Status update(std::span<const Key> keys, const BoxView& boxes);
   /// Gives one object a new box.
   Status update(Key key, const Aabb& box);
@@ -185,9 +187,9 @@ class WINNOW_API Partition final {
 
   /// Adds one object per sphere. `unsupported_volume` unless `volume()` is Volume::sphere. A
   /// partition of spheres or k-DOPs that is given boxes stores the tightest volume around each; for
-  /// spheres the boxes must be finite. A pair of spheres may be reported although they miss each
-  /// other, if the gap is below 1e-6 of their distance, or if one is smaller than about 1e-18 or
-  /// larger than about 1e18.
+  /// spheres the boxes must be finite. Two spheres that do not touch may be reported as a pair if
+  /// their gap is below 1e-6 of their distance. They may also be reported if one of them is smaller
+  /// than about 1e-18 or larger than about 1e18.
   Status insert(std::span<const Sphere> spheres, std::span<const ClientData> data,
                 std::span<Key> keys);
   /// Gives each object a new sphere. `invalid_bounds` for values that are not finite or a negative
@@ -218,13 +220,13 @@ class WINNOW_API Partition final {
   /// `release_memory`. `too_many_objects` and `out_of_memory` change nothing. O(objects) if pages
   /// are touched, else O(size()).
   Status reserve(std::size_t objects, Pages pages = Pages::untouched);
-  /// Reserves memory in a buffer for up to `pairs` pairs of `self_pairs`, valid for as many objects
-  /// as `reserve` was called for. With several threads it takes twice the memory, because threads
-  /// write to pages of their own first. `out_of_memory` changes nothing.
+  /// Reserves memory in a buffer for up to `pairs` pairs of `self_pairs`, for the number of objects
+  /// that `reserve` was called with. With several threads it takes twice the memory, because
+  /// threads write to pages of their own first. `out_of_memory` changes nothing.
   Status reserve_pairs(PairBuffer& out, std::size_t pairs, Pages pages = Pages::untouched) const;
-  /// Reserves memory for the events of up to `pairs` pairs, valid for as many objects as `reserve`
-  /// was called for. With `alone`, for `self_pairs(events)`, also reserves memory for the pairs
-  /// themselves. `out_of_memory` leaves the reported events unchanged.
+  /// Reserves memory for the events of up to `pairs` pairs, for the number of objects that
+  /// `reserve` was called with. With `alone`, for `self_pairs(events)`, also reserves memory for
+  /// the pairs themselves. `out_of_memory` leaves the reported events unchanged.
   Status reserve_events(PairEvents& out, std::size_t pairs, bool alone = false,
                         Pages pages = Pages::untouched) const;
 

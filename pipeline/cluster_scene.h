@@ -42,12 +42,12 @@ struct ClusterSceneOptions {
 
 /// Bodies with shapes and poses distributed over any number of ranks, and the contacts between
 /// them. The contacts equal, bit for bit, the contacts of one Scene to which the same bodies were
-/// added in the order of their names. Each is on one rank. This holds for any number of ranks, any
-/// partitioning of space, and while bodies migrate.
+/// added in the order of their names. Each contact is on one rank. This holds for any number of
+/// ranks, any partitioning of space, and while bodies migrate.
 ///
 ///     winnow::ClusterScene cluster(transport, shapes);
-///     cluster.replicate(ground_names, ground);   // on every process the same
-///     cluster.add(batches, answers);             // on each rank what it has
+///     cluster.replicate(ground_names, ground);   // the same on every process
+///     cluster.add(batches, answers);             // one batch for each hosted rank
 ///     cluster.collide(winnow::ContactLevel::manifold);
 ///     const winnow::Contacts& contacts = cluster.contacts(rank);  // client data are names
 ///

@@ -113,9 +113,9 @@ struct RayVisitor {
   /// Called for a triangle that the ray certainly hits.
   double (*meet)(void* context, std::size_t ray, std::uint32_t part, const ShapeHit& hit,
                  double limit) = nullptr;
-  /// Called for a primitive that the ray may hit. The primitive is given relative to the position
-  /// of the composite shape's pose, for a ray whose origin is relative to that position too,
-  /// rounded to double.
+  /// Called for a primitive that the ray may hit. The primitive is relative to the position of
+  /// the composite shape's pose. Test it with a ray whose origin is relative to that position too:
+  /// the difference of the two, rounded to double.
   double (*look)(void* context, std::size_t ray, const Primitive& primitive,
                  double limit) = nullptr;
   void* context = nullptr;  ///< passed to both

@@ -70,7 +70,7 @@ std::string digits_of(const ClusterDigest& digest) {
   return to_hex(digest.high) + to_hex(digest.low);
 }
 
-/// The columns that `replay` writes, for a cluster, and the traffic and balance of the ranks.
+/// Returns the members that `replay` writes for a run, and the traffic and balance of the ranks.
 Json cluster_json(const ClusterRun& run, const std::string& scene, std::size_t objects, int threads,
                   bool is_virtual, const std::string& level) {
   using Frame = const ClusterFrame&;

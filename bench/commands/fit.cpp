@@ -70,7 +70,8 @@ void print_costs(const FittedCosts& fitted) {
   }
 }
 
-/// Median and worst ratio of the time of the chosen partition to the best, by number of objects.
+/// Ratios of the time of the chosen partition to the time of the best one: median and maximum, by
+/// number of objects.
 class Regrets {
  public:
   void add(std::size_t objects, double regret, const std::string& where) {

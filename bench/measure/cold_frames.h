@@ -24,8 +24,8 @@ struct ColdFrames {
   std::vector<double> build_ms{};
   std::vector<double> pairs_ms{};
   std::vector<double> total_ms{};
-  // Not for touched pages: a frame with all memory reserved; a frame with all memory reserved and
-  // touched, and the time of that reservation.
+  // Frames with reserved memory; empty for `kTouched`. All memory was reserved before the frame
+  // (reserved_ms), or reserved and written to (ready_ms), which took reserve_ms.
   std::vector<double> reserved_ms{};
   std::vector<double> ready_ms{};
   std::vector<double> reserve_ms{};
@@ -40,8 +40,8 @@ struct ColdRace {
 
 /// Times first frames of new partitions, `rounds` per partition and kind of memory: all boxes are
 /// inserted, the structure is built and all pairs are found. Reserved frames have room for these
-/// boxes and pairs. All take turns, together with the yardstick, which always starts anew, if
-/// `yardstick` is set. Throws std::runtime_error if the pairs differ.
+/// boxes and pairs. The partitions take turns. If `yardstick` is set, the yardstick takes part, and
+/// also repeats its first frame. Throws std::runtime_error if the pairs differ.
 [[nodiscard]] ColdRace race_cold_frames(std::span<const Aabb> boxes,
                                         const std::vector<std::string>& partitions, int threads,
                                         std::size_t rounds = 7, bool yardstick = true);

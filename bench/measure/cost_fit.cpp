@@ -17,8 +17,8 @@
 namespace winnow::bench {
 namespace {
 
-/// A scene in which only a share of the objects moves per frame: in each frame the next ones take
-/// their current box.
+/// A scene in which only a share of the objects moves per frame: in each frame the next few objects
+/// get their boxes of the given scene, and all other boxes stay.
 class SomeMoving final : public FrameSource {
  public:
   SomeMoving(std::unique_ptr<FrameSource> scene, double share)

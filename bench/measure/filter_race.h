@@ -40,8 +40,8 @@ struct FilterRow {
 using MakeFrames = std::function<std::unique_ptr<FrameSource>()>;
 
 /// Runs all settings in all queries, interleaved with the same query without filters, on the same
-/// frames. The results of the last round are compared with the pairs of `BoundsNSquared` without
-/// filters that `filters_allow` allows.
+/// frames. The results of the last round are compared with a reference: `BoundsNSquared` finds all
+/// pairs without filters, and `filters_allow` selects from them.
 [[nodiscard]] std::vector<FilterRow> race_filters(const MakeFrames& frames,
                                                   std::string_view partition, std::size_t rounds);
 

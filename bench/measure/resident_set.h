@@ -9,8 +9,8 @@ namespace winnow::bench {
 /// Slows allocations down, so it must not be used in a process that times something afterwards.
 void keep_resident_set_exact();
 
-/// Returns freed memory to the system, then the bytes of the process's resident anonymous memory,
-/// without mapped files. 0 if the system does not provide the number.
+/// Gives freed memory back to the system, and returns the bytes of anonymous memory, without mapped
+/// files, that are then resident; 0 if the system does not provide the number.
 [[nodiscard]] std::size_t resident_bytes();
 
 }  // namespace winnow::bench

@@ -19,7 +19,7 @@ struct SweepTiming {
   std::vector<double> collide_ms{};  ///< all contacts of the bodies at their poses
   std::vector<double> sweep_ms{};    ///< sweep of the fast bodies against all others and each other
   std::vector<double> all_ms{};      ///< the same sweep, with all other bodies moving a little
-  // Of the sweep of the fast bodies in the last frame.
+  // Counts of the sweep of the fast bodies in the last frame.
   std::size_t pairs = 0;
   std::size_t impacts = 0;
 };

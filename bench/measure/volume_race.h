@@ -24,7 +24,7 @@ struct VolumeRow {
   /// Sum over the overlapping pairs of all frames, see PairSummary.
   std::uint64_t fingerprint = 0;
   // Milliseconds per frame.
-  std::vector<double> make{};    ///< makes the volumes from the oriented boxes
+  std::vector<double> make{};    ///< making the volumes from the oriented boxes
   std::vector<double> broad{};   ///< update and pairs
   std::vector<double> narrow{};  ///< exact test of the reported pairs
 

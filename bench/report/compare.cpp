@@ -25,7 +25,7 @@ CompareUnit unit_kind(const std::string& unit) {
                                                                      : CompareUnit::figure;
 }
 
-/// A value as a cost, of which less is better. Values of which more is better are inverted.
+/// A value as a cost: less is better. Values for which more is better are inverted.
 struct Cost {
   double best = 0.0;
   double median = 0.0;

@@ -122,8 +122,8 @@ void measure_throughput(Results& results, const ReportOptions& options, const Na
   }
 }
 
-/// Measures other libraries with the most threads, beside a partition whose pairs theirs must
-/// equal.
+/// Measures other libraries with the largest number of threads, together with a partition that must
+/// find the same pairs.
 void measure_peers(Results& results, const ReportOptions& options, const NamedScene& scene,
                    std::size_t objects) {
   add_frame_race(results, scene,

@@ -231,7 +231,7 @@ Measurement add_frame_race(Results& results, const NamedScene& scene, MeasureOpt
             "bench/run throughput" + command(run, run.engine));
   }
   for (const Run& run : measured.peers()) {
-    // A library is raced beside a partition, whose pairs it must equal.
+    // A library is raced together with a partition that must find the same pairs.
     const std::string beside =
         measured.partition_runs > 0 ? measured.runs.front().engine : std::string("LinearBvh");
     add_run(results, scene, measured, run, distance_ns,

@@ -90,10 +90,10 @@ class Results {
 /// Returns a row's value, the median of a spread; NaN if there is none.
 [[nodiscard]] double value_of(const Json& row, const std::string& name);
 
-/// Returns the `from` of a row whose value `name` is computed from value `field` of other rows. The
-/// rules: "ratio" divides the first by the second; "exponent" fits value = a * objects^b to all by
-/// least squares of logarithms and gives b; "sum" adds them; "share" divides the first by the sum
-/// of all.
+/// Returns the member `from` of a row: it states that the value `name` of the row was computed by
+/// `rule` from the value `field` of the rows with the ids `rows`. Rules: "ratio" divides the first
+/// value by the second; "exponent" fits value = a * objects^b to all by least squares of logarithms
+/// and gives b; "sum" adds them; "share" divides the first by the sum of all.
 [[nodiscard]] Json derived(const std::string& name, const std::string& rule,
                            const std::string& field, const std::vector<std::string>& rows);
 

@@ -35,7 +35,7 @@ Eigen::Vector3d direction(Random& random) {
   }
 }
 
-/// Adds a hull of points on a sphere, all of which are vertices.
+/// Adds a hull of points on a sphere; each point is a vertex.
 ShapeId add_hull(ShapePool& pool, Random& random, std::size_t vertices, double radius) {
   std::vector<Eigen::Vector3d> points;
   for (std::size_t i = 0; i < vertices; ++i) points.push_back(radius * direction(random));

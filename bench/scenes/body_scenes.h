@@ -42,8 +42,9 @@ void apply_pose_noise(const BodySet& set, const PoseNoise& by, std::uint64_t fra
                       std::vector<Pose>& poses);
 
 /// Returns a torus of 20,000 triangles.
-/// A pose of a second torus, and the number of pairs of triangles that then intersect.
 [[nodiscard]] Triangles make_race_torus();
+
+/// A pose of a second torus, and the number of pairs of triangles that then intersect.
 struct TorusPose {
   std::size_t about;  ///< approximate number of pairs of triangles
   Pose pose;

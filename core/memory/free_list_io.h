@@ -35,8 +35,9 @@ class SlotReader {
     }
     return true;
   }
-  /// Makes all places of a table free, in such an order that entries added next get their saved
-  /// places, the lowest first, and the free places remain. Returns false if memory is refused.
+  /// Makes all places of a table free, and orders the free list for reading the entries: they are
+  /// added in ascending order of their saved places, each gets its saved place, and the saved free
+  /// list remains. Returns false if memory is refused.
   template <typename Entry>
   [[nodiscard]] bool open(ByteReader& in, Column<Entry>& entries, Column<std::uint32_t>& free,
                           const Entry& nothing) noexcept {

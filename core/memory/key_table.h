@@ -95,8 +95,8 @@ class KeyTable {
   [[nodiscard]] std::span<const ClientData> all_client_data() const noexcept {
     return {data_.data(), data_.size()};
   }
-  /// The stamp before the first one of a new slot: even, and above all stamps of its tag that slots
-  /// had before the latest restore.
+  /// Returns the stamp that precedes the first stamp of a new slot. It is even, and higher than
+  /// every stamp with the same tag that a slot had before the latest restore.
   [[nodiscard]] std::uint32_t stamp() const noexcept { return stamp_; }
   /// The next free slot to be taken, and the free slot after `id`; kNoObject if there is none.
   [[nodiscard]] ObjectId first_free() const noexcept { return first_free_; }
@@ -130,10 +130,10 @@ class KeyTable {
   [[nodiscard]] bool are_valid(std::span<const Key> keys) const noexcept;
   [[nodiscard]] bool are_valid_ascending(std::span<const Key> keys) const noexcept;
 
-  /// Returns a stamp that slots may begin with after a restore, see `stamp`.
+  /// Returns a stamp that slots may begin with after a restore; see `stamp()`.
   [[nodiscard]] std::uint32_t stamp_beyond(const Saved& saved) noexcept;
-  /// Returns the generations from `stamp_` to `stamp`; more than `most_uses()` if it is not one of
-  /// them.
+  /// Returns by how many generations `stamp` comes after `stamp_`; more than `most_uses()` if it
+  /// has another tag or comes before.
   [[nodiscard]] std::uint32_t uses_before(std::uint32_t stamp) const noexcept {
     return stamp - stamp_;
   }

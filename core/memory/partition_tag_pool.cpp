@@ -11,8 +11,8 @@ constexpr std::uint32_t kWords = (PartitionTagPool::kMaxTags + 1) / kWordBits;
 
 // One bit per tag, set while the tag is taken.
 std::atomic<std::uint64_t> g_taken[kWords];
-// The tag that the table of a tag took before, 0 if none. Only the owner of a tag reads and writes
-// its element.
+// A linked list of the tags of each table: element t is the tag that precedes tag t, or 0. Only the
+// table that has tag t reads and writes element t.
 std::uint32_t g_earlier[PartitionTagPool::kMaxTags + 1];
 // Start of the next search, so that freed tags are reused last.
 std::atomic<std::uint32_t> g_next{1};

@@ -6,8 +6,8 @@
 namespace winnow {
 
 /// Tags that distinguish the keys of one table from the keys of all others in the process. A freed
-/// tag is reused as late as possible. If more than kMaxTags tags are taken at a time, some tables
-/// share one. Thread-safe; O(1) unless nearly all tags are taken.
+/// tag is reused as late as possible. If tables need more than kMaxTags tags at the same time, some
+/// tables share a tag. Thread-safe; O(1) unless nearly all tags are taken.
 class PartitionTagPool {
  public:
   static constexpr unsigned kBits = 17;

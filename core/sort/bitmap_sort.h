@@ -10,8 +10,8 @@
 
 namespace winnow {
 
-/// Returns the number of words of a bitmap for values below `limit` in which 32 bits can be read
-/// from any value on.
+/// Returns the number of words of a bitmap for values below `limit`, with padding: 32 bits can be
+/// read from the bit of any value on.
 [[nodiscard]] constexpr std::size_t bitmap_words(std::size_t limit) noexcept {
   return limit / 64 + 2;
 }

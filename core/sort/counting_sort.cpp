@@ -84,7 +84,7 @@ void CountingSort::place_few(std::uint32_t* order) noexcept {
   });
 }
 
-// Returns buckets for an owner such that all owners have about equally many rows.
+// Returns the range of buckets of an owner. All owners get about equally many rows.
 CountingSort::Buckets CountingSort::equal_rows(std::size_t owner) const noexcept {
   const auto first_of = [&](std::size_t i) -> std::size_t {
     if (i == threads_) return buckets_;

@@ -8,12 +8,12 @@
 
 namespace winnow {
 
-/// Upper bound of the ranks that `value_of_rank` accepts.
+/// `value_of_rank` accepts ranks below this.
 inline constexpr std::size_t kMaxRank = 64;
 
-/// Returns the value of rank `at`, below kMaxRank, in the order of `before`; there must be more
-/// than `at` values. Near an end, most values take one comparison, which branch prediction guesses
-/// right.
+/// Returns the value that index `at` would hold if the values were sorted by `before`. Requires
+/// `at` < kMaxRank and more than `at` values. If `at` is small, most values take one comparison,
+/// and its branch is predictable.
 template <typename Before>
 [[nodiscard]] float value_of_rank(std::span<const float> values, std::size_t at,
                                   Before before) noexcept {
@@ -22,8 +22,8 @@ template <typename Before>
   return end[at];
 }
 
-/// Range of most of some values: from the 2 % to the 98 % quantile, extended by half its length on
-/// either side.
+/// A range that contains most of a set of values: from their 2 % to their 98 % quantile, extended
+/// by half of its length on either side.
 struct InterquantileRange {
   double low;
   double high;

@@ -8,7 +8,7 @@ namespace winnow {
 namespace {
 
 // Long digits need fewer passes; with short digits the ends of all buckets stay in the cache.
-// Threads that share a pass synchronise after it, and so prefer fewer passes.
+// Threads synchronise after each pass, so a parallel sort uses long digits.
 constexpr unsigned kMaxDigitBits = 11;
 constexpr unsigned kShortDigitBits = 9;
 constexpr std::size_t kMaxDigits = std::size_t{1} << kMaxDigitBits;

@@ -1,6 +1,6 @@
-// The automatic choice of a structure (AutoPartition). PartitionState calls choose() and
-// refreshed() in every refresh; the costs come from predicted_costs.h, the sample of the scene from
-// sample_scene.h.
+// The automatic choice of a structure: class AutomaticChoice, and the structure `automatic()`,
+// which reports name AutoPartition. PartitionState calls choose() and refreshed() in every refresh;
+// the costs come from predicted_costs.h, the sample of the scene from sample_scene.h.
 
 #include "partitions/choice/chooser.h"
 #include "partitions/choice/predicted_costs.h"
@@ -33,27 +33,29 @@ constexpr std::size_t kFew = 192;
 constexpr std::size_t kFewFrames = 8;
 // Refreshes without a choice after a memory allocation failed.
 constexpr std::size_t kRefreshesAfterFailure = 64;
-// Up to this many objects brute force cannot lose by more than a prediction costs.
+// With at most this many objects, brute force is chosen: any other structure would save less time
+// than its prediction takes.
 constexpr std::size_t kTooFew = 32;
-// Limit of the count of times a structure was left. At this count its price is out of reach.
+// Limit of the number of times that a structure is counted as left. Its price doubles each time, so
+// savings never reach it at this limit.
 constexpr std::uint8_t kMaxOften = 32;
-// The first change to a structure that is clearly cheaper is made once it would have saved 1 /
-// 2^kTrust of its price, because most scenes go on like their last frames for at least eight times
-// as long. Each further change needs twice the share.
+// The first change to a structure that is clearly cheaper is made when the structure would have
+// saved the share 1 / 2^kTrust of its price: most scenes stay as they are for at least eight times
+// as long as they already did. Each further change needs twice the share.
 constexpr std::uint64_t kTrust = 3;
 constexpr double kClearly = 0.75;
-// The shares of refreshes that build, for trees and for cells, included in the constants of
-// StructureCosts. Then the weights of exponential moving averages: kRecent for the kind of
-// structure in use (about the last 16 refreshes), kForgotten for the decay of the other kind,
-// kNewest for new objects.
+// kUsualBuilds: shares of refreshes with a build, for trees and for cells, that are included in the
+// constants of StructureCosts. The others are weights of exponential moving averages: kRecent for
+// the kind of structure in use (about the last 16 refreshes), kForgotten for the decay of the other
+// kind, kNewest for new objects.
 constexpr std::array<double, 2> kUsualBuilds{0.1, 0.25};
 constexpr double kRecent = 1.0 / 16.0;
 constexpr double kForgotten = 1.0 / 128.0;
 constexpr double kNewest = 1.0 / 4.0;
 // Nanoseconds to allocate the first memory of another structure.
 constexpr double kExchange = 3'000.0;
-// kUsualWear is the share of a frame's cost by which wear is usual; kTest is the nanoseconds of a
-// test of 16 volumes.
+// kUsualWear: wear up to this share of a frame's cost is included in the constants of
+// StructureCosts. kTest: nanoseconds of a test of 16 volumes.
 constexpr double kUsualWear = 0.15;
 constexpr double kTest = 8.0;
 
@@ -81,9 +83,9 @@ bool differ_much(std::size_t a, std::size_t b) noexcept {
 /// save twice as much for each time it was left, so that a scene that alternates between two states
 /// does not alternate between two structures. If cells or trees were seen to be built often,
 /// because objects are fast or many are inserted, the cost of these builds is added. If an update
-/// scatters all objects, every structure has to be built and a change is free. All decisions follow
-/// counts and samples, never time: they are the same on every machine, instruction set and number
-/// of threads.
+/// scatters all objects, every structure has to be built and a change is free. All decisions depend
+/// on counts and samples, never on time: they are the same on every machine, instruction set and
+/// number of threads.
 ///
 /// The choice changes only in refreshes that follow a change of the rows. A scene that is built
 /// once and then only queried keeps its first choice. Partitions of volumes other than boxes keep
@@ -131,8 +133,8 @@ class AutomaticChoice final : public Chooser {
   void end(std::pmr::memory_resource* memory) noexcept override { delete_in(memory, this); }
 
  private:
-  /// True if few objects moved, or there are few, and costs were predicted recently: a prediction
-  /// would cost more than the frame.
+  /// True if costs were predicted recently, and few objects moved or there are few objects: a
+  /// prediction would cost more than the frame.
   [[nodiscard]] bool is_quiet(const Rows& rows) const noexcept {
     if (!chosen_ || rows.size() != objects_before_) return false;
     return (frames_ < kQuietFrames && kQuiet * changed_ < rows.size()) ||
@@ -166,13 +168,13 @@ class AutomaticChoice final : public Chooser {
   std::size_t held_ = 0;  // refreshes with the current structure, up to a limit
   std::string_view reason_ = "nothing to choose by yet";
   std::uint64_t changes_ = 0;
-  std::size_t objects_seen_ = 0;       // at the last sample
-  std::size_t unseen_ = 0;             // changes since the last sample
-  std::size_t pairs_seen_ = 0;         // at the last sample
-  std::size_t objects_before_ = 0;     // at the last prediction
-  std::size_t frames_ = 0;             // refreshes since then, including this one
-  std::size_t refreshes_to_wait_ = 0;  // refreshes without a choice that are left after a failed
-                                       // allocation
+  std::size_t objects_seen_ = 0;    // at the last sample
+  std::size_t unseen_ = 0;          // changes since the last sample
+  std::size_t pairs_seen_ = 0;      // at the last sample
+  std::size_t objects_before_ = 0;  // at the last prediction
+  std::size_t frames_ = 0;          // refreshes since then, including this one
+  // Remaining refreshes without a choice after a failed allocation.
+  std::size_t refreshes_to_wait_ = 0;
   bool chosen_ = false;
   bool build_due_ = false;  // in the last refresh, for every structure
 };
@@ -288,7 +290,7 @@ double AutomaticChoice::cost_of(const PredictedCosts& costs, std::size_t candida
   const std::size_t kind = has_cells(candidates()[candidate]) ? 1 : 0;
   const double fresh = costs.of(candidate);
   const double worn = worn_[kind] * static_cast<double>(features_.objects);
-  // Motion that makes trees be built also makes objects leave their cells.
+  // Motion after which trees need a build also moves objects out of their cells.
   const double builds = std::max({build_share_[kind], build_share_[0], build_share_of_new_});
   const double coherent = fresh +
                           std::max(0.0, builds - kUsualBuilds[kind]) * costs.build_of(candidate) +

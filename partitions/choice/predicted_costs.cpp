@@ -10,7 +10,7 @@
 namespace winnow {
 namespace {
 
-constexpr double kNearest = 4.0;  // cost of a nearest query in rays or boxes
+constexpr double kNearest = 4.0;  // cost of a nearest query, relative to a ray or a region
 
 struct Candidates {
   std::array<StructureKind, kMaxCandidates> kinds;

@@ -33,12 +33,12 @@ struct CostTerm {
 inline constexpr std::size_t kFrameTerms = 9;
 inline constexpr std::size_t kBuildTerms = 2;
 
-/// The terms of a frame's cost without queries other than for pairs (see PredictedCosts). `pairs`
-/// is the number of pairs of the scene.
+/// Returns the terms of a frame's cost without casts, regions and nearest queries (see
+/// PredictedCosts). `pairs` is the number of pairs of the scene.
 [[nodiscard]] std::array<CostTerm, kFrameTerms> frame_terms(const SceneFeatures& scene,
                                                             const FrameWork& frame,
                                                             double pairs) noexcept;
-/// The terms of the cost of a build.
+/// Returns the terms of the cost of a build.
 [[nodiscard]] std::array<CostTerm, kBuildTerms> build_terms(const SceneFeatures& scene) noexcept;
 /// Returns the sum of constant times factor, in nanoseconds.
 [[nodiscard]] double sum_of(std::span<const CostTerm> terms, const StructureCosts& costs) noexcept;
@@ -51,13 +51,14 @@ inline constexpr std::size_t kBuildTerms = 2;
 ///
 /// - a constant (`frame`), and for each object that moved the update of its row and of its place in
 ///   the structure (`keep`);
-/// - for all pairs after much has moved: one query per object (`object`, and `level` for each
-///   doubling of the number of objects, for depth and caches), tests against more objects the more
-///   they crowd together (`crowd`), and the output of each pair (`pair`); brute force tests all
-///   (`square`);
-/// - for all pairs after little has moved: one query per object that moved (`moved`, `level`,
-///   `square`), the update of its share of the pairs (`pair`), and a read of the flags of the
-///   others (`rest`);
+/// - for a query for all pairs after many objects moved: one query per object (`object`, and
+/// `level`
+///   for each doubling of the number of objects, because of depth and caches), additional tests if
+///   objects crowd together (`crowd`), and the output of each pair (`pair`); brute force tests all
+///   pairs (`square`);
+/// - for a query for all pairs after few objects moved: one query per object that moved (`moved`,
+///   `level`, `square`), the update of its share of the pairs (`pair`), and a read of the flags of
+///   the other objects (`rest`);
 /// - for every other query (a nearest query counts four times): `query`, `query_level` for each
 ///   doubling of the number of objects, and without a tree `scan` per object. A tree over the rows
 ///   of cells and strips is refitted first (`rows`, per object that moved).
@@ -67,14 +68,14 @@ inline constexpr std::size_t kBuildTerms = 2;
 /// replaces `keep` and the build.
 ///
 /// The constants were fitted to times of one thread with AVX-512 on the built-in scenes, with 40 to
-/// 40,000 objects of which all or 5 % move, midway between the median and the mean frame, so that
-/// builds count but do not dominate. The fit first minimizes relative errors without negative
-/// constants, then the cost of the choices that follow from them (`winnow fit` prints the constants
-/// and their quality). Constants of other queries were fitted to single rays, boxes and nearest
-/// queries on the same scenes, and `anew` to teleporting scenes of 1,000 to 100,000 objects. As a
-/// result brute force is the choice for few objects, LinearBvh for more, and StaticBvh if there are
-/// also many queries. The spread of sizes is not a feature, because it adds nothing to the number
-/// of pairs.
+/// 40,000 objects of which all or 5 % move. The time of a scene is midway between its median and
+/// its mean frame, so that builds count but do not dominate. The fit first minimizes relative
+/// errors without negative constants, then the cost of the choices that follow from them (`winnow
+/// fit` prints the constants and their quality). Constants of other queries were fitted to single
+/// rays, boxes and nearest queries on the same scenes, and `anew` to teleporting scenes of 1,000 to
+/// 100,000 objects. As a result brute force is the choice for few objects, LinearBvh for more, and
+/// StaticBvh if there are also many queries. The spread of sizes is not a feature, because it adds
+/// nothing to the number of pairs.
 class PredictedCosts {
  public:
   using List = std::array<double, kMaxCandidates>;
@@ -84,7 +85,7 @@ class PredictedCosts {
 
   /// Cost of one frame.
   [[nodiscard]] double of(std::size_t candidate) const noexcept { return total_[candidate]; }
-  /// The part of of() that is spent on queries other than for pairs.
+  /// Returns the part of of() that casts, regions and nearest queries cost.
   [[nodiscard]] double queries_of(std::size_t candidate) const noexcept {
     return queries_[candidate];
   }

@@ -12,10 +12,10 @@
 
 namespace winnow {
 
-/// Plans the next order of the rows, as the structure and the tree beside it need them. The stages
-/// may be spread over refreshes, and objects may move, be inserted or removed between stages. A
-/// plan that is out of date is harmless: the caller that reorders the rows then searches for rows
-/// that no longer fit.
+/// Plans the next order of the rows: the order that the structure and the tree beside it need. The
+/// stages may be spread over refreshes, and objects may move, be inserted or removed between
+/// stages. A plan that is out of date is harmless: the caller that reorders the rows then searches
+/// for rows that no longer fit.
 class OrderPlan {
  public:
   explicit OrderPlan(std::pmr::memory_resource* memory) noexcept

@@ -19,10 +19,11 @@ constexpr float kWide = 3.0F;
 constexpr float kFar = 4.0F;
 // Searching a block costs this many tests for each of its rows.
 constexpr std::uint64_t kSearchCost = 16;
-// If fewer than one object in this many changed, the count of tests detects wear soon enough.
+// There is no search if fewer than one object in this many changed: the count of tests detects wear
+// soon enough.
 constexpr std::size_t kFewChanges = 256;
-// Also if few blocks became wide: the higher the price of a build, the more wide blocks are
-// accepted.
+// There is no search either if few blocks became wide: the limit is the price of a build (in tests)
+// divided by this number.
 constexpr std::size_t kWearOfPrice = 512;
 
 /// The bounded objects of one block of rows.
@@ -84,7 +85,7 @@ Status SpatialIndex::find_outliers() {
   known_wide_ = std::min(known_wide_, wide);
   const std::uint64_t price = structure_->build_price() * ordered_blocks();
   if (wide <= known_wide_ + price / kWearOfPrice) return Status::ok;
-  // If the search costs more than a build, the rows are built.
+  // If the search would cost more than a build, build instead.
   return wide * kSearchCost > price ? build() : move_outliers_to_tail();
 }
 

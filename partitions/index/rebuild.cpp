@@ -20,8 +20,8 @@ namespace {
 constexpr std::size_t kWholeBuild = std::numeric_limits<std::size_t>::max();
 // With fewer rows a build is short enough to be done at once.
 constexpr std::size_t kWorthPlanning = 1024;
-// A plan starts this many refreshes early: one refresh takes the order, and the forecast is late if
-// objects accelerate.
+// A plan starts this many refreshes early: one refresh applies the order, and the forecast is late
+// if objects accelerate.
 constexpr std::size_t kSpareRefreshes = 2;
 // A plan pauses while refreshes have kQuietFactor times fewer changes than the refresh that started
 // it, for at most kMaxQuietRefreshes refreshes in a row: if the motion has ended for good, the plan
@@ -76,7 +76,7 @@ bool SpatialIndex::needs_grouping() const noexcept {
   return rows_.pool().rows() - regions.sorted + changed > tail_limit();
 }
 
-// Starts a plan or continues it, runs it to the end and takes its order.
+// Starts a plan or continues it, runs it to the end and applies it.
 Status SpatialIndex::build() {
   const StageScope stage(WorkStage::build);
   if (structure_->is_flat()) return build_flat();
@@ -190,7 +190,7 @@ bool SpatialIndex::plans_ahead() const noexcept {
 }
 
 // Returns the number of rows that a refresh plans. The longer orders last, the more refreshes share
-// a plan; they are limited so that the order is not out of date when it is taken.
+// a plan; they are limited so that the order is not out of date when it is applied.
 std::size_t SpatialIndex::planning_work(const Structure& structure) const noexcept {
   if (build_budget_ != 0) return build_budget_;
   const std::size_t life = plan_.underway() ? refreshes_before_plan_ : departures_.refreshes();
@@ -228,7 +228,7 @@ bool SpatialIndex::build_is_near() const noexcept {
   const std::size_t whole = structure_->plan_passes() * rows_.pool().rows();
   const std::size_t ahead = 1 + (whole - 1) / planning_work(*structure_) + kSpareRefreshes;
   // If builds are that frequent, planning saves nothing: each order would be out of date when it is
-  // taken.
+  // applied.
   const bool at_once = planning_work(*structure_) >= whole;
   if (departures_.refreshes() <= ahead || (at_once && build_budget_ == 0)) return false;
   const std::uint64_t grown = tail_growth_.in(ahead);

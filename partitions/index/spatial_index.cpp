@@ -13,8 +13,7 @@
 namespace winnow {
 namespace {
 
-// After a plan whose order was out of date when it was taken, this many builds are not planned
-// ahead.
+// After a plan that was out of date when it was applied, this many builds are not planned ahead.
 constexpr std::size_t kBuildsAfterMistake = 4;
 
 }  // namespace
@@ -111,7 +110,8 @@ bool SpatialIndex::is_scattered() const noexcept {
   constexpr float kScattered = 2.0F;
   constexpr float kScatterOfPrice = 0.1F;  // a lower limit if a build is cheap
   const float price = static_cast<float>(structure_->build_price());
-  // A query tests nearly all of so few blocks, whatever the order of their rows.
+  // A query of a tree with at most this many blocks tests nearly all of them in any order of the
+  // rows.
   constexpr std::size_t kFewBlocks = 12;
   if (tree_.blocks() <= kFewBlocks) return false;
   // Cells and strips detect objects that leave them; the tree beside them holds mixed rows.
@@ -176,7 +176,7 @@ bool SpatialIndex::sort_tail() noexcept {
   return true;
 }
 
-// `room` has space for as many rows.
+// `room` has the length of `rows`.
 bool SpatialIndex::sort_by_place(std::span<std::uint32_t> rows, std::uint32_t* room) noexcept {
   const Execution execution = Execution::serial();
   return rows_.filters().has_environments()
@@ -227,8 +227,8 @@ bool SpatialIndex::refit(BlockTree& tree, std::size_t first, std::size_t blocks,
     changed_from = std::min(changed_from, tail_block - first);
   }
   const std::size_t behind = blocks - changed_from;
-  constexpr std::size_t kMost = 4;  // if more than one block in four changed, refitting all takes
-                                    // less
+  // If more than one block in four changed, refitting all blocks takes less time.
+  constexpr std::size_t kMost = 4;
   if (kMost * behind > blocks) return refit_all();
   RowSelection& leaves = rows_.selection();
   if (!leaves.start(rows_.stale().ids().size() + behind) || !leaves.reserve_bits(blocks)) {

@@ -45,12 +45,12 @@ struct Statistics;
 /// cost of the best schedule known in hindsight (the ski-rental bound; Karlin et al., Algorithmica
 /// 3, 1988). Decisions count tests, never time, so every machine builds in the same frame.
 ///
-/// Most of a build is spent on the order. If a build can be foreseen, because objects approach the
-/// borders of their cells, the tail grows or wear grows, the order is planned in stages over the
-/// preceding refreshes while the old order is in use (see OrderPlan), so that no frame pays for all
-/// of it. Rows that moved after they were planned are found once the rows are in the new order,
-/// like objects that leave their cells in any frame. A build that was not foreseen completes the
-/// plan at once.
+/// Most of a build is spent on the order. A build can be foreseen if objects approach the borders
+/// of their cells, or if the tail or the wear grows. Then the order is planned in stages over the
+/// refreshes before the build (see OrderPlan), while the old order is in use, so that no frame pays
+/// for all of it. Rows that moved after they were planned are found once the rows are in the new
+/// order, like objects that leave their cells in any frame. A build that was not foreseen completes
+/// the plan at once.
 class SpatialIndex {
  public:
   /// `build_budget` as in PartitionOptions.
@@ -198,14 +198,14 @@ class SpatialIndex {
   Structure* structure_ = nullptr;
   BlockTree tree_;
 
-  // Serves all queries other than pairs. Unless the structure prunes rows or is flat it is built
-  // for the first such query.
+  // The tree over the regular rows, for all queries other than pairs. It is built for the first of
+  // these queries, except if the structure prunes rows or is flat.
   mutable BlockTree regular_tree_;
   Column<OwnedStructure> spare_structures_;  // reserved structures for later use, with their memory
   mutable float leaf_edge_ = 0.0F;           // edge of a typical block
   mutable std::atomic<bool> queries_stale_{true};
-  mutable std::atomic<std::size_t> queried_refreshes_{
-      0};                                     // refreshes for such queries since the last build
+  // Refreshes for queries other than pairs since the last build.
+  mutable std::atomic<std::size_t> queried_refreshes_{0};
   mutable std::atomic<bool> queried_{false};  // any query since the last refresh
 
   float built_edge_ = 0.0F;      // edge of a typical leaf of the tree after the build
@@ -226,8 +226,7 @@ class SpatialIndex {
   DepartureForecast departures_;
   GrowthForecast tail_growth_;
   GrowthForecast wear_growth_;
-  std::size_t refreshes_before_plan_ = 0;  // refreshes between the last build and the start of the
-                                           // plan
+  std::size_t refreshes_before_plan_ = 0;  // refreshes from the last build to the start of the plan
   std::size_t changed_at_plan_ = 0;        // objects changed in the refresh that started the plan
   std::size_t quiet_refreshes_ = 0;        // consecutive refreshes with far fewer changes
   std::size_t builds_without_planning_ = 0;  // builds left until plans are made ahead again

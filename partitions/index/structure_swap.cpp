@@ -17,7 +17,7 @@ void SpatialIndex::end(const OwnedStructure& one) noexcept {
   if (one.structure != nullptr) one.kind.info()->end(one.structure, memory_);
 }
 
-// Keeps a structure with its reserved memory for later use, or ends it.
+// Keeps a structure with its reserved memory for later use, or destroys it.
 void SpatialIndex::stash(const OwnedStructure& one) noexcept {
   if (one.structure == nullptr) return;
   if (!reserved_ || !store_spare(one)) end(one);

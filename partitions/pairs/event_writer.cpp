@@ -97,7 +97,7 @@ bool EventWriter::sort_into(Column<std::uint64_t>& list, std::span<const Pair> p
     std::sort(list.begin(), list.end());
     return true;
   }
-  // Radix sort by the first object; each has few pairs, which sort_runs sorts.
+  // Radix sort by the first object. sort_runs then sorts the few pairs of each first object.
   if (!events_.spare_.resize(count)) return false;
   const auto bits = static_cast<unsigned>(std::bit_width(keys_.slot_count()));
   const std::uint64_t* const sorted =

@@ -140,7 +140,7 @@ bool LinkedPairs::take_found(const Pair& pair) noexcept {
   return true;
 }
 
-// Found pairs that no old pair has taken began.
+// Appends the found pairs that `take_found` did not mark: these pairs began.
 void LinkedPairs::keep_begun() noexcept {
   std::size_t size = kept_;
   for (const std::uint64_t entry : out_.page_table_) {

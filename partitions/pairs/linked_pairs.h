@@ -49,10 +49,11 @@ class LinkedPairs {
   /// Notes that all pairs were found again.
   void unlink_pairs() noexcept { out_.state_ = PairBuffer::LinkState::loose; }
 
-  /// Compares the old and new pairs of the moved objects (also a bitmap, `is_moved`). The pairs
-  /// from `kept` on were found in this frame; only begun ones stay there. Collects the indices of
-  /// the pairs before `kept` that ended. If renewed(id), the id belongs to another object now, so
-  /// that its pairs end and begin. False if memory is refused.
+  /// Compares the old and new pairs of the moved objects, which are given as a list and as a bitmap
+  /// (`is_moved`). The pairs from `kept` on were found in this frame; only begun ones stay there.
+  /// Collects the indices of the pairs before `kept` that ended. If renewed(id) is true, the id
+  /// belongs to another object now; its old pairs end and its new pairs begin. False if memory is
+  /// refused.
   template <typename Renewed>
   [[nodiscard]] bool compare(std::size_t kept, std::span<const std::uint32_t> moved,
                              const std::uint64_t* is_moved, Renewed&& renewed) noexcept;

@@ -6,12 +6,13 @@ namespace winnow {
 namespace WINNOW_ISA_NAME {
 namespace {
 
-/// Bit i is the lowest bit of the result.
+/// Returns a word whose lowest bit is bit i.
 std::uint64_t from_bit(const std::uint64_t* bits, std::uint32_t i) {
   return bits[i >> 6U] >> (i & 63U);
 }
 
-/// Scalar: gathering bits is not faster. Wider instruction sets contribute variable shifts.
+/// Scalar code, because a gather of bits is not faster. The file is a kernel because wider
+/// instruction sets have faster shifts by a variable number of bits.
 template <bool KeepDropped>
 std::size_t split(const std::uint32_t* pairs, std::size_t count, const std::uint64_t* moved,
                   std::uint32_t* kept, std::uint32_t* dropped) {

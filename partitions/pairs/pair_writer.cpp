@@ -133,8 +133,8 @@ std::size_t PairWriter::keep_accepted(Pair* pairs, std::size_t count) const noex
 Status PairWriter::append_serial(std::size_t tasks, void* context, Task run) {
   Column<Pair>& pairs = out_.pairs_;
   const std::size_t before = pairs.size();
-  // The kernels' slack is many times the number of pairs of a small world. The first pairs are
-  // therefore written beside the array, which then grows to the actual number.
+  // The slack that kernels need (kSinkSlack) is many times the number of pairs of a small scene.
+  // The first pairs are therefore written beside the array, which then grows to the actual number.
   constexpr std::size_t kBeside = 2 * kSinkSlack;
   alignas(Pair) std::byte bytes[kBeside * sizeof(Pair)];  // uninitialized, unlike Pair[]
   auto* const room = reinterpret_cast<Pair*>(bytes);
@@ -176,7 +176,7 @@ Status PairWriter::append_serial(std::size_t tasks, void* context, Task run) {
 Status PairWriter::append_parallel(std::size_t tasks, void* context, Task run) {
   PageClaims claims;
   claims.led = out_.pairs_.size();
-  // Initial guess: what the buffer held last.
+  // Initial guess: the pages for as many pairs as the buffer has room for.
   std::size_t pages = pages_for(out_, tasks);
   while (make_pages(claims, pages, tasks)) {
     run_on_pages(tasks, claims, context, run);

@@ -29,8 +29,8 @@ bool given_overlap(const VerletSkin::Box& a, const VerletSkin::Box& b) noexcept 
   return ok != 0;
 }
 
-/// Returns by how much the gap of two stored ends can shrink: two margins, each with the rounding
-/// of the comparison that it was tested by.
+/// Returns by how much the gap of two stored ends can shrink: two margins, each enlarged by the
+/// rounding error of the comparison with the margin.
 double reach_of(float margin) noexcept {
   return 2.0 * static_cast<double>(margin) * (1.0 + 0x1p-20);
 }

@@ -5,9 +5,9 @@
 //   incremental  the buffer is tracked, and few objects moved or events are reported
 //   full         otherwise
 //
-// Resting and linked also require a tracked buffer, Order::fast, and events, if any, of the same
-// frame. The resting way is in resting_pairs.cpp. Tasks write through PairWriter; EventWriter finds
-// events.
+// Resting and linked also require a tracked buffer, Order::fast, and events that describe the frame
+// of the buffer, if there are any. The resting way is in resting_pairs.cpp. Tasks write through
+// PairWriter; EventWriter finds events.
 
 #include "core/hooks/log.h"
 #include "core/hooks/stage_scope.h"
@@ -170,7 +170,7 @@ Status PartitionState::answer_self_pairs(PairBuffer& out, const PairOptions& opt
   if (all_anew) try_start_resting(out, options);
   if (chooser_ == nullptr) return Status::ok;
   if (all) note(QueryKind::all_pairs, 1);
-  // The number of pairs after a predicate is no feature of the scene.
+  // The number of pairs that pass a predicate is not a property of the scene.
   if (options.predicate.accept == nullptr) chooser_->note_pairs(out.size());
   return Status::ok;
 }
@@ -200,7 +200,8 @@ void PartitionState::undo_self_pairs(PairBuffer& out, bool resting,
 
 bool PartitionState::can_update_in_place(const PairBuffer& out, const PairOptions& options,
                                          const EventWriter* events) const noexcept {
-  // Updating in place keeps no order, and events must describe the same frame.
+  // An update in place changes the order of the pairs. The events, if there are any, must describe
+  // the frame that `out` holds.
   return can_update(out) && options.order == Order::fast &&
          (events == nullptr || events->follows());
 }
@@ -215,9 +216,9 @@ Status PartitionState::track_self_pairs(PairBuffer& out, const PairOptions& opti
 }
 
 // True if querying with the moved objects costs less than a full query. Without pruning a full
-// query is O(n^2). Otherwise the limit decreases with the number of pairs per object, which are
-// dropped and found again, and with cells, because a full query visits consecutive cells without
-// searching them.
+// query is O(n^2). Otherwise the limit is lower if objects have many pairs, which are dropped and
+// found again, and if the structure has cells, because a full query visits consecutive cells
+// without searching them.
 bool PartitionState::queries_few(const PairBuffer& out) const noexcept {
   constexpr std::size_t kFlat = 4;
   constexpr std::size_t kTree = 8;

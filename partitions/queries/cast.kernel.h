@@ -8,10 +8,10 @@
 namespace winnow {
 
 /// A cast prepared for the kernels: a box that moves along a line, tested against boxes by the slab
-/// method (Kay, Kajiya 1986). On each axis the boxes overlap during the interval of t from (near -
-/// near_origin) / d to (far - far_origin) / d, where `near` is the end of the tested box that the
-/// moving box reaches first, and the origins are ends of the moving box. A ray is a box of zero
-/// extent.
+/// method (Kay, Kajiya 1986). On each axis the boxes overlap while t is between (near -
+/// near_origin) / d and (far - far_origin) / d. `near` is the end of the tested box that the moving
+/// box reaches first, `far` is the other end, and the origins are ends of the moving box. A ray is
+/// a box of zero extent.
 ///
 /// The float tests of 16 boxes never miss a hit; a test in double decides on the rows that pass.
 /// The float tests scale t by a power of two, so that the largest component of the direction lies

@@ -91,7 +91,7 @@ class FirstSegmentThenRest {
         wanted_(view, filter),
         hits_(sweeps, wanted_, found, limit_),
         count_(count) {
-    // Without trees all rows are tested anyway.
+    // Without trees all rows are tested in any case, so the first segment has no end.
     const float edge = view.leaf_edge;
     const float stretch = edge > 0.0F ? kSegment * edge : __builtin_inff();
     for (std::uint32_t s = 0; s < count; ++s) {
@@ -181,7 +181,7 @@ class AllHits {
   AllHits(const CandidateFilter& wanted, const std::uint32_t* query, PairSink& sink)
       : wanted_(wanted), query_(query), sink_(sink) {}
 
-  /// A hit takes two pairs. A sink with room has it for 272 pairs, enough for 128 hits.
+  /// A hit takes two pairs. A sink that is not full has room for 272 pairs, enough for 128 hits.
   bool make_room() { return has_room(sink_); }
   void touched(std::uint32_t s, double t, std::uint32_t id) {
     if (!wanted_.accepts(id)) return;

@@ -23,8 +23,8 @@ namespace {
 // Each rounding is relative to at most 3/8 of that coordinate.
 constexpr float kPlaneRounding = 8 * 0x1p-24F;
 
-/// `size` bounds the terms from which the offset was computed; 0 if it was given. `margin` is
-/// raised to cover the error of heights above the plane.
+/// `size` bounds the terms from which `offset` was computed; it is 0 if the caller gave the offset.
+/// `margin` is raised to cover the error of heights above the plane.
 WidePlane widen(const Eigen::Vector3d& normal, double offset, double size, float& margin) noexcept {
   int exponent = 0;
   (void)std::frexp(normal.cwiseAbs().maxCoeff(), &exponent);

@@ -30,7 +30,7 @@ inline Floats reach_of(const Box16& box) {
 /// when they are gathered.
 constexpr std::uint32_t kScanned = 64;
 
-/// The rows of some blocks that overlap the region's box.
+/// A list of the rows, among some blocks, that overlap the region's box.
 class RowsInBox {
  public:
   explicit RowsInBox(const PlaneRegion& region) : region_(region) {}

@@ -34,8 +34,8 @@ class SweepTest {
     }
   }
 
-  /// Returns the boxes from `at` on that may be touched at a scaled t <= limit. `enter` gets a
-  /// lower bound of t, at most kMaxOrder, and infinity for the other boxes.
+  /// Returns the boxes among the 16 from `at` on that the sweep may touch at a scaled t <= limit.
+  /// For these, `enter` is a lower bound of t, at most kMaxOrder; for the others it is infinity.
   [[gnu::always_inline]] Mask16 test(const float* const* column, std::size_t at, float limit,
                                      Floats& enter) const {
     const float* const near[3] = {column[sweep_.near_column[0]], column[sweep_.near_column[1]],

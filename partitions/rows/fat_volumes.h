@@ -124,7 +124,7 @@ struct FatSource {
     for (std::size_t c = 0; c < Fat::kColumns; ++c) columns[c][row] = given.value[c];
   }
 
-  /// Writes nothing and returns false if the stored volume still serves.
+  /// Writes nothing and returns false if the stored volume still serves (see `serves`).
   bool write_if_left(std::size_t i, ColumnPointers columns, std::size_t row) const noexcept {
     Values given(source, i);
     float stored[Fat::kColumns];
@@ -132,7 +132,8 @@ struct FatSource {
     const float by = Fat::margin_of(given.value, margin);
     if (Fat::serves(given.value, by, stored)) return false;
     Fat::grow(given.value, by);
-    // If rounding swallows the margin, `serves` is false even at rest; equality shows the rest.
+    // If the margin is smaller than rounding, `serves` is false even if the object did not move.
+    // Then the grown volume equals the stored one.
     if (std::equal(stored, stored + Fat::kColumns, given.value)) return false;
     for (std::size_t c = 0; c < Fat::kColumns; ++c) columns[c][row] = given.value[c];
     return true;

@@ -68,7 +68,7 @@ class FilterTable {
 
  private:
   Column<ObjectFilter> filters_;
-  std::size_t slots_ = 0;    // entries once in use
+  std::size_t slots_ = 0;    // number of entries that the table has while in use
   std::size_t apart_ = 0;    // objects with an environment other than 0 and kAllEnvironments
   std::size_t changed_ = 0;  // environment changes since the last build
   FilterSpan span_;          // of all objects, while in use

@@ -89,7 +89,7 @@ class Rows {
   Status remove(Key key);
   Status remove(std::span<const Key> keys);
   void clear() noexcept;
-  /// Makes room for `objects` objects, in as many rows.
+  /// Makes room for `objects` objects in rows without holes.
   Status reserve(std::size_t objects);
   /// Prefaults reserved pages.
   void touch() noexcept;

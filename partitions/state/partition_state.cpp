@@ -176,8 +176,9 @@ Status PartitionState::bounds(std::span<const Key> keys, std::span<Aabb> boxes) 
   return Status::ok;
 }
 
-// There are no concurrent readers: mutations have exclusive access, and every query that reads rows
-// calls this first, or holds tracker_mutex_, which the calling query holds too.
+// Writes the rows although it is const. No other thread reads them at the same time: a mutation has
+// exclusive access, and a query that reads rows holds tracker_mutex_ or has called
+// `write_deferred`, which locks it.
 void PartitionState::end_deferring() const noexcept {
   if (!deferred_.active()) return;
   const Lock lock(refresh_mutex_);

@@ -75,8 +75,8 @@ class PartitionState {
   void write_deferred() const;
   /// Calls `write_deferred` and `refresh`.
   Status settle() const;
-  /// Settles, brings the trees up to date that casts, regions and nearest queries use, notes
-  /// `count` queries of this kind, and returns a view of the rows and trees.
+  /// Calls `settle`, updates the trees that casts, regions and nearest queries use, notes `count`
+  /// queries of this kind, and fills in the view of rows and trees.
   Status prepare(QueryKind kind, std::size_t count, QueryView& view) const;
   void note(QueryKind kind, std::size_t count) const noexcept;
 

@@ -97,7 +97,7 @@ struct RowPlan {
 
 /// The size of a build to reserve memory for, and the scratch columns to reserve.
 struct BuildRoom {
-  std::size_t objects;  ///< all live, in as many rows
+  std::size_t objects;  ///< in rows without holes
   Pages pages;
   /// Scratch for sort keys, for entries per row, and for positions.
   Column<std::uint64_t>& items;
@@ -185,8 +185,8 @@ class Structure {
     }
     return place;
   }
-  /// True if the object in this regular row would still fit the row's cell if its box were the
-  /// given place.
+  /// True if a box fits the cell of this regular row, so that an object with this box may keep the
+  /// row.
   [[nodiscard]] virtual bool fits(std::size_t, const ObjectBox&) const noexcept { return true; }
   /// Appends the regular rows that no longer fit, after any rows may have changed. `room` has space
   /// for all regular rows. Returns false and appends nothing if there are more than `most`, or if a

@@ -13,7 +13,7 @@ struct AxisExtent {
   float low;
   float high;
 
-  /// The range of `count` numbers, at least one.
+  /// Returns the range of `count` >= 1 numbers.
   static AxisExtent of(const float* x, std::size_t count) {
     constexpr std::size_t kStep = static_cast<std::size_t>(kLanes);
     if (count < kStep) {

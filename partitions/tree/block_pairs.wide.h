@@ -106,7 +106,7 @@ class BlockPairs {
       const std::uint32_t at = block_[k] * kLanes;
       const std::uint32_t ahead = block_[k + kAhead] * kLanes;
       for (int c = 0; c < 6; ++c) __builtin_prefetch(rows_.column[c] + ahead);
-      // The block's own rows may end within this one.
+      // The rows of the block itself may end within this block of rows.
       const std::uint32_t own = behind_ > at ? behind_ - at : 0;
       const Mask16 met = overlap(load_slabs<3>(rows_.column, at), low, high);
       const Mask16 mask = met & ~lanes_below(own);

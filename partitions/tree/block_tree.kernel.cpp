@@ -210,8 +210,8 @@ class LeafFilter {
   /// True if no row of the leaf matches another row of it.
   [[nodiscard]] bool excludes_self_pairs() const { return decides() && !filters_allow(own_, own_); }
 
-  /// True if filters must be tested on hits of the leaf's rows. Testing all is cheaper than
-  /// predicting which can be skipped.
+  /// True if filters must be tested on hits of the leaf's rows. A test of all hits is cheaper than
+  /// a decision for each hit whether it needs the test.
   [[nodiscard]] bool decides() const { return Filtered && !matches_all_; }
 
   /// Returns the nodes of `met` whose filters may match the leaf; their layers and masks are at
@@ -299,7 +299,8 @@ class NearGroups {
                    Visit& visit) {
     const auto test = [&](std::uint32_t level, std::uint32_t first_node) {
       const Mask16 touched = touched_nodes(tree_, sink_, level, first_node, low, high);
-      // Nodes on higher levels are pruned only by position: testing their filters costs more.
+      // Nodes on higher levels are pruned only by position: testing their filters costs more than
+      // it saves.
       const NodeFilters& nodes = tree_.filters[1];
       return level > 1 ? touched
                        : filter.passing_lanes(nodes.layers, nodes.mask, first_node, touched);

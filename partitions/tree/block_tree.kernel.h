@@ -12,7 +12,8 @@ namespace winnow {
 inline constexpr std::uint32_t kMaxTreeLevels = 8;
 
 /// Summaries of the filters of objects below the nodes of one level; all null if no filter was ever
-/// set. An object of every environment counts as first 0, last ~0.
+/// set. An object of every environment counts as having first environment 0 and last environment
+/// ~0.
 struct NodeFilters {
   std::uint32_t* layers = nullptr;  ///< union
   std::uint32_t* mask = nullptr;    ///< union

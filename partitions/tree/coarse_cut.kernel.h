@@ -24,7 +24,7 @@ struct CoarseCells {
 };
 
 struct CoarseCutKernels {
-  /// Computes the minimum and maximum of `count` numbers, at least one.
+  /// Computes the minimum and maximum of `count` >= 1 numbers.
   void (*reach)(const float* x, std::size_t count, float& least, float& greatest);
   /// Plans about `wanted` cells for points on three axes, from a sample of the points. Returns
   /// false if too many points are in too small a part of their range.

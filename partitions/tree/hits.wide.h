@@ -131,8 +131,8 @@ inline constexpr int kBallRadius = 9;
   return bits(square <= limit) & real;
 }
 
-/// Returns the lanes of `mask`, whose boxes overlap the box of row r of `query`, whose further
-/// slabs overlap, too. Lanes are rows from `at` on.
+/// `mask` has the lanes (rows from `at` on) whose boxes overlap the box of row r of `query`.
+/// Returns the lanes among them whose further slabs overlap, too.
 inline Mask16 further_slabs_overlap(const RowView& rows, std::uint32_t at,
                                     const float* const* query, std::uint32_t r, Mask16 mask) {
   const std::uint32_t slabs = rows.further_slabs;
@@ -218,8 +218,8 @@ inline void report(HitMode mode, Mask16 mask, const std::uint32_t* ids, std::uin
   }
 }
 
-/// The lanes with non-empty sets of bits that certainly share a bit with each of some other sets
-/// (see surely_share).
+/// Returns the lanes of `sets` that are not empty and certainly share a bit with each of some other
+/// sets, whose union is `any` and whose intersection is `every` (see surely_share).
 inline Mask16 surely_sharing(const Uints& sets, std::uint32_t any, std::uint32_t every) {
   const Mask16 lack_one = test_bits(Uints(any) - (sets & Uints(any)), ~0U);
   return test_bits(sets, every) | ((~lack_one | ~test_bits(sets, ~every)) & test_bits(sets, ~0U));
@@ -339,9 +339,9 @@ inline bool has_more_to_test(const RowView& rows) {
   return rows.further_slabs != 0 || rows.spheres;
 }
 
-/// Keeps the hits whose volumes overlap, in lists of box hits: lanes mask[i] of the rows from at[i]
-/// on for row[i] of the columns `query`. Returns the number of entries left. Not inlined, because
-/// kernels for boxes never call it.
+/// Removes the hits whose volumes do not overlap from lists of hits of boxes. Entry i has the hits
+/// of row[i] of the columns `query`: lanes mask[i] of the rows from at[i] on. Returns the number of
+/// entries left. Not inlined, because kernels for boxes never call it.
 [[gnu::noinline, maybe_unused]] static unsigned keep_volume_hits(
     const RowView& rows, const float* const* query, std::uint32_t* row, std::uint32_t* at,
     std::uint32_t* mask, unsigned size) {
@@ -357,7 +357,7 @@ inline bool has_more_to_test(const RowView& rows) {
   return kept;
 }
 
-/// Keeps the lanes that are reported in HitMode::moved, in such lists. Returns the number of
+/// As above, removes the lanes that are not reported in HitMode::moved. Returns the number of
 /// entries left.
 [[gnu::noinline, maybe_unused]] static unsigned keep_reported(const std::uint64_t* moved,
                                                               std::uint32_t* row, std::uint32_t* at,

@@ -30,9 +30,9 @@ enum class KdParts : std::uint8_t { blocks, tiles, cells };
 /// 2003). Boxes of mixed sizes are handled well: cuts follow the centres, and a large box widens
 /// only its own block. Rows that are concentrated in few places are cut to blocks in any case.
 ///
-/// Rows must be live; their boxes are the pool's first six columns. `room` has space for as many
-/// rows. O(n log n). The result is the same for any number of threads and any instruction set.
-/// Returns false and leaves `rows` unchanged if an allocation fails.
+/// Rows must be live; their boxes are the pool's first six columns. `room` has space for
+/// rows.size() elements. O(n log n). The result is the same for any number of threads and any
+/// instruction set. Returns false and leaves `rows` unchanged if an allocation fails.
 [[nodiscard]] bool sort_by_kd_cuts(const BoundsPool& pool, std::span<std::uint32_t> rows,
                                    std::uint32_t* room, Column<float>& scratch,
                                    const Execution& execution, KdParts parts = KdParts::tiles);

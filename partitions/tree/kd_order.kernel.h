@@ -7,8 +7,8 @@
 
 namespace winnow {
 
-/// Points with their rows, and room for as many. Sets are cut in place: the parts are sets in the
-/// same columns.
+/// A set of points with their rows, and columns of the same size as scratch. A set is cut in place:
+/// its parts are sets in the same columns.
 struct KdSet {
   float* at[3] = {};
   std::uint32_t* row = nullptr;

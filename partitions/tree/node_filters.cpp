@@ -14,7 +14,7 @@ constexpr std::uint32_t kChildren = 16;
 constexpr std::uint32_t kLast = 0xFFFFFFFFU;
 constexpr std::size_t kColumns = 7;  // of NodeFilters
 
-/// The summary of some filters; initially of none, which matches no filter.
+/// The summary of a set of filters. Initially the set is empty, and its summary matches no filter.
 struct Joined {
   std::uint32_t layers = 0;
   std::uint32_t mask = 0;

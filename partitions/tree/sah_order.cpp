@@ -42,8 +42,8 @@ Quad most(Quad a, Quad b) noexcept {
   return a > b ? a : b;
 }
 
-/// The keys by which a split compares boxes: the centre on each axis, and with four axes a number
-/// that falls with the logarithm of the longest edge.
+/// The keys by which a split compares boxes: the centre on each axis, and, if `Axes` is 4, a number
+/// that decreases with the logarithm of the longest edge.
 template <std::size_t Axes>
 Quad keys_of(const SahBox& box) noexcept {
   const Quad low = load_quad(box.low);
@@ -102,8 +102,8 @@ struct SahExtent {
     constexpr double kMaxExtent = 1e38;
     return std::min(kMaxExtent, static_cast<double>(high[a]) - static_cast<double>(low[a]));
   }
-  /// Half of the surface plus `margin` times the edges, for queries of that size: in flat and thin
-  /// sets the surface does not suffice.
+  /// Returns half of the surface plus `margin` times the sum of the edges. The second term is for
+  /// queries that have a size themselves: for flat and thin boxes the surface does not suffice.
   [[nodiscard]] double cost(double margin) const {
     if (!(low[0] <= high[0])) return 0.0;
     const double x = edge(0);
@@ -117,8 +117,8 @@ SahExtent extent_of(const SahBox& box) noexcept {
   return {load_quad(box.low), load_quad(box.high)};
 }
 
-/// Equal bins along each axis over the range of a set's keys; of a large set, over the range of a
-/// sample, with other keys in the first or last bin.
+/// Bins of equal width on each axis over the range of a set's keys. If the set is large, the range
+/// is the range of a sample, and keys outside of it are in the first or the last bin.
 struct SahBins {
   std::uint32_t count = 0;
   std::size_t axes = 3;  ///< the fourth is used if sizes differ

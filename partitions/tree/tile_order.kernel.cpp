@@ -46,7 +46,8 @@ struct TileCuts {
       const float m = mid_axis.reach.half() / longest;
       const float s = slow_axis.reach.half() / longest;
       const float tiles = static_cast<float>(count) / static_cast<float>(kLanes);
-      // Rounded roots of tiles s^2 / m, and of the tiles per slab times m.
+      // The loops compute rounded roots: `slow` is the cube root of tiles * s^2 / m, `mid` is the
+      // square root of m times the tiles of a slab.
       const auto half = [](std::uint32_t n) { return static_cast<float>(n) + 0.5F; };
       while (slow < kMaxParts && half(slow) * half(slow) * half(slow) * m < tiles * s * s) ++slow;
       const float slabs = slow == 0 ? 1.0F : static_cast<float>(slow);

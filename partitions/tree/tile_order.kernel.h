@@ -7,7 +7,7 @@
 
 namespace winnow {
 
-/// Rows with the centres of their boxes, and room for as many rows.
+/// Rows with the centres of their boxes, and columns of the same size as scratch.
 struct TileSet {
   const float* at[3] = {};
   std::uint32_t* row = nullptr;

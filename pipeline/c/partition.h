@@ -245,7 +245,7 @@ WINNOW_C_API winnow_status winnow_partition_reserve(winnow_partition* partition,
 WINNOW_C_API winnow_status winnow_partition_reserve_pairs(const winnow_partition* partition,
                                                           winnow_pair_buffer* out, size_t pairs,
                                                           winnow_pages pages);
-/// Set `alone` if the events are queried without a pair buffer: it reserves the pairs too.
+/// If `alone` is set, memory for the pairs is reserved too: set it if no pair buffer is used.
 WINNOW_C_API winnow_status winnow_partition_reserve_events(const winnow_partition* partition,
                                                            winnow_pair_events* out, size_t pairs,
                                                            bool alone, winnow_pages pages);

@@ -64,7 +64,7 @@ Status ClusterState::settle() {
                   this});
 }
 
-/// Exchanges the packed parcels, and applies the received ones.
+/// Exchanges the packed messages, and applies the received ones.
 Status ClusterState::deliver(const OverlappedWork& meanwhile) {
   std::span<const RankMessage> received;
   Status answer = is_single_rank() ? Status::ok : exchange(received, meanwhile);

@@ -281,7 +281,7 @@ class CollectiveQuery {
     std::uint32_t to;
     std::uint32_t number;
   };
-  /// Data of the sent parcels; must stay in place until all results have been received.
+  /// Data of the sent messages; must stay in place until all results have been received.
   struct Sent {
     std::vector<Question> questions;
     std::vector<std::uint32_t> numbers;

@@ -46,7 +46,7 @@ Status ClusterSceneState::settle() {
   return answer == Status::communication_failed || found == Status::ok ? answer : found;
 }
 
-/// Exchanges the packed parcels, and applies the received ones.
+/// Exchanges the packed messages, and applies the received ones.
 Status ClusterSceneState::deliver() {
   std::span<const RankMessage> received;
   Status answer = is_single_rank() ? Status::ok : exchange(received);

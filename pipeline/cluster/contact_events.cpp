@@ -13,7 +13,7 @@ std::uint32_t ContactEvents::keeper_of(const TouchingPair& pair) const noexcept 
   return static_cast<std::uint32_t>((hash >> 32U) % ranks_);
 }
 
-/// Adds one parcel per receiver: begun pairs, then ended pairs.
+/// Adds one message per receiver: begun pairs, then ended pairs.
 void ContactEvents::post(std::vector<AddressedPair>& begun, std::vector<AddressedPair>& ended,
                          Columns& columns, std::vector<RankMessage>& parcels) const {
   columns.begun.clear();

@@ -68,7 +68,7 @@ class ContactEvents {
   };
 
   [[nodiscard]] std::uint32_t keeper_of(const TouchingPair& pair) const noexcept;
-  /// Data of the sent parcels; must stay in place until the next step.
+  /// Data of the sent messages; must stay in place until the next step.
   struct Columns {
     std::vector<TouchingPair> begun;
     std::vector<TouchingPair> ended;

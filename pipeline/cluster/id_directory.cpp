@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::byte kRefusal{1};
 
-/// The parcels for one receiver are sorted by sender.
+/// The messages for one receiver are sorted by sender.
 bool is_of(std::span<const RankMessage> parcels, std::uint32_t from) noexcept {
   return std::ranges::binary_search(parcels, from, {}, &RankMessage::from);
 }

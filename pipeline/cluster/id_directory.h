@@ -52,7 +52,7 @@ class IdDirectory {
   std::uint32_t ranks_;
   NameTable names_;
   std::vector<std::uint64_t> forgotten_;
-  // Data of the sent parcels; must stay in place until the next exchange.
+  // Data of the sent messages; must stay in place until the next exchange.
   std::vector<std::uint64_t> sent_;
   std::vector<std::uint64_t> sent_forgotten_;
   std::vector<std::uint32_t> asked_;  // ranks that names were requested from

@@ -21,8 +21,8 @@ namespace winnow {
 }
 
 /// Distributes the work of a rank over the bodies that belong to it, in proportion to `counts`,
-/// each at least 1. So all of them share the work for the rank's copies. `counts`, the result and
-/// `is_owned` are indexed by id.
+/// each at least 1. They thus also share the work for the rank's copies of other bodies. `counts`,
+/// the result and `is_owned` are indexed by id.
 template <typename IsOwned>
 [[nodiscard]] std::vector<std::uint32_t> shares_of(std::span<const std::uint64_t> counts,
                                                    IsOwned&& is_owned, std::uint64_t work) {

@@ -33,16 +33,16 @@ class RankBodies {
   // Migration: each body goes to the rank that it belongs to, and copies go to the other ranks
   // whose regions its box overlaps.
 
-  /// Prepares only the removals for other ranks.
+  /// Prepares messages to other ranks about removed bodies only.
   void send_removals(const Regions& regions);
-  /// Prepares what other ranks hold from now on, and what they hold no longer: for changed bodies,
-  /// or for all bodies if the regions changed.
+  /// Prepares messages to other ranks about the bodies and copies that they must add, update or
+  /// remove: for changed bodies, or for all bodies if the regions changed.
   void send(const Regions& before, const Regions& now, bool regions_changed);
   void pack(std::vector<RankMessage>& parcels) { send_queue_.pack(rank_, parcels); }
-  /// Applies parcels of other ranks, and removes what this rank holds no longer.
+  /// Applies messages of other ranks, and removes the bodies and copies that left this rank.
   [[nodiscard]] Status receive(std::span<const RankMessage> parcels);
 
-  /// Updates the structure for the own bodies while parcels are in transit, so that little remains
+  /// Updates the structure for the own bodies while messages are in transit, so that little remains
   /// to be done when the copies arrive.
   void refresh() noexcept { (void)partition_.refresh(); }
   /// Finds the pairs that this rank reports.

@@ -24,7 +24,7 @@ struct RankCounts {
   std::uint64_t work = 0;
 };
 
-/// Returns the parcels for one rank; they are sorted by receiver.
+/// Returns the messages for one rank; they are sorted by receiver.
 [[nodiscard]] std::span<const RankMessage> parcels_for(std::span<const RankMessage> parcels,
                                                        std::uint32_t rank);
 

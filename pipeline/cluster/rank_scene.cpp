@@ -315,7 +315,7 @@ Status RankScene::receive(std::span<const RankMessage> parcels) {
   return apply_changes();
 }
 
-/// For a body that is here already, another rank has sent a new pose, or that it belongs here now.
+/// If the body is here already, the message has a new pose, or makes this rank its owner.
 void RankScene::take(const BodyMessages<BodyRecord>& incoming) {
   for (std::size_t i = 0; i < incoming.names.size(); ++i) {
     const std::uint32_t id = table_.find(incoming.names[i]);
@@ -397,7 +397,7 @@ void RankScene::sort_names() {
 
 Status RankScene::collide(ContactLevel level) {
   sort_names();
-  // Let these contacts remember nothing: their bodies may have been on other ranks.
+  // Clear the history of these contacts: their bodies may have been on other ranks.
   contacts_.clear();
   const Status status = scene_.collide(level, contacts_);
   if (status != Status::ok) return status;

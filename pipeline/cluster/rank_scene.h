@@ -71,13 +71,13 @@ class RankScene {
 
   /// Updates the boxes for the current poses. Call before `send`.
   [[nodiscard]] Status refresh();
-  /// Prepares only the removals for other ranks.
+  /// Prepares messages to other ranks about removed bodies only.
   void send_removals(const Regions& regions);
-  /// Prepares what other ranks hold from now on, and what they hold no longer: for changed bodies,
-  /// or for all bodies if the regions changed.
+  /// Prepares messages to other ranks about the bodies and copies that they must add, update or
+  /// remove: for changed bodies, or for all bodies if the regions changed.
   void send(const Regions& before, const Regions& now, bool regions_changed);
   void pack(std::vector<RankMessage>& parcels) { send_queue_.pack(rank_, parcels); }
-  /// Applies parcels of other ranks, and removes what this rank holds no longer.
+  /// Applies messages of other ranks, and removes the bodies and copies that left this rank.
   [[nodiscard]] Status receive(std::span<const RankMessage> parcels);
 
   // Contacts.

@@ -39,7 +39,7 @@ void for_each_receiver(std::span<const One> ones, std::span<const Other> others,
 }
 
 /// Messages from one rank to others: bodies that they hold from now on, and bodies that they hold
-/// no longer. The columns of a parcel are, in this order: names and contents (boxes or records) of
+/// no longer. The columns of a message are, in this order: names and contents (boxes or records) of
 /// bodies, whether each belongs to the receiver (1) or is a copy (0), and names of bodies to
 /// remove.
 template <typename Content>
@@ -61,7 +61,7 @@ class SendQueue {
   void add_messages(std::uint32_t self, const Body& body, const Content& content,
                     std::span<const std::uint32_t> before, std::span<const std::uint32_t> now);
 
-  /// Adds one parcel per receiver. The parcels refer to columns of this object.
+  /// Adds one message per receiver. The messages refer to columns of this object.
   void pack(std::uint32_t from, std::vector<RankMessage>& parcels);
 
  private:
@@ -84,14 +84,14 @@ class SendQueue {
   std::vector<std::uint64_t> gone_names_;
 };
 
-/// Returns a column of a parcel as elements.
+/// Returns a column of a message as elements.
 template <typename T>
 [[nodiscard]] std::span<const T> column_of(const RankMessage& parcel, std::size_t column) noexcept {
   const std::span<const std::byte> bytes = parcel.columns[column];
   return {reinterpret_cast<const T*>(bytes.data()), bytes.size() / sizeof(T)};
 }
 
-/// A parcel of an SendQueue, as its receiver reads it.
+/// A message of a SendQueue, as its receiver reads it.
 template <typename Content>
 struct BodyMessages {
   explicit BodyMessages(const RankMessage& parcel) noexcept
@@ -106,7 +106,7 @@ struct BodyMessages {
   std::span<const std::uint64_t> gone;
 };
 
-/// All changes of a rank's bodies that follow from the received parcels, to be applied at once.
+/// All changes of a rank's bodies that follow from the received messages, to be applied at once.
 template <typename Place, typename Content>
 struct BodyChanges {
   std::vector<Key> dropped;
@@ -133,7 +133,7 @@ struct BodyChanges {
   }
 };
 
-/// For each name that the parcels list as removed, calls drop(id) and erases it from the table.
+/// For each name that the messages list as removed, calls drop(id) and erases it from the table.
 template <typename Content, typename Drop>
 void take_gone(std::span<const RankMessage> parcels, NameTable& table, Drop&& drop) {
   for (const RankMessage& parcel : parcels) {

@@ -26,7 +26,8 @@ constexpr std::uint32_t kNoRegion = ~0U;
 // triangle may be outside of it, or above or below its plane.
 constexpr double kSameFace = 1e-9;
 constexpr double kBesideSlack = 4e-6;
-// Relative distance from the middle of its gap of a point that was given the depth of another one.
+// A point lies in the middle of its gap if it is no farther from it than this, relative to the
+// sizes: a point may have been given the depth of another point.
 constexpr double kGapSlack = kBesideSlack + kTiedDepth;
 
 // Direction for breaking ties between points that are equally far out; not along a symmetry axis of

@@ -56,9 +56,9 @@ Status check_field(const HeightSamples& samples) {
   return check(samples);
 }
 
-/// Offsets from a square's own sample, for its even and its odd triangle: the corners (kCorner),
-/// and for the edge from each corner to the next the far corner of the triangle across it
-/// (kBeyond).
+/// Offset from a square's own sample. The first index of the tables below is the even or odd
+/// triangle of the square. kCorner has its corners; kBeyond has, for the edge from each corner to
+/// the next, the opposite corner of the triangle across the edge.
 struct SampleStep {
   int column;
   int row;

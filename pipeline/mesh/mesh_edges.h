@@ -11,9 +11,10 @@ namespace winnow {
 /// slot + edge is 4 * slot + edge of the other triangle, plus this bit if both triangles traverse
 /// the edge in the same direction, that is if they are wound inconsistently.
 inline constexpr std::uint32_t kSameDirection = 1U << 30U;
-/// A border, or an edge shared by more than two triangles.
+/// For an edge of only one triangle, or of more than two.
 inline constexpr std::uint32_t kNoNeighbour = ~0U;
-/// All edges of a triangle that is a segment, if a triangle with area has that segment as an edge.
+/// For all three edges of a triangle without area (a segment) that lies on an edge of a triangle
+/// with area.
 inline constexpr std::uint32_t kCoveredEdge = ~0U - 1U;
 
 /// Finds for each edge the one other triangle that shares it. Vertices at equal positions count as

@@ -14,8 +14,8 @@ namespace winnow::WINNOW_ISA_NAME::mesh {
 
 /// Error bound, in node units, of a bound converted in float to the parameter tau (see ReadyRays).
 inline constexpr double kUnitError = 0.05;
-/// A ray that moves by fewer units per tau counts as static on that axis: it moves by less than
-/// kUnitError while it crosses the mesh.
+/// A ray that moves by fewer units per tau along an axis counts as static on it: it moves by less
+/// than kUnitError while it crosses the mesh.
 inline constexpr double kStaticRate = 0.01;
 inline constexpr double kStaticInverse = 1e30;
 /// A larger slack would also leave all triangles uncertain, so slack is clamped to this.
@@ -242,14 +242,16 @@ template <typename L>
   return L(2.1 * 3.0 * mesh.units_volume) * longest * far * (L(0x1p-48) * far + L(4.0) * slack);
 }
 
-/// Computes the part of [0, limit] in which a ray is within bounds on one axis, grown by its slack.
+/// Computes the part of [0, limit] in which a ray is within bounds on one axis, which are grown by
+/// `slack`.
 template <typename L>
 struct AxisInterval {
   const L slack;
   const L limit;
 
-  /// Returns when the ray enters the bounds (0 if it begins inside) and sets `leaves`, which is
-  /// negative if the ray is static outside them. Zero times infinity gives NaN, which compares
+  /// Returns the time at which the ray enters the bounds (0 if it begins inside), and sets `leaves`
+  /// to the time at which it leaves them. `leaves` is negative if the ray is outside the bounds and
+  /// does not move along the axis. Zero times infinity gives NaN, which compares
   /// false and narrows nothing.
   [[gnu::always_inline]] L operator()(const L& from, const L& way, const L& inverse, const L& least,
                                       const L& most, L& leaves) const {

@@ -559,7 +559,7 @@ class RayTraversal {
   std::uint32_t far_bound_[3];
   double limit_;
   float last_;
-  /// No key of a node that is entered by then is larger.
+  /// Upper bound on the keys of nodes that the ray enters by `last_`.
   float last_key_;
   /// For rays side by side: the next node, and the last leaf to be tested.
   RayNode node_;

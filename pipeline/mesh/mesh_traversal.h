@@ -57,8 +57,8 @@ void mesh_near_pairs(const MeshView& a, const MeshView& b, const MeshPlacement& 
                      const double error_bound[3], double limit,
                      const SlotPairVisitor& visitor) noexcept;
 
-// The traversals below pass to the visitor slots of one leaf at a time, or some of them, nearest
-// first. The limit that it returns replaces the old one; a negative limit ends the traversal.
+// The traversals below call the visitor with slots of one leaf at a time, nearest first. The limit
+// that the visitor returns replaces the old one; a negative limit ends the traversal.
 
 /// Visits slots of triangles whose boxes the moving box [min, max] + t * direction may overlap at
 /// some t in [0, limit], roughly in order of t.

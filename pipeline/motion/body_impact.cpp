@@ -17,9 +17,10 @@ namespace {
 
 /// Limit on the halvings of an interval.
 constexpr int kMaxHalvings = 12;
-/// An interval is halved if its box touches more parts than this,
+/// An interval is halved if its swept box touches more parts than this and is loose (see kLoose).
 constexpr int kFewParts = 8;
-/// and its growth plus, for two composite shapes, its length exceed this fraction of the radius.
+/// A swept box is loose if its growth exceeds this fraction of the radius. For two composite
+/// shapes, the length of its path is added to the growth.
 constexpr double kLoose = 0.04;
 
 void grow(double by, BoxSweep& box) noexcept {

@@ -95,8 +95,8 @@ struct ClosestLanes {
 
 /// Required accuracy of a distance.
 struct ClosestOptions {
-  /// Relative to the distance minus `roundings`; if that is below `precise`, as accurate as
-  /// possible.
+  /// Largest error relative to the distance minus `roundings`. If this difference is below
+  /// `precise`, the distance is computed as accurately as possible.
   double share;
   const Doubles& roundings;
   const Doubles& precise;

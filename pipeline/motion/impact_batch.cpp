@@ -77,8 +77,8 @@ class StartDistances {
     ++job_.count;
   }
 
-  /// Stores the impact of each pair that certainly overlaps where the callback, given the query's
-  /// index, returns; clears the stage.
+  /// Calls decided(index of the query) for each pair that certainly overlaps, and writes its impact
+  /// to the reference that the callback returns. Clears the stage.
   template <typename Known>
   void run(Known&& decided) noexcept {
     if (job_.count != 0) answer(decided);

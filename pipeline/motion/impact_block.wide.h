@@ -38,9 +38,9 @@ struct PairLanes {
   /// not rotate, of the next one.
   Doubles time;
   Vector axis;
-  /// For pairs that rotate: 1 if the next sample must prove that they are disjoint until then. For
-  /// pairs that do not: 1 if the axis cannot be improved; with a closed form, 1 if the sample is
-  /// ahead of the proved time, below 0 if no more such samples are allowed.
+  /// A flag, by method. Pairs that rotate: 1 if the next sample must prove that they are disjoint
+  /// until then. GJK: 1 if the axis cannot be improved. Closed form: 1 if the sample is ahead of
+  /// the proved time, below 0 if no more such samples are allowed.
   Doubles proves;
   /// The time until which the pair is proved disjoint.
   Doubles free;
@@ -51,15 +51,15 @@ struct PairLanes {
   /// 1 while the pair is not decided.
   Doubles active;
   SimplexLanes witness;
-  /// For pairs that do not rotate and use guesses (has_guesses).
+  /// For pairs that do not rotate and have guesses (has_guesses): see SecantDirection.
   TriedLanes tried;
-  /// For pairs that do not rotate and use earlier directions (uses_earlier_axes): the unit
-  /// direction with the largest gap, once there is a simplex; and the vector from a's support point
-  /// to b's along it, without the vector between the centres.
+  /// For pairs that do not rotate and use earlier directions (uses_earlier_axes), once there is a
+  /// simplex: `best` is the unit direction with the largest gap, `best_support` the support point
+  /// of b along it minus the support point of a, each relative to the centre of its core.
   Vector best;
   Vector best_support;
-  /// For pairs that rotate: the relative speed; the gap, slope and bend of the last sample; the
-  /// time of the next sample; and the rest as in ImpactSearch.
+  /// The members from here on are for pairs that rotate. Relative speed; gap, slope, curve and bend
+  /// of the last sample; time of the next sample (`next`); `touching` and `aim` as in ImpactSearch.
   Doubles speed;
   Doubles gap;
   Doubles slope;

@@ -63,7 +63,7 @@ struct TurningAlong {
   Doubles acceleration;
 };
 
-/// `high` is the support of the core where it is placed.
+/// `high` is the support of the core at its current placement.
 [[gnu::always_inline]] inline TurningAlong turning_along(const CoreTable& table,
                                                          const MovingCore& core, const Vector& axis,
                                                          const Doubles& high) {
@@ -523,7 +523,7 @@ template <std::size_t First, std::size_t Last, typename Members>
   }
 }
 
-/// Copies the rotation, or the axes if the core is placed for good, and its lengths.
+/// Copies the lengths of a core, and its rotation or, if it does not rotate, its axes.
 inline void move_core(const CoreTable& table, const MovingCore& from, unsigned lane_from,
                       MovingCore& to, unsigned lane_to) {
   constexpr std::size_t kAngle = offsetof(MovingCore, angle);

@@ -376,8 +376,9 @@ bool ImpactSearch::is_impact(double time, double end, const PairSample& sample) 
   return sample.gap + sample.slope * (end - time) <= 0.0 || ++within_ > kMaxSamplesWithin;
 }
 
-/// One step from `time`, where the pair is placed. Returns the time until which the pair is
-/// certainly disjoint. If there is a sample at that time, `sample` becomes this and `known` is set.
+/// One step from `time`, at which the pair is placed. Returns the time until which the pair is
+/// certainly disjoint. If the pair was sampled at that time, writes the sample to `sample` and sets
+/// `known`.
 double ImpactSearch::advance(double time, double end, PairSample& sample, bool& known) noexcept {
   known = false;
   const double free = free_until(time, end, sample);

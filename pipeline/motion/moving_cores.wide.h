@@ -101,7 +101,8 @@ inline constexpr int kTravelAt = 7;
 inline constexpr int kTurnAt = 10;
 static_assert(sizeof(RigidMotion) == 13 * sizeof(double));
 
-/// A core and the rotation of its body. All members are lanes: a block may move lanes as numbers.
+/// A core and the rotation of its body. All members are lanes of double, so that a block can copy a
+/// lane as an array of numbers.
 struct MovingCore {
   /// For cores that rotate: the orientation at the start, the unit axis of rotation, and the range
   /// of the core's points along it.
@@ -122,7 +123,7 @@ struct MovingCore {
   Doubles size;
   /// Corners of a triangle; for a half-space, the first number is its offset.
   Vector corner[3];
-  /// Its axes in the world, where it is placed.
+  /// Rotation from the core's frame to the world, at the time at which the core is placed.
   Rotation<double> axes;
   /// The size that tolerances are relative to.
   Doubles extent;
@@ -139,7 +140,7 @@ struct MovingCore {
 /// The members of a core that are not lanes.
 struct CoreTable {
   ShapeKind kind;
-  /// Its frame has the axes of the world.
+  /// The axes of the core's frame are the axes of the world.
   bool in_world;
   /// Whether the core rotates: never for spheres, for half-spaces only in jobs of
   /// ImpactMotion::plane_turns.

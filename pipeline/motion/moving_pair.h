@@ -54,8 +54,8 @@ struct TurningCore {
   solver::AxisRange along{0.0, 0.0};
   /// From the body's position to the shape's at the start.
   Vec first_arm = Vec::Zero();
-  /// From the body's position to the centre, where the core is placed. Zero for a half-space, whose
-  /// offset is measured from the body's position.
+  /// From the body's position to the core's centre, at the current placement. Zero for a
+  /// half-space, whose offset is measured from the body's position.
   Vec arm = Vec::Zero();
 
   [[nodiscard]] Vec arm_at(double time) const noexcept;
@@ -80,7 +80,7 @@ class MovingPair {
   [[nodiscard]] const solver::Problem& problem() const noexcept { return problem_; }
   [[nodiscard]] const solver::Core& a() const noexcept { return problem_.a; }
   [[nodiscard]] const solver::Core& b() const noexcept { return problem_.b; }
-  /// From the position of body a to the centre of a, where it is placed.
+  /// From the position of body a to the centre of a, at the current placement.
   [[nodiscard]] const Vec& arm() const noexcept { return turn_a_.arm; }
   [[nodiscard]] double roundings() const noexcept { return a().rounding + b().rounding; }
   [[nodiscard]] bool has_half_space() const noexcept {
@@ -102,12 +102,12 @@ class MovingPair {
   /// bodies.
   [[nodiscard]] Interval window() const noexcept;
 
-  /// The gap along a unit axis from a to b where the shapes are placed, minus the noise. For a
+  /// The gap along a unit axis from a to b at the current placement, minus the noise. For a
   /// half-space the axis must be its current normal.
   [[nodiscard]] double gap(const Vec& axis) const noexcept;
-  /// The gap between the volumes that both sweep as they rotate about their axes where they are
-  /// placed. While they travel it closes no faster than `swept_closing`. Minus infinity if there is
-  /// no bound.
+  /// The gap between the volumes that both shapes sweep as they rotate about their axes, at their
+  /// current positions. While the shapes travel, it closes no faster than `swept_closing`. Minus
+  /// infinity if there is no bound.
   [[nodiscard]] double swept_gap(const Vec& axis) const noexcept;
   [[nodiscard]] double swept_closing(const Vec& axis) const noexcept {
     return turn_a_.drift_along(axis) + turn_b_.drift_along(-axis) - axis.dot(travel_);
@@ -119,7 +119,7 @@ class MovingPair {
   /// chord by at most half of this times the product of the times to both ends.
   [[nodiscard]] double curvature(const Vec& axis) const noexcept;
   /// As above, along an axis that rotates uniformly from `from` to `to` during `width`, which ends
-  /// where the pair is placed. Infinite if the axes differ by more than a radian.
+  /// at the current placement. Infinite if the axes differ by more than a radian.
   [[nodiscard]] double curvature_between(const Vec& from, const Vec& to,
                                          double width) const noexcept;
   /// Upper bound on the speed at which two points approach each other.
@@ -135,7 +135,7 @@ class MovingPair {
     return turn_a_.first_arm.norm() + turn_b_.first_arm.norm();
   }
 
-  /// From body a to body b: at time 0, the total change, and where the shapes are placed.
+  /// From body a to body b: at time 0, the total change, and at the current placement.
   Vec between_ = Vec::Zero();
   Vec travel_ = Vec::Zero();
   Vec placed_ = Vec::Zero();

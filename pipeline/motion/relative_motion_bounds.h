@@ -49,7 +49,7 @@ class RelativeMotionBounds {
   /// parts, which are short enough that curvature adds only a few hundredths of the radius.
   [[nodiscard]] PreciseBox box(const Interval& within) const noexcept;
   /// The number of pieces, at most 8, into which to cut the motion before boxes are put around it.
-  /// With enough pieces, each moves by more than the shape's diameter along one axis at most.
+  /// With enough pieces, the shape moves by more than its diameter along at most one axis in each.
   [[nodiscard]] std::uint32_t piece_count() const noexcept;
   /// The times at which the shape may overlap a ball about the frame's position.
   [[nodiscard]] Interval window(double frame_radius) const noexcept {

@@ -11,7 +11,7 @@ namespace winnow {
 namespace {
 
 /// The angle in [0, pi / 2] with sine s and cosine c (both >= 0, not both 0), up to rounding. Each
-/// step adds the sine of the remaining angle, so that only its cube remains.
+/// step adds the sine of the remaining angle, so that an error of about its cube remains.
 double angle_of(double s, double c) noexcept {
   double angle = 1.5 * s / (s + c);
   for (int i = 0; i < 5; ++i) {

@@ -22,8 +22,8 @@ inline constexpr double kGoodGuess = 0.1;
 /// The largest number of samples without a guess after a bad one.
 inline constexpr double kLongestPause = 3.0;
 
-/// The three tested directions with the largest gaps, and the next guess. All members are lanes: a
-/// block may move lanes as numbers.
+/// The three tested directions with the largest gaps, and the next guess. All members are lanes
+/// of double, so that a block can copy a lane as an array of numbers.
 struct TriedLanes {
   /// Unit vectors.
   Vector axis[kSlots];

@@ -104,7 +104,7 @@ Status Collision::run() {
   return Status::ok;
 }
 
-// One batch with seamless floors, because they compare all contacts of a body.
+// All pairs are one batch if ghost contacts are suppressed, which compares all contacts of a body.
 std::uint32_t Collision::batch_size(const SceneOptions& options, std::size_t pairs) noexcept {
   const auto all = static_cast<std::uint32_t>(pairs);
   return options.suppress_ghost_contacts ? all : std::min(all, kPairsPerBatch);

@@ -94,7 +94,7 @@ class Collision {
   void rest_parts() noexcept;
   void rest_regions(const BodyPair& bodies, std::size_t pair) noexcept;
 
-  // Seamless floors (ghost_contacts.cpp).
+  // Suppression of ghost contacts (ghost_contacts.cpp).
   class FloorWriter;
   [[nodiscard]] bool is_carried_over(const BodyPair& pair) const noexcept;
   [[nodiscard]] bool list_floor_contacts();

@@ -70,8 +70,9 @@ double SceneState::gap_of(const BodyPair& pair) const noexcept {
   return std::min(options.margin + own, kLargestLength);
 }
 
-// One limit decides for all pairs which are in contact. `trim` changes the distance of each pair
-// beyond its own contact distance: to the limit plus the excess.
+// One limit decides for all pairs whether they are in contact. `trim`
+// therefore replaces a distance that exceeds the pair's own contact distance by the limit plus the
+// excess.
 void Collision::find_limit() noexcept {
   limit_ = scene_.options.margin;
   if (!scene_.has_offsets()) return;

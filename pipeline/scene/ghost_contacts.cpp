@@ -159,7 +159,7 @@ class FloorGroups {
     for (std::size_t i = contacts_.size(); i-- > 0;) {
       order_[--end_[contacts_[i].group]] = static_cast<std::uint32_t>(i);
     }
-    // Each end is the start now: set it to the start of the next group.
+    // end_[g] was decremented to the start of group g: set it to the start of the next group.
     for (std::size_t g = 0; g < count_; ++g) {
       end_[g] = g + 1 < count_ ? end_[g + 1] : static_cast<std::uint32_t>(contacts_.size());
     }

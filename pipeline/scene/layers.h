@@ -13,8 +13,8 @@
 
 namespace winnow {
 
-/// A symmetric bit matrix of the layers that do not collide, as wide as the highest layer that has
-/// been set apart from another. All other layers collide.
+/// A symmetric bit matrix of the layers that do not collide, as wide as the highest layer that
+/// was excluded from colliding with another. All other layers collide.
 class LayerMatrix {
  public:
   enum class Restored : std::uint8_t { good, refused, out_of_memory };

@@ -99,7 +99,7 @@ Status SceneState::reserve_sets(const SceneCapacity& room, Pages pages) {
     if (status == Status::ok) {
       status = target.partition->reserve_pairs(target.with_dynamic, room.pairs, pages);
     }
-    // One call may add as many bodies as there are: see place_bodies.
+    // A call that adds n bodies grows body_of to its size plus n: see place_boxes.
     if (status == Status::ok && !target.body_of.reserve(2 * bodies, pages)) {
       status = Status::out_of_memory;
     }
@@ -147,9 +147,9 @@ Status SceneState::reserve_answers(const SceneCapacity& room, Pages pages) {
   return Status::ok;
 }
 
-// Lists pairs of the bodies 2 k and 2 k + 1, which have kind k: first one pair for each two kinds,
-// in swapped order so that it must be mirrored, because the narrow phase ends each run of pairs of
-// equal kinds with a partial job; all other pairs are of the first kind.
+// Lists `count` pairs; bodies 2 k and 2 k + 1 have kind k. First comes one pair for each two kinds,
+// because the narrow phase ends each run of pairs of equal kinds with a partial job. These pairs
+// are in swapped order, so that their results must be mirrored. All other pairs are of kind 0.
 bool SceneState::list_rehearsal(std::size_t kinds, std::size_t count) noexcept {
   if (!convex.reserve(count)) return false;
   convex.clear();

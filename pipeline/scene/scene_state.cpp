@@ -299,8 +299,8 @@ Status SceneState::settle(std::span<const BodyDefinition> bodies, std::span<cons
   return status;
 }
 
-// Marks bodies with the second bit of `is_stale` to find duplicates. If all are distinct there are
-// at most as many as slots, which needs no test.
+// Marks bodies with the second bit of `is_stale` to find duplicates. If all are distinct, there are
+// at most as many as slots; the number itself is not tested.
 bool SceneState::are_distinct(std::span<const Key> given) noexcept {
   constexpr std::uint8_t kSeen = 2;
   std::size_t marked = 0;

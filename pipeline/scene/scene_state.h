@@ -158,8 +158,8 @@ struct SceneState {
   /// Scratch: the order of one body's floor contacts.
   Column<std::uint32_t> floor_order;
   SceneStatistics statistics;
-  /// Pairs of bodies to ignore, as (smaller id << 32 | larger id), sorted; and a flag by id of the
-  /// bodies in these pairs, as long as the number of ids at the time of the last set_ignored.
+  /// Pairs of bodies to ignore, as (smaller id << 32 | larger id), sorted; and by id a
+  /// flag of the bodies in these pairs, with one entry for each id that the last set_ignored found.
   Column<std::uint64_t> ignored;
   Column<std::uint8_t> ignores;
   PairPredicate predicate;

@@ -113,8 +113,8 @@ Status SweepState::find_all(const SweepOptions& options) {
   return Status::ok;
 }
 
-/// Returns the time step before which the candidate has no impact, with the candidate's number, or
-/// kNoChance.
+/// Returns kNoChance if the candidate has no impact. Otherwise the upper half of the result is the
+/// time step before which it has none, and the lower half is its number.
 std::uint64_t SweepState::chance_of(std::size_t candidate, double tolerance) const noexcept {
   const auto [a, b] = bodies_of(candidate);
   // A gap within the tolerance is an impact, and rounding may make it earlier.

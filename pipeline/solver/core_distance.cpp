@@ -348,8 +348,8 @@ double test_by_expansion(const Problem& problem, const GjkResult& start, double 
   return gap;
 }
 
-/// For cores that are not separate: returns true if along one of few face normals they do not
-/// overlap either, up to rounding. No axis is better.
+/// For cores that overlap or touch: tests their face normals, if there are few. Returns true if the
+/// cores overlap by no more than rounding along one of them; no other axis is better then.
 bool touch_along_normal(const Problem& problem, AxisSearch& search) noexcept {
   if (normal_count(problem.a) + normal_count(problem.b) > kFewProducts) return false;
   test_normals(problem, search);

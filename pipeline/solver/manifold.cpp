@@ -116,7 +116,8 @@ void SupportingPatch::add_hull(const Core& core, const Vec& outward) noexcept {
   const Vec d = core.rotation.transpose() * outward;
   double height = 0.0;
   const std::uint32_t corner = farthest_vertex(hull, d, height);
-  // If an edge supports, only the two faces that share it count, not the faces at one of its ends.
+  // If the support is an edge, only the two faces that share it count, not the faces at one of its
+  // ends.
   const double least = height - kSamePlace * hull.radius;
   double best = kFaceCosine;
   std::uint32_t most = std::min(count_on_top(hull, d, least), 2U);
@@ -189,8 +190,8 @@ void SupportingPatch::add_taper(const Core& core, const Vec& outward) noexcept {
 
 namespace {
 
-/// Keeps the points that are in the plane of the three points that span the most. Returns their
-/// number.
+/// Keeps the points that are in the plane of point 0, the point farthest from it, and the point
+/// with which these two span the largest triangle. Returns their number.
 std::uint32_t keep_coplanar(Vec* x, std::uint32_t count) noexcept {
   if (count < 4) return count;
   const Vec far = *std::max_element(x + 1, x + count, [&](const Vec& p, const Vec& q) {

@@ -71,9 +71,9 @@ template <int Slabs>
 
 #if !defined(WINNOW_ISA_IS_neon64)
 
-/// Four floats of each box, partly transposed, for the lanes of a register. Each 128 bits of row i
-/// hold a box of lane i, i + 4, i + 8 and i + 12, so that shuffles within 128 bits leave the lanes
-/// in order.
+/// Transposes four floats of each box. Each 128-bit part of row i holds one box: lane i in the
+/// first part, then lanes i + 4, i + 8 and i + 12 if the register has more parts. Shuffles within
+/// 128 bits then leave the lanes in order.
 struct BoxQuads {
 #if defined(WINNOW_ISA_IS_avx512)
   using Row = __m512;

@@ -7,7 +7,7 @@
 
 namespace winnow::WINNOW_ISA_NAME {
 
-/// Lane-wise maximum; at least one of two lanes must be positive, none NaN.
+/// Lane-wise maximum; at least one of the two lanes must be positive, and no lane may be NaN.
 [[gnu::always_inline]] inline Floats larger_positive(const Floats& a, const Floats& b) {
   Floats r;
   for (int i = 0; i < Floats::kParts; ++i) {
@@ -28,7 +28,8 @@ namespace winnow::WINNOW_ISA_NAME {
   return r;
 }
 
-/// Lane-wise minimum if both lanes are positive, otherwise a lane that is not; none may be NaN.
+/// Lane-wise minimum if both lanes are positive; otherwise one of the lanes that are not positive.
+/// No lane may be NaN.
 [[gnu::always_inline]] inline Floats smaller_positive(const Floats& a, const Floats& b) {
   Floats r;
   for (int i = 0; i < Floats::kParts; ++i) {

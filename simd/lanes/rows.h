@@ -33,9 +33,9 @@ namespace winnow::WINNOW_ISA_NAME {
 
 #if defined(WINNOW_ISA_IS_avx512)
 
-/// Returns the smallest (largest) of the floats [16 i, 16 i + 16) of 256 in lane i; `p` must be
-/// 64-byte aligned. It is a transposition that halves the data by min (max) at every step, which
-/// takes fewer instructions than sixteen reductions.
+/// Reduces 256 floats to 16 lanes: lane i of the result is the smallest (largest) of floats [16 i,
+/// 16 i + 16). `p` must be 64-byte aligned. The method is a transposition that halves the data by
+/// min (max) at every step, which takes fewer instructions than sixteen reductions.
 template <typename Pick>
 inline Floats reduce_rows(const float* p, Pick&& pick) {
   __m512 quad[4];

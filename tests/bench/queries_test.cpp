@@ -123,7 +123,7 @@ TEST_F(Comparisons, rounding_is_allowed_to_float_engines_only) {
   const float later = std::nextafter(1.0F, 2.0F);
   EXPECT_TRUE(in_float({{0, 1.0F}}, {{0, later}}).agree());
   EXPECT_FALSE(exactly({{0, 1.0F}}, {{0, later}}).agree());
-  ask(QueryType::closest, 1.0F);  // along an edge: a ray that is computed in float may miss
+  ask(QueryType::closest, 1.0F);  // along an edge: engines in float may miss it
   boxes_[0].max.y() = boxes_[1].max.y() = std::nextafter(1.0F, 2.0F);
   set_.rays[0].direction = {1.0F, 1e-9F, 0.0F};
   const Comparison grazing = in_float({{0, 1.0F}}, {});

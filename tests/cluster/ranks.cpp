@@ -30,12 +30,12 @@ winnow::Status add(winnow::Cluster& cluster, winnow::BodyName name) {
   return cluster.add({&batch, 1}, {&answer, 1});
 }
 
-/// The call of all ranks except the strange one.
+/// Makes the call that all ranks make except the one that calls strange().
 winnow::Status common(winnow::Cluster& cluster, const std::string& kind) {
   winnow::ClusterDigest digest;
   if (kind == "late_for_exchange") return add(cluster, 10 + cluster.first_hosted());
   if (kind == "late_for_sums") return cluster.digest(digest);
-  return cluster.self_pairs();  // begins with a cut
+  return cluster.self_pairs();  // begins with a repartitioning
 }
 
 winnow::Status strange(winnow::Cluster& cluster, const std::string& kind) {

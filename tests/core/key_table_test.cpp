@@ -56,7 +56,7 @@ TEST(KeyTable, batch_of_keys_equals_single_keys) {
   const std::vector<ClientData> data{10, 11, 12, 13};
   table.acquire(20, data, keys, Execution::parallel());
   EXPECT_EQ(table.size(), 7U);
-  EXPECT_EQ(keys[0].id, 3U);  // freed ids first, the last freed id first
+  EXPECT_EQ(keys[0].id, 3U);  // freed ids, the last freed one first
   EXPECT_EQ(keys[1].id, 1U);
   EXPECT_EQ(keys[2].id, 5U);
   EXPECT_EQ(keys[3].id, 6U);

@@ -177,7 +177,7 @@ TEST(Rounding, sums_round_outward_in_every_float_mode) {
         up = add_up(a, b);
       }
       inward += down == add_down(a, b) && up == add_up(a, b) ? 0U : 1U;
-      // In exact arithmetic, whose terms must not be denormal.
+      // The exact sum below needs terms that are far from denormal.
       if (std::abs(a) < 1e-250 || std::abs(b) < 1e-250) continue;
       const Exact sum = Exact(a) + Exact(b);
       inward += Exact(down) <= sum && sum <= Exact(up) ? 0U : 1U;

@@ -98,7 +98,7 @@ class Field {
     PairBuffer buffer;
   };
   std::vector<Player> players_;
-  std::vector<Key> keys_;  // of any player: the ids are equal in all
+  std::vector<Key> keys_;  // of the last player; the ids of all are equal
 };
 
 class Differential : public testing::TestWithParam<Case> {};

@@ -375,7 +375,7 @@ void ContactsModel::check_pairs(const ModelScene& world, ContactLevel level,
       if (!world.may_pair(first->second, second->second)) continue;
       const Sides pair = sides(first->second, second->second);
       const bool has_seams = whole && (is_floor(pair.a) || is_floor(pair.b));
-      // At level pairs boxes overlap: no touching pair may be missing.
+      // At level `pairs` the scene reports pairs of boxes, which must include all touching pairs.
       const ContactLevel asked = std::max(level, ContactLevel::boolean);
       const ModelManifolds fresh = has_seams ? whole->contacts(pair.a, pair.b)
                                              : reference.contacts(world, asked, pair.a, pair.b);
@@ -404,7 +404,8 @@ void ContactsModel::check_not_shown(const ModelScene& world, ContactLevel level,
 
 namespace {
 
-/// Returns true if `shown` may be `made`, carried over from the poses `from` to the poses `to`.
+/// Returns true if `shown` can be the result of carrying `made` over from the poses `from` to the
+/// poses `to`.
 [[nodiscard]] bool is_carried(const ModelManifold& shown, const ModelManifold& made,
                               const Pose (&from)[2], const Pose (&to)[2], double carry_over,
                               double radius_a) {

@@ -98,7 +98,7 @@ class ContactsModel {
   /// The contacts have no history from here on.
   void forget();
 
-  /// Number of manifolds so far that were carried over unchanged from before a move.
+  /// Number of manifolds so far that were computed before a move and carried over unchanged.
   std::uint64_t carried = 0;
 
  private:

@@ -61,7 +61,8 @@ std::vector<std::string> fuzz_seeds() {
                                  file_of(17, 1, 2),
                                  file_of(2, 1000, 1)};
   const std::string whole = file_of(2, 1, 2);
-  // Changes each byte of the header and some bytes after it, and tries every length.
+  // Changes every 37th of the first 256 bytes, which are two texts, and each byte after them; also
+  // truncates the file before each of these bytes.
   for (std::size_t i = 0; i < whole.size(); i += i < 256 ? 37 : 1) {
     for (const char other : {'\0', '\x7F', '\x80', '\xFF'}) {
       seeds.push_back(whole);

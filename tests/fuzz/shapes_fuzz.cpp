@@ -152,7 +152,7 @@ void Workshop::add(Bytes& bytes) {
     if (is_small || id.kind() == ShapeKind::half_space) ids_.push_back(id);
     return;
   }
-  // Numbers near the ends of double may turn a hull into none.
+  // `good` is not tested here: a hull of numbers near the ends of double may be rejected too.
   WINNOW_HOLDS(status == Status::invalid_shape || status == Status::unsupported);
   WINNOW_HOLDS(id == ShapeId{} && pool_.footprint().total().used == reserved);
   WINNOW_HOLDS(std::equal(before.count, before.count + kShapeKinds, pool_.tables().count));

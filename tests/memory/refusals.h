@@ -36,11 +36,11 @@ struct Call {
   std::function<Status(World&)> run;
 };
 
-/// Runs a list of calls on a world whose memory resource refuses the k-th request of one call,
-/// either only that request or all from it on; for each call, and for each k until the call makes
-/// fewer requests. A call that returns `out_of_memory` must leave the digest as it was and must
-/// succeed once memory is available. The remaining calls must then give the keys, ids and results
-/// of a run without refusals.
+/// Runs a list of calls again and again. In each run the memory resource refuses the k-th request
+/// of one call: only this request, or this one and all later ones. Each call and each k has its
+/// turn, up to the number of requests that the call makes. A call that returns `out_of_memory` must
+/// leave the digest as it was and must succeed once memory is available. The remaining calls must
+/// then give the keys, ids and results of a run without refusals.
 ///
 /// A World is constructed with a memory resource and has `void describe(Digest&) const`, which
 /// appends all its observable state and the results of the calls so far.

@@ -8,7 +8,7 @@ namespace winnow_mutants {
 
 /// The mutant that this process runs, from WINNOW_MUTANT; -1 for none.
 extern const int chosen;
-/// Which mutants were executed.
+/// Nonzero for each mutant that was executed.
 extern unsigned char reached[];
 
 [[gnu::noinline]] void note(int mutant) noexcept;

@@ -310,7 +310,7 @@ TEST_P(FilterWork, nodes_without_accepted_objects_are_skipped) {
   PairBuffer buffer;
   ASSERT_EQ(world.self_pairs(buffer), Status::ok);
   const std::uint64_t all = world.partition().statistics().last_tests;
-  // The filters reject all other objects, except for a few objects.
+  // The filters accept only pairs that contain one of ten objects.
   std::vector<ObjectFilter> filters(keys.size(), ObjectFilter{2, 1, 0});
   for (std::size_t i = 0; i < 10; ++i) filters[i * 400] = {1, 3, 0};
   world.set_filter(keys, filters);

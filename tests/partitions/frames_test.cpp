@@ -19,8 +19,7 @@ constexpr std::size_t kFew = 133;
 
 class Frames : public Conformance {
  protected:
-  // Calls `body` with scenes that fill the regular part of every partition and with one that does
-  // not.
+  // Calls `body` with a uniform, a mixed and a clustered scene.
   template <typename Body>
   void from_each_start(std::size_t wanted, const Body& body) {
     // Partitions that report every pair are compared with every pair.

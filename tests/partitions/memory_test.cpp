@@ -209,7 +209,8 @@ TEST(EventsMemory, refused_reserve_of_events_succeeds_later) {
   EXPECT_GT(refused, 10U);
 }
 
-// A tree has room for more blocks, but not for more blocks and another level.
+// Memory that was reserved for a number of blocks suffices for fewer blocks, also if their tree has
+// another number of levels.
 TEST(TreeMemory, reserve_suffices_for_smaller_trees_of_other_depth) {
   constexpr std::size_t kObjects = 3900 * 16;
   const std::vector<Aabb> boxes = uniform_boxes(kObjects);

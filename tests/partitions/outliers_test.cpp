@@ -113,7 +113,7 @@ std::vector<Config> grids() {
 
 class Leavers : public Conformance {};
 
-// With this many cells a task reads several lines, each of which objects may have left.
+// With this many cells a task reads several lines of cells, and objects may have left any of them.
 TEST_P(Leavers, objects_that_leave_cells_miss_no_pair) {
   World world(config());
   std::vector<Aabb> boxes = uniform_boxes(12000);
@@ -131,8 +131,8 @@ TEST_P(Leavers, objects_that_leave_cells_miss_no_pair) {
 
 class Newcomers : public Conformance {};
 
-// The tail grows and shrinks by a few blocks, is sorted, and gives objects to the order, with and
-// without filters.
+// The tail (see rows.h) grows and shrinks by a few blocks, is sorted, and its objects are moved
+// into the order, with and without filters.
 TEST_P(Newcomers, newcomers_miss_no_pair) {
   for (const bool filtered : {false, true}) {
     World world(config());

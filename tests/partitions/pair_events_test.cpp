@@ -212,7 +212,8 @@ TEST_P(Events, events_follow_any_sequence_of_calls) {
 }
 #endif
 
-// So few objects change that the buffer is updated by its links; pairs of all others stay in place.
+// So few objects change that the buffer is updated through its links (linked_pairs.h); the pairs of
+// all other objects stay in place.
 TEST_P(Events, events_follow_few_objects_among_many) {
   for (const std::uint64_t stream : {1U, 2U, 3U}) {
     World world(config());
@@ -582,7 +583,8 @@ TEST(EventsOfAnyConfig, events_are_equal_in_every_config) {
           move(frame % 2 == 0 ? Motion::few : Motion::little, boxes, random);
           world.update(keys, boxes);
         } else {
-          // So few changes that the buffer is updated by its links.
+          // Only one object changes, so that the buffer is updated through its links
+          // (linked_pairs.h).
           const std::size_t at = random.below(keys.size());
           boxes[at] = boxes[random.below(keys.size())];
           world.update(keys[at], boxes[at]);

@@ -282,7 +282,8 @@ TEST_P(RestingScenes, infinite_huge_tiny_and_flat_boxes_are_right) {
   }
 }
 
-// Here nearly all pairs of boxes smaller than the margin would have to be watched.
+// Nearly all pairs of the tiny boxes would have to be watched (resting.h), so that the scene does
+// not count as resting.
 TEST_P(RestingScenes, tiny_boxes_among_large_ones_prevent_rest) {
   std::vector<Aabb> boxes = uniform_boxes(kCount);
   for (std::size_t i = 0; i < kCount / 2; ++i) boxes.push_back(tiny_box());
@@ -442,7 +443,7 @@ TEST_P(RestingScenes, steady_frames_do_not_allocate) {
   EXPECT_EQ(memory_.requests() + results_.requests(), requests);
 }
 
-// Nor if every frame has another query that needs the current rows.
+// Frames do not allocate either if each has another query that needs the current rows.
 TEST_P(RestingScenes, steady_frames_with_queries_do_not_allocate) {
   start(uniform_boxes(kCount));
   PairBuffer buffer(&results_);

@@ -89,7 +89,8 @@ std::vector<Aabb> passed_on(const std::vector<Aabb>& boxes, std::size_t by) {
   return next;
 }
 
-// Orders are then split by cells, if cells separate the objects.
+// After all objects have changed places, the order is split by cells, if cells separate the
+// objects.
 TEST(LinearBvhOrder, torn_order_is_right_and_independent_of_threads) {
   constexpr std::size_t kObjects = 18000;  // more than fit into one set of tiles
   const std::vector<Aabb> one_place(kObjects / 40, Aabb{{1, 2, 3}, {2, 3, 4}});
@@ -234,7 +235,8 @@ TEST(LooseFactor, move_by_half_the_size_keeps_the_node) {
   ASSERT_EQ(tree.refresh(), Status::ok);
   const Statistics before = tree.statistics();
   for (Aabb& box : boxes) {
-    // In units of the edge of the box, which is no longer than its cell; the looseness is larger.
+    // A step of 0.6 edges is shorter than the looseness of the node, whose cell is at least as
+    // large as the box.
     const float step = 0.6F * (box.max.x() - box.min.x());
     as_eigen(box.min).array() += step;
     as_eigen(box.max).array() += step;

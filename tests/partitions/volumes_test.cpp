@@ -107,7 +107,7 @@ TEST_P(Volumes, pairs_of_spheres_are_right) {
   for (const double scale : {1.0, 1e-12, 1e12}) {
     Partition partition = make(Volume::sphere);
     std::vector<Sphere> spheres = spheres_around(mixed_boxes(600));
-    // Touching spheres on a lattice, of which rounding must not lose a pair.
+    // Touching spheres on a lattice: rounding must not lose a pair.
     for (int i = 0; i < 60; ++i) {
       spheres.push_back(
           {{static_cast<float>(i % 5), static_cast<float>(i / 5 % 4), static_cast<float>(i / 20)},

@@ -86,7 +86,7 @@ TEST(CarryOver, first_contact_among_resting_pairs_begins) {
   EXPECT_TRUE(contacts.ended().empty());
 }
 
-/// A second Contacts object calls collide while the pair sleeps.
+/// `collide` is called with a second Contacts while the pair sleeps.
 TEST(CarryOver, pair_moved_while_asleep_is_recomputed) {
   Balls balls(2, -0.01);
   Contacts contacts;

@@ -315,7 +315,7 @@ TEST(InternalEdges, ridges_and_borders_keep_their_normals) {
   for (const Eigen::Vector3d& normal : on_ridge.normals) {
     EXPECT_LT((normal + Eigen::Vector3d::UnitZ()).norm(), 1e-9);
   }
-  // Off the border of a floor the normal points from the ball to the edge.
+  // Beyond the border of a floor the normal points from the ball to the edge.
   const ShapeId floor = add(pool, grid(4, 0.5F, Cut::same, [](float, float) { return 0.0F; }));
   const Landing off = land(shapes, pool, ball, Pose::at(1.3, 0.1, 0.35), floor, Pose{},
                            ContactLevel::manifold, 0.0);
@@ -425,8 +425,8 @@ TEST(InternalEdges, smoothing_matches_on_threads_and_without_memory) {
   }
 }
 
-/// Returns the contacts of the first body, which touches only the ground. Each manifold also adds
-/// its distance as a point.
+/// Returns the contacts of the first body, which touches only the ground. Before the points of each
+/// manifold, one point has the distance of the manifold as its depth.
 std::vector<ContactPoint> points_of_first(const CompositeWorld& world, ShapeId first,
                                           ShapeId ground, std::span<const ShapeId> others,
                                           ContactLevel level) {

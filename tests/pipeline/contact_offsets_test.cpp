@@ -188,7 +188,6 @@ TEST(ContactOffsets, bad_offsets_are_refused_and_change_nothing) {
   EXPECT_EQ(scene.set_offsets(Key{}, {}), Status::invalid_key);
 }
 
-/// The largest doubles cause no NaN.
 TEST(ContactOffsets, largest_doubles_cause_no_nan) {
   SceneWorld world(20, 75);
   const double most = std::numeric_limits<double>::max();

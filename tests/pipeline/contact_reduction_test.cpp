@@ -382,8 +382,8 @@ TEST(ContactReduction, stable_raw_contacts_stay_stable_when_reduced) {
           }
         }
         ASSERT_EQ(reduced.contacts.manifolds(), 1U);
-        // At least a quarter of the diameter inside: the four points that are kept of a round face
-        // form a square in it.
+        // Skips poses in which the origin is less than a quarter of the diameter inside: of a round
+        // face, reduction keeps four points, which form a smaller square.
         if (all.empty() || depth_in_hull(all, Vec::UnitZ()) < 0.3) continue;
         ++stood;
         EXPECT_GT(depth_in_hull(reduced.points(0), Vec::UnitZ()), 0.0);

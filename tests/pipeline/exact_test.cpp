@@ -810,7 +810,8 @@ TEST(ExactOverlap, common_motion_keeps_verdict) {
         Pair pair;
         HullColumns columns[2];
         set_lattice(random, pair, columns);
-        // Only the vertices set the shapes apart, so that a common pose keeps the verdict exact.
+        // Both shapes have the same pose and differ only in their vertices: any other common pose
+        // must give the same verdict.
         pair.poses[0] = pair.poses[1] = {};
         const ExactVerdict truth = lattice_truth(pair.tables(), ShapeId::of(a, 0), pair.poses[0],
                                                  ShapeId::of(b, 1), pair.poses[1]);

@@ -4,9 +4,9 @@
 
 namespace winnow::test {
 
-/// Facts about two moving features, proved in exact arithmetic. No touch before `from`. If `touch`,
-/// they touch in [from, to]; if `apart`, they never touch. Neither is set if the question stays
-/// open.
+/// Facts about two moving features, proved in exact arithmetic. They do not touch before `from`. If
+/// `touch` is set, they touch in [from, to]; if `apart` is set, they never touch. If neither could
+/// be proved, neither is set.
 struct ExactImpact {
   bool touch = false;
   bool apart = false;

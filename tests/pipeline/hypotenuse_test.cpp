@@ -1,4 +1,5 @@
-// Functions computed without the C library, whose last digits differ between machines.
+// Functions that winnow computes itself, because the last digits of the C library differ between
+// machines.
 
 #include <gtest/gtest.h>
 

@@ -24,7 +24,7 @@ using Vertices = std::vector<Eigen::Vector3f>;
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInf = std::numeric_limits<float>::infinity();
 
-/// Returns the sorted caller's numbers of the triangles whose boxes overlap [min, max].
+/// Returns the triangles whose boxes overlap [min, max], by the caller's numbers, ascending.
 Slots numbers_in(const TriangleMesh& mesh, const double min[3], const double max[3]) {
   Slots slots(mesh.triangles());
   SlotSink sink{slots.data(), slots.size(), 0};

@@ -473,7 +473,7 @@ TEST_F(Meshes, ray_visits_triangle_at_which_it_aims) {
   }
 }
 
-/// Returns whether a ray from `from` along `way` is given the triangle at which it is aimed.
+/// Returns whether the traversal of the ray from `from` along `way` reports triangle `aim`.
 bool is_shown(const TriangleMesh& mesh, const Eigen::Vector3d& from, const Eigen::Vector3d& way,
               std::uint32_t aim) {
   SurfaceRay ray{};
@@ -538,7 +538,8 @@ TEST(MeshRays, rays_hit_flat_and_thin_meshes) {
   }
 }
 
-/// The triangles that each of several rays is given: the time of the hit, or -1 if it is in doubt.
+/// The triangles that a traversal reports for each of several rays, with the time of the hit, or -1
+/// if the hit is in doubt.
 struct SeenByRays {
   std::map<std::uint32_t, double> slots[kRaysAtOnce];
 

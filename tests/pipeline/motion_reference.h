@@ -78,7 +78,8 @@ enum class Before : std::uint8_t {
 /// Returns the pose of a body at a time relative to `origin`, computed in long double.
 [[nodiscard]] Pose place_at(const RigidMotion& motion, double time, const double (&origin)[3]);
 
-/// Returns the smaller half size of the two shapes, or the other one if it is zero or unbounded.
+/// Returns the smaller half size of the two shapes, or the larger one if the smaller is 0. The half
+/// size of a half-space counts as 0.
 [[nodiscard]] double size_of(const ShapePool& pool, const MovingShapes& pair);
 
 /// Returns the error of the solver beyond its bound: not zero for curved shapes beside much larger

@@ -117,8 +117,8 @@ inline ShapeId add_sheet(CompositePool& pool, std::uint32_t n) {
   return id;
 }
 
-/// Adds `count` convex bodies of all kinds in a cube of which they fill about a tenth, and some
-/// composite ones, around (center, center, center).
+/// Adds `count` convex bodies of all kinds, which fill about a tenth of a cube around (center,
+/// center, center), and some composite ones.
 inline void fill(QueryWorld& world, std::size_t count, double center, Random& random) {
   world.center = center;
   const double spread = world.size = 1.5 * std::cbrt(static_cast<double>(count));

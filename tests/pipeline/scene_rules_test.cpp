@@ -1,5 +1,5 @@
-// Questions about two bodies and about sets of them take the pairs that the scene itself would
-// make.
+// Queries about two bodies and about sets of bodies consider exactly the pairs that Scene::collide
+// would generate (PairRules::scene).
 
 #include <gtest/gtest.h>
 #include <winnow/pipeline/scene_queries.h>
@@ -23,7 +23,8 @@ Ids ids_of(const KeyPair& pair) {
   return {pair.first.id, pair.second.id};
 }
 
-/// Bodies of every kind of shape with random rules, and what is true of each two of them.
+/// Bodies with shapes of every kind and with random motions, filters, layers, ignored pairs and
+/// predicates; and the distance of each two bodies.
 class RuledWorld {
  public:
   explicit RuledWorld(Random& random) {
@@ -49,7 +50,8 @@ class RuledWorld {
     return distance_[a * size() + b];
   }
 
-  /// By all that the scene was told, not by what it made of that.
+  /// Returns whether the two bodies may form a pair, computed from the arguments that the scene was
+  /// given and not from its state.
   [[nodiscard]] bool filters_allow(std::size_t a, std::size_t b) const {
     const BodyDefinition& one = world_.bodies[a];
     const BodyDefinition& other = world_.bodies[b];
@@ -114,7 +116,7 @@ class RuledWorld {
   std::vector<double> distance_;
 };
 
-/// A set of bodies by their numbers.
+/// A random set of bodies: their indices and keys.
 struct Chosen {
   Chosen(const RuledWorld& world, std::size_t count, Random& random) {
     for (std::size_t i = 0; i < count; ++i) {
@@ -126,7 +128,8 @@ struct Chosen {
   std::vector<Key> keys;
 };
 
-/// All pairs of two sets that the rules take and that are no farther apart than a margin, in order.
+/// Returns, in order, all pairs of two sets that the rules allow and whose distance is at most the
+/// margin.
 std::vector<Ids> brute_pairs(const RuledWorld& world, const Chosen& a, const Chosen& b,
                              double margin, PairRules rules) {
   std::vector<Ids> found;
@@ -234,7 +237,7 @@ TEST(SceneRules, any_contact_of_scene_matches_brute_force) {
       expect_whole_scene(world, queries, 0.0, rules);
       expect_whole_scene(world, queries, random.uniform(0.0, 1.0), rules);
     }
-    // Down to the last pair: each that was answered is ignored from then on.
+    // Ignores each pair that is returned, until there is none left.
     for (std::size_t n = 0; n < world.size() * world.size(); ++n) {
       KeyPair pair;
       ASSERT_EQ(queries.any_contact(pair), Status::ok);
@@ -248,7 +251,7 @@ TEST(SceneRules, any_contact_of_scene_matches_brute_force) {
   }
 }
 
-/// A chain of capsules of which each touches the next, and a fixed box under its end.
+/// A chain of capsules, each of which overlaps the next, and a fixed box 0.1 beyond its end.
 struct Robot {
   static constexpr int kLinks = 5;
 

@@ -458,7 +458,8 @@ TEST_P(Solver, witness_points_lie_on_both_shapes) {
     const Vec n = Vec::Map(answer.normal);
     const Vec on_a = Vec::Map(answer.point) * scale;
     const Vec on_b = on_a + n * (answer.distance * scale);
-    // An unproved part of the distance may move its points by its square root.
+    // If a part of the distance is unproved, the points may be off by its square root, relative to
+    // the size.
     const double gap = answer.error_bound * scale / problem.size;
     const double unproved = gap > 1e-13 ? 4.0 * std::sqrt(gap) : 0.0;
     const double tolerance = problem.size * (solver_pair.relative_error() + unproved);

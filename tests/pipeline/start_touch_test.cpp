@@ -273,9 +273,8 @@ void for_all(std::uint64_t stream, bool may_turn, Test&& test) {
   }
 }
 
-/// Checks that the time is when the mover reaches the wall. The time may be later by `gap`, since a
-/// part of the mover above or below the floor reaches walls that lean or have no foot in the floor
-/// later.
+/// Checks that the mover reaches the wall at `time`. A mover that starts above or below the floor
+/// may reach the wall a little later, if the wall leans or does not begin at the floor.
 [[nodiscard]] testing::AssertionResult is_at_wall(double time, const SlideLevel& level,
                                                   const SlideMover& mover, double gap) {
   const double first = (kWall - kStart - mover.reach) / kWay;

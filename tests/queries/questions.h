@@ -19,7 +19,7 @@ namespace winnow::test {
 [[nodiscard]] std::vector<Cast> some_casts(std::span<const Aabb> boxes, std::size_t count,
                                            Random& random);
 
-/// A scene with queries and their right results; object ids number the boxes.
+/// A scene with queries and their right results. The id of an object is the index of its box.
 struct QuestionSet {
   std::string name;
   std::vector<Aabb> boxes;

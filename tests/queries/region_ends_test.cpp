@@ -86,7 +86,7 @@ TEST(RegionEnds, planes_separate_exactly_at_their_surface) {
   const auto below = [&](int most) {
     return static_cast<std::int64_t>(random.below(static_cast<std::size_t>(most)));
   };
-  // One plane decides; there are no or five other planes.
+  // One plane decides, without other planes or with five others.
   for (const std::size_t count : {1U, 6U}) {
     for (int round = 0; round < 20; ++round) {
       const std::array<std::int64_t, 3> normal{1, 1 + below(3), below(3)};

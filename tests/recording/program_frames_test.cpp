@@ -1,4 +1,4 @@
-// Frames of boxes that the tool makes of a program's recording.
+// Frames of boxes that the tool makes from a program's recording.
 
 #include "bench/recordings/recording.h"
 

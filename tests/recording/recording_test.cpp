@@ -1,5 +1,5 @@
-// Recorded programs are replayed with bit-identical results on any configuration, and untrusted
-// recordings do no harm.
+// Recorded programs are replayed with bit-identical results on any configuration, and invalid
+// recordings are rejected or replayed without a crash.
 
 #include <gtest/gtest.h>
 

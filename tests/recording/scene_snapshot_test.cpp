@@ -1,5 +1,5 @@
-// Loaded scenes, shapes and contacts continue exactly as the saved ones would have, and untrusted
-// snapshots do no harm.
+// Loaded scenes, shapes and contacts continue exactly as the saved ones would have, and invalid
+// snapshots are rejected and change nothing.
 
 #include <gtest/gtest.h>
 

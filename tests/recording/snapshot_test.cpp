@@ -1,5 +1,5 @@
 // Loaded snapshots continue exactly as the saved objects would have: equal keys, equal pairs in
-// equal order, bit-identical results. Untrusted snapshots do no harm.
+// equal order, bit-identical results. Invalid snapshots are rejected and change nothing.
 
 #include <gtest/gtest.h>
 

@@ -70,7 +70,8 @@ float reduce_min_lanes(const float* in) {
 float reduce_max_lanes(const float* in) {
   return reduce_max(Floats::load_unaligned(in));
 }
-/// Writes kScalarResults results of two numbers that fill all lanes.
+/// Writes kScalarResults results, each of an operation on two vectors of lanes. All lanes of a
+/// vector hold the same number.
 template <typename T>
 void do_all(double first, double second, double* out) {
   const Lanes<T> a = Lanes<T>(T(first));

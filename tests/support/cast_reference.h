@@ -10,14 +10,15 @@ namespace winnow::test {
 struct CastTruth {
   bool must = false;  ///< hit: must be reported
   bool may = false;   ///< hit, or missed by no more than the interface allows
-  // If `may`: the first touch is between these times, whose difference the interface allows.
+  // If `may` is true, the first touch is between these times. A cast may return any time between
+  // them.
   double earliest = 0.0;
   double latest = 0.0;
 };
 
-/// The reference implementation. For rays and boxes `must` is the result of exact arithmetic, for
-/// spheres and capsules of long double, except for cases that it cannot decide. An infinite end of
-/// the box counts as the largest float.
+/// The reference implementation. For rays and boxes `must` is decided by exact arithmetic. For
+/// spheres and capsules it is decided by long double: it is false if the error of long double could
+/// change the result. An infinite end of the box counts as the largest float.
 [[nodiscard]] CastTruth truth_of(const Cast& cast, const Aabb& box);
 
 /// Returns true if `t` is the first touch, rounded down to a float.

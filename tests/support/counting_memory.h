@@ -29,7 +29,7 @@ class CountingMemory final : public std::pmr::memory_resource {
   /// Returns the number of requests so far, including refused ones.
   [[nodiscard]] std::size_t requests() const;
   [[nodiscard]] std::size_t refusals() const;
-  /// Returns the requests of other threads than the one that constructed this object.
+  /// Returns the number of requests from threads other than the one that constructed this object.
   [[nodiscard]] std::size_t requests_from_elsewhere() const;
 
   /// Grants `count` more requests and refuses all later ones.

@@ -15,7 +15,7 @@ struct Scene {
   std::vector<Pair> pairs;  ///< objects are numbered like the boxes
 };
 
-/// Created once per process, each with its true pairs.
+/// These scenes are created once per process, each with its true pairs.
 [[nodiscard]] const std::vector<Scene>& random_scenes();
 [[nodiscard]] const std::vector<Scene>& degenerate_scenes();
 [[nodiscard]] const std::vector<Scene>& infinite_scenes();

@@ -17,8 +17,9 @@ struct TinyScene {
   double flat = 0.0;  ///< probability of an axis without extent
 };
 
-/// Boxes at 0 and flat boxes in the planes of the axes; with denormal sizes, positions and gaps;
-/// near the smallest normal number; and all of these among ordinary boxes.
+/// Returns four scenes: flat boxes in the planes of the axes; boxes with denormal sizes, positions
+/// and gaps; boxes with sizes near the smallest normal number; and boxes of all these sizes among
+/// ordinary ones.
 [[nodiscard]] const std::vector<TinyScene>& tiny_scenes();
 
 [[nodiscard]] std::vector<Aabb> boxes_of(const TinyScene& scene, std::size_t count, Random& random);

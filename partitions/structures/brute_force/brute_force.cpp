@@ -60,8 +60,8 @@ class BruteForce : public Structure {
   }
 
  private:
-  // The number of later blocks falls with the block's index; tasks take ranges of blocks with equal
-  // numbers of block pairs. The last x of all blocks (a share) have x^2 of the pairs.
+  // A block is tested against itself and all later blocks, so the last share x of the blocks has a
+  // share x^2 of the pairs of blocks. Tasks take ranges of blocks with equal numbers of pairs.
   [[nodiscard]] std::uint32_t first_block(std::size_t task) const noexcept {
     const std::size_t tasks = pair_tasks();
     if (task >= tasks) return static_cast<std::uint32_t>(pool().blocks());

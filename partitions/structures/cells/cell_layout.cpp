@@ -26,8 +26,8 @@ constexpr double kMaxCells = 2048;  // on an axis
 constexpr double kMinWidening = 1.02;
 constexpr double kTreeQuery = 14.0;  // tests of 16 volumes per object in the tree
 constexpr std::size_t kRowsPerRange = 8192;
-constexpr std::size_t kRowsPerSample = 64;  // the sample has one row in this many, within its
-                                            // limits
+// The sample has one row in this many, within its limits.
+constexpr std::size_t kRowsPerSample = 64;
 
 // Returns the value at index `at` in ascending order. Reorders the values so that lower ones come
 // before the index.

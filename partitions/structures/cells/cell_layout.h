@@ -48,8 +48,8 @@ struct CellDemand {
   double slack_share = 0.3;      ///< of the reach: how far objects may drift on either side
   double cells_per_object = 2;   ///< at most, except with few objects
   bool sweep_fast_axis = false;  ///< the fast axis is sorted, not divided
-  /// Rows of a block, which are tested together; other axes than the fast one get cells at least as
-  /// wide as a cube that holds this many rows. 0: no limit.
+  /// Number of rows that are tested together. On axes other than the fast one, cells are at least
+  /// as wide as a cube that holds this many rows. 0: no limit.
   double rows_per_block = 0;
 
   /// The maximum number of cells for `objects` objects.
@@ -72,8 +72,8 @@ class CellLayout {
   [[nodiscard]] bool reserve(std::size_t cells, Pages pages) noexcept;
 
   [[nodiscard]] bool usable() const noexcept { return usable_; }
-  /// Axes in the order in which cell numbers run: cells along axis 0 (the fast axis) are
-  /// consecutive.
+  /// Returns axis `speed` in the order in which cells are numbered: cells along axis 0 (the fast
+  /// axis) are consecutive.
   [[nodiscard]] const CellAxis& axis(std::size_t speed) const noexcept { return axes_[speed]; }
   [[nodiscard]] std::size_t cells() const noexcept {
     return std::size_t{axes_[0].count} * axes_[1].count * axes_[2].count;

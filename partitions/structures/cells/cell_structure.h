@@ -78,7 +78,8 @@ class CellStructure : public Structure {
     put_all_in_rest(plan);
   }
 
-  /// Appends live rows without a cell in the plan's list to the rest; `regular` rows have one.
+  /// Appends to the rest all live rows that have no cell in the plan's list; `regular` is the
+  /// number of rows that have one.
   void list_rest(std::size_t regular, const RowPlan& plan) const noexcept {
     const std::size_t most = plan.objects - regular;
     for (std::size_t row = 0; row < plan.rows && plan.rest.size() < most; ++row) {

@@ -16,7 +16,7 @@ WINNOW_DEFINE_KERNELS(FlatGridKernels, flat_grid_kernels)
 
 namespace {
 
-// The tree prunes more objects than this in a cell better.
+// If a cell holds more objects than this, the tree prunes them better.
 constexpr std::uint32_t kOverfull = 48;
 constexpr CellDemand kDemand{.rows_per_block = 10};
 

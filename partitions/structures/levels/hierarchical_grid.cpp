@@ -24,20 +24,21 @@ WINNOW_DEFINE_KERNELS(LevelRowsKernels, level_rows_kernels)
 
 namespace {
 
-// The tree prunes more objects than this in a cell better, if a finer division of the line does not
-// separate them.
+// If a cell holds more objects than this, and a finer division of the line does not separate them,
+// the tree prunes them better.
 constexpr std::size_t kCrowd = 512;
 // Objects per cell of a line.
 constexpr std::size_t kInCell = 4;
 constexpr std::size_t kRowsPerRange = 8192;
 constexpr std::size_t kLinesPerRange = 512;
-// A level has a table of lines if it has at most one line for two objects, plus this many.
+// A level has a table of lines if the number of its lines is at most half the number of its objects
+// plus this constant.
 constexpr std::size_t kMoreLines = 16;
 // Padding behind the rows of each level and of the last level, up to the next whole block.
 constexpr std::size_t kMaxHoles = (kMaxLevels + 1) * kBlockRows;
 
-// A colour for each level that is distinct from other debug colours: from the palette of Okabe and
-// Ito, as they are, and darker from the sixth level on.
+// Returns the colour of a level. All differ from the other debug colours: five hues from the
+// palette of Okabe and Ito, darker from the sixth level on.
 Colour level_colour(std::size_t level) noexcept {
   constexpr std::array<Colour, 5> kHues{{kCellColour,
                                          {230, 159, 0, 255},
@@ -86,8 +87,8 @@ Aabb cell_box(const GridLevel& g, const GridLine& line, std::uint32_t number, st
   return box;
 }
 
-/// Returns the position nearest to x whose step lies within the range, or NaN, which is near no
-/// position, if floats are too coarse there to find one.
+/// Returns the position nearest to x whose step lies within the range. Returns NaN, which fails
+/// every comparison, if floats are too coarse to find such a position.
 float nearest_within(const LevelAxis& axis, const StepRange& steps, float x) noexcept {
   constexpr int kMaxTries = 4;
   const std::uint32_t step = cell_at(axis, x);
@@ -183,8 +184,8 @@ class HierarchicalGrid final : public CellStructure {
     Column<std::uint32_t> rank;    // by line number: the first stored line >= it
   };
 
-  /// The rows of a level, sorted by cell. The key line << step_bits | step is above the row in each
-  /// item. If it exceeds 32 bits (not `packed`), the key is only the line.
+  /// The rows of a level, sorted by cell. An item has the row in its low 32 bits and a key above.
+  /// The key is line << step_bits | step or, if that exceeds 32 bits (not `packed`), only the line.
   struct Sorted {
     const std::uint64_t* items = nullptr;
     std::size_t count = 0;
@@ -233,8 +234,8 @@ class HierarchicalGrid final : public CellStructure {
 
   Lines used_;
   Lines planned_;
-  Column<float> key_;  // by row: lower bound on the fast axis, or the nearest position within the
-                       // row's cell
+  // By row: the lower bound on the fast axis, or the position nearest to it within the row's cell.
+  Column<float> key_;
 
   // While planning: the first row of each level, and the progress of the plan.
   std::array<std::uint32_t, kMaxLevels + 1> first_of_level_{};
@@ -283,7 +284,7 @@ bool HierarchicalGrid::reserve(const BuildRoom& room) noexcept {
 
 Planned HierarchicalGrid::plan(const RowPlan& plan, unsigned stage) noexcept {
   if (stage == 0) return begin_plan(plan);
-  // Runs as many steps of levels as one pass over all rows.
+  // Runs steps of levels that take about as long as one pass over all rows.
   for (std::size_t rows = 0; level_ < all_levels_ && 2 * rows < plan.objects;) {
     rows += rows_of_level(plan).size();
     if (!run_step(plan)) return Planned::out_of_memory;
@@ -556,7 +557,7 @@ void HierarchicalGrid::fill_cells(std::span<std::uint32_t> start, const GridLine
   if (most > kCrowd) move_crowds_to_rest(start, plan);
 }
 
-// Moves overfull cells of a line, whose rows are the last ones, to the rest.
+// Moves the rows of overfull cells of a line to the rest. The rows of this line are the last ones.
 void HierarchicalGrid::move_crowds_to_rest(std::span<std::uint32_t> start,
                                            const RowPlan& plan) noexcept {
   std::uint32_t* const rows = plan.regular.data();

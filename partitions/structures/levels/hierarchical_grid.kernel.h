@@ -8,8 +8,8 @@
 namespace winnow {
 
 /// One axis of a level's cells. A formula gives the cell of x, so an axis may have millions of
-/// cells. The formula is monotonic in x with float rounding; this suffices for the cells of a range
-/// of x to contain every object in the range. Objects keep their cell while they drift by up to
+/// cells. The formula is monotonic in x even with float rounding, so the cells from one x to
+/// another contain all objects in between. Objects keep their cell while they drift by up to
 /// `slack`.
 struct LevelAxis {
   std::uint32_t axis = 0;  ///< 0, 1, 2 for x, y, z

@@ -29,8 +29,8 @@ std::size_t range_length(std::size_t rows) noexcept {
   return even_range_length(rows, kMinRows, kMaxSizeRanges);
 }
 
-// The lengths of ranges over which n evenly spread objects have these sums of positions and of
-// their squares.
+// Returns the length of a range on each axis: n objects that are spread evenly over it have this
+// sum of positions and this sum of their squares.
 std::array<double, 3> spread_of(const std::array<double, 3>& sum,
                                 const std::array<double, 3>& square, double n) {
   std::array<double, 3> range{};

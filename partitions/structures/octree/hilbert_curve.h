@@ -15,10 +15,11 @@ struct HilbertCurve {
   static constexpr unsigned kCells = 1U << N;
   static constexpr unsigned kStates = N * kCells;
 
-  /// By state and cell (bit a of a cell selects its half on axis a): the place on the curve and the
-  /// state within the cell, as next << N | place.
+  /// Element state * kCells + cell (bit a of a cell selects its half on axis a) is next << N |
+  /// place: the place of the cell on the curve, and the state within the cell.
   std::array<std::uint8_t, kStates * kCells> step{};
-  /// By state and place: the cell and the state within it, as next << N | cell.
+  /// Element state * kCells + place is next << N | cell: the cell at this place, and the state
+  /// within it.
   std::array<std::uint8_t, kStates * kCells> back{};
 
   constexpr HilbertCurve() noexcept {
@@ -82,8 +83,9 @@ struct HilbertSteps {
   static constexpr unsigned kBits = N * Levels;  // of a cell, and of a place on the curve
   static constexpr unsigned kPlaceMask = (1U << kBits) - 1U;
 
-  /// By state and cell (its coordinate on axis a is shifted by `Levels` * a bits): the place on the
-  /// curve and the state within the cell, as next << kBits | place.
+  /// Element state << kBits | cell is next << kBits | place: the place of the cell on the curve,
+  /// and the state within the cell. The coordinate of a cell on axis a is shifted left by `Levels`
+  /// * a bits.
   std::array<std::uint16_t, std::size_t{HilbertCurve<N>::kStates} << kBits> step{};
 
   constexpr HilbertSteps() noexcept {

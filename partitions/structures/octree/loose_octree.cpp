@@ -20,7 +20,7 @@ constexpr std::size_t kMinNodes = 64;
 // Computing the keys takes about as long as two other passes over the rows.
 constexpr unsigned kKeyStages = 2;
 constexpr std::size_t kRowsOfGroup = 16 * kBlockRows;  // in a node of the tree over the rows
-// The tree sorts longer ranges of objects with equal keys better.
+// Longer runs of objects with equal keys go to the rest, because the tree orders them better.
 constexpr std::size_t kLongRun = 48;
 
 // An upper bound of the rows in most builds of a moving scene.
@@ -298,8 +298,8 @@ class LooseQuadtree final : public LooseTree {
   explicit LooseQuadtree(const StructureInput& input) noexcept : LooseTree(input, 2) {}
 };
 
-// Without costs, so that the automatic choice never takes them: in no measured scene, flat worlds
-// included, were they the cheapest structure.
+// These have no costs, so the automatic choice never takes them: they were not the cheapest
+// structure in any measured scene, including flat worlds.
 constexpr StructureInfo kOctree = structure_info<LooseOctree>("LooseOctree");
 constexpr StructureInfo kQuadtree = structure_info<LooseQuadtree>("LooseQuadtree");
 

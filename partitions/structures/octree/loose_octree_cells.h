@@ -13,8 +13,8 @@ namespace winnow {
 /// either side by half of (loose factor - 1) of its edge.
 ///
 /// A box belongs to the cell of its centre on the finest level whose loose cells hold boxes of its
-/// size. No level is finer than cells with 16 objects on average: objects smaller than their
-/// distances need no levels of their own.
+/// size. On the finest level, cells hold 16 objects on average: objects that are small compared
+/// with their distances need no finer levels.
 class LooseOctreeCells {
  public:
   /// Places the root over the bulk of a scene. With 2 `axes` it divides the axes with the most room
@@ -25,7 +25,8 @@ class LooseOctreeCells {
 
   static constexpr std::uint32_t kNone = 0xFFFFFFFFU;
   /// Cells are loose by this additional share of their edge, so that a box that barely fits may
-  /// still move. A box that has moved this far widens its block; its wear costs less than a build.
+  /// still move. A box that has moved this far widens its block of rows, but the additional tests
+  /// cost less than a build.
   static constexpr double kSpare = 0.75;
   /// Writes the sort key of each row of [begin, end): the level, coarse levels first, and within a
   /// level the place on a Hilbert curve through cells much finer than the level's. kNone if the box
@@ -39,12 +40,13 @@ class LooseOctreeCells {
   /// quadtrees", CACM 25(12), 1982) of a key's cell.
   [[nodiscard]] std::uint32_t code_of(std::uint32_t key) const noexcept;
 
-  /// CellBounds for the boxes of a cell, by divided axis.
+  /// Bounds for the boxes of a cell, by divided axis.
   struct CellBounds {
     std::array<float, 3> low;
     std::array<float, 3> high;
   };
-  /// The bounds of the cell with this level and Morton code; loose_bounds returns the loose cell.
+  /// Returns the bounds of the cell with this level and Morton code; loose_bounds returns the
+  /// bounds of the loose cell.
   [[nodiscard]] CellBounds cell_bounds(std::uint32_t code) const noexcept {
     return bounds_of(code, 0.0);
   }

@@ -28,7 +28,7 @@ enum class Step : std::uint64_t { exchange, reduce, arrive, cut };
 /// Message from each rank to each other rank at the beginning of a step.
 struct Header {
   std::uint64_t step = 0;                // call and step
-  std::array<std::uint64_t, 4> sizes{};  // bytes of a parcel's columns
+  std::array<std::uint64_t, 4> sizes{};  // bytes of a message's columns
 };
 constexpr int kHeaderWords = sizeof(Header) / sizeof(std::uint64_t);
 
@@ -47,7 +47,7 @@ struct CutTask {
   }
 };
 
-/// MPI datatype of the columns of a parcel, without a copy: pieces whose sizes fit in an int.
+/// MPI datatype of the columns of a message, without a copy: pieces whose sizes fit in an int.
 class ColumnsType {
  public:
   void add(const void* column, std::uint64_t bytes) {
@@ -122,11 +122,11 @@ class MpiTransport final : public Transport {
   [[nodiscard]] Status wait_for(std::size_t count);
   /// Waits for all requests.
   [[nodiscard]] Status finish();
-  /// Begins a step: sends headers with the sizes of the parcels.
+  /// Begins a step: sends headers with the sizes of the messages.
   void start(Step step, std::span<const RankMessage> sent = {});
   /// Waits for the headers, the first request; fails unless all ranks take the same step.
   [[nodiscard]] Status synchronize();
-  /// A whole step in which no parcels are sent.
+  /// A whole step in which no messages are sent.
   [[nodiscard]] Status synchronize(Step step);
   [[nodiscard]] Status cut_in_time(const CutWork& work, std::span<SplitPlane> cuts);
   /// After a failed step MPI may still write to the receive buffers: leaks them.

@@ -214,8 +214,8 @@ class CurvedAnswers {
     }
   }
 
-  /// The point on the surface of body a: the point on the first, or, if swapped, the point on the
-  /// second, `distance` farther.
+  /// Computes the point on the surface of body a. `core` is the point on the core of the first. If
+  /// the pair is swapped, body a is the second, whose surface is `distance` beyond the first's.
   static void place_point(const CurvedPair& pair, const double* normal, const double* core,
                           double distance, double* place) {
     const double reach = pair.first.rounding + (pair.swapped ? distance : 0.0);

@@ -124,8 +124,8 @@ class CurvedPatch {
         vertex, edge_feature);
   }
 
-  /// If an edge supports, only the faces beside it count, not the faces at one of its ends: faces
-  /// that contain the point `at`.
+  /// If the support is an edge, only the faces beside it count, not the faces at one of its ends:
+  /// faces that contain the point `at`.
   void add_hull(const double* d, const double* at) {
     const HullShape& shape = *form_.hull;
     const float direction[3] = {static_cast<float>(d[0]), static_cast<float>(d[1]),
@@ -231,8 +231,8 @@ class CurvedPatch {
     for (std::uint32_t i = 0; i < count; ++i) add({kept[i][0], kept[i][1], kept[i][2]}, i, i);
   }
 
-  /// Keeps the points that are in the plane of the three points that span the most. Returns their
-  /// number.
+  /// Keeps the points that are in the plane of point 0, the point farthest from it, and the point
+  /// with which these two span the largest triangle. Returns their number.
   static std::uint32_t keep_coplanar(double (*x)[3], std::uint32_t count) {
     if (count < 4) return count;
     std::uint32_t far = 1;

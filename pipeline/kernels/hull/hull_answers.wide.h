@@ -146,8 +146,8 @@ class HullAnswers {
     for (int k = 0; k < 3; ++k) job_.normal[k][pair.index] = world[k];
   }
 
-  /// Writes the point of body a: the point on the first, or, if swapped, the point on the second,
-  /// `distance` farther.
+  /// Writes the point on the surface of body a. If the pair is swapped, body a is the second, whose
+  /// surface is `distance` beyond the first's.
   void write_point(const HullPair& pair, const HullDistance& core, double distance) {
     const double reach = pair.first->rounding + (pair.swapped ? distance : 0.0);
     double point[3];

@@ -48,7 +48,7 @@ class SearchLanes {
     steps[lane] = 0;
   }
 
-  /// Starts after a first step that has found `point`, whose square is given.
+  /// Starts from `point`, which a first step has found; `point_square` is its squared length.
   void start_from(unsigned lane, const T* point, T point_square) {
     for (int s = 0; s < kSlots; ++s) present[s][lane] = T(s == 0);
     for (int k = 0; k < 3; ++k) {

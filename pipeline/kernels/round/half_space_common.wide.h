@@ -45,7 +45,7 @@ struct LowestHeight {
   }
 };
 
-/// Points of a shape's core over a plane, relative to body a, in world axes.
+/// The points of a shape's core that may touch a plane (feet), relative to body a, in world axes.
 template <typename T, int Count>
 struct LowestPoints {
   Vec3<T> foot[Count];

@@ -110,7 +110,7 @@ template <typename T>
 }
 
 /// If cores without thickness share a point, up to rounding, and a direction `across` perpendicular
-/// to both exists, no direction separates them sooner: it becomes the normal.
+/// to both exists, no direction separates them by a shorter way: `across` becomes the normal.
 template <typename T>
 [[gnu::always_inline]] inline void separate_across(CertifiedLanes<T>& answer,
                                                    const CoreGapLanes<T>& witness,

@@ -46,7 +46,7 @@ class SweptBox {
 
   /// Advances to the next piece; call it for the first piece too. Returns false at the end.
   [[nodiscard]] bool next() noexcept;
-  /// True for a last piece that must be tested with `rest`.
+  /// True for a last piece that is too long for `cast`: test the box `rest` instead.
   [[nodiscard]] bool is_rest() const noexcept { return is_rest_; }
 
   /// Start of the piece, in the caller's t.
@@ -262,7 +262,8 @@ class CastQuery {
   QueryState& state_;
   const SweptShape& swept_;
   const Filter& filter_;
-  /// The body of the earliest hit so far, and its time, or else the last t.
+  /// The body of the earliest hit so far, or kNoObject; and the largest t that still counts, which
+  /// is the time of that hit or, at first, the end of the path.
   std::uint32_t body_ = kNoObject;
   double limit_;
   BodyContact best_;

@@ -90,7 +90,8 @@ struct Pairing {
               [&](const SubShape& b, double) { return look(a, b) ? 0.0 : -1.0; });
     return found ? -1.0 : 0.0;
   };
-  // The box of a compound b would visit all its children; a single part a needs no such box.
+  // Skip the box of b if a is a single part: it is not needed, and for a compound visits all
+  // children.
   if (!pair.a.shape.is_composite()) {
     look_about({pair.a.shape, pair.a.pose}, 0.0);
   } else {
@@ -145,7 +146,8 @@ class ClosestParts {
       return reach();
     };
     if (parts_.near_pairs(pair.a, pair.b, reach(), answer.normal, look_at)) return found_;
-    // The box of a compound b would visit all its children; a single part a needs no such box.
+    // Skip the box of b if a is a single part: it is not needed, and for a compound visits all
+    // children.
     if (!pair.a.shape.is_composite()) {
       look_about({pair.a.shape, pair.a.pose}, pair.b);
     } else {
