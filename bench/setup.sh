@@ -69,7 +69,7 @@ winnow_need() {
 # winnow_steps LOG: copies standard input to LOG and prints the number of finished ninja steps to standard
 # error: in place on a terminal, otherwise after each tenth of them.
 winnow_steps() {
-  local line told=-1 began=$SECONDS
+  local line printed=-1 began=$SECONDS
   while IFS= read -r line; do
     printf '%s\n' "$line"
     [[ $line =~ ^\[([0-9]+)/([0-9]+)\] ]] || continue
@@ -77,10 +77,10 @@ winnow_steps() {
     local tenth=$((10 * step / steps))
     if [[ -t 2 ]]; then
       printf '\r\033[K%d of %d steps, %d s' "$step" "$steps" $((SECONDS - began)) >&2
-    elif ((tenth > told)); then
+    elif ((tenth > printed)); then
       printf '%d of %d steps, %d s\n' "$step" "$steps" $((SECONDS - began)) >&2
     fi
-    told=$tenth
+    printed=$tenth
   done >"$1"
   [[ ! -t 2 ]] || printf '\r\033[K' >&2
 }

@@ -5,7 +5,7 @@
 namespace winnow {
 
 Aabb Aabb::outward(const Vec3d& min, const Vec3d& max, const Vec3d& origin) noexcept {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   Aabb box;
   for (int axis = 0; axis < 3; ++axis) {
     box.min[axis] = round_down(add_down(min[axis], -origin[axis]));

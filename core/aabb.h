@@ -23,9 +23,9 @@ struct Aabb {
   }
 
   /// Returns the smallest float box that contains the double box [min, max], relative to `origin`.
-  /// Floats are coarse far from 0 (8 apart at 1e8), so boxes relative to a point among the objects
-  /// are tighter there and prune better. The subtraction is rounded outward too: the result always
-  /// contains the exact box.
+  /// Floats are coarse far from 0 (8 apart at 1e8), so boxes far from 0 are tighter, and prune
+  /// better, if they are relative to a point among the objects. The subtraction is rounded outward
+  /// too: the result always contains the exact box.
   [[nodiscard]] WINNOW_API static Aabb outward(const Vec3d& min, const Vec3d& max,
                                                const Vec3d& origin) noexcept;
 

@@ -14,9 +14,9 @@ function(winnow_public_name out header)
   set(${out} ${public} PARENT_SCOPE)
 endfunction()
 
-# Sources include public headers as <winnow/core/aabb.h>, as users do after installation: for each
-# public header, which are the headers directly in a room's folder, the build tree has a file that
-# includes it. All other headers are included by their path from the root of the tree.
+# The headers directly in a room's folder are public. Sources include them as <winnow/core/aabb.h>,
+# as users do after installation: for each public header the build tree has a file that includes it.
+# All other headers are included by their path from the root of the tree.
 set(WINNOW_INCLUDE_DIR ${PROJECT_BINARY_DIR}/include)
 set(WINNOW_PUBLIC_HEADERS "")
 set(winnow_public_folders core simd partitions pipeline)
@@ -54,7 +54,8 @@ if(WINNOW_TBB)
   set(winnow_tbb TBB::tbb)
 endif()
 
-# Only the headers: the CMake target of Debian's xsimd links a library that does not exist there.
+# Only the headers of xsimd are searched, because the CMake target of Debian's package links a
+# library that Debian does not have.
 find_path(WINNOW_XSIMD_INCLUDE_DIR xsimd/xsimd.hpp)
 if(NOT WINNOW_XSIMD_INCLUDE_DIR)
   FetchContent_Declare(xsimd GIT_REPOSITORY https://github.com/xtensor-stack/xsimd.git
@@ -72,8 +73,8 @@ target_link_libraries(winnow_flags INTERFACE Eigen3::Eigen)
 target_compile_options(winnow_flags INTERFACE
   -Wall -Wextra -Wconversion -Wshadow -ffp-contract=off
   $<$<BOOL:${WINNOW_WARNINGS_AS_ERRORS}>:-Werror>)
-# Eigen's vectors on AArch64 fuse, too, if __ARM_FEATURE_FMA is defined. Kernels keep it: they do
-# not include Eigen, and fuse only for bounds.
+# On AArch64, Eigen's vector code also uses fused multiply-add if __ARM_FEATURE_FMA is defined.
+# Kernels keep the macro: they do not include Eigen, and use fused multiply-add only for bounds.
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "aarch64|arm64|ARM64")
   target_compile_options(winnow_flags INTERFACE
     $<$<NOT:$<BOOL:$<TARGET_PROPERTY:WINNOW_KERNELS>>>:-U__ARM_FEATURE_FMA>)
@@ -89,7 +90,7 @@ endif()
 if(WINNOW_SANITIZER STREQUAL "address")
   set(winnow_sanitize -fsanitize=address,undefined -fno-sanitize-recover=all
       -fno-omit-frame-pointer)
-  # These two checks cost much of the time of such a build.
+  # The checks `alignment` and `null` take much of the run time of a build with this sanitizer.
   option(WINNOW_SANITIZE_POINTERS "Look for null and misaligned pointers before each use" ON)
   if(NOT WINNOW_SANITIZE_POINTERS)
     list(APPEND winnow_sanitize -fno-sanitize=alignment,null)
@@ -111,8 +112,9 @@ target_link_options(winnow_flags INTERFACE ${winnow_sanitize})
 # winnow_library(room LINKS ... PRIVATE_LINKS ... PRECOMPILED ... APART ...): adds one of the four
 # rooms of the library, an archive of every source below its folder. A `*.kernel.cpp` is compiled
 # once per instruction set. The other sources of a folder are compiled together (unity build),
-# because most of their time goes into headers and programs link them together anyway. Sources in
-# APART, whose local names collide with others, are compiled on their own.
+# because most of their compile time is spent on headers, and programs link them together anyway.
+# Sources in APART have local names that collide with names of other sources, and are compiled on
+# their own.
 function(winnow_library room)
   cmake_parse_arguments(arg "" "" "LINKS;PRIVATE_LINKS;PRECOMPILED;APART" ${ARGN})
   file(GLOB_RECURSE sources RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} CONFIGURE_DEPENDS *.cpp)
@@ -146,8 +148,8 @@ function(winnow_library room)
   target_compile_definitions(${target} PRIVATE ${WINNOW_ISA_DEFINITIONS}
                              $<$<BOOL:${WINNOW_SHARED}>:WINNOW_SHARED=1>
                              $<$<BOOL:${WINNOW_SHARED}>:WINNOW_EXPORTS=1>)
-  # Eigen takes most of the time that a source needs. Compiler caches work better without a
-  # precompiled header.
+  # Most of the compile time of a source is spent on Eigen's headers. Compiler caches work better
+  # without a precompiled header.
   if(WINNOW_PRECOMPILED_HEADERS AND NOT CMAKE_CXX_COMPILER_LAUNCHER AND arg_PRECOMPILED)
     target_precompile_headers(${target} PRIVATE ${arg_PRECOMPILED})
   endif()

@@ -16,15 +16,15 @@ struct BoxCast {
   Aabb box;  ///< the box at t = 0
   /// Displacement while t grows by 1; finite, not zero.
   Vec3f direction = {1.0F, 0.0F, 0.0F};
-  float min_t = 0.0F;  ///< start of the sweep; finite, >= 0
-  /// End of the sweep; >= min_t, may be infinite.
+  float min_t = 0.0F;  ///< start of the path; finite, >= 0
+  /// End of the path; >= min_t, may be infinite.
   float max_t = std::numeric_limits<float>::infinity();
 
   /// Returns true if a query accepts this cast: finite box with min <= max, valid direction and
   /// range.
   [[nodiscard]] bool is_valid() const noexcept {
     return box.min.all_finite() && box.max.all_finite() && box.is_valid() &&
-           is_valid_sweep(direction, min_t, max_t);
+           is_valid_path(direction, min_t, max_t);
   }
 };
 
@@ -33,13 +33,13 @@ struct SphereCast {
   Sphere sphere;  ///< the ball at t = 0
   /// Displacement while t grows by 1; finite, not zero.
   Vec3f direction = {1.0F, 0.0F, 0.0F};
-  float min_t = 0.0F;  ///< start of the sweep; finite, >= 0
-  /// End of the sweep; >= min_t, may be infinite.
+  float min_t = 0.0F;  ///< start of the path; finite, >= 0
+  /// End of the path; >= min_t, may be infinite.
   float max_t = std::numeric_limits<float>::infinity();
 
-  /// Returns true if a query accepts this cast: a valid sphere and a valid sweep.
+  /// Returns true if a query accepts this cast: a valid sphere and a valid path.
   [[nodiscard]] bool is_valid() const noexcept {
-    return sphere.is_valid() && is_valid_sweep(direction, min_t, max_t);
+    return sphere.is_valid() && is_valid_path(direction, min_t, max_t);
   }
 };
 
@@ -48,17 +48,17 @@ struct CapsuleCast {
   Capsule capsule;  ///< the capsule at t = 0
   /// Displacement while t grows by 1; finite, not zero.
   Vec3f direction = {1.0F, 0.0F, 0.0F};
-  float min_t = 0.0F;  ///< start of the sweep; finite, >= 0
-  /// End of the sweep; >= min_t, may be infinite.
+  float min_t = 0.0F;  ///< start of the path; finite, >= 0
+  /// End of the path; >= min_t, may be infinite.
   float max_t = std::numeric_limits<float>::infinity();
 
-  /// Returns true if a query accepts this cast: a valid capsule and a valid sweep.
+  /// Returns true if a query accepts this cast: a valid capsule and a valid path.
   [[nodiscard]] bool is_valid() const noexcept {
-    return capsule.is_valid() && is_valid_sweep(direction, min_t, max_t);
+    return capsule.is_valid() && is_valid_path(direction, min_t, max_t);
   }
 };
 
-/// A shape that is swept along a line; each alternative converts to it implicitly.
+/// A shape that moves along a line; each alternative converts to it implicitly.
 using Cast = std::variant<Ray, BoxCast, SphereCast, CapsuleCast>;
 
 }  // namespace winnow

@@ -70,7 +70,7 @@ class Column {
 
   /// Creates an empty column. Every allocation comes from `memory`, which must outlive the column.
   explicit Column(std::pmr::memory_resource* memory) noexcept : memory_(memory) {}
-  /// Takes the elements and the memory resource of `other`, which is left empty.
+  /// Takes the elements and the memory resource of `other`, which becomes empty.
   Column(Column&& other) noexcept
       : memory_(other.memory_),
         data_(std::exchange(other.data_, nullptr)),
@@ -106,7 +106,7 @@ class Column {
   /// Ensures room for at least `count` elements, rounded up to whole lines. Returns false, and
   /// changes nothing, if the resource refuses.
   [[nodiscard]] bool reserve(std::size_t count) noexcept {
-    return count <= capacity_ || take(reallocate_block(*memory_, room(), size_, count, sizeof(T)));
+    return count <= capacity_ || adopt(reallocate_block(*memory_, room(), size_, count, sizeof(T)));
   }
 
   /// As above; with `Pages::prefaulted`, also writes to all pages behind the last element.
@@ -122,7 +122,7 @@ class Column {
   /// As `reserve`, but grows by at least half if the resource allows, so that repeated growth costs
   /// O(1) per element.
   [[nodiscard]] bool grow(std::size_t count) noexcept {
-    return count <= capacity_ || take(grow_block(*memory_, room(), size_, count, sizeof(T)));
+    return count <= capacity_ || adopt(grow_block(*memory_, room(), size_, count, sizeof(T)));
   }
 
   /// Reduces the capacity to `count` elements, or to `size()` if that is more, rounded up to whole
@@ -130,7 +130,7 @@ class Column {
   [[nodiscard]] bool shrink(std::size_t count) noexcept {
     const std::size_t kept = count < size_ ? size_ : count;
     if (kept >= capacity_) return true;
-    if (kept != 0) return take(reallocate_block(*memory_, room(), size_, kept, sizeof(T)));
+    if (kept != 0) return adopt(reallocate_block(*memory_, room(), size_, kept, sizeof(T)));
     release();
     return true;
   }
@@ -184,7 +184,7 @@ class Column {
 
   [[nodiscard]] ColumnBlock room() const noexcept { return {data_, capacity_}; }
   /// Adopts the room; returns false, and changes nothing, if its data is null.
-  [[nodiscard]] bool take(ColumnBlock room) noexcept {
+  [[nodiscard]] bool adopt(ColumnBlock room) noexcept {
     if (room.data == nullptr) return false;
     data_ = static_cast<T*>(room.data);
     capacity_ = room.capacity;

@@ -21,10 +21,10 @@ struct Colour {
 };
 
 /// Interface that a caller implements to draw the content of a partition. `Partition::debug_draw`
-/// calls it on the calling thread. Boxes and spheres are meant as outlines. Infinite coordinates
-/// are passed on unchanged. An exception that leaves an implementation ends the process. The
-/// structure comes first, then the objects in ascending order of their ids. The colours are listed
-/// in partitions/debug_colours.h: one per kind of item.
+/// calls it on the calling thread. An implementation should draw boxes and spheres as outlines.
+/// Infinite coordinates are passed on unchanged. An exception that leaves an implementation ends
+/// the process. The structure comes first, then the objects in ascending order of their ids.
+/// partitions/debug_colours.h lists the colours of each kind of item.
 class DebugDraw {
  public:
   virtual ~DebugDraw() = default;

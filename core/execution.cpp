@@ -16,12 +16,12 @@
 namespace winnow {
 namespace {
 
-// Maximum number of threads that share a call; more would stay idle.
+// Maximum number of threads that share a call; further threads stay idle.
 constexpr std::size_t kMaxShares = 64;
 
 /// Tasks divided into one contiguous range per thread. A thread takes tasks one by one from its own
-/// range, then from the ranges of others (work stealing): neighbouring tasks stay on one thread,
-/// and taking a task costs one atomic addition.
+/// range, then from the ranges of others (work stealing). Most neighbouring tasks thus run on one
+/// thread, and taking a task costs one atomic addition.
 class SharedTasks {
  public:
   SharedTasks(std::size_t count, std::size_t threads, void* tasks, JobSystem::Task task) noexcept
@@ -62,10 +62,10 @@ std::size_t arena_threads() noexcept {
   return threads > 1 ? static_cast<std::size_t>(threads) : 1;
 }
 
-// TBB's workers have the floating-point environment of the moment when their arena was created. The
+// TBB's workers have the floating-point environment that was set when their arena was created. The
 // context captures the caller's environment, so that all tasks round and treat denormals as the
-// caller does. It is isolated, so that a cancellation of the caller's task group does not leave the
-// call half done.
+// caller does. The context is isolated, so that a cancellation of the caller's task group does not
+// leave the call half done.
 void run_in_arena(SharedTasks& tasks) {
   using Context = tbb::task_group_context;
   Context environment(Context::isolated, Context::default_traits | Context::fp_settings);
@@ -80,8 +80,8 @@ void run_in_arena(SharedTasks& tasks) {
 }
 #endif
 
-/// Tasks on the threads of a host: each runs in the floating-point environment of the caller and
-/// restores the thread's own environment when it ends.
+/// Runs tasks on a thread of the host in the floating-point environment of the caller, and restores
+/// the thread's own environment afterwards.
 struct HostedTasks {
   SharedTasks& tasks;
   FloatControl callers = float_control();
@@ -114,7 +114,7 @@ void Execution::run(std::size_t count, void* context, void (*task)(void*, std::s
   SharedTasks tasks(count, threads, context, task);
   if (jobs_.parallel_for != nullptr) {
     HostedTasks hosted{tasks};
-    const HostEnvironment around;
+    const HostFloatEnvironment around;
     return jobs_.parallel_for(jobs_.context, tasks.shares(), HostedTasks::run, &hosted);
   }
 #if WINNOW_HAVE_TBB

@@ -16,9 +16,9 @@ namespace winnow {
 
 /// Callback that accepts or rejects an object that a query would report. It is a plain function
 /// pointer, which costs one call per object. It may be called from several threads at once and in
-/// any order. It need not be called for every reported object, so it must return the same value
-/// each time for an object. It must not call the partition or scene that calls it, which may hold
-/// locks. It must not throw: an exception ends the process (`std::terminate`) on any thread.
+/// any order. It may be called more than once for an object, and must return the same value each
+/// time. It must not call the partition or scene that calls it, which may hold locks. It must not
+/// throw: an exception ends the process (`std::terminate`) on any thread.
 struct ObjectPredicate {
   bool (*accept)(void* context, Key key, ClientData data) = nullptr;  ///< null accepts all
   void* context = nullptr;                                            ///< passed to `accept`
@@ -38,7 +38,8 @@ struct Filter {
   }
 };
 
-/// Callback that accepts or rejects a pair; the rules of ObjectPredicate apply.
+/// Callback that accepts or rejects a pair; the rules of ObjectPredicate apply. An incremental
+/// query does not call it again for pairs that it keeps.
 struct PairPredicate {
   bool (*accept)(void* context, ObjectId first, ObjectId second) = nullptr;  ///< null accepts all
   void* context = nullptr;                                                   ///< passed to `accept`

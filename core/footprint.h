@@ -30,7 +30,7 @@ struct Footprint {
   Bytes client_data;  ///< client data of all objects
   Bytes structure;    ///< cells, nodes and sort orders of the partition
   Bytes scratch;      ///< buffers kept from frame to frame
-  Bytes results;      ///< pairs and hits, until they are in the caller's buffer
+  Bytes results;      ///< pairs, hits, contacts and other results
 
   /// Returns the sum over all purposes.
   [[nodiscard]] Bytes total() const noexcept {

@@ -20,15 +20,15 @@ Frustum invalid() noexcept {
   return frustum;
 }
 
-/// Normalises a plane: unit normals keep float planes as exact as possible.
+/// Returns a plane in float. Normalizes it in double, so that a tiny or huge normal fits in float.
 Plane inward(const Eigen::Vector3d& normal, double offset) noexcept {
   const double length = normal.norm();
   const double scale = length > 0.0 ? 1.0 / length : 1.0;
   return {(normal * scale).cast<float>(), static_cast<float>(offset * scale)};
 }
 
-/// Returns the bounding box, enlarged by slightly more than the rounding error of the corners.
-/// Infinite if a corner is not finite.
+/// Returns the bounding box of the corners, enlarged by 1e-7 of the largest coordinate for the
+/// rounding error of the corners. If a corner is not finite, the box is infinite.
 Aabb around(const Corners& corners) noexcept {
   Eigen::Vector3d low = corners[0];
   Eigen::Vector3d high = corners[0];
@@ -45,7 +45,7 @@ Aabb around(const Corners& corners) noexcept {
 
 Frustum Frustum::perspective(const Vec3f& eye, const Vec3f& forward, const Vec3f& up,
                              float vertical_fov, float aspect, float near_t, float far_t) noexcept {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   const Eigen::Vector3d f = as_eigen(forward).cast<double>().normalized();
   const Eigen::Vector3d r = f.cross(as_eigen(up).cast<double>()).normalized();
   const Eigen::Vector3d u = r.cross(f);
@@ -77,7 +77,7 @@ Frustum Frustum::perspective(const Vec3f& eye, const Vec3f& forward, const Vec3f
 }
 
 Frustum Frustum::from_matrix(const Mat4d& clip_from_world, NearDepth near_depth) noexcept {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   const Eigen::Matrix4d m = clip_from_world;
   if (!m.allFinite()) return invalid();
   const bool from_zero = near_depth == NearDepth::zero;
@@ -92,7 +92,7 @@ Frustum Frustum::from_matrix(const Mat4d& clip_from_world, NearDepth near_depth)
     frustum.planes[i] = inward(rows[i].head<3>(), rows[i].w());
   }
   // A depth plane at infinity has no valid normal and bounds nothing: the other depth plane
-  // replaces it. A reversed depth range has its infinite plane at the other end.
+  // replaces it. With a reversed depth range, planes[4] is the far plane and may be at infinity.
   if (!frustum.planes[5].is_valid()) frustum.planes[5] = frustum.planes[4];
   if (!frustum.planes[4].is_valid()) frustum.planes[4] = frustum.planes[5];
 
@@ -112,7 +112,7 @@ Frustum Frustum::from_matrix(const Mat4d& clip_from_world, NearDepth near_depth)
 }
 
 bool Frustum::is_valid() const noexcept {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   return bounds.is_valid() &&
          std::all_of(planes.begin(), planes.end(), [](const Plane& p) { return p.is_valid(); });
 }

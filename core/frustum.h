@@ -27,7 +27,7 @@ struct WINNOW_API Frustum {
   /// Returns the frustum of a camera at `eye` that looks along `forward` (any length), with `up`
   /// roughly upward. The vertical field of view is in radians, in (0, pi); aspect = width / height
   /// > 0. `near_t` and `far_t` are distances along `forward`: 0 <= near_t < far_t, far_t finite.
-  /// Other values give an invalid frustum.
+  /// For other values the frustum is invalid.
   [[nodiscard]] static Frustum perspective(const Vec3f& eye, const Vec3f& forward, const Vec3f& up,
                                            float vertical_fov, float aspect, float near_t,
                                            float far_t) noexcept;

@@ -20,8 +20,9 @@ namespace winnow {
 struct Hit {
   Key key;              ///< the object; null if nothing was found
   ClientData data = 0;  ///< client data of the object
-  /// Parameter of the first contact of the sweep with the object's box, in units of the sweep's
-  /// direction; for a nearest query, the distance. It is the exact value rounded down to a float.
+  /// Parameter of the first contact of the cast with the object's box, in units of the cast's
+  /// direction; for a nearest query, the distance. It is computed in double and rounded down to a
+  /// float.
   float t = std::numeric_limits<float>::infinity();
 
   /// True if an object was found.
@@ -61,8 +62,8 @@ class WINNOW_API HitBuffer {
   /// @}
 
   /// Returns the number of queries in the last call: 1, or the size of the batch; 0 before the
-  /// first.
-  [[nodiscard]] std::size_t questions() const noexcept {
+  /// first call and after `clear`.
+  [[nodiscard]] std::size_t queries() const noexcept {
     return start_.empty() ? 0 : start_.size() - 1;
   }
   /// Returns the hits of query i of a batch.
@@ -79,8 +80,8 @@ class WINNOW_API HitBuffer {
   /// Ensures room for `count` hits. Returns false if memory is refused.
   [[nodiscard]] bool reserve(std::size_t count) noexcept { return hits_.reserve(count); }
 
-  /// Returns the bytes of hits under `results`, and of buffers that tasks fill before the hits are
-  /// sorted under `scratch`.
+  /// Returns the bytes of the buffer: hits as `results`, and the buffers that tasks fill before
+  /// hits are sorted as `scratch`.
   [[nodiscard]] Footprint footprint() const noexcept;
 
  private:
@@ -99,7 +100,7 @@ class WINNOW_API OverlapBuffer {
   /// Creates an empty buffer. Every allocation comes from `memory`, which must outlive it.
   explicit OverlapBuffer(std::pmr::memory_resource* memory = default_memory()) noexcept
       : ids_(memory), crossing_(memory) {}
-  /// Takes the content of `other`, which is left empty.
+  /// Takes the content of `other`, which becomes empty.
   OverlapBuffer(OverlapBuffer&& other) noexcept
       : ids_(std::move(other.ids_)),
         crossing_(std::move(other.crossing_)),
@@ -128,8 +129,8 @@ class WINNOW_API OverlapBuffer {
   /// Ensures room for `count` objects. Returns false if memory is refused.
   [[nodiscard]] bool reserve(std::size_t count) noexcept { return ids_.reserve(count); }
 
-  /// Returns the bytes of objects under `results`, and of the temporary list of crossing objects
-  /// under `scratch`.
+  /// Returns the bytes of the buffer: objects as `results`, and the temporary list of crossing
+  /// objects as `scratch`.
   [[nodiscard]] Footprint footprint() const noexcept;
 
  private:

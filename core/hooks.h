@@ -26,15 +26,14 @@ inline constexpr std::size_t kWorkStages = 6;
 /// Returns the enumerator's name, never null.
 [[nodiscard]] WINNOW_API const char* to_string(WorkStage stage) noexcept;
 
-/// Callback at the beginning and end of each stage, on the thread that called winnow. It serves
-/// profilers such as Tracy or Perfetto. Stages of a thread end in the reverse order of their
-/// beginning. The callback must not throw, and must not call the partition or scene that is
-/// working.
+/// Callback at the beginning and end of each stage, on the thread that called winnow, for profilers
+/// such as Tracy or Perfetto. Stages of a thread end in the reverse order of their beginning. The
+/// callback must not throw, and must not call the partition or scene that is working.
 using StageHook = void (*)(WorkStage stage, bool begins);
 
 /// Sets the stage hook of the process (null for none) and returns the previous one. Without a hook
-/// a stage costs one pointer load. Thread-safe at any time: a stage in progress ends with the hook
-/// that it began with.
+/// a stage costs one atomic load of a pointer. Thread-safe at any time: a stage in progress ends
+/// with the hook that it began with.
 WINNOW_API StageHook set_stage_hook(StageHook hook) noexcept;
 
 /// An entry that is passed to the log hook.
@@ -42,7 +41,7 @@ struct LogEntry {
   /// Kind of event.
   enum class Kind : std::uint8_t {
     choice,   ///< `automatic()` changed the structure of a partition
-    refusal,  ///< a call of a Partition or Scene was refused
+    refusal,  ///< a call was refused
   };
   Kind kind = Kind::refusal;  ///< determines which other members are set
   /// Name of the new structure, or of the refused call, such as "Scene::add".
@@ -57,8 +56,8 @@ struct LogEntry {
 };
 
 /// Log callback, called on the thread that called winnow. That thread may hold locks: the callback
-/// must not throw, and must not call the partition or scene. The entry and its text are valid only
-/// during the call; names of structures, calls and statuses stay valid.
+/// must not call the object that reports the entry. It must not throw. The entry and its text are
+/// valid only during the call; names of structures, calls and statuses stay valid.
 using LogHook = void (*)(const LogEntry& entry);
 
 /// Sets the log hook of the process (null for none) and returns the previous one. Thread-safe at

@@ -14,28 +14,28 @@ namespace winnow {
 class IndexSubset {
  public:
   /// Selects entries by index, in any order.
-  [[nodiscard]] static IndexSubset listed(std::span<const std::uint32_t> numbers) noexcept {
-    return {numbers, {}, false};
+  [[nodiscard]] static IndexSubset listed(std::span<const std::uint32_t> indices) noexcept {
+    return {indices, {}, false};
   }
-  /// Selects entries by a bit mask with one word per 64 entries: entry i is selected if bit i % 64
-  /// of word i / 64 is set. Bits behind the last entry are ignored.
+  /// Selects entries by a bit mask with one 64-bit integer per 64 entries: entry i is selected if
+  /// bit i % 64 of words[i / 64] is set. Bits behind the last entry are ignored.
   [[nodiscard]] static IndexSubset masked(std::span<const std::uint64_t> words) noexcept {
     return {{}, words, true};
   }
 
-  /// True if `words` selects the entries, false if `numbers` does.
+  /// True if `words` selects the entries, false if `indices` does.
   [[nodiscard]] bool is_mask() const noexcept { return is_mask_; }
   /// Returns the indices of the selected entries; empty for a mask.
-  [[nodiscard]] std::span<const std::uint32_t> numbers() const noexcept { return numbers_; }
+  [[nodiscard]] std::span<const std::uint32_t> indices() const noexcept { return indices_; }
   /// Returns the bit mask of the selected entries; empty for a list.
   [[nodiscard]] std::span<const std::uint64_t> words() const noexcept { return words_; }
 
  private:
-  IndexSubset(std::span<const std::uint32_t> numbers, std::span<const std::uint64_t> words,
+  IndexSubset(std::span<const std::uint32_t> indices, std::span<const std::uint64_t> words,
               bool is_mask) noexcept
-      : numbers_(numbers), words_(words), is_mask_(is_mask) {}
+      : indices_(indices), words_(words), is_mask_(is_mask) {}
 
-  std::span<const std::uint32_t> numbers_;
+  std::span<const std::uint32_t> indices_;
   std::span<const std::uint64_t> words_;
   bool is_mask_;
 };

@@ -21,7 +21,7 @@ class IndexedView {
   class iterator {
    public:
     using iterator_concept = std::random_access_iterator_tag;  ///< category for std::ranges
-    /// Category before C++20: elements are not stored.
+    /// Category before C++20: an input iterator, because elements are not stored.
     using iterator_category = std::input_iterator_tag;
     using value_type = IndexedView::value_type;  ///< type of an element
     using difference_type = std::ptrdiff_t;      ///< number of elements between two iterators

@@ -45,7 +45,8 @@ if(TARGET winnow_cluster)
 endif()
 install(EXPORT winnow-targets NAMESPACE winnow:: DESTINATION ${winnow_package_dir})
 if(TARGET winnow_c)
-  # A separate export set, so that programs in C need no other dependency.
+  # A separate export set: programs in C load only this one, and need no dependency of the C++
+  # library.
   install(TARGETS winnow_c EXPORT winnow-c-targets
           RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR}
           LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})

@@ -72,8 +72,8 @@ struct Kdop {
     return result;
   }
 
-  /// Returns the tightest k-DOP of a point set, rounded outward; empty for an empty set. O(points *
-  /// K).
+  /// Returns a k-DOP of a point set; empty for an empty set. Each point is rounded outward to a box
+  /// of floats, and the k-DOP contains the tightest k-DOPs of these boxes. O(points * K).
   [[nodiscard]] static Kdop around(const PointView& points) noexcept {
     Kdop result;
     for (std::size_t i = 0; i < points.count; ++i) {

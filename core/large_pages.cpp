@@ -50,7 +50,7 @@ bool large_pages_enabled() noexcept {
   return !kSanitized && !refused && has_large_pages();
 }
 
-constexpr std::size_t whole(std::size_t bytes, std::size_t unit) noexcept {
+constexpr std::size_t rounded_up(std::size_t bytes, std::size_t unit) noexcept {
   return (bytes + unit - 1) / unit * unit;
 }
 
@@ -64,7 +64,7 @@ struct MemoryRange {
 /// Returns the bytes from `at` to the next address of this alignment.
 std::size_t bytes_to_aligned(const std::byte* at, std::size_t alignment) noexcept {
   const auto address = reinterpret_cast<std::uintptr_t>(at);
-  return static_cast<std::size_t>(whole(address, alignment) - address);
+  return static_cast<std::size_t>(rounded_up(address, alignment) - address);
 }
 
 #ifdef __linux__
@@ -157,15 +157,15 @@ class LargePages::Slabs {
 void* LargePages::Slabs::take(std::size_t bytes, std::size_t alignment) noexcept {
   const Lock lock(mutex_);
   if (!reserve_ranges()) return nullptr;
-  const std::size_t wanted = whole(bytes, kLine);
-  MemoryRange* range = best_fit(wanted, alignment);
-  if (range == nullptr) range = add_slab(wanted);
+  const std::size_t needed = rounded_up(bytes, kLine);
+  MemoryRange* range = best_fit(needed, alignment);
+  if (range == nullptr) range = add_slab(needed);
   if (range == nullptr) return nullptr;
   const std::size_t gap = bytes_to_aligned(range->begin, alignment);
   std::byte* const block = range->begin + gap;
-  cut(range, gap, wanted);
+  cut(range, gap, needed);
   ++blocks_;
-  used_ += wanted;
+  used_ += needed;
   return block;
 }
 
@@ -185,11 +185,11 @@ MemoryRange* LargePages::Slabs::best_fit(std::size_t bytes, std::size_t alignmen
   return best;
 }
 
-// Maps a slab for a block, or for half of the bytes held if that is more, and returns its free
-// range. Null if the system refuses.
+// Maps a slab for a block, or for half of the bytes of all slabs, at most 32 MB, if that is more,
+// and returns its free range. Returns null if the system refuses.
 MemoryRange* LargePages::Slabs::add_slab(std::size_t bytes) noexcept {
   const std::size_t ahead = std::min(held_ / 2, kMaxAhead);
-  const std::size_t pages = whole(std::max(bytes, ahead), kPage);
+  const std::size_t pages = rounded_up(std::max(bytes, ahead), kPage);
   const MemoryRange slab{map_pages(pages), pages};
   if (slab.begin == nullptr) return nullptr;
   held_ += pages;
@@ -211,7 +211,7 @@ void LargePages::Slabs::cut(MemoryRange* from, std::size_t gap, std::size_t byte
 
 void LargePages::Slabs::give_back(void* block, std::size_t bytes) noexcept {
   const Lock lock(mutex_);
-  const std::size_t taken = whole(bytes, kLine);
+  const std::size_t taken = rounded_up(bytes, kLine);
   --blocks_;
   used_ -= taken;
   const MemoryRange* const slab = slab_of(static_cast<std::byte*>(block));
@@ -282,7 +282,7 @@ bool LargePages::is_large(std::size_t bytes, std::size_t alignment) const noexce
 
 void* LargePages::do_allocate(std::size_t bytes, std::size_t alignment) {
   if (!is_large(bytes, alignment)) return small_blocks_->allocate(bytes, alignment);
-  // No system has that much memory, and rounding it up could overflow.
+  // No system has that much memory, and rounding the size up could overflow.
   void* const block = bytes > ~std::size_t{0} / 2 ? nullptr : slabs_->take(bytes, alignment);
   if (block == nullptr) throw_bad_alloc();
   // Prefaults on this thread, because threads that write first to a page at the same time block
@@ -297,9 +297,9 @@ void LargePages::do_deallocate(void* block, std::size_t bytes, std::size_t align
 }
 
 std::pmr::memory_resource* default_memory() noexcept {
-  static const bool wanted = large_pages_enabled();
+  static const bool enabled = large_pages_enabled();
   std::pmr::memory_resource* const set = std::pmr::get_default_resource();
-  if (!wanted || !set->is_equal(*std::pmr::new_delete_resource())) return set;
+  if (!enabled || !set->is_equal(*std::pmr::new_delete_resource())) return set;
   // Never destroyed: objects with static lifetime may free memory at the end of the process.
   alignas(LargePages) static std::byte room[sizeof(LargePages)];
   static LargePages* const pages = ::new (static_cast<void*>(room)) LargePages();

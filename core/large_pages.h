@@ -15,25 +15,25 @@ namespace winnow {
 ///
 /// Large blocks are part of *slabs*, runs of large pages that are mapped from the system. A new
 /// slab has room for the block, and at least for half the size of all slabs, up to 32 MB. Other
-/// blocks come from another resource. All pages of a block are present when it is returned, whether
-/// they will be used or not: threads that write first to a page at the same time block each other.
-/// When a slab becomes empty, empty slabs are returned to the system as long as the free bytes
-/// exceed the used bytes and 8 MB. Allocation and deallocation take O(free ranges). Thread-safe.
-/// Linux has large pages if /sys/kernel/mm/transparent_hugepage/enabled selects `madvise` or
-/// `always`. Otherwise slabs consist of ordinary pages, which become present on the first write to
-/// each. On other systems all blocks come from the other resource.
+/// blocks come from another resource. The allocation writes to all pages of a block, whether they
+/// will be used or not, because threads that write first to pages at the same time block each
+/// other. When a slab becomes empty, empty slabs are returned to the system as long as the free
+/// bytes in slabs exceed both the used bytes and 8 MB. Allocation and deallocation take O(free
+/// ranges). Thread-safe. Linux has large pages if /sys/kernel/mm/transparent_hugepage/enabled
+/// selects `madvise` or `always`. Otherwise slabs consist of ordinary pages, which become present
+/// on the first write to each. On other systems all blocks come from the other resource.
 class WINNOW_API LargePages final : public std::pmr::memory_resource {
  public:
   /// Bytes of a large page; slabs are multiples of it.
   static constexpr std::size_t kPage = std::size_t{2} << 20U;
-  /// Size in bytes from which on a block is taken from a slab.
+  /// Smallest size, in bytes, of blocks that are taken from slabs.
   static constexpr std::size_t kLargeBlock = std::size_t{32} << 10U;
 
-  /// Creates a resource without slabs. Other blocks, and a few hundred bytes for the resource
-  /// itself, come from `small_blocks`, which must outlive it.
+  /// Creates a resource without slabs. Blocks that are not taken from slabs, and the lists of slabs
+  /// and of free ranges, come from `small_blocks`, which must outlive it.
   explicit LargePages(
       std::pmr::memory_resource* small_blocks = std::pmr::new_delete_resource()) noexcept;
-  /// All blocks must have been deallocated before.
+  /// Returns all slabs to the system; all blocks must have been deallocated before.
   ~LargePages() override;
   LargePages(const LargePages&) = delete;
   LargePages& operator=(const LargePages&) = delete;

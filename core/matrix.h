@@ -12,8 +12,9 @@ class BasicMatrix;
 
 namespace detail {
 
-/// A matrix type whose (row, column) is a T, except BasicMatrix: matrices and expressions of Eigen,
-/// and user types with this interface. If its size is known at compile time it must be N x N.
+/// A matrix type with an operator()(row, column) that returns a T, except BasicMatrix: matrices and
+/// expressions of Eigen, and user types with this interface. If its size is known at compile time
+/// it must be N x N.
 template <typename Matrix, typename T, int N>
 concept MatrixLike = !std::derived_from<Matrix, BasicMatrix<T, N>> && requires(const Matrix& m) {
   requires std::same_as<std::remove_cvref_t<decltype(m(0, 0))>, T>;
@@ -32,8 +33,8 @@ concept EigenMatrix = requires {
 
 }  // namespace detail
 
-/// N x N matrix, stored column by column. Any matrix whose (row, column) is a T, such as Eigen's,
-/// converts to it, and it converts to Eigen matrices.
+/// N x N matrix, stored column by column. Any matrix with an operator()(row, column) that returns a
+/// T, such as Eigen's, converts to it, and it converts to Eigen matrices.
 template <typename T, int N>
 class BasicMatrix {
  public:

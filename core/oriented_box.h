@@ -10,7 +10,7 @@
 namespace winnow {
 
 /// All points center + axes * s with |s_i| <= half_i; closed. The columns of `axes` should be
-/// orthogonal unit vectors. Other finite columns are accepted and give a parallelepiped.
+/// orthogonal unit vectors. Other finite columns are accepted; the box is then a parallelepiped.
 struct OrientedBox {
   /// Centre of the box.
   Vec3f center;
@@ -25,7 +25,8 @@ struct OrientedBox {
            half.y() >= 0.0F && half.z() >= 0.0F;
   }
 
-  /// Returns a float box that contains it, at most two ulp larger than the smallest.
+  /// Returns a float box that contains this box and is at most two ulp larger than the smallest
+  /// one.
   [[nodiscard]] Aabb bounds() const noexcept {
     Aabb box;
     for (int axis = 0; axis < 3; ++axis) {

@@ -14,7 +14,8 @@ set(CPACK_VERBATIM_VARIABLES ON)
 
 # The tool, if it is built, is a separate package: it has more dependencies than the library.
 set(CPACK_DEB_COMPONENT_INSTALL ON)
-# All components are listed, because a single one would get the name of the project.
+# All components are listed, because the package of a single component would get the name of the
+# project.
 get_cmake_property(CPACK_COMPONENTS_ALL COMPONENTS)
 set(CPACK_COMPONENTS_GROUPING IGNORE)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
@@ -34,7 +35,8 @@ set(CPACK_DEBIAN_TOOL_PACKAGE_RECOMMENDS "libjs-chart.js, libjs-three")
 set(CPACK_COMPONENT_TOOL_DESCRIPTION
     "The winnow tool: which partition to take for a recording of yours, and how fast and how
 exact all of them are on this machine.")
-# Adds the libraries that the tool and a shared library are linked to.
+# Adds the libraries that the tool and a shared library are linked to as dependencies of the
+# packages.
 find_program(WINNOW_DPKG_SHLIBDEPS dpkg-shlibdeps)
 if(WINNOW_DPKG_SHLIBDEPS)
   set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)

@@ -9,7 +9,7 @@ bool PairBuffer::assign(const PairBuffer& other) noexcept {
   if (!pairs_.reserve(other.size())) return false;
   if (!other.empty()) std::memcpy(pairs_.data(), other.pairs_.data(), other.size() * sizeof(Pair));
   pairs_.set_size(other.size());
-  state_ = LinkState::loose;
+  state_ = LinkState::unlinked;
   provenance_ = other.provenance_;
   return true;
 }

@@ -27,12 +27,13 @@ struct Pair {
   friend constexpr auto operator<=>(const Pair&, const Pair&) noexcept = default;
 };
 
-/// The caller's array of pairs, reused from frame to frame. If it is passed to the same partition
-/// again, the query starts from the previous frame's pairs. If few objects moved, only their pairs
-/// are recomputed. If very few objects moved in two consecutive frames, the buffer also links each
-/// object to its pairs, and a frame visits only the pairs of objects that moved. Links take 16
-/// bytes per pair and 4 per object. Any other use (another partition, `clear`, `edit`) makes the
-/// next query a full one. The set of pairs is the same in all cases. Not thread-safe.
+/// The caller's array of pairs, reused from frame to frame. If the buffer is passed to the same
+/// partition again, the query starts from the previous frame's pairs. If few objects moved, only
+/// their pairs are recomputed. If at most one object in 48 moved in each of two consecutive frames,
+/// the buffer also links each object to its pairs, and a frame visits only the pairs of objects
+/// that moved. Links take 16 bytes per pair and 4 per object. Any other use (another partition,
+/// `clear`, `edit`) makes the next query a full one. The set of pairs is the same in all cases. Not
+/// thread-safe.
 class WINNOW_API PairBuffer {
  public:
   /// Identifies the complete query that wrote the content; 0 is none.
@@ -51,7 +52,7 @@ class WINNOW_API PairBuffer {
         links_(memory),
         heads_(memory),
         places_(memory) {}
-  /// Takes the content of `other`, which is left empty: its next query is a full one.
+  /// Takes the content of `other`, which becomes empty: its next query is a full one.
   PairBuffer(PairBuffer&& other) noexcept
       : pairs_(std::move(other.pairs_)),
         pages_(std::move(other.pages_)),
@@ -59,7 +60,7 @@ class WINNOW_API PairBuffer {
         links_(std::move(other.links_)),
         heads_(std::move(other.heads_)),
         places_(std::move(other.places_)),
-        state_(std::exchange(other.state_, LinkState::loose)),
+        state_(std::exchange(other.state_, LinkState::unlinked)),
         may_link_(other.may_link_),
         provenance_(std::exchange(other.provenance_, {})) {}
 
@@ -96,7 +97,7 @@ class WINNOW_API PairBuffer {
   /// Removes all pairs: the next query is a full one. Memory is kept.
   void clear() noexcept {
     pairs_.clear();
-    state_ = LinkState::loose;
+    state_ = LinkState::unlinked;
     provenance_ = {};
   }
 
@@ -105,7 +106,7 @@ class WINNOW_API PairBuffer {
 
   /// Returns the pairs for arbitrary changes; the next query is a full one.
   [[nodiscard]] Column<Pair>& edit() noexcept {
-    state_ = LinkState::loose;
+    state_ = LinkState::unlinked;
     provenance_ = {};
     return pairs_;
   }
@@ -115,7 +116,7 @@ class WINNOW_API PairBuffer {
   /// for which `is_first` is false.
   template <typename IsFirst>
   [[nodiscard]] std::size_t partition(IsFirst&& is_first) noexcept {
-    state_ = LinkState::loose;
+    state_ = LinkState::unlinked;
     std::size_t end = size();
     for (std::size_t i = 0; i < end;) {
       if (is_first(std::as_const(pairs_[i]))) {
@@ -127,8 +128,8 @@ class WINNOW_API PairBuffer {
     return end;
   }
 
-  /// Returns the bytes of pairs under `results`, and of links and of buffers that tasks fill under
-  /// `scratch`.
+  /// Returns the bytes of the buffer: pairs as `results`, and links and the buffers that tasks fill
+  /// as `scratch`.
   [[nodiscard]] Footprint footprint() const noexcept;
 
  private:
@@ -136,8 +137,9 @@ class WINNOW_API PairBuffer {
   friend class PairTracker;
   friend class LinkedPairs;
 
-  /// Whether objects are linked to their pairs, or will be if few move again; see LinkedPairs.
-  enum class LinkState : std::uint8_t { loose, few_moved, linked };
+  /// Whether objects are linked to their pairs, or will be linked if few objects move in the next
+  /// frame too; see LinkedPairs.
+  enum class LinkState : std::uint8_t { unlinked, few_moved, linked };
   struct Link {
     std::uint32_t next[2];
     std::uint32_t before[2];
@@ -150,7 +152,7 @@ class WINNOW_API PairBuffer {
   Column<Link> links_;
   Column<std::uint32_t> heads_;
   Column<std::uint32_t> places_;
-  LinkState state_ = LinkState::loose;
+  LinkState state_ = LinkState::unlinked;
   bool may_link_ = true;
   Provenance provenance_;
 };

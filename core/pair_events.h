@@ -45,11 +45,11 @@ struct PairEventsOptions {
 };
 
 /// Pairs that began or ended between two frames. Callers pass it to `Partition::self_pairs` with
-/// the PairBuffer that holds the earlier frame's pairs. With another buffer, or one that was used
-/// otherwise in between, it starts anew: every pair begins and none ends. A refused call reports no
-/// change and loses none: the buffer still holds the earlier frame's pairs, in any order, and the
-/// next call reports the changes since then. Callers that need only the changes pass no buffer:
-/// PairEvents then stores the pairs itself.
+/// the PairBuffer that contains the earlier frame's pairs. If the buffer is another one, or if
+/// other calls have changed it since then, the events start anew: every pair begins and none ends.
+/// A refused call reports no change and loses none: the buffer still contains the earlier frame's
+/// pairs, in any order, and the next call reports the changes since then. Callers that need only
+/// the changes pass no buffer: PairEvents then stores the pairs itself.
 class WINNOW_API PairEvents {
  public:
   /// Creates events without any pair.
@@ -70,8 +70,8 @@ class WINNOW_API PairEvents {
   /// events.
   explicit PairEvents(std::pmr::memory_resource* memory = default_memory()) noexcept
       : PairEvents(PairEventsOptions{memory, false}) {}
-  /// Takes the content of `other`, which is left empty, starts anew and keeps its `client_data`
-  /// option.
+  /// Takes the content of `other`, which becomes empty: its next query starts anew, with the same
+  /// `client_data` option.
   PairEvents(PairEvents&& other) noexcept
       : begun_(std::move(other.begun_)),
         ended_(std::move(other.ended_)),
@@ -124,8 +124,8 @@ class WINNOW_API PairEvents {
     provenance_ = {};
   }
 
-  /// Returns the bytes of begun and ended pairs and of their client data under `results`, the rest
-  /// under `scratch`.
+  /// Returns the bytes of the events: begun and ended pairs and their client data as `results`, all
+  /// others as `scratch`.
   [[nodiscard]] Footprint footprint() const noexcept;
 
  private:
@@ -144,7 +144,7 @@ class WINNOW_API PairEvents {
   PairBuffer pairs_;              // used if the caller passes no buffer
   std::size_t persisting_ = 0;
   bool with_client_data_;
-  bool after_is_all_ = false;  // after_ holds all pairs of the previous frame
+  bool after_is_all_ = false;  // after_ contains all pairs of the previous frame
   PairBuffer::Provenance provenance_;
 };
 

@@ -1,15 +1,16 @@
 #pragma once
 
-// Plain arrays, because kernel files include this header: they may include only plain structs, see
-// simd/kernels/kernels.h.
+// A pose consists of plain arrays, because kernel sources include this header, and may include only
+// headers of plain structs; see simd/kernels/kernels.h.
 
 #include <winnow/core/export.h>
 
 namespace winnow {
 
-/// Position and orientation of a body: maps x to position + R(orientation) x. Both are in double,
-/// so that poses from a file or a solver are used unchanged. Results are computed from differences
-/// of positions and do not depend on the distance from the world's origin.
+/// Position and orientation of a body: maps x to position + R(orientation) x. Position and
+/// orientation are in double, so that poses from a file or a solver are used unchanged. The narrow
+/// phase computes with differences of positions, so its accuracy does not depend on the distance
+/// from the world's origin.
 struct Pose {
   double position[3] = {0.0, 0.0, 0.0};  ///< of the shape's origin, in world coordinates
   /// Quaternion w, x, y, z of any finite length except zero; R is the rotation of the normalised

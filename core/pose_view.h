@@ -12,9 +12,9 @@ namespace winnow {
 
 /// Non-owning view of poses in the caller's memory: pointers to the three coordinates of positions
 /// (double) and to the four of orientations (w, x, y, z; double or float), and the distances in
-/// bytes from one pose to the next. It copies nothing and must not outlive that memory. Without
-/// orientations, bodies that are moved keep their orientation, and poses that are read have the
-/// identity.
+/// bytes from one pose to the next. It copies nothing and must not outlive that memory. If the view
+/// has no orientations, calls that move bodies keep their orientations, and `operator[]` returns
+/// poses without rotation.
 struct PoseView {
   std::array<const double*, 3> position{};  ///< of the first pose: x, y, z
   /// Bytes from one position to the next.

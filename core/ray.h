@@ -13,8 +13,7 @@
 namespace winnow {
 
 /// Returns true if `direction` is finite and not zero, and 0 <= min_t <= max_t with min_t finite.
-[[nodiscard]] inline bool is_valid_sweep(const Vec3f& direction, float min_t,
-                                         float max_t) noexcept {
+[[nodiscard]] inline bool is_valid_path(const Vec3f& direction, float min_t, float max_t) noexcept {
   const bool moves = direction.all_finite() && !direction.is_zero();
   return moves && min_t >= 0.0F && std::isfinite(min_t) && min_t <= max_t;
 }
@@ -33,7 +32,7 @@ struct Ray {
   /// Returns true if a query accepts this ray: finite origin, finite direction that is not zero, 0
   /// <= min_t <= max_t, min_t finite.
   [[nodiscard]] bool is_valid() const noexcept {
-    return origin.all_finite() && is_valid_sweep(direction, min_t, max_t);
+    return origin.all_finite() && is_valid_path(direction, min_t, max_t);
   }
 };
 

@@ -11,9 +11,9 @@ namespace winnow {
 enum class [[nodiscard]] Status : std::uint8_t{
     /// Success.
     ok,
-    /// A bounding volume has a NaN, has min > max on an axis, or lies entirely at infinity.
+    /// A bounding volume has a NaN, has min > max on an axis, or is entirely at infinity.
     invalid_bounds,
-    /// A key is null, stale (its object was removed) or from another partition.
+    /// A key is null, stale (its object was removed) or from another partition or scene.
     invalid_key,
     /// An option or argument is outside its stated range.
     invalid_argument,
@@ -23,7 +23,7 @@ enum class [[nodiscard]] Status : std::uint8_t{
     out_of_memory,
     /// The number of objects would exceed `kMaxObjects`.
     too_many_objects,
-    /// The partition does not hold this kind of bounding volume.
+    /// The partition does not store this kind of bounding volume.
     unsupported_volume,
     /// A shape has a length that is negative, NaN or infinite, or its points do not define a shape.
     invalid_shape,

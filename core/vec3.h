@@ -132,13 +132,13 @@ class BasicVec3 {
   /// Returns the length.
   [[nodiscard]] T norm() const noexcept { return std::sqrt(squared_norm()); }
 
-  /// Returns the component-wise minimum; if a coordinate of either vector is NaN, it is this
-  /// vector's.
+  /// Returns the component-wise minimum; if a coordinate of either vector is NaN, the result has
+  /// the coordinate of this vector.
   [[nodiscard]] constexpr BasicVec3 min(const BasicVec3& other) const noexcept {
     return joined(other, [](T a, T b) { return b < a ? b : a; });
   }
-  /// Returns the component-wise maximum; if a coordinate of either vector is NaN, it is this
-  /// vector's.
+  /// Returns the component-wise maximum; if a coordinate of either vector is NaN, the result has
+  /// the coordinate of this vector.
   [[nodiscard]] constexpr BasicVec3 max(const BasicVec3& other) const noexcept {
     return joined(other, [](T a, T b) { return a < b ? b : a; });
   }

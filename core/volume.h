@@ -17,7 +17,8 @@ enum class Volume : std::uint8_t {
 };
 
 /// Returns the number of float columns of a volume: the lower and the upper ends of its box, then
-/// the lower and the upper ends of its other slabs; for a sphere, its centre and radius.
+/// the lower and the upper ends of the other slabs of a k-DOP, or the centre and radius of a
+/// sphere.
 [[nodiscard]] constexpr std::size_t column_count(Volume volume) noexcept {
   switch (volume) {
     case Volume::aabb:
@@ -45,7 +46,7 @@ inline constexpr std::size_t kRadiusColumn = 9;  ///< Column of a sphere's radiu
   return volume == Volume::sphere ? 3 : column_count(volume) / 2;
 }
 
-/// Returns the column of the lower end of slab `s` of `slabs`; the columns of the box come first.
+/// Returns the column of the lower end of slab `s`; the columns of the box come first.
 [[nodiscard]] constexpr std::size_t low_column(std::size_t, std::size_t s) noexcept {
   return s < 3 ? s : s + 3;
 }

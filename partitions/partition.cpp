@@ -13,8 +13,8 @@
 namespace winnow {
 namespace {
 
-/// Calls change(rows) for a mutation of `count` objects, notes the changes for the structure, and
-/// logs the status under the name `call`.
+/// Calls change(rows) for a mutation of `count` objects, marks the structure as stale if rows
+/// changed, and logs the status under the name `call`.
 template <typename Change>
 Status mutate(const char* call, PartitionState* state, Status otherwise, std::size_t count,
               Change&& change) {
@@ -28,13 +28,13 @@ Status mutate(const char* call, PartitionState* state, Status otherwise, std::si
 
 Partition make_box_partition(StructureKind structure, const PartitionOptions& options) noexcept {
   PartitionOptions without = options;
-  without.margin = {};
+  without.fat_margin = {};
   return Partition(structure, without, &Rows::boxes_as_given());
 }
 
 Partition::Partition(StructureKind structure, const PartitionOptions& options,
                      const VolumeInput* input) noexcept {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   if (structure.info() == nullptr || input == nullptr) return;
   state_ = PartitionState::make(structure, options, *input);
   status_ = state_ == nullptr ? Status::out_of_memory : Status::ok;
@@ -55,7 +55,7 @@ StructureKind Partition::structure() const noexcept {
 }
 
 Status Partition::set_structure(StructureKind structure) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   Status status = status_;
   if (structure.info() == nullptr) {
     status = Status::invalid_argument;
@@ -77,13 +77,13 @@ Volume Partition::volume() const noexcept {
   return state_ == nullptr ? Volume::aabb : state_->rows.pool().volume();
 }
 
-Margin Partition::margin() const noexcept {
-  return state_ == nullptr ? Margin{} : state_->rows.margin();
+FatMargin Partition::fat_margin() const noexcept {
+  return state_ == nullptr ? FatMargin{} : state_->rows.fat_margin();
 }
 
 Status Partition::insert(const BoxView& boxes, std::span<const ClientData> data,
                          std::span<Key> keys) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   return logged(state_ == nullptr ? status_ : state_->insert(boxes, data, keys),
                 "Partition::insert");
 }
@@ -95,7 +95,7 @@ Status Partition::insert(const Aabb& box, ClientData data, Key& key) {
 
 Status Partition::insert(std::span<const Sphere> spheres, std::span<const ClientData> data,
                          std::span<Key> keys) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   return mutate("Partition::insert", state_, status_, keys.size(),
                 [&](Rows& rows) { return rows.insert(spheres, data, keys); });
 }
@@ -103,37 +103,37 @@ Status Partition::insert(std::span<const Sphere> spheres, std::span<const Client
 template <int K>
 Status Partition::insert(std::span<const Kdop<K>> kdops, std::span<const ClientData> data,
                          std::span<Key> keys) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   return mutate("Partition::insert", state_, status_, keys.size(),
                 [&](Rows& rows) { return rows.insert(kdops, data, keys); });
 }
 
 Status Partition::update(std::span<const Key> keys, const BoxView& boxes) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   return logged(state_ == nullptr ? status_ : state_->update(keys, boxes), "Partition::update");
 }
 
 Status Partition::update(std::span<const Key> keys, const BoxView& boxes,
                          const IndexSubset& entries) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   return logged(state_ == nullptr ? status_ : state_->update(keys, boxes, entries),
                 "Partition::update");
 }
 
 Status Partition::update(Key key, const Aabb& box) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   return logged(state_ == nullptr ? status_ : state_->update(key, box), "Partition::update");
 }
 
 Status Partition::update(std::span<const Key> keys, std::span<const Sphere> spheres) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   return mutate("Partition::update", state_, status_, keys.size(),
                 [&](Rows& rows) { return rows.update(keys, spheres); });
 }
 
 template <int K>
 Status Partition::update(std::span<const Key> keys, std::span<const Kdop<K>> kdops) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   return mutate("Partition::update", state_, status_, keys.size(),
                 [&](Rows& rows) { return rows.update(keys, kdops); });
 }
@@ -149,12 +149,12 @@ template Status Partition::update(std::span<const Key>, std::span<const Kdop<18>
 template Status Partition::update(std::span<const Key>, std::span<const Kdop<26>>);
 
 Status Partition::remove(std::span<const Key> keys) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   return logged(state_ == nullptr ? status_ : state_->remove(keys), "Partition::remove");
 }
 
 Status Partition::remove(Key key) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   return mutate("Partition::remove", state_, status_, 1,
                 [&](Rows& rows) { return rows.remove(key); });
 }
@@ -168,7 +168,7 @@ void Partition::release_memory() noexcept {
 }
 
 Status Partition::reserve(std::size_t objects, Pages pages) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   return logged(state_ == nullptr ? status_ : state_->reserve(objects, pages),
                 "Partition::reserve");
 }
@@ -186,7 +186,7 @@ Status Partition::bounds(Key key, Aabb& box) const noexcept {
 }
 
 Status Partition::bounds(std::span<const Key> keys, std::span<Aabb> boxes) const noexcept {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   if (state_ == nullptr) return status_;
   return keys.size() == boxes.size() ? state_->bounds(keys, boxes) : Status::size_mismatch;
 }
@@ -207,7 +207,7 @@ ClientData Partition::client_data_of(ObjectId id) const noexcept {
 }
 
 Status Partition::set_filter(std::span<const Key> keys, std::span<const ObjectFilter> filters) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   return logged(state_ == nullptr ? status_ : state_->set_filter(keys, filters),
                 "Partition::set_filter");
 }
@@ -223,12 +223,12 @@ Status Partition::filter(Key key, ObjectFilter& filter) const noexcept {
 }
 
 Status Partition::refresh() const {
-  const DefaultEnvironment environment;
-  return logged(state_ == nullptr ? status_ : state_->make_ready(), "Partition::refresh");
+  const DefaultFloatEnvironment environment;
+  return logged(state_ == nullptr ? status_ : state_->refresh_for_queries(), "Partition::refresh");
 }
 
 Status Partition::debug_draw(DebugDraw& draw, const DebugDrawOptions& options) const noexcept {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   if (state_ == nullptr) return status_;
   if (options.max_depth < 0) return Status::invalid_argument;
   if (const Status status = state_->settle(); status != Status::ok) return status;

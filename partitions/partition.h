@@ -10,6 +10,7 @@
 #include <winnow/core/debug_draw.h>
 #include <winnow/core/execution.h>
 #include <winnow/core/export.h>
+#include <winnow/core/fat_margin.h>
 #include <winnow/core/filter.h>
 #include <winnow/core/footprint.h>
 #include <winnow/core/hits.h>
@@ -17,7 +18,6 @@
 #include <winnow/core/kdop.h>
 #include <winnow/core/key.h>
 #include <winnow/core/large_pages.h>
-#include <winnow/core/margin.h>
 #include <winnow/core/pair_buffer.h>
 #include <winnow/core/pair_events.h>
 #include <winnow/core/region.h>
@@ -46,16 +46,17 @@ struct PartitionOptions {
   /// Bounding volume of the objects. Every partition prunes by boxes. With spheres and k-DOPs it
   /// also drops pairs whose boxes overlap but whose volumes do not.
   Volume volume = Volume::aabb;
-  /// Stores volumes enlarged by this margin (fat AABBs), so that small motions need no update of
-  /// the structure. Every query tests the enlarged volumes.
-  Margin margin{};
+  /// Stores volumes enlarged by this fat margin (fat AABBs), so that small motions need no update
+  /// of the structure. Every query tests the enlarged volumes.
+  FatMargin fat_margin{};
   /// Number of rows that one refresh may process for a planned rebuild. A rebuild is planned if it
   /// is foreseeable: objects are about to leave their cells, or queries become steadily slower. The
-  /// work is then spread over the refreshes before the rebuild is due; the same holds for a change
-  /// of structure by `automatic()`. A build processes each row two to five times. 0: the partition
-  /// chooses the number so that planning takes two fifths of the refreshes that the last order
-  /// lasted. The largest value of the type: no planning, a build runs at once when it is due. The
-  /// budget counts rows, never time, so that results are the same on every machine.
+  /// work is then spread over the refreshes before the rebuild is due; a change of structure by
+  /// `automatic()` is spread, too. A build processes each row two to five times. If the budget is
+  /// 0, the partition chooses the number so that planning takes two fifths of the number of
+  /// refreshes since the last build. If it is the largest value of the type, nothing is planned: a
+  /// build runs at once when it is due. The budget counts rows, never time, so that results are the
+  /// same on every machine.
   std::size_t build_budget = 0;
 };
 
@@ -63,22 +64,21 @@ struct PartitionOptions {
 /// and any instruction set.
 enum class Order : std::uint8_t {
   fast,       ///< order in which results are found; depends on the structure and on earlier calls
-  canonical,  ///< sorted by (first, second): every exact partition gives identical bytes
+  canonical,  ///< sorted by (first, second): every exact partition writes identical bytes
 };
 
 /// Options of a pair query.
 struct PairOptions {
   Order order = Order::fast;  ///< order of the written pairs
-  /// True: if it is cheaper, a query keeps the pairs that the buffer already holds, except the
-  /// pairs of objects that moved since; it finds only these again. False: a query finds all pairs
-  /// again.
+  /// If true, and if this is cheaper, a query keeps the pairs in the buffer, and finds again only
+  /// the pairs of objects that moved since. If false, a query finds all pairs again.
   bool incremental = true;
   /// Called for every pair that the objects' filters let pass. An incremental query does not call
   /// it again for pairs of objects that did not move.
   PairPredicate predicate{};
 };
 
-/// State of a partition and counters of its work. It holds no timings, so that values repeat
+/// State of a partition and counters of its work. It contains no times, so that values repeat
 /// exactly.
 struct Statistics {
   std::size_t objects = 0;           ///< live objects
@@ -164,8 +164,8 @@ class WINNOW_API Partition final {
   [[nodiscard]] bool is_exact() const noexcept;
   /// Returns the bounding volume of the options.
   [[nodiscard]] Volume volume() const noexcept;
-  /// Returns the margin of the options.
-  [[nodiscard]] Margin margin() const noexcept;
+  /// Returns the fat margin of the options.
+  [[nodiscard]] FatMargin fat_margin() const noexcept;
 
   /// Adds one object per box and writes its key to `keys`. `data` may be empty: client data are 0
   /// then. `size_mismatch` if the lengths differ, `invalid_bounds` for a box with NaN, min > max or
@@ -186,10 +186,10 @@ class WINNOW_API Partition final {
   Status update(std::span<const Key> keys, const BoxView& boxes, const IndexSubset& entries);
 
   /// Adds one object per sphere. `unsupported_volume` unless `volume()` is Volume::sphere. A
-  /// partition of spheres or k-DOPs that is given boxes stores the tightest volume around each; for
-  /// spheres the boxes must be finite. Two spheres that do not touch may be reported as a pair if
-  /// their gap is below 1e-6 of their distance. They may also be reported if one of them is smaller
-  /// than about 1e-18 or larger than about 1e18.
+  /// partition of spheres or k-DOPs that is given boxes stores the tightest volume around each box,
+  /// up to rounding; for spheres the boxes must be finite. Two spheres that do not touch may be
+  /// reported as a pair if their gap is below 1e-6 of their distance. They may also be reported if
+  /// one of them is smaller than about 1e-18 or larger than about 1e18.
   Status insert(std::span<const Sphere> spheres, std::span<const ClientData> data,
                 std::span<Key> keys);
   /// Gives each object a new sphere. `invalid_bounds` for values that are not finite or a negative
@@ -212,7 +212,7 @@ class WINNOW_API Partition final {
   void clear() noexcept;
   /// Frees scratch memory, and all memory of an empty partition.
   void release_memory() noexcept;
-  /// Reserves all memory that the first frame of up to `objects` objects needs, wherever they lie:
+  /// Reserves all memory that the first frame of up to `objects` objects needs, at any positions:
   /// inserting them, `refresh` and a query for all pairs then allocate nothing (for the array of
   /// pairs see `reserve_pairs`). Reserves the largest number of cells and nodes that the structure
   /// may make of them, which is more than most scenes need; `automatic()` reserves for each
@@ -225,9 +225,9 @@ class WINNOW_API Partition final {
   /// threads write to pages of their own first. `out_of_memory` changes nothing.
   Status reserve_pairs(PairBuffer& out, std::size_t pairs, Pages pages = Pages::untouched) const;
   /// Reserves memory for the events of up to `pairs` pairs, for the number of objects that
-  /// `reserve` was called with. With `alone`, for `self_pairs(events)`, also reserves memory for
-  /// the pairs themselves. `out_of_memory` leaves the reported events unchanged.
-  Status reserve_events(PairEvents& out, std::size_t pairs, bool alone = false,
+  /// `reserve` was called with. With `with_pairs`, for `self_pairs(events)`, also reserves memory
+  /// for the pairs themselves. `out_of_memory` leaves the reported events unchanged.
+  Status reserve_events(PairEvents& out, std::size_t pairs, bool with_pairs = false,
                         Pages pages = Pages::untouched) const;
 
   /// Returns the number of live objects.
@@ -267,8 +267,9 @@ class WINNOW_API Partition final {
   Status pairs_with(const Partition& other, PairBuffer& out, const PairOptions& options = {}) const;
 
   /// Writes all pairs like `self_pairs(out)`, and reports the pairs that began and ended since the
-  /// frame that `out` holds. The cost grows with the number of moved objects. `out_of_memory`
-  /// reports no change and leaves the pairs of that frame in `out`.
+  /// frame whose pairs `out` contains. The cost grows with the number of moved objects.
+  /// `out_of_memory` reports no change and leaves the pairs of that frame in `out`, in any order;
+  /// if the events do not describe that frame, `out` becomes empty.
   Status self_pairs(PairBuffer& out, PairEvents& events, const PairOptions& options = {}) const;
   /// Reports only the pairs that began and ended. If few objects move, O(moved objects and their
   /// pairs). `options.order` is ignored.
@@ -295,8 +296,9 @@ class WINNOW_API Partition final {
 
   /// Finds every object whose box overlaps the region, and separates boxes inside the region from
   /// boxes that cross its border. A box overlaps a frustum or a set of planes if it is not wholly
-  /// outside one of the planes (or the box of the frustum). No object is missed; false ones lie
-  /// within rounding of the region. Order::canonical sorts each of the two groups by id.
+  /// outside one of the planes (or the box of the frustum). No object is missed; an object that is
+  /// found although it does not overlap is within rounding of the region. Order::canonical sorts
+  /// each of the two groups by id.
   Status overlap(const Region& region, OverlapBuffer& objects, const Filter& filter = {},
                  Order order = Order::fast) const;
   /// Finds all overlapping pairs (index of the box, object). Boxes may be infinite.
@@ -320,14 +322,14 @@ class WINNOW_API Partition final {
   /// pairs, equal the results of every other partition that loaded the same bytes. They need not
   /// equal the results of the partition that saved: to stay equal bit for bit, load the bytes there
   /// too. The next query for pairs is a full one for any buffer. `invalid_argument` if the bytes
-  /// are not a valid snapshot (untrusted bytes are safe); it and `out_of_memory` change nothing.
-  /// Links all structures. O(objects).
+  /// are not a valid snapshot (untrusted bytes are safe); `invalid_argument` and `out_of_memory`
+  /// change nothing. Links all structures. O(objects).
   Status load(std::span<const std::byte> saved);
 
   /// Draws the objects and the cells or nodes of the structure. O(n).
   Status debug_draw(DebugDraw& draw, const DebugDrawOptions& options = {}) const noexcept;
 
-  /// Returns every byte that is allocated from the memory resource.
+  /// Returns all bytes that are allocated from the memory resource, by purpose.
   [[nodiscard]] Footprint footprint() const noexcept;
   /// Returns the current counters.
   [[nodiscard]] Statistics statistics() const noexcept;

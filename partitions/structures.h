@@ -15,14 +15,15 @@ class WINNOW_API StructureKind {
  public:
   /// No structure; functions that take a StructureKind return `invalid_argument` for it.
   constexpr StructureKind() noexcept = default;
-  /// For the source file of a structure.
+  /// Called by the source file of a structure.
   constexpr explicit StructureKind(const StructureInfo& info, float parameter = 0.0F) noexcept
       : info_(&info), parameter_(parameter) {}
 
   /// Returns a stable name, e.g. "LinearBvh"; empty if there is no structure.
   [[nodiscard]] std::string_view name() const noexcept;
 
-  /// For the library itself; null if there is no structure.
+  /// Returns the table of the structure, which only the library reads; null if there is no
+  /// structure.
   [[nodiscard]] constexpr const StructureInfo* info() const noexcept { return info_; }
   /// Returns the parameter given to the function, e.g. `loose` of an octree; 0 without one.
   [[nodiscard]] constexpr float parameter() const noexcept { return parameter_; }
@@ -61,7 +62,7 @@ class WINNOW_API StructureKind {
   /** BVH as above with a build that takes many times as long and a better tree: for objects       \
      that hardly move and are queried often. */                                                    \
   X(static_bvh, )                                                                                  \
-  /** Chooses one of the others, again and again. Links all that it may choose. */                 \
+  /** Chooses one of the others, and may change the choice in any refresh. Links all of them. */   \
   X(automatic, )
 
 #define WINNOW_DECLARE_STRUCTURE(function, ...) \

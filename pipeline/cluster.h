@@ -39,8 +39,7 @@ struct NamePair {
 };
 
 /// Pairs that a rank reports; read-only, with iterators and random access. The rank stores a pair
-/// as two local body numbers (8 bytes); names are looked up when a pair is read, so unread pairs
-/// cost nothing.
+/// as two local body numbers (8 bytes); names are looked up only when a pair is read.
 class NamePairs {
  public:
   /// Iterates over the pairs.
@@ -118,7 +117,7 @@ struct ClusterDigest {
   std::uint64_t high = 0;  ///< sum of a hash over all pairs
   std::uint64_t low = 0;   ///< sum of a second hash
 
-  /// True if both halves are equal: the sets of pairs are the same.
+  /// True if both halves are equal, as they are for equal sets of pairs.
   friend constexpr bool operator==(const ClusterDigest&, const ClusterDigest&) noexcept = default;
 };
 
@@ -131,8 +130,9 @@ struct ClusterOptions {
   /// Structure of the partition of each rank.
   StructureKind structure = linear_bvh();
   /// Largest accepted load imbalance. After a frame in which the work of the busiest rank exceeds
-  /// this multiple of the mean, space is partitioned again, unless the last repartitioning did not
-  /// reduce the imbalance. At least 1.
+  /// this multiple of the mean, space is partitioned again. If a repartitioning reduces the
+  /// imbalance by less than 2 %, the next one waits until the imbalance has grown by more than 5 %.
+  /// At least 1.
   double imbalance = 1.1;
 };
 
@@ -146,8 +146,8 @@ struct ClusterStatistics {
   std::uint64_t messages = 0;  ///< messages sent between ranks
   std::uint64_t migrated = 0;  ///< bodies whose owning rank changed
   std::uint64_t cuts = 0;      ///< number of repartitionings so far
-  /// Work of the busiest rank divided by the mean. The work of a rank is the number of boxes it
-  /// holds plus the number of pairs it finds.
+  /// Work of the busiest rank divided by the mean. The work of a rank is the number of boxes that
+  /// it stores plus the number of pairs that it finds.
   double imbalance = 1.0;
 };
 
@@ -165,7 +165,7 @@ struct ClusterStatistics {
 /// removes it. A body is copied (as a ghost) to every rank whose region its box overlaps, so there
 /// is no halo width to choose, and boxes may be of any size. A copy is sent again only if the box
 /// moved. Two overlapping boxes share the point whose coordinates are the larger of their low
-/// corners on each axis; the rank whose region contains this point holds both boxes, and only this
+/// corners on each axis; the rank whose region contains this point stores both boxes, and only this
 /// rank reports the pair (reference point method, Dittrich and Seeger 2000).
 ///
 /// Collective calls must be made by every process, in the same order; other calls concern one rank.
@@ -207,8 +207,9 @@ class WINNOW_API Cluster {
   /// Removes bodies that `rank` owns, all or none; `invalid_key` as above.
   Status remove(std::uint32_t rank, std::span<const BodyName> names);
 
-  /// Finds all pairs. First moves bodies to the ranks that own them and copies to the ranks that
-  /// they overlap; after an unbalanced frame, space is partitioned again before that. Collective.
+  /// Finds all pairs. First, bodies move to the ranks that own them, and copies are sent to the
+  /// ranks whose regions their boxes overlap. If the previous frame was unbalanced (see
+  /// ClusterOptions), space is partitioned again before that. Collective.
   Status self_pairs(Order order = Order::fast);
   /// Returns the pairs that a hosted rank reports, each with the smaller name first. All ranks
   /// together report all pairs. With Order::canonical, the pairs of each rank are sorted. Valid

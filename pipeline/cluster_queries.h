@@ -37,7 +37,7 @@ struct ClusterOverlap {
 struct ClusterDistance {
   BodyName name = 0;                   ///< the body
   double distance = 0.0;               ///< negative inside a solid
-  double error_bound = 0.0;            ///< the true distance is within distance +- it
+  double error_bound = 0.0;            ///< the true distance is within distance +- this
   double normal[3] = {0.0, 0.0, 0.0};  ///< unit vector from the point to the body
   double point[3] = {0.0, 0.0, 0.0};   ///< closest point of the body, in the world
   std::uint32_t part = kWholeShape;    ///< closest part
@@ -57,10 +57,10 @@ struct NearestProbe {
 };
 
 /// Queries of one rank. The filter must not have a predicate (`unsupported`).
-template <typename Question>
+template <typename Query>
 struct ClusterQueryBatch {
-  std::span<const Question> questions;  ///< queries of that rank
-  Filter filter{};                      ///< filter of all of them
+  std::span<const Query> queries;  ///< queries of that rank
+  Filter filter{};                 ///< filter of all of them
 };
 
 /// Results of one rank: answers [first[i], first[i + 1]) belong to query i.
@@ -72,12 +72,13 @@ struct ClusterResults {
 
 /// Queries against the exact shapes of all ranks of a ClusterScene. Results equal, bit for bit, the
 /// results of SceneQueries on one Scene to which the bodies were added in the order of their names.
-/// Each hosted rank passes a batch of queries, possibly empty, and gets its own results. A rank
-/// without queries must take part too. Queries use the last poses given: as in `collide`, bodies
-/// first move to the ranks that own them.
+/// Each hosted rank passes a batch of queries, possibly empty, and gets its own results. Queries
+/// use the poses of the last `move` of each body: as in `collide`, bodies first move to the ranks
+/// that own them.
 ///
-/// All queries are collective. A batch with an invalid query is refused as by SceneQueries; the
-/// other batches are computed. Results are valid until the next query of the same kind.
+/// All queries are collective: a rank without queries must make the call too. A batch with an
+/// invalid query is refused as by SceneQueries; the other batches are computed. Results are valid
+/// until the next query of the same kind.
 class WINNOW_API ClusterQueries {
  public:
   /// Creates queries on `cluster`, which must outlive this object.

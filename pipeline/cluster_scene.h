@@ -32,7 +32,7 @@ struct ClusterSceneBatch {
 
 /// Options of a cluster of scenes, fixed at construction.
 struct ClusterSceneOptions {
-  /// Options of the scene of each rank. `carry_over` must be 0, `warm_start` and
+  /// Options of the scene of each rank. `cache_tolerance` must be 0, `warm_start` and
   /// `suppress_ghost_contacts` must be false; otherwise the status of the cluster is
   /// `invalid_argument`.
   SceneOptions scene{};
@@ -56,8 +56,8 @@ struct ClusterSceneOptions {
 /// they are on every rank and never sent, and their contacts are reported by the rank that owns the
 /// other body. ShapeIds are the same everywhere: each process must create the same shapes in the
 /// same order. Boxes are relative to (0, 0, 0). Results at level pairs therefore equal the results
-/// of a Scene only if its origin is there too; the other levels do not depend on it. Bodies are
-/// fixed or dynamic; none sleeps.
+/// of a Scene only if the origin of the Scene is (0, 0, 0) too; results at the other levels do not
+/// depend on the origin. Bodies are fixed or dynamic; none sleeps.
 ///
 /// Collective calls, refused calls and failures work as in Cluster.
 class WINNOW_API ClusterScene {
@@ -103,8 +103,9 @@ class WINNOW_API ClusterScene {
   /// Removes bodies that `rank` owns, all or none; `invalid_key` as above.
   Status remove(std::uint32_t rank, std::span<const BodyName> names);
 
-  /// Finds all contacts. First moves bodies to the ranks that own them and copies to the ranks that
-  /// they overlap; after an unbalanced frame, space is partitioned again before that. Collective.
+  /// Finds all contacts. First, bodies move to the ranks that own them, and copies are sent to the
+  /// ranks whose regions their boxes overlap. If the previous frame was unbalanced (see
+  /// ClusterOptions), space is partitioned again before that. Collective.
   Status collide(ContactLevel level);
   /// Returns the contacts that a hosted rank reports; all ranks together report all contacts. Pairs
   /// are sorted by the kinds of their shapes, then by name. In a pair, a is the body with the

@@ -17,15 +17,15 @@ namespace winnow {
 struct SplitPlane {
   float at = 0.0F;         ///< finite; smaller coordinates are below the plane
   std::uint32_t axis = 0;  ///< 0, 1 or 2
-  /// Children: below the plane, and at or above it. Each is the index of another cut, or `~rank`,
-  /// which is negative.
+  /// Children: below the plane, and at or above it. Each is the index of another cut, or, if it is
+  /// a rank, the negative number `~rank`.
   std::array<std::int32_t, 2> sides{~0, ~0};
 };
 
 /// Work of a rank, input of a partitioning of space: a column of boxes, and the amount of work that
 /// each box caused.
 struct CutWork {
-  std::span<const Aabb> boxes;           ///< finite or not
+  std::span<const Aabb> boxes;           ///< may extend to infinity
   std::span<const std::uint32_t> works;  ///< one count per box, at least 1
 };
 
@@ -76,9 +76,9 @@ class WINNOW_API Transport {
   virtual void begin(std::uint32_t call) noexcept { static_cast<void>(call); }
 
   /// Sends messages of hosted ranks, at most one from each rank to each other rank, and returns the
-  /// messages to hosted ranks, sorted by `to`, then by `from`. They are valid until the next
-  /// exchange, as long as the sent data of this process are not moved. Calls `meanwhile` once
-  /// unless an error occurred, preferably when all sends are under way.
+  /// messages to hosted ranks, sorted by `to`, then by `from`. The returned messages are valid
+  /// until the next exchange, unless the data sent by this process are moved. Calls `meanwhile`
+  /// once unless an error occurred, preferably when all sends are under way.
   virtual Status exchange(std::span<const RankMessage> sent, std::span<const RankMessage>& received,
                           const OverlappedWork& meanwhile) = 0;
 
@@ -113,7 +113,7 @@ class WINNOW_API LoopbackTransport final : public Transport {
 
  private:
   std::uint32_t ranks_;
-  std::vector<RankMessage> parcels_;
+  std::vector<RankMessage> messages_;
 };
 
 }  // namespace winnow

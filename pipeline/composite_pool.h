@@ -1,7 +1,7 @@
 #pragma once
 
-// Storage of meshes, height fields and compounds. A Scene uses it through the interface MidPhase,
-// which it implements in composites/; the trees of meshes are in mesh/.
+// Storage of meshes, height fields and compounds. A Scene uses CompositePool through its base class
+// MidPhase. The implementation is in composites/; the trees of meshes are in mesh/.
 
 #include <winnow/core/export.h>
 #include <winnow/core/large_pages.h>
@@ -85,13 +85,14 @@ class WINNOW_API CompositePool final : public MidPhase {
   /// front of a mesh triangle is the side from which its vertices run counter-clockwise in the
   /// unscaled mesh, even if the scale mirrors; the front of a height field is up.
   ///
-  /// A triangle does not collide with an object behind it: one whose centre is behind the plane of
-  /// the triangle. The centre is the centre of the object's box in world axes; for composite
-  /// objects, of the box of each convex part; for casts and rays, of the box at the start. Such
-  /// pairs have no contacts, overlaps, distances or hits. Objects in front collide as usual,
-  /// however deep they are, and are pushed to the front: if the shortest way out leads to the back,
-  /// the normal of the face is used, and a shape that does not touch is no contact. A half-space
-  /// has no centre and collides with both sides.
+  /// A one-sided triangle does not collide with an object whose centre is behind the plane of the
+  /// triangle. The centre is the centre of the object's box in world axes. For a composite object,
+  /// each convex part has its own box; for casts and rays, the box at the start is used. Pairs of a
+  /// triangle and an object behind it have no contacts, overlaps, distances or hits. Objects in
+  /// front collide as usual, however deep they are, and are pushed to the front: if the contact
+  /// normal points to the back, an overlapping object gets the normal of the face, and an object
+  /// that does not touch the triangle has no contact. A half-space has no centre and collides with
+  /// both sides.
   ///
   /// The flag belongs to the id: scaled instances of the same mesh (also of scale 1) have their
   /// own. `invalid_key` if the id is not of a mesh or height field.
@@ -100,10 +101,10 @@ class WINNOW_API CompositePool final : public MidPhase {
   [[nodiscard]] bool is_one_sided(ShapeId surface) const noexcept;
 
   /// Makes a closed mesh solid, or hollow again. Queries for distances and overlaps
-  /// (SceneQueries::overlap, overlaps, distance, least_distance and nearest) then count its
-  /// interior as part of the shape: for a point or shape inside that does not touch the surface,
-  /// the distance is minus the distance to the surface. Contacts, sensors, rays and casts still use
-  /// only the surface.
+  /// (SceneQueries::overlap, overlaps, any_contact, distance, least_distance and nearest) and
+  /// sensors then count its interior as part of the shape: for a point or shape inside that does
+  /// not touch the surface, the distance is minus the distance to the surface. Contacts of
+  /// `Scene::collide`, rays and casts still use only the surface.
   ///
   /// The flag belongs to the id, as for `set_one_sided`; it also applies if the mesh is a child of
   /// a compound. `invalid_key` if the id is not of a mesh. `invalid_shape` unless every edge
@@ -150,30 +151,33 @@ class WINNOW_API CompositePool final : public MidPhase {
   [[nodiscard]] Aabb bounds(ShapeId id, const Pose& pose) const noexcept override;
   [[nodiscard]] double radius(ShapeId id) const noexcept override;
   [[nodiscard]] std::uint64_t revision() const noexcept override;
-  Status expand(const ShapePool& shapes, const Bodies& bodies, std::span<const BodyPair> pairs,
-                const PairMargins& margins, const Execution& execution,
-                PrimitivePairs& out) const override;
-  void smooth(const ShapePool& shapes, const PrimitivePairs& pairs, const PairMargins& margins,
-              const Execution& execution, NarrowResult& result) const override;
-  Status reduce(const ShapePool& shapes, const PrimitivePairs& pairs, const NarrowResult& answers,
-                const PairMargins& margins, const Execution& execution,
-                ContactRegions& out) const override;
-  void visit(ShapeId id, const Pose& pose, const BoxSweep& sweep,
+  Status find_primitive_pairs(const ShapePool& shapes, const Bodies& bodies,
+                              std::span<const BodyPair> pairs, const PairMargins& margins,
+                              const Execution& execution, PrimitivePairs& out) const override;
+  void correct_internal_edges(const ShapePool& shapes, const PrimitivePairs& pairs,
+                              const PairMargins& margins, const Execution& execution,
+                              NarrowResult& result) const override;
+  Status reduce_contacts(const ShapePool& shapes, const PrimitivePairs& pairs,
+                         const NarrowResult& answers, const PairMargins& margins,
+                         const Execution& execution, ContactRegions& out) const override;
+  void visit(ShapeId id, const Pose& pose, const MovingBox& moving_box,
              const PrimitiveVisitor& visitor) const override;
   void visit_rays(ShapeId id, const Pose& pose, std::span<const ShapeRay> rays,
                   const double* limits, const RayVisitor& visitor) const override;
-  [[nodiscard]] bool place(ShapeId id, const Pose& pose, RaySurface& surface) const override;
+  [[nodiscard]] bool prepare_ray_surface(ShapeId id, const Pose& pose,
+                                         RaySurface& surface) const override;
   void visit_ray(const RaySurface& surface, const ShapeRay& ray, double limit,
                  const RayVisitor& visitor) const override;
-  void visit_near(ShapeId id, const Pose& pose, const BoxSweep& from, double limit,
+  void visit_near(ShapeId id, const Pose& pose, const MovingBox& from, double limit,
                   const PrimitiveVisitor& visitor) const override;
   bool visit_pairs(ShapeId a, const Pose& pose_a, ShapeId b, const Pose& pose_b,
                    const PrimitivePairVisitor& visitor) const override;
   bool visit_near_pairs(ShapeId a, const Pose& pose_a, ShapeId b, const Pose& pose_b, double limit,
                         const NearPairVisitor& visitor) const override;
-  [[nodiscard]] bool holds(ShapeId id, const Pose& pose, const double point[3]) const override;
-  [[nodiscard]] bool holds(ShapeId id, const Pose& pose, ShapeId other,
-                           const Pose& other_pose) const override;
+  [[nodiscard]] bool solid_contains(ShapeId id, const Pose& pose,
+                                    const double point[3]) const override;
+  [[nodiscard]] bool solid_contains(ShapeId id, const Pose& pose, ShapeId other,
+                                    const Pose& other_pose) const override;
   /// Returns the bytes of meshes, height fields, compounds and the pool itself.
   [[nodiscard]] Footprint footprint() const noexcept override;
 

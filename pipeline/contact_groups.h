@@ -14,8 +14,8 @@ namespace winnow {
 
 /// Largest number of groups made by Scene::colours; the last one is kRestColour.
 inline constexpr std::uint32_t kContactColours = 64;
-/// The group of pairs that no other colour could hold, because a body has more contacts than there
-/// are colours. Its pairs share bodies: solve them one by one, after all other groups.
+/// The group of pairs whose two bodies together already use all other colours. Its pairs may share
+/// bodies: solve them one by one, after all other groups.
 inline constexpr std::uint32_t kRestColour = kContactColours - 1;
 
 /// Groups of the pairs of Contacts, as columns of indices; the result of Scene::islands and

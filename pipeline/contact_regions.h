@@ -33,8 +33,8 @@ struct ContactRegion {
   ContactPoint point[kManifoldPoints];  ///< only the first `count` are set
 };
 
-/// Contact regions of pairs of bodies, computed by MidPhase::reduce from the manifolds of their
-/// parts. The caller keeps the object from frame to frame.
+/// Contact regions of pairs of bodies, computed by MidPhase::reduce_contacts from the manifolds of
+/// their parts. The caller keeps the object from frame to frame.
 class WINNOW_API ContactRegions {
  public:
   /// Creates an empty list. Every allocation comes from `memory`, which must outlive the object;

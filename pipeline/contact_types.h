@@ -1,7 +1,7 @@
 #pragma once
 
-// Levels of detail of contacts, and contact points. Plain structs, because kernel files include
-// this.
+// Levels of detail of contacts, and contact points. The structs are plain, because kernel files
+// include this header.
 
 #include <winnow/core/export.h>
 
@@ -9,9 +9,11 @@
 
 namespace winnow {
 
-/// How much is computed about pairs. A lower level does not pay for a higher one.
+/// How much is computed about pairs. A lower level does none of the work that only a higher level
+/// needs.
 enum class ContactLevel : std::uint8_t {
-  /// Pairs of bodies whose boxes, enlarged by half of the margin, overlap. Only for scenes.
+  /// Pairs of bodies whose boxes overlap. The boxes are enlarged by half of the contact margin, by
+  /// SceneOptions::cache_tolerance and by contact offsets. Only for scenes.
   pairs,
   /// Pairs that share a point, and the parts that do.
   boolean,
@@ -32,7 +34,8 @@ inline constexpr std::uint32_t kWholeShape = ~0U;
 
 /// One point of a manifold: halfway between the two surfaces, in world axes, relative to the
 /// position of body a. The feature identifies the vertex, edge or face of a (upper half) and of b
-/// (lower half) that generated the point; it is the same in each frame in which they do.
+/// (lower half) that generated the point; it has the same value in each frame in which these two
+/// generate the point.
 struct ContactPoint {
   float position[3];      ///< x, y, z
   float depth;            ///< positive if the bodies overlap there, negative if they are apart

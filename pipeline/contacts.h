@@ -1,7 +1,8 @@
 #pragma once
 
-// The result of `Scene::collide`: pairs, manifolds and points in columns, and events. It also
-// stores the previous frame, for events, the contact cache and warm starts. See scene/contacts.cpp.
+// The result of `Scene::collide`: pairs, manifolds and points in columns, and events. Contacts also
+// store what events, the contact cache and warm starts need of the previous frame. See
+// scene/contacts.cpp.
 
 #include <winnow/core/column.h>
 #include <winnow/core/export.h>
@@ -75,7 +76,7 @@ using PartColumn = IndexedView<PartLookup>;
 /// kind of shape, or with the smaller id if the kinds are equal.
 ///
 /// The caller keeps the object from frame to frame: it stores the previous frame, for events and
-/// for contacts that are carried over. A new or cleared object stores no previous frame. It is not
+/// for contacts that are cached. A new or cleared object stores no previous frame. It is not
 /// thread-safe. If memory for the object itself is refused, it stays empty and `collide` returns
 /// `out_of_memory`.
 class WINNOW_API Contacts {
@@ -145,18 +146,19 @@ class WINNOW_API Contacts {
   ///     impulse[i] = before[i] == kNoContact ? 0 : last_impulse[before[i]]
   ///
   /// Only for a scene with SceneOptions::warm_start, otherwise empty. No two pairs have the same
-  /// index. New pairs have none, nor have pairs that were asleep.
+  /// index. New pairs and pairs that were asleep have kNoContact.
   [[nodiscard]] std::span<const std::uint32_t> previous_pair() const noexcept;
   /// Returns, at level manifold, the index of each point in the previous frame, or kNoContact, as
   /// for `previous_pair`. No two points have the same index. Points of a persisting pair are
   /// matched in this order: the same feature between the same parts; with contact reduction, the
   /// same feature; then the nearest remaining point, if it moved by at most 1/50 of the smaller
-  /// body's radius in the frame of body a or of body b. The last step is skipped for a pair with
-  /// more than 256 remaining points.
+  /// body's radius in the frame of body a or of body b. The last step is skipped if the pair has
+  /// more than 256 unmatched points in the previous frame.
   [[nodiscard]] std::span<const std::uint32_t> previous_point() const noexcept;
 
-  /// Returns the number of pairs that kept their previous manifolds; see SceneOptions::carry_over.
-  [[nodiscard]] std::size_t carried() const noexcept;
+  /// Returns the number of pairs that kept their previous manifolds; see
+  /// SceneOptions::cache_tolerance.
+  [[nodiscard]] std::size_t cached_pairs() const noexcept;
 
   /// Removes all contents; memory is kept.
   void clear() noexcept;
@@ -172,7 +174,7 @@ class WINNOW_API Contacts {
   [[nodiscard]] const ContactsState& state() const noexcept;
 
   std::pmr::memory_resource* memory_;
-  /// Null where memory was refused.
+  /// Null if memory was refused.
   ContactsState* state_;
 };
 

@@ -48,13 +48,13 @@ struct MeshImpact {
   double time = 0.0;  ///< time of the first touch, never late; see FeatureImpact
 };
 
-/// Two features of meshes that are near each other at the end of the step.
+/// Two features of meshes whose distance at the end of the step is at most the given thickness.
 struct MeshProximity {
-  Pair features;          ///< see MeshImpact
-  double distance = 0.0;  ///< in the units of the vertices, exact to a few last digits of these
+  Pair features;               ///< see MeshImpact
+  double distance = 0.0;       ///< exact to a few rounding errors of the vertices
   std::array<Vec3d, 2> point;  ///< closest points, on the first and the second feature
   /// Barycentric weights of the points. The first point is weight[0] times the vertex or, for
-  /// edges, weight[0] and weight[1] times the ends. The remaining weights give the second point:
+  /// edges, weight[0] and weight[1] times the ends. The remaining weights are for the second point:
   /// one per corner of the face, or weight[2] and weight[3] for the ends of the second edge. Each
   /// is >= 0; the weights of one feature sum to 1.
   std::array<double, 4> weight{};
@@ -99,7 +99,7 @@ struct ResultChunks {
 
 /// A mesh whose vertices move in every step, for cloth and soft bodies. It finds the pairs (vertex,
 /// face) and (edge, edge), within the mesh or with another mesh, that may touch, that touch, or
-/// that are near each other. Features that share a vertex are not paired.
+/// that are within a distance of each other. Features that share a vertex are not paired.
 ///
 ///     winnow::DeformableMesh cloth;
 ///     cloth.build(rest, triangles);
@@ -110,9 +110,9 @@ struct ResultChunks {
 /// Vertices stay in the caller's memory and are read by every call until the next `move`. Faces and
 /// edges are sorted in space once, by the rest positions. Blocks of 16 of them are the leaves of a
 /// tree whose boxes are refitted in every step. A closed mesh takes about 114 bytes per triangle.
-/// After the first step only results are allocated, at most one chunk at a time. Their order is the
-/// same for any number of threads and any instruction set. Const calls may run concurrently.
-/// Nothing throws; the callbacks must not throw either.
+/// After the first step only results are allocated, at most one chunk at a time. The order of
+/// results is the same for any number of threads and any instruction set. Const calls may run
+/// concurrently. Nothing throws; the callbacks must not throw either.
 class WINNOW_API DeformableMesh {
  public:
   /// Creates a mesh without triangles.

@@ -23,8 +23,8 @@ struct FeatureImpactOptions {
   /// Distance at which features touch: finite, >= 0, in units of the points.
   double min_separation = 0.0;
   /// How early the returned time may be before the first touch, in (0, 1], apart from rounding.
-  /// Features that stay apart, but come closer than the distance that they move in such a time, may
-  /// be reported as touching.
+  /// Features that stay apart, but come closer than the distance that they move in a time of
+  /// `tolerance`, may be reported as touching.
   double tolerance = 0x1p-40;
   /// Largest number of time intervals to examine, at least 1. If they do not settle the result, an
   /// impact at the first unsettled time is returned: early, never late.
@@ -41,17 +41,19 @@ struct FeatureImpact {
 /// Finds the time at which two features first touch, while each of their points moves linearly from
 /// `start` at time 0 to `end` at time 1. Degenerate features count as the segment or point that
 /// they are. The result is certified: no touch is missed and no time is late, rounding included;
-/// coordinates are taken as exact. A hit without a touch is possible only at a gap of about 1e-14
-/// of the size and motion of the features, or of `tolerance`.
+/// coordinates are taken as exact. A hit without a touch is possible only if the gap is at most
+/// about 1e-14 of the size and motion of the features, or at most the distance that they move in a
+/// time of `tolerance`, or if `max_intervals` is reached.
 ///
 /// The differences of the points of the two features span a polygon whose corners move linearly;
-/// the features touch when it contains the origin. Two tests rule out time intervals. First, the
-/// volume spanned by the points is a cubic polynomial in time, and has no zero in the interval
-/// (shown by the hull of its Bernstein coefficients, as in Bezier clipping: Sederberg and Nishita,
-/// "Curve intersection using Bezier clipping", 1990). Second, a fixed plane separates the polygon
-/// from the origin; it does so for the whole interval if it does at both ends. Compare the
-/// three-dimensional inclusion of Wang et al., "A large-scale benchmark and an inclusion-based
-/// algorithm for continuous collision detection", 2021.
+/// the features touch when this polygon contains the origin. Two tests rule out time intervals. The
+/// first test: the volume spanned by the points, a cubic polynomial in time, has no zero in the
+/// interval (shown by the hull of its Bernstein coefficients, as in Bezier clipping: Sederberg and
+/// Nishita, "Curve intersection using Bezier clipping", 1990). The second test: a fixed plane
+/// separates the polygon from the origin at both ends of the interval. Because the corners move
+/// linearly, the plane then separates them during the whole interval. Compare the three-dimensional
+/// inclusion of Wang et al., "A large-scale benchmark and an inclusion-based algorithm for
+/// continuous collision detection", 2021.
 ///
 /// `invalid_bounds` if a coordinate is not finite or a difference of two overflows;
 /// `invalid_argument` for options out of range.

@@ -23,17 +23,17 @@ struct HeightSamples {
   std::span<const float> heights;  ///< at least (rows - 1) * row_stride + columns values
   std::uint32_t columns = 0;       ///< samples along x, 2 or more
   std::uint32_t rows = 0;          ///< samples along y, 2 or more
-  std::uint32_t row_stride = 0;    ///< 0 stands for `columns`
+  std::uint32_t row_stride = 0;    ///< 0 means `columns`
   double spacing[2] = {1.0, 1.0};  ///< along x and y; positive, finite
 };
 
 /// A surface over a regular grid, z up. Each square consists of two triangles that share the
 /// diagonal from its lowest column and row to its highest. There is no tree of boxes: cells are
 /// found by division, and pruned by a pyramid of minimal and maximal heights, whose lowest level
-/// covers 16 x 16 squares per entry, and each higher level 4 x 4 entries of the level below. 4
-/// bytes per sample, plus a thirtieth of a byte for the pyramid. Squares are numbered row by row.
-/// Triangle 2 * square has a corner at (column + 1, row), triangle 2 * square + 1 has a corner at
-/// (column, row + 1).
+/// covers 16 x 16 squares per entry, and each higher level 4 x 4 entries of the level below. A
+/// field takes 4 bytes per sample, plus a thirtieth of a byte for the pyramid. Squares are numbered
+/// row by row. Triangle 2 * square has a corner at (column + 1, row), triangle 2 * square + 1 has a
+/// corner at (column, row + 1).
 class WINNOW_API HeightField {
  public:
   /// Creates a field without samples. Every allocation comes from `memory`, which must outlive the

@@ -44,7 +44,7 @@ struct PairMargins {
 
 /// Pairs of convex primitives that may touch: the input of the narrow phase for pairs of bodies
 /// with composite shapes. Coordinates are relative to the position of body a of the pair of bodies,
-/// in world axes, so that results do not depend on where the bodies are.
+/// in world axes, so that precision is the same far from the origin of the world.
 class WINNOW_API PrimitivePairs {
  public:
   /// Creates an empty list. Every allocation comes from `memory`, which must outlive the object;
@@ -69,7 +69,8 @@ class WINNOW_API PrimitivePairs {
   /// active, that is, not internal to the surface. Bit 3 + k is set if vertex k is on an active
   /// edge of any triangle. A contact at an active feature may have a normal other than the face
   /// normal. kAllActive for triangles that belong to no mesh. kOneSided is set if the triangle is
-  /// one-sided, kClockwise if its vertices are then clockwise as seen from its front.
+  /// one-sided; kClockwise is set if it is one-sided and its vertices are clockwise as seen from
+  /// its front.
   Column<std::uint8_t> active_edges;
   static constexpr std::uint8_t kAllActive = 63;   ///< all edges and vertices are active
   static constexpr std::uint8_t kOneSided = 64;    ///< the triangle is one-sided
@@ -111,23 +112,23 @@ struct PrimitiveVisitor {
 /// PrimitiveVisitor.
 struct RayVisitor {
   /// Called for a triangle that the ray certainly hits.
-  double (*meet)(void* context, std::size_t ray, std::uint32_t part, const ShapeHit& hit,
-                 double limit) = nullptr;
+  double (*visit_hit)(void* context, std::size_t ray, std::uint32_t part, const ShapeHit& hit,
+                      double limit) = nullptr;
   /// Called for a primitive that the ray may hit. The primitive is relative to the position of
   /// the composite shape's pose. Test it with a ray whose origin is relative to that position too:
   /// the difference of the two, rounded to double.
-  double (*look)(void* context, std::size_t ray, const Primitive& primitive,
-                 double limit) = nullptr;
+  double (*visit_candidate)(void* context, std::size_t ray, const Primitive& primitive,
+                            double limit) = nullptr;
   void* context = nullptr;  ///< passed to both
 };
 
 struct MeshView;
 
-/// A mesh at a pose, prepared for single rays; see MidPhase::place.
+/// A mesh at a pose, prepared for single rays; see MidPhase::prepare_ray_surface.
 struct RaySurface {
-  ShapeId shape;                   ///< the default id if nothing was placed
+  ShapeId shape;                   ///< the default id if nothing was prepared
   Pose pose;                       ///< pose of the mesh
-  std::uint64_t revision = 0;      ///< MidPhase::revision at the time of placing
+  std::uint64_t revision = 0;      ///< MidPhase::revision when it was prepared
   const MeshView* mesh = nullptr;  ///< the mesh, in its own frame
   SurfaceFrame frame = {};         ///< frame of the mesh in the world
   int front = 0;                   ///< see Primitive::front
@@ -152,7 +153,7 @@ struct NearPairVisitor {
 
 /// A box that moves by t * direction for t in [0, max_t], in double, in world axes. max_t = 0: a
 /// static box.
-struct BoxSweep {
+struct MovingBox {
   double min[3];                          ///< at t = 0
   double max[3];                          ///< at t = 0, not below `min`
   double direction[3] = {0.0, 0.0, 0.0};  ///< finite; zero for a static box
@@ -182,15 +183,15 @@ class WINNOW_API MidPhase {
   /// Finds all pairs of primitives that are within the margin of their bodies, and some that are
   /// not. At least one body of each pair is composite. Ids and poses are valid. The order is the
   /// same for any number of threads and any instruction set.
-  virtual Status expand(const ShapePool& shapes, const Bodies& bodies,
-                        std::span<const BodyPair> pairs, const PairMargins& margins,
-                        const Execution& execution, PrimitivePairs& out) const = 0;
-  /// Corrects contacts at internal edges of meshes (ghost contacts): gives them the normal of the
-  /// face. To be called after the narrow phase has computed `pairs` at level distance or manifold.
-  /// `margins` are the margins of pairs of primitives that the narrow phase used.
-  virtual void smooth(const ShapePool& shapes, const PrimitivePairs& pairs,
-                      const PairMargins& margins, const Execution& execution,
-                      NarrowResult& result) const = 0;
+  virtual Status find_primitive_pairs(const ShapePool& shapes, const Bodies& bodies,
+                                      std::span<const BodyPair> pairs, const PairMargins& margins,
+                                      const Execution& execution, PrimitivePairs& out) const = 0;
+  /// Corrects contacts at internal edges of meshes (ghost contacts): sets their normals to the
+  /// normal of the face. Call it after the narrow phase has computed `pairs` at level distance or
+  /// manifold. `margins` are the margins of pairs of primitives that the narrow phase used.
+  virtual void correct_internal_edges(const ShapePool& shapes, const PrimitivePairs& pairs,
+                                      const PairMargins& margins, const Execution& execution,
+                                      NarrowResult& result) const = 0;
   /// Merges the manifolds of each pair of bodies within its margin into contact regions. The
   /// deepest manifold (among equals, the first in `pairs`) and all manifolds whose normals are
   /// within 5 degrees of its normal (kRegionCosine) form the first region; the deepest remaining
@@ -199,13 +200,13 @@ class WINNOW_API MidPhase {
   /// polygons that did not fit into the manifold of a single part. `invalid_argument` unless
   /// `answers` are the results for `pairs` at level manifold. O(manifolds x regions of a pair of
   /// bodies). The result is the same for any number of threads and any instruction set.
-  virtual Status reduce(const ShapePool& shapes, const PrimitivePairs& pairs,
-                        const NarrowResult& answers, const PairMargins& margins,
-                        const Execution& execution, ContactRegions& out) const = 0;
+  virtual Status reduce_contacts(const ShapePool& shapes, const PrimitivePairs& pairs,
+                                 const NarrowResult& answers, const PairMargins& margins,
+                                 const Execution& execution, ContactRegions& out) const = 0;
 
   /// Visits every primitive whose box the moving box may hit, roughly in order of time. O(log n +
   /// hits).
-  virtual void visit(ShapeId id, const Pose& pose, const BoxSweep& sweep,
+  virtual void visit(ShapeId id, const Pose& pose, const MovingBox& moving_box,
                      const PrimitiveVisitor& visitor) const = 0;
   /// Reports every primitive that a ray hits or may hit at t up to its limit, roughly in order of t
   /// along each ray; the order between rays is arbitrary. Rays are valid. There is one limit per
@@ -214,19 +215,20 @@ class WINNOW_API MidPhase {
   virtual void visit_rays(ShapeId id, const Pose& pose, std::span<const ShapeRay> rays,
                           const double* limits, const RayVisitor& visitor) const = 0;
   /// Prepares a mesh for `visit_ray`. Returns false and writes nothing for all other shapes.
-  [[nodiscard]] virtual bool place(ShapeId id, const Pose& pose, RaySurface& surface) const {
+  [[nodiscard]] virtual bool prepare_ray_surface(ShapeId id, const Pose& pose,
+                                                 RaySurface& surface) const {
     (void)id, (void)pose, (void)surface;
     return false;
   }
-  /// As `visit_rays`, for one ray, whose number is 0. The surface was prepared by `place` of this
-  /// object, which has not changed since.
+  /// As `visit_rays`, for one ray, whose number is 0. The surface was prepared by
+  /// `prepare_ray_surface` of this object, which has not changed since.
   virtual void visit_ray(const RaySurface& surface, const ShapeRay& ray, double limit,
                          const RayVisitor& visitor) const {
     (void)surface, (void)ray, (void)limit, (void)visitor;
   }
   /// Visits every primitive whose box may be within `limit` of the static box `from`, roughly
   /// nearest first.
-  virtual void visit_near(ShapeId id, const Pose& pose, const BoxSweep& from, double limit,
+  virtual void visit_near(ShapeId id, const Pose& pose, const MovingBox& from, double limit,
                           const PrimitiveVisitor& visitor) const = 0;
 
   /// Visits every pair of primitives of two meshes that may share a point. Returns false and visits
@@ -241,15 +243,16 @@ class WINNOW_API MidPhase {
 
   /// True if a solid (see CompositePool::set_solid), or a solid child of a compound, contains a
   /// point of the world. Ids and poses are valid.
-  [[nodiscard]] virtual bool holds(ShapeId id, const Pose& pose, const double point[3]) const {
+  [[nodiscard]] virtual bool solid_contains(ShapeId id, const Pose& pose,
+                                            const double point[3]) const {
     (void)id, (void)pose, (void)point;
     return false;
   }
   /// As above, for a point of another shape, convex or not: for a compound, one point of each
   /// child; for a surface, one vertex. A connected shape whose surface does not intersect the
   /// surface of the solid is inside entirely or not at all, so one point decides.
-  [[nodiscard]] virtual bool holds(ShapeId id, const Pose& pose, ShapeId other,
-                                   const Pose& other_pose) const {
+  [[nodiscard]] virtual bool solid_contains(ShapeId id, const Pose& pose, ShapeId other,
+                                            const Pose& other_pose) const {
     (void)id, (void)pose, (void)other, (void)other_pose;
     return false;
   }

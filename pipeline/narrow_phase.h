@@ -33,11 +33,11 @@ struct NarrowOptions {
   NarrowTier tier = NarrowTier::robust;  ///< how exact results must be
   /// Contact margin: pairs whose gap is at most this get contact points (speculative contacts),
   /// with depth <= 0. Finite, >= 0.
-  double margin = 0.0;
+  double contact_margin = 0.0;
   /// How work is run in parallel; results do not depend on it.
   Execution execution = Execution::serial();
-  /// A margin for each pair, used instead of `margin` if not empty. Finite, >= 0.
-  std::span<const double> margins{};
+  /// A contact margin for each pair, used instead of `contact_margin` if not empty. Finite, >= 0.
+  std::span<const double> contact_margins{};
 };
 
 /// Bodies: body i has shape shapes[i] at poses[i].
@@ -86,11 +86,11 @@ class WINNOW_API NarrowPhase {
   NarrowPhase& operator=(const NarrowPhase&) = delete;
   NarrowPhase& operator=(NarrowPhase&&) = delete;
 
-  /// Computes all pairs. `invalid_argument` for level `pairs`, an invalid margin or a body index
-  /// out of range; `size_mismatch` for spans of different lengths (`margins` may be empty);
-  /// `invalid_key` for an id that the pool does not contain; `invalid_pose` if a body of a pair has
-  /// an invalid pose (the orientation of a sphere is ignored); `out_of_memory`. After an error
-  /// `result` is empty and `bad_body` returns the cause.
+  /// Computes all pairs. `invalid_argument` for level `pairs`, an invalid contact margin or a body
+  /// index out of range; `size_mismatch` for spans of different lengths (`contact_margins` may be
+  /// empty); `invalid_key` for an id that the pool does not contain; `invalid_pose` if a body of a
+  /// pair has an invalid pose (the orientation of a sphere is ignored); `out_of_memory`. After an
+  /// error `result` is empty and `bad_body` returns the cause.
   Status collide(const ShapePool& shapes, const Bodies& bodies, std::span<const BodyPair> pairs,
                  const NarrowOptions& options, NarrowResult& result);
   /// As above, for shapes that are not stored in a pool.
@@ -112,7 +112,7 @@ class WINNOW_API NarrowPhase {
   std::pmr::memory_resource* memory_;
   State* state_ = nullptr;
   NarrowStatistics statistics_;
-  std::uint32_t bad_body_ = 0;
+  std::uint32_t bad_body_ = ~0U;
 };
 
 /// Computes one pair, shape a at pose_a and shape b at pose_b, like NarrowPhase::collide. It stores

@@ -58,7 +58,7 @@ struct NarrowColumns {
   std::span<double> point[3];              ///< x, y, z
   std::span<std::uint32_t> contact_first;  ///< index into `contacts`
   std::span<std::uint32_t> contact_count;  ///< at most kManifoldPoints
-  /// May grow.
+  /// Points may be added.
   ContactColumns& contacts;
 };
 
@@ -133,8 +133,8 @@ class WINNOW_API NarrowResult {
   /// Returns the points as columns.
   [[nodiscard]] const ContactColumns& contact_columns() const noexcept { return contacts_; }
 
-  /// Returns the columns for corrections in place (see MidPhase::smooth). Written values must agree
-  /// with what the accessors guarantee.
+  /// Returns the columns for corrections in place (see MidPhase::correct_internal_edges). Written
+  /// values must agree with what the accessors guarantee.
   [[nodiscard]] NarrowColumns columns() noexcept;
 
   /// Returns the bytes of all columns under `results`: exactly what is allocated from the resource.

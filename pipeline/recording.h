@@ -1,17 +1,17 @@
 #pragma once
 
 // Recording of the calls that a program makes, by wrappers with the same functions as Partition,
-// Scene, SceneQueries, SceneSweep and Sensors. RecordingPlayer (replay.h) replays the result. The
-// implementation is in recording/.
+// Scene, SceneQueries, ContinuousCollision and Sensors. RecordingPlayer (replay.h) replays the
+// result. The implementation is in recording/.
 
 #include <winnow/core/export.h>
 #include <winnow/core/large_pages.h>
 #include <winnow/core/status.h>
 #include <winnow/partitions/partition.h>
 #include <winnow/pipeline/composite_pool.h>
+#include <winnow/pipeline/continuous_collision.h>
 #include <winnow/pipeline/scene.h>
 #include <winnow/pipeline/scene_queries.h>
-#include <winnow/pipeline/scene_sweep.h>
 #include <winnow/pipeline/sensors.h>
 
 #include <cstddef>
@@ -87,8 +87,9 @@ class WINNOW_API Recorder {
 
 /// A Partition whose calls are recorded; see Partition for each function. Results are not changed.
 /// A query is recorded with a digest of its results. For a query with a predicate, the results are
-/// recorded in place of the predicate's answers. An incremental query, whose buffer or events hold
-/// the result of an earlier query, is replayed from that result if it is one of the last 16.
+/// recorded in place of the predicate's answers. An incremental query, whose buffer or events
+/// contain the result of an earlier query, is replayed from that result if the earlier query is one
+/// of the last 16.
 class WINNOW_API RecordedPartition {
  public:
   /// Creates the partition. The recorder must outlive it.
@@ -150,21 +151,21 @@ class WINNOW_API RecordedPartition {
   /// @}
 
  private:
-  void record(RecordedCall question, const RayBatch& rays, const HitColumns& hits,
+  void record(RecordedCall kind, const RayBatch& rays, const HitColumns& hits,
               const Filter& filter) const;
 
   RecorderState* recorder_;
   std::uint32_t world_;
   Partition partition_;
-  /// Returns the number of the recorded query whose result the buffer holds; 0 if it is none of the
-  /// last ones.
+  /// Returns the number of the recorded query whose result the buffer contains; 0 if it is none of
+  /// the last kPairHistory queries.
   [[nodiscard]] std::uint64_t source_query(const PairBuffer& out) const noexcept;
-  void note_asked(const PairBuffer& out) const noexcept;
+  void store_provenance(const PairBuffer& out) const noexcept;
 
-  /// Buffers' contents after the last pair queries; query i is at i % kAskedPairs.
-  static constexpr std::size_t kAskedPairs = 16;
-  mutable PairBuffer::Provenance asked_[kAskedPairs];
-  mutable std::uint64_t questions_ = 0;
+  /// Contents of the buffers after the last pair queries; query i is at i % kPairHistory.
+  static constexpr std::size_t kPairHistory = 16;
+  mutable PairBuffer::Provenance provenances_[kPairHistory];
+  mutable std::uint64_t pair_queries_ = 0;
 };
 
 /// A shape that was recorded.
@@ -184,8 +185,8 @@ struct RecordedShape {
 /// one-sided or a solid, or has a support function; SceneOptions::suppress_ghost_contacts; and a
 /// `collide` into Contacts that this scene filled, but not in its last `collide`. So use one
 /// Contacts per scene; it may be cleared, filled by another scene in between, or loaded by
-/// `load_contacts`. RecordedQueries, RecordedSweep and RecordedSensors record the other queries of
-/// a scene.
+/// `load_contacts`. RecordedQueries, RecordedContinuousCollision and RecordedSensors record the
+/// other queries of a scene.
 class WINNOW_API RecordedScene {
  public:
   /// Creates a scene without composite shapes. The recorder must outlive it.
@@ -217,13 +218,13 @@ class WINNOW_API RecordedScene {
   void clear() noexcept;
   Status move(Key key, const Pose& pose);
   Status move(std::span<const Key> keys, const PoseView& poses);
-  Status set_motion(Key key, Motion motion);
-  Status set_motion(std::span<const Key> keys, Motion motion);
+  Status set_body_state(Key key, BodyState state);
+  Status set_body_state(std::span<const Key> keys, BodyState state);
   Status set_shape(Key key, ShapeId shape);
   Status set_filter(Key key, const ObjectFilter& filter);
   Status set_offsets(Key key, const ContactOffsets& offsets);
   Status set_layer(Key key, std::uint16_t layer);
-  Status set_layers_collide(std::uint16_t a, std::uint16_t b, bool meet = true);
+  Status set_layers_collide(std::uint16_t a, std::uint16_t b, bool collide = true);
   Status set_ignored(Key a, Key b, bool ignored = true);
   Status set_ignored(std::span<const KeyPair> pairs, bool ignored = true);
   void set_predicate(const PairPredicate& predicate) noexcept;
@@ -236,25 +237,25 @@ class WINNOW_API RecordedScene {
  private:
   friend class RecordedQueries;
   friend class RecordedSensors;
-  friend class RecordedSweep;
+  friend class RecordedContinuousCollision;
   RecordedScene(Recorder& recorder, const ShapePool& shapes, const SceneOptions& options,
                 const CompositePool* composites) noexcept;
   /// Clock of the `collide` that filled contacts, and serial number of its pairs.
-  using Asked = std::pair<std::uint32_t, std::uint64_t>;
-  [[nodiscard]] static Asked source_query(const Contacts& contacts) noexcept;
+  using Provenance = std::pair<std::uint32_t, std::uint64_t>;
+  [[nodiscard]] static Provenance source_query(const Contacts& contacts) noexcept;
   [[nodiscard]] bool is_filled_by_this(const Contacts& contacts) const noexcept;
 
   [[nodiscard]] bool can_hold(ShapeId id) const noexcept;
   [[nodiscard]] RecordedShape* find_shape(ShapeId id) noexcept;
   [[nodiscard]] std::uint32_t number_of(ShapeId id) noexcept;
-  void refuse(Status why) noexcept;
+  void stop_recording(Status why) noexcept;
   void describe(RecordedShape& shape) const noexcept;
-  void know(const RecordedShape& shape) noexcept;
+  void insert_shape(const RecordedShape& shape) noexcept;
   void record_shape(const RecordedShape& shape) noexcept;
   void record_composite(const RecordedShape& shape) noexcept;
-  void follow_composites() noexcept;
+  void record_composite_changes() noexcept;
   void record_passed() noexcept;
-  void show_passed() noexcept;
+  void record_passed_so_far() noexcept;
   void forget_passed() noexcept;
 
   void record_offsets(Key key, const ContactOffsets& offsets) noexcept;
@@ -270,7 +271,7 @@ class WINNOW_API RecordedScene {
   Column<RecordedShape> recorded_shapes_;
   std::uint32_t shapes_recorded_ = 0;
   std::uint32_t sensors_recorded_ = 0;
-  Asked asked_;
+  Provenance last_provenance_;
   /// Pairs that the predicate accepted, in the recorder's memory; null without a predicate.
   AcceptedPairs* passed_ = nullptr;
 };
@@ -279,8 +280,8 @@ class WINNOW_API RecordedScene {
 /// filter, a digest of its results, and the bodies that the predicate accepted. Query shapes are
 /// recorded like the shapes of bodies.
 ///
-///     winnow::RecordedQueries ask(scene);  // a RecordedScene; one per thread
-///     ask.closest(ray, hit);
+///     winnow::RecordedQueries queries(scene);  // a RecordedScene; one per thread
+///     queries.closest(ray, hit);
 class WINNOW_API RecordedQueries {
  public:
   /// Creates queries on `scene`, which must outlive this object. Every allocation comes from
@@ -320,21 +321,22 @@ class WINNOW_API RecordedQueries {
                   std::size_t most = std::numeric_limits<std::size_t>::max(),
                   PairRules rules = PairRules::scene);
   Status any_contact(std::span<const Key> a, std::span<const Key> b, KeyPair& pair,
-                     double margin = 0.0, PairRules rules = PairRules::scene);
-  Status any_contact(KeyPair& pair, double margin = 0.0, PairRules rules = PairRules::scene);
+                     double contact_margin = 0.0, PairRules rules = PairRules::scene);
+  Status any_contact(KeyPair& pair, double contact_margin = 0.0,
+                     PairRules rules = PairRules::scene);
   Status nearest(const double point[3], std::size_t count, double radius,
                  std::span<const SceneDistance>& bodies, const Filter& filter = {});
   /// @}
 
  private:
-  template <typename Ask, typename Write>
-  Status record(RecordedCall question, const Filter& filter, Ask&& ask, Write&& write);
-  template <typename Ask, typename Write>
-  Status record_with(ShapeId shape, RecordedCall question, const Filter& filter, Ask&& ask,
+  template <typename Query, typename Write>
+  Status record(RecordedCall kind, const Filter& filter, Query&& query, Write&& write);
+  template <typename Query, typename Write>
+  Status record_with(ShapeId shape, RecordedCall kind, const Filter& filter, Query&& query,
                      Write&& write);
   [[nodiscard]] std::uint32_t number_of(ShapeId shape) noexcept;
-  [[nodiscard]] RecordedCall by(PairRules rules, RecordedCall any_two,
-                                RecordedCall by_rules) noexcept;
+  [[nodiscard]] RecordedCall call_by_rules(PairRules rules, RecordedCall any_two,
+                                           RecordedCall by_rules) noexcept;
 
   RecordedScene& scene_;
   SceneQueries queries_;
@@ -342,35 +344,36 @@ class WINNOW_API RecordedQueries {
   Column<ObjectId> passed_;
 };
 
-/// A SceneSweep that is recorded; see SceneSweep for each function.
+/// A ContinuousCollision that is recorded; see ContinuousCollision for each function.
 ///
-///     winnow::RecordedSweep sweep(scene);  // a RecordedScene
-///     sweep.sweep(keys, end_poses);
-///     sweep->impacts();
-class WINNOW_API RecordedSweep {
+///     winnow::RecordedContinuousCollision ccd(scene);  // a RecordedScene
+///     ccd.find_impacts(keys, end_poses);
+///     ccd->impacts();
+class WINNOW_API RecordedContinuousCollision {
  public:
-  /// Creates a sweep of `scene`, which must outlive this object. Every allocation comes from
+  /// Works on `scene`, which must outlive this object. Every allocation comes from
   /// `memory`, which must also outlive it, except for the recorded data.
-  explicit RecordedSweep(RecordedScene& scene,
-                         std::pmr::memory_resource* memory = default_memory()) noexcept;
+  explicit RecordedContinuousCollision(
+      RecordedScene& scene, std::pmr::memory_resource* memory = default_memory()) noexcept;
 
-  /// Accesses the results of the last sweep.
-  [[nodiscard]] const SceneSweep* operator->() const noexcept { return &sweep_; }
+  /// Accesses the results of the last call.
+  [[nodiscard]] const ContinuousCollision* operator->() const noexcept { return &ccd_; }
 
-  /// See the functions of SceneSweep.
+  /// See the functions of ContinuousCollision.
   /// @{
-  Status sweep(std::span<const Key> keys, const PoseView& ends, const SweepOptions& options = {});
-  Status sweep(std::span<const Key> keys, std::span<const RigidMotion> motions,
-               const SweepOptions& options = {});
+  Status find_impacts(std::span<const Key> keys, const PoseView& ends,
+                      const ContinuousOptions& options = {});
+  Status find_impacts(std::span<const Key> keys, std::span<const RigidMotion> motions,
+                      const ContinuousOptions& options = {});
   /// @}
 
  private:
   template <typename Put>
-  Status record(RecordedCall call, Status status, std::span<const Key> keys,
-                const SweepOptions& options, Put&& put);
+  Status record(RecordedCall kind, Status status, std::span<const Key> keys,
+                const ContinuousOptions& options, Put&& put);
 
   RecordedScene& scene_;
-  SceneSweep sweep_;
+  ContinuousCollision ccd_;
 };
 
 /// Sensors that are recorded; see Sensors for each function. Their shapes are recorded like the
@@ -405,7 +408,7 @@ class WINNOW_API RecordedSensors {
   /// @}
 
  private:
-  void record(RecordedCall call, Key key, const SensorDefinition& sensor) noexcept;
+  void record(RecordedCall kind, Key key, const SensorDefinition& sensor) noexcept;
 
   RecordedScene& scene_;
   std::uint32_t number_;

@@ -17,12 +17,12 @@ struct RigidMotion {
   double turn[3] = {0.0, 0.0, 0.0};    ///< rotation axis times angle in radians, in world axes
 
   /// Returns the motion of a body at rest.
-  [[nodiscard]] static constexpr RigidMotion standing(const Pose& pose) noexcept {
+  [[nodiscard]] static constexpr RigidMotion stationary(const Pose& pose) noexcept {
     return {pose, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}};
   }
   /// Returns the motion from one pose to another by the shorter rotation, at most half a turn. For
-  /// exactly half a turn, the axis is the vector part of end * conjugate(start). Not valid if one
-  /// of the poses is not, or if the difference of their positions is not finite.
+  /// exactly half a turn, the axis is the vector part of end * conjugate(start). The motion is
+  /// invalid if a pose is invalid, or if the difference of the positions is not finite.
   [[nodiscard]] WINNOW_API static RigidMotion between(const Pose& start, const Pose& end) noexcept;
   /// Returns the motion at constant velocities for a duration, in world axes. Velocities are in
   /// lengths and radians per unit of `duration`. The rotation may exceed a full turn.

@@ -34,15 +34,15 @@ namespace winnow {
 struct SceneState;
 
 /// State of a body: the set of the scene that contains it. Dynamic bodies collide with all others.
-/// Fixed and sleeping bodies collide only with dynamic ones, and cost nothing while no dynamic body
-/// is near.
-enum class Motion : std::uint8_t {
+/// Fixed and sleeping bodies collide only with dynamic ones, and are never tested against each
+/// other.
+enum class BodyState : std::uint8_t {
   fixed,     ///< never moves by itself: ground, walls
   dynamic,   ///< collides with every body
-  sleeping,  ///< at rest; wakes by `Scene::set_motion`
+  sleeping,  ///< at rest; wakes by `Scene::set_body_state`
 };
-/// Number of enumerators of Motion.
-inline constexpr std::size_t kMotions = 3;
+/// Number of enumerators of BodyState.
+inline constexpr std::size_t kBodyStates = 3;
 
 /// Options of a scene, fixed at construction.
 struct SceneOptions {
@@ -50,46 +50,47 @@ struct SceneOptions {
   std::pmr::memory_resource* memory = default_memory();
   /// How work is run in parallel; results do not depend on it.
   Execution execution = Execution::parallel();
-  /// Structure of the partition of each set, indexed by Motion. A partition is created when its
+  /// Structure of the partition of each set, indexed by BodyState. A partition is created when its
   /// first body is added, or by `reserve`. If fixed bodies are queried often, the slow build of
   /// static_bvh() may pay off.
-  StructureKind structures[kMotions] = {linear_bvh(), linear_bvh(), linear_bvh()};
+  StructureKind structures[kBodyStates] = {linear_bvh(), linear_bvh(), linear_bvh()};
   /// Contact margin: pairs whose gap is at most this are contacts too (speculative contacts).
   /// Contact offsets of the two bodies (see ContactOffsets) are added to it. Finite, >= 0.
-  double margin = 0.0;
+  double contact_margin = 0.0;
   NarrowTier tier = NarrowTier::robust;  ///< how exact contacts must be
-  /// Tolerance of the contact cache. If neither body has moved relative to the other by more than
-  /// this length since the manifolds of a pair were computed (translation and rotation together, at
-  /// the farthest point), the manifolds are kept and rotated with body a; `error_bound` grows by
-  /// this length. Boxes in the partitions are enlarged by it, so that smaller motions need no
-  /// update there. 0: off, and all results equal the results of a new scene, bit for bit. Finite,
-  /// >= 0.
-  double carry_over = 0.0;
+  /// Tolerance of the contact cache. If the smaller body of a pair has moved relative to the other
+  /// one by at most this length since the manifolds of the pair were computed (translation and
+  /// rotation together, at the farthest point), the manifolds are kept and rotated with body a;
+  /// `error_bound` grows by this length. Boxes in the partitions are enlarged by it, so that
+  /// smaller motions need no update there. 0: off, and all results equal the results of a new
+  /// scene, bit for bit. Finite, >= 0.
+  double cache_tolerance = 0.0;
   /// At level manifold, for pairs with a mesh, a height field or a compound: merges the manifolds
   /// of all pairs of parts that touch into one manifold per contact region, with at most
-  /// kManifoldPoints points each (see MidPhase::reduce and ContactRegion). Jolt does this by
-  /// default; Bullet keeps one manifold per pair of bodies. bench/rows/standing_rows.cpp measures
-  /// the cost. False: reports one manifold per pair of parts.
+  /// kManifoldPoints points each (see MidPhase::reduce_contacts and ContactRegion). Jolt does this
+  /// by default; Bullet keeps one manifold per pair of bodies. bench/rows/standing_rows.cpp
+  /// measures the cost. False: reports one manifold per pair of parts.
   bool contact_reduction = false;
-  /// Suppresses ghost contacts at the seams between fixed bodies that lie flush, so that bodies
-  /// slide over them as over one floor. At levels distance and manifold, a contact of a dynamic
-  /// body with a fixed body is dropped if all of these hold:
+  /// Suppresses ghost contacts at the seams between fixed bodies with flush surfaces, so that
+  /// bodies slide over them as over one floor. At levels distance and manifold, a contact of a
+  /// dynamic body with a fixed body is dropped if all of these hold:
   ///
   /// - another fixed body supports the dynamic body in a plane, and the contact with it is at least
   ///   as deep;
   /// - all points of the dropped contact lie in that plane or below it;
   /// - the normals of the two contacts differ by 5 to 120 degrees;
   /// - the fixed body of the dropped contact (its touched parts, if it is composite) does not rise
-  ///   above the plane there, but for 1/1000 of the dynamic body's radius and a slope of 5 degrees.
+  ///   above the plane there, except by 1/1000 of the dynamic body's radius and a slope of 5
+  ///   degrees.
   ///
   /// Such a contact is with a side or an edge of a seam. Contacts with steps, kerbs, walls, slopes
-  /// and ridges stay. Pairs with fixed bodies are not carried over. The test runs on the calling
+  /// and ridges stay. Pairs with fixed bodies are not cached. The test runs on the calling
   /// thread in O(n log n) for n contacts with fixed bodies, plus O(1) for each pair of contacts of
   /// one body whose normals differ by that angle.
   bool suppress_ghost_contacts = false;
   /// Stores for each pair and each point its index in the previous frame (Contacts::previous_pair
   /// and previous_point), so that a solver can warm start. Takes 4 bytes per pair, 5 per point and
-  /// 56 per body.
+  /// 56 per body, and, unless `cache_tolerance` takes it too, a copy of the previous frame.
   bool warm_start = false;
   /// Build budget of each partition; see PartitionOptions.
   std::size_t build_budget = 0;
@@ -100,7 +101,7 @@ struct SceneOptions {
 
 /// Distances from its surface at which a body gets contacts and at which it rests. The offsets of
 /// two bodies are added, as in PhysX: the pair is a contact if its gap is at most `a.contact +
-/// b.contact` (plus the scene's margin), and the bodies rest at a gap of `a.rest + b.rest`.
+/// b.contact` (plus the scene's contact margin), and the bodies rest at a gap of `a.rest + b.rest`.
 /// Distances and depths are measured between the surfaces moved outward by `rest`; points lie
 /// halfway between these surfaces. A fast body thus gets contacts early, thin cloth rests above the
 /// ground, and bodies with a negative `rest` may sink into each other without a contact.
@@ -123,8 +124,8 @@ struct BodyDefinition {
   ShapeId shape{};  ///< from the ShapePool, or from `SceneOptions::composites`
   /// Pose of the shape's frame in the world: finite, quaternion not zero.
   Pose pose{};
-  Motion motion = Motion::dynamic;  ///< the set that contains it
-  ObjectFilter filter{};            ///< which other bodies it may collide with
+  BodyState state = BodyState::dynamic;  ///< the set that contains it
+  ObjectFilter filter{};                 ///< which other bodies it may collide with
   ClientData data = 0;  ///< the caller's value, returned with contacts and hits; never read
   /// Contact offsets. The first body with nonzero offsets makes the scene store 16 bytes per body.
   ContactOffsets offsets{};
@@ -136,7 +137,7 @@ struct BodyDefinition {
 /// Numbers of objects to reserve memory for; see Scene::reserve. Each is at most 2^32 - 2; the sum
 /// of `bodies` is below 2^28.
 struct SceneCapacity {
-  std::size_t bodies[kMotions] = {};  ///< indexed by Motion
+  std::size_t bodies[kBodyStates] = {};  ///< indexed by BodyState
   /// Pairs of bodies found by the broad phase; see SceneStatistics::body_pairs.
   std::size_t pairs = 0;
   /// Level at which `collide` will be called.
@@ -151,11 +152,11 @@ struct SceneCapacity {
 
 /// Bytes of a scene by part. The sum is exactly what is allocated from its resource.
 struct WINNOW_API SceneFootprint {
-  Bytes bodies;                ///< shapes, poses, keys, filters, client data, the scene object
-  Bytes partitions[kMotions];  ///< indexed by Motion
-  Bytes pairs;                 ///< pairs found by the broad phase
-  Bytes mid_phase;             ///< pairs of primitives; 0 without composite shapes
-  Bytes narrow_phase;          ///< results and scratch
+  Bytes bodies;                   ///< shapes, poses, keys, filters, client data, the scene object
+  Bytes partitions[kBodyStates];  ///< indexed by BodyState
+  Bytes pairs;                    ///< pairs found by the broad phase
+  Bytes mid_phase;                ///< pairs of primitives; 0 without composite shapes
+  Bytes narrow_phase;             ///< results and scratch
 
   /// Returns the sum of all parts.
   [[nodiscard]] Bytes total() const noexcept;
@@ -168,7 +169,7 @@ struct SceneStatistics {
   /// Body pairs that were discarded because the bounding spheres of the bodies are apart. 0 at
   /// level pairs.
   std::uint64_t rejected_by_spheres = 0;
-  std::uint64_t carried = 0;          ///< remaining body pairs that kept their cached contacts
+  std::uint64_t cached_pairs = 0;     ///< remaining body pairs that kept their cached contacts
   std::uint64_t primitive_pairs = 0;  ///< pairs of parts generated by the mid phase
   NarrowStatistics convex;            ///< narrow phase, for pairs of convex bodies
   NarrowStatistics parts;             ///< narrow phase, for pairs of parts
@@ -239,9 +240,9 @@ class WINNOW_API Scene {
   /// key occurs twice, its last pose is used. A view without orientations sets only positions.
   Status move(std::span<const Key> keys, const PoseView& poses);
   /// Moves a body to another set; a sleeping body that wakes becomes dynamic.
-  Status set_motion(Key key, Motion motion);
+  Status set_body_state(Key key, BodyState state);
   /// Moves several bodies to a set, all or none. `invalid_key` also if a key occurs twice.
-  Status set_motion(std::span<const Key> keys, Motion motion);
+  Status set_body_state(std::span<const Key> keys, BodyState state);
   /// Replaces the shape of a body; its pose stays. `invalid_key` if the body or the shape does not
   /// exist.
   Status set_shape(Key key, ShapeId shape);
@@ -258,7 +259,7 @@ class WINNOW_API Scene {
   /// column for each layer up to the highest one that was excluded from colliding.
   /// `invalid_argument` for a layer out of range. O(1), but the next `collide` finds all pairs
   /// again.
-  Status set_layers_collide(std::uint16_t a, std::uint16_t b, bool meet = true);
+  Status set_layers_collide(std::uint16_t a, std::uint16_t b, bool collide = true);
   /// True unless the two layers were excluded by `set_layers_collide`.
   [[nodiscard]] bool layers_collide(std::uint16_t a, std::uint16_t b) const noexcept;
   /// Moves a body to another layer; it takes effect with the next `collide` or query.
@@ -286,7 +287,7 @@ class WINNOW_API Scene {
   /// Returns the number of live bodies in all sets.
   [[nodiscard]] std::size_t size() const noexcept;
   /// Returns the number of live bodies in one set.
-  [[nodiscard]] std::size_t size(Motion motion) const noexcept;
+  [[nodiscard]] std::size_t size(BodyState state) const noexcept;
   /// True if the key belongs to a live body of this scene. O(1).
   [[nodiscard]] bool contains(Key key) const noexcept;
   /// Returns the current state of a body; `invalid_key` writes nothing.
@@ -303,10 +304,11 @@ class WINNOW_API Scene {
   /// `contacts` empty.
   Status collide(ContactLevel level, Contacts& contacts);
 
-  /// Appends a snapshot of the bodies: keys, shape ids, poses, motions, filters, client data,
+  /// Appends a snapshot of the bodies: keys, shape ids, poses, states, filters, client data,
   /// ignored pairs, layers, the boxes in the partitions, and the options that affect results
-  /// (margin, tier, carry_over and others). pipeline/FORMATS.md has the format. The shape pools
-  /// and Contacts are saved separately. `out_of_memory` leaves `out` unchanged. O(bodies).
+  /// (contact_margin, tier, cache_tolerance and others). pipeline/FORMATS.md has the format. The
+  /// shape pools and Contacts are saved separately. `out_of_memory` leaves `out` unchanged.
+  /// O(bodies).
   Status save(Column<std::byte>& out) const;
   /// Replaces the bodies by a snapshot. Memory resource, execution, structures, predicate and pools
   /// of this scene stay; load the pools first. From then on contacts equal the contacts of the
@@ -321,9 +323,10 @@ class WINNOW_API Scene {
   /// including what they store between frames. `out_of_memory` leaves `out` unchanged. O(contacts).
   Status save_contacts(const Contacts& contacts, Column<std::byte>& out) const;
   /// Replaces `contacts` by a snapshot that was saved with the loaded state of this scene. The next
-  /// `collide` carries over, warm starts and reports events as the original scene would have.
-  /// `invalid_argument` if the bytes are not a valid snapshot (untrusted bytes are safe) or belong
-  /// to another state of the scene; it and `out_of_memory` leave `contacts` unchanged. O(contacts).
+  /// `collide` keeps cached contacts, warm starts and reports events as the original scene would
+  /// have. `invalid_argument` if the bytes are not a valid snapshot (untrusted bytes are safe) or
+  /// belong to another state of the scene; it and `out_of_memory` leave `contacts` unchanged.
+  /// O(contacts).
   Status load_contacts(std::span<const std::byte> saved, Contacts& contacts) const;
 
   /// Groups the pairs of contacts into islands: sets of pairs that are connected by bodies,
@@ -335,18 +338,18 @@ class WINNOW_API Scene {
   Status islands(const Contacts& contacts, ContactGroups& out) const;
   /// Groups the pairs of contacts into colours: no two pairs of a colour share a dynamic or
   /// sleeping body, so that they can be solved in parallel. Only pairs of kRestColour may share
-  /// such bodies. In order, each pair gets the first colour that neither of its bodies has; this
-  /// gives fewer than twice as many colours as one body has contacts, and at most kContactColours.
-  /// Errors as for `islands`. O(pairs + bodies), on the calling thread.
+  /// such bodies. In order, each pair gets the first colour that neither of its bodies has. The
+  /// number of colours is less than twice the largest number of contacts of a body, and at most
+  /// kContactColours. Errors as for `islands`. O(pairs + bodies), on the calling thread.
   Status colours(const Contacts& contacts, ContactGroups& out) const;
 
   /// Returns the partition of a set; null if the set never had a body and was not reserved. Its
   /// client data are body ids; its boxes are relative to `origin()`.
-  [[nodiscard]] const Partition* partition(Motion motion) const noexcept;
+  [[nodiscard]] const Partition* partition(BodyState state) const noexcept;
   /// Returns the point of the world that boxes are relative to. It keeps float boxes tight in a
-  /// scene far from (0, 0, 0), where floats are coarse. It is (0, 0, 0) while that is precise
-  /// enough, and is chosen again by `refresh` after the bodies have moved far away. Poses, contacts
-  /// and queries are always in world coordinates.
+  /// scene far from (0, 0, 0), where floats are coarse. The origin is (0, 0, 0) while floats are
+  /// precise enough there; `refresh` chooses it again after the bodies have moved far away. Poses,
+  /// contacts and queries are always in world coordinates.
   [[nodiscard]] Vec3d origin() const noexcept;
   /// Draws the partitions of all sets.
   Status debug_draw(DebugDraw& draw, const DebugDrawOptions& options = {}) const noexcept;
@@ -358,7 +361,7 @@ class WINNOW_API Scene {
 
  private:
   friend class SceneQueries;
-  friend class SceneSweep;
+  friend class ContinuousCollision;
   friend class Sensors;
   friend class RankScene;
   friend class RecordedScene;

@@ -135,11 +135,11 @@ struct MotionCast {
 };
 
 /// Queries against the exact shapes of a scene. Use one object per thread: it keeps scratch memory
-/// between queries, so that a query similar to an earlier one allocates nothing. Any number of
-/// these objects may query a scene at the same time while nothing changes the scene. Call
-/// `Scene::refresh` first, and again after every change of bodies and every in-place change of
-/// composite shapes; otherwise queries return `invalid_argument`. A failed query leaves its output
-/// unchanged, but makes spans of earlier queries invalid.
+/// between queries, so that a query with no more candidates and results than an earlier one
+/// allocates nothing. Any number of these objects may query a scene at the same time while nothing
+/// changes the scene. Call `Scene::refresh` first, and again after every change of bodies and every
+/// in-place change of composite shapes; otherwise queries return `invalid_argument`. A failed query
+/// leaves its output unchanged, but makes spans of earlier queries invalid.
 class WINNOW_API SceneQueries {
  public:
   /// Creates queries on `scene`, which must outlive this object. Every allocation comes from
@@ -180,8 +180,8 @@ class WINNOW_API SceneQueries {
   /// `tolerance` (a length along the path, finite, >= 0) plus rounding: about 1e-14 of the sizes
   /// divided by the sine of the angle of impact, and 1e-15 of the path. No shape is too thin to be
   /// hit. t = 0 if the shapes overlap at the start (but see ShapeCast::touching). For a composite
-  /// moving shape, t is the first time over its parts; only parts near another body are tested.
-  /// `unsupported` for a half-space.
+  /// moving shape, t is the first time over its parts; only parts whose boxes the other body
+  /// reaches are tested. `unsupported` for a half-space.
   Status closest(const ShapeCast& cast, SceneHit& hit, const Filter& filter = {},
                  double tolerance = 1e-6);
   /// Finds the first hit on every body, sorted by t. The span is valid until the next query.
@@ -200,9 +200,9 @@ class WINNOW_API SceneQueries {
              double tolerance = 1e-6);
 
   // Two bodies, or sets of bodies. `invalid_key` if a key is not of a live body; `invalid_argument`
-  // for a limit that is NaN, a margin that is negative or not finite, or an invalid `rules`. In
-  // sets, a body is never paired with itself. The rules are tested only for pairs whose boxes are
-  // near enough.
+  // for a limit that is NaN, a contact margin that is negative or not finite, or an invalid
+  // `rules`. In sets, a body is never paired with itself. For sets, the rules are tested only for
+  // pairs whose boxes are within the limit or margin.
 
   /// Finds the closest (or deepest) points of two bodies. A null answer if the rules exclude the
   /// pair, or if the distance exceeds `limit`. The limit may be negative; the smaller it is, the
@@ -214,7 +214,7 @@ class WINNOW_API SceneQueries {
   /// of a robot against its surroundings or against each other (the same set twice). Among equal
   /// distances, the pair with the least ids is returned. A null answer if the rules exclude all
   /// pairs, or if all distances exceed `limit`. O(a x b) gaps between boxes, and exact distances
-  /// for little more than one pair.
+  /// only for pairs whose boxes are not farther apart than the closest pair found so far.
   Status least_distance(std::span<const Key> a, std::span<const Key> b, SetDistance& answer,
                         double limit = std::numeric_limits<double>::infinity(),
                         PairRules rules = PairRules::scene);
@@ -224,18 +224,19 @@ class WINNOW_API SceneQueries {
   Status overlaps(std::span<const Key> a, std::span<const Key> b, std::span<const KeyPair>& pairs,
                   std::size_t most = std::numeric_limits<std::size_t>::max(),
                   PairRules rules = PairRules::scene);
-  /// Finds out if any body of one set touches a body of the other set, or is within `margin` of
-  /// one; a null pair if not. Returns the first such pair (body of a, body of b) in the order of
-  /// the sets and stops there. If both spans are the same, each pair of the set is tested once. O(a
-  /// x b) gaps between boxes; for each gap within the margin an exact overlap test and, if the
-  /// margin is above 0, a distance.
+  /// Finds out if any body of one set touches a body of the other set, or is within
+  /// `contact_margin` of one; a null pair if not. Returns the first such pair (body of a, body of
+  /// b) in the order of the sets and stops there. If both spans are the same, each pair of the set
+  /// is tested once. O(a x b) gaps between boxes; for each gap within the margin an exact overlap
+  /// test and, if the margin is above 0, a distance.
   Status any_contact(std::span<const Key> a, std::span<const Key> b, KeyPair& pair,
-                     double margin = 0.0, PairRules rules = PairRules::scene);
+                     double contact_margin = 0.0, PairRules rules = PairRules::scene);
   /// Finds out if any body of the scene has a contact. Returns the body with the least id that has
   /// one (under PairRules::scene, among the dynamic bodies) and, of the bodies that it touches, the
   /// one with the least id. O(n log n), and a test for each pair of boxes within the margin until
   /// the first contact is found.
-  Status any_contact(KeyPair& pair, double margin = 0.0, PairRules rules = PairRules::scene);
+  Status any_contact(KeyPair& pair, double contact_margin = 0.0,
+                     PairRules rules = PairRules::scene);
   /// Finds the bodies nearest to a point, at most `count`, within distance `radius`, sorted by
   /// distance. Inside a solid the distance is negative.
   Status nearest(const double point[3], std::size_t count, double radius,

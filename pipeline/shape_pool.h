@@ -26,8 +26,8 @@ struct HullFaces {
 };
 
 /// The convex shapes of a simulation, each kind in its own table. Bodies refer to shapes by id and
-/// may share them. A kind that is not used takes no memory. A pool must not be used by another
-/// thread while one changes it.
+/// may share them. A kind that is not used takes no memory. While a thread changes a pool, no other
+/// thread may use it.
 class WINNOW_API ShapePool {
  public:
   /// Creates an empty pool. Every allocation comes from `memory`, which must outlive the pool.
@@ -67,7 +67,7 @@ class WINNOW_API ShapePool {
 
   /// Adds the convex hull of points, computed without rounding; any finite points are valid input.
   /// Faces that are coplanar to 1e-13 of the hull's size are merged; points inside, on faces or on
-  /// edges (to the same tolerance) are dropped. Flat sets give a polygon, a segment or a point.
+  /// edges (to the same tolerance) are dropped. A flat set becomes a polygon, a segment or a point.
   /// `invalid_shape` if there is no point or one is not finite. O(points log points) for most
   /// inputs.
   Status add_hull(const PointView& points, double rounding, ShapeId& id);
@@ -82,7 +82,8 @@ class WINNOW_API ShapePool {
                         ShapeId& id);
 
   /// Removes a shape. Bodies must not use its id any more: a later shape of the same kind gets its
-  /// index. Until then the table holds a point there.
+  /// index. Until then the table has the default shape at this index: a point, or for a half-space
+  /// the points with z <= 0.
   Status remove(ShapeId id);
 
   /// True if the pool contains the shape.
@@ -99,10 +100,10 @@ class WINNOW_API ShapePool {
   /// unchanged. O(bytes).
   Status save(Column<std::byte>& out) const;
   /// Replaces the shapes by a snapshot, with the ids that they had; results equal the results of
-  /// the saved pool bit for bit. Users of the pool (scenes, composite pools) whose shapes it no
-  /// longer contains must be loaded too before they are used again. `invalid_argument` if the bytes
-  /// are not a valid snapshot (untrusted bytes are safe); it and `out_of_memory` change nothing.
-  /// Links the kernels of all kinds. O(bytes).
+  /// the saved pool bit for bit. If a scene or a composite pool uses shapes that the pool no longer
+  /// contains, load it too before it is used again. `invalid_argument` if the bytes are not a valid
+  /// snapshot (untrusted bytes are safe); it and `out_of_memory` change nothing. Links the kernels
+  /// of all kinds. O(bytes).
   Status load(std::span<const std::byte> saved);
 
   /// Returns the shapes for reading: sphere `id` is tables().spheres[id.index()]. Valid until the

@@ -1,7 +1,8 @@
 #pragma once
 
 // The convex shapes and their ids. ShapePool (shape_pool.h) stores them; every phase of the
-// pipeline reads them. Plain structs, because kernel files read them directly from a ShapePool.
+// pipeline reads them. They are plain structs, because kernel files read them directly from a
+// ShapePool.
 
 #include <winnow/core/export.h>
 
@@ -10,7 +11,7 @@
 
 namespace winnow {
 
-/// Kinds of convex shapes. Pairs of different kinds are sorted in this order.
+/// Kinds of convex shapes. Results are sorted by the numbers of the two kinds of a pair.
 enum class ShapeKind : std::uint8_t {
   sphere,      ///< SphereShape
   capsule,     ///< CapsuleShape
@@ -50,7 +51,7 @@ inline constexpr ShapeKind kConvexKinds[] = {
 /// Id of a shape in a ShapePool or CompositePool: its kind, and its index among the shapes of that
 /// kind.
 struct ShapeId {
-  /// Number of low bits that hold the index; the kind is in the bits above.
+  /// Number of low bits that contain the index; the kind is in the bits above.
   static constexpr std::uint32_t kIndexBits = 28;
   std::uint32_t bits = ~0U;  ///< kind << kIndexBits | index; the default is no shape
 
@@ -85,9 +86,9 @@ struct ShapeId {
   friend constexpr bool operator==(const ShapeId&, const ShapeId&) noexcept = default;
 };
 
-// Every shape is a closed set, given in its own frame: all points within `rounding` (or the radius)
-// of its core. Lengths are finite and >= 0. An extent may be 0: a box with half.z = 0 is a plate, a
-// triangle may be a segment or a point.
+// Every shape is a closed set, given in its own frame. Except for half-spaces and tapered capsules,
+// it contains all points within `rounding` (or `radius`) of its core. Lengths are finite and >= 0.
+// An extent may be 0: a box with half.z = 0 is a plate, a triangle may be a segment or a point.
 
 /// Core: the point (0, 0, 0).
 struct SphereShape {
@@ -126,8 +127,8 @@ struct TriangleShape {
   double rounding = 0.0;     ///< greatest distance from the core
 };
 
-/// The points with normal . x <= offset, an unbounded set. Any finite normal except zero; a
-/// ShapePool divides both members by its length.
+/// The points with normal . x <= offset, an unbounded set. The normal may be any finite vector
+/// except zero; a ShapePool divides both members by the length of the normal.
 struct HalfSpaceShape {
   double normal[3] = {0.0, 0.0, 1.0};  ///< outward; a unit vector in a ShapePool
   double offset = 0.0;                 ///< distance of the plane from the origin, times |normal|
@@ -146,18 +147,18 @@ struct TaperedCapsuleShape {
   double half_length = 0.0;       ///< from the centre to the centre of a ball
 };
 
-/// Support function: writes a point of a convex set that is farthest along a unit direction, both
-/// in the frame of the shape. It must return the same point for the same direction. It may be
-/// called from any thread, also concurrently, so it must not change anything; it must not throw or
-/// call back into the library object that calls it.
+/// Support function: writes a point of a convex set that is farthest along a unit direction. The
+/// direction and the point are in the frame of the shape. It must return the same point for the
+/// same direction. It may be called from any thread, also concurrently, so it must not change
+/// anything; it must not throw or call back into the library object that calls it.
 using SupportFunction = void (*)(const void* context, const double direction[3], double point[3]);
 
 /// A user shape: a convex set given by its support function. Core: the set of `function`.
 ///
-/// Error bounds hold as far as the points are exact to a few rounding errors of `radius` and belong
-/// to a convex set. With any other function, calls still end and results are finite: a point that
-/// is not finite counts as (0, 0, 0), a point beyond `radius` as the nearest point within it, and
-/// if points contradict each other, results refer to some of them.
+/// Error bounds hold if the points are exact to a few rounding errors of `radius` and belong to a
+/// convex set. With any other function, calls still end and results are finite: a point that is not
+/// finite counts as (0, 0, 0), a point beyond `radius` as the nearest point within it, and if
+/// points contradict each other, results refer to some of them.
 struct SupportShape {
   SupportFunction function = nullptr;  ///< called as long as the shape exists
   const void* context = nullptr;       ///< passed to `function`, never read; must outlive the shape
@@ -202,7 +203,7 @@ struct HullShape {
   /// Columns of the faces' normals (x, y, z) and offsets, as floats.
   const float* plane_float[4] = {};
   const HullEdge* edges = nullptr;  ///< edge_count of them
-  /// Vertices of all faces, face after face, and for each the edge to the next vertex.
+  /// Vertices of all faces, face after face; `loop_edge` has the edge from each to the next vertex.
   const std::uint32_t* loop = nullptr;
   const std::uint32_t* loop_edge = nullptr;  ///< as many entries as `loop`
   /// Vertices adjacent to vertex v: neighbour[neighbour_first[v] .. neighbour_first[v + 1]).
@@ -227,7 +228,7 @@ struct ShapeTables {
   const TaperedCapsuleShape* tapered_capsules = nullptr;
   const SupportShape* supports = nullptr;
   /// @}
-  std::uint32_t count[kShapeKinds] = {};  ///< entries of each table, by ShapeKind; else 0
+  std::uint32_t count[kShapeKinds] = {};  ///< entries of each table, by ShapeKind; 0 for others
 };
 
 }  // namespace winnow

@@ -1,7 +1,7 @@
 #pragma once
 
-// Continuous collision detection of pairs of moving shapes. SceneSweep (scene_sweep.h) finds such
-// pairs in a scene. The implementation is in motion/.
+// Continuous collision detection of pairs of moving shapes. ContinuousCollision
+// (continuous_collision.h) finds such pairs in a scene. The implementation is in motion/.
 
 #include <winnow/core/column.h>
 #include <winnow/core/execution.h>
@@ -60,7 +60,7 @@ class WINNOW_API ImpactResult {
   [[nodiscard]] std::size_t size() const noexcept { return time_.size(); }
   /// Returns the status of pair i: `ok`; `invalid_key` if a shape does not exist; `unsupported` for
   /// a composite shape without a pool of them; `invalid_pose` for an invalid motion. If it is not
-  /// `ok`, the other columns hold zeros.
+  /// `ok`, the other columns contain zeros.
   [[nodiscard]] Status status(std::size_t i) const noexcept { return status_[i]; }
   /// Returns the status of all pairs.
   [[nodiscard]] std::span<const Status> status() const noexcept {
@@ -109,9 +109,9 @@ class WINNOW_API ImpactResult {
                                           std::span<const BodyPair> pairs,
                                           const ImpactOptions& options, ImpactResult& result);
   [[nodiscard]] bool resize(std::size_t count) noexcept;
-  void find_stretch(const SubShapeQuery& parts, const MovingBodies& bodies,
-                    std::span<const BodyPair> pairs, const ImpactOptions& options,
-                    std::size_t first, std::size_t end);
+  void find_range(const SubShapeQuery& parts, const MovingBodies& bodies,
+                  std::span<const BodyPair> pairs, const ImpactOptions& options, std::size_t first,
+                  std::size_t end);
   void write(std::size_t i, const impact::Impact& impact, std::uint32_t part_a,
              std::uint32_t part_b) noexcept;
   [[nodiscard]] static std::span<const double> span(const Column<double>& c) noexcept {
@@ -133,32 +133,33 @@ class WINNOW_API ImpactResult {
 /// earlier time the shapes are apart, which is proved by separating planes, rounding included. It
 /// is early by no more than the time to close a gap of the tolerance. Shapes that share a point at
 /// the start touch at time 0. Shapes that pass each other within the tolerance, or leave that range
-/// and come back into it, may or may not be reported as touching. Shapes that stay within it while
-/// they slide, rest or separate are not.
+/// and come back into it, may or may not be reported as touching. Shapes that stay within the
+/// tolerance while they slide, rest or separate are not reported.
 ///
 /// The method is conservative advancement (Mirtich, "Impulse-based dynamic simulation of rigid body
 /// systems", 1996) along the normal of the closest points. Along a fixed direction, the coordinate
 /// of a point of a rotating body is a cosine in time; between two times it leaves its chord by at
 /// most a term quadratic in the angle. Two closest-point computations thus prove that the shapes
 /// are apart in between, with an error of second order, so that few steps suffice. A composite
-/// shape is traversed in its own frame with the swept box of the other shape, rotation included, in
-/// order of time; parts after the first impact found are skipped. If the shapes share a point at
+/// shape is traversed in its own frame with the moving box of the other shape, rotation included,
+/// in order of time; parts after the first impact found are skipped. If the shapes share a point at
 /// the start, the gap is the gap of the deepest pair of parts.
 ///
 /// `invalid_argument` for an invalid tolerance or a pair with a body index out of range,
 /// `size_mismatch` for spans of different lengths, `out_of_memory`: then `result` is empty. Errors
 /// of a single pair are in its status.
 ///
-/// Usually about three closest-point computations per pair, seven for fast rotations; up to |turn|
-/// / sqrt(tolerance) if the shapes rotate fast around each other without touching. If neither shape
-/// rotates, the computations are steps of one closest-point search (van den Bergen, "Ray casting
-/// against general convex objects with application to continuous collision detection", 2004): about
-/// six, up to fifteen for smooth shapes. For smooth shapes, some steps guess the normal by the
-/// secant method. Pairs are sorted by kind, 256 at a time, and computed in double, eight of the
-/// same kinds at once; pairs of half-spaces, and pairs at the limit of double precision, are
-/// computed one by one. The result of a pair does not depend on other pairs. A pair with a
-/// composite shape takes this for each pair of parts whose boxes overlap on the path, and one
-/// traversal for about each half radian of relative rotation within reach.
+/// A pair usually takes about three closest-point computations, seven for fast rotations; up to
+/// |turn| / sqrt(tolerance) if the shapes rotate fast around each other without touching. If
+/// neither shape rotates, the computations are steps of one closest-point search (van den Bergen,
+/// "Ray casting against general convex objects with application to continuous collision detection",
+/// 2004): about six, up to fifteen for smooth shapes. For smooth shapes, some steps guess the
+/// normal by the secant method. Pairs are sorted by kind, 256 at a time, and computed in double,
+/// eight of the same kinds at once; pairs of half-spaces, and pairs at the limit of double
+/// precision, are computed one by one. The result of a pair does not depend on other pairs. A pair
+/// with a composite shape takes this for each pair of parts whose boxes overlap on the path, and
+/// about one traversal for each half radian of relative rotation during which the moving box
+/// overlaps more than 8 parts.
 WINNOW_API Status time_of_impact(const ShapePool& shapes, const MovingBodies& bodies,
                                  std::span<const BodyPair> pairs, const ImpactOptions& options,
                                  ImpactResult& result);

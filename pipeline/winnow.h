@@ -13,6 +13,7 @@
 #include <winnow/core/cast.h>
 #include <winnow/core/debug_draw.h>
 #include <winnow/core/execution.h>
+#include <winnow/core/fat_margin.h>
 #include <winnow/core/filter.h>
 #include <winnow/core/footprint.h>
 #include <winnow/core/frustum.h>
@@ -22,7 +23,6 @@
 #include <winnow/core/kdop.h>
 #include <winnow/core/kdop_around.h>
 #include <winnow/core/key.h>
-#include <winnow/core/margin.h>
 #include <winnow/core/matrix.h>
 #include <winnow/core/oriented_box.h>
 #include <winnow/core/pair_buffer.h>
@@ -51,6 +51,7 @@
 #include <winnow/pipeline/contact_groups.h>
 #include <winnow/pipeline/contact_regions.h>
 #include <winnow/pipeline/contacts.h>
+#include <winnow/pipeline/continuous_collision.h>
 #include <winnow/pipeline/deformable_mesh.h>
 #include <winnow/pipeline/feature_impacts.h>
 #include <winnow/pipeline/height_field.h>
@@ -61,7 +62,6 @@
 #include <winnow/pipeline/rigid_motion.h>
 #include <winnow/pipeline/scene.h>
 #include <winnow/pipeline/scene_queries.h>
-#include <winnow/pipeline/scene_sweep.h>
 #include <winnow/pipeline/sensors.h>
 #include <winnow/pipeline/shape_pool.h>
 #include <winnow/pipeline/shape_rays.h>

@@ -39,26 +39,26 @@ bool supported(Isa isa) noexcept {
   }
 }
 
-struct Choice {
+struct IsaSelection {
   std::array<Isa, kAll.size()> available{};
   std::size_t count = 0;
   std::atomic<Isa> active{};
 
-  Choice() noexcept {
+  IsaSelection() noexcept {
     for (const Isa isa : kAll) {
       if (supported(isa)) available[count++] = isa;
     }
     active = available[count > 0 ? count - 1 : 0];
-    if (const char* wanted = std::getenv("WINNOW_ISA"); wanted != nullptr) {
+    if (const char* requested = std::getenv("WINNOW_ISA"); requested != nullptr) {
       for (std::size_t i = 0; i < count; ++i) {
-        if (std::string_view(to_string(available[i])) == wanted) active = available[i];
+        if (std::string_view(to_string(available[i])) == requested) active = available[i];
       }
     }
   }
 };
 
-Choice& choice() noexcept {
-  static Choice instance;
+IsaSelection& selection() noexcept {
+  static IsaSelection instance;
   return instance;
 }
 
@@ -79,11 +79,11 @@ const char* to_string(Isa isa) noexcept {
 }
 
 std::span<const Isa> available_isas() noexcept {
-  return {choice().available.data(), choice().count};
+  return {selection().available.data(), selection().count};
 }
 
 Isa active_isa() noexcept {
-  return choice().active.load(std::memory_order_relaxed);
+  return selection().active.load(std::memory_order_relaxed);
 }
 
 const char* isa_name() noexcept {
@@ -93,7 +93,7 @@ const char* isa_name() noexcept {
 Status set_isa(Isa isa) noexcept {
   for (const Isa have : available_isas()) {
     if (have == isa) {
-      choice().active.store(isa, std::memory_order_relaxed);
+      selection().active.store(isa, std::memory_order_relaxed);
       return Status::ok;
     }
   }

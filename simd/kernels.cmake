@@ -2,15 +2,15 @@
 
 # WINNOW_ISAS lists the instruction sets for which kernels are compiled, narrowest first. On x86-64
 # it must contain sse42, for which all other code is compiled. A program uses the widest one that
-# its machine has. Each adds a copy of the kernels to programs, and time to the build. "native" is
-# the widest one that this machine runs, and the baseline, whose kernels then need correct results
-# but no speed.
+# its machine has. Each instruction set adds a copy of the kernels to programs, and time to the
+# build. On x86-64, "native" is the baseline and the widest set that this machine runs; kernels of
+# the baseline are then compiled with -O1, because this machine does not use them by default.
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64|amd64")
   set(WINNOW_ISAS "sse42;avx2;avx512" CACHE STRING "Instruction sets to build kernels for")
 elseif(CMAKE_SYSTEM_PROCESSOR MATCHES "aarch64|arm64|ARM64")
   set(WINNOW_ISAS "neon64" CACHE STRING "Instruction sets to build kernels for")
 elseif(CMAKE_SYSTEM_PROCESSOR MATCHES "wasm")
-  # Its headers provide SSE4.2 intrinsics; see tests/toolchains/wasm.cmake.
+  # The compiler's headers provide SSE4.2 intrinsics; see tests/toolchains/wasm.cmake.
   set(WINNOW_ISAS "sse42" CACHE STRING "Instruction sets to build kernels for")
 else()
   message(FATAL_ERROR "winnow has no kernels for ${CMAKE_SYSTEM_PROCESSOR}")
@@ -18,7 +18,7 @@ endif()
 # winnow_native_isas(): sets WINNOW_ISAS to the list that "native" stands for.
 function(winnow_native_isas)
   if(CMAKE_CROSSCOMPILING)
-    message(FATAL_ERROR "WINNOW_ISAS=native asks this machine, and this build is for another")
+    message(FATAL_ERROR "WINNOW_ISAS=native queries this machine, and this build is for another")
   endif()
   if(NOT CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64|amd64")
     set(WINNOW_ISAS neon64 PARENT_SCOPE)
@@ -58,7 +58,7 @@ if(WINNOW_ISAS STREQUAL "native")
   winnow_native_isas()
 endif()
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64|amd64" AND NOT "sse42" IN_LIST WINNOW_ISAS)
-  message(FATAL_ERROR "WINNOW_ISAS must hold the baseline sse42")
+  message(FATAL_ERROR "WINNOW_ISAS must contain the baseline sse42")
 endif()
 
 set(WINNOW_ISA_DEFINITIONS "")
@@ -71,7 +71,8 @@ foreach(isa ${WINNOW_ISAS})
 endforeach()
 
 set(WINNOW_KERNEL_OPTIMIZATION -O3 CACHE STRING "Optimization of kernels in every build type")
-# There a wide type takes two or four registers, which makes compilation slow.
+# A value of type Lanes takes two registers on AVX2 and four on SSE4.2, which makes compilation
+# slow.
 set(WINNOW_NARROWER_OPTIMIZATION "" CACHE STRING
     "Optimization of kernels for all instruction sets but the widest; empty: that of all kernels")
 set(WINNOW_KERNELS_FROM "" CACHE PATH
@@ -85,8 +86,8 @@ list(GET WINNOW_ISAS -1 winnow_widest_isa)
 # winnow_add_kernels(target file.kernel.cpp ...): compiles each file into an object library per
 # instruction set, and links these into the target. The macro xsimd=xsimd_<isa> gives every build
 # its own xsimd namespace, so no inline function is shared between them. Kernels do not depend on
-# how the rest is compiled: builds with other options for the rest may link the kernels of another
-# build (WINNOW_KERNELS_FROM).
+# how other sources are compiled: builds with other options for these may link the kernels of
+# another build (WINNOW_KERNELS_FROM).
 function(winnow_add_kernels target)
   file(RELATIVE_PATH folder ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR})
   foreach(isa ${WINNOW_ISAS})

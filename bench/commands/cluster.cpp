@@ -174,12 +174,13 @@ void ClusterCommand::start_ranks() const {
 void ClusterCommand::run_over(Transport& transport, bool is_virtual) const {
   const NamedScene scene = target.named();
   const auto source = target.source(scene);
-  const std::size_t wanted = frames != 0            ? frames
-                             : scene.is_recording() ? scene.recording->frames.size()
-                                                    : kClusterFrames;
+  const std::size_t frame_count = frames != 0            ? frames
+                                  : scene.is_recording() ? scene.recording->frames.size()
+                                                         : kClusterFrames;
   ClusterRun result;
   Arenas(threads).run(threads, [&] {
-    result = run_cluster(*source, transport, {wanted, contact_level()}, execution_for(threads));
+    result =
+        run_cluster(*source, transport, {frame_count, contact_level()}, execution_for(threads));
   });
   if (transport.first_hosted() != 0) return;
   print(result, source->name(), source->objects());

@@ -19,14 +19,14 @@ inline constexpr int kDone = 0;
 inline constexpr int kFailed = 1;  ///< a check or comparison failed
 inline constexpr int kBadArgument = 2;
 
-/// Makes a subcommand from a class whose members are the options: `Asked` has `add_options(app)`
-/// and `run()`.
-template <typename Asked>
+/// Makes a subcommand from a class whose members are the options: `Subcommand` has
+/// `add_options(app)` and `run()`.
+template <typename Subcommand>
 Command command(CLI::App& app, const char* name, const char* what) {
-  auto asked = std::make_shared<Asked>();
+  auto subcommand = std::make_shared<Subcommand>();
   CLI::App* sub = app.add_subcommand(name, what);
-  asked->add_options(*sub);
-  return {sub, [asked] { return asked->run(); }};
+  subcommand->add_options(*sub);
+  return {sub, [subcommand] { return subcommand->run(); }};
 }
 
 // Each of these is defined in a file of its own, named after the command.

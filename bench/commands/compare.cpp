@@ -109,8 +109,8 @@ const char* word_of(const Change& change) {
   return "";
 }
 
-/// Returns all changes in their order, or only the
-/// changes that count and got worse or better, from the worst to the best.
+/// If `all`, returns all changes in their order; otherwise only the changes that count and are
+/// worse or better, from the worst to the best.
 std::vector<const Change*> chosen_changes(const ReportComparison& found, bool all) {
   std::vector<const Change*> chosen;
   for (const Change& change : found.changes) {

@@ -30,28 +30,28 @@ struct Goals {
 };
 
 std::vector<Goal> Goals::measure_all(MeasurementCache& measurement_cache) const {
-  std::vector<Json> wanted;
-  for (Json& ask : parse_goals(kGoalsJson)) {
-    if (topic.empty() || ask["topic"] == topic) wanted.push_back(std::move(ask));
+  std::vector<Json> entries;
+  for (Json& entry : parse_goals(kGoalsJson)) {
+    if (topic.empty() || entry["topic"] == topic) entries.push_back(std::move(entry));
   }
   std::vector<Goal> goals;
-  Progress progress(wanted.size());
-  for (const Json& ask : wanted) {
-    progress.step(ask["topic"].get<std::string>() + ": " + ask["what"].get<std::string>());
-    for (Goal& goal : evaluate(ask, measurement_cache)) goals.push_back(std::move(goal));
+  Progress progress(entries.size());
+  for (const Json& entry : entries) {
+    progress.step(entry["topic"].get<std::string>() + ": " + entry["what"].get<std::string>());
+    for (Goal& goal : evaluate(entry, measurement_cache)) goals.push_back(std::move(goal));
   }
   return goals;
 }
 
 void print(const std::string& topic, const std::vector<Goal>& goals) {
-  Table table({"what", "asked", "measured", "unit", "holds", "by"});
+  Table table({"what", "bound", "measured", "unit", "holds", "by"});
   table.flush_left(3);
   table.flush_left(5);
   std::size_t holding = 0;
   for (const Goal& goal : goals) {
     if (goal.topic != topic) continue;
     const char* sense = goal.at_least ? ">= " : "<= ";
-    table.add({goal.what, sense + short_number(goal.asked), short_number(goal.measured), goal.unit,
+    table.add({goal.what, sense + short_number(goal.bound), short_number(goal.measured), goal.unit,
                goal.holds() ? "yes" : "NO", goal.detail});
     holding += goal.holds() ? 1 : 0;
   }
@@ -69,7 +69,7 @@ Json goal_json(const Goal& goal) {
   return {{"topic", goal.topic},
           {"what", goal.what},
           {"unit", goal.unit},
-          {"asked", goal.asked},
+          {"bound", goal.bound},
           {"measured", goal.measured},
           {"holds", goal.holds()},
           {"sense", goal.at_least ? "at_least" : "at_most"},
@@ -97,7 +97,7 @@ int Goals::run() const {
     if (goal.holds()) continue;
     if (short_of++ == 0) std::cout << "missed:\n";
     std::cout << "  " << goal.topic << ": " << goal.what << ": " << short_number(goal.measured)
-              << " " << goal.unit << ", asked " << short_number(goal.asked) << '\n';
+              << " " << goal.unit << ", bound " << short_number(goal.bound) << '\n';
   }
   return short_of == 0 ? kDone : kFailed;
 }

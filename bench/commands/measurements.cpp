@@ -58,9 +58,9 @@ class ScenesCommand : public RowsCommand {
     const std::vector<NamedScene> scenes = named_scenes(scenes_);
     plan(objects_.size() * scenes.size() * threads_.size());
     for (const NamedScene& scene : scenes) {
-      for (const std::size_t asked : objects_) {
-        if (scene.is_recording() && asked != objects_.front()) continue;
-        const std::size_t objects = scene.objects(asked);
+      for (const std::size_t requested : objects_) {
+        if (scene.is_recording() && requested != objects_.front()) continue;
+        const std::size_t objects = scene.objects(requested);
         measure_scene(scene.name + ", " + grouped(objects) + " objects", scene, objects);
       }
     }
@@ -251,16 +251,16 @@ class Queries final : public RowsCommand {
  public:
   void add_options(CLI::App& app) {
     scene_.add_to(app, "Scene; its first frame is used")->check(CLI::IsMember(scene_names()));
-    add_objects_option(app, asked_.objects);
-    add_partitions_option(app, asked_.partitions);
-    add_threads_option(app, asked_.threads);
-    number(app, "--rays", asked_.rays, 1, 1e8,
+    add_objects_option(app, options_.objects);
+    add_partitions_option(app, options_.partitions);
+    add_threads_option(app, options_.threads);
+    number(app, "--rays", options_.rays, 1, 1e8,
            "Number of rays in a set; sets of slower queries are smaller");
-    number(app, "--rounds", asked_.rounds, 1, 1000,
+    number(app, "--rounds", options_.rounds, 1, 1000,
            "Number of rounds; all contenders take turns in each");
     const auto names = query_set_names();
-    one_of(app, "--set", asked_.sets, {names.begin(), names.end()}, "Sets of queries");
-    add_seed_option(app, asked_.seed);
+    one_of(app, "--set", options_.sets, {names.begin(), names.end()}, "Sets of queries");
+    add_seed_option(app, options_.seed);
     add_rows_options(app);
   }
 
@@ -269,14 +269,14 @@ class Queries final : public RowsCommand {
     const NamedScene named = scene_.named();
     plan(1);
     declare_queries(results);
-    step(named.name + ", " + grouped(named.objects(asked_.objects)) + " objects, " +
-             threads_text(asked_.threads),
-         [&] { add_queries(results, named, asked_); });
+    step(named.name + ", " + grouped(named.objects(options_.objects)) + " objects, " +
+             threads_text(options_.threads),
+         [&] { add_queries(results, named, options_); });
     print("queries", {"ns", "found", "questions", "wrong", "undecided"});
   }
 
   SceneOrRecording scene_;
-  QueryMeasureOptions asked_{.machine_clock = false, .peers = true};
+  QueryMeasureOptions options_{.machine_clock = false, .peers = true};
 };
 
 class Volumes final : public RowsCommand {
@@ -288,33 +288,33 @@ class Volumes final : public RowsCommand {
     scene_.add_to(app, "Built-in scene for the first table");
     one_of(app, "--setting", settings_, {names.begin(), names.end()},
            "Settings: the scene, rotated cubes, rotated rods, slow rotated cubes");
-    app.add_option("--step", asked_.step,
+    app.add_option("--step", options_.step,
                    "Distance that objects move in a frame, in mean edge lengths; default: chosen "
                    "for each setting, or as recorded")
         ->check(CLI::NonNegativeNumber);
-    number(app, "--objects", asked_.objects, 1, 1e6, "Number of objects");
-    one_of(app, "--partition", asked_.partition, {partitions.begin(), partitions.end()},
+    number(app, "--objects", options_.objects, 1, 1e6, "Number of objects");
+    one_of(app, "--partition", options_.partition, {partitions.begin(), partitions.end()},
            "Partition that stores the volumes");
-    number(app, "--frames", asked_.frames, 1, 1000, "Number of timed frames");
-    add_seed_option(app, asked_.seed);
+    number(app, "--frames", options_.frames, 1, 1000, "Number of timed frames");
+    add_seed_option(app, options_.seed);
     add_rows_options(app);
   }
 
  private:
   void measure() override {
-    asked_.scene = scene_.named();
+    options_.scene = scene_.named();
     plan(settings_.size());
     declare_volumes(results);
     for (const std::string& setting : settings_) {
-      asked_.setting = setting;
-      step(setting, [&] { add_volumes(results, asked_); });
+      options_.setting = setting;
+      step(setting, [&] { add_volumes(results, options_); });
     }
     print("volumes", {"reported", "overlapping", "false_positives", "make_ms", "broad_ms",
                       "narrow_ms", "sum_ms", "pays_from_ns", "bytes_per_object"});
   }
 
   SceneOrRecording scene_;
-  VolumeRowOptions asked_;
+  VolumeRowOptions options_;
   std::vector<std::string> settings_;
 };
 
@@ -461,13 +461,13 @@ class AccuracyCommand final : public PairsCommand {
     declare_pair_errors(results, PairKeys::settings);
     for (const PairKind& kind : kinds()) {
       for (const double ratio : ratios_) {
-        AccuracyOptions asked{
+        AccuracyOptions options{
             .kind = kind, .set = set_, .levels = levels(), .tiers = tiers(), .peers = peers_};
-        asked.set.seed = seed_;
-        asked.set.ratio = ratio;
-        if (judge_ == "reference") asked.judge = TruthSource::reference;
+        options.set.seed = seed_;
+        options.set.ratio = ratio;
+        if (judge_ == "reference") options.judge = TruthSource::reference;
         step(std::string(kind.name) + ", sizes 1:" + key_text(ratio),
-             [&] { add_pair_errors(results, asked, by_gap_, PairKeys::settings); });
+             [&] { add_pair_errors(results, options, by_gap_, PairKeys::settings); });
       }
     }
     print("narrow_error",
@@ -489,12 +489,12 @@ class Pipeline final : public RowsCommand {
     app.add_flag("--costs", costs_,
                  "Instead measure the memory of winnow's contacts and the cost of a margin, on the "
                  "first of the given numbers of threads");
-    add_threads_option(app, asked_.threads, "Numbers of threads for winnow");
-    number(app, "--frames", asked_.frames, 1, 10'000, "Number of timed frames");
-    number(app, "--bodies", asked_.bodies, 1, 1e6,
+    add_threads_option(app, options_.threads, "Numbers of threads for winnow");
+    number(app, "--frames", options_.frames, 1, 10'000, "Number of timed frames");
+    number(app, "--bodies", options_.bodies, 1, 1e6,
            "Number of bodies in pile, terrain and balls (default: the usual one)");
-    app.add_flag("!--no-peers", asked_.peers, "Do not measure other libraries");
-    add_seed_option(app, asked_.seed);
+    app.add_flag("!--no-peers", options_.peers, "Do not measure other libraries");
+    add_seed_option(app, options_.seed);
     add_rows_options(app);
   }
 
@@ -506,7 +506,7 @@ class Pipeline final : public RowsCommand {
       if (costs_) {
         step(scene, [&] { measure_costs(scene); });
       } else if (scene == "tori") {
-        step(scene, [&] { add_tori(results, asked_.frames, asked_.peers, false); });
+        step(scene, [&] { add_tori(results, options_.frames, options_.peers, false); });
       } else {
         measure_scene(scene);
       }
@@ -520,25 +520,25 @@ class Pipeline final : public RowsCommand {
   void measure_costs(const std::string& scene) {
     if (scene == "tori") return;
     add_scene_costs(results, {.scene = scene,
-                              .threads = asked_.threads.front(),
-                              .frames = asked_.frames,
-                              .bodies = asked_.bodies,
-                              .seed = asked_.seed});
+                              .threads = options_.threads.front(),
+                              .frames = options_.frames,
+                              .bodies = options_.bodies,
+                              .seed = options_.seed});
   }
 
   /// All engines are measured at level manifold; at lower levels only winnow.
   void measure_scene(const std::string& scene) {
-    const std::unique_ptr<BodySet> set = make_pipeline_scene(scene, asked_.bodies, asked_.seed);
-    asked_.scene = scene;
-    asked_.set = set.get();
+    const std::unique_ptr<BodySet> set = make_pipeline_scene(scene, options_.bodies, options_.seed);
+    options_.scene = scene;
+    options_.set = set.get();
     for (const bool resting : {false, true}) {
-      asked_.resting = resting;
+      options_.resting = resting;
       for (const std::string& level : levels_) {
         step(scene + (resting ? ", at rest" : ", moving a little"), [&] {
           if (level == "manifold") {
-            add_scene_race(results, asked_);
+            add_scene_race(results, options_);
           } else {
-            add_scene_level(results, asked_, level);
+            add_scene_level(results, options_, level);
           }
         });
       }
@@ -548,7 +548,7 @@ class Pipeline final : public RowsCommand {
   std::vector<std::string> scenes_{"pile", "terrain", "tori"};
   std::vector<std::string> levels_{"manifold"};
   bool costs_ = false;
-  PipelineMeasureOptions asked_{.machine_clock = false};
+  PipelineMeasureOptions options_{.machine_clock = false};
 };
 
 /// Measures times of impact: pairs of shapes, features of meshes, or a scene.
@@ -564,11 +564,11 @@ class Impacts final : public RowsCommand {
     number(app, "--pairs", pairs_, 1, 1e6, "Number of pairs of each kind");
     number(app, "--rounds", rounds_, 1, 1000,
            "Number of rounds; all contenders take turns in each");
-    number(app, "--bodies", sweep_.bodies, 1, 1e6, "Number of bodies in the scene");
-    number(app, "--fast", sweep_.fast, 1, 1e6, "Number of fast bodies among them");
-    add_threads_option(app, sweep_.threads);
+    number(app, "--bodies", continuous_.bodies, 1, 1e6, "Number of bodies in the scene");
+    number(app, "--fast", continuous_.fast, 1, 1e6, "Number of fast bodies among them");
+    add_threads_option(app, continuous_.threads);
     app.add_flag("!--no-peers", peers_, "Do not measure other libraries");
-    add_seed_option(app, sweep_.seed);
+    add_seed_option(app, continuous_.seed);
     add_rows_options(app);
   }
 
@@ -586,7 +586,7 @@ class Impacts final : public RowsCommand {
     for (const char* const one : what) {
       step(one, [&] {
         if (one == kPairs) measure_pairs();
-        if (one == kFeatures) add_feature_impacts(results, pairs_, rounds_, sweep_.seed);
+        if (one == kFeatures) add_feature_impacts(results, pairs_, rounds_, continuous_.seed);
         if (one == kScene) measure_scene();
       });
     }
@@ -606,14 +606,14 @@ class Impacts final : public RowsCommand {
                               .pairs = pairs_,
                               .rounds = rounds_,
                               .peers = peers_,
-                              .seed = sweep_.seed});
+                              .seed = continuous_.seed});
       }
     }
   }
   void measure_scene() {
-    if (sweep_.fast > sweep_.bodies) throw ArgumentError("--fast: more than --bodies");
-    sweep_.frames = rounds_;
-    add_swept_scene(results, sweep_);
+    if (continuous_.fast > continuous_.bodies) throw ArgumentError("--fast: more than --bodies");
+    continuous_.frames = rounds_;
+    add_continuous_collision(results, continuous_);
   }
 
   Chosen what_{{"all"}};
@@ -622,7 +622,7 @@ class Impacts final : public RowsCommand {
   std::size_t pairs_ = 2048;
   std::size_t rounds_ = 7;
   bool peers_ = true;
-  SweepRaceOptions sweep_;
+  ContinuousRaceOptions continuous_;
 };
 
 class Kernels final : public RowsCommand {
@@ -684,7 +684,7 @@ std::vector<Command> add_measurements(CLI::App& app) {
       command<Impacts>(app, "impacts",
                        "Measures times of impact: the time per pair of shapes for winnow and other "
                        "libraries, in turns, on the same motions; missed and late impacts, and the "
-                       "remaining gaps; features of meshes; sweeps of a scene with some fast "
+                       "remaining gaps; features of meshes; impacts of a scene with some fast "
                        "bodies, compared with its contacts."),
       command<Pipeline>(app, "pipeline",
                         "Measures the time from poses to contacts in whole scenes, for winnow and "

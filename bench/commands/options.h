@@ -39,7 +39,7 @@ CLI::Option* option(CLI::App& app, const char* name, T& value, const std::string
   return added;
 }
 
-/// Adds an option whose number, or each number of a list, lies in [least, most].
+/// Adds an option whose number, or each number of a list, is in [least, most].
 template <typename T>
 CLI::Option* number(CLI::App& app, const char* name, T& value, double least, double most,
                     const std::string& what) {

@@ -87,9 +87,9 @@ ReportOptions ReportCommand::options() const {
 std::vector<const ReportSection*> ReportCommand::sections() const {
   std::vector<const ReportSection*> chosen;
   for (const ReportSection& section : report_sections()) {
-    const bool asked =
+    const bool is_selected =
         std::find(section_ids.begin(), section_ids.end(), section.id) != section_ids.end();
-    if (asked || section_ids.empty()) chosen.push_back(&section);
+    if (is_selected || section_ids.empty()) chosen.push_back(&section);
   }
   return chosen;
 }

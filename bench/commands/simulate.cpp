@@ -23,10 +23,10 @@
 namespace winnow::bench {
 namespace {
 
-/// Steps per recorded frame: bodies move about a hundredth of their size.
+/// Steps per recorded frame, in which bodies move about a hundredth of their size.
 constexpr std::size_t kRecorded = 10;
 constexpr std::size_t kReports = 20;
-/// Greatest relative rise of the energy that counts as an integration error.
+/// A larger relative rise of the energy makes the command fail.
 constexpr double kMaxRise = 1e-3;
 
 /// Selects every structure or barrier.
@@ -101,7 +101,7 @@ class Simulate final : public RowsCommand {
   [[nodiscard]] FlowFacts facts(const FlowRun& run) const;
   void write_flow_page(const FlowFacts& facts) const;
 
-  FlowRowOptions asked_{.objects = 10'000, .steps = 2'000, .threads = usual_threads().back()};
+  FlowRowOptions options_{.objects = 10'000, .steps = 2'000, .threads = usual_threads().back()};
   std::string mesh_;
   std::string out_;
   std::string record_;
@@ -113,16 +113,16 @@ class Simulate final : public RowsCommand {
 };
 
 void Simulate::add_options(CLI::App& app) {
-  objects_ = number(app, "--objects", asked_.objects, 1, 1e7,
+  objects_ = number(app, "--objects", options_.objects, 1, 1e7,
                     "Number of bodies; for a cloth, vertices along an edge");
-  steps_ = number(app, "--steps", asked_.steps, 1, 1e8,
+  steps_ = number(app, "--steps", options_.steps, 1, 1e8,
                   "Number of steps, of 1/1000 s; with --barrier, of 1/60 s");
-  one_of(app, "--shape", asked_.shape, flow_shape_names(), "Shapes of the bodies");
+  one_of(app, "--shape", options_.shape, flow_shape_names(), "Shapes of the bodies");
   option(app, "--mesh", mesh_,
          "OBJ, STL or PLY file of a mesh instead of the funnel, scaled to the funnel's width");
   option(app, "--out", out_, "HTML page to write, with plots over time");
   option(app, "--record", record_, ".aabbs file to write, with a frame every 10 steps");
-  option(app, "--check", asked_.check,
+  option(app, "--check", options_.check,
          "Interval in steps at which contacts are compared with a brute-force test of all pairs; "
          "0: never");
   std::vector<std::string> structures = standing_names();
@@ -136,8 +136,8 @@ void Simulate::add_options(CLI::App& app) {
   one_of(
       app, "--barrier", barrier_, barriers,
       "Instead of the flow, simulate fast bodies and thin barriers, which must not be tunnelled");
-  add_threads_option(app, asked_.threads);
-  add_seed_option(app, asked_.seed);
+  add_threads_option(app, options_.threads);
+  add_seed_option(app, options_.seed);
   add_rows_options(app);
 }
 
@@ -145,7 +145,7 @@ FlowFacts Simulate::facts(const FlowRun& run) const {
   const GranularFlow& flow = run.flow();
   const FlowSample& last = run.history().samples().back();
   FlowFacts facts{
-      {"objects", grouped(flow.objects()) + " " + asked_.shape},
+      {"objects", grouped(flow.objects()) + " " + options_.shape},
       {"mesh",
        (mesh_.empty() ? "funnel" : mesh_) + ", " + grouped(flow.mesh().size()) + " triangles"},
       {"steps", grouped(flow.steps()) + ", " + short_number(flow.time()) + " s"},
@@ -162,7 +162,7 @@ FlowFacts Simulate::facts(const FlowRun& run) const {
       {"allocations after " + grouped(run.warm_up()) + " steps",
        grouped(run.allocations()) + ", " + grouped(run.steady_allocations()) +
            " in steps with no more contacts than in an earlier step"}};
-  if (asked_.check != 0) {
+  if (options_.check != 0) {
     const FlowFaults& faults = run.faults();
     facts.emplace_back("checked by brute force",
                        grouped(run.checks()) + " steps, " + grouped(faults.compared) +
@@ -189,11 +189,11 @@ void Simulate::measure_standing() {
   std::vector<std::string> names{standing_};
   if (standing_ == kAll) names = standing_names();
   plan(2 * names.size());
-  Arenas(asked_.threads).run(asked_.threads, [&] {
+  Arenas(options_.threads).run(options_.threads, [&] {
     for (const std::string& name : names) {
       for (const bool reduced : {false, true}) {
         step(name, [&] {
-          if (!add_standing(results, {standing_named(name), reduced, seconds_, asked_.threads})) {
+          if (!add_standing(results, {standing_named(name), reduced, seconds_, options_.threads})) {
             fail();
           }
         });
@@ -208,13 +208,13 @@ void Simulate::measure_barriers() {
   std::vector<std::string> names{barrier_};
   if (barrier_ == kAll) names = barrier_names();
   plan(names.size());
-  Arenas(asked_.threads).run(asked_.threads, [&] {
+  Arenas(options_.threads).run(options_.threads, [&] {
     for (const std::string& name : names) {
-      BarrierRowOptions asked{.scene = name, .threads = asked_.threads};
-      if (steps_->count() != 0) asked.steps = asked_.steps;
-      if (objects_->count() != 0) asked.size = asked_.objects;
+      BarrierRowOptions options{.scene = name, .threads = options_.threads};
+      if (steps_->count() != 0) options.steps = options_.steps;
+      if (objects_->count() != 0) options.size = options_.objects;
       step(name, [&] {
-        if (!add_barrier(results, asked)) fail();
+        if (!add_barrier(results, options)) fail();
       });
     }
   });
@@ -232,7 +232,7 @@ void Simulate::measure() {
   }
   declare_flows(results);
   declare_flow_checks(results);
-  FlowOptions options = flow_options(asked_);
+  FlowOptions options = flow_options(options_);
   if (!mesh_.empty()) {
     try {
       options.mesh = read_mesh(mesh_);
@@ -240,22 +240,22 @@ void Simulate::measure() {
       throw ArgumentError(std::string("--mesh: ") + error.what());
     }
   }
-  Arenas(asked_.threads).run(asked_.threads, [&] {
-    FlowRun run(options, asked_.steps, asked_.check);
+  Arenas(options_.threads).run(options_.threads, [&] {
+    FlowRun run(options, options_.steps, options_.check);
     {
-      AnnouncedSteps steps(run, asked_.steps);
+      AnnouncedSteps steps(run, options_.steps);
       if (record_.empty()) {
-        for (std::size_t i = 0; i < asked_.steps; ++i) steps.step();
+        for (std::size_t i = 0; i < options_.steps; ++i) steps.step();
       } else {
         FlowFrames frames(steps);
-        write_recording(record_, frames, asked_.shape,
-                        std::max<std::size_t>(1, asked_.steps / kRecorded));
+        write_recording(record_, frames, options_.shape,
+                        std::max<std::size_t>(1, options_.steps / kRecorded));
       }
     }
-    std::cout << isa_name() << ", " << threads_text(asked_.threads)
+    std::cout << isa_name() << ", " << threads_text(options_.threads)
               << "; medians of the profiled steps in the second half\n";
-    asked_.steps = run.flow().steps();
-    add_flow(results, asked_, run);
+    options_.steps = run.flow().steps();
+    add_flow(results, options_, run);
     print("phases");
     const FlowFacts all = facts(run);
     for (const auto& [what, much] : all) std::cout << what << ": " << much << '\n';

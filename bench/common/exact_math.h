@@ -8,8 +8,8 @@ namespace winnow::bench {
 // Powers and roots that use only + - * / and sqrt, which IEEE 754 rounds the same on every machine.
 // std::cbrt and std::pow may differ.
 
-/// Cube root of a positive number by Newton's method. Starts above the root, from where it
-/// converges monotonically.
+/// Cube root of a positive number by Newton's method. The iteration starts above the root and
+/// decreases until rounding stops it.
 [[nodiscard]] inline double cube_root(double a) noexcept {
   double x = a > 1.0 ? a : 1.0;
   for (;;) {
@@ -19,7 +19,7 @@ namespace winnow::bench {
   }
 }
 
-/// base^u for u in [0, 1), good to 32 bits of u: the product of base^(1/2), base^(1/4), ... over
+/// base^u for u in [0, 1), rounded down to 32 bits: the product of base^(1/2), base^(1/4), ... over
 /// the set bits of u.
 [[nodiscard]] inline double power(double base, double u) noexcept {
   auto bits = static_cast<std::uint32_t>(u * 0x1p32);

@@ -32,9 +32,9 @@ std::optional<double> busy_seconds() {
 
 double own_seconds() noexcept {
   double sum = 0.0;
-  for (const int who : {RUSAGE_SELF, RUSAGE_CHILDREN}) {
+  for (const int scope : {RUSAGE_SELF, RUSAGE_CHILDREN}) {
     rusage usage{};
-    if (::getrusage(who, &usage) != 0) continue;
+    if (::getrusage(scope, &usage) != 0) continue;
     for (const timeval& part : {usage.ru_utime, usage.ru_stime}) {
       sum += static_cast<double>(part.tv_sec) + 1e-6 * static_cast<double>(part.tv_usec);
     }

@@ -23,9 +23,9 @@ class Table {
   std::vector<std::size_t> left_{0};
 };
 
-/// "a, b, c".
+/// Returns the names as "a, b, c".
 [[nodiscard]] std::string listed(const std::vector<std::string>& names);
-/// "1 thread", "2 threads".
+/// Returns "1 thread", "2 threads".
 [[nodiscard]] std::string threads_text(int threads);
 
 /// A number to three significant digits, without an exponent: 0.0571, 1.26, 48.3, 712.

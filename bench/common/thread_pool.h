@@ -91,8 +91,9 @@ class ThreadPool {
     return nullptr;
   }
 
-  // A frame has many short batches in quick succession: sleeping between them would cost more than
-  // they do, so this spins for a while. Returns true if a new batch was signalled.
+  // A frame has many short batches in quick succession, and putting a thread to sleep between two
+  // batches would take longer than a batch: this spins first. Returns true if a new batch was
+  // signalled.
   [[nodiscard]] bool wait_awake(std::uint32_t seen) const {
     constexpr int kSpinChecks = 200;
     for (int look = 0; look < kSpinChecks; ++look) {

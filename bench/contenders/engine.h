@@ -50,7 +50,7 @@ class Engine {
   virtual void start(std::span<const Aabb> boxes) = 0;
 
   /// A later frame: updates the boxes and finds all pairs. `changed_rows` (ascending, unique, maybe
-  /// empty) are the objects whose boxes differ from the last frame. `all_boxes` holds the boxes of
+  /// empty) are the objects whose boxes differ from the last frame. `all_boxes` are the boxes of
   /// all objects, changed or not; rows that the last frame did not have are new objects. The spans
   /// are valid only during the call.
   virtual void frame(std::span<const std::uint32_t> changed_rows,
@@ -62,11 +62,11 @@ class Engine {
   /// reported. Valid until the next non-const call.
   [[nodiscard]] virtual std::span<const Pair> pairs() const = 0;
 
-  /// Bytes held now, without the pairs found; 0 if unavailable.
+  /// Bytes allocated now, without the pairs found; 0 if unavailable.
   [[nodiscard]] virtual std::size_t bytes() const = 0;
 
   /// Milliseconds that the last `start` or `frame` spent on updating boxes before the search for
-  /// pairs; 0 if the two cannot be separated.
+  /// pairs; 0 if the update and the search cannot be separated.
   [[nodiscard]] virtual double update_ms() const { return 0.0; }
 
  protected:

@@ -16,9 +16,9 @@ struct NarrowAnswer {
   std::uint32_t contacts = 0;
   /// Negative if the bodies overlap, by the penetration depth.
   double distance = std::numeric_limits<double>::quiet_NaN();
-  /// NaN if the engine gives none.
+  /// NaN if the engine returns none.
   double error_bound = std::numeric_limits<double>::quiet_NaN();
-  /// Unit length, from a to b; zero if none is given.
+  /// Unit length, from a to b; zero if the engine returns none.
   double normal[3] = {0.0, 0.0, 0.0};
   /// A point on a, in world coordinates.
   double point[3] = {0.0, 0.0, 0.0};

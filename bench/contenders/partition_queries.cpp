@@ -14,7 +14,7 @@
 namespace winnow::bench {
 namespace {
 
-/// Most box tests for one run on a partition that tests every box per query.
+/// Largest number of box tests for one run on a partition that tests every box per query.
 constexpr double kMaxTests = 2e8;
 
 void require(Status status) {
@@ -40,8 +40,8 @@ Found to_found(const Hit& hit) noexcept {
 PartitionQueries::PartitionQueries(std::string_view name, int threads)
     : partition_(make_named(name, {.memory = &memory_, .execution = execution_for(threads)})) {}
 
-bool PartitionQueries::takes(const QuerySet& set, QueryMode asking) const {
-  return asking == QueryMode::single || !set.rays.empty() ||
+bool PartitionQueries::takes(const QuerySet& set, QueryMode mode) const {
+  return mode == QueryMode::single || !set.rays.empty() ||
          (!set.boxes.empty() && set.query_type == QueryType::overlap);
 }
 
@@ -53,7 +53,7 @@ std::size_t PartitionQueries::most_questions() const {
 
 void PartitionQueries::start(std::span<const Aabb> boxes) {
   keys_.resize(boxes.size());
-  // A new partition gives the ids 0, 1, 2, ...: these are the rows.
+  // The objects of a new partition have the ids 0, 1, 2, ..., which are therefore rows.
   require(partition_.insert(boxes, {}, keys_));
   require(partition_.refresh());
 }
@@ -113,8 +113,8 @@ void PartitionQueries::run_batch(const QuerySet& set, std::size_t count) {
                                            : partition.closest(rays, columns));
 }
 
-std::uint64_t PartitionQueries::run(const QuerySet& set, QueryMode asking, std::size_t count) {
-  if (asking == QueryMode::batch) {
+std::uint64_t PartitionQueries::run(const QuerySet& set, QueryMode mode, std::size_t count) {
+  if (mode == QueryMode::batch) {
     run_batch(set, count);
     if (set.rays.empty()) return buffers_.pairs.size();
     if (set.query_type == QueryType::all) return buffers_.hits.size();
@@ -140,9 +140,9 @@ std::uint64_t PartitionQueries::run(const QuerySet& set, QueryMode asking, std::
   return found;
 }
 
-QueryResults PartitionQueries::answers(const QuerySet& set, QueryMode asking, std::size_t count) {
+QueryResults PartitionQueries::answers(const QuerySet& set, QueryMode mode, std::size_t count) {
   QueryResults result;
-  if (asking == QueryMode::batch) {
+  if (mode == QueryMode::batch) {
     run_batch(set, count);
     gather(set, count, result);
     return result;

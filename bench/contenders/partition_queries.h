@@ -20,12 +20,12 @@ class PartitionQueries final : public QueryEngine {
 
   [[nodiscard]] std::string name() const override { return std::string(partition_.name()); }
   /// True unless the partition does not support such queries.
-  [[nodiscard]] bool takes(const QuerySet& set, QueryMode asking) const override;
+  [[nodiscard]] bool takes(const QuerySet& set, QueryMode mode) const override;
   [[nodiscard]] std::size_t most_questions() const override;
   void start(std::span<const Aabb> boxes) override;
   /// Throws QueryError if the partition returns an error.
-  std::uint64_t run(const QuerySet& set, QueryMode asking, std::size_t count) override;
-  [[nodiscard]] QueryResults answers(const QuerySet& set, QueryMode asking,
+  std::uint64_t run(const QuerySet& set, QueryMode mode, std::size_t count) override;
+  [[nodiscard]] QueryResults answers(const QuerySet& set, QueryMode mode,
                                      std::size_t count) override;
 
   [[nodiscard]] Partition& partition() noexcept { return partition_; }

@@ -37,7 +37,7 @@ class QueryEngine {
   [[nodiscard]] virtual std::string name() const = 0;
 
   /// True if the engine supports these queries, single or batched.
-  [[nodiscard]] virtual bool takes(const QuerySet& set, QueryMode asking) const = 0;
+  [[nodiscard]] virtual bool takes(const QuerySet& set, QueryMode mode) const = 0;
 
   /// Number of queries of a set that can be run in reasonable time.
   [[nodiscard]] virtual std::size_t most_questions() const {
@@ -50,10 +50,10 @@ class QueryEngine {
 
   /// Runs the first `count` queries of the set and returns the number of objects found. Results are
   /// written where a caller can read them, and overwritten by the next query or batch.
-  virtual std::uint64_t run(const QuerySet& set, QueryMode asking, std::size_t count) = 0;
+  virtual std::uint64_t run(const QuerySet& set, QueryMode mode, std::size_t count) = 0;
 
   /// Runs the queries and returns the results. Not timed; single queries run on one thread.
-  [[nodiscard]] virtual QueryResults answers(const QuerySet& set, QueryMode asking,
+  [[nodiscard]] virtual QueryResults answers(const QuerySet& set, QueryMode mode,
                                              std::size_t count) = 0;
 
  protected:

@@ -30,7 +30,7 @@ class RayEngine {
   [[nodiscard]] virtual std::size_t bytes() const = 0;
   /// Stores the rays for the next `run`, converted to the engine's types. Not timed.
   virtual void take(std::span<const ShapeRay> rays) = 0;
-  virtual void run(RayQueryType want, QueryMode asking) = 0;
+  virtual void run(RayQueryType query_type, QueryMode mode) = 0;
   /// Returns the ray parameter t of each ray's first hit in the last `run`, infinity without a hit.
   /// For RayQueryType::any a hit has t = 0. Not timed.
   [[nodiscard]] virtual std::vector<double> hits() const = 0;

@@ -69,8 +69,8 @@ std::size_t ReferenceSweep::bytes() const {
   return entries_.capacity() * sizeof(Entry);
 }
 
-MachineClock::MachineClock(bool wanted) {
-  if (!wanted) return;
+MachineClock::MachineClock(bool enabled) {
+  if (!enabled) return;
   scene_ = make_scene("uniform", 10'000, 1);
   sweep_.start(scene_->boxes());
 }

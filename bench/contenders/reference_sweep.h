@@ -12,7 +12,8 @@ namespace winnow::bench {
 /// finds overlapping pairs independently: it uses none of winnow's algorithms.
 class ReferenceSweep final : public Engine {
  public:
-  /// `axis` is 0, 1 or 2; any other value selects the axis on which the first frame spreads widest.
+  /// `axis` is 0, 1 or 2; any other value selects the axis on which the boxes of the first frame
+  /// are smallest relative to the range of all boxes.
   explicit ReferenceSweep(int axis = 0) : axis_(axis) {}
 
   [[nodiscard]] std::string name() const override { return "reference sweep"; }
@@ -36,10 +37,10 @@ class ReferenceSweep final : public Engine {
 };
 
 /// Measures how fast the machine is now: times sweeps on x over the 10,000 objects of `uniform`.
-/// Figures measured on other machines are scaled by it. With `wanted` false it does nothing.
+/// Figures measured on other machines are scaled by it. With `enabled` false it does nothing.
 class MachineClock {
  public:
-  explicit MachineClock(bool wanted = true);
+  explicit MachineClock(bool enabled = true);
 
   /// Times one more sweep.
   void tick();

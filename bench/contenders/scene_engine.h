@@ -11,8 +11,8 @@
 
 namespace winnow::bench {
 
-/// Number of contacts found in a frame, so that an engine that does less work does not appear
-/// faster.
+/// Number of contacts found in a frame. Reports show it beside the time, because an engine that
+/// finds fewer contacts does less work.
 struct SceneFinds {
   std::size_t touching = 0;  ///< touching pairs; the mesh counts as a body
   std::size_t points = 0;    ///< contact points
@@ -29,14 +29,14 @@ class SceneEngine {
 
   [[nodiscard]] virtual std::string name() const = 0;
   /// True if it reuses contacts of the last frame, so that scenes at rest are cheaper.
-  [[nodiscard]] virtual bool carries_over() const = 0;
+  [[nodiscard]] virtual bool caches_contacts() const = 0;
   /// Prepares everything. Called once, before any frame; `set` outlives the engine.
   virtual void start(const BodySet& set) = 0;
   /// Sets the poses of all bodies and finds all contacts with their points.
   virtual void frame(std::span<const Pose> poses) = 0;
   /// Returns the numbers for the last frame. Not timed.
   [[nodiscard]] virtual SceneFinds finds() const = 0;
-  /// Bytes held in total after the last frame; 0 if unavailable.
+  /// Bytes allocated in total after the last frame; 0 if unavailable.
   [[nodiscard]] virtual std::size_t bytes() const { return 0; }
 
  protected:

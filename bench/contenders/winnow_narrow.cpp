@@ -38,8 +38,8 @@ NarrowAnswer WinnowNarrow::answer(std::size_t i) const {
 
 double WinnowNarrow::recomputed() const {
   const NarrowStatistics& statistics = narrow_.statistics();
-  const auto alone = static_cast<double>(statistics.recomputed + statistics.without_lanes);
-  return alone / static_cast<double>(std::max<std::uint64_t>(statistics.pairs, 1));
+  const auto scalar = static_cast<double>(statistics.recomputed + statistics.without_lanes);
+  return scalar / static_cast<double>(std::max<std::uint64_t>(statistics.pairs, 1));
 }
 
 void WinnowOnePair::run(ContactLevel level, std::span<const BodyPair> pairs) {

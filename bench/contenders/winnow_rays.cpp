@@ -20,7 +20,7 @@ class WinnowRays final : public RayEngine {
     const std::span<const std::uint32_t> corners = mesh.corners;
     need(composites_.add_mesh(vertices, corners, shape), "the mesh");
     Key key;
-    need(scene_.add({.shape = shape, .motion = Motion::fixed}, key), "the body");
+    need(scene_.add({.shape = shape, .state = BodyState::fixed}, key), "the body");
     need(scene_.refresh(), "the scene");
   }
 
@@ -32,9 +32,9 @@ class WinnowRays final : public RayEngine {
     t_.assign(rays.size(), 0.0);
   }
 
-  void run(RayQueryType want, QueryMode asking) override {
-    query_type_ = want;
-    if (asking == QueryMode::batch) {
+  void run(RayQueryType query_type, QueryMode mode) override {
+    query_type_ = query_type;
+    if (mode == QueryMode::batch) {
       run_batch();
     } else {
       for (std::size_t i = 0; i < rays_.size(); ++i) run_one(i);

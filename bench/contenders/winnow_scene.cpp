@@ -25,15 +25,15 @@ class WinnowScene final : public SceneEngine {
       : execution_(execution_for(threads)), options_(options) {}
 
   [[nodiscard]] std::string name() const override {
-    return carries_over() ? "winnow, carrying over" : "winnow";
+    return caches_contacts() ? "winnow, carrying over" : "winnow";
   }
-  [[nodiscard]] bool carries_over() const override { return options_.carry_over > 0.0; }
+  [[nodiscard]] bool caches_contacts() const override { return options_.cache_tolerance > 0.0; }
 
   void start(const BodySet& set) override {
     composites_.emplace(set.pool);
     scene_.emplace(set.pool, SceneOptions{.execution = execution_,
-                                          .margin = options_.margin,
-                                          .carry_over = options_.carry_over,
+                                          .contact_margin = options_.contact_margin,
+                                          .cache_tolerance = options_.cache_tolerance,
                                           .composites = &*composites_});
     std::vector<BodyDefinition> bodies(set.poses.size());
     for (std::size_t i = 0; i < bodies.size(); ++i) {
@@ -44,7 +44,7 @@ class WinnowScene final : public SceneEngine {
     need(scene_->add(bodies, keys_), "the bodies");
     if (set.mesh.size() == 0) return;
     BodyDefinition terrain;
-    terrain.motion = Motion::fixed;
+    terrain.state = BodyState::fixed;
     need(composites_->add_mesh(vertices_of(set.mesh), corners_of(set.mesh), terrain.shape),
          "the mesh");
     Key key;

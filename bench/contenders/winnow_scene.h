@@ -8,9 +8,9 @@
 namespace winnow::bench {
 
 struct WinnowSceneOptions {
-  double carry_over = 0.0;  ///< above 0, contacts of resting pairs are carried over between frames
+  double cache_tolerance = 0.0;  ///< above 0, contacts of resting pairs are cached between frames
   ContactLevel level = ContactLevel::manifold;
-  double margin = 0.0;
+  double contact_margin = 0.0;
 };
 
 /// Makes the engine that runs a winnow Scene.

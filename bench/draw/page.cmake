@@ -1,5 +1,5 @@
 # Embeds the files of the page in the tool and finds three.js. three.js is not part of winnow: the
-# tool reads it from its installed place when it writes a page.
+# tool reads the installed file when it writes a page.
 find_path(WINNOW_THREE_JS_FOLDER three.min.js
           PATHS /usr/share/javascript/three /usr/share/nodejs/three/build)
 if(NOT WINNOW_THREE_JS_FOLDER)

@@ -8,7 +8,7 @@ extern const char* const kPageBody;
 extern const char* const kPageScript;
 /// The licence of three.js, which each page must include.
 extern const char* const kThreeJsNotice;
-/// The folder of three.js found at configure time, or its place on Debian.
+/// The folder of three.js found at configure time, or its path on Debian.
 extern const char* const kThreeJsFolder;
 
 }  // namespace winnow::bench

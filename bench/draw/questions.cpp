@@ -31,7 +31,7 @@ Ray parse_ray(const std::string& text) {
   const Ray ray{{n[0], n[1], n[2]}, {n[3], n[4], n[5]}};
   if (!ray.is_valid()) {
     throw ArgumentError("--ray: " + text +
-                        " wants finite numbers and a direction that is not zero");
+                        " needs finite numbers and a direction that is not zero");
   }
   return ray;
 }
@@ -40,7 +40,7 @@ Aabb parse_box(const std::string& text) {
   const std::array<float, 6> n = six_numbers("--box", text);
   const Aabb box{{n[0], n[1], n[2]}, {n[3], n[4], n[5]}};
   if (!box.is_valid()) {
-    throw ArgumentError("--box: " + text + " wants three lower ends, then three upper ends");
+    throw ArgumentError("--box: " + text + " needs three lower ends, then three upper ends");
   }
   return box;
 }

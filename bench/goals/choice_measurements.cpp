@@ -1,5 +1,6 @@
-// Measurements for goals about AutoPartition: its first frames, its frames after a scene changes,
-// and its worst frames, each compared with the best partition. goals/measurements.cpp lists them.
+// Measurements for goals about AutoPartition and worst frames: the first frames of AutoPartition
+// and its frames after a scene changes, compared with the best partition, and the worst frames of
+// any partition, compared with the median. goals/measurements.cpp lists them.
 
 #include "bench/goals/measurements.h"
 #include "bench/goals/race_minima.h"
@@ -13,7 +14,7 @@
 namespace winnow::bench {
 namespace {
 
-/// Time of AutoPartition and of the fastest other partition over a range of frames.
+/// Sums of the times of AutoPartition and of the fastest other partition over a range of frames.
 struct OwnAndBest {
   double own_ms = 0.0;
   double best_ms = 0.0;
@@ -118,7 +119,7 @@ void measure_changes(const Json& options, MeasurementCache& /*measurement_cache*
                      Measured& measured) {
   measured.results.declare({"changes",
                             "choice",
-                            "what AutoPartition loses after a scene has turned into another",
+                            "frames that AutoPartition loses after a change of the scene",
                             {"from", "into", "objects"},
                             {{"frames_lost", "lost", "frames of the best"},
                              {"best", "best", "", Better::neither, Format::text}}});

@@ -24,7 +24,7 @@ constexpr double kReferenceMachineMs = 23.0;
 
 struct GoalFigure {
   double value = 0.0;
-  std::string from;  ///< the rows that gave it
+  std::string from;  ///< the rows from which it was computed
 };
 
 bool is_of_peer(const Json& row, const Json& keys) {
@@ -34,10 +34,10 @@ bool is_of_peer(const Json& row, const Json& keys) {
   });
 }
 
-bool is_any_of(const Json& value, const Json& wanted) {
-  if (wanted == "@isa") return value == isa_name();
-  if (!wanted.is_array()) return value == wanted;
-  return std::find(wanted.begin(), wanted.end(), value) != wanted.end();
+bool is_any_of(const Json& value, const Json& allowed) {
+  if (allowed == "@isa") return value == isa_name();
+  if (!allowed.is_array()) return value == allowed;
+  return std::find(allowed.begin(), allowed.end(), value) != allowed.end();
 }
 
 bool is_meant(const Json& table, const Json& row, const Json& where) {
@@ -171,10 +171,10 @@ std::vector<Json> combinations_of(const Json& keys, const Json& value, const Row
 }
 
 /// Returns the measured value for these keys; nothing if a figure has no row.
-std::optional<GoalFigure> measured_of(const Json& ask, const Rows& rows, const Json& narrowed) {
-  auto value = figure_of(ask["value"], rows, narrowed);
-  if (!value || !ask.contains("over")) return value;
-  const auto over = figure_of(ask["over"], rows, narrowed);
+std::optional<GoalFigure> measured_of(const Json& entry, const Rows& rows, const Json& narrowed) {
+  auto value = figure_of(entry["value"], rows, narrowed);
+  if (!value || !entry.contains("over")) return value;
+  const auto over = figure_of(entry["over"], rows, narrowed);
   if (!over) return std::nullopt;
   value->value /= over->value;
   if (!over->from.empty()) value->from += " over " + over->from;
@@ -182,20 +182,20 @@ std::optional<GoalFigure> measured_of(const Json& ask, const Rows& rows, const J
 }
 
 /// Returns the measured value of each combination of these keys that has one.
-std::vector<GoalFigure> measured_by(const Json& keys, const Json& ask, const Rows& rows,
+std::vector<GoalFigure> measured_by(const Json& keys, const Json& entry, const Rows& rows,
                                     const Json& narrowed) {
   std::vector<GoalFigure> figures;
-  for (const Json& one : combinations_of(keys, ask["value"], rows, narrowed)) {
-    if (auto figure = measured_of(ask, rows, one)) figures.push_back(std::move(*figure));
+  for (const Json& one : combinations_of(keys, entry["value"], rows, narrowed)) {
+    if (auto figure = measured_of(entry, rows, one)) figures.push_back(std::move(*figure));
   }
   return figures;
 }
 
-std::optional<GoalFigure> aggregate(const Json& ask, const Rows& rows, const Json& narrowed,
+std::optional<GoalFigure> aggregate(const Json& entry, const Rows& rows, const Json& narrowed,
                                     bool at_least) {
-  const bool worst = ask.contains("worst_by");
-  if (!worst && !ask.contains("median_by")) return measured_of(ask, rows, narrowed);
-  auto figures = measured_by(ask[worst ? "worst_by" : "median_by"], ask, rows, narrowed);
+  const bool worst = entry.contains("worst_by");
+  if (!worst && !entry.contains("median_by")) return measured_of(entry, rows, narrowed);
+  auto figures = measured_by(entry[worst ? "worst_by" : "median_by"], entry, rows, narrowed);
   if (figures.empty()) return std::nullopt;
   const auto better = [&](const GoalFigure& a, const GoalFigure& b) {
     return at_least ? a.value > b.value : a.value < b.value;
@@ -209,25 +209,25 @@ std::optional<GoalFigure> aggregate(const Json& ask, const Rows& rows, const Jso
 }
 
 /// Returns nothing if the entry is optional and has no value or bound.
-std::optional<Goal> goal_of(const Json& ask, const Rows& rows, const Json& narrowed) {
-  Goal goal{.topic = ask["topic"],
-            .what = filled(ask["what"], narrowed),
-            .unit = ask["unit"],
-            .at_least = ask.contains("at_least")};
-  const auto bound = figure_of(ask[goal.at_least ? "at_least" : "at_most"], rows, narrowed);
-  const auto value = aggregate(ask, rows, narrowed, goal.at_least);
-  if ((!bound || !value) && ask.value("optional", false)) return std::nullopt;
-  goal.asked = bound ? bound->value : 0.0;
+std::optional<Goal> goal_of(const Json& entry, const Rows& rows, const Json& narrowed) {
+  Goal goal{.topic = entry["topic"],
+            .what = filled(entry["what"], narrowed),
+            .unit = entry["unit"],
+            .at_least = entry.contains("at_least")};
+  const auto bound = figure_of(entry[goal.at_least ? "at_least" : "at_most"], rows, narrowed);
+  const auto value = aggregate(entry, rows, narrowed, goal.at_least);
+  if ((!bound || !value) && entry.value("optional", false)) return std::nullopt;
+  goal.bound = bound ? bound->value : 0.0;
   goal.measured = value ? value->value : goal.at_least ? 0.0 : kUnanswered;
   goal.detail = value ? value->from : "no such row";
-  if (bound && !bound->from.empty()) goal.detail += "; asked " + bound->from;
+  if (bound && !bound->from.empty()) goal.detail += "; bound " + bound->from;
   return goal;
 }
 
 }  // namespace
 
-std::vector<Goal> evaluate(const Json& ask, MeasurementCache& measurement_cache) {
-  const Json& measure = ask["measure"];
+std::vector<Goal> evaluate(const Json& entry, MeasurementCache& measurement_cache) {
+  const Json& measure = entry["measure"];
   const Json requests = measure.is_array() ? measure : Json::array({measure});
   std::vector<const Measured*> from;
   std::string fault;
@@ -238,22 +238,23 @@ std::vector<Goal> evaluate(const Json& ask, MeasurementCache& measurement_cache)
     from.push_back(&one);
   }
   if (!fault.empty()) {
-    const bool at_least = ask.contains("at_least");
-    std::string what = ask["what"];
+    const bool at_least = entry.contains("at_least");
+    std::string what = entry["what"];
     std::erase_if(what, [](char c) { return c == '{' || c == '}'; });
-    return {{.topic = ask["topic"],
+    return {{.topic = entry["topic"],
              .what = std::move(what),
-             .unit = ask["unit"],
+             .unit = entry["unit"],
              .at_least = at_least,
              .measured = at_least ? -kUnanswered : kUnanswered,
              .detail = fault}};
   }
   const Rows rows(std::move(from));
   std::vector<Json> groups{Json::object()};
-  if (ask.contains("by")) groups = combinations_of(ask["by"], ask["value"], rows, Json::object());
+  if (entry.contains("by"))
+    groups = combinations_of(entry["by"], entry["value"], rows, Json::object());
   std::vector<Goal> goals;
   for (const Json& narrowed : groups) {
-    if (auto goal = goal_of(ask, rows, narrowed)) goals.push_back(std::move(*goal));
+    if (auto goal = goal_of(entry, rows, narrowed)) goals.push_back(std::move(*goal));
   }
   return goals;
 }

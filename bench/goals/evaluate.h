@@ -13,12 +13,12 @@ struct Goal {
   std::string what{};
   std::string unit{};
   bool at_least = false;
-  double asked = 0.0;
+  double bound = 0.0;
   double measured = 0.0;
-  std::string detail{};  ///< the rows that gave the value
+  std::string detail{};  ///< the rows from which the value was computed
 
   [[nodiscard]] bool holds() const noexcept {
-    return at_least ? measured >= asked : measured <= asked;
+    return at_least ? measured >= bound : measured <= bound;
   }
 };
 
@@ -46,6 +46,6 @@ struct Goal {
 ///
 /// An object may have "divided_by": number. A goal without a value fails. There are no goals if
 /// this machine lacks what is measured. Throws std::runtime_error if an entry is malformed.
-[[nodiscard]] std::vector<Goal> evaluate(const Json& ask, MeasurementCache& measurement_cache);
+[[nodiscard]] std::vector<Goal> evaluate(const Json& entry, MeasurementCache& measurement_cache);
 
 }  // namespace winnow::bench

@@ -32,19 +32,19 @@ bool is_kept(const Json& object, const Json& only) {
   });
 }
 
-void check_entry(const Json& ask) {
-  const std::string topic = ask.at("topic");
+void check_entry(const Json& entry) {
+  const std::string topic = entry.at("topic");
   if (std::find(kTopics.begin(), kTopics.end(), topic) == kTopics.end()) {
     throw std::runtime_error("goals.json: unknown topic " + topic);
   }
   for (const char* member : {"what", "unit", "measure", "value"}) {
-    if (!ask.contains(member)) {
+    if (!entry.contains(member)) {
       throw std::runtime_error(std::string("goals.json: without \"") + member +
-                               "\": " + ask.dump());
+                               "\": " + entry.dump());
     }
   }
-  if (ask.contains("at_most") == ask.contains("at_least")) {
-    throw std::runtime_error("goals.json: one bound, please: " + ask.dump());
+  if (entry.contains("at_most") == entry.contains("at_least")) {
+    throw std::runtime_error("goals.json: exactly one bound is needed: " + entry.dump());
   }
 }
 
@@ -52,20 +52,20 @@ void check_entry(const Json& ask) {
 
 std::vector<Json> parse_goals(std::string_view text) {
   const Json document = Json::parse(text);
-  std::vector<Json> asks;
-  for (const Json& entry : document.at("asks")) {
+  std::vector<Json> entries;
+  for (const Json& entry : document.at("goals")) {
     const Json only = entry.value("only", Json::object());
     for (const Json& object :
          combinations(entry.value("each", Json::array()), document.at("lists"))) {
       if (!is_kept(object, only)) continue;
-      Json ask = entry;
-      ask.erase("each");
-      ask.erase("only");
-      asks.push_back(filled_in(ask, object));
-      check_entry(asks.back());
+      Json expanded = entry;
+      expanded.erase("each");
+      expanded.erase("only");
+      entries.push_back(filled_in(expanded, object));
+      check_entry(entries.back());
     }
   }
-  return asks;
+  return entries;
 }
 
 }  // namespace winnow::bench

@@ -19,7 +19,7 @@ extern const char* const kGoalsJson;
 
 /// Parses a text of this form into single entries:
 ///
-///   {"lists": {"name": [{...}, ...]}, "asks": [{...}, ...]}
+///   {"lists": {"name": [{...}, ...]}, "goals": [{...}, ...]}
 ///
 /// An entry with "each": [SOURCE, ...] is expanded to one entry for each combination of its
 /// sources' objects; a source is a list, or the name of one in "lists". "only": {"member":

@@ -43,8 +43,8 @@ std::size_t frames_of_goal(std::size_t objects) {
   return objects <= 20'000 ? 81U : objects <= 300'000 ? 26U : 8U;
 }
 
-/// Throughput, interleaved. Default: every partition that suits the size, on 1 and 2 threads, on
-/// the active instruction set; "yardstick" adds the yardstick library.
+/// Races partitions, by default every partition without a smaller size limit, on 1 and 2 threads,
+/// on the active instruction set; "yardstick" adds the yardstick.
 void goal_frames(const Json& options, MeasurementCache& /*measurement_cache*/, Measured& measured) {
   declare_frames(measured.results);
   MeasureOptions how{.objects = options.at("objects"), .machine_clock = true};
@@ -58,8 +58,8 @@ void goal_frames(const Json& options, MeasurementCache& /*measurement_cache*/, M
   }
 }
 
-/// Other libraries and partitions, on 1 and 2 threads; each takes at most "seconds", and a frame at
-/// most "frame_seconds".
+/// Races other libraries and partitions, on 1 and 2 threads; each takes at most about "seconds",
+/// and a frame at most about "frame_seconds".
 void goal_beside_peers(const Json& options, MeasurementCache& /*measurement_cache*/,
                        Measured& measured) {
   measured.absent = !has_peers();
@@ -200,7 +200,7 @@ void goal_second_rounds(const Json& options, MeasurementCache& /*measurement_cac
                         Measured& measured) {
   measured.results.declare({"second_rounds",
                             "queries",
-                            "allocations when asked again",
+                            "allocations of repeated queries",
                             {"partition", "set"},
                             {{"allocations", "allocations", "", Better::less}}});
   for (const std::string& partition : testing_partitions()) {
@@ -244,7 +244,7 @@ void goal_pair_events(const Json& options, MeasurementCache& /*measurement_cache
   }
 }
 
-/// Consecutive frames in which few objects move, or move little.
+/// Consecutive frames of a scene in which the same objects move.
 void goal_quiet_frames(const Json& options, MeasurementCache& /*measurement_cache*/,
                        Measured& measured) {
   measured.results.declare({"quiet_frames",
@@ -279,8 +279,8 @@ void goal_worlds(const Json& options, MeasurementCache& /*measurement_cache*/, M
   }
 }
 
-/// Pairs of one kind, and the other libraries. On one thread, and also on two if the pairs do not
-/// fit the caches.
+/// Races winnow and other libraries on pairs of one kind, on one thread; winnow also on two threads
+/// if the pairs do not fit the caches.
 void goal_pairs(const Json& options, MeasurementCache& /*measurement_cache*/, Measured& measured) {
   const std::string name = options.at("kind");
   const PairKind* kind = find_pair_kind(name);
@@ -304,20 +304,19 @@ void goal_errors(const Json& options, MeasurementCache& /*measurement_cache*/, M
   declare_pair_errors(measured.results);
   for (const PairKind& kind : main_pair_kinds()) {
     const auto own = pairs.find(std::string(kind.name));
-    AccuracyOptions asked{
+    AccuracyOptions accuracy{
         .kind = kind,
         .levels = {kLevels.begin(), kLevels.end()},
         .tiers = {options.at("tier") == "robust" ? NarrowTier::robust : NarrowTier::reference},
         .peers = false};
-    asked.set.pairs = own != pairs.end() ? own->second : pairs.at("others");
-    asked.set.ratio = options.at("ratio");
-    if (options.at("judge") == "reference") asked.judge = TruthSource::reference;
-    add_pair_errors(measured.results, asked, false);
+    accuracy.set.pairs = own != pairs.end() ? own->second : pairs.at("others");
+    accuracy.set.ratio = options.at("ratio");
+    if (options.at("judge") == "reference") accuracy.judge = TruthSource::reference;
+    add_pair_errors(measured.results, accuracy, false);
   }
 }
 
-/// Pair queries whose answers were derived by reasoning, from the files of a folder, in both orders
-/// of the pair.
+/// Hard cases, from the files of a folder, with both orders of each pair.
 void goal_hard_cases(const Json& options, MeasurementCache& /*measurement_cache*/,
                      Measured& measured) {
   declare_hard_cases(measured.results);
@@ -362,10 +361,11 @@ void goal_barriers(const Json& options, MeasurementCache& /*measurement_cache*/,
   }
 }
 
-void goal_sweeps(const Json& options, MeasurementCache& /*measurement_cache*/, Measured& measured) {
+void goal_continuous_collision(const Json& options, MeasurementCache& /*measurement_cache*/,
+                               Measured& measured) {
   declare_motion(measured.results);
   for (const int threads : options.at("threads").get<std::vector<int>>()) {
-    add_swept_scene(
+    add_continuous_collision(
         measured.results,
         {.bodies = options.at("bodies"), .fast = options.at("fast"), .threads = threads});
   }
@@ -404,7 +404,7 @@ void goal_flow_frames(const Json& options, MeasurementCache& /*measurement_cache
                       Measured& measured) {
   measured.results.declare({"flow_frames",
                             "pipeline",
-                            "a frame of a flow, and its phases alone",
+                            "a frame of a flow, and its phases measured separately",
                             {"how"},
                             {{"ms", "time", "ms", Better::less}}});
   GranularFlow flow(flow_options({.shape = options.at("shape"), .objects = options.at("objects")}));
@@ -412,14 +412,14 @@ void goal_flow_frames(const Json& options, MeasurementCache& /*measurement_cache
   for (std::size_t i = 0; i < options.at("steps").get<std::size_t>(); ++i) flow.step();
   FlowPhases phases(flow, Execution::serial());
   std::vector<double> frame;
-  std::vector<double> alone;
+  std::vector<double> separate;
   for (std::size_t i = 0; i < options.at("rounds").get<std::size_t>(); ++i) {
     flow.step();
     frame.push_back(flow.times().move + flow.times().narrow);
-    alone.push_back(phases.run().total());
+    separate.push_back(phases.run().total());
   }
   measured.results.add("flow_frames", {{"how", "frame"}, {"ms", to_value(frame)}});
-  measured.results.add("flow_frames", {{"how", "phases"}, {"ms", to_value(alone)}});
+  measured.results.add("flow_frames", {{"how", "phases"}, {"ms", to_value(separate)}});
 }
 
 /// A long granular flow: allocations, energy, and contacts compared with brute force.
@@ -437,42 +437,43 @@ void goal_flow_soak(const Json& options, MeasurementCache& /*measurement_cache*/
 }  // namespace
 
 const Measurer* find_measurer(const std::string& name) {
-  static const std::map<std::string, Measurer> all{{"frames", goal_frames},
-                                                   {"beside_peers", goal_beside_peers},
-                                                   {"cold", goal_cold},
-                                                   {"hosts", goal_hosts},
-                                                   {"filters", goal_filters},
-                                                   {"same_pairs", goal_same_pairs},
-                                                   {"keys", goal_keys},
-                                                   {"limits", goal_limits},
-                                                   {"kernels", goal_kernels},
-                                                   {"advice", goal_advice},
-                                                   {"first_frames", measure_first_frames},
-                                                   {"changes", measure_changes},
-                                                   {"worst_frames", measure_worst_frames},
-                                                   {"queries", goal_queries},
-                                                   {"frusta", goal_frusta},
-                                                   {"second_rounds", goal_second_rounds},
-                                                   {"churn", goal_churn},
-                                                   {"pair_events", goal_pair_events},
-                                                   {"worlds", goal_worlds},
-                                                   {"quiet_frames", goal_quiet_frames},
-                                                   {"pairs", goal_pairs},
-                                                   {"errors", goal_errors},
-                                                   {"hard_cases", goal_hard_cases},
-                                                   {"impacts", goal_impacts},
-                                                   {"features", goal_features},
-                                                   {"sweeps", goal_sweeps},
-                                                   {"barriers", goal_barriers},
-                                                   {"scenes", goal_scenes},
-                                                   {"scene_costs", goal_scene_costs},
-                                                   {"tori", goal_tori},
-                                                   {"mesh_rays", goal_mesh_rays},
-                                                   {"flow_frames", goal_flow_frames},
-                                                   {"flow_soak", goal_flow_soak},
-                                                   {"default_report", measure_default_report},
-                                                   {"lone_report", measure_lone_report},
-                                                   {"killed_report", measure_killed_report}};
+  static const std::map<std::string, Measurer> all{
+      {"frames", goal_frames},
+      {"beside_peers", goal_beside_peers},
+      {"cold", goal_cold},
+      {"hosts", goal_hosts},
+      {"filters", goal_filters},
+      {"same_pairs", goal_same_pairs},
+      {"keys", goal_keys},
+      {"limits", goal_limits},
+      {"kernels", goal_kernels},
+      {"advice", goal_advice},
+      {"first_frames", measure_first_frames},
+      {"changes", measure_changes},
+      {"worst_frames", measure_worst_frames},
+      {"queries", goal_queries},
+      {"frusta", goal_frusta},
+      {"second_rounds", goal_second_rounds},
+      {"churn", goal_churn},
+      {"pair_events", goal_pair_events},
+      {"worlds", goal_worlds},
+      {"quiet_frames", goal_quiet_frames},
+      {"pairs", goal_pairs},
+      {"errors", goal_errors},
+      {"hard_cases", goal_hard_cases},
+      {"impacts", goal_impacts},
+      {"features", goal_features},
+      {"continuous_collision", goal_continuous_collision},
+      {"barriers", goal_barriers},
+      {"scenes", goal_scenes},
+      {"scene_costs", goal_scene_costs},
+      {"tori", goal_tori},
+      {"mesh_rays", goal_mesh_rays},
+      {"flow_frames", goal_flow_frames},
+      {"flow_soak", goal_flow_soak},
+      {"default_report", measure_default_report},
+      {"lone_report", measure_lone_report},
+      {"killed_report", measure_killed_report}};
   const auto at = all.find(name);
   return at == all.end() ? nullptr : &at->second;
 }

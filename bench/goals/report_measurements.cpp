@@ -139,9 +139,10 @@ void measure_killed_report(const Json& /*options*/, MeasurementCache& /*measurem
   const std::pair<bool, const char*> expected[] = {
       {half_way, "it had ended before"},
       {rows > 0, "no rows are left"},
-      {!whole, "it says that it is whole"},
-      {page.find("This report is not complete") != std::string::npos, "its page does not say so"},
-      {trace.points > 0 && trace.wrong.empty(), "its page is not that of its rows"}};
+      {!whole, "it is marked as complete"},
+      {page.find("This report is not complete") != std::string::npos,
+       "its page lacks the note that it is not complete"},
+      {trace.points > 0 && trace.wrong.empty(), "its page does not match its rows"}};
   std::string faults;
   double count = 0.0;
   for (const auto& [holds, fault] : expected) {

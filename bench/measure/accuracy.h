@@ -23,8 +23,8 @@ struct PairError {
   bool beyond_bound = false;  ///< the error exceeds the engine's error bound
   /// |distance - truth| / (size + |truth|); NaN if there is no distance.
   double error = std::numeric_limits<double>::quiet_NaN();
-  /// Angle between the normals; NaN if the true normal is not unique to 0.1 degrees or none is
-  /// given.
+  /// Angle between the normals; NaN if the true normal is not unique to 0.1 degrees, or if the
+  /// engine returns no normal.
   double degrees = std::numeric_limits<double>::quiet_NaN();
 };
 
@@ -44,7 +44,7 @@ struct Accuracy {
   std::size_t wrong = 0;
   /// At level manifold, only overlapping pairs count.
   std::size_t missing = 0;
-  ErrorSpread all{};    ///< errors of distances, negative ones included
+  ErrorSpread all{};    ///< errors of distances and depths
   ErrorSpread apart{};  ///< errors of pairs that do not overlap
   ErrorSpread depth{};  ///< errors of pairs that overlap
   ErrorSpread degrees{};
@@ -68,8 +68,8 @@ struct Accuracy {
 [[nodiscard]] Accuracy judge_engine(NarrowEngine& engine, ContactLevel level, const PairSet& set,
                                     std::span<const PairTruth> truths, std::size_t runs = 3);
 
-/// Default of PairSetOptions::nearest here: the smallest gap or depth of pairs, in radii of the
-/// smaller body.
+/// Value of PairSetOptions::nearest for AccuracyOptions: the smallest gap or depth of pairs, in
+/// radii of the smaller body.
 inline constexpr double kNearestPairs = 1e-6;
 
 /// Pairs of one kind, and the engines to measure on them.
@@ -90,15 +90,16 @@ struct AccuracyAtGap {
 };
 
 struct AccuracyMeasurement {
-  std::vector<Accuracy> engines;      ///< by level, winnow's tiers first
-  std::vector<AccuracyAtGap> by_gap;  ///< per engine from the smallest gap; without touching pairs
+  std::vector<Accuracy> engines;  ///< by level, winnow's tiers first
+  /// By level and engine, then by gap, ascending; pairs that touch exactly are left out.
+  std::vector<AccuracyAtGap> by_gap;
 };
 
 /// Measures all engines. If an engine throws, all its answers count as missing.
 [[nodiscard]] AccuracyMeasurement measure_accuracy(const AccuracyOptions& options);
 
-/// Returns "100 digits", or the name of the tier that replaces it if the tool was built without the
-/// oracle.
+/// Returns "100 digits", or the name of the tier that replaces the oracle if the tool was built
+/// without the oracle.
 [[nodiscard]] std::string judge_name(TruthSource judge);
 
 }  // namespace winnow::bench

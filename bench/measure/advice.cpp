@@ -56,7 +56,7 @@ std::string why(const Partition& partition, const Run& run, double median_ms) {
     return "holds " + std::string(choice.structure.name()) + ", " + std::string(choice.reason) +
            (choice.changes == 0
                 ? ""
-                : ", after " + std::to_string(choice.changes) + " changes of its mind");
+                : ", after " + std::to_string(choice.changes) + " changes of structure");
   }
   const Statistics s = partition.statistics();
   const auto n = static_cast<double>(std::max<std::size_t>(1, s.objects));

@@ -13,12 +13,14 @@ namespace winnow::bench {
 /// One partition in a race on the user's scene.
 struct Advised {
   std::string partition;
-  double first_ms = 0.0;        ///< ms of the frame in which it was built
-  std::vector<double> settled;  ///< ms of the frames after the sixth, or after the first if few
-  double median_ms = 0.0;       ///< of `settled`
-  double times_best = 0.0;      ///< median over the fastest median
-  std::size_t bytes = 0;        ///< bytes held, without results
-  std::string why;              ///< reason in one sentence, from its counters
+  double first_ms = 0.0;  ///< ms of the frame in which it was built
+  /// ms of the frames after the sixth; if these are fewer than three, of the frames after the
+  /// first.
+  std::vector<double> settled;
+  double median_ms = 0.0;   ///< of `settled`
+  double times_best = 0.0;  ///< median over the least median of partitions except AutoPartition
+  std::size_t bytes = 0;    ///< bytes allocated, without results
+  std::string why;          ///< reason in one sentence, from its counters
 };
 
 struct Advice {
@@ -32,16 +34,17 @@ struct Advice {
   std::vector<Advised> ranking;  ///< fastest first
   std::string chosen;            ///< AutoPartition's structure at the end
   std::string reason;
-  bool same_pairs = true;  ///< all found the same pairs
+  bool same_pairs = true;  ///< all partitions found the same pairs
 
   /// Returns the fastest partition other than AutoPartition.
   [[nodiscard]] const Advised& best() const;
-  /// Returns a line of C++ that makes it.
+  /// Returns a line of C++ that creates the best partition.
   [[nodiscard]] std::string code() const;
 };
 
-/// Races the partitions and AutoPartition on `frames` frames of a source, interleaved. Throws
-/// std::invalid_argument if `partitions` has no partition other than AutoPartition.
+/// Races the named partitions on `frames` frames of a source, interleaved. `features`, `chosen` and
+/// `reason` are set only if AutoPartition is among the partitions. Throws std::invalid_argument if
+/// `partitions` has no partition other than AutoPartition.
 [[nodiscard]] Advice advise(FrameSource& source, const std::vector<std::string>& partitions,
                             std::size_t frames, int threads);
 

@@ -59,8 +59,8 @@ struct BoxCluster {
 
 /// A cluster of bodies.
 struct BodyCluster {
-  BodyCluster(Transport& transport, const Execution& execution, ContactLevel asked)
-      : cluster(transport, pool, {.scene = {.execution = execution}}), level(asked) {}
+  BodyCluster(Transport& transport, const Execution& execution, ContactLevel contact_level)
+      : cluster(transport, pool, {.scene = {.execution = execution}}), level(contact_level) {}
 
   /// Adds the shapes of new bodies. Every process adds all of them, in the order of rows.
   void see(std::span<const Aabb> boxes) {
@@ -122,7 +122,7 @@ class ClusterEngine {
     ranks_.see(boxes);
     synchronize();
     const Stopwatch clock;
-    tell();
+    apply_changes();
     ClusterFrame frame;
     frame.update_ms = clock.ms();
     require_ok(ranks_.find(), "pairs");
@@ -174,7 +174,7 @@ class ClusterEngine {
     require_ok(transport_.reduce(std::span(&nothing, 1), {}), "start of a frame");
   }
 
-  void tell() {
+  void apply_changes() {
     for (std::size_t r = 0; r < keys_.size(); ++r) {
       if (keys_[r].empty()) continue;
       require_ok(ranks_.move(rank_of(r), keys_[r], boxes_[r]), "move");

@@ -26,7 +26,7 @@ struct ClusterFrame {
 struct ClusterRun {
   std::uint32_t ranks = 1;
   std::vector<ClusterFrame> frames;
-  std::uint64_t bytes = 0;  ///< held by all ranks at the end
+  std::uint64_t bytes = 0;  ///< allocated by all ranks at the end
 
   /// Median of the frames after the first, or the first frame's time if it is the only one.
   [[nodiscard]] double median_ms() const;

@@ -40,8 +40,9 @@ struct ColdRace {
 
 /// Times first frames of new partitions, `rounds` per partition and kind of memory: all boxes are
 /// inserted, the structure is built and all pairs are found. Reserved frames have room for these
-/// boxes and pairs. The partitions take turns. If `yardstick` is set, the yardstick takes part, and
-/// also repeats its first frame. Throws std::runtime_error if the pairs differ.
+/// boxes and pairs. The partitions take turns. If `yardstick` is set, one yardstick repeats its
+/// first frame, which allocates nothing after the first round. Throws std::runtime_error if the
+/// pairs differ.
 [[nodiscard]] ColdRace race_cold_frames(std::span<const Aabb> boxes,
                                         const std::vector<std::string>& partitions, int threads,
                                         std::size_t rounds = 7, bool yardstick = true);

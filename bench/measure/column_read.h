@@ -4,8 +4,8 @@
 
 namespace winnow::bench {
 
-/// Sums six columns of `count` floats, which are 64-byte aligned and a multiple of 32 long, with
-/// the widest loads of the machine: the cost of reading every box once.
+/// Sums six columns of `count` floats with the widest loads of the machine. Its time is the cost of
+/// reading every box once. The columns are 64-byte aligned, and `count` is a multiple of 32.
 [[nodiscard]] float read_columns(const float* const* columns, std::size_t count) noexcept;
 
 }  // namespace winnow::bench

@@ -54,8 +54,7 @@ Comparison compare_each(std::size_t questions, CompareOne&& compare_one) {
   for (std::size_t i = 0; i < questions; ++i) {
     const Finding finding = compare_one(i);
     if (!finding.wrong.empty()) {
-      if (result.wrong++ == 0)
-        result.first = "question " + std::to_string(i) + ": " + finding.wrong;
+      if (result.wrong++ == 0) result.first = "query " + std::to_string(i) + ": " + finding.wrong;
     } else if (finding.undecided) {
       ++result.undecided;
     }

@@ -22,7 +22,7 @@ class PingPong {
       ball_.store(ball + 1, std::memory_order_release);
     }
   }
-  /// Returns the nanoseconds of one way, in one try.
+  /// Returns the mean nanoseconds of one direction of a round trip, in one try.
   double serve(int serve) noexcept {
     const Stopwatch clock;
     for (int i = 0; i < kThere; ++i) {

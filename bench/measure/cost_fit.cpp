@@ -72,7 +72,7 @@ struct Equation {
 /// Finds nonnegative constants with the least sum of squared weighted errors.
 template <std::size_t N>
 void solve(const std::vector<Equation<N>>& equations, StructureCosts& costs) {
-  constexpr int kSweeps = 20'000;
+  constexpr int kIterations = 20'000;
   if (equations.empty()) return;
   std::array<std::array<double, N>, N> square{};
   std::array<double, N> right{};
@@ -86,7 +86,7 @@ void solve(const std::vector<Equation<N>>& equations, StructureCosts& costs) {
     }
   }
   std::array<double, N> x{};
-  for (int sweep = 0; sweep < kSweeps; ++sweep) {
+  for (int iteration = 0; iteration < kIterations; ++iteration) {
     for (std::size_t i = 0; i < N; ++i) {
       if (!(square[i][i] > 0.0)) continue;
       const double sum = std::inner_product(x.begin(), x.end(), square[i].begin(), 0.0);
@@ -258,8 +258,8 @@ FittedCosts fit_costs(const std::vector<CostSample>& samples) {
       // The first frame consists of a build and a frame in which all objects count as changed.
       FrameWork all = samples[i].work;
       all.changed = samples[i].features.objects;
-      const auto asked = frame_terms(samples[i].features, all, samples[i].pairs);
-      const double build = std::max(0.0, samples[i].first[k] - sum_of(asked, costs));
+      const auto terms = frame_terms(samples[i].features, all, samples[i].pairs);
+      const double build = std::max(0.0, samples[i].first[k] - sum_of(terms, costs));
       builds.push_back({build_terms(samples[i].features), build, 1.0 / samples[i].first[k]});
     }
     solve(builds, costs);

@@ -18,7 +18,7 @@ struct CostSample {
   SceneFeatures features;
   FrameWork work;
   double pairs = 0.0;         ///< per frame
-  std::vector<double> frame;  ///< ns, by candidate: mean of the median and the mean frame
+  std::vector<double> frame;  ///< ns, by candidate: average of the median and the mean of frames
   std::vector<double> first;  ///< ns, by candidate: the frame in which it was built
 };
 
@@ -38,8 +38,9 @@ struct FittedCosts {
 
 /// Fits constants by nonnegative least squares of the relative errors (Lawson and Hanson, "Solving
 /// Least Squares Problems", 1974, chapter 23; here by coordinate descent), then improves the
-/// choices by a search whose loss is mainly the time lost by wrong choices. Errors of a candidate
-/// matter less the slower it is than the best, as it only has to be recognised as slower.
+/// choices by a search whose loss is mainly the time lost by wrong choices. The slower a candidate
+/// is relative to the best, the less its error counts: its prediction must only exceed the
+/// prediction for the best.
 [[nodiscard]] FittedCosts fit_costs(const std::vector<CostSample>& samples);
 
 /// Returns the constants that the library uses now.

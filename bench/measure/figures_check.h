@@ -17,9 +17,10 @@ struct FigureCheck {
 };
 
 /// Checks each scene and number of objects of a CSV table with a header line; it must have the
-/// columns scene, objects, threads, kind and median_ms. Only rows with one thread count. The choice
-/// depends on counts only, so it equals the choice on the machine of the table. Throws
-/// ArgumentError with the line number if the table is malformed.
+/// columns scene, objects, threads, kind and median_ms. Rows with more than 1 thread, and rows of
+/// structures that AutoPartition cannot choose, are ignored. The choice depends only on counts, so
+/// it equals the choice on the machine of the table. Throws ArgumentError with the line number if
+/// the table is malformed.
 [[nodiscard]] std::vector<FigureCheck> check_figures(const std::string& path, std::size_t frames);
 
 }  // namespace winnow::bench

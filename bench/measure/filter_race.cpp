@@ -46,7 +46,7 @@ ObjectFilter filter_of(std::size_t setting, std::size_t object, const Aabb& box,
 
 /// Returns the filter of ray and box queries: one that excludes the few, or the filter of one of
 /// the objects.
-Filter asking(std::size_t setting) {
+Filter query_filter(std::size_t setting) {
   const auto as = [](std::uint32_t layers, std::uint32_t mask) {
     Filter filter;
     filter.layers = layers;
@@ -92,7 +92,7 @@ class FilteredPartition {
   }
 
   void set_filters(std::size_t setting) {
-    filter_ = asking(setting);
+    filter_ = query_filter(setting);
     filters_ = filters_for(setting, boxes_);
     other_filters_ = filters_for(setting, other_boxes_);
     need(partition_.set_filter(keys_, filters_), "filters");
@@ -105,7 +105,7 @@ class FilteredPartition {
     if (question_ != all_move && question_ != few_move) need(partition_.refresh(), "refresh");
     if (question_ == another) need(other_.refresh(), "refresh");
     const ThreadStopwatch clock;
-    ask();
+    run_query();
     return clock.ms();
   }
 
@@ -152,13 +152,13 @@ class FilteredPartition {
     need(partition_.update(keys, moved), "objects");
   }
 
-  void ask() {
+  void run_query() {
     switch (question_) {
       case another:
         return need(partition_.pairs_with(other_, pairs_), "pairs");
       case rays:
         hits_.clear();
-        for (std::uint32_t i = 0; i < asked(kRays); ++i) {
+        for (std::uint32_t i = 0; i < query_count(kRays); ++i) {
           Hit hit;
           need(partition_.closest(Cast(ray(i)), hit, filter_), "rays");
           hits_.emplace_back(i, hit.key.id);
@@ -171,7 +171,7 @@ class FilteredPartition {
     }
   }
 
-  [[nodiscard]] std::uint32_t asked(std::size_t most) const {
+  [[nodiscard]] std::uint32_t query_count(std::size_t most) const {
     return static_cast<std::uint32_t>(std::min(most, boxes_.size()));
   }
   /// Returns a ray from a corner of one object towards another.
@@ -184,7 +184,7 @@ class FilteredPartition {
     return ray;
   }
   [[nodiscard]] std::vector<Aabb> regions() const {
-    std::vector<Aabb> all(other_boxes_.begin(), other_boxes_.begin() + asked(kBoxes));
+    std::vector<Aabb> all(other_boxes_.begin(), other_boxes_.begin() + query_count(kBoxes));
     for (Aabb& box : all) {
       for (std::size_t a = 0; a < 3; ++a) box.max[a] = box.min[a] + kBoxEdges * edge_;
     }
@@ -220,7 +220,7 @@ FoundPairs FilteredPartition::truth() const {
   PairBuffer pairs;
   FoundPairs found;
   if (question_ == rays) {
-    for (std::uint32_t i = 0; i < asked(kRays); ++i) {
+    for (std::uint32_t i = 0; i < query_count(kRays); ++i) {
       HitBuffer hits;
       need(all.all(Cast(ray(i)), hits), "rays");
       std::uint32_t first = kNoObject;
@@ -253,15 +253,16 @@ FoundPairs FilteredPartition::truth() const {
   return found;
 }
 
-/// Counts the results that only one of the two has.
+/// Counts the results that are in only one of the two lists.
 std::size_t differences(const FoundPairs& a, const FoundPairs& b) {
   FoundPairs apart;
   std::ranges::set_symmetric_difference(a, b, std::back_inserter(apart));
   return apart.size();
 }
 
-/// Returns milliseconds by contestant and round. A different one starts each round, since the first
-/// runs with caches and branch predictors as left by the others.
+/// Returns milliseconds by contestant and round. The contestant that starts a round changes from
+/// round to round, because it finds other data in the caches and branch predictors than the
+/// contestants after it.
 std::vector<std::vector<double>> time_interleaved(
     const std::vector<std::unique_ptr<FilteredPartition>>& all, FrameSource& source,
     std::size_t rounds) {

@@ -9,7 +9,7 @@
 
 namespace winnow::bench {
 
-/// A purpose for which bytes are held.
+/// A member of Footprint, which counts the bytes allocated for one purpose.
 struct Purpose {
   const char* name;   ///< in JSON
   const char* label;  ///< in tables

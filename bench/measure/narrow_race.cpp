@@ -37,10 +37,11 @@ class PairEntry {
     const double ms = timed(timing_.threads, arenas, [&] { engine_.run(timing_.level, part); });
     timing_.recomputed = engine_.recomputed();
     compare(part, expected);
-    const double wanted = options.turn_ms * static_cast<double>(part.size()) / std::max(ms, 1e-3);
+    const double pairs_per_turn =
+        options.turn_ms * static_cast<double>(part.size()) / std::max(ms, 1e-3);
     const std::size_t least = std::min(options.smallest_part, all.size());
-    part_ = std::clamp(static_cast<std::size_t>(wanted), least, all.size());
-    passes_ = std::max<std::size_t>(1, static_cast<std::size_t>(wanted) / part_);
+    part_ = std::clamp(static_cast<std::size_t>(pairs_per_turn), least, all.size());
+    passes_ = std::max<std::size_t>(1, static_cast<std::size_t>(pairs_per_turn) / part_);
   }
 
   /// Times one turn and returns nanoseconds per pair.

@@ -60,10 +60,10 @@ struct NarrowRaceOptions {
   std::size_t compared = 8192;
 };
 
-/// Runs all contenders that support it on the pairs of a set at a level: once to compare verdicts
-/// with the first one's, then in rounds in which they take turns. On one thread the time is the
-/// thread's CPU time, which other load on the machine hardly affects; on several it is wall-clock
-/// time. The engines must have been started with the set.
+/// Runs all contenders that support the level on the pairs of a set: once to compare their verdicts
+/// with the verdicts of the first contender, then in rounds in which they take turns. On one thread
+/// the time is the thread's CPU time, which other load on the machine hardly affects; on several it
+/// is wall-clock time. The engines must have been started with the set.
 [[nodiscard]] std::vector<NarrowTiming> race_pairs(const PairSet& set, ContactLevel level,
                                                    std::span<NarrowContender> contenders,
                                                    const NarrowRaceOptions& options);
@@ -89,7 +89,7 @@ struct NarrowMeasurement {
   std::vector<NarrowTiming> timings;
   double machine_ms = 0.0;  ///< of the MachineClock, interleaved with the race
 
-  /// Returns null if there is none.
+  /// Returns null if no engine of this tier was measured at this level on this number of threads.
   [[nodiscard]] const NarrowTiming* find(NarrowTier tier, ContactLevel level,
                                          int threads = 1) const noexcept;
   /// Returns false for systematic errors: verdicts that differ in more than 1 of 100 pairs, depths

@@ -21,7 +21,7 @@ namespace winnow::bench {
 namespace {
 
 constexpr std::size_t kRounds = 9;
-/// Untimed rounds before these, in which all buffers reach their sizes.
+/// Untimed rounds before the timed ones, in which all buffers reach their sizes.
 constexpr std::size_t kSizingRounds = 2;
 
 template <typename Work>
@@ -36,7 +36,7 @@ double bytes_of(const Partition& partition) {
   return static_cast<double>(footprint.total().reserved - footprint.results.reserved);
 }
 
-/// Replaces a random object `replacements` times; finds pairs each time a tenth of the objects has
+/// Replaces `replacements` times a random object; finds pairs each time a tenth of the objects has
 /// been replaced.
 void churn(Partition& partition, std::vector<Key>& keys, std::vector<Aabb>& boxes,
            std::size_t replacements, PairBuffer& pairs) {

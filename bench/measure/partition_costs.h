@@ -10,10 +10,10 @@ namespace winnow::bench {
 
 // Costs of a partition over time, on one thread; on `uniform` unless a scene is named.
 
-/// Replaces random objects by `operations` / 2 removals and as many insertions; finds pairs after
-/// every tenth of the objects. Returns the ratios of this partition to a new one with the same
-/// objects: time of all "self pairs" without incremental data, time of closest hits of single
-/// "rays", and "bytes" without results.
+/// Replaces random objects by `operations` / 2 removals and as many insertions, and finds pairs
+/// each time a tenth of the objects has been replaced. Returns the ratios of this partition to a
+/// new one with the same objects: time of all "self pairs" without incremental data, time of
+/// closest hits of single "rays", and "bytes" without results.
 [[nodiscard]] std::vector<std::pair<std::string_view, double>> measure_churn(
     std::string_view partition, std::size_t objects, std::size_t operations);
 

@@ -83,13 +83,13 @@ std::vector<SecondRound> measure_second_rounds(std::string_view partition, std::
   engine.start(scene->boxes());
   std::vector<SecondRound> rounds;
   for (const QuerySet& set : make_query_sets(scene->boxes(), 2000, 1)) {
-    for (const QueryMode asking : {QueryMode::single, QueryMode::batch}) {
-      if (!engine.takes(set, asking)) continue;
+    for (const QueryMode mode : {QueryMode::single, QueryMode::batch}) {
+      if (!engine.takes(set, mode)) continue;
       const std::size_t count = std::min(set.size(), engine.most_questions());
-      (void)engine.run(set, asking, count);
+      (void)engine.run(set, mode, count);
       const std::size_t before = engine.memory().allocations();
-      (void)engine.run(set, asking, count);
-      rounds.push_back({set.name + (asking == QueryMode::single ? "" : ", as a batch"),
+      (void)engine.run(set, mode, count);
+      rounds.push_back({set.name + (mode == QueryMode::single ? "" : ", as a batch"),
                         engine.memory().allocations() - before});
     }
   }

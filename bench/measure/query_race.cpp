@@ -44,11 +44,11 @@ class SetRace {
           const QueryRaceOptions& options, Arenas& arenas)
       : boxes_(boxes), set_(set), options_(options), arenas_(arenas) {
     for (QueryContender& contender : contenders) {
-      for (const QueryMode asking : {QueryMode::single, QueryMode::batch}) {
-        if (!contender.engine->takes(set, asking)) continue;
+      for (const QueryMode mode : {QueryMode::single, QueryMode::batch}) {
+        if (!contender.engine->takes(set, mode)) continue;
         QueryRun run{.engine = contender.engine->name(),
                      .set = set.name,
-                     .asking = asking,
+                     .mode = mode,
                      .threads = options.threads,
                      .questions = std::min(set.size(), contender.engine->most_questions())};
         entries_.push_back({contender.engine.get(), contender.in_float, std::move(run)});
@@ -62,7 +62,7 @@ class SetRace {
     std::optional<QueryResults> expected;
     for (SetEntry& entry : entries_) {
       try {
-        QueryResults got = entry.engine->answers(set_, entry.run.asking, entry.run.questions);
+        QueryResults got = entry.engine->answers(set_, entry.run.mode, entry.run.questions);
         entry.run.fingerprint = fingerprint_of_answers(set_, got);
         if (expected) {
           entry.run.comparison = entry.in_float ? compare_in_float(judge, set_, *expected, got)
@@ -83,9 +83,9 @@ class SetRace {
         if (!entry.run.refusal.empty()) continue;
         // Warms the caches, which the previous turn has filled with other data, by a few queries.
         const std::size_t few = (entry.run.questions + kWarming - 1) / kWarming;
-        (void)entry.engine->run(set_, entry.run.asking, few);
+        (void)entry.engine->run(set_, entry.run.mode, few);
         entry.run.ms.push_back(timed(options_.threads, arenas_, [&] {
-          entry.run.found = entry.engine->run(set_, entry.run.asking, entry.run.questions);
+          entry.run.found = entry.engine->run(set_, entry.run.mode, entry.run.questions);
         }));
       }
     }

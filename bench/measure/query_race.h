@@ -24,7 +24,7 @@ struct QueryContender {
 struct QueryRun {
   std::string engine;
   std::string set;
-  QueryMode asking = QueryMode::single;
+  QueryMode mode = QueryMode::single;
   int threads = 1;
   std::size_t questions = 0;
   std::uint64_t found = 0;  ///< number of objects, over all queries
@@ -43,8 +43,8 @@ struct QueryRun {
 struct QueryRaceOptions {
   std::size_t rounds = 5;
   int threads = 1;
-  /// Number of queries per set that are checked by testing every box, for the first engine; 0:
-  /// none.
+  /// Number of queries per set whose results by the first engine are compared with a test of every
+  /// box.
   std::size_t judged = 4;
   MachineClock* clock = nullptr;  ///< ticks before each set of queries
 };

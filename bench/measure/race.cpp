@@ -137,8 +137,8 @@ std::vector<Run> race(FrameSource& source, std::vector<Contender>& contenders,
   FrameBlocks blocks(source);
   for (std::size_t done = 0; done < options.frames;) {
     if (options.clock != nullptr) options.clock->tick();
-    const std::size_t wanted = done == 0 ? 1 : std::min(options.block, options.frames - done);
-    const std::vector<Frame>& frames = blocks.next(wanted);
+    const std::size_t requested = done == 0 ? 1 : std::min(options.block, options.frames - done);
+    const std::vector<Frame>& frames = blocks.next(requested);
     for (std::size_t c = 0; c < contenders.size(); ++c) {
       IsaGuard::choose(contenders[c].isa);
       arenas.run(contenders[c].threads, [&] {
@@ -150,7 +150,7 @@ std::vector<Run> race(FrameSource& source, std::vector<Contender>& contenders,
       });
     }
     done += frames.size();
-    if (frames.size() < wanted) break;
+    if (frames.size() < requested) break;
   }
   for (std::size_t c = 0; c < contenders.size(); ++c) runs[c].bytes = contenders[c].engine->bytes();
   return runs;
@@ -171,14 +171,14 @@ bool all_agree(const std::vector<Run>& runs) noexcept {
 
 namespace {
 
-/// Returns the reason why a library is left out of a race; empty if it takes part.
+/// Returns the reason why a library is left out of a race; empty if it is not left out.
 std::string why_skipped(const Engine& engine, const MeasureOptions& options,
                         const Measurement& result) {
   if (result.objects <= engine.largest() || options.bounds.any()) return {};
   return engine.name() + " (more than " + grouped(engine.largest()) + " objects)";
 }
 
-/// Adds the other libraries. Serial ones take part only once.
+/// Adds the other libraries. Serial ones are added only once, for all numbers of threads.
 void add_peers(const MeasureOptions& options, std::vector<Contender>& contenders,
                Measurement& result) {
   for (const int threads : options.threads) {

@@ -36,7 +36,8 @@ struct Run {
   std::vector<double> update_ms;
   std::vector<PairSummary> pairs;
   std::vector<std::size_t> changed;  ///< number of changed boxes; 0 for the first frame
-  /// Milliseconds after which it gave up the frame after these; 0 if it gave up none.
+  /// Milliseconds after which the engine gave up the frame after the last entry; 0 if it gave up
+  /// none.
   double gave_up_ms = 0.0;
   std::size_t bytes = 0;
 
@@ -47,7 +48,7 @@ struct Run {
   [[nodiscard]] double median_update_ms() const;
   [[nodiscard]] double pairs_a_frame() const;
   [[nodiscard]] double reported_a_frame() const;
-  /// Compares the frames that both have finished.
+  /// Compares the frames that both runs have finished.
   [[nodiscard]] bool same_pairs(const Run& other) const noexcept;
 };
 
@@ -97,7 +98,7 @@ struct MeasureOptions {
   bool reference = false;   ///< also the reference sweep, as the reference for pairs
   bool machine_clock = false;
   std::size_t frames = 0;  ///< including the first; 0: chosen by the number of objects
-  TimeBounds bounds{};     ///< if any is set, libraries too slow for the size take part as well
+  TimeBounds bounds{};     ///< if any is set, libraries too slow for the size are measured as well
 };
 
 struct Measurement {
@@ -106,7 +107,7 @@ struct Measurement {
   bool grows = false;                ///< objects may be added from frame to frame
   std::vector<Run> runs;             ///< partitions, then peers, then the reference
   std::size_t partition_runs = 0;    ///< number of partitions, at the front of `runs`
-  std::size_t peer_runs = 0;         ///< number of other libraries after these, the yardstick last
+  std::size_t peer_runs = 0;         ///< other libraries, behind the partitions; the yardstick last
   std::vector<std::string> skipped;  ///< libraries too slow for the size
   double machine_ms = 0.0;           ///< of the MachineClock, interleaved with the race
 

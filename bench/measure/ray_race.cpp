@@ -91,15 +91,16 @@ RayMeasurement measure_rays(const RayRaceOptions& options) {
   MachineClock clock(options.machine_clock);
   clock.tick();
   Arenas arenas(1);
-  for (const RayQueryType want : {RayQueryType::closest, RayQueryType::any, RayQueryType::all}) {
-    for (const QueryMode asking : {QueryMode::single, QueryMode::batch}) {
+  for (const RayQueryType query_type :
+       {RayQueryType::closest, RayQueryType::any, RayQueryType::all}) {
+    for (const QueryMode mode : {QueryMode::single, QueryMode::batch}) {
       auto ms = run_interleaved(engines.size(), options.rounds, 1, [&](std::size_t, std::size_t i) {
         engines[i]->take(rays);
-        return timed(1, arenas, [&] { engines[i]->run(want, asking); });
+        return timed(1, arenas, [&] { engines[i]->run(query_type, mode); });
       });
       const std::vector<double> expected = engines.front()->hits();
       for (std::size_t i = 0; i < engines.size(); ++i) {
-        RayTiming timing{.engine = engines[i]->name(), .want = want, .asking = asking};
+        RayTiming timing{.engine = engines[i]->name(), .query_type = query_type, .mode = mode};
         for (const double one : ms[i]) {
           timing.ns.push_back(1e6 * one / static_cast<double>(rays.size()));
         }

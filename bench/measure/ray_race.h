@@ -26,8 +26,8 @@ struct RayRaceOptions {
 /// Results of one engine for one kind of ray query, single or batched.
 struct RayTiming {
   std::string engine;
-  RayQueryType want = RayQueryType::closest;
-  QueryMode asking = QueryMode::single;
+  RayQueryType query_type = RayQueryType::closest;
+  QueryMode mode = QueryMode::single;
   /// ns per ray, one entry per round.
   std::vector<double> ns{};
   /// Rays with a hit, and rays whose result differs from winnow's: one of the two has no hit, or t

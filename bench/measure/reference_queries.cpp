@@ -43,10 +43,10 @@ struct Line {
   double max_t;
 };
 
-template <typename Sweep>
-Line line_of(const Sweep& sweep, const Double3& origin) {
-  return {origin, sweep.direction.template cast<double>(), static_cast<double>(sweep.min_t),
-          static_cast<double>(sweep.max_t)};
+template <typename Moving>
+Line line_of(const Moving& moving, const Double3& origin) {
+  return {origin, moving.direction.template cast<double>(), static_cast<double>(moving.min_t),
+          static_cast<double>(moving.max_t)};
 }
 
 /// The interval of a line inside of a box: computed, surely inside, and possibly inside.

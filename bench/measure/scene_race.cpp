@@ -122,13 +122,13 @@ PipelineMeasurement measure_pipeline(const PipelineMeasureOptions& options) {
   std::vector<SceneContender> contenders;
   for (const int threads : options.threads) {
     contenders.push_back(
-        {make_winnow_scene(
-             threads, {.carry_over = options.resting ? kCarryOver : 0.0, .level = options.level}),
+        {make_winnow_scene(threads, {.cache_tolerance = options.resting ? kCacheTolerance : 0.0,
+                                     .level = options.level}),
          threads});
   }
   if (options.peers) {
     for (std::unique_ptr<SceneEngine>& peer : make_scene_peers()) {
-      if (options.resting && !peer->carries_over()) continue;
+      if (options.resting && !peer->caches_contacts()) continue;
       contenders.push_back({std::move(peer), 1});
     }
   }
@@ -148,10 +148,11 @@ std::vector<SceneCost> measure_scene_costs(const SceneCostOptions& options) {
   std::vector<SceneCost> costs;
   std::vector<SceneContender> contenders;
   for (const ContactLevel level : {ContactLevel::distance, ContactLevel::manifold}) {
-    for (const double margin : {0.0, kMargin}) {
-      costs.push_back({.level = level, .margin = margin, .timing = {}});
-      contenders.push_back({make_winnow_scene(options.threads, {.level = level, .margin = margin}),
-                            options.threads});
+    for (const double contact_margin : {0.0, kMargin}) {
+      costs.push_back({.level = level, .contact_margin = contact_margin, .timing = {}});
+      contenders.push_back(
+          {make_winnow_scene(options.threads, {.level = level, .contact_margin = contact_margin}),
+           options.threads});
     }
   }
   std::vector<SceneTiming> timings = race_scene(*set, kMoving, contenders, options.frames);

@@ -25,10 +25,10 @@ struct SceneTiming {
   int threads = 1;
   std::vector<double> ms{};  ///< ms per frame
   SceneFinds finds{};        ///< of the last frame
-  std::size_t bytes = 0;     ///< held after the last frame
+  std::size_t bytes = 0;     ///< allocated after the last frame
 };
 
-/// Runs all contenders on the same frames in turns; two further frames before them are not timed.
+/// Runs all contenders on the same frames in turns; two frames before the timed ones are not timed.
 /// On one thread the time is CPU time of the thread, on several wall-clock time.
 [[nodiscard]] std::vector<SceneTiming> race_scene(const BodySet& set, const PoseNoise& by,
                                                   std::span<SceneContender> contenders,
@@ -39,7 +39,7 @@ struct MeshTiming {
   std::string engine;
   std::vector<double> build_ms{};
   double bytes_per_triangle = 0.0;
-  /// By torus_poses().
+  /// Times, pairs and differences for each of torus_poses().
   std::vector<double> collide_ms[4]{};
   std::size_t pairs[4]{};
   /// Pairs that only the first engine or only this one found.
@@ -52,7 +52,7 @@ struct MeshTiming {
 /// Options of a race on a scene of the whole pipeline.
 struct PipelineMeasureOptions {
   std::string scene = "pile";  ///< pile, terrain or balls
-  bool resting = false;        ///< bodies rest, and winnow carries contacts over
+  bool resting = false;        ///< bodies rest, and winnow caches contacts
   ContactLevel level = ContactLevel::manifold;
   std::vector<int> threads{1, 2};
   bool peers = true;
@@ -76,7 +76,8 @@ struct PipelineMeasurement {
 
 [[nodiscard]] PipelineMeasurement measure_pipeline(const PipelineMeasureOptions& options);
 
-/// Options for the cost of a scene's contacts by level and margin, with bodies that move a little.
+/// Options for the cost of a scene's contacts by level and contact margin, with bodies that move a
+/// little.
 struct SceneCostOptions {
   std::string scene = "balls";
   int threads = 1;
@@ -87,7 +88,7 @@ struct SceneCostOptions {
 
 struct SceneCost {
   ContactLevel level{};
-  double margin = 0.0;  ///< 0, then a fiftieth of a body's size, for each level
+  double contact_margin = 0.0;  ///< 0, then a fiftieth of a body's size, for each level
   SceneTiming timing;
 };
 

@@ -27,7 +27,7 @@ class Contestant {
              Volume volume, float margin = 0.0F)
       : partition_(make_named(
             race.partition,
-            {.execution = Execution::serial(), .volume = volume, .margin = {.share = margin}})),
+            {.execution = Execution::serial(), .volume = volume, .fat_margin = {.share = margin}})),
         margin_(margin) {
     row.volume = std::move(name);
     const auto volumes = std::make_shared<std::vector<V>>();
@@ -74,18 +74,18 @@ void Contestant::run(const Solids& solids, NarrowPhase& narrow, NarrowResult& re
   need(partition_.self_pairs(pairs_), "pairs");
   const double broad_ms = broad_clock.ms();
   // Keys are given in order, so ids are the indices of the objects.
-  std::vector<BodyPair> asked;
-  asked.reserve(pairs_.size());
-  for (const Pair& pair : pairs_) asked.push_back({pair.first, pair.second});
+  std::vector<BodyPair> candidates;
+  candidates.reserve(pairs_.size());
+  for (const Pair& pair : pairs_) candidates.push_back({pair.first, pair.second});
   const ThreadStopwatch narrow_clock;
-  need(narrow.collide(solids.shapes(), solids.bodies(), asked, {.level = ContactLevel::boolean},
-                      result),
+  need(narrow.collide(solids.shapes(), solids.bodies(), candidates,
+                      {.level = ContactLevel::boolean}, result),
        "pairs");
   const double narrow_ms = narrow_clock.ms();
   overlapping.clear();
-  for (std::size_t i = 0; i < asked.size(); ++i) {
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
     if (!result.overlaps(i)) continue;
-    const BodyPair& pair = asked[result.pair_of(i)];
+    const BodyPair& pair = candidates[result.pair_of(i)];
     overlapping.push_back(std::uint64_t{std::min(pair.a, pair.b)} << 32U |
                           std::max(pair.a, pair.b));
   }
@@ -94,7 +94,7 @@ void Contestant::run(const Solids& solids, NarrowPhase& narrow, NarrowResult& re
   row.make.push_back(make_ms);
   row.broad.push_back(broad_ms);
   row.narrow.push_back(narrow_ms);
-  row.reported += asked.size();
+  row.reported += candidates.size();
   const Footprint bytes = partition_.footprint();
   row.bytes_per_object =
       static_cast<double>(bytes.total().reserved) / static_cast<double>(solids.size());
@@ -204,7 +204,7 @@ constexpr std::array<std::string_view, 8> kVolumePartitions{
     "BoundsNSquared", "SweepAndPrune", "FlatGrid",  "HierarchicalGrid",
     "LooseOctree",    "LooseQuadtree", "LinearBvh", "StaticBvh"};
 
-// A fast and a slow movement; margins are useful for the slow one.
+// A fast and a slow movement per frame, in mean edges; fat margins are useful for the slow one.
 constexpr double kFast = 0.1;
 constexpr double kSlow = 0.002;
 

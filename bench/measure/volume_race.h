@@ -44,12 +44,13 @@ struct VolumeRaceOptions {
   std::string partition = "LinearBvh";
   std::size_t frames = 9;  ///< timed frames; one untimed frame precedes them
   double step = 0.1;       ///< movement of an object per frame, in mean edges
-  /// If given, the frames of this recording are used instead; the solids are made of its first one.
+  /// If given, the frames of this recording are used instead; the solids were made of its first
+  /// frame.
   std::span<const std::vector<Aabb>> recorded{};
 };
 
-/// Races all volumes, and margins of 5, 10, 20 and 50 % around boxes, in turns over the same
-/// frames. Throws std::invalid_argument if the partition supports no volumes.
+/// Races all volumes, and boxes with fat margins of 5, 10, 20 and 50 % of their longest edges, in
+/// turns over the same frames. Throws std::invalid_argument if the partition supports no volumes.
 [[nodiscard]] std::vector<VolumeRow> race_volumes(Solids solids, const VolumeRaceOptions& options);
 
 /// Returns the nanoseconds of an exact pair test from which on the row's volume is faster than
@@ -65,8 +66,8 @@ struct VolumeSetting {
   std::span<const std::vector<Aabb>> recorded{};  ///< frames to follow, if any
 
   /// Returns how many frames can be timed.
-  [[nodiscard]] std::size_t frames(std::size_t wanted) const noexcept {
-    return recorded.size() < 2 ? wanted : std::min(wanted, recorded.size() - 1);
+  [[nodiscard]] std::size_t frames(std::size_t requested) const noexcept {
+    return recorded.size() < 2 ? requested : std::min(requested, recorded.size() - 1);
   }
 };
 
@@ -77,7 +78,7 @@ struct VolumeSettingOptions {
   std::uint64_t seed = 1;
 };
 
-/// "scene", and rotated objects: "cubes", "rods", "slow".
+/// Returns "scene", and the names of rotated objects: "cubes", "rods", "slow".
 [[nodiscard]] std::span<const std::string_view> volume_setting_names() noexcept;
 
 /// Returns the partitions that take volumes from the caller.

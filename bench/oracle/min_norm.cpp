@@ -1,5 +1,7 @@
-// GJK over all subsets of a simplex, in double and in Number: the point of least norm of the
-// Minkowski difference of two polytopes, with a supporting plane as proof. oracle.cpp calls it.
+// GJK in double and in Number (100 digits): finds the point of the Minkowski difference of two
+// polytopes that is nearest to the origin. Each iteration tries all subsets of the simplex. A
+// supporting plane gives a lower bound of the distance, which proves the result. Called by
+// oracle.cpp.
 
 #include "bench/oracle/min_norm.h"
 

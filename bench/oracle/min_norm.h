@@ -33,15 +33,15 @@ struct Simplex {
 template <typename T>
 struct Nearest {
   Vector<T> point;
-  /// Length of `point`, and the width of the widest gap found along it. The exact distance is in
+  /// Length of `point`, and the width of the gap along `point`. The exact distance is in
   /// [lower, upper].
   T upper{};
   T lower{};
   bool proven = false;
 };
 
-/// Starts from the given simplex, which must not be empty, and stores the last one there. In double
-/// the result is a guess; in Number it is proven to 1e-60 of the unit length, or `proven` is false.
+/// Starts from `simplex`, which must not be empty, and stores the last simplex in it. In double the
+/// result is a guess; in Number it is proven to 1e-60 of the unit length, or `proven` is false.
 /// Coordinates must be of the order of 1.
 template <typename T>
 [[nodiscard]] Nearest<T> nearest_point(const Polytope& a, const Polytope& b, Simplex& simplex);

@@ -72,7 +72,8 @@ Polytope inscribed(const ShapeTables& tables, ShapeId shape, const Vector<Number
   for (std::size_t i = 0; i < count; ++i) {
     const Vec middle = rim[i] + rim[(i + 1) % count];
     const Vec out = middle * (1 / length(middle));
-    // A side facet of a cone rises by the height over the distance of its chord from the axis.
+    // A side facet of a cone rises from its chord to the apex: by the cone's height over the
+    // distance of the chord from the axis.
     const Number chord = round.radius * length(middle) / 2;
     side.push_back(round.has_apex ? out * (2 * Number(round.half_length)) + up * chord : out);
     core.normal.push_back(side.back());

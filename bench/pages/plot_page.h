@@ -10,7 +10,7 @@ struct PlotPoint {
   double x = 0.0;
   double y = 0.0;
   std::string note{};  ///< tooltip
-  std::string row{};   ///< id of the row that gave the point; not displayed
+  std::string row{};   ///< id of the row that the point shows; not displayed
   /// Ends of the whisker; NaN for none.
   double low = std::numeric_limits<double>::quiet_NaN();
   double high = std::numeric_limits<double>::quiet_NaN();

@@ -7,7 +7,7 @@ extern const char* const kPlotStyle;
 extern const char* const kPlotScript;
 /// The licence of Chart.js, which each page must include.
 extern const char* const kChartJsNotice;
-/// The file found at configure time, or its place on Debian.
+/// The file of Chart.js found at configure time, or its path on Debian.
 extern const char* const kChartJsFile;
 
 }  // namespace winnow::bench

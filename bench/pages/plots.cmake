@@ -1,5 +1,5 @@
 # Embeds the files of the plots in the tool and finds Chart.js. Chart.js is not part of winnow: the
-# tool reads it from its installed place when it writes a page.
+# tool reads the installed file when it writes a page.
 find_file(WINNOW_CHART_JS chart.min.js PATHS /usr/share/javascript/chart.js)
 if(NOT WINNOW_CHART_JS)
   message(STATUS "plots of winnow: Chart.js is not installed (Debian: libjs-chart.js)")

@@ -200,7 +200,7 @@ function zoomable(chart) {
   });
 }
 
-// Counts the marks of a series (points, or ends of bars) that lie within the axes.
+// Counts the marks of a series (points, or ends of bars) that are within the axes.
 function drawn_of(chart, i) {
   const area = chart.chartArea;
   return chart.getDatasetMeta(i).data.filter((mark) =>
@@ -208,7 +208,7 @@ function drawn_of(chart, i) {
     mark.x <= area.right + 1 && mark.y >= area.top - 1 && mark.y <= area.bottom + 1).length;
 }
 
-const counts = {drawn: 0, wanted: 0, plots: 0};
+const counts = {drawn: 0, points: 0, plots: 0};
 const blank = [];
 
 function draw(plot) {
@@ -238,7 +238,7 @@ function draw(plot) {
   });
   if (here < points) blank.push(plot.id);
   counts.drawn += here;
-  counts.wanted += points;
+  counts.points += points;
   counts.plots += 1;
 }
 

@@ -28,8 +28,9 @@ class PairsAdapter : public Engine {
   return a < b ? Pair{a, b} : Pair{b, a};
 }
 
-/// Returns the axes, the best one for a sweep first: by the range of the box centres over the mean
-/// extent, the inverse of the share of boxes that one box overlaps along the axis.
+/// Returns the axes in descending order of the range of the box centres over the mean extent of the
+/// boxes. This ratio is about the inverse of the share of boxes that a box overlaps along the axis,
+/// so the first axis is the best one for a sweep.
 [[nodiscard]] inline std::array<int, 3> axes_by_pruning(std::span<const Aabb> boxes) {
   std::array<double, 3> spread{};
   for (int axis = 0; axis < 3; ++axis) {

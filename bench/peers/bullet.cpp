@@ -92,10 +92,10 @@ class BulletAdapter : public PairsAdapter {
 /// Bullet 3 in float: btDbvtBroadphase, two dynamic trees (moving and resting) with a hashed cache
 /// of overlapping pairs. Only changed boxes are set. Bullet supports one thread only.
 /// Settings, the best of those tried (measured by `winnow throughput --peers`): deferred collision,
-/// except if the last frame inserted few boxes again; a margin of 10 % of the mean edge, twice the
-/// usual step; otherwise defaults. A full clean-up of the pair cache per frame and dynamic
-/// balancing were slower. Because of the margin and the gradual clean-up, the pair cache is a
-/// superset and is filtered by the exact boxes in the proxies.
+/// except in a frame after one that changed the tree for at most 1/16 of the boxes; a margin of 10 %
+/// of the mean edge, twice the usual step; otherwise defaults. A full clean-up of the pair cache per
+/// frame and dynamic balancing were slower. Because of the margin and the gradual clean-up, the pair
+/// cache is a superset and is filtered by the exact boxes in the proxies.
 class BulletTrees final : public BulletAdapter {
  public:
   // Frees the proxies directly: Bullet's own destruction of a proxy searches the whole pair cache,
@@ -192,8 +192,8 @@ class RowPairs final : public btHashedOverlappingPairCache {
 
 /// Bullet 3 in float: bt32BitAxisSweep3, which sorts moved boxes on three axes and adds and removes
 /// only pairs that change. Bullet supports one thread only. Coordinates are quantised to 31 bits of
-/// the world; boxes closer than that are reported as well. Each object is inserted singly and
-/// passes half of the others on each axis.
+/// the world; boxes that are closer than a quantum are reported as well. Each object is inserted
+/// singly and passes half of the others on each axis.
 /// Settings, the best of those tried (measured by `winnow throughput --peers`): a world four times
 /// as wide as the first boxes, and no tree for rays.
 class BulletSweep final : public BulletAdapter {
@@ -238,8 +238,8 @@ class BulletSweep final : public BulletAdapter {
     return true;
   }
 
-  /// Returns false if a box leaves the world: Bullet would still find its pairs, but by testing it
-  /// against all others outside.
+  /// Returns false if a box leaves the world. Bullet would still find the pairs of such a box, but
+  /// by testing it against all other boxes outside.
   [[nodiscard]] bool has_room_for(std::span<const std::uint32_t> changed_rows,
                                   std::span<const Aabb> all_boxes) const {
     if (all_boxes.size() > handles_) return false;

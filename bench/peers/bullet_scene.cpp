@@ -41,7 +41,7 @@ class BulletScene final : public SceneEngine {
   }
 
   [[nodiscard]] std::string name() const override { return "Bullet"; }
-  [[nodiscard]] bool carries_over() const override { return true; }
+  [[nodiscard]] bool caches_contacts() const override { return true; }
 
   void start(const BodySet& set) override {
     gDbvtMargin = kMargin;  // a global of Bullet; another engine may have changed it

@@ -64,7 +64,7 @@ class LensShape final : public btConvexInternalShape {
 };
 
 /// Makes a shape. Hulls are shrunk by `hull_margin` and then get it as margin. The margin of a
-/// tapered capsule is its smaller radius, which Bullet subtracts from both.
+/// tapered capsule is its smaller radius, which Bullet subtracts from both radii.
 inline std::unique_ptr<btConvexShape> make_shape(const ShapeTables& tables, ShapeId id,
                                                  double hull_margin) {
   const std::uint32_t i = id.index();

@@ -89,8 +89,8 @@ struct RayContext {
 /// queries`): high build quality; robust mode, which was as fast and misses nothing; single rays,
 /// for which the callbacks get an inverse direction (streams and packets of incoherent rays were
 /// slower). All hits are collected by a callback of rtcIntersect1 that does not shorten the ray,
-/// and sorted. Box queries use rtcPointQuery, made to search a box instead of the ball around it;
-/// rtcCollide with a scene of all query boxes was not faster.
+/// and sorted. Box queries use rtcPointQuery, which find_in_box() makes search a box instead of the
+/// ball around it; rtcCollide with a scene of all query boxes was not faster.
 class EmbreeQueries final : public QueryEngine {
  public:
   EmbreeQueries() : device_(rtcNewDevice(nullptr)) {
@@ -103,11 +103,11 @@ class EmbreeQueries final : public QueryEngine {
 
   [[nodiscard]] std::string name() const override { return "Embree"; }
 
-  [[nodiscard]] bool takes(const QuerySet& set, QueryMode asking) const override {
+  [[nodiscard]] bool takes(const QuerySet& set, QueryMode mode) const override {
     const auto is_sphere = [](const auto& region) {
       return std::holds_alternative<Sphere>(region);
     };
-    return asking == QueryMode::single && set.casts.empty() &&
+    return mode == QueryMode::single && set.casts.empty() &&
            std::all_of(set.regions.begin(), set.regions.end(), is_sphere);
   }
 
@@ -129,7 +129,7 @@ class EmbreeQueries final : public QueryEngine {
     rtcCommitScene(scene_);
   }
 
-  std::uint64_t run(const QuerySet& set, QueryMode /*asking*/, std::size_t count) override {
+  std::uint64_t run(const QuerySet& set, QueryMode /*mode*/, std::size_t count) override {
     if (tbb::this_task_arena::max_concurrency() == 1) return run_part(set, 0, count);
     std::atomic<std::uint64_t> found{0};
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 64), [&](const auto& range) {
@@ -138,11 +138,11 @@ class EmbreeQueries final : public QueryEngine {
     return found;
   }
 
-  [[nodiscard]] QueryResults answers(const QuerySet& set, QueryMode /*asking*/,
+  [[nodiscard]] QueryResults answers(const QuerySet& set, QueryMode /*mode*/,
                                      std::size_t count) override {
     QueryResults result;
     for (std::size_t i = 0; i < count; ++i) {
-      for (const Found& found : ask(set, i, hits_.local())) result.add(found);
+      for (const Found& found : run_one(set, i, hits_.local())) result.add(found);
       result.next();
     }
     return result;
@@ -188,12 +188,12 @@ class EmbreeQueries final : public QueryEngine {
   std::uint64_t run_part(const QuerySet& set, std::size_t begin, std::size_t end) {
     Hits& hits = hits_.local();
     std::uint64_t found = 0;
-    for (std::size_t i = begin; i < end; ++i) found += ask(set, i, hits).size();
+    for (std::size_t i = begin; i < end; ++i) found += run_one(set, i, hits).size();
     return found;
   }
 
   /// Runs one query; the results are in `hits`.
-  std::span<const Found> ask(const QuerySet& set, std::size_t i, Hits& hits) {
+  std::span<const Found> run_one(const QuerySet& set, std::size_t i, Hits& hits) {
     hits.clear();
     if (!set.rays.empty()) {
       cast(set.rays[i], set.query_type, hits);

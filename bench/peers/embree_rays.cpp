@@ -74,14 +74,14 @@ class EmbreeRays final : public RayEngine {
     }
   }
 
-  void run(RayQueryType want, QueryMode asking) override {
-    any_ = want == RayQueryType::any;
+  void run(RayQueryType query_type, QueryMode mode) override {
+    any_ = query_type == RayQueryType::any;
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     const auto count = static_cast<unsigned>(rays_.size());
-    if (asking == QueryMode::batch && any_) {
+    if (mode == QueryMode::batch && any_) {
       rtcOccluded1M(scene_, &context, occluded_.data(), count, sizeof(RTCRay));
-    } else if (asking == QueryMode::batch) {
+    } else if (mode == QueryMode::batch) {
       rtcIntersect1M(scene_, &context, rays_.data(), count, sizeof(RTCRayHit));
     } else if (any_) {
       for (RTCRay& ray : occluded_) rtcOccluded1(scene_, &context, &ray);

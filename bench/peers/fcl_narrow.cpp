@@ -28,8 +28,8 @@ using Corners = std::array<Vector, 3>;
 
 /// FCL in double, the type that its library is built for. Calls the solver functions at the end of
 /// FCL's collide() and distance(): closed forms if it has them, otherwise GJK and EPA of libccd or
-/// of its own. FCL has no GJK for two triangles, so these use its triangle functions, which give no
-/// depth. Pairs for which the libccd solver throws count as overlapping.
+/// of its own. FCL has no GJK for two triangles, so these use its triangle functions, which return
+/// no depth. Pairs for which the libccd solver throws count as overlapping.
 template <typename Solver>
 class FclNarrow final : public NarrowAdapter<FclNarrow<Solver>> {
  public:
@@ -156,7 +156,7 @@ class FclNarrow final : public NarrowAdapter<FclNarrow<Solver>> {
 
   /// Calls a solver function that returns a verdict; true if it throws.
   template <typename Question>
-  static bool ask(Question&& question) {
+  static bool call_solver(Question&& question) {
     try {
       return question();
     } catch (const std::exception&) {
@@ -199,14 +199,14 @@ class FclNarrow final : public NarrowAdapter<FclNarrow<Solver>> {
   bool overlaps_triangle(const Body& body, const Body& triangle, Contacts* contacts) {
     const auto& at = triangle.corners;
     fcl::ContactPoint<double> contact;
-    const bool wanted = contacts != nullptr;
-    const bool overlap = ask([&] {
+    const bool needs_contact = contacts != nullptr;
+    const bool overlap = call_solver([&] {
       return solver_.shapeTriangleIntersect(shape_of<Shape>(body), body.at, at[0], at[1], at[2],
-                                            triangle.at, wanted ? &contact.pos : nullptr,
-                                            wanted ? &contact.penetration_depth : nullptr,
-                                            wanted ? &contact.normal : nullptr);
+                                            triangle.at, needs_contact ? &contact.pos : nullptr,
+                                            needs_contact ? &contact.penetration_depth : nullptr,
+                                            needs_contact ? &contact.normal : nullptr);
     });
-    if (!wanted || !overlap) return overlap;
+    if (!needs_contact || !overlap) return overlap;
     // EPA's normals of triangles point from b to a.
     if (contact.penetration_depth < 0.0) contact.normal = -contact.normal;
     contacts->push_back(contact);
@@ -225,7 +225,7 @@ class FclNarrow final : public NarrowAdapter<FclNarrow<Solver>> {
       if (overlap && contacts != nullptr) contacts->back().normal = -contacts->back().normal;
       return overlap;
     } else {
-      return ask([&] {
+      return call_solver([&] {
         return solver_.shapeIntersect(shape_of<A>(a), a.at, shape_of<B>(b), b.at, contacts);
       });
     }

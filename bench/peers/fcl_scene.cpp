@@ -38,7 +38,7 @@ std::shared_ptr<Mesh> make_model(const Triangles& triangles) {
 class FclScene final : public SceneEngine {
  public:
   [[nodiscard]] std::string name() const override { return "FCL"; }
-  [[nodiscard]] bool carries_over() const override { return false; }
+  [[nodiscard]] bool caches_contacts() const override { return false; }
 
   void start(const BodySet& set) override {
     for (std::size_t i = 0; i < set.poses.size(); ++i) {
@@ -59,14 +59,14 @@ class FclScene final : public SceneEngine {
     }
     moving_.update();
     finds_ = {};
-    moving_.collide(this, &FclScene::meet);
-    if (terrain_ != nullptr) moving_.collide(terrain_.get(), this, &FclScene::meet);
+    moving_.collide(this, &FclScene::collide_pair);
+    if (terrain_ != nullptr) moving_.collide(terrain_.get(), this, &FclScene::collide_pair);
   }
 
   [[nodiscard]] SceneFinds finds() const override { return finds_; }
 
  private:
-  static bool meet(Object* a, Object* b, void* data) {
+  static bool collide_pair(Object* a, Object* b, void* data) {
     auto& scene = *static_cast<FclScene*>(data);
     const fcl::CollisionRequest<double> request(kMaxContacts, true);
     scene.result_.clear();

@@ -145,7 +145,7 @@ void of_points(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* poin
   to_world(body, at, *point);
 }
 
-/// All shapes in the race contain the origin of their frame.
+/// Returns the position of the body: all shapes in the race contain the origin of their frame.
 void center_of(const void* object, ccd_vec3_t* center) {
   std::copy_n(static_cast<const CcdBody*>(object)->position, 3, center->v);
 }
@@ -230,8 +230,8 @@ CcdBody make_body(const ShapeTables& tables, ShapeId id, const Pose& pose,
 }
 
 /// libccd in double with support functions defined here. It computes verdicts and, for overlapping
-/// pairs, one contact, by GJK and EPA or by MPR; it gives no distances of separate pairs. Default
-/// tolerances, with bounded iterations so that it terminates.
+/// pairs, one contact, by GJK and EPA or by MPR; it computes no distances of separate pairs.
+/// Tolerances are the defaults; the number of iterations is bounded, so that it terminates.
 class LibccdNarrow final : public NarrowAdapter<LibccdNarrow> {
  public:
   explicit LibccdNarrow(bool portals) : portals_(portals) {

@@ -93,7 +93,7 @@ class OdeEngine final : public PairsAdapter {
 
   [[nodiscard]] std::string name() const override { return "ODE SAP"; }
   [[nodiscard]] bool is_serial() const override { return true; }
-  /// It sweeps along one axis: a frame with more objects takes over a second.
+  /// ODE sweeps along one axis: a frame with more objects takes over a second.
   [[nodiscard]] std::size_t largest() const override { return 100'000; }
 
   void start(std::span<const Aabb> boxes) override {

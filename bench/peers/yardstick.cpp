@@ -84,7 +84,7 @@ class YardstickEngine final : public Engine {
   }
 
   int threads_;
-  std::unique_ptr<tbb::task_arena> arena_;  // used if there are more threads than it supports
+  std::unique_ptr<tbb::task_arena> arena_;  // used if there are more than kMaxThreads threads
   SG4<true> sweep_;
   Outs found_;  // only the ends of the pairs are used
   std::array<std::unique_ptr<AddressRange>, kMaxThreads> room_;

@@ -56,8 +56,8 @@ def box_pairs_of_a_tree(boxes):
         (upper - lower).max() * 1.000001, p=np.inf, output_type="ndarray"
     )
     a, b = pairs.T
-    meets = ((lower[a] <= upper[b]) & (lower[b] <= upper[a])).all(axis=1)
-    return pairs[meets]
+    overlaps = ((lower[a] <= upper[b]) & (lower[b] <= upper[a])).all(axis=1)
+    return pairs[overlaps]
 
 
 def neighbours_by_open3d(points, radius):
@@ -164,7 +164,7 @@ def worlds_in_python(values):
 
 
 def race_cpp(program, rounds=5):
-    """Alternates the two, so that other load on the machine affects both alike."""
+    """Races both packages in turns, so that other load on the machine affects both alike."""
     random = np.random.default_rng(7)
     worlds = random.uniform(0, 3, (10_000, 3)) + random.normal(0, 0.02, (60, 10_000, 3))
     cases = [

@@ -95,7 +95,7 @@ CaseVerdict check_hard_case(const Json& question, const Json& answer, double pro
   } else if (member(answer, "status") != status) {
     verdict.fault = "status";
   } else if (status != "ok") {
-    verdict.fault = answer.size() == 2 ? "" : "says more than the status";
+    verdict.fault = answer.size() == 2 ? "" : "members besides the status";
   } else if (question.contains("ray")) {
     verdict.fault = fault_of_ray(question, answer);
   } else {

@@ -13,8 +13,8 @@ namespace winnow::bench {
 /// - {"id", "ray", "target": shape} with {"id", "status", "hit", "t", "normal"}: for a miss, t is
 ///   "inf" and the normal zero;
 /// - {"id", "motion", "min_separation"} with {"id", "status", "hit", "time"}: see motion_json.h.
-/// If a question is invalid, its answer has only the id and the name of its Status; the other
-/// questions are answered all the same. The id is copied from the question, or null if it has none.
+/// If a question is invalid, its answer has only the id and the name of its Status, and the other
+/// questions are still answered. The id is copied from the question, or null if it has none.
 [[nodiscard]] Json answer(const Json& questions, NarrowTier tier);
 
 }  // namespace winnow::bench

@@ -12,8 +12,7 @@
 namespace winnow::bench {
 namespace {
 
-/// Plays a program's recording and reads the boxes of the partition or scene that holds the most
-/// objects.
+/// Plays a program's recording and reads the boxes of the partition or scene with the most objects.
 class ProgramReader {
  public:
   ProgramReader(const std::string& path, std::span<const std::byte> bytes)
@@ -41,8 +40,8 @@ class ProgramReader {
     throw RecordingError(path_ + ": " + what);
   }
 
-  /// Plays the recording once. Finds the world that holds the most objects, and whether the
-  /// recording marks frames; if not, each query for all pairs or contacts ends a frame.
+  /// Plays the recording once. Finds the partition or scene (`world_`) with the most objects, and
+  /// whether the recording marks frames; if not, each query for all pairs or contacts ends a frame.
   void play_once() {
     RecordingPlayer player(bytes_);
     std::size_t most = 0;
@@ -96,7 +95,7 @@ class ProgramReader {
     if (contacts == nullptr || contacts->level() != ContactLevel::manifold) return found;
     for (std::size_t pair = 0; pair < contacts->size(); ++pair) {
       BodyDefinition body;
-      // The body was removed after the contacts were computed.
+      // Skips bodies that were removed after the contacts were computed.
       if (player.scene(world_)->body(contacts->a()[pair], body) != Status::ok) continue;
       const std::uint32_t last = contacts->manifold_first()[pair + 1];
       for (std::uint32_t m = contacts->manifold_first()[pair]; m < last; ++m) {

@@ -50,7 +50,7 @@ class Reader {
   }
 
   [[nodiscard]] std::string shape() const {
-    return "N = " + std::to_string(objects_) + ", F = " + std::to_string(steps_) + " ask for " +
+    return "N = " + std::to_string(objects_) + ", F = " + std::to_string(steps_) + " require " +
            std::to_string(file_size(objects_, steps_)) + " or " +
            std::to_string(file_size(objects_, steps_ + 1)) + " bytes";
   }
@@ -115,23 +115,23 @@ class Reader {
     std::vector<std::byte> portion(kPortion * kBoxSize);
     std::vector<Aabb> boxes;
     while (boxes.size() < objects_) {
-      const auto wanted = static_cast<std::size_t>(
+      const auto requested = static_cast<std::size_t>(
           std::min<std::uint64_t>(kPortion, objects_ - boxes.size()) * kBoxSize);
-      const std::size_t count = bytes_->read({portion.data(), wanted});
-      if (count < wanted) {
+      const std::size_t count = bytes_->read({portion.data(), requested});
+      if (count < requested) {
         const bool between = boxes.empty() && count == 0 && frame == steps_;
         if (between) return {};
         fail(offset_ + count,
              "the file ends inside frame " + std::to_string(frame) + " (" + shape() + ")");
       }
-      for (std::size_t at = 0; at < wanted; at += kBoxSize) {
+      for (std::size_t at = 0; at < requested; at += kBoxSize) {
         boxes.push_back(unpack(portion.data() + at));
         if (!boxes.back().is_valid()) {
           fail(offset_ + at, "box " + std::to_string(boxes.size() - 1) + " of frame " +
                                  std::to_string(frame) + " is inverted or has a NaN");
         }
       }
-      offset_ += wanted;
+      offset_ += requested;
     }
     return boxes;
   }

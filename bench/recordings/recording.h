@@ -37,7 +37,7 @@ struct Recording {
   std::string object_type;
   Aabb world;
   /// Sizes never decrease: in a program's recording, a frame has a row for each id used so far. A
-  /// row without an object is a point outside the world's other boxes until an object gets its id.
+  /// row whose id no object has in this frame is a point outside the bounds of all boxes.
   std::vector<std::vector<Aabb>> frames;
 
   /// Statistics of playing a program's recording.

@@ -68,10 +68,10 @@ bool is_fingerprint(const Json& column) {
 bool is_derived(const Json& row, const std::string& name) {
   if (!row.contains("from")) return false;
   const Json& from = row["from"];
-  const auto tells = [&](const Json& one) {
+  const auto derives = [&](const Json& one) {
     return one.is_object() && one.value("value", Json()) == name;
   };
-  return from.is_array() ? std::any_of(from.begin(), from.end(), tells) : tells(from);
+  return from.is_array() ? std::any_of(from.begin(), from.end(), derives) : derives(from);
 }
 
 bool counts(const Json& table, const Json& row, const std::string& name) {
@@ -115,7 +115,7 @@ class Comparing {
     for (const auto& [name, value] : is.items()) {
       if (was.contains(name) && was[name] == value) continue;
       found_.remarks.push_back("settings differ: " + name + " was " +
-                               (was.contains(name) ? was[name].dump() : "not told") + ", is " +
+                               (was.contains(name) ? was[name].dump() : "not given") + ", is " +
                                value.dump());
       if (name == "seed" || name == "quick") same_questions_ = false;
     }

@@ -61,14 +61,15 @@ struct ReportComparison {
 /// Compares the values that both reports have and whose column states whether less or more is
 /// better.
 ///
-/// A time or rate has got worse if both the median and the best of its samples are worse by more
-/// than the threshold, and its best sample is worse than the old median: other work on the machine
-/// changes medians and the worst samples, but seldom the best. With fewer than five samples, or in
-/// a report made with --quick, a difference always counts as noise. Other figures (bytes, errors,
-/// shares) are deterministic: the threshold decides, and a value that was zero is worse as soon as
-/// it is not zero. The rule for "better" is symmetric.
+/// A time or rate is worse if both the median and the best of its samples are worse by more than
+/// the threshold, and its best sample is worse than the old median: other work on the machine
+/// changes medians and the worst samples, but seldom the best. With fewer than five samples, or if
+/// one of the reports was made with --quick, a difference always counts as noise. Other figures
+/// (bytes, errors, shares) are deterministic: the threshold decides, and a value that was zero is
+/// worse as soon as it is not zero. The rule for "better" is symmetric.
 ///
-/// Fingerprints are compared if the same command was run with the same seed.
+/// Fingerprints are compared if the same command was run with the same seed, both times with
+/// --quick or both times without.
 [[nodiscard]] ReportComparison compare(const Results& before, const Results& after,
                                        const CompareOptions& options);
 

@@ -66,7 +66,8 @@ double median_height(const PlotSeries& series) {
   return median_of(heights);
 }
 
-/// Keeps the kMaxSeries best series in their order and adds that to the title.
+/// If there are more than kMaxSeries series, keeps the best in their order and notes it in the
+/// title.
 void thin_out(Plot& plot, bool more_is_better) {
   const std::size_t all = plot.series.size();
   if (all <= kMaxSeries) return;

@@ -61,8 +61,8 @@ struct Part {
 ///   "to": the targets, among "page", "results" and "terminal", that show tables and plots with
 ///     their headings and texts; default: the page
 ///   "each": {KEY: SOURCE, ...}: repeats the block for each combination; a source is a list of
-///     values, or "TABLE", which gives the key's values in its rows, or "TABLE min", "TABLE max" or
-///     "TABLE first"; "each" may also be a list of objects
+///     values, or "TABLE" for the key's values in its rows, or "TABLE min", "TABLE max" or
+///     "TABLE first" for one of these; "each" may also be a list of objects
 ///   "where": required members of the rows of all tables that the block names
 ///
 /// The values that "each" binds, in this block and those around it, replace "{KEY}" in texts and

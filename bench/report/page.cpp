@@ -150,7 +150,7 @@ constexpr const char* kHowToRead =
     "medians; brackets and upright whiskers go from the least to the greatest.";
 constexpr const char* kWords =
     "The reference sweep is a plain sort and sweep over 10,000 boxes, by which machines are "
-    "compared; a + behind the commit says that the source was changed since. Scenes are described "
+    "compared; a + behind the commit marks changes of the source after it. Scenes are described "
     "by bench/run scenes; the tiers of the narrow phase are robust (each answer certified in "
     "double, or solved again, the default) and reference (each pair solved by itself).";
 

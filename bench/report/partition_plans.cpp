@@ -60,8 +60,8 @@ std::string named(const NamedScene& scene, std::size_t objects) {
 template <typename Visit>
 void each_size(const ReportOptions& options, const std::vector<NamedScene>& scenes, Visit visit) {
   for (const NamedScene& scene : scenes) {
-    for (const std::size_t asked : options.objects) {
-      visit(scene, scene.objects(asked));
+    for (const std::size_t requested : options.objects) {
+      visit(scene, scene.objects(requested));
       if (scene.is_recording()) break;
     }
   }
@@ -149,30 +149,32 @@ void measure_keys(Results& results, std::size_t objects, bool quick) {
 
 /// Returns the races of volumes, in the partition in which all volumes are compared.
 std::vector<VolumeRowOptions> volume_questions(const ReportOptions& options) {
-  VolumeRowOptions asked{.objects = objects_up_to(options, 10'000), .seed = options.seed};
-  asked.frames = options.quick ? 2 : volume_frames(asked.objects);
+  VolumeRowOptions request{.objects = objects_up_to(options, 10'000), .seed = options.seed};
+  request.frames = options.quick ? 2 : volume_frames(request.objects);
   std::vector<VolumeRowOptions> all;
   // All boxes of built-in scenes are axis-aligned, so that one scene represents all.
   for (const NamedScene& scene : few_scenes(options, {"uniform"})) {
-    all.push_back(asked);
+    all.push_back(request);
     all.back().setting = "scene";
     all.back().scene = scene;
-    all.back().objects = scene.objects(asked.objects);
+    all.back().objects = scene.objects(request.objects);
     all.back().frames = options.quick ? 2 : volume_frames(all.back().objects);
   }
   for (const char* setting : {"cubes", "rods", "slow"}) {
-    all.push_back(asked);
+    all.push_back(request);
     all.back().setting = setting;
   }
   return all;
 }
 
-void add_volume_step(ReportSteps& steps, const VolumeRowOptions& asked, const std::string& table) {
+void add_volume_step(ReportSteps& steps, const VolumeRowOptions& request,
+                     const std::string& table) {
   constexpr double kEach = 3e-5;  // seconds for each object and frame
   steps.push_back(
-      {(asked.setting == "scene" ? asked.scene.name : asked.setting) + " in " + asked.partition,
-       kEach * static_cast<double>(asked.objects) * static_cast<double>(asked.frames + 1),
-       [=](Results& results) { add_volumes(results, asked, table); }});
+      {(request.setting == "scene" ? request.scene.name : request.setting) + " in " +
+           request.partition,
+       kEach * static_cast<double>(request.objects) * static_cast<double>(request.frames + 1),
+       [=](Results& results) { add_volumes(results, request, table); }});
 }
 
 /// Measures the requested scenes; all scenes if the default ones are requested.
@@ -181,15 +183,15 @@ void plan_every_scene(const ReportOptions& options, ReportSteps& steps) {
   for (const NamedScene& scene : options.scenes) names.push_back(scene.name);
   const auto scenes = names == main_scenes() ? named_scenes(scene_names()) : options.scenes;
   for (const NamedScene& scene : scenes) {
-    EverySceneOptions asked{.scene = scene,
-                            .objects = scene.objects(objects_up_to(options, 10'000)),
-                            .seed = options.seed,
-                            .threads = options.threads.front(),
-                            .yardstick = options.yardstick};
-    if (options.quick) asked.frames = kSettlingFrames + 3;
-    steps.push_back({named(scene, asked.objects) + ", worst frames",
-                     0.05 + 1e-8 * static_cast<double>(asked.frames * asked.objects * 60),
-                     [=](Results& results) { add_every_scene(results, asked); }});
+    EverySceneOptions request{.scene = scene,
+                              .objects = scene.objects(objects_up_to(options, 10'000)),
+                              .seed = options.seed,
+                              .threads = options.threads.front(),
+                              .yardstick = options.yardstick};
+    if (options.quick) request.frames = kSettlingFrames + 3;
+    steps.push_back({named(scene, request.objects) + ", worst frames",
+                     0.05 + 1e-8 * static_cast<double>(request.frames * request.objects * 60),
+                     [=](Results& results) { add_every_scene(results, request); }});
   }
 }
 
@@ -267,15 +269,15 @@ ReportSteps plan_memory(const ReportOptions& options) {
 ReportSteps plan_ranks(const ReportOptions& options) {
   ReportSteps steps;
   for (const NamedScene& scene : few_scenes(options, {"uniform", "clustered"})) {
-    ClusterRowOptions asked{.scene = scene, .ranks = {1, 2, 3, 8, 64, 512}, .seed = options.seed};
-    asked.is_uniform = scene.name == "uniform" && !scene.is_recording();
+    ClusterRowOptions request{.scene = scene, .ranks = {1, 2, 3, 8, 64, 512}, .seed = options.seed};
+    request.is_uniform = scene.name == "uniform" && !scene.is_recording();
     if (options.quick) {
-      asked.objects = 500;
-      asked.frames = 3;
-      asked.ranks = {1, 2, 8};
+      request.objects = 500;
+      request.frames = 3;
+      request.ranks = {1, 2, 8};
     }
     steps.push_back({"ranks: " + scene.name, options.quick ? 0.1 : 3.0,
-                     [asked](Results& results) { add_cluster_runs(results, asked); }});
+                     [request](Results& results) { add_cluster_runs(results, request); }});
   }
   return steps;
 }
@@ -283,15 +285,15 @@ ReportSteps plan_ranks(const ReportOptions& options) {
 ReportSteps plan_volumes(const ReportOptions& options) {
   ReportSteps steps;
   const auto all = volume_questions(options);
-  for (const VolumeRowOptions& asked : all) add_volume_step(steps, asked, "volumes");
-  for (VolumeRowOptions asked : all) {
-    if (asked.setting != "cubes" && !asked.scene.is_recording()) continue;
+  for (const VolumeRowOptions& request : all) add_volume_step(steps, request, "volumes");
+  for (VolumeRowOptions request : all) {
+    if (request.setting != "cubes" && !request.scene.is_recording()) continue;
     for (const std::string_view partition : volume_partitions()) {
-      const bool is_quadratic = partition == "BoundsNSquared" && asked.objects > 2000;
+      const bool is_quadratic = partition == "BoundsNSquared" && request.objects > 2000;
       const bool is_left_out = options.quick && partition != "FlatGrid";
       if (partition == kVolumesPartition || is_quadratic || is_left_out) continue;
-      asked.partition = partition;
-      add_volume_step(steps, asked, "volumes");
+      request.partition = partition;
+      add_volume_step(steps, request, "volumes");
     }
   }
   VolumeRowOptions cubes = *std::find_if(
@@ -311,18 +313,18 @@ ReportSteps plan_queries(const ReportOptions& options) {
   ReportSteps steps;
   const auto add = [&](const NamedScene& scene, std::size_t rays, int threads,
                        const std::string& partition) {
-    const QueryMeasureOptions asked{.objects = objects,
-                                    .seed = options.seed,
-                                    .partitions = {partition},
-                                    .threads = threads,
-                                    .rays = rays,
-                                    .rounds = options.quick ? 2U : 5U,
-                                    .machine_clock = false,
-                                    .peers = options.peers};
+    const QueryMeasureOptions request{.objects = objects,
+                                      .seed = options.seed,
+                                      .partitions = {partition},
+                                      .threads = threads,
+                                      .rays = rays,
+                                      .rounds = options.quick ? 2U : 5U,
+                                      .machine_clock = false,
+                                      .peers = options.peers};
     const double partitions = partition == "all" ? 9.0 : 2.0;
     steps.push_back({scene.name + ", " + threads_text(threads),
                      1e-4 * partitions * static_cast<double>(rays),
-                     [=](Results& results) { add_queries(results, scene, asked); }});
+                     [=](Results& results) { add_queries(results, scene, request); }});
   };
   const auto scenes = few_scenes(options, {"uniform", "mixed"});
   for (const NamedScene& scene : scenes) {
@@ -345,9 +347,9 @@ ReportSteps plan_advice(const ReportOptions& options) {
   ReportSteps steps;
   for (const NamedScene& scene : options.scenes) {
     const std::size_t objects = scene.objects(objects_up_to(options, 10'000));
-    const std::size_t wanted = options.quick ? 9 : 41;
+    const std::size_t requested = options.quick ? 9 : 41;
     const std::size_t frames =
-        scene.is_recording() ? std::min(wanted, scene.recording->frames.size()) : wanted;
+        scene.is_recording() ? std::min(requested, scene.recording->frames.size()) : requested;
     for (const int threads : options.threads) {
       steps.push_back({scene.name + ", " + threads_text(threads),
                        0.1 + (options.quick ? 0.0 : static_cast<double>(objects) * 1.1e-4),

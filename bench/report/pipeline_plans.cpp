@@ -31,15 +31,15 @@ std::vector<PairKind> reported(std::span<const PairKind> all, bool quick) {
 }
 
 void measure_narrow_times(Results& results, const ReportOptions& options, const PairKind& kind) {
-  NarrowMeasureOptions asked{
+  NarrowMeasureOptions request{
       .kind = kind,
       .pairs = options.quick ? 512U : 8192U,
       .contenders = {.tiers = {NarrowTier::robust, NarrowTier::reference}, .peers = options.peers},
       .seed = options.seed};
-  asked.race.rounds = options.quick ? 3 : 5;
-  if (options.quick) asked.race.turn_ms = 0.5;
-  if (options.quick) asked.race.smallest_part = 128;
-  add_pair_times(results, asked);
+  request.race.rounds = options.quick ? 3 : 5;
+  if (options.quick) request.race.turn_ms = 0.5;
+  if (options.quick) request.race.smallest_part = 128;
+  add_pair_times(results, request);
 }
 
 /// Returns how many pairs are compared with the oracle, which takes milliseconds for a pair of
@@ -50,15 +50,16 @@ std::size_t judged_pairs(const PairKind& kind, bool quick) {
   return quick ? 60 : 2000;
 }
 
-/// Measures errors by gap for a rounded pair, a flat one and a large one.
+/// Measures errors of a kind of pairs. For three kinds (one round, one flat, one of hulls) it also
+/// measures errors by gap.
 void measure_narrow_errors(Results& results, const ReportOptions& options, const PairKind& kind) {
-  AccuracyOptions asked{.kind = kind, .peers = options.peers, .runs = 5};
-  asked.set.pairs = judged_pairs(kind, options.quick);
-  asked.set.seed = options.seed;
-  asked.levels = {ContactLevel::boolean, ContactLevel::distance, ContactLevel::manifold};
+  AccuracyOptions request{.kind = kind, .peers = options.peers, .runs = 5};
+  request.set.pairs = judged_pairs(kind, options.quick);
+  request.set.seed = options.seed;
+  request.levels = {ContactLevel::boolean, ContactLevel::distance, ContactLevel::manifold};
   const bool by_gap =
       kind.name == "sphere-box" || kind.name == "box-box" || kind.name == "hull16-hull16";
-  add_pair_errors(results, asked, by_gap);
+  add_pair_errors(results, request, by_gap);
 }
 
 void measure_hard_cases(Results& results, bool peers) {
@@ -102,12 +103,12 @@ void measure_stability(Results& results, const ReportOptions& options, const Sta
   const int sign = curve.last < 0 ? -1 : 1;
   for (int power = 0; power <= std::abs(curve.last); power += options.quick ? 6 : 1) {
     const double value = std::stod("1e" + std::to_string(sign * power));
-    AccuracyOptions asked{.kind = kind, .peers = options.peers, .runs = 1};
-    asked.set.pairs = options.quick ? 16 : kind.hull_vertices > 0 ? 60 : 200;
-    asked.set.seed = options.seed;
-    curve.set(asked.set, value);
+    AccuracyOptions request{.kind = kind, .peers = options.peers, .runs = 1};
+    request.set.pairs = options.quick ? 16 : kind.hull_vertices > 0 ? 60 : 200;
+    request.set.seed = options.seed;
+    curve.set(request.set, value);
     add_error_curve(results, "stability_curves",
-                    {{"curve", curve.name}, {"kind", kind.name}, {"parameter", value}}, asked);
+                    {{"curve", curve.name}, {"kind", kind.name}, {"parameter", value}}, request);
   }
 }
 
@@ -171,16 +172,16 @@ ReportSteps plan_motion(const ReportOptions& options) {
   ReportSteps steps;
   for (const PairKind& kind : reported(main_pair_kinds(), options.quick)) {
     for (const PairTurn turn : kPairTurns) {
-      const ImpactRaceOptions asked{.kind = kind,
-                                    .turn = turn,
-                                    .pairs = options.quick ? 64U : 1024U,
-                                    .rounds = options.quick ? 2U : 5U,
-                                    .peers = options.peers,
-                                    .seed = options.seed};
+      const ImpactRaceOptions request{.kind = kind,
+                                      .turn = turn,
+                                      .pairs = options.quick ? 64U : 1024U,
+                                      .rounds = options.quick ? 2U : 5U,
+                                      .peers = options.peers,
+                                      .seed = options.seed};
       steps.push_back(
           {"impacts of " + std::string(kind.name) + ", turning: " + std::string(to_text(turn)),
            options.quick ? 0.05 : 0.3 + 0.02 * kind.hull_vertices,
-           [asked](Results& results) { add_impacts(results, asked); }});
+           [request](Results& results) { add_impacts(results, request); }});
     }
   }
   const std::size_t pairs = options.quick ? 200 : 20'000;
@@ -190,25 +191,25 @@ ReportSteps plan_motion(const ReportOptions& options) {
                      add_feature_impacts(results, pairs, rounds, seed);
                    }});
   for (const std::string& scene : barrier_names()) {
-    BarrierRowOptions asked{.scene = scene};
+    BarrierRowOptions request{.scene = scene};
     if (options.quick) {
-      asked.steps = 5;
-      asked.size = 8;
+      request.steps = 5;
+      request.size = 8;
     }
-    steps.push_back({"barrier: " + scene, options.quick ? 0.1 : 5.0, [asked](Results& results) {
-                       if (!add_barrier(results, asked)) {
-                         throw std::runtime_error(asked.scene + ": something passed through");
+    steps.push_back({"barrier: " + scene, options.quick ? 0.1 : 5.0, [request](Results& results) {
+                       if (!add_barrier(results, request)) {
+                         throw std::runtime_error(request.scene + ": something passed through");
                        }
                      }});
   }
   for (const int threads : options.threads) {
-    SweepRaceOptions asked{.threads = threads, .frames = rounds, .seed = options.seed};
+    ContinuousRaceOptions request{.threads = threads, .frames = rounds, .seed = options.seed};
     if (options.quick) {
-      asked.bodies = 200;
-      asked.fast = 20;
+      request.bodies = 200;
+      request.fast = 20;
     }
-    steps.push_back({"sweeps of a heap", options.quick ? 0.1 : 3.0,
-                     [asked](Results& results) { add_swept_scene(results, asked); }});
+    steps.push_back({"impacts of a heap", options.quick ? 0.1 : 3.0,
+                     [request](Results& results) { add_continuous_collision(results, request); }});
   }
   return steps;
 }
@@ -237,21 +238,21 @@ ReportSteps plan_pipeline(const ReportOptions& options) {
                      add_tori(results, rounds, peers, false);
                    }});
   for (const std::string& shape : flow_shape_names()) {
-    FlowRowOptions asked{.shape = shape, .seed = options.seed};
+    FlowRowOptions request{.shape = shape, .seed = options.seed};
     if (options.quick) {
-      asked.objects = 60;
-      asked.steps = 200;
+      request.objects = 60;
+      request.steps = 200;
     }
-    const double bodies = static_cast<double>(asked.objects) * static_cast<double>(asked.steps);
+    const double bodies = static_cast<double>(request.objects) * static_cast<double>(request.steps);
     steps.push_back({"granular flow of " + shape, 1.5e-6 * bodies,
-                     [asked](Results& results) { add_flow(results, asked); }});
+                     [request](Results& results) { add_flow(results, request); }});
   }
   for (const StandingScene scene : kStandingScenes) {
     for (const bool reduced : {false, true}) {
-      const StandingRowOptions asked{scene, reduced, options.quick ? 2.0 : 60.0};
-      steps.push_back({name_of(scene), 0.03 * asked.seconds, [asked](Results& results) {
-                         if (!add_standing(results, asked)) {
-                           throw std::runtime_error(name_of(asked.scene) + " does not stand");
+      const StandingRowOptions request{scene, reduced, options.quick ? 2.0 : 60.0};
+      steps.push_back({name_of(scene), 0.03 * request.seconds, [request](Results& results) {
+                         if (!add_standing(results, request)) {
+                           throw std::runtime_error(name_of(request.scene) + " does not stand");
                          }
                        }});
     }

@@ -146,7 +146,7 @@ std::string price(const std::vector<const Json*>& all) {
 std::string next(const std::vector<Record>& chosen) {
   if (chosen.size() < 2) return "";
   const double times = chosen[1].mean() / chosen[0].mean();
-  if (times < kTooClose) return chosen[1].partition + ", too close to tell apart";
+  if (times < kTooClose) return chosen[1].partition + ", too close to rank";
   return chosen[1].partition + ", " + plain(times) + " times its time on average";
 }
 

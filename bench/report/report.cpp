@@ -139,7 +139,7 @@ class StopSignals {
     sigaction(SIGTERM, &old_terminate_, nullptr);
   }
 
-  [[nodiscard]] static bool asked() noexcept { return g_stop_requested != 0; }
+  [[nodiscard]] static bool requested() noexcept { return g_stop_requested != 0; }
 
  private:
   struct sigaction old_interrupt_ {};
@@ -173,9 +173,9 @@ void note_disturbances(const OtherWork& others, Results& results) {
   constexpr double kOtherSpeed = 1.2;
   Json& warnings = results.document()["warnings"];
   if (const double cores = others.cores().value_or(0.0); cores > kBusy) {
-    warnings.push_back("The machine was busy: others kept " + shown(cores, "number") +
+    warnings.push_back("The machine was busy: other processes kept " + shown(cores, "number") +
                        " cores at work on average while this was measured. Times are too long; "
-                       "ratios of what took turns suffer less.");
+                       "ratios of contenders that took turns are less affected.");
   }
   const double before = results.document()["machine"]["reference_sweep_ms"];
   const double after = reference_sweep_ms();
@@ -184,7 +184,7 @@ void note_disturbances(const OtherWork& others, Results& results) {
         "The machine's speed changed while this was measured: the reference sweep "
         "took " +
         shown(before, "number") + " ms at the beginning and " + shown(after, "number") +
-        " at the end. Compare what stands in one table, not one table with another.");
+        " at the end. Compare values within one table, not between tables.");
   }
 }
 
@@ -242,10 +242,10 @@ bool make_report(const std::string& folder, const ReportOptions& options,
   const double between = options.quick ? kQuickSecondsBetweenWrites : kSecondsBetweenWrites;
   Stopwatch since_written;
   std::size_t done = 0;
-  for (std::size_t i = 0; i < all.size() && !StopSignals::asked(); ++i) {
+  for (std::size_t i = 0; i < all.size() && !StopSignals::requested(); ++i) {
     const Stopwatch clock;
     for (const ReportStep& step : all[i].steps) {
-      if (StopSignals::asked()) break;
+      if (StopSignals::requested()) break;
       progress.step(all[i].id + ": " + step.what, step.seconds);
       run_step(all[i].id, step, results);
       ++done;

@@ -10,8 +10,8 @@ namespace {
 
 constexpr const char* kChooser = "AutoPartition";
 
-/// Returns the best of the ranking that is neither AutoPartition nor the advised partition; null if
-/// there is none.
+/// Returns the fastest partition of the ranking except AutoPartition and the advised partition;
+/// null if there is none.
 const Advised* next_best(const Advice& advice) {
   const auto at =
       std::find_if(advice.ranking.begin(), advice.ranking.end(), [&](const Advised& one) {

@@ -9,11 +9,11 @@
 namespace winnow::bench {
 namespace {
 
-std::string barrier_command(const BarrierRowOptions& asked) {
-  std::string text = "bench/run simulate --barrier " + asked.scene + " --steps " +
-                     std::to_string(asked.steps) + " --threads " + std::to_string(asked.threads) +
-                     " --isa " + isa_name();
-  if (asked.size != 0) text += " --objects " + std::to_string(asked.size);
+std::string barrier_command(const BarrierRowOptions& row_options) {
+  std::string text = "bench/run simulate --barrier " + row_options.scene + " --steps " +
+                     std::to_string(row_options.steps) + " --threads " +
+                     std::to_string(row_options.threads) + " --isa " + isa_name();
+  if (row_options.size != 0) text += " --objects " + std::to_string(row_options.size);
   return text;
 }
 
@@ -30,16 +30,16 @@ std::vector<double> run(Simulation& simulation, std::size_t steps) {
 }
 
 template <typename Simulation>
-bool add_row(Results& results, const BarrierRowOptions& asked, const Simulation& simulation,
+bool add_row(Results& results, const BarrierRowOptions& row_options, const Simulation& simulation,
              const std::vector<double>& ms, Json row) {
-  row["scene"] = asked.scene;
+  row["scene"] = row_options.scene;
   row["steps"] = simulation.steps();
   row["impacts"] = simulation.impacts();
   row["passed"] = simulation.passed();
   row["cut_short"] = simulation.cut_short();
   row["ms"] = to_value(ms);
   row["fingerprint"] = to_hex(simulation.fingerprint());
-  row["command"] = barrier_command(asked);
+  row["command"] = barrier_command(row_options);
   results.add("barriers", std::move(row));
   return simulation.passed() == 0;
 }
@@ -49,7 +49,7 @@ bool add_row(Results& results, const BarrierRowOptions& asked, const Simulation&
 void declare_barriers(Results& results) {
   results.declare({"barriers",
                    "motion",
-                   "what is fast, and what does not get through",
+                   "fast bodies and thin barriers",
                    {"scene", "objects", "steps"},
                    {{"ms", "a step", "ms", Better::less},
                     {"fastest", "longest way in a step", "radii", Better::neither},
@@ -60,22 +60,23 @@ void declare_barriers(Results& results) {
                     {"fingerprint", "all bits", "", Better::neither, Format::text}}});
 }
 
-bool add_barrier(Results& results, const BarrierRowOptions& asked) {
-  const Execution execution = asked.threads == 1 ? Execution::serial() : Execution::parallel();
-  if (asked.scene == "cloth") {
+bool add_barrier(Results& results, const BarrierRowOptions& row_options) {
+  const Execution execution =
+      row_options.threads == 1 ? Execution::serial() : Execution::parallel();
+  if (row_options.scene == "cloth") {
     ClothOptions options{.execution = execution};
-    if (asked.size != 0) options.side = asked.size;
+    if (row_options.size != 0) options.side = row_options.size;
     ClothDrop cloth(options);
-    const std::vector<double> ms = run(cloth, asked.steps);
-    return add_row(results, asked, cloth, ms,
-                   {{"objects", cloth.triangles()}, {"stretch", cloth.stretch()}});
+    const std::vector<double> ms = run(cloth, row_options.steps);
+    return add_row(results, row_options, cloth, ms,
+                   {{"objects", cloth.triangles()}, {"stretch", cloth.max_strain()}});
   }
   FastBodiesOptions options{.execution = execution};
-  options.scene = asked.scene == "blade" ? FastScene::blade : FastScene::funnel;
-  options.bodies = asked.size != 0 ? asked.size : 16;
+  options.scene = row_options.scene == "blade" ? FastScene::blade : FastScene::funnel;
+  options.bodies = row_options.size != 0 ? row_options.size : 16;
   FastBodies bodies(options);
-  const std::vector<double> ms = run(bodies, asked.steps);
-  return add_row(results, asked, bodies, ms,
+  const std::vector<double> ms = run(bodies, row_options.steps);
+  return add_row(results, row_options, bodies, ms,
                  {{"objects", bodies.bodies()}, {"fastest", bodies.fastest()}});
 }
 

@@ -21,7 +21,7 @@ struct BarrierRowOptions {
 /// Declares barriers.
 void declare_barriers(Results& results);
 /// Runs one simulation and adds its row. Returns false if something tunnelled.
-bool add_barrier(Results& results, const BarrierRowOptions& asked);
+bool add_barrier(Results& results, const BarrierRowOptions& row_options);
 
 /// Returns "funnel", "blade", "cloth".
 [[nodiscard]] std::vector<std::string> barrier_names();

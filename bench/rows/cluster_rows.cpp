@@ -35,16 +35,17 @@ BoxSpread spread_of_boxes(const FrameSource& source) {
   return {count / volume, edges / (3.0 * count)};
 }
 
-std::string cluster_command(const ClusterRowOptions& asked, std::uint32_t ranks) {
-  std::string words = "bench/run cluster " + shell_word(asked.scene.argument);
-  if (!asked.scene.is_recording()) words += " --objects " + std::to_string(asked.objects);
-  if (asked.seed != 1) words += " --seed " + std::to_string(asked.seed);
-  return words + " --frames " + std::to_string(asked.frames) + " --virtual-ranks " +
+std::string cluster_command(const ClusterRowOptions& options, std::uint32_t ranks) {
+  std::string words = "bench/run cluster " + shell_word(options.scene.argument);
+  if (!options.scene.is_recording()) words += " --objects " + std::to_string(options.objects);
+  if (options.seed != 1) words += " --seed " + std::to_string(options.seed);
+  return words + " --frames " + std::to_string(options.frames) + " --virtual-ranks " +
          std::to_string(ranks);
 }
 
-/// Adds the ghosts that the formula predicts for sizes that no single machine can hold.
-void add_model(Results& results, const ClusterRowOptions& asked, const BoxSpread& spread) {
+/// Adds the ghosts that the formula predicts for numbers of objects that exceed the memory of a
+/// machine.
+void add_model(Results& results, const ClusterRowOptions& options, const BoxSpread& spread) {
   struct Size {
     std::uint64_t objects;
     std::uint64_t ranks;
@@ -57,12 +58,12 @@ void add_model(Results& results, const ClusterRowOptions& asked, const BoxSpread
     // Bytes to send for a ghost that moved: its name, its box and its owner.
     constexpr double kGhostBytes = sizeof(BodyName) + sizeof(Aabb) + sizeof(std::uint8_t);
     const double own = objects / ranks;
-    results.add("cluster_model", {{"scene", asked.scene.name},
+    results.add("cluster_model", {{"scene", options.scene.name},
                                   {"objects", size.objects},
                                   {"ranks", size.ranks},
                                   {"ghosts", ghosts},
                                   {"rank_bytes", kGhostBytes * ghosts * own},
-                                  {"command", cluster_command(asked, 1)}});
+                                  {"command", cluster_command(options, 1)}});
   }
 }
 
@@ -75,12 +76,12 @@ bool are_same(const ClusterRun& a, const ClusterRun& b) {
   return same;
 }
 
-void add_run(Results& results, const ClusterRowOptions& asked, std::uint32_t ranks,
+void add_run(Results& results, const ClusterRowOptions& options, std::uint32_t ranks,
              const ClusterRun& run, bool same, const BoxSpread& spread) {
   const ClusterStatistics& last = run.frames.back().statistics;
-  const std::size_t count = asked.scene.objects(asked.objects);
+  const std::size_t count = options.scene.objects(options.objects);
   const auto objects = static_cast<double>(count);
-  Json row{{"scene", asked.scene.name},
+  Json row{{"scene", options.scene.name},
            {"objects", count},
            {"ranks", ranks},
            {"same", same ? "yes" : "NO"},
@@ -91,8 +92,8 @@ void add_run(Results& results, const ClusterRowOptions& asked, std::uint32_t ran
            {"imbalance", last.imbalance},
            {"bytes_per_object", static_cast<double>(run.bytes) / objects},
            {"fingerprint", to_hex(run.frames.back().pairs.fingerprint)},
-           {"command", cluster_command(asked, ranks)}};
-  if (asked.is_uniform && ranks > 1) {
+           {"command", cluster_command(options, ranks)}};
+  if (options.is_uniform && ranks > 1) {
     row["formula"] = ghosts_by_formula(objects, ranks, spread.density, spread.edge);
   }
   results.add("cluster_runs", std::move(row));
@@ -128,22 +129,22 @@ double ghosts_by_formula(double objects, double ranks, double density, double ed
   return std::pow(1.0 + edge / side, 3.0) - 1.0;
 }
 
-void add_cluster_runs(Results& results, const ClusterRowOptions& asked) {
+void add_cluster_runs(Results& results, const ClusterRowOptions& options) {
   ClusterRun one;
   bool all_same = true;
-  for (const std::uint32_t ranks : asked.ranks) {
-    const auto source = asked.scene.source(asked.objects, asked.seed);
+  for (const std::uint32_t ranks : options.ranks) {
+    const auto source = options.scene.source(options.objects, options.seed);
     const BoxSpread spread = spread_of_boxes(*source);
     LoopbackTransport transport(ranks);
     const ClusterRun run =
-        run_cluster(*source, transport, {asked.frames, std::nullopt}, Execution::serial());
+        run_cluster(*source, transport, {options.frames, std::nullopt}, Execution::serial());
     if (one.frames.empty()) one = run;
     const bool same = are_same(one, run);
     all_same = all_same && same;
-    add_run(results, asked, ranks, run, same, spread);
-    if (asked.is_uniform && ranks == asked.ranks.front()) add_model(results, asked, spread);
+    add_run(results, options, ranks, run, same, spread);
+    if (options.is_uniform && ranks == options.ranks.front()) add_model(results, options, spread);
   }
-  if (!all_same) throw std::runtime_error(asked.scene.name + ": ranks find other pairs than one");
+  if (!all_same) throw std::runtime_error(options.scene.name + ": ranks find other pairs than one");
 }
 
 }  // namespace winnow::bench

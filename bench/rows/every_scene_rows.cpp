@@ -32,21 +32,21 @@ void declare_every_scene(Results& results) {
                     {"pairs", "pairs", "", Better::neither, Format::count}}});
 }
 
-void add_every_scene(Results& results, const EverySceneOptions& asked) {
-  const Measurement raced = measure({.scene = asked.scene.argument,
-                                     .recording = asked.scene.recording.get(),
-                                     .objects = asked.objects,
-                                     .seed = asked.seed,
+void add_every_scene(Results& results, const EverySceneOptions& options) {
+  const Measurement raced = measure({.scene = options.scene.argument,
+                                     .recording = options.scene.recording.get(),
+                                     .objects = options.objects,
+                                     .seed = options.seed,
                                      .partitions = unlimited_partitions(),
-                                     .threads = {asked.threads},
-                                     .yardstick = asked.yardstick,
-                                     .frames = asked.frames});
+                                     .threads = {options.threads},
+                                     .yardstick = options.yardstick,
+                                     .frames = options.frames});
   const Run& last = raced.runs.back();
   const double yardstick_ms = last.engine == kYardstickName ? settled_spread(last).median : 0.0;
   for (const Run& run : raced.runs) {
     const Spread settled = settled_spread(run);
     Json row{
-        {"scene", asked.scene.name},
+        {"scene", options.scene.name},
         {"objects", raced.objects},
         {"partition", run.engine},
         {"threads", run.threads},
@@ -55,7 +55,7 @@ void add_every_scene(Results& results, const EverySceneOptions& asked) {
         {"first_ms", run.frame_ms.front()},
         {"worst_ratio", settled.max / settled.median},
         {"pairs", run.pairs_a_frame()},
-        {"command", "bench/run throughput" + asked.scene.words(raced.objects, asked.seed) +
+        {"command", "bench/run throughput" + options.scene.words(raced.objects, options.seed) +
                         " --threads " + std::to_string(run.threads) + " --isa " +
                         to_string(run.isa) + " --frames " + std::to_string(run.frame_ms.size()) +
                         (run.engine == kYardstickName ? " --partition LinearBvh --yardstick"

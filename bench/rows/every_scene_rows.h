@@ -21,6 +21,6 @@ struct EverySceneOptions {
 void declare_every_scene(Results& results);
 /// Adds the rows of all partitions without a size limit. Throws std::runtime_error after that if
 /// not all found the same pairs.
-void add_every_scene(Results& results, const EverySceneOptions& asked);
+void add_every_scene(Results& results, const EverySceneOptions& options);
 
 }  // namespace winnow::bench

@@ -10,12 +10,12 @@ namespace winnow::bench {
 void declare_filters(Results& results) {
   results.declare({"filters",
                    "throughput",
-                   "what filters cost in a question",
+                   "cost of filters in a query",
                    {"scene", "objects", "partition", "filters", "question"},
                    {{"plain_ms", "without filters", "ms", Better::less},
                     {"filtered_ms", "with filters", "ms", Better::less},
                     {"over_plain", "with filters over without", "times", Better::less},
-                    {"wrong", "wrong answers", "", Better::less, Format::count}}});
+                    {"wrong", "wrong results", "", Better::less, Format::count}}});
 }
 
 void add_filters(Results& results, const NamedScene& scene, std::size_t objects, std::uint64_t seed,
@@ -40,7 +40,7 @@ void add_filters(Results& results, const NamedScene& scene, std::size_t objects,
                                               isa_name() + " --partition " + partition}});
     }
   }
-  if (wrong) throw std::runtime_error("filters made an answer wrong");
+  if (wrong) throw std::runtime_error("a query with filters returned a wrong result");
 }
 
 }  // namespace winnow::bench

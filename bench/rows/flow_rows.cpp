@@ -20,23 +20,25 @@ constexpr std::pair<const char*, FlowShape> kFlowShapes[] = {
 /// Number of steps of a flow that get a row.
 constexpr std::size_t kFlowRows = 200;
 
-Json with_keys(const FlowRowOptions& asked, Json row) {
-  row["shape"] = asked.shape;
-  row["objects"] = asked.objects;
-  row["command"] = "bench/run simulate --shape " + asked.shape + " --objects " +
-                   std::to_string(asked.objects) + " --steps " + std::to_string(asked.steps) +
-                   " --threads " + std::to_string(asked.threads) + " --seed " +
-                   std::to_string(asked.seed) + " --isa " + isa_name();
+Json with_keys(const FlowRowOptions& row_options, Json row) {
+  row["shape"] = row_options.shape;
+  row["objects"] = row_options.objects;
+  row["command"] = "bench/run simulate --shape " + row_options.shape + " --objects " +
+                   std::to_string(row_options.objects) + " --steps " +
+                   std::to_string(row_options.steps) + " --threads " +
+                   std::to_string(row_options.threads) + " --seed " +
+                   std::to_string(row_options.seed) + " --isa " + isa_name();
   return row;
 }
 
 /// Adds the times of the second half of the flow, when bodies touch each other.
-void add_phases(Results& results, const FlowRowOptions& asked, const FlowHistory& history) {
+void add_phases(Results& results, const FlowRowOptions& row_options, const FlowHistory& history) {
   std::vector<std::pair<Json, std::string>> added;
   double sum = 0.0;
   for (const FlowPhase& phase : kFlowPhases) {
-    Json row = with_keys(asked, {{"phase", phase.name},
-                                 {"ms", to_value(history.phase_ms(phase.ms, asked.steps / 2))}});
+    Json row = with_keys(row_options,
+                         {{"phase", phase.name},
+                          {"ms", to_value(history.phase_ms(phase.ms, row_options.steps / 2))}});
     sum += value_of(row, "ms");
     std::string id = results.add("phases", row);
     added.emplace_back(std::move(row), std::move(id));
@@ -53,20 +55,20 @@ void add_phases(Results& results, const FlowRowOptions& asked, const FlowHistory
   }
 }
 
-void add_samples(Results& results, const FlowRowOptions& asked, const FlowHistory& history) {
+void add_samples(Results& results, const FlowRowOptions& row_options, const FlowHistory& history) {
   const std::vector<FlowSample>& samples = history.samples();
   const std::size_t every = std::max<std::size_t>(1, samples.size() / kFlowRows);
   for (std::size_t i = 0; i < samples.size(); i += every) {
     const FlowSample& sample = samples[i];
-    results.add("flow", with_keys(asked, {{"step", i + 1},
-                                          {"seconds", sample.time},
-                                          {"kinetic", sample.energy.kinetic},
-                                          {"potential", sample.energy.potential},
-                                          {"elastic", sample.energy.elastic},
-                                          {"balance", sample.balance()},
-                                          {"deepest", sample.deepest},
-                                          {"pairs", sample.contacts},
-                                          {"points", sample.points}}));
+    results.add("flow", with_keys(row_options, {{"step", i + 1},
+                                                {"seconds", sample.time},
+                                                {"kinetic", sample.energy.kinetic},
+                                                {"potential", sample.energy.potential},
+                                                {"elastic", sample.energy.elastic},
+                                                {"balance", sample.balance()},
+                                                {"deepest", sample.deepest},
+                                                {"pairs", sample.contacts},
+                                                {"points", sample.points}}));
   }
 }
 
@@ -115,29 +117,29 @@ void declare_flow_checks(Results& results) {
                     {"doubled", "contacts doubled", "", Better::less, Format::count}}});
 }
 
-FlowOptions flow_options(const FlowRowOptions& asked) {
+FlowOptions flow_options(const FlowRowOptions& row_options) {
   FlowOptions options;
-  options.objects = asked.objects;
-  options.shape = flow_shape_named(asked.shape);
-  options.seed = asked.seed;
-  options.execution = asked.threads == 1 ? Execution::serial() : Execution::parallel();
+  options.objects = row_options.objects;
+  options.shape = flow_shape_named(row_options.shape);
+  options.seed = row_options.seed;
+  options.execution = row_options.threads == 1 ? Execution::serial() : Execution::parallel();
   return options;
 }
 
-void add_flow(Results& results, const FlowRowOptions& asked, const FlowRun& run) {
+void add_flow(Results& results, const FlowRowOptions& row_options, const FlowRun& run) {
   const FlowHistory& history = run.history();
-  add_phases(results, asked, history);
-  add_samples(results, asked, history);
+  add_phases(results, row_options, history);
+  add_samples(results, row_options, history);
   const FlowSample& last = history.samples().back();
-  results.add("flows", with_keys(asked, {{"steps", run.flow().steps()},
-                                         {"rise", history.greatest_rise()},
-                                         {"deepest", history.deepest()},
-                                         {"pairs", last.contacts},
-                                         {"points", last.points},
-                                         {"fingerprint", to_hex(run.flow().fingerprint())}}));
+  results.add("flows", with_keys(row_options, {{"steps", run.flow().steps()},
+                                               {"rise", history.greatest_rise()},
+                                               {"deepest", history.deepest()},
+                                               {"pairs", last.contacts},
+                                               {"points", last.points},
+                                               {"fingerprint", to_hex(run.flow().fingerprint())}}));
   if (results.table("flow_checks") == nullptr) return;
-  results.add("flow_checks", {{"shape", asked.shape},
-                              {"objects", asked.objects},
+  results.add("flow_checks", {{"shape", row_options.shape},
+                              {"objects", row_options.objects},
                               {"steps", run.flow().steps()},
                               {"allocations", run.allocations()},
                               {"steady_allocations", run.steady_allocations()},
@@ -146,10 +148,10 @@ void add_flow(Results& results, const FlowRowOptions& asked, const FlowRun& run)
                               {"doubled", run.faults().doubled}});
 }
 
-void add_flow(Results& results, const FlowRowOptions& asked) {
-  FlowRun run(flow_options(asked), asked.steps, asked.check);
-  for (std::size_t i = 0; i < asked.steps; ++i) run.step();
-  add_flow(results, asked, run);
+void add_flow(Results& results, const FlowRowOptions& row_options) {
+  FlowRun run(flow_options(row_options), row_options.steps, row_options.check);
+  for (std::size_t i = 0; i < row_options.steps; ++i) run.step();
+  add_flow(results, row_options, run);
 }
 
 std::vector<std::string> flow_shape_names() {

@@ -24,11 +24,11 @@ void declare_flows(Results& results);
 /// Declares flow_checks: memory, and a comparison of the contacts with a test of all pairs.
 void declare_flow_checks(Results& results);
 
-[[nodiscard]] FlowOptions flow_options(const FlowRowOptions& asked);
+[[nodiscard]] FlowOptions flow_options(const FlowRowOptions& row_options);
 /// Adds the rows of a flow that has run, and of its checks if they are declared.
-void add_flow(Results& results, const FlowRowOptions& asked, const FlowRun& run);
+void add_flow(Results& results, const FlowRowOptions& row_options, const FlowRun& run);
 /// Runs a flow and adds its rows.
-void add_flow(Results& results, const FlowRowOptions& asked);
+void add_flow(Results& results, const FlowRowOptions& row_options);
 
 [[nodiscard]] std::vector<std::string> flow_shape_names();
 /// Throws std::invalid_argument if there is no shape of this name.

@@ -207,7 +207,7 @@ void declare_frames(Results& results) {
                    {{"speedup", "speedup", "times", Better::more}}});
   results.declare({"throughput_skipped",
                    "throughput",
-                   "what was not run, and why",
+                   "skipped partitions, and the reason",
                    {"objects", "skipped"},
                    {}});
 }
@@ -291,7 +291,7 @@ void declare_limits(Results& results) {
   results.declare(
       {"limits",
        "throughput",
-       "a frame over what memory alone asks for if everything moves and nothing is kept",
+       "a frame over the time of its memory accesses if everything moves and nothing is kept",
        {"scene", "objects"},
        {{"bandwidth_ms", "boxes read, written, read", "ms"},
         {"sort_ms", "a key each sorted", "ms"},

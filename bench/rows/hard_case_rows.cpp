@@ -149,36 +149,37 @@ Json to_json(const Json& question, const NarrowAnswer& answer, double sign) {
           {"normal", std::move(normal)}, {"error_bound", "inf"}};
 }
 
-CaseVerdict query_library(NarrowEngine& engine, const PeerCase& asked, const Json& question) {
-  const bool reports_distance = engine.takes(asked.set.kind, ContactLevel::distance);
+CaseVerdict query_library(NarrowEngine& engine, const PeerCase& converted, const Json& question) {
+  const bool reports_distance = engine.takes(converted.set.kind, ContactLevel::distance);
   try {
-    engine.start(asked.set);
-    engine.run(reports_distance ? ContactLevel::distance : ContactLevel::manifold, asked.set.pairs);
+    engine.start(converted.set);
+    engine.run(reports_distance ? ContactLevel::distance : ContactLevel::manifold,
+               converted.set.pairs);
   } catch (const std::exception&) {
     return {.fault = "exception"};
   }
   const NarrowAnswer answer = engine.answer(0);
-  // An engine without distances reports only that the pair is separate, so only that is compared.
+  // If the shapes are apart and the engine reports no distance, only its overlap flag is checked.
   if (!reports_distance && !question["expect"]["overlap"].get<bool>()) {
     return {.fault = answer.overlap ? kFalseContact : ""};
   }
-  return check_hard_case(question, to_json(question, answer, asked.sign), kPeersError);
+  return check_hard_case(question, to_json(question, answer, converted.sign), kPeersError);
 }
 
 void add_peers(const Json& questions, std::vector<HardCaseTally>& tallies) {
   std::vector<HardCaseTally> peers;
   for (const auto& peer : make_narrow_peers()) peers.push_back({.engine = peer->name()});
   for (const Json& question : questions) {
-    const auto asked = peer_case(question);
+    const auto converted = peer_case(question);
     // An engine can be started only once.
     const auto fresh = make_narrow_peers();
     for (std::size_t i = 0; i < peers.size(); ++i) {
       const bool needs_origin = peers[i].engine.starts_with("libccd");
-      if (asked == nullptr || !fresh[i]->takes(asked->set.kind, ContactLevel::manifold) ||
-          (needs_origin && !asked->around_origin)) {
+      if (converted == nullptr || !fresh[i]->takes(converted->set.kind, ContactLevel::manifold) ||
+          (needs_origin && !converted->around_origin)) {
         ++peers[i].not_taken;
       } else {
-        peers[i].add(query_library(*fresh[i], *asked, question));
+        peers[i].add(query_library(*fresh[i], *converted, question));
       }
     }
   }
@@ -205,16 +206,16 @@ std::vector<HardCaseTally> judge_hard_cases(const Json& questions, bool peers) {
 void declare_hard_cases(Results& results) {
   results.declare({"hard_cases",
                    "stability",
-                   "cases whose answers are known by reasoning",
+                   "cases whose results were derived by reasoning",
                    {"family", "engine"},
                    {{"right", "right", "cases", Better::more, Format::count},
                     {"wrong", "wrong", "cases", Better::less, Format::count},
                     {"wrong_verdicts", "of them verdicts", "cases", Better::less, Format::count},
                     {"not_taken", "not taken", "cases", Better::neither, Format::count},
                     {"worst_error", "worst error", "of the size", Better::less, Format::tiny},
-                    {"worst_over_allowed", "worst error over what is allowed", "times",
+                    {"worst_over_allowed", "worst error over the allowed error", "times",
                      Better::less, Format::tiny},
-                    {"faults", "what was wrong", "", Better::neither, Format::text}}});
+                    {"faults", "faults", "", Better::neither, Format::text}}});
   results.declare({"hard_cases_all",
                    "stability",
                    "hard cases of all families",

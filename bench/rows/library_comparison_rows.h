@@ -7,13 +7,13 @@
 namespace winnow::bench {
 
 /// Declares beside_peers: other libraries relative to the best partition of the same race, in the
-/// frames that both ran. Compares the median, the mean if the scene grows, or the one frame in
-/// which the library was aborted for taking too long.
+/// frames that both ran. Compares the median, or the mean if the scene grows, or, if the library
+/// was aborted for taking too long, the frame in which it was aborted.
 void declare_beside_peers(Results& results);
 
-/// Runs a race on a scene, whose name and recording are written to the options. An aborted library
-/// is compared by its time until then, which is a lower bound. Throws std::runtime_error after that
-/// if not all found the same pairs.
+/// Runs a race on a scene, whose name and recording are written to the options, and adds the rows.
+/// The time of a frame that was given up is the time until then, a lower bound. Throws
+/// std::runtime_error after that if not all found the same pairs.
 Measurement add_beside_peers(Results& results, const NamedScene& scene, MeasureOptions options);
 
 }  // namespace winnow::bench

@@ -47,13 +47,13 @@ void add_held(Results& results, const Json& keys, const Held& held, const std::s
 }
 
 void derive_ratio(Results& results, const Json& keys, const std::string& command) {
-  const auto told = [&](const char* by) {
+  const auto find_check = [&](const char* by) {
     Json where = keys;
     where["by"] = by;
     return results.row("memory_check", where);
   };
-  const Json* resident = told(kByResident);
-  const Json* reserved = told(kByFootprint);
+  const Json* resident = find_check(kByResident);
+  const Json* reserved = find_check(kByFootprint);
   if (resident == nullptr || reserved == nullptr) return;
   Json ratio = keys;
   ratio["ratio"] =
@@ -89,12 +89,12 @@ void declare_memory(Results& results) {
                    std::move(values)});
   results.declare({"memory_check",
                    "memory",
-                   "the whole partition, told in three ways",
+                   "the whole partition, measured in three ways",
                    {"scene", "objects", "partition", "threads", "by"},
                    {{"bytes_per_object", "memory", "bytes/object"}}});
   results.declare({"memory_ratio",
                    "memory",
-                   "what the system holds over what footprint() says is reserved",
+                   "resident memory over the reserved memory that footprint() returns",
                    {"scene", "objects", "partition", "threads"},
                    {{"ratio", "resident / reserved", "times"}}});
 }
@@ -128,7 +128,8 @@ void add_footprints_apart(Results& results, const NamedScene& scene, std::size_t
   for (Json row : run_own(arguments)) {
     const std::string id = row["id"];
     const std::string table = id.substr(0, id.find('/'));
-    // The ratio is derived again below, since the other process may name the scene differently.
+    // Rows of the other process contain its name of the scene, which may differ. The ratio, which
+    // refers to ids of such rows, is derived again below.
     if (table == "memory_ratio") continue;
     row.erase("id");
     row["scene"] = scene.name;

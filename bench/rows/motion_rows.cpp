@@ -30,12 +30,12 @@ double share_of(std::size_t part, std::size_t of) {
 void declare_motion(Results& results) {
   results.declare({"impacts",
                    "motion",
-                   "when two moving shapes first meet",
+                   "times of impact of two moving shapes",
                    {"kind", "turning", "engine"},
                    {{"ns", "a pair", "ns", Better::less},
                     {"over_distance", "times winnow's distance query", "", Better::less},
                     {"pairs", "pairs", "", Better::neither, Format::count},
-                    {"hits", "of them meet", "", Better::neither, Format::count},
+                    {"hits", "of them hit", "", Better::neither, Format::count},
                     {"missed", "missed", "", Better::less, Format::count},
                     {"late", "late", "", Better::less, Format::count},
                     {"loose", "gaps above 1e-6", "", Better::less, Format::count},
@@ -46,7 +46,7 @@ void declare_motion(Results& results) {
                      Better::less, Format::tiny}}});
   results.declare({"feature_impacts",
                    "motion",
-                   "when two features of meshes first touch",
+                   "times of impact of two features of meshes",
                    {"features", "steps"},
                    {{"ns", "a pair", "ns", Better::less},
                     {"pairs", "pairs", "", Better::neither, Format::count},
@@ -58,11 +58,11 @@ void declare_motion(Results& results) {
                    "a heap of which some bodies are fast: first impacts beside contacts",
                    {"bodies", "fast", "threads"},
                    {{"collide_ms", "contacts", "ms", Better::less},
-                    {"sweep_ms", "sweep of the fast bodies", "ms", Better::less},
-                    {"all_ms", "the same while the others tremble", "ms", Better::less},
-                    {"over_collide", "sweep over contacts", "", Better::less},
-                    {"all_over_collide", "the same while the others tremble", "", Better::less},
-                    {"pairs", "pairs looked at", "", Better::neither, Format::count},
+                    {"sweep_ms", "impacts of the fast bodies", "ms", Better::less},
+                    {"all_ms", "the same while the others jitter", "ms", Better::less},
+                    {"over_collide", "impacts over contacts", "", Better::less},
+                    {"all_over_collide", "the same while the others jitter", "", Better::less},
+                    {"pairs", "pairs tested", "", Better::neither, Format::count},
                     {"impacts", "impacts", "", Better::neither, Format::count}}});
 }
 
@@ -110,8 +110,8 @@ void add_feature_impacts(Results& results, std::size_t pairs, std::size_t rounds
   }
 }
 
-void add_swept_scene(Results& results, const SweepRaceOptions& options) {
-  const SweepTiming timing = measure_sweeps(options);
+void add_continuous_collision(Results& results, const ContinuousRaceOptions& options) {
+  const ContinuousTiming timing = measure_continuous_collision(options);
   const double collide = median_of(timing.collide_ms);
   results.add(
       "swept_scenes",
@@ -119,9 +119,9 @@ void add_swept_scene(Results& results, const SweepRaceOptions& options) {
        {"fast", options.fast},
        {"threads", options.threads},
        {"collide_ms", to_value(timing.collide_ms)},
-       {"sweep_ms", to_value(timing.sweep_ms)},
+       {"sweep_ms", to_value(timing.impacts_ms)},
        {"all_ms", to_value(timing.all_ms)},
-       {"over_collide", median_of(timing.sweep_ms) / collide},
+       {"over_collide", median_of(timing.impacts_ms) / collide},
        {"all_over_collide", median_of(timing.all_ms) / collide},
        {"pairs", timing.pairs},
        {"impacts", timing.impacts},

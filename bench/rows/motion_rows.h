@@ -1,8 +1,8 @@
 #pragma once
 
+#include "bench/measure/continuous_race.h"
 #include "bench/measure/feature_race.h"
 #include "bench/measure/impact_race.h"
-#include "bench/measure/sweep_race.h"
 #include "bench/rows/results.h"
 
 namespace winnow::bench {
@@ -19,7 +19,7 @@ ImpactMeasurement add_impacts(Results& results, const ImpactRaceOptions& options
 void add_feature_impacts(Results& results, std::size_t pairs, std::size_t rounds,
                          std::uint64_t seed);
 
-/// Adds the sweeps of a scene, compared with its contacts.
-void add_swept_scene(Results& results, const SweepRaceOptions& options);
+/// Adds the impacts of a scene, compared with its contacts.
+void add_continuous_collision(Results& results, const ContinuousRaceOptions& options);
 
 }  // namespace winnow::bench

@@ -11,8 +11,8 @@
 
 namespace winnow::bench {
 
-std::size_t NamedScene::objects(std::size_t asked) const {
-  return recording ? recording->objects() : asked;
+std::size_t NamedScene::objects(std::size_t requested) const {
+  return recording ? recording->objects() : requested;
 }
 
 std::unique_ptr<FrameSource> NamedScene::source(std::size_t objects, std::uint64_t seed) const {

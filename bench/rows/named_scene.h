@@ -19,7 +19,7 @@ struct NamedScene {
 
   [[nodiscard]] bool is_recording() const noexcept { return recording != nullptr; }
   /// Returns the number of objects; a recording has a fixed number.
-  [[nodiscard]] std::size_t objects(std::size_t asked) const;
+  [[nodiscard]] std::size_t objects(std::size_t requested) const;
   /// Returns the scene from its first frame. Throws ArgumentError if there is no such scene.
   [[nodiscard]] std::unique_ptr<FrameSource> source(std::size_t objects, std::uint64_t seed) const;
   /// Returns the command options of the scene: " --scene ...", and size and seed of a built-in one.

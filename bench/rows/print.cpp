@@ -21,11 +21,11 @@ std::vector<const Json*> columns_to_print(const Json& table, const std::vector<s
   std::vector<const Json*> columns;
   for (const Json& column : table["values"]) {
     const std::string name = column["name"];
-    const bool asked =
+    const bool is_selected =
         values.empty() || std::find(values.begin(), values.end(), name) != values.end();
     const bool known =
         std::any_of(rows.begin(), rows.end(), [&](const Json* row) { return row->contains(name); });
-    if (asked && known) columns.push_back(&column);
+    if (is_selected && known) columns.push_back(&column);
   }
   return columns;
 }

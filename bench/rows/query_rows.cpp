@@ -27,7 +27,7 @@ Json query_row_of(const QueryRun& run) {
   for (const double ms : run.ms) ns.push_back(1e6 * ms / questions);
   return {{"set", run.set},
           {"engine", run.engine},
-          {"asked", run.asking == QueryMode::single ? "single" : "batch"},
+          {"asked", run.mode == QueryMode::single ? "single" : "batch"},
           {"threads", run.threads},
           {"ns", to_value(ns)},
           {"found", run.found_a_question()},
@@ -43,15 +43,15 @@ Json query_row_of(const QueryRun& run) {
 void declare_queries(Results& results) {
   results.declare({"queries",
                    "queries",
-                   "questions to objects of a scene",
+                   "queries of the objects of a scene",
                    {"scene", "objects", "set", "engine", "asked", "threads"},
-                   {{"ns", "time", "ns/question", Better::less},
-                    {"found", "objects found", "a question", Better::neither},
+                   {{"ns", "time", "ns/query", Better::less},
+                    {"found", "objects found", "a query", Better::neither},
                     {"kind", "kind", "", Better::neither, Format::text},
-                    {"questions", "questions", "", Better::neither, Format::count},
-                    {"wrong", "wrong answers", "", Better::less, Format::count},
+                    {"questions", "queries", "", Better::neither, Format::count},
+                    {"wrong", "wrong results", "", Better::less, Format::count},
                     {"undecided", "undecided in float", "", Better::neither, Format::count},
-                    {"fingerprint", "answers", "", Better::neither, Format::text}}});
+                    {"fingerprint", "results", "", Better::neither, Format::text}}});
   results.declare({"frusta",
                    "queries",
                    "a frustum beside reading every box",

@@ -3,9 +3,9 @@
 namespace winnow::bench {
 namespace {
 
-const char* name_of(RayQueryType want) {
+const char* name_of(RayQueryType query_type) {
   constexpr const char* kNames[] = {"closest", "any", "all"};
-  return kNames[static_cast<int>(want)];
+  return kNames[static_cast<int>(query_type)];
 }
 
 }  // namespace
@@ -17,8 +17,8 @@ void declare_mesh_rays(Results& results) {
        "rays through a mesh",
        {"mesh", "triangles", "want", "asking", "engine"},
        {{"ns", "a ray", "ns", Better::less},
-        {"hits", "rays that meet it", "", Better::neither, Format::count},
-        {"differ", "rays answered otherwise than by winnow", "", Better::neither, Format::count}}});
+        {"hits", "rays that hit it", "", Better::neither, Format::count},
+        {"differ", "rays with another result than winnow's", "", Better::neither, Format::count}}});
   results.declare({"ray_meshes",
                    "pipeline",
                    "meshes that rays are taken through",
@@ -34,8 +34,8 @@ RayMeasurement add_mesh_rays(Results& results, const RayRaceOptions& options) {
   results.add("ray_meshes", std::move(memory));
   for (const RayTiming& timing : measured.timings) {
     Json row = mesh;
-    row["want"] = name_of(timing.want);
-    row["asking"] = timing.asking == QueryMode::single ? "single" : "batch";
+    row["want"] = name_of(timing.query_type);
+    row["asking"] = timing.mode == QueryMode::single ? "single" : "batch";
     row["engine"] = timing.engine;
     row["ns"] = to_value(timing.ns);
     row["hits"] = timing.hits;

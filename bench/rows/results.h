@@ -61,8 +61,8 @@ class Results {
   /// such members.
   std::string add(const std::string& table, Json row);
 
-  /// Returns the rows of a table that have these members; none if there is no such table. They stay
-  /// valid until the next `add` or `declare`.
+  /// Returns the rows of a table that have these members; none if there is no such table. The
+  /// pointers stay valid until the next `add` or `declare`.
   [[nodiscard]] std::vector<const Json*> rows(const std::string& table,
                                               const Json& where = Json::object()) const;
   /// Returns the first such row, or null.
@@ -93,7 +93,7 @@ class Results {
 /// Returns the member `from` of a row: it states that the value `name` of the row was computed by
 /// `rule` from the value `field` of the rows with the ids `rows`. Rules: "ratio" divides the first
 /// value by the second; "exponent" fits value = a * objects^b to all by least squares of logarithms
-/// and gives b; "sum" adds them; "share" divides the first by the sum of all.
+/// and returns b; "sum" adds all; "share" divides the first by the sum of all.
 [[nodiscard]] Json derived(const std::string& name, const std::string& rule,
                            const std::string& field, const std::vector<std::string>& rows);
 

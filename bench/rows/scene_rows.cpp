@@ -52,7 +52,7 @@ void declare_scenes(Results& results, bool levels_by_setting) {
   const std::vector<std::string> setting_keys{"scene", "level", "motion", "threads"};
   results.declare({"scene_levels",
                    "pipeline",
-                   "a frame by how much is asked for",
+                   "a frame by contact level",
                    levels_by_setting ? setting_keys : level_keys,
                    {{"ms", "a frame", "ms", Better::less},
                     {"touching", "pairs reported", "", Better::neither, Format::count},
@@ -141,12 +141,12 @@ void add_scene_costs(Results& results, const SceneCostOptions& options) {
   double without = 0.0;
   for (const SceneCost& cost : measure_scene_costs(options)) {
     const double ms = median_of(cost.timing.ms);
-    if (cost.margin == 0.0) without = ms;
+    if (cost.contact_margin == 0.0) without = ms;
     const auto touching = static_cast<double>(cost.timing.finds.touching);
     results.add("scene_costs",
                 {{"scene", options.scene},
                  {"level", to_text(cost.level)},
-                 {"margin", cost.margin},
+                 {"margin", cost.contact_margin},
                  {"threads", options.threads},
                  {"ms", to_value(cost.timing.ms)},
                  {"over_none", ms / without},

@@ -16,7 +16,7 @@ void declare_scenes(Results& results, bool levels_by_setting = false);
 PipelineMeasurement add_scene_race(Results& results, const PipelineMeasureOptions& options);
 /// Measures only winnow, up to a level.
 void add_scene_level(Results& results, PipelineMeasureOptions options, const std::string& level);
-/// Measures only winnow: bytes of contacts, and the cost of a margin.
+/// Measures only winnow: bytes of contacts, and the cost of a contact margin.
 void add_scene_costs(Results& results, const SceneCostOptions& options);
 /// Measures two tori: their contacts, and building the tree that finds them.
 MeshMeasurement add_tori(Results& results, std::size_t rounds, bool peers, bool machine_clock);

@@ -10,13 +10,14 @@
 namespace winnow::bench {
 namespace {
 
-/// Simulated seconds in which the contact springs take up the weight.
+/// Simulated seconds before the drift is measured: until then the contact springs are compressed
+/// by the weight.
 constexpr double kSettling = 1.0;
 
-std::string command_of(const StandingRowOptions& asked) {
-  return "bench/run simulate --standing " + name_of(asked.scene) + " --seconds " +
-         short_number(asked.seconds) + " --threads " + std::to_string(asked.threads) + " --isa " +
-         isa_name();
+std::string command_of(const StandingRowOptions& row_options) {
+  return "bench/run simulate --standing " + name_of(row_options.scene) + " --seconds " +
+         short_number(row_options.seconds) + " --threads " + std::to_string(row_options.threads) +
+         " --isa " + isa_name();
 }
 
 }  // namespace
@@ -40,22 +41,22 @@ void declare_standing(Results& results) {
         {"fingerprint", "all bodies' bits", "", Better::neither, Format::text}}});
 }
 
-bool add_standing(Results& results, const StandingRowOptions& asked) {
+bool add_standing(Results& results, const StandingRowOptions& row_options) {
   StandingOptions options;
-  options.contact_reduction = asked.reduced;
-  options.execution = asked.threads == 1 ? Execution::serial() : Execution::parallel();
-  Standing standing(asked.scene, options);
-  while (standing.time() < std::min(kSettling, asked.seconds)) standing.step();
+  options.contact_reduction = row_options.reduced;
+  options.execution = row_options.threads == 1 ? Execution::serial() : Execution::parallel();
+  Standing standing(row_options.scene, options);
+  while (standing.time() < std::min(kSettling, row_options.seconds)) standing.step();
   const double settled = standing.drift();
   standing.mark();
   double kept = 1.0;
-  while (standing.time() < asked.seconds) {
+  while (standing.time() < row_options.seconds) {
     standing.step();
     kept = std::min(kept, standing.kept_points());
   }
-  results.add("standing", {{"structure", name_of(asked.scene)},
-                           {"manifolds", asked.reduced ? "one a region" : "of all parts"},
-                           {"seconds", asked.seconds},
+  results.add("standing", {{"structure", name_of(row_options.scene)},
+                           {"manifolds", row_options.reduced ? "one a region" : "of all parts"},
+                           {"seconds", row_options.seconds},
                            {"bodies", standing.bodies()},
                            {"points", standing.contacts().points()},
                            {"settled", settled},
@@ -66,7 +67,7 @@ bool add_standing(Results& results, const StandingRowOptions& asked) {
                            {"islands", standing.islands()},
                            {"colours", standing.colours()},
                            {"fingerprint", to_hex(standing.fingerprint())},
-                           {"command", command_of(asked)}});
+                           {"command", command_of(row_options)}});
   return standing.drift() < kStandingDrift;
 }
 

@@ -21,7 +21,7 @@ struct StandingRowOptions {
 /// Declares standing: structures that a solver keeps upright.
 void declare_standing(Results& results);
 /// Simulates one structure and adds its row. Returns false if it moved too far.
-bool add_standing(Results& results, const StandingRowOptions& asked);
+bool add_standing(Results& results, const StandingRowOptions& row_options);
 
 [[nodiscard]] std::vector<std::string> standing_names();
 /// Throws std::invalid_argument if there is no structure of this name.

@@ -43,16 +43,17 @@ Json volume_row_of(const VolumeRow& row, const VolumeRow& boxes) {
   return values;
 }
 
-std::string volumes_command(const VolumeRowOptions& asked, double step) {
-  std::string text = "bench/run volumes --setting " + asked.setting;
-  const bool recorded = asked.setting == "scene" && asked.scene.is_recording();
-  if (asked.setting == "scene") {
-    text += (recorded ? " --recording " : " --scene ") + shell_word(asked.scene.argument);
+std::string volumes_command(const VolumeRowOptions& options, double step) {
+  std::string text = "bench/run volumes --setting " + options.setting;
+  const bool recorded = options.setting == "scene" && options.scene.is_recording();
+  if (options.setting == "scene") {
+    text += (recorded ? " --recording " : " --scene ") + shell_word(options.scene.argument);
   }
   if (!recorded)
-    text += " --objects " + std::to_string(asked.objects) + " --step " + key_text(step);
-  return text + " --partition " + asked.partition + " --frames " + std::to_string(asked.frames) +
-         " --seed " + std::to_string(asked.seed) + " --isa " + isa_name();
+    text += " --objects " + std::to_string(options.objects) + " --step " + key_text(step);
+  return text + " --partition " + options.partition + " --frames " +
+         std::to_string(options.frames) + " --seed " + std::to_string(options.seed) + " --isa " +
+         isa_name();
 }
 
 }  // namespace
@@ -70,21 +71,22 @@ void declare_volumes(Results& results) {
                    volume_values()});
 }
 
-void add_volumes(Results& results, const VolumeRowOptions& asked, const std::string& table) {
-  VolumeSetting made = make_volume_setting(asked.setting, {.scene = asked.scene.argument,
-                                                           .recording = asked.scene.recording.get(),
-                                                           .objects = asked.objects,
-                                                           .seed = asked.seed});
-  const std::string what = asked.setting == "scene" ? asked.scene.name : made.what;
-  // Rounded as the command's text, so that the command repeats the same measurement.
-  const double step = std::stod(key_text(asked.step < 0.0 ? made.step : asked.step));
+void add_volumes(Results& results, const VolumeRowOptions& options, const std::string& table) {
+  VolumeSetting made =
+      make_volume_setting(options.setting, {.scene = options.scene.argument,
+                                            .recording = options.scene.recording.get(),
+                                            .objects = options.objects,
+                                            .seed = options.seed});
+  const std::string what = options.setting == "scene" ? options.scene.name : made.what;
+  // The step is rounded as in the command's text, so that the command repeats the same measurement.
+  const double step = std::stod(key_text(options.step < 0.0 ? made.step : options.step));
   const std::size_t count = made.solids.size();
-  const std::string again = volumes_command(asked, step);
-  const bool follows = asked.step < 0.0;
+  const std::string again = volumes_command(options, step);
+  const bool follows = options.step < 0.0;
   const auto rows =
       race_volumes(std::move(made.solids),
-                   {.partition = asked.partition,
-                    .frames = follows ? made.frames(asked.frames) : asked.frames,
+                   {.partition = options.partition,
+                    .frames = follows ? made.frames(options.frames) : options.frames,
                     .step = step,
                     .recorded = follows ? made.recorded : std::span<const std::vector<Aabb>>()});
   bool missed = false;
@@ -94,7 +96,7 @@ void add_volumes(Results& results, const VolumeRowOptions& asked, const std::str
     Json row = volume_row_of(one, rows.front());
     if (table == "volumes") row["objects_are"] = what;
     row.update(
-        {{"objects", count}, {"step", step}, {"partition", asked.partition}, {"command", again}});
+        {{"objects", count}, {"step", step}, {"partition", options.partition}, {"command", again}});
     results.add(table, std::move(row));
   }
   if (missed) throw std::runtime_error("a volume missed pairs that overlap");

@@ -29,7 +29,7 @@ void declare_volumes(Results& results);
 
 /// Adds a row for each volume; `margins` gets only rows of boxes. Throws std::runtime_error after
 /// that if a volume missed overlapping pairs.
-void add_volumes(Results& results, const VolumeRowOptions& asked,
+void add_volumes(Results& results, const VolumeRowOptions& options,
                  const std::string& table = "volumes");
 
 }  // namespace winnow::bench

@@ -88,7 +88,7 @@ BodyScene::BodyScene(std::string name, const Walls& walls, std::vector<Body> bod
     place(i);
     half = std::max(half, bodies_[i].half);
   }
-  // One rounding step larger than the boxes, so that the world contains all of them.
+  // A little larger than the boxes, so that it contains all of them after rounding to float.
   Eigen::Vector3d low = Eigen::Vector3d(walls_.low.data()).array() - half * 1.000001;
   Eigen::Vector3d high = Eigen::Vector3d(walls_.high.data()).array() + half * 1.000001;
   world_ = Aabb::outward(low, high);

@@ -39,7 +39,7 @@ struct Walls {
 void drift(Body& body, const Walls& walls) noexcept;
 [[nodiscard]] Aabb box_of(const Body& body) noexcept;
 
-/// Returns walls that give each unit cube two of its volumes.
+/// Returns walls around a cube whose volume is twice the volume of that many unit cubes.
 [[nodiscard]] Walls uniform_walls(std::size_t objects) noexcept;
 /// Returns unit cubes spread evenly between the walls, each with a velocity.
 [[nodiscard]] std::vector<Body> uniform_bodies(std::size_t objects, std::uint64_t seed,
@@ -51,8 +51,8 @@ struct Sizes {
   double ratio;   ///< largest edge / smallest edge
   double volume;  ///< volume of the world per object
 };
-// Two cubes with edges a and b overlap with probability (a + b)^3 / volume. The volume per object
-// that gives ten pairs per object is therefore a twentieth of the mean of (a + b)^3.
+// Two cubes with edges a and b overlap with probability (a + b)^3 / (volume of the world). There are
+// thus ten pairs per object if the volume per object is a twentieth of the mean of (a + b)^3.
 inline constexpr Sizes kMixedSizes{0.1, 100.0, 14.2};
 
 [[nodiscard]] Walls walls_for(const Sizes& sizes, std::size_t objects) noexcept;

@@ -220,7 +220,7 @@ Triangles make_race_torus() {
 }
 
 const std::array<TorusPose, 4>& torus_poses() {
-  // The copy is upright and moves outward through the first torus's hole and tube.
+  // The copy is upright. From pose to pose it is farther from the axis of the first torus.
   constexpr double kHalf = 0.70710678118654752;
   static const std::array<TorusPose, 4> poses{{
       {73, {{1.195, 0.05, 0.02}, {kHalf, kHalf, 0.0, 0.0}}},

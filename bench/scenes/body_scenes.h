@@ -12,8 +12,9 @@
 namespace winnow::bench {
 
 /// Returns a dense heap of boxes, spheres, capsules and hulls of 16 vertices, a quarter each, of
-/// about unit size: random positions in a cube, pushed apart until they hardly overlap. About 8
-/// pairs of boxes and 2.5 contacts per body.
+/// about unit size, at random positions in a cube. Overlapping bodies were pushed apart several
+/// times, so that the remaining overlaps are shallow. About 8 pairs of boxes and 2.5 contacts per
+/// body.
 [[nodiscard]] std::unique_ptr<BodySet> make_heap(std::size_t bodies, std::uint64_t seed);
 
 /// Returns balls of unit diameter at random positions in a cube, 7.5 contacts per body.
@@ -32,10 +33,10 @@ struct PoseNoise {
 };
 /// Every object moves a little.
 inline constexpr PoseNoise kMoving{0.005, 0.005};
-/// Bodies at rest apart from noise, as a solver leaves them; smaller than the distance up to which
-/// contacts are carried over.
+/// Bodies at rest apart from the noise of a solver. The noise is smaller than kCacheTolerance, so
+/// that contacts are cached.
 inline constexpr PoseNoise kResting{1e-5, 1e-5};
-inline constexpr double kCarryOver = 2e-4;
+inline constexpr double kCacheTolerance = 2e-4;
 
 /// Returns the poses of a frame: each body's pose with a random displacement.
 void apply_pose_noise(const BodySet& set, const PoseNoise& by, std::uint64_t frame,

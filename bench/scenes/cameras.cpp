@@ -27,9 +27,9 @@ bool sees(const Frustum& camera, const Aabb& box) noexcept {
 double share_seen(const Frustum& camera, std::span<const Aabb> boxes) noexcept {
   const std::size_t step = std::max<std::size_t>(1, boxes.size() / 2000);
   std::size_t seen = 0;
-  std::size_t asked = 0;
-  for (std::size_t i = 0; i < boxes.size(); i += step, ++asked) seen += sees(camera, boxes[i]);
-  return asked == 0 ? 0.0 : static_cast<double>(seen) / static_cast<double>(asked);
+  std::size_t sampled = 0;
+  for (std::size_t i = 0; i < boxes.size(); i += step, ++sampled) seen += sees(camera, boxes[i]);
+  return sampled == 0 ? 0.0 : static_cast<double>(seen) / static_cast<double>(sampled);
 }
 
 }  // namespace

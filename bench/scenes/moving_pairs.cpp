@@ -15,7 +15,7 @@ double most_turn(PairTurn turn) {
 /// Returns a motion that passes through the pose at half its time.
 RigidMotion through(const Pose& middle, const Eigen::Vector3d& travel,
                     const Eigen::Vector3d& turn) {
-  RigidMotion back = RigidMotion::standing(middle);
+  RigidMotion back = RigidMotion::stationary(middle);
   RigidMotion motion = back;
   for (int i = 0; i < 3; ++i) {
     back.travel[i] = -0.5 * travel[i];

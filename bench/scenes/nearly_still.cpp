@@ -14,8 +14,8 @@ class FewMovers final : public BodyScene {
  public:
   FewMovers(const Walls& walls, std::vector<Body> bodies, std::uint64_t seed)
       : BodyScene("few_movers", walls, std::move(bodies), seed) {
-    const std::size_t wanted = std::min<std::size_t>(7, bodies_.size());
-    while (movers_.size() < wanted) {
+    const std::size_t mover_count = std::min<std::size_t>(7, bodies_.size());
+    while (movers_.size() < mover_count) {
       const std::uint32_t one = random_.below(static_cast<std::uint32_t>(bodies_.size()));
       if (std::find(movers_.begin(), movers_.end(), one) == movers_.end()) movers_.push_back(one);
     }

@@ -23,8 +23,8 @@ struct PairKind {
 
 /// Returns the kinds that every benchmark uses, cheapest first.
 [[nodiscard]] std::span<const PairKind> main_pair_kinds() noexcept;
-/// Returns all kinds: the main ones, then every other pair of sphere, capsule, box, cylinder, cone,
-/// hull, ellipsoid, tapered capsule ("taper" in names), lens ("own" in names: a user shape),
+/// Returns all kinds: the main ones, then all remaining pairs of sphere, capsule, box, cylinder,
+/// cone, hull, ellipsoid, tapered capsule ("taper" in names), lens ("own" in names: a user shape),
 /// triangle and half-space.
 [[nodiscard]] std::span<const PairKind> pair_kinds() noexcept;
 /// Returns null if there is no kind of this name.

@@ -1,5 +1,6 @@
 // Draws the seeded random pairs that narrow-phase races and accuracy measurements use. Poses are
-// drawn until winnow's overlap test gives the wanted result; random_shapes.cpp draws the shapes.
+// drawn until, by winnow's overlap test, every second pair overlaps; random_shapes.cpp draws the
+// shapes.
 
 #include "bench/scenes/pair_set.h"
 
@@ -17,11 +18,11 @@
 namespace winnow::bench {
 namespace {
 
-/// Number of different hulls of a set: few that stay in the cache, or many if bodies are scattered.
+/// Number of different hulls of a set: these stay in the cache; with scattered bodies, more.
 constexpr std::uint32_t kHulls = 32;
 constexpr std::uint32_t kScatteredHulls = 256;
-/// Spheres whose centres are up to this multiple of the sum of their radii apart overlap in half of
-/// all cases.
+/// If the centre of one sphere is uniform in the ball around the centre of another whose radius is
+/// this multiple of the sum of their radii, the two spheres overlap in half of all cases.
 constexpr double kReach = 1.25;
 /// Limit on the placements of one pair; few pairs need more than 200.
 constexpr int kAttempts = 10'000;

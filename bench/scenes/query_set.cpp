@@ -52,7 +52,7 @@ class QuerySetBuilder {
     if (name.starts_with("swept")) return casts(std::move(set));
     if (name == "nearest 1") return nearest(std::move(set), 1);
     if (name == "nearest 16") return nearest(std::move(set), 16);
-    throw std::runtime_error("there is no set of questions " + std::string(name));
+    throw std::runtime_error("there is no set of queries " + std::string(name));
   }
 
  private:

@@ -16,7 +16,7 @@
 
 namespace winnow::bench {
 
-/// Expected result of each query of a set.
+/// The result that each query of a set returns.
 enum class QueryType {
   closest,  ///< ray or swept volume: the first object hit
   any,      ///< ray: whether it hits an object

@@ -120,7 +120,7 @@ std::unique_ptr<FrameSource> make_free_fall(std::size_t objects, std::uint64_t s
   std::vector<Falling::Path> paths(objects);
   for (Falling::Path& path : paths) {
     const Vector start = draw_point(random, walls);
-    // At rest the heap is a quarter as high as the world, and four times as dense.
+    // At rest the heap is a quarter as high as at the start, and four times as dense.
     path.end = {start[0], start[1], 0.25 * start[2]};
     path.direction = {0.0, 0.0, 1.0};
     path.length = 0.75 * start[2];

@@ -33,7 +33,8 @@ constexpr std::array<SceneInfo, 18> kInfos{{
     {"shear", "as uniform, but objects go along x, by a fifth of their y, and round the world"},
     {"jumps", "as uniform, but in each frame every object jumps by two edges, anywhere"},
     {"few_movers", "as uniform, but only seven objects move, however many there are"},
-    {"jitter", "as uniform, but 99 of 100 tremble by 1e-5 where they are, and no pair changes"},
+    {"jitter",
+     "as uniform, but 99 of 100 jitter by 1e-5 about fixed positions, and no pair changes"},
     {"growth", "as uniform, but it begins with N/1000 objects, and has all after 60 frames"},
 }};
 

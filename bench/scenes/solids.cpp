@@ -85,7 +85,7 @@ Solids Solids::rotated(std::size_t objects, std::uint64_t seed) {
 
 Solids Solids::rods(std::size_t objects, std::uint64_t seed) {
   Random random(seed);
-  // A rod of 0.25 x 0.25 x 5 touches one or two others.
+  // At this density a rod of 0.25 x 0.25 x 5 touches one or two others.
   const double side = std::cbrt(8.0 * static_cast<double>(objects));
   Solids solids;
   for (std::size_t i = 0; i < objects; ++i) {

@@ -27,9 +27,9 @@ class Solids {
   [[nodiscard]] std::size_t size() const noexcept { return boxes_.size(); }
   [[nodiscard]] const std::vector<OrientedBox>& boxes() const noexcept { return boxes_; }
   [[nodiscard]] std::vector<Aabb> bounds() const;
-  /// Returns each object's box at the time, drawn at random for each, at which it last left a
-  /// margin of this share of its bounds' longest edge. This is the state of fat AABBs in a scene
-  /// that has been moving for long.
+  /// Returns each object's box at an earlier position on its path: the position at which a fat AABB
+  /// around it, with a margin of `share` times the longest edge of its bounds, was last refitted.
+  /// The time since then is random. This is the state of a scene that has been moving for long.
   [[nodiscard]] std::vector<OrientedBox> boxes_at_last_refit(float share) const;
   [[nodiscard]] const ShapePool& shapes() const noexcept { return shapes_; }
   [[nodiscard]] Bodies bodies() const noexcept { return {ids_, poses_}; }

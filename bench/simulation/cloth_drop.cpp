@@ -24,7 +24,7 @@ constexpr int kRelaxations = 20;
 constexpr double kDamping = 0.99;
 /// Friction: factor of the displacement of vertices on the ball.
 constexpr double kSliding = 0.2;
-/// Share of the time until an impact up to which a step goes.
+/// A step ends at this share of the time until an impact.
 constexpr double kBeforeTouch = 0.9;
 /// Number of times that displacements are cut vertex by vertex before all are cut together.
 constexpr int kMaxCuts = 8;
@@ -152,7 +152,7 @@ double ClothDrop::least_radius() const noexcept {
 }
 
 bool ClothDrop::is_on_ball(const Vec3d& vertex) const noexcept {
-  return options_.swept && vertex.norm() < least_radius() * 1.001;
+  return options_.continuous && vertex.norm() < least_radius() * 1.001;
 }
 
 void ClothDrop::keep_outside(Vec3d& vertex) const {
@@ -165,7 +165,7 @@ void ClothDrop::solve() {
     for (const Link& one : links_) relax(one);
     for (const SeparationConstraint& separation : separations_) solve_separation(separation);
     for (Vec3d& vertex : next_) {
-      if (options_.swept) keep_outside(vertex);
+      if (options_.continuous) keep_outside(vertex);
     }
   }
 }
@@ -205,13 +205,13 @@ bool ClothDrop::find_touches(double& earliest) {
       touch(std::span(corners_).subspan(3 * std::size_t{impact.face}, 3), impact.time);
     }
   };
-  need(mesh_.impacts_with({shapes_, ball_, RigidMotion::standing(Pose{})}, {}, take), "the ball");
+  need(mesh_.impacts_with({shapes_, ball_, RigidMotion::stationary(Pose{})}, {}, take), "the ball");
   return any;
 }
 
 void ClothDrop::step() {
   const double seconds = options_.step;
-  if (options_.swept) find_near();
+  if (options_.continuous) find_near();
   for (std::size_t i = 0; i < place_.size(); ++i) {
     velocity_[i].z() -= options_.gravity * seconds;
     next_[i] = place_[i] + velocity_[i] * seconds;
@@ -222,7 +222,7 @@ void ClothDrop::step() {
     next_[i] = place_[i] + (next_[i] - place_[i]) * kSliding;
   }
   double earliest = 1.0;
-  bool touches = options_.swept && find_touches(earliest);
+  bool touches = options_.continuous && find_touches(earliest);
   for (int cuts = 0; touches && cuts < kMaxCuts; ++cuts) {
     for (std::size_t i = 0; i < place_.size(); ++i) {
       next_[i] = place_[i] + (next_[i] - place_[i]) * share_[i];
@@ -275,7 +275,7 @@ double ClothDrop::lowest() const noexcept {
   return low;
 }
 
-double ClothDrop::stretch() const noexcept {
+double ClothDrop::max_strain() const noexcept {
   double most = 0.0;
   for (const Link& one : links_) {
     most = std::max(most, (place_[one.b] - place_[one.a]).norm() / one.length - 1.0);

@@ -15,8 +15,9 @@ struct ClothOptions {
   std::size_t side = 40;
   double step = 1.0 / 60.0;
   double gravity = 10.0;
-  /// If false, the cloth falls without collision detection, to show what passes through then.
-  bool swept = true;
+  /// If false, the cloth falls without continuous collision detection, for comparison: `passed` then
+  /// counts the features that passed through each other or the ball.
+  bool continuous = true;
   Execution execution = Execution::serial();
 };
 
@@ -45,7 +46,7 @@ class ClothDrop {
   /// Returns the height of the lowest vertex.
   [[nodiscard]] double lowest() const noexcept;
   /// Returns the largest relative extension of a link.
-  [[nodiscard]] double stretch() const noexcept;
+  [[nodiscard]] double max_strain() const noexcept;
   [[nodiscard]] std::uint64_t fingerprint() const noexcept;
 
  private:

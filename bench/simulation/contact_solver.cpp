@@ -15,8 +15,8 @@ using Vec3 = Eigen::Vector3d;
 /// Number of pairs that a task solves.
 constexpr std::size_t kSolvedPairs = 64;
 
-/// Returns a unit vector perpendicular to a unit vector; it depends continuously on it almost
-/// everywhere.
+/// Returns a unit vector perpendicular to a unit normal; the result is a continuous function of the
+/// normal almost everywhere.
 Vec3 across(const Vec3& normal) {
   return normal.cross(std::abs(normal.x()) < 0.6 ? Vec3::UnitX() : Vec3::UnitY()).normalized();
 }
@@ -139,7 +139,8 @@ void ContactSolver::apply(const PairPoints& pair, const Point& point, const Vec3
                           std::vector<RigidBody>& bodies) const {
   for (int side = 0; side < 2; ++side) {
     RigidBody& body = bodies[pair.body[side]];
-    // Pairs of one colour share static bodies, which must therefore not be written.
+    // Pairs of one colour are solved in parallel and may share static bodies, which must therefore
+    // not be written.
     if (body.inverse_mass == 0.0) continue;
     const Vec3 push = side == 0 ? Vec3(-impulse) : impulse;
     body.velocity += body.inverse_mass * push;
@@ -163,24 +164,25 @@ void ContactSolver::warm_start(const PairPoints& pair, std::vector<RigidBody>& b
   }
 }
 
-// Solves friction first, since non-penetration matters more and is solved last. A null `soft`
-// solves the normal constraint without softness (relaxation).
+// Solves friction first, then non-penetration: the constraint that is solved last is met best, and
+// non-penetration matters more. A null `soft` solves the normal constraint without softness
+// (relaxation).
 void ContactSolver::solve(const PairPoints& pair, double h, const Softness* soft,
                           std::vector<RigidBody>& bodies) {
   for (std::uint32_t p = pair.first; p < pair.end; ++p) {
     Point& point = points_[p];
     const Vec3 slip = speed(pair, point, bodies);
     const double most = options_.friction * point.impulse[0];
-    double wanted[2];
+    double unclamped[2];
     for (int i = 0; i < 2; ++i) {
-      wanted[i] = point.impulse[i + 1] - point.mass[i + 1] * slip.dot(point.axis[i + 1]);
+      unclamped[i] = point.impulse[i + 1] - point.mass[i + 1] * slip.dot(point.axis[i + 1]);
     }
-    const double length = std::hypot(wanted[0], wanted[1]);
+    const double length = std::hypot(unclamped[0], unclamped[1]);
     const double scale = length > most ? most / length : 1.0;
     Vec3 change = Vec3::Zero();
     for (int i = 0; i < 2; ++i) {
-      change += (scale * wanted[i] - point.impulse[i + 1]) * point.axis[i + 1];
-      point.impulse[i + 1] = scale * wanted[i];
+      change += (scale * unclamped[i] - point.impulse[i + 1]) * point.axis[i + 1];
+      point.impulse[i + 1] = scale * unclamped[i];
     }
     apply(pair, point, change, bodies);
   }

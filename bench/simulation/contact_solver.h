@@ -43,7 +43,8 @@ class ContactSolver {
  public:
   explicit ContactSolver(const SolverOptions& options) : options_(options) {}
 
-  /// Moves bodies by one frame of `seconds`. All substeps use the contacts found at its start.
+  /// Moves bodies by one frame of `seconds`. All substeps use the contacts found at the start of the
+  /// frame.
   void step(const Contacts& contacts, const ContactGroups& colours, const Execution& execution,
             double seconds, std::vector<RigidBody>& bodies);
 
@@ -54,7 +55,7 @@ class ContactSolver {
     Eigen::Vector3d tangent = Eigen::Vector3d::Zero();
   };
   struct Point {
-    /// Position of the point relative to both bodies, when contacts were found.
+    /// Position of the point relative to each body, when contacts were found.
     Eigen::Vector3d arm[2];
     /// The normal, and two tangents.
     Eigen::Vector3d axis[3];

@@ -1,5 +1,6 @@
-// Fast bodies in a funnel or beside a rotating blade, advanced from impact to impact by SceneSweep,
-// and a brute-force check whether a centre passed through. bench/rows/barrier_rows.cpp runs it.
+// Fast bodies in a funnel or beside a rotating blade, advanced from impact to impact by
+// ContinuousCollision, and a brute-force check whether a centre passed through.
+// bench/rows/barrier_rows.cpp runs it.
 
 #include "bench/simulation/fast_bodies.h"
 
@@ -44,7 +45,7 @@ FastBodies::FastBodies(const FastBodiesOptions& options)
     : options_(options),
       composites_(shapes_),
       scene_(shapes_, {.execution = options.execution, .composites = &composites_}),
-      sweep_(scene_),
+      ccd_(scene_),
       random_(options.seed) {
   if (options.scene == FastScene::funnel) {
     make_funnel_scene();
@@ -56,9 +57,9 @@ FastBodies::FastBodies(const FastBodiesOptions& options)
   poses_.resize(bodies_.size());
 }
 
-Key FastBodies::add(ShapeId shape, const Pose& pose, Motion motion) {
+Key FastBodies::add(ShapeId shape, const Pose& pose, BodyState state) {
   Key key;
-  need(scene_.add({.shape = shape, .pose = pose, .motion = motion}, key), "a body");
+  need(scene_.add({.shape = shape, .pose = pose, .state = state}, key), "a body");
   return key;
 }
 
@@ -68,7 +69,7 @@ void FastBodies::make_funnel_scene() {
   need(composites_.add_mesh(std::span<const Vec3>(funnel_.vertices),
                             std::span<const std::uint32_t>(funnel_.corners), mesh),
        "the funnel");
-  static_cast<void>(add(mesh, Pose{}, Motion::fixed));
+  static_cast<void>(add(mesh, Pose{}, BodyState::fixed));
   fill(0.6 * kFunnel.radius, 1.0, kFunnel.wall - 1.0, kFunnelSpeed);
 }
 
@@ -79,13 +80,13 @@ void FastBodies::make_blade_scene() {
     normal[side / 2] = sign;
     ShapeId wall;
     need(shapes_.add(HalfSpaceShape{{normal.x(), normal.y(), normal.z()}, -kRoom}, wall), "a wall");
-    static_cast<void>(add(wall, Pose{}, Motion::fixed));
+    static_cast<void>(add(wall, Pose{}, BodyState::fixed));
   }
   fill(kRoom - 1.0, 1.5, kRoom - 1.0, 200.0);
   ShapeId shape;
   need(shapes_.add(BoxShape{{kBlade[0], kBlade[1], kBlade[2]}}, shape), "the blade");
   Body blade;
-  blade.key = add(shape, Pose{}, Motion::fixed);
+  blade.key = add(shape, Pose{}, BodyState::fixed);
   blade.spin = Vec3(0.0, 0.0, 2.0 * std::numbers::pi * kBladeTurns / options_.step);
   bodies_.push_back(blade);
 }
@@ -115,7 +116,7 @@ void FastBodies::fill(double reach, double low, double high, double speed) {
     body.inverse_mass = 1.0 / (radius * radius * radius);
     body.inverse_inertia = body.inverse_mass / (0.4 * radius * radius);
     body.velocity = random_.in(0.1, 1.0) * speed * random_unit(random_);
-    body.key = add(shape, body.pose, Motion::dynamic);
+    body.key = add(shape, body.pose, BodyState::dynamic);
     bodies_.push_back(body);
   }
 }
@@ -141,12 +142,13 @@ void FastBodies::step() {
       motions_[i] = RigidMotion::by_velocities(bodies_[i].pose, {v.x(), v.y(), v.z()},
                                                {w.x(), w.y(), w.z()}, left);
     }
-    if (!options_.swept) {
+    if (!options_.continuous) {
       advance(1.0);
       break;
     }
-    need(sweep_.sweep(keys_, motions_, {.tolerance = kTolerance, .first_only = true}), "a sweep");
-    const auto impacts = sweep_.impacts();
+    need(ccd_.find_impacts(keys_, motions_, {.tolerance = kTolerance, .first_only = true}),
+         "impacts");
+    const auto impacts = ccd_.impacts();
     const double share = impacts.empty() ? 1.0 : impacts.front().time;
     advance(share);
     if (impacts.empty()) break;

@@ -2,8 +2,8 @@
 
 #include <winnow/core/execution.h>
 #include <winnow/pipeline/composite_pool.h>
+#include <winnow/pipeline/continuous_collision.h>
 #include <winnow/pipeline/scene.h>
-#include <winnow/pipeline/scene_sweep.h>
 #include <winnow/pipeline/shape_pool.h>
 #include "bench/common/random.h"
 #include "bench/scenes/meshes.h"
@@ -27,15 +27,17 @@ struct FastBodiesOptions {
   std::uint64_t seed = 1;
   double step = 1.0 / 60.0;
   double gravity = 10.0;
-  /// If false, bodies move without collision detection, to show what passes through then.
-  bool swept = true;
+  /// If false, bodies move without collision detection, for comparison: `passed` then counts the
+  /// bodies that passed through an obstacle.
+  bool continuous = true;
   Execution execution = Execution::serial();
 };
 
 /// Spheres and boxes that move from impact to impact and collide with each other and with static or
-/// rotating obstacles. All move to the first impact that a sweep finds, the two bodies get an
-/// impulse, and the rest of the step is swept again. The class uses only sweeps, never an overlap
-/// test. The bits of every body are the same on any number of threads and any instruction set.
+/// rotating obstacles. All bodies move to the time of the first impact that ContinuousCollision
+/// finds, the two bodies of this impact get an impulse, and the rest of the step is tested again.
+/// The class uses only these impacts, never an overlap test. The bits of every body are the same on
+/// any number of threads and any instruction set.
 class FastBodies {
  public:
   /// Throws std::runtime_error if winnow rejects the scene.
@@ -47,7 +49,7 @@ class FastBodies {
   [[nodiscard]] std::size_t steps() const noexcept { return steps_; }
   [[nodiscard]] std::size_t impacts() const noexcept { return impacts_; }
   /// Returns how often a centre passed through a triangle of the funnel or through the blade, found
-  /// by testing these directly.
+  /// by brute force.
   [[nodiscard]] std::size_t passed() const noexcept { return passed_; }
   /// Returns the number of steps that were cut short because of too many impacts.
   [[nodiscard]] std::size_t cut_short() const noexcept { return cut_short_; }
@@ -71,7 +73,7 @@ class FastBodies {
   void make_funnel_scene();
   void make_blade_scene();
   void fill(double reach, double low, double high, double speed);
-  [[nodiscard]] Key add(ShapeId shape, const Pose& pose, Motion motion);
+  [[nodiscard]] Key add(ShapeId shape, const Pose& pose, BodyState state);
   void push(double seconds);
   /// Moves all bodies by a share of their motions.
   void advance(double share);
@@ -85,7 +87,7 @@ class FastBodies {
   ShapePool shapes_;
   CompositePool composites_;
   Scene scene_;
-  SceneSweep sweep_;
+  ContinuousCollision ccd_;
   Triangles funnel_;
   Random random_;
   /// The blade is the last body.

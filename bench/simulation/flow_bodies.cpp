@@ -22,7 +22,7 @@ Vec turned_back(const Turn& q, const Vec& v) {
 }
 
 /// Returns the orientation after rotating for `time`, to first order, normalized.
-Turn spun(const Turn& q, const Vec& spin, double time) {
+Turn integrate_orientation(const Turn& q, const Vec& spin, double time) {
   const double h = 0.5 * time;
   const Vec u{q[1], q[2], q[3]};
   const Vec v = u + (h * q[0]) * spin + h * cross(spin, u);
@@ -69,9 +69,9 @@ void move_body(FlowBodies& bodies, std::size_t i, double gravity, double step, F
   // Uses the spin at half the step; otherwise bodies with unequal moments of inertia would gain
   // energy.
   if (!is_round(inverse_inertia)) {
-    spin = spin_of(spun(q, spin, 0.5 * step), turning, inverse_inertia);
+    spin = spin_of(integrate_orientation(q, spin, 0.5 * step), turning, inverse_inertia);
   }
-  q = spun(q, spin, step);
+  q = integrate_orientation(q, spin, step);
   put(bodies.momentum, i, turning);
   put(bodies.spin, i, spin_of(q, turning, inverse_inertia));
   for (std::size_t k = 0; k < 4; ++k) bodies.orientation[k][i] = static_cast<float>(q[k]);

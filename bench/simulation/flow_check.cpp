@@ -118,11 +118,11 @@ class Check {
       for (std::size_t i = 0; i < objects_; i += stride_) {
         const double* p = flow_.contact_poses()[i].position;
         const double reach = radius_of(flow_.shape(i)) * (1.0 + 1e-12);
-        bool meets = true;
+        bool overlaps = true;
         for (int axis = 0; axis < 3; ++axis) {
-          meets = meets && p[axis] >= low[axis] - reach && p[axis] <= high[axis] + reach;
+          overlaps = overlaps && p[axis] >= low[axis] - reach && p[axis] <= high[axis] + reach;
         }
-        if (!meets) continue;
+        if (!overlaps) continue;
         pairs.push_back({static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(objects_ + t)});
       }
     }

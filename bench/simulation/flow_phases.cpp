@@ -55,7 +55,8 @@ FlowTimes FlowPhases::run() {
   for (const Pair& pair : with_mesh_.pairs()) mesh_pairs_.push_back({pair.first, mesh});
 
   const Stopwatch mid;
-  need(flow_.composites().expand(flow_.shapes(), bodies, mesh_pairs_, 0.0, execution_, primitives_),
+  need(flow_.composites().find_primitive_pairs(flow_.shapes(), bodies, mesh_pairs_, 0.0, execution_,
+                                               primitives_),
        "triangles");
   times.mid = mid.ms();
 
@@ -70,7 +71,8 @@ FlowTimes FlowPhases::run() {
   times.narrow = narrow.ms();
 
   const Stopwatch smoothing;
-  flow_.composites().smooth(flow_.shapes(), primitives_, options.margin, execution_, parts_);
+  flow_.composites().correct_internal_edges(flow_.shapes(), primitives_, options.contact_margin,
+                                            execution_, parts_);
   times.mid += smoothing.ms();
   return times;
 }

@@ -177,7 +177,7 @@ void GranularFlow::add_to_scene() {
     definitions[i].data = i;
   }
   definitions[objects_].shape = mesh_shape_;
-  definitions[objects_].motion = Motion::fixed;
+  definitions[objects_].state = BodyState::fixed;
   definitions[objects_].data = objects_;
   keys_.resize(objects_ + 1);
   need(scene_.add(definitions, keys_), "the bodies");
@@ -248,7 +248,7 @@ void GranularFlow::put_back(std::size_t i) {
   const std::size_t s = next_spot_++ % spots_.size();
   Spot& spot = spots_[s];
   double z = refill_;
-  // Places the body above the previous one at this spot, if that has not fallen far enough.
+  // If the previous body at this spot has not fallen far enough, places this body above it.
   if (spot.last < objects_ && spot.last != i && spot_of_[spot.last] == s) {
     z = std::max(z, bodies_.position[2][spot.last] + spacing_);
   }

@@ -67,7 +67,8 @@ class GranularFlow {
 
   // State at the start of the last step.
   [[nodiscard]] const FlowEnergy& energy() const noexcept { return energy_; }
-  /// Returns the energy added so far by putting bodies back. Without it the total never grows.
+  /// Returns the energy added so far by putting bodies back. The total without this energy never
+  /// grows.
   [[nodiscard]] double fed() const noexcept { return fed_then_; }
   [[nodiscard]] double deepest() const noexcept { return deepest_; }
   [[nodiscard]] const FlowTimes& times() const noexcept { return times_; }
@@ -76,7 +77,7 @@ class GranularFlow {
   [[nodiscard]] const Contacts& contacts() const noexcept { return contacts_; }
   /// Returns the poses for which the contacts were found.
   [[nodiscard]] const std::pmr::vector<Pose>& contact_poses() const noexcept { return then_; }
-  /// Stores those poses from the next step on, which costs time.
+  /// Makes `contact_poses` available from the next step on, which costs time.
   void keep_contact_poses() noexcept { keeps_poses_ = true; }
 
   [[nodiscard]] const ShapePool& shapes() const noexcept { return shapes_; }

@@ -68,9 +68,9 @@ PairForce force_of(const Contacts& contacts, std::size_t pair, const SoftContact
     for (std::uint32_t p = point_first[m]; p < point_first[m + 1]; ++p) {
       const ContactPoint point = contacts.contact(p);
       if (point.depth <= 0.0F) continue;
-      // Weighted by depth, so that a point that appears or vanishes at depth zero changes nothing.
-      // Weights are normalized over all triangles of a mesh, so that a fine mesh is not stiffer
-      // than a coarse one.
+      // Points are weighted by depth, so that a point that appears or vanishes at depth zero
+      // changes nothing. The weights of a pair of bodies add up to 1, so that a fine mesh is not
+      // stiffer than a coarse one.
       const double share = static_cast<double>(point.depth) / depths;
       add_point(bodies, touch, law, point, normal, share, sum);
     }

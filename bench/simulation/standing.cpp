@@ -21,7 +21,7 @@ constexpr int kStacked = 20;
 
 SceneOptions scene_options(const StandingOptions& options, const CompositePool& composites) {
   return {.execution = options.execution,
-          .margin = options.margin,
+          .contact_margin = options.contact_margin,
           .contact_reduction = options.contact_reduction,
           .warm_start = true,
           .composites = &composites};
@@ -118,7 +118,7 @@ void Standing::add(ShapeId shape, const RigidBody& body) {
   keys_.emplace_back();
   need(scene_.add({.shape = shape,
                    .pose = pose_of(body),
-                   .motion = body.inverse_mass == 0.0 ? Motion::fixed : Motion::dynamic,
+                   .state = body.inverse_mass == 0.0 ? BodyState::fixed : BodyState::dynamic,
                    .data = bodies_.size()},
                   keys_.back()),
        "body");

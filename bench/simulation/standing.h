@@ -21,7 +21,7 @@ inline constexpr StandingScene kStandingScenes[] = {StandingScene::stack, Standi
 
 struct StandingOptions {
   bool contact_reduction = false;
-  double margin = 0.02;
+  double contact_margin = 0.02;
   /// Duration of a frame; contacts are found once per frame.
   double seconds = 1.0 / 60.0;
   SolverOptions solver{};
@@ -40,8 +40,8 @@ class Standing {
   [[nodiscard]] const Contacts& contacts() const noexcept { return contacts_; }
   [[nodiscard]] std::size_t islands() const noexcept { return islands_.size(); }
   [[nodiscard]] std::size_t colours() const noexcept { return colours_.size(); }
-  /// Return the largest distance of a body from its position at the start or at `mark`, and the
-  /// largest angle that one has rotated.
+  /// `drift` returns the largest distance of a body from its position at the start or, if it was
+  /// called, at `mark`; `tilt` the largest angle by which a body has rotated since then.
   [[nodiscard]] double drift() const;
   [[nodiscard]] double tilt() const;
   void mark();

@@ -23,37 +23,39 @@ class TimedMidPhase final : public MidPhase {
   }
   [[nodiscard]] double radius(ShapeId id) const noexcept override { return inner_.radius(id); }
   [[nodiscard]] std::uint64_t revision() const noexcept override { return inner_.revision(); }
-  Status expand(const ShapePool& shapes, const Bodies& bodies, std::span<const BodyPair> pairs,
-                const PairMargins& margins, const Execution& execution,
-                PrimitivePairs& out) const override {
+  Status find_primitive_pairs(const ShapePool& shapes, const Bodies& bodies,
+                              std::span<const BodyPair> pairs, const PairMargins& margins,
+                              const Execution& execution, PrimitivePairs& out) const override {
     const Stopwatch clock;
-    const Status status = inner_.expand(shapes, bodies, pairs, margins, execution, out);
+    const Status status =
+        inner_.find_primitive_pairs(shapes, bodies, pairs, margins, execution, out);
     ms_ += clock.ms();
     return status;
   }
-  void smooth(const ShapePool& shapes, const PrimitivePairs& pairs, const PairMargins& margins,
-              const Execution& execution, NarrowResult& result) const override {
+  void correct_internal_edges(const ShapePool& shapes, const PrimitivePairs& pairs,
+                              const PairMargins& margins, const Execution& execution,
+                              NarrowResult& result) const override {
     const Stopwatch clock;
-    inner_.smooth(shapes, pairs, margins, execution, result);
+    inner_.correct_internal_edges(shapes, pairs, margins, execution, result);
     ms_ += clock.ms();
   }
-  Status reduce(const ShapePool& shapes, const PrimitivePairs& pairs, const NarrowResult& answers,
-                const PairMargins& margins, const Execution& execution,
-                ContactRegions& out) const override {
+  Status reduce_contacts(const ShapePool& shapes, const PrimitivePairs& pairs,
+                         const NarrowResult& answers, const PairMargins& margins,
+                         const Execution& execution, ContactRegions& out) const override {
     const Stopwatch clock;
-    const Status status = inner_.reduce(shapes, pairs, answers, margins, execution, out);
+    const Status status = inner_.reduce_contacts(shapes, pairs, answers, margins, execution, out);
     ms_ += clock.ms();
     return status;
   }
-  void visit(ShapeId id, const Pose& pose, const BoxSweep& sweep,
+  void visit(ShapeId id, const Pose& pose, const MovingBox& moving_box,
              const PrimitiveVisitor& visitor) const override {
-    inner_.visit(id, pose, sweep, visitor);
+    inner_.visit(id, pose, moving_box, visitor);
   }
   void visit_rays(ShapeId id, const Pose& pose, std::span<const ShapeRay> rays,
                   const double* limits, const RayVisitor& visitor) const override {
     inner_.visit_rays(id, pose, rays, limits, visitor);
   }
-  void visit_near(ShapeId id, const Pose& pose, const BoxSweep& from, double limit,
+  void visit_near(ShapeId id, const Pose& pose, const MovingBox& from, double limit,
                   const PrimitiveVisitor& visitor) const override {
     inner_.visit_near(id, pose, from, limit, visitor);
   }

@@ -89,9 +89,9 @@ def tree_nodes(boxes, leaf=5):
 
 
 def draw_boxes(picture, boxes, dx=0, dy=0):
-    met = {i for i, a in enumerate(boxes) for j, b in enumerate(boxes) if i != j and overlap(a, b)}
+    overlapping = {i for i, a in enumerate(boxes) for j, b in enumerate(boxes) if i != j and overlap(a, b)}
     for i, (x, y, w, h) in enumerate(boxes):
-        hot = i in met
+        hot = i in overlapping
         picture.box(x + dx, y + dy, w, h, "#fbe3d3" if hot else PALE, ORANGE if hot else GREY)
 
 
@@ -209,7 +209,7 @@ def nearest_on_segment(x, y, a, b):
 
 
 GROUND = [(10, 20), (90, 150), (190, 210), (300, 222), (390, 180), (440, 180), (660, 180), (750, 80)]
-BOXES = [(470, 120, 150, 60), (500, 60, 110, 60)]  # x, y, width, height; the second lies on the first
+BOXES = [(470, 120, 150, 60), (500, 60, 110, 60)]  # x, y, width, height; the second rests on the first
 
 
 def obstacle_points(x, y):

@@ -37,7 +37,7 @@ Drift& drift() {
   return one;
 }
 
-/// Gives the same numbers on every machine.
+/// Returns the same numbers on every machine.
 class Random {
  public:
   double between(double low, double high) {
@@ -92,7 +92,7 @@ EXPORTED("drift_start") bool drift_start(std::uint32_t count) {
     for (double& q : d.poses[i].orientation) q = random.between(-1.0, 1.0);
     normalize(d.poses[i].orientation);
     for (int k = 0; k < 3; ++k) d.velocities[i][k] = random.between(-0.05, 0.05);
-    bodies[i] = {.shape = shape[i % 2], .pose = d.poses[i], .motion = winnow::Motion::dynamic};
+    bodies[i] = {.shape = shape[i % 2], .pose = d.poses[i], .state = winnow::BodyState::dynamic};
   }
   return d.scene.add(bodies, d.keys) == winnow::Status::ok;
 }

@@ -103,12 +103,12 @@ class Pose(Text):
 
 class ShapeId(Text):
     KINDS = ["sphere", "capsule", "box", "cylinder", "cone", "hull", "triangle", "half_space",
-             "mesh", "compound", "height_field"]
+             "mesh", "compound", "height_field", "ellipsoid", "tapered_capsule", "support"]
 
     def text(self, shape):
         bits = int(shape["bits"])
         kind = bits >> 28
-        return "%s %d" % (self.KINDS[kind], bits & 0xFFFFFFF) if kind < 11 else "no shape"
+        return "%s %d" % (self.KINDS[kind], bits & 0xFFFFFFF) if kind < len(self.KINDS) else "no shape"
 
 
 class Column(List):
@@ -235,9 +235,9 @@ class Contacts(Text):
 
 def printers():
     collection = gdb.printing.RegexpCollectionPrettyPrinter("winnow")
-    alone = [Aabb, Sphere, Ray, Key, Pair, Pose, ShapeId, BoxView, PoseView, PairBuffer, PairEvents,
+    plain = [Aabb, Sphere, Ray, Key, Pair, Pose, ShapeId, BoxView, PoseView, PairBuffer, PairEvents,
              HitBuffer, OverlapBuffer, Partition, Scene, Contacts]
-    for printer in alone:
+    for printer in plain:
         collection.add_printer(printer.__name__, "^winnow::%s$" % printer.__name__, printer)
     collection.add_printer("Vec3", "^winnow::BasicVec3<.*>$", Vec3)
     collection.add_printer("KeyPair", "^winnow::KeyPair$", Pair)

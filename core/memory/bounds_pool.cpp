@@ -1,5 +1,5 @@
-// Growth, padding and reordering of the columns of bounding volumes. The rows of a Partition
-// (partitions/rows/) and its spatial index call it.
+// Growth, padding and reordering of the columns of bounding volumes. Called by the rows of a
+// Partition (partitions/rows/) and its spatial index.
 
 #include "core/memory/bounds_pool.h"
 
@@ -13,13 +13,15 @@ namespace {
 constexpr std::size_t kRowsPerTask = 16384;
 constexpr ObjectFilter kNoFilter{.layers = 0, .mask = 0, .environment = 0};
 
-// Words and floats have the same size, so the spare column serves both.
+// Returns the spare column as 32-bit integers, so that one column is scratch for integers and
+// floats.
 std::uint32_t* words_of(Column<float>& spare) noexcept {
   static_assert(sizeof(float) == sizeof(std::uint32_t));
   return reinterpret_cast<std::uint32_t*>(spare.data());
 }
 
-// Copies eight elements at a time, because groups with missing rows are rare.
+// Copies groups of eight elements, with one test for missing rows per group, because groups with
+// missing rows are rare.
 template <typename T>
 void gather(const T* from, const std::uint32_t* order, std::size_t begin, std::size_t end, T* to,
             T missing) {
@@ -47,7 +49,7 @@ void gather(const T* from, std::span<const std::uint32_t> order, T* to, T missin
                       });
 }
 
-// Reorders words in place.
+// Reorders 32-bit integers in place.
 void reorder_words(std::uint32_t* words, std::span<const std::uint32_t> order, Column<float>& spare,
                    std::uint32_t missing, const Execution& execution) {
   const std::uint32_t* const sorted = words_of(spare);
@@ -162,7 +164,7 @@ void BoundsPool::reorder_ids(std::span<const std::uint32_t> order, Column<float>
   }
   const bool ascend = apart == 0 && rows_ != 0;
   if (!ascend) return reorder_words(ids_.data(), order, spare, kNoObject, execution);
-  // Ids ascend by one from row to row, and need not be read.
+  // Ids ascend by one from row to row, so they are computed instead of read.
   const ObjectId first = ids_[0];
   for_each_even_range(execution, order.size(), kRowsPerTask,
                       [&](std::size_t begin, std::size_t end) {

@@ -59,9 +59,10 @@ class BoundsPool {
   /// Reserves room for filters of all rows that fit in the pool. Returns false, and changes
   /// nothing, if memory is refused.
   [[nodiscard]] bool reserve_filters() noexcept;
-  /// Starts to use filters, with the default filter in every row; room must be reserved. O(rows).
+  /// Starts to use filters, with the default filter for every object; room must be reserved.
+  /// O(rows).
   void begin_filters() noexcept;
-  /// Requires that filters are used.
+  /// Sets the filter of a row. Requires that filters are used.
   void set_filter(std::size_t row, const ObjectFilter& filter) noexcept {
     filters_[kLayers][row] = filter.layers;
     filters_[kMask][row] = filter.mask;

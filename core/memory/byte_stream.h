@@ -1,7 +1,7 @@
 #pragma once
 
 // Serialisation of numbers: ByteWriter appends them, ByteReader reads them from untrusted bytes,
-// Digest detects damage. Snapshots (snapshot_frame.h) and recordings use it.
+// Digest detects damage. Snapshots (snapshot_frame.h) and recordings use these classes.
 #include <winnow/core/column.h>
 #include <winnow/core/status.h>
 

@@ -22,8 +22,8 @@ template <typename Work, typename Answer = decltype(std::declval<Work&>()())>
 #endif
 }
 
-/// Throws out of catch_bad_alloc work because memory was refused. Without exception support this
-/// ends the program, as in every container of the standard library.
+/// Throws std::bad_alloc. Without exception support, ends the program, as every container of the
+/// standard library does if memory is refused.
 [[noreturn]] inline void throw_bad_alloc() {
 #ifdef __cpp_exceptions
   throw std::bad_alloc();

@@ -5,7 +5,7 @@
 namespace winnow {
 
 /// Columns of filters; all null if every object has the default filter. A plain struct of pointers,
-/// because kernel files may not use the standard library.
+/// because kernel sources may include only headers of plain structs.
 struct FilterColumns {
   const std::uint32_t* layers = nullptr;
   const std::uint32_t* mask = nullptr;

@@ -7,19 +7,19 @@
 
 namespace winnow {
 
-/// Writes the places (slots) of a table to a snapshot: their number, and the free ones in the order
-/// in which they became free; the last one is taken first.
+/// Writes the slots of a table to a snapshot: their number, and the free slots in the order in
+/// which they became free. The last slot of this list is taken first.
 inline void write_slots(ByteWriter& out, std::size_t places, const Column<std::uint32_t>& free) {
   out.put(std::uint64_t{places});
   out.put_array(std::span<const std::uint32_t>(free.data(), free.size()));
 }
 
-/// Places read from a snapshot, while the entries in them are read.
+/// The slots of a table that is read from a snapshot.
 class SlotReader {
  public:
   explicit SlotReader(std::pmr::memory_resource* memory) noexcept : free_(memory), taken_(memory) {}
 
-  /// Reads places; the entries that follow must take at least one byte each. Returns false on
+  /// Reads slots; the entries that follow must take at least one byte each. Returns false on
   /// failure.
   [[nodiscard]] bool read(ByteReader& in) noexcept {
     const auto count = in.get<std::uint64_t>();
@@ -35,9 +35,9 @@ class SlotReader {
     }
     return true;
   }
-  /// Makes all places of a table free, and orders the free list for reading the entries: they are
-  /// added in ascending order of their saved places, each gets its saved place, and the saved free
-  /// list remains. Returns false if memory is refused.
+  /// Makes all slots of a table free, and orders the free list so that entries get their saved
+  /// slots if they are added in ascending order of these slots. Afterwards the free list is the
+  /// saved one. Returns false if memory is refused.
   template <typename Entry>
   [[nodiscard]] bool open(ByteReader& in, Column<Entry>& entries, Column<std::uint32_t>& free,
                           const Entry& nothing) noexcept {

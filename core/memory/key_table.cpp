@@ -103,7 +103,7 @@ bool KeyTable::are_valid_ascending(std::span<const Key> keys) const noexcept {
     const auto wrongs_of = [&](const Key& key, std::uint32_t stamp) {
       wrong |= (stamp ^ key.stamp) | (~key.stamp & 1U);
     };
-    // Most groups of four ids are consecutive.
+    // Ids of most groups of four are consecutive, and their stamps are then adjacent.
     constexpr std::size_t kFew = 4;
     std::size_t i = 0;
     for (; i + kFew <= keys.size(); i += kFew) {
@@ -147,7 +147,7 @@ void KeyTable::release_if_unused() noexcept {
   }
 }
 
-bool KeyTable::are_slots(const Saved& saved, Column<std::uint8_t>& seen) noexcept {
+bool KeyTable::are_consistent(const SavedSlots& saved, Column<std::uint8_t>& seen) noexcept {
   const std::size_t slots = saved.stamps.size();
   if (saved.data.size() != slots || (saved.stamp & 1U) != 0) return false;
   std::fill_n(seen.data(), slots, std::uint8_t{0});
@@ -158,7 +158,7 @@ bool KeyTable::are_slots(const Saved& saved, Column<std::uint8_t>& seen) noexcep
   return true;
 }
 
-std::uint32_t KeyTable::stamp_beyond(const Saved& saved) noexcept {
+std::uint32_t KeyTable::stamp_beyond(const SavedSlots& saved) noexcept {
   std::uint32_t uses = 0;
   const auto pass = [&](std::uint32_t stamp) {
     const std::uint32_t before = uses_before(stamp);
@@ -173,7 +173,7 @@ std::uint32_t KeyTable::stamp_beyond(const Saved& saved) noexcept {
   return tags_.latest() << kGenerationBits;
 }
 
-void KeyTable::restore(const Saved& saved, KeyTable& other) noexcept {
+void KeyTable::restore(const SavedSlots& saved, KeyTable& other) noexcept {
   const std::uint32_t begin = other.stamp_beyond(saved);
   tags_.swap(other.tags_);
   other.stamp_ = stamp_;

@@ -16,8 +16,8 @@
 namespace winnow {
 
 /// Keys of one partition or scene: slot -> (stamp, row, client data). The rows of free slots link
-/// the free list, so keys cost 8 bytes per slot and no search. Live stamps have an odd generation,
-/// so that a forged key never reaches a free slot.
+/// the free list, so keys cost 8 bytes per slot and no search. Stamps of live slots are odd, stamps
+/// of free slots even, and even stamps are rejected: no forged key reaches a free slot.
 class KeyTable {
  public:
   explicit KeyTable(std::pmr::memory_resource* memory) noexcept;
@@ -103,7 +103,7 @@ class KeyTable {
   [[nodiscard]] ObjectId next_free(ObjectId id) const noexcept { return rows_[id]; }
 
   /// Slots in the form of a snapshot.
-  struct Saved {
+  struct SavedSlots {
     std::span<const std::uint32_t> stamps;
     std::span<const ClientData> data;
     std::span<const ObjectId> free;  ///< in the order in which they will be taken
@@ -111,7 +111,8 @@ class KeyTable {
   };
   /// Returns true if the saved slots are consistent: free slots have even stamps and are listed
   /// once each. `seen` is scratch with one byte per slot.
-  [[nodiscard]] static bool are_slots(const Saved& saved, Column<std::uint8_t>& seen) noexcept;
+  [[nodiscard]] static bool are_consistent(const SavedSlots& saved,
+                                           Column<std::uint8_t>& seen) noexcept;
   /// Reserves room for `slots` slots. Returns false, and changes nothing, if memory is refused.
   [[nodiscard]] bool reserve_slots(std::size_t slots) noexcept {
     return stamps_.grow(slots) && rows_.grow(slots) && data_.grow(slots);
@@ -119,8 +120,8 @@ class KeyTable {
   /// Becomes the saved table, with objects in rows by ascending id; room must be reserved.
   /// Exchanges tags with `other`, which may be this table. The keys are the saved ones unless a
   /// third table has their tags. Later keys differ from the saved ones and from all keys that
-  /// either table gave.
-  void restore(const Saved& saved, KeyTable& other) noexcept;
+  /// either table returned.
+  void restore(const SavedSlots& saved, KeyTable& other) noexcept;
 
   [[nodiscard]] std::pmr::memory_resource* key_memory() const noexcept { return rows_.memory(); }
   [[nodiscard]] Bytes key_bytes() const noexcept;
@@ -131,7 +132,7 @@ class KeyTable {
   [[nodiscard]] bool are_valid_ascending(std::span<const Key> keys) const noexcept;
 
   /// Returns a stamp that slots may begin with after a restore; see `stamp()`.
-  [[nodiscard]] std::uint32_t stamp_beyond(const Saved& saved) noexcept;
+  [[nodiscard]] std::uint32_t stamp_beyond(const SavedSlots& saved) noexcept;
   /// Returns by how many generations `stamp` comes after `stamp_`; more than `most_uses()` if it
   /// has another tag or comes before.
   [[nodiscard]] std::uint32_t uses_before(std::uint32_t stamp) const noexcept {

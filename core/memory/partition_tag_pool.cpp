@@ -14,7 +14,8 @@ std::atomic<std::uint64_t> g_taken[kWords];
 // A linked list of the tags of each table: element t is the tag that precedes tag t, or 0. Only the
 // table that has tag t reads and writes element t.
 std::uint32_t g_earlier[PartitionTagPool::kMaxTags + 1];
-// Start of the next search, so that freed tags are reused last.
+// The next search begins here, behind the tag taken last, so that freed tags are reused as late as
+// possible.
 std::atomic<std::uint32_t> g_next{1};
 
 // Takes the first free tag of a word from a bit on; returns 0 if there is none.

@@ -23,7 +23,8 @@ class PartitionTagPool {
   /// Takes one more tag and keeps the others. Returns false, and changes nothing, if none is free.
   [[nodiscard]] bool renew() noexcept;
   /// Makes this tag the latest one and keeps the others. Returns false, and changes nothing, if
-  /// another table has it. O(tags of this table).
+  /// another table has it, if it is not between 1 and kMaxTags, or if this table shares its tag.
+  /// O(tags of this table).
   [[nodiscard]] bool claim(std::uint32_t tag) noexcept;
   void swap(PartitionTagPool& other) noexcept {
     std::swap(latest_, other.latest_);

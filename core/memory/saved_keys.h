@@ -25,7 +25,7 @@ void for_live(std::span<const std::uint32_t> stamps, const Visit& visit) {
   }
 }
 
-/// Keys read from a snapshot; KeyTable::are_slots tests if they are consistent.
+/// Keys read from a snapshot; KeyTable::are_consistent tests if they are consistent.
 struct ReadKeys {
   explicit ReadKeys(std::pmr::memory_resource* memory) noexcept
       : stamps(memory), data(memory), free(memory) {}
@@ -39,7 +39,7 @@ struct ReadKeys {
   [[nodiscard]] std::span<const std::uint32_t> all_stamps() const noexcept {
     return {stamps.data(), stamps.size()};
   }
-  [[nodiscard]] KeyTable::Saved saved() const noexcept {
+  [[nodiscard]] KeyTable::SavedSlots saved() const noexcept {
     return {all_stamps(), {data.data(), data.size()}, {free.data(), free.size()}, stamp};
   }
 

@@ -10,15 +10,15 @@
 
 namespace winnow {
 
-/// Returns the number of words of a bitmap for values below `limit`, with padding: 32 bits can be
-/// read from the bit of any value on.
+/// Returns the number of 64-bit integers in a bitmap for values below `limit`. It includes padding:
+/// callers may read 32 bits from the bit of any value on.
 [[nodiscard]] constexpr std::size_t bitmap_words(std::size_t limit) noexcept {
   return limit / 64 + 2;
 }
 
-/// Sorts values below `limit` and removes duplicates; returns how many are left. `words` must hold
-/// `bitmap_words(limit)` zeros, and holds zeros again on return. O(values + limit / 64), or
-/// O(values log values) if the values are few.
+/// Sorts values below `limit` and removes duplicates; returns how many remain. `words` must contain
+/// `bitmap_words(limit)` zeros, and contains zeros again on return. O(values + limit / 64), or
+/// O(values log values) if there are fewer than about limit / 1024 values.
 inline std::size_t sort_unique(std::span<std::uint32_t> values, std::size_t limit,
                                Column<std::uint64_t>& words) noexcept {
   const std::size_t needed = bitmap_words(limit);

@@ -11,7 +11,7 @@ CountingSort::CountingSort(std::span<const std::uint32_t> bucket, std::span<std:
       start_(start),
       execution_(execution),
       buckets_(start.size() - 1),
-      threads_(owners_of_rows(bucket.size(), execution)) {}
+      threads_(owner_count(bucket.size(), execution)) {}
 
 // Calls body(index, first row, end) for the range of rows of each thread.
 template <typename Body>
@@ -71,7 +71,7 @@ void CountingSort::place_few(std::uint32_t* order) noexcept {
   for_each_row_range([&](std::size_t range, std::size_t first, std::size_t end) {
     Counts& next = counts_[range];
     if (buckets_ == 1) {
-      // The destination needs no lookup, and does not depend on the row before.
+      // With one bucket, the next position is in a register instead of in an array of counters.
       std::uint32_t* to = order + next[0];
       for (std::size_t row = first; row < end; ++row) {
         if (bucket_[row] != kNone) *to++ = static_cast<std::uint32_t>(row);
@@ -85,7 +85,7 @@ void CountingSort::place_few(std::uint32_t* order) noexcept {
 }
 
 // Returns the range of buckets of an owner. All owners get about equally many rows.
-CountingSort::Buckets CountingSort::equal_rows(std::size_t owner) const noexcept {
+CountingSort::BucketRange CountingSort::buckets_of_owner(std::size_t owner) const noexcept {
   const auto first_of = [&](std::size_t i) -> std::size_t {
     if (i == threads_) return buckets_;
     const std::size_t rows = std::size_t{start_[buckets_]} * i / threads_;
@@ -96,8 +96,8 @@ CountingSort::Buckets CountingSort::equal_rows(std::size_t owner) const noexcept
 }
 
 void CountingSort::place_many(std::uint32_t* order) noexcept {
-  std::array<Buckets, kMaxOwners> share;
-  for (std::size_t i = 0; i < threads_; ++i) share[i] = equal_rows(i);
+  std::array<BucketRange, kMaxOwners> share;
+  for (std::size_t i = 0; i < threads_; ++i) share[i] = buckets_of_owner(i);
   execution_.for_each(threads_, [&](std::size_t owner) {
     const auto [first, end] = share[owner];
     if (first == end) return;

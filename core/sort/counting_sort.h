@@ -11,13 +11,13 @@
 namespace winnow {
 
 /// Stable sort of rows by bucket. The result does not depend on the number of threads. If there are
-/// few buckets, each thread counts and places a range of rows. If there are many, each thread owns
-/// some buckets.
+/// at most 256 buckets, each thread counts and places a range of rows. If there are more, each
+/// thread owns some buckets.
 class CountingSort {
  public:
   static constexpr std::uint32_t kNone = ~0U;
 
-  /// `bucket` holds the bucket of each row, or kNone for rows that are left out. `start` has one
+  /// `bucket` contains the bucket of each row, or kNone for rows that are left out. `start` has one
   /// element more than there are buckets.
   CountingSort(std::span<const std::uint32_t> bucket, std::span<std::uint32_t> start,
                const Execution& execution) noexcept;
@@ -36,7 +36,7 @@ class CountingSort {
 
  private:
   static constexpr std::size_t kFewBuckets = 256;
-  struct Buckets {
+  struct BucketRange {
     std::size_t first;
     std::size_t end;
   };
@@ -48,7 +48,7 @@ class CountingSort {
   void count_few() noexcept;
   void place_few(std::uint32_t* order) noexcept;
   void place_many(std::uint32_t* order) noexcept;
-  [[nodiscard]] Buckets equal_rows(std::size_t owner) const noexcept;
+  [[nodiscard]] BucketRange buckets_of_owner(std::size_t owner) const noexcept;
 
   const std::span<const std::uint32_t> bucket_;
   const std::span<std::uint32_t> start_;

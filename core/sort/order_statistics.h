@@ -11,7 +11,7 @@ namespace winnow {
 /// `value_of_rank` accepts ranks below this.
 inline constexpr std::size_t kMaxRank = 64;
 
-/// Returns the value that index `at` would hold if the values were sorted by `before`. Requires
+/// Returns the value that would be at index `at` if the values were sorted by `before`. Requires
 /// `at` < kMaxRank and more than `at` values. If `at` is small, most values take one comparison,
 /// and its branch is predictable.
 template <typename Before>

@@ -10,8 +10,8 @@ namespace winnow {
 /// Sorts a set by dividing it in two again and again, in parallel. `split` keeps one side in the
 /// job that is passed to it and returns the other; `finish` sorts the rest of a job on one thread;
 /// an empty job has size 0. Jobs larger than `worth_sharing` are split breadth first until there
-/// are enough for all threads. The resulting jobs depend only on the set, not on the number of
-/// threads.
+/// are more than 32 jobs or none can be split. The resulting jobs depend only on the set, not on
+/// the number of threads.
 template <typename Job, typename Split, typename Finish>
 void divide_in_parallel(const Job& first, std::size_t worth_sharing, const Execution& execution,
                         Split&& split, Finish&& finish) {

@@ -27,7 +27,7 @@ struct Digit {
 };
 
 // One pass in parallel. Every chunk counts its digits; starts are summed digit by digit and chunk
-// by chunk, so that the chunks scatter items to the same places as a serial pass.
+// by chunk, so that the chunks scatter items to the same positions as a serial pass.
 void pass(const std::uint64_t* from, std::uint64_t* to, std::size_t count, const Digit& digit,
           std::size_t chunks, const Execution& execution) {
   std::array<Histogram, kMaxChunks> start;
@@ -63,7 +63,7 @@ struct Digits {
       : passes((bits + most - 1) / most), length(passes == 0 ? 0 : (bits + passes - 1) / passes) {}
 };
 
-// All passes on one thread; the digits of all passes are counted in one scan.
+// Runs all passes on one thread; one scan counts the digits of all passes.
 std::uint64_t* sort_serially(std::uint64_t* items, std::uint64_t* spare, std::size_t count,
                              unsigned bits, unsigned first_bit) {
   constexpr std::size_t kMaxPasses = (64 + kShortDigitBits - 1) / kShortDigitBits;

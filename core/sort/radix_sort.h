@@ -21,8 +21,8 @@ namespace winnow {
 
 /// Sorts (key << first_bit | value) stably by the lowest `bits` bits of the key: a
 /// least-significant-digit radix sort with up to 11 bits per pass. `items` and `spare` have `count`
-/// elements each; returns the one that holds the result. O(count * bits / 11). The result does not
-/// depend on the number of threads.
+/// elements each; returns the one that contains the result. O(count * bits / 11). The result does
+/// not depend on the number of threads.
 [[nodiscard]] std::uint64_t* radix_sort(std::uint64_t* items, std::uint64_t* spare,
                                         std::size_t count, unsigned bits,
                                         const Execution& execution,

@@ -16,8 +16,8 @@ inline constexpr std::size_t kMaxOwners = 8;
 /// Returns the number of threads that share the rows of a list with scattered targets. Each thread
 /// owns some targets, scans all rows, and processes the rows of its targets. Without owners, cores
 /// would write to the same cache lines, whose transfers cost more than the scan.
-[[nodiscard]] inline std::size_t owners_of_rows(std::size_t rows,
-                                                const Execution& execution) noexcept {
+[[nodiscard]] inline std::size_t owner_count(std::size_t rows,
+                                             const Execution& execution) noexcept {
   constexpr std::size_t kRowsPerOwner = 8192;
   return std::clamp<std::size_t>(rows / kRowsPerOwner, 1,
                                  std::min(kMaxOwners, execution.concurrency()));
@@ -52,7 +52,7 @@ void for_rows_of_owner(std::span<const std::uint32_t> target, std::size_t first,
 template <typename Body>
 void for_rows_by_target(std::span<const std::uint32_t> target, std::size_t targets,
                         const Execution& execution, Body&& body) {
-  const std::size_t owners = owners_of_rows(target.size(), execution);
+  const std::size_t owners = owner_count(target.size(), execution);
   execution.for_each(owners, [&](std::size_t owner) {
     for_rows_of_owner(target, targets * owner / owners, targets * (owner + 1) / owners, owners,
                       body);

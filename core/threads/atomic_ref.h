@@ -18,16 +18,16 @@ class AtomicRef {
   T fetch_add(T summand, std::memory_order /*order*/) const noexcept {
     return __atomic_fetch_add(value_, summand, __ATOMIC_SEQ_CST);
   }
-  bool compare_exchange_weak(T& expected, T wanted) const noexcept {
-    return exchange(expected, wanted, true);
+  bool compare_exchange_weak(T& expected, T desired) const noexcept {
+    return exchange(expected, desired, true);
   }
-  bool compare_exchange_strong(T& expected, T wanted) const noexcept {
-    return exchange(expected, wanted, false);
+  bool compare_exchange_strong(T& expected, T desired) const noexcept {
+    return exchange(expected, desired, false);
   }
 
  private:
-  bool exchange(T& expected, T wanted, bool weak) const noexcept {
-    return __atomic_compare_exchange_n(value_, &expected, wanted, weak, __ATOMIC_SEQ_CST,
+  bool exchange(T& expected, T desired, bool weak) const noexcept {
+    return __atomic_compare_exchange_n(value_, &expected, desired, weak, __ATOMIC_SEQ_CST,
                                        __ATOMIC_SEQ_CST);
   }
 

@@ -3,10 +3,11 @@
 namespace winnow {
 namespace {
 
-/// Modes that the outermost DefaultEnvironment of this thread restores; 0 if it changed none.
+/// Modes that the outermost DefaultFloatEnvironment of this thread restores; 0 if it changed none.
 thread_local FloatControl host_modes = 0;
 
-// Only mode bits change: exception flags that were raised in between stay set.
+// Both functions change only mode bits: exception flags that computations raised since `enter` stay
+// set.
 void add_modes(FloatControl modes) noexcept {
   set_float_control(float_control() | modes);
 }
@@ -16,26 +17,26 @@ void remove_modes(FloatControl modes) noexcept {
 
 }  // namespace
 
-void DefaultEnvironment::enter(FloatControl modes) noexcept {
+void DefaultFloatEnvironment::enter(FloatControl modes) noexcept {
   remove_modes(modes);
   host_modes = modes;
 }
 
-void DefaultEnvironment::leave(FloatControl modes) noexcept {
+void DefaultFloatEnvironment::leave(FloatControl modes) noexcept {
   host_modes = 0;
   add_modes(modes);
 }
 
-HostEnvironment::HostEnvironment() noexcept : hosts_(host_modes) {
-  if (hosts_ == 0) return;
+HostFloatEnvironment::HostFloatEnvironment() noexcept : host_modes_(host_modes) {
+  if (host_modes_ == 0) return;
   host_modes = 0;
-  add_modes(hosts_);
+  add_modes(host_modes_);
 }
 
-HostEnvironment::~HostEnvironment() {
-  if (hosts_ == 0) return;
-  remove_modes(hosts_);
-  host_modes = hosts_;
+HostFloatEnvironment::~HostFloatEnvironment() {
+  if (host_modes_ == 0) return;
+  remove_modes(host_modes_);
+  host_modes = host_modes_;
 }
 
 }  // namespace winnow

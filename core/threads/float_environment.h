@@ -69,38 +69,38 @@ inline void set_float_control(FloatControl control) noexcept {
 /// keeps denormals. Every public function that computes opens one, so that a host's modes cannot
 /// lose a denormal slack, gap or bound, and results are equal in all modes. Masks of exceptions
 /// stay the caller's. A scope inside another only reads the register.
-class DefaultEnvironment {
+class DefaultFloatEnvironment {
  public:
-  DefaultEnvironment() noexcept : callers_(float_control() & kFloatModes) {
-    if (callers_ != 0) [[unlikely]]
-      enter(callers_);
+  DefaultFloatEnvironment() noexcept : caller_modes_(float_control() & kFloatModes) {
+    if (caller_modes_ != 0) [[unlikely]]
+      enter(caller_modes_);
   }
-  ~DefaultEnvironment() {
-    if (callers_ != 0) [[unlikely]]
-      leave(callers_);
+  ~DefaultFloatEnvironment() {
+    if (caller_modes_ != 0) [[unlikely]]
+      leave(caller_modes_);
   }
-  DefaultEnvironment(const DefaultEnvironment&) = delete;
-  DefaultEnvironment& operator=(const DefaultEnvironment&) = delete;
+  DefaultFloatEnvironment(const DefaultFloatEnvironment&) = delete;
+  DefaultFloatEnvironment& operator=(const DefaultFloatEnvironment&) = delete;
 
  private:
   // Not inline, so that no arithmetic moves across the change of modes.
   static void enter(FloatControl modes) noexcept;
   static void leave(FloatControl modes) noexcept;
 
-  const FloatControl callers_;
+  const FloatControl caller_modes_;
 };
 
-/// Restores the thread's own modes inside a DefaultEnvironment, for a scope in which code of the
-/// host may run.
-class HostEnvironment {
+/// Restores the thread's own modes inside a DefaultFloatEnvironment, for a scope in which code of
+/// the host may run.
+class HostFloatEnvironment {
  public:
-  HostEnvironment() noexcept;
-  ~HostEnvironment();
-  HostEnvironment(const HostEnvironment&) = delete;
-  HostEnvironment& operator=(const HostEnvironment&) = delete;
+  HostFloatEnvironment() noexcept;
+  ~HostFloatEnvironment();
+  HostFloatEnvironment(const HostFloatEnvironment&) = delete;
+  HostFloatEnvironment& operator=(const HostFloatEnvironment&) = delete;
 
  private:
-  const FloatControl hosts_;
+  const FloatControl host_modes_;
 };
 
 }  // namespace winnow

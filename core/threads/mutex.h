@@ -6,7 +6,7 @@ namespace winnow {
 
 #ifdef _LIBCPP_HAS_NO_THREADS  // defined by <mutex>
 
-/// Does nothing: the program has only one thread.
+/// A mutex that does nothing, for programs that have only one thread.
 struct Mutex {};
 
 class Lock {

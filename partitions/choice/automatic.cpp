@@ -1,6 +1,6 @@
 // The automatic choice of a structure: class AutomaticChoice, and the structure `automatic()`,
-// which reports name AutoPartition. PartitionState calls choose() and refreshed() in every refresh;
-// the costs come from predicted_costs.h, the sample of the scene from sample_scene.h.
+// whose name in reports is AutoPartition. PartitionState calls choose() and refreshed() in every
+// refresh; the costs come from predicted_costs.h, the sample of the scene from sample_scene.h.
 
 #include "partitions/choice/chooser.h"
 #include "partitions/choice/predicted_costs.h"
@@ -27,7 +27,7 @@ constexpr std::size_t kMovesToRecheck = 32;
 // If fewer than one object in kQuiet moved, costs are predicted only every kQuietFrames frames.
 constexpr std::size_t kQuiet = 256;
 constexpr std::size_t kQuietFrames = 16;
-// With at most kFew objects a frame takes little longer than predicting costs, so they are
+// With at most kFew objects a frame takes little longer than predicting costs, so costs are
 // predicted only every kFewFrames frames.
 constexpr std::size_t kFew = 192;
 constexpr std::size_t kFewFrames = 8;
@@ -36,12 +36,12 @@ constexpr std::size_t kRefreshesAfterFailure = 64;
 // With at most this many objects, brute force is chosen: any other structure would save less time
 // than its prediction takes.
 constexpr std::size_t kTooFew = 32;
-// Limit of the number of times that a structure is counted as left. Its price doubles each time, so
-// savings never reach it at this limit.
+// Limit of the count of changes away from a structure. The price of the structure doubles with each
+// of these changes; at this limit, savings never reach the price.
 constexpr std::uint8_t kMaxOften = 32;
 // The first change to a structure that is clearly cheaper is made when the structure would have
-// saved the share 1 / 2^kTrust of its price: most scenes stay as they are for at least eight times
-// as long as they already did. Each further change needs twice the share.
+// saved the share 1 / 2^kTrust of its price. This assumes that the scene stays as it is for eight
+// times as long as until then. Each further change needs twice the share.
 constexpr std::uint64_t kTrust = 3;
 constexpr double kClearly = 0.75;
 // kUsualBuilds: shares of refreshes with a build, for trees and for cells, that are included in the
@@ -72,20 +72,20 @@ bool differ_much(std::size_t a, std::size_t b) noexcept {
 }
 
 /// Chooses a structure for the rows and revises the choice at each refresh. A change costs one
-/// build. Results in canonical order do not depend on it.
+/// build. Results in canonical order do not depend on the choice.
 ///
-/// Each frame predicts the cost of every structure from the frame's work (objects moved, pairs,
-/// rays, regions, nearest queries) and from a sample of the scene (SceneFeatures, PredictedCosts).
-/// The sample is renewed only after much has moved. The first choice is the cheapest prediction.
-/// Later choices are a ski rental: another structure is chosen once the savings it would have made
-/// exceed the cost of its build. For the first three changes an eighth, a quarter and a half of
-/// that cost suffice if the structure is clearly cheaper. A structure that was left before must
-/// save twice as much for each time it was left, so that a scene that alternates between two states
-/// does not alternate between two structures. If cells or trees were seen to be built often,
-/// because objects are fast or many are inserted, the cost of these builds is added. If an update
-/// scatters all objects, every structure has to be built and a change is free. All decisions depend
-/// on counts and samples, never on time: they are the same on every machine, instruction set and
-/// number of threads.
+/// In each refresh that is not quiet (`is_quiet`), the class predicts the cost of every structure
+/// from the frame's work (objects moved, pairs, rays, regions, nearest queries) and from a sample
+/// of the scene (SceneFeatures, PredictedCosts). The sample is renewed only after much has moved.
+/// The first choice is the cheapest prediction. Later choices are a ski rental: another structure
+/// is chosen once the savings it would have made exceed the cost of its build. For the first three
+/// changes an eighth, a quarter and a half of that cost suffice if the structure is clearly
+/// cheaper. A structure that was replaced before must save twice as much for each time it was
+/// replaced, so that a scene that alternates between two states does not alternate between two
+/// structures. If cells or trees were seen to be built often, because objects are fast or many are
+/// inserted, the cost of these builds is added. If an update scatters all objects, every structure
+/// has to be built and a change is free. All decisions depend on counts and samples, never on time:
+/// they are the same on every machine, instruction set and number of threads.
 ///
 /// The choice changes only in refreshes that follow a change of the rows. A scene that is built
 /// once and then only queried keeps its first choice. Partitions of volumes other than boxes keep
@@ -94,7 +94,7 @@ class AutomaticChoice final : public Chooser {
  public:
   [[nodiscard]] StructureKind first() const noexcept override { return linear_bvh(); }
 
-  [[nodiscard]] std::span<const StructureKind> range() const noexcept override {
+  [[nodiscard]] std::span<const StructureKind> choices() const noexcept override {
     return candidates();
   }
   [[nodiscard]] StructureKind choose(const Rows& rows, StructureKind now,
@@ -113,7 +113,7 @@ class AutomaticChoice final : public Chooser {
   void refused() noexcept override { refreshes_to_wait_ = kRefreshesAfterFailure; }
   void refreshed(const Rows& rows, StructureKind now, std::uint64_t builds) noexcept override {
     if (now != before_) note_change();
-    if (chosen_kind_ != before_) held_ = 0;
+    if (chosen_kind_ != before_) refreshes_in_use_ = 0;
     if (chosen_kind_ != before_ || build_due_) builds_seen_ = builds;
     changed_ = 0;
     chosen_ = rows.size() != 0;
@@ -121,7 +121,7 @@ class AutomaticChoice final : public Chooser {
   void clear() noexcept override {
     chosen_ = false;
     saved_ = {};
-    left_ = {};
+    times_left_ = {};
     pairs_ = 0;
   }
   void report(StructureChoice& choice) const noexcept override {
@@ -130,7 +130,7 @@ class AutomaticChoice final : public Chooser {
     choice.features = features_;
   }
   [[nodiscard]] std::size_t bytes() const noexcept override { return sizeof *this; }
-  void end(std::pmr::memory_resource* memory) noexcept override { delete_in(memory, this); }
+  void destroy(std::pmr::memory_resource* memory) noexcept override { delete_in(memory, this); }
 
  private:
   /// True if costs were predicted recently, and few objects moved or there are few objects: a
@@ -140,7 +140,7 @@ class AutomaticChoice final : public Chooser {
     return (frames_ < kQuietFrames && kQuiet * changed_ < rows.size()) ||
            (frames_ < kFewFrames && rows.size() <= kFew);
   }
-  [[nodiscard]] FrameWork take_frame(std::size_t live) noexcept;
+  [[nodiscard]] FrameWork collect_work(std::size_t live) noexcept;
   void predict(const Rows& rows, const Wear& wear) noexcept;
   void choose_first(FrameWork frame) noexcept;
   void consider(const FrameWork& frame, const Wear& wear, bool scattered) noexcept;
@@ -153,9 +153,9 @@ class AutomaticChoice final : public Chooser {
   StructureKind before_;  // the structure before this refresh, and the chosen one
   StructureKind chosen_kind_;
   SceneFeatures features_;
-  // By candidate: savings not yet spent, and how often the structure was left.
-  PredictedCosts::List saved_{};
-  std::array<std::uint8_t, kMaxCandidates> left_{};
+  // By candidate: savings not yet spent, and how often the structure was replaced.
+  PredictedCosts::CostList saved_{};
+  std::array<std::uint8_t, kMaxCandidates> times_left_{};
   // Moving average: share of refreshes in which an update scattered all objects.
   double scattered_share_ = 0.0;
   // Moving averages over the other refreshes, for trees and for cells: the share that built, and
@@ -165,14 +165,14 @@ class AutomaticChoice final : public Chooser {
   double build_share_of_new_ = 0.0;  // moving average: share that builds because of new objects
   std::uint64_t builds_seen_ = 0;    // builds of the current structure
   std::uint64_t excess_seen_ = 0;
-  std::size_t held_ = 0;  // refreshes with the current structure, up to a limit
-  std::string_view reason_ = "nothing to choose by yet";
+  std::size_t refreshes_in_use_ = 0;  // refreshes with the current structure
+  std::string_view reason_ = "no choice yet: the default structure";
   std::uint64_t changes_ = 0;
-  std::size_t objects_seen_ = 0;    // at the last sample
-  std::size_t unseen_ = 0;          // changes since the last sample
-  std::size_t pairs_seen_ = 0;      // at the last sample
-  std::size_t objects_before_ = 0;  // at the last prediction
-  std::size_t frames_ = 0;          // refreshes since then, including this one
+  std::size_t objects_seen_ = 0;          // at the last sample
+  std::size_t changes_since_sample_ = 0;  // changes since the last sample
+  std::size_t pairs_seen_ = 0;            // at the last sample
+  std::size_t objects_before_ = 0;        // at the last prediction
+  std::size_t frames_ = 0;                // refreshes since then, including this one
   // Remaining refreshes without a choice after a failed allocation.
   std::size_t refreshes_to_wait_ = 0;
   bool chosen_ = false;
@@ -189,7 +189,7 @@ std::size_t number_of_brute_force() noexcept {
   return static_cast<std::size_t>(std::ranges::find_if(all, is_brute_force) - all.begin());
 }
 
-FrameWork AutomaticChoice::take_frame(std::size_t live) noexcept {
+FrameWork AutomaticChoice::collect_work(std::size_t live) noexcept {
   const auto each = [this](std::size_t count) { return (count + frames_ - 1) / frames_; };
   FrameWork frame;
   frame.changed = std::min(changed_, live);
@@ -203,9 +203,9 @@ FrameWork AutomaticChoice::take_frame(std::size_t live) noexcept {
 
 void AutomaticChoice::predict(const Rows& rows, const Wear& wear) noexcept {
   const std::size_t live = objects_before_ = rows.size();
-  const FrameWork frame = take_frame(live);
+  const FrameWork frame = collect_work(live);
   note_new_objects(wear);
-  unseen_ += frame.changed;
+  changes_since_sample_ += frame.changed;
   const std::size_t before = features_.objects;
   if (chosen_ && live <= kTooFew && is_brute_force(before_)) {
     features_.objects = live;
@@ -216,10 +216,10 @@ void AutomaticChoice::predict(const Rows& rows, const Wear& wear) noexcept {
   // If most objects were inserted or removed, every structure needs a build.
   const bool other_scene = !chosen_ || live > 2 * before || 2 * live < before;
   if (other_scene || differ_much(live, objects_seen_) || differ_much(pairs, pairs_seen_) ||
-      unseen_ / kMovesToRecheck > live) {
+      changes_since_sample_ / kMovesToRecheck > live) {
     features_ = sample_scene(rows.pool(), live);
     objects_seen_ = live;
-    unseen_ = 0;
+    changes_since_sample_ = 0;
     pairs_seen_ = 0;
   }
   features_.objects = live;
@@ -229,7 +229,7 @@ void AutomaticChoice::predict(const Rows& rows, const Wear& wear) noexcept {
   if (chosen_ && chosen_kind_ == before_) consider(frame, wear, scattered);
 }
 
-// The first prediction assumes that everything moves. It assumes a query for all pairs if there
+// The first prediction assumes that all objects move. It assumes a query for all pairs if there
 // were no other queries.
 void AutomaticChoice::choose_first(FrameWork frame) noexcept {
   frame.changed = features_.objects;
@@ -239,10 +239,10 @@ void AutomaticChoice::choose_first(FrameWork frame) noexcept {
   // The cost constants were fitted to scenes with more objects than kTooFew.
   const std::size_t best =
       features_.objects <= kTooFew ? number_of_brute_force() : costs.cheapest(kFramesAhead);
-  if (left_[best] != 0) return;
+  if (times_left_[best] != 0) return;
   chosen_kind_ = candidates()[best];
-  reason_ = is_brute_force(chosen_kind_) ? "so few objects that no structure pays"
-                                         : "the least cost expected from a sample of the scene";
+  reason_ = is_brute_force(chosen_kind_) ? "too few objects for a structure to pay off"
+                                         : "the lowest cost predicted from a sample of the scene";
 }
 
 // New objects are appended behind the sorted rows until a build is due. The first objects of a
@@ -252,13 +252,13 @@ void AutomaticChoice::note_new_objects(const Wear& wear) noexcept {
   if (!chosen_) return;
   const auto frames = static_cast<double>(frames_);
   const double each = static_cast<double>(came) / frames;
-  const double share = std::min(1.0, each / static_cast<double>(wear.most_new));
+  const double share = std::min(1.0, each / static_cast<double>(wear.max_new));
   build_share_of_new_ += std::min(1.0, kNewest * frames) * (share - build_share_of_new_);
 }
 
 // Measures how often structures are built and how much they wear. Neither can be predicted from the
-// sample: if objects are fast, cells and strips are built in every frame, and trees wear and are
-// built. Brute force never builds, so it measures neither.
+// sample, which has no velocities: if objects are fast, cells and strips are built in every frame,
+// and trees wear and are built. Brute force never builds, so it measures neither.
 void AutomaticChoice::note_wear(const Wear& wear, bool scattered) noexcept {
   const std::size_t own = has_cells(before_) ? 1 : 0;
   const bool can_compare = !is_brute_force(before_);
@@ -270,7 +270,7 @@ void AutomaticChoice::note_wear(const Wear& wear, bool scattered) noexcept {
       kTest * static_cast<double>(excess) / (frames * static_cast<double>(features_.objects));
   // The first frames of a structure weigh more than later ones, but a single build must not
   // dominate.
-  const double weight = std::max(kRecent, 1.0 / (3.0 + static_cast<double>(held_)));
+  const double weight = std::max(kRecent, 1.0 / (3.0 + static_cast<double>(refreshes_in_use_)));
   scattered_share_ += weight * ((scattered ? 1.0 : 0.0) - scattered_share_);
   for (std::size_t kind = 0; kind < build_share_.size() && !scattered; ++kind) {
     if (can_compare && kind == own) {
@@ -281,7 +281,7 @@ void AutomaticChoice::note_wear(const Wear& wear, bool scattered) noexcept {
       worn_[kind] -= kForgotten * worn_[kind];
     }
   }
-  held_ += held_ < kRefreshesAfterFailure ? 1 : 0;
+  ++refreshes_in_use_;
   builds_seen_ = wear.builds;
   excess_seen_ = wear.excess;
 }
@@ -306,14 +306,14 @@ void AutomaticChoice::consider(const FrameWork& frame, const Wear& wear, bool sc
   note_wear(wear, scattered);
   const int trust = static_cast<int>(kTrust - std::min(kTrust, changes_));
   const std::size_t now = number_of(before_);
-  const double held = cost_of(costs, now);
+  const double current_cost = cost_of(costs, now);
   std::size_t best = now;
   double most = 0.0;
   for (std::size_t k = 0; k < candidates().size(); ++k) {
     const double cost = cost_of(costs, k);
-    const double gain = static_cast<double>(frames_) * (kWorthwhile * held - cost);
+    const double gain = static_cast<double>(frames_) * (kWorthwhile * current_cost - cost);
     saved_[k] = k == now ? 0.0 : std::max(0.0, saved_[k] + gain);
-    const int doubled = left_[k] - (cost < kClearly * held ? trust : 0);
+    const int doubled = times_left_[k] - (cost < kClearly * current_cost ? trust : 0);
     const double price = scattered ? 0.0 : std::ldexp(kExchange + costs.build_of(k), doubled);
     if (saved_[k] - price <= most) continue;
     most = saved_[k] - price;
@@ -322,9 +322,9 @@ void AutomaticChoice::consider(const FrameWork& frame, const Wear& wear, bool sc
   if (best == now) return;
   chosen_kind_ = candidates()[best];
   const double by_queries = costs.queries_of(now) - costs.queries_of(best);
-  const double by_pairs = held - cost_of(costs, best) - by_queries;
-  reason_ = by_queries > by_pairs ? "cheaper for the queries that are asked"
-                                  : "cheaper for what moves and for its pairs";
+  const double by_pairs = current_cost - cost_of(costs, best) - by_queries;
+  reason_ = by_queries > by_pairs ? "cheaper for the queries of the last frames"
+                                  : "cheaper for moved objects and their pairs";
 }
 
 // A change resets all savings.
@@ -332,14 +332,14 @@ void AutomaticChoice::note_change() noexcept {
   saved_ = {};
   if (!chosen_) return;
   ++changes_;
-  std::uint8_t& left = left_[number_of(before_)];
-  if (left < kMaxOften) ++left;
+  std::uint8_t& times_left = times_left_[number_of(before_)];
+  if (times_left < kMaxOften) ++times_left;
 }
 
 constexpr StructureInfo kInfo{
     .name = "AutoPartition",
     .make = nullptr,
-    .end = nullptr,
+    .destroy = nullptr,
     .bytes = 0,
     .make_chooser = [](std::pmr::memory_resource* memory) noexcept -> Chooser* {
       return new_in<AutomaticChoice>(memory);

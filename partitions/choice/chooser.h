@@ -47,35 +47,35 @@ class Chooser {
   /// The structure that a new partition begins with.
   [[nodiscard]] virtual StructureKind first() const noexcept = 0;
   /// All structures that choose() may return.
-  [[nodiscard]] virtual std::span<const StructureKind> range() const noexcept = 0;
+  [[nodiscard]] virtual std::span<const StructureKind> choices() const noexcept = 0;
   /// State of the structure in use.
   struct Wear {
     std::uint64_t builds = 0;
     /// Tests of 16 volumes in queries since the last build, compared with a fresh structure.
     std::uint64_t excess = 0;
     /// Number of new objects that makes a build due.
-    std::size_t most_new = 1;
+    std::size_t max_new = 1;
   };
-  /// Returns the structure for this refresh; the rows are held by `now`.
+  /// Returns the structure for this refresh; `now` is the structure in use.
   [[nodiscard]] virtual StructureKind choose(const Rows& rows, StructureKind now,
                                              const Wear& wear) noexcept = 0;
   /// Ends a refresh that succeeded. `now` is the structure in use: the chosen one, or the previous
   /// one if the memory of the chosen one could not be allocated.
   virtual void refreshed(const Rows& rows, StructureKind now, std::uint64_t builds) noexcept = 0;
-  /// The memory of the chosen structure could not be allocated.
+  /// Called if the memory of the chosen structure could not be allocated.
   virtual void refused() noexcept = 0;
-  /// All objects were removed.
+  /// Called after all objects were removed.
   virtual void clear() noexcept = 0;
   virtual void report(StructureChoice& choice) const noexcept = 0;
 
   /// The size of the implementation in bytes.
   [[nodiscard]] virtual std::size_t bytes() const noexcept = 0;
-  virtual void end(std::pmr::memory_resource* memory) noexcept = 0;
+  virtual void destroy(std::pmr::memory_resource* memory) noexcept = 0;
 
   void note_changes(std::size_t count) noexcept { changed_ += count; }
   /// Counts inserted objects, which are also counted as changes.
-  void note_new(std::size_t count) noexcept { new_ += count; }
-  void note(QueryKind kind, std::size_t count) noexcept {
+  void note_inserted(std::size_t count) noexcept { new_ += count; }
+  void count_queries(QueryKind kind, std::size_t count) noexcept {
     queries_[static_cast<std::size_t>(kind)].add(count);
   }
   /// Stores the number of pairs that the last query for all pairs found.

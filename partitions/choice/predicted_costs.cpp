@@ -48,14 +48,14 @@ std::array<CostTerm, kFrameTerms> frame_terms(const SceneFeatures& scene, const 
   const auto queries = static_cast<double>(frame.pair_queries);
   const double full = much ? queries : static_cast<double>(frame.full_queries);
   const double partial = queries - full;
-  const double asking = full * n + partial * changed;
+  const double querying = full * n + partial * changed;
   const double redone = full * pairs + partial * pairs * changed / std::max(n, 1.0);
   return {{{&Costs::frame, 1.0},
            {&Costs::keep, changed},
            {&Costs::object, full * n},
-           {&Costs::level, asking * level_of(scene)},
+           {&Costs::level, querying * level_of(scene)},
            {&Costs::crowd, full * n * scene.crowding},
-           {&Costs::square, asking * n},
+           {&Costs::square, querying * n},
            {&Costs::pair, redone},
            {&Costs::moved, partial * changed},
            {&Costs::rest, partial * n}}};

@@ -51,11 +51,10 @@ inline constexpr std::size_t kBuildTerms = 2;
 ///
 /// - a constant (`frame`), and for each object that moved the update of its row and of its place in
 ///   the structure (`keep`);
-/// - for a query for all pairs after many objects moved: one query per object (`object`, and
-/// `level`
-///   for each doubling of the number of objects, because of depth and caches), additional tests if
-///   objects crowd together (`crowd`), and the output of each pair (`pair`); brute force tests all
-///   pairs (`square`);
+/// - for a query for all pairs after many objects moved: one query per object (`object`, and for
+///   each doubling of the number of objects `level`, because of depth and caches), additional tests
+///   if objects crowd together (`crowd`), and the output of each pair (`pair`); brute force tests
+///   all pairs (`square`);
 /// - for a query for all pairs after few objects moved: one query per object that moved (`moved`,
 ///   `level`, `square`), the update of its share of the pairs (`pair`), and a read of the flags of
 ///   the other objects (`rest`);
@@ -74,11 +73,11 @@ inline constexpr std::size_t kBuildTerms = 2;
 /// fit` prints the constants and their quality). Constants of other queries were fitted to single
 /// rays, boxes and nearest queries on the same scenes, and `anew` to teleporting scenes of 1,000 to
 /// 100,000 objects. As a result brute force is the choice for few objects, LinearBvh for more, and
-/// StaticBvh if there are also many queries. The spread of sizes is not a feature, because it adds
-/// nothing to the number of pairs.
+/// StaticBvh if there are also many queries. The costs do not use SceneFeatures::size_spread,
+/// because it improves no prediction that uses the number of pairs.
 class PredictedCosts {
  public:
-  using List = std::array<double, kMaxCandidates>;
+  using CostList = std::array<double, kMaxCandidates>;
 
   /// `pairs` is the number of pairs of the scene.
   PredictedCosts(const SceneFeatures& scene, const FrameWork& frame, double pairs) noexcept;
@@ -99,10 +98,10 @@ class PredictedCosts {
   [[nodiscard]] std::size_t cheapest(double frames) const noexcept;
 
  private:
-  List total_{};
-  List queries_{};
-  List build_{};
-  List scattered_{};
+  CostList total_{};
+  CostList queries_{};
+  CostList build_{};
+  CostList scattered_{};
 };
 
 }  // namespace winnow

@@ -17,8 +17,8 @@ constexpr double kUnbounded = 1e30;
 constexpr std::size_t kCells = 64;
 constexpr double kMaxPairs = 16.0;  // per object; larger estimates are mostly wrong
 
-// Exact at powers of two and linear between them: within 0.09 of log2, but identical on every
-// machine.
+// Returns log2, exact at powers of two and linear between them: within 0.09 of log2, and identical
+// on every machine.
 double rough_log2(double value) noexcept {
   int exponent = 0;
   const double part = std::frexp(value, &exponent);
@@ -33,8 +33,8 @@ struct BoxSample {
   std::array<float, kMaxSampled> longest;
 
   BoxSample(const BoundsPool& pool, std::size_t live) noexcept {
-    const std::size_t wanted = std::clamp<std::size_t>(live / 8, 64, kMaxSampled);
-    const std::size_t step = std::max<std::size_t>(1, pool.rows() / wanted);
+    const std::size_t sample_size = std::clamp<std::size_t>(live / 8, 64, kMaxSampled);
+    const std::size_t step = std::max<std::size_t>(1, pool.rows() / sample_size);
     const std::array<const float*, 6> box = box_columns(pool);
     for (std::size_t row = step / 2; row < pool.rows() && count < kMaxSampled; row += step) {
       if (pool.ids()[row] == kNoObject) continue;
@@ -48,7 +48,8 @@ struct BoxSample {
     }
   }
 
-  // The value below which `share` of the sample lies. Fast only near either end.
+  // Returns the value below which `share` of the sample is. `share` must be less than 0.12 from 0
+  // or from 1, because kMaxRank limits the rank.
   [[nodiscard]] double quantile(const std::array<float, kMaxSampled>& values,
                                 double share) const noexcept {
     const auto at = static_cast<std::size_t>(share * static_cast<double>(count - 1));
@@ -71,7 +72,7 @@ struct BoxSample {
 };
 
 /// An axis divided evenly into cells.
-struct Axis {
+struct SampledAxis {
   double from = 0.0;
   double range = 0.0;
   std::size_t cells = 1;
@@ -89,17 +90,17 @@ struct Axis {
 };
 
 // Divides the axes that have room into 64 cells: 4 x 4 x 4, 8 x 8 or 64 in a row.
-void divide(std::array<Axis, 3>& axes, const std::array<double, 3>& room) noexcept {
+void divide(std::array<SampledAxis, 3>& axes, const std::array<double, 3>& room) noexcept {
   constexpr std::array<std::size_t, 4> kEach{1, 64, 8, 4};
   const auto roomy = [](double r) { return r > 4.0; };
   const auto count = static_cast<std::size_t>(std::count_if(room.begin(), room.end(), roomy));
   for (std::size_t a = 0; a < 3; ++a) axes[a].divide(roomy(room[a]) ? kEach[count] : 1);
 }
 
-double crowding_of(const BoxSample& sample, const std::array<Axis, 3>& axes) noexcept {
+double crowding_of(const BoxSample& sample, const std::array<SampledAxis, 3>& axes) noexcept {
   std::array<std::uint32_t, kCells> in_cell{};
   std::size_t cells = 1;
-  for (const Axis& axis : axes) cells *= axis.cells;
+  for (const SampledAxis& axis : axes) cells *= axis.cells;
   for (std::size_t i = 0; i < sample.count; ++i) {
     std::size_t cell = 0;
     for (std::size_t a = 0; a < 3; ++a) {
@@ -120,7 +121,7 @@ SceneFeatures sample_scene(const BoundsPool& pool, std::size_t live) noexcept {
   SceneFeatures features{.objects = live};
   BoxSample sample(pool, live);
   if (sample.count < 2) return features;
-  std::array<Axis, 3> axes;
+  std::array<SampledAxis, 3> axes;
   double pairs_of_one = 0.5 * static_cast<double>(live);
   for (std::size_t a = 0; a < 3; ++a) {
     axes[a].from = sample.quantile(sample.low[a], 0.02);

@@ -1,6 +1,7 @@
 // Runs the stages of a plan: the structure orders its regular rows (Structure::plan), then the
 // remaining rows are ordered for the tree, by the structure (order_rest), by environment
-// (tree/environment_order.h) or by k-d cuts (tree/kd_order.h). SpatialIndex calls it (rebuild.cpp).
+// (tree/environment_order.h) or by k-d cuts (tree/kd_order.h). SpatialIndex calls these functions
+// (rebuild.cpp).
 
 #include "partitions/index/order_plan.h"
 
@@ -37,24 +38,25 @@ bool OrderPlan::start(Rows& rows, Structure& structure, std::size_t room, KdPart
   structure_ = &structure;
   planned_rows_ = rows.pool().rows();
   planned_objects_ = rows.size();
-  part_ = PlanStage::structure;
-  stage_ = 0;
+  phase_ = PlanPhase::structure;
+  structure_stage_ = 0;
   resumed_ = false;
   parts_ = parts;
   rows.regions().planned = planned_rows_;
-  // Cells would mix the environments, and each object would be tested against objects of all of
-  // them. The nodes of the tree store environments, so the tree keeps them apart.
+  // Cells would mix the environments, and each object would be tested against objects of all
+  // environments. In the tree, rows are sorted by environment, and queries skip nodes of other
+  // environments.
   if (rows.filters().has_environments()) {
-    structure.put_all_in_rest(row_plan());
-    part_ = PlanStage::rest;
+    structure.append_all_to_rest(row_plan());
+    phase_ = PlanPhase::rest;
   }
   return true;
 }
 
 bool OrderPlan::advance(std::size_t work) noexcept {
   sort_moves();
-  // If nothing is left for the tree, the rest takes no work.
-  const auto is_as_good_as_ready = [&] { return part_ == PlanStage::rest && rest_.empty(); };
+  // If no rows remain for the tree, the stage `rest` takes no work.
+  const auto is_as_good_as_ready = [&] { return phase_ == PlanPhase::rest && rest_.empty(); };
   while ((work != 0 && !ready()) || is_as_good_as_ready()) {
     if (!run_stage(work)) return false;
   }
@@ -64,24 +66,25 @@ bool OrderPlan::advance(std::size_t work) noexcept {
 
 // Returns false if an allocation fails.
 bool OrderPlan::run_stage(std::size_t& work) noexcept {
-  switch (part_) {
-    case PlanStage::structure: {
-      const Planned planned = structure_->plan(row_plan(), stage_++);
-      if (planned == Planned::done) part_ = PlanStage::rest;
+  switch (phase_) {
+    case PlanPhase::structure: {
+      const PlanStatus planned = structure_->plan(row_plan(), structure_stage_++);
+      if (planned == PlanStatus::done) phase_ = PlanPhase::rest;
       // A structure that leaves all rows to the tree takes no work.
-      if (planned == Planned::goes_on || !order_.empty()) work -= std::min(work, planned_rows_);
-      return planned != Planned::out_of_memory;
+      if (planned == PlanStatus::unfinished || !order_.empty())
+        work -= std::min(work, planned_rows_);
+      return planned != PlanStatus::out_of_memory;
     }
-    case PlanStage::rest:
+    case PlanPhase::rest:
       return begin_rest(work);
-    case PlanStage::cuts: {
+    case PlanPhase::cuts: {
       const bool done = cuts_.advance(work > kMaxWork ? work : kCutsPerRow * work,
                                       rows_->execution_for(rest_.size()));
       work = 0;
       if (done) append_rest();
       return true;
     }
-    case PlanStage::ready:
+    case PlanPhase::ready:
       return true;
   }
   return false;
@@ -97,27 +100,28 @@ bool OrderPlan::begin_rest(std::size_t& work) noexcept {
   }
   const std::span<std::uint32_t> rest(rest_.data(), rest_.size());
   regular_ = order_.size();
-  // The tree's blocks begin behind the regular rows, so that no block belongs to both.
+  // The tree's blocks begin behind the regular rows, so that no block has both regular rows and
+  // rows of the tree.
   while (order_.size() % kBlockRows != 0) (void)order_.push_back(kNoObject);
   const Execution execution = rows_->execution_for(rest.size());
   if (rows_->filters().has_environments()) {
-    part_ = PlanStage::ready;
+    phase_ = PlanPhase::ready;
     const ObjectFilter* const filters = rows_->filters().data();
     return order_.grow(order_.size() + rest.size()) &&
            sort_by_environment_and_place(pool, filters, rest, items_, order_.end(), points_,
                                          execution) &&
            append_environments(pool, filters, rest, order_);
   }
-  const Structure::Ordered ordered = structure_->order_rest(rest, order_);
-  if (ordered != Structure::Ordered::none) {
-    part_ = PlanStage::ready;
-    return ordered == Structure::Ordered::done;
+  const Structure::RestOrder ordered = structure_->order_rest(rest, order_);
+  if (ordered != Structure::RestOrder::none) {
+    phase_ = PlanPhase::ready;
+    return ordered == Structure::RestOrder::done;
   }
   if (!order_.grow(order_.size() + rest.size()) ||
       !cuts_.start(pool, rest, order_.end(), points_, execution, parts_)) {
     return false;
   }
-  part_ = PlanStage::cuts;
+  phase_ = PlanPhase::cuts;
   if (rest.size() <= kBlockRows) append_rest();
   return true;
 }
@@ -125,14 +129,14 @@ bool OrderPlan::begin_rest(std::size_t& work) noexcept {
 void OrderPlan::append_rest() noexcept {
   std::copy(rest_.begin(), rest_.end(), order_.end());
   order_.set_size(order_.size() + rest_.size());
-  part_ = PlanStage::ready;
+  phase_ = PlanPhase::ready;
 }
 
 bool OrderPlan::complete() noexcept {
   const ObjectId* const ids = rows_->pool().ids();
   const std::size_t rows = rows_->pool().rows();
-  const std::size_t came = rows - planned_rows_;
-  if (!order_.grow(order_.size() + came) || !placed_.grow(moves_.size())) return false;
+  const std::size_t added = rows - planned_rows_;
+  if (!order_.grow(order_.size() + added) || !placed_.grow(moves_.size())) return false;
   if (!moves_.empty()) place_moved();
   const std::uint32_t* placed = placed_.begin();
   for (std::size_t row = planned_rows_; row < rows; ++row) {
@@ -167,7 +171,7 @@ void OrderPlan::drop() noexcept {
   if (rows_ != nullptr) rows_->regions().planned = 0;
   rows_ = nullptr;
   structure_ = nullptr;
-  part_ = PlanStage::structure;
+  phase_ = PlanPhase::structure;
 }
 
 void OrderPlan::release() noexcept {

@@ -31,23 +31,23 @@ class OrderPlan {
   /// allocate no memory except for the sort scratch of structures. Returns false if an allocation
   /// fails.
   [[nodiscard]] bool reserve(std::size_t rows, std::size_t moved, Pages pages) noexcept;
-  /// The scratch that a structure reserves.
+  /// Returns the scratch columns that a structure reserves.
   [[nodiscard]] BuildRoom room_for(std::size_t objects, Pages pages) noexcept {
     return {objects, pages, items_, list_, points_};
   }
 
-  /// Starts from the current rows; at most `room` further rows may be added behind the order.
+  /// Starts a plan for the current rows; at most `room` further rows may be added behind the order.
   /// Returns false if an allocation fails.
   [[nodiscard]] bool start(Rows& rows, Structure& structure, std::size_t room,
                            KdParts parts) noexcept;
-  /// Runs stages that visit about `work` rows in total, at least one stage. Returns false and drops
-  /// the plan if an allocation fails.
+  /// Runs stages that visit about `work` rows in total, at least one stage. Returns false if an
+  /// allocation fails; the caller then drops the plan.
   [[nodiscard]] bool advance(std::size_t work) noexcept;
   void drop() noexcept;
 
   /// True from `start` until `drop`.
   [[nodiscard]] bool underway() const noexcept { return structure_ != nullptr; }
-  [[nodiscard]] bool ready() const noexcept { return part_ == PlanStage::ready; }
+  [[nodiscard]] bool ready() const noexcept { return phase_ == PlanPhase::ready; }
   /// The structure that the plan is for.
   [[nodiscard]] Structure* structure() const noexcept { return structure_; }
   /// The plan covers the rows below this, which existed at `start`.
@@ -62,7 +62,7 @@ class OrderPlan {
   // The following are valid once the plan is ready.
 
   /// Turns the plan into an order of all current rows. Objects that were moved to the end get the
-  /// places planned for their former rows; rows added since `start` follow at the end; rows that
+  /// new rows planned for their former rows; rows added since `start` follow at the end; rows that
   /// became empty leave holes. Returns false if an allocation fails.
   [[nodiscard]] bool complete() noexcept;
   /// The old row of each new row, regular rows first.
@@ -87,7 +87,7 @@ class OrderPlan {
   }
 
  private:
-  enum class PlanStage : std::uint8_t { structure, rest, cuts, ready };
+  enum class PlanPhase : std::uint8_t { structure, rest, cuts, ready };
   [[nodiscard]] bool run_stage(std::size_t& work) noexcept;
   [[nodiscard]] bool begin_rest(std::size_t& work) noexcept;
   void append_rest() noexcept;
@@ -99,8 +99,8 @@ class OrderPlan {
   std::size_t planned_rows_ = 0;
   std::size_t planned_objects_ = 0;
   std::size_t regular_ = 0;
-  PlanStage part_ = PlanStage::structure;
-  unsigned stage_ = 0;
+  PlanPhase phase_ = PlanPhase::structure;
+  unsigned structure_stage_ = 0;
   bool resumed_ = false;  // rows may have become empty since the start
   KdParts parts_ = KdParts::tiles;
   KdCuts cuts_;
@@ -108,7 +108,7 @@ class OrderPlan {
   Column<std::uint32_t> order_;
   Column<std::uint32_t> rest_;
   Column<RowMove> moves_;
-  Column<std::uint32_t> placed_;  // rows beyond planned_rows_ that have a planned place
+  Column<std::uint32_t> placed_;  // rows beyond planned_rows_ that have a planned new row
   Column<std::uint64_t> items_;
   Column<std::uint32_t> list_;
   Column<float> points_;  // positions of rows, used as sort keys

@@ -1,6 +1,5 @@
-// SpatialIndex: finds outliers, which are objects that jumped away from the others in
-// their block of the tree, and moves them to the tail. refresh() calls it after refitting the
-// trees.
+// SpatialIndex: finds outliers, which are objects that jumped away from the other objects in their
+// block of the tree, and moves them to the tail. refresh() calls it after refitting the trees.
 
 #include "partitions/index/spatial_index.h"
 
@@ -19,8 +18,8 @@ constexpr float kWide = 3.0F;
 constexpr float kFar = 4.0F;
 // Searching a block costs this many tests for each of its rows.
 constexpr std::uint64_t kSearchCost = 16;
-// There is no search if fewer than one object in this many changed: the count of tests detects wear
-// soon enough.
+// There is no search if fewer than one object in this many changed: then wear, which is counted in
+// tests, leads to a build if it is necessary.
 constexpr std::size_t kFewChanges = 256;
 // There is no search either if few blocks became wide: the limit is the price of a build (in tests)
 // divided by this number.
@@ -89,37 +88,38 @@ Status SpatialIndex::find_outliers() {
   return wide * kSearchCost > price ? build() : move_outliers_to_tail();
 }
 
-// Lists about `limit` outliers at most. Returns false if an allocation fails.
+// Lists outliers block by block until there are at least `limit`. Returns false if an allocation
+// fails.
 bool SpatialIndex::collect_outliers(std::size_t limit) noexcept {
-  RowSelection& strays = rows_.selection();
-  if (!strays.start(limit + kBlockRows)) return false;
+  RowSelection& outliers = rows_.selection();
+  if (!outliers.start(limit + kBlockRows)) return false;
   const std::size_t blocks = ordered_blocks();
-  for (std::size_t block = 0; block < blocks && strays.list.size() < limit; ++block) {
+  for (std::size_t block = 0; block < blocks && outliers.list.size() < limit; ++block) {
     if (!tree_.is_wide(block, kWide * built_edge_)) continue;
     const BlockMembers objects(rows_.pool(), (tree_.first_block() + block) * kBlockRows);
     if (objects.count == 0) continue;
     const auto distance = objects.distances();
     const float far = kFar * objects.median_of(distance) + 0.5F * kWide * built_edge_;
     for (std::size_t i = 0; i < objects.count; ++i) {
-      if (distance[i] > far) strays.add(objects.row[i]);
+      if (distance[i] > far) outliers.add(objects.row[i]);
     }
   }
   return true;
 }
 
-// Moves the outliers to the tail, which is sorted by position. Builds if they exceed the tail's
-// limit.
+// Moves the outliers to the tail, which is sorted by position. Builds instead if the tail would
+// exceed its limit.
 Status SpatialIndex::move_outliers_to_tail() {
   const std::size_t limit = tail_limit();
   const std::size_t room = limit + 1 - std::min(limit, tail());
   if (!collect_outliers(room)) return Status::out_of_memory;
-  RowSelection& strays = rows_.selection();
-  if (strays.list.size() >= room) return build();
-  if (!strays.list.empty()) {
+  RowSelection& outliers = rows_.selection();
+  if (outliers.list.size() >= room) return build();
+  if (!outliers.list.empty()) {
     // The rows of a plan must stay in place, but outliers are moved.
     drop_plan();
     order_changed_ = true;
-    if (!move_to_tail(strays.entries()) || !sort_tail() || !refit_trees()) {
+    if (!move_to_tail(outliers.entries()) || !sort_tail() || !refit_trees()) {
       return Status::out_of_memory;
     }
   }

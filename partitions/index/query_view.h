@@ -10,10 +10,10 @@
 
 namespace winnow {
 
-/// The rows of a partition as queries see them. Every row lies either in a block of one of the
-/// trees or in a flat block; flat blocks are all tested.
+/// The rows of a partition as queries see them. Every row is either in a block of one of the trees
+/// or in a flat block; flat blocks are all tested.
 struct QueryView {
-  /// Lower bounds x, y, z, then upper bounds. Each query fills in all six.
+  /// Lower bounds x, y, z, then upper bounds; set by SpatialIndex::view.
   const float* column[6];
   const std::uint32_t* id = nullptr;
   FilterColumns filter;  ///< by row
@@ -32,7 +32,8 @@ struct QueryFilter {
   const void* context = nullptr;
 };
 
-/// Output of kernels: while cursor <= limit there is room for 16 more object ids; then `grow`.
+/// Output of kernels: while cursor <= limit there is room for 16 more object ids; after that,
+/// kernels call `grow`.
 struct IdSink {
   std::uint32_t* cursor = nullptr;
   std::uint32_t* limit = nullptr;

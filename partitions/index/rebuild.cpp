@@ -67,8 +67,8 @@ std::uint64_t SpatialIndex::max_wear() const noexcept {
   return structure_->build_price() * (rows_.size() + 64);
 }
 
-// True if the rows of different environments are not kept apart: they are in cells, new, or were
-// moved from one environment to another.
+// True if the rows have to be grouped by environment again: rows are in cells, or more than
+// tail_limit() objects changed their environment. With a flat structure, new rows count, too.
 bool SpatialIndex::needs_grouping() const noexcept {
   const RowRegions& regions = rows_.regions();
   const std::size_t changed = rows_.filters().changed_environments();
@@ -97,13 +97,14 @@ bool SpatialIndex::start_plan(Structure& structure) noexcept {
   return plan_.start(rows_, structure, spare_rows(structure), needed_parts(structure));
 }
 
-// Many refreshes for rays and regions, or some before the first build, justify an order that takes
-// longer to compute. An order that lasts only two refreshes does not.
+// More than kOften refreshes for rays and regions since the last build, or any before the first
+// build, justify an order that takes longer to compute. If the last order lasted at most kTorn
+// refreshes, a coarser order is computed.
 KdParts SpatialIndex::needed_parts(const Structure& structure) const noexcept {
   constexpr std::size_t kOften = 4;
   constexpr std::size_t kTorn = 2;
-  const std::size_t asked = queried_refreshes_.load(std::memory_order_relaxed);
-  if (asked > (builds_ == 0 ? 0 : kOften)) return KdParts::blocks;
+  const std::size_t queried = queried_refreshes_.load(std::memory_order_relaxed);
+  if (queried > (builds_ == 0 ? 0 : kOften)) return KdParts::blocks;
   if (builds_ == 0) return structure.first_parts();
   return departures_.refreshes() <= kTorn ? KdParts::cells : KdParts::tiles;
 }
@@ -190,7 +191,8 @@ bool SpatialIndex::plans_ahead() const noexcept {
 }
 
 // Returns the number of rows that a refresh plans. The longer orders last, the more refreshes share
-// a plan; they are limited so that the order is not out of date when it is applied.
+// a plan: two fifths of the life of an order, so that the planned order is not out of date when it
+// is applied.
 std::size_t SpatialIndex::planning_work(const Structure& structure) const noexcept {
   if (build_budget_ != 0) return build_budget_;
   const std::size_t life = plan_.underway() ? refreshes_before_plan_ : departures_.refreshes();
@@ -222,13 +224,13 @@ void SpatialIndex::continue_planning() noexcept {
   drop_plan();
 }
 
-// True if a build is expected in as many refreshes as a plan takes.
+// True if a build is expected within as many refreshes as a plan takes.
 bool SpatialIndex::build_is_near() const noexcept {
   if (!plans_ahead() || builds_without_planning_ != 0) return false;
   const std::size_t whole = structure_->plan_passes() * rows_.pool().rows();
   const std::size_t ahead = 1 + (whole - 1) / planning_work(*structure_) + kSpareRefreshes;
-  // If builds are that frequent, planning saves nothing: each order would be out of date when it is
-  // applied.
+  // True if one refresh would plan the whole order. Without a build budget this means that builds
+  // are frequent, and planning saves nothing: each order would be out of date when it is applied.
   const bool at_once = planning_work(*structure_) >= whole;
   if (departures_.refreshes() <= ahead || (at_once && build_budget_ == 0)) return false;
   const std::uint64_t grown = tail_growth_.in(ahead);

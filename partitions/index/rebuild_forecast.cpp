@@ -4,31 +4,31 @@ namespace winnow {
 
 void DepartureForecast::begin(const Rows& rows) noexcept {
   refreshes_ = 0;
-  seen_.clear();
+  samples_.clear();
   const std::size_t regular = rows.regions().regular;
   for (std::size_t i = 0; i < kSample && regular >= kSample; ++i) {
     const std::size_t row = (2 * i + 1) * regular / (2 * kSample);
     const ObjectId id = rows.pool().ids()[row];
     if (id == kNoObject) continue;
-    Seen seen{.id = id, .low = {}};
-    for (std::size_t a = 0; a < 3; ++a) seen.low[a] = rows.pool().column(a)[row];
-    (void)seen_.push_back(seen);
+    SampledRow sampled{.id = id, .low = {}};
+    for (std::size_t a = 0; a < 3; ++a) sampled.low[a] = rows.pool().column(a)[row];
+    (void)samples_.push_back(sampled);
   }
 }
 
 float DepartureForecast::share(const Rows& rows, const Structure& structure,
                                std::size_t ahead) const noexcept {
-  if (seen_.empty() || refreshes_ == 0) return 0.0F;
+  if (samples_.empty() || refreshes_ == 0) return 0.0F;
   const float steps = static_cast<float>(ahead) / static_cast<float>(refreshes_);
   std::size_t staying = 0;
   std::size_t leaving = 0;
-  for (const Seen& seen : seen_) {
-    if (!rows.keys().is_live(seen.id)) continue;
-    const std::size_t row = rows.keys().row_of(seen.id);
+  for (const SampledRow& sampled : samples_) {
+    if (!rows.keys().is_live(sampled.id)) continue;
+    const std::size_t row = rows.keys().row_of(sampled.id);
     if (row >= rows.regions().regular) continue;
-    Structure::ObjectBox place = structure.place_of(row);
+    Structure::ObjectBox place = structure.box_of_row(row);
     for (std::size_t a = 0; a < 3; ++a) {
-      const float way = steps * (place.low[a] - seen.low[a]);
+      const float way = steps * (place.low[a] - sampled.low[a]);
       place.low[a] += way;
       place.high[a] += way;
     }

@@ -15,11 +15,11 @@ namespace winnow {
 /// within the next refreshes if they keep their mean velocity since the build.
 class DepartureForecast {
  public:
-  explicit DepartureForecast(std::pmr::memory_resource* memory) noexcept : seen_(memory) {}
+  explicit DepartureForecast(std::pmr::memory_resource* memory) noexcept : samples_(memory) {}
 
   /// Makes room for a sample of `regular` regular rows. Returns false if an allocation fails.
   [[nodiscard]] bool reserve(std::size_t regular) noexcept {
-    return regular < kSample || seen_.reserve(kSample);
+    return regular < kSample || samples_.reserve(kSample);
   }
   /// Stores the positions of a sample of the regular rows. Room must have been reserved. O(1).
   void begin(const Rows& rows) noexcept;
@@ -30,17 +30,17 @@ class DepartureForecast {
   /// after `ahead` refreshes. O(1).
   [[nodiscard]] float share(const Rows& rows, const Structure& structure,
                             std::size_t ahead) const noexcept;
-  void release() noexcept { seen_.release(); }
-  [[nodiscard]] Bytes bytes() const noexcept { return seen_.bytes(); }
+  void release() noexcept { samples_.release(); }
+  [[nodiscard]] Bytes bytes() const noexcept { return samples_.bytes(); }
 
  private:
   static constexpr std::size_t kSample = 64;
 
-  struct Seen {
+  struct SampledRow {
     ObjectId id;
     std::array<float, 3> low;
   };
-  Column<Seen> seen_;
+  Column<SampledRow> samples_;
   std::size_t refreshes_ = 0;
 };
 
@@ -48,22 +48,22 @@ class DepartureForecast {
 class GrowthForecast {
  public:
   /// Restarts: the next count is the first.
-  void begin() noexcept { last_ = step_ = faster_ = 0; }
+  void begin() noexcept { last_ = step_ = acceleration_ = 0; }
   void note(std::uint64_t count) noexcept {
     const std::uint64_t step = count > last_ ? count - last_ : 0;
-    faster_ = last_ != 0 && step > step_ ? step - step_ : 0;
+    acceleration_ = last_ != 0 && step > step_ ? step - step_ : 0;
     step_ = last_ != 0 ? step : 0;
     last_ = count;
   }
   /// Returns the expected count after `refreshes` more refreshes.
   [[nodiscard]] std::uint64_t in(std::size_t refreshes) const noexcept {
-    return last_ + step_ * refreshes + faster_ * refreshes * (refreshes + 1) / 2;
+    return last_ + step_ * refreshes + acceleration_ * refreshes * (refreshes + 1) / 2;
   }
 
  private:
   std::uint64_t last_ = 0;
   std::uint64_t step_ = 0;
-  std::uint64_t faster_ = 0;  // increase of the step
+  std::uint64_t acceleration_ = 0;  // increase of the step
 };
 
 }  // namespace winnow

@@ -33,8 +33,8 @@ SpatialIndex::SpatialIndex(std::pmr::memory_resource* memory, Rows& rows,
 
 SpatialIndex::~SpatialIndex() {
   drop_plan();
-  end_spares();
-  end({kind_, structure_});
+  destroy_spares();
+  destroy({kind_, structure_});
 }
 
 Status SpatialIndex::refresh() {
@@ -62,7 +62,8 @@ std::size_t SpatialIndex::tail() const noexcept {
   return rows > ordered ? rows - ordered : 0;
 }
 
-// `all`: any row may no longer fit its place in the order, even if it did not change now.
+// If `all` is true, any row may no longer fit its position in the order, even if it did not change
+// now.
 Status SpatialIndex::absorb_changes(bool all) {
   ++refits_;
   if (structure_->is_flat()) {
@@ -78,8 +79,8 @@ Status SpatialIndex::absorb_changes(bool all) {
     if (all) builds_without_planning_ = kBuildsAfterMistake;
     return build();
   }
-  // A row that no longer fits a planned order may have moved long ago, so its block is not in the
-  // list of stale objects.
+  // A row that no longer fits a planned order may have moved before the last refresh, and is then
+  // not in the list of stale objects.
   tail_changed_ = tail_changed_ || (all && !misfits.list.empty());
   if (!move_to_tail(misfits.entries()) || !sort_tail() || !refit_trees()) {
     return Status::out_of_memory;
@@ -100,12 +101,13 @@ Status SpatialIndex::absorb_changes(bool all) {
 // forecasts of builds extrapolate growth per frame.
 bool SpatialIndex::is_next_frame() const noexcept {
   const ChangeList& stale = rows_.stale();
-  const bool asked = queried_.exchange(false, std::memory_order_relaxed);
-  return asked || stale.all() || 4 * stale.ids().size() >= rows_.size();
+  const bool queried = queried_.exchange(false, std::memory_order_relaxed);
+  return queried || stale.all() || 4 * stale.ids().size() >= rows_.size();
 }
 
 // If most objects jumped, one query of a tree in the old order would cost as much as many builds.
-// The sizes of the leaves show it before the query. Slow wear is detected by counting tests.
+// The sizes of the leaves show such jumps before the query. Slow wear is detected by counting
+// tests.
 bool SpatialIndex::is_scattered() const noexcept {
   constexpr float kScattered = 2.0F;
   constexpr float kScatterOfPrice = 0.1F;  // a lower limit if a build is cheap
@@ -114,7 +116,8 @@ bool SpatialIndex::is_scattered() const noexcept {
   // rows.
   constexpr std::size_t kFewBlocks = 12;
   if (tree_.blocks() <= kFewBlocks) return false;
-  // Cells and strips detect objects that leave them; the tree beside them holds mixed rows.
+  // Cells and strips detect objects that leave them; the tree beside them contains rows of all
+  // parts of the scene.
   if (rows_.regions().regular != 0 || !rows_.stale().all()) return false;
   const float scattered = std::min(kScattered, 1.0F + kScatterOfPrice * price);
   return built_edge_ > 0.0F && tree_.typical_edge() > scattered * built_edge_;
@@ -124,7 +127,7 @@ bool SpatialIndex::make_room_for_misfits() noexcept {
   return rows_.regions().regular == 0 || spare_.reserve(rows_.pool().capacity() + 2 * kBlockRows);
 }
 
-// Returns false if there are more than `most` misfits, or probably are.
+// Returns false if there are more than `most` misfits, or if a sample predicts more.
 bool SpatialIndex::collect_misfits(bool any_row, std::size_t most) noexcept {
   const std::size_t regular = rows_.regions().regular;
   if (regular == 0) return true;
@@ -135,7 +138,7 @@ bool SpatialIndex::collect_misfits(bool any_row, std::size_t most) noexcept {
   for (const ObjectId id : rows_.stale().ids()) {
     if (!rows_.keys().is_live(id)) continue;
     const std::uint32_t row = rows_.keys().row_of(id);
-    if (row >= regular || structure_->fits(row, structure_->place_of(row))) continue;
+    if (row >= regular || structure_->fits(row, structure_->box_of_row(row))) continue;
     if (misfits.size() == most) return false;
     (void)misfits.push_back(row);
   }
@@ -144,7 +147,7 @@ bool SpatialIndex::collect_misfits(bool any_row, std::size_t most) noexcept {
 
 bool SpatialIndex::move_to_tail(std::span<const std::uint32_t> rows) noexcept {
   if (rows.empty()) return true;
-  // Reserves the room of all moves until the next build: growing copies every column.
+  // Reserves the room of all moves until the next build, because growing copies every column.
   const std::size_t needed = rows_.pool().rows() + rows.size();
   const std::size_t room = rows_.regions().ordered + max_in_tail(rows_.size());
   if (!rows_.reserve_rows(std::max(room, needed))) return false;
@@ -158,7 +161,8 @@ bool SpatialIndex::move_to_tail(std::span<const std::uint32_t> rows) noexcept {
 bool SpatialIndex::sort_tail() noexcept {
   RowRegions& regions = rows_.regions();
   const BoundsPool& pool = rows_.pool();
-  // The rows of a plan must stay in place; new rows behind them are sorted after it.
+  // The rows of a plan must stay in place; new rows behind them are sorted once the plan is applied
+  // or dropped.
   if (plan_.underway() || pool.rows() < regions.sorted + kBlockRows) return true;
   const std::size_t begin = regions.ordered;
   RowSelection& live = rows_.selection();
@@ -186,15 +190,17 @@ bool SpatialIndex::sort_by_place(std::span<std::uint32_t> rows, std::uint32_t* r
              : sort_by_kd_cuts(rows_.pool(), rows, room, plan_.points(), execution);
 }
 
-BlockTree::Nodes SpatialIndex::node_content() const noexcept {
-  return rows_.filters().in_use() ? BlockTree::Nodes::boxes_filters : BlockTree::Nodes::boxes;
+BlockTree::NodeContent SpatialIndex::node_content() const noexcept {
+  return rows_.filters().in_use() ? BlockTree::NodeContent::boxes_filters
+                                  : BlockTree::NodeContent::boxes;
 }
 
 bool SpatialIndex::refit_trees() noexcept {
   const std::size_t blocks = rows_.pool().blocks();
   if (structure_->is_flat()) {
-    return rows_.filters().in_use() ? refit(regular_tree_, 0, blocks, BlockTree::Nodes::filters)
-                                    : regular_tree_.cover(0, 0);
+    return rows_.filters().in_use()
+               ? refit(regular_tree_, 0, blocks, BlockTree::NodeContent::filters)
+               : regular_tree_.cover(0, 0);
   }
   const std::size_t first = blocks_of(rows_.regions().regular);
   return refit(tree_, first, blocks - first, node_content()) &&
@@ -202,12 +208,12 @@ bool SpatialIndex::refit_trees() noexcept {
 }
 
 bool SpatialIndex::refit(BlockTree& tree, std::size_t first, std::size_t blocks,
-                         BlockTree::Nodes nodes) noexcept {
+                         BlockTree::NodeContent nodes) noexcept {
   const RowView rows = rows_.view();
   const bool filters = rows_.filters().in_use() && blocks != 0;
   const std::size_t blocks_before = tree.blocks();
   const bool reshape =
-      tree.has_filters() != filters || (blocks != blocks_before && !tree.stretch(blocks));
+      tree.has_filters() != filters || (blocks != blocks_before && !tree.try_resize(blocks));
   if (reshape && !tree.cover(first, blocks, nodes)) {
     rows_.regions().built = false;
     return false;
@@ -228,8 +234,8 @@ bool SpatialIndex::refit(BlockTree& tree, std::size_t first, std::size_t blocks,
   }
   const std::size_t behind = blocks - changed_from;
   // If more than one block in four changed, refitting all blocks takes less time.
-  constexpr std::size_t kMost = 4;
-  if (kMost * behind > blocks) return refit_all();
+  constexpr std::size_t kRefitShare = 4;
+  if (kRefitShare * behind > blocks) return refit_all();
   RowSelection& leaves = rows_.selection();
   if (!leaves.start(rows_.stale().ids().size() + behind) || !leaves.reserve_bits(blocks)) {
     rows_.regions().built = false;
@@ -284,10 +290,10 @@ bool SpatialIndex::query(const QueryBatch& batch, PairSink& sink) const noexcept
 }
 
 void SpatialIndex::note_work(std::uint64_t tests, std::uint64_t queries,
-                             PairQueryKind asked) const noexcept {
+                             PairQueryKind kind) const noexcept {
   queried_.store(true, std::memory_order_relaxed);
   // The first query after a build defines the cost on a fresh structure.
-  std::atomic<std::uint64_t>& base = asked == PairQueryKind::all ? full_base_ : moved_base_;
+  std::atomic<std::uint64_t>& base = kind == PairQueryKind::all ? full_base_ : moved_base_;
   const std::uint64_t each = tests / queries + 1;
   std::uint64_t expected = 0;
   if (base.compare_exchange_strong(expected, each, std::memory_order_relaxed)) return;
@@ -340,7 +346,7 @@ void SpatialIndex::release_scratch() noexcept {
 
 void SpatialIndex::release_memory() noexcept {
   reserved_ = false;
-  end_spares();
+  destroy_spares();
   release_scratch();
   structure_->release_scratch();
   if (rows_.size() != 0) return;

@@ -24,21 +24,21 @@ struct Statistics;
 /// other rows, and keeps both up to date while rows change. PartitionState calls it; rebuild.cpp,
 /// structure_swap.cpp, outliers.cpp and debug_draw.cpp implement parts of it.
 ///
-/// All rows behind the regular rows are leaves of the block tree: objects that do not suit the
-/// structure (oversize, unbounded, in overfull cells), objects inserted since the last build, and
-/// objects that moved out of the place that the build gave them. So no input makes a structure
-/// degenerate: the tree prunes whatever does not fit it.
+/// All rows behind the regular rows are in the leaves of the block tree: objects that do not suit
+/// the structure (oversize, unbounded, in overfull cells), objects inserted since the last build,
+/// and objects that moved out of their cells since then. So no input makes a structure degenerate:
+/// the tree prunes the objects that do not suit the structure.
 ///
 /// Queries other than pairs use block trees only. The cells and strips of a structure are ranges of
-/// rows, so a second block tree over the regular rows serves these queries. It is built for the
-/// first such query and refitted after changes; a scene without such queries does not pay for it.
+/// rows, so these queries use a second block tree over the regular rows. It is built for the first
+/// such query and refitted after changes; a scene without such queries does not pay for it.
 ///
 /// Filters are tested after boxes. Tree nodes store a summary of the filters below them, so that a
 /// query skips subtrees that its filter excludes. Flat structures have such nodes without boxes for
 /// this purpose. If more than one environment is in use, a build groups the rows by environment, so
-/// that worlds at the same place cost no more than their sum.
+/// that n worlds at the same place cost no more than n worlds at n places.
 ///
-/// A build permutes the rows themselves, so the pool is the sorted copy. A build is due if the
+/// A build permutes the rows themselves, so there is no sorted copy of them. A build is due if the
 /// share of new rows, moved rows or holes exceeds a limit, if an update scatters the objects (see
 /// Rows), or if wear exceeds the price of a build. Wear is the number of extra tests since the last
 /// build, compared with a fresh structure. The total cost of wear and builds is at most twice the
@@ -74,9 +74,9 @@ class SpatialIndex {
                              std::span<const StructureKind> later) noexcept;
   /// Updates everything that pair queries read. A step that fails is repeated by the next refresh.
   Status refresh();
-  /// Refreshes with another structure. The structure is replaced at once if a build is due, else
-  /// after further refreshes have planned its order. If its memory cannot be allocated, sets
-  /// `refused` and refreshes with the current structure.
+  /// Refreshes with another structure. The structure is replaced at once if a build is due or is
+  /// not planned ahead, else after further refreshes have planned its order. If its memory cannot
+  /// be allocated, sets `refused` and refreshes with the current structure.
   Status refresh_as(StructureKind kind, bool& refused);
   /// True while the order of another structure is being planned. The plan is dropped if the rows
   /// are reordered in the meantime.
@@ -102,16 +102,16 @@ class SpatialIndex {
   /// Passes all hits of a batch to the sink. Returns false if the sink could not grow.
   bool query(const QueryBatch& batch, PairSink& sink) const noexcept;
 
-  /// Notes the cost of `queries` pair queries, in tests of 16 volumes. `all`: every object was
-  /// queried; `moved`: only objects that moved.
+  /// Adds the cost of `queries` pair queries, in tests of 16 volumes, to the wear. `all`: every
+  /// object was queried; `moved`: only objects that moved.
   enum class PairQueryKind : std::uint8_t { all, moved };
-  void note_work(std::uint64_t tests, std::uint64_t queries, PairQueryKind asked) const noexcept;
+  void note_work(std::uint64_t tests, std::uint64_t queries, PairQueryKind kind) const noexcept;
   /// Wear: extra tests of pair queries since the last build, compared with a fresh structure.
   [[nodiscard]] std::uint64_t excess_tests() const noexcept {
     return excess_.load(std::memory_order_relaxed);
   }
 
-  /// The number of rows in the tail that makes a build due.
+  /// A build is due if the tail has more rows than this.
   [[nodiscard]] std::size_t tail_limit() const noexcept { return tail_limit(rows_.size()); }
 
   /// Draws the structure, and the tree down to `max_depth` levels below the root.
@@ -130,18 +130,18 @@ class SpatialIndex {
     Structure* structure = nullptr;
   };
   [[nodiscard]] Structure* make(StructureKind kind) noexcept;
-  void end(const OwnedStructure& one) noexcept;
+  void destroy(const OwnedStructure& one) noexcept;
   void stash(const OwnedStructure& one) noexcept;
   [[nodiscard]] bool reserve_order(std::size_t rows, std::size_t behind, Pages pages) noexcept;
   [[nodiscard]] bool store_spare(const OwnedStructure& one) noexcept;
   [[nodiscard]] bool make_spares(std::span<const StructureKind> kinds) noexcept;
-  void end_spares() noexcept;
+  void destroy_spares() noexcept;
   void install(Structure* structure, StructureKind kind) noexcept;
   [[nodiscard]] bool needs_build() const noexcept;
   [[nodiscard]] static std::size_t tail_limit(std::size_t objects) noexcept {
     return objects / 16 + 64;
   }
-  /// The maximum size of a tail: it holds no object twice.
+  /// The maximum size of a tail, which contains no object twice.
   [[nodiscard]] static std::size_t max_in_tail(std::size_t objects) noexcept {
     return std::min(tail_limit(objects), objects);
   }
@@ -177,8 +177,8 @@ class SpatialIndex {
   bool sort_by_place(std::span<std::uint32_t> rows, std::uint32_t* room) noexcept;
   bool refit_trees() noexcept;
   bool refit(BlockTree& tree, std::size_t first, std::size_t blocks,
-             BlockTree::Nodes nodes) noexcept;
-  [[nodiscard]] BlockTree::Nodes node_content() const noexcept;
+             BlockTree::NodeContent nodes) noexcept;
+  [[nodiscard]] BlockTree::NodeContent node_content() const noexcept;
   void release_scratch() noexcept;
 
   // Planning ahead.
@@ -210,7 +210,7 @@ class SpatialIndex {
 
   float built_edge_ = 0.0F;      // edge of a typical leaf of the tree after the build
   std::size_t known_wide_ = 0;   // blocks that are wide, but not because of outliers
-  std::size_t built_holes_ = 0;  // padding that the build left between the regions
+  std::size_t built_holes_ = 0;  // padding that the build put between the regions
   bool tail_changed_ = false;    // rows of the tail were reordered
   bool order_changed_ = false;   // other rows were reordered, too
   bool reserved_ = false;        // memory is reserved for every structure
@@ -229,7 +229,7 @@ class SpatialIndex {
   std::size_t refreshes_before_plan_ = 0;  // refreshes from the last build to the start of the plan
   std::size_t changed_at_plan_ = 0;        // objects changed in the refresh that started the plan
   std::size_t quiet_refreshes_ = 0;        // consecutive refreshes with far fewer changes
-  std::size_t builds_without_planning_ = 0;  // builds left until plans are made ahead again
+  std::size_t builds_without_planning_ = 0;  // builds until plans are made ahead again
 
   // Wear, in tests of 16 volumes: the cost of one query on a fresh structure (for all objects, for
   // moved objects), and the excess of the queries since then.

@@ -13,14 +13,14 @@ Structure* SpatialIndex::make(StructureKind kind) noexcept {
   return kind.info()->make({memory_, rows_, regular_tree_, kind.parameter()});
 }
 
-void SpatialIndex::end(const OwnedStructure& one) noexcept {
-  if (one.structure != nullptr) one.kind.info()->end(one.structure, memory_);
+void SpatialIndex::destroy(const OwnedStructure& one) noexcept {
+  if (one.structure != nullptr) one.kind.info()->destroy(one.structure, memory_);
 }
 
 // Keeps a structure with its reserved memory for later use, or destroys it.
 void SpatialIndex::stash(const OwnedStructure& one) noexcept {
   if (one.structure == nullptr) return;
-  if (!reserved_ || !store_spare(one)) end(one);
+  if (!reserved_ || !store_spare(one)) destroy(one);
 }
 
 void SpatialIndex::install(Structure* structure, StructureKind kind) noexcept {
@@ -39,14 +39,14 @@ void SpatialIndex::install(Structure* structure, StructureKind kind) noexcept {
   built_edge_ = 0.0F;
   built_holes_ = 0;
   full_base_ = moved_base_ = excess_ = 0;
-  rows_.disorder();
+  rows_.invalidate_order();
 }
 
 bool SpatialIndex::set_structure(StructureKind kind) noexcept {
   Structure* const made = make(kind);
   if (made == nullptr) return false;
-  end_spares();
-  end({kind_, structure_});
+  destroy_spares();
+  destroy({kind_, structure_});
   install(made, kind);
   return true;
 }
@@ -141,14 +141,14 @@ bool SpatialIndex::make_spares(std::span<const StructureKind> kinds) noexcept {
     const OwnedStructure one{kind, make(kind)};
     if (one.structure == nullptr) return false;
     if (store_spare(one)) continue;
-    end(one);
+    destroy(one);
     return false;
   }
   return true;
 }
 
-void SpatialIndex::end_spares() noexcept {
-  for (const OwnedStructure& one : spare_structures_) end(one);
+void SpatialIndex::destroy_spares() noexcept {
+  for (const OwnedStructure& one : spare_structures_) destroy(one);
   spare_structures_.release();
 }
 

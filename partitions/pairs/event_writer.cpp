@@ -1,5 +1,5 @@
 // Computes the events of a pair query: both frames are sorted and merged, or a linked buffer passes
-// its changes directly (`take_changes`). Called by the pair queries in self_pairs.cpp and
+// its changes directly (`store_changes`). Called by the pair queries in self_pairs.cpp and
 // resting_pairs.cpp.
 
 #include "partitions/pairs/event_writer.h"
@@ -119,12 +119,12 @@ bool EventWriter::compare(PairBuffer& out, std::span<const ObjectId> moved, bool
   e.persisting_ = static_cast<std::size_t>(to - PairTracker::data(out));
   for (const KeyPair& pair : e.begun_) *to++ = {pair.first.id, pair.second.id};
   e.after_is_all_ = kept_ == 0;
-  return give_client_data() && reserve_frame(moved, all);
+  return write_client_data() && reserve_frame(moved, all);
 }
 
-bool EventWriter::take_changes(const PairBuffer& out, std::span<const Pair> begun,
-                               std::span<const std::uint32_t> ended,
-                               std::span<const ObjectId> moved) noexcept {
+bool EventWriter::store_changes(const PairBuffer& out, std::span<const Pair> begun,
+                                std::span<const std::uint32_t> ended,
+                                std::span<const ObjectId> moved) noexcept {
   PairEvents& e = events_;
   e.begun_.clear();
   e.ended_.clear();
@@ -139,7 +139,7 @@ bool EventWriter::take_changes(const PairBuffer& out, std::span<const Pair> begu
     if (!begin(packed(pair))) return false;
   }
   e.persisting_ = out.size() - begun.size() - ended.size();
-  return give_client_data() && reserve_frame(moved, false);
+  return write_client_data() && reserve_frame(moved, false);
 }
 
 // Merges two ascending lists. Writes the pairs that persist from `to` on.
@@ -184,7 +184,7 @@ bool EventWriter::begin(std::uint64_t pair) noexcept {
 
 // Fills the client data of the sorted begun and ended pairs. Ended pairs use the data of the last
 // frame.
-bool EventWriter::give_client_data() noexcept {
+bool EventWriter::write_client_data() noexcept {
   PairEvents& e = events_;
   if (!e.with_client_data_) return true;
   if (!e.begun_data_.resize(e.begun_.size()) || !e.ended_data_.resize(e.ended_.size())) {
@@ -199,7 +199,8 @@ bool EventWriter::give_client_data() noexcept {
   return true;
 }
 
-// Reserves the stamps and client data of this frame. Those of `moved`, or all, may have changed.
+// Reserves the stamps and client data of this frame. The stamps and data of `moved`, or of all
+// objects, may have changed.
 bool EventWriter::reserve_frame(std::span<const ObjectId> moved, bool all) noexcept {
   moved_ = moved;
   all_ = all || !follows_;
@@ -207,7 +208,7 @@ bool EventWriter::reserve_frame(std::span<const ObjectId> moved, bool all) noexc
   return events_.stamps_.grow(slots) && (!events_.with_client_data_ || events_.data_.grow(slots));
 }
 
-void EventWriter::take_frame(PairBuffer::Provenance provenance) noexcept {
+void EventWriter::finish_frame(PairBuffer::Provenance provenance) noexcept {
   Column<std::uint32_t>& stamps = events_.stamps_;
   Column<ClientData>& data = events_.data_;
   const bool with_data = events_.with_client_data_;
@@ -228,7 +229,7 @@ void EventWriter::take_frame(PairBuffer::Provenance provenance) noexcept {
   }
 }
 
-// Allocates nothing, because the buffer held all of these pairs before.
+// Allocates nothing, because the buffer contained all of these pairs before.
 bool EventWriter::undo(PairBuffer& out, PairBuffer::Provenance provenance) noexcept {
   PairEvents& e = events_;
   e.begun_.clear();

@@ -18,7 +18,7 @@ constexpr std::size_t kObjectsPassed = 48;
 // Frames over which all pairs of a buffer get links.
 constexpr std::size_t kLinkFrames = 4;
 // No valid pair: both ids are kNoObject.
-constexpr std::uint64_t kTaken = ~std::uint64_t{0};
+constexpr std::uint64_t kMatched = ~std::uint64_t{0};
 
 // Hash table of the found pairs: linear probing, size a power of two, at most half full.
 struct FoundTable {
@@ -39,27 +39,27 @@ struct FoundTable {
   }
 };
 
-// Never 0, because first < second.
+// Returns the pair as a number that is never 0, because first < second.
 constexpr std::uint64_t as_number(const Pair& pair) noexcept {
   return static_cast<std::uint64_t>(pair.first) << 32U | pair.second;
 }
 
 }  // namespace
 
-bool LinkedPairs::pays(std::size_t moved, std::size_t objects) const noexcept {
+bool LinkedPairs::is_worthwhile(std::size_t moved, std::size_t objects) const noexcept {
   return kObjectsPassed * moved <= objects && can_link();
 }
 
 bool LinkedPairs::is_due(std::size_t moved, std::size_t objects) const noexcept {
-  return out_.state_ != PairBuffer::LinkState::loose && pays(moved, objects);
+  return out_.state_ != PairBuffer::LinkState::unlinked && is_worthwhile(moved, objects);
 }
 
 void LinkedPairs::unlink_pairs(std::size_t moved, std::size_t objects) noexcept {
-  out_.state_ =
-      pays(moved, objects) ? PairBuffer::LinkState::few_moved : PairBuffer::LinkState::loose;
+  out_.state_ = is_worthwhile(moved, objects) ? PairBuffer::LinkState::few_moved
+                                              : PairBuffer::LinkState::unlinked;
 }
 
-bool LinkedPairs::cover_objects(std::size_t slots) noexcept {
+bool LinkedPairs::grow_heads(std::size_t slots) noexcept {
   Column<std::uint32_t>& heads = out_.heads_;
   const std::size_t known = heads.size();
   if (slots <= known) return true;
@@ -69,10 +69,10 @@ bool LinkedPairs::cover_objects(std::size_t slots) noexcept {
 }
 
 bool LinkedPairs::link(std::size_t slots) noexcept {
-  if (out_.state_ == PairBuffer::LinkState::linked) return cover_objects(slots);
+  if (out_.state_ == PairBuffer::LinkState::linked) return grow_heads(slots);
   out_.heads_.clear();
   out_.links_.clear();
-  if (!cover_objects(slots) || !out_.links_.reserve(out_.size())) return false;
+  if (!grow_heads(slots) || !out_.links_.reserve(out_.size())) return false;
   out_.state_ = PairBuffer::LinkState::linked;
   return true;
 }
@@ -80,11 +80,11 @@ bool LinkedPairs::link(std::size_t slots) noexcept {
 void LinkedPairs::link_next(std::size_t count) noexcept {
   const std::size_t linked = out_.links_.size();
   const std::size_t end = linked + std::min(count, out_.size() - linked);
-  for (std::size_t i = linked; i < end; ++i) enter(static_cast<std::uint32_t>(i));
+  for (std::size_t i = linked; i < end; ++i) insert_links(static_cast<std::uint32_t>(i));
   out_.links_.set_size(end);
 }
 
-void LinkedPairs::enter(std::uint32_t index) noexcept {
+void LinkedPairs::insert_links(std::uint32_t index) noexcept {
   for (std::uint32_t side = 0; side < 2; ++side) {
     std::uint32_t& head = out_.heads_[object_at(out_.pairs_[index], side)];
     const std::uint32_t place = 2 * index + side;
@@ -95,7 +95,7 @@ void LinkedPairs::enter(std::uint32_t index) noexcept {
   }
 }
 
-void LinkedPairs::leave(std::uint32_t index) noexcept {
+void LinkedPairs::remove_links(std::uint32_t index) noexcept {
   for (std::uint32_t side = 0; side < 2; ++side) {
     const std::uint32_t next = out_.links_[index].next[side];
     const std::uint32_t before = out_.links_[index].before[side];
@@ -122,7 +122,7 @@ void LinkedPairs::move(std::uint32_t from, std::uint32_t to) noexcept {
   }
 }
 
-bool LinkedPairs::table_found() noexcept {
+bool LinkedPairs::hash_found() noexcept {
   Column<std::uint64_t>& table = out_.page_table_;
   const std::span<const Pair> found = begun();
   if (!table.resize(std::bit_ceil(2 * found.size() + 2))) return false;
@@ -133,24 +133,24 @@ bool LinkedPairs::table_found() noexcept {
 }
 
 // True if the pair was found. Marks it as taken, so that a second call returns false.
-bool LinkedPairs::take_found(const Pair& pair) noexcept {
+bool LinkedPairs::mark_found(const Pair& pair) noexcept {
   std::uint64_t& entry = FoundTable(out_.page_table_).find(as_number(pair));
   if (entry == 0) return false;
-  entry = kTaken;
+  entry = kMatched;
   return true;
 }
 
-// Appends the found pairs that `take_found` did not mark: these pairs began.
-void LinkedPairs::keep_begun() noexcept {
+// Appends the found pairs that `mark_found` did not mark: these pairs began.
+void LinkedPairs::append_begun() noexcept {
   std::size_t size = kept_;
   for (const std::uint64_t entry : out_.page_table_) {
-    if (entry == 0 || entry == kTaken) continue;
+    if (entry == 0 || entry == kMatched) continue;
     out_.pairs_[size++] = {static_cast<ObjectId>(entry >> 32U), static_cast<ObjectId>(entry)};
   }
   out_.pairs_.set_size(size);
 }
 
-// Walks the lists of both objects in turn, so that the shorter list determines the cost.
+// Follows the lists of both objects alternately, so that the shorter list determines the cost.
 bool LinkedPairs::end(const Pair& pair) noexcept {
   std::uint32_t place[2] = {out_.heads_[pair.first], out_.heads_[pair.second]};
   for (std::uint32_t side = 0;; side ^= 1U) {
@@ -169,13 +169,13 @@ bool LinkedPairs::sort() noexcept {
 // Replaces a pair by the last one; both may be the same.
 void LinkedPairs::replace(std::uint32_t index, std::uint32_t last) noexcept {
   const std::size_t linked = out_.links_.size();
-  if (index < linked) leave(index);
+  if (index < linked) remove_links(index);
   if (last < linked) {
     if (index != last) move(last, index);
     return out_.links_.set_size(last);
   }
   out_.pairs_[index] = out_.pairs_[last];
-  if (index < linked) enter(index);
+  if (index < linked) insert_links(index);
 }
 
 void LinkedPairs::apply() noexcept {

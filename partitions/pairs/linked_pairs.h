@@ -28,7 +28,7 @@ class LinkedPairs {
   explicit LinkedPairs(PairBuffer& out) noexcept : out_(out) {}
 
   /// Forbids linking, for buffers whose pairs are all read in every frame anyway.
-  void forbid() noexcept { out_.may_link_ = false; }
+  void forbid_linking() noexcept { out_.may_link_ = false; }
   /// True if a frame with `moved` moved objects should be updated in place: few moved, and either
   /// few moved in the last frame or the buffer is linked already.
   [[nodiscard]] bool is_due(std::size_t moved, std::size_t objects) const noexcept;
@@ -44,19 +44,20 @@ class LinkedPairs {
   [[nodiscard]] bool link(std::size_t slots) noexcept;
   /// Links all remaining pairs of a linked buffer.
   void link_rest() noexcept { link_next(out_.size()); }
-  /// Notes that pairs change by other means in a frame with `moved` moved objects.
+  /// Marks the buffer as not linked, before a frame with `moved` moved objects finds pairs without
+  /// this class. If few objects moved, the next frame with few moved objects may be in place.
   void unlink_pairs(std::size_t moved, std::size_t objects) noexcept;
-  /// Notes that all pairs were found again.
-  void unlink_pairs() noexcept { out_.state_ = PairBuffer::LinkState::loose; }
+  /// Marks the buffer as not linked, for a frame that finds all pairs again.
+  void unlink_pairs() noexcept { out_.state_ = PairBuffer::LinkState::unlinked; }
 
   /// Compares the old and new pairs of the moved objects, which are given as a list and as a bitmap
   /// (`is_moved`). The pairs from `kept` on were found in this frame; only begun ones stay there.
-  /// Collects the indices of the pairs before `kept` that ended. If renewed(id) is true, the id
+  /// Collects the indices of the pairs before `kept` that ended. If reused(id) is true, the id
   /// belongs to another object now; its old pairs end and its new pairs begin. False if memory is
   /// refused.
-  template <typename Renewed>
+  template <typename Reused>
   [[nodiscard]] bool compare(std::size_t kept, std::span<const std::uint32_t> moved,
-                             const std::uint64_t* is_moved, Renewed&& renewed) noexcept;
+                             const std::uint64_t* is_moved, Reused&& reused) noexcept;
   /// Adds a begun or ended pair of objects that did not move. All pairs must be linked.
   [[nodiscard]] bool begin(const Pair& pair) noexcept { return out_.pairs_.push_back(pair); }
   [[nodiscard]] bool end(const Pair& pair) noexcept;
@@ -76,34 +77,34 @@ class LinkedPairs {
  private:
   static constexpr std::uint32_t kNoPlace = 0xFFFFFFFFU;
 
-  [[nodiscard]] bool pays(std::size_t moved, std::size_t objects) const noexcept;
-  [[nodiscard]] bool cover_objects(std::size_t slots) noexcept;
+  [[nodiscard]] bool is_worthwhile(std::size_t moved, std::size_t objects) const noexcept;
+  [[nodiscard]] bool grow_heads(std::size_t slots) noexcept;
   [[nodiscard]] static ObjectId object_at(const Pair& pair, std::uint32_t side) noexcept {
     return side == 0 ? pair.first : pair.second;
   }
   void link_next(std::size_t count) noexcept;
-  void enter(std::uint32_t index) noexcept;
-  void leave(std::uint32_t index) noexcept;
+  void insert_links(std::uint32_t index) noexcept;
+  void remove_links(std::uint32_t index) noexcept;
   void replace(std::uint32_t index, std::uint32_t last) noexcept;
   void move(std::uint32_t from, std::uint32_t to) noexcept;
-  [[nodiscard]] bool table_found() noexcept;
-  [[nodiscard]] bool take_found(const Pair& pair) noexcept;
-  void keep_begun() noexcept;
+  [[nodiscard]] bool hash_found() noexcept;
+  [[nodiscard]] bool mark_found(const Pair& pair) noexcept;
+  void append_begun() noexcept;
 
   PairBuffer& out_;
   std::size_t kept_ = 0;
 };
 
-template <typename Renewed>
+template <typename Reused>
 bool LinkedPairs::compare(std::size_t kept, std::span<const std::uint32_t> moved,
-                          const std::uint64_t* is_moved, Renewed&& renewed) noexcept {
+                          const std::uint64_t* is_moved, Reused&& reused) noexcept {
   kept_ = kept;
   out_.places_.clear();
-  if (!table_found()) return false;
+  if (!hash_found()) return false;
   const auto has_moved = [&](ObjectId id) { return (is_moved[id >> 6U] >> (id & 63U) & 1U) != 0; };
   const auto compare_pair = [&](std::uint32_t index) {
     const Pair pair = out_.pairs_[index];
-    const bool persists = !renewed(pair.first) && !renewed(pair.second) && take_found(pair);
+    const bool persists = !reused(pair.first) && !reused(pair.second) && mark_found(pair);
     return persists || out_.places_.push_back(index);
   };
   for (const ObjectId id : moved) {
@@ -124,7 +125,7 @@ bool LinkedPairs::compare(std::size_t kept, std::span<const std::uint32_t> moved
       return false;
     }
   }
-  keep_begun();
+  append_begun();
   return true;
 }
 

@@ -6,7 +6,7 @@ namespace winnow {
 namespace WINNOW_ISA_NAME {
 namespace {
 
-/// Returns a word whose lowest bit is bit i.
+/// Returns an integer whose lowest bit is bit i.
 std::uint64_t from_bit(const std::uint64_t* bits, std::uint32_t i) {
   return bits[i >> 6U] >> (i & 63U);
 }

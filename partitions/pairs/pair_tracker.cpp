@@ -42,7 +42,7 @@ void PairTracker::drop(PairBuffer& out, const std::uint64_t* moved) noexcept {
 
 bool PairTracker::drop(PairBuffer& out, const std::uint64_t* moved,
                        Column<Pair>& dropped) noexcept {
-  // In pieces, so that `dropped` need not have room for all pairs.
+  // Pairs are dropped in pieces, so that `dropped` need not have room for all pairs.
   constexpr std::size_t kPiece = 4096;
   const std::size_t count = out.pairs_.size();
   auto* const ids = reinterpret_cast<std::uint32_t*>(out.pairs_.data());

@@ -33,7 +33,7 @@ class PairTracker {
   [[nodiscard]] static bool sort(PairBuffer& out, std::size_t slots, std::size_t begin,
                                  std::size_t end) noexcept;
 
-  /// Keeps the first `size` pairs in the array.
+  /// Sets the number of pairs in the array; the memory must be reserved.
   static void set_size(PairBuffer& out, std::size_t size) noexcept { out.pairs_.set_size(size); }
 
   /// Returns the pairs for editing; provenance stays.

@@ -52,13 +52,13 @@ struct PairWriter::PageClaims {
   std::atomic<std::uint64_t> tests{0};
   std::atomic<bool> full{false};
   // The leading task writes to the buffer's array: all tasks before it are done and wrote there, up
-  // to `led`. Only the leading task changes these two. Once a leading task needed a page, no task
-  // leads.
+  // to `led`. Only the leading task changes `leading` and `led`. Once a leading task needed a page,
+  // no task leads.
   std::atomic<std::size_t> leading{0};
   std::size_t led = 0;
 };
 
-Status PairWriter::append(std::size_t tasks, void* context, Task run) {
+Status PairWriter::append(std::size_t tasks, void* context, WriteTask run) {
   return execution_.concurrency() == 1 || tasks <= 1 ? append_serial(tasks, context, run)
                                                      : append_parallel(tasks, context, run);
 }
@@ -130,7 +130,7 @@ std::size_t PairWriter::keep_accepted(Pair* pairs, std::size_t count) const noex
   return kept;
 }
 
-Status PairWriter::append_serial(std::size_t tasks, void* context, Task run) {
+Status PairWriter::append_serial(std::size_t tasks, void* context, WriteTask run) {
   Column<Pair>& pairs = out_.pairs_;
   const std::size_t before = pairs.size();
   // The slack that kernels need (kSinkSlack) is many times the number of pairs of a small scene.
@@ -173,7 +173,7 @@ Status PairWriter::append_serial(std::size_t tasks, void* context, Task run) {
   return Status::ok;
 }
 
-Status PairWriter::append_parallel(std::size_t tasks, void* context, Task run) {
+Status PairWriter::append_parallel(std::size_t tasks, void* context, WriteTask run) {
   PageClaims claims;
   claims.led = out_.pairs_.size();
   // Initial guess: the pages for as many pairs as the buffer has room for.
@@ -232,12 +232,14 @@ struct PairWriter::TaskOutput {
   std::size_t page = PageClaims::kNone;
   std::size_t in_array = 0;  // pairs written to the array
 
-  bool write(void* context, Task run) {
+  bool write(void* context, WriteTask run) {
     const bool leads = claims.leading.load(std::memory_order_acquire) == task;
     std::uint32_t none = 0;
     PairSink sink;
     sink.owner = this;
-    sink.grow = [](PairSink& full) { return static_cast<TaskOutput*>(full.owner)->go_on(full); };
+    sink.grow = [](PairSink& full) {
+      return static_cast<TaskOutput*>(full.owner)->next_destination(full);
+    };
     if (leads) {
       begin = writer.out_.pairs_.data() + claims.led;
       end = writer.out_.pairs_.data() + writer.out_.pairs_.capacity();
@@ -276,9 +278,9 @@ struct PairWriter::TaskOutput {
     }
   }
 
-  bool go_on(PairSink& sink) {
+  bool next_destination(PairSink& sink) {
     take(sink);
-    // Reuse the room of rejected pairs, so that the number of pages depends on accepted ones.
+    // Reuse the room of rejected pairs, so that the number of pages depends on accepted pairs.
     if (begin == nullptr || !has_room()) {
       begin = nullptr;
       page = claims.next.fetch_add(1, std::memory_order_relaxed);
@@ -292,7 +294,7 @@ struct PairWriter::TaskOutput {
   }
 };
 
-void PairWriter::run_on_pages(std::size_t tasks, PageClaims& claims, void* context, Task run) {
+void PairWriter::run_on_pages(std::size_t tasks, PageClaims& claims, void* context, WriteTask run) {
   execution_.for_each(tasks, [&](std::size_t task) {
     if (claims.done[task] != 0 || claims.full.load(std::memory_order_relaxed)) return;
     TaskOutput output{*this, claims, task};
@@ -325,7 +327,7 @@ Status PairWriter::gather_pages(std::size_t tasks, PageClaims& claims) {
     return Status::out_of_memory;
   }
   pairs.set_size(all);
-  // From here on an entry holds the destination of its page instead of the task.
+  // From here on an entry contains the destination of its page instead of the task.
   for (std::size_t p = 0; p < pages; ++p) {
     const std::uint64_t e = claims.entries[p];
     const std::uint64_t to = offset[task_of(e)];

@@ -15,13 +15,14 @@ namespace winnow {
 
 /// Appends the output of many tasks to a PairBuffer in the order of the tasks, whichever threads
 /// run them. On one thread, tasks write directly into the buffer. On several threads, a task also
-/// does so if all tasks before it are done and the buffer has room: schedulers hand out runs of
-/// consecutive tasks, so one thread's output needs no copy. All other tasks claim pages of scratch
-/// memory, which are copied in order at the end. The number of pages follows the capacity of the
-/// buffer, so that frames with the same results allocate nothing.
+/// does so if all tasks before it are done and the buffer has room. Schedulers give a thread runs
+/// of consecutive tasks, so the output of the thread that runs the first tasks needs no copy. All
+/// other tasks claim pages of scratch memory, which are copied in order at the end. The number of
+/// pages follows the capacity of the buffer, so that frames with the same results allocate nothing.
 class PairWriter {
  public:
-  /// Appends only pairs that `predicate` accepts. It is called on the thread that found the pair.
+  /// Appends only pairs that `predicate` accepts. The predicate is called on the thread that found
+  /// the pair.
   PairWriter(PairBuffer& out, const Execution& execution,
              const PairPredicate& predicate = {}) noexcept
       : out_(out), execution_(execution), predicate_(predicate) {}
@@ -42,18 +43,18 @@ class PairWriter {
   [[nodiscard]] std::uint64_t tests() const noexcept { return tests_; }
 
  private:
-  using Task = bool (*)(void*, std::size_t, PairSink&);
+  using WriteTask = bool (*)(void*, std::size_t, PairSink&);
   struct PageClaims;
   struct TaskOutput;
   struct SerialOutput;
 
   [[nodiscard]] static std::size_t pages_for(const PairBuffer& out, std::size_t tasks) noexcept;
-  Status append(std::size_t tasks, void* context, Task run);
-  Status append_serial(std::size_t tasks, void* context, Task run);
-  Status append_parallel(std::size_t tasks, void* context, Task run);
+  Status append(std::size_t tasks, void* context, WriteTask run);
+  Status append_serial(std::size_t tasks, void* context, WriteTask run);
+  Status append_parallel(std::size_t tasks, void* context, WriteTask run);
   bool make_pages(PageClaims& claims, std::size_t pages, std::size_t tasks);
   static std::size_t more_pages(PageClaims& claims, std::size_t tasks);
-  void run_on_pages(std::size_t tasks, PageClaims& claims, void* context, Task run);
+  void run_on_pages(std::size_t tasks, PageClaims& claims, void* context, WriteTask run);
   Status gather_pages(std::size_t tasks, PageClaims& claims);
   std::size_t keep_accepted(Pair* pairs, std::size_t count) const noexcept;
 

@@ -1,7 +1,7 @@
 // Pair queries of a resting scene: starting and updating the Verlet list of RestDetector. While
-// boxes are deferred, rows hold boxes that differ from the given ones by up to a margin. A query
-// then tests the watched pairs, and queries with the objects that left their margin. Called by
-// answer_self_pairs in self_pairs.cpp.
+// boxes are deferred, rows contain boxes that differ from the given boxes by up to a skin. A
+// query then tests the watched pairs, and queries with the objects that left their skin. Called
+// by run_self_pairs in self_pairs.cpp.
 
 #include <winnow/core/rounding.h>
 #include "partitions/pairs/event_writer.h"
@@ -19,7 +19,7 @@ namespace {
 constexpr std::size_t kNearQueriesPerTask = 64;
 constexpr std::size_t kMinObjects = 256;
 
-bool given_overlap(const VerletSkin::Box& a, const VerletSkin::Box& b) noexcept {
+bool given_overlap(const VerletSkin::DeferredBox& a, const VerletSkin::DeferredBox& b) noexcept {
   // Branchless: the overlap of a watched pair is unpredictable.
   unsigned ok = 1;
   for (int axis = 0; axis < 3; ++axis) {
@@ -29,10 +29,10 @@ bool given_overlap(const VerletSkin::Box& a, const VerletSkin::Box& b) noexcept 
   return ok != 0;
 }
 
-/// Returns by how much the gap of two stored ends can shrink: two margins, each enlarged by the
-/// rounding error of the comparison with the margin.
-double reach_of(float margin) noexcept {
-  return 2.0 * static_cast<double>(margin) * (1.0 + 0x1p-20);
+/// Returns by how much the gap of two stored ends can shrink: two skins, each enlarged by the
+/// rounding error of the comparison with the skin.
+double reach_of(float skin) noexcept {
+  return 2.0 * static_cast<double>(skin) * (1.0 + 0x1p-20);
 }
 
 double finite(float end) noexcept {
@@ -79,7 +79,7 @@ struct NearBatch {
 
 bool PartitionState::can_stay_deferred(const PairBuffer& out, const PairOptions& options,
                                        const EventWriter* events) const noexcept {
-  // If more than 1/16 of the objects were inserted, removed, filtered or left their margin, a full
+  // If more than 1/16 of the objects were inserted, removed, filtered or left their skin, a full
   // query is cheaper.
   const std::size_t disturbed = rows.moved().ids().size();
   return deferred_.active() && 16 * disturbed <= rows.size() &&
@@ -95,8 +95,8 @@ void PartitionState::try_start_resting(PairBuffer& out, const PairOptions& optio
                    rows.size() >= kMinObjects && is_exact();
   if (!can || !resting.seems_at_rest(rows)) return;
   LinkedPairs linked(out);
-  const float margin = resting.margin();
-  if (linked.can_link() && linked.link(rows.keys().slot_count()) && deferred_.begin(rows, margin) &&
+  const float skin = resting.skin();
+  if (linked.can_link() && linked.link(rows.keys().slot_count()) && deferred_.begin(rows, skin) &&
       watch_all(RestDetector::max_watched(rows.size(), out.size()))) {
     return linked.link_rest();
   }
@@ -106,10 +106,10 @@ void PartitionState::try_start_resting(PairBuffer& out, const PairOptions& optio
 
 // Collects the watched pairs of all rows. False if memory is refused or there are more than `most`.
 bool PartitionState::watch_all(std::size_t most) const noexcept {
-  // In batches, to limit the memory of their results.
+  // Rows are queried in batches, to limit the memory of the results.
   constexpr std::size_t kAtOnce = 1024;
   constexpr std::size_t kSample = 64;
-  Column<RestDetector::Watched>& watched = pairs_.resting.watched;
+  Column<RestDetector::WatchedPair>& watched = pairs_.resting.watched;
   const std::size_t count = rows.pool().rows();
   // Sample some rows first: a crowd of n objects has up to n^2 pairs, and the sample stops the
   // search before it finds them all.
@@ -126,14 +126,14 @@ bool PartitionState::watch_all(std::size_t most) const noexcept {
 
 bool PartitionState::watch_rows(std::size_t begin, std::size_t end,
                                 std::size_t stride) const noexcept {
-  RowSelection& asking = rows.selection();
+  RowSelection& query_rows = rows.selection();
   near_.clear();
-  if (!asking.start((end - begin + stride - 1) / stride)) return false;
+  if (!query_rows.start((end - begin + stride - 1) / stride)) return false;
   for (std::size_t row = begin; row < end; row += stride) {
-    if (rows.pool().ids()[row] != kNoObject) asking.add(row);
+    if (rows.pool().ids()[row] != kNoObject) query_rows.add(row);
   }
   std::uint64_t tests = 0;
-  if (query_near(asking.entries(), near_, tests) != Status::ok) return false;
+  if (query_near(query_rows.entries(), near_, tests) != Status::ok) return false;
   for (const Pair& pair : near_) {
     // Each pair is found from both sides; keep it from the smaller id.
     if (pair.first >= pair.second || !is_watched(pair)) continue;
@@ -144,11 +144,11 @@ bool PartitionState::watch_rows(std::size_t begin, std::size_t end,
   return true;
 }
 
-// False if the boxes overlap for every position within their margins.
+// False if the boxes overlap for every position within their skins.
 bool PartitionState::is_watched(const Pair& pair) const noexcept {
-  const VerletSkin::Box& a = deferred_.stored()[pair.first];
-  const VerletSkin::Box& b = deferred_.stored()[pair.second];
-  const double reach = reach_of(deferred_.margin());
+  const VerletSkin::DeferredBox& a = deferred_.stored()[pair.first];
+  const VerletSkin::DeferredBox& b = deferred_.stored()[pair.second];
+  const double reach = reach_of(deferred_.skin());
   for (int axis = 0; axis < 3; ++axis) {
     if (!(add_up(finite(a.min[axis]), reach) <= finite(b.max[axis])) ||
         !(add_up(finite(b.min[axis]), reach) <= finite(a.max[axis]))) {
@@ -159,10 +159,10 @@ bool PartitionState::is_watched(const Pair& pair) const noexcept {
 }
 
 // Appends (row's object, other) for all stored boxes within reach of the stored boxes of the rows.
-Status PartitionState::query_near(std::span<const std::uint32_t> asking, PairBuffer& out,
+Status PartitionState::query_near(std::span<const std::uint32_t> query_rows, PairBuffer& out,
                                   std::uint64_t& tests) const {
-  const std::size_t count = asking.size();
-  const double reach = reach_of(deferred_.margin());
+  const std::size_t count = query_rows.size();
+  const double reach = reach_of(deferred_.skin());
   const Execution execution = rows.execution_for(count);
   PairWriter writer(out, execution);
   const std::size_t tasks = (count + kNearQueriesPerTask - 1) / kNearQueriesPerTask;
@@ -171,7 +171,7 @@ Status PartitionState::query_near(std::span<const std::uint32_t> asking, PairBuf
     NearBatch near;
     const std::size_t end = std::min(count, (task + 1) * kNearQueriesPerTask);
     for (std::size_t i = task * kNearQueriesPerTask; i < end; ++i) {
-      near.add(view, asking[i], reach);
+      near.add(view, query_rows[i], reach);
     }
     return index.query(near.batch(view), sink);
   });
@@ -188,17 +188,19 @@ Status PartitionState::resting_self_pairs(PairBuffer& out, EventWriter* events) 
   const std::size_t kept = out.size();
   if (events != nullptr) events->hold_none(out);
   if (!moved.empty()) {
-    if (!linked.link(rows.keys().slot_count()) || !list_moved()) return Status::out_of_memory;
-    const std::span<const std::uint32_t> asking = rows.selection().entries();
-    if (const Status status = query_near(asking, out, tests); status != Status::ok) return status;
+    if (!linked.link(rows.keys().slot_count()) || !select_moved_rows())
+      return Status::out_of_memory;
+    const std::span<const std::uint32_t> query_rows = rows.selection().entries();
+    if (const Status status = query_near(query_rows, out, tests); status != Status::ok)
+      return status;
     if (!keep_near(out, kept)) return Status::out_of_memory;
   }
   pairs_.last_tests.store(tests, std::memory_order_relaxed);
-  if (events != nullptr) events->find_renewed(moved);
-  const auto renewed = [&](ObjectId id) { return events != nullptr && events->is_renewed(id); };
-  if (!linked.compare(kept, moved, rows.moved().bits(), renewed) || !note_watched(linked) ||
+  if (events != nullptr) events->find_reused(moved);
+  const auto reused = [&](ObjectId id) { return events != nullptr && events->is_reused(id); };
+  if (!linked.compare(kept, moved, rows.moved().bits(), reused) || !note_watched(linked) ||
       !linked.sort() ||
-      (events != nullptr && !events->take_changes(out, linked.begun(), linked.ended(), moved))) {
+      (events != nullptr && !events->store_changes(out, linked.begun(), linked.ended(), moved))) {
     return Status::out_of_memory;
   }
   linked.apply();
@@ -208,20 +210,20 @@ Status PartitionState::resting_self_pairs(PairBuffer& out, EventWriter* events) 
 // Filters the pairs that moved objects found: keeps overlapping ones as (smaller id, larger id),
 // and watches the ones whose overlap may change.
 bool PartitionState::keep_near(PairBuffer& out, std::size_t kept) const noexcept {
-  Column<RestDetector::Watched>& watched = pairs_.resting.watched;
+  Column<RestDetector::WatchedPair>& watched = pairs_.resting.watched;
   const std::uint64_t* const bits = rows.moved().bits();
   const auto has_moved = [&](ObjectId id) { return (bits[id >> 6U] >> (id & 63U) & 1U) != 0; };
-  RestDetector::Watched* const left =
-      std::remove_if(watched.begin(), watched.end(), [&](const RestDetector::Watched& pair) {
+  RestDetector::WatchedPair* const left =
+      std::remove_if(watched.begin(), watched.end(), [&](const RestDetector::WatchedPair& pair) {
         return has_moved(pair.first) || has_moved(pair.second);
       });
   watched.set_size(static_cast<std::size_t>(left - watched.begin()));
   std::size_t size = kept;
   Pair* const pairs = PairTracker::data(out);
   for (std::size_t i = kept; i < out.size(); ++i) {
-    const auto [asked, other] = pairs[i];
-    if (asked == other || (other < asked && has_moved(other))) continue;
-    const Pair pair{std::min(asked, other), std::max(asked, other)};
+    const auto [query, other] = pairs[i];
+    if (query == other || (other < query && has_moved(other))) continue;
+    const Pair pair{std::min(query, other), std::max(query, other)};
     const bool overlapped =
         given_overlap(deferred_.given()[pair.first], deferred_.given()[pair.second]);
     if (is_watched(pair) && !watched.push_back({pair.first, pair.second, overlapped})) return false;
@@ -233,8 +235,8 @@ bool PartitionState::keep_near(PairBuffer& out, std::size_t kept) const noexcept
 
 // Adds the watched pairs that began or ended to `linked`.
 bool PartitionState::note_watched(LinkedPairs& linked) const noexcept {
-  const VerletSkin::Box* const given = deferred_.given();
-  for (RestDetector::Watched& pair : pairs_.resting.watched) {
+  const VerletSkin::DeferredBox* const given = deferred_.given();
+  for (RestDetector::WatchedPair& pair : pairs_.resting.watched) {
     const bool overlap_now = given_overlap(given[pair.first], given[pair.second]);
     if (overlap_now == pair.overlapped) continue;
     pair.overlapped = overlap_now;

@@ -1,13 +1,13 @@
-// Pair queries of a partition. answer_self_pairs chooses one of four ways to find all pairs:
+// Pair queries of a partition. run_self_pairs chooses one of four strategies to find all pairs:
 //
-//   resting      boxes are deferred, at most 1/16 of the objects left their margin, no predicate
+//   resting      boxes are deferred, at most 1/16 of the objects left their skin, no predicate
 //   linked       nothing moved, or few objects moved in two consecutive frames (LinkedPairs)
 //   incremental  the buffer is tracked, and few objects moved or events are reported
 //   full         otherwise
 //
 // Resting and linked also require a tracked buffer, Order::fast, and events that describe the frame
-// of the buffer, if there are any. The resting way is in resting_pairs.cpp. Tasks write through
-// PairWriter; EventWriter finds events.
+// of the buffer, if there are any. The strategy `resting` is in resting_pairs.cpp. Tasks write
+// through PairWriter; EventWriter finds events.
 
 #include "core/hooks/log.h"
 #include "core/hooks/stage_scope.h"
@@ -69,14 +69,14 @@ struct PartitionState::SelfTasks {
     if (p.index.structure().is_flat() || p.index.tree().blocks() == 0) return;
     tree = ceil_divide(p.index.tree().groups(), groups_per_task);
     if (p.rows.regions().regular != 0) {
-      const std::size_t asking = p.rows.pool().rows() - first_tree_row;
+      const std::size_t query_rows = p.rows.pool().rows() - first_tree_row;
       // Each task gets whole blocks.
-      queries_per_task *= ceil_divide(asking, kTreeTasks * kQueriesPerTask);
-      cross = ceil_divide(asking, queries_per_task);
+      queries_per_task *= ceil_divide(query_rows, kTreeTasks * kQueriesPerTask);
+      cross = ceil_divide(query_rows, queries_per_task);
     }
   }
   /// Returns the largest number of tasks for that many rows.
-  [[nodiscard]] static std::size_t most(std::size_t rows) noexcept {
+  [[nodiscard]] static std::size_t max_count(std::size_t rows) noexcept {
     const std::size_t groups = rows / (16 * kBlockRows) + 2;
     return std::min(kMaxTasks, rows) + std::min(2 * kTreeTasks, groups) +
            std::min(kTreeTasks, rows / kQueriesPerTask + 1);
@@ -85,7 +85,7 @@ struct PartitionState::SelfTasks {
 };
 
 Status Partition::self_pairs(PairBuffer& out, const PairOptions& options) const {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   if (state_ != nullptr) return state_->find_self_pairs(out, options, nullptr);
   out.clear();
   return status_;
@@ -93,7 +93,7 @@ Status Partition::self_pairs(PairBuffer& out, const PairOptions& options) const 
 
 Status Partition::self_pairs(PairBuffer& out, PairEvents& events,
                              const PairOptions& options) const {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   if (state_ != nullptr) return state_->find_self_pairs(out, options, &events);
   out.clear();
   events.clear();
@@ -101,20 +101,20 @@ Status Partition::self_pairs(PairBuffer& out, PairEvents& events,
 }
 
 Status Partition::reserve_pairs(PairBuffer& out, std::size_t pairs, Pages pages) const {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   return state_ == nullptr ? status_ : state_->reserve_pairs(out, pairs, pages);
 }
 
-Status Partition::reserve_events(PairEvents& out, std::size_t pairs, bool alone,
+Status Partition::reserve_events(PairEvents& out, std::size_t pairs, bool with_pairs,
                                  Pages pages) const {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   if (state_ == nullptr) return status_;
   if (!state_->reserve_events(out, pairs, pages)) return Status::out_of_memory;
-  return alone ? reserve_pairs(EventWriter::own_buffer(out), pairs, pages) : Status::ok;
+  return with_pairs ? reserve_pairs(EventWriter::own_buffer(out), pairs, pages) : Status::ok;
 }
 
 Status Partition::self_pairs(PairEvents& events, const PairOptions& options) const {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   // Order::fast: events are sorted anyway, and the pairs are not returned.
   return self_pairs(EventWriter::own_buffer(events), events,
                     {Order::fast, options.incremental, options.predicate});
@@ -123,7 +123,7 @@ Status Partition::self_pairs(PairEvents& events, const PairOptions& options) con
 Status PartitionState::reserve_pairs(PairBuffer& out, std::size_t pairs,
                                      Pages pages) const noexcept {
   const std::size_t tasks =
-      SelfTasks::most(with_stable_index([this] { return rows.pool().capacity(); }));
+      SelfTasks::max_count(with_stable_index([this] { return rows.pool().capacity(); }));
   return PairWriter::reserve(out, pairs, tasks, rows.execution(), pages) ? Status::ok
                                                                          : Status::out_of_memory;
 }
@@ -137,13 +137,13 @@ bool PartitionState::reserve_events(PairEvents& out, std::size_t pairs,
 Status PartitionState::find_self_pairs(PairBuffer& out, const PairOptions& options,
                                        PairEvents* events) const {
   const StageScope stage(WorkStage::pairs);
-  if (events == nullptr) return logged(answer_self_pairs(out, options, nullptr), kSelfPairs);
+  if (events == nullptr) return logged(run_self_pairs(out, options, nullptr), kSelfPairs);
   EventWriter writer(*events, rows.keys(), out, pairs_.identity, rows.execution());
-  return logged(answer_self_pairs(out, options, &writer), kSelfPairs);
+  return logged(run_self_pairs(out, options, &writer), kSelfPairs);
 }
 
-Status PartitionState::answer_self_pairs(PairBuffer& out, const PairOptions& options,
-                                         EventWriter* events) const {
+Status PartitionState::run_self_pairs(PairBuffer& out, const PairOptions& options,
+                                      EventWriter* events) const {
   // Only one buffer is tracked at a time. A query concurrent with a tracked one is not tracked.
   Lock lock = Lock::try_acquire(tracker_mutex_);
   const bool all = !options.incremental || out.empty();
@@ -157,7 +157,7 @@ Status PartitionState::answer_self_pairs(PairBuffer& out, const PairOptions& opt
   }
   const bool all_anew = tracked && !can_update(out);
   if (status == Status::ok) {
-    note(QueryKind::pairs, 1);
+    count_queries(QueryKind::pairs, 1);
     status =
         resting ? resting_self_pairs(out, events) : track_self_pairs(out, options, tracked, events);
   }
@@ -166,28 +166,29 @@ Status PartitionState::answer_self_pairs(PairBuffer& out, const PairOptions& opt
     return status;
   }
   pairs_.last_pairs.store(out.size(), std::memory_order_relaxed);
-  if (tracked || events != nullptr) take_frame(out, tracked, events);
+  if (tracked || events != nullptr) finish_frame(out, tracked, events);
   if (all_anew) try_start_resting(out, options);
   if (chooser_ == nullptr) return Status::ok;
-  if (all) note(QueryKind::all_pairs, 1);
+  if (all) count_queries(QueryKind::all_pairs, 1);
   // The number of pairs that pass a predicate is not a property of the scene.
   if (options.predicate.accept == nullptr) chooser_->note_pairs(out.size());
   return Status::ok;
 }
 
-// From here on the buffer holds this frame and the events describe it.
-void PartitionState::take_frame(PairBuffer& out, bool tracked, EventWriter* events) const noexcept {
+// Marks the pairs in the buffer, and the events, as those of this frame.
+void PartitionState::finish_frame(PairBuffer& out, bool tracked,
+                                  EventWriter* events) const noexcept {
   // Even if the buffer is not tracked, events compare its serial.
   const PairBuffer::Provenance provenance{pairs_.identity, ++pairs_.last_serial};
   PairTracker::set_provenance(out, provenance);
-  if (events != nullptr) events->take_frame(provenance);
+  if (events != nullptr) events->finish_frame(provenance);
   if (!tracked) return;
   rows.forget_moves();
   pairs_.tracked_serial = provenance.serial;
 }
 
-// After a failure the buffer is empty or, if events follow it, holds the pairs of the last frame.
-// In both cases the next query is a full one, so that its result does not depend on which
+// After a failure the buffer is empty or, if events follow it, contains the pairs of the last
+// frame. In both cases the next query is a full one, so that its result does not depend on which
 // allocation failed.
 void PartitionState::undo_self_pairs(PairBuffer& out, bool resting,
                                      EventWriter* events) const noexcept {
@@ -201,7 +202,7 @@ void PartitionState::undo_self_pairs(PairBuffer& out, bool resting,
 bool PartitionState::can_update_in_place(const PairBuffer& out, const PairOptions& options,
                                          const EventWriter* events) const noexcept {
   // An update in place changes the order of the pairs. The events, if there are any, must describe
-  // the frame that `out` holds.
+  // the frame whose pairs `out` contains.
   return can_update(out) && options.order == Order::fast &&
          (events == nullptr || events->follows());
 }
@@ -211,7 +212,7 @@ Status PartitionState::track_self_pairs(PairBuffer& out, const PairOptions& opti
   if (tracked && can_update_in_place(out, options, events) && update_in_place(out)) {
     return linked_self_pairs(out, options.predicate, events);
   }
-  const bool update = tracked && can_update(out) && (events != nullptr || queries_few(out));
+  const bool update = tracked && can_update(out) && (events != nullptr || is_update_cheaper(out));
   return redo_self_pairs(out, options, update, events);
 }
 
@@ -219,18 +220,19 @@ Status PartitionState::track_self_pairs(PairBuffer& out, const PairOptions& opti
 // query is O(n^2). Otherwise the limit is lower if objects have many pairs, which are dropped and
 // found again, and if the structure has cells, because a full query visits consecutive cells
 // without searching them.
-bool PartitionState::queries_few(const PairBuffer& out) const noexcept {
+bool PartitionState::is_update_cheaper(const PairBuffer& out) const noexcept {
   constexpr std::size_t kFlat = 4;
   constexpr std::size_t kTree = 8;
   constexpr std::size_t kCells = 10;
   const StructureCosts* const costs = index.kind().info()->costs;
-  const std::size_t alone = costs != nullptr && costs->has_cells ? kCells : kTree;
+  const std::size_t base = costs != nullptr && costs->has_cells ? kCells : kTree;
   const std::size_t share =
-      index.structure().is_flat() ? kFlat : alone + 3 * out.size() / (4 * rows.size() + 1);
+      index.structure().is_flat() ? kFlat : base + 3 * out.size() / (4 * rows.size() + 1);
   return share * rows.moved().ids().size() <= rows.size() + 64;
 }
 
-// True if nothing moved, or if the buffer is linked or could be linked. False if memory is refused.
+// True if nothing moved, or if few objects moved (LinkedPairs::is_due) and the buffer is linked.
+// Links the buffer if necessary; false if memory for that is refused.
 bool PartitionState::update_in_place(PairBuffer& out) const noexcept {
   const std::size_t moved = rows.moved().ids().size();
   LinkedPairs linked(out);
@@ -243,17 +245,17 @@ Status PartitionState::linked_self_pairs(PairBuffer& out, const PairPredicate& p
   const std::span<const ObjectId> moved = rows.moved().ids();
   if (moved.empty()) {
     pairs_.last_tests.store(0, std::memory_order_relaxed);
-    return events == nullptr || events->take_changes(out, {}, {}, {}) ? Status::ok
-                                                                      : Status::out_of_memory;
+    return events == nullptr || events->store_changes(out, {}, {}, {}) ? Status::ok
+                                                                       : Status::out_of_memory;
   }
   const std::size_t kept = out.size();
   if (events != nullptr) events->hold_none(out);
   if (const Status status = query_moved(out, predicate); status != Status::ok) return status;
-  if (events != nullptr) events->find_renewed(moved);
-  const auto renewed = [&](ObjectId id) { return events != nullptr && events->is_renewed(id); };
+  if (events != nullptr) events->find_reused(moved);
+  const auto reused = [&](ObjectId id) { return events != nullptr && events->is_reused(id); };
   LinkedPairs linked(out);
-  if (!linked.compare(kept, moved, rows.moved().bits(), renewed) || !linked.sort() ||
-      (events != nullptr && !events->take_changes(out, linked.begun(), linked.ended(), moved))) {
+  if (!linked.compare(kept, moved, rows.moved().bits(), reused) || !linked.sort() ||
+      (events != nullptr && !events->store_changes(out, linked.begun(), linked.ended(), moved))) {
     return Status::out_of_memory;
   }
   linked.apply();
@@ -342,51 +344,51 @@ Status PartitionState::incremental_self_pairs(PairBuffer& out, const PairPredica
 }
 
 // Selects the rows of the live objects that moved. False if memory is refused.
-bool PartitionState::list_moved() const noexcept {
+bool PartitionState::select_moved_rows() const noexcept {
   const std::span<const ObjectId> moved = rows.moved().ids();
   const std::size_t limit = rows.pool().rows();
-  RowSelection& asking = rows.selection();
-  if (!asking.start(moved.size()) || !asking.reserve_bits(limit)) return false;
+  RowSelection& query_rows = rows.selection();
+  if (!query_rows.start(moved.size()) || !query_rows.reserve_bits(limit)) return false;
   for (const ObjectId id : moved) {
-    if (rows.keys().is_live(id)) asking.add(rows.keys().row_of(id));
+    if (rows.keys().is_live(id)) query_rows.add(rows.keys().row_of(id));
   }
   // Neighbours in the pool are neighbours in space: queries in row order share cache lines.
-  asking.sort(limit);
+  query_rows.sort(limit);
   return true;
 }
 
 // Appends all pairs of the objects that moved.
 Status PartitionState::query_moved(PairBuffer& out, const PairPredicate& predicate) const {
-  if (!list_moved()) return Status::out_of_memory;
-  RowSelection& asking = rows.selection();
-  const std::size_t count = asking.list.size();
+  if (!select_moved_rows()) return Status::out_of_memory;
+  RowSelection& query_rows = rows.selection();
+  const std::size_t count = query_rows.list.size();
   const Execution execution = rows.execution_for(count);
   PairWriter writer(out, execution, predicate);
-  asking.mark();
+  query_rows.mark();
   const std::size_t tasks = ceil_divide(count, kQueriesPerTask);
   const Status status = writer.append(tasks, [&](std::size_t task, PairSink& sink) {
     const std::size_t begin = task * kQueriesPerTask;
     QueryBatch batch = volume_batch(rows, begin, std::min(count, begin + kQueriesPerTask));
-    batch.rows = asking.list.data();
+    batch.rows = query_rows.list.data();
     batch.mode = HitMode::moved;
-    batch.moved = asking.bits.data();
+    batch.moved = query_rows.bits.data();
     return index.query(batch, sink);
   });
-  asking.unmark();
+  query_rows.unmark();
   if (status != Status::ok) return status;
   note_work(writer.tests(), std::max<std::size_t>(1, count), SpatialIndex::PairQueryKind::moved);
   return Status::ok;
 }
 
 void PartitionState::note_work(std::uint64_t tests, std::uint64_t queries,
-                               SpatialIndex::PairQueryKind asked) const noexcept {
+                               SpatialIndex::PairQueryKind kind) const noexcept {
   pairs_.last_tests.store(tests, std::memory_order_relaxed);
-  index.note_work(tests, queries, asked);
+  index.note_work(tests, queries, kind);
 }
 
 Status Partition::pairs_with(const Partition& other, PairBuffer& out,
                              const PairOptions& options) const {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   out.clear();
   if (state_ == nullptr || other.state_ == nullptr) {
     return state_ == nullptr ? status_ : other.status_;

@@ -12,8 +12,8 @@
 namespace winnow {
 
 // Tests in double of a shape against the box of a row: the final decision for rows that pass the
-// float tests. A box is six floats, low then high; +-FLT_MAX stands for infinity. Within a few
-// roundings of the coordinates, each test errs on the side of overlap.
+// float tests. A box is six floats, low then high; +-FLT_MAX means infinity. Within a few roundings
+// of the coordinates, each test errs on the side of overlap.
 
 /// A capsule (or ball, if its ends are equal) that moves along direction * [0, max_t].
 struct MovingCapsule {

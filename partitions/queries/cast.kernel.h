@@ -14,11 +14,11 @@ namespace winnow {
 /// a box of zero extent.
 ///
 /// The float tests of 16 boxes never miss a hit; a test in double decides on the rows that pass.
-/// The float tests scale t by a power of two, so that the largest component of the direction lies
-/// in [1/2, 1) and underflow stays within the slack of the tests. On an axis without motion the
+/// The float tests scale t by a power of two, so that the largest component of the direction is in
+/// [1/2, 1) and underflow stays within the slack of the tests. On an axis without motion the
 /// reciprocal is infinite, and the origins are moved outward by one float, so that 0 * infinity
 /// occurs only without a hit. An axis whose motion is too slow for a float reciprocal uses the
-/// values of the fastest axis; only the test in double tests it.
+/// values of the fastest axis; only the test in double tests the slow axis.
 struct KernelCast {
   float near_origin[3];
   float far_origin[3];
@@ -41,10 +41,10 @@ struct KernelCast {
   const void* shape = nullptr;
 };
 
-/// Largest number of sweeps in one joint traversal. Their directions must satisfy `same_octant`.
-inline constexpr std::uint32_t kMaxSweeps = 64;
+/// Largest number of casts in one joint traversal. Their directions must satisfy `same_octant`.
+inline constexpr std::uint32_t kMaxCasts = 64;
 
-/// True if two sweeps reach the same columns of boxes first.
+/// True if two casts reach the same columns of boxes first.
 static inline bool same_octant(const KernelCast& a, const KernelCast& b) {
   bool same = true;
   for (int i = 0; i < 3; ++i) {
@@ -57,18 +57,18 @@ static inline bool same_octant(const KernelCast& a, const KernelCast& b) {
 /// Largest number of results that sort_few sorts.
 inline constexpr std::uint32_t kMaxSorted = 64;
 
-/// Result of a sweep without a hit.
+/// Result of a cast without a hit.
 inline constexpr std::uint64_t kNoHit = ~std::uint64_t{0};
 
 /// A result is (bits of t) << 32 | id. Because t >= 0, integers sort by t, then by id.
 struct CastKernels {
-  /// Finds the least hit of each of `count` <= kMaxSweeps sweeps.
+  /// Finds the least hit of each of `count` <= kMaxCasts casts.
   void (*closest)(const QueryView&, const KernelCast*, std::uint32_t count, const QueryFilter&,
                   std::uint64_t* best);
-  /// Finds any hit of each of `count` <= kMaxSweeps sweeps.
+  /// Finds any hit of each of `count` <= kMaxCasts casts.
   void (*any)(const QueryView&, const KernelCast*, std::uint32_t count, const QueryFilter&,
               std::uint64_t* found);
-  /// Finds all hits of `count` <= kMaxSweeps sweeps, unsorted. Writes two pairs per hit:
+  /// Finds all hits of `count` <= kMaxCasts casts, unsorted. Writes two pairs per hit:
   /// (query[s], id) and (bits of t, 0). False if the sink is full.
   bool (*all)(const QueryView&, const KernelCast*, std::uint32_t count, const std::uint32_t* query,
               const QueryFilter&, PairSink&);

@@ -1,13 +1,14 @@
-// Casts of a partition: rays and swept volumes. The public functions prepare sweeps (sweep.h), call
-// a kernel (casts.kernel.cpp) and write hits (hit_writer.h). Batches of rays run in parallel.
+// Casts of a partition: rays and swept volumes. The public functions prepare casts
+// (prepared_cast.h), call a kernel (casts.kernel.cpp) and write hits (hit_writer.h). Batches of
+// rays run in parallel.
 
 #include "core/threads/float_environment.h"
 #include "partitions/pairs/pair_writer.h"
 #include "partitions/queries/box_intersection.h"
 #include "partitions/queries/cast.kernel.h"
 #include "partitions/queries/hit_writer.h"
+#include "partitions/queries/prepared_cast.h"
 #include "partitions/queries/query_filter.h"
-#include "partitions/queries/sweep.h"
 #include "partitions/state/partition_state.h"
 
 #include <algorithm>
@@ -20,7 +21,7 @@ WINNOW_DEFINE_KERNELS(CastKernels, cast_kernels)
 
 namespace {
 
-/// A cast prepared for the kernels. Not movable, because the sweep points into it.
+/// A cast prepared for the kernels. Not movable, because the kernel's cast points into it.
 class PreparedCast {
  public:
   explicit PreparedCast(const Cast& cast) noexcept {
@@ -35,35 +36,35 @@ class PreparedCast {
   PreparedCast& operator=(const PreparedCast&) = delete;
 
   [[nodiscard]] bool valid() const noexcept { return valid_; }
-  [[nodiscard]] const KernelCast& sweep() const noexcept { return sweep_; }
+  [[nodiscard]] const KernelCast& kernel_cast() const noexcept { return kernel_cast_; }
 
  private:
-  void prepare(const Ray& ray) noexcept { make_sweep(sweep_, ray); }
-  void prepare(const BoxCast& cast) noexcept { sweep_of(cast.box, cast); }
+  void prepare(const Ray& ray) noexcept { prepare_cast(kernel_cast_, ray); }
+  void prepare(const BoxCast& cast) noexcept { prepare_box(cast.box, cast); }
   void prepare(const SphereCast& cast) noexcept {
-    sweep_of(cast.sphere.bounds(), cast);
+    prepare_box(cast.sphere.bounds(), cast);
     decide_by({cast.sphere.center, cast.sphere.center, cast.sphere.radius});
   }
   void prepare(const CapsuleCast& cast) noexcept {
-    sweep_of(cast.capsule.bounds(), cast);
+    prepare_box(cast.capsule.bounds(), cast);
     decide_by(cast.capsule);
   }
 
   template <typename Moving>
-  void sweep_of(const Aabb& box, const Moving& cast) noexcept {
-    make_sweep(sweep_, box, cast.direction.template cast<double>(), static_cast<double>(cast.min_t),
-               static_cast<double>(cast.max_t));
+  void prepare_box(const Aabb& box, const Moving& cast) noexcept {
+    prepare_cast(kernel_cast_, box, cast.direction.template cast<double>(),
+                 static_cast<double>(cast.min_t), static_cast<double>(cast.max_t));
     capsule_.direction = cast.direction.template cast<double>();
   }
   void decide_by(const Capsule& capsule) noexcept {
     capsule_.capsule = capsule;
-    capsule_.max_t = sweep_.max_t;
-    sweep_.touch = touch_capsule;
-    sweep_.shape = &capsule_;
+    capsule_.max_t = kernel_cast_.max_t;
+    kernel_cast_.touch = touch_capsule;
+    kernel_cast_.shape = &capsule_;
   }
 
   bool valid_;
-  KernelCast sweep_;
+  KernelCast kernel_cast_;
   MovingCapsule capsule_;
 };
 
@@ -87,7 +88,7 @@ unsigned octant(const Ray& ray) noexcept {
   return result;
 }
 
-/// A part of a batch of rays, split into groups of one octant that are traversed together.
+/// A part of a batch of rays, split into groups of one octant that traverse the trees together.
 class RayGroup {
  public:
   RayGroup(const RayBatch& rays, std::size_t begin, std::size_t end) noexcept : rays_(rays) {
@@ -95,9 +96,9 @@ class RayGroup {
     for (std::size_t i = begin; i < end; ++i) ++start[octant(rays[i]) + 1];
     for (std::size_t o = 0; o < 8; ++o) start[o + 1] += start[o];
     for (std::size_t i = begin; i < end; ++i) {
-      question_[start[octant(rays[i])]++] = static_cast<std::uint32_t>(i);
+      ray_index_[start[octant(rays[i])]++] = static_cast<std::uint32_t>(i);
     }
-    left_ = question_.data();
+    left_ = ray_index_.data();
     end_ = left_ + (end - begin);
   }
   RayGroup(const RayGroup&) = delete;
@@ -107,23 +108,23 @@ class RayGroup {
   bool next() noexcept {
     query_numbers_ = left_;
     count_ = 0;
-    while (left_ != end_ && count_ < kMaxSweeps) {
-      make_sweep(sweep_[count_], rays_[*left_]);
-      if (count_ != 0 && !same_octant(sweep_[0], sweep_[count_])) break;
+    while (left_ != end_ && count_ < kMaxCasts) {
+      prepare_cast(kernel_cast_[count_], rays_[*left_]);
+      if (count_ != 0 && !same_octant(kernel_cast_[0], kernel_cast_[count_])) break;
       ++count_;
       ++left_;
     }
     return count_ != 0;
   }
-  [[nodiscard]] const KernelCast* sweeps() const noexcept { return sweep_.data(); }
+  [[nodiscard]] const KernelCast* kernel_casts() const noexcept { return kernel_cast_.data(); }
   [[nodiscard]] std::uint32_t count() const noexcept { return count_; }
-  /// Per sweep, the index of its ray in the batch.
+  /// Per cast, the index of its ray in the batch.
   [[nodiscard]] const std::uint32_t* query_numbers() const noexcept { return query_numbers_; }
 
  private:
   const RayBatch& rays_;
-  std::array<std::uint32_t, kGroup> question_;
-  std::array<KernelCast, kMaxSweeps> sweep_;
+  std::array<std::uint32_t, kGroup> ray_index_;
+  std::array<KernelCast, kMaxCasts> kernel_cast_;
   const std::uint32_t* query_numbers_ = nullptr;
   const std::uint32_t* left_;
   const std::uint32_t* end_;
@@ -141,7 +142,7 @@ Hit hit_or_null(const KeyTable& keys, std::uint64_t result) noexcept {
   return result != kNoHit ? to_hit(keys, result) : Hit{};
 }
 
-/// A kernel that finds one hit per sweep.
+/// A kernel that finds one hit per cast.
 using FindHits = void (*)(const QueryView&, const KernelCast*, std::uint32_t count,
                           const QueryFilter&, std::uint64_t* found);
 
@@ -153,10 +154,10 @@ Status find_hit(const PartitionState& state, FindHits find, const Cast& cast, Hi
   if (const Status status = state.prepare(QueryKind::casts, 1, view); status != Status::ok) {
     return status;
   }
-  const KernelFilter wanted(filter, view, state.rows.keys());
-  if (wanted.matches_nothing()) return Status::ok;
+  const KernelFilter kernel_filter(filter, view, state.rows.keys());
+  if (kernel_filter.matches_nothing()) return Status::ok;
   std::uint64_t found = kNoHit;
-  find(view, &prepared.sweep(), 1, wanted.wanted(), &found);
+  find(view, &prepared.kernel_cast(), 1, kernel_filter.query_filter(), &found);
   hit = hit_or_null(state.rows.keys(), found);
   return Status::ok;
 }
@@ -170,8 +171,8 @@ Status find_hits(const PartitionState& state, FindHits find, const RayBatch& ray
     return status;
   }
   const KeyTable& keys = state.rows.keys();
-  const KernelFilter wanted(filter, view, keys);
-  if (wanted.matches_nothing()) {
+  const KernelFilter kernel_filter(filter, view, keys);
+  if (kernel_filter.matches_nothing()) {
     for (std::size_t i = 0; i < rays.count; ++i) write_columns(hits, i, {});
     return Status::ok;
   }
@@ -179,9 +180,9 @@ Status find_hits(const PartitionState& state, FindHits find, const RayBatch& ray
   constexpr std::size_t kTask = kGroup / 4;
   state.rows.execution().for_each((rays.count + kTask - 1) / kTask, [&](std::size_t task) {
     RayGroup group(rays, task * kTask, std::min(rays.count, (task + 1) * kTask));
-    std::array<std::uint64_t, kMaxSweeps> found;
+    std::array<std::uint64_t, kMaxCasts> found;
     while (group.next()) {
-      find(view, group.sweeps(), group.count(), wanted.wanted(), found.data());
+      find(view, group.kernel_casts(), group.count(), kernel_filter.query_filter(), found.data());
       for (std::uint32_t i = 0; i < group.count(); ++i) {
         write_columns(hits, group.query_numbers()[i], hit_or_null(keys, found[i]));
       }
@@ -193,31 +194,31 @@ Status find_hits(const PartitionState& state, FindHits find, const RayBatch& ray
 }  // namespace
 
 Status Partition::closest(const Cast& cast, Hit& hit, const Filter& filter) const {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   hit = {};
   return state_ == nullptr ? status_ : find_hit(*state_, cast_kernels().closest, cast, hit, filter);
 }
 
 Status Partition::any(const Cast& cast, Hit& hit, const Filter& filter) const {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   hit = {};
   return state_ == nullptr ? status_ : find_hit(*state_, cast_kernels().any, cast, hit, filter);
 }
 
 Status Partition::closest(const RayBatch& rays, const HitColumns& hits,
                           const Filter& filter) const {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   return state_ == nullptr ? status_
                            : find_hits(*state_, cast_kernels().closest, rays, hits, filter);
 }
 
 Status Partition::any(const RayBatch& rays, const HitColumns& hits, const Filter& filter) const {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   return state_ == nullptr ? status_ : find_hits(*state_, cast_kernels().any, rays, hits, filter);
 }
 
 Status Partition::all(const Cast& cast, HitBuffer& hits, const Filter& filter) const {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   hits.clear();
   if (state_ == nullptr) return status_;
   const PreparedCast prepared(cast);
@@ -228,13 +229,14 @@ Status Partition::all(const Cast& cast, HitBuffer& hits, const Filter& filter) c
   }
   const KeyTable& keys = state_->rows.keys();
   if (!HitWriter::start(hits, 1)) return Status::out_of_memory;
-  const KernelFilter wanted(filter, view, keys);
+  const KernelFilter kernel_filter(filter, view, keys);
   const Execution here = Execution::serial();
   PairWriter writer(HitWriter::found(hits), here);
   const Status status = writer.append(1, [&](std::size_t, PairSink& sink) {
     const std::uint32_t query = 0;
-    return wanted.matches_nothing() ||
-           cast_kernels().all(view, &prepared.sweep(), 1, &query, wanted.wanted(), sink);
+    return kernel_filter.matches_nothing() ||
+           cast_kernels().all(view, &prepared.kernel_cast(), 1, &query,
+                              kernel_filter.query_filter(), sink);
   });
   if (status == Status::ok && HitWriter::finish(hits, 0, 1, keys, here)) return Status::ok;
   hits.clear();
@@ -242,7 +244,7 @@ Status Partition::all(const Cast& cast, HitBuffer& hits, const Filter& filter) c
 }
 
 Status Partition::all(const RayBatch& rays, HitBuffer& hits, const Filter& filter) const {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   hits.clear();
   if (state_ == nullptr) return status_;
   if (rays.count > kMaxObjects || !all_valid(rays)) return Status::invalid_argument;
@@ -254,7 +256,7 @@ Status Partition::all(const RayBatch& rays, HitBuffer& hits, const Filter& filte
   const KeyTable& keys = state_->rows.keys();
   const Execution& execution = state_->rows.execution();
   if (!HitWriter::start(hits, rays.count)) return Status::out_of_memory;
-  const KernelFilter wanted(filter, view, keys);
+  const KernelFilter kernel_filter(filter, view, keys);
   const std::size_t step = execution.concurrency() == 1 ? kGroup : kGroup * kGroupsTogether;
   for (std::size_t first = 0; first < rays.count; first += step) {
     const std::size_t last = std::min(rays.count, first + step);
@@ -263,9 +265,9 @@ Status Partition::all(const RayBatch& rays, HitBuffer& hits, const Filter& filte
     const Status status = writer.append(groups, [&](std::size_t task, PairSink& sink) {
       const std::size_t begin = first + task * kGroup;
       RayGroup group(rays, begin, std::min(last, begin + kGroup));
-      while (!wanted.matches_nothing() && group.next()) {
-        if (!cast_kernels().all(view, group.sweeps(), group.count(), group.query_numbers(),
-                                wanted.wanted(), sink)) {
+      while (!kernel_filter.matches_nothing() && group.next()) {
+        if (!cast_kernels().all(view, group.kernel_casts(), group.count(), group.query_numbers(),
+                                kernel_filter.query_filter(), sink)) {
           return false;
         }
       }

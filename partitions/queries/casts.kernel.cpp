@@ -1,25 +1,26 @@
-// Kernels of casts: closest, any and all hits of up to kMaxSweeps sweeps. casts.cpp calls them;
-// the tests of boxes and the joint traversal are in sweep.wide.h, the ordered descent in
+// Kernels of casts: closest, any and all hits of up to kMaxCasts casts. casts.cpp calls them;
+// the tests of boxes and the joint traversal are in prepared_cast.wide.h, the ordered descent in
 // descent.wide.h.
 
 #include "partitions/queries/cast.kernel.h"
-#include "partitions/queries/sweep.wide.h"
+#include "partitions/queries/prepared_cast.wide.h"
 
 namespace winnow {
 namespace WINNOW_ISA_NAME {
 namespace {
 
-/// Calls found(t, id) for every row from `first_row` on that the sweep touches before `limit`.
-/// `found` returns false to end the descent.
+/// Calls found(t, id) for each of the 16 rows from `first_row` on that the cast touches at or
+/// before `limit`; rows slightly behind the limit may be included. `found` returns false to end the
+/// descent.
 template <typename Found>
-bool test_rows(const QueryView& view, const KernelCast& sweep, const SweepTest& probe,
-               const CandidateFilter& wanted, std::uint32_t first_row, const float& limit,
+bool test_rows(const QueryView& view, const KernelCast& cast, const CastTest& probe,
+               const CandidateFilter& candidate_filter, std::uint32_t first_row, const float& limit,
                Found&& found) {
-  const ExactSweepTest exact(sweep, view.column);
-  Mask16 mask = wanted.rows(first_row, probe.test(view.column, first_row, limit));
+  const ExactCastTest exact(cast, view.column);
+  Mask16 mask = candidate_filter.rows(first_row, probe.test(view.column, first_row, limit));
   for (; mask != 0; mask &= mask - 1) {
     const unsigned lane = first(mask);
-    const double t = exact.touch(sweep, first_row + lane);
+    const double t = exact.touch(cast, first_row + lane);
     if (t < 0.0) continue;
     if (!found(t, view.id[first_row + lane])) return false;
   }
@@ -30,91 +31,94 @@ inline std::uint64_t hit_of(double t, std::uint32_t id) {
   return std::uint64_t{order_of_rounded_down(t)} << 32U | id;
 }
 
-/// Keeps the least hit of every sweep.
+/// Keeps the least hit of every cast.
 class NearestHits {
  public:
-  NearestHits(const KernelCast* sweeps, const CandidateFilter& wanted, std::uint64_t* best,
+  NearestHits(const KernelCast* casts, const CandidateFilter& candidate_filter, std::uint64_t* best,
               float* limit)
-      : sweeps_(sweeps), wanted_(wanted), best_(best), limit_(limit) {}
+      : casts_(casts), candidate_filter_(candidate_filter), best_(best), limit_(limit) {}
 
   static bool make_room() { return true; }
   void touched(std::uint32_t s, double t, std::uint32_t id) {
     const std::uint64_t hit = hit_of(t, id);
-    if (wanted_.has_predicate() && (hit >= best_[s] || !wanted_.accepts(id))) return;
+    if (candidate_filter_.has_predicate() && (hit >= best_[s] || !candidate_filter_.accepts(id)))
+      return;
     // Branchless: the comparison is unpredictable.
     const std::uint64_t best = hit < best_[s] ? hit : best_[s];
     best_[s] = best;
     // The limit is the next float, because an object with the same rounded t may have a smaller id.
     const float shown = value_of(static_cast<std::uint32_t>(best >> 32U) + 1);
-    const float next = scaled_limit(sweeps_[s], static_cast<double>(shown));
+    const float next = scaled_limit(casts_[s], static_cast<double>(shown));
     limit_[s] = next < limit_[s] ? next : limit_[s];
   }
 
  private:
-  const KernelCast* sweeps_;
-  const CandidateFilter& wanted_;
+  const KernelCast* casts_;
+  const CandidateFilter& candidate_filter_;
   std::uint64_t* best_;
   float* limit_;
 };
 
-/// Keeps the first found hit of every sweep, and ends that sweep.
+/// Keeps the first found hit of every cast, and ends that cast.
 class AnyHits {
  public:
-  AnyHits(const KernelCast*, const CandidateFilter& wanted, std::uint64_t* found, float* limit)
-      : wanted_(wanted), found_(found), limit_(limit) {}
+  AnyHits(const KernelCast*, const CandidateFilter& candidate_filter, std::uint64_t* found,
+          float* limit)
+      : candidate_filter_(candidate_filter), found_(found), limit_(limit) {}
 
   static bool make_room() { return true; }
   void touched(std::uint32_t s, double t, std::uint32_t id) {
-    if (found_[s] != kNoHit || !wanted_.accepts(id)) return;
+    if (found_[s] != kNoHit || !candidate_filter_.accepts(id)) return;
     found_[s] = hit_of(t, id);
     limit_[s] = kBeforeAll;
   }
 
  private:
-  // Every sweep begins at t >= 0.
+  // Every cast begins at t >= 0.
   static constexpr float kBeforeAll = -1.0F;
 
-  const CandidateFilter& wanted_;
+  const CandidateFilter& candidate_filter_;
   std::uint64_t* found_;
   float* limit_;
 };
 
-/// Traces the first segment of all sweeps together, then each sweep without a hit there on its own.
+/// Traces the first segment of all casts together, then each cast without a hit there on its own.
 /// The segment reaches about as far as the first hits in a scene of even density.
 template <typename Hits>
 class FirstSegmentThenRest {
  public:
-  FirstSegmentThenRest(const QueryView& view, const KernelCast* sweeps, std::uint32_t count,
+  FirstSegmentThenRest(const QueryView& view, const KernelCast* casts, std::uint32_t count,
                        const QueryFilter& filter, std::uint64_t* found)
       : view_(view),
-        sweeps_(sweeps),
-        wanted_(view, filter),
-        hits_(sweeps, wanted_, found, limit_),
+        casts_(casts),
+        candidate_filter_(view, filter),
+        hits_(casts, candidate_filter_, found, limit_),
         count_(count) {
     // Without trees all rows are tested in any case, so the first segment has no end.
     const float edge = view.leaf_edge;
-    const float stretch = edge > 0.0F ? kSegment * edge : __builtin_inff();
+    const float segment = edge > 0.0F ? kSegment * edge : __builtin_inff();
     for (std::uint32_t s = 0; s < count; ++s) {
       found[s] = kNoHit;
-      from_[s] = sweeps[s].from;
-      last_[s] = scaled_limit(sweeps[s], sweeps[s].max_t);
+      from_[s] = casts[s].from;
+      last_[s] = scaled_limit(casts[s], casts[s].max_t);
       // One unit of scaled t is about one unit of length.
-      const float end = from_[s] + stretch;
+      const float end = from_[s] + segment;
       end_[s] = limit_[s] = end < last_[s] ? end : last_[s];
     }
   }
 
-  /// Calls go_on(probe, wanted, limit, test), which must call test(first_row) for blocks of rows.
-  template <typename GoOn>
-  void run(GoOn&& go_on) {
-    JointSweeps<Hits>(view_, sweeps_, from_, limit_, wanted_, hits_).run(count_);
+  /// Calls visit_blocks(probe, candidate_filter, limit, test) for each cast that continues behind
+  /// its segment; `visit_blocks` must call test(first_row) for blocks of rows.
+  template <typename VisitBlocks>
+  void run(VisitBlocks&& visit_blocks) {
+    JointCasts<Hits>(view_, casts_, from_, limit_, candidate_filter_, hits_).run(count_);
     for (std::uint32_t s = 0; s < count_; ++s) {
       if (is_finished(s)) continue;
-      const SweepTest probe(sweeps_[s], end_[s]);
+      const CastTest probe(casts_[s], end_[s]);
       float& limit = limit_[s];
       limit = last_[s];
-      go_on(probe, wanted_, limit, [&](std::uint32_t first_row) {
-        return test_rows(view_, sweeps_[s], probe, wanted_, first_row, limit,
+      visit_blocks(probe, candidate_filter_, limit, [&](std::uint32_t first_row) {
+        return test_rows(view_, casts_[s], probe, candidate_filter_, first_row, limit,
                          [&](double t, std::uint32_t id) {
                            hits_.touched(s, t, id);
                            return limit >= 0.0F;
@@ -126,65 +130,65 @@ class FirstSegmentThenRest {
  private:
   static constexpr float kSegment = 0.4F;
 
-  /// True if nothing of the sweep is left, or its hit lies before the end of the segment by more
-  /// than the rounding of the tests.
+  /// True if the cast ends with the segment, or if its hit is before the end of the segment by
+  /// more than the rounding error of the tests.
   [[nodiscard]] bool is_finished(std::uint32_t s) const {
     return limit_[s] < end_[s] || !(end_[s] < last_[s]);
   }
 
   const QueryView& view_;
-  const KernelCast* sweeps_;
-  const CandidateFilter wanted_;
+  const KernelCast* casts_;
+  const CandidateFilter candidate_filter_;
   Hits hits_;
   std::uint32_t count_;
-  float from_[kMaxSweeps];
-  float limit_[kMaxSweeps];
-  float end_[kMaxSweeps];
-  float last_[kMaxSweeps];
+  float from_[kMaxCasts];
+  float limit_[kMaxCasts];
+  float end_[kMaxCasts];
+  float last_[kMaxCasts];
 };
 
-void closest(const QueryView& view, const KernelCast* sweeps, std::uint32_t count,
+void closest(const QueryView& view, const KernelCast* casts, std::uint32_t count,
              const QueryFilter& filter, std::uint64_t* best) {
-  FirstSegmentThenRest<NearestHits>(view, sweeps, count, filter, best)
-      .run([&](const SweepTest& probe, const CandidateFilter& wanted, const float& limit,
-               auto&& test) { visit_in_order(view, probe, wanted, limit, test); });
+  FirstSegmentThenRest<NearestHits>(view, casts, count, filter, best)
+      .run([&](const CastTest& probe, const CandidateFilter& candidate_filter, const float& limit,
+               auto&& test) { visit_in_order(view, probe, candidate_filter, limit, test); });
 }
 
-/// A single sweep needs no joint traversal.
-void any_of_one(const QueryView& view, const KernelCast& sweep, const QueryFilter& filter,
+/// As `any`, for one cast, which needs no joint traversal.
+void any_of_one(const QueryView& view, const KernelCast& cast, const QueryFilter& filter,
                 std::uint64_t& found) {
-  const CandidateFilter wanted(view, filter);
-  const SweepTest probe(sweep);
-  const float limit = scaled_limit(sweep, sweep.max_t);
+  const CandidateFilter candidate_filter(view, filter);
+  const CastTest probe(cast);
+  const float limit = scaled_limit(cast, cast.max_t);
   found = kNoHit;
-  visit_in_row_order(view, probe, wanted, limit, [&](std::uint32_t first_row) {
-    return test_rows(view, sweep, probe, wanted, first_row, limit, [&](double t, std::uint32_t id) {
-      if (!wanted.accepts(id)) return true;
-      found = hit_of(t, id);
-      return false;
-    });
+  visit_in_row_order(view, probe, candidate_filter, limit, [&](std::uint32_t first_row) {
+    return test_rows(view, cast, probe, candidate_filter, first_row, limit,
+                     [&](double t, std::uint32_t id) {
+                       if (!candidate_filter.accepts(id)) return true;
+                       found = hit_of(t, id);
+                       return false;
+                     });
   });
 }
 
-void any(const QueryView& view, const KernelCast* sweeps, std::uint32_t count,
+void any(const QueryView& view, const KernelCast* casts, std::uint32_t count,
          const QueryFilter& filter, std::uint64_t* found) {
-  if (count == 1) return any_of_one(view, sweeps[0], filter, found[0]);
-  FirstSegmentThenRest<AnyHits>(view, sweeps, count, filter, found)
-      .run([&](const SweepTest& probe, const CandidateFilter& wanted, float limit, auto&& test) {
-        visit_in_row_order(view, probe, wanted, limit, test);
-      });
+  if (count == 1) return any_of_one(view, casts[0], filter, found[0]);
+  FirstSegmentThenRest<AnyHits>(view, casts, count, filter, found)
+      .run([&](const CastTest& probe, const CandidateFilter& candidate_filter, float limit,
+               auto&& test) { visit_in_row_order(view, probe, candidate_filter, limit, test); });
 }
 
 /// Writes every hit.
 class AllHits {
  public:
-  AllHits(const CandidateFilter& wanted, const std::uint32_t* query, PairSink& sink)
-      : wanted_(wanted), query_(query), sink_(sink) {}
+  AllHits(const CandidateFilter& candidate_filter, const std::uint32_t* query, PairSink& sink)
+      : candidate_filter_(candidate_filter), query_(query), sink_(sink) {}
 
   /// A hit takes two pairs. A sink that is not full has room for 272 pairs, enough for 128 hits.
   bool make_room() { return has_room(sink_); }
   void touched(std::uint32_t s, double t, std::uint32_t id) {
-    if (!wanted_.accepts(id)) return;
+    if (!candidate_filter_.accepts(id)) return;
     sink_.cursor[0] = query_[s];
     sink_.cursor[1] = id;
     sink_.cursor[2] = order_of_rounded_down(t);
@@ -193,28 +197,28 @@ class AllHits {
   }
 
  private:
-  const CandidateFilter& wanted_;
+  const CandidateFilter& candidate_filter_;
   const std::uint32_t* query_;
   PairSink& sink_;
 };
 
-bool all(const QueryView& view, const KernelCast* sweeps, std::uint32_t count,
+bool all(const QueryView& view, const KernelCast* casts, std::uint32_t count,
          const std::uint32_t* query, const QueryFilter& filter, PairSink& sink) {
-  const CandidateFilter wanted(view, filter);
-  float from[kMaxSweeps];
-  float limit[kMaxSweeps];
+  const CandidateFilter candidate_filter(view, filter);
+  float from[kMaxCasts];
+  float limit[kMaxCasts];
   for (std::uint32_t s = 0; s < count; ++s) {
-    from[s] = sweeps[s].from;
-    limit[s] = scaled_limit(sweeps[s], sweeps[s].max_t);
+    from[s] = casts[s].from;
+    limit[s] = scaled_limit(casts[s], casts[s].max_t);
   }
-  AllHits hits(wanted, query, sink);
-  return JointSweeps<AllHits>(view, sweeps, from, limit, wanted, hits).run(count);
+  AllHits hits(candidate_filter, query, sink);
+  return JointCasts<AllHits>(view, casts, from, limit, candidate_filter, hits).run(count);
 }
 
 /// Counting rank sort: finds the position of each element by 16 comparisons at a time, without
 /// data-dependent branches. The keys are the upper bits of t with the element's index in the low
-/// bits, so that all are distinct. An insertion sort then orders elements that differ only in the
-/// other bits.
+/// bits, so that all keys are distinct. An insertion sort then orders elements that differ only in
+/// the other bits.
 void sort_few(std::uint64_t* results, std::uint32_t size) {
   constexpr std::uint32_t kMinNormal = 0x00800000U;  // denormals may compare as zero
   alignas(64) float key[kMaxSorted];

@@ -24,7 +24,7 @@ class CandidateFilter {
   }
   [[nodiscard]] Mask16 rows(std::uint32_t first_row, Mask16 candidates) const {
     if (!filter_.by_object) return candidates;
-    return passing_rows(view_.filter, view_.span.apart, first_row, candidates,
+    return passing_rows(view_.filter, view_.span.environments, first_row, candidates,
                         range_of(filter_.object));
   }
   /// True if the caller has a predicate.
@@ -52,7 +52,7 @@ inline float value_of(std::uint32_t bits) {
   return value;
 }
 
-/// order_of the largest float <= value, for value >= 0.
+/// Returns `order_of` the largest float <= value; requires value >= 0.
 inline std::uint32_t order_of_rounded_down(double value) {
   if (value >= static_cast<double>(kLargest<float>)) return order_of(kLargest<float>);
   const auto nearest = static_cast<float>(value);
@@ -72,19 +72,23 @@ class OpenNodes {
  public:
   /// `limit` may be lowered between visits.
   OpenNodes(const QueryView& view, const TreeShape& tree, const Probe& probe,
-            const CandidateFilter& wanted, const float& limit)
-      : view_(view), tree_(tree), probe_(probe), wanted_(wanted), limit_(limit) {}
+            const CandidateFilter& candidate_filter, const float& limit)
+      : view_(view),
+        tree_(tree),
+        probe_(probe),
+        candidate_filter_(candidate_filter),
+        limit_(limit) {}
 
   [[gnu::always_inline]] bool open(std::uint32_t level, std::uint32_t first_node,
                                    std::uint32_t& node) {
     Floats order;
-    const Mask16 met = probe_.test(tree_.node[level], first_node, limit_, order);
-    const Mask16 mask = wanted_.nodes(tree_, level, first_node, met);
+    const Mask16 reached = probe_.test(tree_.node[level], first_node, limit_, order);
+    const Mask16 mask = candidate_filter_.nodes(tree_, level, first_node, reached);
     if (mask == 0) return false;
     if (level == 0) fetch_rows(first_node, mask);
     key_of(order).store(key_[level]);
-    if (mask != met) [[unlikely]]
-      leave_out(met & ~mask, key_[level]);
+    if (mask != reached) [[unlikely]]
+      leave_out(reached & ~mask, key_[level]);
     const std::uint32_t nearest = reduce_min_positive(Floats::load(key_[level]));
     go_to(nearest, level);
     first_node_[level] = first_node;
@@ -93,8 +97,8 @@ class OpenNodes {
     return true;
   }
 
-  /// Returns the nearest remaining sibling of the lowest open level, if it lies within the limit.
-  [[gnu::always_inline]] bool take(std::uint32_t& level, std::uint32_t& node) {
+  /// Returns the nearest remaining sibling of the lowest open level, if it is within the limit.
+  [[gnu::always_inline]] bool pop(std::uint32_t& level, std::uint32_t& node) {
     const std::uint32_t last = order_of(last_key());
     while (open_ != 0) {
       level = static_cast<std::uint32_t>(__builtin_ctz(open_));
@@ -146,7 +150,7 @@ class OpenNodes {
   const QueryView& view_;
   const TreeShape& tree_;
   const Probe& probe_;
-  const CandidateFilter& wanted_;
+  const CandidateFilter& candidate_filter_;
   const float& limit_;
   /// A bit per level that has remaining siblings.
   std::uint32_t open_ = 0;
@@ -158,8 +162,8 @@ class OpenNodes {
 /// Visits all blocks that the probe reaches within a limit, in row order. `visit(first_row)`
 /// returns false to end the traversal.
 template <typename Probe, typename Visit>
-bool visit_in_row_order(const QueryView& view, const Probe& probe, const CandidateFilter& wanted,
-                        float limit, Visit&& visit) {
+bool visit_in_row_order(const QueryView& view, const Probe& probe,
+                        const CandidateFilter& candidate_filter, float limit, Visit&& visit) {
   for (std::uint32_t block = 0; block < view.flat_blocks; ++block) {
     if (!visit(block * kLanes)) return false;
   }
@@ -169,7 +173,7 @@ bool visit_in_row_order(const QueryView& view, const Probe& probe, const Candida
         tree.levels,
         [&](std::uint32_t level, std::uint32_t first_node) {
           const Mask16 reached = probe.test(tree.node[level], first_node, limit);
-          return wanted.nodes(tree, level, first_node, reached);
+          return candidate_filter.nodes(tree, level, first_node, reached);
         },
         [&](std::uint32_t level, std::uint32_t node) {
           if (level != 0) return Next::below;
@@ -183,14 +187,14 @@ bool visit_in_row_order(const QueryView& view, const Probe& probe, const Candida
 /// Visits blocks that the probe reaches within `limit`, approximately nearest first. A visit may
 /// lower the limit. `visit(first_row)` returns false to end the descent.
 template <typename Probe, typename Visit>
-bool visit_in_order(const QueryView& view, const Probe& probe, const CandidateFilter& wanted,
-                    const float& limit, Visit&& visit) {
+bool visit_in_order(const QueryView& view, const Probe& probe,
+                    const CandidateFilter& candidate_filter, const float& limit, Visit&& visit) {
   for (std::uint32_t block = 0; block < view.flat_blocks; ++block) {
     if (!visit(block * kLanes)) return false;
   }
   for (std::uint32_t t = 0; t < view.trees; ++t) {
     const TreeShape& tree = *view.tree[t];
-    OpenNodes<Probe> open(view, tree, probe, wanted, limit);
+    OpenNodes<Probe> open(view, tree, probe, candidate_filter, limit);
     const bool whole = descend(tree.levels, open, [&](std::uint32_t node) {
       return visit((tree.first_block + node) * kLanes);
     });

@@ -31,8 +31,8 @@ void sort(std::uint64_t* begin, std::uint64_t* end) noexcept {
   }
 }
 
-/// Returns the index of the first hit of this or a later query. Hits are sorted by group of
-/// queries.
+/// Returns the index of the first hit of this or a later query, which is the first of a group. Hits
+/// are sorted by group.
 std::size_t first_of(const Pair* pairs, std::size_t hits, std::size_t query) noexcept {
   std::size_t low = 0;
   std::size_t high = hits;

@@ -35,7 +35,7 @@ NearestHeap heap_in(Column<std::uint64_t>& entries, std::size_t most) noexcept {
 
 Status Partition::nearest(const Aabb& from, std::size_t count, float radius, HitBuffer& hits,
                           const Filter& filter) const {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   hits.clear();
   if (state_ == nullptr) return status_;
   const bool finite = from.min.all_finite() && from.max.all_finite() && from.is_valid();
@@ -45,7 +45,7 @@ Status Partition::nearest(const Aabb& from, std::size_t count, float radius, Hit
     return status;
   }
   const KeyTable& keys = state_->rows.keys();
-  const KernelFilter wanted(filter, view, keys);
+  const KernelFilter kernel_filter(filter, view, keys);
   NearestQuery query;
   for (int axis = 0; axis < 3; ++axis) {
     query.low[axis] = from.min[axis];
@@ -55,8 +55,8 @@ Status Partition::nearest(const Aabb& from, std::size_t count, float radius, Hit
   Column<std::uint64_t>& entries = HitWriter::heap(hits);
   entries.clear();
   NearestHeap heap = heap_in(entries, count);
-  const bool done = wanted.matches_nothing() || count == 0 ||
-                    nearest_kernels().nearest(view, query, wanted.wanted(), heap);
+  const bool done = kernel_filter.matches_nothing() || count == 0 ||
+                    nearest_kernels().nearest(view, query, kernel_filter.query_filter(), heap);
   entries.set_size(heap.size);
   if (done && HitWriter::write_heap(hits, keys)) return Status::ok;
   hits.clear();

@@ -92,13 +92,13 @@ class Heap {
 bool nearest(const QueryView& view, const NearestQuery& query, const QueryFilter& filter,
              NearestHeap& nearest_heap) {
   const DistanceProbe probe(query);
-  const CandidateFilter wanted(view, filter);
+  const CandidateFilter candidate_filter(view, filter);
   Heap heap(nearest_heap);
   float limit = square_limit(query.radius);
-  return visit_in_order(view, probe, wanted, limit, [&](std::uint32_t first_row) {
+  return visit_in_order(view, probe, candidate_filter, limit, [&](std::uint32_t first_row) {
     Floats order;
     Mask16 mask = probe.test(view.column, first_row, limit, order);
-    mask = wanted.rows(first_row, mask);
+    mask = candidate_filter.rows(first_row, mask);
     for (; mask != 0; mask &= mask - 1) {
       const unsigned lane = first(mask);
       const double far = distance(query, view.column, first_row + lane);
@@ -106,7 +106,7 @@ bool nearest(const QueryView& view, const NearestQuery& query, const QueryFilter
       const std::uint32_t bits = order_of_rounded_down(far);
       const std::uint32_t id = view.id[first_row + lane];
       const std::uint64_t entry = std::uint64_t{bits} << 32U | id;
-      if ((heap.full() && entry >= heap.worst()) || !wanted.accepts(id)) continue;
+      if ((heap.full() && entry >= heap.worst()) || !candidate_filter.accepts(id)) continue;
       if (!heap.add(entry)) return false;
       if (!heap.full()) continue;
       // The limit is the next float, because an object with the same rounded distance may have a

@@ -61,7 +61,7 @@ class OverlapWriter {
     };
   }
   /// If the column is too small for one write, the sink starts full, so that the first write grows
-  /// it.
+  /// the column.
   static void place(IdSink& sink, Column<ObjectId>& column, std::size_t used) noexcept {
     static constinit ObjectId none = 0;
     const bool fits = column.capacity() >= kLanes;
@@ -78,9 +78,9 @@ namespace {
 constexpr std::size_t kBoxesPerTask = 64;
 
 /// A range of the caller's boxes as a query batch.
-class BoxColumns {
+class BoxBatch {
  public:
-  BoxColumns(const BoxSource& boxes, std::size_t begin, std::size_t end) noexcept {
+  BoxBatch(const BoxSource& boxes, std::size_t begin, std::size_t end) noexcept {
     std::array<float*, 6> columns;
     for (std::size_t c = 0; c < 6; ++c) batch_.column[c] = columns[c] = column_[c].data();
     for (std::size_t i = begin; i < end; ++i) {
@@ -91,8 +91,8 @@ class BoxColumns {
     batch_.end = static_cast<std::uint32_t>(end - begin);
     batch_.mode = HitMode::query_first;
   }
-  BoxColumns(const BoxColumns&) = delete;
-  BoxColumns& operator=(const BoxColumns&) = delete;
+  BoxBatch(const BoxBatch&) = delete;
+  BoxBatch& operator=(const BoxBatch&) = delete;
 
   [[nodiscard]] QueryBatch& batch() noexcept { return batch_; }
 
@@ -107,8 +107,8 @@ class BoxColumns {
 PairPredicate accepting_second(const QueryFilter*& filter) noexcept {
   if (filter->accept == nullptr) return {};
   return {[](void* context, ObjectId, ObjectId second) {
-            const QueryFilter& asked = **static_cast<const QueryFilter**>(context);
-            return asked.accept(asked.context, second);
+            const QueryFilter& query_filter = **static_cast<const QueryFilter**>(context);
+            return query_filter.accept(query_filter.context, second);
           },
           &filter};
 }
@@ -117,7 +117,7 @@ PairPredicate accepting_second(const QueryFilter*& filter) noexcept {
 
 Status Partition::overlap(const Region& region, OverlapBuffer& objects, const Filter& filter,
                           Order order) const {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   objects.clear();
   if (state_ == nullptr) return status_;
   const PreparedRegion prepared(region);
@@ -126,10 +126,10 @@ Status Partition::overlap(const Region& region, OverlapBuffer& objects, const Fi
   if (const Status status = state_->prepare(QueryKind::regions, 1, view); status != Status::ok) {
     return status;
   }
-  const KernelFilter wanted(filter, view, state_->rows.keys());
-  if (wanted.matches_nothing()) return Status::ok;
+  const KernelFilter kernel_filter(filter, view, state_->rows.keys());
+  if (kernel_filter.matches_nothing()) return Status::ok;
   OverlapWriter writer(objects);
-  if (prepared.run(view, wanted.wanted(), writer.sinks()) && writer.finish(order)) {
+  if (prepared.run(view, kernel_filter.query_filter(), writer.sinks()) && writer.finish(order)) {
     return Status::ok;
   }
   objects.clear();
@@ -138,7 +138,7 @@ Status Partition::overlap(const Region& region, OverlapBuffer& objects, const Fi
 
 Status Partition::overlap(const BoxView& boxes, PairBuffer& out, const Filter& filter,
                           Order order) const {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   out.clear();
   if (state_ == nullptr) return status_;
   const Execution& execution = state_->rows.execution();
@@ -152,23 +152,23 @@ Status Partition::overlap(const BoxView& boxes, PairBuffer& out, const Filter& f
     return status;
   }
   const SpatialIndex& index = state_->index;
-  const KernelFilter wanted(filter, view, state_->rows.keys());
-  if (wanted.matches_nothing()) return Status::ok;
-  const ObjectFilter asking = filter.object();
-  const QueryFilter* accepted = &wanted.wanted();
+  const KernelFilter kernel_filter(filter, view, state_->rows.keys());
+  if (kernel_filter.matches_nothing()) return Status::ok;
+  const ObjectFilter query_object = filter.object();
+  const QueryFilter* accepted = &kernel_filter.query_filter();
   PairWriter writer(out, execution, accepting_second(accepted));
   const std::size_t tasks = (boxes.count + kBoxesPerTask - 1) / kBoxesPerTask;
   const Status status = writer.append(tasks, [&](std::size_t task, PairSink& sink) {
     const std::size_t begin = task * kBoxesPerTask;
-    BoxColumns columns(source, begin, std::min(boxes.count, begin + kBoxesPerTask));
+    BoxBatch columns(source, begin, std::min(boxes.count, begin + kBoxesPerTask));
     QueryBatch& batch = columns.batch();
     if (index.structure().is_flat())
-      return region_kernels().flat_boxes(view, batch, wanted.wanted(), sink);
-    batch.filter = {&asking.layers, &asking.mask, &asking.environment};
+      return region_kernels().flat_boxes(view, batch, kernel_filter.query_filter(), sink);
+    batch.filter = {&query_object.layers, &query_object.mask, &query_object.environment};
     // True is always safe, and costs one test.
     batch.environments = true;
     batch.one_filter = true;
-    batch.matches_all = !wanted.wanted().by_object;
+    batch.matches_all = !kernel_filter.query_filter().by_object;
     return index.query(batch, sink);
   });
   const std::size_t slots = std::max(state_->rows.keys().slot_count(), boxes.count);

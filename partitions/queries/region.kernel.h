@@ -17,7 +17,7 @@ struct ExactRegion {
   const void* region = nullptr;
 };
 
-/// A half-space for float tests. The largest component of the normal lies in [1/16, 1/8), so that
+/// A half-space for float tests. The largest component of the normal is in [1/16, 1/8), so that
 /// nothing overflows.
 struct WidePlane {
   float normal[3];
@@ -25,8 +25,8 @@ struct WidePlane {
   std::uint8_t farthest[3];  ///< per axis, the column of the box's end farthest inside
 };
 
-/// The part of a box that lies inside all planes. Without planes `exact` is not needed. `more`
-/// means that only `exact` tests some conditions: the float tests then never return "inside".
+/// The part of a box that is inside all planes. Without planes `exact` is not needed. `more` means
+/// that only `exact` tests some conditions: the float tests then never return "inside".
 struct PlaneRegion {
   float low[3];
   float high[3];
@@ -36,9 +36,9 @@ struct PlaneRegion {
   /// True if the planes decide: a box that overlaps [low, high] and reaches inside every plane
   /// overlaps the region.
   bool planes_decide = false;
-  /// Error bound of normal . p + offset: rounding * largest coordinate + margin.
+  /// Error bound of normal . p + offset: rounding * largest coordinate + slack.
   float rounding = 0.0F;
-  float margin = 0.0F;
+  float slack = 0.0F;
   ExactRegion exact;
 };
 
@@ -48,9 +48,9 @@ struct BallRegion {
   ExactRegion exact;
 };
 
-/// The volume that a box sweeps.
-struct SweptRegion {
-  KernelCast sweep;
+/// The volume along the path of a moving box, which contains a capsule.
+struct CapsuleRegion {
+  KernelCast cast;
   ExactRegion exact;
 };
 
@@ -60,11 +60,11 @@ struct RegionSinks {
   IdSink crossing;
 };
 
-/// All functions return false if a sink is full.
+/// All functions return false if a sink is full and cannot grow.
 struct RegionKernels {
   bool (*planes)(const QueryView&, const PlaneRegion&, const QueryFilter&, RegionSinks&);
   bool (*ball)(const QueryView&, const BallRegion&, const QueryFilter&, RegionSinks&);
-  bool (*swept)(const QueryView&, const SweptRegion&, const QueryFilter&, RegionSinks&);
+  bool (*capsule)(const QueryView&, const CapsuleRegion&, const QueryFilter&, RegionSinks&);
   /// Finds all pairs (batch.id of the box, object) of a batch of boxes with the flat blocks.
   bool (*flat_boxes)(const QueryView&, const QueryBatch&, const QueryFilter&, PairSink&);
 };

@@ -1,11 +1,11 @@
 // Preparation of regions for the kernels: each kind of region becomes a set of planes, a ball or a
-// swept box, with the test in double that decides in the end (box_intersection.h). Called by
+// moving box, with the test in double that decides in the end (box_intersection.h). Called by
 // overlaps.cpp.
 
 #include "partitions/queries/regions.h"
 
 #include "partitions/queries/box_intersection.h"
-#include "partitions/queries/sweep.h"
+#include "partitions/queries/prepared_cast.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -24,8 +24,8 @@ namespace {
 constexpr float kPlaneRounding = 8 * 0x1p-24F;
 
 /// `size` bounds the terms from which `offset` was computed; it is 0 if the caller gave the offset.
-/// `margin` is raised to cover the error of heights above the plane.
-WidePlane widen(const Eigen::Vector3d& normal, double offset, double size, float& margin) noexcept {
+/// `slack` is raised to cover the error of heights above the plane.
+WidePlane widen(const Eigen::Vector3d& normal, double offset, double size, float& slack) noexcept {
   int exponent = 0;
   (void)std::frexp(normal.cwiseAbs().maxCoeff(), &exponent);
   const double scale = std::ldexp(1.0, -exponent - 3);
@@ -38,8 +38,8 @@ WidePlane widen(const Eigen::Vector3d& normal, double offset, double size, float
   const auto most = static_cast<double>(FLT_MAX);
   wide.offset = static_cast<float>(std::clamp(offset * scale, -most, most));
   // 1e-36 covers products of tiny normals and coordinates that underflow.
-  margin = std::max(margin, std::abs(wide.offset) * kPlaneRounding + 1e-36F +
-                                static_cast<float>(std::min(1e-14 * size * scale, most)));
+  slack = std::max(slack, std::abs(wide.offset) * kPlaneRounding + 1e-36F +
+                              static_cast<float>(std::min(1e-14 * size * scale, most)));
   return wide;
 }
 
@@ -58,8 +58,8 @@ bool PreparedRegion::run(const QueryView& view, const QueryFilter& filter,
       return kernels.planes(view, planes_, filter, sinks);
     case RegionKind::ball:
       return kernels.ball(view, ball_, filter, sinks);
-    case RegionKind::swept:
-      return kernels.swept(view, swept_, filter, sinks);
+    case RegionKind::capsule:
+      return kernels.capsule(view, capsule_, filter, sinks);
   }
   return true;
 }
@@ -78,7 +78,7 @@ void PreparedRegion::prune_by(const Eigen::Vector3d& normal, double offset, doub
     return;
   }
   planes_.rounding = kPlaneRounding;
-  wide_[planes_.count++] = widen(normal, offset, size, planes_.margin);
+  wide_[planes_.count++] = widen(normal, offset, size, planes_.slack);
 }
 
 Status PreparedRegion::prepare(const Vec3f& point) noexcept {
@@ -100,7 +100,7 @@ Status PreparedRegion::prepare(const OrientedBox& box) noexcept {
   const Eigen::Vector3d center = box.center.cast<double>();
   for (int i = 0; i < 3; ++i) {
     const Eigen::Vector3d normal = axes.col((i + 1) % 3).cross(axes.col((i + 2) % 3));
-    // A degenerate face has no direction, so that the float tests cannot use it.
+    // A degenerate face has no normal, so the float tests cannot use it.
     if (normal.isZero(0.0)) {
       planes_.more = true;
       continue;
@@ -126,7 +126,7 @@ Status PreparedRegion::prepare(const Sphere& sphere) noexcept {
 
 Status PreparedRegion::prepare(const Capsule& capsule) noexcept {
   if (!capsule.is_valid()) return Status::invalid_argument;
-  // The ball at one end, swept to the other.
+  // The ball at one end moves to the other.
   const Eigen::Vector3d along = capsule.b.cast<double>() - capsule.a.cast<double>();
   if (along.isZero(0.0)) {
     kind_ = RegionKind::ball;
@@ -135,9 +135,9 @@ Status PreparedRegion::prepare(const Capsule& capsule) noexcept {
     ball_.exact = {classify_capsule, &capsule};
     return Status::ok;
   }
-  kind_ = RegionKind::swept;
-  make_sweep(swept_.sweep, Sphere{capsule.a, capsule.radius}.bounds(), along, 0.0, 1.0);
-  swept_.exact = {classify_capsule, &capsule};
+  kind_ = RegionKind::capsule;
+  prepare_cast(capsule_.cast, Sphere{capsule.a, capsule.radius}.bounds(), along, 0.0, 1.0);
+  capsule_.exact = {classify_capsule, &capsule};
   return Status::ok;
 }
 

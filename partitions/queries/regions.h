@@ -19,12 +19,12 @@ class PreparedRegion {
   PreparedRegion& operator=(const PreparedRegion&) = delete;
 
   [[nodiscard]] Status status() const noexcept { return status_; }
-  /// False if a sink is full.
+  /// False if a sink is full and cannot grow.
   [[nodiscard]] bool run(const QueryView& view, const QueryFilter& filter,
                          RegionSinks& sinks) const;
 
  private:
-  enum class RegionKind : std::uint8_t { planes, ball, swept };
+  enum class RegionKind : std::uint8_t { planes, ball, capsule };
 
   Status prepare(const Vec3f& point) noexcept;
   Status prepare(const Aabb& box) noexcept;
@@ -36,14 +36,14 @@ class PreparedRegion {
   void within(const Aabb& box) noexcept;
   void prune_by(const Eigen::Vector3d& normal, double offset, double size) noexcept;
 
-  // If there are more planes, only the first ones prune; the test in double uses all.
+  // If there are more planes, only the first kMaxPlanes prune; the test in double uses all.
   static constexpr std::size_t kMaxPlanes = 16;
 
   RegionKind kind_ = RegionKind::planes;
   Status status_;
   PlaneRegion planes_;
   BallRegion ball_;
-  SweptRegion swept_;
+  CapsuleRegion capsule_;
   std::span<const Plane> exact_planes_;
   std::array<WidePlane, kMaxPlanes> wide_;
 };

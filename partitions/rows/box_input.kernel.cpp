@@ -164,7 +164,8 @@ void write_in_order(const float* floats, std::size_t count, float* const* column
   }
 }
 
-/// The negated longest edge of each box, without axes that are infinite on a side.
+/// Returns the negated length of the longest edge of each box; axes with an infinite end do not
+/// count.
 Floats minus_longest_edge(const Box16& box) {
   // Infinite ends are stored as the largest float, so every finite end is at most the float below
   // it.
@@ -213,21 +214,21 @@ template <typename Visit>
 }
 
 /// The comparison by == covers infinite ends, whose difference is NaN.
-bool is_near(const float* box, const float* near, float margin) {
+bool is_near(const float* box, const float* near, float skin) {
   for (std::size_t c = 0; c < kFloats; ++c) {
     const float d = box[c] - near[c];
-    if (!((d <= margin && -margin <= d) || box[c] == near[c])) return false;
+    if (!((d <= skin && -skin <= d) || box[c] == near[c])) return false;
   }
   return true;
 }
 
 std::uint32_t copy_near(const float* boxes, const float* near, float* to, std::size_t count,
-                        float margin, std::uint32_t* left, std::uint32_t most) {
-  const Floats limit = Floats(margin);
+                        float skin, std::uint32_t* departed, std::uint32_t most) {
+  const Floats limit = Floats(skin);
   std::uint32_t found = 0;
   const auto look = [&](std::size_t i) {
-    left[found] = static_cast<std::uint32_t>(i);
-    found += is_near(boxes + i * kFloats, near + i * kFloats, margin) ? 0U : 1U;
+    departed[found] = static_cast<std::uint32_t>(i);
+    found += is_near(boxes + i * kFloats, near + i * kFloats, skin) ? 0U : 1U;
   };
   std::size_t i = 0;
   for (; i + kLanes <= count && found <= most; i += kLanes) {
@@ -242,8 +243,8 @@ std::uint32_t copy_near(const float* boxes, const float* near, float* to, std::s
       box.store_unaligned(to + at);
     }
     if (all == kAllRows) continue;
-    for_each_bad_box(good,
-                     [&](unsigned box) { left[found++] = static_cast<std::uint32_t>(i + box); });
+    for_each_bad_box(
+        good, [&](unsigned box) { departed[found++] = static_cast<std::uint32_t>(i + box); });
   }
   for (; i < count && found <= most; ++i) {
     for (std::size_t c = 0; c < kFloats; ++c) to[i * kFloats + c] = boxes[i * kFloats + c];

@@ -32,21 +32,22 @@ struct BoxInputKernels {
   void (*write_in_order)(const float* floats, std::size_t count, float* const* column,
                          std::size_t row);
 
-  /// Sets bit i of `words` if given box i lies within stored box i, and the stored box is larger by
-  /// at most twice the margin `distance` + `share` * longest finite edge. Columns hold lower, then
-  /// upper ends and are readable to the next multiple of 16; bits beyond `count` are undefined.
+  /// Sets bit i of `words` if given box i is within stored box i, and the stored box is at most
+  /// four margins longer on each axis. The margin is `distance` + `share` * longest finite edge of
+  /// the given box. Columns contain lower, then upper ends and are readable to the next multiple of
+  /// 16; bits beyond `count` are undefined.
   void (*within)(const float* const* given, const float* const* stored, std::size_t count,
                  float distance, float share, std::uint64_t* words);
 
   /// Copies `count` boxes of six floats to `to`. Writes the index of each box with an end further
-  /// than `margin` from the same end in `near` to `left`, and returns their number. Stops after the
-  /// group of 16 boxes with which the number exceeds `most`. `left` has room for `most` + 32
-  /// indices.
+  /// than `skin` from the same end in `near` to `departed`, and returns their number. Stops after
+  /// the group of 16 boxes with which the number exceeds `most`. `departed` has room for `most` +
+  /// 32 indices.
   std::uint32_t (*copy_near)(const float* boxes, const float* near, float* to, std::size_t count,
-                             float margin, std::uint32_t* left, std::uint32_t most);
+                             float skin, std::uint32_t* departed, std::uint32_t most);
 
-  /// Writes the index of each of `count` boxes (six floats) that does not lie within the box
-  /// `around` to `out`, which has room for all; returns their number.
+  /// Writes the index of each of `count` boxes (six floats) that is not within the box `around` to
+  /// `out`, which has room for all; returns their number.
   std::uint32_t (*beyond)(const float* boxes, const float* around, std::size_t count,
                           std::uint32_t* out);
 };

@@ -10,9 +10,9 @@
 
 namespace winnow {
 
-/// Set of object ids that changed: a bitmap, and a list in order of change. With more than a
-/// quarter of all objects it only records "all", because tracking single objects then costs more
-/// than it saves.
+/// Set of object ids that changed: a bitmap, and a list in order of change. If more than a quarter
+/// of all ids, plus 16, changed, it only records "all", because tracking single objects then costs
+/// more than it saves.
 class ChangeList {
  public:
   explicit ChangeList(std::pmr::memory_resource* memory) noexcept : bits_(memory), list_(memory) {}
@@ -37,7 +37,7 @@ class ChangeList {
   }
   void add_all() noexcept { all_ = true; }
 
-  /// Returns how many ids the list can hold before it records only "all".
+  /// Returns the largest number of ids in the list; with more, it records only "all".
   [[nodiscard]] std::size_t limit() const noexcept { return limit_; }
   [[nodiscard]] bool all() const noexcept { return all_; }
   [[nodiscard]] bool empty() const noexcept { return !all_ && list_.empty(); }

@@ -4,7 +4,7 @@
 // volume unchanged. FatSource wraps a source of volume_source.h; volume_input.cpp uses it. Included
 // by source files, not by headers.
 
-#include <winnow/core/margin.h>
+#include <winnow/core/fat_margin.h>
 #include <winnow/core/rounding.h>
 #include <winnow/core/volume.h>
 #include "partitions/rows/volume_source.h"
@@ -19,7 +19,7 @@
 
 namespace winnow {
 
-/// Rows whose given boxes are gathered before they are compared: a few cache lines per column.
+/// Rows whose given boxes are gathered before they are compared: 16 cache lines per column.
 inline constexpr std::size_t kRowsAtOnce = 256;
 
 /// Growth of boxes and k-DOPs by a margin.
@@ -29,7 +29,7 @@ struct FatSlabs {
   static constexpr std::size_t kSlabs = slab_count(V);
 
   /// Returns the margin of the volume in `given`.
-  static float margin_of(const float* given, const Margin& margin) noexcept {
+  static float margin_of(const float* given, const FatMargin& margin) noexcept {
     float edge = 0.0F;
     for (std::size_t s = 0; s < 3; ++s) {
       const float low = given[low_column(kSlabs, s)];
@@ -40,8 +40,9 @@ struct FatSlabs {
     return margin.of(edge);
   }
 
-  /// True if the stored volume contains the given one and is larger by at most twice the margin.
-  static bool serves(const float* given, float margin, const float* stored) noexcept {
+  /// True if the stored volume contains the given one, and each slab is at most four margins
+  /// longer.
+  static bool still_fits(const float* given, float margin, const float* stored) noexcept {
     bool ok = true;
     for (std::size_t s = 0; s < kSlabs; ++s) {
       const float low = given[low_column(kSlabs, s)];
@@ -77,10 +78,10 @@ struct FatSlabs {
 struct FatSphere {
   static constexpr std::size_t kColumns = column_count(Volume::sphere);
 
-  static float margin_of(const float* given, const Margin& margin) noexcept {
+  static float margin_of(const float* given, const FatMargin& margin) noexcept {
     return std::min(margin.of(std::min(2.0F * given[kRadiusColumn], FLT_MAX)), FLT_MAX);
   }
-  static bool serves(const float* given, float margin, const float* stored) noexcept {
+  static bool still_fits(const float* given, float margin, const float* stored) noexcept {
     const double room =
         static_cast<double>(stored[kRadiusColumn]) - static_cast<double>(given[kRadiusColumn]);
     double square = 0.0;
@@ -108,15 +109,15 @@ struct FatVolume : FatSlabs<V> {};
 template <>
 struct FatVolume<Volume::sphere> : FatSphere {};
 
-/// Writes the volumes of another source enlarged by a margin, but keeps a stored volume that
-/// serves.
+/// Writes the volumes of another source enlarged by a margin, but keeps a stored volume for which
+/// `still_fits` is true.
 template <typename Source>
 struct FatSource {
   static constexpr Volume kVolume = Source::kVolume;
   using Fat = FatVolume<kVolume>;
 
   const Source& source;
-  Margin margin;
+  FatMargin margin;
 
   void write(std::size_t i, ColumnPointers columns, std::size_t row) const noexcept {
     Values given(source, i);
@@ -124,16 +125,16 @@ struct FatSource {
     for (std::size_t c = 0; c < Fat::kColumns; ++c) columns[c][row] = given.value[c];
   }
 
-  /// Writes nothing and returns false if the stored volume still serves (see `serves`).
-  bool write_if_left(std::size_t i, ColumnPointers columns, std::size_t row) const noexcept {
+  /// Writes nothing and returns false if the stored volume need not change.
+  bool write_if_departed(std::size_t i, ColumnPointers columns, std::size_t row) const noexcept {
     Values given(source, i);
     float stored[Fat::kColumns];
     for (std::size_t c = 0; c < Fat::kColumns; ++c) stored[c] = columns[c][row];
     const float by = Fat::margin_of(given.value, margin);
-    if (Fat::serves(given.value, by, stored)) return false;
+    if (Fat::still_fits(given.value, by, stored)) return false;
     Fat::grow(given.value, by);
-    // If the margin is smaller than rounding, `serves` is false even if the object did not move.
-    // Then the grown volume equals the stored one.
+    // If the margin is smaller than the rounding error, `still_fits` may be false although the
+    // object did not move. The grown volume then equals the stored one.
     if (std::equal(stored, stored + Fat::kColumns, given.value)) return false;
     for (std::size_t c = 0; c < Fat::kColumns; ++c) columns[c][row] = given.value[c];
     return true;
@@ -151,11 +152,11 @@ struct FatSource {
   };
 };
 
-/// For up to 256 rows from `begin` on: writes the boxes that left their stored ones and sets the
-/// bits of these rows in `left`. Tests 16 boxes at a time, because most stay within.
-inline void write_left_boxes(const FatSource<BoxSource>& fat, const EntryOfRow& entries,
-                             ColumnPointers columns, std::size_t begin, std::size_t end,
-                             std::uint64_t* left) noexcept {
+/// For up to 256 rows from `begin` on: writes the boxes that no longer fit their stored boxes and
+/// sets the bits of these rows in `departed`. Tests 16 boxes at a time, because most stay within.
+inline void write_departed_boxes(const FatSource<BoxSource>& fat, const EntryOfRow& entries,
+                                 ColumnPointers columns, std::size_t begin, std::size_t end,
+                                 std::uint64_t* departed) noexcept {
   const BoxSource& source = fat.source;
   alignas(64) float given[6][kRowsAtOnce];
   float* given_columns[6];
@@ -169,38 +170,38 @@ inline void write_left_boxes(const FatSource<BoxSource>& fat, const EntryOfRow& 
     written = (end - begin) / kBlockRows * kBlockRows;
     source.write_rows(entries.of_id, entries.id + begin, given_columns, 0, written);
   }
-  std::uint64_t asked[kRowsAtOnce / 64] = {};
+  std::uint64_t has_entry[kRowsAtOnce / 64] = {};
   for (std::size_t k = 0; k < end - begin; ++k) {
     const std::size_t i = entries[begin + k];
-    asked[k / 64] |= std::uint64_t{i != kNoObject} << (k % 64);
+    has_entry[k / 64] |= std::uint64_t{i != kNoObject} << (k % 64);
     if (k >= written && i != kNoObject) source.write(i, given_columns, k);
   }
   std::uint64_t within[kRowsAtOnce / 64] = {};
   box_input_kernels().within(given_columns, stored, end - begin, fat.margin.distance,
                              fat.margin.share, within);
   for (std::size_t w = 0; w < kRowsAtOnce / 64; ++w) {
-    for (std::uint64_t out = asked[w] & ~within[w]; out != 0; out &= out - 1) {
+    for (std::uint64_t out = has_entry[w] & ~within[w]; out != 0; out &= out - 1) {
       const std::size_t k = 64 * w + static_cast<std::size_t>(std::countr_zero(out));
-      if (!fat.write_if_left(entries[begin + k], columns, begin + k)) continue;
-      left[begin / 64 + w] |= std::uint64_t{1} << (k % 64);
+      if (!fat.write_if_departed(entries[begin + k], columns, begin + k)) continue;
+      departed[begin / 64 + w] |= std::uint64_t{1} << (k % 64);
     }
   }
 }
 
 /// As above for any volume and the rows [begin, end); `begin` is a multiple of 256.
 template <typename Source>
-void write_left_rows(const FatSource<Source>& fat, const EntryOfRow& entries,
-                     ColumnPointers columns, std::size_t begin, std::size_t end,
-                     std::uint64_t* left) noexcept {
+void write_departed_rows(const FatSource<Source>& fat, const EntryOfRow& entries,
+                         ColumnPointers columns, std::size_t begin, std::size_t end,
+                         std::uint64_t* departed) noexcept {
   for (std::size_t row = begin; row < end; row += kRowsAtOnce) {
     const std::size_t behind = std::min(end, row + kRowsAtOnce);
     if constexpr (std::is_same_v<Source, BoxSource>) {
-      write_left_boxes(fat, entries, columns, row, behind, left);
+      write_departed_boxes(fat, entries, columns, row, behind, departed);
     } else {
       for (std::size_t r = row; r < behind; ++r) {
         const std::size_t i = entries[r];
-        if (i == kNoObject || !fat.write_if_left(i, columns, r)) continue;
-        left[r / 64] |= std::uint64_t{1} << (r % 64);
+        if (i == kNoObject || !fat.write_if_departed(i, columns, r)) continue;
+        departed[r / 64] |= std::uint64_t{1} << (r % 64);
       }
     }
   }

@@ -14,8 +14,8 @@ struct FilterSpan {
   std::uint32_t any_mask = 0;        ///< mask bits of at least one object
   std::uint32_t every_mask = ~0U;    ///< mask bits of all objects
   bool any_unpairable = false;       ///< some object has no layer or an empty mask
-  bool apart = false;      ///< some object has an environment other than 0 and kAllEnvironments
-  bool everywhere = true;  ///< all objects have kAllEnvironments
+  bool environments = false;  ///< some object has an environment other than 0 and kAllEnvironments
+  bool all_environments = true;  ///< all objects have kAllEnvironments
 
   void add(const ObjectFilter& filter) noexcept {
     any_layers |= filter.layers;
@@ -24,8 +24,8 @@ struct FilterSpan {
     every_mask &= filter.mask;
     const bool of_every = filter.environment == kAllEnvironments;
     any_unpairable = any_unpairable || filter.layers == 0 || filter.mask == 0;
-    apart = apart || (filter.environment != 0 && !of_every);
-    everywhere = everywhere && of_every;
+    environments = environments || (filter.environment != 0 && !of_every);
+    all_environments = all_environments && of_every;
   }
 };
 
@@ -44,7 +44,7 @@ static inline bool surely_share(std::uint32_t any, std::uint32_t every, std::uin
 /// False means unknown.
 static inline bool surely_match(const FilterSpan& a, const FilterSpan& b) noexcept {
   return !a.any_unpairable && !b.any_unpairable &&
-         (a.everywhere || b.everywhere || !(a.apart || b.apart)) &&
+         (a.all_environments || b.all_environments || !(a.environments || b.environments)) &&
          surely_share(a.any_layers, a.every_layers, b.any_mask, b.every_mask) &&
          surely_share(b.any_layers, b.every_layers, a.any_mask, a.every_mask);
 }

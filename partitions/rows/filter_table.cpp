@@ -57,7 +57,7 @@ FilterSpan FilterTable::span() const noexcept {
     span = {};
     span.add({});
   }
-  span.apart = has_environments();
+  span.environments = has_environments();
   return span;
 }
 

@@ -44,7 +44,7 @@ class FilterTable {
   /// Gives a free id the default filter.
   void reset(ObjectId id) noexcept;
 
-  /// Notes that objects with the default filter were inserted.
+  /// Adds the default filter to the span, because objects that are inserted have it.
   void note_new() noexcept { span_.add({}); }
 
   /// Returns the span of all objects' filters; it may also cover filters that objects had since

@@ -33,7 +33,8 @@ struct RowSelection {
     return true;
   }
   /// Sorts the list and drops duplicates. Entries are below `limit`, for which `reserve_bits` was
-  /// called. O(entries + limit / 64), or O(entries log entries) for few entries.
+  /// called. O(entries + limit / 64), or O(entries log entries) for few entries (see
+  /// `sort_unique`).
   void sort(std::size_t limit) noexcept { list.set_size(sort_unique(entries(), limit, bits)); }
   /// Sets the bits of the entries. Requires room.
   void mark() noexcept {

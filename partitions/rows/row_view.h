@@ -1,7 +1,7 @@
 #pragma once
 
-// Views of rows that kernels read and the sink that they write pairs to. Plain structs: kernel
-// files are compiled once per instruction set and may not use the standard library.
+// Views of rows that kernels read, and the sink that they write pairs to. All are plain structs,
+// because kernel sources may include only headers of plain structs.
 
 #include "core/memory/filter_columns.h"
 #include "partitions/rows/filter_span.h"
@@ -49,7 +49,7 @@ enum class HitMode : std::uint8_t {
 };
 
 /// Volumes to query with: rows of columns, by list or, if `rows` is null, consecutive. They are
-/// boxes (lower ends, then upper ends) or volumes of the kind that the queried rows hold.
+/// boxes (lower ends, then upper ends) or volumes of the kind that the queried rows store.
 struct QueryBatch {
   const float* column[26] = {};
   bool is_box = true;

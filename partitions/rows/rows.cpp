@@ -15,9 +15,9 @@
 namespace winnow {
 
 Rows::Rows(std::pmr::memory_resource* memory, const Execution& execution, const VolumeInput& input,
-           const Margin& margin) noexcept
+           const FatMargin& fat_margin) noexcept
     : execution_(execution),
-      margin_(margin.legal()),
+      fat_margin_(fat_margin.legal()),
       input_(input),
       pool_(memory, input.volume),
       keys_(memory),
@@ -75,7 +75,8 @@ void Rows::compact() noexcept {
 void Rows::remove_row(ObjectId id) noexcept {
   const std::size_t row = keys_.row_of(id);
   pool_.blank(row);
-  // Drop the last row of the tail, so that churn at the end leaves no holes.
+  // If this is the last row of the tail, drop it, so that alternating inserts and removals leave no
+  // holes there.
   const std::size_t fixed = std::max({regions_.ordered, regions_.sorted, regions_.planned});
   if (row + 1 == pool_.rows() && row >= fixed) pool_.drop_last();
   stale_.add(id);
@@ -123,7 +124,7 @@ void Rows::clear() noexcept {
   pool_.end_filters();
   stale_.clear();
   moved_.clear();
-  disorder();
+  invalidate_order();
 }
 
 Status Rows::reserve(std::size_t objects) {
@@ -207,7 +208,7 @@ Status Rows::restore(const SavedRows& saved, Rows& other) {
   }
   Column<std::uint8_t> seen(keys_.key_memory());
   if (!seen.resize(slots) || !make_room(slots)) return Status::out_of_memory;
-  if (!KeyTable::are_slots(saved.keys, seen)) return Status::invalid_argument;
+  if (!KeyTable::are_consistent(saved.keys, seen)) return Status::invalid_argument;
   if (!saved.filters.empty() && !begin_filters()) return Status::out_of_memory;
   keys_.restore(saved.keys, other.keys_);
   pool_.append(live);
@@ -280,7 +281,7 @@ void Rows::add_bytes(Footprint& footprint) const noexcept {
   footprint.scratch += selection_.bytes();
 }
 
-void Rows::settle(bool track_moves) noexcept {
+void Rows::clear_stale(bool track_moves) noexcept {
   if (track_moves) {
     if (stale_.all()) {
       moved_.add_all();
@@ -292,7 +293,7 @@ void Rows::settle(bool track_moves) noexcept {
   changed_ = false;
 }
 
-void Rows::disorder() noexcept {
+void Rows::invalidate_order() noexcept {
   ++arrangement_;
   regions_ = {};
   changed_ = true;

@@ -5,8 +5,8 @@
 
 #include <winnow/core/box_view.h>
 #include <winnow/core/execution.h>
+#include <winnow/core/fat_margin.h>
 #include <winnow/core/footprint.h>
-#include <winnow/core/margin.h>
 #include <winnow/core/status.h>
 #include "core/memory/bounds_pool.h"
 #include "core/memory/key_table.h"
@@ -27,8 +27,8 @@ struct BoxOfId;
 struct EntryOfRow;
 class Rows;
 
-/// How boxes are converted into the stored volume. Rows call it through pointers to members, so
-/// that a program links only the code of the volumes that it can use.
+/// How boxes are converted into the stored volume. Rows call these functions through pointers to
+/// members, so that a program links only the code of the volumes that it can use.
 struct VolumeInput {
   Volume volume;
   Status (Rows::*insert)(const BoxView&, std::span<const ClientData>, std::span<Key>);
@@ -38,18 +38,19 @@ struct VolumeInput {
 
 /// A saved set of objects: slots of keys, and per live object, by id, its volume and filter.
 struct SavedRows {
-  KeyTable::Saved keys;
+  KeyTable::SavedSlots keys;
   std::size_t objects = 0;                  ///< live slots, i.e. odd stamps
   std::span<const float> columns;           ///< of the volume, one after the other
   std::span<const ObjectFilter> filters{};  ///< empty if all are the default
 };
 
-/// Returns the box of a row with infinite ends as infinite. A hole gives an empty box.
+/// Returns the box of a row with infinite ends as infinite. The box of a hole is empty.
 [[nodiscard]] Aabb stored_box(const float* const columns[6], std::size_t row) noexcept;
 
 /// Layout of the rows. The structure orders the *regular* rows: cells, strips, or no order. From
-/// the next whole block on, every row is a leaf of a block tree: first the rows ordered by the last
-/// build, then the *tail* of objects that were inserted or moved out of their place since.
+/// the next whole block on, the blocks of rows are the leaves of a block tree: first the rows
+/// ordered by the last build, then the *tail* of objects that were inserted or moved out of their
+/// place since.
 struct RowRegions {
   bool built = false;       ///< false: the next refresh must order the rows
   std::size_t regular = 0;  ///< rows [0, regular) belong to the structure
@@ -70,7 +71,7 @@ class Rows {
 
   /// `input` must outlive the rows.
   Rows(std::pmr::memory_resource* memory, const Execution& execution, const VolumeInput& input,
-       const Margin& margin) noexcept;
+       const FatMargin& fat_margin) noexcept;
 
   Status insert(const BoxView& boxes, std::span<const ClientData> data, std::span<Key> keys);
   Status update(const UpdateSubset& entries, const BoxView& boxes);
@@ -97,8 +98,8 @@ class Rows {
   void release_memory() noexcept;
 
   /// Makes the saved objects the rows' objects, in rows by id, with their keys (see
-  /// KeyTable::restore). The rows must never have held an object. `invalid_argument` if the data
-  /// are inconsistent; nothing is changed then.
+  /// KeyTable::restore). The rows must never have contained an object. `invalid_argument` if the
+  /// data are inconsistent; nothing is changed then.
   Status restore(const SavedRows& saved, Rows& other);
 
   Status set_filter(std::span<const Key> keys, std::span<const ObjectFilter> filters);
@@ -111,7 +112,7 @@ class Rows {
   [[nodiscard]] const KeyTable& keys() const noexcept { return keys_; }
   [[nodiscard]] const FilterTable& filters() const noexcept { return filters_; }
   [[nodiscard]] const Execution& execution() const noexcept { return execution_; }
-  [[nodiscard]] const Margin& margin() const noexcept { return margin_; }
+  [[nodiscard]] const FatMargin& fat_margin() const noexcept { return fat_margin_; }
   [[nodiscard]] const RowRegions& regions() const noexcept { return regions_; }
   /// Returns the pointers that kernels use.
   [[nodiscard]] RowView view() const noexcept;
@@ -121,19 +122,20 @@ class Rows {
 
   // For SpatialIndex, which orders the rows.
 
-  /// True from a change until `settle`.
+  /// True from a change until `clear_stale`.
   [[nodiscard]] bool changed() const noexcept { return changed_; }
-  /// Objects that changed since the last `settle`.
+  /// Objects that changed since the last `clear_stale`.
   [[nodiscard]] const ChangeList& stale() const noexcept { return stale_; }
-  /// Ends a refresh: clears `stale`. With `track_moves` its objects are added to `moved`.
-  void settle(bool track_moves) noexcept;
+  /// Ends a refresh: clears `stale`. If `track_moves` is true, adds the objects in `stale` to
+  /// `moved` first.
+  void clear_stale(bool track_moves) noexcept;
   /// Objects that changed since `forget_moves`, if moves were tracked.
   [[nodiscard]] const ChangeList& moved() const noexcept { return moved_; }
   void forget_moves() const noexcept { moved_.clear(); }
 
   [[nodiscard]] RowRegions& regions() noexcept { return regions_; }
   /// Requires the next refresh to order the rows.
-  void disorder() noexcept;
+  void invalidate_order() noexcept;
   void pad() noexcept { pool_.pad(); }
   [[nodiscard]] bool reserve_rows(std::size_t rows) noexcept { return pool_.reserve_exact(rows); }
   /// Closes all holes; afterwards the rows are unordered.
@@ -145,8 +147,8 @@ class Rows {
                     Column<float>& spare) noexcept;
   /// Moves rows behind the last one and leaves holes. Requires room.
   void move_to_end(std::span<const std::uint32_t> rows) noexcept;
-  /// Notes that the rows were ordered. The order stays good while most objects are within `far` of
-  /// their position at the build; 0: always.
+  /// Called when the rows have been ordered. If one update then moves most objects by more than
+  /// `far`, the order is lost (see `order_is_lost`); if `far` is 0, it never is.
   void note_build(float far) noexcept {
     filters_.note_build({pool_.ids(), pool_.rows()});
     order_reach_ = far;
@@ -161,7 +163,7 @@ class Rows {
   void remove_row(ObjectId id) noexcept;
   void fetch_row(std::size_t row) const noexcept;
 
-  // Source reads the given volumes; Stored is AsOffered or WithMargin.
+  // Source reads the given volumes; Stored is AsGiven or WithMargin.
   template <typename Source, typename Stored>
   [[nodiscard]] static const VolumeInput& input() noexcept;
   template <typename Source, typename Stored>
@@ -184,7 +186,7 @@ class Rows {
   Status update_one(const Source& source, Key key);
   template <typename Source>
   Status write(const Source& source, const UpdateSubset& entries, bool ascending);
-  bool goes_by_rows(const UpdateSubset& entries, bool ascending, BoxOfId& entry_of);
+  bool writes_by_rows(const UpdateSubset& entries, bool ascending, BoxOfId& entry_of);
   template <typename Source>
   [[nodiscard]] bool order_is_lost(const Source& source, std::span<const Key> keys) const noexcept;
   template <typename Source>
@@ -197,10 +199,10 @@ class Rows {
   void write_new(const Source& source, std::span<const Key> keys, std::size_t first,
                  std::size_t begin, std::size_t end);
   void note_stale(const UpdateSubset& entries) noexcept;
-  void note_left(const UpdateSubset& entries, bool by_rows, std::size_t slots) noexcept;
+  void note_departed(const UpdateSubset& entries, bool by_rows, std::size_t slots) noexcept;
 
   Execution execution_;
-  Margin margin_;
+  FatMargin fat_margin_;
   const VolumeInput& input_;
   BoundsPool pool_;
   KeyTable keys_;

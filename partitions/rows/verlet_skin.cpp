@@ -9,7 +9,7 @@
 namespace winnow {
 namespace {
 
-using GivenBox = VerletSkin::Box;
+using GivenBox = VerletSkin::DeferredBox;
 
 static_assert(sizeof(GivenBox) == 6 * sizeof(float));
 
@@ -26,10 +26,11 @@ BoxView view_of(const GivenBox* boxes, std::size_t count) noexcept {
 
 }  // namespace
 
-bool VerletSkin::begin(const Rows& rows, float margin) noexcept {
+bool VerletSkin::begin(const Rows& rows, float skin) noexcept {
   const std::size_t slots = rows.keys().slot_count();
-  most_ = static_cast<std::uint32_t>(rows.size() / 32 + 16);
-  if (!given_.resize(slots) || !stored_.resize(slots) || !left_.resize(most_ + 2 * kBlockRows)) {
+  max_departed_ = static_cast<std::uint32_t>(rows.size() / 32 + 16);
+  if (!given_.resize(slots) || !stored_.resize(slots) ||
+      !departed_.resize(max_departed_ + 2 * kBlockRows)) {
     drop();
     return false;
   }
@@ -38,7 +39,7 @@ bool VerletSkin::begin(const Rows& rows, float margin) noexcept {
     const ObjectId id = view.id[row];
     if (id != kNoObject) stored_[id] = given_[id] = as_given(stored_box(view.column, row));
   }
-  margin_ = margin;
+  skin_ = skin;
   active_.store(true, std::memory_order_release);
   return true;
 }
@@ -51,9 +52,9 @@ Status VerletSkin::update(Rows& rows, const UpdateSubset& entries, const BoxView
     drop();
     return rows.update(entries, boxes);
   }
-  for (const ObjectId id : left_) {
+  for (const ObjectId id : departed_) {
     const Key key = rows.keys().key_of(id);
-    // If a key is repeated its last box counts, which may be within the margin again.
+    // If a key is repeated, the row gets the last box, which may be within the skin again.
     (void)rows.update(UpdateSubset(std::span(&key, 1)), view_of(given_.data() + id, 1));
     stored_[id] = given_[id];
   }
@@ -65,19 +66,20 @@ Status VerletSkin::update(Rows& rows, Key key, const Aabb& box) {
   const BoxView view(std::span<const Aabb>(&box, 1));
   if (!BoxSource{view}.valid(0)) return Status::invalid_bounds;
   const GivenBox given = as_given(box);
-  const bool left =
-      box_input_kernels().copy_near(given.min, stored_[key.id].min, given_[key.id].min, 1, margin_,
-                                    left_.data(), 0) != 0;
+  const bool departed =
+      box_input_kernels().copy_near(given.min, stored_[key.id].min, given_[key.id].min, 1, skin_,
+                                    departed_.data(), 0) != 0;
   pending_ = true;
-  if (!left) return Status::ok;
+  if (!departed) return Status::ok;
   stored_[key.id] = given;
   return rows.update(key, box);
 }
 
-// Collects in left_ the ids whose boxes left the margin. False if there are more than most_.
+// Collects in departed_ the ids whose boxes left the skin. False if there are more than
+// max_departed_.
 bool VerletSkin::copy(const UpdateSubset& entries, const BoxView& boxes) noexcept {
   const bool packed = BoxSource{boxes}.packed();
-  left_.clear();
+  departed_.clear();
   for (std::size_t begin = 0; begin < entries.count;) {
     // Consecutive ids have consecutive boxes in both arrays, so one kernel call handles the whole
     // run.
@@ -90,13 +92,13 @@ bool VerletSkin::copy(const UpdateSubset& entries, const BoxView& boxes) noexcep
     }
     const GivenBox one = packed ? GivenBox{} : as_given(boxes[i]);
     const float* const from = packed ? boxes.min[0] + 6 * i : one.min;
-    std::uint32_t* const left = left_.end();
+    std::uint32_t* const departed = departed_.end();
     const std::uint32_t found = box_input_kernels().copy_near(
-        from, stored_[first].min, given_[first].min, end - begin, margin_, left,
-        most_ - static_cast<std::uint32_t>(left_.size()));
-    for (std::uint32_t k = 0; k < found; ++k) left[k] += first;
-    left_.set_size(left_.size() + found);
-    if (left_.size() > most_) return false;
+        from, stored_[first].min, given_[first].min, end - begin, skin_, departed,
+        max_departed_ - static_cast<std::uint32_t>(departed_.size()));
+    for (std::uint32_t k = 0; k < found; ++k) departed[k] += first;
+    departed_.set_size(departed_.size() + found);
+    if (departed_.size() > max_departed_) return false;
     begin = end;
   }
   return true;
@@ -118,19 +120,19 @@ bool VerletSkin::write(Rows& rows) noexcept {
 }
 
 void VerletSkin::release() noexcept {
-  release_columns(given_, stored_, left_);
+  release_columns(given_, stored_, departed_);
 }
 
 void VerletSkin::drop() noexcept {
   given_.clear();
   stored_.clear();
-  left_.clear();
+  departed_.clear();
   pending_ = false;
   active_.store(false, std::memory_order_release);
 }
 
 Bytes VerletSkin::bytes() const noexcept {
-  return bytes_of(given_, stored_, left_);
+  return bytes_of(given_, stored_, departed_);
 }
 
 }  // namespace winnow

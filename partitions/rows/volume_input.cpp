@@ -21,9 +21,9 @@ WINNOW_DEFINE_KERNELS(BoxInputKernels, box_input_kernels)
 namespace {
 
 /// Stores volumes as given.
-struct AsOffered {
+struct AsGiven {
   template <typename Source, typename Use>
-  static Status use(const Source& source, const Margin&, Use&& use) {
+  static Status use(const Source& source, const FatMargin&, Use&& use) {
     return use(source);
   }
 };
@@ -31,7 +31,7 @@ struct AsOffered {
 /// Stores volumes enlarged by the margin, if there is one.
 struct WithMargin {
   template <typename Source, typename Use>
-  static Status use(const Source& source, const Margin& margin, Use&& use) {
+  static Status use(const Source& source, const FatMargin& margin, Use&& use) {
     if (margin.is_none()) return use(source);
     return use(FatSource<Source>{source, margin});
   }
@@ -48,7 +48,7 @@ KdopSource<K> source_of(std::span<const Kdop<K>> kdops) noexcept {
 /// True if the source may leave a stored volume unchanged (see FatSource).
 template <typename Source>
 constexpr bool kMayStay = requires(const Source& source) {
-  source.write_if_left(0, ColumnPointers{}, 0);
+  source.write_if_departed(0, ColumnPointers{}, 0);
 };
 
 /// Returns the smallest and largest id of the entries.
@@ -107,7 +107,7 @@ Status Rows::insert_from(const Source& source, std::size_t count, std::span<cons
   pool_.append(count);
   keys_.acquire(static_cast<std::uint32_t>(first), data, keys, execution_);
   note_stale(std::span<const Key>(keys));
-  return Stored::use(source, margin_, [&](const auto& volumes) {
+  return Stored::use(source, fat_margin_, [&](const auto& volumes) {
     for_ranges(execution_, count, [&](std::size_t begin, std::size_t end) {
       write_new(volumes, keys, first, begin, end);
     });
@@ -115,7 +115,7 @@ Status Rows::insert_from(const Source& source, std::size_t count, std::span<cons
   });
 }
 
-/// Writes entries [begin, end) to the rows from `first` on, and their ids and filters.
+/// Writes entry i, its id and its filter to row first + i, for i in [begin, end).
 template <typename Source>
 void Rows::write_new(const Source& source, std::span<const Key> keys, std::size_t first,
                      std::size_t begin, std::size_t end) {
@@ -174,18 +174,18 @@ Status Rows::update_from(const Source& source, std::size_t volumes, const Update
   bool ascending = false;
   const Status status = check_update(source, volumes, entries, ascending);
   if (status != Status::ok || entries.count == 0) return status;
-  return Stored::use(source, margin_,
+  return Stored::use(source, fat_margin_,
                      [&](const auto& stored) { return write(stored, entries, ascending); });
 }
 
 template <typename Stored, typename Source>
 Status Rows::update_one(const Source& source, Key key) {
   if (!source.valid(0)) return Status::invalid_bounds;
-  return Stored::use(source, margin_, [&](const auto& volumes) {
+  return Stored::use(source, fat_margin_, [&](const auto& volumes) {
     const PoolColumns columns(pool_);
     const std::size_t row = keys_.row_of(key.id);
-    if constexpr (requires { volumes.write_if_left(0, columns.pointers, row); }) {
-      if (!volumes.write_if_left(0, columns.pointers, row)) return Status::ok;
+    if constexpr (requires { volumes.write_if_departed(0, columns.pointers, row); }) {
+      if (!volumes.write_if_departed(0, columns.pointers, row)) return Status::ok;
     } else {
       volumes.write(0, columns.pointers, row);
     }
@@ -195,11 +195,13 @@ Status Rows::update_one(const Source& source, Key key) {
   });
 }
 
-/// True if an update writes rows in row order instead of entry order, because more than half of the
-/// rows change: it reads entries in arbitrary order but writes each column in order, which touches
-/// a sixth of the cache lines. A table maps ids to entries unless they correspond one to one. False
-/// if a key occurs twice, because its entries must be written in order.
-bool Rows::goes_by_rows(const UpdateSubset& entries, bool ascending, BoxOfId& entry_of) {
+/// True if an update writes rows in row order instead of entry order: if more than half of the rows
+/// change, and there are at most half as many other ids between the smallest and the largest one.
+/// It then reads entries in arbitrary order but writes each of the six columns in order, which
+/// touches a sixth of the cache lines. A table maps ids to entries unless ids and entries
+/// correspond one to one. False if a key occurs twice, because its entries must be written in
+/// order.
+bool Rows::writes_by_rows(const UpdateSubset& entries, bool ascending, BoxOfId& entry_of) {
   const std::size_t count = entries.count;
   if (2 * count <= pool_.rows()) return false;
   const auto [first, last] = ends_of_ids(entries, ascending);
@@ -228,23 +230,23 @@ template <typename Source>
 Status Rows::write(const Source& source, const UpdateSubset& entries, bool ascending) {
   const PoolColumns columns(pool_);
   BoxOfId entry_of_id{};
-  const bool by_rows = goes_by_rows(entries, ascending, entry_of_id);
+  const bool by_rows = writes_by_rows(entries, ascending, entry_of_id);
   const EntryOfRow entry_of{entry_of_id, pool_.ids()};
   if constexpr (kMayStay<Source>) {
     const std::size_t slots = by_rows ? pool_.rows() : entries.count;
     if (!selection_.reserve_bits(slots)) return Status::out_of_memory;
-    std::uint64_t* const left = selection_.bits.data();
+    std::uint64_t* const departed = selection_.bits.data();
     if (by_rows) {
       for_ranges(execution_, slots, [&](std::size_t begin, std::size_t end) {
-        write_left_rows(source, entry_of, columns.pointers, begin, end, left);
+        write_departed_rows(source, entry_of, columns.pointers, begin, end, departed);
       });
     } else {
       for_entries(entries, ascending, [&](std::size_t i, std::size_t row, std::size_t j) {
-        const bool wrote = source.write_if_left(i, columns.pointers, row);
-        left[j >> 6U] |= std::uint64_t{wrote} << (j & 63U);
+        const bool wrote = source.write_if_departed(i, columns.pointers, row);
+        departed[j >> 6U] |= std::uint64_t{wrote} << (j & 63U);
       });
     }
-    note_left(entries, by_rows, slots);
+    note_departed(entries, by_rows, slots);
     return Status::ok;
   } else {
     note_stale(entries);
@@ -288,9 +290,9 @@ bool Rows::order_is_lost(const Source& source, std::span<const Key> keys) const 
     for (std::size_t a = 0; a < 3; ++a) {
       const float step = volume[a] - pool_.column(a)[row];
       const float edge = volume[3 + a] - volume[a];
-      // Steps are compared with the previous sample's, because a common motion keeps the order.
-      // They must also exceed both objects' edges, because order_reach_ may stem from much smaller
-      // objects.
+      // Steps are compared with the previous sample's, because a common motion keeps the order. The
+      // difference must also exceed the edges of both objects, because order_reach_ may stem from
+      // much smaller objects.
       far |= std::abs(step - before[a]) > std::max({order_reach_, edge, edge_before[a]});
       before[a] = step;
       edge_before[a] = edge;
@@ -311,7 +313,7 @@ void Rows::write_all(const Source& source, std::span<const Key> keys) {
     }
     write_new(source, keys, 0, begin, end);
   });
-  disorder();
+  invalidate_order();
 }
 
 void Rows::note_stale(const UpdateSubset& entries) noexcept {
@@ -325,7 +327,7 @@ void Rows::note_stale(const UpdateSubset& entries) noexcept {
 
 /// Adds the objects whose bits are set in the selection to `stale` and clears the bits, which are
 /// indexed by row or by entry.
-void Rows::note_left(const UpdateSubset& entries, bool by_rows, std::size_t slots) noexcept {
+void Rows::note_departed(const UpdateSubset& entries, bool by_rows, std::size_t slots) noexcept {
   bool any = false;
   for (std::size_t w = 0; w < bitmap_words(slots); ++w) {
     for (std::uint64_t bits = std::exchange(selection_.bits[w], 0); bits != 0; bits &= bits - 1) {
@@ -420,7 +422,7 @@ const VolumeInput& Rows::input() noexcept {
 }
 
 const VolumeInput& Rows::boxes_as_given() noexcept {
-  return input<BoxSource, AsOffered>();
+  return input<BoxSource, AsGiven>();
 }
 
 const VolumeInput* Rows::input_of(Volume volume) noexcept {

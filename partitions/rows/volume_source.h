@@ -80,7 +80,7 @@ struct EntryOfRow {
   }
 };
 
-/// Boxes into AABB columns.
+/// Writes boxes into AABB columns.
 struct BoxSource {
   static constexpr Volume kVolume = Volume::aabb;
 
@@ -148,7 +148,7 @@ inline void write_sphere(ColumnPointers columns, std::size_t row, const Sphere& 
   columns[kRadiusColumn][row] = s.radius;
 }
 
-/// Spheres into sphere columns.
+/// Writes spheres into sphere columns.
 struct SphereSource {
   static constexpr Volume kVolume = Volume::sphere;
 
@@ -161,7 +161,7 @@ struct SphereSource {
   }
 };
 
-/// Boxes into sphere columns: the sphere around the box, which must be finite.
+/// Writes the sphere around each box into sphere columns; boxes must be finite.
 struct SphereAroundBoxSource {
   static constexpr Volume kVolume = Volume::sphere;
 
@@ -189,7 +189,7 @@ inline void write_kdop(ColumnPointers columns, std::size_t row, const Kdop<K>& k
   }
 }
 
-/// k-DOPs into their columns.
+/// Writes k-DOPs into k-DOP columns.
 template <int K>
 struct KdopSource {
   static constexpr Volume kVolume = kdop_volume<K>();
@@ -202,7 +202,7 @@ struct KdopSource {
   }
 };
 
-/// Boxes into k-DOP columns.
+/// Writes the k-DOP around each box into k-DOP columns.
 template <int K>
 struct KdopAroundBoxSource {
   static constexpr Volume kVolume = kdop_volume<K>();

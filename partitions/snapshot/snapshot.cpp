@@ -19,8 +19,8 @@ void put_options(ByteWriter& out, const PartitionState& state) {
   out.put_text(state.structure.name());
   out.put(state.structure.parameter());
   out.put(state.rows.pool().volume());
-  out.put(state.rows.margin().distance);
-  out.put(state.rows.margin().share);
+  out.put(state.rows.fat_margin().distance);
+  out.put(state.rows.fat_margin().share);
   out.put(std::uint64_t{state.index.build_budget()});
 }
 
@@ -49,8 +49,8 @@ struct ReadPartition {
     const StructureKind named = structure_named(in.get_text());
     const auto parameter = in.get<float>();
     options.volume = in.get_enum(Volume::kdop26);
-    options.margin.distance = in.get<float>();
-    options.margin.share = in.get<float>();
+    options.fat_margin.distance = in.get<float>();
+    options.fat_margin.share = in.get<float>();
     options.build_budget = static_cast<std::size_t>(in.get<std::uint64_t>());
     keys.read(in);
     (void)in.get_array(columns);
@@ -90,7 +90,7 @@ Status load_into(PartitionState*& state, std::span<const std::byte> saved) {
 }  // namespace
 
 Status Partition::save(Column<std::byte>& out) const {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   if (state_ == nullptr) return logged(status_, "Partition::save");
   state_->write_deferred();
   const Status status =
@@ -103,7 +103,7 @@ Status Partition::save(Column<std::byte>& out) const {
 }
 
 Status Partition::load(std::span<const std::byte> saved) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   return logged(state_ == nullptr ? status_ : load_into(state_, saved), "Partition::load");
 }
 

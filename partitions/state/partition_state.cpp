@@ -26,7 +26,7 @@ PairTracking::PairTracking(std::pmr::memory_resource* memory) noexcept
 PartitionState::PartitionState(std::pmr::memory_resource* resource, const PartitionOptions& options,
                                const VolumeInput& input) noexcept
     : memory(resource),
-      rows(resource, options.execution, input, options.margin),
+      rows(resource, options.execution, input, options.fat_margin),
       index(resource, rows, options.build_budget),
       pairs_(resource),
       deferred_(resource),
@@ -34,7 +34,7 @@ PartitionState::PartitionState(std::pmr::memory_resource* resource, const Partit
       listed_(resource) {}
 
 PartitionState::~PartitionState() {
-  if (chooser_ != nullptr) chooser_->end(memory);
+  if (chooser_ != nullptr) chooser_->destroy(memory);
 }
 
 PartitionState* PartitionState::make(StructureKind kind, const PartitionOptions& options,
@@ -57,7 +57,7 @@ bool PartitionState::set_structure(StructureKind given) noexcept {
   const bool is_first = structure.info() == nullptr;
   const bool tested = !is_first && index.structure().tests_volumes();
   if (!index.set_structure(held)) {
-    if (chooser != nullptr) chooser->end(memory);
+    if (chooser != nullptr) chooser->destroy(memory);
     return false;
   }
   if (!is_first && index.structure().tests_volumes() != tested) {
@@ -65,7 +65,7 @@ bool PartitionState::set_structure(StructureKind given) noexcept {
     pairs_.resting.end();
     pairs_.tracked_serial = 0;
   }
-  if (chooser_ != nullptr) chooser_->end(memory);
+  if (chooser_ != nullptr) chooser_->destroy(memory);
   chooser_ = chooser;
   structure = given;
   stale_.store(true, std::memory_order_relaxed);
@@ -80,7 +80,7 @@ Status PartitionState::insert(const BoxView& boxes, std::span<const ClientData> 
   }
   pairs_.resting.disturb(keys.size(), rows.size());
   note_changes(keys.size());
-  if (chooser_ != nullptr) chooser_->note_new(keys.size());
+  if (chooser_ != nullptr) chooser_->note_inserted(keys.size());
   return status;
 }
 
@@ -95,7 +95,7 @@ Status PartitionState::restore(const SavedRows& saved, PartitionState& other) {
   const Status status = rows.restore(saved, other.rows);
   if (status != Status::ok) return status;
   note_changes(saved.objects);
-  if (chooser_ != nullptr) chooser_->note_new(saved.objects);
+  if (chooser_ != nullptr) chooser_->note_inserted(saved.objects);
   return status;
 }
 
@@ -103,7 +103,7 @@ Status PartitionState::reserve(std::size_t objects, Pages pages) {
   const Status status = rows.reserve(objects);
   const std::size_t most = std::max(objects, rows.size());
   const std::span<const StructureKind> later =
-      chooser_ == nullptr ? std::span<const StructureKind>() : chooser_->range();
+      chooser_ == nullptr ? std::span<const StructureKind>() : chooser_->choices();
   const bool reserved =
       status == Status::ok && index.reserve(most, pages, later) && pairs_.resting.reserve(pages);
   if (reserved && pages == Pages::prefaulted) rows.touch();
@@ -139,8 +139,8 @@ Status PartitionState::update(std::span<const Key> keys, const BoxView& boxes,
                               const IndexSubset& entries) {
   if (!entries.is_mask()) {
     const auto is_one = [&](std::uint32_t number) { return number < keys.size(); };
-    if (!std::ranges::all_of(entries.numbers(), is_one)) return Status::invalid_argument;
-    return update({keys, entries.numbers()}, boxes);
+    if (!std::ranges::all_of(entries.indices(), is_one)) return Status::invalid_argument;
+    return update({keys, entries.indices()}, boxes);
   }
   if (entries.words().size() != (keys.size() + 63) / 64) return Status::size_mismatch;
   listed_.clear();
@@ -170,7 +170,7 @@ Status PartitionState::bounds(std::span<const Key> keys, std::span<Aabb> boxes) 
     return Status::ok;
   }
   for (std::size_t i = 0; i < keys.size(); ++i) {
-    const VerletSkin::Box& given = deferred_.given()[keys[i].id];
+    const VerletSkin::DeferredBox& given = deferred_.given()[keys[i].id];
     boxes[i] = {Vec3f(given.min), Vec3f(given.max)};
   }
   return Status::ok;
@@ -178,7 +178,7 @@ Status PartitionState::bounds(std::span<const Key> keys, std::span<Aabb> boxes) 
 
 // Writes the rows although it is const. No other thread reads them at the same time: a mutation has
 // exclusive access, and a query that reads rows holds tracker_mutex_ or has called
-// `write_deferred`, which locks it.
+// `write_deferred`, which locks this mutex.
 void PartitionState::end_deferring() const noexcept {
   if (!deferred_.active()) return;
   const Lock lock(refresh_mutex_);
@@ -217,7 +217,7 @@ Status PartitionState::refresh() const {
 }
 
 // The kind of the first query is unknown, so the first build is made as for casts and regions.
-Status PartitionState::make_ready() const {
+Status PartitionState::refresh_for_queries() const {
   if (stale_.load(std::memory_order_acquire)) {
     const Lock lock(refresh_mutex_);
     if (index.builds() == 0) index.note_query();
@@ -229,20 +229,20 @@ Status PartitionState::refresh_now() {
   const StructureKind now = index.kind();
   // While an exchange of the structure is planned, the choice is not revised.
   const bool choosing = chooser_ != nullptr && !index.swap_is_planned();
-  const StructureKind wanted =
+  const StructureKind chosen =
       choosing
           ? chooser_->choose(rows, now, {index.builds(), index.excess_tests(), index.tail_limit()})
           : now;
   bool refused = false;
   Status status = Status::ok;
-  if (wanted != now) {
-    status = index.refresh_as(wanted, refused);
+  if (chosen != now) {
+    status = index.refresh_as(chosen, refused);
   } else if (rows.changed()) {
     status = index.refresh();
   }
   if (refused || (chooser_ != nullptr && index.swap_refused())) chooser_->refused();
   if (status != Status::ok) return status;
-  rows.settle(pairs_.tracked_serial != 0);
+  rows.clear_stale(pairs_.tracked_serial != 0);
   if (chooser_ == nullptr) return Status::ok;
   chooser_->refreshed(rows, index.kind(), index.builds());
   if (index.kind() != now) {
@@ -253,14 +253,14 @@ Status PartitionState::refresh_now() {
   return Status::ok;
 }
 
-void PartitionState::note(QueryKind kind, std::size_t count) const noexcept {
-  if (chooser_ != nullptr) chooser_->note(kind, count);
+void PartitionState::count_queries(QueryKind kind, std::size_t count) const noexcept {
+  if (chooser_ != nullptr) chooser_->count_queries(kind, count);
 }
 
 Status PartitionState::prepare(QueryKind kind, std::size_t count, QueryView& view) const {
   if (stale_.load(std::memory_order_acquire)) index.note_query();
   if (const Status status = settle(); status != Status::ok) return status;
-  note(kind, count);
+  count_queries(kind, count);
   if (index.queries_stale()) {
     const Lock lock(refresh_mutex_);
     if (index.queries_stale()) {
@@ -297,7 +297,7 @@ void PartitionState::release_memory() noexcept {
 }
 
 Footprint PartitionState::footprint() const noexcept {
-  // Concurrent queries may be bringing the counted memory up to date.
+  // Concurrent queries may change the memory that is counted.
   const Lock tracker(tracker_mutex_);
   const Lock refresher(refresh_mutex_);
   Footprint result;
@@ -313,7 +313,7 @@ Footprint PartitionState::footprint() const noexcept {
 }
 
 bool PartitionState::is_exact() const noexcept {
-  return rows.pool().volume() == Volume::aabb && rows.margin().is_none() &&
+  return rows.pool().volume() == Volume::aabb && rows.fat_margin().is_none() &&
          with_stable_index([&] { return index.structure().tests_volumes(); });
 }
 
@@ -331,7 +331,7 @@ StructureChoice PartitionState::choice() const noexcept {
   return with_stable_index([&] {
     StructureChoice choice;
     choice.structure = index.kind();
-    choice.reason = "as it was asked for";
+    choice.reason = "requested by the caller";
     if (chooser_ != nullptr) chooser_->report(choice);
     return choice;
   });

@@ -53,7 +53,7 @@ class PartitionState {
 
   Status insert(const BoxView& boxes, std::span<const ClientData> data, std::span<Key> keys);
   Status remove(std::span<const Key> keys);
-  /// Requires a state that never held an object; see Rows::restore.
+  /// Requires a state that never contained an object; see Rows::restore.
   Status restore(const SavedRows& saved, PartitionState& other);
   Status reserve(std::size_t objects, Pages pages);
   Status reserve_pairs(PairBuffer& out, std::size_t pairs, Pages pages) const noexcept;
@@ -64,21 +64,22 @@ class PartitionState {
   Status update(Key key, const Aabb& box);
   Status bounds(std::span<const Key> keys, std::span<Aabb> boxes) const noexcept;
 
-  /// Ends a mutation of `count` objects.
+  /// Called at the end of a mutation of `count` objects: marks the structure as stale if rows
+  /// changed.
   void note_changes(std::size_t count) noexcept;
-  /// Brings the structure up to date, except that deferred boxes stay deferred. For pair queries of
+  /// Brings the structure up to date, except that deferred boxes stay deferred; for pair queries of
   /// a tracked buffer.
   Status refresh() const;
   /// Refreshes for unknown queries: `Partition::refresh`.
-  Status make_ready() const;
+  Status refresh_for_queries() const;
   /// Writes deferred boxes to the rows, for functions that read them.
   void write_deferred() const;
   /// Calls `write_deferred` and `refresh`.
   Status settle() const;
-  /// Calls `settle`, updates the trees that casts, regions and nearest queries use, notes `count`
+  /// Calls `settle`, updates the trees that casts, regions and nearest queries use, counts `count`
   /// queries of this kind, and fills in the view of rows and trees.
   Status prepare(QueryKind kind, std::size_t count, QueryView& view) const;
-  void note(QueryKind kind, std::size_t count) const noexcept;
+  void count_queries(QueryKind kind, std::size_t count) const noexcept;
 
   /// Calls call() while no other thread can reorder rows or exchange the structure.
   template <typename Call>
@@ -119,14 +120,14 @@ class PartitionState {
   Status linked_self_pairs(PairBuffer& out, const PairPredicate& predicate,
                            EventWriter* events) const;
   Status query_moved(PairBuffer& out, const PairPredicate& predicate) const;
-  [[nodiscard]] bool list_moved() const noexcept;
+  [[nodiscard]] bool select_moved_rows() const noexcept;
   void try_start_resting(PairBuffer& out, const PairOptions& options) const noexcept;
   [[nodiscard]] bool watch_all(std::size_t most) const noexcept;
   [[nodiscard]] bool can_stay_deferred(const PairBuffer& out, const PairOptions& options,
                                        const EventWriter* events) const noexcept;
   Status resting_self_pairs(PairBuffer& out, EventWriter* events) const;
   [[nodiscard]] bool keep_near(PairBuffer& out, std::size_t kept) const noexcept;
-  Status query_near(std::span<const std::uint32_t> asking, PairBuffer& out,
+  Status query_near(std::span<const std::uint32_t> query_rows, PairBuffer& out,
                     std::uint64_t& tests) const;
   [[nodiscard]] bool watch_rows(std::size_t begin, std::size_t end,
                                 std::size_t stride) const noexcept;
@@ -135,19 +136,19 @@ class PartitionState {
   [[nodiscard]] bool update_in_place(PairBuffer& out) const noexcept;
   Status redo_self_pairs(PairBuffer& out, const PairOptions& options, bool update,
                          EventWriter* events) const;
-  Status answer_self_pairs(PairBuffer& out, const PairOptions& options, EventWriter* events) const;
+  Status run_self_pairs(PairBuffer& out, const PairOptions& options, EventWriter* events) const;
   Status track_self_pairs(PairBuffer& out, const PairOptions& options, bool tracked,
                           EventWriter* events) const;
-  void take_frame(PairBuffer& out, bool tracked, EventWriter* events) const noexcept;
+  void finish_frame(PairBuffer& out, bool tracked, EventWriter* events) const noexcept;
   void undo_self_pairs(PairBuffer& out, bool resting, EventWriter* events) const noexcept;
   [[nodiscard]] bool can_update_in_place(const PairBuffer& out, const PairOptions& options,
                                          const EventWriter* events) const noexcept;
   bool finish_pairs(PairBuffer& out, Order order, bool all, EventWriter* events) const noexcept;
   [[nodiscard]] bool can_update(const PairBuffer& out) const noexcept;
-  [[nodiscard]] bool queries_few(const PairBuffer& out) const noexcept;
+  [[nodiscard]] bool is_update_cheaper(const PairBuffer& out) const noexcept;
   bool run_self_task(const SelfTasks& tasks, std::size_t task, PairSink& sink) const noexcept;
   void note_work(std::uint64_t tests, std::uint64_t queries,
-                 SpatialIndex::PairQueryKind asked) const noexcept;
+                 SpatialIndex::PairQueryKind kind) const noexcept;
 
   Chooser* chooser_ = nullptr;
   mutable PairTracking pairs_;

@@ -17,13 +17,13 @@ bool RestDetector::seems_at_rest(const Rows& rows) noexcept {
     frames_compared_ = take_sample(rows) ? 1 : 0;
     return false;
   }
-  // Over three frames a drifting object moves three steps, a random walk sqrt(3) steps.
+  // Over three frames a drifting object moves three steps, a random walk sqrt(3) steps; the limit
+  // excludes both.
   constexpr float kNoFurther = 1.4F;
   const float step = step_of_sample(rows);
   if (frames_compared_ == 1) first_ = step;
   furthest_ = frames_compared_ == 1 ? step : std::max(furthest_, step);
-  const bool rests =
-      step <= kNoFurther * first_ + kMinMargin * edge_ && margin() <= kMaxMargin * edge_;
+  const bool rests = step <= kNoFurther * first_ + kMinSkin * edge_ && skin() <= kMaxSkin * edge_;
   frames_compared_ = rests ? frames_compared_ + 1 : 0;
   return frames_compared_ > kFramesToCompare;
 }
@@ -50,12 +50,12 @@ bool RestDetector::take_sample(const Rows& rows) noexcept {
   return edge_ < FLT_MAX;
 }
 
-// Returns how far about 97 % of the sampled objects are from their sampled place. Skips objects
-// that were removed or have infinite boxes.
+// Returns the distance within which about 97 % of the sampled objects are from their sampled
+// positions. Skips objects that were removed or have infinite boxes.
 float RestDetector::step_of_sample(const Rows& rows) const noexcept {
   std::array<float, kSample> steps;
   std::size_t size = 0;
-  for (const Sampled& old : sample_) {
+  for (const SampledBox& old : sample_) {
     Aabb box;
     if (rows.bounds(old.key, box) != Status::ok) continue;
     float step = 0.0F;

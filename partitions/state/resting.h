@@ -17,23 +17,23 @@ namespace winnow {
 /// close pairs that this requires.
 ///
 /// In a resting scene objects jitter or get the same boxes again, and pairs hardly change. Rest is
-/// detected from a sample of objects: over several frames with full pair queries, they stay within
-/// a small fraction of a typical edge from their sampled places, and hardly get farther than in the
-/// first of these frames. All objects then get a margin slightly larger than the sampled motion.
-/// While two boxes stay within their margins, their overlap can change only if the stored boxes are
-/// nearly touching. These pairs are watched, which costs one test of two boxes per frame; all other
-/// pairs stay as they are. This is a Verlet list (Verlet, Phys. Rev. 159, 1967), except that the
-/// result is exact. An object that leaves its margin is queried like any moved object, with its box
-/// enlarged by two margins.
+/// detected from a sample of objects: over three frames with full pair queries, they stay so close
+/// to their sampled positions that a skin of 1/16 of a typical edge is enough, and move at most 1.4
+/// times as far as in the first of these frames. All objects then get a skin slightly wider than
+/// the sampled motion. While two boxes stay within their skins, their overlap can change only if
+/// the stored boxes are nearly touching. These pairs are watched, which costs one test of two boxes
+/// per frame; all other pairs stay as they are. This is a Verlet list (Verlet, Phys. Rev. 159,
+/// 1967), except that the result is exact. An object that leaves its skin is queried like any moved
+/// object, with its box enlarged by two skins.
 ///
-/// If small objects crowd beside large ones, whose size determines the margin, nearly every pair
-/// would be watched. Such a scene does not count as resting.
+/// If small objects crowd beside large ones, and the size of the large ones determines the skin,
+/// nearly every pair would be watched. Such a scene does not count as resting.
 ///
 /// A false detection costs several full queries to start with. After each start that did not last
 /// long enough to pay, the next attempt is delayed twice as long.
 class RestDetector {
  public:
-  struct Watched {
+  struct WatchedPair {
     ObjectId first;
     ObjectId second;
     bool overlapped;  ///< overlapped in the last frame
@@ -44,13 +44,14 @@ class RestDetector {
 
   /// Samples the boxes after a frame with a full pair query. True if the scene seems to rest.
   [[nodiscard]] bool seems_at_rest(const Rows& rows) noexcept;
-  /// Returns the margin for boxes that keep moving as the sample did.
-  [[nodiscard]] float margin() const noexcept {
-    return std::max(kMotionFactor * furthest_, kMinMargin * edge_);
+  /// Returns the skin for boxes that keep moving as the sample did.
+  [[nodiscard]] float skin() const noexcept {
+    return std::max(kMotionFactor * furthest_, kMinSkin * edge_);
   }
 
-  /// Notes that `count` of `objects` objects were inserted, removed or got another filter. If that
-  /// is more than about 3 %, pairs change although objects rest, and detection starts again.
+  /// Called when `count` of `objects` objects were inserted, removed or got another filter. If
+  /// these are more than 1/32 of the objects, pairs change although objects rest, and detection
+  /// starts again.
   void disturb(std::size_t count, std::size_t objects) noexcept {
     if (kFewDisturbed * count > objects) frames_compared_ = 0;
   }
@@ -62,15 +63,15 @@ class RestDetector {
   void note_frame() noexcept { ++frames_; }
   /// Reserves the sample. False if memory is refused.
   [[nodiscard]] bool reserve(Pages pages) noexcept { return sample_.reserve(kSample, pages); }
-  /// Notes that deferring ended, or could not start.
+  /// Called when deferring ends or cannot start; sets the delay before the next attempt.
   void end() noexcept;
   void release() noexcept;
   [[nodiscard]] Bytes bytes() const noexcept;
 
-  Column<Watched> watched;
+  Column<WatchedPair> watched;
 
  private:
-  struct Sampled {
+  struct SampledBox {
     Key key;
     float min[3];
     float max[3];
@@ -81,10 +82,10 @@ class RestDetector {
 
   // The longest motion is longer than the longest sampled one.
   static constexpr float kMotionFactor = 1.5F;
-  // Fractions of an object's edge. A larger margin would watch too many pairs; a smaller one would
-  // not reduce them further.
-  static constexpr float kMaxMargin = 1.0F / 16.0F;
-  static constexpr float kMinMargin = 1.0F / 2048.0F;
+  // Fractions of an object's edge. A wider skin would watch too many pairs; a narrower one would
+  // not reduce their number further.
+  static constexpr float kMaxSkin = 1.0F / 16.0F;
+  static constexpr float kMinSkin = 1.0F / 2048.0F;
   static constexpr std::size_t kSample = 32;
   static constexpr std::size_t kFramesToCompare = 3;
   static constexpr std::size_t kFewDisturbed = 32;
@@ -93,7 +94,7 @@ class RestDetector {
   static constexpr std::size_t kWorthwhile = 16;
   static constexpr std::size_t kLongest = 4096;
 
-  Column<Sampled> sample_;
+  Column<SampledBox> sample_;
   std::size_t frames_compared_ = 0;  // frames compared with the sample
   float first_ = 0.0F;               // motion of the sample in the first frame
   float furthest_ = 0.0F;            // largest motion in any frame

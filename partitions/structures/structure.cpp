@@ -9,7 +9,7 @@ std::string_view StructureKind::name() const noexcept {
   return info_ == nullptr ? std::string_view() : info_->name;
 }
 
-void Structure::put_all_in_rest(const RowPlan& plan) const noexcept {
+void Structure::append_all_to_rest(const RowPlan& plan) const noexcept {
   if (plan.objects == plan.rows) {
     plan.rest.set_size(plan.rest.size() + plan.rows);
     std::iota(plan.rest.end() - plan.rows, plan.rest.end(), 0U);
@@ -24,7 +24,7 @@ void Structure::put_all_in_rest(const RowPlan& plan) const noexcept {
   plan.rest.set_size(static_cast<std::size_t>(to - plan.rest.data()));
 }
 
-std::size_t Structure::row_now(const RowPlan& plan, std::size_t row) const noexcept {
+std::size_t Structure::current_row(const RowPlan& plan, std::size_t row) const noexcept {
   if (pool().ids()[row] != kNoObject) return row;
   const auto move = std::ranges::lower_bound(plan.moves, row, {}, &RowMove::row);
   const bool found = move != plan.moves.end() && move->row == row;

@@ -2,7 +2,7 @@
 
 // The interface between a partition and its structure. A structure stores the order of rows of
 // bounding volumes; the partition handles objects, queries, pairs and events. SpatialIndex
-// (index/spatial_index.h) calls it.
+// (index/spatial_index.h) calls the structure.
 
 #include <winnow/core/debug_draw.h>
 #include <winnow/core/footprint.h>
@@ -45,7 +45,7 @@ struct StructureInfo {
   /// Returns null if an allocation fails.
   Structure* (*make)(const StructureInput&) noexcept;
   /// Destroys a structure that `make` returned, with the same memory resource.
-  void (*end)(Structure*, std::pmr::memory_resource*) noexcept;
+  void (*destroy)(Structure*, std::pmr::memory_resource*) noexcept;
   /// The sizeof of the structure.
   std::size_t bytes;
   /// Costs for the automatic choice; null: never chosen.
@@ -62,7 +62,7 @@ template <typename T>
           .make = [](const StructureInput& input) noexcept -> Structure* {
             return new_in<T>(input.memory, input);
           },
-          .end =
+          .destroy =
               [](Structure* structure, std::pmr::memory_resource* memory) noexcept {
                 delete_in(memory, static_cast<T*>(structure));
               },
@@ -78,7 +78,7 @@ struct RowMove {
 
 /// The rows of a plan, and its output.
 struct RowPlan {
-  /// The plan covers rows below `rows`, of which `objects` held objects at its start. Rows may be
+  /// The plan covers rows below `rows`, of which `objects` had an object at its start. Rows may be
   /// added behind them meanwhile.
   std::size_t rows;
   std::size_t objects;
@@ -106,7 +106,7 @@ struct BuildRoom {
 };
 
 /// Result of a stage of a plan.
-enum class Planned : std::uint8_t { out_of_memory, goes_on, done };
+enum class PlanStatus : std::uint8_t { out_of_memory, unfinished, done };
 
 class Structure {
  public:
@@ -142,22 +142,22 @@ class Structure {
   /// another object. The decisions of a plan may be out of date when it is done: rows that no
   /// longer fit are found then. Until `finish_build` the structure answers queries in the order of
   /// the last build. An unfinished plan is dropped.
-  [[nodiscard]] virtual Planned plan(const RowPlan& plan, unsigned) noexcept {
-    put_all_in_rest(plan);
-    return Planned::done;
+  [[nodiscard]] virtual PlanStatus plan(const RowPlan& plan, unsigned) noexcept {
+    append_all_to_rest(plan);
+    return PlanStatus::done;
   }
   /// Makes every live row part of the rest.
-  void put_all_in_rest(const RowPlan& plan) const noexcept;
+  void append_all_to_rest(const RowPlan& plan) const noexcept;
   /// Returns the current row of the object that was in `row` when the plan was started, or `row` if
   /// the object was removed. O(log moves) for rows that have become empty.
-  [[nodiscard]] std::size_t row_now(const RowPlan& plan, std::size_t row) const noexcept;
+  [[nodiscard]] std::size_t current_row(const RowPlan& plan, std::size_t row) const noexcept;
   /// Appends the rows of `rest` to `order` in the order of the tree's blocks of 16. Called only if
-  /// environments are not in use; may reorder `rest`. `Ordered::none`: the caller orders them by
-  /// k-d cuts.
-  enum class Ordered : std::uint8_t { none, done, out_of_memory };
-  [[nodiscard]] virtual Ordered order_rest(std::span<std::uint32_t>,
-                                           Column<std::uint32_t>&) noexcept {
-    return Ordered::none;
+  /// environments are not in use; may reorder `rest`. If it returns `RestOrder::none`, the caller
+  /// orders the rows by k-d cuts.
+  enum class RestOrder : std::uint8_t { none, done, out_of_memory };
+  [[nodiscard]] virtual RestOrder order_rest(std::span<std::uint32_t>,
+                                             Column<std::uint32_t>&) noexcept {
+    return RestOrder::none;
   }
   /// Precision of the rest's order in the first build if there were no queries for rays or regions.
   [[nodiscard]] virtual KdParts first_parts() const noexcept { return KdParts::tiles; }
@@ -177,7 +177,7 @@ class Structure {
     std::array<float, 3> low;
     std::array<float, 3> high;
   };
-  [[nodiscard]] ObjectBox place_of(std::size_t row) const noexcept {
+  [[nodiscard]] ObjectBox box_of_row(std::size_t row) const noexcept {
     ObjectBox place;
     for (std::size_t a = 0; a < 3; ++a) {
       place.low[a] = pool().column(a)[row];

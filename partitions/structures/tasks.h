@@ -25,17 +25,18 @@ struct TaskCut {
   }
 };
 
-/// Appends the rows that tasks find to `out`, in the order of tasks. find(begin, end, out) visits
-/// units, writes rows to `out` and returns their number. Task i writes to scratch + offset(first
-/// unit), which has room for all of the task's rows; `rows` is the number of rows of all tasks.
-/// Returns false and appends nothing if more than `most` rows are found. One task in eight runs
-/// first; if its result predicts more than `most`, the others do not run.
+/// Appends the rows that tasks find to `out`, in the order of tasks. find(begin, end, found) visits
+/// units, writes the rows that it finds to `found` and returns their number. Task i writes to
+/// scratch + offset(first unit), which has room for all of the task's rows; `rows` is the number of
+/// rows of all tasks. Returns false and appends nothing if more than `most` rows are found. One
+/// task in eight runs first; if the results of these tasks predict more than `most` rows, the
+/// others do not run.
 template <typename Offset, typename Find>
 [[nodiscard]] bool append_in_order(const Execution& execution, const TaskCut& cut, std::size_t rows,
                                    std::uint32_t* scratch, Offset&& offset, Find&& find,
                                    Column<std::uint32_t>& out, std::size_t most) {
   constexpr std::size_t kOneIn = 8;
-  constexpr std::size_t kFewRows = 32;  // a sample of one row in this many is too small to decide
+  constexpr std::size_t kFewRows = 32;  // a sample of fewer rows than one in this many is too small
   const std::size_t tasks = cut.tasks();
   std::array<std::size_t, kMaxTasks> found{};
   const auto room = [&](std::size_t task) { return scratch + offset(cut.first(task)); };

@@ -18,7 +18,7 @@ class BlockPairs {
   BlockPairs(const RowView& rows, PairSink& sink) : rows_(rows), sink_(sink), filters_(rows) {}
 
   /// Starts with rows [begin, end). Pairs within the block are found unless `excludes_self_pairs`.
-  /// Returns false if all rows are holes. `filtered`: filters must be tested on hits.
+  /// Returns false if all rows are holes. `filtered` is true if filters must be tested on hits.
   bool start(std::uint32_t begin, std::uint32_t end, bool excludes_self_pairs = false,
              bool filtered = true) {
     at_ = begin;
@@ -57,8 +57,8 @@ class BlockPairs {
     return true;
   }
 
-  /// Adds the blocks of rows first + i for each bit i of the mask as candidates. They must be
-  /// behind the block and must not be added otherwise.
+  /// Adds the blocks of rows first + i for each bit i of the mask as candidates. These must be
+  /// behind the block, and each may be added only once.
   bool add_blocks(std::uint32_t first, Mask16 mask) {
     if (blocks_ > kBlockRoom - kLanes && !test_blocks()) return false;
     blocks_ += compress_store(mask, count_from(first), block_ + blocks_);
@@ -108,8 +108,8 @@ class BlockPairs {
       for (int c = 0; c < 6; ++c) __builtin_prefetch(rows_.column[c] + ahead);
       // The rows of the block itself may end within this block of rows.
       const std::uint32_t own = behind_ > at ? behind_ - at : 0;
-      const Mask16 met = overlap(load_slabs<3>(rows_.column, at), low, high);
-      const Mask16 mask = met & ~lanes_below(own);
+      const Mask16 overlapping = overlap(load_slabs<3>(rows_.column, at), low, high);
+      const Mask16 mask = overlapping & ~lanes_below(own);
       listed += compress_store(mask, count_from(at), row_ + listed);
     }
     sink_.tests += blocks_;

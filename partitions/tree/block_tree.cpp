@@ -38,8 +38,8 @@ std::size_t floats_of(const TreeShape& shape) noexcept {
   return total;
 }
 
-// A tree has room for additional blocks, up to the size that needs another level. Monotonic in
-// `blocks`.
+// Returns the number of blocks that a tree over `blocks` blocks has room for: a sixteenth more, up
+// to the size that needs another level. The result is monotonic in `blocks`.
 std::size_t blocks_with_room(std::size_t blocks) noexcept {
   const std::size_t most = std::size_t{1} << (4 * levels_over(blocks).levels);
   return std::min(blocks + blocks / 16, most);
@@ -61,7 +61,7 @@ void empty_nodes(const TreeShape& shape, std::uint32_t level, std::uint32_t begi
 
 }  // namespace
 
-bool BlockTree::cover(std::size_t first_block, std::size_t blocks, Nodes nodes) noexcept {
+bool BlockTree::cover(std::size_t first_block, std::size_t blocks, NodeContent nodes) noexcept {
   filters_of_ = 0;
   laid_out_ = static_cast<std::uint32_t>(blocks_with_room(blocks));
   TreeShape shape = levels_over(laid_out_);
@@ -71,23 +71,23 @@ bool BlockTree::cover(std::size_t first_block, std::size_t blocks, Nodes nodes) 
   nodes_.clear();
   filters_.clear();
   if (first_block == 0 && blocks == 0) return true;
-  return (nodes == Nodes::filters || lay_boxes(shape)) &&
-         (nodes == Nodes::boxes || lay_out_filters(shape, filters_)) && shape_.push_back(shape) &&
-         (blocks == 0 || stretch(blocks));
+  return (nodes == NodeContent::filters || lay_boxes(shape)) &&
+         (nodes == NodeContent::boxes || lay_out_filters(shape, filters_)) &&
+         shape_.push_back(shape) && (blocks == 0 || try_resize(blocks));
 }
 
-bool BlockTree::stretch(std::size_t blocks) noexcept {
+bool BlockTree::try_resize(std::size_t blocks) noexcept {
   if (shape_.empty() || blocks == 0) return false;
   TreeShape& shape = shape_[0];
-  const TreeShape wanted = levels_over(blocks);
+  const TreeShape new_shape = levels_over(blocks);
   const TreeShape room = levels_over(laid_out_);
-  if (wanted.levels != room.levels) return false;
+  if (new_shape.levels != room.levels) return false;
   for (std::uint32_t level = 0; level < room.levels; ++level) {
-    if (wanted.count[level] > padded_nodes(room.count[level])) return false;
+    if (new_shape.count[level] > padded_nodes(room.count[level])) return false;
   }
   for (std::uint32_t level = 0; level < room.levels; ++level) {
-    empty_nodes(shape, level, wanted.count[level], shape.count[level]);
-    shape.count[level] = wanted.count[level];
+    empty_nodes(shape, level, new_shape.count[level], shape.count[level]);
+    shape.count[level] = new_shape.count[level];
   }
   return true;
 }

@@ -21,7 +21,7 @@ class BlockTree {
       : nodes_(memory), filters_(memory), shape_(memory) {}
 
   /// Contents of nodes.
-  enum class Nodes : std::uint8_t {
+  enum class NodeContent : std::uint8_t {
     boxes,          ///< bounds of the rows below
     boxes_filters,  ///< also a summary of the filters of the rows
     filters,        ///< only filters, for rows in no spatial order
@@ -30,12 +30,12 @@ class BlockTree {
   /// Sets the blocks that the tree covers; nodes are undefined until `refit_all`. Returns false if
   /// an allocation fails; the tree then covers no blocks.
   [[nodiscard]] bool cover(std::size_t first_block, std::size_t blocks,
-                           Nodes nodes = Nodes::boxes) noexcept;
+                           NodeContent nodes = NodeContent::boxes) noexcept;
 
   /// Changes the number of covered blocks (not 0) if there is room for their nodes, usually up to a
   /// sixteenth more than in `cover`. The nodes above added blocks, or above the last block, have to
   /// be refitted afterwards. Returns false and changes nothing if there is no room.
-  [[nodiscard]] bool stretch(std::size_t blocks) noexcept;
+  [[nodiscard]] bool try_resize(std::size_t blocks) noexcept;
 
   /// Makes room for the boxes of a tree over `blocks` blocks. Returns false and changes nothing if
   /// an allocation fails.

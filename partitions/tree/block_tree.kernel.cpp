@@ -53,7 +53,7 @@ Mask16 open_nodes(const TreeShape& tree, std::uint32_t level, std::uint32_t firs
 /// Finds pairs between leaves in three long loops, instead of short nested loops whose lengths are
 /// unpredictable: pairs of leaves whose boxes overlap; for each, the rows of the first leaf that
 /// overlap the second's box; for each such row, its hits among the second leaf's rows. Each loop
-/// drops what the filters exclude.
+/// drops the leaves, rows or hits that filters exclude.
 class LeafPairs {
  public:
   LeafPairs(const TreeView& tree, PairSink& sink)
@@ -121,12 +121,12 @@ class LeafPairs {
       const bool self = row_[k] / kLanes == leaf_[k];
       const Mask16 lanes = self ? ~lanes_below(row_[k] % kLanes + 1) : ~0U;
       if (!hits_.make_room() || !sure_.make_room()) return false;
-      const Mask16 met = overlap(b, q.low, q.high) & lanes;
+      const Mask16 overlapping = overlap(b, q.low, q.high) & lanes;
       // If all rows of each leaf have the same filter, the test of the leaves decides for all hits.
       const bool sure = is_alike(row_[k] / kLanes) && is_alike(leaf_[k]);
       const auto at_row = static_cast<std::uint32_t>(at);
-      sure_.add(static_cast<std::uint32_t>(r), at_row, sure ? met : 0);
-      hits_.add(static_cast<std::uint32_t>(r), at_row, sure ? 0 : met);
+      sure_.add(static_cast<std::uint32_t>(r), at_row, sure ? overlapping : 0);
+      hits_.add(static_cast<std::uint32_t>(r), at_row, sure ? 0 : overlapping);
     }
     sink_.tests += rows_;
     rows_ = 0;
@@ -207,18 +207,18 @@ class LeafFilter {
     matches_all_ = surely_match(span_of(tree.filters[0], leaf), tree.rows.span);
   }
 
-  /// True if no row of the leaf matches another row of it.
+  /// True if no row of the leaf matches another row of the leaf.
   [[nodiscard]] bool excludes_self_pairs() const { return decides() && !filters_allow(own_, own_); }
 
   /// True if filters must be tested on hits of the leaf's rows. A test of all hits is cheaper than
   /// a decision for each hit whether it needs the test.
   [[nodiscard]] bool decides() const { return Filtered && !matches_all_; }
 
-  /// Returns the nodes of `met` whose filters may match the leaf; their layers and masks are at
-  /// `at`.
+  /// Returns the nodes of `candidates` whose filters may match the leaf; their layers and masks are
+  /// at `at`.
   [[nodiscard]] Mask16 passing_lanes(const std::uint32_t* layers, const std::uint32_t* mask,
-                                     std::uint32_t at, Mask16 met) const {
-    return decides() ? met & matching_lanes(layers, mask, at, own_) : met;
+                                     std::uint32_t at, Mask16 candidates) const {
+    return decides() ? candidates & matching_lanes(layers, mask, at, own_) : candidates;
   }
 
  private:
@@ -236,8 +236,8 @@ class LeafFilter {
 }
 
 /// The groups of leaves that the leaves of one group may overlap, with copies of their boxes and
-/// filters in contiguous memory. Each leaf tests these instead of traversing the tree, whose steps
-/// depend on each other.
+/// filters in contiguous memory. Each leaf tests these groups instead of traversing the tree,
+/// because the steps of a traversal depend on each other.
 template <bool Filtered>
 class NearGroups {
  public:
@@ -271,16 +271,16 @@ class NearGroups {
       const float* const columns[6] = {box_[0], box_[1], box_[2], box_[3], box_[4], box_[5]};
       ++sink_.tests;
       const Mask16 touched = overlap(load_slabs<3>(columns, at), low, high);
-      for (Mask16 met = filter.passing_lanes(layers_, mask_, at, touched); met != 0;
-           met &= met - 1) {
-        if (!visit(group_[at + first(met)])) return false;
+      for (Mask16 passing = filter.passing_lanes(layers_, mask_, at, touched); passing != 0;
+           passing &= passing - 1) {
+        if (!visit(group_[at + first(passing)])) return false;
       }
     }
     return true;
   }
 
  private:
-  // Groups of very large objects overlap more groups; the tree prunes better then.
+  // Groups of very large objects may overlap more groups; then each leaf traverses the tree.
   static constexpr unsigned kRoom = 128;
 
   bool add(std::uint32_t node) {
@@ -350,7 +350,7 @@ bool self_pairs(const TreeView& tree, std::uint32_t begin, std::uint32_t end, Pa
                                 : find_pairs_of_leaves<true>(tree, begin, end, sink);
 }
 
-/// Runs the boxes of a batch down the tree together.
+/// Traverses the tree with all boxes of a batch together.
 template <bool Filtered>
 class BoxQueries {
  public:
@@ -359,7 +359,7 @@ class BoxQueries {
         batch_(batch),
         sink_(sink),
         filters_(batch),
-        apart_(tree.environments),
+        environments_(tree.environments),
         hits_(tree.rows, batch, sink) {}
 
   bool run() {
@@ -371,17 +371,17 @@ class BoxQueries {
 
  private:
   friend JointTraversal<BoxQueries>;
-  struct Nothing {};
+  struct NoConstants {};
 
-  [[nodiscard]] static Nothing prepare(const TreeShape&, std::uint32_t, std::uint32_t) {
+  [[nodiscard]] static NoConstants prepare(const TreeShape&, std::uint32_t, std::uint32_t) {
     return {};
   }
 
   /// Returns the nodes among the 16 from `first_node` on that box `row` overlaps and may match.
-  Mask16 test(Nothing, std::uint32_t row, std::uint32_t level, std::uint32_t first_node) {
+  Mask16 test(NoConstants, std::uint32_t row, std::uint32_t level, std::uint32_t first_node) {
     const QueryBox q(batch_.column, row);
     Mask16 mask = overlap(load_slabs<3>(tree_.node[level], first_node), q.low, q.high);
-    if (Filtered && (level <= 1 || apart_)) {
+    if (Filtered && (level <= 1 || environments_)) {
       mask = passing_nodes(tree_, level, first_node, mask, filters_.of(row));
     }
     ++sink_.tests;
@@ -406,7 +406,7 @@ class BoxQueries {
   const QueryFilters filters_;
   // True if there are several environments, which may overlap in space: then filters are tested on
   // all levels. Otherwise higher levels are pruned only by position.
-  const bool apart_;
+  const bool environments_;
   HitList<Filtered> hits_;
   JointTraversal<BoxQueries> traversal_{*this};
 };

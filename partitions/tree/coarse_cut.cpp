@@ -34,16 +34,16 @@ struct CoarseRanges {
   }
 };
 
-bool plan_cells(const KdSet& set, std::size_t wanted, const CoarseRanges& stretches,
+bool plan_cells(const KdSet& set, std::size_t target_cells, const CoarseRanges& ranges,
                 CoarseCells& plan) {
   std::array<std::array<float, 3>, kMaxRanges> least;
   std::array<std::array<float, 3>, kMaxRanges> greatest;
-  stretches.for_each([&](std::size_t s, std::size_t begin, std::size_t end) {
+  ranges.for_each([&](std::size_t s, std::size_t begin, std::size_t end) {
     for (std::size_t a = 0; a < 3; ++a) {
       coarse_cut_kernels().reach(set.at[a] + begin, end - begin, least[s][a], greatest[s][a]);
     }
   });
-  const std::size_t last = (stretches.count - 1) / stretches.length;
+  const std::size_t last = (ranges.count - 1) / ranges.length;
   for (std::size_t s = 1; s <= last; ++s) {
     for (std::size_t a = 0; a < 3; ++a) {
       least[0][a] = std::min(least[0][a], least[s][a]);
@@ -51,7 +51,7 @@ bool plan_cells(const KdSet& set, std::size_t wanted, const CoarseRanges& stretc
     }
   }
   const auto cells =
-      static_cast<std::uint32_t>(std::clamp<std::size_t>(wanted, 1, kMaxCoarseCells));
+      static_cast<std::uint32_t>(std::clamp<std::size_t>(target_cells, 1, kMaxCoarseCells));
   return coarse_cut_kernels().plan(set.at, set.count, least[0].data(), greatest[0].data(), cells,
                                    plan);
 }
@@ -59,11 +59,11 @@ bool plan_cells(const KdSet& set, std::size_t wanted, const CoarseRanges& stretc
 using CoarsePlaces = std::array<std::array<std::uint32_t, kMaxCoarseCells>, kMaxRanges>;
 
 // Turns the sizes of cells within ranges into the ranges' output positions.
-void place_ranges(CoarsePlaces& places, std::size_t stretches, CoarseSizes& sizes) {
+void place_ranges(CoarsePlaces& places, std::size_t ranges, CoarseSizes& sizes) {
   std::uint32_t next = 0;
   for (std::size_t c = 0; c < sizes.size(); ++c) {
     const std::uint32_t first = next;
-    for (std::size_t s = 0; s < stretches; ++s) {
+    for (std::size_t s = 0; s < ranges; ++s) {
       const std::uint32_t size = places[s][c];
       places[s][c] = next;
       next += size;
@@ -74,18 +74,19 @@ void place_ranges(CoarsePlaces& places, std::size_t stretches, CoarseSizes& size
 
 }  // namespace
 
-bool cut_in_cells(KdSet& set, std::size_t wanted, const Execution& execution, CoarseSizes& sizes) {
-  const CoarseRanges stretches(set.count, execution);
+bool cut_in_cells(KdSet& set, std::size_t target_cells, const Execution& execution,
+                  CoarseSizes& sizes) {
+  const CoarseRanges ranges(set.count, execution);
   CoarseCells plan;
-  if (!plan_cells(set, wanted, stretches, plan)) return false;
+  if (!plan_cells(set, target_cells, ranges, plan)) return false;
   auto* const cell = reinterpret_cast<std::uint8_t*>(set.at_room[2]);
   CoarsePlaces places;
-  stretches.for_each([&](std::size_t s, std::size_t begin, std::size_t end) {
+  ranges.for_each([&](std::size_t s, std::size_t begin, std::size_t end) {
     places[s].fill(0);
     coarse_cut_kernels().assign(plan, set.at, begin, end, cell, places[s].data());
   });
-  place_ranges(places, (stretches.count - 1) / stretches.length + 1, sizes);
-  stretches.for_each([&](std::size_t s, std::size_t begin, std::size_t end) {
+  place_ranges(places, (ranges.count - 1) / ranges.length + 1, sizes);
+  ranges.for_each([&](std::size_t s, std::size_t begin, std::size_t end) {
     auto next = places[s];
     for (std::size_t i = begin; i < end; ++i) {
       const std::uint32_t to = next[cell[i]]++;
@@ -95,7 +96,7 @@ bool cut_in_cells(KdSet& set, std::size_t wanted, const Execution& execution, Co
     }
   });
   // The first axis was copied out of its column, which now receives the third.
-  stretches.for_each([&](std::size_t s, std::size_t begin, std::size_t end) {
+  ranges.for_each([&](std::size_t s, std::size_t begin, std::size_t end) {
     auto next = places[s];
     for (std::size_t i = begin; i < end; ++i) set.at[0][next[cell[i]]++] = set.at[2][i];
     std::copy(set.row_room + begin, set.row_room + end, set.row + begin);

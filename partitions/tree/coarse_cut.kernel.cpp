@@ -28,9 +28,9 @@ struct CoarseParts {
   std::uint32_t cells = 0;
 
   /// Lengths of the axes, longest first.
-  CoarseParts(const float* length, std::uint32_t wanted) {
+  CoarseParts(const float* length, std::uint32_t target_cells) {
     const float longest = length[0];
-    const auto all = static_cast<float>(wanted);
+    const auto all = static_cast<float>(target_cells);
     if (longest > kMinExtent) {
       const float m = length[1] / longest;
       const float s = length[2] / longest;
@@ -42,8 +42,8 @@ struct CoarseParts {
     }
     slabs = slabs == 0 ? 1 : slabs;
     lines = lines == 0 ? 1 : lines;
-    while (slabs * lines > wanted) --(lines > 1 ? lines : slabs);
-    cells = (2 * wanted + slabs * lines) / (2 * slabs * lines);
+    while (slabs * lines > target_cells) --(lines > 1 ? lines : slabs);
+    cells = (2 * target_cells + slabs * lines) / (2 * slabs * lines);
     while (slabs * lines * cells > kMaxCoarseCells) --cells;
   }
 };
@@ -101,13 +101,13 @@ bool is_concentrated(const CoarseSample& sample, int k) {
 }
 
 bool plan(const float* const* at, std::size_t count, const float* least, const float* greatest,
-          std::uint32_t wanted, CoarseCells& plan) {
+          std::uint32_t target_cells, CoarseCells& plan) {
   float length[3];
   int order[3];
   for (int a = 0; a < 3; ++a) length[a] = AxisExtent{least[a], greatest[a]}.half();
   order_by_length(length, order);
   const float sorted[3] = {length[order[0]], length[order[1]], length[order[2]]};
-  const CoarseParts parts(sorted, wanted);
+  const CoarseParts parts(sorted, target_cells);
   for (int k = 0; k < 3; ++k) {
     const int axis = order[2 - k];
     plan.axis[k] = axis;

@@ -26,10 +26,10 @@ struct CoarseCells {
 struct CoarseCutKernels {
   /// Computes the minimum and maximum of `count` >= 1 numbers.
   void (*reach)(const float* x, std::size_t count, float& least, float& greatest);
-  /// Plans about `wanted` cells for points on three axes, from a sample of the points. Returns
-  /// false if too many points are in too small a part of their range.
+  /// Plans about `target_cells` cells for points on three axes, from a sample of the points.
+  /// Returns false if too many points are in too small a part of their range.
   bool (*plan)(const float* const* at, std::size_t count, const float* least, const float* greatest,
-               std::uint32_t wanted, CoarseCells& plan);
+               std::uint32_t target_cells, CoarseCells& plan);
   /// Writes the cell of each point in [begin, end), and the number of points of each cell.
   void (*assign)(const CoarseCells& plan, const float* const* at, std::size_t begin,
                  std::size_t end, std::uint8_t* cell, std::uint32_t* sizes);

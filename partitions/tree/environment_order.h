@@ -19,7 +19,8 @@ namespace winnow {
                                        Column<std::uint64_t>& scratch, const Execution& execution);
 
 /// Sorts row numbers by environment, and each environment by position (see sort_by_kd_cuts, which
-/// uses `room` and `points`), so that worlds that overlap in space follow one another.
+/// uses `room` and `points`), so that the rows of a world are consecutive even if worlds overlap in
+/// space.
 [[nodiscard]] bool sort_by_environment_and_place(const BoundsPool& pool,
                                                  const ObjectFilter* filters,
                                                  std::span<std::uint32_t> rows,

@@ -13,7 +13,8 @@ namespace winnow::WINNOW_ISA_NAME {
 inline constexpr std::uint32_t kPlaceBits = 7;
 inline constexpr std::uint32_t kPlacesPerAxis = 1U << kPlaceBits;
 
-/// The number of places per length, for half of an axis' range.
+/// Returns the number of places per unit of halved length, for an axis whose range is 2 *
+/// `half_reach`.
 inline float places_per(float half_reach) {
   return half_reach > kMinExtent ? static_cast<float>(kPlacesPerAxis) / half_reach : 0.0F;
 }

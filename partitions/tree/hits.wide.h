@@ -13,7 +13,7 @@
 namespace winnow::WINNOW_ISA_NAME {
 
 /// A filter, or the union of the filters below a node. An object of every environment spans all
-/// environments, so one interval test serves objects and nodes.
+/// environments, so one interval test applies to objects and nodes.
 struct FilterRange {
   std::uint32_t layers;
   std::uint32_t mask;
@@ -50,7 +50,7 @@ static inline FilterSpan span_of(const NodeFilters& nodes, std::uint32_t i) {
   span.any_mask = nodes.mask[i];
   span.every_mask = nodes.every_mask[i];
   span.any_unpairable = (span.every_layers | span.every_mask) == 0;
-  span.everywhere = false;
+  span.all_environments = false;
   return span;
 }
 
@@ -71,19 +71,19 @@ static inline FilterSpan span_of(const NodeFilters& nodes, std::uint32_t i) {
 }
 
 /// Returns the candidate rows from `first_row` on, none of them empty, whose filters match `q`.
-/// `environments`: more than one environment is in use.
+/// `environments` is true if more than one environment is in use.
 [[gnu::always_inline]] inline Mask16 passing_rows(const FilterColumns& own, bool environments,
                                                   std::uint32_t first_row, Mask16 candidates,
                                                   const FilterRange& q) {
   if (own.layers == nullptr)
     return filters_allow(range_of(ObjectFilter{}), q) ? candidates : Mask16{0};
-  const Mask16 met = candidates & matching_lanes(own.layers, own.mask, first_row, q);
+  const Mask16 matching = candidates & matching_lanes(own.layers, own.mask, first_row, q);
   // Without environments all objects are in environment 0 or in every environment.
-  if (!environments && q.first_environment == 0) return met;
+  if (!environments && q.first_environment == 0) return matching;
   const Uints last = Uints::load_unaligned(own.environment + first_row);
   const Mask16 of_one = test_bits(Uints(kAllEnvironments) - last, ~0U);
   const Mask16 behind = above(last, q.last_environment) & of_one;
-  return met & ~behind & ~below(last, q.first_environment);
+  return matching & ~behind & ~below(last, q.first_environment);
 }
 [[gnu::always_inline]] inline Mask16 passing_rows(const RowView& rows, std::uint32_t first_row,
                                                   Mask16 candidates, const FilterRange& q) {
@@ -99,12 +99,12 @@ static inline FilterSpan span_of(const NodeFilters& nodes, std::uint32_t i) {
   if (nodes.layers == nullptr) {
     return filters_allow(range_of(ObjectFilter{}), q) ? candidates : Mask16{0};
   }
-  const Mask16 met = candidates & matching_lanes(nodes.layers, nodes.mask, first_node, q);
+  const Mask16 matching = candidates & matching_lanes(nodes.layers, nodes.mask, first_node, q);
   // Without environments all objects are in environment 0 or in every environment.
-  if (!tree.environments && q.first_environment == 0) return met;
+  if (!tree.environments && q.first_environment == 0) return matching;
   const Uints begin = Uints::load_unaligned(nodes.first_environment + first_node);
   const Uints last = Uints::load_unaligned(nodes.last_environment + first_node);
-  return met & ~above(begin, q.last_environment) & ~below(last, q.first_environment);
+  return matching & ~above(begin, q.last_environment) & ~below(last, q.first_environment);
 }
 
 // Columns of a sphere's centre and radius.
@@ -225,11 +225,12 @@ inline Mask16 surely_sharing(const Uints& sets, std::uint32_t any, std::uint32_t
   return test_bits(sets, every) | ((~lack_one | ~test_bits(sets, ~every)) & test_bits(sets, ~0U));
 }
 
-/// Divides the rows of a batch into rows that certainly match all objects and other rows.
+/// Divides the rows of a batch into two parts: rows that certainly match all objects, and all other
+/// rows.
 class SplitBatch {
  public:
-  SplitBatch(const RowView& asked, const QueryBatch& batch, std::uint32_t begin) {
-    const FilterSpan& all = asked.span;
+  SplitBatch(const RowView& queried, const QueryBatch& batch, std::uint32_t begin) {
+    const FilterSpan& all = queried.span;
     const std::uint32_t left = batch.end - begin;
     const std::uint32_t end = begin + (left < kRoom ? left : kRoom);
     for (std::uint32_t k = begin; k < end; k += kLanes) {
@@ -239,13 +240,15 @@ class SplitBatch {
         sure = surely_sharing(some.masks, all.any_layers, all.every_layers) &
                surely_sharing(some.layers, all.any_mask, all.every_mask);
       }
-      if (!all.everywhere && (all.apart || batch.environments)) sure &= some.everywhere(all.apart);
+      if (!all.all_environments && (all.environments || batch.environments))
+        sure &= some.everywhere(all.environments);
       add(some.lanes & sure, some.rows, 1);
       add(some.lanes & ~sure, some.rows, 0);
     }
   }
 
-  /// The rows that certainly match all objects, or the others.
+  /// Returns the rows that certainly match all objects or, if `matches_all` is false, the other
+  /// rows.
   [[nodiscard]] QueryBatch part(const QueryBatch& batch, bool matches_all) const {
     QueryBatch part = batch;
     part.rows = row_[matches_all ? 1 : 0];
@@ -291,12 +294,12 @@ class SplitBatch {
       masks = Uints::load_unaligned(mask);
     }
 
-    /// The lanes of every environment, and of environment 0 unless objects are `apart` in others.
-    [[nodiscard]] Mask16 everywhere(bool apart) const {
+    /// The lanes of every environment, and of environment 0 unless other `environments` are in use.
+    [[nodiscard]] Mask16 everywhere(bool environments) const {
       Mask16 found = 0;
       for (Mask16 left = lanes; left != 0; left &= left - 1) {
         const std::uint32_t own = environment[first(left)];
-        const bool matches_all = own == kAllEnvironments || (own == 0 && !apart);
+        const bool matches_all = own == kAllEnvironments || (own == 0 && !environments);
         found |= static_cast<Mask16>(matches_all) << first(left);
       }
       return found;
@@ -341,7 +344,7 @@ inline bool has_more_to_test(const RowView& rows) {
 
 /// Removes the hits whose volumes do not overlap from lists of hits of boxes. Entry i has the hits
 /// of row[i] of the columns `query`: lanes mask[i] of the rows from at[i] on. Returns the number of
-/// entries left. Not inlined, because kernels for boxes never call it.
+/// remaining entries. Not inlined, because kernels for boxes never call it.
 [[gnu::noinline, maybe_unused]] static unsigned keep_volume_hits(
     const RowView& rows, const float* const* query, std::uint32_t* row, std::uint32_t* at,
     std::uint32_t* mask, unsigned size) {
@@ -358,7 +361,7 @@ inline bool has_more_to_test(const RowView& rows) {
 }
 
 /// As above, removes the lanes that are not reported in HitMode::moved. Returns the number of
-/// entries left.
+/// remaining entries.
 [[gnu::noinline, maybe_unused]] static unsigned keep_reported(const std::uint64_t* moved,
                                                               std::uint32_t* row, std::uint32_t* at,
                                                               std::uint32_t* mask, unsigned size) {
@@ -387,7 +390,7 @@ class HitList {
         moved_(batch.mode == HitMode::moved ? batch.moved : nullptr),
         filters_(batch),
         sink_(sink) {}
-  /// For rows that query each other.
+  /// Creates a list for rows that query each other.
   HitList(const RowView& rows, PairSink& sink)
       : rows_(rows),
         query_(rows.column),
@@ -445,20 +448,20 @@ class HitList {
 };
 
 /// For ranges of rows that are tested to their end.
-struct ToTheEnd {
+struct AllRows {
   bool operator()(const QueryBox&, std::uint32_t) const { return true; }
 };
 
 /// Ranges of rows to be tested, each against one box. Their lengths are unpredictable, so one long
-/// loop tests 16 rows of every range, and unfinished ranges are kept for the next round. `GoesOn(q,
-/// at)` returns whether box q needs the rows from `at` on.
-template <bool Filtered, typename GoesOn>
+/// loop tests 16 rows of every range, and unfinished ranges are kept for the next round.
+/// `NeedsRows(q, at)` returns whether box q needs the rows from `at` on.
+template <bool Filtered, typename NeedsRows>
 class RunList {
  public:
   /// `query` has the columns of the querying boxes.
   RunList(const RowView& rows, const float* const* query, HitList<Filtered>& hits,
-          const GoesOn& goes_on, PairSink& sink)
-      : rows_(rows), query_(query), hits_(hits), goes_on_(goes_on), sink_(sink) {}
+          const NeedsRows& needs_rows, PairSink& sink)
+      : rows_(rows), query_(query), hits_(hits), needs_rows_(needs_rows), sink_(sink) {}
 
   /// Adds rows [at, end) for the box of row r of the query columns. Returns false if the sink is
   /// full.
@@ -487,7 +490,7 @@ class RunList {
         row_[next] = row_[k];
         at_[next] = at + left;
         end_[next] = end;
-        next += at + left < end && goes_on_(q, at + left) ? 1U : 0U;
+        next += at + left < end && needs_rows_(q, at + left) ? 1U : 0U;
       }
       size_ = next;
     }
@@ -500,7 +503,7 @@ class RunList {
   const RowView& rows_;
   const float* const* query_;
   HitList<Filtered>& hits_;
-  const GoesOn goes_on_;
+  const NeedsRows needs_rows_;
   PairSink& sink_;
   unsigned size_ = 0;
   std::uint32_t row_[kRoom + 1];

@@ -30,8 +30,8 @@ constexpr std::size_t kPointsPerTask = 16384;
 // Points per coarse cell: small enough for tiles, even if cells are unequal.
 constexpr std::size_t kCoarsePart = 3072;
 
-// Sorts a set, which must be large enough, in tiles. Returns false if tiles would not separate its
-// points.
+// Sorts a set of at least kMinInTiles points in tiles. Returns false if tiles would not separate
+// its points.
 bool sort_in_tiles(const KdSet& set) {
   TileSet tiles;
   std::copy_n(set.at, 3, tiles.at);
@@ -42,7 +42,7 @@ bool sort_in_tiles(const KdSet& set) {
   return tile_order_kernels().sort(tiles);
 }
 
-// Cuts a set until tiles or blocks are left.
+// Cuts a set until the parts are blocks, or are sorted in tiles.
 void finish_part(KdSet set, KdParts parts) {
   while (parts != KdParts::blocks && set.count >= kMinInTiles) {
     if (set.count <= kTiledPart && sort_in_tiles(set)) return;
@@ -59,7 +59,7 @@ std::size_t cuts_of(std::size_t count, KdParts parts) noexcept {
 
 }  // namespace
 
-KdSet KdCuts::part_of(const Set& part) const noexcept {
+KdSet KdCuts::part_of(const RowRange& part) const noexcept {
   KdSet set;
   set.row = rows_.data() + part.begin;
   set.row_room = room_ + part.begin;
@@ -128,8 +128,8 @@ bool KdCuts::cut_widest(std::size_t& work, const Execution& execution) {
   const std::size_t before = open_;
   if (2 * before > kMaxSets) return false;
   execution.for_each(before, [&](std::size_t i) {
-    Set& first = sets_[i];
-    Set& second = sets_[before + i];
+    RowRange& first = sets_[i];
+    RowRange& second = sets_[before + i];
     second = {first.begin, 0};
     if (first.count <= kTiledPart) return;
     KdSet set = part_of(first);

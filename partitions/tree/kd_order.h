@@ -27,8 +27,9 @@ enum class KdParts : std::uint8_t { blocks, tiles, cells };
 /// down, near the median of the axis along which their centres have the largest range. A cut always
 /// fills the subtrees of 16^k blocks on its first side, so every node of the implicit tree is one
 /// set (Lee and Lee, "OMT: overlap minimizing top-down bulk loading algorithm for R-tree", CAiSE
-/// 2003). Boxes of mixed sizes are handled well: cuts follow the centres, and a large box widens
-/// only its own block. Rows that are concentrated in few places are cut to blocks in any case.
+/// 2003). Boxes of mixed sizes cost little: cuts follow the centres, and a large box widens only
+/// its own block and the nodes above. Rows that are concentrated in few places are cut to blocks in
+/// any case.
 ///
 /// Rows must be live; their boxes are the pool's first six columns. `room` has space for
 /// rows.size() elements. O(n log n). The result is the same for any number of threads and any
@@ -53,11 +54,11 @@ class KdCuts {
   static constexpr std::size_t kMaxSets = 64;
 
   /// A range of rows that is still to be cut.
-  struct Set {
+  struct RowRange {
     std::uint32_t begin;
     std::uint32_t count;
   };
-  [[nodiscard]] KdSet part_of(const Set& part) const noexcept;
+  [[nodiscard]] KdSet part_of(const RowRange& part) const noexcept;
   [[nodiscard]] bool tile_whole(std::size_t& work);
   void cut_coarsely(std::size_t& work, const Execution& execution);
   [[nodiscard]] bool cut_widest(std::size_t& work, const Execution& execution);
@@ -66,7 +67,7 @@ class KdCuts {
   std::uint32_t* room_ = nullptr;
   float* at_[3] = {};
   float* at_room_[3] = {};
-  std::array<Set, kMaxSets> sets_;
+  std::array<RowRange, kMaxSets> sets_;
   std::size_t open_ = 0;
   KdParts parts_ = KdParts::tiles;
   // Pending first steps: tile all rows at once; or, if there are more, divide them into cells.

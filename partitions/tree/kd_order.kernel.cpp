@@ -63,7 +63,7 @@ struct SplitColumns {
   std::size_t end;
 };
 
-/// Sixteen points of a set, or those that are left.
+/// Sixteen points of a set, or fewer at its end.
 struct Points16 {
   Floats at[3];
   Uints row;

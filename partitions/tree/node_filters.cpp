@@ -1,4 +1,4 @@
-// Summaries of filters in the nodes of a BlockTree, from which traversals skip subtrees. BlockTree
+// Summaries of filters in the nodes of a BlockTree, by which traversals skip subtrees. BlockTree
 // calls the refit functions.
 
 #include "partitions/tree/node_filters.h"
@@ -15,7 +15,7 @@ constexpr std::uint32_t kLast = 0xFFFFFFFFU;
 constexpr std::size_t kColumns = 7;  // of NodeFilters
 
 /// The summary of a set of filters. Initially the set is empty, and its summary matches no filter.
-struct Joined {
+struct FilterUnion {
   std::uint32_t layers = 0;
   std::uint32_t mask = 0;
   std::uint32_t first = kLast;
@@ -50,14 +50,14 @@ struct Joined {
 };
 
 /// Summarizes a block of rows. Branchless, so that compilers vectorize the loop.
-Joined join_rows(const RowView& rows, std::size_t begin) noexcept {
+FilterUnion join_rows(const RowView& rows, std::size_t begin) noexcept {
   const std::uint32_t* const id = rows.id + begin;
   const std::uint32_t* const layers = rows.filter.layers + begin;
   const std::uint32_t* const mask = rows.filter.mask + begin;
   const std::uint32_t* const environment = rows.filter.environment + begin;
   std::uint32_t lead = 0;
   while (lead < kChildren && id[lead] == kNoObject) ++lead;
-  Joined joined;
+  FilterUnion joined;
   if (lead == kChildren) return joined;
   std::uint32_t differ = 0;
   for (std::uint32_t i = 0; i < kChildren; ++i) {
@@ -105,7 +105,7 @@ bool lay_out_filters(TreeShape& shape, Column<std::uint32_t>& memory) noexcept {
 }
 
 void empty_filters(const NodeFilters& nodes, std::uint32_t begin, std::uint32_t end) noexcept {
-  for (std::uint32_t i = begin; i < end; ++i) Joined{}.store(nodes, i);
+  for (std::uint32_t i = begin; i < end; ++i) FilterUnion{}.store(nodes, i);
 }
 
 void refit_leaf_filters(const TreeView& tree, std::uint32_t begin, std::uint32_t end) noexcept {
@@ -118,7 +118,7 @@ void refit_leaf_filters(const TreeView& tree, std::uint32_t begin, std::uint32_t
 void refit_node_filters(const TreeView& tree, std::uint32_t level, std::uint32_t begin,
                         std::uint32_t end) noexcept {
   for (std::uint32_t node = begin; node < end; ++node) {
-    Joined joined;
+    FilterUnion joined;
     for (std::uint32_t i = 0; i < kChildren; ++i) {
       joined.add(tree.filters[level - 1], node * kChildren + i);
     }

@@ -117,8 +117,9 @@ SahExtent extent_of(const SahBox& box) noexcept {
   return {load_quad(box.low), load_quad(box.high)};
 }
 
-/// Bins of equal width on each axis over the range of a set's keys. If the set is large, the range
-/// is the range of a sample, and keys outside of it are in the first or the last bin.
+/// Bins of equal width on each axis over the range of a set's keys. If there are more than
+/// kFewToSample boxes, the range is the range of a sample, and keys outside of it are in the first
+/// or the last bin.
 struct SahBins {
   std::uint32_t count = 0;
   std::size_t axes = 3;  ///< the fourth is used if sizes differ
@@ -151,7 +152,7 @@ struct SahBins {
     const Quad within = least(most(place, Quad{}), Quad{last, last, last, last});
     return __builtin_convertvector(within, QuadInts);
   }
-  /// True if a box lies in the first `bins` bins on an axis.
+  /// True if a box is in the first `bins` bins on an axis.
   [[nodiscard]] bool is_within(const SahBox& box, std::size_t axis, std::uint32_t bins) const {
     const float place = (0.5F * key_on(box, axis) - half_low[axis]) * scale[axis];
     return (bins == count) | ((bins != 0) & (place < static_cast<float>(bins)));
@@ -170,22 +171,22 @@ struct SahJob {
     return static_cast<std::uint32_t>(kBlockRows) << (4 * level);
   }
   [[nodiscard]] std::uint32_t subtrees() const { return (size() + places() - 1) / places(); }
-  /// A cut at half of the subtrees.
+  /// Returns the number of boxes in half of the subtrees.
   [[nodiscard]] std::uint32_t middle() const { return (subtrees() + 1) / 2 * places(); }
 };
 
 /// The first `count` boxes by their keys on `axis` go to the first side; the cut is within `bin` or
 /// before it.
-struct Cut {
+struct SahCut {
   std::size_t axis = 0;
   std::uint32_t count = 0;
   std::uint32_t bin = 0;
   double cost = std::numeric_limits<double>::infinity();
 };
 
-class Builder {
+class SahBuilder {
  public:
-  Builder(std::span<SahBox> boxes, const Execution& execution)
+  SahBuilder(std::span<SahBox> boxes, const Execution& execution)
       : boxes_(boxes), execution_(execution) {
     double sum = 0.0;
     double bounded = 0.0;
@@ -217,7 +218,7 @@ class Builder {
     while (job.subtrees() == 1) --job.level;
     const std::span<SahBox> boxes = boxes_.subspan(job.begin, job.size());
     const SahBins bins(boxes);
-    const Cut cut = best_cut(job, boxes, bins);
+    const SahCut cut = best_cut(job, boxes, bins);
     move_to_front(boxes, bins, cut);
     SahJob second = job;
     second.begin = job.end = job.begin + cut.count;
@@ -226,7 +227,7 @@ class Builder {
 
   /// Moves the boxes before the cut to the front. Compares only the boxes of the bin that contains
   /// the cut.
-  static void move_to_front(std::span<SahBox> boxes, const SahBins& bins, const Cut& cut) {
+  static void move_to_front(std::span<SahBox> boxes, const SahBins& bins, const SahCut& cut) {
     const auto first_of = [&](std::span<SahBox> some, std::uint32_t first_bins) {
       return part(some,
                   [&](const SahBox& box) { return bins.is_within(box, cut.axis, first_bins); });
@@ -278,8 +279,8 @@ class Builder {
     }
   }
 
-  [[nodiscard]] Cut best_cut(const SahJob& job, std::span<const SahBox> boxes,
-                             const SahBins& bins) const {
+  [[nodiscard]] SahCut best_cut(const SahJob& job, std::span<const SahBox> boxes,
+                                const SahBins& bins) const {
     BinContents in;
     for (std::size_t axis = 0; axis < bins.axes; ++axis) {
       std::fill_n(in.extent[axis].begin(), bins.count, SahExtent::none());
@@ -290,7 +291,7 @@ class Builder {
     } else {
       fill<3>(boxes, bins, in);
     }
-    Cut best;
+    SahCut best;
     for (std::size_t axis = 0; axis < bins.axes; ++axis) {
       if (in.count[axis][0] != job.size()) consider_axis(job, in, bins.count, axis, best);
     }
@@ -301,7 +302,7 @@ class Builder {
   /// Replaces `best` by the best cut on an axis if that is better. If a cut is within a bin, both
   /// sides are assumed to extend through the whole bin.
   void consider_axis(const SahJob& job, const BinContents& in, std::uint32_t bins, std::size_t axis,
-                     Cut& best) const {
+                     SahCut& best) const {
     std::array<SahExtent, kBins + 1> from;  // around the bins from each one on
     from[bins] = SahExtent::none();
     for (std::size_t b = bins; b-- > 0;) {
@@ -351,7 +352,7 @@ bool append_in_sah_order(const BoundsPool& pool, std::span<const std::uint32_t> 
       box.row = rows[i];
     }
   });
-  Builder({scratch.data(), count}, execution).run();
+  SahBuilder({scratch.data(), count}, execution).run();
   for_each_range(execution, count, kBoxesPerRange, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) order[at + i] = scratch[i].row;
     // Sorts the rows of a block, so that their order does not depend on the partitioning.

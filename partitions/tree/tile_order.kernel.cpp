@@ -86,10 +86,11 @@ class Tiles {
   }
 
  private:
-  /// If there are many points, one in four is sampled.
+  /// One point in this many is sampled.
   [[nodiscard]] std::uint32_t step() const { return count_ < 512 ? 1 : 4; }
 
-  /// The sampled one of four varies: with a fixed one, objects of alternating kinds would alias.
+  /// Calls visit(index) for the sample. The offset within each group of four points varies, because
+  /// with a fixed offset objects of alternating kinds would alias.
   template <typename Visit>
   void for_sample(const Visit& visit) const {
     const std::uint32_t rest = step() - 1;

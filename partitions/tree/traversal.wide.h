@@ -15,8 +15,8 @@ namespace winnow::WINNOW_ISA_NAME {
 enum class Next : std::uint8_t { below, past, stop };
 
 /// Calls visit(level, node) for every node that passes test(level, first of 16 nodes), parents
-/// before children. Its only state is one mask per level, so its depth is bounded by the number of
-/// objects, not by a stack. Returns false if a visit stopped it.
+/// before children. Its state is one mask and one node index per level, so it needs no stack.
+/// Returns false if a visit stopped it.
 template <std::uint32_t MaxLevels, typename Test, typename Visit>
 [[gnu::always_inline]] inline bool traverse(std::uint32_t levels, Test&& test, Visit&& visit) {
   Mask16 open[MaxLevels];
@@ -78,10 +78,10 @@ struct QueryNodeList {
   }
 };
 
-/// Runs many queries down a tree together, level by level. Nodes to open on a level are listed per
-/// level, and a list is processed in one long loop when the next nodes might not fit or when no
-/// higher level has nodes left. The number of children that pass is unpredictable and each test has
-/// a long latency; long loops hide both. The order of visits is unspecified.
+/// Traverses a tree with many queries together, level by level. Nodes to open on a level are listed
+/// per level, and a list is processed in one long loop when the next nodes might not fit or when no
+/// higher level has remaining nodes. The number of children that pass is unpredictable and each
+/// test has a long latency; long loops hide both. The order of visits is unspecified.
 ///
 /// `Queries` provides `auto prepare(tree, level, first query)`, which computes constants of a
 /// loop; `Mask16 test(prepared, query, level, first of 16 nodes)`; and `bool visit(blocks)`, which
@@ -140,7 +140,7 @@ class JointTraversal {
 /// Visits nodes of level 0 approximately in the order of a measure, the nearest child first.
 /// `OpenNodeStore` stores open nodes: `bool open(level, first of 16 nodes, node)` tests 16 nodes,
 /// returns the one to continue with in `node` and stores the others, or returns false if none
-/// passes; `bool take(level, node)` removes the next stored node, or returns false if there is
+/// passes; `bool pop(level, node)` removes the next stored node, or returns false if there is
 /// none. visit(node) returns false to stop the descent.
 template <typename OpenNodeStore, typename Visit>
 [[gnu::always_inline]] inline bool descend(std::uint32_t levels, OpenNodeStore& open_nodes,
@@ -155,7 +155,7 @@ template <typename OpenNodeStore, typename Visit>
       reached = open_nodes.open(level, node * kLanes, node);
     }
     if (reached && !visit(node)) return false;
-  } while (open_nodes.take(level, node));
+  } while (open_nodes.pop(level, node));
   return true;
 }
 

@@ -23,7 +23,8 @@ extern "C" {
 /// Number of the binary interface, also part of the shared library's name; see README.md here.
 #define WINNOW_ABI 1
 
-/// Result of a call. A call that does not return WINNOW_OK has changed nothing.
+/// Result of a call. A call that does not return WINNOW_OK has changed nothing, except that it may
+/// have emptied its result buffer.
 typedef int32_t winnow_status;
 enum {
   WINNOW_OK = 0,
@@ -95,7 +96,7 @@ enum {
 /// A number of oneTBB threads from 1 to 4096, including the calling thread. They are started by the
 /// first call that uses them, and shared by everything created with them.
 typedef struct winnow_threads winnow_threads;
-/// WINNOW_UNSUPPORTED if count > 1 and the library was built without oneTBB.
+/// Returns WINNOW_UNSUPPORTED if count > 1 and the library was built without oneTBB.
 WINNOW_C_API winnow_status winnow_threads_create(size_t count, winnow_threads** threads);
 /// Destroy everything that was created with the threads first.
 WINNOW_C_API void winnow_threads_destroy(winnow_threads* threads);
@@ -120,8 +121,8 @@ typedef struct winnow_footprint {
   winnow_bytes results;
 } winnow_footprint;
 
-/// Key of an object of a partition, or of a body of a scene. The key of a removed object, or of
-/// another partition or scene, is WINNOW_INVALID_KEY.
+/// Key of an object of a partition, or of a body of a scene. Calls return WINNOW_INVALID_KEY for
+/// the key of a removed object, and for a key of another partition or scene.
 typedef struct winnow_key {
   uint32_t id;
   uint32_t stamp;
@@ -141,9 +142,9 @@ typedef struct winnow_object_filter {
 #define WINNOW_OBJECT_FILTER \
   { 1U, 0xFFFFFFFFU, 0U }
 
-/// Filter of a query; null accepts all objects. `accept` is null, or is called last for each
-/// object. It may be called from any thread, from several at once and in any order, and must return
-/// the same value each time for an object.
+/// Filter of a query; a null pointer to it accepts all objects. `accept` may be null. Otherwise it
+/// is called for objects that pass the rest of the filter, from any thread, from several at once
+/// and in any order, and must return the same value each time for an object.
 typedef struct winnow_filter {
   uint32_t layers;
   uint32_t mask;

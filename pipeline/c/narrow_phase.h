@@ -84,7 +84,7 @@ typedef struct winnow_narrow_options {
   size_t size;                 ///< set by the caller to sizeof(winnow_narrow_options)
   winnow_contact_level level;  ///< 0: manifold
   winnow_narrow_tier tier;
-  double margin;
+  double contact_margin;
   winnow_execution execution;
 } winnow_narrow_options;
 #define WINNOW_NARROW_OPTIONS                                                        \

@@ -91,10 +91,10 @@ WINNOW_C_API winnow_status winnow_hit_buffer_create(const winnow_memory* memory,
 WINNOW_C_API void winnow_hit_buffer_destroy(winnow_hit_buffer* buffer);
 WINNOW_C_API winnow_status winnow_hit_buffer_hits(const winnow_hit_buffer* buffer,
                                                   const winnow_hit** hits, size_t* count);
-WINNOW_C_API winnow_status winnow_hit_buffer_questions(const winnow_hit_buffer* buffer,
-                                                       size_t* count);
+WINNOW_C_API winnow_status winnow_hit_buffer_queries(const winnow_hit_buffer* buffer,
+                                                     size_t* count);
 /// Returns the hits of one query of a batch.
-WINNOW_C_API winnow_status winnow_hit_buffer_of(const winnow_hit_buffer* buffer, size_t question,
+WINNOW_C_API winnow_status winnow_hit_buffer_of(const winnow_hit_buffer* buffer, size_t query,
                                                 const winnow_hit** hits, size_t* count);
 WINNOW_C_API winnow_status winnow_hit_buffer_reserve(winnow_hit_buffer* buffer, size_t count);
 WINNOW_C_API winnow_status winnow_hit_buffer_clear(winnow_hit_buffer* buffer);
@@ -105,8 +105,8 @@ typedef struct winnow_overlap_buffer winnow_overlap_buffer;
 WINNOW_C_API winnow_status winnow_overlap_buffer_create(const winnow_memory* memory,
                                                         winnow_overlap_buffer** buffer);
 WINNOW_C_API void winnow_overlap_buffer_destroy(winnow_overlap_buffer* buffer);
-/// Returns the ids of the overlapping objects: first `inside` objects that lie wholly in the
-/// region, then those that cross its border.
+/// Returns the ids of the overlapping objects: first `inside` objects whose boxes are contained in
+/// the region, then all other objects.
 WINNOW_C_API winnow_status winnow_overlap_buffer_ids(const winnow_overlap_buffer* buffer,
                                                      const uint32_t** ids, size_t* count,
                                                      size_t* inside);
@@ -150,10 +150,10 @@ enum {
 };
 
 /// How much stored volumes are enlarged on every side (fat AABBs).
-typedef struct winnow_margin {
+typedef struct winnow_fat_margin {
   float distance;
   float share;
-} winnow_margin;
+} winnow_fat_margin;
 
 /// A null pointer, or zero members after `size`, mean the defaults of C++.
 typedef struct winnow_partition_options {
@@ -161,7 +161,7 @@ typedef struct winnow_partition_options {
   const winnow_memory* memory;
   winnow_execution execution;
   winnow_volume volume;
-  winnow_margin margin;
+  winnow_fat_margin fat_margin;
   size_t build_budget;
 } winnow_partition_options;
 #define WINNOW_PARTITION_OPTIONS                                                         \
@@ -199,8 +199,8 @@ WINNOW_C_API winnow_status winnow_partition_is_exact(const winnow_partition* par
                                                      bool* is_exact);
 WINNOW_C_API winnow_status winnow_partition_volume(const winnow_partition* partition,
                                                    winnow_volume* volume);
-WINNOW_C_API winnow_status winnow_partition_margin(const winnow_partition* partition,
-                                                   winnow_margin* margin);
+WINNOW_C_API winnow_status winnow_partition_fat_margin(const winnow_partition* partition,
+                                                       winnow_fat_margin* fat_margin);
 
 /// Inserts one object per box and writes its key to `keys`. `data` is null (all zero) or has one
 /// value per box.
@@ -245,10 +245,10 @@ WINNOW_C_API winnow_status winnow_partition_reserve(winnow_partition* partition,
 WINNOW_C_API winnow_status winnow_partition_reserve_pairs(const winnow_partition* partition,
                                                           winnow_pair_buffer* out, size_t pairs,
                                                           winnow_pages pages);
-/// If `alone` is set, memory for the pairs is reserved too: set it if no pair buffer is used.
+/// If `with_pairs` is set, memory for the pairs is reserved too: set it if no pair buffer is used.
 WINNOW_C_API winnow_status winnow_partition_reserve_events(const winnow_partition* partition,
                                                            winnow_pair_events* out, size_t pairs,
-                                                           bool alone, winnow_pages pages);
+                                                           bool with_pairs, winnow_pages pages);
 
 WINNOW_C_API winnow_status winnow_partition_size(const winnow_partition* partition, size_t* size);
 WINNOW_C_API winnow_status winnow_partition_contains(const winnow_partition* partition,
@@ -286,7 +286,7 @@ typedef struct winnow_pair_options {
 #define WINNOW_PAIR_OPTIONS \
   { sizeof(winnow_pair_options), WINNOW_ORDER_FAST, 0, NULL, NULL }
 
-/// Writes all pairs to `out` and the changes to `events`. Either may be null.
+/// Writes all pairs to `out` and the changes to `events`. One of the two may be null.
 WINNOW_C_API winnow_status winnow_partition_self_pairs(const winnow_partition* partition,
                                                        winnow_pair_buffer* out,
                                                        winnow_pair_events* events,

@@ -14,19 +14,19 @@ extern "C" {
 #endif
 
 /// The set of a scene that a body belongs to.
-enum { WINNOW_MOTION_FIXED = 0, WINNOW_MOTION_DYNAMIC = 1, WINNOW_MOTION_SLEEPING = 2 };
-#define WINNOW_MOTIONS 3
+enum { WINNOW_BODY_STATE_FIXED = 0, WINNOW_BODY_STATE_DYNAMIC = 1, WINNOW_BODY_STATE_SLEEPING = 2 };
+#define WINNOW_BODY_STATES 3
 
 /// A null pointer, or zero members after `size`, mean the defaults of C++.
 typedef struct winnow_scene_options {
   size_t size;  ///< set by the caller to sizeof(winnow_scene_options)
   const winnow_memory* memory;
   winnow_execution execution;
-  winnow_structure_kind structures[WINNOW_MOTIONS];
-  double margin;
+  winnow_structure_kind structures[WINNOW_BODY_STATES];
+  double contact_margin;
   winnow_narrow_tier tier;
   uint8_t contact_reduction;  ///< 0 or 1
-  double carry_over;
+  double cache_tolerance;
   size_t build_budget;
   /// Pool of the meshes, compounds and height fields, or null. Must outlive the scene.
   const winnow_composite_pool* composites;
@@ -56,16 +56,16 @@ typedef struct winnow_contact_offsets {
 typedef struct winnow_body_definition {
   winnow_shape_id shape;
   winnow_pose pose;
-  uint8_t motion;
+  uint8_t state;
   winnow_object_filter filter;
   uint64_t data;
   winnow_contact_offsets offsets;
   uint16_t layer;  ///< below 4096
 } winnow_body_definition;
-#define WINNOW_BODY_DEFINITION                                                       \
-  {                                                                                  \
-    WINNOW_NO_SHAPE, {{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0, 0.0}}, WINNOW_MOTION_DYNAMIC, \
-        {1U, 0xFFFFFFFFU, 0U}, 0, {0.0, 0.0}, 0                                      \
+#define WINNOW_BODY_DEFINITION                                                           \
+  {                                                                                      \
+    WINNOW_NO_SHAPE, {{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0, 0.0}}, WINNOW_BODY_STATE_DYNAMIC, \
+        {1U, 0xFFFFFFFFU, 0U}, 0, {0.0, 0.0}, 0                                          \
   }
 
 WINNOW_C_API winnow_status winnow_scene_add(winnow_scene* scene,
@@ -76,8 +76,8 @@ WINNOW_C_API winnow_status winnow_scene_remove(winnow_scene* scene, const winnow
 WINNOW_C_API winnow_status winnow_scene_clear(winnow_scene* scene);
 WINNOW_C_API winnow_status winnow_scene_move(winnow_scene* scene, const winnow_key* keys,
                                              size_t count, const winnow_pose_view* poses);
-WINNOW_C_API winnow_status winnow_scene_set_motion(winnow_scene* scene, const winnow_key* keys,
-                                                   size_t count, uint8_t motion);
+WINNOW_C_API winnow_status winnow_scene_set_body_state(winnow_scene* scene, const winnow_key* keys,
+                                                       size_t count, uint8_t state);
 WINNOW_C_API winnow_status winnow_scene_set_shape(winnow_scene* scene, winnow_key key,
                                                   winnow_shape_id shape);
 WINNOW_C_API winnow_status winnow_scene_set_filter(winnow_scene* scene, winnow_key key,
@@ -91,7 +91,7 @@ WINNOW_C_API winnow_status winnow_scene_is_ignored(const winnow_scene* scene, wi
                                                    winnow_key b, bool* ignored);
 
 WINNOW_C_API winnow_status winnow_scene_size(const winnow_scene* scene, size_t* size);
-WINNOW_C_API winnow_status winnow_scene_size_of(const winnow_scene* scene, uint8_t motion,
+WINNOW_C_API winnow_status winnow_scene_size_of(const winnow_scene* scene, uint8_t state,
                                                 size_t* size);
 WINNOW_C_API winnow_status winnow_scene_contains(const winnow_scene* scene, winnow_key key,
                                                  bool* contains);
@@ -106,7 +106,7 @@ WINNOW_C_API winnow_status winnow_scene_refresh(winnow_scene* scene);
 WINNOW_C_API winnow_status winnow_scene_origin(const winnow_scene* scene, double origin[3]);
 /// Returns the read-only partition of a set, valid as long as the scene; null while the set has
 /// none. Its client data are body ids.
-WINNOW_C_API winnow_status winnow_scene_partition(winnow_scene* scene, uint8_t motion,
+WINNOW_C_API winnow_status winnow_scene_partition(winnow_scene* scene, uint8_t state,
                                                   const winnow_partition** partition);
 /// `options` may be null.
 WINNOW_C_API winnow_status winnow_scene_debug_draw(const winnow_scene* scene,
@@ -153,7 +153,7 @@ typedef struct winnow_contact_columns {
   const winnow_ended_contact* ended;
   size_t ended_count;
   /// Number of pairs that kept their previous manifolds.
-  size_t carried;
+  size_t cached_pairs;
   /// The manifolds of pair i are [manifold_first[i], manifold_first[i + 1]).
   const uint32_t* manifold_first;
   size_t manifolds;
@@ -182,7 +182,7 @@ WINNOW_C_API winnow_status winnow_scene_collide(winnow_scene* scene, winnow_cont
 /// Numbers of bodies, pairs and contacts that memory is reserved for.
 typedef struct winnow_scene_room {
   size_t size;  ///< set by the caller to sizeof(winnow_scene_room)
-  size_t bodies[WINNOW_MOTIONS];
+  size_t bodies[WINNOW_BODY_STATES];
   size_t pairs;
   winnow_contact_level level;
   size_t touching;
@@ -202,7 +202,7 @@ WINNOW_C_API winnow_status winnow_scene_reserve_contacts(const winnow_scene* sce
 typedef struct winnow_scene_bytes {
   size_t size;  ///< set by the caller to sizeof(winnow_scene_bytes)
   winnow_bytes bodies;
-  winnow_bytes partitions[WINNOW_MOTIONS];
+  winnow_bytes partitions[WINNOW_BODY_STATES];
   winnow_bytes pairs;
   winnow_bytes mid_phase;
   winnow_bytes narrow_phase;
@@ -215,7 +215,7 @@ typedef struct winnow_scene_counts {
   size_t size;  ///< set by the caller to sizeof(winnow_scene_counts)
   uint64_t boxes_updated;
   uint64_t body_pairs;
-  uint64_t carried;
+  uint64_t cached_pairs;
   uint64_t primitive_pairs;
   uint64_t convex_pairs;  ///< narrow phase, pairs of convex bodies
   uint64_t convex_recomputed;

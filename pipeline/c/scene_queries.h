@@ -12,8 +12,8 @@
 extern "C" {
 #endif
 
-/// Holds scratch memory: use one per thread. Returned arrays are valid until its next query. The
-/// scene must outlive it.
+/// Scratch memory and results of queries: use one object per thread. Returned arrays are valid
+/// until its next query. The scene must outlive it.
 typedef struct winnow_scene_queries winnow_scene_queries;
 WINNOW_C_API winnow_status winnow_scene_queries_create(const winnow_scene* scene,
                                                        const winnow_memory* memory,
@@ -97,8 +97,9 @@ WINNOW_C_API winnow_status winnow_scene_queries_closest_cast(winnow_scene_querie
 WINNOW_C_API winnow_status winnow_scene_queries_all_cast(
     winnow_scene_queries* queries, const winnow_shape_cast* cast, const winnow_filter* filter,
     double tolerance, const winnow_scene_hit** hits, size_t* count);
-/// As above, but a body that the shape touches at the start is hit only if the shape gets deeper
-/// into it. If the shape slides along it or leaves it, the hit is a later one.
+/// Like the two functions without `_from_touch`, but a body that the shape touches at the start is
+/// hit at t = 0 only if the shape gets deeper into it. If the shape slides along the body or leaves
+/// it, the hit is with whatever the shape hits later.
 WINNOW_C_API winnow_status winnow_scene_queries_closest_cast_from_touch(
     winnow_scene_queries* queries, const winnow_shape_cast* cast, const winnow_filter* filter,
     double tolerance, winnow_scene_hit* hit);
@@ -162,16 +163,14 @@ WINNOW_C_API winnow_status winnow_scene_queries_overlaps(winnow_scene_queries* q
                                                          size_t most, winnow_pair_rules rules,
                                                          const winnow_key_pair** pairs,
                                                          size_t* count);
-/// Finds the first pair (body of a, body of b) whose distance is at most `margin`; two null keys if
-/// there is none.
-WINNOW_C_API winnow_status winnow_scene_queries_any_contact(winnow_scene_queries* queries,
-                                                            const winnow_key* a, size_t count_a,
-                                                            const winnow_key* b, size_t count_b,
-                                                            double margin, winnow_pair_rules rules,
-                                                            winnow_key_pair* pair);
-/// As above, for all bodies of the scene.
+/// Finds the first pair (body of a, body of b) whose distance is at most `contact_margin`; two null
+/// keys if there is none.
+WINNOW_C_API winnow_status winnow_scene_queries_any_contact(
+    winnow_scene_queries* queries, const winnow_key* a, size_t count_a, const winnow_key* b,
+    size_t count_b, double contact_margin, winnow_pair_rules rules, winnow_key_pair* pair);
+/// Finds the first such pair among all bodies of the scene.
 WINNOW_C_API winnow_status winnow_scene_queries_any_contact_in_scene(winnow_scene_queries* queries,
-                                                                     double margin,
+                                                                     double contact_margin,
                                                                      winnow_pair_rules rules,
                                                                      winnow_key_pair* pair);
 WINNOW_C_API winnow_status winnow_scene_queries_footprint(const winnow_scene_queries* queries,

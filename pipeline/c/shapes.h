@@ -172,7 +172,7 @@ WINNOW_C_API winnow_status winnow_cast_ray(const winnow_shape_pool* pool, winnow
                                            const winnow_pose* pose, const winnow_shape_ray* ray,
                                            winnow_shape_hit* hit);
 
-// --- shapes made of many --------------------------------------------------------------------
+// --- composite shapes -----------------------------------------------------------------------
 
 typedef struct winnow_composite_pool winnow_composite_pool;
 /// `shapes` must outlive the pool.
@@ -254,14 +254,14 @@ WINNOW_C_API winnow_status winnow_composite_pool_bounds(const winnow_composite_p
                                                         winnow_aabb* box);
 WINNOW_C_API winnow_status winnow_composite_pool_radius(const winnow_composite_pool* pool,
                                                         winnow_shape_id id, double* radius);
-/// Returns the number of parts; parts are numbered from 0. A part is a triangle of a mesh or height
-/// field. A compound numbers them child by child: one part per convex child, one per triangle of a
-/// mesh or height field.
+/// Returns the number of parts; parts are numbered from 0. A mesh or height field has one part per
+/// triangle. The parts of a compound are numbered child by child: one part per convex child, one
+/// per triangle of a mesh or height field.
 WINNOW_C_API winnow_status winnow_composite_pool_parts(const winnow_composite_pool* pool,
                                                        winnow_shape_id id, size_t* parts);
-/// Returns which child a part of a compound belongs to, and the triangle of that child,
-/// WINNOW_WHOLE_SHAPE if the child is convex. WINNOW_INVALID_KEY if the compound or the part does
-/// not exist.
+/// Returns the child that a part of a compound belongs to, and the triangle of that child;
+/// WINNOW_WHOLE_SHAPE as the triangle if the child is convex. Returns WINNOW_INVALID_KEY if the
+/// compound or the part does not exist.
 WINNOW_C_API winnow_status winnow_composite_pool_part(const winnow_composite_pool* pool,
                                                       winnow_shape_id compound, uint32_t part,
                                                       uint32_t* child, uint32_t* child_part);

@@ -18,7 +18,7 @@ typedef struct winnow_rigid_motion {
   double travel[3];
   double turn[3];  ///< rotation axis times angle in radians, in world axes
 } winnow_rigid_motion;
-/// WINNOW_INVALID_POSE, here and below, for an invalid motion.
+/// This function and the next two return WINNOW_INVALID_POSE for an invalid motion.
 WINNOW_C_API winnow_status winnow_rigid_motion_between(const winnow_pose* start,
                                                        const winnow_pose* end,
                                                        winnow_rigid_motion* motion);

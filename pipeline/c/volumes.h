@@ -1,8 +1,8 @@
 #pragma once
 
-/// Bounding volumes in float, poses, and views of the caller's columns. A view is read without a
-/// copy, and only during the call. If the engine stores float and the column is double, values are
-/// first rounded outward.
+/// Bounding volumes in float, poses, and views of the caller's columns. A view is read only during
+/// the call, and without a copy if its number type is that of the engine. Other numbers are
+/// converted; boxes in double are rounded outward to float.
 
 #include <winnow/c/core.h>
 

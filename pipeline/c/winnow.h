@@ -4,10 +4,10 @@
 /// interface: winnow_partition_self_pairs is Partition::self_pairs, and the C++ header documents
 /// it. The C headers document only the differences.
 ///
-/// - Every call that can fail returns a winnow_status. A call that fails has changed nothing. A
-///   null pointer that is not allowed, an invalid kind and a wrong `size` are
-///   WINNOW_INVALID_ARGUMENT. Pointers to missing, too short or destroyed memory cannot be detected
-///   and must not be passed.
+/// - Every call that can fail returns a winnow_status. A call that fails has changed nothing, but
+///   may have emptied its result buffer. It returns WINNOW_INVALID_ARGUMENT for a null pointer that
+///   is not allowed, an invalid kind or a wrong `size`. Pointers to missing, too short or destroyed
+///   memory cannot be detected and must not be passed.
 /// - winnow_x_create creates an x, and winnow_x_destroy destroys it; destroying null does nothing.
 ///   Objects that an x was created from (the shapes of a scene, the scene of its queries, the
 ///   context of a winnow_memory) must outlive it.
@@ -24,13 +24,13 @@
 /// README.md in this directory states how the binary interface may change.
 
 #include <winnow/c/contact_groups.h>
+#include <winnow/c/continuous_collision.h>
 #include <winnow/c/core.h>
 #include <winnow/c/hooks.h>
 #include <winnow/c/narrow_phase.h>
 #include <winnow/c/partition.h>
 #include <winnow/c/scene.h>
 #include <winnow/c/scene_queries.h>
-#include <winnow/c/scene_sweep.h>
 #include <winnow/c/sensors.h>
 #include <winnow/c/shapes.h>
 #include <winnow/c/snapshots.h>

@@ -33,7 +33,8 @@ class Bisection {
   Bisection(std::vector<WorkItem> items, std::span<SplitPlane> cuts)
       : items_(std::move(items)), cuts_(cuts) {}
 
-  /// Cuts the region of some ranks; returns the index of the root of the new cuts.
+  /// Cuts the region of ranks [first, first + count). Returns the index of the root of the new
+  /// cuts; ~first if `count` is 1.
   std::int32_t cut(std::span<WorkItem> items, std::uint32_t first, std::uint32_t count) {
     if (count == 1) return ~static_cast<std::int32_t>(first);
     const std::uint32_t below = count / 2;
@@ -77,18 +78,19 @@ class Bisection {
       candidate.cut_in_two +=
           item.box.min[a] < candidate.cut.at && item.box.max[a] >= candidate.cut.at;
     }
-    // If all centres are equal, this axis cannot divide the work: rank it last.
+    // If all centres are equal on this axis, it cannot divide the work: rank it last.
     if (!(low < high)) candidate.cut_in_two = items.size() + 1;
     candidate.length = high * 0.5F - low * 0.5F;
     return candidate;
   }
 
-  /// Returns the coordinate below which the share below / count of the work is, by selection.
+  /// Returns a coordinate such that about below / count of the work is of centres below it. By
+  /// quickselect.
   static float quantile(std::span<WorkItem> items, int axis, std::uint32_t below,
                         std::uint32_t count) {
     std::uint64_t sum = 0;
     for (const WorkItem& item : items) sum += item.work;
-    std::uint64_t wanted = sum / count * below + sum % count * below / count;
+    std::uint64_t target = sum / count * below + sum % count * below / count;
     while (items.size() > 1) {
       const std::size_t half = items.size() / 2;
       std::nth_element(
@@ -96,10 +98,10 @@ class Bisection {
           [axis](const WorkItem& a, const WorkItem& b) { return a.centre[axis] < b.centre[axis]; });
       std::uint64_t first = 0;
       for (const WorkItem& item : items.first(half)) first += item.work;
-      if (wanted < first) {
+      if (target < first) {
         items = items.first(half);
       } else {
-        wanted -= first;
+        target -= first;
         items = items.subspan(half);
       }
     }

@@ -22,7 +22,7 @@ constexpr std::size_t kHeader = 2 * sizeof(std::uint64_t);
 
 [[nodiscard]] bool is_good(const BodyRecord& body) noexcept {
   const auto is_zero = [](std::uint8_t byte) { return byte == 0; };
-  return body.motion <= Motion::dynamic && body.is_new <= 1 &&
+  return body.state <= BodyState::dynamic && body.is_new <= 1 &&
          std::all_of(std::begin(body.spare), std::end(body.spare), is_zero);
 }
 
@@ -68,24 +68,24 @@ std::vector<BodyDefinition> definitions_of(std::span<const BodyName> names,
 std::vector<BodyRecord> records_of(std::span<const BodyDefinition> bodies) {
   std::vector<BodyRecord> records;
   for (const BodyDefinition& body : bodies) {
-    records.push_back({body.pose, body.shape, body.filter, body.motion, 1});
+    records.push_back({body.pose, body.shape, body.filter, body.state, 1});
   }
   return records;
 }
 
 std::uint64_t digest_of_batch(const ClusterSceneBatch& batch) noexcept {
-  Digest told;
-  told.add_array(batch.names);
+  Digest digest;
+  digest.add_array(batch.names);
   for (const BodyDefinition& body : batch.bodies) {
-    for (const double number : body.pose.position) told.add(number);
-    for (const double number : body.pose.orientation) told.add(number);
+    for (const double number : body.pose.position) digest.add(number);
+    for (const double number : body.pose.orientation) digest.add(number);
     for (const std::uint32_t number :
-         {body.shape.bits, static_cast<std::uint32_t>(body.motion), body.filter.layers,
+         {body.shape.bits, static_cast<std::uint32_t>(body.state), body.filter.layers,
           body.filter.mask, body.filter.environment}) {
-      told.add(std::uint64_t{number});
+      digest.add(std::uint64_t{number});
     }
   }
-  return told.value();
+  return digest.value();
 }
 
 Status write_checkpoint(std::span<const BodyName> names, std::span<const BodyRecord> bodies,

@@ -12,7 +12,7 @@
 
 namespace winnow {
 
-/// The bodies that one rank adds, or saved.
+/// The bodies that one rank saves or restores, and their touching pairs.
 struct RecordBatch {
   std::vector<BodyName> names;
   std::vector<BodyRecord> bodies;
@@ -24,7 +24,7 @@ struct RecordBatch {
                                                          std::span<const BodyRecord> bodies);
 /// Converts definitions to records of new bodies.
 [[nodiscard]] std::vector<BodyRecord> records_of(std::span<const BodyDefinition> bodies);
-/// Returns a digest of all bits of a batch.
+/// Returns a digest of the names, poses, shapes, motions and filters of a batch.
 [[nodiscard]] std::uint64_t digest_of_batch(const ClusterSceneBatch& batch) noexcept;
 
 /// Appends the checkpoint of one rank: see FORMATS.md, "Checkpoints of clusters".

@@ -22,7 +22,7 @@ struct ClusterState : RankGroup {
     return place < bodies.size() ? &bodies[place] : nullptr;
   }
 
-  [[nodiscard]] Status settle();
+  [[nodiscard]] Status migrate();
   [[nodiscard]] Status deliver(const OverlappedWork& meanwhile = {});
   [[nodiscard]] Status take_names_of(std::span<const ClusterBatch> batches,
                                      std::span<Status> answers);
@@ -42,19 +42,19 @@ ClusterState::ClusterState(Transport& given, const ClusterOptions& with)
 }
 
 /// Sends bodies to the ranks that they belong to, and copies to the ranks that they overlap.
-Status ClusterState::settle() {
+Status ClusterState::migrate() {
   const Regions before = regions;
-  was_cut = wants_cut && !is_single_rank();
+  was_cut = needs_cut && !is_single_rank();
   if (was_cut) {
     std::vector<CutWork> work;
     for (RankBodies& one : bodies) work.push_back(one.cut_work());
     const Status answer = cut_space(work);
     if (answer != Status::ok) return answer;
   }
-  wants_cut = false;
+  needs_cut = false;
   for (RankBodies& one : bodies) {
     one.send(before, regions, was_cut);
-    one.pack(parcels);
+    one.pack(messages);
   }
   // Refresh during the exchange, except after a cut, when many bodies come and go.
   if (was_cut) return deliver();
@@ -69,7 +69,7 @@ Status ClusterState::deliver(const OverlappedWork& meanwhile) {
   std::span<const RankMessage> received;
   Status answer = is_single_rank() ? Status::ok : exchange(received, meanwhile);
   for (std::uint32_t i = 0; i < bodies.size() && answer == Status::ok; ++i) {
-    answer = bodies[i].receive(parcels_for(received, first + i));
+    answer = bodies[i].receive(messages_for(received, first + i));
   }
   return answer;
 }
@@ -78,12 +78,12 @@ Status ClusterState::take_names_of(std::span<const ClusterBatch> batches,
                                    std::span<Status> answers) {
   std::vector<std::vector<BodyName>> removed;
   std::vector<std::span<const BodyName>> freed;
-  std::vector<std::span<const BodyName>> wanted;
+  std::vector<std::span<const BodyName>> requested;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     freed.emplace_back(removed.emplace_back(bodies[i].take_removed()));
-    wanted.push_back(answers[i] == Status::ok ? batches[i].names : std::span<const BodyName>{});
+    requested.push_back(answers[i] == Status::ok ? batches[i].names : std::span<const BodyName>{});
   }
-  return take_names(freed, wanted, answers);
+  return take_names(freed, requested, answers);
 }
 
 Status ClusterState::add(std::span<const ClusterBatch> batches, std::span<Status> answers) {
@@ -91,7 +91,7 @@ Status ClusterState::add(std::span<const ClusterBatch> batches, std::span<Status
   for (RankBodies& one : bodies) {
     one.forget_pairs();
     one.send_removals(regions);
-    one.pack(parcels);
+    one.pack(messages);
   }
   Status answer = deliver();
   for (std::size_t i = 0; i < bodies.size() && answer == Status::ok; ++i) {
@@ -105,7 +105,7 @@ Status ClusterState::add(std::span<const ClusterBatch> batches, std::span<Status
 }
 
 Status ClusterState::self_pairs(Order order) {
-  Status found = settle();
+  Status found = migrate();
   if (found == Status::communication_failed) return found;
   for (RankBodies& one : bodies) {
     if (found == Status::ok) found = one.find_pairs(order);
@@ -120,7 +120,7 @@ Status ClusterState::count_found(Status found) {
         {one.size(), one.ghosts(), one.pairs().size(), one.departed().size(), one.work()});
   }
   const Status answer = count(counts, found);
-  if (answer != Status::ok || !wants_cut) return answer;
+  if (answer != Status::ok || !needs_cut) return answer;
   for (RankBodies& one : bodies) one.measure_work();
   return Status::ok;
 }
@@ -164,11 +164,11 @@ std::uint32_t Cluster::hosted() const noexcept {
 }
 
 Status Cluster::add(std::span<const ClusterBatch> batches, std::span<Status> answers) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   const bool fit = batches.size() == hosted() && answers.size() == hosted();
   const Status status = collective(state_, CollectiveCall::add, [&] {
     if (fit) return state_->add(batches, answers);
-    // The call is collective: other processes need this one to take part, with no bodies.
+    // The call is collective: other processes wait for this one, which adds no bodies.
     const std::vector<ClusterBatch> nothing(hosted());
     std::vector<Status> ignored(hosted());
     return state_->add(nothing, ignored);
@@ -177,22 +177,22 @@ Status Cluster::add(std::span<const ClusterBatch> batches, std::span<Status> ans
 }
 
 Status Cluster::move(std::uint32_t rank, std::span<const BodyName> names, const BoxView& boxes) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   return on_rank(state_, rank, [&](RankBodies& bodies) { return bodies.move(names, boxes); });
 }
 
 Status Cluster::move(std::uint32_t rank, std::span<const Key> keys, const BoxView& boxes) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   return on_rank(state_, rank, [&](RankBodies& bodies) { return bodies.move(keys, boxes); });
 }
 
 Status Cluster::remove(std::uint32_t rank, std::span<const BodyName> names) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   return on_rank(state_, rank, [&](RankBodies& bodies) { return bodies.remove(names); });
 }
 
 Status Cluster::self_pairs(Order order) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   return collective(state_, CollectiveCall::find, [&] { return state_->self_pairs(order); });
 }
 
@@ -202,7 +202,7 @@ NamePairs Cluster::pairs(std::uint32_t rank) const noexcept {
 }
 
 Status Cluster::digest(ClusterDigest& digest) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   return collective(state_, CollectiveCall::digest, [&] { return state_->digest(digest); });
 }
 

@@ -56,7 +56,7 @@ struct RankQueries {
 
 struct RayAll {
   static constexpr CollectiveCall kCall = CollectiveCall::all;
-  using Question = ShapeRay;
+  using Query = ShapeRay;
   using Answer = ClusterHit;
 
   static Status check(const RankScene&, const ShapeRay& ray) noexcept {
@@ -113,15 +113,16 @@ struct HitColumnsOfRays {
   std::vector<double> number[7];
 };
 
-/// A scene breaks ties by id, which does not follow the order of names. So each ray is cast again,
-/// up to a little behind its hit; if it hits several bodies there, all hits of the whole ray are
-/// sent.
+/// A scene breaks ties by id, a cluster by name. So each ray that hits is cast again, with a
+/// maximal t of 1 + 1e-6 times that of its hit. If this ray hits several bodies, all hits of the
+/// whole ray are sent.
 struct RayClosest : RayAll {
   static constexpr CollectiveCall kCall = CollectiveCall::closest;
   template <typename Give>
   static Status answer(RankQueries& scene, std::span<const ShapeRay> rays, const Filter& filter,
                        Give&& give) {
-    // Cast the whole ray: the last digits of its hits depend on where it ends.
+    // Hits of the shorter rays are not sent: the last digits of a hit depend on the ray's maximal
+    // t.
     constexpr double kBehind = 1.0 + 1e-6;
     HitColumnsOfRays table(rays.size());
     Status status = scene.queries.closest(ShapeRayBatch(rays), table.columns(), filter);
@@ -172,7 +173,7 @@ struct RayAny : RayAll {
 
 struct ProbeOverlap {
   static constexpr CollectiveCall kCall = CollectiveCall::overlap;
-  using Question = ShapeProbe;
+  using Query = ShapeProbe;
   using Answer = ClusterOverlap;
 
   static Status check(const RankScene& rank, const ShapeProbe& probe) noexcept {
@@ -199,7 +200,7 @@ struct ProbeOverlap {
 
 struct PointNearest {
   static constexpr CollectiveCall kCall = CollectiveCall::nearest;
-  using Question = NearestProbe;
+  using Query = NearestProbe;
   using Answer = ClusterDistance;
 
   static Status check(const RankScene&, const NearestProbe& probe) noexcept {
@@ -245,33 +246,33 @@ struct PointNearest {
 template <typename Kind>
 class CollectiveQuery {
  public:
-  using Question = typename Kind::Question;
+  using Query = typename Kind::Query;
   using Answer = typename Kind::Answer;
   using Numbered = NumberedAnswer<Answer>;
 
-  CollectiveQuery(ClusterSceneState& cluster, std::span<const ClusterQueryBatch<Question>> asked)
-      : cluster_(cluster), asked_(asked), sent_(asked.size()), answered_(asked.size()) {}
+  CollectiveQuery(ClusterSceneState& cluster, std::span<const ClusterQueryBatch<Query>> batches)
+      : cluster_(cluster), batches_(batches), sent_(batches.size()), answered_(batches.size()) {}
 
   /// Fills `lists`, and sets the status of each hosted rank.
   Status run(AnswersOfRanks<Answer>& lists, std::span<Status> answers) {
-    const Status settled = cluster_.settle();
-    if (settled == Status::communication_failed) return settled;
-    for (std::size_t i = 0; i < asked_.size(); ++i) {
+    const Status migrated = cluster_.migrate();
+    if (migrated == Status::communication_failed) return migrated;
+    for (std::size_t i = 0; i < batches_.size(); ++i) {
       answers[i] = check(i);
       if (answers[i] == Status::ok) send(i);
     }
     std::span<const RankMessage> received;
     Status status = cluster_.exchange(received);
     if (status != Status::ok) return status;
-    std::uint64_t worst[] = {static_cast<std::uint64_t>(settled)};
-    for (std::size_t i = 0; i < asked_.size(); ++i) {
+    std::uint64_t worst[] = {static_cast<std::uint64_t>(migrated)};
+    for (std::size_t i = 0; i < batches_.size(); ++i) {
       const Status found = answer(i, received);
       worst[0] = std::max(worst[0], static_cast<std::uint64_t>(found));
     }
     status = cluster_.exchange(received);
     if (status != Status::ok) return status;
-    lists.assign(asked_.size(), {});
-    for (std::size_t i = 0; i < asked_.size(); ++i) gather(i, received, answers[i], lists[i]);
+    lists.assign(batches_.size(), {});
+    for (std::size_t i = 0; i < batches_.size(); ++i) gather(i, received, answers[i], lists[i]);
     status = cluster_.transport.reduce({}, worst);
     return status == Status::ok ? static_cast<Status>(worst[0]) : status;
   }
@@ -283,7 +284,7 @@ class CollectiveQuery {
   };
   /// Data of the sent messages; must stay in place until all results have been received.
   struct Sent {
-    std::vector<Question> questions;
+    std::vector<Query> queries;
     std::vector<std::uint32_t> numbers;
     ObjectFilter filter;
   };
@@ -293,9 +294,9 @@ class CollectiveQuery {
   }
 
   [[nodiscard]] Status check(std::size_t i) const noexcept {
-    if (asked_[i].filter.predicate.accept != nullptr) return Status::unsupported;
-    for (const Question& question : asked_[i].questions) {
-      const Status good = Kind::check(cluster_.scenes[i], question);
+    if (batches_[i].filter.predicate.accept != nullptr) return Status::unsupported;
+    for (const Query& query : batches_[i].queries) {
+      const Status good = Kind::check(cluster_.scenes[i], query);
       if (good != Status::ok) return good;
     }
     return Status::ok;
@@ -304,26 +305,26 @@ class CollectiveQuery {
   void send(std::size_t i) {
     std::vector<AddressedQuery> posted;
     std::vector<std::uint32_t> ranks;
-    const auto questions = asked_[i].questions;
-    for (std::uint32_t number = 0; number < questions.size(); ++number) {
-      Kind::find_ranks(cluster_, cluster_.scenes[i], questions[number], ranks);
+    const auto queries = batches_[i].queries;
+    for (std::uint32_t number = 0; number < queries.size(); ++number) {
+      Kind::find_ranks(cluster_, cluster_.scenes[i], queries[number], ranks);
       for (const std::uint32_t to : ranks) posted.push_back({to, number});
     }
     std::ranges::stable_sort(posted, {}, &AddressedQuery::to);
     Sent& sent = sent_[i];
-    sent.filter = asked_[i].filter.object();
+    sent.filter = batches_[i].filter.object();
     for (const AddressedQuery& one : posted) {
-      sent.questions.push_back(questions[one.number]);
+      sent.queries.push_back(queries[one.number]);
       sent.numbers.push_back(one.number);
     }
     const std::span<const AddressedQuery> all(posted);
     for_each_receiver(all, std::span<const AddressedQuery>(),
                       [&](std::uint32_t to, auto ones, auto) {
                         const auto at = static_cast<std::size_t>(ones.data() - all.data());
-                        cluster_.parcels.push_back(
+                        cluster_.messages.push_back(
                             {rank_of(i),
                              to,
-                             {std::as_bytes(std::span(sent.questions).subspan(at, ones.size())),
+                             {std::as_bytes(std::span(sent.queries).subspan(at, ones.size())),
                               std::as_bytes(std::span(sent.numbers).subspan(at, ones.size())),
                               std::as_bytes(std::span(&sent.filter, 1))}});
                       });
@@ -335,12 +336,12 @@ class CollectiveQuery {
     std::vector<Numbered>& out = answered_[i];
     std::vector<std::pair<std::uint32_t, std::size_t>> begins;
     Status status = Status::ok;
-    for (const RankMessage& parcel : parcels_for(received, rank_of(i))) {
-      const auto numbers = column_of<std::uint32_t>(parcel, 1);
-      const ObjectFilter by = column_of<ObjectFilter>(parcel, 2).front();
-      begins.emplace_back(parcel.from, out.size());
+    for (const RankMessage& message : messages_for(received, rank_of(i))) {
+      const auto numbers = column_of<std::uint32_t>(message, 1);
+      const ObjectFilter by = column_of<ObjectFilter>(message, 2).front();
+      begins.emplace_back(message.from, out.size());
       if (status != Status::ok) continue;
-      status = Kind::answer(scene, column_of<Question>(parcel, 0),
+      status = Kind::answer(scene, column_of<Query>(message, 0),
                             {.layers = by.layers, .mask = by.mask, .environment = by.environment},
                             [&](std::size_t k, const Answer& given) {
                               out.push_back({numbers[k], given});
@@ -350,18 +351,18 @@ class CollectiveQuery {
       const std::size_t end = k + 1 < begins.size() ? begins[k + 1].second : out.size();
       const auto part = std::span(out).subspan(begins[k].second, end - begins[k].second);
       if (part.empty()) continue;
-      cluster_.parcels.push_back({rank_of(i), begins[k].first, {std::as_bytes(part)}});
+      cluster_.messages.push_back({rank_of(i), begins[k].first, {std::as_bytes(part)}});
     }
     return status;
   }
 
-  /// Sorts the results that a hosted rank received, and removes duplicates: each rank that holds a
-  /// body reports it.
+  /// Sorts the results that a hosted rank received, and removes duplicates: each rank that has a
+  /// body or a copy of it reports the body.
   void gather(std::size_t i, std::span<const RankMessage> received, Status answered,
               AnswerLists<Answer>& lists) const {
     std::vector<Numbered> all;
-    for (const RankMessage& parcel : parcels_for(received, rank_of(i))) {
-      const auto part = column_of<Numbered>(parcel, 0);
+    for (const RankMessage& message : messages_for(received, rank_of(i))) {
+      const auto part = column_of<Numbered>(message, 0);
       all.insert(all.end(), part.begin(), part.end());
     }
     const auto order = [](const Numbered& one) {
@@ -370,11 +371,11 @@ class CollectiveQuery {
     std::ranges::sort(all, {}, order);
     const auto same = [&](const Numbered& a, const Numbered& b) { return order(a) == order(b); };
     all.erase(std::unique(all.begin(), all.end(), same), all.end());
-    const std::size_t count = answered == Status::ok ? asked_[i].questions.size() : 0;
+    const std::size_t count = answered == Status::ok ? batches_[i].queries.size() : 0;
     auto next = all.cbegin();
     lists.first.push_back(0);
     for (std::size_t number = 0; number < count; ++number) {
-      const std::size_t most = Kind::most(asked_[i].questions[number]);
+      const std::size_t most = Kind::most(batches_[i].queries[number]);
       for (std::size_t k = 0; next != all.cend() && next->number == number; ++next, ++k) {
         if (k < most) lists.answers.push_back(next->answer);
       }
@@ -383,7 +384,7 @@ class CollectiveQuery {
   }
 
   ClusterSceneState& cluster_;
-  std::span<const ClusterQueryBatch<Question>> asked_;
+  std::span<const ClusterQueryBatch<Query>> batches_;
   std::vector<Sent> sent_;
   std::vector<std::vector<Numbered>> answered_;
 };
@@ -399,14 +400,14 @@ struct ClusterQueryState {
   AnswersOfRanks<ClusterDistance> distances;
 
   template <typename Kind>
-  Status ask(std::span<const ClusterQueryBatch<typename Kind::Question>> asked,
-             std::span<Status> answers, AnswersOfRanks<typename Kind::Answer>& lists) {
+  Status run_query(std::span<const ClusterQueryBatch<typename Kind::Query>> batches,
+                   std::span<Status> answers, AnswersOfRanks<typename Kind::Answer>& lists) {
     const std::size_t hosted = cluster == nullptr ? 0 : cluster->scenes.size();
-    const bool fit = asked.size() == hosted && answers.size() == hosted;
+    const bool fit = batches.size() == hosted && answers.size() == hosted;
     const Status status = collective(cluster, Kind::kCall, [&] {
-      if (fit) return CollectiveQuery<Kind>(*cluster, asked).run(lists, answers);
-      // The call is collective: other processes need this one to take part, with no queries.
-      const std::vector<ClusterQueryBatch<typename Kind::Question>> nothing(hosted);
+      if (fit) return CollectiveQuery<Kind>(*cluster, batches).run(lists, answers);
+      // The call is collective: other processes wait for this one, which has no queries.
+      const std::vector<ClusterQueryBatch<typename Kind::Query>> nothing(hosted);
       std::vector<Status> ignored(hosted);
       return CollectiveQuery<Kind>(*cluster, nothing).run(lists, ignored);
     });
@@ -430,24 +431,24 @@ ClusterQueries::~ClusterQueries() {
 
 Status ClusterQueries::closest(std::span<const ClusterQueryBatch<ShapeRay>> rays,
                                std::span<Status> answers) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   if (state_ == nullptr) return Status::out_of_memory;
-  return state_->ask<RayClosest>(rays, answers, state_->hits);
+  return state_->run_query<RayClosest>(rays, answers, state_->hits);
 }
 
 Status ClusterQueries::all(std::span<const ClusterQueryBatch<ShapeRay>> rays,
                            std::span<Status> answers) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   if (state_ == nullptr) return Status::out_of_memory;
-  return state_->ask<RayAll>(rays, answers, state_->hits);
+  return state_->run_query<RayAll>(rays, answers, state_->hits);
 }
 
 Status ClusterQueries::any(std::span<const ClusterQueryBatch<ShapeRay>> rays,
                            std::span<Status> answers) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   if (state_ == nullptr) return Status::out_of_memory;
   AnswersOfRanks<ClusterHit> found;
-  const Status status = state_->ask<RayAny>(rays, answers, found);
+  const Status status = state_->run_query<RayAny>(rays, answers, found);
   if (status != Status::ok) return status;
   state_->blocked.assign(found.size(), {});
   for (std::size_t i = 0; i < found.size(); ++i) {
@@ -461,16 +462,16 @@ Status ClusterQueries::any(std::span<const ClusterQueryBatch<ShapeRay>> rays,
 
 Status ClusterQueries::overlap(std::span<const ClusterQueryBatch<ShapeProbe>> shapes,
                                std::span<Status> answers) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   if (state_ == nullptr) return Status::out_of_memory;
-  return state_->ask<ProbeOverlap>(shapes, answers, state_->overlaps);
+  return state_->run_query<ProbeOverlap>(shapes, answers, state_->overlaps);
 }
 
 Status ClusterQueries::nearest(std::span<const ClusterQueryBatch<NearestProbe>> points,
                                std::span<Status> answers) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   if (state_ == nullptr) return Status::out_of_memory;
-  return state_->ask<PointNearest>(points, answers, state_->distances);
+  return state_->run_query<PointNearest>(points, answers, state_->distances);
 }
 
 ClusterResults<ClusterHit> ClusterQueries::hits(std::uint32_t rank) const noexcept {

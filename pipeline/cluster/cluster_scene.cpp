@@ -17,30 +17,30 @@ ClusterSceneState::ClusterSceneState(Transport& given, const ShapePool& shapes,
     scenes.emplace_back(first + i, ranks, shapes, options.scene);
   }
   const SceneOptions& scene = options.scene;
-  if (scene.carry_over != 0.0 || scene.warm_start || scene.suppress_ghost_contacts ||
+  if (scene.cache_tolerance != 0.0 || scene.warm_start || scene.suppress_ghost_contacts ||
       !scenes.front().is_good()) {
     status = Status::invalid_argument;
   }
 }
 
-Status ClusterSceneState::settle() {
-  // Report errors only after the exchange, in which the other ranks take part.
+Status ClusterSceneState::migrate() {
+  // Report errors only after the exchange, because other processes wait for this one.
   Status found = Status::ok;
   for (RankScene& one : scenes) {
     if (found == Status::ok) found = one.refresh();
   }
   const Regions before = regions;
-  was_cut = wants_cut && !is_single_rank();
+  was_cut = needs_cut && !is_single_rank();
   if (was_cut) {
     std::vector<CutWork> work;
     for (RankScene& one : scenes) work.push_back(one.cut_work());
     const Status answer = cut_space(work);
     if (answer != Status::ok) return answer;
   }
-  wants_cut = false;
+  needs_cut = false;
   for (RankScene& one : scenes) {
     one.send(before, regions, was_cut);
-    one.pack(parcels);
+    one.pack(messages);
   }
   const Status answer = deliver();
   return answer == Status::communication_failed || found == Status::ok ? answer : found;
@@ -51,7 +51,7 @@ Status ClusterSceneState::deliver() {
   std::span<const RankMessage> received;
   Status answer = is_single_rank() ? Status::ok : exchange(received);
   for (std::uint32_t i = 0; i < scenes.size() && answer == Status::ok; ++i) {
-    answer = scenes[i].receive(parcels_for(received, first + i));
+    answer = scenes[i].receive(messages_for(received, first + i));
   }
   return answer;
 }
@@ -60,34 +60,34 @@ Status ClusterSceneState::deliver() {
 Status ClusterSceneState::deliver_removals() {
   for (RankScene& one : scenes) {
     one.send_removals(regions);
-    one.pack(parcels);
+    one.pack(messages);
   }
   return deliver();
 }
 
-/// Batches that are refused already request no names.
-Status ClusterSceneState::take_names_of(std::span<const std::span<const BodyName>> wanted,
+/// A batch that was refused requests no names.
+Status ClusterSceneState::take_names_of(std::span<const std::span<const BodyName>> requested,
                                         std::span<Status> answers) {
   std::vector<std::vector<BodyName>> removed;
   std::vector<std::span<const BodyName>> freed;
-  std::vector<std::span<const BodyName>> asked;
+  std::vector<std::span<const BodyName>> accepted_names;
   for (std::size_t i = 0; i < scenes.size(); ++i) {
     freed.emplace_back(removed.emplace_back(scenes[i].take_removed()));
-    asked.push_back(answers[i] == Status::ok ? wanted[i] : std::span<const BodyName>{});
+    accepted_names.push_back(answers[i] == Status::ok ? requested[i] : std::span<const BodyName>{});
   }
-  return is_single_rank() ? Status::ok : take_names(freed, asked, answers);
+  return is_single_rank() ? Status::ok : take_names(freed, accepted_names, answers);
 }
 
 Status ClusterSceneState::add(std::span<const ClusterSceneBatch> batches,
                               std::span<Status> answers) {
   Status answer = deliver_removals();
   if (answer != Status::ok) return answer;
-  std::vector<std::span<const BodyName>> wanted;
+  std::vector<std::span<const BodyName>> requested;
   for (std::size_t i = 0; i < scenes.size(); ++i) {
     answers[i] = scenes[i].check(batches[i]);
-    wanted.push_back(batches[i].names);
+    requested.push_back(batches[i].names);
   }
-  answer = take_names_of(wanted, answers);
+  answer = take_names_of(requested, answers);
   for (std::size_t i = 0; i < scenes.size() && answer == Status::ok; ++i) {
     if (answers[i] == Status::ok) {
       answer = scenes[i].insert(batches[i].names, records_of(batches[i].bodies));
@@ -99,27 +99,28 @@ Status ClusterSceneState::add(std::span<const ClusterSceneBatch> batches,
 Status ClusterSceneState::restore(std::span<const RecordBatch> batches, std::span<Status> answers) {
   Status answer = deliver_removals();
   if (answer != Status::ok) return answer;
-  std::vector<std::span<const BodyName>> wanted;
+  std::vector<std::span<const BodyName>> requested;
   for (std::size_t i = 0; i < scenes.size(); ++i) {
     if (answers[i] == Status::ok) {
       const auto bodies = definitions_of(batches[i].names, batches[i].bodies);
       answers[i] = scenes[i].check({batches[i].names, bodies});
     }
-    wanted.push_back(batches[i].names);
+    requested.push_back(batches[i].names);
   }
-  answer = take_names_of(wanted, answers);
+  answer = take_names_of(requested, answers);
   for (std::size_t i = 0; i < scenes.size() && answer == Status::ok; ++i) {
     if (answers[i] != Status::ok) continue;
     answer = scenes[i].insert(batches[i].names, batches[i].bodies);
-    scenes[i].events().remember(batches[i].touching);
+    scenes[i].events().add_touching(batches[i].touching);
   }
   return answer;
 }
 
-/// Checks that all processes passed the same arguments (`told` is their digest) and that none
+/// Checks that all processes passed the same arguments (compares their digest) and that none
 /// refuses.
-Status ClusterSceneState::agree(std::uint64_t told, Status& refused) {
-  std::uint64_t greatest[3] = {static_cast<std::uint64_t>(refused), told, ~told};
+Status ClusterSceneState::agree(std::uint64_t argument_digest, Status& refused) {
+  std::uint64_t greatest[3] = {static_cast<std::uint64_t>(refused), argument_digest,
+                               ~argument_digest};
   const Status answer = transport.reduce({}, greatest);
   if (answer != Status::ok) return answer;
   refused = static_cast<Status>(greatest[0]);
@@ -135,15 +136,15 @@ Status ClusterSceneState::replicate(const ClusterSceneBatch& batch, Status& refu
     if (refused == Status::ok) refused = one.check(batch);
   }
   for (const BodyDefinition& body : batch.bodies) {
-    if (refused == Status::ok && body.motion != Motion::fixed) refused = Status::unsupported;
+    if (refused == Status::ok && body.state != BodyState::fixed) refused = Status::unsupported;
   }
   answer = agree(digest_of_batch(batch), refused);
   if (answer != Status::ok || refused != Status::ok) return answer;
   // Rank 0 requests the names for all ranks.
   std::vector<Status> answers(scenes.size(), Status::ok);
-  std::vector<std::span<const BodyName>> wanted(scenes.size());
-  if (first == 0) wanted.front() = batch.names;
-  answer = take_names_of(wanted, answers);
+  std::vector<std::span<const BodyName>> requested(scenes.size());
+  if (first == 0) requested.front() = batch.names;
+  answer = take_names_of(requested, answers);
   if (answer != Status::ok) return answer;
   refused = answers.front();
   answer = agree(0, refused);
@@ -159,10 +160,10 @@ Status ClusterSceneState::move_replicated(std::span<const BodyName> bodies,
   for (RankScene& one : scenes) {
     if (refused == Status::ok) refused = one.check_replicated(bodies, poses);
   }
-  Digest told;
-  told.add_array(bodies);
-  told.add_array(poses);
-  Status answer = agree(told.value(), refused);
+  Digest argument_digest;
+  argument_digest.add_array(bodies);
+  argument_digest.add_array(poses);
+  Status answer = agree(argument_digest.value(), refused);
   for (RankScene& one : scenes) {
     if (answer == Status::ok && refused == Status::ok) answer = one.move_replicated(poses);
   }
@@ -170,7 +171,7 @@ Status ClusterSceneState::move_replicated(std::span<const BodyName> bodies,
 }
 
 Status ClusterSceneState::collide(ContactLevel level) {
-  Status found = settle();
+  Status found = migrate();
   if (found == Status::communication_failed) return found;
   for (RankScene& one : scenes) {
     if (found == Status::ok) found = one.collide(level);
@@ -180,22 +181,22 @@ Status ClusterSceneState::collide(ContactLevel level) {
   return count_found(found);
 }
 
-/// Takes part in the exchanges even after an error on this process, which the other ranks get only
-/// later.
+/// Exchanges messages even after an error on this process, because other processes wait for this
+/// one. They get the error later, from count_found.
 Status ClusterSceneState::agree_on_events() {
   std::span<const RankMessage> received;
   if (!is_single_rank()) {
-    for (RankScene& one : scenes) one.events().ask(parcels);
+    for (RankScene& one : scenes) one.events().request(messages);
     Status answer = exchange(received);
     if (answer != Status::ok) return answer;
     for (std::uint32_t i = 0; i < scenes.size(); ++i) {
-      scenes[i].events().answer(parcels_for(received, first + i), parcels);
+      scenes[i].events().answer(messages_for(received, first + i), messages);
     }
     answer = exchange(received);
     if (answer != Status::ok) return answer;
   }
   for (std::uint32_t i = 0; i < scenes.size(); ++i) {
-    scenes[i].events().conclude(parcels_for(received, first + i));
+    scenes[i].events().conclude(messages_for(received, first + i));
     scenes[i].show_events();
   }
   return Status::ok;
@@ -205,7 +206,7 @@ Status ClusterSceneState::count_found(Status found) {
   std::vector<RankCounts> counts;
   for (const RankScene& one : scenes) counts.push_back(one.counts());
   const Status answer = count(counts, found);
-  if (answer != Status::ok || !wants_cut) return answer;
+  if (answer != Status::ok || !needs_cut) return answer;
   for (RankScene& one : scenes) one.measure_work();
   return Status::ok;
 }
@@ -224,7 +225,7 @@ Status ClusterSceneState::digest(ClusterDigest& digest) {
 
 namespace {
 
-/// Hashes all results of one pair of contacts.
+/// Hashes the names and manifolds of one pair of contacts, but not its event.
 std::uint64_t digest_of_pair(const Contacts& contacts, std::size_t pair, std::uint64_t seed) {
   Digest digest;
   digest.add(seed);
@@ -293,11 +294,11 @@ std::uint32_t ClusterScene::hosted() const noexcept {
 }
 
 Status ClusterScene::add(std::span<const ClusterSceneBatch> batches, std::span<Status> answers) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   const bool fit = batches.size() == hosted() && answers.size() == hosted();
   const Status status = collective(state_, CollectiveCall::add, [&] {
     if (fit) return state_->add(batches, answers);
-    // The call is collective: other processes need this one to take part, with no bodies.
+    // The call is collective: other processes wait for this one, which adds no bodies.
     const std::vector<ClusterSceneBatch> nothing(hosted());
     std::vector<Status> ignored(hosted());
     return state_->add(nothing, ignored);
@@ -306,7 +307,7 @@ Status ClusterScene::add(std::span<const ClusterSceneBatch> batches, std::span<S
 }
 
 Status ClusterScene::replicate(const ClusterSceneBatch& batch) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   Status refused = Status::ok;
   const Status status = collective(state_, CollectiveCall::replicate,
                                    [&] { return state_->replicate(batch, refused); });
@@ -314,7 +315,7 @@ Status ClusterScene::replicate(const ClusterSceneBatch& batch) {
 }
 
 Status ClusterScene::move_replicated(std::span<const BodyName> names, std::span<const Pose> poses) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   Status refused = Status::ok;
   const Status status = collective(state_, CollectiveCall::move_replicated,
                                    [&] { return state_->move_replicated(names, poses, refused); });
@@ -323,22 +324,22 @@ Status ClusterScene::move_replicated(std::span<const BodyName> names, std::span<
 
 Status ClusterScene::move(std::uint32_t rank, std::span<const BodyName> names,
                           const PoseView& poses) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   return on_rank(state_, rank, [&](RankScene& one) { return one.move(names, poses); });
 }
 
 Status ClusterScene::move(std::uint32_t rank, std::span<const Key> keys, const PoseView& poses) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   return on_rank(state_, rank, [&](RankScene& one) { return one.move(keys, poses); });
 }
 
 Status ClusterScene::remove(std::uint32_t rank, std::span<const BodyName> names) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   return on_rank(state_, rank, [&](RankScene& one) { return one.remove(names); });
 }
 
 Status ClusterScene::collide(ContactLevel level) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   if (level > ContactLevel::manifold) return Status::invalid_argument;
   return collective(state_, CollectiveCall::find, [&] { return state_->collide(level); });
 }
@@ -350,7 +351,7 @@ const Contacts& ClusterScene::contacts(std::uint32_t rank) const noexcept {
 }
 
 Status ClusterScene::digest(ClusterDigest& digest) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   return collective(state_, CollectiveCall::digest, [&] { return state_->digest(digest); });
 }
 
@@ -364,7 +365,7 @@ Status ClusterScene::save(std::uint32_t rank, std::vector<std::byte>& bytes) con
 
 Status ClusterScene::restore(std::span<const std::span<const std::byte>> bytes,
                              std::span<Status> answers) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   const bool fit = bytes.size() == hosted() && answers.size() == hosted();
   const Status status = collective(state_, CollectiveCall::restore, [&] {
     std::vector<RecordBatch> batches(hosted());

@@ -19,13 +19,14 @@ struct ClusterSceneState : RankGroup {
     return place < scenes.size() ? &scenes[place] : nullptr;
   }
 
-  /// Sends bodies to the ranks that they belong to, and copies to the ranks that they overlap, for
-  /// their current poses.
-  [[nodiscard]] Status settle();
+  /// Sends bodies to the ranks that they belong to at their current poses, and copies to the other
+  /// ranks whose regions they overlap.
+  [[nodiscard]] Status migrate();
   [[nodiscard]] Status add(std::span<const ClusterSceneBatch> batches, std::span<Status> answers);
-  /// Adds the bodies of checkpoints. `answers` may already contain errors of reading them.
+  /// Adds the bodies of checkpoints. If reading a checkpoint failed, `answers` contains the error,
+  /// and nothing of it is added.
   [[nodiscard]] Status restore(std::span<const RecordBatch> batches, std::span<Status> answers);
-  /// Sets `refused` to the reason for which nothing was added, the same on all ranks.
+  /// Sets `refused` to `ok`, or to the reason why nothing was added; the same on all processes.
   [[nodiscard]] Status replicate(const ClusterSceneBatch& batch, Status& refused);
   [[nodiscard]] Status move_replicated(std::span<const BodyName> bodies,
                                        std::span<const Pose> poses, Status& refused);
@@ -37,9 +38,9 @@ struct ClusterSceneState : RankGroup {
  private:
   [[nodiscard]] Status deliver();
   [[nodiscard]] Status deliver_removals();
-  [[nodiscard]] Status take_names_of(std::span<const std::span<const BodyName>> wanted,
+  [[nodiscard]] Status take_names_of(std::span<const std::span<const BodyName>> requested,
                                      std::span<Status> answers);
-  [[nodiscard]] Status agree(std::uint64_t told, Status& refused);
+  [[nodiscard]] Status agree(std::uint64_t argument_digest, Status& refused);
   [[nodiscard]] Status agree_on_events();
   [[nodiscard]] Status count_found(Status found);
 };

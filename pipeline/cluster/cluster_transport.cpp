@@ -16,15 +16,15 @@ Status LoopbackTransport::exchange(std::span<const RankMessage> sent,
                                    const OverlappedWork& meanwhile) {
   meanwhile();
   const auto keep = [&] {
-    parcels_.assign(sent.begin(), sent.end());
+    messages_.assign(sent.begin(), sent.end());
     return Status::ok;
   };
   const Status kept = catch_bad_alloc(keep, Status::out_of_memory);
   if (kept != Status::ok) return kept;
-  std::sort(parcels_.begin(), parcels_.end(), [](const RankMessage& a, const RankMessage& b) {
+  std::sort(messages_.begin(), messages_.end(), [](const RankMessage& a, const RankMessage& b) {
     return std::tie(a.to, a.from) < std::tie(b.to, b.from);
   });
-  received = parcels_;
+  received = messages_;
   return Status::ok;
 }
 

@@ -15,7 +15,7 @@ std::uint32_t ContactEvents::keeper_of(const TouchingPair& pair) const noexcept 
 
 /// Adds one message per receiver: begun pairs, then ended pairs.
 void ContactEvents::post(std::vector<AddressedPair>& begun, std::vector<AddressedPair>& ended,
-                         Columns& columns, std::vector<RankMessage>& parcels) const {
+                         Columns& columns, std::vector<RankMessage>& messages) const {
   columns.begun.clear();
   columns.ended.clear();
   std::sort(begun.begin(), begun.end());
@@ -27,18 +27,19 @@ void ContactEvents::post(std::vector<AddressedPair>& begun, std::vector<Addresse
   for_each_receiver(all_begun, all_ended, [&](std::uint32_t to, auto ones, auto others) {
     const auto i = static_cast<std::size_t>(ones.data() - begun.data());
     const auto k = static_cast<std::size_t>(others.data() - ended.data());
-    parcels.push_back({rank_,
-                       to,
-                       {std::as_bytes(std::span(columns.begun).subspan(i, ones.size())),
-                        std::as_bytes(std::span(columns.ended).subspan(k, others.size()))}});
+    messages.push_back({rank_,
+                        to,
+                        {std::as_bytes(std::span(columns.begun).subspan(i, ones.size())),
+                         std::as_bytes(std::span(columns.ended).subspan(k, others.size()))}});
   });
 }
 
-void ContactEvents::ask(std::vector<RankMessage>& parcels) {
-  post(begun_uncertain_, ended_uncertain_, asked_, parcels);
+void ContactEvents::request(std::vector<RankMessage>& messages) {
+  post(begun_uncertain_, ended_uncertain_, requests_, messages);
 }
 
-void ContactEvents::answer(std::span<const RankMessage> asked, std::vector<RankMessage>& parcels) {
+void ContactEvents::answer(std::span<const RankMessage> requests,
+                           std::vector<RankMessage>& messages) {
   struct SentPairs {
     TouchingPair pair;
     std::uint32_t by;
@@ -46,17 +47,17 @@ void ContactEvents::answer(std::span<const RankMessage> asked, std::vector<RankM
   };
   std::vector<SentPairs> begun;
   std::vector<SentPairs> ended;
-  for (const RankMessage& parcel : asked) {
-    for (const TouchingPair& pair : column_of<TouchingPair>(parcel, 0)) {
-      begun.push_back({pair, parcel.from});
+  for (const RankMessage& message : requests) {
+    for (const TouchingPair& pair : column_of<TouchingPair>(message, 0)) {
+      begun.push_back({pair, message.from});
     }
-    for (const TouchingPair& pair : column_of<TouchingPair>(parcel, 1)) {
-      ended.push_back({pair, parcel.from});
+    for (const TouchingPair& pair : column_of<TouchingPair>(message, 1)) {
+      ended.push_back({pair, message.from});
     }
   }
   std::sort(begun.begin(), begun.end());
   std::sort(ended.begin(), ended.end());
-  // The lists have been sent: reuse them.
+  // These lists have been copied to the sent messages: reuse them.
   begun_uncertain_.clear();
   ended_uncertain_.clear();
   for (const SentPairs& one : begun) {
@@ -69,26 +70,26 @@ void ContactEvents::answer(std::span<const RankMessage> asked, std::vector<RankM
       ended_uncertain_.push_back({one.by, one.pair});
     }
   }
-  post(begun_uncertain_, ended_uncertain_, answered_, parcels);
+  post(begun_uncertain_, ended_uncertain_, answered_, messages);
 }
 
 void ContactEvents::conclude(std::span<const RankMessage> answers) {
-  std::vector<TouchingPair> went_on;
-  for (const RankMessage& parcel : answers) {
-    for (const TouchingPair& pair : column_of<TouchingPair>(parcel, 0)) {
+  std::vector<TouchingPair> persisting;
+  for (const RankMessage& message : answers) {
+    for (const TouchingPair& pair : column_of<TouchingPair>(message, 0)) {
       const auto at = std::lower_bound(touching_.begin(), touching_.end(), pair);
       persisted_[static_cast<std::size_t>(at - touching_.begin())] = 1;
     }
-    const auto ended = column_of<TouchingPair>(parcel, 1);
-    went_on.insert(went_on.end(), ended.begin(), ended.end());
+    const auto ended = column_of<TouchingPair>(message, 1);
+    persisting.insert(persisting.end(), ended.begin(), ended.end());
   }
-  std::sort(went_on.begin(), went_on.end());
+  std::sort(persisting.begin(), persisting.end());
   std::erase_if(ended_, [&](const TouchingPair& pair) {
-    return std::binary_search(went_on.begin(), went_on.end(), pair);
+    return std::binary_search(persisting.begin(), persisting.end(), pair);
   });
 }
 
-void ContactEvents::remember(std::span<const TouchingPair> pairs) {
+void ContactEvents::add_touching(std::span<const TouchingPair> pairs) {
   std::vector<TouchingPair> both;
   both.reserve(touching_.size() + pairs.size());
   std::set_union(touching_.begin(), touching_.end(), pairs.begin(), pairs.end(),

@@ -19,33 +19,33 @@ struct TouchingPair {
   friend constexpr auto operator<=>(const TouchingPair&, const TouchingPair&) noexcept = default;
 };
 
-/// Determines which pairs of a rank have begun and ended. The rank that reports a pair may change
-/// as bodies move, so that a pair that began on one rank may have ended on another. If a rank
-/// cannot decide this, it sends the pair to the rank that the pair's hash selects (its keeper),
-/// which finds the pairs that are in both lists. Takes two exchanges; the size of the messages is
-/// proportional to the changes near borders.
+/// Determines which pairs of a rank have begun and ended. If the bodies of a touching pair move,
+/// another rank may report it: the pair then seems to begin on the new rank and to end on the old
+/// one. If a rank cannot exclude this, it sends the pair to the rank that the pair's hash selects
+/// (its keeper). Pairs that a keeper receives in both lists persist. Takes two exchanges; the size
+/// of the messages is proportional to the number of pairs that changed near borders.
 class ContactEvents {
  public:
   ContactEvents(std::uint32_t rank, std::uint32_t ranks) : rank_(rank), ranks_(ranks) {}
 
   /// Information that a rank has about a pair that touches now.
   enum class Knowledge : std::uint8_t {
-    is_new,  ///< one of its bodies is new: it did not touch before
-    local,   ///< if it touched before, this rank reported it
+    is_new,  ///< one of its bodies is new, so the pair did not touch before
+    local,   ///< if the pair touched before, this rank reported it
     none,
   };
 
   /// Compares the pairs that touch now, sorted, with the pairs of the last call. `knowledge` has
-  /// one entry per pair. `was_local(pair)` returns true if this rank would still report a previous
-  /// pair.
+  /// one entry per pair. `was_local(pair)` returns true if this rank would report a previous pair
+  /// if it still touched.
   template <typename WasLocal>
   void compare(std::vector<TouchingPair>& now, std::span<const Knowledge> knowledge,
                WasLocal&& was_local);
-  /// Step 1: sends the pairs that may have begun or ended to their keepers.
-  void ask(std::vector<RankMessage>& parcels);
-  /// Step 2, as keeper: returns the pairs that are in both lists.
-  void answer(std::span<const RankMessage> asked, std::vector<RankMessage>& parcels);
-  /// Step 3: marks the returned pairs as persisting.
+  /// Step 1: sends to their keepers the pairs that seem to have begun or ended, but may persist.
+  void request(std::vector<RankMessage>& messages);
+  /// Step 2, as keeper: returns the pairs that are in both lists to their senders.
+  void answer(std::span<const RankMessage> requests, std::vector<RankMessage>& messages);
+  /// Step 3: the returned pairs persist.
   void conclude(std::span<const RankMessage> answers);
 
   /// For each pair that touches now: not 0 if it touched before.
@@ -56,7 +56,7 @@ class ContactEvents {
   /// All touching pairs, sorted; checkpoints save them.
   [[nodiscard]] std::span<const TouchingPair> touching() const noexcept { return touching_; }
   /// Adds pairs that touched on another rank.
-  void remember(std::span<const TouchingPair> pairs);
+  void add_touching(std::span<const TouchingPair> pairs);
 
  private:
   /// A pair to be sent to its keeper, or back to a rank.
@@ -74,7 +74,7 @@ class ContactEvents {
     std::vector<TouchingPair> ended;
   };
   void post(std::vector<AddressedPair>& begun, std::vector<AddressedPair>& ended, Columns& columns,
-            std::vector<RankMessage>& parcels) const;
+            std::vector<RankMessage>& messages) const;
 
   std::uint32_t rank_;
   std::uint32_t ranks_;
@@ -83,7 +83,7 @@ class ContactEvents {
   std::vector<TouchingPair> ended_;
   std::vector<AddressedPair> begun_uncertain_;
   std::vector<AddressedPair> ended_uncertain_;
-  Columns asked_;
+  Columns requests_;
   Columns answered_;
 };
 

@@ -10,8 +10,8 @@ namespace {
 constexpr std::byte kRefusal{1};
 
 /// The messages for one receiver are sorted by sender.
-bool is_of(std::span<const RankMessage> parcels, std::uint32_t from) noexcept {
-  return std::ranges::binary_search(parcels, from, {}, &RankMessage::from);
+bool is_of(std::span<const RankMessage> messages, std::uint32_t from) noexcept {
+  return std::ranges::binary_search(messages, from, {}, &RankMessage::from);
 }
 
 }  // namespace
@@ -21,13 +21,14 @@ void IdDirectory::sort_by_keeper(std::vector<std::uint64_t>& names) const {
             [this](std::uint64_t a, std::uint64_t b) { return keeper_of(a) < keeper_of(b); });
 }
 
-void IdDirectory::ask(std::span<const std::uint64_t> names, std::vector<RankMessage>& parcels) {
+void IdDirectory::request(std::span<const std::uint64_t> names,
+                          std::vector<RankMessage>& messages) {
   sent_.assign(names.begin(), names.end());
-  sent_forgotten_.swap(forgotten_);
-  forgotten_.clear();
+  sent_released_.swap(released_);
+  released_.clear();
   sort_by_keeper(sent_);
-  sort_by_keeper(sent_forgotten_);
-  asked_.clear();
+  sort_by_keeper(sent_released_);
+  requested_keepers_.clear();
   const auto run_of = [this](const std::vector<std::uint64_t>& all, std::size_t first,
                              std::uint32_t to) {
     std::size_t end = first;
@@ -36,52 +37,54 @@ void IdDirectory::ask(std::span<const std::uint64_t> names, std::vector<RankMess
   };
   std::size_t s = 0;
   std::size_t f = 0;
-  while (s < sent_.size() || f < sent_forgotten_.size()) {
+  while (s < sent_.size() || f < sent_released_.size()) {
     std::uint32_t to = ranks_;
     if (s < sent_.size()) to = keeper_of(sent_[s]);
-    if (f < sent_forgotten_.size()) to = std::min(to, keeper_of(sent_forgotten_[f]));
+    if (f < sent_released_.size()) to = std::min(to, keeper_of(sent_released_[f]));
     const auto fresh = run_of(sent_, s, to);
-    const auto gone = run_of(sent_forgotten_, f, to);
-    parcels.push_back({rank_, to, {std::as_bytes(fresh), {}, {}, std::as_bytes(gone)}});
-    if (!fresh.empty()) asked_.push_back(to);
+    const auto gone = run_of(sent_released_, f, to);
+    messages.push_back({rank_, to, {std::as_bytes(fresh), {}, {}, std::as_bytes(gone)}});
+    if (!fresh.empty()) requested_keepers_.push_back(to);
     s += fresh.size();
     f += gone.size();
   }
 }
 
-void IdDirectory::answer(std::span<const RankMessage> asked, std::vector<RankMessage>& parcels) {
-  wanted_.clear();
-  for (const RankMessage& parcel : asked) {
-    for (const std::uint64_t name : column_of<std::uint64_t>(parcel, 3)) names_.erase(name);
-    for (const std::uint64_t name : column_of<std::uint64_t>(parcel, 0)) {
-      wanted_.push_back({name, parcel.from});
+void IdDirectory::answer(std::span<const RankMessage> requests,
+                         std::vector<RankMessage>& messages) {
+  requests_.clear();
+  for (const RankMessage& message : requests) {
+    for (const std::uint64_t name : column_of<std::uint64_t>(message, 3)) names_.erase(name);
+    for (const std::uint64_t name : column_of<std::uint64_t>(message, 0)) {
+      requests_.push_back({name, message.from});
     }
   }
-  std::sort(wanted_.begin(), wanted_.end());
+  std::sort(requests_.begin(), requests_.end());
   std::vector<std::uint32_t> refused;
-  for (std::size_t i = 0; i < wanted_.size(); ++i) {
-    const std::uint64_t name = wanted_[i].name;
-    const bool twice = (i > 0 && wanted_[i - 1].name == name) ||
-                       (i + 1 < wanted_.size() && wanted_[i + 1].name == name);
-    if (twice || names_.find(name) != NameTable::kNone) refused.push_back(wanted_[i].from);
+  for (std::size_t i = 0; i < requests_.size(); ++i) {
+    const std::uint64_t name = requests_[i].name;
+    const bool twice = (i > 0 && requests_[i - 1].name == name) ||
+                       (i + 1 < requests_.size() && requests_[i + 1].name == name);
+    if (twice || names_.find(name) != NameTable::kNone) refused.push_back(requests_[i].from);
   }
   std::sort(refused.begin(), refused.end());
   refused.erase(std::unique(refused.begin(), refused.end()), refused.end());
-  for (const std::uint32_t to : refused) parcels.push_back({rank_, to, {std::span(&kRefusal, 1)}});
+  for (const std::uint32_t to : refused) messages.push_back({rank_, to, {std::span(&kRefusal, 1)}});
 }
 
 bool IdDirectory::conclude(std::span<const RankMessage> refusals,
-                           std::vector<RankMessage>& parcels) {
+                           std::vector<RankMessage>& messages) {
   if (refusals.empty()) return true;
-  for (const std::uint32_t to : asked_) parcels.push_back({rank_, to, {std::span(&kRefusal, 1)}});
+  for (const std::uint32_t to : requested_keepers_)
+    messages.push_back({rank_, to, {std::span(&kRefusal, 1)}});
   return false;
 }
 
-void IdDirectory::keep(std::span<const RankMessage> taken_back) {
-  std::erase_if(wanted_, [&](const Wanted& one) { return is_of(taken_back, one.from); });
-  names_.reserve(names_.size() + wanted_.size());
-  for (const Wanted& one : wanted_) names_.set(one.name, one.from);
-  wanted_.clear();
+void IdDirectory::keep(std::span<const RankMessage> withdrawn) {
+  std::erase_if(requests_, [&](const NameRequest& one) { return is_of(withdrawn, one.from); });
+  names_.reserve(names_.size() + requests_.size());
+  for (const NameRequest& one : requests_) names_.set(one.name, one.from);
+  requests_.clear();
 }
 
 }  // namespace winnow

@@ -10,8 +10,8 @@
 
 namespace winnow {
 
-/// Compares boxes by their longest edge. The work of a pair is charged to the smaller body, because
-/// copies of the larger one follow it to any rank.
+/// Compares boxes by their longest edge. The work of a pair is charged to its smaller body: if that
+/// body moves to another rank, a copy of the larger body is sent there, so the work moves along.
 [[nodiscard]] inline bool is_larger(const Aabb& box, const Aabb& than) noexcept {
   const auto edge = [](const Aabb& of) {
     const Vec3f edges = of.max - of.min;
@@ -20,9 +20,10 @@ namespace winnow {
   return edge(box) > edge(than);
 }
 
-/// Distributes the work of a rank over the bodies that belong to it, in proportion to `counts`,
-/// each at least 1. They thus also share the work for the rank's copies of other bodies. `counts`,
-/// the result and `is_owned` are indexed by id.
+/// Distributes 16 * `work`, the work of a rank, over the bodies that belong to the rank, in
+/// proportion to `counts`; a share is at least 1. These bodies also get the work that the rank's
+/// copies of other bodies caused. `counts`, the result and `is_owned` are indexed by id; shares of
+/// copies are to be ignored.
 template <typename IsOwned>
 [[nodiscard]] std::vector<std::uint32_t> shares_of(std::span<const std::uint64_t> counts,
                                                    IsOwned&& is_owned, std::uint64_t work) {

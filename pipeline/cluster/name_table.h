@@ -58,7 +58,7 @@ class NameTable {
     }
   }
 
-  /// Sets the number of a name, whether or not it had one.
+  /// Sets the number of a name; adds the name if it is absent.
   void set(std::uint64_t name, std::uint32_t number) {
     reserve(size_ + 1);
     Slot& place = places_[place_of(name)];
@@ -71,7 +71,7 @@ class NameTable {
     if (find(name) == kNone) return;
     std::size_t gap = place_of(name);
     for (std::size_t i = next(gap); places_[i].number != kNone; i = next(i)) {
-      // An entry whose hash slot is behind the gap can stay.
+      // An entry can stay if its search starts after the gap.
       const std::size_t first_slot = first_slot_of(places_[i].name);
       if (((i - first_slot) & mask()) < ((i - gap) & mask())) continue;
       places_[gap] = places_[i];

@@ -18,7 +18,7 @@ namespace {
   return true;
 }
 
-/// True for four keys with consecutive ids. The id after the greatest one is 0.
+/// True for four keys with consecutive ids. Ids wrap: 0 follows the greatest one.
 [[nodiscard]] bool follow_each_other(std::span<const Key> keys) noexcept {
   const ObjectId first = keys[0].id;
   return ((keys[1].id - first - 1) | (keys[2].id - first - 2) | (keys[3].id - first - 3)) == 0;
@@ -26,9 +26,9 @@ namespace {
 
 }  // namespace
 
-RankBodies::RankBodies(std::uint32_t rank, bool alone, const ClusterOptions& options)
+RankBodies::RankBodies(std::uint32_t rank, bool is_single_rank, const ClusterOptions& options)
     : rank_(rank),
-      alone_(alone),
+      is_single_rank_(is_single_rank),
       region_(Regions().of(0)),
       partition_(options.structure, {.memory = options.memory, .execution = options.execution}),
       found_(options.memory),
@@ -77,7 +77,7 @@ void RankBodies::add_rows(std::span<const BodyName> names, std::span<const Key> 
 }
 
 Status RankBodies::move(std::span<const Key> keys, const BoxView& boxes) {
-  if (alone_) return partition_.update(keys, boxes);
+  if (is_single_rank_) return partition_.update(keys, boxes);
   if (keys.size() != boxes.count) return Status::size_mismatch;
   const std::size_t moved = moved_.size();
   Status status = note_moves(keys, boxes) ? Status::ok : Status::invalid_key;
@@ -105,15 +105,15 @@ void RankBodies::find_beyond(const BoxView& boxes) {
   beyond_.resize(found);
 }
 
-/// Bodies that were and are contained in the region concern no other rank. Returns false if a key
-/// does not belong to this rank.
+/// Adds bodies to `moved_` before their boxes change, except bodies that were and will be contained
+/// in the region: those concern no other rank. Returns false if a key does not belong to this rank.
 bool RankBodies::note_moves(std::span<const Key> keys, const BoxView& boxes) {
-  asked_.clear();
+  box_keys_.clear();
   const auto look = [this](Key key) {
     if (key.id >= flags_.size()) return false;
     const std::uint8_t flags = flags_[key.id];
     if ((flags & (kOwned | kRemoved)) != kOwned) return false;
-    if (flags != kOwned && (flags & kMoved) == 0) asked_.push_back(key);
+    if (flags != kOwned && (flags & kMoved) == 0) box_keys_.push_back(key);
     return true;
   };
   constexpr std::size_t kTogether = 4;
@@ -130,14 +130,14 @@ bool RankBodies::note_moves(std::span<const Key> keys, const BoxView& boxes) {
   }
   find_beyond(boxes);
   for (const std::uint32_t i : beyond_) {
-    if (flags_[keys[i].id] == kOwned) asked_.push_back(keys[i]);
+    if (flags_[keys[i].id] == kOwned) box_keys_.push_back(keys[i]);
   }
   if (!find_boxes()) return false;
-  const std::size_t room = moved_.size() + asked_.size();
+  const std::size_t room = moved_.size() + box_keys_.size();
   if (room > moved_.capacity()) moved_.reserve(2 * room);
-  for (std::size_t i = 0; i < asked_.size(); ++i) {
-    std::uint8_t& flags = flags_[asked_[i].id];
-    if ((flags & kMoved) == 0) moved_.push_back({asked_[i], boxes_[i]});
+  for (std::size_t i = 0; i < box_keys_.size(); ++i) {
+    std::uint8_t& flags = flags_[box_keys_[i].id];
+    if ((flags & kMoved) == 0) moved_.push_back({box_keys_[i], boxes_[i]});
     flags |= kMoved;
   }
   return true;
@@ -164,7 +164,7 @@ Status RankBodies::move(std::span<const BodyName> names, const BoxView& boxes) {
 Status RankBodies::remove(std::span<const BodyName> names) {
   const Status status = find_keys(names, keys_);
   if (status != Status::ok) return status;
-  if (alone_) {
+  if (is_single_rank_) {
     const Status removed = partition_.remove(keys_);
     if (removed != Status::ok) return removed;
     for (const BodyName name : names) table_.erase(name);
@@ -211,10 +211,10 @@ Aabb RankBodies::box_of(Key key) const noexcept {
   return box;
 }
 
-/// Looks up the boxes of the keys in `asked_`; false if any is stale.
+/// Looks up the boxes of the keys in `box_keys_`; false if any is stale.
 bool RankBodies::find_boxes() {
-  boxes_.resize(asked_.size());
-  return partition_.bounds(asked_, boxes_) == Status::ok;
+  boxes_.resize(box_keys_.size());
+  return partition_.bounds(box_keys_, boxes_) == Status::ok;
 }
 
 bool RankBodies::is_within(const Aabb& box) const noexcept {
@@ -253,10 +253,10 @@ void RankBodies::send(const Regions& before, const Regions& now, bool regions_ch
   departed_.clear();
   works_.clear();
   if (regions_changed) note_all_that_cross();
-  // A single rank removes bodies at once, without sending that.
+  // A single rank removes bodies at once, and leaves them in `moved_`.
   std::erase_if(moved_, [this](const MovedBox& moved) { return !partition_.contains(moved.key); });
-  asked_.clear();
-  for (const MovedBox& moved : moved_) asked_.push_back(moved.key);
+  box_keys_.clear();
+  for (const MovedBox& moved : moved_) box_keys_.push_back(moved.key);
   (void)find_boxes();
   for (std::size_t i = 0; i < moved_.size(); ++i) {
     const bool removed = (flags_[moved_[i].key.id] & kRemoved) != 0;
@@ -265,20 +265,21 @@ void RankBodies::send(const Regions& before, const Regions& now, bool regions_ch
   moved_.clear();
 }
 
-/// Notes unmoved bodies that crossed the old region or cross the new one.
+/// Adds to `moved_` the unmoved bodies that crossed the border of the old region or cross that of
+/// the new one, and updates the flags of copies.
 void RankBodies::note_all_that_cross() {
-  asked_.clear();
+  box_keys_.clear();
   for (ObjectId id = 0; id < flags_.size(); ++id) {
     const Key key = partition_.key_of(id);
-    if (partition_.contains(key) && (flags_[id] & kMoved) == 0) asked_.push_back(key);
+    if (partition_.contains(key) && (flags_[id] & kMoved) == 0) box_keys_.push_back(key);
   }
   (void)find_boxes();
-  for (std::size_t i = 0; i < asked_.size(); ++i) {
-    std::uint8_t& flags = flags_[asked_[i].id];
+  for (std::size_t i = 0; i < box_keys_.size(); ++i) {
+    std::uint8_t& flags = flags_[box_keys_[i].id];
     if ((flags & kOwned) == 0) {
       flags = flags_of(boxes_[i], false);
     } else if ((flags & kCrosses) != 0 || !is_within(boxes_[i])) {
-      moved_.push_back({asked_[i], boxes_[i]});
+      moved_.push_back({box_keys_[i], boxes_[i]});
     }
   }
 }
@@ -288,9 +289,9 @@ void RankBodies::add_messages(const MovedBox& moved, const Aabb& box, const Regi
   const ObjectId id = moved.key.id;
   const bool removed = (flags_[id] & kRemoved) != 0;
   const std::uint32_t owner = removed ? rank_ : now.owner(centre_of(box));
-  before.ranks_of(moved.told, ranks_before_);
+  before.ranks_of(moved.sent_box, ranks_before_);
   now.ranks_of(box, ranks_now_);
-  send_queue_.add_messages(rank_, {names_[id], owner, box == moved.told}, box, ranks_before_,
+  send_queue_.add_messages(rank_, {names_[id], owner, box == moved.sent_box}, box, ranks_before_,
                            ranks_now_);
 
   const bool stays = std::binary_search(ranks_now_.begin(), ranks_now_.end(), rank_);
@@ -304,19 +305,19 @@ void RankBodies::add_messages(const MovedBox& moved, const Aabb& box, const Regi
   flags_[id] = flags_of(box, owner == rank_);
   if (owner != rank_) {
     ++ghosts_;
-  } else if (!(moved.told.min.x() <= moved.told.max.x())) {
+  } else if (!(moved.sent_box.min.x() <= moved.sent_box.max.x())) {
     arrived_.push_back({names_[id], moved.key});
   }
 }
 
-Status RankBodies::receive(std::span<const RankMessage> parcels) {
+Status RankBodies::receive(std::span<const RankMessage> messages) {
   // Apply removals first: a name may be added again in the same exchange.
-  take_gone<Aabb>(parcels, table_, [&](std::uint32_t id) {
+  take_gone<Aabb>(messages, table_, [&](std::uint32_t id) {
     changes_.dropped.push_back(partition_.key_of(id));
     flags_[id] = 0;
     --ghosts_;
   });
-  for (const RankMessage& parcel : parcels) take(BodyMessages<Aabb>(parcel));
+  for (const RankMessage& message : messages) take(BodyMessages<Aabb>(message));
   return apply_changes();
 }
 
@@ -362,8 +363,8 @@ Status RankBodies::apply_changes() {
 // ---- pairs, and the work that they cause
 
 /// A pair is reported by the rank of its reference point: on each axis the larger of the two low
-/// corners. The point is below this region on an axis if both low corners are. It is never above,
-/// because every box that a rank holds overlaps its region.
+/// corners. The point is below this region on an axis if both low corners are. The point is never
+/// above the region, because both boxes overlap the region.
 std::size_t RankBodies::put_reported_first() noexcept {
   return found_.partition([flags = flags_.data()](const Pair& pair) {
     const unsigned below = flags[pair.first] & kBelow;
@@ -383,7 +384,7 @@ Status RankBodies::find_pairs(Order order) {
   const Status status = partition_.self_pairs(found_);
   if (status != Status::ok) return status;
   reported_ = found_.pairs();
-  if (!alone_) reported_ = reported_.first(put_reported_first());
+  if (!is_single_rank_) reported_ = reported_.first(put_reported_first());
   if (order == Order::fast) return Status::ok;
   sorted_.assign(reported_.begin(), reported_.end());
   sort_by_names();
@@ -392,14 +393,14 @@ Status RankBodies::find_pairs(Order order) {
 }
 
 void RankBodies::measure_work() {
-  asked_.clear();
+  box_keys_.clear();
   for (ObjectId id = 0; id < flags_.size(); ++id) {
     const Key key = partition_.key_of(id);
-    if (partition_.contains(key)) asked_.push_back(key);
+    if (partition_.contains(key)) box_keys_.push_back(key);
   }
   (void)find_boxes();
   std::vector<Aabb> box_of(flags_.size());
-  for (std::size_t i = 0; i < asked_.size(); ++i) box_of[asked_[i].id] = boxes_[i];
+  for (std::size_t i = 0; i < box_keys_.size(); ++i) box_of[box_keys_[i].id] = boxes_[i];
   std::vector<std::uint64_t> counts(flags_.size(), 1);
   for (const Pair& pair : found_) {
     const bool first_is_larger = is_larger(box_of[pair.first], box_of[pair.second]);
@@ -411,11 +412,11 @@ void RankBodies::measure_work() {
 
 CutWork RankBodies::cut_work() {
   works_of_owned_.clear();
-  asked_.clear();
+  box_keys_.clear();
   for (ObjectId id = 0; id < flags_.size(); ++id) {
     const Key key = partition_.key_of(id);
     if (!is_owned(key)) continue;
-    asked_.push_back(key);
+    box_keys_.push_back(key);
     works_of_owned_.push_back(id < works_.size() ? works_[id] : 1);
   }
   (void)find_boxes();

@@ -18,7 +18,7 @@ namespace winnow {
 /// memory is refused.
 class RankBodies {
  public:
-  RankBodies(std::uint32_t rank, bool alone, const ClusterOptions& options);
+  RankBodies(std::uint32_t rank, bool is_single_rank, const ClusterOptions& options);
 
   // Changes by the caller. A refused call changes nothing.
 
@@ -38,12 +38,12 @@ class RankBodies {
   /// Prepares messages to other ranks about the bodies and copies that they must add, update or
   /// remove: for changed bodies, or for all bodies if the regions changed.
   void send(const Regions& before, const Regions& now, bool regions_changed);
-  void pack(std::vector<RankMessage>& parcels) { send_queue_.pack(rank_, parcels); }
+  void pack(std::vector<RankMessage>& messages) { send_queue_.pack(rank_, messages); }
   /// Applies messages of other ranks, and removes the bodies and copies that left this rank.
-  [[nodiscard]] Status receive(std::span<const RankMessage> parcels);
+  [[nodiscard]] Status receive(std::span<const RankMessage> messages);
 
-  /// Updates the structure for the own bodies while messages are in transit, so that little remains
-  /// to be done when the copies arrive.
+  /// Updates the structure while messages are in transit. After `receive`, only the received
+  /// changes remain to be done.
   void refresh() noexcept { (void)partition_.refresh(); }
   /// Finds the pairs that this rank reports.
   [[nodiscard]] Status find_pairs(Order order);
@@ -84,7 +84,7 @@ class RankBodies {
   /// A body whose box may differ from the box that was last sent to other ranks.
   struct MovedBox {
     Key key;
-    Aabb told;  // the box last sent; empty if there is none
+    Aabb sent_box;  // the box last sent; empty if there is none
   };
 
   [[nodiscard]] bool is_owned(Key key) const noexcept {
@@ -101,14 +101,14 @@ class RankBodies {
   void sort_by_names();
   void add_rows(std::span<const BodyName> names, std::span<const Key> keys);
   void note_all_that_cross();
-  /// Sends one body with its current box; an empty box for a removed body.
+  /// Adds messages about one body. `box` is its current box; empty if the body was removed.
   void add_messages(const MovedBox& moved, const Aabb& box, const Regions& before,
                     const Regions& now);
   void take(const BodyMessages<Aabb>& incoming);
   [[nodiscard]] Status apply_changes();
 
   std::uint32_t rank_;
-  bool alone_;
+  bool is_single_rank_;
   Aabb region_;
   Partition partition_;
   PairBuffer found_;
@@ -131,8 +131,8 @@ class RankBodies {
   std::vector<std::uint32_t> ranks_now_;
   std::vector<Key> keys_;
   std::vector<std::uint32_t> beyond_;
-  std::vector<Key> asked_;   // keys whose boxes are looked up
-  std::vector<Aabb> boxes_;  // the boxes of asked_
+  std::vector<Key> box_keys_;  // keys whose boxes are looked up
+  std::vector<Aabb> boxes_;    // the boxes of box_keys_
 };
 
 }  // namespace winnow

@@ -4,10 +4,11 @@
 
 namespace winnow {
 
-std::span<const RankMessage> parcels_for(std::span<const RankMessage> parcels, std::uint32_t rank) {
+std::span<const RankMessage> messages_for(std::span<const RankMessage> messages,
+                                          std::uint32_t rank) {
   // clang 14 cannot read std::ranges::subrange.
-  const auto begin = std::ranges::lower_bound(parcels, rank, {}, &RankMessage::to);
-  return {begin, std::ranges::upper_bound(begin, parcels.end(), rank, {}, &RankMessage::to)};
+  const auto begin = std::ranges::lower_bound(messages, rank, {}, &RankMessage::to);
+  return {begin, std::ranges::upper_bound(begin, messages.end(), rank, {}, &RankMessage::to)};
 }
 
 RankGroup::RankGroup(Transport& given, double imbalance_bound, std::pmr::memory_resource* memory)
@@ -21,13 +22,13 @@ RankGroup::RankGroup(Transport& given, double imbalance_bound, std::pmr::memory_
 
 Status RankGroup::exchange(std::span<const RankMessage>& received,
                            const OverlappedWork& meanwhile) {
-  for (const RankMessage& parcel : parcels) {
-    if (parcel.from == parcel.to) continue;
-    bytes_ += parcel.bytes();
-    ++messages_;
+  for (const RankMessage& message : messages) {
+    if (message.from == message.to) continue;
+    bytes_ += message.bytes();
+    ++message_count_;
   }
-  const Status answer = transport.exchange(parcels, received, meanwhile);
-  parcels.clear();
+  const Status answer = transport.exchange(messages, received, meanwhile);
+  messages.clear();
   return answer;
 }
 
@@ -40,34 +41,34 @@ Status RankGroup::cut_space(std::span<const CutWork> work) {
 }
 
 Status RankGroup::take_names(std::span<const std::span<const BodyName>> freed,
-                             std::span<const std::span<const BodyName>> wanted,
+                             std::span<const std::span<const BodyName>> requested,
                              std::span<Status> answers) {
   std::span<const RankMessage> received;
   for (std::size_t i = 0; i < names.size(); ++i) {
-    for (const BodyName name : freed[i]) names[i].forget(name);
-    names[i].ask(wanted[i], parcels);
+    for (const BodyName name : freed[i]) names[i].release(name);
+    names[i].request(requested[i], messages);
   }
   Status answer = exchange(received);
   if (answer != Status::ok) return answer;
   for (std::uint32_t i = 0; i < names.size(); ++i) {
-    names[i].answer(parcels_for(received, first + i), parcels);
+    names[i].answer(messages_for(received, first + i), messages);
   }
   answer = exchange(received);
   if (answer != Status::ok) return answer;
   for (std::uint32_t i = 0; i < names.size(); ++i) {
-    const bool free = names[i].conclude(parcels_for(received, first + i), parcels);
+    const bool free = names[i].conclude(messages_for(received, first + i), messages);
     if (!free) answers[i] = Status::invalid_key;
   }
   answer = exchange(received);
   if (answer != Status::ok) return answer;
   for (std::uint32_t i = 0; i < names.size(); ++i) {
-    names[i].keep(parcels_for(received, first + i));
+    names[i].keep(messages_for(received, first + i));
   }
   return Status::ok;
 }
 
 Status RankGroup::count(std::span<const RankCounts> counts, Status found) {
-  std::uint64_t sums[7] = {0, 0, 0, 0, bytes_, messages_, 0};
+  std::uint64_t sums[7] = {0, 0, 0, 0, bytes_, message_count_, 0};
   std::uint64_t greatest[2] = {static_cast<std::uint64_t>(found), 0};
   for (const RankCounts& one : counts) {
     sums[0] += one.bodies;
@@ -80,7 +81,7 @@ Status RankGroup::count(std::span<const RankCounts> counts, Status found) {
   const Status answer = transport.reduce(sums, greatest);
   if (answer != Status::ok) return answer;
   if (greatest[0] != 0) return static_cast<Status>(greatest[0]);
-  bytes_ = messages_ = 0;
+  bytes_ = message_count_ = 0;
   const double mean = static_cast<double>(sums[3]) / static_cast<double>(ranks);
   statistics.bodies = sums[0];
   statistics.ghosts = sums[1];
@@ -93,12 +94,14 @@ Status RankGroup::count(std::span<const RankCounts> counts, Status found) {
   return Status::ok;
 }
 
-/// After a cut that helped, cut again; after one that did not, only if the imbalance gets worse.
+/// Space is cut again if the imbalance exceeds its bound and also: directly after a cut, if that
+/// cut reduced the imbalance by more than 2 %; later, if the imbalance is more than 5 % above its
+/// value after the last cut.
 void RankGroup::decide_on_cut() {
   constexpr double kHelped = 0.98;
   constexpr double kWorse = 1.05;
   const double now = statistics.imbalance;
-  wants_cut = !is_single_rank() && now > imbalance_ &&
+  needs_cut = !is_single_rank() && now > imbalance_ &&
               (was_cut ? now < kHelped * after_cut_ : now > kWorse * after_cut_);
   if (was_cut) after_cut_ = now;
 }

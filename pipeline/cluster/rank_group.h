@@ -24,9 +24,9 @@ struct RankCounts {
   std::uint64_t work = 0;
 };
 
-/// Returns the messages for one rank; they are sorted by receiver.
-[[nodiscard]] std::span<const RankMessage> parcels_for(std::span<const RankMessage> parcels,
-                                                       std::uint32_t rank);
+/// Returns the messages to one rank, of messages that are sorted by receiver.
+[[nodiscard]] std::span<const RankMessage> messages_for(std::span<const RankMessage> messages,
+                                                        std::uint32_t rank);
 
 /// The ranks of a cluster, as seen by this process: communication, regions, the directory of names,
 /// and statistics. Base of ClusterState and ClusterSceneState, which add the bodies.
@@ -35,16 +35,16 @@ struct RankGroup {
 
   [[nodiscard]] bool is_single_rank() const noexcept { return ranks == 1; }
 
-  /// Sends `parcels`, and counts the bytes and messages between different ranks.
+  /// Sends `messages`, and counts the bytes and messages between different ranks.
   [[nodiscard]] Status exchange(std::span<const RankMessage>& received,
                                 const OverlappedWork& meanwhile = {});
   /// Computes new regions. `work` has one entry for each hosted rank.
   [[nodiscard]] Status cut_space(std::span<const CutWork> work);
-  /// Reserves names for the hosted ranks and frees others, one list for each rank. A rank gets
-  /// `invalid_key` and no names if one of its names is used, or is requested by two ranks. Takes
-  /// three exchanges.
+  /// Frees names and reserves names for the hosted ranks: one list of each for each rank. A rank
+  /// gets `invalid_key` and no names if one of its names is used, or is requested by two ranks.
+  /// Takes three exchanges.
   [[nodiscard]] Status take_names(std::span<const std::span<const BodyName>> freed,
-                                  std::span<const std::span<const BodyName>> wanted,
+                                  std::span<const std::span<const BodyName>> requested,
                                   std::span<Status> answers);
   /// Sums the counters of all ranks, distributes errors to all of them, and decides whether to cut
   /// space again.
@@ -56,10 +56,10 @@ struct RankGroup {
   Status status = Status::ok;
   std::deque<IdDirectory> names;
   Regions regions;
-  std::vector<RankMessage> parcels;
+  std::vector<RankMessage> messages;
   ClusterStatistics statistics;
-  // State of that decision, the same on every process.
-  bool wants_cut = true;
+  // Whether the next call cuts space, and whether the last one did; the same on every process.
+  bool needs_cut = true;
   bool was_cut = false;
 
  private:
@@ -69,7 +69,7 @@ struct RankGroup {
   double after_cut_ = std::numeric_limits<double>::infinity();  // imbalance after the last cut
   // Counters of this process since the last `count`.
   std::uint64_t bytes_ = 0;
-  std::uint64_t messages_ = 0;
+  std::uint64_t message_count_ = 0;
 };
 
 /// Identifies a collective call; all processes pass the same one.

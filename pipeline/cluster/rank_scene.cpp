@@ -22,14 +22,14 @@ namespace {
 RankScene::RankScene(std::uint32_t rank, std::uint32_t ranks, const ShapePool& shapes,
                      const SceneOptions& options)
     : rank_(rank),
-      alone_(ranks == 1),
+      is_single_rank_(ranks == 1),
       region_(Regions().of(0)),
       scene_(shapes, options),
       contacts_(options.memory),
       events_(rank, ranks),
       table_(options.memory) {
   if (scene_.state_ == nullptr || contacts_.state_ == nullptr) throw_bad_alloc();
-  selection_.wants = [](const void* self, std::uint32_t a, std::uint32_t b) {
+  selection_.accept = [](const void* self, std::uint32_t a, std::uint32_t b) {
     return static_cast<const RankScene*>(self)->reports(a, b);
   };
   selection_.context = this;
@@ -49,9 +49,9 @@ Status RankScene::check(const ClusterSceneBatch& batch) {
     return Status::too_many_objects;
   }
   for (const BodyDefinition& body : batch.bodies) {
-    if (body.motion > Motion::sleeping) return Status::invalid_argument;
+    if (body.state > BodyState::sleeping) return Status::invalid_argument;
     const bool is_plain = body.offsets == ContactOffsets{} && body.layer == 0;
-    if (body.motion == Motion::sleeping || !is_plain) return Status::unsupported;
+    if (body.state == BodyState::sleeping || !is_plain) return Status::unsupported;
     if (const Status good = state().check(body.shape, body.pose); good != Status::ok) return good;
   }
   const auto is_here = [this](BodyName name) { return table_.find(name) != NameTable::kNone; };
@@ -80,7 +80,7 @@ Status RankScene::add_bodies(std::span<const BodyName> names, std::span<const Bo
     names_[id] = names[i];
     flags_[id] = bodies[i].is_new != 0 ? kNew : 0;
     table_.set(names[i], id);
-    came_.push_back({names[i], id});
+    added_.push_back({names[i], id});
   }
   return Status::ok;
 }
@@ -103,7 +103,7 @@ Status RankScene::replicate(const ClusterSceneBatch& batch) {
   // Before the first collide, the bodies may belong to a restored cluster and may have touched.
   const std::uint8_t is_new = has_collided_ ? 1 : 0;
   for (const BodyDefinition& body : batch.bodies) {
-    records.push_back({body.pose, body.shape, body.filter, body.motion, is_new});
+    records.push_back({body.pose, body.shape, body.filter, body.state, is_new});
   }
   const Status status = add_bodies(batch.names, records);
   if (status != Status::ok) return status;
@@ -122,8 +122,8 @@ Status RankScene::move_replicated(std::span<const Pose> poses) {
   return scene_.move(replicated_keys_, poses);
 }
 
-/// Records what other ranks store of a body, before its box or the regions change. The caller has
-/// reserved memory.
+/// Adds a body to `moved_`, with the box that other ranks know. Call it before the scene computes
+/// the new box. `move` and `remove` reserve memory before, because they must not fail here.
 void RankScene::note(ObjectId id, bool has_changed) {
   if ((flags_[id] & kMoved) != 0) return;
   moved_.push_back({state().keys.key_of(id), box_of(id), has_changed});
@@ -135,10 +135,10 @@ Status RankScene::move(std::span<const Key> keys, const PoseView& poses) {
   if (!std::all_of(keys.begin(), keys.end(), [this](Key key) { return is_owned(key); })) {
     return Status::invalid_key;
   }
-  const std::size_t room = moved_.size() + (alone_ ? 0 : keys.size());
+  const std::size_t room = moved_.size() + (is_single_rank_ ? 0 : keys.size());
   if (room > moved_.capacity()) moved_.reserve(2 * room);
   const Status status = scene_.move(keys, poses);
-  if (status != Status::ok || alone_) return status;
+  if (status != Status::ok || is_single_rank_) return status;
   for (const Key key : keys) note(key.id, true);
   return Status::ok;
 }
@@ -205,13 +205,13 @@ void RankScene::records(std::vector<BodyName>& names, std::vector<BodyRecord>& b
 
 Aabb RankScene::box_of(ObjectId id) const noexcept {
   Aabb box;
-  (void)state().set(state().motion[id]).partition->bounds(state().place[id], box);
+  (void)state().set(state().body_state[id]).partition->bounds(state().place[id], box);
   return box;
 }
 
 BodyRecord RankScene::record_of(ObjectId id) const noexcept {
-  BodyRecord record{state().pose[id], state().shape[id], {}, state().motion[id]};
-  (void)state().set(record.motion).partition->filter(state().place[id], record.filter);
+  BodyRecord record{state().pose[id], state().shape[id], {}, state().body_state[id]};
+  (void)state().set(record.state).partition->filter(state().place[id], record.filter);
   record.is_new = (flags_[id] & kNew) != 0 ? 1 : 0;
   return record;
 }
@@ -225,10 +225,12 @@ Status RankScene::refresh() {
   return scene_.refresh();
 }
 
-/// Composite shapes that were changed in place have new boxes although nobody moved the bodies.
+/// Notes all bodies with composite shapes if a shape of their pool changed: a change in place gives
+/// a body a new box without a move.
 void RankScene::note_changed_composites() {
   const MidPhase* const composites = state().options.composites;
-  if (alone_ || composites == nullptr || composites->revision() == state().composites_seen) return;
+  if (is_single_rank_ || composites == nullptr || composites->revision() == state().composites_seen)
+    return;
   for (ObjectId id = 0; id < flags_.size(); ++id) {
     const Key key = state().keys.key_of(id);
     if (is_owned(key) && state().shape[id].is_composite()) note(id, true);
@@ -256,14 +258,14 @@ void RankScene::send(const Regions& before, const Regions& now, bool regions_cha
   works_.clear();
   if (regions_changed) {
     note_all_that_cross();
-    // Other pairs are reported by this rank now.
+    // This rank now reports other pairs, so the scene must not reuse its pairs.
     state().pairs.clear();
   }
   for (const MovedBody& moved : moved_) add_messages(moved, before, now);
   moved_.clear();
 }
 
-/// Notes unmoved bodies that crossed the old region or cross the new one.
+/// Notes unmoved bodies that crossed the border of the old region or cross that of the new one.
 void RankScene::note_all_that_cross() {
   for (ObjectId id = 0; id < flags_.size(); ++id) {
     if (!is_owned(state().keys.key_of(id))) continue;
@@ -276,11 +278,11 @@ void RankScene::add_messages(const MovedBody& moved, const Regions& before, cons
   flags_[id] = static_cast<std::uint8_t>(flags_[id] & ~kMoved);
   const bool removed = (flags_[id] & kRemoved) != 0;
   const Aabb box = removed ? Aabb{} : box_of(id);
-  const bool is_known = !is_empty(moved.told);
+  const bool is_known = !is_empty(moved.sent_box);
   // Bodies that were and are contained in the region concern no other rank.
   if (is_known && !removed && (flags_[id] & kCrosses) == 0 && is_within(box)) return;
   const std::uint32_t owner = removed ? rank_ : now.owner(centre_of(box));
-  before.ranks_of(moved.told, ranks_before_);
+  before.ranks_of(moved.sent_box, ranks_before_);
   now.ranks_of(box, ranks_now_);
   send_queue_.add_messages(rank_, {names_[id], owner, !moved.has_changed}, record_of(id),
                            ranks_before_, ranks_now_);
@@ -294,7 +296,7 @@ void RankScene::add_messages(const MovedBody& moved, const Regions& before, cons
     changes_.dropped.push_back(moved.key);
     return;
   }
-  const int kept = flags_[id] & (kNew | kSettled);
+  const int kept = flags_[id] & (kNew | kWasInterior);
   flags_[id] = static_cast<std::uint8_t>(kept | (owner == rank_ ? kOwned : 0) |
                                          (is_within(box) ? 0 : kCrosses));
   if (owner != rank_) {
@@ -304,18 +306,19 @@ void RankScene::add_messages(const MovedBody& moved, const Regions& before, cons
   }
 }
 
-Status RankScene::receive(std::span<const RankMessage> parcels) {
+Status RankScene::receive(std::span<const RankMessage> messages) {
   // Apply removals first: a name may be added again in the same exchange.
-  take_gone<BodyRecord>(parcels, table_, [&](std::uint32_t id) {
+  take_gone<BodyRecord>(messages, table_, [&](std::uint32_t id) {
     changes_.dropped.push_back(state().keys.key_of(id));
     flags_[id] = 0;
     --ghosts_;
   });
-  for (const RankMessage& parcel : parcels) take(BodyMessages<BodyRecord>(parcel));
+  for (const RankMessage& message : messages) take(BodyMessages<BodyRecord>(message));
   return apply_changes();
 }
 
-/// If the body is here already, the message has a new pose, or makes this rank its owner.
+/// Adds the bodies that this rank does not have. For the others a message contains a new pose, and
+/// also makes this rank the owner if `belongs` is set.
 void RankScene::take(const BodyMessages<BodyRecord>& incoming) {
   for (std::size_t i = 0; i < incoming.names.size(); ++i) {
     const std::uint32_t id = table_.find(incoming.names[i]);
@@ -335,13 +338,13 @@ void RankScene::take(const BodyMessages<BodyRecord>& incoming) {
 }
 
 Status RankScene::apply_changes() {
-  has_lost_ = has_lost_ || !changes_.dropped.empty();
+  has_removed_ = has_removed_ || !changes_.dropped.empty();
   Status status = scene_.remove(changes_.dropped);
   if (status == Status::ok) status = scene_.move(changes_.keys, changes_.places);
   if (status == Status::ok && !changes_.names.empty()) {
     status = add_bodies(changes_.names, changes_.fresh);
   }
-  // Whether new and moved bodies cross follows from their boxes.
+  // Compute the boxes of new and moved bodies: kCrosses depends on them.
   if (status == Status::ok) status = refresh();
   if (status != Status::ok) return status;
   for (std::size_t i = 0; i < changes_.names.size(); ++i) {
@@ -360,31 +363,33 @@ Status RankScene::apply_changes() {
 
 // ---- contacts
 
-/// If one of the boxes is contained in the region, this rank reports the pair without another test.
+/// The rank that owns the other body reports a pair with a replicated body. For other pairs, if one
+/// box is contained in the region, the reference point is too.
 bool RankScene::reports(ObjectId a, ObjectId b) const noexcept {
-  if (alone_) return true;
+  if (is_single_rank_) return true;
   if (((flags_[a] | flags_[b]) & kReplicated) != 0) return ((flags_[a] | flags_[b]) & kOwned) != 0;
   if ((flags_[a] & flags_[b] & kCrosses) == 0) return true;
-  const Vec3f at = meeting_point(box_of(a).min, box_of(b).min);
+  const Vec3f at = reference_point(box_of(a).min, box_of(b).min);
   return is_within({at, at});
 }
 
-/// Merges new bodies in and leaves removed ones out, so that few changes cost little.
+/// Removes erased bodies from the list by name and merges new bodies into it, which is cheaper than
+/// sorting all bodies.
 void RankScene::sort_names() {
-  if (!has_lost_ && came_.empty()) return;
+  if (!has_removed_ && added_.empty()) return;
   std::erase_if(by_name_, [this](const NamedId& one) {
     return !state().keys.is_live(one.id) || names_[one.id] != one.name;
   });
-  std::erase_if(came_, [this](const NamedId& one) {
+  std::erase_if(added_, [this](const NamedId& one) {
     return !state().keys.is_live(one.id) || names_[one.id] != one.name;
   });
-  std::sort(came_.begin(), came_.end());
+  std::sort(added_.begin(), added_.end());
   const auto old = static_cast<std::ptrdiff_t>(by_name_.size());
-  by_name_.insert(by_name_.end(), came_.begin(), came_.end());
+  by_name_.insert(by_name_.end(), added_.begin(), added_.end());
   std::inplace_merge(by_name_.begin(), by_name_.begin() + old, by_name_.end());
   by_name_.erase(std::unique(by_name_.begin(), by_name_.end()), by_name_.end());
-  came_.clear();
-  has_lost_ = false;
+  added_.clear();
+  has_removed_ = false;
   place_.resize(names_.size());
   body_.resize(by_name_.size());
   for (std::uint32_t i = 0; i < by_name_.size(); ++i) {
@@ -397,12 +402,13 @@ void RankScene::sort_names() {
 
 Status RankScene::collide(ContactLevel level) {
   sort_names();
-  // Clear the history of these contacts: their bodies may have been on other ranks.
+  // Clear the previous frame of these contacts: another rank may have reported a pair then.
+  // compare_contacts determines the events.
   contacts_.clear();
   const Status status = scene_.collide(level, contacts_);
   if (status != Status::ok) return status;
   compare_contacts();
-  settle_flags();
+  store_interior_flags();
   has_collided_ = true;
   return Status::ok;
 }
@@ -418,23 +424,24 @@ void RankScene::compare_contacts() {
       const ObjectId b = contacts_.b()[i].id;
       now[i] = {code, names_[a], names_[b]};
       const bool is_new = ((flags_[a] | flags_[b]) & kNew) != 0;
-      const bool is_local = alone_ || (is_settled(a) && is_settled(b));
+      const bool is_local = is_single_rank_ || (stayed_interior(a) && stayed_interior(b));
       knowledge[i] = is_new ? Knowledge::is_new : is_local ? Knowledge::local : Knowledge::none;
     }
   }
   events_.compare(now, knowledge, [this](const TouchingPair& pair) {
     const std::uint32_t a = table_.find(pair.a);
     const std::uint32_t b = table_.find(pair.b);
-    return alone_ ||
-           (a != NameTable::kNone && b != NameTable::kNone && is_settled(a) && is_settled(b));
+    return is_single_rank_ || (a != NameTable::kNone && b != NameTable::kNone &&
+                               stayed_interior(a) && stayed_interior(b));
   });
 }
 
 /// Stores in the flags the state of this frame, which the next collide reads.
-void RankScene::settle_flags() {
+void RankScene::store_interior_flags() {
   for (std::uint8_t& flags : flags_) {
-    const bool settled = (flags & (kOwned | kCrosses)) == kOwned;
-    flags = static_cast<std::uint8_t>((flags & ~(kNew | kSettled)) | (settled ? kSettled : 0));
+    const bool is_interior = (flags & (kOwned | kCrosses)) == kOwned;
+    flags = static_cast<std::uint8_t>((flags & ~(kNew | kWasInterior)) |
+                                      (is_interior ? kWasInterior : 0));
   }
 }
 

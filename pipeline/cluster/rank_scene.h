@@ -1,7 +1,7 @@
 #pragma once
 
-// One rank of a ClusterScene: the bodies that it holds, their migration to and from other ranks,
-// and its contacts. Used by cluster_scene.cpp and cluster_queries.cpp.
+// One rank of a ClusterScene: its bodies and copies, their migration to and from other ranks, and
+// its contacts. Used by cluster_scene.cpp and cluster_queries.cpp.
 
 #include <winnow/core/object_filter.h>
 #include <winnow/pipeline/cluster_scene.h>
@@ -26,19 +26,19 @@ struct BodyRecord {
   Pose pose{};
   ShapeId shape{};
   ObjectFilter filter{};
-  Motion motion = Motion::dynamic;
+  BodyState state = BodyState::dynamic;
   std::uint8_t is_new = 0;  ///< added since the last `collide`
   std::uint8_t spare[6] = {};
 
   [[nodiscard]] BodyDefinition definition(BodyName name) const noexcept {
-    return {shape, pose, motion, filter, name};
+    return {shape, pose, state, filter, name};
   }
 };
 static_assert(sizeof(BodyRecord) == 80);
 
-/// The bodies of one rank of a ClusterScene: a scene of the bodies that belong to it, of copies
-/// (ghosts) of bodies of other ranks whose boxes overlap its region, and of replicated bodies.
-/// Throws std::bad_alloc if memory is refused.
+/// The bodies of one rank of a ClusterScene, in one scene: bodies that belong to the rank, copies
+/// (ghosts) of other ranks' bodies whose boxes overlap its region, and replicated bodies. Throws
+/// std::bad_alloc if memory is refused.
 class RankScene {
  public:
   RankScene(std::uint32_t rank, std::uint32_t ranks, const ShapePool& shapes,
@@ -57,7 +57,7 @@ class RankScene {
   [[nodiscard]] Status insert(std::span<const BodyName> names, std::span<const BodyRecord> bodies);
   /// Adds checked bodies that are on every rank.
   [[nodiscard]] Status replicate(const ClusterSceneBatch& batch);
-  /// Checks whether replicated bodies with these names may get new poses.
+  /// Checks that the names are of replicated bodies, and that the poses are valid.
   [[nodiscard]] Status check_replicated(std::span<const BodyName> names,
                                         std::span<const Pose> poses);
   /// Moves the bodies of the last `check_replicated` that returned `ok`.
@@ -76,13 +76,13 @@ class RankScene {
   /// Prepares messages to other ranks about the bodies and copies that they must add, update or
   /// remove: for changed bodies, or for all bodies if the regions changed.
   void send(const Regions& before, const Regions& now, bool regions_changed);
-  void pack(std::vector<RankMessage>& parcels) { send_queue_.pack(rank_, parcels); }
+  void pack(std::vector<RankMessage>& messages) { send_queue_.pack(rank_, messages); }
   /// Applies messages of other ranks, and removes the bodies and copies that left this rank.
-  [[nodiscard]] Status receive(std::span<const RankMessage> parcels);
+  [[nodiscard]] Status receive(std::span<const RankMessage> messages);
 
   // Contacts.
 
-  /// Finds contacts, and the events that this rank can decide without others.
+  /// Finds contacts, and the events that this rank can decide without other ranks.
   [[nodiscard]] Status collide(ContactLevel level);
   [[nodiscard]] ContactEvents& events() noexcept { return events_; }
   [[nodiscard]] const ContactEvents& events() const noexcept { return events_; }
@@ -116,18 +116,18 @@ class RankScene {
  private:
   /// State of a body, indexed by the id of its key.
   enum Flag : std::uint8_t {
-    kOwned = 1,        // belongs to this rank
-    kCrosses = 2,      // its box is not contained in this rank's region
-    kMoved = 4,        // is in moved_
-    kRemoved = 8,      // to be removed here and on other ranks
-    kReplicated = 16,  // is on every rank
-    kNew = 32,         // added since the last collide
-    kSettled = 64,     // at the last collide belonged to this rank and did not cross
+    kOwned = 1,         // belongs to this rank
+    kCrosses = 2,       // its box is not contained in this rank's region
+    kMoved = 4,         // is in moved_
+    kRemoved = 8,       // to be removed here and on other ranks
+    kReplicated = 16,   // is on every rank
+    kNew = 32,          // added since the last collide
+    kWasInterior = 64,  // at the last collide belonged to this rank and did not cross
   };
-  /// A body that other ranks may need to be sent.
+  /// A body about which other ranks may need a message.
   struct MovedBody {
     Key key;
-    Aabb told;         // the box last sent; empty if there is none
+    Aabb sent_box;     // the box last sent; empty if there is none
     bool has_changed;  // false if only the regions changed
   };
   struct NamedId {
@@ -141,8 +141,8 @@ class RankScene {
   [[nodiscard]] bool is_owned(Key key) const noexcept {
     return scene_.contains(key) && (flags_[key.id] & (kOwned | kRemoved)) == kOwned;
   }
-  [[nodiscard]] bool is_settled(ObjectId id) const noexcept {
-    return (flags_[id] & (kSettled | kOwned | kCrosses)) == (kSettled | kOwned);
+  [[nodiscard]] bool stayed_interior(ObjectId id) const noexcept {
+    return (flags_[id] & (kWasInterior | kOwned | kCrosses)) == (kWasInterior | kOwned);
   }
   [[nodiscard]] Aabb box_of(ObjectId id) const noexcept;
   [[nodiscard]] BodyRecord record_of(ObjectId id) const noexcept;
@@ -160,10 +160,10 @@ class RankScene {
   [[nodiscard]] Status apply_changes();
   void sort_names();
   void compare_contacts();
-  void settle_flags();
+  void store_interior_flags();
 
   std::uint32_t rank_;
-  bool alone_;
+  bool is_single_rank_;
   Aabb region_;
   Scene scene_;
   Contacts contacts_;
@@ -180,10 +180,11 @@ class RankScene {
   std::vector<BodyName> departed_;
   SendQueue<BodyRecord> send_queue_;
   BodyChanges<Pose, BodyRecord> changes_;
-  // Order of pairs: all bodies by name, bodies added since then, and the tables for `selection_`.
+  // Order of pairs: the bodies of the last `collide` by name, bodies added since then, and the
+  // tables for `selection_`.
   std::vector<NamedId> by_name_;
-  std::vector<NamedId> came_;
-  bool has_lost_ = false;
+  std::vector<NamedId> added_;
+  bool has_removed_ = false;
   bool has_collided_ = false;
   std::vector<std::uint32_t> place_;  // by id
   std::vector<std::uint32_t> body_;   // by place

@@ -89,15 +89,15 @@ void Regions::add_ranks(std::int32_t side, const ShapeRay& ray, double low, doub
       side = cut.sides[above ? 1 : 0];
       continue;
     }
-    const double meets = (at - origin) / direction;
+    const double crossing = (at - origin) / direction;
     const double slack = near / std::abs(direction);
     const std::size_t first = direction > 0.0 ? 0 : 1;
-    const bool reaches_first = !(meets + slack < low);
-    const bool reaches_second = !(meets - slack > high);
+    const bool reaches_first = !(crossing + slack < low);
+    const bool reaches_second = !(crossing - slack > high);
     if (reaches_first && reaches_second) {
-      add_ranks(cut.sides[first], ray, low, std::min(high, meets + slack), ranks);
+      add_ranks(cut.sides[first], ray, low, std::min(high, crossing + slack), ranks);
     }
-    if (reaches_second) low = std::max(low, meets - slack);
+    if (reaches_second) low = std::max(low, crossing - slack);
     side = cut.sides[reaches_second ? 1 - first : first];
   }
   ranks.push_back(rank_at(side));

@@ -16,19 +16,20 @@ namespace winnow {
 /// Reference point of two overlapping boxes: on each axis the larger of the two low corners. The
 /// rank whose region contains it reports the pair (Dittrich and Seeger 2000 avoid duplicates in a
 /// spatial join in this way).
-[[nodiscard]] inline Vec3f meeting_point(const Vec3f& low_a, const Vec3f& low_b) noexcept {
+[[nodiscard]] inline Vec3f reference_point(const Vec3f& low_a, const Vec3f& low_b) noexcept {
   return low_a.max(low_b);
 }
 
-/// Returns the centre of a box, or some point of it if it is infinite.
+/// Returns the centre of a box; on an axis on which the box is infinite, the coordinate in the box
+/// that is closest to 0.
 [[nodiscard]] inline Vec3f centre_of(const Aabb& box) noexcept {
   constexpr float infinity = std::numeric_limits<float>::infinity();
   Vec3f centre;
   for (int axis = 0; axis < 3; ++axis) {
     const float low = box.min[axis];
     const float high = box.max[axis];
-    // Halving first avoids overflow; the sum of two small halves may round to a point outside of
-    // the box.
+    // Halving first avoids overflow. Halves of subnormal numbers are rounded, so their sum may be
+    // outside of the box: clamp it.
     const bool finite = low != -infinity && high != infinity;
     centre[axis] = std::clamp(finite ? low * 0.5F + high * 0.5F : 0.0F, low, high);
   }
@@ -56,7 +57,7 @@ class Regions {
   /// Returns the ranks whose regions a valid ray intersects, or misses by no more than rounding
   /// errors, ascending. O(ranks * depth).
   void ranks_of(const ShapeRay& ray, std::vector<std::uint32_t>& ranks) const;
-  /// The closed box of all floats in the region of a rank.
+  /// The smallest closed box that contains all points of a rank's region with float coordinates.
   [[nodiscard]] const Aabb& of(std::uint32_t rank) const noexcept { return boxes_[rank]; }
 
  private:

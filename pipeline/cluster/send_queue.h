@@ -28,8 +28,9 @@ void for_each_receiver(std::span<const One> ones, std::span<const Other> others,
   std::size_t i = 0;
   std::size_t k = 0;
   while (i < ones.size() || k < others.size()) {
-    const bool other_alone = i == ones.size() || (k < others.size() && others[k].to < ones[i].to);
-    const std::uint32_t to = other_alone ? others[k].to : ones[i].to;
+    const bool other_is_first =
+        i == ones.size() || (k < others.size() && others[k].to < ones[i].to);
+    const std::uint32_t to = other_is_first ? others[k].to : ones[i].to;
     const auto of_one = run_to(ones, i, to);
     const auto of_other = run_to(others, k, to);
     call(to, of_one, of_other);
@@ -38,10 +39,10 @@ void for_each_receiver(std::span<const One> ones, std::span<const Other> others,
   }
 }
 
-/// Messages from one rank to others: bodies that they hold from now on, and bodies that they hold
-/// no longer. The columns of a message are, in this order: names and contents (boxes or records) of
-/// bodies, whether each belongs to the receiver (1) or is a copy (0), and names of bodies to
-/// remove.
+/// Messages from one rank to others: bodies that a receiver adds or updates, and bodies that it
+/// removes. The columns of a message are, in this order: names and contents (boxes or records) of
+/// bodies to add or update, whether each belongs to the receiver (1) or is a copy (0), and names of
+/// bodies to remove.
 template <typename Content>
 class SendQueue {
  public:
@@ -49,20 +50,20 @@ class SendQueue {
   struct Body {
     std::uint64_t name = 0;
     std::uint32_t owner = 0;  ///< the rank that it belongs to
-    bool same = false;        ///< unchanged: ranks that have a copy need no message
+    bool same = false;        ///< unchanged: ranks that keep a copy need no message
   };
 
   void clear() noexcept {
     held_.clear();
     gone_.clear();
   }
-  /// Adds messages for the ranks other than `self` that hold a body from now on (`now`), and for
-  /// ranks that held it `before` and hold it no longer. Both lists are sorted.
+  /// Adds messages about one body to ranks other than `self`: ranks in `now` add or update it,
+  /// ranks only in `before` remove it. Both lists are sorted.
   void add_messages(std::uint32_t self, const Body& body, const Content& content,
                     std::span<const std::uint32_t> before, std::span<const std::uint32_t> now);
 
   /// Adds one message per receiver. The messages refer to columns of this object.
-  void pack(std::uint32_t from, std::vector<RankMessage>& parcels);
+  void pack(std::uint32_t from, std::vector<RankMessage>& messages);
 
  private:
   struct Held {
@@ -86,19 +87,20 @@ class SendQueue {
 
 /// Returns a column of a message as elements.
 template <typename T>
-[[nodiscard]] std::span<const T> column_of(const RankMessage& parcel, std::size_t column) noexcept {
-  const std::span<const std::byte> bytes = parcel.columns[column];
+[[nodiscard]] std::span<const T> column_of(const RankMessage& message,
+                                           std::size_t column) noexcept {
+  const std::span<const std::byte> bytes = message.columns[column];
   return {reinterpret_cast<const T*>(bytes.data()), bytes.size() / sizeof(T)};
 }
 
 /// A message of a SendQueue, as its receiver reads it.
 template <typename Content>
 struct BodyMessages {
-  explicit BodyMessages(const RankMessage& parcel) noexcept
-      : names(column_of<std::uint64_t>(parcel, 0)),
-        contents(column_of<Content>(parcel, 1)),
-        belongs(column_of<std::uint8_t>(parcel, 2)),
-        gone(column_of<std::uint64_t>(parcel, 3)) {}
+  explicit BodyMessages(const RankMessage& message) noexcept
+      : names(column_of<std::uint64_t>(message, 0)),
+        contents(column_of<Content>(message, 1)),
+        belongs(column_of<std::uint8_t>(message, 2)),
+        gone(column_of<std::uint64_t>(message, 3)) {}
 
   std::span<const std::uint64_t> names;
   std::span<const Content> contents;
@@ -106,11 +108,12 @@ struct BodyMessages {
   std::span<const std::uint64_t> gone;
 };
 
-/// All changes of a rank's bodies that follow from the received messages, to be applied at once.
+/// All changes of a rank's bodies by one exchange: bodies that left the rank, and the contents of
+/// received messages. They are applied at once.
 template <typename Place, typename Content>
 struct BodyChanges {
   std::vector<Key> dropped;
-  /// Bodies that are here already, and their new boxes or poses.
+  /// Bodies that the rank already has, and their new boxes or poses.
   std::vector<Key> keys;
   std::vector<Place> places;
   /// Bodies to add: names, contents, and whether they belong to this rank.
@@ -135,9 +138,9 @@ struct BodyChanges {
 
 /// For each name that the messages list as removed, calls drop(id) and erases it from the table.
 template <typename Content, typename Drop>
-void take_gone(std::span<const RankMessage> parcels, NameTable& table, Drop&& drop) {
-  for (const RankMessage& parcel : parcels) {
-    for (const BodyName name : BodyMessages<Content>(parcel).gone) {
+void take_gone(std::span<const RankMessage> messages, NameTable& table, Drop&& drop) {
+  for (const RankMessage& message : messages) {
+    for (const BodyName name : BodyMessages<Content>(message).gone) {
       const std::uint32_t id = table.find(name);
       if (id == NameTable::kNone) continue;
       drop(id);
@@ -166,7 +169,7 @@ void SendQueue<Content>::add_messages(std::uint32_t self, const Body& body, cons
 }
 
 template <typename Content>
-void SendQueue<Content>::pack(std::uint32_t from, std::vector<RankMessage>& parcels) {
+void SendQueue<Content>::pack(std::uint32_t from, std::vector<RankMessage>& messages) {
   const auto by_receiver = [](const auto& a, const auto& b) { return a.to < b.to; };
   // With two ranks, all messages have the same receiver.
   const auto sort = [&](auto& entries) {
@@ -190,12 +193,12 @@ void SendQueue<Content>::pack(std::uint32_t from, std::vector<RankMessage>& parc
   for_each_receiver(all_held, all_gone, [&](std::uint32_t to, auto held, auto gone) {
     const auto h = static_cast<std::size_t>(held.data() - held_.data());
     const auto g = static_cast<std::size_t>(gone.data() - gone_.data());
-    parcels.push_back({from,
-                       to,
-                       {std::as_bytes(std::span(names_).subspan(h, held.size())),
-                        std::as_bytes(std::span(contents_).subspan(h, held.size())),
-                        std::as_bytes(std::span(belongs_).subspan(h, held.size())),
-                        std::as_bytes(std::span(gone_names_).subspan(g, gone.size()))}});
+    messages.push_back({from,
+                        to,
+                        {std::as_bytes(std::span(names_).subspan(h, held.size())),
+                         std::as_bytes(std::span(contents_).subspan(h, held.size())),
+                         std::as_bytes(std::span(belongs_).subspan(h, held.size())),
+                         std::as_bytes(std::span(gone_names_).subspan(g, gone.size()))}});
   });
 }
 

@@ -5,9 +5,10 @@
 
 namespace winnow::mid {
 
-/// Memory reserved before tasks start, which hands out blocks of words to them. If it is exhausted
-/// it only counts, so that the caller can reserve enough and repeat. The total does not depend on
-/// the order of tasks; only the position of blocks does.
+/// Hands out blocks of 32-bit integers to tasks, from memory that is reserved before the tasks
+/// start. If the memory is exhausted, only counts blocks, so that the caller can reserve enough and
+/// repeat. The number of blocks does not depend on the order of tasks, only the positions of blocks
+/// do.
 class BumpAllocator {
  public:
   static constexpr std::uint32_t kBlock = 256;
@@ -19,16 +20,16 @@ class BumpAllocator {
   BumpAllocator(std::uint32_t* words, std::uint64_t blocks) noexcept
       : words_(words), blocks_(blocks) {}
 
-  /// Returns consecutive blocks for `words` words, or null if there are not enough.
+  /// Returns consecutive blocks for `words` integers, or null if not enough blocks remain.
   [[nodiscard]] std::uint32_t* take(std::uint64_t words) noexcept {
     const std::uint64_t count = blocks_for(words);
     const std::uint64_t first = next_.fetch_add(count, std::memory_order_relaxed);
     return first + count <= blocks_ ? words_ + first * kBlock : nullptr;
   }
-  [[nodiscard]] std::uint64_t asked() const noexcept {
+  [[nodiscard]] std::uint64_t requested() const noexcept {
     return next_.load(std::memory_order_relaxed);
   }
-  [[nodiscard]] bool was_enough() const noexcept { return asked() <= blocks_; }
+  [[nodiscard]] bool was_enough() const noexcept { return requested() <= blocks_; }
 
   [[nodiscard]] std::uint32_t index_of(const std::uint32_t* block) const noexcept {
     return static_cast<std::uint32_t>(static_cast<std::size_t>(block - words_) / kBlock);
@@ -40,8 +41,8 @@ class BumpAllocator {
   std::atomic<std::uint64_t> next_{0};
 };
 
-/// Appends the words of one task. Uses a linked list of blocks: each block begins with the index of
-/// the next one.
+/// Appends the integers of one task to a linked list of blocks: each block begins with the index of
+/// the next block.
 class WordWriter {
  public:
   explicit WordWriter(BumpAllocator& arena) noexcept : arena_(arena) {}
@@ -72,7 +73,7 @@ class WordWriter {
   std::uint64_t size_ = 0;
 };
 
-/// Reads the words that a WordWriter wrote.
+/// Reads the integers that a WordWriter wrote.
 class WordReader {
  public:
   WordReader(const std::uint32_t* words, std::uint32_t first_block) noexcept

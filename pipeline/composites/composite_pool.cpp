@@ -1,5 +1,5 @@
 // CompositePool: adds, scales, refits and removes meshes, height fields and compounds, and forwards
-// the functions of MidPhase to the other files here.
+// the functions of MidPhase to the other files of this folder.
 
 #include <winnow/pipeline/composite_pool.h>
 
@@ -257,7 +257,7 @@ mid::Composites* CompositePool::state() noexcept {
 
 Status CompositePool::add_mesh(const PointView& vertices, const IndexView& triangles, ShapeId& id,
                                const MeshOptions& options, const Execution& execution) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   mid::Composites* const s = state();
   if (s == nullptr) return Status::out_of_memory;
   Status status = s->meshes.prepare();
@@ -275,7 +275,7 @@ Status CompositePool::add_mesh(const PointView& vertices, const IndexView& trian
 }
 
 Status CompositePool::add_scaled(ShapeId mesh, const std::array<double, 3>& scale, ShapeId& id) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   if (!contains(mesh) || mesh.composite_kind() != CompositeKind::mesh) return Status::invalid_key;
   mid::MeshEntry entry = *state_->mesh(mesh);
   for (std::size_t i = 0; i < 3; ++i) {
@@ -292,7 +292,7 @@ Status CompositePool::add_scaled(ShapeId mesh, const std::array<double, 3>& scal
 
 Status CompositePool::refit_mesh(ShapeId mesh, const PointView& vertices,
                                  const Execution& execution) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   if (!contains(mesh) || mesh.composite_kind() != CompositeKind::mesh) return Status::invalid_key;
   mid::SharedMesh& shared = *state_->mesh(mesh)->shared;
   const Status status = shared.mesh.refit(vertices, execution);
@@ -307,7 +307,7 @@ Status CompositePool::refit_mesh(ShapeId mesh, const PointView& vertices,
 }
 
 Status CompositePool::add_height_field(const HeightSamples& samples, ShapeId& id) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   mid::Composites* const s = state();
   if (s == nullptr) return Status::out_of_memory;
   Status status = s->fields.prepare();
@@ -325,7 +325,7 @@ Status CompositePool::add_height_field(const HeightSamples& samples, ShapeId& id
 
 Status CompositePool::update_height_field(ShapeId field, std::uint32_t column, std::uint32_t row,
                                           const HeightSamples& samples) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   if (height_field(field) == nullptr) return Status::invalid_key;
   const Status status = state_->field(field)->update(column, row, samples);
   if (status != Status::ok) return status;
@@ -335,7 +335,7 @@ Status CompositePool::update_height_field(ShapeId field, std::uint32_t column, s
 }
 
 Status CompositePool::add_compound(std::span<const CompoundChild> children, ShapeId& id) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   if (children.empty()) return Status::invalid_shape;
   if (children.size() >> ShapeId::kIndexBits != 0) return Status::too_many_objects;
   std::uint64_t parts = 0;
@@ -366,7 +366,7 @@ std::uint32_t CompositePool::parts(ShapeId id) const noexcept {
 }
 
 CompoundPart CompositePool::part(ShapeId compound, std::uint32_t part) const noexcept {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   const mid::Compound* const found = state_ != nullptr ? state_->compound(compound) : nullptr;
   if (found == nullptr || part >= found->parts()) return {};
   const std::uint32_t child = found->child_of(part);
@@ -390,7 +390,7 @@ Status CompositePool::set_flag(mid::IdSet& set, ShapeId surface, bool now) noexc
 }
 
 Status CompositePool::set_solid(ShapeId id, bool solid) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   if (mesh(id) == nullptr) return Status::invalid_key;
   if (solid && !is_solid(id)) {
     const Status status = mid::check_solid(*state_, id);
@@ -469,14 +469,14 @@ bool CompositePool::contains(ShapeId id) const noexcept {
 }
 
 Aabb CompositePool::bounds(ShapeId id, const Pose& pose) const noexcept {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   if (!contains(id)) return {};
   const mid::Box3 box = mid::bounds_of(*state_, id, pose);
   return Aabb::outward(box.min, box.max);
 }
 
 double CompositePool::radius(ShapeId id) const noexcept {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   return contains(id) ? state_->radius(id) : 0.0;
 }
 
@@ -484,66 +484,67 @@ std::uint64_t CompositePool::revision() const noexcept {
   return state_ != nullptr ? state_->revision : 0;
 }
 
-Status CompositePool::expand(const ShapePool& shapes, const Bodies& bodies,
-                             std::span<const BodyPair> pairs, const PairMargins& margins,
-                             const Execution& execution, PrimitivePairs& out) const {
-  const DefaultEnvironment environment;
+Status CompositePool::find_primitive_pairs(const ShapePool& shapes, const Bodies& bodies,
+                                           std::span<const BodyPair> pairs,
+                                           const PairMargins& margins, const Execution& execution,
+                                           PrimitivePairs& out) const {
+  const DefaultFloatEnvironment environment;
   const StageScope stage(WorkStage::mid_phase);
-  return mid::expand(state_, shapes.tables(), bodies, pairs, margins, execution, out);
+  return mid::find_primitive_pairs(state_, shapes.tables(), bodies, pairs, margins, execution, out);
 }
 
-void CompositePool::smooth(const ShapePool& shapes, const PrimitivePairs& pairs,
-                           const PairMargins& margins, const Execution& execution,
-                           NarrowResult& result) const {
-  const DefaultEnvironment environment;
-  mid::smooth(shapes, pairs, margins, execution, result);
+void CompositePool::correct_internal_edges(const ShapePool& shapes, const PrimitivePairs& pairs,
+                                           const PairMargins& margins, const Execution& execution,
+                                           NarrowResult& result) const {
+  const DefaultFloatEnvironment environment;
+  mid::correct_internal_edges(shapes, pairs, margins, execution, result);
 }
 
-Status CompositePool::reduce(const ShapePool& shapes, const PrimitivePairs& pairs,
-                             const NarrowResult& answers, const PairMargins& margins,
-                             const Execution& execution, ContactRegions& out) const {
-  const DefaultEnvironment environment;
-  return mid::reduce(shapes, pairs, answers, margins, execution, out);
+Status CompositePool::reduce_contacts(const ShapePool& shapes, const PrimitivePairs& pairs,
+                                      const NarrowResult& answers, const PairMargins& margins,
+                                      const Execution& execution, ContactRegions& out) const {
+  const DefaultFloatEnvironment environment;
+  return mid::reduce_contacts(shapes, pairs, answers, margins, execution, out);
 }
 
-void CompositePool::visit(ShapeId id, const Pose& pose, const BoxSweep& sweep,
+void CompositePool::visit(ShapeId id, const Pose& pose, const MovingBox& moving_box,
                           const PrimitiveVisitor& visitor) const {
-  const DefaultEnvironment environment;
-  if (contains(id)) mid::visit(*state_, id, pose, sweep, visitor);
+  const DefaultFloatEnvironment environment;
+  if (contains(id)) mid::visit(*state_, id, pose, moving_box, visitor);
 }
 
 void CompositePool::visit_rays(ShapeId id, const Pose& pose, std::span<const ShapeRay> rays,
                                const double* limits, const RayVisitor& visitor) const {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   if (contains(id)) mid::visit_rays(*state_, id, pose, rays, limits, visitor);
 }
 
-bool CompositePool::place(ShapeId id, const Pose& pose, RaySurface& surface) const {
-  const DefaultEnvironment environment;
-  return contains(id) && mid::place(*state_, id, pose, surface);
+bool CompositePool::prepare_ray_surface(ShapeId id, const Pose& pose, RaySurface& surface) const {
+  const DefaultFloatEnvironment environment;
+  return contains(id) && mid::prepare_ray_surface(*state_, id, pose, surface);
 }
 
 void CompositePool::visit_ray(const RaySurface& surface, const ShapeRay& ray, double limit,
                               const RayVisitor& visitor) const {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   mid::visit_ray(*state_, surface, ray, limit, visitor);
 }
 
-void CompositePool::visit_near(ShapeId id, const Pose& pose, const BoxSweep& from, double limit,
+void CompositePool::visit_near(ShapeId id, const Pose& pose, const MovingBox& from, double limit,
                                const PrimitiveVisitor& visitor) const {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   if (contains(id)) mid::visit_near(*state_, id, pose, from, limit, visitor);
 }
 
 bool CompositePool::visit_pairs(ShapeId a, const Pose& pose_a, ShapeId b, const Pose& pose_b,
                                 const PrimitivePairVisitor& visitor) const {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   return contains(a) && contains(b) && mid::visit_pairs(*state_, a, pose_a, b, pose_b, visitor);
 }
 
 bool CompositePool::visit_near_pairs(ShapeId a, const Pose& pose_a, ShapeId b, const Pose& pose_b,
                                      double limit, const NearPairVisitor& visitor) const {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   return contains(a) && contains(b) &&
          mid::visit_near_pairs(*state_, a, pose_a, b, pose_b, limit, visitor);
 }
@@ -552,15 +553,15 @@ bool CompositePool::has_solids() const noexcept {
   return state_ != nullptr && !state_->solid.empty();
 }
 
-bool CompositePool::holds(ShapeId id, const Pose& pose, const double point[3]) const {
-  const DefaultEnvironment environment;
-  return has_solids() && contains(id) && mid::holds(*state_, id, pose, point);
+bool CompositePool::solid_contains(ShapeId id, const Pose& pose, const double point[3]) const {
+  const DefaultFloatEnvironment environment;
+  return has_solids() && contains(id) && mid::solid_contains(*state_, id, pose, point);
 }
 
-bool CompositePool::holds(ShapeId id, const Pose& pose, ShapeId other,
-                          const Pose& other_pose) const {
-  const DefaultEnvironment environment;
-  return has_solids() && contains(id) && mid::holds(*state_, id, pose, other, other_pose);
+bool CompositePool::solid_contains(ShapeId id, const Pose& pose, ShapeId other,
+                                   const Pose& other_pose) const {
+  const DefaultFloatEnvironment environment;
+  return has_solids() && contains(id) && mid::solid_contains(*state_, id, pose, other, other_pose);
 }
 
 Footprint CompositePool::footprint() const noexcept {

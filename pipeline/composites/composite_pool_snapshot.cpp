@@ -205,13 +205,14 @@ Status CompositePool::save(Column<std::byte>& out) const {
 }
 
 Status CompositePool::load(std::span<const std::byte> saved, const Execution& execution) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   ByteReader in = open_snapshot(saved, kCompositesMagic, kCompositesVersion);
   if (in.get<std::uint32_t>() != kShapeKinds) in.fail();
   if (!in.ok()) return logged(status_of(in), "CompositePool::load");
   CompositePool fresh(shapes_, memory_);
   Status status = Status::ok;
-  // Also replaces a used pool by an empty one: `revision` must increase then.
+  // A pool that has a state gets a new one even if the snapshot is empty, because `revision` must
+  // increase.
   if (!in.rest().empty() || state_ != nullptr) {
     mid::Composites* const all = fresh.state();
     status = all == nullptr ? Status::out_of_memory : Status::ok;
@@ -228,7 +229,7 @@ Status CompositePool::load(std::span<const std::byte> saved, const Execution& ex
 Status CompositePool::add_saved_mesh(std::span<const std::byte> saved,
                                      const std::array<double, 3>& scale, ShapeId& id,
                                      const Execution& execution) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   if (!std::all_of(scale.begin(), scale.end(), mid::is_scale)) return Status::invalid_argument;
   mid::Composites* const s = state();
   if (s == nullptr) return Status::out_of_memory;
@@ -242,7 +243,7 @@ Status CompositePool::add_saved_mesh(std::span<const std::byte> saved,
 }
 
 Status CompositePool::add_saved_height_field(std::span<const std::byte> saved, ShapeId& id) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   mid::Composites* const s = state();
   if (s == nullptr) return Status::out_of_memory;
   Status status = s->fields.prepare();

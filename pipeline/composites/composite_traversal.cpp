@@ -19,7 +19,7 @@ namespace {
 struct Guide {
   const TransformedShape& body;
   const PrimitiveVisitor& visitor;
-  /// Called instead if the children are bodies of their own.
+  /// Called in place of `visitor` if the body is a compound that has surfaces.
   ChildVisitor children;
 
   [[nodiscard]] double show(std::uint32_t number, double limit) const {
@@ -129,10 +129,10 @@ void visit_nearest_first(const Guide& guide, double limit, Measure&& measure) {
 }
 
 /// Returns a world box in a frame at the position of the body, grown by the rounding errors.
-[[nodiscard]] Box3 box_in(const TransformedShape& body, const BoxSweep& sweep,
+[[nodiscard]] Box3 box_in(const TransformedShape& body, const MovingBox& moving_box,
                           const Mat& to_local) noexcept {
-  const Eigen::Map<const Vec> min(sweep.min);
-  const Eigen::Map<const Vec> max(sweep.max);
+  const Eigen::Map<const Vec> min(moving_box.min);
+  const Eigen::Map<const Vec> max(moving_box.max);
   const Box3 box{finite(min - body.position), finite(max - body.position)};
   return box_under(box, to_local, Vec::Zero(), 0.0);
 }
@@ -153,13 +153,13 @@ template <typename Go>
 
 }  // namespace
 
-void visit(const TransformedShape& body, const BoxSweep& sweep, const PrimitiveVisitor& visitor,
-           const ChildVisitor& children) {
+void visit(const TransformedShape& body, const MovingBox& moving_box,
+           const PrimitiveVisitor& visitor, const ChildVisitor& children) {
   const Guide guide{body, visitor, children};
   // A box that is never hit has time infinity, which must be later than any limit.
-  const double max_t = std::min(sweep.max_t, std::numeric_limits<double>::max());
-  Box3 box = box_in(body, sweep, body.to_local);
-  const Vec direction = body.to_local * Eigen::Map<const Vec>(sweep.direction);
+  const double max_t = std::min(moving_box.max_t, std::numeric_limits<double>::max());
+  Box3 box = box_in(body, moving_box, body.to_local);
+  const Vec direction = body.to_local * Eigen::Map<const Vec>(moving_box.direction);
   // Rounding of the direction moves the box by a share of the distance that it travels.
   if (body.bounds.is_finite()) {
     const Vec noise = Vec::Constant(4.0 * kSlack *
@@ -169,33 +169,33 @@ void visit(const TransformedShape& body, const BoxSweep& sweep, const PrimitiveV
     box = {box.min - noise, box.max + noise};
   }
   if (body.kind == TransformedShape::Kind::mesh) {
-    mesh_sweep(*body.mesh, box.min.data(), box.max.data(), direction.data(), max_t, guide.slots());
+    mesh_cast(*body.mesh, box.min.data(), box.max.data(), direction.data(), max_t, guide.slots());
   } else if (body.kind == TransformedShape::Kind::field) {
-    height_sweep(grid_of(*body.field), box.min.data(), box.max.data(), direction.data(), max_t,
-                 guide.slots());
+    height_cast(grid_of(*body.field), box.min.data(), box.max.data(), direction.data(), max_t,
+                guide.slots());
   } else if (body.compound->tree != nullptr) {
-    mesh_sweep(view_of(*body.compound->tree), box.min.data(), box.max.data(), direction.data(),
-               max_t, guide.slots());
+    mesh_cast(view_of(*body.compound->tree), box.min.data(), box.max.data(), direction.data(),
+              max_t, guide.slots());
   } else {
     visit_nearest_first(guide, max_t, [&](const Box3& child) {
-      return swept_box_time(box.min.data(), box.max.data(), direction.data(), max_t,
-                            child.min.data(), child.max.data());
+      return moving_box_time(box.min.data(), box.max.data(), direction.data(), max_t,
+                             child.min.data(), child.max.data());
     });
   }
 }
 
-void visit(const Composites& all, ShapeId id, const Pose& pose, const BoxSweep& sweep,
+void visit(const Composites& all, ShapeId id, const Pose& pose, const MovingBox& moving_box,
            const PrimitiveVisitor& visitor) {
   const TransformedShape body = TransformedShape::at(all, id, pose);
   auto show_child = [&](std::uint32_t number, double limit) {
     const TransformedShape child = body.child(number);
     return visit_child(child, limit, visitor, [&](const PrimitiveVisitor& keeping) {
-      BoxSweep rest = sweep;
+      MovingBox rest = moving_box;
       rest.max_t = limit;
       visit(child, rest, keeping, {});
     });
   };
-  visit(body, sweep, visitor, ChildVisitor::of(show_child));
+  visit(body, moving_box, visitor, ChildVisitor::of(show_child));
 }
 
 bool visit_pairs(const Composites& all, ShapeId a, const Pose& pose_a, ShapeId b,
@@ -206,7 +206,8 @@ bool visit_pairs(const Composites& all, ShapeId a, const Pose& pose_a, ShapeId b
     return false;
   PairGuide guide{first, second, visitor};
   const PlacedMesh placed(first, second, 0.0);
-  // Small, so that the traversal ends soon after the visitor returns false.
+  // The visitor is called when the buffer is nearly full. The buffer is small, so that at most this
+  // number of pairs are found in vain if the visitor ends the traversal.
   constexpr std::uint32_t kRoom = 2 * kMeshFanout;
   std::uint32_t slots[2][kRoom];
   SlotPairSink found{slots[0], slots[1], kRoom, 0, &PairGuide::show_slots, &guide};
@@ -235,7 +236,7 @@ bool visit_near_pairs(const Composites& all, ShapeId a, const Pose& pose_a, Shap
 
 namespace {
 
-void visit_near(const TransformedShape& body, const BoxSweep& from, double limit,
+void visit_near(const TransformedShape& body, const MovingBox& from, double limit,
                 const PrimitiveVisitor& visitor, const ChildVisitor& children) {
   const Guide guide{body, visitor, children};
   // Rotated to the frame of the body, but in world lengths.
@@ -258,7 +259,7 @@ void visit_near(const TransformedShape& body, const BoxSweep& from, double limit
 
 }  // namespace
 
-void visit_near(const Composites& all, ShapeId id, const Pose& pose, const BoxSweep& from,
+void visit_near(const Composites& all, ShapeId id, const Pose& pose, const MovingBox& from,
                 double limit, const PrimitiveVisitor& visitor) {
   const TransformedShape body = TransformedShape::at(all, id, pose);
   auto show_child = [&](std::uint32_t number, double most) {

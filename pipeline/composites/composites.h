@@ -1,8 +1,9 @@
 #pragma once
 
-// Storage of a CompositePool, and the functions that its members forward to: `expand`
-// (find_primitive_pairs.cpp, primitive_pair_search.cpp), `smooth` (internal_edges.cpp), `reduce`
-// (manifold_reduction.cpp), and the traversals of queries (composite_traversal.cpp, rays.cpp).
+// Storage of a CompositePool, and the functions that its members forward to: `find_primitive_pairs`
+// (find_primitive_pairs.cpp, primitive_pair_search.cpp), `correct_internal_edges`
+// (internal_edges.cpp), `reduce_contacts` (manifold_reduction.cpp), and the traversals of queries
+// (composite_traversal.cpp, rays.cpp).
 
 #include <winnow/core/column.h>
 #include <winnow/pipeline/composite_pool.h>
@@ -59,9 +60,9 @@ inline constexpr std::uint32_t kFlatChildren = 16;
 /// A compound and its children, in one block of memory.
 ///
 /// The tree over many children is a TriangleMesh: each child is a degenerate triangle whose
-/// vertices are the corners of the child's box, so that every traversal of meshes also works for
-/// compounds. A Partition is not used: it has keys, change lists and free lists for objects that
-/// move, and children of a compound never do; many scenes have many small compounds.
+/// vertices are two opposite corners of the child's box. So the traversals of meshes for boxes also
+/// work for compounds. A Partition would need more memory: it has keys, change lists and free lists
+/// for objects that move, and children of a compound never move.
 ///
 /// Parts are numbered child by child: one part per convex child, one per triangle of a surface.
 struct Compound {
@@ -74,7 +75,8 @@ struct Compound {
   /// First part of each child, then the number of parts. Null if no child is a surface: then child
   /// i is part i.
   const std::uint32_t* first_part = nullptr;
-  /// Null if there are few children, or if one of them is unbounded.
+  /// Null if there are at most kFlatChildren children, if a child is unbounded, or if memory for
+  /// the tree was refused.
   TriangleMesh* tree = nullptr;
   std::size_t bytes = 0;
   /// Links of the list of compounds that have surfaces as children.
@@ -93,7 +95,7 @@ struct Compound {
   }
 };
 
-/// Entries of one kind of shape, and a free list. A free entry must convert to false.
+/// Entries of one kind of shape, and a free list. A free entry is default-constructed.
 template <typename Entry>
 struct SlotTable {
   explicit SlotTable(std::pmr::memory_resource* memory) noexcept : entries(memory), free(memory) {}
@@ -226,57 +228,59 @@ struct Composites {
   }
 };
 
-/// See MidPhase::expand. If `all` is null, there are no composite shapes. O(pairs of bodies + pairs
-/// of primitives); each traversal is O(log n + found).
+/// See MidPhase::find_primitive_pairs. If `all` is null, there are no composite shapes. O(pairs of
+/// bodies + pairs of primitives); each traversal is O(log n + found).
 ///
 /// Tasks search fixed chunks of body pairs and write numbers to a shared arena. Then the results
 /// are counted, and tasks for the same chunks write them to their final positions. Neither step
 /// depends on the number of threads.
-Status expand(const Composites* all, const ShapeTables& tables, const Bodies& bodies,
-              std::span<const BodyPair> pairs, const PairMargins& margins,
-              const Execution& execution, PrimitivePairs& out);
+Status find_primitive_pairs(const Composites* all, const ShapeTables& tables, const Bodies& bodies,
+                            std::span<const BodyPair> pairs, const PairMargins& margins,
+                            const Execution& execution, PrimitivePairs& out);
 
-/// See MidPhase::smooth.
+/// See MidPhase::correct_internal_edges.
 ///
-/// A triangle touches with an edge or a corner if that feature is its farthest point along the
-/// contact normal. If a neighbouring triangle continues the surface behind the feature, it is not
-/// an edge of the surface as a whole (an internal edge), and only the normal of the face makes
-/// sense. Then:
-/// - Shapes that are apart keep their distance, its error bound and their points, and get the
-///   normal of the face.
-/// - Shapes that touch only because of their rounding do so too. The point of a sphere is moved
-///   below its centre, so that the contact exerts no torque.
-/// - Other shapes are clipped against the triangle along the normal. The depth becomes the depth of
-///   the clipped points, but at least the previous one. If no point is left, or if the depth would
-///   be several times the depth of all other contacts of the two bodies, the contact is not
-///   changed: the body is then beside the surface, not above it.
+/// A triangle touches with an edge or a corner if this feature is its farthest point along the
+/// contact normal. If a neighbouring triangle continues the surface at the feature, the feature is
+/// no edge of the surface as a whole (an internal edge). Then the contact gets the normal of the
+/// face:
+/// - Spheres, shapes that are apart, and shapes that overlap only by their rounding keep their
+///   distance and its error bound. The point of a sphere is moved to its deepest point along the
+///   new normal, so that the contact exerts no torque; other shapes keep their points.
+/// - Other shapes are clipped against the triangle along the new normal. The depth becomes the
+///   depth of the clipped points, but at least the previous depth. If the deepest point is not over
+///   the triangle, or if its depth would exceed kMaxDeeper times the largest depth of the contacts
+///   of the two bodies with the same kinds, the distance and the points are kept: the body is then
+///   beside the surface, not above it.
 ///
 /// No contact is lost, because the distance to the plane of a face is at most the distance to the
-/// face. Contacts of two triangles (mesh against mesh) are not changed: it is ambiguous which
-/// normal to use. Active edges are computed only for the front of a surface. On its back, where
-/// concave edges look convex, concave edges also count as internal, so that a floor is flat for
-/// either winding.
-void smooth(const ShapePool& shapes, const PrimitivePairs& pairs, const PairMargins& margins,
-            const Execution& execution, NarrowResult& result) noexcept;
+/// face. Contacts of two mesh triangles are changed only if their normal points to the back of a
+/// one-sided triangle; otherwise it is ambiguous which normal to use. Active edges are computed
+/// only for the front of a surface. On its back, where concave edges look convex, concave edges
+/// also count as internal, so that a floor is flat for either winding.
+void correct_internal_edges(const ShapePool& shapes, const PrimitivePairs& pairs,
+                            const PairMargins& margins, const Execution& execution,
+                            NarrowResult& result) noexcept;
 
-/// See MidPhase::reduce.
-Status reduce(const ShapePool& shapes, const PrimitivePairs& pairs, const NarrowResult& answers,
-              const PairMargins& margins, const Execution& execution, ContactRegions& out);
+/// See MidPhase::reduce_contacts.
+Status reduce_contacts(const ShapePool& shapes, const PrimitivePairs& pairs,
+                       const NarrowResult& answers, const PairMargins& margins,
+                       const Execution& execution, ContactRegions& out);
 
 /// See the members of MidPhase with the same names. `id` must exist and `pose` must be valid.
-void visit(const Composites& all, ShapeId id, const Pose& pose, const BoxSweep& sweep,
+void visit(const Composites& all, ShapeId id, const Pose& pose, const MovingBox& moving_box,
            const PrimitiveVisitor& visitor);
 void visit_rays(const Composites& all, ShapeId id, const Pose& pose, std::span<const ShapeRay> rays,
                 const double* limits, const RayVisitor& visitor);
-[[nodiscard]] bool place(const Composites& all, ShapeId id, const Pose& pose,
-                         RaySurface& surface) noexcept;
+[[nodiscard]] bool prepare_ray_surface(const Composites& all, ShapeId id, const Pose& pose,
+                                       RaySurface& surface) noexcept;
 void visit_ray(const Composites& all, const RaySurface& surface, const ShapeRay& ray, double limit,
                const RayVisitor& visitor);
 bool visit_pairs(const Composites& all, ShapeId a, const Pose& pose_a, ShapeId b,
                  const Pose& pose_b, const PrimitivePairVisitor& visitor);
 bool visit_near_pairs(const Composites& all, ShapeId a, const Pose& pose_a, ShapeId b,
                       const Pose& pose_b, double limit, const NearPairVisitor& visitor);
-void visit_near(const Composites& all, ShapeId id, const Pose& pose, const BoxSweep& from,
+void visit_near(const Composites& all, ShapeId id, const Pose& pose, const MovingBox& from,
                 double limit, const PrimitiveVisitor& visitor);
 
 }  // namespace winnow::mid

@@ -1,6 +1,6 @@
-// Expands pairs of bodies to pairs of primitives (MidPhase::expand). PrimitivePairSearch
-// (primitive_pair_search.cpp) finds the pairs of one chunk of body pairs; this file runs the chunks
-// as tasks, and copies the results to PrimitivePairs.
+// Finds the pairs of primitives of pairs of bodies (MidPhase::find_primitive_pairs).
+// PrimitivePairSearch (primitive_pair_search.cpp) finds the pairs of one chunk of body pairs; this
+// file runs the chunks as tasks, and copies the results to PrimitivePairs.
 
 #include "pipeline/composites/composites.h"
 #include "pipeline/composites/primitive_pair_search.h"
@@ -13,8 +13,8 @@ namespace {
 
 constexpr std::size_t kPairsPerTask = 32;
 
-/// Results of the search of one chunk, for the task that writes them out. Consists of words, like
-/// all data in the scratch column.
+/// Results of the search of one chunk, for the task that writes them out. The record consists of
+/// 32-bit integers, like all data in the scratch column.
 struct ChunkRecord {
   std::uint32_t primitive_block;
   std::uint32_t pair_block;
@@ -28,11 +28,11 @@ struct ChunkRecord {
 };
 static_assert(sizeof(ChunkRecord) % sizeof(std::uint32_t) == 0);
 
-class PrimitivePairExpansion {
+class PrimitivePairFinder {
  public:
-  PrimitivePairExpansion(const Composites& all, const ShapeTables& tables, const Bodies& bodies,
-                         std::span<const BodyPair> pairs, const PairMargins& margins,
-                         PrimitivePairs& out) noexcept
+  PrimitivePairFinder(const Composites& all, const ShapeTables& tables, const Bodies& bodies,
+                      std::span<const BodyPair> pairs, const PairMargins& margins,
+                      PrimitivePairs& out) noexcept
       : all_(all),
         tables_(tables),
         bodies_(bodies),
@@ -92,7 +92,7 @@ class PrimitivePairExpansion {
   std::uint64_t head_;
 };
 
-Status PrimitivePairExpansion::run(const Execution& execution) noexcept {
+Status PrimitivePairFinder::run(const Execution& execution) noexcept {
   if (!out_.first.resize(pairs_.size() + 1)) return Status::out_of_memory;
   out_.first[0] = 0;
   if (!search_all(execution)) return Status::out_of_memory;
@@ -102,23 +102,24 @@ Status PrimitivePairExpansion::run(const Execution& execution) noexcept {
   return Status::ok;
 }
 
-bool PrimitivePairExpansion::search_all(const Execution& execution) noexcept {
+bool PrimitivePairFinder::search_all(const Execution& execution) noexcept {
   // A chunk that finds anything uses at least one block for primitives and one for pairs.
   std::uint64_t blocks = 2 * chunks_;
   while (true) {
     const std::uint64_t words = (head_ + blocks) * BumpAllocator::kBlock;
     if (!std::in_range<std::size_t>(words)) return false;
     if (!out_.scratch.resize(static_cast<std::size_t>(words))) return false;
-    // Use all reserved memory, so that a repeated call does not have to search twice.
+    // Use all memory that the column has, so that a later call with as many results searches only
+    // once.
     blocks = out_.scratch.capacity() / BumpAllocator::kBlock - head_;
     BumpAllocator arena(this->blocks(), blocks);
     execution.for_each(chunks_, [&](std::size_t chunk) { search(chunk, arena); });
     if (arena.was_enough()) return true;
-    blocks = std::max(arena.asked(), blocks + blocks / 2);
+    blocks = std::max(arena.requested(), blocks + blocks / 2);
   }
 }
 
-void PrimitivePairExpansion::search(std::size_t chunk, BumpAllocator& arena) noexcept {
+void PrimitivePairFinder::search(std::size_t chunk, BumpAllocator& arena) noexcept {
   PrimitivePairSearch search(tables_, arena);
   const std::size_t end = std::min((chunk + 1) * kPairsPerTask, pairs_.size());
   for (std::size_t i = chunk * kPairsPerTask; i < end; ++i) {
@@ -141,7 +142,7 @@ void PrimitivePairExpansion::search(std::size_t chunk, BumpAllocator& arena) noe
                       0};
 }
 
-Status PrimitivePairExpansion::count() noexcept {
+Status PrimitivePairFinder::count() noexcept {
   std::uint64_t primitives = 0;
   std::uint64_t triangles = 0;
   std::uint64_t pairs = 0;
@@ -168,7 +169,7 @@ Status PrimitivePairExpansion::count() noexcept {
   return ok ? Status::ok : Status::out_of_memory;
 }
 
-void PrimitivePairExpansion::write(std::size_t chunk) noexcept {
+void PrimitivePairFinder::write(std::size_t chunk) noexcept {
   const ChunkRecord& record = records()[chunk];
   WordReader primitives(blocks(), record.primitive_block);
   WordReader pairs(blocks(), record.pair_block);
@@ -197,8 +198,8 @@ void PrimitivePairExpansion::write(std::size_t chunk) noexcept {
   }
 }
 
-void PrimitivePairExpansion::write_primitive(const TransformedShape& body, std::uint32_t number,
-                                             std::size_t at, std::uint32_t& triangle) noexcept {
+void PrimitivePairFinder::write_primitive(const TransformedShape& body, std::uint32_t number,
+                                          std::size_t at, std::uint32_t& triangle) noexcept {
   if (body.is_surface()) return write_triangle(body, number, at, triangle++);
   const PlacedPart part = body.part(number);
   ShapeId shape = part.shape;
@@ -212,8 +213,8 @@ void PrimitivePairExpansion::write_primitive(const TransformedShape& body, std::
   out_.part[at] = body.shown_number(number);
 }
 
-void PrimitivePairExpansion::write_triangle(const TransformedShape& body, std::uint32_t number,
-                                            std::size_t at, std::uint32_t triangle) noexcept {
+void PrimitivePairFinder::write_triangle(const TransformedShape& body, std::uint32_t number,
+                                         std::size_t at, std::uint32_t triangle) noexcept {
   Corners corners;
   static_cast<void>(body.corners(number, corners));
   out_.triangles[triangle] = corners.triangle();
@@ -228,9 +229,9 @@ void PrimitivePairExpansion::write_triangle(const TransformedShape& body, std::u
 
 }  // namespace
 
-Status expand(const Composites* all, const ShapeTables& tables, const Bodies& bodies,
-              std::span<const BodyPair> pairs, const PairMargins& margins,
-              const Execution& execution, PrimitivePairs& out) {
+Status find_primitive_pairs(const Composites* all, const ShapeTables& tables, const Bodies& bodies,
+                            std::span<const BodyPair> pairs, const PairMargins& margins,
+                            const Execution& execution, PrimitivePairs& out) {
   out.clear();
   if (pairs.empty() || all == nullptr) {
     if (!out.first.resize(pairs.size() + 1)) return Status::out_of_memory;
@@ -238,7 +239,7 @@ Status expand(const Composites* all, const ShapeTables& tables, const Bodies& bo
     return Status::ok;
   }
   const Status status =
-      PrimitivePairExpansion(*all, tables, bodies, pairs, margins, out).run(execution);
+      PrimitivePairFinder(*all, tables, bodies, pairs, margins, out).run(execution);
   if (status != Status::ok) out.clear();
   return status;
 }

@@ -1,7 +1,7 @@
 // Corrects contacts at internal edges of meshes and height fields, and contacts from behind
-// one-sided triangles (MidPhase::smooth; composites.h describes the method). Called by the scene
-// after the narrow phase and before `reduce`.
-// In this file, an answer is the narrow-phase result of one pair of primitives.
+// one-sided triangles (MidPhase::correct_internal_edges; composites.h describes the method). Called
+// by the scene after the narrow phase and before `reduce_contacts`. In this file, an answer is the
+// narrow-phase result of one pair of primitives.
 
 #include <winnow/core/rounding.h>
 #include <winnow/pipeline/contact_types.h>
@@ -34,7 +34,8 @@ enum class EdgeContact : std::uint8_t {
 // as equal.
 constexpr double kLevel = 1e-6;
 constexpr double kSameNormal = 1e-13;
-// A normal whose component towards the back of a triangle is smaller counts as parallel to it.
+// A normal whose component towards the back of a triangle is smaller counts as parallel to the
+// triangle.
 constexpr double kBackNormal = 1e-9;
 
 /// `active`: see PrimitivePairs::active_edges. `away`: unit vector from the triangle to the other
@@ -130,8 +131,8 @@ constexpr double kFloatSlack = 1e-6;
 }
 
 /// Clips the supporting feature of the other shape along `normal` (face normal, from a to b)
-/// against the triangle. The depth is at least `least`. Returns false if the feature is not over
-/// the triangle, where its depth would be meaningless, or if it is deeper than `most`.
+/// against the triangle. The depth is at least `least`. Returns false if the deepest point is not
+/// over the triangle, where its depth would be meaningless, or is deeper than `most`.
 [[nodiscard]] bool clip_to_face(const FacePair& pair, const Vec& normal, double margin,
                                 double least, double most, FaceContacts& out) noexcept {
   solver::Problem problem;
@@ -159,9 +160,9 @@ constexpr double kFloatSlack = 1e-6;
 constexpr std::size_t kAnswersPerTask = 256;
 constexpr std::size_t kTasksPerWave = 16;
 
-// Limit of the new depth, relative to the deepest contact of the same bodies before smoothing. A
-// point on a seam may get deeper, because the shortest way out of each of the triangles leads
-// across the seam.
+// Limit of the new depth, relative to the deepest contact of the same bodies and kinds before the
+// correction. A point on a seam may get deeper: its previous depth was measured along the shortest
+// path out of a triangle, which leads across the seam.
 constexpr double kMaxDeeper = 4.0;
 
 /// Corrects the contacts of a NarrowResult in waves of chunks. Memory for the contacts of a wave is
@@ -189,7 +190,7 @@ class InternalEdgeCorrection {
     /// The contact comes from behind a one-sided triangle and is dropped.
     bool is_gone = false;
   };
-  struct Chunk {
+  struct AnswerChunk {
     std::size_t begin;
     std::size_t end;
     /// First contact of this chunk, and the number of contacts written.
@@ -204,18 +205,18 @@ class InternalEdgeCorrection {
     std::array<float, kAnswersPerTask> most{};
   };
   /// Answers [first, end) of one pair of bodies and one pair of kinds, and the depth of the deepest
-  /// one before smoothing.
+  /// answer before the correction.
   struct AnswerGroup {
     std::size_t first = 0;
     std::size_t end = 0;
     double deepest = 0.0;
   };
 
-  void run_wave(const Execution& execution, std::span<Chunk> wave) noexcept;
-  void first_pass(Chunk& chunk) noexcept;
+  void run_wave(const Execution& execution, std::span<AnswerChunk> wave) noexcept;
+  void first_pass(AnswerChunk& chunk) noexcept;
   void find_group(std::size_t i, AnswerGroup& bodies) const noexcept;
-  void finish(Chunk& chunk) noexcept;
-  void close_gaps(std::span<Chunk> wave, std::size_t from) noexcept;
+  void finish(AnswerChunk& chunk) noexcept;
+  void close_gaps(std::span<AnswerChunk> wave, std::size_t from) noexcept;
 
   [[nodiscard]] Correction find(std::size_t i) const noexcept;
   [[nodiscard]] Vec front_of(std::uint32_t primitive) const noexcept;
@@ -224,8 +225,8 @@ class InternalEdgeCorrection {
   void choose_side(const BodyPair& pair, bool second, Vec& away) const noexcept;
   void set_normal(std::size_t i, const Vec& normal) noexcept;
   void lower_sphere(std::size_t i, const Vec& normal) noexcept;
-  void clip(Chunk& chunk, std::size_t i) noexcept;
-  void take(Chunk& chunk, std::size_t i, std::span<const ContactPoint> points) noexcept;
+  void clip(AnswerChunk& chunk, std::size_t i) noexcept;
+  void take(AnswerChunk& chunk, std::size_t i, std::span<const ContactPoint> points) noexcept;
 
   /// True for a triangle that may have internal edges.
   [[nodiscard]] bool is_mesh_triangle(std::uint32_t primitive) const noexcept {
@@ -254,7 +255,7 @@ class InternalEdgeCorrection {
 
 void InternalEdgeCorrection::run(const Execution& execution) noexcept {
   const std::size_t size = std::min(result_.size(), pairs_.pairs.size());
-  Chunk wave[kTasksPerWave];
+  AnswerChunk wave[kTasksPerWave];
   for (std::size_t begin = 0; begin < size;) {
     std::size_t filled = 0;
     for (; filled < kTasksPerWave && begin < size; begin += kAnswersPerTask) {
@@ -264,18 +265,19 @@ void InternalEdgeCorrection::run(const Execution& execution) noexcept {
   }
 }
 
-void InternalEdgeCorrection::run_wave(const Execution& execution, std::span<Chunk> wave) noexcept {
+void InternalEdgeCorrection::run_wave(const Execution& execution,
+                                      std::span<AnswerChunk> wave) noexcept {
   const std::size_t from = result_.contacts();
   execution.for_each(wave.size(), [&](std::size_t k) { first_pass(wave[k]); });
   if (has_contacts()) {
     std::size_t room = from;
-    for (Chunk& chunk : wave) {
+    for (AnswerChunk& chunk : wave) {
       chunk.base = room;
       room += chunk.used;
       chunk.used = 0;
     }
     const bool has_room = room == from || columns_.contacts.grow(room);
-    for (Chunk& chunk : wave) chunk.has_room = has_room;
+    for (AnswerChunk& chunk : wave) chunk.has_room = has_room;
   }
   // Do this before distances change: the group may continue in the next wave.
   if (wave.back().end < result_.size()) find_group(wave.back().end, spanning_);
@@ -285,7 +287,7 @@ void InternalEdgeCorrection::run_wave(const Execution& execution, std::span<Chun
 
 // First pass: does everything that needs no memory and changes no distance, and counts the contacts
 // that the second pass may write.
-void InternalEdgeCorrection::first_pass(Chunk& chunk) noexcept {
+void InternalEdgeCorrection::first_pass(AnswerChunk& chunk) noexcept {
   AnswerGroup bodies = spanning_;
   for (std::size_t i = chunk.begin; i < chunk.end; ++i) {
     const Correction found = find(i);
@@ -305,8 +307,8 @@ void InternalEdgeCorrection::first_pass(Chunk& chunk) noexcept {
   }
 }
 
-// Finds the answers of the same bodies and kinds as answer i, which are consecutive. They end with
-// the run, because the kinds of the next run depend on other bodies.
+// Finds the answers of the same bodies and kinds as answer i, which are consecutive. Answers of
+// other runs are not included, because the order of runs depends on other bodies.
 void InternalEdgeCorrection::find_group(std::size_t i, AnswerGroup& bodies) const noexcept {
   if (i >= bodies.first && i < bodies.end) return;
   bodies = {i, i + 1, -columns_.distance[i]};
@@ -328,8 +330,8 @@ void InternalEdgeCorrection::find_group(std::size_t i, AnswerGroup& bodies) cons
   while (bodies.first > begin && take(bodies.first - 1)) --bodies.first;
 }
 
-// Second pass: only here distances change. No other task reads them.
-void InternalEdgeCorrection::finish(Chunk& chunk) noexcept {
+// Second pass: changes distances. No other task reads these distances.
+void InternalEdgeCorrection::finish(AnswerChunk& chunk) noexcept {
   if (chunk.is_deep.none() && chunk.is_gone.none()) return;
   for (std::size_t i = chunk.begin; i < chunk.end; ++i) {
     if (chunk.is_gone.test(i - chunk.begin)) drop(i);
@@ -337,9 +339,9 @@ void InternalEdgeCorrection::finish(Chunk& chunk) noexcept {
   }
 }
 
-void InternalEdgeCorrection::close_gaps(std::span<Chunk> wave, std::size_t from) noexcept {
+void InternalEdgeCorrection::close_gaps(std::span<AnswerChunk> wave, std::size_t from) noexcept {
   std::size_t to = from;
-  for (const Chunk& chunk : wave) {
+  for (const AnswerChunk& chunk : wave) {
     const std::size_t gap = chunk.base - to;
     if (chunk.used != 0 && gap != 0) {
       ContactColumns& all = columns_.contacts;
@@ -434,7 +436,7 @@ void InternalEdgeCorrection::drop(std::size_t i) noexcept {
   if (has_contacts()) columns_.contact_count[i] = 0;
 }
 
-// Orients `face` to the side of the triangle's plane to which the other shape has the shorter way
+// Orients `face` to the side of the triangle's plane to which the other shape has the shorter path
 // out.
 void InternalEdgeCorrection::choose_side(const BodyPair& bodies, bool second,
                                          Vec& face) const noexcept {
@@ -479,7 +481,7 @@ void InternalEdgeCorrection::lower_sphere(std::size_t i, const Vec& normal) noex
   }
 }
 
-void InternalEdgeCorrection::clip(Chunk& chunk, std::size_t i) noexcept {
+void InternalEdgeCorrection::clip(AnswerChunk& chunk, std::size_t i) noexcept {
   const BodyPair& bodies = pair(i);
   const Vec normal(columns_.normal[0][i], columns_.normal[1][i], columns_.normal[2][i]);
   const FacePair faces{tables_,
@@ -500,7 +502,7 @@ void InternalEdgeCorrection::clip(Chunk& chunk, std::size_t i) noexcept {
   }
 }
 
-void InternalEdgeCorrection::take(Chunk& chunk, std::size_t i,
+void InternalEdgeCorrection::take(AnswerChunk& chunk, std::size_t i,
                                   std::span<const ContactPoint> points) noexcept {
   // If memory was refused, keep at most as many contacts as there were.
   std::size_t at = columns_.contact_first[i];
@@ -522,8 +524,9 @@ void InternalEdgeCorrection::take(Chunk& chunk, std::size_t i,
 
 }  // namespace
 
-void smooth(const ShapePool& shapes, const PrimitivePairs& pairs, const PairMargins& margins,
-            const Execution& execution, NarrowResult& result) noexcept {
+void correct_internal_edges(const ShapePool& shapes, const PrimitivePairs& pairs,
+                            const PairMargins& margins, const Execution& execution,
+                            NarrowResult& result) noexcept {
   if (result.level() == ContactLevel::boolean) return;
   InternalEdgeCorrection(shapes, pairs, margins, result).run(execution);
 }

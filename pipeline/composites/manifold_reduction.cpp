@@ -1,7 +1,8 @@
-// Contact reduction (MidPhase::reduce): merges the manifolds of each pair of bodies into regions of
-// nearly parallel normals, and chooses the points of each region (manifold/region_points.h). Called
-// by the scene after `smooth`, if SceneOptions::contact_reduction is set.
-// In this file, an answer is the narrow-phase result of one pair of primitives.
+// Contact reduction (MidPhase::reduce_contacts): merges the manifolds of each pair of bodies into
+// regions of nearly parallel normals, and chooses the points of each region
+// (manifold/region_points.h). Called by the scene after `correct_internal_edges`, if
+// SceneOptions::contact_reduction is set. In this file, an answer is the narrow-phase result of one
+// pair of primitives.
 
 #include <winnow/core/rounding.h>
 #include "core/sort/parallel_ranges.h"
@@ -19,15 +20,16 @@
 namespace winnow::mid {
 namespace {
 
-constexpr std::size_t kBodiesPerStretch = 64;
+constexpr std::size_t kBodyPairsPerRange = 64;
 constexpr std::uint32_t kNoRegion = ~0U;
 
 // Unit normals that differ by less count as equal. Relative distance by which a float position in a
 // triangle may be outside of it, or above or below its plane.
 constexpr double kSameFace = 1e-9;
 constexpr double kBesideSlack = 4e-6;
-// A point lies in the middle of its gap if it is no farther from it than this, relative to the
-// sizes: a point may have been given the depth of another point.
+// A point counts as in the middle of its gap if its distance from the middle, relative to the
+// sizes, is at most this. kTiedDepth is included because a point may have been given the depth of
+// another point.
 constexpr double kGapSlack = kBesideSlack + kTiedDepth;
 
 // Direction for breaking ties between points that are equally far out; not along a symmetry axis of
@@ -35,8 +37,8 @@ constexpr double kGapSlack = kBesideSlack + kTiedDepth;
 constexpr double kOffCorners[3] = {0.3624, 0.932, 0.65};
 
 /// The mesh triangle of a contact along the normal of its face. Distinguishes contacts with the
-/// face from contacts with an internal edge, to which `smooth` gave the same normal. For all other
-/// contacts it is default-constructed: then `has` is always true.
+/// face from contacts with an internal edge, to which `correct_internal_edges` gave the same
+/// normal. For all other contacts it is default-constructed: then `has` is always true.
 class FaceOfMesh {
  public:
   FaceOfMesh() noexcept = default;
@@ -53,8 +55,8 @@ class FaceOfMesh {
 
   [[nodiscard]] bool is_face() const noexcept { return is_face_; }
 
-  /// True if a contact is over the triangle and, if the shapes are apart, at the distance from it
-  /// that its depth states. `from`: origin of its position.
+  /// Returns whether a contact is over the triangle and, if the shapes are apart, at half of its
+  /// gap from the plane of the triangle. `from`: origin of its position.
   [[nodiscard]] bool has(const ContactPoint& contact, const double* from) const noexcept {
     if (!is_face_) return true;
     const Vec at = Eigen::Map<const Eigen::Vector3f>(contact.position).cast<double>() +
@@ -144,9 +146,9 @@ class ManifoldReduction {
   [[nodiscard]] Vec direction_of(const Members& members, std::uint32_t number) const noexcept;
   void add_contacts(std::uint32_t answer, double margin, const ContactRegion& region,
                     SupportCorners& corners, RegionPoints& points) const noexcept;
-  [[nodiscard]] bool holds_corner(std::uint32_t answer, const FaceOfMesh& face,
-                                  const ContactRegion& region,
-                                  SupportCorners& corners) const noexcept;
+  [[nodiscard]] bool has_corner_over(std::uint32_t answer, const FaceOfMesh& face,
+                                     const ContactRegion& region,
+                                     SupportCorners& corners) const noexcept;
   void add_corners(std::uint32_t answer, double margin, const FaceOfMesh& face,
                    RegionPoints& points) const noexcept;
   [[nodiscard]] FaceOfMesh face_of(std::uint32_t answer) const noexcept;
@@ -187,13 +189,13 @@ Status ManifoldReduction::run(const Execution& execution) noexcept {
     return Status::out_of_memory;
   }
   find_slots(answers_, execution, column(0));
-  for_each_range(execution, bodies, kBodiesPerStretch, [&](std::size_t first, std::size_t end) {
+  for_each_range(execution, bodies, kBodyPairsPerRange, [&](std::size_t first, std::size_t end) {
     for (std::size_t i = first; i < end; ++i) find_members(i);
   });
   out_.first[0] = 0;
   for (std::size_t i = 0; i < bodies; ++i) out_.first[i + 1] = out_.first[i] + out_.count[i];
   if (!out_.regions.resize(out_.first[bodies])) return Status::out_of_memory;
-  for_each_range(execution, bodies, kBodiesPerStretch, [&](std::size_t first, std::size_t end) {
+  for_each_range(execution, bodies, kBodyPairsPerRange, [&](std::size_t first, std::size_t end) {
     for (std::size_t i = first; i < end; ++i) reduce_bodies(i);
   });
   return Status::ok;
@@ -244,8 +246,9 @@ double ManifoldReduction::tie_of(const Members& members) const noexcept {
   return kRegionTie * reach;
 }
 
-// Returns the deepest answer without a region. Among nearly equal ones it returns the first, so
-// that rounding does not choose the normal of a resting face.
+// Returns the deepest answer without a region. Among answers whose distances exceed the least by at
+// most `tie`, it returns the first one, so that rounding does not choose the normal of a resting
+// face.
 std::size_t ManifoldReduction::leader_of(const Members& members, double tie) const noexcept {
   double least = kInfinity;
   for (std::size_t i = 0; i < members.answer.size(); ++i) {
@@ -260,8 +263,8 @@ std::size_t ManifoldReduction::leader_of(const Members& members, double tie) con
   return leader;
 }
 
-// Adds to the leader's region all answers without a region whose normals are nearly parallel.
-// Returns their number, including the leader.
+// Adds to the leader's region all answers without a region whose normals are within the angle of
+// kRegionCosine of its normal. Returns their number, including the leader.
 std::size_t ManifoldReduction::gather(const Members& members, std::size_t leader,
                                       std::uint32_t number, ContactRegion& region) const noexcept {
   const std::uint32_t lead = members.answer[leader];
@@ -368,15 +371,15 @@ void ManifoldReduction::add_contacts(std::uint32_t answer, double margin,
     points.add_beside(contact, from, part);
   });
   const bool is_apart = face.is_face() && answers_.distance()[answer] > 0.0;
-  if (is_full || (is_apart && holds_corner(answer, face, region, corners))) {
+  if (is_full || (is_apart && has_corner_over(answer, face, region, corners))) {
     add_corners(answer, margin, face, points);
   }
 }
 
 // True if a supporting vertex of the other primitive is over the triangle.
-bool ManifoldReduction::holds_corner(std::uint32_t answer, const FaceOfMesh& face,
-                                     const ContactRegion& region,
-                                     SupportCorners& corners) const noexcept {
+bool ManifoldReduction::has_corner_over(std::uint32_t answer, const FaceOfMesh& face,
+                                        const ContactRegion& region,
+                                        SupportCorners& corners) const noexcept {
   const BodyPair& of = primitives(answer);
   const bool second = pairs_.shapes[of.b].kind() == ShapeKind::triangle;
   const std::uint32_t other = second ? of.a : of.b;
@@ -419,8 +422,9 @@ void ManifoldReduction::add_corners(std::uint32_t answer, double margin, const F
 
 }  // namespace
 
-Status reduce(const ShapePool& shapes, const PrimitivePairs& pairs, const NarrowResult& answers,
-              const PairMargins& margins, const Execution& execution, ContactRegions& out) {
+Status reduce_contacts(const ShapePool& shapes, const PrimitivePairs& pairs,
+                       const NarrowResult& answers, const PairMargins& margins,
+                       const Execution& execution, ContactRegions& out) {
   out.clear();
   if (answers.size() != 0 && answers.level() != ContactLevel::manifold) {
     return Status::invalid_argument;

@@ -52,11 +52,11 @@ PreciseBox PreciseBox::grown(double by) const noexcept {
   return {min.array() - by, max.array() + by};
 }
 
-BoxSweep PreciseBox::standing() const noexcept {
-  BoxSweep sweep;
-  Vector3d::Map(sweep.min) = min;
-  Vector3d::Map(sweep.max) = max;
-  return sweep;
+MovingBox PreciseBox::stationary() const noexcept {
+  MovingBox moving_box;
+  Vector3d::Map(moving_box.min) = min;
+  Vector3d::Map(moving_box.max) = max;
+  return moving_box;
 }
 
 PartTables::PartTables(const ShapePool& pool) noexcept
@@ -104,21 +104,23 @@ PreciseBox SubShapeQuery::box(const SubShape& part) const noexcept {
   return box(PlacedShape{part.shape, part.pose});
 }
 
-void SubShapeQuery::traverse(const PlacedShape& placed, BoxSweep sweep, double limit, bool near,
-                             PartVisitor visitor) const {
+void SubShapeQuery::traverse(const PlacedShape& placed, MovingBox moving_box, double limit,
+                             bool near, PartVisitor visitor) const {
   if (!placed.shape.is_composite()) {
     visitor.visit(visitor.context, SubShape{placed.shape, placed.pose}, limit);
     return;
   }
-  // If the sweep is unbounded, clip it to the box of the shape. Computed only then, because the box
-  // of a compound visits all children.
+  // If the box is unbounded, clip it to the box of the shape. The box of the shape is computed only
+  // then, because for a compound this visits all children.
   const auto is_infinite = [](double end) { return std::isinf(end); };
-  if (std::any_of(sweep.min, sweep.min + 3, is_infinite) ||
-      std::any_of(sweep.max, sweep.max + 3, is_infinite)) {
+  if (std::any_of(moving_box.min, moving_box.min + 3, is_infinite) ||
+      std::any_of(moving_box.max, moving_box.max + 3, is_infinite)) {
     const PreciseBox own = box(placed);
     for (int i = 0; i < 3; ++i) {
-      if (std::isinf(sweep.min[i])) sweep.min[i] = std::min(own.min[i], sweep.max[i]);
-      if (std::isinf(sweep.max[i])) sweep.max[i] = std::max(own.max[i], sweep.min[i]);
+      if (std::isinf(moving_box.min[i]))
+        moving_box.min[i] = std::min(own.min[i], moving_box.max[i]);
+      if (std::isinf(moving_box.max[i]))
+        moving_box.max[i] = std::max(own.max[i], moving_box.min[i]);
     }
   }
   const PrimitiveVisitor primitives{[](void* context, const Primitive& primitive, double most) {
@@ -127,9 +129,9 @@ void SubShapeQuery::traverse(const PlacedShape& placed, BoxSweep sweep, double l
                                     },
                                     &visitor};
   if (near) {
-    composites_->visit_near(placed.shape, placed.pose, sweep, limit, primitives);
+    composites_->visit_near(placed.shape, placed.pose, moving_box, limit, primitives);
   } else {
-    composites_->visit(placed.shape, placed.pose, sweep, primitives);
+    composites_->visit(placed.shape, placed.pose, moving_box, primitives);
   }
 }
 

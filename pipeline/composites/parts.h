@@ -24,7 +24,7 @@ struct PreciseBox {
 
   /// Returns the box enlarged by `by` on every side.
   [[nodiscard]] PreciseBox grown(double by) const noexcept;
-  [[nodiscard]] BoxSweep standing() const noexcept;
+  [[nodiscard]] MovingBox stationary() const noexcept;
 };
 
 /// Any shape at a pose.
@@ -79,47 +79,52 @@ class SubShapeQuery {
     return shape.is_composite() ? composites_->radius(shape)
                                 : mid::radius_of(shapes_.tables(), shape);
   }
-  /// True if a solid contains a point of the other shape; see MidPhase::holds.
-  [[nodiscard]] bool holds(const PlacedShape& solid, const PlacedShape& other) const {
+  /// True if a solid contains a point of the other shape; see MidPhase::solid_contains.
+  [[nodiscard]] bool solid_contains(const PlacedShape& solid, const PlacedShape& other) const {
     return solid.shape.is_composite() &&
-           composites_->holds(solid.shape, solid.pose, other.shape, other.pose);
+           composites_->solid_contains(solid.shape, solid.pose, other.shape, other.pose);
   }
-  [[nodiscard]] bool holds(const PlacedShape& solid, const double point[3]) const {
-    return solid.shape.is_composite() && composites_->holds(solid.shape, solid.pose, point);
+  [[nodiscard]] bool solid_contains(const PlacedShape& solid, const double point[3]) const {
+    return solid.shape.is_composite() &&
+           composites_->solid_contains(solid.shape, solid.pose, point);
   }
   /// Returns a box that contains the shape.
   [[nodiscard]] PreciseBox box(const PlacedShape& placed) const noexcept;
   [[nodiscard]] PreciseBox box(const SubShape& part) const noexcept;
 
-  /// Calls visit(part, limit) for every part that the sweep may hit, roughly in order of time.
+  /// Calls visit(part, limit) for every part that the moving box may hit, roughly in order of time.
   /// `visit` returns the limit of t for the rest of the traversal; a negative limit ends it.
   template <typename Visit>
-  void met(const PlacedShape& placed, const BoxSweep& sweep, Visit&& visit) const {
-    traverse(placed, sweep, sweep.max_t, false, visitor(visit));
+  void visit_parts(const PlacedShape& placed, const MovingBox& moving_box, Visit&& visit) const {
+    traverse(placed, moving_box, moving_box.max_t, false, visitor(visit));
   }
-  /// For a composite shape, calls meet(ray, part, hit, limit) for triangles that a ray certainly
-  /// hits, and look(ray, part, limit) for all other parts that it may hit up to its limit. See
-  /// RayVisitor.
-  template <typename Meet, typename Look>
-  void met_by_rays(const PlacedShape& placed, std::span<const ShapeRay> rays, const double* limits,
-                   Meet&& meet, Look&& look) const {
-    using Meeting = RayMeeting<std::remove_reference_t<Meet>, std::remove_reference_t<Look>>;
-    Meeting meeting{meet, look};
-    composites_->visit_rays(placed.shape, placed.pose, rays, limits,
-                            {&Meeting::call_meet, &Meeting::call_look, &meeting});
+  /// For a composite shape, calls visit_hit(ray, part, hit, limit) for triangles that a ray
+  /// certainly hits, and visit_candidate(ray, part, limit) for all other parts that it may hit up
+  /// to its limit. See RayVisitor.
+  template <typename VisitHit, typename VisitCandidate>
+  void visit_rays(const PlacedShape& placed, std::span<const ShapeRay> rays, const double* limits,
+                  VisitHit&& visit_hit, VisitCandidate&& visit_candidate) const {
+    using Callbacks =
+        RayCallbacks<std::remove_reference_t<VisitHit>, std::remove_reference_t<VisitCandidate>>;
+    Callbacks callbacks{visit_hit, visit_candidate};
+    composites_->visit_rays(
+        placed.shape, placed.pose, rays, limits,
+        {&Callbacks::call_visit_hit, &Callbacks::call_visit_candidate, &callbacks});
   }
-  /// As above, for one ray and a mesh prepared by `place`.
-  template <typename Meet, typename Look>
-  void met_by_ray(const RaySurface& surface, const ShapeRay& ray, double limit, Meet&& meet,
-                  Look&& look) const {
-    using Meeting = RayMeeting<std::remove_reference_t<Meet>, std::remove_reference_t<Look>>;
-    Meeting meeting{meet, look};
-    composites_->visit_ray(surface, ray, limit,
-                           {&Meeting::call_meet, &Meeting::call_look, &meeting});
+  /// As above, for one ray and a mesh prepared by `prepare_ray_surface`.
+  template <typename VisitHit, typename VisitCandidate>
+  void visit_ray(const RaySurface& surface, const ShapeRay& ray, double limit, VisitHit&& visit_hit,
+                 VisitCandidate&& visit_candidate) const {
+    using Callbacks =
+        RayCallbacks<std::remove_reference_t<VisitHit>, std::remove_reference_t<VisitCandidate>>;
+    Callbacks callbacks{visit_hit, visit_candidate};
+    composites_->visit_ray(
+        surface, ray, limit,
+        {&Callbacks::call_visit_hit, &Callbacks::call_visit_candidate, &callbacks});
   }
-  /// See MidPhase::place.
-  [[nodiscard]] bool place(const PlacedShape& placed, RaySurface& surface) const {
-    return composites_->place(placed.shape, placed.pose, surface);
+  /// See MidPhase::prepare_ray_surface.
+  [[nodiscard]] bool prepare_ray_surface(const PlacedShape& placed, RaySurface& surface) const {
+    return composites_->prepare_ray_surface(placed.shape, placed.pose, surface);
   }
   /// Calls visit(a, b) for pairs of parts of two meshes that may share a point, until it returns
   /// false. Returns false, without a call, if the shapes are not two meshes.
@@ -135,8 +140,9 @@ class SubShapeQuery {
          &visit});
   }
   /// Calls visit(a, b, limit) for pairs of parts of two meshes that may be within `limit` of each
-  /// other. `visit` returns the new limit, as in `met`; for `normal` see NearPairVisitor. Returns
-  /// false, without a call, if the shapes are not two meshes or MidPhase does not support them.
+  /// other. `visit` returns the new limit, as in `visit_parts`; for `normal` see NearPairVisitor.
+  /// Returns false, without a call, if the shapes are not two meshes or MidPhase does not support
+  /// them.
   template <typename Visit>
   bool near_pairs(const PlacedShape& a, const PlacedShape& b, double limit, const double* normal,
                   Visit&& visit) const {
@@ -150,10 +156,10 @@ class SubShapeQuery {
          &visit, normal});
   }
   /// Calls visit(part, limit) for every part that may be within `limit` of a box; `visit` returns
-  /// the new limit, as in `met`.
+  /// the new limit, as in `visit_parts`.
   template <typename Visit>
   void near(const PlacedShape& placed, const PreciseBox& from, double limit, Visit&& visit) const {
-    traverse(placed, from.standing(), limit, true, visitor(visit));
+    traverse(placed, from.stationary(), limit, true, visitor(visit));
   }
 
  private:
@@ -163,18 +169,18 @@ class SubShapeQuery {
     part.front = primitive.front;
     return part;
   }
-  template <typename Meet, typename Look>
-  struct RayMeeting {
-    Meet& meet;
-    Look& look;
+  template <typename VisitHit, typename VisitCandidate>
+  struct RayCallbacks {
+    VisitHit& visit_hit;
+    VisitCandidate& visit_candidate;
 
-    static double call_meet(void* context, std::size_t ray, std::uint32_t part, const ShapeHit& hit,
-                            double limit) {
-      return static_cast<RayMeeting*>(context)->meet(ray, part, hit, limit);
+    static double call_visit_hit(void* context, std::size_t ray, std::uint32_t part,
+                                 const ShapeHit& hit, double limit) {
+      return static_cast<RayCallbacks*>(context)->visit_hit(ray, part, hit, limit);
     }
-    static double call_look(void* context, std::size_t ray, const Primitive& primitive,
-                            double limit) {
-      return static_cast<RayMeeting*>(context)->look(ray, part_of(primitive), limit);
+    static double call_visit_candidate(void* context, std::size_t ray, const Primitive& primitive,
+                                       double limit) {
+      return static_cast<RayCallbacks*>(context)->visit_candidate(ray, part_of(primitive), limit);
     }
   };
   struct PartVisitor {
@@ -188,7 +194,7 @@ class SubShapeQuery {
             },
             &visit};
   }
-  void traverse(const PlacedShape& placed, BoxSweep sweep, double limit, bool near,
+  void traverse(const PlacedShape& placed, MovingBox moving_box, double limit, bool near,
                 PartVisitor visitor) const;
 
   const ShapePool& shapes_;

@@ -232,8 +232,8 @@ void PrimitivePairSearch::take_slots(void* context, SlotPairSink& found) noexcep
   found.size = 0;
 }
 
-// At least one body is a height field. Box queries on it are so cheap that traversing both trees
-// at once would gain little.
+// At least one body is a height field. A box query of a height field is so cheap that a
+// simultaneous traversal of both trees would gain little.
 void PrimitivePairSearch::surfaces(const TransformedShape& a, const TransformedShape& b) noexcept {
   for (const std::uint32_t of_a : triangles_near(b.box_in(a, margin_), a, outer_)) {
     Corners corners[2];
@@ -277,7 +277,7 @@ std::span<const std::uint32_t> PrimitivePairSearch::children_near(const Transfor
   if (compound.tree == nullptr) {
     return collect(room, [&](SlotSink& out) {
       for (std::uint32_t i = 0; i < compound.count; ++i) {
-        if (Box3::of(compound.boxes[i]).meets(box)) put_slot(out, i);
+        if (Box3::of(compound.boxes[i]).overlaps(box)) put_slot(out, i);
       }
     });
   }
@@ -301,8 +301,8 @@ std::span<const std::uint32_t> PrimitivePairSearch::triangles_near(
   }
   const Box3 box = box_of(part, surface, margin_);
   if (surface.kind != TransformedShape::Kind::mesh) return triangles_near(box, surface, inner_);
-  // Also test a bounding sphere: for most shapes it rejects half of the triangles that overlap the
-  // box. Testing a hull itself leaves a quarter.
+  // Also tests the bounding sphere of the part or, for a hull, the hull: many triangles that
+  // overlap the box do not overlap these.
   const Vec center = surface.to_local * finite(part.position + part.middle - surface.position);
   const double noise = kSlack * (center.lpNorm<1>() + surface.to_local.cwiseAbs().maxCoeff() *
                                                           surface.position.lpNorm<1>());
@@ -341,7 +341,7 @@ void PrimitivePairSearch::add(const TransformedShape& a, std::uint32_t of_a,
 std::uint32_t PrimitivePairSearch::primitive(const TransformedShape& body, std::uint32_t number,
                                              std::uint32_t flag) noexcept {
   const std::uint32_t whole = body.first_number + number;
-  Memory& seen = memory_[flag != 0 ? 1 : 0][whole % kRemembered];
+  FoundPrimitive& seen = memory_[flag != 0 ? 1 : 0][whole % kRemembered];
   if (seen.number != whole || seen.primitive < before_) {
     seen = {whole, primitives_.size()};
     primitives_.put(whole | flag);

@@ -9,13 +9,14 @@
 
 namespace winnow::mid {
 
-/// Finds the primitives of a chunk of body pairs that may touch. Writes them to an arena as numbers
-/// within the bodies; find_primitive_pairs.cpp copies them out when all tasks have counted theirs.
+/// Finds the pairs of primitives that may touch, for a chunk of body pairs. Writes primitives to an
+/// arena as numbers within the bodies; find_primitive_pairs.cpp converts the results after all
+/// tasks have finished their searches.
 class PrimitivePairSearch {
  public:
   PrimitivePairSearch(const ShapeTables& tables, BumpAllocator& arena) noexcept;
 
-  /// Finds all pairs of primitives that are no farther apart than `margin`, and some more.
+  /// Finds all pairs of primitives that are no farther apart than `margin`, and some that are.
   /// Primitives are appended to `primitives()` by number, with kSecond set for body b; pairs are
   /// appended to `pairs()` as two indices into the primitives of this search.
   void run(const TransformedShape& a, const TransformedShape& b, double margin) noexcept;
@@ -30,7 +31,7 @@ class PrimitivePairSearch {
   static constexpr std::uint32_t kRoom = 512;
   static constexpr std::uint32_t kRemembered = 128;
   using Room = std::array<std::uint32_t, kRoom>;
-  struct Memory {
+  struct FoundPrimitive {
     std::uint32_t number = ~0U;
     std::uint64_t primitive = 0;
   };
@@ -41,7 +42,7 @@ class PrimitivePairSearch {
     const TransformedShape& b;
   };
 
-  /// Bodies that are not compounds with surfaces.
+  /// Requires bodies that are not compounds with surfaces.
   void run(const TransformedShape& a, const TransformedShape& b) noexcept;
   [[nodiscard]] std::span<const std::uint32_t> bodies_near(const TransformedShape& body,
                                                            const Box3& box, Room& room) noexcept;
@@ -84,7 +85,7 @@ class PrimitivePairSearch {
   /// Number of primitives before the current pair of bodies.
   std::uint64_t before_ = 0;
   /// Recently added primitives of each body, so that few are written twice.
-  std::array<Memory, kRemembered> memory_[2];
+  std::array<FoundPrimitive, kRemembered> memory_[2];
   Room outer_;
   Room inner_;
   /// Children of compounds that have surfaces.

@@ -54,8 +54,8 @@ namespace {
   return sum + (sum_error + step_error + lost);
 }
 
-/// A body and a ray, both relative to `about`. The rounding error of the ray's origin is moved to
-/// the position of the body.
+/// A body and a ray, both relative to `about`. The rounding error of the ray's origin is subtracted
+/// from the position of the body.
 struct NearBody {
   NearBody(const TransformedShape& placed, const Vec& about, const ShapeRay& of) noexcept
       : ray(of), body(placed) {
@@ -149,21 +149,21 @@ template <std::uint32_t Room>
     std::copy_n(start, 3, from);
     coordinate = largest_of(start);
   }
-  const double stretch = scale_to_one(frame.is_rotated ? largest_of(way) : fastest);
+  const double t_scale = scale_to_one(frame.is_rotated ? largest_of(way) : fastest);
   for (int axis = 0; axis < 3; ++axis) {
     own.ray.origin[axis][lane] = from[axis];
-    own.ray.direction[axis][lane] = way[axis] * stretch;
+    own.ray.direction[axis][lane] = way[axis] * t_scale;
   }
   own.slack[lane] = kRaySlack * (coordinate + frame.reach);
   own.shift[lane] = shift;
-  own.stretch[lane] = stretch;
+  own.t_scale[lane] = t_scale;
   return true;
 }
 
 /// Converts t of the caller to t of the ray in the frame of a surface ("own" t).
 struct LocalRayTime {
   double shift;
-  /// 1 / stretch, a power of two.
+  /// 1 / t_scale, a power of two.
   double unit;
 
   [[nodiscard]] double operator()(double t) const noexcept { return (t - shift) * unit; }
@@ -171,8 +171,8 @@ struct LocalRayTime {
   [[nodiscard]] double limit(double t) const noexcept {
     return (*this)(t) + 0x1p-51 * (std::abs(t) + std::abs(shift)) * unit;
   }
-  /// As above with a wider bound, for a limit that comes from another surface: by rounding, a
-  /// triangle that the ray grazes may be hit earlier than its box.
+  /// As above with a wider bound, for a limit that comes from another surface: rounding may make
+  /// the hit of a triangle that the ray grazes earlier than the entry into its box.
   [[nodiscard]] double first_limit(double t, double reach) const noexcept {
     const double most = limit(t);
     return most + 0x1p-20 * (std::abs(most) + reach);
@@ -207,9 +207,9 @@ class RayPacket {
     return {own_.shift[i], unit_[i]};
   }
   // Functions that report triangles return the new own limit.
-  [[nodiscard]] double meet(std::uint32_t i, std::uint32_t slot, const SurfaceHit& found,
-                            double own_before);
-  [[nodiscard]] double look(std::uint32_t i, std::uint32_t slot, double own_before);
+  [[nodiscard]] double visit_hit(std::uint32_t i, std::uint32_t slot, const SurfaceHit& found,
+                                 double own_before);
+  [[nodiscard]] double visit_candidate(std::uint32_t i, std::uint32_t slot, double own_before);
   [[nodiscard]] double show(std::uint32_t i, std::uint32_t slot, double own_before);
   /// Sets the limit in the caller's t, and returns the new own limit.
   [[nodiscard]] double after(std::uint32_t i, double limit, double own_before) noexcept;
@@ -232,10 +232,10 @@ class RayPacket {
 template <std::uint32_t Room>
 void RayPacket<Room>::add(std::size_t ray, double limit) noexcept {
   if constexpr (Room != 1) {
-    const ShapeRay& asked = rays_[ray];
+    const ShapeRay& world_ray = rays_[ray];
     for (int axis = 0; axis < 3; ++axis) {
-      world_.origin[axis][count_] = asked.origin[axis];
-      world_.direction[axis][count_] = asked.direction[axis];
+      world_.origin[axis][count_] = world_ray.origin[axis];
+      world_.direction[axis][count_] = world_ray.direction[axis];
     }
   }
   number_[count_] = ray;
@@ -269,10 +269,10 @@ void RayPacket<Room>::go(Elsewhere&& elsewhere) {
     elsewhere(number_[i]);
     limit_[i] = -1.0;
     own_.shift[i] = 0.0;
-    own_.stretch[i] = 1.0;
+    own_.t_scale[i] = 1.0;
   }
   for (std::uint32_t i = 0; i < count_; ++i) {
-    unit_[i] = 1.0 / own_.stretch[i];
+    unit_[i] = 1.0 / own_.t_scale[i];
     const LocalRayTime own = time(i);
     own_limit_[i] = limit_[i] >= 0.0 ? own.first_limit(limit_[i], target_.frame.reach) : -1.0;
     own_.low[i] = own(0.0);
@@ -290,9 +290,11 @@ template <std::uint32_t Room>
 void RayPacket<Room>::go_through_mesh() {
   const RaySlotVisitor visitor{
       [](void* context, std::uint32_t ray, std::uint32_t slot, const SurfaceHit& found,
-         double limit) { return static_cast<RayPacket*>(context)->meet(ray, slot, found, limit); },
+         double limit) {
+        return static_cast<RayPacket*>(context)->visit_hit(ray, slot, found, limit);
+      },
       [](void* context, std::uint32_t ray, std::uint32_t slot, double limit) {
-        return static_cast<RayPacket*>(context)->look(ray, slot, limit);
+        return static_cast<RayPacket*>(context)->visit_candidate(ray, slot, limit);
       },
       this};
   if constexpr (Room == 1) {
@@ -313,15 +315,15 @@ void RayPacket<Room>::go_through_field(std::uint32_t i) {
   const Vec start = Vec::Map(ray.origin);
   const Vec low = start.array() - ray.slack;
   const Vec high = start.array() + ray.slack;
-  height_sweep(grid_of(*target_.body.field), low.data(), high.data(), ray.direction, own_limit_[i],
-               {[](void* context, const std::uint32_t* slots, std::uint32_t count, double limit) {
-                  const FieldRay& on = *static_cast<FieldRay*>(context);
-                  for (std::uint32_t k = 0; k < count && limit >= 0.0; ++k) {
-                    limit = on.guides->show(on.ray, slots[k], limit);
-                  }
-                  return limit;
-                },
-                &way});
+  height_cast(grid_of(*target_.body.field), low.data(), high.data(), ray.direction, own_limit_[i],
+              {[](void* context, const std::uint32_t* slots, std::uint32_t count, double limit) {
+                 const FieldRay& on = *static_cast<FieldRay*>(context);
+                 for (std::uint32_t k = 0; k < count && limit >= 0.0; ++k) {
+                   limit = on.guides->show(on.ray, slots[k], limit);
+                 }
+                 return limit;
+               },
+               &way});
 }
 
 template <std::uint32_t Room>
@@ -333,19 +335,19 @@ double RayPacket<Room>::show(std::uint32_t i, std::uint32_t slot, double own_bef
     case Crossing::none:
       break;
     case Crossing::found:
-      return meet(i, slot, found, own_before);
+      return visit_hit(i, slot, found, own_before);
     case Crossing::uncertain:
-      return look(i, slot, own_before);
+      return visit_candidate(i, slot, own_before);
   }
   return own_before;
 }
 
 template <std::uint32_t Room>
-double RayPacket<Room>::meet(std::uint32_t i, std::uint32_t slot, const SurfaceHit& found,
-                             double own_before) {
+double RayPacket<Room>::visit_hit(std::uint32_t i, std::uint32_t slot, const SurfaceHit& found,
+                                  double own_before) {
   ShapeHit hit;
   hit.hit = true;
-  hit.t = own_.shift[i] + found.t * own_.stretch[i];
+  hit.t = own_.shift[i] + found.t * own_.t_scale[i];
   if (!(hit.t <= limit_[i])) return own_before;
   if (target_.body.front != 0) {
     double corner[3][3];
@@ -354,15 +356,17 @@ double RayPacket<Room>::meet(std::uint32_t i, std::uint32_t slot, const SurfaceH
   }
   Vec::Map(hit.normal) = unit_under(target_.frame, Vec::Map(found.normal));
   const std::uint32_t number = target_.body.shown_number(slot);
-  return after(i, visitor_.meet(visitor_.context, number_[i], number, hit, limit_[i]), own_before);
+  return after(i, visitor_.visit_hit(visitor_.context, number_[i], number, hit, limit_[i]),
+               own_before);
 }
 
 template <std::uint32_t Room>
-double RayPacket<Room>::look(std::uint32_t i, std::uint32_t slot, double own_before) {
+double RayPacket<Room>::visit_candidate(std::uint32_t i, std::uint32_t slot, double own_before) {
   Primitive primitive;
   const NearBody near(target_.body, target_.about, rays_[number_[i]]);
   if (!near.body.primitive(slot, primitive)) return own_before;
-  return after(i, visitor_.look(visitor_.context, number_[i], primitive, limit_[i]), own_before);
+  return after(i, visitor_.visit_candidate(visitor_.context, number_[i], primitive, limit_[i]),
+               own_before);
 }
 
 template <std::uint32_t Room>
@@ -372,35 +376,35 @@ double RayPacket<Room>::after(std::uint32_t i, double limit, double own_before) 
   return time(i).after(before, limit, own_before);
 }
 
-/// Calls `visitor.look` for all primitives whose boxes ray `number` hits; for a compound that has
-/// surfaces, calls `children` instead.
+/// Calls `visitor.visit_candidate` for all primitives whose boxes ray `number` hits; for a compound
+/// that has surfaces, calls `children` instead.
 void visit_all_on_ray(const NearBody& near, std::size_t number, const RayVisitor& visitor,
                       const ChildVisitor& children) {
   // Relative growth of the ray's box before the box tests, which round coordinates.
   constexpr double kGrowth = 0x1p-47;
   const Eigen::Map<const Vec> from(near.ray.origin);
   const double grow = kGrowth * from.cwiseAbs().maxCoeff();
-  BoxSweep sweep;
+  MovingBox moving_box;
   for (int i = 0; i < 3; ++i) {
-    sweep.min[i] = from[i] - grow;
-    sweep.max[i] = from[i] + grow;
-    sweep.direction[i] = near.ray.direction[i];
+    moving_box.min[i] = from[i] - grow;
+    moving_box.max[i] = from[i] + grow;
+    moving_box.direction[i] = near.ray.direction[i];
   }
-  sweep.max_t = near.ray.max_t;
+  moving_box.max_t = near.ray.max_t;
   struct ChildRay {
     const RayVisitor& visitor;
     std::size_t number;
-  } looking{visitor, number};
-  visit(near.body, sweep,
+  } child_ray{visitor, number};
+  visit(near.body, moving_box,
         {[](void* context, const Primitive& primitive, double most) {
            const ChildRay& by = *static_cast<ChildRay*>(context);
-           return by.visitor.look(by.visitor.context, by.number, primitive, most);
+           return by.visitor.visit_candidate(by.visitor.context, by.number, primitive, most);
          },
-         &looking},
+         &child_ray},
         children);
 }
 
-/// One ray, number 0, through a mesh that was prepared by `place`.
+/// One ray, number 0, through a mesh that was prepared by `prepare_ray_surface`.
 class SingleRay {
  public:
   SingleRay(const Composites& all, const RaySurface& surface, const ShapeRay& ray, double limit,
@@ -416,8 +420,8 @@ class SingleRay {
     return {body, body.position, ray_};
   }
   // As in RayPacket.
-  [[nodiscard]] double meet(std::uint32_t slot, const SurfaceHit& found, double own_before);
-  [[nodiscard]] double look(std::uint32_t slot, double own_before);
+  [[nodiscard]] double visit_hit(std::uint32_t slot, const SurfaceHit& found, double own_before);
+  [[nodiscard]] double visit_candidate(std::uint32_t slot, double own_before);
   [[nodiscard]] double after(double limit, double own_before) noexcept {
     const double before = limit_;
     limit_ = limit;
@@ -435,22 +439,24 @@ class SingleRay {
 
 void SingleRay::go() {
   if (!place_ray(surface_.frame, ray_, 0, own_)) return visit_all_on_ray(near(), 0, visitor_, {});
-  unit_ = 1.0 / own_.stretch[0];
+  unit_ = 1.0 / own_.t_scale[0];
   own_.low[0] = time()(0.0);
   own_.high[0] = time()(ray_.max_t);
-  mesh_ray(*surface_.mesh, own_, time().first_limit(limit_, surface_.frame.reach),
-           {[](void* context, std::uint32_t, std::uint32_t slot, const SurfaceHit& found,
-               double limit) { return static_cast<SingleRay*>(context)->meet(slot, found, limit); },
-            [](void* context, std::uint32_t, std::uint32_t slot, double limit) {
-              return static_cast<SingleRay*>(context)->look(slot, limit);
-            },
-            this});
+  mesh_ray(
+      *surface_.mesh, own_, time().first_limit(limit_, surface_.frame.reach),
+      {[](void* context, std::uint32_t, std::uint32_t slot, const SurfaceHit& found, double limit) {
+         return static_cast<SingleRay*>(context)->visit_hit(slot, found, limit);
+       },
+       [](void* context, std::uint32_t, std::uint32_t slot, double limit) {
+         return static_cast<SingleRay*>(context)->visit_candidate(slot, limit);
+       },
+       this});
 }
 
-double SingleRay::meet(std::uint32_t slot, const SurfaceHit& found, double own_before) {
+double SingleRay::visit_hit(std::uint32_t slot, const SurfaceHit& found, double own_before) {
   ShapeHit hit;
   hit.hit = true;
-  hit.t = own_.shift[0] + found.t * own_.stretch[0];
+  hit.t = own_.shift[0] + found.t * own_.t_scale[0];
   if (!(hit.t <= limit_)) return own_before;
   if (surface_.front != 0) {
     double corner[3][3];
@@ -459,28 +465,28 @@ double SingleRay::meet(std::uint32_t slot, const SurfaceHit& found, double own_b
   }
   Vec::Map(hit.normal) = unit_under(surface_.frame, Vec::Map(found.normal));
   const std::uint32_t number = surface_.mesh->triangle[slot] & kTriangleNumberMask;
-  return after(visitor_.meet(visitor_.context, 0, number, hit, limit_), own_before);
+  return after(visitor_.visit_hit(visitor_.context, 0, number, hit, limit_), own_before);
 }
 
-double SingleRay::look(std::uint32_t slot, double own_before) {
+double SingleRay::visit_candidate(std::uint32_t slot, double own_before) {
   Primitive primitive;
   if (!near().body.primitive(slot, primitive)) return own_before;
-  return after(visitor_.look(visitor_.context, 0, primitive, limit_), own_before);
+  return after(visitor_.visit_candidate(visitor_.context, 0, primitive, limit_), own_before);
 }
 
 template <std::uint32_t Room>
 void guide_rays(const RayTarget& target, std::span<const ShapeRay> rays, const double* limits,
                 const RayVisitor& visitor) {
-  const auto look = [&](std::size_t ray) {
+  const auto visit_candidates = [&](std::size_t ray) {
     visit_all_on_ray(NearBody(target.body, target.about, rays[ray]), ray, visitor, {});
   };
   RayPacket<Room> guides(target, rays, visitor);
   for (std::size_t i = 0; i < rays.size(); ++i) {
     if (!(limits[i] >= 0.0)) continue;
     guides.add(i, limits[i]);
-    if (guides.is_full()) guides.go(look);
+    if (guides.is_full()) guides.go(visit_candidates);
   }
-  guides.go(look);
+  guides.go(visit_candidates);
 }
 
 /// Visitors get primitives relative to `about`.
@@ -499,7 +505,7 @@ void visit_surface(const TransformedShape& surface, const Vec& about,
   if (!child.is_surface()) {
     Primitive primitive;
     (void)child.primitive(0, primitive);
-    return visitor.look(visitor.context, number, primitive, limit);
+    return visitor.visit_candidate(visitor.context, number, primitive, limit);
   }
   struct ForwardedRay {
     const RayVisitor& to;
@@ -510,17 +516,18 @@ void visit_surface(const TransformedShape& surface, const Vec& about,
       child, Vec::Zero(), {&ray, 1}, &limit,
       {[](void* context, std::size_t, std::uint32_t part, const ShapeHit& hit, double most) {
          ForwardedRay& by = *static_cast<ForwardedRay*>(context);
-         return by.limit = by.to.meet(by.to.context, by.number, part, hit, most);
+         return by.limit = by.to.visit_hit(by.to.context, by.number, part, hit, most);
        },
        [](void* context, std::size_t, const Primitive& primitive, double most) {
          ForwardedRay& by = *static_cast<ForwardedRay*>(context);
-         return by.limit = by.to.look(by.to.context, by.number, primitive, most);
+         return by.limit = by.to.visit_candidate(by.to.context, by.number, primitive, most);
        },
        &passing});
   return passing.limit;
 }
 
-/// By rounding, a triangle may be hit earlier than the box of its child.
+/// Limits for boxes of children are multiplied by this: rounding may make the hit of a triangle
+/// earlier than the entry into the box of its child.
 constexpr double kLimitRoom = 1.0 + 0x1p-20;
 
 }  // namespace
@@ -541,7 +548,8 @@ void visit_rays(const Composites& all, ShapeId id, const Pose& pose, std::span<c
   }
 }
 
-bool place(const Composites& all, ShapeId id, const Pose& pose, RaySurface& surface) noexcept {
+bool prepare_ray_surface(const Composites& all, ShapeId id, const Pose& pose,
+                         RaySurface& surface) noexcept {
   if (all.mesh(id) == nullptr) return false;
   const TransformedShape body = TransformedShape::at(all, id, pose);
   const RayTarget target(body, body.position);

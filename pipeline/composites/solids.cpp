@@ -17,8 +17,8 @@ namespace {
   return same(0, 1) || same(1, 2) || same(2, 0);
 }
 
-/// Computes the winding number of a mesh about a point: 1 inside, 0 outside, larger where the mesh
-/// overlaps itself. Works in the frame of the mesh.
+/// Computes the winding number of a mesh about a point: 1 inside, 0 outside, larger in regions in
+/// which the mesh overlaps itself. The point is in the frame of the mesh.
 class Winding {
  public:
   Winding(const TransformedShape& body, const Vec& at) noexcept : body_(body), at_(at) {
@@ -27,8 +27,9 @@ class Winding {
   }
 
   /// A ray from an inside point leaves the solid once more than it enters it. A ray is inconclusive
-  /// if it hits an edge, or a triangle within rounding errors: then the next direction is tried. If
-  /// all directions are inconclusive, as for points on the surface, the solid angle decides.
+  /// if it hits an edge, or if rounding errors decide whether it hits a triangle: then the next
+  /// direction is tried. If all directions are inconclusive, as for points on the surface, the
+  /// solid angle decides.
   [[nodiscard]] bool is_inside() noexcept {
     // Directions that are unlikely to be parallel to edges. The largest component is in [1/2, 1).
     static constexpr double kDirections[][3] = {
@@ -53,7 +54,7 @@ class Winding {
     }
     single.slack[0] = slack_;
     single.shift[0] = 0.0;
-    single.stretch[0] = 1.0;
+    single.t_scale[0] = 1.0;
     single.low[0] = 0.0;
     single.high[0] = std::numeric_limits<double>::infinity();
     ray_ = single[0];
@@ -145,8 +146,8 @@ template <typename Visit>
   return part.shape.kind() != ShapeKind::half_space;
 }
 
-/// Calls visit(point) for one point of each connected piece of a body, until it returns true: a
-/// vertex of a surface, a point of each child of other compounds.
+/// Calls visit(point) until it returns true, for a corner of the first triangle of each surface and
+/// a point of each convex part. Returns whether a call returned true.
 template <typename Visit>
 [[nodiscard]] bool any_point(const TransformedShape& body, Visit&& visit) {
   return any_body(body, [&](const TransformedShape& one) {
@@ -182,12 +183,13 @@ Status check_solid(const Composites& all, ShapeId id) noexcept {
   return volume > 0.0 ? Status::ok : Status::invalid_shape;
 }
 
-bool holds(const Composites& all, ShapeId id, const Pose& pose, const double point[3]) noexcept {
+bool solid_contains(const Composites& all, ShapeId id, const Pose& pose,
+                    const double point[3]) noexcept {
   return is_in_solid(TransformedShape::at(all, id, pose), Vec::Map(point));
 }
 
-bool holds(const Composites& all, ShapeId id, const Pose& pose, ShapeId other,
-           const Pose& other_pose) noexcept {
+bool solid_contains(const Composites& all, ShapeId id, const Pose& pose, ShapeId other,
+                    const Pose& other_pose) noexcept {
   const TransformedShape solid = TransformedShape::at(all, id, pose);
   return any_point(TransformedShape::at(all, other, other_pose),
                    [&](const Vec& point) { return is_in_solid(solid, point); });

@@ -8,14 +8,14 @@ namespace winnow::mid {
 
 /// Checks that the triangles of a mesh enclose a volume. `invalid_shape` unless each edge is shared
 /// by exactly two triangles that traverse it in opposite directions, and the enclosed volume is
-/// positive (corners counter-clockwise seen from outside). Vertices at the same place count as one;
-/// triangles that are segments are skipped. `out_of_memory`. O(n log n).
+/// positive (corners counter-clockwise seen from outside). Vertices at the same position count as
+/// one; triangles that are segments are skipped. `out_of_memory` if memory is refused. O(n log n).
 [[nodiscard]] Status check_solid(const Composites& all, ShapeId mesh) noexcept;
 
-/// See MidPhase::holds. Ids must exist, poses must be valid.
-[[nodiscard]] bool holds(const Composites& all, ShapeId id, const Pose& pose,
-                         const double point[3]) noexcept;
-[[nodiscard]] bool holds(const Composites& all, ShapeId id, const Pose& pose, ShapeId other,
-                         const Pose& other_pose) noexcept;
+/// See MidPhase::solid_contains. Ids must exist, poses must be valid.
+[[nodiscard]] bool solid_contains(const Composites& all, ShapeId id, const Pose& pose,
+                                  const double point[3]) noexcept;
+[[nodiscard]] bool solid_contains(const Composites& all, ShapeId id, const Pose& pose,
+                                  ShapeId other, const Pose& other_pose) noexcept;
 
 }  // namespace winnow::mid

@@ -133,7 +133,7 @@ Box3 TransformedShape::box_in(const TransformedShape& other, double margin) cons
   if (kind == Kind::convex) return box_of(part(0), other, margin);
   const Vec offset = other.to_local * finite(position - other.position);
   if (!bounds.is_finite()) {
-    // A box that is unbounded along one axis becomes unbounded along all axes by a rotation.
+    // A rotation can make a box that is unbounded along one axis unbounded along all axes.
     return {Vec::Constant(-kInfinity), Vec::Constant(kInfinity)};
   }
   const Box3 box = box_under(bounds, other.to_local * to_world, offset, 0.0);
@@ -209,8 +209,9 @@ std::uint8_t TransformedShape::active(std::uint32_t number) const noexcept {
     }
     return static_cast<std::uint8_t>(bits);
   }
-  // Corners of a height field are active only at the border of the field. Ridges that end at a
-  // corner, and holes, are not detected.
+  // A corner of a height field is active if it is on an active edge of this triangle or on the
+  // border of the field. Active edges of other triangles that end at the corner, for example at a
+  // hole, are not detected.
   bits = field->active_edges(number);
   for (std::uint32_t k = 0; k < 3; ++k) {
     if ((bits & (1U << k | 1U << (k + 2) % 3)) != 0) bits |= 8U << k;

@@ -35,8 +35,9 @@ struct PlacedPart {
   Vec position;
   /// Upper bound on the distance of points of the shape from `position`.
   double radius = 0.0;
-  /// A point inside the shape, relative to `position` in world axes. The shape lies within distance
-  /// `reach` of it, and contains the ball of radius `inner` about it.
+  /// A point relative to `position`, in world axes; inside the shape, except for triangles and
+  /// half-spaces. All points of the shape are within `reach` of this point. The ball of radius
+  /// `inner` about this point is inside the shape.
   Vec middle = Vec::Zero();
   double reach = 0.0;
   double inner = 0.0;
@@ -161,10 +162,10 @@ struct ChildVisitor {
   }
 };
 
-/// Calls `visitor` for the primitives that the sweep may hit (see MidPhase::visit). For a compound
-/// that has surfaces, calls `children` instead.
-void visit(const TransformedShape& body, const BoxSweep& sweep, const PrimitiveVisitor& visitor,
-           const ChildVisitor& children);
+/// Calls `visitor` for the primitives that the moving box may hit (see MidPhase::visit). For a
+/// compound that has surfaces, calls `children` instead.
+void visit(const TransformedShape& body, const MovingBox& moving_box,
+           const PrimitiveVisitor& visitor, const ChildVisitor& children);
 
 /// Transform of mesh b to the frame of mesh a, and the margin in that frame per axis: the world
 /// margin and the rounding error of the transform.

@@ -14,7 +14,8 @@ namespace {
 
 constexpr int kNoAxis = -1;
 
-/// Maps each world axis to an axis of a frame, and whether it points the opposite way.
+/// Maps each world axis to the axis of a frame that is parallel to it; the sign is -1 if the two
+/// point in opposite directions.
 struct QuarterTurns {
   int axis[3];
   int sign[3];
@@ -245,7 +246,7 @@ struct PlanePoint {
 
 /// A triangle orthogonal to a world axis, as on level floors, and the section of an aligned shape's
 /// core that is extreme along that axis: a rectangle (possibly a segment or a point) or a disc,
-/// centred at the origin.
+/// centered at the origin.
 class FlatTriangle {
  public:
   /// Returns false if the triangle is not orthogonal to an axis or the exponents span too wide a
@@ -284,7 +285,8 @@ class FlatTriangle {
     return fits_dyadic(4, lengths.bits() + kSums);
   }
 
-  /// Undecided if the shape reaches through the plane.
+  /// Undecided if the shape is on both sides of the plane, or if the triangle has no area and the
+  /// shape touches its plane.
   [[nodiscard]] ExactVerdict verdict() const noexcept {
     if (height_.sign() > 0) return ExactVerdict::separated;
     const int turn = cross(vertex_[1] - vertex_[0], vertex_[2] - vertex_[0]).sign();
@@ -383,7 +385,7 @@ class FlatTriangle {
   return flat.place(triangle, pose, shape, shape_pose) ? flat.verdict() : ExactVerdict::undecided;
 }
 
-/// Half-spaces and triangles are moved to the first place.
+/// True for half-spaces and triangles: aligned_overlap makes them the first shape.
 [[nodiscard]] bool is_flat(ShapeId id) noexcept {
   return id.kind() == ShapeKind::half_space || id.kind() == ShapeKind::triangle;
 }

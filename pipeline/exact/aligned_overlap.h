@@ -11,9 +11,10 @@ namespace winnow {
 /// shapes touch exactly in every frame. The cores are products of segments and discs along the
 /// world axes, so that closed forms of degree 4 at most decide.
 ///
-/// Returns `undecided` for all other shapes and orientations, and for rounded cylinders with
-/// orthogonal axes. A triangle orthogonal to an axis is decided only if the shapes are disjoint or
-/// touch; a triangle in any plane is decided against a point. O(1).
+/// Returns `undecided` for all other shapes and orientations, for rounded cylinders with orthogonal
+/// axes, and if the exponents of cylinders or triangles span too wide a range. A triangle
+/// orthogonal to an axis is decided only if the shapes are disjoint or touch; a triangle in any
+/// plane is decided against a point. O(1).
 [[nodiscard]] ExactVerdict aligned_overlap(const ShapeTables& tables, ShapeId a, const Pose& pose_a,
                                            ShapeId b, const Pose& pose_b) noexcept;
 

@@ -17,7 +17,8 @@ void set_point(CoreVertices& core, std::uint32_t i, double x, double y, double z
 }
 
 /// Adds a polygon of 16 corners inscribed in a disc: four corners are on the circle, the others
-/// inside it by their rounding. A disc without radius is a point.
+/// slightly inside, so that rounding does not move them outside. A disc without radius is a point;
+/// a tiny one gets only the four corners.
 void add_disc(CoreVertices& core, const CoreDisc& disc) noexcept {
   // Cosines of multiples of 22.5 degrees, minus a few units in the last place.
   constexpr double kShare[5] = {1.0, 0.92387953251128596, 0.70710678118654702, 0.38268343236508945,

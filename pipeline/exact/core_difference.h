@@ -8,7 +8,7 @@
 
 namespace winnow {
 
-/// A disc centred on the z axis and orthogonal to it.
+/// A disc centered on the z axis and orthogonal to it.
 struct CoreDisc {
   double z = 0.0;
   double radius = 0.0;
@@ -32,8 +32,8 @@ struct CoreVertices {
   [[nodiscard]] ExactVector at(std::uint32_t i) const noexcept {
     return {{column[0][i], column[1][i], column[2][i]}};
   }
-  /// Adds the coordinates of the vertices (which include positions and radii of discs) and the
-  /// rounding to `span`.
+  /// Extends `span` by the bits of the rounding and of all vertex coordinates. The position and the
+  /// radius of a disc are coordinates of its polygon.
   void include_lengths(BitSpan& span) const noexcept;
 };
 

@@ -12,8 +12,8 @@ struct ExactSimplex {
   ExactVector point[4];
 };
 
-/// Returns whether the origin projects into the interior of the segment; then `toward` is a
-/// direction to it.
+/// Returns whether the origin projects into the interior of the segment; `toward` then becomes a
+/// direction from the segment to the origin.
 [[nodiscard]] bool segment_faces(const ExactVector& a, const ExactVector& b,
                                  ExactVector& toward) noexcept {
   const ExactVector edge = b - a;
@@ -100,7 +100,7 @@ void keep_nearest_face(ExactSimplex& simplex, ExactVector& toward) noexcept {
   toward = ExactVector{};
 }
 
-/// Sign of (squared distance of the origin from the face left by keep_nearest_face) - `square`.
+/// Sign of (squared distance of the origin from the face that keep_nearest_face kept) - `square`.
 [[nodiscard]] int compare_square_distance(const ExactSimplex& face, const Dyadic& square) noexcept {
   const ExactVector& a = face.point[0];
   if (face.size == 1) return compare(dot(a, a), square);
@@ -117,7 +117,8 @@ void keep_nearest_face(ExactSimplex& simplex, ExactVector& toward) noexcept {
 
 /// GJK (Gilbert, Johnson and Keerthi 1988) in exact arithmetic: descends towards the origin until
 /// the simplex contains it (returns true) or `is_outside(direction, height)` proves that it never
-/// will. Each step gets strictly closer, so that no simplex recurs and the loop terminates.
+/// will. Each step gets strictly closer to the origin, so no simplex recurs and the loop
+/// terminates.
 template <typename Outside>
 [[nodiscard]] bool descend(const CoreDifference& difference, const Outside& is_outside,
                            ExactVector direction, ExactSimplex& simplex) noexcept {

@@ -127,7 +127,8 @@ namespace {
 }
 
 /// The minimum, over the directions passed to `test_axis` and their opposites, of the height of the
-/// Minkowski difference of two rounded cores. A negative minimum proves that they are disjoint.
+/// Minkowski difference of two rounded cores. A negative minimum proves that the shapes are
+/// disjoint.
 class MinHeight {
  public:
   /// `direction` is not zero; it is tested first.
@@ -162,7 +163,7 @@ class MinHeight {
 /// Separating-axis test (SAT) for pairs whose numbers span too wide a range for exact GJK. Tests
 /// `direction`, the axes of both frames and their cross products. For boxes without rounding, flat
 /// ones included, this is complete (Gottschalk, "Separating axis theorem", 1996); for other pairs
-/// it can only prove that they are disjoint.
+/// it can only prove that the shapes are disjoint.
 [[nodiscard]] ExactVerdict verdict_by_planes(const CoreDifference& difference,
                                              const Dyadic& rounding, const ExactVector& direction,
                                              bool are_boxes) noexcept {
@@ -178,8 +179,9 @@ class MinHeight {
   return verdict_of(-least.sign());
 }
 
-/// Cylinders and cones: an outer bound along `direction` and inner polygons inscribed in their
-/// discs. Decided if one of the two suffices, or if both touch.
+/// Cylinders and cones: the heights along `direction` bound the cores from outside, and polygons
+/// inscribed in their discs from inside. Decided if the heights separate the shapes, if the
+/// polygons overlap, or if both touch.
 [[nodiscard]] ExactVerdict bounded_verdict(const CoreDifference& difference, const Dyadic& rounding,
                                            const ExactVector& direction) noexcept {
   const Dyadic length = root_above(dot(direction, direction));

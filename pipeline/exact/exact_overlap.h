@@ -27,20 +27,21 @@ enum class ExactVerdict : unsigned char {
 
 /// Decides without rounding whether two valid shapes at valid poses overlap. Each double of the
 /// shapes and poses is taken as the exact number it stores, and a quaternion as the rotation of its
-/// exact normalisation. `axis` is tested first: a direction (any length, world axes, from a to b)
+/// exact normalization. `axis` is tested first: a direction (any length, world axes, from a to b)
 /// along which the shapes are closest or overlap least according to the search in double.
 ///
 /// Methods: axis-aligned shapes by closed forms (aligned_overlap). Half-spaces by the lowest point
 /// of the other shape. All others by GJK (Gilbert, Johnson and Keerthi 1988) in exact arithmetic on
 /// the Minkowski difference of the cores, which are convex hulls of points. Without rounding radii,
-/// GJK decides whether the origin is in the difference; if it is on the boundary of the last
-/// simplex, a supporting plane is searched. With rounding radii, the squared distance, a rational
-/// number, is compared with the squared radius. Coordinates are multiplied by the squared lengths
-/// of both quaternions, so that only sums and products are needed.
+/// GJK decides whether the origin is in the difference; if the origin is on the boundary of the
+/// last simplex, a supporting plane is searched. With rounding radii, the squared distance, a
+/// rational number, is compared with the squared radius. Coordinates are multiplied by the squared
+/// lengths of both quaternions, so that only sums and products are needed.
 ///
 /// Other cylinders and cones are decided only if `axis` separates them, if polygons inscribed in
-/// their discs overlap, or if both bounds touch. Pairs whose numbers span more than about 1e200 are
-/// decided only if both are boxes without rounding, or if one of a few planes separates them.
+/// their discs overlap, or if both touch: the cores along `axis`, and the polygons. Pairs whose
+/// numbers span more than about 1e200 are decided only if both are boxes without rounding, or if
+/// one of a few planes separates them.
 ///
 /// Costs O(vertices) per GJK step; products in double exclude most vertices of large hulls. The
 /// solver calls this only if the sign is uncertain in double.

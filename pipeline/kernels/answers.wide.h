@@ -36,8 +36,8 @@ struct ContactLanes {
   Mask16 lanes;
 };
 
-/// The lanes in which lengths are in a range that can be squared without overflow or loss of
-/// digits. `square` is the sum of the squares of all lengths that matter.
+/// The lanes in which lengths can be squared without overflow or loss of digits. `square` is the
+/// square of the scale of the pair.
 template <typename T>
 [[gnu::always_inline]] inline LaneMask<T> in_range(const Lanes<T>& square) {
   constexpr bool is_double = sizeof(T) == sizeof(double);
@@ -45,8 +45,8 @@ template <typename T>
          (square < Lanes<T>(is_double ? T(1e100) : T(1e24F)));
 }
 
-/// True in the first pass of level boolean, which computes in float; pairs that it cannot decide
-/// are left to double.
+/// True in the first pass of level boolean, which computes in float. Pairs that float cannot decide
+/// are computed again in double.
 template <typename T>
 inline constexpr bool kFirstPass = sizeof(T) == sizeof(float);
 
@@ -182,7 +182,7 @@ template <typename T>
   append_contacts(out, interleave_bits(lanes[0], lanes[1]), zipped);
 }
 
-/// Appends any number of points per lane.
+/// Appends up to `Points` points per lane.
 template <int Points>
 inline void append_pair_by_pair(ContactWriter& out, const Mask16 (&lanes)[Points],
                                 const ContactRegisters (&columns)[Points]) {
@@ -240,7 +240,8 @@ std::uint32_t answer_job(NarrowJob& job) {
 }
 
 /// Level boolean in two passes: float first, which handles twice as many pairs per block, then
-/// double for the pairs that float could not decide.
+/// double for the pairs that float could not decide. A job that fits in one block of doubles is
+/// computed in double only.
 template <typename Kind, NarrowKernel in_double>
 std::uint32_t answer_in_two_passes(NarrowJob& job) {
   if (job.count <= Doubles::kCount) return in_double(job);

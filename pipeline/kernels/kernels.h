@@ -1,8 +1,8 @@
 #pragma once
 
 // The interface between the narrow phase and its SIMD kernels: the job that a kernel answers, and
-// the list of pair kinds that have kernels. Only plain structs, because kernel files, which are
-// compiled once per instruction set, include this.
+// the list of pair kinds that have kernels. Kernel files, which are compiled once per instruction
+// set, include this file, so its types are plain structs.
 
 #include <winnow/core/pose.h>
 #include <winnow/pipeline/contact_types.h>
@@ -48,9 +48,9 @@ struct NarrowJob {
 
   /// Level boolean: 1 if the shapes share a point, else 0.
   std::uint8_t* overlap;
-  /// Levels distance and manifold. Negative by the penetration depth, and <= 0 exactly if the
-  /// shapes share a point. At level manifold, if a pair is farther apart than the margin, this may
-  /// be any lower bound of its distance that is above the margin.
+  /// Levels distance and manifold. Minus the penetration depth if the shapes overlap; <= 0 if and
+  /// only if they share a point. At level manifold, if a pair is farther apart than the margin,
+  /// this may be any lower bound of its distance that is above the margin.
   double* distance;
   /// The true distance is within distance +- error_bound.
   double* error_bound;

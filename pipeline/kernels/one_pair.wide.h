@@ -9,7 +9,7 @@
 namespace winnow::WINNOW_ISA_NAME {
 
 /// The kernel in double of a kind whose class also supports scalars. Only a job with a single pair
-/// uses them.
+/// is computed with scalars.
 template <typename Kind, int L>
 std::uint32_t answer_one_or_many(NarrowJob& job) {
   return job.count == 1 ? answer_job<Kind, ScalarLane, L>(job) : answer_job<Kind, double, L>(job);

@@ -21,8 +21,9 @@ struct PairBlock {
   [[nodiscard]] Mask16 lanes() const { return lanes_below(count); }
 };
 
-/// Calls body(block) for all pairs of the job. The loads of a block do not depend on the block
-/// before, so that misses of the nearer caches overlap without a prefetch.
+/// Calls body(block) for all pairs of the job. Prefetches only if the job has many bodies: the
+/// loads of a block do not depend on the block before, so the processor overlaps the misses of
+/// successive blocks in the nearer caches by itself.
 template <typename T, typename Body>
 [[gnu::always_inline]] inline void for_blocks(const NarrowJob& job, Body&& body) {
   constexpr std::uint32_t lanes = Lanes<T>::kCount;
@@ -67,7 +68,8 @@ struct SideB {
   [[gnu::always_inline]] static std::uint32_t body(const BodyPair& pair) { return pair.b; }
 };
 
-/// Converts rows of doubles to type T: `load(first_lane, out)` fills eight lanes.
+/// Loads rows of doubles and converts them to type T: `load(first_lane, out)` fills the eight lanes
+/// from `first_lane` on.
 template <typename T, int Count, typename Load>
 [[gnu::always_inline]] inline void in_precision(Load&& load, Lanes<T> (&out)[Count]) {
   if constexpr (sizeof(T) == sizeof(double)) {
@@ -131,9 +133,9 @@ template <typename T>
   }
 }
 
-/// A quaternion of any length and the factor 2 / |q|^2 that turns its products into the elements of
-/// a rotation matrix. The factor is NaN if the quaternion is not finite, or so short or long that
-/// squares leave T's range.
+/// A quaternion q of any length, and the factor 2 / |q|^2 of the products of its components in a
+/// rotation matrix. The factor is NaN if q is not finite, or if |q|^2 is outside 1e-250 to 1e250
+/// (in float, 1e-25 to 1e25).
 template <typename T>
 struct ScaledQuaternion {
   Lanes<T> w;

@@ -1,7 +1,6 @@
 #pragma once
 
-// Support points of user shapes, and the tolerance up to which several of them count as one
-// feature.
+// Support points of user shapes, and the distance up to which several support points count as one.
 
 #include <winnow/pipeline/shapes.h>
 #include "pipeline/kernels/single_vectors.wide.h"
@@ -9,8 +8,8 @@
 
 namespace winnow::WINNOW_ISA_NAME {
 
-/// Enforces the contract of SupportShape: a point that is not finite becomes 0, a point beyond the
-/// radius the nearest one within.
+/// Enforces the contract of SupportShape: a point that is not finite becomes 0, and a point outside
+/// the ball of the shape's radius is moved to the nearest point of the ball.
 static inline void bring_within(double radius, double* point) {
   double most = 0.0;
   for (int k = 0; k < 3; ++k)
@@ -32,7 +31,7 @@ static inline void user_point(const SupportShape& shape, const double (&directio
 }
 
 /// Returns the support point for a direction of any length, times `scale`. Most callers pass a unit
-/// vector, for which nothing is divided.
+/// vector, which is not normalized again.
 template <typename T>
 static inline void user_support(const SupportShape& shape, const T* d, T scale, T* x) {
   double direction[3] = {static_cast<double>(d[0]), static_cast<double>(d[1]),
@@ -56,9 +55,10 @@ static inline double user_width(const SupportShape& shape, const double* d, doub
   return dot3(d, high) - dot3(d, low);
 }
 
-/// Support points for directions within kSampleTilt of the normal that are no farther apart than
-/// this count as one point, as on a ball. Computed from the widths along two directions across the
-/// normal, times `scale`.
+/// Returns the distance, times `scale`, up to which the support points for directions within
+/// kSampleTilt of the normal count as one point. On a ball, they are at most kSampleTilt times its
+/// width apart; the result is 1.5 times that, with the larger of the widths along the two
+/// directions `across`.
 static inline double sample_tolerance(const SupportShape& shape, const double (*across)[3],
                                       double scale) {
   const double width[2] = {user_width(shape, across[0], scale),

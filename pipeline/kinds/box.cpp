@@ -11,7 +11,7 @@ WINNOW_DEFINE_LINK(box, WINNOW_PAIRS)
 #undef WINNOW_PAIRS
 
 Status ShapePool::add(const BoxShape& shape, ShapeId& id) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   if (!are_lengths({shape.half[0], shape.half[1], shape.half[2], shape.rounding})) {
     return Status::invalid_shape;
   }

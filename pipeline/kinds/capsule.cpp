@@ -13,7 +13,7 @@ WINNOW_DEFINE_LINK(capsule, WINNOW_PAIRS)
 #undef WINNOW_PAIRS
 
 Status ShapePool::add(const CapsuleShape& shape, ShapeId& id) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   if (!are_lengths({shape.radius, shape.half_length})) return Status::invalid_shape;
   link_kernels_of_capsule();
   return put(capsules_, ShapeKind::capsule, shape, id);

@@ -17,7 +17,7 @@ WINNOW_DEFINE_LINK(cone, WINNOW_PAIRS)
 #undef WINNOW_PAIRS
 
 Status ShapePool::add(const ConeShape& shape, ShapeId& id) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   if (!are_lengths({shape.radius, shape.half_length, shape.rounding})) return Status::invalid_shape;
   link_kernels_of_cone();
   return put(cones_, ShapeKind::cone, shape, id);

@@ -16,7 +16,7 @@ WINNOW_DEFINE_LINK(cylinder, WINNOW_PAIRS)
 #undef WINNOW_PAIRS
 
 Status ShapePool::add(const CylinderShape& shape, ShapeId& id) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   if (!are_lengths({shape.radius, shape.half_length, shape.rounding})) return Status::invalid_shape;
   link_kernels_of_cylinder();
   return put(cylinders_, ShapeKind::cylinder, shape, id);

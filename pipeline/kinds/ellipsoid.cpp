@@ -18,7 +18,7 @@ WINNOW_DEFINE_LINK(ellipsoid, WINNOW_PAIRS)
 #undef WINNOW_PAIRS
 
 Status ShapePool::add(const EllipsoidShape& shape, ShapeId& id) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   if (!are_lengths({shape.radius[0], shape.radius[1], shape.radius[2], shape.rounding})) {
     return Status::invalid_shape;
   }

@@ -15,7 +15,7 @@ WINNOW_DEFINE_LINK(half_space, WINNOW_PAIRS)
 #undef WINNOW_PAIRS
 
 Status ShapePool::add(const HalfSpaceShape& shape, ShapeId& id) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   const Eigen::Map<const Eigen::Vector3d> normal(shape.normal);
   if (!std::isfinite(shape.offset) || !normal.allFinite()) return Status::invalid_shape;
   // Scale by the largest component first: the squares of a small normal would underflow.

@@ -30,21 +30,21 @@ Status ShapePool::put_hull(double rounding, ShapeId& id, Make&& make) {
 }
 
 Status ShapePool::add_hull(const PointView& points, double rounding, ShapeId& id) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   return put_hull(rounding, id,
                   [&](HullShape& hull) { return hull_of_points(points, memory_, hull); });
 }
 
 Status ShapePool::add_hull(const PointView& points, const HullFaces& faces, double rounding,
                            ShapeId& id) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   return put_hull(rounding, id,
                   [&](HullShape& hull) { return hull_of_faces(points, faces, memory_, hull); });
 }
 
 Status ShapePool::add_built_hull(const PointView& points, const HullFaces& faces, double rounding,
                                  ShapeId& id) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   return put_hull(rounding, id,
                   [&](HullShape& hull) { return rebuild_hull(points, faces, memory_, hull); });
 }

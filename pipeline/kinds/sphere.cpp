@@ -9,7 +9,7 @@ WINNOW_DEFINE_LINK(sphere, WINNOW_PAIRS)
 #undef WINNOW_PAIRS
 
 Status ShapePool::add(const SphereShape& shape, ShapeId& id) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   if (!are_lengths({shape.radius})) return Status::invalid_shape;
   link_kernels_of_sphere();
   return put(spheres_, ShapeKind::sphere, shape, id);

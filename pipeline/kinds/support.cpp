@@ -63,7 +63,7 @@ class SupportProbe {
 }  // namespace
 
 Status ShapePool::add(const SupportShape& shape, ShapeId& id) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   if (!are_lengths({shape.radius, shape.rounding}) || shape.function == nullptr ||
       !SupportProbe(shape).is_convex(shape.radius)) {
     return Status::invalid_shape;

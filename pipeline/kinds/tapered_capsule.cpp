@@ -19,7 +19,7 @@ WINNOW_DEFINE_LINK(tapered_capsule, WINNOW_PAIRS)
 #undef WINNOW_PAIRS
 
 Status ShapePool::add(const TaperedCapsuleShape& shape, ShapeId& id) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   if (!are_lengths({shape.radius[0], shape.radius[1], shape.half_length})) {
     return Status::invalid_shape;
   }

@@ -17,7 +17,7 @@ WINNOW_DEFINE_LINK(triangle, WINNOW_PAIRS)
 #undef WINNOW_PAIRS
 
 Status ShapePool::add(const TriangleShape& shape, ShapeId& id) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   if (!are_lengths({shape.rounding})) return Status::invalid_shape;
   for (const auto& vertex : shape.vertex) {
     for (const double v : vertex) {

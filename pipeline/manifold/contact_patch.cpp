@@ -25,7 +25,8 @@ struct ProjectedPoint {
   double depth;
 };
 
-/// Chooses a few of the points of a patch, which are added in order around their convex hull.
+/// Chooses at most kManifoldPoints points of a patch. The points of the patch are added in order
+/// around their convex hull.
 ///
 /// Ties between equally good points, as in regular polygons, are broken by a direction that is
 /// fixed in a body: so the choice does not change while the body jitters.
@@ -44,14 +45,16 @@ class PointSelection {
 
   // Chooses the points that span most: the outermost along the direction, the one farthest from it,
   // the one that makes the largest triangle with both, and the one that adds most area. If none of
-  // them is nearly as deep as the deepest, the deepest one replaces the point that matters least
-  // for the area. Returns the number of points; the deepest is first.
+  // these is nearly as deep as the deepest point (kTiedDepth), the deepest point is added, or
+  // replaces the one that matters least for the area if there are already kManifoldPoints. Returns
+  // the number of points; the deepest of the chosen points is first.
   std::uint32_t choose(Chosen& chosen) noexcept {
     std::uint32_t count = spread(chosen);
     double most = -std::numeric_limits<double>::infinity();
     for (std::uint32_t i = 0; i < count_; ++i) most = std::max(most, place_[i].depth);
     const double least = most - kTiedDepth * std::sqrt(extent_);
-    // Prefer the deepest of the chosen points as first, so that each point has its own depth.
+    // The first point gets the depth of the deepest point of all. Prefer the deepest of the chosen
+    // points, whose own depth differs least from that.
     std::uint32_t* first = std::max_element(
         chosen, chosen + count,
         [&](std::uint32_t i, std::uint32_t k) { return place_[i].depth < place_[k].depth; });
@@ -334,7 +337,7 @@ FlatFeature named(const FaceNames& names, double rounding) {
 
 }  // namespace
 
-FlatFeature box_patch(const BoxFrame& box, const double normal[3]) noexcept {
+FlatFeature flat_box_feature(const BoxFrame& box, const double normal[3]) noexcept {
   double rise[3];
   for (int i = 0; i < 3; ++i) rise[i] = dot(box.axis[i], normal);
   std::uint32_t i = std::abs(rise[1]) > std::abs(rise[0]) ? 1 : 0;
@@ -356,7 +359,7 @@ FlatFeature box_patch(const BoxFrame& box, const double normal[3]) noexcept {
   return patch;
 }
 
-FlatFeature triangle_patch(const TriangleFrame& triangle) noexcept {
+FlatFeature flat_triangle_feature(const TriangleFrame& triangle) noexcept {
   FlatFeature patch = named(kFaceNames[kTriangleFace], triangle.rounding);
   for (std::uint32_t i = 0; i < 3; ++i) std::copy_n(triangle.vertex[i], 3, patch.vertex[i]);
   return patch;
@@ -382,8 +385,8 @@ double deepest_point(const SupportingFeature& a, const SupportingFeature& b, con
     point[r] = best->x * frame.axis[0][r] + best->y * frame.axis[1][r] +
                best->height[0] * frame.axis[2][r];
   }
-  const bool meets = m.apart <= m.same;
-  return meets ? best->height[0] - best->height[1] : -std::numeric_limits<double>::infinity();
+  const bool overlap = m.apart <= m.same;
+  return overlap ? best->height[0] - best->height[1] : -std::numeric_limits<double>::infinity();
 }
 
 double deepest_point(const FlatFeature& a, const FlatFeature& b, const double normal[3],

@@ -10,9 +10,9 @@
 
 namespace winnow {
 
-/// Which features support along a contact normal, with tolerance because bodies rock: a face whose
+/// Cosine and sine of the limits for features that support along a contact normal: a face whose
 /// normal is within 14 degrees of the contact normal, else an edge within 14 degrees of
-/// perpendicular to it. Cosine and sine of these limits.
+/// perpendicular to it. The limits are this wide because bodies rock.
 inline constexpr double kFaceCosine = 0.97;
 inline constexpr double kEdgeSine = 0.25;
 
@@ -31,16 +31,17 @@ inline constexpr double kSteep = 1e-6;
 /// Kind of a feature: the upper two bits of its 32-bit id.
 enum class FeatureKind : std::uint32_t { vertex = 0, edge = 1, face = 2 };
 inline constexpr std::uint32_t kFeatureKindShift = 30;
-/// A direction whose sine with the axis is less counts as parallel to the axis.
+/// A direction whose sine with the axis is less than this counts as parallel to the axis.
 inline constexpr double kAlongAxis = 1e-9;
 
 /// Maximal number of vertices of a patch. If a face has more corners, every second (third, ...)
 /// one is used.
 inline constexpr std::uint32_t kPatchRoom = 64;
 
-/// A direction perpendicular to a normal that is fixed in the body while it jitters: the first axis
-/// of the body whose cosine with the normal is at most kAxisCosine, rotated about the normal by the
-/// golden section of a half turn (cosine and sine), away from the axes of all regular polygons.
+/// A direction that is perpendicular to a normal, and fixed in the body while the body jitters: the
+/// first axis of the body whose cosine with the normal is at most kAxisCosine, rotated about the
+/// normal by the golden section of a half turn (cosine and sine), away from the axes of all regular
+/// polygons.
 inline constexpr double kAxisCosine = 0.6;
 inline constexpr double kOffAxes[2] = {0.36237489008048024, 0.9320324238132276};
 
@@ -50,7 +51,7 @@ inline constexpr double kOffAxes[2] = {0.36237489008048024, 0.9320324238132276};
 inline constexpr double kSampleTilt = 0.04;
 inline constexpr double kSampleLevel = 1e-6;
 
-/// Two capsules lie side by side if the squared sine of the angle between them is less than
+/// Two capsules are side by side if the squared sine of the angle between them is less than
 /// kBesideSquare, their overlap along the axis is longer than kMinOverlapLength times the sum of
 /// their half lengths, and an end of the overlap is less deep than the pair by at most
 /// kEndDepthTolerance times the sum of the radii. They then have two contacts instead of one.
@@ -82,8 +83,8 @@ struct SupportingFeature {
 /// plus 2^30, or of a face plus 2^31. If the projections do not overlap, the only point is where
 /// they are closest. Writes to `out` (room for kManifoldPoints) and returns the number of points; 0
 /// only for a patch without vertices. Deterministic. Uses at most 16 vertices per patch: larger
-/// patches are reduced to the outermost and the deepest ones. All numbers must be finite, and no
-/// product of four lengths may overflow.
+/// patches are reduced to their outermost vertices and the deepest one. All numbers must be finite,
+/// and no product of four lengths may overflow.
 std::uint32_t contact_patch(const SupportingFeature& a, const SupportingFeature& b,
                             const double normal[3], double margin, ContactPoint* out) noexcept;
 
@@ -91,8 +92,7 @@ std::uint32_t contact_patch(const SupportingFeature& a, const SupportingFeature&
 /// of equal depth, the choice is stable while bodies jitter by some 1e-4 radians; the first point
 /// gets the depth of the deepest.
 inline constexpr double kTiedDepth = 6e-5;
-/// Returns this tolerance as a depth: for the largest distance of a contact point from the first
-/// one.
+/// Returns kTiedDepth times the largest distance of a contact point from the first one.
 double tied_depth(const ContactPoint* points, std::uint32_t count) noexcept;
 
 /// Chooses the corners of a patch that touch an unbounded plane with normal `up`, as contact_patch
@@ -101,8 +101,8 @@ double tied_depth(const ContactPoint* points, std::uint32_t count) noexcept;
 std::uint32_t corners_on_plane(const SupportingFeature& patch, const double up[3], double highest,
                                std::uint32_t* corner) noexcept;
 
-/// A segment whose ends are closer to a side of a polygon than this share of the smaller size
-/// counts as lying along that side, inside the polygon.
+/// A segment whose ends are closer to a side of a polygon than this share of the smaller of both
+/// sizes counts as a part of that side, inside the polygon.
 inline constexpr double kAlongSide = 1.5e-4;
 
 /// Maximal number of corners of the intersection of two patches.
@@ -143,9 +143,9 @@ struct FlatFeature {
 /// Returns the face of a box that faces `normal`. Vertices are numbered by the bits x > 0, y > 0, z
 /// > 0; edges by 4 x their axis plus the bits of the other axes; faces by 2 x their axis plus the
 /// sign.
-[[nodiscard]] FlatFeature box_patch(const BoxFrame& box, const double normal[3]) noexcept;
+[[nodiscard]] FlatFeature flat_box_feature(const BoxFrame& box, const double normal[3]) noexcept;
 /// Returns the triangle: vertices 0 to 2, edge i from vertex i to the next, face 0.
-[[nodiscard]] FlatFeature triangle_patch(const TriangleFrame& triangle) noexcept;
+[[nodiscard]] FlatFeature flat_triangle_feature(const TriangleFrame& triangle) noexcept;
 
 /// contact_patch of two such patches.
 std::uint32_t flat_contacts(const FlatFeature& a, const FlatFeature& b, const double normal[3],
@@ -155,8 +155,8 @@ std::uint32_t flat_contacts(const FlatFeature& a, const FlatFeature& b, const do
 inline constexpr std::uint32_t kTriangleFace = 6;
 
 /// Two faces projected along their normal, one of several pairs that a kernel computed: the
-/// outlines of box_patch or triangle_patch without feature ids, neither thin nor steep. Each number
-/// is in one of the rows from `rows` on, which are `kStride` apart.
+/// outlines of flat_box_feature or flat_triangle_feature without feature ids, neither thin nor
+/// steep. Each number is in one of the rows from `rows` on, which are `kStride` apart.
 struct ProjectedFaces {
   static constexpr std::uint32_t kStride = 8;
   /// Rows of a face. The coordinates of corner i are i rows further.

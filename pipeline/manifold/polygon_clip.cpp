@@ -140,7 +140,7 @@ void Outline::take(const SupportingFeature& patch, const PatchFrame& frame,
 }
 
 // Takes the farthest vertices in fifteen directions that are fixed in the body, and the deepest
-// vertex if it is deeper than those.
+// vertex if it is deeper than these by more than the tolerance kTiedDepth.
 void Outline::take_outermost(const SupportingFeature& patch, const PatchFrame& frame,
                              double up) noexcept {
   static_assert(kOutlineVertices == std::size(kFifteenthsOfTurn) + 1);
@@ -347,7 +347,7 @@ bool cut(const Polygon& from, const Outline& reference, std::uint32_t side, doub
   return true;
 }
 
-// The ids of a corner of the clipped polygon follow from the two edges that share it.
+// The ids of a corner of the clipped polygon follow from the two edges that meet there.
 void clip_polygon(const Outline& reference, const Outline& incident, int r, ClipPoints& out) {
   Polygon buffer[2];
   Polygon* now = &buffer[0];
@@ -530,7 +530,7 @@ void find_closest(const Outline* const outline[2], ClipPoints& out) {
   out.apart = least;
 }
 
-// A point above or below a polygon.
+// Adds a point that is above or below a polygon.
 void clip_point(const Outline& polygon, const Outline& point, int r, ClipPoints& out) {
   for (std::uint32_t side = 0; side < polygon.count; ++side) {
     if (inside(polygon, side, point.x[0], point.y[0]) < 0.0) return;

@@ -66,7 +66,7 @@ inline constexpr bool kPlusCorner[4][2] = {
   return names;
 }
 
-/// Indexed by face of a box; then the triangle.
+/// Indexed by the face of a box; the last entry is the triangle.
 inline constexpr FaceNames kFaceNames[kTriangleFace + 1] = {
     box_face_names(0), box_face_names(1), box_face_names(2),           box_face_names(3),
     box_face_names(4), box_face_names(5), {3, 0, {0, 1, 2}, {0, 1, 2}}};
@@ -126,8 +126,8 @@ struct ClipPoint {
 struct ClipPoints {
   ClipPoint point[2 * kOutlineVertices];
   std::uint32_t count = 0;
-  /// Points closer than this count as one; points that are outside of a side by less count as
-  /// inside.
+  /// Tolerance, a length: points are merged if neither x nor y differs by more, and a point that is
+  /// outside of a side by at most this counts as inside.
   double same;
   /// Distance of the outlines if they do not overlap.
   double apart = 0.0;

@@ -16,7 +16,7 @@ namespace {
 /// equally far, and a point outside of the hull by less than kMinWider is not chosen.
 constexpr double kTiedSpan = 1e-3;
 constexpr double kMinWider = 1e-4;
-/// Points within this many times the tie tolerance of each other count as one place.
+/// Points within this many times the tie tolerance of each other count as one position.
 constexpr double kPlaces = 4.0;
 
 /// Finalizer of SplitMix64 (Steele, Lea, Flood 2014), a bijection.
@@ -67,9 +67,9 @@ void RegionPoints::add_beside(const ContactPoint& contact, const double* offset,
   beside_ = point_of(contact, offset, part);
 }
 
-RegionPoints::Point RegionPoints::point_of(const ContactPoint& contact, const double* offset,
-                                           const std::uint32_t (&part)[2]) const noexcept {
-  Point point;
+RegionPoints::RegionPoint RegionPoints::point_of(const ContactPoint& contact, const double* offset,
+                                                 const std::uint32_t (&part)[2]) const noexcept {
+  RegionPoint point;
   double p[3];
   for (int k = 0; k < 3; ++k) p[k] = static_cast<double>(contact.position[k]) + offset[k];
   point.x = dot(p, frame_.axis[0]);
@@ -82,7 +82,7 @@ RegionPoints::Point RegionPoints::point_of(const ContactPoint& contact, const do
   return point;
 }
 
-void RegionPoints::keep(const Point& point) noexcept {
+void RegionPoints::keep(const RegionPoint& point) noexcept {
   if (count_ == kRoom) thin();
   point_[count_++] = point;
 }
@@ -97,9 +97,10 @@ std::uint32_t RegionPoints::deepest() const noexcept {
 }
 
 // Finds a point with the largest value. Among points whose values are within `slack` of it, the
-// outermost along the direction determines the place, so that the choice between equally good
-// places is stable. Returns the point with the largest value at that place, so that a corner is not
-// lost to a point beside it; among several, the first that was added.
+// outermost along the direction determines the position, so that the choice between equally good
+// positions is stable. Returns the point with the largest value at that position, so that a corner
+// is not lost to a point beside it; among several such points, the outermost, and among equally far
+// ones the first that was added.
 template <typename Value>
 std::uint32_t RegionPoints::first_of_largest(Value&& value, double slack,
                                              double& most) const noexcept {
@@ -130,14 +131,14 @@ std::uint32_t RegionPoints::first_of_largest(Value&& value, double slack,
   return outermost([&](std::uint32_t i) { return is_there(i) && values[i] >= most_there - tie_; });
 }
 
-double RegionPoints::distance_from_hull(const Point& p, const Chosen& hull,
+double RegionPoints::distance_from_hull(const RegionPoint& p, const Chosen& hull,
                                         std::uint32_t count) const noexcept {
   double nearest = std::numeric_limits<double>::infinity();
   bool is_left = count == 3;
   bool is_right = count == 3;
   for (std::uint32_t i = 0; i < count; ++i) {
-    const Point& a = point_[hull[i]];
-    const Point& b = point_[hull[i + 1 == count ? 0 : i + 1]];
+    const RegionPoint& a = point_[hull[i]];
+    const RegionPoint& b = point_[hull[i + 1 == count ? 0 : i + 1]];
     const double along[2] = {b.x - a.x, b.y - a.y};
     const double to[2] = {p.x - a.x, p.y - a.y};
     const double turn = along[0] * to[1] - along[1] * to[0];
@@ -158,7 +159,7 @@ std::uint32_t RegionPoints::spread(Chosen& chosen, double span) const noexcept {
   const double slack = std::max(tie_, kTiedSpan * span);
   std::uint32_t count = 1;
   for (; count < kManifoldPoints; ++count) {
-    const auto value = [&](const Point& p) {
+    const auto value = [&](const RegionPoint& p) {
       const double away = distance_from_hull(p, chosen, count);
       return away > least ? away : -std::numeric_limits<double>::infinity();
     };
@@ -179,13 +180,13 @@ double RegionPoints::span_from(std::uint32_t point) const noexcept {
   return std::sqrt(square);
 }
 
-// Parts that share a side may report the same place several times, and a part beside it may report
-// almost the same place: take the deepest of these points.
-const RegionPoints::Point& RegionPoints::deepest_at(const Point& place) const noexcept {
+// Parts that share a side may report the same position several times, and a part beside the side
+// may report almost the same position. Returns the deepest of these points.
+const RegionPoints::RegionPoint& RegionPoints::deepest_at(const RegionPoint& place) const noexcept {
   constexpr double kPositionTies = 16.0;
-  const Point* best = &place;
+  const RegionPoint* best = &place;
   for (std::uint32_t i = 0; i < count_; ++i) {
-    const Point& p = point_[i];
+    const RegionPoint& p = point_[i];
     const bool is_there = std::abs(p.x - place.x) <= kPositionTies * tie_ &&
                           std::abs(p.y - place.y) <= kPositionTies * tie_;
     if (is_there && p.contact.depth - best->contact.depth > static_cast<float>(tie_)) best = &p;
@@ -207,7 +208,7 @@ void RegionPoints::thin() noexcept {
       most = std::max(most, c * point_[i].x + s * point_[i].y);
     }
     stays[first_of_largest(
-        [&](const Point& p) {
+        [&](const RegionPoint& p) {
           return c * p.x + s * p.y >= most - tie_ ? c * p.y - s * p.x
                                                   : -std::numeric_limits<double>::infinity();
         },
@@ -225,10 +226,10 @@ std::uint32_t RegionPoints::choose(ContactPoint* out) noexcept {
   if (count_ == 0 && has_beside_) keep(beside_);
   if (count_ == 0) return 0;
   if (count_ == kRoom) thin();
-  const auto depth_of = [](const Point& p) { return static_cast<double>(p.contact.depth); };
+  const auto depth_of = [](const RegionPoint& p) { return static_cast<double>(p.contact.depth); };
   double depth = 0.0;
   Chosen chosen;
-  chosen[0] = first_of_largest([](const Point& p) { return p.along; }, tie_, depth);
+  chosen[0] = first_of_largest([](const RegionPoint& p) { return p.along; }, tie_, depth);
   const double span = span_from(chosen[0]);
   const double tie = std::max(tie_, kTiedDepth * span);
   std::uint32_t deepest = first_of_largest(depth_of, tie, depth);
@@ -238,7 +239,8 @@ std::uint32_t RegionPoints::choose(ContactPoint* out) noexcept {
     deepest = count_;
     keep(beside_);
   }
-  // Prefer the deepest of the chosen points as first, so that each point has its own depth.
+  // The first point gets the depth of the deepest point of all. Prefer the deepest of the chosen
+  // points, whose own depth differs least from that.
   std::uint32_t* first = std::max_element(
       chosen, chosen + count,
       [&](std::uint32_t i, std::uint32_t k) { return depth_of(point_[i]) < depth_of(point_[k]); });
@@ -249,7 +251,7 @@ std::uint32_t RegionPoints::choose(ContactPoint* out) noexcept {
   }
   std::swap(chosen[0], *first);
   for (std::uint32_t i = 0; i < count; ++i) {
-    const Point& point = deepest_at(point_[chosen[i]]);
+    const RegionPoint& point = deepest_at(point_[chosen[i]]);
     out[i] = point.contact;
     out[i].feature = feature_among_parts(point.contact.feature, point.part);
   }

@@ -11,7 +11,7 @@
 namespace winnow {
 
 /// Lengths that differ by less than this share of the largest coordinate of a pair's points count
-/// as equal. A few times the error of rounding a position to float.
+/// as equal. This is several times the error of rounding a position to float.
 inline constexpr double kRegionTie = 1e-6;
 
 /// Combines a feature id with the parts that it belongs to. If a vertex of one body touches a face
@@ -28,9 +28,9 @@ inline constexpr double kRegionTie = 1e-6;
 /// that hull. Distances that differ by less than 1/1000 of the span count as equal, and the
 /// outermost point along the direction wins. So, up to this tolerance, a dropped point is no
 /// farther from the hull than the last chosen point was from the hull of the previous ones. If no
-/// chosen point is as deep as the deepest (up to kTiedDepth), the deepest replaces the last one. A
-/// resting face therefore keeps the same corners from frame to frame, however many points lie along
-/// its sides and however regular it is.
+/// chosen point is as deep as the deepest (up to kTiedDepth), the deepest is added, or replaces the
+/// last one if there are kManifoldPoints. A resting face therefore keeps the same corners from
+/// frame to frame, however many points lie along its sides and however regular it is.
 class RegionPoints {
  public:
   /// Lengths that differ by at most `tie` count as equal. `direction` is arbitrary, but fixed in a
@@ -38,8 +38,7 @@ class RegionPoints {
   RegionPoints(const double normal[3], const double direction[3], double tie) noexcept;
 
   /// Adds a point of the manifold of two parts. `offset` is the origin of its position. Amortized
-  /// O(1): beyond about sixty points, keeps only the outermost in sixteen directions and the
-  /// deepest.
+  /// O(1): beyond kRoom points, keeps only the outermost in sixteen directions and the deepest.
   void add(const ContactPoint& contact, const double* offset,
            const std::uint32_t (&part)[2]) noexcept;
 
@@ -56,7 +55,7 @@ class RegionPoints {
  private:
   static constexpr std::uint32_t kRoom = 64;
 
-  struct Point {
+  struct RegionPoint {
     double x;
     double y;
     /// Coordinate along the direction.
@@ -69,24 +68,24 @@ class RegionPoints {
   template <typename Value>
   [[nodiscard]] std::uint32_t first_of_largest(Value&& value, double slack,
                                                double& most) const noexcept;
-  [[nodiscard]] double distance_from_hull(const Point& p, const Chosen& hull,
+  [[nodiscard]] double distance_from_hull(const RegionPoint& p, const Chosen& hull,
                                           std::uint32_t count) const noexcept;
   [[nodiscard]] std::uint32_t spread(Chosen& chosen, double span) const noexcept;
   [[nodiscard]] double span_from(std::uint32_t point) const noexcept;
   void thin() noexcept;
-  [[nodiscard]] Point point_of(const ContactPoint& contact, const double* offset,
-                               const std::uint32_t (&part)[2]) const noexcept;
-  void keep(const Point& point) noexcept;
+  [[nodiscard]] RegionPoint point_of(const ContactPoint& contact, const double* offset,
+                                     const std::uint32_t (&part)[2]) const noexcept;
+  void keep(const RegionPoint& point) noexcept;
   [[nodiscard]] std::uint32_t deepest() const noexcept;
-  [[nodiscard]] const Point& deepest_at(const Point& place) const noexcept;
+  [[nodiscard]] const RegionPoint& deepest_at(const RegionPoint& place) const noexcept;
 
   PatchFrame frame_;
   double direction_[3];
   double tie_;
   std::uint32_t count_ = 0;
-  Point point_[kRoom];
+  RegionPoint point_[kRoom];
   bool has_beside_ = false;
-  Point beside_;
+  RegionPoint beside_;
 };
 
 }  // namespace winnow

@@ -9,11 +9,11 @@ namespace winnow {
 /// Bound on the relative error of the functions below.
 inline constexpr double kBoxMeasureError = 0x1p-48;
 
-/// Lower bound on the time t in [0, limit] at which the swept box [min, max] + t * direction first
+/// Lower bound on the time t in [0, limit] at which the moving box [min, max] + t * direction first
 /// overlaps the box [low, high]; infinite if it does not.
-[[nodiscard]] inline double swept_box_time(const double min[3], const double max[3],
-                                           const double direction[3], double limit,
-                                           const double low[3], const double high[3]) noexcept {
+[[nodiscard]] inline double moving_box_time(const double min[3], const double max[3],
+                                            const double direction[3], double limit,
+                                            const double low[3], const double high[3]) noexcept {
   double entry = 0.0;
   double exit = limit;
   for (int axis = 0; axis < 3; ++axis) {

@@ -56,9 +56,9 @@ Status check_field(const HeightSamples& samples) {
   return check(samples);
 }
 
-/// Offset from a square's own sample. The first index of the tables below is the even or odd
-/// triangle of the square. kCorner has its corners; kBeyond has, for the edge from each corner to
-/// the next, the opposite corner of the triangle across the edge.
+/// Offset from a square's own sample. The first index of the tables below selects the even or the
+/// odd triangle of the square. kCorner contains its corners; kBeyond contains, for the edge from
+/// each corner to the next, the opposite corner of the triangle across the edge.
 struct SampleStep {
   int column;
   int row;
@@ -73,7 +73,6 @@ std::uint32_t moved(std::uint32_t from, int by) {
   return from + static_cast<std::uint32_t>(by);
 }
 
-/// A minimum and a maximum height.
 struct HeightRange {
   float low = std::numeric_limits<float>::infinity();
   float high = -std::numeric_limits<float>::infinity();
@@ -203,7 +202,7 @@ HeightField::~HeightField() {
 }
 
 Status HeightField::build(const HeightSamples& samples) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   const Status status = check_field(samples);
   if (status != Status::ok) return status;
   State* fresh = new_in<State>(memory_, memory_);
@@ -228,7 +227,7 @@ Status HeightField::State::take(const HeightSamples& samples) noexcept {
 }
 
 Status HeightField::update(std::uint32_t column, std::uint32_t row, const HeightSamples& samples) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   if (column > columns() || row > rows() || samples.columns > columns() - column ||
       samples.rows > rows() - row) {
     return Status::invalid_argument;
@@ -270,7 +269,7 @@ std::uint32_t HeightField::triangles() const noexcept {
 }
 
 bool HeightField::triangle(std::uint32_t number, TriangleShape& shape) const noexcept {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   if (number >= triangles()) return false;
   const HeightGrid grid = state_->grid();
   const std::uint32_t column = number / 2 % grid.square_columns();
@@ -285,7 +284,7 @@ bool HeightField::triangle(std::uint32_t number, TriangleShape& shape) const noe
 }
 
 std::uint8_t HeightField::active_edges(std::uint32_t number) const noexcept {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   static const EdgeBend kBend(MeshOptions{}.active_edge_angle);
   TriangleShape shape;
   std::uint8_t active = 7;
@@ -317,7 +316,7 @@ Status HeightField::save(Column<std::byte>& out) const {
 }
 
 Status HeightField::load(std::span<const std::byte> saved) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   ByteReader in = open_snapshot(saved, kFieldMagic, kFieldVersion);
   HeightField fresh(memory_);
   if (in.ok() && !in.rest().empty()) {
@@ -340,7 +339,7 @@ Status HeightField::load(std::span<const std::byte> saved) {
 }
 
 Aabb HeightField::bounds() const noexcept {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   if (state_ == nullptr) return {};
   const State& s = *state_;
   const float low = s.tiles[s.pyramid.tiles - 1];
@@ -353,7 +352,7 @@ Aabb HeightField::bounds() const noexcept {
 }
 
 double HeightField::radius() const noexcept {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   const Aabb box = bounds();
   if (!box.is_valid()) return 0.0;
   const Eigen::Vector3f farthest =

@@ -79,13 +79,14 @@ void fit_tiles(const HeightGrid& grid, const TileRange& squares, float* low, flo
 // Traversals, in the field's own frame. A slot is the number of a triangle.
 
 /// Writes the numbers of all triangles whose boxes overlap [min, max] to `out`, in ascending order.
-/// If the sink is full, they are only counted.
+/// If the sink is full, further triangles are only counted.
 void height_overlap(const HeightGrid& grid, const double min[3], const double max[3],
                     SlotSink& out) noexcept;
-/// As mesh_sweep.
-void height_sweep(const HeightGrid& grid, const double min[3], const double max[3],
-                  const double direction[3], double limit, const SlotVisitor& visitor) noexcept;
-/// As mesh_near.
+/// As mesh_cast.
+void height_cast(const HeightGrid& grid, const double min[3], const double max[3],
+                 const double direction[3], double limit, const SlotVisitor& visitor) noexcept;
+/// As mesh_near, but without scale, by the distance of boxes of triangles, and up to 16 slots at a
+/// time.
 void height_near(const HeightGrid& grid, const double min[3], const double max[3], double limit,
                  const SlotVisitor& visitor) noexcept;
 

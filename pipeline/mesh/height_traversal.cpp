@@ -1,6 +1,6 @@
-// Searches a height field's tile pyramid: all triangles in a box, or triangles in order of time of
-// impact or distance. composites/primitive_pair_search.cpp and composites/composite_traversal.cpp
-// call these.
+// Searches a height field's tile pyramid: finds all triangles whose boxes overlap a box, or visits
+// triangles roughly in order of the time of a moving box or of distance.
+// composites/primitive_pair_search.cpp and composites/composite_traversal.cpp call these functions.
 
 #include "pipeline/mesh/box_measures.h"
 #include "pipeline/mesh/height_grid.h"
@@ -19,8 +19,9 @@ struct GridBox {
   double high[3];
 };
 
-/// The squares [first, end) that overlap [min, max] along an axis. The division may be off by one;
-/// the result is corrected by comparing the ends of squares, computed as for triangles.
+/// The squares [first, end) that overlap [min, max] along an axis. The quotient may be off by one,
+/// so the result is corrected by comparisons with the ends of squares, which are computed as for
+/// triangles.
 struct SquareRange {
   std::uint32_t first = 0;
   std::uint32_t end = 0;
@@ -49,7 +50,7 @@ struct SquareHeights {
   [[nodiscard]] bool read(const HeightGrid& grid, std::uint32_t column, std::uint32_t row) {
     float h[4];
     grid.corners(column, row, h);
-    // NaN compares false.
+    // NaN does not equal itself.
     if (!(h[0] == h[0] && h[1] == h[1] && h[2] == h[2] && h[3] == h[3])) return false;
     for (std::size_t k = 0; k < 2; ++k) {
       low[k] = std::min({h[0], h[3], h[1 + k]});
@@ -68,14 +69,14 @@ GridBox floor_box(const HeightGrid& grid, std::uint32_t column, std::uint32_t ro
 
 /// Measures the time at which a moving box first touches a box; infinite if it does not up to the
 /// limit.
-struct GridSweep {
+struct GridCast {
   const double* min;
   const double* max;
   const double* direction;
   double limit;
 
   [[nodiscard]] double measure(const GridBox& box) const {
-    return swept_box_time(min, max, direction, limit, box.low, box.high);
+    return moving_box_time(min, max, direction, limit, box.low, box.high);
   }
   [[nodiscard]] bool within(double measure) const {
     return measure <= limit && measure < kInfinity;
@@ -226,7 +227,7 @@ void height_overlap(const HeightGrid& grid, const double min[3], const double ma
   if (grid.columns == 0) return;
   const SquareRange columns(min[0], max[0], grid.spacing[0], grid.square_columns());
   const SquareRange rows(min[1], max[1], grid.spacing[1], grid.square_rows());
-  const auto meets = [&](float low, float high) {
+  const auto overlaps = [&](float low, float high) {
     return static_cast<double>(low) <= max[2] && static_cast<double>(high) >= min[2];
   };
   for (std::uint32_t row = rows.first; row < rows.end; ++row) {
@@ -234,7 +235,7 @@ void height_overlap(const HeightGrid& grid, const double min[3], const double ma
     for (std::uint32_t column = columns.first; column < columns.end;) {
       const std::uint32_t tile = column / kTileSquares;
       const std::uint32_t tile_end = std::min(columns.end, (tile + 1) * kTileSquares);
-      if (!meets(grid.low[tiles + tile], grid.high[tiles + tile])) {
+      if (!overlaps(grid.low[tiles + tile], grid.high[tiles + tile])) {
         column = tile_end;
         continue;
       }
@@ -243,17 +244,17 @@ void height_overlap(const HeightGrid& grid, const double min[3], const double ma
         if (!heights.read(grid, column, row)) continue;
         const std::uint32_t number = 2 * (row * grid.square_columns() + column);
         for (std::uint32_t k = 0; k < 2; ++k) {
-          if (meets(heights.low[k], heights.high[k])) put_slot(out, number + k);
+          if (overlaps(heights.low[k], heights.high[k])) put_slot(out, number + k);
         }
       }
     }
   }
 }
 
-void height_sweep(const HeightGrid& grid, const double min[3], const double max[3],
-                  const double direction[3], double limit, const SlotVisitor& visitor) noexcept {
+void height_cast(const HeightGrid& grid, const double min[3], const double max[3],
+                 const double direction[3], double limit, const SlotVisitor& visitor) noexcept {
   if (grid.columns == 0 || !(limit >= 0.0)) return;
-  OrderedTraversal<GridSweep>(grid, GridSweep{min, max, direction, limit}, visitor).run();
+  OrderedTraversal<GridCast>(grid, GridCast{min, max, direction, limit}, visitor).run();
 }
 
 void height_near(const HeightGrid& grid, const double min[3], const double max[3], double limit,

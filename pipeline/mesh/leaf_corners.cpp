@@ -7,8 +7,8 @@ namespace {
 
 constexpr std::uint32_t kLeafCorners = 3 * kMeshFanout;
 
-/// Quantised positions are stored only if there are at most this many blocks of vertices per leaf.
-/// A mesh then takes at most 24 bytes per triangle.
+/// Quantised positions are stored only if triangles have no boxes and leaves have on average at
+/// most this many blocks of vertices. A mesh then takes at most 24 bytes per triangle.
 constexpr double kBlocksWithPoints = 1.25;
 
 /// The distinct vertices of one leaf, in the order in which its corners use them.

@@ -8,9 +8,9 @@
 
 namespace winnow {
 
-/// Corners of triangles, stored by leaf. Neighbouring triangles share most of their vertices, so
-/// that the sixteen triangles of a leaf have little more than sixteen vertices. Each leaf lists its
-/// vertices once, and a corner is a one-byte index into this list; kernels load each vertex once.
+/// Corners of triangles, stored by leaf. Neighbouring triangles share vertices: sixteen triangles
+/// of a leaf often have only about sixteen distinct vertices. Each leaf lists its vertices once,
+/// and a corner is a one-byte index into this list; kernels load each vertex once.
 class LeafCorners {
  public:
   explicit LeafCorners(std::pmr::memory_resource* memory) noexcept

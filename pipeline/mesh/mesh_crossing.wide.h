@@ -1,9 +1,9 @@
 #pragma once
 
 // Ray-triangle intersection by the signs of the volumes between the ray and the sides (Platis,
-// Theoharis, "Fast ray-tetrahedron intersection using Pluecker coordinates", 2003). Computed in
-// double, without fused operations, which some instruction sets lack, so that results are equal on
-// all of them.
+// Theoharis, "Fast ray-tetrahedron intersection using Pluecker coordinates", 2003). The computation
+// is in double. It uses no fused operations, because some instruction sets lack these and results
+// must be equal on all instruction sets.
 
 #include "pipeline/mesh/mesh_ray_setup.wide.h"
 #include "pipeline/mesh/mesh_view.h"
@@ -34,7 +34,7 @@ namespace winnow::WINNOW_ISA_NAME::mesh {
           difference_of_products(a.x, b.y, a.y, b.x)};
 }
 
-/// Tests whether the line of a ray passes all sides of a triangle on one side. The corners are
+/// Tests whether the line of a ray passes all sides of a triangle on the same side. The corners are
 /// given by axis.
 [[gnu::always_inline]] inline Crossing cross_sides(const SurfaceRay& ray,
                                                    const CornerDoubles (&corner)[3]) {

@@ -1,7 +1,7 @@
 #pragma once
 
 // Traversals of a mesh's tree in approximate order of a measure: the time at which a moving box
-// touches triangles (mesh_sweep), or the squared distance from a fixed box (mesh_near). Boxes are
+// touches triangles (mesh_cast), or the squared distance from a fixed box (mesh_near). Boxes are
 // measured in double.
 
 #include "partitions/tree/traversal.wide.h"
@@ -15,12 +15,13 @@ namespace winnow::WINNOW_ISA_NAME::mesh {
 inline constexpr double kMeasureError = 0x1p-48;
 
 /// The time at which the moving box first touches boxes; infinite if it does not up to `limit`.
-class SweepMeasure {
+class CastMeasure {
  public:
-  /// Whether `order` is a lower bound on the measure of triangles, by which they can be dropped.
+  /// Whether `order` returns a lower bound on the measure of triangles, so that triangles beyond
+  /// the limit can be skipped.
   static constexpr bool kOrderIsLeast = false;
 
-  SweepMeasure(const MeshSweepJob& job, double limit) : job_(job), limit_(limit) {}
+  CastMeasure(const MeshCastJob& job, double limit) : job_(job), limit_(limit) {}
 
   void set_limit(double limit) { limit_ = limit; }
   [[nodiscard]] double limit() const { return limit_; }
@@ -28,12 +29,12 @@ class SweepMeasure {
   [[gnu::always_inline]] Doubles operator()(const Box8& box) const {
     Doubles entry(0.0);
     Doubles exit(limit_);
-    LaneMask<double> met = entry <= entry;
+    LaneMask<double> overlapping = entry <= entry;
     for (int axis = 0; axis < 3; ++axis) {
       const Doubles near = box.low[axis] - Doubles(job_.max[axis]);
       const Doubles far = box.high[axis] - Doubles(job_.min[axis]);
       if (job_.is_static[axis]) {
-        met = met & (near <= Doubles(0.0)) & (far >= Doubles(0.0));
+        overlapping = overlapping & (near <= Doubles(0.0)) & (far >= Doubles(0.0));
         continue;
       }
       const Doubles inverse(job_.inverse[axis]);
@@ -42,13 +43,14 @@ class SweepMeasure {
       entry = max(entry, min(a, b) * Doubles(1.0 - kMeasureError));
       exit = min(exit, max(a, b) * Doubles(1.0 + kMeasureError));
     }
-    return select(met & (entry <= exit), entry, Doubles(__builtin_inf()));
+    return select(overlapping & (entry <= exit), entry, Doubles(__builtin_inf()));
   }
-  /// Times by which triangles whose boxes are touched at times `met` are ordered: not before the
-  /// moving box reaches their planes. The first triangle hit then tends to come first, and the
-  /// limit it returns excludes others.
+  /// Returns the times by which triangles are sorted: the time `entry` at which the moving box
+  /// touches their boxes, or the time at which it reaches their planes if this is later. The
+  /// triangle that is hit first then tends to be visited first, and the limit that its visit
+  /// returns excludes others.
   template <int Half>
-  [[gnu::always_inline]] Doubles order(const Corners16& corners, const Doubles& met) const {
+  [[gnu::always_inline]] Doubles order(const Corners16& corners, const Doubles& entry) const {
     Vec3<double> corner[3];
     for (int k = 0; k < 3; ++k) {
       corner[k] = {to_double<Half>(corners.at[k][0]), to_double<Half>(corners.at[k][1]),
@@ -68,7 +70,7 @@ class SweepMeasure {
     const Doubles closing = -(sign_or_one(above) * dot(normal, way));
     const Doubles late(1e300);
     const Doubles time = select(closing > Doubles(0.0), gap / closing, late);
-    return max(met, select(gap > Doubles(0.0), min(time, late), met));
+    return max(entry, select(gap > Doubles(0.0), min(time, late), entry));
   }
   /// False for infinite times, even if the limit is infinite.
   [[nodiscard]] bool within(double measure) const {
@@ -76,12 +78,12 @@ class SweepMeasure {
   }
 
  private:
-  const MeshSweepJob& job_;
+  const MeshCastJob& job_;
   double limit_;
 };
 
 /// The squared distance from a fixed box to scaled boxes. Squares below 1e-300 count as within
-/// every limit, because smaller ones may have underflowed.
+/// every limit, because terms of smaller squares may have underflowed.
 class NearMeasure {
  public:
   static constexpr bool kOrderIsLeast = true;
@@ -208,8 +210,8 @@ inline void order_lanes(const Measure& measure, const double* value, const doubl
   }
 }
 
-/// The stack of open nodes, nearest on top. Each level leaves at most 15 nodes while one is opened,
-/// which bounds the stack.
+/// The stack of open nodes, nearest on top. While a node is opened, at most 15 other nodes of its
+/// level are on the stack; this bounds the stack.
 template <typename Measure>
 class OpenMeshNodes {
  public:
@@ -235,9 +237,9 @@ class OpenMeshNodes {
   }
 
   /// Returns false if no node is left, or if the limit is negative.
-  bool take(std::uint32_t& level, std::uint32_t& node) {
+  bool pop(std::uint32_t& level, std::uint32_t& node) {
     while (size_ != 0 && measure_.limit() >= 0.0) {
-      const Waiting& next = waiting_[--size_];
+      const WaitingNode& next = waiting_[--size_];
       if (!measure_.within(next.measure)) continue;
       level = next.level;
       node = next.node;
@@ -247,7 +249,7 @@ class OpenMeshNodes {
   }
 
  private:
-  struct Waiting {
+  struct WaitingNode {
     double measure;
     std::uint32_t node;
     std::uint32_t level;
@@ -255,7 +257,7 @@ class OpenMeshNodes {
 
   const MeshView& mesh_;
   const Measure& measure_;
-  Waiting waiting_[kMaxMeshLevels * kMeshFanout];
+  WaitingNode waiting_[kMaxMeshLevels * kMeshFanout];
   std::uint32_t size_ = 0;
 };
 

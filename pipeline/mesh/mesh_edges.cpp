@@ -1,5 +1,5 @@
 // Edges of a mesh: welds vertices by position, finds the neighbour of each edge by a counting sort,
-// and marks active edges. triangle_mesh.cpp calls these when a mesh is built or refitted.
+// and marks active edges. triangle_mesh.cpp calls these functions when a mesh is built or refitted.
 
 #include "pipeline/mesh/mesh_edges.h"
 
@@ -47,8 +47,8 @@ void weld(const MeshView& mesh, Column<std::uint32_t>& table, Column<std::uint32
   }
 }
 
-/// Sort key of an edge: the higher of its two places in the upper half, these bits in the lower
-/// half.
+/// Sort key of an edge: the higher of the places of its two ends (see `weld`) in the upper half,
+/// and these bits in the lower half.
 constexpr std::uint32_t kUpward = 1U << 30U;   ///< from the lower place to the higher
 constexpr std::uint32_t kSegment = 1U << 31U;  ///< of a triangle with fewer than three places
 constexpr std::uint32_t kCode = kUpward - 1U;  ///< 4 * slot + edge
@@ -133,8 +133,9 @@ bool find_neighbours(const MeshView& mesh, Column<std::uint32_t>& neighbours) {
   weld(mesh, first, place);
   std::fill(neighbours.begin(), neighbours.end(), kNoNeighbour);
 
-  // Counting sort of edges by their lower place v: first[v + 2] counts them, then first[v + 1] is
-  // where the next one goes, and finally where they end.
+  // Counting sort of edges by their lower place v. At first, first[v + 2] is the number of edges
+  // with this place; then first[v + 1] is the index of the next edge to write; at the end it is the
+  // end of these edges.
   first.set_size(std::size_t{mesh.vertex_count} + 2);
   std::fill(first.begin(), first.end(), 0U);
   for (std::size_t slot = 0; slot < count; ++slot) {

@@ -1,11 +1,11 @@
 #pragma once
 
-// Sixteen triangles of a mesh against a hull. The first test uses one direction per triangle: from
-// the triangle's point closest to the hull's centre to that centre (Ericson, "Real-Time Collision
-// Detection", 2005, 5.1.5), against all vertices of the hull. The remaining triangles are tested
-// against the hull's face planes, sixteen planes at a time. Any direction that separates is valid,
-// so that directions need not be exact; heights along them are accurate to a few roundings. Called
-// by mesh_overlaps.wide.h.
+// Tests sixteen triangles of a mesh against a hull. The first test uses one direction per triangle,
+// from the triangle's point closest to the hull's centre to this centre (Ericson, "Real-Time
+// Collision Detection", 2005, 5.1.5), against all vertices of the hull. The remaining triangles are
+// tested against the hull's face planes, sixteen planes at a time. Directions need not be exact: if
+// the triangle and the hull are apart along any direction, they are disjoint. Heights along a
+// direction are accurate to a few roundings. Called by mesh_overlaps.wide.h.
 
 #include "pipeline/mesh/mesh_lanes.wide.h"
 #include "pipeline/mesh/mesh_traversal.h"
@@ -13,7 +13,8 @@
 
 namespace winnow::WINNOW_ISA_NAME::mesh {
 
-/// Corners in the hull's frame, relative to its centre, scaled so that its radius is about 1.
+/// Corners in the hull's frame, relative to the hull's centre, scaled so that the hull's radius is
+/// about 1.
 struct HullCorners {
   /// Products of numbers of this size stay in the range of float.
   static constexpr float kLargestCorner = 1e6F;

@@ -1,7 +1,7 @@
 #pragma once
 
-// Loads of sixteen nodes or sixteen triangles of a mesh into SIMD lanes, for the traversals beside
-// this file.
+// Loads of sixteen nodes or sixteen triangles of a mesh into SIMD lanes, for the traversals of this
+// folder.
 
 #include "pipeline/mesh/mesh_view.h"
 #include "simd/lanes/boxes.h"
@@ -56,8 +56,8 @@ struct Corners16 {
   Floats at[3][3];
 };
 
-/// Number of blocks of sixteen that hold the vertex list of a leaf: 1 or 2; 0 if leaves have no
-/// lists or this one is longer.
+/// Returns the number of blocks of sixteen that contain the vertex list of a leaf, 1 or 2. Returns
+/// 0 if leaves have no lists or the list is longer.
 [[gnu::always_inline]] inline int vertex_blocks(const MeshView& mesh, std::uint32_t leaf) {
   if (mesh.corner[0] != nullptr) return 0;
   const std::uint8_t* const places = places_of(mesh, leaf, 0);

@@ -1,13 +1,14 @@
 #pragma once
 
-// The nearest triangles of two meshes (mesh_near_pairs): descends both trees at once and opens the
-// pair of boxes with the least distance first, while it is within the limit. Lengths are in the
-// scaled frame of a (see mesh_pairs.wide.h); squared distances are lower bounds.
+// The nearest triangles of two meshes (mesh_near_pairs): descends both trees at once, depth first.
+// Among the children of two nodes, the pair with the least distance is opened first; pairs beyond
+// the limit are skipped. Lengths are in the scaled frame of a (see mesh_pairs.wide.h); squared
+// distances are lower bounds.
 //
 // Pairs of triangles are dropped if a direction separates them by more than the limit plus a bound
 // on rounding. Two directions are tested: the direction that separates the nearest pair found up to
-// now, which also separates nearly all pairs of surfaces that curve away from each other, and the
-// direction between the triangles' centres.
+// now, which also separates nearly all other pairs if the surfaces curve away from each other, and
+// the direction between the triangles' centres.
 
 #include "pipeline/mesh/mesh_lanes.wide.h"
 #include "pipeline/mesh/mesh_pairs.wide.h"
@@ -68,7 +69,7 @@ class NearPairTraversal {
   void run() {
     push({0, 0, a_.levels, b_.levels}, 0.0F);
     while (size_ != 0 && limit_ >= 0.0) {
-      const Waiting next = stack_[--size_];
+      const WaitingPair next = stack_[--size_];
       if (!(next.square <= square_)) continue;
       if (next.nodes.level_a > next.nodes.level_b) {
         open_a(next.nodes);
@@ -81,7 +82,7 @@ class NearPairTraversal {
   }
 
  private:
-  struct Waiting {
+  struct WaitingPair {
     float square;
     NodePair nodes;
   };
@@ -156,7 +157,7 @@ class NearPairTraversal {
     const Box16 children = load_nodes(a_, level, first_a);
     const Mask16 lanes = present(a_.count[level], first_a);
     found_.size = 0;
-    // The direction in node units. Along it boxes extend as far as their corners.
+    // `along` is the direction in node units. The support of a box along it is at a corner.
     float along[3];
     float error_bound = slack_;
     Floats own_reach(0.0F);
@@ -277,9 +278,9 @@ class NearPairTraversal {
     return d[0] != 0.0F || d[1] != 0.0F || d[2] != 0.0F;
   }
 
-  /// Lowers the limit to the least distance of a corner of one leaf to a corner of the other, which
-  /// bounds the distance of the meshes. Until a nearest pair is found this avoids most visits to
-  /// other pairs.
+  /// Lowers the limit to a distance between corners of the two leaves, which is an upper bound of
+  /// the distance of the meshes. This prunes most pairs of nodes and triangles before the first
+  /// distance of two triangles is computed.
   void cut_by_corners(const PairLeaf& leaf, const float (&corner)[3][3][kLanes], float size) {
     Floats nearest(__builtin_inff());
     for (int j = 0; j < kLanes; ++j) {
@@ -297,7 +298,7 @@ class NearPairTraversal {
     if (apart < most_) set_most(apart);
   }
 
-  /// Support of triangles along a direction, in units of its length.
+  /// Returns the support of triangles along a direction, multiplied by the length of the direction.
   [[gnu::always_inline]] static Floats farthest(const Floats (&direction)[3],
                                                 const Corners16& corners) {
     Floats at[3];
@@ -324,7 +325,8 @@ class NearPairTraversal {
   float length_[3];
   float slack_ = 0.0F;
   double limit_ = 0.0;
-  /// The limit in the scaled frame, or the distance of two corners if that is less; and its square.
+  /// `most_` is the limit in the scaled frame, or the distance of two corners if it is less;
+  /// `square_` is its square plus a bound on rounding.
   float most_ = __builtin_inff();
   float square_ = __builtin_inff();
   PlacedNodes nodes_;
@@ -333,7 +335,7 @@ class NearPairTraversal {
   ApartPairs found_;
   ApartPairs triangles_;
   std::uint32_t size_ = 0;
-  Waiting stack_[kPairRoom];
+  WaitingPair stack_[kPairRoom];
 };
 
 }  // namespace winnow::WINNOW_ISA_NAME::mesh

@@ -3,11 +3,11 @@
 // Triangles of a mesh that overlap a box, or a ball or hull in it (mesh_overlap).
 //
 // Ball test: a convex shape and a ball are disjoint only if they are separated along the direction
-// from the ball's centre to the closest point of the shape. For a triangle this is its normal, the
-// direction to a corner, or the direction orthogonal to an edge (Ericson, "Real-Time Collision
-// Detection", 2005, 5.2.7 and 5.1.5). Any direction along which all three corners are beyond the
-// ball separates, so that directions need not be exact; heights along them are accurate to a few
-// roundings.
+// from the ball's centre to the closest point of the shape. For a triangle, this direction is the
+// normal, the direction to a corner, or a direction orthogonal to an edge (Ericson, "Real-Time
+// Collision Detection", 2005, 5.2.7 and 5.1.5). Directions need not be exact: if all three corners
+// are beyond the ball along any direction, the triangle is outside. Heights along a direction are
+// accurate to a few roundings.
 
 #include "partitions/tree/traversal.wide.h"
 #include "pipeline/mesh/mesh_hull.wide.h"
@@ -22,11 +22,10 @@ using Lanes3 = Floats[3];
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/// Corners relative to the ball's centre, scaled so that its radius is about 1, and the distance
-/// from the centre at which they are certainly outside.
+/// Corners relative to the ball's centre, scaled so that the ball's radius is about 1.
 struct BallCorners {
   Lanes3 at[3];
-  Floats square;  ///< of that distance
+  Floats square;  ///< of the distance from the centre beyond which a triangle is certainly outside
 
   BallCorners(const Corners16& corners, const MeshBallJob& ball) {
     Floats largest(ball.largest);

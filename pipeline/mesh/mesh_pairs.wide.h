@@ -52,13 +52,13 @@ struct PlacedTriangles {
   /// Bounds grown by slack and rounding.
   alignas(64) float low[3][kLanes];
   alignas(64) float high[3][kLanes];
-  /// 32 u times the distance that a corner of a triangle with an overlapping box may have from one
-  /// of these corners, plus 2 u times the coordinate. Multiplied by `size` of the other triangle,
-  /// it bounds the error of distances from that triangle's plane.
+  /// 32 u times the distance that a corner of another triangle with an overlapping box may have
+  /// from a corner of this triangle, plus 2 u times the coordinate. Multiplied by PairLeaf::size of
+  /// the other triangle, it bounds the error of distances from the other triangle's plane.
   alignas(64) float offset_error[3][kLanes];
   alignas(64) float normal[3][kLanes];
-  /// Error bound of the normal. Multiplied by such a distance, it bounds the error of distances
-  /// from this triangle's plane.
+  /// Error bound of the normal. Multiplied by the distance of a corner of another triangle, it
+  /// bounds the error of distances from this triangle's plane.
   alignas(64) float normal_error[3][kLanes];
   /// Extent plus slack.
   alignas(64) float reach[3][kLanes];
@@ -237,7 +237,7 @@ struct PlacedNodes {
   alignas(64) float high[3][kLanes];
   Mask16 lanes;
 
-  /// The bounding box of all of them.
+  /// Computes the bounding box of all nodes.
   void merge(float (&least)[3], float (&greatest)[3]) const {
     const std::uint32_t last = 31U - static_cast<std::uint32_t>(__builtin_clz(lanes));
     for (int axis = 0; axis < 3; ++axis) {
@@ -307,9 +307,10 @@ struct NodePair {
   std::uint32_t level_b;
 };
 
-/// Stack size. The levels of a pair add up to at most 2 * kMaxMeshLevels. Each step descends one
-/// level of one tree and leaves 16 pairs, or one level of both trees and leaves 256 pairs, in half
-/// as many steps. The last step visits leaves and leaves none.
+/// Size of the stack. The levels of a pair sum to at most 2 * kMaxMeshLevels. A step that descends
+/// one level of one tree pushes at most 16 pairs. A step that descends one level of both trees
+/// pushes at most 256, and there are at most kMaxMeshLevels such steps from the top to the leaves.
+/// The last step visits leaves and pushes nothing.
 inline constexpr std::uint32_t kPairRoom = kMaxMeshLevels * kMeshFanout * kMeshFanout;
 
 class PairTraversal {

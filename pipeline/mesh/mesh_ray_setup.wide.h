@@ -1,9 +1,9 @@
 #pragma once
 
 // Transforms rays to the frame of a surface and prepares them for the traversal of a mesh's nodes:
-// eight at a time, one per SIMD lane, or a single ray in scalars, which have less latency than
-// lanes of axes. In double, without fused operations, so that results are equal either way and on
-// every instruction set. mesh_rays.wide.h uses this.
+// eight at a time, one per SIMD lane, or a single ray. make_ready computes in double, without fused
+// operations, so that lanes and scalars have equal results on every instruction set.
+// make_near_ready prepares a single ray in float. mesh_rays.wide.h uses this.
 
 #include "pipeline/mesh/mesh_lanes.wide.h"
 #include "pipeline/mesh/mesh_traversal.h"
@@ -14,11 +14,11 @@ namespace winnow::WINNOW_ISA_NAME::mesh {
 
 /// Error bound, in node units, of a bound converted in float to the parameter tau (see ReadyRays).
 inline constexpr double kUnitError = 0.05;
-/// A ray that moves by fewer units per tau along an axis counts as static on it: it moves by less
-/// than kUnitError while it crosses the mesh.
+/// A ray that moves along an axis by fewer node units per unit of tau than this is treated as
+/// static on this axis: while it crosses the mesh, it moves by less than kUnitError.
 inline constexpr double kStaticRate = 0.01;
 inline constexpr double kStaticInverse = 1e30;
-/// A larger slack would also leave all triangles uncertain, so slack is clamped to this.
+/// With this slack, all triangles are uncertain. A larger slack is clamped to it.
 inline constexpr double kMaxSlack = 1e200;
 
 // Constants for rays measured in float from their own origin; u is half an ulp of 1.
@@ -82,11 +82,11 @@ struct ScalarRay {
 [[gnu::always_inline]] inline void store(const Doubles& number, float* p) {
   to_single(number).store_unaligned(p);
 }
-[[gnu::always_inline]] inline Mask16 bits(bool holds) {
-  return holds ? 1U : 0U;
+[[gnu::always_inline]] inline Mask16 bits(bool condition) {
+  return condition ? 1U : 0U;
 }
-[[gnu::always_inline]] inline double select(bool holds, double a, double b) {
-  return holds ? a : b;
+[[gnu::always_inline]] inline double select(bool condition, double a, double b) {
+  return condition ? a : b;
 }
 [[gnu::always_inline]] inline double abs(double a) {
   return __builtin_fabs(a);
@@ -163,7 +163,8 @@ template <typename OnEntries>
 }
 
 /// Transforms rays [first, first + kRayLanes) to the frame of a surface. Returns a bit for each ray
-/// that is left to the caller: rays that begin far away, or have numbers too large or too small.
+/// that the caller must transform: rays that begin far away, or have numbers that are too large or
+/// too small.
 [[gnu::always_inline]] inline Mask16 place_some(const SurfaceFrame& frame,
                                                 const RayColumns<kRaysAtOnce>& world,
                                                 std::uint32_t first, SurfaceRays& own) {
@@ -177,19 +178,20 @@ template <typename OnEntries>
   const D towards = -dot(start, direction);
   const V way = times(frame.world_to_local, direction);
   const D longest = largest_of(abs_of(way));
-  const D stretch = D(0.5) / power_of(longest);
+  const D t_scale = D(0.5) / power_of(longest);
   store(times(frame.world_to_local, start), own.ray.origin, first);
-  store(way * stretch, own.ray.direction, first);
+  store(way * t_scale, own.ray.direction, first);
   const D coordinate = largest_of(
       times(frame.world_to_local, abs_of(start), [](const D& entries) { return abs(entries); }));
   store(D(kRaySlack) * (coordinate + D(frame.reach)), own.slack + first);
   store(D(0.0), own.shift + first);
-  store(stretch, own.stretch + first);
+  store(t_scale, own.t_scale + first);
   const auto near = towards <= D(4.0 * frame.size) * (square / fastest);
-  const auto tame = (largest_of(abs_of(start)) < D(kMaxRayLength)) & (fastest < D(kMaxRayLength)) &
-                    (fastest > D(1.0 / kMaxRayLength)) & (longest > D(kMinLength)) &
-                    (longest < D(1.0 / kMinLength)) & (D(frame.size) < D(kMaxRayLength));
-  return ~bits(near & tame);
+  const auto in_range = (largest_of(abs_of(start)) < D(kMaxRayLength)) &
+                        (fastest < D(kMaxRayLength)) & (fastest > D(1.0 / kMaxRayLength)) &
+                        (longest > D(kMinLength)) & (longest < D(1.0 / kMinLength)) &
+                        (D(frame.size) < D(kMaxRayLength));
+  return ~bits(near & in_range);
 }
 
 /// As above, for rays [0, count).
@@ -203,8 +205,8 @@ inline std::uint64_t place_rays(const SurfaceFrame& frame, const RayColumns<kRay
   return count < kRaysAtOnce ? left & ((std::uint64_t{1} << count) - 1U) : left;
 }
 
-/// Rays prepared for the traversal of a mesh, in columns. `tau` is a scaled time, measured from
-/// where a ray enters the mesh's box, or from its origin if that is near the mesh.
+/// Rays prepared for the traversal of a mesh, in columns. `tau` is a scaled time: it is measured
+/// from the entry into the mesh's box (make_ready) or from the ray's origin (make_near_ready).
 template <std::uint32_t Room>
 struct ReadyRays {
   static constexpr std::size_t kAlignment = kRayAlignment<Room>;
@@ -219,7 +221,7 @@ struct ReadyRays {
   alignas(kAlignment) float at[kRows][kFloats];
   alignas(kAlignment) float grow[kRows][kFloats];
   /// A ray passes a bound of q units at tau = q * inverse + near if it enters, q * inverse + far if
-  /// it leaves. Rounding makes the former no later, the latter no earlier than exact.
+  /// it leaves. Rounding errors never make an entry later or an exit earlier.
   alignas(kAlignment) float inverse[kRows][kFloats];
   alignas(kAlignment) float near[kRows][kFloats];
   alignas(kAlignment) float far[kRows][kFloats];
@@ -251,8 +253,8 @@ struct AxisInterval {
 
   /// Returns the time at which the ray enters the bounds (0 if it begins inside), and sets `leaves`
   /// to the time at which it leaves them. `leaves` is negative if the ray is outside the bounds and
-  /// does not move along the axis. Zero times infinity gives NaN, which compares
-  /// false and narrows nothing.
+  /// does not move along the axis. The product of zero and infinity is NaN, which compares false
+  /// and narrows nothing.
   [[gnu::always_inline]] L operator()(const L& from, const L& way, const L& inverse, const L& least,
                                       const L& most, L& leaves) const {
     const L zero(0.0);
@@ -319,7 +321,7 @@ template <typename Rays>
   const V from = start + moved;
   const D farthest = largest_of(abs_of(start) + abs_of(moved));
   const D slack = min(D(kMaxSlack), own_slack + D(0x1p-51) * farthest);
-  // No ray is in the box, grown by the slack, for longer than twice this.
+  // No ray is in the box, grown by the slack, for longer than twice `longest`.
   const D extent(mesh.extent);
   const auto is_slack = slack > D(0x1p-10) * extent;
   const D longest = select(is_slack, extent + D(2.0) * slack, extent);
@@ -352,11 +354,12 @@ template <typename Rays>
   return come;
 }
 
-/// As make_ready, for a single ray that begins near the mesh, as most do; tau is measured from its
-/// origin. Does not test the mesh's box; the nodes do. Returns false for other rays.
+/// As make_ready, for a single ray that begins near the mesh (kNearUnits) and has a small slack;
+/// tau is measured from its origin. Does not test the mesh's box, because the traversal tests the
+/// nodes. Returns false for other rays.
 ///
 /// The position takes three roundings, its inverse as many, and a bound's conversion to tau four,
-/// each of at most |at| and the largest bound.
+/// each of half an ulp of at most the sum of |at| and the largest bound.
 [[gnu::always_inline]] inline bool make_near_ready(const MeshSpan& mesh,
                                                    const SingleSurfaceRay& ray,
                                                    ReadyRays<1>& ready) {

@@ -1,8 +1,8 @@
 #pragma once
 
 // Ray traversal of a mesh: tests sixteen nodes at a time in their 16-bit units, nearest first, then
-// sixteen triangles at a time. All tests are in float and keep what rounding leaves uncertain; u is
-// half an ulp of 1.
+// sixteen triangles at a time. All tests are in float and keep nodes and triangles for which
+// rounding makes the result uncertain; u is half an ulp of 1.
 //
 // Triangles are tested in a frame sheared along the ray, so that the ray becomes an axis, by the
 // signs of the areas between the ray and the triangle's sides (Woop, Benthin, Wald, "Watertight
@@ -32,12 +32,12 @@ struct LineTriangles {
   Mask16 sure;
 };
 
-/// Tests which of these triangles the line of the ray crosses. The error of coordinates is less
+/// Tests which of sixteen triangles the line of the ray crosses. The error of coordinates is less
 /// than `wrong`, which includes 0.05 units for the rounding of products, 6 u of a coordinate of
 /// 2^17. A crossing is certain if the areas exceed their error by `surely`.
 ///
-/// The product of two coordinates has an error of less than `wrong` times both coordinates, plus
-/// twice its square.
+/// The product of two coordinates has an error of less than `wrong` times the sum of their
+/// magnitudes, plus twice the square of `wrong`.
 [[gnu::always_inline]] inline LineTriangles around_line(const CornersAcross& at, float wrong,
                                                         float surely) {
   const auto norm_l1 = [&](int k) { return abs(at.x[k]) + abs(at.y[k]); };
@@ -187,14 +187,14 @@ struct RayNode {
   [[nodiscard, gnu::always_inline]] bool is_inner() const { return is_some() && level != 0; }
 };
 
-/// The traversal state of one ray. The next node is the nearest open one of the last block. Data
-/// needed soon are prefetched; a single ray prefetches everything of a leaf that it may need, since
-/// it has no other work meanwhile. Control flow uses branches rather than select: branch prediction
-/// lets the processor start the next step early.
-template <bool Alone>
+/// The traversal state of one ray. The next node is the nearest open node of the last block. Data
+/// of the next step are prefetched. A single ray prefetches all data of a leaf that it may need,
+/// because it has no other work in the meantime. Control flow uses branches rather than select:
+/// branch prediction lets the processor start the next step early.
+template <bool Single>
 class RayTraversal {
  public:
-  static constexpr std::uint32_t kRoom = Alone ? 1 : kRaysAtOnce;
+  static constexpr std::uint32_t kRoom = Single ? 1 : kRaysAtOnce;
 
   /// Begins the traversal; `ray` is the ray's index in the columns and for the visitor. Returns the
   /// first node.
@@ -216,11 +216,11 @@ class RayTraversal {
     // A top level with one or two nodes is skipped: its children are tested at once.
     const std::uint32_t top = mesh.levels - 1;
     if (top != 0 && mesh.count[top] == 2) return start_between_two(mesh, top - 1);
-    if (top == 0 || mesh.count[top] != 1) return meet(mesh, top, 0);
-    return meet(mesh, top - 1, 0);
+    if (top == 0 || mesh.count[top] != 1) return open_block(mesh, top, 0);
+    return open_block(mesh, top - 1, 0);
   }
 
-  /// Takes the nearest node of the last open block; requires one.
+  /// Takes the nearest node of the last open block; requires an open block.
   [[gnu::always_inline]] RayNode take_next() {
     const auto at = 31U - static_cast<std::uint32_t>(__builtin_clz(open_));
     const Floats key = Floats::load(key_[at]);
@@ -232,12 +232,12 @@ class RayTraversal {
   }
   /// Enters an inner node; returns the nearest of its children that the ray intersects.
   [[gnu::always_inline]] RayNode enter_inner(const MeshView& mesh, const RayNode& node) {
-    return meet(mesh, node.level - 1, node.number * kLanes);
+    return open_block(mesh, node.level - 1, node.number * kLanes);
   }
   [[nodiscard, gnu::always_inline]] bool has_open_nodes() const { return open_ != 0; }
   /// Runs the whole traversal of one ray. If triangles have boxes, a leaf's triangles are tested
-  /// after the next nodes, while its vertices are being fetched; else nearly all data of a leaf are
-  /// already in cache.
+  /// after the next nodes, so that their vertices are fetched in the meantime. Else nearly all data
+  /// of a leaf are already in cache, and its triangles are tested at once.
   [[gnu::always_inline]] void go(const MeshView& mesh, RayNode node,
                                  const RaySlotVisitor& visitor) {
     if (mesh.box != nullptr) return go_through_boxes(mesh, node, visitor);
@@ -362,8 +362,8 @@ class RayTraversal {
     return bits((key > Floats(gone_to)) & (key <= Floats(last_key_))) != 0 ? 1U : 0U;
   }
 
-  /// The boxes, of sixteen in columns at `bounds`, that the ray intersects, and when it enters
-  /// them.
+  /// Returns which of the sixteen boxes in columns at `bounds` the ray intersects, and writes the
+  /// times at which it enters them to `in`.
   [[gnu::always_inline]] LaneMask<float> enter(const std::uint16_t* bounds, Floats& in) const {
     in = Floats(kMinTau);
     Floats out(last_);
@@ -385,21 +385,21 @@ class RayTraversal {
         0,  1,  2,  3,  4,  5,  6,  7,  8,  9,  10, 11, 12, 13, 14, 15,
         16, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26, 27, 28, 29, 30, 31};
     Floats in;
-    const LaneMask<float> met = enter(mesh.node[level] + std::size_t{6} * first_node, in);
+    const LaneMask<float> entered = enter(mesh.node[level] + std::size_t{6} * first_node, in);
     const Floats each = Floats::load(reinterpret_cast<const float*>(kEach + number));
     const Floats without_number(__builtin_bit_cast(float, ~(kNumbers - 1U)));
-    key = select(met, (in & without_number) | each, Floats(kClosedKey));
-    Mask16 hits = bits(met);
+    key = select(entered, (in & without_number) | each, Floats(kClosedKey));
+    Mask16 hits = bits(entered);
     if (first_node + kLanes > mesh.count[level]) [[unlikely]] {
       hits &= leave_out(present(mesh.count[level], first_node), hits, key);
     }
-    if (Alone && level == 0) {
+    if (Single && level == 0) {
       for (Mask16 rest = hits; rest != 0; rest &= rest - 1) fetch(mesh, first_node + first(rest));
     }
     return hits;
   }
-  /// Clears the keys of lanes beyond the level's count; if boxes are grown by a large amount, the
-  /// ray can intersect the padding.
+  /// Sets the keys of lanes beyond the level's count to kClosedKey. These lanes have empty boxes,
+  /// but if boxes are grown by a large amount, the ray can intersect them.
   [[gnu::always_inline]] static Mask16 leave_out(Mask16 there, Mask16 hits, Floats& key) {
     if ((hits & ~there) == 0) [[likely]]
       return there;
@@ -410,7 +410,7 @@ class RayTraversal {
     return there;
   }
   /// Stores a block of open nodes at `at`. Nodes with keys up to `gone_to` have been visited;
-  /// `rest` is the mask of the others. Node numbers in keys count from `first_node`.
+  /// `rest` is the mask of the nodes that have not. Node numbers in keys count from `first_node`.
   [[gnu::always_inline]] void put(std::uint32_t at, std::uint32_t level, std::uint32_t first_node,
                                   const Floats& key, Mask16 rest, float gone_to) {
     key.store(key_[at]);
@@ -438,8 +438,8 @@ class RayTraversal {
   }
   /// Opens sixteen nodes: returns the nearest one that the ray intersects and stores the others
   /// that it intersects.
-  [[gnu::always_inline]] RayNode meet(const MeshView& mesh, std::uint32_t level,
-                                      std::uint32_t first_node) {
+  [[gnu::always_inline]] RayNode open_block(const MeshView& mesh, std::uint32_t level,
+                                            std::uint32_t first_node) {
     Floats key;
     const Mask16 hits = find(mesh, level, first_node, 0, key);
     if (hits == 0) return RayNode::none();
@@ -476,7 +476,7 @@ class RayTraversal {
   }
 
   [[gnu::always_inline]] static void fetch(const MeshView& mesh, std::uint32_t leaf) {
-    if (Alone || mesh.box == nullptr) fetch_corners(mesh, leaf);
+    if (Single || mesh.box == nullptr) fetch_corners(mesh, leaf);
     if (mesh.box == nullptr) return;
     const std::uint16_t* const box = mesh.box + std::size_t{6} * kMeshFanout * leaf;
     for (std::size_t k = 0; k < 3; ++k) __builtin_prefetch(box + 32 * k);
@@ -490,7 +490,7 @@ class RayTraversal {
       return lanes_below(kLanes);
     return present(mesh.triangle_count, first_slot);
   }
-  /// Finds the triangles of a leaf to test; if triangles have boxes, tests these first.
+  /// Finds the triangles of a leaf to test; if triangles have boxes, tests the boxes.
   [[gnu::always_inline]] LeafCandidates select_triangles(const MeshView& mesh,
                                                          const RayNode& leaf) const {
     LeafCandidates candidates{leaf.number, leaf.entry, triangles_of(mesh, leaf.number), 0};
@@ -498,12 +498,12 @@ class RayTraversal {
     Floats in;
     const std::uint32_t first_slot = leaf.number * kMeshFanout;
     candidates.triangles &= bits(enter(mesh.box + std::size_t{6} * first_slot, in));
-    if (!Alone && candidates.triangles != 0) fetch_corners(mesh, leaf.number);
+    if (!Single && candidates.triangles != 0) fetch_corners(mesh, leaf.number);
     return candidates;
   }
 
-  /// Prefetches vertices of a leaf that lists them, before it is determined which triangles are
-  /// tested: their vertices are close together in memory.
+  /// Prefetches every second vertex of a leaf that lists its vertices, before it is determined
+  /// which triangles are tested. The vertices are usually close together in memory.
   [[gnu::always_inline]] static void fetch_some_vertices(const MeshView& mesh, std::uint32_t leaf) {
     constexpr std::uint32_t kApart = 2;
     const std::uint32_t* const vertex = mesh.leaf_vertex + std::size_t{leaf} * kMeshFanout;
@@ -539,15 +539,15 @@ class RayTraversal {
           cross_slot((*own_)[place()], mesh, slot, (candidates.sure >> lane & 1U) != 0, hit);
       if (crossing == Crossing::none) continue;
       const double limit = crossing == Crossing::found
-                               ? visitor.meet(visitor.context, ray_, slot, hit, limit_)
-                               : visitor.look(visitor.context, ray_, slot, limit_);
+                               ? visitor.visit_hit(visitor.context, ray_, slot, hit, limit_)
+                               : visitor.visit_candidate(visitor.context, ray_, slot, limit_);
       if (limit < 0.0) return false;
       if (limit != limit_) set_limit(limit);
     }
     return true;
   }
   /// The ray's index in the columns.
-  [[nodiscard, gnu::always_inline]] std::uint32_t place() const { return Alone ? 0 : ray_; }
+  [[nodiscard, gnu::always_inline]] std::uint32_t place() const { return Single ? 0 : ray_; }
 
   const SurfaceRayColumns<kRoom>* own_;
   const ReadyRays<kRoom>* rays_;
@@ -565,7 +565,7 @@ class RayTraversal {
   RayNode node_;
   LeafCandidates candidates_;
   /// Open nodes, in blocks of up to sixteen: one block per level except the top one, which may have
-  /// two; the lowest level last. Bit i of `open_` is set if nodes of block i are left.
+  /// two; the lowest level last. Bit i of `open_` is set if block i has open nodes.
   std::uint32_t open_;
   std::uint32_t level_[kMaxMeshLevels];
   std::uint32_t first_node_[kMaxMeshLevels];
@@ -647,7 +647,8 @@ class RaysSideBySide {
     [[nodiscard]] Walk* const* end() const { return walk + count; }
   };
 
-  /// If triangles have boxes, their corner indices are not in cache yet.
+  /// If triangles have boxes, their corner indices are not in cache yet, so the vertices are
+  /// prefetched in a separate step.
   [[gnu::always_inline]] void enter_leaves() {
     if (mesh_.box != nullptr) {
       return each(kEnterLeaf, [&](Walk& walk) {

@@ -211,10 +211,10 @@ void mesh_near_pairs(const MeshView& a, const MeshView& b, const MeshPlacement& 
   mesh_kernels().near_pairs(a, b, pair_job(a, b, b_in_a, error_bound), limit, visitor);
 }
 
-void mesh_sweep(const MeshView& mesh, const double min[3], const double max[3],
-                const double direction[3], double limit, const SlotVisitor& visitor) noexcept {
+void mesh_cast(const MeshView& mesh, const double min[3], const double max[3],
+               const double direction[3], double limit, const SlotVisitor& visitor) noexcept {
   if (mesh.triangle_count == 0 || !(limit >= 0.0)) return;
-  MeshSweepJob job{};
+  MeshCastJob job{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     job.min[axis] = min[axis];
     job.max[axis] = max[axis];
@@ -225,7 +225,7 @@ void mesh_sweep(const MeshView& mesh, const double min[3], const double max[3],
     const double shift = direction[axis] * limit;
     (shift < 0.0 ? job.min : job.max)[axis] += shift;
   }
-  mesh_kernels().sweep(mesh, job, limit, visitor);
+  mesh_kernels().cast(mesh, job, limit, visitor);
 }
 
 void mesh_near(const MeshView& mesh, const double scale[3], const double min[3],

@@ -1,7 +1,7 @@
 #pragma once
 
-// The interface to a mesh's tree: traversals that mesh_traversal.cpp prepares as jobs and the
-// kernels in the *.wide.h files beside this run. composites/ calls these functions.
+// The interface to a mesh's tree: traversals that mesh_traversal.cpp prepares as jobs and that the
+// kernels in the *.wide.h files of this folder run. composites/ calls these functions.
 
 #include <winnow/pipeline/shapes.h>
 #include "pipeline/mesh/mesh_view.h"
@@ -13,8 +13,9 @@
 namespace winnow {
 
 // Traversals of a mesh's tree, in the mesh's own unscaled frame. They miss no triangle, and may
-// report some more than specified. Scratch is of fixed size on the stack: 90 KB for pairs, 40 KB
-// for rays, 3 KB for the others. Single-threaded; the output is equal on all instruction sets.
+// report some triangles that do not match. Scratch is on the stack: at most about 90 KB for pairs,
+// 40 KB for rays, and 3 KB for other traversals. Single-threaded; the output is equal on all
+// instruction sets.
 
 /// Finds the slots of all triangles whose boxes overlap [min, max], ascending. Bounds may be
 /// infinite.
@@ -32,15 +33,17 @@ struct MeshHull {
 
 /// As above, without triangles whose closest point to `center` is farther than `radius`. Triangles
 /// that are farther by less than the rounding of float coordinates may remain, and slivers that are
-/// farther by more. An infinite or NaN radius excludes none. With a hull, which the ball must
-/// contain, finds triangles within its reach; others remain only if no face of the hull and no
-/// direction to its centre separates them, or if the hull is so thin, so far away or so far from
-/// its own origin that floats cannot separate them.
+/// farther by more. If the radius is not in [1e-30, 1e30), or a coordinate of the centre is 1e30 or
+/// more, the ball excludes no triangle. A hull, which the ball must contain, is used in place of
+/// the ball: the call finds the triangles within its reach; others remain only if no face of the
+/// hull separates them, nor the direction from their closest point to the centre of the hull, or if
+/// they extend beyond about 1e6 radii of the hull. If the hull is too far from the mesh or from its
+/// own origin for floats, or too large or too small, the ball is used.
 void mesh_overlap(const MeshView& mesh, const double min[3], const double max[3],
                   const double center[3], double radius, const MeshHull* hull,
                   SlotSink& out) noexcept;
 
-/// Finds the slots of triangles that may reach below normal . x <= offset, ascending.
+/// Finds the slots of triangles that may contain a point with normal . x <= offset, ascending.
 void mesh_below(const MeshView& mesh, const double normal[3], double offset,
                 SlotSink& out) noexcept;
 
@@ -62,16 +65,16 @@ void mesh_near_pairs(const MeshView& a, const MeshView& b, const MeshPlacement& 
 
 /// Visits slots of triangles whose boxes the moving box [min, max] + t * direction may overlap at
 /// some t in [0, limit], roughly in order of t.
-void mesh_sweep(const MeshView& mesh, const double min[3], const double max[3],
-                const double direction[3], double limit, const SlotVisitor& visitor) noexcept;
+void mesh_cast(const MeshView& mesh, const double min[3], const double max[3],
+               const double direction[3], double limit, const SlotVisitor& visitor) noexcept;
 
 /// Visits slots of triangles that, multiplied by `scale` along the axes, may be within `limit` of
-/// [min, max] (in scaled coordinates), roughly nearest first, one at a time. For triangles without
-/// area, which stand for other objects, the distance of their boxes counts.
+/// [min, max] (in scaled coordinates), roughly nearest first, one at a time. A triangle without
+/// area may stand for the box of another object, so the distance of its box counts.
 void mesh_near(const MeshView& mesh, const double scale[3], const double min[3],
                const double max[3], double limit, const SlotVisitor& visitor) noexcept;
 
-// Parameters passed to the kernels. Plain structs, because kernel files include this.
+// Parameters of the kernels; only plain structs.
 
 /// A ball for the overlap test. Coordinates relative to its centre are multiplied by `scale`, a
 /// power of two that makes the radius about 1.
@@ -83,15 +86,15 @@ struct MeshBallJob {
   float largest;
 };
 
-/// A hull for the overlap test; null shape: none. Corners x of triangles are transformed to matrix
-/// (x - middle) + offset: the hull's frame, relative to its centre, scaled by a power of two that
-/// makes its radius about 1.
+/// A hull for the overlap test; `shape` is null if there is none. Corners x of triangles are
+/// transformed to matrix (x - middle) + offset: the hull's frame, relative to its centre, scaled by
+/// a power of two that makes the hull's radius about 1.
 struct MeshHullJob {
   const HullShape* shape;
   float middle[3];
   float matrix[3][3];
   float offset[3];
-  /// In the hull's frame, unscaled.
+  /// The hull's centre in the hull's frame, unscaled.
   float center[3];
   float scale;
   /// Scaled: the reach, and the largest coordinate of the vertices.
@@ -99,8 +102,8 @@ struct MeshHullJob {
   float largest;
 };
 
-/// A box to find triangles in: in node units, and rounded inward to floats, which compare with
-/// float corners as the box in double does.
+/// The box of the overlap test: in node units, and rounded inward to floats. Float corners compare
+/// with these floats as they compare with the box in double.
 struct MeshBoxJob {
   float node_low[3];
   float node_high[3];
@@ -112,7 +115,8 @@ struct MeshBoxJob {
 };
 
 /// Mesh b placed in the frame of mesh a. If coordinates on an axis may leave the range in which
-/// doubles are reliable, its matrix row is zero and its slack infinite.
+/// doubles are reliable, the matrix row of this axis is zero and its slack infinite, so that
+/// nothing is separated on it.
 struct MeshPairJob {
   double matrix[3][3];
   double offset[3];
@@ -126,7 +130,7 @@ struct MeshPairJob {
 
 /// A box that moves by t * direction. On static axes it does not move, or by so little that [min,
 /// max] is grown by the whole movement instead.
-struct MeshSweepJob {
+struct MeshCastJob {
   double min[3];
   double max[3];
   double inverse[3];
@@ -145,21 +149,23 @@ struct MeshNearJob {
 /// limit ends the ray.
 struct RaySlotVisitor {
   /// Called for a triangle that the ray certainly crosses.
-  double (*meet)(void* context, std::uint32_t ray, std::uint32_t slot, const SurfaceHit& hit,
-                 double limit) = nullptr;
+  double (*visit_hit)(void* context, std::uint32_t ray, std::uint32_t slot, const SurfaceHit& hit,
+                      double limit) = nullptr;
   /// Called for a triangle that the ray may cross.
-  double (*look)(void* context, std::uint32_t ray, std::uint32_t slot, double limit) = nullptr;
+  double (*visit_candidate)(void* context, std::uint32_t ray, std::uint32_t slot,
+                            double limit) = nullptr;
   void* context = nullptr;
 };
 
 struct MeshKernels {
   void (*overlap)(const MeshView& mesh, const MeshBoxJob& job, SlotSink& out);
   void (*pairs)(const MeshView& a, const MeshView& b, const MeshPairJob& job, SlotPairSink& out);
-  void (*sweep)(const MeshView& mesh, const MeshSweepJob& job, double limit,
-                const SlotVisitor& visitor);
+  void (*cast)(const MeshView& mesh, const MeshCastJob& job, double limit,
+               const SlotVisitor& visitor);
   void (*near_pairs)(const MeshView& a, const MeshView& b, const MeshPairJob& job, double limit,
                      const SlotPairVisitor& visitor);
-  /// Transforms rays to the frame of a surface; returns a bit for each ray left to the caller.
+  /// Transforms rays to the frame of a surface; returns a bit for each ray that the caller must
+  /// transform.
   std::uint64_t (*place_rays)(const SurfaceFrame& frame, const RayColumns<kRaysAtOnce>& world,
                               std::uint32_t count, SurfaceRays& own);
   void (*rays)(const MeshView& mesh, const SurfaceRays& rays, const double* limits,

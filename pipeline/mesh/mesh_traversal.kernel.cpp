@@ -12,9 +12,9 @@ void find_pairs(const MeshView& a, const MeshView& b, const MeshPairJob& job, Sl
   PairTraversal(a, b, job, out).run();
 }
 
-void show_swept(const MeshView& mesh, const MeshSweepJob& job, double limit,
-                const SlotVisitor& visitor) {
-  SweepMeasure measure(job, limit);
+void show_cast(const MeshView& mesh, const MeshCastJob& job, double limit,
+               const SlotVisitor& visitor) {
+  CastMeasure measure(job, limit);
   visit_nearest_first(mesh, measure, visitor);
 }
 
@@ -34,7 +34,7 @@ void show_near(const MeshView& mesh, const MeshNearJob& job, double limit,
 
 extern const MeshKernels WINNOW_KERNEL_TABLE(mesh_kernels) = {
     WINNOW_ISA_NAME::mesh::find_overlaps, WINNOW_ISA_NAME::mesh::find_pairs,
-    WINNOW_ISA_NAME::mesh::show_swept,    WINNOW_ISA_NAME::mesh::show_near_pairs,
+    WINNOW_ISA_NAME::mesh::show_cast,     WINNOW_ISA_NAME::mesh::show_near_pairs,
     WINNOW_ISA_NAME::mesh::place_rays,    WINNOW_ISA_NAME::mesh::trace_rays,
     WINNOW_ISA_NAME::mesh::trace_ray,     WINNOW_ISA_NAME::mesh::cross_triangle,
     WINNOW_ISA_NAME::mesh::show_near,

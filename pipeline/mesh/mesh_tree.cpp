@@ -15,8 +15,8 @@
 namespace winnow {
 namespace {
 
-constexpr std::size_t kLeavesPerStretch = 512;
-constexpr std::size_t kTrianglesPerStretch = 8192;
+constexpr std::size_t kLeavesPerRange = 512;
+constexpr std::size_t kTrianglesPerRange = 8192;
 
 /// Writes the box of triangle i to row i.
 void box_triangle(BoundsPool& pool, const float* vertex, const std::uint32_t* const corner[3],
@@ -39,8 +39,9 @@ std::uint16_t& written_bound(const MeshView& view, std::uint16_t* words, std::ui
   return words[view.node[level] - words + static_cast<std::ptrdiff_t>(place_of_bound(node, bound))];
 }
 
-/// Decides whether each triangle gets its own box. If few triangles share a vertex, their vertices
-/// are scattered in memory, and testing sixteen boxes costs a fraction of loading the corners.
+/// Returns whether each triangle gets its own box: if there are more vertices than triangles. Then
+/// few triangles share a vertex, the corners of a leaf are scattered in memory, and a test of
+/// sixteen boxes takes a fraction of the time to load them.
 bool has_boxes(const MeshView& view) {
   return view.vertex_count > view.triangle_count;
 }
@@ -57,7 +58,7 @@ void each_listed(const MeshView& view, std::size_t leaf, Visit&& visit) {
        view.leaf_more[leaf + 1] - view.leaf_more[leaf]);
 }
 
-/// Calls visit(number) for the vertices of a leaf; for shared vertices once, if leaves list theirs.
+/// Calls visit(number) for each vertex of a leaf. Vertices may be visited more than once.
 template <typename Visit>
 void each_vertex(const MeshView& view, std::size_t leaf, Visit&& visit) {
   if (view.corner[0] == nullptr) {
@@ -249,7 +250,7 @@ bool order_triangles(const float* vertex, const std::uint32_t* const corner[3],
   Column<float> scratch(order.memory());
   if (!pool.reserve_exact(count) || !room.reserve(count)) return false;
   pool.append(count);
-  for_each_range(execution, count, kTrianglesPerStretch, [&](std::size_t first, std::size_t end) {
+  for_each_range(execution, count, kTrianglesPerRange, [&](std::size_t first, std::size_t end) {
     for (std::size_t i = first; i < end; ++i) {
       box_triangle(pool, vertex, corner, i);
       order[i] = static_cast<std::uint32_t>(i);
@@ -290,7 +291,7 @@ void fit_mesh_levels(MeshView& view, std::uint16_t* words, std::uint32_t* points
   choose_scale(view, low, high);
   view.span = span_of(view);
   const std::size_t leaves = view.count[0];
-  for_each_range(execution, leaves, kLeavesPerStretch, [&](std::size_t first, std::size_t end) {
+  for_each_range(execution, leaves, kLeavesPerRange, [&](std::size_t first, std::size_t end) {
     fit_leaves(view, words, points, first, end);
   });
   pad_levels(view, words);

@@ -21,15 +21,16 @@ namespace winnow {
 }
 
 /// Plans the levels above `view.triangle_count` triangles: sets levels and counts, and returns the
-/// number of 16-bit words they need.
+/// number of 16-bit integers that they need.
 [[nodiscard]] std::size_t plan_mesh_levels(MeshView& view) noexcept;
 
 /// Points the levels of a planned view into `words`.
 void link_mesh_levels(MeshView& view, const std::uint16_t* words) noexcept;
 
-/// Fits the tree to the vertices: fills `words`, into which the levels of `view` point, with the
-/// bounds of its triangles, and `points`, which is its leaf_point (may be null). Sets origin and
-/// step, and writes the box of all triangles to `low` and `high`. O(n).
+/// Fits the tree to the vertices: writes the bounds of nodes and triangles to `words`, into which
+/// the levels of `view` point, and the quantised vertices to `points`, which `view.leaf_point`
+/// points to (may be null). Sets origin, step and span, and writes the box of all triangles to
+/// `low` and `high`. O(n).
 void fit_mesh_levels(MeshView& view, std::uint16_t* words, std::uint32_t* points, float low[3],
                      float high[3], const Execution& execution) noexcept;
 

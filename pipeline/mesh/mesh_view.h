@@ -1,6 +1,6 @@
 #pragma once
 
-// The data of a TriangleMesh as kernels read it. Plain structs, because kernel files include this.
+// The data of a TriangleMesh as kernels read it: plain structs and functions that read them.
 
 #include <cstddef>
 #include <cstdint>
@@ -36,7 +36,7 @@ struct MeshSpan {
   /// `float_inverse` may be too small for float. The fourth element pads vector loads.
   float float_units[4];
   float float_inverse[4];
-  /// The longest side of that box, and its inverse: tau per unit of t.
+  /// The longest side of the box [least, most], and its inverse: tau per unit of t (see ReadyRays).
   double extent;
   double pace;
   /// Product of `units` over the axes.
@@ -53,16 +53,16 @@ struct MeshView {
   std::uint32_t vertex_count = 0;
   /// Vertex numbers of the corners, by slot; null if leaves list their vertices.
   const std::uint32_t* corner[3] = {};
-  /// The distinct vertices of leaf i, from 16 i on. If there are more than sixteen, the others are
-  /// from 16 (leaves + leaf_more[i]) to 16 (leaves + leaf_more[i + 1]); `leaf_more` is null if no
-  /// leaf has more. Each block of sixteen is padded with its last vertex.
+  /// The distinct vertices of leaf i begin at 16 i. If the leaf has more than sixteen, the
+  /// remaining vertices are from 16 (leaves + leaf_more[i]) to 16 (leaves + leaf_more[i + 1]);
+  /// `leaf_more` is null if no leaf has more. Each block of sixteen is padded with its last vertex.
   const std::uint32_t* leaf_vertex = nullptr;
   const std::uint32_t* leaf_more = nullptr;
   /// Quantised position of each listed vertex in the box of its leaf: 0 at the lower bounds of the
   /// node, kMaxLeafPoint at the upper ones, rounded to nearest; x in the lowest bits. Null if
   /// triangles have boxes.
   const std::uint32_t* leaf_point = nullptr;
-  /// Index into the leaf's list of corner k of slot 16 i + l, at 48 i + 16 k + l.
+  /// At 48 i + 16 k + l: the index, in the vertex list of leaf i, of corner k of slot 16 i + l.
   const std::uint8_t* leaf_place = nullptr;
   /// The caller's triangle number in the low 28 bits, and the active edges.
   const std::uint32_t* triangle = nullptr;
@@ -82,8 +82,8 @@ struct MeshView {
   const std::uint16_t* box = nullptr;
 };
 
-/// Index of bound `bound` of a node in its level. The bounds of the other nodes of its block follow
-/// it.
+/// Returns the index of bound `bound` of a node in its level. In a block of nodes, equal bounds of
+/// consecutive nodes are consecutive.
 [[nodiscard]] constexpr std::size_t place_of_bound(std::uint32_t node, std::size_t bound) {
   return std::size_t{6} * (node / kMeshFanout * kMeshFanout) + bound * kMeshFanout +
          node % kMeshFanout;
@@ -137,7 +137,7 @@ struct MeshPlacement {
 };
 
 /// Receives the slots that a traversal finds. `size` continues to count when `slot` is full; the
-/// caller then enlarges it to that size and repeats the call.
+/// caller then enlarges `slot` to `size` and repeats the call.
 struct SlotSink {
   std::uint32_t* slot = nullptr;
   std::uint64_t capacity = 0;
@@ -149,10 +149,11 @@ inline void put_slot(SlotSink& out, std::uint32_t slot) {
   ++out.size;
 }
 
-/// As SlotSink, for pairs of slots. If `take` is set, one traversal can produce any number of
-/// pairs: `take` is called if fewer than 16 places are free, consumes the pairs and sets `size` to
-/// 0. The capacity must then be at least 16, and the caller consumes the pairs left at the end.
-/// Setting `is_done` ends the traversal soon.
+/// Receives the pairs of slots that a traversal finds, like SlotSink. If `take` is set, one
+/// traversal can find any number of pairs: it calls `take` if fewer than 16 places are free, and
+/// `take` processes the pairs and sets `size` to 0. The capacity must then be at least 16, and the
+/// caller processes the pairs left at the end. If `is_done` is set, the traversal ends after the
+/// current pair of nodes.
 struct SlotPairSink {
   std::uint32_t* first = nullptr;
   std::uint32_t* second = nullptr;
@@ -170,7 +171,8 @@ struct SlotPairVisitor {
   /// Unit vector in the frame of a, from a to b, that separates the nearest pair found up to now;
   /// zero if there is none. Read again after each visit.
   const float* direction = nullptr;
-  /// Whether some pairs are ignored; then the distance of two corners does not bound the limit.
+  /// If true, the visitor ignores some pairs. The distance of two corners is then no upper bound on
+  /// the limit.
   bool leaves_out = false;
 };
 

@@ -1,7 +1,6 @@
 #pragma once
 
-// Rays in the frame of a mesh or height field, and ray-triangle hits. Plain structs, because kernel
-// files include this.
+// Rays in the frame of a mesh or height field, and ray-triangle hits. Only plain structs.
 
 #include <winnow/pipeline/surface_frame.h>
 
@@ -40,18 +39,18 @@ struct SurfaceRay {
   double direction[3];
   /// Bound on the distance between this ray and the exact one, near the surface.
   double slack;
-  /// Triangles are hit at t in [low, high] only.
+  /// Only hits at t in [low, high] count.
   double low;
   double high;
 };
 
-/// Rays in columns. The caller's t is shift + own t * stretch.
+/// Rays in columns. The caller's t is shift + own t * t_scale.
 template <std::uint32_t Room>
 struct SurfaceRayColumns {
   RayColumns<Room> ray;
   alignas(kRayAlignment<Room>) double slack[Room];
   alignas(kRayAlignment<Room>) double shift[Room];
-  alignas(kRayAlignment<Room>) double stretch[Room];
+  alignas(kRayAlignment<Room>) double t_scale[Room];
   alignas(kRayAlignment<Room>) double low[Room];
   alignas(kRayAlignment<Room>) double high[Room];
 

@@ -110,7 +110,7 @@ TriangleMesh::~TriangleMesh() {
 
 Status TriangleMesh::build(const PointView& vertices, const IndexView& triangles,
                            const MeshOptions& options, const Execution& execution) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   const Status status = check(vertices, triangles, options);
   if (status != Status::ok) return status;
   State* fresh = new_in<State>(memory_, memory_);
@@ -158,7 +158,7 @@ Status TriangleMesh::State::take(const PointView& vertices, const IndexView& tri
 }
 
 Status TriangleMesh::refit(const PointView& vertices, const Execution& execution) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   if (vertices.count != this->vertices()) return Status::size_mismatch;
   if (vertices.count == 0) return Status::ok;
   if (!has_columns(vertices)) return Status::invalid_argument;
@@ -264,7 +264,7 @@ Status TriangleMesh::save(Column<std::byte>& out) const {
 }
 
 Status TriangleMesh::load(std::span<const std::byte> saved, const Execution& execution) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   ByteReader in = open_snapshot(saved, kMeshMagic, kMeshVersion);
   if (!in.ok()) return status_of(in);
   State* fresh = nullptr;
@@ -303,7 +303,8 @@ void TriangleMesh::State::link() noexcept {
   link_mesh_levels(view, nodes.data());
 }
 
-/// Moves the corners to vertex lists by leaf, if that pays. Returns false if memory is refused.
+/// Moves the corners to vertex lists by leaf, unless too many leaves have long lists (see
+/// LeafCorners::take). Returns false if memory is refused.
 bool TriangleMesh::State::list_corners() noexcept {
   if (!leaf_corners.take(view)) return false;
   if (leaf_corners.empty()) return true;
@@ -336,12 +337,12 @@ std::size_t TriangleMesh::vertices() const noexcept {
 }
 
 Aabb TriangleMesh::bounds() const noexcept {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   return state_ != nullptr ? state_->bounds : Aabb{};
 }
 
 double TriangleMesh::radius() const noexcept {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   return state_ != nullptr ? state_->radius : 0.0;
 }
 

@@ -1,9 +1,10 @@
 // Impact search for bodies with composite shapes. A composite shape is traversed in its own frame,
-// in which it is at rest and the other shape moves. RelativeMotionBounds computes a swept box that
-// contains the other shape for an interval; the traversal visits parts in the order in which the
-// box touches them, so that an impact found limits the rest. If the box touches many parts because
-// the relative path bends, the interval is halved, and the earlier half is searched first. The
-// contacts at the start are computed only after an impact was found.
+// in which it is at rest and the other shape moves. RelativeMotionBounds computes a moving box that
+// contains the other shape for an interval; the traversal visits parts roughly in the order in
+// which the box touches them. After an impact is found, it skips parts that the box touches later.
+// If the box touches more than kFewParts parts and is loose (see kLoose), the interval is halved,
+// and the earlier half is searched first. The contacts at the start are computed only after an
+// impact was found.
 
 #include "pipeline/motion/body_impact.h"
 
@@ -15,22 +16,22 @@
 namespace winnow::impact {
 namespace {
 
-/// Limit on the halvings of an interval.
 constexpr int kMaxHalvings = 12;
-/// An interval is halved if its swept box touches more parts than this and is loose (see kLoose).
+/// An interval is halved if its moving box touches more parts than this and is loose (see kLoose).
 constexpr int kFewParts = 8;
-/// A swept box is loose if its growth exceeds this fraction of the radius. For two composite
-/// shapes, the length of its path is added to the growth.
+/// A moving box is loose if its growth for curved paths (RelativeMotionBounds::bend) exceeds this
+/// fraction of the radius of the moving shape. If both shapes are composite, the length of the path
+/// of the box is added to the growth.
 constexpr double kLoose = 0.04;
 
-void grow(double by, BoxSweep& box) noexcept {
+void grow(double by, MovingBox& box) noexcept {
   for (int i = 0; i < 3; ++i) {
     box.min[i] -= by;
     box.max[i] += by;
   }
 }
 
-/// Whether two moving parts overlap at the start.
+/// Returns whether two moving parts share a point at time 0.
 [[nodiscard]] bool share_a_point(const ShapeTables& tables, const MovingPart& a,
                                  const MovingPart& b) noexcept {
   const Impact impact = find_impact(tables, a, b, 1e-9, {0.0, 0.0});
@@ -53,7 +54,7 @@ class BodyImpactSearch {
   void search_parts(const MovingShape& a, const MovingShape& b, const Interval& within);
   void walk(const MovingShape& walked, const MovingShape& other, bool mirrored,
             const RelativeMotionBounds& passage, const Interval& given, int halvings);
-  [[nodiscard]] bool overlaps_many(const MovingShape& walked, const BoxSweep& way) const;
+  [[nodiscard]] bool overlaps_many(const MovingShape& walked, const MovingBox& way) const;
   void test(const MovingShape& a, const MovingShape& b, const Interval& within);
   [[nodiscard]] bool is_left_out(const ShapeTables& tables, const MovingPart& a,
                                  const MovingPart& b, const BodyImpact& found, double from);
@@ -66,7 +67,7 @@ class BodyImpactSearch {
   BodyImpact found_;
   RestingContacts resting_;
   bool has_recorded_ = false;
-  /// Pairs of parts are recorded as contacts instead of being tested.
+  /// If true, `test` records the contacts of parts at the start instead of searching for impacts.
   bool records_ = false;
 };
 
@@ -91,15 +92,15 @@ void BodyImpactSearch::test(const MovingShape& a, const MovingShape& b, const In
 }
 
 /// Returns whether an impact, from a search that began at `from`, is dropped because of a contact
-/// at the start. Always false for StartTouch::meets.
+/// at the start. Always false for StartTouch::impact.
 bool BodyImpactSearch::is_left_out(const ShapeTables& tables, const MovingPart& a,
                                    const MovingPart& b, const BodyImpact& found, double from) {
-  if (request_.touch == StartTouch::meets) return false;
+  if (request_.touch == StartTouch::impact) return false;
   if (request_.touch == StartTouch::ignored) {
     if (touches_at_start(found.impact)) return true;
     if (from > 0.0 && share_a_point(tables, a, b)) return true;
   }
-  // Parts that separate were dropped before, once contacts were recorded.
+  // If contacts were recorded, `test` skipped parts that separate along them.
   if (has_recorded_) return false;
   record_contacts();
   return resting_.part(tables, a, b);
@@ -111,11 +112,12 @@ void BodyImpactSearch::record_contacts() {
   records_ = false;
 }
 
-/// Bodies that overlap at the start are reported without a search for contacts.
+/// With StartTouch::impact, an impact at the start is final. A later impact may be of parts that
+/// slide along a contact at the start: then the contacts are recorded, and the search is repeated.
 BodyImpact BodyImpactSearch::run() {
   search_parts(a_, b_, request_.within);
   const bool may_slide =
-      request_.touch == StartTouch::meets && found_.impact.hit && !touches_at_start(found_.impact);
+      request_.touch == StartTouch::impact && found_.impact.hit && !touches_at_start(found_.impact);
   if (!may_slide) return found_;
   record_contacts();
   if (resting_.is_empty()) return found_;
@@ -126,8 +128,9 @@ BodyImpact BodyImpactSearch::run() {
   return found_;
 }
 
-/// Traverses the larger one of two composite shapes first, against the swept box of the other; then
-/// the other one against the swept boxes of the parts found.
+/// Traverses a composite shape against the moving box of the other shape. If both are composite,
+/// the shape with the larger radius is traversed first, and the other shape against the moving box
+/// of each part found.
 void BodyImpactSearch::search_parts(const MovingShape& a, const MovingShape& b,
                                     const Interval& within) {
   const bool of_a = a.shape.shape.is_composite();
@@ -142,10 +145,11 @@ void BodyImpactSearch::search_parts(const MovingShape& a, const MovingShape& b,
   walk(walked, other, mirrored, RelativeMotionBounds(parts_, walked.motion, other), within, 0);
 }
 
-bool BodyImpactSearch::overlaps_many(const MovingShape& walked, const BoxSweep& way) const {
+bool BodyImpactSearch::overlaps_many(const MovingShape& walked, const MovingBox& way) const {
   int count = 0;
-  parts_.met(PlacedShape{walked.shape.shape, Pose{}}, way,
-             [&](const SubShape&, double limit) { return ++count > kFewParts ? -1.0 : limit; });
+  parts_.visit_parts(
+      PlacedShape{walked.shape.shape, Pose{}}, way,
+      [&](const SubShape&, double limit) { return ++count > kFewParts ? -1.0 : limit; });
   return count > kFewParts;
 }
 
@@ -154,9 +158,9 @@ void BodyImpactSearch::walk(const MovingShape& walked, const MovingShape& other,
                             int halvings) {
   const Interval within = records_ ? given : before(given, found_);
   if (within.first > within.last) return;
-  BoxSweep way = passage.sweep(within);
+  MovingBox way = passage.moving_box(within);
   if (records_) grow(request_.tolerance * other.own_radius, way);
-  // For two composite shapes, a long path also brings many pairs of parts near each other.
+  // If both shapes are composite, a long path also makes many pairs of parts overlap.
   const double length = other.shape.shape.is_composite() ? Vec::Map(way.direction).norm() : 0.0;
   if (halvings < kMaxHalvings && passage.bend(within) + length > kLoose * other.own_radius &&
       overlaps_many(walked, way)) {
@@ -166,14 +170,16 @@ void BodyImpactSearch::walk(const MovingShape& walked, const MovingShape& other,
     return;
   }
   const double width = within.last - within.first;
-  parts_.met(PlacedShape{walked.shape.shape, Pose{}}, way, [&](const SubShape& part, double limit) {
-    const MovingShape own = moving_part(parts_, part, walked.motion);
-    const Interval left_of = records_ ? within : before(within, found_);
-    search_parts(mirrored ? other : own, mirrored ? own : other, left_of);
-    if (records_) return limit;
-    const double left = before(within, found_).last - within.first;
-    return left < width ? std::min(limit, left / width * (1.0 + 4.0 * solver::kEpsilon)) : limit;
-  });
+  parts_.visit_parts(
+      PlacedShape{walked.shape.shape, Pose{}}, way, [&](const SubShape& part, double limit) {
+        const MovingShape own = moving_part(parts_, part, walked.motion);
+        const Interval left_of = records_ ? within : before(within, found_);
+        search_parts(mirrored ? other : own, mirrored ? own : other, left_of);
+        if (records_) return limit;
+        const double left = before(within, found_).last - within.first;
+        return left < width ? std::min(limit, left / width * (1.0 + 4.0 * solver::kEpsilon))
+                            : limit;
+      });
 }
 
 }  // namespace
@@ -194,7 +200,7 @@ BodyImpact find_impact_of_balls(const SubShapeQuery& parts, const MovingBody& a,
                                 const MovingBody& b, const ImpactRequest& request) {
   const MovingShape first = whole_shape(parts, a.shape, a.motion);
   const MovingShape second = whole_shape(parts, b.shape, b.motion);
-  if (request.touch != StartTouch::meets || a.shape.is_composite() || b.shape.is_composite()) {
+  if (request.touch != StartTouch::impact || a.shape.is_composite() || b.shape.is_composite()) {
     return BodyImpactSearch(parts, first, second, request).run();
   }
   return {find_impact(parts.shapes().tables(), {a.shape, a.motion}, {b.shape, b.motion},

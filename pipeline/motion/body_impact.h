@@ -23,8 +23,8 @@ struct BodyImpact {
   std::uint32_t part_b = kWholeShape;
 };
 
-/// Returns whether `first` is a hit, and `second` is none or a later one. Ties are broken by the
-/// smaller gap, then by part numbers.
+/// Returns whether `first` is a hit that comes before `second`: `second` is no hit or is later. At
+/// equal times, the smaller gap comes first, then the smaller part numbers.
 [[nodiscard]] inline bool comes_before(const BodyImpact& first, const BodyImpact& second) noexcept {
   const auto order = [](const BodyImpact& found) {
     return std::tuple(found.impact.time, found.impact.gap, found.part_a, found.part_b);
@@ -32,7 +32,7 @@ struct BodyImpact {
   return first.impact.hit && (!second.impact.hit || order(first) < order(second));
 }
 
-/// The part of an interval before an impact.
+/// Returns the part of an interval up to an impact; the whole interval if `found` is no hit.
 [[nodiscard]] inline Interval before(const Interval& within, const BodyImpact& found) noexcept {
   return {within.first, found.impact.hit ? std::min(within.last, found.impact.time) : within.last};
 }
@@ -41,20 +41,22 @@ struct BodyImpact {
 struct ImpactRequest {
   /// Relative to the size of the smaller of the two parts that touch.
   double tolerance;
-  /// The bodies are disjoint before it, except for contact at the start.
+  /// The interval to search. Before it the bodies must be disjoint, except for contact at time 0.
   Interval within{0.0, 1.0};
   /// An impact later than this may be reported as none; other results do not depend on it.
   double until = 1.0;
-  StartTouch touch = StartTouch::meets;
+  StartTouch touch = StartTouch::impact;
 };
 
 /// Finds the first impact within an interval. Shapes must exist and motions must be valid. If
 /// bodies overlap at the start and StartTouch makes this an impact, the parts that overlap most
-/// deeply are reported. Parts of a composite shape that slide or separate along a contact of the
-/// bodies at the start do not collide: see RestingContacts.
+/// deeply are reported. Unless both shapes are convex and `touch` is StartTouch::impact, no impact
+/// is reported for parts that slide or separate along a contact of the bodies at the start: see
+/// RestingContacts.
 [[nodiscard]] BodyImpact find_body_impact(const SubShapeQuery& parts, const MovingBody& a,
                                           const MovingBody& b, const ImpactRequest& request);
-/// As above, for an interval in which the bounding balls of the two bodies overlap.
+/// As above, for callers that have limited the interval to the times at which the bounding balls of
+/// the two bodies overlap.
 [[nodiscard]] BodyImpact find_impact_of_balls(const SubShapeQuery& parts, const MovingBody& a,
                                               const MovingBody& b, const ImpactRequest& request);
 

@@ -1,7 +1,8 @@
 #pragma once
 
-// Closed forms for the closest points of two cores: points and segments (by the narrow phase's
-// kernels/round), a point and most other cores, and any core and a half-space.
+// Closed forms for the closest points of two cores: a point and any core except hulls and user
+// shapes; a segment and a segment or triangle (by the narrow phase's kernels/round); any core and a
+// half-space.
 
 #include "pipeline/kernels/round/ellipsoid_surface.wide.h"
 #include "pipeline/kernels/round/round.wide.h"
@@ -9,7 +10,8 @@
 
 namespace winnow::WINNOW_ISA_NAME::impact {
 
-/// Pairs of kinds (in the solver's order) whose closest points need no iteration.
+/// Returns whether the closest points of a pair of kinds (in the solver's order) are computed
+/// without GJK.
 [[nodiscard]] constexpr bool has_closed_form(ShapeKind a, ShapeKind b) {
   if (b == ShapeKind::half_space) return true;
   if (a == ShapeKind::sphere) return b != ShapeKind::hull && b != ShapeKind::support;
@@ -39,7 +41,7 @@ struct Meridian {
   const Doubles zero(0.0);
   const Doubles one(1.0);
   const Doubles rise = half.z + half.z;
-  // From the rim, the side moves inwards by the radius as it rises.
+  // From the rim to the tip, the side moves inwards by half.x and up by `rise`.
   const Doubles square = half.x * half.x + rise * rise;
   const Doubles x = p.away - half.x;
   const Doubles y = p.z + half.z;
@@ -54,9 +56,10 @@ struct Meridian {
   return {select(is_base, base.away, side.away), select(is_base, base.z, side.z)};
 }
 
-/// The closest point of the convex hull of a point and a ball; the ball is the upper one if half.z
-/// is positive. The normal of the conical side rises with the sine `sine`; points beyond the side's
-/// normals are closest to the point or to the ball.
+/// Returns the closest point of the convex hull of a point and a ball. The ball is above the point
+/// if half.z >= 0, else below. The normal of the conical side has the component `cosine` away from
+/// the axis and `sine` along the axis, from the ball to the point. If p projects beyond an end of
+/// the side, the closest point is the point or is on the ball.
 [[gnu::always_inline]] inline Meridian nearest_of_taper(const Vector& half, const Meridian& p) {
   const Doubles zero(0.0);
   const Doubles one(1.0);
@@ -123,7 +126,8 @@ static inline Vector nearest_of_ellipsoid(const Vector& radius, const Vector& p)
 }
 
 /// The closest points of the segment s u, |s| <= half, of a and the triangle of b, in the frame of
-/// b; the segment's centre is at `offset`. If `half` is 0 the segment is a point.
+/// b; `offset` is the vector from the segment's centre to the centre of b. If `is_point` is true,
+/// the segment is a point.
 static inline round::NearestCandidate<double> nearest_of_triangle(const MovingCore& b,
                                                                   const Vector& offset,
                                                                   const Vector& u,
@@ -219,17 +223,17 @@ static inline ClosestLanes closest_by_form(const CorePair& pair, Mask16 lanes) {
   return found;
 }
 
-/// Kinds for which `closing_square` is defined.
+/// Returns whether `closing_square` supports a pair of kinds.
 [[nodiscard]] constexpr bool has_closing_square(ShapeKind a, ShapeKind b) {
   const bool of_segment = b == ShapeKind::capsule || b == ShapeKind::triangle;
   return (a == ShapeKind::sphere && (of_segment || b == ShapeKind::box)) ||
          (a == ShapeKind::capsule && of_segment);
 }
 
-/// Result of removing from a velocity its component along a closest feature.
+/// The squared length of a velocity without its component along the closest feature of a core.
 struct FeatureAcross {
   Doubles square;
-  /// The feature is an edge or a face, along which the closest point moves.
+  /// The lanes in which the feature is an edge or a face, not a vertex.
   DoubleMask goes;
 };
 
@@ -243,7 +247,7 @@ struct FeatureAcross {
 }
 
 /// For a triangle in the world frame. The direction to its closest point is orthogonal to the edge
-/// that contains the point, or to all edges if it is in the face.
+/// that contains the point, or to all edges if the point is in the face.
 [[gnu::always_inline]] inline FeatureAcross across_triangle(const MovingCore& core,
                                                             const Vector& axis,
                                                             const Vector& velocity) {
@@ -266,9 +270,9 @@ struct FeatureAcross {
   return {select(two, slope * slope, dot(velocity, velocity) - along), one};
 }
 
-/// Squared length of a velocity without its components along the closest features. While these
-/// features stay closest, the distance of two cores that do not rotate changes like the distance of
-/// a point that moves with the remaining velocity.
+/// Returns the squared length of a velocity without its components along the closest features.
+/// While these features are the closest, the distance of two cores that do not rotate changes like
+/// the distance of a point that moves with the remaining velocity.
 static inline Doubles closing_square(const CorePair& pair, const ClosestLanes& closest,
                                      const Vector& velocity) {
   const Doubles zero(0.0);

@@ -10,8 +10,8 @@ namespace winnow::WINNOW_ISA_NAME::impact {
 
 inline constexpr int kSlots = hull::kSlots;
 
-/// The points of both cores that form the simplex, each in its core's frame. Slot 0 is in use if
-/// any is.
+/// The support points of both cores that form the simplex, each in its core's frame (LinearToiGjk
+/// stores them differently). If any slot is in use, slot 0 is.
 struct SimplexLanes {
   Vector a[kSlots];
   Vector b[kSlots];
@@ -52,8 +52,8 @@ struct CorePair {
     const Vector own = table.in_world ? direction : core.axes.to_local(direction);
     return farthest(table, core, own, lanes);
   }
-  /// The support points of both cores along a direction from a to b and its opposite, in their own
-  /// frames.
+  /// Computes the support point of a along a direction and the support point of b along the
+  /// opposite direction, each in the frame of its core.
   [[gnu::always_inline]] void facing(const Vector& direction, Mask16 lanes, Vector& own_a,
                                      Vector& own_b) const {
     own_a = own_facing(table_a, a, direction, lanes);
@@ -88,7 +88,7 @@ struct ClosestLanes {
   /// The vector from a point of a to a point of b, and its length: an upper bound on the distance.
   Vector between;
   Doubles upper;
-  /// These points, relative to the centres.
+  /// The points that `between` connects, each relative to the centre of its core.
   Vector on_a;
   Vector on_b;
 };
@@ -100,24 +100,25 @@ struct ClosestOptions {
   double share;
   const Doubles& roundings;
   const Doubles& precise;
-  /// Smaller gains end the search.
+  /// The search ends if the bounds of the distance differ by at most this.
   const Doubles& noise;
 };
 
-/// If the support point is already in the simplex, the search ends when the gain is below this
-/// fraction of the distance: rounding can cause that much.
+/// If the new support point is already in the simplex, a difference of the bounds of the distance
+/// by at most this fraction of the distance minus `roundings` is attributed to rounding, and the
+/// search ends.
 inline constexpr double kRounding = 1e-2;
 
-/// A support point `w` of the Minkowski difference of two cores, and the points of both cores that
-/// it is the difference of, in their own frames.
+/// A support point `w` of the Minkowski difference of two cores, and the points of both cores of
+/// which `w` is the difference, each in the frame of its core.
 struct FarthestPoint {
   const Vector& of_a;
   const Vector& of_b;
   const Vector& w;
 };
 
-/// The nearest feature of the new point `w` and at most one old one, in slot 0; equal to
-/// `hull::nearest_of`.
+/// Returns the feature, nearest to the origin, of the simplex of the new point `w` and the point in
+/// slot 0, if this slot is in use. Equals `hull::nearest_of`.
 [[nodiscard]] static inline hull::SimplexNearest<double> nearest_of_edge(
     const hull::Simplex<double>& others, const Vector& w) {
   const Doubles zero(0.0);
@@ -133,8 +134,8 @@ struct FarthestPoint {
   return {select(nearer, x, w), {nearer, none, none}, none, none, repeated};
 }
 
-/// The nearest feature that contains the new point, computed only for as many points as the largest
-/// simplex of all lanes has.
+/// Returns the feature nearest to the origin that contains the new point. The computation covers
+/// only as many points as the largest simplex of all lanes has.
 [[nodiscard]] static inline hull::SimplexNearest<double> nearest_feature(
     const hull::Simplex<double>& others, const Vector& w, const DoubleMask& lanes) {
   if (bits(lanes & (others.present[1] | others.present[2])) != 0) {
@@ -145,8 +146,8 @@ struct FarthestPoint {
   return {w, {none, none, none}, none, none, none};
 }
 
-/// The simplex without points equal to `w`. The nearest feature of a warm-started simplex need not
-/// be the nearest at the new positions of its points.
+/// Returns the simplex without points equal to `w`, so that no point is in the simplex twice after
+/// `w` is added.
 [[nodiscard]] static inline hull::Simplex<double> without(const hull::Simplex<double>& simplex,
                                                           const Vector& w) {
   hull::Simplex<double> others = simplex;
@@ -157,14 +158,15 @@ struct FarthestPoint {
   return others;
 }
 
-[[nodiscard]] static inline DoubleMask holds_more_than(const hull::Simplex<double>& simplex,
-                                                       const hull::Simplex<double>& others) {
+[[nodiscard]] static inline DoubleMask has_more_than(const hull::Simplex<double>& simplex,
+                                                     const hull::Simplex<double>& others) {
   DoubleMask more = simplex.present[0] & !others.present[0];
   for (int s = 1; s < kSlots; ++s) more = more | (simplex.present[s] & !others.present[s]);
   return more;
 }
 
-/// In lanes in `moves`, replaces the simplex by its nearest feature.
+/// In the lanes of `moves`, replaces the simplex by its nearest feature, which contains the new
+/// point `added`.
 static inline void keep(const hull::SimplexNearest<double>& nearest, const DoubleMask& moves,
                         const FarthestPoint& added, hull::Simplex<double>& simplex,
                         SimplexLanes& witness) {
@@ -179,7 +181,7 @@ static inline void keep(const hull::SimplexNearest<double>& nearest, const Doubl
   }
 }
 
-/// A point of a simplex, by the weights of its points in slots 1 and 2.
+/// A point of a simplex, given by the weights of the points in slots 1 and 2 of the simplex.
 struct Shares {
   Doubles s;
   Doubles t;
@@ -189,7 +191,7 @@ struct Shares {
   }
 };
 
-/// The weights for which the point is `gap`.
+/// Returns the weights of the point `gap` of a simplex.
 [[nodiscard]] static inline Shares shares_of(const hull::Simplex<double>& simplex,
                                              const Vector& gap) {
   const Doubles zero(0.0);
@@ -227,12 +229,13 @@ class ClosestSearch {
   }
 
  private:
-  /// A search that stalls with a gain this many times the accepted one is restarted once without
-  /// the old simplex.
+  /// A search that stalls is restarted once, with an empty simplex, if the bounds of the distance
+  /// differ by more than this many times the accepted difference.
   static constexpr double kLost = 4.0;
 
-  /// Starts from the point nearest to the origin of the old simplex, at the new positions of its
-  /// points.
+  /// Starts from the old simplex, with its points at their new positions, reduced to the nearest
+  /// feature that contains the point in slot 0. Without an old simplex, starts along the vector
+  /// between the centres.
   void begin() {
     const Doubles zero(0.0);
     const Vector from = select(dot(pair_.between, pair_.between) > zero, pair_.between,
@@ -276,7 +279,7 @@ class ClosestSearch {
     const Doubles known = max(options_.noise, share * left) * distance;
     const hull::Simplex<double> others = without(simplex_, w);
     const DoubleMask ends =
-        (gain <= Doubles(kRounding) * distance * left) & holds_more_than(simplex_, others);
+        (gain <= Doubles(kRounding) * distance * left) & has_more_than(simplex_, others);
     const DoubleMask close = (!fresh_) & ((gain <= known) | ends);
     if (bits(open_ & !close) == 0) {
       open_ = fresh_ & !fresh_;
@@ -325,7 +328,8 @@ class ClosestSearch {
   SimplexLanes& witness_;
   ClosestLanes found_;
   hull::Simplex<double> simplex_;
-  /// The vector between the closest points found; at first any direction.
+  /// The vector between the closest points found. While there is no simplex, the first search
+  /// direction.
   Vector gap_;
   /// There is no simplex yet.
   DoubleMask fresh_;

@@ -26,11 +26,12 @@ namespace {
 
 constexpr std::size_t kMaxFaces = std::size_t{1} << 28U;
 constexpr std::size_t kMaxVertices = 0x7FFFFFFF;
-constexpr std::size_t kRowsPerStretch = 8192;
-constexpr std::size_t kPairsPerStretch = 512;
+constexpr std::size_t kRowsPerRange = 8192;
+constexpr std::size_t kPairsPerRange = 512;
 /// Query rows per unit of work.
 constexpr std::uint32_t kQueryRows = 256;
-/// Differences of numbers up to this size, and differences of those, stay in the range of double.
+/// Differences of numbers up to this magnitude, and differences of two such differences, are in the
+/// range of double.
 constexpr double kFarthest = 0x1p1020;
 
 bool has_three_columns(const PointView& points) noexcept {
@@ -84,28 +85,28 @@ class FeatureRows {
     return true;
   }
 
-  /// Sets row i to the union of the boxes of its vertices, corner[Corners * id ...].
+  /// Sets the box of each row to the union of the boxes of its vertices: corner[Corners * id] and
+  /// the next ones.
   template <std::size_t Corners>
   void fit(const FeatureRows& vertices, const std::uint32_t* corner,
            const Execution& execution) noexcept {
-    for_each_range(execution, boxes.rows(), kRowsPerStretch,
-                   [&](std::size_t begin, std::size_t end) {
-                     for (std::size_t row = begin; row < end; ++row) {
-                       const std::uint32_t* const own = corner + Corners * boxes.ids()[row];
-                       for (std::size_t axis = 0; axis < 3; ++axis) {
-                         const float* const low = vertices.boxes.column(axis);
-                         const float* const high = vertices.boxes.column(3 + axis);
-                         float least = low[own[0]];
-                         float most = high[own[0]];
-                         for (std::size_t k = 1; k < Corners; ++k) {
-                           least = std::min(least, low[own[k]]);
-                           most = std::max(most, high[own[k]]);
-                         }
-                         boxes.column(axis)[row] = least;
-                         boxes.column(3 + axis)[row] = most;
-                       }
-                     }
-                   });
+    for_each_range(execution, boxes.rows(), kRowsPerRange, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t row = begin; row < end; ++row) {
+        const std::uint32_t* const own = corner + Corners * boxes.ids()[row];
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          const float* const low = vertices.boxes.column(axis);
+          const float* const high = vertices.boxes.column(3 + axis);
+          float least = low[own[0]];
+          float most = high[own[0]];
+          for (std::size_t k = 1; k < Corners; ++k) {
+            least = std::min(least, low[own[k]]);
+            most = std::max(most, high[own[k]]);
+          }
+          boxes.column(axis)[row] = least;
+          boxes.column(3 + axis)[row] = most;
+        }
+      }
+    });
   }
 
   /// Writes the ids in spatial order of the current boxes to `order`.
@@ -159,10 +160,10 @@ Status query_tree(const DeformableMeshOptions& options, const FeatureRows& tree_
   batch.rows = order;
   batch.mode = HitMode::query_first;
   const auto walk = [&](std::uint32_t begin, std::uint32_t end, PairSink& sink) {
-    QueryBatch stretch = batch;
-    stretch.begin = begin * kQueryRows;
-    stretch.end = std::min(rows, end * kQueryRows);
-    return block_tree_kernels().query(tree, stretch, sink);
+    QueryBatch range = batch;
+    range.begin = begin * kQueryRows;
+    range.end = std::min(rows, end * kQueryRows);
+    return block_tree_kernels().query(tree, range, sink);
   };
   return stream(options, (rows + kQueryRows - 1) / kQueryRows, walk, take);
 }
@@ -230,8 +231,7 @@ bool DeformableMesh::State::take(const PointView& rest, const IndexView& triangl
          edges.sort(options.execution);
 }
 
-/// Lists each edge once, sorted by its ends. An edge from a vertex to itself is skipped: the
-/// vertex's other edges contain it.
+/// Lists each edge once, sorted by its ends. An edge from a vertex to itself is skipped.
 bool DeformableMesh::State::link() noexcept {
   Column<std::uint64_t> all(face_corners.memory());
   if (!all.reserve(face_corners.size())) return false;
@@ -256,7 +256,7 @@ bool DeformableMesh::State::link() noexcept {
 /// union, because rounding is monotonic.
 void DeformableMesh::State::fit(const DeformableMeshOptions& options) noexcept {
   const double half = 0.5 * distance;
-  for_each_range(options.execution, vertices.boxes.rows(), kRowsPerStretch,
+  for_each_range(options.execution, vertices.boxes.rows(), kRowsPerRange,
                  [&](std::size_t begin, std::size_t past) {
                    for (std::size_t axis = 0; axis < 3; ++axis) {
                      float* const low = vertices.boxes.column(axis);
@@ -286,7 +286,7 @@ DeformableMesh::~DeformableMesh() {
 }
 
 Status DeformableMesh::build(const PointView& rest, const IndexView& triangles) noexcept {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   if (triangles.count == 0 || rest.count == 0) return Status::invalid_shape;
   if (triangles.count > kMaxFaces || rest.count > kMaxVertices) return Status::too_many_objects;
   if (!has_three_columns(rest) || (triangles.wide == nullptr && triangles.narrow == nullptr) ||
@@ -310,7 +310,7 @@ Status DeformableMesh::build(const PointView& rest, const IndexView& triangles) 
 
 Status DeformableMesh::move(const PointView& start, const PointView& end,
                             double distance) noexcept {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   if (state_ == nullptr || !(distance >= 0.0 && distance <= kFarthest)) {
     return Status::invalid_argument;
   }
@@ -345,9 +345,10 @@ std::array<std::uint32_t, 2> DeformableMesh::edge(std::size_t i) const noexcept 
 
 Status DeformableMesh::find_self(FeaturePair kind,
                                  const ResultChunks<Pair>& chunks) const noexcept {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   if (state_ == nullptr || !state_->moved) return Status::invalid_argument;
-  // In place and branchless, because it is unpredictable which pairs share a vertex.
+  // Removes the pairs that share a vertex, in place and without branches: a branch would often be
+  // mispredicted.
   const auto take = [&](std::span<Pair> pairs) {
     std::size_t kept = 0;
     for (const Pair pair : pairs) {
@@ -369,7 +370,7 @@ Status DeformableMesh::find_self(FeaturePair kind,
 
 Status DeformableMesh::find_with(const DeformableMesh& other, FeaturePair kind,
                                  const ResultChunks<Pair>& chunks) const noexcept {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   if (state_ == nullptr || !state_->moved || other.state_ == nullptr || !other.state_->moved ||
       !(options_.origin == other.options_.origin)) {
     return Status::invalid_argument;
@@ -387,13 +388,13 @@ bool DeformableMesh::is_moved() const noexcept {
 }
 
 double DeformableMesh::reach() const noexcept {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   return state_->distance;
 }
 
 void DeformableMesh::place_face(std::uint32_t face, std::array<Vec3d, 3>& start,
                                 std::array<Vec3d, 3>& end) const noexcept {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   const std::uint32_t* const corner = state_->corners_of(face);
   for (std::size_t i = 0; i < 3; ++i) {
     start[i] = state_->start[corner[i]];
@@ -403,7 +404,7 @@ void DeformableMesh::place_face(std::uint32_t face, std::array<Vec3d, 3>& start,
 
 Status DeformableMesh::find_faces(const Aabb& box,
                                   const ResultChunks<Pair>& chunks) const noexcept {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   const auto take = [&](std::span<Pair> pairs) { chunks.take(chunks.context, pairs); };
   FeatureRows query_rows(options_.memory);
   if (!query_rows.make(1)) return Status::out_of_memory;
@@ -416,7 +417,7 @@ Status DeformableMesh::find_faces(const Aabb& box,
 
 namespace {
 
-/// The vertices of a pair of features: the first feature's, then the second's.
+/// Returns the vertices of the first feature of a pair, then the vertices of the second feature.
 template <typename State>
 std::array<std::uint32_t, 4> vertices_of(FeaturePair kind, const Pair& pair, const State& first,
                                          const State& second) noexcept {
@@ -429,8 +430,8 @@ std::array<std::uint32_t, 4> vertices_of(FeaturePair kind, const Pair& pair, con
   return {a[0], a[1], b[0], b[1]};
 }
 
-/// The positions of these vertices. The first one (vertex and face) or two (edges) are of the first
-/// mesh, the others of the second.
+/// Returns the positions of the vertices that `vertices_of` returned. Vertex 0 and, for two edges,
+/// vertex 1 are of the first mesh, the remaining vertices of the second mesh.
 std::array<Vec3d, 4> points_of(FeaturePair kind, const std::array<std::uint32_t, 4>& vertex,
                                const PointView& first, const PointView& second) noexcept {
   const bool of_edges = kind == FeaturePair::edge_edge;
@@ -463,7 +464,7 @@ void find_times(FeaturePair kind, std::span<const Pair> pairs, const State& a, c
 Status DeformableMesh::find_impacts(const DeformableMesh* other, FeaturePair kind,
                                     const FeatureImpactOptions& options,
                                     const ResultChunks<MeshImpact>& chunks) const noexcept {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   const DeformableMesh& second = other == nullptr ? *this : *other;
   if (state_ == nullptr || second.state_ == nullptr || !are_in_range(options) ||
       !(options.min_separation <= 0.5 * state_->distance + 0.5 * second.state_->distance)) {
@@ -477,11 +478,10 @@ Status DeformableMesh::find_impacts(const DeformableMesh* other, FeaturePair kin
   const State& a = *state_;
   const State& b = *second.state_;
   const auto take = [&](std::span<const Pair> pairs) {
-    for_each_range(options_.execution, pairs.size(), kPairsPerStretch,
-                   [&](std::size_t begin, std::size_t end) {
-                     find_times(kind, pairs.subspan(begin, end - begin), a, b, options,
-                                times.data() + begin);
-                   });
+    for_each_range(
+        options_.execution, pairs.size(), kPairsPerRange, [&](std::size_t begin, std::size_t end) {
+          find_times(kind, pairs.subspan(begin, end - begin), a, b, options, times.data() + begin);
+        });
     for (std::size_t i = 0; i < pairs.size(); ++i) {
       if (times[i] <= 1.0) results.add({pairs[i], times[i]});
     }
@@ -495,7 +495,7 @@ Status DeformableMesh::find_impacts(const DeformableMesh* other, FeaturePair kin
 
 Status DeformableMesh::find_near(const DeformableMesh* other, FeaturePair kind, double thickness,
                                  const ResultChunks<MeshProximity>& chunks) const noexcept {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   const DeformableMesh& second = other == nullptr ? *this : *other;
   if (state_ == nullptr || second.state_ == nullptr || !(thickness >= 0.0) ||
       !(thickness <= 0.5 * state_->distance + 0.5 * second.state_->distance)) {
@@ -507,7 +507,7 @@ Status DeformableMesh::find_near(const DeformableMesh* other, FeaturePair kind, 
     return Status::out_of_memory;
   }
   const auto take = [&](std::span<const Pair> pairs) {
-    for_each_range(options_.execution, pairs.size(), kPairsPerStretch,
+    for_each_range(options_.execution, pairs.size(), kPairsPerRange,
                    [&](std::size_t begin, std::size_t end) {
                      for (std::size_t i = begin; i < end; ++i) {
                        const auto vertex = vertices_of(kind, pairs[i], *state_, *second.state_);

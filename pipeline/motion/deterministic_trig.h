@@ -11,10 +11,11 @@ struct SineCosine {
   double cosine;
 };
 
-/// Sine and cosine of an angle of at most RigidMotion::kMaxTurn, with an error of about 1e-16.
-/// Equal on every machine, unlike the C library's. pi / 2 is subtracted in two parts, the first of
-/// which has so few digits that its multiples are exact (Cody, Waite, "Software manual for the
-/// elementary functions", 1980); the rest is the argument of the Taylor series.
+/// Returns the sine and cosine of an angle of magnitude at most RigidMotion::kMaxTurn, with an
+/// error of about 1e-16. The results are the same on every machine; results of the C library are
+/// not. The nearest multiple of pi / 2 is subtracted in two parts; the first part has so few digits
+/// that its multiples are exact (Cody, Waite, "Software manual for the elementary functions",
+/// 1980). The remainder is the argument of the Taylor series.
 [[nodiscard]] inline SineCosine sine_cosine(double angle) noexcept {
   constexpr double kQuarters = 6.36619772367581382433e-01;
   constexpr double kHigh = 1.57079632673412561417e+00;

@@ -9,9 +9,10 @@
 namespace winnow::impact {
 namespace {
 
-/// An interval is halved if paths bend by more than this fraction of the face's extent,
+/// An interval is halved if the growth of the swept box of the face for curved paths exceeds this
+/// fraction of the largest side of the box.
 constexpr double kLooseBend = 0.1;
-/// but at most this often.
+/// Limit on the halvings of an interval.
 constexpr int kMaxCuts = 12;
 
 class FaceImpactSearch {
@@ -67,7 +68,7 @@ void FaceImpactSearch::test(const MovingShape& part, const Interval& within) noe
   if (comes_before(found, found_)) found_ = found;
 }
 
-/// A corner at a time, in the body's frame.
+/// Returns the position of a corner at a time, in the body's frame.
 Vec FaceImpactSearch::seen(const Vec& start, const Vec& end, double time) const noexcept {
   const Pose pose = body_.motion.at(time);
   const Eigen::Matrix3d axes = rotation_of(scale_to_unit_max(pose.orientation));
@@ -75,9 +76,11 @@ Vec FaceImpactSearch::seen(const Vec& start, const Vec& end, double time) const 
   return axes.transpose() * (corner - Vec::Map(pose.position));
 }
 
-/// A box that contains the face during an interval, in the body's frame. `bend` becomes the amount
-/// by which the box is grown for curved paths: in a frame that rotates at `rate`, a point's
-/// acceleration is its distance times rate^2 plus twice its speed times rate.
+/// Returns a box that contains the face during an interval, in the body's frame, and writes to
+/// `bend` the amount by which the box is grown for curved paths. In a frame that rotates at `rate`,
+/// a point's acceleration is at most its distance from the origin times rate^2 plus twice its speed
+/// relative to the position of the frame (without rotation) times rate. The point leaves its chord
+/// by at most an eighth of this bound times the squared duration.
 PreciseBox FaceImpactSearch::way(const Interval& within, double& bend) const noexcept {
   PreciseBox box{Vec::Constant(mid::kInfinity), Vec::Constant(-mid::kInfinity)};
   const double width = within.last - within.first;
@@ -110,11 +113,11 @@ void FaceImpactSearch::walk(const Interval& given, int halvings) {
     walk({middle, within.last}, halvings + 1);
     return;
   }
-  parts_.met(PlacedShape{body_.shape, Pose{}}, box.standing(),
-             [&](const SubShape& part, double limit) {
-               test(moving_part(parts_, part, body_.motion), before(within, found_));
-               return limit;
-             });
+  parts_.visit_parts(PlacedShape{body_.shape, Pose{}}, box.stationary(),
+                     [&](const SubShape& part, double limit) {
+                       test(moving_part(parts_, part, body_.motion), before(within, found_));
+                       return limit;
+                     });
 }
 
 }  // namespace

@@ -14,7 +14,8 @@ struct MovingFace {
   double rounding = 0.0;
 };
 
-/// The first impact of a body (as `a`) and a face; as `find_body_impact`.
+/// Finds the first impact of a body (a) and a face (b) from time 0 to 1. Requirements are as for
+/// `find_body_impact`.
 [[nodiscard]] BodyImpact find_face_impact(const SubShapeQuery& parts, const MovingBody& body,
                                           const MovingFace& face, double tolerance);
 

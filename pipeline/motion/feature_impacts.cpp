@@ -62,7 +62,7 @@ void FeatureStage::find(FeaturePair kind, double (&times)[kFeatureLanes],
 Status feature_impact(FeaturePair kind, const std::array<Vec3d, 4>& start,
                       const std::array<Vec3d, 4>& end, FeatureImpact& impact,
                       const FeatureImpactOptions& options) noexcept {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   if (!are_in_range(options)) return Status::invalid_argument;
   FeatureMotion motion;
   if (!read_motion(kind, start, end, options.min_separation, motion)) return Status::invalid_bounds;
@@ -72,7 +72,7 @@ Status feature_impact(FeaturePair kind, const std::array<Vec3d, 4>& start,
 
 Status feature_impacts(FeaturePair kind, const FeatureColumns& pairs, std::span<double> times,
                        const FeatureImpactOptions& options) noexcept {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   if (times.size() != pairs.count) return Status::size_mismatch;
   const Columns columns = columns_of(pairs);
   const bool missing =

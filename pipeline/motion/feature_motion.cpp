@@ -1,7 +1,7 @@
 // Continuous collision of two mesh features: finds the first time at which their polygon of
-// differences comes within the separation of the origin. Clips the step to times at which the
-// features may be coplanar, and separates the rest by planes, halving intervals where neither
-// works. Called by feature_impacts.cpp.
+// differences comes within the separation of the origin. It removes times at which the features
+// cannot be coplanar, and times at which a plane separates the polygon from the origin. If no plane
+// is found at the middle of an interval, the interval is halved. Called by feature_impacts.cpp.
 
 #include "pipeline/motion/feature_motion.h"
 
@@ -16,7 +16,7 @@ namespace {
 /// Error bound of the dot product of a direction and a corner at some time, relative to the sum of
 /// the products' largest magnitudes: 10 roundings, and as many for the interpolation.
 constexpr double kPlaneError = 0x1p-48;
-/// Shorter intervals are not halved.
+/// Intervals up to this length are not halved.
 constexpr double kShortest = 0x1p-52;
 
 /// The three consecutive components of a vector.
@@ -84,8 +84,8 @@ void find_reach(FeatureMotion& motion) noexcept {
 }
 
 /// det(across, first edge, second edge), a cubic in time, by its Bernstein coefficients. At times
-/// at which the polygon may be within the separation of the origin, its magnitude is at most
-/// `band`.
+/// at which the polygon may be within the separation of the origin, the magnitude of the
+/// determinant is at most `band`.
 struct SpannedVolume {
   double at[4];
   double band;
@@ -124,8 +124,8 @@ SpannedVolume volume_of(const FeatureMotion& motion) noexcept {
                         (dot(start, last) + dot(end, mixed)) / 3.0, dot(end, last)},
                        kVolumeError * largest_volume(motion) + kLostByUnderflow};
   if (motion.separation > 0.0) {
-    // The normal is a quadratic polynomial with these Bernstein coefficients, the middle one
-    // doubled.
+    // The normal is a quadratic polynomial in time with the Bernstein coefficients `first`, `mixed`
+    // / 2 and `last`.
     const double longest =
         std::max({std::sqrt(dot(first, first)), 0.5 * std::sqrt(dot(mixed, mixed)),
                   std::sqrt(dot(last, last))});
@@ -185,8 +185,8 @@ double first_in_band(double y0, double y1, double y2, double y3, double band) no
   return first;
 }
 
-/// Clips off times at which the volume is not zero (Bezier clipping). Returns false if no time is
-/// left.
+/// Removes times at both ends at which the volume is certainly outside the band (Bezier clipping).
+/// Returns false if no time remains.
 bool clip(const SpannedVolume& volume, TimeInterval& time) noexcept {
   constexpr double kWorthAnother = 0.5;
   for (;;) {
@@ -209,7 +209,8 @@ class PlaneSearch {
  public:
   explicit PlaneSearch(const FeatureMotion& motion) noexcept : motion_(motion) {}
 
-  /// Returns whether there is one; `apart` becomes the part of the interval in which it separates.
+  /// Returns whether it found such a plane; `apart` becomes the part of the interval in which the
+  /// plane separates.
   bool find(const TimeInterval& time, double middle, TimeInterval& apart) noexcept {
     for (int k = 0; k < motion_.corners; ++k) place(k, middle, at_[k]);
     double n[3] = {};
@@ -227,8 +228,8 @@ class PlaneSearch {
     return keeps_apart(n, time, middle, apart);
   }
 
-  /// Returns whether a plane through the origin orthogonal to an axis separates during the whole
-  /// step.
+  /// Returns whether, during the whole step, the polygon is farther than the separation on one side
+  /// of the origin along a coordinate axis.
   [[nodiscard]] bool is_apart_on_axis() const noexcept {
     const double least = motion_.separation * (1.0 + 0x1p-50);
     for (int axis = 0; axis < 3; ++axis) {
@@ -252,8 +253,9 @@ class PlaneSearch {
     }
   }
 
-  /// The point of the polygon's border nearest to the origin, as a direction. It is made orthogonal
-  /// to the side that contains it, because few digits are left if it is near the origin.
+  /// Writes the direction from the origin to the nearest point of the polygon's border. The
+  /// direction is made orthogonal to the side that contains the point: if the point is near the
+  /// origin, cancellation leaves only few correct digits of the direction.
   void nearest_of_border(double (&nearest)[3]) const noexcept {
     double least = std::numeric_limits<double>::infinity();
     for (int k = 0; k < motion_.corners; ++k) {
@@ -303,8 +305,8 @@ class PlaneSearch {
     return true;
   }
 
-  /// The fraction of the way from a positive number to another one in which interpolated values are
-  /// certainly positive.
+  /// Returns the fraction of the interpolation from `above` (positive) to `other` in which the
+  /// value is certainly positive.
   static double part_above(double above, double other) noexcept {
     constexpr double kAlmost = 1.0 - 0x1p-20;
     return other > 0.0 ? 1.0 : kAlmost * (above / (above - other));
@@ -341,13 +343,13 @@ FeatureImpact first_impact(const FeatureMotion& motion,
   const SpannedVolume volume = volume_of(motion);
   const double shortest = std::max(options.tolerance, kShortest);
   // A stack of pending intervals, earliest on top. Each interval pushed is at most half as long as
-  // the one it was cut from, which bounds the depth.
+  // the interval popped before; this bounds the depth.
   TimeInterval open[64];
   int size = 0;
   open[size++] = {0.0, 1.0};
-  for (std::uint32_t looked_at = 0; size != 0; ++looked_at) {
+  for (std::uint32_t tested = 0; size != 0; ++tested) {
     TimeInterval time = open[--size];
-    if (looked_at == options.max_intervals) return {true, time.low};
+    if (tested == options.max_intervals) return {true, time.low};
     if (!clip(volume, time)) continue;
     const double middle = time.low + 0.5 * (time.high - time.low);
     TimeInterval apart;

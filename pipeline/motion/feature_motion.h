@@ -11,7 +11,8 @@ namespace winnow {
 struct FeatureMotion {
   int corners = 0;
   double corner[2][4][3];  ///< at the start and at the end, in order around the polygon
-  // The columns of the determinant whose zeros are the coplanar times: a corner and two edges.
+  // The columns of the determinant that is zero at the times at which the features are coplanar: a
+  // corner and two edges.
   double across[2][3];
   double edge[2][2][3];  ///< [first or second edge][start or end]
   double reach[3];       ///< the largest magnitude of a corner's coordinate, at either end
@@ -19,7 +20,8 @@ struct FeatureMotion {
 };
 
 /// Reads the points of two features. Returns false if a coordinate is not finite or a difference
-/// overflows. Scales very large or very small numbers, and the separation, by a power of two.
+/// overflows. If the largest number is not between kMinScaled and kMaxScaled, scales all numbers
+/// and the separation by a power of two.
 [[nodiscard]] bool read_motion(FeaturePair kind, const std::array<Vec3d, 4>& start,
                                const std::array<Vec3d, 4>& end, double separation,
                                FeatureMotion& motion) noexcept;

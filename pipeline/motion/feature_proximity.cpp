@@ -26,7 +26,8 @@ void place_by_weights(FeaturePair kind, const std::array<Vec3d, 4>& p, MeshProxi
   at.distance = (at.point[1] - at.point[0]).norm();
 }
 
-/// Candidates: each side of the face, and the face's plane if the vertex projects into the face.
+/// The candidates are the nearest point of each side of the face and, if the vertex projects into
+/// the face, its projection.
 void nearest_of_face(const std::array<Vec3d, 4>& p, MeshProximity& best) noexcept {
   MeshProximity at = best;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -50,8 +51,8 @@ void nearest_of_face(const std::array<Vec3d, 4>& p, MeshProximity& best) noexcep
   keep_if_nearer(at, best);
 }
 
-/// Candidates: each end of an edge against the other edge, and the closest points of both lines if
-/// they are inside both edges.
+/// The candidates are each end of an edge with its nearest point of the other edge and, if they are
+/// inside both edges, the closest points of both lines.
 void nearest_of_edges(const std::array<Vec3d, 4>& p, MeshProximity& best) noexcept {
   const Vec3d u = p[1] - p[0];
   const Vec3d v = p[3] - p[2];

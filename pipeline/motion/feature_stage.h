@@ -30,7 +30,7 @@ class FeatureStage {
             const FeatureImpactOptions& options) const noexcept;
 
  private:
-  // Columns beyond `size_` are tested, too; their results are ignored.
+  // Entries beyond `size_` are tested, too; their results are ignored.
   double column_[24][kFeatureLanes] = {};
   std::size_t size_ = 0;
 };

@@ -47,7 +47,8 @@ template <int Corners>
   return max(max(abs(v.x), abs(v.y)), abs(v.z));
 }
 
-/// The lanes in which all corners are on one side of the origin along an axis.
+/// Returns the lanes in which all corners, at the start and at the end, are farther than `least` on
+/// one side of the origin along an axis.
 template <int Corners, typename Coordinate>
 [[gnu::always_inline]] inline LaneMask<double> apart_on(const FeatureState<Corners>& start,
                                                         const FeatureState<Corners>& end,
@@ -64,7 +65,8 @@ template <int Corners, typename Coordinate>
   return (low > least) | (-high > least);
 }
 
-/// The lanes in which all Bernstein coefficients of the volume are beyond the band on one side.
+/// Returns the lanes in which all Bernstein coefficients of the volume are beyond the band on one
+/// side.
 template <int Corners>
 [[gnu::always_inline]] inline LaneMask<double> never_flat(const FeatureState<Corners>& start,
                                                           const FeatureState<Corners>& end,

@@ -15,8 +15,9 @@ inline constexpr double kMinScaled = 0x1p-200;
 inline constexpr double kMaxScaled = 0x1p200;
 /// Bound on the loss by underflow of products.
 inline constexpr double kLostByUnderflow = 1e-300;
-/// Error bound of the coefficients of the volume that four points span, and of values interpolated
-/// from them, relative to the largest volume their numbers could span: 60 roundings.
+/// Error bound of the Bernstein coefficients of the volume that the features span, and of values
+/// interpolated from the coefficients, relative to the largest volume that numbers of these
+/// magnitudes could span. It covers 60 roundings.
 inline constexpr double kVolumeError = 0x1p-46;
 
 /// The cheap tests that `first_impact` begins with, for eight pairs of features in columns: x, y, z

@@ -4,8 +4,7 @@
 
 namespace winnow::impact {
 
-/// The first impact of two shapes; members as in ImpactResult. A plain struct, because kernel files
-/// include this.
+/// The first impact of two shapes; members as in ImpactResult.
 struct Impact {
   bool hit = false;
   double time = 1.0;

@@ -1,6 +1,6 @@
 // ImpactBatch: sorts queries into jobs of one pair of kinds and one type of motion, runs the lane
 // kernels (impact_lanes.kernel.cpp), and resolves pairs that touch at the start with the narrow
-// phase's distance kernels. Called by time_of_impact.cpp and scene/swept_impacts.cpp.
+// phase's distance kernels. Called by time_of_impact.cpp and scene/continuous_impacts.cpp.
 
 #include "pipeline/motion/impact_batch.h"
 
@@ -36,7 +36,8 @@ constexpr std::uint16_t kNoLanes = kMotions * kShapeKinds * kShapeKinds;
   return turns_b || !is_straight(query, 0) ? ImpactMotion::turns : ImpactMotion::straight;
 }
 
-/// The key of a query: equal for queries that one job can have. key % kMotions is the ImpactMotion.
+/// Returns the key of a query. Queries with equal keys form one job; key % kMotions is its
+/// ImpactMotion.
 [[nodiscard]] std::uint16_t kinds_of(const ImpactQuery& query) noexcept {
   const ShapeKind a = query.shape[0].kind();
   const ShapeKind b = query.shape[1].kind();
@@ -45,8 +46,8 @@ constexpr std::uint16_t kNoLanes = kMotions * kShapeKinds * kShapeKinds;
   return static_cast<std::uint16_t>(kMotions * kinds + static_cast<std::size_t>(motion_of(query)));
 }
 
-/// Distances, at the start of their motions, of pairs of one pair of kinds, by the narrow phase's
-/// kernels.
+/// Computes the distances at time 0 of pairs with the same two kinds of shape, by the narrow
+/// phase's kernels.
 class StartDistances {
  public:
   explicit StartDistances(const ShapeTables& tables) noexcept {
@@ -64,21 +65,21 @@ class StartDistances {
   }
 
   [[nodiscard]] bool is_full() const noexcept { return job_.count == kRoom; }
-  void add(std::size_t query, const ImpactQuery& asked) noexcept {
+  void add(std::size_t query, const ImpactQuery& given) noexcept {
     queries_[job_.count] = query;
-    asked_[job_.count] = &asked;
-    mirrored_ = is_mirrored(asked.shape[0], asked.shape[1]);
+    given_[job_.count] = &given;
+    mirrored_ = is_mirrored(given.shape[0], given.shape[1]);
     pairs_[job_.count] = {2 * job_.count + (mirrored_ ? 1U : 0U),
                           2 * job_.count + (mirrored_ ? 0U : 1U)};
     for (std::size_t side = 0; side < 2; ++side) {
-      shapes_[2 * job_.count + side] = asked.shape[side];
-      poses_[2 * job_.count + side] = asked.motion[side]->start;
+      shapes_[2 * job_.count + side] = given.shape[side];
+      poses_[2 * job_.count + side] = given.motion[side]->start;
     }
     ++job_.count;
   }
 
-  /// Calls decided(index of the query) for each pair that certainly overlaps, and writes its impact
-  /// to the reference that the callback returns. Clears the stage.
+  /// Calls decided(index of the query) for each pair with a certified distance of at most 0, and
+  /// writes its impact to the reference that the call returns. Clears the stage.
   template <typename Known>
   void run(Known&& decided) noexcept {
     if (job_.count != 0) answer(decided);
@@ -102,7 +103,7 @@ class StartDistances {
                error_bound_[i],
                {normal_[0][i], normal_[1][i], normal_[2][i]},
                {point_[0][i], point_[1][i], point_[2][i]}};
-      if (mirrored_) mirror_impact(*asked_[i]->motion[0], *asked_[i]->motion[1], found);
+      if (mirrored_) mirror_impact(*given_[i]->motion[0], *given_[i]->motion[1], found);
     }
   }
 
@@ -114,7 +115,7 @@ class StartDistances {
   /// Whether the kernel takes the shapes in the opposite order.
   bool mirrored_ = false;
   Row<std::size_t> queries_;
-  Row<const ImpactQuery*> asked_;
+  Row<const ImpactQuery*> given_;
   Row<BodyPair> pairs_;
   std::array<ShapeId, 2 * kRoom> shapes_;
   std::array<Pose, 2 * kRoom> poses_;
@@ -171,17 +172,17 @@ void ImpactBatch::refuse_invalid(const ImpactJob& job) noexcept {
 
 /// Resolves pairs that the lanes could not decide at time 0; most of them overlap there.
 void ImpactBatch::find_starts(const ImpactJob& job) noexcept {
-  const std::span<const std::uint16_t> asked(job.order, job.count);
+  const std::span<const std::uint16_t> order(job.order, job.count);
   const auto at_start = [&](std::uint16_t query) {
     return verdicts_[query] == ImpactVerdict::unsure && found_[query].time == 0.0;
   };
-  if (std::ranges::none_of(asked, at_start)) return;
+  if (std::ranges::none_of(order, at_start)) return;
   StartDistances starts(tables_);
   const auto decided = [&](std::size_t query) -> Impact& {
     verdicts_[query] = ImpactVerdict::decided;
     return found_[query];
   };
-  for (const std::uint16_t query : asked) {
+  for (const std::uint16_t query : order) {
     if (!at_start(query)) continue;
     if (starts.is_full()) starts.run(decided);
     starts.add(query, queries_[query]);

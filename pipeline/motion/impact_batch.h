@@ -30,8 +30,8 @@ class ImpactBatch {
   void add(std::size_t name, ShapeId a, const RigidMotion& of_a, ShapeId b, const RigidMotion& of_b,
            double until = 1.0) noexcept;
 
-  /// Calls take(name, impact, valid) for each pair, in any order, and clears the batch. `valid` is
-  /// false, and there is no impact, if a motion is not valid.
+  /// Calls take(name, impact, valid) for each pair, in the order of the calls of `add`, and clears
+  /// the batch. `valid` is false, and there is no impact, if a motion is not valid.
   template <typename Take>
   void run(Take&& take) {
     find();
@@ -46,7 +46,8 @@ class ImpactBatch {
  private:
   void find() noexcept;
   void sort_by_kinds() noexcept;
-  /// Runs the scalar search if the lanes left the pair undecided, and restores the caller's order.
+  /// Runs the scalar search if the lanes left the pair undecided, and restores the caller's order
+  /// of a and b.
   void finish(std::size_t i) noexcept {
     if (verdicts_[i] == ImpactVerdict::unsure) search(i);
     if (mirrored_[i] && found_[i].hit) {
@@ -62,7 +63,8 @@ class ImpactBatch {
   std::size_t count_ = 0;
   std::array<std::size_t, kRoom> names_;
   std::array<bool, kRoom> mirrored_;
-  // In unions, so that they are not initialised, which would take as long as some queries.
+  // The arrays are in unions, so their elements are not initialised. Initialisation would take as
+  // long as some queries.
   union {
     std::array<ImpactQuery, kRoom> queries_;
   };

@@ -11,13 +11,15 @@ namespace winnow::WINNOW_ISA_NAME::impact {
 
 /// A pair within the tolerance for more samples than this counts as an impact.
 inline constexpr double kMaxLaneSamplesWithin = 64.0;
-/// A pair that needs more samples is left to the scalar search (ImpactSearch).
+/// A pair that is not decided after this number of samples goes to the scalar search
+/// (ImpactSearch).
 inline constexpr double kMaxLaneSamples = 256.0;
-/// Fraction of the tolerance: pairs that do not rotate are not advanced to smaller gaps.
+/// A fraction of the tolerance. A pair that does not rotate and has at most this gap is sampled as
+/// accurately as possible before it is advanced.
 inline constexpr double kNearEnough = 0.375;
 /// Gaps below this many times the noise count as closed.
 inline constexpr double kClosedNoise = 6.0;
-/// Fraction of the noise: distances need no better accuracy.
+/// A fraction of the noise: a search ends if the bounds of the distance differ by at most this.
 inline constexpr double kEnough = 0.125;
 
 /// Two moving shapes and the bounds found for them. All members are lanes.
@@ -38,9 +40,10 @@ struct PairLanes {
   /// not rotate, of the next one.
   Doubles time;
   Vector axis;
-  /// A flag, by method. Pairs that rotate: 1 if the next sample must prove that they are disjoint
-  /// until then. GJK: 1 if the axis cannot be improved. Closed form: 1 if the sample is ahead of
-  /// the proved time, below 0 if no more such samples are allowed.
+  /// A flag whose meaning depends on the method. For pairs that rotate: 1 if the next sample must
+  /// prove that the pair is disjoint up to the time of this sample. In LinearToiGjk without a
+  /// closed form: 1 if the axis cannot be improved. In LinearToiGjk with a closed form: 1 if the
+  /// sample is ahead of the proved time, below 0 if no more such samples are allowed.
   Doubles proves;
   /// The time until which the pair is proved disjoint.
   Doubles free;
@@ -55,11 +58,13 @@ struct PairLanes {
   TriedLanes tried;
   /// For pairs that do not rotate and use earlier directions (uses_earlier_axes), once there is a
   /// simplex: `best` is the unit direction with the largest gap, `best_support` the support point
-  /// of b along it minus the support point of a, each relative to the centre of its core.
+  /// of b along the opposite direction minus the support point of a along `best`, each relative to
+  /// the centre of its core.
   Vector best;
   Vector best_support;
-  /// The members from here on are for pairs that rotate. Relative speed; gap, slope, curve and bend
-  /// of the last sample; time of the next sample (`next`); `touching` and `aim` as in ImpactSearch.
+  /// The members from here on are for pairs that rotate. `speed` is the relative speed of the
+  /// bodies; `gap`, `slope`, `curve` and `bend` belong to the last sample; `next` is the time of
+  /// the next sample; `touching` and `aim` are used as in ImpactSearch.
   Doubles speed;
   Doubles gap;
   Doubles slope;
@@ -83,9 +88,10 @@ struct ImpactBlock {
   PairBlockTables tables;
 };
 
-/// Whether earlier directions help: the vector between points that nearly touch is short, and
-/// rounding changes its direction much. This happens with rims at any tolerance, with other shapes
-/// at small ones.
+/// Returns whether tests of earlier directions reduce the number of samples. The vector between
+/// points that nearly touch is short, so rounding changes its direction much. For shapes with a rim
+/// and for user shapes this matters at any tolerance, for other shapes only at tolerances below
+/// kSmall.
 [[nodiscard]] inline bool uses_earlier_axes(const ImpactJob& job, ShapeKind a, ShapeKind b) {
   constexpr double kSmall = 2e-7;
   const auto has_rim = [](ShapeKind kind) {
@@ -115,11 +121,11 @@ struct SampleLanes {
 }
 
 /// Writes the results of some lanes.
-class Answers {
+class ImpactWriter {
  public:
-  Answers(const ImpactJob& job, const PairBlockTables& tables) : job_(job), tables_(tables) {}
+  ImpactWriter(const ImpactJob& job, const PairBlockTables& tables) : job_(job), tables_(tables) {}
 
-  /// Not decided; disjoint before `time`.
+  /// Reports pairs as not decided, but disjoint before `time`.
   void put_unsure(Mask16 lanes, const Doubles& time) {
     if (lanes == 0) return;
     alignas(64) double times[kDoubleLanes];
@@ -174,7 +180,7 @@ class Answers {
   const PairBlockTables& tables_;
 };
 
-/// A step of all active lanes of a block: its sample, and the ways in which lanes end.
+/// A step of all active lanes of a block: the sample, and the functions that end lanes.
 class BlockStep {
  protected:
   BlockStep(const ImpactJob& job, ImpactBlock& block)
@@ -209,7 +215,7 @@ class BlockStep {
 
   PairLanes& p_;
   const PairBlockTables& tables_;
-  Answers answers_;
+  ImpactWriter answers_;
   DoubleMask active_;
   SampleLanes sample_;
 };

@@ -1,8 +1,9 @@
 // Finds the first impact of a pair of moving cores in each SIMD lane, by the method of
-// impact_search.cpp; that file also decides the pairs that the lanes cannot: pairs that touch, or
-// nearly, at a sample. Each round samples all pairs of a few blocks once. Then lanes of finished
-// pairs are refilled from other blocks, and free blocks from the queue, so that a hard pair does
-// not hold up seven easy ones. The result of a pair does not depend on the others.
+// impact_search.cpp. That file also decides the pairs that the lanes leave undecided, for example
+// pairs that touch at a sample or are too close for double precision. Each round samples all pairs
+// of up to kBlocks blocks once. Then active pairs are moved into the lanes of finished pairs, and
+// free blocks are loaded from the queue. So the other lanes of a block do not stay idle while one
+// pair needs many samples. The result of a pair does not depend on other pairs.
 
 #include "pipeline/motion/impact_lanes.kernel.h"
 
@@ -14,7 +15,8 @@ namespace winnow {
 namespace WINNOW_ISA_NAME::impact {
 namespace {
 
-/// Relative accuracy of distances, except for the last one.
+/// Relative accuracy of distances. Distances below twice the tolerance are computed as accurately
+/// as possible.
 constexpr double kGoodEnough = 0.3;
 /// Initial target for the gap at the next sample, relative to the current gap.
 constexpr double kFirstAim = 0.03;
@@ -24,9 +26,9 @@ constexpr int kMaxSteps = 32;
 constexpr double kShortest = 1e-40;
 constexpr double kLongest = 1e40;
 
-/// The fraction of an interval in which a gap certainly stays above a target. The gap exceeds the
-/// target by `above` at the start and by `then` at the end; at fraction s it is at most 4 `sag` s
-/// (1 - s) below its chord. The result is needed only in `lanes`.
+/// Returns the fraction of an interval, from its start, in which a gap certainly stays above a
+/// target. The gap exceeds the target by `above` at the start and by `then` at the end; at fraction
+/// s it is at most 4 `sag` s (1 - s) below its chord. The result is needed only in `lanes`.
 [[gnu::always_inline]] inline Doubles share_above(const Doubles& above, const Doubles& then,
                                                   const Doubles& sag, const DoubleMask& lanes) {
   const Doubles zero(0.0);
@@ -48,7 +50,8 @@ constexpr double kLongest = 1e40;
   return job.motion == ImpactMotion::straight;
 }
 
-/// Velocity along an axis of a point at y from a core's centre.
+/// Returns the velocity along an axis, due to rotation, of the point at y from the centre of a
+/// core.
 [[gnu::always_inline]] inline Doubles speed_along(const CoreTable& table, const MovingCore& core,
                                                   const Vector& axis, const Vector& y) {
   if (!table.turns) return Doubles(0.0);
@@ -57,7 +60,7 @@ constexpr double kLongest = 1e40;
 
 /// Bounds on a rotating core's motion along an axis.
 struct TurningAlong {
-  /// Support along the axis of the volume that it sweeps.
+  /// Support along the axis of the volume that the core sweeps.
   Doubles high;
   /// Bound on the acceleration of its points along the axis.
   Doubles acceleration;
@@ -75,10 +78,10 @@ struct TurningAlong {
           core.angle * core.angle * (across + Doubles(kAxisError)) * core.reach};
 }
 
-/// Bound for the gap along an axis that rotates uniformly from `from` to `to` during `width`, which
-/// ends at the current placement, where the centres are `between` apart. At fraction s the gap is
-/// at most half of this times s (1 - s) below its chord. Infinite if the axes differ by more than a
-/// radian.
+/// Returns a bound for the gap along an axis that rotates uniformly from `from` to `to` during a
+/// time of `width`, at the end of which the cores are placed with the centres `between` apart. At
+/// fraction s of this time, the gap is below its chord by at most half of the bound times s (1 -
+/// s). The bound is infinite if |to - from| exceeds 1.
 [[gnu::always_inline]] inline Doubles bend_between(const PairLanes& p, const Vector& from,
                                                    const Vector& to, const Doubles& width,
                                                    const Vector& between) {
@@ -96,7 +99,8 @@ struct TurningAlong {
 
 class ImpactStep : BlockStep {
  public:
-  /// `coarse`: the first sample, before which nothing is proved; one GJK step suffices.
+  /// `coarse`: this is the first sample. It proves nothing about earlier times, so one GJK step
+  /// suffices.
   ImpactStep(const ImpactJob& job, ImpactBlock& block, bool coarse)
       : BlockStep(job, block),
         is_exact_(has_closed_form(tables_.a.kind, tables_.b.kind)),
@@ -179,7 +183,7 @@ class ImpactStep : BlockStep {
     fully_proved_ = whole;
     p_.time = select(whole, p_.next, reached);
     end_apart(((!whole) & (p_.time >= p_.last)) | (p_.time > p_.until));
-    // Touching, or too close for double to decide.
+    // These pairs touch, or are too close for double precision to decide.
     end_unsure(whole & !sample_.parted);
     p_.next = p_.time;
     p_.proves = Doubles(0.0);
@@ -194,8 +198,9 @@ class ImpactStep : BlockStep {
     const Doubles over = both * width;
     const Doubles share = sample_.gap * over;
     const Doubles expected = gap + width * (p_.slope + p_.curve * width * half);
-    // The error of a linear prediction is proportional to the square of the step, and so to the
-    // square of the relative gap; of one with curvature, to the cube.
+    // The error of a linear prediction is proportional to the square of the step, and the step to
+    // the gap at its start (see ImpactSearch::advance). With a predicted curvature, the error is
+    // proportional to the cube of the step.
     Doubles aim = abs(sample_.gap - expected) * over * share * Doubles(4.0);
     if (is_exact_) {
       aim = aim * share;
@@ -215,24 +220,25 @@ class ImpactStep : BlockStep {
     p_.touching = select(p_.time >= p_.touching, Doubles(__builtin_inf()), p_.touching);
   }
 
-  /// The time until which the pair is certainly disjoint: along the axis of the last sample, or
-  /// along an axis that rotates from it to the axis of the new one.
+  /// Returns the time until which the pair is certainly disjoint. The proof uses the axis of the
+  /// last sample, or an axis that rotates from the axis of the last sample to the axis of the new
+  /// sample.
   [[nodiscard]] Doubles proved(const Vector& axis, const Doubles& gap, const Doubles& way) const {
     const Doubles width = way * Doubles(1.0 + 4.0 * kDoubleEpsilon);
     const Doubles least = select(sample_.parted & (sample_.gap < gap), sample_.gap, gap);
     const Doubles target = min(p_.tolerance * Doubles(0.25), least * Doubles(0.5));
     const Doubles eighth(0.125);
     const Doubles above = gap - target;
-    const DoubleMask asked = active_ & (p_.proves > Doubles(0.0));
-    Doubles share = share_above(above, then_ - target, p_.bend * width * width * eighth, asked);
-    if (bits(asked & !(share >= Doubles(1.0))) == 0) return p_.next;
+    const DoubleMask to_prove = active_ & (p_.proves > Doubles(0.0));
+    Doubles share = share_above(above, then_ - target, p_.bend * width * width * eighth, to_prove);
+    if (bits(to_prove & !(share >= Doubles(1.0))) == 0) return p_.next;
     if (has_plane_) return reached(share, way);
     const Doubles bent = bend_between(p_, axis, sample_.closest.axis, width, sample_.between);
-    const Doubles turning = share_above(above, sample_.gap - target, bent * eighth, asked);
+    const Doubles turning = share_above(above, sample_.gap - target, bent * eighth, to_prove);
     share = select(sample_.parted & (turning > share), turning, share);
     return reached(share, way);
   }
-  /// The time at a fraction of the way to the next sample.
+  /// Returns the time at a fraction of the step to the next sample.
   [[nodiscard]] Doubles reached(const Doubles& share, const Doubles& way) const {
     return select(share >= Doubles(1.0), p_.next, min(p_.time + share * way, p_.next));
   }
@@ -244,9 +250,9 @@ class ImpactStep : BlockStep {
     const DoubleMask near = sampled & (sample_.most <= closed());
     const DoubleMask will_touch = sample_.gap + sample_.slope * (p_.last - p_.time) <= Doubles(0.0);
     p_.within = select(near & !will_touch, p_.within + Doubles(1.0), p_.within);
-    const DoubleMask met = near & (will_touch | (p_.within > Doubles(kMaxLaneSamplesWithin)));
-    answers_.put_impact(bits(met), p_, sample_);
-    active_ = active_ & !met;
+    const DoubleMask hit = near & (will_touch | (p_.within > Doubles(kMaxLaneSamplesWithin)));
+    answers_.put_impact(bits(hit), p_, sample_);
+    active_ = active_ & !hit;
     if (bits(active_) == 0) return;
     const ClosestLanes& c = sample_.closest;
     const TurningAlong of_a = turning_along(tables_.a, p_.a, c.axis, c.high_a);
@@ -258,7 +264,7 @@ class ImpactStep : BlockStep {
     const Doubles next = next_sample_time(bend);
     const DoubleMask freely = next <= free;
     const Doubles moved = select(freely, free, p_.time);
-    // No double is left between.
+    // There is no double between the time and `free`.
     end_unsure(sampled & freely & (moved <= p_.time));
     p_.axis = select(sampled, c.axis, p_.axis);
     p_.gap = select(sampled, sample_.gap, p_.gap);
@@ -289,8 +295,8 @@ class ImpactStep : BlockStep {
     return {select(turns, Doubles(__builtin_inf()), high), select(turns, bend, Doubles(0.0))};
   }
 
-  /// The time until which the swept volumes are disjoint; `high` is the sum of their supports, from
-  /// both centres.
+  /// Returns the time until which the swept volumes are disjoint; `high` is the sum of their
+  /// supports, each from the centre of its core.
   [[nodiscard]] Doubles free_until(const Doubles& high) const {
     const Vector& axis = sample_.closest.axis;
     const Doubles swept = dot(axis, sample_.between) - high - p_.roundings - sample_.noise -
@@ -304,9 +310,10 @@ class ImpactStep : BlockStep {
     return select(apart, select(closes & (until < p_.last), until, p_.last), p_.time);
   }
 
-  /// The time at which the gap is expected to have fallen to a fraction of itself, but no later
-  /// than a proof may reach. `bend`: between two times, the gap along the axis is below its chord
-  /// by at most half of this times the product of the times to both ends.
+  /// Returns the time at which the gap is expected to have fallen to a fraction of its value, but
+  /// at most the last time up to which a proof of separation is expected to succeed. `bend`: at a
+  /// time t between times u and v, the gap along the axis is below its chord by at most
+  /// bend / 2 * (t - u) * (v - t).
   [[nodiscard]] Doubles next_sample_time(const Doubles& bend) const {
     const Doubles zero(0.0);
     const Doubles one(1.0);
@@ -322,7 +329,7 @@ class ImpactStep : BlockStep {
     }
     // If the slope is constant, a proof succeeds if half of the bend times the square of the step
     // is less than the square of the sum of the roots of the gaps at both ends. The second gap is
-    // `rest` times the first; `root` is slightly less than the root of `rest`.
+    // `rest` times the first; `root` is a lower bound of the square root of `rest`.
     const DoubleMask bends = bend > zero;
     const Doubles depth = select(bends, sample_.gap * bend, one);
     const Doubles rate = select(falls, speed, one);
@@ -338,9 +345,10 @@ class ImpactStep : BlockStep {
     return min(p_.time + step, end);
   }
 
-  /// Gaps are as accurate as possible (closed form); else to kGoodEnough.
+  /// The pairs have a closed form, which computes gaps as accurately as possible. Without it, gaps
+  /// have the accuracy kGoodEnough.
   bool is_exact_;
-  /// The pair has a half-space, whose normal at each time is the only axis.
+  /// The pair has a half-space, whose normal at each time is the only axis tested.
   bool has_plane_;
   bool coarse_;
   /// The pair is proved disjoint up to the new sample.
@@ -487,7 +495,7 @@ class ImpactLoad {
       p_.touching = Doubles(__builtin_inf());
       p_.aim = Doubles(kFirstAim);
     }
-    Answers answers(job_, tables_);
+    ImpactWriter answers(job_, tables_);
     const Mask16 here =
         lanes_below(job_.count - first_ < kDoubleLanes ? job_.count - first_ : kDoubleLanes);
     answers.put_unsure(bits(!usable) & here, zero);
@@ -536,7 +544,8 @@ inline void move_core(const CoreTable& table, const MovingCore& from, unsigned l
   if (!table.turns && !table.in_world) move_members<kAxes, kExtent>(from, lane_from, to, lane_to);
 }
 
-/// If the target has vertex rows, copies the vertices of the lane's new hull.
+/// Sets the hull of a lane. If the target has vertex rows, copies the vertices of the hull to them,
+/// or stops using the rows if the hull has more vertices.
 inline void move_hull(const CoreTable& from, unsigned lane_from, CoreTable& to, unsigned lane_to) {
   to.hull[lane_to] = from.hull[lane_from];
   if (to.kind != ShapeKind::hull || to.rows == 0) return;
@@ -547,7 +556,8 @@ inline void move_hull(const CoreTable& from, unsigned lane_from, CoreTable& to, 
   }
 }
 
-/// Moves a pair to another lane; copies only the members that are needed after the next sample.
+/// Moves a pair to another lane; copies only the members that later samples read before they write
+/// them.
 inline void move_lane(const ImpactJob& job, const ImpactBlock& from, unsigned lane_from,
                       ImpactBlock& to, unsigned lane_to) {
   const PairBlockTables& tables = from.tables;
@@ -605,16 +615,16 @@ class ImpactRounds {
   /// Few enough that their data stay in the cache.
   static constexpr std::uint32_t kBlocks = 6;
 
-  /// The number of active blocks at which free blocks are filled. Filling many at once moves lanes
-  /// less often. A GJK search costs less if the simplices of all lanes have few points, which holds
-  /// for pairs that start together.
+  /// The number of active blocks at which free blocks are filled. If many blocks are filled at
+  /// once, lanes are moved less often. The cost of a GJK step depends on the largest simplex of all
+  /// lanes; pairs that start together have small simplices in their first steps.
   [[nodiscard]] std::uint32_t blocks_when_filled() const {
     if (!searches_) return kBlocks / 2;
     return is_straight(job_) ? 0 : 1;
   }
 
-  /// Loads queries while blocks are free, and samples them once while they are in the cache: for
-  /// some kinds, few remain active.
+  /// Loads queries into free blocks, and samples each block once while it is in the cache. For some
+  /// kinds, only a few pairs are active after this sample.
   void fill() {
     while (next_ < job_.count && count_ < kBlocks) {
       const std::uint32_t at = next_;

@@ -18,7 +18,7 @@ struct ImpactQuery {
 };
 
 enum class ImpactVerdict : std::uint8_t {
-  unsure,  ///< the lanes cannot decide; disjoint before the time
+  unsure,  ///< the lanes cannot decide; the pair is disjoint before Impact::time
   decided,
   invalid,  ///< a motion is not valid; the lanes report this as unsure at time 0
 };
@@ -30,7 +30,7 @@ enum class ImpactMotion : std::uint8_t {
   plane_turns,  ///< the half-spaces, and any of the other bodies
 };
 
-/// Queries of one pair of kinds that the lanes support, and where their results go.
+/// Queries of one pair of kinds that the lanes support, and the arrays of their results.
 struct ImpactJob {
   ImpactMotion motion;
   ShapeTables tables;

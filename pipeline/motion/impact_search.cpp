@@ -1,15 +1,17 @@
 // Scalar search for the first impact of two moving convex shapes: conservative advancement (Mirtich
 // 1996) with a bound of second order. impact_batch.cpp calls it for pairs that the lanes cannot
-// decide, body_impact.cpp for parts of composite shapes.
+// decide, body_impact.cpp for parts of composite shapes, face_impact.cpp for faces of deformable
+// meshes.
 //
 // The distance of two shapes is at least their gap along any direction n. The gap is the minimum,
 // over pairs of points, of a linear function of time (travel) plus cosines (rotation). Its second
-// derivative nowhere exceeds M, the sum of |angle|^2 times the reach of each shape from its axis,
-// projected on n. So between two times the gap is at most M / 2 times the product of the times to
-// both ends below its chord. This bound is positive up to the root of a quadratic, which proves
-// that the shapes are disjoint until then. If n is the direction of the closest points, the gap
-// equals the distance and has its slope: sampling at the times at which Newton's method would close
-// the gap converges as fast as Newton's method.
+// derivative nowhere exceeds M, the sum over both shapes of angle^2 times the largest distance of a
+// point from the rotation axis times the sine of the angle between n and that axis. So at a time t
+// between two times u and v, the gap is below its chord by at most M / 2 * (t - u) * (v - t). This
+// lower bound is positive up to the root of a quadratic, which proves that the shapes are disjoint
+// until then. If n is the direction between the closest points at a time, the gap at this time has
+// the value and the slope of the distance. Samples at the times at which Newton's method would
+// close the gap therefore converge as fast as Newton's method.
 
 #include "pipeline/motion/impact_search.h"
 
@@ -34,7 +36,8 @@ constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 constexpr std::uint32_t kMaxSamples = 200'000;
 /// A pair within the tolerance for more samples than this counts as an impact.
 constexpr std::uint32_t kMaxSamplesWithin = 64;
-/// Relative accuracy of distances, except for the last one.
+/// Relative accuracy of distances. The closest points of two polytopes at an impact are computed to
+/// rounding.
 constexpr double kGoodEnough = 1e-3;
 
 /// The shapes must exist and the poses be valid.
@@ -48,7 +51,8 @@ constexpr double kGoodEnough = 1e-3;
 
 /// A sample of the pair: bounds at one time.
 struct PairSample {
-  /// Certainly separated along `axis` by `gap` > 0; along an unspecified axis if `axis` is zero.
+  /// The shapes are certainly separated by `gap` > 0: along `axis`, or along an unknown axis if
+  /// `axis` is zero.
   bool parted = false;
   Vec axis = Vec::Zero();
   double gap = 0.0;
@@ -86,7 +90,8 @@ class Witness {
   }
 
  private:
-  /// Each transformation back and forth rounds, so the simplex is discarded after this many.
+  /// The number of samples after which the simplex is discarded: each transformation to the frames
+  /// of the cores and back adds rounding errors.
   static constexpr int kOldest = 16;
 
   int count_ = 0;
@@ -142,7 +147,7 @@ class ImpactSearch {
   double touching_ = kUnbounded;
   /// The fraction of the gap that should remain at the next sample.
   double aim_ = 0.1;
-  /// Number of samples within the tolerance.
+  /// Number of samples within the tolerance at which no touch before the end was predicted.
   std::uint32_t within_ = 0;
   std::uint32_t samples_ = 0;
 };
@@ -187,8 +192,8 @@ void ImpactSearch::sample_cores(double share, PairSample& result) noexcept {
   result.slope = pair_.parting(found.axis, result.on_a, found.simplex.on_b() - b.center);
 }
 
-/// The narrow phase's distance of the shapes at a time, and the pose of a there. Triangles that
-/// deform are put in a separate table.
+/// Returns the narrow phase's distance of the shapes at a time, and writes the pose of a at this
+/// time. Triangles that deform are moved in a copy of the table.
 PairAnswer ImpactSearch::answer_at(double time, Pose& pose_a) const noexcept {
   Pose pose_b;
   pair_.poses(time, pose_a, pose_b);
@@ -207,7 +212,8 @@ PairAnswer ImpactSearch::answer_at(double time, Pose& pose_a) const noexcept {
   return distance_of(tables, a_.shape, pose_a, b_.shape, pose_b);
 }
 
-/// Samples by the narrow phase, if GJK does not find the closest points.
+/// Computes a sample by the narrow phase. `sample` calls this if the bounds by GJK are too wide to
+/// show whether the shapes are apart.
 void ImpactSearch::sample_accurately(double time, PairSample& result) const noexcept {
   Pose pose_a;
   const PairAnswer found = answer_at(time, pose_a);
@@ -242,9 +248,9 @@ PairSample ImpactSearch::sample(double time) noexcept {
   return result;
 }
 
-/// The fraction of an interval in which a gap certainly stays above a target. The gap exceeds the
-/// target by `above` at the start and by `then` at the end; at fraction s it is at most 4 `sag` s
-/// (1 - s) below its chord.
+/// Returns the fraction of an interval, from its start, in which a gap certainly stays above a
+/// target. The gap exceeds the target by `above` at the start and by `then` at the end; at fraction
+/// s it is at most 4 `sag` s (1 - s) below its chord.
 double share_above(double above, double then, double sag) noexcept {
   const double square = 4.0 * sag;
   if (!std::isfinite(square)) return 0.0;
@@ -257,8 +263,9 @@ double share_above(double above, double then, double sag) noexcept {
   return std::min(root * (1.0 - 1e-12), 1.0);
 }
 
-/// The time of the sample after `from`: when the gap is expected to have fallen to a fraction of
-/// itself, but no later than a proof may reach.
+/// Returns the time of the sample after `from`: the time at which the gap is expected to have
+/// fallen to a fraction of its value, but at most the last time up to which a proof of separation
+/// is expected to succeed.
 double ImpactSearch::next(double from, double end, const PairSample& sample) const noexcept {
   double step = end - from;
   if (sample.slope < 0.0) {
@@ -276,9 +283,9 @@ double ImpactSearch::next(double from, double end, const PairSample& sample) con
   return std::min(from + step, end);
 }
 
-/// The time, between `from` and `to`, until which the pair is certainly disjoint: along the axis of
-/// the first sample, or along an axis that rotates from it to the axis of the second. The pair is
-/// placed at `to`.
+/// Returns the time, between `from` and `to`, until which the pair is certainly disjoint. The proof
+/// uses the axis of `first` or, if `second` is separated too, an axis that rotates from the axis of
+/// `first` to the axis of `second`. The pair must be placed at `to`.
 double ImpactSearch::proved(double from, const PairSample& first, double to,
                             const PairSample& second) const noexcept {
   const double width = (to - from) * (1.0 + 4.0 * kEpsilon);
@@ -296,8 +303,9 @@ double ImpactSearch::proved(double from, const PairSample& first, double to,
   return share >= 1.0 ? to : std::min(from + share * (to - from), to);
 }
 
-/// The time until which the swept volumes are disjoint; if the sample has no axis, a bound from the
-/// speed only.
+/// Returns the time until which the volumes that the shapes sweep by their rotation are disjoint
+/// along the axis of the sample. If the sample has no axis, the time follows from a bound on the
+/// speed.
 double ImpactSearch::free_until(double time, double end, const PairSample& sample) const noexcept {
   if (sample.axis.isZero(0.0)) {
     return std::min(end, time + 0.5 * sample.gap / pair_.most_closing());
@@ -308,8 +316,8 @@ double ImpactSearch::free_until(double time, double end, const PairSample& sampl
   return closing > 0.0 ? std::min(end, time + swept / closing * (1.0 - 8.0 * kEpsilon)) : end;
 }
 
-/// Converts an answer at a time; `from` is the position that shape a's points are relative to, from
-/// the position of its body.
+/// Converts an answer at a time. `from` is the vector from the position of body a to the position
+/// of shape a, which the points of the answer are relative to.
 Impact ImpactSearch::impact_from(double time, const PairAnswer& answer,
                                  const double (&from)[3]) noexcept {
   Impact impact;
@@ -324,8 +332,9 @@ Impact ImpactSearch::impact_from(double time, const PairAnswer& answer,
   return impact;
 }
 
-/// The impact at a time at which the pair is placed: disjoint before, and here within the tolerance
-/// or too close for double to decide.
+/// Returns the impact at a time at which the pair is placed. The pair is disjoint before; at this
+/// time it is within the tolerance, or too close for double precision to decide, or the search
+/// ended.
 Impact ImpactSearch::impact_at(double time, PairSample& sample) noexcept {
   if (sample.parted) return impact_of_sample(time, sample);
   if (time == 0.0) return start();
@@ -337,8 +346,8 @@ Impact ImpactSearch::impact_at(double time, PairSample& sample) noexcept {
   return impact;
 }
 
-/// The impact from a sample that separates the shapes. Polytopes are sampled again if their closest
-/// points are not accurate yet.
+/// Returns the impact of a sample that separates the shapes. If both are polytopes and the closest
+/// points are not accurate yet, samples again.
 Impact ImpactSearch::impact_of_sample(double time, PairSample& sample) noexcept {
   const bool polytopes = pair_.a().is_polytope() && pair_.b().is_polytope();
   if (polytopes && sample.most - sample.gap > 4.0 * pair_.noise()) sample_cores(0.0, sample);
@@ -356,7 +365,7 @@ Impact ImpactSearch::impact_of_sample(double time, PairSample& sample) noexcept 
   return impact;
 }
 
-/// The answer at the start, where poses are exact; the shapes may overlap there.
+/// Returns the impact at time 0, at which the poses are exact and the shapes may overlap.
 Impact ImpactSearch::start() const noexcept {
   constexpr double kHere[3] = {0.0, 0.0, 0.0};
   const Pose& start_a = a_.motion.start;
@@ -370,15 +379,15 @@ Impact ImpactSearch::start() const noexcept {
 }
 
 /// Returns whether the pair is within the tolerance and is expected to touch before the end, or has
-/// been within it for many samples.
+/// been within the tolerance for more than kMaxSamplesWithin samples without such an expectation.
 bool ImpactSearch::is_impact(double time, double end, const PairSample& sample) noexcept {
   if (sample.most > std::max(tolerance_, 8.0 * pair_.noise())) return false;
   return sample.gap + sample.slope * (end - time) <= 0.0 || ++within_ > kMaxSamplesWithin;
 }
 
 /// One step from `time`, at which the pair is placed. Returns the time until which the pair is
-/// certainly disjoint. If the pair was sampled at that time, writes the sample to `sample` and sets
-/// `known`.
+/// certainly disjoint. If the pair was sampled at the returned time, writes the sample to `sample`,
+/// and sets `known` if the sample separates the shapes.
 double ImpactSearch::advance(double time, double end, PairSample& sample, bool& known) noexcept {
   known = false;
   const double free = free_until(time, end, sample);
@@ -389,8 +398,9 @@ double ImpactSearch::advance(double time, double end, PairSample& sample, bool& 
   const double apart = proved(time, sample, to, there);
   if (!there.parted) touching_ = std::min(touching_, time + 0.75 * (to - time));
   if (apart < to) return std::max(apart, free);
-  // The error of a linear prediction is proportional to the square of the step, and so to the
-  // square of the relative gap.
+  // The error of a linear prediction is proportional to the square of the step, and the step to the
+  // gap at its start. So relative to the gap, the next error is expected to be this one times the
+  // ratio of the gaps; `aim_` is four times as large.
   const double expected = sample.gap + sample.slope * (to - time);
   aim_ = std::clamp(4.0 * std::abs(there.gap - expected) / sample.gap * there.gap / sample.gap,
                     1e-9, 0.25);
@@ -416,7 +426,7 @@ Impact ImpactSearch::run() noexcept {
     if (!now.parted || is_impact(time, last, now)) return impact_at(time, now);
     const double free = advance(time, last, now, known);
     if (free >= last || free > until_) return {};
-    // No double is left between, or too many samples were taken.
+    // There is no double between `time` and `free`, or too many samples were taken.
     if (free <= time || samples_ >= kMaxSamples) {
       now = sample(time);
       return impact_at(time, now);

@@ -1,20 +1,22 @@
 #pragma once
 
 // Steps of pairs that do not rotate: the Minkowski difference is fixed and the origin moves along a
-// line, so that the gap along a direction is determined for all times. Each step is a GJK step that
-// at once advances the pair to the time at which the tested direction no longer shows a gap (van
-// den Bergen, "Ray casting against general convex objects with application to continuous collision
-// detection", 2004). Any direction may be tested; for smooth surfaces guesses alternate with GJK.
+// line. So the gap along a direction is a linear function of time. Each step is a GJK step that
+// also advances the pair to the time at which the tested direction no longer shows a gap (van den
+// Bergen, "Ray casting against general convex objects with application to continuous collision
+// detection", 2004). Any direction may be tested; for smooth surfaces, guesses (SecantDirection)
+// alternate with the directions of GJK.
 
 #include "pipeline/motion/impact_block.wide.h"
 
 namespace winnow::WINNOW_ISA_NAME::impact {
 
 /// One step of all lanes of a block. For lanes without a closed form, `axis` is the nearest point
-/// of the simplex, or any direction while there is none; the witness contains, in world axes, the
-/// simplex's points of a and the vectors from them to the points of b. `Elsewhere`: the pairs have
-/// no closed form, and use guesses or earlier directions; a template parameter, because the others
-/// would be slowed down.
+/// of the simplex, or any direction while there is none; the witness stores, in world axes, the
+/// support points of a and the vectors from them to the support points of b, without the vector
+/// between the centres. `Elsewhere`: the pairs have no closed form, and use guesses or earlier
+/// directions. This is a template parameter because a test at run time would slow down all other
+/// pairs.
 template <bool Elsewhere>
 class LinearToiGjk : BlockStep {
  public:
@@ -107,12 +109,14 @@ class LinearToiGjk : BlockStep {
     const Doubles left = closest.upper - p_.roundings;
     const DoubleMask ends =
         (gain <= Doubles(kRounding) * closest.upper * left) & is_there_already() & !guessed_;
-    // Rounding perturbs the direction, by more the shorter it is, and thereby the support point.
+    // Rounding perturbs the direction the more, the shorter the vector is. The support point
+    // changes with the direction.
     settled_ = used_[0] & ((gain <= sample_.noise * Doubles(kEnough) * (closest.upper + p_.sizes)) |
                            ends | (p_.proves > Doubles(0.0)));
   }
 
-  /// Uses an earlier direction where it shows a larger gap. Returns those lanes.
+  /// Uses the best earlier direction in the lanes in which it shows a larger gap. Returns these
+  /// lanes.
   [[nodiscard]] DoubleMask take_best() {
     ClosestLanes& closest = sample_.closest;
     const Doubles shown = dot(p_.best, sample_.between + p_.best_support);
@@ -138,22 +142,24 @@ class LinearToiGjk : BlockStep {
     const DoubleMask near = within & settled_;
     const DoubleMask will_touch = sample_.gap + sample_.slope * (p_.last - p_.time) <= Doubles(0.0);
     p_.within = select(near & !will_touch, p_.within + Doubles(1.0), p_.within);
-    const DoubleMask met =
+    const DoubleMask hit =
         active_ & near & (will_touch | (p_.within > Doubles(kMaxLaneSamplesWithin)));
-    if (bits(met) != 0) put_impacts(met);
+    if (bits(hit) != 0) put_impacts(hit);
     if (bits(active_) == 0) return;
     const Doubles free = free_along(p_, sample_);
     end_apart(sample_.parted & ((free >= p_.last) | (free > p_.until)));
-    // Touching, too close for double to decide, or no double left between.
+    // These pairs touch or are too close for double precision to decide, or there is no double
+    // between the time and `free`.
     end_unsure(settled_ & ((!sample_.parted) | (free <= p_.time)));
-    // A pair within the tolerance, or near enough to it, is first sampled as accurately as
-    // possible.
+    // A pair within the tolerance, or with a gap of at most kNearEnough times the tolerance, is
+    // sampled as accurately as possible before it is advanced.
     const DoubleMask far = (!within) & (sample_.gap > p_.tolerance * Doubles(kNearEnough));
     p_.time = select(active_ & sample_.parted & (far | settled_), free, p_.time);
   }
 
-  /// A lane that was sampled ahead of its proved time is disjoint up to there if the gap still
-  /// closes along the axis. Other lanes are returned; they go back and take only proved steps.
+  /// A lane that was sampled ahead of its proved time is disjoint up to the sample if the sample
+  /// shows a gap that closes along the axis. Returns the lanes whose sample does not; these lanes
+  /// go back to the proved time and take only proved steps from then on.
   [[nodiscard]] DoubleMask lost_trials() {
     const Doubles zero(0.0);
     const DoubleMask trial = active_ & (p_.proves > zero);
@@ -165,7 +171,8 @@ class LinearToiGjk : BlockStep {
     return lost;
   }
 
-  /// Moves lanes to the time at which they seem to touch, if that is ahead of the proved time.
+  /// Moves lanes to the time at which they seem to touch, if this time is later than the proved
+  /// time.
   void try_ahead(const CorePair& pair, const Doubles& here) {
     const ClosestLanes& closest = sample_.closest;
     const Doubles reach = p_.roundings + closed() * Doubles(0.5);
@@ -181,16 +188,16 @@ class LinearToiGjk : BlockStep {
     p_.proves = select(tries, Doubles(1.0), p_.proves);
   }
 
-  void put_impacts(const DoubleMask& met) {
+  void put_impacts(const DoubleMask& hit) {
     if (!has_closed_form(tables_.a.kind, tables_.b.kind)) {
       const Vector on_a = shares_of(placed(used_), p_.axis).of(p_.witness.a);
       SampleLanes sample = sample_;
       sample.closest.on_a = on_a;
-      answers_.put_impact(bits(met), p_, sample);
+      answers_.put_impact(bits(hit), p_, sample);
     } else {
-      answers_.put_impact(bits(met), p_, sample_);
+      answers_.put_impact(bits(hit), p_, sample_);
     }
-    active_ = active_ & !met;
+    active_ = active_ & !hit;
   }
 
   /// Chooses the next direction at the lanes' current time; `before` is the time of the last
@@ -227,8 +234,9 @@ class LinearToiGjk : BlockStep {
 
   bool guesses_;
   bool uses_earlier_axes_;
-  /// The lanes in which the tested direction was a guess; and that direction, a unit vector.
+  /// The lanes in which the tested direction is a guess.
   DoubleMask guessed_;
+  /// The tested direction, a unit vector.
   Vector tried_;
   /// No direction shows a larger gap than the tested one.
   DoubleMask settled_;

@@ -1,12 +1,13 @@
 #pragma once
 
-// The first sample of pairs that do not rotate, by the separating axis test (SAT). Two convex
-// polyhedra are separated along the normal of a face or the cross product of an edge of each
-// (Gottschalk, Lin, Manocha, "OBBTree", 1996). Along each of these the gap changes linearly: the
-// last one to close gives the time of impact, and one that opens before it proves that there is
-// none. Round shapes can touch along other directions, too; for them the result is a good starting
-// point. The gap along any direction is valid. impact_lanes.kernel.cpp runs this step;
-// linear_toi_gjk.wide.h continues.
+// The first sample of pairs that do not rotate, by the separating axis test (SAT). If two convex
+// polyhedra are disjoint, they are separated along the normal of a face or along the cross product
+// of two edges, one of each polyhedron (Gottschalk, Lin, Manocha, "OBBTree", 1996). The gap along
+// each of these directions changes linearly. The last gap to close closes at the time of impact; if
+// another gap opens before, there is no impact. Round shapes can touch along other directions, too.
+// For them the last gap to close only proves that they are apart before, because a gap along any
+// direction separates the shapes. impact_lanes.kernel.cpp runs this step; linear_toi_gjk.wide.h
+// continues.
 
 #include "pipeline/motion/closed_forms.wide.h"
 #include "pipeline/motion/impact_block.wide.h"
@@ -139,16 +140,17 @@ class SeparatingAxes {
   /// that closes, and a closed gap that does not change.
   ChangingGap closing;
   ChangingGap opening;
-  /// If the gap that closes last is not of two edges: its direction is the normal of a face of a.
+  /// The direction of the gap that closes last is the normal of a face of a. Valid if is_of_edges
+  /// is false.
   DoubleMask is_face_of_a;
-  /// Its direction is the cross product of these edges.
+  /// The direction of the gap that closes last is the cross product of edge_a and edge_b.
   DoubleMask is_of_edges;
   Vector edge_a;
   Vector edge_b;
 
  private:
   /// Tests both senses of a direction: in one the gap closes, in the other it opens. Returns the
-  /// lanes in which it closes later than all before.
+  /// lanes in which the gap closes later than all gaps tested before.
   [[gnu::always_inline]] DoubleMask closes_last(const Vector& n) {
     Doubles high_a;
     Doubles low_a;
@@ -255,9 +257,9 @@ class LinearToiSat : BlockStep {
     const DoubleMask again = active_ & apart_ & !is_near();
     if (bits(again) != 0) find_points(closest.on_a + closest.between, again);
     const DoubleMask will_touch = sample_.gap + sample_.slope * (p_.last - p_.time) <= Doubles(0.0);
-    const DoubleMask met = active_ & apart_ & sample_.parted & is_near() & will_touch;
-    answers_.put_impact(bits(met), p_, sample_);
-    active_ = active_ & !met;
+    const DoubleMask hit = active_ & apart_ & sample_.parted & is_near() & will_touch;
+    answers_.put_impact(bits(hit), p_, sample_);
+    active_ = active_ & !hit;
     p_.axis = select(active_ & apart_ & (closest.upper > Doubles(0.0)), closest.between, p_.axis);
   }
 
@@ -276,8 +278,8 @@ class LinearToiSat : BlockStep {
     return select(axes.is_of_edges, on_edge, select(axes.is_face_of_a, corner_b, closest.on_a));
   }
 
-  /// In some lanes, sets the point of a closest to a place, and the point of b closest to that
-  /// point.
+  /// In `lanes`, sets the point of a that is closest to `place`, and the vector from it to the
+  /// closest point of b.
   void find_points(const Vector& place, const DoubleMask& lanes) {
     ClosestLanes& closest = sample_.closest;
     const Vector on_a = a_.nearest(place);

@@ -14,7 +14,7 @@
 namespace winnow {
 namespace {
 
-constexpr std::size_t kFacesPerStretch = 16;
+constexpr std::size_t kFacesPerRange = 16;
 
 [[nodiscard]] Status status_of(const SubShapeQuery& parts, const MeshObstacle& obstacle,
                                const ImpactOptions& options) noexcept {
@@ -24,10 +24,11 @@ constexpr std::size_t kFacesPerStretch = 16;
   return obstacle.motion.is_valid() ? Status::ok : Status::invalid_pose;
 }
 
-/// The bounding box of the whole motion, relative to `origin`.
+/// Returns a box, relative to `origin`, that contains the shape during its motion, enlarged by the
+/// separation.
 [[nodiscard]] Aabb swept_box(const SubShapeQuery& parts, const MeshObstacle& obstacle,
                              const Vec3d& origin) noexcept {
-  const RigidMotion frame = RigidMotion::standing(Pose::at(origin.x(), origin.y(), origin.z()));
+  const RigidMotion frame = RigidMotion::stationary(Pose::at(origin.x(), origin.y(), origin.z()));
   const impact::MovingShape whole = impact::whole_shape(parts, obstacle.shape, obstacle.motion);
   const PreciseBox box =
       impact::RelativeMotionBounds(parts, frame, whole).box({0.0, 1.0}).grown(obstacle.separation);
@@ -56,7 +57,7 @@ constexpr std::size_t kFacesPerStretch = 16;
 Status DeformableMesh::find_shape_impacts(
     const MeshObstacle& obstacle, const ImpactOptions& options,
     const ResultChunks<MeshShapeImpact>& chunks) const noexcept {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   const SubShapeQuery parts(obstacle.shapes, options.composites);
   if (!is_moved() || !(obstacle.separation >= 0.0 && obstacle.separation <= 0.5 * reach())) {
     return Status::invalid_argument;
@@ -83,7 +84,7 @@ Status DeformableMesh::find_shape_impacts(
                                     options.tolerance);
   };
   const auto take = [&](std::span<const Pair> faces) {
-    for_each_range(options_.execution, faces.size(), kFacesPerStretch,
+    for_each_range(options_.execution, faces.size(), kFacesPerRange,
                    [&](std::size_t begin, std::size_t end) {
                      for (std::size_t i = begin; i < end; ++i)
                        found[i] = impact_of(faces[i].second);

@@ -2,7 +2,7 @@
 
 // Cores of moving shapes, one per lane, all of one kind: their numbers, their rotation about an
 // axis through the body's position, their placement at a time, and their support functions. Used by
-// all impact kernels beside this file.
+// all impact kernels of this folder.
 
 #include "pipeline/kernels/pair_lanes.wide.h"
 #include "pipeline/kernels/user_support.wide.h"
@@ -16,11 +16,12 @@ using DoubleMask = LaneMask<double>;
 inline constexpr int kDoubleLanes = Doubles::kCount;
 /// The distance from 1 to the next double.
 inline constexpr double kDoubleEpsilon = 0x1p-52;
-/// Axes that differ by less count as equal; the difference is covered by the noise.
+/// Bound on the rounding error of a unit axis.
 inline constexpr double kAxisError = 16.0 * kDoubleEpsilon;
 /// In radians: hulls that rotate farther are measured by their vertices (measure_turning_hulls).
 inline constexpr double kFarTurn = 2.0;
-/// Hulls with at most this many vertices have them copied to lanes.
+/// If no hull of a block has more vertices than this, the vertices of all hulls are copied to
+/// lanes.
 inline constexpr int kFewVertices = 2 * kDoubleLanes;
 
 [[gnu::always_inline]] inline Vector zero_vector() {
@@ -147,8 +148,8 @@ struct CoreTable {
   bool turns;
   const HullShape* hull[kDoubleLanes];
   const SupportShape* own[kDoubleLanes];
-  /// For hulls of which none has more than kFewVertices vertices: the number of vertex rows; the
-  /// last rows may repeat vertices. Else 0.
+  /// If no hull has more than kFewVertices vertices: the number of vertex rows, of which the last
+  /// may repeat vertices. Else 0.
   int rows;
   alignas(64) double vertex[kFewVertices][3][kDoubleLanes];
 };
@@ -162,7 +163,7 @@ inline void copy_vertices(CoreTable& table, unsigned lane) {
   }
 }
 
-/// Copies the vertices of all lanes, if they are few.
+/// Copies the vertices of all lanes, if no hull has more than kFewVertices.
 static inline void copy_few_vertices(CoreTable& table) {
   std::uint32_t most = 0;
   for (const HullShape* hull : table.hull) {
@@ -309,7 +310,7 @@ static inline Vector farthest_of_user_shape(const CoreTable& table, const Vector
   return least * select(most > Doubles(0.0), least / most, Doubles(0.0));
 }
 
-/// Support point of an ellipsoid eroded by that radius; see eroded_core.
+/// Support point of an ellipsoid eroded by its least radius of curvature; see eroded_core.
 static inline Vector farthest_of_ellipsoid(const Vector& radius, const Vector& d) {
   const Vector stretched{radius.x * d.x, radius.y * d.y, radius.z * d.z};
   const Doubles along = length(stretched);
@@ -319,8 +320,8 @@ static inline Vector farthest_of_ellipsoid(const Vector& radius, const Vector& d
          eroded;
 }
 
-/// Support point of the convex hull of the smaller end's centre and a ball, with the difference of
-/// the radii, at the larger end's centre.
+/// Support point of the convex hull of the smaller end's centre and a ball at the larger end's
+/// centre. The radius of the ball is the difference of the radii.
 static inline Vector farthest_of_taper(const Vector& half, const Vector& d) {
   const Doubles zero(0.0);
   const Vector out = d * (half.x / length(d));
@@ -391,7 +392,8 @@ static inline Vector farthest_of_taper(const Vector& half, const Vector& d) {
   return sqrt(square);
 }
 
-/// The largest distance of a core's points from the axis w, in its own frame.
+/// Returns an upper bound on the distance of a core's points from the axis w, in the frame of the
+/// core.
 static inline Doubles reach_of(const CoreTable& table, const MovingCore& core, const Vector& w) {
   switch (table.kind) {
     case ShapeKind::sphere:
@@ -434,8 +436,9 @@ static inline Doubles greatest_of_rows(const double (&row)[kDoubleLanes][kDouble
   return most;
 }
 
-/// As reach_of, for hulls, and their range along the axis: from the bounding ball about their
-/// centre, or from the vertices if a hull rotates so far that this pays.
+/// Computes the reach of hulls, as reach_of does for other cores, and their range along the axis:
+/// by the bounding ball about the centre or, if a hull rotates by more than kFarTurn, by the
+/// vertices.
 static inline void measure_turning_hulls(const CoreTable& table, const Vector& w,
                                          MovingCore& core) {
   const Doubles radius = core.extent - core.rounding;

@@ -53,7 +53,8 @@ double corner_reach(const Core& core, const Vec& w) noexcept {
   return std::sqrt(square);
 }
 
-/// The largest distance of an unrotated core's points from the axis w through its centre.
+/// Returns an upper bound on the distance of an unrotated core's points from the axis w through its
+/// centre.
 double reach_of(const Core& core, const Vec& w) noexcept {
   switch (core.kind) {
     case CoreKind::point:
@@ -303,8 +304,8 @@ Interval MovingPair::window() const noexcept {
 
 Interval ball_window(const Vec& between, const Vec& travel, double reach) noexcept {
   constexpr Interval kAll{0.0, 1.0};
-  // Most pairs of a scene miss each other; then their line of motion is too far away, which is
-  // tested without a root.
+  // Most pairs of a scene do not touch because their line of relative motion is too far away. This
+  // is tested without a square root.
   const double rounding = between.cwiseAbs().sum() + travel.cwiseAbs().sum() + reach;
   const double wide = reach + 128.0 * kEpsilon * rounding;
   const double limit = wide * wide * travel.squaredNorm();
@@ -313,7 +314,8 @@ Interval ball_window(const Vec& between, const Vec& travel, double reach) noexce
   const double path = between.norm() + speed;
   if (!std::isfinite(reach + path)) return kAll;
   const double radius = reach + 64.0 * kEpsilon * (path + reach);
-  // If the travel is too short for its square, both ends are as near as any point between.
+  // If the travel is so short that its square underflows, the distance at the start is used for all
+  // times.
   const double nearest = speed > 1e-140 ? -(between.dot(travel) / speed) / speed : 0.0;
   const double distance = (between + nearest * travel).norm();
   if (distance > radius + (speed > 1e-140 ? 0.0 : speed)) return {1.0, 0.0};
@@ -353,12 +355,12 @@ double MovingPair::curvature(const Vec& axis) const noexcept {
 
 // With P the vector from a point of a to a point of b, their gap along an axis n with angular speed
 // r is n . P. Its second derivative is n . P'' + 2 n' . P' - r^2 n . P. The last term is positive
-// only where the gap is negative, and there it is bounded by the amount that the gap can fall below
-// 0.
+// only where the gap is negative; there it is at most r^2 times the amount by which the gap can
+// fall below 0.
 double MovingPair::curvature_between(const Vec& from, const Vec& to, double width) const noexcept {
   const double turned = (to - from).norm();
   if (turned > 1.0) return kForever;
-  // The angle of a chord.
+  // An upper bound on the angle whose chord is `turned`, divided by the width.
   const double rate = turned * (1.0 + 0.05 * turned * turned) / width;
   const double reach =
       turn_a_.reach * turn_a_.angle * turn_a_.angle + turn_b_.reach * turn_b_.angle * turn_b_.angle;

@@ -17,9 +17,9 @@ struct Interval {
   double last;
 };
 
-/// The part of [0, 1] in which two balls whose radii sum to `reach` overlap. The second is at
-/// `between` relative to the first at time 0 and moves by `travel`. [0, 1] if the reach is
-/// infinite.
+/// Returns a part of [0, 1] that contains all times at which two balls overlap. Their radii sum to
+/// `reach`; the second ball is at `between` relative to the first at time 0 and moves by `travel`.
+/// Returns [0, 1] if the reach is infinite.
 [[nodiscard]] Interval ball_window(const Vec& between, const Vec& travel, double reach) noexcept;
 
 /// A convex shape that moves with a body.
@@ -37,7 +37,7 @@ struct MovingPart {
 
 /// The rotation of a core about the axis through its body's position.
 struct TurningCore {
-  // For triangles and half-spaces, without rotation.
+  // Corners and sides of a triangle, and the normal of a half-space, before rotation.
   std::array<Vec, 3> corner;
   std::array<Vec, 3> side;
   Vec normal;
@@ -88,18 +88,19 @@ class MovingPair {
   }
   /// One of the shapes is a triangle that deforms.
   [[nodiscard]] bool bends() const noexcept { return turn_a_.drifts || turn_b_.drifts; }
-  /// Both are half-spaces of which at least one rotates; they then touch at once.
+  /// Both shapes are half-spaces and at least one rotates. They touch at time 0 or right after it.
   [[nodiscard]] bool touches_soon() const noexcept {
     return a().kind == solver::CoreKind::half_space && (turn_a_.angle > 0.0 || turn_b_.angle > 0.0);
   }
 
   /// Upper bound on the rounding of any gap.
   [[nodiscard]] double noise() const noexcept { return noise_ + problem_.noise(); }
-  /// The smaller extent of the two, which tolerances are relative to.
+  /// The size that tolerances are relative to: the smaller extent of both shapes, or the larger one
+  /// if the smaller is 0.
   [[nodiscard]] double size() const noexcept { return size_; }
 
-  /// The shapes are certainly disjoint outside it, by the balls about the positions of their
-  /// bodies.
+  /// Returns the interval in which the balls about the positions of both bodies overlap. At other
+  /// times the shapes are disjoint.
   [[nodiscard]] Interval window() const noexcept;
 
   /// The gap along a unit axis from a to b at the current placement, minus the noise. For a
@@ -115,11 +116,11 @@ class MovingPair {
   /// The velocity, along an axis, of a point of b at y_b from its centre, relative to a point of a
   /// at y_a.
   [[nodiscard]] double parting(const Vec& axis, const Vec& y_a, const Vec& y_b) const noexcept;
-  /// Between two times, a gap along the axis (or along a half-space's rotating normal) is below its
-  /// chord by at most half of this times the product of the times to both ends.
+  /// At a time t between two times u and v, a gap along the axis (or along the rotating normal of a
+  /// half-space) is below its chord by at most curvature / 2 * (t - u) * (v - t).
   [[nodiscard]] double curvature(const Vec& axis) const noexcept;
-  /// As above, along an axis that rotates uniformly from `from` to `to` during `width`, which ends
-  /// at the current placement. Infinite if the axes differ by more than a radian.
+  /// As above, along an axis that rotates uniformly from `from` to `to` during a time of `width`,
+  /// which ends at the time of the current placement. Infinite if |to - from| exceeds 1.
   [[nodiscard]] double curvature_between(const Vec& from, const Vec& to,
                                          double width) const noexcept;
   /// Upper bound on the speed at which two points approach each other.

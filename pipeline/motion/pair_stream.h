@@ -58,7 +58,8 @@ class PairStream {
   PairSink sink_;
 };
 
-/// A buffer for the pairs of some units of a walk; the walk stops if it is full.
+/// A buffer for the pairs of a range of units of a traversal; the traversal stops if the buffer is
+/// full.
 class BoundedPairBuffer {
  public:
   explicit BoundedPairBuffer(std::pmr::memory_resource* memory) noexcept : buffer_(memory) {}
@@ -86,9 +87,10 @@ class BoundedPairBuffer {
   bool fits_ = false;
 };
 
-/// Passes all pairs of `walk(begin, end, sink)` over `units` units to `take`, in order, at most a
-/// chunk at a time. With several threads, ranges of units are walked in parallel, each with a part
-/// of a chunk as its buffer; a range that finds more is walked again on its own. Returns false if
+/// Passes all pairs that `walk(begin, end, sink)` finds in `units` units to `take`, in the order of
+/// the units, at most a chunk at a time. With several threads, ranges of units are traversed in
+/// parallel, each with a buffer of an eighth of a chunk. A range with more pairs is traversed
+/// again, into a buffer of a whole chunk that is passed on whenever it is full. Returns false if
 /// memory is refused.
 template <typename Walk, typename Take>
 [[nodiscard]] bool stream_pairs(const Execution& execution, std::pmr::memory_resource* memory,

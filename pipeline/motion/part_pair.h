@@ -11,8 +11,9 @@ class PartPair {
 
   [[nodiscard]] const ShapeTables& tables() const noexcept { return tables_.tables(); }
 
-  /// Adds a part. A triangle of a surface keeps its corners in the body's frame, where they are bit
-  /// for bit equal to its neighbours' corners, so that nothing passes between neighbours.
+  /// Stores a part in slot 0 or 1. If the pose of a triangle has no rotation, its corners are
+  /// stored in the frame of the body. Corners that neighbouring triangles share are then equal bit
+  /// for bit, so there is no gap between neighbours.
   [[nodiscard]] MovingPart put(std::size_t slot, const MovingShape& moving) noexcept {
     SubShape part = moving.shape;
     MovingPart result{part.shape, moving.motion};

@@ -1,4 +1,4 @@
-// RelativeMotionBounds: bounds a moving shape relative to a moving frame, as a swept box, a fixed
+// RelativeMotionBounds: bounds a moving shape relative to a moving frame, as a moving box, a fixed
 // box, or a time window. body_impact.cpp traverses composite shapes with it; the scene puts boxes
 // around motions with it.
 
@@ -120,14 +120,14 @@ double RelativeMotionBounds::bend(const Interval& within) const noexcept {
   return turning_bend(width) + path_bend(farthest(within), width);
 }
 
-BoxSweep RelativeMotionBounds::sweep(const Interval& within) const noexcept {
+MovingBox RelativeMotionBounds::moving_box(const Interval& within) const noexcept {
   const double width = within.last - within.first;
   const double far = farthest(within);
   const double slack = 8.0 * mid::kSlack * (length(apart_) + length(travel_) + shape_.radius);
   const double path = path_bend(far, width);
   const Vec ball = Vec::Constant(shape_.own_radius);
   if (!std::isfinite(shape_.radius) || path > far) {
-    return PreciseBox{-ball, ball}.grown(far + slack).standing();
+    return PreciseBox{-ball, ball}.grown(far + slack).stationary();
   }
   const RelativePose first = place(within.first);
   const RelativePose last = place(within.last);
@@ -145,10 +145,10 @@ BoxSweep RelativeMotionBounds::sweep(const Interval& within) const noexcept {
     bent = 0.0;
   }
   box = {first.position + box.min, first.position + box.max};
-  BoxSweep sweep = box.grown(bent + path + slack).standing();
-  Vec::Map(sweep.direction) = last.position - first.position;
-  sweep.max_t = 1.0;
-  return sweep;
+  MovingBox moving_box = box.grown(bent + path + slack).stationary();
+  Vec::Map(moving_box.direction) = last.position - first.position;
+  moving_box.max_t = 1.0;
+  return moving_box;
 }
 
 std::uint32_t RelativeMotionBounds::piece_count() const noexcept {
@@ -167,7 +167,7 @@ PreciseBox RelativeMotionBounds::box(const Interval& within) const noexcept {
   const double pieces = std::clamp(std::ceil(turned / kMaxTurned), 1.0, kMaxPieces);
   PreciseBox all{Vec::Constant(mid::kInfinity), Vec::Constant(-mid::kInfinity)};
   for (double piece = 0.0; piece < pieces; ++piece) {
-    const BoxSweep way = sweep(
+    const MovingBox way = moving_box(
         {within.first + piece / pieces * width, within.first + (piece + 1.0) / pieces * width});
     for (const double t : {0.0, way.max_t}) {
       all.min = all.min.cwiseMin(Vec::Map(way.min) + t * Vec::Map(way.direction));

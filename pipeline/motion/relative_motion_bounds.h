@@ -10,8 +10,9 @@ struct MovingShape {
   /// In the body's frame; a whole shape may be composite.
   SubShape shape;
   const RigidMotion& motion;
-  /// Upper bounds on the distance of points from the body's position and from the shape's own
-  /// position; and the distance between these positions.
+  /// `radius` and `own_radius` are upper bounds on the distance of the shape's points from the
+  /// body's position and from the shape's own position. `arm` is the distance between these two
+  /// positions.
   double radius;
   double own_radius;
   double arm;
@@ -29,11 +30,13 @@ struct MovingShape {
   return {static_cast<double>(i) / pieces, static_cast<double>(i + 1) / pieces};
 }
 
-/// A moving shape relative to a moving frame. The path of each of its points has a bounded second
-/// derivative there, due to the rotation of the shape and the frame, and to travel in a rotating
-/// frame. So between two times a point leaves the chord by at most an eighth of the bound times the
-/// squared time between. Boxes are grown by this amount; if it is too large, a ball about the shape
-/// is used.
+/// A moving shape relative to a moving frame. In the frame, the path of each point of the shape has
+/// a bounded second derivative, due to the rotation of the shape and of the frame, and to the
+/// travel in the rotating frame. So during an interval, a point leaves its chord by at most an
+/// eighth of the bound times the squared duration. Boxes are grown by this amount. If the growth
+/// for rotation is not less than the radius of the shape, the box of a ball about the shape is
+/// used; if the growth for the path exceeds the distance from the frame, the box of a ball about
+/// the frame.
 class RelativeMotionBounds {
  public:
   /// The arguments must outlive the object.
@@ -42,14 +45,16 @@ class RelativeMotionBounds {
 
   /// A moving box that contains the shape at all times of an interval; its t from 0 to 1 spans the
   /// interval.
-  [[nodiscard]] BoxSweep sweep(const Interval& within) const noexcept;
+  [[nodiscard]] MovingBox moving_box(const Interval& within) const noexcept;
   /// The amount by which the box of an interval is grown for curved paths.
   [[nodiscard]] double bend(const Interval& within) const noexcept;
-  /// A fixed box that contains the shape at all times of an interval: the union of the boxes of its
-  /// parts, which are short enough that curvature adds only a few hundredths of the radius.
+  /// A fixed box that contains the shape at all times of an interval: the union of the moving boxes
+  /// of up to 256 equal parts of the interval. Unless more parts would be necessary, the rotations
+  /// of the shape and of the frame sum to at most half a radian in each part.
   [[nodiscard]] PreciseBox box(const Interval& within) const noexcept;
   /// The number of pieces, at most 8, into which to cut the motion before boxes are put around it.
-  /// With enough pieces, the shape moves by more than its diameter along at most one axis in each.
+  /// Unless more than 8 are necessary, the shape moves by more than its diameter along at most one
+  /// axis in each piece.
   [[nodiscard]] std::uint32_t piece_count() const noexcept;
   /// The times at which the shape may overlap a ball about the frame's position.
   [[nodiscard]] Interval window(double frame_radius) const noexcept {

@@ -1,8 +1,9 @@
 // A direction that separates two parts at the start, and along which their motions do not close the
-// gap, proves that they never touch. The normal of a contact at the start is such a direction for
-// all parts that are flush with the parts in contact, for example the triangles of a floor that a
-// body slides over. Closest points would give a proof for each part anew, but not if the gap is
-// hardly above rounding, or negative. body_impact.cpp calls this.
+// gap, proves that they never touch. If a body slides at a contact at the start, the normal of the
+// contact is such a direction also for other parts that are flush with the parts in contact, for
+// example other triangles of a floor. A search by closest points would prove this for each part
+// separately, but fails if the gap is negative or of the size of rounding errors. body_impact.cpp
+// calls this.
 
 #include "pipeline/motion/resting_contacts.h"
 
@@ -18,14 +19,15 @@ namespace {
 
 /// Normals that differ by less are equal up to rounding.
 constexpr double kSameNormal = 1e-14;
-/// The closest points may be on a face whose normal has at least this cosine with the contact
-/// normal.
+/// A face is tested as a separating direction if the cosine between its normal and the contact
+/// normal has at least this magnitude.
 constexpr double kFaceOfContact = 0.99;
 /// Exceeds the rounding of a gap, in units of the noise.
 constexpr double kRounded = 8.0;
 
-/// Lower bound on the gap over the motion: the smaller end, minus the amount by which the gap can
-/// fall below its chord.
+/// Returns a lower bound on the gap during the whole motion, the larger of two: the gap of the
+/// swept volumes, and the smaller gap at both ends minus the amount by which the gap can fall below
+/// its chord.
 [[nodiscard]] double least_gap(MovingPair& pair, const Vec& normal) noexcept {
   pair.place(0.0);
   const double swept = pair.swept_gap(normal);
@@ -42,7 +44,7 @@ constexpr double kRounded = 8.0;
 
 }  // namespace
 
-/// Two parts in the solver's order; not defined for two half-spaces.
+/// Two parts in the solver's order. `is_there` is false for two half-spaces.
 class RestingContacts::OrderedPair {
  public:
   OrderedPair(const ShapeTables& tables, const MovingPart& a, const MovingPart& b) noexcept
@@ -78,7 +80,7 @@ double RestingContacts::tolerance(const MovingPair& pair) const noexcept {
 }
 
 bool RestingContacts::find(const ShapeTables& tables, OrderedPair& ordered,
-                           Contact& contact) const noexcept {
+                           RestingContact& contact) const noexcept {
   MovingPair& pair = ordered.pair();
   PairAnswer answer;
   if (!ordered.is_there() || !ordered.distance_at_start(tables, answer)) return false;
@@ -104,11 +106,11 @@ bool RestingContacts::find(const ShapeTables& tables, OrderedPair& ordered,
   }
   contact = {ordered.turned(best), unscaled(pair.problem(), gap + pair.noise()),
              gap > 0.0 && touch_ != StartTouch::impact_unless_sliding};
-  return contact.apart || touch_ != StartTouch::meets;
+  return contact.apart || touch_ != StartTouch::impact;
 }
 
-void RestingContacts::keep(const Contact& contact) noexcept {
-  for (Contact& known : std::span(contacts_.data(), count_)) {
+void RestingContacts::keep(const RestingContact& contact) noexcept {
+  for (RestingContact& known : std::span(contacts_.data(), count_)) {
     if ((known.normal - contact.normal).squaredNorm() > kSameNormal * kSameNormal) continue;
     if (contact.gap < known.gap) known = contact;
     return;
@@ -119,11 +121,11 @@ void RestingContacts::keep(const Contact& contact) noexcept {
 void RestingContacts::record(const ShapeTables& tables, const MovingPart& a,
                              const MovingPart& b) noexcept {
   OrderedPair pair(tables, a, b);
-  Contact contact;
+  RestingContact contact;
   if (find(tables, pair, contact)) keep(contact);
 }
 
-bool RestingContacts::parts(const Contact& contact, OrderedPair& ordered) const noexcept {
+bool RestingContacts::parts(const RestingContact& contact, OrderedPair& ordered) const noexcept {
   MovingPair& pair = ordered.pair();
   const Vec normal = ordered.turned(contact.normal);
   const double least = least_gap(pair, normal);
@@ -141,10 +143,10 @@ bool RestingContacts::part(const ShapeTables& tables, const MovingPart& a,
   if (count_ == 0) return false;
   OrderedPair pair(tables, a, b);
   if (!pair.is_there()) return false;
-  const auto by = [&](const Contact& contact) { return parts(contact, pair); };
+  const auto by = [&](const RestingContact& contact) { return parts(contact, pair); };
   if (std::any_of(contacts_.begin(), contacts_.begin() + count_, by)) return true;
   // If the store is full, also test the parts' own contact.
-  Contact own;
+  RestingContact own;
   return count_ == kMaxContacts && find(tables, pair, own) && by(own);
 }
 

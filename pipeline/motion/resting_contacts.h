@@ -10,18 +10,21 @@ namespace winnow::impact {
 
 /// How shapes that overlap at the start of their motions are treated.
 enum class StartTouch : std::uint8_t {
-  meets,                 ///< an impact at time 0
+  impact,                ///< an impact at time 0
   ignored,               ///< no impact
   impact_unless_sliding  ///< an impact at time 0 unless they slide or separate there
 };
 
 /// The contacts of two bodies at the start of their motions. Bodies slide or separate at a contact
-/// if its normal separates the parts in contact all the time, up to their initial depth. Other
-/// parts of the bodies that are flush with these parts, or lower, are then not hit either.
+/// if, during the whole motion, the gap of the two parts along the contact's normal stays positive
+/// or, if the parts overlap at the start, does not fall below the initial gap, up to the tolerance.
+/// Then no impact is reported for other parts either whose gap along this normal is at least as
+/// large.
 class RestingContacts {
  public:
   /// Parts are in contact if their distance is at most share * size + length. Overlapping parts may
-  /// get deeper by at most the same amount. They are not contacts if `touch` makes them an impact.
+  /// get deeper by at most the same amount. With StartTouch::impact, overlapping parts are an
+  /// impact and not a contact.
   RestingContacts(double share, double length, StartTouch touch) noexcept
       : share_(share), length_(length), touch_(touch) {}
 
@@ -34,7 +37,7 @@ class RestingContacts {
                           const MovingPart& b) const noexcept;
 
  private:
-  struct Contact {
+  struct RestingContact {
     /// Unit vector from a to b.
     Vec normal;
     /// The gap along the normal, in the caller's lengths; negative if the parts overlap.
@@ -46,19 +49,19 @@ class RestingContacts {
 
   [[nodiscard]] double tolerance(const MovingPair& pair) const noexcept;
   [[nodiscard]] bool find(const ShapeTables& tables, OrderedPair& pair,
-                          Contact& contact) const noexcept;
-  [[nodiscard]] bool parts(const Contact& contact, OrderedPair& pair) const noexcept;
-  void keep(const Contact& contact) noexcept;
+                          RestingContact& contact) const noexcept;
+  [[nodiscard]] bool parts(const RestingContact& contact, OrderedPair& pair) const noexcept;
+  void keep(const RestingContact& contact) noexcept;
 
-  /// Contacts beyond these are not stored; a motion that slides along them may then hit other
-  /// parts.
+  /// Further contacts are not stored. A body that slides along a contact that is not stored may be
+  /// reported to hit other parts that are flush with it.
   static constexpr std::size_t kMaxContacts = 8;
 
   double share_;
   double length_;
   StartTouch touch_;
   std::size_t count_ = 0;
-  std::array<Contact, kMaxContacts> contacts_;
+  std::array<RestingContact, kMaxContacts> contacts_;
 };
 
 }  // namespace winnow::impact

@@ -11,7 +11,8 @@ namespace winnow {
 namespace {
 
 /// The angle in [0, pi / 2] with sine s and cosine c (both >= 0, not both 0), up to rounding. Each
-/// step adds the sine of the remaining angle, so that an error of about its cube remains.
+/// step adds the sine of the remaining angle; the error after the step is about a sixth of the cube
+/// of that angle.
 double angle_of(double s, double c) noexcept {
   double angle = 1.5 * s / (s + c);
   for (int i = 0; i < 5; ++i) {
@@ -24,8 +25,8 @@ double angle_of(double s, double c) noexcept {
 }  // namespace
 
 RigidMotion RigidMotion::between(const Pose& start, const Pose& end) noexcept {
-  const DefaultEnvironment environment;
-  RigidMotion motion = standing(start);
+  const DefaultFloatEnvironment environment;
+  RigidMotion motion = stationary(start);
   for (int i = 0; i < 3; ++i) motion.travel[i] = end.position[i] - start.position[i];
   if (!start.is_valid() || !end.is_valid()) {
     // Make an invalid end visible: the motion becomes invalid.
@@ -48,8 +49,8 @@ RigidMotion RigidMotion::between(const Pose& start, const Pose& end) noexcept {
 
 RigidMotion RigidMotion::by_velocities(const Pose& start, const double (&linear)[3],
                                        const double (&angular)[3], double duration) noexcept {
-  const DefaultEnvironment environment;
-  RigidMotion motion = standing(start);
+  const DefaultFloatEnvironment environment;
+  RigidMotion motion = stationary(start);
   for (int i = 0; i < 3; ++i) {
     motion.travel[i] = linear[i] * duration;
     motion.turn[i] = angular[i] * duration;
@@ -58,7 +59,7 @@ RigidMotion RigidMotion::by_velocities(const Pose& start, const double (&linear)
 }
 
 bool RigidMotion::is_valid() const noexcept {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   // Remains 0 for finite numbers, becomes NaN otherwise.
   double sum = 0.0;
   double square = 0.0;
@@ -71,7 +72,7 @@ bool RigidMotion::is_valid() const noexcept {
 }
 
 Pose RigidMotion::at(double time) const noexcept {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   Pose pose = start;
   for (int i = 0; i < 3; ++i) pose.position[i] += time * travel[i];
   const double angle = impact::length_of(turn);

@@ -2,9 +2,9 @@
 
 // Guesses of the direction along which a pair with a smooth surface has the largest gap. Near the
 // closest points of such a surface GJK converges only linearly. The normal changes almost linearly
-// between points that are near each other, so that the normal at the closest points is extrapolated
-// as by the secant method. A bad guess does no harm: it is one more direction to test, and the gap
-// along it is valid.
+// over a short distance. So the normal at the closest points is extrapolated from tested
+// directions, as in the secant method. A bad guess does no harm: it is one more direction to test,
+// and the gap along it is valid.
 
 #include "pipeline/motion/closest_cores.wide.h"
 
@@ -105,7 +105,8 @@ class SecantDirection {
     }
   }
 
-  /// After a bad guess the next one is delayed, by more with each.
+  /// After a bad guess, the next guess is delayed. Each further bad guess increases the delay, up
+  /// to kLongestPause samples.
   void pace(const DoubleMask& guessed, const DoubleMask& is_larger) {
     const Doubles zero(0.0);
     const Doubles one(1.0);
@@ -117,9 +118,9 @@ class SecantDirection {
     tried_.wait = select(guessed, tried_.pause, max(tried_.wait - one, zero));
   }
 
-  /// At the closest points the normal points from one to the other: the support point of the
-  /// difference along the normal is the normal times the distance. The distance is estimated from
-  /// the nearest point of the simplex.
+  /// At the closest points, the normal is the direction from one point to the other. So the support
+  /// point of the Minkowski difference along the normal equals the normal times the distance. The
+  /// distance is estimated from the nearest point of the simplex.
   void guess() {
     const Doubles zero(0.0);
     const Doubles largest = gaps_.largest();

@@ -13,7 +13,7 @@
 namespace winnow {
 namespace {
 
-/// A fast test that most convex shapes are in a pool.
+/// A fast test whether a convex shape is in a pool, for kinds of which no shape was removed.
 class KnownShapes {
  public:
   explicit KnownShapes(const ShapePool& pool) noexcept {
@@ -33,7 +33,7 @@ class KnownShapes {
   std::array<std::uint32_t, kShapeKinds> count_{};
 };
 
-/// Does not validate motions of convex shapes, which ImpactBatch does.
+/// Does not validate the motions of two convex shapes; ImpactBatch does.
 [[nodiscard]] Status status_of(const SubShapeQuery& parts, const MovingBodies& bodies,
                                const ImpactOptions& options, const BodyPair& pair) noexcept {
   for (const std::uint32_t body : {pair.a, pair.b}) {
@@ -98,9 +98,9 @@ Footprint ImpactResult::footprint() const noexcept {
 }
 
 /// Solves pairs [first, end), at most as many as fit a batch.
-void ImpactResult::find_stretch(const SubShapeQuery& parts, const MovingBodies& bodies,
-                                std::span<const BodyPair> pairs, const ImpactOptions& options,
-                                std::size_t first, std::size_t end) {
+void ImpactResult::find_range(const SubShapeQuery& parts, const MovingBodies& bodies,
+                              std::span<const BodyPair> pairs, const ImpactOptions& options,
+                              std::size_t first, std::size_t end) {
   impact::ImpactBatch batch(parts.shapes().tables(), options.tolerance);
   const KnownShapes known(parts.shapes());
   impact::Impact none;
@@ -130,7 +130,7 @@ void ImpactResult::find_stretch(const SubShapeQuery& parts, const MovingBodies& 
 Status time_of_impact(const ShapePool& shapes, const MovingBodies& bodies,
                       std::span<const BodyPair> pairs, const ImpactOptions& options,
                       ImpactResult& result) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   const auto refuse = [&result](Status status) {
     static_cast<void>(result.resize(0));
     return status;
@@ -147,7 +147,7 @@ Status time_of_impact(const ShapePool& shapes, const MovingBodies& bodies,
   const SubShapeQuery parts(shapes, options.composites);
   for_each_range(options.execution, pairs.size(), impact::ImpactBatch::kRoom,
                  [&](std::size_t first, std::size_t end) {
-                   result.find_stretch(parts, bodies, pairs, options, first, end);
+                   result.find_range(parts, bodies, pairs, options, first, end);
                  });
   return Status::ok;
 }

@@ -50,7 +50,8 @@ constexpr KindCodes kKindCodes;
   return even_range_length(pairs, kMinPairs, kMaxRanges);
 }
 
-// True if all of a, b < limit <= 2^31. Only sums and ors, so that every compiler vectorizes it.
+// True if all of a, b < limit <= 2^31. Uses only differences and ors, so that every compiler
+// vectorizes the loop.
 [[nodiscard]] bool all_below(std::span<const BodyPair> pairs, std::uint32_t limit) noexcept {
   std::uint32_t outside = 0;
   for (const BodyPair& pair : pairs) {
@@ -59,7 +60,7 @@ constexpr KindCodes kKindCodes;
   return (outside & kTopBit) == 0;
 }
 
-// Returns the only kind of shape that a pool holds, or kShapeKinds if there are several or none.
+// Returns the only kind of shape that a pool contains, or kShapeKinds if there are several or none.
 [[nodiscard]] std::uint32_t only_kind(const ShapeTables& tables) noexcept {
   std::uint32_t only = kShapeKinds;
   for (std::uint32_t kind = 0; kind < kShapeKinds; ++kind) {
@@ -89,8 +90,8 @@ constexpr KindCodes kKindCodes;
 
 }  // namespace
 
-/// Sorts pairs by the kinds of their shapes (counting sort, stable), the smaller kind first in
-/// each.
+/// Sorts pairs by the kinds of their shapes (counting sort, stable). In each sorted pair the body
+/// with the smaller kind is first.
 class PairBuckets {
  public:
   explicit PairBuckets(std::pmr::memory_resource* memory) noexcept
@@ -125,7 +126,7 @@ class PairBuckets {
     std::uint32_t bad_body;
     std::uint32_t mirrored;
     Codes codes;
-    /// Pairs by code. While pairs are sorted: the place of the next pair with this code.
+    /// Pairs by code. While pairs are sorted: the index of the next pair with this code.
     std::uint32_t counts[KindPairs::kCount];
 
     void clear() noexcept {
@@ -177,8 +178,8 @@ Status PairBuckets::sort(const ShapeTables& tables, std::span<const ShapeId> sha
   if (pairs.size() == 1) return take_one(tables, shapes, pairs, order, runs, bad_body);
   std::ranges::fill(counts_, 0U);
   there_ = {};
-  // If the pool holds only one kind, the kinds of the pairs need not be read. Checking the shapes
-  // of all bodies instead pays only if there are not too many bodies per pair.
+  // If the pool contains only one kind, the kinds of the pairs need not be read. Checking the
+  // shapes of all bodies instead pays only if there are at most kClassifyCost bodies per pair.
   constexpr std::size_t kClassifyCost =
       8;  // estimated cost of classifying a pair, in checks of a body
   const std::uint32_t only =
@@ -222,7 +223,7 @@ Status PairBuckets::take_one(const ShapeTables& tables, std::span<const ShapeId>
   BodyPair own = pair.front();
   if (own.a >= shapes.size() || own.b >= shapes.size()) return Status::invalid_argument;
   for (const std::uint32_t body : {own.a, own.b}) {
-    if (holds(tables, shapes[body])) continue;
+    if (has_shape(tables, shapes[body])) continue;
     bad_body = body;
     return Status::invalid_key;
   }
@@ -256,7 +257,7 @@ void PairBuckets::for_tasks(std::span<const BodyPair> pairs, const Execution& ex
 }
 
 // Calls note(i, code) for all pairs; stops with `invalid_key` at a shape that does not exist. All
-// bodies exist.
+// bodies must exist.
 template <typename Note>
 void PairBuckets::for_codes(const ShapeTables& tables, std::span<const ShapeId> shapes,
                             std::span<const BodyPair> pairs, std::size_t first, TaskCounts& task,
@@ -287,8 +288,8 @@ void PairBuckets::count_pairs(const ShapeTables& tables, std::span<const ShapeId
       task.mirrored += code / kMirrored;
     });
   }
-  // Two tables in turn: with one, runs of equal codes would make each increment depend on the one
-  // before.
+  // Counts in two tables in turn: with one table, runs of equal codes would make each increment
+  // depend on the previous increment.
   constexpr std::size_t kTurns = 2;
   std::uint32_t counts[kTurns][kMirrored + KindPairs::kCount];
   for (auto& some : counts) std::ranges::fill(some, 0U);
@@ -321,7 +322,7 @@ Status PairBuckets::sum_up(std::uint32_t& bad_body) noexcept {
   return refused->status;
 }
 
-// Turns the counts into the first place of each task's pairs, by code.
+// Turns the counts into the index of the first pair of each task, by code.
 void PairBuckets::find_offsets() noexcept {
   std::uint32_t next = 0;
   for (std::uint32_t code = there_.low; code <= there_.high; ++code) {
@@ -390,12 +391,12 @@ struct ChunkOutcome {
 };
 
 /// Consecutive pairs of one kind that one task answers.
-struct Chunk {
+struct PairChunk {
   NarrowJob job;
   NarrowKernel kernel;
   std::uint32_t first;
   ChunkOutcome outcome;
-  /// The place of its contacts among the contacts of the wave.
+  /// Index of the chunk's first contact among the contacts of the wave.
   std::size_t contacts_from = 0;
 };
 
@@ -404,17 +405,17 @@ struct Chunk {
 class Wave {
  public:
   /// Adds a chunk. The caller must fill in the job, which is not initialized.
-  [[nodiscard]] Chunk& add() noexcept { return *new (first() + size_++) Chunk; }
+  [[nodiscard]] PairChunk& add() noexcept { return *new (first() + size_++) PairChunk; }
   void clear() noexcept { size_ = 0; }
   [[nodiscard]] bool full() const noexcept { return size_ == kWave; }
-  [[nodiscard]] std::span<Chunk> chunks() noexcept { return {first(), size_}; }
+  [[nodiscard]] std::span<PairChunk> chunks() noexcept { return {first(), size_}; }
 
  private:
-  static_assert(std::is_trivially_destructible_v<Chunk>);
-  [[nodiscard]] Chunk* first() noexcept { return reinterpret_cast<Chunk*>(room_); }
+  static_assert(std::is_trivially_destructible_v<PairChunk>);
+  [[nodiscard]] PairChunk* first() noexcept { return reinterpret_cast<PairChunk*>(room_); }
 
   std::size_t size_ = 0;
-  alignas(Chunk) std::byte room_[kWave * sizeof(Chunk)];
+  alignas(PairChunk) std::byte room_[kWave * sizeof(PairChunk)];
 };
 
 void write_contacts(const NarrowJob& job, std::uint32_t i, const PairAnswer& answer,
@@ -509,12 +510,12 @@ struct Call {
   NarrowStatistics& statistics;
   std::uint32_t& bad_body;
 
-  void answer(Chunk& chunk, const NarrowResult& result, bool any_mirrored) const noexcept {
+  void answer(PairChunk& chunk, const NarrowResult& result, bool any_mirrored) const noexcept {
     // Left uninitialized if all pairs have one margin.
     double margins[kJobPairs];
-    if (!options.margins.empty()) {
+    if (!options.contact_margins.empty()) {
       for (std::uint32_t i = 0; i < chunk.job.count; ++i) {
-        margins[i] = options.margins[result.pair_of(chunk.first + i)];
+        margins[i] = options.contact_margins[result.pair_of(chunk.first + i)];
       }
       std::fill(margins + chunk.job.count, margins + kJobPairs, 0.0);
       chunk.job.margins = margins;
@@ -543,11 +544,11 @@ struct NarrowPhase::State {
 
   [[nodiscard]] Status collide(const Call& call, NarrowResult& result);
   [[nodiscard]] Status run(const Call& call, NarrowResult& result);
-  void begin(Chunk& chunk, const Call& call, NarrowResult& result, std::uint32_t first,
+  void begin(PairChunk& chunk, const Call& call, NarrowResult& result, std::uint32_t first,
              std::uint32_t count) const noexcept;
-  [[nodiscard]] bool answer_wave(const Call& call, std::span<Chunk> wave, NarrowResult& result);
-  static void take_contacts(const Chunk& chunk, NarrowResult& result) noexcept;
-  [[nodiscard]] bool gather_contacts(const Call& call, std::span<const Chunk> wave,
+  [[nodiscard]] bool answer_wave(const Call& call, std::span<PairChunk> wave, NarrowResult& result);
+  static void take_contacts(const PairChunk& chunk, NarrowResult& result) noexcept;
+  [[nodiscard]] bool gather_contacts(const Call& call, std::span<const PairChunk> wave,
                                      NarrowResult& result);
 
   PairBuckets buckets;
@@ -562,7 +563,7 @@ NarrowPhase::NarrowPhase(NarrowPhase&& other) noexcept
     : memory_(other.memory_),
       state_(std::exchange(other.state_, nullptr)),
       statistics_(std::exchange(other.statistics_, {})),
-      bad_body_(std::exchange(other.bad_body_, 0)) {}
+      bad_body_(std::exchange(other.bad_body_, ~0U)) {}
 
 Status NarrowPhase::collide(const ShapePool& shapes, const Bodies& bodies,
                             std::span<const BodyPair> pairs, const NarrowOptions& options,
@@ -573,7 +574,7 @@ Status NarrowPhase::collide(const ShapePool& shapes, const Bodies& bodies,
 Status NarrowPhase::collide(const ShapeTables& tables, const Bodies& bodies,
                             std::span<const BodyPair> pairs, const NarrowOptions& options,
                             NarrowResult& result) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   const StageScope stage(WorkStage::narrow_phase);
   statistics_ = {};
   bad_body_ = ~0U;
@@ -589,8 +590,9 @@ Status NarrowPhase::collide(const ShapeTables& tables, const Bodies& bodies,
 
 Status NarrowPhase::State::collide(const Call& call, NarrowResult& result) {
   const NarrowOptions& options = call.options;
-  const bool are_matched = call.bodies.shapes.size() == call.bodies.poses.size() &&
-                           (options.margins.empty() || options.margins.size() == call.pairs.size());
+  const bool are_matched =
+      call.bodies.shapes.size() == call.bodies.poses.size() &&
+      (options.contact_margins.empty() || options.contact_margins.size() == call.pairs.size());
   if (!are_matched) return Status::size_mismatch;
   if (!are_valid(options)) return Status::invalid_argument;
   const Status status = buckets.sort(call.tables, call.bodies.shapes, call.pairs, options.execution,
@@ -606,7 +608,7 @@ Status NarrowPhase::State::run(const Call& call, NarrowResult& result) {
     const NarrowKernel kernel = kernel_for(run.a, run.b, call.options);
     if (kernel == nullptr) call.statistics.without_lanes += run.count;
     for (std::uint32_t at = 0; at < run.count; at += kJobPairs) {
-      Chunk& chunk = wave.add();
+      PairChunk& chunk = wave.add();
       chunk.kernel = kernel;
       begin(chunk, call, result, run.first + at, std::min(kJobPairs, run.count - at));
       if (!wave.full()) continue;
@@ -625,7 +627,7 @@ Status NarrowPhase::State::run(const Call& call, NarrowResult& result) {
   return call.bad_body == ~0U ? Status::ok : Status::invalid_pose;
 }
 
-void NarrowPhase::State::begin(Chunk& chunk, const Call& call, NarrowResult& result,
+void NarrowPhase::State::begin(PairChunk& chunk, const Call& call, NarrowResult& result,
                                std::uint32_t first, std::uint32_t count) const noexcept {
   chunk.first = first;
   NarrowJob& job = chunk.job;
@@ -635,7 +637,7 @@ void NarrowPhase::State::begin(Chunk& chunk, const Call& call, NarrowResult& res
   job.poses = call.bodies.poses.data();
   job.has_many_bodies = call.bodies.poses.size() > kManyBodies;
   job.tables = &call.tables;
-  job.margin = call.options.margin;
+  job.margin = call.options.contact_margin;
   job.margins = nullptr;
   job.overlap = offset(result.overlap_.data(), first);
   job.distance = offset(result.distance_.data(), first);
@@ -649,7 +651,7 @@ void NarrowPhase::State::begin(Chunk& chunk, const Call& call, NarrowResult& res
   job.contacts = {};
 }
 
-bool NarrowPhase::State::answer_wave(const Call& call, std::span<Chunk> wave,
+bool NarrowPhase::State::answer_wave(const Call& call, std::span<PairChunk> wave,
                                      NarrowResult& result) {
   const bool manifold = call.options.level == ContactLevel::manifold;
   const bool any_mirrored = buckets.any_mirrored();
@@ -660,7 +662,7 @@ bool NarrowPhase::State::answer_wave(const Call& call, std::span<Chunk> wave,
         wave.size(), [&](std::size_t i) { call.answer(wave[i], result, any_mirrored); });
   } else if (call.options.execution.concurrency() == 1) {
     const std::size_t room = max_room_for(call.pairs.size());
-    for (Chunk& chunk : wave) {
+    for (PairChunk& chunk : wave) {
       if (!result.contacts_.grow(result.contacts() + room)) return false;
       chunk.job.contacts = writer_to(result.contacts_, result.contacts());
       call.answer(chunk, result, any_mirrored);
@@ -668,7 +670,7 @@ bool NarrowPhase::State::answer_wave(const Call& call, std::span<Chunk> wave,
     }
   } else {
     std::size_t from = 0;
-    for (Chunk& chunk : wave) {
+    for (PairChunk& chunk : wave) {
       chunk.contacts_from = from;
       from += room_for(chunk.job.count);
     }
@@ -679,7 +681,7 @@ bool NarrowPhase::State::answer_wave(const Call& call, std::span<Chunk> wave,
     });
     if (!gather_contacts(call, wave, result)) return false;
   }
-  for (const Chunk& chunk : wave) {
+  for (const PairChunk& chunk : wave) {
     if (chunk.kernel != nullptr) call.statistics.recomputed += chunk.outcome.uncertified;
     call.statistics.exact += chunk.outcome.solver.exact;
     call.statistics.bounded += chunk.outcome.solver.bounded;
@@ -688,14 +690,14 @@ bool NarrowPhase::State::answer_wave(const Call& call, std::span<Chunk> wave,
   return true;
 }
 
-// For a chunk that wrote its contacts directly to the result.
-void NarrowPhase::State::take_contacts(const Chunk& chunk, NarrowResult& result) noexcept {
+// Completes a chunk that wrote its contacts directly to the result.
+void NarrowPhase::State::take_contacts(const PairChunk& chunk, NarrowResult& result) noexcept {
   const auto base = static_cast<std::uint32_t>(result.contacts());
   for (std::uint32_t i = 0; i < chunk.job.count; ++i) chunk.job.contact_first[i] += base;
   result.contacts_.set_size(base + chunk.outcome.contacts);
 }
 
-bool NarrowPhase::State::gather_contacts(const Call& call, std::span<const Chunk> wave,
+bool NarrowPhase::State::gather_contacts(const Call& call, std::span<const PairChunk> wave,
                                          NarrowResult& result) {
   std::size_t base[kWave + 1] = {result.contacts()};
   for (std::size_t i = 0; i < wave.size(); ++i) base[i + 1] = base[i] + wave[i].outcome.contacts;

@@ -26,7 +26,8 @@ class OnePair {
     job_.poses = poses_;
     job_.has_many_bodies = false;
     job_.tables = &tables;
-    job_.margin = options.margins.empty() ? options.margin : options.margins[0];
+    job_.margin =
+        options.contact_margins.empty() ? options.contact_margin : options.contact_margins[0];
     job_.margins = nullptr;
     job_.uncertified = &uncertified_;
   }
@@ -117,10 +118,10 @@ Status collide(const ShapePool& shapes, ShapeId a, const Pose& pose_a, ShapeId b
 
 Status collide(const ShapeTables& tables, ShapeId a, const Pose& pose_a, ShapeId b,
                const Pose& pose_b, const NarrowOptions& options, PairAnswer& answer) noexcept {
-  const DefaultEnvironment environment;
-  if (options.margins.size() > 1) return Status::size_mismatch;
+  const DefaultFloatEnvironment environment;
+  if (options.contact_margins.size() > 1) return Status::size_mismatch;
   if (!are_valid(options)) return Status::invalid_argument;
-  if (!holds(tables, a) || !holds(tables, b)) return Status::invalid_key;
+  if (!has_shape(tables, a) || !has_shape(tables, b)) return Status::invalid_key;
   if (!is_mirrored(a, b)) {
     OnePair pair(tables, a, pose_a, b, pose_b, options);
     return pair.find(answer) ? Status::ok : Status::invalid_pose;

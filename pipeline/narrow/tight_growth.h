@@ -11,8 +11,8 @@ namespace winnow {
 inline constexpr std::size_t kSmallColumn = std::size_t{1} << 16U;
 
 /// As Column::resize, for columns whose size hardly changes from frame to frame: grows the capacity
-/// by a sixteenth instead of a half, so that less memory stays unused. Small columns grow by a
-/// half.
+/// by a sixteenth instead of a half, or to `count` if that is more, so that less memory stays
+/// unused. Small columns grow by a half.
 template <typename T>
 [[nodiscard]] bool resize_tightly(Column<T>& column, std::size_t count) noexcept {
   if (column.capacity() * sizeof(T) < kSmallColumn) return column.resize(count);

@@ -14,10 +14,11 @@ namespace winnow {
   const bool has_level =
       options.level >= ContactLevel::boolean && options.level <= ContactLevel::manifold;
   const auto is_length = [](double margin) { return std::isfinite(margin) && margin >= 0.0; };
-  return has_level && is_length(options.margin) && std::ranges::all_of(options.margins, is_length);
+  return has_level && is_length(options.contact_margin) &&
+         std::ranges::all_of(options.contact_margins, is_length);
 }
 
-[[nodiscard]] inline bool holds(const ShapeTables& tables, ShapeId shape) noexcept {
+[[nodiscard]] inline bool has_shape(const ShapeTables& tables, ShapeId shape) noexcept {
   const std::uint32_t kind = shape.kind_index();
   return kind < kShapeKinds && shape.index() < tables.count[kind];
 }

@@ -62,7 +62,7 @@ static_assert(std::endian::native == std::endian::little, "keys are read as 64-b
   const char kind = array.dtype().kind();
   const bool is_real = (kind == 'f' && array.itemsize() <= 8) || kind == 'i' || kind == 'u';
   if (!is_real) {
-    throw py::type_error(std::string(name) + ": numbers in float or double are wanted, not " +
+    throw py::type_error(std::string(name) + ": expected numbers in float or double, not " +
                          kind_text(array));
   }
   if (is_native(array) && (is_of(array, 'f', 4) || is_of(array, 'f', 8))) return array;
@@ -138,7 +138,7 @@ BoxView BoxInput::view(std::vector<Aabb>& room) const {
 
 namespace {
 
-/// Converts integers of another type, or not contiguous, to T.
+/// Converts integers that are of another type, or not contiguous, to T.
 template <typename T>
 [[nodiscard]] py::array converted(const py::array& array, const char* name) {
   const auto out_of_range = [&] {
@@ -162,10 +162,10 @@ template <typename T>
 [[nodiscard]] py::array integers_in(py::handle object, const char* name) {
   py::array array = array_of(object, name);
   const char kind = array.dtype().kind();
-  // numpy makes an array of double of an empty list.
+  // numpy converts an empty list to an array of double.
   if (array.size() == 0 && kind == 'f') return array.attr("astype")("u8");
   if (kind == 'i' || kind == 'u') return array;
-  throw py::type_error(std::string(name) + ": whole numbers are wanted, not " + kind_text(array));
+  throw py::type_error(std::string(name) + ": expected whole numbers, not " + kind_text(array));
 }
 
 }  // namespace
@@ -177,9 +177,9 @@ Integers<T>::Integers(py::handle object, const char* name, std::size_t columns)
       columns == 1 ? array_.ndim() == 1
                    : array_.ndim() == 2 && static_cast<std::size_t>(array_.shape(1)) == columns;
   if (!fits) {
-    const std::string wanted = columns == 1 ? "(n,)" : "(n, " + std::to_string(columns) + ")";
-    throw Refusal(Status::size_mismatch,
-                  std::string(name) + ": expected shape " + wanted + ", not " + shape_text(array_));
+    const std::string expected = columns == 1 ? "(n,)" : "(n, " + std::to_string(columns) + ")";
+    throw Refusal(Status::size_mismatch, std::string(name) + ": expected shape " + expected +
+                                             ", not " + shape_text(array_));
   }
   const bool is_dense = (array_.flags() & py::array::c_style) != 0;
   if (!(is_of(array_, 'u', sizeof(T)) && is_dense && is_native(array_))) {
@@ -301,7 +301,8 @@ class WaitingBlocks {
     std::size_t bytes;
   };
 
-  /// Returns the smallest block that is large enough and not much larger, or a null block.
+  /// Returns the smallest block that is large enough, but at most about twice as large; a null
+  /// block if there is none.
   [[nodiscard]] Block take(std::size_t bytes) {
     const std::lock_guard lock(mutex_);
     auto best = waiting_.end();
@@ -317,11 +318,11 @@ class WaitingBlocks {
   }
   void put(Block block) noexcept {
     const std::lock_guard lock(mutex_);
-    if (block.bytes > kMostBytes || !has_room_) {
+    if (block.bytes > kMaxBytes || !has_room_) {
       std::free(block.memory);
       return;
     }
-    while (waiting_.size() == kMost || held_ + block.bytes > kMostBytes) {
+    while (waiting_.size() == kMaxBlocks || held_ + block.bytes > kMaxBytes) {
       std::free(waiting_.front().memory);
       held_ -= waiting_.front().bytes;
       waiting_.erase(waiting_.begin());
@@ -332,13 +333,13 @@ class WaitingBlocks {
   void reserve() {
     const std::lock_guard lock(mutex_);
     if (has_room_) return;
-    waiting_.reserve(kMost);
+    waiting_.reserve(kMaxBlocks);
     has_room_ = true;
   }
 
  private:
-  static constexpr std::size_t kMost = 16;
-  static constexpr std::size_t kMostBytes = std::size_t{128} << 20U;
+  static constexpr std::size_t kMaxBlocks = 16;
+  static constexpr std::size_t kMaxBytes = std::size_t{128} << 20U;
 
   std::mutex mutex_;
   std::vector<Block> waiting_;

@@ -31,15 +31,15 @@ namespace py = pybind11;
 /// byte order. Other types that convert to double without loss are converted.
 class Numbers {
  public:
-  /// Expects `count` entries of `shape` each: an array with one dimension more than `shape`. `name`
-  /// is for messages. If `one`, a single entry with the dimensions of `shape` is accepted for all
+  /// Expects any number of entries of `shape`: an array with one dimension more than `shape`.
+  /// `name` is for messages. If `one`, a single entry, an array of `shape`, is accepted for all
   /// entries: its stride is 0, and `repeat` sets its count.
   Numbers(py::handle object, const char* name, const std::vector<std::size_t>& shape,
           bool one = false);
 
   [[nodiscard]] std::size_t count() const noexcept { return count_; }
   [[nodiscard]] bool is_single() const noexcept { return single_; }
-  /// A single entry is used for all.
+  /// True if a single entry is used for all.
   [[nodiscard]] bool is_one() const noexcept { return one_; }
   void repeat(std::size_t count) noexcept { count_ = count; }
   /// Throws a size_mismatch unless there are `count` entries; repeats a single entry.
@@ -208,11 +208,11 @@ template <typename T>
 }
 
 /// A cache of memory blocks of large arrays. A block that is no longer used goes to the next array
-/// of about its size, so that a steady frame has no page faults, which cost more than most queries.
-/// Keeps a few blocks. Thread-safe.
+/// of about its size, so the pages of such arrays are mapped only once. Keeps at most 16 blocks and
+/// 128 MB. Thread-safe.
 class BlockCache {
  public:
-  /// Smaller arrays come from the allocator, whose pages are mapped already.
+  /// Smaller arrays come from numpy's allocator, which reuses mapped pages.
   static constexpr std::size_t kMinBytes = std::size_t{1} << 16U;
 
   /// Returns a block of at least `bytes` bytes, and the capsule that releases it. Needs the GIL.

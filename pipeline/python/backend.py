@@ -37,22 +37,22 @@ def tag():
 
 def run(*command):
     """Runs a build; prints the progress of ninja or make, and the output only if it fails."""
-    said = []
+    output = []
     tenth = 0
     with subprocess.Popen(
         command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
     ) as process:
         for line in process.stdout:
-            said.append(line)
+            output.append(line)
             step = re.match(r"\[ *(\d+)(?:/(\d+)|%)\]", line)
             done = 10 * int(step[1]) // int(step[2] or 100) if step else 0
             if done > tenth:
                 tenth = done
                 print("winnow: %d %%" % (10 * done), file=sys.stderr, flush=True)
     if process.returncode != 0:
-        sys.stderr.write("".join(said))
+        sys.stderr.write("".join(output))
         raise SystemExit(
-            "winnow: failed: %s\nOn Debian it wants: apt-get install %s"
+            "winnow: failed: %s\nOn Debian it needs: apt-get install %s"
             % (shlex.join(command), PACKAGES)
         )
 

@@ -14,28 +14,28 @@ namespace winnow::python {
 /// Number of queries that one task answers with the same buffers.
 inline constexpr std::size_t kQueriesPerTask = 256;
 
-[[nodiscard]] inline std::size_t tasks_for(std::size_t questions) noexcept {
-  return (questions + kQueriesPerTask - 1) / kQueriesPerTask;
+[[nodiscard]] inline std::size_t tasks_for(std::size_t queries) noexcept {
+  return (queries + kQueriesPerTask - 1) / kQueriesPerTask;
 }
 
 /// Result of a batch of queries: the first failure, if any.
 struct Outcome {
   Status status = Status::ok;
-  std::size_t question = 0;
+  std::size_t entry = 0;
 
   [[nodiscard]] std::string text(const char* call) const {
-    return std::string(call) + ", question " + std::to_string(question);
+    return std::string(call) + ", entry " + std::to_string(entry);
   }
 };
 
-/// Calls `answer(task, question)` for each query until one fails; the queries of a task run in
-/// sequence on one thread. The outcome does not depend on the number of threads.
+/// Calls `answer(task, query)` for each query. The queries of a task run in sequence on one thread
+/// until one fails. Returns the failure of the first query that failed; the result does not depend
+/// on the number of threads.
 template <typename Answer>
-[[nodiscard]] Outcome answer_all(const Execution& execution, std::size_t questions,
-                                 Answer&& answer) {
-  std::vector<Outcome> outcomes(tasks_for(questions));
+[[nodiscard]] Outcome answer_all(const Execution& execution, std::size_t queries, Answer&& answer) {
+  std::vector<Outcome> outcomes(tasks_for(queries));
   execution.for_each(outcomes.size(), [&](std::size_t task) {
-    const std::size_t end = std::min(questions, (task + 1) * kQueriesPerTask);
+    const std::size_t end = std::min(queries, (task + 1) * kQueriesPerTask);
     for (std::size_t i = task * kQueriesPerTask; i < end; ++i) {
       Status status = Status::out_of_memory;
       try {
@@ -55,19 +55,20 @@ template <typename Answer>
   return {};
 }
 
-/// Lists that tasks produce, and where the list of each query begins.
+/// The lists of results of all queries, and the index at which each of them begins. Tasks fill
+/// lists of their own, which `join` concatenates.
 template <typename Entry>
 struct Lists {
-  explicit Lists(std::size_t questions) : of_task(tasks_for(questions)), first(questions + 1) {}
+  explicit Lists(std::size_t queries) : of_task(tasks_for(queries)), first(queries + 1) {}
 
   std::vector<std::vector<Entry>> of_task;
   /// While tasks run, element [i + 1] is the number of entries of query i.
   std::vector<std::uint64_t> first;
   std::vector<Entry> entries;
 
-  void put(std::size_t task, std::size_t question, const Entry* begin, const Entry* end) {
+  void put(std::size_t task, std::size_t query, const Entry* begin, const Entry* end) {
     of_task[task].insert(of_task[task].end(), begin, end);
-    first[question + 1] += static_cast<std::uint64_t>(end - begin);
+    first[query + 1] += static_cast<std::uint64_t>(end - begin);
   }
   void join() {
     for (std::size_t i = 1; i < first.size(); ++i) first[i] += first[i - 1];

@@ -27,18 +27,18 @@ auto changing_scene(SharedScene& s, Body&& body) {
   });
 }
 
-/// A motion by name for all bodies, or numbers as in FIXED, DYNAMIC, SLEEPING.
-class MotionInput {
+/// A state by name for all bodies, or numbers as in FIXED, DYNAMIC, SLEEPING.
+class BodyStateInput {
  public:
-  explicit MotionInput(py::handle object)
+  explicit BodyStateInput(py::handle object)
       : numbers_(py::isinstance<py::str>(object)
                      ? EachInteger(py::int_(static_cast<int>(chosen(
-                                       kMotionNames, py::cast<std::string>(object), "motion"))),
-                                   "motion", kMotions - 1)
-                     : EachInteger(object, "motion", kMotions - 1)) {}
+                                       kBodyStateNames, py::cast<std::string>(object), "state"))),
+                                   "state", kBodyStates - 1)
+                     : EachInteger(object, "state", kBodyStates - 1)) {}
   void expect(std::size_t count) const { numbers_.expect(count); }
-  [[nodiscard]] Motion operator[](std::size_t i) const noexcept {
-    return static_cast<Motion>(numbers_[i]);
+  [[nodiscard]] BodyState operator[](std::size_t i) const noexcept {
+    return static_cast<BodyState>(numbers_[i]);
   }
 
  private:
@@ -49,9 +49,9 @@ class MotionInput {
 class FilterInput {
  public:
   FilterInput(py::handle layers, py::handle mask, py::handle environment)
-      : layers_(layers, "layers", kMost),
-        mask_(mask, "mask", kMost),
-        environment_(environment, "environment", kMost) {}
+      : layers_(layers, "layers", kMaxMask),
+        mask_(mask, "mask", kMaxMask),
+        environment_(environment, "environment", kMaxMask) {}
   void expect(std::size_t count) const {
     for (const EachInteger* each : {&layers_, &mask_, &environment_}) each->expect(count);
   }
@@ -61,7 +61,7 @@ class FilterInput {
   }
 
  private:
-  static constexpr std::uint64_t kMost = std::numeric_limits<std::uint32_t>::max();
+  static constexpr std::uint64_t kMaxMask = std::numeric_limits<std::uint32_t>::max();
   EachInteger layers_;
   EachInteger mask_;
   EachInteger environment_;

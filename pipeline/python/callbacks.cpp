@@ -59,7 +59,7 @@ void Raised::CallScope::raise() const {
 PythonFunction::PythonFunction(py::object function, const char* name)
     : function_(std::move(function)) {
   if (PyCallable_Check(function_.ptr()) == 0) {
-    throw py::type_error(std::string(name) + ": something that can be called is wanted");
+    throw py::type_error(std::string(name) + ": expected a callable");
   }
 }
 
@@ -71,10 +71,10 @@ PythonFunction::~PythonFunction() {
 bool Predicate::passes(std::uint64_t first, std::uint64_t second) noexcept {
   if (has_failed()) return false;
   bool answer = false;
-  function_.ask(
+  function_.call(
       [&](const py::object& function) {
-        const py::object said = function(first, second);
-        const int truth = PyObject_IsTrue(said.ptr());
+        const py::object result = function(first, second);
+        const int truth = PyObject_IsTrue(result.ptr());
         if (truth < 0) throw py::error_already_set();
         answer = truth != 0;
       },

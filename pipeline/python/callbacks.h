@@ -1,8 +1,9 @@
 #pragma once
 
 // Python functions that winnow calls during its work: from any of its threads, one at a time,
-// because each call takes the GIL. An exception in them is stored, the work continues with a
-// default result, and the call from Python that is in progress raises the exception at its end.
+// because each call takes the GIL. If such a function raises an exception, the exception is stored,
+// the work continues with a default result, and the winnow call in progress raises the exception at
+// its end.
 
 #include "pipeline/python/gil.h"
 #include "pipeline/python/refusal.h"
@@ -17,7 +18,7 @@ namespace winnow::python {
 
 namespace py = pybind11;
 
-/// Marks the current thread as being inside such a function.
+/// While it exists, marks the current thread as being inside such a function.
 class InCallback {
  public:
   InCallback() noexcept { ++depth_; }
@@ -36,8 +37,8 @@ class InCallback {
   static inline thread_local int depth_ = 0;
 };
 
-/// Calls use(), which calls Python, and, if an exception leaves it, keep(), while the exception is
-/// handled. Both run with the GIL. On any thread.
+/// Calls use(), which calls Python. If use() throws, calls keep() in the exception handler. Takes
+/// the GIL for both calls; may be called on any thread.
 template <typename Use, typename Keep>
 void call_python(Use&& use, Keep&& keep) noexcept {
   const WithGil hold;
@@ -51,13 +52,13 @@ void call_python(Use&& use, Keep&& keep) noexcept {
   }
 }
 
-/// Returns the exception that is being handled, as a Python object. With the GIL.
+/// Returns the exception that is being handled, as a Python object. Requires the GIL.
 [[nodiscard]] py::object caught_exception() noexcept;
-/// Raises a Python exception. With the GIL.
+/// Raises a Python exception. Requires the GIL.
 [[noreturn]] void raise(const py::object& exception);
 
 /// Stores exceptions of functions that any call may run (support functions), for all calls in
-/// progress. With the GIL.
+/// progress. Requires the GIL.
 class Raised {
  public:
   /// Stores the exception that is being handled. If no call is in progress, reports it as
@@ -108,7 +109,7 @@ class PythonFunction {
   [[nodiscard]] const py::object& object() const noexcept { return function_; }
   /// Calls use(function), as `call_python`.
   template <typename Use, typename Keep>
-  void ask(Use&& use, Keep&& keep) const noexcept {
+  void call(Use&& use, Keep&& keep) const noexcept {
     call_python([&] { use(function_); }, keep);
   }
 
@@ -128,7 +129,7 @@ class Predicate {
     return has_failed_.load(std::memory_order_relaxed);
   }
   [[nodiscard]] bool passes(std::uint64_t first, std::uint64_t second) noexcept;
-  /// Raises its exception. With the GIL.
+  /// Raises its exception. Requires the GIL.
   [[noreturn]] void raise();
   /// Raises its exception, if there is one.
   void raise_if_failed() {

@@ -83,11 +83,11 @@ void remove(SharedCluster& c, py::handle name_array, const Rank& rank) {
 }
 
 [[nodiscard]] py::array self_pairs(SharedCluster& c, const std::string& order) {
-  const Order wanted = chosen(kOrders, order, "order");
+  const Order pair_order = chosen(kOrders, order, "order");
   std::vector<std::uint64_t> found;
   c.call(
       [&] {
-        const Status status = c.own().self_pairs(wanted);
+        const Status status = c.own().self_pairs(pair_order);
         if (status != Status::ok) return status;
         const std::uint32_t first = c.cluster().first_hosted();
         for (std::uint32_t rank = first; rank < first + c.cluster().hosted(); ++rank) {

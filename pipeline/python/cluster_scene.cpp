@@ -21,8 +21,8 @@
 namespace winnow::python {
 namespace {
 
-/// A cluster, its ranks and the shapes. Shapes are pinned for its lifetime, because bodies that
-/// come from other processes refer to them by id only.
+/// A cluster, its ranks and the shapes. No shape may be removed while the cluster exists, because
+/// bodies that come from other processes refer to shapes only by id.
 struct RanksWithBodies {
   RanksWithBodies(std::shared_ptr<SharedShapes> of, const py::object& communicator,
                   std::uint32_t count)
@@ -38,7 +38,7 @@ struct RanksWithBodies {
   std::optional<ClusterScene> cluster;
 };
 
-/// The Python object: the cluster and the contacts of each rank. Arrays of contacts keep the
+/// The Python object: the cluster, and the contacts of each rank. Arrays of contacts keep the
 /// cluster alive.
 class SharedClusterScene : public NeedsInit {
  public:
@@ -96,10 +96,10 @@ class SharedClusterScene : public NeedsInit {
 
 [[nodiscard]] std::shared_ptr<SharedClusterScene> make_cluster(
     const std::shared_ptr<SharedShapes>& shapes, const py::object& comm, std::uint32_t ranks,
-    double margin, const std::string& tier, bool contact_reduction,
+    double contact_margin, const std::string& tier, bool contact_reduction,
     const std::vector<std::string>& structures, bool parallel, double imbalance) {
   ClusterSceneOptions options;
-  options.scene = scene_options(margin, tier, structures, parallel);
+  options.scene = scene_options(contact_margin, tier, structures, parallel);
   options.scene.composites = &shapes->composites;
   options.scene.contact_reduction = contact_reduction;
   options.imbalance = imbalance;
@@ -108,19 +108,19 @@ class SharedClusterScene : public NeedsInit {
 
 /// Bodies with their names.
 struct NamedBodies {
-  NamedBodies(py::handle name_array, py::handle shape_array, py::handle poses, py::handle motions,
+  NamedBodies(py::handle name_array, py::handle shape_array, py::handle poses, py::handle states,
               py::handle layers, py::handle mask, py::handle environment)
       : names(name_array, "names") {
     const PoseInput pose(poses);
     const ShapeInput shape(shape_array);
-    const MotionInput motion(motions);
+    const BodyStateInput state(states);
     const FilterInput filter(layers, mask, environment);
     bodies.resize(pose.count());
     shape.expect(bodies.size());
-    motion.expect(bodies.size());
+    state.expect(bodies.size());
     filter.expect(bodies.size());
     for (std::size_t i = 0; i < bodies.size(); ++i) {
-      bodies[i] = {shape[i], pose[i], motion[i], filter[i], 0, {}, 0};
+      bodies[i] = {shape[i], pose[i], state[i], filter[i], 0, {}, 0};
     }
   }
   [[nodiscard]] ClusterSceneBatch batch() const noexcept { return {names.values(), bodies}; }
@@ -130,9 +130,9 @@ struct NamedBodies {
 };
 
 void add(SharedClusterScene& c, py::handle names, py::handle shapes, py::handle poses,
-         py::handle motions, py::handle layers, py::handle mask, py::handle environment,
+         py::handle states, py::handle layers, py::handle mask, py::handle environment,
          const Rank& rank) {
-  const NamedBodies bodies(names, shapes, poses, motions, layers, mask, environment);
+  const NamedBodies bodies(names, shapes, poses, states, layers, mask, environment);
   const std::uint32_t to = c.hosted(rank) - c.cluster().first_hosted();
   std::vector<ClusterSceneBatch> batches(c.cluster().hosted());
   std::vector<Status> answers(batches.size(), Status::ok);
@@ -201,7 +201,7 @@ void collide(SharedClusterScene& c, const std::string& level_name) {
   result["name"] = given(std::move(names));
   result["shape"] = columns.column<std::uint32_t>(offsetof(BodyDefinition, shape));
   result["pose"] = columns.rows<double>(offsetof(BodyDefinition, pose), 7);
-  result["motion"] = columns.column<std::uint8_t>(offsetof(BodyDefinition, motion));
+  result["state"] = columns.column<std::uint8_t>(offsetof(BodyDefinition, state));
   return result;
 }
 
@@ -243,7 +243,7 @@ using ClusterSceneClass = py::class_<SharedClusterScene, std::shared_ptr<SharedC
 void add_changes(ClusterSceneClass& type) {
   using py::arg;
   constexpr std::uint32_t every = ~0U;
-  type.def("add", &add, arg("names"), arg("shapes"), arg("poses"), arg("motion") = "dynamic",
+  type.def("add", &add, arg("names"), arg("shapes"), arg("poses"), arg("state") = "dynamic",
            arg("layers") = 1, arg("mask") = every, arg("environment") = 0, py::kw_only(),
            arg("rank") = py::none(),
            "Adds n bodies: names (n,) uint64 that no other body has, otherwise as Scene.add. A "
@@ -274,7 +274,7 @@ void add_answers(ClusterSceneClass& type) {
            "A digest, 128 bits as 32 digits, of the contacts of all ranks: the same on any number "
            "of ranks. Collective.")
       .def("bodies", &body_columns, arg("rank") = py::none(),
-           "The bodies of a rank: columns name, shape, pose (n, 7), motion.")
+           "The bodies of a rank: columns name, shape, pose (n, 7), state.")
       .def("migrated", &migrated, arg("rank") = py::none(),
            "Names of bodies that the last `collide` moved to this rank, and of bodies that it "
            "moved to others: (n,) and (m,) uint64.")
@@ -298,9 +298,9 @@ void add_cluster_scene(py::module_& module) {
       "added the same shapes in the same order; no shape can be removed while the cluster exists. "
       "Collective calls are made by every process, in the same order.");
   type.def(py::init(&make_cluster), arg("shapes").none(false), arg("comm") = py::none(),
-           arg("ranks") = 1, py::kw_only(), arg("margin") = 0.0, arg("tier") = "robust",
+           arg("ranks") = 1, py::kw_only(), arg("contact_margin") = 0.0, arg("tier") = "robust",
            arg("contact_reduction") = false,
-           arg("structures") = std::vector<std::string>(kMotions, "LinearBvh"),
+           arg("structures") = std::vector<std::string>(kBodyStates, "LinearBvh"),
            arg("parallel") = true, arg("imbalance") = 1.1,
            "`comm`, `ranks` and `imbalance` as for Cluster, the others as for Scene.")
       .def_property_readonly(

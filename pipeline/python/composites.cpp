@@ -16,7 +16,7 @@
 namespace winnow::python {
 namespace {
 
-/// A view of points without a copy.
+/// Returns a view of the points; copies nothing.
 [[nodiscard]] PointView view_of(const Numbers& points) {
   const auto stride = static_cast<std::size_t>(points.stride());
   if (points.is_single()) {
@@ -89,7 +89,7 @@ class HeightInput {
   [[nodiscard]] static const py::array& numbers_of(const py::array& array) {
     const char kind = array.dtype().kind();
     if (kind == 'f' || kind == 'i' || kind == 'u') return array;
-    throw py::type_error("heights: numbers are wanted");
+    throw py::type_error("heights: expected numbers");
   }
 
   py::array_t<float, py::array::c_style | py::array::forcecast> heights_;
@@ -160,10 +160,11 @@ void update_height_field(SharedShapes& shapes, std::uint32_t field, std::uint32_
   return py::make_tuple(child, own);
 }
 
-/// Calls set(id, now) for each surface, all or none: is(id) gives the old value for an undo.
+/// Calls set(id, now) for each surface. If one call fails, gives the surfaces before it their old
+/// values, which is(id) returned.
 template <typename Set, typename Is>
-void tell(SharedShapes& shapes, py::handle surface_array, bool now, const char* call, Set&& set,
-          Is&& is) {
+void set_each(SharedShapes& shapes, py::handle surface_array, bool now, const char* call, Set&& set,
+              Is&& is) {
   const Integers<std::uint32_t> surfaces(surface_array, "surfaces");
   std::vector<std::uint8_t> was(surfaces.count());
   const Outcome outcome = changing(shapes.mutex, [&] {
@@ -184,7 +185,7 @@ void tell(SharedShapes& shapes, py::handle surface_array, bool now, const char* 
 
 void set_one_sided(SharedShapes& shapes, py::handle surfaces, bool one_sided) {
   CompositePool& pool = shapes.composites;
-  tell(
+  set_each(
       shapes, surfaces, one_sided, "set_one_sided",
       [&](ShapeId id, bool now) { return pool.set_one_sided(id, now); },
       [&](ShapeId id) { return pool.is_one_sided(id); });
@@ -192,7 +193,7 @@ void set_one_sided(SharedShapes& shapes, py::handle surfaces, bool one_sided) {
 
 void set_solid(SharedShapes& shapes, py::handle meshes, bool solid) {
   CompositePool& pool = shapes.composites;
-  tell(
+  set_each(
       shapes, meshes, solid, "set_solid",
       [&](ShapeId id, bool now) { return pool.set_solid(id, now); },
       [&](ShapeId id) { return pool.is_solid(id); });

@@ -194,7 +194,7 @@ void add_contacts(py::module_& module) {
       [](const Contacts& c, Owner) { return py::str(std::string(name_of(kLevels, c.level()))); },
       "The level of the last `collide`.");
   define(
-      type, "carried", [](const Contacts& c, Owner) { return py::int_(c.carried()); },
+      type, "cached_pairs", [](const Contacts& c, Owner) { return py::int_(c.cached_pairs()); },
       "Number of pairs that kept their manifolds.");
   add_pairs(type);
   add_manifolds(type);

@@ -21,8 +21,8 @@
 namespace winnow::python {
 namespace {
 
-/// A mesh with copies of its vertex positions, which the mesh reads in later calls, so that the
-/// caller may overwrite its arrays.
+/// A mesh, and copies of its vertex positions. The mesh reads the positions in later calls, when
+/// the caller may have overwritten its arrays.
 struct SharedDeformable : NeedsInit {
   explicit SharedDeformable(const DeformableMeshOptions& options) : mesh(options) {}
 
@@ -93,12 +93,12 @@ void move(SharedDeformable& s, py::handle starts, py::handle ends, double distan
   return given(std::move(ends), 2);
 }
 
-// --- questions ---------------------------------------------------------------------------------
+// --- queries -----------------------------------------------------------------------------------
 
-/// Collects all chunks that ask(take) passes on. Does not throw, because the caller of `take` must
-/// not be unwound.
-template <typename Result, typename Ask>
-[[nodiscard]] Status gather(std::vector<Result>& all, Ask&& ask) {
+/// Collects all chunks that query(take) passes to `take`, which never throws: its caller must not
+/// be unwound. Returns `out_of_memory` if memory is refused.
+template <typename Result, typename Query>
+[[nodiscard]] Status gather(std::vector<Result>& all, Query&& query) {
   bool has_room = true;
   const auto take = [&](std::span<const Result> chunk) {
     try {
@@ -107,25 +107,26 @@ template <typename Result, typename Ask>
       has_room = false;
     }
   };
-  const Status status = ask(take);
+  const Status status = query(take);
   return status == Status::ok && !has_room ? Status::out_of_memory : status;
 }
 
 /// Returns results for one mesh.
-template <typename Result, typename Ask>
-[[nodiscard]] std::vector<Result> found(const SharedDeformable& s, const char* call, Ask&& ask) {
+template <typename Result, typename Query>
+[[nodiscard]] std::vector<Result> found(const SharedDeformable& s, const char* call,
+                                        Query&& query) {
   std::vector<Result> all;
-  accept(reading(s.mutex, [&] { return gather(all, ask); }), call);
+  accept(reading(s.mutex, [&] { return gather(all, query); }), call);
   return all;
 }
 
 /// Returns results for two meshes.
-template <typename Result, typename Ask>
+template <typename Result, typename Query>
 [[nodiscard]] std::vector<Result> found_of_two(const SharedDeformable& s,
                                                const SharedDeformable& other, const char* call,
-                                               Ask&& ask) {
+                                               Query&& query) {
   std::vector<Result> all;
-  accept(reading_two(s.mutex, other.mutex, [&] { return gather(all, ask); }), call);
+  accept(reading_two(s.mutex, other.mutex, [&] { return gather(all, query); }), call);
   return all;
 }
 
@@ -234,7 +235,7 @@ struct MeshShapeImpactTable : EmptyIfZero {
                                                       double separation, double tolerance) {
   const RigidMotionInput motion(motions);
   if (motion.count() != 1) {
-    throw Refusal(Status::size_mismatch, "impacts_with_shape: one motion, (1, 13), is wanted");
+    throw Refusal(Status::size_mismatch, "impacts_with_shape: expected one motion, (1, 13)");
   }
   const MeshObstacle obstacle{shapes.pool, ShapeId{shape}, motion[0], separation};
   const ImpactOptions options{tolerance, Execution::serial(), &shapes.composites};
@@ -329,7 +330,7 @@ void add_itself(MeshClass& type) {
           "Bytes (used, reserved), without the positions of vertices.");
 }
 
-void add_questions(MeshClass& type) {
+void add_mesh_queries(MeshClass& type) {
   using py::arg;
   const FeatureImpactOptions defaults;
   type.def("self_candidates", &self_candidates, arg("kind"),
@@ -370,7 +371,7 @@ void add_deformable(py::module_& module) {
       "faces, or edges, that may touch, do touch or are near each other, in one mesh or between "
       "two. Any number of threads may call it; a call that raises changes nothing.");
   add_itself(type);
-  add_questions(type);
+  add_mesh_queries(type);
 }
 
 }  // namespace winnow::python

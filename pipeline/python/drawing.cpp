@@ -11,7 +11,7 @@ void put(Drawing::Table& table, std::initializer_list<float> numbers, Colour col
   table.colours.insert(table.colours.end(), {colour.r, colour.g, colour.b, colour.a});
 }
 
-/// Copies, because a drawing is made and read once.
+/// Returns a copy, so later drawing does not change the array.
 template <typename T>
 [[nodiscard]] py::array rows(const std::vector<T>& values, std::size_t columns) {
   return given(std::vector<T>(values), columns);

@@ -26,19 +26,19 @@ struct PythonFilter : EmptyIfZero {
   std::optional<std::uint16_t> layer;
 };
 
-/// The filter of one call, which raises the exception of its function.
+/// The filter of one call. `during` raises the exception of the filter's Python function.
 class FilterOfCall {
  public:
-  /// `scene`: that the query is for, or null.
+  /// `scene` is the scene that is queried; null for a partition.
   explicit FilterOfCall(const Scene* scene) noexcept : scene_(scene) {}
   FilterOfCall(const FilterOfCall&) = delete;
   FilterOfCall& operator=(const FilterOfCall&) = delete;
 
   [[nodiscard]] const Filter& of(const PythonFilter& input);
-  template <typename Question>
-  auto during(Question&& question) {
+  template <typename Query>
+  auto during(Query&& query) {
     try {
-      auto answer = std::forward<Question>(question)();
+      auto answer = std::forward<Query>(query)();
       if (accept_) accept_->raise_if_failed();
       return answer;
     } catch (const Refusal&) {
@@ -63,15 +63,15 @@ class FilterOfCall {
 
 /// The Python form of an argument of a query.
 template <typename Argument>
-using Asked =
+using PythonArgument =
     std::conditional_t<std::is_same_v<Argument, const Filter&>, const PythonFilter&, Argument>;
 
 /// Converts a query that takes a Filter to one that takes a PythonFilter.
 template <typename Answer, typename Owner, typename... Arguments>
-[[nodiscard]] auto filtered(Answer (*question)(Owner, Arguments...)) {
-  return [question](Owner owner, Asked<Arguments>... given) -> Answer {
+[[nodiscard]] auto filtered(Answer (*query)(Owner, Arguments...)) {
+  return [query](Owner owner, PythonArgument<Arguments>... given) -> Answer {
     FilterOfCall call(scene_of(owner));
-    const auto pass = [&call]<typename Argument>(Asked<Argument>& one,
+    const auto pass = [&call]<typename Argument>(PythonArgument<Argument>& one,
                                                  std::type_identity<Argument>) -> Argument {
       if constexpr (std::is_same_v<Argument, const Filter&>) {
         return call.of(one);
@@ -80,7 +80,7 @@ template <typename Answer, typename Owner, typename... Arguments>
       }
     };
     return call.during(
-        [&] { return question(owner, pass(given, std::type_identity<Arguments>())...); });
+        [&] { return query(owner, pass(given, std::type_identity<Arguments>())...); });
   };
 }
 

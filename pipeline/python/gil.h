@@ -19,13 +19,13 @@ using ThreadEnds = abi::__forced_unwind;
 struct ThreadEnds {};
 #endif
 
-/// Blocks a thread forever that needs the GIL after the interpreter has ended. CPython would unwind
-/// the thread, which must not happen in a noexcept function.
+/// Blocks the calling thread forever. For a thread that needs the GIL after the interpreter has
+/// ended: CPython would unwind the thread, which must not happen in a noexcept function.
 [[noreturn]] inline void stay_here() noexcept {
   for (;;) std::this_thread::sleep_for(std::chrono::hours(1));
 }
 
-/// Handles the end of the interpreter: threads at work then block instead of returning to Python.
+/// Handles the end of the interpreter: other threads then block instead of returning to Python.
 class InterpreterEnd {
  public:
   /// Called with the GIL on the thread that ends the interpreter. Waits at most a second for
@@ -41,7 +41,7 @@ class InterpreterEnd {
   static void stay_if_begun() noexcept {
     if (begun_ && std::this_thread::get_id() != by_) stay_here();
   }
-  /// Counts this thread as inside until `leave`.
+  /// Counts this thread as inside Python until `leave`. Blocks it forever if the end has begun.
   static void enter() noexcept {
     ++inside_;
     if (!begun_ || std::this_thread::get_id() == by_) return;

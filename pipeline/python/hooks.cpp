@@ -20,8 +20,7 @@ struct Hook {
   /// Replaces the function; None removes it. Returns the old one.
   [[nodiscard]] py::object exchange(const py::object& other, const char* name) {
     if (!other.is_none() && PyCallable_Check(other.ptr()) == 0) {
-      throw py::type_error(std::string(name) +
-                           ": something that can be called, or None, is wanted");
+      throw py::type_error(std::string(name) + ": expected a callable or None");
     }
     PyObject* const before =
         std::exchange(function, other.is_none() ? nullptr : py::object(other).release().ptr());
@@ -54,36 +53,36 @@ Hook log;
   return {words.data(), words.size()};
 }
 
-void tell_stage(WorkStage stage, bool begins) {
+void call_stage_hook(WorkStage stage, bool begins) {
   stages.call([&] { return py::make_tuple(to_string(stage), begins); });
 }
 
-void tell_log(const LogEntry& entry) {
+void call_log_hook(const LogEntry& entry) {
   log.call([&] {
-    py::dict told;
+    py::dict fields;
     const bool is_choice = entry.kind == LogEntry::Kind::choice;
-    told["kind"] = is_choice ? "choice" : "refusal";
-    told["what"] = text(entry.what);
-    told["reason"] = text(entry.reason);
+    fields["kind"] = is_choice ? "choice" : "refusal";
+    fields["what"] = text(entry.what);
+    fields["reason"] = text(entry.reason);
     if (is_choice) {
-      told["before"] = text(entry.before);
-      told["objects"] = entry.objects;
+      fields["before"] = text(entry.before);
+      fields["objects"] = entry.objects;
     } else {
-      told["status"] = to_string(entry.status);
+      fields["status"] = to_string(entry.status);
     }
-    return py::make_tuple(told);
+    return py::make_tuple(fields);
   });
 }
 
 [[nodiscard]] py::object exchange_stage_hook(const py::object& hook) {
   py::object before = stages.exchange(hook, "hook");
-  set_stage_hook(hook.is_none() ? nullptr : &tell_stage);
+  set_stage_hook(hook.is_none() ? nullptr : &call_stage_hook);
   return before;
 }
 
 [[nodiscard]] py::object exchange_log_hook(const py::object& hook) {
   py::object before = log.exchange(hook, "hook");
-  set_log_hook(hook.is_none() ? nullptr : &tell_log);
+  set_log_hook(hook.is_none() ? nullptr : &call_log_hook);
   return before;
 }
 

@@ -16,7 +16,7 @@
 namespace winnow::python {
 namespace {
 
-/// Results for pairs of shapes, which are not changed any more.
+/// Results for pairs of shapes. They do not change after the call.
 struct Impacts : NeedsInit, std::enable_shared_from_this<Impacts> {
   ImpactResult result;
 };

@@ -11,8 +11,8 @@ namespace winnow::python {
 // If Python makes an object by `__new__` only, without `__init__`, pybind11 allocates memory for it
 // at its first use and does not initialize it.
 
-/// Base of classes that are unusable in that state: operator new then throws. Objects made by
-/// `std::make_shared` do not use it.
+/// Base of classes that are unusable in that state: pybind11 then calls this operator new, which
+/// throws. `std::make_shared`, by which `__init__` makes the objects, does not call it.
 struct NeedsInit {
   [[noreturn]] static void* operator new(std::size_t) {
     throw pybind11::type_error("__init__ was not called");

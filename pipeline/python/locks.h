@@ -10,9 +10,10 @@
 
 namespace winnow::python {
 
-// Work runs without the GIL, and a lock protects objects from changes by other threads. A lock is
-// acquired without the GIL and released before the GIL is taken again, so that no deadlock is
-// possible. A Python function that winnow calls runs under such locks and must not acquire any.
+// Work runs without the GIL, and a lock protects objects from changes by other threads. A thread
+// waits for a lock only without the GIL, so a thread with a lock can always take the GIL, and the
+// two cannot deadlock. A Python function that winnow calls runs under such locks and must not
+// acquire any.
 
 /// Runs body() with shared access.
 template <typename Body>

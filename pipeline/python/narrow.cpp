@@ -27,9 +27,10 @@ struct NarrowAnswers : NeedsInit {
 
 [[nodiscard]] std::shared_ptr<NarrowAnswers> collide(
     SharedNarrowPhase& phase, const SharedShapes& shapes, py::handle shape_of, py::handle poses,
-    py::handle pair_array, const std::string& level, const std::string& tier, double margin) {
-  const NarrowOptions options{chosen(kLevels, level, "level"), chosen(kTiers, tier, "tier"), margin,
-                              phase.execution};
+    py::handle pair_array, const std::string& level, const std::string& tier,
+    double contact_margin) {
+  const NarrowOptions options{chosen(kLevels, level, "level"), chosen(kTiers, tier, "tier"),
+                              contact_margin, phase.execution};
   const PoseInput pose(poses);
   const ShapeInput shape(shape_of, "shape_of");
   shape.expect(pose.count());
@@ -162,11 +163,13 @@ void add_narrow(py::module_& module) {
            }),
            py::kw_only(), arg("parallel") = true, "`parallel` uses all cores.")
       .def("collide", &collide, arg("shapes"), arg("shape_of"), arg("poses"), arg("pairs"),
-           py::kw_only(), arg("level") = "manifold", arg("tier") = "robust", arg("margin") = 0.0,
+           py::kw_only(), arg("level") = "manifold", arg("tier") = "robust",
+           arg("contact_margin") = 0.0,
            "Computes results for pairs (m, 2) uint32 of bodies: body i has the shape shape_of[i], "
            "(n,) or one for all, at poses (n, 7) of x, y, z and a quaternion w, x, y, z, (n, 3), "
            "or a tuple of both. `level`: 'boolean', 'distance' or 'manifold'; `tier`: 'robust' or "
-           "'reference'. Pairs at most `margin` apart get contacts too. Contiguous pairs of uint32 "
+           "'reference'. Pairs at most `contact_margin` apart get contacts too. Contiguous pairs "
+           "of uint32 "
            "and poses (n, 7) of double are read in place.")
       .def(
           "statistics",

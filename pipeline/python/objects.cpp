@@ -13,7 +13,7 @@
 namespace winnow::python {
 namespace {
 
-// --- coming, moving, going -----------------------------------------------------------------------
+// --- insert, update, remove ----------------------------------------------------------------------
 
 /// Inserts `count` volumes by `insert(data, keys)` and returns their keys.
 template <typename Insert>
@@ -42,7 +42,8 @@ void change_objects(SharedPartition& p, std::size_t count, const char* call, Cha
   });
 }
 
-/// Returns the indices of the selected entries: the given ones, or those set in a bool mask.
+/// Returns the indices of the selected entries: `entries` itself, or the indices of true in a bool
+/// mask.
 [[nodiscard]] py::object entry_numbers(py::handle entries) {
   const py::array array = py::array::ensure(entries);
   if (array && array.dtype().kind() == 'b') return array.attr("nonzero")().attr("__getitem__")(0);
@@ -163,15 +164,16 @@ void remove_objects(SharedPartition& p, py::handle key_array) {
   change_objects(p, keys.count(), "remove", [&] { return p.partition.remove(keys.keys()); });
 }
 
-// --- what is known of objects ------------------------------------------------------------------
+// --- properties of objects ---------------------------------------------------------------------
 
-/// Calls `ask(i)` for each of `count` objects until one call fails.
-template <typename Ask>
-void ask_each(const SharedPartition& p, std::size_t count, const char* call, Ask&& ask) {
+/// Calls `query(i)` for each of `count` objects until one call fails.
+template <typename Query>
+void query_each(const SharedPartition& p, std::size_t count, const char* call, Query&& query) {
   accept(reading(p.mutex,
                  [&] {
                    Status status = Status::ok;
-                   for (std::size_t i = 0; i < count && status == Status::ok; ++i) status = ask(i);
+                   for (std::size_t i = 0; i < count && status == Status::ok; ++i)
+                     status = query(i);
                    return status;
                  }),
          call);
@@ -208,8 +210,8 @@ void ask_each(const SharedPartition& p, std::size_t count, const char* call, Ask
   const KeyInput keys(key_array);
   auto result = fresh<std::uint64_t>(keys.count());
   std::uint64_t* const to = result.mutable_data();
-  ask_each(p, keys.count(), "client_data",
-           [&](std::size_t i) { return p.partition->client_data(keys.keys()[i], to[i]); });
+  query_each(p, keys.count(), "client_data",
+             [&](std::size_t i) { return p.partition->client_data(keys.keys()[i], to[i]); });
   return result;
 }
 
@@ -238,12 +240,12 @@ void set_filter(SharedPartition& p, py::handle key_array, py::handle layers, py:
   constexpr std::uint64_t most = std::numeric_limits<std::uint32_t>::max();
   const KeyInput keys(key_array);
   const EachInteger layer(layers, "layers", most);
-  const EachInteger wanted(mask, "mask", most);
+  const EachInteger mask_bits(mask, "mask", most);
   const EachInteger world(environment, "environment", most);
-  for (const EachInteger* each : {&layer, &wanted, &world}) each->expect(keys.count());
+  for (const EachInteger* each : {&layer, &mask_bits, &world}) each->expect(keys.count());
   std::vector<ObjectFilter> filters(keys.count());
   for (std::size_t i = 0; i < filters.size(); ++i) {
-    filters[i] = {static_cast<std::uint32_t>(layer[i]), static_cast<std::uint32_t>(wanted[i]),
+    filters[i] = {static_cast<std::uint32_t>(layer[i]), static_cast<std::uint32_t>(mask_bits[i]),
                   static_cast<std::uint32_t>(world[i])};
   }
   accept(changing(p.mutex, [&] { return p.partition.set_filter(keys.keys(), filters); }),
@@ -253,8 +255,8 @@ void set_filter(SharedPartition& p, py::handle key_array, py::handle layers, py:
 [[nodiscard]] py::tuple filters_of(const SharedPartition& p, py::handle key_array) {
   const KeyInput keys(key_array);
   std::vector<ObjectFilter> filters(keys.count());
-  ask_each(p, keys.count(), "filters",
-           [&](std::size_t i) { return p.partition->filter(keys.keys()[i], filters[i]); });
+  query_each(p, keys.count(), "filters",
+             [&](std::size_t i) { return p.partition->filter(keys.keys()[i], filters[i]); });
   std::vector<std::uint32_t> columns[3];
   for (const ObjectFilter& filter : filters) {
     columns[0].push_back(filter.layers);
@@ -304,7 +306,7 @@ void add_knowledge(PartitionClass& partition) {
       .def("contains", &contains, arg("keys"), "True for `keys` (n,) of live objects: (n,) bool.")
       .def("bounds", &bounds, arg("keys"),
            "Boxes (lower, upper) of the objects of `keys` (n,), (n, 3) float32 each, as they are "
-           "tested: grown by the margin, and around other volumes.")
+           "tested: grown by the fat margin, and around other volumes.")
       .def("client_data", &client_data, arg("keys"),
            "Client data of the objects of `keys` (n,): (n,) uint64.")
       .def("keys_of", &keys_of, arg("ids"),

@@ -81,22 +81,22 @@ struct LayerPairs {
   Integers<std::uint32_t> numbers;
 };
 
-void set_layers_collide(SharedScene& s, py::handle pairs, bool meet) {
+void set_layers_collide(SharedScene& s, py::handle pairs, bool collide) {
   const LayerPairs layers(pairs);
-  std::vector<std::uint8_t> met(layers.numbers.count());
+  std::vector<std::uint8_t> before(layers.numbers.count());
   accept(changing_scene(s,
                         [&] {
                           return set_all(
-                              met.size(),
+                              before.size(),
                               [&](std::size_t i) {
                                 const std::uint16_t a = layers.layer(i, 0);
                                 const std::uint16_t b = layers.layer(i, 1);
-                                met[i] = s.scene->layers_collide(a, b) ? 1 : 0;
-                                return s.scene.set_layers_collide(a, b, meet);
+                                before[i] = s.scene->layers_collide(a, b) ? 1 : 0;
+                                return s.scene.set_layers_collide(a, b, collide);
                               },
                               [&](std::size_t i) {
-                                return s.scene.set_layers_collide(layers.layer(i, 0),
-                                                                  layers.layer(i, 1), met[i] != 0);
+                                return s.scene.set_layers_collide(
+                                    layers.layer(i, 0), layers.layer(i, 1), before[i] != 0);
                               });
                         }),
          "set_layers_collide");
@@ -214,13 +214,14 @@ void add_pair_filter(py::module_& module, SceneClass& scene) {
            arg("environment") = 0, "As Partition.set_filter.")
       .def("set_offsets", &set_offsets, arg("keys"), arg("contact"), arg("rest") = 0.0,
            "Sets contact and rest offsets. Two bodies are in contact from a gap of the sum of "
-           "their `contact` on, in addition to the scene's margin, and rest at a distance of the "
+           "their `contact` on, in addition to the scene's contact margin, and rest at a distance "
+           "of the "
            "sum of their `rest`: (n,) lengths, or one for all, contact >= 0 and >= rest.")
       .def("set_layer", &set_layer, arg("keys"), arg("layer"),
            "Puts bodies into layers, (n,) below 4096 or one for all: see `set_layers_collide`. "
            "These "
            "are independent of the 32 layers of a filter.")
-      .def("set_layers_collide", &set_layers_collide, arg("layers"), arg("meet") = true,
+      .def("set_layers_collide", &set_layers_collide, arg("layers"), arg("collide") = true,
            "Sets whether bodies of two layers, pairs (n, 2), collide. By default all do.")
       .def("layers_collide", &layers_collide, arg("layers"),
            "True for pairs of layers (n, 2) that collide.")

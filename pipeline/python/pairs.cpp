@@ -21,7 +21,8 @@ std::shared_ptr<PairBuffer> SharedPartition::take_pairs(bool incremental, bool w
     return last;
   }
   std::shared_ptr<PairBuffer> out = pair_pool->take();
-  // If many objects have moved, all pairs are found again, and the old ones are of no use.
+  // If a quarter of the objects or more have changed, the last pairs are not copied, and self_pairs
+  // finds all pairs again.
   const bool few = changes < partition->size() / 4;
   const bool carries = with_events || (incremental && few);
   if (last && carries && !out->assign(*last)) out->clear();
@@ -85,7 +86,8 @@ void pair_changes(SharedPartition& p, Events& events, const py::object& function
   if (!function.is_none()) predicate.emplace(function, "predicate");
   const std::unique_lock<std::mutex> filling = events.hold();
   PairEvents& changes = events.to_fill("events");
-  // A kept result of a predicate would persist for pairs that did not move.
+  // If this or the last fill used a predicate, all pairs are found again: an update would keep what
+  // the old predicate returned for pairs that did not move.
   const bool anew = events.is_filtered.exchange(predicate.has_value()) || predicate;
   PairOptions options{Order::fast, !anew, {}};
   if (predicate) options.predicate = pair_predicate(*predicate);
@@ -94,6 +96,8 @@ void pair_changes(SharedPartition& p, Events& events, const py::object& function
     changes.clear();
     predicate->raise();
   }
+  // The pairs are still those of the last fill, which may have used a predicate.
+  if (status != Status::ok) events.is_filtered = true;
   accept(status, "pair_changes");
 }
 
@@ -107,8 +111,8 @@ void pair_changes(SharedPartition& p, Events& events, const py::object& function
     throw Refusal(Status::unsupported, "pairs_with: of two that are not recorded together");
   }
   const std::shared_ptr<PairBuffer> out = p.pair_pool->take();
-  const auto ask = [&] { return p.partition.pairs_with(other.partition, *out, options); };
-  const Status status = reading_two(p.mutex, other.mutex, ask);
+  const auto query = [&] { return p.partition.pairs_with(other.partition, *out, options); };
+  const Status status = reading_two(p.mutex, other.mutex, query);
   if (predicate) predicate->raise_if_failed();
   accept(status, "pairs_with");
   return shown_pairs(out);

@@ -58,12 +58,12 @@ namespace {
 }
 
 [[nodiscard]] std::shared_ptr<SharedPartition> make_partition(
-    const std::string& structure, const std::string& volume, float margin, float margin_share,
-    bool parallel, std::size_t build_budget, std::optional<float> loose,
+    const std::string& structure, const std::string& volume, float fat_margin,
+    float fat_margin_share, bool parallel, std::size_t build_budget, std::optional<float> loose,
     const RecorderPointer& recorder) {
   PartitionOptions options;
   options.volume = chosen(kVolumes, volume, "volume");
-  options.margin = {margin, margin_share};
+  options.fat_margin = {fat_margin, fat_margin_share};
   options.execution = parallel ? Execution::parallel() : Execution::serial();
   options.build_budget = build_budget;
   return std::make_shared<SharedPartition>(structure_with(structure, loose), options, recorder);
@@ -131,12 +131,13 @@ void add_itself(PartitionClass& partition) {
   using py::arg;
   partition
       .def(py::init(&make_partition), arg("structure") = "LinearBvh", py::kw_only(),
-           arg("volume") = "aabb", arg("margin") = 0.0F, arg("margin_share") = 0.0F,
+           arg("volume") = "aabb", arg("fat_margin") = 0.0F, arg("fat_margin_share") = 0.0F,
            arg("parallel") = true, arg("build_budget") = 0, arg("loose") = py::none(),
            arg("recorder") = py::none(),
            "An empty partition. `structure`: the spatial structure (see `structures`). `volume`: "
            "the bounding volume of objects: 'aabb', 'sphere', 'kdop14', 'kdop18' or 'kdop26'. "
-           "Volumes are stored larger by `margin` (a length) + `margin_share` * longest edge: "
+           "Volumes are stored larger by `fat_margin` (a length) + `fat_margin_share` * longest "
+           "edge: "
            "moves within this margin are free. `loose`: parameter of LooseOctree and "
            "LooseQuadtree. `recorder`: records all calls.")
       .def(
@@ -187,12 +188,12 @@ void add_itself(PartitionClass& partition) {
           [](const SharedPartition& p) { return name_of(kVolumes, p.partition->volume()); },
           "The bounding volume of objects.")
       .def_property_readonly(
-          "margin",
+          "fat_margin",
           [](const SharedPartition& p) {
-            const Margin m = p.partition->margin();
+            const FatMargin m = p.partition->fat_margin();
             return py::make_tuple(m.distance, m.share);
           },
-          "Margin: (length, share of the longest edge).")
+          "Fat margin: (length, share of the longest edge).")
       .def_property_readonly(
           "is_exact",
           [](const SharedPartition& p) {

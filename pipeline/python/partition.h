@@ -37,8 +37,8 @@ inline constexpr Choices<Order, 2> kOrders{
 /// Returns the structure with this name; throws an invalid_argument that lists all names.
 [[nodiscard]] StructureKind structure_of(const std::string& name);
 
-/// A result object that is filled once per frame and shown by arrays. It cannot be filled while
-/// such arrays are alive.
+/// A result object that is filled once per frame, and whose data arrays refer to. It cannot be
+/// filled while such arrays are alive.
 template <typename Result>
 class Exported : public NeedsInit {
  public:
@@ -48,15 +48,15 @@ class Exported : public NeedsInit {
       : value_(std::move(value)), is_lent_(lent) {}
 
   [[nodiscard]] const std::shared_ptr<Result>& value() const noexcept { return value_; }
-  /// Throws a BufferError if an array shows it.
+  /// Throws a BufferError if an array refers to it.
   void expect_unseen(const char* what) const {
     if (value_.use_count() <= 1) return;
     PyErr_Format(PyExc_BufferError,
                  "arrays of these %s are alive: delete them, or keep copies of them", what);
     throw py::error_already_set();
   }
-  /// Returns the value to be filled; requires that no array shows it. Throws `unsupported` if
-  /// another object fills it.
+  /// Returns the value to be filled. Throws a BufferError if an array refers to it, and
+  /// `unsupported` if another object fills it.
   [[nodiscard]] Result& to_fill(const char* what) const {
     if (is_lent_) {
       throw Refusal(Status::unsupported, std::string(what) + ": what they are of fills them");
@@ -64,7 +64,8 @@ class Exported : public NeedsInit {
     expect_unseen(what);
     return *value_;
   }
-  /// Locks out other threads that fill it or make arrays of it. Blocks without the GIL.
+  /// Returns the lock that excludes other threads that fill it or make arrays of it. Waits without
+  /// the GIL.
   [[nodiscard]] std::unique_lock<std::mutex> hold() const {
     InCallback::forbid();
     const WithoutGil release;
@@ -91,8 +92,9 @@ class SharedPartition : public NeedsInit {
   SharedPartition(StructureKind structure, const PartitionOptions& options,
                   RecorderPointer recorder_in);
 
-  /// Returns a buffer for all pairs. It starts from the pairs of the last frame if `with_events`,
-  /// or if `incremental` and few objects have changed.
+  /// Returns a buffer for all pairs: the buffer of the last frame if no array refers to it. If one
+  /// does, returns another buffer, with a copy of the last pairs if `with_events`, or if
+  /// `incremental` and less than a quarter of the objects have changed.
   [[nodiscard]] std::shared_ptr<PairBuffer> take_pairs(bool incremental, bool with_events = false);
   void keep_pairs(std::shared_ptr<PairBuffer> pairs);
   /// Counts objects that have changed since the last pairs.
@@ -103,7 +105,7 @@ class SharedPartition : public NeedsInit {
   const RecorderPointer recorder;
   RecordablePartition partition;
   Execution execution;
-  /// Boxes that cannot be read in place.
+  /// Buffer for boxes that cannot be read in place.
   std::vector<Aabb> room;
   std::shared_ptr<Pool<PairBuffer>> pair_pool = std::make_shared<Pool<PairBuffer>>();
   std::shared_ptr<Pool<HitBuffer>> hit_pool = std::make_shared<Pool<HitBuffer>>();
@@ -121,7 +123,7 @@ class SharedPartition : public NeedsInit {
 
 using PartitionClass = py::class_<SharedPartition, std::shared_ptr<SharedPartition>>;
 
-// Each function adds the contents of the source file with its name.
+// Each function adds the contents of the source file of the same name.
 void add_partition(py::module_& module, PartitionClass& partition);
 void add_objects(py::module_& module, PartitionClass& partition);
 void add_pairs(py::module_& module, PartitionClass& partition);

@@ -9,8 +9,7 @@
 
 namespace winnow::python {
 
-/// Buffers for results. A buffer that no array shows any more is used again, so that a steady frame
-/// allocates nothing.
+/// Buffers for results. A buffer that no array refers to any more is reused, with its memory.
 template <typename Buffer>
 class Pool : public std::enable_shared_from_this<Pool<Buffer>> {
  public:
@@ -39,14 +38,14 @@ class Pool : public std::enable_shared_from_this<Pool<Buffer>> {
   }
 
  private:
-  /// Limit of unused buffers; programs rarely show more results at once.
-  static constexpr std::size_t kMost = 4;
+  /// Limit of unused buffers; any more are freed.
+  static constexpr std::size_t kMaxUnused = 4;
 
   void put(Buffer* buffer) noexcept {
     std::unique_ptr<Buffer> back(buffer);
     const std::lock_guard lock(mutex_);
     try {
-      if (free_.size() < kMost) free_.push_back(std::move(back));
+      if (free_.size() < kMaxUnused) free_.push_back(std::move(back));
     } catch (const std::bad_alloc&) {
       // The buffer is freed instead.
     }

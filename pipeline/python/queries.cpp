@@ -96,12 +96,12 @@ struct CastBatch {
   Numbers max_t;
 
   [[nodiscard]] std::size_t count() const { return direction.count(); }
-  template <typename Sweep>
-  [[nodiscard]] Cast cast(Sweep sweep, std::size_t i) const {
-    sweep.direction = point_at(direction, i);
-    sweep.min_t = static_cast<float>(min_t.at(i));
-    sweep.max_t = static_cast<float>(max_t.at(i));
-    return sweep;
+  template <typename Moving>
+  [[nodiscard]] Cast cast(Moving moving, std::size_t i) const {
+    moving.direction = point_at(direction, i);
+    moving.min_t = static_cast<float>(min_t.at(i));
+    moving.max_t = static_cast<float>(max_t.at(i));
+    return moving;
   }
 };
 
@@ -144,16 +144,16 @@ template <typename CastAt>
 class RayInput {
  public:
   RayInput(py::handle origins, py::handle directions, py::handle least, py::handle most)
-      : origin_(origins, "origins", {3}), sweeps_(directions, least, most) {
-    origin_.expect(sweeps_.count());
+      : origin_(origins, "origins", {3}), casts_(directions, least, most) {
+    origin_.expect(casts_.count());
   }
-  [[nodiscard]] std::size_t count() const { return sweeps_.count(); }
+  [[nodiscard]] std::size_t count() const { return casts_.count(); }
 
   [[nodiscard]] RayBatch view(std::vector<Ray>& room) const {
-    const Numbers& direction = sweeps_.direction;
-    const bool plain = sweeps_.min_t.is_one() && sweeps_.max_t.is_one() &&
-                       sweeps_.min_t.at(0) == 0.0 &&
-                       sweeps_.max_t.at(0) == std::numeric_limits<double>::infinity();
+    const Numbers& direction = casts_.direction;
+    const bool plain = casts_.min_t.is_one() && casts_.max_t.is_one() &&
+                       casts_.min_t.at(0) == 0.0 &&
+                       casts_.max_t.at(0) == std::numeric_limits<double>::infinity();
     if (plain && origin_.is_single() && direction.is_single() &&
         origin_.stride() == direction.stride()) {
       return {{origin_.column<float>(0), origin_.column<float>(1), origin_.column<float>(2)},
@@ -166,14 +166,14 @@ class RayInput {
     room.resize(count());
     for (std::size_t i = 0; i < room.size(); ++i) {
       room[i] = {point_at(origin_, i), point_at(direction, i),
-                 static_cast<float>(sweeps_.min_t.at(i)), static_cast<float>(sweeps_.max_t.at(i))};
+                 static_cast<float>(casts_.min_t.at(i)), static_cast<float>(casts_.max_t.at(i))};
     }
     return RayBatch(std::span<const Ray>(room));
   }
 
  private:
   Numbers origin_;
-  CastBatch sweeps_;
+  CastBatch casts_;
 };
 
 [[nodiscard]] py::object cast_rays(const SharedPartition& p, py::handle origins,
@@ -208,41 +208,41 @@ class RayInput {
 [[nodiscard]] py::object cast_boxes(const SharedPartition& p, py::handle lower, py::handle upper,
                                     py::handle directions, const std::string& find,
                                     py::handle min_t, py::handle max_t, const Filter& filter) {
-  const CastBatch sweeps(directions, min_t, max_t);
+  const CastBatch casts(directions, min_t, max_t);
   Numbers low(lower, "lower", {3});
   Numbers high(upper, "upper", {3});
-  low.expect(sweeps.count());
-  high.expect(sweeps.count());
-  return cast_many(p, sweeps.count(), chosen(kFinds, find, "find"), filter, "cast_boxes",
-                   [&](std::size_t i) { return sweeps.cast(BoxCast{box_at(low, high, i)}, i); });
+  low.expect(casts.count());
+  high.expect(casts.count());
+  return cast_many(p, casts.count(), chosen(kFinds, find, "find"), filter, "cast_boxes",
+                   [&](std::size_t i) { return casts.cast(BoxCast{box_at(low, high, i)}, i); });
 }
 
 [[nodiscard]] py::object cast_spheres(const SharedPartition& p, py::handle centers,
                                       py::handle radii, py::handle directions,
                                       const std::string& find, py::handle min_t, py::handle max_t,
                                       const Filter& filter) {
-  const CastBatch sweeps(directions, min_t, max_t);
+  const CastBatch casts(directions, min_t, max_t);
   Numbers center(centers, "centers", {3});
   Numbers radius(radii, "radii", {}, true);
-  center.expect(sweeps.count());
-  radius.expect(sweeps.count());
+  center.expect(casts.count());
+  radius.expect(casts.count());
   return cast_many(
-      p, sweeps.count(), chosen(kFinds, find, "find"), filter, "cast_spheres",
-      [&](std::size_t i) { return sweeps.cast(SphereCast{sphere_at(center, radius, i)}, i); });
+      p, casts.count(), chosen(kFinds, find, "find"), filter, "cast_spheres",
+      [&](std::size_t i) { return casts.cast(SphereCast{sphere_at(center, radius, i)}, i); });
 }
 
 [[nodiscard]] py::object cast_capsules(const SharedPartition& p, py::handle a, py::handle b,
                                        py::handle radii, py::handle directions,
                                        const std::string& find, py::handle min_t, py::handle max_t,
                                        const Filter& filter) {
-  const CastBatch sweeps(directions, min_t, max_t);
+  const CastBatch casts(directions, min_t, max_t);
   Numbers from(a, "a", {3});
   Numbers to(b, "b", {3});
   Numbers radius(radii, "radii", {}, true);
-  for (Numbers* each : {&from, &to, &radius}) each->expect(sweeps.count());
+  for (Numbers* each : {&from, &to, &radius}) each->expect(casts.count());
   return cast_many(
-      p, sweeps.count(), chosen(kFinds, find, "find"), filter, "cast_capsules",
-      [&](std::size_t i) { return sweeps.cast(CapsuleCast{capsule_at(from, to, radius, i)}, i); });
+      p, casts.count(), chosen(kFinds, find, "find"), filter, "cast_capsules",
+      [&](std::size_t i) { return casts.cast(CapsuleCast{capsule_at(from, to, radius, i)}, i); });
 }
 
 // --- regions -----------------------------------------------------------------------------------
@@ -440,14 +440,14 @@ constexpr Choices<Frustum::NearDepth, 2> kNearDepths{
   Numbers radius(radii, "radius", {}, true);
   high.expect(low.count());
   radius.expect(low.count());
-  const std::size_t questions = low.count();
-  if (count != 0 && questions > (std::size_t{1} << 40U) / count) {
+  const std::size_t queries = low.count();
+  if (count != 0 && queries > (std::size_t{1} << 40U) / count) {
     throw Refusal(Status::out_of_memory, "nearest");
   }
-  FreshHits found(questions, count);
+  FreshHits found(queries, count);
   const Outcome outcome = reading(p.mutex, [&] {
-    std::vector<HitBuffer> buffers(tasks_for(questions));
-    return answer_all(p.execution, questions, [&](std::size_t task, std::size_t i) {
+    std::vector<HitBuffer> buffers(tasks_for(queries));
+    return answer_all(p.execution, queries, [&](std::size_t task, std::size_t i) {
       HitBuffer& hits = buffers[task];
       const Status status = p.partition.nearest(box_at(low, high, i), count,
                                                 static_cast<float>(radius.at(i)), hits, filter);
@@ -531,7 +531,7 @@ void add_queries(py::module_& module, PartitionClass& partition) {
       .def_readonly("key", &HitTable::key, "Keys, uint64.")
       .def_readonly("data", &HitTable::data, "Client data, uint64.")
       .def_readonly("t", &HitTable::t,
-                    "The t at which the sweep first touches the object's box, in units of its "
+                    "The t at which the cast first touches the object's box, in units of its "
                     "direction, or the distance: float32.");
   py::class_<HitTables>(module, "HitLists",
                         "Hits of each query: the hits of query i are first[i] to first[i + 1].")

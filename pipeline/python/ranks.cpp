@@ -40,12 +40,12 @@ class PythonTransport final : public Transport {
                   const OverlappedWork& meanwhile) override {
     // alltoall blocks, so meanwhile() cannot run during it.
     meanwhile();
-    const Status status = asking([&] { exchange_lists(sent); });
-    received = parcels_;
+    const Status status = call_communicator([&] { exchange_lists(sent); });
+    received = messages_;
     return status;
   }
   Status reduce(std::span<std::uint64_t> sums, std::span<std::uint64_t> greatest) override {
-    return asking([&] {
+    return call_communicator([&] {
       const py::list all = gather(numbers_of(sums), numbers_of(greatest));
       std::fill(sums.begin(), sums.end(), 0U);
       std::fill(greatest.begin(), greatest.end(), 0U);
@@ -62,7 +62,7 @@ class PythonTransport final : public Transport {
   }
   Status cut(std::span<const CutWork> work, std::span<SplitPlane> cuts) override {
     Status status = Status::ok;
-    const Status asked = asking([&] {
+    const Status called = call_communicator([&] {
       const py::list all = gather(bytes_of(std::as_bytes(work.front().boxes)),
                                   bytes_of(std::as_bytes(work.front().works)));
       std::vector<std::vector<Aabb>> boxes(ranks_);
@@ -76,7 +76,7 @@ class PythonTransport final : public Transport {
       }
       status = cutter_.cut(of_all, cuts);
     });
-    return asked == Status::ok ? status : asked;
+    return called == Status::ok ? status : called;
   }
 
   /// Raises the stored Python exception.
@@ -101,7 +101,7 @@ class PythonTransport final : public Transport {
     return list;
   }
   template <typename Body>
-  [[nodiscard]] Status asking(Body&& body) noexcept {
+  [[nodiscard]] Status call_communicator(Body&& body) noexcept {
     Status status = Status::ok;
     call_python(body, [&] {
       try {
@@ -117,55 +117,56 @@ class PythonTransport final : public Transport {
   }
   [[nodiscard]] py::list gather(const py::object& first, const py::object& second) {
     const py::list all(communicator_.attr("allgather")(py::make_tuple(first, second)));
-    if (all.size() != ranks_) throw py::value_error("allgather: one of each rank is wanted");
+    if (all.size() != ranks_) throw py::value_error("allgather: expected one value of each rank");
     return all;
   }
   void exchange_lists(std::span<const RankMessage> sent) {
-    parcels_.clear();
+    messages_.clear();
     std::vector<py::object> out(ranks_, py::none());
-    for (const RankMessage& parcel : sent) {
-      if (parcel.to == rank_) {
-        parcels_.push_back(parcel);
+    for (const RankMessage& message : sent) {
+      if (message.to == rank_) {
+        messages_.push_back(message);
         continue;
       }
-      const auto& c = parcel.columns;
-      out[parcel.to] =
+      const auto& c = message.columns;
+      out[message.to] =
           py::make_tuple(bytes_of(c[0]), bytes_of(c[1]), bytes_of(c[2]), bytes_of(c[3]));
     }
     py::list to_all;
     for (const py::object& one : out) to_all.append(one);
-    const py::list told(communicator_.attr("alltoall")(to_all));
-    if (told.size() != ranks_) throw py::value_error("alltoall: one of each rank is wanted");
+    const py::list gathered(communicator_.attr("alltoall")(to_all));
+    if (gathered.size() != ranks_)
+      throw py::value_error("alltoall: expected one value of each rank");
     columns_.clear();
     columns_.reserve(std::size_t{4} * ranks_);
-    for (std::uint32_t from = 0; from < ranks_; ++from) take_from(from, told[from]);
-    std::sort(parcels_.begin(), parcels_.end(),
+    for (std::uint32_t from = 0; from < ranks_; ++from) take_from(from, gathered[from]);
+    std::sort(messages_.begin(), messages_.end(),
               [](const RankMessage& a, const RankMessage& b) { return a.from < b.from; });
   }
   void take_from(std::uint32_t from, const py::object& one) {
     if (one.is_none() || from == rank_) return;
     const auto columns = one.cast<std::tuple<py::bytes, py::bytes, py::bytes, py::bytes>>();
-    RankMessage parcel{from, rank_, {}};
+    RankMessage message{from, rank_, {}};
     const auto show = [&](std::size_t c, const py::bytes& bytes) {
       // Copied, to align 8-byte numbers.
       const auto text = static_cast<std::string_view>(bytes);
       auto& words = columns_.emplace_back((text.size() + 7) / 8);
       std::memcpy(words.data(), text.data(), text.size());
-      parcel.columns[c] = std::as_bytes(std::span(words)).first(text.size());
+      message.columns[c] = std::as_bytes(std::span(words)).first(text.size());
     };
     show(0, std::get<0>(columns));
     show(1, std::get<1>(columns));
     show(2, std::get<2>(columns));
     show(3, std::get<3>(columns));
-    parcels_.push_back(parcel);
+    messages_.push_back(message);
   }
 
   py::object communicator_;
   std::uint32_t ranks_;
   std::uint32_t rank_;
-  LoopbackTransport cutter_;  // splits what all ranks have sent
+  LoopbackTransport cutter_;  // cuts space by the gathered work of all ranks
   std::vector<std::vector<std::uint64_t>> columns_;
-  std::vector<RankMessage> parcels_;
+  std::vector<RankMessage> messages_;
   py::object raised_;
 };
 

@@ -1,7 +1,7 @@
 #pragma once
 
-// Partitions, scenes and their companions that are either recorded or not, with one interface for
-// both. recordings.cpp provides the recorder.
+// Partitions, scenes, and the queries, sensors and continuous collision detection of scenes. Each
+// may be recorded or not, with one interface for both cases. recordings.cpp provides the recorder.
 
 #include "pipeline/python/init_checks.h"
 #include "pipeline/python/refusal.h"
@@ -26,7 +26,7 @@ struct SharedRecorder : NeedsInit {
 };
 using RecorderPointer = std::shared_ptr<SharedRecorder>;
 
-/// Holds one of two objects that have the same calls; the second one records them.
+/// Contains one of two objects that have the same calls; `recorded_` also records them.
 template <typename Plain, typename Recorded>
 class Recordable {
  public:
@@ -35,21 +35,21 @@ class Recordable {
  protected:
   Recordable() = default;
 
-  /// Returns ask(object) for the object that is held.
-  template <typename Ask>
-  decltype(auto) on(Ask&& ask) {
-    return recorded_ ? ask(*recorded_) : ask(*plain_);
+  /// Returns call(object) for the object that exists.
+  template <typename Call>
+  decltype(auto) on(Call&& call) {
+    return recorded_ ? call(*recorded_) : call(*plain_);
   }
-  template <typename Ask>
-  decltype(auto) on(Ask&& ask) const {
-    return recorded_ ? ask(*recorded_) : ask(*plain_);
+  template <typename Call>
+  decltype(auto) on(Call&& call) const {
+    return recorded_ ? call(*recorded_) : call(*plain_);
   }
 
   std::optional<Plain> plain_;
   std::optional<Recorded> recorded_;
 };
 
-/// As Recordable, for classes that also have calls that are not recorded.
+/// A Recordable that also has calls that are not recorded.
 template <typename Plain, typename Recorded>
 class RecordableWorld : public Recordable<Plain, Recorded> {
  public:
@@ -111,14 +111,14 @@ class RecordablePartition : public RecordableWorld<Partition, RecordedPartition>
   Status refresh() const {
     return on([](const auto& p) { return p.refresh(); });
   }
-  /// A recorded partition stores state of its pair queries, so that only one may run at a time.
+  /// A recorded partition stores state of its pair queries, so only one may run at a time.
   template <typename... Given>
   Status self_pairs(Given&&... given) const {
-    std::unique_lock<std::mutex> asking;
-    if (is_recorded()) asking = std::unique_lock(asking_);
+    std::unique_lock<std::mutex> query_lock;
+    if (is_recorded()) query_lock = std::unique_lock(pair_query_mutex_);
     return on([&](const auto& p) { return p.self_pairs(given...); });
   }
-  /// `unsupported` if only one of the two is recorded.
+  /// Returns `unsupported` if only one of the two is recorded.
   Status pairs_with(const RecordablePartition& other, PairBuffer& out,
                     const PairOptions& options) const {
     if (is_recorded() != other.is_recorded()) return Status::unsupported;
@@ -147,7 +147,7 @@ class RecordablePartition : public RecordableWorld<Partition, RecordedPartition>
   }
 
  private:
-  mutable std::mutex asking_;
+  mutable std::mutex pair_query_mutex_;
 };
 
 /// A scene; see Scene for the calls.
@@ -178,8 +178,8 @@ class RecordableScene : public RecordableWorld<Scene, RecordedScene> {
   Status move(std::span<const Key> keys, const PoseView& poses) {
     return on([&](auto& s) { return s.move(keys, poses); });
   }
-  Status set_motion(std::span<const Key> keys, Motion motion) {
-    return on([&](auto& s) { return s.set_motion(keys, motion); });
+  Status set_body_state(std::span<const Key> keys, BodyState state) {
+    return on([&](auto& s) { return s.set_body_state(keys, state); });
   }
   Status set_shape(Key key, ShapeId shape) {
     return on([&](auto& s) { return s.set_shape(key, shape); });
@@ -193,8 +193,8 @@ class RecordableScene : public RecordableWorld<Scene, RecordedScene> {
   Status set_layer(Key key, std::uint16_t layer) {
     return on([&](auto& s) { return s.set_layer(key, layer); });
   }
-  Status set_layers_collide(std::uint16_t a, std::uint16_t b, bool meet) {
-    return on([&](auto& s) { return s.set_layers_collide(a, b, meet); });
+  Status set_layers_collide(std::uint16_t a, std::uint16_t b, bool collide) {
+    return on([&](auto& s) { return s.set_layers_collide(a, b, collide); });
   }
   Status set_ignored(std::span<const KeyPair> pairs, bool ignored) {
     return on([&](auto& s) { return s.set_ignored(pairs, ignored); });
@@ -218,7 +218,7 @@ class RecordableScene : public RecordableWorld<Scene, RecordedScene> {
  private:
   friend class RecordableQueries;
   friend class RecordableSensors;
-  friend class RecordableSweep;
+  friend class RecordableContinuousCollision;
 };
 
 /// Queries of a scene; see SceneQueries for the calls.
@@ -270,10 +270,11 @@ class RecordableQueries : public Recordable<SceneQueries, RecordedQueries> {
   }
 };
 
-/// A sweep; see SceneSweep for the calls.
-class RecordableSweep : public Recordable<SceneSweep, RecordedSweep> {
+/// Continuous collision detection; see ContinuousCollision for the calls.
+class RecordableContinuousCollision
+    : public Recordable<ContinuousCollision, RecordedContinuousCollision> {
  public:
-  explicit RecordableSweep(RecordableScene& scene) {
+  explicit RecordableContinuousCollision(RecordableScene& scene) {
     if (scene.is_recorded()) {
       recorded_.emplace(*scene.recorded_);
     } else {
@@ -281,12 +282,12 @@ class RecordableSweep : public Recordable<SceneSweep, RecordedSweep> {
     }
   }
 
-  [[nodiscard]] const SceneSweep* operator->() const noexcept {
+  [[nodiscard]] const ContinuousCollision* operator->() const noexcept {
     return recorded_ ? recorded_->operator->() : &*plain_;
   }
   template <typename... Given>
-  Status sweep(Given&&... given) {
-    return on([&](auto& s) { return s.sweep(given...); });
+  Status find_impacts(Given&&... given) {
+    return on([&](auto& s) { return s.find_impacts(given...); });
   }
 };
 

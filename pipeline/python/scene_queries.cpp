@@ -47,7 +47,7 @@ template <typename Body>
 
 /// As with_unchanged_scene, and raises exceptions of Python functions.
 template <typename Body>
-[[nodiscard]] Outcome asking(SharedScene& s, Body&& body) {
+[[nodiscard]] Outcome run_query(SharedScene& s, Body&& body) {
   return s.shapes->raised.during([&] { return with_unchanged_scene(s, body); });
 }
 
@@ -66,15 +66,15 @@ class QueryLease {
 };
 
 /// Collects the results of each query as lists.
-template <typename Entry, typename Ask>
+template <typename Entry, typename Query>
 [[nodiscard]] std::shared_ptr<Lists<Entry>> list_all(SharedScene& s, std::size_t count,
-                                                     const char* call, Ask&& ask) {
+                                                     const char* call, Query&& query) {
   auto lists = std::make_shared<Lists<Entry>>(count);
-  const Outcome outcome = asking(s, [&] {
+  const Outcome outcome = run_query(s, [&] {
     const Outcome done = answer_all(s.execution, count, [&](std::size_t task, std::size_t i) {
       const QueryLease lease(s);
       std::span<const Entry> found;
-      const Status status = ask(lease, i, found);
+      const Status status = query(lease, i, found);
       if (status == Status::ok) lists->put(task, i, found.data(), found.data() + found.size());
       return status;
     });
@@ -130,9 +130,8 @@ void show_hits(const std::shared_ptr<Lists<SceneHit>>& lists, SceneHitTable& tab
   table.point = hits.rows<double>(offsetof(SceneHit, point), 3);
 }
 
-[[nodiscard]] py::object shown_lists(const std::shared_ptr<Lists<SceneHit>>& lists,
-                                     FindMode wanted) {
-  if (wanted != FindMode::all) {
+[[nodiscard]] py::object shown_lists(const std::shared_ptr<Lists<SceneHit>>& lists, FindMode mode) {
+  if (mode != FindMode::all) {
     SceneHitTable table;
     show_hits(lists, table);
     return py::cast(std::move(table));
@@ -170,8 +169,8 @@ void show_hits(const std::shared_ptr<Lists<SceneHit>>& lists, SceneHitTable& tab
 
 // --- rays --------------------------------------------------------------------------------------
 
-/// Rays of a batch, read in place if they are of double, have one stride and are infinite; else
-/// copied.
+/// Rays of a batch. They are read in place if they are of double and have one stride, and if
+/// `max_t` is a single infinity; else they are copied.
 class ShapeRayInput {
  public:
   ShapeRayInput(py::handle origins, py::handle directions, py::handle max_ts)
@@ -220,12 +219,12 @@ class ShapeRayInput {
 [[nodiscard]] py::object cast_rays(SharedScene& s, py::handle origins, py::handle directions,
                                    const std::string& find, py::handle max_ts,
                                    const Filter& filter) {
-  const FindMode wanted = chosen(kFindModes, find, "find");
+  const FindMode mode = chosen(kFindModes, find, "find");
   const ShapeRayInput rays(origins, directions, max_ts);
   std::vector<ShapeRay> room;
-  if (wanted == FindMode::all) {
+  if (mode == FindMode::all) {
     auto lists = std::make_shared<Lists<SceneHit>>(rays.count());
-    const Outcome outcome = asking(s, [&] {
+    const Outcome outcome = run_query(s, [&] {
       const QueryLease lease(s);
       SceneHitLists found;
       const Status status = lease->all(rays.view(room), found, filter);
@@ -235,7 +234,7 @@ class ShapeRayInput {
       return Outcome{};
     });
     accept(outcome.status, "cast_rays");
-    return shown_lists(lists, wanted);
+    return shown_lists(lists, mode);
   }
   SceneHitTable table;
   auto key = fresh<std::uint64_t>(rays.count());
@@ -246,39 +245,40 @@ class ShapeRayInput {
   const auto [point, points] = vectors(rays.count());
   const SceneHitColumns out{
       keys_in(key), data.mutable_data(), part.mutable_data(), t.mutable_data(), normal, point};
-  const Outcome outcome = asking(s, [&] {
+  const Outcome outcome = run_query(s, [&] {
     const QueryLease lease(s);
     const ShapeRayBatch batch = rays.view(room);
-    return Outcome{wanted == FindMode::any ? lease->any(batch, out, filter)
-                                           : lease->closest(batch, out, filter),
-                   0};
+    return Outcome{
+        mode == FindMode::any ? lease->any(batch, out, filter) : lease->closest(batch, out, filter),
+        0};
   });
   accept(outcome.status, "cast_rays");
   return py::cast(SceneHitTable{{}, key, data, part, t, normals, points});
 }
 
-// --- other questions ---------------------------------------------------------------------------
+// --- other queries -----------------------------------------------------------------------------
 
 /// Casts `count` moving shapes; cast_at(i) returns the i-th.
 template <typename CastAt>
 [[nodiscard]] py::object cast_moving(SharedScene& s, std::size_t count, const std::string& find,
                                      const char* call, const Filter& filter, double tolerance,
                                      CastAt&& cast_at) {
-  const FindMode wanted = chosen(kFindModes, find, "find");
-  if (wanted == FindMode::any) {
+  const FindMode mode = chosen(kFindModes, find, "find");
+  if (mode == FindMode::any) {
     throw Refusal(Status::invalid_argument, "find: of moving shapes 'closest' or 'all'");
   }
   std::vector<SceneHit> one(tasks_for(count));
   const auto lists = list_all<SceneHit>(
-      s, count, call, [&](const QueryLease& ask, std::size_t i, std::span<const SceneHit>& found) {
-        if (wanted == FindMode::all) return ask->all(cast_at(i), found, filter, tolerance);
+      s, count, call,
+      [&](const QueryLease& lease, std::size_t i, std::span<const SceneHit>& found) {
+        if (mode == FindMode::all) return lease->all(cast_at(i), found, filter, tolerance);
         SceneHit& hit = one[i / kQueriesPerTask] = nothing();
-        const Status status = ask->closest(cast_at(i), hit, filter, tolerance);
+        const Status status = lease->closest(cast_at(i), hit, filter, tolerance);
         if (!hit) hit = nothing();
         found = {&hit, 1};
         return status;
       });
-  return shown_lists(lists, wanted);
+  return shown_lists(lists, mode);
 }
 
 [[nodiscard]] py::object cast_shapes(SharedScene& s, py::handle shape_array, py::handle poses,
@@ -320,8 +320,8 @@ template <typename CastAt>
   shape.expect(pose.count());
   const auto lists = list_all<SceneOverlap>(
       s, pose.count(), "overlap",
-      [&](const QueryLease& ask, std::size_t i, std::span<const SceneOverlap>& found) {
-        return ask->overlap(shape[i], pose[i], found, filter);
+      [&](const QueryLease& lease, std::size_t i, std::span<const SceneOverlap>& found) {
+        return lease->overlap(shape[i], pose[i], found, filter);
       });
   const EntryColumns<SceneOverlap> bodies = columns_of(lists);
   return {{},
@@ -342,23 +342,23 @@ template <typename CastAt>
   std::vector<SceneDistance> one(tasks_for(first.count()));
   return shown_distances(list_all<SceneDistance>(
       s, first.count(), "distance",
-      [&](const QueryLease& ask, std::size_t i, std::span<const SceneDistance>& found) {
+      [&](const QueryLease& lease, std::size_t i, std::span<const SceneDistance>& found) {
         SceneDistance& answer = one[i / kQueriesPerTask];
         const Status status =
-            ask->distance(first.keys()[i], second.keys()[i], answer, limit, taken);
+            lease->distance(first.keys()[i], second.keys()[i], answer, limit, taken);
         if (answer) found = {&answer, 1};
         return status;
       }));
 }
 
 /// Queries two sets of bodies.
-template <typename Ask>
-void query_sets(SharedScene& s, py::handle a, py::handle b, const char* call, Ask&& ask) {
+template <typename Query>
+void query_sets(SharedScene& s, py::handle a, py::handle b, const char* call, Query&& query) {
   const KeyInput first(a, "a");
   const KeyInput second(b, "b");
-  const Outcome outcome = asking(s, [&] {
+  const Outcome outcome = run_query(s, [&] {
     const QueryLease lease(s);
-    return Outcome{ask(lease, first.keys(), second.keys()), 0};
+    return Outcome{query(lease, first.keys(), second.keys()), 0};
   });
   accept(outcome.status, call);
 }
@@ -377,34 +377,34 @@ void query_sets(SharedScene& s, py::handle a, py::handle b, const char* call, As
                                                   std::size_t most, const std::string& rules) {
   const PairRules taken = chosen(kRules, rules, "rules");
   std::vector<KeyPair> pairs;
-  query_sets(s, a, b, "overlaps", [&](const QueryLease& ask, auto first, auto second) {
+  query_sets(s, a, b, "overlaps", [&](const QueryLease& lease, auto first, auto second) {
     std::span<const KeyPair> found;
-    const Status status = ask->overlaps(first, second, found, most, taken);
+    const Status status = lease->overlaps(first, second, found, most, taken);
     if (status == Status::ok) pairs.assign(found.begin(), found.end());
     return status;
   });
   return rows_of(pairs);
 }
 
-/// Without sets, tests the whole scene; without the second set, the first one with itself.
+/// If `a` is None, tests the whole scene; if only `b` is None, tests the set `a` with itself.
 [[nodiscard]] py::array_t<std::uint64_t> any_contact(SharedScene& s, const py::object& a,
-                                                     const py::object& b, double margin,
+                                                     const py::object& b, double contact_margin,
                                                      const std::string& rules) {
   const PairRules taken = chosen(kRules, rules, "rules");
   KeyPair pair;
   if (a.is_none()) {
     if (!b.is_none()) throw Refusal(Status::invalid_argument, "any_contact: b without a");
-    const Outcome outcome = asking(s, [&] {
+    const Outcome outcome = run_query(s, [&] {
       const QueryLease lease(s);
-      return Outcome{lease->any_contact(pair, margin, taken), 0};
+      return Outcome{lease->any_contact(pair, contact_margin, taken), 0};
     });
     accept(outcome.status, "any_contact");
   } else {
     const bool is_one = b.is_none();
-    query_sets(s, a, is_one ? a : b, "any_contact",
-               [&](const QueryLease& ask, auto first, auto second) {
-                 return ask->any_contact(first, is_one ? first : second, pair, margin, taken);
-               });
+    query_sets(
+        s, a, is_one ? a : b, "any_contact", [&](const QueryLease& lease, auto first, auto second) {
+          return lease->any_contact(first, is_one ? first : second, pair, contact_margin, taken);
+        });
   }
   return rows_of({&pair, pair.first == Key{} ? 0U : 1U});
 }
@@ -413,8 +413,8 @@ void query_sets(SharedScene& s, py::handle a, py::handle b, const char* call, As
     SharedScene& s, py::handle a, py::handle b, double limit, const std::string& rules) {
   const PairRules taken = chosen(kRules, rules, "rules");
   SetDistance answer;
-  query_sets(s, a, b, "least_distance", [&](const QueryLease& ask, auto first, auto second) {
-    return ask->least_distance(first, second, answer, limit, taken);
+  query_sets(s, a, b, "least_distance", [&](const QueryLease& lease, auto first, auto second) {
+    return lease->least_distance(first, second, answer, limit, taken);
   });
   auto lists = std::make_shared<Lists<SceneDistance>>(1);
   if (answer) lists->put(0, 0, &answer.to, &answer.to + 1);
@@ -431,9 +431,9 @@ void query_sets(SharedScene& s, py::handle a, py::handle b, const char* call, As
   radius.expect(point.count());
   return shown_distances(list_all<SceneDistance>(
       s, point.count(), "nearest",
-      [&](const QueryLease& ask, std::size_t i, std::span<const SceneDistance>& found) {
+      [&](const QueryLease& lease, std::size_t i, std::span<const SceneDistance>& found) {
         const double at[3] = {point.at(i, 0), point.at(i, 1), point.at(i, 2)};
-        return ask->nearest(at, count, radius.at(i), found, filter);
+        return lease->nearest(at, count, radius.at(i), found, filter);
       }));
 }
 
@@ -531,9 +531,10 @@ void add_scene_queries(py::module_& module, SceneClass& scene) {
            "Overlapping bodies of two sets a (n,) and b (m,): keys (k, 2), at most `most` pairs; 1 "
            "stops at the first pair.")
       .def("any_contact", &any_contact, arg("a") = py::none(), arg("b") = py::none(), py::kw_only(),
-           arg("margin") = 0.0, arg("rules") = "scene",
+           arg("contact_margin") = 0.0, arg("rules") = "scene",
            "The first pair of bodies of two sets a (n,) and b (m,) that touch or are at most "
-           "`margin` apart: keys (1, 2), or (0, 2) if there is none. Without b, of bodies of a "
+           "`contact_margin` apart: keys (1, 2), or (0, 2) if there is none. Without b, of bodies "
+           "of a "
            "with each other; without both, of all bodies of the scene.")
       .def("nearest", filtered(&nearest), arg("points"), arg("count") = 1, py::kw_only(),
            arg("radius") = forever, arg("filter") = PythonFilter{},

@@ -16,7 +16,7 @@
 namespace winnow::python {
 namespace {
 
-/// Sensors of a scene. They share its lock, and shapes that they use count as used by it.
+/// Sensors of a scene. Calls lock the scene; `held` counts the shapes of sensors as used.
 struct SharedSensors : NeedsInit {
   explicit SharedSensors(std::shared_ptr<SharedScene> of)
       : scene(std::move(of)), sensors(scene->scene), held(scene->shapes) {}
@@ -49,7 +49,7 @@ using Definitions = std::vector<SensorDefinition>;
   if (!carriers.is_none()) {
     carrier.emplace(carriers, "carrier");
     if (carrier->count() != count) {
-      throw Refusal(Status::size_mismatch, "carrier: one key for each sensor is wanted");
+      throw Refusal(Status::size_mismatch, "carrier: expected one key for each sensor");
     }
   }
   Definitions sensors(count);

@@ -1,5 +1,5 @@
-// The class Scene: bodies and collide. Other members are in pair_filter.cpp, sweeps.cpp,
-// scene_queries.cpp and snapshots.cpp.
+// The class Scene: bodies and collide. Other members are in pair_filter.cpp,
+// continuous_collision.cpp, scene_queries.cpp and snapshots.cpp.
 
 #include "pipeline/python/shared_scene.h"
 
@@ -44,40 +44,38 @@ void SharedScene::exchange_predicate(std::shared_ptr<Predicate>& other) {
 
 namespace {
 
-/// Checked here, because a scene would fail only when the first body is added.
+/// Checks an option here, because a scene would fail only when the first body is added.
 void expect_length(double length, const char* name) {
   if (length >= 0.0 && length < std::numeric_limits<double>::infinity()) return;
-  throw Refusal(Status::invalid_argument, std::string(name) + ": finite and >= 0 is wanted");
+  throw Refusal(Status::invalid_argument, std::string(name) + ": expected a finite value >= 0");
 }
 
 }  // namespace
 
-SceneOptions scene_options(double margin, const std::string& tier,
+SceneOptions scene_options(double contact_margin, const std::string& tier,
                            const std::vector<std::string>& structures, bool parallel) {
   SceneOptions options;
   options.execution = parallel ? Execution::parallel() : Execution::serial();
-  if (structures.size() != kMotions) {
+  if (structures.size() != kBodyStates) {
     throw Refusal(Status::invalid_argument, "structures: of fixed, dynamic and sleeping bodies");
   }
-  for (std::size_t i = 0; i < kMotions; ++i) options.structures[i] = structure_of(structures[i]);
-  expect_length(margin, "margin");
-  options.margin = margin;
+  for (std::size_t i = 0; i < kBodyStates; ++i) options.structures[i] = structure_of(structures[i]);
+  expect_length(contact_margin, "contact_margin");
+  options.contact_margin = contact_margin;
   options.tier = chosen(kTiers, tier, "tier");
   return options;
 }
 
 namespace {
 
-[[nodiscard]] std::shared_ptr<SharedScene> make_scene(const std::shared_ptr<SharedShapes>& shapes,
-                                                      double margin, const std::string& tier,
-                                                      double carry_over, bool contact_reduction,
-                                                      bool suppress_ghost_contacts, bool warm_start,
-                                                      const std::vector<std::string>& structures,
-                                                      bool parallel, std::size_t build_budget,
-                                                      const RecorderPointer& recorder) {
-  SceneOptions options = scene_options(margin, tier, structures, parallel);
-  expect_length(carry_over, "carry_over");
-  options.carry_over = carry_over;
+[[nodiscard]] std::shared_ptr<SharedScene> make_scene(
+    const std::shared_ptr<SharedShapes>& shapes, double contact_margin, const std::string& tier,
+    double cache_tolerance, bool contact_reduction, bool suppress_ghost_contacts, bool warm_start,
+    const std::vector<std::string>& structures, bool parallel, std::size_t build_budget,
+    const RecorderPointer& recorder) {
+  SceneOptions options = scene_options(contact_margin, tier, structures, parallel);
+  expect_length(cache_tolerance, "cache_tolerance");
+  options.cache_tolerance = cache_tolerance;
   options.contact_reduction = contact_reduction;
   options.suppress_ghost_contacts = suppress_ghost_contacts;
   options.warm_start = warm_start;
@@ -105,25 +103,25 @@ void reserve(SharedScene& s, const SceneCapacity& room, HeldContacts* contacts, 
 // --- bodies ------------------------------------------------------------------------------------
 
 [[nodiscard]] py::array add_bodies(SharedScene& s, py::handle shape_array, py::handle poses,
-                                   py::handle motions, py::handle layers, py::handle mask,
+                                   py::handle states, py::handle layers, py::handle mask,
                                    py::handle environment, py::handle data, py::handle contact,
                                    py::handle rest, py::handle scene_layer) {
   const PoseInput pose(poses);
   const ShapeInput shape(shape_array);
-  const MotionInput motion(motions);
+  const BodyStateInput state(states);
   const FilterInput filter(layers, mask, environment);
   OffsetInput offsets(contact, rest);
   const LayerInput layer(scene_layer, "layer");
   const std::size_t count = pose.count();
   shape.expect(count);
-  motion.expect(count);
+  state.expect(count);
   filter.expect(count);
   offsets.expect(count);
   layer.expect(count);
   const std::vector<ClientData> values = data_of(data, count);
   std::vector<BodyDefinition> bodies(count);
   for (std::size_t i = 0; i < count; ++i) {
-    bodies[i] = {shape[i],   pose[i], motion[i], filter[i], values.empty() ? 0 : values[i],
+    bodies[i] = {shape[i],   pose[i], state[i], filter[i], values.empty() ? 0 : values[i],
                  offsets[i], layer[i]};
   }
   const std::vector<ShapeId> used = shapes_of(bodies);
@@ -166,10 +164,11 @@ void move_bodies(SharedScene& s, py::handle key_array, py::handle poses) {
   accept(changing_scene(s, [&] { return s.scene.move(keys.keys(), pose.view(room)); }), "move");
 }
 
-void set_motion(SharedScene& s, py::handle key_array, const std::string& name) {
+void set_body_state(SharedScene& s, py::handle key_array, const std::string& name) {
   const KeyInput keys(key_array);
-  const Motion motion = chosen(kMotionNames, name, "motion");
-  accept(changing_scene(s, [&] { return s.scene.set_motion(keys.keys(), motion); }), "set_motion");
+  const BodyState state = chosen(kBodyStateNames, name, "state");
+  accept(changing_scene(s, [&] { return s.scene.set_body_state(keys.keys(), state); }),
+         "set_body_state");
 }
 
 void set_shape(SharedScene& s, py::handle key_array, py::handle shape_array) {
@@ -197,7 +196,7 @@ void set_shape(SharedScene& s, py::handle key_array, py::handle shape_array) {
          "set_shape");
 }
 
-// --- what is known -----------------------------------------------------------------------------
+// --- properties of bodies ----------------------------------------------------------------------
 
 [[nodiscard]] py::array contains(const SharedScene& s, py::handle key_array) {
   const KeyInput keys(key_array);
@@ -229,7 +228,7 @@ void set_shape(SharedScene& s, py::handle key_array, py::handle shape_array) {
   py::dict result;
   result["shape"] = columns.column<std::uint32_t>(offsetof(Body, shape));
   result["pose"] = columns.rows<double>(offsetof(Body, pose), 7);
-  result["motion"] = columns.column<std::uint8_t>(offsetof(Body, motion));
+  result["state"] = columns.column<std::uint8_t>(offsetof(Body, state));
   constexpr std::size_t filter = offsetof(Body, filter);
   result["layers"] = columns.column<std::uint32_t>(filter + offsetof(ObjectFilter, layers));
   result["mask"] = columns.column<std::uint32_t>(filter + offsetof(ObjectFilter, mask));
@@ -272,7 +271,7 @@ void set_predicate(SharedScene& s, const py::object& function) {
   result["boxes_updated"] = stats.boxes_updated;
   result["body_pairs"] = stats.body_pairs;
   result["rejected_by_spheres"] = stats.rejected_by_spheres;
-  result["carried"] = stats.carried;
+  result["cached_pairs"] = stats.cached_pairs;
   result["primitive_pairs"] = stats.primitive_pairs;
   result["convex"] = narrow_statistics(stats.convex);
   result["parts"] = narrow_statistics(stats.parts);
@@ -286,8 +285,8 @@ void set_predicate(SharedScene& s, const py::object& function) {
     result[name] = py::make_tuple(bytes.used, bytes.reserved);
   };
   add("bodies", f.bodies);
-  for (std::size_t i = 0; i < kMotions; ++i) {
-    add(std::string(kMotionNames[i].first).c_str(), f.partitions[i]);
+  for (std::size_t i = 0; i < kBodyStates; ++i) {
+    add(std::string(kBodyStateNames[i].first).c_str(), f.partitions[i]);
   }
   add("pairs", f.pairs);
   add("mid_phase", f.mid_phase);
@@ -311,13 +310,16 @@ void add_bodies_to(SceneClass& scene) {
   using py::arg;
   constexpr std::uint32_t every = ~0U;
   scene
-      .def(py::init(&make_scene), arg("shapes").none(false), py::kw_only(), arg("margin") = 0.0,
-           arg("tier") = "robust", arg("carry_over") = 0.0, arg("contact_reduction") = false,
-           arg("suppress_ghost_contacts") = false, arg("warm_start") = false,
-           arg("structures") = std::vector<std::string>(kMotions, "LinearBvh"),
+      .def(py::init(&make_scene), arg("shapes").none(false), py::kw_only(),
+           arg("contact_margin") = 0.0, arg("tier") = "robust", arg("cache_tolerance") = 0.0,
+           arg("contact_reduction") = false, arg("suppress_ghost_contacts") = false,
+           arg("warm_start") = false,
+           arg("structures") = std::vector<std::string>(kBodyStates, "LinearBvh"),
            arg("parallel") = true, arg("build_budget") = 0, arg("recorder") = py::none(),
-           "An empty scene. Pairs at most `margin` apart are contacts too; a pair that has moved "
-           "less than `carry_over` keeps its contacts; both are lengths. `tier` as in NarrowPhase. "
+           "An empty scene. Pairs at most `contact_margin` apart are contacts too; a pair that has "
+           "moved "
+           "less than `cache_tolerance` keeps its contacts; both are lengths. `tier` as in "
+           "NarrowPhase. "
            "`contact_reduction`: one manifold for each contact region of composite shapes, instead "
            "of one for each pair of parts; `suppress_ghost_contacts`: suppresses ghost contacts at "
            "the "
@@ -325,12 +327,12 @@ void add_bodies_to(SceneClass& scene) {
            "last frame. `structures` of fixed, dynamic and sleeping bodies; `build_budget`: rows "
            "of planned work per refresh, 0 for as many as are needed in time. `recorder`: records "
            "all calls.")
-      .def("add", &add_bodies, arg("shapes"), arg("poses"), arg("motion") = "dynamic",
+      .def("add", &add_bodies, arg("shapes"), arg("poses"), arg("state") = "dynamic",
            arg("layers") = 1, arg("mask") = every, arg("environment") = 0, arg("data") = py::none(),
            py::kw_only(), arg("contact") = 0.0, arg("rest") = 0.0, arg("layer") = 0,
            "Adds n bodies and returns their keys, (n,) uint64: shapes (n,), or one for all, at "
            "poses (n, 7) of x, y, z and a quaternion w, x, y, z, (n, 3), or a tuple of both. "
-           "`motion`: 'fixed', 'dynamic' or 'sleeping', or (n,) of FIXED, DYNAMIC, SLEEPING. "
+           "`state`: 'fixed', 'dynamic' or 'sleeping', or (n,) of FIXED, DYNAMIC, SLEEPING. "
            "Filters (n,) or one for all, as in Partition.set_filter. `data`: (n,) uint64. "
            "`contact` and `rest` as in `set_offsets`, `layer` as in `set_layer`.")
       .def("remove", &remove_bodies, arg("keys"), "Removes the bodies of `keys` (n,), all or none.")
@@ -338,7 +340,7 @@ void add_bodies_to(SceneClass& scene) {
       .def("move", &move_bodies, arg("keys"), arg("poses"),
            "Sets new poses of the bodies of `keys` (n,), as in `add`. Positions in double, and "
            "orientations in float or double, of any strides are read in place.")
-      .def("set_motion", &set_motion, arg("keys"), arg("motion"),
+      .def("set_body_state", &set_body_state, arg("keys"), arg("state"),
            "Moves bodies to the set of 'fixed', 'dynamic' or 'sleeping' ones.")
       .def("set_shape", &set_shape, arg("keys"), arg("shapes"),
            "Sets new shapes, (n,) or one for all, of the bodies of `keys` (n,).")
@@ -347,25 +349,25 @@ void add_bodies_to(SceneClass& scene) {
       .def(
           "size",
           [](const SharedScene& s, const std::string& name) {
-            const Motion motion = chosen(kMotionNames, name, "motion");
-            return reading(s.mutex, [&] { return s.scene->size(motion); });
+            const BodyState state = chosen(kBodyStateNames, name, "state");
+            return reading(s.mutex, [&] { return s.scene->size(state); });
           },
-          arg("motion"), "Number of 'fixed', 'dynamic' or 'sleeping' bodies.")
+          arg("state"), "Number of 'fixed', 'dynamic' or 'sleeping' bodies.")
       .def("contains", &contains, arg("keys"), "True for `keys` (n,) of live bodies: (n,) bool.")
       .def("keys_of", &keys_of, arg("ids"),
            "Keys (n,) uint64 of bodies by id (n,); NULL_KEY for bodies that do not exist.")
       .def("bodies", &body_columns, arg("keys"),
            "The current definitions of the bodies of `keys` (n,): columns shape, pose (n, 7), "
-           "motion, layers, mask, environment, data, contact, rest, layer.");
+           "state, layers, mask, environment, data, contact, rest, layer.");
 }
 
 }  // namespace
 
 void add_scene(py::module_& module) {
   using py::arg;
-  module.attr("FIXED") = static_cast<int>(Motion::fixed);
-  module.attr("DYNAMIC") = static_cast<int>(Motion::dynamic);
-  module.attr("SLEEPING") = static_cast<int>(Motion::sleeping);
+  module.attr("FIXED") = static_cast<int>(BodyState::fixed);
+  module.attr("DYNAMIC") = static_cast<int>(BodyState::dynamic);
+  module.attr("SLEEPING") = static_cast<int>(BodyState::sleeping);
   add_contacts(module);
   SceneClass scene(module, "Scene",
                    "Bodies with shapes and poses, and their contacts. Any number of threads may "
@@ -386,7 +388,8 @@ void add_scene(py::module_& module) {
            "(`set_layers_collide`) "
            "and `set_ignored` have no such cost. It must return the same result each time, because "
            "it is not called in each frame: set it again to have all pairs tested again. It must "
-           "not call winnow (unsupported). `collide` and sweeps raise its exceptions; contacts "
+           "not call winnow (unsupported). `collide` and `find_impacts` raise its exceptions; "
+           "contacts "
            "that they were to fill are cleared. Set None to release it: needed if it refers to the "
            "scene.")
       .def_property_readonly("predicate", &predicate_of, "The current predicate.")
@@ -422,7 +425,7 @@ void add_scene(py::module_& module) {
       "pairs whose boxes overlap, and of touching pairs; `contacts` reserves for these, their "
       "manifolds and points. `touch` writes to each page.");
   add_pair_filter(module, scene);
-  add_sweeps(module, scene);
+  add_continuous_collision(module, scene);
   add_scene_queries(module, scene);
   add_scene_snapshots(scene);
   add_sensors(module);

@@ -21,8 +21,10 @@
 
 namespace winnow::python {
 
-inline constexpr Choices<Motion, kMotions> kMotionNames{
-    {{"fixed", Motion::fixed}, {"dynamic", Motion::dynamic}, {"sleeping", Motion::sleeping}}};
+inline constexpr Choices<BodyState, kBodyStates> kBodyStateNames{
+    {{"fixed", BodyState::fixed},
+     {"dynamic", BodyState::dynamic},
+     {"sleeping", BodyState::sleeping}}};
 
 using HeldContacts = Exported<Contacts>;
 
@@ -41,7 +43,8 @@ class SharedScene : public NeedsInit {
   [[nodiscard]] std::unique_ptr<RecordableQueries> take_queries();
   /// Returns a query object for later use; frees it if memory is refused.
   void put_queries(std::unique_ptr<RecordableQueries> queries) noexcept;
-  /// Swaps the predicate. Requires the mutex; the caller releases the old predicate without it.
+  /// Swaps the predicate of the scene with `other`. The caller holds the mutex, and unlocks it
+  /// before the old predicate is destroyed.
   void exchange_predicate(std::shared_ptr<Predicate>& other);
   /// Null if there is none. Requires the mutex, shared or not.
   [[nodiscard]] std::shared_ptr<Predicate> predicate() const noexcept { return predicate_; }
@@ -53,13 +56,13 @@ class SharedScene : public NeedsInit {
       std::shared_ptr<Predicate> failed;
       auto answer = changing(mutex, [&] {
         const std::shared_lock lock(shapes->mutex);
-        const std::shared_ptr<Predicate> asked = predicate_;
-        if (asked) asked->begin();
+        const std::shared_ptr<Predicate> current = predicate_;
+        if (current) current->begin();
         auto made = work();
-        if (asked && asked->has_failed()) {
+        if (current && current->has_failed()) {
           // Set again, so that the next call applies it to all pairs.
-          scene.set_predicate(pair_predicate(*asked));
-          failed = asked;
+          scene.set_predicate(pair_predicate(*current));
+          failed = current;
         }
         return made;
       });
@@ -74,8 +77,8 @@ class SharedScene : public NeedsInit {
   Execution execution;
   mutable std::shared_mutex mutex;
   RecordableScene scene;
-  /// Created by the first sweep; used with the mutex.
-  std::optional<RecordableSweep> sweep;
+  /// Created by the first call that uses it; used with the mutex.
+  std::optional<RecordableContinuousCollision> ccd;
   /// The scene has changed since its last refresh.
   std::atomic<bool> is_stale{true};
   std::atomic<std::uint64_t> shapes_seen{0};
@@ -89,7 +92,7 @@ class SharedScene : public NeedsInit {
 };
 
 /// Options shared by scenes and clusters of scenes.
-[[nodiscard]] SceneOptions scene_options(double margin, const std::string& tier,
+[[nodiscard]] SceneOptions scene_options(double contact_margin, const std::string& tier,
                                          const std::vector<std::string>& structures, bool parallel);
 
 using SceneClass = py::class_<SharedScene, std::shared_ptr<SharedScene>>;
@@ -98,8 +101,8 @@ using SceneClass = py::class_<SharedScene, std::shared_ptr<SharedScene>>;
 void add_contacts(py::module_& module);
 /// Adds pair filters, offsets, and groups of contacts.
 void add_pair_filter(py::module_& module, SceneClass& scene);
-/// Adds sweeps.
-void add_sweeps(py::module_& module, SceneClass& scene);
+/// Adds continuous collision detection.
+void add_continuous_collision(py::module_& module, SceneClass& scene);
 /// Adds Sensors.
 void add_sensors(py::module_& module);
 /// Adds queries of the exact shapes.

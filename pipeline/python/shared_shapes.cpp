@@ -61,7 +61,7 @@ Status SharedShapes::load(std::span<const std::byte> convex, std::span<const std
   for (const auto& [bits, count] : uses_) {
     if (count != by_compounds[bits]) return Status::invalid_key;
   }
-  // Both are read into separate pools first, so that both are loaded or none.
+  // Both are read into separate pools first: if one is invalid, neither pool has changed.
   ShapePool read;
   CompositePool made(read);
   Status status = read.load(convex);

@@ -30,11 +30,11 @@ class SupportCallback {
   SupportCallback(py::object function, double radius, Raised& raised)
       : function_(std::move(function), "function"), radius_(radius), raised_(raised) {}
   [[nodiscard]] SupportShape shape(double rounding) const noexcept {
-    return {&ask, this, radius_, rounding};
+    return {&evaluate, this, radius_, rounding};
   }
 
  private:
-  static void ask(const void* context, const double direction[3], double point[3]);
+  static void evaluate(const void* context, const double direction[3], double point[3]);
 
   PythonFunction function_;
   double radius_;
@@ -69,10 +69,10 @@ class SharedShapes : public NeedsInit {
   CompositePool composites{pool};
   /// Incremented by each change in place; scenes then refresh their bodies.
   std::atomic<std::uint64_t> revision{0};
-  /// Support functions of shapes, by the bits of their ids. Changed with the mutex; functions are
-  /// released without it.
+  /// Support functions of shapes, by the bits of their ids. Changes require the mutex; functions
+  /// are destroyed without it.
   SupportFunctions supports;
-  /// Exceptions of these functions.
+  /// Exceptions of support functions.
   mutable Raised raised;
 
  private:
@@ -81,7 +81,7 @@ class SharedShapes : public NeedsInit {
   ShapeUses uses_;
 };
 
-/// As `reading`, and raises exceptions of support functions.
+/// Like `reading`, and raises exceptions of support functions.
 template <typename Body>
 auto reading_shapes(const SharedShapes& shapes, Body&& body) {
   return shapes.raised.during([&] { return reading(shapes.mutex, body); });

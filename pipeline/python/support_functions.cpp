@@ -8,9 +8,9 @@
 
 namespace winnow::python {
 
-void SupportCallback::ask(const void* context, const double direction[3], double point[3]) {
+void SupportCallback::evaluate(const void* context, const double direction[3], double point[3]) {
   const auto& self = *static_cast<const SupportCallback*>(context);
-  self.function_.ask(
+  self.function_.call(
       [&](const py::object& function) {
         py::array_t<double> toward(3);
         std::copy_n(direction, 3, toward.mutable_data());

@@ -22,7 +22,7 @@ namespace winnow::python {
   return point;
 }
 
-/// Upper bound on the distance of the point in float from the given one.
+/// Upper bound on the distance between the point in float and the given one.
 [[nodiscard]] inline double off_point_at(const Numbers& numbers, std::size_t i) {
   const Vec3f point = point_at(numbers, i);
   double square = 0.0;
@@ -33,7 +33,7 @@ namespace winnow::python {
   return std::sqrt(square) * (1.0 + 1e-15);
 }
 
-/// Returns an upper bound of the sum; a length that is negative or NaN stays as it is.
+/// Returns an upper bound of the sum in float; a negative length is only rounded, NaN stays NaN.
 [[nodiscard]] inline float grown(double length, double by) {
   return round_up(length >= 0.0 && by > 0.0 ? add_up(length, by) : length);
 }

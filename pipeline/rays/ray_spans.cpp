@@ -20,7 +20,7 @@ constexpr double kParallelRate = 1e-15;
   return length > 0.0 ? Eigen::Vector3d(v / length) : Eigen::Vector3d::Zero();
 }
 
-/// Normalises the offset from a round set's centre; zero if the radius is negligible.
+/// Normalises the offset from a round set's centre; zero if its length is at most kGrazing.
 [[nodiscard]] Eigen::Vector3d outward(const Eigen::Vector3d& v) noexcept {
   const double length = v.stableNorm();
   return length > kGrazing ? Eigen::Vector3d(v / length) : Eigen::Vector3d::Zero();
@@ -54,8 +54,8 @@ void PlaneClip::below(const Eigen::Vector3d& normal, double offset) noexcept {
   const double rate = normal.dot(ray_.direction);
   const double height = normal.dot(ray_.origin) - offset;
   if (std::fabs(rate) <= kParallelRate * ray_.speed) {
-    // The rate is exactly zero only for axis-aligned normals, which need no rounding; then the
-    // height is exact, too.
+    // A rate of exactly zero is typical of axis-aligned normals, for which the height is exact,
+    // too; then there is no tolerance.
     if (height > (rate == 0.0 ? 0.0 : kGrazing)) span_ = RaySpan{};
     return;
   }
@@ -159,8 +159,8 @@ RaySpan prism_span(const LocalRay& ray, std::span<const Eigen::Vector3d> vertice
     clip.below(side, side.dot(a));
     if (clip.span().is_empty()) return {};
   }
-  // The side planes of a sliver are parallel to working precision, so that they do not bound it
-  // along its length.
+  // The side planes of a sliver may be parallel within rounding, so that they do not bound the
+  // sliver along its length.
   return common(clip.span(), length_span(ray, vertices));
 }
 

@@ -112,8 +112,8 @@ class TaperSurface {
  private:
   double radius_[2];
   double half_;
-  // Sine and cosine of half the angle at the cone's tip. Its outward normal is (cosine, sine) in
-  // (rho, z).
+  // Sine and cosine of half the angle at the cone's tip. The cone's outward normal is (cosine,
+  // sine) in (rho, z).
   double sine_;
   double cosine_;
 };
@@ -132,7 +132,7 @@ class ConeCrossing {
     double b = form(o_, d_);
     const double c = form(o_, o_);
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
-    // The ray is parallel to a generator of the cone, or lies in its surface.
+    // The ray is parallel to a generator of the cone, or is in its surface.
     if (std::fabs(a) <= kGrazing * speed * speed) a = 0.0;
     if (std::fabs(b) <= kGrazing * speed) b = 0.0;
     if (a == 0.0 && b == 0.0) {
@@ -163,8 +163,8 @@ class ConeCrossing {
     return cone_.cosine * cone_.cosine * (u.x() * v.x() + u.y() * v.y()) -
            cone_.sine * cone_.sine * u.z() * v.z();
   }
-  /// Newton's method on the height over the side; the quadratic form has the squared height, with
-  /// half of the digits.
+  /// Newton's method on the height over the side; the quadratic form contains the squared height,
+  /// which has only half of the digits.
   [[nodiscard]] double polished(double t) const noexcept {
     for (int step = 0; step < 2 && std::isfinite(t); ++step) {
       const Vector3d p = o_ + t * d_;
@@ -195,8 +195,8 @@ class ConeCrossing {
 };
 
 /// Finds the first point within `rounding` of the core, from t on. The distance from a convex core
-/// is a convex function along the ray, so that Newton's method from before the entry never passes
-/// it. If the ray grazes, each step only halves the remaining distance; kMaxSteps allows for
+/// is a convex function along the ray, so Newton's method, started before the entry, never passes
+/// the entry. If the ray grazes, each step only halves the remaining distance; kMaxSteps allows for
 /// halving a double down to the tolerance.
 template <typename Core>
 void merge_rounded(const LocalRay& ray, const Core& core, double rounding, double t,

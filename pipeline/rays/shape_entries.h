@@ -1,8 +1,8 @@
 #pragma once
 
-// Finds where a ray enters a shape: the shape is a union of convex sets, and the entry is the first
-// of the ray's spans within them. shape_rays.cpp calls `enter` for one shape, after scaling the
-// ray.
+// Finds the point at which a ray enters a shape. The shape is a union of convex sets; the ray
+// enters the shape when it enters the first of these sets. shape_rays.cpp calls `enter` for one
+// shape, after scaling the ray.
 
 #include <winnow/pipeline/shape_rays.h>
 #include <winnow/pipeline/shapes.h>
@@ -17,8 +17,9 @@ namespace winnow {
 /// Returns whether the ray satisfies the constraints of ShapeRay.
 [[nodiscard]] bool is_valid(const ShapeRay& ray) noexcept;
 
-/// A ray in the frame of a shape, scaled so that the larger of the shape's size and the distance of
-/// `origin` is near 1. `origin` may have been moved along the ray: the ray begins at t = low.
+/// A ray in the frame of a shape, scaled by a power of two: the larger of the shape's size and the
+/// largest coordinate of `origin` (in world axes) is in [1/2, 1). `origin` may have been moved
+/// along the ray: the ray begins at t = low.
 struct LocalRay {
   Eigen::Vector3d origin;
   Eigen::Vector3d direction;
@@ -105,8 +106,8 @@ class PlaneClip {
                                double scale) noexcept;
 [[nodiscard]] FirstEntry enter(const LocalRay& ray, const TaperedCapsuleShape& taper,
                                double scale) noexcept;
-/// Without rounding: intersects the ray with a unit ball in the space scaled by the radii. With
-/// rounding: conservative advancement.
+/// Without rounding, and if all scaled radii exceed 1e-12: intersects the ray with a unit ball in
+/// the space scaled by the radii. Else: conservative advancement.
 [[nodiscard]] FirstEntry enter(const LocalRay& ray, const EllipsoidShape& ellipsoid,
                                double scale) noexcept;
 [[nodiscard]] FirstEntry enter(const LocalRay& ray, const SupportShape& shape,

@@ -64,19 +64,19 @@ using Eigen::Vector3d;
 }
 
 /// A ray relative to a body's position, in world axes, scaled. The caller's t is (shift + local t *
-/// 2^stretch) * 2^exponent.
+/// 2^t_exponent) * 2^exponent.
 struct RelativeRay {
   Vector3d origin;
   Vector3d direction;
   double shift = 0.0;
-  int stretch = 0;
+  int t_exponent = 0;
   int exponent = 0;
   int lengths = 0;  // the shape's lengths are multiplied by 2^-lengths
 };
 
 /// Scales the ray by powers of two. If it begins far from the shape, its origin is first moved to
-/// the point of the ray nearest to the shape's origin. The errors of differences and products are
-/// carried along, so that the result is as accurate as for a ray that begins there.
+/// the point of the ray nearest to the shape's origin. The rounding errors of this step are
+/// computed and added, so that the result is as accurate as for a ray that begins at that point.
 [[nodiscard]] RelativeRay approach(const ShapeRay& ray, const Pose& pose, double size,
                                    bool may_move) noexcept {
   constexpr double kFar = 8.0;
@@ -109,9 +109,9 @@ struct RelativeRay {
     result.shift = nearest;
   }
   const double scaled_size = unit * kQuarter * size;
-  result.stretch = exponent_of(std::max(result.origin.cwiseAbs().maxCoeff(), scaled_size));
-  result.origin *= std::ldexp(1.0, -result.stretch);
-  result.lengths = distance + 2 + result.stretch;
+  result.t_exponent = exponent_of(std::max(result.origin.cwiseAbs().maxCoeff(), scaled_size));
+  result.origin *= std::ldexp(1.0, -result.t_exponent);
+  result.lengths = distance + 2 + result.t_exponent;
   return result;
 }
 
@@ -124,13 +124,14 @@ void cast(const Shape& shape, const Pose& pose, const ShapeRay& ray, ShapeHit& h
   local.origin = turn.transpose() * relative.origin;
   local.direction = turn.transpose() * relative.direction;
   local.speed = local.direction.norm();
-  local.low = std::ldexp(-relative.shift, -relative.stretch);
+  local.low = std::ldexp(-relative.shift, -relative.t_exponent);
   const FirstEntry entry = enter(local, shape, std::ldexp(1.0, -relative.lengths));
   hit = {};
   if (!entry.found) return;
-  const double t = entry.inside ? 0.0
-                                : std::ldexp(relative.shift + std::ldexp(entry.t, relative.stretch),
-                                             relative.exponent);
+  const double t = entry.inside
+                       ? 0.0
+                       : std::ldexp(relative.shift + std::ldexp(entry.t, relative.t_exponent),
+                                    relative.exponent);
   if (!(t <= ray.max_t) || t < 0.0 || std::isinf(t)) return;
   hit.hit = true;
   hit.t = t;
@@ -154,7 +155,7 @@ bool is_valid(const ShapeRay& ray) noexcept {
 
 Status cast_ray(const ShapeTables& tables, ShapeId shape, const Pose& pose, const ShapeRay& ray,
                 ShapeHit& hit) noexcept {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   if (shape.kind_index() >= kShapeKinds || shape.index() >= tables.count[shape.kind_index()]) {
     return Status::invalid_key;
   }

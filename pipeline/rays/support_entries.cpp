@@ -1,4 +1,5 @@
-// Ray tests for ellipsoids and user shapes, by conservative advancement with GJK (solver/gjk.h).
+// Ray tests for ellipsoids and user shapes: conservative advancement with GJK (solver/gjk.h), and a
+// closed form for ellipsoids without rounding whose radii are not near 0.
 
 #include "pipeline/rays/shape_entries.h"
 #include "pipeline/shapes/support_core.h"
@@ -42,8 +43,8 @@ class SupportTarget {
   solver::Core body_;
 };
 
-/// Advances the ray from one separating plane to the next; the core is behind each plane, so that
-/// no step passes the entry (van den Bergen, "Ray casting against general convex objects with
+/// Advances the ray from one separating plane to the next; the core is behind each plane, so no
+/// step passes the entry (van den Bergen, "Ray casting against general convex objects with
 /// application to continuous collision detection", 2004). If a ray grazes, each step only halves
 /// the remaining distance.
 [[nodiscard]] FirstEntry approach_core(const LocalRay& ray, const SupportCore& core,

@@ -31,7 +31,8 @@ void add_corners(Digest& digest, const MeshView& view, std::size_t k) noexcept {
 
 }  // namespace
 
-// The active edges of a mesh are not included: they follow from the rest.
+// The active edges of a mesh are not included: they are computed from its triangles, its vertices
+// and the angle in its build options.
 CompositeDigests digests_of(const CompositePool& pool, ShapeId id) noexcept {
   Digest digest;
   digest.add(std::uint64_t{id.kind_index()});

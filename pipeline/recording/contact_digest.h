@@ -26,7 +26,7 @@ void add_to(Digest& digest, const IndexedView<Lookup>& values) noexcept {
   digest.add(std::uint64_t{values.size() * kBytes});
 }
 
-/// Adds all results of contacts; only the ids of keys.
+/// Adds all results of contacts. Of a key, only the id is added.
 inline void add_to(Digest& digest, const Contacts& contacts) noexcept {
   const auto add_ids = [&](std::span<const Key> keys) {
     for (const Key& key : keys) digest.add(std::uint64_t{key.id});
@@ -61,10 +61,11 @@ inline void add_to(Digest& digest, const Contacts& contacts) noexcept {
   }
   digest.add_array(contacts.previous_pair());
   digest.add_array(contacts.previous_point());
-  digest.add(std::uint64_t{contacts.carried()});
+  digest.add(std::uint64_t{contacts.cached_pairs()});
 }
 
-/// Adds all data of a hull in a pool, bit by bit.
+/// Adds the numbers, vertices and faces of a hull in a pool. Its other arrays are computed from
+/// these data.
 inline void add_to(Digest& digest, const HullShape& hull) noexcept {
   for (const std::uint32_t count :
        {hull.vertex_count, hull.face_count, hull.edge_count, hull.dimension}) {

@@ -57,7 +57,7 @@ enum class RecordedCall : std::uint8_t {
   remove_bodies,
   clear_bodies,
   move,
-  set_motion,
+  set_body_state,
   set_shape,
   set_body_filter,
   set_ignored,
@@ -74,15 +74,15 @@ enum class RecordedCall : std::uint8_t {
   set_predicate,
   pairs_passed,
   composites_changed,
-  ask_ray,
-  ask_rays,
-  ask_overlap,
-  ask_shape_cast,
-  ask_motion_cast,
-  ask_distance,
-  ask_least_distance,
-  ask_overlaps,
-  ask_nearest,
+  query_ray,
+  query_rays,
+  query_overlap,
+  query_shape_cast,
+  query_motion_cast,
+  query_distance,
+  query_least_distance,
+  query_overlaps,
+  query_nearest,
 
   // Since version 3.
   load_scene,
@@ -94,28 +94,28 @@ enum class RecordedCall : std::uint8_t {
   move_sensor,
   set_sensor,
   sense,
-  sweep,
-  sweep_motions,
+  find_impacts,
+  find_impacts_of_motions,
 
   // Since version 4. The older calls for the same queries use PairRules::none.
-  ask_distance_by_rules,
-  ask_least_distance_by_rules,
-  ask_overlaps_by_rules,
-  ask_any_contact,
-  ask_any_contact_of_sets,
+  query_distance_by_rules,
+  query_least_distance_by_rules,
+  query_overlaps_by_rules,
+  query_any_contact,
+  query_any_contact_of_sets,
 };
 
 /// Returns the last call of a version; nullopt for an unknown version.
 [[nodiscard]] constexpr std::optional<RecordedCall> last_call_of(std::uint32_t version) noexcept {
   if (version == 1) return RecordedCall::set_layers_collide;
-  if (version == 2) return RecordedCall::ask_nearest;
-  if (version == 3) return RecordedCall::sweep_motions;
-  if (version == 4) return RecordedCall::ask_any_contact_of_sets;
+  if (version == 2) return RecordedCall::query_nearest;
+  if (version == 3) return RecordedCall::find_impacts_of_motions;
+  if (version == 4) return RecordedCall::query_any_contact_of_sets;
   static_assert(kRecordingVersion == 4);
   return std::nullopt;
 }
 
-/// Objects of a call by id: keys are valid only in one process, ids are the same in each.
+/// A pair by ids: a player's keys differ from the recorded ones, its ids do not.
 struct RecordedPair {
   std::uint32_t first;
   std::uint32_t second;
@@ -130,13 +130,13 @@ struct RecordedPair {
 /// touched at the start (ShapeCast::touching is false).
 enum class HitForm : std::uint8_t { closest, any, all, closest_from_touch, all_from_touch };
 
-/// The kind of pair query.
+/// Where a pair query stores its results.
 enum class PairForm : std::uint8_t { buffer, buffer_and_events, events };
 
 /// A body to add, with the number of its shape in the recording.
 struct RecordedBody {
   std::uint32_t shape;
-  std::uint32_t motion;
+  std::uint32_t state;
   double pose[7];  // position, orientation
   std::uint32_t filter[3];
   std::uint32_t unused;
@@ -155,7 +155,7 @@ struct RecordedName {
 }
 
 // Digests of results: overloads of add_to, here and in contact_digest.h, query_digest.h and
-// sweep_digest.h.
+// impact_digest.h.
 
 /// Digest of several results in order.
 template <typename... Answers>
@@ -200,7 +200,7 @@ inline void add_to(Digest& digest, const PairEvents& events) noexcept {
 
 inline void add_to(Digest& digest, const HitBuffer& hits) noexcept {
   add_to(digest, hits.hits());
-  for (std::size_t i = 0; i < hits.questions(); ++i) {
+  for (std::size_t i = 0; i < hits.queries(); ++i) {
     digest.add(std::uint64_t{hits.of(i).size()});
   }
 }

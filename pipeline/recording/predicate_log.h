@@ -1,6 +1,7 @@
 #pragma once
 
-// Records what the program's predicates accept, so that a player can answer in their place.
+// Records which pairs and objects the program's predicates accept. The predicates of a player
+// accept the recorded ones.
 
 #include <winnow/core/column.h>
 #include <winnow/core/filter.h>
@@ -11,7 +12,7 @@
 
 namespace winnow {
 
-/// Sorts what was accepted, and removes duplicates.
+/// Sorts accepted pairs or ids, and removes duplicates.
 template <typename T>
 [[nodiscard]] std::span<const T> sorted_unique(Column<T>& passed) noexcept {
   std::sort(passed.begin(), passed.end());
@@ -20,19 +21,20 @@ template <typename T>
   return {passed.data(), passed.size()};
 }
 
-/// Calls the predicate of a scene, from any threads, and stores the pairs that it accepts: in the
-/// memory of the recorder, protected by its lock.
+/// Calls the predicate of a scene, from any threads, and stores the pairs that it accepts, in the
+/// memory of the recorder and protected by the recorder's lock.
 struct AcceptedPairs {
   explicit AcceptedPairs(RecorderState& state) noexcept
       : recorder(state), pairs(state.block.memory()) {}
 
-  /// Returns the predicate to use from now on; none if `predicate` is none.
+  /// Returns a predicate that calls `predicate` and stores accepted pairs; an empty one if
+  /// `predicate` is empty.
   [[nodiscard]] PairPredicate wrap(const PairPredicate& predicate) noexcept {
-    asked = predicate;
+    original = predicate;
     if (predicate.accept == nullptr) return {};
     return {[](void* context, ObjectId first, ObjectId second) {
               auto& self = *static_cast<AcceptedPairs*>(context);
-              const bool passes = self.asked.accept(self.asked.context, first, second);
+              const bool passes = self.original.accept(self.original.context, first, second);
               if (passes) self.keep(lower_first(first, second));
               return passes;
             },
@@ -44,7 +46,7 @@ struct AcceptedPairs {
   }
 
   RecorderState& recorder;
-  PairPredicate asked;
+  PairPredicate original;
   Column<Pair> pairs;
 };
 
@@ -53,36 +55,36 @@ struct AcceptedPairs {
 class AcceptedObjects {
  public:
   AcceptedObjects(const Filter& filter, Column<ObjectId>& ids) noexcept
-      : asked_(filter), ids_(ids) {
+      : original_(filter), ids_(ids) {
     ids_.clear();
   }
 
-  /// Returns the filter to query with.
+  /// Returns the filter, with a predicate that stores accepted bodies.
   [[nodiscard]] Filter filter() noexcept {
-    Filter listening = asked_;
-    if (asked_.predicate.accept == nullptr) return listening;
-    listening.predicate = {[](void* context, Key key, ClientData data) {
-                             return static_cast<AcceptedObjects*>(context)->ask(key, data);
-                           },
-                           this};
-    return listening;
+    Filter wrapped = original_;
+    if (original_.predicate.accept == nullptr) return wrapped;
+    wrapped.predicate = {[](void* context, Key key, ClientData data) {
+                           return static_cast<AcceptedObjects*>(context)->test(key, data);
+                         },
+                         this};
+    return wrapped;
   }
-  /// Writes whether there is a predicate, and what it accepted.
+  /// Writes whether there is a predicate, and the ids of the bodies that it accepted.
   void put(CallWriter& call) {
-    call.put(asked_.predicate.accept != nullptr);
-    if (asked_.predicate.accept != nullptr) call.put_array(sorted_unique(ids_));
+    call.put(original_.predicate.accept != nullptr);
+    if (original_.predicate.accept != nullptr) call.put_array(sorted_unique(ids_));
   }
   /// False if memory was refused.
   [[nodiscard]] bool is_complete() const noexcept { return is_complete_; }
 
  private:
-  bool ask(Key key, ClientData data) {
-    const bool passes = asked_.predicate.accept(asked_.predicate.context, key, data);
+  bool test(Key key, ClientData data) {
+    const bool passes = original_.predicate.accept(original_.predicate.context, key, data);
     if (passes) is_complete_ = ids_.push_back(key.id) && is_complete_;
     return passes;
   }
 
-  const Filter& asked_;
+  const Filter& original_;
   Column<ObjectId>& ids_;
   bool is_complete_ = true;
 };

@@ -7,13 +7,13 @@
 
 namespace winnow {
 
-// Digests of all results of scene queries; only the ids of keys.
+// Digests of all results of scene queries. Of a key, only the id is added.
 
 inline void add_to(Digest& digest, const double (&vector)[3]) noexcept {
   for (const double x : vector) digest.add(x);
 }
 
-// If nothing was found, only that is added.
+// For a query that found nothing, only the id of the null key is added.
 
 inline void add_to(Digest& digest, const SceneHit& hit) noexcept {
   digest.add(std::uint64_t{hit.key.id});

@@ -56,8 +56,8 @@ void put_region(CallWriter& call, const Region& region) {
       region);
 }
 
-// Write what a predicate accepted, if there is one: the results, because the query returned only
-// accepted objects.
+// Write whether there is a predicate, and if so the results of the query. In a player, a predicate
+// that accepts only these objects leads to the same results.
 
 void put_passed(CallWriter& call, const PairPredicate& predicate, std::span<const Pair> pairs) {
   call.put(predicate.accept != nullptr);
@@ -82,7 +82,7 @@ void put_digest(CallWriter& call, const Answer&... answer) {
   call.put(digest_of_answers(answer...).value());
 }
 
-/// Writes the end of a query for hits: its filter, and its results.
+/// Writes the end of a query for hits: its filter, accepted objects, and the digest of its results.
 template <typename Answer>
 void put_hits(CallWriter& call, const Filter& filter, std::span<const Hit> hits,
               const Answer& answer) {
@@ -98,17 +98,17 @@ void put_hit(CallWriter& call, const Filter& filter, const Hit& hit) {
   put_hits(call, filter, one, one);
 }
 
-/// A query for the pairs of one partition. It updates the result of query `before`, or of none.
-/// `follows` is set if its events continue from the same frame.
+/// A query for the pairs of one partition. `before` is the number of the query whose result is in
+/// the buffer; 0 if none. `follows` is set if the events contain the result of that query too.
 struct RecordedPairQuery {
   PairForm form;
   std::uint64_t before;
   bool follows = false;
 
-  RecordedPairQuery(PairForm asked, std::uint64_t number) noexcept : form(asked), before(number) {}
-  RecordedPairQuery(PairForm asked, std::uint64_t number, const PairEvents& events,
+  RecordedPairQuery(PairForm kind, std::uint64_t number) noexcept : form(kind), before(number) {}
+  RecordedPairQuery(PairForm kind, std::uint64_t number, const PairEvents& events,
                     const PairBuffer& held) noexcept
-      : form(asked),
+      : form(kind),
         before(number),
         follows(number != 0 && EventWriter::provenance(events) == PairTracker::provenance(held)) {}
 
@@ -130,7 +130,7 @@ RecordedPartition::RecordedPartition(Recorder& recorder, StructureKind structure
   if (partition_.status() != Status::ok) return;
   CallWriter call(recorder_, RecordedCall::make_partition, world_);
   put_structure(call, structure);
-  call.put(options.volume).put(options.margin.distance).put(options.margin.share);
+  call.put(options.volume).put(options.fat_margin.distance).put(options.fat_margin.share);
   call.put(std::uint64_t{options.build_budget});
 }
 
@@ -202,7 +202,7 @@ Status RecordedPartition::update(std::span<const Key> keys, const BoxView& boxes
   if (status != Status::ok) return status;
   const auto for_each = [&](const auto& visit) {
     if (!entries.is_mask()) {
-      for (const std::uint32_t number : entries.numbers()) visit(number);
+      for (const std::uint32_t number : entries.indices()) visit(number);
       return;
     }
     for (std::size_t i = 0; i < keys.size(); ++i) {
@@ -293,51 +293,51 @@ Status RecordedPartition::refresh() const {
   return status;
 }
 
-// A pair query updates what its buffer holds. The order of its results depends on which query
-// filled the buffer, and on whether the events belong to the same frame.
+// A pair query updates the pairs in its buffer. The order of its results depends on which query
+// filled the buffer, and on whether that query also filled the events.
 
 std::uint64_t RecordedPartition::source_query(const PairBuffer& out) const noexcept {
   const PairBuffer::Provenance held = PairTracker::provenance(out);
-  for (std::uint64_t number = questions_; held.serial != 0 && number != 0; --number) {
-    if (number + kAskedPairs == questions_) break;
-    if (asked_[number % kAskedPairs] == held) return number;
+  for (std::uint64_t number = pair_queries_; held.serial != 0 && number != 0; --number) {
+    if (number + kPairHistory == pair_queries_) break;
+    if (provenances_[number % kPairHistory] == held) return number;
   }
   return 0;
 }
 
-void RecordedPartition::note_asked(const PairBuffer& out) const noexcept {
-  asked_[++questions_ % kAskedPairs] = PairTracker::provenance(out);
+void RecordedPartition::store_provenance(const PairBuffer& out) const noexcept {
+  provenances_[++pair_queries_ % kPairHistory] = PairTracker::provenance(out);
 }
 
 Status RecordedPartition::self_pairs(PairBuffer& out, const PairOptions& options) const {
-  const RecordedPairQuery question(PairForm::buffer, source_query(out));
+  const RecordedPairQuery query(PairForm::buffer, source_query(out));
   const Status status = partition_.self_pairs(out, options);
   if (status != Status::ok) return status;
   CallWriter call(recorder_, RecordedCall::self_pairs, world_);
-  question.put(call, options, out.pairs(), out);
-  note_asked(out);
+  query.put(call, options, out.pairs(), out);
+  store_provenance(out);
   return status;
 }
 
 Status RecordedPartition::self_pairs(PairBuffer& out, PairEvents& events,
                                      const PairOptions& options) const {
-  const RecordedPairQuery question(PairForm::buffer_and_events, source_query(out), events, out);
+  const RecordedPairQuery query(PairForm::buffer_and_events, source_query(out), events, out);
   const Status status = partition_.self_pairs(out, events, options);
   if (status != Status::ok) return status;
   CallWriter call(recorder_, RecordedCall::self_pairs, world_);
-  question.put(call, options, out.pairs(), out, events);
-  note_asked(out);
+  query.put(call, options, out.pairs(), out, events);
+  store_provenance(out);
   return status;
 }
 
 Status RecordedPartition::self_pairs(PairEvents& events, const PairOptions& options) const {
   const PairBuffer& own = EventWriter::own_buffer(events);
-  const RecordedPairQuery question(PairForm::events, source_query(own), events, own);
+  const RecordedPairQuery query(PairForm::events, source_query(own), events, own);
   const Status status = partition_.self_pairs(events, options);
   if (status != Status::ok) return status;
   CallWriter call(recorder_, RecordedCall::self_pairs, world_);
-  question.put(call, options, own.pairs(), events);
-  note_asked(own);
+  query.put(call, options, own.pairs(), events);
+  store_provenance(own);
   return status;
 }
 
@@ -439,12 +439,12 @@ Status RecordedPartition::nearest(const Aabb& from, std::size_t count, float rad
   return status;
 }
 
-/// Records the results of a batch of rays. Without a column of keys it is unknown what a predicate
-/// accepted: such a query is not recorded.
-void RecordedPartition::record(RecordedCall question, const RayBatch& rays, const HitColumns& hits,
+/// Records the results of a batch of rays. A query with a predicate but without a column of keys is
+/// not recorded, because the accepted objects are unknown.
+void RecordedPartition::record(RecordedCall kind, const RayBatch& rays, const HitColumns& hits,
                                const Filter& filter) const {
   if (filter.predicate.accept != nullptr && hits.key == nullptr) return;
-  CallWriter call(recorder_, question, world_);
+  CallWriter call(recorder_, kind, world_);
   put_rays(call, rays);
   call.put_filter(filter);
   put_passed(call, filter.predicate, rays.count, [&](std::size_t i) { return hits.key[i].id; });

@@ -43,16 +43,16 @@ static_assert(sizeof(Pose) == 7 * sizeof(double) && sizeof(RigidMotion) == 13 * 
 RecordedQueries::RecordedQueries(RecordedScene& scene, std::pmr::memory_resource* memory) noexcept
     : scene_(scene), queries_(scene.scene_, memory), passed_(memory) {}
 
-/// Runs a query and records it: write(call) writes the arguments and returns the digest of the
-/// results; the filter follows.
-template <typename Ask, typename Write>
-Status RecordedQueries::record(RecordedCall question, const Filter& filter, Ask&& ask,
+/// Runs a query, and records it if it succeeds: write(call) writes the arguments and returns the
+/// digest of the results. The filter follows the arguments.
+template <typename Query, typename Write>
+Status RecordedQueries::record(RecordedCall kind, const Filter& filter, Query&& query,
                                Write&& write) {
   AcceptedObjects passed(filter, passed_);
-  const Status status = ask(passed.filter());
+  const Status status = query(passed.filter());
   if (status != Status::ok) return status;
-  if (!passed.is_complete()) scene_.refuse(Status::out_of_memory);
-  CallWriter call(scene_.recorder_, question, scene_.world_);
+  if (!passed.is_complete()) scene_.stop_recording(Status::out_of_memory);
+  CallWriter call(scene_.recorder_, kind, scene_.world_);
   const Digest digest = write(call);
   call.put_filter(filter);
   passed.put(call);
@@ -60,15 +60,16 @@ Status RecordedQueries::record(RecordedCall question, const Filter& filter, Ask&
   return status;
 }
 
-/// As above, for a query with a shape, which may be new to the recording: write(call, number).
-template <typename Ask, typename Write>
-Status RecordedQueries::record_with(ShapeId shape, RecordedCall question, const Filter& filter,
-                                    Ask&& ask, Write&& write) {
+/// As `record`, for a query with a shape, which is recorded first if it is new. Calls
+/// write(call, number of the shape).
+template <typename Query, typename Write>
+Status RecordedQueries::record_with(ShapeId shape, RecordedCall kind, const Filter& filter,
+                                    Query&& query, Write&& write) {
   std::uint32_t number = 0;
   return record(
-      question, filter,
-      [&](const Filter& asked) {
-        const Status status = ask(asked);
+      kind, filter,
+      [&](const Filter& wrapped) {
+        const Status status = query(wrapped);
         if (status == Status::ok) number = number_of(shape);
         return status;
       },
@@ -85,8 +86,8 @@ std::uint32_t RecordedQueries::number_of(ShapeId shape) noexcept {
 
 Status RecordedQueries::closest(const ShapeRay& ray, SceneHit& hit, const Filter& filter) {
   return record(
-      RecordedCall::ask_ray, filter,
-      [&](const Filter& asked) { return queries_.closest(ray, hit, asked); },
+      RecordedCall::query_ray, filter,
+      [&](const Filter& wrapped) { return queries_.closest(ray, hit, wrapped); },
       [&](CallWriter& call) {
         put_ray(call.put(HitForm::closest), ray);
         return digest_of_answers(hit);
@@ -95,8 +96,8 @@ Status RecordedQueries::closest(const ShapeRay& ray, SceneHit& hit, const Filter
 
 Status RecordedQueries::any(const ShapeRay& ray, SceneHit& hit, const Filter& filter) {
   return record(
-      RecordedCall::ask_ray, filter,
-      [&](const Filter& asked) { return queries_.any(ray, hit, asked); },
+      RecordedCall::query_ray, filter,
+      [&](const Filter& wrapped) { return queries_.any(ray, hit, wrapped); },
       [&](CallWriter& call) {
         put_ray(call.put(HitForm::any), ray);
         return digest_of_answers(hit);
@@ -106,8 +107,8 @@ Status RecordedQueries::any(const ShapeRay& ray, SceneHit& hit, const Filter& fi
 Status RecordedQueries::all(const ShapeRay& ray, std::span<const SceneHit>& hits,
                             const Filter& filter) {
   return record(
-      RecordedCall::ask_ray, filter,
-      [&](const Filter& asked) { return queries_.all(ray, hits, asked); },
+      RecordedCall::query_ray, filter,
+      [&](const Filter& wrapped) { return queries_.all(ray, hits, wrapped); },
       [&](CallWriter& call) {
         put_ray(call.put(HitForm::all), ray);
         return digest_of_answers(hits);
@@ -117,8 +118,8 @@ Status RecordedQueries::all(const ShapeRay& ray, std::span<const SceneHit>& hits
 Status RecordedQueries::closest(const ShapeRayBatch& rays, const SceneHitColumns& hits,
                                 const Filter& filter) {
   return record(
-      RecordedCall::ask_rays, filter,
-      [&](const Filter& asked) { return queries_.closest(rays, hits, asked); },
+      RecordedCall::query_rays, filter,
+      [&](const Filter& wrapped) { return queries_.closest(rays, hits, wrapped); },
       [&](CallWriter& call) {
         put_rays(call.put(HitForm::closest).put(columns_in(hits)), rays);
         return digest_of_columns(hits, rays.count);
@@ -128,8 +129,8 @@ Status RecordedQueries::closest(const ShapeRayBatch& rays, const SceneHitColumns
 Status RecordedQueries::any(const ShapeRayBatch& rays, const SceneHitColumns& hits,
                             const Filter& filter) {
   return record(
-      RecordedCall::ask_rays, filter,
-      [&](const Filter& asked) { return queries_.any(rays, hits, asked); },
+      RecordedCall::query_rays, filter,
+      [&](const Filter& wrapped) { return queries_.any(rays, hits, wrapped); },
       [&](CallWriter& call) {
         put_rays(call.put(HitForm::any).put(columns_in(hits)), rays);
         return digest_of_columns(hits, rays.count);
@@ -138,8 +139,8 @@ Status RecordedQueries::any(const ShapeRayBatch& rays, const SceneHitColumns& hi
 
 Status RecordedQueries::all(const ShapeRayBatch& rays, SceneHitLists& hits, const Filter& filter) {
   return record(
-      RecordedCall::ask_rays, filter,
-      [&](const Filter& asked) { return queries_.all(rays, hits, asked); },
+      RecordedCall::query_rays, filter,
+      [&](const Filter& wrapped) { return queries_.all(rays, hits, wrapped); },
       [&](CallWriter& call) {
         put_rays(call.put(HitForm::all).put(columns_in({})), rays);
         return digest_of_answers(hits);
@@ -151,8 +152,8 @@ Status RecordedQueries::all(const ShapeRayBatch& rays, SceneHitLists& hits, cons
 Status RecordedQueries::overlap(ShapeId shape, const Pose& pose,
                                 std::span<const SceneOverlap>& bodies, const Filter& filter) {
   return record_with(
-      shape, RecordedCall::ask_overlap, filter,
-      [&](const Filter& asked) { return queries_.overlap(shape, pose, bodies, asked); },
+      shape, RecordedCall::query_overlap, filter,
+      [&](const Filter& wrapped) { return queries_.overlap(shape, pose, bodies, wrapped); },
       [&](CallWriter& call, std::uint32_t number) {
         call.put(number).put_bytes(&pose, sizeof pose);
         return digest_of_answers(bodies);
@@ -162,8 +163,8 @@ Status RecordedQueries::overlap(ShapeId shape, const Pose& pose,
 Status RecordedQueries::closest(const ShapeCast& cast, SceneHit& hit, const Filter& filter,
                                 double tolerance) {
   return record_with(
-      cast.shape, RecordedCall::ask_shape_cast, filter,
-      [&](const Filter& asked) { return queries_.closest(cast, hit, asked, tolerance); },
+      cast.shape, RecordedCall::query_shape_cast, filter,
+      [&](const Filter& wrapped) { return queries_.closest(cast, hit, wrapped, tolerance); },
       [&](CallWriter& call, std::uint32_t number) {
         put_cast(call.put(form_of(cast, HitForm::closest)).put(number).put(tolerance), cast);
         return digest_of_answers(hit);
@@ -173,8 +174,8 @@ Status RecordedQueries::closest(const ShapeCast& cast, SceneHit& hit, const Filt
 Status RecordedQueries::all(const ShapeCast& cast, std::span<const SceneHit>& hits,
                             const Filter& filter, double tolerance) {
   return record_with(
-      cast.shape, RecordedCall::ask_shape_cast, filter,
-      [&](const Filter& asked) { return queries_.all(cast, hits, asked, tolerance); },
+      cast.shape, RecordedCall::query_shape_cast, filter,
+      [&](const Filter& wrapped) { return queries_.all(cast, hits, wrapped, tolerance); },
       [&](CallWriter& call, std::uint32_t number) {
         put_cast(call.put(form_of(cast, HitForm::all)).put(number).put(tolerance), cast);
         return digest_of_answers(hits);
@@ -184,8 +185,8 @@ Status RecordedQueries::all(const ShapeCast& cast, std::span<const SceneHit>& hi
 Status RecordedQueries::closest(const MotionCast& cast, SceneHit& hit, const Filter& filter,
                                 double tolerance) {
   return record_with(
-      cast.shape, RecordedCall::ask_motion_cast, filter,
-      [&](const Filter& asked) { return queries_.closest(cast, hit, asked, tolerance); },
+      cast.shape, RecordedCall::query_motion_cast, filter,
+      [&](const Filter& wrapped) { return queries_.closest(cast, hit, wrapped, tolerance); },
       [&](CallWriter& call, std::uint32_t number) {
         put_motion(call.put(form_of(cast, HitForm::closest)).put(number).put(tolerance), cast);
         return digest_of_answers(hit);
@@ -195,8 +196,8 @@ Status RecordedQueries::closest(const MotionCast& cast, SceneHit& hit, const Fil
 Status RecordedQueries::all(const MotionCast& cast, std::span<const SceneHit>& hits,
                             const Filter& filter, double tolerance) {
   return record_with(
-      cast.shape, RecordedCall::ask_motion_cast, filter,
-      [&](const Filter& asked) { return queries_.all(cast, hits, asked, tolerance); },
+      cast.shape, RecordedCall::query_motion_cast, filter,
+      [&](const Filter& wrapped) { return queries_.all(cast, hits, wrapped, tolerance); },
       [&](CallWriter& call, std::uint32_t number) {
         put_motion(call.put(form_of(cast, HitForm::all)).put(number).put(tolerance), cast);
         return digest_of_answers(hits);
@@ -205,12 +206,12 @@ Status RecordedQueries::all(const MotionCast& cast, std::span<const SceneHit>& h
 
 // --- distances ---------------------------------------------------------------------------------
 
-/// Returns the call to record; before it, records the pairs that the scene's predicate accepted
-/// during the query.
-RecordedCall RecordedQueries::by(PairRules rules, RecordedCall any_two,
-                                 RecordedCall by_rules) noexcept {
+/// Returns the call to record. If the query used the rules of the scene, first records the pairs
+/// that the scene's predicate accepted.
+RecordedCall RecordedQueries::call_by_rules(PairRules rules, RecordedCall any_two,
+                                            RecordedCall by_rules) noexcept {
   if (rules == PairRules::none) return any_two;
-  scene_.show_passed();
+  scene_.record_passed_so_far();
   return by_rules;
 }
 
@@ -219,7 +220,7 @@ Status RecordedQueries::distance(Key a, Key b, SceneDistance& answer, double lim
   const Status status = queries_.distance(a, b, answer, limit, rules);
   if (status != Status::ok) return status;
   const RecordedCall call =
-      by(rules, RecordedCall::ask_distance, RecordedCall::ask_distance_by_rules);
+      call_by_rules(rules, RecordedCall::query_distance, RecordedCall::query_distance_by_rules);
   CallWriter(scene_.recorder_, call, scene_.world_)
       .put(a.id)
       .put(b.id)
@@ -232,8 +233,8 @@ Status RecordedQueries::least_distance(std::span<const Key> a, std::span<const K
                                        SetDistance& answer, double limit, PairRules rules) {
   const Status status = queries_.least_distance(a, b, answer, limit, rules);
   if (status != Status::ok) return status;
-  const RecordedCall call =
-      by(rules, RecordedCall::ask_least_distance, RecordedCall::ask_least_distance_by_rules);
+  const RecordedCall call = call_by_rules(rules, RecordedCall::query_least_distance,
+                                          RecordedCall::query_least_distance_by_rules);
   CallWriter(scene_.recorder_, call, scene_.world_)
       .put_ids(a)
       .put_ids(b)
@@ -248,7 +249,7 @@ Status RecordedQueries::overlaps(std::span<const Key> a, std::span<const Key> b,
   const Status status = queries_.overlaps(a, b, pairs, most, rules);
   if (status != Status::ok) return status;
   const RecordedCall call =
-      by(rules, RecordedCall::ask_overlaps, RecordedCall::ask_overlaps_by_rules);
+      call_by_rules(rules, RecordedCall::query_overlaps, RecordedCall::query_overlaps_by_rules);
   CallWriter(scene_.recorder_, call, scene_.world_)
       .put_ids(a)
       .put_ids(b)
@@ -258,26 +259,26 @@ Status RecordedQueries::overlaps(std::span<const Key> a, std::span<const Key> b,
 }
 
 Status RecordedQueries::any_contact(std::span<const Key> a, std::span<const Key> b, KeyPair& pair,
-                                    double margin, PairRules rules) {
-  const Status status = queries_.any_contact(a, b, pair, margin, rules);
+                                    double contact_margin, PairRules rules) {
+  const Status status = queries_.any_contact(a, b, pair, contact_margin, rules);
   if (status != Status::ok) return status;
-  const auto call = RecordedCall::ask_any_contact_of_sets;
-  CallWriter(scene_.recorder_, by(rules, call, call), scene_.world_)
+  const auto call = RecordedCall::query_any_contact_of_sets;
+  CallWriter(scene_.recorder_, call_by_rules(rules, call, call), scene_.world_)
       .put(rules)
-      .put(margin)
+      .put(contact_margin)
       .put_ids(a)
       .put_ids(b)
       .put(digest_of_answers(pair).value());
   return status;
 }
 
-Status RecordedQueries::any_contact(KeyPair& pair, double margin, PairRules rules) {
-  const Status status = queries_.any_contact(pair, margin, rules);
+Status RecordedQueries::any_contact(KeyPair& pair, double contact_margin, PairRules rules) {
+  const Status status = queries_.any_contact(pair, contact_margin, rules);
   if (status != Status::ok) return status;
-  const auto call = RecordedCall::ask_any_contact;
-  CallWriter(scene_.recorder_, by(rules, call, call), scene_.world_)
+  const auto call = RecordedCall::query_any_contact;
+  CallWriter(scene_.recorder_, call_by_rules(rules, call, call), scene_.world_)
       .put(rules)
-      .put(margin)
+      .put(contact_margin)
       .put(digest_of_answers(pair).value());
   return status;
 }
@@ -285,8 +286,10 @@ Status RecordedQueries::any_contact(KeyPair& pair, double margin, PairRules rule
 Status RecordedQueries::nearest(const double point[3], std::size_t count, double radius,
                                 std::span<const SceneDistance>& bodies, const Filter& filter) {
   return record(
-      RecordedCall::ask_nearest, filter,
-      [&](const Filter& asked) { return queries_.nearest(point, count, radius, bodies, asked); },
+      RecordedCall::query_nearest, filter,
+      [&](const Filter& wrapped) {
+        return queries_.nearest(point, count, radius, bodies, wrapped);
+      },
       [&](CallWriter& call) {
         call.put_bytes(point, 3 * sizeof(double)).put(std::uint64_t{count}).put(radius);
         return digest_of_answers(bodies);

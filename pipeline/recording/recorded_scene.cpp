@@ -19,7 +19,7 @@ namespace {
 RecordedBody recorded(const BodyDefinition& body, std::uint32_t shape) noexcept {
   RecordedBody out{};
   out.shape = shape;
-  out.motion = static_cast<std::uint32_t>(body.motion);
+  out.state = static_cast<std::uint32_t>(body.state);
   std::copy_n(body.pose.position, 3, out.pose);
   std::copy_n(body.pose.orientation, 4, out.pose + 3);
   out.filter[0] = body.filter.layers;
@@ -111,12 +111,12 @@ RecordedScene::RecordedScene(Recorder& recorder, const ShapePool& shapes,
       composites_seen_(composites == nullptr ? 0 : composites->revision()),
       scene_(shapes, options),
       recorded_shapes_(recorder.memory_) {
-  if (options.suppress_ghost_contacts) refuse(Status::unsupported);
+  if (options.suppress_ghost_contacts) stop_recording(Status::unsupported);
   CallWriter call(recorder_, RecordedCall::make_scene, world_);
   for (const StructureKind& structure : options.structures) {
     call.put_text(structure.name()).put(structure.parameter());
   }
-  call.put(options.margin).put(tier_number(options.tier)).put(options.carry_over);
+  call.put(options.contact_margin).put(tier_number(options.tier)).put(options.cache_tolerance);
   call.put(options.contact_reduction).put(options.warm_start);
   call.put(std::uint64_t{options.build_budget});
 }
@@ -130,14 +130,14 @@ RecordedScene::~RecordedScene() {
 }
 
 /// Ends the recording with an error.
-void RecordedScene::refuse(Status why) noexcept {
+void RecordedScene::stop_recording(Status why) noexcept {
   if (recorder_ == nullptr) return;
   const Lock lock(recorder_->mutex);
   recorder_->fail(why);
 }
 
-// False for shapes that a recording cannot contain: meshes of another pool, support functions,
-// one-sided surfaces and solids.
+// False for shapes that a recording cannot contain: support functions, one-sided surfaces, solids,
+// and all composite shapes if the scene was created without their pool.
 bool RecordedScene::can_hold(ShapeId id) const noexcept {
   if (!id.is_composite()) return id.kind() != ShapeKind::support;
   return composites_ != nullptr && !composites_->is_one_sided(id) && !composites_->is_solid(id);
@@ -161,15 +161,16 @@ void RecordedScene::describe(RecordedShape& shape) const noexcept {
   }
 }
 
-// A shape is recorded when a body first uses it, and again if another shape has its id now. For
-// composite shapes, follow_composites detects this by the revision of the pool.
+// A shape is recorded when a body, sensor or query first uses it, and again if another shape has
+// its id now. The digest of the shape shows this; for composite shapes, record_composite_changes
+// compares the digests.
 std::uint32_t RecordedScene::number_of(ShapeId id) noexcept {
   if (recorder_ == nullptr) return 0;
   if (!can_hold(id)) {
-    refuse(Status::unsupported);
+    stop_recording(Status::unsupported);
     return 0;
   }
-  if (id.is_composite()) follow_composites();
+  if (id.is_composite()) record_composite_changes();
   RecordedShape* const at = find_shape(id);
   if (at != nullptr && id.is_composite() && at->number != kRemovedShape) return at->number;
   RecordedShape shape{id, 0, 0, 0};
@@ -182,13 +183,13 @@ std::uint32_t RecordedScene::number_of(ShapeId id) noexcept {
   if (at != nullptr) {
     *find_shape(id) = shape;
   } else {
-    know(shape);
+    insert_shape(shape);
   }
   id.is_composite() ? record_composite(shape) : record_shape(shape);
   return shape.number;
 }
 
-void RecordedScene::know(const RecordedShape& shape) noexcept {
+void RecordedScene::insert_shape(const RecordedShape& shape) noexcept {
   const Lock lock(recorder_->mutex);
   if (!recorded_shapes_.push_back(shape)) return recorder_->fail(Status::out_of_memory);
   const auto by_id = [](const RecordedShape& a, const RecordedShape& b) {
@@ -230,33 +231,33 @@ void RecordedScene::record_composite(const RecordedShape& shape) noexcept {
   call.put(shape.digest);
 }
 
-// Records composite shapes that were changed in place, and forgets shapes that were removed or
-// replaced. Records also that the pool changed at all, because a scene then recomputes the contacts
-// of composite shapes.
-void RecordedScene::follow_composites() noexcept {
+// Records composite shapes that were changed in place, and removes the numbers of shapes that were
+// removed or replaced. If no shape was changed in place, records only that the pool changed:
+// a scene then recomputes the contacts of all composite shapes.
+void RecordedScene::record_composite_changes() noexcept {
   if (recorder_ == nullptr || composites_ == nullptr) return;
   if (composites_->revision() == composites_seen_) return;
   composites_seen_ = composites_->revision();
-  bool told = false;
+  bool has_recorded = false;
   for (RecordedShape& known : recorded_shapes_) {
     if (!known.id.is_composite()) continue;
     RecordedShape now = known;
     if (composites_->contains(known.id)) {
-      if (!can_hold(known.id)) refuse(Status::unsupported);
+      if (!can_hold(known.id)) stop_recording(Status::unsupported);
       describe(now);
     }
     if (!composites_->contains(known.id) || now.form != known.form) {
       known.number = kRemovedShape;
     } else if (now.digest != known.digest && known.number != kRemovedShape) {
       known = now;
-      told = true;
+      has_recorded = true;
       CallWriter(recorder_, RecordedCall::change_composite, world_)
           .put(known.number)
           .put_array(values_of(*composites_, known.id))
           .put(known.digest);
     }
   }
-  if (!told) CallWriter(recorder_, RecordedCall::composites_changed, world_);
+  if (!has_recorded) CallWriter(recorder_, RecordedCall::composites_changed, world_);
 }
 
 Status RecordedScene::add(const BodyDefinition& body, Key& key) {
@@ -314,14 +315,14 @@ Status RecordedScene::move(std::span<const Key> keys, const PoseView& poses) {
   return status;
 }
 
-Status RecordedScene::set_motion(Key key, Motion motion) {
-  return set_motion(std::span<const Key>(&key, 1), motion);
+Status RecordedScene::set_body_state(Key key, BodyState state) {
+  return set_body_state(std::span<const Key>(&key, 1), state);
 }
 
-Status RecordedScene::set_motion(std::span<const Key> keys, Motion motion) {
-  const Status status = scene_.set_motion(keys, motion);
+Status RecordedScene::set_body_state(std::span<const Key> keys, BodyState state) {
+  const Status status = scene_.set_body_state(keys, state);
   if (status == Status::ok) {
-    CallWriter(recorder_, RecordedCall::set_motion, world_).put_ids(keys).put(motion);
+    CallWriter(recorder_, RecordedCall::set_body_state, world_).put_ids(keys).put(state);
   }
   return status;
 }
@@ -356,10 +357,10 @@ Status RecordedScene::set_layer(Key key, std::uint16_t layer) {
   return status;
 }
 
-Status RecordedScene::set_layers_collide(std::uint16_t a, std::uint16_t b, bool meet) {
-  const Status status = scene_.set_layers_collide(a, b, meet);
+Status RecordedScene::set_layers_collide(std::uint16_t a, std::uint16_t b, bool collide) {
+  const Status status = scene_.set_layers_collide(a, b, collide);
   if (status == Status::ok) {
-    CallWriter(recorder_, RecordedCall::set_layers_collide, world_).put(a).put(b).put(meet);
+    CallWriter(recorder_, RecordedCall::set_layers_collide, world_).put(a).put(b).put(collide);
   }
   return status;
 }
@@ -402,36 +403,37 @@ void RecordedScene::set_predicate(const PairPredicate& predicate) noexcept {
 
 // Recorded before the query, so that a player has the accepted pairs when it runs the query.
 void RecordedScene::record_passed() noexcept {
-  if (passed_ == nullptr || passed_->asked.accept == nullptr) return;
+  if (passed_ == nullptr || passed_->original.accept == nullptr) return;
   CallWriter(recorder_, RecordedCall::pairs_passed, world_)
       .put_array(sorted_unique(passed_->pairs));
   passed_->pairs.clear();
 }
 
-// Several threads may use SceneQueries, so pairs that other queries accepted may be included. The
-// pairs are kept until the next collide, so that each query has its own.
-void RecordedScene::show_passed() noexcept {
-  if (passed_ == nullptr || passed_->asked.accept == nullptr) return;
+// The pairs may include pairs accepted by queries of other threads. They are not cleared here,
+// because a query of another thread may be recorded later; record_passed clears them.
+void RecordedScene::record_passed_so_far() noexcept {
+  if (passed_ == nullptr || passed_->original.accept == nullptr) return;
   CallWriter(recorder_, RecordedCall::pairs_passed, world_)
       .put_array(sorted_unique(passed_->pairs));
 }
 
-// A query that failed is not recorded, but the scene may have cached pairs that its predicate
-// accepted. Setting the predicate again makes the scene test all pairs again, here and in a player.
+// A failed query is not recorded, but the scene may have cached pairs that the predicate accepted
+// during the query. If the predicate is set again, the scene tests all pairs again, here and in a
+// player.
 void RecordedScene::forget_passed() noexcept {
   if (passed_ == nullptr || passed_->pairs.empty()) return;
-  const PairPredicate asked = passed_->asked;
-  set_predicate(asked);
+  const PairPredicate predicate = passed_->original;
+  set_predicate(predicate);
 }
 
 Status RecordedScene::refresh() {
-  follow_composites();
+  record_composite_changes();
   const Status status = scene_.refresh();
   if (status == Status::ok) CallWriter(recorder_, RecordedCall::refresh_scene, world_);
   return status;
 }
 
-RecordedScene::Asked RecordedScene::source_query(const Contacts& contacts) noexcept {
+RecordedScene::Provenance RecordedScene::source_query(const Contacts& contacts) noexcept {
   return {contacts.state().clock, contacts.state().pairs_serial};
 }
 
@@ -440,19 +442,19 @@ bool RecordedScene::is_filled_by_this(const Contacts& contacts) const noexcept {
   return scene_.state_ != nullptr && contacts.state().scene == scene_.state_->serial;
 }
 
-// Contacts store the previous frame: events and carried-over manifolds depend on whether they are
-// the result of the last query. Loaded contacts match no pairs that the scene has found.
+// Contacts store the previous frame. Events and cached manifolds depend on whether the last
+// `collide` or `load_contacts` of this scene filled `contacts`, so the call records this.
 Status RecordedScene::collide(ContactLevel level, Contacts& contacts) {
-  follow_composites();
+  record_composite_changes();
   const bool filled = is_filled_by_this(contacts);
-  const bool continues = filled && source_query(contacts) == asked_;
+  const bool continues = filled && source_query(contacts) == last_provenance_;
   const Status status = scene_.collide(level, contacts);
   if (status != Status::ok) {
     forget_passed();
     return status;
   }
-  if (filled && !continues) refuse(Status::unsupported);
-  asked_ = source_query(contacts);
+  if (filled && !continues) stop_recording(Status::unsupported);
+  last_provenance_ = source_query(contacts);
   record_passed();
   CallWriter call(recorder_, RecordedCall::collide, world_);
   call.put(level).put(continues);
@@ -461,7 +463,7 @@ Status RecordedScene::collide(ContactLevel level, Contacts& contacts) {
 }
 
 // The snapshot contains shape ids and keys of this process. The call records the number of each
-// shape in the recording, and which bodies keep their keys, because sensors remember keys. After a
+// shape in the recording, and which bodies keep their keys, because sensors store keys. After a
 // load, contacts count as contacts of another scene, and the predicate is called again for all
 // pairs.
 Status RecordedScene::load(std::span<const std::byte> saved) {
@@ -472,10 +474,10 @@ Status RecordedScene::load(std::span<const std::byte> saved) {
   std::copy(stamps.begin(), stamps.end(), before.begin());
   const Status status = scene_.load(saved);
   if (status != Status::ok) return status;
-  asked_ = {};
+  last_provenance_ = {};
   if (passed_ != nullptr) passed_->pairs.clear();
-  if (scene_.state_->options.suppress_ghost_contacts) refuse(Status::unsupported);
-  follow_composites();
+  if (scene_.state_->options.suppress_ghost_contacts) stop_recording(Status::unsupported);
+  record_composite_changes();
   for_live(scene_.state_->keys.stamps(),
            [&](ObjectId body) { (void)number_of(scene_.state_->shape[body]); });
   CallWriter call(recorder_, RecordedCall::load_scene, world_);
@@ -494,7 +496,7 @@ Status RecordedScene::load(std::span<const std::byte> saved) {
 Status RecordedScene::load_contacts(std::span<const std::byte> saved, Contacts& contacts) {
   const Status status = scene_.load_contacts(saved, contacts);
   if (status != Status::ok) return status;
-  asked_ = source_query(contacts);
+  last_provenance_ = source_query(contacts);
   CallWriter(recorder_, RecordedCall::load_contacts, world_).put_array(saved);
   return status;
 }

@@ -1,7 +1,7 @@
 #include <winnow/pipeline/recording.h>
 
+#include "pipeline/recording/impact_digest.h"
 #include "pipeline/recording/recorder_state.h"
-#include "pipeline/recording/sweep_digest.h"
 
 namespace winnow {
 
@@ -14,11 +14,10 @@ RecordedSensors::~RecordedSensors() {
   CallWriter(scene_.recorder_, RecordedCall::end_sensors, scene_.world_).put(number_);
 }
 
-void RecordedSensors::record(RecordedCall question, Key key,
-                             const SensorDefinition& sensor) noexcept {
+void RecordedSensors::record(RecordedCall kind, Key key, const SensorDefinition& sensor) noexcept {
   const std::uint32_t shape = scene_.number_of(sensor.shape);
   const bool is_carried = scene_.scene_.contains(sensor.carrier);
-  CallWriter call(scene_.recorder_, question, scene_.world_);
+  CallWriter call(scene_.recorder_, kind, scene_.world_);
   call.put(number_).put(key.id).put(shape);
   call.put_bytes(&sensor.pose, sizeof sensor.pose);
   call.put_bytes(&sensor.filter, sizeof sensor.filter);
@@ -59,7 +58,7 @@ Status RecordedSensors::move(Key key, const Pose& pose) {
 }
 
 Status RecordedSensors::sense() {
-  scene_.follow_composites();
+  scene_.record_composite_changes();
   const Status status = sensors_.sense();
   if (status == Status::ok) {
     CallWriter(scene_.recorder_, RecordedCall::sense, scene_.world_)

@@ -4,7 +4,7 @@
 namespace winnow {
 namespace {
 
-/// Minimal size of the blocks that are written, unless a frame ends.
+/// A block of at least this size is written before its frame ends.
 constexpr std::size_t kBlockBytes = std::size_t{1} << 18U;
 
 }  // namespace

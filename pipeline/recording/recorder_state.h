@@ -1,6 +1,6 @@
 #pragma once
 
-// State of a Recorder, and CallWriter, by which the recorded classes write their calls.
+// State of a Recorder, and CallWriter, with which the recorded classes write their calls.
 
 #include <winnow/pipeline/recording.h>
 #include "core/threads/mutex.h"
@@ -27,8 +27,8 @@ struct RecorderState {
   }
 
   Mutex mutex;
-  /// Held while a scene query, which may run on several threads, numbers its shapes. Lock it before
-  /// `mutex`.
+  /// Locked while a scene query numbers its shape, because several threads may query one scene.
+  /// Lock it before `mutex`.
   Mutex numbering;
   Column<std::byte> block;
   RecordingSink sink;
@@ -69,7 +69,8 @@ class CallWriter {
   }
   /// Writes the ids of keys.
   CallWriter& put_ids(std::span<const Key> keys) noexcept;
-  /// Writes whether there are orientations, then 7 or 3 numbers per pose.
+  /// Writes whether there are orientations, then an array of numbers: 7 per pose with orientations,
+  /// else 3.
   CallWriter& put_poses(const PoseView& poses) noexcept {
     const bool turns = poses.has_orientations();
     put(turns).put(std::uint64_t{poses.count * (turns ? 7U : 3U)});

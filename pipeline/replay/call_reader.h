@@ -9,7 +9,7 @@
 
 namespace winnow {
 
-/// A predicate that accepts the pairs in a sorted column, after `named` has put their ids in order.
+/// Returns a predicate that accepts two objects if the sorted column contains named(first, second).
 template <Pair (*named)(ObjectId, ObjectId) noexcept>
 [[nodiscard]] PairPredicate among(Column<Pair>& pairs) noexcept {
   return {[](void* context, ObjectId first, ObjectId second) {
@@ -19,13 +19,14 @@ template <Pair (*named)(ObjectId, ObjectId) noexcept>
           &pairs};
 }
 
-/// A pair of a partition query. Its second object may belong to another partition.
+/// Keeps the order of a pair of a partition query: the second object may belong to another
+/// partition.
 [[nodiscard]] constexpr Pair in_order(ObjectId first, ObjectId second) noexcept {
   return {first, second};
 }
 
-/// A recorded filter, with a predicate that accepts what the recorded predicate accepted, if there
-/// was one. Must outlive the query that uses it.
+/// A recorded filter. If it had a predicate, it has one here that accepts the recorded objects or
+/// pairs. Must outlive the query that uses it.
 class RecordedFilter {
  public:
   explicit RecordedFilter(std::pmr::memory_resource* memory) noexcept
@@ -46,7 +47,7 @@ class RecordedFilter {
                          },
                          this};
   }
-  /// Reads the predicate of a pair query.
+  /// Reads the accepted pairs of a pair query, and returns its predicate.
   [[nodiscard]] PairPredicate read_passed_pairs(ByteReader& in) noexcept {
     if (!in.get_bool() || !in.get_array(pairs_)) return {};
     std::sort(pairs_.begin(), pairs_.end());
@@ -60,7 +61,7 @@ class RecordedFilter {
   Column<Pair> pairs_;
 };
 
-/// Reads a structure by name and parameter; a kind without a structure for an unknown name.
+/// Reads a structure by name and parameter. For an unknown name, info() of the result is null.
 [[nodiscard]] inline StructureKind read_structure(ByteReader& in) noexcept {
   const StructureKind named = structure_named(in.get_text());
   const auto parameter = in.get<float>();

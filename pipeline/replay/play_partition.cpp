@@ -72,8 +72,8 @@ Status ReplayState::change_partition(RecordedCall call, ReplayedWorld& of) {
     PartitionOptions made{.memory = options.memory, .execution = options.execution};
     const StructureKind structure = read_structure(in);
     made.volume = in.get_enum(Volume::kdop26);
-    made.margin.distance = in.get<float>();
-    made.margin.share = in.get<float>();
+    made.fat_margin.distance = in.get<float>();
+    made.fat_margin.share = in.get<float>();
     made.build_budget = static_cast<std::size_t>(in.get<std::uint64_t>());
     if (reading() != Status::ok) return reading();
     return of.partition.emplace(structure, made).status();
@@ -149,8 +149,8 @@ Status ReplayState::update(ReplayedWorld& of) {
 
 /// Returns the result that a query updates; if it updates none, the oldest result, cleared.
 ReplayedPairs& ReplayState::source_query(ReplayedWorld& of, std::uint64_t number) noexcept {
-  ReplayedPairs* oldest = of.asked.data();
-  for (ReplayedPairs& one : of.asked) {
+  ReplayedPairs* oldest = of.pair_results.data();
+  for (ReplayedPairs& one : of.pair_results) {
     if (number != 0 && one.number == number) return one;
     if (one.number < oldest->number) oldest = &one;
   }
@@ -161,60 +161,60 @@ ReplayedPairs& ReplayState::source_query(ReplayedWorld& of, std::uint64_t number
 
 Status ReplayState::self_pairs(ReplayedWorld& of) {
   const auto form = in.get_enum(PairForm::events);
-  PairOptions asked;
-  asked.order = in.get_enum(Order::canonical);
-  asked.incremental = in.get_bool();
+  PairOptions pair_options;
+  pair_options.order = in.get_enum(Order::canonical);
+  pair_options.incremental = in.get_bool();
   const auto before = in.get<std::uint64_t>();
   const bool follows = in.get_bool();
-  asked.predicate = filter.read_passed_pairs(in);
+  pair_options.predicate = filter.read_passed_pairs(in);
   if (!in.ok()) return reading();
   ReplayedPairs& to = source_query(of, before);
   if (!follows && form != PairForm::buffer) to.events.clear();
-  to.number = ++of.questions;
+  to.number = ++of.pair_queries;
   const Partition& partition = *of.partition;
   Status answered = Status::ok;
   switch (form) {
     case PairForm::buffer:
-      answered = partition.self_pairs(to.pairs, asked);
+      answered = partition.self_pairs(to.pairs, pair_options);
       return answered == Status::ok ? compare(to.pairs) : answered;
     case PairForm::buffer_and_events:
-      answered = partition.self_pairs(to.pairs, to.events, asked);
+      answered = partition.self_pairs(to.pairs, to.events, pair_options);
       return answered == Status::ok ? compare(to.pairs, to.events) : answered;
     case PairForm::events:
       break;
   }
-  answered = partition.self_pairs(to.events, asked);
+  answered = partition.self_pairs(to.events, pair_options);
   return answered == Status::ok ? compare(to.events) : answered;
 }
 
 Status ReplayState::pairs_with(ReplayedWorld& of) {
   const ReplayedWorld* const other = world(in.get<std::uint32_t>());
-  PairOptions asked;
-  asked.order = in.get_enum(Order::canonical);
-  asked.incremental = in.get_bool();
-  asked.predicate = filter.read_passed_pairs(in);
+  PairOptions pair_options;
+  pair_options.order = in.get_enum(Order::canonical);
+  pair_options.incremental = in.get_bool();
+  pair_options.predicate = filter.read_passed_pairs(in);
   if (!in.ok() || other == nullptr || !other->partition) {
     return in.ok() ? Status::invalid_argument : reading();
   }
   of.other_pairs.clear();
-  const Status answered = of.partition->pairs_with(*other->partition, of.other_pairs, asked);
+  const Status answered = of.partition->pairs_with(*other->partition, of.other_pairs, pair_options);
   return answered == Status::ok ? compare(of.other_pairs) : answered;
 }
 
 Status ReplayState::cast(RecordedCall call, ReplayedWorld& of) {
-  const Cast asked = read_variant<Cast>(in, in.get<std::uint8_t>(), planes);
+  const Cast query = read_variant<Cast>(in, in.get<std::uint8_t>(), planes);
   filter.read_filter(in);
   filter.read_passed_objects(in);
   if (!in.ok()) return reading();
   const Partition& partition = *of.partition;
   if (call == RecordedCall::all_casts) {
-    const Status answered = partition.all(asked, of.hits, filter.filter());
+    const Status answered = partition.all(query, of.hits, filter.filter());
     return answered == Status::ok ? compare(of.hits) : answered;
   }
   Hit hit;
   const Status answered = call == RecordedCall::any_cast
-                              ? partition.any(asked, hit, filter.filter())
-                              : partition.closest(asked, hit, filter.filter());
+                              ? partition.any(query, hit, filter.filter())
+                              : partition.closest(query, hit, filter.filter());
   return answered == Status::ok ? compare(std::span<const Hit>(&hit, 1)) : answered;
 }
 

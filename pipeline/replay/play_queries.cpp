@@ -7,9 +7,9 @@ namespace winnow {
 namespace {
 
 /// The columns that the program requested for the results of a batch of rays.
-class AskedColumns {
+class RequestedColumns {
  public:
-  explicit AskedColumns(std::pmr::memory_resource* memory) noexcept
+  explicit RequestedColumns(std::pmr::memory_resource* memory) noexcept
       : keys_(memory), data_(memory), part_(memory), numbers_(memory) {}
 
   /// False if memory is refused.
@@ -57,7 +57,7 @@ void read(ByteReader& in, MotionCast& cast) noexcept {
 }  // namespace
 
 /// Reads the filter at the end of a query; false if it is incomplete.
-bool ReplayState::read_question() noexcept {
+bool ReplayState::read_query_filter() noexcept {
   filter.read_filter(in);
   filter.read_passed_objects(in);
   return in.ok();
@@ -70,34 +70,34 @@ bool ReplayState::read_shape(const ReplayedWorld& of, ShapeId& id) noexcept {
   return true;
 }
 
-Status ReplayState::ask_scene(RecordedCall call, ReplayedWorld& of) {
+Status ReplayState::query_scene(RecordedCall call, ReplayedWorld& of) {
   if (!of.queries) of.queries.emplace(*of.scene, options.memory);
   switch (call) {
-    case RecordedCall::ask_ray:
-      return ask_ray(of);
-    case RecordedCall::ask_rays:
-      return ask_rays(of);
-    case RecordedCall::ask_overlap:
-      return ask_overlap(of);
-    case RecordedCall::ask_shape_cast:
-      return ask_cast<ShapeCast>(of);
-    case RecordedCall::ask_motion_cast:
-      return ask_cast<MotionCast>(of);
-    case RecordedCall::ask_nearest:
-      return ask_nearest(of);
-    case RecordedCall::ask_any_contact:
-    case RecordedCall::ask_any_contact_of_sets:
-      return ask_any_contact(call, of);
+    case RecordedCall::query_ray:
+      return query_ray(of);
+    case RecordedCall::query_rays:
+      return query_rays(of);
+    case RecordedCall::query_overlap:
+      return query_overlap(of);
+    case RecordedCall::query_shape_cast:
+      return query_cast<ShapeCast>(of);
+    case RecordedCall::query_motion_cast:
+      return query_cast<MotionCast>(of);
+    case RecordedCall::query_nearest:
+      return query_nearest(of);
+    case RecordedCall::query_any_contact:
+    case RecordedCall::query_any_contact_of_sets:
+      return query_any_contact(call, of);
     default:
-      return ask_sets(call, of);
+      return query_sets(call, of);
   }
 }
 
-Status ReplayState::ask_ray(ReplayedWorld& of) {
+Status ReplayState::query_ray(ReplayedWorld& of) {
   const auto form = in.get_enum(HitForm::all);
   ShapeRay ray;
   read(in, ray);
-  if (!read_question()) return reading();
+  if (!read_query_filter()) return reading();
   if (form == HitForm::all) {
     std::span<const SceneHit> hits;
     const Status answered = of.queries->all(ray, hits, filter.filter());
@@ -109,48 +109,48 @@ Status ReplayState::ask_ray(ReplayedWorld& of) {
   return answered == Status::ok ? compare(hit) : answered;
 }
 
-Status ReplayState::ask_rays(ReplayedWorld& of) {
+Status ReplayState::query_rays(ReplayedWorld& of) {
   const auto form = in.get_enum(HitForm::all);
   const auto which = in.get<std::uint16_t>();
   const auto count = in.get<std::uint64_t>();
   if (!in.ok() || count > in.rest().size() / sizeof(ShapeRay)) return Status::invalid_argument;
   if (!shape_rays.resize(static_cast<std::size_t>(count))) return Status::out_of_memory;
   for (ShapeRay& ray : shape_rays) read(in, ray);
-  if (!read_question()) return reading();
+  if (!read_query_filter()) return reading();
   const ShapeRayBatch batch(std::span<const ShapeRay>(shape_rays.data(), shape_rays.size()));
   if (form == HitForm::all) {
     SceneHitLists hits;
     const Status answered = of.queries->all(batch, hits, filter.filter());
     return answered == Status::ok ? compare(hits) : answered;
   }
-  AskedColumns asked(options.memory);
-  if (!asked.resize(batch.count)) return Status::out_of_memory;
-  const SceneHitColumns hits = asked.columns(which);
+  RequestedColumns requested(options.memory);
+  if (!requested.resize(batch.count)) return Status::out_of_memory;
+  const SceneHitColumns hits = requested.columns(which);
   const Status answered = form == HitForm::any ? of.queries->any(batch, hits, filter.filter())
                                                : of.queries->closest(batch, hits, filter.filter());
   return answered == Status::ok ? compare(digest_of_columns(hits, batch.count)) : answered;
 }
 
-Status ReplayState::ask_overlap(ReplayedWorld& of) {
+Status ReplayState::query_overlap(ReplayedWorld& of) {
   ShapeId shape;
   Pose pose;
   if (!read_shape(of, shape)) return reading();
   (void)in.get_bytes(&pose, sizeof pose);
-  if (!read_question()) return reading();
+  if (!read_query_filter()) return reading();
   std::span<const SceneOverlap> found;
   const Status answered = of.queries->overlap(shape, pose, found, filter.filter());
   return answered == Status::ok ? compare(found) : answered;
 }
 
 template <typename Moving>
-Status ReplayState::ask_cast(ReplayedWorld& of) {
+Status ReplayState::query_cast(ReplayedWorld& of) {
   const auto form = in.get_enum(HitForm::all_from_touch);
   Moving cast;
   cast.touching = form < HitForm::closest_from_touch;
   if (!read_shape(of, cast.shape)) return reading();
   const auto tolerance = in.get<double>();
   read(in, cast);
-  if (!read_question()) return reading();
+  if (!read_query_filter()) return reading();
   if (form == HitForm::any) return Status::invalid_argument;
   if (form == HitForm::all || form == HitForm::all_from_touch) {
     std::span<const SceneHit> hits;
@@ -162,18 +162,19 @@ Status ReplayState::ask_cast(ReplayedWorld& of) {
   return answered == Status::ok ? compare(hit) : answered;
 }
 
-/// Plays a query whether any bodies of the scene, or of two sets, touch.
-Status ReplayState::ask_any_contact(RecordedCall call, ReplayedWorld& of) {
+/// Plays a call of `any_contact`, for the whole scene or for two sets of bodies.
+Status ReplayState::query_any_contact(RecordedCall call, ReplayedWorld& of) {
   const auto rules = in.get_enum(PairRules::none);
-  const auto margin = in.get<double>();
+  const auto contact_margin = in.get<double>();
   KeyPair pair;
-  if (call == RecordedCall::ask_any_contact) {
+  if (call == RecordedCall::query_any_contact) {
     if (!in.ok()) return reading();
-    const Status answered = of.queries->any_contact(pair, margin, rules);
+    const Status answered = of.queries->any_contact(pair, contact_margin, rules);
     return answered == Status::ok ? compare(pair) : answered;
   }
   if (!read_sets(of)) return reading();
-  const Status answered = of.queries->any_contact(first_set(), second_set(), pair, margin, rules);
+  const Status answered =
+      of.queries->any_contact(first_set(), second_set(), pair, contact_margin, rules);
   return answered == Status::ok ? compare(pair) : answered;
 }
 
@@ -183,13 +184,13 @@ bool ReplayState::read_sets(ReplayedWorld& of) {
   return read_keys(*of.scene);
 }
 
-/// Plays queries of two bodies or of two sets.
-Status ReplayState::ask_sets(RecordedCall call, ReplayedWorld& of) {
-  const bool any_two = call == RecordedCall::ask_distance ||
-                       call == RecordedCall::ask_least_distance ||
-                       call == RecordedCall::ask_overlaps;
+/// Plays calls of `distance`, `least_distance` and `overlaps`.
+Status ReplayState::query_sets(RecordedCall call, ReplayedWorld& of) {
+  const bool any_two = call == RecordedCall::query_distance ||
+                       call == RecordedCall::query_least_distance ||
+                       call == RecordedCall::query_overlaps;
   const PairRules rules = any_two ? PairRules::none : PairRules::scene;
-  if (call == RecordedCall::ask_distance || call == RecordedCall::ask_distance_by_rules) {
+  if (call == RecordedCall::query_distance || call == RecordedCall::query_distance_by_rules) {
     const Key a = of.scene->key_of(in.get<ObjectId>());
     const Key b = of.scene->key_of(in.get<ObjectId>());
     const auto limit = in.get<double>();
@@ -201,8 +202,8 @@ Status ReplayState::ask_sets(RecordedCall call, ReplayedWorld& of) {
   if (!read_sets(of)) return reading();
   const std::span<const Key> first = first_set();
   const std::span<const Key> second = second_set();
-  if (call == RecordedCall::ask_least_distance ||
-      call == RecordedCall::ask_least_distance_by_rules) {
+  if (call == RecordedCall::query_least_distance ||
+      call == RecordedCall::query_least_distance_by_rules) {
     const auto limit = in.get<double>();
     SetDistance answer;
     if (!in.ok()) return reading();
@@ -216,12 +217,12 @@ Status ReplayState::ask_sets(RecordedCall call, ReplayedWorld& of) {
   return answered == Status::ok ? compare(pairs) : answered;
 }
 
-Status ReplayState::ask_nearest(ReplayedWorld& of) {
+Status ReplayState::query_nearest(ReplayedWorld& of) {
   double point[3] = {};
   (void)in.get_bytes(point, sizeof point);
   const auto count = static_cast<std::size_t>(in.get<std::uint64_t>());
   const auto radius = in.get<double>();
-  if (!read_question()) return reading();
+  if (!read_query_filter()) return reading();
   std::span<const SceneDistance> found;
   const Status answered = of.queries->nearest(point, count, radius, found, filter.filter());
   return answered == Status::ok ? compare(found) : answered;

@@ -12,7 +12,7 @@
 namespace winnow {
 namespace {
 
-/// Reads a shape struct and adds it to the pool. The digest is computed from the pool.
+/// Reads a shape struct and adds it to the pool. The digest is of the shape in the pool.
 template <typename Shape>
 Status add_plain(ByteReader& in, ShapePool& pool, ShapeId& id,
                  const Shape* const ShapeTables::*table, Digest& digest) {
@@ -33,9 +33,9 @@ Status change_composites(CompositePool& pool) {
   return added == Status::ok ? pool.remove(passing) : added;
 }
 
-Motion motion_of(std::uint32_t number, ByteReader& in) noexcept {
-  if (number >= kMotions) in.fail();
-  return number < kMotions ? static_cast<Motion>(number) : Motion::fixed;
+BodyState body_state_of(std::uint32_t number, ByteReader& in) noexcept {
+  if (number >= kBodyStates) in.fail();
+  return number < kBodyStates ? static_cast<BodyState>(number) : BodyState::fixed;
 }
 
 }  // namespace
@@ -45,9 +45,9 @@ Status ReplayState::make_scene(ReplayedWorld& of) {
   made.memory = options.memory;
   made.execution = options.execution;
   for (StructureKind& structure : made.structures) structure = read_structure(in);
-  made.margin = in.get<double>();
+  made.contact_margin = in.get<double>();
   made.tier = read_tier(in);
-  made.carry_over = in.get<double>();
+  made.cache_tolerance = in.get<double>();
   made.contact_reduction = in.get_bool();
   made.warm_start = in.get_bool();
   made.build_budget = static_cast<std::size_t>(in.get<std::uint64_t>());
@@ -81,10 +81,10 @@ Status ReplayState::change_scene(RecordedCall call, ReplayedWorld& of) {
       return Status::ok;
     case RecordedCall::move:
       return move(of);
-    case RecordedCall::set_motion: {
+    case RecordedCall::set_body_state: {
       if (!read_keys(scene)) return reading();
-      const auto motion = in.get_enum(Motion::sleeping);
-      return in.ok() ? scene.set_motion(all_keys(), motion) : reading();
+      const auto state = in.get_enum(BodyState::sleeping);
+      return in.ok() ? scene.set_body_state(all_keys(), state) : reading();
     }
     case RecordedCall::set_shape: {
       const Key key = scene.key_of(in.get<ObjectId>());
@@ -113,8 +113,8 @@ Status ReplayState::change_scene(RecordedCall call, ReplayedWorld& of) {
     case RecordedCall::set_layers_collide: {
       const auto a = in.get<std::uint16_t>();
       const auto b = in.get<std::uint16_t>();
-      const bool meet = in.get_bool();
-      return in.ok() ? scene.set_layers_collide(a, b, meet) : reading();
+      const bool collide = in.get_bool();
+      return in.ok() ? scene.set_layers_collide(a, b, collide) : reading();
     }
     case RecordedCall::set_ignored: {
       const bool ignored = in.get_bool();
@@ -134,9 +134,9 @@ Status ReplayState::change_scene(RecordedCall call, ReplayedWorld& of) {
     case RecordedCall::change_composite:
       return change_composite(of);
     case RecordedCall::set_predicate: {
-      const bool asks = in.get_bool();
+      const bool has_predicate = in.get_bool();
       if (!in.ok()) return reading();
-      scene.set_predicate(asks ? among<lower_first>(of.passed) : PairPredicate{});
+      scene.set_predicate(has_predicate ? among<lower_first>(of.passed) : PairPredicate{});
       return Status::ok;
     }
     case RecordedCall::pairs_passed:
@@ -270,7 +270,7 @@ Status ReplayState::add_bodies(ReplayedWorld& of) {
     if (one.shape >= of.shape_ids.size()) return Status::invalid_argument;
     BodyDefinition body;
     body.shape = of.shape_ids[one.shape];
-    body.motion = motion_of(one.motion, in);
+    body.state = body_state_of(one.state, in);
     std::copy_n(one.pose, 3, body.pose.position);
     std::copy_n(one.pose + 3, 4, body.pose.orientation);
     body.filter = {one.filter[0], one.filter[1], one.filter[2]};

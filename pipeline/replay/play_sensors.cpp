@@ -1,6 +1,6 @@
-// Plays calls of sensors and sweeps.
+// Plays calls of sensors and of continuous collision detection.
 
-#include "pipeline/recording/sweep_digest.h"
+#include "pipeline/recording/impact_digest.h"
 #include "pipeline/replay/replay_state.h"
 
 namespace winnow {
@@ -53,14 +53,14 @@ Status ReplayState::change_sensor(RecordedCall call, ReplayedWorld& of, Replayed
   return Status::ok;
 }
 
-Status ReplayState::sweep(RecordedCall call, ReplayedWorld& of) {
-  if (!of.sweep) of.sweep.emplace(*of.scene, options.memory);
+Status ReplayState::find_impacts(RecordedCall call, ReplayedWorld& of) {
+  if (!of.ccd) of.ccd.emplace(*of.scene, options.memory);
   PoseView ends;
   if (!read_keys(*of.scene)) return reading();
-  const bool between = call == RecordedCall::sweep;
+  const bool between = call == RecordedCall::find_impacts;
   if (!(between ? read_poses(keys.size(), ends) : in.get_array(motions))) return reading();
-  SweepOptions how;
-  how.pairs = in.get_enum(SweepPairs::bullets_and_fixed);
+  ContinuousOptions how;
+  how.pairs = in.get_enum(ContinuousPairs::bullets_and_fixed);
   if (!in.get_array(flags)) return reading();
   how.bullets = {flags.data(), flags.size()};
   how.tolerance = in.get<double>();
@@ -70,8 +70,8 @@ Status ReplayState::sweep(RecordedCall call, ReplayedWorld& of) {
   const std::span<const Key> moving(keys.data(), keys.size());
   const std::span<const RigidMotion> ways(motions.data(), motions.size());
   const Status answered =
-      between ? of.sweep->sweep(moving, ends, how) : of.sweep->sweep(moving, ways, how);
-  return answered == Status::ok ? compare(*of.sweep) : answered;
+      between ? of.ccd->find_impacts(moving, ends, how) : of.ccd->find_impacts(moving, ways, how);
+  return answered == Status::ok ? compare(*of.ccd) : answered;
 }
 
 }  // namespace winnow

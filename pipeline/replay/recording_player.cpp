@@ -50,8 +50,8 @@ ReplayState::~ReplayState() {
   for (ReplayedWorld* const one : worlds) delete_in(options.memory, one);
 }
 
-/// Checks the header, and the digest of every block. If a program ended before its recording was
-/// closed, the recording has complete blocks and at most one incomplete one at the end.
+/// Checks the header, and the digest of every complete block. If a program ended before its
+/// recording was closed, the recording ends with a complete or an incomplete block.
 Status ReplayState::check() noexcept {
   ByteReader header(rest);
   char magic[8] = {};
@@ -96,12 +96,12 @@ Played ReplayState::step() noexcept {
   const auto call = in.get_enum(last_call);
   const auto number = in.get<std::uint32_t>();
   CallOutcome outcome = CallOutcome::changed;
-  const std::uint64_t asked = questions;
+  const std::uint64_t before = queries;
   status = in.ok() ? play(call, number, outcome) : Status::invalid_argument;
   if (status != Status::ok) return Played::end;
   ++calls;
   if (outcome == CallOutcome::frame) return Played::frame;
-  if (questions == asked) return Played::change;
+  if (queries == before) return Played::change;
   const bool all = call == RecordedCall::self_pairs || call == RecordedCall::collide;
   return all ? Played::pairs : Played::question;
 }
@@ -128,21 +128,21 @@ Status ReplayState::play_world(RecordedCall call, std::uint32_t number) {
   if (call == RecordedCall::make_scene) return make_scene(*of);
   if (call > RecordedCall::make_scene) {
     if (!of->scene) return Status::invalid_argument;
-    if (call >= RecordedCall::ask_distance_by_rules) return ask_scene(call, *of);
-    if (call >= RecordedCall::sweep) return sweep(call, *of);
+    if (call >= RecordedCall::query_distance_by_rules) return query_scene(call, *of);
+    if (call >= RecordedCall::find_impacts) return find_impacts(call, *of);
     if (call >= RecordedCall::make_sensors) return play_sensors(call, *of);
-    const bool asks = call >= RecordedCall::ask_ray && call < RecordedCall::load_scene;
-    return asks ? ask_scene(call, *of) : change_scene(call, *of);
+    const bool is_query = call >= RecordedCall::query_ray && call < RecordedCall::load_scene;
+    return is_query ? query_scene(call, *of) : change_scene(call, *of);
   }
   if (call != RecordedCall::make_partition && !of->partition) return Status::invalid_argument;
   return change_partition(call, *of);
 }
 
-/// Worlds are created in the order of their numbers, except for worlds that were refused, or whose
-/// creation was recorded after the creation of a later one.
+/// Worlds are created in the order of their numbers, with two exceptions: partitions that could not
+/// be created are not recorded, and two threads may record their new worlds in the other order.
 ReplayedWorld* ReplayState::add_world(std::uint32_t number) noexcept {
-  constexpr std::size_t kMostApart = 4096;
-  if (number >= worlds.size() + kMostApart || world(number) != nullptr) return nullptr;
+  constexpr std::size_t kMaxNumberGap = 4096;
+  if (number >= worlds.size() + kMaxNumberGap || world(number) != nullptr) return nullptr;
   while (worlds.size() <= number) {
     if (!worlds.push_back(nullptr)) return nullptr;
   }
@@ -185,7 +185,7 @@ std::uint64_t RecordingPlayer::frames() const noexcept {
 }
 
 std::uint64_t RecordingPlayer::questions() const noexcept {
-  return state_ == nullptr ? 0 : state_->questions;
+  return state_ == nullptr ? 0 : state_->queries;
 }
 
 std::uint64_t RecordingPlayer::differences() const noexcept {

@@ -3,9 +3,9 @@
 // State of a RecordingPlayer: the partitions and scenes that it plays, and the memory into which
 // calls are read. Each play_*.cpp file implements one group of calls.
 
+#include <winnow/pipeline/continuous_collision.h>
 #include <winnow/pipeline/replay.h>
 #include <winnow/pipeline/scene_queries.h>
-#include <winnow/pipeline/scene_sweep.h>
 #include <winnow/pipeline/sensors.h>
 #include "core/memory/new_in.h"
 #include "pipeline/replay/call_reader.h"
@@ -36,15 +36,15 @@ struct ReplayedSensors {
 
 /// A partition or scene of a recording, with buffers for the results of its queries.
 struct ReplayedWorld {
-  static constexpr std::size_t kAskedPairs = 16;
+  static constexpr std::size_t kPairHistory = 16;
   template <std::size_t... I>
-  [[nodiscard]] static std::array<ReplayedPairs, kAskedPairs> all_asked(
+  [[nodiscard]] static std::array<ReplayedPairs, kPairHistory> make_pair_results(
       std::pmr::memory_resource* memory, std::index_sequence<I...>) noexcept {
     return {((void)I, ReplayedPairs(memory))...};
   }
 
   explicit ReplayedWorld(std::pmr::memory_resource* memory) noexcept
-      : asked(all_asked(memory, std::make_index_sequence<kAskedPairs>{})),
+      : pair_results(make_pair_results(memory, std::make_index_sequence<kPairHistory>{})),
         other_pairs(memory),
         hits(memory),
         objects(memory),
@@ -59,8 +59,8 @@ struct ReplayedWorld {
   ReplayedWorld& operator=(const ReplayedWorld&) = delete;
 
   std::optional<Partition> partition;
-  std::array<ReplayedPairs, kAskedPairs> asked;  // results of the last queries, at least
-  std::uint64_t questions = 0;                   // number of pair queries
+  std::array<ReplayedPairs, kPairHistory> pair_results;  // the results with the highest numbers
+  std::uint64_t pair_queries = 0;                        // number of pair queries
   PairBuffer other_pairs;
   HitBuffer hits;
   OverlapBuffer objects;
@@ -72,12 +72,12 @@ struct ReplayedWorld {
   Column<ShapeId> shape_ids;  // indexed by number in the recording
   Column<Pair> passed;        // pairs that the predicate accepts in the next query; sorted
   Contacts contacts;
-  std::optional<SceneSweep> sweep;
+  std::optional<ContinuousCollision> ccd;
   Column<ReplayedSensors*> sensors;  // indexed by number; null if destroyed
 };
 
 /// Kind of a call.
-enum class CallOutcome : std::uint8_t { changed, answered, answered_all, frame };
+enum class CallOutcome : std::uint8_t { changed, frame };
 
 /// State of a player.
 struct ReplayState {
@@ -93,7 +93,7 @@ struct ReplayState {
     return number < worlds.size() ? worlds[number] : nullptr;
   }
   [[nodiscard]] ReplayedWorld* add_world(std::uint32_t number) noexcept;
-  /// Returns `ok` if all data read so far were present.
+  /// Returns `ok` if every read of the current block succeeded.
   [[nodiscard]] Status reading() const noexcept {
     if (in.ok()) return Status::ok;
     return in.out_of_memory() ? Status::out_of_memory : Status::invalid_argument;
@@ -128,20 +128,20 @@ struct ReplayState {
   [[nodiscard]] bool read_keys(const Scene& of);
   [[nodiscard]] bool read_poses(std::size_t count, PoseView& poses);
 
-  // Sensors and sweeps (play_sensors.cpp).
+  // Sensors and continuous collision detection (play_sensors.cpp).
   [[nodiscard]] Status play_sensors(RecordedCall call, ReplayedWorld& of);
   [[nodiscard]] Status change_sensor(RecordedCall call, ReplayedWorld& of, ReplayedSensors& all);
-  [[nodiscard]] Status sweep(RecordedCall call, ReplayedWorld& of);
+  [[nodiscard]] Status find_impacts(RecordedCall call, ReplayedWorld& of);
 
   // Scene queries (play_queries.cpp).
-  [[nodiscard]] Status ask_scene(RecordedCall call, ReplayedWorld& of);
-  [[nodiscard]] Status ask_ray(ReplayedWorld& of);
-  [[nodiscard]] Status ask_rays(ReplayedWorld& of);
-  [[nodiscard]] Status ask_overlap(ReplayedWorld& of);
+  [[nodiscard]] Status query_scene(RecordedCall call, ReplayedWorld& of);
+  [[nodiscard]] Status query_ray(ReplayedWorld& of);
+  [[nodiscard]] Status query_rays(ReplayedWorld& of);
+  [[nodiscard]] Status query_overlap(ReplayedWorld& of);
   template <typename Moving>
-  [[nodiscard]] Status ask_cast(ReplayedWorld& of);
-  [[nodiscard]] Status ask_sets(RecordedCall call, ReplayedWorld& of);
-  [[nodiscard]] Status ask_any_contact(RecordedCall call, ReplayedWorld& of);
+  [[nodiscard]] Status query_cast(ReplayedWorld& of);
+  [[nodiscard]] Status query_sets(RecordedCall call, ReplayedWorld& of);
+  [[nodiscard]] Status query_any_contact(RecordedCall call, ReplayedWorld& of);
   /// Reads two sets of bodies into `others` and `keys`.
   [[nodiscard]] bool read_sets(ReplayedWorld& of);
   [[nodiscard]] std::span<const Key> first_set() const noexcept {
@@ -150,9 +150,9 @@ struct ReplayState {
   [[nodiscard]] std::span<const Key> second_set() const noexcept {
     return {keys.data(), keys.size()};
   }
-  [[nodiscard]] Status ask_nearest(ReplayedWorld& of);
+  [[nodiscard]] Status query_nearest(ReplayedWorld& of);
   [[nodiscard]] bool read_shape(const ReplayedWorld& of, ShapeId& id) noexcept;
-  [[nodiscard]] bool read_question() noexcept;
+  [[nodiscard]] bool read_query_filter() noexcept;
 
   /// Compares the digest of the results with the recorded digest.
   template <typename... Answer>
@@ -162,7 +162,7 @@ struct ReplayState {
   [[nodiscard]] Status compare(const Digest& digest) noexcept { return compare(digest.value()); }
   [[nodiscard]] Status compare(std::uint64_t digest) noexcept {
     const auto recorded = in.get<std::uint64_t>();
-    ++questions;
+    ++queries;
     if (recorded != digest) ++differences;
     return reading();
   }
@@ -175,7 +175,7 @@ struct ReplayState {
   bool is_whole = false;
   std::uint64_t calls = 0;
   std::uint64_t frames = 0;
-  std::uint64_t questions = 0;
+  std::uint64_t queries = 0;
   std::uint64_t differences = 0;
   Column<ReplayedWorld*> worlds;
 

@@ -19,7 +19,7 @@ constexpr std::size_t kPairsPerRange = 8192;
 constexpr std::size_t kBits = 64;
 constexpr std::size_t kWordsPerRange = kPairsPerRange / kBits;
 
-[[nodiscard]] std::size_t ranges_of(const BodyPairs::Source& source) noexcept {
+[[nodiscard]] std::size_t ranges_of(const BodyPairs::PairSource& source) noexcept {
   return (source.pairs.size() + kPairsPerRange - 1) / kPairsPerRange;
 }
 
@@ -41,10 +41,10 @@ struct Packing {
   }
 };
 
-/// Returns a bit for each of at most 64 pairs, set if is(body a, body b). Branchless: the result is
-/// unpredictable.
+/// Returns a bit for each of at most 64 pairs, set if is(body a, body b). The loop has no branch,
+/// because the results are unpredictable.
 template <typename Is>
-[[nodiscard]] std::uint64_t bits_where(const BodyPairs::Source& source, std::size_t first,
+[[nodiscard]] std::uint64_t bits_where(const BodyPairs::PairSource& source, std::size_t first,
                                        std::size_t count, Is&& is) noexcept {
   std::uint64_t bits = 0;
   for (std::size_t i = 0; i < count; ++i) {
@@ -57,10 +57,10 @@ template <typename Is>
 /// Calls body(source, range number, first, end) for ranges of the pairs of all sources, one source
 /// after the other.
 template <typename Body>
-void for_source_ranges(std::span<const BodyPairs::Source> sources, const Execution& execution,
+void for_source_ranges(std::span<const BodyPairs::PairSource> sources, const Execution& execution,
                        Body&& body) {
   std::size_t before = 0;
-  for (const BodyPairs::Source& source : sources) {
+  for (const BodyPairs::PairSource& source : sources) {
     for_each_range(execution, source.pairs.size(), kPairsPerRange,
                    [&](std::size_t first, std::size_t end) {
                      body(source, before + first / kPairsPerRange, first, end);
@@ -71,11 +71,12 @@ void for_source_ranges(std::span<const BodyPairs::Source> sources, const Executi
 
 }  // namespace
 
-Status BodyPairs::assign(std::span<const Source> sources, const Known& known,
+Status BodyPairs::assign(std::span<const PairSource> sources, const BodyData& known,
                          const Execution& execution) {
-  std::size_t stretches = 0;
-  for (const Source& source : sources) stretches += ranges_of(source);
-  if (!resize_tightly(wanted_, stretches * kWordsPerRange) || !resize_tightly(counts_, stretches)) {
+  std::size_t range_count = 0;
+  for (const PairSource& source : sources) range_count += ranges_of(source);
+  if (!resize_tightly(kept_, range_count * kWordsPerRange) ||
+      !resize_tightly(counts_, range_count)) {
     clear();
     return Status::out_of_memory;
   }
@@ -97,49 +98,49 @@ Status BodyPairs::assign(std::span<const Source> sources, const Known& known,
 }
 
 // Chooses the pairs to be kept, and computes where each range of pairs writes.
-void BodyPairs::choose(std::span<const Source> sources, const Known& known,
+void BodyPairs::choose(std::span<const PairSource> sources, const BodyData& known,
                        const Execution& execution) noexcept {
   for_source_ranges(
       sources, execution,
-      [&](const Source& source, std::size_t stretch, std::size_t first, std::size_t end) {
-        std::uint64_t* word = wanted_.data() + stretch * kWordsPerRange;
-        Count sum{};
+      [&](const PairSource& source, std::size_t range, std::size_t first, std::size_t end) {
+        std::uint64_t* word = kept_.data() + range * kWordsPerRange;
+        RangeCount sum{};
         for (; first < end; first += kBits) {
           const std::size_t count = std::min(end - first, kBits);
           const std::uint64_t apart =
               known.balls == nullptr ? 0 : bits_where(source, first, count, [&](auto a, auto b) {
                 return are_apart(known.balls[a], known.balls[b]);
               });
-          std::uint64_t wanted = ~std::uint64_t{0} >> (kBits - count) & ~apart;
+          std::uint64_t kept = ~std::uint64_t{0} >> (kBits - count) & ~apart;
           if (known.selection != nullptr) {
             const PairSelection& selection = *known.selection;
-            wanted &= bits_where(source, first, count, [&](auto a, auto b) {
-              return selection.wants(selection.context, a, b);
+            kept &= bits_where(source, first, count, [&](auto a, auto b) {
+              return selection.accept(selection.context, a, b);
             });
           }
           sum.apart += static_cast<std::uint32_t>(std::popcount(apart));
-          sum.taken += static_cast<std::uint32_t>(std::popcount(wanted));
-          *word++ = wanted;
+          sum.taken += static_cast<std::uint32_t>(std::popcount(kept));
+          *word++ = kept;
         }
-        counts_[stretch] = sum;
+        counts_[range] = sum;
       });
   size_ = apart_ = 0;
-  for (Count& count : counts_) {
+  for (RangeCount& count : counts_) {
     apart_ += count.apart;
     const std::uint32_t taken = std::exchange(count.taken, static_cast<std::uint32_t>(size_));
     size_ += taken;
   }
 }
 
-void BodyPairs::pack(std::span<const Source> sources, const Known& known,
+void BodyPairs::pack(std::span<const PairSource> sources, const BodyData& known,
                      const Execution& execution) noexcept {
   const Packing packing{bits_};
   const PairSelection* const selection = known.selection;
   for_source_ranges(
       sources, execution,
-      [&](const Source& source, std::size_t stretch, std::size_t first, std::size_t end) {
-        const std::uint64_t* word = wanted_.data() + stretch * kWordsPerRange;
-        std::uint64_t* item = items_[0].data() + counts_[stretch].taken;
+      [&](const PairSource& source, std::size_t range, std::size_t first, std::size_t end) {
+        const std::uint64_t* word = kept_.data() + range * kWordsPerRange;
+        std::uint64_t* item = items_[0].data() + counts_[range].taken;
         for (; first < end; first += kBits) {
           for (std::uint64_t bits = *word++; bits != 0; bits &= bits - 1) {
             const BodyPair bodies =
@@ -155,8 +156,8 @@ void BodyPairs::pack(std::span<const Source> sources, const Known& known,
 
 // The last range of each source may be partly filled.
 bool BodyPairs::reserve_choice(std::size_t count, Pages pages) noexcept {
-  const std::size_t stretches = count / kPairsPerRange + kMaxSources;
-  return wanted_.reserve(stretches * kWordsPerRange, pages) && counts_.reserve(stretches, pages);
+  const std::size_t range_count = count / kPairsPerRange + kMaxSources;
+  return kept_.reserve(range_count * kWordsPerRange, pages) && counts_.reserve(range_count, pages);
 }
 
 void BodyPairs::name_bodies(const PairSelection& selection, const Execution& execution) noexcept {
@@ -178,7 +179,7 @@ void BodyPairs::clear() noexcept {
 }
 
 Bytes BodyPairs::bytes() const noexcept {
-  Bytes bytes = wanted_.bytes();
+  Bytes bytes = kept_.bytes();
   bytes += counts_.bytes();
   for (const Column<std::uint64_t>& items : items_) bytes += items.bytes();
   return bytes;

@@ -69,8 +69,8 @@ struct BodyBall {
 struct PairSelection {
   std::span<const std::uint32_t> place;  ///< by body: its position in the shared order
   std::span<const std::uint32_t> body;   ///< by position in the shared order
-  bool (*wants)(const void* context, std::uint32_t a, std::uint32_t b) = nullptr;
-  const void* context = nullptr;  ///< passed to `wants`
+  bool (*accept)(const void* context, std::uint32_t a, std::uint32_t b) = nullptr;
+  const void* context = nullptr;  ///< passed to `accept`
 };
 
 /// Pairs of bodies sorted by the kinds of their shapes, then by body. In a pair, a is the body with
@@ -79,11 +79,11 @@ class BodyPairs {
  public:
   explicit BodyPairs(std::pmr::memory_resource* memory) noexcept
       : items_{Column<std::uint64_t>(memory), Column<std::uint64_t>(memory)},
-        wanted_(memory),
+        kept_(memory),
         counts_(memory) {}
 
   /// Pairs of objects of two partitions, with the tables that map objects to bodies.
-  struct Source {
+  struct PairSource {
     std::span<const Pair> pairs;
     const std::uint32_t* first_body;
     const std::uint32_t* second_body;
@@ -96,18 +96,19 @@ class BodyPairs {
   static constexpr std::size_t kMaxSources = 3;
 
   /// Data of bodies, by number.
-  struct Known {
+  struct BodyData {
     const ShapeId* shapes;
     /// Null: pairs whose balls are disjoint are kept too.
     const BodyBall* balls;
-    /// Upper limit of body numbers, at most kMaxBodies.
+    /// All body numbers are below this; at most kMaxBodies.
     std::size_t bodies;
     /// Null: keeps all pairs and orders bodies by number.
     const PairSelection* selection;
   };
 
   /// Replaces the pairs with the pairs of at most kMaxSources sources. O(n).
-  Status assign(std::span<const Source> sources, const Known& known, const Execution& execution);
+  Status assign(std::span<const PairSource> sources, const BodyData& known,
+                const Execution& execution);
 
   /// Reserves for `count` pairs. Returns false if memory is refused.
   [[nodiscard]] bool reserve(std::size_t count, Pages pages) noexcept {
@@ -142,16 +143,16 @@ class BodyPairs {
 
  private:
   [[nodiscard]] bool reserve_choice(std::size_t count, Pages pages) noexcept;
-  void choose(std::span<const Source> sources, const Known& known,
+  void choose(std::span<const PairSource> sources, const BodyData& known,
               const Execution& execution) noexcept;
-  void pack(std::span<const Source> sources, const Known& known,
+  void pack(std::span<const PairSource> sources, const BodyData& known,
             const Execution& execution) noexcept;
   /// Replaces positions of a selection with body numbers.
   void name_bodies(const PairSelection& selection, const Execution& execution) noexcept;
 
   /// Code, body a and body b as one number; and a second buffer for sorting.
   Column<std::uint64_t> items_[2];
-  /// The buffer that holds the sorted pairs.
+  /// Index of the buffer that contains the sorted pairs.
   unsigned sorted_ = 0;
   /// Bits of a body number in an item.
   unsigned bits_ = 0;
@@ -160,12 +161,12 @@ class BodyPairs {
   bool are_all_ = false;
   /// One bit for each source pair, set if it is kept; and for each range of pairs, the number kept
   /// (later the write position) and the number dropped because the balls are disjoint.
-  Column<std::uint64_t> wanted_;
-  struct Count {
+  Column<std::uint64_t> kept_;
+  struct RangeCount {
     std::uint32_t taken;
     std::uint32_t apart;
   };
-  Column<Count> counts_;
+  Column<RangeCount> counts_;
   std::uint64_t serial_ = 0;
 };
 

@@ -10,15 +10,15 @@ struct BodyPredicate {
   const std::uint32_t* first_body;
   const std::uint32_t* second_body;
 
-  /// Returns options with this predicate, or without one if the scene has no rules. This object
-  /// must outlive the query.
+  /// Returns options with this predicate, or without one if the scene accepts all pairs. This
+  /// object must outlive the query.
   [[nodiscard]] PairOptions options() const noexcept {
     PairOptions options;
     if (scene.accepts_all()) return options;
     options.predicate = {[](void* context, ObjectId first, ObjectId second) {
-                           const auto& asked = *static_cast<const BodyPredicate*>(context);
-                           return asked.scene.may_pair(asked.first_body[first],
-                                                       asked.second_body[second]);
+                           const auto& predicate = *static_cast<const BodyPredicate*>(context);
+                           return predicate.scene.may_pair(predicate.first_body[first],
+                                                           predicate.second_body[second]);
                          },
                          const_cast<BodyPredicate*>(this)};
     return options;

@@ -16,7 +16,7 @@
 
 namespace winnow {
 Status Scene::collide(ContactLevel level, Contacts& contacts) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   if (state_ == nullptr || contacts.state_ == nullptr) {
     contacts.clear();
     return logged(Status::out_of_memory, "Scene::collide");
@@ -32,7 +32,7 @@ Status Scene::collide(ContactLevel level, Contacts& contacts) {
     status = Collision(*state_, *contacts.state_, level).run();
   }
   if (status == Status::ok) {
-    state_->statistics.carried = contacts.state_->carried_count;
+    state_->statistics.cached_pairs = contacts.state_->cached_count;
     state_->statistics.boxes_updated = std::exchange(state_->boxes_updated, 0);
     ++state_->clock;
   } else {
@@ -45,7 +45,7 @@ Collision::Collision(SceneState& scene, ContactsState& contacts, ContactLevel le
     : scene_(scene),
       contacts_(contacts),
       level_(level),
-      carries_(scene.options.carry_over > 0.0 && level >= ContactLevel::distance),
+      uses_cache_(scene.options.cache_tolerance > 0.0 && level >= ContactLevel::distance),
       reduces_(scene.options.contact_reduction && level == ContactLevel::manifold),
       stores_positions_(scene.options.warm_start),
       same_scene_(contacts.scene == scene.serial),
@@ -82,15 +82,15 @@ class BorrowedStorage {
 
 Status Collision::run() {
   if (!same_scene_) contacts_.clear();
-  // These records are needed only during the call. With carry-over or sleeping pairs they persist
-  // and cannot be in borrowed storage.
+  // Without caching and sleeping pairs, the records are needed only during the call, so they can
+  // be in borrowed storage.
   const BorrowedStorage records(contacts_.records.bits, scene_.pairs.spare(),
-                                !carries_ && contacts_.dormant_records.size() == 0);
+                                !uses_cache_ && contacts_.dormant_records.size() == 0);
   contacts_.scene = scene_.serial;
   contacts_.level = level_;
-  contacts_.carried_count = 0;
+  contacts_.cached_count = 0;
   batch_end_ = pair_count();
-  if (!list_records() || !wake_dormant() || !match_carried()) return Status::out_of_memory;
+  if (!list_records() || !wake_dormant() || !match_cached()) return Status::out_of_memory;
   if (decide()) {
     if (const Status status = show(); status != Status::ok) return status;
     match_points();
@@ -104,13 +104,15 @@ Status Collision::run() {
   return Status::ok;
 }
 
-// All pairs are one batch if ghost contacts are suppressed, which compares all contacts of a body.
+// If ghost contacts are suppressed, all pairs are one batch, because the suppression compares all
+// contacts of a body.
 std::uint32_t Collision::batch_size(const SceneOptions& options, std::size_t pairs) noexcept {
   const auto all = static_cast<std::uint32_t>(pairs);
   return options.suppress_ghost_contacts ? all : std::min(all, kPairsPerBatch);
 }
 
-// Rounded up to a power of two, so that a few more pairs need no new allocation.
+// The size of a batch that is not full is rounded up to a power of two, so that most small
+// increases of the number of pairs need no new allocation.
 std::size_t Collision::batch_room(const SceneOptions& options, std::size_t pairs) noexcept {
   const std::size_t batch = batch_size(options, pairs);
   return batch == 0 || batch > kPairsPerBatch ? batch : std::bit_ceil(batch);
@@ -133,7 +135,7 @@ Status Collision::show() {
 }
 
 Status Collision::answer() {
-  if (!carries_) {
+  if (!uses_cache_) {
     known_from_ = batch_first_;
     if (!resize_for_batch(contacts_.old_record)) return Status::out_of_memory;
     match(contacts_.records_before);
@@ -153,16 +155,16 @@ bool Collision::list_pairs() {
   if (level_ == ContactLevel::pairs) return true;
   if (!resize_for_batch(contacts_.source) ||
       !scene_.convex.grow(batch_room(scene_.options, pair_count())) ||
-      (!carries_ && !resize_for_batch(contacts_.origin))) {
+      (!uses_cache_ && !resize_for_batch(contacts_.origin))) {
     return false;
   }
   for (std::uint32_t i = batch_first_; i < batch_end_; ++i) {
     const BodyPair pair = scene_.pairs[i];
-    if (!carries_) {
+    if (!uses_cache_) {
       contacts_.origin[i - known_from_] = static_cast<std::uint8_t>(origin_of_fresh(pair));
     }
     const ContactSource origin = origin_of(i);
-    if (origin == ContactSource::carried) continue;
+    if (origin == ContactSource::cached) continue;
     Column<BodyPair>& list = origin == ContactSource::convex ? scene_.convex : scene_.composite;
     contacts_.source[i - batch_first_] = static_cast<std::uint32_t>(list.size());
     if (!list.push_back(pair)) return false;
@@ -210,10 +212,10 @@ Status Collision::answer_composite() {
   PrimitivePairs& parts = scene_.parts->pairs;
   // Primitives farther apart than this cannot touch before the pair's contacts are computed again.
   PairMargins margins = 0.0;
-  if (!find_margins(scene_.composite, carries_ ? options.carry_over : 0.0, margins)) {
+  if (!find_margins(scene_.composite, uses_cache_ ? options.cache_tolerance : 0.0, margins)) {
     return Status::out_of_memory;
   }
-  Status status = options.composites->expand(
+  Status status = options.composites->find_primitive_pairs(
       scene_.shapes,
       {{scene_.shape.data(), scene_.shape.size()}, {scene_.pose.data(), scene_.pose.size()}},
       {scene_.composite.data(), scene_.composite.size()}, margins, options.execution, parts);
@@ -226,8 +228,8 @@ Status Collision::answer_composite() {
       scene_.parts->answers);
   if (status != Status::ok) return status;
   if (level_ >= ContactLevel::distance) {
-    options.composites->smooth(scene_.shapes, parts, margins, options.execution,
-                               scene_.parts->answers);
+    options.composites->correct_internal_edges(scene_.shapes, parts, margins, options.execution,
+                                               scene_.parts->answers);
   }
   scene_.statistics.parts += scene_.parts->narrow.statistics();
   scene_.statistics.primitive_pairs += parts.pairs.size();
@@ -245,8 +247,9 @@ Status Collision::reduce_composite() {
   PairMargins margins = 0.0;
   if (!find_margins(scene_.composite, 0.0, margins)) return Status::out_of_memory;
   const SceneOptions& options = scene_.options;
-  return options.composites->reduce(scene_.shapes, scene_.parts->pairs, scene_.parts->answers,
-                                    margins, options.execution, scene_.parts->regions);
+  return options.composites->reduce_contacts(scene_.shapes, scene_.parts->pairs,
+                                             scene_.parts->answers, margins, options.execution,
+                                             scene_.parts->regions);
 }
 
 }  // namespace winnow

@@ -15,7 +15,7 @@
 namespace winnow {
 
 /// One call of Scene::collide. Decides which pairs keep their contacts, computes the contacts of
-/// the others, and writes both into a new frame, in batches of pairs.
+/// all other pairs, and writes the contacts of all pairs into a new frame, in batches.
 class Collision {
  public:
   static constexpr std::size_t kPairsPerTask = 512;
@@ -36,7 +36,7 @@ class Collision {
 
  private:
   /// Where a pair's contacts come from.
-  enum class ContactSource : std::uint8_t { carried, convex, composite };
+  enum class ContactSource : std::uint8_t { cached, convex, composite };
   using Cursor = ContactFrame::Cursor;
 
   // Records of pairs from the last call (pair_records.cpp).
@@ -48,19 +48,20 @@ class Collision {
   [[nodiscard]] bool put_to_sleep();
   [[nodiscard]] bool list_ended();
   [[nodiscard]] bool sleeps(const BodyPair& pair) const noexcept;
-  /// True if index `shown` is a sleeping pair: those follow the pairs of the last frame.
+  /// True if index `shown` belongs to a pair that slept: wake_dormant appends such pairs to the
+  /// pairs of the last frame.
   [[nodiscard]] bool has_slept(std::uint32_t shown) const noexcept {
     return shown >= last_pairs_ && shown != kNoEntry;
   }
   [[nodiscard]] bool note_bodies();
 
-  // Contacts that are carried over (carry_over.cpp).
-  [[nodiscard]] bool match_carried();
+  // The contact cache (contact_cache.cpp).
+  [[nodiscard]] bool match_cached();
   [[nodiscard]] bool decide();
   [[nodiscard]] bool keep(std::uint32_t pair, std::uint32_t record) noexcept;
-  void turn(CarriedPair& carried, std::uint32_t shown, const double (&to)[4]) noexcept;
+  void turn(CachedPair& cached, std::uint32_t shown, const double (&to)[4]) noexcept;
   void remember(std::uint32_t pair, std::uint32_t shown) noexcept;
-  [[nodiscard]] float carry_limit(std::uint32_t pair, std::uint32_t shown) const noexcept;
+  [[nodiscard]] float cache_limit(std::uint32_t pair, std::uint32_t shown) const noexcept;
   [[nodiscard]] double clearance(std::uint32_t pair) const noexcept;
 
   // Indices of contacts in the last frame (contact_history.cpp).
@@ -96,7 +97,7 @@ class Collision {
 
   // Suppression of ghost contacts (ghost_contacts.cpp).
   class FloorWriter;
-  [[nodiscard]] bool is_carried_over(const BodyPair& pair) const noexcept;
+  [[nodiscard]] bool is_cacheable(const BodyPair& pair) const noexcept;
   [[nodiscard]] bool list_floor_contacts();
   void drop_ghost_contacts_of(FloorContact* first, FloorContact* end) noexcept;
   [[nodiscard]] bool list_floor_answer(const NarrowResult& answers, FloorContact::Source source,
@@ -108,7 +109,9 @@ class Collision {
   void close_regions() noexcept;
 
   // Output of the frame (write_contacts.cpp).
-  [[nodiscard]] bool reads_last_manifolds() const noexcept { return carries_ || stores_positions_; }
+  [[nodiscard]] bool reads_last_manifolds() const noexcept {
+    return uses_cache_ || stores_positions_;
+  }
   [[nodiscard]] bool open_frame();
   [[nodiscard]] bool close(const Cursor& end);
   [[nodiscard]] bool show_batch(Cursor& end);
@@ -116,7 +119,7 @@ class Collision {
   [[nodiscard]] bool reserve_next();
   /// Index of a pair's contacts in the last frame, or kNoEntry.
   [[nodiscard]] std::uint32_t shown_before(std::uint32_t pair) const noexcept;
-  [[nodiscard]] std::uint32_t carried_range(std::uint32_t pair, std::uint32_t end) const noexcept;
+  [[nodiscard]] std::uint32_t count_cached(std::uint32_t pair, std::uint32_t end) const noexcept;
   [[nodiscard]] ContactSource origin_of_fresh(const BodyPair& pair) const noexcept {
     const bool is_composite =
         scene_.shape[pair.a].is_composite() || scene_.shape[pair.b].is_composite();
@@ -125,8 +128,9 @@ class Collision {
   [[nodiscard]] ContactSource origin_of(std::uint32_t pair) const noexcept {
     return static_cast<ContactSource>(contacts_.origin[pair - known_from_]);
   }
-  /// Index in SceneState::convex or composite of a pair that is not carried over. For a convex pair
-  /// this is also the index of its result, because convex pairs are listed by kinds.
+  /// Index in SceneState::convex or composite of a pair that is not cached. For a convex pair
+  /// this is also the index of its result, because SceneState::convex is sorted by kinds, as
+  /// results are.
   [[nodiscard]] std::uint32_t source_of(std::uint32_t pair) const noexcept {
     return contacts_.source[pair - batch_first_];
   }
@@ -140,7 +144,7 @@ class Collision {
   void write_convex(std::uint32_t first, std::uint32_t end, Cursor& at) noexcept;
   void write_answers(std::span<const std::uint32_t> pairs, Cursor& at) noexcept;
   void write_composite(std::uint32_t pair, const Cursor& to) noexcept;
-  /// Value of Contacts::previous_pair: sleeping pairs were not in the last frame.
+  /// Value of Contacts::previous_pair: a pair that slept was not in the last frame.
   [[nodiscard]] std::uint32_t last_point_of(std::uint32_t shown) const noexcept {
     return has_slept(shown) ? kNoContact : shown;
   }
@@ -175,8 +179,8 @@ class Collision {
   SceneState& scene_;
   ContactsState& contacts_;
   ContactLevel level_;
-  /// The scene has carry-over and the level allows it.
-  bool carries_;
+  /// The scene has a contact cache and the level allows it.
+  bool uses_cache_;
   /// Manifolds of composite shapes are merged into contact regions.
   bool reduces_;
   /// SceneOptions::warm_start: previous indices of contacts are required.
@@ -197,7 +201,7 @@ class Collision {
   std::uint32_t batch_first_ = 0;
   std::uint32_t batch_end_ = 0;
   /// First pair of the columns `origin` and `old_record`: the batch's first pair, or 0 with
-  /// carry-over, which is decided for all pairs at once.
+  /// caching, which is decided for all pairs at once.
   std::uint32_t known_from_ = 0;
 };
 

@@ -97,8 +97,8 @@ struct ContactFrame {
                    const Cursor& to) noexcept;
 };
 
-/// Records of pairs from one `collide` to the next, in the order of pairs: of the pairs in contact,
-/// or with carry-over of all pairs.
+/// Records of pairs that are kept from one `collide` to the next: with caching of all pairs,
+/// otherwise of the pairs in contact. They are sorted like BodyPairs.
 struct PairRecords {
   explicit PairRecords(std::pmr::memory_resource* memory) noexcept : bits(memory), shown(memory) {}
 
@@ -135,8 +135,8 @@ struct PairRecords {
   }
 };
 
-/// Keys and client data of all bodies when contacts were last filled, by id. A body that has the
-/// same id now may be another one.
+/// Keys and client data of all bodies when contacts were last filled, by id. Another body may have
+/// the same id now.
 struct KnownBodies {
   explicit KnownBodies(std::pmr::memory_resource* memory) noexcept : stamp(memory), data(memory) {}
 
@@ -160,8 +160,8 @@ struct KnownBodies {
   }
 };
 
-/// Data of a pair, in or out of contact, in a scene with carry-over.
-struct CarriedPair {
+/// Data of a pair, in or out of contact, in a scene with caching.
+struct CachedPair {
   /// A limit that forces new contacts in the next frame, even if the pair does not move.
   static constexpr float kNever = -1.0F;
 
@@ -174,14 +174,15 @@ struct CarriedPair {
   /// again.
   float limit;
   /// While the pair sleeps and when it wakes: the clock of the last call that tested it.
-  std::uint32_t looked_at;
-  /// Radius of the body whose relative pose is stored (the smaller one); and radius of body a.
+  std::uint32_t tested_at;
+  /// Radius of the smaller body, which is the one whose relative pose is stored.
   float radius;
+  /// Radius of body a.
   float radius_a;
   /// Accumulated float error from rotating the points, as a length.
   float drift;
   bool from_b;
-  /// `error_bound` includes the carry-over.
+  /// `error_bound` includes the cache tolerance.
   bool widened;
 };
 
@@ -191,19 +192,20 @@ struct ContactsState {
 
   ContactLevel level = ContactLevel::pairs;
   ContactFrame frame;
-  /// The last frame, if manifolds are carried over or points are matched with it.
+  /// The last frame, if manifolds are cached or points are matched with it.
   ContactFrame before;
   Column<EndedContact> ended;
-  /// Without carry-over they are empty between two calls: the frame has the same data.
+  /// Without caching, `records` and `records_before` are empty between two calls, because the
+  /// frame has the same data.
   PairRecords records;
   PairRecords records_before;
   KnownBodies known;
-  Column<CarriedPair> carried;
-  Column<CarriedPair> carried_before;
+  Column<CachedPair> cached;
+  Column<CachedPair> cached_before;
   /// Pairs of sleeping bodies with their records, sorted.
   ContactFrame dormant;
   PairRecords dormant_records;
-  Column<CarriedPair> dormant_carried;
+  Column<CachedPair> dormant_cached;
   /// Previous indices of the pairs and points in `frame`.
   ContactHistory history;
   /// The scene that filled these contacts, and its counters at that time.
@@ -211,10 +213,10 @@ struct ContactsState {
   std::uint32_t clock = 0;
   std::uint64_t pairs_serial = 0;
   std::uint64_t regroupings = 0;
-  std::size_t carried_count = 0;
+  std::size_t cached_count = 0;
 
-  /// By pair of the scene or batch: its record of the last call; its index in the input of the
-  /// narrow phase; and its Collision::ContactSource.
+  /// By pair of the batch (`old_record` and `origin` with caching: of the scene): its record of
+  /// the last call; its index in the input of the narrow phase; and its Collision::ContactSource.
   Column<std::uint32_t> old_record;
   Column<std::uint32_t> source;
   Column<std::uint8_t> origin;

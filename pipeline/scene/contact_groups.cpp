@@ -19,9 +19,9 @@ namespace {
 
 constexpr std::size_t kPairsPerJoin = 4096;
 
-/// Concurrent union-find of bodies: each body points to one with a smaller number or is the root of
-/// its set. The root is the smallest number, so it does not depend on the order of joins (Anderson
-/// and Woll, "Wait-free parallel algorithms for the union-find problem", 1991).
+/// Concurrent union-find of bodies: each body points to a body with a smaller number or is the root
+/// of its set. The root is the smallest number of the set, so it does not depend on the order of
+/// joins (Anderson and Woll, "Wait-free parallel algorithms for the union-find problem", 1991).
 class BodySets {
  public:
   explicit BodySets(Column<std::uint32_t>& towards) noexcept : towards_(towards) {
@@ -63,7 +63,7 @@ struct MovablePairs {
 
   [[nodiscard]] std::size_t size() const noexcept { return frame.pairs(); }
   [[nodiscard]] bool is_movable(std::size_t pair, int side) const noexcept {
-    return scene.motion[frame.key[side][pair].id] != Motion::fixed;
+    return scene.body_state[frame.key[side][pair].id] != BodyState::fixed;
   }
   /// Returns the first movable body; at least one body of a contact is movable.
   [[nodiscard]] std::uint32_t movable(std::size_t pair) const noexcept {
@@ -157,7 +157,7 @@ Status Scene::colours(const Contacts& contacts, ContactGroups& out) const {
       used[side] = &out.colours_[pairs.frame.key[side][i].id];
       taken |= *used[side];
     }
-    // kRestColour's bit is never set, so it is free if no other bit is.
+    // The bit of kRestColour is never set, so `colour` is kRestColour if all other bits are set.
     const auto colour = static_cast<std::uint32_t>(std::countr_one(taken));
     out.group_[i] = colour;
     groups = std::max(groups, colour + 1);

@@ -45,7 +45,7 @@ class PointMatch {
   }
   [[nodiscard]] std::uint32_t left_over() const noexcept { return old_points_.size() - matched_; }
 
-  // Manifolds have about the same order in every frame, so the search starts at the last match.
+  // Manifolds have about the same order in every frame, so each search starts after the last match.
   void by_part() noexcept {
     std::uint32_t at = old_manifolds_.first;
     for (std::uint32_t m = manifolds_.first; m < manifolds_.end; ++m) {

@@ -18,7 +18,7 @@ inline constexpr double kSamePointFraction = 0.02;
 inline constexpr std::uint32_t kMaxUnmatched = 256;
 
 /// Maps the pairs and points of a ContactFrame to their indices in the frame before, for warm
-/// starts. Empty if the scene does not request it.
+/// starts. Empty without SceneOptions::warm_start.
 struct ContactHistory {
   explicit ContactHistory(std::pmr::memory_resource* memory) noexcept
       : pair(memory), point(memory), taken(memory), pose(memory) {}

@@ -1,6 +1,7 @@
 // Contact and rest offsets of bodies. Each pair has its own contact distance, which is its margin
 // in the narrow phase; contacts are then measured from the surfaces moved by the rest offsets.
-// Collision calls this after the narrow phase. None of it runs in a scene without offsets.
+// Collision calls this before the narrow phase (limit and margins) and after it. In a scene without
+// offsets, all pairs have the scene's margin, and the other functions return at once.
 
 #include "core/hooks/log.h"
 #include "core/sort/parallel_ranges.h"
@@ -42,7 +43,7 @@ bool are_good(const ContactOffsets& offsets) noexcept {
 }
 
 Status Scene::set_offsets(Key key, const ContactOffsets& offsets) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   if (state_ == nullptr) return logged(Status::out_of_memory, "Scene::set_offsets");
   SceneState& s = *state_;
   if (!s.keys.is_valid(key)) return logged(Status::invalid_key, "Scene::set_offsets");
@@ -67,14 +68,14 @@ bool SceneState::begin_offsets() noexcept {
 
 double SceneState::gap_of(const BodyPair& pair) const noexcept {
   const double own = offsets_of(pair.a).contact + offsets_of(pair.b).contact;
-  return std::min(options.margin + own, kLargestLength);
+  return std::min(options.contact_margin + own, kLargestLength);
 }
 
-// One limit decides for all pairs whether they are in contact. `trim`
-// therefore replaces a distance that exceeds the pair's own contact distance by the limit plus the
-// excess.
+// Sets the limit that decides for all pairs whether they are in contact; no pair's own contact
+// distance exceeds it. `trim` therefore replaces a distance that exceeds the pair's own contact
+// distance by the limit plus the excess.
 void Collision::find_limit() noexcept {
-  limit_ = scene_.options.margin;
+  limit_ = scene_.options.contact_margin;
   if (!scene_.has_offsets()) return;
   for (const Column<BodyPair>* const list : {&scene_.convex, &scene_.composite}) {
     for (const BodyPair& pair : *list) {
@@ -86,7 +87,7 @@ void Collision::find_limit() noexcept {
 }
 
 bool Collision::find_margins(const Column<BodyPair>& pairs, double more, PairMargins& margins) {
-  margins = std::min(scene_.options.margin + more, kLargestLength);
+  margins = std::min(scene_.options.contact_margin + more, kLargestLength);
   if (!scene_.has_offsets()) return true;
   Column<double>& gaps = scene_.gaps;
   if (!resize_tightly(gaps, pairs.size())) return false;
@@ -100,7 +101,7 @@ bool Collision::find_margins(const Column<BodyPair>& pairs, double more, PairMar
 }
 
 bool Collision::find_part_margins(PairMargins& margins) {
-  margins = scene_.options.margin;
+  margins = scene_.options.contact_margin;
   if (!scene_.has_offsets()) return true;
   const PrimitivePairs& parts = scene_.parts->pairs;
   Column<double>& gaps = scene_.parts->gaps;

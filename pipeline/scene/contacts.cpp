@@ -240,11 +240,11 @@ ContactsState::ContactsState(std::pmr::memory_resource* memory) noexcept
       records(memory),
       records_before(memory),
       known(memory),
-      carried(memory),
-      carried_before(memory),
+      cached(memory),
+      cached_before(memory),
       dormant(memory),
       dormant_records(memory),
-      dormant_carried(memory),
+      dormant_cached(memory),
       history(memory),
       old_record(memory),
       source(memory),
@@ -259,12 +259,12 @@ void ContactsState::clear() noexcept {
   ended.clear();
   records.clear();
   known.clear();
-  carried.clear();
+  cached.clear();
   dormant_records.clear();
-  dormant_carried.clear();
+  dormant_cached.clear();
   history.clear();
   scene = 0;
-  carried_count = 0;
+  cached_count = 0;
 }
 
 Contacts::Contacts(std::pmr::memory_resource* memory) noexcept
@@ -376,8 +376,8 @@ std::span<const std::uint32_t> Contacts::previous_point() const noexcept {
   return span_of(state().history.point);
 }
 
-std::size_t Contacts::carried() const noexcept {
-  return state().carried_count;
+std::size_t Contacts::cached_pairs() const noexcept {
+  return state().cached_count;
 }
 
 void Contacts::clear() noexcept {
@@ -394,8 +394,8 @@ Footprint Contacts::footprint() const noexcept {
   footprint.results += bytes_of(s.history.pair, s.history.point);
   for (const Bytes& bytes :
        {s.before.bytes(), s.dormant.bytes(), s.records.bytes(), s.records_before.bytes(),
-        s.known.bytes(), s.carried.bytes(), s.carried_before.bytes(), s.dormant_records.bytes(),
-        s.dormant_carried.bytes(), s.old_record.bytes(), s.source.bytes(), s.origin.bytes(),
+        s.known.bytes(), s.cached.bytes(), s.cached_before.bytes(), s.dormant_records.bytes(),
+        s.dormant_cached.bytes(), s.old_record.bytes(), s.source.bytes(), s.origin.bytes(),
         s.shown_again.bytes(), s.sums.bytes(), s.history.taken.bytes(), s.history.pose.bytes()}) {
     footprint.scratch += bytes;
   }

@@ -49,7 +49,7 @@ void visit_frame(Frame& frame, Visit&& visit, VisitParts&& visit_parts) {
 }
 
 /// The counters of a scene that must be equal when its contacts are loaded.
-[[nodiscard]] std::array<std::uint64_t, 4> standing(const SceneState& scene) noexcept {
+[[nodiscard]] std::array<std::uint64_t, 4> scene_counters(const SceneState& scene) noexcept {
   return {scene.clock, scene.regroupings, scene.keys.slot_count(), scene.keys.size()};
 }
 
@@ -59,18 +59,18 @@ class ContactsWriter {
   ContactsWriter(ByteWriter& out, const SceneState& scene) noexcept : out_(out), scene_(scene) {}
 
   void put(const ContactsState& contacts) noexcept {
-    for (const std::uint64_t number : standing(scene_)) out_.put(number);
+    for (const std::uint64_t number : scene_counters(scene_)) out_.put(number);
     out_.put(contacts.level);
     out_.put(contacts.clock);
     out_.put(contacts.regroupings);
-    out_.put(std::uint64_t{contacts.carried_count});
-    put_frame(contacts.frame, contacts.known, contacts.records, contacts.carried);
+    out_.put(std::uint64_t{contacts.cached_count});
+    put_frame(contacts.frame, contacts.known, contacts.records, contacts.cached);
     put_ended(contacts.ended);
     const bool sleeps = contacts.dormant_records.size() != 0;
     out_.put(sleeps);
     if (sleeps) {
       put_frame(contacts.dormant, contacts.known, contacts.dormant_records,
-                contacts.dormant_carried);
+                contacts.dormant_cached);
     }
     put_column(contacts.history.pair);
     put_column(contacts.history.point);
@@ -88,7 +88,7 @@ class ContactsWriter {
     out_.put(scene_.keys.is_valid(key) ? 0U : key.stamp);
   }
   void put_frame(const ContactFrame& frame, const KnownBodies& known, const PairRecords& records,
-                 const Column<CarriedPair>& carried) noexcept {
+                 const Column<CachedPair>& cached) noexcept {
     out_.put(std::uint64_t{frame.pairs()});
     for (const Column<Key>& keys : frame.key) {
       for (const Key key : keys) put_key(key);
@@ -111,12 +111,12 @@ class ContactsWriter {
       out_.put(run.count);
     }
     put_records(frame, records);
-    out_.put(std::uint64_t{carried.size()});
-    for (const CarriedPair& one : carried) {
+    out_.put(std::uint64_t{cached.size()});
+    for (const CachedPair& one : cached) {
       out_.put_bytes(&one.relative, sizeof one.relative);
       out_.put_bytes(one.turn, sizeof one.turn);
       out_.put(one.limit);
-      out_.put(one.looked_at);
+      out_.put(one.tested_at);
       out_.put(one.radius);
       out_.put(one.radius_a);
       out_.put(one.drift);
@@ -163,18 +163,18 @@ class ContactsReader {
       : in_(in), scene_(scene), contacts_(contacts) {}
 
   [[nodiscard]] Status run() noexcept {
-    for (const std::uint64_t number : standing(scene_)) {
+    for (const std::uint64_t number : scene_counters(scene_)) {
       if (in_.get<std::uint64_t>() != number) in_.fail();
     }
     contacts_.level = in_.get_enum(ContactLevel::manifold);
     contacts_.clock = in_.get<std::uint32_t>();
     contacts_.regroupings = in_.get<std::uint64_t>();
-    contacts_.carried_count = static_cast<std::size_t>(in_.get<std::uint64_t>());
-    carries_ = scene_.options.carry_over > 0.0 && contacts_.level >= ContactLevel::distance;
+    contacts_.cached_count = static_cast<std::size_t>(in_.get<std::uint64_t>());
+    uses_cache_ = scene_.options.cache_tolerance > 0.0 && contacts_.level >= ContactLevel::distance;
     const bool read =
-        read_frame(contacts_.frame, contacts_.records, contacts_.carried) && read_ended() &&
+        read_frame(contacts_.frame, contacts_.records, contacts_.cached) && read_ended() &&
         (!in_.get_bool() ||
-         read_frame(contacts_.dormant, contacts_.dormant_records, contacts_.dormant_carried)) &&
+         read_frame(contacts_.dormant, contacts_.dormant_records, contacts_.dormant_cached)) &&
         read_history();
     if (!read || !in_.rest().empty()) in_.fail();
     contacts_.scene = scene_.serial;
@@ -200,7 +200,7 @@ class ContactsReader {
   }
 
   [[nodiscard]] bool read_frame(ContactFrame& frame, PairRecords& records,
-                                Column<CarriedPair>& carried) noexcept {
+                                Column<CachedPair>& cached) noexcept {
     const auto pairs = in_.get<std::uint64_t>();
     for (Column<Key>& keys : frame.key) {
       if (!make_room(keys, pairs, sizeof(Key))) return false;
@@ -226,9 +226,9 @@ class ContactsReader {
     }
     Column<SavedRecord> saved(frame.event.memory());
     (void)in_.get_array(saved);
-    if (!read_carried(carried)) return false;
+    if (!read_cached(cached)) return false;
     const bool good = has_good_columns(frame) && are_good(frame, saved) &&
-                      carried.size() == (carries_ ? saved.size() : 0);
+                      cached.size() == (uses_cache_ ? saved.size() : 0);
     return good ? take(saved, frame, data, records) : in_.fail();
   }
 
@@ -261,14 +261,14 @@ class ContactsReader {
     return true;
   }
 
-  [[nodiscard]] bool read_carried(Column<CarriedPair>& carried) noexcept {
+  [[nodiscard]] bool read_cached(Column<CachedPair>& cached) noexcept {
     const auto count = in_.get<std::uint64_t>();
-    if (!make_room(carried, count, sizeof(Pose))) return false;
-    for (CarriedPair& one : carried) {
+    if (!make_room(cached, count, sizeof(Pose))) return false;
+    for (CachedPair& one : cached) {
       (void)in_.get_bytes(&one.relative, sizeof one.relative);
       (void)in_.get_bytes(one.turn, sizeof one.turn);
       one.limit = in_.get<float>();
-      one.looked_at = in_.get<std::uint32_t>();
+      one.tested_at = in_.get<std::uint32_t>();
       one.radius = in_.get<float>();
       one.radius_a = in_.get<float>();
       one.drift = in_.get<float>();
@@ -298,10 +298,10 @@ class ContactsReader {
     for (const auto& column : frame.normal) good = good && column.size() == distances;
     for (const auto& column : frame.point) good = good && column.size() == places;
     for (const auto& column : frame.points.position) good = good && column.size() == points;
-    const bool told = std::all_of(frame.event.begin(), frame.event.end(), [](ContactEvent event) {
-      return event <= ContactEvent::persisted;
-    });
-    if (!good || !told) return false;
+    const bool events_valid =
+        std::all_of(frame.event.begin(), frame.event.end(),
+                    [](ContactEvent event) { return event <= ContactEvent::persisted; });
+    if (!good || !events_valid) return false;
     if (level == ContactLevel::pairs) {
       return manifolds == 0 && points == 0 && frame.manifold_first.empty() &&
              frame.point_first.empty();
@@ -311,8 +311,8 @@ class ContactsReader {
                                            : points == 0 && frame.point_first.empty();
   }
 
-  /// Checks that runs cover all pairs of the frame, that records are sorted, and that each pair of
-  /// the frame has exactly one record, with its bodies.
+  /// Checks that the runs of the returned frame cover all of its pairs, that records are sorted,
+  /// and that each pair of the frame has exactly one record, with its bodies.
   [[nodiscard]] bool are_good(const ContactFrame& frame,
                               const Column<SavedRecord>& records) noexcept {
     std::size_t end = 0;
@@ -340,7 +340,7 @@ class ContactsReader {
       if (frame.key[1][record.shown].id != record.pair.b) return false;
       ++shown;
     }
-    return shown == frame.pairs() && (carries_ || shown == records.size());
+    return shown == frame.pairs() && (uses_cache_ || shown == records.size());
   }
 
   [[nodiscard]] bool read_ended() noexcept {
@@ -360,18 +360,18 @@ class ContactsReader {
     (void)in_.get_array(history.pair);
     (void)in_.get_array(history.point);
     (void)in_.get_array(history.pose);
-    const bool told = scene_.options.warm_start;
-    const bool stands = std::all_of(history.pose.begin(), history.pose.end(),
-                                    [](const Pose& pose) { return pose.is_valid(); });
-    return in_.ok() && stands && history.pose.size() <= scene_.keys.slot_count() &&
-           history.pair.size() == (told ? contacts_.frame.pairs() : 0) &&
-           history.point.size() == (told ? contacts_.frame.points.size() : 0);
+    const bool has_history = scene_.options.warm_start;
+    const bool poses_valid = std::all_of(history.pose.begin(), history.pose.end(),
+                                         [](const Pose& pose) { return pose.is_valid(); });
+    return in_.ok() && poses_valid && history.pose.size() <= scene_.keys.slot_count() &&
+           history.pair.size() == (has_history ? contacts_.frame.pairs() : 0) &&
+           history.point.size() == (has_history ? contacts_.frame.points.size() : 0);
   }
 
   ByteReader& in_;
   const SceneState& scene_;
   ContactsState& contacts_;
-  bool carries_ = false;
+  bool uses_cache_ = false;
 };
 
 }  // namespace
@@ -390,7 +390,7 @@ Status Scene::save_contacts(const Contacts& contacts, Column<std::byte>& out) co
 }
 
 Status Scene::load_contacts(std::span<const std::byte> saved, Contacts& contacts) const {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   if (state_ == nullptr) return logged(Status::out_of_memory, "Scene::load_contacts");
   ByteReader in = open_snapshot(saved, kContactsMagic, kContactsVersion);
   if (in.get<std::uint32_t>() != kShapeKinds) in.fail();

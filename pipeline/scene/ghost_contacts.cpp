@@ -1,5 +1,6 @@
-// Suppresses ghost contacts at seams (internal edges) between fixed bodies that lie flush and form
-// one floor. Collision::answer calls drop_ghost_contacts after the narrow phase of all pairs.
+// Suppresses ghost contacts at seams (internal edges) between fixed bodies whose surfaces are flush
+// and form one floor. Collision::answer calls drop_ghost_contacts after the narrow phase of all
+// pairs.
 //
 // Each manifold of a dynamic body with a fixed body defines a floor plane: perpendicular to the
 // normal, through the point of the fixed surface at which the dynamic body is deepest. Except for
@@ -14,8 +15,8 @@
 // Walls, kerbs, steps and the feet of slopes rise above the plane where the body touches them, at
 // whatever height the points are, so their contacts stay. Flush bodies have the same depth along
 // the floor's normal, and the contact with the other body has the least depth in any direction,
-// which is not larger. So the contact of lesser depth is dropped, and two contacts never drop each
-// other.
+// which is not larger. So the contact of lesser depth is dropped. A dropped contact cannot be the
+// floor of another contact, so two contacts never drop each other.
 
 #include "pipeline/scene/collision.h"
 #include "pipeline/shapes/extent.h"
@@ -34,11 +35,11 @@ namespace {
 
 using mid::Vec;
 
-/// As a share of the body's radius: anything that rises less than this above a plane counts as in
-/// it.
+/// Share of the dynamic body's radius: a point that is above a plane by less than this counts as in
+/// the plane.
 constexpr double kPlaneShare = 1e-3;
-/// As a share of the radius: two depths that differ by less are equal, and either contact may be
-/// the floor.
+/// Share of the dynamic body's radius: two depths that differ by less than this count as equal, and
+/// either contact may be the floor.
 constexpr double kEqualShare = 1e-6;
 /// Cosine of the largest angle between the two normals: a ceiling is not a seam.
 constexpr double kOppositeCosine = -0.5;
@@ -46,7 +47,8 @@ constexpr double kOppositeCosine = -0.5;
 constexpr double kRegionSine = 0.08715574274765817;
 
 [[nodiscard]] bool is_floor_pair(const SceneState& scene, const BodyPair& pair) noexcept {
-  return scene.motion[pair.a] == Motion::fixed || scene.motion[pair.b] == Motion::fixed;
+  return scene.body_state[pair.a] == BodyState::fixed ||
+         scene.body_state[pair.b] == BodyState::fixed;
 }
 
 /// Decides whether a contact of a body is a ghost contact at a seam.
@@ -165,7 +167,7 @@ class FloorGroups {
     }
   }
 
-  /// True if another contact, which was not dropped, is a floor for this one.
+  /// True if another contact, which was not dropped, is a floor for `one`.
   [[nodiscard]] bool is_seam_of_any(const FloorContact& one,
                                     const GhostContactTest& judge) const noexcept {
     std::uint32_t at = 0;
@@ -184,8 +186,8 @@ class FloorGroups {
  private:
   /// The last group takes all normals that fit no other group.
   static constexpr std::size_t kMaxGroups = 32;
-  /// Largest length of the difference between unit normals of a group, and an upper bound on the
-  /// error of a cosine with the group's normal.
+  /// Largest difference of a contact's normal from its group's normal, and an upper bound on the
+  /// error of a cosine that is computed with the group's normal.
   static constexpr double kSameNormal = 1e-3;
   static constexpr double kCosineSlack = 1.001e-3;
 
@@ -218,7 +220,7 @@ class Collision::FloorWriter {
  public:
   /// `index`: of the pair in its list.
   FloorWriter(const SceneState& scene, const BodyPair& pair, std::uint32_t index) noexcept
-      : floor_is_a_(scene.motion[pair.a] == Motion::fixed) {
+      : floor_is_a_(scene.body_state[pair.a] == BodyState::fixed) {
     contact_.pair = index;
     contact_.body = floor_is_a_ ? pair.b : pair.a;
     contact_.floor = floor_is_a_ ? pair.a : pair.b;
@@ -250,7 +252,7 @@ class Collision::FloorWriter {
   double most_ = 0.0;
 };
 
-bool Collision::is_carried_over(const BodyPair& pair) const noexcept {
+bool Collision::is_cacheable(const BodyPair& pair) const noexcept {
   return !scene_.options.suppress_ghost_contacts || !is_floor_pair(scene_, pair);
 }
 

@@ -18,7 +18,7 @@ struct FloorContact {
   /// Index of the result in its source.
   std::uint32_t answer;
   Source source;
-  /// Number of points, which lie on the fixed body's surface, and the index of the deepest one.
+  /// Number of points, which are on the fixed body's surface, and the index of the deepest one.
   std::uint8_t count;
   std::uint8_t deepest;
   /// Group of the body's contacts that have about the same normal: see FloorGroups.

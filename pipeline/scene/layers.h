@@ -13,8 +13,9 @@
 
 namespace winnow {
 
-/// A symmetric bit matrix of the layers that do not collide, as wide as the highest layer that
-/// was excluded from colliding with another. All other layers collide.
+/// A symmetric bit matrix of the pairs of layers that do not collide. It has rows for the layers up
+/// to the highest one that was excluded from colliding with another, rounded up to a multiple of
+/// 64. Layers beyond these collide with all layers.
 class LayerMatrix {
  public:
   enum class Restored : std::uint8_t { good, refused, out_of_memory };
@@ -22,7 +23,7 @@ class LayerMatrix {
   explicit LayerMatrix(std::pmr::memory_resource* memory) noexcept : apart_(memory) {}
 
   [[nodiscard]] bool all_collide() const noexcept { return apart_.empty(); }
-  [[nodiscard]] bool meet(std::uint32_t a, std::uint32_t b) const noexcept {
+  [[nodiscard]] bool collide(std::uint32_t a, std::uint32_t b) const noexcept {
     if (a >= width_ || b >= width_) return true;
     return (apart_[word(a, b)] >> b % kBits & 1U) == 0;
   }
@@ -48,13 +49,13 @@ class LayerMatrix {
   }
 
   /// Requires both layers within the width of the matrix (see `grow_to`).
-  void set(std::uint32_t a, std::uint32_t b, bool meet) noexcept {
+  void set(std::uint32_t a, std::uint32_t b, bool collide) noexcept {
     const std::uint32_t pair[2] = {a, b};
     for (int side = 0; side < 2; ++side) {
       const std::uint32_t other = pair[1 - side];
       std::uint64_t& bits = apart_[word(pair[side], other)];
       const std::uint64_t bit = std::uint64_t{1} << other % kBits;
-      bits = meet ? bits & ~bit : bits | bit;
+      bits = collide ? bits & ~bit : bits | bit;
     }
   }
 
@@ -62,8 +63,7 @@ class LayerMatrix {
   [[nodiscard]] std::span<const std::uint64_t> words() const noexcept {
     return {apart_.data(), apart_.size()};
   }
-  /// Replaces the contents with saved words; refuses them unless the matrix is square and
-  /// symmetric.
+  /// Replaces the matrix by saved `words`; refuses them unless the matrix is square and symmetric.
   [[nodiscard]] Restored restore(std::span<const std::uint64_t> words) noexcept {
     std::uint32_t wide = 0;
     while (std::size_t{wide} * wide * kBits < words.size() && wide < kMaxWords) ++wide;

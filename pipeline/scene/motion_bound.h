@@ -34,7 +34,8 @@ namespace winnow {
 
 /// Upper bound on the distance that a point within `radius` of the origin moves from one pose to
 /// another. Both orientations must be unit quaternions. A rotation by t moves a point along a chord
-/// of 2 r sin(t / 2), and the quaternions differ by 2 sin(t / 4).
+/// of 2 r sin(t / 2), and the quaternions differ by 2 sin(t / 4), so the chord is at most 2 r times
+/// this difference.
 [[nodiscard]] inline double motion_bound(const Pose& from, const Pose& to, double radius) noexcept {
   double shift = 0.0;
   for (int k = 0; k < 3; ++k) {

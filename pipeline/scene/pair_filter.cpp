@@ -1,5 +1,6 @@
 // Filters of pairs beyond sets and object filters: layers, ignored pairs and the caller's
-// predicate. SceneState::find_pairs and SceneSweep apply them through `may_pair`.
+// predicate. SceneState::find_pairs and ContinuousCollision apply them through `may_pair`, queries
+// about two bodies or sets through `accepts_pair`.
 
 #include "core/hooks/log.h"
 #include "pipeline/scene/scene_state.h"
@@ -49,23 +50,23 @@ Status Scene::set_ignored(std::span<const KeyPair> pairs, bool ignored) {
 }
 
 /// Merges new pairs into the sorted list.
-bool SceneState::add_ignored(std::span<const KeyPair> told) noexcept {
+bool SceneState::add_ignored(std::span<const KeyPair> key_pairs) noexcept {
   const std::size_t before = ignored.size();
-  const std::size_t all = before + told.size();
+  const std::size_t all = before + key_pairs.size();
   const std::size_t known = ignores.size();
-  if (!ignored.grow(all + told.size()) || !ignores.grow(shape.size())) return false;
+  if (!ignored.grow(all + key_pairs.size()) || !ignores.grow(shape.size())) return false;
   ignores.set_size(shape.size());
   std::fill(ignores.begin() + known, ignores.end(), std::uint8_t{0});
   // The new pairs are sorted beyond the end of the merged list.
-  ignored.set_size(all + told.size());
+  ignored.set_size(all + key_pairs.size());
   std::uint64_t* const added = ignored.data() + all;
-  for (std::size_t i = 0; i < told.size(); ++i) {
-    added[i] = pair_number(told[i].first.id, told[i].second.id);
-    ignores[told[i].first.id] = ignores[told[i].second.id] = 1;
+  for (std::size_t i = 0; i < key_pairs.size(); ++i) {
+    added[i] = pair_number(key_pairs[i].first.id, key_pairs[i].second.id);
+    ignores[key_pairs[i].first.id] = ignores[key_pairs[i].second.id] = 1;
   }
-  std::sort(added, added + told.size());
+  std::sort(added, added + key_pairs.size());
   std::size_t old = before;
-  std::size_t own = told.size();
+  std::size_t own = key_pairs.size();
   for (std::size_t to = all; own > 0; --to) {
     const bool takes_old = old > 0 && ignored[old - 1] > added[own - 1];
     ignored[to - 1] = takes_old ? ignored[--old] : added[--own];
@@ -91,23 +92,23 @@ bool SceneState::is_ignored(ObjectId a, ObjectId b) const noexcept {
          std::binary_search(ignored.begin(), ignored.end(), pair_number(a, b));
 }
 
-Status Scene::set_layers_collide(std::uint16_t a, std::uint16_t b, bool meet) {
+Status Scene::set_layers_collide(std::uint16_t a, std::uint16_t b, bool collide) {
   if (state_ == nullptr) return logged(Status::out_of_memory, "Scene::set_layers_collide");
   if (std::max(a, b) >= kSceneLayers) {
     return logged(Status::invalid_argument, "Scene::set_layers_collide");
   }
   SceneState& s = *state_;
-  if (s.layers.meet(a, b) == meet) return Status::ok;
+  if (s.layers.collide(a, b) == collide) return Status::ok;
   if (!s.layers.grow_to(std::max(a, b))) {
     return logged(Status::out_of_memory, "Scene::set_layers_collide");
   }
-  s.layers.set(a, b, meet);
+  s.layers.set(a, b, collide);
   s.invalidate_pairs();
   return Status::ok;
 }
 
 bool Scene::layers_collide(std::uint16_t a, std::uint16_t b) const noexcept {
-  return state_ == nullptr || state_->layers.meet(a, b);
+  return state_ == nullptr || state_->layers.collide(a, b);
 }
 
 Status Scene::set_layer(Key key, std::uint16_t layer) {
@@ -137,35 +138,35 @@ bool SceneState::begin_layers() noexcept {
 }
 
 bool SceneState::may_pair(ObjectId a, ObjectId b) const noexcept {
-  if (!layers.meet(layer_of(a), layer_of(b))) return false;
+  if (!layers.collide(layer_of(a), layer_of(b))) return false;
   if (is_ignored(a, b)) return false;
   return predicate.accept == nullptr || predicate.accept(predicate.context, a, b);
 }
 
 bool SceneState::accepts_pair(ObjectId a, ObjectId b) const noexcept {
-  if (motion[a] != Motion::dynamic) std::swap(a, b);
-  if (a == b || motion[a] != Motion::dynamic || !filters_allow(filter_of(a), filter_of(b)))
+  if (body_state[a] != BodyState::dynamic) std::swap(a, b);
+  if (a == b || body_state[a] != BodyState::dynamic || !filters_allow(filter_of(a), filter_of(b)))
     return false;
   // The predicate gets the two bodies in the order in which partitions return them.
-  if (motion[b] == Motion::dynamic && place[b].id < place[a].id) std::swap(a, b);
+  if (body_state[b] == BodyState::dynamic && place[b].id < place[a].id) std::swap(a, b);
   return may_pair(a, b);
 }
 
 ObjectFilter SceneState::filter_of(ObjectId body) const noexcept {
   ObjectFilter filter;
-  (void)set(motion[body]).partition->filter(place[body], filter);
+  (void)set(body_state[body]).partition->filter(place[body], filter);
   return filter;
 }
 
-// Forgets the ignored pairs of removed bodies, because new bodies will get their ids.
+// Forgets the ignored pairs of removed bodies, because new bodies may get their ids.
 void SceneState::forget_ignored(std::span<const Key> removed) noexcept {
-  bool was_said = false;
+  bool had_ignored = false;
   for (const Key& key : removed) {
     if (key.id >= ignores.size()) continue;
-    was_said = was_said || ignores[key.id] != 0;
+    had_ignored = had_ignored || ignores[key.id] != 0;
     ignores[key.id] = 0;
   }
-  if (!was_said) return;
+  if (!had_ignored) return;
   drop_ignored([&](std::uint64_t pair) {
     return !keys.is_live(static_cast<ObjectId>(pair >> 32U)) ||
            !keys.is_live(static_cast<ObjectId>(pair));

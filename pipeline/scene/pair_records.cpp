@@ -40,7 +40,7 @@ bool Collision::wake_dormant() {
   ContactsState& c = contacts_;
   if (!same_level_) {
     c.dormant_records.clear();
-    c.dormant_carried.clear();
+    c.dormant_cached.clear();
   }
   const std::size_t count = c.dormant_records.size();
   if (count == 0 || c.regroupings == scene_.regroupings) return true;
@@ -50,7 +50,7 @@ bool Collision::wake_dormant() {
   if (!c.frame.resize(level_, at.pair + count, at.manifold + c.dormant.manifolds,
                       at.point + c.dormant.points.size()) ||
       !c.records_before.reserve(c.records.size() + count) ||
-      (carries_ && !c.carried_before.resize(c.records.size() + count))) {
+      (uses_cache_ && !c.cached_before.resize(c.records.size() + count))) {
     return false;
   }
   for (std::uint32_t& shown : c.dormant_records.shown) {
@@ -75,15 +75,15 @@ void Collision::merge_dormant() noexcept {
   for (std::size_t i = 0; i < c.records.size() + slept.size(); ++i) {
     const bool first = other == slept.size() ||
                        (one < c.records.size() && c.records.bits[one] < slept.bits[other]);
-    if (carries_) c.carried_before[i] = first ? c.carried[one] : c.dormant_carried[other];
+    if (uses_cache_) c.cached_before[i] = first ? c.cached[one] : c.dormant_cached[other];
     const PairRecords& from = first ? c.records : slept;
     const std::size_t at = first ? one++ : other++;
     c.records_before.push_back_within_room(from.order_of(at), from.shown_of(at));
   }
   c.records.swap(c.records_before);
-  c.carried.swap(c.carried_before);
+  c.cached.swap(c.cached_before);
   c.dormant_records.clear();
-  c.dormant_carried.clear();
+  c.dormant_cached.clear();
 }
 
 // Finds the record of each pair of the batch; both lists are sorted alike. The column must have
@@ -102,11 +102,12 @@ void Collision::match(const PairRecords& records) noexcept {
     }
   });
 }
-// True if neither body is dynamic any more, so that the pair is no longer tested.
+// True if both bodies still exist and neither is dynamic any more, so that the pair is no longer
+// tested.
 bool Collision::sleeps(const BodyPair& pair) const noexcept {
   for (const std::uint32_t body : {pair.a, pair.b}) {
     if (!scene_.keys.is_valid(contacts_.known.key(body)) ||
-        scene_.motion[body] == Motion::dynamic) {
+        scene_.body_state[body] == BodyState::dynamic) {
       return false;
     }
   }
@@ -128,7 +129,7 @@ bool Collision::close_frame() {
 bool Collision::put_to_sleep() {
   ContactsState& c = contacts_;
   PairRecords& slept = c.dormant_records;
-  if (!slept.reserve(last_records_) || (carries_ && !c.dormant_carried.reserve(last_records_))) {
+  if (!slept.reserve(last_records_) || (uses_cache_ && !c.dormant_cached.reserve(last_records_))) {
     return false;
   }
   Cursor room;
@@ -139,10 +140,10 @@ bool Collision::put_to_sleep() {
     c.shown_again[shown] = 1;
     room += c.before.extent(shown);
     slept.push_back_within_room(order, shown);
-    if (!carries_) continue;
-    CarriedPair& carried = c.carried_before[r];
-    if (!has_slept(shown)) carried.looked_at = c.clock;
-    (void)c.dormant_carried.push_back(carried);
+    if (!uses_cache_) continue;
+    CachedPair& cached = c.cached_before[r];
+    if (!has_slept(shown)) cached.tested_at = c.clock;
+    (void)c.dormant_cached.push_back(cached);
   }
   if (room.pair == 0) return true;
   c.dormant.with_parts = c.frame.with_parts;
@@ -161,7 +162,7 @@ bool Collision::put_to_sleep() {
   return true;
 }
 
-// In the order of the last frame, pairs that slept last.
+// Lists ended pairs in the order of the last frame; pairs that slept follow.
 bool Collision::list_ended() {
   ContactsState& c = contacts_;
   c.ended.clear();
@@ -181,8 +182,8 @@ bool Collision::list_ended() {
   return list(false) && (last_records_ == last_pairs_ || list(true));
 }
 
-// Stores the keys and data of all bodies, unless there are no contacts. They are unchanged if no
-// body was added or removed.
+// Stores the keys and data of all bodies, unless there are no contacts. If no body was added or
+// removed, the stored ones are still valid.
 bool Collision::note_bodies() {
   KnownBodies& known = contacts_.known;
   if (contacts_.frame.pairs() == 0 && contacts_.dormant_records.size() == 0) {

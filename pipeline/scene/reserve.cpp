@@ -14,8 +14,8 @@
 namespace winnow {
 namespace {
 
-// A partition with holes in its rows (from added and removed objects) compacts them once they are a
-// fifth of all rows and more than this number.
+// A partition with holes in its rows (from added and removed objects) compacts its rows once the
+// holes are a fifth of all rows and more than this number.
 constexpr std::size_t kFewRows = 64;
 
 [[nodiscard]] std::size_t rows_for(std::size_t bodies) noexcept {
@@ -48,7 +48,7 @@ template <typename... T>
 }  // namespace
 
 Status Scene::reserve(const SceneCapacity& room, Pages pages) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   if (state_ == nullptr) return Status::out_of_memory;
   if (!state_->options_are_good) return Status::invalid_argument;
   const Status good = check(room);
@@ -56,7 +56,7 @@ Status Scene::reserve(const SceneCapacity& room, Pages pages) {
 }
 
 Status Scene::reserve_contacts(Contacts& out, const SceneCapacity& room, Pages pages) const {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   if (state_ == nullptr || out.state_ == nullptr) return Status::out_of_memory;
   if (const Status good = check(room); good != Status::ok) return good;
   return out.state_->reserve(room, state_->options, pages) ? Status::ok : Status::out_of_memory;
@@ -72,7 +72,7 @@ Status SceneState::reserve(const SceneCapacity& room, Pages pages) {
 bool SceneState::reserve_bodies(const SceneCapacity& room, Pages pages) noexcept {
   const std::size_t bodies = bodies_of(room);
   if (!reserve(bodies > keys.size() ? bodies - keys.size() : 0)) return false;
-  // One call may move all bodies, and gives boxes to one set at a time.
+  // One call may move all bodies, and passes boxes to one set at a time.
   const std::size_t largest = *std::ranges::max_element(room.bodies);
   if (!reserve_all(largest, pages, boxes, boxes_of, boxes_body) ||
       !reserve_all(bodies, pages, chosen) || !reserve_all(bodies, pages, old_keys)) {
@@ -80,21 +80,21 @@ bool SceneState::reserve_bodies(const SceneCapacity& room, Pages pages) noexcept
   }
   if (pages == Pages::prefaulted) {
     keys.touch();
-    touch_columns(shape, pose, motion, place, ball, moved_at, shaped_at, stale, is_stale);
+    touch_columns(shape, pose, body_state, place, ball, moved_at, shaped_at, stale, is_stale);
     anchor.touch();
   }
   return true;
 }
 
 Status SceneState::reserve_sets(const SceneCapacity& room, Pages pages) {
-  bool is_new[kMotions] = {};
+  bool is_new[kBodyStates] = {};
   Status status = Status::ok;
-  for (std::size_t i = 0; i < kMotions && status == Status::ok; ++i) {
+  for (std::size_t i = 0; i < kBodyStates && status == Status::ok; ++i) {
     const std::size_t bodies = room.bodies[i];
     if (bodies == 0) continue;
     SceneSet& target = sets[i];
     is_new[i] = !target.partition.has_value();
-    status = make_partition_of(static_cast<Motion>(i));
+    status = make_partition_of(static_cast<BodyState>(i));
     if (status == Status::ok) status = target.partition->reserve(rows_for(bodies), pages);
     if (status == Status::ok) {
       status = target.partition->reserve_pairs(target.with_dynamic, room.pairs, pages);
@@ -104,7 +104,7 @@ Status SceneState::reserve_sets(const SceneCapacity& room, Pages pages) {
       status = Status::out_of_memory;
     }
   }
-  for (std::size_t i = 0; i < kMotions && status != Status::ok; ++i) {
+  for (std::size_t i = 0; i < kBodyStates && status != Status::ok; ++i) {
     if (is_new[i]) sets[i].partition.reset();
   }
   return status;
@@ -122,7 +122,7 @@ Status SceneState::reserve_answers(const SceneCapacity& room, Pages pages) {
   std::size_t bodies = 0;
   for (std::uint32_t kind = 0; kind < kShapeKinds; ++kind) {
     if (shapes.tables().count[kind] == 0) continue;
-    for (int twin = 0; twin < 2; ++twin) {
+    for (int copy = 0; copy < 2; ++copy) {
       ids[bodies] = ShapeId::of(static_cast<ShapeKind>(kind), 0);
       poses[bodies] = Pose::at(1e6 * static_cast<double>(bodies), 0.0, 0.0);
       ++bodies;
@@ -132,9 +132,9 @@ Status SceneState::reserve_answers(const SceneCapacity& room, Pages pages) {
       (has_offsets() && !gaps.reserve(batch, pages)) || !list_rehearsal(bodies / 2, batch)) {
     return Status::out_of_memory;
   }
-  const Status status =
-      narrow.collide(shapes, {{ids, bodies}, {poses, bodies}}, {convex.data(), convex.size()},
-                     {room.level, NarrowTier::robust, options.margin, options.execution}, answers);
+  const Status status = narrow.collide(
+      shapes, {{ids, bodies}, {poses, bodies}}, {convex.data(), convex.size()},
+      {room.level, NarrowTier::robust, options.contact_margin, options.execution}, answers);
   convex.clear();
   if (status != Status::ok || room.level != ContactLevel::manifold) return status;
   // On one thread, a job requires room for the largest number of points it may find.
@@ -147,9 +147,10 @@ Status SceneState::reserve_answers(const SceneCapacity& room, Pages pages) {
   return Status::ok;
 }
 
-// Lists `count` pairs; bodies 2 k and 2 k + 1 have kind k. First comes one pair for each two kinds,
-// because the narrow phase ends each run of pairs of equal kinds with a partial job. These pairs
-// are in swapped order, so that their results must be mirrored. All other pairs are of kind 0.
+// Lists `count` pairs; bodies 2 k and 2 k + 1 have kind k. The list begins with one pair for each
+// two kinds, because the narrow phase ends each run of pairs of equal kinds with a partial job.
+// These pairs are in swapped order, so that their results must be mirrored. All other pairs are of
+// kind 0.
 bool SceneState::list_rehearsal(std::size_t kinds, std::size_t count) noexcept {
   if (!convex.reserve(count)) return false;
   convex.clear();
@@ -166,16 +167,16 @@ bool SceneState::list_rehearsal(std::size_t kinds, std::size_t count) noexcept {
 
 bool ContactsState::reserve(const SceneCapacity& room, const SceneOptions& options,
                             Pages pages) noexcept {
-  const bool carries = options.carry_over > 0.0 && room.level >= ContactLevel::distance;
-  const bool remembers_places = options.warm_start;
+  const bool uses_cache = options.cache_tolerance > 0.0 && room.level >= ContactLevel::distance;
+  const bool stores_positions = options.warm_start;
   const std::size_t shown = shown_pairs(room);
-  const bool may_sleep = room.bodies[static_cast<std::size_t>(Motion::fixed)] != 0 ||
-                         room.bodies[static_cast<std::size_t>(Motion::sleeping)] != 0;
+  const bool may_sleep = room.bodies[static_cast<std::size_t>(BodyState::fixed)] != 0 ||
+                         room.bodies[static_cast<std::size_t>(BodyState::sleeping)] != 0;
   const bool parts = options.composites != nullptr;
   if (!frame.reserve(room.level, parts, shown, room.manifolds, room.points, pages)) return false;
-  // The last frame is not kept, and sleeping pairs are kept without manifolds, unless carry-over or
-  // warm starts read these.
-  const bool has_more = carries || remembers_places;
+  // Only caching and warm starts read the last frame and the manifolds of sleeping pairs.
+  // Without them, the last frame is not kept, and sleeping pairs are kept without manifolds.
+  const bool has_more = uses_cache || stores_positions;
   const std::size_t manifolds = has_more ? room.manifolds : 0;
   const std::size_t points_kept = has_more ? room.points : 0;
   if ((has_more && !before.reserve(room.level, parts, shown, manifolds, points_kept, pages)) ||
@@ -184,29 +185,30 @@ bool ContactsState::reserve(const SceneCapacity& room, const SceneOptions& optio
     return false;
   }
   const std::size_t points = room.level == ContactLevel::manifold ? room.points : 0;
-  if (remembers_places && !history.reserve(shown, points, bodies_of(room), pages)) return false;
+  if (stores_positions && !history.reserve(shown, points, bodies_of(room), pages)) return false;
   // Pairs that wake are added to all records.
-  const std::size_t remembered = carries ? room.pairs + shown : shown;
-  const std::size_t carried_over = carries ? remembered : 0;
-  // Carry-over is decided for all pairs before the narrow phase begins.
+  const std::size_t remembered = uses_cache ? room.pairs + shown : shown;
+  const std::size_t cached_room = uses_cache ? remembered : 0;
+  // Caching is decided for all pairs before the narrow phase begins.
   const std::size_t batch = Collision::batch_size(options, room.pairs);
   const std::size_t batch_room = Collision::batch_room(options, room.pairs);
-  const std::size_t looked_at = carries ? std::max(room.pairs, batch_room) : batch_room;
-  const std::size_t asked = room.level == ContactLevel::pairs ? 0 : batch_room;
-  const std::size_t told = room.level == ContactLevel::pairs ? 0 : looked_at;
-  // Without carry-over and sleeping pairs, `records` and `records_before` share one column, of
+  const std::size_t record_room = uses_cache ? std::max(room.pairs, batch_room) : batch_room;
+  const std::size_t source_room = room.level == ContactLevel::pairs ? 0 : batch_room;
+  const std::size_t origin_room = room.level == ContactLevel::pairs ? 0 : record_room;
+  // Without caching and sleeping pairs, `records` and `records_before` share one column, of
   // which only `bits` is used. If the scene and the contacts have the same memory resource, the
   // column is borrowed from the scene (see BorrowedStorage in collide.cpp).
-  const bool two_orders = carries || may_sleep;
+  const bool two_orders = uses_cache || may_sleep;
   const bool one_order = two_orders || frame.event.memory() != options.memory;
   return reserve_all(shown, pages, ended, shown_again) &&
          records.bits.reserve(one_order ? remembered : 0, pages) &&
          records_before.bits.reserve(two_orders ? remembered : 0, pages) &&
          reserve_all(two_orders ? remembered : 0, pages, records.shown, records_before.shown) &&
          (!may_sleep || dormant_records.reserve(shown, pages)) &&
-         reserve_all(carried_over, pages, carried, carried_before) &&
-         dormant_carried.reserve(carries ? shown : 0, pages) && source.reserve(asked, pages) &&
-         origin.reserve(told, pages) && old_record.reserve(looked_at, pages) &&
+         reserve_all(cached_room, pages, cached, cached_before) &&
+         dormant_cached.reserve(uses_cache ? shown : 0, pages) &&
+         source.reserve(source_room, pages) && origin.reserve(origin_room, pages) &&
+         old_record.reserve(record_room, pages) &&
          sums.reserve(batch / Collision::kPairsPerTask + 1, pages);
 }
 

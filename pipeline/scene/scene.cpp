@@ -22,7 +22,7 @@ namespace {
 
 [[nodiscard]] bool are_good(const SceneOptions& options) noexcept {
   const auto known = [](StructureKind kind) { return kind != StructureKind{}; };
-  return is_length(options.margin) && is_length(options.carry_over) &&
+  return is_length(options.contact_margin) && is_length(options.cache_tolerance) &&
          std::all_of(std::begin(options.structures), std::end(options.structures), known) &&
          options.tier <= NarrowTier::reference;
 }
@@ -32,11 +32,11 @@ namespace {
   return ++serial;
 }
 
-[[nodiscard]] bool is_motion(Motion motion) noexcept {
-  return motion <= Motion::sleeping;
+[[nodiscard]] bool is_body_state(BodyState state) noexcept {
+  return state <= BodyState::sleeping;
 }
 
-/// Adds a partition's origin to all that it draws, which gives world coordinates.
+/// Converts what a partition draws to world coordinates, by adding the origin of its boxes.
 class InTheWorld final : public DebugDraw {
  public:
   InTheWorld(DebugDraw& draw, const Vec3d& origin) noexcept
@@ -85,11 +85,11 @@ SceneState::SceneState(const ShapePool& pool, const SceneOptions& given) noexcep
     : shapes(pool),
       options(given),
       options_are_good(are_good(given)),
-      growth(given.margin * 0.5 + given.carry_over),
+      growth(given.contact_margin * 0.5 + given.cache_tolerance),
       keys(given.memory),
       shape(given.memory),
       pose(given.memory),
-      motion(given.memory),
+      body_state(given.memory),
       place(given.memory),
       moved_at(given.memory),
       shaped_at(given.memory),
@@ -132,7 +132,7 @@ Status Scene::add(const BodyDefinition& body, Key& key) {
 }
 
 Status Scene::add(std::span<const BodyDefinition> bodies, std::span<Key> keys) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   if (state_ == nullptr) return logged(Status::out_of_memory, "Scene::add");
   SceneState& s = *state_;
   if (!s.options_are_good) return logged(Status::invalid_argument, "Scene::add");
@@ -142,7 +142,7 @@ Status Scene::add(std::span<const BodyDefinition> bodies, std::span<Key> keys) {
   bool with_offsets = false;
   bool with_layers = false;
   for (const BodyDefinition& body : bodies) {
-    if (!is_motion(body.motion) || !are_good(body.offsets) || body.layer >= kSceneLayers)
+    if (!is_body_state(body.state) || !are_good(body.offsets) || body.layer >= kSceneLayers)
       return logged(Status::invalid_argument, "Scene::add");
     with_offsets = with_offsets || body.offsets != ContactOffsets{};
     with_layers = with_layers || body.layer != 0;
@@ -170,11 +170,11 @@ Status Scene::remove(Key key) {
 }
 
 Status Scene::remove(std::span<const Key> keys) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   if (state_ == nullptr) return logged(Status::out_of_memory, "Scene::remove");
   SceneState& s = *state_;
   if (!s.are_distinct(keys)) return logged(Status::invalid_key, "Scene::remove");
-  for (const Motion which : kEveryMotion) s.take_out(keys, which);
+  for (const BodyState which : kAllBodyStates) s.take_out(keys, which);
   ++s.regroupings;
   s.forget_stale();
   s.forget_ignored(keys);
@@ -200,7 +200,7 @@ void Scene::clear() noexcept {
 }
 
 Status Scene::move(Key key, const Pose& pose) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   if (state_ == nullptr) return logged(Status::out_of_memory, "Scene::move");
   if (!state_->keys.is_valid(key)) return logged(Status::invalid_key, "Scene::move");
   if (!pose.is_valid()) return logged(Status::invalid_pose, "Scene::move");
@@ -209,7 +209,7 @@ Status Scene::move(Key key, const Pose& pose) {
 }
 
 Status Scene::move(std::span<const Key> keys, const PoseView& poses) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   if (state_ == nullptr) return logged(Status::out_of_memory, "Scene::move");
   SceneState& s = *state_;
   if (keys.size() != poses.count) return logged(Status::size_mismatch, "Scene::move");
@@ -227,21 +227,21 @@ Status Scene::move(std::span<const Key> keys, const PoseView& poses) {
   return Status::ok;
 }
 
-Status Scene::set_motion(Key key, Motion motion) {
-  return set_motion({&key, 1}, motion);
+Status Scene::set_body_state(Key key, BodyState state) {
+  return set_body_state({&key, 1}, state);
 }
 
-Status Scene::set_motion(std::span<const Key> keys, Motion motion) {
-  const DefaultEnvironment environment;
-  if (state_ == nullptr) return logged(Status::out_of_memory, "Scene::set_motion");
+Status Scene::set_body_state(std::span<const Key> keys, BodyState state) {
+  const DefaultFloatEnvironment environment;
+  if (state_ == nullptr) return logged(Status::out_of_memory, "Scene::set_body_state");
   SceneState& s = *state_;
-  if (!is_motion(motion)) return logged(Status::invalid_argument, "Scene::set_motion");
-  if (!s.are_distinct(keys)) return logged(Status::invalid_key, "Scene::set_motion");
-  return logged(s.move_to_set(keys, motion), "Scene::set_motion");
+  if (!is_body_state(state)) return logged(Status::invalid_argument, "Scene::set_body_state");
+  if (!s.are_distinct(keys)) return logged(Status::invalid_key, "Scene::set_body_state");
+  return logged(s.move_to_set(keys, state), "Scene::set_body_state");
 }
 
 Status Scene::set_shape(Key key, ShapeId shape) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   if (state_ == nullptr) return logged(Status::out_of_memory, "Scene::set_shape");
   SceneState& s = *state_;
   if (!s.keys.is_valid(key)) return logged(Status::invalid_key, "Scene::set_shape");
@@ -254,11 +254,11 @@ Status Scene::set_shape(Key key, ShapeId shape) {
 }
 
 Status Scene::set_filter(Key key, const ObjectFilter& filter) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   if (state_ == nullptr) return logged(Status::out_of_memory, "Scene::set_filter");
   SceneState& s = *state_;
   if (!s.keys.is_valid(key)) return logged(Status::invalid_key, "Scene::set_filter");
-  SceneSet& set = s.set(s.motion[key.id]);
+  SceneSet& set = s.set(s.body_state[key.id]);
   const Status status = set.partition->set_filter(s.place[key.id], filter);
   if (status == Status::ok) ++set.changes;
   return logged(status, "Scene::set_filter");
@@ -268,8 +268,8 @@ std::size_t Scene::size() const noexcept {
   return state_ != nullptr ? state_->keys.size() : 0;
 }
 
-std::size_t Scene::size(Motion motion) const noexcept {
-  const Partition* const held = partition(motion);
+std::size_t Scene::size(BodyState state) const noexcept {
+  const Partition* const held = partition(state);
   return held == nullptr ? 0 : held->size();
 }
 
@@ -283,11 +283,11 @@ Status Scene::body(Key key, BodyDefinition& body) const noexcept {
   if (!s.keys.is_valid(key)) return Status::invalid_key;
   body.shape = s.shape[key.id];
   body.pose = s.pose[key.id];
-  body.motion = s.motion[key.id];
+  body.state = s.body_state[key.id];
   body.data = s.keys.client_data(key.id);
   body.offsets = s.offsets_of(key.id);
   body.layer = s.layer_of(key.id);
-  return s.set(body.motion).partition->filter(s.place[key.id], body.filter);
+  return s.set(body.state).partition->filter(s.place[key.id], body.filter);
 }
 
 Key Scene::key_of(ObjectId id) const noexcept {
@@ -295,13 +295,13 @@ Key Scene::key_of(ObjectId id) const noexcept {
 }
 
 Status Scene::refresh() {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   return logged(state_ != nullptr ? state_->refresh() : Status::out_of_memory, "Scene::refresh");
 }
 
-const Partition* Scene::partition(Motion motion) const noexcept {
-  if (state_ == nullptr || !is_motion(motion)) return nullptr;
-  const SceneSet& set = state_->set(motion);
+const Partition* Scene::partition(BodyState state) const noexcept {
+  if (state_ == nullptr || !is_body_state(state)) return nullptr;
+  const SceneSet& set = state_->set(state);
   return set.partition.has_value() ? &*set.partition : nullptr;
 }
 
@@ -311,7 +311,7 @@ Vec3d Scene::origin() const noexcept {
 }
 
 Status Scene::debug_draw(DebugDraw& draw, const DebugDrawOptions& options) const noexcept {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   if (state_ == nullptr) return Status::out_of_memory;
   for (const SceneSet& set : state_->sets) {
     if (!set.partition.has_value()) continue;
@@ -335,14 +335,14 @@ SceneFootprint Scene::footprint() const noexcept {
   footprint.bodies += s.keys.key_bytes();
   footprint.bodies += s.keys.client_data_bytes();
   for (const Bytes& bytes :
-       {s.shape.bytes(),    s.pose.bytes(),       s.motion.bytes(),   s.place.bytes(),
-        s.moved_at.bytes(), s.shaped_at.bytes(),  s.anchor.bytes(),   s.ball.bytes(),
-        s.offsets.bytes(),  s.stale.bytes(),      s.is_stale.bytes(), s.boxes.bytes(),
-        s.boxes_of.bytes(), s.boxes_body.bytes(), s.chosen.bytes(),   s.old_keys.bytes(),
-        s.ignored.bytes(),  s.ignores.bytes(),    s.layer.bytes(),    s.layers.bytes()}) {
+       {s.shape.bytes(),    s.pose.bytes(),       s.body_state.bytes(), s.place.bytes(),
+        s.moved_at.bytes(), s.shaped_at.bytes(),  s.anchor.bytes(),     s.ball.bytes(),
+        s.offsets.bytes(),  s.stale.bytes(),      s.is_stale.bytes(),   s.boxes.bytes(),
+        s.boxes_of.bytes(), s.boxes_body.bytes(), s.chosen.bytes(),     s.old_keys.bytes(),
+        s.ignored.bytes(),  s.ignores.bytes(),    s.layer.bytes(),      s.layers.bytes()}) {
     footprint.bodies += bytes;
   }
-  for (std::size_t i = 0; i < kMotions; ++i) {
+  for (std::size_t i = 0; i < kBodyStates; ++i) {
     const SceneSet& set = s.sets[i];
     if (set.partition.has_value()) footprint.partitions[i] += set.partition->footprint().total();
     footprint.partitions[i] += set.body_of.bytes();

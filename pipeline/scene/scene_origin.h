@@ -21,7 +21,7 @@ class BodySample {
 
   /// Returns the origin for boxes. This is `current`, unless the median of the body positions is so
   /// far from it that (1) the float spacing there exceeds 2^-10 of the median radius, and (2) the
-  /// distance is at least eight times the spread of the bodies, so that the new origin is much
+  /// distance is more than eight times the spread of the bodies, so that the new origin is much
   /// better. The new origin is the median on each axis, rounded to a multiple of a power of two
   /// about as large as the spread: differences to it are then mostly exact.
   [[nodiscard]] Eigen::Vector3d origin(const Eigen::Vector3d& current) const noexcept;

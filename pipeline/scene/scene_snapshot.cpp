@@ -27,27 +27,27 @@ template <typename State, typename Visit>
 void visit_body_columns(State& scene, Visit&& visit) {
   visit(scene.shape);
   visit(scene.pose);
-  visit(scene.motion);
+  visit(scene.body_state);
   visit(scene.moved_at);
   visit(scene.shaped_at);
-  if (scene.options.carry_over > 0.0) visit(scene.anchor);
+  if (scene.options.cache_tolerance > 0.0) visit(scene.anchor);
   if (scene.with_offsets) visit(scene.offsets);
   if (scene.with_layers) visit(scene.layer);
 }
 
 void put_options(ByteWriter& out, const SceneOptions& options) noexcept {
-  out.put(options.margin);
+  out.put(options.contact_margin);
   out.put(tier_number(options.tier));
-  out.put(options.carry_over);
+  out.put(options.cache_tolerance);
   out.put(options.contact_reduction);
   out.put(options.warm_start);
   out.put(options.suppress_ghost_contacts);
 }
 
 void read_options(ByteReader& in, SceneOptions& options) noexcept {
-  options.margin = in.get<double>();
+  options.contact_margin = in.get<double>();
   options.tier = read_tier(in);
-  options.carry_over = in.get<double>();
+  options.cache_tolerance = in.get<double>();
   options.contact_reduction = in.get_bool();
   options.warm_start = in.get_bool();
   options.suppress_ghost_contacts = in.get_bool();
@@ -81,13 +81,13 @@ void read_clocks(ByteReader& in, SceneState& scene) noexcept {
 }
 
 /// Writes the boxes of a set's partition, and its filters if any is not the default.
-void put_set(ByteWriter& out, const SceneState& scene, Motion which) noexcept {
+void put_set(ByteWriter& out, const SceneState& scene, BodyState which) noexcept {
   const SceneSet& set = scene.set(which);
   out.put_bytes(set.origin.data(), 3 * sizeof(double));
   bool filtered = false;
   const auto for_bodies = [&](auto&& visit) {
     for_live(scene.keys.stamps(), [&](ObjectId body) {
-      if (scene.motion[body] == which) visit(scene.place[body]);
+      if (scene.body_state[body] == which) visit(scene.place[body]);
     });
   };
   for_bodies([&](Key place) {
@@ -121,7 +121,7 @@ void put_scene(ByteWriter& out, const SceneState& scene) noexcept {
   out.put_array(std::span<const std::uint32_t>(scene.stale.data(), scene.stale.size()));
   out.put_array(std::span<const std::uint64_t>(scene.ignored.data(), scene.ignored.size()));
   out.put_array(scene.layers.words());
-  for (const Motion which : kEveryMotion) put_set(out, scene, which);
+  for (const BodyState which : kAllBodyStates) put_set(out, scene, which);
 }
 
 /// Reads a scene into a state without bodies. Keys are read into a separate table, which is
@@ -138,7 +138,7 @@ class SceneReader {
     if (!in_.ok() || !read_columns()) return status_of(in_);
     read_clocks(in_, scene_);
     if (!read_stale() || !read_ignored() || !read_layers()) return status_of(in_);
-    for (const Motion which : kEveryMotion) {
+    for (const BodyState which : kAllBodyStates) {
       if (const Status status = read_set(which); status != Status::ok) return status;
     }
     if (!in_.rest().empty()) in_.fail();
@@ -157,7 +157,7 @@ class SceneReader {
     if (in_.get_bool() && !scene_.begin_offsets()) return in_.refuse_memory();
     if (in_.get_bool() && !scene_.begin_layers()) return in_.refuse_memory();
     if (!scene_.reserve(slots) || !seen.resize(slots)) return in_.refuse_memory();
-    if (!KeyTable::are_slots(keys_.saved(), seen)) return in_.fail();
+    if (!KeyTable::are_consistent(keys_.saved(), seen)) return in_.fail();
     visit_body_columns(scene_, [&](auto& column) {
       column.set_size(slots);
       std::fill(column.begin(), column.end(), std::remove_reference_t<decltype(column[0])>{});
@@ -175,7 +175,7 @@ class SceneReader {
                [&](ObjectId body) { scene_.shape[body] = names_->now(scene_.shape[body]); });
     }
     for_live(keys_.all_stamps(), [&](ObjectId body) {
-      good = good && scene_.motion[body] <= Motion::sleeping &&
+      good = good && scene_.body_state[body] <= BodyState::sleeping &&
              scene_.check(scene_.shape[body], scene_.pose[body]) == Status::ok &&
              (scene_.anchor.empty() || scene_.anchor[body].is_valid()) &&
              are_good(scene_.offsets_of(body)) && scene_.layer_of(body) < kSceneLayers;
@@ -225,7 +225,7 @@ class SceneReader {
     return in_.fail();
   }
 
-  [[nodiscard]] Status read_set(Motion which) {
+  [[nodiscard]] Status read_set(BodyState which) {
     SceneSet& set = scene_.set(which);
     (void)in_.get_bytes(set.origin.data(), 3 * sizeof(double));
     if (!set.origin.allFinite()) in_.fail();
@@ -233,7 +233,7 @@ class SceneReader {
     scene_.chosen.clear();
     bool has_room = true;
     for_live(keys_.all_stamps(), [&](ObjectId body) {
-      if (scene_.motion[body] == which) has_room = has_room && scene_.chosen.push_back(body);
+      if (scene_.body_state[body] == which) has_room = has_room && scene_.chosen.push_back(body);
     });
     if (!has_room) return Status::out_of_memory;
     const std::size_t count = scene_.chosen.size();
@@ -287,7 +287,7 @@ void take_over(SceneState& scene, SceneState& read, const ReadKeys& keys) noexce
   scene.keys.restore(keys.saved(), scene.keys);
   scene.shape.swap(read.shape);
   scene.pose.swap(read.pose);
-  scene.motion.swap(read.motion);
+  scene.body_state.swap(read.body_state);
   scene.place.swap(read.place);
   scene.moved_at.swap(read.moved_at);
   scene.shaped_at.swap(read.shaped_at);
@@ -302,7 +302,7 @@ void take_over(SceneState& scene, SceneState& read, const ReadKeys& keys) noexce
   scene.is_stale.swap(read.is_stale);
   scene.ignored.swap(read.ignored);
   scene.ignores.swap(read.ignores);
-  for (std::size_t i = 0; i < kMotions; ++i) {
+  for (std::size_t i = 0; i < kBodyStates; ++i) {
     SceneSet& set = scene.sets[i];
     std::swap(set.partition, read.sets[i].partition);
     set.body_of.swap(read.sets[i].body_of);
@@ -354,7 +354,7 @@ Status Scene::save(Column<std::byte>& out) const {
 }
 
 Status Scene::load(std::span<const std::byte> saved) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   return logged(state_ == nullptr ? Status::out_of_memory : load_scene(*state_, saved, nullptr),
                 "Scene::load");
 }

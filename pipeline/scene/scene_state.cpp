@@ -29,8 +29,8 @@ constexpr std::size_t kBoxesPerBatch = 16384;
 constexpr std::size_t kKeysPerCall = 512;
 
 // A buffer that grows while pairs are found grows by half. The number of pairs is about the same in
-// most frames, so the unused part is freed. If the smaller allocation is refused, the larger one
-// stays.
+// most frames, so most of the unused part is freed. If the smaller allocation is refused, the
+// larger one stays.
 void trim(PairBuffer& pairs) noexcept {
   const std::size_t steady = pairs.size() + pairs.size() / 16;
   if (pairs.capacity() * sizeof(Pair) >= kSmallColumn) (void)pairs.shrink(steady);
@@ -66,7 +66,7 @@ bool SceneState::has_composites() const noexcept {
          std::any_of(shape.begin(), shape.end(), [](ShapeId id) { return id.is_composite(); });
 }
 
-Status SceneState::make_partition_of(Motion which) {
+Status SceneState::make_partition_of(BodyState which) {
   SceneSet& target = set(which);
   if (target.partition.has_value()) return Status::ok;
   Partition made = make_box_partition(options.structures[static_cast<std::size_t>(which)],
@@ -161,7 +161,7 @@ BoxView SceneState::box_view() const noexcept {
           sizeof(PlainBox)};
 }
 
-Status SceneState::place_bodies(Motion which, std::span<const std::uint32_t> bodies) {
+Status SceneState::place_bodies(BodyState which, std::span<const std::uint32_t> bodies) {
   if (bodies.empty()) return Status::ok;
   SceneSet& target = set(which);
   if (const Status made = make_partition_of(which); made != Status::ok) return made;
@@ -180,7 +180,7 @@ Status SceneState::place_bodies(Motion which, std::span<const std::uint32_t> bod
   return Status::ok;
 }
 
-Status SceneState::place_boxes(Motion which, std::span<const std::uint32_t> bodies) {
+Status SceneState::place_boxes(BodyState which, std::span<const std::uint32_t> bodies) {
   SceneSet& target = set(which);
   if (const Status made = make_partition_of(which); made != Status::ok) return made;
   const std::size_t count = bodies.size();
@@ -205,19 +205,19 @@ Status SceneState::place_boxes(Motion which, std::span<const std::uint32_t> bodi
   return Status::ok;
 }
 
-void SceneState::displace(Motion which, std::span<const Key> places) {
+void SceneState::displace(BodyState which, std::span<const Key> places) {
   if (places.empty()) return;
   // Cannot fail: removal allocates nothing, and the keys are valid.
   (void)set(which).partition->remove(places);
   ++set(which).changes;
 }
 
-// In chunks on the stack, so that it needs no memory.
-void SceneState::take_out(std::span<const Key> given, Motion which) {
+// Works in chunks on the stack, so it allocates nothing.
+void SceneState::take_out(std::span<const Key> given, BodyState which) {
   Key places[kKeysPerCall];
   std::size_t count = 0;
   for (const Key& key : given) {
-    if (motion[key.id] != which) continue;
+    if (body_state[key.id] != which) continue;
     places[count++] = place[key.id];
     keys.release(key.id);
     if (count == kKeysPerCall) displace(which, {places, std::exchange(count, 0)});
@@ -225,8 +225,8 @@ void SceneState::take_out(std::span<const Key> given, Motion which) {
   displace(which, {places, count});
 }
 
-// In reverse, so that the partition assigns the same ids again.
-void SceneState::take_back(std::span<const std::uint32_t> bodies, Motion which) {
+// Removes the bodies in reverse order, so that the partition assigns the same ids again.
+void SceneState::take_back(std::span<const std::uint32_t> bodies, BodyState which) {
   for (std::size_t i = bodies.size(); i-- > 0;) displace(which, {&place[bodies[i]], 1});
 }
 
@@ -234,12 +234,12 @@ void SceneState::take_back(std::span<const std::uint32_t> bodies, Motion which) 
 bool SceneState::reserve(std::size_t fresh) noexcept {
   if (!keys.reserve(keys.size() + fresh)) return false;
   const std::size_t slots = keys.slots_with(fresh);
-  const bool with_anchors = options.carry_over == 0.0 || anchor.grow(slots);
+  const bool with_anchors = options.cache_tolerance == 0.0 || anchor.grow(slots);
   const bool has_room =
       (!has_offsets() || offsets.grow(slots)) && (!with_layers || layer.grow(slots));
-  return with_anchors && has_room && shape.grow(slots) && pose.grow(slots) && motion.grow(slots) &&
-         ball.grow(slots) && place.grow(slots) && moved_at.grow(slots) && shaped_at.grow(slots) &&
-         stale.grow(slots) && is_stale.grow(slots);
+  return with_anchors && has_room && shape.grow(slots) && pose.grow(slots) &&
+         body_state.grow(slots) && ball.grow(slots) && place.grow(slots) && moved_at.grow(slots) &&
+         shaped_at.grow(slots) && stale.grow(slots) && is_stale.grow(slots);
 }
 
 Key SceneState::acquire(const BodyDefinition& body) noexcept {
@@ -248,20 +248,20 @@ Key SceneState::acquire(const BodyDefinition& body) noexcept {
   if (key.id >= shape.size()) {
     shape.set_size(slots);
     pose.set_size(slots);
-    motion.set_size(slots);
+    body_state.set_size(slots);
     place.set_size(slots);
     ball.set_size(slots);
     moved_at.set_size(slots);
     shaped_at.set_size(slots);
     is_stale.set_size(slots);
     is_stale[key.id] = 0;
-    if (options.carry_over > 0.0) anchor.set_size(slots);
+    if (options.cache_tolerance > 0.0) anchor.set_size(slots);
     if (has_offsets()) offsets.set_size(slots);
     if (with_layers) layer.set_size(slots);
   }
   shape[key.id] = body.shape;
   pose[key.id] = body.pose;
-  motion[key.id] = body.motion;
+  body_state[key.id] = body.state;
   place[key.id] = {};
   moved_at[key.id] = shaped_at[key.id] = clock;
   if (has_offsets()) offsets[key.id] = body.offsets;
@@ -270,10 +270,10 @@ Key SceneState::acquire(const BodyDefinition& body) noexcept {
 }
 
 std::span<const std::uint32_t> SceneState::choose(std::span<const Key> given,
-                                                  Motion which) noexcept {
+                                                  BodyState which) noexcept {
   chosen.clear();
   for (const Key& key : given) {
-    if (motion[key.id] == which) (void)chosen.push_back(key.id);
+    if (body_state[key.id] == which) (void)chosen.push_back(key.id);
   }
   return {chosen.data(), chosen.size()};
 }
@@ -284,23 +284,22 @@ Status SceneState::settle(std::span<const BodyDefinition> bodies, std::span<cons
   if (!chosen.grow(bodies.size())) return Status::out_of_memory;
   std::size_t settled = 0;
   Status status = Status::ok;
-  for (; settled < kMotions && status == Status::ok; ++settled) {
-    const Motion which = kEveryMotion[settled];
+  for (; settled < kBodyStates && status == Status::ok; ++settled) {
+    const BodyState which = kAllBodyStates[settled];
     status = place_bodies(which, choose(given, which));
   }
   if (status != Status::ok) --settled;
   for (std::size_t i = 0; i < bodies.size() && status == Status::ok; ++i) {
     if (bodies[i].filter == ObjectFilter{}) continue;
-    Partition& partition = *set(bodies[i].motion).partition;
+    Partition& partition = *set(bodies[i].state).partition;
     status = partition.set_filter(place[given[i].id], bodies[i].filter);
   }
   if (status == Status::ok) return status;
-  while (settled-- > 0) take_back(choose(given, kEveryMotion[settled]), kEveryMotion[settled]);
+  while (settled-- > 0) take_back(choose(given, kAllBodyStates[settled]), kAllBodyStates[settled]);
   return status;
 }
 
-// Marks bodies with the second bit of `is_stale` to find duplicates. If all are distinct, there are
-// at most as many as slots; the number itself is not tested.
+// Marks bodies with the second bit of `is_stale` to find duplicates.
 bool SceneState::are_distinct(std::span<const Key> given) noexcept {
   constexpr std::uint8_t kSeen = 2;
   std::size_t marked = 0;
@@ -343,12 +342,12 @@ void SceneState::set_pose(std::uint32_t body, const Pose& to) noexcept {
 
 // Every body is inserted in its new partition, with its filter, before the first one is removed
 // from its old partition. Until then everything can be undone.
-Status SceneState::move_to_set(std::span<const Key> given, Motion to) {
+Status SceneState::move_to_set(std::span<const Key> given, BodyState to) {
   const BoxRoom room(*this);
   chosen.clear();
   if (!chosen.grow(given.size())) return Status::out_of_memory;
   for (const Key& key : given) {
-    if (motion[key.id] != to) (void)chosen.push_back(key.id);
+    if (body_state[key.id] != to) (void)chosen.push_back(key.id);
   }
   const std::span<const std::uint32_t> bodies{chosen.data(), chosen.size()};
   if (bodies.empty()) return Status::ok;
@@ -358,7 +357,7 @@ Status SceneState::move_to_set(std::span<const Key> given, Motion to) {
   if (status != Status::ok) return status;
   for (std::size_t i = 0; i < bodies.size() && status == Status::ok; ++i) {
     ObjectFilter filter;
-    status = set(motion[bodies[i]]).partition->filter(old_keys[i], filter);
+    status = set(body_state[bodies[i]]).partition->filter(old_keys[i], filter);
     if (status == Status::ok && filter != ObjectFilter{}) {
       status = set(to).partition->set_filter(place[bodies[i]], filter);
     }
@@ -369,19 +368,20 @@ Status SceneState::move_to_set(std::span<const Key> given, Motion to) {
     return status;
   }
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    displace(motion[bodies[i]], {&old_keys[i], 1});
-    motion[bodies[i]] = to;
+    displace(body_state[bodies[i]], {&old_keys[i], 1});
+    body_state[bodies[i]] = to;
   }
   ++regroupings;
   return Status::ok;
 }
 
-// False if the box in the partition, which includes its growth, still contains the body.
+// False if the box in the partition still contains the body and its margin: boxes are enlarged by
+// SceneOptions::cache_tolerance, and the body moved by no more than that.
 bool SceneState::needs_box(std::uint32_t body) const noexcept {
   if (anchor.empty() || shaped_at[body] >= moved_at[body]) return true;
-  // NaN compares false and gives true.
+  // NaN compares false, and the result is then true.
   return !(motion_bound(anchor[body], with_unit_turn(pose[body]), radius(body)) <=
-           options.carry_over);
+           options.cache_tolerance);
 }
 
 Status SceneState::refresh() {
@@ -393,12 +393,13 @@ Status SceneState::refresh() {
       mark_stale(body);
     }
   }
-  // The sampling is as frequent as box updates and so costs little beside them.
+  // Bodies are sampled only after many boxes were updated, so a sample costs little beside the
+  // updates.
   if (boxes_since_sampling >= std::max(kFewBoxes, keys.size() / 2)) choose_origin();
   if (is_up_to_date()) return Status::ok;
   const StageScope stage(WorkStage::refresh);
-  for (std::size_t which = 0; which < kMotions; ++which) {
-    const Status status = refresh_set(static_cast<Motion>(which));
+  for (std::size_t which = 0; which < kBodyStates; ++which) {
+    const Status status = refresh_set(static_cast<BodyState>(which));
     if (status != Status::ok) return status;
   }
   for (const std::uint32_t body : stale) is_stale[body] = 0;
@@ -406,7 +407,7 @@ Status SceneState::refresh() {
   return Status::ok;
 }
 
-Status SceneState::refresh_set(Motion which) {
+Status SceneState::refresh_set(BodyState which) {
   SceneSet& target = set(which);
   if (!target.partition.has_value()) return Status::ok;
   if (target.origin != origin) return move_origin(which);
@@ -416,7 +417,7 @@ Status SceneState::refresh_set(Motion which) {
       return Status::out_of_memory;
     for (; next < stale.size() && chosen.size() < kBoxesPerBatch; ++next) {
       const std::uint32_t body = stale[next];
-      if (motion[body] == which && needs_box(body)) (void)chosen.push_back(body);
+      if (body_state[body] == which && needs_box(body)) (void)chosen.push_back(body);
     }
     if (const Status status = renew_boxes(target); status != Status::ok) return status;
   }
@@ -424,13 +425,13 @@ Status SceneState::refresh_set(Motion which) {
 }
 
 // Updates all boxes of a set in one call. If the update is refused, all boxes keep the old origin.
-Status SceneState::move_origin(Motion which) {
+Status SceneState::move_origin(BodyState which) {
   SceneSet& target = set(which);
   const BoxRoom room(*this);
   chosen.clear();
   if (!chosen.reserve(target.partition->size())) return Status::out_of_memory;
   for (std::uint32_t body = 0; body < keys.slot_count(); ++body) {
-    if (keys.is_live(body) && motion[body] == which) (void)chosen.push_back(body);
+    if (keys.is_live(body) && body_state[body] == which) (void)chosen.push_back(body);
   }
   if (const Status status = renew_boxes(target); status != Status::ok) return status;
   target.origin = origin;
@@ -463,28 +464,28 @@ Status SceneState::renew_boxes(SceneSet& target) {
   return Status::ok;
 }
 
-// Finds pairs among dynamic bodies, then of dynamic bodies with the other sets, unless no partition
-// changed.
+// Finds the pairs of dynamic bodies with the bodies of each set, unless nothing has changed since
+// the last call.
 Status SceneState::find_pairs(bool all) {
   if (const Status status = refresh(); status != Status::ok) return status;
   bool changed = pairs.are_all() != all;
-  for (std::size_t i = 0; i < kMotions; ++i) {
+  for (std::size_t i = 0; i < kBodyStates; ++i) {
     changed = changed || pairs.changes[i] != sets[i].changes;
   }
   if (!changed) return Status::ok;
-  const SceneSet& dynamic = set(Motion::dynamic);
-  static_assert(kMotions <= BodyPairs::kMaxSources);
-  BodyPairs::Source sources[kMotions];
+  const SceneSet& dynamic = set(BodyState::dynamic);
+  static_assert(kBodyStates <= BodyPairs::kMaxSources);
+  BodyPairs::PairSource sources[kBodyStates];
   std::size_t count = 0;
   for (SceneSet& other : sets) {
     if (!dynamic.partition.has_value() || !other.partition.has_value()) continue;
     const BodyPredicate judge{*this, dynamic.body_of.data(), other.body_of.data()};
-    const PairOptions asked = judge.options();
+    const PairOptions pair_options = judge.options();
     const std::size_t room = other.with_dynamic.capacity();
     const Status status =
         &other == &dynamic
-            ? dynamic.partition->self_pairs(other.with_dynamic, asked)
-            : dynamic.partition->pairs_with(*other.partition, other.with_dynamic, asked);
+            ? dynamic.partition->self_pairs(other.with_dynamic, pair_options)
+            : dynamic.partition->pairs_with(*other.partition, other.with_dynamic, pair_options);
     if (status != Status::ok) return status;
     if (other.with_dynamic.capacity() > room) trim(other.with_dynamic);
     sources[count++] = {other.with_dynamic.pairs(), dynamic.body_of.data(), other.body_of.data()};
@@ -493,7 +494,7 @@ Status SceneState::find_pairs(bool all) {
       {sources, count}, {shape.data(), all ? nullptr : ball.data(), keys.slot_count(), selection},
       options.execution);
   if (status != Status::ok) return status;
-  for (std::size_t i = 0; i < kMotions; ++i) pairs.changes[i] = sets[i].changes;
+  for (std::size_t i = 0; i < kBodyStates; ++i) pairs.changes[i] = sets[i].changes;
   return Status::ok;
 }
 

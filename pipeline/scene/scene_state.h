@@ -19,7 +19,8 @@
 
 namespace winnow {
 
-inline constexpr Motion kEveryMotion[kMotions] = {Motion::fixed, Motion::dynamic, Motion::sleeping};
+inline constexpr BodyState kAllBodyStates[kBodyStates] = {BodyState::fixed, BodyState::dynamic,
+                                                          BodyState::sleeping};
 
 /// An Aabb that is a plain struct, for Column.
 struct PlainBox {
@@ -33,7 +34,7 @@ struct PlainBox {
 struct SceneSet {
   explicit SceneSet(std::pmr::memory_resource* memory) noexcept
       : body_of(memory), with_dynamic(memory) {
-    LinkedPairs(with_dynamic).forbid();
+    LinkedPairs(with_dynamic).forbid_linking();
   }
 
   std::optional<Partition> partition;
@@ -44,7 +45,7 @@ struct SceneSet {
   Column<std::uint32_t> body_of;
   /// Pairs (dynamic body, body of this set); in the dynamic set, the pairs among its own bodies.
   PairBuffer with_dynamic;
-  /// Incremented by every change of the partition.
+  /// Incremented by every change of the partition, or of rules that decide about its pairs.
   std::uint64_t changes = 0;
 };
 
@@ -87,13 +88,13 @@ struct SceneState {
   KeyTable keys;
   Column<ShapeId> shape;
   Column<Pose> pose;
-  Column<Motion> motion;
+  Column<BodyState> body_state;
   /// The body's key in the partition of its set.
   Column<Key> place;
   /// The `clock` at the last change of the pose, and of the shape.
   Column<std::uint32_t> moved_at;
   Column<std::uint32_t> shaped_at;
-  /// Pose for which the partition's box was computed. Empty without carry-over.
+  /// Pose for which the partition's box was computed. Empty without caching.
   Column<Pose> anchor;
   /// Bounding ball of the body at the time of its last box, relative to the partition's origin and
   /// grown like the box.
@@ -125,7 +126,7 @@ struct SceneState {
     visit(old_keys);
   }
 
-  SceneSet sets[kMotions];
+  SceneSet sets[kBodyStates];
   /// World point from which boxes are measured; see BodySample.
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();
   /// Boxes computed since choose_origin last sampled the bodies.
@@ -158,18 +159,18 @@ struct SceneState {
   /// Scratch: the order of one body's floor contacts.
   Column<std::uint32_t> floor_order;
   SceneStatistics statistics;
-  /// Pairs of bodies to ignore, as (smaller id << 32 | larger id), sorted; and by id a
-  /// flag of the bodies in these pairs, with one entry for each id that the last set_ignored found.
+  /// Pairs of bodies to ignore, as (smaller id << 32 | larger id), sorted; and by id a flag of the
+  /// bodies in these pairs, with one entry for each id that existed at the last set_ignored.
   Column<std::uint64_t> ignored;
   Column<std::uint8_t> ignores;
   PairPredicate predicate;
   /// Boxes given to partitions since the last `collide`.
   std::uint64_t boxes_updated = 0;
 
-  [[nodiscard]] SceneSet& set(Motion which) noexcept {
+  [[nodiscard]] SceneSet& set(BodyState which) noexcept {
     return sets[static_cast<std::size_t>(which)];
   }
-  [[nodiscard]] const SceneSet& set(Motion which) const noexcept {
+  [[nodiscard]] const SceneSet& set(BodyState which) const noexcept {
     return sets[static_cast<std::size_t>(which)];
   }
   /// False if no body has a composite shape. May stay true after the last such body was removed.
@@ -207,27 +208,27 @@ struct SceneState {
   void set_balls(std::span<const std::uint32_t> bodies, const Eigen::Vector3d& from) noexcept;
   [[nodiscard]] BodyBall ball_from(const Eigen::Vector3d& from, std::uint32_t body) const noexcept;
   [[nodiscard]] BoxView box_view() const noexcept;
-  [[nodiscard]] Status make_partition_of(Motion which);
+  [[nodiscard]] Status make_partition_of(BodyState which);
   /// Writes the bodies of the given keys that are in a set into `chosen`, which must have room.
   [[nodiscard]] std::span<const std::uint32_t> choose(std::span<const Key> given,
-                                                      Motion which) noexcept;
+                                                      BodyState which) noexcept;
   /// Inserts bodies whose columns are set into the partition of a set.
-  [[nodiscard]] Status place_bodies(Motion which, std::span<const std::uint32_t> bodies);
+  [[nodiscard]] Status place_bodies(BodyState which, std::span<const std::uint32_t> bodies);
   /// Inserts bodies with the boxes in `boxes`, one for each body, measured from the set's origin.
-  [[nodiscard]] Status place_boxes(Motion which, std::span<const std::uint32_t> bodies);
+  [[nodiscard]] Status place_boxes(BodyState which, std::span<const std::uint32_t> bodies);
   /// Removes the objects `places` from the partition of a set.
-  void displace(Motion which, std::span<const Key> places);
+  void displace(BodyState which, std::span<const Key> places);
   /// Removes the given bodies that are in a set, and releases their keys.
-  void take_out(std::span<const Key> given, Motion which);
+  void take_out(std::span<const Key> given, BodyState which);
   /// Undoes place_bodies: removes bodies that were just inserted.
-  void take_back(std::span<const std::uint32_t> bodies, Motion which);
+  void take_back(std::span<const std::uint32_t> bodies, BodyState which);
   /// Moves the given bodies that are in other sets to the set `to`. A failure changes nothing.
-  [[nodiscard]] Status move_to_set(std::span<const Key> given, Motion to);
+  [[nodiscard]] Status move_to_set(std::span<const Key> given, BodyState to);
   void mark_stale(std::uint32_t body) noexcept;
   void set_pose(std::uint32_t body, const Pose& to) noexcept;
   [[nodiscard]] Status refresh();
-  [[nodiscard]] Status refresh_set(Motion which);
-  [[nodiscard]] Status move_origin(Motion which);
+  [[nodiscard]] Status refresh_set(BodyState which);
+  [[nodiscard]] Status move_origin(BodyState which);
   [[nodiscard]] Status renew_boxes(SceneSet& target);
   [[nodiscard]] bool needs_box(std::uint32_t body) const noexcept;
   /// Finds all pairs whose boxes overlap, or (`all` false) only those whose bounding balls overlap
@@ -247,7 +248,7 @@ struct SceneState {
   [[nodiscard]] bool accepts_pair(ObjectId a, ObjectId b) const noexcept;
   [[nodiscard]] ObjectFilter filter_of(ObjectId body) const noexcept;
   [[nodiscard]] bool is_ignored(ObjectId a, ObjectId b) const noexcept;
-  [[nodiscard]] bool add_ignored(std::span<const KeyPair> told) noexcept;
+  [[nodiscard]] bool add_ignored(std::span<const KeyPair> key_pairs) noexcept;
   void forget_ignored(std::span<const Key> removed) noexcept;
   template <typename Unwanted>
   void drop_ignored(Unwanted&& is_unwanted) noexcept {

@@ -32,12 +32,12 @@ bool Collision::open_frame() {
     c.records.shown.swap(c.records_before.shown);
   } else {
     c.records.swap(c.records_before);
-    c.carried.swap(c.carried_before);
+    c.cached.swap(c.cached_before);
   }
-  const std::size_t records = carries_ ? pair_count() : 0;
+  const std::size_t records = uses_cache_ ? pair_count() : 0;
   c.frame.with_parts = scene_.has_composites();
   if (!c.frame.resize(level_, 0, 0, 0) || !resize_tightly(c.records.bits, records) ||
-      !resize_tightly(c.records.shown, records) || !c.carried.resize(records) ||
+      !resize_tightly(c.records.shown, records) || !c.cached.resize(records) ||
       !resize_tightly(c.shown_again, last_records_)) {
     return false;
   }
@@ -88,14 +88,14 @@ bool Collision::reserve_next() {
   ContactsState& c = contacts_;
   const bool has_room = !reads_last_manifolds() || c.before.reserve_as(c.frame);
   return has_room && c.records_before.reserve(c.records.bits.capacity()) &&
-         c.carried_before.reserve(c.carried.capacity()) && reserve_history();
+         c.cached_before.reserve(c.cached.capacity()) && reserve_history();
 }
 
 // Completes the frame after the last batch.
 bool Collision::close(const Cursor& end) {
   contacts_.frame.close(level_, end);
   if (!reserve_next() || !write_runs() || !close_frame()) return false;
-  if (!carries_) {
+  if (!uses_cache_) {
     // The next call lists them again, in the same memory.
     contacts_.records.swap(contacts_.records_before);
     contacts_.records.clear();
@@ -116,13 +116,13 @@ std::uint32_t Collision::shown_before(std::uint32_t pair) const noexcept {
   return record == kNoEntry ? kNoEntry : contacts_.records_before.shown_of(record);
 }
 
-// Returns the number of pairs from this one on that are carried over and whose contacts are
+// Returns the number of pairs from this one on that are cached and whose contacts are
 // adjacent in the last frame, so that they are copied in one piece. Pairs not in contact do not
 // interrupt the range.
-std::uint32_t Collision::carried_range(std::uint32_t pair, std::uint32_t end) const noexcept {
+std::uint32_t Collision::count_cached(std::uint32_t pair, std::uint32_t end) const noexcept {
   std::uint32_t at = pair;
   std::uint32_t next = kNoEntry;
-  for (; at < end && origin_of(at) == ContactSource::carried; ++at) {
+  for (; at < end && origin_of(at) == ContactSource::cached; ++at) {
     const std::uint32_t shown = shown_before(at);
     if (shown == kNoEntry) continue;
     if (next != kNoEntry && shown != next) break;
@@ -158,7 +158,7 @@ ContactFrame::Cursor Collision::extent(std::uint32_t pair) const noexcept {
 
 namespace {
 
-/// The range of pairs in contact within a range of carried pairs.
+/// The range of pairs in contact within a range of cached pairs.
 struct Touching {
   std::uint32_t first = kNoEntry;
   std::uint32_t count = 0;
@@ -178,7 +178,7 @@ ContactFrame::Cursor Collision::count(std::uint32_t first, std::uint32_t end) co
   Cursor sum;
   for (std::uint32_t i = first; i < end;) {
     if (is_fresh_convex(i)) {
-      // Branchless: contact is unpredictable.
+      // Without a branch, because contact is unpredictable.
       const std::uint32_t at = source_of(i++);
       const std::uint32_t touching = touches(scene_.answers, at) ? 1 : 0;
       const std::uint32_t points =
@@ -186,13 +186,13 @@ ContactFrame::Cursor Collision::count(std::uint32_t first, std::uint32_t end) co
       sum += {touching, touching, touching * points};
       continue;
     }
-    const std::uint32_t stretch = carried_range(i, end);
-    if (stretch == 0) {
+    const std::uint32_t cached = count_cached(i, end);
+    if (cached == 0) {
       sum += extent(i++);
       continue;
     }
     Touching touching;
-    for (const std::uint32_t last = i + stretch; i < last; ++i) touching.take(shown_before(i));
+    for (const std::uint32_t last = i + cached; i < last; ++i) touching.take(shown_before(i));
     if (touching.count != 0) sum += contacts_.before.extent(touching.first, touching.count);
   }
   return sum;
@@ -209,17 +209,17 @@ void Collision::write_task(std::uint32_t first, std::uint32_t end, Cursor at) no
       write_convex(convex, i, at);
       continue;
     }
-    const std::uint32_t stretch = carried_range(i, end);
-    if (stretch == 0) {
+    const std::uint32_t cached = count_cached(i, end);
+    if (cached == 0) {
       const Cursor taken = extent(i);
       if (taken.pair != 0) write_composite(i, at);
-      if (carries_) remember(i, taken.pair != 0 ? at.pair : kNoEntry);
+      if (uses_cache_) remember(i, taken.pair != 0 ? at.pair : kNoEntry);
       at += taken;
       ++i;
       continue;
     }
     Touching touching;
-    for (const std::uint32_t last = i + stretch; i < last; ++i) {
+    for (const std::uint32_t last = i + cached; i < last; ++i) {
       const std::uint32_t shown = shown_before(i);
       remember(i, shown == kNoEntry ? kNoEntry : at.pair + touching.count);
       touching.take(shown);
@@ -235,7 +235,7 @@ void Collision::write_task(std::uint32_t first, std::uint32_t end, Cursor at) no
   }
 }
 
-// Writes keys and events of pairs that are in contact and not carried over.
+// Writes keys and events of pairs that are in contact and not cached.
 void Collision::write_bodies(std::span<const std::uint32_t> pairs, std::uint32_t to) noexcept {
   ContactsState& c = contacts_;
   ContactFrame& frame = c.frame;
@@ -265,13 +265,13 @@ void Collision::write_all(std::uint32_t first, std::uint32_t end, std::uint32_t 
 }
 
 // Writes the pairs of [first, end) that are in contact, column by column. All are convex and not
-// carried over; at most one task's pairs.
+// cached; at most one task's pairs.
 void Collision::write_convex(std::uint32_t first, std::uint32_t end, Cursor& at) noexcept {
   std::uint32_t touching[kPairsPerTask];
   std::uint32_t count = 0;
   for (std::uint32_t i = first; i < end; ++i) {
     const bool is_shown = touches(scene_.answers, source_of(i));
-    if (carries_) remember(i, is_shown ? at.pair + count : kNoEntry);
+    if (uses_cache_) remember(i, is_shown ? at.pair + count : kNoEntry);
     touching[count] = i;
     count += is_shown ? 1 : 0;
   }
@@ -311,7 +311,7 @@ void Collision::write_answers(std::span<const std::uint32_t> pairs, Cursor& at) 
   at.manifold += count;
 }
 
-// Writes a pair with a composite shape that is in contact and not carried over.
+// Writes a pair with a composite shape that is in contact and not cached.
 void Collision::write_composite(std::uint32_t pair, const Cursor& to) noexcept {
   write_bodies({&pair, 1}, to.pair);
   ContactFrame& frame = contacts_.frame;

@@ -2,7 +2,7 @@
 
 namespace winnow {
 
-// Cosine and sine of successive fractions of a turn. Stored as literals because mathematical
+// Cosine and sine of successive fractions of a turn. They are literals, because mathematical
 // libraries differ in the last digits, one of them even by the processor it runs on.
 
 inline constexpr double kSixteenthsOfTurn[16][2] = {

@@ -169,8 +169,9 @@ class Quickhull {
   }
 
   /// Adds the point to the list of a new face that it lies beyond, if there is one. It suffices to
-  /// test the new faces: a point beyond a removed face that is still outside lies beyond a new
-  /// face, because the plane of a new face lies between the planes of two old ones.
+  /// test the new faces: a point beyond a removed face that is outside of the new hull lies beyond
+  /// a new face, because the plane of a new face lies between the planes of the two old faces at
+  /// its horizon edge.
   void assign(std::uint32_t point) {
     for (const std::uint32_t made : made_) {
       Face& face = faces_[made];

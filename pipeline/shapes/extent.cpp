@@ -315,7 +315,7 @@ double rounding_of(const ShapeTables& tables, ShapeId shape) noexcept {
 }  // namespace mid
 
 Aabb ShapePool::bounds(ShapeId id, const Pose& pose) const noexcept {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   // A sphere needs no rotation.
   const mid::Mat turn =
       id.kind() == ShapeKind::sphere

@@ -28,7 +28,7 @@ struct Box3 {
   }
   [[nodiscard]] bool is_finite() const noexcept { return min.allFinite() && max.allFinite(); }
   /// Returns whether the closed boxes overlap; true if a bound is NaN, so that no pair is missed.
-  [[nodiscard]] bool meets(const Box3& other) const noexcept {
+  [[nodiscard]] bool overlaps(const Box3& other) const noexcept {
     for (int i = 0; i < 3; ++i) {
       if (min[i] > other.max[i] || other.min[i] > max[i]) return false;
     }

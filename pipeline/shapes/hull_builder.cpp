@@ -136,17 +136,17 @@ class Merge {
       const auto loop = surface_.loop(face);
       for (std::size_t i = 0; i < loop.size(); ++i) {
         const std::uint32_t next = face_of_.at(edge(loop[(i + 1) % loop.size()], loop[i]));
-        if (group_[next] != kUnset || !lies_in(next, plane, planes[next], tolerance)) continue;
+        if (group_[next] != kUnset || !is_coplanar(next, plane, planes[next], tolerance)) continue;
         group_[next] = group;
         open_.push_back(next);
       }
     }
   }
 
-  [[nodiscard]] bool lies_in(std::uint32_t face, const FacePlane& plane, const FacePlane& own,
-                             double tolerance) const {
+  [[nodiscard]] bool is_coplanar(std::uint32_t face, const FacePlane& plane, const FacePlane& own,
+                                 double tolerance) const {
     // The normal of a sliver is meaningless. Otherwise the normals must agree, so that the two
-    // sides of a flat hull stay apart.
+    // sides of a flat hull are not merged.
     if (own.area > tolerance * tolerance && own.normal.dot(plane.normal) <= 0.0) return false;
     return std::ranges::all_of(surface_.loop(face), [&](std::uint32_t v) {
       return std::abs(plane.normal.dot(points_[v]) - plane.offset) <= tolerance;
@@ -157,7 +157,7 @@ class Merge {
   // two corners.
   Status rebuild(std::uint32_t groups, double tolerance) {
     std::pmr::vector<Numbers<std::uint32_t>> next(groups, memory_);
-    Numbers<std::uint32_t> meets(memory_);
+    Numbers<std::uint32_t> face_counts(memory_);
     for (std::size_t f = 0; f < surface_.faces(); ++f) {
       const auto loop = surface_.loop(f);
       for (std::size_t i = 0; i < loop.size(); ++i) {
@@ -165,13 +165,13 @@ class Merge {
         const std::uint32_t to = loop[(i + 1) % loop.size()];
         if (group_[face_of_.at(edge(to, from))] == group_[f]) continue;
         if (!next[group_[f]].emplace(from, to).second) return Status::invalid_shape;
-        ++meets[from];
+        ++face_counts[from];
       }
     }
     HullSurface merged(memory_);
     std::pmr::vector<std::uint32_t> loop(memory_);
     for (const auto& outline : next) {
-      if (!follow(outline, loop) || !add_corners(loop, meets, tolerance, merged)) {
+      if (!follow(outline, loop) || !add_corners(loop, face_counts, tolerance, merged)) {
         return Status::invalid_shape;
       }
     }
@@ -198,16 +198,16 @@ class Merge {
 
   // Adds the outline as a face of `merged`. Vertices shared by at least three faces are corners.
   // Vertices shared by two faces are dropped if all of them between two corners lie on a straight
-  // line. Returns false if fewer than three vertices are left.
-  bool add_corners(std::span<const std::uint32_t> loop, const Numbers<std::uint32_t>& meets,
+  // line. Returns false if fewer than three vertices remain.
+  bool add_corners(std::span<const std::uint32_t> loop, const Numbers<std::uint32_t>& face_counts,
                    double tolerance, HullSurface& merged) const {
     const std::size_t count = loop.size();
     std::size_t first = 0;
-    while (first < count && meets.at(loop[first]) == 2) ++first;
+    while (first < count && face_counts.at(loop[first]) == 2) ++first;
     std::pmr::vector<bool> stays(count, true, memory_);
     for (std::size_t i = first; first < count && i < first + count;) {
       std::size_t end = i + 1;
-      while (meets.at(loop[end % count]) == 2) ++end;
+      while (face_counts.at(loop[end % count]) == 2) ++end;
       if (end < i + count && is_straight(loop, i, end, tolerance)) {
         for (std::size_t k = i + 1; k < end; ++k) stays[k % count] = false;
       }
@@ -383,8 +383,8 @@ class Assembly {
         c_.vertex[axis][i] = p[axis];
         c_.vertex_float[axis][i] = static_cast<float>(p[axis]);
       }
-      // Sum of fractions, not fraction of the sum: the mean of numbers near the largest double does
-      // not overflow.
+      // Adds fractions instead of dividing the sum, so that the mean of numbers near the largest
+      // double does not overflow.
       if (i < used_.size()) sum += p / static_cast<double>(used_.size());
     }
     for (std::uint32_t v = 0; v < hull_.vertex_count; ++v) {

@@ -120,7 +120,7 @@ void add_polygon(const Points& points, const Eigen::Vector3d& normal, HullSurfac
 }
 
 // Assembles the hull with nearly coplanar triangles merged, if the result is convex; else from the
-// triangles themselves, which always are.
+// triangles themselves, which are always convex.
 Status assemble_solid(std::span<const Eigen::Vector3d> given, const Points& points,
                       const HullSurface& triangles, std::pmr::memory_resource* memory,
                       HullShape& hull) {

@@ -19,7 +19,7 @@ namespace winnow {
 }
 
 /// sqrt(x^2 + y^2) of finite numbers with an error of at most an ulp, without intermediate overflow
-/// or underflow. Gives equal bits on every machine, unlike std::hypot: mathematical libraries
+/// or underflow. Returns the same bits on every machine, unlike std::hypot: mathematical libraries
 /// differ in its last digit, one of them even by the processor.
 [[nodiscard]] inline double hypotenuse(double x, double y) noexcept {
   constexpr double kNegligible = 0x1p-54;

@@ -7,8 +7,8 @@
 
 namespace winnow {
 
-/// Tolerance relative to the size of the box: boxes whose centre is no farther behind the plane
-/// count as in it.
+/// Tolerance relative to the size of the box: a box whose centre is behind the plane by no more
+/// than this does not count as behind it.
 inline constexpr double kBehindSlack = 1e-6;
 
 /// Returns whether the centre of the box lies behind the plane through `corner` with normal

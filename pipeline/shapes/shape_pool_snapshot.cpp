@@ -86,7 +86,7 @@ Status ShapePool::save(Column<std::byte>& out) const {
 // Adds each shape through the checked public functions, with the free list arranged so that each
 // gets its saved index.
 Status ShapePool::load(std::span<const std::byte> saved) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   ByteReader in = open_snapshot(saved, kShapesMagic, kShapesVersion);
   ShapePool fresh(memory_);
   Status status = in.get<std::uint32_t>() == kShapeKinds ? Status::ok : Status::invalid_argument;

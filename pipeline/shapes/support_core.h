@@ -35,8 +35,9 @@ struct SupportCore {
 /// @}
 
 /// An ellipsoid eroded by the largest ball that rolls freely inside it; the ball's radius becomes
-/// rounding. The radius is the least radius of curvature (Blaschke, "Kreis und Kugel", 1916). Most
-/// overlaps are shallower than it, so that the cores are disjoint.
+/// rounding. The radius is the least radius of curvature (Blaschke, "Kreis und Kugel", 1916). Two
+/// overlapping shapes have disjoint cores if the overlap is shallower than this radius, as it is
+/// for most contacts.
 [[nodiscard]] SupportCore eroded_core(const EllipsoidShape& shape) noexcept;
 
 /// The core of an ellipsoid, tapered capsule or user shape; a default SupportCore, without a

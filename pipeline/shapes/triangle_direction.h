@@ -5,10 +5,10 @@
 namespace winnow::mid {
 
 /// Returns the vector from the closest point of a triangle to `point`, up to rounding. `point` is
-/// relative to the triangle's first corner; `ab` and `ac` are the edges from there. Over the face's
-/// interior the result has the direction of the normal, not its length (Ericson, Real-Time
-/// Collision Detection, 5.1.5). Callers use the result as a search direction only, so that its
-/// error is harmless.
+/// relative to the triangle's first corner; `ab` and `ac` are the edges from there. If the closest
+/// point is inside the face, the result has the direction of that vector but not its length
+/// (Ericson, Real-Time Collision Detection, 5.1.5). Callers use the result as a search direction
+/// only, so that its error is harmless.
 [[nodiscard]] inline Vec direction_to(const Vec& point, const Vec& ab, const Vec& ac) noexcept {
   const double d1 = ab.dot(point);
   const double d2 = ac.dot(point);

@@ -27,9 +27,9 @@ class AxisSearch {
   double separation_ = -std::numeric_limits<double>::infinity();
 };
 
-/// Tests axes that the features of a simplex give: perpendicular to the span of its points on a and
-/// on b. These are right to rounding even if the vector between the closest points is too short to
-/// have an accurate direction.
+/// Tests axes that are perpendicular to the differences of a simplex' points on a, and of those on
+/// b. These axes are right to rounding even if the vector between the closest points is too short
+/// to have an accurate direction.
 void test_simplex(const GjkResult& found, AxisSearch& search) noexcept;
 
 /// Tests the face normals and caps of both cores.
@@ -52,9 +52,9 @@ inline constexpr std::uint64_t kMaxEdgePairs = 4'000'000;
 
 /// Tests the axes for points, segments, cylinders and cones whose axes are parallel. Their
 /// Minkowski difference is then a body of revolution, its section through the origin is a polygon,
-/// and the axis of least depth is a normal of that polygon; all of them are tested. If the axes are
-/// not quite parallel, the best axis is within twice the sine of their angle times the size of b's
-/// core.
+/// and the axis of least depth is a normal of that polygon; all these normals are tested. If the
+/// axes are not quite parallel, the depth along the best normal exceeds the least depth by at most
+/// twice the sine of their angle times the size of b's core.
 void test_revolution(const Problem& problem, AxisSearch& search) noexcept;
 
 }  // namespace winnow::solver

@@ -52,8 +52,8 @@ Vec without(const Vec& v, const Vec& e) noexcept {
   return unit(once - e * e.dot(once));
 }
 
-// Blocks of eight keep independent maxima, so that iterations do not depend on each other's
-// comparisons.
+// The maximum of eight products is computed first, then compared with the best so far: only one
+// comparison in eight depends on the vertices before.
 std::uint32_t farthest_vertex(const HullShape& hull, const Vec& d, double& value) noexcept {
   constexpr int kBlock = 8;
   using Block = Eigen::Array<double, kBlock, 1>;

@@ -43,9 +43,9 @@ struct Core {
   double size = 0.0;
   /// Triangle: relative to the center, in world axes.
   std::array<Vec, 3> corner{};
-  /// Triangle: unit vector from corner i to the next. Computed from the shape's own numbers and
-  /// then rotated, so that it does not carry the rounding error of corners far from the center.
-  /// Zero if the corners coincide.
+  /// Triangle: unit vector from corner i to the next, zero if the corners coincide. Subtracted in
+  /// the triangle's frame, then rotated: the difference of two rotated corners far from the center
+  /// would have their rounding errors.
   std::array<Vec, 3> side{};
   const HullShape* hull = nullptr;
   /// Ellipsoid, tapered capsule or user shape.

@@ -183,8 +183,8 @@ CoreDistance half_space_distance(const Problem& problem) noexcept {
   return found;
 }
 
-/// Tests axes for pairs of segments, points and triangles without area: perpendicular to their
-/// line.
+/// Tests axes perpendicular to the line of a pair of points, segments, triangles and hulls without
+/// area, which may all be on one line.
 void test_across_line(const Problem& problem, AxisSearch& search) noexcept {
   Vec line = Vec::Zero();
   for (const Core* core : {&problem.a, &problem.b}) {
@@ -230,7 +230,7 @@ void refine_curved(const Core& a, const Core& b, const Vec& axis, double noise,
   }
 }
 
-/// The distance of a point from the other core, along an axis that is the best.
+/// The distance of a point from the other core, along the best axis.
 CoreDistance distance_along(const Problem& problem, const Vec& axis) noexcept {
   CoreDistance found;
   found.axis = axis;
@@ -314,9 +314,10 @@ double inscribed_depth(const Problem& problem) noexcept {
   return a.rounding + b.rounding - (gjk_result.contact ? 0.0 : gjk_result.upper);
 }
 
-/// For cores of revolution whose axes cross and are nearly parallel, so that many directions are
-/// nearly equally good and the expanding polytope does not converge. Returns by how much the depth
-/// along the best axis may exceed the true depth.
+/// For cores of revolution for which the expanding polytope has not converged, because many
+/// directions are nearly equally good. Returns by how much the depth along the best axis may exceed
+/// the true depth: bounded by the bodies inscribed in the cores and, if their axes are nearly
+/// parallel, by test_revolution.
 double gap_of_round(const Problem& problem, double turn, double gap, AxisSearch& search) noexcept {
   constexpr double kNearlyParallel = 1e-6;
   const double depth = -search.separation();
@@ -327,8 +328,8 @@ double gap_of_round(const Problem& problem, double turn, double gap, AxisSearch&
   return std::min(gap, -search.separation() - inscribed_depth(problem));
 }
 
-/// Tests the axis that the expanding polytope gives, and if needed the features. Returns by how
-/// much the depth along the best axis may exceed the true depth.
+/// Tests the axis that expand_polytope returns, and the features if its bounds do not close.
+/// Returns by how much the depth along the best axis may exceed the true depth.
 double test_by_expansion(const Problem& problem, const GjkResult& start, double turn,
                          AxisSearch& search, SolverCounts& counts) noexcept {
   const double noise = problem.noise();

@@ -7,7 +7,7 @@ namespace winnow::solver {
 
 /// The signed distance of two cores and its error bound.
 struct CoreDistance {
-  /// Negative by the depth. The true distance is within `doubt` of it.
+  /// Minus the depth if the cores overlap. The true distance is within `doubt` of it.
   double distance = 0.0;
   double doubt = 0.0;
   /// Unit, from a to b.

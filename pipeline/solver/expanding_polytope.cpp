@@ -22,11 +22,11 @@ namespace {
 }
 
 /// A polytope of triangles that contains the origin and grows by points outside of it. Faces are
-/// kept in a heap by their distance from the origin. The size is fixed, about 130 KB, for the
+/// kept in a heap by their distance from the origin. The size is fixed, about 140 KB, for the
 /// stack.
 class InnerPolytope {
  public:
-  struct Face {
+  struct PolytopeFace {
     std::array<std::uint16_t, 3> point;
     /// across[i] is the face on the other side of the edge from point i to the next.
     std::array<std::uint16_t, 3> across;
@@ -50,9 +50,9 @@ class InnerPolytope {
 
   /// Removes the nearest face from the heap; returns false if the heap is empty.
   bool take_nearest(std::uint16_t& face) noexcept;
-  [[nodiscard]] const Face& face(std::uint16_t f) const noexcept { return faces_[f]; }
+  [[nodiscard]] const PolytopeFace& face(std::uint16_t f) const noexcept { return faces_[f]; }
   /// The height of a point above the face's plane.
-  [[nodiscard]] double height(const Face& face, const Vec& w) const noexcept {
+  [[nodiscard]] double height(const PolytopeFace& face, const Vec& w) const noexcept {
     return face.normal.dot(w - points_[face.point[0]]);
   }
   /// Marks a face as part of the surface of the Minkowski difference.
@@ -68,7 +68,7 @@ class InnerPolytope {
   static constexpr std::uint32_t kFaces = 6 * kPoints;
 
   /// An edge of the horizon: it stays when the faces visible from a new point are removed.
-  struct Side {
+  struct HorizonEdge {
     std::uint16_t from;
     std::uint16_t to;
     std::uint16_t face;
@@ -78,7 +78,7 @@ class InnerPolytope {
   bool find_horizon(const Vec& w, std::uint16_t seen) noexcept;
   [[nodiscard]] double triangle_distance(std::uint16_t p, std::uint16_t q,
                                          std::uint16_t r) const noexcept;
-  [[nodiscard]] bool is_visible(const Vec& w, const Face& face, std::uint16_t from,
+  [[nodiscard]] bool is_visible(const Vec& w, const PolytopeFace& face, std::uint16_t from,
                                 std::uint16_t to) const noexcept;
   void push(std::uint16_t face) noexcept;
   std::uint16_t pop() noexcept;
@@ -89,9 +89,9 @@ class InnerPolytope {
 
   double noise_;
   std::array<Vec, kPoints> points_;
-  std::array<Face, kFaces> faces_;
+  std::array<PolytopeFace, kFaces> faces_;
   std::array<std::uint16_t, kFaces> heap_;
-  std::array<Side, kFaces> horizon_;
+  std::array<HorizonEdge, kFaces> horizon_;
   std::array<std::uint16_t, kFaces> moved_;
   std::uint32_t point_count_ = 0;
   std::uint32_t face_count_ = 0;
@@ -140,7 +140,7 @@ bool InnerPolytope::add_face(std::uint16_t p, std::uint16_t q, std::uint16_t r,
   const double area = cross.norm();
   if (!(area > 0.0)) return false;
   at = static_cast<std::uint16_t>(face_count_++);
-  Face& face = faces_[at];
+  PolytopeFace& face = faces_[at];
   face.point = {p, q, r};
   face.alive = true;
   face.settled = false;
@@ -224,14 +224,14 @@ bool InnerPolytope::attach(const Vec& w, std::uint16_t seen) noexcept {
   if (face_count_ + horizon_count_ > kFaces) return false;
   const auto first = static_cast<std::uint16_t>(face_count_);
   for (std::uint32_t i = 0; i < horizon_count_; ++i) {
-    const Side& side = horizon_[i];
+    const HorizonEdge& side = horizon_[i];
     std::uint16_t at = 0;
     if (!add_face(side.from, side.to, apex, at)) return false;
     const std::uint32_t before = i == 0 ? horizon_count_ - 1 : i - 1;
     const std::uint32_t after = i + 1 == horizon_count_ ? 0 : i + 1;
     faces_[at].across = {side.face, static_cast<std::uint16_t>(first + after),
                          static_cast<std::uint16_t>(first + before)};
-    Face& other = faces_[side.face];
+    PolytopeFace& other = faces_[side.face];
     for (std::size_t k = 0; k < 3; ++k) {
       if (other.point[k] == side.to && other.point[(k + 1) % 3] == side.from) other.across[k] = at;
     }
@@ -241,7 +241,7 @@ bool InnerPolytope::attach(const Vec& w, std::uint16_t seen) noexcept {
 
 /// True if w is above the face, or in its plane and on the line of the side between `from` and
 /// `to`: a new face over that side would have no area.
-bool InnerPolytope::is_visible(const Vec& w, const Face& face, std::uint16_t from,
+bool InnerPolytope::is_visible(const Vec& w, const PolytopeFace& face, std::uint16_t from,
                                std::uint16_t to) const noexcept {
   const double above = height(face, w);
   if (above > kConvergence * noise_) return true;
@@ -273,9 +273,9 @@ bool InnerPolytope::find_horizon(const Vec& w, std::uint16_t seen) noexcept {
     const std::uint8_t k = visit.side;
     visit.side = static_cast<std::uint8_t>((k + 1) % 3);
     --visit.left;
-    const Face& face = faces_[visit.face];
+    const PolytopeFace& face = faces_[visit.face];
     const std::uint16_t next = face.across[k];
-    Face& other = faces_[next];
+    PolytopeFace& other = faces_[next];
     if (!other.alive) continue;
     const std::uint16_t from = face.point[k];
     const std::uint16_t to = face.point[(k + 1U) % 3];
@@ -303,7 +303,7 @@ class PolytopeExpansion {
       : a_(a), b_(b), noise_(noise), inner_(noise) {}
 
   /// Completes the simplex to a tetrahedron. Returns false if the difference is flat; bounds() then
-  /// holds its normal and depth 0.
+  /// returns its normal and depth 0.
   bool begin(const GjkSimplex& simplex) noexcept;
   void grow(double tolerance) noexcept;
   [[nodiscard]] const DepthBounds& bounds() const noexcept { return bounds_; }
@@ -378,7 +378,7 @@ void PolytopeExpansion::grow(double tolerance) noexcept {
   double settled = std::numeric_limits<double>::infinity();
   std::uint16_t nearest = 0;
   while (inner_.take_nearest(nearest)) {
-    const InnerPolytope::Face& face = inner_.face(nearest);
+    const InnerPolytope::PolytopeFace& face = inner_.face(nearest);
     bounds_.lower = std::min(settled, face.low);
     if (upper - bounds_.lower <= tolerance) break;
     const Vec w = support_along(face.normal);

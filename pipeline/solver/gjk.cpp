@@ -176,7 +176,7 @@ DifferencePoint support_towards(const Core& a, const Core& b, const Vec& v) noex
   return p;
 }
 
-bool holds(const GjkSimplex& simplex, const Vec& w) noexcept {
+bool contains(const GjkSimplex& simplex, const Vec& w) noexcept {
   for (int i = 0; i < simplex.count; ++i) {
     if (simplex.point[static_cast<std::size_t>(i)].w == w) return true;
   }
@@ -210,7 +210,7 @@ void iterate(const Core& a, const Core& b, double noise, double enough, double s
     }
     result.far = result.lower > enough;
     const double known = std::max(2.0 * kEpsilon * square, share * length * (length - roundings));
-    if (result.far || square - reach <= known || holds(simplex, p.w)) {
+    if (result.far || square - reach <= known || contains(simplex, p.w)) {
       result.bounded = false;
       break;
     }

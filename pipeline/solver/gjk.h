@@ -29,7 +29,7 @@ struct GjkSimplex {
 /// Sets the weights to the point of the simplex that is closest to the origin, and drops the points
 /// that it does not need. The region is chosen by signed volumes, areas and lengths (Montanari,
 /// Petrinic, Barbieri, "Improving the GJK algorithm", 2017); if one of these is too small to have a
-/// certain sign, all sides are tried and the closest wins.
+/// certain sign, all sides are tried and the closest is taken.
 void reduce(GjkSimplex& simplex) noexcept;
 
 struct GjkResult {
@@ -51,9 +51,10 @@ struct GjkResult {
 };
 
 /// Computes the distance of two bounded cores by GJK (Gilbert, Johnson, Keerthi 1988), with
-/// simplices reduced by signed volumes. Ends when the gap between the distance and its supporting
-/// plane is, relatively, as small as doubles allow, or when there is no progress: in at most 64
-/// iterations for polytopes of any size that are not degenerate, never in more than 256.
+/// simplices reduced by signed volumes. Ends when the relative difference between the length of
+/// `between` and the separation along it is as small as doubles allow, or when there is no
+/// progress: in at most 64 iterations for polytopes of any size that are not degenerate, never in
+/// more than 256.
 ///
 /// `start`: the first search direction, from a to b. `noise`: lengths up to this cannot be
 /// distinguished from zero. `enough`: stops if the cores are farther apart. `share`: if positive,

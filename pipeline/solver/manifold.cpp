@@ -276,9 +276,9 @@ ContactPoint single_contact(const Problem& problem, const Vec& point, const Vec&
   return contact;
 }
 
-/// Contacts of two segments at both ends of the range in which they lie side by side, if they are
-/// within the margin, the deeper one first; as in the kernels. Returns 0 if they are not side by
-/// side.
+/// Writes the contacts of two segments at those ends of the range in which they are side by side
+/// that are within the margin, the deeper one first, as in the kernels. Returns their number; 0 if
+/// the segments are not side by side.
 std::uint32_t parallel_segment_contacts(const Problem& problem, const Vec& normal, double distance,
                                         double margin, ContactPoint* out) noexcept {
   const Core& a = problem.a;
@@ -361,10 +361,12 @@ void make_manifold(const Problem& problem, const Vec& point, double distance, do
   ContactPoint* contacts = answer.contacts;
   std::uint32_t count =
       is_single_point ? 0 : feature_contacts(problem, normal, distance, margin, contacts);
-  // The closest point replaces the deepest point of the features if they miss it by a little (as
-  // caps with 16 corners do), are farther than the margin, or touch in only one point. If they miss
-  // it by much, it is inserted before them. No point becomes deeper than it, and the first has its
-  // depth.
+  // The closest point of the pair replaces the deepest point of the features if the depths of the
+  // two differ by more than rounding errors and tied_depth (as for caps, which are polygons of 16
+  // corners), if the features are farther apart than the margin, or if they have only one contact.
+  // If the depths differ by more than 1e-2 of the size, the closest point is inserted before the
+  // points of the features instead. No point becomes deeper than the closest point, and the first
+  // point has its depth.
   const double miss = std::abs(double{contacts[0].depth} - double{single.depth});
   const bool near = count > 0 && double{contacts[0].depth} >= -margin;
   if (near && count > 1 && miss > 1e-2 * problem.size) {

@@ -22,11 +22,11 @@ class SupportingPatch {
   /// Finds the feature farthest along `outward`: a face of a box, a triangle, a segment, a face,
   /// edge or vertex of a hull, a cap of a cylinder or cone as a polygon of 16 corners or a line of
   /// its side, the line between the balls of a tapered capsule, or, for a support function, the
-  /// support points of eight directions around `outward`. Features that are some degrees off also
-  /// count, because bodies rock over them; each of them contains the supporting point. Corners of
-  /// boxes are numbered by the bits x > 0, y > 0, z > 0; edges by 4 x their axis plus the bits of
-  /// the other axes; faces by 2 x their axis plus the sign. Caps begin at +x and are numbered
-  /// around the rim.
+  /// support points of eight directions around `outward`. Features may deviate from `outward` by
+  /// the angles of contact_patch.h, because bodies rock over them; each contains the supporting
+  /// point. Corners of boxes are numbered by the bits x > 0, y > 0, z > 0; edges by 4 x their axis
+  /// plus the bits of the other axes; faces by 2 x their axis plus the sign. Caps begin at +x and
+  /// are numbered around the rim.
   SupportingPatch(const Core& core, const Vec& outward) noexcept;
 
   /// A square on the face of a half-space around the projection of `middle`, `reach` to each side.

@@ -8,8 +8,8 @@ namespace winnow::solver {
 namespace {
 
 /// The radii of an ellipsoid and their differences from the smallest one.
-struct Ellipsoid {
-  explicit Ellipsoid(const Vec& lengths) noexcept : radius(lengths) {
+struct EllipsoidRadii {
+  explicit EllipsoidRadii(const Vec& lengths) noexcept : radius(lengths) {
     radius.minCoeff(&least);
     thin = radius[least];
     excess = (radius.array() - thin) * (radius.array() + thin);
@@ -21,9 +21,10 @@ struct Ellipsoid {
   Vec excess;
 };
 
-/// Returns the outward normal for a point q for which the equation has no root: the shortest way
-/// out is along the axes of the smallest radius. `left`: 1 minus the sum of squares.
-Vec outward_along_thin(const Ellipsoid& shape, const Vec& q, double left) noexcept {
+/// Returns the outward normal for a point q for which the equation has no root, because its weights
+/// along the axes of the smallest radius are 0. The nearest points of the surface are then on both
+/// sides of q along these axes; takes one of them. `left`: 1 minus the sum of squares.
+Vec outward_along_thin(const EllipsoidRadii& shape, const Vec& q, double left) noexcept {
   Vec normal = Vec::Zero();
   if (shape.thin == 0.0) {
     for (int i = 0; i < 3; ++i) normal[i] = shape.excess[i] > 0.0 ? 0.0 : q[i];
@@ -42,7 +43,7 @@ Vec outward_along_thin(const Ellipsoid& shape, const Vec& q, double left) noexce
 /// in its frame. Up to a factor its components are q_i / (s + excess_i), for the largest s at which
 /// the squares of weight_i / (s + excess_i) add up to 1.
 Vec outward_of_ellipsoid(const Vec& radius, const Vec& q) noexcept {
-  const Ellipsoid shape(radius);
+  const EllipsoidRadii shape(radius);
   const Vec weight = radius.cwiseProduct(q.cwiseAbs());
   double s = 0.0;
   for (int i = 0; i < 3; ++i) s = shape.excess[i] > 0.0 ? s : hypotenuse(s, weight[i]);
@@ -70,7 +71,8 @@ Vec outward_of_ellipsoid(const Vec& radius, const Vec& q) noexcept {
   return unit(normal == Vec::Zero() ? q : normal);
 }
 
-/// As above, for the convex hull of balls of radii `low` at z = -half and `high` at z = half.
+/// As outward_of_ellipsoid, for the convex hull of balls of radii `low` at z = -half and `high` at
+/// z = half.
 Vec outward_of_taper(double low, double high, double half, const Vec& q) noexcept {
   const double rho = hypotenuse(q.x(), q.y());
   const Vec out = rho > 0.0 ? Vec(q.x() / rho, q.y() / rho, 0.0) : Vec(Vec::UnitX());

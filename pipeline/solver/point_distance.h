@@ -10,8 +10,8 @@ namespace winnow::solver {
 ///
 /// The nearest point of an ellipsoid is the root of one equation (Eberly, "Distance from a point to
 /// an ellipse, an ellipsoid, or a hyperellipsoid", 2013), found by Newton's method. The squared
-/// radii enter only as differences from the smallest, so that points near the middle are as
-/// accurate as others.
+/// radii enter only as differences from the smallest, so that results for points near the center
+/// are as accurate as for others.
 [[nodiscard]] Vec axis_from_point(const Problem& problem) noexcept;
 
 }  // namespace winnow::solver

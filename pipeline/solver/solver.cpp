@@ -25,8 +25,9 @@ struct PairQuery {
   const Pose& pose_b;
 };
 
-/// A pair is solved in the same order whichever way it is given, so that the two answers mirror
-/// each other.
+/// True if the pair is solved as (b, a). The order does not depend on which shape is called a, so
+/// that the answers for (a, b) and (b, a) mirror each other; except for two shapes of one kind at
+/// the same position.
 bool is_solved_mirrored(ShapeId a, const Pose& pose_a, ShapeId b, const Pose& pose_b) noexcept {
   if (a.kind() != b.kind()) return solver::is_prepared_mirrored(a.kind(), b.kind());
   for (int i = 0; i < 3; ++i) {

@@ -10,7 +10,7 @@ namespace winnow {
 
 struct SolverCounts {
   std::uint64_t pairs = 0;
-  /// Pairs whose sign double could not decide: decided by exact arithmetic.
+  /// Pairs whose sign double could not decide, which were passed to exact arithmetic.
   std::uint64_t exact = 0;
   /// Iterations that reached their bound and fell back to enumeration.
   std::uint64_t bounded = 0;
@@ -29,9 +29,9 @@ struct SolverCounts {
 ///
 /// The distance is the distance of the cores minus the roundings. If the shapes overlap, it is
 /// minus the penetration depth: the length of the shortest translation of b that leaves the shapes
-/// touching. If the closest direction is not unique (coincident centres), the first of +x, -x, +y,
-/// -y, +z, -z of the frame of a that is a closest one is taken. Two half-spaces that do not face
-/// each other overlap without bound: the distance is minus the largest double, the error bound
+/// touching. If the closest direction is not unique (coincident centers), the first of +x, -x, +y,
+/// -y, +z, -z of the frame of a that is a closest direction is taken. Two half-spaces that do not
+/// face each other overlap without bound: the distance is minus the largest double, the error bound
 /// infinite.
 [[nodiscard]] PairAnswer solve_pair(const ShapeTables& tables, ShapeId a, const Pose& pose_a,
                                     ShapeId b, const Pose& pose_b, ContactLevel level,

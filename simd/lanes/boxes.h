@@ -71,9 +71,9 @@ template <int Slabs>
 
 #if !defined(WINNOW_ISA_IS_neon64)
 
-/// Transposes four floats of each box. Each 128-bit part of row i holds one box: lane i in the
-/// first part, then lanes i + 4, i + 8 and i + 12 if the register has more parts. Shuffles within
-/// 128 bits then leave the lanes in order.
+/// Transposes four floats of each box. Each 128-bit part of row i contains four floats of one box:
+/// the box of lane i in the first part, then the boxes of lanes i + 4, i + 8 and i + 12 if the
+/// register has more parts. Shuffles within 128 bits then leave the lanes in order.
 struct BoxQuads {
 #if defined(WINNOW_ISA_IS_avx512)
   using Row = __m512;
@@ -149,9 +149,9 @@ struct BoxQuads {
 
 #endif
 
-/// Loads boxes that are contiguous in memory, each at its own address: lane l of the result is the
-/// box of six floats (min xyz, max xyz) at box(l). Boxes are loaded whole and transposed in
-/// registers, which takes fewer instructions than loading single floats.
+/// Loads boxes from separate addresses: lane l of the result is the box of six contiguous floats
+/// (min xyz, max xyz) at box(l). Boxes are loaded whole and transposed in registers, which takes
+/// fewer instructions than loading single floats.
 template <typename Box>
 [[gnu::always_inline]] inline Box16 load_boxes(Box&& box) {
   Box16 r;

@@ -2,7 +2,8 @@
 
 // Compaction of lanes by a mask, and interleaving of two lane values. The set lanes are packed to
 // the front. Every store writes whole registers: the destination needs room for 16 elements from
-// where it starts, whatever the mask. Queries and pair searches write their results with it.
+// where it starts, whatever the mask. Queries and pair searches write their results with these
+// functions.
 
 #include "simd/lanes/lanes.h"
 
@@ -136,7 +137,7 @@ inline unsigned emit_pairs(Mask16 mask, const Uints& v, std::uint32_t q, std::ui
   const __m512i b = Sorted ? _mm512_max_epu32(query, packed) : packed;
   const __m512i low = _mm512_setr_epi32(0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23);
   _mm512_storeu_si512(out, _mm512_permutex2var_epi32(a, low, b));
-  // Usually few lanes are set: leaving out a store outweighs a rare misprediction.
+  // Usually few lanes are set: skipping the second store saves more than rare mispredictions cost.
   if (__builtin_expect(count(mask) > 8, 0) != 0) {
     const __m512i high =
         _mm512_setr_epi32(8, 24, 9, 25, 10, 26, 11, 27, 12, 28, 13, 29, 14, 30, 15, 31);

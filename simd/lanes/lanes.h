@@ -1,14 +1,14 @@
 #pragma once
 
 // Lanes<T>: sixty-four bytes of one number type as one value with operators: 16 floats, 16 unsigned
-// or 8 doubles on any instruction set. For kernel files only. It is one register on AVX-512, two on
-// AVX2, four on SSE4.2 and NEON. A block is 16 rows everywhere, so kernels visit rows and write
-// results in the same order on every instruction set, and one template of a kernel serves both
-// precisions. Every operation is rounded by IEEE 754 and none is fused (except multiply_add), so
-// results are the same on every instruction set.
+// or 8 doubles on any instruction set. For kernel files only. A value is one register on AVX-512,
+// two on AVX2, four on SSE4.2 and NEON. A block is 16 rows everywhere, so kernels visit rows and
+// write results in the same order on every instruction set. Kernels that are templates of T can be
+// instantiated for float and double. Every operation is rounded by IEEE 754 and none is fused
+// (except multiply_add), so results are the same on every instruction set.
 //
 // Only the headers of this folder use xsimd (8.1 to 14) and intrinsics. xsimd 8.1 has no bit mask
-// of a batch_bool, no compress and no reduction by min or max: they are written here per
+// of a batch_bool, no compress and no reduction by min or max: this folder implements them per
 // instruction set.
 
 #ifndef WINNOW_ISA_NAME
@@ -74,7 +74,7 @@ struct LaneMask {
 };
 
 // For floats on NEON, xsimd 8.1 divides and takes roots by Newton's method, which is not rounded by
-// IEEE 754 and makes the root of infinity NaN. Hence these use the instructions.
+// IEEE 754 and makes the root of infinity NaN. Hence these functions use the instructions of NEON.
 template <typename Part>
 [[gnu::always_inline]] inline Part quotient(const Part& a, const Part& b) {
 #if defined(WINNOW_ISA_IS_neon64)

@@ -6,7 +6,7 @@
 
 namespace winnow::WINNOW_ISA_NAME {
 
-/// Loads sixteen numbers, of which the first `left` exist; the others are zero. Memory behind them
+/// Loads the first `left` of sixteen numbers; the other lanes are zero. Memory behind these numbers
 /// is not read, because other threads may write to it.
 template <typename T>
 [[nodiscard]] Lanes<T> load_partial(const T* p, std::size_t left) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// Points of four bytes each: ten bits per coordinate, x in the lowest.
+// Points of four bytes each: ten bits per coordinate, x in the lowest ten.
 
 #include "simd/lanes/lanes.h"
 

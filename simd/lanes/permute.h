@@ -34,7 +34,7 @@ class LanePermutation {
     return pick_staged(from);
 #endif
   }
-  /// As above; indices from 16 on select from from[1].
+  /// As above; an index i of 16 or more selects lane i - 16 of from[1].
   [[nodiscard, gnu::always_inline]] Floats pick(const Floats (&from)[2]) const {
 #if defined(WINNOW_ISA_IS_avx512)
     Floats r;

@@ -1,9 +1,10 @@
 #pragma once
 
 // Loads of lanes that are not contiguous numbers of their type in memory: numbers of 16 bits, and
-// rows of doubles at separate addresses; also sixteen reductions at once. Rows are loaded whole and
-// transposed in registers. This avoids gather instructions, and vector loads of numbers that were
-// just stored one by one, which stall on store forwarding.
+// rows of doubles at separate addresses; also sixteen reductions at once. On AVX-512, and for rows
+// of four doubles on AVX2, rows are loaded whole and transposed in registers. This avoids gather
+// instructions, and vector loads of numbers that were just stored one by one, which stall on store
+// forwarding.
 
 #include "simd/lanes/lanes.h"
 
@@ -115,7 +116,7 @@ inline Floats reduce_max_rows(const float* p) {
 [[gnu::always_inline]] inline __m512d two_rows(const double* low, const double* high) {
   return _mm512_insertf64x4(_mm512_castpd256_pd512(_mm256_loadu_pd(low)), _mm256_loadu_pd(high), 1);
 }
-/// row[i] holds two of eight rows: 0 and 2, 1 and 3, 4 and 6, 5 and 7.
+/// row[i] contains two of eight rows: 0 and 2, 1 and 3, 4 and 6, 5 and 7.
 [[gnu::always_inline]] inline void transpose_rows(const __m512d (&row)[4], Doubles (&out)[4]) {
   const __m512d even_low = _mm512_unpacklo_pd(row[0], row[1]);
   const __m512d even_high = _mm512_unpacklo_pd(row[2], row[3]);

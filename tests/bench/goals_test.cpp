@@ -33,12 +33,13 @@ void measure_example(const Json& options, MeasurementCache& /*measurement_cache*
   add("box", "low", "Bullet", 50.0);
 }
 
-std::vector<Goal> goals_of(const std::string& ask) {
-  const auto asks = parse_goals(R"({"lists": {}, "asks": [{"topic": "engine", "what": "{kind}",)"
-                                R"( "unit": "ns", "measure": {"example": {}}, )" +
-                                ask + "}]}");
+std::vector<Goal> goals_of(const std::string& members) {
+  const auto entries =
+      parse_goals(R"({"lists": {}, "goals": [{"topic": "engine", "what": "{kind}",)"
+                  R"( "unit": "ns", "measure": {"example": {}}, )" +
+                  members + "}]}");
   MeasurementCache measurement_cache;
-  return evaluate(asks.at(0), measurement_cache);
+  return evaluate(entries.at(0), measurement_cache);
 }
 
 TEST(Goals, goal_computes_the_least_most_and_sum) {
@@ -80,46 +81,46 @@ TEST(Goals, median_is_taken_over_the_values_by_key) {
 
 TEST(Goals, times_of_another_machine_are_scaled) {
   const std::string value = R"("value": {"least": "ns", "of": "times"}, "at_most": )";
-  EXPECT_EQ(goals_of(value + R"({"existing": 6, "divided_by": 3})").at(0).asked, 4.0);
+  EXPECT_EQ(goals_of(value + R"({"existing": 6, "divided_by": 3})").at(0).bound, 4.0);
   EXPECT_EQ(goals_of(value + R"({"least_of": [{"existing": 30},
                               {"least": "ns", "of": "times", "where": {"peer": true}}]})")
                 .at(0)
-                .asked,
+                .bound,
             50.0);
   EXPECT_EQ(goals_of(value + R"({"least": "ns", "of": "times", "where": {"engine": "FCL"},
                               "else_existing": 7})")
                 .at(0)
-                .asked,
+                .bound,
             14.0);
 }
 
 TEST(Goals, goal_without_rows_fails_unless_optional) {
-  const std::string nobody =
+  const std::string without_rows =
       R"("value": {"the": "ns", "of": "times", "where": {"engine": "FCL"}}, "at_most": 1)";
-  ASSERT_EQ(goals_of(nobody).size(), 1U);
-  EXPECT_FALSE(goals_of(nobody).at(0).holds());
-  EXPECT_TRUE(goals_of(nobody + R"(, "optional": true)").empty());
+  ASSERT_EQ(goals_of(without_rows).size(), 1U);
+  EXPECT_FALSE(goals_of(without_rows).at(0).holds());
+  EXPECT_TRUE(goals_of(without_rows + R"(, "optional": true)").empty());
   MeasurementCache measurement_cache;
-  Json ask{{"topic", "engine"}, {"what", ""}, {"unit", ""}, {"value", 1}, {"at_least", 0}};
-  ask["measure"] = {{"example", {{"refuse", true}}}};
-  EXPECT_FALSE(evaluate(ask, measurement_cache).at(0).holds());
-  ask["measure"] = {{"example", {{"absent", true}}}};
-  EXPECT_TRUE(evaluate(ask, measurement_cache).empty());
+  Json entry{{"topic", "engine"}, {"what", ""}, {"unit", ""}, {"value", 1}, {"at_least", 0}};
+  entry["measure"] = {{"example", {{"refuse", true}}}};
+  EXPECT_FALSE(evaluate(entry, measurement_cache).at(0).holds());
+  entry["measure"] = {{"example", {{"absent", true}}}};
+  EXPECT_TRUE(evaluate(entry, measurement_cache).empty());
 }
 
-TEST(Asks, asks_with_lists_expand_to_all_combinations) {
-  const auto asks = parse_goals(R"({"lists": {"sizes": [{"objects": 1000}, {"objects": 20}]},
-    "asks": [{"topic": "engine", "each": ["sizes", [{"threads": 1}, {"threads": 2}]],
+TEST(GoalEntries, entries_with_lists_expand_to_all_combinations) {
+  const auto entries = parse_goals(R"({"lists": {"sizes": [{"objects": 1000}, {"objects": 20}]},
+    "goals": [{"topic": "engine", "each": ["sizes", [{"threads": 1}, {"threads": 2}]],
               "only": {"objects": [1000]}, "what": "{objects} objects, {threads}", "unit": "",
               "measure": {"example": {"objects": "{objects}"}}, "value": 1, "at_most": 1}]})");
-  ASSERT_EQ(asks.size(), 2U);
-  EXPECT_EQ(asks[1]["what"], "1,000 objects, 2 threads");
-  EXPECT_EQ(asks[1]["measure"]["example"]["objects"], 1000);
+  ASSERT_EQ(entries.size(), 2U);
+  EXPECT_EQ(entries[1]["what"], "1,000 objects, 2 threads");
+  EXPECT_EQ(entries[1]["measure"]["example"]["objects"], 1000);
 }
 
-TEST(Asks, asks_of_the_goals_file_are_read) {
+TEST(GoalEntries, entries_of_the_goals_file_are_read) {
   EXPECT_GT(parse_goals(kGoalsJson).size(), 300U);
-  EXPECT_THROW((void)parse_goals(R"({"lists": {}, "asks": [{"topic": "none"}]})"),
+  EXPECT_THROW((void)parse_goals(R"({"lists": {}, "goals": [{"topic": "none"}]})"),
                std::runtime_error);
 }
 

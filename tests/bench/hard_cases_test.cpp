@@ -68,8 +68,8 @@ TEST_P(HardCases, robust_and_reference_tiers_have_no_faults) {
   for (const Isa isa : available_isas()) {
     const test::IsaScope scope(isa);
     for (const NarrowTier tier : {NarrowTier::robust, NarrowTier::reference}) {
-      for (const Json& asked : {cases, exchanged(cases)}) {
-        EXPECT_EQ(count_faults(asked, tier, isa == available_isas().front()), 0)
+      for (const Json& questions : {cases, exchanged(cases)}) {
+        EXPECT_EQ(count_faults(questions, tier, isa == available_isas().front()), 0)
             << name_of(tier) << " on " << to_string(isa);
       }
     }
@@ -115,21 +115,21 @@ TEST(HardCaseVerdicts, verdict_reports_the_size_of_the_error) {
                          {"a", {{"type", "sphere"}, {"radius", 1.0}}},
                          {"b", {{"type", "sphere"}, {"radius", 1.0}}},
                          {"expect", {{"overlap", false}, {"distance", 2.0}}}};
-  Json said = {{"id", 1},
-               {"status", "ok"},
-               {"overlap", false},
-               {"distance", 2.0 + 4e-3},
-               {"normal", {1, 0, 0}},
-               {"error_bound", "inf"}};
-  const CaseVerdict verdict = check_hard_case(question, said, 1e-4);
+  Json reported = {{"id", 1},
+                   {"status", "ok"},
+                   {"overlap", false},
+                   {"distance", 2.0 + 4e-3},
+                   {"normal", {1, 0, 0}},
+                   {"error_bound", "inf"}};
+  const CaseVerdict verdict = check_hard_case(question, reported, 1e-4);
   EXPECT_EQ(verdict.fault, "distance");
   EXPECT_NEAR(verdict.error, 1e-3, 1e-12);
   EXPECT_NEAR(verdict.over_allowed, 10.0, 1e-9);
-  said["overlap"] = true;
-  EXPECT_EQ(check_hard_case(question, said, 1e-2).fault, kFalseContact);
-  said["distance"] = "nan";
-  said["overlap"] = false;
-  EXPECT_EQ(check_hard_case(question, said, 1e-2).fault, "no distance");
+  reported["overlap"] = true;
+  EXPECT_EQ(check_hard_case(question, reported, 1e-2).fault, kFalseContact);
+  reported["distance"] = "nan";
+  reported["overlap"] = false;
+  EXPECT_EQ(check_hard_case(question, reported, 1e-2).fault, "no distance");
 }
 
 std::string family_of(const testing::TestParamInfo<Path>& file) {

@@ -3,8 +3,8 @@
 
 #include "bench/measure/impact_race.h"
 #include "bench/contenders/winnow_impacts.h"
+#include "bench/measure/continuous_race.h"
 #include "bench/measure/feature_race.h"
-#include "bench/measure/sweep_race.h"
 
 #include <gtest/gtest.h>
 
@@ -75,10 +75,11 @@ TEST(ImpactRace, features_that_touch_hit_and_others_miss) {
   }
 }
 
-TEST(ImpactRace, sweeps_of_a_heap_are_timed) {
-  const SweepTiming timing = measure_sweeps({.bodies = 200, .fast = 20, .frames = 2});
+TEST(ImpactRace, impacts_of_a_heap_are_timed) {
+  const ContinuousTiming timing =
+      measure_continuous_collision({.bodies = 200, .fast = 20, .frames = 2});
   EXPECT_EQ(timing.collide_ms.size(), 2U);
-  EXPECT_EQ(timing.sweep_ms.size(), 2U);
+  EXPECT_EQ(timing.impacts_ms.size(), 2U);
   EXPECT_EQ(timing.all_ms.size(), 2U);
   EXPECT_GT(timing.pairs, 20U);
   EXPECT_GT(timing.impacts, 10U);

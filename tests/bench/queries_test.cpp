@@ -40,7 +40,8 @@ TEST_P(Race, every_engine_has_the_same_answers) {
       EXPECT_TRUE(run.comparison.agree())
           << run.engine << ": " << run.set << ": " << run.comparison.first;
     }
-    // Each set is put to every engine singly, and to the partitions rays and boxes also in batches.
+    // Every engine answers the queries of each set one by one. Partitions also answer rays and
+    // boxes in batches.
     EXPECT_GE(runs.size(), all_partitions().size() * (query_set_names().size() + 7));
   }
 }
@@ -82,7 +83,7 @@ class Comparisons : public testing::Test {
   Comparison by_force(std::initializer_list<Found> got) const {
     return compare_by_force(judge_, set_, boxes_.size(), answers(got), 1);
   }
-  void ask(QueryType query_type, float height) {
+  void set_ray(QueryType query_type, float height) {
     set_ = {};
     set_.query_type = query_type;
     set_.rays.push_back({.origin = {-1.0F, height, 0.5F}});
@@ -94,7 +95,7 @@ class Comparisons : public testing::Test {
 };
 
 TEST_F(Comparisons, missing_false_and_misplaced_hits_are_noticed) {
-  ask(QueryType::all, 0.5F);
+  set_ray(QueryType::all, 0.5F);
   EXPECT_TRUE(by_force({{0, 1.0F}, {1, 3.0F}}).agree());
   EXPECT_FALSE(by_force({{0, 1.0F}}).agree());
   EXPECT_FALSE(by_force({{1, 3.0F}, {0, 1.0F}}).agree());
@@ -102,14 +103,14 @@ TEST_F(Comparisons, missing_false_and_misplaced_hits_are_noticed) {
   EXPECT_FALSE(exactly({{0, 1.0F}, {1, 3.0F}}, {{0, 1.0F}}).agree());
   EXPECT_FALSE(exactly({{0, 1.0F}, {1, 3.0F}}, {{1, 3.0F}, {0, 1.0F}}).agree());
   EXPECT_FALSE(in_float({{0, 1.0F}, {1, 3.0F}}, {{0, 1.0F}}).agree());
-  ask(QueryType::all, 2.0F);
+  set_ray(QueryType::all, 2.0F);
   EXPECT_TRUE(by_force({}).agree());
   EXPECT_FALSE(by_force({{0, 1.0F}}).agree());
   EXPECT_FALSE(in_float({}, {{0, 1.0F}}).agree());
 }
 
 TEST_F(Comparisons, hit_that_is_not_the_closest_is_noticed) {
-  ask(QueryType::closest, 0.5F);
+  set_ray(QueryType::closest, 0.5F);
   EXPECT_TRUE(by_force({{0, 1.0F}}).agree());
   EXPECT_FALSE(by_force({{1, 3.0F}}).agree());
   EXPECT_FALSE(by_force({}).agree());
@@ -119,11 +120,11 @@ TEST_F(Comparisons, hit_that_is_not_the_closest_is_noticed) {
 }
 
 TEST_F(Comparisons, rounding_is_allowed_to_float_engines_only) {
-  ask(QueryType::closest, 0.5F);
+  set_ray(QueryType::closest, 0.5F);
   const float later = std::nextafter(1.0F, 2.0F);
   EXPECT_TRUE(in_float({{0, 1.0F}}, {{0, later}}).agree());
   EXPECT_FALSE(exactly({{0, 1.0F}}, {{0, later}}).agree());
-  ask(QueryType::closest, 1.0F);  // along an edge: engines in float may miss it
+  set_ray(QueryType::closest, 1.0F);  // along an edge: engines in float may miss it
   boxes_[0].max.y() = boxes_[1].max.y() = std::nextafter(1.0F, 2.0F);
   set_.rays[0].direction = {1.0F, 1e-9F, 0.0F};
   const Comparison grazing = in_float({{0, 1.0F}}, {});

@@ -1,5 +1,5 @@
 // Built-in scenes of the benchmarks: equal seeds make equal scenes, and each moves as its name
-// says.
+// implies.
 
 #include "bench/contenders/reference_sweep.h"
 #include "bench/measure/fingerprint.h"
@@ -99,7 +99,7 @@ TEST(Scenes, boxes_stay_valid_and_inside_the_world) {
   }
 }
 
-TEST(Scenes, scenes_move_as_their_names_say) {
+TEST(Scenes, scenes_move_as_their_names_imply) {
   const auto moved_share = [](const char* name) {
     Watched watched(name, 4000);
     watched.advance();

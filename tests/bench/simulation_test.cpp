@@ -24,7 +24,7 @@ FlowOptions small_flow(FlowShape shape = FlowShape::mixed) {
   FlowOptions options;
   options.objects = 300;
   options.shape = shape;
-  // The bodies collide soon.
+  // With this speed the bodies collide within the simulated steps.
   options.stir = 3.0;
   options.step = 2e-3;
   options.law.frequency = 125.0;
@@ -182,7 +182,7 @@ TEST(SceneRace, heaps_of_equal_seeds_are_equal_and_dense) {
 TEST(SceneRace, all_engines_find_equal_contacts) {
   const auto set = make_landscape(60, 24, 5);
   std::array<SceneContender, 2> contenders{
-      {{make_winnow_scene(1), 1}, {make_winnow_scene(2, {.carry_over = kCarryOver}), 2}}};
+      {{make_winnow_scene(1), 1}, {make_winnow_scene(2, {.cache_tolerance = kCacheTolerance}), 2}}};
   const auto timings = race_scene(*set, kResting, contenders, 2);
   ASSERT_EQ(timings.size(), 2U);
   EXPECT_GE(timings[0].finds.touching, 60U);

@@ -49,8 +49,8 @@ std::string text(ContactLevel level) {
 std::string text(NarrowTier tier) {
   return named(static_cast<std::size_t>(tier), {"robust", "reference"});
 }
-std::string text(Motion motion) {
-  return named(static_cast<std::size_t>(motion), {"fixed", "dynamic", "sleeping"});
+std::string text(BodyState state) {
+  return named(static_cast<std::size_t>(state), {"fixed", "dynamic", "sleeping"});
 }
 std::string text(Order order) {
   return named(static_cast<std::size_t>(order), {"fast", "canonical"});
@@ -58,7 +58,7 @@ std::string text(Order order) {
 std::string text(Volume volume) {
   return named(static_cast<std::size_t>(volume), {"aabb", "sphere", "kdop14", "kdop18", "kdop26"});
 }
-std::string text(SweepPairs pairs) {
+std::string text(ContinuousPairs pairs) {
   return named(static_cast<std::size_t>(pairs), {"all", "fixed", "bullets", "bullets_and_fixed"});
 }
 std::string text(const Execution& execution) {
@@ -131,9 +131,9 @@ Members members(const Filter& o) {
   return list("layers mask environment predicate", layers, mask, environment, predicate);
 }
 Members members(const PartitionOptions& o) {
-  const auto& [memory, execution, volume, margin, build_budget] = o;
-  return list("memory execution volume margin margin_share build_budget", memory, execution, volume,
-              margin.distance, margin.share, build_budget);
+  const auto& [memory, execution, volume, fat_margin, build_budget] = o;
+  return list("memory execution volume fat_margin fat_margin_share build_budget", memory, execution,
+              volume, fat_margin.distance, fat_margin.share, build_budget);
 }
 Members members(const PairOptions& o) {
   const auto& [order, incremental, predicate] = o;
@@ -144,24 +144,26 @@ Members members(const DebugDrawOptions& o) {
   return list("objects structure labels max_depth", objects, structure, labels, max_depth);
 }
 Members members(const SceneOptions& o) {
-  const auto& [memory, execution, structures, margin, tier, carry_over, contact_reduction,
-               suppress_ghost_contacts, warm_start, build_budget, composites] = o;
+  const auto& [memory, execution, structures, contact_margin, tier, cache_tolerance,
+               contact_reduction, suppress_ghost_contacts, warm_start, build_budget, composites] =
+      o;
   return list(
-      "memory execution structures margin tier carry_over contact_reduction "
+      "memory execution structures contact_margin tier cache_tolerance contact_reduction "
       "suppress_ghost_contacts "
       "warm_start build_budget composites",
-      memory, execution, structures, margin, tier, carry_over, contact_reduction,
+      memory, execution, structures, contact_margin, tier, cache_tolerance, contact_reduction,
       suppress_ghost_contacts, warm_start, build_budget, composites);
 }
 Members members(const NarrowOptions& o) {
-  const auto& [level, tier, margin, execution, margins] = o;
-  return list("level tier margin execution margins", level, tier, margin, execution, margins);
+  const auto& [level, tier, contact_margin, execution, contact_margins] = o;
+  return list("level tier contact_margin execution contact_margins", level, tier, contact_margin,
+              execution, contact_margins);
 }
 Members members(const ImpactOptions& o) {
   const auto& [tolerance, execution, composites] = o;
   return list("tolerance execution composites", tolerance, execution, composites);
 }
-Members members(const SweepOptions& o) {
+Members members(const ContinuousOptions& o) {
   const auto& [pairs, bullets, tolerance, touching, first_only] = o;
   return list("pairs bullets tolerance touching first_only", pairs, bullets, tolerance, touching,
               first_only);
@@ -187,9 +189,9 @@ Members members(const ClusterOptions& o) {
   return list("memory execution structure imbalance", memory, execution, structure, imbalance);
 }
 Members members(const BodyDefinition& o) {
-  const auto& [shape, pose, motion, filter, data, offsets, layer] = o;
-  return list("shape pose motion layers mask environment data contact rest layer", shape, pose,
-              motion, filter.layers, filter.mask, filter.environment, data, offsets.contact,
+  const auto& [shape, pose, state, filter, data, offsets, layer] = o;
+  return list("shape pose state layers mask environment data contact rest layer", shape, pose,
+              state, filter.layers, filter.mask, filter.environment, data, offsets.contact,
               offsets.rest, layer);
 }
 Members members(const SensorDefinition& o) {
@@ -226,17 +228,17 @@ void show(const char* name, const OfCpp& of_cpp,
   for (std::size_t i = 0; i < own.size(); ++i) {
     std::printf("%s.%s = %s\n", name, own[i].first.c_str(), own[i].second.c_str());
     for (const auto& [how, other] : of_c) {
-      const std::string said = members(other)[i].second;
-      if (said == own[i].second) continue;
+      const std::string c_value = members(other)[i].second;
+      if (c_value == own[i].second) continue;
       ++differences;
       (void)std::fprintf(stderr, "%s.%s is %s in C++, %s by %s of C\n", name, own[i].first.c_str(),
-                         own[i].second.c_str(), said.c_str(), how);
+                         own[i].second.c_str(), c_value.c_str(), how);
     }
   }
 }
 
-/// Shows the options that the C calls read from zeros, null and the macro; read(given, options)
-/// returns whether they are valid.
+/// Prints the default options of C++, and reports members that differ if the C calls read options
+/// from zeros, null or the macro. read(given, options) returns true if `given` is valid.
 template <typename Options, typename OfC, typename Read>
 void show_options(const char* name, const OfC& macro, Read&& read) {
   OfC zeroed{};
@@ -259,7 +261,8 @@ void show_all_options() {
     const winnow_memory* memory = nullptr;
     return c::read_options(given, memory, options) && memory == nullptr;
   };
-  const auto sweep = [](const winnow_sweep_options* given, SweepOptions& options) {
+  const auto read_continuous = [](const winnow_continuous_options* given,
+                                  ContinuousOptions& options) {
     return c::read_options(given, 0, options);
   };
   const auto typed = [](auto read, auto macro) {
@@ -277,8 +280,8 @@ void show_all_options() {
   show_options<NarrowOptions>("NarrowOptions", narrow, typed(plain, narrow));
   const winnow_impact_options impact = WINNOW_IMPACT_OPTIONS;
   show_options<ImpactOptions>("ImpactOptions", impact, typed(plain, impact));
-  const winnow_sweep_options swept = WINNOW_SWEEP_OPTIONS;
-  show_options<SweepOptions>("SweepOptions", swept, sweep);
+  const winnow_continuous_options continuous = WINNOW_CONTINUOUS_OPTIONS;
+  show_options<ContinuousOptions>("ContinuousOptions", continuous, read_continuous);
   const winnow_mesh_options mesh = WINNOW_MESH_OPTIONS;
   show_options<MeshOptions>("MeshOptions", mesh, typed(plain, mesh));
 }

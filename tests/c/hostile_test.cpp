@@ -172,15 +172,15 @@ TEST(CInterface, stale_keys_are_refused) {
 
 TEST(CInterface, partition_of_a_scene_cannot_be_changed) {
   HostileWorld world;
-  const winnow_partition* asked = nullptr;
-  ASSERT_EQ(winnow_scene_partition(world.scene, WINNOW_MOTION_DYNAMIC, &asked), WINNOW_OK);
-  ASSERT_NE(asked, nullptr);
-  auto* partition = const_cast<winnow_partition*>(asked);
+  const winnow_partition* view = nullptr;
+  ASSERT_EQ(winnow_scene_partition(world.scene, WINNOW_BODY_STATE_DYNAMIC, &view), WINNOW_OK);
+  ASSERT_NE(view, nullptr);
+  auto* partition = const_cast<winnow_partition*>(view);
   const winnow_box_view none{};
   EXPECT_EQ(winnow_partition_insert(partition, &none, nullptr, nullptr), WINNOW_INVALID_ARGUMENT);
   EXPECT_EQ(winnow_partition_clear(partition), WINNOW_INVALID_ARGUMENT);
   std::size_t size = 0;
-  EXPECT_EQ(winnow_partition_size(asked, &size), WINNOW_OK);
+  EXPECT_EQ(winnow_partition_size(view, &size), WINNOW_OK);
   EXPECT_EQ(size, 1U);
 }
 

@@ -41,14 +41,14 @@ class HostileWorld {
     EXPECT_EQ(winnow_scene_refresh(scene), WINNOW_OK);
     EXPECT_EQ(winnow_scene_queries_create(scene, nullptr, &queries), WINNOW_OK);
     EXPECT_EQ(winnow_contact_groups_create(nullptr, &groups), WINNOW_OK);
-    EXPECT_EQ(winnow_scene_sweep_create(scene, nullptr, &sweep), WINNOW_OK);
+    EXPECT_EQ(winnow_continuous_collision_create(scene, nullptr, &ccd), WINNOW_OK);
     EXPECT_EQ(winnow_sensors_create(scene, nullptr, &sensors), WINNOW_OK);
   }
   HostileWorld(const HostileWorld&) = delete;
   HostileWorld& operator=(const HostileWorld&) = delete;
   ~HostileWorld() {
     destroy(sensors);
-    destroy(sweep);
+    destroy(ccd);
     destroy(groups);
     destroy(queries);
     destroy(scene);
@@ -90,7 +90,7 @@ class HostileWorld {
     end_ = nullptr;
   }
 
-  /// Written into the structs as their size; 1 stands for the size of this version.
+  /// The value of the size members of structs; 1 means the size of this version.
   std::size_t size_of_structs = 1;
 
   winnow_threads* threads = nullptr;
@@ -109,7 +109,7 @@ class HostileWorld {
   winnow_scene* scene = nullptr;
   winnow_scene_queries* queries = nullptr;
   winnow_contact_groups* groups = nullptr;
-  winnow_scene_sweep* sweep = nullptr;
+  winnow_continuous_collision* ccd = nullptr;
   winnow_sensors* sensors = nullptr;
 
  private:
@@ -136,7 +136,7 @@ class HostileWorld {
   WINNOW_THING(winnow_scene, scene)
   WINNOW_THING(winnow_scene_queries, queries)
   WINNOW_THING(winnow_contact_groups, groups)
-  WINNOW_THING(winnow_scene_sweep, sweep)
+  WINNOW_THING(winnow_continuous_collision, ccd)
   WINNOW_THING(winnow_sensors, sensors)
 #undef WINNOW_THING
 

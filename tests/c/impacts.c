@@ -83,20 +83,20 @@ static void query_impacts(const trace* t) {
   winnow_shape_pool_destroy(shapes);
 }
 
-static const trace* told;
+static const trace* hook_trace;
 
 static void note_stage(winnow_work_stage stage, bool begins) {
-  note(told, begins ? "begins" : "ends", (uint64_t)stage);
+  note(hook_trace, begins ? "begins" : "ends", (uint64_t)stage);
 }
 
 static void note_entry(const winnow_log_entry* entry) {
-  note(told, "kind", (uint64_t)entry->kind);
-  note(told, "what", entry->what.count);
-  note(told, "what", (uint64_t)entry->what.first[0]);
-  note(told, "before", entry->before.count);
-  note(told, "reason", entry->reason.count);
-  note(told, "status", (uint64_t)entry->status);
-  note(told, "objects", entry->objects);
+  note(hook_trace, "kind", (uint64_t)entry->kind);
+  note(hook_trace, "what", entry->what.count);
+  note(hook_trace, "what", (uint64_t)entry->what.first[0]);
+  note(hook_trace, "before", entry->before.count);
+  note(hook_trace, "reason", entry->reason.count);
+  note(hook_trace, "status", (uint64_t)entry->status);
+  note(hook_trace, "objects", entry->objects);
 }
 
 static void query_hooks(const trace* t) {
@@ -106,7 +106,7 @@ static void query_hooks(const trace* t) {
   winnow_contacts* contacts = NULL;
   winnow_body_definition bodies[2] = {WINNOW_BODY_DEFINITION, WINNOW_BODY_DEFINITION};
   winnow_key keys[2];
-  told = t;
+  hook_trace = t;
   OK(winnow_shape_pool_create(NULL, &shapes));
   OK(winnow_shape_pool_add(shapes, &ball, &bodies[0].shape));
   bodies[1].shape = bodies[0].shape;

@@ -67,24 +67,24 @@ void query_impacts(const trace* t) {
   note(t, "impacts take memory", 1);
 }
 
-const trace* told;
+const trace* hook_trace;
 
 void note_stage(WorkStage stage, bool begins) {
-  note(told, begins ? "begins" : "ends", static_cast<std::uint64_t>(stage));
+  note(hook_trace, begins ? "begins" : "ends", static_cast<std::uint64_t>(stage));
 }
 
 void note_entry(const LogEntry& entry) {
-  note(told, "kind", static_cast<std::uint64_t>(entry.kind));
-  note(told, "what", entry.what.size());
-  note(told, "what", static_cast<std::uint64_t>(entry.what[0]));
-  note(told, "before", entry.before.size());
-  note(told, "reason", entry.reason.size());
-  note(told, "status", static_cast<std::uint64_t>(entry.status));
-  note(told, "objects", entry.objects);
+  note(hook_trace, "kind", static_cast<std::uint64_t>(entry.kind));
+  note(hook_trace, "what", entry.what.size());
+  note(hook_trace, "what", static_cast<std::uint64_t>(entry.what[0]));
+  note(hook_trace, "before", entry.before.size());
+  note(hook_trace, "reason", entry.reason.size());
+  note(hook_trace, "status", static_cast<std::uint64_t>(entry.status));
+  note(hook_trace, "objects", entry.objects);
 }
 
 void query_hooks(const trace* t) {
-  told = t;
+  hook_trace = t;
   ShapePool shapes;
   Scene scene(shapes);
   Contacts contacts;

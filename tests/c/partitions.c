@@ -245,7 +245,7 @@ static void query_casts(const trace* t, const winnow_partition* partition,
   for (size_t i = 0; i < 10; ++i) note(t, "any of rays", key[i].id != WINNOW_NO_OBJECT);
   OK(winnow_partition_all_rays(partition, &batch, NULL, hits));
   size_t questions = 0;
-  OK(winnow_hit_buffer_questions(hits, &questions));
+  OK(winnow_hit_buffer_queries(hits, &questions));
   note(t, "questions", questions);
   for (size_t i = 0; i < questions; ++i) {
     const winnow_hit* of = NULL;
@@ -334,19 +334,19 @@ static void query_state(const trace* t, winnow_partition* partition) {
   OK(winnow_partition_refresh(partition));
   bool is_exact = false;
   winnow_volume volume = -1;
-  winnow_margin margin = {-1, -1};
+  winnow_fat_margin fat_margin = {-1, -1};
   winnow_structure_kind structure = {-1, 0};
   winnow_structure_choice choice = {.size = sizeof choice};
   winnow_statistics statistics = {.size = sizeof statistics};
   OK(winnow_partition_is_exact(partition, &is_exact));
   OK(winnow_partition_volume(partition, &volume));
-  OK(winnow_partition_margin(partition, &margin));
+  OK(winnow_partition_fat_margin(partition, &fat_margin));
   OK(winnow_partition_structure(partition, &structure));
   OK(winnow_partition_choice(partition, &choice));
   OK(winnow_partition_statistics(partition, &statistics));
   note(t, "is_exact", is_exact);
   note(t, "volume", (uint64_t)volume);
-  note_real(t, "margin", (double)(margin.distance + margin.share));
+  note_real(t, "margin", (double)(fat_margin.distance + fat_margin.share));
   note(t, "structure", strcmp(winnow_structure_name(structure), "SweepAndPrune") == 0);
   note(t, "choice", strlen(choice.reason));
   note(t, "statistics", statistics.objects);

@@ -166,8 +166,8 @@ void query_casts(const trace* t, const Partition& partition) {
   (void)partition.any(RayBatch(rays), found);
   for (std::size_t i = 0; i < 10; ++i) note(t, "any of rays", key[i].id != kNoObject);
   (void)partition.all(RayBatch(rays), hits);
-  note(t, "questions", hits.questions());
-  for (std::size_t i = 0; i < hits.questions(); ++i) {
+  note(t, "questions", hits.queries());
+  for (std::size_t i = 0; i < hits.queries(); ++i) {
     note(t, "all of rays", hits.of(i).size());
     if (!hits.of(i).empty()) note_hit(t, "all of rays", hits.of(i).front());
   }

@@ -50,7 +50,7 @@ TEST(CInterface, scenes_give_the_results_of_cpp) {
   expect_same(run_scenes_in_c, run_scenes_in_cpp);
 }
 
-TEST(CInterface, sensors_and_sweeps_give_the_results_of_cpp) {
+TEST(CInterface, sensors_and_impacts_give_the_results_of_cpp) {
   expect_same(run_watchers_in_c, run_watchers_in_cpp);
 }
 

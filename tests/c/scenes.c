@@ -44,7 +44,7 @@ static void note_columns(const trace* t, const winnow_contacts* contacts) {
     note_real(t, "depth", (double)c.depth[p]);
     note(t, "feature", c.feature[p]);
   }
-  note(t, "carried", c.carried);
+  note(t, "cached_pairs", c.cached_pairs);
 }
 
 static void note_hit(const trace* t, const char* what, const winnow_scene_hit* hit) {
@@ -79,20 +79,20 @@ static bool is_even(void* context, winnow_key key, uint64_t value) {
   return key.id % 2 == 0;
 }
 
-static void query_rays(const trace* t, winnow_scene_queries* ask) {
+static void query_rays(const trace* t, winnow_scene_queries* queries) {
   winnow_filter filter = WINNOW_FILTER;
   filter.accept = is_even;
   const winnow_shape_ray ray = {{3.2, 1.3, 5}, {0.1, 0.2, -1}, 20};
   winnow_scene_hit hit;
   const winnow_scene_hit* hits = NULL;
   size_t count = 0;
-  OK(winnow_scene_queries_closest(ask, &ray, NULL, &hit));
+  OK(winnow_scene_queries_closest(queries, &ray, NULL, &hit));
   note_hit(t, "closest", &hit);
-  OK(winnow_scene_queries_closest(ask, &ray, &filter, &hit));
+  OK(winnow_scene_queries_closest(queries, &ray, &filter, &hit));
   note_hit(t, "closest even", &hit);
-  OK(winnow_scene_queries_any(ask, &ray, NULL, &hit));
+  OK(winnow_scene_queries_any(queries, &ray, NULL, &hit));
   note(t, "any", hit.key.id != WINNOW_NO_OBJECT);
-  OK(winnow_scene_queries_all(ask, &ray, NULL, &hits, &count));
+  OK(winnow_scene_queries_all(queries, &ray, NULL, &hits, &count));
   note_hits(t, "all", hits, count);
 
   /* Columns of float. */
@@ -115,7 +115,7 @@ static void query_rays(const trace* t, winnow_scene_queries* ask) {
   double at[kRays], normal[3][kRays], point[3][kRays];
   const winnow_scene_hit_columns found = {
       key, value, part, at, {normal[0], normal[1], normal[2]}, {point[0], point[1], point[2]}};
-  OK(winnow_scene_queries_closest_rays(ask, &rays, NULL, &found));
+  OK(winnow_scene_queries_closest_rays(queries, &rays, NULL, &found));
   for (size_t i = 0; i < kRays; ++i) {
     note(t, "closest of rays", key[i].id);
     note(t, "closest of rays", value[i]);
@@ -124,14 +124,14 @@ static void query_rays(const trace* t, winnow_scene_queries* ask) {
     note_real(t, "closest of rays", normal[2][i]);
     note_real(t, "closest of rays", point[0][i]);
   }
-  OK(winnow_scene_queries_any_rays(ask, &rays, NULL, &found));
+  OK(winnow_scene_queries_any_rays(queries, &rays, NULL, &found));
   for (size_t i = 0; i < kRays; ++i) note(t, "any of rays", key[i].id != WINNOW_NO_OBJECT);
   const size_t* first = NULL;
-  OK(winnow_scene_queries_all_rays(ask, &rays, NULL, &hits, &first));
+  OK(winnow_scene_queries_all_rays(queries, &rays, NULL, &hits, &first));
   note_hits(t, "all of rays", hits, first[kRays]);
 }
 
-static void query_shapes_of(const trace* t, winnow_scene_queries* ask, winnow_shape_id ball,
+static void query_shapes_of(const trace* t, winnow_scene_queries* queries, winnow_shape_id ball,
                           const winnow_key* keys) {
   const winnow_shape_cast cast = {ball, {{3.2, 1.3, 5}, {1, 0, 0, 0}}, {0.1, 0.2, -1}, 20};
   winnow_pose pose = WINNOW_POSE;
@@ -143,38 +143,38 @@ static void query_shapes_of(const trace* t, winnow_scene_queries* ask, winnow_sh
   const winnow_scene_distance* near_ones = NULL;
   winnow_scene_distance apart;
   size_t count = 0;
-  OK(winnow_scene_queries_closest_cast(ask, &cast, NULL, WINNOW_CAST_TOLERANCE, &hit));
+  OK(winnow_scene_queries_closest_cast(queries, &cast, NULL, WINNOW_CAST_TOLERANCE, &hit));
   note_hit(t, "closest of casts", &hit);
-  OK(winnow_scene_queries_all_cast(ask, &cast, NULL, WINNOW_CAST_TOLERANCE, &hits, &count));
+  OK(winnow_scene_queries_all_cast(queries, &cast, NULL, WINNOW_CAST_TOLERANCE, &hits, &count));
   note_hits(t, "all of casts", hits, count);
   const winnow_shape_cast leaving = {ball, {{2, 0, 0.6}, {1, 0, 0, 0}}, {0.3, 0.2, 1}, 20};
-  OK(winnow_scene_queries_closest_cast_from_touch(ask, &leaving, NULL, WINNOW_CAST_TOLERANCE,
+  OK(winnow_scene_queries_closest_cast_from_touch(queries, &leaving, NULL, WINNOW_CAST_TOLERANCE,
                                                   &hit));
   note_hit(t, "closest of casts from a touch", &hit);
-  OK(winnow_scene_queries_all_cast_from_touch(ask, &leaving, NULL, WINNOW_CAST_TOLERANCE, &hits,
+  OK(winnow_scene_queries_all_cast_from_touch(queries, &leaving, NULL, WINNOW_CAST_TOLERANCE, &hits,
                                               &count));
   note_hits(t, "all of casts from a touch", hits, count);
-  OK(winnow_scene_queries_overlap(ask, ball, &pose, NULL, &bodies, &count));
+  OK(winnow_scene_queries_overlap(queries, ball, &pose, NULL, &bodies, &count));
   note(t, "overlaps", count);
   for (size_t i = 0; i < count; ++i) {
     note(t, "overlap", bodies[i].key.id);
     note(t, "overlap", bodies[i].data);
     note(t, "overlap", bodies[i].part);
   }
-  OK(winnow_scene_queries_distance(ask, keys[1], keys[30], INFINITY, WINNOW_PAIR_RULES_NONE,
+  OK(winnow_scene_queries_distance(queries, keys[1], keys[30], INFINITY, WINNOW_PAIR_RULES_NONE,
                                    &apart));
   note_distance(t, "distance", &apart);
-  OK(winnow_scene_queries_nearest(ask, pose.position, 5, 10.0, NULL, &near_ones, &count));
+  OK(winnow_scene_queries_nearest(queries, pose.position, 5, 10.0, NULL, &near_ones, &count));
   note(t, "nearest", count);
   for (size_t i = 0; i < count; ++i) note_distance(t, "nearest", &near_ones[i]);
   winnow_set_distance least;
-  OK(winnow_scene_queries_least_distance(ask, keys + 4, 6, keys + 16, 8, 1e9,
+  OK(winnow_scene_queries_least_distance(queries, keys + 4, 6, keys + 16, 8, 1e9,
                                          WINNOW_PAIR_RULES_SCENE, &least));
   note(t, "least of sets", least.a.id);
   note(t, "least of sets", least.data_a);
   note_distance(t, "least of sets", &least.to);
   const winnow_key_pair* pairs = NULL;
-  OK(winnow_scene_queries_overlaps(ask, keys + 4, 6, keys + 16, 12, 7, WINNOW_PAIR_RULES_SCENE,
+  OK(winnow_scene_queries_overlaps(queries, keys + 4, 6, keys + 16, 12, 7, WINNOW_PAIR_RULES_SCENE,
                                    &pairs, &count));
   note(t, "overlaps of sets", count);
   for (size_t i = 0; i < count; ++i) {
@@ -183,15 +183,15 @@ static void query_shapes_of(const trace* t, winnow_scene_queries* ask, winnow_sh
   }
   for (winnow_pair_rules rules = 0; rules <= WINNOW_PAIR_RULES_NONE; ++rules) {
     winnow_key_pair found;
-    OK(winnow_scene_queries_any_contact(ask, keys + 4, 6, keys + 16, 12, 0.25, rules, &found));
+    OK(winnow_scene_queries_any_contact(queries, keys + 4, 6, keys + 16, 12, 0.25, rules, &found));
     note(t, "any contact of sets", found.first.id);
     note(t, "any contact of sets", found.second.id);
-    OK(winnow_scene_queries_any_contact_in_scene(ask, 0.0, rules, &found));
+    OK(winnow_scene_queries_any_contact_in_scene(queries, 0.0, rules, &found));
     note(t, "any contact", found.first.id);
     note(t, "any contact", found.second.id);
   }
   winnow_footprint bytes = {.size = sizeof bytes};
-  OK(winnow_scene_queries_footprint(ask, &bytes));
+  OK(winnow_scene_queries_footprint(queries, &bytes));
   note(t, "queries take memory", bytes.structure.used > 0);
 }
 
@@ -210,13 +210,13 @@ static void query_state(const trace* t, winnow_scene* scene, const winnow_key* k
   const winnow_partition* partition = NULL;
   OK(winnow_scene_size(scene, &size));
   note(t, "size", size);
-  OK(winnow_scene_size_of(scene, WINNOW_MOTION_FIXED, &size));
+  OK(winnow_scene_size_of(scene, WINNOW_BODY_STATE_FIXED, &size));
   note(t, "fixed", size);
   OK(winnow_scene_contains(scene, keys[3], &contains));
   note(t, "contains", contains);
   OK(winnow_scene_body(scene, keys[3], &body));
   note(t, "body", body.shape);
-  note(t, "body", body.motion);
+  note(t, "body", body.state);
   note(t, "body", body.filter.mask);
   note(t, "body", body.data);
   note_reals(t, "body", body.pose.position, 3);
@@ -225,10 +225,10 @@ static void query_state(const trace* t, winnow_scene* scene, const winnow_key* k
   note(t, "key", key.id == keys[3].id && key.stamp == keys[3].stamp);
   OK(winnow_scene_origin(scene, origin));
   note_reals(t, "origin", origin, 3);
-  OK(winnow_scene_partition(scene, WINNOW_MOTION_DYNAMIC, &partition));
+  OK(winnow_scene_partition(scene, WINNOW_BODY_STATE_DYNAMIC, &partition));
   OK(winnow_partition_size(partition, &size));
   note(t, "partition", size);
-  OK(winnow_scene_partition(scene, WINNOW_MOTION_SLEEPING, &partition));
+  OK(winnow_scene_partition(scene, WINNOW_BODY_STATE_SLEEPING, &partition));
   note(t, "no partition", partition == NULL);
   size_t drawn = 0;
   const winnow_debug_draw draw = {&drawn, count_box, NULL, NULL, NULL};
@@ -250,7 +250,7 @@ static void note_footprint(const trace* t, const winnow_scene* scene,
   OK(winnow_contacts_footprint(contacts, &more));
   size_t sum = bytes.bodies.reserved + bytes.pairs.reserved + bytes.mid_phase.reserved +
                bytes.narrow_phase.reserved + reserved_of(&more);
-  for (int i = 0; i < WINNOW_MOTIONS; ++i) sum += bytes.partitions[i].reserved;
+  for (int i = 0; i < WINNOW_BODY_STATES; ++i) sum += bytes.partitions[i].reserved;
   note(t, "the footprints equal the allocated memory", sum == outstanding);
 }
 
@@ -262,7 +262,7 @@ static void add_bodies(const trace* t, winnow_scene* scene, const winnow_shape_i
     /* Moving bodies have no half-space. */
     body.shape = i < kComposite ? composite[i] : convex[i % 6];
     pose_of(i, 0, body.pose.position, body.pose.orientation);
-    if (i < 3) body.motion = WINNOW_MOTION_FIXED;
+    if (i < 3) body.state = WINNOW_BODY_STATE_FIXED;
     if (i < 3) body.pose = (winnow_pose)WINNOW_POSE;
     body.data = data_of(i);
     bodies[i] = body;
@@ -300,7 +300,7 @@ static void save_and_load(const trace* t, winnow_shape_pool* pool,
   winnow_snapshot* of_partition = NULL;
   OK(winnow_partition_create((winnow_structure_kind){WINNOW_LINEAR_BVH, 0.0F}, NULL, &copy));
   OK(winnow_snapshot_create(NULL, &of_partition));
-  OK(winnow_scene_partition(scene, WINNOW_MOTION_DYNAMIC, &moving));
+  OK(winnow_scene_partition(scene, WINNOW_BODY_STATE_DYNAMIC, &moving));
   OK(load_partition(t, of_partition, moving, copy));
   OK(winnow_partition_size(copy, &size));
   note(t, "loaded objects", size);
@@ -341,11 +341,11 @@ void run_scenes_in_c(const trace* t) {
   OK(winnow_shape_pool_remove(pool, convex[kConvex - 1]));
   winnow_scene_options options = WINNOW_SCENE_OPTIONS;
   options.memory = &memory;
-  options.margin = 0.02;
-  options.carry_over = 0.001;
+  options.contact_margin = 0.02;
+  options.cache_tolerance = 0.001;
   options.contact_reduction = 1;
   options.composites = composites;
-  options.structures[WINNOW_MOTION_FIXED].structure = WINNOW_STATIC_BVH;
+  options.structures[WINNOW_BODY_STATE_FIXED].structure = WINNOW_STATIC_BVH;
   OK(winnow_scene_create(pool, &options, &scene));
   OK(winnow_contacts_create(&memory, &contacts));
   const winnow_scene_room room = {
@@ -379,7 +379,7 @@ void run_scenes_in_c(const trace* t) {
   OK(winnow_scene_move(scene, keys + 4, 20, &rounded));
   for (size_t k = 0; k < 4; ++k) view.orientation[k] = NULL;
   OK(winnow_scene_move(scene, keys + 4, 20, &view));
-  OK(winnow_scene_set_motion(scene, keys + 10, 2, WINNOW_MOTION_SLEEPING));
+  OK(winnow_scene_set_body_state(scene, keys + 10, 2, WINNOW_BODY_STATE_SLEEPING));
   OK(winnow_scene_set_shape(scene, keys[12], convex[0]));
   const winnow_object_filter ghost = {0U, 0U, 0U};
   OK(winnow_scene_set_filter(scene, keys[13], &ghost));
@@ -389,11 +389,11 @@ void run_scenes_in_c(const trace* t) {
   note_footprint(t, scene, contacts, outstanding);
 
   OK(winnow_scene_refresh(scene));
-  winnow_scene_queries* ask = NULL;
-  OK(winnow_scene_queries_create(scene, NULL, &ask));
-  query_rays(t, ask);
-  query_shapes_of(t, ask, convex[0], keys);
-  winnow_scene_queries_destroy(ask);
+  winnow_scene_queries* queries = NULL;
+  OK(winnow_scene_queries_create(scene, NULL, &queries));
+  query_rays(t, queries);
+  query_shapes_of(t, queries, convex[0], keys);
+  winnow_scene_queries_destroy(queries);
   save_and_load(t, pool, composites, scene, contacts);
 
   OK(winnow_scene_clear(scene));

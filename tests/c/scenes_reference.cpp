@@ -56,7 +56,7 @@ void note_contacts(const trace* t, const Contacts& contacts) {
     note_real(t, "depth", static_cast<double>(point.depth));
     note(t, "feature", point.feature);
   }
-  note(t, "carried", contacts.carried());
+  note(t, "cached_pairs", contacts.cached_pairs());
 }
 
 void note_hit(const trace* t, const char* what, const SceneHit& hit) {
@@ -84,25 +84,25 @@ void note_distance(const trace* t, const char* what, const SceneDistance& apart)
   note_reals(t, what, apart.point_b, 3);
 }
 
-void query_rays(const trace* t, SceneQueries& ask) {
+void query_rays(const trace* t, SceneQueries& queries) {
   const Filter even{
       .predicate = {[](void*, Key key, ClientData) { return key.id % 2 == 0; }, nullptr}};
   const ShapeRay ray{{3.2, 1.3, 5}, {0.1, 0.2, -1}, 20};
   SceneHit hit;
   std::span<const SceneHit> hits;
-  (void)ask.closest(ray, hit);
+  (void)queries.closest(ray, hit);
   note_hit(t, "closest", hit);
-  (void)ask.closest(ray, hit, even);
+  (void)queries.closest(ray, hit, even);
   note_hit(t, "closest even", hit);
-  (void)ask.any(ray, hit);
+  (void)queries.any(ray, hit);
   note(t, "any", hit ? 1 : 0);
-  (void)ask.all(ray, hits);
+  (void)queries.all(ray, hits);
   note_hits(t, "all", hits);
 
   std::vector<ShapeRay> rays;
   for (int i = 0; i < 16; ++i) rays.push_back({{0.5 * i, 0.25 * i, 4}, {0.125, 0, -1}, 10});
   for (const ShapeRay& each : rays) {
-    (void)ask.closest(each, hit);
+    (void)queries.closest(each, hit);
     if (!hit) hit.t = std::numeric_limits<double>::infinity();
     note(t, "closest of rays", hit.key.id);
     note(t, "closest of rays", hit.data);
@@ -112,51 +112,52 @@ void query_rays(const trace* t, SceneQueries& ask) {
     note_real(t, "closest of rays", hit.point[0]);
   }
   for (const ShapeRay& each : rays) {
-    (void)ask.any(each, hit);
+    (void)queries.any(each, hit);
     note(t, "any of rays", hit ? 1 : 0);
   }
   SceneHitLists lists;
-  (void)ask.all(ShapeRayBatch(rays), lists);
+  (void)queries.all(ShapeRayBatch(rays), lists);
   note_hits(t, "all of rays", lists.hits);
 }
 
-void query_shapes_of(const trace* t, SceneQueries& ask, ShapeId ball, std::span<const Key> keys) {
+void query_shapes_of(const trace* t, SceneQueries& queries, ShapeId ball,
+                     std::span<const Key> keys) {
   const ShapeCast cast{ball, Pose::at(3.2, 1.3, 5), {0.1, 0.2, -1}, 20};
   SceneHit hit;
   std::span<const SceneHit> hits;
   std::span<const SceneOverlap> bodies;
   std::span<const SceneDistance> near;
   SceneDistance apart;
-  (void)ask.closest(cast, hit);
+  (void)queries.closest(cast, hit);
   note_hit(t, "closest of casts", hit);
-  (void)ask.all(cast, hits);
+  (void)queries.all(cast, hits);
   note_hits(t, "all of casts", hits);
   const ShapeCast leaving{ball, Pose::at(2, 0, 0.6), {0.3, 0.2, 1}, 20, false};
-  (void)ask.closest(leaving, hit);
+  (void)queries.closest(leaving, hit);
   note_hit(t, "closest of casts from a touch", hit);
-  (void)ask.all(leaving, hits);
+  (void)queries.all(leaving, hits);
   note_hits(t, "all of casts from a touch", hits);
   const Pose pose = Pose::at(2.0, 0.0, 0.6);
-  (void)ask.overlap(ball, pose, bodies);
+  (void)queries.overlap(ball, pose, bodies);
   note(t, "overlaps", bodies.size());
   for (const SceneOverlap& body : bodies) {
     note(t, "overlap", body.key.id);
     note(t, "overlap", body.data);
     note(t, "overlap", body.part);
   }
-  (void)ask.distance(keys[1], keys[30], apart, std::numeric_limits<double>::infinity(),
-                     PairRules::none);
+  (void)queries.distance(keys[1], keys[30], apart, std::numeric_limits<double>::infinity(),
+                         PairRules::none);
   note_distance(t, "distance", apart);
-  (void)ask.nearest(pose.position, 5, 10.0, near);
+  (void)queries.nearest(pose.position, 5, 10.0, near);
   note(t, "nearest", near.size());
   for (const SceneDistance& one : near) note_distance(t, "nearest", one);
   SetDistance least;
-  (void)ask.least_distance(keys.subspan(4, 6), keys.subspan(16, 8), least, 1e9);
+  (void)queries.least_distance(keys.subspan(4, 6), keys.subspan(16, 8), least, 1e9);
   note(t, "least of sets", least.a.id);
   note(t, "least of sets", least.data_a);
   note_distance(t, "least of sets", least.to);
   std::span<const KeyPair> pairs;
-  (void)ask.overlaps(keys.subspan(4, 6), keys.subspan(16, 12), pairs, 7);
+  (void)queries.overlaps(keys.subspan(4, 6), keys.subspan(16, 12), pairs, 7);
   note(t, "overlaps of sets", pairs.size());
   for (const KeyPair& pair : pairs) {
     note(t, "overlaps of sets", pair.first.id);
@@ -164,10 +165,10 @@ void query_shapes_of(const trace* t, SceneQueries& ask, ShapeId ball, std::span<
   }
   for (const PairRules rules : {PairRules::scene, PairRules::none}) {
     KeyPair found;
-    (void)ask.any_contact(keys.subspan(4, 6), keys.subspan(16, 12), found, 0.25, rules);
+    (void)queries.any_contact(keys.subspan(4, 6), keys.subspan(16, 12), found, 0.25, rules);
     note(t, "any contact of sets", found.first.id);
     note(t, "any contact of sets", found.second.id);
-    (void)ask.any_contact(found, 0.0, rules);
+    (void)queries.any_contact(found, 0.0, rules);
     note(t, "any contact", found.first.id);
     note(t, "any contact", found.second.id);
   }
@@ -185,12 +186,12 @@ class BoxCounter final : public DebugDraw {
 
 void query_state(const trace* t, const Scene& scene, std::span<const Key> keys) {
   note(t, "size", scene.size());
-  note(t, "fixed", scene.size(Motion::fixed));
+  note(t, "fixed", scene.size(BodyState::fixed));
   note(t, "contains", scene.contains(keys[3]));
   BodyDefinition body;
   (void)scene.body(keys[3], body);
   note(t, "body", body.shape.bits);
-  note(t, "body", static_cast<std::uint64_t>(body.motion));
+  note(t, "body", static_cast<std::uint64_t>(body.state));
   note(t, "body", body.filter.mask);
   note(t, "body", body.data);
   note_reals(t, "body", body.pose.position, 3);
@@ -198,8 +199,8 @@ void query_state(const trace* t, const Scene& scene, std::span<const Key> keys) 
   note(t, "key", scene.key_of(3) == keys[3]);
   const Eigen::Vector3d origin = scene.origin();
   note_reals(t, "origin", origin.data(), 3);
-  note(t, "partition", scene.partition(Motion::dynamic)->size());
-  note(t, "no partition", scene.partition(Motion::sleeping) == nullptr);
+  note(t, "partition", scene.partition(BodyState::dynamic)->size());
+  note(t, "no partition", scene.partition(BodyState::sleeping) == nullptr);
   BoxCounter counter;
   (void)scene.debug_draw(counter);
   note(t, "drawn", counter.drawn);
@@ -216,7 +217,7 @@ void query_state(const trace* t, const Scene& scene, std::span<const Key> keys) 
     const bool is_fixed = i < 3;
     bodies[i] = {.shape = i < composite.size() ? composite[i] : convex[i % 6],
                  .pose = is_fixed ? Pose{} : pose_in(i, 0),
-                 .motion = is_fixed ? Motion::fixed : Motion::dynamic,
+                 .state = is_fixed ? BodyState::fixed : BodyState::dynamic,
                  .data = data_of(i)};
   }
   std::vector<Key> keys(kBodies);
@@ -234,8 +235,8 @@ void run_scenes_in_cpp(const trace* t) {
   Column<std::byte> of_functions(std::pmr::get_default_resource());
   note(t, "unsaved", pool.save(of_functions) == Status::unsupported);
   Scene scene(pool, {.structures = {static_bvh(), linear_bvh(), linear_bvh()},
-                     .margin = 0.02,
-                     .carry_over = 0.001,
+                     .contact_margin = 0.02,
+                     .cache_tolerance = 0.001,
                      .contact_reduction = true,
                      .composites = &composites});
   Contacts contacts;
@@ -253,7 +254,7 @@ void run_scenes_in_cpp(const trace* t) {
   std::vector<Pose> poses;
   for (std::size_t i = 4; i < 24; ++i) poses.push_back(pose_in(i, 1));
   (void)scene.move(all.subspan(4, 20), poses);
-  (void)scene.set_motion(all.subspan(10, 2), Motion::sleeping);
+  (void)scene.set_body_state(all.subspan(10, 2), BodyState::sleeping);
   (void)scene.set_shape(keys[12], convex[0]);
   (void)scene.set_filter(keys[13], {0, 0, 0});
   (void)scene.remove(all.subspan(14, 2));
@@ -263,12 +264,12 @@ void run_scenes_in_cpp(const trace* t) {
 
   (void)scene.refresh();
   {
-    SceneQueries ask(scene);
-    query_rays(t, ask);
-    query_shapes_of(t, ask, convex[0], keys);
+    SceneQueries queries(scene);
+    query_rays(t, queries);
+    query_shapes_of(t, queries, convex[0], keys);
   }
-  // In C the scene was loaded from its snapshot, and continues as if it had not been.
-  note(t, "loaded objects", scene.size(Motion::dynamic));
+  // scenes.c has loaded the scene from its snapshot here; the results must equal this scene's.
+  note(t, "loaded objects", scene.size(BodyState::dynamic));
   (void)scene.collide(ContactLevel::manifold, contacts);
   note_contacts(t, contacts);
   note(t, "cut short", 1);

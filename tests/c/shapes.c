@@ -255,7 +255,7 @@ void run_narrow_phase_in_c(const trace* t) {
   winnow_narrow_options options = WINNOW_NARROW_OPTIONS;
   for (options.level = WINNOW_LEVEL_BOOLEAN; options.level <= WINNOW_LEVEL_MANIFOLD;
        ++options.level) {
-    options.margin = 0.1;
+    options.contact_margin = 0.1;
     OK(winnow_narrow_phase_collide(narrow, pool, &bodies, pairs, kBodies - 1, &options, result));
     note_answers(t, result);
     for (size_t i = 1; i < kBodies; ++i) {

@@ -194,7 +194,7 @@ void run_narrow_phase_in_cpp(const trace* t) {
   NarrowResult result;
   for (const ContactLevel level :
        {ContactLevel::boolean, ContactLevel::distance, ContactLevel::manifold}) {
-    const NarrowOptions options{.level = level, .margin = 0.1};
+    const NarrowOptions options{.level = level, .contact_margin = 0.1};
     (void)narrow.collide(pool, {shapes, poses}, pairs, options, result);
     note_answers(t, result);
     for (const BodyPair pair : pairs) {

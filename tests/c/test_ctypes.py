@@ -88,12 +88,12 @@ class CInterface(unittest.TestCase):
         compiled = pathlib.Path(self.work, "layout")
         subprocess.run(["cc", "-std=c99", "-x", "c", "-", "-I", self.include, "-o", compiled],
                        input=program + "return 0; }\n", text=True, check=True)
-        said = [int(word) for word in subprocess.check_output([compiled]).split()]
+        printed = [int(word) for word in subprocess.check_output([compiled]).split()]
         own = []
         for struct in STRUCTS.values():
             own += [getattr(struct, field).offset for field, _ in struct._fields_]
             own.append(ctypes.sizeof(struct))
-        self.assertEqual(said, own)
+        self.assertEqual(printed, own)
 
     def test_pairs_and_hits_are_read_without_a_copy(self):
         partition, keys = self.partition(50)

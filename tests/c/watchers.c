@@ -1,4 +1,4 @@
-/* Uses in C every call about sensors, sweeps, groups of contacts and ignored pairs of bodies. */
+/* Uses in C every call about sensors, impacts, groups of contacts and ignored pairs of bodies. */
 
 #include "tests/c/check.h"
 #include "tests/c/world.h"
@@ -122,11 +122,11 @@ static void query_sensors(const trace* t, winnow_scene* scene, winnow_shape_id b
   note(t, "outstanding", outstanding);
 }
 
-static void note_impacts(const trace* t, const winnow_scene_sweep* sweep) {
+static void note_impacts(const trace* t, const winnow_continuous_collision* ccd) {
   const winnow_scene_impact* impacts = NULL;
   const uint32_t* first = NULL;
   size_t count = 0;
-  OK(winnow_scene_sweep_impacts(sweep, &impacts, &count));
+  OK(winnow_continuous_collision_impacts(ccd, &impacts, &count));
   note(t, "impacts", count);
   for (size_t i = 0; i < count; ++i) {
     note(t, "impact", impacts[i].a.id);
@@ -139,34 +139,34 @@ static void note_impacts(const trace* t, const winnow_scene_sweep* sweep) {
     note_reals(t, "impact", impacts[i].normal, 3);
     note_reals(t, "impact", impacts[i].point, 3);
   }
-  OK(winnow_scene_sweep_first(sweep, &first, &count));
+  OK(winnow_continuous_collision_first(ccd, &first, &count));
   for (size_t i = 0; i < count; ++i) note(t, "first impact", first[i]);
 }
 
-static void query_sweep(const trace* t, winnow_scene* scene, const winnow_key* keys) {
+static void query_continuous_collision(const trace* t, winnow_scene* scene, const winnow_key* keys) {
   enum { kMoving = 3 };
-  winnow_scene_sweep* sweep = NULL;
-  winnow_sweep_options options = WINNOW_SWEEP_OPTIONS;
+  winnow_continuous_collision* ccd = NULL;
+  winnow_continuous_options options = WINNOW_CONTINUOUS_OPTIONS;
   winnow_footprint bytes = {.size = sizeof bytes};
   winnow_pose ends[kMoving];
   const uint8_t bullets[kMoving] = {0, 1, 0};
-  OK(winnow_scene_sweep_create(scene, NULL, &sweep));
+  OK(winnow_continuous_collision_create(scene, NULL, &ccd));
   for (size_t i = 0; i < kMoving; ++i) {
     pose_of(i, 0, ends[i].position, ends[i].orientation);
     ends[i].position[1] += 6.0;
   }
   const winnow_pose_view view = winnow_poses(ends, kMoving);
-  OK(winnow_scene_sweep_sweep(sweep, keys, kMoving, &view, NULL));
-  note_impacts(t, sweep);
-  options.pairs = WINNOW_SWEEP_BULLETS;
+  OK(winnow_continuous_collision_find_impacts(ccd, keys, kMoving, &view, NULL));
+  note_impacts(t, ccd);
+  options.pairs = WINNOW_CONTINUOUS_BULLETS;
   options.bullets = bullets;
   options.leave_out_touching = 1;
   options.first_only = 1;
-  OK(winnow_scene_sweep_sweep(sweep, keys, kMoving, &view, &options));
-  note_impacts(t, sweep);
-  OK(winnow_scene_sweep_footprint(sweep, &bytes));
-  note(t, "sweeps take memory", bytes.results.reserved > 0);
-  winnow_scene_sweep_destroy(sweep);
+  OK(winnow_continuous_collision_find_impacts(ccd, keys, kMoving, &view, &options));
+  note_impacts(t, ccd);
+  OK(winnow_continuous_collision_footprint(ccd, &bytes));
+  note(t, "impacts take memory", bytes.results.reserved > 0);
+  winnow_continuous_collision_destroy(ccd);
 }
 
 void run_watchers_in_c(const trace* t) {
@@ -179,7 +179,7 @@ void run_watchers_in_c(const trace* t) {
   add_balls(t, pool, scene, &ball, keys);
   query_groups(t, scene, keys);
   query_sensors(t, scene, ball, keys);
-  query_sweep(t, scene, keys);
+  query_continuous_collision(t, scene, keys);
   winnow_scene_destroy(scene);
   winnow_shape_pool_destroy(pool);
 }

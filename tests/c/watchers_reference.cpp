@@ -93,9 +93,9 @@ void query_sensors(const trace* t, Scene& scene, ShapeId ball, std::span<const K
   note(t, "outstanding", 0);
 }
 
-void note_impacts(const trace* t, const SceneSweep& sweep) {
-  note(t, "impacts", sweep.impacts().size());
-  for (const SceneImpact& impact : sweep.impacts()) {
+void note_impacts(const trace* t, const ContinuousCollision& ccd) {
+  note(t, "impacts", ccd.impacts().size());
+  for (const SceneImpact& impact : ccd.impacts()) {
     note(t, "impact", impact.a.id);
     note(t, "impact", impact.b.id);
     note(t, "impact", impact.data_a);
@@ -106,24 +106,26 @@ void note_impacts(const trace* t, const SceneSweep& sweep) {
     note_reals(t, "impact", impact.normal, 3);
     note_reals(t, "impact", impact.point, 3);
   }
-  for (const std::uint32_t first : sweep.first()) note(t, "first impact", first);
+  for (const std::uint32_t first : ccd.first()) note(t, "first impact", first);
 }
 
-void query_sweep(const trace* t, Scene& scene, std::span<const Key> keys) {
-  SceneSweep sweep(scene);
+void query_continuous_collision(const trace* t, Scene& scene, std::span<const Key> keys) {
+  ContinuousCollision ccd(scene);
   std::array<Pose, 3> ends;
   const std::array<std::uint8_t, 3> bullets = {0, 1, 0};
   for (std::size_t i = 0; i < ends.size(); ++i) {
     ends[i] = pose_of_body(i);
     ends[i].position[1] += 6.0;
   }
-  (void)sweep.sweep(keys.first(3), ends);
-  note_impacts(t, sweep);
-  (void)sweep.sweep(
-      keys.first(3), ends,
-      {.pairs = SweepPairs::bullets, .bullets = bullets, .touching = false, .first_only = true});
-  note_impacts(t, sweep);
-  note(t, "sweeps take memory", 1);
+  (void)ccd.find_impacts(keys.first(3), ends);
+  note_impacts(t, ccd);
+  (void)ccd.find_impacts(keys.first(3), ends,
+                         {.pairs = ContinuousPairs::bullets,
+                          .bullets = bullets,
+                          .touching = false,
+                          .first_only = true});
+  note_impacts(t, ccd);
+  note(t, "impacts take memory", 1);
 }
 
 }  // namespace
@@ -135,7 +137,7 @@ void run_watchers_in_cpp(const trace* t) {
   const std::vector<Key> keys = add_balls(scene, ball);
   query_groups(t, scene, keys);
   query_sensors(t, scene, ball, keys);
-  query_sweep(t, scene, keys);
+  query_continuous_collision(t, scene, keys);
 }
 
 }  // namespace winnow::test

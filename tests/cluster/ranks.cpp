@@ -30,7 +30,7 @@ winnow::Status add(winnow::Cluster& cluster, winnow::BodyName name) {
   return cluster.add({&batch, 1}, {&answer, 1});
 }
 
-/// Makes the call that all ranks make except the one that calls strange().
+/// Makes the call that all ranks make except the one that calls deviating_call().
 winnow::Status common(winnow::Cluster& cluster, const std::string& kind) {
   winnow::ClusterDigest digest;
   if (kind == "late_for_exchange") return add(cluster, 10 + cluster.first_hosted());
@@ -38,7 +38,7 @@ winnow::Status common(winnow::Cluster& cluster, const std::string& kind) {
   return cluster.self_pairs();  // begins with a repartitioning
 }
 
-winnow::Status strange(winnow::Cluster& cluster, const std::string& kind) {
+winnow::Status deviating_call(winnow::Cluster& cluster, const std::string& kind) {
   winnow::ClusterDigest digest;
   if (kind == "adds_instead") return add(cluster, 20);
   if (kind == "sums_instead") return cluster.digest(digest);
@@ -64,13 +64,13 @@ int main(int, char** arguments) {
   const std::uint32_t rank = cluster.first_hosted();
   if (add(cluster, rank) != winnow::Status::ok) return 1;
   const auto start = std::chrono::steady_clock::now();
-  const winnow::Status status = rank == 1 ? strange(cluster, kind) : common(cluster, kind);
+  const winnow::Status status = rank == 1 ? deviating_call(cluster, kind) : common(cluster, kind);
   const Seconds took = std::chrono::steady_clock::now() - start;
   const auto file = [&](std::uint32_t of) { return folder / std::to_string(of); };
   std::ofstream(file(rank)) << winnow::to_string(status) << ' '
                             << (took.count() < kLimit + 1.0 || rank == 1 ? "in time" : "late")
                             << std::endl;
-  // A rank that exits before the others have written ends them too.
+  // Waits for the files of all ranks: if one exits early, mpirun ends the other ranks.
   for (std::uint32_t other = 0; other < cluster.ranks(); ++other) {
     while (!std::filesystem::exists(file(other))) {
       std::this_thread::sleep_for(std::chrono::milliseconds(20));

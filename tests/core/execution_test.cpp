@@ -1,5 +1,5 @@
-// Execution: every index runs once, on which threads, in which floating-point environment, and
-// without other work while a task waits.
+// Execution: every index runs once; the threads and the floating-point environment of tasks; a
+// waiting task runs no other work.
 
 #include <gtest/gtest.h>
 #include <winnow/core/execution.h>
@@ -79,7 +79,8 @@ TEST(Execution, nested_loops_on_a_host_run_every_index) {
   }
 }
 
-// Each thread runs a range of neighbouring indices; other threads run the range of a late thread.
+// Each thread first runs its own range of consecutive indices. Threads that have finished then run
+// the ranges of threads that have not started.
 TEST(Execution, host_threads_get_ranges_and_then_the_rest) {
   struct Host {
     std::size_t given = 0;
@@ -120,10 +121,10 @@ std::pair<float, float> arithmetic_here() {
 TEST(Execution, tasks_have_the_float_environment_of_the_caller) {
   const auto is_everywhere_as_here = [](const Execution& execution) {
     std::array<std::pair<float, float>, 2> seen;
-    std::atomic<int> met{0};
+    std::atomic<int> started{0};
     execution.for_each(2, [&](std::size_t i) {
-      ++met;
-      while (met.load() < 2) std::this_thread::yield();
+      ++started;
+      while (started.load() < 2) std::this_thread::yield();
       seen[i] = arithmetic_here();
     });
     return seen[0] == arithmetic_here() && seen[1] == arithmetic_here();
@@ -181,14 +182,14 @@ TEST(Execution, parallel_execution_stays_inside_the_arena) {
 // Two tasks that wait for each other can end only if two threads run them.
 TEST(Execution, threads_of_the_arena_are_used) {
   tbb::task_arena arena(2);
-  std::atomic<int> met{0};
+  std::atomic<int> started{0};
   arena.execute([&] {
     Execution::parallel().for_each(2, [&](std::size_t) {
-      ++met;
-      while (met.load() < 2) std::this_thread::yield();
+      ++started;
+      while (started.load() < 2) std::this_thread::yield();
     });
   });
-  EXPECT_EQ(met, 2);
+  EXPECT_EQ(started, 2);
 }
 
 // A call must not skip tasks and then return ok.

@@ -160,7 +160,7 @@ TEST(Frustum, frustum_from_a_matrix_equals_the_camera) {
 
 TEST(Frustum, frustum_without_a_far_plane_is_unbounded) {
   std::vector<Camera> all = cameras();
-  // Far from the origin, where the matrix itself is inaccurate.
+  // Adds cameras far from the origin, where the matrix itself is inaccurate.
   all.push_back({{1e6F, -2e6F, 3e5F}, {1, 2, 3}});
   all.push_back(
       {{1e6F, 1e6F, 1e6F}, {-1, 0.3F, 0.1F}, Vector3f::UnitZ(), 1.0F, 1.0F, 0.01F, 90.0F});

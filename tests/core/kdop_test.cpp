@@ -68,7 +68,7 @@ TYPED_TEST(KdopTest, volume_around_points_contains_them) {
     const double scale = random.log_uniform(1e-35, 1e35);
     std::vector<Eigen::Vector3f> points;
     for (int n = 0; n < 6; ++n) points.push_back(random_point(random, scale));
-    // One point is far smaller than the rest, so that a sum of coordinates loses digits.
+    // One point is about 1e6 times nearer to the origin than the other points.
     points.push_back(random_point(random, scale * 1e-6));
     const TypeParam volume = TypeParam::around(points);
     ASSERT_TRUE(volume.is_valid());

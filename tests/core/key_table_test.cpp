@@ -1,5 +1,5 @@
-// KeyTable and PartitionTagPool: keys are never given twice, by reuse, clear or restore; stale and
-// foreign keys are invalid; refused memory changes nothing.
+// KeyTable and PartitionTagPool: no key is issued twice, even after a slot is reused or the table
+// is cleared or restored; stale and foreign keys are invalid; refused memory changes nothing.
 
 #include "core/memory/key_table.h"
 #include <gtest/gtest.h>
@@ -318,7 +318,7 @@ struct SavedTable {
 };
 
 // Random calls on a table that is saved and restored, in place or into another table: each key that
-// it gives is new, and each live key of a snapshot is valid again after the restore.
+// the table issues is new, and each live key of a snapshot is valid again after the restore.
 class RestoredTable {
  public:
   explicit RestoredTable(std::uint32_t seed) : random_(seed) { save(); }

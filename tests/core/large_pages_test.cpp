@@ -120,7 +120,7 @@ TEST(LargePages, large_blocks_share_slabs_small_ones_do_not) {
   EXPECT_EQ(small.outstanding(), own + LargePages::kLargeBlock - 1);
   memory.deallocate(little, LargePages::kLargeBlock - 1, 64);
   EXPECT_EQ(small.outstanding(), own);
-  // A freed block is handed out again.
+  // The next allocation returns the freed block.
   memory.deallocate(first, kBytes, 4);
   EXPECT_EQ(memory.allocate(kBytes, 64), first);
   memory.deallocate(first, kBytes, 64);
@@ -138,7 +138,7 @@ TEST(LargePages, most_empty_slabs_return_to_the_system) {
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     memory.deallocate(blocks[i], 3 * kMega, 64);
     const std::size_t free = memory.held_bytes() - memory.used_bytes();
-    // A slab stays as long as it holds a block.
+    // The slab of the next block to free cannot return to the system yet.
     EXPECT_LE(free, std::max(memory.used_bytes(), kKept) + 64 * kMega) << "after " << i;
   }
   EXPECT_LE(memory.held_bytes(), kKept);
@@ -159,7 +159,7 @@ TEST(LargePages, refused_allocation_changes_nothing) {
   EXPECT_THROW((void)memory.allocate(std::size_t{1} << 60U, 64), std::bad_alloc);
   EXPECT_EQ(memory.held_bytes(), 0U);
   if (!kHasSlabs) return;
-  // Without memory for its own records, no block is handed out.
+  // Without memory for the records of LargePages, the allocation fails.
   LargePages other(&small);
   small.refuse_after(0);
   EXPECT_THROW((void)other.allocate(kMega, 64), std::bad_alloc);

@@ -28,12 +28,14 @@ int main() {
   winnow::PairBuffer pairs;
   winnow::PairEvents events;
   good = good && partition.self_pairs(pairs, events) == winnow::Status::ok;
-  winnow::OverlapBuffer met;
-  good = good &&
-         partition.overlap(winnow::Aabb{{-1, -1, -1}, {1.5F, 2, 2}}, met) == winnow::Status::ok;
+  winnow::OverlapBuffer overlapping;
+  good = good && partition.overlap(winnow::Aabb{{-1, -1, -1}, {1.5F, 2, 2}}, overlapping) ==
+                     winnow::Status::ok;
   winnow::ShapePool shapes;
   winnow::ShapeId shape;
-  good = good && shapes.add(winnow::BoxShape{{1, 1, 1}}, shape) == winnow::Status::ok;
+  winnow::ShapeId oval;
+  good = good && shapes.add(winnow::BoxShape{{1, 1, 1}}, shape) == winnow::Status::ok &&
+         shapes.add(winnow::EllipsoidShape{{1, 1, 2}}, oval) == winnow::Status::ok;
   winnow::Scene scene(shapes);
   winnow::Key body;
   winnow::Contacts contacts;

@@ -98,7 +98,7 @@ class Field {
     PairBuffer buffer;
   };
   std::vector<Player> players_;
-  std::vector<Key> keys_;  // of the last player; the ids of all are equal
+  std::vector<Key> keys_;  // of the last partition; all partitions have equal ids
 };
 
 class Differential : public testing::TestWithParam<Case> {};

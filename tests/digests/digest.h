@@ -17,13 +17,14 @@ namespace winnow::test {
 class Digest {
  public:
   void add(std::uint64_t value) { hash_ = (hash_ ^ value) * 0x100000001B3ULL + (value >> 32U); }
-  /// Zeros of either sign are equal. Tests the bits: a sum with 0 keeps the sign if the host rounds
-  /// down, and loses denormal numbers if it flushes them.
+  /// Adds a double; zeros of either sign are equal. Tests the bits: value + 0 would be -0 for -0 if
+  /// the host rounds down, and 0 for a denormal number if the host flushes them.
   void add(double value) {
     const auto bits = std::bit_cast<std::uint64_t>(value);
     add(bits << 1U == 0 ? std::uint64_t{0} : bits);
   }
-  /// Adds how the pairs were computed: pairs that the lanes leave to the solver take longer.
+  /// Adds the numbers of pairs that each method computed: a change of the method changes the time,
+  /// even if the results are equal.
   void add(const NarrowStatistics& s) {
     for (const std::uint64_t number :
          {s.pairs, s.recomputed, s.without_lanes, s.exact, s.bounded}) {

@@ -1,12 +1,12 @@
 // Usage: winnow_digests [--check FILE | --check-once FILE]
 //
 // Prints a digest of every kind of result, one per line, in each floating-point mode that a host
-// may have set. Each is computed on every instruction set of the machine and on 1 to 32 threads, on
-// arenas of oneTBB, if winnow is built with it, and on a thread pool of this program. If these do
-// not agree, the line says which differ. With --check it prints only the lines that differ from the
-// file, and returns 1 if there are any. --check-once uses only the best instruction set and one
-// thread. The input numbers are made without the mathematical library, whose last digits depend on
-// its version.
+// may have set. Each digest is computed on every instruction set of the machine and on 1 to 32
+// threads: arenas of oneTBB, if winnow is built with it, and a thread pool of this program. If a
+// digest differs from the first, its line names the instruction set and the threads. With --check
+// the program prints only the lines that differ from the file, and returns 1 if there are any.
+// --check-once uses only the best instruction set and one thread. The inputs are computed without
+// the mathematical library, because its last digits depend on its version.
 
 #if WINNOW_HAVE_TBB
 #include <tbb/global_control.h>
@@ -88,7 +88,7 @@ std::uint64_t digest_of(const FloatMode& mode, const Work& work, const Workers& 
   return digest.value();
 }
 
-/// With `once` the digest is computed on one thread and the current instruction set only.
+/// If `once`, computes the digest only on one thread and on the current instruction set.
 std::string line_of(const FloatMode& mode, const Work& work, bool once) {
   std::ostringstream line;
   line << name_of(mode) << ' ' << work.name << ' ';
@@ -133,21 +133,21 @@ int main(int argc, char** argv) {
   const std::string option = argc == 3 ? argv[1] : "";
   const bool once = option == "--check-once";
   const bool checks = option == "--check" || once;
-  const auto wanted = checks ? lines_of(argv[2]) : std::map<std::string, std::string>();
-  std::size_t asked = 0;
+  const auto expected = checks ? lines_of(argv[2]) : std::map<std::string, std::string>();
+  std::size_t compared = 0;
   std::size_t other = 0;
   for (const FloatMode& mode : kModes) {
     for (const Work& work : all_work()) {
-      const auto known = wanted.find(std::string(name_of(mode)) + ' ' + work.name);
-      if (checks && known == wanted.end()) continue;
+      const auto known = expected.find(std::string(name_of(mode)) + ' ' + work.name);
+      if (checks && known == expected.end()) continue;
       const std::string line = line_of(mode, work, once);
-      ++asked;
+      ++compared;
       if (checks && line == known->second) continue;
       std::cout << line << std::endl;
       ++other;
     }
   }
   if (!checks) return 0;
-  std::cerr << asked - other << " of " << asked << " digests are as they should be\n";
+  std::cerr << compared - other << " of " << compared << " digests are as they should be\n";
   return other == 0 ? 0 : 1;
 }

@@ -145,10 +145,10 @@ class Life {
   }
 
   /// How the boxes of jittering objects are passed to the partition.
-  enum class Told { in_order, backwards, in_columns, twice };
+  enum class InputForm { in_order, backwards, in_columns, twice };
 
   /// Moves each object by up to 2^-12 from its rest position, except every `stride`-th.
-  void tremble(Told told, std::size_t stride = 5) {
+  void jitter(InputForm form, std::size_t stride = 5) {
     const std::size_t count = keys_.size();
     std::vector<Key> keys = keys_;
     std::vector<Aabb> boxes = boxes_;
@@ -156,17 +156,17 @@ class Life {
     for (std::size_t i = 0; i < count; ++i) {
       if (i % stride != first) shift(boxes[i], 0x1p-12);
     }
-    if (told == Told::backwards) {
+    if (form == InputForm::backwards) {
       std::reverse(keys.begin(), keys.end());
       std::reverse(boxes.begin(), boxes.end());
     }
     // Some keys come twice, first with a distant box: the last box of a key counts.
-    for (std::size_t i = first; told == Told::twice && i < count; i += 97) {
+    for (std::size_t i = first; form == InputForm::twice && i < count; i += 97) {
       keys.push_back(keys[i]);
       boxes.push_back(boxes[i]);
       step(boxes[i], 64);
     }
-    if (told != Told::in_columns) return note(partition_.update(keys, boxes));
+    if (form != InputForm::in_columns) return note(partition_.update(keys, boxes));
     std::vector<float> columns;
     for (int c = 0; c < 6; ++c) {
       for (const Aabb& box : boxes) columns.push_back(c < 3 ? box.min[c] : box.max[c - 3]);
@@ -234,7 +234,7 @@ class Life {
     }
   }
 
-  void ask(const PairOptions& options = {}) {
+  void query_pairs(const PairOptions& options = {}) {
     note(partition_.self_pairs(pairs_, options));
     for (const Pair& pair : pairs_) digest_.add(std::uint64_t{pair.first} << 32U | pair.second);
     count();
@@ -243,7 +243,7 @@ class Life {
   /// Queries into an empty buffer, as a new caller does.
   void query_anew() {
     pairs_.clear();
-    ask();
+    query_pairs();
   }
 
   void look() {
@@ -301,7 +301,7 @@ class Life {
     if (chance < 1 && !bounded_) box.max[0] = kInfinity;
   }
 
-  /// `way` in sixteenths.
+  /// Moves a box by up to `way` sixteenths along each axis.
   void step(Aabb& box, int way) { shift(box, way * 0x1p-4); }
 
   /// Moves a box by up to `most` along each axis. Boxes must be equal in all floating-point modes,
@@ -339,7 +339,7 @@ class Life {
   }
 
   Partition partition_;
-  bool bounded_;  // volumes other than boxes have no infinite ends
+  bool bounded_;  // no box gets infinite ends: volumes other than boxes have none
   Numbers numbers_;
   Digest& digest_;
   std::vector<Key> keys_;
@@ -352,7 +352,7 @@ class Life {
 void drift(Life& life, int way) {
   for (int frame = 0; frame < 40; ++frame) {
     life.move(1, way, frame % 3 == 2);
-    life.ask();
+    life.query_pairs();
     if (frame == 30) life.jump(6);
     if (frame % 8 == 3) life.look();
   }
@@ -374,7 +374,7 @@ void churn(Life& life) {
     if (frame == 9) life.jump(2);
     if (frame == 15) life.jump(40);
     if (frame == 20) life.jump(1);
-    life.ask({.order = frame % 6 == 5 ? Order::canonical : Order::fast});
+    life.query_pairs({.order = frame % 6 == 5 ? Order::canonical : Order::fast});
     if (frame % 6 == 2) life.look();
   }
 }
@@ -389,18 +389,18 @@ void sift(Life& life) {
     if (frame == 10) life.filter(2, {.layers = 1U, .mask = ~0U, .environment = kAllEnvironments});
     if (frame == 12) life.remove(5);
     if (frame == 13) life.filter(1, {});
-    life.ask();
+    life.query_pairs();
     if (frame % 4 == 3) life.look();
   }
 }
 
 /// All objects jitter in place, so that hardly a pair changes, while some move, arrive and leave.
 void rest(Life& life) {
-  using Told = Life::Told;
+  using InputForm = Life::InputForm;
   for (int frame = 0; frame < 90; ++frame) {
-    const Told told[] = {Told::in_order, Told::in_order, Told::backwards, Told::in_columns,
-                         Told::twice};
-    life.tremble(told[frame % 5]);
+    const InputForm form[] = {InputForm::in_order, InputForm::in_order, InputForm::backwards,
+                              InputForm::in_columns, InputForm::twice};
+    life.jitter(form[frame % 5]);
     if (frame % 11 == 6) life.move_one_by_one(211, 8);
     if (frame % 13 == 7) life.move(97, 8, frame % 2 == 1);
     if (frame % 17 == 8) life.insert(9);
@@ -410,7 +410,7 @@ void rest(Life& life) {
     if (frame == 32) life.move_listed(80, 8, true);
     if (frame == 45) life.look();
     if (frame == 70) life.move(2, 16);
-    if (frame % 9 != 4) life.ask();
+    if (frame % 9 != 4) life.query_pairs();
   }
 }
 
@@ -424,16 +424,16 @@ void turn(Life& life) {
     if (frame == 95) life.insert(40);
     life.move(frame < 60 ? 1 : 40, 3);
     if (frame > 70) life.look();
-    life.ask();
+    life.query_pairs();
   }
 }
 
 /// In every frame a few objects jump away from their neighbours.
-void stray(Life& life) {
+void jump_away(Life& life) {
   for (int frame = 0; frame < 24; ++frame) {
     life.move(1, 1);
     life.jump(frame % 8 == 7 ? 9 : 60);
-    life.ask();
+    life.query_pairs();
   }
 }
 
@@ -441,16 +441,16 @@ void stray(Life& life) {
 void trickle(Life& life, std::size_t count) {
   for (std::size_t i = 0; i < count / 2; ++i) {
     life.jump_one();
-    life.ask();
+    life.query_pairs();
   }
   for (std::size_t i = 0; i < count / 2; ++i) {
     life.remove_one();
-    life.ask();
+    life.query_pairs();
   }
   for (std::size_t i = 0; i < count; ++i) {
     life.insert(1);
     if (i % 4 == 3) life.remove_one();
-    life.ask();
+    life.query_pairs();
   }
 }
 
@@ -458,9 +458,9 @@ void trickle(Life& life, std::size_t count) {
 /// are reordered, while no box moves: the objects of the middle environment get into other blocks.
 void regroup(Life& life, std::size_t count) {
   life.part(3);
-  life.ask();
+  life.query_pairs();
   life.filter(3, {.layers = ~0U, .mask = ~0U, .environment = 2}, count / 2);
-  life.ask();
+  life.query_pairs();
   life.query_anew();
 }
 
@@ -469,7 +469,7 @@ void swell(Life& life, std::size_t count) {
   for (std::size_t moving = 1; moving <= count; ++moving) {
     life.move_some(moving, moving % 2 == 0 ? 1 : 8);
     if (moving % 3 == 0) life.jump_one();
-    life.ask();
+    life.query_pairs();
   }
 }
 
@@ -480,21 +480,21 @@ void end(Life& life) {
   for (const StructureKind kind : {linear_bvh(), bounds_n_squared(), flat_grid(), before}) {
     life.note(partition.set_structure(kind));
     life.move(2, 4);
-    life.ask();
+    life.query_pairs();
   }
   partition.release_memory();
-  life.ask();
+  life.query_pairs();
   partition.clear();
   life.forget();
-  life.ask();
+  life.query_pairs();
   life.note(partition.reserve(700));
   life.insert(300);
-  life.ask();
+  life.query_pairs();
   partition.clear();
   life.forget();
   partition.release_memory();
   life.insert(100);
-  life.ask();
+  life.query_pairs();
 }
 
 void live(StructureKind structure, PartitionOptions options, const Execution& execution,
@@ -510,7 +510,7 @@ void live(StructureKind structure, PartitionOptions options, const Execution& ex
   end(life);
   Life resting(structure, options, count, digest);
   rest(resting);
-  stray(resting);
+  jump_away(resting);
   regroup(resting, count);
   const std::size_t few = structure == n_squared() ? 40 : 256;
   Life steady(structure, options, few, digest);
@@ -548,9 +548,9 @@ std::vector<Work> refresh_works() {
                      }});
   }
   for (const StructureKind structure : {hierarchical_grid(), linear_bvh()}) {
-    add(structure, "/margins", {.margin = {.distance = 0.125F, .share = 0.0625F}});
+    add(structure, "/margins", {.fat_margin = {.distance = 0.125F, .share = 0.0625F}});
     add(structure, "/spheres", {.volume = Volume::sphere});
-    add(structure, "/kdops", {.volume = Volume::kdop18, .margin = {.distance = 0.0625F}});
+    add(structure, "/kdops", {.volume = Volume::kdop18, .fat_margin = {.distance = 0.0625F}});
   }
   return works;
 }

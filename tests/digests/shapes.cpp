@@ -185,7 +185,7 @@ class Bodies {
   double unit_ = 1.0;
 };
 
-/// Adds pairs of every two kinds, `each` of them.
+/// Adds `each` pairs of every two kinds.
 void add_all(Bodies& bodies, std::size_t each, Digest& digest) {
   for (const ShapeKind a : kKinds) {
     for (const ShapeKind b : kKinds) {
@@ -213,7 +213,7 @@ void add(Digest& digest, const NarrowResult& result) {
   }
 }
 
-void meet(Style style, NarrowTier tier, const Execution& execution, Digest& digest) {
+void collide(Style style, NarrowTier tier, const Execution& execution, Digest& digest) {
   Bodies bodies(style, 11);
   add_all(bodies, 12, digest);
   NarrowPhase phase;
@@ -223,7 +223,7 @@ void meet(Style style, NarrowTier tier, const Execution& execution, Digest& dige
     for (const double margin : {0.0, 0.25}) {
       const Status status = phase.collide(
           bodies.pool, {bodies.shapes, bodies.poses}, bodies.pairs,
-          {.level = level, .tier = tier, .margin = margin, .execution = execution}, result);
+          {.level = level, .tier = tier, .contact_margin = margin, .execution = execution}, result);
       digest.add(static_cast<std::uint64_t>(status));
       add(digest, result);
       digest.add(phase.statistics());
@@ -241,7 +241,8 @@ void impacts(Style style, const Execution& execution, Digest& digest) {
     Pose end = bodies.pose();
     // One in four does not rotate, one in four does not move.
     if (i % 4 == 1) std::copy_n(start.orientation, 4, end.orientation);
-    motions.push_back(i % 4 == 2 ? RigidMotion::standing(start) : RigidMotion::between(start, end));
+    motions.push_back(i % 4 == 2 ? RigidMotion::stationary(start)
+                                 : RigidMotion::between(start, end));
   }
   ImpactResult result;
   digest.add(static_cast<std::uint64_t>(
@@ -299,7 +300,7 @@ std::vector<Work> shape_works() {
     for (const NarrowTier tier : {NarrowTier::robust, NarrowTier::reference}) {
       const char* const tier_name = tier == NarrowTier::robust ? "/robust" : "/reference";
       works.push_back({"shapes/" + name + tier_name,
-                       [=](const Execution& e, Digest& d) { meet(style, tier, e, d); }});
+                       [=](const Execution& e, Digest& d) { collide(style, tier, e, d); }});
     }
     works.push_back(
         {"impacts/" + name, [=](const Execution& e, Digest& d) { impacts(style, e, d); }});

@@ -31,7 +31,8 @@ void add(Digest& digest, std::span<const Hit> hits) {
   }
 }
 
-/// Digests the pairs in the order found, of all objects and after some have moved.
+/// Digests the pairs in the order in which they are found: first of all objects, then after some or
+/// all objects have moved.
 void pairs_of(std::vector<Aabb> given, StructureKind structure, const Execution& execution,
               Digest& digest) {
   Partition partition(structure, {.execution = execution});
@@ -54,7 +55,8 @@ void pairs_of(std::vector<Aabb> given, StructureKind structure, const Execution&
   digest.add(good ? 1.0 : 0.0);
 }
 
-/// Cubes of many sizes, some of which grids leave to a tree, and cubes of one size.
+/// Digests pairs of cubes of four sizes, some of which grids store in a tree, and pairs of cubes of
+/// one size.
 void pairs(StructureKind structure, const Execution& execution, Digest& digest) {
   const std::size_t count = structure == n_squared() ? 60 : 1500;
   pairs_of(boxes(count, 1), structure, execution, digest);
@@ -117,20 +119,20 @@ void narrow(NarrowTier tier, const Execution& execution, Digest& digest) {
   Numbers numbers(5);
   std::vector<ShapeId> bodies;
   std::vector<Pose> poses;
-  std::vector<BodyPair> asked;
+  std::vector<BodyPair> body_pairs;
   for (std::size_t i = 0; i < 64 * 20; ++i) {
     bodies.insert(bodies.end(), {ids[i % 8], ids[i / 8 % 8]});
     for (int k = 0; k < 2; ++k) poses.push_back(numbers.pose(1));
     const auto n = static_cast<std::uint32_t>(bodies.size());
-    asked.push_back({n - 2, n - 1});
+    body_pairs.push_back({n - 2, n - 1});
   }
   NarrowPhase phase;
   NarrowResult result;
   for (const ContactLevel level :
        {ContactLevel::boolean, ContactLevel::distance, ContactLevel::manifold}) {
     const Status status = phase.collide(
-        pool, {bodies, poses}, asked,
-        {.level = level, .tier = tier, .margin = 0.125, .execution = execution}, result);
+        pool, {bodies, poses}, body_pairs,
+        {.level = level, .tier = tier, .contact_margin = 0.125, .execution = execution}, result);
     digest.add(static_cast<std::uint64_t>(status));
     digest.add(phase.statistics());
     for (std::size_t i = 0; i < result.size(); ++i) {
@@ -149,7 +151,7 @@ void narrow(NarrowTier tier, const Execution& execution, Digest& digest) {
   }
 }
 
-void ask(const Scene& scene, Numbers& numbers, Digest& digest) {
+void query(const Scene& scene, Numbers& numbers, Digest& digest) {
   SceneQueries questions(scene);
   for (int i = 0; i < 40; ++i) {
     ShapeRay ray;
@@ -190,12 +192,12 @@ void scene(const Execution& execution, Digest& digest) {
   ids.emplace_back();
   digest.add(static_cast<std::uint64_t>(composites.add_mesh(
       std::span(std::as_const(points)), std::span(std::as_const(corners)), ids.back())));
-  Scene world(pool, {.execution = execution, .margin = 0.0625, .composites = &composites});
+  Scene world(pool, {.execution = execution, .contact_margin = 0.0625, .composites = &composites});
   std::vector<Key> keys(160);
   for (std::size_t i = 0; i < keys.size(); ++i) {
     const BodyDefinition body{.shape = ids[i % ids.size()],
                               .pose = numbers.pose(4),
-                              .motion = static_cast<Motion>(i % 11 == 0 ? 0 : 1),
+                              .state = static_cast<BodyState>(i % 11 == 0 ? 0 : 1),
                               .data = i};
     digest.add(static_cast<std::uint64_t>(world.add(body, keys[i])));
   }
@@ -212,7 +214,7 @@ void scene(const Execution& execution, Digest& digest) {
     }
     const SceneStatistics& counts = world.statistics();
     for (const std::uint64_t number :
-         {counts.boxes_updated, counts.body_pairs, counts.rejected_by_spheres, counts.carried,
+         {counts.boxes_updated, counts.body_pairs, counts.rejected_by_spheres, counts.cached_pairs,
           counts.primitive_pairs}) {
       digest.add(number);
     }
@@ -224,7 +226,7 @@ void scene(const Execution& execution, Digest& digest) {
     }
   }
   digest.add(static_cast<std::uint64_t>(world.refresh()));
-  ask(world, numbers, digest);
+  query(world, numbers, digest);
 }
 
 }  // namespace

@@ -11,10 +11,10 @@
 namespace {
 
 std::vector<winnow::KeyPair> begun;
-void meet(const winnow::KeyPair& pair) {
+void on_begin(const winnow::KeyPair& pair) {
   begun.push_back(pair);
 }
-void part(const winnow::KeyPair&) {}
+void on_end(const winnow::KeyPair&) {}
 
 }  // namespace
 
@@ -42,8 +42,8 @@ int main() {
   partition.self_pairs(pairs, events);
   partition.update(keys, boxes, winnow::IndexSubset::listed(moved));  // or IndexSubset::masked
   partition.self_pairs(pairs, events);  // if few objects moved, only their pairs are recomputed
-  for (const winnow::KeyPair& pair : events.begun()) meet(pair);
-  for (const winnow::KeyPair& pair : events.ended()) part(pair);
+  for (const winnow::KeyPair& pair : events.begun()) on_begin(pair);
+  for (const winnow::KeyPair& pair : events.ended()) on_end(pair);
   // [end]
   check(pairs.size() == 1, "two boxes overlap");
   check(begun.size() == 1 && begun[0].first == keys[2] && begun[0].second == keys[3],
@@ -54,8 +54,8 @@ int main() {
   partition.set_structure(winnow::automatic());          // chooses one, and changes it if needed
   winnow::Partition bodies(
       winnow::linear_bvh(),
-      {.volume = winnow::Volume::kdop14,                 // or aabb, sphere, ...
-       .margin = {.distance = 0.02F, .share = 0.05F}});  // moves within it cost nothing
+      {.volume = winnow::Volume::kdop14,                     // or aabb, sphere, ...
+       .fat_margin = {.distance = 0.02F, .share = 0.05F}});  // moves within it cost nothing
   // [end]
   partition.self_pairs(pairs);
   check(pairs.size() == 1, "another structure finds the same");

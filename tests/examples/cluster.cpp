@@ -9,9 +9,9 @@
 
 namespace {
 
-std::size_t met = 0;
-void meet(winnow::BodyName, winnow::BodyName) {
-  ++met;
+std::size_t reported = 0;
+void report(winnow::BodyName, winnow::BodyName) {
+  ++reported;
 }
 
 }  // namespace
@@ -41,9 +41,9 @@ int main() {
   }
   cluster.self_pairs();  // sends only bodies that moved and have ghosts
   for (std::uint32_t rank = 0; rank < cluster.hosted(); ++rank) {
-    for (const winnow::NamePair pair : cluster.pairs(rank)) meet(pair.first, pair.second);
+    for (const winnow::NamePair pair : cluster.pairs(rank)) report(pair.first, pair.second);
   }
   // [end]
   check(answers[0] == winnow::Status::ok, "the bodies are taken");
-  check(met == 1, "two boxes overlap, and one rank reports it");
+  check(reported == 1, "two boxes overlap, and one rank reports it");
 }

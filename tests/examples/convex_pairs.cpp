@@ -32,7 +32,7 @@ int main() {
   winnow::NarrowPhase narrow;
   winnow::NarrowResult result;  // keep it from call to call
   narrow.collide(shapes, {shape_of, pose_of}, pairs,
-                 {.level = winnow::ContactLevel::manifold, .margin = 0.01}, result);
+                 {.level = winnow::ContactLevel::manifold, .contact_margin = 0.01}, result);
   for (std::size_t i = 0; i < result.size(); ++i) {  // in the order of kinds of shapes
     if (result.overlaps(i)) solve(result.pair_of(i), result.contact_count()[i]);
     // also distance(), error_bound(), normal(axis), contact(point): position, depth, feature

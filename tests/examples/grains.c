@@ -26,7 +26,7 @@ int main(void) {
     bodies[i] = none;
     bodies[i].shape = i < kGrains ? grain : floor;
     if (i == kGrains) {
-      bodies[i].motion = WINNOW_MOTION_FIXED;
+      bodies[i].state = WINNOW_BODY_STATE_FIXED;
     } else {
       x[i] = bodies[i].pose.position[0] = i % 10;
       y[i] = bodies[i].pose.position[1] = i / 10;

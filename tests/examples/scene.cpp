@@ -41,10 +41,11 @@ int main() {
   winnow::ShapeId terrain, chair;
   composites.add_mesh(std::span(points), std::span(corners), terrain);  // see PointView, IndexView
   composites.add_compound(parts, chair);  // children at poses; also add_height_field, add_scaled
-  winnow::Scene scene(shapes, {.margin = 0.01, .carry_over = 0.001, .composites = &composites});
+  winnow::Scene scene(
+      shapes, {.contact_margin = 0.01, .cache_tolerance = 0.001, .composites = &composites});
 
   winnow::Key ground, one, other;  // a body: shape, pose, fixed, dynamic or sleeping, filter, data
-  scene.add({.shape = terrain, .motion = winnow::Motion::fixed}, ground);
+  scene.add({.shape = terrain, .state = winnow::BodyState::fixed}, ground);
   scene.add({.shape = chair, .pose = winnow::Pose::at(0, 0, 0.495)}, one);
   scene.add({.shape = chair, .pose = winnow::Pose::at(9, 0, 0.495)}, other);
   // [end]
@@ -72,15 +73,15 @@ int main() {
   winnow::ShapeId ball;
   shapes.add(winnow::SphereShape{0.25}, ball);
   // [scene queries]
-  scene.refresh();                  // after changes; then any number of threads may query
-  winnow::SceneQueries ask(scene);  // one per thread
-  winnow::SceneHit hit;             // body, triangle or child, t, normal, point
-  ask.closest(winnow::ShapeRay{{20, 0, 9}, {0, 0, -1}, 100.0}, hit);
-  ask.closest(winnow::ShapeCast{ball, winnow::Pose::at(0, 0, 9), {0, 0, -20}, 1.0}, hit);
+  scene.refresh();                      // after changes; then any number of threads may query
+  winnow::SceneQueries queries(scene);  // one per thread
+  winnow::SceneHit hit;                 // body, triangle or child, t, normal, point
+  queries.closest(winnow::ShapeRay{{20, 0, 9}, {0, 0, -1}, 100.0}, hit);
+  queries.closest(winnow::ShapeCast{ball, winnow::Pose::at(0, 0, 9), {0, 0, -20}, 1.0}, hit);
   std::span<const winnow::SceneOverlap> bodies;
-  ask.overlap(chair, winnow::Pose::at(0.5, 0, 0.4), bodies);
+  queries.overlap(chair, winnow::Pose::at(0.5, 0, 0.4), bodies);
   winnow::SceneDistance gap;  // closest or deepest points
-  ask.distance(one, other, gap);
+  queries.distance(one, other, gap);
   // [end]
   check(hit.key == one, "the ball would fall on the first chair");
   check(bodies.size() == 2, "there the terrain and a chair are in the way");

@@ -41,9 +41,10 @@ class Bytes {
     return value;
   }
 
-  /// Mostly a multiple of a quarter, so that shapes touch exactly.
-  double tame() { return 0.25 * (byte() - 128); }
-  /// As tame(), but sometimes near an end of the range of float or of any size.
+  /// Returns a multiple of 1/4 in [-32, 31.75], so that shapes touch exactly.
+  double grid_value() { return 0.25 * (byte() - 128); }
+  /// Returns mostly a multiple of 1/4 in [-30, 29.75]; sometimes an infinity, a number near an end
+  /// of the range of float, or any float, including NaN.
   float wild() {
     constexpr float inf = std::numeric_limits<float>::infinity();
     constexpr std::array kEnds{inf,    -inf,    -0.0F,   1e30F,      -3e38F,
@@ -53,24 +54,24 @@ class Bytes {
     if (choice < 240 + kEnds.size()) return kEnds[choice - 240U];
     return any<float>();
   }
-  /// An extent: zero, small or large.
+  /// Returns an extent from 0 to 100.
   double extent() {
     constexpr std::array kExtents{0.0, 0.25, 0.5, 1.0, 1.5, 2.0, 4.0, 100.0};
     return kExtents[below(kExtents.size())];
   }
 
-  /// A valid box of tame numbers.
-  Aabb tame_box() {
+  /// Returns a valid box of grid values.
+  Aabb grid_box() {
     Aabb box;
     for (int axis = 0; axis < 3; ++axis) {
-      box.min[axis] = static_cast<float>(tame());
+      box.min[axis] = static_cast<float>(grid_value());
       box.max[axis] = box.min[axis] + static_cast<float>(extent());
     }
     return box;
   }
-  /// Sometimes a box of wild numbers, which may be invalid.
+  /// Returns a box of grid values, or for some bytes a box of wild numbers, which may be invalid.
   Aabb box() {
-    if (!chance(8)) return tame_box();
+    if (!chance(8)) return grid_box();
     Aabb box;
     for (int axis = 0; axis < 3; ++axis) {
       const float a = wild();
@@ -81,12 +82,13 @@ class Bytes {
     return box;
   }
 
-  /// A valid pose of tame numbers, often without a rotation.
+  /// Returns a valid pose: multiples of 1/16 as position, and for half of all bytes a rotation of
+  /// grid values.
   Pose pose() {
     Pose pose;
-    for (double& x : pose.position) x = 0.25 * tame();
+    for (double& x : pose.position) x = 0.25 * grid_value();
     if (chance(2)) {
-      for (double& q : pose.orientation) q = tame();
+      for (double& q : pose.orientation) q = grid_value();
     }
     if (!pose.is_valid()) pose.orientation[0] = 1.0;
     return pose;

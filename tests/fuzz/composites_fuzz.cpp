@@ -49,7 +49,7 @@ Surface some_surface(Bytes& bytes) {
   const bool hostile = bytes.chance(8);
   for (Vec3f& vertex : surface.vertices) {
     for (int k = 0; k < 3; ++k) {
-      vertex[k] = hostile ? bytes.wild() : 0.25F * static_cast<float>(bytes.tame());
+      vertex[k] = hostile ? bytes.wild() : 0.25F * static_cast<float>(bytes.grid_value());
     }
   }
   surface.corners.resize(bytes.below(200));
@@ -69,9 +69,9 @@ class Exhibit {
   }
 
   void change(Bytes& bytes);
-  void ask(Bytes& bytes);
+  void query(Bytes& bytes);
   void check_memory() const {
-    WINNOW_HOLDS(composites_.footprint().total().reserved == memory_.outstanding());
+    WINNOW_REQUIRE(composites_.footprint().total().reserved == memory_.outstanding());
   }
 
  private:
@@ -95,8 +95,8 @@ class Exhibit {
 
 void Exhibit::take(Bytes& bytes, bool first) {
   if (!first && id_ != ShapeId{}) {
-    WINNOW_HOLDS(composites_.remove(id_) == Status::ok && !composites_.contains(id_));
-    WINNOW_HOLDS(composites_.remove(id_) == Status::invalid_key);
+    WINNOW_REQUIRE(composites_.remove(id_) == Status::ok && !composites_.contains(id_));
+    WINNOW_REQUIRE(composites_.remove(id_) == Status::invalid_key);
     id_ = {};
     triangles_.clear();
   }
@@ -112,12 +112,12 @@ void Exhibit::take_mesh(Bytes& bytes) {
                            std::span(std::as_const(surface_.corners)), id_, options);
   const bool good_angle = options.active_edge_angle >= 0.0 && options.active_edge_angle <= 3.14;
   if (status != Status::ok) {
-    WINNOW_HOLDS(!surface_.is_good() || !good_angle);
-    WINNOW_HOLDS(id_ == ShapeId{} && composites_.size(CompositeKind::mesh) == 0);
+    WINNOW_REQUIRE(!surface_.is_good() || !good_angle);
+    WINNOW_REQUIRE(id_ == ShapeId{} && composites_.size(CompositeKind::mesh) == 0);
     return;
   }
-  WINNOW_HOLDS(surface_.is_good() &&
-               composites_.mesh(id_)->triangles() == surface_.corners.size() / 3);
+  WINNOW_REQUIRE(surface_.is_good() &&
+                 composites_.mesh(id_)->triangles() == surface_.corners.size() / 3);
   triangles_ = surface_.triangles();
 }
 
@@ -129,7 +129,7 @@ void Exhibit::refit(Bytes& bytes) {
   if (bytes.chance(8)) moved.vertices.pop_back();
   const Status status = composites_.refit_mesh(id_, std::span(std::as_const(moved.vertices)));
   if (status != Status::ok) {
-    WINNOW_HOLDS(!moved.is_good() || moved.vertices.size() != surface_.vertices.size());
+    WINNOW_REQUIRE(!moved.is_good() || moved.vertices.size() != surface_.vertices.size());
     return;
   }
   surface_ = moved;
@@ -147,16 +147,16 @@ void Exhibit::take_field(Bytes& bytes) {
   const std::size_t stride = samples.row_stride == 0 ? samples.columns : samples.row_stride;
   heights_.assign(stride * samples.rows, 0.0F);
   for (float& height : heights_) {
-    height = bytes.chance(16) ? bytes.wild() : 0.25F * static_cast<float>(bytes.tame());
+    height = bytes.chance(16) ? bytes.wild() : 0.25F * static_cast<float>(bytes.grid_value());
   }
   if (bytes.chance(8) && !heights_.empty()) heights_.pop_back();
   samples.heights = heights_;
   const Status status = composites_.add_height_field(samples, id_);
   if (status != Status::ok) {
-    WINNOW_HOLDS(id_ == ShapeId{} && composites_.size(CompositeKind::height_field) == 0);
+    WINNOW_REQUIRE(id_ == ShapeId{} && composites_.size(CompositeKind::height_field) == 0);
     return;
   }
-  WINNOW_HOLDS(samples.columns >= 2 && samples.rows >= 2);
+  WINNOW_REQUIRE(samples.columns >= 2 && samples.rows >= 2);
   read_field();
 }
 
@@ -173,10 +173,10 @@ void Exhibit::update_field(Bytes& bytes) {
   const Status status = composites_.update_height_field(id_, column, row, samples);
   read_field();
   if (status == Status::ok) return;
-  WINNOW_HOLDS(std::equal(before.begin(), before.end(), triangles_.begin(), triangles_.end(),
-                          [](const TriangleShape& a, const TriangleShape& b) {
-                            return std::memcmp(&a, &b, sizeof a) == 0;
-                          }));
+  WINNOW_REQUIRE(std::equal(before.begin(), before.end(), triangles_.begin(), triangles_.end(),
+                            [](const TriangleShape& a, const TriangleShape& b) {
+                              return std::memcmp(&a, &b, sizeof a) == 0;
+                            }));
 }
 
 void Exhibit::read_field() {
@@ -188,8 +188,8 @@ void Exhibit::read_field() {
     if (!field.triangle(i, triangle)) continue;
     for (const auto& corner : triangle.vertex) {
       for (int k = 0; k < 3; ++k) {
-        WINNOW_HOLDS(corner[k] >= static_cast<double>(box.min[k]) &&
-                     corner[k] <= static_cast<double>(box.max[k]));
+        WINNOW_REQUIRE(corner[k] >= static_cast<double>(box.min[k]) &&
+                       corner[k] <= static_cast<double>(box.max[k]));
       }
     }
     triangles_.push_back(triangle);
@@ -204,33 +204,33 @@ void Exhibit::change(Bytes& bytes) {
 
 void Exhibit::query_ray(Bytes& bytes, SceneQueries& queries, const Pose& pose) {
   ShapeRay ray;
-  for (double& x : ray.origin) x = 0.25 * bytes.tame();
-  for (double& x : ray.direction) x = 0.25 * bytes.tame();
+  for (double& x : ray.origin) x = 0.25 * bytes.grid_value();
+  for (double& x : ray.direction) x = 0.25 * bytes.grid_value();
   ray.direction[2] += ray.direction[0] == 0.0 && ray.direction[1] == 0.0 ? 100.0 : 0.0;
   ray.max_t = kInfinity;
   SceneHit hit;
-  WINNOW_HOLDS(queries.closest(ray, hit) == Status::ok);
+  WINNOW_REQUIRE(queries.closest(ray, hit) == Status::ok);
   double first = kInfinity;
   for (const TriangleShape& triangle : triangles_) {
     ShapeTables tables = shapes_.tables();
     tables.triangles = &triangle;
     tables.count[static_cast<std::size_t>(ShapeKind::triangle)] = 1;
     ShapeHit one;
-    WINNOW_HOLDS(cast_ray(tables, ShapeId::of(ShapeKind::triangle, 0), pose, ray, one) ==
-                 Status::ok);
+    WINNOW_REQUIRE(cast_ray(tables, ShapeId::of(ShapeKind::triangle, 0), pose, ray, one) ==
+                   Status::ok);
     if (one.hit) first = std::min(first, one.t);
   }
   if (!hit) {
-    WINNOW_HOLDS(first == kInfinity);
+    WINNOW_REQUIRE(first == kInfinity);
     return;
   }
-  WINNOW_HOLDS(std::abs(hit.t - first) <= 1e-9 * (1.0 + first));
+  WINNOW_REQUIRE(std::abs(hit.t - first) <= 1e-9 * (1.0 + first));
 }
 
 void Exhibit::query_shape(Bytes& bytes, SceneQueries& queries, Key body, const Pose& pose) {
   ShapeId box;
-  WINNOW_HOLDS(shapes_.add(BoxShape{{bytes.extent(), bytes.extent(), bytes.extent()}, 0.0}, box) ==
-               Status::ok);
+  WINNOW_REQUIRE(shapes_.add(BoxShape{{bytes.extent(), bytes.extent(), bytes.extent()}, 0.0},
+                             box) == Status::ok);
   const Pose at = bytes.pose();
   ShapeTables tables = shapes_.tables();
   tables.triangles = triangles_.data();
@@ -246,17 +246,17 @@ void Exhibit::query_shape(Bytes& bytes, SceneQueries& queries, Key body, const P
   poses[0] = at;
   NarrowPhase narrow;
   NarrowResult result;
-  WINNOW_HOLDS(narrow.collide(tables, {ids, poses}, pairs, {.level = ContactLevel::distance},
-                              result) == Status::ok);
+  WINNOW_REQUIRE(narrow.collide(tables, {ids, poses}, pairs, {.level = ContactLevel::distance},
+                                result) == Status::ok);
   const auto truth = std::any_of(result.distance().begin(), result.distance().end(),
                                  [](double distance) { return distance <= 0.0; });
   std::span<const SceneOverlap> found;
-  WINNOW_HOLDS(queries.overlap(box, at, found) == Status::ok);
-  WINNOW_HOLDS(truth == !found.empty() && (found.empty() || found[0].key == body));
-  WINNOW_HOLDS(shapes_.remove(box) == Status::ok);
+  WINNOW_REQUIRE(queries.overlap(box, at, found) == Status::ok);
+  WINNOW_REQUIRE(truth == !found.empty() && (found.empty() || found[0].key == body));
+  WINNOW_REQUIRE(shapes_.remove(box) == Status::ok);
 }
 
-void Exhibit::ask(Bytes& bytes) {
+void Exhibit::query(Bytes& bytes) {
   if (id_ == ShapeId{}) return;
   // Results are compared to the last digits only if the sizes are similar.
   const Aabb box = composites_.bounds(id_, Pose{});
@@ -264,8 +264,8 @@ void Exhibit::ask(Bytes& bytes) {
   Scene scene(shapes_, {.composites = &composites_});
   const Pose pose = bytes.pose();
   Key body;
-  WINNOW_HOLDS(scene.add({.shape = id_, .pose = pose}, body) == Status::ok);
-  WINNOW_HOLDS(scene.refresh() == Status::ok);
+  WINNOW_REQUIRE(scene.add({.shape = id_, .pose = pose}, body) == Status::ok);
+  WINNOW_REQUIRE(scene.refresh() == Status::ok);
   SceneQueries queries(scene);
   query_ray(bytes, queries, pose);
   query_shape(bytes, queries, body, pose);
@@ -280,7 +280,7 @@ void fuzz(std::span<const std::uint8_t> input) {
     if (bytes.chance(3)) {
       exhibit.change(bytes);
     } else {
-      exhibit.ask(bytes);
+      exhibit.query(bytes);
     }
     exhibit.check_memory();
   }

@@ -26,13 +26,13 @@ struct Tally {
   std::uint64_t operations = 0;
   std::uint64_t frames = 0;
   std::uint64_t pairs = 0;
-  std::uint64_t carried = 0;
+  std::uint64_t cached = 0;
   std::uint64_t points = 0;
   std::uint64_t followed = 0;
 
   ~Tally() {
-    std::printf("%llu operations, %llu frames of %llu pairs, of which %llu were carried over; ",
-                number(operations), number(frames), number(pairs), number(carried));
+    std::printf("%llu operations, %llu frames of %llu pairs, of which %llu were cached; ",
+                number(operations), number(frames), number(pairs), number(cached));
     std::printf("%llu points, of which %llu were in the last frame\n", number(points),
                 number(followed));
   }
@@ -59,7 +59,7 @@ class ContactsProgram {
   void remove(Bytes& bytes);
   void nudge(Bytes& bytes);
   void move(ModelBody& body, const Pose& pose);
-  void set_motion(Bytes& bytes);
+  void set_body_state(Bytes& bytes);
   void reshape(Bytes& bytes);
   void part(Bytes& bytes);
   void change_surface(Bytes& bytes);
@@ -88,7 +88,7 @@ class ContactsProgram {
   ContactLevel level_ = ContactLevel::manifold;
   std::unique_ptr<Scene> scene_;
   std::unique_ptr<Contacts> contacts_[kContacts];
-  /// This scene filled them last.
+  /// True if this scene was the last one to fill the Contacts.
   bool is_filled_[kContacts] = {};
   ContactsModel models_[kContacts];
   PairReference reference_;
@@ -101,7 +101,7 @@ ContactsProgram::ContactsProgram(Bytes& bytes)
       world_{shapes_.pool, shapes_.composites, some_options(bytes, shapes_, memory_)} {
   constexpr double kFar[] = {0.0, 0.0, 0.0, 1e5};
   far_ = kFar[bytes.below(4)];
-  // Steps below, near and above the carry-over distance.
+  // Steps below, near and above the cache tolerance.
   constexpr double kSteps[] = {0.0078125, 0.03125, 0.0546875, 0.125};
   step_ = kSteps[bytes.below(4)];
   scene_ = std::make_unique<Scene>(shapes_.pool, world_.options);
@@ -114,8 +114,8 @@ SceneOptions ContactsProgram::some_options(Bytes& bytes, const EveryShape& shape
   options.execution = bytes.chance(4) ? Execution::parallel() : Execution::serial();
   const auto all = all_structures();
   for (StructureKind& kind : options.structures) kind = all[bytes.below(all.size())];
-  if (bytes.chance(2)) options.margin = 0.0625;
-  if (!bytes.chance(3)) options.carry_over = 0.0625;
+  if (bytes.chance(2)) options.contact_margin = 0.0625;
+  if (!bytes.chance(3)) options.cache_tolerance = 0.0625;
   options.warm_start = bytes.chance(2);
   options.contact_reduction = bytes.chance(2);
   options.suppress_ghost_contacts = bytes.chance(4);
@@ -130,7 +130,7 @@ Pose ContactsProgram::some_pose(Bytes& bytes) const {
     x = far_ + 0.25 * static_cast<double>(bytes.below(9)) - 1.0;
   }
   if (bytes.chance(2)) {
-    for (double& q : pose.orientation) q = bytes.tame();
+    for (double& q : pose.orientation) q = bytes.grid_value();
   }
   if (!pose.is_valid()) pose.orientation[0] = 1.0;
   return pose;
@@ -162,11 +162,11 @@ void ContactsProgram::add(Bytes& bytes) {
     ModelBody body;
     body.definition.shape = some_shape(bytes);
     body.definition.pose = some_pose(bytes);
-    body.definition.motion =
-        bytes.chance(3) ? static_cast<Motion>(bytes.below(3)) : Motion::dynamic;
+    body.definition.state =
+        bytes.chance(3) ? static_cast<BodyState>(bytes.below(3)) : BodyState::dynamic;
     body.definition.data = named_++;
     body.definition.offsets = some_offsets(bytes);
-    WINNOW_HOLDS(scene_->add(body.definition, body.key) == Status::ok);
+    WINNOW_REQUIRE(scene_->add(body.definition, body.key) == Status::ok);
     world_.bodies.emplace(body.definition.data, body);
   }
 }
@@ -175,7 +175,7 @@ void ContactsProgram::remove(Bytes& bytes) {
   const ModelBody* const body = some_body(bytes);
   if (body == nullptr) return;
   const ClientData data = body->definition.data;
-  WINNOW_HOLDS(scene_->remove(body->key) == Status::ok);
+  WINNOW_REQUIRE(scene_->remove(body->key) == Status::ok);
   world_.bodies.erase(data);
   std::erase_if(world_.ignored,
                 [&](const auto& pair) { return pair.first == data || pair.second == data; });
@@ -183,7 +183,7 @@ void ContactsProgram::remove(Bytes& bytes) {
 
 void ContactsProgram::move(ModelBody& body, const Pose& pose) {
   body.definition.pose = pose;
-  WINNOW_HOLDS(scene_->move(body.key, pose) == Status::ok);
+  WINNOW_REQUIRE(scene_->move(body.key, pose) == Status::ok);
 }
 
 // Moves and rotates one body or all of them a little.
@@ -205,14 +205,14 @@ void ContactsProgram::nudge(Bytes& bytes) {
   if (body != nullptr) move(*body, nudged(body->definition.pose));
 }
 
-void ContactsProgram::set_motion(Bytes& bytes) {
-  const auto motion = static_cast<Motion>(bytes.below(3));
+void ContactsProgram::set_body_state(Bytes& bytes) {
+  const auto state = static_cast<BodyState>(bytes.below(3));
   const bool all = bytes.chance(4);
   ModelBody* const one = some_body(bytes);
   for (auto& [data, body] : world_.bodies) {
     if (!all && &body != one) continue;
-    body.definition.motion = motion;
-    WINNOW_HOLDS(scene_->set_motion(body.key, motion) == Status::ok);
+    body.definition.state = state;
+    WINNOW_REQUIRE(scene_->set_body_state(body.key, state) == Status::ok);
   }
 }
 
@@ -222,17 +222,18 @@ void ContactsProgram::reshape(Bytes& bytes) {
   const BodyDefinition before = body->definition;
   if (bytes.chance(2)) {
     body->definition.offsets = some_offsets(bytes);
-    WINNOW_HOLDS(scene_->set_offsets(body->key, body->definition.offsets) == Status::ok);
+    WINNOW_REQUIRE(scene_->set_offsets(body->key, body->definition.offsets) == Status::ok);
   } else {
     body->definition.shape = some_shape(bytes);
-    WINNOW_HOLDS(scene_->set_shape(body->key, body->definition.shape) == Status::ok);
+    WINNOW_REQUIRE(scene_->set_shape(body->key, body->definition.shape) == Status::ok);
   }
   const bool is_as_before =
       body->definition.shape == before.shape && body->definition.offsets == before.offsets;
   if (!is_as_before) ++body->reshaped;
 }
 
-// Separates two bodies by one of the rules that prevent pairs.
+// Sets or clears one of the rules that prevent pairs: ignores two bodies, or changes the filter or
+// the layer of one body.
 void ContactsProgram::part(Bytes& bytes) {
   ModelBody* const a = some_body(bytes);
   ModelBody* const b = some_body(bytes);
@@ -240,7 +241,7 @@ void ContactsProgram::part(Bytes& bytes) {
   const bool apart = bytes.chance(2);
   switch (bytes.below(3)) {
     case 0: {
-      WINNOW_HOLDS(scene_->set_ignored(a->key, b->key, apart) == Status::ok);
+      WINNOW_REQUIRE(scene_->set_ignored(a->key, b->key, apart) == Status::ok);
       const ModelScene::Names names = std::minmax(a->definition.data, b->definition.data);
       if (apart) {
         world_.ignored.insert(names);
@@ -251,12 +252,12 @@ void ContactsProgram::part(Bytes& bytes) {
     }
     case 1:
       a->definition.filter.mask = apart ? 2U : ~0U;
-      WINNOW_HOLDS(scene_->set_filter(a->key, a->definition.filter) == Status::ok);
+      WINNOW_REQUIRE(scene_->set_filter(a->key, a->definition.filter) == Status::ok);
       break;
     default: {
       a->definition.layer = static_cast<std::uint16_t>(bytes.below(3));
-      WINNOW_HOLDS(scene_->set_layer(a->key, a->definition.layer) == Status::ok);
-      WINNOW_HOLDS(scene_->set_layers_collide(1, 2, !apart) == Status::ok);
+      WINNOW_REQUIRE(scene_->set_layer(a->key, a->definition.layer) == Status::ok);
+      WINNOW_REQUIRE(scene_->set_layers_collide(1, 2, !apart) == Status::ok);
       if (apart) {
         world_.layers_apart.insert({1, 2});
       } else {
@@ -273,10 +274,11 @@ void ContactsProgram::change_surface(Bytes& bytes) {
     const float height = static_cast<float>(0.25 * bytes.extent());
     const float heights[] = {height};
     const auto at = static_cast<std::uint32_t>(bytes.below(9));
-    WINNOW_HOLDS(shapes_.composites.update_height_field(
-                     id, at % 3, at / 3, {heights, 1, 1, 0, {1.0, 1.0}}) == Status::ok);
+    WINNOW_REQUIRE(shapes_.composites.update_height_field(
+                       id, at % 3, at / 3, {heights, 1, 1, 0, {1.0, 1.0}}) == Status::ok);
     ++world_.surfaces_changed;
-    // Pools are saved apart from scenes, so the saved pool no longer exists.
+    // A snapshot of a scene does not contain its pools. The saved scene does not match the changed
+    // pool, so it is dropped.
     checkpoint_.reset();
     return;
   }
@@ -291,14 +293,14 @@ void ContactsProgram::collide(Bytes& bytes) {
     contacts.clear();
     model.forget();
   }
-  WINNOW_HOLDS(scene_->collide(level_, contacts) == Status::ok);
-  const std::uint64_t carried = model.carried;
+  WINNOW_REQUIRE(scene_->collide(level_, contacts) == Status::ok);
+  const std::uint64_t cached = model.cached;
   model.check(world_, *scene_, level_, contacts, reference_);
-  WINNOW_HOLDS(world_.options.carry_over > 0.0 || contacts.carried() == 0);
+  WINNOW_REQUIRE(world_.options.cache_tolerance > 0.0 || contacts.cached_pairs() == 0);
   is_filled_[which] = true;
   ++tally.frames;
   tally.pairs += contacts.size();
-  tally.carried += model.carried - carried;
+  tally.cached += model.cached - cached;
   tally.points += contacts.previous_point().size();
   tally.followed += static_cast<std::uint64_t>(std::ranges::count_if(
       contacts.previous_point(), [](std::uint32_t before) { return before != kNoContact; }));
@@ -307,12 +309,12 @@ void ContactsProgram::collide(Bytes& bytes) {
 void ContactsProgram::save() {
   checkpoint_.emplace(world_);
   Checkpoint& to = *checkpoint_;
-  WINNOW_HOLDS(scene_->save(to.scene) == Status::ok);
+  WINNOW_REQUIRE(scene_->save(to.scene) == Status::ok);
   for (std::size_t i = 0; i < kContacts; ++i) {
     to.models[i] = models_[i];
     to.is_filled[i] = is_filled_[i];
     const Status status = scene_->save_contacts(*contacts_[i], to.contacts[i]);
-    WINNOW_HOLDS(status == (is_filled_[i] ? Status::ok : Status::invalid_key));
+    WINNOW_REQUIRE(status == (is_filled_[i] ? Status::ok : Status::invalid_key));
   }
 }
 
@@ -321,13 +323,13 @@ void ContactsProgram::load() {
   if (!checkpoint_) return;
   const Checkpoint& from = *checkpoint_;
   scene_ = std::make_unique<Scene>(shapes_.pool, from.world.options);
-  WINNOW_HOLDS(scene_->load({from.scene.data(), from.scene.size()}) == Status::ok);
+  WINNOW_REQUIRE(scene_->load({from.scene.data(), from.scene.size()}) == Status::ok);
   world_.bodies = from.world.bodies;
   world_.ignored = from.world.ignored;
   world_.layers_apart = from.world.layers_apart;
   for (const auto& [data, body] : world_.bodies) {
     BodyDefinition loaded;
-    WINNOW_HOLDS(scene_->body(body.key, loaded) == Status::ok && loaded.data == data);
+    WINNOW_REQUIRE(scene_->body(body.key, loaded) == Status::ok && loaded.data == data);
   }
   for (std::size_t i = 0; i < kContacts; ++i) {
     models_[i] = from.models[i];
@@ -337,15 +339,15 @@ void ContactsProgram::load() {
       continue;
     }
     contacts_[i] = std::make_unique<Contacts>(&memory_);
-    WINNOW_HOLDS(scene_->load_contacts({from.contacts[i].data(), from.contacts[i].size()},
-                                       *contacts_[i]) == Status::ok);
+    WINNOW_REQUIRE(scene_->load_contacts({from.contacts[i].data(), from.contacts[i].size()},
+                                         *contacts_[i]) == Status::ok);
   }
 }
 
 void ContactsProgram::check_memory() const {
   std::size_t bytes = scene_->footprint().total().reserved;
   for (const auto& contacts : contacts_) bytes += contacts->footprint().total().reserved;
-  WINNOW_HOLDS(bytes == memory_.outstanding());
+  WINNOW_REQUIRE(bytes == memory_.outstanding());
 }
 
 void ContactsProgram::step(Bytes& bytes) {
@@ -361,7 +363,7 @@ void ContactsProgram::step(Bytes& bytes) {
       break;
     case 3:
     case 4:
-      set_motion(bytes);
+      set_body_state(bytes);
       break;
     case 5:
       reshape(bytes);

@@ -28,7 +28,7 @@ namespace {
 }
 
 [[nodiscard]] bool is_floor(const ModelBody& body) {
-  return body.definition.motion == Motion::fixed;
+  return body.definition.state == BodyState::fixed;
 }
 
 [[nodiscard]] bool are_convex(const ModelBody& a, const ModelBody& b) {
@@ -148,8 +148,8 @@ void rest(ModelManifold& manifold, ContactLevel level, double rest_a, double res
   const BodyDefinition& other = b.definition;
   const double gap = world.gap(a, b);
   PairAnswer answer;
-  WINNOW_HOLDS(collide(world.shapes, one.shape, one.pose, other.shape, other.pose,
-                       {level, world.options.tier, gap}, answer) == Status::ok);
+  WINNOW_REQUIRE(collide(world.shapes, one.shape, one.pose, other.shape, other.pose,
+                         {level, world.options.tier, gap}, answer) == Status::ok);
   if (level == ContactLevel::boolean) return ModelManifolds(answer.overlap ? 1 : 0);
   if (!(answer.distance <= gap)) return {};
   ModelManifold manifold;
@@ -170,7 +170,7 @@ void rest(ModelManifold& manifold, ContactLevel level, double rest_a, double res
                                          const ModelBody& a, const ModelBody& b) {
   Scene scene(world.shapes, {.execution = Execution::serial(),
                              .structures = {n_squared(), n_squared(), n_squared()},
-                             .margin = world.options.margin,
+                             .contact_margin = world.options.contact_margin,
                              .tier = world.options.tier,
                              .contact_reduction = world.options.contact_reduction,
                              .composites = &world.composites});
@@ -179,10 +179,10 @@ void rest(ModelManifold& manifold, ContactLevel level, double rest_a, double res
     BodyDefinition definition{.shape = body->definition.shape, .pose = body->definition.pose};
     definition.offsets = body->definition.offsets;
     Key key;
-    WINNOW_HOLDS(scene.add(definition, key) == Status::ok);
+    WINNOW_REQUIRE(scene.add(definition, key) == Status::ok);
   }
   Contacts contacts;
-  WINNOW_HOLDS(scene.collide(level, contacts) == Status::ok);
+  WINNOW_REQUIRE(scene.collide(level, contacts) == Status::ok);
   return contacts.size() == 0 ? ModelManifolds{} : manifolds_of(contacts, 0);
 }
 
@@ -191,7 +191,7 @@ void rest(ModelManifold& manifold, ContactLevel level, double rest_a, double res
 bool ModelScene::may_pair(const ModelBody& a, const ModelBody& b) const {
   const BodyDefinition& one = a.definition;
   const BodyDefinition& other = b.definition;
-  return (one.motion == Motion::dynamic || other.motion == Motion::dynamic) &&
+  return (one.state == BodyState::dynamic || other.state == BodyState::dynamic) &&
          filters_allow(one.filter, other.filter) && !ignored.contains(names_of(a, b)) &&
          !layers_apart.contains(std::minmax(one.layer, other.layer));
 }
@@ -201,7 +201,7 @@ std::uint64_t ModelScene::surfaces_changed_of(const ModelBody& a, const ModelBod
 }
 
 double ModelScene::gap(const ModelBody& a, const ModelBody& b) const {
-  return options.margin + (a.definition.offsets.contact + b.definition.offsets.contact);
+  return options.contact_margin + (a.definition.offsets.contact + b.definition.offsets.contact);
 }
 
 double ModelScene::radius(const ModelBody& body) const {
@@ -237,9 +237,9 @@ const ModelManifolds& PairReference::contacts(const ModelScene& world, ContactLe
 PairAnswer PairReference::distance(const ModelScene& world, const ModelBody& a,
                                    const ModelBody& b) {
   PairAnswer answer;
-  WINNOW_HOLDS(collide(world.shapes, a.definition.shape, a.definition.pose, b.definition.shape,
-                       b.definition.pose, {ContactLevel::distance, world.options.tier},
-                       answer) == Status::ok);
+  WINNOW_REQUIRE(collide(world.shapes, a.definition.shape, a.definition.pose, b.definition.shape,
+                         b.definition.pose, {ContactLevel::distance, world.options.tier},
+                         answer) == Status::ok);
   return answer;
 }
 
@@ -278,22 +278,22 @@ ContactsModel::KeptPairs ContactsModel::list_shown(const ModelScene& world,
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const auto a = world.bodies.find(contacts.data_a()[i]);
     const auto b = world.bodies.find(contacts.data_b()[i]);
-    WINNOW_HOLDS(a != world.bodies.end() && b != world.bodies.end());
-    WINNOW_HOLDS(a->second.key == contacts.a()[i] && b->second.key == contacts.b()[i]);
-    WINNOW_HOLDS(world.may_pair(a->second, b->second));
+    WINNOW_REQUIRE(a != world.bodies.end() && b != world.bodies.end());
+    WINNOW_REQUIRE(a->second.key == contacts.a()[i] && b->second.key == contacts.b()[i]);
+    WINNOW_REQUIRE(world.may_pair(a->second, b->second));
     const Sides pair = sides(a->second, b->second);
-    WINNOW_HOLDS(&pair.a == &a->second);
+    WINNOW_REQUIRE(&pair.a == &a->second);
     const Kept kept = new_pair(pair);
-    WINNOW_HOLDS(i == 0 || last < kept.order);
+    WINNOW_REQUIRE(i == 0 || last < kept.order);
     last = kept.order;
-    WINNOW_HOLDS(shown.emplace(name_of(pair), kept).second);
+    WINNOW_REQUIRE(shown.emplace(name_of(pair), kept).second);
   }
   return shown;
 }
 
 void ContactsModel::check(const ModelScene& world, const Scene& scene, ContactLevel level,
                           const Contacts& contacts, PairReference& reference) {
-  WINNOW_HOLDS(contacts.level() == level);
+  WINNOW_REQUIRE(contacts.level() == level);
   KeptPairs shown = list_shown(world, contacts);
   check_pairs(world, level, contacts, reference, shown);
   check_events(world, contacts, shown);
@@ -304,14 +304,14 @@ void ContactsModel::check(const ModelScene& world, const Scene& scene, ContactLe
 
 bool ContactsModel::keeps_manifolds(const ModelScene& world, ContactLevel level,
                                     const Sides& pair) const {
-  return world.options.carry_over > 0.0 && level >= ContactLevel::distance &&
+  return world.options.cache_tolerance > 0.0 && level >= ContactLevel::distance &&
          !(world.options.suppress_ghost_contacts && (is_floor(pair.a) || is_floor(pair.b)));
 }
 
 namespace {
 
-/// All contacts in a new scene of the same bodies, since ghost contacts depend on all contacts of a
-/// body.
+/// All contacts of a new scene of the same bodies. If the scene drops ghost contacts, the contacts
+/// of a pair depend on all contacts of its bodies, and not only on the pair.
 class WholeScene {
  public:
   WholeScene(const ModelScene& world, ContactLevel level)
@@ -320,16 +320,16 @@ class WholeScene {
     for (const auto& [data, body] : world.bodies) by_id[body.key.id] = &body;
     for (const auto& [id, body] : by_id) {
       Key key;
-      WINNOW_HOLDS(scene_.add(body->definition, key) == Status::ok);
+      WINNOW_REQUIRE(scene_.add(body->definition, key) == Status::ok);
       keys_[body->definition.data] = key;
     }
     for (const auto& [a, b] : world.layers_apart) {
-      WINNOW_HOLDS(scene_.set_layers_collide(a, b, false) == Status::ok);
+      WINNOW_REQUIRE(scene_.set_layers_collide(a, b, false) == Status::ok);
     }
     for (const auto& [a, b] : world.ignored) {
-      WINNOW_HOLDS(scene_.set_ignored(keys_.at(a), keys_.at(b)) == Status::ok);
+      WINNOW_REQUIRE(scene_.set_ignored(keys_.at(a), keys_.at(b)) == Status::ok);
     }
-    WINNOW_HOLDS(scene_.collide(level, contacts_) == Status::ok);
+    WINNOW_REQUIRE(scene_.collide(level, contacts_) == Status::ok);
     for (std::size_t i = 0; i < contacts_.size(); ++i) {
       pairs_[std::minmax(contacts_.data_a()[i], contacts_.data_b()[i])] = i;
     }
@@ -346,7 +346,7 @@ class WholeScene {
     options.memory = default_memory();
     options.execution = Execution::serial();
     for (StructureKind& kind : options.structures) kind = n_squared();
-    options.carry_over = 0.0;
+    options.cache_tolerance = 0.0;
     options.warm_start = false;
     return options;
   }
@@ -376,9 +376,10 @@ void ContactsModel::check_pairs(const ModelScene& world, ContactLevel level,
       const Sides pair = sides(first->second, second->second);
       const bool has_seams = whole && (is_floor(pair.a) || is_floor(pair.b));
       // At level `pairs` the scene reports pairs of boxes, which must include all touching pairs.
-      const ContactLevel asked = std::max(level, ContactLevel::boolean);
-      const ModelManifolds fresh = has_seams ? whole->contacts(pair.a, pair.b)
-                                             : reference.contacts(world, asked, pair.a, pair.b);
+      const ContactLevel query_level = std::max(level, ContactLevel::boolean);
+      const ModelManifolds fresh = has_seams
+                                       ? whole->contacts(pair.a, pair.b)
+                                       : reference.contacts(world, query_level, pair.a, pair.b);
       const auto found = at.find(names_of(pair.a, pair.b));
       if (found == at.end()) {
         check_not_shown(world, level, pair, fresh);
@@ -393,26 +394,27 @@ void ContactsModel::check_pairs(const ModelScene& world, ContactLevel level,
 void ContactsModel::check_not_shown(const ModelScene& world, ContactLevel level, const Sides& pair,
                                     const ModelManifolds& fresh) {
   if (fresh.empty()) return;
-  // A pair that moved by less than its distance is not recomputed; it is still apart, except for
-  // rounding.
-  WINNOW_HOLDS(world.options.carry_over > 0.0 && level >= ContactLevel::distance);
+  // A cached pair that was apart is recomputed only after a motion that could close its gap. A
+  // missing contact is therefore at the limit of the gap, up to rounding.
+  WINNOW_REQUIRE(world.options.cache_tolerance > 0.0 && level >= ContactLevel::distance);
   const double rest = pair.a.definition.offsets.rest + pair.b.definition.offsets.rest;
   for (const ModelManifold& manifold : fresh) {
-    WINNOW_HOLDS(manifold.distance + rest >= world.gap(pair.a, pair.b) - 1e-9);
+    WINNOW_REQUIRE(manifold.distance + rest >= world.gap(pair.a, pair.b) - 1e-9);
   }
 }
 
 namespace {
 
-/// Returns true if `shown` can be the result of carrying `made` over from the poses `from` to the
+/// Returns true if `shown` can be the result of keeping `made` from the poses `from` to the
 /// poses `to`.
-[[nodiscard]] bool is_carried(const ModelManifold& shown, const ModelManifold& made,
-                              const Pose (&from)[2], const Pose (&to)[2], double carry_over,
-                              double radius_a) {
-  const bool may_be_turned =
-      shown.distance == made.distance && std::equal(shown.part, shown.part + 2, made.part) &&
-      shown.points.size() == made.points.size() &&
-      (shown.error_bound == made.error_bound || shown.error_bound == made.error_bound + carry_over);
+[[nodiscard]] bool is_kept_copy(const ModelManifold& shown, const ModelManifold& made,
+                                const Pose (&from)[2], const Pose (&to)[2], double cache_tolerance,
+                                double radius_a) {
+  const bool may_be_turned = shown.distance == made.distance &&
+                             std::equal(shown.part, shown.part + 2, made.part) &&
+                             shown.points.size() == made.points.size() &&
+                             (shown.error_bound == made.error_bound ||
+                              shown.error_bound == made.error_bound + cache_tolerance);
   if (!may_be_turned) return false;
   const Eigen::Matrix3d turn = (turn_of(to[0]) * turn_of(from[0]).conjugate()).toRotationMatrix();
   const double slack = 1e-5;
@@ -420,11 +422,12 @@ namespace {
     return (now - turn * then).norm() <= most + slack * (1.0 + then.norm());
   };
   const auto vector = [](const double(&v)[3]) { return Eigen::Vector3d(v[0], v[1], v[2]); };
-  // Rotations of body a by less than this angle may be missing. Points of a deep contact may be
-  // farther from the body than its surface.
-  const double angle = std::isfinite(radius_a) ? carry_over / radius_a : 0.0;
+  // The cache may leave out a rotation of body a by less than this angle, which moves the surface
+  // of the body by less than cache_tolerance. A point of a deep contact can be farther out than the
+  // surface; such a rotation then moves the point by more.
+  const double angle = std::isfinite(radius_a) ? cache_tolerance / radius_a : 0.0;
   const auto off = [&](const Eigen::Vector3d& point) {
-    return std::max(carry_over, angle * point.norm());
+    return std::max(cache_tolerance, angle * point.norm());
   };
   if (!is_near(vector(shown.normal), vector(made.normal), angle)) return false;
   if (!is_near(vector(shown.point), vector(made.point), off(vector(made.point)))) return false;
@@ -448,7 +451,7 @@ void ContactsModel::check_shown(const ModelScene& world, ContactLevel level,
                                 const ModelManifolds& fresh, Kept& kept) {
   const bool is_fresh = !fresh.empty() && same_manifolds(now, fresh);
   const Pose poses[2] = {pair.a.definition.pose, pair.b.definition.pose};
-  const double carry_over = world.options.carry_over;
+  const double cache_tolerance = world.options.cache_tolerance;
   const double radius[2] = {world.radius(pair.a), world.radius(pair.b)};
   const int seen = radius[0] <= radius[1] ? 0 : 1;
   const Name name = name_of(pair);
@@ -463,16 +466,17 @@ void ContactsModel::check_shown(const ModelScene& world, ContactLevel level,
             origin.surfaces_changed == world.surfaces_changed_of(pair.a, pair.b);
         const bool stays =
             is_same_shape &&
-            moved(origin.pose, poses, seen, radius[seen]) <= carry_over * (1.0 + 1e-9) &&
+            moved(origin.pose, poses, seen, radius[seen]) <= cache_tolerance * (1.0 + 1e-9) &&
             std::equal(now.begin(), now.end(), origin.made.begin(), origin.made.end(),
                        [&](const ModelManifold& shown, const ModelManifold& made) {
-                         return is_carried(shown, made, origin.pose, poses, carry_over, radius[0]);
+                         return is_kept_copy(shown, made, origin.pose, poses, cache_tolerance,
+                                             radius[0]);
                        });
         if (stays) kept.origins.push_back(origin);
       }
     }
   }
-  if (!is_fresh) ++carried;
+  if (!is_fresh) ++cached;
   const auto is_made_here = [&](const Origin& origin) {
     return same_pose(origin.pose[0], poses[0]) && same_pose(origin.pose[1], poses[1]);
   };
@@ -482,12 +486,12 @@ void ContactsModel::check_shown(const ModelScene& world, ContactLevel level,
                             world.surfaces_changed_of(pair.a, pair.b),
                             now});
   }
-  WINNOW_HOLDS(explained(!kept.origins.empty(), now, fresh, pair.a, pair.b));
+  WINNOW_REQUIRE(explained(!kept.origins.empty(), now, fresh, pair.a, pair.b));
   if (!keeps || !are_convex(pair.a, pair.b)) return;
   const PairAnswer truth = PairReference::distance(world, pair.a, pair.b);
   const double rest = pair.a.definition.offsets.rest + pair.b.definition.offsets.rest;
-  WINNOW_HOLDS(std::abs(truth.distance - rest - now[0].distance) <=
-               now[0].error_bound + truth.error_bound + 1e-12);
+  WINNOW_REQUIRE(std::abs(truth.distance - rest - now[0].distance) <=
+                 now[0].error_bound + truth.error_bound + 1e-12);
 }
 
 void ContactsModel::check_events(const ModelScene& world, const Contacts& contacts,
@@ -499,12 +503,12 @@ void ContactsModel::check_events(const ModelScene& world, const Contacts& contac
     const ModelBody& b = world.bodies.at(contacts.data_b()[i]);
     const Name name = name_of({a, b});
     const bool persists = shown_.contains(name) || dormant_.contains(name);
-    WINNOW_HOLDS(persists == (contacts.event()[i] == ContactEvent::persisted));
+    WINNOW_REQUIRE(persists == (contacts.event()[i] == ContactEvent::persisted));
   }
   const auto sleeps = [&](const Name& name) {
     const auto is_at_rest = [&](ClientData data) {
       const auto body = world.bodies.find(data);
-      return body != world.bodies.end() && body->second.definition.motion != Motion::dynamic;
+      return body != world.bodies.end() && body->second.definition.state != BodyState::dynamic;
     };
     return same_level && is_at_rest(name.a) && is_at_rest(name.b);
   };
@@ -531,18 +535,18 @@ void ContactsModel::check_ended(const Contacts& contacts, std::vector<Kept>& end
               [](const Kept& x, const Kept& y) { return x.order < y.order; });
   }
   ended.insert(ended.end(), ended_asleep.begin(), ended_asleep.end());
-  WINNOW_HOLDS(std::equal(ended.begin(), ended.end(), contacts.ended().begin(),
-                          contacts.ended().end(), [](const Kept& kept, const EndedContact& told) {
-                            return kept.ended.a == told.a && kept.ended.b == told.b &&
-                                   kept.ended.data_a == told.data_a &&
-                                   kept.ended.data_b == told.data_b;
-                          }));
+  WINNOW_REQUIRE(std::equal(
+      ended.begin(), ended.end(), contacts.ended().begin(), contacts.ended().end(),
+      [](const Kept& kept, const EndedContact& reported) {
+        return kept.ended.a == reported.a && kept.ended.b == reported.b &&
+               kept.ended.data_a == reported.data_a && kept.ended.data_b == reported.data_b;
+      }));
 }
 
 void ContactsModel::check_places(const ModelScene& world, const Scene& scene, ContactLevel level,
                                  const Contacts& contacts) {
   if (!world.options.warm_start) {
-    WINNOW_HOLDS(contacts.previous_pair().empty() && contacts.previous_point().empty());
+    WINNOW_REQUIRE(contacts.previous_pair().empty() && contacts.previous_point().empty());
     return;
   }
   const bool reduces = world.options.contact_reduction && level == ContactLevel::manifold;

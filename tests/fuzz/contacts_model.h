@@ -88,18 +88,18 @@ class PairReference {
 };
 
 /// The contents that Contacts must have after each call of Scene::collide, by its documentation:
-/// the pairs, their order, events, manifolds and places in the last frame. The model stores whole
+/// the pairs, their order, events, manifolds and indices in the last frame. The model stores whole
 /// frames and compares all pairs with all.
 class ContactsModel {
  public:
   /// Aborts with a message if `contacts`, which `scene` has just filled, differs from the model.
   void check(const ModelScene& world, const Scene& scene, ContactLevel level,
              const Contacts& contacts, PairReference& reference);
-  /// The contacts have no history from here on.
+  /// Makes the next frame the first one: it has no predecessor.
   void forget();
 
-  /// Number of manifolds so far that were computed before a move and carried over unchanged.
-  std::uint64_t carried = 0;
+  /// Number of manifolds so far that were computed before a move and kept unchanged.
+  std::uint64_t cached = 0;
 
  private:
   /// Two bodies in the order of contacts, and the kinds of their shapes: if the order or the kinds

@@ -63,7 +63,7 @@ inline EveryShape::EveryShape(Bytes& bytes) {
                                     {ids[1], Pose::at(0, 1, 0)},
                                     {ids[ids.size() - 2], Pose::at(0.5, 0, -0.5)}};
   take(composites.add_compound(surfaces, id), id);
-  WINNOW_HOLDS(good);
+  WINNOW_REQUIRE(good);
 }
 
 }  // namespace winnow::test

@@ -47,14 +47,14 @@ class Game {
   void query_ray(Bytes& bytes);
   void query_box(Bytes& bytes);
 
-  /// Runs `say(player)` for every player; the results must be equal.
-  template <typename Say>
-  void all_return(const Say& say) {
-    std::optional<decltype(say(players_[0]))> first;
+  /// Runs `call(player)` for every player; the results must be equal.
+  template <typename Call>
+  void all_return(const Call& call) {
+    std::optional<decltype(call(players_[0]))> first;
     for (Player& player : players_) {
-      auto said = player.threads.run([&] { return say(player); });
-      if (!first) first = said;
-      WINNOW_HOLDS(said == *first);
+      auto result = player.threads.run([&] { return call(player); });
+      if (!first) first = result;
+      WINNOW_REQUIRE(result == *first);
     }
   }
   /// Returns some objects, mostly consecutive; the same for every player.
@@ -87,7 +87,7 @@ void Game::insert(Bytes& bytes) {
   Aabb box = bytes.box();
   const auto step = static_cast<float>(bytes.extent());
   for (Aabb& one : boxes) {
-    one = box.is_valid() ? box : bytes.tame_box();
+    one = box.is_valid() ? box : bytes.grid_box();
     box = bytes.chance(2) ? bytes.box() : one;
     for (int axis = 0; axis < 3; ++axis) {
       box.min[axis] += step;
@@ -96,7 +96,7 @@ void Game::insert(Bytes& bytes) {
   }
   std::vector<Key> keys(boxes.size());
   all_return([&](Player& player) {
-    WINNOW_HOLDS(player.partition.insert(boxes, {}, keys) == Status::ok);
+    WINNOW_REQUIRE(player.partition.insert(boxes, {}, keys) == Status::ok);
     std::vector<ObjectId> ids;
     for (const Key& key : keys) ids.push_back(key.id);
     return ids;
@@ -109,7 +109,7 @@ void Game::update(Bytes& bytes) {
   std::vector<Aabb> boxes(ids.size());
   for (Aabb& box : boxes) {
     box = bytes.box();
-    if (!box.is_valid()) box = bytes.tame_box();
+    if (!box.is_valid()) box = bytes.grid_box();
   }
   all_return([&](Player& player) {
     return player.partition.update(keys_of(player, ids), boxes) == Status::ok;
@@ -137,8 +137,8 @@ void Game::filter(Bytes& bytes) {
 
 void Game::query_pairs() {
   all_return([](Player& player) {
-    WINNOW_HOLDS(player.partition.self_pairs(player.pairs, {.order = Order::canonical}) ==
-                 Status::ok);
+    WINNOW_REQUIRE(player.partition.self_pairs(player.pairs, {.order = Order::canonical}) ==
+                   Status::ok);
     return std::vector<Pair>(player.pairs.begin(), player.pairs.end());
   });
 }
@@ -147,14 +147,14 @@ void Game::query_ray(Bytes& bytes) {
   Ray ray;
   for (int axis = 0; axis < 3; ++axis) {
     ray.origin[axis] = bytes.wild();
-    ray.direction[axis] = static_cast<float>(bytes.tame());
+    ray.direction[axis] = static_cast<float>(bytes.grid_value());
   }
   all_return([&](Player& player) {
     HitBuffer hits;
-    std::vector<std::pair<ObjectId, double>> said;
-    if (player.partition.all(ray, hits) != Status::ok) return said;
-    for (const Hit& hit : hits) said.emplace_back(hit.key.id, static_cast<double>(hit.t));
-    return said;
+    std::vector<std::pair<ObjectId, double>> result;
+    if (player.partition.all(ray, hits) != Status::ok) return result;
+    for (const Hit& hit : hits) result.emplace_back(hit.key.id, static_cast<double>(hit.t));
+    return result;
   });
 }
 
@@ -162,11 +162,11 @@ void Game::query_box(Bytes& bytes) {
   const Aabb box = bytes.box();
   all_return([&](Player& player) {
     PairBuffer found;
-    std::vector<Pair> said;
+    std::vector<Pair> result;
     const Status status = player.partition.overlap(BoxView({&box, 1}), found, {}, Order::canonical);
-    WINNOW_HOLDS((status == Status::ok) == box.is_valid());
-    said.assign(found.begin(), found.end());
-    return said;
+    WINNOW_REQUIRE((status == Status::ok) == box.is_valid());
+    result.assign(found.begin(), found.end());
+    return result;
   });
 }
 

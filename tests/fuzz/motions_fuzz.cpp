@@ -25,12 +25,12 @@ bool is_finite(const Points& points) {
   return std::ranges::all_of(points, [](const Vec3d& p) { return p.all_finite(); });
 }
 
-/// Mostly tame numbers, so that features touch exactly.
+/// Mostly grid values, so that features touch exactly.
 Points some_points(Bytes& bytes) {
   Points points;
   const bool wild = bytes.chance(16);
   for (Vec3d& point : points) {
-    for (int k = 0; k < 3; ++k) point[k] = wild ? bytes.any<double>() : 0.25 * bytes.tame();
+    for (int k = 0; k < 3; ++k) point[k] = wild ? bytes.any<double>() : 0.25 * bytes.grid_value();
   }
   return points;
 }
@@ -44,8 +44,8 @@ void check_features(Bytes& bytes) {
   if (bytes.chance(4)) options.min_separation = 0.25 * bytes.extent();
   FeatureImpact impact;
   const Status status = feature_impact(kind, start, end, impact, options);
-  WINNOW_HOLDS(status == Status::ok || status == Status::invalid_bounds);
-  WINNOW_HOLDS(status != Status::ok || (is_finite(start) && is_finite(end)));
+  WINNOW_REQUIRE(status == Status::ok || status == Status::invalid_bounds);
+  WINNOW_REQUIRE(status != Status::ok || (is_finite(start) && is_finite(end)));
   constexpr std::size_t kCount = 9;
   std::array<std::array<double, kCount>, 24> numbers;
   FeatureColumns columns{.count = kCount};
@@ -55,17 +55,17 @@ void check_features(Bytes& bytes) {
     (c < 12 ? columns.start : columns.end)[c % 12 / 3][c % 3] = numbers[c].data();
   }
   std::array<double, kCount> times;
-  WINNOW_HOLDS(feature_impacts(kind, columns, times, options) == Status::ok);
+  WINNOW_REQUIRE(feature_impacts(kind, columns, times, options) == Status::ok);
   for (const double time : times) {
-    WINNOW_HOLDS(status == Status::ok ? std::bit_cast<std::uint64_t>(time) ==
-                                            std::bit_cast<std::uint64_t>(impact.time)
-                                      : std::isnan(time));
+    WINNOW_REQUIRE(status == Status::ok ? std::bit_cast<std::uint64_t>(time) ==
+                                              std::bit_cast<std::uint64_t>(impact.time)
+                                        : std::isnan(time));
   }
   if (status != Status::ok) return;
-  WINNOW_HOLDS(impact.hit ? impact.time >= 0.0 && impact.time <= 1.0 : std::isinf(impact.time));
+  WINNOW_REQUIRE(impact.hit ? impact.time >= 0.0 && impact.time <= 1.0 : std::isinf(impact.time));
   if (options.min_separation != 0.0) return;
   const ExactImpact truth = exact_impact(kind, start, end, 20);
-  WINNOW_HOLDS(!truth.touch || (impact.hit && impact.time <= truth.to));
+  WINNOW_REQUIRE(!truth.touch || (impact.hit && impact.time <= truth.to));
 }
 
 /// Returns a motion that is usually valid.
@@ -73,9 +73,9 @@ RigidMotion some_motion(Bytes& bytes) {
   RigidMotion motion;
   motion.start = bytes.pose();
   const bool wild = bytes.chance(16);
-  for (double& x : motion.travel) x = wild ? bytes.any<double>() : 0.25 * bytes.tame();
+  for (double& x : motion.travel) x = wild ? bytes.any<double>() : 0.25 * bytes.grid_value();
   const double turn = bytes.chance(4) ? 1.0 : 0.03125;
-  for (double& x : motion.turn) x = wild ? bytes.any<double>() : turn * bytes.tame();
+  for (double& x : motion.turn) x = wild ? bytes.any<double>() : turn * bytes.grid_value();
   return motion;
 }
 
@@ -103,12 +103,12 @@ void check_shapes(Bytes& bytes) {
                     {some_motion(bytes), some_motion(bytes)}};
   const BodyPair pairs[] = {{0, 1}};
   ImpactResult result;
-  WINNOW_HOLDS(time_of_impact(pool, {pair.shape, pair.motion}, pairs, {}, result) == Status::ok);
+  WINNOW_REQUIRE(time_of_impact(pool, {pair.shape, pair.motion}, pairs, {}, result) == Status::ok);
   const bool good = pair.motion[0].is_valid() && pair.motion[1].is_valid();
-  WINNOW_HOLDS(result.status(0) == (good ? Status::ok : Status::invalid_pose));
+  WINNOW_REQUIRE(result.status(0) == (good ? Status::ok : Status::invalid_pose));
   if (!good) return;
   const double time = result.time()[0];
-  WINNOW_HOLDS(time >= 0.0 && time <= 1.0 && (result.hits(0) || time == 1.0));
+  WINNOW_REQUIRE(time >= 0.0 && time <= 1.0 && (result.hits(0) || time == 1.0));
   // For larger values doubles are too coarse for this check.
   double most = 0.0;
   for (const RigidMotion& motion : pair.motion) {
@@ -116,11 +116,11 @@ void check_shapes(Bytes& bytes) {
     for (const double x : motion.turn) most = std::max(most, std::abs(x));
   }
   if (most > 1e3) return;
-  WINNOW_HOLDS(before(pool, pair, time, 200) != Before::met);
+  WINNOW_REQUIRE(before(pool, pair, time, 200) != Before::overlapping);
   if (!result.hits(0)) return;
   const DistanceAt at = distance_at(pool, pair, time);
-  WINNOW_HOLDS(std::abs(at.distance - result.gap()[0]) <=
-               at.error + result.error_bound()[0] + resolution_of(pool, pair) + 1e-12);
+  WINNOW_REQUIRE(std::abs(at.distance - result.gap()[0]) <=
+                 at.error + result.error_bound()[0] + resolution_of(pool, pair) + 1e-12);
 }
 
 /// Checks a mesh of hostile triangles and positions.
@@ -131,7 +131,7 @@ void check_cloth(Bytes& bytes) {
   const auto place = [&](std::vector<Vec3d>& points) {
     const bool wild = bytes.chance(16);
     for (Vec3d& point : points) {
-      for (int k = 0; k < 3; ++k) point[k] = wild ? bytes.any<double>() : 0.25 * bytes.tame();
+      for (int k = 0; k < 3; ++k) point[k] = wild ? bytes.any<double>() : 0.25 * bytes.grid_value();
     }
   };
   place(rest);
@@ -143,7 +143,7 @@ void check_cloth(Bytes& bytes) {
   std::vector<Vec3d> after = rest;
   place(after);
   const bool moved = mesh.move(PointView(rest), PointView(after), 0.25) == Status::ok;
-  WINNOW_HOLDS(built || !moved);
+  WINNOW_REQUIRE(built || !moved);
   for (const FeaturePair kind : {FeaturePair::vertex_face, FeaturePair::edge_edge}) {
     std::size_t candidates = 0;
     std::size_t impacts = 0;
@@ -151,11 +151,11 @@ void check_cloth(Bytes& bytes) {
         mesh.self_candidates(kind, [&](auto chunk) { candidates += chunk.size(); });
     const Status hit = mesh.self_impacts(kind, {}, [&](std::span<const MeshImpact> chunk) {
       impacts += chunk.size();
-      for (const MeshImpact& one : chunk) WINNOW_HOLDS(one.time >= 0.0 && one.time <= 1.0);
+      for (const MeshImpact& one : chunk) WINNOW_REQUIRE(one.time >= 0.0 && one.time <= 1.0);
     });
-    WINNOW_HOLDS((found == Status::ok) == moved && hit == found && impacts <= candidates);
+    WINNOW_REQUIRE((found == Status::ok) == moved && hit == found && impacts <= candidates);
   }
-  WINNOW_HOLDS(mesh.footprint().total().reserved == memory.outstanding());
+  WINNOW_REQUIRE(mesh.footprint().total().reserved == memory.outstanding());
 }
 
 }  // namespace

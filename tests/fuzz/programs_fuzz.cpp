@@ -21,7 +21,7 @@ void play(Bytes8 bytes) {
   LimitedMemory memory(kMaxMemory);
   RecordingPlayer player(bytes, {.memory = &memory, .execution = Execution::serial()});
   const Status status = player.play_all();
-  WINNOW_HOLDS(status != Status::ok || player.differences() <= player.questions());
+  WINNOW_REQUIRE(status != Status::ok || player.differences() <= player.questions());
 }
 
 void load(Bytes8 bytes) {
@@ -33,13 +33,13 @@ void load(Bytes8 bytes) {
     (void)partition.self_pairs(pairs);
     Column<std::byte> again(&memory);
     const Status saved = partition.save(again);
-    WINNOW_HOLDS(saved == Status::ok || saved == Status::out_of_memory);
+    WINNOW_REQUIRE(saved == Status::ok || saved == Status::out_of_memory);
   }
   TriangleMesh mesh(&memory);
   if (mesh.load(bytes) == Status::ok) {
     Column<std::byte> again(&memory);
-    WINNOW_HOLDS(mesh.save(again) == Status::ok &&
-                 text_of({again.data(), again.size()}) == text_of(bytes));
+    WINNOW_REQUIRE(mesh.save(again) == Status::ok &&
+                   text_of({again.data(), again.size()}) == text_of(bytes));
   }
 }
 
@@ -48,11 +48,11 @@ struct FuzzedScene {
   FuzzedScene()
       : world(12),
         scene(world.pool, {.execution = Execution::serial(),
-                           .margin = 0.05,
-                           .carry_over = 0.01,
+                           .contact_margin = 0.05,
+                           .cache_tolerance = 0.01,
                            .warm_start = true}) {
-    WINNOW_HOLDS(add_all(scene, world) == Status::ok);
-    WINNOW_HOLDS(scene.collide(ContactLevel::manifold, contacts) == Status::ok);
+    WINNOW_REQUIRE(add_all(scene, world) == Status::ok);
+    WINNOW_REQUIRE(scene.collide(ContactLevel::manifold, contacts) == Status::ok);
   }
 
   SceneWorld world;
@@ -66,18 +66,18 @@ void load_scene(const Bytes8& saved) {
   LimitedMemory memory(kMaxMemory);
   ShapePool shapes(&memory);
   Column<std::byte> again(&memory);
-  if (shapes.load(bytes) == Status::ok) WINNOW_HOLDS(shapes.save(again) == Status::ok);
+  if (shapes.load(bytes) == Status::ok) WINNOW_REQUIRE(shapes.save(again) == Status::ok);
   CompositePool composites(shapes, &memory);
   if (composites.load(bytes, Execution::serial()) == Status::ok) {
-    WINNOW_HOLDS(composites.save(again) == Status::ok);
+    WINNOW_REQUIRE(composites.save(again) == Status::ok);
   }
   FuzzedScene stage;
   const Status loaded = stage.scene.load_contacts(bytes, stage.contacts);
   if (loaded != Status::ok && stage.scene.load(bytes) != Status::ok) return;
   const Status status = stage.scene.collide(ContactLevel::manifold, stage.contacts);
-  WINNOW_HOLDS(status == Status::ok || status == Status::out_of_memory);
-  WINNOW_HOLDS(stage.scene.save_contacts(stage.contacts, again) == Status::ok ||
-               status != Status::ok);
+  WINNOW_REQUIRE(status == Status::ok || status == Status::out_of_memory);
+  WINNOW_REQUIRE(stage.scene.save_contacts(stage.contacts, again) == Status::ok ||
+                 status != Status::ok);
 }
 
 }  // namespace
@@ -99,7 +99,7 @@ std::vector<std::string> fuzz_seeds() {
   }
   {
     Recorder recorder(kept_in(scenes));
-    record_scene(recorder, 12, 7, {.margin = 0.02});
+    record_scene(recorder, 12, 7, {.contact_margin = 0.02});
   }
   Column<std::byte> saved(std::pmr::get_default_resource());
   Partition partition(flat_grid(), {.volume = Volume::sphere});

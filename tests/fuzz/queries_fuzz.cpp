@@ -19,9 +19,9 @@ namespace {
 
 using Eigen::Vector3f;
 
-Vector3f tame_vector(Bytes& bytes) {
-  return {static_cast<float>(bytes.tame()), static_cast<float>(bytes.tame()),
-          static_cast<float>(bytes.tame())};
+Vector3f grid_vector(Bytes& bytes) {
+  return {static_cast<float>(bytes.grid_value()), static_cast<float>(bytes.grid_value()),
+          static_cast<float>(bytes.grid_value())};
 }
 
 /// Two partitions with the same objects.
@@ -33,8 +33,8 @@ class Pairing {
 
   void step(Bytes& bytes);
   void check_memory(const CountingMemory& memory) const {
-    WINNOW_HOLDS(a_.footprint().total().reserved + b_.footprint().total().reserved ==
-                 memory.outstanding());
+    WINNOW_REQUIRE(a_.footprint().total().reserved + b_.footprint().total().reserved ==
+                   memory.outstanding());
   }
 
  private:
@@ -69,15 +69,15 @@ class Pairing {
 void Pairing::insert(Bytes& bytes) {
   if (objects_.size() > 250) return;
   const std::size_t count = 1 + bytes.below(bytes.chance(3) ? 70 : 5);
-  const Vector3f step = tame_vector(bytes) * 0.0625F;
+  const Vector3f step = grid_vector(bytes) * 0.0625F;
   Aabb box = bytes.box();
   for (std::size_t i = 0; i < count; ++i) {
     Key keys[2];
     const Status status = a_.insert(box, i, keys[0]);
-    WINNOW_HOLDS(status == b_.insert(box, i, keys[1]));
-    WINNOW_HOLDS((status == Status::ok) == box.is_valid());
+    WINNOW_REQUIRE(status == b_.insert(box, i, keys[1]));
+    WINNOW_REQUIRE((status == Status::ok) == box.is_valid());
     if (status != Status::ok) break;
-    WINNOW_HOLDS(keys[0].id == keys[1].id);
+    WINNOW_REQUIRE(keys[0].id == keys[1].id);
     objects_[keys[0].id] = {keys[0].id, box, {}};
     box.min += step;
     box.max += step;
@@ -94,19 +94,19 @@ void Pairing::change(Bytes& bytes) {
     const Key keys[2] = {a_.key_of(object.id), b_.key_of(object.id)};
     switch (bytes.below(4)) {
       case 0:
-        WINNOW_HOLDS(a_.remove(keys[0]) == Status::ok && b_.remove(keys[1]) == Status::ok);
+        WINNOW_REQUIRE(a_.remove(keys[0]) == Status::ok && b_.remove(keys[1]) == Status::ok);
         objects_.erase(at);
         break;
       case 1:
         object.filter = {1U << bytes.below(3), static_cast<unsigned>(bytes.below(8)),
                          static_cast<unsigned>(bytes.below(2))};
-        WINNOW_HOLDS(a_.set_filter(keys[0], object.filter) == Status::ok);
-        WINNOW_HOLDS(b_.set_filter(keys[1], object.filter) == Status::ok);
+        WINNOW_REQUIRE(a_.set_filter(keys[0], object.filter) == Status::ok);
+        WINNOW_REQUIRE(b_.set_filter(keys[1], object.filter) == Status::ok);
         break;
       default: {
-        const Aabb box = bytes.tame_box();
-        WINNOW_HOLDS(a_.update(keys[0], box) == Status::ok);
-        WINNOW_HOLDS(b_.update(keys[1], box) == Status::ok);
+        const Aabb box = bytes.grid_box();
+        WINNOW_REQUIRE(a_.update(keys[0], box) == Status::ok);
+        WINNOW_REQUIRE(b_.update(keys[1], box) == Status::ok);
         object.box = box;
       }
     }
@@ -136,13 +136,13 @@ std::vector<Object> Pairing::seen(const Filter& filter) const {
 }
 
 Cast Pairing::some_cast(Bytes& bytes) const {
-  Vector3f direction = tame_vector(bytes);
+  Vector3f direction = grid_vector(bytes);
   if (bytes.chance(4)) direction *= 1e-20F;
   if (direction.isZero(0.0F)) direction = Vector3f::UnitY();
   const float min_t = bytes.chance(4) ? 0.5F : 0.0F;
   const float max_t =
       bytes.chance(2) ? std::numeric_limits<float>::infinity() : min_t + 0.25F * bytes.byte();
-  const Vector3f at = tame_vector(bytes);
+  const Vector3f at = grid_vector(bytes);
   const auto size = static_cast<float>(bytes.extent());
   switch (bytes.below(4)) {
     case 0:
@@ -152,36 +152,36 @@ Cast Pairing::some_cast(Bytes& bytes) const {
     case 2:
       return SphereCast{{at, size}, direction, min_t, max_t};
     default:
-      return CapsuleCast{{at, tame_vector(bytes), size}, direction, min_t, max_t};
+      return CapsuleCast{{at, grid_vector(bytes), size}, direction, min_t, max_t};
   }
 }
 
 Region Pairing::some_region(Bytes& bytes) {
-  const Vector3f at = tame_vector(bytes);
+  const Vector3f at = grid_vector(bytes);
   const auto size = static_cast<float>(bytes.extent());
   switch (bytes.below(7)) {
     case 0:
       return at;
     case 1:
-      return bytes.tame_box();
+      return bytes.grid_box();
     case 2: {
       OrientedBox box{at, Vector3f(size, 1.0F, 2.0F), Eigen::Matrix3f::Identity()};
-      for (int i = 0; i < 3; ++i) box.axes.set_column(i, tame_vector(bytes) * 0.125F);
+      for (int i = 0; i < 3; ++i) box.axes.set_column(i, grid_vector(bytes) * 0.125F);
       return box;
     }
     case 3:
       return Sphere{at, size};
     case 4:
-      return Capsule{at, tame_vector(bytes), size};
+      return Capsule{at, grid_vector(bytes), size};
     case 5: {
-      const Frustum frustum = Frustum::perspective(at, tame_vector(bytes), tame_vector(bytes), 1.0F,
+      const Frustum frustum = Frustum::perspective(at, grid_vector(bytes), grid_vector(bytes), 1.0F,
                                                    1.5F, 0.125F, 0.125F + size);
       return frustum;
     }
     default:
       planes_.clear();
       for (std::size_t i = bytes.below(5); i-- != 0;) {
-        planes_.push_back({tame_vector(bytes), static_cast<float>(bytes.tame())});
+        planes_.push_back({grid_vector(bytes), static_cast<float>(bytes.grid_value())});
       }
       return std::span<const Plane>(planes_);
   }
@@ -194,23 +194,23 @@ void Pairing::cast(Bytes& bytes) {
   HitBuffer others;
   Hit first;
   Hit any;
-  WINNOW_HOLDS(a_.all(question, hits, filter) == Status::ok);
-  WINNOW_HOLDS(right_hits(hits.hits(), candidates(question, seen(filter)), a_));
-  WINNOW_HOLDS(a_.closest(question, first, filter) == Status::ok);
-  WINNOW_HOLDS(is_first_of(first, hits.hits()));
-  WINNOW_HOLDS(a_.any(question, any, filter) == Status::ok);
-  WINNOW_HOLDS(is_any_of(any, hits.hits()));
-  WINNOW_HOLDS(b_.all(question, others, filter) == Status::ok);
-  WINNOW_HOLDS(std::ranges::equal(hits, others, [](const Hit& x, const Hit& y) {
+  WINNOW_REQUIRE(a_.all(question, hits, filter) == Status::ok);
+  WINNOW_REQUIRE(right_hits(hits.hits(), candidates(question, seen(filter)), a_));
+  WINNOW_REQUIRE(a_.closest(question, first, filter) == Status::ok);
+  WINNOW_REQUIRE(is_first_of(first, hits.hits()));
+  WINNOW_REQUIRE(a_.any(question, any, filter) == Status::ok);
+  WINNOW_REQUIRE(is_any_of(any, hits.hits()));
+  WINNOW_REQUIRE(b_.all(question, others, filter) == Status::ok);
+  WINNOW_REQUIRE(std::ranges::equal(hits, others, [](const Hit& x, const Hit& y) {
     return x.key.id == y.key.id && x.data == y.data && x.t == y.t;
   }));
 }
 
 void Pairing::batch(Bytes& bytes) {
   std::vector<Ray> rays(1 + bytes.below(40));
-  Ray ray{tame_vector(bytes), tame_vector(bytes)};
+  Ray ray{grid_vector(bytes), grid_vector(bytes)};
   if (ray.direction.is_zero()) ray.direction = Vector3f::UnitZ();
-  const Vector3f step = tame_vector(bytes) * 0.0625F;
+  const Vector3f step = grid_vector(bytes) * 0.0625F;
   for (Ray& one : rays) {
     one = ray;
     ray.origin += step;
@@ -219,17 +219,17 @@ void Pairing::batch(Bytes& bytes) {
   std::vector<Key> keys(rays.size());
   std::vector<float> t(rays.size());
   HitBuffer lists;
-  WINNOW_HOLDS(a_.closest(rays, {keys.data(), nullptr, t.data()}, filter) == Status::ok);
-  WINNOW_HOLDS(b_.all(RayBatch(rays), lists, filter) == Status::ok);
+  WINNOW_REQUIRE(a_.closest(rays, {keys.data(), nullptr, t.data()}, filter) == Status::ok);
+  WINNOW_REQUIRE(b_.all(RayBatch(rays), lists, filter) == Status::ok);
   HitBuffer hits;
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    WINNOW_HOLDS(b_.all(rays[i], hits, filter) == Status::ok);
-    WINNOW_HOLDS(same_hits(hits.hits(), lists.of(i)));
+    WINNOW_REQUIRE(b_.all(rays[i], hits, filter) == Status::ok);
+    WINNOW_REQUIRE(same_hits(hits.hits(), lists.of(i)));
     const Hit first = hits.empty() ? Hit{} : hits[0];
-    WINNOW_HOLDS(first.key.id == keys[i].id && first.t == t[i]);
+    WINNOW_REQUIRE(first.key.id == keys[i].id && first.t == t[i]);
   }
   rays[bytes.below(rays.size())].direction = {};
-  WINNOW_HOLDS(a_.all(RayBatch(rays), lists, filter) == Status::invalid_argument);
+  WINNOW_REQUIRE(a_.all(RayBatch(rays), lists, filter) == Status::invalid_argument);
 }
 
 void Pairing::region(Bytes& bytes) {
@@ -239,44 +239,44 @@ void Pairing::region(Bytes& bytes) {
   OverlapBuffer found;
   const Status status = a_.overlap(question, found, filter, order);
   OverlapBuffer others;
-  WINNOW_HOLDS(b_.overlap(question, others, filter, order) == status);
+  WINNOW_REQUIRE(b_.overlap(question, others, filter, order) == status);
   if (status != Status::ok) {
-    WINNOW_HOLDS(status == Status::invalid_argument || status == Status::invalid_bounds);
+    WINNOW_REQUIRE(status == Status::invalid_argument || status == Status::invalid_bounds);
     return;
   }
   const RegionCandidates truth = candidates(question, seen(filter));
-  WINNOW_HOLDS(right_objects(found, truth, order));
-  WINNOW_HOLDS(right_objects(others, truth, order));
+  WINNOW_REQUIRE(right_objects(found, truth, order));
+  WINNOW_REQUIRE(right_objects(others, truth, order));
 }
 
 void Pairing::boxes(Bytes& bytes) {
-  std::vector<Aabb> asked(1 + bytes.below(20));
-  for (Aabb& box : asked) box = bytes.tame_box();
+  std::vector<Aabb> query_boxes(1 + bytes.below(20));
+  for (Aabb& box : query_boxes) box = bytes.grid_box();
   const Filter filter = some_filter(bytes);
   PairBuffer found;
-  WINNOW_HOLDS(a_.overlap(BoxView(asked), found, filter, Order::canonical) == Status::ok);
+  WINNOW_REQUIRE(a_.overlap(BoxView(query_boxes), found, filter, Order::canonical) == Status::ok);
   std::vector<Pair> truth;
   const std::vector<Object> objects = seen(filter);
-  for (std::uint32_t i = 0; i < asked.size(); ++i) {
+  for (std::uint32_t i = 0; i < query_boxes.size(); ++i) {
     for (const Object& object : objects) {
-      if (asked[i].overlaps(object.box)) truth.push_back({i, object.id});
+      if (query_boxes[i].overlaps(object.box)) truth.push_back({i, object.id});
     }
   }
-  WINNOW_HOLDS(std::ranges::equal(found, truth));
+  WINNOW_REQUIRE(std::ranges::equal(found, truth));
 }
 
 void Pairing::nearest(Bytes& bytes) {
-  const Aabb from = bytes.tame_box();
+  const Aabb from = bytes.grid_box();
   const std::size_t count = bytes.below(20);
   const float radius =
       bytes.chance(3) ? std::numeric_limits<float>::infinity() : 0.5F * bytes.byte();
   const Filter filter = some_filter(bytes);
   HitBuffer hits;
   HitBuffer others;
-  WINNOW_HOLDS(a_.nearest(from, count, radius, hits, filter) == Status::ok);
-  WINNOW_HOLDS(right_nearest(hits.hits(), from, count, radius, seen(filter), a_));
-  WINNOW_HOLDS(b_.nearest(from, count, radius, others, filter) == Status::ok);
-  WINNOW_HOLDS(std::ranges::equal(
+  WINNOW_REQUIRE(a_.nearest(from, count, radius, hits, filter) == Status::ok);
+  WINNOW_REQUIRE(right_nearest(hits.hits(), from, count, radius, seen(filter), a_));
+  WINNOW_REQUIRE(b_.nearest(from, count, radius, others, filter) == Status::ok);
+  WINNOW_REQUIRE(std::ranges::equal(
       hits, others, [](const Hit& x, const Hit& y) { return x.key.id == y.key.id && x.t == y.t; }));
 }
 

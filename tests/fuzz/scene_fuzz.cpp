@@ -27,28 +27,28 @@ using KeyOrder = decltype([](const Key& a, const Key& b) {
 
 /// A pair of bodies, the smaller id first, and the kinds of their shapes in that order: if a body
 /// gets a shape of another kind, the pair begins anew.
-struct Meeting {
+struct BodyKindPair {
   Key a;
   Key b;
   std::uint32_t kinds[2];
 
-  friend auto operator<=>(const Meeting& x, const Meeting& y) {
-    const auto all = [](const Meeting& m) {
+  friend auto operator<=>(const BodyKindPair& x, const BodyKindPair& y) {
+    const auto all = [](const BodyKindPair& m) {
       return std::tuple(m.a.id, m.b.id, m.a.stamp, m.b.stamp, m.kinds[0], m.kinds[1]);
     };
     return all(x) <=> all(y);
   }
-  friend bool operator==(const Meeting& x, const Meeting& y) { return (x <=> y) == 0; }
+  friend bool operator==(const BodyKindPair& x, const BodyKindPair& y) { return (x <=> y) == 0; }
 };
-using BodyPairSet = std::set<Meeting>;
+using BodyPairSet = std::set<BodyKindPair>;
 
 class Play {
  public:
   Play(Bytes& bytes, CountingMemory& memory);
   void step(Bytes& bytes);
   void check_memory(const CountingMemory& memory) const {
-    WINNOW_HOLDS(scene_->footprint().total().reserved + contacts_.footprint().total().reserved ==
-                 memory.outstanding());
+    WINNOW_REQUIRE(scene_->footprint().total().reserved + contacts_.footprint().total().reserved ==
+                   memory.outstanding());
   }
 
  private:
@@ -61,8 +61,8 @@ class Play {
   void collide(Bytes& bytes);
   void check_events();
   void check_fresh(ContactLevel level);
-  void check_carried(const Contacts& fresh) const;
-  void ask(Bytes& bytes);
+  void check_cached(const Contacts& fresh) const;
+  void query(Bytes& bytes);
   void query_ray(Bytes& bytes, SceneQueries& queries);
   void query_cast(Bytes& bytes, SceneQueries& queries);
   void query_overlap(Bytes& bytes, SceneQueries& queries);
@@ -74,7 +74,7 @@ class Play {
     return pose;
   }
   [[nodiscard]] BodyDefinition* some_body(Bytes& bytes, Key& key);
-  [[nodiscard]] Meeting meeting(Key a, Key b) const;
+  [[nodiscard]] BodyKindPair body_kind_pair(Key a, Key b) const;
   [[nodiscard]] double distance(ShapeId a, const Pose& at_a, ShapeId b, const Pose& at_b) const;
 
   EveryShape shapes_;
@@ -101,8 +101,8 @@ SceneOptions Play::some_options(Bytes& bytes, const EveryShape& shapes, Counting
   options.execution = bytes.chance(4) ? Execution::parallel() : Execution::serial();
   const auto all = all_structures();
   for (StructureKind& kind : options.structures) kind = all[bytes.below(all.size())];
-  if (bytes.chance(2)) options.margin = 0.25;
-  if (bytes.chance(3)) options.carry_over = 0.0625;
+  if (bytes.chance(2)) options.contact_margin = 0.25;
+  if (bytes.chance(3)) options.cache_tolerance = 0.0625;
   options.warm_start = bytes.chance(2);
   return options;
 }
@@ -121,13 +121,13 @@ void Play::add(Bytes& bytes) {
   for (BodyDefinition& body : bodies) {
     body.shape = shapes_.ids[bytes.below(shapes_.ids.size())];
     body.pose = some_pose(bytes);
-    body.motion = static_cast<Motion>(bytes.below(3));
+    body.state = static_cast<BodyState>(bytes.below(3));
     body.data = named_++;
   }
   std::vector<Key> keys(bodies.size());
-  WINNOW_HOLDS(scene_->add(bodies, keys) == Status::ok);
+  WINNOW_REQUIRE(scene_->add(bodies, keys) == Status::ok);
   for (std::size_t i = 0; i < keys.size(); ++i) {
-    WINNOW_HOLDS(bodies_.emplace(keys[i], bodies[i]).second);
+    WINNOW_REQUIRE(bodies_.emplace(keys[i], bodies[i]).second);
   }
 }
 
@@ -137,26 +137,26 @@ void Play::change(Bytes& bytes) {
   if (body == nullptr) return;
   switch (bytes.below(6)) {
     case 0:
-      body->motion = static_cast<Motion>(bytes.below(3));
-      WINNOW_HOLDS(scene_->set_motion(key, body->motion) == Status::ok);
+      body->state = static_cast<BodyState>(bytes.below(3));
+      WINNOW_REQUIRE(scene_->set_body_state(key, body->state) == Status::ok);
       break;
     case 1:
       body->shape = shapes_.ids[bytes.below(shapes_.ids.size())];
-      WINNOW_HOLDS(scene_->set_shape(key, body->shape) == Status::ok);
+      WINNOW_REQUIRE(scene_->set_shape(key, body->shape) == Status::ok);
       break;
     case 2:
       body->filter = {1U << bytes.below(2), static_cast<unsigned>(1 + bytes.below(3)), 0};
-      WINNOW_HOLDS(scene_->set_filter(key, body->filter) == Status::ok);
+      WINNOW_REQUIRE(scene_->set_filter(key, body->filter) == Status::ok);
       break;
     case 3: {
       const double step = 0.015625 * static_cast<double>(bytes.below(4));
       for (double& x : body->pose.position) x += step;
-      WINNOW_HOLDS(scene_->move(key, body->pose) == Status::ok);
+      WINNOW_REQUIRE(scene_->move(key, body->pose) == Status::ok);
       break;
     }
     default:
       body->pose = some_pose(bytes);
-      WINNOW_HOLDS(scene_->move(key, body->pose) == Status::ok);
+      WINNOW_REQUIRE(scene_->move(key, body->pose) == Status::ok);
   }
 }
 
@@ -164,9 +164,9 @@ void Play::remove(Bytes& bytes) {
   Key key;
   if (some_body(bytes, key) == nullptr) return;
   const Key twice[] = {key, key};
-  WINNOW_HOLDS(scene_->remove(twice) == Status::invalid_key);
-  WINNOW_HOLDS(scene_->remove(key) == Status::ok);
-  WINNOW_HOLDS(scene_->remove(key) == Status::invalid_key);
+  WINNOW_REQUIRE(scene_->remove(twice) == Status::invalid_key);
+  WINNOW_REQUIRE(scene_->remove(key) == Status::ok);
+  WINNOW_REQUIRE(scene_->remove(key) == Status::invalid_key);
   bodies_.erase(key);
 }
 
@@ -177,33 +177,33 @@ void Play::misuse(Bytes& bytes) {
   Key live;
   if (some_body(bytes, live) == nullptr) return;
   if (!there) {
-    WINNOW_HOLDS(scene_->set_shape(live, bad) == Status::invalid_key);
+    WINNOW_REQUIRE(scene_->set_shape(live, bad) == Status::invalid_key);
     const BodyDefinition bodies[] = {bodies_.at(live), {.shape = bad}};
     Key keys[2];
-    WINNOW_HOLDS(scene_->add(bodies, keys) == Status::invalid_key);
+    WINNOW_REQUIRE(scene_->add(bodies, keys) == Status::invalid_key);
   }
   Pose pose;
   for (double& x : pose.position) x = bytes.any<double>();
   for (double& q : pose.orientation) q = bytes.any<double>();
-  if (!pose.is_valid()) WINNOW_HOLDS(scene_->move(live, pose) == Status::invalid_pose);
+  if (!pose.is_valid()) WINNOW_REQUIRE(scene_->move(live, pose) == Status::invalid_pose);
   const auto stale = bytes.any<Key>();
   if (!bodies_.contains(stale)) {
     const Key keys[] = {live, stale};
-    WINNOW_HOLDS(scene_->set_motion(keys, Motion::fixed) == Status::invalid_key);
-    WINNOW_HOLDS(scene_->remove(keys) == Status::invalid_key);
-    WINNOW_HOLDS(!scene_->contains(stale));
+    WINNOW_REQUIRE(scene_->set_body_state(keys, BodyState::fixed) == Status::invalid_key);
+    WINNOW_REQUIRE(scene_->remove(keys) == Status::invalid_key);
+    WINNOW_REQUIRE(!scene_->contains(stale));
   }
 }
 
 void Play::collide(Bytes& bytes) {
   const auto level = static_cast<ContactLevel>(bytes.below(4));
-  WINNOW_HOLDS(scene_->collide(level, contacts_) == Status::ok);
-  WINNOW_HOLDS(scene_->size() == bodies_.size());
+  WINNOW_REQUIRE(scene_->collide(level, contacts_) == Status::ok);
+  WINNOW_REQUIRE(scene_->size() == bodies_.size());
   check_events();
   if (level != ContactLevel::pairs) check_fresh(level);
 }
 
-Meeting Play::meeting(Key a, Key b) const {
+BodyKindPair Play::body_kind_pair(Key a, Key b) const {
   if (b.id < a.id) std::swap(a, b);
   return {a, b, {bodies_.at(a).shape.kind_index(), bodies_.at(b).shape.kind_index()}};
 }
@@ -215,29 +215,29 @@ void Play::check_events() {
   level_ = contacts_.level();
   shown_.clear();
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
-    const Meeting pair = meeting(contacts_.a()[i], contacts_.b()[i]);
-    WINNOW_HOLDS(shown_.insert(pair).second);
+    const BodyKindPair pair = body_kind_pair(contacts_.a()[i], contacts_.b()[i]);
+    WINNOW_REQUIRE(shown_.insert(pair).second);
     const bool persists = before.erase(pair) == 1;
-    WINNOW_HOLDS(persists == (contacts_.event()[i] == ContactEvent::persisted));
+    WINNOW_REQUIRE(persists == (contacts_.event()[i] == ContactEvent::persisted));
     const BodyDefinition& a = bodies_.at(contacts_.a()[i]);
     const BodyDefinition& b = bodies_.at(contacts_.b()[i]);
-    WINNOW_HOLDS(a.data == contacts_.data_a()[i] && b.data == contacts_.data_b()[i]);
-    WINNOW_HOLDS(a.motion == Motion::dynamic || b.motion == Motion::dynamic);
-    WINNOW_HOLDS(filters_allow(a.filter, b.filter));
+    WINNOW_REQUIRE(a.data == contacts_.data_a()[i] && b.data == contacts_.data_b()[i]);
+    WINNOW_REQUIRE(a.state == BodyState::dynamic || b.state == BodyState::dynamic);
+    WINNOW_REQUIRE(filters_allow(a.filter, b.filter));
   }
   for (const EndedContact& pair : contacts_.ended()) {
     const auto [a, b] =
         pair.a.id < pair.b.id ? std::pair(pair.a, pair.b) : std::pair(pair.b, pair.a);
-    const auto same = [a = a, b = b](const Meeting& m) { return m.a == a && m.b == b; };
+    const auto same = [a = a, b = b](const BodyKindPair& m) { return m.a == a && m.b == b; };
     const auto at = std::find_if(before.begin(), before.end(), same);
-    WINNOW_HOLDS(at != before.end());
+    WINNOW_REQUIRE(at != before.end());
     before.erase(at);
   }
   // Pairs that were neither reported nor ended are of two bodies at rest.
   dormant_ = before;
-  for (const Meeting& pair : dormant_) {
-    WINNOW_HOLDS(bodies_.at(pair.a).motion != Motion::dynamic);
-    WINNOW_HOLDS(bodies_.at(pair.b).motion != Motion::dynamic);
+  for (const BodyKindPair& pair : dormant_) {
+    WINNOW_REQUIRE(bodies_.at(pair.a).state != BodyState::dynamic);
+    WINNOW_REQUIRE(bodies_.at(pair.b).state != BodyState::dynamic);
   }
 }
 
@@ -259,27 +259,28 @@ bool same_manifold(const Contacts& a, const Contacts& b, std::size_t m) {
 }
 
 void Play::check_fresh(ContactLevel level) {
-  const bool carries = options_.carry_over > 0.0;
-  Scene fresh(shapes_.pool, {.margin = options_.margin + (carries ? 0.25 : 0.0),
+  const bool uses_cache = options_.cache_tolerance > 0.0;
+  Scene fresh(shapes_.pool, {.contact_margin = options_.contact_margin + (uses_cache ? 0.25 : 0.0),
                              .composites = &shapes_.composites});
   for (const auto& [key, body] : bodies_) {
     Key ignored;
-    WINNOW_HOLDS(fresh.add(body, ignored) == Status::ok);
+    WINNOW_REQUIRE(fresh.add(body, ignored) == Status::ok);
   }
   Contacts contacts;
-  WINNOW_HOLDS(fresh.collide(carries ? ContactLevel::distance : level, contacts) == Status::ok);
-  if (carries) return check_carried(contacts);
-  WINNOW_HOLDS(std::ranges::equal(contacts.data_a(), contacts_.data_a()));
-  WINNOW_HOLDS(std::ranges::equal(contacts.data_b(), contacts_.data_b()));
-  WINNOW_HOLDS(std::ranges::equal(contacts.manifold_first(), contacts_.manifold_first()));
+  WINNOW_REQUIRE(fresh.collide(uses_cache ? ContactLevel::distance : level, contacts) ==
+                 Status::ok);
+  if (uses_cache) return check_cached(contacts);
+  WINNOW_REQUIRE(std::ranges::equal(contacts.data_a(), contacts_.data_a()));
+  WINNOW_REQUIRE(std::ranges::equal(contacts.data_b(), contacts_.data_b()));
+  WINNOW_REQUIRE(std::ranges::equal(contacts.manifold_first(), contacts_.manifold_first()));
   for (std::size_t m = 0; m < contacts.manifolds(); ++m) {
-    WINNOW_HOLDS(same_manifold(contacts_, contacts, m));
+    WINNOW_REQUIRE(same_manifold(contacts_, contacts, m));
   }
 }
 
 /// Checks that every touching pair is reported, and no pair that is farther than margin and
-/// carry-over allow.
-void Play::check_carried(const Contacts& fresh) const {
+/// cache tolerance allow.
+void Play::check_cached(const Contacts& fresh) const {
   std::map<std::pair<ClientData, ClientData>, double> least;
   for (std::size_t i = 0; i < fresh.size(); ++i) {
     double& distance =
@@ -292,11 +293,11 @@ void Play::check_carried(const Contacts& fresh) const {
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
     const std::pair pair(contacts_.data_a()[i], contacts_.data_b()[i]);
     shown.insert(pair);
-    WINNOW_HOLDS(least.contains(pair));
-    WINNOW_HOLDS(least[pair] <= options_.margin + options_.carry_over + 1e-6);
+    WINNOW_REQUIRE(least.contains(pair));
+    WINNOW_REQUIRE(least[pair] <= options_.contact_margin + options_.cache_tolerance + 1e-6);
   }
   for (const auto& [pair, distance] : least) {
-    if (distance <= 0.0) WINNOW_HOLDS(shown.contains(pair));
+    if (distance <= 0.0) WINNOW_REQUIRE(shown.contains(pair));
   }
 }
 
@@ -306,39 +307,39 @@ double Play::distance(ShapeId a, const Pose& at_a, ShapeId b, const Pose& at_b) 
   const BodyPair pair[] = {{0, 1}};
   NarrowPhase narrow;
   NarrowResult result;
-  WINNOW_HOLDS(narrow.collide(shapes_.pool, {ids, poses}, pair,
-                              {.level = ContactLevel::distance, .tier = NarrowTier::reference},
-                              result) == Status::ok);
+  WINNOW_REQUIRE(narrow.collide(shapes_.pool, {ids, poses}, pair,
+                                {.level = ContactLevel::distance, .tier = NarrowTier::reference},
+                                result) == Status::ok);
   return result.distance()[0];
 }
 
 void Play::query_ray(Bytes& bytes, SceneQueries& queries) {
   ShapeRay ray;
-  for (double& x : ray.origin) x = 0.25 * bytes.tame() + far_;
-  for (double& x : ray.direction) x = bytes.tame();
+  for (double& x : ray.origin) x = 0.25 * bytes.grid_value() + far_;
+  for (double& x : ray.direction) x = bytes.grid_value();
   ray.max_t = bytes.chance(2) ? kInfinity : bytes.extent();
   SceneHit first;
   std::span<const SceneHit> all;
   const Status status = queries.closest(ray, first);
   if (ray.direction[0] == 0.0 && ray.direction[1] == 0.0 && ray.direction[2] == 0.0) {
-    WINNOW_HOLDS(status == Status::invalid_argument);
+    WINNOW_REQUIRE(status == Status::invalid_argument);
     return;
   }
-  WINNOW_HOLDS(status == Status::ok && queries.all(ray, all) == Status::ok);
-  WINNOW_HOLDS(all.empty() ? !first : first.key == all[0].key && first.t == all[0].t);
+  WINNOW_REQUIRE(status == Status::ok && queries.all(ray, all) == Status::ok);
+  WINNOW_REQUIRE(all.empty() ? !first : first.key == all[0].key && first.t == all[0].t);
   std::map<Key, double, KeyOrder> hits;
   double before = 0.0;
   for (const SceneHit& hit : all) {
-    WINNOW_HOLDS(hit.t >= before && hits.emplace(hit.key, hit.t).second);
+    WINNOW_REQUIRE(hit.t >= before && hits.emplace(hit.key, hit.t).second);
     before = hit.t;
   }
   for (const auto& [key, body] : bodies_) {
     if (body.shape.is_composite()) continue;
     ShapeHit hit;
-    WINNOW_HOLDS(cast_ray(shapes_.pool.tables(), body.shape, body.pose, ray, hit) == Status::ok);
+    WINNOW_REQUIRE(cast_ray(shapes_.pool.tables(), body.shape, body.pose, ray, hit) == Status::ok);
     const auto at = hits.find(key);
-    WINNOW_HOLDS(hit.hit == (at != hits.end()));
-    WINNOW_HOLDS(!hit.hit || hit.t == at->second);
+    WINNOW_REQUIRE(hit.hit == (at != hits.end()));
+    WINNOW_REQUIRE(!hit.hit || hit.t == at->second);
   }
 }
 
@@ -346,14 +347,15 @@ void Play::query_cast(Bytes& bytes, SceneQueries& queries) {
   ShapeCast cast{.shape = shapes_.ids[bytes.below(shapes_.convex)], .pose = some_pose(bytes)};
   double square = 0.0;
   for (double& x : cast.direction) {
-    x = 0.25 * bytes.tame();
+    x = 0.25 * bytes.grid_value();
     square += x * x;
   }
   if (square == 0.0) return;
   constexpr double kTolerance = 1e-6;
   SceneHit hit;
-  WINNOW_HOLDS(queries.closest(cast, hit, {}, kTolerance) == Status::ok);
-  // No body is touched before the hit, and the hit body is close at that time.
+  WINNOW_REQUIRE(queries.closest(cast, hit, {}, kTolerance) == Status::ok);
+  // No convex body overlaps the moving shape before the hit. At the hit, the hit body, if convex,
+  // is at most four tolerances away.
   for (const auto& [key, body] : bodies_) {
     if (body.shape.is_composite()) continue;
     const double end = hit ? hit.t : cast.max_t;
@@ -363,9 +365,9 @@ void Play::query_cast(Bytes& bytes, SceneQueries& queries) {
       const double gap = distance(cast.shape, pose, body.shape, body.pose);
       const double noise = 1e-8 + 1e-15 * (std::sqrt(square) + far_);
       if (hit && hit.t == 0.0) break;
-      WINNOW_HOLDS(gap >= -noise);
+      WINNOW_REQUIRE(gap >= -noise);
       if (share == 1.0 && hit && key == hit.key) {
-        WINNOW_HOLDS(gap <= kTolerance * 4 + noise);
+        WINNOW_REQUIRE(gap <= kTolerance * 4 + noise);
       }
     }
   }
@@ -375,16 +377,16 @@ void Play::query_overlap(Bytes& bytes, SceneQueries& queries) {
   const ShapeId shape = shapes_.ids[bytes.below(shapes_.ids.size())];
   const Pose pose = some_pose(bytes);
   std::span<const SceneOverlap> found;
-  WINNOW_HOLDS(queries.overlap(shape, pose, found) == Status::ok);
-  WINNOW_HOLDS(std::is_sorted(found.begin(), found.end(),
-                              [](const auto& a, const auto& b) { return a.key.id < b.key.id; }));
+  WINNOW_REQUIRE(queries.overlap(shape, pose, found) == Status::ok);
+  WINNOW_REQUIRE(std::is_sorted(found.begin(), found.end(),
+                                [](const auto& a, const auto& b) { return a.key.id < b.key.id; }));
   if (shape.is_composite()) return;
   for (const auto& [of_body, body] : bodies_) {
     if (body.shape.is_composite()) continue;
     const Key key = of_body;
     const bool is_found = std::any_of(found.begin(), found.end(),
                                       [&](const SceneOverlap& one) { return one.key == key; });
-    WINNOW_HOLDS(is_found == (distance(shape, pose, body.shape, body.pose) <= 0.0));
+    WINNOW_REQUIRE(is_found == (distance(shape, pose, body.shape, body.pose) <= 0.0));
   }
 }
 
@@ -393,15 +395,15 @@ void Play::query_distance(SceneQueries& queries) {
   const auto& [a, body_a] = *bodies_.begin();
   const auto& [b, body_b] = *bodies_.rbegin();
   SceneDistance answer;
-  WINNOW_HOLDS(queries.distance(a, b, answer, kInfinity, PairRules::none) == Status::ok);
+  WINNOW_REQUIRE(queries.distance(a, b, answer, kInfinity, PairRules::none) == Status::ok);
   if (body_a.shape.is_composite() || body_b.shape.is_composite()) return;
   const double truth = distance(body_a.shape, body_a.pose, body_b.shape, body_b.pose);
-  WINNOW_HOLDS(answer.distance == truth ||
-               std::abs(answer.distance - truth) <= 2.0 * answer.error_bound + 1e-12);
+  WINNOW_REQUIRE(answer.distance == truth ||
+                 std::abs(answer.distance - truth) <= 2.0 * answer.error_bound + 1e-12);
 }
 
-void Play::ask(Bytes& bytes) {
-  WINNOW_HOLDS(scene_->refresh() == Status::ok);
+void Play::query(Bytes& bytes) {
+  WINNOW_REQUIRE(scene_->refresh() == Status::ok);
   SceneQueries queries(*scene_);
   switch (bytes.below(4)) {
     case 0:
@@ -429,7 +431,7 @@ void Play::step(Bytes& bytes) {
     case 6:
       return misuse(bytes);
     case 7:
-      return ask(bytes);
+      return query(bytes);
     default:
       return collide(bytes);
   }

@@ -34,7 +34,7 @@ class Workshop {
     return bytes.chance(32) ? bytes.any<double>() : size_ * bytes.extent();
   }
   double coordinate(Bytes& bytes) const {
-    return bytes.chance(64) ? bytes.any<double>() : size_ * 0.25 * bytes.tame();
+    return bytes.chance(64) ? bytes.any<double>() : size_ * 0.25 * bytes.grid_value();
   }
   std::vector<Eigen::Vector3d> points(Bytes& bytes) const;
   Status add_kind(Bytes& bytes, ShapeId& id, bool& good);
@@ -143,9 +143,9 @@ void Workshop::add(Bytes& bytes) {
   bool good = false;
   const Status status = add_kind(bytes, id, good);
   if (status == Status::ok) {
-    WINNOW_HOLDS(good && pool_.contains(id));
+    WINNOW_REQUIRE(good && pool_.contains(id));
     const Aabb box = pool_.bounds(id, Pose{});
-    WINNOW_HOLDS(!as_eigen(box.min).hasNaN() && !as_eigen(box.max).hasNaN());
+    WINNOW_REQUIRE(!as_eigen(box.min).hasNaN() && !as_eigen(box.max).hasNaN());
     // Pairs are tested only if their sizes are comparable.
     const float largest = (as_eigen(box.max) - as_eigen(box.min)).maxCoeff();
     const bool is_small = static_cast<double>(largest) < 1e12 * size_;
@@ -153,9 +153,9 @@ void Workshop::add(Bytes& bytes) {
     return;
   }
   // `good` is not tested here: a hull of numbers near the ends of double may be rejected too.
-  WINNOW_HOLDS(status == Status::invalid_shape || status == Status::unsupported);
-  WINNOW_HOLDS(id == ShapeId{} && pool_.footprint().total().used == reserved);
-  WINNOW_HOLDS(std::equal(before.count, before.count + kShapeKinds, pool_.tables().count));
+  WINNOW_REQUIRE(status == Status::invalid_shape || status == Status::unsupported);
+  WINNOW_REQUIRE(id == ShapeId{} && pool_.footprint().total().used == reserved);
+  WINNOW_REQUIRE(std::equal(before.count, before.count + kShapeKinds, pool_.tables().count));
 }
 
 struct Answer {
@@ -185,42 +185,43 @@ void Workshop::check_pairs(Bytes& bytes) {
     pairs.push_back({n - 2, n - 1});
     turned.push_back({n - 1, n - 2});
   }
-  const auto ask = [&](std::span<const BodyPair> asked, ContactLevel level, NarrowTier tier) {
+  const auto collide = [&](std::span<const BodyPair> requested, ContactLevel level,
+                           NarrowTier tier) {
     NarrowPhase narrow;
     NarrowResult result;
-    WINNOW_HOLDS(narrow.collide(pool_, {shapes, poses}, asked,
-                                {.level = level, .tier = tier, .margin = 0.25 * size_},
-                                result) == Status::ok);
-    std::vector<Answer> answers(asked.size());
+    WINNOW_REQUIRE(narrow.collide(pool_, {shapes, poses}, requested,
+                                  {.level = level, .tier = tier, .contact_margin = 0.25 * size_},
+                                  result) == Status::ok);
+    std::vector<Answer> answers(requested.size());
     for (std::size_t i = 0; i < result.size(); ++i) {
       Answer& answer = answers[result.pair_of(i)];
       answer.overlap = result.overlaps(i);
       if (level == ContactLevel::boolean) continue;
       answer.distance = result.distance()[i];
       answer.bound = result.error_bound()[i];
-      WINNOW_HOLDS(!std::isnan(answer.distance) && answer.bound >= 0.0);
+      WINNOW_REQUIRE(!std::isnan(answer.distance) && answer.bound >= 0.0);
       double square = 0.0;
       for (int k = 0; k < 3; ++k) square += result.normal(k)[i] * result.normal(k)[i];
-      WINNOW_HOLDS(std::abs(square - 1.0) < 1e-5);
+      WINNOW_REQUIRE(std::abs(square - 1.0) < 1e-5);
       if (level == ContactLevel::manifold) {
-        WINNOW_HOLDS(result.contact_count()[i] <= kManifoldPoints);
+        WINNOW_REQUIRE(result.contact_count()[i] <= kManifoldPoints);
       }
     }
     return answers;
   };
-  const auto truth = ask(pairs, ContactLevel::distance, NarrowTier::reference);
-  const auto robust = ask(pairs, ContactLevel::distance, NarrowTier::robust);
-  const auto mirrored = ask(turned, ContactLevel::distance, NarrowTier::robust);
-  const auto verdicts = ask(pairs, ContactLevel::boolean, NarrowTier::robust);
-  const auto manifolds = ask(pairs, ContactLevel::manifold, NarrowTier::robust);
+  const auto truth = collide(pairs, ContactLevel::distance, NarrowTier::reference);
+  const auto robust = collide(pairs, ContactLevel::distance, NarrowTier::robust);
+  const auto mirrored = collide(turned, ContactLevel::distance, NarrowTier::robust);
+  const auto verdicts = collide(pairs, ContactLevel::boolean, NarrowTier::robust);
+  const auto manifolds = collide(pairs, ContactLevel::manifold, NarrowTier::robust);
   for (std::size_t i = 0; i < pairs.size(); ++i) {
-    WINNOW_HOLDS(robust[i].overlap == truth[i].overlap);
-    WINNOW_HOLDS(mirrored[i].overlap == truth[i].overlap);
-    WINNOW_HOLDS(verdicts[i].overlap == truth[i].overlap);
-    WINNOW_HOLDS(manifolds[i].overlap == truth[i].overlap);
-    WINNOW_HOLDS(agree(robust[i], truth[i]));
-    WINNOW_HOLDS(agree(mirrored[i], truth[i]));
-    if (truth[i].distance <= 0.0) WINNOW_HOLDS(agree(manifolds[i], truth[i]));
+    WINNOW_REQUIRE(robust[i].overlap == truth[i].overlap);
+    WINNOW_REQUIRE(mirrored[i].overlap == truth[i].overlap);
+    WINNOW_REQUIRE(verdicts[i].overlap == truth[i].overlap);
+    WINNOW_REQUIRE(manifolds[i].overlap == truth[i].overlap);
+    WINNOW_REQUIRE(agree(robust[i], truth[i]));
+    WINNOW_REQUIRE(agree(mirrored[i], truth[i]));
+    if (truth[i].distance <= 0.0) WINNOW_REQUIRE(agree(manifolds[i], truth[i]));
   }
 }
 
@@ -230,18 +231,18 @@ void Workshop::check_rays(Bytes& bytes) const {
   const ShapeId id = ids_[bytes.below(ids_.size())];
   const Pose pose = bytes.pose();
   ShapeRay ray;
-  for (double& x : ray.origin) x = size_ * 0.25 * bytes.tame();
-  for (double& x : ray.direction) x = bytes.tame();
+  for (double& x : ray.origin) x = size_ * 0.25 * bytes.grid_value();
+  for (double& x : ray.direction) x = bytes.grid_value();
   ray.max_t = bytes.chance(2) ? kInfinity : size_ * bytes.extent();
   ShapeHit hit;
   const Status status = cast_ray(pool_.tables(), id, pose, ray, hit);
   const bool moves = ray.direction[0] != 0.0 || ray.direction[1] != 0.0 || ray.direction[2] != 0.0;
-  WINNOW_HOLDS((status == Status::ok) == moves);
+  WINNOW_REQUIRE((status == Status::ok) == moves);
   if (status != Status::ok || !hit.hit) return;
-  WINNOW_HOLDS(hit.t >= 0.0 && hit.t <= ray.max_t);
+  WINNOW_REQUIRE(hit.t >= 0.0 && hit.t <= ray.max_t);
   double square = 0.0;
   for (const double x : hit.normal) square += x * x;
-  WINNOW_HOLDS(std::abs(square - 1.0) < 1e-9);
+  WINNOW_REQUIRE(std::abs(square - 1.0) < 1e-9);
 }
 
 }  // namespace

@@ -40,7 +40,7 @@ class ScratchFile {
 }  // namespace winnow::test
 
 /// Checks a bool or a testing::AssertionResult.
-#define WINNOW_HOLDS(...)                                                             \
+#define WINNOW_REQUIRE(...)                                                           \
   do {                                                                                \
     if (const testing::AssertionResult held(__VA_ARGS__); !held) {                    \
       winnow::test::does_not_hold(__FILE__, __LINE__,                                 \

@@ -33,24 +33,3 @@ TOKEN = re.compile(r'R"([^()\s\\]{0,16})\((?s:.*?)\)\1"'
                    r"|//[^\n]*|/\*(?s:.*?)\*/")
 # Suite and name of a test of C++.
 TEST_NAME = re.compile(r"\b(?:TYPED_)?TEST(?:_F|_P)?\(\s*(\w+)\s*,\s*(\w+)\s*\)")
-
-
-def check_list(root, name, found, shrink):
-    """Compares faults with a list of known ones and returns the complaints.
-
-    `found` maps each fault to a sentence that begins with its place. A fault that the file `name` does
-    not list is a complaint, and so is a line of the file that is no fault any more. If `shrink` is true,
-    such lines are removed instead; nothing adds lines.
-    """
-    path = os.path.join(root, name)
-    lines = read(root, name).split("\n") if os.path.exists(path) else []
-    listed = {line: n for n, line in enumerate(lines, 1) if line and not line.startswith("#")}
-    complaints = [found[fault] for fault in sorted(found) if fault not in listed]
-    gone = [fault for fault in listed if fault not in found]
-    if gone and shrink:
-        with open(path, "w", encoding="utf-8") as file:
-            file.write("\n".join(line for line in lines if line not in gone))
-    elif gone:
-        complaints += [f"{name}:{listed[fault]}: {fault} is no fault any more: remove the line, or run the"
-                       " check with --shrink" for fault in gone]
-    return complaints

@@ -1,5 +1,5 @@
-// Refuses each memory request of scene sweeps, sensors, queries of sets, layers and deformable
-// meshes in turn (refusals.h has the loop over requests).
+// Refuses each memory request of continuous collision detection, sensors, queries of sets, layers
+// and deformable meshes in turn (refusals.h has the loop over requests).
 
 #include <winnow/winnow.h>
 
@@ -51,14 +51,14 @@ struct MovingWorld {
   MovingWorld(std::pmr::memory_resource* memory, Execution execution)
       : scene(few_shapes().pool, {.memory = memory,
                                   .execution = execution,
-                                  .margin = 0.05,
+                                  .contact_margin = 0.05,
                                   .contact_reduction = true,
                                   .suppress_ghost_contacts = true,
                                   .warm_start = true,
                                   .composites = &few_shapes().composites}),
         contacts(memory),
         groups(memory),
-        sweep(scene, memory),
+        ccd(scene, memory),
         sensors(scene, memory),
         queries(scene, memory) {
     Random random(8);
@@ -66,7 +66,7 @@ struct MovingWorld {
       BodyDefinition body;
       body.shape = few_shapes().ids[i % few_shapes().ids.size()];
       body.pose = pose_in(random, 1.5);
-      body.motion = i % 4 == 3 ? Motion::fixed : Motion::dynamic;
+      body.state = i % 4 == 3 ? BodyState::fixed : BodyState::dynamic;
       body.data = i;
       bodies.push_back(body);
       ends.push_back(pose_in(random, 2.5));
@@ -99,9 +99,9 @@ struct MovingWorld {
     }
     return status;
   }
-  Status look(const SweepOptions& options) {
-    const Status status = sweep.sweep(keys, ends, options);
-    for (const SceneImpact& impact : sweep.impacts()) {
+  Status look(const ContinuousOptions& options) {
+    const Status status = ccd.find_impacts(keys, ends, options);
+    for (const SceneImpact& impact : ccd.impacts()) {
       if (status != Status::ok) break;
       answers.insert(answers.end(), {impact.data_a, impact.data_b});
       put(answers, impact.time);
@@ -114,7 +114,7 @@ struct MovingWorld {
       EXPECT_TRUE(sensors.sensed().empty());
       return status;
     }
-    // Leaves out the event of each overlap: it restarts after a refused call.
+    // Leaves out the events of overlaps: after a refused call every overlap begins again.
     for (const SensedBody& in : sensors.sensed()) {
       answers.insert(answers.end(), {in.sensor_data, in.body_data});
     }
@@ -135,7 +135,7 @@ struct MovingWorld {
   Scene scene;
   Contacts contacts;
   ContactGroups groups;
-  SceneSweep sweep;
+  ContinuousCollision ccd;
   Sensors sensors;
   SceneQueries queries;
   std::vector<Key> keys;
@@ -172,11 +172,10 @@ void add_bodies_and_layers(MovingCalls& calls) {
 }
 
 void add_ways_and_volumes(MovingCalls& calls) {
-  calls.push_back({"sweep", [](auto& w) { return w.look({}); }});
-  calls.push_back(
-      {"sweep, first impacts only", [](auto& w) { return w.look({.first_only = true}); }});
-  calls.push_back(
-      {"sweep against fixed bodies", [](auto& w) { return w.look({.pairs = SweepPairs::fixed}); }});
+  calls.push_back({"impacts", [](auto& w) { return w.look({}); }});
+  calls.push_back({"impacts, first only", [](auto& w) { return w.look({.first_only = true}); }});
+  calls.push_back({"impacts with fixed bodies",
+                   [](auto& w) { return w.look({.pairs = ContinuousPairs::fixed}); }});
   for (const std::size_t i : {0U, 1U, 3U, 4U}) {
     calls.push_back({"sensor", [i](auto& w) { return w.add_sensor(i); }});
   }
@@ -216,7 +215,7 @@ void add_ways_and_volumes(MovingCalls& calls) {
   calls.push_back({"contacts at the end", [](auto& w) { return w.collide(); }});
 }
 
-TEST(SceneRefusals, refused_sweeps_sensors_sets_and_layers_change_nothing) {
+TEST(SceneRefusals, refused_impacts_sensors_sets_and_layers_change_nothing) {
   for (const int threads : {1, 2}) {
     MovingCalls calls;
     add_bodies_and_layers(calls);
@@ -227,7 +226,7 @@ TEST(SceneRefusals, refused_sweeps_sensors_sets_and_layers_change_nothing) {
   }
 }
 
-/// Two cloths, one above the other. The first one folds.
+/// Two cloths, one above the other. The first cloth folds.
 struct ClothWorld {
   ClothWorld(std::pmr::memory_resource* memory, Execution execution)
       : cloth({.memory = memory, .execution = execution, .chunk = 64}),
@@ -246,10 +245,10 @@ struct ClothWorld {
     return mesh.build(points(surface), IndexView(std::span<const std::uint32_t>(rest.corners)));
   }
   /// Drops the chunks that were delivered before a refusal.
-  template <typename Ask>
-  Status ask(Ask&& question) {
+  template <typename Query>
+  Status run_query(Query&& query) {
     Digest found;
-    const Status status = question([&](auto chunk) {
+    const Status status = query([&](auto chunk) {
       for (const auto& one : chunk) {
         if constexpr (requires { one.features; }) {
           found.insert(found.end(), {one.features.first, one.features.second});
@@ -281,18 +280,20 @@ TEST(ClothRefusals, refused_memory_changes_nothing) {
                    }});
   for (const FeaturePair kind : {vertex_face, edge_edge}) {
     calls.push_back({"candidates", [kind](auto& w) {
-                       return w.ask([&](auto take) { return w.cloth.self_candidates(kind, take); });
+                       return w.run_query(
+                           [&](auto take) { return w.cloth.self_candidates(kind, take); });
                      }});
     calls.push_back({"impacts", [kind](auto& w) {
-                       return w.ask(
+                       return w.run_query(
                            [&](auto take) { return w.cloth.self_impacts(kind, {}, take); });
                      }});
-    calls.push_back(
-        {"impacts with the other", [kind](auto& w) {
-           return w.ask([&](auto take) { return w.cloth.impacts_with(w.other, kind, {}, take); });
-         }});
+    calls.push_back({"impacts with the other", [kind](auto& w) {
+                       return w.run_query([&](auto take) {
+                         return w.cloth.impacts_with(w.other, kind, {}, take);
+                       });
+                     }});
     calls.push_back({"proximity", [kind](auto& w) {
-                       return w.ask([&](auto take) {
+                       return w.run_query([&](auto take) {
                          return w.cloth.proximity_with(w.other, kind, 0.05, take);
                        });
                      }});

@@ -14,14 +14,15 @@ namespace {
 /// Two partitions, result buffers, and a digest of the results so far.
 struct PartitionWorld {
   PartitionWorld(std::pmr::memory_resource* memory, StructureKind structure, Volume volume,
-                 Margin margin, Execution execution)
-      : partition(structure,
-                  {.memory = memory, .execution = execution, .volume = volume, .margin = margin}),
+                 FatMargin fat_margin, Execution execution)
+      : partition(
+            structure,
+            {.memory = memory, .execution = execution, .volume = volume, .fat_margin = fat_margin}),
         other(linear_bvh(), {.memory = memory, .execution = execution}),
         pairs(memory),
         cross(memory),
         events({memory, true}),
-        alone(memory),
+        events_only(memory),
         hits(memory),
         batch(memory),
         objects(memory) {}
@@ -67,7 +68,7 @@ struct PartitionWorld {
   PairBuffer pairs;
   PairBuffer cross;
   PairEvents events;
-  PairEvents alone;
+  PairEvents events_only;
   HitBuffer hits;
   HitBuffer batch;
   OverlapBuffer objects;
@@ -119,7 +120,7 @@ Status self_pairs(PartitionWorld& w, Order order) {
 }
 
 Status only_changes(PartitionWorld& w) {
-  return w.partition.self_pairs(w.alone);
+  return w.partition.self_pairs(w.events_only);
 }
 
 using Calls = std::vector<Call<PartitionWorld>>;
@@ -166,7 +167,7 @@ void add_changes(Calls& calls) {
 }
 
 /// Adds the queries. The first of each kind allocates its buffer.
-void add_questions(Calls& calls) {
+void add_queries(Calls& calls) {
   calls.push_back({"insert into the other partition", [](auto& w) {
                      return insert(w, w.other, std::span(script().later).first(60));
                    }});
@@ -241,13 +242,13 @@ void add_upkeep(Calls& calls) {
 
 class PartitionRefusals : public Conformance {
  protected:
-  std::size_t check(Volume volume, Margin margin) const {
+  std::size_t check(Volume volume, FatMargin fat_margin) const {
     Calls calls;
     add_changes(calls);
-    add_questions(calls);
+    add_queries(calls);
     add_upkeep(calls);
-    return RefusedPlay<PartitionWorld, StructureKind, Volume, Margin, Execution>(
-               calls, config().threads, structure_named(config().partition), volume, margin,
+    return RefusedPlay<PartitionWorld, StructureKind, Volume, FatMargin, Execution>(
+               calls, config().threads, structure_named(config().partition), volume, fat_margin,
                config().execution())
         .check();
   }

@@ -218,7 +218,7 @@ struct NarrowWorld {
   Status collide(ContactLevel level, NarrowTier tier) {
     const Status status = narrow.collide(
         scene.shapes, scene.bodies(), convex,
-        {.level = level, .tier = tier, .margin = 0.1, .execution = execution}, result);
+        {.level = level, .tier = tier, .contact_margin = 0.1, .execution = execution}, result);
     if (status == Status::ok) {
       answer();
     } else {
@@ -226,9 +226,9 @@ struct NarrowWorld {
     }
     return status;
   }
-  Status expand() {
-    const Status status =
-        scene.composites.expand(scene.shapes, scene.bodies(), mixed, 0.1, execution, primitives);
+  Status find_primitive_pairs() {
+    const Status status = scene.composites.find_primitive_pairs(scene.shapes, scene.bodies(), mixed,
+                                                                0.1, execution, primitives);
     if (status == Status::ok) answers.push_back(primitives.pairs.size());
     return status;
   }
@@ -238,7 +238,7 @@ struct NarrowWorld {
         {{primitives.shapes.data(), primitives.shapes.size()},
          {primitives.poses.data(), primitives.poses.size()}},
         {primitives.pairs.data(), primitives.pairs.size()},
-        {.level = ContactLevel::manifold, .margin = 0.1, .execution = execution}, result);
+        {.level = ContactLevel::manifold, .contact_margin = 0.1, .execution = execution}, result);
     if (status == Status::ok) answer();
     return status;
   }
@@ -274,7 +274,7 @@ TEST(NarrowRefusals, refused_memory_changes_nothing) {
     calls.push_back({"distances", [](auto& w) { return w.collide(distance, NarrowTier::robust); }});
     calls.push_back({"manifolds", [](auto& w) { return w.collide(manifold, NarrowTier::robust); }});
     calls.push_back({"solved", [](auto& w) { return w.collide(manifold, NarrowTier::reference); }});
-    calls.push_back({"primitives", [](auto& w) { return w.expand(); }});
+    calls.push_back({"primitives", [](auto& w) { return w.find_primitive_pairs(); }});
     calls.push_back({"manifolds of primitives", [](auto& w) { return w.collide_primitives(); }});
     const Execution execution = threads == 1 ? Execution::serial() : Execution::parallel();
     EXPECT_GT((RefusedPlay<NarrowWorld, Execution>(calls, threads, execution).check()), 20U);
@@ -297,22 +297,24 @@ const CompositeWorld& shapes_of_scenes() {
 }
 
 struct WholeWorld {
-  WholeWorld(std::pmr::memory_resource* memory, Execution execution, double carry_over)
+  WholeWorld(std::pmr::memory_resource* memory, Execution execution, double cache_tolerance)
       : scene(world.shapes, {.memory = memory,
                              .execution = execution,
-                             .margin = 0.05,
-                             .carry_over = carry_over,
+                             .contact_margin = 0.05,
+                             .cache_tolerance = cache_tolerance,
                              .warm_start = true,
                              .composites = &world.composites}),
         contacts(memory),
         queries(scene, memory),
-        compares_contacts(carry_over == 0.0) {
+        compares_contacts(cache_tolerance == 0.0) {
     Random random(6);
     for (std::size_t i = 0; i < 30; ++i) {
       BodyDefinition body;
       body.shape = world.ids[i % world.ids.size()];
       body.pose = random_pose(random, 2.5);
-      body.motion = i % 5 == 0 ? Motion::fixed : i % 7 == 0 ? Motion::sleeping : Motion::dynamic;
+      body.state = i % 5 == 0   ? BodyState::fixed
+                   : i % 7 == 0 ? BodyState::sleeping
+                                : BodyState::dynamic;
       body.data = i;
       bodies.push_back(body);
     }
@@ -325,7 +327,7 @@ struct WholeWorld {
       BodyDefinition body;
       digest.push_back(key.id);
       if (scene.body(key, body) != Status::ok) continue;
-      digest.insert(digest.end(), {body.shape.bits, static_cast<std::uint64_t>(body.motion),
+      digest.insert(digest.end(), {body.shape.bits, static_cast<std::uint64_t>(body.state),
                                    body.filter.layers, body.data});
       for (const double x : body.pose.position) put(digest, x);
     }
@@ -347,8 +349,8 @@ struct WholeWorld {
     }
     return status;
   }
-  /// Leaves out events, which need the last frame and a refusal clears that. With carry-over leaves
-  /// out distances and points too: they depend on the frame in which they were computed.
+  /// Leaves out events: they depend on the last frame, which a refusal clears. With caching, also
+  /// leaves out distances and points: they depend on the frame in which they were computed.
   void answer() {
     for (std::size_t i = 0; i < contacts.size(); ++i) {
       answers.insert(answers.end(), {contacts.data_a()[i], contacts.data_b()[i]});
@@ -388,7 +390,7 @@ void add_scene_changes(SceneCalls& calls) {
                    }});
   calls.push_back({"contacts after moves", [](auto& w) { return w.collide(manifold); }});
   calls.push_back({"wake and sleep", [](auto& w) {
-                     return w.scene.set_motion(std::span(w.keys).first(8), Motion::sleeping);
+                     return w.scene.set_body_state(std::span(w.keys).first(8), BodyState::sleeping);
                    }});
   calls.push_back({"contacts of awake bodies", [](auto& w) { return w.collide(manifold); }});
   calls.push_back({"shape", [](auto& w) { return w.scene.set_shape(w.keys[3], w.world.ids[9]); }});
@@ -405,14 +407,14 @@ void add_scene_changes(SceneCalls& calls) {
   calls.push_back({"add again", [](auto& w) { return w.add(22, 8); }});
   calls.push_back({"overlaps", [](auto& w) { return w.collide(boolean); }});
   calls.push_back({"wake", [](auto& w) {
-                     return w.scene.set_motion(std::span(w.keys).first(8), Motion::dynamic);
+                     return w.scene.set_body_state(std::span(w.keys).first(8), BodyState::dynamic);
                    }});
   calls.push_back({"contacts of all", [](auto& w) { return w.collide(manifold); }});
   calls.push_back({"pairs", [](auto& w) { return w.collide(pairs); }});
   calls.push_back({"refresh", [](auto& w) { return w.scene.refresh(); }});
 }
 
-void add_scene_questions(SceneCalls& calls) {
+void add_scene_queries(SceneCalls& calls) {
   static constexpr ShapeRay kRay{{-6, 0.1, 0.2}, {1, 0.02, 0.01}, 100.0};
   calls.push_back({"closest hit", [](auto& w) {
                      SceneHit hit;
@@ -479,15 +481,17 @@ void add_scene_questions(SceneCalls& calls) {
 
 TEST(SceneRefusals, refused_memory_changes_nothing) {
   for (const int threads : {1, 2}) {
-    for (const double carry_over : {0.0, 0.01}) {
-      if (threads != 1 && carry_over != 0.0) continue;
-      SCOPED_TRACE(testing::Message() << threads << " threads, carried over " << carry_over);
+    for (const double cache_tolerance : {0.0, 0.01}) {
+      if (threads != 1 && cache_tolerance != 0.0) continue;
+      SCOPED_TRACE(testing::Message()
+                   << threads << " threads, cache tolerance " << cache_tolerance);
       SceneCalls calls;
       add_scene_changes(calls);
-      add_scene_questions(calls);
+      add_scene_queries(calls);
       const Execution execution = threads == 1 ? Execution::serial() : Execution::parallel();
       const auto refused =
-          RefusedPlay<WholeWorld, Execution, double>(calls, threads, execution, carry_over).check();
+          RefusedPlay<WholeWorld, Execution, double>(calls, threads, execution, cache_tolerance)
+              .check();
       EXPECT_GT(refused, is_quick() ? 100U : 200U);
     }
   }

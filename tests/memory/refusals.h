@@ -36,11 +36,11 @@ struct Call {
   std::function<Status(World&)> run;
 };
 
-/// Runs a list of calls again and again. In each run the memory resource refuses the k-th request
-/// of one call: only this request, or this one and all later ones. Each call and each k has its
-/// turn, up to the number of requests that the call makes. A call that returns `out_of_memory` must
-/// leave the digest as it was and must succeed once memory is available. The remaining calls must
-/// then give the keys, ids and results of a run without refusals.
+/// Runs a list of calls many times. In each run the memory resource refuses request k of one call:
+/// only this request, or this request and all later ones. At full scale there is one run for each
+/// call and each k up to the number of requests of the call. A call that returns `out_of_memory`
+/// must leave the digest as it was, and must succeed once memory is available. The remaining calls
+/// must then return the keys, ids and results of a run without refusals.
 ///
 /// A World is constructed with a memory resource and has `void describe(Digest&) const`, which
 /// appends all its observable state and the results of the calls so far.
@@ -70,8 +70,9 @@ class RefusedPlay {
  private:
   static constexpr std::size_t kMaxRequests = 2000;
 
-  /// Reduced runs skip most of the many requests. The quickest runs refuse even requests only once,
-  /// and odd requests together with all that follow.
+  /// Returns the step to the next request to refuse. Below full scale most requests after the first
+  /// 20 are skipped. Below half scale, requests with an even number are refused only once, and
+  /// requests with an odd number only together with all later ones.
   static std::size_t step_after(std::size_t k) {
     if (!is_reduced()) return 1;
     if (is_quick()) return k < 6 ? 2 : 62;

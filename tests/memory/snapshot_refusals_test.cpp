@@ -37,7 +37,7 @@ struct SavedWorld {
           composites(shapes, memory),
           scene(shapes, {.memory = memory,
                          .execution = execution,
-                         .margin = 0.1,
+                         .contact_margin = 0.1,
                          .warm_start = true,
                          .composites = &composites}),
           contacts(memory) {}

@@ -55,8 +55,8 @@ def suites_of(programs, files):
 
 
 def is_idle(process, used):
-    """Returns whether the CPU time of a process is still `used`, unless it was stopped; and the CPU
-    time."""
+    """Returns whether a process that is not stopped has the CPU time `used`, as at the last call; and its
+    CPU time."""
     try:
         fields = pathlib.Path(f"/proc/{process.pid}/stat").read_text().rsplit(")", 1)[1].split()
     except OSError:
@@ -98,8 +98,9 @@ def survey(name, words):
 
 
 def judge(mutant, suites, kills, budget):
-    """Returns the suite that kills a mutant, None if it survives, and whether all suites that execute it
-    were run. `kills` counts, by file and suite, the mutants killed so far."""
+    """Returns the suite that kills a mutant, or None if it survives; `ran_all` is false if the budget was used
+    up before all suites that execute the mutant were run. `kills` counts, by file and suite, the mutants
+    killed so far."""
     file_kills = kills[mutant["file"]]
     mine = sorted((s for s in suites if mutant["id"] in s["reached"]),
                   key=lambda s: (-file_kills[s["suite"]], s["took"] * len(s["reached"])))
@@ -130,13 +131,13 @@ def known_survivors():
 
 def main():
     programs, mutants_file, budget, out = sys.argv[1:5]
-    wanted = re.compile(sys.argv[5] if len(sys.argv) > 5 else "")
+    selected = re.compile(sys.argv[5] if len(sys.argv) > 5 else "")
     mutants = [m for m in json.loads(pathlib.Path(mutants_file).read_text())
                if not m.get("dropped")]
     with (concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool,
           tempfile.TemporaryDirectory() as files):
         jobs = [pool.submit(survey, name, words) for name, words in suites_of(programs, files)
-                if wanted.search(name)]
+                if selected.search(name)]
         suites = [job.result() for job in jobs]
         for suite in suites:
             if not suite["passed"]:

@@ -36,7 +36,7 @@ REMOVABLE = {
 WRAPPED = {CursorKind.UNEXPOSED_EXPR}
 LITERALS = {CursorKind.INTEGER_LITERAL, CursorKind.FLOATING_LITERAL}
 DECLARATIONS = {CursorKind.VAR_DECL, CursorKind.PARM_DECL, CursorKind.FIELD_DECL}
-# A call changes only the run time.
+# Functions whose calls change only the run time: mutants of these calls would survive.
 HINTS = {"__builtin_prefetch"}
 
 
@@ -196,7 +196,7 @@ def compile_arguments(commands, path):
             words = words[next(i for i, w in enumerate(words) if w.startswith("-")) :]
             return [w for i, w in enumerate(words)
                     if w not in ("-c", "-o") and words[i - 1] not in ("-c", "-o")] + ["-x", "c++"]
-    raise SystemExit(f"nothing tells how {path} is compiled")
+    raise SystemExit(f"no command compiles {path}")
 
 
 def drawn(points, count, rng):
@@ -240,7 +240,7 @@ def main():
     tree, commands_file, count, seed, out = sys.argv[1:6]
     tree = pathlib.Path(tree).resolve()
     commands = json.loads(pathlib.Path(commands_file).read_text())
-    wanted = re.compile(sys.argv[6] if len(sys.argv) > 6 else "")
+    selected = re.compile(sys.argv[6] if len(sys.argv) > 6 else "")
     mutants = []
     targets = pathlib.Path(__file__).parent / "targets.txt"
     seen = set()
@@ -250,7 +250,7 @@ def main():
         group, *globs = line.split()
         paths = sorted({p.relative_to(tree) for g in globs for p in tree.glob(g)} - seen)
         seen.update(paths)
-        if not wanted.search(group):
+        if not selected.search(group):
             continue
         points = [point for path in paths
                   for point in Source(tree, path, compile_arguments(commands, path)).points]

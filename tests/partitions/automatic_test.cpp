@@ -99,8 +99,7 @@ TEST_P(AutomaticChoice, switch_keeps_keys_filters_data_and_pairs) {
   EXPECT_GE(chosen.size(), 2U);
 }
 
-// With very few objects there is no measured cost, and a growing scene soon leaves the first
-// structure.
+// With at most kFew objects, brute force is chosen without a comparison of costs.
 TEST_P(AutomaticChoice, few_objects_begin_with_brute_force) {
   for (const std::size_t count : {std::size_t{1}, std::size_t{2}, std::size_t{8}, kFew}) {
     TurningWorld scene(config());
@@ -191,8 +190,8 @@ TEST_P(AutomaticChoice, choice_does_not_depend_on_isa_and_threads) {
   EXPECT_EQ(choices(config()), choices(auto_configs().front()));
 }
 
-// Each switch must save twice as much as the one before: the number of switches grows only with the
-// logarithm of the frames.
+// Each switch must save twice as much as the switch before it. The number of switches therefore
+// grows only with the logarithm of the number of frames.
 TEST_P(AutomaticChoice, alternating_scene_switches_less_and_less) {
   TurningWorld scene(config());
   PairBuffer buffer;

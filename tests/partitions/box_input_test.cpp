@@ -67,18 +67,18 @@ TEST_P(BoxInput, boxes_are_copied_and_distant_ones_found) {
     const std::vector<float> near = some_boxes(random, count);
     std::vector<float> boxes = near;
     for (float& end : boxes) end += static_cast<float>(random.uniform(-1.0, 1.0));
-    for (const float margin : {0.0F, 0.9F, 0.99F, 2.0F}) {
+    for (const float skin : {0.0F, 0.9F, 0.99F, 2.0F}) {
       std::vector<std::uint32_t> expected;
       for (std::uint32_t i = 0; i < count; ++i) {
         bool is_near = true;
         for (std::size_t c = i * kFloats; c < (i + 1) * kFloats; ++c) {
-          is_near = is_near && (std::abs(boxes[c] - near[c]) <= margin || boxes[c] == near[c]);
+          is_near = is_near && (std::abs(boxes[c] - near[c]) <= skin || boxes[c] == near[c]);
         }
         if (!is_near) expected.push_back(i);
       }
       std::vector<float> to(boxes.size());
       std::vector<std::uint32_t> left(count + 32);
-      left.resize(box_input_kernels().copy_near(boxes.data(), near.data(), to.data(), count, margin,
+      left.resize(box_input_kernels().copy_near(boxes.data(), near.data(), to.data(), count, skin,
                                                 left.data(), static_cast<std::uint32_t>(count)));
       EXPECT_EQ(left, expected);
       EXPECT_EQ(to, boxes);
@@ -123,7 +123,7 @@ TEST_P(BoxInput, boxes_still_inside_their_margin_are_found) {
       const float margin = kDistance + kShare * longest;
       bool serves = true;
       for (std::size_t a = 0; a < 3; ++a) {
-        // In eighths of the margin: mostly the new box is inside.
+        // Distances in eighths of the margin. In most cases the new box is inside.
         const auto low_by = static_cast<float>(random.below(40)) - 1.0F;
         const auto high_by = static_cast<float>(random.below(18)) - (random.chance(0.1) ? 1.0F : 0);
         const bool endless_axis = endless < kFloats && endless % 3 == a;

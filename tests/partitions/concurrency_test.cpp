@@ -72,9 +72,9 @@ TEST_P(Concurrency, concurrent_const_calls_are_safe) {
     const Partition& q = b.partition();
     // Both directions at once: locking two partitions in either order must not deadlock.
     read_at_once([&](std::size_t i) {
-      const Partition& asked = i % 2 == 0 ? p : q;
+      const Partition& queried = i % 2 == 0 ? p : q;
       const Partition& other = i % 2 == 0 ? q : p;
-      statuses[i] = asked.pairs_with(other, buffers[i]);
+      statuses[i] = queried.pairs_with(other, buffers[i]);
       Aabb box;
       if (p.bounds(keys_a[i], box) != Status::ok || !p.contains(keys_a[i]) ||
           p.size() != keys_a.size() || p.statistics().objects != keys_a.size() ||

@@ -165,7 +165,7 @@ TEST_P(DebugDrawing, each_object_has_a_cell_in_even_scenes) {
   EXPECT_GT(cells.size(), 4U);
   EXPECT_EQ(cells.size(), sketch.boxes_in(kContentsColour).size());
   for (const Aabb& box : boxes) {
-    // Rounding may put a point at the edge of a cell into the neighbour.
+    // Because of rounding, a point at the edge of a cell may be in the neighbouring cell.
     const Aabb corner{as_eigen(box.min).array() - 1e-4F, as_eigen(box.min).array() + 1e-4F};
     ASSERT_TRUE(std::any_of(cells.begin(), cells.end(),
                             [&](const Aabb& cell) { return cell.overlaps(corner); }));
@@ -288,7 +288,7 @@ TEST_P(DebugDrawing, refused_memory_draws_nothing) {
     EXPECT_EQ(sketch.is_empty(), status == Status::out_of_memory);
     ASSERT_NO_FATAL_FAILURE(expect_true_picture(world));
   }
-  FAIL() << "the call never stopped asking for memory";
+  FAIL() << "the call never stopped requesting memory";
 }
 
 TEST_P(DebugDrawing, spheres_are_drawn_as_spheres_kdops_as_boxes) {

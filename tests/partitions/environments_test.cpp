@@ -139,8 +139,8 @@ TEST(EnvironmentsOfSpheres, coincident_spheres_pair_only_within_environments) {
       buffer, [](const Pair& pair) { return pair.first % 6 == pair.second % 6; }));
 }
 
-// Counts tests of 16 boxes, never time: the count of one instruction set and one thread holds for
-// all.
+// Counts tests of 16 boxes, not time: the count is equal on every instruction set and number of
+// threads, so one configuration of each structure suffices.
 class EnvironmentWork : public Conformance {
  protected:
   // Allows a twentieth more, for the few nodes that contain the end of one world and the start of
@@ -150,7 +150,8 @@ class EnvironmentWork : public Conformance {
     ASSERT_EQ(worlds.together().self_pairs(buffer, {.incremental = false}), Status::ok);
     const std::uint64_t together = worlds.together().partition().statistics().last_tests;
     Config tree = config();
-    // The tree prunes worlds in one partition, so it is the reference.
+    // With environments, rows are in a tree whatever the structure is, except for brute force. The
+    // reference is therefore a tree for each world.
     if (tree.partition != "NSquared" && tree.partition != "BoundsNSquared") {
       tree.partition = "LinearBvh";
     }

@@ -87,12 +87,12 @@ class FilterChanges : public Conformance {
       ray.direction = 0.5F * (box.min + box.max) - ray.origin;
       std::vector<ObjectId> expected;
       for (const auto& [id, entry] : world_.entries()) {
-        Partition alone(bounds_n_squared(), {.execution = Execution::serial()});
+        Partition single(bounds_n_squared(), {.execution = Execution::serial()});
         Key key;
         Hit hit;
         if (!filters_allow(filter.object(), entry.filter)) continue;
-        ASSERT_EQ(alone.insert(entry.box, 0, key), Status::ok);
-        ASSERT_EQ(alone.closest(Cast(ray), hit), Status::ok);
+        ASSERT_EQ(single.insert(entry.box, 0, key), Status::ok);
+        ASSERT_EQ(single.closest(Cast(ray), hit), Status::ok);
         if (hit) expected.push_back(id);
       }
       ASSERT_EQ(world_.partition().all(Cast(ray), hits, filter), Status::ok);

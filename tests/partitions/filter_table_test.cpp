@@ -39,7 +39,7 @@ ObjectFilter of_environment(std::uint32_t environment) {
 
 TEST(FilterTable, table_has_environments_while_an_object_has_one) {
   FilterTable table(std::pmr::get_default_resource());
-  FilterReference twin;
+  FilterReference reference;
   ASSERT_TRUE(table.reserve(kObjects));
   ASSERT_TRUE(table.begin_use());
   Random random(11);
@@ -48,16 +48,16 @@ TEST(FilterTable, table_has_environments_while_an_object_has_one) {
     const auto id = static_cast<ObjectId>(random.below(kObjects));
     if (random.chance(0.4)) {
       table.reset(id);
-      twin.filters[id] = {};
+      reference.filters[id] = {};
     } else {
       constexpr std::uint32_t kEnvironments[] = {0, 0, kAllEnvironments, 1, 2};
       const ObjectFilter filter = of_environment(kEnvironments[random.below(5)]);
       table.set(id, filter);
-      twin.set(id, filter);
+      reference.set(id, filter);
     }
-    ASSERT_EQ(table.has_environments(), twin.has_environments()) << "step " << step;
-    ASSERT_EQ(table.changed_environments(), twin.changed) << "step " << step;
-    together += twin.has_environments() ? 0 : 1;
+    ASSERT_EQ(table.has_environments(), reference.has_environments()) << "step " << step;
+    ASSERT_EQ(table.changed_environments(), reference.changed) << "step " << step;
+    together += reference.has_environments() ? 0 : 1;
   }
   EXPECT_GT(together, 100);
   EXPECT_LT(together, 3900);
@@ -70,7 +70,7 @@ ObjectFilter any_of_few(Random& random) {
   return {bits(), mask, kEnvironments[random.below(8)]};
 }
 
-TEST(FilterSpans, surely_meet_is_true_only_if_all_meet) {
+TEST(FilterSpans, surely_match_is_true_only_if_all_match) {
   Random random(5);
   int sure = 0;
   for (int round = 0; round < 20000; ++round) {
@@ -86,16 +86,16 @@ TEST(FilterSpans, surely_meet_is_true_only_if_all_meet) {
     for (const ObjectFilter& a : sides[0]) {
       for (const ObjectFilter& b : sides[1]) all = all && filters_allow(a, b);
     }
-    const bool said = surely_match(spans[0], spans[1]);
-    ASSERT_TRUE(all || !said) << round;
-    ASSERT_EQ(said, surely_match(spans[1], spans[0])) << round;
-    // With a single filter on each side the result is exact, unless both have an environment of
-    // their own.
+    const bool certain = surely_match(spans[0], spans[1]);
+    ASSERT_TRUE(all || !certain) << round;
+    ASSERT_EQ(certain, surely_match(spans[1], spans[0])) << round;
+    // With a single filter on each side the result is exact, unless the environments of both
+    // filters are neither 0 nor kAllEnvironments.
     const bool single = sides[0].size() == 1 && sides[1].size() == 1;
-    if (single && !(spans[0].apart && spans[1].apart)) {
-      ASSERT_EQ(said, all) << round;
+    if (single && !(spans[0].environments && spans[1].environments)) {
+      ASSERT_EQ(certain, all) << round;
     }
-    sure += said ? 1 : 0;
+    sure += certain ? 1 : 0;
   }
   EXPECT_GT(sure, 1000);
 }
@@ -131,9 +131,9 @@ TEST(FilterTable, span_covers_every_object_exactly_after_a_build) {
     ASSERT_EQ(kept.every_layers & least.every_layers, kept.every_layers) << step;
     ASSERT_EQ(kept.every_mask & least.every_mask, kept.every_mask) << step;
     ASSERT_TRUE((kept.any_unpairable || !least.any_unpairable) &&
-                (least.everywhere || !kept.everywhere))
+                (least.all_environments || !kept.all_environments))
         << step;
-    ASSERT_EQ(kept.apart, least.apart) << step;
+    ASSERT_EQ(kept.environments, least.environments) << step;
     if (step % 7 != 0) continue;
     std::vector<ObjectId> ids;
     for (ObjectId object = 0; object < kObjects; ++object) {
@@ -146,7 +146,7 @@ TEST(FilterTable, span_covers_every_object_exactly_after_a_build) {
     ASSERT_EQ(kept.any_mask, least.any_mask) << step;
     ASSERT_EQ(kept.every_mask, least.every_mask) << step;
     ASSERT_EQ(kept.any_unpairable, least.any_unpairable) << step;
-    ASSERT_EQ(kept.everywhere, least.everywhere) << step;
+    ASSERT_EQ(kept.all_environments, least.all_environments) << step;
   }
 }
 

@@ -34,8 +34,8 @@ std::vector<ObjectFilter> any_filters(std::size_t count, Random& random) {
 class Filters : public Conformance {
  protected:
   // Partitions that report false pairs report too many of them in large scenes.
-  [[nodiscard]] std::size_t scene_size(std::size_t wanted) const {
-    return config().make().is_exact() ? wanted : std::min<std::size_t>(wanted, 120);
+  [[nodiscard]] std::size_t scene_size(std::size_t requested) const {
+    return config().make().is_exact() ? requested : std::min<std::size_t>(requested, 120);
   }
 
   CountingMemory memory_;
@@ -113,7 +113,7 @@ TEST_P(Filters, pairs_with_applies_filters_of_both_partitions) {
         if (mine_filtered) mine.set_filter(my_keys, any_filters(my_keys.size(), random));
         if (other_filtered) other.set_filter(other_keys, any_filters(other_keys.size(), random));
         const bool exact = mine.partition().is_exact() && other.partition().is_exact();
-        const auto meet = [](const World& a, const World& b, const Pair& pair) {
+        const auto can_pair = [](const World& a, const World& b, const Pair& pair) {
           return filters_allow(a.entries().at(pair.first).filter,
                                b.entries().at(pair.second).filter);
         };
@@ -121,12 +121,12 @@ TEST_P(Filters, pairs_with_applies_filters_of_both_partitions) {
         EXPECT_TRUE(
             right_cross_pairs(buffer.pairs(), cross_pairs(mine.objects(), other.objects()), exact));
         EXPECT_TRUE(std::ranges::all_of(buffer.pairs(),
-                                        [&](const Pair& p) { return meet(mine, other, p); }));
+                                        [&](const Pair& p) { return can_pair(mine, other, p); }));
         ASSERT_EQ(other.pairs_with(mine.partition(), buffer), Status::ok);
         EXPECT_TRUE(
             right_cross_pairs(buffer.pairs(), cross_pairs(other.objects(), mine.objects()), exact));
         EXPECT_TRUE(std::ranges::all_of(buffer.pairs(),
-                                        [&](const Pair& p) { return meet(other, mine, p); }));
+                                        [&](const Pair& p) { return can_pair(other, mine, p); }));
       }
     }
   }
@@ -266,7 +266,7 @@ class FiltersOfVolumes : public Conformance {
       options.execution = config.execution();
       return Partition(structure_named(config.partition), options);
     }
-    void ask(std::span<const Aabb> boxes) {
+    void update_and_query(std::span<const Aabb> boxes) {
       ASSERT_EQ(partition.update(keys, boxes), Status::ok);
       PairOptions options;
       options.order = Order::canonical;
@@ -287,8 +287,8 @@ TEST_P(FiltersOfVolumes, volumes_pair_only_if_filters_allow) {
     ASSERT_EQ(filtered.partition.set_filter(filtered.keys, filters), Status::ok);
     for (const Motion motion : {Motion::still, Motion::little, Motion::few, Motion::teleport}) {
       move(motion, boxes, random);
-      ASSERT_NO_FATAL_FAILURE(plain.ask(boxes));
-      ASSERT_NO_FATAL_FAILURE(filtered.ask(boxes));
+      ASSERT_NO_FATAL_FAILURE(plain.update_and_query(boxes));
+      ASSERT_NO_FATAL_FAILURE(filtered.update_and_query(boxes));
       std::vector<Pair> expected;
       for (const Pair& pair : plain.pairs) {
         if (filters_allow(filters[pair.first], filters[pair.second])) expected.push_back(pair);
@@ -301,7 +301,7 @@ TEST_P(FiltersOfVolumes, volumes_pair_only_if_filters_allow) {
 INSTANTIATE_TEST_SUITE_P(All, FiltersOfVolumes, testing::ValuesIn(exact_configs()),
                          testing::PrintToStringParamName());
 
-// Counts tests of 16 boxes: the count of one instruction set and one thread holds for all.
+// Counts tests of 16 boxes: the count is equal on every instruction set and number of threads.
 class FilterWork : public Conformance {};
 
 TEST_P(FilterWork, nodes_without_accepted_objects_are_skipped) {

@@ -53,7 +53,7 @@ TEST(HierarchicalGrid, objects_of_one_size_have_one_level) {
   EXPECT_EQ(levels_of(world), 1U);
 }
 
-// Scenes of few grid lines, whose number varies most from build to build.
+// Uses scenes with few grid lines, because their number of lines varies most from build to build.
 TEST(HierarchicalGrid, repeated_frames_do_not_allocate) {
   for (std::uint64_t stream = 0; stream < 40; ++stream) {
     SCOPED_TRACE(stream);

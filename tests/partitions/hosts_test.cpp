@@ -83,7 +83,7 @@ TEST_P(Hosts, tasks_run_in_the_mode_of_the_caller) {
   const float expected = sum_here();
   ASSERT_GT(expected, 1.0F);
   static_cast<void>(play(GetParam(), execution));
-  // Only the structure for few objects has no work to share.
+  // Only NSquared has no work to distribute.
   EXPECT_TRUE(!host.sums.empty() || GetParam() == "NSquared");
   for (const float sum : host.sums) EXPECT_EQ(sum, expected);
   EXPECT_EQ(sum_here(), expected);

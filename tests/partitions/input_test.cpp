@@ -153,11 +153,11 @@ TEST_P(Input, entries_may_select_from_columns_of_all) {
   std::vector<Aabb> boxes = uniform_boxes(700);
   for (const bool fat : {false, true}) {
     Partition listed(structure_named(config().partition),
-                     {.execution = config().execution(), .margin = {fat ? 0.01F : 0.0F, 0.0F}});
+                     {.execution = config().execution(), .fat_margin = {fat ? 0.01F : 0.0F, 0.0F}});
     Partition masked(structure_named(config().partition),
-                     {.execution = config().execution(), .margin = {fat ? 0.01F : 0.0F, 0.0F}});
+                     {.execution = config().execution(), .fat_margin = {fat ? 0.01F : 0.0F, 0.0F}});
     Partition plain(structure_named(config().partition),
-                    {.execution = config().execution(), .margin = {fat ? 0.01F : 0.0F, 0.0F}});
+                    {.execution = config().execution(), .fat_margin = {fat ? 0.01F : 0.0F, 0.0F}});
     std::vector<Key> keys[3];
     Partition* const all[] = {&listed, &masked, &plain};
     for (std::size_t p = 0; p < 3; ++p) {
@@ -195,7 +195,8 @@ TEST_P(Input, entries_may_select_from_columns_of_all) {
         }
       }
     }
-    // Entries may be in any order; the last of repeated entries counts, which is equal here.
+    // Entries may be in any order. Entry 9 is listed twice; the last one counts, and both are
+    // equal.
     const std::vector<std::uint32_t> back{9, 3, 9, 1};
     EXPECT_EQ(listed.update(keys[0], boxes, IndexSubset::listed(back)), Status::ok);
   }
@@ -211,9 +212,9 @@ TEST_P(Input, object_given_twice_takes_its_last_box) {
   ASSERT_EQ(partition.insert(boxes, {}, keys), Status::ok);
   PairBuffer pairs;
   ASSERT_EQ(partition.self_pairs(pairs), Status::ok);
-  std::vector<Key> told = keys;
-  told[500] = keys[20];
-  ASSERT_EQ(partition.update(told, next), Status::ok);
+  std::vector<Key> with_repeat = keys;
+  with_repeat[500] = keys[20];
+  ASSERT_EQ(partition.update(with_repeat, next), Status::ok);
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     Aabb box;
     ASSERT_EQ(partition.bounds(keys[i], box), Status::ok);
@@ -229,9 +230,9 @@ TEST_P(Input, runs_of_entries_in_any_order_are_right) {
   for (const float margin : {0.0F, 0.01F}) {
     for (std::size_t runs = 1; runs <= std::size(kRuns); ++runs) {
       Partition listed(structure_named(config().partition),
-                       {.execution = config().execution(), .margin = {margin, 0.0F}});
+                       {.execution = config().execution(), .fat_margin = {margin, 0.0F}});
       Partition plain(structure_named(config().partition),
-                      {.execution = config().execution(), .margin = {margin, 0.0F}});
+                      {.execution = config().execution(), .fat_margin = {margin, 0.0F}});
       std::vector<Key> keys[2]{std::vector<Key>(700), std::vector<Key>(700)};
       ASSERT_EQ(listed.insert(boxes, {}, keys[0]), Status::ok);
       ASSERT_EQ(plain.insert(boxes, {}, keys[1]), Status::ok);

@@ -17,20 +17,20 @@ constexpr std::size_t kObjects = 20000;
 
 /// Two partitions with the same objects: one gets batches, the other single calls.
 struct PartitionAndReference {
-  Partition together;
-  Partition alone;
+  Partition batched;
+  Partition single;
   std::vector<Key> keys;
   std::vector<Key> other_keys;
 
   explicit PartitionAndReference(const PartitionOptions& options)
-      : together(bounds_n_squared(), options), alone(bounds_n_squared(), options) {}
+      : batched(bounds_n_squared(), options), single(bounds_n_squared(), options) {}
 
   void insert(const BoxView& boxes) {
     keys.resize(boxes.count);
     other_keys.resize(boxes.count);
-    ASSERT_EQ(together.insert(boxes, {}, keys), Status::ok);
+    ASSERT_EQ(batched.insert(boxes, {}, keys), Status::ok);
     for (std::size_t i = 0; i < boxes.count; ++i) {
-      ASSERT_EQ(alone.insert(boxes[i], 0, other_keys[i]), Status::ok);
+      ASSERT_EQ(single.insert(boxes[i], 0, other_keys[i]), Status::ok);
     }
   }
 
@@ -41,16 +41,16 @@ struct PartitionAndReference {
     for (const std::size_t i : which) {
       some.push_back(keys[i]);
       their.push_back(boxes[i]);
-      ASSERT_EQ(alone.update(other_keys[i], boxes[i]), Status::ok);
+      ASSERT_EQ(single.update(other_keys[i], boxes[i]), Status::ok);
     }
-    ASSERT_EQ(together.update(some, their), Status::ok);
+    ASSERT_EQ(batched.update(some, their), Status::ok);
   }
 
   void expect_alike() const {
     std::vector<Aabb> boxes(keys.size());
     std::vector<Aabb> others(keys.size());
-    ASSERT_EQ(together.bounds(keys, boxes), Status::ok);
-    ASSERT_EQ(alone.bounds(other_keys, others), Status::ok);
+    ASSERT_EQ(batched.bounds(keys, boxes), Status::ok);
+    ASSERT_EQ(single.bounds(other_keys, others), Status::ok);
     EXPECT_TRUE(std::ranges::equal(boxes, others));
   }
 };
@@ -61,7 +61,7 @@ std::vector<PartitionOptions> all_options() {
     for (const float margin : {0.0F, 0.05F}) {
       PartitionOptions& options = all.emplace_back();
       options.volume = volume;
-      options.margin.distance = margin;
+      options.fat_margin.distance = margin;
     }
   }
   return all;
@@ -77,9 +77,9 @@ TEST(LargeInput, batch_insert_equals_single_inserts) {
   for (const PartitionOptions& options : all_options()) {
     for (const BoxView& view :
          {BoxView(boxes), BoxView({at(0), at(1), at(2)}, {at(3), at(4), at(5)}, kObjects)}) {
-      PartitionAndReference twins(options);
-      ASSERT_NO_FATAL_FAILURE(twins.insert(view));
-      twins.expect_alike();
+      PartitionAndReference partitions(options);
+      ASSERT_NO_FATAL_FAILURE(partitions.insert(view));
+      partitions.expect_alike();
     }
   }
 }
@@ -87,8 +87,8 @@ TEST(LargeInput, batch_insert_equals_single_inserts) {
 TEST(LargeInput, batch_update_equals_single_updates) {
   std::vector<Aabb> boxes = uniform_boxes(kObjects);
   for (const PartitionOptions& options : all_options()) {
-    PartitionAndReference twins(options);
-    ASSERT_NO_FATAL_FAILURE(twins.insert(boxes));
+    PartitionAndReference partitions(options);
+    ASSERT_NO_FATAL_FAILURE(partitions.insert(boxes));
     std::uint64_t seed = 2;
     const auto update = [&](std::vector<std::size_t> which, const char* what) {
       SCOPED_TRACE(what);
@@ -98,8 +98,8 @@ TEST(LargeInput, batch_update_equals_single_updates) {
         if (i % 3 == 0) boxes[i] = next[i];
         boxes[i].max[0] += 0.01F;
       }
-      ASSERT_NO_FATAL_FAILURE(twins.update(which, boxes));
-      twins.expect_alike();
+      ASSERT_NO_FATAL_FAILURE(partitions.update(which, boxes));
+      partitions.expect_alike();
     };
     std::vector<std::size_t> which(kObjects);
     for (std::size_t i = 0; i < kObjects; ++i) which[i] = i;
@@ -123,20 +123,20 @@ TEST(LargeInput, batch_update_equals_single_updates) {
 TEST(LargeInput, one_invalid_box_changes_nothing) {
   const std::vector<Aabb> boxes = uniform_boxes(kObjects);
   for (const PartitionOptions& options : all_options()) {
-    PartitionAndReference twins(options);
-    ASSERT_NO_FATAL_FAILURE(twins.insert(boxes));
+    PartitionAndReference partitions(options);
+    ASSERT_NO_FATAL_FAILURE(partitions.insert(boxes));
     for (const std::size_t bad : {std::size_t{0}, std::size_t{10001}, kObjects - 1}) {
       std::vector<Aabb> next = uniform_boxes(kObjects, 2);
       next[bad].max[1] = std::numeric_limits<float>::quiet_NaN();
-      EXPECT_EQ(twins.together.update(twins.keys, next), Status::invalid_bounds);
+      EXPECT_EQ(partitions.batched.update(partitions.keys, next), Status::invalid_bounds);
       std::vector<Key> keys(kObjects);
-      EXPECT_EQ(twins.together.insert(next, {}, keys), Status::invalid_bounds);
+      EXPECT_EQ(partitions.batched.insert(next, {}, keys), Status::invalid_bounds);
       next[bad].max[1] = next[bad].min[1];
-      keys = twins.keys;
+      keys = partitions.keys;
       keys[bad] = Key{};
-      EXPECT_EQ(twins.together.update(keys, next), Status::invalid_key);
+      EXPECT_EQ(partitions.batched.update(keys, next), Status::invalid_key);
     }
-    twins.expect_alike();
+    partitions.expect_alike();
   }
 }
 

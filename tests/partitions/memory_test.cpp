@@ -172,25 +172,25 @@ TEST_P(Memory, events_within_the_reserve_do_not_allocate) {
   CountingMemory results;
   PairBuffer buffer(&results);
   PairEvents events(PairEventsOptions{&results, true});
-  PairEvents alone(&results);
+  PairEvents events_only(&results);
   ASSERT_EQ(world.partition().reserve(kObjects), Status::ok);
   ASSERT_EQ(world.partition().reserve_pairs(buffer, kPairs), Status::ok);
   ASSERT_EQ(world.partition().reserve_events(events, kPairs), Status::ok);
-  ASSERT_EQ(world.partition().reserve_events(alone, kPairs, true), Status::ok);
+  ASSERT_EQ(world.partition().reserve_events(events_only, kPairs, true), Status::ok);
   const std::size_t requests = results.requests();
   std::vector<Aabb> boxes = uniform_boxes(kObjects);
   const std::vector<Key> keys = world.insert(boxes);
-  std::size_t told = 0;
+  std::size_t reported = 0;
   for (int frame = 0; frame < 6; ++frame) {
     // Alternately spread boxes, and all boxes at one place.
     const std::vector<Aabb> next = frame % 2 == 0 ? boxes : std::vector<Aabb>(kObjects, boxes[0]);
     ASSERT_EQ(world.partition().update(keys, next), Status::ok);
     ASSERT_EQ(world.partition().self_pairs(buffer, events), Status::ok);
-    ASSERT_EQ(world.partition().self_pairs(alone), Status::ok);
-    told += events.begun().size() + events.ended().size();
-    EXPECT_EQ(alone.begun().size(), events.begun().size()) << frame;
+    ASSERT_EQ(world.partition().self_pairs(events_only), Status::ok);
+    reported += events.begun().size() + events.ended().size();
+    EXPECT_EQ(events_only.begun().size(), events.begun().size()) << frame;
   }
-  EXPECT_GE(told, kPairs);
+  EXPECT_GE(reported, kPairs);
   EXPECT_EQ(results.requests(), requests);
 }
 
@@ -270,8 +270,8 @@ TEST_P(Memory, reserve_suffices_for_any_placement_of_objects) {
   }
 }
 
-// Wrong values in the padding, or nodes and cells that were left behind, would show in a query that
-// has nothing to refresh.
+// Queries directly after `reserve`, without a refresh: they would be wrong if `reserve` did not
+// copy the nodes, the cells or the padding of the rows.
 TEST_P(Memory, reserve_keeps_the_content) {
   for (const Pages pages : {Pages::untouched, Pages::prefaulted}) {
     World world(config(), &memory_);
@@ -311,18 +311,18 @@ TEST_P(Memory, many_pairs_cause_few_requests_and_tests) {
   for (Aabb& box : boxes) as_eigen(box.max).array() += 4.0F;
   World world(config(), &memory_);
   world.insert(boxes);
-  std::atomic<std::size_t> asked{0};
+  std::atomic<std::size_t> calls{0};
   const auto count = [](void* context, ObjectId, ObjectId) {
     ++*static_cast<std::atomic<std::size_t>*>(context);
     return true;
   };
   CountingMemory results;
   PairBuffer buffer(&results);
-  ASSERT_EQ(world.self_pairs(buffer, {.predicate = {count, &asked}}), Status::ok);
+  ASSERT_EQ(world.self_pairs(buffer, {.predicate = {count, &calls}}), Status::ok);
   ASSERT_GT(buffer.size(), 150'000U);
   EXPECT_TRUE(world.has_pairs(buffer));
   EXPECT_LE(results.requests(), 20U);
-  EXPECT_LE(asked, 2 * buffer.size());
+  EXPECT_LE(calls, 2 * buffer.size());
 }
 
 // All boxes overlap each other: pairs that a predicate rejects take no memory, however many there
@@ -334,16 +334,16 @@ TEST_P(Memory, pair_memory_follows_the_accepted_pairs) {
   const std::vector<Aabb> boxes(kObjects, Aabb{{0, 0, 0}, {1, 1, 1}});
   world.insert(boxes);
   constexpr std::size_t kAll = kObjects * (kObjects - 1) / 2;
-  for (const ObjectId wanted : {ObjectId{kObjects}, ObjectId{7}}) {
-    std::atomic<std::size_t> asked{0};
+  for (const ObjectId accepted : {ObjectId{kObjects}, ObjectId{7}}) {
+    std::atomic<std::size_t> calls{0};
     struct Context {
-      ObjectId wanted;
-      std::atomic<std::size_t>& asked;
-    } context{wanted, asked};
+      ObjectId accepted;
+      std::atomic<std::size_t>& calls;
+    } context{accepted, calls};
     const auto accept = [](void* c, ObjectId first, ObjectId second) {
       const auto& it = *static_cast<Context*>(c);
-      it.asked.fetch_add(1, std::memory_order_relaxed);
-      return first == it.wanted || second == it.wanted;
+      it.calls.fetch_add(1, std::memory_order_relaxed);
+      return first == it.accepted || second == it.accepted;
     };
     CountingMemory results;
     results.refuse_beyond(kAll * sizeof(Pair) / 3);
@@ -351,10 +351,11 @@ TEST_P(Memory, pair_memory_follows_the_accepted_pairs) {
     ASSERT_EQ(
         world.self_pairs(buffer, {.order = Order::canonical, .predicate = {accept, &context}}),
         Status::ok);
-    EXPECT_EQ(asked, kAll);
+    EXPECT_EQ(calls, kAll);
     std::vector<Pair> truth;
-    for (ObjectId other = 0; wanted < kObjects && other < kObjects; ++other) {
-      if (other != wanted) truth.push_back({std::min(wanted, other), std::max(wanted, other)});
+    for (ObjectId other = 0; accepted < kObjects && other < kObjects; ++other) {
+      if (other != accepted)
+        truth.push_back({std::min(accepted, other), std::max(accepted, other)});
     }
     EXPECT_EQ(std::vector<Pair>(buffer.begin(), buffer.end()), truth);
   }
@@ -367,7 +368,7 @@ TEST_P(Memory, overlap_memory_follows_the_accepted_pairs) {
   World world(config());
   const std::vector<Aabb> boxes(kObjects, Aabb{{0, 0, 0}, {1, 1, 1}});
   const std::vector<Key> keys = world.insert(boxes);
-  Key wanted = keys[11];
+  Key accepted = keys[11];
   const auto accept = [](void* context, Key key, ClientData) {
     return key == *static_cast<const Key*>(context);
   };
@@ -375,12 +376,12 @@ TEST_P(Memory, overlap_memory_follows_the_accepted_pairs) {
   results.refuse_beyond(kObjects * kObjects * sizeof(Pair) / 3);
   PairBuffer buffer(&results);
   const Status status = world.threads().run([&] {
-    return world.partition().overlap(BoxView(boxes), buffer, {.predicate = {accept, &wanted}});
+    return world.partition().overlap(BoxView(boxes), buffer, {.predicate = {accept, &accepted}});
   });
   ASSERT_EQ(status, Status::ok);
   ASSERT_EQ(buffer.size(), kObjects);
   for (std::size_t i = 0; i < kObjects; ++i) {
-    EXPECT_EQ(buffer[i], (Pair{static_cast<ObjectId>(i), wanted.id}));
+    EXPECT_EQ(buffer[i], (Pair{static_cast<ObjectId>(i), accepted.id}));
   }
 }
 
@@ -402,7 +403,7 @@ TEST_P(Memory, only_the_calling_thread_allocates) {
   EXPECT_EQ(results.requests_from_elsewhere(), 0U);
 }
 
-// Repeats a few frames, as a scene at rest or in steady flow does.
+// Repeats four frames, as a scene at rest or in steady flow does.
 class SteadyFrames : public Memory {
  protected:
   void expect_no_requests(Motion motion, std::size_t count, const PairOptions& options) {
@@ -429,7 +430,8 @@ class SteadyFrames : public Memory {
     EXPECT_EQ(memory_.requests(), structure);
     EXPECT_EQ(results.requests(), pairs);
     if (config().threads == 1) {
-      // The model of World does not allocate in updates either; TBB has its own small heap.
+      // The model of World does not allocate in updates either. Several threads are left out,
+      // because oneTBB allocates.
       EXPECT_EQ(heap_requests(), heap) << "allocated behind the memory resource";
     }
   }

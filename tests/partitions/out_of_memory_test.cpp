@@ -17,8 +17,9 @@ class OutOfMemory : public Conformance {
   OutOfMemory() : world_(config(), &memory_) {}
   void SetUp() override { WINNOW_TEST_NEEDS_EXCEPTIONS(); }
 
-  // Calls with the n-th request refused, for n = 0, 1, ..., until a call makes fewer than n. A call
-  // may also succeed with less than it requested. `prepare` ensures that the call has work to do.
+  // Repeats `call` while request k is refused, only this request or also all later ones, for k = 0,
+  // 1, ..., until no request is refused. A call may also succeed with less memory than it
+  // requested. `prepare` ensures that the call has work to do.
   void refuse_each_request(const std::function<void()>& prepare,
                            const std::function<Status()>& call,
                            const std::function<void()>& expect_intact) {
@@ -45,7 +46,7 @@ class OutOfMemory : public Conformance {
       ASSERT_NO_FATAL_FAILURE(expect_intact());
       ASSERT_EQ(world_.threads().run(call), Status::ok);
     }
-    FAIL() << "the call never stopped asking for memory";
+    FAIL() << "the call never stopped requesting memory";
   }
 
   void expect_intact() {
@@ -53,7 +54,7 @@ class OutOfMemory : public Conformance {
     EXPECT_EQ(world_.partition().footprint().total().reserved, memory_.outstanding());
   }
 
-  // Fills the partition and refreshes it, in no more memory than it needs.
+  // Releases all memory, fills the partition and refreshes it.
   void fill_anew(std::span<const Aabb> boxes) {
     world_.clear();
     world_.partition().release_memory();
@@ -69,8 +70,8 @@ TEST_P(OutOfMemory, refused_bulk_insert_changes_nothing) {
   const std::vector<Aabb> boxes = uniform_boxes(120);
   std::vector<Key> keys(boxes.size());
   world_.insert(boxes);
-  // Each successful insert is undone, so that the model stays right; releasing the memory forces
-  // growth.
+  // Each successful insert is undone, so that the model stays right. The memory is released first,
+  // so that the insert must allocate.
   refuse_each_request(
       [&] {
         world_.clear();
@@ -117,7 +118,7 @@ TEST_P(OutOfMemory, refused_reserve_changes_nothing) {
                       [&] { return world_.partition().reserve(1000, Pages::prefaulted); },
                       [&] {
                         expect_intact();
-                        // There is nothing to refresh.
+                        // This query needs no refresh: it reads what the refused call left.
                         ASSERT_TRUE(world_.agrees());
                       });
   EXPECT_TRUE(world_.agrees());

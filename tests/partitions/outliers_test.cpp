@@ -29,7 +29,7 @@ std::vector<std::size_t> jump(std::vector<Aabb>& boxes, double share, Random& ra
   return jumped;
 }
 
-TEST(Strays, stray_costs_its_block_no_tests) {
+TEST(Outliers, outlier_costs_its_block_no_tests) {
   std::vector<Aabb> boxes = uniform_boxes(8000);
   Partition partition(linear_bvh());
   std::vector<Key> keys(boxes.size());
@@ -48,9 +48,9 @@ TEST(Strays, stray_costs_its_block_no_tests) {
   EXPECT_LT(partition.statistics().builds, 6U);
 }
 
-// Blocks of large objects are wide although no object has jumped, and are no longer wide after the
-// objects have become small.
-TEST(Strays, strays_are_found_after_blocks_were_wide) {
+// Blocks of large objects are wide although no object has jumped. After the objects have become
+// small, objects that jump must be found again.
+TEST(Outliers, outliers_are_found_after_blocks_were_wide) {
   constexpr std::size_t kObjects = 8000;
   constexpr std::size_t kLarge = 200;
   const std::vector<Aabb> small = uniform_boxes(kObjects);
@@ -82,9 +82,9 @@ TEST(Strays, strays_are_found_after_blocks_were_wide) {
   EXPECT_EQ(partition.statistics().builds, builds);
 }
 
-class StrayObjects : public Conformance {};
+class OutlierObjects : public Conformance {};
 
-TEST_P(StrayObjects, strays_miss_no_pair) {
+TEST_P(OutlierObjects, outliers_miss_no_pair) {
   for (const double share : {0.002, 0.02, 0.2}) {
     std::vector<Aabb> boxes = mixed_boxes(scaled(900));
     boxes[3].max = Vec3f::constant(std::numeric_limits<float>::infinity());
@@ -165,7 +165,7 @@ TEST_P(Newcomers, newcomers_miss_no_pair) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Newcomers, testing::ValuesIn(all_configs()));
-INSTANTIATE_TEST_SUITE_P(All, StrayObjects, testing::ValuesIn(all_configs()));
+INSTANTIATE_TEST_SUITE_P(All, OutlierObjects, testing::ValuesIn(all_configs()));
 INSTANTIATE_TEST_SUITE_P(All, Leavers, testing::ValuesIn(grids()));
 
 }  // namespace

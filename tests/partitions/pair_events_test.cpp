@@ -140,8 +140,8 @@ PairOptions options_of(std::uint64_t choice) {
 
 class Events : public Conformance {
  protected:
-  [[nodiscard]] std::size_t scene_size(std::size_t wanted) const {
-    return config().make().is_exact() ? wanted : std::min<std::size_t>(wanted, 60);
+  [[nodiscard]] std::size_t scene_size(std::size_t requested) const {
+    return config().make().is_exact() ? requested : std::min<std::size_t>(requested, 60);
   }
 };
 
@@ -212,13 +212,13 @@ TEST_P(Events, events_follow_any_sequence_of_calls) {
 }
 #endif
 
-// So few objects change that the buffer is updated through its links (linked_pairs.h); the pairs of
-// all other objects stay in place.
+// Few objects change in each frame. The buffer is then updated through its links (linked_pairs.h),
+// and the pairs of all other objects stay in place.
 TEST_P(Events, events_follow_few_objects_among_many) {
   for (const std::uint64_t stream : {1U, 2U, 3U}) {
     World world(config());
     Frames frames(world);
-    PairEvents alone;
+    PairEvents events_only;
     Random random(stream);
     std::vector<Aabb> boxes = stream == 1   ? uniform_boxes(scene_size(500))
                               : stream == 2 ? mixed_boxes(scene_size(200))
@@ -271,7 +271,7 @@ TEST_P(Events, events_without_a_buffer_are_equal) {
   const std::vector<Key> same_keys = without.insert(boxes);
   PairBuffer buffer;
   PairEvents events;
-  PairEvents alone;
+  PairEvents events_only;
   Random random(4);
   for (int frame = 0; frame < 20; ++frame) {
     if (frame % 7 == 6) {
@@ -287,12 +287,12 @@ TEST_P(Events, events_without_a_buffer_are_equal) {
     }
     ASSERT_EQ(with.threads().run([&] { return with.partition().self_pairs(buffer, events); }),
               Status::ok);
-    ASSERT_EQ(without.threads().run([&] { return without.partition().self_pairs(alone); }),
+    ASSERT_EQ(without.threads().run([&] { return without.partition().self_pairs(events_only); }),
               Status::ok);
     const auto ids = [](const KeyPair& pair) { return Ids{pair.first.id, pair.second.id}; };
-    EXPECT_TRUE(std::ranges::equal(events.begun(), alone.begun(), {}, ids, ids)) << frame;
-    EXPECT_TRUE(std::ranges::equal(events.ended(), alone.ended(), {}, ids, ids)) << frame;
-    EXPECT_EQ(events.persisting(), alone.persisting());
+    EXPECT_TRUE(std::ranges::equal(events.begun(), events_only.begun(), {}, ids, ids)) << frame;
+    EXPECT_TRUE(std::ranges::equal(events.ended(), events_only.ended(), {}, ids, ids)) << frame;
+    EXPECT_EQ(events.persisting(), events_only.persisting());
   }
 }
 
@@ -385,17 +385,17 @@ TEST_P(Events, ended_pairs_have_the_client_data) {
 
 TEST_P(Events, client_data_memory_is_taken_only_on_request) {
   World world(config());
-  World twin(config());
+  World reference(config());
   std::vector<Aabb> boxes = uniform_boxes(scene_size(300));
   const std::vector<ClientData> data = random_data(boxes.size(), 5);
   const std::vector<Key> keys = world.insert(boxes, data);
-  const std::vector<Key> reference_keys = twin.insert(boxes, data);
+  const std::vector<Key> reference_keys = reference.insert(boxes, data);
   PairEvents without;
   PairEvents with({.memory = std::pmr::get_default_resource(), .client_data = true});
   Random random(2);
   for (const Motion motion : {Motion::much, Motion::few, Motion::few}) {
     ASSERT_EQ(world.partition().self_pairs(without), Status::ok);
-    ASSERT_EQ(twin.partition().self_pairs(with), Status::ok);
+    ASSERT_EQ(reference.partition().self_pairs(with), Status::ok);
     EXPECT_TRUE(without.begun_data().empty() && without.ended_data().empty());
     static_assert(sizeof(ClientDataPair) == sizeof(KeyPair));
     EXPECT_EQ(with.footprint().results.used, 2 * without.footprint().results.used);
@@ -403,7 +403,7 @@ TEST_P(Events, client_data_memory_is_taken_only_on_request) {
               without.footprint().scratch.used + boxes.size() * sizeof(ClientData));
     move(motion, boxes, random);
     world.update(keys, boxes);
-    twin.update(reference_keys, boxes);
+    reference.update(reference_keys, boxes);
   }
 }
 
@@ -514,15 +514,15 @@ TEST_P(Events, events_respect_the_predicate) {
       }),
                 Status::ok);
       ASSERT_EQ(world.self_pairs(all, {.incremental = false}), Status::ok);
-      std::vector<Pair> wanted;
-      std::ranges::copy_if(all, std::back_inserter(wanted), [&](const Pair& pair) {
+      std::vector<Pair> expected;
+      std::ranges::copy_if(all, std::back_inserter(expected), [&](const Pair& pair) {
         return accept(nullptr, pair.first, pair.second);
       });
-      ASSERT_EQ(wanted.size(), some.size());
-      std::ranges::sort(wanted);
+      ASSERT_EQ(expected.size(), some.size());
+      std::ranges::sort(expected);
       std::vector<Pair> got(some.begin(), some.end());
       std::ranges::sort(got);
-      EXPECT_EQ(got, wanted);
+      EXPECT_EQ(got, expected);
     }
   }
   ASSERT_EQ(world.pairs_with(world.partition(), all), Status::ok);

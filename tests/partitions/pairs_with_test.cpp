@@ -39,7 +39,7 @@ TEST_P(PairsWith, pairs_with_every_other_structure_are_right) {
     other.insert(mixed_boxes(200, 2));
     EXPECT_TRUE(agree(mine, other, buffer)) << name;
     EXPECT_TRUE(agree(mine, other, buffer, Order::canonical)) << name;
-    EXPECT_TRUE(agree(other, mine, buffer)) << name << " asked";
+    EXPECT_TRUE(agree(other, mine, buffer)) << name << " reversed";
   }
 }
 
@@ -54,7 +54,8 @@ TEST_P(PairsWith, pairs_with_an_empty_partition_are_none) {
   EXPECT_TRUE(buffer.empty());
 }
 
-// Tests all ordered pairs: every object with itself, and every other pair in both orders.
+// The pairs of a partition with itself: every object with itself, and every other pair in both
+// orders.
 TEST_P(PairsWith, pairs_with_itself_are_all_ordered_pairs) {
   World world(config());
   world.insert(uniform_boxes(300));

@@ -52,7 +52,7 @@ class Drift {
 
 class PlannedBuilds : public Conformance {
  protected:
-  // A budget that gives each stage of a plan its own refresh.
+  // Returns the configuration with this build budget.
   [[nodiscard]] Config config_with(std::size_t budget) const {
     Config config = GetParam();
     config.build_budget = budget;
@@ -77,7 +77,7 @@ TEST(PlannedBuild, refresh_without_a_query_does_not_advance_plans) {
     drift.go_on();
     ASSERT_EQ(partitions[0].update(keys, drift.boxes), Status::ok);
     ASSERT_EQ(partitions[1].update(others, drift.boxes), Status::ok);
-    // A few objects move again.
+    // Refreshes before the query, then updates some objects again.
     ASSERT_EQ(partitions[1].refresh(), Status::ok);
     const std::size_t few = 40;
     ASSERT_EQ(partitions[1].update(std::span(others).first(few),
@@ -104,7 +104,7 @@ TEST(PlannedBuild, planned_order_is_taken_before_it_is_due) {
     }
     const Statistics statistics = partition.statistics();
     EXPECT_GE(statistics.planned_builds, 2U) << name;
-    // All builds but the first are planned.
+    // At most two builds are not planned.
     EXPECT_GE(statistics.planned_builds + 2, statistics.builds) << name;
     EXPECT_LT(most_irregular, drift.boxes.size() / 16 + 64) << name;
   }
@@ -176,7 +176,7 @@ TEST(PlannedBuild, planned_order_uses_positions_after_jumps) {
     ASSERT_EQ(partition.refresh(), Status::ok);
     const Statistics now = partition.statistics();
     ASSERT_EQ(now.levels, 2U);
-    // Objects that jumped in the last two frames came too late.
+    // The plan did not contain objects that jumped in the last two frames.
     if (now.planned_builds > planned) {
       EXPECT_LE(now.irregular, 2 * kJumpsEach) << "frame " << frame;
     }
@@ -219,15 +219,15 @@ TEST_P(PlannedBuilds, drift_during_a_plan_misses_no_pair) {
 TEST_P(PlannedBuilds, different_movers_in_each_frame_miss_no_pair) {
   Drift drift(uniform_boxes(count()), 0.1F);
   World world(config_with(count()));
-  std::vector<Aabb> told = drift.boxes;
-  const std::vector<Key> keys = world.insert(told);
+  std::vector<Aabb> given = drift.boxes;
+  const std::vector<Key> keys = world.insert(given);
   constexpr std::size_t kTurns = 6;
   PairBuffer buffer;
   for (std::size_t frame = 0; frame < 2 * kFrames; ++frame) {
     drift.go_on();
     for (std::size_t i = frame % kTurns; i < keys.size(); i += kTurns) {
-      told[i] = drift.boxes[i];
-      world.update(keys[i], told[i]);
+      given[i] = drift.boxes[i];
+      world.update(keys[i], given[i]);
     }
     ASSERT_TRUE(world.agrees(buffer)) << "frame " << frame;
   }
@@ -266,7 +266,6 @@ TEST_P(PlannedBuilds, arrivals_and_jumps_during_plans_miss_no_pair) {
   }
 }
 
-// Rows of a plan may move completely.
 TEST_P(PlannedBuilds, plan_is_dropped_if_all_rows_change) {
   Drift drift(uniform_boxes(count()), 0.02F);
   World world(config_with(1));
@@ -290,19 +289,19 @@ TEST_P(PlannedBuilds, plan_is_dropped_if_all_rows_change) {
 TEST_P(PlannedBuilds, pair_order_is_equal_on_one_thread) {
   Drift drift(clustered_boxes(count()), 0.02F);
   World world(config_with(0));
-  Config alone = config_with(0);
-  alone.threads = 1;
-  World twin(alone);
+  Config one_thread = config_with(0);
+  one_thread.threads = 1;
+  World reference(one_thread);
   const std::vector<Key> keys = world.insert(drift.boxes);
-  const std::vector<Key> reference_keys = twin.insert(drift.boxes);
+  const std::vector<Key> reference_keys = reference.insert(drift.boxes);
   PairBuffer buffer;
   PairBuffer reference_buffer;
   for (int frame = 0; frame < kFrames; ++frame) {
     drift.go_on();
     world.update(keys, drift.boxes);
-    twin.update(reference_keys, drift.boxes);
+    reference.update(reference_keys, drift.boxes);
     ASSERT_EQ(world.self_pairs(buffer), Status::ok);
-    ASSERT_EQ(twin.self_pairs(reference_buffer), Status::ok);
+    ASSERT_EQ(reference.self_pairs(reference_buffer), Status::ok);
     ASSERT_TRUE(std::ranges::equal(buffer.pairs(), reference_buffer.pairs())) << "frame " << frame;
   }
 }

@@ -91,8 +91,8 @@ std::vector<Key> some_keys(const World& world, std::uint64_t choice, std::size_t
   return keys;
 }
 
-// Sometimes the default filter, or one that accepts no object; few layers and environments, so that
-// objects share them.
+// Returns the default filter, a filter that accepts no object, or a filter of few layers and
+// environments, so that objects share them.
 ObjectFilter some_filter(std::uint64_t choice) {
   if (choice % 5 == 0) return {};
   const auto bits = static_cast<std::uint32_t>(choice);
@@ -157,12 +157,12 @@ TEST_P(Sequences, any_call_sequence_agrees_with_the_model) {
     World world(config());
     World other(config());
     PairBuffer buffer;
-    World* told = &world;
+    World* current = &world;
     World* rest = &other;
     for (const Step& step : *rc::gen::container<std::vector<Step>>(steps())) {
-      take(step, *told, *rest, buffer);
-      RC_ASSERT(told->partition().size() == told->entries().size());
-      if (step.kind == Step::cross) std::swap(told, rest);
+      take(step, *current, *rest, buffer);
+      RC_ASSERT(current->partition().size() == current->entries().size());
+      if (step.kind == Step::cross) std::swap(current, rest);
     }
     RC_ASSERT(world.holds_its_objects());
     RC_ASSERT(world.agrees(buffer));

@@ -52,7 +52,7 @@ class RestingScenes : public Conformance {
     world_->update(keys, boxes);
   }
 
-  /// Returns a tiny box close to many others, all within the margin of large boxes.
+  /// Returns a tiny box close to many others, all within the skin of large boxes.
   [[nodiscard]] Aabb tiny_box() {
     const Vec3f at = Vec3f::constant(2.0F + 1e-4F * static_cast<float>(random_.uniform(0, 1)));
     return {at, at + Vec3f::constant(1e-6F)};
@@ -223,10 +223,10 @@ TEST_P(RestingScenes, every_query_reads_the_current_boxes) {
         break;
       }
       case 2: {
-        const std::vector<Aabb> asked = uniform_boxes(50, 3);
-        ASSERT_EQ(partition.overlap(BoxView(asked), second), Status::ok);
+        const std::vector<Aabb> query_boxes = uniform_boxes(50, 3);
+        ASSERT_EQ(partition.overlap(BoxView(query_boxes), second), Status::ok);
         EXPECT_TRUE(right_cross_pairs(second.pairs(),
-                                      cross_pairs(numbered(asked), world_->objects()), true));
+                                      cross_pairs(numbered(query_boxes), world_->objects()), true));
         break;
       }
       case 3: {
@@ -377,13 +377,13 @@ TEST_P(RestingScenes, events_after_a_refusal_cover_all_changes) {
     start(uniform_boxes(300));
     PairBuffer buffer(&results_);
     PairEvents events(&results_);
-    const auto ask = [&] {
+    const auto query = [&] {
       return world_->threads().run(
           [&] { return world_->partition().self_pairs(buffer, events, {}); });
     };
     for (int frame = 0; frame < 8; ++frame) {
       jitter_all(1e-5F);
-      ASSERT_EQ(ask(), Status::ok);
+      ASSERT_EQ(query(), Status::ok);
     }
     const std::vector<Pair> before = sorted(buffer);
     PairBuffer copy;
@@ -403,7 +403,7 @@ TEST_P(RestingScenes, events_after_a_refusal_cover_all_changes) {
     const std::size_t refusals = memory_.refusals() + results_.refusals();
     memory_.refuse_after(granted);
     results_.refuse_after(granted);
-    const Status status = ask();
+    const Status status = query();
     memory_.grant_all();
     results_.grant_all();
     was_refused = memory_.refusals() + results_.refusals() != refusals;
@@ -413,7 +413,7 @@ TEST_P(RestingScenes, events_after_a_refusal_cover_all_changes) {
     ASSERT_EQ(sorted(buffer), before);
     ASSERT_TRUE(world_->agrees(copy)) << granted;
     change();
-    ASSERT_EQ(ask(), Status::ok);
+    ASSERT_EQ(query(), Status::ok);
     ASSERT_TRUE(world_->has_pairs(buffer));
     const std::vector<Pair> now = sorted(buffer);
     std::vector<Pair> begun;
@@ -443,7 +443,7 @@ TEST_P(RestingScenes, steady_frames_do_not_allocate) {
   EXPECT_EQ(memory_.requests() + results_.requests(), requests);
 }
 
-// Frames do not allocate either if each has another query that needs the current rows.
+// Frames also do not allocate if each frame has another query, which needs the current rows.
 TEST_P(RestingScenes, steady_frames_with_queries_do_not_allocate) {
   start(uniform_boxes(kCount));
   PairBuffer buffer(&results_);

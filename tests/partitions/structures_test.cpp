@@ -72,12 +72,12 @@ TEST(Structures, exchange_updates_the_exactness_of_pairs) {
 TEST(Structures, exchange_keeps_keys_filters_pairs_and_events) {
   const Config config{"LinearBvh", active_isa(), 2};
   World world(config);
-  World twin(config);
+  World reference(config);
   std::vector<Aabb> boxes = mixed_boxes(400);
   const std::vector<Key> keys = world.insert(boxes);
-  const std::vector<Key> reference_keys = twin.insert(boxes);
+  const std::vector<Key> reference_keys = reference.insert(boxes);
   world.set_filter(keys[7], {.environment = 3});
-  twin.set_filter(reference_keys[7], {.environment = 3});
+  reference.set_filter(reference_keys[7], {.environment = 3});
   PairBuffer pairs;
   PairBuffer reference_pairs;
   PairEvents events;
@@ -91,9 +91,9 @@ TEST(Structures, exchange_keeps_keys_filters_pairs_and_events) {
         ASSERT_EQ(world.partition().set_structure(kind), Status::ok);
         (void)move(Motion::few, boxes, random);
         world.update(keys, boxes);
-        twin.update(reference_keys, boxes);
+        reference.update(reference_keys, boxes);
         ASSERT_EQ(world.partition().self_pairs(pairs, events, canonical), Status::ok);
-        ASSERT_EQ(twin.partition().self_pairs(reference_pairs, reference_events, canonical),
+        ASSERT_EQ(reference.partition().self_pairs(reference_pairs, reference_events, canonical),
                   Status::ok);
         ASSERT_EQ(pairs.size(), reference_pairs.size()) << from.name() << " to " << to.name();
         ASSERT_EQ(events.begun().size(), reference_events.begun().size());

@@ -72,7 +72,7 @@ TEST(AppendInOrder, one_row_over_the_limit_is_reported) {
   EXPECT_EQ(one_more.looked_at, one_more.units);
 }
 
-TEST(EvenStretches, stretches_are_even_for_eight_threads) {
+TEST(EvenRanges, ranges_are_even_for_eight_threads) {
   for (const std::size_t longest : {1U, 64U, 100U, 8192U, 16384U}) {
     for (const std::size_t count : {0U, 1U, 63U, 64U, 65U, 8193U, 16385U, 100000U, 1000003U}) {
       const std::size_t length = even_range_length(count, longest);

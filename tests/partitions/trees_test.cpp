@@ -82,14 +82,14 @@ TEST(LinearBvhOrder, order_needs_hardly_more_tests_than_static_order) {
   }
 }
 
-// Moves every object to the position of another one, `by` places further.
+// Moves every object to the position of the object `by` indices later.
 std::vector<Aabb> passed_on(const std::vector<Aabb>& boxes, std::size_t by) {
   std::vector<Aabb> next = boxes;
   std::rotate(next.begin(), next.begin() + static_cast<std::ptrdiff_t>(by), next.end());
   return next;
 }
 
-// After all objects have changed places, the order is split by cells, if cells separate the
+// After all objects have exchanged positions, the order is split by cells, if cells separate the
 // objects.
 TEST(LinearBvhOrder, torn_order_is_right_and_independent_of_threads) {
   constexpr std::size_t kObjects = 18000;  // more than fit into one set of tiles
@@ -129,7 +129,7 @@ std::vector<Aabb> boxes_and_dust(std::size_t count, std::size_t every) {
   return boxes;
 }
 
-// Samples of the rows must not contain only one of the kinds.
+// Large and tiny boxes alternate: samples of the rows must contain both.
 TEST(LinearBvhOrder, alternating_object_sizes_cost_no_more_tests) {
   const auto tests_of_torn = [](const std::vector<Aabb>& boxes) {
     Partition partition(linear_bvh(), {.execution = Execution::serial()});

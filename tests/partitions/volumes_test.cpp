@@ -101,7 +101,8 @@ TEST_P(Volumes, pairs_of_26_dops_are_right) {
   expect_right_kdops<26>();
 }
 
-// Every true pair must be reported, and otherwise only pairs with a gap below a millionth.
+// Every true pair must be reported. A false pair may have a gap of at most a millionth of the
+// distance of the centres.
 TEST_P(Volumes, pairs_of_spheres_are_right) {
   Threads threads(config().threads);
   for (const double scale : {1.0, 1e-12, 1e12}) {
@@ -152,8 +153,8 @@ TEST_P(Volumes, volumes_given_as_boxes_miss_no_box_pair) {
   }
 }
 
-// pairs_with compares boxes, whatever the volumes, and no structure that tests volumes misses a
-// pair.
+// pairs_with compares the stored boxes, whatever the volumes are. Only NSquared may report other
+// pairs, too.
 TEST_P(Volumes, pairs_of_two_partitions_compare_boxes) {
   Threads threads(config().threads);
   const std::vector<Aabb> boxes = mixed_boxes(300);
@@ -174,16 +175,17 @@ TEST_P(Volumes, pairs_of_two_partitions_compare_boxes) {
       }
     }
     PairBuffer buffer;
-    const auto ask = [&] {
+    const auto query = [&] {
       return partition.pairs_with(other, buffer, {.order = Order::canonical});
     };
-    ASSERT_EQ(threads.run(ask), Status::ok);
+    ASSERT_EQ(threads.run(query), Status::ok);
     const std::vector<Pair> got{buffer.begin(), buffer.end()};
     EXPECT_TRUE(right_cross_pairs(got, truth, config().partition != "NSquared"));
   }
 }
 
-// Queries only the moved objects; the partition of boxes compares boxes.
+// Later frames are incremental queries: they test only the moved objects. pairs_with compares
+// boxes.
 TEST_P(Volumes, moving_volumes_are_right_in_every_frame) {
   Threads threads(config().threads);
   std::vector<Aabb> boxes = uniform_boxes(700);

@@ -71,7 +71,7 @@ TEST_P(BoundedWork, infinite_boxes_need_few_tests) {
   expect_bounded(boxes);
 }
 
-// Points at few places: all overlaps must be reported, and hardly more pairs tested.
+// Points in groups of 20 at one position.
 TEST_P(BoundedWork, coincident_objects_need_few_tests) {
   std::vector<Aabb> boxes = uniform_boxes(kObjects);
   for (std::size_t i = 0; i < boxes.size(); ++i) {
@@ -122,7 +122,7 @@ TEST_P(Work, few_movers_need_under_half_the_tests) {
   EXPECT_LT(2 * few, world.partition().statistics().last_tests);
 }
 
-// Counters, never timings: the count of one instruction set and one thread holds for all.
+// Counters, not timings: the count is equal on every instruction set and number of threads.
 std::vector<Config> configs_without(std::initializer_list<std::string_view> names) {
   std::vector<Config> configs;
   for (const std::string_view name : structure_names()) {

@@ -217,47 +217,48 @@ void make_motion(Random& random, double size, double most_turn, RigidMotion& mot
 /// Returns motions that bring the bodies near each other at some time.
 MovingReference moving_reference(const ReferenceShapes& all, const ReferenceShape& a,
                                  const ReferenceShape& b, Random& random) {
-  MovingReference twins{all, {&a, &b}, {}};
-  for (RigidMotion& motion : twins.motion) {
-    make_motion(random, std::min(twins.size(), 5.0), 3.0, motion);
+  MovingReference reference{all, {&a, &b}, {}};
+  for (RigidMotion& motion : reference.motion) {
+    make_motion(random, std::min(reference.size(), 5.0), 3.0, motion);
   }
-  if (random.chance(0.4)) std::swap(twins.shape[0], twins.shape[1]);
+  if (random.chance(0.4)) std::swap(reference.shape[0], reference.shape[1]);
   if (random.chance(0.1)) {
-    for (RigidMotion& motion : twins.motion) motion.start.position[0] += 1e7;
+    for (RigidMotion& motion : reference.motion) motion.start.position[0] += 1e7;
   }
-  return twins;
+  return reference;
 }
 
 struct SingleImpact {
   ImpactResult result;
 
-  explicit SingleImpact(const MovingReference& twins) {
-    const ShapeId shapes[2] = {twins.shape[0]->shape, twins.shape[1]->shape};
+  explicit SingleImpact(const MovingReference& reference) {
+    const ShapeId shapes[2] = {reference.shape[0]->shape, reference.shape[1]->shape};
     constexpr BodyPair kPair[1] = {{0, 1}};
-    const ImpactOptions options{.tolerance = kTolerance, .composites = &twins.all.composites};
-    EXPECT_EQ(time_of_impact(twins.all.pool, {shapes, twins.motion}, kPair, options, result),
-              Status::ok);
+    const ImpactOptions options{.tolerance = kTolerance, .composites = &reference.all.composites};
+    EXPECT_EQ(
+        time_of_impact(reference.all.pool, {shapes, reference.motion}, kPair, options, result),
+        Status::ok);
     EXPECT_EQ(result.status(0), Status::ok);
   }
 };
 
-void check(const MovingReference& twins, std::size_t looks, std::size_t& unproved,
+void check(const MovingReference& reference, std::size_t max_samples, std::size_t& unproved,
            std::size_t& hits) {
-  const SingleImpact single(twins);
+  const SingleImpact single(reference);
   const ImpactResult& found = single.result;
   const double time = found.time()[0];
-  const double doubt = 1e-8 * std::min(twins.size(), 10.0);
-  const Before then =
-      before([&](double at) { return twins.distance(at); }, twins.speed(), doubt, time, looks);
-  EXPECT_NE(then, Before::met);
+  const double doubt = 1e-8 * std::min(reference.size(), 10.0);
+  const Before then = before([&](double at) { return reference.distance(at); }, reference.speed(),
+                             doubt, time, max_samples);
+  EXPECT_NE(then, Before::overlapping);
   unproved += then == Before::apart ? 0 : 1;
   if (!found.hits(0)) return;
   ++hits;
-  const DistanceAt at = twins.distance(time);
+  const DistanceAt at = reference.distance(time);
   EXPECT_NEAR(at.distance, found.gap()[0], at.error + found.error_bound()[0] + doubt);
-  EXPECT_LE(at.distance, kTolerance * twins.size() + doubt);
-  const auto& of_a = twins.shape[0]->parts;
-  const auto& of_b = twins.shape[1]->parts;
+  EXPECT_LE(at.distance, kTolerance * reference.size() + doubt);
+  const auto& of_a = reference.shape[0]->parts;
+  const auto& of_b = reference.shape[1]->parts;
   EXPECT_EQ(found.part_a()[0] == kWholeShape, of_a.size() == 1);
   EXPECT_EQ(found.part_b()[0] == kWholeShape, of_b.size() == 1);
 }
@@ -273,9 +274,9 @@ TEST(BodyImpact, composite_with_convex_is_never_late) {
     const std::size_t other =
         all.composite_count + random.below(all.shapes.size() - all.composite_count);
     SCOPED_TRACE(testing::Message() << n << ": " << composite << " " << other);
-    const MovingReference twins =
+    const MovingReference reference =
         moving_reference(all, all.shapes[composite], all.shapes[other], random);
-    check(twins, 200, unproved, hits);
+    check(reference, 200, unproved, hits);
   }
   EXPECT_LE(unproved, count / 4);
   EXPECT_GE(hits, count / 12);
@@ -306,7 +307,7 @@ TEST(BodyImpact, overlapping_parts_hit_at_zero_with_deepest_part) {
       {ball, Pose::at(-3, 0, 0)}, {ball, Pose::at(0, 0, 0)}, {ball, Pose::at(1, 0, 0)}};
   ASSERT_EQ(composites.add_compound(children, compound), Status::ok);
   const ShapeId shapes[2] = {compound, ball};
-  const RigidMotion motions[2] = {RigidMotion::standing(Pose::at(0, 0, 0)),
+  const RigidMotion motions[2] = {RigidMotion::stationary(Pose::at(0, 0, 0)),
                                   {Pose::at(2.5, 0, 0), {1, 0, 0}, {0, 0, 3}}};
   constexpr BodyPair kPairs[2] = {{0, 1}, {1, 0}};
   ImpactResult found;
@@ -358,7 +359,7 @@ TEST(BodyImpact, point_at_shared_edge_or_vertex_hits_mesh) {
   }
 }
 
-TEST(BodyImpact, swept_boxes_contain_whole_motion) {
+TEST(BodyImpact, moving_boxes_contain_whole_motion) {
   const ReferenceShapes all;
   const SubShapeQuery parts(all.pool, &all.composites);
   Random random(84);
@@ -382,7 +383,7 @@ TEST(BodyImpact, swept_boxes_contain_whole_motion) {
     const double first = random.unit();
     const double last = random.uniform(first, 1.0);
     const PreciseBox all_time = passage.box({first, last});
-    const BoxSweep sweep = passage.sweep({first, last});
+    const MovingBox moving_box = passage.moving_box({first, last});
     for (double t = 0.0; t <= 1.0; t += 0.125) {
       const double time = first + t * (last - first);
       const Pose at = frame.at(time);
@@ -392,7 +393,7 @@ TEST(BodyImpact, swept_boxes_contain_whole_motion) {
       Pose seen = motion.at(time);
       for (int i = 0; i < 3; ++i) seen.position[i] -= at.position[i];
       const Pose there = MovingReference::placed(inverse, seen);
-      const double share = sweep.max_t * t;
+      const double share = moving_box.max_t * t;
       for (const ReferencePart& part : shown) {
         const Pose placed = MovingReference::placed(there, part.pose);
         const PreciseBox box = parts.box(PlacedShape{part.shape, placed});
@@ -401,8 +402,8 @@ TEST(BodyImpact, swept_boxes_contain_whole_motion) {
           const double slack = 1e-6 * (1.0 + std::abs(box.max[i] - box.min[i]));
           EXPECT_LE(all_time.min[i], box.min[i] + slack);
           EXPECT_GE(all_time.max[i], box.max[i] - slack);
-          EXPECT_LE(sweep.min[i] + share * sweep.direction[i], box.min[i] + slack);
-          EXPECT_GE(sweep.max[i] + share * sweep.direction[i], box.max[i] - slack);
+          EXPECT_LE(moving_box.min[i] + share * moving_box.direction[i], box.min[i] + slack);
+          EXPECT_GE(moving_box.max[i] + share * moving_box.direction[i], box.max[i] - slack);
         }
       }
     }
@@ -418,10 +419,10 @@ TEST(BodyImpact, results_match_on_threads_and_bad_pairs_fail) {
   for (std::size_t n = 0; n < 200; ++n) {
     const ReferenceShape& a = all.shapes[random.below(all.composite_count)];
     const ReferenceShape& b = all.shapes[random.below(all.shapes.size() - 1)];
-    const MovingReference twins = moving_reference(all, a, b, random);
+    const MovingReference reference = moving_reference(all, a, b, random);
     for (int k = 0; k < 2; ++k) {
-      shapes.push_back(twins.shape[k]->shape);
-      motions.push_back(twins.motion[k]);
+      shapes.push_back(reference.shape[k]->shape);
+      motions.push_back(reference.motion[k]);
     }
     const auto first = static_cast<std::uint32_t>(2 * n);
     pairs.push_back({first, first + 1});

@@ -61,14 +61,14 @@ FlatAnswer flat_of(const SceneDistance& body) {
 
 /// Compares the answers of a cluster's rank with the answers of one scene.
 template <typename Answer>
-void expect_answers(const ClusterResults<Answer>& found, std::size_t question,
+void expect_answers(const ClusterResults<Answer>& found, std::size_t query,
                     const std::vector<FlatAnswer>& expected) {
-  ASSERT_GT(found.first.size(), question + 1);
+  ASSERT_GT(found.first.size(), query + 1);
   std::vector<FlatAnswer> flat;
-  for (std::size_t i = found.first[question]; i < found.first[question + 1]; ++i) {
+  for (std::size_t i = found.first[query]; i < found.first[query + 1]; ++i) {
     flat.push_back(flat_of(found.answers[i]));
   }
-  EXPECT_EQ(flat, expected) << "question " << question;
+  EXPECT_EQ(flat, expected) << "query " << query;
 }
 
 template <typename Answer>
@@ -90,18 +90,18 @@ ShapeRay random_ray(double size, Random& random) {
 }
 
 /// Distributes new queries over the ranks. Some ranks may have none.
-template <typename Question, typename Make>
-std::vector<std::vector<Question>> questions_of(std::uint32_t ranks, Random& random, Make&& make) {
-  std::vector<std::vector<Question>> all(ranks);
+template <typename Query, typename Make>
+std::vector<std::vector<Query>> queries_of(std::uint32_t ranks, Random& random, Make&& make) {
+  std::vector<std::vector<Query>> all(ranks);
   for (std::size_t i = 0; i < scaled(60); ++i) all[random.below(ranks)].push_back(make());
   return all;
 }
 
-template <typename Question>
-std::vector<ClusterQueryBatch<Question>> batches_of(const std::vector<std::vector<Question>>& all) {
-  std::vector<ClusterQueryBatch<Question>> batches;
-  for (const auto& questions : all) {
-    batches.push_back({questions, {}});
+template <typename Query>
+std::vector<ClusterQueryBatch<Query>> batches_of(const std::vector<std::vector<Query>>& all) {
+  std::vector<ClusterQueryBatch<Query>> batches;
+  for (const auto& queries : all) {
+    batches.push_back({queries, {}});
     if (batches.size() % 2 == 0) batches.back().filter = {.layers = 1, .mask = 2};
   }
   return batches;
@@ -130,7 +130,7 @@ TEST(ClusterRays, hits_match_one_scene) {
   for (const std::uint32_t ranks : {1U, 2U, 5U, 16U}) {
     ClusterQueryWorld world(ranks);
     Random random(20 + ranks);
-    const auto rays = questions_of<ShapeRay>(
+    const auto rays = queries_of<ShapeRay>(
         ranks, random, [&] { return random_ray(ClusterQueryWorld::kSize, random); });
     const auto batches = batches_of(rays);
     std::vector<Status> answers(ranks, Status::unsupported);
@@ -177,13 +177,13 @@ TEST(ClusterRays, tied_hits_return_least_name) {
   ClusterQueries queries(cluster);
   const ShapeRay ray{.origin = {0, 0.3, 0}, .direction = {1, 0, 0}, .max_t = 10};
   std::vector<ClusterQueryBatch<ShapeRay>> rays(4);
-  rays[2].questions = std::span(&ray, 1);
+  rays[2].queries = std::span(&ray, 1);
   ASSERT_EQ(queries.closest(rays, answers), Status::ok);
   ASSERT_EQ(queries.hits(2).answers.size(), 1U);
   EXPECT_EQ(queries.hits(2).answers[0].name, 3U);
   const NearestProbe probe{.point = {0, 0.3, 0}, .count = 2};
   std::vector<ClusterQueryBatch<NearestProbe>> probes(4);
-  probes[1].questions = std::span(&probe, 1);
+  probes[1].queries = std::span(&probe, 1);
   ASSERT_EQ(queries.nearest(probes, answers), Status::ok);
   ASSERT_EQ(queries.neighbours(1).answers.size(), 2U);
   EXPECT_EQ(queries.neighbours(1).answers[0].name, 3U);
@@ -194,7 +194,7 @@ TEST(ClusterOverlaps, overlaps_match_one_scene) {
   for (const std::uint32_t ranks : {1U, 3U, 16U}) {
     ClusterQueryWorld world(ranks);
     Random random(30 + ranks);
-    const auto probes = questions_of<ShapeProbe>(ranks, random, [&] {
+    const auto probes = queries_of<ShapeProbe>(ranks, random, [&] {
       const auto& from = random.chance(0.1) ? world.shapes_.ground : world.shapes_.movable;
       Pose pose;
       for (double& x : pose.position) x = random.uniform(0, ClusterQueryWorld::kSize);
@@ -222,7 +222,7 @@ TEST(ClusterNeighbours, neighbours_match_one_scene) {
   for (const std::uint32_t ranks : {1U, 3U, 16U}) {
     ClusterQueryWorld world(ranks);
     Random random(40 + ranks);
-    const auto probes = questions_of<NearestProbe>(ranks, random, [&] {
+    const auto probes = queries_of<NearestProbe>(ranks, random, [&] {
       NearestProbe probe{.count = random.below(6)};
       for (double& x : probe.point) x = random.uniform(-2, ClusterQueryWorld::kSize);
       if (random.chance(0.5)) probe.radius = random.uniform(0, 2);
@@ -252,8 +252,8 @@ TEST(ClusterQueryBatch, bad_queries_fail_only_on_their_rank) {
   const ShapeRay bad{.direction = {0, 0, 0}};
   const ShapeRay good{.origin = {3, 3, 9}, .direction = {0, 0, -1}, .max_t = 20};
   std::vector<ClusterQueryBatch<ShapeRay>> rays(3);
-  rays[0].questions = std::span(&bad, 1);
-  rays[1].questions = rays[2].questions = std::span(&good, 1);
+  rays[0].queries = std::span(&bad, 1);
+  rays[1].queries = rays[2].queries = std::span(&good, 1);
   rays[2].filter.predicate.accept = [](void*, Key, ClientData) { return true; };
   Status answers[3];
   ASSERT_EQ(queries.closest(rays, answers), Status::ok);
@@ -267,14 +267,14 @@ TEST(ClusterQueryBatch, bad_queries_fail_only_on_their_rank) {
   const ShapeProbe no_shape{};
   const ShapeProbe no_pose{world.shapes_.movable[0], Pose::at(NAN, 0, 0)};
   std::vector<ClusterQueryBatch<ShapeProbe>> probes(3);
-  probes[0].questions = std::span(&no_shape, 1);
-  probes[1].questions = std::span(&no_pose, 1);
+  probes[0].queries = std::span(&no_shape, 1);
+  probes[1].queries = std::span(&no_pose, 1);
   ASSERT_EQ(queries.overlap(probes, answers), Status::ok);
   EXPECT_EQ(answers[0], Status::invalid_key);
   EXPECT_EQ(answers[1], Status::invalid_pose);
   const NearestProbe behind{.radius = -1.0};
   std::vector<ClusterQueryBatch<NearestProbe>> points(3);
-  points[1].questions = std::span(&behind, 1);
+  points[1].queries = std::span(&behind, 1);
   ASSERT_EQ(queries.nearest(points, answers), Status::ok);
   EXPECT_EQ(answers[1], Status::invalid_argument);
   world.world_.check(ContactLevel::boolean);
@@ -291,7 +291,7 @@ TEST(ClusterSceneFaults, transport_failure_fails_every_later_call) {
                       .pose = Pose::at(random.uniform(0, 3), random.uniform(0, 3), 0)});
   }
   const BodyName ground_name = 99;
-  const BodyDefinition ground{.shape = shapes.ground[0], .motion = Motion::fixed};
+  const BodyDefinition ground{.shape = shapes.ground[0], .state = BodyState::fixed};
   const ShapeRay ray{};
   int fine = 0;
   for (int calls = 0; calls < 30; ++calls) {
@@ -301,7 +301,7 @@ TEST(ClusterSceneFaults, transport_failure_fails_every_later_call) {
     std::vector<ClusterSceneBatch> batches(3);
     batches[1] = {names, bodies};
     std::vector<ClusterQueryBatch<ShapeRay>> rays(3);
-    rays[2].questions = std::span(&ray, 1);
+    rays[2].queries = std::span(&ray, 1);
     Status answers[3];
     ClusterDigest digest;
     const std::span<const std::byte> nothing[3];

@@ -47,7 +47,7 @@ TEST(ClusterContacts, margin_and_reduction_match_one_scene) {
   const WorldShapes shapes;
   for (const std::uint32_t ranks : {2U, 7U}) {
     run_scene_frames(shapes, ranks, ContactLevel::manifold,
-                     {.scene = {.margin = 0.3, .contact_reduction = true}});
+                     {.scene = {.contact_margin = 0.3, .contact_reduction = true}});
   }
 }
 
@@ -223,9 +223,9 @@ TEST(ClusterSceneInput, bad_input_fails_only_on_its_rank) {
   const BodyDefinition good{.shape = shapes.movable[0], .pose = Pose::at(1, 1, 1)};
   const BodyDefinition bad_pose{.shape = shapes.movable[0], .pose = Pose::at(NAN, 1, 1)};
   const BodyDefinition bad_shape{};
-  const BodyDefinition asleep{.shape = shapes.movable[0], .motion = Motion::sleeping};
+  const BodyDefinition asleep{.shape = shapes.movable[0], .state = BodyState::sleeping};
   const BodyName there = world.bodies().begin()->first;
-  const std::uint32_t home = world.rank_of(there);
+  const std::uint32_t owner = world.rank_of(there);
   const BodyName fresh[] = {1, 2};
   const BodyName twice[] = {1, 1};
   const BodyName taken[] = {1, there};
@@ -249,14 +249,14 @@ TEST(ClusterSceneInput, bad_input_fails_only_on_its_rank) {
                            std::span(poses).first(1)),
               Status::invalid_key);
     EXPECT_EQ(cluster.remove(rank, fresh), Status::invalid_key);
-    if (rank == home) continue;
+    if (rank == owner) continue;
     EXPECT_EQ(cluster.remove(rank, std::span(&there, 1)), Status::invalid_key);
     Key foreign;
-    ASSERT_EQ(cluster.key_of(home, there, foreign), Status::ok);
+    ASSERT_EQ(cluster.key_of(owner, there, foreign), Status::ok);
     EXPECT_EQ(cluster.move(rank, std::span(&foreign, 1), std::span(poses).first(1)),
               Status::invalid_key);
   }
-  EXPECT_EQ(cluster.move(home, std::span(&there, 1), std::span(&bad_pose.pose, 1)),
+  EXPECT_EQ(cluster.move(owner, std::span(&there, 1), std::span(&bad_pose.pose, 1)),
             Status::invalid_pose);
   EXPECT_EQ(cluster.move(3, std::span(&there, 1), std::span(&good.pose, 1)),
             Status::invalid_argument);
@@ -278,9 +278,9 @@ TEST(ClusterSceneInput, removed_name_can_be_used_again) {
   const BodyDefinition bodies[] = {body, body};
   ASSERT_EQ(add_bodies_on(cluster, 0, names, bodies), Status::ok);
   ASSERT_EQ(cluster.collide(ContactLevel::boolean), Status::ok);
-  std::uint32_t home = 0;
-  while (cluster.size(home) == 0) ++home;
-  ASSERT_EQ(cluster.remove(home, std::span(names).first(1)), Status::ok);
+  std::uint32_t owner = 0;
+  while (cluster.size(owner) == 0) ++owner;
+  ASSERT_EQ(cluster.remove(owner, std::span(names).first(1)), Status::ok);
   ASSERT_EQ(add_bodies_on(cluster, 3, std::span(names).first(1), std::span(bodies).first(1)),
             Status::ok);
   ASSERT_EQ(cluster.collide(ContactLevel::boolean), Status::ok);
@@ -300,10 +300,10 @@ TEST(ClusterSceneInput, removed_name_can_be_used_again) {
 TEST(ClusterSceneInput, options_out_of_range_fail_every_call) {
   const WorldShapes shapes;
   LoopbackTransport transport(2);
-  for (const ClusterSceneOptions& options :
-       {ClusterSceneOptions{.scene = {.margin = -1.0}}, ClusterSceneOptions{.imbalance = 0.5},
-        ClusterSceneOptions{.scene = {.carry_over = 1.0}},
-        ClusterSceneOptions{.scene = {.warm_start = true}}}) {
+  for (const ClusterSceneOptions& options : {ClusterSceneOptions{.scene = {.contact_margin = -1.0}},
+                                             ClusterSceneOptions{.imbalance = 0.5},
+                                             ClusterSceneOptions{.scene = {.cache_tolerance = 1.0}},
+                                             ClusterSceneOptions{.scene = {.warm_start = true}}}) {
     ClusterScene cluster(transport, shapes.shapes, options);
     EXPECT_EQ(cluster.status(), Status::invalid_argument);
     EXPECT_EQ(cluster.collide(ContactLevel::pairs), Status::invalid_argument);

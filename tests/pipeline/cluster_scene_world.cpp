@@ -99,7 +99,7 @@ void ClusterSceneWorld::add_ground() {
   for (const ShapeId shape : shapes_.ground) {
     // Names include 0 and the greatest value.
     const BodyName name = (next_++ - 1) * 0x5555555555555555ULL;
-    BodyDefinition body{.shape = shape, .pose = Pose::at(0, 0, 0.5), .motion = Motion::fixed};
+    BodyDefinition body{.shape = shape, .pose = Pose::at(0, 0, 0.5), .state = BodyState::fixed};
     body.data = name;
     ground_[name] = body;
     names.push_back(name);
@@ -123,7 +123,7 @@ void ClusterSceneWorld::move_ground(Random& random) {
 
 BodyDefinition ClusterSceneWorld::make_body(const Pose& pose, Random& random) const {
   BodyDefinition body{.shape = shapes_.movable[random.below(shapes_.movable.size())], .pose = pose};
-  if (random.chance(0.1)) body.motion = Motion::fixed;
+  if (random.chance(0.1)) body.state = BodyState::fixed;
   if (random.chance(0.2)) body.filter = {.layers = 2, .mask = 1};
   return body;
 }
@@ -149,7 +149,7 @@ void ClusterSceneWorld::add_bodies(const std::vector<BodyDefinition>& bodies, Ra
     names[rank].push_back(name);
     of_rank[rank].push_back(body);
     bodies_[name] = body;
-    homes_[name] = rank;
+    owners_[name] = rank;
     fresh_.insert(name);
   }
   std::vector<ClusterSceneBatch> batches(ranks);
@@ -160,16 +160,16 @@ void ClusterSceneWorld::add_bodies(const std::vector<BodyDefinition>& bodies, Ra
 }
 
 void ClusterSceneWorld::move(double share, double step, Random& random) {
-  std::map<std::uint32_t, std::pair<std::vector<BodyName>, std::vector<Pose>>> told;
+  std::map<std::uint32_t, std::pair<std::vector<BodyName>, std::vector<Pose>>> moves;
   for (auto& [name, body] : bodies_) {
     if (!random.chance(share)) continue;
     for (double& x : body.pose.position) x += random.uniform(-step, step);
     body.pose.orientation[1] += 0.01;
-    auto& [names, poses] = told[rank_of(name)];
+    auto& [names, poses] = moves[rank_of(name)];
     names.push_back(name);
     poses.push_back(body.pose);
   }
-  for (const auto& [rank, bodies] : told) {
+  for (const auto& [rank, bodies] : moves) {
     ASSERT_EQ(cluster_->move(rank, bodies.first, bodies.second), Status::ok);
   }
 }
@@ -181,7 +181,7 @@ void ClusterSceneWorld::remove(std::size_t count, Random& random) {
     const BodyName name = one->first;
     ASSERT_EQ(cluster_->remove(rank_of(name), std::span(&name, 1)), Status::ok);
     bodies_.erase(one);
-    homes_.erase(name);
+    owners_.erase(name);
     fresh_.erase(name);
   }
 }
@@ -191,11 +191,11 @@ void ClusterSceneWorld::follow() {
   std::size_t bodies = 0;
   for (std::uint32_t rank = 0; rank < cluster_->ranks(); ++rank) {
     bodies += cluster_->size(rank);
-    for (const ClusterBody& body : cluster_->arrived(rank)) homes_[body.name] = rank;
+    for (const ClusterBody& body : cluster_->arrived(rank)) owners_[body.name] = rank;
   }
   ASSERT_EQ(bodies, bodies_.size());
-  ASSERT_EQ(homes_.size(), bodies_.size());
-  for (const auto& [name, rank] : homes_) {
+  ASSERT_EQ(owners_.size(), bodies_.size());
+  for (const auto& [name, rank] : owners_) {
     BodyDefinition body;
     ASSERT_EQ(cluster_->body(rank, name, body), Status::ok);
     ASSERT_EQ(body.data, name);
@@ -241,7 +241,7 @@ std::vector<FlatContact> ClusterSceneWorld::expected(ContactLevel level) const {
 void ClusterSceneWorld::check_events(const std::vector<FlatContact>& found) {
   std::set<PairOrder> still;
   std::set<std::pair<BodyName, BodyName>> expected;
-  std::multiset<std::pair<BodyName, BodyName>> told;
+  std::multiset<std::pair<BodyName, BodyName>> reported;
   for (const FlatContact& one : found) {
     if (one.persisted) still.insert(one.order());
   }
@@ -250,10 +250,10 @@ void ClusterSceneWorld::check_events(const std::vector<FlatContact>& found) {
   }
   for (std::uint32_t rank = 0; rank < cluster_->ranks(); ++rank) {
     for (const EndedContact& one : cluster_->contacts(rank).ended()) {
-      told.emplace(one.data_a, one.data_b);
+      reported.emplace(one.data_a, one.data_b);
     }
   }
-  EXPECT_TRUE(std::ranges::equal(told, expected));
+  EXPECT_TRUE(std::ranges::equal(reported, expected));
   touched_.clear();
   for (const FlatContact& one : found) touched_.insert(one.order());
   fresh_.clear();
@@ -303,7 +303,7 @@ void ClusterSceneWorld::restart(std::uint32_t ranks) {
   for (std::uint32_t rank = 0; rank < ranks; ++rank) {
     std::vector<ClusterBody> bodies(cluster_->size(rank));
     ASSERT_EQ(cluster_->bodies(rank, bodies), Status::ok);
-    for (const ClusterBody& body : bodies) homes_[body.name] = rank;
+    for (const ClusterBody& body : bodies) owners_[body.name] = rank;
   }
 }
 

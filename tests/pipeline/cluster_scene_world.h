@@ -64,7 +64,7 @@ class ClusterSceneWorld {
 
   [[nodiscard]] ClusterScene& cluster() { return *cluster_; }
   [[nodiscard]] const std::map<BodyName, BodyDefinition>& bodies() const { return bodies_; }
-  [[nodiscard]] std::uint32_t rank_of(BodyName name) const { return homes_.at(name); }
+  [[nodiscard]] std::uint32_t rank_of(BodyName name) const { return owners_.at(name); }
   [[nodiscard]] std::vector<std::vector<std::byte>> saved() const;
   /// Returns a scene of all bodies, added in the order of their names.
   [[nodiscard]] std::unique_ptr<Scene> one_scene() const;
@@ -85,7 +85,7 @@ class ClusterSceneWorld {
   std::unique_ptr<ClusterScene> cluster_;
   std::map<BodyName, BodyDefinition> bodies_;
   std::map<BodyName, BodyDefinition> ground_;
-  std::map<BodyName, std::uint32_t> homes_;
+  std::map<BodyName, std::uint32_t> owners_;
   std::set<BodyName> fresh_;
   std::set<PairOrder> touched_;
   BodyName next_ = 1;

@@ -156,7 +156,7 @@ TEST(ClusterInput, bad_input_fails_only_on_its_rank) {
   const Aabb good{Vec3f(0, 0, 0), Vec3f(9, 9, 9)};
   const Aabb bad{Vec3f(NAN, 0, 0), Vec3f(1, 1, 1)};
   const BodyName there = world.boxes().begin()->first;
-  const std::uint32_t home = world.rank_of(there);
+  const std::uint32_t owner = world.rank_of(there);
   const BodyName fresh[] = {1, 2};
   const BodyName twice[] = {1, 1};
   const BodyName taken[] = {1, there};
@@ -170,16 +170,16 @@ TEST(ClusterInput, bad_input_fails_only_on_its_rank) {
     EXPECT_EQ(cluster.move(rank, std::span<const BodyName>(fresh), std::span(boxes)),
               Status::invalid_key);
     EXPECT_EQ(cluster.remove(rank, fresh), Status::invalid_key);
-    if (rank == home) continue;
+    if (rank == owner) continue;
     EXPECT_EQ(cluster.remove(rank, std::span(&there, 1)), Status::invalid_key);
     const Key foreign = world.key_of(there);
     EXPECT_EQ(cluster.move(rank, std::span(&foreign, 1), std::span(&good, 1)), Status::invalid_key);
   }
-  EXPECT_EQ(cluster.move(home, std::span(&there, 1), std::span(&bad, 1)), Status::invalid_bounds);
+  EXPECT_EQ(cluster.move(owner, std::span(&there, 1), std::span(&bad, 1)), Status::invalid_bounds);
   const BodyName same[] = {there, there};
-  EXPECT_EQ(cluster.move(home, std::span<const BodyName>(same), std::span(boxes)),
+  EXPECT_EQ(cluster.move(owner, std::span<const BodyName>(same), std::span(boxes)),
             Status::invalid_key);
-  EXPECT_EQ(cluster.remove(home, same), Status::invalid_key);
+  EXPECT_EQ(cluster.remove(owner, same), Status::invalid_key);
   EXPECT_EQ(cluster.move(3, std::span(&there, 1), std::span(&good, 1)), Status::invalid_argument);
   Status answer{};
   EXPECT_EQ(cluster.add({}, std::span(&answer, 1)), Status::size_mismatch);
@@ -265,11 +265,11 @@ TEST(ClusterInput, name_removed_elsewhere_can_be_used_again) {
   world.add(uniform_boxes(40), random);
   world.check();
   const auto [name, box] = *world.boxes().begin();
-  const std::uint32_t home = world.rank_of(name);
+  const std::uint32_t owner = world.rank_of(name);
   Cluster& cluster = world.cluster();
-  ASSERT_EQ(cluster.remove(home, std::span(&name, 1)), Status::ok);
-  EXPECT_EQ(cluster.remove(home, std::span(&name, 1)), Status::invalid_key);
-  EXPECT_EQ(add_on(cluster, (home + 1) % 4, std::span(&name, 1), std::span(&box, 1)), Status::ok);
+  ASSERT_EQ(cluster.remove(owner, std::span(&name, 1)), Status::ok);
+  EXPECT_EQ(cluster.remove(owner, std::span(&name, 1)), Status::invalid_key);
+  EXPECT_EQ(add_on(cluster, (owner + 1) % 4, std::span(&name, 1), std::span(&box, 1)), Status::ok);
   ASSERT_EQ(cluster.self_pairs(Order::canonical), Status::ok);
   EXPECT_EQ(world.found_pairs(), world.true_pairs());
 }
@@ -344,10 +344,10 @@ TEST(ClusterRegions, box_overlaps_regions_of_its_points) {
     for (const Aabb& box : boxes) {
       std::vector<std::uint32_t> ranks;
       regions.ranks_of(box, ranks);
-      const std::set<std::uint32_t> met(ranks.begin(), ranks.end());
-      ASSERT_EQ(met.size(), ranks.size());
+      const std::set<std::uint32_t> overlapping(ranks.begin(), ranks.end());
+      ASSERT_EQ(overlapping.size(), ranks.size());
       for (std::uint32_t rank = 0; rank < transport.ranks(); ++rank) {
-        ASSERT_EQ(met.contains(rank), regions.of(rank).overlaps(box));
+        ASSERT_EQ(overlapping.contains(rank), regions.of(rank).overlaps(box));
       }
       for (const Vec3f& point : {box.min, box.max, centre_of(box)}) {
         const Aabb at{point, point};
@@ -362,21 +362,21 @@ TEST(ClusterRegions, box_overlaps_regions_of_its_points) {
 TEST(ClusterNames, name_table_matches_map) {
   Random random(11);
   NameTable table(std::pmr::get_default_resource());
-  std::unordered_map<std::uint64_t, std::uint32_t> twin;
+  std::unordered_map<std::uint64_t, std::uint32_t> reference;
   for (int step = 0; step < 20'000; ++step) {
     const std::uint64_t name = random.below(300);
     if (random.chance(0.5)) {
       const auto number = static_cast<std::uint32_t>(random.below(1000));
       table.set(name, number);
-      twin[name] = number;
+      reference[name] = number;
     } else {
       table.erase(name);
-      twin.erase(name);
+      reference.erase(name);
     }
-    const std::uint64_t asked = random.below(300);
-    const auto found = twin.find(asked);
-    ASSERT_EQ(table.find(asked), found == twin.end() ? NameTable::kNone : found->second);
-    ASSERT_EQ(table.size(), twin.size());
+    const std::uint64_t queried = random.below(300);
+    const auto found = reference.find(queried);
+    ASSERT_EQ(table.find(queried), found == reference.end() ? NameTable::kNone : found->second);
+    ASSERT_EQ(table.size(), reference.size());
   }
 }
 

@@ -20,20 +20,20 @@ void ClusterWorld::add(const std::vector<Aabb>& boxes, Random& random) {
     names[rank].push_back(name);
     of_rank[rank].push_back(box);
     boxes_[name] = box;
-    homes_[name] = {static_cast<std::uint32_t>(rank), {}};
+    placements_[name] = {static_cast<std::uint32_t>(rank), {}};
   }
   std::vector<ClusterBatch> batches(ranks);
   for (std::uint32_t r = 0; r < ranks; ++r) batches[r] = {names[r], of_rank[r]};
   std::vector<Status> answers(ranks, Status::unsupported);
   ASSERT_EQ(cluster_.add(batches, answers), Status::ok);
   EXPECT_EQ(std::count(answers.begin(), answers.end(), Status::ok), ranks);
-  for (auto& [name, home] : homes_) {
-    ASSERT_EQ(cluster_.key_of(home.rank, name, home.key), Status::ok);
+  for (auto& [name, placement] : placements_) {
+    ASSERT_EQ(cluster_.key_of(placement.rank, name, placement.key), Status::ok);
   }
 }
 
 void ClusterWorld::move(double share, double step, Random& random) {
-  std::map<std::uint32_t, std::pair<std::vector<Key>, std::vector<Aabb>>> told;
+  std::map<std::uint32_t, std::pair<std::vector<Key>, std::vector<Aabb>>> moves;
   for (auto& [name, box] : boxes_) {
     if (!random.chance(share)) continue;
     for (int axis = 0; axis < 3; ++axis) {
@@ -41,11 +41,11 @@ void ClusterWorld::move(double share, double step, Random& random) {
       box.min[axis] += by;
       box.max[axis] = std::max(box.max[axis] + by, box.min[axis]);
     }
-    auto& [keys, boxes] = told[rank_of(name)];
+    auto& [keys, boxes] = moves[rank_of(name)];
     keys.push_back(key_of(name));
     boxes.push_back(box);
   }
-  for (const auto& [rank, bodies] : told) {
+  for (const auto& [rank, bodies] : moves) {
     ASSERT_EQ(cluster_.move(rank, bodies.first, bodies.second), Status::ok);
   }
 }
@@ -57,7 +57,7 @@ void ClusterWorld::remove(std::size_t count, Random& random) {
     const BodyName name = one->first;
     ASSERT_EQ(cluster_.remove(rank_of(name), std::span(&name, 1)), Status::ok);
     boxes_.erase(one);
-    homes_.erase(name);
+    placements_.erase(name);
   }
 }
 
@@ -67,15 +67,15 @@ void ClusterWorld::follow() {
   for (std::uint32_t rank = 0; rank < cluster_.ranks(); ++rank) {
     bodies += cluster_.size(rank);
     for (const ClusterBody& body : cluster_.arrived(rank)) {
-      homes_[body.name] = {rank, body.key};
+      placements_[body.name] = {rank, body.key};
     }
   }
   ASSERT_EQ(bodies, boxes_.size());
-  ASSERT_EQ(homes_.size(), boxes_.size());
-  for (const auto& [name, home] : homes_) {
+  ASSERT_EQ(placements_.size(), boxes_.size());
+  for (const auto& [name, placement] : placements_) {
     Key key;
-    ASSERT_EQ(cluster_.key_of(home.rank, name, key), Status::ok);
-    ASSERT_EQ(key, home.key);
+    ASSERT_EQ(cluster_.key_of(placement.rank, name, key), Status::ok);
+    ASSERT_EQ(key, placement.key);
   }
 }
 

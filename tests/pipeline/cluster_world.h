@@ -51,13 +51,13 @@ class ClusterWorld {
   [[nodiscard]] std::vector<NamePair> true_pairs() const;
   [[nodiscard]] std::vector<NamePair> found_pairs() const;
   /// Returns the rank that owns a body.
-  [[nodiscard]] std::uint32_t rank_of(BodyName name) const { return homes_.at(name).rank; }
-  [[nodiscard]] Key key_of(BodyName name) const { return homes_.at(name).key; }
+  [[nodiscard]] std::uint32_t rank_of(BodyName name) const { return placements_.at(name).rank; }
+  [[nodiscard]] Key key_of(BodyName name) const { return placements_.at(name).key; }
   [[nodiscard]] const std::map<BodyName, Aabb>& boxes() const { return boxes_; }
   [[nodiscard]] Cluster& cluster() { return cluster_; }
 
  private:
-  struct Home {
+  struct Placement {
     std::uint32_t rank;
     Key key;
   };
@@ -66,7 +66,7 @@ class ClusterWorld {
   LoopbackTransport transport_;
   Cluster cluster_;
   std::map<BodyName, Aabb> boxes_;
-  std::map<BodyName, Home> homes_;
+  std::map<BodyName, Placement> placements_;
   BodyName next_ = 1;
 };
 

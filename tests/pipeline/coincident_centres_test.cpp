@@ -34,8 +34,8 @@ void add_tilted_pair(const A& a, const B& b, double tilt, Random& random, PairSc
   scene.pairs.push_back({n, n + 1});
 }
 
-// A cylinder at least as high as wide contains a capsule of the same radius, so the pair separates
-// soonest at right angles to both axes.
+// A cylinder that is at least as high as wide contains a capsule of the same radius. The direction
+// of least depth is therefore perpendicular to both axes, and the depth is the sum of the radii.
 TEST(CoincidentCentres, long_cylinders_and_capsules_have_narrow_bounds) {
   Random random(1);
   PairScene scene;
@@ -51,7 +51,7 @@ TEST(CoincidentCentres, long_cylinders_and_capsules_have_narrow_bounds) {
     depth.push_back(c.radius + b.radius + b.rounding);
   }
   for (const NarrowTier tier : kTiers) {
-    const auto answers = ask(scene, {.level = ContactLevel::distance, .tier = tier});
+    const auto answers = compute_results(scene, {.level = ContactLevel::distance, .tier = tier});
     for (std::size_t i = 0; i < answers.size(); ++i) {
       EXPECT_LE(std::abs(answers[i].distance + depth[i]), answers[i].error_bound) << i;
       EXPECT_LE(answers[i].error_bound, 4e-7) << i;
@@ -73,14 +73,16 @@ TEST(CoincidentCentres, cones_turned_by_rounding_have_narrow_bounds) {
                     random, scene);
   }
   for (const NarrowTier tier : kTiers) {
-    for (const auto& answer : ask(scene, {.level = ContactLevel::distance, .tier = tier})) {
+    for (const auto& answer :
+         compute_results(scene, {.level = ContactLevel::distance, .tier = tier})) {
       EXPECT_LE(answer.error_bound, 4e-7);
     }
   }
 }
 
-/// Adds spheres on the segments of capsules, on triangles and equally near to two sides of a box,
-/// and capsules whose segments are collinear or cross, in a tilted frame; appends the exact depths.
+/// Adds pairs in a tilted frame and appends their exact depths: a sphere on the segment of a
+/// capsule, on a triangle, and equally near to two sides of a box; and capsules whose segments are
+/// collinear or cross.
 void add_aligned_pairs(PairScene& scene, std::vector<double>& depth, Random& random) {
   const Quaternion lean = normalized({random.uniform(0.5, 1.0), random.uniform(-1.0, 1.0),
                                       random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0)});
@@ -118,12 +120,12 @@ TEST(CoincidentCentres, round_shapes_separate_sideways_almost_without_solver) {
   for (std::size_t n = scaled(200); n-- != 0;) add_aligned_pairs(scene, depth, random);
   NarrowPhase narrow;
   NarrowResult result;
-  const NarrowOptions asked{.level = ContactLevel::distance};
-  ASSERT_EQ(narrow.collide(scene.pool, scene.bodies(), scene.pairs, asked, result), Status::ok);
+  const NarrowOptions options{.level = ContactLevel::distance};
+  ASSERT_EQ(narrow.collide(scene.pool, scene.bodies(), scene.pairs, options, result), Status::ok);
   EXPECT_LE(narrow.statistics().recomputed, scene.pairs.size() / 50);
-  const auto answers = ask(scene, asked);
+  const auto answers = compute_results(scene, options);
   for (BodyPair& pair : scene.pairs) std::swap(pair.a, pair.b);
-  const auto mirrored = ask(scene, asked);
+  const auto mirrored = compute_results(scene, options);
   for (BodyPair& pair : scene.pairs) std::swap(pair.a, pair.b);
   for (std::size_t i = 0; i < answers.size(); ++i) {
     EXPECT_LE(std::abs(answers[i].distance + depth[i]), answers[i].error_bound) << i;

@@ -1,5 +1,5 @@
 // Meshes, height fields and compounds in a CompositePool: input checks, lifetimes, bounds, part
-// numbers, and the correction of normals at internal edges (CompositePool::smooth).
+// numbers, and the correction of normals at internal edges (CompositePool::correct_internal_edges).
 
 #include <winnow/core/eigen.h>
 #include <winnow/pipeline/scene.h>
@@ -121,7 +121,7 @@ TEST(CompositePool, child_of_compound_cannot_be_removed) {
   EXPECT_EQ(pool.remove(scaled_mesh), Status::ok);
 }
 
-/// With few children, and with enough for a tree.
+/// The compounds have 2 children, or 20, which are stored in a tree.
 TEST(CompositePool, edited_surface_updates_its_compounds) {
   Random random(10);
   for (const std::size_t children : {2U, 20U}) {
@@ -148,16 +148,16 @@ TEST(CompositePool, edited_surface_updates_its_compounds) {
     ASSERT_EQ(pool.update_height_field(field, 0, 0, {.heights = heights, .columns = 4, .rows = 3}),
               Status::ok);
     EXPECT_GE(pool.bounds(compound, {}).max[2], 90.0F);
-    // The compound's tree is updated too: a sweep finds the highest sample.
-    int met = 0;
-    const BoxSweep high{{-10, -10, 89}, {10, 10, 91}};
+    // The compound's tree is updated too: a cast finds the highest sample.
+    int visited = 0;
+    const MovingBox high{{-10, -10, 89}, {10, 10, 91}};
     pool.visit(compound, {}, high,
                {[](void* context, const Primitive&, double limit) {
                   ++*static_cast<int*>(context);
                   return limit;
                 },
-                &met});
-    EXPECT_GT(met, 0);
+                &visited});
+    EXPECT_GT(visited, 0);
   }
 }
 
@@ -201,7 +201,7 @@ TEST(CompositePool, bounds_and_radius_contain_every_part) {
   }
 }
 
-/// Contacts of a body with a surface after `smooth`.
+/// Contacts of a body with a surface after `correct_internal_edges`.
 struct Landing {
   std::vector<Eigen::Vector3d> normals;  ///< from the body to the surface
   double deepest = std::numeric_limits<double>::infinity();
@@ -215,19 +215,20 @@ Landing land(const ShapePool& shapes, const CompositePool& pool, ShapeId body, c
   const Pose poses[2] = {ground_first ? ground : at, ground_first ? at : ground};
   const BodyPair pair[] = {{0, 1}};
   PrimitivePairs pairs;
-  EXPECT_EQ(pool.expand(shapes, {ids, poses}, pair, margin, Execution::serial(), pairs),
-            Status::ok);
+  EXPECT_EQ(
+      pool.find_primitive_pairs(shapes, {ids, poses}, pair, margin, Execution::serial(), pairs),
+      Status::ok);
   NarrowPhase narrow;
   NarrowResult result;
-  EXPECT_EQ(
-      narrow.collide(
-          pairs.tables(shapes),
-          {{pairs.shapes.data(), pairs.shapes.size()}, {pairs.poses.data(), pairs.poses.size()}},
-          {pairs.pairs.data(), pairs.pairs.size()}, {.level = level, .margin = margin}, result),
-      Status::ok);
+  EXPECT_EQ(narrow.collide(pairs.tables(shapes),
+                           {{pairs.shapes.data(), pairs.shapes.size()},
+                            {pairs.poses.data(), pairs.poses.size()}},
+                           {pairs.pairs.data(), pairs.pairs.size()},
+                           {.level = level, .contact_margin = margin}, result),
+            Status::ok);
   std::size_t before = 0;
   for (const double distance : result.distance()) before += distance <= margin ? 1 : 0;
-  pool.smooth(shapes, pairs, margin, Execution::serial(), result);
+  pool.correct_internal_edges(shapes, pairs, margin, Execution::serial(), result);
   Landing landing;
   for (std::size_t i = 0; i < result.size(); ++i) {
     if (!(result.distance()[i] <= margin)) continue;
@@ -388,15 +389,15 @@ TEST(InternalEdges, smoothing_matches_on_threads_and_without_memory) {
     world.pairs.push_back({i, 0});
   }
   PrimitivePairs pairs;
-  ASSERT_EQ(world.composites.expand(world.shapes, world.bodies(), world.pairs, 0.0,
-                                    Execution::serial(), pairs),
+  ASSERT_EQ(world.composites.find_primitive_pairs(world.shapes, world.bodies(), world.pairs, 0.0,
+                                                  Execution::serial(), pairs),
             Status::ok);
   const auto answer = [&](std::pmr::memory_resource* memory, Execution execution,
                           CountingMemory* refusing) {
     auto result = std::make_unique<NarrowResult>(memory);
     winnow::test::answer(world.shapes, pairs, {}, *result);
     if (refusing != nullptr) refusing->refuse_after(0);
-    world.composites.smooth(world.shapes, pairs, 0.0, execution, *result);
+    world.composites.correct_internal_edges(world.shapes, pairs, 0.0, execution, *result);
     if (refusing != nullptr) refusing->grant_all();
     return result;
   };
@@ -433,7 +434,7 @@ std::vector<ContactPoint> points_of_first(const CompositeWorld& world, ShapeId f
   Scene scene(world.shapes, {.structures = {n_squared(), n_squared(), n_squared()},
                              .composites = &world.composites});
   std::vector<BodyDefinition> bodies(2);
-  bodies[0] = {.shape = ground, .motion = Motion::fixed, .data = 1};
+  bodies[0] = {.shape = ground, .state = BodyState::fixed, .data = 1};
   bodies[1] = {.shape = first, .pose = Pose::at(0.01, 0.02, -0.3), .data = 0};
   Random random(10);
   for (std::size_t i = 0; i < 60 && !others.empty(); ++i) {
@@ -441,7 +442,7 @@ std::vector<ContactPoint> points_of_first(const CompositeWorld& world, ShapeId f
     // Each other body gets its own ground, far away.
     body.pose = Pose::at(1000.0 * static_cast<double>(i + 1), 0, random.uniform(-0.4, 0.1));
     bodies.push_back(body);
-    body = {.shape = ground, .motion = Motion::fixed, .data = 100 + i};
+    body = {.shape = ground, .state = BodyState::fixed, .data = 100 + i};
     body.pose = Pose::at(1000.0 * static_cast<double>(i + 1), 0, 0);
     bodies.push_back(body);
   }
@@ -483,13 +484,13 @@ TEST(InternalEdges, smoothing_ignores_other_bodies) {
   ASSERT_EQ(world.composites.add_compound(parts, first), Status::ok);
   const ShapeId others[] = {needle, hull, box};
   for (const ContactLevel level : {ContactLevel::distance, ContactLevel::manifold}) {
-    const auto alone = points_of_first(world, first, ground, {}, level);
+    const auto single = points_of_first(world, first, ground, {}, level);
     const auto among = points_of_first(world, first, ground, others, level);
-    ASSERT_GT(alone.size(), 4096U);
-    ASSERT_EQ(alone.size(), among.size());
+    ASSERT_GT(single.size(), 4096U);
+    ASSERT_EQ(single.size(), among.size());
     std::size_t differ = 0;
-    for (std::size_t i = 0; i < alone.size(); ++i) {
-      differ += std::memcmp(&alone[i], &among[i], sizeof alone[i]) == 0 ? 0 : 1;
+    for (std::size_t i = 0; i < single.size(); ++i) {
+      differ += std::memcmp(&single[i], &among[i], sizeof single[i]) == 0 ? 0 : 1;
     }
     EXPECT_EQ(differ, 0U);
   }

@@ -215,7 +215,7 @@ inline std::vector<Primitive> parts_of(const CompositeWorld& world, ShapeId id, 
     }
     return {whole};
   }
-  BoxSweep all{{-1e30, -1e30, -1e30}, {1e30, 1e30, 1e30}};
+  MovingBox all{{-1e30, -1e30, -1e30}, {1e30, 1e30, 1e30}};
   world.composites.visit(id, pose, all,
                          {[](void* context, const Primitive& primitive, double limit) {
                             static_cast<std::vector<Primitive>*>(context)->push_back(primitive);

@@ -17,7 +17,7 @@ namespace {
 [[nodiscard]] bool is_movable(const Scene& scene, Key key) {
   BodyDefinition body;
   EXPECT_EQ(scene.body(key, body), Status::ok);
-  return body.motion != Motion::fixed;
+  return body.state != BodyState::fixed;
 }
 
 /// Returns the ids of the bodies of a pair that are not fixed.
@@ -59,7 +59,7 @@ TEST(ContactGroups, bodies_sharing_only_a_floor_are_separate_islands) {
     ASSERT_EQ(scene.add({.shape = ball, .pose = Pose::at(x, 0, 0.9), .data = name++}, key),
               Status::ok);
   }
-  ASSERT_EQ(scene.add({.shape = floor, .motion = Motion::fixed, .data = name}, key), Status::ok);
+  ASSERT_EQ(scene.add({.shape = floor, .state = BodyState::fixed, .data = name}, key), Status::ok);
   Contacts contacts;
   ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
   ASSERT_EQ(contacts.size(), 9U);
@@ -212,7 +212,7 @@ TEST(ContactGroups, removed_bodies_and_missing_memory_are_refused) {
   WINNOW_TEST_NEEDS_EXCEPTIONS();
   CountingMemory memory;
   SceneWorld world(50, 24);
-  for (BodyDefinition& body : world.bodies) body.motion = Motion::dynamic;
+  for (BodyDefinition& body : world.bodies) body.state = BodyState::dynamic;
   Scene scene(world.pool);
   ASSERT_EQ(add_all(scene, world), Status::ok);
   Contacts contacts;

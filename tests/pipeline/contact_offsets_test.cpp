@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kMargin = 0.03;
 
-/// Gives about half of the bodies offsets. A few contact offsets are large.
+/// Sets offsets of about half of the bodies. A few contact offsets are large.
 void give_offsets(SceneWorld& world) {
   for (BodyDefinition& body : world.bodies) {
     if (world.random.chance(0.5)) continue;
@@ -41,36 +41,38 @@ struct CorePairReference {
 };
 
 /// Compares bit by bit: the points of a manifold depend only on the pair and its contact margin.
-void expect_points(const Contacts& contacts, std::size_t m, const CorePairReference& twin) {
+void expect_points(const Contacts& contacts, std::size_t m, const CorePairReference& reference) {
   const std::uint32_t first = contacts.point_first()[m];
-  ASSERT_EQ(contacts.point_first()[m + 1] - first, twin.answer.contact_count);
-  const double between = 0.5 * (twin.rest[0] - twin.rest[1]);
-  for (std::uint32_t i = 0; i < twin.answer.contact_count; ++i) {
+  ASSERT_EQ(contacts.point_first()[m + 1] - first, reference.answer.contact_count);
+  const double between = 0.5 * (reference.rest[0] - reference.rest[1]);
+  for (std::uint32_t i = 0; i < reference.answer.contact_count; ++i) {
     const ContactPoint shown = contacts.contact(first + i);
-    ContactPoint alone = twin.answer.contacts[i];
-    alone.depth =
-        static_cast<float>(static_cast<double>(alone.depth) + twin.rest[0] + twin.rest[1]);
+    ContactPoint expected = reference.answer.contacts[i];
+    expected.depth = static_cast<float>(static_cast<double>(expected.depth) + reference.rest[0] +
+                                        reference.rest[1]);
     for (int k = 0; k < 3; ++k) {
-      alone.position[k] = static_cast<float>(static_cast<double>(alone.position[k]) +
-                                             between * twin.answer.normal[k]);
-      EXPECT_EQ(shown.position[k], alone.position[k]);
+      expected.position[k] = static_cast<float>(static_cast<double>(expected.position[k]) +
+                                                between * reference.answer.normal[k]);
+      EXPECT_EQ(shown.position[k], expected.position[k]);
     }
-    EXPECT_EQ(shown.depth, alone.depth);
-    EXPECT_EQ(shown.feature, alone.feature);
+    EXPECT_EQ(shown.depth, expected.depth);
+    EXPECT_EQ(shown.feature, expected.feature);
   }
 }
 
 void expect_pair(const SceneWorld& world, const Contacts& contacts, std::size_t i,
-                 const CorePairReference& twin) {
+                 const CorePairReference& reference) {
   const std::uint32_t m = contacts.manifold_first()[i];
-  EXPECT_EQ(contacts.distance()[m], twin.answer.distance - (twin.rest[0] + twin.rest[1]));
-  EXPECT_GE(contacts.error_bound()[m], twin.answer.error_bound);
-  EXPECT_LE(contacts.error_bound()[m], twin.answer.error_bound + 1e-15);
-  for (int k = 0; k < 3; ++k) EXPECT_EQ(contacts.normal(k)[m], twin.answer.normal[k]);
+  EXPECT_EQ(contacts.distance()[m],
+            reference.answer.distance - (reference.rest[0] + reference.rest[1]));
+  EXPECT_GE(contacts.error_bound()[m], reference.answer.error_bound);
+  EXPECT_LE(contacts.error_bound()[m], reference.answer.error_bound + 1e-15);
+  for (int k = 0; k < 3; ++k) EXPECT_EQ(contacts.normal(k)[m], reference.answer.normal[k]);
   for (int k = 0; k < 3 && contacts.level() == ContactLevel::distance; ++k) {
-    EXPECT_EQ(contacts.point(k)[m], twin.answer.point[k] + twin.rest[0] * twin.answer.normal[k]);
+    EXPECT_EQ(contacts.point(k)[m],
+              reference.answer.point[k] + reference.rest[0] * reference.answer.normal[k]);
   }
-  if (contacts.level() == ContactLevel::manifold) expect_points(contacts, m, twin);
+  if (contacts.level() == ContactLevel::manifold) expect_points(contacts, m, reference);
   EXPECT_LT(contacts.data_a()[i], world.bodies.size());
 }
 
@@ -89,9 +91,9 @@ void expect_same_as_core_pairs(const SceneWorld& world, const Contacts& contacts
   }
   EXPECT_EQ(shown(contacts), near);
   for (std::size_t i = 0; i < contacts.size(); ++i) {
-    const CorePairReference twin(world, body_of(world, contacts.data_a()[i]),
-                                 body_of(world, contacts.data_b()[i]), tier, contacts.level());
-    expect_pair(world, contacts, i, twin);
+    const CorePairReference reference(world, body_of(world, contacts.data_a()[i]),
+                                      body_of(world, contacts.data_b()[i]), tier, contacts.level());
+    expect_pair(world, contacts, i, reference);
   }
 }
 
@@ -99,7 +101,7 @@ TEST(ContactOffsets, pairs_with_offsets_match_single_queries) {
   SceneWorld world(scaled(400), 71);
   give_offsets(world);
   for (const NarrowTier tier : {NarrowTier::robust, NarrowTier::reference}) {
-    Scene scene(world.pool, {.margin = kMargin, .tier = tier});
+    Scene scene(world.pool, {.contact_margin = kMargin, .tier = tier});
     ASSERT_EQ(add_all(scene, world), Status::ok);
     Contacts contacts;
     for (const ContactLevel level : {ContactLevel::distance, ContactLevel::manifold}) {
@@ -118,7 +120,7 @@ TEST(ContactOffsets, rest_offset_of_others_leaves_error_bounds) {
   const auto bounds = [&](bool with_other) {
     Scene scene(world.shapes, {.contact_reduction = true, .composites = &world.composites});
     Key key;
-    EXPECT_EQ(scene.add({.shape = floor, .motion = Motion::fixed}, key), Status::ok);
+    EXPECT_EQ(scene.add({.shape = floor, .state = BodyState::fixed}, key), Status::ok);
     EXPECT_EQ(scene.add({.shape = box, .pose = Pose::at(0.1, 0.2, 0.2)}, key), Status::ok);
     const BodyDefinition other{.shape = box, .pose = Pose::at(9, 9, 9), .offsets = {0.2, 0.1}};
     if (with_other) {
@@ -137,7 +139,7 @@ TEST(ContactOffsets, level_boolean_ignores_offsets) {
   std::set<Names> overlapping;
   for (const auto& [pair, distance] : world.touching()) overlapping.insert(pair);
   give_offsets(world);
-  Scene scene(world.pool, {.margin = kMargin});
+  Scene scene(world.pool, {.contact_margin = kMargin});
   ASSERT_EQ(add_all(scene, world), Status::ok);
   Contacts contacts;
   ASSERT_EQ(scene.collide(ContactLevel::boolean, contacts), Status::ok);
@@ -146,13 +148,13 @@ TEST(ContactOffsets, level_boolean_ignores_offsets) {
 
 TEST(ContactOffsets, zero_offsets_change_no_bit) {
   SceneWorld world(scaled(300), 73);
-  Scene plain(world.pool, {.margin = kMargin});
+  Scene plain(world.pool, {.contact_margin = kMargin});
   ASSERT_EQ(add_all(plain, world), Status::ok);
   const std::size_t without = plain.footprint().total().reserved;
   Contacts expected;
   ASSERT_EQ(plain.collide(ContactLevel::manifold, expected), Status::ok);
   CountingMemory memory;
-  Scene scene(world.pool, {.memory = &memory, .margin = kMargin});
+  Scene scene(world.pool, {.memory = &memory, .contact_margin = kMargin});
   ASSERT_EQ(add_all(scene, world), Status::ok);
   EXPECT_EQ(scene.footprint().total().reserved, without);
   ASSERT_EQ(scene.set_offsets(world.keys[3], {0.2, 0.1}), Status::ok);
@@ -193,7 +195,7 @@ TEST(ContactOffsets, largest_doubles_cause_no_nan) {
   const double most = std::numeric_limits<double>::max();
   world.bodies[0].offsets = {most, most};
   world.bodies[1].offsets = {most, -most};
-  Scene scene(world.pool, {.margin = 1.0});
+  Scene scene(world.pool, {.contact_margin = 1.0});
   ASSERT_EQ(add_all(scene, world), Status::ok);
   Contacts contacts;
   ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
@@ -210,7 +212,7 @@ TEST(ContactOffsets, body_on_mesh_rests_at_its_offset) {
     Scene scene(world.shapes, {.contact_reduction = reduced, .composites = &world.composites});
     Key ground;
     Key keys[2];
-    ASSERT_EQ(scene.add({.shape = floor, .motion = Motion::fixed}, ground), Status::ok);
+    ASSERT_EQ(scene.add({.shape = floor, .state = BodyState::fixed}, ground), Status::ok);
     ASSERT_EQ(scene.add({.shape = box,
                          .pose = Pose::at(0.1, 0.2, 0.32),
                          .offsets = {.contact = 0.05, .rest = 0.03}},
@@ -240,11 +242,11 @@ TEST(ContactOffsets, body_on_mesh_rests_at_its_offset) {
   }
 }
 
-/// Changes offsets while bodies are removed, added and carried over, and compares with a fresh
+/// Changes offsets while bodies are removed, added and cached, and compares with a fresh
 /// scene.
 TEST(ContactOffsets, changed_offsets_apply_to_next_collide) {
   SceneWorld world(scaled(200), 76);
-  Scene scene(world.pool, {.margin = kMargin, .carry_over = 0.02});
+  Scene scene(world.pool, {.contact_margin = kMargin, .cache_tolerance = 0.02});
   ASSERT_EQ(add_all(scene, world), Status::ok);
   Contacts contacts;
   for (int frame = 0; frame < 6; ++frame) {
@@ -256,7 +258,7 @@ TEST(ContactOffsets, changed_offsets_apply_to_next_collide) {
       ASSERT_EQ(scene.set_offsets(world.keys[i], body.offsets), Status::ok);
     }
     ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
-    Scene fresh(world.pool, {.margin = kMargin});
+    Scene fresh(world.pool, {.contact_margin = kMargin});
     std::vector<Key> keys(world.bodies.size());
     ASSERT_EQ(fresh.add(world.bodies, keys), Status::ok);
     Contacts expected;

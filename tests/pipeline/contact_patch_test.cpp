@@ -41,8 +41,8 @@ struct TestPatch {
   }
 };
 
-std::vector<ContactPoint> meet(TestPatch& a, TestPatch& b, const Vector3d& normal,
-                               double margin = 0.0) {
+std::vector<ContactPoint> contact_points(TestPatch& a, TestPatch& b, const Vector3d& normal,
+                                         double margin = 0.0) {
   ContactPoint out[kManifoldPoints];
   const std::uint32_t count = contact_patch(a.view(), b.view(), normal.data(), margin, out);
   return {out, out + count};
@@ -154,7 +154,7 @@ TestPatch square(double half, double height, double turn = 0.0) {
 TEST(ContactPatch, square_on_larger_square_touches_at_corners) {
   TestPatch a = square(2.0, 1.0);
   TestPatch b = square(1.0, 0.75);
-  const auto points = meet(a, b, Vector3d::UnitZ());
+  const auto points = contact_points(a, b, Vector3d::UnitZ());
   ASSERT_EQ(points.size(), 4U);
   std::set<std::uint64_t> features;
   for (const ContactPoint& p : points) {
@@ -176,7 +176,7 @@ TEST(ContactPatch, small_motion_keeps_features) {
     TestPatch b = square(0.9, 0.9, 0.2 + turn);
     for (Vector3d& p : b.points) p += Vector3d(0.3 + shift, 0.2 - shift, 0.05 * p.x());
     std::set<std::uint64_t> ids;
-    for (const ContactPoint& p : meet(a, b, Vector3d::UnitZ())) ids.insert(p.feature);
+    for (const ContactPoint& p : contact_points(a, b, Vector3d::UnitZ())) ids.insert(p.feature);
     return ids;
   };
   const auto before = features(0.0, 0.0);
@@ -188,7 +188,7 @@ TEST(ContactPatch, small_motion_keeps_features) {
 TEST(ContactPatch, crossing_edges_give_one_point_parallel_two) {
   TestPatch a = {{{-1, 0, 0.1}, {1, 0, 0.1}}};
   TestPatch crossing = {{{0.25, -1, 0}, {0.25, 1, 0}}};
-  const auto point = meet(a, crossing, Vector3d::UnitZ());
+  const auto point = contact_points(a, crossing, Vector3d::UnitZ());
   ASSERT_EQ(point.size(), 1U);
   EXPECT_LT((position(point[0]) - Vector3d(0.25, 0, 0.05)).norm(), 1e-6);
   EXPECT_FLOAT_EQ(point[0].depth, 0.1F);
@@ -196,7 +196,7 @@ TEST(ContactPatch, crossing_edges_give_one_point_parallel_two) {
   EXPECT_EQ(point[0].feature >> 32U, (1U << 30U) + 7U);
 
   TestPatch along = {{{0.25, 1e-5, 0}, {3, -1e-5, 0}}};
-  const auto ends = meet(a, along, Vector3d::UnitZ());
+  const auto ends = contact_points(a, along, Vector3d::UnitZ());
   ASSERT_EQ(ends.size(), 2U);
   EXPECT_NEAR(std::min(ends[0].position[0], ends[1].position[0]), 0.25, 1e-6);
   EXPECT_NEAR(std::max(ends[0].position[0], ends[1].position[0]), 1.0, 1e-6);
@@ -205,7 +205,7 @@ TEST(ContactPatch, crossing_edges_give_one_point_parallel_two) {
 TEST(ContactPatch, edge_on_face_is_clipped) {
   TestPatch a = square(1.0, 0.0);
   TestPatch b = {{{0, 0, -0.1}, {3, 0, -0.4}}};
-  const auto points = meet(a, b, Vector3d::UnitZ(), 0.0);
+  const auto points = contact_points(a, b, Vector3d::UnitZ(), 0.0);
   ASSERT_EQ(points.size(), 2U);
   EXPECT_NEAR(points[0].depth, 0.2, 1e-6);
   EXPECT_NEAR(points[0].position[0], 1.0, 1e-6);
@@ -215,9 +215,9 @@ TEST(ContactPatch, edge_on_face_is_clipped) {
 TEST(ContactPatch, points_beyond_margin_are_dropped_except_deepest) {
   TestPatch a = square(1.0, 0.0);
   TestPatch b = {{{-0.5, -0.5, 0.1}, {0.5, -0.5, 0.1}, {0.5, 0.5, 0.3}, {-0.5, 0.5, 0.3}}};
-  EXPECT_EQ(meet(a, b, Vector3d::UnitZ(), 0.5).size(), 4U);
-  EXPECT_EQ(meet(a, b, Vector3d::UnitZ(), 0.2).size(), 2U);
-  const auto least = meet(a, b, Vector3d::UnitZ(), 0.0);
+  EXPECT_EQ(contact_points(a, b, Vector3d::UnitZ(), 0.5).size(), 4U);
+  EXPECT_EQ(contact_points(a, b, Vector3d::UnitZ(), 0.2).size(), 2U);
+  const auto least = contact_points(a, b, Vector3d::UnitZ(), 0.0);
   ASSERT_EQ(least.size(), 1U);
   EXPECT_NEAR(least[0].depth, -0.1, 1e-6);
 }
@@ -226,7 +226,7 @@ TEST(ContactPatch, rounding_adds_to_depth_and_shifts_points) {
   TestPatch a = {{{0, 0, 0}}, 0.5};
   TestPatch b = square(1.0, 0.6);
   b.rounding = 0.2;
-  const auto points = meet(a, b, Vector3d::UnitZ());
+  const auto points = contact_points(a, b, Vector3d::UnitZ());
   ASSERT_EQ(points.size(), 1U);
   EXPECT_NEAR(points[0].depth, 0.1, 1e-6);
   EXPECT_NEAR(points[0].position[2], 0.45, 1e-6);
@@ -236,9 +236,9 @@ TEST(ContactPatch, disjoint_patches_give_closest_point) {
   TestPatch a = square(1.0, 0.0);
   TestPatch b = square(1.0, 0.0);
   for (Vector3d& p : b.points) p.x() += 2.5;
-  EXPECT_EQ(meet(a, b, Vector3d::UnitZ()).size(), 1U);
+  EXPECT_EQ(contact_points(a, b, Vector3d::UnitZ()).size(), 1U);
   TestPatch vertex = {{{1.0 + 1e-12, 1.0, 0.0}}};
-  const auto points = meet(a, vertex, Vector3d::UnitZ());
+  const auto points = contact_points(a, vertex, Vector3d::UnitZ());
   ASSERT_EQ(points.size(), 1U);
   EXPECT_NEAR(points[0].depth, 0.0, 1e-9);
 }
@@ -249,15 +249,15 @@ TEST(ContactPatch, degenerate_patches_give_valid_points) {
   TestPatch upright = {{{-1, 0, -0.1}, {0, 0, 1}, {1, 0, -0.1}}};
   TestPatch point = {{{0.5, 0, -0.1}, {0.5, 0, -0.1}, {0.5, 0, -0.1}}};
   TestPatch pole = {{{0.5, 0, 3}, {0.5, 0, -0.1}}};
-  EXPECT_EQ(meet(floor, sliver, Vector3d::UnitZ()).size(), 2U);
-  EXPECT_EQ(meet(floor, upright, Vector3d::UnitZ()).size(), 2U);
+  EXPECT_EQ(contact_points(floor, sliver, Vector3d::UnitZ()).size(), 2U);
+  EXPECT_EQ(contact_points(floor, upright, Vector3d::UnitZ()).size(), 2U);
   for (TestPatch* p : {&point, &pole}) {
-    const auto points = meet(floor, *p, Vector3d::UnitZ());
+    const auto points = contact_points(floor, *p, Vector3d::UnitZ());
     ASSERT_EQ(points.size(), 1U);
     EXPECT_NEAR(points[0].depth, 0.1, 1e-6);
   }
-  EXPECT_EQ(meet(sliver, sliver, Vector3d::UnitZ()).size(), 2U);
-  EXPECT_EQ(meet(point, point, Vector3d::UnitZ()).size(), 1U);
+  EXPECT_EQ(contact_points(sliver, sliver, Vector3d::UnitZ()).size(), 2U);
+  EXPECT_EQ(contact_points(point, point, Vector3d::UnitZ()).size(), 1U);
 }
 
 TEST(ContactPatch, many_vertices_are_reduced_to_four_points) {
@@ -267,7 +267,7 @@ TEST(ContactPatch, many_vertices_are_reduced_to_four_points) {
     a.points.emplace_back(std::cos(turn), std::sin(turn), 0.0);
   }
   TestPatch b = square(2.0, -0.1);
-  const auto points = meet(a, b, Vector3d::UnitZ());
+  const auto points = contact_points(a, b, Vector3d::UnitZ());
   ASSERT_EQ(points.size(), 4U);
   for (const ContactPoint& p : points) {
     EXPECT_NEAR(std::hypot(p.position[0], p.position[1]), 1.0, 1e-6);
@@ -280,7 +280,7 @@ TEST(ContactPatch, results_scale_with_patches) {
   for (const double scale : {1e-20, 1e-6, 1.0, 1e6, 1e15}) {
     TestPatch a = square(scale, 0.0);
     TestPatch b = square(scale, -0.1 * scale, 0.5);
-    const auto points = meet(a, b, Vector3d::UnitZ());
+    const auto points = contact_points(a, b, Vector3d::UnitZ());
     ASSERT_EQ(points.size(), 4U);
     for (const ContactPoint& p : points) EXPECT_NEAR(p.depth / scale, 0.1, 1e-6);
   }
@@ -294,7 +294,7 @@ TEST(ContactPatch, deepest_point_is_first_all_on_both_patches) {
     TestPatch a = random_patch(random, normal, lean, 3 + random.below(6));
     TestPatch b = random_patch(random, normal, lean, 3 + random.below(6));
     const double margin = random.uniform(0.0, 0.5);
-    const auto points = meet(a, b, normal, margin);
+    const auto points = contact_points(a, b, normal, margin);
     ASSERT_GE(points.size(), 1U);
     const auto most = deepest(a, b, normal);
     if (!most) continue;
@@ -322,8 +322,8 @@ TEST(ContactPatch, swapped_patches_swap_features_only) {
     const Vector3d normal = random_direction(random);
     TestPatch a = random_patch(random, normal, 1.0, 1 + random.below(7));
     TestPatch b = random_patch(random, normal, 1.0, 1 + random.below(7));
-    const auto points = meet(a, b, normal);
-    const auto mirrored = meet(b, a, -normal);
+    const auto points = contact_points(a, b, normal);
+    const auto mirrored = contact_points(b, a, -normal);
     ASSERT_EQ(points.size(), mirrored.size()) << round;
     EXPECT_NEAR(points[0].depth, mirrored[0].depth, 1e-6);
     for (const ContactPoint& p : points) {

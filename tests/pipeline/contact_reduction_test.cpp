@@ -1,5 +1,5 @@
-// Contact regions (CompositePool::reduce, SceneOptions::contact_reduction) compared with the raw
-// manifolds of all primitives, and with one large box.
+// Contact regions (CompositePool::reduce_contacts, SceneOptions::contact_reduction) compared with
+// the raw manifolds of all primitives, and with one large box.
 
 #include "pipeline/composites/composites.h"
 #include "pipeline/solver/manifold.h"
@@ -33,14 +33,14 @@ struct Floor {
   Floor(const ShapePool& shapes, const CompositePool& pool, ShapeId floor, ShapeId body,
         double margin, bool reduced)
       : scene(shapes, {.execution = Execution::serial(),
-                       .margin = margin,
+                       .contact_margin = margin,
                        .contact_reduction = reduced,
                        .composites = &pool}) {
-    EXPECT_EQ(scene.add({.shape = floor, .motion = Motion::fixed}, ground), Status::ok);
+    EXPECT_EQ(scene.add({.shape = floor, .state = BodyState::fixed}, ground), Status::ok);
     EXPECT_EQ(scene.add({.shape = body}, key), Status::ok);
   }
 
-  void stand(const Pose& pose) {
+  void move_body(const Pose& pose) {
     ASSERT_EQ(scene.move(key, pose), Status::ok);
     ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
   }
@@ -86,7 +86,8 @@ struct Floors {
     const std::vector<float> heights(41 * 41, 0.0F);
     ShapeId field;
     EXPECT_EQ(pool.add_height_field({heights, 41, 41, 0, {0.2, 0.2}}, field), Status::ok);
-    // A height field starts at its corner instead of its centre.
+    // The origin of a height field is its corner; the origins of the other floors are their
+    // centres.
     ids.push_back(field);
     field_at = ids.size() - 1;
   }
@@ -113,7 +114,7 @@ struct Floors {
   CompositePool pool;
   ShapeId body;
   ShapeId large;
-  /// The first one is the large box.
+  /// The first floor is the large box.
   std::vector<ShapeId> ids;
   std::size_t field_at = 0;
 };
@@ -135,11 +136,12 @@ struct Floors {
   return pose;
 }
 
-/// Size of the largest face of the box in `resting`. Depths count as tied within kTiedDepth times
-/// it.
+/// Diagonal of the largest face of the box in `resting`. Depths count as tied if they differ by at
+/// most kTiedDepth times this length.
 constexpr double kFaceExtent = 1.3;
 
-/// Checks that both have the same points with the same depths.
+/// Checks that each point of `a` is, within the tolerance, exactly one point of `b` with the same
+/// depth.
 void expect_same_points(const std::vector<ContactPoint>& a, const std::vector<ContactPoint>& b,
                         double tolerance) {
   ASSERT_EQ(a.size(), b.size());
@@ -156,9 +158,9 @@ void expect_same_points(const std::vector<ContactPoint>& a, const std::vector<Co
 TEST(ContactReduction, box_on_any_flat_floor_matches_large_box) {
   const Floors floors;
   constexpr double kMargin = 0.05;
-  std::vector<std::unique_ptr<Floor>> stood;
+  std::vector<std::unique_ptr<Floor>> scenes;
   for (const ShapeId floor : floors.ids) {
-    stood.push_back(
+    scenes.push_back(
         std::make_unique<Floor>(floors.shapes, floors.pool, floor, floors.body, kMargin, true));
   }
   const std::size_t tiles = floors.ids.size() - 1;
@@ -167,19 +169,19 @@ TEST(ContactReduction, box_on_any_flat_floor_matches_large_box) {
     const double tilt = random.chance(0.2) ? 0.0 : std::pow(10.0, random.uniform(-9.0, -1.8));
     const double depth = random.uniform(-0.02, 0.005);
     const Pose pose = resting(random, tilt, depth);
-    for (std::size_t i = 0; i < stood.size(); ++i) {
-      stood[i]->stand(floors.on(i, pose));
+    for (std::size_t i = 0; i < scenes.size(); ++i) {
+      scenes[i]->move_body(floors.on(i, pose));
       SCOPED_TRACE("round " + std::to_string(round) + ", floor " + std::to_string(i));
       // A box that barely overlaps a tile may be nearer to the tile's side.
-      if (i == tiles && stood[i]->contacts.manifolds() != 1) continue;
-      ASSERT_EQ(stood[i]->contacts.manifolds(), 1U);
-      EXPECT_NEAR(stood[i]->contacts.distance()[0], stood[0]->contacts.distance()[0], 1e-6);
-      EXPECT_LE((stood[i]->normal(0) - Vec(0, 0, -1)).norm(), 10.0 * tilt + 1e-6);
-      ASSERT_EQ(stood[i]->points(0).size(), 4U);
-      // The midpoint between two faces may be measured along the normal of either face, and along
-      // an edge normal if they are apart.
+      if (i == tiles && scenes[i]->contacts.manifolds() != 1) continue;
+      ASSERT_EQ(scenes[i]->contacts.manifolds(), 1U);
+      EXPECT_NEAR(scenes[i]->contacts.distance()[0], scenes[0]->contacts.distance()[0], 1e-6);
+      EXPECT_LE((scenes[i]->normal(0) - Vec(0, 0, -1)).norm(), 10.0 * tilt + 1e-6);
+      ASSERT_EQ(scenes[i]->points(0).size(), 4U);
+      // The midpoint between two faces may be measured along the normal of either face, or, if the
+      // faces are apart, along an edge normal.
       const double tolerance = 3e-6 + kMargin * tilt + 0.1 * std::max(0.0, -depth);
-      expect_same_points(stood[0]->points(0), stood[i]->points(0), tolerance);
+      expect_same_points(scenes[0]->points(0), scenes[i]->points(0), tolerance);
     }
   }
 }
@@ -197,16 +199,18 @@ struct Reduced {
   }
 
   void solve(const Execution& execution) {
-    ASSERT_EQ(world.composites.expand(world.shapes, world.bodies(), world.pairs, margin_, execution,
-                                      pairs),
+    ASSERT_EQ(world.composites.find_primitive_pairs(world.shapes, world.bodies(), world.pairs,
+                                                    margin_, execution, pairs),
               Status::ok);
     answer(world.shapes, pairs,
-           {.level = ContactLevel::manifold, .margin = margin_, .execution = execution}, answers);
-    world.composites.smooth(world.shapes, pairs, margin_, execution, answers);
-    ASSERT_EQ(reduce(execution), Status::ok);
+           {.level = ContactLevel::manifold, .contact_margin = margin_, .execution = execution},
+           answers);
+    world.composites.correct_internal_edges(world.shapes, pairs, margin_, execution, answers);
+    ASSERT_EQ(reduce_contacts(execution), Status::ok);
   }
-  [[nodiscard]] Status reduce(const Execution& execution) {
-    return world.composites.reduce(world.shapes, pairs, answers, margin_, execution, regions);
+  [[nodiscard]] Status reduce_contacts(const Execution& execution) {
+    return world.composites.reduce_contacts(world.shapes, pairs, answers, margin_, execution,
+                                            regions);
   }
 
   [[nodiscard]] Vec normal(std::size_t i) const {
@@ -262,8 +266,9 @@ struct Reduced {
   ContactRegions regions;
 };
 
-/// Checks that a region's points come from members of its pair of bodies whose normals are nearly
-/// the region's.
+/// Checks that each point of a region is a point of one of `members` with nearly the same normal as
+/// the region, and that the first point is the deepest. `members` are the touching primitive pairs
+/// of the region's pair of bodies.
 void expect_made_of(const Reduced& all, const ContactRegion& region,
                     const std::vector<std::size_t>& members) {
   const Vec normal = Eigen::Map<const Vec>(region.normal);
@@ -359,7 +364,7 @@ TEST(ContactReduction, stable_raw_contacts_stay_stable_when_reduced) {
                             add(shapes, BoxShape{{0.6, 0.2, 0.3}, 0.0}),
                             add(shapes, ConeShape{0.6, 0.3, 0.0})};
   Random random(19);
-  std::size_t stood = 0;
+  std::size_t tested = 0;
   for (const ShapeId body : bodies) {
     for (std::size_t i = 1; i + 1 < floors.ids.size(); ++i) {
       Floor raw(floors.shapes, floors.pool, floors.ids[i], body, 0.02, false);
@@ -373,8 +378,8 @@ TEST(ContactReduction, stable_raw_contacts_stay_stable_when_reduced) {
             Eigen::AngleAxisd(tilt, Vec(std::cos(turn), std::sin(turn), 0.0)));
         pose.orientation[0] = q.w();
         for (int k = 0; k < 3; ++k) pose.orientation[k + 1] = q.vec()[k];
-        raw.stand(floors.on(i, pose));
-        reduced.stand(floors.on(i, pose));
+        raw.move_body(floors.on(i, pose));
+        reduced.move_body(floors.on(i, pose));
         std::vector<ContactPoint> all;
         for (std::size_t m = 0; m < raw.contacts.manifolds(); ++m) {
           for (const ContactPoint& p : raw.points(m)) {
@@ -382,15 +387,15 @@ TEST(ContactReduction, stable_raw_contacts_stay_stable_when_reduced) {
           }
         }
         ASSERT_EQ(reduced.contacts.manifolds(), 1U);
-        // Skips poses in which the origin is less than a quarter of the diameter inside: of a round
-        // face, reduction keeps four points, which form a smaller square.
+        // Skips poses in which the origin is less than 0.3 inside: reduction keeps four points of a
+        // round face, and their hull is smaller than the face.
         if (all.empty() || depth_in_hull(all, Vec::UnitZ()) < 0.3) continue;
-        ++stood;
+        ++tested;
         EXPECT_GT(depth_in_hull(reduced.points(0), Vec::UnitZ()), 0.0);
       }
     }
   }
-  EXPECT_GT(stood, scaled(300));
+  EXPECT_GT(tested, scaled(300));
 }
 
 /// Returns the sorted feature ids of all contact points.
@@ -415,7 +420,7 @@ TEST(ContactReduction, corners_keep_features_while_box_trembles_and_slides) {
       // The box first trembles, then slides over many triangles.
       for (double& p : pose.position) p += random.uniform(-1e-7, 1e-7);
       if (frame > 50) pose.position[0] += 0.011 * (frame - 50);
-      floor.stand(floors.on(i, pose));
+      floor.move_body(floors.on(i, pose));
       ASSERT_EQ(floor.contacts.manifolds(), 1U);
       const auto now = features(floor);
       ASSERT_EQ(std::adjacent_find(now.begin(), now.end()), now.end()) << "duplicate feature";
@@ -466,22 +471,22 @@ TEST(ContactReduction, second_call_allocates_nothing_and_footprint_is_exact) {
   {
     Reduced all(scaled(200), 0.05, 31);
     ContactRegions regions(&memory);
-    const auto reduce = [&] {
-      return all.world.composites.reduce(all.world.shapes, all.pairs, all.answers, 0.05,
-                                         Execution::serial(), regions);
+    const auto reduce_contacts = [&] {
+      return all.world.composites.reduce_contacts(all.world.shapes, all.pairs, all.answers, 0.05,
+                                                  Execution::serial(), regions);
     };
     for (std::size_t granted = 0;; ++granted) {
       memory.refuse_after(granted);
-      const Status status = reduce();
+      const Status status = reduce_contacts();
       memory.grant_all();
       if (status == Status::ok) break;
       ASSERT_EQ(status, Status::out_of_memory);
       EXPECT_EQ(regions.size(), 0U);
     }
     EXPECT_EQ(bits_of(regions), bits_of(all.regions));
-    const std::size_t asked = memory.requests();
-    ASSERT_EQ(reduce(), Status::ok);
-    EXPECT_EQ(memory.requests(), asked);
+    const std::size_t requests = memory.requests();
+    ASSERT_EQ(reduce_contacts(), Status::ok);
+    EXPECT_EQ(memory.requests(), requests);
     EXPECT_EQ(regions.footprint().total().reserved, memory.outstanding());
   }
   EXPECT_EQ(memory.outstanding(), 0U);
@@ -492,10 +497,11 @@ TEST(ContactReduction, steady_scene_with_meshes_allocates_nothing) {
   CountingMemory results;
   {
     const Floors floors;
-    Scene scene(floors.shapes, {.memory = &memory, .margin = 0.02, .composites = &floors.pool});
+    Scene scene(floors.shapes,
+                {.memory = &memory, .contact_margin = 0.02, .composites = &floors.pool});
     Contacts contacts(&results);
     Key key;
-    ASSERT_EQ(scene.add({.shape = floors.ids[1], .motion = Motion::fixed}, key), Status::ok);
+    ASSERT_EQ(scene.add({.shape = floors.ids[1], .state = BodyState::fixed}, key), Status::ok);
     Random random(37);
     std::vector<Key> keys(20);
     for (Key& body : keys) {
@@ -503,10 +509,10 @@ TEST(ContactReduction, steady_scene_with_meshes_allocates_nothing) {
                 Status::ok);
     }
     for (int frame = 0; frame < 12; ++frame) {
-      const std::size_t asked = memory.requests() + results.requests();
+      const std::size_t requests = memory.requests() + results.requests();
       ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
       if (frame >= 4) {
-        EXPECT_EQ(memory.requests() + results.requests(), asked);
+        EXPECT_EQ(memory.requests() + results.requests(), requests);
       }
       EXPECT_EQ(scene.footprint().total().reserved, memory.outstanding());
       EXPECT_EQ(contacts.footprint().total().reserved, results.outstanding());
@@ -519,7 +525,7 @@ TEST(ContactReduction, steady_scene_with_meshes_allocates_nothing) {
 TEST(ContactReduction, answers_without_contacts_are_refused) {
   Reduced all(10, 0.0, 41);
   answer(all.world.shapes, all.pairs, {.level = ContactLevel::distance}, all.answers);
-  EXPECT_EQ(all.reduce(Execution::serial()), Status::invalid_argument);
+  EXPECT_EQ(all.reduce_contacts(Execution::serial()), Status::invalid_argument);
   EXPECT_EQ(all.regions.size(), 0U);
 }
 

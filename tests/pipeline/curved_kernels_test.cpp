@@ -34,7 +34,7 @@ PairScene pair_of(const A& a, const B& b, const Pose& pose_a, const Pose& pose_b
 }
 
 PairResults answer_to(const PairScene& scene, ContactLevel level, double margin = 0.0) {
-  return ask(scene, {.level = level, .margin = margin}).at(0);
+  return compute_results(scene, {.level = level, .contact_margin = margin}).at(0);
 }
 
 /// Returns the depths of the contacts, deepest first.
@@ -158,8 +158,8 @@ TEST(CurvedKernels, parallel_cylinders_have_depth_of_sides) {
 }
 
 TEST(CurvedKernels, cone_side_at_box_edge_gives_depth) {
-  // The cone's side has a slope of 45 degrees. The nearest line of the side passes the edge of the
-  // box along y 0.125 / sqrt(2) inside it.
+  // The cone's side has a slope of 45 degrees. The edge of the box that is parallel to y is 0.125 /
+  // sqrt(2) inside the cone.
   const ConeShape cone{1.0, 0.5, 0.0};
   const double slope = std::sqrt(0.5);
   Pose corner = Pose::at(-1.0 - 0.5 + 0.125, 0.0, 1.0);
@@ -195,7 +195,8 @@ TEST(CurvedKernels, ellipsoid_on_plane_has_distance_of_lowest_point) {
 
 TEST(CurvedKernels, ball_by_ellipsoid_matches_closed_form) {
   // The point (r cos t, s sin t) of an ellipse with radii r and s has the normal (cos t / r, sin t
-  // / s). Here the radii are 2 and 1 and sin t = 0.6; the ball is outside and inside.
+  // / s). Here the radii are 2 and 1 and sin t is 0.6. The centre of the ball is outside and
+  // inside.
   const double surface[2] = {2.0 * 0.8, 0.6};
   const double out[2] = {0.4 / std::hypot(0.4, 0.6), 0.6 / std::hypot(0.4, 0.6)};
   for (const double away : {1.0, -0.125}) {
@@ -224,7 +225,8 @@ TEST(CurvedKernels, ellipsoids_end_to_end_have_depth_of_ends) {
 constexpr TaperedCapsuleShape kTaper{{4.0, 1.0}, 2.5};
 
 TEST(CurvedKernels, ball_beside_tapered_capsule_has_distance_from_side) {
-  // On either side of the middle of the side, (2, 0, 1.5).
+  // The centre of the ball is on the normal of the side at its midpoint (2, 0, 1.5), outside and
+  // inside.
   for (const double away : {1.0, -0.125}) {
     const Pose at = Pose::at(2.0 + 0.8 * away, 0, 1.5 + 0.6 * away);
     const PairResults answer =
@@ -239,10 +241,10 @@ TEST(CurvedKernels, ball_beside_tapered_capsule_has_distance_from_side) {
 TEST(CurvedKernels, lying_tapered_capsule_on_plane_has_two_points) {
   // Turned about y so that the normal of the side points down.
   const double half = 0.5 * (std::acos(0.6) - 2.0 * kRightAngle);
-  Pose lying = Pose::at(0, 0, 2.25);
-  lying.orientation[0] = std::cos(half);
-  lying.orientation[2] = std::sin(half);
-  const PairScene scene = pair_of(HalfSpaceShape{}, kTaper, Pose{}, lying);
+  Pose on_side = Pose::at(0, 0, 2.25);
+  on_side.orientation[0] = std::cos(half);
+  on_side.orientation[2] = std::sin(half);
+  const PairScene scene = pair_of(HalfSpaceShape{}, kTaper, Pose{}, on_side);
   const PairResults answer = answer_to(scene, ContactLevel::manifold);
   EXPECT_NEAR(answer.distance, -0.25, 4e-15);
   ASSERT_EQ(answer.contacts.size(), 2U);
@@ -266,7 +268,7 @@ TEST(CurvedKernels, tapered_capsule_in_box_has_depth_of_ball) {
 }
 
 TEST(CurvedKernels, parallel_tapered_capsules_have_depth_of_sides) {
-  // The second is the mirror image of the first, so that their sides are parallel.
+  // The second capsule is the mirror image of the first, so that their sides are parallel.
   const double n[3] = {0.8, 0.0, 0.6};
   const TaperedCapsuleShape upside_down{{1.0, 4.0}, 2.5};
   Pose beside = Pose::at(2.0 * 2.0, 0, 2.0 * 1.5);
@@ -275,7 +277,7 @@ TEST(CurvedKernels, parallel_tapered_capsules_have_depth_of_sides) {
 }
 
 TEST(CurvedKernels, overlapping_tapered_capsules_have_depth_of_balls) {
-  // Both are upright: the larger balls are side by side, 0.3 apart.
+  // Both capsules are upright. The centres of the larger balls are 0.3 apart, at the same height.
   const TaperedCapsuleShape taper{{0.5, 0.125}, 0.25};
   expect_depth(pair_of(taper, taper, Pose{}, Pose::at(0.18, 0.24, 0)), 0.7, {0.6, 0.8, 0.0});
 }
@@ -295,7 +297,8 @@ TEST(CurvedKernels, needle_through_coin_has_least_depth) {
       EllipsoidShape{{0.65358348169210523, 0.0, 0.0}, 0.0},
       EllipsoidShape{{1.1007418655307882e-08, 6.7142671839396405e-09, 0.0}, rounding}, along, coin);
   for (const NarrowTier tier : {NarrowTier::robust, NarrowTier::reference}) {
-    const auto answer = ask(scene, {.level = ContactLevel::distance, .tier = tier}).at(0);
+    const auto answer =
+        compute_results(scene, {.level = ContactLevel::distance, .tier = tier}).at(0);
     // The least extent of the coin across the needle, in long double.
     EXPECT_NEAR(-answer.distance, rounding + 3.2603644706036771e-10, answer.error_bound);
     EXPECT_LE(answer.error_bound, 1e-9);
@@ -303,7 +306,7 @@ TEST(CurvedKernels, needle_through_coin_has_least_depth) {
 }
 
 TEST(CurvedKernels, equal_opposite_directions_give_either_normal) {
-  // Moving either way separates the drums equally soon.
+  // The depths of the drums along +x and -x are equal.
   const CylinderShape drum{0.5, 2.0, 0.0};
   const PairScene scene = pair_of(drum, drum, Pose{}, turned_about_x(kRightAngle, 0.0));
   NarrowPhase narrow;
@@ -359,8 +362,8 @@ TEST(CurvedKernels, user_shape_depth_ignores_its_radius) {
   PairScene scene;
   Random random(13);
   add_pairs(scene, support, support, PairStyle::ordinary, 500, random);
-  const NarrowOptions asked{.level = ContactLevel::distance};
-  const auto close = ask(scene, asked);
+  const NarrowOptions narrow_options{.level = ContactLevel::distance};
+  const auto close = compute_results(scene, narrow_options);
   std::vector<double> sizes;
   for (const BodyPair& pair : scene.pairs) sizes.push_back(extent(scene, pair));
   for (ShapeId& id : scene.shapes) {
@@ -368,7 +371,7 @@ TEST(CurvedKernels, user_shape_depth_ignores_its_radius) {
     loose.radius *= 1000.0;
     ASSERT_EQ(scene.pool.add(loose, id), Status::ok);
   }
-  const auto wide = ask(scene, asked);
+  const auto wide = compute_results(scene, narrow_options);
   for (std::size_t i = 0; i < close.size(); ++i) {
     EXPECT_EQ(close[i].overlap, wide[i].overlap) << i;
     EXPECT_NEAR(close[i].distance, wide[i].distance, 6e-7 * sizes[i]) << i;
@@ -443,15 +446,16 @@ class CurvedPairs : public testing::TestWithParam<CurvedKind> {
 constexpr double kReach = 0.05;
 
 NarrowOptions options(ContactLevel level, NarrowTier tier) {
-  return {.level = level, .tier = tier, .margin = kReach};
+  return {.level = level, .tier = tier, .contact_margin = kReach};
 }
 
-/// `is_exact`: pairs that touch are decided by exact arithmetic.
+/// If `is_exact`, exact arithmetic decides pairs that touch.
 void expect_answers_of_the_solver(const PairScene& scene, bool is_exact) {
-  const auto solved = ask(scene, options(ContactLevel::distance, NarrowTier::reference));
-  const auto verdict = ask(scene, options(ContactLevel::boolean, NarrowTier::robust));
-  const auto found = ask(scene, options(ContactLevel::distance, NarrowTier::robust));
-  const auto touch = ask(scene, options(ContactLevel::manifold, NarrowTier::robust));
+  const auto solved =
+      compute_results(scene, options(ContactLevel::distance, NarrowTier::reference));
+  const auto verdict = compute_results(scene, options(ContactLevel::boolean, NarrowTier::robust));
+  const auto found = compute_results(scene, options(ContactLevel::distance, NarrowTier::robust));
+  const auto touch = compute_results(scene, options(ContactLevel::manifold, NarrowTier::robust));
   for (std::size_t i = 0; i < solved.size(); ++i) {
     const double d = solved[i].distance;
     const double doubt = solved[i].error_bound + found[i].error_bound;
@@ -499,7 +503,7 @@ std::vector<double> distances_to_points(PairScene& scene, std::uint32_t body,
 }
 
 void expect_contacts_on_both_surfaces(PairScene& scene) {
-  const auto touch = ask(scene, options(ContactLevel::manifold, NarrowTier::robust));
+  const auto touch = compute_results(scene, options(ContactLevel::manifold, NarrowTier::robust));
   for (std::size_t i = 0; i < touch.size(); ++i) {
     // Lines within 0.001 of parallel get a contact at each end of their common part, where they may
     // be slightly farther apart.
@@ -546,8 +550,8 @@ TEST_P(CurvedPairs, ordinary_pairs_rarely_need_solver) {
   expect_few_solved(scene_of(PairStyle::ordinary, 2000));
 }
 
-/// Stands bodies upright in a tilted frame: turned about their own axes, upside down or not, boxes
-/// on any of their faces.
+/// Makes bodies upright in a tilted frame: turned about their own axes, upside down or not; boxes
+/// stand on any of their faces.
 void make_upright(PairScene& scene, const Quaternion& lean, Random& random) {
   for (std::size_t i = 0; i < scene.poses.size(); ++i) {
     const double spin = random.uniform(0.0, 2.0 * kRightAngle);
@@ -570,7 +574,7 @@ TEST_P(CurvedPairs, upright_pairs_match_solver) {
       PairScene scene = scene_of(style, scaled(300), 18);
       make_upright(scene, lean, random);
       expect_answers_of_the_solver(scene, GetParam().b < ellipsoid);
-      // If a user shape lies on a half-space, the contact at the deepest point may be above the
+      // If a user shape is on a half-space, the contact at the deepest point may be above the
       // shape's surface.
       const bool is_level = GetParam().a == half_space && GetParam().b == support;
       if (style == PairStyle::ordinary && !is_level) expect_contacts_on_both_surfaces(scene);
@@ -594,7 +598,7 @@ TEST_P(CurvedPairs, answers_match_on_every_isa) {
       std::vector<PairResults> expected;
       for (const Isa isa : available_isas()) {
         const IsaScope scope(isa);
-        const auto answers = ask(scene, options(level, NarrowTier::robust));
+        const auto answers = compute_results(scene, options(level, NarrowTier::robust));
         if (expected.empty()) expected = answers;
         for (std::size_t i = 0; i < answers.size(); ++i) {
           ASSERT_TRUE(same(answers[i], expected[i])) << i << " " << to_string(isa);
@@ -606,11 +610,11 @@ TEST_P(CurvedPairs, answers_match_on_every_isa) {
 
 TEST_P(CurvedPairs, single_pair_matches_batch) {
   PairScene scene = scene_of(PairStyle::lattice, 60);
-  const auto all = ask(scene, options(ContactLevel::manifold, NarrowTier::robust));
+  const auto all = compute_results(scene, options(ContactLevel::manifold, NarrowTier::robust));
   const std::vector<BodyPair> pairs = scene.pairs;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     scene.pairs = {pairs[i]};
-    const auto one = ask(scene, options(ContactLevel::manifold, NarrowTier::robust));
+    const auto one = compute_results(scene, options(ContactLevel::manifold, NarrowTier::robust));
     ASSERT_TRUE(same(one.at(0), all[i])) << i;
   }
 }
@@ -620,9 +624,9 @@ TEST_P(CurvedPairs, far_pairs_match_near_pairs) {
   for (Pose& pose : scene.poses) {
     for (double& x : pose.position) x = std::round(x * 0x1p10) * 0x1p-10;
   }
-  const auto here = ask(scene, options(ContactLevel::manifold, NarrowTier::robust));
+  const auto here = compute_results(scene, options(ContactLevel::manifold, NarrowTier::robust));
   for (Pose& pose : scene.poses) pose.position[1] += 1e9;
-  const auto there = ask(scene, options(ContactLevel::manifold, NarrowTier::robust));
+  const auto there = compute_results(scene, options(ContactLevel::manifold, NarrowTier::robust));
   for (std::size_t i = 0; i < here.size(); ++i) ASSERT_TRUE(same(here[i], there[i])) << i;
 }
 

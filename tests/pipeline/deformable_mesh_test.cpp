@@ -132,10 +132,10 @@ std::vector<Pair> candidates_by_force(FeaturePair kind, const MeshReference& a,
 }
 
 /// Collects all chunks, in the order of delivery.
-template <typename Result, typename Ask>
-std::vector<Result> collected(Ask&& ask) {
+template <typename Result, typename Query>
+std::vector<Result> collected(Query&& query) {
   std::vector<Result> all;
-  EXPECT_EQ(ask([&](std::span<const Result> chunk) {
+  EXPECT_EQ(query([&](std::span<const Result> chunk) {
               EXPECT_FALSE(chunk.empty());
               all.insert(all.end(), chunk.begin(), chunk.end());
             }),
@@ -166,11 +166,11 @@ TEST(DeformableMeshes, each_edge_is_stored_once) {
   for (const MeshStep& step : sample_steps()) {
     DeformableMesh mesh;
     ASSERT_EQ(step.build(mesh), Status::ok);
-    const MeshReference twin(step, {}, 0.0);
-    ASSERT_EQ(mesh.edges(), twin.edges());
+    const MeshReference reference(step, {}, 0.0);
+    ASSERT_EQ(mesh.edges(), reference.edges());
     EXPECT_EQ(mesh.triangles(), step.corners.size() / 3);
     EXPECT_EQ(mesh.vertices(), step.start.size());
-    for (std::size_t i = 0; i < mesh.edges(); ++i) EXPECT_EQ(mesh.edge(i), twin.edge(i));
+    for (std::size_t i = 0; i < mesh.edges(); ++i) EXPECT_EQ(mesh.edge(i), reference.edge(i));
   }
 }
 
@@ -181,9 +181,10 @@ TEST(DeformableMeshes, self_candidates_are_exactly_overlapping_boxes) {
       DeformableMesh mesh({.origin = origin});
       ASSERT_EQ(step.build(mesh), Status::ok);
       ASSERT_EQ(step.move(mesh, distance), Status::ok);
-      const MeshReference twin(step, origin, distance);
+      const MeshReference reference(step, origin, distance);
       for (const FeaturePair kind : kMeshFeaturePairs) {
-        EXPECT_EQ(in_order(candidates_of(mesh, kind)), candidates_by_force(kind, twin, twin, true));
+        EXPECT_EQ(in_order(candidates_of(mesh, kind)),
+                  candidates_by_force(kind, reference, reference, true));
       }
     }
   }
@@ -242,7 +243,7 @@ TEST(DeformableMeshes, self_impacts_match_single_queries) {
     ASSERT_EQ(step.build(mesh), Status::ok);
     const double separation = 1e-3;
     ASSERT_EQ(step.move(mesh, separation), Status::ok);
-    const MeshReference twin(step, {}, 0.0);
+    const MeshReference reference(step, {}, 0.0);
     for (const FeaturePair kind : kMeshFeaturePairs) {
       for (const double least : {0.0, separation}) {
         const FeatureImpactOptions options{.min_separation = least};
@@ -251,9 +252,9 @@ TEST(DeformableMeshes, self_impacts_match_single_queries) {
         std::sort(found.begin(), found.end(),
                   [](const MeshImpact& p, const MeshImpact& q) { return p.features < q.features; });
         std::size_t next = 0;
-        for (const Pair& pair : candidates_by_force(kind, twin, twin, true)) {
-          const auto a = twin.feature(kind, false, pair.first);
-          const auto b = twin.feature(kind, true, pair.second);
+        for (const Pair& pair : candidates_by_force(kind, reference, reference, true)) {
+          const auto a = reference.feature(kind, false, pair.first);
+          const auto b = reference.feature(kind, true, pair.second);
           FeatureImpact impact;
           ASSERT_EQ(feature_impact(kind, points_at(step.start, a, step.start, b),
                                    points_at(step.end, a, step.end, b), impact, options),
@@ -301,14 +302,14 @@ TEST(DeformableMeshes, proximity_returns_near_features_and_witness_points) {
     ASSERT_EQ(step.build(mesh), Status::ok);
     ASSERT_EQ(step.move(mesh, thickness), Status::ok);
     const double digits = 1e-9 + 1e-14 * origin.norm();
-    const MeshReference twin(step, origin, thickness);
+    const MeshReference reference(step, origin, thickness);
     for (const FeaturePair kind : kMeshFeaturePairs) {
       std::set<Pair> near;
       for (const MeshProximity& one : collected<MeshProximity>(
                [&](auto&& take) { return mesh.self_proximity(kind, thickness, take); })) {
         near.insert(one.features);
-        const auto points = points_at(step.end, twin.feature(kind, false, one.features.first),
-                                      step.end, twin.feature(kind, true, one.features.second));
+        const auto points = points_at(step.end, reference.feature(kind, false, one.features.first),
+                                      step.end, reference.feature(kind, true, one.features.second));
         EXPECT_NEAR(one.distance, feature_distance(kind, points, points, 1.0), digits);
         EXPECT_NEAR((one.point[1] - one.point[0]).norm(), one.distance, digits);
         Vec3d sum[2];
@@ -325,9 +326,9 @@ TEST(DeformableMeshes, proximity_returns_near_features_and_witness_points) {
           EXPECT_NEAR((sum[side] - one.point[side]).norm(), 0.0, digits);
         }
       }
-      for (const Pair& pair : candidates_by_force(kind, twin, twin, true)) {
-        const auto points = points_at(step.end, twin.feature(kind, false, pair.first), step.end,
-                                      twin.feature(kind, true, pair.second));
+      for (const Pair& pair : candidates_by_force(kind, reference, reference, true)) {
+        const auto points = points_at(step.end, reference.feature(kind, false, pair.first),
+                                      step.end, reference.feature(kind, true, pair.second));
         const double distance = feature_distance(kind, points, points, 1.0);
         const bool listed = near.contains(pair);
         EXPECT_TRUE(listed || !(distance < thickness - digits));

@@ -171,18 +171,19 @@ TEST(ExactOverlap, half_space_touches_lowest_point) {
     pair.poses[1].position[2] = std::nextafter(3.0, 2.0);
     EXPECT_EQ(pair.verdict(ShapeKind::half_space, kind), ExactVerdict::overlapping);
   }
-  // A normal nearly along an axis whose length rounds to 1.
+  // A normal close to an axis. Its length is above 1, but rounds to 1.
   pair.half_spaces[0] = {{0.0, 0x1p-60, 1.0}, 1.0};
   pair.poses[1].position[2] = 3.0;
   EXPECT_EQ(pair.verdict(ShapeKind::half_space, ShapeKind::sphere), ExactVerdict::overlapping);
   EXPECT_EQ(pair.verdict(ShapeKind::half_space, ShapeKind::box), ExactVerdict::overlapping);
-  // On a plane of slope 3:4 a disc reaches 4/5 of its radius down.
+  // The unit normal is (0, 3/5, 4/5). Along it a horizontal disc of radius 4 extends by 3/5 of 4,
+  // and its centre at z = 3 is 4/5 of 3 from the plane: both are 12/5.
   pair.half_spaces[0] = {{0.0, 0.75, 1.0}, 0.0};
   pair.poses[1] = Pose::at(0.0, 0.0, 0.0);
   pair.cylinders[1] = {4.0, 0.0, 0.0};
   pair.poses[1].position[2] = 3.0;
   EXPECT_EQ(pair.verdict(ShapeKind::half_space, ShapeKind::cylinder), ExactVerdict::touching);
-  // A rounding of 1 raises it by 5/4, which is 1 along the normal.
+  // With a rounding of 1, the disc touches 5/4 higher, which is 1 along the normal.
   pair.cylinders[1].rounding = 1.0;
   pair.poses[1].position[2] = 4.25;
   EXPECT_EQ(pair.verdict(ShapeKind::half_space, ShapeKind::cylinder), ExactVerdict::touching);
@@ -387,7 +388,7 @@ TEST(ExactOverlap, tiny_rims_are_decided_exactly) {
   EXPECT_EQ(pair.verdict(ShapeKind::box, ShapeKind::cone, up), ExactVerdict::separated);
 }
 
-/// Sets one of the 24 rotations that map axes to axes.
+/// Sets one of eight rotations that map axes to axes.
 void set_quarter_turns(Random& random, Pose& pose) {
   static const double kTurns[][4] = {{1, 0, 0, 0}, {0, 0, 3, 0},  {1, 1, 0, 0},  {0, -2, 0, 2},
                                      {0, 1, 1, 0}, {1, 0, -1, 0}, {1, 1, -1, 1}, {-5, 5, 5, 5}};
@@ -398,7 +399,7 @@ void set_quarter_turns(Random& random, Pose& pose) {
 TEST(ExactOverlap, quarter_turned_cylinders_touch_at_distance_zero) {
   Random random(29);
   int seen[3] = {};
-  int lying = 0;
+  int touching_triangles = 0;
   const ShapeKind others[] = {ShapeKind::sphere,   ShapeKind::capsule,    ShapeKind::box,
                               ShapeKind::cylinder, ShapeKind::half_space, ShapeKind::triangle};
   for (std::size_t i = 0; i < scaled(20000); ++i) {
@@ -413,7 +414,7 @@ TEST(ExactOverlap, quarter_turned_cylinders_touch_at_distance_zero) {
       pair.boxes[side] = {{digit(random, 1, 3), digit(random, 1, 3), digit(random, 1, 3)},
                           rounding};
       pair.spheres[side].radius = digit(random, 1, 3);
-      // Perpendicular to an axis.
+      // A triangle that is perpendicular to an axis.
       TriangleShape& triangle = pair.triangles[side];
       triangle = {{{-1.0, -4.0, 2.0}, {4.0, -1.0, 2.0}, {0.0, 5.0, 2.0}}, rounding};
       for (auto& vertex : triangle.vertex) vertex[1] += digit(random, -2, 2);
@@ -431,7 +432,7 @@ TEST(ExactOverlap, quarter_turned_cylinders_touch_at_distance_zero) {
       continue;
     }
     ++seen[static_cast<int>(verdict)];
-    if (other == ShapeKind::triangle && verdict == ExactVerdict::touching) ++lying;
+    if (other == ShapeKind::triangle && verdict == ExactVerdict::touching) ++touching_triangles;
     // Roots of small integers are either equal or farther apart than this.
     const bool zero = std::abs(answer.distance) < 1e-9;
     ASSERT_EQ(verdict == ExactVerdict::touching, zero) << i << ' ' << answer.distance;
@@ -439,7 +440,7 @@ TEST(ExactOverlap, quarter_turned_cylinders_touch_at_distance_zero) {
       ASSERT_EQ(verdict == ExactVerdict::separated, answer.distance > 0.0) << i;
     }
   }
-  EXPECT_GT(lying, 0);
+  EXPECT_GT(touching_triangles, 0);
   for (const int count : seen) EXPECT_GT(count, 0);
 }
 
@@ -462,7 +463,8 @@ TEST(ExactOverlap, points_touch_corners_sides_and_insides_of_triangles) {
     }
     EXPECT_EQ(pair.verdict(ShapeKind::triangle, ShapeKind::sphere), ExactVerdict::touching);
     EXPECT_EQ(pair.mirrored(ShapeKind::triangle, ShapeKind::sphere), ExactVerdict::touching);
-    // Move the point out of the plane by one unit in the last place of a coordinate in it.
+    // Move one coordinate of the point by one ulp. The point leaves the plane of the triangle,
+    // unless the axis of this coordinate is parallel to the plane.
     const int k = static_cast<int>(random.below(3));
     double across[3];
     for (int i = 0; i < 3; ++i) {
@@ -566,7 +568,7 @@ TEST(ExactOverlap, turned_boxes_of_any_range_are_decided) {
   Random random(78);
   Pair pair;
   HullColumns columns[2];
-  int asked = 0;
+  int tested = 0;
   for (std::size_t i = 0; i < scaled(3000); ++i) {
     set_lattice(random, pair, columns);
     for (BoxShape& box : pair.boxes) box.rounding = 0.0;
@@ -579,11 +581,11 @@ TEST(ExactOverlap, turned_boxes_of_any_range_are_decided) {
     const ExactVerdict thin = pair.verdict(ShapeKind::box, ShapeKind::box);
     half = 0x1p-1050;
     if (flat != thin) continue;
-    ++asked;
+    ++tested;
     ASSERT_EQ(pair.verdict(ShapeKind::box, ShapeKind::box), flat) << i;
     ASSERT_EQ(pair.mirrored(ShapeKind::box, ShapeKind::box), flat) << i;
   }
-  EXPECT_GT(asked, 50);
+  EXPECT_GT(tested, 50);
 }
 
 TEST(ExactOverlap, shapes_over_level_planes_are_decided) {

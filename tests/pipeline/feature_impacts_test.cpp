@@ -148,8 +148,8 @@ TEST(FeatureImpacts, impacts_start_at_requested_separation) {
   }
 }
 
-/// A vertex or an edge that crosses a face's plane beside the face, or passes another edge, at a
-/// gap.
+/// Returns a step in which a vertex crosses the plane of a face beside the face, or an edge passes
+/// another edge, at the distance `gap`.
 FeatureStep passing_step(FeaturePair kind, Random& random, double gap) {
   FeatureStep step;
   if (kind == FeaturePair::vertex_face) {

@@ -63,7 +63,8 @@ class ExactSearch {
     }
   }
 
-  /// Bisects [low, high], unless an earlier interval has settled the answer.
+  /// Bisects [low, high], unless an earlier interval has settled the answer: it contains a touch,
+  /// or the bisections ended without a proof.
   void run(double low, double high, int halvings) {
     if (settled_) return;
     const std::vector<ExactVector> first = at(low);

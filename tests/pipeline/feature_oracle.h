@@ -14,10 +14,12 @@ struct ExactImpact {
   double to = 1.0;
 };
 
-/// Bisects the step until each interval is settled, in one of two ways: a plane through the origin
-/// has all corners of the polygon of differences strictly on one side at both ends; or the signed
-/// volume changes sign while the origin, seen along a fixed direction, stays inside the polygon. At
-/// most 2^-halvings of the step stays unsettled.
+/// Bisects the step, earlier halves first, until an interval is settled in one of two ways. The
+/// features do not touch in it if a plane through the origin has all corners of the polygon of
+/// differences strictly on one side at both ends. They touch in it if the signed volume does not
+/// keep its sign while the origin, seen along a fixed direction, stays inside the polygon. The
+/// search ends at the first interval with a touch, or at the first interval of length 2^-halvings
+/// that is not settled.
 [[nodiscard]] ExactImpact exact_impact(FeaturePair kind, const std::array<Vec3d, 4>& start,
                                        const std::array<Vec3d, 4>& end, int halvings = 44);
 

@@ -26,7 +26,7 @@ using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
 /// A shape and its pose on the plane z = 0.
-struct Standing {
+struct RestingShape {
   std::string name;
   ShapeId shape;
   Quaterniond turn = Quaterniond::Identity();
@@ -43,14 +43,14 @@ class Stage {
   Stage() : composites(pool) {
     add_round();
     add_prisms();
-    add_lying();
+    add_on_side();
     add_grounds();
   }
 
   ShapePool pool;
   CompositePool composites;
-  std::vector<Standing> bodies;
-  std::vector<Standing> grounds;
+  std::vector<RestingShape> bodies;
+  std::vector<RestingShape> grounds;
 
  private:
   template <typename Shape>
@@ -104,11 +104,11 @@ class Stage {
     bodies.push_back({"own block", own_block, Quaterniond::Identity(), 0.5});
   }
 
-  void add_lying() {
-    const Quaterniond lies(AngleAxisd(0.5 * std::numbers::pi, Vector3d::UnitY()));
-    bodies.push_back({"lying cylinder", made(CylinderShape{0.5, 0.8}), lies, 0.5});
-    bodies.push_back({"lying capsule", made(CapsuleShape{0.3, 0.7}), lies, 0.3, false, 0.03});
-    bodies.push_back({"lying prism of 6", prism(6, 0.5, 0.8), lies, 0.5 * std::sqrt(0.75)});
+  void add_on_side() {
+    const Quaterniond on_side(AngleAxisd(0.5 * std::numbers::pi, Vector3d::UnitY()));
+    bodies.push_back({"lying cylinder", made(CylinderShape{0.5, 0.8}), on_side, 0.5});
+    bodies.push_back({"lying capsule", made(CapsuleShape{0.3, 0.7}), on_side, 0.3, false, 0.03});
+    bodies.push_back({"lying prism of 6", prism(6, 0.5, 0.8), on_side, 0.5 * std::sqrt(0.75)});
     bodies.push_back({"flat egg", made(EllipsoidShape{{1.0, 1.0, 0.2}}), Quaterniond::Identity(),
                       0.2, false, 0.06});
     const double slope = std::asin(0.1 / 0.7);
@@ -118,20 +118,21 @@ class Stage {
   }
 
   void add_grounds() {
-    const auto stands = [&](const char* name, ShapeId id, double half) {
+    const auto add_ground = [&](const char* name, ShapeId id, double half) {
       grounds.push_back({name, id, Quaterniond::Identity(), -half});
     };
-    stands("half-space", made(HalfSpaceShape{}), 0.0);
-    stands("box", made(BoxShape{{3.0, 3.0, 0.5}}), 0.5);
-    stands("smaller box", made(BoxShape{{0.6, 0.6, 0.5}}), 0.5);
-    stands("triangle",
-           made(TriangleShape{{{-5.0, -4.0, 0.0}, {5.0, -4.0, 0.0}, {0.0, 6.0, 0.0}}, 0.0}), 0.0);
-    stands("hull of 8 sides", prism(8, 3.0, 0.5), 0.5);
-    stands("smaller hull of 12 sides", prism(12, 0.8, 0.5), 0.5);
-    stands("cylinder", made(CylinderShape{1.0, 0.5}), 0.5);
-    stands("wider cylinder", made(CylinderShape{2.0, 0.5}), 0.5);
-    stands("own block", own(UserShape::block, 2.0, 2.0, 0.5), 0.5);
-    stands("own drum", own(UserShape::drum, 1.2, 1.2, 0.5), 0.5);
+    add_ground("half-space", made(HalfSpaceShape{}), 0.0);
+    add_ground("box", made(BoxShape{{3.0, 3.0, 0.5}}), 0.5);
+    add_ground("smaller box", made(BoxShape{{0.6, 0.6, 0.5}}), 0.5);
+    add_ground("triangle",
+               made(TriangleShape{{{-5.0, -4.0, 0.0}, {5.0, -4.0, 0.0}, {0.0, 6.0, 0.0}}, 0.0}),
+               0.0);
+    add_ground("hull of 8 sides", prism(8, 3.0, 0.5), 0.5);
+    add_ground("smaller hull of 12 sides", prism(12, 0.8, 0.5), 0.5);
+    add_ground("cylinder", made(CylinderShape{1.0, 0.5}), 0.5);
+    add_ground("wider cylinder", made(CylinderShape{2.0, 0.5}), 0.5);
+    add_ground("own block", own(UserShape::block, 2.0, 2.0, 0.5), 0.5);
+    add_ground("own drum", own(UserShape::drum, 1.2, 1.2, 0.5), 0.5);
     // Offsets keep the edges of meshes and tiles away from the edges of standing shapes.
     Surface surface = grid(12, 0.65F, Cut::same, [](float, float) { return 0.0F; });
     for (Point& vertex : surface.vertices) vertex += Point(0.07F, 0.11F, 0.0F);
@@ -139,7 +140,7 @@ class Stage {
     EXPECT_EQ(composites.add_mesh(surface.vertices,
                                   IndexView(std::span<const std::uint32_t>(surface.corners)), mesh),
               Status::ok);
-    stands("mesh", mesh, 0.0);
+    add_ground("mesh", mesh, 0.0);
     grounds.back().has_parts = true;
     const ShapeId tile = made(BoxShape{{0.575, 0.575, 0.5}});
     std::vector<CompoundChild> tiles;
@@ -148,14 +149,14 @@ class Stage {
     }
     ShapeId compound;
     EXPECT_EQ(composites.add_compound(tiles, compound), Status::ok);
-    stands("tiles", compound, 0.0);
+    add_ground("tiles", compound, 0.0);
     grounds.back().has_parts = true;
   }
 
   std::deque<UserShape> sets_;
 };
 
-Pose standing_pose(const Quaterniond& turn, const Vector3d& place) {
+Pose resting_pose(const Quaterniond& turn, const Vector3d& place) {
   Pose pose = Pose::at(place.x(), place.y(), place.z());
   pose.orientation[0] = turn.w();
   for (int i = 0; i < 3; ++i) pose.orientation[i + 1] = turn.vec()[i];
@@ -181,20 +182,20 @@ struct Tremble {
   double size;
 };
 
-Kept frames_of(Stage& stage, const Standing& body, const Standing& ground, const Tremble& tremble,
-               Random& random) {
+Kept frames_of(Stage& stage, const RestingShape& body, const RestingShape& ground,
+               const Tremble& tremble, Random& random) {
   SceneOptions options;
   options.execution = Execution::serial();
-  options.margin = 0.02;
+  options.contact_margin = 0.02;
   options.contact_reduction = true;
   options.warm_start = true;
   options.composites = &stage.composites;
   Scene scene(stage.pool, options);
   Key key;
   EXPECT_EQ(scene.add({.shape = ground.shape,
-                       .pose = standing_pose(tremble.world * ground.turn,
-                                             tremble.world * Vector3d(0, 0, ground.height)),
-                       .motion = Motion::fixed},
+                       .pose = resting_pose(tremble.world * ground.turn,
+                                            tremble.world * Vector3d(0, 0, ground.height)),
+                       .state = BodyState::fixed},
                       key),
             Status::ok);
   EXPECT_EQ(scene.add({.shape = body.shape}, key), Status::ok);
@@ -208,8 +209,8 @@ Kept frames_of(Stage& stage, const Standing& body, const Standing& ground, const
     const Vector3d place =
         tremble.place + Vector3d(0, 0, body.height) + 0.01 * tremble.size * any();
     const Quaterniond turn(AngleAxisd(tremble.size * random.unit(), any().normalized()));
-    EXPECT_EQ(scene.move(key, standing_pose((tremble.world * turn * body.turn).normalized(),
-                                            tremble.world * place)),
+    EXPECT_EQ(scene.move(key, resting_pose((tremble.world * turn * body.turn).normalized(),
+                                           tremble.world * place)),
               Status::ok);
     EXPECT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
     std::vector<Vector3d> now;
@@ -237,8 +238,8 @@ const Quaterniond kWorlds[] = {Quaterniond::Identity(),
                                Quaterniond(AngleAxisd(-0.5 * std::numbers::pi, Vector3d::UnitX())),
                                Quaterniond(AngleAxisd(2.2, Vector3d(0.3, 0.5, -0.8).normalized()))};
 
-Kept stands_of(Stage& stage, const Standing& body, const Standing& ground, double size,
-               Random& random) {
+Kept frames_in_all_worlds(Stage& stage, const RestingShape& body, const RestingShape& ground,
+                          double size, Random& random) {
   Kept kept;
   for (const Quaterniond& world : kWorlds) {
     for (const Vector3d& place :
@@ -252,10 +253,10 @@ Kept stands_of(Stage& stage, const Standing& body, const Standing& ground, doubl
 TEST(WarmStart, trembling_shapes_keep_their_points) {
   Stage stage;
   Random random(41);
-  for (const Standing& ground : stage.grounds) {
-    for (const Standing& body : stage.bodies) {
+  for (const RestingShape& ground : stage.grounds) {
+    for (const RestingShape& body : stage.bodies) {
       for (const double size : {1e-6, 1e-5, 1e-4}) {
-        const Kept kept = stands_of(stage, body, ground, size, random);
+        const Kept kept = frames_in_all_worlds(stage, body, ground, size, random);
         SCOPED_TRACE(body.name + " on " + ground.name + " trembles by " + std::to_string(size));
         const double share = ground.has_parts ? body.lost_on_parts : 0.01;
         EXPECT_LE(static_cast<double>(kept.lost), share * static_cast<double>(kept.points))

@@ -1,6 +1,6 @@
 // Shapes whose cores are flat polygons, segments or points, coplanar, parallel or collinear,
-// rounded or not. Their separating direction may lie within the plane, where neither shape has a
-// normal. Tier robust must agree with the solver. WINNOW_TEST_SCALE=100 makes it a million pairs.
+// rounded or not. Their separating direction may be parallel to the plane, where neither shape has
+// a normal. Tier robust must agree with the solver. WINNOW_TEST_SCALE=100 tests a million pairs.
 
 #include <gtest/gtest.h>
 
@@ -47,7 +47,8 @@ class Judge {
     if (answer.overlap != truth.overlap) complain(wrong_, "wrong verdict", i, truth, answer, how);
     if (options.level == ContactLevel::boolean) return;
     const double bound = truth.error_bound + answer.error_bound;
-    const bool far = options.level == ContactLevel::manifold && answer.distance > options.margin;
+    const bool far =
+        options.level == ContactLevel::manifold && answer.distance > options.contact_margin;
     const double off = answer.distance - truth.distance;
     const bool within = far ? off <= bound : std::abs(off) <= bound;
     if (!within) complain(beyond_, "beyond its bound", i, truth, answer, how);
@@ -96,18 +97,20 @@ TEST_P(FlatCores, all_levels_match_solver) {
   Random random(static_cast<std::uint64_t>(a) * 16 + static_cast<std::uint64_t>(b));
   PairScene scene;
   add_flat_pairs(scene, a, b, scaled(160), random);
-  const auto truths = ask(scene, {.level = ContactLevel::distance, .tier = NarrowTier::reference});
+  const auto truths =
+      compute_results(scene, {.level = ContactLevel::distance, .tier = NarrowTier::reference});
   Judge judge(scene);
-  const NarrowOptions asked[] = {{.level = ContactLevel::boolean},
-                                 {.level = ContactLevel::distance},
-                                 {.level = ContactLevel::manifold},
-                                 {.level = ContactLevel::manifold, .margin = kMargin}};
+  const NarrowOptions all_options[] = {
+      {.level = ContactLevel::boolean},
+      {.level = ContactLevel::distance},
+      {.level = ContactLevel::manifold},
+      {.level = ContactLevel::manifold, .contact_margin = kMargin}};
   for (const Isa isa : available_isas()) {
     const IsaScope scope(isa);
-    for (const NarrowOptions& options : asked) {
+    for (const NarrowOptions& options : all_options) {
       const std::string how = std::string(to_string(isa)) + ", level " +
                               std::to_string(static_cast<int>(options.level));
-      const auto answers = ask(scene, options);
+      const auto answers = compute_results(scene, options);
       for (std::size_t i = 0; i < truths.size(); ++i) {
         judge.judge(i, truths[i], answers[i], options, how);
         judge.judge(i, truths[i], answer_of_one(scene, scene.pairs[i], options), options,

@@ -35,7 +35,7 @@ struct Scene {
     poses.push_back(pose);
     return static_cast<std::uint32_t>(shapes.size() - 1);
   }
-  [[nodiscard]] FlatReference twin(std::uint32_t body, const double origin[3]) const {
+  [[nodiscard]] FlatReference reference(std::uint32_t body, const double origin[3]) const {
     const ShapeId id = shapes[body];
     if (id.kind() == ShapeKind::box) {
       return {pool.tables().boxes[id.index()], poses[body], origin};
@@ -122,7 +122,8 @@ Pose aligned_pose(Random& random, double turn) {
   return pose;
 }
 
-// Adds a shape of the kind. With `wild` it may be flat, thin, a point, or far larger than others.
+// Adds a shape of the kind. If `wild`, it may be flat, thin, a point, or of a size from 1e-6 to
+// 1e4.
 std::uint32_t add_shape(Random& random, Scene& scene, ShapeKind kind, const Pose& pose, bool wild) {
   const double rounding = random.chance(0.25) ? random.uniform(0.0, 0.3) : 0.0;
   const double size = wild && random.chance(0.3) ? random.log_uniform(1e-6, 1e4) : 1.0;
@@ -172,7 +173,7 @@ Scene hostile_scene(ShapeKind a, ShapeKind b, std::size_t count) {
   return scene;
 }
 
-// Returns the sum of all lengths of a pair.
+// Returns the largest 1-norm of a vertex of the pair, or the sum of the roundings if it is larger.
 double scale_of(const FlatReference& a, const FlatReference& b) {
   long double scale = a.rounding + b.rounding;
   for (const FlatReference* t : {&a, &b}) {
@@ -188,35 +189,35 @@ struct FlatReferences {
   double scale;
 
   FlatReferences(const Scene& scene, std::size_t i)
-      : a(scene.twin(scene.pairs[i].a, scene.poses[scene.pairs[i].a].position)),
-        b(scene.twin(scene.pairs[i].b, scene.poses[scene.pairs[i].a].position)),
+      : a(scene.reference(scene.pairs[i].a, scene.poses[scene.pairs[i].a].position)),
+        b(scene.reference(scene.pairs[i].b, scene.poses[scene.pairs[i].a].position)),
         distance(signed_distance(a, b)),
         scale(scale_of(a, b)) {}
 };
 
 std::vector<FlatReferences> references_of(const Scene& scene) {
-  std::vector<FlatReferences> twins;
-  for (std::size_t i = 0; i < scene.pairs.size(); ++i) twins.emplace_back(scene, i);
-  return twins;
+  std::vector<FlatReferences> references;
+  for (std::size_t i = 0; i < scene.pairs.size(); ++i) references.emplace_back(scene, i);
+  return references;
 }
 
 // Relative error of the reference implementation: a few roundings.
 constexpr long double kReferenceError = 1e-17L;
 
-void expect_overlaps(const std::vector<FlatReferences>& twins, const Answers& answers) {
-  for (std::size_t i = 0; i < twins.size(); ++i) {
+void expect_overlaps(const std::vector<FlatReferences>& references, const Answers& answers) {
+  for (std::size_t i = 0; i < references.size(); ++i) {
     if (!answers.certified[i]) continue;
-    const double doubt = twins[i].scale * static_cast<double>(kReferenceError);
-    if (std::abs(twins[i].distance) <= doubt) continue;
-    ASSERT_EQ(answers.overlap[i], twins[i].distance <= 0.0L ? 1 : 0)
-        << i << " distance " << static_cast<double>(twins[i].distance);
+    const double doubt = references[i].scale * static_cast<double>(kReferenceError);
+    if (std::abs(references[i].distance) <= doubt) continue;
+    ASSERT_EQ(answers.overlap[i], references[i].distance <= 0.0L ? 1 : 0)
+        << i << " distance " << static_cast<double>(references[i].distance);
   }
 }
 
-void expect_distances(const std::vector<FlatReferences>& twins, const Answers& answers) {
-  for (std::size_t i = 0; i < twins.size(); ++i) {
+void expect_distances(const std::vector<FlatReferences>& references, const Answers& answers) {
+  for (std::size_t i = 0; i < references.size(); ++i) {
     if (!answers.certified[i]) continue;
-    const FlatReferences& t = twins[i];
+    const FlatReferences& t = references[i];
     const double d = answers.distance[i];
     const double doubt = answers.bound[i] + t.scale * static_cast<double>(64 * kReferenceError);
     ASSERT_NEAR(d, static_cast<double>(t.distance), doubt) << i;
@@ -229,7 +230,7 @@ void expect_distances(const std::vector<FlatReferences>& twins, const Answers& a
     ASSERT_NEAR(static_cast<double>(n.norm()), 1.0, 1e-13) << i;
     // The shapes are separated along the normal by the distance.
     ASSERT_NEAR(static_cast<double>(separation(t.a, t.b, n)), d, tolerance) << i;
-    // Both witness points lie on the shapes.
+    // Both witness points are on the shapes.
     const LongVector on_a = answers.point_of(i);
     const LongVector on_b = on_a + n * d;
     const double slack = t.scale * 1e-6;
@@ -238,11 +239,11 @@ void expect_distances(const std::vector<FlatReferences>& twins, const Answers& a
   }
 }
 
-void expect_manifolds(const std::vector<FlatReferences>& twins, const Answers& answers,
+void expect_manifolds(const std::vector<FlatReferences>& references, const Answers& answers,
                       double margin) {
-  for (std::size_t i = 0; i < twins.size(); ++i) {
+  for (std::size_t i = 0; i < references.size(); ++i) {
     if (!answers.certified[i]) continue;
-    const FlatReferences& t = twins[i];
+    const FlatReferences& t = references[i];
     const double d = answers.distance[i];
     const double tolerance = answers.bound[i] + t.scale * 1e-6;
     if (d > margin) {
@@ -280,13 +281,13 @@ std::string name_of(const ::testing::TestParamInfo<Kinds>& info) {
 }
 
 void expect_all_right(const Scene& scene) {
-  const std::vector<FlatReferences> twins = references_of(scene);
+  const std::vector<FlatReferences> references = references_of(scene);
   for (const Isa isa : available_isas()) {
     const IsaScope scope(isa);
-    expect_overlaps(twins, run(scene, ContactLevel::boolean));
-    expect_distances(twins, run(scene, ContactLevel::distance));
+    expect_overlaps(references, run(scene, ContactLevel::boolean));
+    expect_distances(references, run(scene, ContactLevel::distance));
     for (const double margin : {0.0, 0.25}) {
-      expect_manifolds(twins, run(scene, ContactLevel::manifold, margin), margin);
+      expect_manifolds(references, run(scene, ContactLevel::manifold, margin), margin);
     }
   }
 }

@@ -18,11 +18,11 @@ using Turn = Eigen::Quaterniond;
 
 // Not normalized, so that they are exact. Poses need no unit quaternions.
 const Turn kUpright(1.0, 0.0, 0.0, 0.0);
-const Turn kLying(1.0, 0.0, 1.0, 0.0);  // maps z to x
+const Turn kZToX(1.0, 0.0, 1.0, 0.0);  // maps z to x
 const Turn kOnSide(1.0, 1.0, 0.0, 0.0);
 
 /// A shape, and the turn that puts its core in the plane z = 0, along x if it is a segment.
-struct LyingShape {
+struct ShapeInPlane {
   ShapeId id;
   Turn turn = kUpright;
 };
@@ -42,8 +42,9 @@ class FlatMaker {
     const double size_b = random_.chance(0.7) ? size_a : size_a * random_.log_uniform(1e-3, 1e3);
     const Eigen::Vector3d start(origin, -origin, 0.5 * origin);
     const auto first = static_cast<std::uint32_t>(scene_.shapes.size());
-    put(lying(a, size_a), kUpright, all, start);
-    put(lying(b, size_b), turn_in_plane() * tilt(), all, start + all.normalized() * way(size_a));
+    put(shape_in_plane(a, size_a), kUpright, all, start);
+    put(shape_in_plane(b, size_b), turn_in_plane() * tilt(), all,
+        start + all.normalized() * way(size_a));
     scene_.pairs.push_back({first, first + 1});
     scene_.pairs.push_back({first + 1, first});
   }
@@ -87,28 +88,28 @@ class FlatMaker {
   }
 
   template <typename Shape>
-  LyingShape added(const Shape& shape, const Turn& turn) {
-    LyingShape made{{}, turn};
+  ShapeInPlane added(const Shape& shape, const Turn& turn) {
+    ShapeInPlane made{{}, turn};
     EXPECT_EQ(scene_.pool.add(shape, made.id), Status::ok);
     return made;
   }
 
-  LyingShape box(int d, double size, double round) {
+  ShapeInPlane box(int d, double size, double round) {
     double half[3] = {d > 0 ? length(size) : 0.0, d > 1 ? length(size) : 0.0,
                       d > 2 ? length(size) : 0.0};
     if (random_.chance(0.5)) return added(BoxShape{{half[0], half[1], half[2]}, round}, kUpright);
-    if (random_.chance(0.5)) return added(BoxShape{{half[2], half[1], half[0]}, round}, kLying);
+    if (random_.chance(0.5)) return added(BoxShape{{half[2], half[1], half[0]}, round}, kZToX);
     return added(BoxShape{{half[0], half[2], half[1]}, round}, kOnSide);
   }
 
   template <typename Shape>
-  LyingShape spun(int d, double size, double round) {
+  ShapeInPlane revolved(int d, double size, double round) {
     const double radius = d > 1 ? length(size) : 0.0;
     const double half_length = d == 1 || d == 3 ? length(size) : 0.0;
-    return added(Shape{radius, half_length, round}, d == 1 ? kLying : kUpright);
+    return added(Shape{radius, half_length, round}, d == 1 ? kZToX : kUpright);
   }
 
-  LyingShape triangle(int d, double size, double round) {
+  ShapeInPlane triangle(int d, double size, double round) {
     TriangleShape shape;
     const auto points = corners(std::min(d, 2), 3, size);
     for (std::size_t i = 0; i < 3; ++i) {
@@ -118,28 +119,28 @@ class FlatMaker {
     return added(shape, kUpright);
   }
 
-  LyingShape hull(int d, double size, double round) {
-    LyingShape made;
+  ShapeInPlane hull(int d, double size, double round) {
+    ShapeInPlane made;
     const auto points = corners(d, 1 + random_.below(12), size);
     EXPECT_EQ(scene_.pool.add_hull(points, round, made.id), Status::ok);
     return made;
   }
 
-  LyingShape own(int d, double size, double round) {
+  ShapeInPlane own(int d, double size, double round) {
     UserShape& set = scene_.own.emplace_back();
     set.form = static_cast<UserShape::Form>(random_.below(4));
-    // A drum is round about z.
-    const bool lies = set.form == UserShape::drum && d == 1;
-    for (int k = 0; k < std::min(d, 3); ++k) set.size[lies ? 2 - k : k] = length(size);
+    // The axis of a drum is z. A drum that is a segment is turned to x.
+    const bool is_turned = set.form == UserShape::drum && d == 1;
+    for (int k = 0; k < std::min(d, 3); ++k) set.size[is_turned ? 2 - k : k] = length(size);
     if (set.form == UserShape::corners) {
       for (const Eigen::Vector3d& x : corners(d, 1 + random_.below(8), size)) {
         set.corner.insert(set.corner.end(), x.begin(), x.end());
       }
     }
-    return added(shape_of(set, round), lies ? kLying : kUpright);
+    return added(shape_of(set, round), is_turned ? kZToX : kUpright);
   }
 
-  LyingShape lying(ShapeKind kind, double size) {
+  ShapeInPlane shape_in_plane(ShapeKind kind, double size) {
     const int d = dimension();
     const double round = rounding(size);
     const double along = d > 0 ? length(size) : 0.0;
@@ -147,13 +148,13 @@ class FlatMaker {
       case ShapeKind::sphere:
         return added(SphereShape{round}, kUpright);
       case ShapeKind::capsule:
-        return added(CapsuleShape{round, along}, kLying);
+        return added(CapsuleShape{round, along}, kZToX);
       case ShapeKind::box:
         return box(d, size, round);
       case ShapeKind::cylinder:
-        return spun<CylinderShape>(d, size, round);
+        return revolved<CylinderShape>(d, size, round);
       case ShapeKind::cone:
-        return spun<ConeShape>(d, size, round);
+        return revolved<ConeShape>(d, size, round);
       case ShapeKind::hull:
         return hull(d, size, round);
       case ShapeKind::triangle:
@@ -167,13 +168,13 @@ class FlatMaker {
       case ShapeKind::tapered_capsule:
         return added(
             TaperedCapsuleShape{{round, random_.chance(0.5) ? round : rounding(size)}, along},
-            kLying);
+            kZToX);
       default:
         return own(d, size, round);
     }
   }
 
-  /// Returns a turn for both shapes.
+  /// Returns a rotation of both shapes.
   Turn common_turn() {
     static const Turn kTurns[] = {{1, 0, 0, 0}, {1, 1, 0, 0}, {0, 0, 1, 0},
                                   {1, 1, 1, 1}, {1, 2, 2, 0}, {3, 0, 1, 1}};
@@ -190,7 +191,7 @@ class FlatMaker {
     return {std::cos(half), 0.0, 0.0, std::sin(half)};
   }
 
-  /// Returns a turn out of the plane.
+  /// Returns a rotation by up to 0.1 out of the plane, in most cases none.
   Turn tilt() {
     if (random_.chance(0.7)) return kUpright;
     const double angle = random_.log_uniform(1e-17, 0.1);
@@ -208,7 +209,7 @@ class FlatMaker {
     return {coordinate(reach * size), in_line_ ? 0.0 : coordinate(reach * size), above * size};
   }
 
-  void put(const LyingShape& shape, const Turn& own, const Turn& all, const Eigen::Vector3d& at) {
+  void put(const ShapeInPlane& shape, const Turn& own, const Turn& all, const Eigen::Vector3d& at) {
     const Turn turn = all * own * shape.turn;
     scene_.shapes.push_back(shape.id);
     Pose pose;

@@ -27,7 +27,7 @@ struct Search {
   const FlatReference& b;
   long double best = -std::numeric_limits<long double>::infinity();
 
-  void look(const LongVector& axis) {
+  void test_axis(const LongVector& axis) {
     const long double size =
         std::max({std::fabs(axis.x()), std::fabs(axis.y()), std::fabs(axis.z())});
     if (!(size > 0.0L)) return;
@@ -92,18 +92,18 @@ long double separation(const FlatReference& a, const FlatReference& b, const Lon
 
 long double signed_distance(const FlatReference& a, const FlatReference& b) {
   Search search{a, b};
-  for (const LongVector& n : a.normals) search.look(n);
-  for (const LongVector& n : b.normals) search.look(n);
+  for (const LongVector& n : a.normals) search.test_axis(n);
+  for (const LongVector& n : b.normals) search.test_axis(n);
   for (const LongVector& e : a.edges) {
-    for (const LongVector& f : b.edges) search.look(product(e, f));
+    for (const LongVector& f : b.edges) search.test_axis(product(e, f));
   }
   // Directions from a vertex can be best only if the shapes are apart.
   for (const LongVector& v : a.vertices) {
     for (const LongVector& w : b.vertices) {
       const LongVector d = w - v;
-      search.look(d);
-      for (const LongVector& e : a.edges) search.look(across(d, e));
-      for (const LongVector& f : b.edges) search.look(across(d, f));
+      search.test_axis(d);
+      for (const LongVector& e : a.edges) search.test_axis(across(d, e));
+      for (const LongVector& f : b.edges) search.test_axis(across(d, f));
     }
   }
   return search.best;

@@ -18,7 +18,7 @@ inline std::vector<ContactPoint> contacts_on_floor(ShapePool& pool, ShapeId id, 
   NarrowPhase narrow;
   NarrowResult result;
   EXPECT_EQ(narrow.collide(pool, {shapes, poses}, pairs,
-                           {.level = ContactLevel::manifold, .margin = margin}, result),
+                           {.level = ContactLevel::manifold, .contact_margin = margin}, result),
             Status::ok);
   std::vector<ContactPoint> points;
   for (std::size_t i = 0; i < result.contacts(); ++i) points.push_back(result.contact(i));

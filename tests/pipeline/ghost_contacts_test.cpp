@@ -1,5 +1,5 @@
-// Ghost contacts (SceneOptions::suppress_ghost_contacts): floors of several fixed bodies must hold
-// sliding bodies like one large floor.
+// Ghost contacts (SceneOptions::suppress_ghost_contacts): floors of several fixed bodies must
+// support sliding bodies like one large floor.
 
 #include "tests/pipeline/composite_world.h"
 
@@ -48,7 +48,7 @@ struct SeamWorld {
   [[nodiscard]] BodyDefinition tile(Tiles kind, double x, double y, double z = 0.0) const {
     const ShapeId ids[] = {block, mesh, field, compound};
     BodyDefinition body{
-        .shape = ids[static_cast<int>(kind)], .pose = Pose::at(x, y, z), .motion = Motion::fixed};
+        .shape = ids[static_cast<int>(kind)], .pose = Pose::at(x, y, z), .state = BodyState::fixed};
     if (kind == Tiles::boxes) body.pose.position[2] -= 1.0;
     for (int k = 0; k < 2 && kind == Tiles::fields; ++k) body.pose.position[k] -= 2.0;
     return body;
@@ -73,25 +73,25 @@ struct SeamWorld {
 
 /// Summary of all manifolds: the least distance, and the number of normals that are not nearly
 /// vertical.
-struct Held {
+struct ContactsSummary {
   double distance = std::numeric_limits<double>::infinity();
   std::size_t aslant = 0;
   std::size_t manifolds = 0;
 };
 
-[[nodiscard]] Held held(Scene& scene, Contacts& contacts,
-                        ContactLevel level = ContactLevel::manifold) {
+[[nodiscard]] ContactsSummary summarize(Scene& scene, Contacts& contacts,
+                                        ContactLevel level = ContactLevel::manifold) {
   EXPECT_EQ(scene.collide(level, contacts), Status::ok);
-  Held held;
-  held.manifolds = contacts.manifolds();
+  ContactsSummary summary;
+  summary.manifolds = contacts.manifolds();
   for (std::size_t m = 0; m < contacts.manifolds(); ++m) {
-    held.distance = std::min(held.distance, contacts.distance()[m]);
-    if (std::abs(contacts.normal(2)[m]) < kAboutUp) ++held.aslant;
+    summary.distance = std::min(summary.distance, contacts.distance()[m]);
+    if (std::abs(contacts.normal(2)[m]) < kAboutUp) ++summary.aslant;
   }
-  return held;
+  return summary;
 }
 
-/// Slightly above or below the point where four tiles meet.
+/// The sliders are near the point that four tiles share, with gaps from -0.03 to 0.02.
 TEST(GhostContacts, flush_tiles_hold_sliders_like_one_floor) {
   SeamWorld world;
   Random random(81);
@@ -100,8 +100,8 @@ TEST(GhostContacts, flush_tiles_hold_sliders_like_one_floor) {
     for (const bool reduced : {false, true}) {
       for (const Slider& slider : world.sliders) {
         for (const bool seamless : {true, false}) {
-          Scene scene(world.shapes, {.margin = kSlidingMargin,
-                                     .carry_over = 0.001,
+          Scene scene(world.shapes, {.contact_margin = kSlidingMargin,
+                                     .cache_tolerance = 0.001,
                                      .contact_reduction = reduced,
                                      .suppress_ghost_contacts = seamless,
                                      .composites = &world.composites});
@@ -117,7 +117,7 @@ TEST(GhostContacts, flush_tiles_hold_sliders_like_one_floor) {
             const double gap = random.uniform(-0.03, 0.02);
             ASSERT_EQ(scene.move(key, sliding(random, slider.height + gap)), Status::ok);
             for (const ContactLevel level : {ContactLevel::manifold, ContactLevel::distance}) {
-              const Held found = held(scene, contacts, level);
+              const ContactsSummary found = summarize(scene, contacts, level);
               EXPECT_GT(found.manifolds, 0U);
               EXPECT_NEAR(found.distance, gap, 1e-6);
               if (seamless) {
@@ -137,7 +137,7 @@ TEST(GhostContacts, flush_tiles_hold_sliders_like_one_floor) {
 /// Two tiles with a seam at x = 0, and a slider.
 struct TwoTiles {
   TwoTiles(const SeamWorld& world, double second_x, double second_z, ShapeId slider)
-      : scene(world.shapes, {.margin = kSlidingMargin,
+      : scene(world.shapes, {.contact_margin = kSlidingMargin,
                              .suppress_ghost_contacts = true,
                              .composites = &world.composites}) {
     EXPECT_EQ(scene.add(world.tile(Tiles::boxes, -2.0, 0.0), tiles[0]), Status::ok);
@@ -196,8 +196,8 @@ std::vector<BodyDefinition> standing_bodies(ShapePool& shapes) {
           leaning(add(shapes, CapsuleShape{0.1, 0.6}), -0.2)};
 }
 
-/// Fixed bodies of which no two are flush: a floor with its top at z = 0, and a wall with its left
-/// side at x = 1 or a slope that rises from there.
+/// Fixed bodies, no two of which are flush: a floor with its top at z = 0; and at x = 1 a wall,
+/// with a second wall at a right angle, or a kerb, or a slope.
 struct FloorCorner {
   std::vector<BodyDefinition> bodies;
 };
@@ -206,7 +206,7 @@ struct FloorCorner {
 BodyDefinition box_from(ShapePool& shapes, const Eigen::Vector3d& least,
                         const Eigen::Vector3d& half, double angle = 0.0) {
   BodyDefinition body{.shape = add(shapes, BoxShape{{half.x(), half.y(), half.z()}, 0.0}),
-                      .motion = Motion::fixed};
+                      .state = BodyState::fixed};
   const Eigen::AngleAxisd turn(-angle, Eigen::Vector3d::UnitY());
   Eigen::Vector3d::Map(body.pose.position) = least + turn * half;
   body.pose.orientation[0] = std::cos(0.5 * angle);
@@ -223,12 +223,13 @@ std::vector<FloorCorner> corners_of(SeamWorld& world) {
   const BodyDefinition floors[] = {
       box(-7, -5, -2, 4, 5, 1),
       box(-7, -5, -2, 8, 5, 1),
-      {.shape = add(world.shapes, HalfSpaceShape{{0, 0, 1}, 0}), .motion = Motion::fixed},
+      {.shape = add(world.shapes, HalfSpaceShape{{0, 0, 1}, 0}), .state = BodyState::fixed},
       world.tile(Tiles::meshes, -0.9, 0),
       world.tile(Tiles::fields, -0.9, 0),
       world.tile(Tiles::compounds, -0.9, 0)};
   // A wall of triangles that crosses the floor.
-  BodyDefinition sheet{.shape = world.mesh, .pose = Pose::at(1, 0.1, 0.3), .motion = Motion::fixed};
+  BodyDefinition sheet{
+      .shape = world.mesh, .pose = Pose::at(1, 0.1, 0.3), .state = BodyState::fixed};
   sheet.pose.orientation[0] = sheet.pose.orientation[2] = std::sqrt(0.5);
   const CompoundChild courses[] = {{world.block, Pose::at(0, 0, -0.6)},
                                    {world.block, Pose::at(0, 0, 1.4)}};
@@ -239,13 +240,13 @@ std::vector<FloorCorner> corners_of(SeamWorld& world) {
       box(1, -5, 0, 1, 5, 3),
       box(1, -5, -0.01, 1, 5, 0.03),
       sheet,
-      {.shape = bricks, .pose = Pose::at(3, 0, 0), .motion = Motion::fixed}};
+      {.shape = bricks, .pose = Pose::at(3, 0, 0), .state = BodyState::fixed}};
   for (const BodyDefinition& floor : floors) {
     for (const BodyDefinition& wall : walls) {
       // Add a second wall at right angles, which makes a corner.
       corners.push_back({{floor, wall, box(-5, 0.5, -1, 6.5, 1, 3)}});
     }
-    // Kerbs, which barely rise above the floor.
+    // Kerbs, which rise above the floor by 0.004 and 0.05.
     for (const double height : {0.004, 0.05}) {
       corners.push_back({{floor, box(1, -5, -1, 1, 5, 0.5 * (1 + height))}});
     }
@@ -327,7 +328,7 @@ TEST(GhostContacts, floors_that_are_not_flush_keep_contacts) {
       for (BodyDefinition& each : bodies) {
         if (has_offsets) each.offsets = {0.003, random.uniform(-0.001, 0.001)};
       }
-      SceneOptions options{.margin = random.chance(0.5) ? 0.005 : 0.0,
+      SceneOptions options{.contact_margin = random.chance(0.5) ? 0.005 : 0.0,
                            .contact_reduction = random.chance(0.5)};
       for (const ContactLevel level : {ContactLevel::distance, ContactLevel::manifold}) {
         options.suppress_ghost_contacts = false;
@@ -451,14 +452,14 @@ TEST(GhostContacts, plate_on_many_tiles_matches_brute_force) {
   const double radius = std::sqrt(2.0 * half * half + 0.09);
   std::size_t dropped = 0;
   for (std::size_t round = 0; round < scaled(20); ++round) {
-    // In every second round hardly any two normals are equal.
+    // In odd rounds four of five tiles are tilted, so that few normals are equal.
     const auto bodies = plate_on_tiles(world, plate, round % 2 == 0 ? 0.8 : 0.2, random);
     std::vector<Key> keys(bodies.size());
-    Scene raw(world.shapes, {.margin = 0.05});
+    Scene raw(world.shapes, {.contact_margin = 0.05});
     Contacts all;
     ASSERT_EQ(raw.add(bodies, keys), Status::ok);
     ASSERT_EQ(raw.collide(ContactLevel::manifold, all), Status::ok);
-    Scene seamless(world.shapes, {.margin = 0.05, .suppress_ghost_contacts = true});
+    Scene seamless(world.shapes, {.contact_margin = 0.05, .suppress_ghost_contacts = true});
     Contacts contacts;
     ASSERT_EQ(seamless.add(bodies, keys), Status::ok);
     ASSERT_EQ(seamless.collide(ContactLevel::manifold, contacts), Status::ok);
@@ -475,7 +476,7 @@ TEST(GhostContacts, only_fixed_bodies_are_floors) {
   SeamWorld world;
   CountingMemory memory;
   Scene scene(world.shapes, {.memory = &memory,
-                             .margin = kSlidingMargin,
+                             .contact_margin = kSlidingMargin,
                              .suppress_ghost_contacts = true,
                              .composites = &world.composites});
   Key tiles[2];
@@ -485,10 +486,10 @@ TEST(GhostContacts, only_fixed_bodies_are_floors) {
   ASSERT_EQ(scene.add({.shape = world.sliders[0].shape, .pose = Pose::at(-0.05, 0.0, 0.49)}, key),
             Status::ok);
   Contacts contacts;
-  EXPECT_EQ(held(scene, contacts).manifolds, 1U);
+  EXPECT_EQ(summarize(scene, contacts).manifolds, 1U);
   EXPECT_EQ(scene.footprint().total().reserved, memory.outstanding());
-  ASSERT_EQ(scene.set_motion(tiles[1], Motion::sleeping), Status::ok);
-  EXPECT_EQ(held(scene, contacts).manifolds, 2U);
+  ASSERT_EQ(scene.set_body_state(tiles[1], BodyState::sleeping), Status::ok);
+  EXPECT_EQ(summarize(scene, contacts).manifolds, 2U);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// HeightField: box, sweep and proximity traversals compared with all triangles, active edges
+// HeightField: box, cast and proximity traversals compared with all triangles, active edges
 // compared with a mesh of the same triangles, refused input and memory.
 
 #include <gtest/gtest.h>
@@ -73,9 +73,10 @@ Slots brute_overlap(const HeightField& field, const double min[3], const double 
     TriangleShape shape;
     if (!field.triangle(i, shape)) continue;
     const FieldBox box = box_of(shape);
-    bool met = true;
-    for (int k = 0; k < 3; ++k) met = met && box.low[k] <= max[k] && box.high[k] >= min[k];
-    if (met) expected.push_back(i);
+    bool overlaps = true;
+    for (int k = 0; k < 3; ++k)
+      overlaps = overlaps && box.low[k] <= max[k] && box.high[k] >= min[k];
+    if (overlaps) expected.push_back(i);
   }
   return expected;
 }
@@ -147,7 +148,7 @@ void expect_traversal(const HeightField& field, double limit, Traverse&& travers
   EXPECT_LE(some.numbers.size(), all.numbers.size());
 }
 
-TEST(HeightFields, sweep_and_near_queries_match_brute_force) {
+TEST(HeightFields, cast_and_near_queries_match_brute_force) {
   Random random(9);
   const Field f(50, 70);
   for (std::size_t k = 0; k < scaled(60); ++k) {
@@ -162,7 +163,7 @@ TEST(HeightFields, sweep_and_near_queries_match_brute_force) {
     expect_traversal(
         f.field, limit,
         [&](double t, const SlotVisitor& visitor) {
-          height_sweep(grid_of(f.field), min, max, d, t, visitor);
+          height_cast(grid_of(f.field), min, max, d, t, visitor);
         },
         [&](const FieldBox& box) {
           double entry = 0;

@@ -18,7 +18,7 @@ namespace {
 std::vector<WorkStage> under_way;
 std::vector<WorkStage> begun;
 bool is_nested = true;
-std::vector<std::string> told;
+std::vector<std::string> log_lines;
 
 void note_stage(WorkStage stage, bool begins) {
   if (begins) {
@@ -32,16 +32,16 @@ void note_stage(WorkStage stage, bool begins) {
 
 void note_entry(const LogEntry& entry) {
   const bool is_choice = entry.kind == LogEntry::Kind::choice;
-  told.push_back(std::string(is_choice ? "choice " : "refusal ") + std::string(entry.what) +
-                 (is_choice ? " after " + std::string(entry.before) : "") + ": " +
-                 std::string(entry.reason));
+  log_lines.push_back(std::string(is_choice ? "choice " : "refusal ") + std::string(entry.what) +
+                      (is_choice ? " after " + std::string(entry.before) : "") + ": " +
+                      std::string(entry.reason));
 }
 
 struct Hooks : testing::Test {
   Hooks() {
     under_way.clear();
     begun.clear();
-    told.clear();
+    log_lines.clear();
     is_nested = true;
     set_stage_hook(note_stage);
     set_log_hook(note_entry);
@@ -63,7 +63,7 @@ TEST_F(Hooks, scene_stages_are_ordered_and_nested) {
   ASSERT_EQ(composites.add_mesh(std::span(points), std::span(corners), terrain), Status::ok);
   Scene scene(shapes, {.composites = &composites});
   Key key;
-  ASSERT_EQ(scene.add({.shape = terrain, .motion = Motion::fixed}, key), Status::ok);
+  ASSERT_EQ(scene.add({.shape = terrain, .state = BodyState::fixed}, key), Status::ok);
   ASSERT_EQ(scene.add({.shape = ball, .pose = Pose::at(0, 0, 0.4)}, key), Status::ok);
   ASSERT_EQ(scene.add({.shape = ball, .pose = Pose::at(0.7, 0, 0.4)}, key), Status::ok);
   Contacts contacts;
@@ -92,7 +92,7 @@ TEST_F(Hooks, removed_hooks_are_not_called) {
   EXPECT_EQ(partition.remove(Key{}), Status::invalid_key);
   EXPECT_EQ(partition.self_pairs(pairs), Status::ok);
   EXPECT_TRUE(begun.empty());
-  EXPECT_TRUE(told.empty());
+  EXPECT_TRUE(log_lines.empty());
 }
 
 TEST_F(Hooks, automatic_choice_is_logged) {
@@ -106,7 +106,7 @@ TEST_F(Hooks, automatic_choice_is_logged) {
   ASSERT_EQ(partition.self_pairs(pairs), Status::ok);
   const StructureChoice choice = partition.choice();
   ASSERT_NE(choice.structure.name(), before);
-  EXPECT_EQ(told,
+  EXPECT_EQ(log_lines,
             std::vector<std::string>{"choice " + std::string(choice.structure.name()) + " after " +
                                      std::string(before) + ": " + std::string(choice.reason)});
 }
@@ -120,10 +120,10 @@ TEST_F(Hooks, refused_calls_are_logged_with_reason) {
   Scene scene(shapes);
   EXPECT_EQ(scene.add({}, key), Status::invalid_key);
   EXPECT_EQ(scene.move(Key{}, Pose{}), Status::invalid_key);
-  EXPECT_EQ(told, (std::vector<std::string>{"refusal Partition::insert: invalid_bounds",
-                                            "refusal Partition::remove: invalid_key",
-                                            "refusal Scene::add: invalid_key",
-                                            "refusal Scene::move: invalid_key"}));
+  EXPECT_EQ(log_lines, (std::vector<std::string>{"refusal Partition::insert: invalid_bounds",
+                                                 "refusal Partition::remove: invalid_key",
+                                                 "refusal Scene::add: invalid_key",
+                                                 "refusal Scene::move: invalid_key"}));
 }
 
 TEST_F(Hooks, all_stages_have_names) {

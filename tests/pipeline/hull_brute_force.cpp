@@ -69,8 +69,8 @@ long double depth(const Placed& a, const Placed& b) {
     const Vector d = (a.end(e, 1) - a.end(e, 0)).normalized();
     for (std::uint32_t f = 0; f < b.hull.edge_count; ++f) {
       const Vector n = d.cross((b.end(f, 1) - b.end(f, 0)).normalized());
-      // Parallel edges span no face; the normals of nearly parallel ones are covered by face
-      // normals.
+      // Parallel edges span no face of the Minkowski difference. If edges are nearly parallel, a
+      // face normal is close to their cross product.
       if (n.norm() < 1e-9L) continue;
       least = std::min(least, overlap_along(a, b, n.normalized()));
       least = std::min(least, overlap_along(a, b, -n.normalized()));

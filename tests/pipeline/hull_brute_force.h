@@ -5,9 +5,10 @@
 
 namespace winnow::test {
 
-/// Returns the signed distance of two hulls without rounding, in long double and without pruning:
-/// the least over all pairs of features if they are apart, the least overlap along all face normals
-/// and edge cross products if they overlap. O(vertices x edges^2).
+/// Returns the signed distance of two hulls without rounding, in long double and without pruning.
+/// If the hulls are apart, it is the least distance over all pairs of features. If they overlap, it
+/// is minus the least overlap along all face normals and cross products of edges. O(vertices x
+/// edges^2).
 [[nodiscard]] long double brute_force_distance(const HullShape& a, const Pose& pose_a,
                                                const HullShape& b, const Pose& pose_b);
 

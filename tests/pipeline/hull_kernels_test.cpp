@@ -84,7 +84,7 @@ struct Answers {
 
 enum class Style { ball, sphere_large, box, plate, rich, rounded, prism };
 
-/// Relative orientation of hulls. Upright ones have parallel faces and edges.
+/// Relative orientation of hulls. Upright hulls have parallel faces and edges.
 enum class Turn { any, upright, none };
 
 /// Returns the corners of an upright prism.

@@ -44,8 +44,9 @@ struct Crowd {
       motions[pair.b] = moving.motion[1];
     }
   }
-  void find(std::span<const BodyPair> asked, ImpactResult& result) const {
-    ASSERT_EQ(time_of_impact(scene.pool, {scene.shapes, motions}, asked, {}, result), Status::ok);
+  void find(std::span<const BodyPair> selected, ImpactResult& result) const {
+    ASSERT_EQ(time_of_impact(scene.pool, {scene.shapes, motions}, selected, {}, result),
+              Status::ok);
   }
 
   Random random;
@@ -70,11 +71,11 @@ TEST(ImpactBatches, mixed_batch_matches_single_pairs) {
   const Crowd crowd(scaled(1500), 81);
   ImpactResult together;
   crowd.find(crowd.pairs, together);
-  ImpactResult alone;
+  ImpactResult single;
   for (std::size_t i = 0; i < crowd.pairs.size(); ++i) {
     SCOPED_TRACE(i);
-    crowd.find(std::span(crowd.pairs).subspan(i, 1), alone);
-    expect_same(together, i, alone, 0);
+    crowd.find(std::span(crowd.pairs).subspan(i, 1), single);
+    expect_same(together, i, single, 0);
   }
 }
 
@@ -82,15 +83,15 @@ TEST(ImpactBatches, mixed_batch_matches_single_pairs) {
 TEST(ImpactBatches, batch_of_equal_kinds_matches_single_pairs) {
   const std::vector<ShapeKind> kinds = moving_kinds();
   ImpactResult together;
-  ImpactResult alone;
+  ImpactResult single;
   for (const ShapeKind a : kinds) {
     for (const ShapeKind b : kinds) {
       SCOPED_TRACE(testing::Message() << to_string(a) << " " << to_string(b));
       const Crowd crowd(a, b, scaled(200), 84);
       crowd.find(crowd.pairs, together);
       for (std::size_t i = 0; i < crowd.pairs.size(); ++i) {
-        crowd.find(std::span(crowd.pairs).subspan(i, 1), alone);
-        expect_same(together, i, alone, 0);
+        crowd.find(std::span(crowd.pairs).subspan(i, 1), single);
+        expect_same(together, i, single, 0);
       }
     }
   }

@@ -123,13 +123,13 @@ class Nearest {
  public:
   explicit Nearest(Integer square) : square_(square) {}
 
-  void point(const Vector& a) { meet(dot(a, a), 1); }
+  void point(const Vector& a) { update_sign(dot(a, a), 1); }
   void segment(const Vector& a, const Vector& b) {
     const Vector edge = b - a;
     const Integer length = dot(edge, edge);
     if (dot(a, edge) >= 0 || dot(b, edge) <= 0) return;
     const Vector area = cross(a, b);
-    meet(dot(area, area), length);
+    update_sign(dot(area, area), length);
   }
   void triangle(const Vector& a, const Vector& b, const Vector& c) {
     const Vector normal = cross(b - a, c - a);
@@ -138,12 +138,12 @@ class Nearest {
       return;
     }
     const Integer height = dot(normal, a);
-    meet(height * height, dot(normal, normal));
+    update_sign(height * height, dot(normal, normal));
   }
   [[nodiscard]] int sign() const { return sign_; }
 
  private:
-  void meet(Integer numerator, Integer denominator) {
+  void update_sign(Integer numerator, Integer denominator) {
     const Integer rest = numerator - square_ * denominator;
     sign_ = std::min(sign_, (rest > 0) - (rest < 0));
   }

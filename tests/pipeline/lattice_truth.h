@@ -6,9 +6,9 @@
 
 namespace winnow::test {
 
-/// Returns the exact verdict for shapes whose lengths, positions and quaternions are one-digit
-/// integers, by testing every point, segment and triangle of vertex differences in integers. For
-/// spheres, capsules, boxes, triangles and hulls. O(n^6) in the vertices of a shape.
+/// Returns the exact verdict for two spheres, capsules, boxes, triangles or hulls whose lengths,
+/// positions and quaternions are one-digit integers. Tests every point, segment and triangle of
+/// vertex differences in integers. O(n^6) in the vertices of a shape.
 [[nodiscard]] ExactVerdict lattice_truth(const ShapeTables& tables, ShapeId a, const Pose& pose_a,
                                          ShapeId b, const Pose& pose_b);
 

@@ -60,7 +60,7 @@ PairScene resting_boxes(std::size_t count, double least_tilt, double most_tilt, 
     const double side = random.uniform(0.0, 6.28);
     const Eigen::Quaterniond tilted(
         Eigen::AngleAxisd(tilt, Eigen::Vector3d(std::cos(side), std::sin(side), 0.0)));
-    const Eigen::Quaterniond spun(Eigen::AngleAxisd(
+    const Eigen::Quaterniond rotated(Eigen::AngleAxisd(
         random.chance(0.3) ? 0.0 : random.uniform(-3.1, 3.1), Eigen::Vector3d::UnitZ()));
     const Eigen::Vector3d place(random.uniform(-0.4, 0.4), random.uniform(-0.4, 0.4),
                                 half[0].z() + half[1].z() - random.uniform(0.0, 0.01));
@@ -72,7 +72,7 @@ PairScene resting_boxes(std::size_t count, double least_tilt, double most_tilt, 
       scene.shapes.push_back(box_shape(scene.pool, half[0], (given & 1) != 0));
       scene.shapes.push_back(box_shape(scene.pool, half[1], (given & 2) != 0));
       scene.poses.push_back(pose_of(world, Eigen::Vector3d::Zero()));
-      scene.poses.push_back(pose_of(world * tilted * spun, world * place));
+      scene.poses.push_back(pose_of(world * tilted * rotated, world * place));
       scene.pairs.push_back({first, first + 1});
     }
   }
@@ -109,7 +109,7 @@ TEST(Manifolds, slightly_tilted_cubes_have_four_points) {
   scene.poses = {Pose{}, pose_of(turn.normalized(), {0.1, 0.1, 1.99})};
   scene.pairs = {{0, 1}};
   for (const NarrowTier tier : kTiers) {
-    const PairResults answer = ask(scene, {.tier = tier}).at(0);
+    const PairResults answer = compute_results(scene, {.tier = tier}).at(0);
     EXPECT_EQ(answer.contacts.size(), 4U);
     for (const ContactPoint& contact : answer.contacts) EXPECT_NEAR(contact.depth, 0.01, 5e-4);
   }
@@ -124,7 +124,7 @@ TEST(Manifolds, box_given_as_hull_matches_box) {
       const IsaScope scope(isa);
       for (const NarrowTier tier : kTiers) {
         SCOPED_TRACE(std::string(to_string(isa)) + " tilted by " + std::to_string(tilt[1]));
-        const auto answers = ask(scene, {.tier = tier, .margin = kMargin});
+        const auto answers = compute_results(scene, {.tier = tier, .contact_margin = kMargin});
         for (std::size_t i = 0; i < answers.size(); ++i) {
           const PairResults& as_boxes = answers[i / 4 * 4];
           ASSERT_GE(as_boxes.contacts.size(), 2U) << i;
@@ -176,14 +176,14 @@ TEST(Manifolds, capsule_deep_in_hull_has_deepest_point) {
   std::copy_n(other, 4, scene.poses[1].orientation);
   scene.pairs = {{0, 1}};
   for (const NarrowTier tier : kTiers) {
-    const PairResults answer = ask(scene, {.tier = tier}).at(0);
+    const PairResults answer = compute_results(scene, {.tier = tier}).at(0);
     EXPECT_EQ(answer.contacts.size(), 2U);
     EXPECT_NEAR(depth_of(answer), 0.0708781, 1e-6);
   }
 }
 
-// A ball near the corner, the edge and the face of a cube, and inside it; each in random
-// orientations and both orders of the bodies.
+// A ball near a corner, an edge and a face of a cube, and inside the cube; each case in random
+// orientations and in both orders of the bodies.
 TEST(Manifolds, ball_on_hull_has_midpoint_and_closest_feature) {
   constexpr double kRadius = 0.5;
   const Eigen::Vector3d half(1.0, 1.5, 2.0);
@@ -230,7 +230,7 @@ TEST(Manifolds, ball_on_hull_has_midpoint_and_closest_feature) {
   for (const Isa isa : available_isas()) {
     const IsaScope scope(isa);
     for (const NarrowTier tier : kTiers) {
-      const auto answers = ask(scene, {.tier = tier});
+      const auto answers = compute_results(scene, {.tier = tier});
       for (std::size_t i = 0; i < answers.size(); ++i) {
         SCOPED_TRACE(testing::Message()
                      << to_string(isa) << " " << static_cast<int>(tier) << " " << i);
@@ -271,7 +271,7 @@ TEST(Manifolds, points_include_deepest_and_respect_margin) {
     for (const NarrowTier tier : kTiers) {
       for (const double margin : {0.0, kMargin}) {
         SCOPED_TRACE(std::string(to_string(style)) + " margin " + std::to_string(margin));
-        const auto answers = ask(scene, {.tier = tier, .margin = margin});
+        const auto answers = compute_results(scene, {.tier = tier, .contact_margin = margin});
         for (std::size_t i = 0; i < answers.size(); ++i) {
           const PairResults& answer = answers[i];
           ASSERT_EQ(answer.contacts.empty(), answer.distance > margin) << i;
@@ -303,9 +303,9 @@ constexpr Kinds kKinds[] = {{capsule, capsule},  {sphere, box},  {sphere, hull},
 
 class ManifoldsOf : public testing::TestWithParam<Kinds> {};
 
-/// Manifolds of the solver for slightly perturbed poses. Rounding decides which of two equally good
-/// corners is kept, and whether two nearby points are merged, so that a manifold is accepted if it
-/// matches one of these.
+/// Manifolds of the solver for slightly perturbed poses. Rounding decides which of two equally deep
+/// corners is kept, and whether two nearby points are merged. Therefore a manifold is accepted if
+/// it matches one of the manifolds here.
 class Neighbours {
  public:
   static constexpr double kNudge = 4e-6;
@@ -325,9 +325,12 @@ class Neighbours {
       scene_.poses.push_back(pose);
     }
   }
-  void solve() { solved_ = ask(scene_, {.tier = NarrowTier::reference, .margin = kMargin}); }
+  void solve() {
+    solved_ = compute_results(scene_, {.tier = NarrowTier::reference, .contact_margin = kMargin});
+  }
 
-  /// Returns true if the manifold matches one of those added as number `place`.
+  /// Returns true if the manifold matches one of the manifolds of pair `place`, in the order of
+  /// add().
   [[nodiscard]] bool have(const PairResults& found, std::size_t place, double tolerance) const {
     const auto first = solved_.begin() + static_cast<std::ptrdiff_t>(place * kCount);
     return std::any_of(first, first + kCount, [&](const PairResults& solved) {
@@ -348,8 +351,9 @@ TEST_P(ManifoldsOf, lanes_match_solver) {
     PairScene scene;
     Random random(100 + done);
     add_pairs(scene, GetParam().a, GetParam().b, PairStyle::ordinary, kBatch, random);
-    const auto found = ask(scene, {.margin = kMargin});
-    const auto solved = ask(scene, {.tier = NarrowTier::reference, .margin = kMargin});
+    const auto found = compute_results(scene, {.contact_margin = kMargin});
+    const auto solved =
+        compute_results(scene, {.tier = NarrowTier::reference, .contact_margin = kMargin});
     const std::vector<BodyPair> pairs = scene.pairs;
     const auto tolerance = [&](std::size_t i) {
       return 2e-5 * (extent(scene, pairs[i]) + std::abs(solved[i].distance));

@@ -67,12 +67,12 @@ struct HullOnMesh {
 
   /// Returns the slots that the traversal reports.
   [[nodiscard]] Slots find(const TriangleMesh& mesh, double reach) const {
-    MeshHull asked{shape(), {}, reach};
+    MeshHull query{shape(), {}, reach};
     for (int row = 0; row < 3; ++row) {
       for (int column = 0; column < 3; ++column) {
-        asked.mesh_in_hull.matrix[row][column] = linear(row, column);
+        query.mesh_in_hull.matrix[row][column] = linear(row, column);
       }
-      asked.mesh_in_hull.offset[row] = offset[row];
+      query.mesh_in_hull.offset[row] = offset[row];
     }
     const Vector3d center = linear.inverse() * (Vector3d::Map(shape().center) - offset);
     const double infinity = std::numeric_limits<double>::infinity();
@@ -80,7 +80,7 @@ struct HullOnMesh {
     const double high[3] = {infinity, infinity, infinity};
     Slots slots(view_of(mesh).triangle_count);
     SlotSink sink{slots.data(), slots.size(), 0};
-    mesh_overlap(view_of(mesh), low, high, center.data(), infinity, &asked, sink);
+    mesh_overlap(view_of(mesh), low, high, center.data(), infinity, &query, sink);
     EXPECT_LE(sink.size, slots.size());
     slots.resize(static_cast<std::size_t>(sink.size));
     return slots;

@@ -91,7 +91,8 @@ class ObstacleReference {
     return least;
   }
 
-  /// Returns an upper bound of the speed at which two points approach each other.
+  /// Returns an upper bound of the speed at which any point of the face and any point of the
+  /// obstacle approach each other.
   [[nodiscard]] double speed(std::uint32_t face) const {
     double most = 0.0;
     double far = 0.0;
@@ -202,23 +203,23 @@ TEST(MeshObstacles, impacts_are_never_late_and_within_tolerance) {
         const RigidMotion motion = random_motion(about, turn, random);
         DeformableMesh mesh({.origin = about, .chunk = 7});
         ASSERT_EQ(soup.put(mesh), Status::ok);
-        std::map<std::uint32_t, MeshShapeImpact> met;
+        std::map<std::uint32_t, MeshShapeImpact> impacts;
         for (const MeshShapeImpact& impact :
              impacts_of(mesh, {obstacles.pool, obstacle.shape, motion},
                         {.composites = &obstacles.composites})) {
-          EXPECT_TRUE(met.emplace(impact.face, impact).second);
+          EXPECT_TRUE(impacts.emplace(impact.face, impact).second);
         }
-        hits += met.size();
-        ObstacleReference twin(obstacles.pool, obstacle, motion, soup);
+        hits += impacts.size();
+        ObstacleReference reference(obstacles.pool, obstacle, motion, soup);
         for (std::uint32_t face = 0; face < faces; ++face) {
-          const auto found = met.find(face);
-          const double until = found == met.end() ? 1.0 : found->second.time;
-          const Before then = before([&](double at) { return twin.distance(face, at); },
-                                     twin.speed(face), 1e-12 + 1e-15 * offset, until, 400);
-          EXPECT_NE(then, Before::met) << face;
+          const auto found = impacts.find(face);
+          const double until = found == impacts.end() ? 1.0 : found->second.time;
+          const Before then = before([&](double at) { return reference.distance(face, at); },
+                                     reference.speed(face), 1e-12 + 1e-15 * offset, until, 400);
+          EXPECT_NE(then, Before::overlapping) << face;
           unproved += then == Before::apart ? 0 : 1;
-          if (found == met.end()) continue;
-          const DistanceAt at = twin.distance(face, until);
+          if (found == impacts.end()) continue;
+          const DistanceAt at = reference.distance(face, until);
           EXPECT_LE(at.distance - at.error, 1.2 * kGap + 1e-15 * offset) << face;
           EXPECT_NEAR(found->second.normal.norm(), 1.0, 1e-9);
         }
@@ -237,12 +238,12 @@ TEST(MeshObstacles, impacts_keep_requested_separation) {
   ASSERT_EQ(soup.put(mesh, 0.2), Status::ok);
   for (const Obstacle& obstacle : obstacles.all) {
     const RigidMotion motion = random_motion({}, 1.0, random);
-    ObstacleReference twin(obstacles.pool, obstacle, motion, soup);
+    ObstacleReference reference(obstacles.pool, obstacle, motion, soup);
     for (const MeshShapeImpact& impact :
          impacts_of(mesh, {obstacles.pool, obstacle.shape, motion, 0.1},
                     {.composites = &obstacles.composites})) {
       if (impact.time == 0.0) continue;
-      EXPECT_NEAR(twin.distance(impact.face, impact.time).distance, 0.1, 2.0 * kGap);
+      EXPECT_NEAR(reference.distance(impact.face, impact.time).distance, 0.1, 2.0 * kGap);
     }
   }
 }
@@ -282,24 +283,24 @@ TEST(MeshObstacles, invalid_obstacles_are_refused) {
   Random random(20);
   const BendingSoup soup(4, {}, random);
   const ShapeId ball = obstacles.all.front().shape;
-  const RigidMotion stands = RigidMotion::standing(Pose{});
+  const RigidMotion at_rest = RigidMotion::stationary(Pose{});
   const auto status_of = [&](const DeformableMesh& mesh, const MeshObstacle& obstacle,
                              const ImpactOptions& options = {}) {
     return mesh.impacts_with(obstacle, options, [](std::span<const MeshShapeImpact>) { FAIL(); });
   };
   DeformableMesh mesh;
-  EXPECT_EQ(status_of(mesh, {obstacles.pool, ball, stands}), Status::invalid_argument);
+  EXPECT_EQ(status_of(mesh, {obstacles.pool, ball, at_rest}), Status::invalid_argument);
   ASSERT_EQ(soup.put(mesh, 0.2), Status::ok);
-  EXPECT_EQ(status_of(mesh, {obstacles.pool, ShapeId{}, stands}), Status::invalid_key);
-  EXPECT_EQ(status_of(mesh, {obstacles.pool, obstacles.all.back().shape, stands}),
+  EXPECT_EQ(status_of(mesh, {obstacles.pool, ShapeId{}, at_rest}), Status::invalid_key);
+  EXPECT_EQ(status_of(mesh, {obstacles.pool, obstacles.all.back().shape, at_rest}),
             Status::unsupported);
-  RigidMotion bad = stands;
+  RigidMotion bad = at_rest;
   bad.travel[1] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(status_of(mesh, {obstacles.pool, ball, bad}), Status::invalid_pose);
-  EXPECT_EQ(status_of(mesh, {obstacles.pool, ball, stands}, {.tolerance = 0.0}),
+  EXPECT_EQ(status_of(mesh, {obstacles.pool, ball, at_rest}, {.tolerance = 0.0}),
             Status::invalid_argument);
   for (const double separation : {-1.0, 0.11, std::numeric_limits<double>::quiet_NaN()}) {
-    EXPECT_EQ(status_of(mesh, {obstacles.pool, ball, stands, separation}),
+    EXPECT_EQ(status_of(mesh, {obstacles.pool, ball, at_rest, separation}),
               Status::invalid_argument);
   }
 }

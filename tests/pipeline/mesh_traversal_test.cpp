@@ -1,4 +1,4 @@
-// Traversals of mesh trees (overlap, pairs, sweep, near, rays) on every ISA, compared with tests of
+// Traversals of mesh trees (overlap, pairs, cast, near, rays) on every ISA, compared with tests of
 // all triangles in long double.
 
 #include "pipeline/mesh/mesh_traversal.h"
@@ -35,7 +35,8 @@ struct ReferenceTriangle {
 };
 
 /// Returns the placed triangles of a mesh by slot.
-std::vector<ReferenceTriangle> twin(const MeshView& mesh, const MeshPlacement& placement = {}) {
+std::vector<ReferenceTriangle> reference_triangles(const MeshView& mesh,
+                                                   const MeshPlacement& placement = {}) {
   std::vector<ReferenceTriangle> result(mesh.triangle_count);
   for (std::size_t slot = 0; slot < result.size(); ++slot) {
     for (std::size_t k = 0; k < 3; ++k) {
@@ -188,8 +189,8 @@ void expect_pairs(const TriangleMesh& a, const TriangleMesh& b, const MeshPlacem
       on_all_isas([&] { return overlap_pairs(view_of(a), view_of(b), placement, margin); });
   const std::set<SlotPairs::value_type> set(found.begin(), found.end());
   EXPECT_EQ(set.size(), found.size());
-  const auto own = twin(view_of(a));
-  const auto placed = twin(view_of(b), placement);
+  const auto own = reference_triangles(view_of(a));
+  const auto placed = reference_triangles(view_of(b), placement);
   const Real rounding = static_cast<Real>((a.radius() + b.radius() * 4.0 + 2.0) * 64 * 0x1p-24);
   std::size_t missed = 0;
   std::size_t apart = 0;
@@ -265,8 +266,8 @@ TEST_F(Meshes, pairs_separated_by_planes_are_dropped) {
   const TriangleMesh& mesh = meshes_[0];
   const MeshPlacement placement{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {1.3, 0.2, 0.1}};
   const double margin[3] = {0, 0, 0};
-  const auto own = twin(view_of(mesh));
-  const auto placed = twin(view_of(mesh), placement);
+  const auto own = reference_triangles(view_of(mesh));
+  const auto placed = reference_triangles(view_of(mesh), placement);
   const SlotPairs found = overlap_pairs(view_of(mesh), view_of(mesh), placement, margin);
   EXPECT_GT(found.size(), 20U);
   for (const auto& [i, j] : found) EXPECT_LE(gap(own[i], placed[j], margin, false), 1e-5L);
@@ -317,8 +318,8 @@ struct Seen {
 
 /// Returns the time when the box [min, max] starts to overlap a triangle's box, or infinity if it
 /// does not until the limit.
-Real swept_box_time(const ReferenceTriangle& triangle, const double min[3], const double max[3],
-                    const double direction[3], Real limit, Real slack) {
+Real moving_box_time(const ReferenceTriangle& triangle, const double min[3], const double max[3],
+                     const double direction[3], Real limit, Real slack) {
   Real first = 0;
   Real last = limit;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -335,10 +336,10 @@ Real swept_box_time(const ReferenceTriangle& triangle, const double min[3], cons
   return first <= last ? first : std::numeric_limits<Real>::infinity();
 }
 
-TEST_F(Meshes, sweep_visits_all_triangles_until_limit) {
+TEST_F(Meshes, cast_visits_all_triangles_until_limit) {
   Random random(3);
   for (const TriangleMesh& mesh : meshes_) {
-    const auto triangles = twin(view_of(mesh));
+    const auto triangles = reference_triangles(view_of(mesh));
     const Eigen::Vector3d middle = (mesh.bounds().min + mesh.bounds().max).cast<double>() * 0.5;
     for (std::size_t k = 0; k < scaled(40); ++k) {
       const double r = mesh.radius();
@@ -357,33 +358,33 @@ TEST_F(Meshes, sweep_visits_all_triangles_until_limit) {
       const double limit = random.chance(0.3) ? std::numeric_limits<double>::infinity() : 1.5;
       const Slots shown = on_all_isas([&] {
         Seen seen{{}, 0.0, true};
-        mesh_sweep(view_of(mesh), min, max, direction, limit, {Seen::visit, &seen});
+        mesh_cast(view_of(mesh), min, max, direction, limit, {Seen::visit, &seen});
         return seen.slots;
       });
       const std::set<std::uint32_t> set(shown.begin(), shown.end());
       EXPECT_EQ(set.size(), shown.size());
       Real earliest = std::numeric_limits<Real>::infinity();
       for (std::uint32_t slot = 0; slot < triangles.size(); ++slot) {
-        const Real time = swept_box_time(triangles[slot], min, max, direction, limit, 0);
+        const Real time = moving_box_time(triangles[slot], min, max, direction, limit, 0);
         earliest = std::min(earliest, time);
         EXPECT_TRUE(time > static_cast<Real>(limit) || std::isinf(time) || set.count(slot) != 0);
         if (set.count(slot) == 0 || slow) continue;
         EXPECT_FALSE(
-            std::isinf(swept_box_time(triangles[slot], min, max, direction, limit, r * 1e-9)))
-            << "visited a triangle that the sweep never reaches";
+            std::isinf(moving_box_time(triangles[slot], min, max, direction, limit, r * 1e-9)))
+            << "visited a triangle that the cast never reaches";
       }
       // The visitor returns the earliest time after the first leaf. The traversal may then visit
       // only earlier leaves.
       Seen seen{{}, static_cast<double>(earliest), false};
-      mesh_sweep(view_of(mesh), min, max, direction, limit, {Seen::visit, &seen});
+      mesh_cast(view_of(mesh), min, max, direction, limit, {Seen::visit, &seen});
       EXPECT_LE(seen.slots.size(), shown.size());
       if (!shown.empty()) {
         EXPECT_TRUE(std::any_of(seen.slots.begin(), seen.slots.end(), [&](std::uint32_t slot) {
-          return swept_box_time(triangles[slot], min, max, direction, limit, 0) == earliest;
+          return moving_box_time(triangles[slot], min, max, direction, limit, 0) == earliest;
         }));
       }
       seen = {{}, -1.0, false};
-      mesh_sweep(view_of(mesh), min, max, direction, limit, {Seen::visit, &seen});
+      mesh_cast(view_of(mesh), min, max, direction, limit, {Seen::visit, &seen});
       EXPECT_LE(seen.slots.size(), 16U);
     }
   }
@@ -420,7 +421,7 @@ SingleSurfaceRay lone(const SurfaceRay& ray) {
 TEST_F(Meshes, ray_visits_triangle_at_which_it_aims) {
   Random random(11);
   for (const TriangleMesh& mesh : meshes_) {
-    const auto triangles = twin(view_of(mesh));
+    const auto triangles = reference_triangles(view_of(mesh));
     for (std::size_t k = 0; k < scaled(200); ++k) {
       const auto aim = static_cast<std::uint32_t>(random.below(triangles.size()));
       const Eigen::Vector3d at = point_of(triangles[aim], random);
@@ -519,7 +520,7 @@ TEST(MeshRays, rays_hit_flat_and_thin_meshes) {
     ASSERT_EQ(mesh.build(std::span<const Eigen::Vector3d>(vertices),
                          std::span<const std::uint32_t>(corners)),
               Status::ok);
-    const auto triangles = twin(view_of(mesh));
+    const auto triangles = reference_triangles(view_of(mesh));
     for (std::size_t k = 0; k < scaled(400); ++k) {
       const auto aim = static_cast<std::uint32_t>(random.below(triangles.size()));
       const Eigen::Vector3d at = point_of(triangles[aim], random);
@@ -561,7 +562,7 @@ struct SeenByRays {
 TEST_F(Meshes, ray_packet_matches_single_rays) {
   Random random(13);
   for (const TriangleMesh& mesh : meshes_) {
-    const auto triangles = twin(view_of(mesh));
+    const auto triangles = reference_triangles(view_of(mesh));
     for (const std::uint32_t count : {1U, 2U, 9U, kRaysAtOnce}) {
       SurfaceRays rays{};
       alignas(64) double limits[kRaysAtOnce] = {};
@@ -582,9 +583,9 @@ TEST_F(Meshes, ray_packet_matches_single_rays) {
         SeenByRays together;
         mesh_rays(view_of(mesh), rays, limits, count, together.visitor());
         for (std::uint32_t i = 0; i < count; ++i) {
-          SeenByRays alone;
-          mesh_ray(view_of(mesh), lone(rays[i]), limits[i], alone.visitor());
-          EXPECT_EQ(together.slots[i], alone.slots[0]) << "ray " << i << " of " << count;
+          SeenByRays single;
+          mesh_ray(view_of(mesh), lone(rays[i]), limits[i], single.visitor());
+          EXPECT_EQ(together.slots[i], single.slots[0]) << "ray " << i << " of " << count;
         }
       }
     }
@@ -608,8 +609,8 @@ TEST_F(Meshes, near_pairs_are_visited_for_any_direction) {
     const TriangleMesh& b = meshes_[random.below(meshes_.size())];
     if (a.triangles() * b.triangles() > 2'000'000) continue;
     const MeshPlacement placement = random_placement(random, a.radius() + b.radius());
-    const auto own = twin(view_of(a));
-    const auto others = twin(view_of(b), placement);
+    const auto own = reference_triangles(view_of(a));
+    const auto others = reference_triangles(view_of(b), placement);
     const double limit = random.chance(0.2) ? 0.0 : a.radius() * random.uniform(0, 1);
     Eigen::Vector3f direction(static_cast<float>(random.uniform(-1, 1)),
                               static_cast<float>(random.uniform(-1, 1)),
@@ -673,7 +674,7 @@ TEST_F(Meshes, triangles_near_box_are_visited_at_any_scale) {
         scale[axis] = random.chance(0.3) ? 1.0 : random.uniform(-3, 3);
         placement.matrix[axis][axis] = scale[axis];
       }
-      const auto triangles = twin(view_of(mesh), placement);
+      const auto triangles = reference_triangles(view_of(mesh), placement);
       double min[3];
       double max[3];
       for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -727,7 +728,7 @@ TEST_F(Meshes, triangles_near_box_are_visited_at_any_scale) {
 TEST_F(Meshes, decoded_nodes_contain_their_triangles) {
   for (const TriangleMesh& mesh : meshes_) {
     const MeshView& view = view_of(mesh);
-    const auto triangles = twin(view);
+    const auto triangles = reference_triangles(view);
     std::uint32_t below = kMeshFanout;
     for (std::uint32_t level = 0; level < view.levels; ++level, below *= kMeshFanout) {
       for (std::uint32_t slot = 0; slot < triangles.size(); ++slot) {
@@ -748,7 +749,7 @@ TEST_F(Meshes, decoded_nodes_contain_their_triangles) {
 TEST_F(Meshes, box_overlap_matches_triangle_boxes) {
   Random random(1);
   for (const TriangleMesh& mesh : meshes_) {
-    const auto triangles = twin(view_of(mesh));
+    const auto triangles = reference_triangles(view_of(mesh));
     const Eigen::Vector3f size = mesh.bounds().max - mesh.bounds().min;
     for (std::size_t k = 0; k < scaled(60); ++k) {
       double min[3];
@@ -766,12 +767,12 @@ TEST_F(Meshes, box_overlap_matches_triangle_boxes) {
       }
       Slots expected;
       for (std::uint32_t slot = 0; slot < triangles.size(); ++slot) {
-        bool met = true;
+        bool overlaps = true;
         for (std::size_t axis = 0; axis < 3; ++axis) {
-          met = met && triangles[slot].low(axis) <= static_cast<Real>(max[axis]) &&
-                triangles[slot].high(axis) >= static_cast<Real>(min[axis]);
+          overlaps = overlaps && triangles[slot].low(axis) <= static_cast<Real>(max[axis]) &&
+                     triangles[slot].high(axis) >= static_cast<Real>(min[axis]);
         }
-        if (met) expected.push_back(slot);
+        if (overlaps) expected.push_back(slot);
       }
       EXPECT_EQ(on_all_isas([&] { return overlap(view_of(mesh), min, max); }), expected);
     }
@@ -794,7 +795,7 @@ TEST_F(Meshes, ball_overlap_matches_triangle_distances) {
   Random random(11);
   std::size_t dropped = 0;
   for (const TriangleMesh& mesh : meshes_) {
-    const auto triangles = twin(view_of(mesh));
+    const auto triangles = reference_triangles(view_of(mesh));
     for (std::size_t k = 0; k < scaled(60); ++k) {
       const auto& corner = triangles[random.below(triangles.size())].corner[0];
       const double radius = mesh.radius() * random.log_uniform(1e-5, 0.5);

@@ -1,5 +1,5 @@
-// CompositePool::expand and visit: pairs of primitives compared with all pairs of primitives of two
-// bodies.
+// CompositePool::find_primitive_pairs and visit: pairs of primitives compared with all pairs of
+// primitives of two bodies.
 
 #include "tests/pipeline/composite_world.h"
 
@@ -19,7 +19,8 @@ namespace {
 using Touch = std::tuple<std::size_t, std::uint32_t, std::uint32_t>;
 
 /// Pairs every primitive of a with every primitive of b, for all pairs of bodies.
-void expand_all(const CompositeWorld& world, PrimitivePairs& out, std::vector<std::size_t>& owner) {
+void list_all_pairs(const CompositeWorld& world, PrimitivePairs& out,
+                    std::vector<std::size_t>& owner) {
   for (std::size_t i = 0; i < world.pairs.size(); ++i) {
     const BodyPair& pair = world.pairs[i];
     std::vector<std::uint32_t> side[2];
@@ -93,11 +94,11 @@ TEST(MidPhase, primitive_pairs_match_brute_force) {
   world.add_pairs(random, scaled(60), 4.0, {1e5, -3e4, 2e5});
   PrimitivePairs all;
   std::vector<std::size_t> owner;
-  expand_all(world, all, owner);
+  list_all_pairs(world, all, owner);
   for (const double margin : {0.0, 0.25}) {
     PrimitivePairs pairs;
-    ASSERT_EQ(world.composites.expand(world.shapes, world.bodies(), world.pairs, margin,
-                                      Execution::serial(), pairs),
+    ASSERT_EQ(world.composites.find_primitive_pairs(world.shapes, world.bodies(), world.pairs,
+                                                    margin, Execution::serial(), pairs),
               Status::ok);
     // Far from the origin poses are rounded differently.
     const double slack = 1e-9;
@@ -117,16 +118,16 @@ TEST(MidPhase, pairs_match_on_any_threads_and_isa) {
   world.add_shapes(random);
   world.add_pairs(random, scaled(300), 1.5, {0.0, 0.0, 0.0});
   PrimitivePairs one;
-  ASSERT_EQ(world.composites.expand(world.shapes, world.bodies(), world.pairs, 0.1,
-                                    Execution::serial(), one),
+  ASSERT_EQ(world.composites.find_primitive_pairs(world.shapes, world.bodies(), world.pairs, 0.1,
+                                                  Execution::serial(), one),
             Status::ok);
   for (const Isa isa : available_isas()) {
     const IsaScope scope(isa);
     for (const Workers& workers : all_workers()) {
       PrimitivePairs many;
       ASSERT_EQ(Threads(workers.threads).run([&] {
-        return world.composites.expand(world.shapes, world.bodies(), world.pairs, 0.1,
-                                       workers.execution(), many);
+        return world.composites.find_primitive_pairs(world.shapes, world.bodies(), world.pairs, 0.1,
+                                                     workers.execution(), many);
       }),
                 Status::ok);
       EXPECT_TRUE(same(one.shapes, many.shapes) && same(one.poses, many.poses) &&
@@ -155,8 +156,8 @@ TEST(MidPhase, second_call_allocates_nothing_and_footprint_is_exact) {
       std::size_t before = scratch.requests();
       for (int call = 0; call < 2; ++call) {
         before = scratch.requests();
-        ASSERT_EQ(world.composites.expand(world.shapes, world.bodies(), world.pairs, 0.1, execution,
-                                          pairs),
+        ASSERT_EQ(world.composites.find_primitive_pairs(world.shapes, world.bodies(), world.pairs,
+                                                        0.1, execution, pairs),
                   Status::ok);
       }
       EXPECT_EQ(scratch.requests(), before);
@@ -185,14 +186,14 @@ TEST(MidPhase, refused_memory_changes_nothing) {
     CountingMemory memory;
     memory.refuse_after(grants);
     PrimitivePairs pairs(&memory);
-    const Status status = world.composites.expand(world.shapes, world.bodies(), world.pairs, 0.1,
-                                                  Execution::serial(), pairs);
+    const Status status = world.composites.find_primitive_pairs(
+        world.shapes, world.bodies(), world.pairs, 0.1, Execution::serial(), pairs);
     if (status == Status::ok) break;
     ASSERT_EQ(status, Status::out_of_memory);
     EXPECT_EQ(pairs.pairs.size(), 0U);
     memory.grant_all();
-    EXPECT_EQ(world.composites.expand(world.shapes, world.bodies(), world.pairs, 0.1,
-                                      Execution::serial(), pairs),
+    EXPECT_EQ(world.composites.find_primitive_pairs(world.shapes, world.bodies(), world.pairs, 0.1,
+                                                    Execution::serial(), pairs),
               Status::ok);
   }
   const Surface surface = soup(random, 40, 2.0, 0.5);
@@ -236,9 +237,9 @@ TEST(MidPhase, unknown_shapes_give_no_pairs) {
   const Pose poses[4];
   const BodyPair some[] = {{0, 3}, {3, 1}, {2, 3}, {3, 9}, {3, 3}};
   PrimitivePairs pairs;
-  ASSERT_EQ(
-      world.composites.expand(world.shapes, {bodies, poses}, some, 0.0, Execution::serial(), pairs),
-      Status::ok);
+  ASSERT_EQ(world.composites.find_primitive_pairs(world.shapes, {bodies, poses}, some, 0.0,
+                                                  Execution::serial(), pairs),
+            Status::ok);
   ASSERT_EQ(pairs.first.size(), 6U);
   EXPECT_EQ(pairs.first[4], 0U);
   EXPECT_GT(pairs.first[5], 0U);
@@ -264,15 +265,16 @@ TEST(MidPhase, extreme_poses_and_scales_give_no_nan) {
   }
   for (const double margin : {0.0, 1e300}) {
     PrimitivePairs pairs;
-    ASSERT_EQ(world.composites.expand(world.shapes, world.bodies(), world.pairs, margin,
-                                      Execution::serial(), pairs),
+    ASSERT_EQ(world.composites.find_primitive_pairs(world.shapes, world.bodies(), world.pairs,
+                                                    margin, Execution::serial(), pairs),
               Status::ok);
-    // A nearly infinite margin keeps every pair. A sample is enough.
+    // With this margin every pair of primitives is returned. Tests a sample of them.
     const std::size_t count = std::min<std::size_t>(pairs.pairs.size(), 2000);
     pairs.pairs.set_size(count);
     NarrowResult result;
-    answer(world.shapes, pairs, {.margin = margin}, result);
-    world.composites.smooth(world.shapes, pairs, margin, Execution::serial(), result);
+    answer(world.shapes, pairs, {.contact_margin = margin}, result);
+    world.composites.correct_internal_edges(world.shapes, pairs, margin, Execution::serial(),
+                                            result);
     for (const double distance : result.distance()) EXPECT_FALSE(std::isnan(distance));
   }
 }
@@ -285,7 +287,7 @@ TEST(Visits, visits_find_all_primitives_in_reach) {
     if (!id.is_composite()) continue;
     for (int i = 0; i < 12; ++i) {
       const Pose pose = random_pose(random, i < 6 ? 2.0 : 1e4);
-      BoxSweep box{};
+      MovingBox box{};
       for (int axis = 0; axis < 3; ++axis) {
         const double middle = pose.position[axis] + random.uniform(-2.0, 2.0);
         const double half = random.chance(0.3) ? 0.0 : random.uniform(0.0, 0.5);
@@ -294,13 +296,13 @@ TEST(Visits, visits_find_all_primitives_in_reach) {
         box.direction[axis] = random.uniform(-1.0, 1.0);
       }
       box.max_t = random.uniform(0.0, 3.0);
-      std::set<std::uint32_t> swept;
+      std::set<std::uint32_t> visited;
       std::set<std::uint32_t> near;
       const auto note = [](void* context, const Primitive& primitive, double limit) {
         static_cast<std::set<std::uint32_t>*>(context)->insert(primitive.part);
         return limit;
       };
-      world.composites.visit(id, pose, box, {note, &swept});
+      world.composites.visit(id, pose, box, {note, &visited});
       world.composites.visit_near(id, pose, box, 0.7, {note, &near});
       // Compares with the narrow phase: a box against each primitive.
       CompositeWorld probe;
@@ -331,7 +333,7 @@ TEST(Visits, visits_find_all_primitives_in_reach) {
                                              part.pose, ContactLevel::distance, 0.0, counts)
                                       .distance;
           if (distance <= 0.0) {
-            EXPECT_TRUE(swept.contains(part.part)) << id.kind_index();
+            EXPECT_TRUE(visited.contains(part.part)) << id.kind_index();
           }
           if (t == 0.0 && distance <= 0.7) {
             EXPECT_TRUE(near.contains(part.part)) << id.kind_index();
@@ -353,7 +355,7 @@ TEST(Visits, negative_limit_ends_visit) {
       ++*static_cast<int*>(context);
       return -1.0;
     };
-    const BoxSweep all{{-1e9, -1e9, -1e9}, {1e9, 1e9, 1e9}};
+    const MovingBox all{{-1e9, -1e9, -1e9}, {1e9, 1e9, 1e9}};
     world.composites.visit(id, Pose{}, all, {once, &shown});
     EXPECT_EQ(shown, 1);
     world.composites.visit_near(id, Pose{}, all, 1.0, {once, &shown});

@@ -169,18 +169,18 @@ std::vector<ShapeKind> moving_kinds() {
 MovingShapes moving_pair(const PairScene& scene, BodyPair pair, MotionStyle style, Random& random) {
   MovingShapes result;
   const std::uint32_t body[2] = {pair.a, pair.b};
-  const double meeting = style == MotionStyle::touching ? 0.0 : random.unit();
-  const bool one_stands = random.chance(0.5);
+  const double contact_time = style == MotionStyle::touching ? 0.0 : random.unit();
+  const bool one_is_stationary = random.chance(0.5);
   for (int k = 0; k < 2; ++k) {
     result.shape[k] = scene.shapes[body[k]];
     RigidMotion& motion = result.motion[k];
-    motion = RigidMotion::standing(scene.poses[body[k]]);
-    if (k == 0 && one_stands) continue;
+    motion = RigidMotion::stationary(scene.poses[body[k]]);
+    if (k == 0 && one_is_stationary) continue;
     set_motion(style, extent(scene, pair), random, motion);
     RigidMotion back = motion;
     for (double& x : back.travel) x = -x;
     for (double& x : back.turn) x = -x;
-    motion.start = back.at(meeting);
+    motion.start = back.at(contact_time);
   }
   if (style == MotionStyle::far_away) {
     const double offset = 1e9 * extent(scene, pair);
@@ -243,9 +243,9 @@ double speed_bound(const ShapePool& pool, const MovingShapes& pair) {
 }
 
 Before before(const ShapePool& pool, const MovingShapes& pair, double time,
-              std::size_t most_looks) {
+              std::size_t max_samples) {
   return before([&](double at) { return distance_at(pool, pair, at); }, speed_bound(pool, pair),
-                doubt_of(pool, pair), time, most_looks);
+                doubt_of(pool, pair), time, max_samples);
 }
 
 Pose place_at(const RigidMotion& motion, double time, const double (&origin)[3]) {
@@ -259,20 +259,20 @@ Pose place_at(const RigidMotion& motion, double time, const double (&origin)[3])
 }
 
 Before before(const std::function<DistanceAt(double)>& distance, double speed, double doubt,
-              double time, std::size_t most_looks) {
+              double time, std::size_t max_samples) {
   if (time == 0.0) return Before::apart;
   std::vector<Span> open{{0.0, time}};
   bool proved = true;
-  for (std::size_t looks = 0; !open.empty(); ++looks) {
+  for (std::size_t samples = 0; !open.empty(); ++samples) {
     // Take the last, shortest interval first, so that every depth is reached within the limit of
     // samples.
     const Span span = open.back();
     open.pop_back();
     const double middle = 0.5 * (span.from + span.to);
     const DistanceAt at = distance(middle);
-    if (at.distance < -at.error - doubt) return Before::met;
+    if (at.distance < -at.error - doubt) return Before::overlapping;
     if (at.distance - at.error > 0.5 * speed * (span.to - span.from)) continue;
-    if (looks >= most_looks || middle <= span.from || middle >= span.to) {
+    if (samples >= max_samples || middle <= span.from || middle >= span.to) {
       proved = false;
       continue;
     }

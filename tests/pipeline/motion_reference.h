@@ -56,7 +56,8 @@ struct DistanceAt {
 };
 [[nodiscard]] DistanceAt distance_at(const ShapePool& pool, const MovingShapes& pair, double time);
 
-/// Returns an upper bound of the speed at which two points of the shapes approach each other.
+/// Returns an upper bound of the speed at which any point of one shape and any point of the other
+/// approach each other.
 [[nodiscard]] double speed_bound(const ShapePool& pool, const MovingShapes& pair);
 
 /// The relation of two shapes before a time.
@@ -65,15 +66,15 @@ enum class Before : std::uint8_t {
   apart,
   /// Apart at all samples, but too near for a proof.
   likely_apart,
-  /// They overlap at some time.
-  met,
+  /// The shapes overlap at a sampled time.
+  overlapping,
 };
 [[nodiscard]] Before before(const ShapePool& pool, const MovingShapes& pair, double time,
-                            std::size_t most_looks);
+                            std::size_t max_samples);
 /// As above for any distance function that changes no faster than `speed`. Distances may be off by
 /// `doubt` beyond their error bound.
 [[nodiscard]] Before before(const std::function<DistanceAt(double)>& distance, double speed,
-                            double doubt, double time, std::size_t most_looks);
+                            double doubt, double time, std::size_t max_samples);
 
 /// Returns the pose of a body at a time relative to `origin`, computed in long double.
 [[nodiscard]] Pose place_at(const RigidMotion& motion, double time, const double (&origin)[3]);
@@ -82,8 +83,8 @@ enum class Before : std::uint8_t {
 /// size of a half-space counts as 0.
 [[nodiscard]] double size_of(const ShapePool& pool, const MovingShapes& pair);
 
-/// Returns the error of the solver beyond its bound: not zero for curved shapes beside much larger
-/// ones.
+/// Returns the error of the solver beyond its bound: above zero for curved shapes beside much
+/// larger shapes.
 [[nodiscard]] double doubt_of(const ShapePool& pool, const MovingShapes& pair);
 
 /// Returns the smallest gap that can be resolved.

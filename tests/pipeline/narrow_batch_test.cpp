@@ -61,21 +61,22 @@ TEST_F(Batches, answers_match_on_every_isa_and_thread_count) {
   const Isa widest = available_isas().back();
   for (const NarrowTier tier : kTiers) {
     for (const ContactLevel level : kLevels) {
-      NarrowOptions options{.level = level, .tier = tier, .margin = kMargin};
+      NarrowOptions options{.level = level, .tier = tier, .contact_margin = kMargin};
       std::vector<PairResults> first;
       {
         const IsaScope scope(available_isas().front());
-        first = ask(scene_, options);
+        first = compute_results(scene_, options);
       }
       for (const Isa isa : available_isas()) {
         if (is_quick() && isa != widest) continue;
         const IsaScope scope(isa);
-        expect_same(first, ask(scene_, options), to_string(isa));
+        expect_same(first, compute_results(scene_, options), to_string(isa));
         for (const Workers& workers : all_workers()) {
           if (isa != widest) continue;
           options.execution = workers.execution();
-          expect_same(first, Threads(workers.threads).run([&] { return ask(scene_, options); }),
-                      to_string(workers));
+          expect_same(
+              first, Threads(workers.threads).run([&] { return compute_results(scene_, options); }),
+              to_string(workers));
         }
         options.execution = Execution::serial();
       }
@@ -86,8 +87,8 @@ TEST_F(Batches, answers_match_on_every_isa_and_thread_count) {
 TEST_F(Batches, batch_position_and_earlier_calls_change_nothing) {
   for (const NarrowTier tier : kTiers) {
     for (const ContactLevel level : kLevels) {
-      const NarrowOptions options{.level = level, .tier = tier, .margin = kMargin};
-      const auto together = ask(scene_, options);
+      const NarrowOptions options{.level = level, .tier = tier, .contact_margin = kMargin};
+      const auto together = compute_results(scene_, options);
       NarrowPhase phase;
       NarrowResult result;
       // Batches of many sizes put the pairs into different lanes and at the ends of batches.
@@ -111,13 +112,14 @@ TEST_F(Batches, batch_of_one_matches_large_batch) {
   NarrowResult result;
   for (const NarrowTier tier : kTiers) {
     const auto options_of = [tier](ContactLevel level) {
-      return NarrowOptions{.level = level, .tier = tier, .margin = kMargin};
+      return NarrowOptions{.level = level, .tier = tier, .contact_margin = kMargin};
     };
     std::vector<std::vector<PairResults>> together;
-    for (const ContactLevel level : kLevels) together.push_back(ask(scene_, options_of(level)));
-    std::vector<PairResults> alone;
+    for (const ContactLevel level : kLevels)
+      together.push_back(compute_results(scene_, options_of(level)));
+    std::vector<PairResults> single;
     std::vector<PairResults> expected;
-    // The levels alternate in one result.
+    // All calls write to one result, at another level each time.
     for (std::size_t i = 0; i < scene_.pairs.size(); ++i) {
       const std::size_t level = i / 2 % 3;
       ASSERT_EQ(phase.collide(scene_.pool, scene_.bodies(), {&scene_.pairs[i], 1},
@@ -125,10 +127,10 @@ TEST_F(Batches, batch_of_one_matches_large_batch) {
                 Status::ok);
       ASSERT_EQ(result.size(), 1U);
       ASSERT_EQ(result.level(), kLevels[level]);
-      alone.push_back(answers_of(result, 1).front());
+      single.push_back(answers_of(result, 1).front());
       expected.push_back(together[level][i]);
     }
-    expect_same(expected, alone, "alone");
+    expect_same(expected, single, "alone");
   }
 }
 
@@ -161,14 +163,14 @@ TEST_F(Batches, per_pair_margins_match_single_queries) {
   }
   for (const NarrowTier tier : kTiers) {
     for (const ContactLevel level : kLevels) {
-      std::vector<PairResults> alone;
+      std::vector<PairResults> single;
       for (std::size_t i = 0; i < scene_.pairs.size(); ++i) {
-        alone.push_back(answer_of_one(scene_, i, {level, tier, margins[i]}));
+        single.push_back(answer_of_one(scene_, i, {level, tier, margins[i]}));
       }
       for (const Isa isa : available_isas()) {
         const IsaScope scope(isa);
-        const NarrowOptions options{.level = level, .tier = tier, .margins = margins};
-        expect_same(alone, ask(scene_, options), to_string(isa));
+        const NarrowOptions options{.level = level, .tier = tier, .contact_margins = margins};
+        expect_same(single, compute_results(scene_, options), to_string(isa));
       }
     }
   }
@@ -177,22 +179,22 @@ TEST_F(Batches, per_pair_margins_match_single_queries) {
 TEST_F(Batches, single_pair_function_matches_narrow_phase) {
   for (const NarrowTier tier : kTiers) {
     for (const ContactLevel level : kLevels) {
-      const NarrowOptions options{.level = level, .tier = tier, .margin = kMargin};
-      std::vector<PairResults> alone(scene_.pairs.size());
+      const NarrowOptions options{.level = level, .tier = tier, .contact_margin = kMargin};
+      std::vector<PairResults> single(scene_.pairs.size());
       // The function is safe to call from several threads.
       const auto work = Execution::parallel();
       Threads(3).run([&] {
-        work.for_each(alone.size(),
-                      [&](std::size_t i) { alone[i] = answer_of_one(scene_, i, options); });
+        work.for_each(single.size(),
+                      [&](std::size_t i) { single[i] = answer_of_one(scene_, i, options); });
       });
-      expect_same(ask(scene_, options), alone, "one pair");
+      expect_same(compute_results(scene_, options), single, "one pair");
     }
   }
 }
 
 void expect_same_verdicts(const PairScene& scene) {
   const NarrowOptions options{.level = ContactLevel::boolean};
-  const std::vector<PairResults> together = ask(scene, options);
+  const std::vector<PairResults> together = compute_results(scene, options);
   for (std::size_t i = 0; i < scene.pairs.size(); ++i) {
     if (answer_of_one(scene, i, options).overlap == together[i].overlap) continue;
     ADD_FAILURE() << "in a batch they " << (together[i].overlap ? "overlap" : "are apart") << "\n"
@@ -216,7 +218,8 @@ TEST(OnePair, verdict_matches_batch) {
   }
 }
 
-/// Adds pairs of a shape at random poses with the first `others` bodies.
+/// Adds `count` bodies of one shape at random poses, and pairs each with one of the first `others`
+/// bodies in turn.
 void add_near(PairScene& scene, ShapeId shape, std::size_t others, std::size_t count,
               Random& random) {
   for (std::size_t i = 0; i < count; ++i) {
@@ -292,10 +295,10 @@ TEST_F(Batches, order_of_many_pairs_matches_on_threads) {
 
 TEST_F(Batches, contact_levels_agree) {
   for (const NarrowTier tier : kTiers) {
-    const auto yes_no = ask(scene_, {.level = ContactLevel::boolean, .tier = tier});
-    const auto distances = ask(scene_, {.level = ContactLevel::distance, .tier = tier});
-    const auto manifolds =
-        ask(scene_, {.level = ContactLevel::manifold, .tier = tier, .margin = kMargin});
+    const auto yes_no = compute_results(scene_, {.level = ContactLevel::boolean, .tier = tier});
+    const auto distances = compute_results(scene_, {.level = ContactLevel::distance, .tier = tier});
+    const auto manifolds = compute_results(
+        scene_, {.level = ContactLevel::manifold, .tier = tier, .contact_margin = kMargin});
     int faults = 0;
     for (std::size_t i = 0; i < scene_.pairs.size(); ++i) {
       const PairResults& d = distances[i];
@@ -319,7 +322,7 @@ TEST_F(Batches, contact_levels_agree) {
 TEST_F(Batches, deepest_contact_within_margin_matches_distance) {
   for (const NarrowTier tier : kTiers) {
     for (const double margin : {0.0, kMargin}) {
-      const auto answers = ask(scene_, {.tier = tier, .margin = margin});
+      const auto answers = compute_results(scene_, {.tier = tier, .contact_margin = margin});
       int faults = 0;
       for (std::size_t i = 0; i < answers.size(); ++i) {
         const PairResults& m = answers[i];

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "tests/pipeline/pair_results.h"
@@ -70,7 +71,7 @@ TEST_F(NarrowInput, moved_from_result_is_empty) {
 TEST_F(NarrowInput, bad_margin_is_refused) {
   for (const double margin : {-1.0, -1e-300, kNan, kInfinity, -kInfinity}) {
     ASSERT_EQ(collide(), Status::ok);
-    expect_refused(Status::invalid_argument, {.margin = margin});
+    expect_refused(Status::invalid_argument, {.contact_margin = margin});
   }
 }
 
@@ -79,7 +80,7 @@ TEST_F(NarrowInput, one_bad_margin_of_many_is_refused) {
   for (const double margin : {-1.0, -1e-300, kNan, kInfinity, -kInfinity}) {
     margins.back() = margin;
     ASSERT_EQ(collide(), Status::ok);
-    expect_refused(Status::invalid_argument, {.margins = margins});
+    expect_refused(Status::invalid_argument, {.contact_margins = margins});
   }
 }
 
@@ -87,7 +88,7 @@ TEST_F(NarrowInput, wrong_number_of_margins_is_refused) {
   const std::vector<double> margins(scene_.pairs.size() + 1, 0.125);
   for (const std::size_t count : {std::size_t{1}, margins.size() - 2, margins.size()}) {
     ASSERT_EQ(collide(), Status::ok);
-    expect_refused(Status::size_mismatch, {.margins = {margins.data(), count}});
+    expect_refused(Status::size_mismatch, {.contact_margins = {margins.data(), count}});
   }
 }
 
@@ -125,6 +126,15 @@ TEST_F(NarrowInput, unknown_shape_is_refused) {
   }
 }
 
+TEST_F(NarrowInput, new_narrow_phase_has_no_bad_body) {
+  EXPECT_EQ(phase_.bad_body(), ~0U);
+  scene_.shapes[scene_.pairs[7].b] = ShapeId{};
+  expect_refused(Status::invalid_key);
+  const NarrowPhase taken(std::move(phase_));
+  EXPECT_EQ(taken.bad_body(), scene_.pairs[7].b);
+  EXPECT_EQ(phase_.bad_body(), ~0U);  // NOLINT(bugprone-use-after-move)
+}
+
 TEST_F(NarrowInput, single_bad_pair_fails_like_batch) {
   const auto body = static_cast<std::uint32_t>(scene_.shapes.size());
   scene_.shapes.insert(scene_.shapes.end(), {ShapeId{}, ShapeId::of(ShapeKind::box, 1U << 20U)});
@@ -133,8 +143,8 @@ TEST_F(NarrowInput, single_bad_pair_fails_like_batch) {
     for (const BodyPair pair : {BodyPair{body, other}, BodyPair{other, body}, BodyPair{1, other},
                                 BodyPair{other, body + 1}}) {
       const BodyPair twice[] = {pair, pair};
-      const Status alone = phase_.collide(scene_.pool, scene_.bodies(), {&pair, 1}, {}, result_);
-      EXPECT_EQ(alone, phase_.collide(scene_.pool, scene_.bodies(), twice, {}, result_));
+      const Status single = phase_.collide(scene_.pool, scene_.bodies(), {&pair, 1}, {}, result_);
+      EXPECT_EQ(single, phase_.collide(scene_.pool, scene_.bodies(), twice, {}, result_));
     }
   }
   for (const BodyPair pair : {BodyPair{0, body}, BodyPair{body, 0}, BodyPair{body, body + 1}}) {
@@ -180,7 +190,7 @@ TEST_F(NarrowInput, bad_pairs_of_many_fail_on_any_threads) {
 }
 
 TEST_F(NarrowInput, bad_pose_is_refused_and_named) {
-  const auto reference = ask(scene_, {});
+  const auto reference = compute_results(scene_, {});
   for (const NarrowTier tier : {NarrowTier::robust, NarrowTier::reference}) {
     for (const ContactLevel level :
          {ContactLevel::boolean, ContactLevel::distance, ContactLevel::manifold}) {
@@ -232,7 +242,7 @@ TEST_F(NarrowInput, single_pair_function_refuses_like_narrow_phase) {
                                      ContactLevel::distance, ContactLevel::manifold}) {
       for (const NarrowTier tier : {NarrowTier::robust, NarrowTier::reference}) {
         expect_the_same(pair.a, pair.b, {.level = level, .tier = tier});
-        expect_the_same(pair.a, pair.b, {.level = level, .tier = tier, .margin = kNan});
+        expect_the_same(pair.a, pair.b, {.level = level, .tier = tier, .contact_margin = kNan});
         const Pose good = scene_.poses[pair.b];
         for (const Pose& bad :
              {Pose{{1, kInfinity, 3}, {1, 0, 0, 0}}, Pose{{1, 2, 3}, {0, 0, 0, 0}},
@@ -272,7 +282,7 @@ TEST_F(NarrowInput, body_with_itself_overlaps) {
 
 TEST_F(NarrowInput, refused_memory_changes_nothing) {
   WINNOW_TEST_NEEDS_EXCEPTIONS();
-  const auto expected = ask(scene_, {});
+  const auto expected = compute_results(scene_, {});
   std::size_t refusals = 0;
   for (std::size_t granted = 0;; ++granted) {
     CountingMemory memory;

@@ -68,8 +68,8 @@ TEST_P(Properties, swapped_bodies_give_mirrored_answers) {
   PairScene back = mixed_scene(GetParam(), scaled(12), 3);
   for (BodyPair& pair : back.pairs) std::swap(pair.a, pair.b);
   for (const NarrowTier tier : kTiers) {
-    const auto there = ask(scene_, distances(tier));
-    const auto again = ask(back, distances(tier));
+    const auto there = compute_results(scene_, distances(tier));
+    const auto again = compute_results(back, distances(tier));
     for (std::size_t i = 0; i < there.size(); ++i) {
       const PairResults& p = there[i];
       const PairResults& q = again[i];
@@ -96,7 +96,7 @@ TEST_P(Properties, common_translation_changes_nothing) {
     for (double& x : pose.position) x = std::abs(x) < 1e3 ? std::round(x * 0x1p10) * 0x1p-10 : 0.0;
   }
   for (const NarrowTier tier : kTiers) {
-    const auto here = ask(near, distances(tier));
+    const auto here = compute_results(near, distances(tier));
     for (const double offset : {1e4, 1e6, 1e9}) {
       PairScene far = mixed_scene(GetParam(), scaled(12), 3);
       far.poses = near.poses;
@@ -105,7 +105,7 @@ TEST_P(Properties, common_translation_changes_nothing) {
         pose.position[1] -= 2 * offset;
         pose.position[2] += 3 * offset;
       }
-      const auto there = ask(far, distances(tier));
+      const auto there = compute_results(far, distances(tier));
       for (std::size_t i = 0; i < here.size(); ++i) {
         if (!same(here[i], there[i])) {
           complain("moved far", near.pairs[i], there[i].distance, here[i].distance);
@@ -134,8 +134,8 @@ TEST_P(Properties, common_rotation_keeps_distance_within_error_bound) {
     }
   }
   for (const NarrowTier tier : kTiers) {
-    const auto before = ask(scene_, distances(tier));
-    const auto after = ask(turned, distances(tier));
+    const auto before = compute_results(scene_, distances(tier));
+    const auto after = compute_results(turned, distances(tier));
     for (std::size_t i = 0; i < before.size(); ++i) {
       // The rotation also rounds positions and orientations.
       const BodyPair pair = scene_.pairs[i];
@@ -152,7 +152,7 @@ TEST_P(Properties, common_rotation_keeps_distance_within_error_bound) {
 
 TEST_P(Properties, moving_b_along_normal_adds_to_distance) {
   for (const NarrowTier tier : {NarrowTier::robust, NarrowTier::reference}) {
-    const auto before = ask(scene_, distances(tier));
+    const auto before = compute_results(scene_, distances(tier));
     for (const double step : {0.25, 1.0}) {
       PairScene moved = mixed_scene(GetParam(), scaled(12), 3);
       std::vector<double> shift(before.size());
@@ -162,7 +162,7 @@ TEST_P(Properties, moving_b_along_normal_adds_to_distance) {
         double* position = moved.poses[moved.pairs[i].b].position;
         for (int axis = 0; axis < 3; ++axis) position[axis] += shift[i] * before[i].normal[axis];
       }
-      const auto after = ask(moved, distances(tier));
+      const auto after = compute_results(moved, distances(tier));
       for (std::size_t i = 0; i < before.size(); ++i) {
         const BodyPair pair = scene_.pairs[i];
         const double position =
@@ -170,7 +170,8 @@ TEST_P(Properties, moving_b_along_normal_adds_to_distance) {
         const double rounding = 1e-14 * (position + shift[i] + extent(scene_, pair));
         const double bound = before[i].error_bound + after[i].error_bound + rounding;
         const double expected = before[i].distance + shift[i];
-        // A normal that is off by 0.01 degrees gains that much less distance.
+        // If the normal is off by 0.01 degrees, the distance grows by less: 1.6e-8 of the step is
+        // missing.
         const double missed = is_curved(scene_, pair) ? 1.6e-8 * shift[i] : 0.0;
         if (!(after[i].distance <= expected + bound) ||
             !(after[i].distance >= expected - bound - missed)) {
@@ -183,7 +184,7 @@ TEST_P(Properties, moving_b_along_normal_adds_to_distance) {
 
 TEST_P(Properties, witness_points_lie_on_shapes) {
   for (const NarrowTier tier : kTiers) {
-    const auto answers = ask(scene_, distances(tier));
+    const auto answers = compute_results(scene_, distances(tier));
     PairScene points = mixed_scene(GetParam(), scaled(12), 3);
     ShapeId point;
     ASSERT_EQ(points.pool.add(SphereShape{0.0}, point), Status::ok);
@@ -203,7 +204,7 @@ TEST_P(Properties, witness_points_lie_on_shapes) {
         points.pairs.push_back({first, first + 1});
       }
     }
-    const auto found = ask(points, distances(NarrowTier::reference));
+    const auto found = compute_results(points, distances(NarrowTier::reference));
     for (std::size_t i = 0; i < found.size(); ++i) {
       const BodyPair pair = scene_.pairs[i / 2];
       const double size = extent(scene_, pair) + between(scene_, pair).norm();
@@ -275,10 +276,10 @@ TEST(Sizes, powers_of_two_keep_verdict_and_distance) {
     for (const ContactLevel level :
          {ContactLevel::boolean, ContactLevel::distance, ContactLevel::manifold}) {
       const NarrowOptions options{.level = level};
-      const auto truth = ask(plain, options);
+      const auto truth = compute_results(plain, options);
       for (const int exponent : {-300, -166, -140, -125, -106, -60, -36, 36, 93, 121, 133, 300}) {
         const PairScene scene = scaled_scene(style, exponent);
-        const auto answers = ask(scene, options);
+        const auto answers = compute_results(scene, options);
         int complaints = 0;
         for (std::size_t i = 0; i < truth.size(); ++i) {
           const PairResults& p = truth[i];
@@ -324,7 +325,7 @@ TEST(Sizes, upright_boxes_of_any_range_are_decided) {
     const BoxShape* const boxes = scene.pool.tables().boxes;
     for (const NarrowTier tier : {NarrowTier::robust, NarrowTier::reference}) {
       for (const ContactLevel level : {ContactLevel::boolean, ContactLevel::distance}) {
-        const auto answers = ask(scene, {.level = level, .tier = tier});
+        const auto answers = compute_results(scene, {.level = level, .tier = tier});
         std::size_t clear = 0;
         for (std::size_t i = 0; i < answers.size(); ++i) {
           const BodyPair pair = scene.pairs[i];

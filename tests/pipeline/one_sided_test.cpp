@@ -80,8 +80,8 @@ struct FacingWorld : CompositeWorld {
                                                 double margin) {
   PrimitivePairs found;
   const BodyPair pair[] = {world.pairs[i]};
-  EXPECT_EQ(world.composites.expand(world.shapes, world.bodies(), pair, margin, Execution::serial(),
-                                    found),
+  EXPECT_EQ(world.composites.find_primitive_pairs(world.shapes, world.bodies(), pair, margin,
+                                                  Execution::serial(), found),
             Status::ok);
   std::set<std::uint32_t> parts;
   for (const BodyPair& of : found.pairs) parts.insert(found.part[of.a]);
@@ -127,13 +127,13 @@ TEST(OneSided, compound_of_one_surface_matches_surface) {
   Random random(61);
   for (const bool one_sided : {false, true}) {
     FacingWorld world(one_sided, 9);
-    std::size_t met = 0;
+    std::size_t hit_count = 0;
     for (const ShapeId surface : world.surfaces) {
       const CompoundChild child[] = {{surface, {}}};
       ShapeId compound;
       ASSERT_EQ(world.composites.add_compound(child, compound), Status::ok);
       ASSERT_EQ(world.composites.parts(compound), world.composites.parts(surface));
-      QueriedBody alone(world, surface);
+      QueriedBody plain(world, surface);
       QueriedBody inside(world, compound);
       for (int i = 0; i < 60; ++i) {
         const Pose from = random_pose(random, 5.0);
@@ -145,16 +145,16 @@ TEST(OneSided, compound_of_one_surface_matches_surface) {
               random.uniform(-1.0, 1.0) - (from.position[axis] + (axis == 1 ? -2.0 : 0.0));
         }
         SceneHit hits[2];
-        ASSERT_EQ(alone.queries.closest(ray, hits[0]), Status::ok);
+        ASSERT_EQ(plain.queries.closest(ray, hits[0]), Status::ok);
         ASSERT_EQ(inside.queries.closest(ray, hits[1]), Status::ok);
         expect_same(hits[0], hits[1]);
-        met += hits[0] ? 1 : 0;
-        ASSERT_EQ(alone.queries.closest(cast, hits[0]), Status::ok);
+        hit_count += hits[0] ? 1 : 0;
+        ASSERT_EQ(plain.queries.closest(cast, hits[0]), Status::ok);
         ASSERT_EQ(inside.queries.closest(cast, hits[1]), Status::ok);
         expect_same(hits[0], hits[1]);
       }
     }
-    EXPECT_GT(met, 30U);
+    EXPECT_GT(hit_count, 30U);
     for (std::size_t i = 0; i < world.pairs.size(); ++i) {
       const std::set<std::uint32_t> expected = parts_hit(world, i, 0.1);
       const CompoundChild child[] = {{world.body[2 * i], {}}};
@@ -174,7 +174,7 @@ TEST(OneSided, normals_never_point_to_the_back) {
     const auto parts = parts_of(world, world.body[2 * i], world.pose[2 * i]);
     for (const bool reduced : {false, true}) {
       Scene scene(world.shapes, {.execution = Execution::serial(),
-                                 .margin = 0.05,
+                                 .contact_margin = 0.05,
                                  .contact_reduction = reduced,
                                  .composites = &world.composites});
       Key keys[2];
@@ -216,20 +216,20 @@ struct FrontFloor {
     ball = add(shapes, SphereShape{0.3});
     const double middle = field ? -2.0 : 0.0;
     const Pose at = Pose::at(middle, middle, 0.0);
-    EXPECT_EQ(scene.add({.shape = id, .pose = at, .motion = Motion::fixed}, floor), Status::ok);
+    EXPECT_EQ(scene.add({.shape = id, .pose = at, .state = BodyState::fixed}, floor), Status::ok);
     EXPECT_EQ(scene.refresh(), Status::ok);
   }
 
   [[nodiscard]] double ray(double from, double to) {
-    const ShapeRay asked{{0.1, 0.2, from}, {0.0, 0.0, to - from}, 1.0};
+    const ShapeRay query{{0.1, 0.2, from}, {0.0, 0.0, to - from}, 1.0};
     SceneHit hit;
-    EXPECT_EQ(queries.closest(asked, hit), Status::ok);
+    EXPECT_EQ(queries.closest(query, hit), Status::ok);
     return hit.key == floor ? hit.t : -1.0;
   }
   [[nodiscard]] double cast(double from, double to) {
-    const ShapeCast asked{ball, Pose::at(0.1, 0.2, from), {0.0, 0.0, to - from}, 1.0};
+    const ShapeCast query{ball, Pose::at(0.1, 0.2, from), {0.0, 0.0, to - from}, 1.0};
     SceneHit hit;
-    EXPECT_EQ(queries.closest(asked, hit), Status::ok);
+    EXPECT_EQ(queries.closest(query, hit), Status::ok);
     return hit.key == floor ? hit.t : -1.0;
   }
   [[nodiscard]] bool overlaps(double height) {

@@ -41,7 +41,7 @@ std::vector<oracle::Truth> truths_of(const PairScene& scene) {
 
 std::vector<PairResults> answer_of_tier(const PairScene& scene, NarrowTier tier,
                                         ContactLevel level) {
-  return ask(scene, {.level = level, .tier = tier, .margin = 1e-3});
+  return compute_results(scene, {.level = level, .tier = tier, .contact_margin = 1e-3});
 }
 
 /// Returns the fault of an answer, or an empty string.

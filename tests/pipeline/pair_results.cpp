@@ -57,7 +57,7 @@ std::vector<PairResults> answers_of(const NarrowResult& result, std::size_t pair
   return answers;
 }
 
-std::vector<PairResults> ask(const PairScene& scene, const NarrowOptions& options) {
+std::vector<PairResults> compute_results(const PairScene& scene, const NarrowOptions& options) {
   NarrowPhase phase;
   NarrowResult result;
   EXPECT_EQ(phase.collide(scene.pool, scene.bodies(), scene.pairs, options, result), Status::ok);

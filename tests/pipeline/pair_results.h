@@ -16,7 +16,7 @@ struct PairResults {
   double distance = 0.0;
   double error_bound = 0.0;
   Eigen::Vector3d normal{0, 0, 0};
-  /// On a, relative to its position.
+  /// Closest or deepest point on a, relative to the position of a.
   Eigen::Vector3d point{0, 0, 0};
   std::vector<ContactPoint> contacts;
 };
@@ -28,6 +28,7 @@ struct PairResults {
 [[nodiscard]] std::vector<PairResults> answers_of(const NarrowResult& result, std::size_t pairs);
 
 /// Runs a new NarrowPhase. Fails the test if it refuses the input.
-[[nodiscard]] std::vector<PairResults> ask(const PairScene& scene, const NarrowOptions& options);
+[[nodiscard]] std::vector<PairResults> compute_results(const PairScene& scene,
+                                                       const NarrowOptions& options);
 
 }  // namespace winnow::test

@@ -53,10 +53,10 @@ inline void PrintTo(PairStyle style, std::ostream* out) {
   *out << to_string(style);
 }
 
-/// Returns the kinds whose pairs the oracle supports. Hulls only if the library supports them.
+/// Returns the kinds whose pairs the oracle supports; hulls only if the library supports hulls.
 [[nodiscard]] std::vector<ShapeKind> polytope_kinds();
-/// Returns all kinds except shapes given by support functions. Hulls only if the library supports
-/// them.
+/// Returns all kinds except shapes given by support functions; hulls only if the library supports
+/// hulls.
 [[nodiscard]] std::vector<ShapeKind> all_kinds();
 
 /// Adds `count` pairs of the two kinds.

@@ -111,7 +111,7 @@ TEST(ParallelCubes, slightly_turned_cubes_touch_edge_on_edge) {
   put({0.9999999999999988, kTurn, kTurn, kTurn}, {1.9, 0.1, 0.1}, scene);
   scene.pairs = {{0, 1}};
   for (const ContactLevel level : {ContactLevel::distance, ContactLevel::manifold}) {
-    const PairResults answer = ask(scene, {.level = level}).at(0);
+    const PairResults answer = compute_results(scene, {.level = level}).at(0);
     // Computed from the cross products of edges in a hundred digits. The best face normal is 6e-9
     // off.
     EXPECT_NEAR(answer.distance, -0.1000001096965479, answer.error_bound);
@@ -134,7 +134,8 @@ TEST_P(ParallelHulls, depth_matches_brute_force) {
   }
   for (const ContactLevel level : {ContactLevel::distance, ContactLevel::manifold}) {
     for (const NarrowTier tier : {NarrowTier::robust, NarrowTier::reference}) {
-      const auto answers = ask(scene, {.level = level, .tier = tier, .margin = 10.0});
+      const auto answers =
+          compute_results(scene, {.level = level, .tier = tier, .contact_margin = 10.0});
       for (std::size_t i = 0; i < answers.size(); ++i) {
         ASSERT_NEAR(answers[i].distance, truth[i], answers[i].error_bound + 1e-15) << i;
         ASSERT_LE(answers[i].error_bound, 2e-11) << i;

@@ -64,7 +64,7 @@ struct QueryWorld {
     body.shape = shape;
     body.pose = pose;
     for (double& x : body.pose.position) x += center;
-    body.motion = static_cast<Motion>(random.below(kMotions));
+    body.state = static_cast<BodyState>(random.below(kBodyStates));
     body.data = 1000 + bodies.size();
     bodies.push_back(body);
   }

@@ -1,4 +1,4 @@
-// A face with many vertices on a plane: the few contact points that are kept must span it.
+// A face with many vertices on a plane: the four contact points that are kept must span the face.
 
 #include <gtest/gtest.h>
 #include <winnow/winnow.h>

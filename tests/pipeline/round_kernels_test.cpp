@@ -156,8 +156,8 @@ TEST_P(RoundKernels, certified_signs_match_reference) {
         ++unknown;
         continue;
       }
-      const ReferencePair twins(scene, scene.pairs[i]);
-      ASSERT_EQ(answers.overlap[i] != 0, twins.distance <= 0) << i << " " << twins.distance;
+      const ReferencePair reference(scene, scene.pairs[i]);
+      ASSERT_EQ(answers.overlap[i] != 0, reference.distance <= 0) << i << " " << reference.distance;
     }
     if (style == PairStyle::ordinary) {
       EXPECT_LE(unknown, scene.pairs.size() / 500);
@@ -174,12 +174,12 @@ TEST_P(RoundKernels, distances_stay_within_error_bounds) {
         ++unknown;
         continue;
       }
-      const ReferencePair twins(scene, scene.pairs[i]);
+      const ReferencePair reference(scene, scene.pairs[i]);
       const long double d = answers.column[0][i];
       const double bound = answers.column[1][i];
-      ASSERT_LE(std::abs(d - twins.distance), bound) << i << " " << d;
-      ASSERT_EQ(d <= 0, twins.distance <= 0) << i;
-      ASSERT_LE(bound, 1e-12L * (twins.scale + std::abs(d))) << i;
+      ASSERT_LE(std::abs(d - reference.distance), bound) << i << " " << d;
+      ASSERT_EQ(d <= 0, reference.distance <= 0) << i;
+      ASSERT_LE(bound, 1e-12L * (reference.scale + std::abs(d))) << i;
     }
     if (style == PairStyle::ordinary) {
       EXPECT_LE(unknown, scene.pairs.size() / 500);
@@ -192,15 +192,16 @@ TEST_P(RoundKernels, normals_separate_and_points_lie_on_shapes) {
     const Answers answers(scene, GetParam(), 1);
     for (std::size_t i = 0; i < scene.pairs.size(); ++i) {
       if (answers.certified[i] == 0) continue;
-      const ReferencePair twins(scene, scene.pairs[i]);
+      const ReferencePair reference(scene, scene.pairs[i]);
       const LongVector n = answers.normal(i);
-      const long double close = 1e-5L * (twins.scale + std::abs(twins.distance));
+      const long double close = 1e-5L * (reference.scale + std::abs(reference.distance));
       ASSERT_NEAR(static_cast<double>(n.norm()), 1.0, 1e-14) << i;
-      ASSERT_LE(reference_overlap_along(twins.a, twins.b, n), -twins.distance + close) << i;
+      ASSERT_LE(reference_overlap_along(reference.a, reference.b, n), -reference.distance + close)
+          << i;
       const LongVector on_a = answers.point(i);
       const LongVector on_b = on_a + n * static_cast<long double>(answers.column[0][i]);
-      ASSERT_LE(reference_distance(twins.a, on_a), close) << i;
-      ASSERT_LE(reference_distance(twins.b, on_b), close) << i;
+      ASSERT_LE(reference_distance(reference.a, on_a), close) << i;
+      ASSERT_LE(reference_distance(reference.b, on_b), close) << i;
     }
   });
 }
@@ -216,8 +217,8 @@ TEST_P(RoundKernels, contacts_lie_between_surfaces_and_include_deepest) {
       ASSERT_EQ(answers.contacts[i], 0U) << i;
       continue;
     }
-    const ReferencePair twins(scene, scene.pairs[i]);
-    const long double close = 2e-6L * twins.scale;
+    const ReferencePair reference(scene, scene.pairs[i]);
+    const long double close = 2e-6L * reference.scale;
     const double d = answers.column[0][i];
     ASSERT_EQ(answers.contacts[i] > 0, d <= kMargin) << i << " " << d;
     float deepest = -std::numeric_limits<float>::infinity();
@@ -227,10 +228,10 @@ TEST_P(RoundKernels, contacts_lie_between_surfaces_and_include_deepest) {
       ASSERT_GE(depth, -kMargin - close) << i;
       const LongVector p(answers.points[0][k], answers.points[1][k], answers.points[2][k]);
       // Both points of two nearly parallel capsules get the depth of the closest point.
-      const long double aside = answers.contacts[i] > 1 ? 1e-3L * twins.scale : 0.0L;
+      const long double aside = answers.contacts[i] > 1 ? 1e-3L * reference.scale : 0.0L;
       const long double half = std::abs(depth) * 0.5L + close + aside;
-      ASSERT_LE(reference_distance(twins.a, p), half) << i;
-      ASSERT_LE(reference_distance(twins.b, p), half) << i;
+      ASSERT_LE(reference_distance(reference.a, p), half) << i;
+      ASSERT_LE(reference_distance(reference.b, p), half) << i;
       for (std::uint32_t j = answers.first[i]; j < k; ++j) {
         ASSERT_NE(answers.feature[j], answers.feature[k]) << i;
       }
@@ -242,7 +243,7 @@ TEST_P(RoundKernels, contacts_lie_between_surfaces_and_include_deepest) {
   EXPECT_EQ(answers.contact_total, total);
 }
 
-/// Appends the bytes of all certified results.
+/// Appends `size` bytes of `data`.
 void append(std::string& bytes, const void* data, std::size_t size) {
   bytes.append(static_cast<const char*>(data), size);
 }

@@ -32,15 +32,15 @@ class DenseWorld {
     EXPECT_EQ(composites_.add_mesh(data.points(), data.indices(), mesh), Status::ok);
     for (std::size_t i = 0; i < world_.bodies.size(); ++i) {
       BodyDefinition& body = world_.bodies[i];
-      body.motion = Motion::dynamic;
+      body.state = BodyState::dynamic;
       body.filter = {};
       if (i % 40 == 0) body.shape = mesh;
     }
     squeeze();
   }
 
-  /// With seamless floors a scene solves all pairs in one batch. No body here is a floor, so that
-  /// the option changes nothing else.
+  /// If ghost contacts are suppressed, a scene solves all pairs in one batch. No body here is
+  /// fixed, so the option changes nothing else.
   [[nodiscard]] SceneOptions options(bool at_once) const {
     return {.suppress_ghost_contacts = at_once, .warm_start = true, .composites = &composites_};
   }
@@ -61,11 +61,11 @@ class DenseWorld {
   CompositePool composites_;
 };
 
-void expect_batches_are_what_is_answered_at_once(ContactLevel level, double carry_over) {
+void expect_batches_are_what_is_answered_at_once(ContactLevel level, double cache_tolerance) {
   DenseWorld dense;
   SceneOptions batches = dense.options(false);
   SceneOptions at_once = dense.options(true);
-  batches.carry_over = at_once.carry_over = carry_over;
+  batches.cache_tolerance = at_once.cache_tolerance = cache_tolerance;
   Scene one(dense.world().pool, batches);
   Scene other(dense.world().pool, at_once);
   Contacts of_one;
@@ -124,7 +124,7 @@ TEST(SceneBatches, previous_pair_is_right_across_batches) {
 
 /// More than two batches of bodies.
 constexpr std::size_t kManyBodies = 40000;
-constexpr Motion kMotionOf[] = {Motion::fixed, Motion::dynamic, Motion::sleeping};
+constexpr BodyState kBodyStateOf[] = {BodyState::fixed, BodyState::dynamic, BodyState::sleeping};
 
 /// Rows of balls. Each touches its neighbours in the row.
 class Rows {
@@ -153,7 +153,8 @@ TEST(SceneBatches, moving_many_bodies_matches_fresh_scene) {
   ASSERT_EQ(scene.add(rows.bodies, keys), Status::ok);
   EXPECT_EQ(scene.footprint().total().reserved, memory.outstanding());
   std::vector<Pose> poses(kManyBodies);
-  // First a third of the contacts ends near the old positions, then all bodies move far away.
+  // In the first step some contacts end and the bodies stay near their old positions. In the second
+  // step all bodies move far away.
   for (const double far : {0.0, 1e6}) {
     for (std::size_t i = 0; i < kManyBodies; ++i) {
       Pose& pose = rows.bodies[i].pose;
@@ -179,7 +180,7 @@ TEST(SceneBatches, moving_many_bodies_matches_fresh_scene) {
 
 TEST(SceneBatches, removing_many_bodies_keeps_the_others) {
   Rows rows;
-  for (std::size_t i = 0; i < kManyBodies; ++i) rows.bodies[i].motion = kMotionOf[i % 3];
+  for (std::size_t i = 0; i < kManyBodies; ++i) rows.bodies[i].state = kBodyStateOf[i % 3];
   Scene scene(rows.pool, {});
   Contacts contacts;
   std::vector<Key> keys(kManyBodies);
@@ -190,7 +191,7 @@ TEST(SceneBatches, removing_many_bodies_keeps_the_others) {
   EXPECT_EQ(scene.size(), kManyBodies / 2);
   for (std::size_t i = 0; i < kManyBodies; ++i) EXPECT_EQ(scene.contains(keys[i]), i % 2 == 1);
   for (int i = 0; i < 3; ++i) {
-    EXPECT_NEAR(static_cast<double>(scene.size(kMotionOf[i])), kManyBodies / 6.0, 1.0);
+    EXPECT_NEAR(static_cast<double>(scene.size(kBodyStateOf[i])), kManyBodies / 6.0, 1.0);
   }
   ASSERT_EQ(scene.collide(ContactLevel::pairs, contacts), Status::ok);
   EXPECT_EQ(contacts.size(), 0U);
@@ -245,7 +246,8 @@ struct Place {
   double offset;
 };
 
-/// Returns spheres and capsules about as large as their distances, some of them touching exactly.
+/// Returns spheres and capsules in a cube of ten sizes. Some pairs touch exactly, because half of
+/// the bodies are on a raster of a quarter of the size.
 [[nodiscard]] std::vector<BodyDefinition> bodies_at(const Place& place, ShapePool& pool,
                                                     Random& random) {
   std::array<ShapeId, 3> shapes;
@@ -272,7 +274,7 @@ TEST(SceneBoundingBalls, bounding_balls_reject_no_contact) {
       ShapePool pool;
       std::vector<BodyDefinition> bodies = bodies_at(place, pool, random);
       if (share > 0.0) bodies[0].offsets = {place.size, 0.0};
-      Scene scene(pool, {.margin = share * place.size});
+      Scene scene(pool, {.contact_margin = share * place.size});
       std::vector<Key> keys(bodies.size());
       ASSERT_EQ(scene.add(bodies, keys), Status::ok);
       Contacts near;

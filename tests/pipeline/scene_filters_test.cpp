@@ -30,7 +30,7 @@ struct Row {
   }
 
   ShapePool pool;
-  Scene scene{pool, {.carry_over = 0.01}};
+  Scene scene{pool, {.cache_tolerance = 0.01}};
   Key keys[4];
   Contacts contacts;
 };
@@ -44,7 +44,7 @@ TEST(SceneFilters, ignored_pair_ends_until_it_is_restored) {
   EXPECT_TRUE(row.scene.is_ignored(row.keys[1], row.keys[2]));
   EXPECT_EQ(row.pairs(), (Pairs{{0, 1}, {2, 3}}));
   EXPECT_EQ(row.contacts.ended().size(), 1U);
-  ASSERT_EQ(row.scene.set_motion(row.keys[1], Motion::sleeping), Status::ok);
+  ASSERT_EQ(row.scene.set_body_state(row.keys[1], BodyState::sleeping), Status::ok);
   EXPECT_EQ(row.pairs(), (Pairs{{0, 1}, {2, 3}}));
   ASSERT_EQ(row.scene.set_ignored(row.keys[1], row.keys[2], false), Status::ok);
   EXPECT_FALSE(row.scene.is_ignored(row.keys[1], row.keys[2]));
@@ -194,11 +194,11 @@ TEST(SceneFilters, contacts_leave_out_pairs_of_excluded_layers) {
     for (const auto& [pair, distance] : world.touching()) {
       const std::uint16_t a = world.body(pair.first).layer;
       const std::uint16_t b = world.body(pair.second).layer;
-      const bool meet = world.random.chance(0.6);
-      ASSERT_EQ(scene.set_layers_collide(b, a, meet), Status::ok);
-      EXPECT_EQ(scene.layers_collide(a, b), meet);
+      const bool collide = world.random.chance(0.6);
+      ASSERT_EQ(scene.set_layers_collide(b, a, collide), Status::ok);
+      EXPECT_EQ(scene.layers_collide(a, b), collide);
       for (const auto& changed : {std::pair(a, b), std::pair(b, a)}) {
-        if (meet) {
+        if (collide) {
           apart.erase(changed);
         } else {
           apart.insert(changed);

@@ -1,4 +1,4 @@
-// State of a scene between frames: carried contacts, memory, and the state after refused calls.
+// State of a scene between frames: cached contacts, memory, and the state after refused calls.
 
 #include "tests/pipeline/scene_world.h"
 
@@ -17,8 +17,9 @@ namespace {
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// Checks each contact against the current truth, within its error bound.
-void expect_within_bounds(const Contacts& contacts, const SceneWorld& world, double carry_over) {
-  const auto near = world.touching(carry_over);
+void expect_within_bounds(const Contacts& contacts, const SceneWorld& world,
+                          double cache_tolerance) {
+  const auto near = world.touching(cache_tolerance);
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const auto truth = near.find(names(contacts.data_a()[i], contacts.data_b()[i]));
     ASSERT_NE(truth, near.end()) << "reported although farther apart than the bound";
@@ -37,30 +38,30 @@ void expect_within_bounds(const Contacts& contacts, const SceneWorld& world, dou
   return scene.statistics().body_pairs - scene.statistics().rejected_by_spheres;
 }
 
-TEST(CarryOver, touching_pairs_are_reported_within_error_bounds) {
+TEST(ContactCache, touching_pairs_are_reported_within_error_bounds) {
   for (const ContactLevel level : {ContactLevel::distance, ContactLevel::manifold}) {
     SceneWorld world(scaled(300), 11);
-    const double carry_over = 0.02;
-    Scene scene(world.pool, {.carry_over = carry_over});
+    const double cache_tolerance = 0.02;
+    Scene scene(world.pool, {.cache_tolerance = cache_tolerance});
     ASSERT_EQ(add_all(scene, world), Status::ok);
     Contacts contacts;
-    std::size_t carried = 0;
+    std::size_t cached_pairs = 0;
     for (int frame = 0; frame < 20; ++frame) {
       ASSERT_EQ(scene.collide(level, contacts), Status::ok);
-      expect_within_bounds(contacts, world, carry_over);
-      carried += contacts.carried();
+      expect_within_bounds(contacts, world, cache_tolerance);
+      cached_pairs += contacts.cached_pairs();
       world.stir(0.002);
       ASSERT_EQ(move_all(scene, world), Status::ok);
     }
-    EXPECT_GT(carried, world.bodies.size());
+    EXPECT_GT(cached_pairs, world.bodies.size());
   }
 }
 
-TEST(CarryOver, turning_pair_carries_contact_that_turns_along) {
+TEST(ContactCache, turning_pair_keeps_contact_that_turns_along) {
   ShapePool pool;
   ShapeId ball;
   ASSERT_EQ(pool.add(SphereShape{1}, ball), Status::ok);
-  Scene scene(pool, {.carry_over = 0.01});
+  Scene scene(pool, {.cache_tolerance = 0.01});
   Key keys[2];
   ASSERT_EQ(scene.add({.shape = ball}, keys[0]), Status::ok);
   ASSERT_EQ(scene.add({.shape = ball, .pose = Pose::at(1.9, 0, 0)}, keys[1]), Status::ok);
@@ -75,7 +76,7 @@ TEST(CarryOver, turning_pair_carries_contact_that_turns_along) {
     ASSERT_EQ(scene.move(keys, poses), Status::ok);
     ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
     ASSERT_EQ(contacts.size(), 1U);
-    EXPECT_EQ(contacts.carried(), frame == 0 ? 0U : 1U) << frame;
+    EXPECT_EQ(contacts.cached_pairs(), frame == 0 ? 0U : 1U) << frame;
     EXPECT_NEAR(contacts.normal(0)[0], std::cos(angle), 0.011);
     EXPECT_NEAR(contacts.normal(1)[0], std::sin(angle), 0.011);
     EXPECT_NEAR(static_cast<double>(contacts.contact(0).position[1]), 0.95 * std::sin(angle),
@@ -83,9 +84,9 @@ TEST(CarryOver, turning_pair_carries_contact_that_turns_along) {
   }
 }
 
-TEST(CarryOver, first_frame_after_teleport_is_exact) {
+TEST(ContactCache, first_frame_after_teleport_is_exact) {
   SceneWorld world(scaled(300), 13);
-  Scene scene(world.pool, {.carry_over = 0.05});
+  Scene scene(world.pool, {.cache_tolerance = 0.05});
   ASSERT_EQ(add_all(scene, world), Status::ok);
   Contacts contacts;
   ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
@@ -101,9 +102,9 @@ TEST(CarryOver, first_frame_after_teleport_is_exact) {
   for (const auto& [pair, distance] : truth) EXPECT_EQ(shown(contacts).count(pair), 1U);
 }
 
-TEST(CarryOver, resting_pairs_are_not_computed_again) {
+TEST(ContactCache, resting_pairs_are_not_computed_again) {
   SceneWorld world(scaled(300), 17);
-  Scene scene(world.pool, {.carry_over = 0.001});
+  Scene scene(world.pool, {.cache_tolerance = 0.001});
   ASSERT_EQ(add_all(scene, world), Status::ok);
   Contacts contacts;
   ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
@@ -111,33 +112,33 @@ TEST(CarryOver, resting_pairs_are_not_computed_again) {
   for (int frame = 0; frame < 3; ++frame) {
     ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
     EXPECT_EQ(scene.statistics().convex.pairs, 0U);
-    EXPECT_EQ(contacts.carried(), unrejected_pairs(scene));
+    EXPECT_EQ(contacts.cached_pairs(), unrejected_pairs(scene));
     for (const ContactEvent event : contacts.event()) EXPECT_EQ(event, ContactEvent::persisted);
   }
   EXPECT_EQ(digest(contacts).size(), first.size());
 }
 
-TEST(CarryOver, move_to_same_pose_changes_no_bit) {
+TEST(ContactCache, move_to_same_pose_changes_no_bit) {
   SceneWorld world(scaled(300), 18);
-  Scene scene(world.pool, {.carry_over = 0.01});
+  Scene scene(world.pool, {.cache_tolerance = 0.01});
   ASSERT_EQ(add_all(scene, world), Status::ok);
   Contacts contacts;
   ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
   const std::vector<double> bounds(contacts.error_bound().begin(), contacts.error_bound().end());
   ASSERT_EQ(move_all(scene, world), Status::ok);
   ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
-  EXPECT_EQ(contacts.carried(), unrejected_pairs(scene));
+  EXPECT_EQ(contacts.cached_pairs(), unrejected_pairs(scene));
   ASSERT_EQ(contacts.manifolds(), bounds.size());
   for (std::size_t m = 0; m < bounds.size(); ++m) EXPECT_EQ(contacts.error_bound()[m], bounds[m]);
 }
 
 TEST(SceneBytes, steady_frame_allocates_nothing_and_footprint_is_exact) {
-  for (const double carry_over : {0.0, 0.01}) {
+  for (const double cache_tolerance : {0.0, 0.01}) {
     CountingMemory memory;
     CountingMemory results;
     {
       SceneWorld world(scaled(600), 19);
-      Scene scene(world.pool, {.memory = &memory, .carry_over = carry_over});
+      Scene scene(world.pool, {.memory = &memory, .cache_tolerance = cache_tolerance});
       Contacts contacts(&results);
       ASSERT_EQ(add_all(scene, world), Status::ok);
       // Repeats the same four frames.
@@ -149,10 +150,10 @@ TEST(SceneBytes, steady_frame_allocates_nothing_and_footprint_is_exact) {
       for (int frame = 0; frame < 24; ++frame) {
         world.bodies = frames[static_cast<std::size_t>(frame % 4)];
         ASSERT_EQ(move_all(scene, world), Status::ok);
-        const std::size_t asked = memory.requests() + results.requests();
+        const std::size_t requests = memory.requests() + results.requests();
         ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
         if (frame >= 12) {
-          EXPECT_EQ(memory.requests() + results.requests(), asked) << frame;
+          EXPECT_EQ(memory.requests() + results.requests(), requests) << frame;
         }
         EXPECT_EQ(scene.footprint().total().reserved, memory.outstanding());
         EXPECT_EQ(contacts.footprint().total().reserved, results.outstanding());
@@ -163,7 +164,7 @@ TEST(SceneBytes, steady_frame_allocates_nothing_and_footprint_is_exact) {
   }
 }
 
-// Without carry-over and warm start only the pairs of the last frame are stored.
+// Without caching and warm start only the pairs of the last frame are stored.
 TEST(SceneBytes, unused_data_of_last_frame_is_freed) {
   const auto remembered = [](const SceneOptions& options) {
     SceneWorld world(scaled(600), 19);
@@ -180,10 +181,11 @@ TEST(SceneBytes, unused_data_of_last_frame_is_freed) {
   };
   EXPECT_LT(remembered({}), 1.0);
   EXPECT_GT(remembered({.warm_start = true}), 1.0);
-  EXPECT_GT(remembered({.carry_over = 0.01}), 1.0);
+  EXPECT_GT(remembered({.cache_tolerance = 0.01}), 1.0);
 }
 
-// The results of a contact take 109 bytes at level distance and 113 at level manifold.
+// Bodies, partitions, pairs and results together. SceneBatches.contact_takes_few_bytes checks the
+// bytes of the results.
 TEST(SceneBytes, contact_takes_at_most_250_bytes) {
   constexpr std::size_t kBalls = 40000;
   constexpr double kSide = 22.0;
@@ -258,7 +260,7 @@ TEST(SceneBytes, refused_memory_changes_nothing) {
   EXPECT_EQ(contacts.size(), world.touching().size());
 }
 
-/// Two equal scenes. The first one survives a refused call.
+/// Two equal scenes. Calls of `scene` are refused memory and repeated, calls of `other` are not.
 struct TwoScenes {
   CountingMemory memory;
   SceneWorld world{60, 23};
@@ -297,39 +299,39 @@ TEST(SceneBytes, ids_after_refused_add_match_unrefused_scene) {
   for (const bool once : {false, true}) {
     std::size_t refused = 0;
     for (std::size_t granted = 0; granted < 100; ++granted) {
-      TwoScenes twins;
-      refused += twins.was_refused(granted, once, add_all) ? 1 : 0;
-      EXPECT_EQ(twins.world.keys.size(), twins.other_world.keys.size());
-      for (std::size_t i = 0; i < twins.world.keys.size(); ++i) {
-        ASSERT_EQ(twins.world.keys[i].id, twins.other_world.keys[i].id) << granted;
+      TwoScenes scenes;
+      refused += scenes.was_refused(granted, once, add_all) ? 1 : 0;
+      EXPECT_EQ(scenes.world.keys.size(), scenes.other_world.keys.size());
+      for (std::size_t i = 0; i < scenes.world.keys.size(); ++i) {
+        ASSERT_EQ(scenes.world.keys[i].id, scenes.other_world.keys[i].id) << granted;
       }
-      twins.compare();
+      scenes.compare();
     }
     EXPECT_GT(refused, 0U);
   }
 }
 
-TEST(SceneBytes, refused_set_motion_changes_no_body) {
+TEST(SceneBytes, refused_set_body_state_changes_no_body) {
   WINNOW_TEST_NEEDS_EXCEPTIONS();
-  for (const Motion to : {Motion::fixed, Motion::dynamic, Motion::sleeping}) {
+  for (const BodyState to : {BodyState::fixed, BodyState::dynamic, BodyState::sleeping}) {
     std::size_t refused = 0;
     for (std::size_t granted = 0; granted < 60; ++granted) {
-      TwoScenes twins;
-      ASSERT_EQ(add_all(twins.scene, twins.world), Status::ok);
-      ASSERT_EQ(add_all(twins.other, twins.other_world), Status::ok);
+      TwoScenes scenes;
+      ASSERT_EQ(add_all(scenes.scene, scenes.world), Status::ok);
+      ASSERT_EQ(add_all(scenes.other, scenes.other_world), Status::ok);
       const auto change = [&](Scene& scene, SceneWorld& world) {
-        const Status status = scene.set_motion(world.keys, to);
+        const Status status = scene.set_body_state(world.keys, to);
         if (status == Status::ok) return status;
         for (std::size_t i = 0; i < world.bodies.size(); ++i) {
           BodyDefinition body;
           EXPECT_EQ(scene.body(world.keys[i], body), Status::ok);
-          EXPECT_EQ(body.motion, world.bodies[i].motion) << granted;
+          EXPECT_EQ(body.state, world.bodies[i].state) << granted;
           EXPECT_EQ(body.filter, world.bodies[i].filter) << granted;
         }
         return status;
       };
-      refused += twins.was_refused(granted, false, change) ? 1 : 0;
-      twins.compare();
+      refused += scenes.was_refused(granted, false, change) ? 1 : 0;
+      scenes.compare();
     }
     EXPECT_GT(refused, 0U);
   }
@@ -346,7 +348,7 @@ TEST(SceneBytes, scene_constructed_without_memory_returns_out_of_memory) {
   EXPECT_EQ(scene.add(world.bodies[0], key), Status::out_of_memory);
   EXPECT_EQ(scene.remove(key), Status::out_of_memory);
   EXPECT_EQ(scene.move(key, Pose{}), Status::out_of_memory);
-  EXPECT_EQ(scene.set_motion(key, Motion::fixed), Status::out_of_memory);
+  EXPECT_EQ(scene.set_body_state(key, BodyState::fixed), Status::out_of_memory);
   EXPECT_EQ(scene.set_shape(key, world.bodies[0].shape), Status::out_of_memory);
   EXPECT_EQ(scene.set_filter(key, {}), Status::out_of_memory);
   EXPECT_EQ(scene.refresh(), Status::out_of_memory);
@@ -356,10 +358,10 @@ TEST(SceneBytes, scene_constructed_without_memory_returns_out_of_memory) {
   EXPECT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::out_of_memory);
   scene.clear();
   EXPECT_EQ(scene.size(), 0U);
-  EXPECT_EQ(scene.size(Motion::dynamic), 0U);
+  EXPECT_EQ(scene.size(BodyState::dynamic), 0U);
   EXPECT_FALSE(scene.contains(key));
   EXPECT_EQ(scene.key_of(0), Key{});
-  EXPECT_EQ(scene.partition(Motion::dynamic), nullptr);
+  EXPECT_EQ(scene.partition(BodyState::dynamic), nullptr);
   EXPECT_EQ(scene.statistics().body_pairs, 0U);
   EXPECT_EQ(scene.footprint().total().reserved, 0U);
   SceneQueries queries(scene);
@@ -405,8 +407,9 @@ TEST(SceneInput, bad_input_is_refused_and_changes_nothing) {
   EXPECT_EQ(scene.move(Key{}, world.bodies[0].pose), Status::invalid_key);
   const Key twice[] = {world.keys[3], world.keys[3]};
   EXPECT_EQ(scene.remove(twice), Status::invalid_key);
-  EXPECT_EQ(scene.set_motion(twice, Motion::fixed), Status::invalid_key);
-  EXPECT_EQ(scene.set_motion(world.keys[3], static_cast<Motion>(9)), Status::invalid_argument);
+  EXPECT_EQ(scene.set_body_state(twice, BodyState::fixed), Status::invalid_key);
+  EXPECT_EQ(scene.set_body_state(world.keys[3], static_cast<BodyState>(9)),
+            Status::invalid_argument);
   EXPECT_EQ(scene.set_shape(world.keys[0], {}), Status::invalid_key);
   EXPECT_EQ(scene.collide(static_cast<ContactLevel>(7), contacts), Status::invalid_argument);
   const Pose poses[] = {world.bodies[0].pose, bad.pose};
@@ -415,7 +418,7 @@ TEST(SceneInput, bad_input_is_refused_and_changes_nothing) {
   Contacts after;
   ASSERT_EQ(scene.collide(ContactLevel::manifold, after), Status::ok);
   EXPECT_EQ(after.size(), pairs);
-  Scene wrong(world.pool, {.margin = -1});
+  Scene wrong(world.pool, {.contact_margin = -1});
   EXPECT_EQ(wrong.add(world.bodies[0], key), Status::invalid_argument);
   Scene unknown(world.pool, {.structures = {linear_bvh(), StructureKind{}, linear_bvh()}});
   EXPECT_EQ(unknown.add(world.bodies[0], key), Status::invalid_argument);
@@ -441,8 +444,8 @@ TEST(SceneInput, random_changes_keep_pairs_right) {
           EXPECT_EQ(scene.remove(world.keys[i]), Status::invalid_key);
           world.removed[i] = true;
         } else if (random.chance(0.3)) {
-          body.motion = static_cast<Motion>(random.below(3));
-          ASSERT_EQ(scene.set_motion(world.keys[i], body.motion), Status::ok);
+          body.state = static_cast<BodyState>(random.below(3));
+          ASSERT_EQ(scene.set_body_state(world.keys[i], body.state), Status::ok);
         } else if (random.chance(0.3)) {
           body.shape = world.shapes[random.below(world.shapes.size())];
           ASSERT_EQ(scene.set_shape(world.keys[i], body.shape), Status::ok);

@@ -2,8 +2,8 @@
 // missed, and the results equal the default mode bit by bit.
 
 #include <gtest/gtest.h>
+#include <winnow/pipeline/continuous_collision.h>
 #include <winnow/pipeline/scene_queries.h>
-#include <winnow/pipeline/scene_sweep.h>
 
 #include <bit>
 #include <cfloat>
@@ -68,7 +68,7 @@ class Bits {
   std::size_t nan_ = 0;
 };
 
-/// Shapes of one size on a lattice around the origin, so that many faces lie in coordinate planes.
+/// Shapes of one size on a lattice around the origin. Many faces are in coordinate planes.
 class TinyWorld {
  public:
   TinyWorld(double size, float mesh_size, const Execution& execution)
@@ -79,7 +79,7 @@ class TinyWorld {
       BodyDefinition body;
       body.shape = shapes[i % shapes.size()];
       place(i, body.pose.position);
-      body.motion = static_cast<Motion>(i % kMotions);
+      body.state = static_cast<BodyState>(i % kBodyStates);
       bodies.push_back(body);
     }
     SceneOptions options;
@@ -137,7 +137,7 @@ class TinyWorld {
   ShapeId box_;
 };
 
-/// Returns a ray along one axis that reaches a place.
+/// Returns a ray along one axis to a position.
 ShapeRay ray_to(const double (&place)[3], int axis, double distance) {
   ShapeRay ray;
   for (int k = 0; k < 3; ++k) {
@@ -149,19 +149,19 @@ ShapeRay ray_to(const double (&place)[3], int axis, double distance) {
 }
 
 struct SceneTally {
-  std::size_t questions = 0;
+  std::size_t query_count = 0;
   std::size_t missed = 0;
 };
 
 /// Aims rays, casts, overlaps and nearest queries at each body and counts misses.
-void ask(TinyWorld& world, Bits& bits, SceneTally& tally) {
+void query_bodies(TinyWorld& world, Bits& bits, SceneTally& tally) {
   SceneQueries queries(world.scene());
   std::vector<ShapeRay> rays;
   for (std::size_t i = 0; i < TinyWorld::kBodies; ++i) {
     double place[3];
     world.place(i, place);
     const auto found = [&](const auto& many) {
-      ++tally.questions;
+      ++tally.query_count;
       bool is_there = false;
       for (const auto& one : many) is_there = is_there || one.key == world.keys()[i];
       tally.missed += is_there ? 0U : 1U;
@@ -212,7 +212,7 @@ void query_moving(TinyWorld& world, Bits& bits, SceneTally& tally) {
     EXPECT_EQ(queries.closest(MotionCast{world.box(), RigidMotion::between(from, to)}, hit, {},
                               1e-3 * world.size()),
               Status::ok);
-    ++tally.questions;
+    ++tally.query_count;
     tally.missed += hit.key == Key{} ? 1U : 0U;
     bits.add(hit);
     SceneDistance distance;
@@ -223,20 +223,20 @@ void query_moving(TinyWorld& world, Bits& bits, SceneTally& tally) {
   }
 }
 
-/// Sweeps the first body through its neighbour.
-void sweep(TinyWorld& world, Bits& bits, SceneTally& tally) {
-  SceneSweep sweep(world.scene());
+/// Moves the first body through its neighbour.
+void find_impacts(TinyWorld& world, Bits& bits, SceneTally& tally) {
+  ContinuousCollision ccd(world.scene());
   double place[3];
   world.place(2, place);
   const Key mover = world.keys()[0];
   const Pose end = Pose::at(place[0], place[1], place[2]);
-  SweepOptions options;
+  ContinuousOptions options;
   options.tolerance = 1e-3 * world.size();
-  EXPECT_EQ(sweep.sweep({&mover, 1}, PoseView(std::span<const Pose>(&end, 1)), options),
+  EXPECT_EQ(ccd.find_impacts({&mover, 1}, PoseView(std::span<const Pose>(&end, 1)), options),
             Status::ok);
-  ++tally.questions;
-  tally.missed += sweep.impacts().empty() ? 1U : 0U;
-  bits.add_all(sweep.impacts());
+  ++tally.query_count;
+  tally.missed += ccd.impacts().empty() ? 1U : 0U;
+  bits.add_all(ccd.impacts());
 }
 
 /// Moves a dynamic body onto other bodies, one after the other.
@@ -250,7 +250,7 @@ void collide(TinyWorld& world, Bits& bits, SceneTally& tally) {
     for (int k = 0; k < 3; ++k) pose.position[k] = place[k];
     EXPECT_EQ(world.scene().move(mover, pose), Status::ok);
     EXPECT_EQ(world.scene().collide(ContactLevel::manifold, contacts), Status::ok);
-    ++tally.questions;
+    ++tally.query_count;
     tally.missed += contacts.size() == 0 ? 1U : 0U;
     bits.add(static_cast<double>(contacts.size()));
     bits.add(contacts.distance());
@@ -269,20 +269,20 @@ TEST_P(SceneModes, float_modes_do_not_change_results) {
     const auto mesh_size = static_cast<float>(GetParam());
     const FloatModeScope scope(mode);
     TinyWorld world(GetParam(), mesh_size, execution);
-    ask(world, bits, tally);
+    query_bodies(world, bits, tally);
     query_moving(world, bits, tally);
-    sweep(world, bits, tally);
+    find_impacts(world, bits, tally);
     collide(world, bits, tally);
     return tally;
   };
   Bits standard;
   const SceneTally plain = run({}, Execution::serial(), standard);
-  EXPECT_EQ(plain.missed, 0U) << "of " << plain.questions;
+  EXPECT_EQ(plain.missed, 0U) << "of " << plain.query_count;
   EXPECT_EQ(standard.nan(), 0U);
   for (const FloatMode& mode : all_float_modes()) {
     Bits bits;
     const SceneTally tally = run(mode, Execution::serial(), bits);
-    EXPECT_EQ(tally.missed, 0U) << "of " << tally.questions << ", " << to_string(mode);
+    EXPECT_EQ(tally.missed, 0U) << "of " << tally.query_count << ", " << to_string(mode);
     EXPECT_TRUE(bits == standard) << to_string(mode);
     Threads arena(2);
     Bits shared;

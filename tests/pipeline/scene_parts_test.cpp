@@ -264,7 +264,7 @@ TEST(SceneParts, ball_on_flat_mesh_gets_only_floor_normals) {
   Scene scene(convex, {.composites = &pool});
   Key floor;
   Key body;
-  ASSERT_EQ(scene.add({.shape = flat_floor(pool), .motion = Motion::fixed}, floor), Status::ok);
+  ASSERT_EQ(scene.add({.shape = flat_floor(pool), .state = BodyState::fixed}, floor), Status::ok);
   ASSERT_EQ(scene.add({.shape = ball}, body), Status::ok);
   Contacts contacts;
   for (int step = 0; step < 400; ++step) {
@@ -307,9 +307,9 @@ TEST(SceneParts, refitted_mesh_collides_at_new_position) {
   ShapeId ball;
   ASSERT_EQ(convex.add(SphereShape{0.5}, ball), Status::ok);
   const ShapeId floor = flat_floor(pool);
-  Scene scene(convex, {.carry_over = 0.01, .composites = &pool});
+  Scene scene(convex, {.cache_tolerance = 0.01, .composites = &pool});
   Key keys[2];
-  ASSERT_EQ(scene.add({.shape = floor, .motion = Motion::fixed}, keys[0]), Status::ok);
+  ASSERT_EQ(scene.add({.shape = floor, .state = BodyState::fixed}, keys[0]), Status::ok);
   ASSERT_EQ(scene.add({.shape = ball, .pose = Pose::at(0, 0, 3)}, keys[1]), Status::ok);
   Contacts contacts;
   ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
@@ -331,26 +331,27 @@ class IdleMidPhase final : public MidPhase {
   [[nodiscard]] Aabb bounds(ShapeId, const Pose&) const noexcept override { return worked(Aabb{}); }
   [[nodiscard]] double radius(ShapeId) const noexcept override { return worked(0.0); }
   [[nodiscard]] std::uint64_t revision() const noexcept override { return 0; }
-  Status expand(const ShapePool&, const Bodies&, std::span<const BodyPair>, const PairMargins&,
-                const Execution&, PrimitivePairs&) const override {
+  Status find_primitive_pairs(const ShapePool&, const Bodies&, std::span<const BodyPair>,
+                              const PairMargins&, const Execution&,
+                              PrimitivePairs&) const override {
     return worked(Status::unsupported);
   }
-  void smooth(const ShapePool&, const PrimitivePairs&, const PairMargins&, const Execution&,
-              NarrowResult&) const override {
+  void correct_internal_edges(const ShapePool&, const PrimitivePairs&, const PairMargins&,
+                              const Execution&, NarrowResult&) const override {
     ++calls;
   }
-  Status reduce(const ShapePool&, const PrimitivePairs&, const NarrowResult&, const PairMargins&,
-                const Execution&, ContactRegions&) const override {
+  Status reduce_contacts(const ShapePool&, const PrimitivePairs&, const NarrowResult&,
+                         const PairMargins&, const Execution&, ContactRegions&) const override {
     return worked(Status::unsupported);
   }
-  void visit(ShapeId, const Pose&, const BoxSweep&, const PrimitiveVisitor&) const override {
+  void visit(ShapeId, const Pose&, const MovingBox&, const PrimitiveVisitor&) const override {
     ++calls;
   }
   void visit_rays(ShapeId, const Pose&, std::span<const ShapeRay>, const double*,
                   const RayVisitor&) const override {
     ++calls;
   }
-  void visit_near(ShapeId, const Pose&, const BoxSweep&, double,
+  void visit_near(ShapeId, const Pose&, const MovingBox&, double,
                   const PrimitiveVisitor&) const override {
     ++calls;
   }
@@ -386,29 +387,30 @@ class CountingMidPhase final : public MidPhase {
   }
   [[nodiscard]] double radius(ShapeId id) const noexcept override { return pool_.radius(id); }
   [[nodiscard]] std::uint64_t revision() const noexcept override { return pool_.revision(); }
-  Status expand(const ShapePool& shapes, const Bodies& bodies, std::span<const BodyPair> pairs,
-                const PairMargins& margins, const Execution& execution,
-                PrimitivePairs& out) const override {
-    return pool_.expand(shapes, bodies, pairs, margins, execution, out);
+  Status find_primitive_pairs(const ShapePool& shapes, const Bodies& bodies,
+                              std::span<const BodyPair> pairs, const PairMargins& margins,
+                              const Execution& execution, PrimitivePairs& out) const override {
+    return pool_.find_primitive_pairs(shapes, bodies, pairs, margins, execution, out);
   }
-  void smooth(const ShapePool& shapes, const PrimitivePairs& pairs, const PairMargins& margins,
-              const Execution& execution, NarrowResult& result) const override {
-    pool_.smooth(shapes, pairs, margins, execution, result);
+  void correct_internal_edges(const ShapePool& shapes, const PrimitivePairs& pairs,
+                              const PairMargins& margins, const Execution& execution,
+                              NarrowResult& result) const override {
+    pool_.correct_internal_edges(shapes, pairs, margins, execution, result);
   }
-  Status reduce(const ShapePool& shapes, const PrimitivePairs& pairs, const NarrowResult& answers,
-                const PairMargins& margins, const Execution& execution,
-                ContactRegions& out) const override {
-    return pool_.reduce(shapes, pairs, answers, margins, execution, out);
+  Status reduce_contacts(const ShapePool& shapes, const PrimitivePairs& pairs,
+                         const NarrowResult& answers, const PairMargins& margins,
+                         const Execution& execution, ContactRegions& out) const override {
+    return pool_.reduce_contacts(shapes, pairs, answers, margins, execution, out);
   }
-  void visit(ShapeId id, const Pose& pose, const BoxSweep& sweep,
+  void visit(ShapeId id, const Pose& pose, const MovingBox& moving_box,
              const PrimitiveVisitor& visitor) const override {
-    pool_.visit(id, pose, sweep, visitor);
+    pool_.visit(id, pose, moving_box, visitor);
   }
   void visit_rays(ShapeId id, const Pose& pose, std::span<const ShapeRay> rays,
                   const double* limits, const RayVisitor& visitor) const override {
     pool_.visit_rays(id, pose, rays, limits, visitor);
   }
-  void visit_near(ShapeId id, const Pose& pose, const BoxSweep& from, double limit,
+  void visit_near(ShapeId id, const Pose& pose, const MovingBox& from, double limit,
                   const PrimitiveVisitor& visitor) const override {
     pool_.visit_near(id, pose, from, limit, visitor);
   }
@@ -470,8 +472,8 @@ TEST(SceneParts, scene_of_balls_never_calls_mid_phase) {
   SceneWorld world(200, 59);
   for (BodyDefinition& body : world.bodies) body.shape = world.shapes[0];
   const IdleMidPhase idle;
-  for (const double carry_over : {0.0, 0.01}) {
-    Scene scene(world.pool, {.carry_over = carry_over, .composites = &idle});
+  for (const double cache_tolerance : {0.0, 0.01}) {
+    Scene scene(world.pool, {.cache_tolerance = cache_tolerance, .composites = &idle});
     ASSERT_EQ(add_all(scene, world), Status::ok);
     Contacts contacts;
     for (int frame = 0; frame < 3; ++frame) {
@@ -514,12 +516,12 @@ TEST(SceneParts, touching_parts_match_brute_force) {
       bodies.push_back(
           world.body(i % world.kinds(), 1.0 * std::cbrt(8.0 * static_cast<double>(count)), random));
       bodies.back().data = i;
-      if (i % 7 == 6) bodies.back().motion = Motion::fixed;
+      if (i % 7 == 6) bodies.back().state = BodyState::fixed;
     }
     Parts truth;
     for (std::size_t i = 0; i < count; ++i) {
       for (std::size_t j = i + 1; j < count; ++j) {
-        if (bodies[i].motion == Motion::fixed && bodies[j].motion == Motion::fixed) continue;
+        if (bodies[i].state == BodyState::fixed && bodies[j].state == BodyState::fixed) continue;
         world.touching(bodies[i], bodies[j], truth);
       }
     }
@@ -544,7 +546,7 @@ TEST(SceneParts, touching_parts_match_brute_force) {
   }
 }
 
-TEST(SceneParts, carried_mesh_contacts_miss_nothing_beyond_bound) {
+TEST(SceneParts, cached_mesh_contacts_miss_nothing_beyond_bound) {
   ShapePool convex;
   CompositePool pool(convex);
   ShapeId box;
@@ -552,10 +554,10 @@ TEST(SceneParts, carried_mesh_contacts_miss_nothing_beyond_bound) {
   const MeshData data = terrain(24);
   ShapeId ground;
   ASSERT_EQ(pool.add_mesh(data.points(), data.indices(), ground), Status::ok);
-  const double carry_over = 0.01;
-  Scene carried(convex, {.carry_over = carry_over, .composites = &pool});
+  const double cache_tolerance = 0.01;
+  Scene cached(convex, {.cache_tolerance = cache_tolerance, .composites = &pool});
   Scene exact(convex, {.composites = &pool});
-  std::vector<BodyDefinition> bodies{{.shape = ground, .motion = Motion::fixed, .data = 1000}};
+  std::vector<BodyDefinition> bodies{{.shape = ground, .state = BodyState::fixed, .data = 1000}};
   Random random(53);
   for (ClientData i = 0; i < 60; ++i) {
     const Eigen::Vector3f& v = data.vertices[random.below(data.vertices.size())];
@@ -568,15 +570,15 @@ TEST(SceneParts, carried_mesh_contacts_miss_nothing_beyond_bound) {
   }
   std::vector<Key> keys(bodies.size());
   std::vector<Key> exact_keys(bodies.size());
-  ASSERT_EQ(carried.add(bodies, keys), Status::ok);
+  ASSERT_EQ(cached.add(bodies, keys), Status::ok);
   ASSERT_EQ(exact.add(bodies, exact_keys), Status::ok);
   Contacts contacts;
   std::size_t kept = 0;
   for (int frame = 0; frame < 15; ++frame) {
     Contacts truth;
-    ASSERT_EQ(carried.collide(ContactLevel::manifold, contacts), Status::ok);
+    ASSERT_EQ(cached.collide(ContactLevel::manifold, contacts), Status::ok);
     ASSERT_EQ(exact.collide(ContactLevel::manifold, truth), Status::ok);
-    kept += contacts.carried();
+    kept += contacts.cached_pairs();
     const Parts found = parts_of(contacts);
     for (std::size_t i = 0; i < truth.size(); ++i) {
       if (truth.data_b()[i] != 1000) continue;
@@ -584,13 +586,13 @@ TEST(SceneParts, carried_mesh_contacts_miss_nothing_beyond_bound) {
         const auto body = static_cast<std::size_t>(truth.data_a()[i]);
         const std::uint32_t triangle = truth.part_b()[m];
         if (found.count({body, 1000, kWholeShape, triangle}) == 1) continue;
-        EXPECT_GT(distance_to(convex, bodies[body + 1], data, triangle), -carry_over);
+        EXPECT_GT(distance_to(convex, bodies[body + 1], data, triangle), -cache_tolerance);
       }
       EXPECT_EQ(shown(contacts).count({truth.data_a()[i], 1000}), 1U) << "missed a pair";
     }
     for (std::size_t i = 1; i < bodies.size(); ++i) {
       for (double& p : bodies[i].pose.position) p += random.uniform(-0.001, 0.001);
-      ASSERT_EQ(carried.move(keys[i], bodies[i].pose), Status::ok);
+      ASSERT_EQ(cached.move(keys[i], bodies[i].pose), Status::ok);
       ASSERT_EQ(exact.move(exact_keys[i], bodies[i].pose), Status::ok);
     }
   }

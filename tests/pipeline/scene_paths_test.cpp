@@ -22,13 +22,13 @@ TEST(ScenePaths, closest_hit_tests_few_bodies) {
   }
   world.add_to_scene();
   SceneQueries queries(*world.scene);
-  std::size_t asked = 0;
+  std::size_t calls = 0;
   Filter filter;
   filter.predicate = {[](void* count, Key, ClientData) {
                         ++*static_cast<std::size_t*>(count);
                         return true;
                       },
-                      &asked};
+                      &calls};
   const std::size_t rays = 1000;
   for (std::size_t n = 0; n < rays; ++n) {
     ShapeRay ray;
@@ -40,7 +40,7 @@ TEST(ScenePaths, closest_hit_tests_few_bodies) {
     SceneHit hit;
     ASSERT_EQ(queries.closest(ray, hit, filter), Status::ok);
   }
-  EXPECT_LT(asked, 12 * rays);
+  EXPECT_LT(calls, 12 * rays);
 }
 
 TEST(ScenePaths, long_ray_hits_tiny_body) {

@@ -17,7 +17,7 @@ TEST(SceneQueries, rays_hit_half_space_beyond_float_range) {
   ASSERT_EQ(world.shapes.pool.add(HalfSpaceShape{{0.0, 0.0, 1.0}, 0.0}, ground), Status::ok);
   world.add(ground, Pose{}, random);
   world.add_to_scene();
-  SceneQueries ask(*world.scene);
+  SceneQueries queries(*world.scene);
   const ShapeRay rays[] = {{{0, 0, 1e39}, {0, 0, -1}, 1e40},
                            {{1e39, -1e39, 5}, {0, 0, -1}, 100.0},
                            {{-1e200, 0, 5}, {1, 0, -1e-200}, kInfinity},
@@ -25,8 +25,8 @@ TEST(SceneQueries, rays_hit_half_space_beyond_float_range) {
   for (const ShapeRay& ray : rays) {
     SceneHit hit;
     std::span<const SceneHit> all;
-    ASSERT_EQ(ask.closest(ray, hit), Status::ok);
-    ASSERT_EQ(ask.all(ray, all), Status::ok);
+    ASSERT_EQ(queries.closest(ray, hit), Status::ok);
+    ASSERT_EQ(queries.all(ray, all), Status::ok);
     ASSERT_EQ(all.size(), 1U) << ray.origin[2];
     EXPECT_EQ(hit.key, world.keys[0]);
     EXPECT_EQ(hit.t, all[0].t);
@@ -82,7 +82,7 @@ TEST(SceneQueries, closest_hit_of_any_sizes_matches_first) {
       QueryWorld world;
       add_any_bodies(world, most, random);
       world.add_to_scene({.execution = Execution::serial()});
-      SceneQueries ask(*world.scene);
+      SceneQueries queries(*world.scene);
       for (int r = 0; r < 30; ++r) {
         ShapeRay ray;
         for (double& x : ray.origin) x = any_number(most, random);
@@ -90,8 +90,8 @@ TEST(SceneQueries, closest_hit_of_any_sizes_matches_first) {
         ray.max_t = 10.0 * std::abs(any_number(most, random));
         SceneHit closest;
         std::span<const SceneHit> all;
-        const Status status = ask.closest(ray, closest);
-        ASSERT_EQ(ask.all(ray, all), status);
+        const Status status = queries.closest(ray, closest);
+        ASSERT_EQ(queries.all(ray, all), status);
         if (status != Status::ok) continue;
         ASSERT_EQ(static_cast<bool>(closest), !all.empty()) << i << ' ' << r << ' ' << most;
         if (!closest) continue;
@@ -113,35 +113,35 @@ TEST(SceneQueries, two_balls_in_a_row_give_expected_results) {
   world.add(ball, Pose::at(10, 0, 0), random);
   world.add(ball, Pose::at(20, 0, 0), random);
   world.add_to_scene();
-  SceneQueries ask(*world.scene);
+  SceneQueries queries(*world.scene);
 
   SceneHit hit;
   std::span<const SceneHit> hits;
   const ShapeRay ray{{0, 0, 0}, {1, 0, 0}, kInfinity};
-  ASSERT_EQ(ask.closest(ray, hit), Status::ok);
+  ASSERT_EQ(queries.closest(ray, hit), Status::ok);
   EXPECT_EQ(hit.key, world.keys[0]);
   EXPECT_DOUBLE_EQ(hit.t, 9.0);
   EXPECT_DOUBLE_EQ(hit.normal[0], -1.0);
-  ASSERT_EQ(ask.all(ray, hits), Status::ok);
+  ASSERT_EQ(queries.all(ray, hits), Status::ok);
   ASSERT_EQ(hits.size(), 2U);
   EXPECT_DOUBLE_EQ(hits[1].t, 19.0);
 
-  ASSERT_EQ(ask.closest(ShapeCast{ball, {}, {1, 0, 0}, kInfinity}, hit, {}, 1e-9), Status::ok);
+  ASSERT_EQ(queries.closest(ShapeCast{ball, {}, {1, 0, 0}, kInfinity}, hit, {}, 1e-9), Status::ok);
   EXPECT_NEAR(hit.t, 8.0, 1e-8);
 
   std::span<const SceneOverlap> overlaps;
-  ASSERT_EQ(ask.overlap(ball, Pose::at(18.5, 0, 0), overlaps), Status::ok);
+  ASSERT_EQ(queries.overlap(ball, Pose::at(18.5, 0, 0), overlaps), Status::ok);
   ASSERT_EQ(overlaps.size(), 1U);
   EXPECT_EQ(overlaps[0].key, world.keys[1]);
 
   SceneDistance apart;
-  ASSERT_EQ(ask.distance(world.keys[0], world.keys[1], apart, kInfinity, PairRules::none),
+  ASSERT_EQ(queries.distance(world.keys[0], world.keys[1], apart, kInfinity, PairRules::none),
             Status::ok);
   EXPECT_DOUBLE_EQ(apart.distance, 8.0);
 
   const double origin[3] = {0, 0, 0};
   std::span<const SceneDistance> near;
-  ASSERT_EQ(ask.nearest(origin, 1, kInfinity, near), Status::ok);
+  ASSERT_EQ(queries.nearest(origin, 1, kInfinity, near), Status::ok);
   ASSERT_EQ(near.size(), 1U);
   EXPECT_EQ(near[0].key, world.keys[0]);
   EXPECT_DOUBLE_EQ(near[0].distance, 9.0);
@@ -172,11 +172,11 @@ std::vector<BodyTime> ray_times(const QueryWorld& world, const ShapeRay& ray) {
   return times;
 }
 
-/// Returns the time of impact of a moving and a standing primitive. `from` is the position of the
-/// cast relative to the standing body.
+/// Returns the time of impact of a moving and a stationary primitive. `from` is the position of the
+/// cast relative to the stationary body.
 double part_time(const ShapePool& pool, const ShapeCast& cast, const double from[3],
-                 const FlatPart& moving, const FlatPart& standing) {
-  CastPair pair{moving.shape, moving.pose, {}, cast.max_t, standing.shape, standing.pose};
+                 const FlatPart& moving, const FlatPart& stationary) {
+  CastPair pair{moving.shape, moving.pose, {}, cast.max_t, stationary.shape, stationary.pose};
   for (int i = 0; i < 3; ++i) pair.from.position[i] += from[i];
   std::copy_n(cast.direction, 3, pair.direction);
   TriangleShape both[2];
@@ -188,7 +188,7 @@ double part_time(const ShapePool& pool, const ShapeCast& cast, const double from
     id = ShapeId::of(ShapeKind::triangle, slot);
   };
   put(0, moving, pair.moving);
-  put(1, standing, pair.standing);
+  put(1, stationary, pair.stationary);
   CastTouch touch;
   return cast_shape(tables, pair, 1e-7, touch) ? touch.t : kInfinity;
 }
@@ -200,9 +200,9 @@ std::vector<BodyTime> cast_times(const QueryWorld& world, const ShapeCast& cast)
   for (std::size_t i = 0; i < times.size(); ++i) {
     double from[3];
     between(cast.pose.position, world.bodies[i].pose.position, from);
-    for (const FlatPart& standing : world.parts(i)) {
+    for (const FlatPart& stationary : world.parts(i)) {
       for (const FlatPart& moving : own) {
-        const double t = part_time(world.shapes.pool, cast, from, moving, standing);
+        const double t = part_time(world.shapes.pool, cast, from, moving, stationary);
         times[i].t = std::min(times[i].t, t);
       }
     }
@@ -325,12 +325,12 @@ TEST(SceneQueries, ray_batch_matches_single_rays) {
   const std::vector<std::size_t> first(lists.first.begin(), lists.first.end());
   for (std::size_t i = 0; i < rays.size(); ++i) {
     EXPECT_EQ(keys[i].id != kNoObject, times[i] < kInfinity);
-    std::span<const SceneHit> alone;
-    ASSERT_EQ(queries.all(rays[i], alone), Status::ok);
-    ASSERT_EQ(alone.size(), first[i + 1] - first[i]);
-    for (std::size_t k = 0; k < alone.size(); ++k) {
-      EXPECT_EQ(hits[first[i] + k].key, alone[k].key);
-      EXPECT_EQ(hits[first[i] + k].t, alone[k].t);
+    std::span<const SceneHit> single;
+    ASSERT_EQ(queries.all(rays[i], single), Status::ok);
+    ASSERT_EQ(single.size(), first[i + 1] - first[i]);
+    for (std::size_t k = 0; k < single.size(); ++k) {
+      EXPECT_EQ(hits[first[i] + k].key, single[k].key);
+      EXPECT_EQ(hits[first[i] + k].t, single[k].t);
     }
   }
   rays.back().direction[0] = std::nan("");
@@ -473,11 +473,11 @@ TEST(SceneQueries, exact_touches_are_found) {
     ASSERT_EQ(queries.all(ray, hits), Status::ok);
     std::vector<const SceneHit*> by_body(world.bodies.size(), nullptr);
     for (const SceneHit& hit : hits) by_body[static_cast<std::size_t>(hit.data - 1000)] = &hit;
-    const BodyDefinition& asking = world.bodies[random.below(world.bodies.size())];
-    Pose pose = asking.pose;
+    const BodyDefinition& queried = world.bodies[random.below(world.bodies.size())];
+    Pose pose = queried.pose;
     for (double& x : pose.position) x = on_lattice(6.0);
     std::span<const SceneOverlap> overlaps;
-    ASSERT_EQ(queries.overlap(asking.shape, pose, overlaps), Status::ok);
+    ASSERT_EQ(queries.overlap(queried.shape, pose, overlaps), Status::ok);
     std::size_t k = 0;
     for (std::size_t i = 0; i < world.bodies.size(); ++i) {
       const BodyDefinition& body = world.bodies[i];
@@ -488,7 +488,7 @@ TEST(SceneQueries, exact_touches_are_found) {
         EXPECT_EQ(by_body[i]->t, truth.t);
       }
       SolverCounts counts;
-      const bool overlap = solve_pair(tables, asking.shape, pose, body.shape, body.pose,
+      const bool overlap = solve_pair(tables, queried.shape, pose, body.shape, body.pose,
                                       ContactLevel::boolean, 0.0, counts)
                                .overlap;
       const bool listed = k < overlaps.size() && overlaps[k].key == world.keys[i];

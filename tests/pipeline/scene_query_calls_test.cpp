@@ -40,11 +40,11 @@ TEST(SceneQueryCalls, filters_and_predicates_select_bodies) {
                         return data % 2 == 0;
                       },
                       &context};
-  const auto wanted = [](ClientData data) { return (data - 1000) % 3 != 1 && data % 2 == 0; };
+  const auto is_selected = [](ClientData data) { return (data - 1000) % 3 != 1 && data % 2 == 0; };
   const auto expect_chosen = [&](const auto& chosen, const auto& everything) {
     std::size_t k = 0;
     for (const auto& one : everything) {
-      if (!wanted(one.data)) continue;
+      if (!is_selected(one.data)) continue;
       ASSERT_LT(k, chosen.size());
       EXPECT_EQ(chosen[k++].key, one.key);
     }

@@ -28,8 +28,8 @@ constexpr ContactLevel kLevels[] = {ContactLevel::pairs, ContactLevel::boolean,
 
 /// Raises each size to the size in this frame.
 void widen(SceneCapacity& room, const Scene& scene, const Contacts& contacts) {
-  for (std::size_t i = 0; i < kMotions; ++i) {
-    room.bodies[i] = std::max(room.bodies[i], scene.size(static_cast<Motion>(i)));
+  for (std::size_t i = 0; i < kBodyStates; ++i) {
+    room.bodies[i] = std::max(room.bodies[i], scene.size(static_cast<BodyState>(i)));
   }
   room.pairs = std::max(room.pairs, static_cast<std::size_t>(scene.statistics().body_pairs));
   room.touching = std::max(room.touching, contacts.size());
@@ -50,30 +50,32 @@ void widen(SceneCapacity& room, const Scene& scene, const Contacts& contacts) {
 TEST(SceneReserve, first_frame_allocates_nothing) {
   for (const ContactLevel level : kLevels) {
     for (const bool parallel : {false, true}) {
-      for (const double carry_over : {0.0, 0.01}) {
+      for (const double cache_tolerance : {0.0, 0.01}) {
         SceneWorld world = plain_world(scaled(700), 41);
         const SceneCapacity room = room_of_first_frame(world, level);
         CountingMemory memory;
         CountingMemory results;
         Scene scene(world.pool, {.memory = &memory,
                                  .execution = execution_of(parallel),
-                                 .carry_over = carry_over,
+                                 .cache_tolerance = cache_tolerance,
                                  .warm_start = true});
         SceneCapacity wide = room;
-        // The carry-over enlarges boxes and thus the number of pairs.
+        // The cache tolerance enlarges boxes and thus the number of pairs.
         wide.pairs += room.pairs / 2;
         Contacts contacts(&results);
         ASSERT_EQ(scene.reserve(wide), Status::ok);
         ASSERT_EQ(scene.reserve_contacts(contacts, wide), Status::ok);
         EXPECT_EQ(scene.footprint().total().reserved, memory.outstanding());
         EXPECT_EQ(contacts.footprint().total().reserved, results.outstanding());
-        const std::size_t asked = memory.requests();
+        const std::size_t requests = memory.requests();
         const std::size_t result_requests = results.requests();
         ASSERT_EQ(add_all(scene, world), Status::ok);
-        EXPECT_EQ(memory.requests(), asked) << "while adding bodies";
+        EXPECT_EQ(memory.requests(), requests) << "while adding bodies";
         ASSERT_EQ(scene.collide(level, contacts), Status::ok);
-        EXPECT_EQ(memory.requests(), asked) << static_cast<int>(level) << parallel << carry_over;
-        EXPECT_EQ(results.requests(), result_requests) << static_cast<int>(level) << carry_over;
+        EXPECT_EQ(memory.requests(), requests)
+            << static_cast<int>(level) << parallel << cache_tolerance;
+        EXPECT_EQ(results.requests(), result_requests)
+            << static_cast<int>(level) << cache_tolerance;
         EXPECT_GT(contacts.size(), world.bodies.size() / 4);
         EXPECT_EQ(scene.footprint().total().reserved, memory.outstanding());
         EXPECT_EQ(contacts.footprint().total().reserved, results.outstanding());
@@ -82,7 +84,7 @@ TEST(SceneReserve, first_frame_allocates_nothing) {
   }
 }
 
-/// Each frame moves all bodies, removes and adds some, and changes the motion of some.
+/// Each frame moves all bodies, removes and adds some, and changes the state of some.
 class Churn {
  public:
   Churn(Scene& scene, SceneWorld& world, std::uint64_t seed)
@@ -99,8 +101,8 @@ class Churn {
         EXPECT_EQ(scene_.remove(world_.keys[i]), Status::ok);
         world_.removed[i] = true;
       } else {
-        world_.bodies[i].motion = static_cast<Motion>(random_.below(kMotions));
-        EXPECT_EQ(scene_.set_motion(world_.keys[i], world_.bodies[i].motion), Status::ok);
+        world_.bodies[i].state = static_cast<BodyState>(random_.below(kBodyStates));
+        EXPECT_EQ(scene_.set_body_state(world_.keys[i], world_.bodies[i].state), Status::ok);
       }
     }
     EXPECT_EQ(move_all(scene_, world_), Status::ok);
@@ -132,7 +134,7 @@ TEST(SceneReserve, reserved_contacts_never_allocate_while_bodies_change) {
           ASSERT_EQ(scene.reserve(room), Status::ok);
           ASSERT_EQ(scene.reserve_contacts(contacts, room), Status::ok);
         }
-        const std::size_t asked = results.requests();
+        const std::size_t requests = results.requests();
         ASSERT_EQ(add_all(scene, world), Status::ok);
         Churn churn(scene, world, 47);
         for (std::size_t frame = 0; frame < frames; ++frame) {
@@ -140,7 +142,7 @@ TEST(SceneReserve, reserved_contacts_never_allocate_while_bodies_change) {
           if (measuring) {
             widen(room, scene, contacts);
           } else {
-            ASSERT_EQ(results.requests(), asked) << static_cast<int>(level) << parallel << frame;
+            ASSERT_EQ(results.requests(), requests) << static_cast<int>(level) << parallel << frame;
           }
           churn.frame();
         }
@@ -163,14 +165,14 @@ TEST(SceneReserve, refused_memory_changes_nothing) {
       CountingMemory memory;
       CountingMemory results;
       Scene scene(world.pool, {.memory = &memory, .execution = Execution::serial()});
-      Scene twin(reference_world.pool, {.execution = Execution::serial()});
+      Scene reference(reference_world.pool, {.execution = Execution::serial()});
       Contacts contacts(&results);
       Contacts truth;
       if (filled) {
         ASSERT_EQ(add_all(scene, world), Status::ok);
-        ASSERT_EQ(add_all(twin, reference_world), Status::ok);
+        ASSERT_EQ(add_all(reference, reference_world), Status::ok);
         ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
-        ASSERT_EQ(twin.collide(ContactLevel::manifold, truth), Status::ok);
+        ASSERT_EQ(reference.collide(ContactLevel::manifold, truth), Status::ok);
       }
       const auto before = digest(contacts);
       memory.refuse_after(granted);
@@ -184,14 +186,14 @@ TEST(SceneReserve, refused_memory_changes_nothing) {
       EXPECT_EQ(contacts.footprint().total().reserved, results.outstanding());
       const bool none = !filled && status != Status::ok;
       if (none) {
-        EXPECT_EQ(scene.partition(Motion::dynamic), nullptr);
+        EXPECT_EQ(scene.partition(BodyState::dynamic), nullptr);
       }
       if (!filled) {
         ASSERT_EQ(add_all(scene, world), Status::ok);
-        ASSERT_EQ(add_all(twin, reference_world), Status::ok);
+        ASSERT_EQ(add_all(reference, reference_world), Status::ok);
       }
       ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
-      ASSERT_EQ(twin.collide(ContactLevel::manifold, truth), Status::ok);
+      ASSERT_EQ(reference.collide(ContactLevel::manifold, truth), Status::ok);
       EXPECT_EQ(digest(contacts), digest(truth)) << granted;
       if (status == Status::ok && of_contacts == Status::ok) break;
       ++refused;
@@ -213,7 +215,7 @@ TEST(SceneReserve, impossible_sizes_are_refused) {
   EXPECT_EQ(scene.reserve_contacts(contacts, {.points = ~std::size_t{0}}),
             Status::too_many_objects);
   EXPECT_EQ(memory.requests(), before);
-  Scene wrong(world.pool, {.margin = -1});
+  Scene wrong(world.pool, {.contact_margin = -1});
   EXPECT_EQ(wrong.reserve({}), Status::invalid_argument);
 }
 

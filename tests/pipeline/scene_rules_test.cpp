@@ -23,7 +23,7 @@ Ids ids_of(const KeyPair& pair) {
   return {pair.first.id, pair.second.id};
 }
 
-/// Bodies with shapes of every kind and with random motions, filters, layers, ignored pairs and
+/// Bodies with shapes of every kind and with random states, filters, layers, ignored pairs and
 /// predicates; and the distance of each two bodies.
 class RuledWorld {
  public:
@@ -31,14 +31,14 @@ class RuledWorld {
     fill(world_, 24, 0.0, random);
     add_own(random);
     for (BodyDefinition& body : world_.bodies) {
-      if (random.chance(0.6)) body.motion = Motion::dynamic;
+      if (random.chance(0.6)) body.state = BodyState::dynamic;
       if (random.chance(0.4)) body.filter.layers = random.chance(0.5) ? 2U : 3U;
       if (random.chance(0.4)) body.filter.mask = random.chance(0.5) ? 1U : 2U;
       if (random.chance(0.2)) body.filter.environment = random.chance(0.3) ? kAllEnvironments : 1U;
       body.layer = static_cast<std::uint16_t>(random.below(3));
     }
     world_.add_to_scene({.execution = Execution::serial()});
-    tell(random);
+    set_rules(random);
     EXPECT_EQ(world_.scene->refresh(), Status::ok);
     measure();
   }
@@ -55,7 +55,8 @@ class RuledWorld {
   [[nodiscard]] bool filters_allow(std::size_t a, std::size_t b) const {
     const BodyDefinition& one = world_.bodies[a];
     const BodyDefinition& other = world_.bodies[b];
-    if (a == b || (one.motion != Motion::dynamic && other.motion != Motion::dynamic)) return false;
+    if (a == b || (one.state != BodyState::dynamic && other.state != BodyState::dynamic))
+      return false;
     if ((one.filter.layers & other.filter.mask) == 0) return false;
     if ((other.filter.layers & one.filter.mask) == 0) return false;
     const std::uint32_t in = one.filter.environment;
@@ -84,7 +85,7 @@ class RuledWorld {
               Status::ok);
     world_.add(ground, Pose{}, random);
   }
-  void tell(Random& random) {
+  void set_rules(Random& random) {
     Scene& scene = *world_.scene;
     ASSERT_EQ(scene.set_layers_collide(0, 2, false), Status::ok);
     for (std::size_t n = 0; n < 3 * size(); ++n) {
@@ -181,7 +182,7 @@ void expect_whole_scene(RuledWorld& world, SceneQueries& queries, double margin,
   for (std::size_t a = 0; a < world.size(); ++a) {
     BodyDefinition body;
     ASSERT_EQ(world.scene().body(world.keys()[a], body), Status::ok);
-    if (rules == PairRules::scene && body.motion != Motion::dynamic) continue;
+    if (rules == PairRules::scene && body.state != BodyState::dynamic) continue;
     for (std::size_t b = 0; b < world.size(); ++b) {
       if (!world.takes(rules, a, b) || world.distance(a, b) > margin) continue;
       least = std::min(least, {world.keys()[a].id, world.keys()[b].id});
@@ -261,7 +262,7 @@ struct Robot {
       links.push_back(scene.add({.shape = capsule, .pose = Pose::at(0.15 * i, 0, 0)}));
     }
     const ShapeId box = shapes.add(BoxShape{{0.1, 0.1, 0.1}});
-    table = scene.add({.shape = box, .pose = Pose::at(0.9, 0, 0), .motion = Motion::fixed});
+    table = scene.add({.shape = box, .pose = Pose::at(0.9, 0, 0), .state = BodyState::fixed});
     EXPECT_EQ(scene.refresh(), Status::ok);
   }
   void ignore_neighbours() {
@@ -278,44 +279,44 @@ struct Robot {
 
 TEST(SceneRules, robot_with_ignored_neighbours_is_free) {
   Robot robot;
-  SceneQueries ask(robot.scene);
+  SceneQueries queries(robot.scene);
   KeyPair pair;
-  ASSERT_EQ(ask.any_contact(robot.links, robot.links, pair), Status::ok);
+  ASSERT_EQ(queries.any_contact(robot.links, robot.links, pair), Status::ok);
   EXPECT_EQ(pair, (KeyPair{robot.links[0], robot.links[1]}));
   robot.ignore_neighbours();
   for (const double margin : {0.0, 0.09}) {
-    ASSERT_EQ(ask.any_contact(robot.links, robot.links, pair, margin), Status::ok);
+    ASSERT_EQ(queries.any_contact(robot.links, robot.links, pair, margin), Status::ok);
     EXPECT_EQ(pair, KeyPair{});
   }
-  ASSERT_EQ(ask.any_contact(robot.links, robot.links, pair, 0.11), Status::ok);
+  ASSERT_EQ(queries.any_contact(robot.links, robot.links, pair, 0.11), Status::ok);
   EXPECT_EQ(pair, (KeyPair{robot.links[0], robot.links[2]}));
   SetDistance least;
-  ASSERT_EQ(ask.least_distance(robot.links, robot.links, least), Status::ok);
+  ASSERT_EQ(queries.least_distance(robot.links, robot.links, least), Status::ok);
   EXPECT_NEAR(least.to.distance, 0.1, 1e-12);
   std::span<const KeyPair> pairs;
-  ASSERT_EQ(ask.overlaps(robot.links, robot.links, pairs), Status::ok);
+  ASSERT_EQ(queries.overlaps(robot.links, robot.links, pairs), Status::ok);
   EXPECT_TRUE(pairs.empty());
-  ASSERT_EQ(ask.overlaps(robot.links, robot.links, pairs, 1, PairRules::none), Status::ok);
+  ASSERT_EQ(queries.overlaps(robot.links, robot.links, pairs, 1, PairRules::none), Status::ok);
   EXPECT_EQ(pairs.size(), 1U);
   const Key table[] = {robot.table};
-  ASSERT_EQ(ask.any_contact(robot.links, table, pair, 0.2), Status::ok);
+  ASSERT_EQ(queries.any_contact(robot.links, table, pair, 0.2), Status::ok);
   EXPECT_EQ(pair, (KeyPair{robot.links[4], robot.table}));
 }
 
 TEST(SceneRules, two_fixed_bodies_are_no_pair) {
   Robot robot;
-  ASSERT_EQ(robot.scene.set_motion(robot.links, Motion::fixed), Status::ok);
+  ASSERT_EQ(robot.scene.set_body_state(robot.links, BodyState::fixed), Status::ok);
   ASSERT_EQ(robot.scene.refresh(), Status::ok);
-  SceneQueries ask(robot.scene);
+  SceneQueries queries(robot.scene);
   KeyPair pair;
-  ASSERT_EQ(ask.any_contact(pair), Status::ok);
+  ASSERT_EQ(queries.any_contact(pair), Status::ok);
   EXPECT_EQ(pair, KeyPair{});
-  ASSERT_EQ(ask.any_contact(pair, 0.0, PairRules::none), Status::ok);
+  ASSERT_EQ(queries.any_contact(pair, 0.0, PairRules::none), Status::ok);
   EXPECT_EQ(pair, (KeyPair{robot.links[0], robot.links[1]}));
   SceneDistance apart;
-  ASSERT_EQ(ask.distance(robot.links[4], robot.table, apart), Status::ok);
+  ASSERT_EQ(queries.distance(robot.links[4], robot.table, apart), Status::ok);
   EXPECT_FALSE(apart);
-  ASSERT_EQ(ask.distance(robot.links[4], robot.table, apart, kInfinity, PairRules::none),
+  ASSERT_EQ(queries.distance(robot.links[4], robot.table, apart, kInfinity, PairRules::none),
             Status::ok);
   EXPECT_NEAR(apart.distance, 0.1, 1e-12);
 }
@@ -328,7 +329,7 @@ TEST(SceneRules, any_contact_matches_for_every_structure) {
     std::vector<BodyDefinition> bodies(400);
     for (BodyDefinition& body : bodies) {
       body = {.shape = ball, .pose = random_pose(9.0, random)};
-      body.motion = static_cast<Motion>(random.below(kMotions));
+      body.state = static_cast<BodyState>(random.below(kBodyStates));
     }
     std::set<Ids> answers;
     for (const StructureKind kind :
@@ -338,9 +339,9 @@ TEST(SceneRules, any_contact_matches_for_every_structure) {
         std::vector<Key> keys(bodies.size());
         ASSERT_EQ(scene.add(bodies, keys), Status::ok);
         ASSERT_EQ(scene.refresh(), Status::ok);
-        SceneQueries ask(scene);
+        SceneQueries queries(scene);
         KeyPair pair;
-        ASSERT_EQ(ask.any_contact(pair), Status::ok);
+        ASSERT_EQ(queries.any_contact(pair), Status::ok);
         answers.insert(ids_of(pair));
       }
     }

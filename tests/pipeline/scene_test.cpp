@@ -1,4 +1,4 @@
-// Contacts of a scene, compared with tests of all pairs; events, motions, filters, and order.
+// Contacts of a scene, compared with tests of all pairs; events, states, filters, and order.
 
 #include "tests/pipeline/scene_world.h"
 
@@ -46,10 +46,10 @@ TEST(Scene, pairs_without_dynamic_body_are_not_reported) {
   ASSERT_EQ(pool.add(SphereShape{1}, ball), Status::ok);
   Scene scene(pool);
   Key keys[3];
-  const Motion motions[] = {Motion::fixed, Motion::sleeping, Motion::dynamic};
+  const BodyState states[] = {BodyState::fixed, BodyState::sleeping, BodyState::dynamic};
   for (ClientData i = 0; i < 3; ++i) {
     for (int copy = 0; copy < 2; ++copy) {
-      ASSERT_EQ(scene.add({.shape = ball, .motion = motions[i], .data = i}, keys[i]), Status::ok);
+      ASSERT_EQ(scene.add({.shape = ball, .state = states[i], .data = i}, keys[i]), Status::ok);
     }
   }
   for (const ContactLevel level :
@@ -63,10 +63,10 @@ TEST(Scene, pairs_without_dynamic_body_are_not_reported) {
 
 /// Compares events with sets of pairs while bodies move and leave.
 TEST(Scene, events_match_sets_of_pairs) {
-  for (const double carry_over : {0.0, 1e-9}) {
+  for (const double cache_tolerance : {0.0, 1e-9}) {
     SceneWorld world(scaled(300), 3);
-    for (BodyDefinition& body : world.bodies) body.motion = Motion::dynamic;
-    Scene scene(world.pool, {.carry_over = carry_over});
+    for (BodyDefinition& body : world.bodies) body.state = BodyState::dynamic;
+    Scene scene(world.pool, {.cache_tolerance = cache_tolerance});
     ASSERT_EQ(add_all(scene, world), Status::ok);
     Contacts contacts;
     std::set<Names> before;
@@ -98,11 +98,11 @@ TEST(Scene, events_match_sets_of_pairs) {
 }
 
 TEST(Scene, sleeping_contacts_are_hidden_and_persist_on_waking) {
-  for (const double carry_over : {0.0, 0.01}) {
+  for (const double cache_tolerance : {0.0, 0.01}) {
     ShapePool pool;
     ShapeId ball;
     ASSERT_EQ(pool.add(SphereShape{1}, ball), Status::ok);
-    Scene scene(pool, {.carry_over = carry_over});
+    Scene scene(pool, {.cache_tolerance = cache_tolerance});
     Key keys[4];
     for (ClientData i = 0; i < 4; ++i) {
       const double x = 1.9 * static_cast<double>(i);
@@ -112,13 +112,13 @@ TEST(Scene, sleeping_contacts_are_hidden_and_persist_on_waking) {
     Contacts contacts;
     ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
     EXPECT_EQ(contacts.size(), 3U);
-    ASSERT_EQ(scene.set_motion(keys, Motion::sleeping), Status::ok);
+    ASSERT_EQ(scene.set_body_state(keys, BodyState::sleeping), Status::ok);
     for (int frame = 0; frame < 3; ++frame) {
       ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
       EXPECT_EQ(contacts.size(), 0U);
       EXPECT_TRUE(contacts.ended().empty());
     }
-    ASSERT_EQ(scene.set_motion(keys[1], Motion::dynamic), Status::ok);
+    ASSERT_EQ(scene.set_body_state(keys[1], BodyState::dynamic), Status::ok);
     ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
     EXPECT_EQ(shown(contacts), (std::set<Names>{{0, 1}, {1, 2}}));
     for (const ContactEvent event : contacts.event()) EXPECT_EQ(event, ContactEvent::persisted);
@@ -131,10 +131,10 @@ TEST(Scene, sleeping_contacts_are_hidden_and_persist_on_waking) {
 }
 
 TEST(Scene, contacts_persist_on_waking_after_other_levels) {
-  for (const double carry_over : {0.0, 0.01}) {
+  for (const double cache_tolerance : {0.0, 0.01}) {
     ShapePool pool;
     const ShapeId ball = pool.add(SphereShape{1});
-    Scene scene(pool, {.carry_over = carry_over});
+    Scene scene(pool, {.cache_tolerance = cache_tolerance});
     Key keys[12];
     for (ClientData i = 0; i < 12; ++i) {
       const double x = 1.9 * static_cast<double>(i);
@@ -150,10 +150,10 @@ TEST(Scene, contacts_persist_on_waking_after_other_levels) {
         EXPECT_EQ(contacts.size(), 11U);
         EXPECT_EQ(contacts.manifolds(), 11U);
       }
-      ASSERT_EQ(scene.set_motion(keys, Motion::sleeping), Status::ok);
+      ASSERT_EQ(scene.set_body_state(keys, BodyState::sleeping), Status::ok);
       ASSERT_EQ(scene.collide(level, contacts), Status::ok);
       EXPECT_EQ(contacts.size() + contacts.ended().size(), 0U);
-      ASSERT_EQ(scene.set_motion(keys, Motion::dynamic), Status::ok);
+      ASSERT_EQ(scene.set_body_state(keys, BodyState::dynamic), Status::ok);
       ASSERT_EQ(scene.collide(level, contacts), Status::ok);
       EXPECT_EQ(contacts.manifold_first()[11], 11U);
       for (const ContactEvent event : contacts.event()) EXPECT_EQ(event, ContactEvent::persisted);
@@ -164,7 +164,7 @@ TEST(Scene, contacts_persist_on_waking_after_other_levels) {
 TEST(Scene, contacts_match_on_any_threads_and_isa) {
   std::vector<std::uint64_t> first;
   const Isa isas[] = {available_isas().front(), available_isas().back()};
-  for (const double carry_over : {0.0, 0.02}) {
+  for (const double cache_tolerance : {0.0, 0.02}) {
     first.clear();
     for (const Isa isa : isas) {
       const IsaScope scope(isa);
@@ -172,7 +172,8 @@ TEST(Scene, contacts_match_on_any_threads_and_isa) {
         SceneWorld world(scaled(1500), 5);
         Threads arena(workers.threads);
         const std::vector<std::uint64_t> all = arena.run([&] {
-          Scene scene(world.pool, {.execution = workers.execution(), .carry_over = carry_over});
+          Scene scene(world.pool,
+                      {.execution = workers.execution(), .cache_tolerance = cache_tolerance});
           EXPECT_EQ(add_all(scene, world), Status::ok);
           Contacts contacts;
           std::vector<std::uint64_t> bits;
@@ -192,7 +193,7 @@ TEST(Scene, contacts_match_on_any_threads_and_isa) {
   }
 }
 
-TEST(Scene, frames_without_carry_over_match_fresh_scene) {
+TEST(Scene, frames_without_cache_match_fresh_scene) {
   SceneWorld world(scaled(800), 7);
   Scene scene(world.pool);
   ASSERT_EQ(add_all(scene, world), Status::ok);
@@ -222,7 +223,7 @@ TEST(Scene, frames_without_carry_over_match_fresh_scene) {
 TEST(Scene, touching_pairs_match_brute_force) {
   for (const double margin : {0.0, 0.15}) {
     SceneWorld world(scaled(400));
-    Scene scene(world.pool, {.margin = margin});
+    Scene scene(world.pool, {.contact_margin = margin});
     ASSERT_EQ(add_all(scene, world), Status::ok);
     Contacts contacts;
     for (int frame = 0; frame < 4; ++frame) {
@@ -240,7 +241,7 @@ TEST(Scene, touching_pairs_match_brute_force) {
 
 TEST(Scene, distances_and_depths_match_brute_force) {
   SceneWorld world(scaled(400));
-  Scene scene(world.pool, {.margin = 0.1});
+  Scene scene(world.pool, {.contact_margin = 0.1});
   ASSERT_EQ(add_all(scene, world), Status::ok);
   Contacts contacts;
   ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);

@@ -28,7 +28,7 @@ SceneWorld::SceneWorld(std::size_t count, std::uint64_t seed)
     BodyDefinition body;
     body.shape = shapes[i % shapes.size()];
     body.pose = random_pose();
-    body.motion = static_cast<Motion>(random.below(10) < 8 ? 1 : random.below(2) * 2);
+    body.state = static_cast<BodyState>(random.below(10) < 8 ? 1 : random.below(2) * 2);
     if (random.chance(0.1)) body.filter = {.layers = 2, .mask = ~2U};
     body.data = i;
     bodies.push_back(body);
@@ -59,7 +59,7 @@ std::map<Names, double> SceneWorld::touching(double margin) const {
       const BodyDefinition& a = bodies[i];
       const BodyDefinition& b = bodies[j];
       if (removed[i] || removed[j] || !filters_allow(a.filter, b.filter)) continue;
-      if (a.motion != Motion::dynamic && b.motion != Motion::dynamic) continue;
+      if (a.state != BodyState::dynamic && b.state != BodyState::dynamic) continue;
       double square = 0.0;
       for (int k = 0; k < 3; ++k) {
         const double d = a.pose.position[k] - b.pose.position[k];

@@ -33,7 +33,7 @@ struct SceneWorld {
   }
   [[nodiscard]] Key key(ClientData name) const { return keys[static_cast<std::size_t>(name)]; }
 
-  /// Returns the pairs that motions and filters admit and that are no farther apart than `margin`,
+  /// Returns the pairs that states and filters admit and that are no farther apart than `margin`,
   /// with their distances, by calling the solver for each pair.
   [[nodiscard]] std::map<Names, double> touching(double margin = 0.0) const;
 

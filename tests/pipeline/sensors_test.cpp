@@ -42,7 +42,7 @@ class BallRoom {
     const std::size_t size = random.below(kSizes);
     body.shape = balls_[size];
     body.pose = somewhere();
-    body.motion = static_cast<Motion>(random.below(kMotions));
+    body.state = static_cast<BodyState>(random.below(kBodyStates));
     body.filter.layers = random.chance(0.2) ? 2 : 1;
     body.data = random.bits();
     Key key;
@@ -68,7 +68,8 @@ class BallRoom {
         ASSERT_EQ(scene.move(key, somewhere()), Status::ok);
       }
       if (random.chance(0.1)) {
-        ASSERT_EQ(scene.set_motion(key, static_cast<Motion>(random.below(kMotions))), Status::ok);
+        ASSERT_EQ(scene.set_body_state(key, static_cast<BodyState>(random.below(kBodyStates))),
+                  Status::ok);
       }
     }
     for (const Key& key : goals) {
@@ -278,9 +279,9 @@ TEST(Sensors, footprint_is_exact_and_refused_memory_is_reported) {
     ASSERT_EQ(room.sensors.sense(), Status::ok);
     EXPECT_EQ(room.sensors.footprint().total().reserved, memory.outstanding());
     ASSERT_EQ(room.sensors.sense(), Status::ok);
-    const std::size_t asked = memory.requests();
+    const std::size_t requests = memory.requests();
     ASSERT_EQ(room.sensors.sense(), Status::ok);
-    EXPECT_EQ(memory.requests(), asked);
+    EXPECT_EQ(memory.requests(), requests);
   }
   for (std::size_t granted = 0; granted < 30; ++granted) {
     BallRoom room;

@@ -1,4 +1,4 @@
-// Shape casts against a standing shape: times of impact compared with closed forms, and with
+// Shape casts against a stationary shape: times of impact compared with closed forms, and with
 // distances of the solver just before and after the impact.
 
 #include "pipeline/scene/queries/shape_cast.h"
@@ -48,7 +48,7 @@ Pose moved(const CastPair& pair, double t) {
 
 double distance_at(const ShapePool& pool, const CastPair& pair, double t) {
   SolverCounts counts;
-  return solve_pair(pool.tables(), pair.moving, moved(pair, t), pair.standing, pair.pose,
+  return solve_pair(pool.tables(), pair.moving, moved(pair, t), pair.stationary, pair.pose,
                     ContactLevel::distance, 0.0, counts)
       .distance;
 }
@@ -61,7 +61,7 @@ TEST(ShapeCast, balls_match_closed_form) {
     const double size = random.log_uniform(1e-15, 1e15);
     const double radius[2] = {size * random.unit(), size * random.unit()};
     ASSERT_EQ(pool.add(SphereShape{radius[0]}, pair.moving), Status::ok);
-    ASSERT_EQ(pool.add(SphereShape{radius[1]}, pair.standing), Status::ok);
+    ASSERT_EQ(pool.add(SphereShape{radius[1]}, pair.stationary), Status::ok);
     for (double& x : pair.pose.position) x = size * random.uniform(-1, 1);
     back_off(pair, unit(random), size * random.log_uniform(1.0, 1e4),
              random.log_uniform(1e-9, 1e9));
@@ -112,7 +112,7 @@ TEST(ShapeCast, bullet_never_tunnels_through_triangle) {
     for (auto& corner : triangle.vertex) {
       for (double& x : corner) x = random.uniform(-1, 1);
     }
-    ASSERT_EQ(pool.add(triangle, pair.standing), Status::ok);
+    ASSERT_EQ(pool.add(triangle, pair.stationary), Status::ok);
     // Aimed at a point inside the triangle.
     double weight[3] = {random.unit() + 0.01, random.unit() + 0.01, random.unit() + 0.01};
     const double sum = weight[0] + weight[1] + weight[2];
@@ -215,7 +215,7 @@ TEST(ShapeCast, separating_sliding_or_touching_cast_ends_early) {
       EXPECT_FALSE(cast_shape(pool.tables(), pair, 1e-6, touch));
       EXPECT_LT(touch.steps, 4U);
       pair.from = Pose::at(0, 0, 2.0 + 1e-9);
-      pair.standing = box;
+      pair.stationary = box;
       EXPECT_FALSE(cast_shape(pool.tables(), pair, 1e-6, touch));
       EXPECT_LT(touch.steps, 60U);
       pair.from = Pose::at(0, 0, 2.0);

@@ -160,7 +160,7 @@ TEST(ShapeRays, sliver_is_hit_only_within_its_edges) {
 // the ray, and the intersection with its plane is arbitrary.
 TEST(ShapeRays, ray_along_sliver_hits_between_its_tips) {
   Random random(53);
-  std::size_t met = 0;
+  std::size_t hit_count = 0;
   for (std::size_t i = 0; i < scaled(2000); ++i) {
     const Vector3d along(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
     TriangleShape sliver;
@@ -177,11 +177,11 @@ TEST(ShapeRays, ray_along_sliver_hits_between_its_tips) {
     ASSERT_EQ(pool.add(sliver, id), Status::ok);
     const Cast c = cast(pool.tables(), id, Vector3d::Zero(), along);
     if (!c.hit.hit) continue;
-    ++met;
+    ++hit_count;
     ASSERT_GE(c.hit.t, first - 1e-12) << i;
     ASSERT_LE(c.hit.t, last + 1e-12) << i;
   }
-  EXPECT_GT(met, scaled(1000));
+  EXPECT_GT(hit_count, scaled(1000));
 }
 
 TEST(ShapeRays, rays_along_cone_lines_hit_exactly) {
@@ -207,7 +207,8 @@ TEST(ShapeRays, needle_and_plate_cones_are_hit_correctly) {
   ShapeId plate;
   ASSERT_EQ(pool.add(ConeShape{1e-5, 1e5, 0.0}, needle), Status::ok);
   ASSERT_EQ(pool.add(ConeShape{1e5, 1e-5, 0.0}, plate), Status::ok);
-  // Half-way up the needle has half its thickness, half-way out the plate half its height.
+  // At half of its height the needle has half of its radius. At half of its radius the plate has
+  // half of its height.
   EXPECT_NEAR(cast(pool.tables(), needle, {-1, 0, 0}, {1, 0, 0}).hit.t, 1.0 - 0.5e-5, 1e-9);
   EXPECT_FALSE(cast(pool.tables(), needle, {-1, 1e-3, 0}, {1, 0, 0}).hit.hit);
   EXPECT_FALSE(cast(pool.tables(), needle, {1e-3, 0, 3e5}, {0, 0, -1}).hit.hit);

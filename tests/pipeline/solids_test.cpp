@@ -46,7 +46,7 @@ long double winding(const MeshData& mesh, const Vec& point) {
   return sum / (4.0L * std::numbers::pi_v<long double>);
 }
 
-/// Returns true if points next to it have different winding numbers.
+/// Returns true if eight points around `point` have different winding numbers.
 bool is_on_surface(const MeshData& mesh, const Vec& point) {
   long least = 1;
   long greatest = 0;
@@ -196,10 +196,10 @@ TEST(Solids, inside_test_matches_winding_number) {
         const Vec stretched = own.cwiseProduct(Vec::Map(scale.data()));
         const Vec world = Vec::Map(pose.position) + turn * stretched;
         (is_inside ? inside : outside) += 1;
-        ASSERT_EQ(pool.holds(scaled_id, pose, world.data()), is_inside)
+        ASSERT_EQ(pool.solid_contains(scaled_id, pose, world.data()), is_inside)
             << mesh.name << " " << own.transpose();
         const Vec in_child = world + turn * Vec(0.5, -2.0, 1.0);
-        ASSERT_EQ(pool.holds(compound, pose, in_child.data()), is_inside) << mesh.name;
+        ASSERT_EQ(pool.solid_contains(compound, pose, in_child.data()), is_inside) << mesh.name;
       }
     }
   }
@@ -237,25 +237,26 @@ TEST(Solids, distance_of_inner_points_is_negative) {
   const MeshData mesh = torus(16, 9);
   SolidWorld world(mesh);
   ASSERT_EQ(world.scene.refresh(), Status::ok);
-  SceneQueries ask(world.scene);
+  SceneQueries queries(world.scene);
   std::size_t inside = 0;
   for (const Vec& own : points_about(mesh, random)) {
     const Vec point = own + Vec::Map(world.pose.position);
     std::span<const SceneDistance> found;
-    ASSERT_EQ(ask.nearest(point.data(), 2, kInfinity, found), Status::ok);
+    ASSERT_EQ(queries.nearest(point.data(), 2, kInfinity, found), Status::ok);
     ASSERT_EQ(found.size(), 2U);
     const SceneDistance solid = found[found[0].key == world.solid_key ? 0 : 1];
     const SceneDistance plain = found[found[0].key == world.solid_key ? 1 : 0];
     ASSERT_EQ(solid.part, plain.part);
     if (plain.distance < 1e-9) continue;  // on the surface
-    const bool held = world.composites.holds(world.solid, world.pose, point.data());
-    ASSERT_EQ(solid.distance, held ? -plain.distance : plain.distance);
-    ASSERT_EQ(solid.normal[0], held ? -plain.normal[0] : plain.normal[0]);
+    const bool is_contained =
+        world.composites.solid_contains(world.solid, world.pose, point.data());
+    ASSERT_EQ(solid.distance, is_contained ? -plain.distance : plain.distance);
+    ASSERT_EQ(solid.normal[0], is_contained ? -plain.normal[0] : plain.normal[0]);
     ASSERT_EQ(solid.point_b[2], plain.point_b[2]);
-    if (!held || plain.distance < 0.01) continue;
+    if (!is_contained || plain.distance < 0.01) continue;
     ++inside;
     ASSERT_EQ(found[0].key, world.solid_key);
-    ASSERT_EQ(ask.nearest(point.data(), 2, 0.5 * plain.distance, found), Status::ok);
+    ASSERT_EQ(queries.nearest(point.data(), 2, 0.5 * plain.distance, found), Status::ok);
     ASSERT_EQ(found.size(), 1U) << "a point inside is within any radius";
     ASSERT_EQ(found[0].distance, solid.distance);
   }
@@ -268,12 +269,12 @@ TEST(Solids, solid_cube_matches_box) {
   ShapeId box;
   ASSERT_EQ(world.shapes.add(BoxShape{{1.0, 1.0, 1.0}}, box), Status::ok);
   const Key convex = world.put(box, world.pose);
-  SceneQueries ask(world.scene);
+  SceneQueries queries(world.scene);
   for (std::size_t i = 0; i < scaled(200); ++i) {
     const double point[3] = {5.0 + random.uniform(-1.5, 1.5), -3.0 + random.uniform(-1.5, 1.5),
                              2.0 + random.uniform(-1.5, 1.5)};
     std::span<const SceneDistance> found;
-    ASSERT_EQ(ask.nearest(point, 3, kInfinity, found), Status::ok);
+    ASSERT_EQ(queries.nearest(point, 3, kInfinity, found), Status::ok);
     double distance[2] = {1.0, -1.0};
     for (const SceneDistance& one : found) {
       if (one.key == convex) distance[0] = one.distance;
@@ -302,34 +303,34 @@ TEST(Solids, contained_shapes_overlap_solid) {
   const ShapeId all[] = {shapes[0], shapes[1], shapes[2], compound};
   for (int i = 0; i < 4; ++i) {
     const Key key = world.put(all[i], within[i]);
-    SceneQueries ask(world.scene);
-    std::span<const SceneOverlap> met;
-    ASSERT_EQ(ask.overlap(all[i], within[i], met), Status::ok);
-    const auto meets = [&](Key other) {
-      return std::any_of(met.begin(), met.end(),
+    SceneQueries queries(world.scene);
+    std::span<const SceneOverlap> overlaps;
+    ASSERT_EQ(queries.overlap(all[i], within[i], overlaps), Status::ok);
+    const auto has_overlap = [&](Key other) {
+      return std::any_of(overlaps.begin(), overlaps.end(),
                          [&](const SceneOverlap& one) { return one.key == other; });
     };
-    EXPECT_TRUE(meets(world.solid_key)) << i;
-    EXPECT_FALSE(meets(world.plain_key)) << i;
+    EXPECT_TRUE(has_overlap(world.solid_key)) << i;
+    EXPECT_FALSE(has_overlap(world.plain_key)) << i;
     SceneDistance plain;
     SceneDistance solid;
     SceneDistance back;
-    ASSERT_EQ(ask.distance(key, world.plain_key, plain), Status::ok);
-    ASSERT_EQ(ask.distance(key, world.solid_key, solid), Status::ok);
-    ASSERT_EQ(ask.distance(world.solid_key, key, back), Status::ok);
+    ASSERT_EQ(queries.distance(key, world.plain_key, plain), Status::ok);
+    ASSERT_EQ(queries.distance(key, world.solid_key, solid), Status::ok);
+    ASSERT_EQ(queries.distance(world.solid_key, key, back), Status::ok);
     EXPECT_GT(plain.distance, 0.1) << i;
     EXPECT_EQ(solid.distance, -plain.distance) << i;
     EXPECT_NEAR(back.distance, -plain.distance, 1e-12) << i;
-    ASSERT_EQ(ask.distance(key, world.solid_key, solid, -10.0), Status::ok);
+    ASSERT_EQ(queries.distance(key, world.solid_key, solid, -10.0), Status::ok);
     EXPECT_FALSE(solid) << "the limit is below the distance";
     const Key one[] = {key};
     const Key both[] = {world.plain_key, world.solid_key};
     std::span<const KeyPair> pairs;
-    ASSERT_EQ(ask.overlaps(one, both, pairs), Status::ok);
+    ASSERT_EQ(queries.overlaps(one, both, pairs), Status::ok);
     ASSERT_EQ(pairs.size(), 1U) << i;
     EXPECT_EQ(pairs[0].second, world.solid_key);
     SetDistance least;
-    ASSERT_EQ(ask.least_distance(one, both, least), Status::ok);
+    ASSERT_EQ(queries.least_distance(one, both, least), Status::ok);
     EXPECT_EQ(least.to.key, world.solid_key) << i;
   }
 }
@@ -341,13 +342,13 @@ TEST(Solids, shapes_outside_do_not_overlap_solid) {
   ASSERT_EQ(world.shapes.add(SphereShape{0.5}, ball), Status::ok);
   ShapeId ground;
   ASSERT_EQ(world.shapes.add(HalfSpaceShape{{0.0, 0.0, 1.0}, 0.0}, ground), Status::ok);
-  SceneQueries ask(world.scene);
+  SceneQueries queries(world.scene);
   ASSERT_EQ(world.scene.refresh(), Status::ok);
-  std::span<const SceneOverlap> met;
-  ASSERT_EQ(ask.overlap(ball, world.pose, met), Status::ok);
-  EXPECT_TRUE(met.empty()) << "in the hole";
-  ASSERT_EQ(ask.overlap(ground, {}, met), Status::ok);
-  EXPECT_TRUE(met.empty()) << "above";
+  std::span<const SceneOverlap> overlaps;
+  ASSERT_EQ(queries.overlap(ball, world.pose, overlaps), Status::ok);
+  EXPECT_TRUE(overlaps.empty()) << "in the hole";
+  ASSERT_EQ(queries.overlap(ground, {}, overlaps), Status::ok);
+  EXPECT_TRUE(overlaps.empty()) << "above";
 }
 
 TEST(Solids, snapshot_keeps_solid_flag) {
@@ -369,13 +370,13 @@ TEST(Solids, snapshot_keeps_solid_flag) {
 TEST(Solids, changed_solid_flag_requires_refresh) {
   SolidWorld world(cube());
   ASSERT_EQ(world.scene.refresh(), Status::ok);
-  SceneQueries ask(world.scene);
+  SceneQueries queries(world.scene);
   ASSERT_EQ(world.composites.set_solid(world.solid, false), Status::ok);
   const double point[3] = {5.0, -3.0, 2.0};
   std::span<const SceneDistance> found;
-  EXPECT_EQ(ask.nearest(point, 1, 10.0, found), Status::invalid_argument);
+  EXPECT_EQ(queries.nearest(point, 1, 10.0, found), Status::invalid_argument);
   ASSERT_EQ(world.scene.refresh(), Status::ok);
-  ASSERT_EQ(ask.nearest(point, 1, 10.0, found), Status::ok);
+  ASSERT_EQ(queries.nearest(point, 1, 10.0, found), Status::ok);
   EXPECT_EQ(found[0].distance, 1.0);
 }
 

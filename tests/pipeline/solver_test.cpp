@@ -39,8 +39,8 @@ struct SolverPair {
   [[nodiscard]] bool has(ShapeKind kind) const {
     return scene.shapes[pair.a].kind() == kind || scene.shapes[pair.b].kind() == kind;
   }
-  /// Tolerance of points and normals relative to the size. On curved surfaces they are less
-  /// accurate, since the distance hardly changes along the surface.
+  /// Tolerance of points and normals relative to the size. With cylinders and cones it is larger,
+  /// because the distance hardly changes while a point moves along a curved surface.
   [[nodiscard]] double relative_error() const {
     return has(ShapeKind::cylinder) || has(ShapeKind::cone) ? 1e-8 : 1e-13;
   }
@@ -137,11 +137,11 @@ TEST_F(SolverCases, touching_shapes_overlap_at_distance_zero) {
   const ShapeId cube = add(BoxShape{{1, 1, 1}, 0.0});
   const ShapeId drum = add(CylinderShape{0.5, 0.25, 0.0});
   const ShapeId cone = add(ConeShape{0.5, 0.25, 0.0});
-  const Pose lying{{0, 0, 1.5}, {1, 0, 1, 0}};
+  const Pose on_side{{0, 0, 1.5}, {1, 0, 1, 0}};
   const Pose on_tip{{0.25, 0, 1.25}, {0, 1, 0, 0}};
   EXPECT_EQ(solve(cube, Pose{}, sphere, Pose::at(0, 0, 2)).distance, 0.0);
   EXPECT_EQ(solve(cube, Pose{}, cube, Pose::at(2, 2, 2)).distance, 0.0);
-  EXPECT_EQ(solve(cube, Pose{}, drum, lying).distance, 0.0);
+  EXPECT_EQ(solve(cube, Pose{}, drum, on_side).distance, 0.0);
   EXPECT_EQ(solve(cube, Pose{}, drum, Pose::at(0, 0, 1.25)).distance, 0.0);
   EXPECT_EQ(solve(cube, Pose{}, cone, Pose::at(0, 0, 1.25)).distance, 0.0);
   EXPECT_EQ(solve(cube, Pose{}, cone, on_tip).distance, 0.0);
@@ -427,7 +427,7 @@ TEST_P(Solver, swapped_pairs_give_mirrored_answers) {
 
 TEST_P(Solver, common_motion_keeps_distance_within_error_bounds) {
   for_pairs(GetParam(), [](const SolverPair& solver_pair) {
-    // A rational rotation, so that results differ only by rounding.
+    // A rotation by a rational unit quaternion.
     Pose moved[2] = {solver_pair.pose_a(), solver_pair.pose_b()};
     const Eigen::Quaterniond turn = Eigen::Quaterniond(0.8, 0.0, 0.36, 0.48).normalized();
     for (Pose& pose : moved) {

@@ -4,8 +4,8 @@
 #include "tests/pipeline/composite_world.h"
 
 #include <gtest/gtest.h>
+#include <winnow/pipeline/continuous_collision.h>
 #include <winnow/pipeline/scene_queries.h>
-#include <winnow/pipeline/scene_sweep.h>
 #include <winnow/pipeline/time_of_impact.h>
 
 #include <Eigen/Geometry>
@@ -18,7 +18,7 @@
 namespace winnow::test {
 namespace {
 
-/// Floors are at z = 0 from x = -10 to 3. The walls there are 4 high.
+/// Floors are at z = 0 from x = -10 to 3. The walls at x = 3 are 4 high.
 constexpr double kWall = 3.0;
 constexpr double kStart = -3.0;
 constexpr double kWay = 9.0;
@@ -36,10 +36,10 @@ struct SlideMover {
   ShapeId shape;
   double height;
   double reach;
-  /// It is symmetric about the vertical.
+  /// True if the shape is symmetric about the vertical.
   bool is_round = false;
-  /// Its lowest points extend as far as any of its points.
-  bool stands_wide = true;
+  /// True if no point of the shape is farther out horizontally than its lowest points.
+  bool has_wide_base = true;
 };
 
 /// All lengths are multiplied by `scale`.
@@ -105,15 +105,15 @@ ShapeId TouchWorld::floor_and_wall(int pieces) {
 void TouchWorld::add_levels() {
   const auto whole = [&](const char* name, ShapeId shape, double lean = 0.0,
                          const Pose& pose = Pose{}) {
-    levels.push_back({name, {{.shape = shape, .pose = pose, .motion = Motion::fixed}}, lean});
+    levels.push_back({name, {{.shape = shape, .pose = pose, .state = BodyState::fixed}}, lean});
   };
   const CompoundChild wall{box(1, 10, 4), at(kWall + 1, 0, 0)};
   const ShapeId space = add(shapes, HalfSpaceShape{{0, 0, 1}, 0});
   for (const CompoundChild& floor :
        {CompoundChild{box(6.5, 10, 1), at(-3.5, 0, -1)}, CompoundChild{space, Pose{}}}) {
     levels.push_back({"bodies",
-                      {{.shape = floor.shape, .pose = floor.pose, .motion = Motion::fixed},
-                       {.shape = wall.shape, .pose = wall.pose, .motion = Motion::fixed}}});
+                      {{.shape = floor.shape, .pose = floor.pose, .state = BodyState::fixed},
+                       {.shape = wall.shape, .pose = wall.pose, .state = BodyState::fixed}}});
     whole("compound of floor and wall", compound({floor, wall}));
   }
   std::vector<CompoundChild> tiles{wall};
@@ -186,41 +186,41 @@ class LevelRun {
     EXPECT_EQ(scene_.refresh(), Status::ok);
     const Pose pose =
         placed(Pose::at(scale * kStart, scale * 0.013, scale * (mover.height + way.gap)));
-    motion_ = RigidMotion::standing(pose);
+    motion_ = RigidMotion::stationary(pose);
     Eigen::Vector3d::Map(motion_.travel) = way_;
     Eigen::Vector3d::Map(motion_.turn) = turned * Eigen::Vector3d(0, 0, way.turn);
   }
 
   [[nodiscard]] SceneHit cast(bool touching = false) const {
-    SceneQueries ask(scene_);
+    SceneQueries queries(scene_);
     ShapeCast cast{.shape = shape_, .pose = motion_.start, .touching = touching};
     Eigen::Vector3d::Map(cast.direction) = way_;
     SceneHit hit;
-    EXPECT_EQ(ask.closest(cast, hit, {}, 1e-6 * scale_), Status::ok);
+    EXPECT_EQ(queries.closest(cast, hit, {}, 1e-6 * scale_), Status::ok);
     std::span<const SceneHit> all;
-    EXPECT_EQ(ask.all(cast, all, {}, 1e-6 * scale_), Status::ok);
+    EXPECT_EQ(queries.all(cast, all, {}, 1e-6 * scale_), Status::ok);
     EXPECT_EQ(all.empty() ? Key{} : all[0].key, hit.key);
     return hit;
   }
   [[nodiscard]] SceneHit motion_cast(bool touching = false) const {
-    SceneQueries ask(scene_);
+    SceneQueries queries(scene_);
     const MotionCast cast{shape_, motion_, touching};
     SceneHit hit;
-    EXPECT_EQ(ask.closest(cast, hit, {}, 1e-6), Status::ok);
+    EXPECT_EQ(queries.closest(cast, hit, {}, 1e-6), Status::ok);
     std::span<const SceneHit> all;
-    EXPECT_EQ(ask.all(cast, all, {}, 1e-6), Status::ok);
+    EXPECT_EQ(queries.all(cast, all, {}, 1e-6), Status::ok);
     EXPECT_EQ(all.empty() ? Key{} : all[0].key, hit.key);
     return hit;
   }
-  /// Returns the time of the first impact of a sweep that ignores initial touches, or 2 if it has
+  /// Returns the time of the first impact in the scene, without initial touches, or 2 if there is
   /// none.
-  [[nodiscard]] double sweep() {
+  [[nodiscard]] double first_impact_time() {
     Key key;
     EXPECT_EQ(scene_.add({.shape = shape_, .pose = motion_.start}, key), Status::ok);
-    SceneSweep sweep(scene_);
-    EXPECT_EQ(sweep.sweep({&key, 1}, {&motion_, 1}, {.touching = false}), Status::ok);
+    ContinuousCollision ccd(scene_);
+    EXPECT_EQ(ccd.find_impacts({&key, 1}, {&motion_, 1}, {.touching = false}), Status::ok);
     EXPECT_EQ(scene_.remove(key), Status::ok);
-    return sweep.impacts().empty() ? 2.0 : sweep.impacts()[0].time;
+    return ccd.impacts().empty() ? 2.0 : ccd.impacts()[0].time;
   }
   [[nodiscard]] Eigen::Vector3d up() const { return turned_ * Eigen::Vector3d::UnitZ(); }
 
@@ -278,7 +278,7 @@ void for_all(std::uint64_t stream, bool may_turn, Test&& test) {
 [[nodiscard]] testing::AssertionResult is_at_wall(double time, const SlideLevel& level,
                                                   const SlideMover& mover, double gap) {
   const double first = (kWall - kStart - mover.reach) / kWay;
-  const double last = first + (mover.stands_wide ? std::abs(gap) : level.lean) / kWay;
+  const double last = first + (mover.has_wide_base ? std::abs(gap) : level.lean) / kWay;
   if (time > first - 4e-6 && time < last + 1e-6) return testing::AssertionSuccess();
   return testing::AssertionFailure() << time << " is not in " << first << " to " << last;
 }
@@ -294,7 +294,7 @@ TEST(StartTouches, ignored_initial_touch_hides_no_wall) {
               LevelRun run = run_of({gap, along_floor(random)});
               EXPECT_TRUE(is_at_wall(run.cast().t, level, mover, gap)) << gap;
               EXPECT_TRUE(is_at_wall(run.motion_cast().t, level, mover, gap)) << gap;
-              EXPECT_TRUE(is_at_wall(run.sweep(), level, mover, gap)) << gap;
+              EXPECT_TRUE(is_at_wall(run.first_impact_time(), level, mover, gap)) << gap;
               if (gap <= -1e-5) {
                 EXPECT_EQ(run.cast(true).t, 0.0);
                 EXPECT_EQ(run.motion_cast(true).t, 0.0);
@@ -331,7 +331,7 @@ TEST(StartTouches, separating_initial_touch_hides_no_wall) {
               LevelRun run = run_of({gap, travel});
               EXPECT_TRUE(is_at_wall(run.cast().t, level, mover, gap)) << gap;
               EXPECT_TRUE(is_at_wall(run.motion_cast().t, level, mover, gap)) << gap;
-              EXPECT_TRUE(is_at_wall(run.sweep(), level, mover, gap)) << gap;
+              EXPECT_TRUE(is_at_wall(run.first_impact_time(), level, mover, gap)) << gap;
             }
           });
 }

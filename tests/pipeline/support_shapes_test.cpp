@@ -170,8 +170,8 @@ TEST(SupportShapes, support_shapes_match_equal_shapes) {
       const SamePairs pairs(same, kind, scaled(60), random);
       for (const ContactLevel level :
            {ContactLevel::boolean, ContactLevel::distance, ContactLevel::manifold}) {
-        const NarrowOptions options{.level = level, .margin = kMargin};
-        const auto answers = ask(pairs.scene, options);
+        const NarrowOptions options{.level = level, .contact_margin = kMargin};
+        const auto answers = compute_results(pairs.scene, options);
         const auto truth = pairs.truth(options);
         for (std::size_t i = 0; i < answers.size(); ++i) {
           SCOPED_TRACE(std::string(same.name) + " " + to_string(kind) + " " + std::to_string(i));
@@ -268,7 +268,7 @@ PairResults answer_to(const A& a, const Pose& pose_a, const B& b, const Pose& po
   EXPECT_EQ(scene.pool.add(b, scene.shapes[1]), Status::ok);
   scene.poses = {pose_a, pose_b};
   scene.pairs = {{0, 1}};
-  const auto answers = ask(scene, {.level = ContactLevel::distance});
+  const auto answers = compute_results(scene, {.level = ContactLevel::distance});
   return answers.empty() ? PairResults{} : answers[0];
 }
 
@@ -400,7 +400,7 @@ TEST(SupportShapes, overlapping_roundings_need_few_support_calls) {
   scene.pairs = {{0, 1}};
   const auto calls_at = [&](ContactLevel level) {
     const std::size_t before = drum.calls;
-    EXPECT_TRUE(ask(scene, {.level = level})[0].overlap);
+    EXPECT_TRUE(compute_results(scene, {.level = level})[0].overlap);
     return drum.calls - before;
   };
   const std::size_t for_verdict = calls_at(ContactLevel::boolean);
@@ -523,8 +523,8 @@ TEST(SupportShapes, resting_shapes_have_expected_contact_counts) {
   }
   // Lying on its side, which slopes by asin(0.05).
   const double slope = std::asin(0.05);
-  const Pose lying = tilted(0.25, 0.5 * 3.14159265358979 + slope);
-  EXPECT_EQ(contacts_on_floor(pool, taper, lying, kMargin).size(), 2U);
+  const Pose on_side = tilted(0.25, 0.5 * 3.14159265358979 + slope);
+  EXPECT_EQ(contacts_on_floor(pool, taper, on_side, kMargin).size(), 2U);
 }
 
 TEST(SupportShapes, ellipsoid_rests_on_point_below) {
@@ -578,7 +578,8 @@ TEST(SupportShapes, functions_that_become_invalid_give_finite_results) {
       faulty.fault = fault;
       for (const ContactLevel level :
            {ContactLevel::boolean, ContactLevel::distance, ContactLevel::manifold}) {
-        for (const PairResults& answer : ask(scene, {.level = level, .margin = 0.1})) {
+        for (const PairResults& answer :
+             compute_results(scene, {.level = level, .contact_margin = 0.1})) {
           EXPECT_TRUE(std::isfinite(answer.distance) && answer.normal.allFinite() &&
                       answer.point.allFinite() && !(answer.error_bound < 0.0));
         }
@@ -684,9 +685,9 @@ TEST(SupportShapes, contacts_with_composites_match_equal_shapes) {
     ASSERT_EQ(shapes.add(block, ids[1][2]), Status::ok);
     Contacts contacts[2];
     for (std::size_t way = 0; way < 2; ++way) {
-      Scene scene(shapes, {.margin = 0.05, .composites = &composites});
+      Scene scene(shapes, {.contact_margin = 0.05, .composites = &composites});
       Key key;
-      ASSERT_EQ(scene.add({.shape = floor, .motion = Motion::fixed}, key), Status::ok);
+      ASSERT_EQ(scene.add({.shape = floor, .state = BodyState::fixed}, key), Status::ok);
       for (std::size_t i = 0; i < 12; ++i) {
         const double x = 0.3 * static_cast<double>(i);
         const Pose pose = Pose::at(x - 1.0, 1.3 * static_cast<double>(i % 3) + 0.11, 0.28);

@@ -22,7 +22,7 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kEndless = std::numeric_limits<double>::infinity();
 
 /// The result for a single pair.
-struct Meeting {
+struct PairImpact {
   Status status = Status::ok;
   bool hit = false;
   double time = 0.0;
@@ -32,23 +32,23 @@ struct Meeting {
   Vec3d point;
 };
 
-Meeting meeting_of(const ShapePool& pool, const MovingShapes& pair, double tolerance = 1e-6) {
+PairImpact impact_of(const ShapePool& pool, const MovingShapes& pair, double tolerance = 1e-6) {
   ImpactResult result;
   const BodyPair pairs[1] = {{0, 1}};
-  Meeting meeting;
-  meeting.status =
+  PairImpact impact;
+  impact.status =
       time_of_impact(pool, {pair.shape, pair.motion}, pairs, {.tolerance = tolerance}, result);
-  if (meeting.status != Status::ok) return meeting;
-  meeting.status = result.status(0);
-  meeting.hit = result.hits(0);
-  meeting.time = result.time()[0];
-  meeting.gap = result.gap()[0];
-  meeting.error = result.error_bound()[0];
+  if (impact.status != Status::ok) return impact;
+  impact.status = result.status(0);
+  impact.hit = result.hits(0);
+  impact.time = result.time()[0];
+  impact.gap = result.gap()[0];
+  impact.error = result.error_bound()[0];
   for (int i = 0; i < 3; ++i) {
-    meeting.normal[i] = result.normal(i)[0];
-    meeting.point[i] = result.point(i)[0];
+    impact.normal[i] = result.normal(i)[0];
+    impact.point[i] = result.point(i)[0];
   }
-  return meeting;
+  return impact;
 }
 
 template <typename Shape>
@@ -78,22 +78,22 @@ TEST(TimeOfImpact, impact_is_never_late_and_within_tolerance) {
     if (!pair.motion[0].is_valid() || !pair.motion[1].is_valid()) continue;
     constexpr double kTolerances[] = {1e-6, 1e-6, 1e-3, 1e-9};
     const double tolerance = kTolerances[random.below(std::size(kTolerances))];
-    const Meeting found = meeting_of(scene.pool, pair, tolerance);
+    const PairImpact found = impact_of(scene.pool, pair, tolerance);
     ASSERT_EQ(found.status, Status::ok);
     SCOPED_TRACE(testing::Message()
                  << n << ": " << to_string(a) << " " << to_string(b) << " " << to_string(made)
                  << " " << to_string(style) << " " << tolerance);
     const Before then = before(scene.pool, pair, found.time, 2000);
-    EXPECT_NE(then, Before::met);
+    EXPECT_NE(then, Before::overlapping);
     unproved += then == Before::apart ? 0 : 1;
     if (!found.hit) continue;
     const DistanceAt at = distance_at(scene.pool, pair, found.time);
     const double resolution = resolution_of(scene.pool, pair);
     EXPECT_LE(std::abs(at.distance - found.gap), at.error + found.error + resolution);
     // Skip the gap if the solver's own error exceeds it.
-    const double wanted = tolerance * size_of(scene.pool, pair);
-    if (doubt_of(scene.pool, pair) > wanted) continue;
-    EXPECT_LE(at.distance - at.error, wanted + resolution);
+    const double max_gap = tolerance * size_of(scene.pool, pair);
+    if (doubt_of(scene.pool, pair) > max_gap) continue;
+    EXPECT_LE(at.distance - at.error, max_gap + resolution);
   }
   EXPECT_LE(unproved, count / 50);
 }
@@ -102,9 +102,9 @@ TEST(TimeOfImpact, balls_match_closed_form) {
   ShapePool pool;
   const ShapeId ball = added(pool, SphereShape{0.5});
   const MovingShapes pair{{ball, ball},
-                          {RigidMotion::standing(Pose::at(0, 0, 0)),
+                          {RigidMotion::stationary(Pose::at(0, 0, 0)),
                            moving(Pose::at(5, 0.6, 0), {-10, 0, 0}, {0, 0, 100})}};
-  const Meeting found = meeting_of(pool, pair);
+  const PairImpact found = impact_of(pool, pair);
   ASSERT_TRUE(found.hit);
   EXPECT_NEAR(found.time, 0.5 - 0.08, 1e-6);
   EXPECT_LE(found.time, 0.5 - 0.08);
@@ -124,25 +124,25 @@ TEST(TimeOfImpact, rod_tip_hits_after_twenty_turns) {
   const MovingShapes pair{{rod, ball},
                           {moving(Pose::at(0, 0, 0), {}, {0, 0, 2 * kPi * turns}),
                            moving(Pose::at(1.05, 0, 3), {0, 0, -3})}};
-  const Meeting found = meeting_of(pool, pair);
+  const PairImpact found = impact_of(pool, pair);
   ASSERT_TRUE(found.hit);
   EXPECT_GT(found.time, (3.0 - 0.11) / 3.0);
-  EXPECT_NE(before(pool, pair, found.time, 20000), Before::met);
+  EXPECT_NE(before(pool, pair, found.time, 20000), Before::overlapping);
   EXPECT_LE(distance_at(pool, pair, found.time).distance, 1e-7);
 }
 
 TEST(TimeOfImpact, initial_touch_hits_at_time_zero) {
   ShapePool pool;
   const ShapeId box = added(pool, BoxShape{{1, 1, 1}});
-  const RigidMotion stands = RigidMotion::standing(Pose::at(0, 0, 0));
+  const RigidMotion at_rest = RigidMotion::stationary(Pose::at(0, 0, 0));
   // Exactly touching, and separating at once.
-  const Meeting touching =
-      meeting_of(pool, {{box, box}, {stands, moving(Pose::at(2, 0, 0), {1, 0, 0})}});
+  const PairImpact touching =
+      impact_of(pool, {{box, box}, {at_rest, moving(Pose::at(2, 0, 0), {1, 0, 0})}});
   EXPECT_TRUE(touching.hit);
   EXPECT_EQ(touching.time, 0.0);
   EXPECT_EQ(touching.gap, 0.0);
-  const Meeting deep =
-      meeting_of(pool, {{box, box}, {stands, moving(Pose::at(1.5, 0, 0), {1, 0, 0}, {1, 2, 3})}});
+  const PairImpact deep =
+      impact_of(pool, {{box, box}, {at_rest, moving(Pose::at(1.5, 0, 0), {1, 0, 0}, {1, 2, 3})}});
   EXPECT_TRUE(deep.hit);
   EXPECT_EQ(deep.time, 0.0);
   EXPECT_NEAR(deep.gap, -0.5, 1e-12);
@@ -154,34 +154,34 @@ TEST(TimeOfImpact, sliding_or_separating_within_tolerance_misses) {
   const ShapeId floor = added(pool, HalfSpaceShape{{0, 0, 1}, 0});
   const ShapeId box = added(pool, BoxShape{{1, 1, 1}});
   const ShapeId wheel = added(pool, CylinderShape{1, 0.2});
-  const RigidMotion stands = RigidMotion::standing(Pose::at(0, 0, 0));
+  const RigidMotion at_rest = RigidMotion::stationary(Pose::at(0, 0, 0));
   const Pose near = Pose::at(0, 0, 1 + 1e-7);
-  EXPECT_FALSE(meeting_of(pool, {{floor, box}, {stands, moving(near, {5, 2, 0})}}).hit);
-  EXPECT_FALSE(meeting_of(pool, {{floor, box}, {stands, moving(near, {5, 2, 1})}}).hit);
-  EXPECT_FALSE(meeting_of(pool, {{box, floor}, {moving(near, {}, {0, 0, 30}), stands}}).hit);
-  EXPECT_TRUE(meeting_of(pool, {{floor, box}, {stands, moving(near, {5, 2, -1e-3})}}).hit);
+  EXPECT_FALSE(impact_of(pool, {{floor, box}, {at_rest, moving(near, {5, 2, 0})}}).hit);
+  EXPECT_FALSE(impact_of(pool, {{floor, box}, {at_rest, moving(near, {5, 2, 1})}}).hit);
+  EXPECT_FALSE(impact_of(pool, {{box, floor}, {moving(near, {}, {0, 0, 30}), at_rest}}).hit);
+  EXPECT_TRUE(impact_of(pool, {{floor, box}, {at_rest, moving(near, {5, 2, -1e-3})}}).hit);
   // The wheel rolls along y about its own axis.
   Pose rolling = near;
   rolling.orientation[0] = rolling.orientation[2] = std::sqrt(0.5);
   EXPECT_FALSE(
-      meeting_of(pool, {{floor, wheel}, {stands, moving(rolling, {0, 50, 0}, {-50, 0, 0})}}).hit);
+      impact_of(pool, {{floor, wheel}, {at_rest, moving(rolling, {0, 50, 0}, {-50, 0, 0})}}).hit);
 }
 
 TEST(TimeOfImpact, grazing_pass_hits_only_within_tolerance) {
   ShapePool pool;
   const ShapeId ball = added(pool, SphereShape{1});
-  const RigidMotion stands = RigidMotion::standing(Pose::at(0, 0, 0));
+  const RigidMotion at_rest = RigidMotion::stationary(Pose::at(0, 0, 0));
   for (const double miss : {1e-5, 1e-3}) {
     EXPECT_FALSE(
-        meeting_of(pool, {{ball, ball}, {stands, moving(Pose::at(-5, 2 + miss, 0), {10, 0, 0})}})
+        impact_of(pool, {{ball, ball}, {at_rest, moving(Pose::at(-5, 2 + miss, 0), {10, 0, 0})}})
             .hit);
   }
   for (const double overlap : {1e-9, 1e-6, 1e-3}) {
     const MovingShapes pair{{ball, ball},
-                            {stands, moving(Pose::at(-5, 2 - overlap, 0), {10, 0, 0})}};
-    const Meeting found = meeting_of(pool, pair);
+                            {at_rest, moving(Pose::at(-5, 2 - overlap, 0), {10, 0, 0})}};
+    const PairImpact found = impact_of(pool, pair);
     EXPECT_TRUE(found.hit);
-    EXPECT_NE(before(pool, pair, found.time, 100000), Before::met);
+    EXPECT_NE(before(pool, pair, found.time, 100000), Before::overlapping);
   }
 }
 
@@ -194,8 +194,8 @@ TEST(TimeOfImpact, far_or_swapped_pairs_give_equal_times) {
                         {moving(Pose::at(offset, 0, 0), {1, 0, 0}, {1, 2, 3}),
                          moving(Pose::at(offset + 4, 0.5, 0), {-3, 0, 0}, {0, 5, 0})}};
   };
-  const Meeting near = meeting_of(pool, at(0));
-  const Meeting far = meeting_of(pool, at(1e9));
+  const PairImpact near = impact_of(pool, at(0));
+  const PairImpact far = impact_of(pool, at(1e9));
   ASSERT_TRUE(near.hit && far.hit);
   EXPECT_EQ(near.time, far.time);
   EXPECT_EQ(near.gap, far.gap);
@@ -203,7 +203,7 @@ TEST(TimeOfImpact, far_or_swapped_pairs_give_equal_times) {
   MovingShapes mirrored = at(0);
   std::swap(mirrored.shape[0], mirrored.shape[1]);
   std::swap(mirrored.motion[0], mirrored.motion[1]);
-  const Meeting back = meeting_of(pool, mirrored);
+  const PairImpact back = impact_of(pool, mirrored);
   EXPECT_EQ(near.time, back.time);
   EXPECT_EQ(near.gap, back.gap);
   for (int i = 0; i < 3; ++i) {
@@ -219,10 +219,10 @@ TEST(TimeOfImpact, turning_half_spaces_match_closed_form) {
   const ShapeId plane = added(pool, HalfSpaceShape{{0, 0, 1}, 0});
   const ShapeId ball = added(pool, SphereShape{0.5});
   // The plane turns about the x axis until it touches the ball at y = 10.
-  const MovingShapes pair{
-      {plane, ball},
-      {moving(Pose::at(0, 0, 0), {}, {kPi / 2, 0, 0}), RigidMotion::standing(Pose::at(0, 10, 1))}};
-  const Meeting found = meeting_of(pool, pair);
+  const MovingShapes pair{{plane, ball},
+                          {moving(Pose::at(0, 0, 0), {}, {kPi / 2, 0, 0}),
+                           RigidMotion::stationary(Pose::at(0, 10, 1))}};
+  const PairImpact found = impact_of(pool, pair);
   ASSERT_TRUE(found.hit);
   const double angle = std::atan2(1, 10) - std::asin(0.5 / std::hypot(1, 10));
   EXPECT_NEAR(found.time, angle / (kPi / 2), 1e-6);
@@ -231,13 +231,13 @@ TEST(TimeOfImpact, turning_half_spaces_match_closed_form) {
   Pose above = Pose::at(0, 0, 2);
   above.orientation[0] = 0.0;
   above.orientation[1] = 1.0;
-  const RigidMotion stands = RigidMotion::standing(Pose::at(0, 0, 0));
-  const Meeting planes = meeting_of(pool, {{plane, plane}, {stands, moving(above, {9, 0, -4})}});
+  const RigidMotion at_rest = RigidMotion::stationary(Pose::at(0, 0, 0));
+  const PairImpact planes = impact_of(pool, {{plane, plane}, {at_rest, moving(above, {9, 0, -4})}});
   EXPECT_TRUE(planes.hit);
   EXPECT_NEAR(planes.time, 0.5, 1e-6);
-  EXPECT_FALSE(meeting_of(pool, {{plane, plane}, {stands, moving(above, {9, 0, 4})}}).hit);
-  const Meeting turning =
-      meeting_of(pool, {{plane, plane}, {stands, moving(above, {}, {1, 0, 0})}});
+  EXPECT_FALSE(impact_of(pool, {{plane, plane}, {at_rest, moving(above, {9, 0, 4})}}).hit);
+  const PairImpact turning =
+      impact_of(pool, {{plane, plane}, {at_rest, moving(above, {}, {1, 0, 0})}});
   EXPECT_TRUE(turning.hit);
   EXPECT_EQ(turning.time, 0.0);
 }
@@ -247,21 +247,21 @@ TEST(TimeOfImpact, invalid_motions_are_refused) {
   const ShapeId ball = added(pool, SphereShape{1});
   const ShapeId box = added(pool, BoxShape{{1, 1, 1}});
   const ShapeId plane = added(pool, HalfSpaceShape{{0, 0, 1}, 0});
-  const RigidMotion stands = RigidMotion::standing(Pose::at(0, 0, 0));
+  const RigidMotion at_rest = RigidMotion::stationary(Pose::at(0, 0, 0));
   for (const ShapeId other : {ball, box, plane}) {
     const auto status_of = [&](const RigidMotion& of_ball, const RigidMotion& of_other) {
-      const Meeting found = meeting_of(pool, {{ball, other}, {of_ball, of_other}});
-      const Meeting mirrored = meeting_of(pool, {{other, ball}, {of_other, of_ball}});
+      const PairImpact found = impact_of(pool, {{ball, other}, {of_ball, of_other}});
+      const PairImpact mirrored = impact_of(pool, {{other, ball}, {of_other, of_ball}});
       EXPECT_EQ(found.status, mirrored.status);
       EXPECT_FALSE(found.status != Status::ok && (found.hit || mirrored.hit));
       return found.status;
     };
     const auto status_with = [&](const RigidMotion& motion) {
-      const Status status = status_of(stands, motion);
-      EXPECT_EQ(status_of(motion, stands), status);
+      const Status status = status_of(at_rest, motion);
+      EXPECT_EQ(status_of(motion, at_rest), status);
       return status;
     };
-    EXPECT_EQ(status_with(stands), Status::ok);
+    EXPECT_EQ(status_with(at_rest), Status::ok);
     EXPECT_EQ(status_with(moving(Pose::at(0, 0, 0), {kNan, 0, 0})), Status::invalid_pose);
     EXPECT_EQ(status_with(moving(Pose::at(0, 0, 0), {kEndless, 0, 0})), Status::invalid_pose);
     EXPECT_EQ(status_with(moving(Pose::at(0, 0, 0), {}, {0, kNan, 0})), Status::invalid_pose);
@@ -269,7 +269,7 @@ TEST(TimeOfImpact, invalid_motions_are_refused) {
     EXPECT_EQ(status_with(moving(Pose::at(kNan, 0, 0), {})), Status::invalid_pose);
     Pose unturned = Pose::at(1, 2, 3);
     unturned.orientation[0] = 0.0;
-    EXPECT_EQ(status_with(RigidMotion::standing(unturned)), Status::invalid_pose);
+    EXPECT_EQ(status_with(RigidMotion::stationary(unturned)), Status::invalid_pose);
     EXPECT_EQ(status_with(RigidMotion::between(Pose::at(0, 0, 0), unturned)), Status::invalid_pose);
     EXPECT_EQ(status_with(RigidMotion::between(Pose::at(-1e308, 0, 0), Pose::at(1e308, 0, 0))),
               Status::invalid_pose);
@@ -277,13 +277,13 @@ TEST(TimeOfImpact, invalid_motions_are_refused) {
     const RigidMotion away = moving(Pose::at(1e308, 0, 0), {1e308, 0, 0});
     EXPECT_EQ(status_of(away, away), Status::invalid_pose);
   }
-  EXPECT_EQ(meeting_of(pool, {{ball, ShapeId{}}, {stands, stands}}).status, Status::invalid_key);
+  EXPECT_EQ(impact_of(pool, {{ball, ShapeId{}}, {at_rest, at_rest}}).status, Status::invalid_key);
   EXPECT_EQ(
-      meeting_of(pool, {{ShapeId::of(CompositeKind::mesh, 0), ball}, {stands, stands}}).status,
+      impact_of(pool, {{ShapeId::of(CompositeKind::mesh, 0), ball}, {at_rest, at_rest}}).status,
       Status::unsupported);
   ImpactResult result;
   const ShapeId shapes[2] = {ball, ball};
-  const RigidMotion motions[2] = {stands, stands};
+  const RigidMotion motions[2] = {at_rest, at_rest};
   const BodyPair pairs[1] = {{0, 1}};
   const BodyPair beyond[1] = {{0, 2}};
   EXPECT_EQ(time_of_impact(pool, {shapes, std::span(motions, 1)}, pairs, {}, result),
@@ -301,7 +301,7 @@ TEST(TimeOfImpact, refused_memory_is_reported) {
   ShapePool pool;
   const ShapeId ball = added(pool, SphereShape{1});
   const ShapeId shapes[2] = {ball, ball};
-  const RigidMotion motions[2] = {RigidMotion::standing({}), RigidMotion::standing({})};
+  const RigidMotion motions[2] = {RigidMotion::stationary({}), RigidMotion::stationary({})};
   const BodyPair pairs[1] = {{0, 1}};
   ImpactResult without_memory(std::pmr::null_memory_resource());
   EXPECT_EQ(time_of_impact(pool, {shapes, motions}, pairs, {}, without_memory),

@@ -8,8 +8,8 @@
 
 namespace winnow::test {
 
-/// A box with half extents, a cylinder of radius size[0] and half length size[2], an ellipsoid with
-/// radii, or the convex hull of corners.
+/// By `form`: a box with half extents `size`, a cylinder of radius size[0] and half length size[2],
+/// an ellipsoid with radii `size`, or the convex hull of `corner`.
 struct UserShape {
   enum Form { block, drum, egg, corners };
 

@@ -38,19 +38,19 @@ class Shuffle {
   }
 
   [[nodiscard]] SceneOptions options() const {
-    return {.margin = 0.02, .composites = &composites_};
+    return {.contact_margin = 0.02, .composites = &composites_};
   }
   [[nodiscard]] const ShapePool& shapes() const { return shapes_; }
 
   void fill(Scene& scene) {
     Key key;
-    EXPECT_EQ(scene.add({.shape = ground_, .motion = Motion::fixed}, key), Status::ok);
+    EXPECT_EQ(scene.add({.shape = ground_, .state = BodyState::fixed}, key), Status::ok);
     keys_.resize(starts_.size());
     bodies_ = starts_;
     EXPECT_EQ(scene.add(bodies_, keys_), Status::ok);
   }
 
-  /// Changes one frame. About 30% of the bodies rest, so that their contacts may be carried over.
+  /// Changes one frame. About 30% of the bodies rest, so that their contacts may be cached.
   void stir(Scene& scene, int frame) {
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
       if (random_.chance(0.3)) continue;
@@ -66,10 +66,10 @@ class Shuffle {
         EXPECT_EQ(scene.add(bodies_[one], keys_[one]), Status::ok);
         break;
       case 1:
-        EXPECT_EQ(scene.set_motion(keys_[one], Motion::sleeping), Status::ok);
+        EXPECT_EQ(scene.set_body_state(keys_[one], BodyState::sleeping), Status::ok);
         break;
       case 2:
-        EXPECT_EQ(scene.set_motion(keys_, Motion::dynamic), Status::ok);
+        EXPECT_EQ(scene.set_body_state(keys_, BodyState::dynamic), Status::ok);
         break;
       default:
         EXPECT_EQ(scene.set_shape(keys_[one], kinds_[random_.below(kinds_.size())]), Status::ok);
@@ -132,7 +132,7 @@ TEST(WarmStart, sliding_box_keeps_four_points) {
   Scene scene(shapes, {.contact_reduction = true, .warm_start = true, .composites = &composites});
   Key ground;
   Key key;
-  ASSERT_EQ(scene.add({.shape = floor, .motion = Motion::fixed}, ground), Status::ok);
+  ASSERT_EQ(scene.add({.shape = floor, .state = BodyState::fixed}, ground), Status::ok);
   ASSERT_EQ(scene.add({.shape = box}, key), Status::ok);
   Contacts contacts;
   for (int frame = 0; frame < 200; ++frame) {
@@ -146,28 +146,28 @@ TEST(WarmStart, sliding_box_keeps_four_points) {
 
 TEST(WarmStart, previous_indices_match_reference) {
   for (const bool reduced : {false, true}) {
-    for (const double carry_over : {0.0, 0.005}) {
+    for (const double cache_tolerance : {0.0, 0.005}) {
       Shuffle world(std::max<std::size_t>(20, scaled(60)), 3);
       SceneOptions options = world.options();
       options.contact_reduction = reduced;
-      options.carry_over = carry_over;
+      options.cache_tolerance = cache_tolerance;
       options.warm_start = true;
       Scene scene(world.shapes(), options);
       world.fill(scene);
       Contacts contacts;
-      HistoryReference twin;
+      HistoryReference reference;
       for (int frame = 0; frame < 40; ++frame) {
         const ContactLevel level =
             frame % 13 == 12 ? ContactLevel::distance : ContactLevel::manifold;
         ASSERT_EQ(scene.collide(level, contacts), Status::ok);
         // All shapes have this radius, including the capsule.
         ASSERT_NO_FATAL_FAILURE(
-            twin.compare(scene, contacts, reduced, [](Key, Key) { return Shuffle::kRadius; }));
+            reference.compare(scene, contacts, reduced, [](Key, Key) { return Shuffle::kRadius; }));
         world.stir(scene, frame);
       }
-      EXPECT_GT(twin.by_feature, 100U);
-      EXPECT_GT(twin.by_place, 0U);
-      EXPECT_GT(twin.persisted, 50U);
+      EXPECT_GT(reference.by_feature, 100U);
+      EXPECT_GT(reference.by_place, 0U);
+      EXPECT_GT(reference.persisted, 50U);
     }
   }
 }
@@ -178,7 +178,7 @@ TEST(WarmStart, indices_match_on_any_threads_and_structure) {
     for (const int threads : {1, 2, 8}) {
       Shuffle world(scaled(300), 5);
       Threads arena(threads);
-      const auto told = arena.run([&] {
+      const auto indices = arena.run([&] {
         SceneOptions options = world.options();
         options.execution = threads == 1 ? Execution::serial() : Execution::parallel();
         options.warm_start = true;
@@ -195,8 +195,8 @@ TEST(WarmStart, indices_match_on_any_threads_and_structure) {
         }
         return bits;
       });
-      if (first.empty()) first = told;
-      EXPECT_TRUE(told == first) << threads << " threads";
+      if (first.empty()) first = indices;
+      EXPECT_TRUE(indices == first) << threads << " threads";
     }
   }
 }
@@ -204,12 +204,12 @@ TEST(WarmStart, indices_match_on_any_threads_and_structure) {
 TEST(WarmStart, warm_start_changes_no_other_result) {
   std::vector<std::uint64_t> shown_without;
   std::size_t bytes_without = 0;
-  for (const bool asked : {false, true}) {
+  for (const bool warm_start : {false, true}) {
     CountingMemory memory;
     Shuffle world(scaled(60), 7);
     SceneOptions options = world.options();
-    options.carry_over = 0.005;
-    options.warm_start = asked;
+    options.cache_tolerance = 0.005;
+    options.warm_start = warm_start;
     Scene scene(world.shapes(), options);
     world.fill(scene);
     Contacts contacts(&memory);
@@ -221,7 +221,7 @@ TEST(WarmStart, warm_start_changes_no_other_result) {
       bits.insert(bits.end(), more.begin(), more.end());
       world.stir(scene, frame);
     }
-    if (asked) {
+    if (warm_start) {
       EXPECT_TRUE(bits == shown_without);
       EXPECT_GT(memory.outstanding(), bytes_without);
     } else {
@@ -235,11 +235,11 @@ TEST(WarmStart, warm_start_changes_no_other_result) {
 
 TEST(WarmStart, resting_bodies_keep_indices_without_allocation) {
   Shuffle world(scaled(60), 9);
-  for (const double carry_over : {0.0, 0.01}) {
+  for (const double cache_tolerance : {0.0, 0.01}) {
     CountingMemory memory;
     SceneOptions options = world.options();
     options.memory = &memory;
-    options.carry_over = carry_over;
+    options.cache_tolerance = cache_tolerance;
     options.warm_start = true;
     Scene scene(world.shapes(), options);
     world.fill(scene);

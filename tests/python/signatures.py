@@ -12,7 +12,7 @@ import sys
 import winnow._core
 
 
-def said_by_stub(function):
+def stub_signature(function):
     arguments = function.args
     names = [a.arg for a in arguments.args]
     defaults = names[len(names) - len(arguments.defaults) :] if arguments.defaults else []
@@ -21,7 +21,7 @@ def said_by_stub(function):
     return names, named, set(defaults)
 
 
-def said_by_module(function):
+def module_signature(function):
     line = (function.__doc__ or "").split("\n")[0]
     inside = line[line.index("(") + 1 : line.rindex(")")]
     inside = re.sub(r"<[^<>]*>", "x", inside)
@@ -64,12 +64,12 @@ def main():
             print(name + " is only in the module")
             bad = 1
     for function, nodes in functions(stub.body, winnow._core):
-        said = said_by_module(function)
+        declared = module_signature(function)
         for node in nodes:
-            stubbed = said_by_stub(node)
-            same = stubbed[:2] == said[:2] and (len(nodes) > 1 or stubbed[2] == said[2])
+            stubbed = stub_signature(node)
+            same = stubbed[:2] == declared[:2] and (len(nodes) > 1 or stubbed[2] == declared[2])
             if not same and node.name not in ("__len__", "__repr__"):
-                print("%s: the stub has %s, the module %s" % (node.name, stubbed, said))
+                print("%s: the stub has %s, the module %s" % (node.name, stubbed, declared))
                 bad = 1
         if not inspect.getdoc(function):
             print(node.name + " has no docstring")

@@ -39,20 +39,20 @@ def test_predicate_selects_pairs():
     def odd_sum(first, second):
         return (first + second) % 2
 
-    wanted = {pair for pair in truth if sum(pair) % 2}
-    assert wanted and wanted != truth
-    assert pair_set(partition.self_pairs(predicate=odd_sum)) == wanted
+    expected = {pair for pair in truth if sum(pair) % 2}
+    assert expected and expected != truth
+    assert pair_set(partition.self_pairs(predicate=odd_sum)) == expected
     assert pair_set(partition.self_pairs()) == truth
     assert pair_set(partition.self_pairs(predicate=lambda *_: False)) == set()
-    assert pair_set(partition.self_pairs(predicate=odd_sum, order="canonical")) == wanted
+    assert pair_set(partition.self_pairs(predicate=odd_sum, order="canonical")) == expected
     assert pair_set(partition.self_pairs()) == truth
     events = winnow.PairEvents()
     partition.pair_changes(events, predicate=odd_sum)
-    assert len(events.begun) == len(wanted)
+    assert len(events.begun) == len(expected)
     partition.pair_changes(events)
-    assert len(events.begun) == len(truth) - len(wanted) and not len(events.ended)
+    assert len(events.begun) == len(truth) - len(expected) and not len(events.ended)
     partition.pair_changes(events, predicate=odd_sum)
-    assert len(events.ended) == len(truth) - len(wanted) and not len(events.begun)
+    assert len(events.ended) == len(truth) - len(expected) and not len(events.begun)
     refused("unsupported", partition.self_pairs, events, predicate=odd_sum)
     other, _, _, _, _ = box_world()
     both = pair_set(partition.pairs_with(other))
@@ -66,10 +66,10 @@ def test_filter_function_selects_objects():
     data = np.arange(len(keys), dtype=np.uint64)
     partition.remove(keys)
     keys = partition.insert(lower, upper, data)
-    asked = []
+    tested = []
 
     def third(key, number):
-        asked.append((key, number))
+        tested.append((key, number))
         return number % 3 == 0
 
     filter = winnow.Filter(accept=third)
@@ -79,7 +79,7 @@ def test_filter_function_selects_objects():
     allowed = set(ids[::3].tolist())
     everything = pair_set(partition.overlap_boxes(lower, upper))
     assert pair_set(found) == {pair for pair in everything if pair[1] in allowed}
-    assert all(int(keys[number]) == key for key, number in asked)
+    assert all(int(keys[number]) == key for key, number in tested)
     nearest = partition.nearest(lower, 1, filter=filter)
     assert (nearest.data % 3 == 0).all()
     hits = partition.cast_rays(lower - 1, np.ones_like(lower), "all", filter=filter)
@@ -138,7 +138,7 @@ def test_exception_of_a_predicate_changes_nothing(bad):
     expected = (Odd, TypeError, ZeroDivisionError)
     events = winnow.PairEvents()
     partition.self_pairs(events)
-    for ask in [
+    for call in [
         lambda: partition.self_pairs(predicate=bad),
         lambda: partition.pair_changes(events, predicate=bad),
         lambda: partition.pairs_with(partition, predicate=bad),
@@ -148,7 +148,7 @@ def test_exception_of_a_predicate_changes_nothing(bad):
         lambda: partition.cast_spheres(lower, 1, upper, filter=winnow.Filter(accept=bad)),
     ]:
         with pytest.raises(expected):
-            ask()
+            call()
     assert pair_set(partition.self_pairs(events)) == truth
     assert len(events.begun) == len(truth)
 
@@ -213,11 +213,11 @@ def test_support_function_defines_a_shape():
     poses = poses_at([0, 0, 0], [0.8, 0, 0], [3, 4, 0])
     narrow = winnow.NarrowPhase()
     pairs = [[0, 1], [0, 2], [1, 2]]
-    wanted = narrow.collide(shapes, true, poses, pairs, level="distance")
-    order = np.argsort(wanted.pair)
+    expected = narrow.collide(shapes, true, poses, pairs, level="distance")
+    order = np.argsort(expected.pair)
     for shape in (own, core):
         found = narrow.collide(shapes, shape, poses, pairs, level="distance")
-        assert found.distance[np.argsort(found.pair)] == pytest.approx(wanted.distance[order], abs=1e-6)
+        assert found.distance[np.argsort(found.pair)] == pytest.approx(expected.distance[order], abs=1e-6)
     lower, upper = shapes.bounds([own], [[1, 2, 3]])
     assert lower[0] == pytest.approx([0.5, 1.5, 2.5]) and upper[0] == pytest.approx([1.5, 2.5, 3.5])
     scene = winnow.Scene(shapes)
@@ -273,7 +273,7 @@ def test_later_exception_of_a_support_function_is_raised():
     fails[0] = True
     contacts = winnow.Contacts()
     motions = winnow.motions_between(poses, poses_at([0, 0, 0], [0.9, 0, 0]))
-    for ask in [
+    for call in [
         lambda: scene.collide(contacts),
         lambda: scene.nearest([[9, 9, 9]]),
         lambda: scene.cast_rays([[0, 0, 9]], [[0, 0, -1]]),
@@ -284,7 +284,7 @@ def test_later_exception_of_a_support_function_is_raised():
         lambda: shapes.cast_rays([own], [[0, 0, 0]], [0, 0, 9], [0, 0, -1]),
     ]:
         with pytest.raises(Odd):
-            ask()
+            call()
     fails[0] = False
     assert pairs_of(scene, contacts) == {frozenset([1, 2])}
     scene.move(keys[1:], [[5, 0, 0]])
@@ -302,7 +302,7 @@ def test_callbacks_that_call_winnow_raise_without_deadlock():
     shapes, scene, bodies, places = ball_world(20)
     contacts, events, narrow = winnow.Contacts(), winnow.PairEvents(), winnow.NarrowPhase()
     cluster = winnow.Cluster(ranks=2)
-    questions = [
+    nested_calls = [
         lambda: partition.self_pairs(),
         lambda: partition.insert(lower, upper),
         lambda: partition.nearest(lower),
@@ -320,17 +320,17 @@ def test_callbacks_that_call_winnow_raise_without_deadlock():
         lambda: cluster.self_pairs(),
         lambda: winnow.Partition().insert(lower, upper),
     ]
-    for question in questions:
-        def nosy(*_, question=question):
-            question()
+    for nested in nested_calls:
+        def nosy(*_, nested=nested):
+            nested()
 
-        for ask in [
+        for call in [
             lambda: partition.self_pairs(predicate=nosy),
             lambda: partition.pair_changes(events, predicate=nosy),
             lambda: partition.nearest(lower, filter=winnow.Filter(accept=nosy)),
             lambda: shapes.add_support(nosy, 1.0),
         ]:
-            refused("unsupported", ask)
+            refused("unsupported", call)
         scene.set_predicate(nosy)
         refused("unsupported", scene.collide, contacts)
         scene.set_predicate(None)
@@ -344,7 +344,7 @@ def test_callbacks_on_several_threads_are_safe():
     scene = winnow.Scene(shapes)
     places = np.random.default_rng(53).uniform(0, 3, (30, 3))
     scene.add(own, places, data=np.arange(30))
-    wanted = pairs_of(scene)
+    expected = pairs_of(scene)
     bad, failures = winnow.Filter(accept=raises), []
 
     def run(work):
@@ -356,7 +356,7 @@ def test_callbacks_on_several_threads_are_safe():
 
     def right():
         assert pair_set(partition.self_pairs(predicate=lambda a, b: True)) == truth
-        assert pairs_of(scene) == wanted
+        assert pairs_of(scene) == expected
 
     def wrong():
         with pytest.raises(Odd):
@@ -392,9 +392,9 @@ def test_hooks_receive_stages_and_refusals():
         assert begins or open_ones.pop() == stage
     assert not open_ones
     assert any(e["kind"] == "refusal" and e["status"] == "invalid_key" for e in entries)
-    told = len(stages)
+    stage_count = len(stages)
     scene.collide(winnow.Contacts())
-    assert len(stages) == told
+    assert len(stages) == stage_count
 
 
 def test_exception_of_a_hook_is_unraisable():

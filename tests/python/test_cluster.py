@@ -61,10 +61,10 @@ def test_virtual_ranks_find_the_pairs_of_one_partition(ranks):
             upper[at] += 0.3
             cluster.move(own, lower[at], upper[at], rank=rank)
         assert seen == 400
-    alone = winnow.Cluster()
-    alone.add(names, *boxes_of(400, 1))
-    alone.self_pairs()
-    assert alone.digest() == digests[0] and len(digests[0]) == 32
+    single = winnow.Cluster()
+    single.add(names, *boxes_of(400, 1))
+    single.self_pairs()
+    assert single.digest() == digests[0] and len(digests[0]) == 32
     cluster.self_pairs()
     own = cluster.bodies(0)[0]
     cluster.remove(own[:5], rank=0)
@@ -95,7 +95,7 @@ class Threads:
     def __init__(self, size, breaks_at=None):
         self.size = size
         self.barrier = threading.Barrier(size)
-        self.told = [None] * size
+        self.gathered = [None] * size
         self.breaks_at = breaks_at
 
     def of(self, rank):
@@ -111,14 +111,14 @@ class ThreadRank:
         if self.calls == self.world.breaks_at:
             self.world.barrier.abort()
             raise ConnectionError("a rank is gone")
-        self.world.told[self.rank] = value
+        self.world.gathered[self.rank] = value
         self.world.barrier.wait(30)
-        told = list(self.world.told)
+        gathered = list(self.world.gathered)
         self.world.barrier.wait(30)
-        return told
+        return gathered
 
     def alltoall(self, values):
-        return [told[self.rank] for told in self.allgather(values)]
+        return [row[self.rank] for row in self.allgather(values)]
 
 
 def run_on_threads(world, work):
@@ -205,11 +205,11 @@ def test_mpi_processes_find_the_same_pairs():
         if comm.rank == 0:
             print(digest, pairs)
     """
-    told = set()
+    outputs = set()
     for ranks in (1, 3):
         command = ["mpirun", "--allow-run-as-root", "--oversubscribe", "-n", str(ranks), sys.executable,
                    "-c", textwrap.dedent(program)]
         done = subprocess.run(command, capture_output=True, text=True, timeout=300)
         assert done.returncode == 0, done.stderr
-        told.add(done.stdout.strip())
-    assert len(told) == 1 and int(told.pop().split()[1]) > 100
+        outputs.add(done.stdout.strip())
+    assert len(outputs) == 1 and int(outputs.pop().split()[1]) > 100

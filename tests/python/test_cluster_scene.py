@@ -60,9 +60,9 @@ def test_virtual_ranks_find_the_contacts_of_one_scene(ranks):
     assert cluster.ranks == ranks and cluster.hosted == (0, ranks)
     cluster.replicate([0], ground, [[0, 0, -0.5]])
     cluster.add(names, balls[kind], places, rank=ranks - 1)
-    for wanted in of_one_scene(3, 0.7):
+    for expected in of_one_scene(3, 0.7):
         cluster.collide()
-        assert together(cluster) == wanted
+        assert together(cluster) == expected
         came = sum(len(cluster.migrated(rank)[0]) for rank in range(ranks))
         went = sum(len(cluster.migrated(rank)[1]) for rank in range(ranks))
         assert came >= went
@@ -94,7 +94,7 @@ def test_digest_does_not_depend_on_the_rank_count():
 
 
 def test_threads_as_ranks_find_the_same_contacts():
-    wanted = of_one_scene()[0]
+    expected = of_one_scene()[0]
 
     def work(comm):
         shapes, balls, ground = shapes_of_all()
@@ -109,8 +109,8 @@ def test_threads_as_ranks_find_the_same_contacts():
     results = run_on_threads(Threads(3), work)
     for result in results:
         assert not isinstance(result, Exception), result
-    assert set().union(*(result[0] for result in results)) == wanted
-    assert sum(len(result[0]) for result in results) == len(wanted)
+    assert set().union(*(result[0] for result in results)) == expected
+    assert sum(len(result[0]) for result in results) == len(expected)
     assert len({result[1] for result in results}) == 1
 
 
@@ -151,7 +151,7 @@ def test_invalid_calls_are_refused():
     refused("invalid_key", cluster.remove, [9])
     refused("invalid_key", cluster.move_replicated, [1], places[:1])
     refused("invalid_argument", cluster.collide, "sorted")
-    refused("invalid_argument", winnow.ClusterScene, shapes, margin=-1.0)
+    refused("invalid_argument", winnow.ClusterScene, shapes, contact_margin=-1.0)
     refused("invalid_argument", winnow.ClusterScene, shapes, imbalance=0.5)
     refused("invalid_key", shapes.remove, ground)
     with pytest.raises(TypeError):

@@ -10,14 +10,15 @@ import winnow
 
 FILTER = {"layers": "layers", "mask": "mask", "environment": "environment"}
 DRAWING = dict.fromkeys(("objects", "structure", "labels", "max_depth"))
-SWEEP = dict.fromkeys(("pairs", "tolerance", "touching", "first_only"))
+CONTINUOUS = dict.fromkeys(("pairs", "tolerance", "touching", "first_only"))
 FEATURES = dict.fromkeys(("min_separation", "tolerance", "max_intervals"))
 
 # Function, C++ struct, and its members by the names of arguments; None stands for an equal name.
-# Parallel execution is left out: results are equal, and Python arrays are long.
+# The options for parallel execution are left out: Python has another default, because its arrays
+# are long and the results are equal.
 SAME = [
     ("Partition.__init__", "PartitionOptions",
-     {"volume": None, "margin": None, "margin_share": None, "build_budget": None}),
+     {"volume": None, "fat_margin": None, "fat_margin_share": None, "build_budget": None}),
     ("Partition.set_filter", "ObjectFilter", FILTER),
     ("Partition.self_pairs", "PairOptions", {"order": None, "incremental": None}),
     ("Partition.pairs_with", "PairOptions", {"order": None}),
@@ -29,10 +30,10 @@ SAME = [
     ("PairEvents.__init__", "PairEventsOptions", {"client_data": None}),
     ("Filter.__init__", "Filter", FILTER),
     ("Scene.__init__", "SceneOptions",
-     dict.fromkeys(("margin", "tier", "carry_over", "contact_reduction", "suppress_ghost_contacts",
+     dict.fromkeys(("contact_margin", "tier", "cache_tolerance", "contact_reduction", "suppress_ghost_contacts",
                     "warm_start", "build_budget"))),
     ("Scene.add", "BodyDefinition",
-     {"motion": None, "contact": None, "rest": None, "layer": None, **FILTER}),
+     {"state": None, "contact": None, "rest": None, "layer": None, **FILTER}),
     ("Scene.set_filter", "ObjectFilter", FILTER),
     ("Scene.reserve", "SceneCapacity",
      dict.fromkeys(("pairs", "level", "touching", "manifolds", "points"))),
@@ -42,13 +43,13 @@ SAME = [
     ("Scene.cast_motions", "MotionCast", {"touching": None}),
     ("Scene.cast_shapes", None, {"tolerance": "WINNOW_CAST_TOLERANCE"}),
     ("Scene.cast_motions", None, {"tolerance": "WINNOW_CAST_TOLERANCE"}),
-    ("Scene.sweep", "SweepOptions", SWEEP),
-    ("Scene.sweep_motions", "SweepOptions", SWEEP),
+    ("Scene.find_impacts", "ContinuousOptions", CONTINUOUS),
+    ("Scene.find_impacts_of_motions", "ContinuousOptions", CONTINUOUS),
     ("Sensors.add", "SensorDefinition", FILTER),
     ("Shapes.cast_rays", "ShapeRay", {"max_t": None}),
     ("Shapes.add_mesh", "MeshOptions", {"active_edge_angle": None}),
     ("Shapes.add_height_field", "HeightSamples", {"spacing": None}),
-    ("NarrowPhase.collide", "NarrowOptions", {"level": None, "tier": None, "margin": None}),
+    ("NarrowPhase.collide", "NarrowOptions", {"level": None, "tier": None, "contact_margin": None}),
     ("time_of_impact", "ImpactOptions", {"tolerance": None}),
     ("DeformableMesh.__init__", "DeformableMeshOptions", {"origin": None}),
     ("DeformableMesh.self_impacts", "FeatureImpactOptions", FEATURES),
@@ -56,7 +57,7 @@ SAME = [
     ("DeformableMesh.impacts_with_shape", "ImpactOptions", {"tolerance": None}),
     ("feature_impacts", "FeatureImpactOptions", FEATURES),
     ("ClusterScene.__init__", "ClusterSceneOptions.scene",
-     {"margin": None, "tier": None, "contact_reduction": None}),
+     {"contact_margin": None, "tier": None, "contact_reduction": None}),
     ("ClusterScene.__init__", "ClusterSceneOptions", {"imbalance": None}),
     ("Cluster.__init__", "ClusterOptions", {"imbalance": None}),
 ]
@@ -79,7 +80,7 @@ def python_defaults(name):
             return None
     line = function.__doc__.split("\n")[0]
     inside = line[line.index("(") + 1 : line.rindex(")")]
-    # Commas within brackets part no arguments.
+    # Commas within brackets do not separate arguments.
     arguments = re.split(r",\s*(?![^\[\]<>()]*[\]>)])", inside)
     parts = (re.match(r"(\w+): .*? = (.*)", argument) for argument in arguments)
     return {part.group(1): part.group(2) for part in parts if part}
@@ -87,9 +88,9 @@ def python_defaults(name):
 
 @pytest.fixture(scope="module")
 def table():
-    said = subprocess.run([os.environ["WINNOW_DEFAULTS"]], capture_output=True, text=True)
-    assert said.returncode == 0, said.stderr
-    return dict(line.split(" = ", 1) for line in said.stdout.splitlines())
+    completed = subprocess.run([os.environ["WINNOW_DEFAULTS"]], capture_output=True, text=True)
+    assert completed.returncode == 0, completed.stderr
+    return dict(line.split(" = ", 1) for line in completed.stdout.splitlines())
 
 
 @pytest.mark.parametrize("function, struct, names", SAME, ids=lambda x: x if isinstance(x, str) else "")

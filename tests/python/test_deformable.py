@@ -252,7 +252,7 @@ def test_any_arrays_are_accepted_or_refused(first, second, third, number, kind):
     ball = int(shapes.add_spheres(1.0)[0])
     mesh = winnow.DeformableMesh()
     mesh.build(rest, triangles)
-    for ask in [
+    for call in [
         lambda: winnow.feature_impacts(kind, first, second),
         lambda: winnow.feature_impacts(kind, np.zeros((1, 4, 3)), first, max_intervals=number),
         lambda: mesh.move(first, second),
@@ -267,7 +267,7 @@ def test_any_arrays_are_accepted_or_refused(first, second, third, number, kind):
         lambda: mesh.self_candidates(kind),
     ]:
         try:
-            ask()
+            call()
         except REFUSALS:
             pass
 
@@ -290,7 +290,7 @@ def test_threads_may_query_and_move_at_once():
         except BaseException as error:  # noqa: B902
             failures.append(error)
 
-    def ask(i):
+    def query(i):
         one.candidates_with(two, KINDS[i % 2])
         two.impacts_with(one, KINDS[i % 2])
         one.impacts_with(one, KINDS[i % 2])
@@ -300,7 +300,7 @@ def test_threads_may_query_and_move_at_once():
         for mesh in (one, two):
             mesh.move(start + i, end + i, distance=0.1)
 
-    threads = [threading.Thread(target=run, args=(work,)) for work in (ask, change, ask, change)]
+    threads = [threading.Thread(target=run, args=(work,)) for work in (query, change, query, change)]
     for thread in threads:
         thread.start()
     for thread in threads:

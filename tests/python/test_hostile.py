@@ -84,7 +84,7 @@ def test_any_arrays_are_accepted_or_refused_whole(first, second, third):
 @settings(max_examples=300)
 def test_any_queries_are_answered_or_refused(first, second, third, find):
     partition, keys, _ = small_world()
-    for ask in [
+    for call in [
         lambda: partition.cast_rays(first, second, find, min_t=third),
         lambda: partition.cast_boxes(first, second, third, find),
         lambda: partition.cast_spheres(first, second, third, find),
@@ -108,7 +108,7 @@ def test_any_queries_are_answered_or_refused(first, second, third, find):
         lambda: winnow.perspective(first, second, third, 1.0, 1.0, 0.1, 9.0),
     ]:
         try:
-            ask()
+            call()
         except REFUSALS:
             pass
     assert len(partition) == 20
@@ -143,7 +143,7 @@ def test_exceptions_name_their_status():
     assert "LinearBvh" in refused("invalid_argument", winnow.Partition, "Heap")
     refused("invalid_argument", winnow.Partition, volume="egg")
     refused("invalid_argument", winnow.Partition, "LinearBvh", loose=2.0)
-    assert "question 1" in refused(
+    assert "entry 1" in refused(
         "invalid_argument", partition.overlap_spheres, np.zeros((2, 3)), [1.0, np.nan]
     )
     for bad in (None, "boxes", [[1, 2, "3"]], np.zeros((1, 3), complex), [[1], [2, 3]]):
@@ -240,7 +240,7 @@ def test_threads_may_query_and_change_at_once():
     failures = []
     held = []
 
-    def ask():
+    def query():
         for i in range(15):
             held.append(partition.self_pairs()[:5])
             partition.pairs_with(other)
@@ -268,7 +268,7 @@ def test_threads_may_query_and_change_at_once():
         except BaseException as error:  # noqa: B902
             failures.append(error)
 
-    threads = [threading.Thread(target=run, args=(w,)) for w in (ask, change, ask, change)]
+    threads = [threading.Thread(target=run, args=(w,)) for w in (query, change, query, change)]
     for thread in threads:
         thread.start()
     for thread in threads:

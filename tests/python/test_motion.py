@@ -1,4 +1,4 @@
-"""Shapes in rigid motion: times of impact, motion casts and sweeps of scenes."""
+"""Shapes in rigid motion: times of impact, motion casts and continuous collision of scenes."""
 
 import numpy as np
 import pytest
@@ -162,43 +162,43 @@ def test_motion_casts_equal_pairwise_impacts(crowd):
         both = np.vstack([motions[i : i + 1], still])
         kinds = np.concatenate([shape_of[i : i + 1], shape_of])
         truth = winnow.time_of_impact(shapes, kinds, both, [[0, 1 + k] for k in range(40)])
-        met = set(np.nonzero(truth.hit)[0].tolist())
+        hits = set(np.nonzero(truth.hit)[0].tolist())
         row = slice(int(lists.first[i]), int(lists.first[i + 1]))
         found = dict(zip(lists.data[row].tolist(), lists.t[row].tolist()))
-        assert set(found) == met
+        assert set(found) == hits
         for k, t in found.items():
             assert t == pytest.approx(truth.time[k], abs=CLOSE)
-        assert (closest.key[i] == winnow.NULL_KEY) == (not met)
-        if met:
+        assert (closest.key[i] == winnow.NULL_KEY) == (not hits)
+        if hits:
             assert closest.t[i] == min(found.values()) == lists.t[row][0]
             assert keys[closest.data[i]] == closest.key[i]
 
 
-def test_sweeps_equal_pairwise_impacts(crowd):
+def test_scene_impacts_equal_pairwise_impacts(crowd):
     shapes, shape_of, motions, pairs = crowd
     scene, keys = standing(shapes, shape_of, motions[:, :7])
     ends = winnow.poses_at(motions, 1.0)
     truth = winnow.time_of_impact(shapes, shape_of, winnow.motions_between(motions[:, :7], ends), pairs)
     expected = {tuple(p): t for p, t, hit in zip(pairs.tolist(), truth.time, truth.hit) if hit}
-    swept = scene.sweep(keys, ends)
-    found = {(int(a), int(b)): t for a, b, t in zip(swept.data_a, swept.data_b, swept.time)}
-    assert set(found) == set(expected) and len(swept.time) == len(expected)
+    impacts = scene.find_impacts(keys, ends)
+    found = {(int(a), int(b)): t for a, b, t in zip(impacts.data_a, impacts.data_b, impacts.time)}
+    assert set(found) == set(expected) and len(impacts.time) == len(expected)
     for pair, time in found.items():
         assert time == pytest.approx(expected[pair], abs=CLOSE)
-    assert (np.diff(swept.time) >= 0).all()
-    assert np.array_equal(keys[swept.data_a], swept.a) and np.array_equal(keys[swept.data_b], swept.b)
+    assert (np.diff(impacts.time) >= 0).all()
+    assert np.array_equal(keys[impacts.data_a], impacts.a) and np.array_equal(keys[impacts.data_b], impacts.b)
     for body in range(40):
-        own = [i for i in range(len(swept.a)) if body in (swept.data_a[i], swept.data_b[i])]
-        assert swept.first[body] == (own[0] if own else winnow.NO_IMPACT)
-    again = scene.sweep_motions(keys, winnow.motions_between(motions[:, :7], ends))
-    assert np.array_equal(again.time, swept.time) and np.array_equal(again.normal, swept.normal)
+        own = [i for i in range(len(impacts.a)) if body in (impacts.data_a[i], impacts.data_b[i])]
+        assert impacts.first[body] == (own[0] if own else winnow.NO_IMPACT)
+    again = scene.find_impacts_of_motions(keys, winnow.motions_between(motions[:, :7], ends))
+    assert np.array_equal(again.time, impacts.time) and np.array_equal(again.normal, impacts.normal)
     assert np.array_equal(scene.bodies(keys)["pose"], motions[:, :7])
-    few = scene.sweep(keys, ends, first_only=True)
+    few = scene.find_impacts(keys, ends, first_only=True)
     first_of_few = few.time[few.first[few.first != winnow.NO_IMPACT]]
-    assert first_of_few == pytest.approx(swept.time[swept.first[swept.first != winnow.NO_IMPACT]], abs=CLOSE)
+    assert first_of_few == pytest.approx(impacts.time[impacts.first[impacts.first != winnow.NO_IMPACT]], abs=CLOSE)
 
 
-def test_sweep_options_select_pairs():
+def test_continuous_options_select_pairs():
     shapes = winnow.Shapes()
     ball = int(shapes.add_spheres(0.5)[0])
     scene = winnow.Scene(shapes)
@@ -206,20 +206,20 @@ def test_sweep_options_select_pairs():
     keys = scene.add(ball, [[0, 0, 0], [2, 0, 0]], data=[1, 2])
     ends = [[10, 0, 0], [2, 0, 0]]
 
-    def met(**options):
-        swept = scene.sweep(keys, ends, **options)
-        return {frozenset(pair) for pair in zip(swept.data_a.tolist(), swept.data_b.tolist())}
+    def swept_pairs(**options):
+        impacts = scene.find_impacts(keys, ends, **options)
+        return {frozenset(pair) for pair in zip(impacts.data_a.tolist(), impacts.data_b.tolist())}
 
-    assert met() == {frozenset([1, 2]), frozenset([1, 9])}
-    assert met(pairs="fixed") == {frozenset([1, 9])}
-    assert met(pairs="bullets") == set()
-    assert met(pairs="bullets", bullets=[True, False]) == met()
-    assert met(pairs="bullets_and_fixed", bullets=[False, False]) == {frozenset([1, 9])}
+    assert swept_pairs() == {frozenset([1, 2]), frozenset([1, 9])}
+    assert swept_pairs(pairs="fixed") == {frozenset([1, 9])}
+    assert swept_pairs(pairs="bullets") == set()
+    assert swept_pairs(pairs="bullets", bullets=[True, False]) == swept_pairs()
+    assert swept_pairs(pairs="bullets_and_fixed", bullets=[False, False]) == {frozenset([1, 9])}
     scene.move(keys[1:], [[0.5, 0, 0]])
-    assert scene.sweep(keys[:1], [[0.1, 0, 0]]).time.tolist() == [0]
-    assert len(scene.sweep(keys[:1], [[0.1, 0, 0]], touching=False).time) == 0
+    assert scene.find_impacts(keys[:1], [[0.1, 0, 0]]).time.tolist() == [0]
+    assert len(scene.find_impacts(keys[:1], [[0.1, 0, 0]], touching=False).time) == 0
     scene.remove(wall)
-    assert len(scene.sweep(keys, ends, touching=False).time) == 0
+    assert len(scene.find_impacts(keys, ends, touching=False).time) == 0
 
 
 def test_invalid_motions_are_refused(crowd):
@@ -251,19 +251,19 @@ def test_invalid_motions_are_refused(crowd):
     refused("invalid_pose", scene.cast_motions, shape_of[:2], bad)
     refused("invalid_argument", scene.cast_motions, shape_of[:2], motions[:2], "any")
     refused("unsupported", scene.cast_motions, shapes.add_half_spaces([0, 0, 1]), motions[:1])
-    refused("invalid_pose", scene.sweep_motions, keys, bad)
-    refused("invalid_key", scene.sweep, np.repeat(keys[:1], 2), motions[:2, :7])
-    refused("size_mismatch", scene.sweep, keys, motions[:1, :7])
-    refused("size_mismatch", scene.sweep, keys, motions[:2, :7], bullets=[True])
+    refused("invalid_pose", scene.find_impacts_of_motions, keys, bad)
+    refused("invalid_key", scene.find_impacts, np.repeat(keys[:1], 2), motions[:2, :7])
+    refused("size_mismatch", scene.find_impacts, keys, motions[:1, :7])
+    refused("size_mismatch", scene.find_impacts, keys, motions[:2, :7], bullets=[True])
     none = np.zeros(0, bool)
-    refused("size_mismatch", scene.sweep, keys, motions[:2, :7], bullets=none)
-    refused("size_mismatch", scene.sweep_motions, keys, motions[:2], bullets=none)
-    assert len(scene.sweep(keys[:0], motions[:0, :7], bullets=none).time) == 0
-    refused("invalid_argument", scene.sweep, keys, motions[:2, :7], pairs="some")
+    refused("size_mismatch", scene.find_impacts, keys, motions[:2, :7], bullets=none)
+    refused("size_mismatch", scene.find_impacts_of_motions, keys, motions[:2], bullets=none)
+    assert len(scene.find_impacts(keys[:0], motions[:0, :7], bullets=none).time) == 0
+    refused("invalid_argument", scene.find_impacts, keys, motions[:2, :7], pairs="some")
     with pytest.raises(TypeError):
-        scene.sweep(keys, motions[:2, :7], bullets=[0, 7])
+        scene.find_impacts(keys, motions[:2, :7], bullets=[0, 7])
     assert len(impacts(shapes, shape_of[:2], motions[:2], np.empty((0, 2), int))) == 0
-    assert len(scene.sweep([], np.empty((0, 7))).first) == 0
+    assert len(scene.find_impacts([], np.empty((0, 7))).first) == 0
 
 
 @given(any_array(), any_array(), any_array(), st.integers(0, 2**32 - 1))
@@ -273,7 +273,7 @@ def test_any_arrays_are_accepted_or_refused(first, second, third, number):
     ids = shapes.add_spheres([1.0, 2.0])
     scene, keys = standing(shapes, ids, np.zeros((2, 3)))
     motions = winnow.motions_between(np.zeros((2, 3)), np.ones((2, 3)))
-    for ask in [
+    for call in [
         lambda: winnow.motions_between(first, second),
         lambda: winnow.motions_between((first, second), third),
         lambda: winnow.motions_by_velocities(first, second, third, number),
@@ -286,13 +286,13 @@ def test_any_arrays_are_accepted_or_refused(first, second, third, number):
         lambda: scene.cast_motions(first, second),
         lambda: scene.cast_motions(number, motions, "all"),
         lambda: scene.cast_motions(ids, motions, tolerance=number),
-        lambda: scene.sweep(first, second, bullets=third),
-        lambda: scene.sweep(keys, first, bullets=second),
-        lambda: scene.sweep(keys, (first, second)),
-        lambda: scene.sweep_motions(keys, first),
+        lambda: scene.find_impacts(first, second, bullets=third),
+        lambda: scene.find_impacts(keys, first, bullets=second),
+        lambda: scene.find_impacts(keys, (first, second)),
+        lambda: scene.find_impacts_of_motions(keys, first),
     ]:
         try:
-            ask()
+            call()
         except REFUSALS:
             pass
     assert np.array_equal(scene.bodies(keys)["pose"][:, :3], np.zeros((2, 3)))

@@ -67,7 +67,7 @@ def test_levels_on_balls_agree_with_a_reference():
     boolean = narrow.collide(shapes, ids, poses, pairs, level="boolean")
     assert np.array_equal(boolean.overlaps, gap[boolean.pair] <= 0)
     assert narrow.statistics()["pairs"] == len(pairs)
-    assert narrow.collide(shapes, ids, poses, pairs, margin=0.1).level == "manifold"
+    assert narrow.collide(shapes, ids, poses, pairs, contact_margin=0.1).level == "manifold"
 
 
 def test_poses_of_any_layout_give_equal_results():
@@ -155,7 +155,7 @@ def test_exceptions_name_their_status():
     refused("invalid_key", shapes.add_scaled, int(ids[0]), [1, 1, 1])
     refused("invalid_key", shapes.refit_mesh, 7, CUBE)
     refused("invalid_argument", narrow.collide, shapes, ids, where, [[0, 2]])
-    refused("invalid_argument", narrow.collide, shapes, ids, where, [[0, 1]], margin=-1.0)
+    refused("invalid_argument", narrow.collide, shapes, ids, where, [[0, 1]], contact_margin=-1.0)
     refused("invalid_argument", narrow.collide, shapes, ids, where, [[0, 1]], level="pairs")
     refused("invalid_argument", narrow.collide, shapes, ids, where, [[0, 1]], tier="best")
     refused("invalid_pose", narrow.collide, shapes, ids, where + np.nan, [[0, 1]])
@@ -208,7 +208,7 @@ def test_any_arrays_are_accepted_or_refused(first, second, third, number):
     keys = scene.add(ids, np.zeros((2, 3)))
     narrow = winnow.NarrowPhase()
     contacts = winnow.Contacts()
-    for ask in [
+    for call in [
         lambda: shapes.add_spheres(first),
         lambda: shapes.add_boxes(first, second),
         lambda: shapes.add_cones(first, second, third),
@@ -253,6 +253,6 @@ def test_any_arrays_are_accepted_or_refused(first, second, third, number):
         lambda: scene.collide(contacts, "distance"),
     ]:
         try:
-            ask()
+            call()
         except REFUSALS:
             pass

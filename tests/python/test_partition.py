@@ -160,7 +160,7 @@ def test_spheres_and_kdops_are_tested_exactly():
         along = points @ directions.T
         solids = winnow.Partition(volume=f"kdop{faces}")
         keys = solids.insert_kdops(along.min(axis=1), along.max(axis=1))
-        # A diagonal and a point beside it, whose boxes touch.
+        # A diagonal and a point beside the diagonal: their boxes touch.
         assert len(solids.self_pairs()) == 0
         solids.update_kdops(keys, along.min(axis=1), along.max(axis=1) + 9)
         assert len(solids.self_pairs()) == 1
@@ -173,13 +173,13 @@ def test_spheres_and_kdops_are_tested_exactly():
 def test_events_report_begun_and_ended_pairs():
     lower, upper = random_boxes(8, 300)
     partition, keys = filled(lower, upper)
-    events, alone = winnow.PairEvents(), winnow.PairEvents()
+    events, events_only = winnow.PairEvents(), winnow.PairEvents()
     before = set()
     for frame in range(8):
         held = partition.self_pairs(events)  # kept over the next call in every second frame
-        partition.pair_changes(alone)
+        partition.pair_changes(events_only)
         now = pair_set(held)
-        for found in (events, alone):
+        for found in (events, events_only):
             assert pair_set(winnow.ids_of(found.begun)) == now - before
             assert pair_set(winnow.ids_of(found.ended)) == before - now
             assert found.persisting == len(now & before)
@@ -250,8 +250,8 @@ def test_filters_separate_layers_and_environments():
 
 def test_exchanged_structure_keeps_the_objects():
     lower, upper = random_boxes(11, 200)
-    partition, keys = filled(lower, upper, "AutoPartition", margin=0.01, margin_share=0.05)
-    assert partition.margin == (pytest.approx(0.01), pytest.approx(0.05))
+    partition, keys = filled(lower, upper, "AutoPartition", fat_margin=0.01, fat_margin_share=0.05)
+    assert partition.fat_margin == (pytest.approx(0.01), pytest.approx(0.05))
     assert not partition.is_exact
     partition.refresh()
     assert partition.choice()["objects"] == 200

@@ -82,13 +82,13 @@ def test_swept_volumes_of_zero_size_equal_rays(world):
     origins, directions = random_rays(24, 300)
     for find in ("closest", "all"):
         rays = partition.cast_rays(origins, directions, find)
-        for sweeps in (
+        for casts in (
             partition.cast_boxes(origins, origins, directions, find),
             partition.cast_spheres(origins, 0.0, directions, find),
             partition.cast_capsules(origins, origins, np.zeros(300), directions, find),
         ):
-            assert np.allclose(sweeps.t, rays.t, rtol=1e-5)
-            assert np.array_equal(sweeps.key, rays.key)
+            assert np.allclose(casts.t, rays.t, rtol=1e-5)
+            assert np.array_equal(casts.key, rays.key)
     larger = partition.cast_spheres(origins, 0.5, directions)
     assert (larger.t <= partition.cast_rays(origins, directions).t).all()
 
@@ -128,8 +128,8 @@ def test_regions_that_touch_in_double_are_found():
     random = np.random.default_rng(27)
     count, radius = 4000, 0.0625
     centers = random.uniform(0, 1, (count, 3))
-    # Each ball has a box in its own environment, whose upper side is the lowest float not below the
-    # ball.
+    # The largest x of each box is the least float that is not below the least x of its ball. Each
+    # box and its ball have their own environment.
     side = (centers[:, 0] - radius).astype(np.float32)
     beyond = np.nextafter(side, np.float32(np.inf))
     side = np.where(side.astype(float) < centers[:, 0] - radius, beyond, side)

@@ -81,7 +81,7 @@ def test_scenes_are_recorded_and_replayed(file):
     ids = np.concatenate([shapes.add_spheres([0.5, 0.3]), shapes.add_boxes([[0.4, 0.3, 0.5]])])
     mesh = shapes.add_mesh(CUBE * 3, [[0, 1, 2], [1, 3, 2], [4, 6, 5], [5, 6, 7]])
     recorder = winnow.Recorder(file)
-    scene = winnow.Scene(shapes, margin=0.02, carry_over=0.01, warm_start=True, recorder=recorder)
+    scene = winnow.Scene(shapes, contact_margin=0.02, cache_tolerance=0.01, warm_start=True, recorder=recorder)
     scene.reserve(dynamic=60, pairs=100)
     scene.add(mesh, [[0, 0, 0]], "fixed")
     keys = scene.add(
@@ -95,7 +95,7 @@ def test_scenes_are_recorded_and_replayed(file):
         scene.move(keys, random.uniform(-2, 2, (len(keys), 3)))
         if step == 2:
             shapes.refit_mesh(mesh, CUBE * 2)
-            scene.set_motion(keys[:4], "sleeping")
+            scene.set_body_state(keys[:4], "sleeping")
             scene.set_shape(keys[5:8], ids[0])
             scene.set_filter(keys[8:9], mask=0)
             scene.set_offsets(keys[9:12], 0.0)
@@ -113,7 +113,7 @@ def test_scenes_are_recorded_and_replayed(file):
         scene.least_distance(keys[:9], keys[9:])
         scene.overlaps(keys[:9], keys[9:])
         for rules in ("scene", "none"):
-            scene.any_contact(keys[:9], keys[9:], margin=0.1, rules=rules)
+            scene.any_contact(keys[:9], keys[9:], contact_margin=0.1, rules=rules)
             scene.any_contact(rules=rules)
         scene.nearest(rays[0][:5], 3)
         scene.collide(contacts)
@@ -127,7 +127,7 @@ def test_scenes_are_recorded_and_replayed(file):
     assert counts["frames"] == 5 and counts["worlds"] == 1
 
 
-def test_sweeps_sensors_and_predicates_are_replayed(file):
+def test_impacts_sensors_and_predicates_are_replayed(file):
     recorder = winnow.Recorder(file)
     shapes = winnow.Shapes()
     ball = shapes.add_spheres([0.6])
@@ -139,9 +139,9 @@ def test_sweeps_sensors_and_predicates_are_replayed(file):
     scene.collide(contacts)
     assert len(contacts) == 4
     saved, touching = scene.save(), scene.save_contacts(contacts)
-    scene.sweep(keys, places + [0, 0, 1], touching=False)
+    scene.find_impacts(keys, places + [0, 0, 1], touching=False)
     motions = winnow.motions_between(places, places[::-1])
-    assert scene.sweep_motions(keys, motions, first_only=True).a.size > 0
+    assert scene.find_impacts_of_motions(keys, motions, first_only=True).a.size > 0
     sensors = winnow.Sensors(scene)
     goal = sensors.add(ball, [[0.5, 0, 0]])
     assert len(sensors.sense().body) == 2
@@ -257,7 +257,7 @@ def test_calls_of_several_threads_are_recorded(file):
         except BaseException as error:  # noqa: B902
             failures.append(error)
 
-    def ask(i):
+    def query(i):
         partition.self_pairs()
         partition.cast_rays(lower, upper, ("closest", "all")[i % 2])
         scene.overlap(ids[(3 * i + np.arange(20)) % 40], lower[:20])
@@ -266,7 +266,7 @@ def test_calls_of_several_threads_are_recorded(file):
     def change(i):
         partition.update(keys, lower + np.float32(i), upper + np.float32(i))
 
-    threads = [threading.Thread(target=run, args=(work,)) for work in (ask, change, ask, ask)]
+    threads = [threading.Thread(target=run, args=(work,)) for work in (query, change, query, query)]
     for thread in threads:
         thread.start()
     for thread in threads:

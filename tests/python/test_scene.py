@@ -77,10 +77,10 @@ def test_bodies_report_their_state(world):
     columns = scene.bodies(balls)
     assert columns["shape"].tolist() == [ball] * 3 and columns["data"].tolist() == [1, 2, 3]
     assert np.allclose(columns["pose"][1], [9, 0, 0.5, 1, 0, 0, 0])
-    assert columns["motion"].tolist() == [winnow.DYNAMIC] * 3
-    scene.set_motion(balls[:1], "sleeping")
+    assert columns["state"].tolist() == [winnow.DYNAMIC] * 3
+    scene.set_body_state(balls[:1], "sleeping")
     scene.set_filter(balls[1:], layers=2, environment=[3, 4])
-    assert scene.bodies(balls)["motion"].tolist() == [winnow.SLEEPING] + [winnow.DYNAMIC] * 2
+    assert scene.bodies(balls)["state"].tolist() == [winnow.SLEEPING] + [winnow.DYNAMIC] * 2
     assert scene.bodies(balls)["environment"].tolist() == [0, 3, 4]
     assert (scene.size("fixed"), scene.size("dynamic"), scene.size("sleeping")) == (1, 2, 1)
     assert np.array_equal(scene.keys_of(winnow.ids_of(balls)), balls)
@@ -151,11 +151,11 @@ def test_shapes_are_cast_overlapped_and_measured(world):
     assert scene.any_contact().shape == scene.any_contact(everyone).shape
     assert len(scene.any_contact(balls[:2], balls[1:])) == 0
     gap = apart.distance[1]
-    near = scene.any_contact(balls[:2], balls[1:], margin=gap + 0.01)
+    near = scene.any_contact(balls[:2], balls[1:], contact_margin=gap + 0.01)
     assert near.tolist() == [[balls[1], balls[2]]]
     scene.set_ignored([[balls[1], balls[2]]])
-    assert len(scene.any_contact(balls[:2], balls[1:], margin=gap + 0.01)) == 0
-    assert len(scene.any_contact(balls[:2], balls[1:], margin=gap + 0.01, rules="none")) == 1
+    assert len(scene.any_contact(balls[:2], balls[1:], contact_margin=gap + 0.01)) == 0
+    assert len(scene.any_contact(balls[:2], balls[1:], contact_margin=gap + 0.01, rules="none")) == 1
     assert len(scene.distance(balls[1:2], balls[2:]).key) == 0
     assert len(scene.distance(balls[1:2], balls[2:], rules="none").key) == 1
     with pytest.raises(winnow.StatusError):
@@ -175,7 +175,7 @@ def test_mesh_and_field_contacts_name_their_triangles():
     box = shapes.add_boxes([0.5, 0.5, 0.5])
     contacts = winnow.Contacts()
     for ground in (field, mesh):
-        scene = winnow.Scene(shapes, margin=0.01)
+        scene = winnow.Scene(shapes, contact_margin=0.01)
         scene.add(ground, [[0, 0, 0]], "fixed")
         scene.add(box, [[2, 2, 0.495]])
         contacts.clear()
@@ -214,15 +214,15 @@ def test_environments_have_no_contacts_with_each_other():
     assert np.array_equal(contacts.data_a, contacts.data_b) and len(keys) == 200
 
 
-def test_contacts_of_resting_bodies_are_carried_over():
+def test_contacts_of_resting_bodies_are_cached():
     shapes = winnow.Shapes()
-    scene = winnow.Scene(shapes, carry_over=0.1)
+    scene = winnow.Scene(shapes, cache_tolerance=0.1)
     keys = scene.add(shapes.add_spheres([1.0, 1.0]), [[0, 0, 0], [1.5, 0, 0]])
     contacts = winnow.Contacts()
     scene.collide(contacts)
     scene.move(keys, [[0.01, 0, 0], [1.5, 0, 0]])
     scene.collide(contacts)
-    assert contacts.carried == 1 and scene.statistics()["carried"] == 1
+    assert contacts.cached_pairs == 1 and scene.statistics()["cached_pairs"] == 1
     assert abs(contacts.distance[0] + 0.51) <= contacts.error_bound[0] + 1e-9
 
 
@@ -239,8 +239,8 @@ def test_exceptions_name_their_status(world):
     refused("invalid_argument", scene.collide, winnow.Contacts(), "all")
     refused("invalid_argument", scene.cast_rays, where, where)
     refused("invalid_key", scene.set_shape, np.repeat(balls[:1], 2), ball)
-    refused("invalid_argument", winnow.Scene, shapes, margin=-1.0)
-    refused("invalid_argument", winnow.Scene, shapes, carry_over=np.nan)
+    refused("invalid_argument", winnow.Scene, shapes, contact_margin=-1.0)
+    refused("invalid_argument", winnow.Scene, shapes, cache_tolerance=np.nan)
     refused("invalid_argument", winnow.Scene, shapes, structures=["LinearBvh"])
     gone = scene.add(ball, where)
     scene.remove(gone)
@@ -248,7 +248,7 @@ def test_exceptions_name_their_status(world):
     for call in (
         lambda: scene.remove(mixed),
         lambda: scene.move(mixed, np.zeros((4, 3))),
-        lambda: scene.set_motion(mixed, "fixed"),
+        lambda: scene.set_body_state(mixed, "fixed"),
         lambda: scene.set_shape(mixed, ball),
         lambda: scene.set_filter(mixed, layers=8),
         lambda: scene.bodies(mixed),
@@ -286,14 +286,14 @@ def test_threads_may_query_and_change_at_once(world):
         shapes.remove(shapes.add_spheres([1.0, 2.0]))
         scene.remove(extra)
 
-    def ask(i):
+    def query(i):
         scene.cast_rays(np.zeros((9, 3)), np.ones((9, 3)), ("closest", "all")[i % 2])
         scene.overlap(ball, np.zeros((9, 3)))
         scene.nearest(np.zeros((9, 3)), 2)
         scene.distance(balls, balls[::-1])
 
     threads = [
-        threading.Thread(target=run, args=(work,)) for work in (collide, collide, change, ask, ask)
+        threading.Thread(target=run, args=(work,)) for work in (collide, collide, change, query, query)
     ]
     for thread in threads:
         thread.start()

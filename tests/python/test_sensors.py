@@ -36,8 +36,8 @@ def test_sensors_agree_with_overlap_queries(world):
     for step in (0.0, 0.7, 0.7):
         scene.move(keys, scene.bodies(keys)["pose"] + [step, 0, 0, 0, 0, 0, 0])
         found = scene.overlap(shape_of, poses)
-        asked = np.repeat(np.arange(100, 112), np.diff(found.first.astype(int)))
-        truth = set(zip(asked.tolist(), found.data.tolist()))
+        sensor_data = np.repeat(np.arange(100, 112), np.diff(found.first.astype(int)))
+        truth = set(zip(sensor_data.tolist(), found.data.tolist()))
         sensed = sensors.sense()
         assert pairs_in(sensed) == truth and len(sensed.body) == len(truth) > 5
         events = dict(zip(zip(sensed.sensor_data.tolist(), sensed.body_data.tolist()), sensed.event))
@@ -131,7 +131,7 @@ def test_any_arrays_are_accepted_or_refused(first, second, third, number):
     scene.add(ids, np.zeros((2, 3)))
     sensors = winnow.Sensors(scene)
     made = sensors.add(ids, np.zeros((2, 3)))
-    for ask in [
+    for call in [
         lambda: sensors.add(first, second, third),
         lambda: sensors.add(number, second, carrier=first),
         lambda: sensors.set(made, ids, (first, second)),
@@ -143,6 +143,6 @@ def test_any_arrays_are_accepted_or_refused(first, second, third, number):
         lambda: sensors.sense(),
     ]:
         try:
-            ask()
+            call()
         except REFUSALS:
             pass

@@ -23,14 +23,14 @@ def stage():
 
 
 def moved(scene, contacts, keys, steps):
-    told = []
+    frames = []
     for step in steps:
         poses = scene.bodies(keys)["pose"].copy()
         poses[:, :3] += step
         scene.move(keys, poses)
         scene.collide(contacts)
-        told.append(shown(contacts))
-    return told
+        frames.append(shown(contacts))
+    return frames
 
 
 def test_partitions_are_saved_and_loaded():
@@ -50,7 +50,7 @@ def test_partitions_are_saved_and_loaded():
 
 def test_loaded_scene_continues_identically():
     shapes, ids = stage()
-    scene = winnow.Scene(shapes, margin=0.05, carry_over=0.01)
+    scene = winnow.Scene(shapes, contact_margin=0.05, cache_tolerance=0.01)
     places = RANDOM.uniform(0, 4, (60, 3))
     keys = scene.add(ids[np.arange(60) % len(ids)], places, data=np.arange(60))
     contacts = winnow.Contacts()

@@ -13,8 +13,8 @@ def random_boxes(seed, count, side=None):
 
 def overlapping(lower, upper, other_lower, other_upper):
     """Returns the closed overlap of each box with each, as (n, m) bool."""
-    meets = (lower[:, None] <= other_upper[None]) & (other_lower[None] <= upper[:, None])
-    return meets.all(axis=2)
+    overlap = (lower[:, None] <= other_upper[None]) & (other_lower[None] <= upper[:, None])
+    return overlap.all(axis=2)
 
 
 def pair_set(pairs):

@@ -53,7 +53,7 @@ std::vector<Candidate<Truth>> all_candidates(const Question& question,
 template <typename Truth>
 const Candidate<Truth>* find(const std::vector<Candidate<Truth>>& candidates, ObjectId id) {
   const auto at = std::lower_bound(candidates.begin(), candidates.end(), id,
-                                   [](const auto& c, ObjectId wanted) { return c.id < wanted; });
+                                   [](const auto& c, ObjectId target) { return c.id < target; });
   return at != candidates.end() && at->id == id ? &*at : nullptr;
 }
 

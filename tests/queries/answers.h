@@ -31,10 +31,10 @@ using RegionCandidates = std::vector<Candidate<RegionTruth>>;
                                                   const CastCandidates& candidates,
                                                   const Partition& partition);
 
-/// Returns true if `hit` is one of these, or null if there are none.
+/// Returns true if `hit` is an element of `all`, or null if `all` is empty.
 [[nodiscard]] testing::AssertionResult is_any_of(const Hit& hit, std::span<const Hit> all);
 
-/// Returns true if `hit` is the first of these, or null if there are none.
+/// Returns true if `hit` is the first element of `all`, or null if `all` is empty.
 [[nodiscard]] testing::AssertionResult is_first_of(const Hit& hit, std::span<const Hit> all);
 
 /// Returns true if the hits are equal, t bit by bit.

@@ -1,5 +1,5 @@
-// An exception of a callback ends the process in the same way in every query: some kernels that
-// call a predicate are compiled without exceptions, and half of a parallel result is useless.
+// An exception of a callback ends the process in every query. It cannot leave the query, because
+// some kernels that call a predicate are compiled without exceptions.
 
 #include <winnow/core/debug_draw.h>
 
@@ -9,7 +9,7 @@
 #include "tests/support/scenes.h"
 #include "tests/support/world.h"
 
-// WebAssembly has neither exceptions nor signals, Windows lacks signals that end a process.
+// WebAssembly has neither exceptions nor signals. Windows has no signals that end a process.
 #if WINNOW_TEST_EXCEPTIONS
 #include <csignal>
 #endif

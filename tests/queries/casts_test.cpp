@@ -21,7 +21,7 @@ using Hits = std::vector<Hit>;
 Hits all_of(World& world, const Cast& cast, HitBuffer& buffer, const Filter& filter = {}) {
   EXPECT_EQ(world.threads().run([&] { return world.partition().all(cast, buffer, filter); }),
             Status::ok);
-  EXPECT_EQ(buffer.questions(), 1U);
+  EXPECT_EQ(buffer.queries(), 1U);
   return {buffer.begin(), buffer.end()};
 }
 
@@ -94,7 +94,7 @@ TEST_P(Casts, batch_of_rays_equals_single_rays) {
     FoundOfEach hit(rays.size());
     const HitColumns columns = hit.columns();
     ASSERT_EQ(world.threads().run([&] { return p.all(RayBatch(rays), batch); }), Status::ok);
-    ASSERT_EQ(batch.questions(), rays.size());
+    ASSERT_EQ(batch.queries(), rays.size());
     ASSERT_EQ(world.threads().run([&] { return p.closest(RayBatch(rays), columns); }), Status::ok);
     std::size_t total = 0;
     for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -160,10 +160,10 @@ TEST_P(Casts, any_hits_do_not_depend_on_threads) {
     EXPECT_EQ(status, Status::ok);
     return data;
   };
-  Config alone = config();
-  alone.threads = 1;
-  alone.host = {};
-  EXPECT_TRUE(data_found(config()) == data_found(alone));
+  Config serial = config();
+  serial.threads = 1;
+  serial.host = {};
+  EXPECT_TRUE(data_found(config()) == data_found(serial));
 }
 
 TEST_P(Casts, empty_batch_has_no_hits) {
@@ -173,7 +173,7 @@ TEST_P(Casts, empty_batch_has_no_hits) {
   ASSERT_EQ(world.partition().all(Ray{}, buffer), Status::ok);
   ASSERT_EQ(world.partition().all(RayBatch{}, buffer), Status::ok);
   EXPECT_TRUE(buffer.empty());
-  EXPECT_EQ(buffer.questions(), 0U);
+  EXPECT_EQ(buffer.queries(), 0U);
   EXPECT_EQ(world.partition().closest(RayBatch{}, {}), Status::ok);
   EXPECT_EQ(world.partition().any(RayBatch{}, {}), Status::ok);
 }
@@ -212,7 +212,8 @@ TEST_P(Casts, casts_among_changing_objects_are_right) {
 TEST_P(Casts, casts_hit_infinite_boxes_in_float_range) {
   World world(config());
   constexpr float kEndless = std::numeric_limits<float>::infinity();
-  // The ray rises by a thousandth of its way: it reaches these boxes after 1e38 and after 1e39.
+  // The ray rises by a thousandth of its length. It reaches the first box at t = 1e38; it would
+  // reach the second box at 1e39, beyond the range of float.
   const std::vector<Aabb> boxes{{{-1.0F, 1e35F, -1.0F}, {kEndless, kEndless, 1.0F}},
                                 {{-1.0F, 1e36F, -1.0F}, {kEndless, kEndless, 1.0F}}};
   const std::vector<Key> keys = world.insert(boxes);
@@ -223,7 +224,7 @@ TEST_P(Casts, casts_hit_infinite_boxes_in_float_range) {
   EXPECT_EQ(hits[0].key, keys[0]);
   EXPECT_EQ(closest_of(world, ray).key, keys[0]);
   EXPECT_EQ(any_of(world, ray).key, keys[0]);
-  // A ray that begins in an object hits it, however far away that is.
+  // A ray that begins in an object hits the object, however far from the origin it begins.
   EXPECT_EQ(all_of(world, Ray{{3.4e38F, 3.4e38F, 0.5F}, {1.0F, 0.0F, 0.0F}}, buffer).size(), 2U);
 }
 

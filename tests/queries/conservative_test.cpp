@@ -1,5 +1,5 @@
-// No ray misses a box that it touches in exact arithmetic: more than ten million pairs of a ray and
-// a box, a million of which are hard cases.
+// No ray misses a box that it touches in exact arithmetic. Tests more than ten million pairs of a
+// ray and a box; a million of them are hard cases.
 
 #include <winnow/core/eigen.h>
 #include <algorithm>
@@ -34,7 +34,7 @@ std::size_t check(const std::vector<Aabb>& boxes, const std::vector<Ray>& rays) 
     HitBuffer hits;
     EXPECT_EQ(world.threads().run([&] { return world.partition().all(RayBatch(rays), hits); }),
               Status::ok);
-    if (hits.questions() != rays.size()) {
+    if (hits.queries() != rays.size()) {
       ADD_FAILURE() << to_string(config);
       return 0;
     }

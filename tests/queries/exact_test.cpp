@@ -60,7 +60,7 @@ TEST(Exact, round_casts_touch_at_known_times) {
   EXPECT_NEAR(truth_of(past, kUnit).latest, 3.0 - std::sqrt(1.4143 * 1.4143 - 2.0), 1e-3);
   past.sphere.radius = 1.4142F;
   EXPECT_FALSE(truth_of(past, kUnit).may);
-  // A capsule crosswise over an edge.
+  // A capsule that crosses an edge at a right angle.
   const CapsuleCast capsule{{{-2.0F, 0.5F, -4.0F}, {2.0F, 0.5F, -4.0F}, 0.5F}, {0.0F, 0.0F, 1.0F}};
   EXPECT_TRUE(truth_of(capsule, kUnit).must);
   EXPECT_NEAR(truth_of(capsule, kUnit).earliest, 3.5, 1e-4);

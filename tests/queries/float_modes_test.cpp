@@ -28,8 +28,9 @@ struct Answer {
   std::vector<std::uint64_t> bits;
 };
 
-/// The expected result: all of these, or any one of them.
-struct Wanted {
+/// The expected result: every element of `all`; or, if `one_will_do`, at least one object if `all`
+/// is not empty.
+struct ExpectedResult {
   std::vector<std::uint64_t> all;
   bool one_will_do = false;
 };
@@ -42,17 +43,17 @@ struct Tally {
   std::size_t missed = 0;
   std::size_t others = 0;  ///< results that differ from the default mode
 
-  void add(Answer answer, const Wanted& wanted, const Answer& standard) {
+  void add(Answer answer, const ExpectedResult& expected_result, const Answer& standard) {
     ++questions;
     std::sort(answer.found.begin(), answer.found.end());
     others += answer.bits == standard.bits ? 0 : 1;
-    if (wanted.one_will_do) {
-      expected += wanted.all.empty() ? 0 : 1;
-      missed += !wanted.all.empty() && answer.found.empty() ? 1 : 0;
+    if (expected_result.one_will_do) {
+      expected += expected_result.all.empty() ? 0 : 1;
+      missed += !expected_result.all.empty() && answer.found.empty() ? 1 : 0;
       return;
     }
-    expected += wanted.all.size();
-    for (const std::uint64_t id : wanted.all) {
+    expected += expected_result.all.size();
+    for (const std::uint64_t id : expected_result.all) {
       missed += std::binary_search(answer.found.begin(), answer.found.end(), id) ? 0 : 1;
     }
   }
@@ -86,10 +87,10 @@ Answer answer_of(const PairEvents& events) {
   return answer;
 }
 
-/// Queries of a scene: runs them in the current mode; `wanted` has the expected results.
+/// Queries of a scene: runs them in the current mode; `expected_results` has the expected results.
 struct Questions {
-  std::function<Answers(const Partition&)> ask;
-  std::vector<Wanted> wanted;
+  std::function<Answers(const Partition&)> run;
+  std::vector<ExpectedResult> expected_results;
 };
 
 std::vector<Ray> rays_among(const std::vector<Cast>& casts) {
@@ -121,18 +122,18 @@ void query_rays(const Partition& partition, const std::vector<Ray>& rays, Answer
   }
 }
 
-Wanted expected_of(const CastCandidates& candidates, bool one) {
-  Wanted wanted{{}, one};
+ExpectedResult expected_of(const CastCandidates& candidates, bool one) {
+  ExpectedResult expected_result{{}, one};
   for (const auto& candidate : candidates) {
-    if (candidate.truth.must) wanted.all.push_back(candidate.id);
+    if (candidate.truth.must) expected_result.all.push_back(candidate.id);
   }
-  return wanted;
+  return expected_result;
 }
 
 Questions casts_of(const QuestionSet& set) {
   Questions questions;
   const std::vector<Ray> rays = rays_among(set.casts);
-  questions.ask = [&set, rays](const Partition& partition) {
+  questions.run = [&set, rays](const Partition& partition) {
     Answers answers;
     for (const Cast& cast : set.casts) {
       HitBuffer all;
@@ -149,12 +150,13 @@ Questions casts_of(const QuestionSet& set) {
     return answers;
   };
   for (const CastCandidates& truth : set.cast_truths) {
-    for (const bool one : {false, true, true}) questions.wanted.push_back(expected_of(truth, one));
+    for (const bool one : {false, true, true})
+      questions.expected_results.push_back(expected_of(truth, one));
   }
   for (const bool one : {false, true, true}) {
     for (std::size_t i = 0; i < set.casts.size(); ++i) {
       if (!std::holds_alternative<Ray>(set.casts[i])) continue;
-      questions.wanted.push_back(expected_of(set.cast_truths[i], one));
+      questions.expected_results.push_back(expected_of(set.cast_truths[i], one));
     }
   }
   return questions;
@@ -162,7 +164,7 @@ Questions casts_of(const QuestionSet& set) {
 
 Questions regions_of(const QuestionSet& set) {
   Questions questions;
-  questions.ask = [&set](const Partition& partition) {
+  questions.run = [&set](const Partition& partition) {
     Answers answers;
     OverlapBuffer objects;
     for (const Region& region : set.regions) {
@@ -182,34 +184,35 @@ Questions regions_of(const QuestionSet& set) {
     return answers;
   };
   for (const RegionCandidates& truth : set.region_truths) {
-    Wanted& wanted = questions.wanted.emplace_back();
+    ExpectedResult& expected_result = questions.expected_results.emplace_back();
     for (const auto& candidate : truth) {
-      if (candidate.truth.must) wanted.all.push_back(candidate.id);
+      if (candidate.truth.must) expected_result.all.push_back(candidate.id);
     }
   }
-  Wanted everything;
+  ExpectedResult everything;
   for (std::size_t i = 0; i < set.boxes.size(); ++i) everything.all.push_back(i);
-  questions.wanted.insert(questions.wanted.end(), set.boxes.size(), everything);
+  questions.expected_results.insert(questions.expected_results.end(), set.boxes.size(), everything);
   return questions;
 }
 
-Wanted expected_of(const std::vector<Pair>& pairs) {
-  Wanted wanted;
+ExpectedResult expected_of(const std::vector<Pair>& pairs) {
+  ExpectedResult expected_result;
   for (const Pair& pair : pairs) {
-    wanted.all.push_back(std::uint64_t{pair.first} << 32U | pair.second);
+    expected_result.all.push_back(std::uint64_t{pair.first} << 32U | pair.second);
   }
-  return wanted;
+  return expected_result;
 }
 
 template <typename Bound>
-Wanted expected_among(const std::vector<Bound>& bounds) {
-  Wanted wanted;
+ExpectedResult expected_among(const std::vector<Bound>& bounds) {
+  ExpectedResult expected_result;
   for (std::size_t first = 0; first < bounds.size(); ++first) {
     for (std::size_t second = first + 1; second < bounds.size(); ++second) {
-      if (bounds[first].overlaps(bounds[second])) wanted.all.push_back(first << 32U | second);
+      if (bounds[first].overlaps(bounds[second]))
+        expected_result.all.push_back(first << 32U | second);
     }
   }
-  return wanted;
+  return expected_result;
 }
 
 constexpr PairOptions kCanonical{.order = Order::canonical};
@@ -234,20 +237,20 @@ Questions pairs_of_volumes(const QuestionSet& set, std::string_view structure) {
     spheres.push_back(Sphere::around(box));
     kdops.push_back(Kdop<26>::around(box));
   }
-  questions.ask = [spheres, kdops, structure](const Partition&) {
+  questions.run = [spheres, kdops, structure](const Partition&) {
     return Answers{query_volumes(structure, Volume::sphere, spheres),
                    query_volumes(structure, Volume::kdop26, kdops)};
   };
-  questions.wanted = {expected_among(spheres), expected_among(kdops)};
+  questions.expected_results = {expected_among(spheres), expected_among(kdops)};
   return questions;
 }
 
-/// Pairs of the scene, begun pairs, pairs with a partition of the reversed boxes, and overlaps with
-/// a view of these.
+/// Pairs of the scene, begun pairs, pairs with a partition of the same boxes in reverse order, and
+/// overlaps with a view of the reversed boxes.
 Questions pairs_of(const QuestionSet& set, std::string_view structure) {
   Questions questions;
   const std::vector<Aabb> others(set.boxes.rbegin(), set.boxes.rend());
-  questions.ask = [others, structure](const Partition& partition) {
+  questions.run = [others, structure](const Partition& partition) {
     Answers answers;
     Partition other(structure_named(structure), {.execution = Execution::serial()});
     std::vector<Key> keys(others.size());
@@ -266,17 +269,17 @@ Questions pairs_of(const QuestionSet& set, std::string_view structure) {
     return answers;
   };
   const std::vector<Object> other_objects = numbered(others);
-  questions.wanted.push_back(expected_of(true_pairs(set.objects)));
-  questions.wanted.push_back(questions.wanted.back());
-  questions.wanted.push_back(expected_of(cross_pairs(set.objects, other_objects)));
-  questions.wanted.push_back(expected_of(cross_pairs(other_objects, set.objects)));
+  questions.expected_results.push_back(expected_of(true_pairs(set.objects)));
+  questions.expected_results.push_back(questions.expected_results.back());
+  questions.expected_results.push_back(expected_of(cross_pairs(set.objects, other_objects)));
+  questions.expected_results.push_back(expected_of(cross_pairs(other_objects, set.objects)));
   return questions;
 }
 
 /// When the host's mode is set: while objects are inserted, during queries, or both.
 struct Phases {
   bool building;
-  bool asking;
+  bool querying;
 };
 constexpr Phases kPhases[] = {{true, true}, {false, true}, {true, false}};
 
@@ -330,8 +333,8 @@ class FloatModes : public testing::TestWithParam<FloatMode> {
  private:
   static void check(const QuestionSet& set, std::string_view structure, const Questions& questions,
                     Tally& tally) {
-    const Answers standard = questions.ask(partition_of(structure, set.boxes));
-    ASSERT_EQ(standard.size(), questions.wanted.size());
+    const Answers standard = questions.run(partition_of(structure, set.boxes));
+    ASSERT_EQ(standard.size(), questions.expected_results.size());
     for (const Phases& phases : kPhases) {
       const FloatMode plain;
       const Partition partition = [&] {
@@ -339,12 +342,12 @@ class FloatModes : public testing::TestWithParam<FloatMode> {
         return partition_of(structure, set.boxes);
       }();
       const Answers answers = [&] {
-        const FloatModeScope scope(phases.asking ? GetParam() : plain);
-        return questions.ask(partition);
+        const FloatModeScope scope(phases.querying ? GetParam() : plain);
+        return questions.run(partition);
       }();
       ASSERT_EQ(answers.size(), standard.size());
       for (std::size_t i = 0; i < answers.size(); ++i) {
-        tally.add(answers[i], questions.wanted[i], standard[i]);
+        tally.add(answers[i], questions.expected_results[i], standard[i]);
       }
     }
   }

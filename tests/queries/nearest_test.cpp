@@ -56,8 +56,8 @@ std::vector<Question> some_questions(std::span<const Aabb> boxes, std::size_t co
   return questions;
 }
 
-std::vector<Hit> ask(World& world, const Question& q, HitBuffer& buffer,
-                     const Filter& filter = {}) {
+std::vector<Hit> query_nearest(World& world, const Question& q, HitBuffer& buffer,
+                               const Filter& filter = {}) {
   EXPECT_EQ(world.threads().run([&] {
     return world.partition().nearest(q.from, q.count, q.radius, buffer, filter);
   }),
@@ -75,8 +75,8 @@ TEST_P(Nearest, nearest_objects_are_right_in_every_scene) {
     world.insert(set.boxes);
     for (const Question& q : some_questions(set.boxes, scaled(16), random)) {
       SCOPED_TRACE(set.name + ", " + to_string(q));
-      ASSERT_TRUE(right_nearest(ask(world, q, buffer), q.from, q.count, q.radius, set.objects,
-                                world.partition()));
+      ASSERT_TRUE(right_nearest(query_nearest(world, q, buffer), q.from, q.count, q.radius,
+                                set.objects, world.partition()));
     }
   }
 }
@@ -98,13 +98,14 @@ TEST_P(Nearest, nearest_among_changing_objects_are_right) {
     }
     for (const Question& q : some_questions(boxes, 16, random)) {
       SCOPED_TRACE(to_string(q));
-      ASSERT_TRUE(right_nearest(ask(world, q, buffer), q.from, q.count, q.radius, world.objects(),
-                                world.partition()));
+      ASSERT_TRUE(right_nearest(query_nearest(world, q, buffer), q.from, q.count, q.radius,
+                                world.objects(), world.partition()));
     }
   }
 }
 
-// The squares of distances overflow or are denormal, or the distances are denormal.
+// By scale: the squares of distances overflow, the squares are denormal, or the distances are
+// denormal.
 TEST_P(Nearest, nearest_of_layers_are_right_at_any_scale) {
   HitBuffer buffer;
   Random random(11);
@@ -117,17 +118,17 @@ TEST_P(Nearest, nearest_of_layers_are_right_at_any_scale) {
       }
     }
     const std::vector<Key> keys = world.insert(boxes);
-    std::vector<Object> wanted = world.objects();
+    std::vector<Object> accepted = world.objects();
     for (std::size_t i = 0; i < keys.size(); i += 3) {
       world.set_filter(keys[i], {.layers = 2});
-      std::erase_if(wanted, [&](const Object& object) { return object.id == keys[i].id; });
+      std::erase_if(accepted, [&](const Object& object) { return object.id == keys[i].id; });
     }
     Filter filter;
     filter.mask = ~2U;
     for (const Question& q : some_questions(boxes, scaled(16), random)) {
       SCOPED_TRACE(to_string(q));
-      ASSERT_TRUE(right_nearest(ask(world, q, buffer, filter), q.from, q.count, q.radius, wanted,
-                                world.partition()));
+      ASSERT_TRUE(right_nearest(query_nearest(world, q, buffer, filter), q.from, q.count, q.radius,
+                                accepted, world.partition()));
     }
   }
 }
@@ -136,7 +137,8 @@ TEST_P(Nearest, equal_distances_are_sorted_by_id) {
   World world(config());
   world.insert(std::vector<Aabb>(100, {Vector3f::Ones(), Vector3f::Constant(2)}));
   HitBuffer buffer;
-  const std::vector<Hit> hits = ask(world, {{Vector3f::Zero(), Vector3f::Zero()}, 40}, buffer);
+  const std::vector<Hit> hits =
+      query_nearest(world, {{Vector3f::Zero(), Vector3f::Zero()}, 40}, buffer);
   ASSERT_EQ(hits.size(), 40U);
   for (std::size_t i = 0; i < hits.size(); ++i) EXPECT_EQ(hits[i].key.id, i);
 }
@@ -155,10 +157,10 @@ TEST_P(Nearest, predicate_selects_the_nearest_objects) {
   HitBuffer buffer;
   for (const Question& q : some_questions(boxes, 40, random)) {
     SCOPED_TRACE(to_string(q));
-    std::vector<Hit> expected = ask(world, {q.from, boxes.size(), q.radius}, buffer);
+    std::vector<Hit> expected = query_nearest(world, {q.from, boxes.size(), q.radius}, buffer);
     std::erase_if(expected, [](const Hit& hit) { return hit.data % 3 != 0; });
     expected.resize(std::min(expected.size(), q.count));
-    ASSERT_TRUE(same_hits(ask(world, q, buffer, filter), expected));
+    ASSERT_TRUE(same_hits(query_nearest(world, q, buffer, filter), expected));
   }
 }
 
@@ -178,7 +180,7 @@ TEST(NearestResults, nearest_are_identical_in_every_config) {
       HitBuffer buffer;
       for (std::size_t i = 0; i < questions.size(); ++i) {
         std::vector<std::pair<ObjectId, std::uint32_t>> found;
-        for (const Hit& hit : ask(world, questions[i], buffer)) {
+        for (const Hit& hit : query_nearest(world, questions[i], buffer)) {
           found.emplace_back(hit.key.id, std::bit_cast<std::uint32_t>(hit.t));
         }
         if (i == expected.size()) expected.push_back(found);

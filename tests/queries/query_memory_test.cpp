@@ -117,10 +117,10 @@ TEST_P(QueryMemory, steady_queries_do_not_allocate) {
     for (const auto& query : queries) ASSERT_EQ(run(query, buffers), Status::ok);
   };
   for (int frame = 0; frame < 4; ++frame) play();
-  const std::size_t asked = memory_.requests() + results_.requests();
+  const std::size_t requests = memory_.requests() + results_.requests();
   const std::size_t heap = heap_requests();
   for (int frame = 0; frame < 6; ++frame) play();
-  EXPECT_EQ(memory_.requests() + results_.requests(), asked);
+  EXPECT_EQ(memory_.requests() + results_.requests(), requests);
   if (config().threads == 1) {
     EXPECT_EQ(heap_requests(), heap) << "allocated behind the memory resource";
   }
@@ -137,7 +137,8 @@ TEST_P(QueryMemory, reserved_buffers_do_not_allocate) {
             results_.outstanding());
 }
 
-// Refuses only the n-th request, or it and all later ones, until a call makes fewer than n.
+// Refuses request k of a query, or request k and all later requests, for k = 0, 1, ..., until no
+// request is refused.
 TEST_P(QueryMemory, refused_memory_changes_nothing) {
   WINNOW_TEST_NEEDS_EXCEPTIONS();
   const auto queries = this->queries();
@@ -169,7 +170,7 @@ TEST_P(QueryMemory, refused_memory_changes_nothing) {
                 memory_.outstanding());
       ASSERT_EQ(run(queries[q], buffers), Status::ok);
     }
-    EXPECT_TRUE(finished) << "the call never stopped asking for memory";
+    EXPECT_TRUE(finished) << "the call never stopped requesting memory";
     ASSERT_TRUE(world_.holds_its_objects());
   }
   HitBuffer hits;
@@ -194,7 +195,7 @@ TEST_P(QueryMemory, buffer_works_with_any_partition) {
     ASSERT_EQ(p.nearest(boxes_[0], 30, 1e9F, buffers.hits), Status::ok);
     EXPECT_TRUE(right_nearest(buffers.hits.hits(), boxes_[0], 30, 1e9F, objects, p));
     ASSERT_EQ(p.all(RayBatch(rays_), buffers.batch), Status::ok);
-    EXPECT_EQ(buffers.batch.questions(), rays_.size());
+    EXPECT_EQ(buffers.batch.queries(), rays_.size());
   }
 }
 

@@ -83,7 +83,7 @@ class Play {
         for (const Key& key : some_keys(random)) set_filter(key, random);
         break;
       default:
-        ask(step.kind, random);
+        run_query(step.kind, random);
     }
   }
 
@@ -120,7 +120,7 @@ class Play {
     return all;
   }
 
-  void ask(int kind, Random& random) {
+  void run_query(int kind, Random& random) {
     Filter filter;
     if (random.chance(0.5)) filter.mask = 1U + static_cast<std::uint32_t>(random.below(3));
     if (random.chance(0.3)) filter.layers = 1U + static_cast<std::uint32_t>(random.below(3));

@@ -1,6 +1,6 @@
-// Boxes that just touch a region, and boxes one unit in the last place away from it: exactly the
-// first ones overlap, although no float distinguishes the two. All coordinates are integers, so
-// that 64 bits hold every square and product.
+// Boxes that just touch a region overlap it, and boxes that are one unit farther out do not,
+// although the difference of their distances is below the precision of float. All coordinates are
+// integers, so that 64 bits suffice for every square and product.
 
 #include <winnow/partitions/partition.h>
 
@@ -27,10 +27,10 @@ Aabb box_from(std::int64_t x, std::int64_t y, std::int64_t z) {
 /// Boxes, and which of them overlap a region.
 struct Boxes {
   std::vector<Aabb> all;
-  std::vector<ObjectId> meeting;  // their indices
+  std::vector<ObjectId> overlapping;  // their indices
 
-  void add(const Aabb& box, bool meets) {
-    if (meets) meeting.push_back(static_cast<ObjectId>(all.size()));
+  void add(const Aabb& box, bool overlaps) {
+    if (overlaps) overlapping.push_back(static_cast<ObjectId>(all.size()));
     all.push_back(box);
   }
 };
@@ -45,7 +45,7 @@ void expect_overlap(const Boxes& boxes, const Region& region) {
     ASSERT_EQ(partition.overlap(region, buffer, {}, Order::canonical), Status::ok);
     std::vector<ObjectId> found(buffer.ids().begin(), buffer.ids().end());
     std::ranges::sort(found);
-    EXPECT_EQ(found, boxes.meeting);
+    EXPECT_EQ(found, boxes.overlapping);
   }
 }
 

@@ -13,7 +13,7 @@
 
 namespace winnow::test {
 
-/// Refuses requests beyond a total number of bytes in use.
+/// Refuses requests that would bring the bytes in use above a limit.
 class LimitedMemory final : public std::pmr::memory_resource {
  public:
   explicit LimitedMemory(std::size_t most) : left_(most) {}

@@ -1,5 +1,5 @@
 // Programs that tests of recordings run: sequences of all recorded calls of partitions, scenes,
-// queries, sensors and sweeps.
+// queries, sensors and impacts.
 
 #include "tests/recording/programs.h"
 
@@ -123,7 +123,7 @@ void query_overlaps(const RecordedPartition& partition) {
 
 void record_partition(Recorder& recorder, StructureKind structure, std::size_t count, int frames) {
   Random random(7);
-  RecordedPartition partition(recorder, structure, {.margin = {0.0F, 0.02F}});
+  RecordedPartition partition(recorder, structure, {.fat_margin = {0.0F, 0.02F}});
   RecordedPartition other(recorder, linear_bvh());
   Crowd crowd;
   Crowd others;
@@ -133,7 +133,7 @@ void record_partition(Recorder& recorder, StructureKind structure, std::size_t c
   PairBuffer cross;
   PairBuffer plain;
   PairEvents events;
-  PairEvents alone;
+  PairEvents events_only;
   for (int frame = 0; frame < frames; ++frame) {
     if (frame % 4 == 1) kill_some(partition, crowd, random);
     if (frame % 4 == 2)
@@ -154,7 +154,7 @@ void record_partition(Recorder& recorder, StructureKind structure, std::size_t c
     EXPECT_EQ(partition.self_pairs(pairs, events), Status::ok);
     EXPECT_EQ(partition.self_pairs(plain), Status::ok);
     if (frame % 3 == 0) {
-      EXPECT_EQ(partition.self_pairs(alone), Status::ok);
+      EXPECT_EQ(partition.self_pairs(events_only), Status::ok);
     }
     EXPECT_EQ(partition.pairs_with(other, cross), Status::ok);
     EXPECT_EQ(partition.self_pairs(cross, {.predicate = {kNotAlike, nullptr}}), Status::ok);
@@ -225,7 +225,7 @@ struct Landscape {
       Key key;
       EXPECT_EQ(scene.add({.shape = id,
                            .pose = world.random_pose(),
-                           .motion = moves ? Motion::dynamic : Motion::fixed},
+                           .state = moves ? BodyState::dynamic : BodyState::fixed},
                           key),
                 Status::ok);
     }
@@ -243,10 +243,10 @@ struct Landscape {
   std::vector<ShapeId> ids;
 };
 
-/// Changes of bodies other than motion.
+/// Changes of bodies other than poses.
 void change_bodies(RecordedScene& scene, SceneWorld& world, Landscape& landscape, int frame) {
   if (frame == 1) {
-    EXPECT_EQ(scene.set_motion(world.keys[0], Motion::sleeping), Status::ok);
+    EXPECT_EQ(scene.set_body_state(world.keys[0], BodyState::sleeping), Status::ok);
   }
   if (frame == 2) {
     EXPECT_EQ(scene.set_ignored(world.keys[1], world.keys[2]), Status::ok);
@@ -296,7 +296,7 @@ struct ModulusPredicate {
 };
 
 /// Casts rays and moving shapes.
-void cast_all(RecordedQueries& ask, SceneWorld& world, ShapeId shape, const Filter& filter) {
+void cast_all(RecordedQueries& queries, SceneWorld& world, ShapeId shape, const Filter& filter) {
   std::vector<ShapeRay> rays;
   for (int i = 0; i < 9; ++i) {
     const Pose from = world.random_pose();
@@ -309,60 +309,60 @@ void cast_all(RecordedQueries& ask, SceneWorld& world, ShapeId shape, const Filt
   }
   SceneHit hit;
   std::span<const SceneHit> hits;
-  EXPECT_EQ(ask.closest(rays[0], hit, filter), Status::ok);
-  EXPECT_EQ(ask.any(rays[1], hit, filter), Status::ok);
-  EXPECT_EQ(ask.all(rays[2], hits, filter), Status::ok);
+  EXPECT_EQ(queries.closest(rays[0], hit, filter), Status::ok);
+  EXPECT_EQ(queries.any(rays[1], hit, filter), Status::ok);
+  EXPECT_EQ(queries.all(rays[2], hits, filter), Status::ok);
   std::vector<Key> keys(rays.size());
   std::vector<double> ts(rays.size());
   std::vector<double> heights(rays.size());
   SceneHitColumns columns{
       .key = keys.data(), .t = ts.data(), .point = {nullptr, nullptr, heights.data()}};
-  EXPECT_EQ(ask.closest(ShapeRayBatch(rays), columns, filter), Status::ok);
+  EXPECT_EQ(queries.closest(ShapeRayBatch(rays), columns, filter), Status::ok);
   columns.key = nullptr;
-  EXPECT_EQ(ask.any(ShapeRayBatch(rays), columns, filter), Status::ok);
+  EXPECT_EQ(queries.any(ShapeRayBatch(rays), columns, filter), Status::ok);
   SceneHitLists lists;
-  EXPECT_EQ(ask.all(ShapeRayBatch(rays), lists, filter), Status::ok);
+  EXPECT_EQ(queries.all(ShapeRayBatch(rays), lists, filter), Status::ok);
   ShapeCast cast{shape, world.random_pose()};
   std::copy_n(rays[3].direction, 3, cast.direction);
-  EXPECT_EQ(ask.closest(cast, hit, filter), Status::ok);
-  EXPECT_EQ(ask.all(cast, hits, filter, 1e-3), Status::ok);
+  EXPECT_EQ(queries.closest(cast, hit, filter), Status::ok);
+  EXPECT_EQ(queries.all(cast, hits, filter, 1e-3), Status::ok);
   cast.touching = false;
-  EXPECT_EQ(ask.closest(cast, hit, filter), Status::ok);
-  EXPECT_EQ(ask.all(cast, hits, filter, 1e-3), Status::ok);
+  EXPECT_EQ(queries.closest(cast, hit, filter), Status::ok);
+  EXPECT_EQ(queries.all(cast, hits, filter, 1e-3), Status::ok);
   MotionCast turning{shape, RigidMotion::between(world.random_pose(), world.random_pose())};
-  EXPECT_EQ(ask.closest(turning, hit, filter), Status::ok);
-  EXPECT_EQ(ask.all(turning, hits, filter, 1e-3), Status::ok);
+  EXPECT_EQ(queries.closest(turning, hit, filter), Status::ok);
+  EXPECT_EQ(queries.all(turning, hits, filter, 1e-3), Status::ok);
   turning.touching = false;
-  EXPECT_EQ(ask.closest(turning, hit, filter), Status::ok);
-  EXPECT_EQ(ask.all(turning, hits, filter, 1e-3), Status::ok);
+  EXPECT_EQ(queries.closest(turning, hit, filter), Status::ok);
+  EXPECT_EQ(queries.all(turning, hits, filter, 1e-3), Status::ok);
 }
 
 /// Makes every kind of query of a scene.
-void query_all(RecordedQueries& ask, SceneWorld& world, ShapeId shape, const Filter& filter) {
-  cast_all(ask, world, shape, filter);
+void query_all(RecordedQueries& queries, SceneWorld& world, ShapeId shape, const Filter& filter) {
+  cast_all(queries, world, shape, filter);
   std::span<const SceneOverlap> bodies;
-  EXPECT_EQ(ask.overlap(shape, world.random_pose(), bodies, filter), Status::ok);
+  EXPECT_EQ(queries.overlap(shape, world.random_pose(), bodies, filter), Status::ok);
   const std::span<const Key> keys(world.keys);
   SceneDistance gap;
-  EXPECT_EQ(ask.distance(keys[0], keys[1], gap), Status::ok);
-  EXPECT_EQ(ask.distance(keys[0], keys[2], gap, 1e-3), Status::ok);
+  EXPECT_EQ(queries.distance(keys[0], keys[1], gap), Status::ok);
+  EXPECT_EQ(queries.distance(keys[0], keys[2], gap, 1e-3), Status::ok);
   SetDistance least;
-  EXPECT_EQ(ask.least_distance(keys.first(5), keys.last(9), least), Status::ok);
-  EXPECT_EQ(ask.least_distance(keys.first(1), keys.subspan(1, 1), least, 1e-3), Status::ok);
+  EXPECT_EQ(queries.least_distance(keys.first(5), keys.last(9), least), Status::ok);
+  EXPECT_EQ(queries.least_distance(keys.first(1), keys.subspan(1, 1), least, 1e-3), Status::ok);
   std::span<const KeyPair> pairs;
-  EXPECT_EQ(ask.overlaps(keys.first(9), keys.last(9), pairs), Status::ok);
-  EXPECT_EQ(ask.overlaps(keys, keys, pairs, 2), Status::ok);
-  EXPECT_EQ(ask.distance(keys[0], keys[1], gap, 9.0, PairRules::none), Status::ok);
-  EXPECT_EQ(ask.least_distance(keys.first(5), keys.last(9), least, 9.0, PairRules::none),
+  EXPECT_EQ(queries.overlaps(keys.first(9), keys.last(9), pairs), Status::ok);
+  EXPECT_EQ(queries.overlaps(keys, keys, pairs, 2), Status::ok);
+  EXPECT_EQ(queries.distance(keys[0], keys[1], gap, 9.0, PairRules::none), Status::ok);
+  EXPECT_EQ(queries.least_distance(keys.first(5), keys.last(9), least, 9.0, PairRules::none),
             Status::ok);
   for (const PairRules rules : {PairRules::scene, PairRules::none}) {
-    EXPECT_EQ(ask.overlaps(keys.first(9), keys.last(9), pairs, 9, rules), Status::ok);
+    EXPECT_EQ(queries.overlaps(keys.first(9), keys.last(9), pairs, 9, rules), Status::ok);
     KeyPair pair;
-    EXPECT_EQ(ask.any_contact(keys.first(9), keys.last(9), pair, 0.5, rules), Status::ok);
-    EXPECT_EQ(ask.any_contact(pair, 0.0, rules), Status::ok);
+    EXPECT_EQ(queries.any_contact(keys.first(9), keys.last(9), pair, 0.5, rules), Status::ok);
+    EXPECT_EQ(queries.any_contact(pair, 0.0, rules), Status::ok);
   }
   std::span<const SceneDistance> near;
-  EXPECT_EQ(ask.nearest(world.random_pose().position, 4, 9.0, near, filter), Status::ok);
+  EXPECT_EQ(queries.nearest(world.random_pose().position, 4, 9.0, near, filter), Status::ok);
 }
 
 }  // namespace
@@ -404,8 +404,8 @@ class Watch {
   std::vector<Key> keys_;
 };
 
-/// Sweeps bodies along x, by end poses or by motions; some are bullets.
-void sweep_all(RecordedSweep& sweep, const SceneWorld& world, bool by_motions) {
+/// Finds impacts of bodies that move along x, by end poses or by motions; some are bullets.
+void find_all_impacts(RecordedContinuousCollision& ccd, const SceneWorld& world, bool by_motions) {
   std::vector<Pose> ends;
   std::vector<RigidMotion> motions;
   std::vector<std::uint8_t> bullets;
@@ -416,8 +416,10 @@ void sweep_all(RecordedSweep& sweep, const SceneWorld& world, bool by_motions) {
     motions.push_back(RigidMotion::between(body.pose, end));
     bullets.push_back(bullets.size() % 3 == 0 ? 1 : 0);
   }
-  const SweepOptions options{SweepPairs::bullets_and_fixed, bullets, 1e-5, false, by_motions};
-  EXPECT_EQ(by_motions ? sweep.sweep(world.keys, motions, options) : sweep.sweep(world.keys, ends),
+  const ContinuousOptions options{ContinuousPairs::bullets_and_fixed, bullets, 1e-5, false,
+                                  by_motions};
+  EXPECT_EQ(by_motions ? ccd.find_impacts(world.keys, motions, options)
+                       : ccd.find_impacts(world.keys, ends),
             Status::ok);
 }
 
@@ -451,10 +453,10 @@ void record_scene(Recorder& recorder, std::size_t count, int frames, const Scene
     EXPECT_EQ(scene.add({.shape = shape, .pose = Pose::at(0.3, 0.2, -0.9)}, ground_key),
               Status::ok);
   }
-  EXPECT_EQ(scene.add({.shape = ground_id, .motion = Motion::fixed}, ground_key), Status::ok);
+  EXPECT_EQ(scene.add({.shape = ground_id, .state = BodyState::fixed}, ground_key), Status::ok);
   Contacts contacts;
-  RecordedQueries ask(scene);
-  RecordedSweep sweep(scene);
+  RecordedQueries queries(scene);
+  RecordedContinuousCollision ccd(scene);
   const ShapeId watching[] = {world.shapes[0], landscape.ids[0], round[0], landscape.ids[3]};
   Watch watch(scene, watching);
   ModulusPredicate predicate;
@@ -469,9 +471,9 @@ void record_scene(Recorder& recorder, std::size_t count, int frames, const Scene
     if (frame == 2 || frame == 4) scene.set_predicate(predicate.pairs());
     if (frame == 6) scene.set_predicate({});
     const ShapeId by_frame[] = {world.shapes[1], round[1], landscape.ids[3], landscape.ids[0]};
-    query_all(ask, world, by_frame[frame % 4], frame % 2 == 0 ? Filter{} : predicate.bodies());
+    query_all(queries, world, by_frame[frame % 4], frame % 2 == 0 ? Filter{} : predicate.bodies());
     const auto level = frame == 6 ? ContactLevel::distance : ContactLevel::manifold;
-    sweep_all(sweep, world, frame % 2 == 1);
+    find_all_impacts(ccd, world, frame % 2 == 1);
     EXPECT_EQ(scene.collide(level, contacts), Status::ok);
     watch.look(world, frame);
     if (frame == 3 || frame == 5) load_again(scene, contacts);

@@ -58,11 +58,11 @@ TEST(ProgramRecordings, all_volumes_are_replayed_bit_identical) {
 }
 
 TEST(ProgramRecordings, scenes_are_replayed_bit_identical) {
-  for (const double carry_over : {0.0, 0.02}) {
+  for (const double cache_tolerance : {0.0, 0.02}) {
     Bytes8 bytes;
     Recorder recorder(kept_in(bytes));
     record_scene(recorder, scaled(300), 8,
-                 {.margin = 0.02, .carry_over = carry_over, .warm_start = true});
+                 {.contact_margin = 0.02, .cache_tolerance = cache_tolerance, .warm_start = true});
     ASSERT_EQ(recorder.close(), Status::ok);
     expect_same_everywhere(bytes);
   }
@@ -123,20 +123,20 @@ struct RecordedRow : Row {
       : scene(recorder, shapes, options) {
     EXPECT_EQ(scene.add(bodies, keys), Status::ok);
   }
-  void ask(Contacts& contacts, Status expected = Status::ok) {
-    EXPECT_EQ(scene.move(keys[0], Pose::at(0, asked++ % 2 == 0 ? 0 : 9, 0)), Status::ok);
+  void step(Contacts& contacts, Status expected = Status::ok) {
+    EXPECT_EQ(scene.move(keys[0], Pose::at(0, steps++ % 2 == 0 ? 0 : 9, 0)), Status::ok);
     EXPECT_EQ(scene.collide(ContactLevel::manifold, contacts), expected);
   }
 
   RecordedScene scene;
-  int asked = 0;
+  int steps = 0;
 };
 
 TEST(ProgramRecordings, contacts_shared_by_two_scenes_are_replayed) {
   Bytes8 bytes;
   Recorder recorder(kept_in(bytes));
   {
-    RecordedRow one(recorder, {.carry_over = 0.02, .warm_start = true});
+    RecordedRow one(recorder, {.cache_tolerance = 0.02, .warm_start = true});
     RecordedRow other(recorder);
     Contacts contacts;
     for (int i = 0; i < 3; ++i) {
@@ -156,9 +156,9 @@ TEST(ProgramRecordings, change_back_to_earlier_contacts_ends_the_recording) {
   RecordedRow row(recorder);
   Contacts one;
   Contacts other;
-  for (Contacts* contacts : {&one, &one, &other, &other}) row.ask(*contacts);
+  for (Contacts* contacts : {&one, &one, &other, &other}) row.step(*contacts);
   EXPECT_EQ(recorder.status(), Status::ok);  // the second contacts were empty
-  row.ask(one);
+  row.step(one);
   EXPECT_EQ(one.size(), 29U);
   EXPECT_EQ(recorder.close(), Status::unsupported);
   RecordingPlayer player(bytes);
@@ -174,12 +174,12 @@ TEST(ProgramRecordings, loaded_contacts_end_the_recording) {
     Contacts contacts;
     Contacts others;
     Contacts& loaded = into_others ? others : contacts;
-    row.ask(contacts);
+    row.step(contacts);
     Column<std::byte> saved(std::pmr::get_default_resource());
     ASSERT_EQ(row.scene->save_contacts(contacts, saved), Status::ok);
     ASSERT_EQ(row.scene->load_contacts({saved.data(), saved.size()}, loaded), Status::ok);
     EXPECT_EQ(recorder.status(), Status::ok);
-    row.ask(loaded);
+    row.step(loaded);
     EXPECT_EQ(loaded.size(), 28U);
     EXPECT_EQ(recorder.status(), Status::unsupported);
   }
@@ -212,9 +212,9 @@ TEST(ProgramRecordings, predicates_after_a_refused_query_are_replayed) {
       CountingMemory memory;
       Contacts contacts(&memory);
       memory.refuse_after(0);
-      row.ask(contacts, Status::out_of_memory);  // after all pairs were tested
+      row.step(contacts, Status::out_of_memory);  // after all pairs were tested
       memory.grant_all();
-      row.asked = 0;
+      row.steps = 0;
       if (then == Then::another_predicate) row.scene.set_predicate(most.predicate());
       if (then == Then::another_body) {
         ASSERT_EQ(row.scene.remove(row.keys[4]), Status::ok);
@@ -222,7 +222,7 @@ TEST(ProgramRecordings, predicates_after_a_refused_query_are_replayed) {
         ASSERT_EQ(row.scene.add(row.bodies[4], key), Status::ok);
         all.out[key.id] = true;
       }
-      row.ask(contacts);
+      row.step(contacts);
       EXPECT_EQ(contacts.size(), then == Then::queried_again ? 29U : 27U);
     }
     ASSERT_EQ(recorder.close(), Status::ok);
@@ -244,15 +244,15 @@ TEST(ProgramRecordings, composites_without_a_body_are_replayed) {
   Bytes8 bytes;
   Recorder recorder(kept_in(bytes));
   {
-    RecordedScene scene(recorder, row.shapes, composites, {.carry_over = 0.01});
+    RecordedScene scene(recorder, row.shapes, composites, {.cache_tolerance = 0.01});
     Key key;
-    ASSERT_EQ(scene.add({.shape = floor, .motion = Motion::fixed}, key), Status::ok);
+    ASSERT_EQ(scene.add({.shape = floor, .state = BodyState::fixed}, key), Status::ok);
     ASSERT_EQ(scene.add({.shape = row.ball, .pose = Pose::at(0, 0, 0.5)}, key), Status::ok);
     Contacts contacts;
-    std::vector<std::size_t> carried;
+    std::vector<std::size_t> cached_pairs;
     const auto collide = [&] {
       EXPECT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
-      carried.push_back(contacts.carried());
+      cached_pairs.push_back(contacts.cached_pairs());
     };
     collide();
     collide();
@@ -263,7 +263,7 @@ TEST(ProgramRecordings, composites_without_a_body_are_replayed) {
     collide();
     collide();
     // If a pool has changed, contacts of composite shapes are recomputed.
-    EXPECT_EQ(carried, (std::vector<std::size_t>{0, 1, 0, 1, 0, 1}));
+    EXPECT_EQ(cached_pairs, (std::vector<std::size_t>{0, 1, 0, 1, 0, 1}));
   }
   ASSERT_EQ(recorder.close(), Status::ok);
   expect_same_everywhere(bytes);
@@ -284,11 +284,11 @@ TEST(ProgramRecordings, queries_of_several_threads_are_replayed) {
     std::vector<std::thread> threads;
     for (std::size_t thread = 0; thread < 4; ++thread) {
       threads.emplace_back([&, thread] {
-        RecordedQueries ask(scene);
+        RecordedQueries queries(scene);
         for (std::size_t i = 0; i < own.size(); ++i) {
           std::span<const SceneOverlap> found;
           const Pose pose = Pose::at(0.7 * static_cast<double>(thread + i), 0.3, 0);
-          EXPECT_EQ(ask.overlap(own[(7 * thread + i) % own.size()], pose, found), Status::ok);
+          EXPECT_EQ(queries.overlap(own[(7 * thread + i) % own.size()], pose, found), Status::ok);
         }
       });
     }
@@ -316,14 +316,14 @@ TEST(ProgramRecordings, queries_by_scene_rules_record_the_predicate) {
       std::vector<std::thread> threads;
       for (std::size_t thread = 0; thread < 4; ++thread) {
         threads.emplace_back([&, thread] {
-          RecordedQueries ask(scene);
+          RecordedQueries queries(scene);
           for (std::size_t i = 0; i + 4 < row.keys.size(); ++i) {
             const std::span<const Key> some(row.keys.data() + i, thread + 1);
             std::span<const KeyPair> pairs;
-            EXPECT_EQ(ask.overlaps(some, row.keys, pairs), Status::ok);
+            EXPECT_EQ(queries.overlaps(some, row.keys, pairs), Status::ok);
             KeyPair pair;
-            EXPECT_EQ(ask.any_contact(some, row.keys, pair, 0.3), Status::ok);
-            EXPECT_EQ(ask.any_contact(pair), Status::ok);
+            EXPECT_EQ(queries.any_contact(some, row.keys, pair, 0.3), Status::ok);
+            EXPECT_EQ(queries.any_contact(pair), Status::ok);
           }
         });
       }
@@ -347,12 +347,12 @@ TEST(ProgramRecordings, version_3_ignores_scene_rules_in_queries) {
     ASSERT_EQ(scene.add(row.bodies, row.keys), Status::ok);
     ASSERT_EQ(scene.set_ignored(row.keys[0], row.keys[1]), Status::ok);
     ASSERT_EQ(scene.refresh(), Status::ok);
-    RecordedQueries ask(scene);
+    RecordedQueries queries(scene);
     SceneDistance gap;
-    EXPECT_EQ(ask.distance(row.keys[0], row.keys[1], gap, 9.0, PairRules::none), Status::ok);
+    EXPECT_EQ(queries.distance(row.keys[0], row.keys[1], gap, 9.0, PairRules::none), Status::ok);
     EXPECT_TRUE(gap);
     std::span<const KeyPair> pairs;
-    EXPECT_EQ(ask.overlaps(row.keys, row.keys, pairs, 99, PairRules::none), Status::ok);
+    EXPECT_EQ(queries.overlaps(row.keys, row.keys, pairs, 99, PairRules::none), Status::ok);
   }
   ASSERT_EQ(recorder.close(), Status::ok);
   expect_same_everywhere(as_version(bytes, 3));
@@ -371,23 +371,23 @@ TEST(ProgramRecordings, queries_allocate_only_in_queries_and_recorder) {
   Bytes8 bytes;
   CountingMemory of_scene;
   CountingMemory of_recorder;
-  CountingMemory of_questions;
+  CountingMemory of_queries;
   Recorder recorder(kept_in(bytes), &of_recorder);
   {
     RecordedScene scene(recorder, row.shapes, composites, {.memory = &of_scene});
     ASSERT_EQ(scene.add(row.bodies, row.keys), Status::ok);
     ASSERT_EQ(scene.refresh(), Status::ok);
-    RecordedQueries ask(scene, &of_questions);
+    RecordedQueries queries(scene, &of_queries);
     std::span<const SceneOverlap> found;
     // The first query allocates the memory that all queries share.
-    ASSERT_EQ(ask.queries().overlap(row.ball, Pose{}, found), Status::ok);
+    ASSERT_EQ(queries.queries().overlap(row.ball, Pose{}, found), Status::ok);
     const std::size_t before = of_scene.requests();
     for (const ShapeId shape : {floor, box}) {
-      EXPECT_EQ(ask.overlap(shape, Pose{}, found), Status::ok);
+      EXPECT_EQ(queries.overlap(shape, Pose{}, found), Status::ok);
       EXPECT_GT(found.size(), 0U);
     }
     EXPECT_EQ(of_scene.requests(), before);
-    EXPECT_GT(of_questions.requests(), 0U);
+    EXPECT_GT(of_queries.requests(), 0U);
   }
   ASSERT_EQ(recorder.close(), Status::ok);
   expect_same_everywhere(bytes);
@@ -401,15 +401,15 @@ TEST(ProgramRecordings, refused_queries_are_not_recorded) {
   ASSERT_EQ(scene.add(row.bodies, row.keys), Status::ok);
   ASSERT_EQ(scene.refresh(), Status::ok);
   ASSERT_EQ(scene.move(row.keys[0], Pose::at(0, 9, 0)), Status::ok);
-  RecordedQueries ask(scene);
+  RecordedQueries queries(scene);
   const std::uint64_t before = recorder.calls();
   SceneHit hit;
-  EXPECT_EQ(ask.closest(ShapeRay{}, hit), Status::invalid_argument);  // not refreshed
+  EXPECT_EQ(queries.closest(ShapeRay{}, hit), Status::invalid_argument);  // not refreshed
   ASSERT_EQ(scene.refresh(), Status::ok);
   std::span<const SceneOverlap> found;
-  EXPECT_EQ(ask.overlap(ShapeId{}, Pose{}, found), Status::invalid_key);
+  EXPECT_EQ(queries.overlap(ShapeId{}, Pose{}, found), Status::invalid_key);
   SceneDistance gap;
-  EXPECT_EQ(ask.distance(row.keys[0], Key{}, gap), Status::invalid_key);
+  EXPECT_EQ(queries.distance(row.keys[0], Key{}, gap), Status::invalid_key);
   EXPECT_EQ(recorder.calls(), before + 1);
   EXPECT_EQ(recorder.status(), Status::ok);
   SupportShape egg;
@@ -419,7 +419,7 @@ TEST(ProgramRecordings, refused_queries_are_not_recorded) {
   };
   ShapeId function;
   ASSERT_EQ(row.shapes.add(egg, function), Status::ok);
-  EXPECT_EQ(ask.overlap(function, Pose{}, found), Status::ok);
+  EXPECT_EQ(queries.overlap(function, Pose{}, found), Status::ok);
   EXPECT_EQ(recorder.status(), Status::unsupported);
 }
 
@@ -467,7 +467,7 @@ TEST(ProgramRecordings, loaded_scene_is_replayed) {
   Column<std::byte> bodies(std::pmr::get_default_resource());
   Column<std::byte> touching(std::pmr::get_default_resource());
   {
-    Scene before(pile.pool, {.carry_over = 0.05, .warm_start = true});
+    Scene before(pile.pool, {.cache_tolerance = 0.05, .warm_start = true});
     pile.add_to(before);
     Contacts contacts;
     ASSERT_EQ(before.collide(ContactLevel::manifold, contacts), Status::ok);
@@ -478,7 +478,7 @@ TEST(ProgramRecordings, loaded_scene_is_replayed) {
   Bytes8 bytes;
   Recorder recorder(kept_in(bytes));
   {
-    RecordedScene scene(recorder, pile.pool, {.carry_over = 0.05, .warm_start = true});
+    RecordedScene scene(recorder, pile.pool, {.cache_tolerance = 0.05, .warm_start = true});
     Key key;
     ASSERT_EQ(scene.add({.shape = pile.ball}, key), Status::ok);
     Contacts contacts;
@@ -487,7 +487,7 @@ TEST(ProgramRecordings, loaded_scene_is_replayed) {
     ASSERT_EQ(scene.load_contacts({touching.data(), touching.size()}, contacts), Status::ok);
     ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
     EXPECT_EQ(contacts.size(), 3U);
-    EXPECT_EQ(contacts.carried(), 3U);
+    EXPECT_EQ(contacts.cached_pairs(), 3U);
     EXPECT_EQ(contacts.event()[0], ContactEvent::persisted);
     ASSERT_EQ(scene.load({bodies.data(), bodies.size()}), Status::ok);
     ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
@@ -499,18 +499,18 @@ TEST(ProgramRecordings, loaded_scene_is_replayed) {
   expect_same_everywhere(bytes);
 }
 
-TEST(ProgramRecordings, sensors_and_sweeps_are_replayed_bit_identical) {
+TEST(ProgramRecordings, sensors_and_impacts_are_replayed_bit_identical) {
   Pile pile;
   Bytes8 bytes;
   Recorder recorder(kept_in(bytes));
   {
     RecordedScene scene(recorder, pile.pool);
     pile.add_to(scene);
-    RecordedSweep sweep(scene);
+    RecordedContinuousCollision ccd(scene);
     const Pose end[] = {Pose::at(0.2, 0, 3.0)};
-    ASSERT_EQ(sweep.sweep(std::span(pile.keys + 2, 1), end), Status::ok);
-    EXPECT_GT(sweep->impacts().size(), 0U);
-    EXPECT_EQ(sweep.sweep(pile.keys, end), Status::size_mismatch);
+    ASSERT_EQ(ccd.find_impacts(std::span(pile.keys + 2, 1), end), Status::ok);
+    EXPECT_GT(ccd->impacts().size(), 0U);
+    EXPECT_EQ(ccd.find_impacts(pile.keys, end), Status::size_mismatch);
     RecordedSensors sensors(scene);
     {
       RecordedSensors others(scene);
@@ -536,17 +536,17 @@ TEST(ProgramRecordings, sensors_and_sweeps_are_replayed_bit_identical) {
 }
 
 TEST(ProgramRecordings, unknown_versions_and_newer_calls_are_refused) {
-  Bytes8 asking;
+  Bytes8 newest;
   {
-    Recorder recorder(kept_in(asking));
-    record_scene(recorder, 40, 1, {.margin = 0.02});
+    Recorder recorder(kept_in(newest));
+    record_scene(recorder, 40, 1, {.contact_margin = 0.02});
   }
   for (const std::uint32_t version : {0U, kRecordingVersion + 1, ~0U}) {
-    const Bytes8 bytes = as_version(asking, version);
+    const Bytes8 bytes = as_version(newest, version);
     EXPECT_EQ(RecordingPlayer(bytes).status(), Status::invalid_argument);
   }
   for (const std::uint32_t too_old : {1U, 2U, 3U}) {
-    const Bytes8 bytes = as_version(asking, too_old);
+    const Bytes8 bytes = as_version(newest, too_old);
     RecordingPlayer player(bytes);
     EXPECT_EQ(player.play_all(), Status::invalid_argument);
     EXPECT_GT(player.calls(), 0U);
@@ -607,7 +607,7 @@ TEST(ProgramRecordings, difference_from_the_recording_is_reported) {
   ASSERT_EQ(recorder.close(), Status::ok);
   const float one = 1.0F;
   const float none = 0.5F;
-  // The upper end of the first box, and then the digest of the block.
+  // Moves the first box in the recorded bytes. Then seal() writes the correct digest of the block.
   auto* const block = bytes.data() + 32;
   const auto size = bytes.size() - 48;
   float bounds[12];
@@ -652,7 +652,7 @@ TEST(ProgramRecordings, untrusted_recordings_are_read_or_refused) {
   Bytes8 scenes;
   {
     Recorder recorder(kept_in(scenes));
-    record_scene(recorder, 40, 7, {.margin = 0.02, .carry_over = 0.02});
+    record_scene(recorder, 40, 7, {.contact_margin = 0.02, .cache_tolerance = 0.02});
   }
   play_mutated(scenes, scaled(400));
 }

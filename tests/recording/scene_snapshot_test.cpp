@@ -89,7 +89,7 @@ void add_composites(Stage& stage, std::vector<ShapeId>& ids) {
   EXPECT_EQ(stage.composites.add_compound(surfaces, ids.emplace_back()), Status::ok);
 }
 
-/// Adds shapes of every kind, some with free places before them.
+/// Adds shapes of every kind. Some have free slots before them.
 std::vector<ShapeId> add_shapes(Stage& stage) {
   SceneWorld world(1);
   std::vector<ShapeId> ids;
@@ -142,8 +142,8 @@ std::vector<Key> keys_of(const Scene& scene) {
   return keys;
 }
 
-/// Makes small changes of many kinds, selected by a number.
-void happen(Scene& scene, Random& random, int number) {
+/// Makes small changes of many kinds, which depend on `number` and on random numbers.
+void change_scene(Scene& scene, Random& random, int number) {
   const std::vector<Key> keys = keys_of(scene);
   const auto key = [&](std::size_t i) { return keys[(i * 7 + 3) % keys.size()]; };
   BodyDefinition body;
@@ -160,9 +160,9 @@ void happen(Scene& scene, Random& random, int number) {
   body.pose = pose_in(random);
   Key added;
   EXPECT_EQ(scene.add(body, added), Status::ok);
-  const Motion motions[] = {Motion::sleeping, Motion::dynamic, Motion::fixed};
+  const BodyState states[] = {BodyState::sleeping, BodyState::dynamic, BodyState::fixed};
   for (std::size_t i = 2; i < 8; ++i) {
-    EXPECT_EQ(scene.set_motion(key(n + i), motions[(n + i) % 3]), Status::ok);
+    EXPECT_EQ(scene.set_body_state(key(n + i), states[(n + i) % 3]), Status::ok);
   }
   EXPECT_EQ(scene.set_ignored(key(n + 9), key(n + 10)), Status::ok);
   EXPECT_EQ(scene.set_filter(key(n + 11), {.layers = 2, .mask = ~2U}), Status::ok);
@@ -174,7 +174,7 @@ void happen(Scene& scene, Random& random, int number) {
 }
 
 /// Returns a digest of all contacts and of some queries.
-std::uint64_t told(Stage& stage, ContactLevel level, SceneQueries& queries) {
+std::uint64_t frame_digest(Stage& stage, ContactLevel level, SceneQueries& queries) {
   Digest digest;
   EXPECT_EQ(stage.scene.collide(level, stage.contacts), Status::ok);
   add_to(digest, stage.contacts);
@@ -192,19 +192,19 @@ std::uint64_t told(Stage& stage, ContactLevel level, SceneQueries& queries) {
 }
 
 /// Continues for some frames; the changes depend only on numbers.
-std::vector<std::uint64_t> go_on(Stage& stage, SceneQueries& queries) {
+std::vector<std::uint64_t> continue_frames(Stage& stage, SceneQueries& queries) {
   Random random(9);
   std::vector<std::uint64_t> all;
   for (int frame = 0; frame < 6; ++frame) {
-    if (frame % 3 != 0) happen(stage.scene, random, frame);
+    if (frame % 3 != 0) change_scene(stage.scene, random, frame);
     const auto level = frame == 4 ? ContactLevel::distance : ContactLevel::manifold;
-    all.push_back(told(stage, level, queries));
+    all.push_back(frame_digest(stage, level, queries));
   }
   return all;
 }
 
 /// Runs a scene for some frames and stops in the middle of a frame.
-void live(Stage& stage, std::size_t count) {
+void run_frames(Stage& stage, std::size_t count) {
   Random random(4);
   const std::vector<ShapeId> shapes = add_shapes(stage);
   std::vector<BodyDefinition> bodies(count);
@@ -216,31 +216,34 @@ void live(Stage& stage, std::size_t count) {
     const bool is_land = bodies[i].shape.kind_index() == 7 ||
                          (bodies[i].shape.is_composite() &&
                           bodies[i].shape.composite_kind() != CompositeKind::compound);
-    bodies[i].motion = is_land ? Motion::fixed : Motion::dynamic;
+    bodies[i].state = is_land ? BodyState::fixed : BodyState::dynamic;
   }
   EXPECT_EQ(stage.scene.add(bodies, keys), Status::ok);
   SceneQueries queries(stage.scene);
   for (int frame = 0; frame < 4; ++frame) {
-    happen(stage.scene, random, frame);
-    (void)told(stage, ContactLevel::manifold, queries);
+    change_scene(stage.scene, random, frame);
+    (void)frame_digest(stage, ContactLevel::manifold, queries);
   }
   EXPECT_EQ(stage.scene.move(keys_of(stage.scene)[2], pose_in(random)), Status::ok);
 }
 
 std::vector<SceneOptions> kinds_of_scenes() {
   return {{},
-          {.margin = 0.05, .carry_over = 0.01, .contact_reduction = true, .warm_start = true},
+          {.contact_margin = 0.05,
+           .cache_tolerance = 0.01,
+           .contact_reduction = true,
+           .warm_start = true},
           {.suppress_ghost_contacts = true}};
 }
 
 TEST(SceneSnapshots, loaded_scene_continues_bit_identical) {
   for (const SceneOptions& options : kinds_of_scenes()) {
     Stage first(options);
-    live(first, scaled(150));
+    run_frames(first, scaled(150));
     const std::vector<Key> keys = keys_of(first.scene);
     const SavedStage saved = first.save();
     SceneQueries queries(first.scene);
-    const std::vector<std::uint64_t> future = go_on(first, queries);
+    const std::vector<std::uint64_t> future = continue_frames(first, queries);
     // Goes back to the saved state in place; the queries still use the scene.
     first.load(saved);
     EXPECT_EQ(keys_of(first.scene), keys);
@@ -248,7 +251,7 @@ TEST(SceneSnapshots, loaded_scene_continues_bit_identical) {
     const SavedStage again = first.save();
     first.load(again);
     EXPECT_TRUE(first.save() == again);
-    EXPECT_TRUE(go_on(first, queries) == future);
+    EXPECT_TRUE(continue_frames(first, queries) == future);
     for (const Isa isa : available_isas()) {
       const IsaScope scope(isa);
       for (const int threads : {1, 2}) {
@@ -258,8 +261,9 @@ TEST(SceneSnapshots, loaded_scene_continues_bit_identical) {
         SavedStage of_other = other.save();
         of_other.scene = saved.scene;
         EXPECT_TRUE(of_other == saved);
-        SceneQueries asked(other.scene);
-        EXPECT_TRUE(go_on(other, asked) == future) << to_string(isa) << " " << threads;
+        SceneQueries other_queries(other.scene);
+        EXPECT_TRUE(continue_frames(other, other_queries) == future)
+            << to_string(isa) << " " << threads;
       }
     }
   }
@@ -267,7 +271,7 @@ TEST(SceneSnapshots, loaded_scene_continues_bit_identical) {
 
 TEST(SceneSnapshots, loads_never_give_a_key_twice) {
   Stage stage(kinds_of_scenes()[0]);
-  live(stage, 40);
+  run_frames(stage, 40);
   const std::vector<Key> keys = keys_of(stage.scene);
   const SavedStage saved = stage.save();
   std::vector<Key> given;
@@ -289,18 +293,18 @@ TEST(SceneSnapshots, loads_never_give_a_key_twice) {
 
 TEST(SceneSnapshots, contacts_are_saved_only_for_their_scene) {
   Stage stage(kinds_of_scenes()[1]);
-  live(stage, 60);
+  run_frames(stage, 60);
   const SavedStage saved = stage.save();
-  Contacts strange;
+  Contacts foreign;
   Column<std::byte> bytes(std::pmr::get_default_resource());
-  EXPECT_EQ(stage.scene.save_contacts(strange, bytes), Status::invalid_key);
+  EXPECT_EQ(stage.scene.save_contacts(foreign, bytes), Status::invalid_key);
   EXPECT_TRUE(bytes.empty());
-  EXPECT_EQ(stage.scene.load_contacts(saved.contacts, strange), Status::ok);
-  EXPECT_EQ(strange.size(), stage.contacts.size());
+  EXPECT_EQ(stage.scene.load_contacts(saved.contacts, foreign), Status::ok);
+  EXPECT_EQ(foreign.size(), stage.contacts.size());
   EXPECT_EQ(stage.scene.remove(keys_of(stage.scene)[0]), Status::ok);
-  EXPECT_EQ(stage.scene.load_contacts(saved.contacts, strange), Status::invalid_argument);
-  EXPECT_EQ(strange.size(), stage.contacts.size());
-  // Bodies whose shapes are not in the pools.
+  EXPECT_EQ(stage.scene.load_contacts(saved.contacts, foreign), Status::invalid_argument);
+  EXPECT_EQ(foreign.size(), stage.contacts.size());
+  // A snapshot of bodies whose shapes are not in the pools is rejected.
   Stage empty({});
   EXPECT_EQ(empty.scene.load(saved.scene), Status::invalid_argument);
   EXPECT_EQ(empty.composites.load(saved.composites), Status::invalid_argument);
@@ -314,7 +318,7 @@ void use(Stage& stage) {
   for (const auto level : {ContactLevel::manifold, ContactLevel::distance}) {
     const Status status = stage.scene.collide(level, stage.contacts);
     EXPECT_TRUE(status == Status::ok || status == Status::out_of_memory);
-    if (stage.scene.size() > 20) happen(stage.scene, random, 1);
+    if (stage.scene.size() > 20) change_scene(stage.scene, random, 1);
   }
   std::span<const SceneHit> hits;
   (void)queries.all(ShapeRay{{-1, 2, 2}, {1, 0.05, 0.02}}, hits);
@@ -337,7 +341,7 @@ TEST(SceneSnapshots, removed_tier_loads_as_robust) {
 
 TEST(SceneSnapshots, untrusted_snapshots_are_read_or_refused) {
   Stage first(kinds_of_scenes()[1]);
-  live(first, 40);
+  run_frames(first, 40);
   const SavedStage good = first.save();
   Random random(3);
   std::size_t refused = 0;
@@ -364,7 +368,8 @@ TEST(SceneSnapshots, untrusted_snapshots_are_read_or_refused) {
       ++refused;
       continue;
     }
-    // After loading a pool, everything that uses it must be loaded too.
+    // After a pool was loaded, the scene, and the composite pool if the shape pool was loaded, must
+    // be loaded too.
     const bool holds =
         i % 4 > 1 || ((i % 4 == 1 || stage->composites.load(good.composites) == Status::ok) &&
                       stage->scene.load(good.scene) == Status::ok);

@@ -80,7 +80,7 @@ std::vector<std::uint64_t> go_on(Partition& partition) {
 
 /// Returns a partition with a history of inserted, removed and filtered objects.
 Partition with_past(StructureKind structure, Volume volume, std::vector<Key>& keys) {
-  Partition partition(structure, {.volume = volume, .margin = {0.01F, 0.02F}});
+  Partition partition(structure, {.volume = volume, .fat_margin = {0.01F, 0.02F}});
   const std::vector<Aabb> boxes = uniform_boxes(structure.name() == "NSquared" ? 60 : scaled(800));
   keys.resize(boxes.size());
   EXPECT_EQ(partition.insert(boxes, {}, keys), Status::ok);
@@ -168,8 +168,8 @@ TEST(Snapshots, inverted_boxes_are_refused) {
   }
 }
 
-// New keys of every loaded partition, in place or not, differ from all keys that were given after
-// the save.
+// New keys of a partition that was loaded in place, or into another partition, differ from all keys
+// that were issued after the save.
 TEST(Snapshots, loads_never_give_a_key_twice) {
   const Aabb box{{1, 1, 1}, {3, 3, 3}};
   std::vector<Key> keys;
@@ -282,8 +282,7 @@ TEST(Snapshots, loaded_mesh_answers_bit_identical) {
   EXPECT_EQ(mesh.triangles(), 0U);
 }
 
-/// Loads mutated snapshots, most of which have a valid digest; `load` returns whether one was
-/// accepted.
+/// Loads mutated snapshots, most of which have a valid digest. `load` returns the status of a load.
 template <typename Load>
 void load_mutated(const Column<std::byte>& good, std::size_t count, const Load& load) {
   Random random(3);
@@ -297,9 +296,8 @@ void load_mutated(const Column<std::byte>& good, std::size_t count, const Load& 
   EXPECT_GT(refused, count / 16);
 }
 
-/// Queries and changes a partition with unknown content: boxes may be near the ends of the float
-/// range.
-void ask(Partition& partition) {
+/// Queries and changes a partition that was loaded from a mutated snapshot.
+void query_and_change(Partition& partition) {
   PairBuffer pairs;
   HitBuffer hits;
   Key key;
@@ -327,7 +325,7 @@ TEST(Snapshots, untrusted_snapshots_are_read_or_refused) {
       if (status != Status::ok) {
         EXPECT_EQ(partition.size(), 0U);
       } else {
-        ask(partition);
+        query_and_change(partition);
       }
       return status;
     });

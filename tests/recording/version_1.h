@@ -4,7 +4,7 @@ namespace winnow::test {
 
 /// A recording of version 1, written by the library of commit 8a66dc5. Partition calls: three
 /// boxes, one move, self_pairs with and without events and predicate, closest. Scene calls, with
-/// carry-over and warm start: a fixed box and two spheres, layers and offsets, a move, collide with
+/// caching and warm start: a fixed box and two spheres, layers and offsets, a move, collide with
 /// manifolds twice, a removal, collide with fresh contacts.
 inline constexpr unsigned char kVersion1[] = {
     0x57, 0x49, 0x4E, 0x4E, 0x4F, 0x57, 0x52, 0x43, 0x01, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00,

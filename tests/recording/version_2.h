@@ -3,7 +3,7 @@
 namespace winnow::test {
 
 /// A recording of version 2, written by the library of commit 1510fdd. Scene calls, with margin,
-/// carry-over and warm start: a fixed box, two spheres and a compound, a predicate, collide with
+/// caching and warm start: a fixed box, two spheres and a compound, a predicate, collide with
 /// manifolds, a move, collide again, and again without the predicate; then a ray, a cast, an
 /// overlap with a predicate, a distance, the nearest, overlaps of sets and a batch of rays.
 inline constexpr unsigned char kVersion2[] = {

@@ -1,5 +1,5 @@
-// Packing of set lanes, for every mask, compared with a loop over bits; nothing is written beyond
-// the room of the caller.
+// Compares the packing of set lanes, for every mask, with a loop over bits, and tests that nothing
+// is written outside the output array.
 
 #include <gtest/gtest.h>
 

@@ -56,10 +56,10 @@ struct LanesOps {
   void (*larger_positive)(const float* a, const float* b, float* out);
   void (*smaller_positive)(const float* a, const float* b, float* out);
   std::uint32_t (*reduce_min_positive)(const float* in);
-  /// Writes kScalarResults results, each of an operation on the two doubles: `alone` computes on
-  /// the scalar path, `not_alone` in lanes.
-  void (*alone)(double a, double b, double* out);
-  void (*not_alone)(double a, double b, double* out);
+  /// Writes kScalarResults results, each of an operation on the two doubles: `scalar` computes on
+  /// the scalar path, `in_lanes` in lanes.
+  void (*scalar)(double a, double b, double* out);
+  void (*in_lanes)(double a, double b, double* out);
   const char* isa_name;
 };
 inline constexpr int kScalarResults = 20;

@@ -205,8 +205,8 @@ const LanesOps WINNOW_KERNEL_TABLE(lanes_ops){
     .larger_positive = isa::larger_positive_lanes,
     .smaller_positive = isa::smaller_positive_lanes,
     .reduce_min_positive = isa::reduce_min_positive_lanes,
-    .alone = isa::do_all<isa::ScalarLane>,
-    .not_alone = isa::do_all<double>,
+    .scalar = isa::do_all<isa::ScalarLane>,
+    .in_lanes = isa::do_all<double>,
     .isa_name = WINNOW_TEXT(WINNOW_ISA_NAME),
 };
 

@@ -267,19 +267,19 @@ TEST_P(LaneOps, scalar_path_equals_the_lanes) {
   for (int round = 0; round < 20000; ++round) {
     const double a = draw();
     const double b = draw();
-    std::array<double, kScalarResults> alone{};
+    std::array<double, kScalarResults> scalar{};
     std::array<double, kScalarResults> lanes{};
-    ops().alone(a, b, alone.data());
-    ops().not_alone(a, b, lanes.data());
-    for (std::size_t i = 0; i < alone.size(); ++i) {
-      const bool same = std::isnan(lanes[i]) ? std::isnan(alone[i])
-                                             : std::bit_cast<std::uint64_t>(alone[i]) ==
+    ops().scalar(a, b, scalar.data());
+    ops().in_lanes(a, b, lanes.data());
+    for (std::size_t i = 0; i < scalar.size(); ++i) {
+      const bool same = std::isnan(lanes[i]) ? std::isnan(scalar[i])
+                                             : std::bit_cast<std::uint64_t>(scalar[i]) ==
                                                    std::bit_cast<std::uint64_t>(lanes[i]);
-      ASSERT_TRUE(same) << "result " << i << " of " << a << " and " << b << ": " << alone[i]
+      ASSERT_TRUE(same) << "result " << i << " of " << a << " and " << b << ": " << scalar[i]
                         << " and " << lanes[i];
     }
-    ASSERT_EQ(std::isnan(alone[0]), std::isnan(a + b));
-    ASSERT_EQ(alone[14] != 0.0, a == b);
+    ASSERT_EQ(std::isnan(scalar[0]), std::isnan(a + b));
+    ASSERT_EQ(scalar[14] != 0.0, a == b);
   }
 }
 
@@ -331,7 +331,7 @@ class Volumes {
   }
 
   using Overlap = std::uint32_t (*)(const float* const*, std::size_t, const float*, const float*);
-  std::uint32_t ask(Overlap overlap, std::size_t row) const {
+  std::uint32_t test_row(Overlap overlap, std::size_t row) const {
     return overlap(columns_.data(), row, query_low_.data(), query_high_.data());
   }
 
@@ -359,13 +359,13 @@ TEST_P(LaneOps, overlap_is_the_closed_test_of_slabs) {
     const Volumes<3> boxes(random_);
     const Volumes<13> kdops(random_);
     for (std::size_t row = 0; row < 48; row += 16) {
-      ASSERT_EQ(boxes.ask(ops().overlap3, row), boxes.expected(row));
-      ASSERT_EQ(kdops.ask(ops().overlap13, row), kdops.expected(row));
+      ASSERT_EQ(boxes.test_row(ops().overlap3, row), boxes.expected(row));
+      ASSERT_EQ(kdops.test_row(ops().overlap13, row), kdops.expected(row));
       hits3 |= boxes.expected(row);
       hits13 |= kdops.expected(row);
     }
     for (std::size_t row = 0; row < 32; ++row) {
-      ASSERT_EQ(boxes.ask(ops().overlap3_unaligned, row), boxes.expected(row));
+      ASSERT_EQ(boxes.test_row(ops().overlap3_unaligned, row), boxes.expected(row));
     }
   }
   EXPECT_EQ(hits3, 0xFFFFU) << "the test hits no pair in some lane";

@@ -28,9 +28,9 @@ class PartitionSoak {
   void go();
   void move_some();
   void refilter();
-  void tell();
-  void tell(Partition& partition, bool is_followed);
-  void ask();
+  void apply_frame();
+  void apply_frame(Partition& partition, bool is_followed);
+  void query_pairs();
   void check();
   void check_boxes();
   void save();
@@ -59,7 +59,7 @@ class PartitionSoak {
   std::vector<Object> model_;  // dense, in no order
   std::set<Pair> active_;      // pairs that are active by the events
   Motion motion_ = Motion::little;
-  double wanted_ = 0.0;  // number of objects
+  double target_size_ = 0.0;  // number of objects
 
   // Changes of the current frame.
   std::vector<ObjectId> gone_;
@@ -113,9 +113,9 @@ bool PartitionSoak::has_left(const Aabb& box) const {
 }
 
 void PartitionSoak::come() {
-  const auto wanted = static_cast<std::size_t>(wanted_);
+  const auto target = static_cast<std::size_t>(target_size_);
   const std::size_t count = std::min(most_ - model_.size(), 1 + random_.below(most_at_once_));
-  if (model_.size() > wanted) return;
+  if (model_.size() > target) return;
   for (std::size_t i = 0; i < count; ++i) come_.push_back(some_box());
 }
 
@@ -167,16 +167,16 @@ void PartitionSoak::plan_frame(std::uint64_t frame) {
   refiltered_.clear();
   if (frame % 64 == 0) {
     motion_ = kMotions[random_.below(kMotions.size())];
-    wanted_ = random_.uniform(0.0, static_cast<double>(most_));
+    target_size_ = random_.uniform(0.0, static_cast<double>(most_));
   }
-  if (static_cast<double>(model_.size()) > wanted_) go();
+  if (static_cast<double>(model_.size()) > target_size_) go();
   move_some();
   refilter();
   come();
 }
 
 /// Makes the calls of a frame on the original or on the loaded copy, whose keys differ.
-void PartitionSoak::tell(Partition& partition, bool is_followed) {
+void PartitionSoak::apply_frame(Partition& partition, bool is_followed) {
   keys_.clear();
   for (const ObjectId id : gone_) keys_.push_back(partition.key_of(id));
   require(partition.remove(keys_) == Status::ok, "remove was refused");
@@ -199,10 +199,10 @@ void PartitionSoak::tell(Partition& partition, bool is_followed) {
   }
 }
 
-void PartitionSoak::tell() {
+void PartitionSoak::apply_frame() {
   times_.begin();
-  threads_.run([&] { tell(partition_, false); });
-  ask();
+  threads_.run([&] { apply_frame(partition_, false); });
+  query_pairs();
   times_.end();
   for (std::size_t i = 0; i < come_.size(); ++i) model_.push_back({keys_[i].id, come_[i], {}});
   tally_.operations +=
@@ -215,7 +215,7 @@ void PartitionSoak::tell() {
   }
 }
 
-void PartitionSoak::ask() {
+void PartitionSoak::query_pairs() {
   const Status status = threads_.run([&] { return partition_.self_pairs(pairs_, events_); });
   require(status == Status::ok, "self_pairs was refused");
 }
@@ -236,9 +236,9 @@ void PartitionSoak::check() {
 
 /// Compares the content of the partitions and the overlaps with a box.
 void PartitionSoak::check_boxes() {
-  const Aabb asked = some_box();
+  const Aabb query_box = some_box();
   PairBuffer found;
-  require(partition_.overlap(BoxView({&asked, 1}), found, {}, Order::canonical) == Status::ok,
+  require(partition_.overlap(BoxView({&query_box, 1}), found, {}, Order::canonical) == Status::ok,
           "a box was refused");
   std::vector<ObjectId> truth;
   for (const Object& object : model_) {
@@ -246,7 +246,7 @@ void PartitionSoak::check_boxes() {
     require(partition_.bounds(partition_.key_of(object.id), stored) == Status::ok &&
                 stored == object.box,
             "another box");
-    if (object.box.overlaps(asked)) truth.push_back(object.id);
+    if (object.box.overlaps(query_box)) truth.push_back(object.id);
   }
   std::sort(truth.begin(), truth.end());
   require(std::ranges::equal(found, truth, {}, &Pair::second), "a box has other overlaps");
@@ -262,7 +262,7 @@ void PartitionSoak::save() {
 }
 
 void PartitionSoak::follow() {
-  threads_.run([&] { tell(loaded_, true); });
+  threads_.run([&] { apply_frame(loaded_, true); });
   const auto query_canonical = [&](Partition& partition) {
     return threads_.run(
         [&] { return partition.self_pairs(loaded_pairs_, {.order = Order::canonical}); });
@@ -288,7 +288,7 @@ SoakTally PartitionSoak::run() {
   for (std::uint64_t frame = 0; frame < plan_.frames; ++frame) {
     if (plan_.lap != 0 && frame % plan_.lap == 0) begin_lap();
     plan_frame(frame);
-    tell();
+    apply_frame();
     if (followed_ != 0) {
       follow();
     } else if (frame % plan_.save_every == plan_.save_every / 2) {

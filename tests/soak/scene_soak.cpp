@@ -27,7 +27,7 @@ class SceneSoak {
  private:
   /// A change of one body, which is made on the model and then on each scene.
   struct Event {
-    enum class Kind { add, remove, move, motion, shape, filter, ignore } kind;
+    enum class Kind { add, remove, move, state, shape, filter, ignore } kind;
     std::size_t body;
     std::size_t other = 0;  // for `ignore`
     bool ignored = false;
@@ -35,7 +35,7 @@ class SceneSoak {
 
   void plan_frame(std::uint64_t frame);
   void change(std::size_t i);
-  void tell(const Event& event, Scene& scene, std::size_t which);
+  void apply_event(const Event& event, Scene& scene, std::size_t which);
   void collide(Scene& scene, Contacts& contacts);
   void report_events();
   void check();
@@ -71,7 +71,7 @@ SceneOptions options_of(const SoakPlan& plan, CountingMemory& memory) {
   return {.memory = &memory,
           .execution = Workers{plan.threads}.execution(),
           .structures = {static_bvh(), automatic(), linear_bvh()},
-          .margin = kMargin,
+          .contact_margin = kMargin,
           .warm_start = true};
 }
 
@@ -87,7 +87,7 @@ SceneSoak::SceneSoak(const SoakPlan& plan)
   keys_[0] = keys_[1] = world_.keys;
 }
 
-/// Changes the motion state, shape or filter of a body, or sets it to ignore another body.
+/// Changes the state, shape or filter of a body, or sets it to ignore another body.
 void SceneSoak::change(std::size_t i) {
   BodyDefinition& body = world_.bodies[i];
   switch (random_.below(8)) {
@@ -110,9 +110,9 @@ void SceneSoak::change(std::size_t i) {
     }
     default:
       // Most bodies fall asleep or wake up.
-      body.motion = body.motion == Motion::dynamic ? Motion::sleeping : Motion::dynamic;
-      if (random_.chance(0.1)) body.motion = Motion::fixed;
-      events_.push_back({Event::Kind::motion, i});
+      body.state = body.state == BodyState::dynamic ? BodyState::sleeping : BodyState::dynamic;
+      if (random_.chance(0.1)) body.state = BodyState::fixed;
+      events_.push_back({Event::Kind::state, i});
   }
 }
 
@@ -134,7 +134,7 @@ void SceneSoak::plan_frame(std::uint64_t frame) {
       events_.push_back({Event::Kind::remove, i});
     } else if (random_.chance(0.02)) {
       change(i);
-    } else if (body.motion == Motion::dynamic && random_.chance(0.7)) {
+    } else if (body.state == BodyState::dynamic && random_.chance(0.7)) {
       for (double& p : body.pose.position) {
         p = std::clamp(p + random_.uniform(-step_, step_), 0.0, world_.side);
       }
@@ -145,10 +145,10 @@ void SceneSoak::plan_frame(std::uint64_t frame) {
   }
 }
 
-void SceneSoak::tell(const Event& event, Scene& scene, std::size_t which) {
+void SceneSoak::apply_event(const Event& event, Scene& scene, std::size_t which) {
   const BodyDefinition& body = world_.bodies[event.body];
   Key& key = keys_[which][event.body];
-  const auto told = [&] {
+  const auto apply = [&] {
     switch (event.kind) {
       case Event::Kind::add:
         return scene.add(body, key);
@@ -156,8 +156,8 @@ void SceneSoak::tell(const Event& event, Scene& scene, std::size_t which) {
         return scene.remove(key);
       case Event::Kind::move:
         return scene.move(key, body.pose);
-      case Event::Kind::motion:
-        return scene.set_motion(key, body.motion);
+      case Event::Kind::state:
+        return scene.set_body_state(key, body.state);
       case Event::Kind::shape:
         return scene.set_shape(key, body.shape);
       case Event::Kind::filter:
@@ -166,7 +166,7 @@ void SceneSoak::tell(const Event& event, Scene& scene, std::size_t which) {
         return scene.set_ignored(key, keys_[which][event.other], event.ignored);
     }
   };
-  require(told() == Status::ok, "a change was refused");
+  require(apply() == Status::ok, "a change was refused");
 }
 
 void SceneSoak::collide(Scene& scene, Contacts& contacts) {
@@ -195,8 +195,8 @@ void SceneSoak::report_events() {
   }
   for (const Names& both : before) {
     require(!world_.removed[both.first] && !world_.removed[both.second] &&
-                world_.bodies[both.first].motion != Motion::dynamic &&
-                world_.bodies[both.second].motion != Motion::dynamic,
+                world_.bodies[both.first].state != BodyState::dynamic &&
+                world_.bodies[both.second].state != BodyState::dynamic,
             "a pair is neither shown nor ended, and does not rest");
   }
   dormant_ = std::move(before);
@@ -229,7 +229,7 @@ void SceneSoak::save() {
 }
 
 void SceneSoak::follow() {
-  for (const Event& event : events_) tell(event, loaded_, 1);
+  for (const Event& event : events_) apply_event(event, loaded_, 1);
   collide(loaded_, loaded_contacts_);
   require(digest(contacts_) == digest(loaded_contacts_), "the loaded scene has other contacts");
   if (--followed_ == 0) ++tally_.snapshots;
@@ -249,7 +249,7 @@ SoakTally SceneSoak::run() {
   for (std::uint64_t frame = 0; frame < plan_.frames; ++frame) {
     plan_frame(frame);
     times_.begin();
-    for (const Event& event : events_) tell(event, scene_, 0);
+    for (const Event& event : events_) apply_event(event, scene_, 0);
     collide(scene_, contacts_);
     times_.end();
     report_events();

@@ -21,31 +21,31 @@
 namespace winnow::test {
 namespace {
 
-struct Asked {
+struct SoakOptions {
   SoakPlan plan{.frames = 1'000'000};
   std::uint64_t seconds = 0;
   std::vector<std::string> names;
 };
 
 /// Returns false for an invalid number or an unknown option.
-bool read_option(Asked& asked, std::string_view name, std::string_view value) {
+bool read_option(SoakOptions& options, std::string_view name, std::string_view value) {
   std::uint64_t number = 0;
   const auto read = std::from_chars(value.data(), value.data() + value.size(), number);
   if (read.ec != std::errc() || read.ptr != value.data() + value.size()) return false;
   if (name == "--frames")
-    asked.plan.frames = number;
+    options.plan.frames = number;
   else if (name == "--seconds")
-    asked.seconds = number;
+    options.seconds = number;
   else if (name == "--seed")
-    asked.plan.seed = number;
+    options.plan.seed = number;
   else if (name == "--threads")
-    asked.plan.threads = static_cast<int>(number);
+    options.plan.threads = static_cast<int>(number);
   else if (name == "--objects")
-    asked.plan.objects = number;
+    options.plan.objects = number;
   else if (name == "--lap")
-    asked.plan.lap = number;
+    options.plan.lap = number;
   else if (name == "--check-every")
-    asked.plan.check_every = number;
+    options.plan.check_every = number;
   else
     return false;
   return number != 0;
@@ -58,24 +58,25 @@ bool is_there(std::string_view name) {
          });
 }
 
-bool read_arguments(Asked& asked, int argc, char** argv) {
+bool read_arguments(SoakOptions& options, int argc, char** argv) {
   for (int i = 1; i < argc; ++i) {
     const std::string_view word = argv[i];
     if (word.starts_with("--")) {
-      if (++i == argc || !read_option(asked, word, argv[i])) return false;
+      if (++i == argc || !read_option(options, word, argv[i])) return false;
     } else if (is_there(word)) {
-      asked.names.emplace_back(word);
+      options.names.emplace_back(word);
     } else {
       return false;
     }
   }
-  if (!asked.names.empty()) return true;
-  for (const StructureKind& one : all_structures()) asked.names.emplace_back(one.name());
-  asked.names.emplace_back("scene");
+  if (!options.names.empty()) return true;
+  for (const StructureKind& one : all_structures()) options.names.emplace_back(one.name());
+  options.names.emplace_back("scene");
   return true;
 }
 
-/// Short runs end before the peak of memory is reached.
+/// Returns true if the peak of memory in the second half of the run is at most 10% above the first
+/// half's, or if the run is too short to reach its peak.
 bool is_flat(const SoakTally& tally) {
   constexpr std::uint64_t kLong = 100'000;
   return tally.frames < kLong ||
@@ -124,19 +125,19 @@ void print_json(const std::vector<SoakTally>& tallies) {
 
 using Clock = std::chrono::steady_clock;
 
-int run(Asked asked) {
+int run(SoakOptions options) {
   std::printf("%-18s %9s %12s %14s %8s %6s %9s %9s %9s %8s %8s %6s\n", "", "frames", "operations",
               "comparisons", "checks", "saved", "peak B", "later B", "quiet", "us", "p99.9",
               "ratio");
   const auto start = Clock::now();
   std::vector<SoakTally> tallies;
   do {
-    for (const std::string& name : asked.names) {
+    for (const std::string& name : options.names) {
       try {
-        tallies.push_back(soak(name, asked.plan));
+        tallies.push_back(soak(name, options.plan));
       } catch (const std::runtime_error& error) {
         std::fprintf(stderr, "%s, seed %llu: %s\n", name.c_str(),
-                     static_cast<unsigned long long>(asked.plan.seed), error.what());
+                     static_cast<unsigned long long>(options.plan.seed), error.what());
         return 1;
       }
       print(tallies.back());
@@ -145,8 +146,8 @@ int run(Asked asked) {
         return 1;
       }
     }
-    ++asked.plan.seed;
-  } while (Clock::now() - start < std::chrono::seconds(asked.seconds));
+    ++options.plan.seed;
+  } while (Clock::now() - start < std::chrono::seconds(options.seconds));
   print_json(tallies);
   return 0;
 }
@@ -155,13 +156,13 @@ int run(Asked asked) {
 }  // namespace winnow::test
 
 int main(int argc, char** argv) {
-  winnow::test::Asked asked;
-  asked.plan.seed = winnow::test::base_seed();
-  if (!winnow::test::read_arguments(asked, argc, argv)) {
+  winnow::test::SoakOptions options;
+  options.plan.seed = winnow::test::base_seed();
+  if (!winnow::test::read_arguments(options, argc, argv)) {
     std::fprintf(stderr,
                  "usage: winnow_soak [--frames N] [--seconds N] [--seed N] [--threads N] "
                  "[--check-every N] [STRUCTURE|scene]...\n");
     return 2;
   }
-  return winnow::test::run(std::move(asked));
+  return winnow::test::run(std::move(options));
 }

@@ -23,8 +23,8 @@ struct SoakPlan {
   std::uint64_t check_every = 16;    ///< frames between two comparisons with the reference
   std::uint64_t save_every = 2000;   ///< frames between two snapshots
   std::uint64_t follow_frames = 16;  ///< frames in which a loaded copy is compared
-  /// Frames after which everything is cleared and repeated, which must need no more memory; 0:
-  /// never. Only for partitions.
+  /// Frames after which the partition is cleared and the random numbers begin again. The repeated
+  /// frames must need no more memory. 0: never. Scenes ignore it.
   std::uint64_t lap = 0;
 };
 
@@ -66,7 +66,7 @@ class FrameTimes {
 
  private:
   static constexpr std::size_t kSteps = 64;
-  /// In nanoseconds.
+  /// Returns the time of the clock in nanoseconds.
   [[nodiscard]] std::int64_t now() const;
 
   clockid_t clock_;

@@ -21,11 +21,11 @@ void FrameTimes::end() {
 }
 
 double FrameTimes::quantile(double share) const {
-  const auto wanted = static_cast<std::uint64_t>(share * static_cast<double>(frames_));
+  const auto rank = static_cast<std::uint64_t>(share * static_cast<double>(frames_));
   std::uint64_t passed = 0;
   for (std::size_t i = 0; i < counts_.size(); ++i) {
     passed += counts_[i];
-    if (passed <= wanted) continue;
+    if (passed <= rank) continue;
     const double size = static_cast<double>(std::uint64_t{1} << (i / kSteps));
     return 1e-3 * size * (1.0 + static_cast<double>(i % kSteps) / kSteps);
   }

@@ -41,7 +41,7 @@ struct Fraction {
   return x * static_cast<double>(b.divisor) <= y * static_cast<double>(a.divisor);
 }
 
-// When a moving box enters and leaves a box at rest, axis by axis.
+// The times at which a moving box enters and leaves a box at rest, for each axis.
 struct Slabs {
   std::array<Fraction, 4> entries{};
   std::array<Fraction, 4> exits{};
@@ -153,9 +153,10 @@ class Approach {
     return segment_box_square(a_ + way, b_ + way, box_);
   }
 
-  // Returns the time of the least distance in [begin, end], or any time at which it is at most
-  // `enough`, by golden-section search. If two values differ only by rounding, so does the minimum,
-  // since the distance is convex in time.
+  // Returns the time of the least distance in [begin, end], or any time at which the distance is at
+  // most `enough`, by golden-section search. If rounding decides between two equal values, the
+  // discarded part can contain only values that are smaller by rounding, because the distance is
+  // convex in time.
   [[nodiscard]] double nearest_time(double begin, double end, Real enough) const {
     const Real limit = enough > 0.0L ? enough * enough : 0.0L;
     if (square(begin) <= limit) return begin;
@@ -224,8 +225,8 @@ CastTruth truth_of_round(const CapsuleCast& cast, const Aabb& box, double tolera
   double size =
       std::max({magnitude(box), static_cast<double>(as_eigen(capsule.a).cwiseAbs().maxCoeff()),
                 static_cast<double>(as_eigen(capsule.b).cwiseAbs().maxCoeff()), radius});
-  // The length of the motion counts as well: for an infinite end of the box it is the range of
-  // float.
+  // The length of the motion to the box counts as well: magnitude() leaves out infinite ends, but a
+  // motion to such an end is as long as the range of float.
   size = std::max(size, window(size).entry *
                             static_cast<double>(as_eigen(cast.direction).cwiseAbs().maxCoeff()));
   const double slack = tolerance * size;
@@ -244,7 +245,7 @@ CastTruth truth_of_round(const CapsuleCast& cast, const Aabb& box, double tolera
   const Real inner = r - static_cast<Real>(slack);
   const Real outer = r + static_cast<Real>(slack);
   truth.earliest = approach.touch_time(begin, best, outer) * (1.0 - 1e-14);
-  // A graze may be reported at any time of contact.
+  // If the capsule only grazes the box, any time of contact is accepted.
   truth.latest = least <= inner ? approach.touch_time(begin, best, inner)
                                 : approach.touch_time(end, best, outer);
   truth.latest *= 1.0 + 1e-14;
@@ -310,7 +311,7 @@ CastTruth truth_of(const Cast& cast, const Aabb& given) {
     return truth_of_slabs({{ray->origin, ray->origin}, ray->direction, ray->min_t, ray->max_t},
                           box);
   }
-  if (const auto* swept = std::get_if<BoxCast>(&cast)) return truth_of_slabs(*swept, box);
+  if (const auto* box_cast = std::get_if<BoxCast>(&cast)) return truth_of_slabs(*box_cast, box);
   if (const auto* ball = std::get_if<SphereCast>(&cast)) {
     const Capsule capsule{ball->sphere.center, ball->sphere.center, ball->sphere.radius};
     return truth_of_round({capsule, ball->direction, ball->min_t, ball->max_t}, box, 1e-12);

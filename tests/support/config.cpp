@@ -14,8 +14,9 @@ namespace {
 
 constexpr int kHostThreads = 3;
 
-// Allows TBB as many workers as the tests use: by default it starts no more than the machine has
-// cores, and a test on 8 threads needs 8. rapidcheck reads its seed from the environment.
+// Allows oneTBB as many workers as the tests use: by default it starts at most one for each core,
+// and a test on 8 threads needs 8. Also sets the environment variable from which rapidcheck reads
+// its seed.
 class Process : public testing::Environment {
  public:
   void SetUp() override {
@@ -79,14 +80,14 @@ std::vector<std::string_view> structure_names() {
 
 namespace {
 
-/// Returns every instruction set, or the narrowest and the widest.
+/// Returns every instruction set; in quick runs only the narrowest and the widest.
 std::vector<Isa> tested_isas() {
   const auto isas = available_isas();
   if (is_quick() && isas.size() > 2) return {isas.front(), isas.back()};
   return {isas.begin(), isas.end()};
 }
 
-/// Returns the hosts on which a partition is tested; in smaller runs each partition has one host.
+/// Returns the hosts on which a partition is tested; in reduced runs one host for each partition.
 std::vector<std::string_view> tested_hosts(std::size_t partition) {
   if (is_reduced()) return {kHosts[partition % kHosts.size()]};
   return {kHosts.begin(), kHosts.end()};
@@ -102,8 +103,7 @@ std::vector<Config> all_configs() {
     const std::string_view partition = names[i];
     for (const Isa isa : isas) {
       for (const int threads : thread_counts()) {
-        // Smaller runs use every instruction set and every number of threads, but not every
-        // combination.
+        // Reduced runs combine several threads only with the widest instruction set.
         if (is_reduced() && threads > 1 && isa != isas.back()) continue;
         configs.push_back({std::string(partition), isa, threads});
       }

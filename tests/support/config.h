@@ -62,13 +62,14 @@ inline void PrintTo(const Config& config, std::ostream* out) {
   *out << to_string(config);
 }
 
-/// Returns every partition on every instruction set of this machine, on 1, 2 and 8 threads and on
-/// the threads of every host; in a quick run on the narrowest and the widest, on 1 and 2 threads
-/// and one host.
+/// Returns every structure on every instruction set of this machine with 1, 2 and 8 threads, and on
+/// the widest instruction set with every host. Reduced runs test one host for each structure, and
+/// several threads only on the widest instruction set. Quick runs also leave out 8 threads, and all
+/// instruction sets but the narrowest and the widest.
 [[nodiscard]] std::vector<Config> all_configs();
 
-/// Returns the configurations of partitions that report only true pairs. The many false pairs of
-/// the others make large scenes slow without testing more.
+/// Returns the configurations of partitions that report only true pairs. In large scenes the false
+/// pairs of other partitions would make tests slow without testing more.
 [[nodiscard]] std::vector<Config> exact_configs();
 
 /// Returns the numbers of threads that tests use.

@@ -9,8 +9,8 @@
 namespace winnow::test {
 namespace {
 
-// More than any machine has. Refused here, since sanitizers would end the process instead of
-// throwing.
+// More bytes than any machine has. Such requests are refused here, because sanitizers would end the
+// process instead of throwing.
 constexpr std::size_t kMaxBytes = ~std::size_t{0} >> (sizeof(std::size_t) > 4 ? 24U : 1U);
 
 }  // namespace

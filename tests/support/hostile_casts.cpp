@@ -69,11 +69,12 @@ Vector3f some_direction(Random& random) {
 }
 
 // Scales the direction, if it remains valid.
-void stretch(Vec3f& direction, Random& random) {
+void scale_direction(Vec3f& direction, Random& random) {
   if (random.chance(0.6)) return;
-  const Vector3f stretched =
+  const Vector3f scaled_direction =
       direction * one_of(std::array{1e-30F, 1e30F, 1e-42F, 3.0F, 0x1p60F, 0x1p-60F}, random);
-  if (stretched.allFinite() && (stretched.array() != 0.0F).any()) direction = stretched;
+  if (scaled_direction.allFinite() && (scaled_direction.array() != 0.0F).any())
+    direction = scaled_direction;
 }
 
 // Sets ranges that end at critical times.
@@ -153,7 +154,7 @@ Ray hostile_ray(const Aabb& given, Random& random) {
   Ray ray;
   ray.direction = some_direction(random);
   ray.origin = before(point_of(box, random), ray.direction, box, random);
-  stretch(ray.direction, random);
+  scale_direction(ray.direction, random);
   limit(ray, given, random);
   return ray;
 }
@@ -163,7 +164,7 @@ Cast hostile_cast(const Aabb& given, Random& random) {
   Ray ray;
   ray.direction = some_direction(random);
   ray.origin = before(point_of(box, random), ray.direction, box, random);
-  stretch(ray.direction, random);
+  scale_direction(ray.direction, random);
   switch (random.below(3)) {
     case 0: {
       BoxCast cast = box_cast(ray, box, random);

@@ -58,8 +58,8 @@ std::vector<Aabb> diagonal(std::size_t count) {
   return boxes;
 }
 
-// A quarter each of planes, half-spaces, slabs and corners; few enough that reporting most pairs is
-// feasible.
+// Returns a quarter each of slabs that are infinite along two axes, boxes that are infinite upward
+// or downward along one axis, and boxes that are infinite downward along all axes.
 std::vector<Aabb> unbounded(std::size_t count) {
   constexpr float inf = std::numeric_limits<float>::infinity();
   Random random(9);
@@ -93,7 +93,8 @@ std::vector<Aabb> unbounded(std::size_t count) {
 
 std::vector<Aabb> with_unbounded(std::vector<Aabb> boxes, std::size_t count) {
   const std::vector<Aabb> wide = unbounded(count);
-  // Distributes them over the rows, so that they are in the middle of blocks and at their ends.
+  // Distributes the infinite boxes over the rows, so that some are in the middle of a block and
+  // some at its ends.
   for (std::size_t i = 0; i < wide.size(); ++i) {
     const std::size_t at = i * boxes.size() / wide.size();
     boxes.insert(boxes.begin() + static_cast<std::ptrdiff_t>(at), wide[i]);

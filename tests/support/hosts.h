@@ -12,7 +12,7 @@ namespace winnow::test {
 /// Programs that run winnow's tasks on their own threads, from usual to extreme:
 /// - pool: as many threads as it reports
 /// - reversed: only the calling thread, beginning with the last task
-/// - crowd: many more threads than it reports
+/// - crowd: eight threads, which is more than it reports
 #if WINNOW_TEST_THREADS
 inline constexpr std::array<std::string_view, 3> kHosts = {"pool", "reversed", "crowd"};
 #else

@@ -1,5 +1,6 @@
-// Reference implementation of overlaps of regions and one box, in exact arithmetic if possible,
-// else in double or long double with error bounds.
+// Reference implementation of overlaps of regions and one box. `must` is computed in exact
+// arithmetic, for capsules in long double; other results in double or long double with error
+// bounds.
 
 #include "tests/support/region_reference.h"
 #include <winnow/core/eigen.h>
@@ -44,7 +45,8 @@ RegionTruth truth_of_box(const Aabb& region, const Aabb& box) {
   return about(region.overlaps(box), inside);
 }
 
-// Compares exactly: the distances from the centre to the nearest and the farthest point of the box.
+// Compares the radius with the distance from the centre to the nearest point of the box, exactly,
+// and to the farthest point, in long double.
 RegionTruth truth_of_sphere(const Sphere& sphere, const Aabb& box) {
   Exact nearest(0.0);
   Real farthest = 0.0L;
@@ -166,7 +168,7 @@ Exact dot(const ExactPoint& a, const ExactPoint& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-// Returns true if a direction separates the two.
+// Returns true if the direction separates the two boxes.
 bool apart(const ExactPoint& direction, const OrientedBox& oriented, const Aabb& box) {
   const ExactPoint center{exact(oriented.center[0]), exact(oriented.center[1]),
                           exact(oriented.center[2])};
@@ -185,7 +187,8 @@ bool apart(const ExactPoint& direction, const OrientedBox& oriented, const Aabb&
   return high < middle - half || middle + half < low;
 }
 
-// The gap along a direction in double, negative if they overlap, and the magnitude of its terms.
+// The gap of two boxes along a direction in double, negative if they overlap, and the magnitude of
+// its terms.
 struct Gap {
   double value = 0.0;
   double size = 0.0;

@@ -12,9 +12,9 @@ struct RegionTruth {
   bool may_inside = false;   ///< inside, or outside by no more than rounding
 };
 
-/// The reference implementation. `must` is decided by exact arithmetic, but for capsules by long
-/// double: it is false if the error of long double could change the result. An infinite end of the
-/// box counts as the largest float.
+/// The reference implementation. Exact arithmetic decides `must`, except for capsules: there `must`
+/// is false if the error of long double could change the result. For a frustum `must` is also false
+/// if the box is outside its `bounds`. An infinite end of the box counts as the largest float.
 [[nodiscard]] RegionTruth truth_of(const Region& region, const Aabb& box);
 
 /// Returns the distance of two boxes in double, with a relative error below 1e-15.

@@ -13,7 +13,8 @@ __attribute__((weak)) void* __cxa_allocate_exception(std::size_t) {
   __builtin_trap();
 }
 
-// 128-bit divisions of clang's runtime check for stack overwrites.
+// The 128-bit division in clang's runtime library checks for stack overwrites, and needs these
+// symbols.
 extern const std::uintptr_t __stack_chk_guard;
 __attribute__((weak)) const std::uintptr_t __stack_chk_guard = 0xB5A1D7C3;
 [[noreturn]] __attribute__((weak)) void __stack_chk_fail() {

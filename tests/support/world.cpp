@@ -138,14 +138,14 @@ testing::AssertionResult World::agrees(PairBuffer& buffer, const PairOptions& op
   if (const Statistics s = partition_.statistics();
       s.objects != entries_.size() || s.last_pairs != buffer.size()) {
     return testing::AssertionFailure()
-           << "statistics say " << s.objects << " objects and " << s.last_pairs << " pairs, not "
+           << "statistics report " << s.objects << " objects and " << s.last_pairs << " pairs, not "
            << entries_.size() << " and " << buffer.size();
   }
   return has_pairs(buffer);
 }
 
 testing::AssertionResult World::has_pairs(const PairBuffer& buffer) const {
-  if (const auto meet = may_all_pair(buffer.pairs()); !meet) return meet;
+  if (const auto may_pair = may_all_pair(buffer.pairs()); !may_pair) return may_pair;
   return right_pairs(buffer.pairs(), true_pairs(objects()), partition_.is_exact());
 }
 

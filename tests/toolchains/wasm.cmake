@@ -20,9 +20,9 @@ endif()
 set(winnow_wasm_flags "--sysroot=/ -isystem ${winnow_wasm_root} -isystem /usr/include/wasm32-wasi \
 -msimd128 -D__SSE__ -D__SSE2__ -D__SSE3__ -D__SSSE3__ -D__SSE4_1__ -D__SSE4_2__")
 set(CMAKE_C_FLAGS_INIT "${winnow_wasm_flags}")
-# Without these options Boost derives from std::unary_function, which libc++ has removed, includes a
-# header of mutexes, which WASI lacks, and uses Microsoft's syntax for alignment, as this is not
-# g++.
+# Without the first three options Boost derives from std::unary_function, which libc++ has removed,
+# and includes a header of mutexes, which WASI lacks. Because this compiler does not claim to be
+# g++, Boost uses Microsoft's syntax for alignment, which -fdeclspec accepts.
 set(winnow_wasm_boost "-DBOOST_NO_CXX98_FUNCTION_BASE -DBOOST_DISABLE_THREADS \
 -DBOOST_SMART_PTR_DETAIL_LIGHTWEIGHT_MUTEX_HPP_INCLUDED -fdeclspec")
 # A throw ends the program. For a compiler that claims to be g++, Eigen uses x86 assembler.

@@ -41,7 +41,7 @@ function read(picture) {
   return {picture, objects, pairs, rays, questionBoxes, partners: partnersOf(pairs)};
 }
 
-// Maps the place of each object that has a pair to the places of its partners.
+// Maps the index of each object that has a pair to the indices of its partners.
 function partnersOf(pairs) {
   const partners = new Map();
   for (let i = 0; i < pairs.length; i += 2) {

@@ -145,7 +145,7 @@ function addRays() {
   const lines = new Float32Array(ends);
   const starts = new Float32Array(now.rays.flatMap((ray) => pointOn(ray, 0)));
   addLayer({
-    id: "rays", group: "Questions", name: "rays", colour: kColours.ray, count: now.rays.length,
+    id: "rays", group: "Queries", name: "rays", colour: kColours.ray, count: now.rays.length,
     mark: "line",
     meshes: [...withGhost(wideLines(lines, kColours.ray, 1, 2.2, 7), "lines", 0.6),
              dots(starts, kColours.ray, 7, 8)],
@@ -155,7 +155,7 @@ function addRays() {
   const closestDots = dots(new Float32Array(points), colour, 13, 9);
   const first = boxesAt(unique(closest.map((ray) => ray.closest)));
   addLayer({
-    id: "rays_that_hit", group: "Questions", name: "closest hits", colour, count: closest.length,
+    id: "rays_that_hit", group: "Queries", name: "closest hits", colour, count: closest.length,
     mark: "fill",
     meshes: [boxFaces(first, colour, 0.75, 4),
              ...withGhost(boxEdges(first, colour, 1, 7), "edges", 0.9),
@@ -166,7 +166,7 @@ function addRays() {
   const allDots = dots(new Float32Array(all), colour, 8, 8);
   const hits = boxesAt(unique(now.rays.flatMap((ray) => Array.from(ray.hits))));
   addLayer({
-    id: "ray_hits", group: "Questions", name: "all hits", colour, count: all.length / 3,
+    id: "ray_hits", group: "Queries", name: "all hits", colour, count: all.length / 3,
     meshes: [boxFaces(hits, colour, 0.4, 4),
              ...withGhost(boxEdges(hits, colour, 1, 6), "edges", 0.7),
              allDots],
@@ -178,7 +178,7 @@ function addQuestionBoxes() {
   const colour = kColours.box;
   const boxes = placedColumn(now.questionBoxes.flatMap((question) => Array.from(question.box)));
   addLayer({
-    id: "boxes", group: "Questions", name: "boxes asked about", colour,
+    id: "boxes", group: "Queries", name: "boxes of queries", colour,
     count: now.questionBoxes.length,
     meshes: [boxFaces(boxes, colour, 0.12, 5),
              ...withGhost(boxEdges(boxes, colour, 1, 7), "edges", 0.7)],
@@ -188,7 +188,7 @@ function addQuestionBoxes() {
     const places = now.questionBoxes.flatMap((question) => Array.from(question[id]));
     const found = boxesAt(unique(places));
     addLayer({
-      id, group: "Questions", name, colour, count: places.length, mark: "fill",
+      id, group: "Queries", name, colour, count: places.length, mark: "fill",
       meshes: [boxFaces(found, colour, opacity, 4),
                ...withGhost(boxEdges(found, colour, 1, 6), "edges", 0.6)],
     });

@@ -97,7 +97,7 @@ function solidity() {
 function writeLegend() {
   const legend = document.getElementById("legend");
   legend.replaceChildren();
-  for (const group of ["Objects", "Structure", "Questions"]) {
+  for (const group of ["Objects", "Structure", "Queries"]) {
     const layers = kLayers.filter((layer) => layer.group === group);
     if (layers.length === 0) continue;
     const heading = document.createElement("h2");

@@ -87,13 +87,13 @@
       const hit = pointer ? engine.live_ray(pointer.x, pointer.y) : 2;
       spent.push(performance.now() - before);
       draw(pairs, near, hit);
-      tell(now, pairs);
+      showFacts(now, pairs);
     }
     last = now;
     requestAnimationFrame(frame);
   }
 
-  function tell(now, pairs) {
+  function showFacts(now, pairs) {
     steps.push(now);
     while (steps[0] < now - 1000) steps.shift();
     while (spent.length > 60) spent.shift();

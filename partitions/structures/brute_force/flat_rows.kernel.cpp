@@ -14,7 +14,7 @@ namespace {
 // The id of an empty row. Empty rows make no queries.
 constexpr std::uint32_t kNoId = ~0U;
 
-/// The rows of [at, at + 16) that hold an object.
+/// Returns the rows of [at, at + 16) that have an object.
 Mask16 live_rows(const RowView& rows, std::size_t at) {
   Mask16 live = 0;
   for (unsigned i = 0; i < kLanes; ++i) {
@@ -133,7 +133,8 @@ bool visit_runs(const FlatView& view, std::uint32_t from, const FilterRange& ran
   return whole && visit(begin, end);
 }
 
-/// Hits are stored before filters are tested, so that the loop of volume tests keeps its registers.
+/// Hits of the loop of volume tests. Filters are tested after the loop, which then needs fewer
+/// registers.
 struct NotedHits {
   static constexpr std::uint32_t kRoom = 64;
 
@@ -148,7 +149,7 @@ struct NotedHits {
   }
 };
 
-/// All pairs of rows of block a with rows of block b >= a.
+/// Writes all pairs of rows of block a with rows of block b >= a.
 template <typename Test>
 bool block_pair(const FlatView& view, std::uint32_t a, std::uint32_t b, PairSink& sink) {
   if (!has_room(sink)) return false;
@@ -168,10 +169,10 @@ bool block_pair(const FlatView& view, std::uint32_t a, std::uint32_t b, PairSink
   return true;
 }
 
-/// As above for rows with filters; only the rows of block a in `asking` are tested. Filters are
-/// tested after the loop of volume tests, to keep registers free for it.
+/// As above for rows with filters; only the rows of block a in `query_rows` are tested. Filters are
+/// tested after the loop of volume tests, which then needs fewer registers.
 template <typename Test>
-bool filtered_block_pair(const FlatView& view, std::uint32_t a, Mask16 asking, std::uint32_t b,
+bool filtered_block_pair(const FlatView& view, std::uint32_t a, Mask16 query_rows, std::uint32_t b,
                          PairSink& sink) {
   if (!has_room(sink)) return false;
   const std::uint32_t a_row = a * kLanes;
@@ -179,26 +180,26 @@ bool filtered_block_pair(const FlatView& view, std::uint32_t a, Mask16 asking, s
   const auto block = Test::load(view.rows, b_row);
   Mask16 found[kLanes];
   Mask16 any = 0;
-  const auto ask = [&](std::uint32_t i) {
+  const auto test_row = [&](std::uint32_t i) {
     found[i] = Test::test(block, Test::query(view.rows.column, a_row + i));
     any |= found[i];
   };
   if (view.rows.environments) {
-    asking = passing_rows(view.rows, a_row, asking, range_of(view.blocks.filters[0], b));
-    for (Mask16 left = asking; left != 0; left &= left - 1) ask(first(left));
+    query_rows = passing_rows(view.rows, a_row, query_rows, range_of(view.blocks.filters[0], b));
+    for (Mask16 left = query_rows; left != 0; left &= left - 1) test_row(first(left));
   } else {
     // With one environment few rows are excluded: a selection would cost more than their tests.
-    for (std::uint32_t i = 0; i < kLanes; ++i) ask(i);
+    for (std::uint32_t i = 0; i < kLanes; ++i) test_row(i);
   }
-  sink.tests += count(asking);
+  sink.tests += count(query_rows);
   if (any == 0) return true;
   const QueryFilters filters(view.rows);
   const Uints ids = Uints::load_unaligned(view.rows.id + b_row);
-  for (Mask16 left = asking; left != 0; left &= left - 1) {
+  for (Mask16 left = query_rows; left != 0; left &= left - 1) {
     const unsigned i = first(left);
-    const Mask16 met = a == b ? found[i] & ~lanes_below(i + 1) : found[i];
-    if (met == 0) continue;
-    const Mask16 hits = passing_rows(view.rows, b_row, met, filters.of(a_row + i));
+    const Mask16 overlapping = a == b ? found[i] & ~lanes_below(i + 1) : found[i];
+    if (overlapping == 0) continue;
+    const Mask16 hits = passing_rows(view.rows, b_row, overlapping, filters.of(a_row + i));
     sink.cursor += 2 * emit_pairs<true>(hits, ids, view.rows.id[a_row + i], sink.cursor);
   }
   return true;
@@ -245,7 +246,7 @@ bool report_noted(const FlatView& view, const QueryBatch& batch, std::uint32_t r
 
 template <typename Test>
 struct FlatQuery {
-  /// Testing a few blocks costs less than ending a range.
+  /// Testing up to this many blocks in vain costs less than ending a range.
   static constexpr std::uint32_t kGap = 8;
 
   template <bool Filtered>

@@ -7,7 +7,7 @@
 
 namespace winnow {
 
-/// Rows without a structure. If filters are in use, `blocks` holds a summary of each block's
+/// Rows without a structure. If filters are in use, `blocks` contains a summary of each block's
 /// filters.
 struct FlatView {
   RowView rows;
@@ -17,9 +17,9 @@ struct FlatView {
 
 /// Kernels that test every row against every row, for one kind of volume.
 struct FlatKernel {
-  /// Finds all pairs whose first row lies in blocks [begin, end).
+  /// Finds all pairs whose first row is in blocks [begin, end).
   bool (*self_pairs)(const FlatView&, std::uint32_t begin, std::uint32_t end, PairSink&);
-  /// Finds all hits of the batch, which holds volumes of this kind.
+  /// Finds all hits of the batch, which contains volumes of this kind.
   bool (*query)(const FlatView&, const QueryBatch&, PairSink&);
 };
 

@@ -11,12 +11,12 @@ namespace {
 /// Linearised bounding-volume hierarchy: rows in a spatial order in which every aligned group of
 /// 16, 256, 4096 ... rows is compact (tree/kd_order.h). Blocks of 16 rows are the leaves; above
 /// them are implicit nodes with 16 children whose boxes are tested by one SIMD compare. There are
-/// no pointers, and nodes hold only boxes. Each frame refits the nodes above moved rows; the order
-/// is rebuilt when wear exceeds the price of a build. It needs no parameter and no world bounds and
-/// suits every scene, including mixed sizes. Self pairs: O(n log n + pairs) for boxes of bounded
-/// overlap. Exact.
+/// no pointers, and nodes store only boxes (and filters, if they are in use). Each frame refits the
+/// nodes above moved rows; the order is rebuilt when wear exceeds the price of a build. It needs no
+/// parameter and no world bounds and suits every scene, including mixed sizes. Self pairs: O(n log
+/// n + pairs) for boxes of bounded overlap. Exact.
 ///
-/// The hierarchy itself is the block tree of SpatialIndex (index/, tree/), which holds all rows
+/// The hierarchy itself is the block tree of SpatialIndex (index/, tree/), which contains all rows
 /// that a structure does not order; this class only selects it.
 class LinearBvh final : public Structure {
  public:
@@ -39,10 +39,10 @@ class StaticBvh final : public Structure {
   [[nodiscard]] bool reserve(const BuildRoom& room) noexcept override {
     return boxes_.reserve(room.objects, room.pages);
   }
-  [[nodiscard]] Ordered order_rest(std::span<std::uint32_t> rest,
-                                   Column<std::uint32_t>& order) noexcept override {
-    return append_in_sah_order(pool(), rest, boxes_, order, execution()) ? Ordered::done
-                                                                         : Ordered::out_of_memory;
+  [[nodiscard]] RestOrder order_rest(std::span<std::uint32_t> rest,
+                                     Column<std::uint32_t>& order) noexcept override {
+    return append_in_sah_order(pool(), rest, boxes_, order, execution()) ? RestOrder::done
+                                                                         : RestOrder::out_of_memory;
   }
   [[nodiscard]] std::uint64_t build_price() const noexcept override { return 240; }
   void release_scratch() noexcept override { boxes_.release(); }

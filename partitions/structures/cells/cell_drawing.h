@@ -10,8 +10,8 @@
 
 namespace winnow {
 
-/// Draws every cell that holds an object, the bounds of its contents, and an arrow along axis 0
-/// with the axis name and `meaning`. Cell c holds rows [start[c], start[c + 1]).
+/// Draws every cell that contains an object, the bounds of its contents, and an arrow along axis 0
+/// with the axis name and `meaning`. Cell c contains rows [start[c], start[c + 1]).
 ///
 /// Cells are drawn without their slack (see CellAxis); the first and last cell of an axis are drawn
 /// bounded although they are unbounded. An axis that is not divided is drawn as long as the bounded

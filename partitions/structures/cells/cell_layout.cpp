@@ -26,7 +26,7 @@ constexpr double kMaxCells = 2048;  // on an axis
 constexpr double kMinWidening = 1.02;
 constexpr double kTreeQuery = 14.0;  // tests of 16 volumes per object in the tree
 constexpr std::size_t kRowsPerRange = 8192;
-// The sample has one row in this many, within its limits.
+// The sample has one row in this many, but at least kMinSampled and at most kMaxSampled.
 constexpr std::size_t kRowsPerSample = 64;
 
 // Returns the value at index `at` in ascending order. Reorders the values so that lower ones come
@@ -52,7 +52,8 @@ std::ranges::minmax_result<float> ends_of(const BoundsPool& pool, std::size_t ax
   return ends;
 }
 
-// True if cells for these edges would be about the same as for the other edges.
+// True if the edges differ by at most 1/32 from the other edges on each axis; their cells would
+// then be about the same.
 bool is_about(const std::array<float, 3>& edges, const std::array<float, 3>& others) noexcept {
   constexpr float kAbout = 1.0F / 32.0F;
   for (std::size_t a = 0; a < 3; ++a) {
@@ -74,8 +75,9 @@ SceneSample::SceneSample(const BoundsPool& pool, std::size_t live,
 
 void SceneSample::choose_rows(const BoundsPool& pool,
                               std::array<std::uint32_t, kMaxSampled>& rows) noexcept {
-  const std::size_t wanted = std::clamp(pool.rows() / kRowsPerSample, kMinSampled, kMaxSampled);
-  const std::size_t step = std::max<std::size_t>(1, pool.rows() / wanted);
+  const std::size_t sample_size =
+      std::clamp(pool.rows() / kRowsPerSample, kMinSampled, kMaxSampled);
+  const std::size_t step = std::max<std::size_t>(1, pool.rows() / sample_size);
   const auto take = [&](std::size_t row) { rows[count++] = static_cast<std::uint32_t>(row); };
   if (pool.rows() <= kMaxSampled) {
     // Select by ids: if a few objects return to former positions they get the same cells again,
@@ -115,7 +117,7 @@ void SceneSample::sample_along(std::size_t a, const BoundsPool& pool,
 }
 
 /// A possible layout and its estimated cost.
-struct CellLayout::Trial {
+struct CellLayout::LayoutTrial {
   std::array<double, 3> reach{};  // by axis
   std::array<double, 3> width{};
   std::array<double, 3> cells{};
@@ -123,7 +125,8 @@ struct CellLayout::Trial {
   double small_share = 0.0;
   double cost = std::numeric_limits<double>::infinity();
 
-  // Divides axes along which objects are spread over several times their size.
+  // Divides the axes along which the positions range over more than three times the size of an
+  // object.
   void divide(const SceneSample& s, const std::array<float, 3>& quantile_edge_of) {
     for (std::size_t a = 0; a < 3; ++a) {
       // A margin for objects outside the sample and for rounding.
@@ -140,7 +143,7 @@ struct CellLayout::Trial {
     return true;
   }
 
-  void size_cells(const SceneSample& s, const CellDemand& d, std::size_t fast) {
+  void size_cells(const SceneSample& s, const CellRequirements& d, std::size_t fast) {
     std::size_t small = 0;
     for (std::size_t i = 0; i < s.count; ++i) small += is_small(s, i);
     small_share = static_cast<double>(small) / static_cast<double>(s.count);
@@ -157,8 +160,8 @@ struct CellLayout::Trial {
       ++free_axes;
     }
     if (free_axes == 0) return;
-    const double most = d.most_cells(n);
-    // If an axis is reduced to one cell, the other axes must be widened more.
+    const double most = d.max_cells(n);
+    // If an axis is reduced to one cell, the cells along the other axes must become wider.
     for (double least = 1.0; total > most || least == 1.0; least = kMinWidening) {
       const double widen = total > most ? root(free_axes, total / most) : 1.0;
       total = 1.0;
@@ -171,8 +174,8 @@ struct CellLayout::Trial {
     }
   }
 
-  // The edge of a cube that holds a block of rows if n objects are evenly spread.
-  [[nodiscard]] double block_edge(const SceneSample& s, const CellDemand& d, double n) const {
+  // Returns the edge of a cube that contains a block of rows if n objects are evenly spread.
+  [[nodiscard]] double block_edge(const SceneSample& s, const CellRequirements& d, double n) const {
     if (d.rows_per_block == 0.0) return 0.0;
     std::array<double, 4> factor{d.rows_per_block / n};
     unsigned axes = 0;
@@ -182,8 +185,8 @@ struct CellLayout::Trial {
     return root_of_product(axes, std::span(factor).first(axes + 1));
   }
 
-  // Estimates the cost of all pairs in the scene, in tests of 16 volumes.
-  void estimate(const SceneSample& s, const CellDemand& d, std::size_t fast) {
+  // Estimates the cost of one query for all pairs. The unit is one test of a box against 16 boxes.
+  void estimate(const SceneSample& s, const CellRequirements& d, std::size_t fast) {
     const double n = small_share * static_cast<double>(s.objects);
     const double total = cells[0] * cells[1] * cells[2];
     const double in_cell = n / total;
@@ -215,7 +218,7 @@ struct CellLayout::Trial {
   }
 };
 
-bool CellLayout::choose(const SceneSample& s, const CellDemand& d) noexcept {
+bool CellLayout::choose(const SceneSample& s, const CellRequirements& d) noexcept {
   usable_ = false;
   if (s.objects < kMinInCells || s.count < 8) return true;
   // The axis with the most room in units of the objects' edges prunes best; its cells are
@@ -233,14 +236,14 @@ bool CellLayout::choose(const SceneSample& s, const CellDemand& d) noexcept {
   std::array<float, 3> edges{};
   std::array<float, 3> tried{-1.0F, -1.0F, -1.0F};
   std::size_t behind = s.count;
-  Trial best;
+  LayoutTrial best;
   for (const double quantile : {1.0, 0.99, 0.95, 0.9, 0.8, 0.7, 0.6, 0.5, 0.35}) {
     const auto at = static_cast<std::size_t>(quantile * static_cast<double>(s.count - 1));
     for (std::size_t a = 0; a < 3; ++a) edges[a] = value_at({edges_of[a].data(), behind}, at);
     behind = at + 1;
     if (is_about(edges, tried)) continue;
     tried = edges;
-    Trial trial;
+    LayoutTrial trial;
     trial.divide(s, edges);
     trial.size_cells(s, d, fast);
     trial.estimate(s, d, fast);
@@ -262,8 +265,8 @@ bool CellLayout::choose(const SceneSample& s, const CellDemand& d) noexcept {
 
 namespace {
 
-/// True if guess_cell(x) always returns a cell that contains x. It is monotonic, so tests beside
-/// the bounds of cells suffice.
+/// True if guess_cell(x) always returns a cell that contains x. `guess_cell` is monotonic, so tests
+/// beside the bounds of cells suffice.
 bool agrees(const CellAxis& axis) noexcept {
   for (std::uint32_t c = 0; c < axis.count; ++c) {
     const float before = std::nextafter(axis.from[c], -kEndless);
@@ -276,7 +279,7 @@ bool agrees(const CellAxis& axis) noexcept {
 
 }  // namespace
 
-bool CellLayout::lay_edges(const Trial& trial, const SceneSample& s) noexcept {
+bool CellLayout::lay_edges(const LayoutTrial& trial, const SceneSample& s) noexcept {
   std::size_t total = 0;
   for (CellAxis& axis : axes_) {
     axis.count = static_cast<std::uint32_t>(trial.cells[axis.axis]);
@@ -368,7 +371,7 @@ bool CellLayout::fits(const Structure::ObjectBox& box, std::uint32_t cell) const
 
 bool CellLayout::fits(const Structure::ObjectBox& box, std::size_t row,
                       const Column<std::uint32_t>& start) const noexcept {
-  // Usually the box's lower corner still lies in the cell of the row.
+  // Usually the box's lower corner is still in the cell of the row.
   const std::uint32_t own = cell_of(box);
   if (own != kNoCell && row >= start[own] && row < start[own + 1]) return true;
   const auto after = std::upper_bound(start.begin(), start.end(), row);

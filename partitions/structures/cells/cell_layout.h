@@ -23,7 +23,7 @@ struct SceneSample {
   static constexpr std::size_t kMinSampled = 256;
   static constexpr std::size_t kMaxSampled = 2048;
 
-  /// Samples the pool, of which `live` rows hold objects.
+  /// Samples the pool, of which `live` rows have an object.
   SceneSample(const BoundsPool& pool, std::size_t live, const Execution& execution) noexcept;
 
   std::size_t objects = 0;  ///< live rows of the pool
@@ -44,16 +44,16 @@ struct SceneSample {
 };
 
 /// Requirements of a structure for its layout.
-struct CellDemand {
+struct CellRequirements {
   double slack_share = 0.3;      ///< of the reach: how far objects may drift on either side
   double cells_per_object = 2;   ///< at most, except with few objects
   bool sweep_fast_axis = false;  ///< the fast axis is sorted, not divided
   /// Number of rows that are tested together. On axes other than the fast one, cells are at least
-  /// as wide as a cube that holds this many rows. 0: no limit.
+  /// as wide as a cube that contains this many rows. If it is 0, there is no limit.
   double rows_per_block = 0;
 
   /// The maximum number of cells for `objects` objects.
-  [[nodiscard]] double most_cells(double objects) const noexcept {
+  [[nodiscard]] double max_cells(double objects) const noexcept {
     return std::max(8.0, cells_per_object * objects);
   }
 };
@@ -66,7 +66,7 @@ class CellLayout {
 
   /// Chooses the layout with the lowest estimated cost. Returns false if an allocation fails.
   /// `usable()` is false afterwards if no layout is better than keeping all objects in the tree.
-  [[nodiscard]] bool choose(const SceneSample& sample, const CellDemand& demand) noexcept;
+  [[nodiscard]] bool choose(const SceneSample& sample, const CellRequirements& demand) noexcept;
 
   /// Makes room for a layout of `cells` cells. Returns false if an allocation fails.
   [[nodiscard]] bool reserve(std::size_t cells, Pages pages) noexcept;
@@ -89,7 +89,7 @@ class CellLayout {
   [[nodiscard]] std::uint32_t cell_of(const Structure::ObjectBox& box) const noexcept;
   /// True if the box may stay in the cell.
   [[nodiscard]] bool fits(const Structure::ObjectBox& box, std::uint32_t cell) const noexcept;
-  /// As above for the cell of the row; cell c holds rows [start[c], start[c + 1]).
+  /// As above for the cell of the row; cell c contains rows [start[c], start[c + 1]).
   [[nodiscard]] bool fits(const Structure::ObjectBox& box, std::size_t row,
                           const Column<std::uint32_t>& start) const noexcept;
 
@@ -100,8 +100,8 @@ class CellLayout {
   [[nodiscard]] Bytes bytes() const noexcept { return edges_.bytes(); }
 
  private:
-  struct Trial;
-  [[nodiscard]] bool lay_edges(const Trial& trial, const SceneSample& sample) noexcept;
+  struct LayoutTrial;
+  [[nodiscard]] bool lay_edges(const LayoutTrial& trial, const SceneSample& sample) noexcept;
   void set_axis_pointers() noexcept;
 
   std::array<CellAxis, 3> axes_;

@@ -5,7 +5,7 @@ namespace winnow {
 namespace WINNOW_ISA_NAME {
 namespace {
 
-/// The number of the cell on an axis; computes the same as guess_cell.
+/// Returns the index of the cell on an axis; the result is the same as that of guess_cell.
 Uints number_on(const CellAxis& axis, const Floats& x) {
   const Floats place = (x - axis.origin) * axis.inverse;
   const Floats last = Floats(static_cast<float>(axis.count - 1));

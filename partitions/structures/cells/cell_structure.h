@@ -11,8 +11,8 @@
 
 namespace winnow {
 
-/// Base class of structures whose regular rows lie in consecutive cells: divides pair finding and
-/// the search for misfits into tasks, and owns the starts of cells, both current and planned.
+/// Base class of structures whose regular rows are sorted by cell: divides pair finding and the
+/// search for misfits into tasks, and owns the starts of cells, both current and planned.
 class CellStructure : public Structure {
  public:
   explicit CellStructure(const StructureInput& input) noexcept
@@ -28,7 +28,7 @@ class CellStructure : public Structure {
         },
         rows, most);
   }
-  /// The first build should be available soon, so the tree's rows are ordered coarsely.
+  /// The first build should take little time, so the tree's rows are ordered coarsely.
   [[nodiscard]] KdParts first_parts() const noexcept final { return KdParts::cells; }
   [[nodiscard]] std::size_t pair_tasks() const noexcept final { return pair_cut().tasks(); }
   bool run_pair_task(std::size_t task, PairSink& sink) const noexcept final {
@@ -75,7 +75,7 @@ class CellStructure : public Structure {
   void move_all_to_rest(const RowPlan& plan) const noexcept {
     plan.regular.clear();
     plan.rest.clear();
-    put_all_in_rest(plan);
+    append_all_to_rest(plan);
   }
 
   /// Appends to the rest all live rows that have no cell in the plan's list; `regular` is the

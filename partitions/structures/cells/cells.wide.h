@@ -9,7 +9,7 @@
 namespace winnow::WINNOW_ISA_NAME {
 
 /// The kernel functions of a structure. `Cells` provides find_pairs, visit_runs (visits ranges of
-/// rows that contain all rows overlapping a box), goes_on (where a range ends) and find_misfits.
+/// rows that contain all rows overlapping a box), needs_rows (where a range ends) and find_misfits.
 template <typename Cells, typename View>
 struct CellFunctions {
   static bool self_pairs(const View& view, std::uint32_t begin, std::uint32_t end, PairSink& sink) {
@@ -20,7 +20,7 @@ struct CellFunctions {
   template <bool Filtered>
   static bool run(const View& view, const QueryBatch& batch, PairSink& sink) {
     HitList<Filtered> hits(view.rows, batch, sink);
-    RunList list(view.rows, batch.column, hits, Cells::goes_on(view), sink);
+    RunList list(view.rows, batch.column, hits, Cells::needs_rows(view), sink);
     for (std::uint32_t k = batch.begin; k < batch.end; ++k) {
       const std::uint32_t row = batch.rows != nullptr ? batch.rows[k] : k;
       const QueryBox q(batch.column, row);

@@ -16,9 +16,9 @@ WINNOW_DEFINE_KERNELS(FlatGridKernels, flat_grid_kernels)
 
 namespace {
 
-// If a cell holds more objects than this, the tree prunes them better.
+// If a cell contains more objects than this, the tree prunes them better.
 constexpr std::uint32_t kOverfull = 48;
-constexpr CellDemand kDemand{.rows_per_block = 10};
+constexpr CellRequirements kRequirements{.rows_per_block = 10};
 
 /// Uniform grid. Each object belongs to the cell of its box's lower corner, and rows are sorted by
 /// cell (counting sort), so that the cells of a line are one range of rows. Blocks of 16 rows of a
@@ -35,7 +35,7 @@ class FlatGrid final : public CellStructure {
 
  private:
   [[nodiscard]] bool reserve(const BuildRoom& room) noexcept override;
-  [[nodiscard]] Planned plan(const RowPlan& plan, unsigned stage) noexcept override;
+  [[nodiscard]] PlanStatus plan(const RowPlan& plan, unsigned stage) noexcept override;
   [[nodiscard]] std::size_t plan_passes() const noexcept override { return 2; }
   void finish_build(const RowPlan& plan, bool moved) noexcept override;
   [[nodiscard]] bool fits(std::size_t row, const ObjectBox& place) const noexcept override;
@@ -50,7 +50,7 @@ class FlatGrid final : public CellStructure {
   void add_bytes(Footprint& footprint) const noexcept override;
   [[nodiscard]] std::size_t cells() const noexcept override;
 
-  [[nodiscard]] Planned choose_cells(const RowPlan& plan) noexcept;
+  [[nodiscard]] PlanStatus choose_cells(const RowPlan& plan) noexcept;
   void sort_by_cell(const RowPlan& plan) noexcept;
   [[nodiscard]] bool drop_overfull(const CountingSort& sort, const RowPlan& plan) const noexcept;
   [[nodiscard]] GridView view() const noexcept;
@@ -64,29 +64,29 @@ FlatGrid::FlatGrid(const StructureInput& input) noexcept
 
 bool FlatGrid::reserve(const BuildRoom& room) noexcept {
   const auto cells =
-      static_cast<std::size_t>(kDemand.most_cells(static_cast<double>(room.objects)));
+      static_cast<std::size_t>(kRequirements.max_cells(static_cast<double>(room.objects)));
   return reserve_cells(room, cells, room.objects) && planned_.reserve(cells, room.pages);
 }
 
-Planned FlatGrid::plan(const RowPlan& plan, unsigned stage) noexcept {
+PlanStatus FlatGrid::plan(const RowPlan& plan, unsigned stage) noexcept {
   if (stage == 0) return choose_cells(plan);
   sort_by_cell(plan);
-  return Planned::done;
+  return PlanStatus::done;
 }
 
-// Leaves the cell of each row in `plan.list`.
-Planned FlatGrid::choose_cells(const RowPlan& plan) noexcept {
+// Writes the cell of each row to `plan.list`.
+PlanStatus FlatGrid::choose_cells(const RowPlan& plan) noexcept {
   const SceneSample sample(pool(), plan.objects, execution());
-  if (!planned_.choose(sample, kDemand)) return Planned::out_of_memory;
+  if (!planned_.choose(sample, kRequirements)) return PlanStatus::out_of_memory;
   if (!planned_.usable()) {
-    put_all_in_rest(plan);
-    return Planned::done;
+    append_all_to_rest(plan);
+    return PlanStatus::done;
   }
   if (!plan.list.resize(plan.rows) || !planned_start_.resize(planned_.cells() + 1)) {
-    return Planned::out_of_memory;
+    return PlanStatus::out_of_memory;
   }
   planned_.find_cells(pool(), plan.list.data(), execution());
-  return Planned::goes_on;
+  return PlanStatus::unfinished;
 }
 
 void FlatGrid::sort_by_cell(const RowPlan& plan) noexcept {

@@ -12,7 +12,7 @@ struct Run {
   std::uint32_t end;
 };
 
-/// The rows of cells [first, last] of a line.
+/// Returns the rows of cells [first, last] of a line.
 Run run_of(const GridView& grid, std::uint32_t line, std::uint32_t first, std::uint32_t last) {
   const std::uint32_t* start = grid.start + std::size_t{line} * grid.axis[0].count;
   return {start[first], start[last + 1]};
@@ -78,7 +78,7 @@ struct GridCells {
     return true;
   }
 
-  static ToTheEnd goes_on(const GridView&) { return {}; }
+  static AllRows needs_rows(const GridView&) { return {}; }
   template <typename Visit>
   static bool visit_runs(const GridView& grid, const QueryBox& q, Visit&& visit) {
     std::uint32_t first[3];

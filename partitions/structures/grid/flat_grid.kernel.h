@@ -7,7 +7,7 @@
 
 namespace winnow {
 
-/// Rows in cell order: cell c holds rows [start[c], start[c + 1]). Cells along axis 0 are
+/// Rows in cell order: cell c contains rows [start[c], start[c + 1]). Cells along axis 0 are
 /// consecutive, so neighbouring cells of a line are one range of rows.
 struct GridView {
   RowView rows;

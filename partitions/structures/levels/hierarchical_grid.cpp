@@ -24,8 +24,7 @@ WINNOW_DEFINE_KERNELS(LevelRowsKernels, level_rows_kernels)
 
 namespace {
 
-// If a cell holds more objects than this, and a finer division of the line does not separate them,
-// the tree prunes them better.
+// If a cell contains more objects than this, the tree prunes them better.
 constexpr std::size_t kCrowd = 512;
 // Objects per cell of a line.
 constexpr std::size_t kInCell = 4;
@@ -57,7 +56,8 @@ struct StepRange {
   std::uint32_t last;
 };
 
-// The steps of a cell. Lines that run backwards count from the other end.
+// Returns the steps of a cell, counted from the low end of the axis. A line that runs backwards
+// (`back`) stores steps counted from the high end.
 StepRange steps_of_cell(const GridLevel& g, const GridLine& line, bool back,
                         std::uint32_t cell) noexcept {
   const std::uint32_t first = line.first + (cell << line.shift);
@@ -87,8 +87,8 @@ Aabb cell_box(const GridLevel& g, const GridLine& line, std::uint32_t number, st
   return box;
 }
 
-/// Returns the position nearest to x whose step lies within the range. Returns NaN, which fails
-/// every comparison, if floats are too coarse to find such a position.
+/// Returns the position nearest to x whose step is within the range. Returns NaN, which fails every
+/// comparison, if floats are too coarse to find such a position.
 float nearest_within(const LevelAxis& axis, const StepRange& steps, float x) noexcept {
   constexpr int kMaxTries = 4;
   const std::uint32_t step = cell_at(axis, x);
@@ -112,7 +112,7 @@ float nearest_within(const LevelAxis& axis, const StepRange& steps, float x) noe
 /// which ranges of sizes are levels of their own; a scene with one size has one level. It needs no
 /// parameter and no world bounds.
 ///
-/// An object belongs to one cell: on its level, the cell of its box's lower corner. Cells lie in
+/// An object belongs to one cell: on its level, the cell of its box's lower corner. Cells form
 /// lines. Only lines with objects are stored, and the cells of a line extend from its first object
 /// to its last, so memory depends on the number of objects, not on the size of the world. Rows are
 /// sorted by level, line and cell. Blocks of 16 consecutive rows are compact and search for
@@ -135,7 +135,7 @@ class HierarchicalGrid final : public CellStructure {
  private:
   [[nodiscard]] bool reserve(const BuildRoom& room) noexcept override;
   [[nodiscard]] std::size_t max_holes() const noexcept override { return kMaxHoles; }
-  [[nodiscard]] Planned plan(const RowPlan& plan, unsigned stage) noexcept override;
+  [[nodiscard]] PlanStatus plan(const RowPlan& plan, unsigned stage) noexcept override;
   [[nodiscard]] std::size_t plan_passes() const noexcept override { return 4; }
   void finish_build(const RowPlan& plan, bool moved) noexcept override;
   [[nodiscard]] bool fits(std::size_t row, const ObjectBox& place) const noexcept override;
@@ -156,8 +156,8 @@ class HierarchicalGrid final : public CellStructure {
   [[nodiscard]] std::size_t cells() const noexcept override;
 
   /// Levels and their lines.
-  struct Lines {
-    explicit Lines(std::pmr::memory_resource* memory) noexcept
+  struct LevelLines {
+    explicit LevelLines(std::pmr::memory_resource* memory) noexcept
         : level(memory), line(memory), number(memory), rank(memory) {}
 
     void clear() noexcept {
@@ -167,7 +167,7 @@ class HierarchicalGrid final : public CellStructure {
       number.clear();
       rank.clear();
     }
-    void swap(Lines& other) noexcept {
+    void swap(LevelLines& other) noexcept {
       level.swap(other.level);
       std::swap(levels, other.levels);
       line.swap(other.line);
@@ -178,7 +178,7 @@ class HierarchicalGrid final : public CellStructure {
     [[nodiscard]] Bytes bytes() const noexcept { return bytes_of(level, line, number, rank); }
 
     Column<GridLevel> level;
-    std::size_t levels = 0;  // levels that hold rows; while planning, the finished ones
+    std::size_t levels = 0;  // levels that have rows; while planning, the finished ones
     Column<GridLine> line;
     Column<std::uint32_t> number;  // of each line
     Column<std::uint32_t> rank;    // by line number: the first stored line >= it
@@ -186,7 +186,7 @@ class HierarchicalGrid final : public CellStructure {
 
   /// The rows of a level, sorted by cell. An item has the row in its low 32 bits and a key above.
   /// The key is line << step_bits | step or, if that exceeds 32 bits (not `packed`), only the line.
-  struct Sorted {
+  struct SortedRows {
     const std::uint64_t* items = nullptr;
     std::size_t count = 0;
     unsigned line_bits = 0;
@@ -200,13 +200,13 @@ class HierarchicalGrid final : public CellStructure {
       const std::uint64_t key = items[i] >> 32U;
       return static_cast<std::uint32_t>(packed ? key >> step_bits : key);
     }
-    /// Only if keys are packed.
+    /// Requires packed keys.
     [[nodiscard]] std::uint32_t step(std::size_t i) const {
       return static_cast<std::uint32_t>(items[i] >> 32U & ((std::uint64_t{1} << step_bits) - 1));
     }
   };
 
-  [[nodiscard]] Planned begin_plan(const RowPlan& plan) noexcept;
+  [[nodiscard]] PlanStatus begin_plan(const RowPlan& plan) noexcept;
   template <typename T>
   [[nodiscard]] bool make_room(Column<T>& column, std::size_t count) noexcept;
   [[nodiscard]] bool add_spare_cells(std::size_t objects) noexcept;
@@ -232,9 +232,9 @@ class HierarchicalGrid final : public CellStructure {
                                       std::size_t row) const noexcept;
   [[nodiscard]] LevelsView view() const noexcept;
 
-  Lines used_;
-  Lines planned_;
-  // By row: the lower bound on the fast axis, or the position nearest to it within the row's cell.
+  LevelLines used_;
+  LevelLines planned_;
+  // By row: the object's lower bound on the fast axis at the build, clamped to the row's cell.
   Column<float> key_;
 
   // While planning: the first row of each level, and the progress of the plan.
@@ -243,7 +243,7 @@ class HierarchicalGrid final : public CellStructure {
   std::size_t level_ = 0;
   PlanStep step_ = PlanStep::places;
   bool grew_ = false;  // columns of lines and cells grew since the last finished plan
-  Sorted sorted_;
+  SortedRows sorted_;
 };
 
 HierarchicalGrid::HierarchicalGrid(const StructureInput& input) noexcept
@@ -266,7 +266,7 @@ LinePlace place_on(const GridLevel& g, const Structure::ObjectBox& box) noexcept
 constexpr std::size_t kFewToSort = 128;
 
 // A level's table of lines has at most half as many entries as objects, plus a constant.
-constexpr std::size_t most_ranks(std::size_t objects) noexcept {
+constexpr std::size_t max_ranks(std::size_t objects) noexcept {
   return objects / 2 + kMaxLevels * (kMoreLines + 1);
 }
 
@@ -279,26 +279,26 @@ bool HierarchicalGrid::reserve(const BuildRoom& room) noexcept {
          planned_.level.reserve(kMaxLevels, room.pages) &&
          planned_.line.reserve(objects, room.pages) &&
          planned_.number.reserve(objects, room.pages) &&
-         planned_.rank.reserve(most_ranks(objects), room.pages);
+         planned_.rank.reserve(max_ranks(objects), room.pages);
 }
 
-Planned HierarchicalGrid::plan(const RowPlan& plan, unsigned stage) noexcept {
+PlanStatus HierarchicalGrid::plan(const RowPlan& plan, unsigned stage) noexcept {
   if (stage == 0) return begin_plan(plan);
   // Runs steps of levels that take about as long as one pass over all rows.
   for (std::size_t rows = 0; level_ < all_levels_ && 2 * rows < plan.objects;) {
     rows += rows_of_level(plan).size();
-    if (!run_step(plan)) return Planned::out_of_memory;
+    if (!run_step(plan)) return PlanStatus::out_of_memory;
   }
-  if (level_ < all_levels_) return Planned::goes_on;
+  if (level_ < all_levels_) return PlanStatus::unfinished;
   key_.set_size(plan.regular.size() + kBlockRows);
   if (!make_room(planned_start_, planned_start_.size() + 1) || !add_spare_cells(plan.objects)) {
-    return Planned::out_of_memory;
+    return PlanStatus::out_of_memory;
   }
   (void)planned_start_.push_back(static_cast<std::uint32_t>(plan.regular.size()));
-  return Planned::done;
+  return PlanStatus::done;
 }
 
-// Makes room for `count` elements, and notes if this allocated memory.
+// Makes room for `count` elements; sets grew_ if this allocates memory.
 template <typename T>
 bool HierarchicalGrid::make_room(Column<T>& column, std::size_t count) noexcept {
   if (count <= column.capacity()) return true;
@@ -314,38 +314,39 @@ bool HierarchicalGrid::add_spare_cells(std::size_t objects) noexcept {
     return column.reserve(std::min(most, size + size / 4 + 64));
   };
   return leave(planned_start_, objects + 1) && leave(planned_.line, objects) &&
-         leave(planned_.number, objects) && leave(planned_.rank, most_ranks(objects));
+         leave(planned_.number, objects) && leave(planned_.rank, max_ranks(objects));
 }
 
-Planned HierarchicalGrid::begin_plan(const RowPlan& plan) noexcept {
+PlanStatus HierarchicalGrid::begin_plan(const RowPlan& plan) noexcept {
   const std::size_t rows = plan.rows;
   planned_.clear();
   planned_start_.clear();
   // The first build has no more rows than objects. Later builds of a moving scene have a varying
-  // number; this is enough for nearly all of them.
+  // number of rows; `later` is enough for nearly all of them.
   const std::size_t first = plan.objects + kMaxHoles;
   const std::size_t later = std::max(rows, plan.objects + plan.objects / 8 + 256);
-  if (!plan.list.reserve(rows <= first ? first : later)) return Planned::out_of_memory;
+  if (!plan.list.reserve(rows <= first ? first : later)) return PlanStatus::out_of_memory;
   plan.list.set_size(rows);
   for_each_even_range(execution(), rows, kRowsPerRange, [&](std::size_t begin, std::size_t end) {
     level_rows_kernels().octaves(box_columns(pool()).data(), begin, end, plan.list.data());
   });
   const SizeClasses classes(pool(), {plan.list.data(), rows}, execution());
   if (classes.objects() < kMinInCells) {
-    put_all_in_rest(plan);
-    return Planned::done;
+    append_all_to_rest(plan);
+    return PlanStatus::done;
   }
-  // Sized by objects, not rows, so that a later build of as many objects does not allocate.
+  // Columns are sized by objects, not rows, so that a later build of as many objects does not
+  // allocate.
   const std::size_t count = classes.objects();
   const std::size_t room = count + kMaxHoles;
   if (!key_.reserve(room) || !plan.regular.reserve(room + kBlockRows) ||
       !plan.items.resize(2 * count) || !planned_.level.reserve(kMaxLevels)) {
-    return Planned::out_of_memory;
+    return PlanStatus::out_of_memory;
   }
   sort_by_level(classes, plan);
   level_ = 0;
   step_ = PlanStep::places;
-  return Planned::goes_on;
+  return PlanStatus::unfinished;
 }
 
 // Groups the rows by level, at the end of `items`. Sorting a level overwrites at most the rows of
@@ -405,7 +406,7 @@ void HierarchicalGrid::visit_moved(const RowPlan& plan, Visit&& visit) const {
   for (const RowMove& move : plan.moves) {
     const auto at = std::ranges::lower_bound(rows, move.row);
     if (at == rows.end() || *at != move.row) continue;
-    const std::size_t now = row_now(plan, move.row);
+    const std::size_t now = current_row(plan, move.row);
     if (now != move.row) visit(static_cast<std::size_t>(at - rows.begin()), now);
   }
 }
@@ -435,11 +436,11 @@ void HierarchicalGrid::find_places(const RowPlan& plan) noexcept {
   find_places_of_moved(plan);
 }
 
-// A row that has become empty gets the place of the object that left it.
+// A row that has become empty gets the cell of the object that was moved out of it.
 void HierarchicalGrid::find_places_of_moved(const RowPlan& plan) noexcept {
   const std::span<const std::uint32_t> rows = rows_of_level(plan);
   visit_moved(plan, [&](std::size_t i, std::size_t row) {
-    const LinePlace at = place_on(planned_.level[planned_.levels], place_of(row));
+    const LinePlace at = place_on(planned_.level[planned_.levels], box_of_row(row));
     const std::uint32_t line = sorted_.packed ? at.line << sorted_.step_bits : 0;
     plan.items[i] = std::uint64_t{line | at.step} << 32U | rows[i];
   });
@@ -448,7 +449,7 @@ void HierarchicalGrid::find_places_of_moved(const RowPlan& plan) noexcept {
 void HierarchicalGrid::sort_places(const RowPlan& plan) noexcept {
   std::uint64_t* const room = plan.items.data();
   std::uint64_t* const spare = room + plan.items.size() / 2;
-  Sorted& own = sorted_;
+  SortedRows& own = sorted_;
   if (own.packed && own.count < kFewToSort) {
     std::sort(room, room + own.count);
     own.items = room;
@@ -459,7 +460,7 @@ void HierarchicalGrid::sort_places(const RowPlan& plan) noexcept {
   if (!own.packed) {
     for (std::size_t i = 0; i < own.count; ++i) {
       const auto row = static_cast<std::uint32_t>(sorted[i]);
-      const ObjectBox place = place_of(row_now(plan, row));
+      const ObjectBox place = box_of_row(current_row(plan, row));
       const std::uint32_t line = place_on(planned_.level[planned_.levels], place).line;
       sorted[i] = std::uint64_t{line} << 32U | row;
     }
@@ -472,7 +473,7 @@ void HierarchicalGrid::sort_places(const RowPlan& plan) noexcept {
 std::uint32_t HierarchicalGrid::step_of(const RowPlan& plan, std::size_t i) const noexcept {
   if (sorted_.packed) return sorted_.step(i);
   const GridLevel& level = planned_.level[planned_.levels];
-  return place_on(level, place_of(row_now(plan, sorted_.row(i)))).step;
+  return place_on(level, box_of_row(current_row(plan, sorted_.row(i)))).step;
 }
 
 bool HierarchicalGrid::lay_lines(const RowPlan& plan) noexcept {
@@ -498,7 +499,7 @@ bool HierarchicalGrid::lay_lines(const RowPlan& plan) noexcept {
   return rank_lines(level);
 }
 
-// Divides a line into cells that would have kInCell objects each if they were spread evenly.
+// Divides a line into cells that would have kInCell objects each if objects were spread evenly.
 bool HierarchicalGrid::add_line(std::size_t begin, std::size_t end, const RowPlan& plan) {
   const std::size_t most = (end - begin + kInCell - 1) / kInCell;
   Column<std::uint32_t>& starts = planned_start_;
@@ -530,7 +531,7 @@ void HierarchicalGrid::fill_cells(std::span<std::uint32_t> start, const GridLine
   std::ranges::fill(start, ~0U);
   const auto first = static_cast<std::uint32_t>(plan.regular.size());
   // A copy: writes to `start` could alias the member.
-  const Sorted sorted = sorted_;
+  const SortedRows sorted = sorted_;
   const auto note = [start, first, begin, end, line](auto&& step_at) {
     for (std::size_t i = end; i-- > begin;) {
       start[(step_at(i) - line.first) >> line.shift] =
@@ -578,7 +579,8 @@ void HierarchicalGrid::move_crowds_to_rest(std::span<std::uint32_t> start,
   plan.regular.set_size(to);
 }
 
-// Builds a table of all lines if they are not many more than the objects.
+// Builds a table of all lines of a level if their number is at most half the number of objects,
+// plus kMoreLines.
 bool HierarchicalGrid::rank_lines(GridLevel& level) {
   const std::size_t lines =
       std::size_t{level.mids} * (static_cast<std::size_t>(level.slow.last) + 1);
@@ -622,7 +624,7 @@ void HierarchicalGrid::clamp_keys_to_cells(std::uint32_t begin, std::uint32_t en
     const bool back = (used_.number[l] & 1U) != 0;
     for (std::uint32_t cell = 0; cell <= line.last_cell; ++cell) {
       const StepRange own = steps_of_cell(*level, line, back, cell);
-      // Rows between two levels hold no objects.
+      // Rows between two levels have no objects.
       const std::uint32_t end_row = std::min(start_[line.cell + cell + 1], level->end_row);
       for (std::uint32_t row = start_[line.cell + cell]; row < end_row; ++row) {
         key_[row] = nearest_within(level->fast, own, key_[row]);
@@ -631,18 +633,18 @@ void HierarchicalGrid::clamp_keys_to_cells(std::uint32_t begin, std::uint32_t en
   }
 }
 
-// Returns the stored line that holds a row of the level, whose object is at `place`.
+// Returns the stored line that contains a row of the level; the object of this row is at `place`.
 std::uint32_t HierarchicalGrid::line_of(const GridLevel& g, const ObjectBox& place,
                                         std::size_t row) const noexcept {
   const Column<GridLine>& lines = used_.line;
-  const auto holds = [&](std::uint32_t line) {
+  const auto contains_row = [&](std::uint32_t line) {
     return row >= start_[lines[line].cell] &&
            row < start_[lines[line].cell + lines[line].last_cell + 1];
   };
   if (g.ranked) {
-    // Usually the box's lower corner still lies in the line that holds the row.
+    // Usually the box's lower corner is still in the line that contains the row.
     const std::uint32_t line = used_.rank[g.first_rank + place_on(g, place).line];
-    if (line < g.end_line && holds(line)) return line;
+    if (line < g.end_line && contains_row(line)) return line;
   }
   const auto after =
       std::partition_point(lines.begin() + g.first_line, lines.begin() + g.end_line,

@@ -103,7 +103,7 @@ class CellBoundsTest {
   float to_;
 };
 
-struct Levels {
+struct LevelCells {
   template <bool Filtered>
   static bool find_pairs(const LevelsView& grid, std::uint32_t begin, std::uint32_t end,
                          PairSink& sink) {
@@ -123,7 +123,7 @@ struct Levels {
     return true;
   }
 
-  static ToTheEnd goes_on(const LevelsView&) { return {}; }
+  static AllRows needs_rows(const LevelsView&) { return {}; }
   template <typename Visit>
   static bool visit_runs(const LevelsView& grid, const QueryBox& q, Visit&& visit) {
     for (std::uint32_t l = 0; l < grid.levels; ++l) {
@@ -157,6 +157,6 @@ struct Levels {
 }  // namespace WINNOW_ISA_NAME
 
 extern const HierarchicalGridKernels WINNOW_KERNEL_TABLE(hierarchical_grid_kernels) =
-    WINNOW_ISA_NAME::CellFunctions<WINNOW_ISA_NAME::Levels, LevelsView>::table();
+    WINNOW_ISA_NAME::CellFunctions<WINNOW_ISA_NAME::LevelCells, LevelsView>::table();
 
 }  // namespace winnow

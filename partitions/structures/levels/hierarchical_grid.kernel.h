@@ -7,10 +7,10 @@
 
 namespace winnow {
 
-/// One axis of a level's cells. A formula gives the cell of x, so an axis may have millions of
-/// cells. The formula is monotonic in x even with float rounding, so the cells from one x to
-/// another contain all objects in between. Objects keep their cell while they drift by up to
-/// `slack`.
+/// One axis of a level's cells. `cell_at` computes the cell of a position and reads no table, so an
+/// axis may have millions of cells. The result is monotonic in the position even with float
+/// rounding, so the cells from one position to another contain all objects with a lower bound in
+/// between. An object keeps its cell if its lower bound has moved by at most `slack`.
 struct LevelAxis {
   std::uint32_t axis = 0;  ///< 0, 1, 2 for x, y, z
   float origin = 0.0F;
@@ -25,11 +25,11 @@ static inline std::uint32_t cell_at(const LevelAxis& a, float x) {
   const float t = (x - a.origin) * a.inverse;
   return static_cast<std::uint32_t>(t > 0.0F ? (t < a.last ? t : a.last) : 0.0F);
 }
-/// Returns the first cell that may hold an object that extends to x or beyond.
+/// Returns the first cell that may contain an object that extends to x or beyond.
 static inline std::uint32_t first_cell(const LevelAxis& a, float x) {
   return cell_at(a, x - a.pad);
 }
-/// Returns the last cell that may hold an object with a lower bound <= x.
+/// Returns the last cell that may contain an object with a lower bound <= x.
 static inline std::uint32_t last_cell(const LevelAxis& a, float x) {
   return cell_at(a, x + a.slack);
 }
@@ -44,9 +44,9 @@ struct GridLine {
   std::uint32_t cell = 0;  ///< index of cell 0 in `start`
 };
 
-/// The cells of one level. Lines lie on the middle and the slow axis and are numbered in
-/// alternating directions, so that successive lines are neighbours. Only lines with objects are
-/// stored, by ascending number.
+/// The cells of one level. Each line is one cell of the middle and one of the slow axis. Lines are
+/// numbered in alternating directions, so that successive lines are neighbours. Only lines with
+/// objects are stored, by ascending number.
 struct GridLevel {
   LevelAxis fast;
   LevelAxis mid;

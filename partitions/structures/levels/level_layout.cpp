@@ -16,15 +16,15 @@ namespace {
 
 // How far objects of a level may drift, as a share of a cell, in addition to kSlackOfEdge.
 constexpr double kSlackOfCell = 0.1;
-// The width of lines in edges of a cube that holds a block of rows.
+// The width of lines in edges of a cube that contains a block of rows.
 constexpr double kLineWidth = 0.95;
 constexpr double kMinWidth = 0.25;       // in longest edges
 constexpr double kMaxLines = 1U << 15U;  // along an axis
 constexpr unsigned kMaxStepBits = 20;
 constexpr double kStepsInCell = 8.0;
 
-// Index of the i-th sample of one row in `step`, at a hashed offset: rows are in the order of
-// earlier cells, and a regular stride could alias with it.
+// Returns the index of the i-th sample of one row in `step`, at a hashed offset: rows are in the
+// order of earlier cells, and a regular stride could alias with this order.
 std::size_t sampled(std::size_t i, std::size_t step) noexcept {
   const std::uint64_t hash = (i + 1) * 0x9E3779B97F4A7C15ULL;
   return i * step + static_cast<std::size_t>((hash >> 32U) % step);
@@ -43,8 +43,8 @@ CoordinateRange range_of(const BoundsPool& pool, std::size_t axis, std::size_t c
   constexpr std::size_t kMinSampled = 64;
   constexpr std::size_t kMaxSampled = 512;
   std::array<float, kMaxSampled> low;
-  const std::size_t wanted = std::clamp(count / 8, kMinSampled, kMaxSampled);
-  const std::size_t step = std::max<std::size_t>(1, count / wanted);
+  const std::size_t sample_size = std::clamp(count / 8, kMinSampled, kMaxSampled);
+  const std::size_t step = std::max<std::size_t>(1, count / sample_size);
   std::size_t n = 0;
   for (std::size_t i = 0; i < count / step && n < kMaxSampled; ++i) {
     const std::size_t row = row_of(sampled(i, step));
@@ -65,10 +65,10 @@ double mean_objects_per_cube(const BoundsPool& pool, std::span<const std::uint32
                              const std::array<CoordinateRange, 3>& range, double edge) {
   constexpr std::size_t kSlots = 16384;
   std::array<std::uint8_t, kSlots> cube{};
-  const std::size_t wanted = std::clamp<std::size_t>(rows.size() / 32, 256, 4096);
-  const std::size_t step = std::max<std::size_t>(1, rows.size() / wanted);
+  const std::size_t sample_size = std::clamp<std::size_t>(rows.size() / 32, 256, 4096);
+  const std::size_t step = std::max<std::size_t>(1, rows.size() / sample_size);
   std::size_t count = 0;
-  std::size_t met = 0;
+  std::size_t sampled_pairs = 0;
   for (std::size_t i = 0; i < rows.size() / step; ++i) {
     const std::uint32_t row = rows[sampled(i, step)];
     if (pool.ids()[row] == kNoObject) continue;
@@ -81,12 +81,12 @@ double mean_objects_per_cube(const BoundsPool& pool, std::span<const std::uint32
       hash ^= hash >> 29U;
     }
     std::uint8_t& in = cube[hash % kSlots];
-    met += in;
+    sampled_pairs += in;
     if (in < 255) ++in;
   }
   const double n = static_cast<double>(std::max<std::size_t>(1, count));
   const double by_chance = 0.5 * n * n / static_cast<double>(kSlots);
-  const double pairs = std::max(0.0, static_cast<double>(met) - by_chance);
+  const double pairs = std::max(0.0, static_cast<double>(sampled_pairs) - by_chance);
   return 1.0 + 2.0 * pairs / n * static_cast<double>(rows.size()) / n;
 }
 
@@ -140,7 +140,8 @@ void lay_level(const BoundsPool& pool, std::span<const std::uint32_t> rows,
     length[a] = range[a].length();
   }
   double width = edge_for(kRowsOfBlock, static_cast<double>(rows.size()), length);
-  // In crowded scenes, narrows the cells until an object's cube holds about one block of rows.
+  // In crowded scenes, makes the cells narrower until the cube of a raster of this width that
+  // contains an object has about one block of objects, on average over the objects.
   for (int i = 0; i < 6 && width > 0.0; ++i) {
     const double found = mean_objects_per_cube(pool, rows, range, width);
     if (found < 1.6 * kRowsOfBlock) break;

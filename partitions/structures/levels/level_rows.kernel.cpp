@@ -84,7 +84,8 @@ void places(const GridLevel& level, const float* const* boxes, const std::uint32
     write_cells(level.mid, own.of(boxes[level.mid.axis]), mid);
     write_cells(level.slow, own.of(boxes[level.slow.axis]), slow);
     write_cells(level.fast, own.of(boxes[level.fast.axis]), step);
-    // Without a branch: odd lines, and the steps of odd lines, run backwards.
+    // Without a branch: the lines of odd cells of the slow axis, and the steps of odd lines, run
+    // backwards.
     for (std::size_t k = 0; k < kStep; ++k) {
       const std::uint32_t odd_row = 0U - (slow[k] & 1U);
       const std::uint32_t line = slow[k] * mids + ((mid[k] ^ odd_row) + (mids & odd_row));

@@ -8,7 +8,7 @@
 namespace winnow {
 
 /// Number of octaves. The octave of an object is the biased exponent of its longest edge as a
-/// float; 0 for edges near zero.
+/// float; 0 for an edge that is 0 or denormal.
 inline constexpr std::uint32_t kOctaves = 256;
 /// The octave of empty rows and of rows with an edge of at least `kUnboundedEdge`.
 inline constexpr std::uint32_t kNoOctave = kOctaves - 1;

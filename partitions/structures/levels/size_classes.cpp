@@ -29,8 +29,8 @@ std::size_t range_length(std::size_t rows) noexcept {
   return even_range_length(rows, kMinRows, kMaxSizeRanges);
 }
 
-// Returns the length of a range on each axis: n objects that are spread evenly over it have this
-// sum of positions and this sum of their squares.
+// Returns, for each axis, the length of a range such that n objects spread evenly over the range
+// have this sum of positions and this sum of squared positions.
 std::array<double, 3> spread_of(const std::array<double, 3>& sum,
                                 const std::array<double, 3>& square, double n) {
   std::array<double, 3> range{};
@@ -43,10 +43,10 @@ std::array<double, 3> spread_of(const std::array<double, 3>& sum,
 
 }  // namespace
 
-double edge_for(double wanted, double count, const std::array<double, 3>& range) noexcept {
+double edge_for(double target, double count, const std::array<double, 3>& range) noexcept {
   std::array<double, 3> sorted = range;
   std::sort(sorted.begin(), sorted.end());
-  std::array<double, 4> factor{wanted / count};
+  std::array<double, 4> factor{target / count};
   for (std::size_t a = 0; a < 3; ++a) factor[3 - a] = std::max(sorted[a], DBL_MIN);
   for (unsigned a = 0; a < 3; ++a) {
     const unsigned axes = 3 - a;
@@ -57,7 +57,7 @@ double edge_for(double wanted, double count, const std::array<double, 3>& range)
 }
 
 /// Sums over sampled objects of a class.
-struct SizeClasses::Sample {
+struct SizeClasses::ClassSample {
   std::size_t count;
   std::array<double, 3> edge;
   std::array<double, 3> place;
@@ -72,7 +72,7 @@ struct SizeClasses::Sample {
       square[a] += low * low;
     }
   }
-  void add(const Sample& other) noexcept {
+  void add(const ClassSample& other) noexcept {
     count += other.count;
     for (std::size_t a = 0; a < 3; ++a) {
       edge[a] += other.edge[a];
@@ -83,7 +83,7 @@ struct SizeClasses::Sample {
 };
 
 /// Adjacent classes that share a level.
-struct SizeClasses::Group {
+struct SizeClasses::ClassGroup {
   std::size_t first = 0;
   std::size_t last = 0;
   double count = 0.0;
@@ -105,7 +105,7 @@ SizeClasses::SizeClasses(const BoundsPool& pool, std::span<const std::uint32_t> 
     quarter = {};
     for (std::size_t row = begin; row < end; ++row) ++quarter[row % 4][octave[row]];
   });
-  Counts count{};
+  OctaveCounts count{};
   for (std::size_t p = 0; p * length < octave.size(); ++p) {
     for (const auto& quarter : part[p]) {
       for (std::size_t o = 0; o < kNoOctave; ++o) count[o] += quarter[o];
@@ -121,8 +121,8 @@ SizeClasses::SizeClasses(const BoundsPool& pool, std::span<const std::uint32_t> 
   join();
 }
 
-// Samples about equally many objects of every class. The result does not depend on the number of
-// threads.
+// Samples one object in kSampled of every class, but at least kMinSampled and at most kMaxSampled.
+// The result does not depend on the number of threads.
 void SizeClasses::measure(const BoundsPool& pool, std::span<const std::uint32_t> octave,
                           const Execution& execution) noexcept {
   std::array<std::uint8_t, kOctaves> class_at{};
@@ -133,10 +133,11 @@ void SizeClasses::measure(const BoundsPool& pool, std::span<const std::uint32_t>
     step[c] = 1 + count / std::clamp(count / kSampled, kMinSampled, kMaxSampled);
   }
   // The only class, if all objects are of one class.
-  const auto holds = [](const Class& c) { return c.count != 0; };
-  const auto only = static_cast<std::size_t>(std::ranges::find_if(class_, holds) - class_.begin());
-  const bool one_class = std::ranges::count_if(class_, holds) == 1;
-  std::array<std::array<Sample, kClasses>, kMaxSizeRanges> part;
+  const auto has_objects = [](const SizeClass& c) { return c.count != 0; };
+  const auto only =
+      static_cast<std::size_t>(std::ranges::find_if(class_, has_objects) - class_.begin());
+  const bool one_class = std::ranges::count_if(class_, has_objects) == 1;
+  std::array<std::array<ClassSample, kClasses>, kMaxSizeRanges> part;
   const std::size_t length = range_length(octave.size());
   for_each_range(execution, octave.size(), length, [&](std::size_t begin, std::size_t end) {
     part[begin / length] = {};
@@ -160,8 +161,8 @@ void SizeClasses::measure(const BoundsPool& pool, std::span<const std::uint32_t>
     }
   });
   for (std::size_t own = 0; own < kClasses; ++own) {
-    Class& c = class_[own];
-    Sample taken{};
+    SizeClass& c = class_[own];
+    ClassSample taken{};
     for (std::size_t p = 0; p * length < octave.size(); ++p) taken.add(part[p][own]);
     const double all = static_cast<double>(c.count);
     const double each = static_cast<double>(std::max<std::size_t>(1, taken.count));
@@ -175,7 +176,7 @@ void SizeClasses::measure(const BoundsPool& pool, std::span<const std::uint32_t>
 }
 
 // If sizes span more octaves than there are classes, chooses the octaves with the most objects.
-void SizeClasses::choose_octaves(const Counts& count) noexcept {
+void SizeClasses::choose_octaves(const OctaveCounts& count) noexcept {
   std::size_t inside = 0;
   std::size_t most = 0;
   for (std::size_t top = 1; top < count.size(); ++top) {
@@ -198,8 +199,8 @@ std::size_t SizeClasses::level_of(std::uint32_t octave) const noexcept {
   return size_class < kClasses ? level_[size_class] : levels_;
 }
 
-SizeClasses::Group SizeClasses::group_of(std::size_t first, std::size_t last) const noexcept {
-  Group group;
+SizeClasses::ClassGroup SizeClasses::group_of(std::size_t first, std::size_t last) const noexcept {
+  ClassGroup group;
   group.first = first;
   group.last = last;
   std::array<double, 3> place{};
@@ -224,14 +225,14 @@ SizeClasses::Group SizeClasses::group_of(std::size_t first, std::size_t last) co
 
 // Estimates the cost of searching partners for blocks of `fine` in `coarse`, in tests of 16
 // volumes.
-double SizeClasses::cost(const Group& fine, const Group& coarse) const noexcept {
-  std::array<double, 3> ask{};
+double SizeClasses::cost(const ClassGroup& fine, const ClassGroup& coarse) const noexcept {
+  std::array<double, 3> query_extent{};
   for (std::size_t a = 0; a < 3; ++a) {
-    ask[a] = fine.block[a] + 0.95 * fine.mean[a] + 0.2 * fine.longest[a];
+    query_extent[a] = fine.block[a] + 0.95 * fine.mean[a] + 0.2 * fine.longest[a];
   }
-  const auto share = [&](const Class& c, std::size_t a) {
+  const auto share = [&](const SizeClass& c, std::size_t a) {
     const double whole = c.range[a] + c.edge[a];
-    return whole > 0.0 ? std::min(1.0, (ask[a] + c.edge[a]) / whole) : 1.0;
+    return whole > 0.0 ? std::min(1.0, (query_extent[a] + c.edge[a]) / whole) : 1.0;
   };
   double rows = 0.0;
   for (std::size_t c = coarse.first; c <= coarse.last; ++c) {
@@ -244,7 +245,7 @@ double SizeClasses::cost(const Group& fine, const Group& coarse) const noexcept 
   for (std::size_t a = 0; a < 3; ++a) {
     const double width = std::max(coarse.block[a], DBL_MIN);
     const double reach = (1.0 + 2.0 * kSlackOfEdge) * coarse.longest[a];
-    cells[a] = std::min(coarse.range[a] / width + 1.0, (ask[a] + reach) / width + 1.0);
+    cells[a] = std::min(coarse.range[a] / width + 1.0, (query_extent[a] + reach) / width + 1.0);
   }
   std::sort(cells.begin(), cells.end());
   const double lines = cells[0] * cells[1];
@@ -259,7 +260,7 @@ double SizeClasses::cost(const Group& fine, const Group& coarse) const noexcept 
 
 // Starts with one level per class and joins neighbouring levels while this lowers the cost.
 void SizeClasses::join() noexcept {
-  std::array<Group, kClasses> group;
+  std::array<ClassGroup, kClasses> group;
   std::size_t count = 0;
   for (std::size_t c = kClasses; c-- > 0;) {
     if (class_[c].count != 0) group[count++] = group_of(c, c);
@@ -268,7 +269,7 @@ void SizeClasses::join() noexcept {
     double best = std::numeric_limits<double>::infinity();
     std::size_t where = 0;
     for (std::size_t k = 0; k + 1 < count; ++k) {
-      const Group joined = group_of(group[k + 1].first, group[k].last);
+      const ClassGroup joined = group_of(group[k + 1].first, group[k].last);
       double change = cost(joined, joined) - cost(group[k], group[k]) -
                       cost(group[k + 1], group[k + 1]) - cost(group[k], group[k + 1]);
       for (std::size_t j = 0; j < k; ++j) {

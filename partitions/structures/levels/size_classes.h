@@ -37,34 +37,34 @@ class SizeClasses {
   [[nodiscard]] std::size_t level_of(std::uint32_t octave) const noexcept;
 
  private:
-  struct Class {
+  struct SizeClass {
     std::size_t count = 0;
     std::array<double, 3> edge{};    // sum, then mean
     std::array<double, 3> place{};   // sum of lower bounds
     std::array<double, 3> square{};  // sum of squared lower bounds
     std::array<double, 3> range{};   // range over which the objects are spread
   };
-  struct Sample;
-  struct Group;
-  using Counts = std::array<std::size_t, kOctaves>;
+  struct ClassSample;
+  struct ClassGroup;
+  using OctaveCounts = std::array<std::size_t, kOctaves>;
   [[nodiscard]] std::size_t class_of(std::size_t octave) const noexcept;
-  void choose_octaves(const Counts& count) noexcept;
+  void choose_octaves(const OctaveCounts& count) noexcept;
   void measure(const BoundsPool& pool, std::span<const std::uint32_t> octave,
                const Execution& execution) noexcept;
-  [[nodiscard]] Group group_of(std::size_t first, std::size_t last) const noexcept;
-  [[nodiscard]] double cost(const Group& fine, const Group& coarse) const noexcept;
+  [[nodiscard]] ClassGroup group_of(std::size_t first, std::size_t last) const noexcept;
+  [[nodiscard]] double cost(const ClassGroup& fine, const ClassGroup& coarse) const noexcept;
   void join() noexcept;
 
-  std::array<Class, kClasses> class_;
+  std::array<SizeClass, kClasses> class_;
   std::array<std::uint8_t, kClasses> level_{};
   std::size_t objects_ = 0;
   std::size_t levels_ = 0;
   std::size_t top_octave_ = 0;
 };
 
-/// Returns the edge of a cube that holds `wanted` objects if `count` objects are spread evenly over
-/// the ranges. Ignores axes whose range is shorter than that edge.
-[[nodiscard]] double edge_for(double wanted, double count,
+/// Returns the edge of a cube that contains `target` objects if `count` objects are spread evenly
+/// over the ranges. Ignores axes whose range is shorter than that edge.
+[[nodiscard]] double edge_for(double target, double count,
                               const std::array<double, 3>& range) noexcept;
 
 }  // namespace winnow

@@ -36,15 +36,15 @@ constexpr std::uint32_t key_in(std::uint64_t item) {
 /// belongs to one node: on the level of its size, the cell that contains its centre. Nodes are
 /// ranges of rows, sorted by level, large objects first, and within a level along the Hilbert curve
 /// (blocks of rows then have a third less surface than with Morton codes). Each node has its linear
-/// code. The cells of nodes are loose, so objects may move by a good part of a cell without
-/// changing their node.
+/// code. The cells of nodes are loose, so an object may move by three quarters of a cell or more
+/// without changing its node.
 ///
 /// Nodes overlap their neighbours by design and may be nearly empty, so queries do not test them.
 /// Instead every 16 rows in node order have a tight box, and 16 such boxes at a time are tested as
-/// in a block tree. A block tree beside it holds objects that are larger than the root, outside of
-/// it or unbounded, and objects that left their loose cells. If the world is at most two cells
-/// thick, only two axes are divided. Self pairs: O(n log n + pairs) for boxes of bounded overlap.
-/// Exact.
+/// in a block tree. A block tree beside it contains objects that are larger than the root, outside
+/// of the root or unbounded, and objects that left their loose cells. If the world is at most two
+/// cells thick, only two axes are divided. Self pairs: O(n log n + pairs) for boxes of bounded
+/// overlap. Exact.
 class LooseTree : public CellStructure {
  public:
   LooseTree(const StructureInput& input, std::size_t axes) noexcept;
@@ -57,7 +57,7 @@ class LooseTree : public CellStructure {
 
  private:
   [[nodiscard]] bool reserve(const BuildRoom& room) noexcept override;
-  [[nodiscard]] Planned plan(const RowPlan& plan, unsigned stage) noexcept override;
+  [[nodiscard]] PlanStatus plan(const RowPlan& plan, unsigned stage) noexcept override;
   [[nodiscard]] std::size_t plan_passes() const noexcept override { return kKeyStages + 3; }
   void finish_build(const RowPlan& plan, bool moved) noexcept override;
   [[nodiscard]] bool prunes_rows() const noexcept override { return true; }
@@ -78,10 +78,11 @@ class LooseTree : public CellStructure {
   void add_bytes(Footprint& footprint) const noexcept override;
   [[nodiscard]] std::size_t cells() const noexcept override;
 
-  struct Nodes {
-    explicit Nodes(std::pmr::memory_resource* memory) noexcept : node(memory), bounds(memory) {}
+  struct LooseNodes {
+    explicit LooseNodes(std::pmr::memory_resource* memory) noexcept
+        : node(memory), bounds(memory) {}
 
-    void swap(Nodes& other) noexcept {
+    void swap(LooseNodes& other) noexcept {
       std::swap(cells, other.cells);
       node.swap(other.node);
       bounds.swap(other.bounds);
@@ -94,15 +95,15 @@ class LooseTree : public CellStructure {
     Column<LooseOctreeCells::CellBounds> bounds;  // of each node's loose cell
   };
 
-  [[nodiscard]] Planned choose_cells(const RowPlan& plan) noexcept;
+  [[nodiscard]] PlanStatus choose_cells(const RowPlan& plan) noexcept;
   void find_keys(const RowPlan& plan, std::size_t begin, std::size_t end) const noexcept;
   [[nodiscard]] bool lay_nodes(const RowPlan& plan) noexcept;
   [[nodiscard]] bool lay_node(std::span<const std::uint64_t> cell, const RowPlan& plan) noexcept;
 
   const std::size_t axes_;
   const float loose_;
-  Nodes used_;
-  Nodes planned_;
+  LooseNodes used_;
+  LooseNodes planned_;
   const std::uint64_t* sorted_ = nullptr;  // while planning: the items sorted by key
 };
 
@@ -122,37 +123,37 @@ bool LooseTree::reserve(const BuildRoom& room) noexcept {
          planned_.node.reserve(nodes, room.pages) && planned_.bounds.reserve(nodes, room.pages);
 }
 
-Planned LooseTree::plan(const RowPlan& plan, unsigned stage) noexcept {
+PlanStatus LooseTree::plan(const RowPlan& plan, unsigned stage) noexcept {
   std::uint64_t* const items = plan.items.data();
   if (stage == 0) return choose_cells(plan);
   if (stage <= kKeyStages) {
     find_keys(plan, plan.rows * (stage - 1) / kKeyStages, plan.rows * stage / kKeyStages);
-    return Planned::goes_on;
+    return PlanStatus::unfinished;
   }
   if (stage == kKeyStages + 1) {
     sorted_ = radix_sort(items, items + plan.rows, plan.rows, 32, execution());
-    return Planned::goes_on;
+    return PlanStatus::unfinished;
   }
-  return lay_nodes(plan) ? Planned::done : Planned::out_of_memory;
+  return lay_nodes(plan) ? PlanStatus::done : PlanStatus::out_of_memory;
 }
 
-Planned LooseTree::choose_cells(const RowPlan& plan) noexcept {
+PlanStatus LooseTree::choose_cells(const RowPlan& plan) noexcept {
   planned_.node.clear();
   planned_.bounds.clear();
   planned_start_.clear();
   const SceneSample sample(pool(), plan.objects, execution());
   if (!planned_.cells.choose(sample, axes_, loose_)) {
-    put_all_in_rest(plan);
-    return Planned::done;
+    append_all_to_rest(plan);
+    return PlanStatus::done;
   }
   const std::size_t most_rows = std::max(plan.rows, usual_row_limit(plan.objects));
   const std::size_t nodes = plan.objects / 8 + kMinNodes;
   if (!plan.items.reserve(2 * most_rows) || !planned_.node.reserve(nodes) ||
       !planned_start_.reserve(nodes) || !planned_.bounds.reserve(nodes)) {
-    return Planned::out_of_memory;
+    return PlanStatus::out_of_memory;
   }
   plan.items.set_size(2 * plan.rows);
-  return Planned::goes_on;
+  return PlanStatus::unfinished;
 }
 
 void LooseTree::find_keys(const RowPlan& plan, std::size_t first, std::size_t last) const noexcept {
@@ -168,7 +169,7 @@ void LooseTree::find_keys(const RowPlan& plan, std::size_t first, std::size_t la
           for (std::size_t row = from; row < to; ++row) {
             std::uint32_t& own = key[row - from];
             if (ids[row] == kNoObject) {
-              const std::size_t now = row_now(plan, row);
+              const std::size_t now = current_row(plan, row);
               own = LooseOctreeCells::kNone;
               if (ids[now] != kNoObject) planned_.cells.find_keys(pool(), now, now + 1, &own);
             }
@@ -226,7 +227,7 @@ void LooseTree::finish_build(const RowPlan&, bool) noexcept {
 bool LooseTree::fits(std::size_t row, const ObjectBox& place) const noexcept {
   const auto after = std::upper_bound(start_.begin(), start_.end(), row);
   const auto node = static_cast<std::size_t>(after - start_.begin() - 1);
-  return used_.cells.holds(used_.bounds[node], place);
+  return used_.cells.contains_box(used_.bounds[node], place);
 }
 
 std::size_t LooseTree::write_misfits(std::uint32_t begin, std::uint32_t end,
@@ -234,10 +235,10 @@ std::size_t LooseTree::write_misfits(std::uint32_t begin, std::uint32_t end,
   std::size_t found = 0;
   for (std::uint32_t node = begin; node < end; ++node) {
     const std::uint32_t behind = start_[node + 1];
-    if (used_.cells.hold(used_.bounds[node], pool(), start_[node], behind)) continue;
+    if (used_.cells.contains_rows(used_.bounds[node], pool(), start_[node], behind)) continue;
     for (std::uint32_t row = start_[node]; row < behind; ++row) {
       out[found] = row;
-      found += used_.cells.hold(used_.bounds[node], pool(), row, row + 1) ? 0U : 1U;
+      found += used_.cells.contains_rows(used_.bounds[node], pool(), row, row + 1) ? 0U : 1U;
     }
   }
   return found;
@@ -298,8 +299,8 @@ class LooseQuadtree final : public LooseTree {
   explicit LooseQuadtree(const StructureInput& input) noexcept : LooseTree(input, 2) {}
 };
 
-// These have no costs, so the automatic choice never takes them: they were not the cheapest
-// structure in any measured scene, including flat worlds.
+// These structures have no costs, so the automatic choice never takes them: neither was the
+// cheapest structure in any measured scene, including flat worlds.
 constexpr StructureInfo kOctree = structure_info<LooseOctree>("LooseOctree");
 constexpr StructureInfo kQuadtree = structure_info<LooseQuadtree>("LooseQuadtree");
 

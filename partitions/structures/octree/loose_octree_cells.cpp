@@ -17,11 +17,11 @@ constexpr double kThinWorld = 2;       // an axis with at most this many cells i
 constexpr unsigned kLevelShift = 28;   // in keys and codes
 constexpr std::uint32_t kCodeMask = (1U << kLevelShift) - 1U;
 
-/// The edge of cells that hold `objects` objects on average. Ignores axes whose range is within one
-/// such cell.
-double edge_of_cells(std::array<double, 3> range, std::size_t axes, double objects) {
+/// Returns the edge of cubic cells if `objects` of them fill the ranges. Ignores axes whose range
+/// is within one such cell.
+double edge_of_cells(std::array<double, 3> range, std::size_t axes, double cells) {
   for (;; --axes) {
-    std::array<double, 4> factor{1.0 / objects};
+    std::array<double, 4> factor{1.0 / cells};
     std::size_t least = 0;
     for (std::size_t k = 0; k < axes; ++k) {
       factor[k + 1] = range[k];
@@ -222,8 +222,8 @@ LooseOctreeCells::CellBounds LooseOctreeCells::bounds_of(std::uint32_t code,
   return bounds;
 }
 
-bool LooseOctreeCells::hold(const CellBounds& bounds, const BoundsPool& pool, std::size_t begin,
-                            std::size_t end) const noexcept {
+bool LooseOctreeCells::contains_rows(const CellBounds& bounds, const BoundsPool& pool,
+                                     std::size_t begin, std::size_t end) const noexcept {
   unsigned outside = 0;
   for (std::size_t k = 0; k < axes_; ++k) {
     const float* const low = pool.column(axis_[k]);
@@ -238,8 +238,8 @@ bool LooseOctreeCells::hold(const CellBounds& bounds, const BoundsPool& pool, st
   return outside == 0;
 }
 
-bool LooseOctreeCells::holds(const CellBounds& bounds,
-                             const Structure::ObjectBox& box) const noexcept {
+bool LooseOctreeCells::contains_box(const CellBounds& bounds,
+                                    const Structure::ObjectBox& box) const noexcept {
   for (std::size_t k = 0; k < axes_; ++k) {
     const std::size_t a = axis_[k];
     if (box.low[a] < bounds.low[k] || box.high[a] > bounds.high[k]) return false;

@@ -12,15 +12,15 @@ namespace winnow {
 /// root halved l times along each divided axis. A cell is loose: boxes may extend beyond it on
 /// either side by half of (loose factor - 1) of its edge.
 ///
-/// A box belongs to the cell of its centre on the finest level whose loose cells hold boxes of its
-/// size. On the finest level, cells hold 16 objects on average: objects that are small compared
-/// with their distances need no finer levels.
+/// A box belongs to the cell of its centre on the finest level whose loose cells can contain boxes
+/// of its size. On the finest level, cells contain 16 objects on average: objects that are small
+/// compared with their distances need no finer levels.
 class LooseOctreeCells {
  public:
-  /// Places the root over the bulk of a scene. With 2 `axes` it divides the axes with the most room
-  /// in units of the objects' edges; with 3 it divides all axes, except one along which the world
-  /// is at most two of the finest cells thick. Returns false if there are too few objects, or all
-  /// are at one place.
+  /// Places the root over the bulk of a scene. If `axes` is 2, it divides the two axes with the
+  /// most room in units of the objects' edges; if `axes` is 3, it divides all axes, except one
+  /// along which the world is at most two of the finest cells thick. Returns false if there are too
+  /// few objects, or all are at one place.
   [[nodiscard]] bool choose(const SceneSample& sample, std::size_t axes, float loose) noexcept;
 
   static constexpr std::uint32_t kNone = 0xFFFFFFFFU;
@@ -36,8 +36,8 @@ class LooseOctreeCells {
   /// The number of low bits in which keys of one cell may differ.
   [[nodiscard]] unsigned bits_within_cell(std::uint32_t key) const noexcept;
 
-  /// Level and Morton code (the linear code of Gargantini, "An effective way to represent
-  /// quadtrees", CACM 25(12), 1982) of a key's cell.
+  /// Returns the level and Morton code (the linear code of Gargantini, "An effective way to
+  /// represent quadtrees", CACM 25(12), 1982) of a key's cell.
   [[nodiscard]] std::uint32_t code_of(std::uint32_t key) const noexcept;
 
   /// Bounds for the boxes of a cell, by divided axis.
@@ -54,13 +54,13 @@ class LooseOctreeCells {
     return bounds_of(code, reach_ + kSpare);
   }
 
-  /// True if the boxes of rows [begin, end) lie within the bounds. Empty rows always do.
-  [[nodiscard]] bool hold(const CellBounds& bounds, const BoundsPool& pool, std::size_t begin,
-                          std::size_t end) const noexcept;
+  /// True if the boxes of rows [begin, end) are within the bounds. Empty rows always are.
+  [[nodiscard]] bool contains_rows(const CellBounds& bounds, const BoundsPool& pool,
+                                   std::size_t begin, std::size_t end) const noexcept;
 
   /// As above, for one box.
-  [[nodiscard]] bool holds(const CellBounds& bounds,
-                           const Structure::ObjectBox& box) const noexcept;
+  [[nodiscard]] bool contains_box(const CellBounds& bounds,
+                                  const Structure::ObjectBox& box) const noexcept;
 
   /// The number of divided axes; axis(k) is the axis of entry k of CellBounds.
   [[nodiscard]] std::size_t axes() const noexcept { return axes_; }

@@ -28,7 +28,7 @@ constexpr std::size_t kPadding = 16;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 // An object is crowded if more than this many objects of its strip start within one window.
 constexpr std::uint32_t kCrowded = 384;
-constexpr CellDemand kDemand{
+constexpr CellRequirements kRequirements{
     .slack_share = 0.5, .cells_per_object = 0.25, .sweep_fast_axis = true, .rows_per_block = 10};
 
 /// A sort key and a row: the position on the sweep axis in the high bits, the row in the low bits.
@@ -47,7 +47,7 @@ float key_of(SweepItem item) noexcept {
   return from_sortable(sortable_of(item));
 }
 
-// Sorts items by key and row, with bins of equal width that mostly hold one item each.
+// Sorts items by key and row, with bins of equal width that mostly contain one item each.
 void sort_by_keys(std::span<SweepItem> items, SweepItem* room) noexcept {
   constexpr std::size_t kMaxKeyBins = 1024;
   constexpr std::size_t kFewInBin = 12;
@@ -85,17 +85,17 @@ void sort_by_keys(std::span<SweepItem> items, SweepItem* room) noexcept {
 /// strips: objects are bucketed on two axes and sorted on the third, the sweep axis, which has the
 /// most room in units of the objects' edges. Blocks of sixteen successive rows of a strip sweep
 /// together through the rest of their strip and through four neighbouring strips: the box around a
-/// block selects candidates, 16 at a time. An axis that prunes nothing is not divided, so it does
-/// no harm. A row may drift from its sort key by a bound that the sweep includes, so slow motion or
-/// rest costs no sorting. Objects wider than strips go to a block tree; if they are many, the tree
-/// holds the whole scene. Self pairs: O(n log n + n * objects in a sweep + pairs). Exact.
+/// block selects candidates, 16 at a time. An axis that prunes nothing is not divided. A row may
+/// drift from its sort key by a bound that the sweep includes, so slow motion or rest costs no
+/// sorting. Objects wider than strips go to a block tree; if they are many, the tree contains the
+/// whole scene. Self pairs: O(n log n + n * objects in a sweep + pairs). Exact.
 class SweepAndPrune final : public CellStructure {
  public:
   explicit SweepAndPrune(const StructureInput& input) noexcept;
 
  private:
   [[nodiscard]] bool reserve(const BuildRoom& room) noexcept override;
-  [[nodiscard]] Planned plan(const RowPlan& plan, unsigned stage) noexcept override;
+  [[nodiscard]] PlanStatus plan(const RowPlan& plan, unsigned stage) noexcept override;
   [[nodiscard]] std::size_t plan_passes() const noexcept override { return 4; }
   void finish_build(const RowPlan& plan, bool moved) noexcept override;
   [[nodiscard]] bool fits(std::size_t row, const ObjectBox& place) const noexcept override;
@@ -112,8 +112,8 @@ class SweepAndPrune final : public CellStructure {
   void add_bytes(Footprint& footprint) const noexcept override;
   [[nodiscard]] std::size_t cells() const noexcept override;
 
-  [[nodiscard]] Planned choose_strips(const RowPlan& plan) noexcept;
-  [[nodiscard]] Planned fill_strips(const RowPlan& plan) noexcept;
+  [[nodiscard]] PlanStatus choose_strips(const RowPlan& plan) noexcept;
+  [[nodiscard]] PlanStatus fill_strips(const RowPlan& plan) noexcept;
   [[nodiscard]] bool sort_strips(const RowPlan& plan, std::size_t begin, std::size_t end) noexcept;
   void move_crowded_to_rest(const RowPlan& plan) noexcept;
   [[nodiscard]] float crowd_window() const noexcept;
@@ -130,13 +130,13 @@ SweepAndPrune::SweepAndPrune(const StructureInput& input) noexcept
 
 bool SweepAndPrune::reserve(const BuildRoom& room) noexcept {
   const auto strips =
-      static_cast<std::size_t>(kDemand.most_cells(static_cast<double>(room.objects)));
+      static_cast<std::size_t>(kRequirements.max_cells(static_cast<double>(room.objects)));
   return reserve_cells(room, strips, room.objects) && planned_.reserve(strips, room.pages) &&
          key_.reserve(room.objects + kPadding, room.pages) &&
          room.items.reserve(2 * room.objects, room.pages);
 }
 
-Planned SweepAndPrune::plan(const RowPlan& plan, unsigned stage) noexcept {
+PlanStatus SweepAndPrune::plan(const RowPlan& plan, unsigned stage) noexcept {
   const std::size_t half = planned_.cells() / 2;
   switch (stage) {
     case 0:
@@ -145,48 +145,48 @@ Planned SweepAndPrune::plan(const RowPlan& plan, unsigned stage) noexcept {
       return fill_strips(plan);
     case 2:
       crowded_ = sort_strips(plan, 0, half);
-      return Planned::goes_on;
+      return PlanStatus::unfinished;
     default:
       crowded_ |= sort_strips(plan, half, planned_.cells());
       if (crowded_) move_crowded_to_rest(plan);
       if (are_too_many_outside_cells(plan.rest.size(), plan)) move_all_to_rest(plan);
-      return Planned::done;
+      return PlanStatus::done;
   }
 }
 
-// Leaves the strip of each row in `plan.list`.
-Planned SweepAndPrune::choose_strips(const RowPlan& plan) noexcept {
+// Writes the strip of each row to `plan.list`.
+PlanStatus SweepAndPrune::choose_strips(const RowPlan& plan) noexcept {
   const SceneSample sample(pool(), plan.objects, execution());
-  if (!planned_.choose(sample, kDemand)) return Planned::out_of_memory;
+  if (!planned_.choose(sample, kRequirements)) return PlanStatus::out_of_memory;
   if (!planned_.usable()) {
-    put_all_in_rest(plan);
-    return Planned::done;
+    append_all_to_rest(plan);
+    return PlanStatus::done;
   }
   const std::size_t rows = plan.rows;
   if (!plan.list.resize(rows) || !planned_start_.resize(planned_.cells() + 1) ||
       !key_.grow(rows + kPadding) || !plan.items.resize(2 * rows)) {
-    return Planned::out_of_memory;
+    return PlanStatus::out_of_memory;
   }
   planned_.find_cells(pool(), plan.list.data(), execution());
-  return Planned::goes_on;
+  return PlanStatus::unfinished;
 }
 
-Planned SweepAndPrune::fill_strips(const RowPlan& plan) noexcept {
+PlanStatus SweepAndPrune::fill_strips(const RowPlan& plan) noexcept {
   CountingSort strips({plan.list.data(), plan.rows}, {planned_start_.data(), planned_start_.size()},
                       execution());
   strips.count();
   plan.regular.set_size(strips.find_starts());
   if (are_too_many_outside_cells(plan.objects - plan.regular.size(), plan)) {
     move_all_to_rest(plan);
-    return Planned::done;
+    return PlanStatus::done;
   }
   strips.place(plan.regular.data());
   list_rest(plan.regular.size(), plan);
-  return Planned::goes_on;
+  return PlanStatus::unfinished;
 }
 
-// Sorts the rows of strips [first, last) by their keys. The keys are left in `plan.items`, and in
-// sortable form in `plan.list`. Returns true if some strip is crowded.
+// Sorts the rows of strips [first, last) by their keys. Afterwards `plan.items` contains the keys,
+// and `plan.list` their sortable form. Returns true if some strip is crowded.
 bool SweepAndPrune::sort_strips(const RowPlan& plan, std::size_t first, std::size_t last) noexcept {
   const float* const low = pool().column(planned_.axis(0).axis);
   const float window = crowd_window();
@@ -203,7 +203,7 @@ bool SweepAndPrune::sort_strips(const RowPlan& plan, std::size_t first, std::siz
         const std::uint32_t row = plan.regular[begin + i];
         // An object that was moved to the end is sorted by its current position. A removed object
         // has no key.
-        items[i] = sweep_item(std::min(low[row_now(plan, row)], FLT_MAX), row);
+        items[i] = sweep_item(std::min(low[current_row(plan, row)], FLT_MAX), row);
       }
       sort_by_keys({items, count}, items + plan.rows);
       for (std::size_t i = 0; i < count; ++i) {
@@ -219,8 +219,9 @@ bool SweepAndPrune::sort_strips(const RowPlan& plan, std::size_t first, std::siz
   return crowded.load();
 }
 
-// Moves crowded objects to the rest. If many objects start within one window on the sweep axis, as
-// when half of a scene is tiny, a sweep would test all of them; the tree prunes these better.
+// Moves crowded objects to the rest. If many objects start within one window on the sweep axis, for
+// example because half of the objects are tiny, a sweep would test all of them; the tree prunes
+// them better.
 void SweepAndPrune::move_crowded_to_rest(const RowPlan& plan) noexcept {
   const float window = crowd_window();
   const SweepItem* const items = plan.items.data();

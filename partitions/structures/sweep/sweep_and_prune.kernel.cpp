@@ -7,9 +7,9 @@ namespace winnow {
 namespace WINNOW_ISA_NAME {
 namespace {
 
-/// Lines of cells (or strips) lie on two axes: line = slow * mids + mid. Holds the lines after line
-/// `own` whose objects can touch objects of `own`, so that each pair of neighbouring lines is
-/// visited from one side only.
+/// Lines of cells (or strips) are numbered over two axes: line = slow * mids + mid. Contains the
+/// lines after line `own` whose objects can touch objects of `own`, so that each pair of
+/// neighbouring lines is visited from one side only.
 struct NeighbourLines {
   std::uint32_t line[4];
   int count = 0;
@@ -26,7 +26,7 @@ struct NeighbourLines {
 };
 
 /// A sweep ends when a key shows that no further row can overlap the box.
-struct KeyStop {
+struct KeyMayOverlap {
   const StripView& strips;
   bool operator()(const QueryBox& q, std::uint32_t at) const {
     return strips.key[at] - strips.drift <= q.high[strips.axis[0].axis];
@@ -48,8 +48,8 @@ inline std::uint32_t skip_below(const StripView& strips, std::uint32_t at, std::
   return at;
 }
 
-/// Returns the end of the rows from `at` on that may start at or below x, up to fifteen rows late.
-/// Keys ascend.
+/// Returns the end of the rows from `at` on that may start at or below x, or up to fifteen rows
+/// more. Keys ascend.
 inline std::uint32_t run_end(const StripView& strips, std::uint32_t at, std::uint32_t end,
                              float x) {
   while (at < end && strips.key[at] - strips.drift <= x) at += kLanes;
@@ -100,7 +100,7 @@ struct StripSweeps {
   }
 };
 
-struct Strips {
+struct StripCells {
   template <bool Filtered>
   static bool find_pairs(const StripView& strips, std::uint32_t begin, std::uint32_t end,
                          PairSink& sink) {
@@ -118,7 +118,7 @@ struct Strips {
     return true;
   }
 
-  static KeyStop goes_on(const StripView& strips) { return {strips}; }
+  static KeyMayOverlap needs_rows(const StripView& strips) { return {strips}; }
   template <typename Visit>
   static bool visit_runs(const StripView& strips, const QueryBox& q, Visit&& visit) {
     std::uint32_t first[3];
@@ -163,6 +163,6 @@ struct Strips {
 }  // namespace WINNOW_ISA_NAME
 
 extern const SweepKernels WINNOW_KERNEL_TABLE(sweep_kernels) =
-    WINNOW_ISA_NAME::CellFunctions<WINNOW_ISA_NAME::Strips, StripView>::table();
+    WINNOW_ISA_NAME::CellFunctions<WINNOW_ISA_NAME::StripCells, StripView>::table();
 
 }  // namespace winnow

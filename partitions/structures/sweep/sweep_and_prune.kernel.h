@@ -7,14 +7,14 @@
 
 namespace winnow {
 
-/// Rows in strips: strip s holds rows [start[s], start[s + 1]), sorted by `key`, the lower bound of
-/// the box on the sweep axis when the strip was built. The lower bound may have drifted from the
+/// Rows in strips: strip s contains rows [start[s], start[s + 1]), sorted by `key`, the lower bound
+/// of the box on the sweep axis when the strip was built. The lower bound may have drifted from the
 /// key by at most `drift` since.
 struct StripView {
   RowView rows;
   const float* key = nullptr;
   const std::uint32_t* start = nullptr;
-  CellAxis axis[3];  ///< 0 is the sweep axis, with one cell; strips lie on the other two
+  CellAxis axis[3];  ///< 0 is the sweep axis, with one cell; strips divide the other two
   float drift = 0.0F;
 };
 

@@ -130,18 +130,18 @@ winnow_status winnow_hit_buffer_hits(const winnow_hit_buffer* buffer, const winn
   return WINNOW_OK;
 }
 
-winnow_status winnow_hit_buffer_questions(const winnow_hit_buffer* buffer, size_t* count) {
+winnow_status winnow_hit_buffer_queries(const winnow_hit_buffer* buffer, size_t* count) {
   if (!are_given(buffer, count)) return WINNOW_INVALID_ARGUMENT;
-  *count = buffer->value.questions();
+  *count = buffer->value.queries();
   return WINNOW_OK;
 }
 
-winnow_status winnow_hit_buffer_of(const winnow_hit_buffer* buffer, size_t question,
+winnow_status winnow_hit_buffer_of(const winnow_hit_buffer* buffer, size_t query,
                                    const winnow_hit** hits, size_t* count) {
-  if (!are_given(buffer, hits, count) || question >= buffer->value.questions()) {
+  if (!are_given(buffer, hits, count) || query >= buffer->value.queries()) {
     return WINNOW_INVALID_ARGUMENT;
   }
-  return_array(buffer->value.of(question), hits, count);
+  return_array(buffer->value.of(query), hits, count);
   return WINNOW_OK;
 }
 

@@ -10,8 +10,8 @@
 
 namespace winnow::c {
 
-/// Memory resource that calls the functions of a winnow_memory; without functions, the default
-/// memory.
+/// Memory resource that calls the functions of a winnow_memory. If none is given, it uses the
+/// default memory.
 class CallersMemory final : public std::pmr::memory_resource {
  public:
   explicit CallersMemory(const winnow_memory* given) noexcept {
@@ -30,7 +30,7 @@ class CallersMemory final : public std::pmr::memory_resource {
   }
 
   winnow_memory functions_{};
-  std::pmr::memory_resource* otherwise_ = default_memory();
+  std::pmr::memory_resource* fallback_ = default_memory();
 };
 
 /// Base of all handles of the C interface: a copy of the memory from which the handle and all its

@@ -198,11 +198,12 @@ winnow_status winnow_composite_pool_children(const winnow_composite_pool* pool, 
                                              const winnow_compound_child** children,
                                              size_t* count) {
   if (!are_given(pool, children, count)) return WINNOW_INVALID_ARGUMENT;
-  const winnow::ShapeId asked{id};
-  if (!pool->value.contains(asked) || asked.composite_kind() != winnow::CompositeKind::compound) {
+  const winnow::ShapeId shape_id{id};
+  if (!pool->value.contains(shape_id) ||
+      shape_id.composite_kind() != winnow::CompositeKind::compound) {
     return WINNOW_INVALID_KEY;
   }
-  return_array(pool->value.children(asked), children, count);
+  return_array(pool->value.children(shape_id), children, count);
   return WINNOW_OK;
 }
 

@@ -33,7 +33,7 @@ namespace {
   shown.event = reinterpret_cast<const std::uint8_t*>(contacts.event().data());
   return_array(contacts.runs(), &shown.runs, &shown.run_count);
   return_array(contacts.ended(), &shown.ended, &shown.ended_count);
-  shown.carried = contacts.carried();
+  shown.cached_pairs = contacts.cached_pairs();
   shown.manifold_first = column(contacts.manifold_first());
   shown.manifolds = contacts.manifolds();
   shown.part_a = parts_of(contacts.part_a(), handle.whole);
@@ -114,11 +114,12 @@ winnow_status winnow_contacts_columns(const winnow_contacts* contacts,
 
 winnow_status winnow_scene_collide(winnow_scene* scene, winnow_contact_level level,
                                    winnow_contacts* contacts) {
-  winnow::ContactLevel asked{};
-  if (!are_given(scene, contacts) || !read_choice(level, winnow::ContactLevel::manifold, asked)) {
+  winnow::ContactLevel contact_level{};
+  if (!are_given(scene, contacts) ||
+      !read_choice(level, winnow::ContactLevel::manifold, contact_level)) {
     return WINNOW_INVALID_ARGUMENT;
   }
-  const winnow::Status status = scene->value.collide(asked, contacts->value);
+  const winnow::Status status = scene->value.collide(contact_level, contacts->value);
   return answer(status == winnow::Status::ok ? contacts->look_up() : status);
 }
 

@@ -22,6 +22,7 @@ WINNOW_SAME(WINNOW_UNSUPPORTED_VOLUME, unsupported_volume);
 WINNOW_SAME(WINNOW_INVALID_SHAPE, invalid_shape);
 WINNOW_SAME(WINNOW_INVALID_POSE, invalid_pose);
 WINNOW_SAME(WINNOW_UNSUPPORTED, unsupported);
+WINNOW_SAME(WINNOW_COMMUNICATION_FAILED, communication_failed);
 #undef WINNOW_SAME
 
 #define WINNOW_TEXT(x) #x
@@ -39,7 +40,7 @@ static_assert(kVersion == WINNOW_PROJECT_VERSION && WINNOW_ABI == WINNOW_PROJECT
 }  // namespace
 
 void* CallersMemory::do_allocate(std::size_t bytes, std::size_t alignment) {
-  if (functions_.allocate == nullptr) return otherwise_->allocate(bytes, alignment);
+  if (functions_.allocate == nullptr) return fallback_->allocate(bytes, alignment);
   void* const block = functions_.allocate(functions_.context, bytes, alignment);
   if (block == nullptr) throw std::bad_alloc();
   return block;
@@ -47,7 +48,7 @@ void* CallersMemory::do_allocate(std::size_t bytes, std::size_t alignment) {
 
 void CallersMemory::do_deallocate(void* block, std::size_t bytes, std::size_t alignment) {
   if (functions_.allocate == nullptr) {
-    otherwise_->deallocate(block, bytes, alignment);
+    fallback_->deallocate(block, bytes, alignment);
   } else {
     functions_.deallocate(functions_.context, block, bytes, alignment);
   }
@@ -59,8 +60,8 @@ Filter filter_of(const winnow_filter* given) noexcept {
   if (given->accept == nullptr) return filter;
   filter.predicate.context = const_cast<winnow_filter*>(given);
   filter.predicate.accept = [](void* context, Key key, ClientData data) {
-    const auto& asked = *static_cast<const winnow_filter*>(context);
-    return asked.accept(asked.context, {key.id, key.stamp}, data);
+    const auto& c_filter = *static_cast<const winnow_filter*>(context);
+    return c_filter.accept(c_filter.context, {key.id, key.stamp}, data);
   };
   return filter;
 }

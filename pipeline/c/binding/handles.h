@@ -5,10 +5,10 @@
 #include "pipeline/c/binding/callers_memory.h"
 
 #include <winnow/c/contact_groups.h>
+#include <winnow/c/continuous_collision.h>
 #include <winnow/c/partition.h>
 #include <winnow/c/scene.h>
 #include <winnow/c/scene_queries.h>
-#include <winnow/c/scene_sweep.h>
 #include <winnow/c/sensors.h>
 #include <winnow/c/shapes.h>
 #include <winnow/c/time_of_impact.h>
@@ -21,11 +21,11 @@
 #include <winnow/pipeline/composite_pool.h>
 #include <winnow/pipeline/contact_groups.h>
 #include <winnow/pipeline/contacts.h>
+#include <winnow/pipeline/continuous_collision.h>
 #include <winnow/pipeline/narrow_phase.h>
 #include <winnow/pipeline/narrow_result.h>
 #include <winnow/pipeline/scene.h>
 #include <winnow/pipeline/scene_queries.h>
-#include <winnow/pipeline/scene_sweep.h>
 #include <winnow/pipeline/sensors.h>
 #include <winnow/pipeline/shape_pool.h>
 #include <winnow/pipeline/time_of_impact.h>
@@ -55,7 +55,7 @@ struct winnow_overlap_buffer : winnow::c::Handle {
 };
 
 /// Owns a partition, or is a view of a partition of a scene. In a view, `value` has no structure
-/// and therefore refuses every change; `asked` points to the scene's partition.
+/// and therefore refuses every change; `target` points to the scene's partition.
 struct winnow_partition : winnow::c::Handle {
   explicit winnow_partition(const winnow::c::CallersMemory& given) noexcept : Handle(given) {}
   winnow_partition(const winnow::c::CallersMemory& given, winnow::StructureKind structure,
@@ -63,7 +63,7 @@ struct winnow_partition : winnow::c::Handle {
       : Handle(given), value(structure, winnow::c::in(options, &memory)) {}
 
   winnow::Partition value{winnow::StructureKind{}};
-  const winnow::Partition* asked = &value;
+  const winnow::Partition* target = &value;
   winnow::Column<float> room{&memory};  ///< input boxes, converted from double
 };
 
@@ -100,14 +100,14 @@ struct winnow_impact_result : winnow::c::Handle {
 struct winnow_contacts : winnow::c::Handle {
   using Handle::Handle;
   winnow::Contacts value{&memory};
-  /// Columns that the library computes on access: client data of a and of b, and a column of
+  /// Columns that Contacts computes on access, as arrays: client data of a and of b, and
   /// kWholeShape for each manifold, used if the contacts have no column of parts.
   winnow::Column<winnow::ClientData> data[2]{winnow::Column<winnow::ClientData>(&memory),
                                              winnow::Column<winnow::ClientData>(&memory)};
   winnow::Column<std::uint32_t> whole{&memory};
 
-  /// Fills these columns; call it whenever `value` was filled. If memory is refused, clears
-  /// everything and returns out_of_memory.
+  /// Fills these columns; call it whenever `value` was filled. If memory is refused, clears `value`
+  /// and returns out_of_memory.
   [[nodiscard]] winnow::Status look_up() noexcept;
 };
 
@@ -125,7 +125,7 @@ struct winnow_scene : winnow::c::Handle {
 
   winnow::Scene value;
   winnow::Column<winnow::Pose> room{&memory};
-  winnow_partition sets[winnow::kMotions];  ///< views of the partitions
+  winnow_partition sets[winnow::kBodyStates];  ///< views of the partitions
 };
 
 struct winnow_scene_queries : winnow::c::Handle {
@@ -136,11 +136,11 @@ struct winnow_scene_queries : winnow::c::Handle {
   winnow::Column<winnow::ShapeRay> room{&memory};  ///< input rays, converted from float
 };
 
-struct winnow_scene_sweep : winnow::c::Handle {
-  winnow_scene_sweep(const winnow::c::CallersMemory& given, winnow::Scene& scene) noexcept
+struct winnow_continuous_collision : winnow::c::Handle {
+  winnow_continuous_collision(const winnow::c::CallersMemory& given, winnow::Scene& scene) noexcept
       : Handle(given), value(scene, &memory) {}
 
-  winnow::SceneSweep value;
+  winnow::ContinuousCollision value;
   winnow::Column<winnow::Pose> room{&memory};
 };
 

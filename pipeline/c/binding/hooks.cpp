@@ -14,10 +14,11 @@ namespace {
 std::atomic<winnow_stage_hook> stage_hook{nullptr};
 std::atomic<winnow_log_hook> log_hook{nullptr};
 
-/// Hooks of the stages that a thread is in: each stage ends with the hook that it began with.
+/// For each stage that a thread is in, the hook that was called at its begin. The same hook is
+/// called at its end.
 struct StagesUnderWay {
-  static constexpr std::size_t kMost = 32;
-  winnow_stage_hook hook[kMost];
+  static constexpr std::size_t kMaxStages = 32;
+  winnow_stage_hook hook[kMaxStages];
   std::size_t count = 0;
 };
 thread_local StagesUnderWay under_way;
@@ -27,7 +28,7 @@ void pass_stage(WorkStage stage, bool begins) {
   if (!begins) --stages.count;
   const std::size_t depth = stages.count;
   if (begins) ++stages.count;
-  if (depth >= StagesUnderWay::kMost) return;
+  if (depth >= StagesUnderWay::kMaxStages) return;
   if (begins) stages.hook[depth] = stage_hook.load(std::memory_order_acquire);
   const winnow_stage_hook hook = stages.hook[depth];
   if (hook != nullptr) hook(static_cast<winnow_work_stage>(stage), begins);

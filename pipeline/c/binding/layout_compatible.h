@@ -1,13 +1,13 @@
 #pragma once
 
-// C structs whose layout equals the layout of a C++ struct, so that arrays pass without a copy. The
-// macros check the layouts at compile time.
+// C structs whose layout equals the layout of a C++ struct: their arrays are passed without a copy.
+// The macros check size, alignment and the offsets of some members at compile time.
 
+#include <winnow/c/continuous_collision.h>
 #include <winnow/c/narrow_phase.h>
 #include <winnow/c/partition.h>
 #include <winnow/c/scene.h>
 #include <winnow/c/scene_queries.h>
-#include <winnow/c/scene_sweep.h>
 #include <winnow/c/sensors.h>
 #include <winnow/c/shapes.h>
 #include <winnow/c/time_of_impact.h>
@@ -26,11 +26,11 @@
 #include <winnow/core/sphere.h>
 #include <winnow/pipeline/composite_pool.h>
 #include <winnow/pipeline/contacts.h>
+#include <winnow/pipeline/continuous_collision.h>
 #include <winnow/pipeline/narrow_result.h>
 #include <winnow/pipeline/rigid_motion.h>
 #include <winnow/pipeline/scene.h>
 #include <winnow/pipeline/scene_queries.h>
-#include <winnow/pipeline/scene_sweep.h>
 #include <winnow/pipeline/sensors.h>
 #include <winnow/pipeline/shapes.h>
 
@@ -84,7 +84,7 @@ WINNOW_SAME_OFFSET(winnow_compound_child, CompoundChild, pose);
 
 WINNOW_LAYOUT_COMPATIBLE(winnow_body_definition, BodyDefinition)
 WINNOW_SAME_OFFSET(winnow_body_definition, BodyDefinition, pose);
-WINNOW_SAME_OFFSET(winnow_body_definition, BodyDefinition, motion);
+WINNOW_SAME_OFFSET(winnow_body_definition, BodyDefinition, state);
 WINNOW_SAME_OFFSET(winnow_body_definition, BodyDefinition, filter);
 WINNOW_SAME_OFFSET(winnow_body_definition, BodyDefinition, data);
 WINNOW_SAME_OFFSET(winnow_body_definition, BodyDefinition, offsets);

@@ -20,7 +20,7 @@ bool read_options(const winnow_narrow_options* given, NarrowOptions& options) no
     return false;
   }
   take_given(level, options.level);
-  options.margin = own.margin;
+  options.contact_margin = own.contact_margin;
   return true;
 }
 

@@ -1,21 +1,21 @@
 #pragma once
 
-// Conversion of C options to C++ options. Each function is passed options with the C++ defaults,
-// which stay if the C struct is null or its members are zero. Returns false for a wrong `size` or
-// an invalid choice.
+// Conversion of C options to C++ options. Each function is passed options with the C++ defaults. It
+// changes the options whose members in the C struct are not zero; none if the pointer is null. It
+// returns false for a wrong `size` or an invalid choice.
 
+#include <winnow/c/continuous_collision.h>
 #include <winnow/c/narrow_phase.h>
 #include <winnow/c/partition.h>
 #include <winnow/c/scene.h>
-#include <winnow/c/scene_sweep.h>
 #include <winnow/c/shapes.h>
 #include <winnow/c/time_of_impact.h>
 #include <winnow/c/volumes.h>
 #include <winnow/core/debug_draw.h>
 #include <winnow/partitions/partition.h>
+#include <winnow/pipeline/continuous_collision.h>
 #include <winnow/pipeline/narrow_phase.h>
 #include <winnow/pipeline/scene.h>
-#include <winnow/pipeline/scene_sweep.h>
 #include <winnow/pipeline/time_of_impact.h>
 #include <winnow/pipeline/triangle_mesh.h>
 
@@ -34,8 +34,8 @@ namespace winnow::c {
 [[nodiscard]] bool read_options(const winnow_impact_options* given,
                                 ImpactOptions& options) noexcept;
 /// `count` is the number of moving bodies.
-[[nodiscard]] bool read_options(const winnow_sweep_options* given, std::size_t count,
-                                SweepOptions& options) noexcept;
+[[nodiscard]] bool read_options(const winnow_continuous_options* given, std::size_t count,
+                                ContinuousOptions& options) noexcept;
 [[nodiscard]] bool read_options(const winnow_mesh_options* given, MeshOptions& options) noexcept;
 [[nodiscard]] bool read_options(const winnow_debug_draw_options* given,
                                 DebugDrawOptions& options) noexcept;

@@ -56,7 +56,7 @@ bool read_options(const winnow_partition_options* given, const winnow_memory*& m
     return false;
   }
   memory = own.memory;
-  options.margin = {own.margin.distance, own.margin.share};
+  options.fat_margin = {own.fat_margin.distance, own.fat_margin.share};
   options.build_budget = own.build_budget;
   return true;
 }
@@ -130,7 +130,7 @@ void winnow_partition_destroy(winnow_partition* partition) {
 winnow_status winnow_partition_structure(const winnow_partition* partition,
                                          winnow_structure_kind* structure) {
   if (!are_given(partition, structure)) return WINNOW_INVALID_ARGUMENT;
-  *structure = structure_of(partition->asked->structure());
+  *structure = structure_of(partition->target->structure());
   return WINNOW_OK;
 }
 
@@ -143,7 +143,7 @@ winnow_status winnow_partition_set_structure(winnow_partition* partition,
 winnow_status winnow_partition_choice(const winnow_partition* partition,
                                       winnow_structure_choice* choice) {
   if (partition == nullptr || !is_sized(choice)) return WINNOW_INVALID_ARGUMENT;
-  const winnow::StructureChoice chosen = partition->asked->choice();
+  const winnow::StructureChoice chosen = partition->target->choice();
   const winnow::SceneFeatures& scene = chosen.features;
   write_sized({0,
                structure_of(chosen.structure),
@@ -160,20 +160,21 @@ winnow_status winnow_partition_choice(const winnow_partition* partition,
 
 winnow_status winnow_partition_is_exact(const winnow_partition* partition, bool* is_exact) {
   if (!are_given(partition, is_exact)) return WINNOW_INVALID_ARGUMENT;
-  *is_exact = partition->asked->is_exact();
+  *is_exact = partition->target->is_exact();
   return WINNOW_OK;
 }
 
 winnow_status winnow_partition_volume(const winnow_partition* partition, winnow_volume* volume) {
   if (!are_given(partition, volume)) return WINNOW_INVALID_ARGUMENT;
-  *volume = static_cast<winnow_volume>(partition->asked->volume());
+  *volume = static_cast<winnow_volume>(partition->target->volume());
   return WINNOW_OK;
 }
 
-winnow_status winnow_partition_margin(const winnow_partition* partition, winnow_margin* margin) {
-  if (!are_given(partition, margin)) return WINNOW_INVALID_ARGUMENT;
-  const winnow::Margin own = partition->asked->margin();
-  *margin = {own.distance, own.share};
+winnow_status winnow_partition_fat_margin(const winnow_partition* partition,
+                                          winnow_fat_margin* fat_margin) {
+  if (!are_given(partition, fat_margin)) return WINNOW_INVALID_ARGUMENT;
+  const winnow::FatMargin own = partition->target->fat_margin();
+  *fat_margin = {own.distance, own.share};
   return WINNOW_OK;
 }
 
@@ -280,21 +281,21 @@ winnow_status winnow_partition_reserve(winnow_partition* partition, size_t objec
 
 winnow_status winnow_partition_size(const winnow_partition* partition, size_t* size) {
   if (!are_given(partition, size)) return WINNOW_INVALID_ARGUMENT;
-  *size = partition->asked->size();
+  *size = partition->target->size();
   return WINNOW_OK;
 }
 
 winnow_status winnow_partition_contains(const winnow_partition* partition, winnow_key key,
                                         bool* contains) {
   if (!are_given(partition, contains)) return WINNOW_INVALID_ARGUMENT;
-  *contains = partition->asked->contains(*as_cpp(&key));
+  *contains = partition->target->contains(*as_cpp(&key));
   return WINNOW_OK;
 }
 
 winnow_status winnow_partition_bounds(const winnow_partition* partition, winnow_key key,
                                       winnow_aabb* box) {
   if (!are_given(partition, box)) return WINNOW_INVALID_ARGUMENT;
-  return answer(partition->asked->bounds(*as_cpp(&key), *as_cpp(box)));
+  return answer(partition->target->bounds(*as_cpp(&key), *as_cpp(box)));
 }
 
 winnow_status winnow_partition_bounds_of(const winnow_partition* partition, const winnow_key* keys,
@@ -302,19 +303,19 @@ winnow_status winnow_partition_bounds_of(const winnow_partition* partition, cons
   if (partition == nullptr || !is_array(keys, count) || !is_array(boxes, count)) {
     return WINNOW_INVALID_ARGUMENT;
   }
-  return answer(partition->asked->bounds(as_cpp_span(keys, count), as_cpp_span(boxes, count)));
+  return answer(partition->target->bounds(as_cpp_span(keys, count), as_cpp_span(boxes, count)));
 }
 
 winnow_status winnow_partition_client_data(const winnow_partition* partition, winnow_key key,
                                            uint64_t* data) {
   if (!are_given(partition, data)) return WINNOW_INVALID_ARGUMENT;
-  return answer(partition->asked->client_data(*as_cpp(&key), *data));
+  return answer(partition->target->client_data(*as_cpp(&key), *data));
 }
 
 winnow_status winnow_partition_key_of(const winnow_partition* partition, uint32_t id,
                                       winnow_key* key) {
   if (!are_given(partition, key)) return WINNOW_INVALID_ARGUMENT;
-  *as_cpp(key) = partition->asked->key_of(id);
+  *as_cpp(key) = partition->target->key_of(id);
   return WINNOW_OK;
 }
 
@@ -329,20 +330,20 @@ winnow_status winnow_partition_set_filter(winnow_partition* partition, const win
 winnow_status winnow_partition_filter(const winnow_partition* partition, winnow_key key,
                                       winnow_object_filter* filter) {
   if (!are_given(partition, filter)) return WINNOW_INVALID_ARGUMENT;
-  return answer(partition->asked->filter(*as_cpp(&key), *as_cpp(filter)));
+  return answer(partition->target->filter(*as_cpp(&key), *as_cpp(filter)));
 }
 
 winnow_status winnow_partition_footprint(const winnow_partition* partition,
                                          winnow_footprint* footprint) {
   if (partition == nullptr) return WINNOW_INVALID_ARGUMENT;
-  return write_footprint(partition, partition->asked->footprint(), partition->room.bytes(),
+  return write_footprint(partition, partition->target->footprint(), partition->room.bytes(),
                          footprint);
 }
 
 winnow_status winnow_partition_statistics(const winnow_partition* partition,
                                           winnow_statistics* statistics) {
   if (partition == nullptr || !is_sized(statistics)) return WINNOW_INVALID_ARGUMENT;
-  const winnow::Statistics own = partition->asked->statistics();
+  const winnow::Statistics own = partition->target->statistics();
   write_sized({0, own.objects, own.regular, own.irregular, own.cells, own.depth, own.levels,
                own.builds, own.planned_builds, own.refits, own.full_queries,
                own.incremental_queries, own.last_tests, own.last_pairs},

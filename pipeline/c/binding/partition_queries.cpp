@@ -111,22 +111,22 @@ winnow_status winnow_partition_reserve_pairs(const winnow_partition* partition,
   if (!are_given(partition, out) || !read_choice(pages, winnow::Pages::prefaulted, touch)) {
     return WINNOW_INVALID_ARGUMENT;
   }
-  return answer(partition->asked->reserve_pairs(out->value, pairs, touch));
+  return answer(partition->target->reserve_pairs(out->value, pairs, touch));
 }
 
 winnow_status winnow_partition_reserve_events(const winnow_partition* partition,
-                                              winnow_pair_events* out, size_t pairs, bool alone,
-                                              winnow_pages pages) {
+                                              winnow_pair_events* out, size_t pairs,
+                                              bool with_pairs, winnow_pages pages) {
   winnow::Pages touch{};
   if (!are_given(partition, out) || !read_choice(pages, winnow::Pages::prefaulted, touch)) {
     return WINNOW_INVALID_ARGUMENT;
   }
-  return answer(partition->asked->reserve_events(out->value, pairs, alone, touch));
+  return answer(partition->target->reserve_events(out->value, pairs, with_pairs, touch));
 }
 
 winnow_status winnow_partition_refresh(const winnow_partition* partition) {
   if (partition == nullptr) return WINNOW_INVALID_ARGUMENT;
-  return answer(partition->asked->refresh());
+  return answer(partition->target->refresh());
 }
 
 winnow_status winnow_partition_self_pairs(const winnow_partition* partition,
@@ -137,9 +137,9 @@ winnow_status winnow_partition_self_pairs(const winnow_partition* partition,
       !read_options(options, read)) {
     return WINNOW_INVALID_ARGUMENT;
   }
-  if (events == nullptr) return answer(partition->asked->self_pairs(out->value, read));
-  if (out == nullptr) return answer(partition->asked->self_pairs(events->value, read));
-  return answer(partition->asked->self_pairs(out->value, events->value, read));
+  if (events == nullptr) return answer(partition->target->self_pairs(out->value, read));
+  if (out == nullptr) return answer(partition->target->self_pairs(events->value, read));
+  return answer(partition->target->self_pairs(out->value, events->value, read));
 }
 
 winnow_status winnow_partition_pairs_with(const winnow_partition* partition,
@@ -149,28 +149,28 @@ winnow_status winnow_partition_pairs_with(const winnow_partition* partition,
   if (!are_given(partition, other, out) || !read_options(options, read)) {
     return WINNOW_INVALID_ARGUMENT;
   }
-  return answer(partition->asked->pairs_with(*other->asked, out->value, read));
+  return answer(partition->target->pairs_with(*other->target, out->value, read));
 }
 
 winnow_status winnow_partition_closest(const winnow_partition* partition, const winnow_cast* cast,
                                        const winnow_filter* filter, winnow_hit* hit) {
   winnow::Cast read;
   if (!are_given(partition, hit) || !read_cast(cast, read)) return WINNOW_INVALID_ARGUMENT;
-  return answer(partition->asked->closest(read, *as_cpp(hit), filter_of(filter)));
+  return answer(partition->target->closest(read, *as_cpp(hit), filter_of(filter)));
 }
 
 winnow_status winnow_partition_any(const winnow_partition* partition, const winnow_cast* cast,
                                    const winnow_filter* filter, winnow_hit* hit) {
   winnow::Cast read;
   if (!are_given(partition, hit) || !read_cast(cast, read)) return WINNOW_INVALID_ARGUMENT;
-  return answer(partition->asked->any(read, *as_cpp(hit), filter_of(filter)));
+  return answer(partition->target->any(read, *as_cpp(hit), filter_of(filter)));
 }
 
 winnow_status winnow_partition_all(const winnow_partition* partition, const winnow_cast* cast,
                                    const winnow_filter* filter, winnow_hit_buffer* hits) {
   winnow::Cast read;
   if (!are_given(partition, hits) || !read_cast(cast, read)) return WINNOW_INVALID_ARGUMENT;
-  return answer(partition->asked->all(read, hits->value, filter_of(filter)));
+  return answer(partition->target->all(read, hits->value, filter_of(filter)));
 }
 
 winnow_status winnow_partition_closest_rays(const winnow_partition* partition,
@@ -179,7 +179,7 @@ winnow_status winnow_partition_closest_rays(const winnow_partition* partition,
                                             const winnow_hit_columns* hits) {
   winnow::RayBatch read;
   if (!are_given(partition, hits) || !read_ray_batch(rays, read)) return WINNOW_INVALID_ARGUMENT;
-  return answer(partition->asked->closest(read, columns_of(*hits), filter_of(filter)));
+  return answer(partition->target->closest(read, columns_of(*hits), filter_of(filter)));
 }
 
 winnow_status winnow_partition_any_rays(const winnow_partition* partition,
@@ -187,7 +187,7 @@ winnow_status winnow_partition_any_rays(const winnow_partition* partition,
                                         const winnow_hit_columns* hits) {
   winnow::RayBatch read;
   if (!are_given(partition, hits) || !read_ray_batch(rays, read)) return WINNOW_INVALID_ARGUMENT;
-  return answer(partition->asked->any(read, columns_of(*hits), filter_of(filter)));
+  return answer(partition->target->any(read, columns_of(*hits), filter_of(filter)));
 }
 
 winnow_status winnow_partition_all_rays(const winnow_partition* partition,
@@ -195,7 +195,7 @@ winnow_status winnow_partition_all_rays(const winnow_partition* partition,
                                         winnow_hit_buffer* hits) {
   winnow::RayBatch read;
   if (!are_given(partition, hits) || !read_ray_batch(rays, read)) return WINNOW_INVALID_ARGUMENT;
-  return answer(partition->asked->all(read, hits->value, filter_of(filter)));
+  return answer(partition->target->all(read, hits->value, filter_of(filter)));
 }
 
 winnow_status winnow_partition_overlap(const winnow_partition* partition,
@@ -207,7 +207,7 @@ winnow_status winnow_partition_overlap(const winnow_partition* partition,
       !read_choice(order, winnow::Order::canonical, sorted)) {
     return WINNOW_INVALID_ARGUMENT;
   }
-  return answer(partition->asked->overlap(read, objects->value, filter_of(filter), sorted));
+  return answer(partition->target->overlap(read, objects->value, filter_of(filter), sorted));
 }
 
 winnow_status winnow_partition_overlap_boxes(const winnow_partition* partition,
@@ -221,7 +221,7 @@ winnow_status winnow_partition_overlap_boxes(const winnow_partition* partition,
   winnow::BoxView read;
   const winnow::Status status = read_boxes(boxes, nullptr, out->room, read);
   if (status != winnow::Status::ok) return answer(status);
-  return answer(partition->asked->overlap(read, out->value, filter_of(filter), sorted));
+  return answer(partition->target->overlap(read, out->value, filter_of(filter), sorted));
 }
 
 winnow_status winnow_partition_nearest(const winnow_partition* partition, const winnow_aabb* from,
@@ -229,7 +229,7 @@ winnow_status winnow_partition_nearest(const winnow_partition* partition, const 
                                        winnow_hit_buffer* hits) {
   if (!are_given(partition, from, hits)) return WINNOW_INVALID_ARGUMENT;
   return answer(
-      partition->asked->nearest(*as_cpp(from), count, radius, hits->value, filter_of(filter)));
+      partition->target->nearest(*as_cpp(from), count, radius, hits->value, filter_of(filter)));
 }
 
 winnow_status winnow_partition_debug_draw(const winnow_partition* partition,
@@ -238,5 +238,5 @@ winnow_status winnow_partition_debug_draw(const winnow_partition* partition,
   winnow::DebugDrawOptions read;
   if (!are_given(partition, draw) || !read_options(options, read)) return WINNOW_INVALID_ARGUMENT;
   CallbackDraw drawing(*draw);
-  return answer(partition->asked->debug_draw(drawing, read));
+  return answer(partition->target->debug_draw(drawing, read));
 }

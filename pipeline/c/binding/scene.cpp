@@ -20,10 +20,10 @@ bool read_options(const winnow_scene_options* given, const winnow_memory*& memor
     return false;
   }
   memory = own.memory;
-  for (std::size_t i = 0; i < kMotions; ++i)
+  for (std::size_t i = 0; i < kBodyStates; ++i)
     options.structures[i] = structure_of(own.structures[i]);
-  options.margin = own.margin;
-  options.carry_over = own.carry_over;
+  options.contact_margin = own.contact_margin;
+  options.cache_tolerance = own.cache_tolerance;
   options.contact_reduction = own.contact_reduction != 0;
   options.build_budget = own.build_budget;
   if (own.composites != nullptr) options.composites = &own.composites->value;
@@ -87,11 +87,11 @@ winnow_status winnow_scene_move(winnow_scene* scene, const winnow_key* keys, siz
   return answer(scene->value.move(as_cpp_span(keys, count), view));
 }
 
-winnow_status winnow_scene_set_motion(winnow_scene* scene, const winnow_key* keys, size_t count,
-                                      uint8_t motion) {
+winnow_status winnow_scene_set_body_state(winnow_scene* scene, const winnow_key* keys, size_t count,
+                                          uint8_t state) {
   if (scene == nullptr || !is_array(keys, count)) return WINNOW_INVALID_ARGUMENT;
   return answer(
-      scene->value.set_motion(as_cpp_span(keys, count), static_cast<winnow::Motion>(motion)));
+      scene->value.set_body_state(as_cpp_span(keys, count), static_cast<winnow::BodyState>(state)));
 }
 
 winnow_status winnow_scene_set_shape(winnow_scene* scene, winnow_key key, winnow_shape_id shape) {
@@ -124,9 +124,9 @@ winnow_status winnow_scene_size(const winnow_scene* scene, size_t* size) {
   return WINNOW_OK;
 }
 
-winnow_status winnow_scene_size_of(const winnow_scene* scene, uint8_t motion, size_t* size) {
-  winnow::Motion which{};
-  if (!are_given(scene, size) || !read_choice(motion, winnow::Motion::sleeping, which)) {
+winnow_status winnow_scene_size_of(const winnow_scene* scene, uint8_t state, size_t* size) {
+  winnow::BodyState which{};
+  if (!are_given(scene, size) || !read_choice(state, winnow::BodyState::sleeping, which)) {
     return WINNOW_INVALID_ARGUMENT;
   }
   *size = scene->value.size(which);
@@ -163,15 +163,15 @@ winnow_status winnow_scene_origin(const winnow_scene* scene, double origin[3]) {
   return WINNOW_OK;
 }
 
-winnow_status winnow_scene_partition(winnow_scene* scene, uint8_t motion,
+winnow_status winnow_scene_partition(winnow_scene* scene, uint8_t state,
                                      const winnow_partition** partition) {
-  winnow::Motion which{};
-  if (!are_given(scene, partition) || !read_choice(motion, winnow::Motion::sleeping, which)) {
+  winnow::BodyState which{};
+  if (!are_given(scene, partition) || !read_choice(state, winnow::BodyState::sleeping, which)) {
     return WINNOW_INVALID_ARGUMENT;
   }
-  winnow_partition& view = scene->sets[motion];
+  winnow_partition& view = scene->sets[state];
   const winnow::Partition* const own = scene->value.partition(which);
-  view.asked = own;
+  view.target = own;
   *partition = own == nullptr ? nullptr : &view;
   return WINNOW_OK;
 }
@@ -203,7 +203,7 @@ winnow_status winnow_scene_footprint(const winnow_scene* scene, winnow_scene_byt
 winnow_status winnow_scene_statistics(const winnow_scene* scene, winnow_scene_counts* statistics) {
   if (scene == nullptr || !is_sized(statistics)) return WINNOW_INVALID_ARGUMENT;
   const winnow::SceneStatistics& own = scene->value.statistics();
-  write_sized({0, own.boxes_updated, own.body_pairs, own.carried, own.primitive_pairs,
+  write_sized({0, own.boxes_updated, own.body_pairs, own.cached_pairs, own.primitive_pairs,
                own.convex.pairs, own.convex.recomputed, own.convex.exact, own.parts.pairs,
                own.parts.recomputed, own.parts.exact, own.rejected_by_spheres},
               *statistics);

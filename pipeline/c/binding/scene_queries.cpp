@@ -20,21 +20,22 @@ namespace {
 }
 
 /// Runs a query that fills a span, and returns the span to C if it succeeds.
-template <typename OfCpp, typename OfC, typename Ask>
-[[nodiscard]] winnow_status answer_list(const OfC** first, std::size_t* count, Ask&& ask) noexcept {
+template <typename OfCpp, typename OfC, typename Query>
+[[nodiscard]] winnow_status answer_list(const OfC** first, std::size_t* count,
+                                        Query&& query) noexcept {
   std::span<const OfCpp> found;
-  const Status status = ask(found);
+  const Status status = query(found);
   if (status == Status::ok) return_array(found, first, count);
   return answer(status);
 }
 
 /// Runs a query with a batch of rays, if the batch is valid.
-template <typename Ask>
-[[nodiscard]] winnow_status ask_rays(winnow_scene_queries* queries,
-                                     const winnow_shape_ray_batch* rays, Ask&& ask) noexcept {
+template <typename Query>
+[[nodiscard]] winnow_status query_rays(winnow_scene_queries* queries,
+                                       const winnow_shape_ray_batch* rays, Query&& query) noexcept {
   ShapeRayBatch batch;
   const Status status = read_rays(rays, queries->room, batch);
-  return answer(status == Status::ok ? ask(batch) : status);
+  return answer(status == Status::ok ? query(batch) : status);
 }
 
 [[nodiscard]] bool read_rules(winnow_pair_rules given, PairRules& rules) noexcept {
@@ -118,7 +119,7 @@ winnow_status winnow_scene_queries_closest_rays(winnow_scene_queries* queries,
                                                 const winnow_filter* filter,
                                                 const winnow_scene_hit_columns* hits) {
   if (!are_given(queries, hits)) return WINNOW_INVALID_ARGUMENT;
-  return ask_rays(queries, rays, [&](const winnow::ShapeRayBatch& batch) {
+  return query_rays(queries, rays, [&](const winnow::ShapeRayBatch& batch) {
     return queries->value.closest(batch, columns_of(*hits), filter_of(filter));
   });
 }
@@ -128,7 +129,7 @@ winnow_status winnow_scene_queries_any_rays(winnow_scene_queries* queries,
                                             const winnow_filter* filter,
                                             const winnow_scene_hit_columns* hits) {
   if (!are_given(queries, hits)) return WINNOW_INVALID_ARGUMENT;
-  return ask_rays(queries, rays, [&](const winnow::ShapeRayBatch& batch) {
+  return query_rays(queries, rays, [&](const winnow::ShapeRayBatch& batch) {
     return queries->value.any(batch, columns_of(*hits), filter_of(filter));
   });
 }
@@ -139,7 +140,7 @@ winnow_status winnow_scene_queries_all_rays(winnow_scene_queries* queries,
                                             const winnow_scene_hit** hits, const size_t** first) {
   if (!are_given(queries, hits, first)) return WINNOW_INVALID_ARGUMENT;
   winnow::SceneHitLists lists;
-  const winnow_status status = ask_rays(queries, rays, [&](const winnow::ShapeRayBatch& batch) {
+  const winnow_status status = query_rays(queries, rays, [&](const winnow::ShapeRayBatch& batch) {
     return queries->value.all(batch, lists, filter_of(filter));
   });
   if (status != WINNOW_OK) return status;
@@ -233,21 +234,22 @@ winnow_status winnow_scene_queries_overlaps(winnow_scene_queries* queries, const
 
 winnow_status winnow_scene_queries_any_contact(winnow_scene_queries* queries, const winnow_key* a,
                                                size_t count_a, const winnow_key* b, size_t count_b,
-                                               double margin, winnow_pair_rules rules,
+                                               double contact_margin, winnow_pair_rules rules,
                                                winnow_key_pair* pair) {
   winnow::PairRules taken{};
   if (!are_given(queries, pair) || !read_rules(rules, taken)) return WINNOW_INVALID_ARGUMENT;
   if (!is_array(a, count_a) || !is_array(b, count_b)) return WINNOW_INVALID_ARGUMENT;
   return answer(queries->value.any_contact(as_cpp_span(a, count_a), as_cpp_span(b, count_b),
-                                           *as_cpp(pair), margin, taken));
+                                           *as_cpp(pair), contact_margin, taken));
 }
 
 winnow_status winnow_scene_queries_any_contact_in_scene(winnow_scene_queries* queries,
-                                                        double margin, winnow_pair_rules rules,
+                                                        double contact_margin,
+                                                        winnow_pair_rules rules,
                                                         winnow_key_pair* pair) {
   winnow::PairRules taken{};
   if (!are_given(queries, pair) || !read_rules(rules, taken)) return WINNOW_INVALID_ARGUMENT;
-  return answer(queries->value.any_contact(*as_cpp(pair), margin, taken));
+  return answer(queries->value.any_contact(*as_cpp(pair), contact_margin, taken));
 }
 
 winnow_status winnow_scene_queries_footprint(const winnow_scene_queries* queries,

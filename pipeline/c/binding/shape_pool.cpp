@@ -77,7 +77,7 @@ namespace {
   }
 }
 
-/// Copies the members of a C++ shape to the C struct, which has them in the same order.
+/// Copies a C++ shape to the C struct, which has the same members in the same order.
 template <typename Shape, typename Member>
 void write(const Shape& shape, Member& member) noexcept {
   static_assert(sizeof(Shape) == sizeof(Member));
@@ -245,22 +245,22 @@ winnow_status winnow_shape_pool_bounds(const winnow_shape_pool* pool, winnow_sha
 winnow_status winnow_shape_pool_shape(const winnow_shape_pool* pool, winnow_shape_id id,
                                       winnow_shape* shape) {
   if (!are_given(pool, shape)) return WINNOW_INVALID_ARGUMENT;
-  const winnow::ShapeId asked{id};
-  if (!pool->value.contains(asked) || asked.kind() == winnow::ShapeKind::hull) {
+  const winnow::ShapeId shape_id{id};
+  if (!pool->value.contains(shape_id) || shape_id.kind() == winnow::ShapeKind::hull) {
     return WINNOW_INVALID_KEY;
   }
-  *shape = shape_at(pool->value.tables(), asked);
+  *shape = shape_at(pool->value.tables(), shape_id);
   return WINNOW_OK;
 }
 
 winnow_status winnow_shape_pool_hull(const winnow_shape_pool* pool, winnow_shape_id id,
                                      winnow_hull* hull) {
   if (pool == nullptr || !is_sized(hull)) return WINNOW_INVALID_ARGUMENT;
-  const winnow::ShapeId asked{id};
-  if (!pool->value.contains(asked) || asked.kind() != winnow::ShapeKind::hull) {
+  const winnow::ShapeId shape_id{id};
+  if (!pool->value.contains(shape_id) || shape_id.kind() != winnow::ShapeKind::hull) {
     return WINNOW_INVALID_KEY;
   }
-  write_sized(hull_of(pool->value.tables().hulls[asked.index()]), *hull);
+  write_sized(hull_of(pool->value.tables().hulls[shape_id.index()]), *hull);
   return WINNOW_OK;
 }
 
@@ -275,11 +275,11 @@ winnow_status winnow_cast_ray(const winnow_shape_pool* pool, winnow_shape_id sha
                               winnow_shape_hit* hit) {
   if (!are_given(pool, pose, ray, hit)) return WINNOW_INVALID_ARGUMENT;
   if (!pool->value.contains({shape})) return WINNOW_INVALID_KEY;
-  winnow::ShapeHit met;
+  winnow::ShapeHit found;
   const winnow::Status status =
-      winnow::cast_ray(pool->value.tables(), {shape}, *as_cpp(pose), *as_cpp(ray), met);
+      winnow::cast_ray(pool->value.tables(), {shape}, *as_cpp(pose), *as_cpp(ray), found);
   if (status == winnow::Status::ok) {
-    *hit = {met.hit, met.t, {met.normal[0], met.normal[1], met.normal[2]}};
+    *hit = {found.hit, found.t, {found.normal[0], found.normal[1], found.normal[2]}};
   }
   return answer(status);
 }

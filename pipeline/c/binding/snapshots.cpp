@@ -54,7 +54,7 @@ winnow_status winnow_snapshot_bytes(const winnow_snapshot* snapshot, const uint8
 
 winnow_status winnow_partition_save(const winnow_partition* partition, winnow_snapshot* snapshot) {
   if (!are_given(partition, snapshot)) return WINNOW_INVALID_ARGUMENT;
-  return save_into(*snapshot, [&](auto& out) { return partition->asked->save(out); });
+  return save_into(*snapshot, [&](auto& out) { return partition->target->save(out); });
 }
 
 winnow_status winnow_partition_load(winnow_partition* partition, const uint8_t* bytes,

@@ -14,7 +14,7 @@
 namespace winnow::c {
 namespace {
 
-constexpr std::size_t kMostThreads = 4096;
+constexpr std::size_t kMaxThreads = 4096;
 
 }  // namespace
 }  // namespace winnow::c
@@ -44,7 +44,7 @@ struct winnow_threads {
 };
 
 winnow_status winnow_threads_create(size_t count, winnow_threads** threads) {
-  if (threads == nullptr || count == 0 || count > winnow::c::kMostThreads) {
+  if (threads == nullptr || count == 0 || count > winnow::c::kMaxThreads) {
     return WINNOW_INVALID_ARGUMENT;
   }
   if (count > 1 && WINNOW_HAVE_TBB == 0) return WINNOW_UNSUPPORTED;

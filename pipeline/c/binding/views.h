@@ -16,8 +16,8 @@
 namespace winnow::c {
 
 // Conversion of the caller's columns to views of the engine. Columns that have the number type of
-// the engine are used without a copy; others are converted into `room`. `invalid_argument` if a
-// column is missing; `out_of_memory`.
+// the engine are used without a copy; others are converted into `room`. The functions return
+// `invalid_argument` if a column is missing, and `out_of_memory`.
 
 /// Boxes in double are rounded outward. If `entries` is not null, only those entries are read.
 [[nodiscard]] Status read_boxes(const winnow_box_view* given, const IndexSubset* entries,

@@ -1,5 +1,6 @@
 // Transport over MPI (make_mpi_transport in cluster_mpi.h). Each collective step begins with an
-// exchange of headers, by which the ranks compare what they do; every wait has a time limit.
+// exchange of headers, by which the ranks compare what they do. Waits for messages have a time
+// limit.
 
 #include <winnow/pipeline/cluster_mpi.h>
 
@@ -47,7 +48,8 @@ struct CutTask {
   }
 };
 
-/// MPI datatype of the columns of a message, without a copy: pieces whose sizes fit in an int.
+/// MPI datatype of the columns of a message, where they are stored: in pieces whose sizes fit in an
+/// int.
 class ColumnsType {
  public:
   void add(const void* column, std::uint64_t bytes) {
@@ -132,7 +134,7 @@ class MpiTransport final : public Transport {
   /// After a failed step MPI may still write to the receive buffers: leaks them.
   void leave_buffers() noexcept;
   void start_receiving();
-  void start_sending(const RankMessage& parcel);
+  void start_sending(const RankMessage& message);
   void keep(int result) noexcept { failed_ = failed_ || result != MPI_SUCCESS; }
   [[nodiscard]] MPI_Request& new_request() { return requests_.emplace_back(MPI_REQUEST_NULL); }
 
@@ -149,7 +151,7 @@ class MpiTransport final : public Transport {
   std::vector<Header> out_;           // by rank
   std::vector<Header> in_;            // by rank
   std::vector<std::uint64_t> words_;  // received columns, or sums
-  std::vector<RankMessage> parcels_;
+  std::vector<RankMessage> messages_;
 };
 
 Status MpiTransport::wait_for(std::size_t count) {
@@ -179,8 +181,8 @@ void MpiTransport::start(Step step, std::span<const RankMessage> sent) {
   const Header header{std::uint64_t{call_} << 8U | static_cast<std::uint64_t>(step), {}};
   out_.assign(ranks_, header);
   in_.assign(ranks_, header);
-  for (const RankMessage& parcel : sent) {
-    for (std::size_t c = 0; c < 4; ++c) out_[parcel.to].sizes[c] = parcel.columns[c].size();
+  for (const RankMessage& message : sent) {
+    for (std::size_t c = 0; c < 4; ++c) out_[message.to].sizes[c] = message.columns[c].size();
   }
   keep(MPI_Ialltoall(out_.data(), kHeaderWords, MPI_UINT64_T, in_.data(), kHeaderWords,
                      MPI_UINT64_T, communicator_, &new_request()));
@@ -222,10 +224,10 @@ void MpiTransport::start_receiving() {
   for (std::uint32_t from = 0; from < ranks_; ++from) {
     const auto& sizes = in_[from].sizes;
     if (from == rank_ || sum_of(in_[from]) == 0) continue;
-    RankMessage& parcel = parcels_.emplace_back(RankMessage{from, rank_, {}});
+    RankMessage& message = messages_.emplace_back(RankMessage{from, rank_, {}});
     ColumnsType columns;
     for (std::size_t c = 0; c < 4; ++c) {
-      parcel.columns[c] = {place, sizes[c]};
+      message.columns[c] = {place, sizes[c]};
       columns.add(place, sizes[c]);
       place += words_of(sizes[c]) * 8;
     }
@@ -236,11 +238,11 @@ void MpiTransport::start_receiving() {
   }
 }
 
-void MpiTransport::start_sending(const RankMessage& parcel) {
+void MpiTransport::start_sending(const RankMessage& message) {
   ColumnsType columns;
-  for (const auto& column : parcel.columns) columns.add(column.data(), column.size());
+  for (const auto& column : message.columns) columns.add(column.data(), column.size());
   MPI_Datatype type = columns.make();
-  keep(MPI_Isend(MPI_BOTTOM, 1, type, static_cast<int>(parcel.to), kTag, communicator_,
+  keep(MPI_Isend(MPI_BOTTOM, 1, type, static_cast<int>(message.to), kTag, communicator_,
                  &new_request()));
   MPI_Type_free(&type);
 }
@@ -249,13 +251,13 @@ Status MpiTransport::exchange(std::span<const RankMessage> sent,
                               std::span<const RankMessage>& received,
                               const OverlappedWork& meanwhile) {
   if (failed_) return Status::communication_failed;
-  parcels_.clear();
+  messages_.clear();
   start(Step::exchange, sent);
-  for (const RankMessage& parcel : sent) {
-    if (parcel.to == rank_) {
-      parcels_.push_back(parcel);
-    } else if (parcel.bytes() != 0) {
-      start_sending(parcel);
+  for (const RankMessage& message : sent) {
+    if (message.to == rank_) {
+      messages_.push_back(message);
+    } else if (message.bytes() != 0) {
+      start_sending(message);
     }
   }
   meanwhile();
@@ -263,8 +265,8 @@ Status MpiTransport::exchange(std::span<const RankMessage> sent,
   const Status status = synchronize();
   if (status != Status::ok) return status;
   start_receiving();
-  std::ranges::sort(parcels_, {}, &RankMessage::from);
-  received = parcels_;
+  std::ranges::sort(messages_, {}, &RankMessage::from);
+  received = messages_;
   return finish();
 }
 
@@ -289,8 +291,8 @@ Status MpiTransport::reduce(std::span<std::uint64_t> sums, std::span<std::uint64
   return Status::ok;
 }
 
-// Zoltan has no time limit. After the second step each rank has seen that all ranks have arrived,
-// so a rank that is late or makes another call is detected before.
+// Zoltan has no time limit. Two steps before it detect a rank that is late or makes another call: a
+// rank completes the second step only after all ranks have completed the first one.
 Status MpiTransport::cut(std::span<const CutWork> work, std::span<SplitPlane> cuts) {
   if (failed_) return Status::communication_failed;
   for (const Step step : {Step::arrive, Step::cut}) {
@@ -303,7 +305,7 @@ Status MpiTransport::cut(std::span<const CutWork> work, std::span<SplitPlane> cu
   return status;
 }
 
-// Calls Zoltan on a thread, which is abandoned if it takes too long.
+// Calls Zoltan on a thread, which is abandoned after the time limit.
 Status MpiTransport::cut_in_time(const CutWork& work, std::span<SplitPlane> cuts) {
   const auto task = std::make_shared<CutTask>();
   task->boxes.assign(work.boxes.begin(), work.boxes.end());

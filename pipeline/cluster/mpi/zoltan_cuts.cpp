@@ -16,7 +16,7 @@
 namespace winnow {
 namespace {
 
-/// Data for Zoltan's callbacks: scaled centres, and works.
+/// Data for Zoltan's callbacks: boxes with their work, and the factors by which centres are scaled.
 struct CutRequest {
   const CutWork& work;
   std::array<double, 3> scale;
@@ -46,11 +46,11 @@ int dimensions_of(void*, int* error) {
 
 void places_of(void* data, int, int, int count, ZOLTAN_ID_PTR, ZOLTAN_ID_PTR local, int,
                double* places, int* error) {
-  const CutRequest& asked = CutRequest::of(data);
+  const CutRequest& request = CutRequest::of(data);
   for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
-    const Vec3f centre = centre_of(asked.work.boxes[local[i]]);
+    const Vec3f centre = centre_of(request.work.boxes[local[i]]);
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      places[3 * i + axis] = double{centre[static_cast<int>(axis)]} * asked.scale[axis];
+      places[3 * i + axis] = double{centre[static_cast<int>(axis)]} * request.scale[axis];
     }
   }
   *error = ZOLTAN_OK;
@@ -88,7 +88,8 @@ class TreeOfBoxes {
               std::span<SplitPlane> cuts)
       : boxes_(std::move(boxes)), scale_(scale), cuts_(cuts) {}
 
-  /// Separates some ranks by cuts; returns false if no plane separates them.
+  /// Separates some ranks by cuts, and sets `side` to the root of these cuts. Returns false if no
+  /// plane separates the ranks.
   bool cut(std::span<std::uint32_t> ranks, std::int32_t& side) {
     if (ranks.size() == 1) {
       side = ~static_cast<std::int32_t>(ranks.front());
@@ -121,9 +122,9 @@ class TreeOfBoxes {
     for (std::size_t i = 1; i < ranks.size(); ++i) {
       high = std::max(high, boxes_[ranks[i - 1]].high[axis]);
       if (boxes_[ranks[i]].low[axis] < high) continue;
-      constexpr double kMost = std::numeric_limits<float>::max();
+      constexpr double kMaxFloat = std::numeric_limits<float>::max();
       cut.axis = axis;
-      cut.at = static_cast<float>(std::clamp(high / scale_[axis], -kMost, kMost));
+      cut.at = static_cast<float>(std::clamp(high / scale_[axis], -kMaxFloat, kMaxFloat));
       return i;
     }
     return 0;
@@ -145,16 +146,16 @@ class Zoltan {
 
   [[nodiscard]] Zoltan_Struct* state() const noexcept { return state_; }
 
-  [[nodiscard]] bool cut(CutRequest& asked) {
+  [[nodiscard]] bool cut(CutRequest& request) {
     if (state_ == nullptr) return false;
     constexpr const char* kParameters[][2] = {{"DEBUG_LEVEL", "0"},     {"LB_METHOD", "RCB"},
                                               {"KEEP_CUTS", "1"},       {"OBJ_WEIGHT_DIM", "1"},
                                               {"RETURN_LISTS", "NONE"}, {"RCB_OUTPUT_LEVEL", "0"}};
     for (const auto& one : kParameters) Zoltan_Set_Param(state_, one[0], one[1]);
-    Zoltan_Set_Num_Obj_Fn(state_, count_of, &asked);
-    Zoltan_Set_Obj_List_Fn(state_, list_of, &asked);
-    Zoltan_Set_Num_Geom_Fn(state_, dimensions_of, &asked);
-    Zoltan_Set_Geom_Multi_Fn(state_, places_of, &asked);
+    Zoltan_Set_Num_Obj_Fn(state_, count_of, &request);
+    Zoltan_Set_Obj_List_Fn(state_, list_of, &request);
+    Zoltan_Set_Num_Geom_Fn(state_, dimensions_of, &request);
+    Zoltan_Set_Geom_Multi_Fn(state_, places_of, &request);
     int changed, global_entries, local_entries, imports, exports;
     ZOLTAN_ID_PTR ids[4];
     int* lists[4];
@@ -171,11 +172,11 @@ class Zoltan {
 }  // namespace
 
 Status cut_by_zoltan(MPI_Comm communicator, const CutWork& work, std::span<SplitPlane> cuts) {
-  CutRequest asked{work, {}};
-  const Status measured = measure_scale(communicator, work, asked.scale);
+  CutRequest request{work, {}};
+  const Status measured = measure_scale(communicator, work, request.scale);
   if (measured != Status::ok) return measured;
   Zoltan zoltan(communicator);
-  if (!zoltan.cut(asked)) return Status::communication_failed;
+  if (!zoltan.cut(request)) return Status::communication_failed;
   std::vector<TreeOfBoxes::Box> boxes(cuts.size() + 1);
   for (std::size_t rank = 0; rank < boxes.size(); ++rank) {
     int dimensions = 0;
@@ -188,7 +189,7 @@ Status cut_by_zoltan(MPI_Comm communicator, const CutWork& work, std::span<Split
   std::vector<std::uint32_t> ranks(boxes.size());
   std::iota(ranks.begin(), ranks.end(), 0U);
   std::int32_t root = 0;
-  TreeOfBoxes tree(std::move(boxes), asked.scale, cuts);
+  TreeOfBoxes tree(std::move(boxes), request.scale, cuts);
   return tree.cut(ranks, root) ? Status::ok : Status::communication_failed;
 }
 

@@ -14,9 +14,9 @@
 
 namespace winnow::WINNOW_ISA_NAME::curved {
 
-/// Recomputes the closest points of a pair in the triangle that the search ended in, and a lower
-/// bound of their distance. For pairs for which rounding has kept the bounds of the search from
-/// closing.
+/// Recomputes the closest points of a pair in the triangle with which the search ended, and a lower
+/// bound of the distance. For pairs whose bounds still differ because of rounding errors of the
+/// search.
 static inline void end_in_triangle(CurvedPair& pair) {
   double weight[3];
   if (pair.count != 3 || !weigh_thin_triangle(pair.difference, weight)) return;
@@ -94,7 +94,7 @@ class CurvedAnswers {
   }
 
   /// Rounding, and user shapes whose points contradict each other, may make the lower bound exceed
-  /// the upper one. The size of the difference bounds the error in both cases.
+  /// the upper one. So the error is the absolute difference.
   static double width_between(double lower, double upper) { return __builtin_fabs(upper - lower); }
 
   void give_up(std::uint32_t i) { job_.uncertified[uncertified_++] = i; }
@@ -134,7 +134,8 @@ class CurvedAnswers {
     if (pair.upper - pair.lower > kLoose * pair.upper) end_in_triangle(pair);
     const double error =
         width_between(pair.lower, pair.upper) + kRoundingError * (pair.size + pair.rounding);
-    // An error of the length implies an error of the direction: this keeps it below 0.01 degrees.
+    // An error of the length implies an error of the direction, which this limit keeps below 0.01
+    // degrees.
     if (!(error <= 1e-8 * pair.upper)) return false;
     double normal[3];
     for (int k = 0; k < 3; ++k) normal[k] = -pair.gap[k] / pair.upper;
@@ -251,7 +252,7 @@ class CurvedAnswers {
   CurvedDepth depth_;
 };
 
-/// The kernels of all pair kinds that this file serves; the job's shapes determine the kind.
+/// The kernels of all pair kinds of curved.kernel.cpp; the job's shapes determine the kind.
 inline constexpr NarrowKernels kCurvedKernels = {
     {CurvedAnswers<0>::run, CurvedAnswers<1>::run, CurvedAnswers<2>::run}};
 

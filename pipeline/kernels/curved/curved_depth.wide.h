@@ -69,9 +69,9 @@ class CurvedDepth {
   [[nodiscard]] double upper() const { return upper_; }
   [[nodiscard]] double lower() const { return lower_; }
 
-  /// The unit direction of least depth, from the first to the second, and a point of the first that
-  /// is on both cores once the second has been moved out; returns false if rounding hides that
-  /// point.
+  /// The unit direction of least depth, from the first to the second, and the point of the first
+  /// that touches the second after the second is moved out. Returns false if the foot of the origin
+  /// is not in the nearest face: the point is then unknown.
   bool answer(double* direction, double* point) const {
     if (is_minimum_) {
       for (int k = 0; k < 3; ++k) {
@@ -114,7 +114,8 @@ class CurvedDepth {
   static constexpr std::uint32_t kMaxFacePoints = 128;
   /// A polytope of p points has 2 p - 4 faces.
   static constexpr std::uint32_t kMaxFaces = 2 * kMaxFacePoints;
-  /// The largest number of visible faces. More of their sides are tested than are kept.
+  /// The largest number of visible faces. `grow` writes all their sides, also those that it then
+  /// overwrites.
   static constexpr std::uint32_t kMaxVisible = 30;
   static constexpr std::uint32_t kMaxSides = 3 * kMaxVisible + 1;
   /// A face is visible from a point above its plane, or below it by at most this.
@@ -148,7 +149,7 @@ class CurvedDepth {
   }
 
   /// A point of the difference, and the first's point in it.
-  struct Point {
+  struct DifferencePoint {
     double w[3];
     double mine[3];
   };
@@ -186,9 +187,9 @@ class CurvedDepth {
     upper_ = dot_normal(face_, growth_.w);
   }
 
-  /// Computes a support point whose normal is nearer to the best minimum than the face's own: the
-  /// polytope then needs fewer points there. Returns false if the face is elsewhere, or the point
-  /// is not above it.
+  /// Computes a support point along a direction between the normals of the face and of the best
+  /// minimum: the polytope then needs fewer points there. Returns false if these normals are not
+  /// close (kSameMinimum), or if the point is not above the face by kNearerRise of the tolerance.
   bool measure_nearer_to_best() {
     if (!(best_height_ < __builtin_inf())) return false;
     const double n[3] = {normal_[0][face_], normal_[1][face_], normal_[2][face_]};
@@ -207,7 +208,7 @@ class CurvedDepth {
 
   /// The base of a new face: an edge from p to q, the edge of the face across it, and the new
   /// face's number.
-  struct Side {
+  struct BaseEdge {
     std::uint32_t p;
     std::uint32_t q;
     std::uint32_t across;
@@ -226,9 +227,9 @@ class CurvedDepth {
     // The first face is counter-clockwise seen from outside if the fourth point is behind it.
     const bool turned = dot3(n, e[2]) > 0.0;
     const std::uint32_t corner[3] = {0, turned ? 2U : 1U, turned ? 1U : 2U};
-    const Side base{corner[0], corner[1], 0, add_slot()};
+    const BaseEdge base{corner[0], corner[1], 0, add_slot()};
     if (!set_faces(&base, 1, corner[2])) return false;
-    Side side[3];
+    BaseEdge side[3];
     for (std::uint32_t i = 0; i < 3; ++i) {
       side[i] = {corner[(i + 1) % 3], corner[i], edge_of(base.face, i), add_slot()};
     }
@@ -247,12 +248,12 @@ class CurvedDepth {
 
   /// Makes the faces that join sides to a point; returns false if one has no normal or the origin
   /// is above it.
-  bool set_faces(const Side* side, std::uint32_t count, std::uint32_t to) {
+  bool set_faces(const BaseEdge* side, std::uint32_t count, std::uint32_t to) {
     const double* w = point_[to];
     for (std::uint32_t begin = 0; begin < count; begin += kWidth) {
       const std::uint32_t left = count - begin;
       const std::uint32_t batch = left < kWidth ? left : kWidth;
-      const auto of_lane = [&](int lane) -> const Side& {
+      const auto of_lane = [&](int lane) -> const BaseEdge& {
         const auto i = static_cast<std::uint32_t>(lane);
         return side[begin + (i < batch ? i : 0)];
       };
@@ -277,7 +278,7 @@ class CurvedDepth {
       unit.z.store(plane[2]);
       distance.store(plane[3]);
       for (std::uint32_t i = 0; i < batch; ++i) {
-        const Side& s = side[begin + i];
+        const BaseEdge& s = side[begin + i];
         for (int k = 0; k < 3; ++k) normal_[k][s.face] = plane[k][i];
         distance_[s.face] = plane[3][i];
         open_[s.face] = plane[3][i];
@@ -292,7 +293,7 @@ class CurvedDepth {
 
   /// Connects the new faces with each other and with the faces across. Returns false unless the
   /// sides form rings, in which at each corner one side ends and one begins.
-  bool join(const Side* side, std::uint32_t count) {
+  bool join(const BaseEdge* side, std::uint32_t count) {
     std::uint64_t begins[kMaxFacePoints / 64] = {};
     std::uint64_t ends[kMaxFacePoints / 64] = {};
     for (std::uint32_t i = 0; i < count; ++i) {
@@ -308,7 +309,7 @@ class CurvedDepth {
     }
     if (static_cast<std::uint32_t>(corners) != count) return false;
     for (std::uint32_t i = 0; i < count; ++i) {
-      const Side& s = side[i];
+      const BaseEdge& s = side[i];
       across_[s.face][0] = s.across;
       across_[s.across / 4][s.across % 4] = edge_of(s.face, 0);
       across_[s.face][1] = edge_of(from_[s.q], 2);
@@ -351,7 +352,7 @@ class CurvedDepth {
       return true;
     }
     double tangent = kWidest;
-    while (!found.holds(tangent)) {
+    while (!found.is_least_within(tangent)) {
       tangent *= 0.5;
       if (tangent < kNarrowest) return false;
     }
@@ -382,8 +383,9 @@ class CurvedDepth {
   }
 
   /// Searches near the nearest face for a minimum below the best so far, without a range in which
-  /// it is certain. If its point is above the face, the polytope grows by this point instead.
-  /// Returns false if no minimum is found.
+  /// it is certain. If the point of the minimum is above the face, the polytope grows by this point
+  /// instead. Returns false if no such minimum is found. Does not search if the face's normal is
+  /// close to that of the best minimum.
   bool find_tangent_minimum() {
     const double near[3] = {normal_[0][face_], normal_[1][face_], normal_[2][face_]};
     if (best_height_ < __builtin_inf() && dot3(near, best_normal_) > kSameMinimum) return true;
@@ -460,7 +462,7 @@ class CurvedDepth {
   bool grow(std::uint32_t to) {
     const std::uint32_t count = find_visible(to);
     if (count == 0) return false;
-    Side side[kMaxSides];
+    BaseEdge side[kMaxSides];
     std::uint32_t sides = 0;
     for (std::uint32_t i = 0; i < count; ++i) {
       const std::uint32_t f = visible_[i];
@@ -484,7 +486,7 @@ class CurvedDepth {
   }
 
   /// True if the connected sides form a single ring.
-  bool is_one_ring(const Side* side, std::uint32_t count) const {
+  bool is_one_ring(const BaseEdge* side, std::uint32_t count) const {
     std::uint32_t face = side[0].face;
     for (std::uint32_t i = 1; i < count; ++i) {
       face = across_[face][1] / 4;
@@ -563,7 +565,6 @@ class CurvedDepth {
   }
 
   const CurvedPair* pair_ = nullptr;
-  /// The pair has a user shape.
   bool has_user_shape_ = false;
   /// The relative gap of the bounds below which a minimum is searched for next.
   double next_try_ = 0.0;
@@ -584,7 +585,7 @@ class CurvedDepth {
   double reach_ = 0.0;
   double tolerance_ = 0.0;
   /// The point by which the polytope grows next.
-  Point growth_;
+  DifferencePoint growth_;
   std::uint32_t points_ = 0;
   std::uint32_t face_ = 0;
   /// The first of the nearest open faces, and its distance.

@@ -22,10 +22,10 @@
 // If these rises add up to at least h(n0) |t|^2 / 2, then h(n) is at least h(n0) |n|.
 //
 // The line of a cone's side turns with the normal. If it touches at the fraction q of its length
-// from the tip, then q / 2 times the cone's disc and half of the distance to the nearer end serve
-// as a disc and a segment, because the cone is at least as high as its tip and its rim in any
-// proportion. The side of a tapered capsule is the side of the cone between its tip and the circle
-// where the larger ball begins; the ball is an ellipsoid.
+// from the tip, then the bounds above hold with q / 2 times the cone's disc as a disc, and half of
+// the distance to the nearer end as p of a segment, because the cone is at least as high as any
+// weighted mean of its tip and its rim. The side of a tapered capsule is the side of the cone
+// between its tip and the circle where the larger ball begins; the ball is an ellipsoid.
 
 #include "pipeline/kernels/curved/local_minkowski_sum.wide.h"
 
@@ -49,7 +49,7 @@ class LocalMinimum {
  public:
   /// Finds the minimum near the unit direction `near`, from three points of the difference around
   /// it and the points of the first in these. If the cores are `apart`, heights are negative and
-  /// there is only one minimum. Returns false if there is none.
+  /// there is only one minimum. Returns false if no minimum is found.
   bool find(const CurvedPair& pair, const double* const* corner, const double* const* mine,
             const double* near, bool apart = false) {
     pair_ = &pair;
@@ -69,7 +69,7 @@ class LocalMinimum {
   }
 
   /// True if no direction is less deep up to the angle with this tangent from the minimum.
-  [[nodiscard]] bool holds(double tangent) const {
+  [[nodiscard]] bool is_least_within(double tangent) const {
     if (is_flat_) return 2.0 * inside_[0] > (1.0 + kMargin) * height_ * tangent;
     double e[2][3];
     span_across(normal_, e);
@@ -99,7 +99,7 @@ class LocalMinimum {
   }
 
   /// Lower bound of all depths if the simple part is a ball swept along segments, and the depth is
-  /// at most the ball's radius: the radius minus the distance of the origin from the centre of the
+  /// at most the ball's radius: the radius minus the distance of the origin from the center of the
   /// touching ball. Negative if there is no such bound.
   [[nodiscard]] double ball_lower_bound() const {
     double radius = 0.0;
@@ -151,8 +151,8 @@ class LocalMinimum {
 
  private:
   static constexpr int kMaxSteps = 6;
-  /// Steps square the error, so after a step this short nothing is left to gain; a step longer than
-  /// kWideStep fails.
+  /// A step about squares the error, so the search ends after a step shorter than kLastStep. It
+  /// fails if a step is longer than kWideStep.
   static constexpr double kLastStep = 1e-7;
   static constexpr double kWideStep = 0.5;
   /// Below kMinSine, discs count as flat and segments as parallel. Below kFlatSine a disc may be
@@ -227,7 +227,7 @@ class LocalMinimum {
     const double sign = dot3(n, normal_) < 0.0 ? -1.0 : 1.0;
     for (double& x : n) x *= sign / area;
     // If the cores are apart, their distance is measured to a point of the face, so the face must
-    // be exactly level.
+    // be level up to rounding.
     for (int i = 0; i < 2 && sign_ < 0.0; ++i) {
       if (!(__builtin_fabs(dot3(n, e[i])) <= kLevelFace)) return false;
     }
@@ -244,9 +244,9 @@ class LocalMinimum {
     });
   }
 
-  /// True if the flat part through `at` is touched at least slightly inside its border: by the
-  /// other core's support point, or by the mean of its three points if these are equally far.
-  /// inside(x) is the distance of a point x of the plane from the border.
+  /// True if the flat part through `at` is touched inside its border: by the other core's support
+  /// point, or by the mean of the other core's three points if these are equally far. inside(x) is
+  /// the distance of a point x of the plane from the border, negative outside.
   template <typename Inside>
   bool touch_flat(const double* n, int side, const double* at, Inside&& inside) {
     const SidePlace place(*pair_, side == 0);
@@ -424,13 +424,13 @@ class LocalMinimum {
     for (int k = 0; k < 3; ++k) out[k] *= over;
   }
 
-  /// From the centre of a disc to its support point along the normal.
+  /// From the center of a disc to its support point along the normal.
   void rim_of(const LocalMinkowskiSum::Disc& disc, double* rim) const {
     out_of(disc.axis, rim);
     for (int k = 0; k < 3; ++k) rim[k] *= disc.radius;
   }
 
-  /// From the centre of an ellipsoid to its support point along the normal.
+  /// From the center of an ellipsoid to its support point along the normal.
   void touch_of(const LocalMinkowskiSum::Ellipsoid& ellipsoid, double* x) const {
     const EllipsoidHeight height(ellipsoid, normal_);
     const double over = 1.0 / largest_of(height.length, 1e-150);
@@ -484,8 +484,8 @@ class LocalMinimum {
     return true;
   }
 
-  /// True if the minimum is determined: by two of discs and segments, by a cone's side, which is
-  /// both, or by an ellipsoid.
+  /// True if the minimum is determined: by at least two discs or segments, by a cone's side, which
+  /// is both, or by an ellipsoid.
   [[nodiscard]] bool is_determined() const {
     const bool has_cone_side = sum_.segments > 0 && sum_.segment[0].radius > 0.0;
     return has_cone_side || sum_.ellipsoids > 0 || sum_.segments + sum_.discs >= 2;
@@ -505,7 +505,7 @@ class LocalMinimum {
     return true;
   }
 
-  /// The shortest way out of a ball leads away from its centre.
+  /// The shortest translation out of a ball is away from its center.
   void leave_ball() {
     const double length = __builtin_sqrt(dot3(sum_.point, sum_.point));
     if (!(length > 0.0)) return;
@@ -552,14 +552,15 @@ class LocalMinimum {
     const LocalMinkowskiSum::Segment& t = sum_.segment[1];
     double w[3];
     sum_support(w);
-    const double wanted = -(0.5 * s.length + dot3(w, s.axis)) / dot3(t.axis, s.axis);
-    const double least = wanted > 0.0 ? wanted : 0.0;
+    const double target = -(0.5 * s.length + dot3(w, s.axis)) / dot3(t.axis, s.axis);
+    const double least = target > 0.0 ? target : 0.0;
     const double at = least < t.length ? least : t.length;
     for (int k = 0; k < 3; ++k) sum_.point[k] += at * t.axis[k];
     sum_.segments = 1;
   }
 
-  /// Moves to the nearest normal along which all of the first segment is equally far.
+  /// Moves to the normal nearest to `to` along which all points of the first segment are equally
+  /// far.
   bool move_on_circle(const double* to) {
     const LocalMinkowskiSum::Segment& s = sum_.segment[0];
     const double along = dot3(s.axis, to);
@@ -591,7 +592,8 @@ class LocalMinimum {
     return set_normal(n);
   }
 
-  /// Returns false if the depth has no minimum along the step.
+  /// Computes a step of Newton's method. Returns false if the second derivatives are not positive
+  /// definite, or if a disc or ellipsoid is seen along its flat side.
   bool next_step(double* step) const {
     double w[3];
     sum_support(w);
@@ -600,7 +602,7 @@ class LocalMinimum {
     span_across(normal_, e);
     double q[3] = {-height, 0.0, -height};
     if (sum_.segments == 1) {
-      // Along the circle of normals, which curves towards its own centre.
+      // Along the circle of normals, which curves towards its own center.
       const LocalMinkowskiSum::Segment& s = sum_.segment[0];
       sine_of(s.axis, e[0]);
       q[0] = -(height - s.cosine * dot3(w, s.axis)) / (s.sine * s.sine);
@@ -674,9 +676,10 @@ class LocalMinimum {
   double normal_[3];
   double height_;
   double miss_;
-  /// The touching point's place along each segment.
+  /// The position of the touching point along each segment.
   double at_[2];
-  /// Its distance from the nearer end; for a flat part, inside_[0] is the distance from the border.
+  /// The distance of the touching point from the nearer end of each segment; for a flat part,
+  /// inside_[0] is the distance from the border.
   double inside_[2];
   bool is_flat_ = false;
   double flat_point_[3];

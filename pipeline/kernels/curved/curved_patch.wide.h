@@ -124,8 +124,8 @@ class CurvedPatch {
         vertex, edge_feature);
   }
 
-  /// If the support is an edge, only the faces beside it count, not the faces at one of its ends:
-  /// faces that contain the point `at`.
+  /// Only faces that contain the point `at` can be the feature: if `at` is on an edge, these are
+  /// the two faces beside the edge, not the other faces at its ends.
   void add_hull(const double* d, const double* at) {
     const HullShape& shape = *form_.hull;
     const float direction[3] = {static_cast<float>(d[0]), static_cast<float>(d[1]),
@@ -298,10 +298,12 @@ static inline bool touches_in_a_point(const CoreDesc& form) {
 /// Writes the contact points of a pair within the margin, and returns their number. `normal` is in
 /// the frame of the first. `world`, from body a to body b, and `point`, on the surface of a and
 /// relative to it, are in world axes. `core` is the point on the core of the first, `apart` the
-/// distance of the cores, both scaled. The closest point replaces the deepest point of the features
-/// if they miss it by a little (as polygons for rims do), are farther than the margin, or touch in
-/// only one point. If they miss it by much, it is inserted before them. No point becomes deeper
-/// than it, and the first has its depth.
+/// distance of the cores, both scaled. The closest point of the pair replaces the deepest point of
+/// the features if the depths of the two differ by more than rounding errors and tied_depth (as for
+/// rims, whose features are polygons), if the features are farther apart than the margin, or if
+/// they have only one contact. If the depths differ by more than 1e-2 of the size, the closest
+/// point is inserted before the points of the features instead. No point becomes deeper than the
+/// closest point, and the first point has its depth.
 static inline std::uint32_t curved_contacts(const CurvedPair& pair, const double* normal,
                                             const double* world, const double* point,
                                             const double* core, double apart, double distance,

@@ -9,8 +9,8 @@
 namespace winnow::WINNOW_ISA_NAME::curved {
 
 /// Computes the weights of the point of a triangle's plane that is nearest to the origin. They are
-/// computed from the shortest side, so that thin triangles lose no digits, and refined once, so
-/// that little rounding error is left. Returns false if the point is not between the corners.
+/// computed from the shortest side, so that thin triangles lose no digits, and refined once against
+/// the remaining rounding errors. Returns false if the point is outside the triangle.
 static inline bool weigh_thin_triangle(const double (*corner)[3], double* weight) {
   int shortest = 0;
   double least = __builtin_inf();
@@ -56,7 +56,7 @@ static inline bool weigh_thin_triangle(const double (*corner)[3], double* weight
 class CurvedSearch {
  public:
   /// At least one pair; all pairs have the same kinds. `overlap_only`: the search stops with state
-  /// inside as soon as the roundings certainly overlap.
+  /// inside as soon as the rounded shapes certainly overlap.
   CurvedSearch(CurvedPair* pairs, std::uint32_t count, bool overlap_only)
       : next_(pairs),
         end_(pairs + count),
@@ -134,8 +134,8 @@ class CurvedSearch {
     return true;
   }
 
-  /// Tests whether the origin is certainly inside. If the depth is needed this is left to the
-  /// second search, because a polytope that starts from its simplex takes fewer steps.
+  /// Tests whether the origin is certainly inside. If the depth is needed, only after the second
+  /// search: a polytope that starts from the simplex of the second search takes fewer steps.
   void confirm_inside(int lane) {
     CurvedPair& pair = *pair_[lane];
     if (pair.state != CurvedState::close || !(overlap_only_ || is_askew_[lane])) return;
@@ -241,7 +241,8 @@ class CurvedSearch {
     for (; lanes != 0; lanes &= lanes - 1) pair_[first(lanes)]->state = state;
   }
 
-  /// The curvature of a user shape is unknown, but it is round more often than not.
+  /// False for user shapes against shapes with flat parts or edges: ends_on_tangent needs a smooth
+  /// minimum. User shapes count as smooth, because their curvature is unknown.
   static bool may_have_features(const CurvedPair& pair) {
     if (!has_user_shape(pair)) return true;
     const ShapeKind kind = pair.first.kind;

@@ -1,11 +1,11 @@
 #pragma once
 
 // Computes a local minimum of the depth of two cores from support points only; user shapes provide
-// nothing else. At a minimum, the support point of the difference is on the line of the normal. Its
-// offset from that line is the gradient of the depth over the normals; Newton's method finds its
-// zero. Second derivatives come from differences and are updated by Broyden's rule ("A class of
-// methods for solving nonlinear simultaneous equations", 1965). Used by curved_depth.wide.h and
-// curved_search.wide.h.
+// nothing else. At a minimum, the support point of the difference is on the line through the origin
+// along the normal. The offset of the support point from that line is the gradient of the depth
+// over the normals; Newton's method finds the zero of the gradient. Second derivatives come from
+// differences and are updated by Broyden's rule ("A class of methods for solving nonlinear
+// simultaneous equations", 1965). Used by curved_depth.wide.h and curved_search.wide.h.
 
 #include "pipeline/kernels/curved/curved_minimum.wide.h"
 
@@ -14,7 +14,8 @@ namespace winnow::WINNOW_ISA_NAME::curved {
 class TangentMinimum {
  public:
   /// Starts from the unit direction `near`; `reach` is the extent of the difference. If the cores
-  /// are `apart`, the depth is negative. Returns false if there is no smooth minimum nearby.
+  /// are `apart`, the depth is negative. Returns false if kMaxSteps steps find no smooth minimum
+  /// within kWidest of the start.
   bool find(const CurvedPair& pair, const double* near, double reach, bool apart = false) {
     pair_ = &pair;
     const double miss = kMiss * reach;
@@ -46,8 +47,8 @@ class TangentMinimum {
 
  private:
   static constexpr int kMaxSteps = 12;
-  /// Largest distance of the support point from the normal, relative to the extent of the
-  /// difference.
+  /// The search ends if the distance of the support point from the line of the normal, relative to
+  /// the extent of the difference, is at most this.
   static constexpr double kMiss = 1e-9;
   /// Tangents of angles: the largest distance from the start, and the step of the first
   /// differences.

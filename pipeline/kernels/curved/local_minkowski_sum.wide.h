@@ -7,7 +7,7 @@
 
 namespace winnow::WINNOW_ISA_NAME::curved {
 
-/// A point plus up to two discs, ellipsoids and segments, in the first's frame.
+/// A point plus up to two discs, two ellipsoids and two segments, in the first's frame.
 struct LocalMinkowskiSum {
   struct Disc {
     double radius;
@@ -36,8 +36,8 @@ struct LocalMinkowskiSum {
   };
 
   double point[3];
-  /// The first's part of `point`. Likewise, the first_ counts below are the first's parts, which
-  /// come first.
+  /// The part of `point` that is from the first core. The first_ counts below are those of the
+  /// first core, whose discs, ellipsoids and segments are stored before those of the second.
   double mine[3];
   std::uint32_t discs;
   std::uint32_t segments;
@@ -120,8 +120,8 @@ struct NearPoints {
   }
 };
 
-/// Moves points of one core to the first's frame. Points of the second are negated, so that a point
-/// of each core adds up to a point of the difference.
+/// Moves points of one core to the first's frame. Points of the second are negated, so that the sum
+/// of a point of each core is a point of the difference.
 class SidePlace {
  public:
   SidePlace(const CurvedPair& pair, bool second) : pair_(pair), second_(second) {}

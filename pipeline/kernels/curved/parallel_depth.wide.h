@@ -1,11 +1,11 @@
 #pragma once
 
 // Penetration depth of segments, cylinders and cones that are parallel to each other or to an edge
-// of a box, as most are that stand on a floor. The direction of least depth is in a plane that
-// contains the axis, where the cores are two polygons: it is a normal of one of these. For two
-// axes, it is the plane of both. For a box, it is the plane from the axis towards the nearest point
-// of the box's rectangle as seen along the axis: of all directions with the same slope, the one in
-// that plane has the least depth. Called by curved_answers.wide.h.
+// of a box, as most shapes on a floor are. The direction of least depth is in a plane that contains
+// the axis. In this plane the cores are two polygons, and the direction is a normal of one of these
+// polygons. For two axes, the plane is that of both axes. For a box, it is the plane from the axis
+// towards the nearest point of the box's rectangle as seen along the axis: of all directions with
+// the same slope, the one in that plane has the least depth. Called by curved_answers.wide.h.
 
 #include "pipeline/kernels/hull/curved_pair.wide.h"
 
@@ -65,7 +65,7 @@ class ParallelDepth {
 
   /// The polygon of a core in the plane: the ranges of its lower and its upper end, and half of its
   /// height.
-  struct Outline {
+  struct CoreOutline {
     double lower[2];
     double upper[2];
     double half;
@@ -213,7 +213,7 @@ class ParallelDepth {
 
   /// Sets the outline of a core of revolution whose axis points up or down; returns false for other
   /// kinds.
-  static bool set_revolved(const CoreDesc& form, double upright, Outline& outline) {
+  static bool set_revolved(const CoreDesc& form, double upright, CoreOutline& outline) {
     const double* n = form.number;
     const bool is_cone = form.kind == ShapeKind::cone;
     if (!is_cone && form.kind != ShapeKind::cylinder && form.kind != ShapeKind::capsule) {
@@ -236,15 +236,15 @@ class ParallelDepth {
     normal_[1] = up;
   }
   /// Tests the normal of the sloping side of an outline, outward (sign 1) or inward (sign -1).
-  void test_side_normal(const Outline& outline, double sign) {
+  void test_side_normal(const CoreOutline& outline, double sign) {
     const double rise = 2.0 * outline.half;
     const double slope = outline.lower[1] - outline.upper[1];
     const double length = __builtin_sqrt(rise * rise + slope * slope);
     if (length > 0.0) test_direction(rise / length, sign * slope / length);
   }
 
-  Outline first_;
-  Outline second_;
+  CoreOutline first_;
+  CoreOutline second_;
   /// The plane in the first's frame: the directions from the first to the second and up, and the
   /// point from which the first's outline is measured.
   double across_[3];

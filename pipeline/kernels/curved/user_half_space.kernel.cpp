@@ -12,6 +12,8 @@ namespace {
 /// Points of a shape over a plane, the lowest first. Directions deviate slightly from the normal,
 /// because bodies rock: the corners of a flat face stay far apart, and the points of a round
 /// surface are close together and count as one. The name of a point is the index of its direction.
+/// The lowest point has the name of the point that it replaces, else kMaxPoints (0 if it is the
+/// only point).
 class TiltedSupportPoints {
  public:
   static constexpr std::uint32_t kMaxPoints = 4;
@@ -62,9 +64,11 @@ class TiltedSupportPoints {
     return dot3(d, d);
   }
 
-  /// Puts the lowest point first; it may be anywhere on a flat face. If another point is hardly
-  /// higher, that one keeps its place and gets the height of the lowest. Else the lowest point is
-  /// added, or replaces a point that is close to it (or the first one, if there is no room).
+  /// Puts the lowest point first. The lowest point may be anywhere on a flat face: if the lowest of
+  /// the other points is higher by at most kTiedDepth of their extent, that point is moved down to
+  /// the height of the lowest point and is put first instead. Otherwise the lowest point replaces a
+  /// point that counts as the same, or is added; if there is no room, it replaces the lowest of the
+  /// other points.
   void put_first(const double* up, const double* lowest) {
     std::uint32_t best = 0;
     double reach = 0.0;

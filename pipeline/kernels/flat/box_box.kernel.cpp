@@ -22,7 +22,7 @@ enum BoxPlace {
   kCount
 };
 
-// Called for both sides in a loop: with narrow lanes, unrolled code would make up most of the
+// The two sides are computed in a loop: with narrow lanes, unrolled code would be most of the
 // kernel.
 [[gnu::noinline]] void project_boxes(const Stage<double, kCount>& rows, ProjectedPairs& seen) {
   const Lanes<double> zero(0.0);
@@ -38,7 +38,7 @@ enum BoxPlace {
   }
 }
 
-// The placement of the pairs and their normals, in memory.
+// The poses, sizes and normals of the pairs of a block, in memory.
 template <typename T>
 struct BoxStage {
   Stage<T, kCount> stage;
@@ -58,7 +58,7 @@ struct BoxStage {
     return stage.value[kRoundingA + side][lane];
   }
   void see(ProjectedPairs& seen) const { project_boxes(stage, seen); }
-  void patches(unsigned lane, FlatFeature& a, FlatFeature& b, double (&normal)[3]) const {
+  void features(unsigned lane, FlatFeature& a, FlatFeature& b, double (&normal)[3]) const {
     BoxFrame box_a;
     BoxFrame box_b;
     stage.get(kAxesA, 9, lane, &box_a.axis[0][0]);
@@ -71,13 +71,13 @@ struct BoxStage {
     stage.get(kRoundingB, 1, lane, &box_b.rounding);
     for (double& c : box_a.center) c = 0.0;
     const double back[3] = {-normal[0], -normal[1], -normal[2]};
-    a = box_patch(box_a, normal);
-    b = box_patch(box_b, back);
+    a = flat_box_feature(box_a, normal);
+    b = flat_box_feature(box_b, back);
   }
 };
 
-// Distances of boxes that are apart. The better of two axes gives a lower bound, the distance of
-// the two points an upper bound.
+// Distances of boxes that are apart. The distance of the two points is an upper bound; the larger
+// of the separations along their line and along the best axis is a lower bound.
 template <typename T>
 [[gnu::always_inline]] inline void measure_apart(const BoxPair<T>& pair, const BoxAxis<T>& axis,
                                                  const BoxPoints<T>& points, Lanes<T> (&normal)[3],
@@ -93,9 +93,9 @@ template <typename T>
   gap = abs(distance - select(better, lower, axis.separation));
 }
 
-// The point of a that touches b once b has been moved out along the axis. `off` receives the lanes
-// in which that point is not on a, or its counterpart not on b: the deepest feature is then an edge
-// or a face, not a vertex.
+// The point of a that touches b after b is moved out of a along the axis. `off` receives the lanes
+// in which this point is not on a, or the touching point of b is not on b: the deepest feature is
+// then an edge or a face, not a vertex.
 template <typename T>
 [[gnu::always_inline]] inline void touching_point(const BoxPair<T>& pair, const BoxAxis<T>& axis,
                                                   const BoxReach<T>& reach, Lanes<T> (&point)[3],
@@ -124,20 +124,20 @@ WINNOW_SHARED_BY_LEVELS BoxPair<T> box_pair(const NarrowJob& job, const PairBloc
 }
 
 // Computes the distance of the cores of a block, with points if `with_points`. Lanes that are apart
-// get their distance if `wanted`, else a lower bound from the best axis.
+// get their distance if `needed`, else a lower bound from the best axis.
 template <typename T>
 WINNOW_SHARED_BY_LEVELS CoreAnswer<T> measure(const BoxPair<T>& pair, const BoxAxis<T>& axis,
-                                              const LaneMask<T>& wanted, bool with_points) {
+                                              const LaneMask<T>& needed, bool with_points) {
   const Lanes<T> slack = pair.scale * Lanes<T>(kFlatSlack<T>);
   const LaneMask<T> apart = axis.separation > Lanes<T>(T(0));
   CoreAnswer<T> answer;
   // Lower bound for the lanes that are not measured.
-  answer.distance = select(apart & !wanted, axis.separation - slack, axis.separation);
+  answer.distance = select(apart & !needed, axis.separation - slack, axis.separation);
   Lanes<T> gap = abs(axis.most - axis.separation);
   Lanes<T> normal[3] = {axis.normal[0], axis.normal[1], axis.normal[2]};
   Lanes<T> point[3] = {normal[0], normal[1], normal[2]};
   Mask16 off = 0;
-  const LaneMask<T> measured = apart & wanted;
+  const LaneMask<T> measured = apart & needed;
   const bool any_measured = bits(measured) != 0;
   if (with_points || any_measured) {
     BoxReach<T> reach = reach_along(pair, axis);
@@ -185,12 +185,12 @@ struct BoxBox {
     const BoxPair<T> pair = box_pair(job, ordered.block);
     const BoxAxis<T> axis = best_axis(pair);
     const Lanes<T> reach = pair.rounding_a + pair.rounding_b;
-    LaneMask<T> wanted = pair.scale == pair.scale;
+    LaneMask<T> needed = pair.scale == pair.scale;
     if constexpr (L == kManifold) {
       const Lanes<T> margin = margins_of(job, given);
-      wanted = axis.separation <= margin + reach + pair.scale * Lanes<T>(T(2) * kFlatSlack<T>);
+      needed = axis.separation <= margin + reach + pair.scale * Lanes<T>(T(2) * kFlatSlack<T>);
     }
-    CoreAnswer<T> core = measure(pair, axis, wanted, L == kDistance);
+    CoreAnswer<T> core = measure(pair, axis, needed, L == kDistance);
     const Mask16 certified = with_rounding(core, pair.rounding_a, pair.rounding_b, pair.scale);
     const Lanes<T> sign = Lanes<T>::load(ordered.sign);
     write_answer<L>(job, given, turned_back(core, pair.offset, sign));
@@ -204,8 +204,9 @@ struct BoxBox {
     return ~certified;
   }
 
-  // Returns the lanes of boxes that overlap although some edges are parallel; the cross products of
-  // these have no reliable sign. Out of line: only boxes with nearly parallel edges come here.
+  // Returns the lanes of boxes that overlap according to the axes other than cross products of
+  // parallel edges, which have no reliable sign. Not inlined: only blocks in which a lane is not
+  // decided need it.
   template <typename T>
   [[gnu::noinline]] static Mask16 overlap_of_parallel(const BoxPair<T>& pair, const Lanes<T>& face,
                                                       const Lanes<T>& slack) {
@@ -214,8 +215,9 @@ struct BoxBox {
     return bits(s + left_out < -slack);
   }
 
-  // Decides by measuring. Returns the lanes that are decided; `over` receives the lanes that
-  // overlap. For the few blocks with boxes that hardly touch or hardly miss each other.
+  // Decides by the distance. Returns the lanes that are decided; `over` receives the lanes that
+  // overlap. For blocks in which the axes do not decide a lane: the separation of the cores is 0 up
+  // to rounding, or is positive but not larger than the sum of the roundings.
   template <typename T>
   [[gnu::noinline, gnu::cold]] static Mask16 settle(const BoxPair<T>& pair, Mask16& over) {
     CoreAnswer<T> core = measure(pair, best_axis(pair), pair.scale == pair.scale, false);

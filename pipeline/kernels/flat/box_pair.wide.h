@@ -4,9 +4,10 @@
 // to 2 are the faces of a, 3 to 5 the faces of b, 6 + 3 i + j is the cross product of axis i of a
 // and axis j of b.
 //
-// Closest and deepest points of two boxes: if a vertex touches a face, or two edges cross, the best
-// of the fifteen axes is the normal. In all other cases one of the points is a vertex, and the
-// vertex of the sixteen that is closest to the other box is the answer. Used by box_box.kernel.cpp.
+// Closest and deepest points of two boxes: if they are on a vertex and a face, or on two edges that
+// cross, the best of the fifteen axes is the normal. In all other cases one of the closest points
+// is a vertex: the one of the sixteen vertices that is closest to the other box. Used by
+// box_box.kernel.cpp.
 
 #include "pipeline/kernels/flat/flat.wide.h"
 #include "pipeline/kernels/shared_by_levels.wide.h"
@@ -58,7 +59,7 @@ struct BoxPair {
     rounding_b = b.rounding;
     scale = abs(c.x) + abs(c.y) + abs(c.z) + half_a[0] + half_a[1] + half_a[2] + half_b[0] +
             half_b[1] + half_b[2] + rounding_a + rounding_b;
-    // NaN for an invalid orientation of b, too.
+    // c is NaN if the orientation of a is invalid; this makes the scale NaN also for b.
     scale += turn[0][0] * Lanes<T>(T(0));
   }
 
@@ -89,7 +90,7 @@ struct BoxPair {
     const Lanes<T>& l = turn[(i + 2) % 3][j];
     return k * k + l * l;
   }
-  /// Extent of edge j of b perpendicular to axis i of a.
+  /// Upper bound of the half extent of edge j of b perpendicular to axis i of a.
   [[gnu::always_inline]] Lanes<T> reach_across(int i, int j) const {
     return half_b[j] * (abs(turn[(i + 1) % 3][j]) + abs(turn[(i + 2) % 3][j]));
   }
@@ -120,8 +121,9 @@ struct BoxAxis {
   Lanes<T> length2;
 };
 
-/// The largest separation along face normals and along cross products; the latter are not
-/// normalized, which is enough for its sign if no edges are parallel.
+/// The largest separations along face normals and along cross products. Cross products are not
+/// normalized, so the value for them is only correct in its sign, and only if no edges are
+/// parallel.
 template <typename T>
 [[gnu::always_inline]] inline Lanes<T> largest_face_separation(const BoxPair<T>& pair) {
   Lanes<T> s = max(pair.face_a(0), pair.face_b(0));
@@ -135,8 +137,8 @@ template <typename T>
   return s;
 }
 
-/// As above without the cross products of parallel edges, whose signs are unreliable; `left_out` is
-/// as returned by `offer_edges`.
+/// As largest_edge_separation, without the cross products of parallel edges, whose signs are
+/// unreliable. `left_out` receives the value that `offer_edges` returns.
 template <typename T>
 [[gnu::always_inline]] inline Lanes<T> largest_crossed_separation(const BoxPair<T>& pair,
                                                                   Lanes<T>& left_out) {
@@ -161,7 +163,7 @@ template <typename T>
   const LaneMask<T> face_of_a = index < Lanes<T>(T(2.5));
   const LaneMask<T> product = index > Lanes<T>(T(5.5));
   const Lanes<T> k = select(product, index - Lanes<T>(T(6)), index);
-  // Row i is the axis of a, j the axis of b; for a face of a, j is its axis.
+  // For a cross product, k = 3 i + j for axis i of a and axis j of b. For a face, j is its axis.
   const LaneMask<T> past_two = k > Lanes<T>(T(2.5));
   const LaneMask<T> past_five = k > Lanes<T>(T(5.5));
   const Lanes<T> three = select(past_five, Lanes<T>(T(6)), select(past_two, Lanes<T>(T(3)), zero));
@@ -185,11 +187,12 @@ template <typename T>
   }
 }
 
-/// Offers the nine cross products except for pairs of parallel edges. Seen along two nearly
-/// parallel edges, the boxes are a rectangle and a parallelogram whose side normals are among the
-/// other axes, except that the edges are not quite points: they extend sideways by at most the
-/// extent of the shorter edge. A separation along a left-out axis thus exceeds the largest of the
-/// others by at most that extent. Returns the largest of these extents.
+/// Offers the nine cross products except those of parallel edges. Seen along an edge of a that is
+/// nearly parallel to edge j of b, box a is a rectangle. Box b is a parallelogram that is swept
+/// along the projection of edge j, which is short. The side normals of the rectangle and of the
+/// parallelogram are among the other axes. So if no other axis separates the boxes, the separation
+/// along the left-out axis exceeds the largest of the others by at most the half extent of the
+/// projection (reach_across). Returns the largest of these half extents.
 template <typename T>
 [[gnu::always_inline]] inline Lanes<T> offer_edges(const BoxPair<T>& pair, const Lanes<T>& slack,
                                                    BestAxis<T>& best) {
@@ -276,8 +279,8 @@ template <typename T>
   }
 }
 
-/// The points in which the boxes are closest along an axis: the farthest vertices, or points of two
-/// edges. `a` is in a's frame, `b` in b's axes.
+/// The points of the boxes that are closest along an axis: the vertices that are farthest along it,
+/// or, if the axis is a cross product, points of its two edges. `a` is in a's frame, `b` in b's.
 template <typename T>
 struct BoxReach {
   Lanes<T> a[3];
@@ -316,7 +319,8 @@ template <typename T>
     reach.a[r] = select(is_i[r], zero, reach.a[r]);
     reach.b[r] = select(is_j[r], zero, reach.b[r]);
   }
-  // From the middle of a's edge to the middle of b's, along each edge.
+  // w is from the middle of a's edge to the middle of b's; along_a and along_b are its components
+  // along the edges.
   Lanes<T> b[3];
   from_b(pair, reach.b, b);
   const Lanes<T> w[3] = {b[0] - reach.a[0], b[1] - reach.a[1], b[2] - reach.a[2]};

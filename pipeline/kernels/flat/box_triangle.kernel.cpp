@@ -2,9 +2,10 @@
 // triangle-box overlap testing", 2001): 0 to 2 are the faces of the box, 3 is the triangle's
 // normal, 4 + 3 i + j is the cross product of axis i of the box and edge j of the triangle.
 //
-// Closest and deepest points: the points given by the best axis, a vertex of the triangle and the
-// nearest point of the box, or a vertex of the box and the nearest point of an edge. The steps that
-// all pairs of flat shapes share are in flat.wide.h.
+// Deepest points are those that the best axis determines. Closest points are the closest of three
+// candidates: these points, a vertex of the triangle and the nearest point of the box, and a vertex
+// of the box and the nearest point of an edge. The steps that this kernel shares with
+// triangle-triangle are in flat.wide.h.
 
 #include "pipeline/kernels/flat/flat.wide.h"
 #include "pipeline/kernels/kernels.h"
@@ -71,10 +72,10 @@ struct BoxTrianglePair {
   }
 };
 
-/// Calls body(i, j, length2, separation) for the nine cross products: the separation times the
-/// length of the axis, and the square of that length, which is at most the length of edge j. Two
-/// vertices of the triangle have the same height along the axis; the third differs by a component
-/// of the triangle's normal.
+/// Calls body(i, j, length2, separation) for the nine cross products. `separation` is multiplied by
+/// the length of the axis, which is at most the length of edge j; `length2` is the square of the
+/// axis' length. Two vertices of the triangle have the same height along the axis; the height of
+/// the third differs by component i of the triangle's normal.
 template <typename T, typename Body>
 [[gnu::always_inline]] inline void for_products(const BoxTrianglePair<T>& pair, Body&& body) {
   const Lanes<T> zero(T(0));
@@ -105,8 +106,8 @@ struct BoxTriangleAxis {
   /// Upper bound of the separations along all axes; if the cores overlap, along any unit vector.
   Lanes<T> most;
   Lanes<T> index;
-  /// Square of the length of the axis before it was normalized. For cross products also the axis of
-  /// the box, the edge of the triangle and its start.
+  /// Square of the length of the axis before it was normalized. For cross products also the unit
+  /// axis of the box, the edge of the triangle and its start; for faces of the box also `axis`.
   Lanes<T> length2;
   Vec3<T> axis;
   Vec3<T> edge;
@@ -257,7 +258,7 @@ template <typename T>
   const LaneMask<T> on_box = norm_l1(foot - clamp_to(foot, pair.half)) <= near;
   const LaneMask<T> on_triangle = pair.b.is_over(corner, select(apart, zero, near));
 
-  // The edge of the box parallel to its axis, through the corner.
+  // The edge of the box that is parallel to axis.axis and has the corner as an end.
   const Vec3<T>& e = axis.axis;
   const Vec3<T>& f = axis.edge;
   const Vec3<T> middle{corner.x - corner.x * e.x, corner.y - corner.y * e.y,
@@ -274,7 +275,8 @@ template <typename T>
   AxisPoints<T> p;
   p.points.a = select(of_box, foot, select(of_face, corner, edges.a));
   p.points.b = select(of_box, vertex, select(of_face, corner + step, edges.b));
-  p.meets = (of_box & on_box) | (of_face & on_triangle & !of_box) | (crossing & !of_face);
+  p.projections_overlap =
+      (of_box & on_box) | (of_face & on_triangle & !of_box) | (crossing & !of_face);
   p.doubt = select(of_face & !of_box, pair.b.area / sqrt(axis.length2), Lanes<T>(T(1)));
   return p;
 }
@@ -303,7 +305,7 @@ enum BoxTrianglePlace {
            1);
 }
 
-// The placement of the pairs and their normals, in memory.
+// The poses, sizes and normals of the pairs of a block, in memory.
 template <typename T>
 struct BoxTriangleStage {
   Stage<T, kCount> stage;
@@ -322,7 +324,7 @@ struct BoxTriangleStage {
     return stage.value[kBoxRounding + side][lane];
   }
   void see(ProjectedPairs& seen) const { project_box_and_triangle(stage, seen); }
-  void patches(unsigned lane, FlatFeature& a, FlatFeature& b, double (&normal)[3]) const {
+  void features(unsigned lane, FlatFeature& a, FlatFeature& b, double (&normal)[3]) const {
     BoxFrame box;
     TriangleFrame triangle;
     stage.get(kAxes, 9, lane, &box.axis[0][0]);
@@ -332,8 +334,8 @@ struct BoxTriangleStage {
     stage.get(kBoxRounding, 1, lane, &box.rounding);
     stage.get(kTriangleRounding, 1, lane, &triangle.rounding);
     for (double& c : box.center) c = 0.0;
-    a = box_patch(box, normal);
-    b = triangle_patch(triangle);
+    a = flat_box_feature(box, normal);
+    b = flat_triangle_feature(triangle);
   }
 };
 
@@ -350,9 +352,10 @@ struct BoxTriangle {
     }
   }
 
-  // Returns the lanes of shapes that overlap although some edges are parallel; the cross products
-  // of these have no reliable sign, and may separate more than the other axes by as much as
-  // `offer_product` states. Out of line: only nearly parallel edges need it.
+  // Returns the lanes of shapes that overlap according to the axes other than cross products of
+  // parallel edges. These have no reliable sign; the separation along them exceeds that along the
+  // other axes by at most the bound at `offer_product`, by which all other axes must overlap here.
+  // Not inlined: only blocks in which a lane is not decided need it.
   template <typename T>
   [[gnu::noinline]] static LaneMask<T> overlap_of_parallel(const BoxTrianglePair<T>& pair,
                                                            const Lanes<T>& slack) {

@@ -9,8 +9,9 @@
 // of the SAT axes (Gottschalk 1996) attains it, except if the closest features are a vertex and a
 // vertex or a vertex and an edge.
 //
-// A pair type provides scale, offset, along, to_world and its roundings, and the functions
-// best_axis, axis_points and closest_by_vertices; a Staged type holds its lanes in memory.
+// answer_flat and answer_overlaps are for the two kinds of pairs with a triangle. Their pair types
+// provide scale, offset, along, to_world, rounding_a and rounding_b, and overloads of best_axis,
+// axis_points and closest_by_vertices. A Staged type stores the lanes of a pair type in memory.
 
 #include "pipeline/kernels/flat/projected_faces.wide.h"
 #include "pipeline/kernels/one_pair.wide.h"
@@ -19,8 +20,9 @@
 namespace winnow::WINNOW_ISA_NAME::flat {
 
 /// Error bound of separations along axes of length at most 1, relative to the pair's scale (the sum
-/// of all its lengths). In units of roundoff of the scale: 10 for an entry of a rotation, 38 for an
-/// entry of the product of two rotations, 82 for the offset along a cross product.
+/// of all its lengths). The errors in units of roundoff (epsilon / 2) of the scale are 10 for an
+/// entry of a rotation, 38 for an entry of the product of two rotations, and 82 for the offset
+/// along a cross product; the bound is 96 of these units.
 template <typename T>
 inline constexpr T kFlatSlack = T(48) * kEpsilon<T>;
 
@@ -28,8 +30,8 @@ inline constexpr T kFlatSlack = T(48) * kEpsilon<T>;
 inline constexpr double kWidestBound = 1e-12;
 
 /// Edges count as parallel if the square of the sine of their angle is smaller. The separation
-/// along their cross product would have an error of slack / sine; leaving it out costs at most the
-/// shorter edge times the sine.
+/// along their cross product would have an error of slack / sine. If this axis is left out, at most
+/// the shorter edge times the sine is missing from the largest separation.
 template <typename T>
 inline constexpr T kParallelSquare = sizeof(T) == sizeof(double) ? T(1e-26) : T(1e-6F);
 
@@ -73,9 +75,10 @@ struct BestFace {
   }
 };
 
-/// Offers a cross product; `size` is at least the product of the factors' lengths. It is left out
-/// if the factors are parallel. The separation lost by that is at most its length over the longer
-/// factor: seen along the longer factor, the other one is that short.
+/// Offers a cross product, unless its factors are parallel; `size` is at least the product of the
+/// factors' lengths. If the cross product is left out, the separation that is lost is at most its
+/// length over the length of the longer factor: seen along the longer factor, the other factor has
+/// that length. `longer` may be up to twice the length of the longer factor.
 template <typename T>
 [[gnu::always_inline]] inline void offer_product(BestAxis<T>& best, Lanes<T>& left_out,
                                                  const Lanes<T>& length2,
@@ -91,14 +94,14 @@ template <typename T>
   const Lanes<T> one(T(1));
   const Lanes<T> lost = select(longer > zero, Lanes<T>(T(2)) * sqrt(length2) / longer, zero);
   left_out += select(crossed, zero, lost);
-  // Less than any separation.
+  // Minus three times the scale, which is less than any separation.
   const Lanes<T> worst = slack * Lanes<T>(T(-3) / kFlatSlack<T>);
   best.offer(select(crossed, separation + size * slack, worst), select(crossed, length2, one),
              index);
 }
 
-/// True if bodies at the same position are to be swapped; decided by their shapes, then by their
-/// orientations.
+/// Orders bodies at the same position by their shape ids, then by their orientations. Returns true
+/// if b is first.
 inline bool swap_concentric(const NarrowJob& job, const BodyPair& pair) {
   const std::uint32_t shape_a = job.shapes[pair.a].bits;
   const std::uint32_t shape_b = job.shapes[pair.b].bits;
@@ -110,8 +113,9 @@ inline bool swap_concentric(const NarrowJob& job, const BodyPair& pair) {
   return b[i] < a[i];
 }
 
-/// Orders each pair in a way that does not depend on which body is called a: the first nonzero
-/// component of the offset is positive. turned_back() swaps the results back.
+/// Orders each pair independently of which body is called a: the first nonzero component of the
+/// offset is positive; swap_concentric orders bodies at the same position. turned_back() swaps the
+/// results back.
 template <typename T>
 struct OrderedBlock {
   BodyPair pairs[Lanes<T>::kCount];
@@ -136,8 +140,8 @@ struct OrderedBlock {
 };
 
 /// The lanes in which axes are compared without overflow or underflow: BestAxis multiplies up to
-/// ten lengths. If the result depends on a length, it is at least 1e-14 of the scale, and a squared
-/// sine at least kParallelSquare.
+/// ten lengths. Lengths on which the result depends are at least 1e-14 of the scale, and squared
+/// sines at least kParallelSquare.
 template <typename T>
 [[gnu::always_inline]] inline LaneMask<T> in_axis_range(const Lanes<T>& scale) {
   return (scale > Lanes<T>(T(1e-11))) & (scale < Lanes<T>(T(1e28)));
@@ -187,16 +191,16 @@ template <typename T>
 template <typename T>
 struct PlacedTriangle {
   Vec3<T> vertex[3];
-  /// From vertex i to the next. Computed from the shape's own numbers and then rotated, so that it
-  /// does not carry the rounding error of vertices far from the origin.
+  /// From vertex i to the next. Subtracted in the frame of the triangle, then rotated: the
+  /// difference of two rotated vertices far from the origin would have their rounding errors.
   Vec3<T> edge[3];
   /// Upper bounds of the edges' lengths.
   Lanes<T> length[3];
-  /// The cross product of the two shorter edges, and the product of their lengths.
+  /// The cross product of the two shorter edges, and the product of their `length`s.
   Vec3<T> normal;
   Lanes<T> area;
   Lanes<T> rounding;
-  /// The sum of the absolute values of all numbers.
+  /// The sum of the absolute coordinates of the vertices, before `move`, and the rounding.
   Lanes<T> scale;
 
   [[gnu::always_inline]] void place(const TriangleLanes<T>& shape, const Rotation<T>& turn) {
@@ -286,8 +290,8 @@ struct PointPair {
   }
 };
 
-/// The largest difference between the deepest contact and the depth of the pair, relative to the
-/// scale.
+/// The largest difference between the depths of the first contact and of the pair, relative to the
+/// scale, with which contacts are accepted.
 inline constexpr double kDeepest = 1e-6;
 
 template <typename T>
@@ -295,7 +299,7 @@ template <typename T>
   return max(min(t, Lanes<T>(T(1))), Lanes<T>(T(0)));
 }
 
-/// 1 / v, or 0 if v is 0.
+/// 1 / v if v > 0, else 0.
 template <typename T>
 [[gnu::always_inline]] inline Lanes<T> inverse(const Lanes<T>& v) {
   return select(v > Lanes<T>(T(0)), Lanes<T>(T(1)) / v, Lanes<T>(T(0)));
@@ -326,8 +330,9 @@ template <typename Step, typename... From>
   return Step::of(from...);
 }
 
-/// Runs a step. If a wide type takes four registers, it is called as a function that all levels
-/// share: values would not stay in registers anyway, and compiling is faster.
+/// Runs a step. On instruction sets on which Lanes<T> takes four registers, the step is not inlined
+/// but a function that all levels share: values would not stay in registers anyway, and compiling
+/// is faster.
 template <typename Step, typename T, typename... From>
 [[gnu::always_inline]] inline auto step(const From&... from) {
   if constexpr (kPartsOf<T> == 4) {
@@ -337,27 +342,28 @@ template <typename Step, typename T, typename... From>
   }
 }
 
-/// The points given by the best axis: a vertex and its foot on a face, or a point of each of two
-/// edges.
+/// The points that the best axis determines: if it is a face normal, a vertex and its foot on the
+/// face; if it is a cross product, a point of each of the two edges.
 template <typename T>
 struct AxisPoints {
   PointPair<T> points;
-  /// The foot is inside the face (or slightly outside if the triangles overlap), or the edges
-  /// cross.
-  LaneMask<T> meets;
+  /// The lanes whose points can be the closest or deepest ones: the foot is inside the face, up to
+  /// rounding; or the axis is a cross product, and the edges cross or the cores may be apart.
+  LaneMask<T> projections_overlap;
   /// Error of the foot, as a multiple of the slack.
   Lanes<T> doubt;
 };
 
-/// The lanes whose cores may be apart, up to rounding. If even the best axis barely fails to
-/// separate the cores, the axes do not determine the distance: for two coplanar triangles all of
-/// them are the normal of the plane.
+/// The lanes whose cores may be apart: the best axis separates them, or they overlap along it by at
+/// most the slack. In the latter case the axes do not determine the distance: for two coplanar
+/// triangles, all axes are the normal of their plane, along which the separation is 0.
 template <typename Axis, typename T>
 [[gnu::always_inline]] inline LaneMask<T> may_be_apart(const Axis& axis, const Lanes<T>& scale) {
   return axis.most > -(scale * Lanes<T>(kFlatSlack<T>));
 }
 
-/// Recomputes the points of some lanes as points on both shapes.
+/// Replaces the points in `lanes`, which are not on both cores, by the deepest points of the
+/// supporting features.
 template <typename Staged, typename Pair, typename T>
 inline void correct_points(const Pair& pair, CoreAnswer<T>& answer, Mask16 lanes) {
   const Staged stage(pair, answer.normal);
@@ -369,7 +375,7 @@ inline void correct_points(const Pair& pair, CoreAnswer<T>& answer, Mask16 lanes
     FlatFeature b;
     double normal[3];
     double p[3];
-    stage.patches(lane, a, b, normal);
+    stage.features(lane, a, b, normal);
     deepest_point(a, b, normal, p);
     for (int r = 0; r < 3; ++r) point.value[r][lane] = p[r];
   }
@@ -378,19 +384,19 @@ inline void correct_points(const Pair& pair, CoreAnswer<T>& answer, Mask16 lanes
 }
 
 /// Computes the distance of the cores of a block. Lanes that are apart get their distance if
-/// `wanted`, else a lower bound. The better of two directions gives the lower bound of a distance,
-/// a pair of points the upper bound.
+/// `needed`, else a lower bound. A distance is at most that of the points found, and at least the
+/// larger of the separations along the line of these points and along the best axis.
 template <int L, typename Staged, typename Pair, typename Axis, typename T>
 [[gnu::always_inline]] inline CoreAnswer<T> measure(const Pair& pair, const Axis& axis,
-                                                    const LaneMask<T>& wanted) {
+                                                    const LaneMask<T>& needed) {
   const Lanes<T> slack = pair.scale * Lanes<T>(kFlatSlack<T>);
   const LaneMask<T> apart = may_be_apart(axis, pair.scale);
   CoreAnswer<T> answer;
-  answer.distance = select(apart & !wanted, axis.separation - slack, axis.separation);
+  answer.distance = select(apart & !needed, axis.separation - slack, axis.separation);
   answer.error_bound = abs(axis.most - axis.separation) + slack;
   answer.normal = axis.normal;
   answer.point = axis.normal;
-  const LaneMask<T> measured = apart & wanted;
+  const LaneMask<T> measured = apart & needed;
   const bool any_measured = bits(measured) != 0;
   if (L == kDistance || any_measured) {
     const AxisPoints<T> by_axis = step<ToPointsOfAxis, T>(pair, axis);
@@ -398,7 +404,7 @@ template <int L, typename Staged, typename Pair, typename Axis, typename T>
     if (any_measured) {
       PointPair<T> points = step<ToClosestByVertices, T>(pair);
       const LaneMask<T> axis_is_closer =
-          by_axis.meets & (by_axis.points.square() <= points.square());
+          by_axis.projections_overlap & (by_axis.points.square() <= points.square());
       points.a = select(axis_is_closer, by_axis.points.a, points.a);
       points.b = select(axis_is_closer, by_axis.points.b, points.b);
       const Vec3<T> d = points.b - points.a;
@@ -416,7 +422,7 @@ template <int L, typename Staged, typename Pair, typename Axis, typename T>
     answer.point = pair.to_world(answer.point);
     answer.normal = pair.to_world(answer.normal);
     if constexpr (L == kDistance) {
-      const Mask16 off = ~bits(apart | by_axis.meets) & kAllLanes<T>;
+      const Mask16 off = ~bits(apart | by_axis.projections_overlap) & kAllLanes<T>;
       if (off != 0) correct_points<Staged>(pair, answer, off);
     }
     return answer;
@@ -425,7 +431,8 @@ template <int L, typename Staged, typename Pair, typename Axis, typename T>
   return answer;
 }
 
-/// Returns the contacts of a pair, or the one point where its faces are closest.
+/// Writes the contacts of a pair, or, if its faces do not overlap along the normal, the one point
+/// where they are closest. Returns the number of contacts.
 template <typename Staged>
 inline std::uint32_t contacts_of(const Staged& stage, const ProjectedPairs& seen, unsigned lane,
                                  double margin, ContactPoint* points) {
@@ -436,12 +443,13 @@ inline std::uint32_t contacts_of(const Staged& stage, const ProjectedPairs& seen
   FlatFeature a;
   FlatFeature b;
   double normal[3];
-  stage.patches(lane, a, b, normal);
+  stage.features(lane, a, b, normal);
   return flat_contacts(a, b, normal, margin, points);
 }
 
-/// Writes the contacts between the patches of `stage` in the `touching` lanes. Returns the lanes in
-/// which the contacts miss the point where the shapes are closest; these get no contacts.
+/// Writes the contacts between the features of `stage` in the `touching` lanes. Returns the lanes
+/// whose first contact, which is the deepest, does not have the depth of the pair up to kDeepest,
+/// or that have no contact. No contacts are written for these lanes.
 template <typename Staged>
 [[gnu::always_inline]] inline Mask16 write_true_contacts(NarrowJob& job,
                                                          const PairBlock<double>& given,
@@ -477,12 +485,12 @@ template <int L, typename Staged, typename T, typename Pair>
                                                  const Pair& pair, const T* sign) {
   const auto axis = step<ToBestAxis, T>(pair);
   const Lanes<T> margin = margins_of(job, given);
-  LaneMask<T> wanted = pair.scale == pair.scale;
+  LaneMask<T> needed = pair.scale == pair.scale;
   if constexpr (L == kManifold) {
-    wanted = axis.separation <= margin + pair.rounding_a() + pair.rounding_b() +
+    needed = axis.separation <= margin + pair.rounding_a() + pair.rounding_b() +
                                     pair.scale * Lanes<T>(T(2) * kFlatSlack<T>);
   }
-  CoreAnswer<T> core = measure<L, Staged>(pair, axis, wanted);
+  CoreAnswer<T> core = measure<L, Staged>(pair, axis, needed);
   const Mask16 certified = with_rounding(core, pair.rounding_a(), pair.rounding_b(), pair.scale);
   write_answer<L>(job, given, turned_back(core, pair.offset, Lanes<T>::load(sign)));
   if constexpr (L == kManifold) {
@@ -493,15 +501,16 @@ template <int L, typename Staged, typename T, typename Pair>
   return ~certified;
 }
 
-/// Measures all lanes of a block. Out of line as few blocks need it, and with a copy of the pair,
-/// so that the caller's pair need not be in memory.
+/// Measures all lanes of a block. Not inlined, because few blocks need it. Takes a copy of the
+/// pair: a reference would force the caller to store its pair in memory.
 template <typename Staged, typename T, typename Pair>
 [[gnu::noinline]] inline CoreAnswer<T> measured(Pair pair) {
   const auto axis = step<ToBestAxis, T>(pair);
   return measure<kManifold, Staged>(pair, axis, pair.scale == pair.scale);
 }
 
-/// The error bound of level boolean. The float pass rounds its inputs first, which doubles it.
+/// The error bound of level boolean. The float pass rounds its inputs to float, which doubles the
+/// bound.
 template <typename T>
 [[gnu::always_inline]] inline Lanes<T> overlap_slack(const Lanes<T>& scale) {
   return scale * Lanes<T>(kFirstPass<T> ? T(T(2) * kFlatSlack<T>) : kFlatSlack<T>);

@@ -1,8 +1,8 @@
 #pragma once
 
 // Projects the faces of boxes and triangles along the contact normal, eight pairs at a time in
-// double. The results equal to the bit what box_patch, triangle_patch, PatchFrame and Outline
-// compute for one pair. Called by the flat kernels through flat.wide.h.
+// double. The results are bit-identical to those that flat_box_feature, flat_triangle_feature,
+// PatchFrame and Outline compute for one pair. Called by the flat kernels through flat.wide.h.
 
 #include "pipeline/kernels/pair_lanes.wide.h"
 #include "pipeline/manifold/contact_patch.h"
@@ -46,7 +46,7 @@ struct FaceCorners {
 };
 
 /// The face of a box that is most perpendicular to `normal`, on the side of the normal: see
-/// box_patch.
+/// flat_box_feature.
 [[gnu::always_inline]] inline FaceCorners<4> face_of_box(const Doubles3 (&axis)[3],
                                                          const Doubles3& half,
                                                          const Doubles3& center,
@@ -58,7 +58,7 @@ struct FaceCorners {
   const LaneMask<double> is_0 = !(beats_0 | is_2);
   const LaneMask<double> is_1 = beats_0 & !is_2;
   const Lanes<double> half_of[3] = {half.x, half.y, half.z};
-  // The axis, or half extent, `turn` places after the face's axis, cyclically.
+  // The axis, or half extent, whose number is the number of the face's axis plus `turn`, modulo 3.
   const auto axis_after = [&](int turn) __attribute__((always_inline)) {
     return select(is_0, axis[turn], select(is_1, axis[(1 + turn) % 3], axis[(2 + turn) % 3]));
   };
@@ -145,7 +145,7 @@ class ProjectedPairs {
         bits((area > Lanes<double>(kThin) * size * size) & (area > Lanes<double>(kSteep) * length));
   }
 
-  /// False for a lane with a thin or steep face; these need contact_patch.
+  /// False for a lane with a thin or steep face. The contacts of such a lane need flat_contacts.
   [[nodiscard]] bool is_plain(unsigned lane) const { return (plain_ >> lane & 1U) != 0; }
   [[nodiscard]] ProjectedFaces faces(unsigned lane, double rounding_a, double rounding_b) const {
     const auto number = [&](int side) { return static_cast<std::uint32_t>(number_[side][lane]); };

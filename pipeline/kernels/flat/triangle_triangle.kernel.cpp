@@ -1,9 +1,10 @@
 // The kernels of triangle-triangle. SAT axes: 0 is the normal of a, 1 the normal of b, 2 + 3 i + j
 // is the cross product of edge i of a and edge j of b.
 //
-// Closest and deepest points: if a vertex touches a face, or two edges cross, the best axis is the
-// normal. In all other cases the points are a vertex of one triangle and a point of an edge of the
-// other. The steps that all pairs of flat shapes share are in flat.wide.h.
+// Closest and deepest points: if they are on a vertex and a face, or on two edges that cross, the
+// best axis is the normal. In all other cases the closest points are a vertex of one triangle and a
+// point of an edge of the other. The steps that this kernel shares with box-triangle are in
+// flat.wide.h.
 
 #include "pipeline/kernels/flat/flat.wide.h"
 #include "pipeline/kernels/kernels.h"
@@ -52,10 +53,10 @@ struct TrianglePair {
   }
 };
 
-/// Calls body(i, j, axis, separation, size) for the nine cross products of edges: the separation
-/// times the length of the axis, and an upper bound of that length. Two vertices of each triangle
-/// are on the edge; the height of the third along the axis is the other triangle's edge times the
-/// normal.
+/// Calls body(i, j, axis, separation, size) for the nine cross products of edges. `separation` is
+/// multiplied by the length of the axis; `size` is an upper bound of that length. Two vertices of
+/// each triangle are ends of its edge and have the same height along the axis. The third vertex is
+/// higher by the dot product of the triangle's normal and the other triangle's edge, up to sign.
 template <typename T, typename Body>
 [[gnu::always_inline]] inline void for_products(const TrianglePair<T>& pair, Body&& body) {
   const Lanes<T> zero(T(0));
@@ -115,8 +116,8 @@ template <typename T>
 template <typename T>
 [[gnu::always_inline]] inline TriangleAxis<T> best_axis(const TrianglePair<T>& pair) {
   const Lanes<T> slack = pair.scale * Lanes<T>(kFlatSlack<T>);
-  // Less than the separation along any axis. It stays if there is no axis; the normal is then not
-  // unit.
+  // Less than the separation along any axis. If all edges are parallel, `best` keeps this value and
+  // index -1, and the normal is not a unit vector.
   const Lanes<T> none = -pair.scale * Lanes<T>(T(2));
   BestAxis<T> best{none * abs(none), Lanes<T>(T(1)), Lanes<T>(T(-1))};
   Lanes<T> left_out(T(0));
@@ -248,7 +249,7 @@ template <typename T>
   p.points.a = select(of_face, select(of_a, vertex_b - step, vertex_a), edges.a);
   p.points.b = select(of_face, select(of_a, vertex_b, vertex_a + step), edges.b);
   const LaneMask<T> has_axis = axis.index > Lanes<T>(T(-0.5));
-  p.meets = ((of_face & over) | (crossing & !of_face)) & has_axis;
+  p.projections_overlap = ((of_face & over) | (crossing & !of_face)) & has_axis;
   p.doubt = select(of_face, face.area / sqrt(axis.length2), Lanes<T>(T(1)));
   return p;
 }
@@ -272,7 +273,7 @@ enum TrianglePlace {
   }
 }
 
-// The placement of the pairs and their normals, in memory.
+// The vertices, offsets, roundings and normals of the pairs of a block, in memory.
 template <typename T>
 struct TriangleStage {
   Stage<T, kCount> stage;
@@ -292,7 +293,7 @@ struct TriangleStage {
     return stage.value[kRoundingA + side][lane];
   }
   void see(ProjectedPairs& seen) const { project_triangles(stage, seen); }
-  void patches(unsigned lane, FlatFeature& a, FlatFeature& b, double (&normal)[3]) const {
+  void features(unsigned lane, FlatFeature& a, FlatFeature& b, double (&normal)[3]) const {
     TriangleFrame frame_a;
     TriangleFrame frame_b;
     stage.get(kA, 9, lane, &frame_a.vertex[0][0]);
@@ -300,8 +301,8 @@ struct TriangleStage {
     stage.get(kNormal, 3, lane, normal);
     stage.get(kRoundingA, 1, lane, &frame_a.rounding);
     stage.get(kRoundingB, 1, lane, &frame_b.rounding);
-    a = triangle_patch(frame_a);
-    b = triangle_patch(frame_b);
+    a = flat_triangle_feature(frame_a);
+    b = flat_triangle_feature(frame_b);
   }
 };
 
@@ -322,8 +323,9 @@ struct TriangleTriangle {
     const TrianglePair<T> pair(job, block);
     const Lanes<T> slack = overlap_slack(pair.scale);
     const Mask16 valid = bits(in_overlap_range(pair.scale));
-    // The axes are not normalized. An axis is at most as long as the product of its edges: if its
-    // value exceeds the slack and roundings times that product, the triangles are apart.
+    // The axes are not normalized. The length of an axis is at most the product of the lengths of
+    // its edges: if a value exceeds the slack and roundings times that product, the triangles are
+    // apart.
     const Lanes<T> reach = slack + pair.a.rounding + pair.b.rounding;
     const Lanes<T> over_a = pair.over_a();
     const Lanes<T> over_b = pair.over_b();

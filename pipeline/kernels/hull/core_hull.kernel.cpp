@@ -1,13 +1,14 @@
 // The kernels of hulls with spheres, capsules, boxes and triangles. The simple shapes are
-// represented as hulls, so that hull_answers.wide.h serves all these pairs.
+// represented as hulls, so that hull_answers.wide.h can answer all these pairs.
 
 #include "pipeline/kernels/hull/hull_answers.wide.h"
 
 namespace winnow {
 namespace WINNOW_ISA_NAME::hull {
 /// Faces, edges and neighbours of boxes. Vertex i is at the positive end of axis k if bit k is set.
-/// Face 2 k + 1 is the positive face of axis k, face 2 k the negative one. Edge 4 k + j runs along
-/// axis k; the bits of j are its ends of the two other axes. box_patch uses the same numbers.
+/// Face 2 k + 1 is the positive face of axis k, face 2 k the negative one. Edge 4 k + j is parallel
+/// to axis k; bits 0 and 1 of j are set if it is at the positive ends of the two other axes.
+/// flat_box_feature uses the same numbers.
 struct BoxTopology {
   std::uint32_t loop[24];
   std::uint32_t loop_edge[24];
@@ -65,7 +66,7 @@ constexpr BoxTopology make_box_topology() {
 
 inline constexpr BoxTopology kBoxTopology = make_box_topology();
 
-/// Factor that makes up for the rounding of a length.
+/// Factor that makes a computed length an upper bound of the exact one.
 inline constexpr double kOverRoundings = 1.0 + 1e-15;
 
 /// The two sides of a triangle; they share all edges.

@@ -42,7 +42,7 @@ constexpr int core_numbers(ShapeKind kind) {
 template <typename T>
 inline constexpr T kMinAcross = sizeof(T) == sizeof(double) ? T(1e-150) : T(1e-30F);
 
-/// The point of a rim at height z in the direction of d; the centre of the rim if d is along the
+/// The point of a rim at height z in the direction of d; the center of the rim if d is along the
 /// axis.
 template <typename T>
 [[gnu::always_inline]] static inline Vec3<T> rim_point(const Lanes<T>& radius, const Vec3<T>& d,

@@ -38,11 +38,11 @@ enum class CurvedState : std::uint32_t {
 struct CurvedPair {
   CoreDesc first;
   CoreDesc second;
-  /// Transform from the frame of the second to the frame of the first: x -> turn x + shift, where
-  /// `turn` has rows.
+  /// Transform from the frame of the second core to the frame of the first: x -> turn x + shift.
+  /// `turn` is a row-major 3 x 3 matrix.
   double turn[9];
   double shift[3];
-  /// Rotation from the frame of the first to world axes; rows.
+  /// Rotation from the frame of the first to world axes, a row-major 3 x 3 matrix.
   double frame[9];
   /// Position of the second minus position of the first, in world axes and the caller's units.
   double offset[3];
@@ -81,7 +81,7 @@ static inline bool has_user_shape(const CurvedPair& pair) {
 /// each.
 inline constexpr double kRoundingError = 40.0 * 0x1p-53;
 
-/// If the size is in this range, its powers neither overflow nor underflow.
+/// If the size is in this range, its powers up to the fifth neither overflow nor underflow.
 inline constexpr double kSmallest = 1e-60;
 inline constexpr double kLargestSize = 1e60;
 
@@ -190,8 +190,8 @@ static inline double make_core(const ShapeTables& tables, ShapeId id, CoreDesc& 
   return form.number[0] + form.number[1] + form.number[2];
 }
 
-/// True if b comes before a. Pairs of one kind are computed in the same way in either order: the
-/// sign of the difference of positions decides.
+/// True if b is the first. Two shapes of one kind are ordered by their positions, so that (a, b)
+/// and (b, a) are computed alike.
 static inline bool comes_second(const Pose& a, const Pose& b) {
   for (int i = 0; i < 3; ++i) {
     const double c = b.position[i] - a.position[i];

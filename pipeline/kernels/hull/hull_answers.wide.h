@@ -96,7 +96,8 @@ class HullAnswers {
     HullDistance core{};
     if (pair.state == HullState::apart) {
       finish_apart(pair, core);
-      // An error of the length implies an error of the direction: this keeps it below 0.01 degrees.
+      // An error of the length implies an error of the direction, which this limit keeps below 0.01
+      // degrees.
       if (!(core.error <= 1e-8 * core.distance)) return false;
     } else {
       if (!depth_.find(pair)) return false;
@@ -159,8 +160,8 @@ class HullAnswers {
     }
   }
 
-  /// As above, if parallel features touch. Returns false if the deepest point is not among theirs;
-  /// the solver must answer then.
+  /// Writes the point on the surface of body a if parallel features touch. Returns false if they do
+  /// not contain the deepest point; the solver must answer then.
   bool write_shared_point(const HullPair& pair, const HullContacts& input,
                           const HullCandidate* winner) {
     double point[3];

@@ -79,8 +79,8 @@ class HullPatch {
     across_at(v);
   }
 
-  /// Sets the supporting face, edge or vertex along the normal. Faces and edges that are some
-  /// degrees off count as supporting, because bodies rock over them.
+  /// Sets the supporting face, edge or vertex along the normal. Faces and edges up to 14 degrees
+  /// off count as supporting, because bodies rock over them.
   void across() {
     float direction[3];
     write_direction(direction);
@@ -115,7 +115,7 @@ class HullPatch {
     face(best);
   }
 
-  [[nodiscard]] SupportingFeature patch() const {
+  [[nodiscard]] SupportingFeature view() const {
     return {vertex_, vertex_feature_, edge_feature_, count_, feature_, hull_.rounding};
   }
 
@@ -212,9 +212,9 @@ static inline std::uint32_t write_contacts(const HullPair& pair, const HullConta
   HullPatch second(pair, input.normal, false);
   find_features<Simple>(pair, winner, first, second);
   ContactPoint points[kManifoldPoints];
-  const std::uint32_t count = contact_patch(pair.swapped ? second.patch() : first.patch(),
-                                            pair.swapped ? first.patch() : second.patch(),
-                                            input.world, input.margin, points);
+  const std::uint32_t count =
+      contact_patch(pair.swapped ? second.view() : first.view(),
+                    pair.swapped ? first.view() : second.view(), input.world, input.margin, points);
   if (count == 0) return 0;
   const double miss = __builtin_fabs(static_cast<double>(points[0].depth) + input.distance);
   if (!(miss <= input.doubt)) return 0;
@@ -237,8 +237,8 @@ static inline bool point_of_features(const HullPair& pair, const HullContacts& i
   HullPatch first(pair, input.normal, true);
   HullPatch second(pair, input.normal, false);
   find_features<Simple>(pair, winner, first, second);
-  const SupportingFeature a = pair.swapped ? second.patch() : first.patch();
-  const SupportingFeature b = pair.swapped ? first.patch() : second.patch();
+  const SupportingFeature a = pair.swapped ? second.view() : first.view();
+  const SupportingFeature b = pair.swapped ? first.view() : second.view();
   const double depth = deepest_point(a, b, input.world, point) + a.rounding + b.rounding;
   for (int k = 0; k < 3; ++k) point[k] += a.rounding * input.world[k];
   return __builtin_fabs(depth + input.distance) <= input.doubt;
@@ -273,7 +273,8 @@ static inline void write_point_contact(const HullPair& pair, const HullContacts&
                                        const HullCandidate* winner, ContactWriter& writer) {
   double center[3];
   to_world(pair, pair.shift, center);
-  // Moves back towards the first, which is body a unless they are swapped.
+  // Moves the contact from the point towards the first shape. The normal points from body a to body
+  // b, and the first shape is body a unless the pair is swapped.
   const double back = pair.second->rounding + 0.5 * input.distance;
   const double reach = pair.swapped ? back : -back;
   const std::uint32_t to = writer.size++;

@@ -79,11 +79,11 @@ class HullDepth {
   [[nodiscard]] float floor() const { return best_ + slack_; }
 
  private:
-  /// Three edges for two faces.
+  /// The number of edges of a hull of kMaxFaces triangles.
   static constexpr std::uint32_t kMaxEdges = kMaxFaces / 2 * 3;
 
   /// A hull whose faces are tested against the vertices of the other hull.
-  struct Side {
+  struct TestedHull {
     const HullShape* hull;
     const HullShape* other;
     HullCandidate::Kind kind;
@@ -123,7 +123,7 @@ class HullDepth {
         second_.turn[3 * k + i] = pair.turn_float[3 * i + k];
       }
     }
-    for (Side* side : {&first_, &second_}) {
+    for (TestedHull* side : {&first_, &second_}) {
       float middle[3];
       for (int i = 0; i < 3; ++i) middle[i] = static_cast<float>(side->other->center[i]);
       turn3(side->turn, middle, side->center);
@@ -147,9 +147,10 @@ class HullDepth {
   }
 
   /// Determines for each face the known points that are higher along its normal than the best
-  /// depth; such points close the face. The ball inside the other hull gives one more point, if its
-  /// center is inside the face's plane: then its height is concave along arcs, too.
-  void close_faces(Side& side) {
+  /// depth; such points close the face. Another such point is on the ball inside the other hull:
+  /// the one farthest against the normal. It is used if the center of the ball is inside the face's
+  /// plane, because only then is the height of the ball concave along arcs, too.
+  void close_faces(TestedHull& side) {
     const float* const* plane = side.hull->plane_float;
     const Vec3<float> middle{side.center[0], side.center[1], side.center[2]};
     const Floats radius(static_cast<float>(side.other->inner_radius));
@@ -218,8 +219,9 @@ class HullDepth {
     tie_.depth = face.depth;
   }
 
-  /// True if an arc begins at the tied face, and the mean of its tied vertices is deeper than the
-  /// best depth at the other end, and so in between, too.
+  /// True if one end of an arc is the tied face, and the mean of its tied vertices is deeper than
+  /// the best depth at the other end. As heights are concave along the arc, it is then nowhere less
+  /// deep than at the tied face, which is a candidate.
   [[nodiscard]] bool is_deeper_than_tie(const HullEdge& edge) const {
     const std::uint32_t* face = edge.face;
     if (face[0] != tie_.face && face[1] != tie_.face) return false;
@@ -230,7 +232,8 @@ class HullDepth {
     return plane[3][other] - dot3(normal, tie_.middle) > best_ + slack_;
   }
 
-  /// Finds the supporting vertex of the second against a direction, and the depth along it.
+  /// Finds the supporting vertex of the second hull along minus `direction.normal`, and the depth
+  /// along the normal.
   [[gnu::always_inline]] void find_support(HullDirection& direction) const {
     float local[3];
     turn_back3(first_.turn, direction.normal, local);
@@ -386,9 +389,10 @@ class HullDepth {
     const Heights b = high_point(g, f, cosine);
     float p = b.here - a.there;
     float q = a.here - b.there;
-    // (p + q)^2 is at most twice the square below.
+    // As in `cut`, the slack is multiplied by (p + q) / sqrt(square), which is at most sqrt(2).
     const float limit = best_ + 1.5F * slack_;
-    // One of the points is the higher one at both ends, or they are equal there.
+    // If the point of one end is at least as high at the other end as the point found there, it
+    // bounds the whole arc alone.
     if (!(p > 0.0F)) {
       return a.here > 0.0F && a.there > 0.0F && has_deep_ends(a.here, a.there, limit, f, g);
     }
@@ -412,25 +416,25 @@ class HullDepth {
   /// Searches an arc for depths near the best. An arc is split where a third vertex of the second
   /// is the supporting one.
   bool follow(const HullArc& whole, const HullDirection& from, const HullDirection& to) {
-    struct Part {
+    struct StackedArc {
       HullDirection end[2];
       HullArc arc;
     };
     constexpr int kDeepest = 12;
-    Part stack[kDeepest];
+    StackedArc stack[kDeepest];
     int height = 0;
     if (!search(whole, from, to, stack, height)) return false;
     while (height > 0) {
       if (height + 1 > kDeepest) return false;
-      const Part part = stack[--height];
+      const StackedArc part = stack[--height];
       if (!search(part.arc, part.end[0], part.end[1], stack, height)) return false;
     }
     return true;
   }
 
   /// Processes one arc: makes it a candidate, pushes two halves on the stack, or drops it.
-  template <typename Part>
-  bool search(HullArc arc, const HullDirection& from, const HullDirection& to, Part* stack,
+  template <typename StackedArc>
+  bool search(HullArc arc, const HullDirection& from, const HullDirection& to, StackedArc* stack,
               int& height) {
     HullDirection middle;
     float weight[2];
@@ -451,11 +455,11 @@ class HullDepth {
     }
     const float s = weight[0] * arc.s[0] + weight[1] * arc.s[1];
     const float t = weight[0] * arc.t[0] + weight[1] * arc.t[1];
-    Part& left = stack[height++];
+    StackedArc& left = stack[height++];
     left = {{from, middle}, arc};
     left.arc.s[1] = s;
     left.arc.t[1] = t;
-    Part& right = stack[height++];
+    StackedArc& right = stack[height++];
     right = {{middle, to}, arc};
     right.arc.s[0] = s;
     right.arc.t[0] = t;
@@ -477,10 +481,11 @@ class HullDepth {
   enum class ArcDepth : std::uint8_t { deep, near, lost };
 
   /// Bounds the heights along an arc from below by the two points found at its ends. The bound is
-  /// smallest in the direction in which both have the same height, or at an end, which has been
-  /// measured. If it is near the best depth, measures the depth in that direction. Any direction
-  /// between the ends gives a valid bound, as heights are concave: between it and an end, that
-  /// end's point is at least as high as at the lower of the two.
+  /// smallest in the direction in which both points have the same height, or at an end, which has
+  /// been measured. If that height is near the best depth, measures the depth in this direction.
+  /// The bound is also valid for a direction with rounding errors: heights are concave, so between
+  /// the direction and an end, the point of that end is at least as high as at the lower of the
+  /// two.
   ArcDepth cut(const HullDirection& a, const HullDirection& b, bool whole, HullDirection& middle,
                float* weight, float& lowest) {
     const float cosine = dot3(a.normal, b.normal);
@@ -523,8 +528,8 @@ class HullDepth {
     float middle[3];
   };
 
-  Side first_;
-  Side second_;
+  TestedHull first_;
+  TestedHull second_;
   Tie tie_;
   float best_;
   float slack_;

@@ -1,7 +1,8 @@
 #pragma once
 
-// The feature of a hull at its supporting vertex along a direction: a face or an edge if it is
-// within some degrees of perpendicular to the direction, because bodies rock over it.
+// The feature of a hull at its supporting vertex along a direction: a face or an edge that is
+// within 14 degrees of perpendicular to the direction (contact_patch.h), or else the vertex. The
+// limit is wide because bodies rock over their faces and edges.
 
 #include "pipeline/kernels/hull/hull_pair.wide.h"
 #include "pipeline/manifold/contact_patch.h"
@@ -75,8 +76,8 @@ static inline std::uint32_t face_across(const HullShape& hull, const double* dir
   return is_tied ? tied_face_across(hull, direction, x, doubt) : best;
 }
 
-/// Returns the neighbour of a vertex that is least below it, if the edge to it is nearly
-/// perpendicular to the direction.
+/// Returns the neighbour to which the edge from a vertex is closest to perpendicular to the
+/// direction; kNoFeature if no edge is within kEdgeSine of it.
 static inline std::uint32_t neighbour_across(const HullShape& hull, const float* direction,
                                              std::uint32_t vertex, const float* x) {
   std::uint32_t best = kNoFeature;

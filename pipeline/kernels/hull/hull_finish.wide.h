@@ -263,9 +263,9 @@ class HullTouch {
 };
 
 /// Computes the point where edges cross or one vertex touches a face. If parallel features touch,
-/// tries the middle of one of them, then the midpoint of both middles, which hulls that are
-/// symmetric about their centers share if they touch at all, then the middle of the other. Returns
-/// false if none of these points is on both hulls.
+/// tries the middle of one of them; then the midpoint of both middles, which is on both features if
+/// they overlap and each is symmetric about its middle; then the middle of the other. Returns false
+/// if none of these points is on both hulls.
 static inline bool touching_point(const HullPair& pair, HullDistance& answer) {
   using Kind = HullCandidate::Kind;
   const Kind kind = answer.winner->kind;

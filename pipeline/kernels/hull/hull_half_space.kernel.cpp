@@ -12,9 +12,10 @@ namespace {
 
 using hull::kNoFeature;
 
-/// Vertices of a hull that stand on a plane: the lowest vertex, and the vertices of the face or
-/// edge at it that faces the plane, if they are at most `reach` higher. If there are more than
-/// four, corners_on_plane chooses; the first is then hardly higher than the lowest.
+/// Vertices of a hull that may touch a plane: the lowest vertex, and the vertices of the face or
+/// edge at it that faces the plane, if they are at most `reach` higher. If the face has more than
+/// four corners, corners_on_plane chooses; vertex 0 may then be higher than the lowest one, by less
+/// than kTiedDepth of the face's extent.
 class HullPointsOnPlane {
  public:
   static constexpr std::uint32_t kMaxPoints = kManifoldPoints;
@@ -86,8 +87,8 @@ class HullPointsOnPlane {
   std::uint32_t vertex_[kMaxPoints + 1] = {};
 };
 
-/// The plane in the frames of the hulls, also stored lane by lane, and the numbers of each hull
-/// other than its vertices.
+/// The plane in the frames of the hulls, also stored lane by lane, and the roundings and reaches of
+/// the hulls.
 template <typename T>
 struct PlaneUnderHull {
   PlacedPlane<T> plane;

@@ -106,8 +106,8 @@ class HullMeasure {
     lower = heights[crosses ? low : top];
   }
 
-  /// If both points rise along an arc, the higher of them is lowest at an end: lowers the bound to
-  /// the heights at the ends.
+  /// If both points rise along an arc, the larger of their heights is smallest at an end: lowers
+  /// the bound to the larger height at each end.
   void bound_ends(const double (*end)[3], const double (*w)[3]) {
     for (int i = 0; i < 2; ++i) {
       const double heights[2] = {dot3(end[i], w[0]), dot3(end[i], w[1])};

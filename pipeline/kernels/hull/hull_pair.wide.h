@@ -32,16 +32,16 @@ struct HullPair {
   double frame[9];
   /// Position of the second minus position of the first, in world axes.
   double offset[3];
-  /// An upper bound of every length that occurs: the distance of the origins plus the radii of both
-  /// hulls around them.
+  /// An upper bound of every length that occurs: the distance of the hulls' origins, plus the
+  /// reach_of each hull.
   double size;
   /// Sum of the roundings.
   double rounding;
   /// The search stops with state far if the cores are farther apart than this plus the rounding;
   /// infinite to never stop.
   double far;
-  /// This placement in float. `scaled_` lengths are multiplied by `scale`, a power of two that
-  /// brings `size` into [1, 2).
+  /// `turn` and `shift` in float. The `scaled_` numbers are multiplied by `scale`, a power of two
+  /// that brings `size` into [1, 2).
   float turn_float[9];
   float scaled_turn[9];
   float scaled_shift[3];
@@ -75,11 +75,12 @@ inline constexpr std::uint32_t kMaxHullVertices = 65535;
 /// Bound of the rounding errors of lengths computed in double from a HullPair, relative to size:
 /// some forty operations of half a unit each.
 inline constexpr double kDoubleError = 40.0 * 0x1p-53;
-/// As above in float, including the error in the choice of the highest vertex: see kLaneBits.
+/// As kDoubleError in float, including the error in the choice of the highest vertex: see
+/// kLaneBits.
 inline constexpr float kFloatError = 40.0F * 0x1p-24F;
 
-/// Computes the rotation of a quaternion of any length; returns false if its square is out of
-/// double's range.
+/// Computes the rotation of a quaternion of any length; returns false if its squared length is
+/// outside 1e-200 to 1e200.
 static inline bool rotation_of(const double* q, double* m) {
   const double length = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
   if (!(length > 1e-200 && length < 1e200)) return false;
@@ -113,9 +114,9 @@ static inline double reach_of(const HullShape& hull) {
          __builtin_fabs(hull.center[2]) + hull.radius;
 }
 
-/// True if the pair is computed with b first. The order is chosen such that (a, b) and (b, a) are
-/// computed alike: solids come first, then the sign of the difference of the positions decides,
-/// then any other difference.
+/// True if the pair is computed with b first. The order does not depend on which body is called a,
+/// so (a, b) and (b, a) are computed alike: if only one hull is solid, it is first; otherwise the
+/// positions decide, then the addresses of the hulls, then the orientations.
 static inline bool comes_second(const HullShape& a, const HullShape& b, const Pose& pose_a,
                                 const Pose& pose_b) {
   if ((a.dimension == 3) != (b.dimension == 3)) return b.dimension == 3;
@@ -131,14 +132,15 @@ static inline bool comes_second(const HullShape& a, const HullShape& b, const Po
   return false;
 }
 
-/// The largest power of two that is not above 1 / size, for a size in float's range.
+/// The power of two that brings a size in float's range into [1, 2).
 static inline float scale_of(double size) {
   const std::uint64_t exponent = __builtin_bit_cast(std::uint64_t, size) >> 52U;
   return static_cast<float>(__builtin_bit_cast(double, (2046U - exponent) << 52U));
 }
 
 /// Fills in the inputs of the search, with b first if `swapped`; returns false if poses or sizes
-/// are out of range. `PointSecond`: the second's orientation is irrelevant.
+/// are out of range. `PointSecond`: the second is a point at its origin, so its orientation is not
+/// read.
 template <bool PointSecond = false>
 static inline bool place_hulls(const HullShape& a, const HullShape& b, const Pose& pose_a,
                                const Pose& pose_b, bool swapped, HullPair& pair) {
@@ -213,8 +215,9 @@ inline constexpr std::uint32_t kLaneBits = 15;
 }
 
 /// Computes sixteen heights along `direction` with their lanes' numbers in the low bits; the
-/// largest is the hull's. If the hull has more than sixteen vertices, `block` receives the block of
-/// sixteen that each height is from.
+/// largest of them is the height of the hull. If the hull has more than sixteen vertices, each
+/// height is the largest of its lane, and `block` receives the first vertex of the block of sixteen
+/// that it is from.
 [[gnu::always_inline]] static inline void heights(const HullShape& hull, const float* direction,
                                                   float* height, float* block) {
   const Vec3<float> d{direction[0], direction[1], direction[2]};
@@ -232,8 +235,8 @@ inline constexpr std::uint32_t kLaneBits = 15;
   best.store(height);
 }
 
-/// The lane of a maximum that is zero. A zero with a lane's number is a denormal number, and
-/// arithmetic may flush these to zero on this host; the stored heights still have the bits.
+/// The lane of a maximum that is zero. A zero with a lane's number is a denormal number, which
+/// arithmetic may flush to zero on this host; the stored heights still have the bits.
 [[gnu::noinline]] static std::uint32_t lane_of_zero(const float* height) {
   const auto pattern = [&](std::uint32_t i) {
     return __builtin_bit_cast(std::uint32_t, height[i]);

@@ -1,10 +1,11 @@
 #pragma once
 
 // Closest features of pairs of hulls in float, by GJK (Gilbert, Johnson, Keerthi 1988) with one
-// pair per lane. A lane that is done takes the next pair, so that a hard pair does not hold up
-// fifteen easy ones. If the origin is inside the difference, the search restarts towards a point
-// just outside and finds a face of the difference that is a good guess for the nearest one. No
-// result needs to be right: the later stages prove what they use. Called by hull_answers.wide.h.
+// pair per lane. A lane that is done takes the next pair, so that fifteen easy pairs do not wait
+// for a hard one. If the origin is inside the difference, the search restarts towards a point
+// outside and finds a face of the difference that is a good guess for the nearest one. The limits
+// of the states far and inside include the errors of float. All other results are guesses, which
+// the later stages prove before they use them. Called by hull_answers.wide.h.
 
 #include "pipeline/kernels/hull/hull_supports.wide.h"
 #include "pipeline/kernels/hull/simplex.wide.h"
@@ -16,7 +17,8 @@ namespace winnow::WINNOW_ISA_NAME::hull {
 template <typename Seconds>
 class HullSearch {
  public:
-  /// `overlap_only`: the search stops with state inside as soon as the roundings certainly overlap.
+  /// `overlap_only`: the search stops with state inside as soon as the rounded shapes certainly
+  /// overlap, and does not restart.
   HullSearch(HullPair* pairs, std::uint32_t count, bool overlap_only)
       : next_(pairs), end_(pairs + count), overlap_only_(overlap_only) {}
 
@@ -34,13 +36,14 @@ class HullSearch {
 
  private:
   static constexpr std::uint32_t kMaxSteps = 48;
-  /// Number of steps after a restart from outside.
+  /// Maximal number of steps after a restart from outside.
   static constexpr std::uint32_t kRestartSteps = 8;
   /// Distance of the restart's goal from the origin, relative to the lowest height found.
   static constexpr float kOutside = 1.25F;
   /// Scaled; if its nearest point is closer, the simplex counts as touching the origin.
   static constexpr float kTouching = 2e-6F;
-  /// Scaled; a support that is nearer by less than this is no progress.
+  /// Scaled; if the support point is less than this below the nearest point along `gap`, there is
+  /// no progress.
   static constexpr float kNoGain = 4e-7F;
   /// Scaled error of a support's height, which may be below the highest by kLaneBits units in the
   /// last place.
@@ -155,8 +158,8 @@ class HullSearch {
     return done | give_up(active_ & ~done, restarted_bits);
   }
 
-  /// Restarts the lanes whose origin is inside: the goal becomes a point outside, near the lowest
-  /// support. Returns the lanes that have such a point.
+  /// Restarts the lanes whose origin is inside: the goal becomes a point outside, in the direction
+  /// with the lowest height. Returns the lanes that have such a point.
   Mask16 restart_from_outside(Mask16 lanes) {
     Mask16 restarts = 0;
     for (; lanes != 0; lanes &= lanes - 1) {
@@ -238,8 +241,8 @@ class HullSearch {
       select(take, w.y, simplex.point[s].y).store(slot_[s][1]);
       select(take, w.z, simplex.point[s].z).store(slot_[s][2]);
       select(take, name, Floats::load(slot_name_[s])).store(slot_name_[s]);
-      const Floats held = select(take | nearest.keep[s], one, zero);
-      select(moves, held, Floats::load(present_[s])).store(present_[s]);
+      const Floats filled = select(take | nearest.keep[s], one, zero);
+      select(moves, filled, Floats::load(present_[s])).store(present_[s]);
     }
     const Vec3<float> next = select(moves, nearest.point, gap);
     next.x.store(gap_[0]);

@@ -19,8 +19,9 @@ constexpr float second_pattern(std::uint32_t number) {
   return number_pattern(number << 16U);
 }
 
-/// One row per lane: the heights of sixteen vertices. With more vertices, the highest of every
-/// sixteenth vertex, and the block of sixteen that it is in.
+/// One row per lane: the heights of the hull's sixteen vertices. If the hull has more, entry i is
+/// the largest height of the vertices i, i + 16, ..., and `block` stores from which block of
+/// sixteen it is.
 struct VertexHeights {
   alignas(64) float height[kLanes * kLanes];
   alignas(64) float block[kLanes * kLanes];
@@ -51,7 +52,7 @@ template <typename Found>
   }
 }
 
-/// Returns those vertices; 0 in the other lanes.
+/// Returns the vertices that for_farthest_vertices finds; 0 in the other lanes.
 [[gnu::noinline]] static Vec3<float> farthest_vertices(const HullShape* const* hull,
                                                        const Vec3<float>& direction, Mask16 active,
                                                        VertexHeights& rows) {

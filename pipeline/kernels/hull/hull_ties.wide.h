@@ -47,7 +47,7 @@ class HullTies {
   static constexpr int kMaxParts = 16;
 
   /// Part of an arc between two directions, and the supporting vertices of the second there.
-  struct Part {
+  struct ArcPart {
     double end[2][3];
     std::uint32_t vertex[2];
   };
@@ -104,16 +104,16 @@ class HullTies {
     second_vertex_at(pair_, last, theirs);
     if (is_deep(theirs, from, to)) return true;
     const double* ends[2] = {from, to};
-    Part stack[kMaxParts];
+    ArcPart stack[kMaxParts];
     for (int i = 0; i < 2; ++i) {
       for (int k = 0; k < 3; ++k) stack[0].end[i][k] = ends[i][k];
     }
     stack[0].vertex[0] = nearest(from);
     stack[0].vertex[1] = last;
     int height = 1;
-    for (int looked = 0; height > 0; ++looked) {
-      if (looked == kMaxParts || height + 1 >= kMaxParts) return false;
-      const Part part = stack[--height];
+    for (int tested = 0; height > 0; ++tested) {
+      if (tested == kMaxParts || height + 1 >= kMaxParts) return false;
+      const ArcPart part = stack[--height];
       bound_part(edge, part, stack, height);
     }
     return true;
@@ -133,7 +133,7 @@ class HullTies {
   }
 
   /// Bounds a part of an arc, or pushes its halves on the stack if a third vertex is nearer.
-  void bound_part(std::uint32_t edge, const Part& part, Part* stack, int& height) {
+  void bound_part(std::uint32_t edge, const ArcPart& part, ArcPart* stack, int& height) {
     double w[2][3];
     for (int i = 0; i < 2; ++i) {
       double theirs[3];
@@ -158,7 +158,7 @@ class HullTies {
         third == part.vertex[1]) {
       return bound(measure_.lower);
     }
-    Part halves[2] = {part, part};
+    ArcPart halves[2] = {part, part};
     for (int k = 0; k < 3; ++k) halves[0].end[1][k] = halves[1].end[0][k] = normal[k];
     halves[0].vertex[1] = third;
     halves[1].vertex[0] = third;
@@ -166,7 +166,7 @@ class HullTies {
     stack[height++] = halves[1];
   }
 
-  void keep(std::uint32_t edge, const Part& part) {
+  void keep(std::uint32_t edge, const ArcPart& part) {
     found_ = true;
     best_ = measure_.depth;
     for (int k = 0; k < 3; ++k) normal_[k] = measure_.normal[k];

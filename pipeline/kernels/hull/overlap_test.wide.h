@@ -2,8 +2,8 @@
 
 // Overlap tests in float for pairs of any convex kinds; only certain results count. A block of
 // pairs is loaded and placed in lanes and tested once along the line of the cores' centers, which
-// separates most pairs that are apart. The remaining pairs take turns in the lanes of a GJK search.
-// Lengths are divided by the pair's size.
+// separates most pairs that are apart. The remaining pairs are searched by GJK in lanes; a lane
+// that is done takes the next pair. Lengths are divided by the pair's size.
 
 #include "pipeline/kernels/answers.wide.h"
 #include "pipeline/kernels/hull/hull_supports.wide.h"
@@ -15,7 +15,7 @@ namespace winnow::WINNOW_ISA_NAME::hull {
 
 class OverlapTest {
  public:
-  /// About 90 roundings contribute to a height; this is three times as much.
+  /// Error bound of a height: three times the sum of about 90 rounding errors.
   static constexpr float kLengthError = 1.6e-5F;
 
   /// Answers a job except the pairs that it lists in `uncertified`; returns their number.
@@ -53,7 +53,7 @@ class OverlapTest {
   }
 
   /// The placement of the cores of a block, with the second in the frame of the first.
-  struct Placed {
+  struct PlacedCores {
     Floats turn[9];
     Vec3<float> shift;
     Floats rounding;
@@ -61,7 +61,7 @@ class OverlapTest {
     Mask16 usable;
   };
 
-  [[gnu::always_inline]] Placed place(const PairBlock<float>& block, LoadedCores (&side)[2]) {
+  [[gnu::always_inline]] PlacedCores place(const PairBlock<float>& block, LoadedCores (&side)[2]) {
     load_cores<SideA>(job_, block, kind_[0], side[0]);
     load_cores<SideB>(job_, block, kind_[1], side[1]);
     const Rotation<float> frame = rotation(load_turn<SideA>(job_, block));
@@ -91,7 +91,7 @@ class OverlapTest {
   /// The first step of a block; returns the lanes that are out of range.
   [[gnu::noinline]] Mask16 first_step(const PairBlock<float>& block) {
     LoadedCores side[2];
-    const Placed placed = place(block, side);
+    const PlacedCores placed = place(block, side);
     const Floats one(1.0F);
     const Floats zero(0.0F);
     const Floats rounding = placed.rounding;
@@ -131,7 +131,7 @@ class OverlapTest {
     return block.lanes() & ~placed.usable;
   }
 
-  void set_aside(const LoadedCores (&side)[2], const Placed& placed) {
+  void set_aside(const LoadedCores (&side)[2], const PlacedCores& placed) {
     for (int i = 0; i < 2; ++i) {
       const int count = core_numbers(kind_[i]);
       for (int k = 0; k < count; ++k) side[i].core.number[k].store(number_[i][k]);

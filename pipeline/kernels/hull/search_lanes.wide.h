@@ -1,7 +1,7 @@
 #pragma once
 
-// Steps of GJK (Gilbert, Johnson, Keerthi 1988), one search per lane. The last support along the
-// direction found bounds the distance from below; the point of the difference found bounds it from
+// Steps of GJK (Gilbert, Johnson, Keerthi 1988), one search per lane. The height of the last
+// support point bounds the distance from below; the nearest point of the simplex bounds it from
 // above. Used by overlap_test.wide.h and by the curved kernels (curved_search.wide.h).
 
 #include "pipeline/kernels/hull/core_lanes.wide.h"
@@ -29,12 +29,13 @@ class SearchLanes {
 
   static constexpr bool kIsDouble = sizeof(T) == sizeof(double);
   static constexpr std::uint32_t kMaxSteps = kIsDouble ? 60 : 20;
-  /// If the gap between the bounds is smaller, it counts as closed; kNoTurn is the same for squares
-  /// of angles.
+  /// The search ends if the bounds of the distance differ by at most kNoGain, and relative to the
+  /// distance by at most kNoTurn. The relative difference is about the square of the angle by which
+  /// the direction may be wrong.
   static constexpr T kNoGain = kIsDouble ? T(2e-15) : T(4e-7F);
   static constexpr T kNoTurn = kIsDouble ? T(1e-13) : T(1e-5F);
-  /// User shapes: relative gap at which the search ends. The directions then differ by less than
-  /// 0.003 degrees.
+  /// User shapes: relative difference of the bounds at which the search ends. The direction is then
+  /// wrong by less than 0.003 degrees.
   static constexpr T kUserGain = T(1e-9);
   /// If its nearest point is closer, the simplex counts as touching the origin.
   static constexpr T kTouching = kIsDouble ? T(1e-13) : T(2e-6F);
@@ -163,8 +164,8 @@ class SearchLanes {
       placed = placed | take;
       store3(select(take, w, simplex.point[s]), slot[s]);
       if constexpr (Points) store3(select(take, mine, load3(slot_mine[s])), slot_mine[s]);
-      const Lanes<T> held = select(take | nearest.keep[s], one, zero);
-      select(moves, held, Lanes<T>::load(present[s])).store(present[s]);
+      const Lanes<T> filled = select(take | nearest.keep[s], one, zero);
+      select(moves, filled, Lanes<T>::load(present[s])).store(present[s]);
     }
     store3(select(moves, nearest.point, nearest_yet), gap);
     select(moves, next_square, Lanes<T>::load(square)).store(square);

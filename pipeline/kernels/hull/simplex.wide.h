@@ -19,8 +19,8 @@ inline constexpr T kThin = sizeof(T) == sizeof(double) ? T(1e-26) : T(1e-12F);
 template <typename T>
 inline constexpr T kNoiseSquare = sizeof(T) == sizeof(double) ? T(1e-24) : T(1e-10F);
 
-/// kExact: nearest points must be upper bounds of the distance as computed. kNarrow: the smallest
-/// squared height of a triangle in that case.
+/// kExact: the computed nearest points are used as upper bounds of the distance, so they must be on
+/// the simplex. kNarrow: the smallest squared height of a triangle in that case.
 template <typename T>
 inline constexpr bool kExact = sizeof(T) == sizeof(double);
 template <typename T>
@@ -45,9 +45,10 @@ struct SimplexNearest {
   LaneMask<T> repeated;
 };
 
-/// Finds the nearest feature after adding w to a simplex. As w lies in front of the old nearest
-/// point, the new feature contains w: eight of the tetrahedron's fifteen features remain. Lengths
-/// are about 1.
+/// Finds the nearest feature after adding w to a simplex. Along the direction of the old nearest
+/// point, w is nearer to the origin than all points of the simplex. So the new nearest feature
+/// contains w, and only eight of the tetrahedron's fifteen features are tested. Lengths are about
+/// 1.
 template <typename T>
 static inline SimplexNearest<T> nearest_of(const Simplex<T>& simplex, const Vec3<T>& w) {
   const Lanes<T> zero(T(0));

@@ -29,14 +29,15 @@ class SingleOverlapTest {
   using Point = double[3];
 
   /// Tolerance of lengths, which are below 2. It is far above the rounding errors, and equals the
-  /// tolerance of the lanes, so that a single pair gets the same answer as in a larger job.
+  /// tolerance of the lanes, so that a single pair is certified for the same distances as in a
+  /// larger job.
   static constexpr double kLengthError = static_cast<double>(hull::OverlapTest::kLengthError);
   /// Tolerance of the product of a length and two edges.
   static constexpr double kPlaneError = 1e-14;
   /// A step that reduces the square by less than this fraction is no progress.
   static constexpr double kNoGain = 1e-14;
   static constexpr int kMaxSteps = 48;
-  /// A nearest point closer than this gives no direction.
+  /// If the nearest point is closer to the origin than this, it is not used as a direction.
   static constexpr double kNowhere = 1e-15;
 
   explicit SingleOverlapTest(const CurvedPair& pair) : pair_(pair) {}
@@ -56,7 +57,7 @@ class SingleOverlapTest {
       const double height = dot3(nearest_, found);
       if (height > 0.0 && height * height > far * far * square) return OverlapResult::apart;
       if (count_ > 0 && square - height <= kNoGain * square) return OverlapResult::unsure;
-      if (holds_origin(found)) return OverlapResult::overlapping;
+      if (contains_origin(found)) return OverlapResult::overlapping;
     }
     return OverlapResult::unsure;
   }
@@ -74,7 +75,7 @@ class SingleOverlapTest {
 
   /// Adds a point and moves `nearest_` to the point of the simplex that is nearest to the origin;
   /// returns true if the simplex certainly contains the origin.
-  [[nodiscard]] bool holds_origin(const Point& w) {
+  [[nodiscard]] bool contains_origin(const Point& w) {
     switch (count_) {
       case 0:
         put(w);
@@ -89,7 +90,7 @@ class SingleOverlapTest {
         return false;
       }
       default:
-        return tetrahedron_holds_origin(w);
+        return tetrahedron_contains_origin(w);
     }
   }
 
@@ -171,22 +172,22 @@ class SingleOverlapTest {
     ++count_;
   }
 
-  [[nodiscard]] bool tetrahedron_holds_origin(const Point& w) {
+  [[nodiscard]] bool tetrahedron_contains_origin(const Point& w) {
     // The three faces at w, and the corner opposite to each.
     constexpr int kSide[3][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}};
-    bool holds = is_inside(point_[0], point_[1], point_[2], w);
+    bool contained = is_inside(point_[0], point_[1], point_[2], w);
     Nearest best{0.0, 0.0, {}, __builtin_inf()};
     int at = 0;
     for (int i = 0; i < 3; ++i) {
       const int* const side = kSide[i];
       if (is_inside(w, point_[side[0]], point_[side[1]], point_[side[2]])) continue;
-      holds = false;
+      contained = false;
       const Nearest nearest = of_triangle(w, point_[side[0]], point_[side[1]]);
       if (nearest.square >= best.square) continue;
       best = nearest;
       at = i;
     }
-    if (holds || !(best.square < __builtin_inf())) return holds;
+    if (contained || !(best.square < __builtin_inf())) return contained;
     take(w, best, point_[kSide[at][0]], point_[kSide[at][1]]);
     return false;
   }

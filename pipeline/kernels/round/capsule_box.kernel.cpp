@@ -1,6 +1,7 @@
 // Capsules against boxes, many pairs at a time. If the segment and the box are apart, finds their
 // closest points; if they overlap, the least overlap over all face normals of their Minkowski sum.
-// Contacts are the ends of the range of the segment that lies over a face.
+// Contacts are at the ends of the range of the segment over a face, or else at the closest or
+// deepest point.
 
 #include "pipeline/kernels/kernels.h"
 #include "pipeline/kernels/round/round.wide.h"
@@ -39,10 +40,11 @@ template <typename T>
 
 /// Returns the s at which the segment is closest to the box: the root of the slope, between its
 /// last breakpoint (where the segment crosses the plane of a face) with a negative slope and its
-/// first one with a nonnegative slope. Let a be the length of the part of the axis that is
-/// perpendicular to the slabs that the segment is outside of. The error of the slope is eps |c| a,
-/// and the error of the root is that over a^2. So the distance is as accurate as the poses, at any
-/// angle.
+/// first one with a nonnegative slope. Let a be the length of the component of the axis along the
+/// normals of those slabs of the box outside of which the point at s is. Per unit of s, the slope
+/// rises by a^2. An error eps |c| a of the slope is thus an error eps |c| / a of the root, and
+/// changes the distance by at most a times that, eps |c|: the distance is as accurate as the poses,
+/// at any angle.
 template <typename T>
 [[gnu::always_inline]] inline Lanes<T> closest_place(const CapsuleAndBox<T>& p) {
   const Lanes<T> zero(T(0));
@@ -78,7 +80,8 @@ struct Overlap {
   Lanes<T> distance;
   /// Unit, from the segment to the box, in the frame of the box.
   Lanes<T> normal[3];
-  /// True if the sines between the axis and the edges of the box are 0, or at least kMinSine.
+  /// True if each sine between the axis and an edge of the box is 0 up to rounding, or above
+  /// kMinSine.
   LaneMask<T> sharp;
 };
 
@@ -120,10 +123,11 @@ template <typename T>
   return r;
 }
 
-/// Returns the s at which the cores touch if they are moved apart along the normal: an end of the
-/// segment; or, if the segment is parallel to the feature that it touches, the point that is
-/// nearest to the edge (in the axes of the box of which the normal consists) and over the face (in
-/// the other axes).
+/// Returns the s at which the cores touch if they are moved apart along the normal. If the axis is
+/// not perpendicular to the normal, this is an end of the segment. Otherwise the segment is
+/// parallel to the face or edge that it touches: s is the point nearest to the edge, in the axes of
+/// the box along which the normal has a component, clamped to the range over the box in the other
+/// axes.
 template <typename T>
 [[gnu::always_inline]] inline Lanes<T> deepest_place(const CapsuleAndBox<T>& p, const Vec3<T>& n) {
   const Lanes<T> zero(T(0));
@@ -187,8 +191,8 @@ template <typename T>
   const Lanes<T> s = closest_place(r.scene);
   const Vec3<T> w = towards_box(r.scene, s);
   const Lanes<T> length = sqrt(dot(w, w));
-  // The error of a cross product is proportional to 1 / its sine. A flat Minkowski sum has depth
-  // only by rounding.
+  // The error of a depth along a cross product is proportional to 1 / its sine. A depth of at most
+  // this error may be the rounding error of a flat Minkowski sum.
   const Lanes<T> slack = scale * Lanes<T>(kRoundSlack<T>);
   const LaneMask<T> inside = overlap.sharp & (overlap.distance < -slack);
   r.proof = {select(inside, overlap.distance - slack, length) - both,
@@ -204,7 +208,7 @@ template <typename T>
 template <typename T>
 struct FacingBox {
   LaneMask<T> is_axis[3];
-  /// Components of a vector: across the face, and along it, first and second.
+  /// Components of a vector: perpendicular to the face, and the two (i = 0, 1) in its plane.
   [[gnu::always_inline]] Lanes<T> across(const Lanes<T> (&v)[3]) const {
     return select(is_axis[2], v[2], select(is_axis[1], v[1], v[0]));
   }
@@ -257,7 +261,7 @@ template <typename T>
     high = select(cuts, min(high, max(from, to)), high);
     high = select(cuts & (slope == zero), -p.half - p.half, high);
   }
-  // Ends of the range that are not ends of the capsule have the feature numbers 3 and 4.
+  // Ends of the range that are not ends of the segment have the feature numbers 3 and 4.
   const auto name = [&](const Lanes<T>& s, const Lanes<T>& cut) {
     return select(abs(s) >= p.half, segment_feature(s, p.half), cut);
   };
@@ -266,7 +270,8 @@ template <typename T>
                         {base + rise * low - both, base + rise * high - both},
                         {name(low, Lanes<T>(T(3))), name(high, Lanes<T>(T(4)))},
                         zero > one};
-  range.lies = two_ends(range, r.proof, Vec3<T>{p.axis[0], p.axis[1], p.axis[2]}, r.normal);
+  range.has_two_contacts =
+      two_ends(range, r.proof, Vec3<T>{p.axis[0], p.axis[1], p.axis[2]}, r.normal);
   return range;
 }
 
@@ -282,7 +287,7 @@ template <typename T>
   const Vec3<T> towards{select(face.is_axis[0], r.normal.x, zero),
                         select(face.is_axis[1], r.normal.y, zero),
                         select(face.is_axis[2], r.normal.z, zero)};
-  const Lanes<T> name = select(range.lies, box_feature(towards), box_feature(r.normal));
+  const Lanes<T> name = select(range.has_two_contacts, box_feature(towards), box_feature(r.normal));
   const auto contact = [&](const Lanes<T>& s, const Lanes<T>& d, const Lanes<T>& feature) {
     return ContactLanes<T>{axis * s + answer.normal * (r.radius + d * Lanes<T>(T(0.5))), -d,
                            feature, name, 0};

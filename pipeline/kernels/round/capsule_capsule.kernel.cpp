@@ -9,8 +9,8 @@ namespace winnow {
 namespace WINNOW_ISA_NAME::round {
 namespace {
 
-/// Two capsules, the first at the origin. Their order depends only on the sign of the offset, so
-/// that (a, b) and (b, a) are the same problem.
+/// Two capsules, the first at the origin. They are ordered by the signs of the offset, so that (a,
+/// b) and (b, a) are the same problem, except if the offset is 0.
 template <typename T>
 struct Couple {
   LaneMask<T> swapped;
@@ -101,9 +101,10 @@ template <typename T>
   return dot(p.across, p.across) < Lanes<T>(static_cast<T>(kBesideSquare));
 }
 
-/// Capsules that are parallel to 0.1 get contacts at the two ends of the range over which they lie
-/// side by side, if these are within the margin; others get `closest`. By value and not inlined:
-/// few blocks need it, and the lanes of the others stay in registers.
+/// Writes the contacts of a block with parallel capsules (sine at most 0.1). Parallel capsules get
+/// contacts at those ends of the range in which they are side by side that are within the margin.
+/// If neither end is, and for all other pairs, the contact is `closest`. Parameters are by value
+/// and the function is not inlined: few blocks need it, and its caller can keep lanes in registers.
 template <typename T>
 [[gnu::noinline]] void write_ends(NarrowJob& job, PairBlock<T> block, Couple<T> p,
                                   CertifiedLanes<T> answer, ContactLanes<T> closest) {
@@ -113,14 +114,15 @@ template <typename T>
   const Lanes<T> low = max(middle - reach, -p.half[0]);
   const Lanes<T> high = min(middle + reach, p.half[0]);
   Touch<T> ends[2] = {touch_at(p, low), touch_at(p, high)};
-  // The deeper end replaces the closest point if that is hardly deeper, relative to the radii.
-  // Otherwise the capsules cross and have one contact.
-  constexpr T hardly = static_cast<T>(kEndDepthTolerance);
+  // The ends replace the closest point if it is deeper than both by at most kEndDepthTolerance
+  // times the sum of the radii; the deeper end then gets the depth of the pair. Otherwise the
+  // capsules cross and have one contact.
+  constexpr T tolerance = static_cast<T>(kEndDepthTolerance);
   const Lanes<T> behind = min(ends[0].distance, ends[1].distance) - answer.distance;
   const LaneMask<T> side_by_side =
       are_parallel(p) &
       (high - low > (p.half[0] + p.half[1]) * Lanes<T>(static_cast<T>(kMinOverlapLength))) &
-      (behind <= p.witness.radius * Lanes<T>(hardly));
+      (behind <= p.witness.radius * Lanes<T>(tolerance));
   ends[0].distance -= behind;
   ends[1].distance -= behind;
   const LaneMask<T> near_low = side_by_side & (ends[0].distance <= margin);
@@ -135,7 +137,8 @@ template <typename T>
 }
 
 /// For segments that touch: if they cross or are collinear, the normal is perpendicular to both.
-/// Left out are parallel segments with the same center, whose order in the couple is undefined.
+/// Parallel segments with the same center keep their answer, because their order in the couple is
+/// undefined.
 template <typename T>
 [[gnu::noinline]] CertifiedLanes<T> separate_couple(Couple<T> p, CertifiedLanes<T> answer) {
   const Lanes<T> square = dot(p.across, p.across);

@@ -1,7 +1,7 @@
 // Capsules against triangles, many pairs at a time. If the segment and the triangle are apart,
 // finds their closest points; if they intersect, the least depth over all face normals of their
-// Minkowski difference. Contacts are the ends of the range of the segment that lies over the
-// triangle.
+// Minkowski difference. Contacts are at the ends of the range of the segment over the triangle, or
+// else at the closest or deepest point.
 
 #include "pipeline/kernels/kernels.h"
 #include "pipeline/kernels/round/round.wide.h"
@@ -11,7 +11,7 @@ namespace winnow {
 namespace WINNOW_ISA_NAME::round {
 namespace {
 
-/// The segment of a capsule, centred at the origin, and a triangle, in the frame of the triangle.
+/// The segment of a capsule, centered at the origin, and a triangle, in the frame of the triangle.
 template <typename T>
 struct CapsuleAndTriangle {
   Vec3<T> axis;
@@ -23,10 +23,10 @@ struct CapsuleAndTriangle {
   Lanes<T> across_over[3];
 };
 
-/// The direction in which the cores are farthest apart or least deep. The Minkowski difference of a
-/// segment and a triangle is a prism, whose face normals are the normal of the triangle and the
-/// cross products of the segment with the edges. If the closest points are not inside an edge or
-/// the face, the normal is their difference.
+/// The face normal along which the cores are farthest apart or least deep. The Minkowski difference
+/// of a segment and a triangle is a prism, whose face normals are the normal of the triangle and
+/// the cross products of the segment with the edges. If the cores are apart, `prove` also tries the
+/// direction between their closest points, which may be none of these normals.
 template <typename T>
 struct BestPrismAxis {
   AxisGap<T> gap;
@@ -120,8 +120,8 @@ template <typename T>
   const Vec3<T> n = nearest.w * (one / length);
   const Lanes<T> along = min(min(dot(b.vertex[0], n), dot(b.vertex[1], n)), dot(b.vertex[2], n)) -
                          p.half * abs(dot(p.axis, n));
-  // The error of a normal of the prism is proportional to 1 / its sine. A flat prism has depth only
-  // by rounding.
+  // The error of a depth along a cross product is proportional to 1 / its sine. A depth of at most
+  // this error may be the rounding error of a flat prism.
   const Lanes<T> slack = scale * Lanes<T>(kRoundSlack<T>);
   const LaneMask<T> pierced = v.sharp & (v.gap.distance < -slack);
   const Lanes<T> depth = v.gap.distance;
@@ -162,7 +162,7 @@ template <typename T>
 }
 
 /// The range of the segment that is over the triangle, projected along the normal. The contacts at
-/// its ends equal the contacts that contact_patch finds for the two.
+/// its ends equal the contacts that contact_patch finds for the segment and the triangle.
 template <typename T>
 [[gnu::always_inline]] inline ContactRange<T> range_over(const CapsuleTriangleSolution<T>& r) {
   const Lanes<T> zero(T(0));
@@ -209,7 +209,7 @@ template <typename T>
                         {base + rise * low, base + rise * high},
                         {feature[0], feature[1]},
                         facing * facing > b.normal_square * Lanes<T>(T(kSteepSquare))};
-  range.lies = range.lies & two_ends(range, r.proof, p.axis, r.normal);
+  range.has_two_contacts = range.has_two_contacts & two_ends(range, r.proof, p.axis, r.normal);
   return range;
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 
 // Ellipsoids in their own frame: the support point along a direction, and the nearest point of the
-// surface to a point. Used by round_ellipsoid.kernel.cpp.
+// surface to a point. Used by round_ellipsoid.kernel.cpp and motion/closed_forms.wide.h.
 
 #include "simd/lanes/vectors.h"
 
@@ -28,13 +28,13 @@ template <typename T>
   return {height, times(radius, stretched) * (Lanes<T>(T(1)) / max(height, least))};
 }
 
-/// The nearest point of an ellipsoid's surface to a point q, in the ellipsoid's frame; by symmetry
-/// no coordinate of q is negative. The normal there is parallel to q_i / (s + e_i), where e_i are
-/// the squares of the radii minus the square of the smallest, and s is the largest number for which
-/// r_i q_i / (s + e_i) is a unit vector (Eberly, "Distance from a point to an ellipse, an
-/// ellipsoid, or a hyperellipsoid", 2013). The inverse of that vector's length is nearly linear in
-/// s, and Newton's method approaches the root from below (as in Moré and Sorensen, "Computing a
-/// trust region step", 1983).
+/// The nearest point of an ellipsoid's surface to a point q, in the ellipsoid's frame. No
+/// coordinate of q may be negative: the caller mirrors q. The normal there is parallel to q_i / (s
+/// + e_i), where e_i are the squares of the radii minus the square of the smallest, and s is the
+/// largest number for which r_i q_i / (s + e_i) is a unit vector (Eberly, "Distance from a point to
+/// an ellipse, an ellipsoid, or a hyperellipsoid", 2013). The inverse of that vector's length is
+/// nearly linear in s; Newton's method for it approaches the root from below (as in Moré and
+/// Sorensen, "Computing a trust region step", 1983).
 template <typename T>
 struct SurfaceView {
   /// Unit normal of the surface.
@@ -56,13 +56,13 @@ template <typename T>
   const auto of_least = [&](const Lanes<T>& w, const Lanes<T>& e) {
     return select(e > zero, zero, w * w);
   };
-  // Never 0, which has no inverse; near a flat ellipsoid this value makes no difference.
+  // The start of the iteration is a lower bound of the root, or `tiny`, if that is larger: s must
+  // not be 0, which has no inverse. `tiny` is negligible compared with the largest squared radius.
   const Lanes<T> most = max(max(radius.x, radius.y), radius.z);
-  const Lanes<T> hardly =
-      most * most * Lanes<T>(sizeof(T) == sizeof(double) ? T(1e-30) : T(1e-12F));
+  const Lanes<T> tiny = most * most * Lanes<T>(sizeof(T) == sizeof(double) ? T(1e-30) : T(1e-12F));
   Lanes<T> s = max(sqrt(of_least(weight.x, excess.x) + of_least(weight.y, excess.y) +
                         of_least(weight.z, excess.z)),
-                   hardly);
+                   tiny);
   const auto inverse = [&] {
     return Vec3<T>{one / (s + excess.x), one / (s + excess.y), one / (s + excess.z)};
   };
@@ -79,9 +79,9 @@ template <typename T>
   const Vec3<T> share = times(weight, over);
   const Lanes<T> within = one / max(sqrt(dot(share, share)), one);
   const Vec3<T> gap = q - times(radius, share) * within;
-  // Lagrange's dual function: any t above -thin^2 gives a lower bound of the squared distance to
-  // the surface. If that bound is not positive, the point is hardly inside or has no s, and the
-  // result is NaN.
+  // `least` is Lagrange's dual function: for any t above -thin^2 it is a lower bound of the squared
+  // distance to the surface. If t <= 0, q is inside. If this bound is then not positive, q is on
+  // the surface up to rounding or has no s, and `high` is NaN.
   const Lanes<T> t = s - thin * thin;
   const Lanes<T> least = t * (dot(times(q, q), over) - one);
   const Lanes<T> unknown(T(__builtin_nan("")));

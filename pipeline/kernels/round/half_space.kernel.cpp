@@ -1,5 +1,5 @@
 // The kernels of half-spaces with spheres, capsules, boxes and triangles. They compute the heights
-// of the vertices over the plane; half_space_common.wide.h turns these into answers.
+// of the cores' vertices over the plane; half_space_common.wide.h turns the heights into answers.
 
 #include "pipeline/kernels/kernels.h"
 #include "pipeline/kernels/round/half_space_common.wide.h"
@@ -75,7 +75,7 @@ struct CapsuleLowestPoints {
 };
 
 struct TriangleLowestPoints {
-  /// LowestPoints in the order of the vertices.
+  /// Feet in the order of the vertices, not sorted by height.
   template <typename T>
   [[gnu::always_inline]] static LowestPoints<T, 3> in_order(const NarrowJob& job,
                                                             const PairBlock<T>& block) {
@@ -182,7 +182,8 @@ struct BoxLowestPoints {
       lowest = lowest + select(box.negative[i], bit, Lanes<T>(T(0)));
       flip[i] = select(box.negative[i], -bit, bit);
     }
-    // Arms 0 and 1 span the face, arm 2 is nearest to the normal.
+    // The exchanges make arm 2 the one with the largest cosine to the normal; arms 0 and 1 span the
+    // face.
     const auto exchange = [&](const LaneMask<T>& mask, int i) {
       const auto swap = [&](auto& x, auto& y) {
         const auto t = select(mask, y, x);

@@ -1,7 +1,8 @@
 #pragma once
 
-// The last step of every kernel of half-spaces: from the lowest points of a shape over the plane to
-// answers. A half-space is unbounded, so the normal is always the normal of its plane.
+// Shared by the kernels of half-spaces: the plane in world axes, and the step from the lowest
+// points of a shape over the plane to answers. A half-space is unbounded, so the contact normal is
+// always the normal of its plane.
 
 #include "pipeline/kernels/round/round.wide.h"
 
@@ -127,9 +128,10 @@ struct LowestPointAnswers {
   }
 };
 
-/// The kernels of a class that computes the feet. It may also have `lowest`, only the lowest foot,
-/// which is enough for level distance, and `least`, only its height, which is enough for level
-/// boolean. Levels share these functions and do not inline them, because they take long to compile.
+/// The kernels of a class with a function `feet`. The class may also have `lowest`, which computes
+/// only the lowest foot and is enough for level distance, and `least`, which computes only the
+/// height of the lowest foot and is enough for level boolean. Levels share these functions, which
+/// are not inlined because they take long to compile.
 template <typename Source, int Contacts>
 struct OverPlane {
   template <typename T, int L>

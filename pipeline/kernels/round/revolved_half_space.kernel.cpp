@@ -1,5 +1,6 @@
-// Half-spaces against cylinders and cones: the lowest point of the rim, four points of a cap that
-// faces the plane, or the two ends of a side that faces it.
+// Half-spaces against cylinders and cones. Levels boolean and distance use the lowest point. Level
+// manifold uses four points on the rim of a cap that faces the plane, or the two ends of the lowest
+// line of the side.
 
 #include "pipeline/kernels/kernels.h"
 #include "pipeline/kernels/round/half_space_common.wide.h"
@@ -53,9 +54,9 @@ template <typename T, typename Shape>
   return r;
 }
 
-/// Sets four corners of the rim of a cap, the lowest first and its opposite last. The lowest point
-/// of the rim replaces the first corner if that is higher; the other corners are fixed in the
-/// shape.
+/// Sets four corners of the rim of a cap, the lowest first and its opposite last. The corners are
+/// fixed in the shape; but if the first one is higher than the lowest point of the rim by more than
+/// 2 kTiedDepth radii, that point replaces it.
 template <typename T>
 [[gnu::always_inline]] inline void set_cap(LowestPoints<T, 4>& feet, const RevolvedOverPlane<T>& s,
                                            const Vec3<T>& middle, const Lanes<T>& rise,
@@ -72,7 +73,8 @@ template <typename T>
   const Vec3<T> next = select(x_first, on_y, on_x);
   const Lanes<T> low_name = select(x_first, name_x, name_y);
   const Lanes<T> next_name = select(x_first, name_y, name_x);
-  // The opposite of an even quarter is the other even one; of an odd quarter, the other odd one.
+  // Opposite corners are at 0 and 2 quarter turns, or at 1 and 3. So their names add up to 2 or 4
+  // quarters.
   const Lanes<T> across[2] = {Lanes<T>(T(2 * kQuarter)), Lanes<T>(T(4 * kQuarter))};
   const Lanes<T> low_across = select(x_first, across[0], across[1]) - low_name;
   const Lanes<T> next_across = select(x_first, across[1], across[0]) - next_name;
@@ -97,8 +99,8 @@ template <typename T>
   feet.scale = s.scale;
 }
 
-/// In lanes where `side` is set, replaces the feet by the two given ones, the second higher than
-/// the first, and removes the others.
+/// In lanes in which `side` is set, replaces feet 0 and 1 by the given ones, of which foot 0 is the
+/// lower one, and removes feet 2 and 3.
 template <typename T>
 [[gnu::always_inline]] inline void set_side(LowestPoints<T, 4>& feet, const LaneMask<T>& side,
                                             const Vec3<T> (&foot)[2], const Lanes<T> (&height)[2],
@@ -167,9 +169,9 @@ struct ConeLowestPoints {
     const Vec3<T> foot = s.down - s.half;
     const Lanes<T> top(T{kSideLine});
     const Lanes<T> end(T{kSideLine + 1});
-    // A cone that stands on its tip has no lowest side.
-    const LaneMask<T> stands = tip_first & (s.across <= Lanes<T>(T(kAlongAxis)));
-    const Lanes<T> second = select(stands, Lanes<T>(kLargest<T>), max(tip, rim));
+    // A cone whose axis is vertical, with the tip below, touches with the tip only.
+    const LaneMask<T> on_tip = tip_first & (s.across <= Lanes<T>(T(kAlongAxis)));
+    const Lanes<T> second = select(on_tip, Lanes<T>(kLargest<T>), max(tip, rim));
     set_side(feet, side, {select(tip_first, s.half, foot), select(tip_first, foot, s.half)},
              {min(tip, rim), second}, {select(tip_first, top, end), select(tip_first, end, top)});
     return feet;

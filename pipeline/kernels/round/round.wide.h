@@ -1,30 +1,31 @@
 #pragma once
 
-// Shared by the kernels of spheres and capsules: closest points of segments and triangles, and the
-// last step of every kernel, from the cores' closest points to certified answers and contacts.
+// Shared by the kernels of this folder: closest points of segments and triangles, and the step from
+// the closest points of two cores to certified answers and contacts.
 
 #include "pipeline/kernels/one_pair.wide.h"
 
 namespace winnow::WINNOW_ISA_NAME::round {
 
-/// Error bound of the closed forms in units of roundoff of the pair's scale: about three times the
-/// sum over their operations.
+/// Error bound of the closed forms, in units of epsilon times the pair's scale: about three times
+/// the sum of the rounding errors of their operations.
 inline constexpr int kRoundings = 16;
 
-/// The shortest distance of the cores, relative to the pair's scale, that still gives a normal. The
-/// error of the normal is a few roundings divided by this.
+/// If the distance of the cores is shorter than this times the pair's scale, the line between their
+/// closest points is not used as normal. Otherwise the error of the normal is at most kRoundings *
+/// epsilon / kShortest, which is 4e-6.
 inline constexpr double kShortest = 1e-9;
 
 /// The smallest sine for which the cross product of two directions counts as the normal of
-/// overlapping cores, and the error of the depth along it relative to the pair's scale: a few
-/// roundings divided by the sine.
+/// overlapping cores, and the error bound of the depth along such a normal relative to the pair's
+/// scale: 8 epsilon divided by the sine.
 template <typename T>
 inline constexpr T kMinSine = T(1) / T(128);
 template <typename T>
 inline constexpr T kRoundSlack = T(8) * kEpsilon<T> / kMinSine<T>;
 
-/// If the square of the sine of two directions is smaller, their cross product consists of rounding
-/// errors.
+/// If the squared sine of the angle between two directions is smaller, their cross product consists
+/// of rounding errors.
 template <typename T>
 inline constexpr T kNoSineSquare = T(16) * kEpsilon<T>* kEpsilon<T>;
 
@@ -41,7 +42,7 @@ struct CoreGapLanes {
   Lanes<T> scale;
 };
 
-/// The lanes in which the error bound proves the sign.
+/// The lanes in which the error bound proves the sign, the scale is in range, and `normal` is set.
 template <typename T>
 [[gnu::always_inline]] inline Mask16 certified_lanes(const Lanes<T>& distance,
                                                      const Lanes<T>& bound, const Lanes<T>& scale,
@@ -50,7 +51,7 @@ template <typename T>
 }
 
 /// Level boolean, from squares; returns the uncertified lanes. If w has the error e, its square has
-/// the error 2 |w| e, and |w| <= scale.
+/// the error 2 |w| e <= 2 scale e. The bound is twice that.
 template <typename T>
 [[gnu::always_inline]] inline Mask16 answer_overlap(const NarrowJob& job, const PairBlock<T>& block,
                                                     const CoreGapLanes<T>& witness) {
@@ -79,7 +80,8 @@ template <typename T>
   return ~certified_lanes(distance, bound, scale, scale > Lanes<T>(T(0)));
 }
 
-/// Levels distance and manifold. `shortest` is the smallest |w| that gives a normal.
+/// Levels distance and manifold. Lanes in which |w| is at most `shortest` are not certified,
+/// because w is then too short for a normal.
 template <typename T>
 [[gnu::always_inline]] inline CertifiedLanes<T> answer_distance(const CoreGapLanes<T>& witness,
                                                                 const Lanes<T>& shortest) {
@@ -90,7 +92,7 @@ template <typename T>
           certified_lanes(distance, bound, witness.scale, length > shortest)};
 }
 
-/// As above, for a normal that always exists.
+/// As answer_distance, for pairs whose normal is known.
 template <typename T>
 [[gnu::always_inline]] inline CertifiedLanes<T> answer_along(const Vec3<T>& normal,
                                                              const Lanes<T>& distance,
@@ -109,8 +111,9 @@ template <typename T>
   return {one + sign * u.x * u.x * a, sign * u.x * u.y * a, -(sign * u.x)};
 }
 
-/// If cores without thickness share a point, up to rounding, and a direction `across` perpendicular
-/// to both exists, no direction separates them by a shorter way: `across` becomes the normal.
+/// For cores that are points or segments, and a direction `across` perpendicular to both, in the
+/// `known` lanes. If the cores share a point, up to rounding, a translation along `across` by the
+/// sum of the roundings separates the shapes, and no shorter one does: `across` becomes the normal.
 template <typename T>
 [[gnu::always_inline]] inline void separate_across(CertifiedLanes<T>& answer,
                                                    const CoreGapLanes<T>& witness,
@@ -146,8 +149,8 @@ template <typename T>
           bits(near) & c.certified & block.lanes()};
 }
 
-/// Levels distance and manifold for pairs that touch in one point, which has no feature on body a;
-/// returns the uncertified lanes.
+/// Levels distance and manifold for pairs that touch in one point; its feature on body a is 0.
+/// Returns the uncertified lanes.
 template <int L, typename T>
 [[gnu::always_inline]] inline Mask16 write_touch(NarrowJob& job, const PairBlock<T>& block,
                                                  const CertifiedLanes<T>& c, const Vec3<T>& foot,
@@ -161,7 +164,7 @@ template <int L, typename T>
   return ~c.certified;
 }
 
-/// As above with a sphere as body a; its core is its position.
+/// As write_touch, with a sphere as body a; its core is its position.
 template <int L, typename T>
 [[gnu::always_inline]] inline Mask16 write_ball(NarrowJob& job, const PairBlock<T>& block,
                                                 const CertifiedLanes<T>& c, const Lanes<T>& radius,
@@ -263,7 +266,7 @@ template <typename T>
   return select(t >= half_length, Lanes<T>(T(1)), low);
 }
 
-/// The points s u and c + t e.
+/// The parameters of the closest points s u and c + t e of two segments.
 template <typename T>
 struct SegmentFeet {
   Lanes<T> s;
@@ -280,12 +283,13 @@ struct SegmentLanes {
   Lanes<T> high;
 };
 
-/// Returns the closest points of the segment s u, |u| = 1, |s| <= h, and another. As in Ericson,
+/// Returns the closest points of the segment s u, |u| = 1, |s| <= h, and segment b. As in Ericson,
 /// Real-Time Collision Detection (2005), 5.1.9, but s is computed from the cross product k = u x e
 /// and over = 1 / |k|^2. By Lagrange's identity these are the same numbers, without the
-/// cancellation for nearly parallel segments. The error of s is then eps |c| / sin; it enters the
-/// distance times sin, so the distance has an error of eps |c| whatever the angle. If u x e
-/// vanishes, any s will do: the last two steps then find the closest points.
+/// cancellation for nearly parallel segments. The error of s is then eps |c| / sin. An error of s
+/// changes the distance by that error times sin, so the distance has an error of eps |c| at any
+/// angle. If u x e vanishes, the segments are parallel and any s can be the start: the last two
+/// steps compute the t closest to it, and the s closest to that t.
 template <typename T>
 [[gnu::always_inline]] inline SegmentFeet<T> closest_feet(const Vec3<T>& u, const Lanes<T>& h,
                                                           const SegmentLanes<T>& b,
@@ -293,7 +297,7 @@ template <typename T>
   const Lanes<T> zero(T(0));
   const Lanes<T> along = dot(u, b.e);
   const Lanes<T> place_on_line = dot(k, cross(b.c, b.e)) * over;
-  // Neither infinite nor NaN.
+  // 0 if the segments are parallel, where the parameter is infinite or NaN.
   const Lanes<T> line = select(place_on_line - place_on_line == zero, place_on_line, zero);
   const Lanes<T> first = clamp(line, -h, h);
   const Lanes<T> place = (along * first - dot(b.e, b.c)) / b.square;
@@ -341,7 +345,7 @@ template <typename T>
              max(norm_l1(triangle.vertex[1]), norm_l1(triangle.vertex[2])));
 }
 
-/// The best direction so far along which two cores are apart.
+/// The direction with the largest separation of two cores so far.
 template <typename T>
 struct AxisGap {
   /// The separation, negative if the cores overlap.
@@ -350,7 +354,7 @@ struct AxisGap {
   Vec3<T> normal;
 };
 
-/// Keeps the direction along which the cores are farther apart.
+/// Keeps the direction with the larger separation.
 template <typename T>
 [[gnu::always_inline]] inline void widen(AxisGap<T>& gap, const LaneMask<T>& valid,
                                          const Lanes<T>& distance, const Vec3<T>& normal) {
@@ -360,7 +364,8 @@ template <typename T>
 }
 
 /// The separation of a triangle from a segment along a unit direction or its opposite, whichever is
-/// larger. `reach` is half the extent of the segment along it; its middle is the origin.
+/// larger. The middle of the segment is the origin; `reach` is half the extent of the segment along
+/// the direction.
 template <typename T>
 [[gnu::always_inline]] inline AxisGap<T> gap_along(const TriangleView<T>& b, const Vec3<T>& n,
                                                    const Lanes<T>& reach) {
@@ -396,8 +401,8 @@ template <typename T>
   nearest.feature = select(better, feature, nearest.feature);
 }
 
-/// Tries the point of the face that is nearest to `point`: the convex combination of the vertices
-/// at its foot, so that the result is on the triangle however thin that is.
+/// Tries the foot of `point` on the plane of the triangle, if the foot is inside. It is computed as
+/// a convex combination of the vertices, so it is on the triangle even if the triangle is thin.
 template <typename T>
 [[gnu::always_inline]] inline void nearer_in_face(NearestCandidate<T>& nearest,
                                                   const TriangleView<T>& b, const Vec3<T>& point,
@@ -454,11 +459,13 @@ struct ContactRange {
   Lanes<T> at[2];
   Lanes<T> distance[2];
   Lanes<T> feature[2];
-  LaneMask<T> lies;
+  /// The lanes in which the range exists and two_ends is true.
+  LaneMask<T> has_two_contacts;
 };
 
-/// True if the range deserves two contacts: its ends are distinct, and one of them is the deepest
-/// point of the pair. `u` is the segment's direction, `normal` the projection direction.
+/// True if the ends of the range can be the contacts of the pair: they are distinct, and one of
+/// them has the depth of the pair. `u` is the segment's direction, `normal` the projection
+/// direction.
 template <typename T>
 [[gnu::always_inline]] inline LaneMask<T> two_ends(const ContactRange<T>& range,
                                                    const ProofLanes<T>& proof, const Vec3<T>& u,
@@ -473,17 +480,17 @@ template <typename T>
          (abs(deepest - proof.high) <= proof.scale * Lanes<T>(T(kSameDepth)));
 }
 
-/// Writes contacts at the ends of the range that are within the margin. If there is no range,
-/// or neither end is within the margin, writes one at `s` with `feature`. `contact(s, distance,
-/// feature)` makes a contact.
+/// Writes the contacts of the certified pairs within the margin: those at the ends of the range
+/// that are within the margin; if there is no range or neither end is within the margin, one at `s`
+/// with `feature`. `contact(s, distance, feature)` returns a contact.
 template <typename T, typename Contact>
 [[gnu::always_inline]] inline void write_range(NarrowJob& job, const PairBlock<T>& block,
                                                const CertifiedLanes<T>& answer,
                                                const ContactRange<T>& range, const Lanes<T>& s,
                                                const Lanes<T>& feature, Contact&& contact) {
   const Lanes<T> margin = margins_of(job, block);
-  const LaneMask<T> near_low = range.lies & (range.distance[0] <= margin);
-  const LaneMask<T> near_high = range.lies & (range.distance[1] <= margin);
+  const LaneMask<T> near_low = range.has_two_contacts & (range.distance[0] <= margin);
+  const LaneMask<T> near_high = range.has_two_contacts & (range.distance[1] <= margin);
   const auto nearer_end = [&](const Lanes<T>(&ends)[2], const Lanes<T>& neither)
       __attribute__((always_inline)) {
     return select(near_low, ends[0], select(near_high, ends[1], neither));

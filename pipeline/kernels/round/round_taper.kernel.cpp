@@ -28,9 +28,9 @@ template <typename T>
 inline constexpr T kBallFeatures[2] = {T(2), T(1)};
 
 struct SphereTaper {
-  /// In the plane of the point and the axis, a line touches both balls, at the same angle with the
-  /// axis; `sine` is the sine of that angle. Points beyond its ends are nearest to a ball. Not
-  /// inlined: all levels share it.
+  /// In the plane of the point and the axis, a tangent touches both balls; `sine` is the sine of
+  /// its angle with the axis. Points that do not project between its two points of contact are
+  /// nearest to a ball. Not inlined: all levels share it.
   template <typename T>
   [[gnu::noinline]] static BallSolution<T> solve(const NarrowJob& job, const PairBlock<T>& block) {
     const Lanes<T> zero(T(0));
@@ -79,15 +79,14 @@ struct SphereTaper {
 };
 
 struct HalfSpaceTaper {
-  /// The balls' points that are nearest to the plane, or deepest behind it; the nearer or deeper
-  /// one first.
+  /// Both balls over the plane, the one with the smaller distance first.
   template <typename T>
   struct Solution {
     Lanes<T> distance[2];
-    /// On the plane.
+    /// The centers of the balls, projected onto the plane.
     Vec3<T> foot[2];
     Lanes<T> feature[2];
-    /// False if one ball is inside the other and thus has no part in the surface.
+    /// False if one ball is inside the other, so that only one ball is part of the surface.
     LaneMask<T> has_second;
     Lanes<T> bound;
     Lanes<T> scale;

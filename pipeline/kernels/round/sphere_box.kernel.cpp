@@ -13,9 +13,10 @@ struct BoxSurfaceView {
   Lanes<T> distance;
   /// Unit, towards the box (if inside: away from the nearest face), in the box's frame.
   Vec3<T> towards;
-  /// As `towards`, for the first of the nearest faces.
+  /// Unit, away from the nearest face, also if the point is outside.
   Vec3<T> face;
-  /// By how much the best other direction is worse; the direction is unique if this is above zero.
+  /// `towards` is unique if this is above zero. Outside, the distance; inside, it is small if
+  /// another face is nearly as near as the nearest one.
   Lanes<T> lead;
 };
 
@@ -60,8 +61,8 @@ template <typename T>
   const BoxLanes<T> box = load_box<SideB>(job, block);
   SphereBoxSolution<T> r;
   r.sphere_radius = load_sphere<SideA>(job, block);
-  // The signed distance changes by no more than its argument does, so it is as accurate as the
-  // centre.
+  // If the point moves by some length, its signed distance changes by at most that length. So the
+  // error of the distance is at most that of the sphere's center.
   r.axes = rotation(turn);
   r.view = view_box(-r.axes.to_local(c), box.half);
   const Lanes<T> radius = r.sphere_radius + box.rounding;
@@ -81,13 +82,13 @@ struct SphereBox {
   [[gnu::always_inline]] static Mask16 block(NarrowJob& job, const PairBlock<T>& block) {
     const Lanes<T> roundings(T(kRoundings) * kEpsilon<T>);
     if constexpr (L == kBoolean) {
-      // Inlined, so that the compiler drops what only the other levels need.
+      // Inlined, so that the compiler removes the code that only the other levels need.
       const SphereBoxSolution<T> r = solve(job, block);
       return answer_sign(job, block, r.distance, r.scale * roundings, r.scale);
     } else {
       const SphereBoxSolution<T> r = solve_all(job, block);
       const Lanes<T> bound = r.scale * roundings;
-      // If several directions are equally good, up to rounding, any of them is right.
+      // If several faces are the nearest, up to rounding, the normal of any of them is right.
       const LaneMask<T> tied = r.view.lead <= bound;
       const LaneMask<T> known = tied | (r.view.lead > r.scale * Lanes<T>(T(kShortest)));
       const Vec3<T> towards = select(tied, r.view.face, r.view.towards);

@@ -18,7 +18,8 @@ struct MeridianView {
   /// from the axis and along it.
   Lanes<T> radial;
   Lanes<T> axial;
-  /// By how much the best other direction is worse; the direction is unique if this is above zero.
+  /// The direction is unique if this is above zero. Outside, the distance; inside, it is small if
+  /// another part of the surface is nearly as near as the nearest one.
   Lanes<T> lead;
 };
 

@@ -15,8 +15,8 @@ struct SphereSphere {
     if constexpr (L == kBoolean) {
       return answer_overlap(job, block, witness);
     } else {
-      // However short the offset is, it has a relative error of one rounding, and so has the
-      // normal.
+      // The relative error of the offset is one rounding, however short the offset is. The error of
+      // the normal is as small, so the limit kShortest is not needed.
       const CertifiedLanes<T> answer = answer_distance(witness, Lanes<T>(T(1e-130)));
       return write_ball<L>(job, block, answer, ra, Lanes<T>(T(0)));
     }

@@ -22,8 +22,8 @@ template <typename T>
   return nearest;
 }
 
-/// The direction along which origin and triangle are farthest apart: the normal, or, where
-/// `is_away`, the direction of the closest point if that is better.
+/// The direction with the larger separation of origin and triangle: the triangle's normal, or, in
+/// the lanes `is_away`, the direction to the closest point.
 template <typename T>
 [[gnu::always_inline]] inline AxisGap<T> widest_gap(const TriangleView<T>& b, const Vec3<T>& w,
                                                     const Lanes<T>& length,
@@ -61,7 +61,7 @@ template <typename T>
   const Lanes<T> length = sqrt(nearest.square);
   const Lanes<T> radius = ra + triangle.rounding;
   const Lanes<T> scale = norm_l1(c) + largest(triangle) + radius + doubt(turn);
-  // If the sphere's centre is on the triangle, up to rounding, the normal is the triangle's.
+  // If the sphere's center is on the triangle, up to rounding, the normal is the triangle's.
   const LaneMask<T> is_away = length > scale * Lanes<T>(T(kRoundings) * kEpsilon<T>);
   const AxisGap<T> gap = widest_gap(view, nearest.w, length, is_away);
   const LaneMask<T> unique =

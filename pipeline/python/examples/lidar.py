@@ -22,8 +22,8 @@ def scan(columns=180, rows=16, seed=3):
     )
     directions = rays.reshape(-1, 3)
     hits = world.cast_rays(np.broadcast_to([0.0, 0.0, 6.0], directions.shape), directions, max_t=60)
-    met = hits.key != winnow.NULL_KEY
-    return hits.point[met], hits.data[met]
+    is_hit = hits.key != winnow.NULL_KEY
+    return hits.point[is_hit], hits.data[is_hit]
 
 
 if __name__ == "__main__":

@@ -146,5 +146,5 @@ __all__ = [
 def ids_of(keys: "numpy.typing.NDArray[numpy.uint64]") -> "numpy.typing.NDArray[Any]":
     """Returns ids of objects, uint32 in the shape of `keys`: a view of the lower halves."""
     if keys.dtype != numpy.uint64:
-        raise TypeError("keys: uint64 is wanted, not " + str(keys.dtype))
+        raise TypeError("keys: expected uint64, not " + str(keys.dtype))
     return keys.view(numpy.dtype({"names": ["id"], "formats": ["<u4"], "itemsize": 8}))["id"]

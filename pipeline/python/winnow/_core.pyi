@@ -18,13 +18,13 @@ FloatAxes = Tuple[Floats, Floats, Floats]
 Level = Literal["pairs", "boolean", "distance", "manifold"]
 Tier = Literal["robust", "reference"]
 Rules = Literal["scene", "none"]
-Motion = Literal["fixed", "dynamic", "sleeping"]
+BodyState = Literal["fixed", "dynamic", "sleeping"]
 Numbers = NDArray[Any]
 Poses = Union[ArrayLike, Tuple[ArrayLike, ArrayLike]]
 Saved = Union[bytes, bytearray, memoryview, Bytes]
 
 FeatureKind = Literal["vertex_face", "edge_edge"]
-SweptPairs = Literal["all", "fixed", "bullets", "bullets_and_fixed"]
+ContinuousPairs = Literal["all", "fixed", "bullets", "bullets_and_fixed"]
 
 NO_CONTACT: int
 NO_IMPACT: int
@@ -144,8 +144,8 @@ class Partition:
         structure: str = ...,
         *,
         volume: Volume = ...,
-        margin: float = ...,
-        margin_share: float = ...,
+        fat_margin: float = ...,
+        fat_margin_share: float = ...,
         parallel: bool = ...,
         build_budget: int = ...,
         loose: Optional[float] = ...,
@@ -216,7 +216,7 @@ class Partition:
     @property
     def volume(self) -> Volume: ...
     @property
-    def margin(self) -> Tuple[float, float]: ...
+    def fat_margin(self) -> Tuple[float, float]: ...
     @property
     def is_exact(self) -> bool: ...
     def choice(self) -> dict[str, Any]: ...
@@ -484,7 +484,7 @@ class NarrowPhase:
         *,
         level: Level = ...,
         tier: Tier = ...,
-        margin: float = ...,
+        contact_margin: float = ...,
     ) -> NarrowResult: ...
     def statistics(self) -> dict[str, int]: ...
 
@@ -591,7 +591,7 @@ class Contacts:
     @property
     def level(self) -> Level: ...
     @property
-    def carried(self) -> int: ...
+    def cached_pairs(self) -> int: ...
     @property
     def a(self) -> Keys: ...
     @property
@@ -736,9 +736,9 @@ class Scene:
         self,
         shapes: Shapes,
         *,
-        margin: float = ...,
+        contact_margin: float = ...,
         tier: Tier = ...,
-        carry_over: float = ...,
+        cache_tolerance: float = ...,
         contact_reduction: bool = ...,
         suppress_ghost_contacts: bool = ...,
         warm_start: bool = ...,
@@ -751,7 +751,7 @@ class Scene:
         self,
         shapes: ArrayLike,
         poses: Poses,
-        motion: Union[Motion, ArrayLike] = ...,
+        state: Union[BodyState, ArrayLike] = ...,
         layers: ArrayLike = ...,
         mask: ArrayLike = ...,
         environment: ArrayLike = ...,
@@ -778,7 +778,7 @@ class Scene:
         touch: bool = ...,
     ) -> None: ...
     def move(self, keys: ArrayLike, poses: Poses) -> None: ...
-    def set_motion(self, keys: ArrayLike, motion: Motion) -> None: ...
+    def set_body_state(self, keys: ArrayLike, state: BodyState) -> None: ...
     def set_shape(self, keys: ArrayLike, shapes: ArrayLike) -> None: ...
     def set_filter(
         self,
@@ -791,12 +791,12 @@ class Scene:
         self, keys: ArrayLike, contact: ArrayLike, rest: ArrayLike = ...
     ) -> None: ...
     def set_layer(self, keys: ArrayLike, layer: ArrayLike) -> None: ...
-    def set_layers_collide(self, layers: ArrayLike, meet: bool = ...) -> None: ...
+    def set_layers_collide(self, layers: ArrayLike, collide: bool = ...) -> None: ...
     def layers_collide(self, layers: ArrayLike) -> Bools: ...
     def set_ignored(self, pairs: ArrayLike, ignored: bool = ...) -> None: ...
     def is_ignored(self, pairs: ArrayLike) -> Bools: ...
     def __len__(self) -> int: ...
-    def size(self, motion: Motion) -> int: ...
+    def size(self, state: BodyState) -> int: ...
     def contains(self, keys: ArrayLike) -> Bools: ...
     def keys_of(self, ids: ArrayLike) -> Keys: ...
     def bodies(self, keys: ArrayLike) -> dict[str, NDArray[Any]]: ...
@@ -806,23 +806,23 @@ class Scene:
     def predicate(self) -> Optional[PairFunction]: ...
     def islands(self, contacts: Contacts) -> ContactGroups: ...
     def colours(self, contacts: Contacts) -> ContactGroups: ...
-    def sweep(
+    def find_impacts(
         self,
         keys: ArrayLike,
         ends: Poses,
         *,
-        pairs: SweptPairs = ...,
+        pairs: ContinuousPairs = ...,
         bullets: Optional[ArrayLike] = ...,
         tolerance: float = ...,
         touching: bool = ...,
         first_only: bool = ...,
     ) -> SceneImpacts: ...
-    def sweep_motions(
+    def find_impacts_of_motions(
         self,
         keys: ArrayLike,
         motions: ArrayLike,
         *,
-        pairs: SweptPairs = ...,
+        pairs: ContinuousPairs = ...,
         bullets: Optional[ArrayLike] = ...,
         tolerance: float = ...,
         touching: bool = ...,
@@ -930,7 +930,7 @@ class Scene:
         a: Optional[ArrayLike] = ...,
         b: Optional[ArrayLike] = ...,
         *,
-        margin: float = ...,
+        contact_margin: float = ...,
         rules: Rules = ...,
     ) -> Keys: ...
     def nearest(
@@ -1031,7 +1031,7 @@ class ClusterScene:
         comm: Optional[Any] = ...,
         ranks: int = ...,
         *,
-        margin: float = ...,
+        contact_margin: float = ...,
         tier: Tier = ...,
         contact_reduction: bool = ...,
         structures: Sequence[str] = ...,
@@ -1049,7 +1049,7 @@ class ClusterScene:
         names: ArrayLike,
         shapes: ArrayLike,
         poses: Poses,
-        motion: Union[Motion, ArrayLike] = ...,
+        state: Union[BodyState, ArrayLike] = ...,
         layers: ArrayLike = ...,
         mask: ArrayLike = ...,
         environment: ArrayLike = ...,

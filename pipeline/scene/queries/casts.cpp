@@ -1,8 +1,8 @@
-// SceneQueries: rays and moving shapes. Partitions find the bodies whose boxes the swept box
-// overlaps (see SweptBox for why none is missed) and call a predicate (BodyCandidateFilter), which
-// tests the exact shapes through BodyContact or, for rays on meshes, SubShapeQuery. Sets of a few
-// composite bodies are tested directly, without their partitions; "crowds" below are all other
-// sets.
+// SceneQueries: rays and moving shapes. Partitions find the bodies whose boxes the moving box
+// overlaps (see BoxPath for why none is missed) and call a predicate (BodyCandidateFilter), which
+// tests the exact shapes through BodyContact or, for rays on meshes, SubShapeQuery. Sets of at most
+// four bodies, all composite, are tested directly, without their partitions; "crowds" below are all
+// other sets.
 
 #include <winnow/core/aabb.h>
 #include <winnow/core/cast.h>
@@ -10,9 +10,9 @@
 #include "core/threads/float_environment.h"
 #include "pipeline/mesh/mesh_traversal.h"
 #include "pipeline/rays/shape_entries.h"
-#include "pipeline/scene/queries/composite_sweep.h"
+#include "pipeline/scene/queries/composite_cast.h"
+#include "pipeline/scene/queries/linear_casts.h"
 #include "pipeline/scene/queries/queries.h"
-#include "pipeline/scene/queries/swept_shapes.h"
 #include "pipeline/shapes/frame.h"
 
 #include <algorithm>
@@ -26,23 +26,24 @@ namespace {
 using Eigen::Vector3d;
 using mid::kInfinity;
 
-/// Converts a swept box in double to queries in float for partitions, so that nothing is missed.
-/// The path is divided into pieces, which are consecutive intervals of t:
+/// Converts a moving box in double to queries in float for partitions, so that nothing is missed.
+/// The path is divided into pieces, which are consecutive intervals of t.
 ///
 /// Each piece starts at the position of the box in double, and moves by the direction rounded to
 /// float. At its end the deviation from the true path is at most 2^-24 of the length of the piece;
 /// the start position has an error of a few roundings of the coordinates. The box of the BoxCast is
 /// enlarged by more than both, so it contains the true box at every t. A body's box in the
-/// partition contains the body. The first piece is at most 2^10 times as long as the coordinates at
-/// its start, and each further piece at most 2^10 times the distance to its start: so the box is
-/// too large by at most 2^-14 of the distance from the start. After kMaxPieces pieces, or at the
-/// end of the range of float, the rest of the path is tested as one box that contains it.
-class SweptBox {
+/// partition contains the body. The length of a piece is at most 2^10 times the distance from the
+/// start at which the piece begins, or for the first piece 2^10 times the largest coordinate. Its
+/// box is thus too large by at most about 2^-13 of this distance or coordinate. After kMaxPieces
+/// pieces, or at the end of the range of float, the rest of the path is tested as one box that
+/// contains it.
+class BoxPath {
  public:
   /// The direction must be finite and not zero, max_t >= 0 may be infinite, the box must be finite.
   /// Partition coordinates are relative to `origin`.
-  SweptBox(const PreciseBox& box, const Eigen::Vector3d& origin, const double direction[3],
-           double max_t) noexcept;
+  BoxPath(const PreciseBox& box, const Eigen::Vector3d& origin, const double direction[3],
+          double max_t) noexcept;
 
   /// Advances to the next piece; call it for the first piece too. Returns false at the end.
   [[nodiscard]] bool next() noexcept;
@@ -84,8 +85,8 @@ double most_of(const PreciseBox& box) noexcept {
   return std::max(box.min.cwiseAbs().maxCoeff(), box.max.cwiseAbs().maxCoeff());
 }
 
-SweptBox::SweptBox(const PreciseBox& box, const Vector3d& origin, const double direction[3],
-                   double max_t) noexcept
+BoxPath::BoxPath(const PreciseBox& box, const Vector3d& origin, const double direction[3],
+                 double max_t) noexcept
     : box_{box.min - origin, box.max - origin} {
   const Vector3d given = Vector3d::Map(direction);
   std::frexp(given.cwiseAbs().maxCoeff(), &exponent_);
@@ -95,7 +96,7 @@ SweptBox::SweptBox(const PreciseBox& box, const Vector3d& origin, const double d
   rounded_reach_ = std::max(reach_, most_of(box));
 }
 
-bool SweptBox::next() noexcept {
+bool BoxPath::next() noexcept {
   if (is_rest_ || (pieces_ != 0 && to_ >= last_)) return false;
   from_ = to_;
   to_ = std::min(last_, kPieceGrowth * std::max({reach_, from_, 1.0}));
@@ -105,21 +106,21 @@ bool SweptBox::next() noexcept {
   return true;
 }
 
-double SweptBox::begin() const noexcept {
+double BoxPath::begin() const noexcept {
   return std::ldexp(from_, -exponent_);
 }
 
-/// Covers the rounding of the direction to float and of coordinates. cast_ray includes rays that
-/// miss by no more than rounding.
-double SweptBox::slack(double end) const noexcept {
+/// Covers the rounding of the direction to float, the rounding of coordinates, and rays that miss a
+/// shape by no more than rounding, which cast_ray reports as hits.
+double BoxPath::slack(double end) const noexcept {
   return 0x1p-23 * (end - from_) + 0x1p-47 * (rounded_reach_ + end);
 }
 
-PreciseBox SweptBox::at(double path) const noexcept {
+PreciseBox BoxPath::at(double path) const noexcept {
   return {box_.min + path * step_, box_.max + path * step_};
 }
 
-BoxCast SweptBox::cast(double limit) const noexcept {
+BoxCast BoxPath::cast(double limit) const noexcept {
   const double end = std::clamp(std::ldexp(limit, exponent_), from_, to_);
   const PreciseBox start = at(from_).grown(slack(to_));
   BoxCast cast;
@@ -129,7 +130,7 @@ BoxCast SweptBox::cast(double limit) const noexcept {
   return cast;
 }
 
-Aabb SweptBox::rest(double limit) const noexcept {
+Aabb BoxPath::rest(double limit) const noexcept {
   const double end = std::clamp(std::ldexp(limit, exponent_), from_, to_);
   PreciseBox sum = at(from_);
   for (int i = 0; i < 3; ++i) {
@@ -156,34 +157,34 @@ bool is_before(const SceneHit& a, const SceneHit& b) noexcept {
 }
 
 /// Results for bodies that were tested and may be found again, because a partition calls the
-/// predicate once per piece of the path. Direct-mapped: of two bodies with the same entry the later
-/// one stays.
+/// predicate once per piece of the path. The cache is direct-mapped: if two bodies have the same
+/// entry, the later one stays.
 class ResultCache {
  public:
   /// Returns the result for the body, or null.
   [[nodiscard]] const bool* find(std::uint32_t body) const noexcept {
     const std::size_t at = body % kEntries;
-    return (used_ >> at & 1U) != 0 && entries_[at].body == body ? &entries_[at].met : nullptr;
+    return (used_ >> at & 1U) != 0 && entries_[at].body == body ? &entries_[at].is_hit : nullptr;
   }
-  bool note(std::uint32_t body, bool met) noexcept {
+  bool note(std::uint32_t body, bool is_hit) noexcept {
     const std::size_t at = body % kEntries;
     used_ |= std::uint64_t{1} << at;
-    entries_[at] = {body, met};
-    return met;
+    entries_[at] = {body, is_hit};
+    return is_hit;
   }
 
  private:
   static constexpr std::size_t kEntries = 64;
   struct Entry {
     std::uint32_t body;
-    bool met;
+    bool is_hit;
   };
   std::uint64_t used_ = 0;
   Entry entries_[kEntries];
 };
 
-/// True for a set with only a few bodies, all composite: a traversal of its partition is not worth
-/// its cost, because the bodies have their own trees.
+/// True for a set with at most kFew bodies, all composite: a traversal of its partition is not
+/// worth its cost, because the bodies have their own trees.
 bool is_few(const SceneState& scene, const SceneSet& set) noexcept {
   constexpr std::size_t kFew = 4;
   return set.partition.has_value() && set.body_of.size() <= kFew &&
@@ -191,11 +192,12 @@ bool is_few(const SceneState& scene, const SceneSet& set) noexcept {
                      [&](std::uint32_t body) { return scene.shape[body].is_composite(); });
 }
 
-/// Calls look(body) for all bodies of such sets that pass the filter. Returns true if there are
-/// other sets, whose partitions must be queried.
-template <typename Look>
-[[nodiscard]] bool test_small_sets(const SceneState& scene, const Filter& filter, Look& look) {
-  const BodyCandidateFilter looking(scene, filter, look);
+/// Calls test_body(body) for all bodies that pass the filter and are in sets for which is_few is
+/// true. Returns true if there are other sets, whose partitions must be queried.
+template <typename TestBody>
+[[nodiscard]] bool test_small_sets(const SceneState& scene, const Filter& filter,
+                                   TestBody& test_body) {
+  const BodyCandidateFilter body_filter(scene, filter, test_body);
   bool has_crowd = false;
   for (const SceneSet& set : scene.sets) {
     if (!is_few(scene, set)) {
@@ -205,7 +207,7 @@ template <typename Look>
     for (std::size_t id = 0; id < set.body_of.size(); ++id) {
       // Ids of removed objects keep their entry; skip them.
       const std::uint32_t body = set.body_of[id];
-      if (scene.place[body].id == id) looking.show(*set.partition, body);
+      if (scene.place[body].id == id) body_filter.show(*set.partition, body);
     }
   }
   return has_crowd;
@@ -222,11 +224,11 @@ void order_hits(Column<SceneHit>& hits, std::size_t before) noexcept {
   hits.set_size(static_cast<std::size_t>(end - hits.begin()));
 }
 
-/// One query: a swept shape in the scene.
+/// One query: a linear cast in the scene.
 class CastQuery {
  public:
-  CastQuery(QueryState& state, const SweptShape& swept, const Filter& filter) noexcept
-      : state_(state), swept_(swept), filter_(filter), limit_(swept.max_t()) {}
+  CastQuery(QueryState& state, const LinearCast& linear_cast, const Filter& filter) noexcept
+      : state_(state), linear_cast_(linear_cast), filter_(filter), limit_(linear_cast.max_t()) {}
 
   Status closest(SceneHit& hit);
   /// Appends the hits to the hits of earlier rays.
@@ -239,13 +241,13 @@ class CastQuery {
   Status any_in_crowds(SceneHit& hit);
 
  private:
-  [[nodiscard]] SweptBox swept_box() const noexcept;
+  [[nodiscard]] BoxPath box_path() const noexcept;
   [[nodiscard]] bool found() const noexcept { return body_ != kNoObject; }
-  [[nodiscard]] bool meets(std::uint32_t body, double limit, bool any,
-                           BodyContact& meeting) const noexcept {
-    return meeting.find(state_.parts, swept_, state_.placed(body), limit, any);
+  [[nodiscard]] bool find_contact(std::uint32_t body, double limit, bool any,
+                                  BodyContact& contact) const noexcept {
+    return contact.find(state_.parts, linear_cast_, state_.placed(body), limit, any);
   }
-  [[nodiscard]] SceneHit shown(std::uint32_t body, const BodyContact& meeting) const noexcept;
+  [[nodiscard]] SceneHit shown(std::uint32_t body, const BodyContact& contact) const noexcept;
   /// Tests bodies in crowds only.
   Status closest_in_crowds();
   /// Returns true if this body becomes the closest hit.
@@ -253,14 +255,15 @@ class CastQuery {
   /// Appends the body's hit if there is one and the body was not tested before; returns false if
   /// memory is refused.
   [[nodiscard]] bool adds(std::uint32_t body);
-  /// Calls ask(partition) for each crowd until a call does not return ok.
-  template <typename Ask>
-  [[nodiscard]] Status each_crowd(Ask&& ask) const;
-  template <typename Look>
-  [[nodiscard]] Status test_rest(const Partition& partition, const SweptBox& path, Look& look);
+  /// Calls query(partition) for each crowd until a call does not return ok.
+  template <typename Query>
+  [[nodiscard]] Status each_crowd(Query&& query) const;
+  template <typename TestBody>
+  [[nodiscard]] Status test_rest(const Partition& partition, const BoxPath& path,
+                                 TestBody& test_body);
 
   QueryState& state_;
-  const SweptShape& swept_;
+  const LinearCast& linear_cast_;
   const Filter& filter_;
   /// The body of the earliest hit so far, or kNoObject; and the largest t that still counts, which
   /// is the time of that hit or, at first, the end of the path.
@@ -270,17 +273,17 @@ class CastQuery {
   ResultCache memo_;
 };
 
-SweptBox CastQuery::swept_box() const noexcept {
+BoxPath CastQuery::box_path() const noexcept {
   // The slack of the path covers the rounding.
-  const Vector3d start = Vector3d::Map(swept_.start());
-  return {{start + swept_.extent().min, start + swept_.extent().max},
+  const Vector3d start = Vector3d::Map(linear_cast_.start());
+  return {{start + linear_cast_.extent().min, start + linear_cast_.extent().max},
           state_.scene.origin,
-          swept_.direction(),
-          swept_.max_t()};
+          linear_cast_.direction(),
+          linear_cast_.max_t()};
 }
 
-SceneHit CastQuery::shown(std::uint32_t body, const BodyContact& meeting) const noexcept {
-  SceneHit hit = meeting.hit(swept_);
+SceneHit CastQuery::shown(std::uint32_t body, const BodyContact& contact) const noexcept {
+  SceneHit hit = contact.hit(linear_cast_);
   hit.key = state_.scene.keys.key_of(body);
   hit.data = state_.scene.keys.client_data(body);
   return hit;
@@ -288,63 +291,63 @@ SceneHit CastQuery::shown(std::uint32_t body, const BodyContact& meeting) const 
 
 bool CastQuery::improves(std::uint32_t body) noexcept {
   if (const bool* const known = memo_.find(body)) return *known;
-  BodyContact meeting;
-  bool better = meets(body, limit_, false, meeting);
+  BodyContact contact;
+  bool better = find_contact(body, limit_, false, contact);
   // Equal t are ordered by the bodies' ids.
-  if (better && found() && meeting.t() == limit_) better = body < body_;
+  if (better && found() && contact.t() == limit_) better = body < body_;
   if (better) {
     body_ = body;
-    best_ = meeting;
-    limit_ = meeting.t();
+    best_ = contact;
+    limit_ = contact.t();
   }
   return memo_.note(body, better);
 }
 
-template <typename Ask>
-Status CastQuery::each_crowd(Ask&& ask) const {
+template <typename Query>
+Status CastQuery::each_crowd(Query&& query) const {
   for (const SceneSet& set : state_.scene.sets) {
     if (!set.partition.has_value() || is_few(state_.scene, set)) continue;
-    if (const Status status = ask(*set.partition); status != Status::ok) return status;
+    if (const Status status = query(*set.partition); status != Status::ok) return status;
   }
   return Status::ok;
 }
 
 /// Tests bodies on the rest of a path that is too long for casts.
-template <typename Look>
-Status CastQuery::test_rest(const Partition& partition, const SweptBox& path, Look& look) {
-  auto look_only = [&](std::uint32_t body) {
-    look(body);
+template <typename TestBody>
+Status CastQuery::test_rest(const Partition& partition, const BoxPath& path, TestBody& test_body) {
+  auto test_and_reject = [&](std::uint32_t body) {
+    test_body(body);
     return false;
   };
-  BodyCandidateFilter looking(state_.scene, filter_, look_only);
-  return partition.overlap(path.rest(limit_), state_.objects, looking.filter());
+  BodyCandidateFilter body_filter(state_.scene, filter_, test_and_reject);
+  return partition.overlap(path.rest(limit_), state_.objects, body_filter.filter());
 }
 
-/// Makes two traversals per partition and piece of the path. In the first one only bodies that
-/// improve the result count as hits, so the partition skips boxes beyond them. It returns the
-/// nearest box that counted, and every box before that has been tested. The remaining boxes, from
-/// there to the hit on the exact shape, are tested in the second traversal. Both are short if boxes
-/// are tight.
+/// Makes two traversals per partition and piece of the path. In the first traversal only bodies
+/// that improve the result count as hits, so the partition skips boxes beyond the nearest box of
+/// such a body. The traversal returns this box, and every box before it has been tested. The second
+/// traversal tests the remaining boxes, from this box to the hit on the exact shape. Both
+/// traversals are short if boxes are tight.
 Status CastQuery::closest_in_crowds() {
-  SweptBox path = swept_box();
-  auto look = [&](std::uint32_t body) { return improves(body); };
-  auto look_only = [&](std::uint32_t body) {
+  BoxPath path = box_path();
+  auto test_body = [&](std::uint32_t body) { return improves(body); };
+  auto test_and_reject = [&](std::uint32_t body) {
     improves(body);
     return false;
   };
-  BodyCandidateFilter first(state_.scene, filter_, look);
-  BodyCandidateFilter second(state_.scene, filter_, look_only);
+  BodyCandidateFilter first(state_.scene, filter_, test_body);
+  BodyCandidateFilter second(state_.scene, filter_, test_and_reject);
   while (path.next() && !(found() && limit_ < path.begin())) {
     const Status status = each_crowd([&](const Partition& partition) {
-      if (path.is_rest()) return test_rest(partition, path, look);
+      if (path.is_rest()) return test_rest(partition, path, test_body);
       Hit box;
       BoxCast cast = path.cast(limit_);
-      Status asked = partition.closest(cast, box, first.filter());
-      if (asked != Status::ok || !box) return asked;
+      Status result = partition.closest(cast, box, first.filter());
+      if (result != Status::ok || !box) return result;
       cast = path.cast(limit_);
       cast.min_t = box.t;
-      if (cast.max_t >= cast.min_t) asked = partition.closest(cast, box, second.filter());
-      return asked;
+      if (cast.max_t >= cast.min_t) result = partition.closest(cast, box, second.filter());
+      return result;
     });
     if (status != Status::ok) return status;
   }
@@ -352,8 +355,8 @@ Status CastQuery::closest_in_crowds() {
 }
 
 Status CastQuery::closest(SceneHit& hit) {
-  auto look = [&](std::uint32_t body) { return improves(body); };
-  const bool has_crowd = test_small_sets(state_.scene, filter_, look);
+  auto test_body = [&](std::uint32_t body) { return improves(body); };
+  const bool has_crowd = test_small_sets(state_.scene, filter_, test_body);
   const Status status = has_crowd ? closest_in_crowds() : Status::ok;
   if (status == Status::ok) hit = found() ? shown(body_, best_) : SceneHit{};
   return status;
@@ -368,21 +371,21 @@ Status CastQuery::closest_in_crowds(std::uint32_t body, double t, SceneHit& hit)
 }
 
 Status CastQuery::any_in_crowds(SceneHit& hit) {
-  auto look = [&](std::uint32_t body) {
+  auto test_body = [&](std::uint32_t body) {
     if (found()) return true;
     if (const bool* const known = memo_.find(body)) return *known;
-    if (!meets(body, limit_, true, best_)) return memo_.note(body, false);
+    if (!find_contact(body, limit_, true, best_)) return memo_.note(body, false);
     body_ = body;
     return true;
   };
-  SweptBox path = swept_box();
-  BodyCandidateFilter looking(state_.scene, filter_, look);
+  BoxPath path = box_path();
+  BodyCandidateFilter body_filter(state_.scene, filter_, test_body);
   while (!found() && path.next()) {
     const Status status = each_crowd([&](const Partition& partition) {
       if (found()) return Status::ok;
-      if (path.is_rest()) return test_rest(partition, path, look);
+      if (path.is_rest()) return test_rest(partition, path, test_body);
       Hit box;
-      return partition.any(path.cast(limit_), box, looking.filter());
+      return partition.any(path.cast(limit_), box, body_filter.filter());
     });
     if (status != Status::ok) return status;
   }
@@ -393,11 +396,11 @@ Status CastQuery::any_in_crowds(SceneHit& hit) {
 Status CastQuery::all() {
   const std::size_t before = state_.hits.size();
   bool has_room = true;
-  auto look = [&](std::uint32_t body) {
+  auto test_body = [&](std::uint32_t body) {
     has_room = adds(body) && has_room;
     return false;
   };
-  const bool has_crowd = test_small_sets(state_.scene, filter_, look);
+  const bool has_crowd = test_small_sets(state_.scene, filter_, test_body);
   if (!has_room) return Status::out_of_memory;
   if (has_crowd) return all_in_crowds(before);
   order_hits(state_.hits, before);
@@ -407,23 +410,23 @@ Status CastQuery::all() {
 bool CastQuery::adds(std::uint32_t body) {
   if (memo_.find(body) != nullptr) return true;
   memo_.note(body, false);
-  BodyContact meeting;
-  return !meets(body, swept_.max_t(), false, meeting) ||
-         state_.hits.push_back(shown(body, meeting));
+  BodyContact contact;
+  return !find_contact(body, linear_cast_.max_t(), false, contact) ||
+         state_.hits.push_back(shown(body, contact));
 }
 
 Status CastQuery::all_in_crowds(std::size_t before) {
   bool has_room = true;
-  auto look = [&](std::uint32_t body) {
+  auto test_body = [&](std::uint32_t body) {
     has_room = adds(body) && has_room;
     return false;
   };
-  SweptBox path = swept_box();
-  BodyCandidateFilter looking(state_.scene, filter_, look);
+  BoxPath path = box_path();
+  BodyCandidateFilter body_filter(state_.scene, filter_, test_body);
   while (path.next()) {
     const Status status = each_crowd([&](const Partition& partition) {
-      if (path.is_rest()) return test_rest(partition, path, look);
-      return partition.all(path.cast(swept_.max_t()), state_.boxes, looking.filter());
+      if (path.is_rest()) return test_rest(partition, path, test_body);
+      return partition.all(path.cast(linear_cast_.max_t()), state_.boxes, body_filter.filter());
     });
     if (status != Status::ok) return status;
   }
@@ -438,13 +441,13 @@ struct RayInScene {
   const ShapeRay& ray;
 
   /// True if the ray hits a convex part of a body by t = most.
-  [[nodiscard]] bool meets(std::uint32_t body, const SubShape& part, double most,
-                           BodyRayHit& meeting) const {
-    const RaySweep swept(state.scene.shapes, ray);
+  [[nodiscard]] bool find_contact(std::uint32_t body, const SubShape& part, double most,
+                                  BodyRayHit& contact) const {
+    const RayCast linear_cast(state.scene.shapes, ray);
     const TwoDiff from = difference(ray.origin, state.scene.pose[body].position);
-    SweepContact found;
-    if (!swept.meets(from.difference, part, most, {}, found)) return false;
-    meeting = BodyRayHit::at(body, part.part, found.t, found.normal);
+    CastContact found;
+    if (!linear_cast.find_contact(from.difference, part, most, {}, found)) return false;
+    contact = BodyRayHit::at(body, part.part, found.t, found.normal);
     return true;
   }
   /// Fills in a hit, which must be a null hit.
@@ -468,51 +471,53 @@ struct RayInScene {
 [[nodiscard]] Status query_crowds(QueryState& state, const ShapeRay& ray, const Filter& filter,
                                   const BodyRayHit& best, bool any, SceneHit& hit) {
   if (any && best.body != kNoObject) return Status::ok;
-  const RaySweep swept(state.scene.shapes, ray);
-  CastQuery question(state, swept, filter);
-  return any ? question.any_in_crowds(hit) : question.closest_in_crowds(best.body, best.t, hit);
+  const RayCast linear_cast(state.scene.shapes, ray);
+  CastQuery query(state, linear_cast, filter);
+  return any ? query.any_in_crowds(hit) : query.closest_in_crowds(best.body, best.t, hit);
 }
 
 /// Tests a single ray on a body that `test_small_sets` found, up to the limit.
-void test_ray(QueryState& state, const RayInScene& asked, std::uint32_t body, bool any,
+void test_ray(QueryState& state, const RayInScene& scene_ray, std::uint32_t body, bool any,
               BodyRayHit& best, double& limit) {
-  const auto meet = [&](std::size_t, std::uint32_t part, const ShapeHit& found, double) {
+  const auto visit_hit = [&](std::size_t, std::uint32_t part, const ShapeHit& found, double) {
     best.improve(BodyRayHit::at(body, part, found.t, found.normal), any, limit);
     return limit;
   };
-  const auto look_at = [&](std::size_t, const SubShape& part, double most) {
-    BodyRayHit meeting;
-    if (!asked.meets(body, part, std::min(most, limit), meeting)) return std::min(most, limit);
-    best.improve(meeting, any, limit);
+  const auto visit_candidate = [&](std::size_t, const SubShape& part, double most) {
+    BodyRayHit contact;
+    if (!scene_ray.find_contact(body, part, std::min(most, limit), contact))
+      return std::min(most, limit);
+    best.improve(contact, any, limit);
     return limit;
   };
   if (const RaySurface* const mesh = state.surfaces.find(state.parts, state.scene, body)) {
-    state.parts.met_by_ray(*mesh, asked.ray, limit, meet, look_at);
+    state.parts.visit_ray(*mesh, scene_ray.ray, limit, visit_hit, visit_candidate);
   } else {
     const double end = limit;
-    state.parts.met_by_rays(state.placed(body), {&asked.ray, 1}, &end, meet, look_at);
+    state.parts.visit_rays(state.placed(body), {&scene_ray.ray, 1}, &end, visit_hit,
+                           visit_candidate);
   }
 }
 
 /// Finds the first hit of a single ray, or with `any` any hit. The ray must be valid.
 Status query_ray(QueryState& state, const ShapeRay& ray, const Filter& filter, bool any,
                  SceneHit& hit) {
-  const RayInScene asked{state, ray};
+  const RayInScene scene_ray{state, ray};
   BodyRayHit best;
   best.body = kNoObject;
   double limit = ray.max_t;
-  auto look = [&](std::uint32_t body) {
-    test_ray(state, asked, body, any, best, limit);
+  auto test_body = [&](std::uint32_t body) {
+    test_ray(state, scene_ray, body, any, best, limit);
     return false;
   };
-  const bool has_crowd = test_small_sets(state.scene, filter, look);
+  const bool has_crowd = test_small_sets(state.scene, filter, test_body);
   if (!has_crowd) {
     hit = SceneHit{};
-    asked.show(best, hit);
+    scene_ray.show(best, hit);
     return Status::ok;
   }
   SceneHit found;
-  asked.show(best, found);
+  scene_ray.show(best, found);
   const Status status = query_crowds(state, ray, filter, best, any, found);
   if (status == Status::ok) hit = found;
   return status;
@@ -520,25 +525,25 @@ Status query_ray(QueryState& state, const ShapeRay& ray, const Filter& filter, b
 
 /// Writes the hits of a single ray on all bodies into the state's `hits`.
 Status query_all_one_by_one(QueryState& state, const ShapeRay& ray, const Filter& filter) {
-  const RayInScene asked{state, ray};
+  const RayInScene scene_ray{state, ray};
   state.hits.clear();
   bool has_room = true;
-  auto look = [&](std::uint32_t body) {
+  auto test_body = [&](std::uint32_t body) {
     BodyRayHit best;
     best.body = kNoObject;
     double limit = ray.max_t;
-    test_ray(state, asked, body, false, best, limit);
+    test_ray(state, scene_ray, body, false, best, limit);
     if (best.body == kNoObject) return false;
     SceneHit hit;
-    asked.show(best, hit);
+    scene_ray.show(best, hit);
     has_room = state.hits.push_back(hit) && has_room;
     return false;
   };
-  const bool has_crowd = test_small_sets(state.scene, filter, look);
+  const bool has_crowd = test_small_sets(state.scene, filter, test_body);
   if (!has_room) return Status::out_of_memory;
   if (has_crowd) {
-    const RaySweep swept(state.scene.shapes, ray);
-    return CastQuery(state, swept, filter).all_in_crowds(0);
+    const RayCast linear_cast(state.scene.shapes, ray);
+    return CastQuery(state, linear_cast, filter).all_in_crowds(0);
   }
   order_hits(state.hits, 0);
   return Status::ok;
@@ -552,7 +557,7 @@ class RaysTogether {
 
   /// Finds the first hits, or with `any` any hits, of rays [first, first + count) of a batch. They
   /// must be valid.
-  Status ask(const ShapeRayBatch& rays, std::size_t first, std::size_t count, bool any);
+  Status query(const ShapeRayBatch& rays, std::size_t first, std::size_t count, bool any);
   /// Lists each ray's first hits on all bodies that `test_small_sets` finds, sorted by ray, in the
   /// state's `few`, and sets whether there are crowds.
   Status list_few(const ShapeRayBatch& rays, std::size_t first, std::size_t count, bool& has_crowd);
@@ -581,18 +586,18 @@ class RaysTogether {
 };
 
 void RaysTogether::test_rays(std::uint32_t body) {
-  const auto meet = [&](std::size_t i, std::uint32_t part, const ShapeHit& hit, double) {
+  const auto visit_hit = [&](std::size_t i, std::uint32_t part, const ShapeHit& hit, double) {
     best_[i].improve(BodyRayHit::at(body, part, hit.t, hit.normal), any_, limit_[i]);
     return limit_[i];
   };
-  const auto look = [&](std::size_t i, const SubShape& part, double limit) {
-    BodyRayHit meeting;
+  const auto visit_candidate = [&](std::size_t i, const SubShape& part, double limit) {
+    BodyRayHit contact;
     const double most = std::min(limit, limit_[i]);
-    if (!RayInScene{state_, ray_[i]}.meets(body, part, most, meeting)) return most;
-    best_[i].improve(meeting, any_, limit_[i]);
+    if (!RayInScene{state_, ray_[i]}.find_contact(body, part, most, contact)) return most;
+    best_[i].improve(contact, any_, limit_[i]);
     return limit_[i];
   };
-  state_.parts.met_by_rays(state_.placed(body), {ray_, count_}, limit_, meet, look);
+  state_.parts.visit_rays(state_.placed(body), {ray_, count_}, limit_, visit_hit, visit_candidate);
 }
 
 void RaysTogether::start(const ShapeRayBatch& rays, std::size_t first, std::size_t count,
@@ -606,14 +611,14 @@ void RaysTogether::start(const ShapeRayBatch& rays, std::size_t first, std::size
   }
 }
 
-Status RaysTogether::ask(const ShapeRayBatch& rays, std::size_t first, std::size_t count,
-                         bool any) {
+Status RaysTogether::query(const ShapeRayBatch& rays, std::size_t first, std::size_t count,
+                           bool any) {
   start(rays, first, count, any);
-  auto look = [&](std::uint32_t body) {
+  auto test_body = [&](std::uint32_t body) {
     test_rays(body);
     return false;
   };
-  const bool has_crowd = test_small_sets(state_.scene, filter_, look);
+  const bool has_crowd = test_small_sets(state_.scene, filter_, test_body);
   for (std::size_t i = 0; i < count; ++i) hit_[i] = shown(i, best_[i]);
   if (!has_crowd) return Status::ok;
   for (std::size_t i = 0; i < count; ++i) {
@@ -628,7 +633,7 @@ Status RaysTogether::list_few(const ShapeRayBatch& rays, std::size_t first, std:
   Column<RayHit>& few = state_.few;
   few.clear();
   bool has_room = true;
-  auto look = [&](std::uint32_t body) {
+  auto test_body = [&](std::uint32_t body) {
     start(rays, first, count, false);
     test_rays(body);
     for (std::size_t i = 0; i < count; ++i) {
@@ -636,7 +641,7 @@ Status RaysTogether::list_few(const ShapeRayBatch& rays, std::size_t first, std:
     }
     return false;
   };
-  has_crowd = test_small_sets(state_.scene, filter_, look);
+  has_crowd = test_small_sets(state_.scene, filter_, test_body);
   const auto is_earlier = [](const RayHit& a, const RayHit& b) { return a.ray < b.ray; };
   // The hits of one body are in order already.
   const bool is_ordered = std::is_sorted(few.begin(), few.end(), is_earlier);
@@ -690,7 +695,7 @@ Status query_each(QueryState* state, const ShapeRayBatch& rays, const Filter& fi
   RaysTogether group(*state, filter);
   for (std::size_t first = 0; first < rays.count; first += kRaysAtOnce) {
     const std::size_t count = std::min<std::size_t>(kRaysAtOnce, rays.count - first);
-    status = group.ask(rays, first, count, any);
+    status = group.query(rays, first, count, any);
     if (status != Status::ok) return status;
     for (std::size_t i = 0; i < count; ++i) put(hits, first + i, group.hit(i));
   }
@@ -722,8 +727,8 @@ Status query_all(QueryState& state, const ShapeRayBatch& rays, const Filter& fil
       }
       if (has_crowd) {
         const ShapeRay ray = rays[k];
-        const RaySweep swept(state.scene.shapes, ray);
-        status = CastQuery(state, swept, filter).all_in_crowds(first[k]);
+        const RayCast linear_cast(state.scene.shapes, ray);
+        status = CastQuery(state, linear_cast, filter).all_in_crowds(first[k]);
         if (status != Status::ok) return status;
       } else {
         order_hits(state.hits, first[k]);
@@ -748,29 +753,29 @@ Status check(const QueryState* state, const ShapeCast& cast, double tolerance) n
   return valid ? Status::ok : Status::invalid_argument;
 }
 
-/// Calls ask(swept shape) for the cast.
-template <typename Ask>
-Status ask_cast(QueryState* state, const ShapeCast& cast, double tolerance, Ask&& ask) {
+/// Calls query(linear_cast) for the cast.
+template <typename Query>
+Status query_cast(QueryState* state, const ShapeCast& cast, double tolerance, Query&& query) {
   if (const Status status = check(state, cast, tolerance); status != Status::ok) return status;
-  if (cast.shape.is_composite()) return ask(CompositeSweep(state->parts, cast, tolerance));
-  return ask(ShapeSweep(state->parts, cast, tolerance));
+  if (cast.shape.is_composite()) return query(CompositeCast(state->parts, cast, tolerance));
+  return query(ConvexCast(state->parts, cast, tolerance));
 }
 
 }  // namespace
 
 Status SceneQueries::closest(const ShapeRay& ray, SceneHit& hit, const Filter& filter) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   return query_one(state_, ray, filter, hit, false);
 }
 
 Status SceneQueries::any(const ShapeRay& ray, SceneHit& hit, const Filter& filter) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   return query_one(state_, ray, filter, hit, true);
 }
 
 Status SceneQueries::all(const ShapeRay& ray, std::span<const SceneHit>& hits,
                          const Filter& filter) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   if (const Status status = check(state_, ray); status != Status::ok) return status;
   const Status status = query_all_one_by_one(*state_, ray, filter);
   if (status == Status::ok) hits = {state_->hits.data(), state_->hits.size()};
@@ -779,18 +784,18 @@ Status SceneQueries::all(const ShapeRay& ray, std::span<const SceneHit>& hits,
 
 Status SceneQueries::closest(const ShapeRayBatch& rays, const SceneHitColumns& hits,
                              const Filter& filter) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   return query_each(state_, rays, filter, hits, false);
 }
 
 Status SceneQueries::any(const ShapeRayBatch& rays, const SceneHitColumns& hits,
                          const Filter& filter) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   return query_each(state_, rays, filter, hits, true);
 }
 
 Status SceneQueries::all(const ShapeRayBatch& rays, SceneHitLists& hits, const Filter& filter) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   if (const Status status = check(state_, rays); status != Status::ok) return status;
   const Status status = query_all(*state_, rays, filter);
   if (status != Status::ok) return status;
@@ -801,18 +806,18 @@ Status SceneQueries::all(const ShapeRayBatch& rays, SceneHitLists& hits, const F
 
 Status SceneQueries::closest(const ShapeCast& cast, SceneHit& hit, const Filter& filter,
                              double tolerance) {
-  const DefaultEnvironment environment;
-  return ask_cast(state_, cast, tolerance, [&](const SweptShape& swept) {
-    return CastQuery(*state_, swept, filter).closest(hit);
+  const DefaultFloatEnvironment environment;
+  return query_cast(state_, cast, tolerance, [&](const LinearCast& linear_cast) {
+    return CastQuery(*state_, linear_cast, filter).closest(hit);
   });
 }
 
 Status SceneQueries::all(const ShapeCast& cast, std::span<const SceneHit>& hits,
                          const Filter& filter, double tolerance) {
-  const DefaultEnvironment environment;
-  const Status status = ask_cast(state_, cast, tolerance, [&](const SweptShape& swept) {
+  const DefaultFloatEnvironment environment;
+  const Status status = query_cast(state_, cast, tolerance, [&](const LinearCast& linear_cast) {
     state_->hits.clear();
-    return CastQuery(*state_, swept, filter).all();
+    return CastQuery(*state_, linear_cast, filter).all();
   });
   if (status == Status::ok) hits = {state_->hits.data(), state_->hits.size()};
   return status;

@@ -1,6 +1,6 @@
-// SceneQueries: shapes that move and turn. The path is boxed in one or more pieces; partitions find
-// the bodies whose boxes overlap each piece and call a predicate (BodyCandidateFilter), which tests
-// the exact shapes (motion/body_impact.h).
+// SceneQueries: casts of shapes that translate and rotate. The path is cut into pieces, each
+// bounded by a box; partitions find the bodies whose boxes overlap the box of a piece and call a
+// predicate (BodyCandidateFilter), which tests the exact shapes (motion/body_impact.h).
 
 #include <winnow/core/aabb.h>
 #include "core/threads/float_environment.h"
@@ -31,7 +31,7 @@ class MotionQuery {
         cast_(cast),
         filter_(filter),
         tolerance_(tolerance),
-        frame_(RigidMotion::standing(
+        frame_(RigidMotion::stationary(
             Pose::at(state.scene.origin.x(), state.scene.origin.y(), state.scene.origin.z()))),
         moving_(impact::whole_shape(state.parts, cast.shape, cast.motion)),
         way_(state.parts, frame_, moving_) {}
@@ -40,10 +40,10 @@ class MotionQuery {
   Status all();
 
  private:
-  /// Calls look(body, within) for the candidate bodies of each piece of the path, in order, until a
-  /// piece begins after `limit`.
-  template <typename Look>
-  [[nodiscard]] Status each_piece(const double& limit, Look&& look);
+  /// Calls test_body(body, within) for the candidate bodies of each piece of the path, in order,
+  /// until a piece begins after `limit`.
+  template <typename TestBody>
+  [[nodiscard]] Status each_piece(const double& limit, TestBody&& test_body);
   /// Returns the first impact with a body within an interval, or a null hit if there is none; the
   /// hit may also be null if the impact is after `until`.
   [[nodiscard]] SceneHit hit_of(std::uint32_t body, const impact::Interval& within,
@@ -58,21 +58,21 @@ class MotionQuery {
   const impact::RelativeMotionBounds way_;
 };
 
-template <typename Look>
-Status MotionQuery::each_piece(const double& limit, Look&& look) {
+template <typename TestBody>
+Status MotionQuery::each_piece(const double& limit, TestBody&& test_body) {
   const std::uint32_t pieces = way_.piece_count();
   for (std::uint32_t i = 0; i < pieces; ++i) {
     const impact::Interval within = impact::piece_of(i, pieces);
     if (within.first > limit) break;
     const PreciseBox box = way_.box(within);
-    auto look_at = [&](std::uint32_t body) {
-      look(body, within);
+    auto test_candidate = [&](std::uint32_t body) {
+      test_body(body, within);
       return false;
     };
-    BodyCandidateFilter looking(state_.scene, filter_, look_at);
+    BodyCandidateFilter body_filter(state_.scene, filter_, test_candidate);
     const Aabb region = Aabb::outward(box.min, box.max);
     const Status status = state_.each_partition([&](const Partition& partition) {
-      return partition.overlap(region, state_.objects, looking.filter());
+      return partition.overlap(region, state_.objects, body_filter.filter());
     });
     if (status != Status::ok) return status;
   }
@@ -82,11 +82,11 @@ Status MotionQuery::each_piece(const double& limit, Look&& look) {
 SceneHit MotionQuery::hit_of(std::uint32_t body, const impact::Interval& within,
                              double until) const {
   const PlacedShape placed = state_.placed(body);
-  const RigidMotion stands = RigidMotion::standing(placed.pose);
+  const RigidMotion at_rest = RigidMotion::stationary(placed.pose);
   const impact::StartTouch touch =
-      cast_.touching ? impact::StartTouch::meets : impact::StartTouch::impact_unless_sliding;
+      cast_.touching ? impact::StartTouch::impact : impact::StartTouch::impact_unless_sliding;
   const impact::BodyImpact found =
-      impact::find_body_impact(state_.parts, {cast_.shape, cast_.motion}, {placed.shape, stands},
+      impact::find_body_impact(state_.parts, {cast_.shape, cast_.motion}, {placed.shape, at_rest},
                                {tolerance_, within, until, touch});
   SceneHit hit;
   const impact::Impact& impact = found.impact;
@@ -149,7 +149,7 @@ Status check(const QueryState* state, const MotionCast& cast, double tolerance) 
 
 Status SceneQueries::closest(const MotionCast& cast, SceneHit& hit, const Filter& filter,
                              double tolerance) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   const Status status = check(state_, cast, tolerance);
   if (status != Status::ok) return status;
   return MotionQuery(*state_, cast, filter, tolerance).closest(hit);
@@ -157,7 +157,7 @@ Status SceneQueries::closest(const MotionCast& cast, SceneHit& hit, const Filter
 
 Status SceneQueries::all(const MotionCast& cast, std::span<const SceneHit>& hits,
                          const Filter& filter, double tolerance) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   Status status = check(state_, cast, tolerance);
   if (status == Status::ok) status = MotionQuery(*state_, cast, filter, tolerance).all();
   if (status == Status::ok) hits = {state_->hits.data(), state_->hits.size()};

@@ -23,8 +23,9 @@ struct BodyRayHit {
                                      const double (&normal)[3]) noexcept {
     return {body, part, t, {normal[0], normal[1], normal[2]}};
   }
-  /// Replaces this hit with `other` if that is earlier and within the limit, and lowers the limit
-  /// to its t; with `any`, to below zero, which ends the query.
+  /// Replaces this hit with `other` if `other` is within the limit and earlier, or equally early
+  /// with a lower body id or part. Lowers the limit to the t of `other`, or with `any` to below
+  /// zero, which ends the query.
   void improve(const BodyRayHit& other, bool any, double& limit) noexcept {
     if (other.t > limit) return;
     // Equal t are ordered by the bodies' ids, then by part.
@@ -43,8 +44,8 @@ struct RayHit {
   BodyRayHit at;
 };
 
-/// A small direct-mapped cache of meshes that MidPhase::place prepared for single rays. If two
-/// bodies map to the same entry, the later one stays.
+/// A small direct-mapped cache of meshes that MidPhase::prepare_ray_surface prepared for single
+/// rays. If two bodies map to the same entry, the later one stays.
 class RaySurfaces {
  public:
   /// Returns the prepared mesh of a body at its present pose, or null if the body is not a mesh.
@@ -56,7 +57,7 @@ class RaySurfaces {
     if (kept.shape == shape && kept.revision == scene.composites_seen && is_same(kept.pose, pose)) {
       return &kept;
     }
-    return parts.place({shape, pose}, kept) ? &kept : nullptr;
+    return parts.prepare_ray_surface({shape, pose}, kept) ? &kept : nullptr;
   }
 
  private:
@@ -76,8 +77,8 @@ class RaySurfaces {
 };
 
 struct QueryState {
-  QueryState(const SceneState& asked, std::pmr::memory_resource* memory) noexcept
-      : scene(asked),
+  QueryState(const SceneState& queried, std::pmr::memory_resource* memory) noexcept
+      : scene(queried),
         parts(scene.shapes, scene.options.composites),
         boxes(memory),
         objects(memory),
@@ -123,25 +124,25 @@ struct QueryState {
         composites != nullptr && composites->revision() != scene.composites_seen;
     return scene.is_up_to_date() && !has_changed ? Status::ok : Status::invalid_argument;
   }
-  /// Calls ask(partition) for each partition until a call does not return ok.
-  template <typename Ask>
-  [[nodiscard]] Status each_partition(Ask&& ask) const {
+  /// Calls query(partition) for each partition until a call does not return ok.
+  template <typename Query>
+  [[nodiscard]] Status each_partition(Query&& query) const {
     for (const SceneSet& set : scene.sets) {
       if (!set.partition.has_value()) continue;
-      if (const Status status = ask(*set.partition); status != Status::ok) return status;
+      if (const Status status = query(*set.partition); status != Status::ok) return status;
     }
     return Status::ok;
   }
 };
 
 /// Converts the caller's filter to one for partitions, whose client data are ids of bodies. Calls
-/// `Look`, bool(std::uint32_t body), for each body that passes; its result is returned to the
+/// `TestBody`, bool(std::uint32_t body), for each body that passes, and returns the result to the
 /// partition. So no list of candidates is needed.
-template <typename Look>
+template <typename TestBody>
 class BodyCandidateFilter {
  public:
-  BodyCandidateFilter(const SceneState& scene, const Filter& filter, Look& look) noexcept
-      : scene_(scene), filter_(filter), look_(look) {}
+  BodyCandidateFilter(const SceneState& scene, const Filter& filter, TestBody& test_body) noexcept
+      : scene_(scene), filter_(filter), test_body_(test_body) {}
   BodyCandidateFilter(const BodyCandidateFilter&) = delete;
   BodyCandidateFilter& operator=(const BodyCandidateFilter&) = delete;
 
@@ -169,12 +170,12 @@ class BodyCandidateFilter {
                           scene_.keys.client_data(body))) {
       return false;
     }
-    return look_(body);
+    return test_body_(body);
   }
 
   const SceneState& scene_;
   const Filter& filter_;
-  Look& look_;
+  TestBody& test_body_;
 };
 
 }  // namespace winnow

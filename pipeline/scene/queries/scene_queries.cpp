@@ -48,10 +48,10 @@ class NearestBodiesQuery {
     box_ = Aabb::outward(low, high);
   }
 
-  Status ask(std::size_t count, double radius);
+  Status run(std::size_t count, double radius);
 
  private:
-  void look(std::uint32_t body);
+  void test_body(std::uint32_t body);
   /// Tests the bodies with the nearest boxes within the radius, and lowers the radius to the last
   /// distance that is still of interest.
   [[nodiscard]] Status test_nearest(const Partition& partition);
@@ -72,7 +72,7 @@ class NearestBodiesQuery {
   bool is_cut_ = false;
 };
 
-void NearestBodiesQuery::look(std::uint32_t body) {
+void NearestBodiesQuery::test_body(std::uint32_t body) {
   SceneDistance answer;
   if (!ClosestParts(state_.parts).find(from_, state_.placed(body), radius_, answer)) return;
   answer.key = state_.scene.keys.key_of(body);
@@ -80,7 +80,7 @@ void NearestBodiesQuery::look(std::uint32_t body) {
   has_room_ = state_.distances.push_back(answer) && has_room_;
 }
 
-/// Adds the error bound of the solver's distance to a box boundary.
+/// Returns the radius, enlarged by the error bound of the solver's distance to a box boundary.
 float NearestBodiesQuery::reach() const noexcept {
   return round_up(std::max(radius_, 0.0) * (1.0 + 1e-9));
 }
@@ -90,7 +90,7 @@ Status NearestBodiesQuery::test_nearest(const Partition& partition) {
   BodyCandidateFilter taking(state_.scene, filter_, take);
   const Status status = partition.nearest(box_, count_, reach(), state_.boxes, taking.filter());
   if (status != Status::ok) return status;
-  for (const Hit& hit : state_.boxes) look(static_cast<std::uint32_t>(hit.data));
+  for (const Hit& hit : state_.boxes) test_body(static_cast<std::uint32_t>(hit.data));
   is_cut_ = is_cut_ || state_.boxes.size() >= count_;
   Column<SceneDistance>& found = state_.distances;
   if (found.size() >= count_) {
@@ -102,18 +102,18 @@ Status NearestBodiesQuery::test_nearest(const Partition& partition) {
 }
 
 Status NearestBodiesQuery::test_within(const Partition& partition, std::size_t known) {
-  auto look_once = [&](std::uint32_t body) {
+  auto test_once = [&](std::uint32_t body) {
     const SceneDistance* const first = state_.distances.begin();
     SceneDistance same;
     same.key.id = body;
-    if (!std::binary_search(first, first + known, same, has_lesser_id)) look(body);
+    if (!std::binary_search(first, first + known, same, has_lesser_id)) test_body(body);
     return false;
   };
-  BodyCandidateFilter looking(state_.scene, filter_, look_once);
-  return partition.nearest(box_, ~std::size_t{0}, reach(), state_.boxes, looking.filter());
+  BodyCandidateFilter body_filter(state_.scene, filter_, test_once);
+  return partition.nearest(box_, ~std::size_t{0}, reach(), state_.boxes, body_filter.filter());
 }
 
-Status NearestBodiesQuery::ask(std::size_t count, double radius) {
+Status NearestBodiesQuery::run(std::size_t count, double radius) {
   Column<SceneDistance>& found = state_.distances;
   found.clear();
   if (count == 0) return Status::ok;
@@ -167,29 +167,29 @@ Footprint SceneQueries::footprint() const noexcept {
 
 Status SceneQueries::overlap(ShapeId shape, const Pose& pose, std::span<const SceneOverlap>& bodies,
                              const Filter& filter) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   if (const Status status = QueryState::check_state(state_); status != Status::ok) return status;
   QueryState& state = *state_;
   if (!state.parts.contains(shape)) return Status::invalid_key;
   if (!pose.is_valid()) return Status::invalid_pose;
-  const PlacedShape asking{shape, pose};
+  const PlacedShape query_shape{shape, pose};
   Column<SceneOverlap>& found = state.overlaps;
   found.clear();
   bool has_room = true;
-  auto look = [&](std::uint32_t body) {
+  auto test_body = [&](std::uint32_t body) {
     SceneOverlap answer;
-    if (do_overlap(state.parts, asking, state.placed(body), answer.part)) {
+    if (do_overlap(state.parts, query_shape, state.placed(body), answer.part)) {
       answer.key = state.scene.keys.key_of(body);
       answer.data = state.scene.keys.client_data(body);
       has_room = found.push_back(answer) && has_room;
     }
     return false;
   };
-  BodyCandidateFilter looking(state.scene, filter, look);
+  BodyCandidateFilter body_filter(state.scene, filter, test_body);
   const PlainBox around = state.scene.bounds_from(state.scene.origin, shape, pose, 0.0);
   const Aabb box{Eigen::Vector3f::Map(around.min), Eigen::Vector3f::Map(around.max)};
   Status status = state.each_partition([&](const Partition& partition) {
-    return partition.overlap(box, state.objects, looking.filter());
+    return partition.overlap(box, state.objects, body_filter.filter());
   });
   if (!has_room) status = Status::out_of_memory;
   if (status != Status::ok) return status;
@@ -200,10 +200,10 @@ Status SceneQueries::overlap(ShapeId shape, const Pose& pose, std::span<const Sc
 
 Status SceneQueries::nearest(const double point[3], std::size_t count, double radius,
                              std::span<const SceneDistance>& bodies, const Filter& filter) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   if (const Status status = QueryState::check_state(state_); status != Status::ok) return status;
   if (!is_finite(point) || !(radius >= 0.0)) return Status::invalid_argument;
-  const Status status = NearestBodiesQuery(*state_, point, filter).ask(count, radius);
+  const Status status = NearestBodiesQuery(*state_, point, filter).run(count, radius);
   if (status == Status::ok) bodies = {state_->distances.data(), state_->distances.size()};
   return status;
 }

@@ -60,9 +60,9 @@ struct SensorsState {
   /// A thread's query object and the bodies that it found.
   struct Watch {
     Watch(const Scene& scene, std::pmr::memory_resource* memory) noexcept
-        : questions(scene, memory), sensed(memory) {}
+        : queries(scene, memory), sensed(memory) {}
 
-    SceneQueries questions;
+    SceneQueries queries;
     Column<SensedBody> sensed;
     Status status = Status::ok;
   };
@@ -83,12 +83,12 @@ struct SensorsState {
     if (bodies == nullptr) return Status::out_of_memory;
     return bodies->check(sensor.shape, sensor.pose);
   }
-  [[nodiscard]] Status look();
+  [[nodiscard]] Status find_sensed();
   [[nodiscard]] bool have_watches(std::size_t count) noexcept;
-  [[nodiscard]] Status look(ObjectId first, ObjectId end, Watch& watch) const;
+  [[nodiscard]] Status find_sensed(ObjectId first, ObjectId end, Watch& watch) const;
   [[nodiscard]] Status take_all(std::size_t count) noexcept;
   [[nodiscard]] bool compare() noexcept;
-  /// After a failed allocation, which may have left a thread's query object without its state.
+  /// Clears all results and frees the query objects, after a failed allocation.
   void forget() noexcept {
     sensed.clear();
     before.clear();
@@ -105,7 +105,7 @@ bool SensorsState::have_watches(std::size_t count) noexcept {
   while (watches.size() < count) {
     if (!watches.grow(watches.size() + 1)) return false;
     auto* const watch = new_in<Watch>(watches.memory(), scene, watches.memory());
-    if (watch == nullptr || watch->questions.state_ == nullptr) {
+    if (watch == nullptr || watch->queries.state_ == nullptr) {
       delete_in(watches.memory(), watch);
       return false;
     }
@@ -115,7 +115,7 @@ bool SensorsState::have_watches(std::size_t count) noexcept {
 }
 
 /// Fills `sensed`. Each thread tests consecutive sensors, so that the results are in order.
-Status SensorsState::look() {
+Status SensorsState::find_sensed() {
   if (const Status status = scene.refresh(); status != Status::ok) return status;
   const Execution& execution = bodies->options.execution;
   const std::size_t slots = keys.slot_count();
@@ -123,19 +123,20 @@ Status SensorsState::look() {
       std::clamp(slots / kSensorsPerWatch, std::size_t{1}, execution.concurrency());
   if (!have_watches(count)) return Status::out_of_memory;
   const auto part = [&](std::size_t i) { return static_cast<ObjectId>(slots * i / count); };
-  execution.for_each(
-      count, [&](std::size_t i) { watches[i]->status = look(part(i), part(i + 1), *watches[i]); });
+  execution.for_each(count, [&](std::size_t i) {
+    watches[i]->status = find_sensed(part(i), part(i + 1), *watches[i]);
+  });
   return take_all(count);
 }
 
-Status SensorsState::look(ObjectId first, ObjectId end, Watch& watch) const {
+Status SensorsState::find_sensed(ObjectId first, ObjectId end, Watch& watch) const {
   watch.sensed.clear();
   for (ObjectId id = first; id < end; ++id) {
     if (!keys.is_live(id)) continue;
     const SensorDefinition& sensor = sensors[id];
     std::span<const SceneOverlap> found;
     const Status status =
-        watch.questions.overlap(sensor.shape, sensor.pose, found, filter_of(sensor));
+        watch.queries.overlap(sensor.shape, sensor.pose, found, filter_of(sensor));
     if (status != Status::ok) return status;
     for (const SceneOverlap& body : found) {
       if (!watch.sensed.push_back({keys.key_of(id), body.key, sensor.data, body.data})) {
@@ -185,7 +186,7 @@ Sensors::~Sensors() {
 }
 
 Status Sensors::add(const SensorDefinition& sensor, Key& key) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   if (state_ == nullptr) return logged(Status::out_of_memory, "Sensors::add");
   SensorsState& s = *state_;
   if (const Status good = s.check(sensor); good != Status::ok) return logged(good, "Sensors::add");
@@ -207,7 +208,7 @@ Status Sensors::remove(Key key) {
 }
 
 Status Sensors::move(Key key, const Pose& pose) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   if (!contains(key)) return logged(Status::invalid_key, "Sensors::move");
   if (!pose.is_valid()) return logged(Status::invalid_pose, "Sensors::move");
   state_->sensors[key.id].pose = pose;
@@ -215,7 +216,7 @@ Status Sensors::move(Key key, const Pose& pose) {
 }
 
 Status Sensors::set(Key key, const SensorDefinition& sensor) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   if (!contains(key)) return logged(Status::invalid_key, "Sensors::set");
   if (const Status good = state_->check(sensor); good != Status::ok) {
     return logged(good, "Sensors::set");
@@ -231,12 +232,12 @@ Status Sensors::sensor(Key key, SensorDefinition& sensor) const noexcept {
 }
 
 Status Sensors::sense() {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   if (state_ == nullptr) return logged(Status::out_of_memory, "Sensors::sense");
   SensorsState& s = *state_;
   s.sensed.swap(s.before);
   s.sensed.clear();
-  Status status = s.look();
+  Status status = s.find_sensed();
   if (status == Status::ok && !s.compare()) status = Status::out_of_memory;
   if (status == Status::out_of_memory) {
     s.forget();
@@ -269,7 +270,7 @@ Footprint Sensors::footprint() const noexcept {
   const SensorsState& s = *state_;
   Footprint sum;
   for (const SensorsState::Watch* const watch : s.watches) {
-    sum.scratch += watch->questions.footprint().total();
+    sum.scratch += watch->queries.footprint().total();
     sum.scratch += {sizeof(*watch), sizeof(*watch)};
     sum.scratch += watch->sensed.bytes();
   }

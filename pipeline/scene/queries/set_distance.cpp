@@ -22,7 +22,7 @@ constexpr double kSquareSlack = 1e-5;
 
 [[nodiscard]] Aabb box_of(const SceneState& scene, std::uint32_t body) noexcept {
   Aabb box;
-  (void)scene.set(scene.motion[body]).partition->bounds(scene.place[body], box);
+  (void)scene.set(scene.body_state[body]).partition->bounds(scene.place[body], box);
   return box;
 }
 
@@ -102,11 +102,11 @@ class SetPairs {
     return found;
   }
 
-  /// Calls look(body of a, body of b) for pairs whose boxes are at most most() apart, until it
+  /// Calls test(body of a, body of b) for pairs whose boxes are at most most() apart, until a call
   /// returns false; most() may decrease meanwhile. With `once`, and if both sets are the same, each
   /// pair occurs once.
-  template <typename Most, typename Look>
-  void each_within(Most&& most, Look&& look, bool once = false) {
+  template <typename Most, typename Test>
+  void each_within(Most&& most, Test&& test, bool once = false) {
     double least = square_of(most());
     const bool skips = once && is_one_set();
     for (std::size_t k = 0; k < a_.size(); ++k) {
@@ -114,7 +114,7 @@ class SetPairs {
       const std::span<const float> gaps = boxes_.squared_gaps(a);
       for (std::size_t i = skips ? k + 1 : 0; i < gaps.size(); ++i) {
         if (!(static_cast<double>(gaps[i]) <= least) || !takes(a, b_[i])) continue;
-        if (!look(a, b_[i])) return;
+        if (!test(a, b_[i])) return;
         least = square_of(most());
       }
     }
@@ -135,38 +135,41 @@ class SetPairs {
   SetBoxes boxes_;
 };
 
-/// True if two bodies overlap, or are at most `margin` apart. Tests for overlap first: that result
-/// is exact, so that a wider margin never loses a contact.
+/// True if two bodies overlap, or are at most `contact_margin` apart. The test for overlap comes
+/// first, because its result is exact: a pair that is in contact at margin 0 is in contact at every
+/// larger margin.
 [[nodiscard]] bool are_near(const QueryState& state, std::uint32_t a, std::uint32_t b,
-                            double margin) noexcept {
+                            double contact_margin) noexcept {
   const PlacedShape first = state.placed(a);
   const PlacedShape second = state.placed(b);
   std::uint32_t part = kWholeShape;
   if (do_overlap(state.parts, first, second, part)) return true;
   SceneDistance found;
-  return margin > 0.0 && ClosestParts(state.parts).find(first, second, margin, found);
+  return contact_margin > 0.0 &&
+         ClosestParts(state.parts).find(first, second, contact_margin, found);
 }
 
-/// Finds contacts of one body of the scene after the other, by id, up to the first body that has
-/// one. The bodies before it have none, so pairs with them need no test.
+/// Tests the bodies of the scene in the order of ids, up to the first body that has a contact.
+/// Bodies with smaller ids have no contacts, so pairs with these bodies need no test.
 class ContactOfBody {
  public:
-  ContactOfBody(QueryState& state, double margin, PairRules rules) noexcept
-      : state_(state), margin_(margin), rules_(rules) {}
+  ContactOfBody(QueryState& state, double contact_margin, PairRules rules) noexcept
+      : state_(state), contact_margin_(contact_margin), rules_(rules) {}
 
-  /// True if bodies of this motion are tested one after the other: every pair contains one of them.
-  [[nodiscard]] bool looks_at(Motion motion) const noexcept {
-    return rules_ == PairRules::none || motion == Motion::dynamic;
+  /// True if bodies of this state are tested one after the other: every pair contains one of them.
+  [[nodiscard]] bool is_searched(BodyState body_state) const noexcept {
+    return rules_ == PairRules::none || body_state == BodyState::dynamic;
   }
 
-  /// `other` is kNoObject if there is none.
+  /// Sets `other` to the body with the least id that is in contact with `body`, or to kNoObject if
+  /// there is none.
   [[nodiscard]] Status find(std::uint32_t body, std::uint32_t& other) {
     const SceneState& scene = state_.scene;
     std::uint32_t least = kNoObject;
-    auto look = [&](std::uint32_t next) {
-      const bool was_looked_at = next <= body && looks_at(scene.motion[next]);
-      if (was_looked_at || next >= least || !do_rules_take(scene, rules_, body, next)) return false;
-      if (are_near(state_, body, next, margin_)) least = next;
+    auto test = [&](std::uint32_t next) {
+      const bool was_searched = next <= body && is_searched(scene.body_state[next]);
+      if (was_searched || next >= least || !do_rules_take(scene, rules_, body, next)) return false;
+      if (are_near(state_, body, next, contact_margin_)) least = next;
       return false;
     };
     Filter filter;
@@ -175,10 +178,10 @@ class ContactOfBody {
       const ObjectFilter own = scene.filter_of(body);
       filter = {.layers = own.layers, .mask = own.mask, .environment = own.environment};
     }
-    BodyCandidateFilter looking(scene, filter, look);
+    BodyCandidateFilter body_filter(scene, filter, test);
     const Aabb box = reach_of(body);
     const Status status = state_.each_partition([&](const Partition& partition) {
-      return partition.overlap(box, state_.objects, looking.filter());
+      return partition.overlap(box, state_.objects, body_filter.filter());
     });
     if (status == Status::ok) other = least;
     return status;
@@ -189,7 +192,7 @@ class ContactOfBody {
   /// boundary.
   [[nodiscard]] Aabb reach_of(std::uint32_t body) const noexcept {
     const Aabb box = box_of(state_.scene, body);
-    const double reach = margin_ * (1.0 + 1e-9);
+    const double reach = contact_margin_ * (1.0 + 1e-9);
     Aabb wide;
     for (int axis = 0; axis < 3; ++axis) {
       wide.min[axis] = round_down(add_down(static_cast<double>(box.min[axis]), -reach));
@@ -199,7 +202,7 @@ class ContactOfBody {
   }
 
   QueryState& state_;
-  double margin_;
+  double contact_margin_;
   PairRules rules_;
 };
 
@@ -212,10 +215,10 @@ class ClosestBodies {
   [[nodiscard]] SetDistance find(SetPairs& pairs) {
     const KeyPair nearest = pairs.nearest(reach());
     if (nearest.first == Key{}) return best_;
-    look(nearest.first, nearest.second);
+    test(nearest.first, nearest.second);
     pairs.each_within([&] { return reach(); },
                       [&](Key a, Key b) {
-                        look(a, b);
+                        test(a, b);
                         return true;
                       });
     return best_;
@@ -226,7 +229,7 @@ class ClosestBodies {
   [[nodiscard]] double reach() const noexcept { return std::max(limit_, 0.0); }
 
   /// If distances are equal, the pair that is first in the order of ids is kept.
-  void look(Key a, Key b) noexcept {
+  void test(Key a, Key b) noexcept {
     SceneDistance found;
     ClosestParts parts(state_.parts);
     if (!parts.find(state_.placed(a.id), state_.placed(b.id), limit_, found)) return;
@@ -253,14 +256,14 @@ class ClosestBodies {
   return all ? Status::ok : Status::invalid_key;
 }
 
-[[nodiscard]] bool is_margin(double margin) noexcept {
-  return margin >= 0.0 && std::isfinite(margin);
+[[nodiscard]] bool is_contact_margin(double contact_margin) noexcept {
+  return contact_margin >= 0.0 && std::isfinite(contact_margin);
 }
 
 }  // namespace
 
 Status SceneQueries::distance(Key a, Key b, SceneDistance& answer, double limit, PairRules rules) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   if (const Status status = check_sets(state_, {&a, 1}, {&b, 1}, rules); status != Status::ok) {
     return status;
   }
@@ -280,7 +283,7 @@ Status SceneQueries::distance(Key a, Key b, SceneDistance& answer, double limit,
 
 Status SceneQueries::least_distance(std::span<const Key> a, std::span<const Key> b,
                                     SetDistance& answer, double limit, PairRules rules) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   if (const Status status = check_sets(state_, a, b, rules); status != Status::ok) return status;
   if (std::isnan(limit)) return Status::invalid_argument;
   SetPairs pairs(*state_, a, b, rules);
@@ -291,51 +294,51 @@ Status SceneQueries::least_distance(std::span<const Key> a, std::span<const Key>
 
 Status SceneQueries::overlaps(std::span<const Key> a, std::span<const Key> b,
                               std::span<const KeyPair>& pairs, std::size_t most, PairRules rules) {
-  const DefaultEnvironment environment;
+  const DefaultFloatEnvironment environment;
   if (const Status status = check_sets(state_, a, b, rules); status != Status::ok) return status;
   Column<KeyPair>& found = state_->overlapping;
   found.clear();
   SetPairs all(*state_, a, b, rules);
   bool has_room = all.find_boxes();
-  const auto look = [&](Key first, Key second) {
+  const auto test = [&](Key first, Key second) {
     std::uint32_t part = kWholeShape;
     if (do_overlap(state_->parts, state_->placed(first.id), state_->placed(second.id), part)) {
       has_room = found.push_back({first, second});
     }
     return has_room && found.size() < most;
   };
-  if (has_room && most != 0) all.each_within([] { return 0.0; }, look);
+  if (has_room && most != 0) all.each_within([] { return 0.0; }, test);
   if (!has_room) return Status::out_of_memory;
   pairs = {found.data(), found.size()};
   return Status::ok;
 }
 
 Status SceneQueries::any_contact(std::span<const Key> a, std::span<const Key> b, KeyPair& pair,
-                                 double margin, PairRules rules) {
-  const DefaultEnvironment environment;
+                                 double contact_margin, PairRules rules) {
+  const DefaultFloatEnvironment environment;
   if (const Status status = check_sets(state_, a, b, rules); status != Status::ok) return status;
-  if (!is_margin(margin)) return Status::invalid_argument;
+  if (!is_contact_margin(contact_margin)) return Status::invalid_argument;
   SetPairs all(*state_, a, b, rules);
   if (!all.find_boxes()) return Status::out_of_memory;
   KeyPair found;
-  const auto look = [&](Key first, Key second) {
-    if (!are_near(*state_, first.id, second.id, margin)) return true;
+  const auto test = [&](Key first, Key second) {
+    if (!are_near(*state_, first.id, second.id, contact_margin)) return true;
     found = {first, second};
     return false;
   };
-  all.each_within([&] { return margin; }, look, true);
+  all.each_within([&] { return contact_margin; }, test, true);
   pair = found;
   return Status::ok;
 }
 
-Status SceneQueries::any_contact(KeyPair& pair, double margin, PairRules rules) {
-  const DefaultEnvironment environment;
+Status SceneQueries::any_contact(KeyPair& pair, double contact_margin, PairRules rules) {
+  const DefaultFloatEnvironment environment;
   if (const Status status = check_sets(state_, {}, {}, rules); status != Status::ok) return status;
-  if (!is_margin(margin)) return Status::invalid_argument;
+  if (!is_contact_margin(contact_margin)) return Status::invalid_argument;
   const SceneState& scene = state_->scene;
-  ContactOfBody contact(*state_, margin, rules);
+  ContactOfBody contact(*state_, contact_margin, rules);
   for (std::uint32_t body = 0; body < scene.keys.slot_count(); ++body) {
-    if (!scene.keys.is_live(body) || !contact.looks_at(scene.motion[body])) continue;
+    if (!scene.keys.is_live(body) || !contact.is_searched(scene.body_state[body])) continue;
     std::uint32_t other = kNoObject;
     if (const Status status = contact.find(body, other); status != Status::ok) return status;
     if (other == kNoObject) continue;

@@ -5,7 +5,7 @@
 // since t - s / |v|. So every sample at which they are apart, before or after the impact, bounds
 // the impact from one side or excludes it. Samples are taken where Newton's method would take them
 // (planes through closest points are tangents of g), plus a little, so that the last sample is in
-// contact and closes the bracket. The sweeps in swept_shapes.cpp and composite_sweep.cpp call this.
+// contact and closes the bracket. The casts in linear_casts.cpp and composite_cast.cpp call this.
 
 #include "pipeline/scene/queries/shape_cast.h"
 
@@ -33,7 +33,8 @@ using solver::kEpsilon;
 using solver::Problem;
 using solver::Vec;
 
-/// The bracket is halved every other time, so doubles are exhausted before this.
+/// Every other sample halves the bracket, so the bracket contains no further double before this
+/// number of samples is reached.
 constexpr std::uint32_t kMaxSeparationSamples = 256;
 
 /// Position of the fixed shape relative to the moving one, accurate to the last bit on a path of
@@ -110,8 +111,8 @@ class Advancement {
         pair_(pair),
         path_(pair),
         tolerance_(tolerance / path_.speed()),
-        mirrored_(solver::is_prepared_mirrored(pair.moving.kind(), pair.standing.kind())),
-        largest_(solver::largest_length(tables, pair.moving, pair.standing)) {}
+        mirrored_(solver::is_prepared_mirrored(pair.moving.kind(), pair.stationary.kind())),
+        largest_(solver::largest_length(tables, pair.moving, pair.stationary)) {}
 
   bool run(CastTouch& touch) noexcept {
     const bool hit = search();
@@ -165,21 +166,21 @@ void Advancement::prepare_at(double t) noexcept {
   if (is_prepared_ && solver::move(mirrored_ ? Vec(-offset) : offset, largest_, problem_)) return;
   is_prepared_ = true;
   Pose moving;
-  Pose standing;
+  Pose stationary;
   std::copy_n(pair_.from.orientation, 4, moving.orientation);
-  std::copy_n(pair_.pose.orientation, 4, standing.orientation);
-  Vec::Map(standing.position) = offset;
+  std::copy_n(pair_.pose.orientation, 4, stationary.orientation);
+  Vec::Map(stationary.position) = offset;
   if (mirrored_) {
-    prepare(tables_, pair_.standing, standing, pair_.moving, moving, true, problem_);
+    prepare(tables_, pair_.stationary, stationary, pair_.moving, moving, true, problem_);
   } else {
-    prepare(tables_, pair_.moving, moving, pair_.standing, standing, false, problem_);
+    prepare(tables_, pair_.moving, moving, pair_.stationary, stationary, false, problem_);
   }
 }
 
 /// Returns the gap along a plane that separates the pair, less all rounding; none if the shapes
 /// touch as far as double precision can decide. The gap is verified for the plane itself and does
 /// not rely on the solver's distance. The plane has about the widest gap, unless `any_plane` is
-/// enough.
+/// set.
 SeparationSample Advancement::sample(double t, bool any_plane) noexcept {
   ++steps_;
   prepare_at(t);
@@ -214,8 +215,8 @@ void Advancement::face(const Vec& axis, SeparationSample& sample) const noexcept
   sample.closing = sample.normal.dot(path_.step()) + 4.0 * kEpsilon * path_.speed();
 }
 
-/// For pairs whose separation GJK cannot prove. Without a good plane the closing speed is the full
-/// speed.
+/// Proves the separation of pairs for which GJK cannot. If no plane separates the pair by more than
+/// rounding, the closing speed is set to the full speed.
 double Advancement::surely_apart(const Problem& problem, SeparationSample& sample) noexcept {
   const CoreDistance found = core_distance(problem, ContactLevel::boolean, kInfinity, counts_);
   if (found.overlaps) return 0.0;
@@ -230,7 +231,7 @@ double Advancement::surely_apart(const Problem& problem, SeparationSample& sampl
 /// Uses exact arithmetic if double precision cannot decide.
 bool Advancement::touches_at_start() noexcept {
   const auto solve = [this](ContactLevel level) {
-    return solve_pair(tables_, pair_.moving, pair_.from, pair_.standing, pair_.pose, level, 0.0,
+    return solve_pair(tables_, pair_.moving, pair_.from, pair_.stationary, pair_.pose, level, 0.0,
                       counts_);
   };
   overlap_at_start_ = solve(ContactLevel::boolean).overlap;
@@ -274,7 +275,7 @@ bool Advancement::search() noexcept {
       if (t == 0.0) return touches_at_start();
       touching_ = std::min(touching_, t);
     } else if (found.closing <= 8.0 * kEpsilon * path_.speed()) {
-      // They do not touch later. The gap before t is limited by the rounding of the path.
+      // The shapes do not approach, up to rounding, so they do not touch from t - gap / leaving on.
       const double leaving = std::max(-found.closing, 0.0);
       free_from_ = std::min(free_from_, add_up(t, -found.gap / leaving));
     } else {
@@ -290,7 +291,7 @@ bool Advancement::search() noexcept {
     if (touching_ - free_until_ <= tolerance_) return true;
     const double before = t;
     t = next(step);
-    // There is no number between.
+    // No double is between the two samples.
     if (t == before || t >= touching_ || t >= free_from_) return true;
   }
   return true;

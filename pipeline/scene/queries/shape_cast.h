@@ -7,7 +7,7 @@
 
 namespace winnow {
 
-/// A convex shape that moves along a line without turning, and a fixed one.
+/// A convex shape that moves along a line without rotation, and a fixed convex shape.
 struct CastPair {
   ShapeId moving;
   Pose from;
@@ -15,7 +15,7 @@ struct CastPair {
   double direction[3] = {1.0, 0.0, 0.0};
   /// Not negative; may be infinite.
   double max_t = 1.0;
-  ShapeId standing;
+  ShapeId stationary;
   Pose pose;
   /// A time until which the shapes certainly do not touch.
   double free_until = 0.0;
@@ -29,11 +29,11 @@ struct CastTouch {
   /// In units of the direction.
   double t = 0.0;
   /// Unit vector from the fixed shape to the moving one. Before `describe_touch`: the normal of a
-  /// plane that separated them shortly before the touch, or zero.
+  /// plane that separated the shapes shortly before the touch, or zero.
   double normal[3] = {0.0, 0.0, 0.0};
   /// On the fixed shape, relative to its position, in world axes. Set by `describe_touch`.
   double point[3] = {0.0, 0.0, 0.0};
-  /// They overlap at the start.
+  /// The shapes overlap at the start.
   bool overlaps_at_start = false;
   /// Number of distance computations.
   std::uint32_t steps = 0;
@@ -45,9 +45,9 @@ struct CastTouch {
 ///
 /// t is never later than the true time of impact. It is earlier by at most `tolerance`, a length
 /// along the path, or by the rounding error: about 1e-14 of the shapes' sizes over the sine of the
-/// angle of impact, and 1e-15 of the path. Shapes that pass each other by less than rounding touch.
-/// If they touch at the start, t is 0 and the normal is the direction of least penetration. Shapes
-/// and poses must be valid; the moving shape must not be a half-space.
+/// angle of impact, and 1e-15 of the path. Shapes that pass each other by less than rounding count
+/// as touching. If the shapes touch at the start, t is 0 and the normal is the direction of least
+/// penetration. Shapes and poses must be valid; the moving shape must not be a half-space.
 [[nodiscard]] bool cast_shape(const ShapeTables& tables, const CastPair& pair, double tolerance,
                               CastTouch& touch) noexcept;
 

@@ -26,8 +26,8 @@ namespace winnow {
 
 /// True if one part is a one-sided triangle and the other is behind it, so that they do not
 /// collide.
-[[nodiscard]] inline bool any_stands_behind(const SubShapeQuery& parts, const SubShape& a,
-                                            const SubShape& b) noexcept {
+[[nodiscard]] inline bool is_either_behind(const SubShapeQuery& parts, const SubShape& a,
+                                           const SubShape& b) noexcept {
   return (a.front != 0 && is_behind_triangle(parts.box(b), a)) ||
          (b.front != 0 && is_behind_triangle(parts.box(a), b));
 }
@@ -69,33 +69,33 @@ struct Pairing {
 }
 
 /// True if one shape is a solid that contains the other; tests a single point of the other.
-[[nodiscard]] inline bool any_holds(const SubShapeQuery& parts, const PlacedShape& a,
-                                    const PlacedShape& b) noexcept {
-  return parts.holds(a, b) || parts.holds(b, a);
+[[nodiscard]] inline bool is_either_inside(const SubShapeQuery& parts, const PlacedShape& a,
+                                           const PlacedShape& b) noexcept {
+  return parts.solid_contains(a, b) || parts.solid_contains(b, a);
 }
 
 /// True if the surfaces overlap; `part` is then a part of b that does.
 [[nodiscard]] inline bool do_parts_overlap(const SubShapeQuery& parts, const Pairing& pair,
                                            std::uint32_t& part) noexcept {
   bool found = false;
-  auto look = [&](const SubShape& a, const SubShape& b) {
+  auto test_pair = [&](const SubShape& a, const SubShape& b) {
     found =
-        !any_stands_behind(parts, a, b) && solve_parts(parts, a, b, ContactLevel::boolean).overlap;
+        !is_either_behind(parts, a, b) && solve_parts(parts, a, b, ContactLevel::boolean).overlap;
     if (found) part = b.part;
     return !found;
   };
-  if (parts.pairs(pair.a, pair.b, look)) return found;
-  auto look_about = [&](const SubShape& a, double) {
-    parts.met(pair.b, parts.box(a).standing(),
-              [&](const SubShape& b, double) { return look(a, b) ? 0.0 : -1.0; });
+  if (parts.pairs(pair.a, pair.b, test_pair)) return found;
+  auto test_parts_near = [&](const SubShape& a, double) {
+    parts.visit_parts(pair.b, parts.box(a).stationary(),
+                      [&](const SubShape& b, double) { return test_pair(a, b) ? 0.0 : -1.0; });
     return found ? -1.0 : 0.0;
   };
-  // Skip the box of b if a is a single part: it is not needed, and for a compound visits all
+  // If a is a single part, the box of b is not needed; for a compound it would visit all
   // children.
   if (!pair.a.shape.is_composite()) {
-    look_about({pair.a.shape, pair.a.pose}, 0.0);
+    test_parts_near({pair.a.shape, pair.a.pose}, 0.0);
   } else {
-    parts.met(pair.a, parts.box(pair.b).standing(), look_about);
+    parts.visit_parts(pair.a, parts.box(pair.b).stationary(), test_parts_near);
   }
   return found;
 }
@@ -107,7 +107,7 @@ struct Pairing {
   const Pairing pair(first, second);
   if (do_parts_overlap(parts, pair, part)) return true;
   part = kWholeShape;
-  return any_holds(parts, pair.a, pair.b);
+  return is_either_inside(parts, pair.a, pair.b);
 }
 
 /// Finds the closest parts of two shapes, within a limit.
@@ -119,9 +119,9 @@ class ClosestParts {
   bool find(const PlacedShape& first, const PlacedShape& second, double limit,
             SceneDistance& answer) noexcept {
     const Pairing pair(first, second);
-    const bool held = any_holds(parts_, pair.a, pair.b);
-    return find_parts(pair, held ? mid::kInfinity : limit, answer) &&
-           (!held || is_within(limit, answer));
+    const bool contained = is_either_inside(parts_, pair.a, pair.b);
+    return find_parts(pair, contained ? mid::kInfinity : limit, answer) &&
+           (!contained || is_within(limit, answer));
   }
   /// As above, for a part that belongs to no shape, such as a point.
   bool find(SubShape first, PlacedShape second, double limit, SceneDistance& answer) noexcept {
@@ -131,33 +131,33 @@ class ClosestParts {
       second.pose = relative(second.pose, base);
       first.pose = relative(first.pose, base);
     }
-    const bool held = parts_.holds(second, first.pose.position);
-    begin(base, held ? mid::kInfinity : limit, answer);
-    look_about(first, second);
-    return found_ && (!held || is_within(limit, answer));
+    const bool contained = parts_.solid_contains(second, first.pose.position);
+    begin(base, contained ? mid::kInfinity : limit, answer);
+    test_parts_near(first, second);
+    return found_ && (!contained || is_within(limit, answer));
   }
 
  private:
   bool find_parts(const Pairing& pair, double limit, SceneDistance& answer) noexcept {
     begin(pair.base, limit, answer);
     std::fill_n(answer.normal, 3, 0.0);
-    auto look_at = [&](const SubShape& a, const SubShape& b, double) {
-      look(a, b);
+    auto test_and_limit = [&](const SubShape& a, const SubShape& b, double) {
+      test_pair(a, b);
       return reach();
     };
-    if (parts_.near_pairs(pair.a, pair.b, reach(), answer.normal, look_at)) return found_;
-    // Skip the box of b if a is a single part: it is not needed, and for a compound visits all
+    if (parts_.near_pairs(pair.a, pair.b, reach(), answer.normal, test_and_limit)) return found_;
+    // If a is a single part, the box of b is not needed; for a compound it would visit all
     // children.
     if (!pair.a.shape.is_composite()) {
-      look_about({pair.a.shape, pair.a.pose}, pair.b);
+      test_parts_near({pair.a.shape, pair.a.pose}, pair.b);
     } else {
       parts_.near(pair.a, parts_.box(pair.b), reach(),
-                  [&](const SubShape& a, double) { return look_about(a, pair.b); });
+                  [&](const SubShape& a, double) { return test_parts_near(a, pair.b); });
     }
     return found_;
   }
   /// For a shape inside a solid: turns the distance from the surface into a depth. Returns false if
-  /// it exceeds the limit.
+  /// the resulting distance exceeds the limit.
   [[nodiscard]] static bool is_within(double limit, SceneDistance& answer) noexcept {
     if (answer.distance > 0.0) {
       answer.distance = -answer.distance;
@@ -174,17 +174,17 @@ class ClosestParts {
   /// Boxes beyond this are skipped. Never negative, because overlapping boxes may have parts of any
   /// depth.
   [[nodiscard]] double reach() const noexcept { return std::max(limit_, 0.0); }
-  double look_about(const SubShape& a, const PlacedShape& second) noexcept {
+  double test_parts_near(const SubShape& a, const PlacedShape& second) noexcept {
     parts_.near(second, parts_.box(a), reach(), [&](const SubShape& b, double) {
-      look(a, b);
+      test_pair(a, b);
       return reach();
     });
     return reach();
   }
-  void look(const SubShape& a, const SubShape& b) noexcept {
+  void test_pair(const SubShape& a, const SubShape& b) noexcept {
     if (a.ball != nullptr && b.triangle != nullptr && is_farther(a, b, limit_)) return;
     const PairAnswer pair = solve_parts(parts_, a, b, ContactLevel::distance);
-    if (!(pair.distance <= limit_) || any_stands_behind(parts_, a, b)) return;
+    if (!(pair.distance <= limit_) || is_either_behind(parts_, a, b)) return;
     SceneDistance& answer = *answer_;
     if (found_ && pair.distance == limit_ &&
         std::pair(answer.part, answer.part_a) <= std::pair(b.part, a.part)) {

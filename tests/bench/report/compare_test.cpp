@@ -26,14 +26,14 @@ Json report() {
     "machine": {"processor": "some", "cores": 2, "isa": "wide", "reference_sweep_ms": 20.0},
     "settings": {"seed": 1, "quick": false, "objects": [100]},
     "missing": [], "problems": [], "sections": [],
-    "tables": [{"name": "speed", "section": "s", "title": "t", "keys": ["who"],
+    "tables": [{"name": "speed", "section": "s", "title": "t", "keys": ["engine"],
       "values": [{"name": "frame_ms", "label": "", "unit": "ms", "better": "less", "format": "number"},
                  {"name": "rate", "label": "", "unit": "1/s", "better": "more", "format": "number"},
                  {"name": "bytes", "label": "", "unit": "bytes", "better": "less", "format": "number"},
                  {"name": "worst_error", "label": "", "unit": "", "better": "less", "format": "number"},
                  {"name": "pairs", "label": "", "unit": "", "better": "neither", "format": "number"},
                  {"name": "fingerprint", "label": "", "unit": "", "better": "neither", "format": "number"}],
-      "rows": [{"id": "speed/Grid", "who": "Grid", "command": "bench/run x"}]}]})");
+      "rows": [{"id": "speed/Grid", "engine": "Grid", "command": "bench/run x"}]}]})");
 }
 
 Json& row(Json& of) {
@@ -193,7 +193,7 @@ TEST(Compare, other_libraries_and_derived_values_are_not_counted) {
       if (derived)
         row(*report)["from"] = {{"value", "bytes"}};
       else
-        row(*report)["who"] = "Bullet dbvt";
+        row(*report)["engine"] = "Bullet dbvt";
     }
     const Outcome outcome = compared(before, after);
     EXPECT_EQ(outcome.verdict(), "worse");
@@ -211,7 +211,7 @@ TEST(Compare, measured_value_beside_a_derived_one_is_counted) {
 
 TEST(Compare, rows_in_only_one_report_are_counted) {
   Json more = with("bytes", 100);
-  more["tables"][0]["rows"].push_back({{"id", "speed/Tree"}, {"who", "Tree"}, {"bytes", 1}});
+  more["tables"][0]["rows"].push_back({{"id", "speed/Tree"}, {"engine", "Tree"}, {"bytes", 1}});
   const Outcome outcome = compared(with("bytes", 100), more);
   EXPECT_EQ(outcome.found["only_after"], 1);
   EXPECT_EQ(outcome.found["only_before"], 0);
@@ -245,7 +245,7 @@ TEST(Compare, file_that_is_no_report_ends_with_two) {
   wrong[1]["tables"][0]["values"][0] = Json::object();
   wrong[2]["complete"] = 1;
   row(wrong[3])["frame_ms"].erase("min");
-  row(wrong[4]).erase("who");
+  row(wrong[4]).erase("engine");
   wrong[5]["problems"] = {1};
   std::vector<std::string> texts{"", good.substr(0, good.size() / 2), "[]", "{}"};
   for (const Json& document : wrong) texts.push_back(document.dump());

@@ -14,7 +14,7 @@ namespace {
 
 struct Ending {
   int status = -1;
-  std::string said;
+  std::string message;
 };
 
 class HostileFiles : public testing::Test {
@@ -31,19 +31,19 @@ class HostileFiles : public testing::Test {
     for (std::size_t at = 0; (at = arguments.find("FILE")) != std::string::npos;) {
       arguments.replace(at, 4, "'" + file + "'");
     }
-    const std::string out = (folder_ / "said.txt").string();
+    const std::string out = (folder_ / "stderr.txt").string();
     const std::string command =
         std::string("'") + WINNOW_TOOL + "' " + arguments + " >/dev/null 2>'" + out + "'";
     const int status = std::system(command.c_str());
-    std::ostringstream said;
-    said << std::ifstream(out).rdbuf();
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, said.str()};
+    std::ostringstream message;
+    message << std::ifstream(out).rdbuf();
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, message.str()};
   }
   void expect_refused(const std::string& arguments, const std::string& text) {
     const Ending ending = run(arguments, text);
     EXPECT_EQ(ending.status, 2) << text.substr(0, 200);
-    EXPECT_NE(ending.said.find("given.json"), std::string::npos) << ending.said;
-    EXPECT_EQ(ending.said.find("json.exception"), std::string::npos) << ending.said;
+    EXPECT_NE(ending.message.find("given.json"), std::string::npos) << ending.message;
+    EXPECT_EQ(ending.message.find("json.exception"), std::string::npos) << ending.message;
   }
 
   const std::filesystem::path folder_ =
@@ -75,10 +75,10 @@ TEST_F(HostileFiles, deeply_nested_json_is_refused) {
 
 TEST_F(HostileFiles, brackets_in_strings_are_read) {
   const Ending ending = run("query FILE", "[{\"id\":\"\\\"" + std::string(1000, '[') + "\"}]");
-  EXPECT_EQ(ending.status, 0) << ending.said;
+  EXPECT_EQ(ending.status, 0) << ending.message;
 }
 
-// Each question is wrong in another place, and none may lead to a read out of bounds.
+// Each question is wrong in a different member. No question may lead to a read out of bounds.
 TEST_F(HostileFiles, wrong_hard_cases_are_judged_or_refused) {
   const std::string a = R"("id": 1, "a": {"type": "sphere", "radius": 1, "half": [1], "v": [[]]})";
   const std::string b = R"("b": {"type": "triangle", "v": [[0, 0, 0], [1, 0, 0], [0, 1, 0]]})";
@@ -102,8 +102,8 @@ TEST_F(HostileFiles, wrong_hard_cases_are_judged_or_refused) {
            std::string("7"),
        }) {
     const Ending ending = run("query --judge FILE", "[" + question + "]");
-    EXPECT_TRUE(ending.status == 0 || ending.status == 2) << question << '\n' << ending.said;
-    EXPECT_EQ(ending.said.find("json.exception"), std::string::npos) << ending.said;
+    EXPECT_TRUE(ending.status == 0 || ending.status == 2) << question << '\n' << ending.message;
+    EXPECT_EQ(ending.message.find("json.exception"), std::string::npos) << ending.message;
   }
 }
 

@@ -25,11 +25,11 @@ endmacro()
 
 foreach(name whole killed interrupted)
   look(${REPORTS}/${name}/index.html page all)
-  read_facts(drawn wanted plots blank)
+  read_facts(drawn points plots blank)
   # There is one canvas for each plot; Chart.js writes other spellings of the tag.
   string(REGEX MATCHALL "<canvas id=" canvases "${page}")
   list(LENGTH canvases expected)
-  if(NOT drawn EQUAL wanted OR drawn EQUAL 0 OR NOT blank STREQUAL "" OR
+  if(NOT drawn EQUAL points OR drawn EQUAL 0 OR NOT blank STREQUAL "" OR
      NOT plots EQUAL expected)
     message(FATAL_ERROR "${name}: ${expected} plots were to be drawn: ${body}")
   endif()

@@ -24,7 +24,7 @@ class Documents : public testing::Test {
   }
   void TearDown() override { std::filesystem::remove_all(folder_); }
 
-  /// Writes rows of one engine on two scenes and of another on one.
+  /// Writes rows of one engine on two scenes and of another engine on one scene.
   void write_results(double ms) const {
     TableJson rows = TableJson::array();
     const auto add = [&](const char* scene, const char* engine, double median) {

@@ -25,8 +25,8 @@ winnow::Aabb box_of(const btVector3& low, const btVector3& high) {
   return {{low.x(), low.y(), low.z()}, {high.x(), high.y(), high.z()}};
 }
 
-/// Bullet stores its objects in proxies, and pairs in a cache that its dispatcher reads. A
-/// partition reports which pairs begin and end, and only these change the cache.
+/// Bullet stores its objects in proxies, and pairs in a cache that its dispatcher reads. The
+/// partition reports the pairs that begin and end; this class adds and removes only those pairs.
 class WinnowBroadPhase final : public btBroadphaseInterface {
  public:
   btBroadphaseProxy* createProxy(const btVector3& low, const btVector3& high, int /*shape_type*/,
@@ -83,7 +83,7 @@ class WinnowBroadPhase final : public btBroadphaseInterface {
     send_moves();
     check(partition_.self_pairs(events_) == winnow::Status::ok, "pairs are found");
     for (const winnow::KeyPair& pair : events_.ended()) {
-      // Pairs of a proxy that was destroyed have left the cache with it.
+      // destroyProxy() has already removed the pairs of destroyed proxies from the cache.
       if (!partition_.contains(pair.first) || !partition_.contains(pair.second)) continue;
       pairs_.removeOverlappingPair(proxy_of(pair.first.id), proxy_of(pair.second.id), dispatcher);
     }
@@ -201,8 +201,8 @@ class World {
     bodies_.pop_back();
   }
 
-  /// Returns the pairs of bodies whose boxes overlap; the cache may also contain pairs that no
-  /// longer overlap, as Bullet's own does.
+  /// Returns the pairs of bodies whose boxes overlap. Skips pairs that no longer overlap: the pair
+  /// caches of winnow's broad phase and of Bullet's own may contain such pairs.
   [[nodiscard]] std::set<std::pair<int, int>> pairs() const {
     std::set<std::pair<int, int>> found;
     const btOverlappingPairCache& cache = *broad_phase_.getOverlappingPairCache();

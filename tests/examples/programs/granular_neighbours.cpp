@@ -23,8 +23,8 @@ bool touch(const winnow::Sphere& a, const winnow::Sphere& b) {
   return (a.center - b.center).squared_norm() <= reach * reach;
 }
 
-/// Cells as wide as the largest grain, sorted by counting; each is tested with half of its
-/// neighbours.
+/// A grid of cells as wide as the largest grain. A counting sort orders the grains by cell. The
+/// grains of a cell are tested with each other and with the grains of half of the 26 neighbours.
 class CellList {
  public:
   CellList(float cell, float world) : cell_(cell), side_(static_cast<int>(world / cell) + 3) {

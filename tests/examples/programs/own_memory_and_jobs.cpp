@@ -42,8 +42,7 @@ class CountingMemory final : public std::pmr::memory_resource {
   }
 };
 
-/// The job system of the program: threads that wait for work, and the calling thread, which takes
-/// part.
+/// The job system of the program: threads that wait for work. The calling thread also runs tasks.
 class Jobs {
  public:
   explicit Jobs(std::size_t threads) {
@@ -83,7 +82,7 @@ class Jobs {
     }
     wake_.notify_all();
     take_tasks(batch);
-    // Waits for the threads that are at work; other threads find no task left.
+    // Waits for the threads that still run a task; other threads find no remaining task.
     std::unique_lock lock(mutex_);
     batch_ = {};
     done_.wait(lock, [&] { return working_ == 0; });
@@ -94,7 +93,8 @@ class Jobs {
   void work() {
     std::size_t seen = 0;
     for (;;) {
-      // Work often follows work, so a thread looks for it for a while before it sleeps.
+      // A new batch often follows at once, so a thread tests kLooks times for one before it
+      // sleeps.
       for (int look = 0; look < kLooks && number_ == seen; ++look) std::this_thread::yield();
       std::unique_lock lock(mutex_);
       wake_.wait(lock, [&] { return stopping_ || number_ != seen; });
@@ -186,7 +186,7 @@ int main(int argc, char** argv) {
   Boxes boxes(race.size(5'000, 100'000));
   Finder own(boxes, winnow::Execution::on(jobs.system()), &memory);
   Finder on_tbb(boxes, winnow::Execution::parallel(), std::pmr::get_default_resource());
-  Finder alone(boxes, winnow::Execution::serial(), std::pmr::get_default_resource());
+  Finder single_threaded(boxes, winnow::Execution::serial(), std::pmr::get_default_resource());
 
   const std::size_t frames = race.size(20, 60);
   std::size_t before = 0;
@@ -195,9 +195,9 @@ int main(int argc, char** argv) {
     if (frame == frames / 2) before = memory.requests;
     race.time("winnow on own threads", [&] { own.find(boxes); });
     race.time("on oneTBB", [&] { on_tbb.find(boxes); });
-    race.time("on one thread", [&] { alone.find(boxes); });
+    race.time("on one thread", [&] { single_threaded.find(boxes); });
     check(std::ranges::equal(own.pairs.pairs(), on_tbb.pairs.pairs()) &&
-              std::ranges::equal(own.pairs.pairs(), alone.pairs.pairs()),
+              std::ranges::equal(own.pairs.pairs(), single_threaded.pairs.pairs()),
           "all find the same pairs in the same order");
   }
   check(own.bytes() == memory.bytes, "the footprint equals the allocated memory, to the byte");

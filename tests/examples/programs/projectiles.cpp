@@ -1,6 +1,7 @@
 // Projectiles, ships and shields: candidate hits of each shot in a step, the exact hits, and events
-// for shots that enter and leave shields. The box of a shot covers its whole step, so that no shot
-// is too fast. Compared, if Bullet is installed, with btDbvtBroadphase, which has no events.
+// for shots that enter and leave shields. The box of a shot covers its whole step, so that a fast
+// shot cannot pass through a ship. Compared, if Bullet is installed, with btDbvtBroadphase, which
+// has no events.
 
 #include <winnow/partitions/partition.h>
 
@@ -59,7 +60,7 @@ class Battle {
     const float t = std::clamp(to_ship.dot(way) / way.squared_norm(), 0.0F, 1.0F);
     return (to_ship - t * way).squared_norm() <= radius_[ship] * radius_[ship];
   }
-  /// Fires a shot again that has hit or has left the world.
+  /// Fires a shot again after it has hit a ship or left the world.
   void fire(std::uint32_t shot) {
     position_[shot] = any_place();
     boxes[shot] = box_of(shot);

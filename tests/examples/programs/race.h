@@ -24,19 +24,19 @@ class Race {
 
   /// Runs the work of one frame and records its time. The first contender of a program is winnow.
   template <typename Work>
-  void time(const std::string& who, Work&& work) {
+  void time(const std::string& name, Work&& work) {
     const auto begin = std::chrono::steady_clock::now();
     work();
     const std::chrono::duration<double, std::milli> taken =
         std::chrono::steady_clock::now() - begin;
-    of(who).milliseconds.push_back(taken.count());
+    of(name).milliseconds.push_back(taken.count());
   }
 
   /// Prints the median frame of each contender. Returns the exit status for main.
   [[nodiscard]] int finish(const std::string& what) {
     std::printf("%s\n", what.c_str());
     for (Contender& one : contenders_) {
-      std::printf("  %-34s %9.3f ms a frame", one.who.c_str(), median(one));
+      std::printf("  %-34s %9.3f ms a frame", one.name.c_str(), median(one));
       if (&one != &contenders_.front()) {
         const double times = median(one) / median(contenders_.front());
         std::printf("  winnow is %.2f times as fast", times);
@@ -48,15 +48,15 @@ class Race {
 
  private:
   struct Contender {
-    std::string who;
+    std::string name;
     std::vector<double> milliseconds;
   };
 
-  Contender& of(const std::string& who) {
+  Contender& of(const std::string& name) {
     for (Contender& one : contenders_) {
-      if (one.who == who) return one;
+      if (one.name == name) return one;
     }
-    return contenders_.emplace_back(Contender{who, {}});
+    return contenders_.emplace_back(Contender{name, {}});
   }
   [[nodiscard]] static double median(Contender& one) {
     const auto middle =

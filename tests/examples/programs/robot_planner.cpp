@@ -84,7 +84,7 @@ class WinnowChecker {
             "a box is made");
       check(scene_.add({.shape = shape,
                         .pose = pose_of(box.pose),
-                        .motion = winnow::Motion::fixed,
+                        .state = winnow::BodyState::fixed,
                         .filter = {.layers = kCell, .environment = winnow::kAllEnvironments}},
                        key) == winnow::Status::ok,
             "it is added");

@@ -21,7 +21,7 @@ int main() {
   enum Layer : std::uint32_t { level = 1, players = 2 };
   winnow::Scene scene(shapes);
   winnow::Key door, hero;
-  scene.add({wall, winnow::Pose::at(10, 0, 0), winnow::Motion::fixed, {.layers = level}}, door);
+  scene.add({wall, winnow::Pose::at(10, 0, 0), winnow::BodyState::fixed, {.layers = level}}, door);
   scene.add({.shape = soldier,
              .pose = winnow::Pose::at(20, 0, 0),
              .filter = {.layers = players, .mask = level | players}},
@@ -29,12 +29,12 @@ int main() {
   // [end]
 
   scene.refresh();
-  winnow::SceneQueries ask(scene);
+  winnow::SceneQueries queries(scene);
   // [projectile]
   const double step = 1.0 / 60.0;
   winnow::SceneHit hit;  // 900 m/s is 15 m in a frame; the wall is 2 mm thick
-  ask.closest(winnow::ShapeCast{bullet, winnow::Pose::at(0, 0, 0), {900, 0, 0}, step}, hit,
-              {.mask = level | players});
+  queries.closest(winnow::ShapeCast{bullet, winnow::Pose::at(0, 0, 0), {900, 0, 0}, step}, hit,
+                  {.mask = level | players});
   if (hit) check(hit.t < step, "hit.t is the time, hit.point the place, hit.normal the side");
   // [end]
   check(hit.key == door, "nothing is too thin to be hit");

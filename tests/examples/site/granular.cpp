@@ -18,8 +18,8 @@ int main() {
 
   // [neighbours]
   winnow::Partition partition(winnow::hierarchical_grid(),
-                              {.volume = winnow::Volume::sphere,  // instead of bounding boxes
-                               .margin = {.distance = 0.05F}});   // the skin of a Verlet list
+                              {.volume = winnow::Volume::sphere,     // instead of bounding boxes
+                               .fat_margin = {.distance = 0.05F}});  // the skin of a Verlet list
   partition.insert(grains, {}, keys);
   winnow::PairBuffer neighbours;
   partition.self_pairs(neighbours);
@@ -39,8 +39,8 @@ int main() {
   shapes.add(winnow::SphereShape{0.5}, grain);
   winnow::Contacts contacts;
   // [contacts of grains]
-  winnow::Scene scene(shapes, {.margin = 0.06,         // speculative contacts
-                               .carry_over = 0.002});  // keeps resting contacts
+  winnow::Scene scene(shapes, {.contact_margin = 0.06,      // speculative contacts
+                               .cache_tolerance = 0.002});  // keeps resting contacts
   std::vector<winnow::BodyDefinition> bodies;
   for (const winnow::Sphere& s : grains) {
     bodies.push_back({grain, winnow::Pose::at(s.center.x(), s.center.y(), s.center.z())});

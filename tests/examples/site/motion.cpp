@@ -1,6 +1,6 @@
 // A fast bullet and a thin wall, between two frames of a scene.
 
-#include <winnow/pipeline/scene_sweep.h>
+#include <winnow/pipeline/continuous_collision.h>
 
 #include <vector>
 
@@ -13,21 +13,21 @@ int main() {
   shapes.add(winnow::BoxShape{{0.005, 2, 2}}, plate);
   winnow::Scene scene(shapes);
   winnow::Key wall, bullet;
-  scene.add({.shape = plate, .motion = winnow::Motion::fixed}, wall);
+  scene.add({.shape = plate, .state = winnow::BodyState::fixed}, wall);
   scene.add({.shape = ball, .pose = winnow::Pose::at(-6, 0, 0)}, bullet);
   double stopped = 1.0;
   const auto stop = [&](winnow::Key, double time) { stopped = time; };
-  // [sweep]
-  winnow::SceneSweep sweep(scene);
+  // [impacts]
+  winnow::ContinuousCollision ccd(scene);
   const std::vector<winnow::Key> moving{bullet};
   const std::vector<winnow::Pose> ends{winnow::Pose::at(9, 0, 0)};
   const std::vector<std::uint8_t> bullets{1};
-  sweep.sweep(
+  ccd.find_impacts(
       moving, ends,
-      {.pairs = winnow::SweepPairs::bullets_and_fixed, .bullets = bullets, .touching = false});
+      {.pairs = winnow::ContinuousPairs::bullets_and_fixed, .bullets = bullets, .touching = false});
   for (std::size_t i = 0; i < moving.size(); ++i) {
-    if (sweep.first()[i] == winnow::kNoImpact) continue;
-    const winnow::SceneImpact& impact = sweep.impacts()[sweep.first()[i]];
+    if (ccd.first()[i] == winnow::kNoImpact) continue;
+    const winnow::SceneImpact& impact = ccd.impacts()[ccd.first()[i]];
     stop(moving[i], impact.time);  // also a, b, gap, normal, point
   }
   // [end]

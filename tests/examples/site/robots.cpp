@@ -44,18 +44,18 @@ int main() {
       shapes, {.structures = {winnow::static_bvh(), winnow::linear_bvh(), winnow::linear_bvh()}});
   std::vector<winnow::Key> keys(3);
   const std::vector<winnow::BodyDefinition> pillars{
-      {pillar, winnow::Pose::at(1.6, 0.8, 0), winnow::Motion::fixed, {.layers = obstacles}},
-      {pillar, winnow::Pose::at(-1, 1, 0), winnow::Motion::fixed, {.layers = obstacles}},
-      {pillar, winnow::Pose::at(0, -1.5, 0), winnow::Motion::fixed, {.layers = tools}}};
+      {pillar, winnow::Pose::at(1.6, 0.8, 0), winnow::BodyState::fixed, {.layers = obstacles}},
+      {pillar, winnow::Pose::at(-1, 1, 0), winnow::BodyState::fixed, {.layers = obstacles}},
+      {pillar, winnow::Pose::at(0, -1.5, 0), winnow::BodyState::fixed, {.layers = tools}}};
   world.add(pillars, keys);
   world.refresh();  // once; then any number of threads may query
 
-  winnow::SceneQueries ask(world);  // one per thread
+  winnow::SceneQueries queries(world);  // one per thread
   const auto is_free = [&](const Configuration& q) {
-    std::span<const winnow::SceneOverlap> met;
+    std::span<const winnow::SceneOverlap> overlaps;
     for (const winnow::Pose& pose : link_poses(q)) {
-      ask.overlap(link, pose, met, {.mask = obstacles});  // exact, as tier robust
-      if (!met.empty()) return false;
+      queries.overlap(link, pose, overlaps, {.mask = obstacles});  // exact, as tier robust
+      if (!overlaps.empty()) return false;
     }
     return true;
   };
@@ -70,7 +70,7 @@ int main() {
     for (const winnow::Pose& pose : link_poses(q)) {
       std::span<const winnow::SceneDistance> near;
       const double reach = 0.51 + least;  // radius around the link's centre
-      ask.nearest(pose.position, 8, reach, near, {.mask = obstacles});
+      queries.nearest(pose.position, 8, reach, near, {.mask = obstacles});
       for (const winnow::SceneDistance& body : near) least = std::min(least, body.distance - 0.51);
     }
     return least;  // a lower bound

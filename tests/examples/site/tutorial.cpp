@@ -54,9 +54,9 @@ void bodies_and_contacts() {
   shapes.add(winnow::SphereShape{0.25}, ball);
   shapes.add(winnow::HalfSpaceShape{}, floor);  // all below z = 0
 
-  winnow::Scene scene(shapes, {.margin = 0.01});  // contacts within 1 cm
+  winnow::Scene scene(shapes, {.contact_margin = 0.01});  // contacts within 1 cm
   winnow::Key ground, lower, upper, rolling;
-  scene.add({.shape = floor, .motion = winnow::Motion::fixed}, ground);
+  scene.add({.shape = floor, .state = winnow::BodyState::fixed}, ground);
   scene.add({.shape = crate, .pose = winnow::Pose::at(0, 0, 0.5), .data = 1}, lower);
   scene.add({.shape = crate, .pose = winnow::Pose::at(0, 0, 1.495), .data = 2}, upper);
   scene.add({.shape = ball, .pose = winnow::Pose::at(3, 0, 0.25), .data = 3}, rolling);
@@ -76,14 +76,14 @@ void bodies_and_contacts() {
   check(contacts.size() == 3, "crate and floor, crate and crate, ball and floor");
   check(pushed == 9, "four corners, four corners, one point");
 
-  // [questions]
+  // [queries]
   scene.move(rolling, winnow::Pose::at(6, 0, 0.25));
   scene.refresh();  // updates the partitions
-  winnow::SceneQueries ask(scene);
+  winnow::SceneQueries queries(scene);
   winnow::SceneHit hit;
-  ask.closest(winnow::ShapeRay{{-5, 0, 0.5}, {1, 0, 0}, 100.0}, hit);  // hits the lower crate
+  queries.closest(winnow::ShapeRay{{-5, 0, 0.5}, {1, 0, 0}, 100.0}, hit);  // hits the lower crate
   winnow::SceneDistance gap;
-  ask.distance(upper, rolling, gap);  // closest points, distance, error bound
+  queries.distance(upper, rolling, gap);  // closest points, distance, error bound
   // [end]
   check(hit.key == lower && hit.t == 4.5, "the ray hits the lower crate");
   check(gap.distance > 4.9 && gap.error_bound < 1e-6, "they are apart");

@@ -1,14 +1,14 @@
 #pragma once
 
-#include <winnow/pipeline/scene_sweep.h>
+#include <winnow/pipeline/continuous_collision.h>
 #include <winnow/pipeline/sensors.h>
 #include "pipeline/recording/query_digest.h"
 
 namespace winnow {
 
-/// Adds all results of a sweep; only the ids of keys.
-inline void add_to(Digest& digest, const SceneSweep& sweep) noexcept {
-  for (const SceneImpact& impact : sweep.impacts()) {
+/// Adds all results of continuous collision detection. Of a key, only the id is added.
+inline void add_to(Digest& digest, const ContinuousCollision& ccd) noexcept {
+  for (const SceneImpact& impact : ccd.impacts()) {
     digest.add(std::uint64_t{impact.a.id} << 32U | impact.b.id);
     digest.add(impact.data_a);
     digest.add(impact.data_b);
@@ -19,11 +19,11 @@ inline void add_to(Digest& digest, const SceneSweep& sweep) noexcept {
     add_to(digest, impact.normal);
     add_to(digest, impact.point);
   }
-  digest.add(std::uint64_t{sweep.impacts().size()});
-  digest.add_array(sweep.first());
+  digest.add(std::uint64_t{ccd.impacts().size()});
+  digest.add_array(ccd.first());
 }
 
-/// Adds all sensed bodies, and all that left; only the ids of keys.
+/// Adds all sensed bodies, and all bodies that left a sensor. Of a key, only the id is added.
 inline void add_to(Digest& digest, const Sensors& sensors) noexcept {
   for (const SensedBody& in : sensors.sensed()) {
     digest.add(std::uint64_t{in.sensor.id} << 32U | in.body.id);

@@ -1,11 +1,11 @@
 // First impacts of candidate pairs. A pair whose bounding balls do not overlap in time is skipped.
 // With `first_only`, pairs are processed in rounds, ordered by the time at which their balls
-// overlap, and a pair is skipped once both bodies have an earlier impact. SceneSweep
-// (scene_sweep.cpp) calls this after swept_bounds.cpp.
+// overlap, and a pair is skipped if all of its moving bodies have an earlier impact.
+// ContinuousCollision (continuous_collision.cpp) calls this after continuous_candidates.cpp.
 
 #include "core/sort/radix_sort.h"
 #include "pipeline/motion/impact_batch.h"
-#include "pipeline/scene/sweep_state.h"
+#include "pipeline/scene/continuous_state.h"
 #include "pipeline/shapes/two_diff.h"
 
 #include <algorithm>
@@ -26,7 +26,7 @@ constexpr double kTimeSteps = (1U << kTimeBits) - 1U;
 /// Marks a candidate whose balls never overlap.
 constexpr std::uint64_t kNoChance = ~std::uint64_t{0};
 constexpr std::size_t kPairsAhead = 16;
-/// Exceeds the rounding error of times, and of ball sizes as a share of them.
+/// Exceeds the rounding error of times, and the relative rounding error of ball sizes.
 constexpr double kRounding = 1e-9;
 
 /// Uninitialized storage for a motion.
@@ -37,8 +37,8 @@ union MotionRoom {
 
 }  // namespace
 
-Approach SweepState::approach_of(std::uint32_t a, std::uint32_t b,
-                                 double tolerance) const noexcept {
+Approach ContinuousState::approach_of(std::uint32_t a, std::uint32_t b,
+                                      double tolerance) const noexcept {
   MovingBall room[2];
   const MovingBall& of_a = ball_of(a, room[0]);
   const MovingBall& of_b = ball_of(b, room[1]);
@@ -49,60 +49,61 @@ Approach SweepState::approach_of(std::uint32_t a, std::uint32_t b,
 
 /// Computes the first impacts of at most one batch of pairs. Writes an element of `impacts_of` only
 /// if it sets `hits_of` to 1.
-void SweepState::find_impacts(std::span<const SweptPair> asked, const SweepOptions& options,
-                              impact::BodyImpact* impacts_of,
-                              std::uint8_t* hits_of) const noexcept {
+void ContinuousState::find_impacts(std::span<const CandidatePair> requested,
+                                   const ContinuousOptions& options, impact::BodyImpact* impacts_of,
+                                   std::uint8_t* hits_of) const noexcept {
   const auto answer = [&](std::size_t i, const impact::BodyImpact& found_impact) {
     const impact::Impact& impact = found_impact.impact;
     hits_of[i] = impact.hit && (options.touching || !touches_at_start(impact)) ? 1 : 0;
     if (hits_of[i] != 0) impacts_of[i] = found_impact;
   };
   impact::ImpactBatch batch(bodies.shapes.tables(), options.tolerance);
-  std::array<MotionRoom, impact::ImpactBatch::kRoom> standing;
+  std::array<MotionRoom, impact::ImpactBatch::kRoom> stationary;
   // At most one body of a pair is at rest.
   const auto motion = [&](std::size_t i, std::uint32_t body) -> const RigidMotion& {
     if (mover_of[body] != kNoMover) return motions[mover_of[body]];
-    return *std::construct_at(&standing[i].motion, RigidMotion::standing(bodies.pose[body]));
+    return *std::construct_at(&stationary[i].motion, RigidMotion::stationary(bodies.pose[body]));
   };
-  const auto answer_alone = [&](std::size_t i) {
-    const auto [a, b] = bodies_of(asked[i].candidate);
+  const auto answer_single = [&](std::size_t i) {
+    const auto [a, b] = bodies_of(requested[i].candidate);
     const impact::ImpactRequest request{
         options.tolerance, approach_of(a, b, 0.0).window(), 1.0,
-        options.touching ? impact::StartTouch::meets : impact::StartTouch::ignored};
+        options.touching ? impact::StartTouch::impact : impact::StartTouch::ignored};
     answer(i, impact::find_impact_of_balls(parts, {bodies.shape[a], motion(i, a)},
                                            {bodies.shape[b], motion(i, b)}, request));
   };
-  for (std::size_t i = 0; i < asked.size(); ++i) {
-    const auto [a, b] = bodies_of(asked[i].candidate);
+  for (std::size_t i = 0; i < requested.size(); ++i) {
+    const auto [a, b] = bodies_of(requested[i].candidate);
     hits_of[i] = 0;
     if (approach_of(a, b, 0.0).begin() == kNever) continue;
     if (impact::ImpactBatch::takes(bodies.shape[a], bodies.shape[b])) {
-      batch.add(i, bodies.shape[a], motion(i, a), bodies.shape[b], motion(i, b), asked[i].until);
+      batch.add(i, bodies.shape[a], motion(i, a), bodies.shape[b], motion(i, b),
+                requested[i].until);
     } else {
-      answer_alone(i);
+      answer_single(i);
     }
   }
   batch.run([&](std::size_t i, const impact::Impact& impact, bool) {
     // The shapes nearly touch at the start, and may slide.
     const bool may_slide =
         !options.touching && impact.hit && impact.time == 0.0 && impact.gap > 0.0;
-    if (may_slide) return answer_alone(i);
+    if (may_slide) return answer_single(i);
     answer(i, {impact});
   });
 }
 
 /// Finds the first impact of every pair.
-Status SweepState::find_all(const SweepOptions& options) {
+Status ContinuousState::find_all(const ContinuousOptions& options) {
   if (!found.resize(candidates.size()) || !hits.resize(candidates.size())) {
     return Status::out_of_memory;
   }
   for_each_range(bodies.options.execution, candidates.size(), impact::ImpactBatch::kRoom,
                  [&](std::size_t begin, std::size_t end) {
-                   std::array<SweptPair, impact::ImpactBatch::kRoom> asked;
+                   std::array<CandidatePair, impact::ImpactBatch::kRoom> requested;
                    for (std::size_t i = begin; i < end; ++i) {
-                     asked[i - begin] = {static_cast<std::uint32_t>(i), 1.0};
+                     requested[i - begin] = {static_cast<std::uint32_t>(i), 1.0};
                    }
-                   find_impacts({asked.data(), end - begin}, options, found.data() + begin,
+                   find_impacts({requested.data(), end - begin}, options, found.data() + begin,
                                 hits.data() + begin);
                  });
   for (std::uint32_t i = 0; i < candidates.size(); ++i) {
@@ -114,18 +115,19 @@ Status SweepState::find_all(const SweepOptions& options) {
 }
 
 /// Returns kNoChance if the candidate has no impact. Otherwise the upper half of the result is the
-/// time step before which it has none, and the lower half is its number.
-std::uint64_t SweepState::chance_of(std::size_t candidate, double tolerance) const noexcept {
+/// time step before which the candidate has no impact, and the lower half is the number of the
+/// candidate.
+std::uint64_t ContinuousState::chance_of(std::size_t candidate, double tolerance) const noexcept {
   const auto [a, b] = bodies_of(candidate);
   // A gap within the tolerance is an impact, and rounding may make it earlier.
-  const double meets = approach_of(a, b, tolerance + kRounding).begin();
-  if (meets == kNever) return kNoChance;
-  const double soonest = std::max(0.0, meets - kRounding);
+  const double contact_time = approach_of(a, b, tolerance + kRounding).begin();
+  if (contact_time == kNever) return kNoChance;
+  const double soonest = std::max(0.0, contact_time - kRounding);
   return static_cast<std::uint64_t>(soonest * kTimeSteps) << 32U | candidate;
 }
 
 /// Lists the candidates whose balls overlap, the earliest overlap first.
-Status SweepState::list_chances(double tolerance) {
+Status ContinuousState::list_chances(double tolerance) {
   const std::size_t count = candidates.size();
   if (!chances.resize(count)) return Status::out_of_memory;
   for_each_range(bodies.options.execution, count, kCandidatesPerRange,
@@ -146,7 +148,7 @@ Status SweepState::list_chances(double tolerance) {
 
 /// Fills a round with candidates from `at` on that may be the first impact of a body. Returns false
 /// if memory is refused.
-bool SweepState::list_round(std::size_t& at) noexcept {
+bool ContinuousState::list_round(std::size_t& at) noexcept {
   listed.clear();
   for (; at < chances.size() && listed.size() < kPairsPerRound; ++at) {
     if (at + kPairsAhead < chances.size()) {
@@ -158,7 +160,7 @@ bool SweepState::list_round(std::size_t& at) noexcept {
       const std::uint32_t mover = mover_of[body];
       if (mover != kNoMover) latest = std::max(latest, first_time[mover]);
     }
-    // In whole steps, plus one for rounding.
+    // Times are compared in whole steps, plus one step for rounding.
     if (static_cast<double>(chances[at] >> 32U) > latest * kTimeSteps + 1.0) continue;
     if (!listed.push_back({candidate, latest})) return false;
   }
@@ -166,9 +168,9 @@ bool SweepState::list_round(std::size_t& at) noexcept {
 }
 
 /// Sorts the pairs of a round by shape kinds, so that batches have few kinds.
-bool SweepState::sort_round() noexcept {
+bool ContinuousState::sort_round() noexcept {
   constexpr std::size_t kKinds = 16;
-  const auto kinds_of = [&](const SweptPair& pair) {
+  const auto kinds_of = [&](const CandidatePair& pair) {
     const auto [a, b] = bodies_of(pair.candidate);
     const auto kind = [&](std::uint32_t body) {
       return static_cast<std::size_t>(bodies.shape[body].kind()) % kKinds;
@@ -177,14 +179,15 @@ bool SweepState::sort_round() noexcept {
   };
   if (!round.resize(listed.size())) return false;
   std::array<std::uint32_t, kKinds * kKinds + 1> place{};
-  for (const SweptPair& pair : listed) ++place[kinds_of(pair) + 1];
+  for (const CandidatePair& pair : listed) ++place[kinds_of(pair) + 1];
   std::partial_sum(place.begin(), place.end(), place.begin());
-  for (const SweptPair& pair : listed) round[place[kinds_of(pair)]++] = pair;
+  for (const CandidatePair& pair : listed) round[place[kinds_of(pair)]++] = pair;
   return true;
 }
 
 /// Updates the first impact of each of the two bodies.
-void SweepState::keep_first(std::uint32_t candidate, const impact::BodyImpact& impact) noexcept {
+void ContinuousState::keep_first(std::uint32_t candidate,
+                                 const impact::BodyImpact& impact) noexcept {
   for (const std::uint32_t body : bodies_of(candidate)) {
     const std::uint32_t mover = mover_of[body];
     if (mover == kNoMover) continue;
@@ -198,7 +201,7 @@ void SweepState::keep_first(std::uint32_t candidate, const impact::BodyImpact& i
   }
 }
 
-Status SweepState::find_first(const SweepOptions& options) {
+Status ContinuousState::find_first(const ContinuousOptions& options) {
   if (const Status status = list_chances(options.tolerance); status != Status::ok) return status;
   const std::size_t count = movers.size();
   if (!found.resize(count) || !first_time.resize(count)) return Status::out_of_memory;
@@ -228,8 +231,8 @@ Status SweepState::find_first(const SweepOptions& options) {
   return Status::ok;
 }
 
-SceneImpact SweepState::shown(std::uint64_t candidate,
-                              const impact::BodyImpact& of_bodies) const noexcept {
+SceneImpact ContinuousState::shown(std::uint64_t candidate,
+                                   const impact::BodyImpact& of_bodies) const noexcept {
   const impact::Impact& impact = of_bodies.impact;
   SceneImpact result;
   result.a = bodies.keys.key_of(static_cast<std::uint32_t>(candidate >> 32U));
@@ -251,7 +254,7 @@ SceneImpact SweepState::shown(std::uint64_t candidate,
 
 /// Sorts and writes the impacts, and finds the index of each mover's first impact. Returns false if
 /// memory is refused.
-bool SweepState::show_impacts() noexcept {
+bool ContinuousState::show_impacts() noexcept {
   // Candidate numbers are in the order of body ids.
   std::sort(order.begin(), order.end(), [](const FoundImpact& a, const FoundImpact& b) {
     return std::tuple(a.time, a.candidate) < std::tuple(b.time, b.candidate);

@@ -1,17 +1,18 @@
 #pragma once
 
-// The state of a SceneSweep. scene_sweep.cpp drives it: swept_bounds.cpp computes boxes of the
-// moving bodies' paths and finds candidate pairs, swept_impacts.cpp finds their first impacts.
+// The state of a ContinuousCollision. continuous_collision.cpp drives it: continuous_candidates.cpp
+// computes boxes of the moving bodies' paths and finds candidate pairs, continuous_impacts.cpp
+// finds their first impacts.
 
 #include <winnow/core/column.h>
 #include <winnow/core/pose.h>
 #include <winnow/partitions/partition.h>
-#include <winnow/pipeline/scene_sweep.h>
+#include <winnow/pipeline/continuous_collision.h>
 #include "core/sort/parallel_ranges.h"
 #include "pipeline/motion/body_impact.h"
 #include "pipeline/motion/relative_motion_bounds.h"
+#include "pipeline/scene/moving_balls.h"
 #include "pipeline/scene/scene_state.h"
-#include "pipeline/scene/swept_balls.h"
 
 #include <Eigen/Core>
 
@@ -27,37 +28,38 @@ inline constexpr std::size_t kMoversPerRange = 64;
 
 /// Part `index` of the `count` equal intervals of time into which a body's path is split; each part
 /// has its own box.
-struct SweptPiece {
+struct PathPiece {
   std::uint32_t mover;
   std::uint8_t index;
   std::uint8_t count;
-  Motion motion;
+  BodyState body_state;
   bool bullet;
 
   /// True if the two time intervals overlap.
-  [[nodiscard]] bool meets(const SweptPiece& other) const noexcept {
+  [[nodiscard]] bool overlaps(const PathPiece& other) const noexcept {
     return index * other.count <= (other.index + 1) * count &&
            other.index * count <= (index + 1) * other.count;
   }
 };
 
 /// A candidate pair and the latest time at which its impact still matters.
-struct SweptPair {
+struct CandidatePair {
   std::uint32_t candidate;
   double until;
 };
 
-/// An impact: its index in `SweepState::found` and its candidate pair.
+/// An impact: its index in `ContinuousState::found` and its candidate pair.
 struct FoundImpact {
   double time;
   std::uint32_t candidate;
   std::uint32_t at;
 };
 
-/// State of a sweep that its steps share.
-struct SweepState {
-  SweepState(Scene& swept_scene, SceneState& its_state, std::pmr::memory_resource* memory) noexcept
-      : scene(swept_scene),
+/// State of a call that its steps share.
+struct ContinuousState {
+  ContinuousState(Scene& its_scene, SceneState& its_state,
+                  std::pmr::memory_resource* memory) noexcept
+      : scene(its_scene),
         bodies(its_state),
         parts(its_state.shapes, its_state.options.composites),
         ways(linear_bvh(), {.memory = memory, .execution = its_state.options.execution}),
@@ -86,9 +88,9 @@ struct SweepState {
 
   [[nodiscard]] Status take(std::span<const Key> keys, const PoseView& ends) noexcept;
   [[nodiscard]] Status take(std::span<const Key> keys, std::span<const RigidMotion> given) noexcept;
-  [[nodiscard]] Status find_pairs(const SweepOptions& options);
-  [[nodiscard]] Status find_all(const SweepOptions& options);
-  [[nodiscard]] Status find_first(const SweepOptions& options);
+  [[nodiscard]] Status find_pairs(const ContinuousOptions& options);
+  [[nodiscard]] Status find_all(const ContinuousOptions& options);
+  [[nodiscard]] Status find_first(const ContinuousOptions& options);
   [[nodiscard]] bool show_impacts() noexcept;
   void forget() noexcept {
     impacts.clear();
@@ -104,8 +106,8 @@ struct SweepState {
   Column<std::uint32_t> movers;
   Column<MovingBall> balls;
   Column<std::uint32_t> mover_of;
-  /// Number of moving bodies by Motion.
-  std::array<std::size_t, kMotions> movers_in{};
+  /// Number of moving bodies by BodyState.
+  std::array<std::size_t, kBodyStates> movers_in{};
   /// Translation of the reference frame in which path boxes are computed; and scratch for its
   /// choice: the movers' travel along one axis.
   Eigen::Vector3d drift = Eigen::Vector3d::Zero();
@@ -115,7 +117,7 @@ struct SweepState {
   Column<PlainBox> boxes;
   Column<Key> piece_keys;
   /// By object id of `ways`.
-  Column<SweptPiece> pieces;
+  Column<PathPiece> pieces;
   PairBuffer pairs;
   /// Pairs of bodies as (smaller id << 32 | larger id), sorted.
   Column<std::uint64_t> candidates;
@@ -123,10 +125,10 @@ struct SweepState {
   /// Candidates whose balls overlap at some time, as (time << 32 | candidate), sorted; the time is
   /// a number of time steps (see kTimeSteps).
   Column<std::uint64_t> chances;
-  /// The pairs of a round, sorted by the kinds of their shapes; and in the order in which they were
-  /// listed.
-  Column<SweptPair> round;
-  Column<SweptPair> listed;
+  /// The pairs of a round: `round` is sorted by the kinds of their shapes, `listed` by their order
+  /// in `chances`.
+  Column<CandidatePair> round;
+  Column<CandidatePair> listed;
   Column<impact::BodyImpact> answers;
   /// By result: 1 if there is an impact. Results whose flag is 0 are not written.
   Column<std::uint8_t> hits;
@@ -138,7 +140,7 @@ struct SweepState {
   Column<FoundImpact> order;
   Column<SceneImpact> impacts;
   Column<std::uint32_t> first;
-  SweepStatistics statistics;
+  ContinuousStatistics statistics;
 
  private:
   /// Calls body(mover) in parallel for every mover that has a motion.
@@ -159,14 +161,14 @@ struct SweepState {
             static_cast<std::uint32_t>(candidates[candidate])};
   }
 
-  // Boxes and candidates (swept_bounds.cpp).
+  // Boxes and candidates (continuous_candidates.cpp).
 
   [[nodiscard]] Status take_bodies(std::span<const Key> keys) noexcept;
   [[nodiscard]] bool choose_drift() noexcept;
   /// Reference frame of the path boxes.
   [[nodiscard]] RigidMotion frame() const noexcept {
     const Eigen::Vector3d& at = bodies.origin;
-    RigidMotion frame = RigidMotion::standing(Pose::at(at.x(), at.y(), at.z()));
+    RigidMotion frame = RigidMotion::stationary(Pose::at(at.x(), at.y(), at.z()));
     Eigen::Vector3d::Map(frame.travel) = drift;
     return frame;
   }
@@ -176,23 +178,24 @@ struct SweepState {
   }
   [[nodiscard]] bool count_pieces() noexcept;
   void box_path(std::uint32_t mover) noexcept;
-  [[nodiscard]] Status box_paths(const SweepOptions& options);
-  void name_pieces(std::uint32_t mover, const SweepOptions& options) noexcept;
+  [[nodiscard]] Status box_paths(const ContinuousOptions& options);
+  void name_pieces(std::uint32_t mover, const ContinuousOptions& options) noexcept;
   [[nodiscard]] Status set_filters();
   template <typename Body>
   [[nodiscard]] Status collect(Body&& second_body);
   [[nodiscard]] bool sort_candidates() noexcept;
-  [[nodiscard]] Status find_pairs_among(const SweepOptions& options);
-  [[nodiscard]] bool is_included(Motion motion, const SweepOptions& options) const noexcept;
-  [[nodiscard]] Status find_pairs_with(Motion motion, const SweepOptions& options);
+  [[nodiscard]] Status find_pairs_among(const ContinuousOptions& options);
+  [[nodiscard]] bool is_included(BodyState body_state,
+                                 const ContinuousOptions& options) const noexcept;
+  [[nodiscard]] Status find_pairs_with(BodyState body_state, const ContinuousOptions& options);
 
-  // Impacts of candidates (swept_impacts.cpp).
+  // Impacts of candidates (continuous_impacts.cpp).
 
   /// Returns the ball of a body; for a body that does not move it is computed into `room`.
   [[nodiscard]] const MovingBall& ball_of(std::uint32_t body, MovingBall& room) const noexcept {
     const std::uint32_t mover = mover_of[body];
     if (mover != kNoMover) return balls[mover];
-    return room = ball_of(RigidMotion::standing(bodies.pose[body]), body);
+    return room = ball_of(RigidMotion::stationary(bodies.pose[body]), body);
   }
   /// Prefetches the ball of the second body. The first body is mostly the same as in the candidate
   /// before.
@@ -207,12 +210,12 @@ struct SweepState {
   [[nodiscard]] Status list_chances(double tolerance);
   [[nodiscard]] bool list_round(std::size_t& at) noexcept;
   [[nodiscard]] bool sort_round() noexcept;
-  void find_impacts(std::span<const SweptPair> asked, const SweepOptions& options,
+  void find_impacts(std::span<const CandidatePair> requested, const ContinuousOptions& options,
                     impact::BodyImpact* impacts_of, std::uint8_t* hits_of) const noexcept;
   void keep_first(std::uint32_t candidate, const impact::BodyImpact& impact) noexcept;
   [[nodiscard]] RigidMotion motion_of(std::uint32_t body) const noexcept {
     const std::uint32_t mover = mover_of[body];
-    return mover == kNoMover ? RigidMotion::standing(bodies.pose[body]) : motions[mover];
+    return mover == kNoMover ? RigidMotion::stationary(bodies.pose[body]) : motions[mover];
   }
   [[nodiscard]] SceneImpact shown(std::uint64_t candidate,
                                   const impact::BodyImpact& impact) const noexcept;

@@ -1,9 +1,9 @@
-// SceneSweep and motion casts, compared with single-pair times of impact.
+// ContinuousCollision and motion casts, compared with single-pair times of impact.
 
 #include <gtest/gtest.h>
 #include <winnow/pipeline/composite_pool.h>
+#include <winnow/pipeline/continuous_collision.h>
 #include <winnow/pipeline/scene_queries.h>
-#include <winnow/pipeline/scene_sweep.h>
 #include <winnow/pipeline/time_of_impact.h>
 
 #include <algorithm>
@@ -22,10 +22,10 @@ namespace winnow::test {
 namespace {
 
 /// A scene with some moving bodies, and the expected impact of each pair.
-struct SweptWorld {
+struct ImpactWorld {
   /// `spread` multiplies the distances between the bodies of a SceneWorld.
-  explicit SweptWorld(std::size_t count, const Execution& execution = Execution::serial(),
-                      double spread = 1.0)
+  explicit ImpactWorld(std::size_t count, const Execution& execution = Execution::serial(),
+                       double spread = 1.0)
       : world(count, 91), composites(world.pool) {
     for (BodyDefinition& body : world.bodies) {
       for (double& x : body.pose.position) x *= spread;
@@ -33,8 +33,8 @@ struct SweptWorld {
     const MeshData ring = torus(6, 5);
     EXPECT_EQ(composites.add_mesh(ring.points(), ring.indices(), mesh), Status::ok);
     for (std::size_t i = 0; i < count; i += 9) world.bodies[i].shape = mesh;
-    for (std::size_t i = 0; i < count; i += 5) world.bodies[i].motion = Motion::fixed;
-    for (std::size_t i = 3; i < count; i += 7) world.bodies[i].motion = Motion::sleeping;
+    for (std::size_t i = 0; i < count; i += 5) world.bodies[i].state = BodyState::fixed;
+    for (std::size_t i = 3; i < count; i += 7) world.bodies[i].state = BodyState::sleeping;
     for (std::size_t i = 0; i < count; i += 11) world.bodies[i].filter.layers = 2;
     for (std::size_t i = 4; i < count; i += 13) world.bodies[i].filter.mask = ~2U;
     scene.emplace(world.pool, SceneOptions{.execution = execution, .composites = &composites});
@@ -43,7 +43,7 @@ struct SweptWorld {
       movers.push_back(i);
       keys.push_back(world.keys[i]);
       bullets.push_back(i % 3 == 0 ? 1 : 0);
-      motions.push_back(RigidMotion::standing(world.bodies[i].pose));
+      motions.push_back(RigidMotion::stationary(world.bodies[i].pose));
       const double way = world.random.log_uniform(0.05, 20.0);
       const double turn = world.random.chance(0.1) ? 60.0 : 3.0;
       for (double& x : motions.back().travel) x = world.random.uniform(-way, way);
@@ -52,26 +52,27 @@ struct SweptWorld {
     EXPECT_EQ(scene->set_ignored(world.keys[0], world.keys[2]), Status::ok);
   }
 
-  [[nodiscard]] bool filters_allow(std::size_t a, std::size_t b, SweepPairs which) const {
+  [[nodiscard]] bool filters_allow(std::size_t a, std::size_t b, ContinuousPairs which) const {
     const auto is_bullet = [&](std::size_t i) { return i % 2 == 0 && bullets[i / 2] != 0; };
     const BodyDefinition& of_a = world.bodies[a];
     const BodyDefinition& of_b = world.bodies[b];
-    const bool fixed = of_a.motion == Motion::fixed || of_b.motion == Motion::fixed;
+    const bool fixed = of_a.state == BodyState::fixed || of_b.state == BodyState::fixed;
     const bool bullet = is_bullet(a) || is_bullet(b);
-    const bool wanted = which == SweepPairs::all || (fixed && which == SweepPairs::fixed) ||
-                        (bullet && which == SweepPairs::bullets) ||
-                        ((fixed || bullet) && which == SweepPairs::bullets_and_fixed);
-    return wanted && (a % 2 == 0 || b % 2 == 0) && !(a == 0 && b == 2) &&
-           (of_a.motion == Motion::dynamic || of_b.motion == Motion::dynamic) &&
+    const bool is_selected = which == ContinuousPairs::all ||
+                             (fixed && which == ContinuousPairs::fixed) ||
+                             (bullet && which == ContinuousPairs::bullets) ||
+                             ((fixed || bullet) && which == ContinuousPairs::bullets_and_fixed);
+    return is_selected && (a % 2 == 0 || b % 2 == 0) && !(a == 0 && b == 2) &&
+           (of_a.state == BodyState::dynamic || of_b.state == BodyState::dynamic) &&
            winnow::filters_allow(of_a.filter, of_b.filter);
   }
   /// Returns for each pair its time of impact, computed separately.
-  [[nodiscard]] std::map<Names, double> truth(SweepPairs which) const {
+  [[nodiscard]] std::map<Names, double> truth(ContinuousPairs which) const {
     std::vector<ShapeId> shapes;
     std::vector<RigidMotion> all;
     for (std::size_t i = 0; i < world.bodies.size(); ++i) {
       shapes.push_back(world.bodies[i].shape);
-      all.push_back(i % 2 == 0 ? motions[i / 2] : RigidMotion::standing(world.bodies[i].pose));
+      all.push_back(i % 2 == 0 ? motions[i / 2] : RigidMotion::stationary(world.bodies[i].pose));
     }
     std::vector<BodyPair> pairs;
     for (std::uint32_t a = 0; a < shapes.size(); ++a) {
@@ -100,18 +101,20 @@ struct SweptWorld {
   std::vector<std::uint8_t> bullets;
 };
 
-TEST(SceneSweeps, impacts_match_single_pairs) {
-  SweptWorld swept(scaled(160));
-  SceneSweep sweep(*swept.scene);
-  for (const SweepPairs which :
-       {SweepPairs::all, SweepPairs::fixed, SweepPairs::bullets, SweepPairs::bullets_and_fixed}) {
-    ASSERT_EQ(sweep.sweep(swept.keys, swept.motions, {.pairs = which, .bullets = swept.bullets}),
+TEST(ContinuousCollisions, impacts_match_single_pairs) {
+  ImpactWorld impact_world(scaled(160));
+  ContinuousCollision ccd(*impact_world.scene);
+  for (const ContinuousPairs which :
+       {ContinuousPairs::all, ContinuousPairs::fixed, ContinuousPairs::bullets,
+        ContinuousPairs::bullets_and_fixed}) {
+    ASSERT_EQ(ccd.find_impacts(impact_world.keys, impact_world.motions,
+                               {.pairs = which, .bullets = impact_world.bullets}),
               Status::ok);
-    const std::map<Names, double> truth = swept.truth(which);
-    EXPECT_EQ(sweep.impacts().size(), truth.size());
+    const std::map<Names, double> truth = impact_world.truth(which);
+    EXPECT_EQ(ccd.impacts().size(), truth.size());
     std::map<std::size_t, double> earliest;
     double last = 0.0;
-    for (const SceneImpact& impact : sweep.impacts()) {
+    for (const SceneImpact& impact : ccd.impacts()) {
       const auto found = truth.find(names(impact.data_a, impact.data_b));
       ASSERT_NE(found, truth.end());
       EXPECT_EQ(found->second, impact.time);
@@ -122,13 +125,13 @@ TEST(SceneSweeps, impacts_match_single_pairs) {
         earliest.emplace(static_cast<std::size_t>(body), impact.time);
       }
     }
-    ASSERT_EQ(sweep.first().size(), swept.movers.size());
-    for (std::size_t i = 0; i < swept.movers.size(); ++i) {
-      const std::uint32_t first = sweep.first()[i];
-      const auto known = earliest.find(swept.movers[i]);
+    ASSERT_EQ(ccd.first().size(), impact_world.movers.size());
+    for (std::size_t i = 0; i < impact_world.movers.size(); ++i) {
+      const std::uint32_t first = ccd.first()[i];
+      const auto known = earliest.find(impact_world.movers[i]);
       ASSERT_EQ(first == kNoImpact, known == earliest.end());
       if (first == kNoImpact) continue;
-      EXPECT_EQ(sweep.impacts()[first].time, known->second);
+      EXPECT_EQ(ccd.impacts()[first].time, known->second);
     }
   }
 }
@@ -145,16 +148,18 @@ void expect_same(const SceneImpact& a, const SceneImpact& b) {
   EXPECT_TRUE(std::ranges::equal(a.normal, b.normal));
 }
 
-TEST(SceneSweeps, first_only_matches_first_of_all) {
-  SweptWorld swept(400, Execution::serial(), 2.5);
-  SceneSweep all(*swept.scene);
-  SceneSweep firsts(*swept.scene);
+TEST(ContinuousCollisions, first_only_matches_first_of_all) {
+  ImpactWorld impact_world(400, Execution::serial(), 2.5);
+  ContinuousCollision all(*impact_world.scene);
+  ContinuousCollision firsts(*impact_world.scene);
   for (const double tolerance : {1e-6, 1e-2}) {
-    ASSERT_EQ(all.sweep(swept.keys, swept.motions, {.tolerance = tolerance}), Status::ok);
-    ASSERT_EQ(firsts.sweep(swept.keys, swept.motions, {.tolerance = tolerance, .first_only = true}),
+    ASSERT_EQ(all.find_impacts(impact_world.keys, impact_world.motions, {.tolerance = tolerance}),
               Status::ok);
-    EXPECT_LE(firsts.impacts().size(), swept.movers.size());
-    for (std::size_t i = 0; i < swept.movers.size(); ++i) {
+    ASSERT_EQ(firsts.find_impacts(impact_world.keys, impact_world.motions,
+                                  {.tolerance = tolerance, .first_only = true}),
+              Status::ok);
+    EXPECT_LE(firsts.impacts().size(), impact_world.movers.size());
+    for (std::size_t i = 0; i < impact_world.movers.size(); ++i) {
       const std::uint32_t expected = all.first()[i];
       const std::uint32_t first = firsts.first()[i];
       ASSERT_EQ(first == kNoImpact, expected == kNoImpact);
@@ -173,7 +178,7 @@ struct Convoy {
       const Pose start =
           Pose::at(random.uniform(0, side), random.uniform(0, side), random.uniform(0, side));
       keys.push_back(scene.add({.shape = box, .pose = start, .data = i}));
-      motions.push_back(RigidMotion::standing(start));
+      motions.push_back(RigidMotion::stationary(start));
       for (double& x : motions.back().travel) x = way + random.uniform(-0.1, 0.1);
     }
   }
@@ -185,31 +190,32 @@ struct Convoy {
   std::vector<RigidMotion> motions;
 };
 
-TEST(SceneSweeps, common_motion_adds_no_candidate_pairs) {
+TEST(ContinuousCollisions, common_motion_adds_no_candidate_pairs) {
   Convoy still(scaled(400), 0.0);
   Convoy fast(scaled(400), 1000.0);
   ShapeId wall;
   ASSERT_EQ(fast.pool.add(BoxShape{{1e-3, 1e4, 1e4}}, wall), Status::ok);
-  ASSERT_NE(fast.scene.add({.shape = wall, .pose = Pose::at(500, 0, 0), .motion = Motion::fixed}),
+  ASSERT_NE(fast.scene.add({.shape = wall, .pose = Pose::at(500, 0, 0), .state = BodyState::fixed}),
             Key{});
-  SceneSweep of_still(still.scene);
-  SceneSweep of_fast(fast.scene);
-  ASSERT_EQ(of_still.sweep(still.keys, still.motions), Status::ok);
-  ASSERT_EQ(of_fast.sweep(fast.keys, fast.motions), Status::ok);
+  ContinuousCollision of_still(still.scene);
+  ContinuousCollision of_fast(fast.scene);
+  ASSERT_EQ(of_still.find_impacts(still.keys, still.motions), Status::ok);
+  ASSERT_EQ(of_fast.find_impacts(fast.keys, fast.motions), Status::ok);
   const std::size_t count = fast.keys.size();
   EXPECT_LE(of_fast.statistics().body_pairs, 2 * of_still.statistics().body_pairs + count);
   // All boxes hit the wall. Impacts with each other do not change.
   EXPECT_EQ(of_fast.impacts().size(), of_still.impacts().size() + count);
 }
 
-TEST(SceneSweeps, impacts_match_on_any_thread_count) {
-  SweptWorld one(scaled(160));
-  SweptWorld many(scaled(160), Execution::parallel());
+TEST(ContinuousCollisions, impacts_match_on_any_thread_count) {
+  ImpactWorld one(scaled(160));
+  ImpactWorld many(scaled(160), Execution::parallel());
   for (const bool first_only : {false, true}) {
-    SceneSweep serial(*one.scene);
-    SceneSweep parallel(*many.scene);
-    ASSERT_EQ(serial.sweep(one.keys, one.motions, {.first_only = first_only}), Status::ok);
-    ASSERT_EQ(parallel.sweep(many.keys, many.motions, {.first_only = first_only}), Status::ok);
+    ContinuousCollision serial(*one.scene);
+    ContinuousCollision parallel(*many.scene);
+    ASSERT_EQ(serial.find_impacts(one.keys, one.motions, {.first_only = first_only}), Status::ok);
+    ASSERT_EQ(parallel.find_impacts(many.keys, many.motions, {.first_only = first_only}),
+              Status::ok);
     ASSERT_EQ(serial.impacts().size(), parallel.impacts().size());
     EXPECT_TRUE(std::ranges::equal(serial.first(), parallel.first()));
     for (std::size_t i = 0; i < serial.impacts().size(); ++i) {
@@ -224,8 +230,8 @@ struct Gallery {
     EXPECT_EQ(pool.add(SphereShape{0.5}, ball), Status::ok);
     EXPECT_EQ(pool.add(BoxShape{{1e-3, 10, 10}}, wall), Status::ok);
     EXPECT_EQ(pool.add(HalfSpaceShape{{0, 0, 1}, 0}, floor), Status::ok);
-    EXPECT_EQ(scene.add({.shape = floor, .motion = Motion::fixed}, keys[0]), Status::ok);
-    EXPECT_EQ(scene.add({.shape = wall, .motion = Motion::fixed}, keys[1]), Status::ok);
+    EXPECT_EQ(scene.add({.shape = floor, .state = BodyState::fixed}, keys[0]), Status::ok);
+    EXPECT_EQ(scene.add({.shape = wall, .state = BodyState::fixed}, keys[1]), Status::ok);
     EXPECT_EQ(scene.add({.shape = ball, .pose = Pose::at(-50, 0, 0.5), .data = 7}, keys[2]),
               Status::ok);
   }
@@ -236,20 +242,21 @@ struct Gallery {
   Key keys[3];
 };
 
-TEST(SceneSweeps, initial_touches_can_be_ignored) {
+TEST(ContinuousCollisions, initial_touches_can_be_ignored) {
   Gallery gallery;
-  SceneSweep sweep(gallery.scene);
+  ContinuousCollision ccd(gallery.scene);
   const Pose end[1] = {Pose::at(50, 0, 0.5)};
   const std::span<const Key> moving(&gallery.keys[2], 1);
-  ASSERT_EQ(sweep.sweep(moving, PoseView(end)), Status::ok);
-  ASSERT_EQ(sweep.impacts().size(), 2U);
-  EXPECT_EQ(sweep.impacts()[0].a, gallery.keys[0]);
-  EXPECT_EQ(sweep.impacts()[0].time, 0.0);
+  ASSERT_EQ(ccd.find_impacts(moving, PoseView(end)), Status::ok);
+  ASSERT_EQ(ccd.impacts().size(), 2U);
+  EXPECT_EQ(ccd.impacts()[0].a, gallery.keys[0]);
+  EXPECT_EQ(ccd.impacts()[0].time, 0.0);
   for (const bool first_only : {false, true}) {
-    ASSERT_EQ(sweep.sweep(moving, PoseView(end), {.touching = false, .first_only = first_only}),
-              Status::ok);
-    ASSERT_EQ(sweep.impacts().size(), 1U);
-    const SceneImpact& impact = sweep.impacts()[sweep.first()[0]];
+    ASSERT_EQ(
+        ccd.find_impacts(moving, PoseView(end), {.touching = false, .first_only = first_only}),
+        Status::ok);
+    ASSERT_EQ(ccd.impacts().size(), 1U);
+    const SceneImpact& impact = ccd.impacts()[ccd.first()[0]];
     EXPECT_EQ(impact.a, gallery.keys[1]);
     EXPECT_EQ(impact.b, gallery.keys[2]);
     EXPECT_EQ(impact.data_b, 7U);
@@ -259,68 +266,69 @@ TEST(SceneSweeps, initial_touches_can_be_ignored) {
   }
 }
 
-TEST(SceneSweeps, bad_input_is_refused_and_keeps_impacts) {
+TEST(ContinuousCollisions, bad_input_is_refused_and_keeps_impacts) {
   Gallery gallery;
-  SceneSweep sweep(gallery.scene);
+  ContinuousCollision ccd(gallery.scene);
   const Key ball = gallery.keys[2];
-  const auto asked = [&](std::span<const Key> keys, std::span<const Pose> ends,
-                         const SweepOptions& options = {}) {
-    return sweep.sweep(keys, PoseView(ends), options);
+  const auto status_of = [&](std::span<const Key> keys, std::span<const Pose> ends,
+                             const ContinuousOptions& options = {}) {
+    return ccd.find_impacts(keys, PoseView(ends), options);
   };
   const Pose good[2] = {Pose::at(50, 0, 0.5), Pose::at(1, 2, 3)};
   const std::span<const Key> moving(&ball, 1);
   const std::span<const Pose> end(good, 1);
-  ASSERT_EQ(asked(moving, end), Status::ok);
+  ASSERT_EQ(status_of(moving, end), Status::ok);
   const Key twice[2] = {ball, ball};
-  EXPECT_EQ(asked(twice, good), Status::invalid_key);
-  EXPECT_EQ(asked(moving, good), Status::size_mismatch);
+  EXPECT_EQ(status_of(twice, good), Status::invalid_key);
+  EXPECT_EQ(status_of(moving, good), Status::size_mismatch);
   const Key none[1] = {Key{}};
-  EXPECT_EQ(asked(none, end), Status::invalid_key);
+  EXPECT_EQ(status_of(none, end), Status::invalid_key);
   constexpr double kEndless = std::numeric_limits<double>::infinity();
   for (const double bad : {std::numeric_limits<double>::quiet_NaN(), kEndless, -kEndless}) {
     const Pose beyond[1] = {Pose::at(bad, 0, 0)};
-    EXPECT_EQ(asked(moving, beyond), Status::invalid_pose);
+    EXPECT_EQ(status_of(moving, beyond), Status::invalid_pose);
   }
   Pose unturned[1] = {Pose::at(1, 2, 3)};
   unturned[0].orientation[0] = 0.0;
-  EXPECT_EQ(asked(moving, unturned), Status::invalid_pose);
+  EXPECT_EQ(status_of(moving, unturned), Status::invalid_pose);
   for (const double tolerance : {0.0, -1.0, 2.0, std::numeric_limits<double>::quiet_NaN()}) {
-    EXPECT_EQ(asked(moving, end, {.tolerance = tolerance}), Status::invalid_argument);
+    EXPECT_EQ(status_of(moving, end, {.tolerance = tolerance}), Status::invalid_argument);
   }
   const std::uint8_t bullets[2] = {1, 1};
-  EXPECT_EQ(asked(moving, end, {.bullets = bullets}), Status::size_mismatch);
-  EXPECT_EQ(asked(moving, end, {.pairs = static_cast<SweepPairs>(9)}), Status::invalid_argument);
-  EXPECT_EQ(sweep.impacts().size(), 2U);
-  EXPECT_EQ(asked({}, {}), Status::ok);
-  EXPECT_EQ(sweep.impacts().size(), 0U);
+  EXPECT_EQ(status_of(moving, end, {.bullets = bullets}), Status::size_mismatch);
+  EXPECT_EQ(status_of(moving, end, {.pairs = static_cast<ContinuousPairs>(9)}),
+            Status::invalid_argument);
+  EXPECT_EQ(ccd.impacts().size(), 2U);
+  EXPECT_EQ(status_of({}, {}), Status::ok);
+  EXPECT_EQ(ccd.impacts().size(), 0U);
   // A motion near the end of the range of double that passes through the wall.
   const Pose far[1] = {Pose::at(1e300, 0, 0.5)};
-  EXPECT_EQ(asked(moving, far, {.touching = false}), Status::ok);
-  EXPECT_EQ(sweep.impacts().size(), 1U);
+  EXPECT_EQ(status_of(moving, far, {.touching = false}), Status::ok);
+  EXPECT_EQ(ccd.impacts().size(), 1U);
 }
 
 TEST(MotionCasts, hits_match_single_pairs) {
-  SweptWorld swept(scaled(160));
-  SceneQueries queries(*swept.scene);
-  const SceneWorld& world = swept.world;
-  ASSERT_EQ(swept.scene->refresh(), Status::ok);
-  for (std::size_t i = 0; i < swept.movers.size(); ++i) {
-    const ShapeId shape = world.bodies[swept.movers[i]].shape;
+  ImpactWorld impact_world(scaled(160));
+  SceneQueries queries(*impact_world.scene);
+  const SceneWorld& world = impact_world.world;
+  ASSERT_EQ(impact_world.scene->refresh(), Status::ok);
+  for (std::size_t i = 0; i < impact_world.movers.size(); ++i) {
+    const ShapeId shape = world.bodies[impact_world.movers[i]].shape;
     if (!shape.is_composite() && shape.kind() == ShapeKind::half_space) continue;
     std::vector<ShapeId> shapes{shape};
-    std::vector<RigidMotion> motions{swept.motions[i]};
+    std::vector<RigidMotion> motions{impact_world.motions[i]};
     std::vector<BodyPair> pairs;
     for (const BodyDefinition& body : world.bodies) {
       pairs.push_back({0, static_cast<std::uint32_t>(shapes.size())});
       shapes.push_back(body.shape);
-      motions.push_back(RigidMotion::standing(body.pose));
+      motions.push_back(RigidMotion::stationary(body.pose));
     }
     ImpactResult truth;
     ASSERT_EQ(time_of_impact(world.pool, {shapes, motions}, pairs,
-                             {.composites = &swept.composites}, truth),
+                             {.composites = &impact_world.composites}, truth),
               Status::ok);
     std::span<const SceneHit> hits;
-    const MotionCast cast{shape, swept.motions[i]};
+    const MotionCast cast{shape, impact_world.motions[i]};
     ASSERT_EQ(queries.all(cast, hits), Status::ok);
     EXPECT_EQ(hits.size(), static_cast<std::size_t>(std::ranges::count(truth.hit(), 1)));
     double last = 0.0;
@@ -338,11 +346,11 @@ TEST(MotionCasts, hits_match_single_pairs) {
 }
 
 TEST(MotionCasts, closest_hit_matches_first_of_all) {
-  SweptWorld swept(400, Execution::serial(), 2.5);
-  SceneQueries queries(*swept.scene);
-  ASSERT_EQ(swept.scene->refresh(), Status::ok);
-  for (const RigidMotion& motion : swept.motions) {
-    const MotionCast cast{swept.mesh, motion};
+  ImpactWorld impact_world(400, Execution::serial(), 2.5);
+  SceneQueries queries(*impact_world.scene);
+  ASSERT_EQ(impact_world.scene->refresh(), Status::ok);
+  for (const RigidMotion& motion : impact_world.motions) {
+    const MotionCast cast{impact_world.mesh, motion};
     std::span<const SceneHit> hits;
     ASSERT_EQ(queries.all(cast, hits), Status::ok);
     const SceneHit first = hits.empty() ? SceneHit{} : hits[0];
@@ -382,37 +390,37 @@ TEST(MotionCasts, rotation_hits_and_bad_motion_is_refused) {
   EXPECT_EQ(queries.closest(cast, hit), Status::invalid_key);
 }
 
-TEST(SceneSweeps, repeated_sweep_allocates_nothing_and_refusals_recover) {
+TEST(ContinuousCollisions, repeated_call_allocates_nothing_and_refusals_recover) {
   WINNOW_TEST_NEEDS_EXCEPTIONS();
-  SweptWorld swept(60);
+  ImpactWorld impact_world(60);
   CountingMemory memory;
   {
-    SceneSweep sweep(*swept.scene, &memory);
+    ContinuousCollision ccd(*impact_world.scene, &memory);
     for (int frame = 0; frame < 3; ++frame) {
-      ASSERT_EQ(sweep.sweep(swept.keys, swept.motions), Status::ok);
+      ASSERT_EQ(ccd.find_impacts(impact_world.keys, impact_world.motions), Status::ok);
     }
-    EXPECT_EQ(sweep.footprint().total().reserved, memory.outstanding());
+    EXPECT_EQ(ccd.footprint().total().reserved, memory.outstanding());
     const std::size_t before = memory.requests();
-    ASSERT_EQ(sweep.sweep(swept.keys, swept.motions), Status::ok);
+    ASSERT_EQ(ccd.find_impacts(impact_world.keys, impact_world.motions), Status::ok);
     EXPECT_EQ(memory.requests(), before);
   }
   EXPECT_EQ(memory.outstanding(), 0U);
-  // A sweep whose memory request is refused has no impacts, and the next sweep is complete.
-  SceneSweep whole(*swept.scene);
-  ASSERT_EQ(whole.sweep(swept.keys, swept.motions), Status::ok);
+  // A call whose memory request is refused has no impacts, and the next call is complete.
+  ContinuousCollision whole(*impact_world.scene);
+  ASSERT_EQ(whole.find_impacts(impact_world.keys, impact_world.motions), Status::ok);
   for (std::size_t granted = 1;; ++granted) {
-    SceneSweep sweep(*swept.scene, &memory);
+    ContinuousCollision ccd(*impact_world.scene, &memory);
     memory.refuse_after(granted);
-    const Status status = sweep.sweep(swept.keys, swept.motions);
+    const Status status = ccd.find_impacts(impact_world.keys, impact_world.motions);
     memory.grant_all();
     if (status == Status::ok) break;
     ASSERT_EQ(status, Status::out_of_memory);
-    EXPECT_EQ(sweep.impacts().size(), 0U);
-    ASSERT_EQ(sweep.sweep(swept.keys, swept.motions), Status::ok);
-    EXPECT_EQ(sweep.impacts().size(), whole.impacts().size());
+    EXPECT_EQ(ccd.impacts().size(), 0U);
+    ASSERT_EQ(ccd.find_impacts(impact_world.keys, impact_world.motions), Status::ok);
+    EXPECT_EQ(ccd.impacts().size(), whole.impacts().size());
   }
-  SceneSweep without(*swept.scene, std::pmr::null_memory_resource());
-  EXPECT_EQ(without.sweep(swept.keys, swept.motions), Status::out_of_memory);
+  ContinuousCollision without(*impact_world.scene, std::pmr::null_memory_resource());
+  EXPECT_EQ(without.find_impacts(impact_world.keys, impact_world.motions), Status::out_of_memory);
   EXPECT_EQ(without.impacts().size(), 0U);
 }
 

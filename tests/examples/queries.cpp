@@ -30,7 +30,7 @@ int main() {
   winnow::Partition partition(winnow::linear_bvh());
   partition.insert(boxes, {}, keys);
 
-  // [asking]
+  // [queries]
   winnow::Hit hit;
   partition.closest(winnow::Ray{{-5, 0.5F, 0.5F}, {1, 0, 0}}, hit);  // key, client data, t
   winnow::HitBuffer hits;                                            // keep it from query to query

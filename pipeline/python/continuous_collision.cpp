@@ -1,4 +1,4 @@
-// Sweeps of a scene: impacts of moving bodies between two frames.
+// Continuous collision detection of a scene: impacts of moving bodies between two frames.
 
 #include "pipeline/python/bodies.h"
 #include "pipeline/python/entry_columns.h"
@@ -14,11 +14,11 @@
 namespace winnow::python {
 namespace {
 
-constexpr Choices<SweepPairs, 4> kSweepPairs{
-    {{"all", SweepPairs::all},
-     {"fixed", SweepPairs::fixed},
-     {"bullets", SweepPairs::bullets},
-     {"bullets_and_fixed", SweepPairs::bullets_and_fixed}}};
+constexpr Choices<ContinuousPairs, 4> kContinuousPairs{
+    {{"all", ContinuousPairs::all},
+     {"fixed", ContinuousPairs::fixed},
+     {"bullets", ContinuousPairs::bullets},
+     {"bullets_and_fixed", ContinuousPairs::bullets_and_fixed}}};
 
 struct ImpactTable : EmptyIfZero {
   py::array a;
@@ -35,29 +35,29 @@ struct ImpactTable : EmptyIfZero {
   py::array first;
 };
 
-/// Sweep options with the arrays that they point to.
-class SweepInput {
+/// Options with the arrays that they point to.
+class ContinuousInput {
  public:
-  /// `count`: of moving bodies.
-  SweepInput(std::size_t count, const std::string& pairs, py::handle bullets, double tolerance,
-             bool touching, bool first_only)
-      : options_{chosen(kSweepPairs, pairs, "pairs"), {}, tolerance, touching, first_only} {
+  /// `count` is the number of moving bodies.
+  ContinuousInput(std::size_t count, const std::string& pairs, py::handle bullets, double tolerance,
+                  bool touching, bool first_only)
+      : options_{chosen(kContinuousPairs, pairs, "pairs"), {}, tolerance, touching, first_only} {
     if (bullets.is_none()) return;
     const py::array flags = py::array::ensure(bullets);
     if (!flags || flags.dtype().kind() != 'b') {
-      throw py::type_error("bullets: (n,) bool is wanted");
+      throw py::type_error("bullets: expected (n,) bool");
     }
     bullets_.emplace(flags.attr("astype")("u1"), "bullets");
     if (bullets_->count() != count) {
-      throw Refusal(Status::size_mismatch, "bullets: one flag for each key is wanted");
+      throw Refusal(Status::size_mismatch, "bullets: expected one flag for each key");
     }
     options_.bullets = bullets_->values();
   }
-  [[nodiscard]] const SweepOptions& options() const noexcept { return options_; }
+  [[nodiscard]] const ContinuousOptions& options() const noexcept { return options_; }
 
  private:
   std::optional<Integers<std::uint8_t>> bullets_;
-  SweepOptions options_;
+  ContinuousOptions options_;
 };
 
 [[nodiscard]] ImpactTable shown_impacts(std::vector<SceneImpact>&& impacts,
@@ -79,44 +79,45 @@ class SweepInput {
           given(std::move(first))};
 }
 
-/// Returns the impacts of the sweep that ask(sweep) runs.
-template <typename Ask>
-[[nodiscard]] ImpactTable swept(SharedScene& s, const char* call, Ask&& ask) {
+/// Returns the impacts that run(ccd) finds.
+template <typename Run>
+[[nodiscard]] ImpactTable impacts_of_call(SharedScene& s, const char* call, Run&& run) {
   std::vector<SceneImpact> impacts;
   std::vector<std::uint32_t> first;
-  const auto sweep = [&] {
-    if (!s.sweep) s.sweep.emplace(s.scene);
-    const Status status = ask(*s.sweep);
+  const auto work = [&] {
+    if (!s.ccd) s.ccd.emplace(s.scene);
+    const Status status = run(*s.ccd);
     if (status != Status::ok) return status;
-    impacts.assign((*s.sweep)->impacts().begin(), (*s.sweep)->impacts().end());
-    first.assign((*s.sweep)->first().begin(), (*s.sweep)->first().end());
+    impacts.assign((*s.ccd)->impacts().begin(), (*s.ccd)->impacts().end());
+    first.assign((*s.ccd)->first().begin(), (*s.ccd)->first().end());
     return status;
   };
-  accept(s.working(sweep), call);
+  accept(s.working(work), call);
   return shown_impacts(std::move(impacts), std::move(first));
 }
 
-[[nodiscard]] ImpactTable sweep(SharedScene& s, py::handle key_array, py::handle ends,
-                                const std::string& pairs, py::handle bullets, double tolerance,
-                                bool touching, bool first_only) {
+[[nodiscard]] ImpactTable find_impacts(SharedScene& s, py::handle key_array, py::handle ends,
+                                       const std::string& pairs, py::handle bullets,
+                                       double tolerance, bool touching, bool first_only) {
   const KeyInput keys(key_array);
   const PoseInput end(ends);
-  const SweepInput input(keys.count(), pairs, bullets, tolerance, touching, first_only);
+  const ContinuousInput input(keys.count(), pairs, bullets, tolerance, touching, first_only);
   std::vector<Pose> room;
-  return swept(s, "sweep", [&](RecordableSweep& sweep) {
-    return sweep.sweep(keys.keys(), end.view(room), input.options());
+  return impacts_of_call(s, "find_impacts", [&](RecordableContinuousCollision& ccd) {
+    return ccd.find_impacts(keys.keys(), end.view(room), input.options());
   });
 }
 
-[[nodiscard]] ImpactTable sweep_motions(SharedScene& s, py::handle key_array, py::handle motions,
-                                        const std::string& pairs, py::handle bullets,
-                                        double tolerance, bool touching, bool first_only) {
+[[nodiscard]] ImpactTable find_impacts_of_motions(SharedScene& s, py::handle key_array,
+                                                  py::handle motions, const std::string& pairs,
+                                                  py::handle bullets, double tolerance,
+                                                  bool touching, bool first_only) {
   const KeyInput keys(key_array);
   const RigidMotionInput motion(motions);
-  const SweepInput input(keys.count(), pairs, bullets, tolerance, touching, first_only);
+  const ContinuousInput input(keys.count(), pairs, bullets, tolerance, touching, first_only);
   std::vector<RigidMotion> room;
-  return swept(s, "sweep_motions", [&](RecordableSweep& sweep) {
-    return sweep.sweep(keys.keys(), motion.packed(room), input.options());
+  return impacts_of_call(s, "find_impacts_of_motions", [&](RecordableContinuousCollision& ccd) {
+    return ccd.find_impacts(keys.keys(), motion.packed(room), input.options());
   });
 }
 
@@ -146,14 +147,14 @@ void add_table(py::module_& module) {
 
 }  // namespace
 
-void add_sweeps(py::module_& module, SceneClass& scene) {
+void add_continuous_collision(py::module_& module, SceneClass& scene) {
   using py::arg;
   module.attr("NO_IMPACT") = kNoImpact;
   add_table(module);
   scene
-      .def("sweep", &sweep, arg("keys"), arg("ends"), py::kw_only(), arg("pairs") = "all",
-           arg("bullets") = py::none(), arg("tolerance") = 1e-6, arg("touching") = true,
-           arg("first_only") = false,
+      .def("find_impacts", &find_impacts, arg("keys"), arg("ends"), py::kw_only(),
+           arg("pairs") = "all", arg("bullets") = py::none(), arg("tolerance") = 1e-6,
+           arg("touching") = true, arg("first_only") = false,
            "Finds the impacts of bodies (n,) that move from their poses to `ends`, poses as in "
            "`add`, by the shorter rotation; with positions (n, 3) only they do not turn. All other "
            "bodies stay in place, and the scene does not change. Returns SceneImpacts: the first "
@@ -164,10 +165,11 @@ void add_sweeps(py::module_& module, SceneClass& scene) {
            "invalid_key, also for a key that is given twice; invalid_pose for an end that is "
            "invalid or too far away; invalid_argument for bad options. O(n log n) and about log of "
            "all bodies for each, and `time_of_impact` for each pair whose boxes overlap.")
-      .def("sweep_motions", &sweep_motions, arg("keys"), arg("motions"), py::kw_only(),
-           arg("pairs") = "all", arg("bullets") = py::none(), arg("tolerance") = 1e-6,
-           arg("touching") = true, arg("first_only") = false,
-           "As `sweep`, for any motions (n, 13), such as those of `motions_by_velocities`; each "
+      .def("find_impacts_of_motions", &find_impacts_of_motions, arg("keys"), arg("motions"),
+           py::kw_only(), arg("pairs") = "all", arg("bullets") = py::none(),
+           arg("tolerance") = 1e-6, arg("touching") = true, arg("first_only") = false,
+           "As `find_impacts`, for any motions (n, 13), such as those of `motions_by_velocities`; "
+           "each "
            "starts at its own pose.");
 }
 

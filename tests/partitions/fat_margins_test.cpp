@@ -33,11 +33,11 @@ std::vector<Aabb> all_moved(const std::vector<Aabb>& boxes, float by) {
   return result;
 }
 
-class Margins : public Conformance {
+class FatMargins : public Conformance {
  protected:
-  Partition with_margin(const Margin& margin, const std::vector<Aabb>& boxes) {
+  Partition with_fat_margin(const FatMargin& fat_margin, const std::vector<Aabb>& boxes) {
     Partition partition(structure_named(config().partition),
-                        {.execution = config().execution(), .margin = margin});
+                        {.execution = config().execution(), .fat_margin = fat_margin});
     keys_.resize(boxes.size());
     EXPECT_EQ(partition.insert(boxes, {}, keys_), Status::ok);
     return partition;
@@ -75,12 +75,13 @@ class Margins : public Conformance {
   Threads threads_{config().threads};
 };
 
-TEST_P(Margins, moving_fat_boxes_miss_no_pair) {
-  for (const Margin margin : {Margin{.distance = 0.05F}, Margin{.share = 0.2F},
-                              Margin{.distance = 0.01F, .share = 0.01F}, Margin{.share = 1e38F}}) {
-    const std::size_t count = margin.share < 1 ? 150 : 30;
+TEST_P(FatMargins, moving_fat_boxes_miss_no_pair) {
+  for (const FatMargin fat_margin :
+       {FatMargin{.distance = 0.05F}, FatMargin{.share = 0.2F},
+        FatMargin{.distance = 0.01F, .share = 0.01F}, FatMargin{.share = 1e38F}}) {
+    const std::size_t count = fat_margin.share < 1 ? 150 : 30;
     for (std::vector<Aabb> boxes : {uniform_boxes(count), mixed_boxes(count)}) {
-      auto partition = with_margin(margin, boxes);
+      auto partition = with_fat_margin(fat_margin, boxes);
       EXPECT_FALSE(partition.is_exact());
       Random random(7);
       for (const Motion motion : kMotions) {
@@ -99,16 +100,17 @@ TEST_P(Margins, moving_fat_boxes_miss_no_pair) {
   }
 }
 
-TEST_P(Margins, infinite_huge_and_tiny_boxes_miss_no_pair) {
+TEST_P(FatMargins, infinite_huge_and_tiny_boxes_miss_no_pair) {
   std::vector<Aabb> boxes = exponential_boxes(60);
   boxes.push_back({{-kInf, -kInf, -kInf}, {kInf, kInf, 0.0F}});
   boxes.push_back({{0.0F, 0.0F, 0.0F}, {kInf, 1.0F, 1.0F}});
   boxes.push_back({{-3e38F, -3e38F, -3e38F}, {3e38F, 3e38F, 3e38F}});
   boxes.push_back({{1e30F, 1e30F, 1e30F}, {1e30F, 1e30F, 1e30F}});
   boxes.push_back({{1e-40F, 0.0F, 0.0F}, {1e-40F, 0.0F, 0.0F}});
-  for (const Margin margin : {Margin{.distance = 1.0F}, Margin{.share = 0.5F},
-                              Margin{.distance = 3e38F}, Margin{.distance = kInf, .share = kInf}}) {
-    auto partition = with_margin(margin, boxes);
+  for (const FatMargin fat_margin :
+       {FatMargin{.distance = 1.0F}, FatMargin{.share = 0.5F}, FatMargin{.distance = 3e38F},
+        FatMargin{.distance = kInf, .share = kInf}}) {
+    auto partition = with_fat_margin(fat_margin, boxes);
     expect_right(partition, boxes);
     // At rest nothing changes, even if the margin is lost in rounding or is infinite.
     const std::vector<Aabb> before = stored(partition);
@@ -118,9 +120,9 @@ TEST_P(Margins, infinite_huge_and_tiny_boxes_miss_no_pair) {
   }
 }
 
-TEST_P(Margins, motion_within_the_margin_costs_no_test) {
+TEST_P(FatMargins, motion_within_the_margin_costs_no_test) {
   const std::vector<Aabb> boxes = uniform_boxes(400);
-  auto partition = with_margin({.distance = 0.1F}, boxes);
+  auto partition = with_fat_margin({.distance = 0.1F}, boxes);
   (void)after_query(partition);
   const Statistics before = after_query(partition);
   for (const float by : {0.0F, 0.04F, -0.09F, 0.09F}) {
@@ -142,9 +144,9 @@ TEST_P(Margins, motion_within_the_margin_costs_no_test) {
   expect_right(partition, next);
 }
 
-TEST_P(Margins, margin_has_the_given_size_and_shrinks) {
+TEST_P(FatMargins, margin_has_the_given_size_and_shrinks) {
   const Aabb large{{0, 0, 0}, {8, 2, 4}};
-  auto partition = with_margin({.distance = 0.5F, .share = 0.25F}, {large});
+  auto partition = with_fat_margin({.distance = 0.5F, .share = 0.25F}, {large});
   Aabb box;
   ASSERT_EQ(partition.bounds(keys_[0], box), Status::ok);
   EXPECT_EQ(box, (Aabb{{-2.5F, -2.5F, -2.5F}, {10.5F, 4.5F, 6.5F}}));
@@ -157,9 +159,9 @@ TEST_P(Margins, margin_has_the_given_size_and_shrinks) {
 }
 
 // Comparing each of the two boxes with the stored box would make the last one look unchanged.
-TEST_P(Margins, repeated_key_takes_the_last_box) {
+TEST_P(FatMargins, repeated_key_takes_the_last_box) {
   const Aabb box{{0, 0, 0}, {1, 1, 1}};
-  auto partition = with_margin({.distance = 0.5F}, {box});
+  auto partition = with_fat_margin({.distance = 0.5F}, {box});
   const Key key = keys_[0];
   update(partition, std::vector<Key>{key, key}, {moved(box, 5.0F), box});
   Aabb now;
@@ -167,31 +169,31 @@ TEST_P(Margins, repeated_key_takes_the_last_box) {
   EXPECT_TRUE(holds(now, box));
 }
 
-TEST_P(Margins, all_queries_read_the_fat_boxes) {
+TEST_P(FatMargins, all_queries_read_the_fat_boxes) {
   const std::vector<Aabb> boxes = uniform_boxes(300);
-  auto partition = with_margin({.share = 0.1F}, boxes);
+  auto partition = with_fat_margin({.share = 0.1F}, boxes);
   const std::vector<Aabb> given = all_moved(boxes, 0.05F);
   update(partition, keys_, given);
   const std::vector<Aabb> now = stored(partition);
-  const std::vector<Aabb> asked = uniform_boxes(40, 2);
-  ASSERT_EQ(partition.overlap(BoxView(asked), buffer_, {}, Order::canonical), Status::ok);
+  const std::vector<Aabb> query_boxes = uniform_boxes(40, 2);
+  ASSERT_EQ(partition.overlap(BoxView(query_boxes), buffer_, {}, Order::canonical), Status::ok);
   EXPECT_TRUE(
-      right_cross_pairs(buffer_.pairs(), cross_pairs(numbered(asked), numbered(now)), true));
-  EXPECT_TRUE(
-      right_cross_pairs(buffer_.pairs(), cross_pairs(numbered(asked), numbered(given)), false));
+      right_cross_pairs(buffer_.pairs(), cross_pairs(numbered(query_boxes), numbered(now)), true));
+  EXPECT_TRUE(right_cross_pairs(buffer_.pairs(),
+                                cross_pairs(numbered(query_boxes), numbered(given)), false));
   HitBuffer hits;
   ASSERT_EQ(partition.nearest({{0, 0, 0}, {0, 0, 0}}, 300, kInf, hits), Status::ok);
   EXPECT_EQ(hits.size(), 300U);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Margins, testing::ValuesIn(all_configs()),
+INSTANTIATE_TEST_SUITE_P(All, FatMargins, testing::ValuesIn(all_configs()),
                          testing::PrintToStringParamName());
 
 template <int K>
 void expect_fat_kdops(Volume volume) {
   Partition partition(
       bounds_n_squared(),
-      {.execution = Execution::serial(), .volume = volume, .margin = {.distance = 0.1F}});
+      {.execution = Execution::serial(), .volume = volume, .fat_margin = {.distance = 0.1F}});
   const std::vector<Aabb> boxes = uniform_boxes(200);
   std::vector<Kdop<K>> kdops;
   for (const Aabb& box : boxes) {
@@ -229,7 +231,7 @@ TEST(FatVolumes, fat_kdop_contains_motion_within_the_margin) {
 TEST(FatVolumes, fat_sphere_contains_motion_within_the_margin) {
   Partition partition(
       bounds_n_squared(),
-      {.execution = Execution::serial(), .volume = Volume::sphere, .margin = {.share = 0.25F}});
+      {.execution = Execution::serial(), .volume = Volume::sphere, .fat_margin = {.share = 0.25F}});
   std::vector<Sphere> spheres{{{0, 0, 0}, 1.0F}, {{2.8F, 0, 0}, 1.0F}};
   std::vector<Key> keys(2);
   ASSERT_EQ(partition.insert(spheres, {}, keys), Status::ok);

@@ -17,20 +17,20 @@
 
 namespace winnow {
 
-struct SweepState;
+struct ContinuousState;
 
 /// Which pairs of bodies are tested. At least one body of a pair moves, and one is dynamic, as in
 /// the scene itself.
-enum class SweepPairs : std::uint8_t {
+enum class ContinuousPairs : std::uint8_t {
   all,                ///< all pairs
   fixed,              ///< all bodies against fixed bodies
   bullets,            ///< bullets against all bodies
   bullets_and_fixed,  ///< union of `fixed` and `bullets`
 };
 
-/// Options of a sweep.
-struct SweepOptions {
-  SweepPairs pairs = SweepPairs::all;  ///< which pairs are tested
+/// Options of `ContinuousCollision::find_impacts`.
+struct ContinuousOptions {
+  ContinuousPairs pairs = ContinuousPairs::all;  ///< which pairs are tested
   /// For each moving body, whether it is a bullet: 0 or 1. Empty if there are none.
   std::span<const std::uint8_t> bullets{};
   /// See ImpactOptions::tolerance.
@@ -58,38 +58,39 @@ struct SceneImpact {
   double point[3] = {0.0, 0.0, 0.0};   ///< contact point of a at that time, in the world
 };
 
-/// Index of no impact; see `SceneSweep::first`.
+/// Index of no impact; see `ContinuousCollision::first`.
 inline constexpr std::uint32_t kNoImpact = ~0U;
 
-/// Counters of the last sweep; never timings.
-struct SweepStatistics {
+/// Counters of the last call of `find_impacts`; never timings.
+struct ContinuousStatistics {
   std::uint64_t boxes = 0;       ///< boxes around paths of bodies, or around pieces of paths
   std::uint64_t body_pairs = 0;  ///< pairs whose boxes overlap at some time
 };
 
 /// Finds the times at which bodies of a scene touch while they move from one frame to the next
-/// (continuous collision detection). It moves nothing in the scene; a scene that is not swept pays
+/// (continuous collision detection, CCD). It moves nothing in the scene; a scene without it pays
 /// nothing.
 ///
-///     winnow::SceneSweep sweep(scene);
-///     sweep.sweep(keys, end_poses);
-///     for (const winnow::SceneImpact& impact : sweep.impacts()) { ... }
+///     winnow::ContinuousCollision ccd(scene);
+///     ccd.find_impacts(keys, end_poses);
+///     for (const winnow::SceneImpact& impact : ccd.impacts()) { ... }
 ///
 /// Every body moves along its whole path: an impact does not stop it, and each impact is computed
 /// as if there were no earlier ones. Filters, layers, ignored pairs and the predicate of the scene
 /// apply as in `collide`. Results and their order are the same for any number of threads and any
 /// instruction set. A failed call keeps the previous results.
-class WINNOW_API SceneSweep {
+class WINNOW_API ContinuousCollision {
  public:
-  /// Creates a sweep of `scene`, which must outlive this object. Every allocation comes from
+  /// Works on `scene`, which must outlive this object. Every allocation comes from
   /// `memory`, which must also outlive it. If memory for the object itself is refused, calls return
   /// `out_of_memory`.
-  explicit SceneSweep(Scene& scene, std::pmr::memory_resource* memory = default_memory()) noexcept;
-  ~SceneSweep();
-  SceneSweep(const SceneSweep&) = delete;
-  SceneSweep& operator=(const SceneSweep&) = delete;
+  explicit ContinuousCollision(Scene& scene,
+                               std::pmr::memory_resource* memory = default_memory()) noexcept;
+  ~ContinuousCollision();
+  ContinuousCollision(const ContinuousCollision&) = delete;
+  ContinuousCollision& operator=(const ContinuousCollision&) = delete;
 
-  /// Sweeps bodies from their poses in the scene, which is refreshed first, to the given ends,
+  /// Moves bodies from their poses in the scene, which is refreshed first, to the given ends,
   /// along RigidMotion::between; without orientations they do not rotate. All other bodies are at
   /// rest. `size_mismatch`; `invalid_key`, also if a key occurs twice; `invalid_pose` for an end
   /// that is invalid or too far away; `invalid_argument` for invalid options; `out_of_memory`
@@ -98,11 +99,12 @@ class WINNOW_API SceneSweep {
   /// included; a path that is diagonal to the axes gets up to eight boxes. If most moving bodies
   /// travel together, their common displacement is subtracted before they are tested against each
   /// other.
-  Status sweep(std::span<const Key> keys, const PoseView& ends, const SweepOptions& options = {});
+  Status find_impacts(std::span<const Key> keys, const PoseView& ends,
+                      const ContinuousOptions& options = {});
   /// As above, for any motions, such as from velocities. Each body starts at the start of its
   /// motion.
-  Status sweep(std::span<const Key> keys, std::span<const RigidMotion> motions,
-               const SweepOptions& options = {});
+  Status find_impacts(std::span<const Key> keys, std::span<const RigidMotion> motions,
+                      const ContinuousOptions& options = {});
 
   /// Returns the first impact of each pair (with `first_only`, only impacts that are the first of a
   /// moving body), sorted by time, then by the ids of a and b.
@@ -111,19 +113,19 @@ class WINNOW_API SceneSweep {
   /// kNoImpact.
   [[nodiscard]] std::span<const std::uint32_t> first() const noexcept;
 
-  /// Returns the counters of the last sweep.
-  [[nodiscard]] SweepStatistics statistics() const noexcept;
+  /// Returns the counters of the last call of `find_impacts`.
+  [[nodiscard]] ContinuousStatistics statistics() const noexcept;
   /// Returns the bytes of impacts under `results`, the rest under `scratch` and `structure`.
   [[nodiscard]] Footprint footprint() const noexcept;
 
  private:
-  /// Runs a sweep; `take` reads the motions.
+  /// Finds the impacts; `take` reads the motions.
   template <typename Take>
-  Status run(std::span<const Key> keys, const SweepOptions& options, Take&& take);
+  Status run(std::span<const Key> keys, const ContinuousOptions& options, Take&& take);
 
   std::pmr::memory_resource* memory_;
   /// Null if memory was refused.
-  SweepState* state_;
+  ContinuousState* state_;
 };
 
 }  // namespace winnow

@@ -109,14 +109,14 @@ def test_islands_and_colours_equal_a_reference():
     random = np.random.default_rng(91)
     shapes = winnow.Shapes()
     scene = winnow.Scene(shapes)
-    motion = np.where(np.arange(150) % 6 == 0, winnow.FIXED, winnow.DYNAMIC)
+    state = np.where(np.arange(150) % 6 == 0, winnow.FIXED, winnow.DYNAMIC)
     keys = scene.add(
-        shapes.add_spheres(0.5), random.uniform(0, 6, (150, 3)), motion, data=np.arange(150)
+        shapes.add_spheres(0.5), random.uniform(0, 6, (150, 3)), state, data=np.arange(150)
     )
     contacts = winnow.Contacts()
     scene.collide(contacts, "distance")
     pairs = list(zip(contacts.data_a.tolist(), contacts.data_b.tolist()))
-    movable = set(np.nonzero(motion == winnow.DYNAMIC)[0].tolist())
+    movable = set(np.nonzero(state == winnow.DYNAMIC)[0].tolist())
     islands = scene.islands(contacts)
     assert islands.group.tolist() == islands_of(pairs, movable)
     assert islands.group.max() > 5
@@ -161,7 +161,7 @@ def test_contacts_have_their_places_in_the_last_frame():
 
 def floor_of_tiles(**options):
     shapes = winnow.Shapes()
-    scene = winnow.Scene(shapes, margin=0.02, **options)
+    scene = winnow.Scene(shapes, contact_margin=0.02, **options)
     x, y = np.meshgrid(np.arange(5.0), np.arange(5.0))
     vertices = np.stack([x.ravel(), y.ravel(), np.zeros(25)], axis=1)
     square = (np.arange(4)[:, None] * 5 + np.arange(4)).ravel()
@@ -188,7 +188,7 @@ def test_seamless_floors_have_no_ghost_contacts():
     for seamless in (False, True):
         random = np.random.default_rng(94)
         shapes = winnow.Shapes()
-        scene = winnow.Scene(shapes, margin=0.03, suppress_ghost_contacts=seamless)
+        scene = winnow.Scene(shapes, contact_margin=0.03, suppress_ghost_contacts=seamless)
         tile = shapes.add_boxes([2, 2, 1])
         scene.add(tile, [[x, y, -1] for x in (-2, 2) for y in (-2, 2)], "fixed")
         slider = scene.add(shapes.add_boxes([0.5, 0.4, 0.3]), [[0, 0, 9]])
@@ -245,7 +245,7 @@ def test_composite_shapes_list_their_parts():
     scene.collide(contacts)
     assert len(contacts) == 0
     mesh = shapes.add_mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
-    assert "question 1" in refused("invalid_key", shapes.set_one_sided, [mesh, ball])
+    assert "entry 1" in refused("invalid_key", shapes.set_one_sided, [mesh, ball])
     assert shapes.is_one_sided([mesh]).tolist() == [False]
     refused("invalid_key", shapes.parts, [ball])
     refused("invalid_key", shapes.is_one_sided, [2**32 - 1])
@@ -264,7 +264,7 @@ def test_closed_mesh_can_be_solid():
     body = scene.add(cube, [[5, 0, 0]])
     scene.refresh()
     assert len(scene.overlap([ball], poses_at([5, 0, 0])).key) == 0
-    assert "question 1" in refused("invalid_shape", shapes.set_solid, [cube, open_box])
+    assert "entry 1" in refused("invalid_shape", shapes.set_solid, [cube, open_box])
     assert shapes.is_solid([cube, open_box]).tolist() == [False, False]
     shapes.set_solid([cube])
     assert shapes.is_solid([cube, open_box]).tolist() == [True, False]
@@ -281,7 +281,7 @@ def test_any_arrays_are_accepted_or_refused(first, second, third, number):
     ids = shapes.add_spheres([1.0, 2.0])
     scene = winnow.Scene(shapes)
     keys = scene.add(ids, np.zeros((2, 3)))
-    for ask in [
+    for call in [
         lambda: scene.set_offsets(keys, first, second),
         lambda: scene.set_offsets(first, second, third),
         lambda: scene.set_layer(keys, first),
@@ -300,6 +300,6 @@ def test_any_arrays_are_accepted_or_refused(first, second, third, number):
         lambda: scene.collide(winnow.Contacts()),
     ]:
         try:
-            ask()
+            call()
         except REFUSALS:
             pass

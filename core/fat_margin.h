@@ -11,7 +11,7 @@ namespace winnow {
 /// margin, its stored volume does not change and costs no update. In return, pairs are reported
 /// whose given volumes are apart by up to the sum of their margins. `distance` corresponds to the
 /// margins of PhysX and Bullet, `share` to the margin of Box2D. Negative values and NaN count as 0.
-struct Margin {
+struct FatMargin {
   float distance = 0.0F;  ///< in units of length
   float share = 0.0F;     ///< 0.05 is a twentieth of the longest edge
 
@@ -19,7 +19,7 @@ struct Margin {
   [[nodiscard]] bool is_none() const noexcept { return !(distance > 0.0F) && !(share > 0.0F); }
 
   /// Returns the margin with each member replaced by a finite value that is not negative.
-  [[nodiscard]] Margin legal() const noexcept {
+  [[nodiscard]] FatMargin legal() const noexcept {
     constexpr float most = std::numeric_limits<float>::max();
     const auto at_most = [](float value) { return value < most ? value : most; };
     return {distance > 0.0F ? at_most(distance) : 0.0F, share > 0.0F ? at_most(share) : 0.0F};

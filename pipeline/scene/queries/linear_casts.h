@@ -10,11 +10,11 @@
 
 namespace winnow {
 
-/// The first contact of a swept shape with a convex part, in the part's coordinates: world axes,
+/// The first contact of a moving shape with a convex part, in the part's coordinates: world axes,
 /// relative to the body's position.
-struct SweepContact {
+struct CastContact {
   double t = 0.0;
-  /// For shapes: the normal of a separating plane, until `SweptShape::describe` replaces it with
+  /// For shapes: the normal of a separating plane, until `LinearCast::describe` replaces it with
   /// the surface normal.
   double normal[3] = {0.0, 0.0, 0.0};
   double point[3] = {0.0, 0.0, 0.0};
@@ -25,11 +25,11 @@ struct SweepContact {
   std::uint32_t own_part = kWholeShape;
 };
 
-/// Converts the result of a cast; normal and point of the surface are left for `describe`.
-[[nodiscard]] SweepContact contact_of(const CastTouch& touch) noexcept;
+/// Converts the result of a cast. `describe` computes normal and point of the surface later.
+[[nodiscard]] CastContact contact_of(const CastTouch& touch) noexcept;
 /// Computes normal and point of a contact of this pair, whose fixed shape is the part.
 void describe_contact(const ShapeTables& tables, const CastPair& pair, const SubShape& part,
-                      SweepContact& meeting) noexcept;
+                      CastContact& contact) noexcept;
 
 /// The motions of a pair over the whole cast, which ends at `max_t`.
 class CastMotions {
@@ -44,23 +44,23 @@ class CastMotions {
 
  private:
   impact::MovingPart moving_;
-  impact::MovingPart standing_;
+  impact::MovingPart stationary_;
   bool is_finite_;
 };
 
 /// Boxes are grown by this share of their coordinates before box tests, which round.
-inline constexpr double kSweptBoxGrowth = 0x1p-47;
+inline constexpr double kCastBoxGrowth = 0x1p-47;
 
-/// Upper bound on the distance between copies of a common corner of adjacent triangles, each
-/// rounded at its own place. Triangles that are this thick leave no gaps between them.
+/// Upper bound on the distance between copies of a common corner of adjacent triangles, which are
+/// rounded separately. Triangles that are this thick leave no gaps between them.
 [[nodiscard]] double corner_error(const SubShape& part) noexcept;
 
 /// A ray, or a shape that moves along a line without turning.
-class SweptShape {
+class LinearCast {
  public:
-  SweptShape(const SweptShape&) = delete;
-  SweptShape& operator=(const SweptShape&) = delete;
-  virtual ~SweptShape() = default;
+  LinearCast(const LinearCast&) = delete;
+  LinearCast& operator=(const LinearCast&) = delete;
+  virtual ~LinearCast() = default;
 
   /// Start position, and a box around the shape relative to it.
   [[nodiscard]] const double* start() const noexcept { return start_; }
@@ -73,35 +73,35 @@ class SweptShape {
   [[nodiscard]] double tolerance() const noexcept { return tolerance_; }
   /// False if contacts at the start, along which it slides or separates, are not hits.
   [[nodiscard]] bool hits_at_start() const noexcept { return hits_at_start_; }
-  /// Records its contact with a part at the start.
+  /// Records the contact of this shape with a part at the start.
   virtual void note_contact(const double from[3], const SubShape& part,
                             impact::RestingContacts& resting) const noexcept;
 
   /// Earlier results for the body whose parts are tested.
   struct EarlierContacts {
     /// A contact with another part at the limit, or null.
-    const SweepContact* before = nullptr;
+    const CastContact* before = nullptr;
     /// Contacts with the body at the start if they are not hits, else null.
     const impact::RestingContacts* resting = nullptr;
   };
-  /// True if it touches the part by t = limit, starting at `from`.
-  [[nodiscard]] virtual bool meets(const double from[3], const SubShape& part, double limit,
-                                   const EarlierContacts& known,
-                                   SweepContact& meeting) const noexcept = 0;
-  /// Computes normal and point of a contact. This costs more than its time, so it is done only for
-  /// the contact that is returned.
+  /// True if the shape or ray touches the part by t = limit, starting at `from`.
+  [[nodiscard]] virtual bool find_contact(const double from[3], const SubShape& part, double limit,
+                                          const EarlierContacts& known,
+                                          CastContact& contact) const noexcept = 0;
+  /// Computes normal and point of a contact. This takes longer than finding the time of the
+  /// contact, so it is done only for the contact that is returned.
   virtual void describe(const double from[3], const SubShape& part,
-                        SweepContact& meeting) const noexcept = 0;
+                        CastContact& contact) const noexcept = 0;
 
  protected:
-  SweptShape(const PreciseBox& extent, const ShapeCast& cast, double tolerance) noexcept
+  LinearCast(const PreciseBox& extent, const ShapeCast& cast, double tolerance) noexcept
       : extent_(extent),
         start_(cast.pose.position),
         direction_(cast.direction),
         max_t_(cast.max_t),
         tolerance_(tolerance),
         hits_at_start_(cast.touching) {}
-  explicit SweptShape(const ShapeRay& ray) noexcept
+  explicit LinearCast(const ShapeRay& ray) noexcept
       : extent_{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()},
         start_(ray.origin),
         direction_(ray.direction),
@@ -117,35 +117,35 @@ class SweptShape {
 };
 
 /// A ray, which must outlive this object.
-class RaySweep final : public SweptShape {
+class RayCast final : public LinearCast {
  public:
-  RaySweep(const ShapePool& shapes, const ShapeRay& ray) noexcept;
+  RayCast(const ShapePool& shapes, const ShapeRay& ray) noexcept;
   [[nodiscard]] const ShapeRay* ray() const noexcept override { return &ray_; }
-  [[nodiscard]] bool meets(const double from[3], const SubShape& part, double limit,
-                           const EarlierContacts& known,
-                           SweepContact& meeting) const noexcept override;
+  [[nodiscard]] bool find_contact(const double from[3], const SubShape& part, double limit,
+                                  const EarlierContacts& known,
+                                  CastContact& contact) const noexcept override;
   void describe(const double from[3], const SubShape& part,
-                SweepContact& meeting) const noexcept override;
+                CastContact& contact) const noexcept override;
 
  private:
   [[nodiscard]] bool enters(const ShapeRay& ray, const SubShape& part,
-                            SweepContact& meeting) const noexcept;
+                            CastContact& contact) const noexcept;
 
   const ShapePool& shapes_;
   const ShapeRay& ray_;
 };
 
 /// A convex shape. The cast must outlive this object.
-class ShapeSweep final : public SweptShape {
+class ConvexCast final : public LinearCast {
  public:
-  ShapeSweep(const SubShapeQuery& parts, const ShapeCast& cast, double tolerance) noexcept;
+  ConvexCast(const SubShapeQuery& parts, const ShapeCast& cast, double tolerance) noexcept;
   void note_contact(const double from[3], const SubShape& part,
                     impact::RestingContacts& resting) const noexcept override;
-  [[nodiscard]] bool meets(const double from[3], const SubShape& part, double limit,
-                           const EarlierContacts& known,
-                           SweepContact& meeting) const noexcept override;
+  [[nodiscard]] bool find_contact(const double from[3], const SubShape& part, double limit,
+                                  const EarlierContacts& known,
+                                  CastContact& contact) const noexcept override;
   void describe(const double from[3], const SubShape& part,
-                SweepContact& meeting) const noexcept override;
+                CastContact& contact) const noexcept override;
 
  private:
   /// True if a plane proves that the shape does not reach the triangle by t = limit. If false, may
@@ -153,11 +153,11 @@ class ShapeSweep final : public SweptShape {
   [[nodiscard]] bool passes_by(const double from[3], const SubShape& part, double limit,
                                double& free_until) const noexcept;
   /// As passes_by, with the plane of a contact with another part at t = limit.
-  [[nodiscard]] bool is_beyond(const SubShape& part, const SweepContact& before) const noexcept;
+  [[nodiscard]] bool is_beyond(const SubShape& part, const CastContact& before) const noexcept;
   /// As passes_by, with the plane between the shape's centre and the triangle.
   [[nodiscard]] bool is_beside(const double from[3], const SubShape& part,
                                double limit) const noexcept;
-  void set_height(const double from[3], SweepContact& meeting) const noexcept;
+  void set_height(const double from[3], CastContact& contact) const noexcept;
   /// The box of the shape at its start.
   [[nodiscard]] PreciseBox box_at(const double from[3]) const noexcept;
   [[nodiscard]] CastPair pair(PartTables& tables, const double from[3],
@@ -174,27 +174,27 @@ class ShapeSweep final : public SweptShape {
 /// A contact with a body, with the data to describe it.
 class BodyContact {
  public:
-  /// Finds the swept shape's first contact with the body by t = limit; if times are equal, the one
+  /// Finds the cast's first contact with the body by t = limit; if times are equal, the one
   /// with the smallest part number. With `any`, the contact that is found first. Returns false if
   /// there is none.
-  [[nodiscard]] bool find(const SubShapeQuery& parts, const SweptShape& swept,
+  [[nodiscard]] bool find(const SubShapeQuery& parts, const LinearCast& linear_cast,
                           const PlacedShape& body, double limit, bool any) noexcept;
 
-  [[nodiscard]] double t() const noexcept { return meeting_.t; }
+  [[nodiscard]] double t() const noexcept { return contact_.t; }
   [[nodiscard]] std::uint32_t part() const noexcept { return part_.part; }
   /// Returns the hit without the body's key and data.
-  [[nodiscard]] SceneHit hit(const SweptShape& swept) const noexcept;
+  [[nodiscard]] SceneHit hit(const LinearCast& linear_cast) const noexcept;
 
  private:
-  void take(const SubShape& part, const SweepContact& meeting) noexcept;
+  void take(const SubShape& part, const CastContact& contact) noexcept;
   /// Records the contacts with a composite body at the start.
-  void note_contacts(const SubShapeQuery& parts, const SweptShape& swept, const PlacedShape& placed,
-                     impact::RestingContacts& resting) const noexcept;
+  void note_contacts(const SubShapeQuery& parts, const LinearCast& linear_cast,
+                     const PlacedShape& placed, impact::RestingContacts& resting) const noexcept;
 
-  SweepContact meeting_;
+  CastContact contact_;
   SubShape part_;
   TriangleShape triangle_;
-  /// Start of the sweep, relative to the body's position; and the body's position in the world.
+  /// Start of the cast, relative to the body's position; and the body's position in the world.
   double from_[3] = {0.0, 0.0, 0.0};
   double base_[3] = {0.0, 0.0, 0.0};
 };

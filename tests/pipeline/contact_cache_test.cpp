@@ -1,5 +1,5 @@
-// Contacts that are carried over from frame to frame (SceneOptions::carry_over), compared with a
-// fresh scene.
+// The contact cache: contacts that are kept from frame to frame (SceneOptions::cache_tolerance),
+// compared with a fresh scene.
 
 #include <winnow/winnow.h>
 
@@ -17,7 +17,7 @@
 namespace winnow::test {
 namespace {
 
-constexpr double kCarryOver = 0.1;
+constexpr double kCacheTolerance = 0.1;
 
 /// Pairs of balls, 9 apart.
 struct Balls {
@@ -42,7 +42,7 @@ struct Balls {
 
   ShapePool shapes;
   ShapeId ball;
-  Scene scene{shapes, {.execution = Execution::serial(), .carry_over = kCarryOver}};
+  Scene scene{shapes, {.execution = Execution::serial(), .cache_tolerance = kCacheTolerance}};
   std::vector<Key> left;
   std::vector<Key> right;
 };
@@ -55,7 +55,7 @@ std::set<std::uint32_t> shown_with(const Contacts& contacts, ContactEvent event)
   return ids;
 }
 
-TEST(CarryOver, resting_pairs_report_begin_and_end_events) {
+TEST(ContactCache, resting_pairs_report_begin_and_end_events) {
   constexpr std::size_t kPairs = 8;
   Balls balls(kPairs, 0.03);
   for (std::size_t i = 0; i < kPairs; i += 2) balls.part(i, -0.01);
@@ -70,12 +70,12 @@ TEST(CarryOver, resting_pairs_report_begin_and_end_events) {
     EXPECT_EQ(shown_with(contacts, ContactEvent::begun), touching) << frame;
     EXPECT_EQ(contacts.ended().size(), frame == 0 ? 0 : kPairs / 2);
     for (const EndedContact& ended : contacts.ended()) EXPECT_FALSE(touching.contains(ended.b.id));
-    // Moves by more than the carry-over, but not out of the fat boxes.
+    // Moves by more than the cache tolerance, but not out of the fat boxes.
     for (std::size_t i = 0; i < kPairs; ++i) balls.part(i, (i % 2 == 0) != swapped ? 0.12 : -0.01);
   }
 }
 
-TEST(CarryOver, first_contact_among_resting_pairs_begins) {
+TEST(ContactCache, first_contact_among_resting_pairs_begins) {
   Balls balls(3, 0.03);
   Contacts contacts;
   ASSERT_EQ(balls.scene.collide(ContactLevel::manifold, contacts), Status::ok);
@@ -87,33 +87,33 @@ TEST(CarryOver, first_contact_among_resting_pairs_begins) {
 }
 
 /// `collide` is called with a second Contacts while the pair sleeps.
-TEST(CarryOver, pair_moved_while_asleep_is_recomputed) {
+TEST(ContactCache, pair_moved_while_asleep_is_recomputed) {
   Balls balls(2, -0.01);
   Contacts contacts;
   Contacts others;
-  const auto set_motion = [&](Motion motion) {
+  const auto set_body_state = [&](BodyState state) {
     for (const std::uint32_t id : {0U, 1U}) {
       const Key key{id, contacts.a()[0].stamp};
-      ASSERT_EQ(balls.scene.set_motion(key, motion), Status::ok);
+      ASSERT_EQ(balls.scene.set_body_state(key, state), Status::ok);
     }
   };
   ASSERT_EQ(balls.scene.collide(ContactLevel::distance, contacts), Status::ok);
   ASSERT_EQ(contacts.size(), 2U);
-  set_motion(Motion::sleeping);
+  set_body_state(BodyState::sleeping);
   ASSERT_EQ(balls.scene.collide(ContactLevel::distance, contacts), Status::ok);
   balls.part(0, -0.4);
   ASSERT_EQ(balls.scene.collide(ContactLevel::distance, contacts), Status::ok);
   ASSERT_EQ(balls.scene.collide(ContactLevel::distance, others), Status::ok);
-  set_motion(Motion::dynamic);
+  set_body_state(BodyState::dynamic);
   ASSERT_EQ(balls.scene.collide(ContactLevel::distance, contacts), Status::ok);
   ASSERT_EQ(contacts.size(), 2U);
   EXPECT_NEAR(contacts.distance()[0], -0.4, 1e-12);
   EXPECT_NEAR(contacts.distance()[1], -0.01, 1e-12);
 }
 
-/// Boxes, cylinders and balls on a mesh: carry-over must not widen the contact margin of the first
-/// frame.
-TEST(CarryOver, first_frame_matches_scene_without_carry_over) {
+/// Boxes, cylinders and balls on a mesh: the contact cache must not widen the contact margin of the
+/// first frame.
+TEST(ContactCache, first_frame_matches_scene_without_cache) {
   CompositeWorld world;
   const auto hills = [](float x, float y) {
     return 0.2F * std::sin(3.0F * x) * std::cos(2.0F * y);
@@ -123,7 +123,7 @@ TEST(CarryOver, first_frame_matches_scene_without_carry_over) {
                             add(world.shapes, CylinderShape{0.3, 0.4, 0.05}),
                             add(world.shapes, SphereShape{0.35})};
   Random random(7);
-  std::vector<BodyDefinition> bodies{{.shape = ground, .motion = Motion::fixed}};
+  std::vector<BodyDefinition> bodies{{.shape = ground, .state = BodyState::fixed}};
   for (std::size_t i = 1; i < scaled(300); ++i) {
     BodyDefinition body{.shape = shapes[i % 3]};
     body.pose = Pose::at(random.uniform(-3, 3), random.uniform(-3, 3), random.uniform(-0.2, 0.6));
@@ -133,14 +133,14 @@ TEST(CarryOver, first_frame_matches_scene_without_carry_over) {
   }
   for (const bool reduced : {false, true}) {
     Contacts contacts[2];
-    for (const bool carries : {false, true}) {
-      Scene scene(world.shapes, {.margin = 0.05,
-                                 .carry_over = carries ? 0.3 : 0.0,
+    for (const bool uses_cache : {false, true}) {
+      Scene scene(world.shapes, {.contact_margin = 0.05,
+                                 .cache_tolerance = uses_cache ? 0.3 : 0.0,
                                  .contact_reduction = reduced,
                                  .composites = &world.composites});
       std::vector<Key> keys(bodies.size());
       ASSERT_EQ(scene.add(bodies, keys), Status::ok);
-      ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts[carries ? 1 : 0]), Status::ok);
+      ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts[uses_cache ? 1 : 0]), Status::ok);
     }
     EXPECT_GT(contacts[0].points(), 0U);
     EXPECT_EQ(digest(contacts[0]), digest(contacts[1]));
@@ -148,24 +148,25 @@ TEST(CarryOver, first_frame_matches_scene_without_carry_over) {
 }
 
 /// A pair that was dropped as a ghost contact counts as touching.
-TEST(CarryOver, ghost_contact_of_dynamic_floor_is_reported) {
+TEST(ContactCache, ghost_contact_of_dynamic_floor_is_reported) {
   ShapePool shapes;
   ShapeId tile;
   ShapeId ball;
   ASSERT_EQ(shapes.add(BoxShape{{1, 1, 0.5}, 0.0}, tile), Status::ok);
   ASSERT_EQ(shapes.add(SphereShape{0.5}, ball), Status::ok);
-  Scene scene(shapes, {.carry_over = kCarryOver, .suppress_ghost_contacts = true});
+  Scene scene(shapes, {.cache_tolerance = kCacheTolerance, .suppress_ghost_contacts = true});
   Key floor;
   Key beside;
   Key key;
-  ASSERT_EQ(scene.add({.shape = tile, .motion = Motion::fixed}, floor), Status::ok);
-  ASSERT_EQ(scene.add({.shape = tile, .pose = Pose::at(2, 0, 0), .motion = Motion::fixed}, beside),
-            Status::ok);
+  ASSERT_EQ(scene.add({.shape = tile, .state = BodyState::fixed}, floor), Status::ok);
+  ASSERT_EQ(
+      scene.add({.shape = tile, .pose = Pose::at(2, 0, 0), .state = BodyState::fixed}, beside),
+      Status::ok);
   ASSERT_EQ(scene.add({.shape = ball, .pose = Pose::at(0.8, 0, 0.9)}, key), Status::ok);
   Contacts contacts;
   ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
   ASSERT_EQ(contacts.size(), 1U);
-  ASSERT_EQ(scene.set_motion(beside, Motion::dynamic), Status::ok);
+  ASSERT_EQ(scene.set_body_state(beside, BodyState::dynamic), Status::ok);
   ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
   std::size_t with_ball = 0;
   for (std::size_t i = 0; i < contacts.size(); ++i) {

@@ -1,4 +1,4 @@
-#include "partitions/queries/sweep.h"
+#include "partitions/queries/prepared_cast.h"
 
 #include <winnow/core/rounding.h>
 
@@ -15,8 +15,8 @@ constexpr double kSlowest = 0x1p-120;
 
 }  // namespace
 
-void make_sweep(KernelCast& s, const Aabb& box, const Eigen::Vector3d& direction, double min_t,
-                double max_t) noexcept {
+void prepare_cast(KernelCast& s, const Aabb& box, const Eigen::Vector3d& direction, double min_t,
+                  double max_t) noexcept {
   s.touch = nullptr;
   s.shape = nullptr;
   s.min_t = min_t;

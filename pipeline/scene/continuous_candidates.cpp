@@ -1,8 +1,8 @@
-// Candidate pairs of a sweep. Boxes of the moving bodies' paths are inserted in a partition, which
-// finds pairs among them and with the scene's partitions. If paths are long because most bodies
-// move in the same direction, pairs among them are found in a frame that moves along.
+// Candidate pairs of moving bodies. Boxes of the moving bodies' paths are inserted in a partition,
+// which finds pairs among them and with the scene's partitions. If paths are long because most
+// bodies move in the same direction, pairs among them are found in a frame that moves along.
 
-#include "pipeline/scene/sweep_state.h"
+#include "pipeline/scene/continuous_state.h"
 
 #include <winnow/core/aabb.h>
 #include "core/sort/radix_sort.h"
@@ -22,45 +22,48 @@ constexpr double kShortened = 0.25;
 constexpr double kLongPath = 4.0;
 
 /// Filter for pairs of paths, or of paths and bodies at rest.
-struct SweptPairFilter {
-  const SweepState& sweep;
-  const SweepOptions& options;
+struct PathPairFilter {
+  const ContinuousState& state;
+  const ContinuousOptions& options;
   /// Null for pairs among paths.
-  const SceneSet* standing;
+  const SceneSet* stationary;
 
-  [[nodiscard]] bool is_selected(const SweptPiece& way, Motion other, bool bullet) const noexcept {
-    if (way.motion != Motion::dynamic && other != Motion::dynamic) return false;
-    const bool fixed = way.motion == Motion::fixed || other == Motion::fixed;
-    return options.pairs == SweepPairs::all || (bullet && options.pairs != SweepPairs::fixed) ||
-           (fixed && options.pairs != SweepPairs::bullets);
+  [[nodiscard]] bool is_selected(const PathPiece& way, BodyState other,
+                                 bool bullet) const noexcept {
+    if (way.body_state != BodyState::dynamic && other != BodyState::dynamic) return false;
+    const bool fixed = way.body_state == BodyState::fixed || other == BodyState::fixed;
+    return options.pairs == ContinuousPairs::all ||
+           (bullet && options.pairs != ContinuousPairs::fixed) ||
+           (fixed && options.pairs != ContinuousPairs::bullets);
   }
   [[nodiscard]] bool accept(ObjectId first, ObjectId second) const noexcept {
-    const SweptPiece way = sweep.pieces[first];
-    if (standing != nullptr) {
-      const std::uint32_t other = standing->body_of[second];
-      return is_selected(way, sweep.bodies.motion[other], way.bullet) &&
-             sweep.mover_of[other] == kNoMover &&
-             sweep.bodies.may_pair(sweep.movers[way.mover], other);
+    const PathPiece way = state.pieces[first];
+    if (stationary != nullptr) {
+      const std::uint32_t other = stationary->body_of[second];
+      return is_selected(way, state.bodies.body_state[other], way.bullet) &&
+             state.mover_of[other] == kNoMover &&
+             state.bodies.may_pair(state.movers[way.mover], other);
     }
-    const SweptPiece then = sweep.pieces[second];
-    return is_selected(way, then.motion, way.bullet || then.bullet) && way.mover != then.mover &&
-           way.meets(then) &&
-           sweep.bodies.may_pair(sweep.movers[way.mover], sweep.movers[then.mover]);
+    const PathPiece then = state.pieces[second];
+    return is_selected(way, then.body_state, way.bullet || then.bullet) &&
+           way.mover != then.mover && way.overlaps(then) &&
+           state.bodies.may_pair(state.movers[way.mover], state.movers[then.mover]);
   }
-  [[nodiscard]] PairOptions asked() const noexcept {
-    PairOptions asked;
-    asked.incremental = false;
-    asked.predicate = {[](void* context, ObjectId first, ObjectId second) {
-                         return static_cast<const SweptPairFilter*>(context)->accept(first, second);
-                       },
-                       const_cast<SweptPairFilter*>(this)};
-    return asked;
+  [[nodiscard]] PairOptions pair_options() const noexcept {
+    PairOptions pair_options;
+    pair_options.incremental = false;
+    pair_options.predicate = {[](void* context, ObjectId first, ObjectId second) {
+                                return static_cast<const PathPairFilter*>(context)->accept(first,
+                                                                                           second);
+                              },
+                              const_cast<PathPairFilter*>(this)};
+    return pair_options;
   }
 };
 
 }  // namespace
 
-Status SweepState::take_bodies(std::span<const Key> keys) noexcept {
+Status ContinuousState::take_bodies(std::span<const Key> keys) noexcept {
   std::atomic<bool> valid = true;
   for_movers([&](std::size_t mover) {
     if (!motions[mover].is_valid()) valid.store(false, std::memory_order_relaxed);
@@ -75,13 +78,13 @@ Status SweepState::take_bodies(std::span<const Key> keys) noexcept {
   for (std::size_t i = 0; i < keys.size(); ++i) {
     movers[i] = keys[i].id;
     mover_of[keys[i].id] = static_cast<std::uint32_t>(i);
-    ++movers_in[static_cast<std::size_t>(bodies.motion[keys[i].id])];
+    ++movers_in[static_cast<std::size_t>(bodies.body_state[keys[i].id])];
   }
   for_movers([&](std::size_t mover) { balls[mover] = ball_of(motions[mover], movers[mover]); });
   return Status::ok;
 }
 
-Status SweepState::take(std::span<const Key> keys, const PoseView& ends) noexcept {
+Status ContinuousState::take(std::span<const Key> keys, const PoseView& ends) noexcept {
   const auto motion_to = [&](std::size_t i) {
     const Pose& start = bodies.pose[keys[i].id];
     Pose end = ends[i];
@@ -95,7 +98,8 @@ Status SweepState::take(std::span<const Key> keys, const PoseView& ends) noexcep
   return take_bodies(keys);
 }
 
-Status SweepState::take(std::span<const Key> keys, std::span<const RigidMotion> given) noexcept {
+Status ContinuousState::take(std::span<const Key> keys,
+                             std::span<const RigidMotion> given) noexcept {
   if (keys.size() != given.size()) return Status::size_mismatch;
   if (!bodies.are_distinct(keys)) return Status::invalid_key;
   if (!motions.resize(keys.size())) return Status::out_of_memory;
@@ -103,9 +107,9 @@ Status SweepState::take(std::span<const Key> keys, std::span<const RigidMotion> 
   return take_bodies(keys);
 }
 
-/// Sets `drift` to the median travel on each axis, or to zero if this does not shorten the paths
-/// much.
-bool SweepState::choose_drift() noexcept {
+/// Sets `drift` to the median travel on each axis, or to zero if this does not shorten the paths as
+/// much as kShortened and kLongPath require.
+bool ContinuousState::choose_drift() noexcept {
   drift.setZero();
   double as_they_are = 0.0;
   double radii = 0.0;
@@ -132,7 +136,7 @@ bool SweepState::choose_drift() noexcept {
 }
 
 /// Computes the number of boxes of each path.
-bool SweepState::count_pieces() noexcept {
+bool ContinuousState::count_pieces() noexcept {
   const std::size_t count = movers.size();
   if (!first_piece.resize(count + 1)) return false;
   const RigidMotion origin = frame();
@@ -147,7 +151,7 @@ bool SweepState::count_pieces() noexcept {
   return boxes.resize(total) && piece_keys.resize(total);
 }
 
-void SweepState::box_path(std::uint32_t mover) noexcept {
+void ContinuousState::box_path(std::uint32_t mover) noexcept {
   const RigidMotion origin = frame();
   const impact::MovingShape moving = path_of(mover);
   const impact::RelativeMotionBounds passage(parts, origin, moving);
@@ -164,7 +168,7 @@ void SweepState::box_path(std::uint32_t mover) noexcept {
 }
 
 /// Fills `ways` with new boxes.
-Status SweepState::box_paths(const SweepOptions& options) {
+Status ContinuousState::box_paths(const ContinuousOptions& options) {
   if (!count_pieces()) return Status::out_of_memory;
   for_movers([&](std::size_t mover) { box_path(static_cast<std::uint32_t>(mover)); });
   ways.clear();
@@ -183,21 +187,22 @@ Status SweepState::box_paths(const SweepOptions& options) {
   return set_filters();
 }
 
-void SweepState::name_pieces(std::uint32_t mover, const SweepOptions& options) noexcept {
+void ContinuousState::name_pieces(std::uint32_t mover, const ContinuousOptions& options) noexcept {
   const std::uint32_t begin = first_piece[mover];
   const auto count = static_cast<std::uint8_t>(first_piece[mover + 1] - begin);
-  const Motion motion = bodies.motion[movers[mover]];
+  const BodyState body_state = bodies.body_state[movers[mover]];
   const bool bullet = !options.bullets.empty() && options.bullets[mover] != 0;
   for (std::uint8_t i = 0; i < count; ++i) {
-    pieces[piece_keys[begin + i].id] = {mover, i, count, motion, bullet};
+    pieces[piece_keys[begin + i].id] = {mover, i, count, body_state, bullet};
   }
 }
 
-Status SweepState::set_filters() {
+Status ContinuousState::set_filters() {
   for (std::uint32_t mover = 0; mover < movers.size(); ++mover) {
     const std::uint32_t body = movers[mover];
     ObjectFilter filter;
-    Status status = bodies.set(bodies.motion[body]).partition->filter(bodies.place[body], filter);
+    Status status =
+        bodies.set(bodies.body_state[body]).partition->filter(bodies.place[body], filter);
     for (std::uint32_t i = first_piece[mover];
          status == Status::ok && filter != ObjectFilter{} && i < first_piece[mover + 1]; ++i) {
       status = ways.set_filter(piece_keys[i], filter);
@@ -210,7 +215,7 @@ Status SweepState::set_filters() {
 /// Appends the pairs that were found; second_body(object) returns the body of a pair's second
 /// object.
 template <typename Body>
-Status SweepState::collect(Body&& second_body) {
+Status ContinuousState::collect(Body&& second_body) {
   const std::size_t before = candidates.size();
   if (!candidates.grow(before + pairs.size())) return Status::out_of_memory;
   candidates.set_size(before + pairs.size());
@@ -223,7 +228,7 @@ Status SweepState::collect(Body&& second_body) {
 }
 
 /// Sorts and removes duplicates: a pair is found once for each two overlapping pieces.
-bool SweepState::sort_candidates() noexcept {
+bool ContinuousState::sort_candidates() noexcept {
   const std::size_t count = candidates.size();
   if (!spare.resize(count)) return false;
   const auto bits = static_cast<unsigned>(std::bit_width(bodies.shape.size()));
@@ -238,43 +243,44 @@ bool SweepState::sort_candidates() noexcept {
   return true;
 }
 
-Status SweepState::find_pairs_among(const SweepOptions& options) {
-  const SweptPairFilter among{*this, options, nullptr};
-  const Status status = ways.self_pairs(pairs, among.asked());
+Status ContinuousState::find_pairs_among(const ContinuousOptions& options) {
+  const PathPairFilter among{*this, options, nullptr};
+  const Status status = ways.self_pairs(pairs, among.pair_options());
   if (status != Status::ok) return status;
   return collect([&](ObjectId way) { return movers[pieces[way].mover]; });
 }
 
-/// True if movers may overlap bodies of a set that do not move.
-bool SweepState::is_included(Motion motion, const SweepOptions& options) const noexcept {
-  const SceneSet& set = bodies.set(motion);
+/// True if pairs of movers with bodies of this set that do not move are to be found.
+bool ContinuousState::is_included(BodyState body_state,
+                                  const ContinuousOptions& options) const noexcept {
+  const SceneSet& set = bodies.set(body_state);
   if (!set.partition.has_value()) return false;
-  if (set.partition->size() == movers_in[static_cast<std::size_t>(motion)]) return false;
-  return options.pairs != SweepPairs::fixed || motion == Motion::fixed ||
-         movers_in[static_cast<std::size_t>(Motion::fixed)] > 0;
+  if (set.partition->size() == movers_in[static_cast<std::size_t>(body_state)]) return false;
+  return options.pairs != ContinuousPairs::fixed || body_state == BodyState::fixed ||
+         movers_in[static_cast<std::size_t>(BodyState::fixed)] > 0;
 }
 
-Status SweepState::find_pairs_with(Motion motion, const SweepOptions& options) {
-  const SceneSet& set = bodies.set(motion);
-  const SweptPairFilter with{*this, options, &set};
-  const Status status = ways.pairs_with(*set.partition, pairs, with.asked());
+Status ContinuousState::find_pairs_with(BodyState body_state, const ContinuousOptions& options) {
+  const SceneSet& set = bodies.set(body_state);
+  const PathPairFilter with{*this, options, &set};
+  const Status status = ways.pairs_with(*set.partition, pairs, with.pair_options());
   if (status != Status::ok) return status;
   return collect([&](ObjectId id) { return set.body_of[id]; });
 }
 
-Status SweepState::find_pairs(const SweepOptions& options) {
+Status ContinuousState::find_pairs(const ContinuousOptions& options) {
   candidates.clear();
   statistics = {};
   if (!choose_drift()) return Status::out_of_memory;
   Status status = box_paths(options);
   if (status == Status::ok) status = find_pairs_among(options);
-  for (const Motion motion : kEveryMotion) {
-    if (!is_included(motion, options)) continue;
+  for (const BodyState body_state : kAllBodyStates) {
+    if (!is_included(body_state, options)) continue;
     if (status == Status::ok && !drift.isZero(0.0)) {
       drift.setZero();
       status = box_paths(options);
     }
-    if (status == Status::ok) status = find_pairs_with(motion, options);
+    if (status == Status::ok) status = find_pairs_with(body_state, options);
   }
   if (status != Status::ok) return status;
   if (!sort_candidates()) return Status::out_of_memory;

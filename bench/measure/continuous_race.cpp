@@ -1,7 +1,7 @@
-#include "bench/measure/sweep_race.h"
+#include "bench/measure/continuous_race.h"
 
 #include <winnow/pipeline/contacts.h>
-#include <winnow/pipeline/scene_sweep.h>
+#include <winnow/pipeline/continuous_collision.h>
 #include "bench/common/interleaved_runs.h"
 #include "bench/common/need.h"
 #include "bench/common/timed.h"
@@ -18,12 +18,12 @@ namespace {
 constexpr double kFarthest = 10.0;
 
 /// A heap, and the poses of its bodies at the end of a frame.
-class SweptHeap {
+class MovingHeap {
  public:
-  explicit SweptHeap(const SweepRaceOptions& options)
+  explicit MovingHeap(const ContinuousRaceOptions& options)
       : set_(make_heap(options.bodies, options.seed)),
         scene_(set_->pool, {.execution = execution_for(options.threads)}),
-        sweep_(scene_),
+        ccd_(scene_),
         keys_(options.bodies),
         bullets_(options.bodies),
         random_(options.seed) {
@@ -56,21 +56,22 @@ class SweptHeap {
   }
 
   void collide() { need(scene_.collide(ContactLevel::manifold, contacts_), "contacts"); }
-  void sweep_fast() {
-    need(sweep_.sweep(fast_keys_, std::span<const Pose>(fast_ends_), {.first_only = true}),
-         "a sweep");
+  void find_impacts_of_fast() {
+    need(ccd_.find_impacts(fast_keys_, std::span<const Pose>(fast_ends_), {.first_only = true}),
+         "impacts");
   }
-  void sweep_all() {
-    need(sweep_.sweep(keys_, std::span<const Pose>(ends_),
-                      {.pairs = SweepPairs::bullets, .bullets = bullets_, .first_only = true}),
-         "a sweep");
+  void find_all_impacts() {
+    need(ccd_.find_impacts(
+             keys_, std::span<const Pose>(ends_),
+             {.pairs = ContinuousPairs::bullets, .bullets = bullets_, .first_only = true}),
+         "impacts");
   }
-  [[nodiscard]] const SceneSweep& sweep() const { return sweep_; }
+  [[nodiscard]] const ContinuousCollision& ccd() const { return ccd_; }
 
  private:
   std::unique_ptr<BodySet> set_;
   Scene scene_;
-  SceneSweep sweep_;
+  ContinuousCollision ccd_;
   Contacts contacts_;
   std::vector<Key> keys_;
   std::vector<std::uint8_t> bullets_;
@@ -83,24 +84,24 @@ class SweptHeap {
 
 }  // namespace
 
-SweepTiming measure_sweeps(const SweepRaceOptions& options) {
-  SweptHeap heap(options);
+ContinuousTiming measure_continuous_collision(const ContinuousRaceOptions& options) {
+  MovingHeap heap(options);
   Arenas arenas(options.threads);
-  SweepTiming timing;
+  ContinuousTiming timing;
   auto ms = run_interleaved(3, options.frames, 2, [&](std::size_t frame, std::size_t turn) {
     if (turn == 0) heap.next_frame(frame);
     const double taken = timed(options.threads, arenas, [&] {
       if (turn == 0) heap.collide();
-      if (turn == 1) heap.sweep_all();
-      if (turn == 2) heap.sweep_fast();
+      if (turn == 1) heap.find_all_impacts();
+      if (turn == 2) heap.find_impacts_of_fast();
     });
-    timing.pairs = heap.sweep().statistics().body_pairs;
-    timing.impacts = heap.sweep().impacts().size();
+    timing.pairs = heap.ccd().statistics().body_pairs;
+    timing.impacts = heap.ccd().impacts().size();
     return taken;
   });
   timing.collide_ms = std::move(ms[0]);
   timing.all_ms = std::move(ms[1]);
-  timing.sweep_ms = std::move(ms[2]);
+  timing.impacts_ms = std::move(ms[2]);
   return timing;
 }
 

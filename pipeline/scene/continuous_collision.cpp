@@ -1,42 +1,45 @@
-#include <winnow/pipeline/scene_sweep.h>
+#include <winnow/pipeline/continuous_collision.h>
 
 #include "core/hooks/log.h"
 #include "core/memory/new_in.h"
 #include "core/threads/float_environment.h"
-#include "pipeline/scene/sweep_state.h"
+#include "pipeline/scene/continuous_state.h"
 
 namespace winnow {
 
-SceneSweep::SceneSweep(Scene& scene, std::pmr::memory_resource* memory) noexcept
+ContinuousCollision::ContinuousCollision(Scene& scene, std::pmr::memory_resource* memory) noexcept
     : memory_(memory), state_(nullptr) {
-  if (scene.state_ != nullptr) state_ = new_in<SweepState>(memory, scene, *scene.state_, memory);
+  if (scene.state_ != nullptr)
+    state_ = new_in<ContinuousState>(memory, scene, *scene.state_, memory);
 }
 
-SceneSweep::~SceneSweep() {
+ContinuousCollision::~ContinuousCollision() {
   delete_in(memory_, state_);
 }
 
-Status SceneSweep::sweep(std::span<const Key> keys, const PoseView& ends,
-                         const SweepOptions& options) {
-  const DefaultEnvironment environment;
+Status ContinuousCollision::find_impacts(std::span<const Key> keys, const PoseView& ends,
+                                         const ContinuousOptions& options) {
+  const DefaultFloatEnvironment environment;
   return run(keys, options, [&] { return state_->take(keys, ends); });
 }
 
-Status SceneSweep::sweep(std::span<const Key> keys, std::span<const RigidMotion> motions,
-                         const SweepOptions& options) {
-  const DefaultEnvironment environment;
+Status ContinuousCollision::find_impacts(std::span<const Key> keys,
+                                         std::span<const RigidMotion> motions,
+                                         const ContinuousOptions& options) {
+  const DefaultFloatEnvironment environment;
   return run(keys, options, [&] { return state_->take(keys, motions); });
 }
 
 template <typename Take>
-Status SceneSweep::run(std::span<const Key> keys, const SweepOptions& options, Take&& take) {
-  if (state_ == nullptr) return logged(Status::out_of_memory, "SceneSweep::sweep");
-  SweepState& s = *state_;
+Status ContinuousCollision::run(std::span<const Key> keys, const ContinuousOptions& options,
+                                Take&& take) {
+  if (state_ == nullptr) return logged(Status::out_of_memory, "ContinuousCollision::find_impacts");
+  ContinuousState& s = *state_;
   Status status = Status::ok;
   if (!options.bullets.empty() && options.bullets.size() != keys.size()) {
     status = Status::size_mismatch;
   } else if (!(options.tolerance > 0.0 && options.tolerance <= 1.0) ||
-             options.pairs > SweepPairs::bullets_and_fixed) {
+             options.pairs > ContinuousPairs::bullets_and_fixed) {
     status = Status::invalid_argument;
   } else {
     status = s.scene.refresh();
@@ -49,28 +52,28 @@ Status SceneSweep::run(std::span<const Key> keys, const SweepOptions& options, T
   }
   if (status == Status::ok && !s.show_impacts()) status = Status::out_of_memory;
   if (status == Status::out_of_memory) s.forget();
-  return logged(status, "SceneSweep::sweep");
+  return logged(status, "ContinuousCollision::find_impacts");
 }
 
-std::span<const SceneImpact> SceneSweep::impacts() const noexcept {
+std::span<const SceneImpact> ContinuousCollision::impacts() const noexcept {
   if (state_ == nullptr) return {};
   return {state_->impacts.data(), state_->impacts.size()};
 }
 
-std::span<const std::uint32_t> SceneSweep::first() const noexcept {
+std::span<const std::uint32_t> ContinuousCollision::first() const noexcept {
   if (state_ == nullptr) return {};
   return {state_->first.data(), state_->first.size()};
 }
 
-SweepStatistics SceneSweep::statistics() const noexcept {
-  return state_ != nullptr ? state_->statistics : SweepStatistics{};
+ContinuousStatistics ContinuousCollision::statistics() const noexcept {
+  return state_ != nullptr ? state_->statistics : ContinuousStatistics{};
 }
 
-Footprint SceneSweep::footprint() const noexcept {
+Footprint ContinuousCollision::footprint() const noexcept {
   if (state_ == nullptr) return {};
-  const SweepState& s = *state_;
+  const ContinuousState& s = *state_;
   Footprint sum;
-  sum.structure = {sizeof(SweepState), sizeof(SweepState)};
+  sum.structure = {sizeof(ContinuousState), sizeof(ContinuousState)};
   for (const Bytes& bytes : {s.ways.footprint().total(),
                              s.motions.bytes(),
                              s.movers.bytes(),

@@ -1,7 +1,7 @@
-// SweptShape, RaySweep and ShapeSweep, and BodyContact, which finds a sweep's first contact with a
+// LinearCast, RayCast and ConvexCast, and BodyContact, which finds a cast's first contact with a
 // body. Most triangles are excluded by a separating plane before the exact cast (shape_cast.cpp).
 
-#include "pipeline/scene/queries/swept_shapes.h"
+#include "pipeline/scene/queries/linear_casts.h"
 
 #include <winnow/core/eigen.h>
 #include <winnow/core/rotation.h>
@@ -15,29 +15,29 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Returns the swept box of the shape, grown by `more` in all directions.
-BoxSweep sweep_from(const SweptShape& swept, const double from[3], double limit,
-                    double more = 0.0) noexcept {
+/// Returns the moving box of the cast, grown by `more` in all directions.
+MovingBox moving_box_from(const LinearCast& linear_cast, const double from[3], double limit,
+                          double more = 0.0) noexcept {
   const Vector3d start = Vector3d::Map(from);
-  const PreciseBox& extent = swept.extent();
+  const PreciseBox& extent = linear_cast.extent();
   const double reach = start.cwiseAbs().maxCoeff() +
                        std::max(extent.min.cwiseAbs().maxCoeff(), extent.max.cwiseAbs().maxCoeff());
   const PreciseBox box =
-      PreciseBox{start + extent.min, start + extent.max}.grown(kSweptBoxGrowth * reach + more);
-  BoxSweep sweep = box.standing();
-  std::copy_n(swept.direction(), 3, sweep.direction);
-  sweep.max_t = limit;
-  return sweep;
+      PreciseBox{start + extent.min, start + extent.max}.grown(kCastBoxGrowth * reach + more);
+  MovingBox moving_box = box.stationary();
+  std::copy_n(linear_cast.direction(), 3, moving_box.direction);
+  moving_box.max_t = limit;
+  return moving_box;
 }
 
-SweepContact contact_at(const ShapeRay& ray, const ShapeHit& hit) noexcept {
-  SweepContact meeting;
-  meeting.t = hit.t;
+CastContact contact_at(const ShapeRay& ray, const ShapeHit& hit) noexcept {
+  CastContact contact;
+  contact.t = hit.t;
   for (int i = 0; i < 3; ++i) {
-    meeting.normal[i] = hit.normal[i];
-    meeting.point[i] = ray.origin[i] + hit.t * ray.direction[i];
+    contact.normal[i] = hit.normal[i];
+    contact.point[i] = ray.origin[i] + hit.t * ray.direction[i];
   }
-  return meeting;
+  return contact;
 }
 
 /// Returns approximately the point of a triangle that is closest to p (Ericson, "Real-Time
@@ -86,45 +86,45 @@ bool passes_by(const double from[3], const double direction[3], const SubShape& 
 
 }  // namespace
 
-SweepContact contact_of(const CastTouch& touch) noexcept {
-  SweepContact meeting;
-  meeting.t = touch.t;
-  meeting.overlaps_at_start = touch.overlaps_at_start;
-  std::copy_n(touch.normal, 3, meeting.normal);
-  return meeting;
+CastContact contact_of(const CastTouch& touch) noexcept {
+  CastContact contact;
+  contact.t = touch.t;
+  contact.overlaps_at_start = touch.overlaps_at_start;
+  std::copy_n(touch.normal, 3, contact.normal);
+  return contact;
 }
 
 void describe_contact(const ShapeTables& tables, const CastPair& pair, const SubShape& part,
-                      SweepContact& meeting) noexcept {
+                      CastContact& contact) noexcept {
   CastTouch touch;
-  touch.t = meeting.t;
-  touch.overlaps_at_start = meeting.overlaps_at_start;
-  std::copy_n(meeting.normal, 3, touch.normal);
+  touch.t = contact.t;
+  touch.overlaps_at_start = contact.overlaps_at_start;
+  std::copy_n(contact.normal, 3, touch.normal);
   describe_touch(tables, pair, touch);
   for (int i = 0; i < 3; ++i) {
-    meeting.normal[i] = touch.normal[i];
-    meeting.point[i] = part.pose.position[i] + touch.point[i];
+    contact.normal[i] = touch.normal[i];
+    contact.point[i] = part.pose.position[i] + touch.point[i];
   }
 }
 
 CastMotions::CastMotions(const CastPair& pair, double max_t) noexcept
-    : moving_{pair.moving, RigidMotion::standing(pair.from)},
-      standing_{pair.standing, RigidMotion::standing(pair.pose)} {
+    : moving_{pair.moving, RigidMotion::stationary(pair.from)},
+      stationary_{pair.stationary, RigidMotion::stationary(pair.pose)} {
   for (int i = 0; i < 3; ++i) moving_.motion.travel[i] = max_t * pair.direction[i];
   is_finite_ = moving_.motion.is_valid();
 }
 
 void CastMotions::record(const ShapeTables& tables,
                          impact::RestingContacts& resting) const noexcept {
-  if (is_finite_) resting.record(tables, moving_, standing_);
+  if (is_finite_) resting.record(tables, moving_, stationary_);
 }
 
 bool CastMotions::part(const ShapeTables& tables,
                        const impact::RestingContacts& resting) const noexcept {
-  return is_finite_ && resting.part(tables, moving_, standing_);
+  return is_finite_ && resting.part(tables, moving_, stationary_);
 }
 
-void SweptShape::note_contact(const double[3], const SubShape&,
+void LinearCast::note_contact(const double[3], const SubShape&,
                               impact::RestingContacts&) const noexcept {}
 
 double corner_error(const SubShape& part) noexcept {
@@ -136,11 +136,11 @@ double corner_error(const SubShape& part) noexcept {
   return 0x1p-48 * size;
 }
 
-RaySweep::RaySweep(const ShapePool& shapes, const ShapeRay& ray) noexcept
-    : SweptShape(ray), shapes_(shapes), ray_(ray) {}
+RayCast::RayCast(const ShapePool& shapes, const ShapeRay& ray) noexcept
+    : LinearCast(ray), shapes_(shapes), ray_(ray) {}
 
-bool RaySweep::meets(const double from[3], const SubShape& part, double limit,
-                     const EarlierContacts& /*known*/, SweepContact& meeting) const noexcept {
+bool RayCast::find_contact(const double from[3], const SubShape& part, double limit,
+                           const EarlierContacts& /*known*/, CastContact& contact) const noexcept {
   const double thickness = corner_error(part);
   if (part.triangle != nullptr && passes_by(from, ray_.direction, part, thickness)) return false;
   const Vector3d start = Vector3d::Map(from);
@@ -148,30 +148,30 @@ bool RaySweep::meets(const double from[3], const SubShape& part, double limit,
   // Tests the whole ray: whether the thick triangle is used must not depend on the limit.
   ShapeRay ray = ray_;
   std::copy_n(from, 3, ray.origin);
-  if (!enters(ray, part, meeting)) {
+  if (!enters(ray, part, contact)) {
     if (thickness == 0.0) return false;
     SubShape thick = part;
     thick.thickness = thickness;
-    if (!enters(ray, thick, meeting)) return false;
+    if (!enters(ray, thick, contact)) return false;
   }
-  return meeting.t <= limit;
+  return contact.t <= limit;
 }
 
-void RaySweep::describe(const double[3], const SubShape&, SweepContact&) const noexcept {}
+void RayCast::describe(const double[3], const SubShape&, CastContact&) const noexcept {}
 
-bool RaySweep::enters(const ShapeRay& ray, const SubShape& part,
-                      SweepContact& meeting) const noexcept {
+bool RayCast::enters(const ShapeRay& ray, const SubShape& part,
+                     CastContact& contact) const noexcept {
   PartTables tables(shapes_);
   const ShapeId shape = tables.put(0, part);
   ShapeHit hit;
   const Status status = cast_ray(tables.tables(), shape, part.pose, ray, hit);
   if (status != Status::ok || !hit.hit) return false;
-  meeting = contact_at(ray, hit);
+  contact = contact_at(ray, hit);
   return true;
 }
 
-ShapeSweep::ShapeSweep(const SubShapeQuery& parts, const ShapeCast& cast, double tolerance) noexcept
-    : SweptShape(parts.box(PlacedShape{cast.shape, at_origin(cast.pose)}), cast, tolerance),
+ConvexCast::ConvexCast(const SubShapeQuery& parts, const ShapeCast& cast, double tolerance) noexcept
+    : LinearCast(parts.box(PlacedShape{cast.shape, at_origin(cast.pose)}), cast, tolerance),
       shapes_(parts.shapes()),
       cast_(cast),
       to_shape_(as_eigen(rotation_of(scale_to_unit_max(cast.pose.orientation))).transpose()),
@@ -179,7 +179,7 @@ ShapeSweep::ShapeSweep(const SubShapeQuery& parts, const ShapeCast& cast, double
 
 // Tests the plane of the triangle, and planes along the motion through its sides. These separate
 // most triangles that are beside the path or beyond the first hit.
-bool ShapeSweep::passes_by(const double from[3], const SubShape& part, double limit,
+bool ConvexCast::passes_by(const double from[3], const SubShape& part, double limit,
                            double& free_until) const noexcept {
   if (!is_unrotated(part)) return false;
   Vector3d corner[3];
@@ -208,7 +208,7 @@ bool ShapeSweep::passes_by(const double from[3], const SubShape& part, double li
   if (rest > 0.0) {
     const double closing = -side_of * normal.dot(way);
     const double noise = mid::kSlack * normal.cwiseAbs().sum() * way.cwiseAbs().sum();
-    // An infinite path along which they do not certainly approach is not decided here.
+    // An infinite path is not decided by this plane.
     const double most = limit + tolerance() / way.norm();
     const double closing_at_most = std::max(closing, 0.0) + noise;
     if (rest > closing_at_most * most) return true;
@@ -220,7 +220,7 @@ bool ShapeSweep::passes_by(const double from[3], const SubShape& part, double li
   return false;
 }
 
-CastPair ShapeSweep::pair(PartTables& tables, const double from[3],
+CastPair ConvexCast::pair(PartTables& tables, const double from[3],
                           const SubShape& part) const noexcept {
   CastPair pair;
   pair.moving = tables.put(0, {cast_.shape, cast_.pose});
@@ -229,18 +229,19 @@ CastPair ShapeSweep::pair(PartTables& tables, const double from[3],
   std::copy_n(cast_.direction, 3, pair.direction);
   SubShape thick = part;
   thick.thickness = corner_error(part);
-  pair.standing = tables.put(1, thick);
+  pair.stationary = tables.put(1, thick);
   pair.pose = part.pose;
   return pair;
 }
 
-PreciseBox ShapeSweep::box_at(const double from[3]) const noexcept {
+PreciseBox ConvexCast::box_at(const double from[3]) const noexcept {
   const Vector3d start = Vector3d::Map(from);
   return {start + extent().min, start + extent().max};
 }
 
-// If the shape approaches a plane, anything behind the plane is behind it at all earlier times.
-bool ShapeSweep::is_beyond(const SubShape& part, const SweepContact& before) const noexcept {
+// The plane of an earlier contact bounds the shape at t = limit. The shape approaches this plane,
+// so it is in front of the plane at all earlier times too and does not reach a triangle behind it.
+bool ConvexCast::is_beyond(const SubShape& part, const CastContact& before) const noexcept {
   const Vector3d normal = Vector3d::Map(before.normal);
   if (!is_unrotated(part)) return false;
   const Vector3d position = Vector3d::Map(part.pose.position);
@@ -254,7 +255,7 @@ bool ShapeSweep::is_beyond(const SubShape& part, const SweepContact& before) con
   return top + mid::kSlack * size + 4.0 * corner_error(part) < before.height;
 }
 
-bool ShapeSweep::is_beside(const double from[3], const SubShape& part,
+bool ConvexCast::is_beside(const double from[3], const SubShape& part,
                            double limit) const noexcept {
   if (!is_unrotated(part)) return false;
   const Vector3d way = Vector3d::Map(direction());
@@ -274,28 +275,28 @@ bool ShapeSweep::is_beside(const double from[3], const SubShape& part,
   return low - top > (4.0 * mid::kSlack * size + 4.0 * corner_error(part)) * axis.cwiseAbs().sum();
 }
 
-void ShapeSweep::set_height(const double from[3], SweepContact& meeting) const noexcept {
-  const Vector3d normal = Vector3d::Map(meeting.normal);
+void ConvexCast::set_height(const double from[3], CastContact& contact) const noexcept {
+  const Vector3d normal = Vector3d::Map(contact.normal);
   const Vector3d way = Vector3d::Map(direction());
   const Vector3d start = Vector3d::Map(from);
   const double closing = -normal.dot(way);
-  meeting.height = -mid::kInfinity;
-  if (!(closing > mid::kSlack * way.cwiseAbs().sum()) || meeting.overlaps_at_start) return;
+  contact.height = -mid::kInfinity;
+  if (!(closing > mid::kSlack * way.cwiseAbs().sum()) || contact.overlaps_at_start) return;
   const double low = mid::extent(shapes_.tables(), cast_.shape, to_shape_ * normal).low;
-  const double sizes = start.cwiseAbs().sum() + meeting.t * way.cwiseAbs().sum() +
+  const double sizes = start.cwiseAbs().sum() + contact.t * way.cwiseAbs().sum() +
                        extent().min.cwiseAbs().sum() + extent().max.cwiseAbs().sum();
-  meeting.height = normal.dot(start) - meeting.t * closing + low - mid::kSlack * sizes;
+  contact.height = normal.dot(start) - contact.t * closing + low - mid::kSlack * sizes;
 }
 
-void ShapeSweep::note_contact(const double from[3], const SubShape& part,
+void ConvexCast::note_contact(const double from[3], const SubShape& part,
                               impact::RestingContacts& resting) const noexcept {
   PartTables tables(shapes_);
   CastMotions(pair(tables, from, part), max_t()).record(tables.tables(), resting);
 }
 
-bool ShapeSweep::meets(const double from[3], const SubShape& part, double limit,
-                       const EarlierContacts& known, SweepContact& meeting) const noexcept {
-  const SweepContact* const before = known.before;
+bool ConvexCast::find_contact(const double from[3], const SubShape& part, double limit,
+                              const EarlierContacts& known, CastContact& contact) const noexcept {
+  const CastContact* const before = known.before;
   double free_until = 0.0;
   if (part.triangle != nullptr) {
     if (before != nullptr && is_beyond(part, *before)) return false;
@@ -304,112 +305,113 @@ bool ShapeSweep::meets(const double from[3], const SubShape& part, double limit,
     if (part.front != 0 && is_behind_triangle(box_at(from), part)) return false;
   }
   PartTables tables(shapes_);
-  CastPair asked = pair(tables, from, part);
-  asked.max_t = limit;
-  asked.free_until = free_until;
+  CastPair cast_pair = pair(tables, from, part);
+  cast_pair.max_t = limit;
+  cast_pair.free_until = free_until;
   if (before != nullptr && !before->overlaps_at_start)
-    std::copy_n(before->normal, 3, asked.separating_direction);
+    std::copy_n(before->normal, 3, cast_pair.separating_direction);
   if (known.resting != nullptr &&
-      CastMotions(asked, max_t()).part(tables.tables(), *known.resting)) {
+      CastMotions(cast_pair, max_t()).part(tables.tables(), *known.resting)) {
     return false;
   }
   CastTouch touch;
-  if (!cast_shape(tables.tables(), asked, tolerance(), touch)) return false;
-  meeting = contact_of(touch);
-  set_height(from, meeting);
+  if (!cast_shape(tables.tables(), cast_pair, tolerance(), touch)) return false;
+  contact = contact_of(touch);
+  set_height(from, contact);
   return true;
 }
 
-void ShapeSweep::describe(const double from[3], const SubShape& part,
-                          SweepContact& meeting) const noexcept {
+void ConvexCast::describe(const double from[3], const SubShape& part,
+                          CastContact& contact) const noexcept {
   PartTables tables(shapes_);
-  const CastPair asked = pair(tables, from, part);
-  describe_contact(tables.tables(), asked, part, meeting);
+  const CastPair cast_pair = pair(tables, from, part);
+  describe_contact(tables.tables(), cast_pair, part, contact);
 }
 
-void BodyContact::take(const SubShape& part, const SweepContact& meeting) noexcept {
-  meeting_ = meeting;
+void BodyContact::take(const SubShape& part, const CastContact& contact) noexcept {
+  contact_ = contact;
   part_ = part;
   if (part.triangle != nullptr) triangle_ = *part.triangle;
 }
 
-void BodyContact::note_contacts(const SubShapeQuery& parts, const SweptShape& swept,
+void BodyContact::note_contacts(const SubShapeQuery& parts, const LinearCast& linear_cast,
                                 const PlacedShape& placed,
                                 impact::RestingContacts& resting) const noexcept {
   auto record = [&](const SubShape& part, double most) {
-    swept.note_contact(from_, part, resting);
+    linear_cast.note_contact(from_, part, resting);
     return most;
   };
-  parts.met(placed, sweep_from(swept, from_, 0.0, swept.tolerance()), record);
+  parts.visit_parts(placed, moving_box_from(linear_cast, from_, 0.0, linear_cast.tolerance()),
+                    record);
 }
 
-bool BodyContact::find(const SubShapeQuery& parts, const SweptShape& swept, const PlacedShape& body,
-                       double limit, bool any) noexcept {
-  SweepContact meeting;
-  impact::RestingContacts resting(0.0, swept.tolerance(),
+bool BodyContact::find(const SubShapeQuery& parts, const LinearCast& linear_cast,
+                       const PlacedShape& body, double limit, bool any) noexcept {
+  CastContact contact;
+  impact::RestingContacts resting(0.0, linear_cast.tolerance(),
                                   impact::StartTouch::impact_unless_sliding);
-  const impact::RestingContacts* const at_rest = swept.hits_at_start() ? nullptr : &resting;
+  const impact::RestingContacts* const at_rest = linear_cast.hits_at_start() ? nullptr : &resting;
   if (!body.shape.is_composite()) {
-    std::copy_n(swept.start(), 3, from_);
+    std::copy_n(linear_cast.start(), 3, from_);
     std::fill_n(base_, 3, 0.0);
     const SubShape whole{body.shape, body.pose};
-    if (at_rest != nullptr) swept.note_contact(from_, whole, resting);
-    if (!swept.meets(from_, whole, limit, {nullptr, at_rest}, meeting)) return false;
-    take(whole, meeting);
+    if (at_rest != nullptr) linear_cast.note_contact(from_, whole, resting);
+    if (!linear_cast.find_contact(from_, whole, limit, {nullptr, at_rest}, contact)) return false;
+    take(whole, contact);
     return true;
   }
-  // Relative to the body, so that parts keep full precision far from the origin. The rounding error
-  // of the difference is added to the pose, where it is small.
+  // The sweep is computed relative to the body, so that parts keep full precision far from the
+  // origin. The rounding error of the difference is added to the pose, where it is small.
   std::copy_n(body.pose.position, 3, base_);
-  const TwoDiff start = difference(swept.start(), base_);
+  const TwoDiff start = difference(linear_cast.start(), base_);
   std::copy_n(start.difference, 3, from_);
   PlacedShape placed = body;
   for (int i = 0; i < 3; ++i) placed.pose.position[i] = -start.rest[i];
-  if (at_rest != nullptr) note_contacts(parts, swept, placed, resting);
+  if (at_rest != nullptr) note_contacts(parts, linear_cast, placed, resting);
   bool found = false;
   const auto improve = [&](const SubShape& part) {
-    if (found && meeting.t == meeting_.t && part_.part < part.part) return limit;
+    if (found && contact.t == contact_.t && part_.part < part.part) return limit;
     found = true;
-    limit = meeting.t;
-    take(part, meeting);
+    limit = contact.t;
+    take(part, contact);
     return any ? -1.0 : limit;
   };
-  auto look = [&](const SubShape& part, double most) {
+  auto test_part = [&](const SubShape& part, double most) {
     most = std::min(most, limit);
-    const SweptShape::EarlierContacts known{found ? &meeting_ : nullptr, at_rest};
-    return swept.meets(from_, part, most, known, meeting) ? improve(part) : most;
+    const LinearCast::EarlierContacts known{found ? &contact_ : nullptr, at_rest};
+    return linear_cast.find_contact(from_, part, most, known, contact) ? improve(part) : most;
   };
-  if (swept.ray() == nullptr) {
-    parts.met(placed, sweep_from(swept, from_, limit), look);
+  if (linear_cast.ray() == nullptr) {
+    parts.visit_parts(placed, moving_box_from(linear_cast, from_, limit), test_part);
     return found;
   }
-  const ShapeRay& ray = *swept.ray();
-  const auto meet_by_ray = [&](std::size_t, std::uint32_t part, const ShapeHit& hit, double) {
+  const ShapeRay& ray = *linear_cast.ray();
+  const auto visit_hit = [&](std::size_t, std::uint32_t part, const ShapeHit& hit, double) {
     if (hit.t > limit) return limit;
     ShapeRay own = ray;
     std::copy_n(from_, 3, own.origin);
-    meeting = contact_at(own, hit);
+    contact = contact_at(own, hit);
     return improve({body.shape, placed.pose, part});
   };
-  const auto look_by_ray = [&](std::size_t, const SubShape& part, double most) {
-    return look(part, most);
+  const auto visit_candidate = [&](std::size_t, const SubShape& part, double most) {
+    return test_part(part, most);
   };
   const double end = limit;
-  parts.met_by_rays(body, {&ray, 1}, &end, meet_by_ray, look_by_ray);
+  parts.visit_rays(body, {&ray, 1}, &end, visit_hit, visit_candidate);
   return found;
 }
 
-SceneHit BodyContact::hit(const SweptShape& swept) const noexcept {
+SceneHit BodyContact::hit(const LinearCast& linear_cast) const noexcept {
   SubShape part = part_;
   if (part.triangle != nullptr) part.triangle = &triangle_;
-  SweepContact meeting = meeting_;
-  swept.describe(from_, part, meeting);
+  CastContact contact = contact_;
+  linear_cast.describe(from_, part, contact);
   SceneHit hit;
-  hit.t = meeting.t;
+  hit.t = contact.t;
   hit.part = part.part;
   for (int i = 0; i < 3; ++i) {
-    hit.normal[i] = meeting.normal[i];
-    hit.point[i] = base_[i] + meeting.point[i];
+    hit.normal[i] = contact.normal[i];
+    hit.point[i] = base_[i] + contact.point[i];
   }
   return hit;
 }

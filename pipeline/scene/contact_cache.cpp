@@ -1,4 +1,4 @@
-// Carry-over: pairs that have hardly moved since their contacts were computed keep them; points and
+// Caching: pairs that have hardly moved since their contacts were computed keep them; points and
 // normals rotate with body a. `remember` stores how far each pair may move, `decide` compares.
 // Called by Collision::run (collide.cpp) and the tasks in write_contacts.cpp.
 
@@ -48,14 +48,14 @@ struct PoseChange {
 
 }  // namespace
 
-// Finds each pair's record of the last call. With carry-over this comes before the narrow phase and
+// Finds each pair's record of the last call. With caching this comes before the narrow phase and
 // covers all pairs at once.
-bool Collision::match_carried() {
-  if (!carries_) return true;
+bool Collision::match_cached() {
+  if (!uses_cache_) return true;
   ContactsState& c = contacts_;
   const std::size_t pairs = pair_count();
   same_pairs_ = same_level_ && c.pairs_serial == scene_.pairs.serial() &&
-                c.records.size() == pairs && c.carried.size() == pairs;
+                c.records.size() == pairs && c.cached.size() == pairs;
   if (!resize_tightly(c.origin, pairs)) return false;
   if (same_pairs_) return true;
   if (!resize_tightly(c.old_record, pairs)) return false;
@@ -66,26 +66,26 @@ bool Collision::match_carried() {
 // Decides for every pair where its contacts come from. Returns false if all pairs keep their
 // contacts and the last frame can stay as it is.
 bool Collision::decide() {
-  if (!carries_) return true;
+  if (!uses_cache_) return true;
   ContactsState& c = contacts_;
   std::atomic<std::uint32_t> kept{0};
-  const bool may_keep = same_level_ && c.carried.size() == c.records.size();
+  const bool may_keep = same_level_ && c.cached.size() == c.records.size();
   for_tasks([&](std::size_t, std::uint32_t first, std::uint32_t end) {
     std::uint32_t count = 0;
     for (std::uint32_t i = first; i < end; ++i) {
       const BodyPair pair = scene_.pairs[i];
       const std::uint32_t record = same_pairs_ ? i : c.old_record[i];
       ContactSource origin = origin_of_fresh(pair);
-      if (may_keep && record != kNoEntry && is_carried_over(pair) && keep(i, record)) {
-        origin = ContactSource::carried;
+      if (may_keep && record != kNoEntry && is_cacheable(pair) && keep(i, record)) {
+        origin = ContactSource::cached;
         ++count;
       }
       c.origin[i] = static_cast<std::uint8_t>(origin);
     }
     kept.fetch_add(count, std::memory_order_relaxed);
   });
-  c.carried_count = kept.load();
-  if (!same_pairs_ || c.carried_count != pair_count()) return true;
+  c.cached_count = kept.load();
+  if (!same_pairs_ || c.cached_count != pair_count()) return true;
   if (!c.is_settled) {
     std::fill(c.frame.event.begin(), c.frame.event.end(), ContactEvent::persisted);
     c.ended.clear();
@@ -99,44 +99,44 @@ bool Collision::decide() {
 bool Collision::keep(std::uint32_t pair, std::uint32_t record) noexcept {
   ContactsState& c = contacts_;
   const BodyPair bodies = scene_.pairs[pair];
-  CarriedPair& carried = c.carried[record];
-  if (carried.limit == CarriedPair::kNever) return false;
+  CachedPair& cached = c.cached[record];
+  if (cached.limit == CachedPair::kNever) return false;
   const std::uint32_t shown = c.records.shown_of(record);
-  const std::uint32_t since = has_slept(shown) ? carried.looked_at : c.clock;
+  const std::uint32_t since = has_slept(shown) ? cached.tested_at : c.clock;
   if (scene_.shaped_at[bodies.a] > since || scene_.shaped_at[bodies.b] > since) return false;
   if (scene_.moved_at[bodies.a] <= since && scene_.moved_at[bodies.b] <= since) return true;
   const Pose& a = scene_.pose[bodies.a];
   const Pose& b = scene_.pose[bodies.b];
-  const Pose now = carried.from_b ? relative_pose(b, a) : relative_pose(a, b);
-  const double moved = motion_bound(carried.relative, now, static_cast<double>(carried.radius)) +
-                       static_cast<double>(carried.drift);
-  const auto limit = static_cast<double>(carried.limit);
+  const Pose now = cached.from_b ? relative_pose(b, a) : relative_pose(a, b);
+  const double moved = motion_bound(cached.relative, now, static_cast<double>(cached.radius)) +
+                       static_cast<double>(cached.drift);
+  const auto limit = static_cast<double>(cached.limit);
   if (!(moved <= limit)) return false;
   if (shown == kNoEntry) return true;
   const Pose unit = with_unit_turn(a);
   const double turned =
-      turn_bound(carried.turn, unit.orientation, static_cast<double>(carried.radius_a));
+      turn_bound(cached.turn, unit.orientation, static_cast<double>(cached.radius_a));
   if (moved + turned == 0.0) return true;
   if (!(moved + turned <= limit)) {
-    const double drift = static_cast<double>(carried.radius_a) * kTurnError;
+    const double drift = static_cast<double>(cached.radius_a) * kTurnError;
     if (!(moved + drift <= limit)) return false;
-    carried.drift = round_up(static_cast<double>(carried.drift) + drift);
-    turn(carried, shown, unit.orientation);
+    cached.drift = round_up(static_cast<double>(cached.drift) + drift);
+    turn(cached, shown, unit.orientation);
   }
-  if (!carried.widened) {
-    carried.widened = true;
+  if (!cached.widened) {
+    cached.widened = true;
     const std::uint32_t end = c.frame.manifold_first[shown + 1];
     for (std::uint32_t m = c.frame.manifold_first[shown]; m < end; ++m) {
-      c.frame.error_bound[m] += scene_.options.carry_over;
+      c.frame.error_bound[m] += scene_.options.cache_tolerance;
     }
   }
   return true;
 }
 
 // Rotates normals and points with body a.
-void Collision::turn(CarriedPair& carried, std::uint32_t shown, const double (&to)[4]) noexcept {
+void Collision::turn(CachedPair& cached, std::uint32_t shown, const double (&to)[4]) noexcept {
   ContactFrame& frame = contacts_.frame;
-  const PoseChange turn(to, carried.turn);
+  const PoseChange turn(to, cached.turn);
   const std::uint32_t first = frame.manifold_first[shown];
   const std::uint32_t end = frame.manifold_first[shown + 1];
   for (std::uint32_t m = first; m < end; ++m) {
@@ -148,22 +148,22 @@ void Collision::turn(CarriedPair& carried, std::uint32_t shown, const double (&t
       turn.apply(frame.points.position, p);
     }
   }
-  std::copy_n(to, 4, carried.turn);
+  std::copy_n(to, 4, cached.turn);
 }
 
-float Collision::carry_limit(std::uint32_t pair, std::uint32_t shown) const noexcept {
-  const double carry_over = scene_.options.carry_over;
-  const double clear = shown == kNoEntry ? std::max(clearance(pair), 0.0) : carry_over;
-  return round_down(origin_of(pair) == ContactSource::convex ? clear : std::min(clear, carry_over));
+float Collision::cache_limit(std::uint32_t pair, std::uint32_t shown) const noexcept {
+  const double cache_tolerance = scene_.options.cache_tolerance;
+  const double clear = shown == kNoEntry ? std::max(clearance(pair), 0.0) : cache_tolerance;
+  return round_down(origin_of(pair) == ContactSource::convex ? clear
+                                                             : std::min(clear, cache_tolerance));
 }
 
 // Returns a lower bound on the distance beyond the margin of a pair that is not in contact. For
 // composite shapes it covers only the primitive pairs that the mid phase found.
 double Collision::clearance(std::uint32_t pair) const noexcept {
   const auto of = [&](const NarrowResult& answers, std::size_t at) {
-    // At level manifold the narrow phase may stop with a lower bound on a distance beyond the
-    // margin; the error bound then applies only upwards. Otherwise the error is only rounding, and
-    // half of the excess is a safe bound.
+    // At level manifold, a distance beyond the margin may be a lower bound of the true distance.
+    // The error bound then applies only upwards, and half of the excess is left for rounding.
     const double beyond = answers.distance()[at] - limit_;
     return std::max(beyond - answers.error_bound()[at],
                     level_ == ContactLevel::manifold ? 0.5 * beyond : 0.0);
@@ -180,28 +180,28 @@ double Collision::clearance(std::uint32_t pair) const noexcept {
   return least;
 }
 
-// Stores the data that carry-over of the pair needs in the next call. The columns must have room.
+// Stores the data that caching of the pair needs in the next call. The columns must have room.
 void Collision::remember(std::uint32_t pair, std::uint32_t shown) noexcept {
   ContactsState& c = contacts_;
   const BodyPair bodies = scene_.pairs[pair];
   c.records.bits[pair] = scene_.pairs.order(pair).bits;
   c.records.shown[pair] = shown;
-  if (origin_of(pair) == ContactSource::carried) {
-    if (!same_pairs_) c.carried[pair] = c.carried_before[c.old_record[pair]];
+  if (origin_of(pair) == ContactSource::cached) {
+    if (!same_pairs_) c.cached[pair] = c.cached_before[c.old_record[pair]];
     return;
   }
-  CarriedPair carried{};
+  CachedPair cached{};
   const Pose& a = scene_.pose[bodies.a];
   const Pose& b = scene_.pose[bodies.b];
   const double radius_a = scene_.radius(bodies.a);
   const double radius_b = scene_.radius(bodies.b);
-  carried.from_b = radius_a <= radius_b;
-  carried.relative = carried.from_b ? relative_pose(b, a) : relative_pose(a, b);
-  std::copy_n(with_unit_turn(a).orientation, 4, carried.turn);
-  carried.radius = round_up(std::min(radius_a, radius_b));
-  carried.radius_a = round_up(radius_a);
-  carried.limit = is_carried_over(bodies) ? carry_limit(pair, shown) : CarriedPair::kNever;
-  c.carried[pair] = carried;
+  cached.from_b = radius_a <= radius_b;
+  cached.relative = cached.from_b ? relative_pose(b, a) : relative_pose(a, b);
+  std::copy_n(with_unit_turn(a).orientation, 4, cached.turn);
+  cached.radius = round_up(std::min(radius_a, radius_b));
+  cached.radius_a = round_up(radius_a);
+  cached.limit = is_cacheable(bodies) ? cache_limit(pair, shown) : CachedPair::kNever;
+  c.cached[pair] = cached;
 }
 
 }  // namespace winnow

@@ -8,7 +8,7 @@
 
 namespace winnow {
 
-/// A time after the end of the motion, which is 1.
+/// A time after the end of the motion (time 1): the balls do not overlap.
 inline constexpr double kNever = 2.0;
 
 /// The bounding ball of a body that moves.
