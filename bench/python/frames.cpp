@@ -2,9 +2,9 @@
 //
 // Usage: winnow_python_frames boxes|worlds FILE OBJECTS
 //
-// FILE contains frames of OBJECTS boxes, six floats each, or of OBJECTS positions of balls of radius
-// 0.5, ten per environment, three doubles each. Prints the median milliseconds of a frame and the
-// number of pairs or contacts of the last one.
+// FILE contains frames of OBJECTS boxes, six floats each, or of OBJECTS positions of balls of
+// radius 0.5, ten per environment, three doubles each. Prints the median milliseconds of a frame
+// and the number of pairs or contacts of the last one.
 
 #include <winnow/winnow.h>
 #include "bench/common/need.h"

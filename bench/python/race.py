@@ -164,7 +164,7 @@ def worlds_in_python(values):
 
 
 def race_cpp(program, rounds=5):
-    """Races both packages in turns, so that other load on the machine affects both alike."""
+    """Races the Python package and C++ in turns, so that other load on the machine affects both alike."""
     random = np.random.default_rng(7)
     worlds = random.uniform(0, 3, (10_000, 3)) + random.normal(0, 0.02, (60, 10_000, 3))
     cases = [

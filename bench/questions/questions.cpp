@@ -1,5 +1,5 @@
-// Runs the queries of a JSON file (`winnow query`). Queries about rays and motions run one by one as
-// they are read; pairs that do not move are collected and computed together by one
+// Runs the queries of a JSON file (`winnow query`). Queries about rays and motions run one by one
+// as they are read; pairs that do not move are collected and computed together by one
 // NarrowPhase::collide.
 
 #include "bench/questions/questions.h"

@@ -51,8 +51,8 @@ struct Sizes {
   double ratio;   ///< largest edge / smallest edge
   double volume;  ///< volume of the world per object
 };
-// Two cubes with edges a and b overlap with probability (a + b)^3 / (volume of the world). There are
-// thus ten pairs per object if the volume per object is a twentieth of the mean of (a + b)^3.
+// Two cubes with edges a and b overlap with probability (a + b)^3 / (volume of the world). There
+// are thus ten pairs per object if the volume per object is a twentieth of the mean of (a + b)^3.
 inline constexpr Sizes kMixedSizes{0.1, 100.0, 14.2};
 
 [[nodiscard]] Walls walls_for(const Sizes& sizes, std::size_t objects) noexcept;

@@ -58,8 +58,8 @@ struct PairSetOptions {
 
 /// Draws positions, orientations and sizes uniformly, with b's centre in a ball a little larger
 /// than the range in which the bodies' bounding balls overlap, until winnow's overlap test returns
-/// the required result. Many draws are necessary if the sizes differ much and `nearest` is 0. Bodies
-/// share hulls, as in a simulation; each body of another kind has a shape of its own. Throws
+/// the required result. Many draws are necessary if the sizes differ much and `nearest` is 0.
+/// Bodies share hulls, as in a simulation; each body of another kind has a shape of its own. Throws
 /// std::runtime_error if winnow rejects a pair.
 [[nodiscard]] std::unique_ptr<PairSet> make_pair_set(const PairKind& kind,
                                                      const PairSetOptions& options);

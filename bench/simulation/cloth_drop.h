@@ -15,8 +15,8 @@ struct ClothOptions {
   std::size_t side = 40;
   double step = 1.0 / 60.0;
   double gravity = 10.0;
-  /// If false, the cloth falls without continuous collision detection, for comparison: `passed` then
-  /// counts the features that passed through each other or the ball.
+  /// If false, the cloth falls without collision detection, for comparison: `passed` then counts
+  /// the features that passed through each other or the ball.
   bool continuous = true;
   Execution execution = Execution::serial();
 };

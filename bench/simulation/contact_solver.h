@@ -43,8 +43,8 @@ class ContactSolver {
  public:
   explicit ContactSolver(const SolverOptions& options) : options_(options) {}
 
-  /// Moves bodies by one frame of `seconds`. All substeps use the contacts found at the start of the
-  /// frame.
+  /// Moves bodies by one frame of `seconds`. All substeps use the contacts found at the start of
+  /// the frame.
   void step(const Contacts& contacts, const ContactGroups& colours, const Execution& execution,
             double seconds, std::vector<RigidBody>& bodies);
 

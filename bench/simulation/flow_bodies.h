@@ -69,8 +69,8 @@ struct FlowEnergy {
 /// Makes one semi-implicit Euler step: updates velocities by forces and gravity (along -z), then
 /// poses by the new velocities. Returns kinetic and potential energy at the step's start. In this
 /// leapfrog scheme (Hairer, Lubich and Wanner, "Geometric Numerical Integration", I.1.4) velocities
-/// belong to the middle of a step, so the kinetic energy is computed from the mean of the velocities
-/// before and after the update. The bits are the same on any number of threads.
+/// belong to the middle of a step, so the kinetic energy is computed from the mean of the
+/// velocities before and after the update. The bits are the same on any number of threads.
 FlowEnergy integrate(FlowBodies& bodies, double gravity, double step, const Execution& execution,
                      std::pmr::vector<FlowEnergy>& scratch);
 

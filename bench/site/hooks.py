@@ -11,13 +11,18 @@
 - `<!-- live -->` becomes the scene that runs in the page, or a picture if it was not built.
 
 A missing passage, name or figure ends the build.
+
+After the build, search_index.js contains the sections of all pages and the names of the reference.
 """
 
 import json
 import os
 import pathlib
 import re
+import shutil
 import xml.etree.ElementTree
+
+import mkdocs.contrib.search
 
 ROOT = pathlib.Path(os.environ.get("WINNOW_ROOT", pathlib.Path(__file__).parents[2]))
 WORK = pathlib.Path(os.environ.get("WINNOW_SITE_WORK", ROOT / "build"))
@@ -139,3 +144,22 @@ def on_page_markdown(markdown, page, **_):
     markdown = re.sub(r"^<!-- ledger -->$", ledger, markdown, flags=re.M)
     markdown = re.sub(r"^<!-- results -->$", lambda _: results_text(), markdown, flags=re.M)
     return re.sub(r"\]\(api:([\w:]+)\)", reference_link, markdown)
+
+
+def on_post_build(config, **_):
+    """Makes the index of the search plugin a script, with the name of its page for each section."""
+    site = pathlib.Path(config["site_dir"])
+    sections = json.loads((site / "search/search_index.json").read_text())["docs"]
+    pages = {section["location"]: section["title"] for section in sections if "#" not in section["location"]}
+    entries = [
+        {**section, "page": pages[section["location"].partition("#")[0]]} for section in sections
+    ]
+    entries += [
+        {"location": f"api/{place}", "title": name, "text": name.replace("::", " ").replace("_", " "),
+         "page": "Reference"}
+        for name, place in sorted(reference_names().items())
+    ]
+    (site / "search_index.js").write_text(f"const WINNOW_SEARCH = {json.dumps(entries)};\n")
+    lunr = pathlib.Path(mkdocs.contrib.search.__file__).parent / "templates/search/lunr.js"
+    shutil.copy(lunr, site)
+    shutil.rmtree(site / "search")
