@@ -46,7 +46,7 @@ Partition::Partition(StructureKind structure) noexcept
     : Partition(structure, {}, &Rows::boxes_as_given()) {}
 
 Partition::Partition(StructureKind structure, const PartitionOptions& options) noexcept
-    : Partition(structure, options, Rows::input_of(options.volume)) {}
+    : Partition(structure, options, Rows::input_of(options.volume, options.fat_margin)) {}
 
 Partition::~Partition() {
   if (state_ != nullptr) delete_in(state_->memory, state_);

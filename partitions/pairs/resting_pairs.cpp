@@ -10,7 +10,7 @@
 #include "partitions/pairs/linked_pairs.h"
 #include "partitions/pairs/pair_tracker.h"
 #include "partitions/pairs/pair_writer.h"
-#include "partitions/rows/volume_source.h"
+#include "partitions/rows/box_source.h"
 
 #include <algorithm>
 #include <cfloat>

@@ -79,7 +79,8 @@ Status load_into(PartitionState*& state, std::span<const std::byte> saved) {
   PartitionOptions options{.memory = state->memory, .execution = state->rows.execution()};
   const StructureKind structure = read.read(in, options);
   if (!in.ok()) return status_of(in);
-  PartitionState* fresh = PartitionState::make(structure, options, *Rows::input_of(options.volume));
+  PartitionState* fresh =
+      PartitionState::make(structure, options, *Rows::input_of(options.volume, options.fat_margin));
   if (fresh == nullptr) return Status::out_of_memory;
   const Status status = fresh->restore(read.rows(options.volume), *state);
   if (status == Status::ok) std::swap(state, fresh);
