@@ -7,6 +7,7 @@
 #include "core/hooks/log.h"
 #include "core/memory/new_in.h"
 #include "core/threads/float_environment.h"
+#include "partitions/index/debug_draw.h"
 #include "partitions/state/box_partition.h"
 #include "partitions/state/partition_state.h"
 
@@ -281,8 +282,10 @@ Status Partition::debug_draw(DebugDraw& draw, const DebugDrawOptions& options) c
   if (state_ == nullptr) return status_;
   if (options.max_depth < 0) return Status::invalid_argument;
   if (const Status status = state_->settle(); status != Status::ok) return status;
-  if (options.structure) state_->index.draw(draw, static_cast<std::size_t>(options.max_depth));
-  state_->index.draw_objects(draw, options);
+  if (options.structure) {
+    draw_structure(draw, state_->rows, state_->index, static_cast<std::size_t>(options.max_depth));
+  }
+  draw_objects(draw, state_->rows, options);
   return Status::ok;
 }
 

@@ -37,7 +37,7 @@ PairFinder::PairFinder(std::pmr::memory_resource* memory, Rows& rows,
                        const SpatialIndex& index) noexcept
     : rows_(rows), index_(index), resting_(memory, rows, index), identity_(next_identity()) {}
 
-Status PairFinder::find(PairQuery& query) {
+Status PairFinder::find(SelfPairsQuery& query) {
   const bool anew = query.tracked && !can_update(query.out);
   Status status = Status::ok;
   switch (choose(query)) {
@@ -66,14 +66,14 @@ Status PairFinder::find(PairQuery& query) {
 
 // Choice.
 
-PairFinder::Strategy PairFinder::choose(const PairQuery& query) const noexcept {
+PairFinder::Strategy PairFinder::choose(const SelfPairsQuery& query) const noexcept {
   if (query.resting) return Strategy::resting;
   if (!query.tracked || !can_update(query.out)) return Strategy::full;
   if (may_reorder(query) && link_if_due(query.out)) return Strategy::linked;
   return query.events || is_update_cheaper(query.out) ? Strategy::incremental : Strategy::full;
 }
 
-bool PairFinder::can_stay_resting(const PairQuery& query) const noexcept {
+bool PairFinder::can_stay_resting(const SelfPairsQuery& query) const noexcept {
   return query.tracked && resting_.active() && query.options.predicate.accept == nullptr &&
          can_update(query.out) && may_reorder(query) && resting_.is_cheaper(query.out);
 }
@@ -87,7 +87,7 @@ bool PairFinder::can_update(const PairBuffer& out) const noexcept {
 
 // An update in place changes the order of the pairs. The events, if there are any, must describe
 // the frame whose pairs the buffer contains.
-bool PairFinder::may_reorder(const PairQuery& query) const noexcept {
+bool PairFinder::may_reorder(const SelfPairsQuery& query) const noexcept {
   return query.options.order == Order::fast && (!query.events || query.events->follows());
 }
 
@@ -117,7 +117,7 @@ bool PairFinder::is_update_cheaper(const PairBuffer& out) const noexcept {
 
 // Strategies.
 
-Status PairFinder::find_resting(PairQuery& query) {
+Status PairFinder::find_resting(SelfPairsQuery& query) {
   incremental_queries_.fetch_add(1, std::memory_order_relaxed);
   resting_.note_frame();
   PairBuffer& out = query.out;
@@ -135,7 +135,7 @@ Status PairFinder::find_resting(PairQuery& query) {
   return finish_in_place(query, kept, true);
 }
 
-Status PairFinder::find_linked(PairQuery& query) {
+Status PairFinder::find_linked(SelfPairsQuery& query) {
   incremental_queries_.fetch_add(1, std::memory_order_relaxed);
   PairBuffer& out = query.out;
   if (rows_.moved().empty()) {
@@ -150,7 +150,7 @@ Status PairFinder::find_linked(PairQuery& query) {
 }
 
 // Updates a linked buffer in place. Its pairs from `kept` on were found for moved objects.
-Status PairFinder::finish_in_place(PairQuery& query, std::size_t kept, bool resting) {
+Status PairFinder::finish_in_place(SelfPairsQuery& query, std::size_t kept, bool resting) {
   const std::span<const ObjectId> moved = rows_.moved().ids();
   std::optional<EventWriter>& events = query.events;
   if (events) events->find_reused(moved);
@@ -165,7 +165,7 @@ Status PairFinder::finish_in_place(PairQuery& query, std::size_t kept, bool rest
   return Status::ok;
 }
 
-Status PairFinder::find_incremental(PairQuery& query) {
+Status PairFinder::find_incremental(SelfPairsQuery& query) {
   incremental_queries_.fetch_add(1, std::memory_order_relaxed);
   PairBuffer& out = query.out;
   const ChangeList& moved = rows_.moved();
@@ -185,7 +185,7 @@ Status PairFinder::find_incremental(PairQuery& query) {
   return status == Status::ok ? finish_found(query, false) : status;
 }
 
-Status PairFinder::find_full(PairQuery& query) {
+Status PairFinder::find_full(SelfPairsQuery& query) {
   LinkedPairs(query.out).unlink_pairs();
   if (query.events && !query.events->hold_all(query.out)) return Status::out_of_memory;
   query.out.clear();
@@ -195,7 +195,7 @@ Status PairFinder::find_full(PairQuery& query) {
 
 // Compares the pairs with those of the last frame for events, and sorts them. `all`: any object may
 // have moved.
-Status PairFinder::finish_found(PairQuery& query, bool all) noexcept {
+Status PairFinder::finish_found(SelfPairsQuery& query, bool all) noexcept {
   PairBuffer& out = query.out;
   std::size_t unsorted = out.size();
   if (query.events) {
@@ -212,7 +212,7 @@ Status PairFinder::finish_found(PairQuery& query, bool all) noexcept {
 // Tracking.
 
 // Marks the pairs in the buffer, and the events, as those of this frame.
-void PairFinder::finish_frame(PairQuery& query) noexcept {
+void PairFinder::finish_frame(SelfPairsQuery& query) noexcept {
   // Even if the buffer is not tracked, events compare its serial.
   const PairBuffer::Provenance provenance{identity_, ++last_serial_};
   PairTracker::set_provenance(query.out, provenance);
@@ -225,7 +225,7 @@ void PairFinder::finish_frame(PairQuery& query) noexcept {
 // After a failure the buffer is empty or, if events follow it, contains the pairs of the last
 // frame. In both cases the next query is a full one, so that its result does not depend on which
 // allocation failed.
-void PairFinder::undo(PairQuery& query) noexcept {
+void PairFinder::undo(SelfPairsQuery& query) noexcept {
   // Some watched pairs may already have the state of the frame that failed.
   if (query.resting) forget_buffer();
   const PairBuffer::Provenance untracked{identity_, ++last_serial_};

@@ -18,7 +18,7 @@
 namespace winnow {
 
 /// One call of `self_pairs`.
-struct PairQuery {
+struct SelfPairsQuery {
   PairBuffer& out;
   const PairOptions& options;
   std::optional<EventWriter> events{};  ///< if the caller wants events
@@ -40,12 +40,12 @@ class PairFinder {
   }
   /// True if the query can use the active list of resting pairs. If not, the caller writes deferred
   /// boxes to the rows and refreshes again.
-  [[nodiscard]] bool can_stay_resting(const PairQuery& query) const noexcept;
+  [[nodiscard]] bool can_stay_resting(const SelfPairsQuery& query) const noexcept;
   /// Writes all pairs and events. Requires an index that is up to date. If this fails, the caller
   /// calls `undo`.
-  Status find(PairQuery& query);
+  Status find(SelfPairsQuery& query);
   /// Restores the buffer and the events after a failed query.
-  void undo(PairQuery& query) noexcept;
+  void undo(SelfPairsQuery& query) noexcept;
   /// Appends the pairs (object of this, object of other). Queries `other` with every object of
   /// this.
   Status find_with(const PairFinder& other, HitMode mode, const PairPredicate& predicate,
@@ -68,19 +68,19 @@ class PairFinder {
   enum class Strategy : std::uint8_t { resting, linked, incremental, full };
   struct FullTasks;
 
-  [[nodiscard]] Strategy choose(const PairQuery& query) const noexcept;
+  [[nodiscard]] Strategy choose(const SelfPairsQuery& query) const noexcept;
   [[nodiscard]] bool can_update(const PairBuffer& out) const noexcept;
-  [[nodiscard]] bool may_reorder(const PairQuery& query) const noexcept;
+  [[nodiscard]] bool may_reorder(const SelfPairsQuery& query) const noexcept;
   [[nodiscard]] bool link_if_due(PairBuffer& out) const noexcept;
   [[nodiscard]] bool is_update_cheaper(const PairBuffer& out) const noexcept;
 
-  Status find_resting(PairQuery& query);
-  Status find_linked(PairQuery& query);
-  Status find_incremental(PairQuery& query);
-  Status find_full(PairQuery& query);
-  Status finish_in_place(PairQuery& query, std::size_t kept, bool resting);
-  Status finish_found(PairQuery& query, bool all) noexcept;
-  void finish_frame(PairQuery& query) noexcept;
+  Status find_resting(SelfPairsQuery& query);
+  Status find_linked(SelfPairsQuery& query);
+  Status find_incremental(SelfPairsQuery& query);
+  Status find_full(SelfPairsQuery& query);
+  Status finish_in_place(SelfPairsQuery& query, std::size_t kept, bool resting);
+  Status finish_found(SelfPairsQuery& query, bool all) noexcept;
+  void finish_frame(SelfPairsQuery& query) noexcept;
 
   // Queries, in pair_queries.cpp.
   Status query_all(PairBuffer& out, const PairPredicate& predicate);
@@ -88,7 +88,7 @@ class PairFinder {
   Status query_moved(PairBuffer& out, const PairPredicate& predicate);
   [[nodiscard]] bool select_moved_rows() const noexcept;
   void note_work(std::uint64_t tests, std::uint64_t queries,
-                 SpatialIndex::PairQueryKind kind) noexcept;
+                 RebuildPlanner::PairQueryKind kind) noexcept;
 
   Rows& rows_;
   const SpatialIndex& index_;

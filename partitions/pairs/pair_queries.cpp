@@ -76,7 +76,7 @@ Status PairFinder::query_all(PairBuffer& out, const PairPredicate& predicate) {
       tasks.count(), [&](std::size_t task, PairSink& sink) { return run_task(tasks, task, sink); });
   if (status != Status::ok) return status;
   full_queries_.fetch_add(1, std::memory_order_relaxed);
-  note_work(writer.tests(), 1, SpatialIndex::PairQueryKind::all);
+  note_work(writer.tests(), 1, RebuildPlanner::PairQueryKind::all);
   return Status::ok;
 }
 
@@ -130,14 +130,14 @@ Status PairFinder::query_moved(PairBuffer& out, const PairPredicate& predicate) 
   });
   query_rows.unmark();
   if (status != Status::ok) return status;
-  note_work(writer.tests(), std::max<std::size_t>(1, count), SpatialIndex::PairQueryKind::moved);
+  note_work(writer.tests(), std::max<std::size_t>(1, count), RebuildPlanner::PairQueryKind::moved);
   return Status::ok;
 }
 
 void PairFinder::note_work(std::uint64_t tests, std::uint64_t queries,
-                           SpatialIndex::PairQueryKind kind) noexcept {
+                           RebuildPlanner::PairQueryKind kind) noexcept {
   last_tests_.store(tests, std::memory_order_relaxed);
-  index_.note_work(tests, queries, kind);
+  index_.planner().note_work(tests, queries, kind);
 }
 
 Status PairFinder::find_with(const PairFinder& other, HitMode mode, const PairPredicate& predicate,

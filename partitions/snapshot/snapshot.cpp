@@ -21,7 +21,7 @@ void put_options(ByteWriter& out, const PartitionState& state) {
   out.put(state.rows.pool().volume());
   out.put(state.rows.fat_margin().distance);
   out.put(state.rows.fat_margin().share);
-  out.put(std::uint64_t{state.index.build_budget()});
+  out.put(std::uint64_t{state.index.planner().build_budget()});
 }
 
 void put_rows(ByteWriter& out, const Rows& rows) {

@@ -195,7 +195,7 @@ Status PartitionState::refresh() const {
 Status PartitionState::refresh_for_queries() const {
   if (stale_.load(std::memory_order_acquire)) {
     const Lock lock(refresh_mutex_);
-    if (index.builds() == 0) index.note_query();
+    if (index.planner().builds() == 0) index.planner().note_query();
   }
   return refresh();
 }
@@ -205,9 +205,10 @@ Status PartitionState::refresh_now() {
   // While an exchange of the structure is planned, the choice is not revised.
   const bool choosing = chooser_ != nullptr && !index.swap_is_planned();
   const StructureKind chosen =
-      choosing
-          ? chooser_->choose(rows, now, {index.builds(), index.excess_tests(), index.tail_limit()})
-          : now;
+      choosing ? chooser_->choose(rows, now,
+                                  {index.planner().builds(), index.planner().excess_tests(),
+                                   RebuildPlanner::tail_limit(rows.size())})
+               : now;
   bool refused = false;
   Status status = Status::ok;
   if (chosen != now) {
@@ -219,7 +220,7 @@ Status PartitionState::refresh_now() {
   if (status != Status::ok) return status;
   rows.clear_stale(pairs_.tracks());
   if (chooser_ == nullptr) return Status::ok;
-  chooser_->refreshed(rows, index.kind(), index.builds());
+  chooser_->refreshed(rows, index.kind(), index.planner().builds());
   if (index.kind() != now) {
     StructureChoice choice;
     chooser_->report(choice);
@@ -233,7 +234,7 @@ void PartitionState::count_queries(QueryKind kind, std::size_t count) const noex
 }
 
 Status PartitionState::prepare(QueryKind kind, std::size_t count, QueryView& view) const {
-  if (stale_.load(std::memory_order_acquire)) index.note_query();
+  if (stale_.load(std::memory_order_acquire)) index.planner().note_query();
   if (const Status status = settle(); status != Status::ok) return status;
   count_queries(kind, count);
   if (index.queries_stale()) {
@@ -249,7 +250,7 @@ Status PartitionState::prepare(QueryKind kind, std::size_t count, QueryView& vie
 Status PartitionState::self_pairs(PairBuffer& out, const PairOptions& options,
                                   PairEvents* events) const {
   const StageScope stage(WorkStage::pairs);
-  PairQuery query{out, options};
+  SelfPairsQuery query{out, options};
   if (events != nullptr) query.events.emplace(pairs_.events_of(*events, out));
   // Only one buffer is tracked at a time. A query concurrent with a tracked one is not tracked.
   Lock lock = Lock::try_acquire(tracker_mutex_);
