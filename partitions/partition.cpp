@@ -1,17 +1,20 @@
-// Public functions of Partition except queries: they set the floating-point environment, log errors
-// and call PartitionState. Pair queries are in pairs/self_pairs.cpp, casts, regions and nearest
-// queries in queries/, snapshots in snapshot/snapshot.cpp.
+// Public functions of Partition: they set the floating-point environment, log errors and call
+// PartitionState. Casts, regions and nearest queries are in queries/, snapshots in
+// snapshot/snapshot.cpp.
 
 #include <winnow/partitions/partition.h>
 
 #include "core/hooks/log.h"
 #include "core/memory/new_in.h"
 #include "core/threads/float_environment.h"
+#include "partitions/index/debug_draw.h"
 #include "partitions/state/box_partition.h"
 #include "partitions/state/partition_state.h"
 
 namespace winnow {
 namespace {
+
+constexpr const char* kSelfPairs = "Partition::self_pairs";
 
 /// Calls change(rows) for a mutation of `count` objects, marks the structure as stale if rows
 /// changed, and logs the status under the name `call`.
@@ -44,7 +47,7 @@ Partition::Partition(StructureKind structure) noexcept
     : Partition(structure, {}, &Rows::boxes_as_given()) {}
 
 Partition::Partition(StructureKind structure, const PartitionOptions& options) noexcept
-    : Partition(structure, options, Rows::input_of(options.volume)) {}
+    : Partition(structure, options, Rows::input_of(options.volume, options.fat_margin)) {}
 
 Partition::~Partition() {
   if (state_ != nullptr) delete_in(state_->memory, state_);
@@ -110,7 +113,8 @@ Status Partition::insert(std::span<const Kdop<K>> kdops, std::span<const ClientD
 
 Status Partition::update(std::span<const Key> keys, const BoxView& boxes) {
   const DefaultFloatEnvironment environment;
-  return logged(state_ == nullptr ? status_ : state_->update(keys, boxes), "Partition::update");
+  return logged(state_ == nullptr ? status_ : state_->update(UpdateSubset(keys), boxes),
+                "Partition::update");
 }
 
 Status Partition::update(std::span<const Key> keys, const BoxView& boxes,
@@ -227,13 +231,61 @@ Status Partition::refresh() const {
   return logged(state_ == nullptr ? status_ : state_->refresh_for_queries(), "Partition::refresh");
 }
 
+Status Partition::self_pairs(PairBuffer& out, const PairOptions& options) const {
+  const DefaultFloatEnvironment environment;
+  if (state_ != nullptr) return logged(state_->self_pairs(out, options, nullptr), kSelfPairs);
+  out.clear();
+  return status_;
+}
+
+Status Partition::self_pairs(PairBuffer& out, PairEvents& events,
+                             const PairOptions& options) const {
+  const DefaultFloatEnvironment environment;
+  if (state_ != nullptr) return logged(state_->self_pairs(out, options, &events), kSelfPairs);
+  out.clear();
+  events.clear();
+  return status_;
+}
+
+Status Partition::self_pairs(PairEvents& events, const PairOptions& options) const {
+  const DefaultFloatEnvironment environment;
+  // Order::fast: events are sorted anyway, and the pairs are not returned.
+  return self_pairs(EventWriter::own_buffer(events), events,
+                    {Order::fast, options.incremental, options.predicate});
+}
+
+Status Partition::pairs_with(const Partition& other, PairBuffer& out,
+                             const PairOptions& options) const {
+  const DefaultFloatEnvironment environment;
+  out.clear();
+  if (state_ == nullptr || other.state_ == nullptr) {
+    return state_ == nullptr ? status_ : other.status_;
+  }
+  return state_->pairs_with(*other.state_, options, out);
+}
+
+Status Partition::reserve_pairs(PairBuffer& out, std::size_t pairs, Pages pages) const {
+  const DefaultFloatEnvironment environment;
+  return state_ == nullptr ? status_ : state_->reserve_pairs(out, pairs, pages);
+}
+
+Status Partition::reserve_events(PairEvents& out, std::size_t pairs, bool with_pairs,
+                                 Pages pages) const {
+  const DefaultFloatEnvironment environment;
+  if (state_ == nullptr) return status_;
+  if (!state_->reserve_events(out, pairs, pages)) return Status::out_of_memory;
+  return with_pairs ? reserve_pairs(EventWriter::own_buffer(out), pairs, pages) : Status::ok;
+}
+
 Status Partition::debug_draw(DebugDraw& draw, const DebugDrawOptions& options) const noexcept {
   const DefaultFloatEnvironment environment;
   if (state_ == nullptr) return status_;
   if (options.max_depth < 0) return Status::invalid_argument;
   if (const Status status = state_->settle(); status != Status::ok) return status;
-  if (options.structure) state_->index.draw(draw, static_cast<std::size_t>(options.max_depth));
-  state_->index.draw_objects(draw, options);
+  if (options.structure) {
+    draw_structure(draw, state_->rows, state_->index, static_cast<std::size_t>(options.max_depth));
+  }
+  draw_objects(draw, state_->rows, options);
   return Status::ok;
 }
 

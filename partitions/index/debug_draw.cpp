@@ -1,8 +1,7 @@
-// SpatialIndex: debug drawing of trees, structures and objects.
+#include "partitions/index/debug_draw.h"
 
 #include <winnow/core/sphere.h>
 #include <winnow/partitions/debug_colours.h>
-#include "partitions/index/spatial_index.h"
 
 #include <algorithm>
 #include <array>
@@ -45,19 +44,20 @@ void draw_label(DebugDraw& draw, const Aabb& box, ClientData data) {
 
 }  // namespace
 
-void SpatialIndex::draw(DebugDraw& draw, std::size_t max_depth) const {
-  if (rows_.size() == 0 || structure_->is_flat()) return;
-  if (rows_.regions().regular != 0) structure_->draw(draw);
-  draw_tree(draw, tree_.view(rows_.view()), max_depth);
+void draw_structure(DebugDraw& draw, const Rows& rows, const SpatialIndex& index,
+                    std::size_t max_depth) {
+  if (rows.size() == 0 || index.structure().is_flat()) return;
+  if (rows.regions().regular != 0) index.structure().draw(draw);
+  draw_tree(draw, index.tree().view(rows.view()), max_depth);
 }
 
-void SpatialIndex::draw_objects(DebugDraw& draw, const DebugDrawOptions& options) const {
-  const KeyTable& keys = rows_.keys();
-  const BoundsPool& pool = rows_.pool();
+void draw_objects(DebugDraw& draw, const Rows& rows, const DebugDrawOptions& options) {
+  const KeyTable& keys = rows.keys();
+  const BoundsPool& pool = rows.pool();
   for (ObjectId id = 0; id < keys.slot_count(); ++id) {
     if (!keys.is_live(id)) continue;
     Aabb box;
-    (void)rows_.bounds(keys.key_of(id), box);
+    (void)rows.bounds(keys.key_of(id), box);
     if (options.objects && pool.volume() == Volume::sphere) {
       const std::size_t row = keys.row_of(id);
       const auto at = [&](std::size_t c) { return pool.column(kCenterColumn + c)[row]; };

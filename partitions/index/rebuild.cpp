@@ -1,35 +1,20 @@
-// SpatialIndex: decides when the rows are reordered, and reorders them at once or by a plan that
-// was made ahead over several refreshes. refresh() in spatial_index.cpp calls it; OrderPlan
-// computes the order.
-
-#include "partitions/index/spatial_index.h"
+// SpatialIndex: builds, which reorder the rows at once or by a plan that was made ahead over
+// several refreshes, and exchanges of the structure. refresh() in spatial_index.cpp calls `build`;
+// RebuildPlanner decides, OrderPlan computes the order.
 
 #include "core/hooks/stage_scope.h"
+#include "core/memory/columns.h"
+#include "partitions/index/outliers.h"
+#include "partitions/index/spatial_index.h"
 #include "partitions/tree/environment_order.h"
 
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <numeric>
 #include <utility>
 
 namespace winnow {
 namespace {
-
-// Work for a build that is completed at once.
-constexpr std::size_t kWholeBuild = std::numeric_limits<std::size_t>::max();
-// With fewer rows a build is short enough to be done at once.
-constexpr std::size_t kWorthPlanning = 1024;
-// A plan starts this many refreshes early: one refresh applies the order, and the forecast is late
-// if objects accelerate.
-constexpr std::size_t kSpareRefreshes = 2;
-// A plan pauses while refreshes have kQuietFactor times fewer changes than the refresh that started
-// it, for at most kMaxQuietRefreshes refreshes in a row: if the motion has ended for good, the plan
-// must continue.
-constexpr std::size_t kQuietFactor = 4;
-constexpr std::size_t kMaxQuietRefreshes = 8;
-// A build is expected if the tail will have grown to this share of its limit.
-constexpr float kNearlyDue = 0.35F;
 
 // Median, over a sample of blocks, of the mean edge of the box around a block.
 float edge_of_block(const BoundsPool& pool) noexcept {
@@ -51,30 +36,12 @@ float edge_of_block(const BoundsPool& pool) noexcept {
   return edge[count / 2];
 }
 
+// Rows that a build of `objects` objects reserves for the tail.
+std::size_t spare_rows(const Structure& structure, std::size_t objects) noexcept {
+  return (structure.prunes_rows() ? 2 : 1) * RebuildPlanner::max_in_tail(objects);
+}
+
 }  // namespace
-
-bool SpatialIndex::needs_build() const noexcept {
-  if (!rows_.regions().built) return true;
-  const std::size_t live = rows_.size();
-  const std::size_t holes = rows_.pool().rows() - live;
-  if (holes > live / 4 + built_holes_ + 64) return true;
-  if (rows_.filters().has_environments() && needs_grouping()) return true;
-  if (structure_->is_flat()) return false;
-  return tail() > tail_limit() || excess_tests() > max_wear();
-}
-
-std::uint64_t SpatialIndex::max_wear() const noexcept {
-  return structure_->build_price() * (rows_.size() + 64);
-}
-
-// True if the rows have to be grouped by environment again: rows are in cells, or more than
-// tail_limit() objects changed their environment. With a flat structure, new rows count, too.
-bool SpatialIndex::needs_grouping() const noexcept {
-  const RowRegions& regions = rows_.regions();
-  const std::size_t changed = rows_.filters().changed_environments();
-  if (!structure_->is_flat()) return regions.regular != 0 || changed > tail_limit();
-  return rows_.pool().rows() - regions.sorted + changed > tail_limit();
-}
 
 // Starts a plan or continues it, runs it to the end and applies it.
 Status SpatialIndex::build() {
@@ -82,31 +49,12 @@ Status SpatialIndex::build() {
   if (structure_->is_flat()) return build_flat();
   rows_.regions().built = false;
   const bool foreseen = plan_.underway();
-  if ((!foreseen && !start_plan(*structure_)) || !plan_.advance(kWholeBuild)) {
+  if ((!foreseen && !start_plan(*structure_)) || !plan_.advance(RebuildPlanner::kWholeBuild)) {
     drop_plan();
     return Status::out_of_memory;
   }
   const Status status = apply_plan(foreseen);
   return foreseen && status == Status::ok ? absorb_changes(true) : status;
-}
-
-bool SpatialIndex::start_plan(Structure& structure) noexcept {
-  refreshes_before_plan_ = departures_.refreshes();
-  changed_at_plan_ = changed();
-  quiet_refreshes_ = 0;
-  return plan_.start(rows_, structure, spare_rows(structure), needed_parts(structure));
-}
-
-// More than kOften refreshes for rays and regions since the last build, or any before the first
-// build, justify an order that takes longer to compute. If the last order lasted at most kTorn
-// refreshes, a coarser order is computed.
-KdParts SpatialIndex::needed_parts(const Structure& structure) const noexcept {
-  constexpr std::size_t kOften = 4;
-  constexpr std::size_t kTorn = 2;
-  const std::size_t queried = queried_refreshes_.load(std::memory_order_relaxed);
-  if (queried > (builds_ == 0 ? 0 : kOften)) return KdParts::blocks;
-  if (builds_ == 0) return structure.first_parts();
-  return departures_.refreshes() <= kTorn ? KdParts::cells : KdParts::tiles;
 }
 
 // The rows are not changed before all steps that can fail have succeeded.
@@ -121,7 +69,7 @@ Status SpatialIndex::apply_plan(bool moved) {
   const bool complete = !moved || plan_.complete();
   const std::size_t rows = order.size();
   const bool prunes = next.prunes_rows();
-  if (!complete || !rows_.reserve_rows(rows + spare_rows(next)) ||
+  if (!complete || !rows_.reserve_rows(rows + spare_rows(next, rows_.size())) ||
       !spare_.reserve(rows_.pool().capacity() + 2 * kBlockRows) ||
       !tree_.cover(first_block, blocks_of(rows) - first_block, node_content()) ||
       (prunes && !regular_tree_.cover(0, blocks_of(regular), node_content())) ||
@@ -132,24 +80,17 @@ Status SpatialIndex::apply_plan(bool moved) {
   rows_.reorder({order.data(), rows}, spare_);
   install_planned_structure();
   regions = {.built = false, .regular = regular, .ordered = ordered, .sorted = ordered};
-  built_holes_ = rows - rows_.size();
+  const std::size_t holes = rows - rows_.size();
   structure_->finish_build(plan_.row_plan(), moved);
   plan_.drop();
   const Execution execution = rows_.execution_for(rows);
   tree_.refit_all(rows_.view(), execution);
-  built_edge_ = tree_.typical_edge();
-  known_wide_ = wide_blocks();
+  planner_.note_build(moved, holes, tree_.typical_edge());
+  planner_.note_wide(count_wide_blocks(rows_, tree_, planner_.built_edge()));
   if (prunes) regular_tree_.refit_all(rows_.view(), execution);
   regions.built = true;
-  ++builds_;
-  planned_builds_ += moved ? 1 : 0;
-  if (builds_without_planning_ != 0) --builds_without_planning_;
   rows_.note_build(edge_of_block(rows_.pool()));
-  full_base_ = moved_base_ = excess_ = 0;
-  queried_refreshes_ = 0;
   departures_.begin(rows_);
-  tail_growth_.begin();
-  wear_growth_.begin();
   return Status::ok;
 }
 
@@ -177,75 +118,165 @@ Status SpatialIndex::build_flat() {
   order_changed_ = true;
   if (!refit_trees()) return Status::out_of_memory;
   regions.built = true;
-  ++builds_;
+  planner_.note_flat_build();
   rows_.note_build(0.0F);
   return Status::ok;
 }
 
 // Planning ahead.
 
-bool SpatialIndex::plans_ahead() const noexcept {
-  const std::size_t fewest = build_budget_ == 0 ? kWorthPlanning : 1;
-  return build_budget_ != kWholeBuild && rows_.size() >= fewest &&
-         !rows_.filters().has_environments();
+bool SpatialIndex::start_plan(Structure& structure) noexcept {
+  planner_.note_plan(numbers());
+  return plan_.start(rows_, structure, spare_rows(structure, rows_.size()),
+                     planner_.precision(structure.first_parts()));
 }
 
-// Returns the number of rows that a refresh plans. The longer orders last, the more refreshes share
-// a plan: two fifths of the life of an order, so that the planned order is not out of date when it
-// is applied.
-std::size_t SpatialIndex::planning_work(const Structure& structure) const noexcept {
-  if (build_budget_ != 0) return build_budget_;
-  const std::size_t life = plan_.underway() ? refreshes_before_plan_ : departures_.refreshes();
-  const std::size_t refreshes = std::max<std::size_t>(1, 2 * life / 5);
-  const std::size_t rows = plan_.underway() ? plan_.rows() : rows_.pool().rows();
-  return (structure.plan_passes() * rows + refreshes - 1) / refreshes;
-}
-
-std::size_t SpatialIndex::changed() const noexcept {
-  return rows_.stale().all() ? rows_.size() : rows_.stale().ids().size();
-}
-
-// If few objects move now, their refreshes should not pay for the wear of earlier motion.
-void SpatialIndex::note_quiet_refresh() noexcept {
-  const bool quiet =
-      plan_.underway() && build_budget_ == 0 && kQuietFactor * changed() < changed_at_plan_;
-  quiet_refreshes_ = quiet ? quiet_refreshes_ + 1 : 0;
-}
-
-bool SpatialIndex::plan_paused() const noexcept {
-  return quiet_refreshes_ != 0 && quiet_refreshes_ <= kMaxQuietRefreshes;
-}
-
+// Starts a plan if a build is near, and runs the stages of this refresh.
 void SpatialIndex::continue_planning() noexcept {
-  if (plan_paused()) return;
-  if (!plan_.underway() && (!build_is_near() || !start_plan(*structure_))) return;
-  if (plan_.advance(planning_work(*plan_.structure()))) return;
+  if (planner_.is_paused()) return;
+  if (!plan_.underway()) {
+    const RowNumbers n = numbers();
+    const RebuildPlanner::BuildForecast forecast = planner_.forecast_build(n);
+    const bool near =
+        forecast.may_leave
+            ? RebuildPlanner::is_near_if_leaving(
+                  n, departures_.share(rows_, *structure_, planner_.frames(), forecast.refreshes))
+            : forecast.near;
+    if (!near || !start_plan(*structure_)) return;
+  }
+  if (plan_.advance(planner_.planning_work(numbers()))) return;
   swap_refused_ = swap_is_planned();
   drop_plan();
-}
-
-// True if a build is expected within as many refreshes as a plan takes.
-bool SpatialIndex::build_is_near() const noexcept {
-  if (!plans_ahead() || builds_without_planning_ != 0) return false;
-  const std::size_t whole = structure_->plan_passes() * rows_.pool().rows();
-  const std::size_t ahead = 1 + (whole - 1) / planning_work(*structure_) + kSpareRefreshes;
-  // True if one refresh would plan the whole order. Without a build budget this means that builds
-  // are frequent, and planning saves nothing: each order would be out of date when it is applied.
-  const bool at_once = planning_work(*structure_) >= whole;
-  if (departures_.refreshes() <= ahead || (at_once && build_budget_ == 0)) return false;
-  const std::uint64_t grown = tail_growth_.in(ahead);
-  if (grown > tail_limit() || wear_growth_.in(ahead) > max_wear()) return true;
-  if (!rows_.stale().all() || rows_.regions().regular == 0) return false;
-  const float due = kNearlyDue * static_cast<float>(tail_limit());
-  if (static_cast<float>(grown) > due) return true;
-  const float leaving = departures_.share(rows_, *structure_, ahead);
-  const float behind = static_cast<float>(tail()) + leaving * static_cast<float>(rows_.size());
-  return leaving > 0.0F && behind > due;
 }
 
 void SpatialIndex::drop_plan() noexcept {
   plan_.drop();
   stash(std::exchange(next_, {}));
+}
+
+// Exchange of the structure.
+
+// Keeps a structure with its reserved memory for later use, or destroys it.
+void SpatialIndex::stash(const OwnedStructure& one) noexcept {
+  if (one.structure == nullptr) return;
+  if (!reserved_ || !structures_.keep(one)) structures_.destroy(one);
+}
+
+void SpatialIndex::install(Structure* structure, StructureKind kind) noexcept {
+  drop_plan();
+  structure_ = structure;
+  kind_ = kind;
+  if (reserved_) {
+    (void)tree_.cover(0, 0);
+    (void)regular_tree_.cover(0, 0);
+  } else {
+    tree_.release();
+    regular_tree_.release();
+    release_scratch();
+    rows_.selection().release();
+  }
+  planner_.note_new_structure();
+  rows_.invalidate_order();
+}
+
+bool SpatialIndex::set_structure(StructureKind kind) noexcept {
+  Structure* const made = structures_.make(kind);
+  if (made == nullptr) return false;
+  structures_.destroy_spares();
+  structures_.destroy({kind_, structure_});
+  install(made, kind);
+  return true;
+}
+
+Status SpatialIndex::refresh_as(StructureKind kind, bool& refused) {
+  Structure* const made = structures_.make(kind);
+  refused = made == nullptr;
+  if (refused) return refresh();
+  const RowNumbers n = numbers();
+  if (planner_.plans_ahead(n) && !n.flat && !made->is_flat() && !planner_.needs_build(n)) {
+    drop_plan();
+    // The scratch of the current structure's plan is of no use to the next structure.
+    if (!reserved_) plan_.release();
+    if (start_plan(*made)) {
+      next_ = {kind, made};
+      return refresh();
+    }
+  }
+  const OwnedStructure before{kind_, structure_};
+  install(made, kind);
+  if (refresh() == Status::ok) {
+    stash(before);
+    return Status::ok;
+  }
+  refused = true;
+  stash({kind, made});
+  install(before.structure, before.kind);
+  return refresh();
+}
+
+void SpatialIndex::install_planned_structure() noexcept {
+  if (!swap_is_planned()) return;
+  stash({kind_, structure_});
+  kind_ = next_.kind;
+  structure_ = std::exchange(next_, {}).structure;
+  if (!structure_->prunes_rows() && !reserved_) regular_tree_.release();
+}
+
+// Reservation of memory.
+
+bool SpatialIndex::reserve(std::size_t objects, Pages pages,
+                           std::span<const StructureKind> later) noexcept {
+  drop_plan();
+  if (!structures_.make_spares(later, kind_)) return false;
+  std::size_t holes = 0;
+  std::size_t behind = 0;
+  bool flat = true;
+  bool prunes = false;
+  const auto count_in = [&](const Structure& structure) {
+    flat = flat && structure.is_flat();
+    prunes = prunes || structure.prunes_rows();
+    holes = std::max(holes, structure.max_holes());
+    behind = std::max(behind, spare_rows(structure, objects));
+  };
+  count_in(*structure_);
+  for (const OwnedStructure& one : structures_.spares()) {
+    if (one.structure != nullptr) count_in(*one.structure);
+  }
+  const std::size_t ordered = objects + holes + kBlockRows;
+  reserved_ = flat || (reserve_order(ordered, behind, pages) &&
+                       (!prunes || regular_tree_.reserve(blocks_of(ordered), pages)));
+  const BuildRoom room = plan_.room_for(objects, pages);
+  reserved_ = reserved_ && structure_->reserve(room);
+  for (const OwnedStructure& one : structures_.spares()) {
+    if (one.structure != nullptr) reserved_ = reserved_ && one.structure->reserve(room);
+  }
+  return reserved_;
+}
+
+// Makes room for `rows` rows in order and for `behind` rows in the tail.
+bool SpatialIndex::reserve_order(std::size_t rows, std::size_t behind, Pages pages) noexcept {
+  return rows_.reserve_rows(rows + behind) &&
+         spare_.reserve(rows_.pool().capacity() + 2 * kBlockRows, pages) &&
+         plan_.reserve(rows + behind, behind, pages) && tree_.reserve(blocks_of(rows), pages) &&
+         departures_.reserve(rows);
+}
+
+void SpatialIndex::release_scratch() noexcept {
+  drop_plan();
+  release_columns(spare_, tail_order_);
+  plan_.release();
+}
+
+void SpatialIndex::release_memory() noexcept {
+  reserved_ = false;
+  structures_.destroy_spares();
+  release_scratch();
+  structure_->release_scratch();
+  if (rows_.size() != 0) return;
+  tree_.release();
+  regular_tree_.release();
+  departures_.release();
+  structure_->release_memory();
 }
 
 }  // namespace winnow

@@ -5,36 +5,51 @@
 
 #include <winnow/partitions/partition.h>
 #include "core/memory/columns.h"
+#include "partitions/index/outliers.h"
 #include "partitions/tree/environment_order.h"
 
 #include <algorithm>
 #include <utility>
 
 namespace winnow {
-namespace {
-
-// After a plan that was out of date when it was applied, this many builds are not planned ahead.
-constexpr std::size_t kBuildsAfterMistake = 4;
-
-}  // namespace
-
 SpatialIndex::SpatialIndex(std::pmr::memory_resource* memory, Rows& rows,
                            std::size_t build_budget) noexcept
-    : memory_(memory),
-      rows_(rows),
+    : rows_(rows),
       tree_(memory),
       regular_tree_(memory),
-      spare_structures_(memory),
-      spare_(memory),
-      tail_order_(memory),
-      build_budget_(build_budget),
+      planner_(build_budget),
       plan_(memory),
-      departures_(memory) {}
+      departures_(memory),
+      structures_(memory, rows, regular_tree_),
+      spare_(memory),
+      tail_order_(memory) {}
 
 SpatialIndex::~SpatialIndex() {
   drop_plan();
-  destroy_spares();
-  destroy({kind_, structure_});
+  structures_.destroy({kind_, structure_});
+}
+
+RowNumbers SpatialIndex::numbers() const noexcept {
+  const RowRegions& regions = rows_.regions();
+  const ChangeList& stale = rows_.stale();
+  const bool flat = structure_->is_flat();
+  RowNumbers n;
+  n.objects = rows_.size();
+  n.rows = rows_.pool().rows();
+  n.regular = regions.regular;
+  n.tail = n.rows > regions.ordered ? n.rows - regions.ordered : 0;
+  n.changed = stale.all() ? n.objects : stale.ids().size();
+  n.all_changed = stale.all();
+  n.built = regions.built;
+  n.flat = flat;
+  n.environments = rows_.filters().has_environments();
+  // With a flat structure, new rows are not in the group of their environment, either.
+  n.ungrouped = rows_.filters().changed_environments() + (flat ? n.rows - regions.sorted : 0);
+  n.build_price = structure_->build_price();
+  n.plan_passes = (plan_.underway() ? plan_.structure() : structure_)->plan_passes();
+  n.plan_rows = plan_.underway() ? plan_.rows() : 0;
+  n.plan_ready = plan_.ready();
+  return n;
 }
 
 Status SpatialIndex::refresh() {
@@ -42,41 +57,42 @@ Status SpatialIndex::refresh() {
   swap_refused_ = false;
   // A plan is invalid once its rows were reordered.
   if (rows_.regions().planned == 0 || rows_.filters().has_environments()) drop_plan();
-  note_quiet_refresh();
   Status status = Status::ok;
-  if (needs_build()) {
-    status = build();
-  } else if (plan_.ready() && !plan_paused()) {
-    status = apply_plan(true);
-    if (status == Status::ok) status = absorb_changes(true);
-  } else {
-    status = absorb_changes(false);
+  switch (planner_.begin_refresh(numbers())) {
+    case RebuildPlanner::OrderStep::build:
+      status = build();
+      break;
+    case RebuildPlanner::OrderStep::apply_plan:
+      status = apply_plan(true);
+      if (status == Status::ok) status = absorb_changes(true);
+      break;
+    case RebuildPlanner::OrderStep::keep:
+      status = absorb_changes(false);
+      break;
   }
   queries_stale_.store(true, std::memory_order_relaxed);
   return status;
 }
 
-std::size_t SpatialIndex::tail() const noexcept {
-  const std::size_t rows = rows_.pool().rows();
-  const std::size_t ordered = rows_.regions().ordered;
-  return rows > ordered ? rows - ordered : 0;
-}
-
 // If `all` is true, any row may no longer fit its position in the order, even if it did not change
 // now.
 Status SpatialIndex::absorb_changes(bool all) {
-  ++refits_;
+  planner_.note_refit();
   if (structure_->is_flat()) {
     rows_.regions().regular = rows_.pool().rows();
     return refit_trees() ? Status::ok : Status::out_of_memory;
   }
-  const std::size_t limit = tail_limit();
-  const std::size_t room = limit - std::min(limit, tail());
+  const std::size_t tail = numbers().tail;
+  const std::size_t limit = RebuildPlanner::tail_limit(rows_.size());
+  const std::size_t room = limit - std::min(limit, tail);
   const bool any_row = all || rows_.stale().all();
   RowSelection& misfits = rows_.selection();
-  if (!misfits.start(limit) || (any_row && !make_room_for_misfits())) return Status::out_of_memory;
-  if (tail() > limit || !collect_misfits(any_row, room)) {
-    if (all) builds_without_planning_ = kBuildsAfterMistake;
+  if (!misfits.start(limit) || (any_row && rows_.regions().regular != 0 &&
+                                !spare_.reserve(rows_.pool().capacity() + 2 * kBlockRows))) {
+    return Status::out_of_memory;
+  }
+  if (tail > limit || !collect_misfits(any_row, room)) {
+    if (all) planner_.note_mistake();
     return build();
   }
   // A row that no longer fits a planned order may have moved before the last refresh, and is then
@@ -85,46 +101,18 @@ Status SpatialIndex::absorb_changes(bool all) {
   if (!move_to_tail(misfits.entries()) || !sort_tail() || !refit_trees()) {
     return Status::out_of_memory;
   }
-  if (is_scattered()) return build();
-  const std::uint64_t builds = builds_;
-  const Status status = find_outliers();
-  if (status != Status::ok || builds_ != builds) return status;
-  if (!is_next_frame()) return Status::ok;
-  tail_growth_.note(tail());
-  wear_growth_.note(excess_tests());
-  departures_.note_refresh();
+  const RowNumbers n = numbers();
+  if (planner_.may_be_scattered(n, tree_.blocks()) &&
+      planner_.is_scattered(n, tree_.typical_edge())) {
+    return build();
+  }
+  const std::uint64_t builds = planner_.builds();
+  const Status status = find_outliers(n);
+  if (status != Status::ok || planner_.builds() != builds) return status;
+  if (!planner_.is_next_frame(n)) return Status::ok;
+  planner_.note_frame(numbers().tail);
   continue_planning();
   return Status::ok;
-}
-
-// A second refresh with few changes and no query in between does not count as a frame, because the
-// forecasts of builds extrapolate growth per frame.
-bool SpatialIndex::is_next_frame() const noexcept {
-  const ChangeList& stale = rows_.stale();
-  const bool queried = queried_.exchange(false, std::memory_order_relaxed);
-  return queried || stale.all() || 4 * stale.ids().size() >= rows_.size();
-}
-
-// If most objects jumped, one query of a tree in the old order would cost as much as many builds.
-// The sizes of the leaves show such jumps before the query. Slow wear is detected by counting
-// tests.
-bool SpatialIndex::is_scattered() const noexcept {
-  constexpr float kScattered = 2.0F;
-  constexpr float kScatterOfPrice = 0.1F;  // a lower limit if a build is cheap
-  const float price = static_cast<float>(structure_->build_price());
-  // A query of a tree with at most this many blocks tests nearly all of them in any order of the
-  // rows.
-  constexpr std::size_t kFewBlocks = 12;
-  if (tree_.blocks() <= kFewBlocks) return false;
-  // Cells and strips detect objects that leave them; the tree beside them contains rows of all
-  // parts of the scene.
-  if (rows_.regions().regular != 0 || !rows_.stale().all()) return false;
-  const float scattered = std::min(kScattered, 1.0F + kScatterOfPrice * price);
-  return built_edge_ > 0.0F && tree_.typical_edge() > scattered * built_edge_;
-}
-
-bool SpatialIndex::make_room_for_misfits() noexcept {
-  return rows_.regions().regular == 0 || spare_.reserve(rows_.pool().capacity() + 2 * kBlockRows);
 }
 
 // Returns false if there are more than `most` misfits, or if a sample predicts more.
@@ -145,11 +133,45 @@ bool SpatialIndex::collect_misfits(bool any_row, std::size_t most) noexcept {
   return true;
 }
 
+Status SpatialIndex::find_outliers(const RowNumbers& n) {
+  if (!planner_.may_have_outliers(n)) return Status::ok;
+  const std::size_t wide = count_wide_blocks(rows_, tree_, planner_.built_edge());
+  switch (planner_.step_for_outliers(n, wide, ordered_blocks(rows_, tree_))) {
+    case RebuildPlanner::OutlierStep::search:
+      return move_outliers_to_tail(n.tail);
+    case RebuildPlanner::OutlierStep::build:
+      return build();
+    case RebuildPlanner::OutlierStep::none:
+      break;
+  }
+  return Status::ok;
+}
+
+// Moves the outliers to the tail, which is sorted by position. Builds instead if the tail would
+// exceed its limit.
+Status SpatialIndex::move_outliers_to_tail(std::size_t tail) {
+  const std::size_t limit = RebuildPlanner::tail_limit(rows_.size());
+  const std::size_t room = limit + 1 - std::min(limit, tail);
+  if (!select_outliers(rows_, tree_, planner_.built_edge(), room)) return Status::out_of_memory;
+  RowSelection& outliers = rows_.selection();
+  if (outliers.list.size() >= room) return build();
+  if (!outliers.list.empty()) {
+    // The rows of a plan must stay in place, but outliers are moved.
+    drop_plan();
+    order_changed_ = true;
+    if (!move_to_tail(outliers.entries()) || !sort_tail() || !refit_trees()) {
+      return Status::out_of_memory;
+    }
+  }
+  planner_.note_wide(count_wide_blocks(rows_, tree_, planner_.built_edge()));
+  return Status::ok;
+}
+
 bool SpatialIndex::move_to_tail(std::span<const std::uint32_t> rows) noexcept {
   if (rows.empty()) return true;
   // Reserves the room of all moves until the next build, because growing copies every column.
   const std::size_t needed = rows_.pool().rows() + rows.size();
-  const std::size_t room = rows_.regions().ordered + max_in_tail(rows_.size());
+  const std::size_t room = rows_.regions().ordered + RebuildPlanner::max_in_tail(rows_.size());
   if (!rows_.reserve_rows(std::max(room, needed))) return false;
   if (plan_.underway()) {
     for (const std::uint32_t row : rows) plan_.note_move(row, rows_.pool().ids()[row]);
@@ -170,24 +192,21 @@ bool SpatialIndex::sort_tail() noexcept {
   for (std::size_t row = begin; row < pool.rows(); ++row) {
     if (pool.ids()[row] != kNoObject) live.add(row);
   }
-  if (!tail_order_.grow(live.list.size()) || !spare_.grow(live.list.size() + 2 * kBlockRows) ||
-      !sort_by_place(live.entries(), tail_order_.data())) {
+  if (!tail_order_.grow(live.list.size()) || !spare_.grow(live.list.size() + 2 * kBlockRows)) {
     return false;
   }
+  const bool sorted =
+      rows_.filters().has_environments()
+          ? sort_by_environment_and_place(pool, rows_.filters().data(), live.entries(),
+                                          plan_.row_plan().items, tail_order_.data(),
+                                          plan_.points(), Execution::serial())
+          : sort_by_kd_cuts(pool, live.entries(), tail_order_.data(), plan_.points(),
+                            Execution::serial());
+  if (!sorted) return false;
   rows_.reorder_tail(begin, live.entries(), spare_);
   regions.sorted = pool.rows();
   tail_changed_ = true;
   return true;
-}
-
-// `room` has the length of `rows`.
-bool SpatialIndex::sort_by_place(std::span<std::uint32_t> rows, std::uint32_t* room) noexcept {
-  const Execution execution = Execution::serial();
-  return rows_.filters().has_environments()
-             ? sort_by_environment_and_place(rows_.pool(), rows_.filters().data(), rows,
-                                             plan_.row_plan().items, room, plan_.points(),
-                                             execution)
-             : sort_by_kd_cuts(rows_.pool(), rows, room, plan_.points(), execution);
 }
 
 BlockTree::NodeContent SpatialIndex::node_content() const noexcept {
@@ -289,19 +308,6 @@ bool SpatialIndex::query(const QueryBatch& batch, PairSink& sink) const noexcept
   return block_tree_kernels().query(tree_.view(rows_.view()), batch, sink);
 }
 
-void SpatialIndex::note_work(std::uint64_t tests, std::uint64_t queries,
-                             PairQueryKind kind) const noexcept {
-  queried_.store(true, std::memory_order_relaxed);
-  // The first query after a build defines the cost on a fresh structure.
-  std::atomic<std::uint64_t>& base = kind == PairQueryKind::all ? full_base_ : moved_base_;
-  const std::uint64_t each = tests / queries + 1;
-  std::uint64_t expected = 0;
-  if (base.compare_exchange_strong(expected, each, std::memory_order_relaxed)) return;
-  if (each > expected) {
-    excess_.fetch_add((each - expected) * queries, std::memory_order_relaxed);
-  }
-}
-
 void SpatialIndex::add_statistics(Statistics& s) const noexcept {
   const RowRegions& regions = rows_.regions();
   const std::size_t rows = rows_.pool().rows();
@@ -314,9 +320,9 @@ void SpatialIndex::add_statistics(Statistics& s) const noexcept {
   s.cells = regions.regular == 0 ? tree_.blocks() : structure_->cells();
   s.depth = tree_.levels();
   s.levels = structure_->levels();
-  s.builds = builds_;
-  s.planned_builds = planned_builds_;
-  s.refits = refits_;
+  s.builds = planner_.builds();
+  s.planned_builds = planner_.planned_builds();
+  s.refits = planner_.refits();
 }
 
 void SpatialIndex::add_bytes(Footprint& footprint) const noexcept {
@@ -327,7 +333,7 @@ void SpatialIndex::add_bytes(Footprint& footprint) const noexcept {
   footprint.scratch += bytes_of(spare_, tail_order_);
   footprint.scratch += plan_.bytes();
   footprint.scratch += departures_.bytes();
-  footprint.scratch += spare_structures_.bytes();
+  footprint.scratch += structures_.bytes();
   structure_->add_bytes(footprint);
   const auto add = [&](const OwnedStructure& one) {
     if (one.structure == nullptr) return;
@@ -335,25 +341,7 @@ void SpatialIndex::add_bytes(Footprint& footprint) const noexcept {
     one.structure->add_bytes(footprint);
   };
   add(next_);
-  for (const OwnedStructure& one : spare_structures_) add(one);
-}
-
-void SpatialIndex::release_scratch() noexcept {
-  drop_plan();
-  release_columns(spare_, tail_order_);
-  plan_.release();
-}
-
-void SpatialIndex::release_memory() noexcept {
-  reserved_ = false;
-  destroy_spares();
-  release_scratch();
-  structure_->release_scratch();
-  if (rows_.size() != 0) return;
-  tree_.release();
-  regular_tree_.release();
-  departures_.release();
-  structure_->release_memory();
+  for (const OwnedStructure& one : structures_.spares()) add(one);
 }
 
 }  // namespace winnow

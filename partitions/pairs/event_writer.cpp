@@ -1,6 +1,5 @@
 // Computes the events of a pair query: both frames are sorted and merged, or a linked buffer passes
-// its changes directly (`store_changes`). Called by the pair queries in self_pairs.cpp and
-// resting_pairs.cpp.
+// its changes directly (`store_changes`). Called by PairFinder.
 
 #include "partitions/pairs/event_writer.h"
 

@@ -1,5 +1,5 @@
 // Linking a PairBuffer and changing it in place; the class comment in linked_pairs.h describes the
-// method. Called by the linked and resting pair queries (self_pairs.cpp, resting_pairs.cpp).
+// method. Called by the linked and resting pair queries (pair_finder.cpp).
 
 #include "partitions/pairs/linked_pairs.h"
 

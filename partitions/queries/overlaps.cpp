@@ -7,7 +7,7 @@
 #include "partitions/pairs/pair_writer.h"
 #include "partitions/queries/query_filter.h"
 #include "partitions/queries/regions.h"
-#include "partitions/rows/volume_source.h"
+#include "partitions/rows/box_source.h"
 #include "partitions/state/partition_state.h"
 
 #include <algorithm>

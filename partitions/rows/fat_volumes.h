@@ -1,12 +1,13 @@
 #pragma once
 
 // Volumes that are stored larger by a margin (fat AABBs), so that small motions leave the stored
-// volume unchanged. FatSource wraps a source of volume_source.h; volume_input.cpp uses it. Included
-// by source files, not by headers.
+// volume unchanged. FatSource wraps a source of volume_source.h; volume_update.cpp uses it.
+// Included by source files, not by headers.
 
 #include <winnow/core/fat_margin.h>
 #include <winnow/core/rounding.h>
 #include <winnow/core/volume.h>
+#include "partitions/rows/box_source.h"
 #include "partitions/rows/volume_source.h"
 
 #include <algorithm>

@@ -1,11 +1,11 @@
-// Storage of objects in rows: capacity, removal, filters, snapshots and reordering. Input of
-// volumes is in volume_input.cpp.
+// Storage of objects in rows: capacity, removal, filters, snapshots and reordering. Insert
+// and update are in box_update.cpp and volume_update.cpp.
 
 #include "partitions/rows/rows.h"
 
 #include "core/memory/columns.h"
 #include "core/sort/scatter_by_owner.h"
-#include "partitions/rows/volume_source.h"
+#include "partitions/rows/box_source.h"
 
 #include <algorithm>
 #include <cfloat>

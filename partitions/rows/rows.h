@@ -14,7 +14,6 @@
 #include "partitions/rows/filter_table.h"
 #include "partitions/rows/row_selection.h"
 #include "partitions/rows/row_view.h"
-#include "partitions/rows/update_subset.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -24,16 +23,48 @@
 namespace winnow {
 
 struct BoxOfId;
+struct BoxSource;
 struct EntryOfRow;
+struct SampledBoxes;
 class Rows;
 
-/// How boxes are converted into the stored volume. Rows call these functions through pointers to
-/// members, so that a program links only the code of the volumes that it can use.
+/// The entries of keys and volumes that an update processes: all of them, or a list of indices.
+struct UpdateSubset {
+  std::span<const Key> keys;
+  std::size_t count = 0;
+  const std::uint32_t* number = nullptr;  ///< null: all
+
+  /// Entries without keys.
+  explicit UpdateSubset(std::size_t all) noexcept : count(all) {}
+  explicit UpdateSubset(std::span<const Key> all) noexcept : keys(all), count(all.size()) {}
+  UpdateSubset(std::span<const Key> all, std::span<const std::uint32_t> numbers) noexcept
+      : keys(all), count(numbers.size()), number(numbers.data()) {}
+
+  [[nodiscard]] std::size_t operator[](std::size_t j) const noexcept {
+    return number == nullptr ? j : number[j];
+  }
+  [[nodiscard]] Key key(std::size_t j) const noexcept { return keys[(*this)[j]]; }
+
+  /// Shorter runs are handled entry by entry, because a call per run costs more.
+  static constexpr std::size_t kLongRun = 16;
+
+  /// Returns the end, at most `end`, of the longest run of consecutive indices that starts at the
+  /// j-th entry.
+  [[nodiscard]] std::size_t run_end(std::size_t j, std::size_t end) const noexcept {
+    if (number == nullptr) return end;
+    std::size_t next = j + 1;
+    while (next < end && number[next] - number[j] == next - j) ++next;
+    return next;
+  }
+};
+
+/// How boxes are converted into the stored volume. All functions are null if boxes are stored as
+/// given. A program links only the code of the tables that it names.
 struct VolumeInput {
   Volume volume;
-  Status (Rows::*insert)(const BoxView&, std::span<const ClientData>, std::span<Key>);
-  Status (Rows::*update)(const UpdateSubset&, const BoxView&);
-  Status (Rows::*update_one)(Key, const BoxView&);
+  Status (*insert)(Rows&, const BoxView&, std::span<const ClientData>, std::span<Key>);
+  Status (*update)(Rows&, const UpdateSubset&, const BoxView&);
+  Status (*update_one)(Rows&, Key, const BoxView&);
 };
 
 /// A saved set of objects: slots of keys, and per live object, by id, its volume and filter.
@@ -67,7 +98,8 @@ class Rows {
   /// Input of boxes that are stored as given, without a margin.
   [[nodiscard]] static const VolumeInput& boxes_as_given() noexcept;
   /// Input of a volume, with or without a margin; null for an invalid volume. Links all volumes.
-  [[nodiscard]] static const VolumeInput* input_of(Volume volume) noexcept;
+  [[nodiscard]] static const VolumeInput* input_of(Volume volume,
+                                                   const FatMargin& fat_margin) noexcept;
 
   /// `input` must outlive the rows.
   Rows(std::pmr::memory_resource* memory, const Execution& execution, const VolumeInput& input,
@@ -163,43 +195,31 @@ class Rows {
   void remove_row(ObjectId id) noexcept;
   void fetch_row(std::size_t row) const noexcept;
 
-  // Source reads the given volumes; Stored is AsGiven or WithMargin.
-  template <typename Source, typename Stored>
-  [[nodiscard]] static const VolumeInput& input() noexcept;
-  template <typename Source, typename Stored>
-  Status insert_boxes(const BoxView& boxes, std::span<const ClientData> data, std::span<Key> keys);
-  template <typename Source, typename Stored>
-  Status update_boxes(const UpdateSubset& entries, const BoxView& boxes);
-  template <typename Source, typename Stored>
-  Status update_box(Key key, const BoxView& box);
-  template <typename Stored, typename Source>
-  Status insert_from(const Source& source, std::size_t count, std::span<const ClientData> data,
-                     std::span<Key> keys);
-  [[nodiscard]] KeyTable::KeysCheck check_keys(const UpdateSubset& entries, std::size_t begin,
-                                               std::size_t end) const noexcept;
-  template <typename Source>
-  Status check_update(const Source& source, std::size_t volumes, const UpdateSubset& entries,
-                      bool& ascending) const;
-  template <typename Stored, typename Source>
-  Status update_from(const Source& source, std::size_t volumes, const UpdateSubset& entries);
-  template <typename Stored, typename Source>
-  Status update_one(const Source& source, Key key);
-  template <typename Source>
-  Status write(const Source& source, const UpdateSubset& entries, bool ascending);
-  bool writes_by_rows(const UpdateSubset& entries, bool ascending, BoxOfId& entry_of);
-  template <typename Source>
-  [[nodiscard]] bool order_is_lost(const Source& source, std::span<const Key> keys) const noexcept;
-  template <typename Source>
-  void write_all(const Source& source, std::span<const Key> keys);
-  template <typename Source, typename Visit>
-  void for_rows(const Source& source, const EntryOfRow& entry_of, const Visit& visit);
+  // Insert and update, in box_update.cpp; volumes other than boxes as given use them, too.
+  friend struct VolumeUpdate;
+  [[nodiscard]] Status begin_insert(std::size_t count, std::span<const ClientData> data,
+                                    std::span<Key> keys, std::size_t& first);
+  void number_rows(std::span<const Key> keys, std::size_t begin, std::size_t end) noexcept;
+  void place_new(std::span<const Key> keys, std::size_t first, std::size_t begin,
+                 std::size_t end) noexcept;
+  [[nodiscard]] Status check_insert(std::size_t count, std::span<const ClientData> data,
+                                    std::span<Key> keys) const noexcept;
+  [[nodiscard]] Status check_keys(std::size_t volumes, const UpdateSubset& entries,
+                                  bool& ascending) const;
+  [[nodiscard]] Status check(const UpdateSubset& entries, const BoxView& boxes,
+                             bool& ascending) const;
+  [[nodiscard]] bool writes_by_rows(const UpdateSubset& entries, bool ascending, BoxOfId& entry_of);
+  void write_by_rows(const BoxSource& source, const EntryOfRow& entry_of);
   template <typename Visit>
   void for_entries(const UpdateSubset& entries, bool ascending, const Visit& visit);
+  void write_new(const BoxSource& source, std::span<const Key> keys, std::size_t first,
+                 std::size_t begin, std::size_t end) noexcept;
+  [[nodiscard]] bool may_lose_order(const UpdateSubset& entries) const noexcept;
+  [[nodiscard]] bool order_is_lost(const SampledBoxes& sample,
+                                   std::span<const Key> keys) const noexcept;
   template <typename Source>
-  void write_new(const Source& source, std::span<const Key> keys, std::size_t first,
-                 std::size_t begin, std::size_t end);
+  [[nodiscard]] bool loses_order(const Source& source, const UpdateSubset& entries) const noexcept;
   void note_stale(const UpdateSubset& entries) noexcept;
-  void note_departed(const UpdateSubset& entries, bool by_rows, std::size_t slots) noexcept;
 
   Execution execution_;
   FatMargin fat_margin_;

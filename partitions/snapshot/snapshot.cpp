@@ -21,7 +21,7 @@ void put_options(ByteWriter& out, const PartitionState& state) {
   out.put(state.rows.pool().volume());
   out.put(state.rows.fat_margin().distance);
   out.put(state.rows.fat_margin().share);
-  out.put(std::uint64_t{state.index.build_budget()});
+  out.put(std::uint64_t{state.index.planner().build_budget()});
 }
 
 void put_rows(ByteWriter& out, const Rows& rows) {
@@ -79,7 +79,8 @@ Status load_into(PartitionState*& state, std::span<const std::byte> saved) {
   PartitionOptions options{.memory = state->memory, .execution = state->rows.execution()};
   const StructureKind structure = read.read(in, options);
   if (!in.ok()) return status_of(in);
-  PartitionState* fresh = PartitionState::make(structure, options, *Rows::input_of(options.volume));
+  PartitionState* fresh =
+      PartitionState::make(structure, options, *Rows::input_of(options.volume, options.fat_margin));
   if (fresh == nullptr) return Status::out_of_memory;
   const Status status = fresh->restore(read.rows(options.volume), *state);
   if (status == Status::ok) std::swap(state, fresh);

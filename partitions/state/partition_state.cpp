@@ -1,36 +1,23 @@
-// Mutations, refresh and bookkeeping of a partition. Pair queries are in pairs/self_pairs.cpp and
-// pairs/resting_pairs.cpp; other queries, in queries/, call `prepare`.
+// Mutations, refresh and pair queries of a partition. Rows stores boxes, SpatialIndex orders and
+// refits, PairFinder finds pairs. Other queries, in queries/, call `prepare`.
 
 #include "partitions/state/partition_state.h"
 
 #include "core/hooks/log.h"
 #include "core/hooks/stage_scope.h"
 #include "core/memory/new_in.h"
+#include "partitions/pairs/pair_tracker.h"
 
 #include <algorithm>
 #include <bit>
 
 namespace winnow {
-namespace {
-
-std::uint64_t next_identity() noexcept {
-  static std::atomic<std::uint64_t> counter{0};
-  return 1 + counter.fetch_add(1, std::memory_order_relaxed);
-}
-
-}  // namespace
-
-PairTracking::PairTracking(std::pmr::memory_resource* memory) noexcept
-    : identity(next_identity()), resting(memory) {}
-
 PartitionState::PartitionState(std::pmr::memory_resource* resource, const PartitionOptions& options,
                                const VolumeInput& input) noexcept
     : memory(resource),
       rows(resource, options.execution, input, options.fat_margin),
       index(resource, rows, options.build_budget),
-      pairs_(resource),
-      deferred_(resource),
-      near_(resource),
+      pairs_(resource, rows, index),
       listed_(resource) {}
 
 PartitionState::~PartitionState() {
@@ -62,8 +49,8 @@ bool PartitionState::set_structure(StructureKind given) noexcept {
   }
   if (!is_first && index.structure().tests_volumes() != tested) {
     // The structures differ in the pairs that they report, so the tracked buffer is out of date.
-    pairs_.resting.end();
-    pairs_.tracked_serial = 0;
+    pairs_.resting().end();
+    pairs_.forget_buffer();
   }
   if (chooser_ != nullptr) chooser_->destroy(memory);
   chooser_ = chooser;
@@ -75,10 +62,9 @@ bool PartitionState::set_structure(StructureKind given) noexcept {
 Status PartitionState::insert(const BoxView& boxes, std::span<const ClientData> data,
                               std::span<Key> keys) {
   const Status status = rows.insert(boxes, data, keys);
-  if (status == Status::ok && deferred_.active() && !deferred_.insert(keys, boxes)) {
-    end_deferring();
-  }
-  pairs_.resting.disturb(keys.size(), rows.size());
+  RestingPairs& resting = pairs_.resting();
+  if (status == Status::ok && resting.active() && !resting.insert(keys, boxes)) end_deferring();
+  resting.disturb(keys.size());
   note_changes(keys.size());
   if (chooser_ != nullptr) chooser_->note_inserted(keys.size());
   return status;
@@ -86,7 +72,7 @@ Status PartitionState::insert(const BoxView& boxes, std::span<const ClientData> 
 
 Status PartitionState::remove(std::span<const Key> keys) {
   const Status status = rows.remove(keys);
-  pairs_.resting.disturb(keys.size(), rows.size());
+  pairs_.resting().disturb(keys.size());
   note_changes(keys.size());
   return status;
 }
@@ -105,7 +91,7 @@ Status PartitionState::reserve(std::size_t objects, Pages pages) {
   const std::span<const StructureKind> later =
       chooser_ == nullptr ? std::span<const StructureKind>() : chooser_->choices();
   const bool reserved =
-      status == Status::ok && index.reserve(most, pages, later) && pairs_.resting.reserve(pages);
+      status == Status::ok && index.reserve(most, pages, later) && pairs_.resting().reserve(pages);
   if (reserved && pages == Pages::prefaulted) rows.touch();
   note_changes(0);
   return status == Status::ok && !reserved ? Status::out_of_memory : status;
@@ -114,24 +100,17 @@ Status PartitionState::reserve(std::size_t objects, Pages pages) {
 Status PartitionState::set_filter(std::span<const Key> keys,
                                   std::span<const ObjectFilter> filters) {
   const Status status = rows.set_filter(keys, filters);
-  pairs_.resting.disturb(keys.size(), rows.size());
+  pairs_.resting().disturb(keys.size());
   note_changes(0);
   return status;
 }
 
 Status PartitionState::update(const UpdateSubset& entries, const BoxView& boxes) {
-  if (!deferred_.active()) {
-    const Status status = rows.update(entries, boxes);
-    note_changes(entries.count);
-    return status;
-  }
-  const Status status = deferred_.update(rows, entries, boxes);
-  if (deferred_.active()) {
-    note_changes(0);
-  } else {
-    pairs_.resting.end();
-    note_changes(entries.count);
-  }
+  RestingPairs& resting = pairs_.resting();
+  const Status status =
+      resting.active() ? resting.update(entries, boxes) : rows.update(entries, boxes);
+  // Deferred boxes change no rows.
+  note_changes(resting.active() ? 0 : entries.count);
   return status;
 }
 
@@ -140,7 +119,7 @@ Status PartitionState::update(std::span<const Key> keys, const BoxView& boxes,
   if (!entries.is_mask()) {
     const auto is_one = [&](std::uint32_t number) { return number < keys.size(); };
     if (!std::ranges::all_of(entries.indices(), is_one)) return Status::invalid_argument;
-    return update({keys, entries.indices()}, boxes);
+    return update(UpdateSubset(keys, entries.indices()), boxes);
   }
   if (entries.words().size() != (keys.size() + 63) / 64) return Status::size_mismatch;
   listed_.clear();
@@ -155,47 +134,43 @@ Status PartitionState::update(std::span<const Key> keys, const BoxView& boxes,
 }
 
 Status PartitionState::update(Key key, const Aabb& box) {
-  const bool deferring = deferred_.active();
-  const Status status = deferring ? deferred_.update(rows, key, box) : rows.update(key, box);
-  note_changes(deferring ? 0 : 1);
+  RestingPairs& resting = pairs_.resting();
+  const Status status = resting.active() ? resting.update(key, box) : rows.update(key, box);
+  note_changes(resting.active() ? 0 : 1);
   return status;
 }
 
 Status PartitionState::bounds(std::span<const Key> keys, std::span<Aabb> boxes) const noexcept {
   if (!rows.keys().check_keys(keys).valid) return Status::invalid_key;
+  const RestingPairs& resting = pairs_.resting();
   Lock lock = Lock::deferred(refresh_mutex_);
-  if (stale_.load(std::memory_order_acquire) || deferred_.active()) lock.lock();
-  if (!deferred_.active()) {
+  if (stale_.load(std::memory_order_acquire) || resting.active()) lock.lock();
+  if (resting.active()) {
+    resting.read_bounds(keys, boxes);
+  } else {
     rows.read_bounds(keys, boxes);
-    return Status::ok;
-  }
-  for (std::size_t i = 0; i < keys.size(); ++i) {
-    const VerletSkin::DeferredBox& given = deferred_.given()[keys[i].id];
-    boxes[i] = {Vec3f(given.min), Vec3f(given.max)};
   }
   return Status::ok;
+}
+
+void PartitionState::note_changes(std::size_t count) const noexcept {
+  if (chooser_ != nullptr) chooser_->note_changes(count);
+  const bool counts = chooser_ != nullptr && count != 0;
+  if (counts || rows.changed()) stale_.store(true, std::memory_order_relaxed);
 }
 
 // Writes the rows although it is const. No other thread reads them at the same time: a mutation has
 // exclusive access, and a query that reads rows holds tracker_mutex_ or has called
 // `write_deferred`, which locks this mutex.
 void PartitionState::end_deferring() const noexcept {
-  if (!deferred_.active()) return;
+  if (!pairs_.resting().active()) return;
   const Lock lock(refresh_mutex_);
-  auto& self = const_cast<PartitionState&>(*this);
-  if (deferred_.write(self.rows)) self.note_changes(rows.size());
-  pairs_.resting.end();
-  deferred_.drop();
-}
-
-void PartitionState::note_changes(std::size_t count) noexcept {
-  if (chooser_ != nullptr) chooser_->note_changes(count);
-  const bool counts = chooser_ != nullptr && count != 0;
-  if (counts || rows.changed()) stale_.store(true, std::memory_order_relaxed);
+  if (pairs_.resting().write()) note_changes(rows.size());
+  pairs_.resting().end();
 }
 
 void PartitionState::write_deferred() const {
-  if (!deferred_.active()) return;
+  if (!pairs_.resting().active()) return;
   const Lock lock(tracker_mutex_);
   end_deferring();
 }
@@ -220,7 +195,7 @@ Status PartitionState::refresh() const {
 Status PartitionState::refresh_for_queries() const {
   if (stale_.load(std::memory_order_acquire)) {
     const Lock lock(refresh_mutex_);
-    if (index.builds() == 0) index.note_query();
+    if (index.planner().builds() == 0) index.planner().note_query();
   }
   return refresh();
 }
@@ -230,9 +205,10 @@ Status PartitionState::refresh_now() {
   // While an exchange of the structure is planned, the choice is not revised.
   const bool choosing = chooser_ != nullptr && !index.swap_is_planned();
   const StructureKind chosen =
-      choosing
-          ? chooser_->choose(rows, now, {index.builds(), index.excess_tests(), index.tail_limit()})
-          : now;
+      choosing ? chooser_->choose(rows, now,
+                                  {index.planner().builds(), index.planner().excess_tests(),
+                                   RebuildPlanner::tail_limit(rows.size())})
+               : now;
   bool refused = false;
   Status status = Status::ok;
   if (chosen != now) {
@@ -242,9 +218,9 @@ Status PartitionState::refresh_now() {
   }
   if (refused || (chooser_ != nullptr && index.swap_refused())) chooser_->refused();
   if (status != Status::ok) return status;
-  rows.clear_stale(pairs_.tracked_serial != 0);
+  rows.clear_stale(pairs_.tracks());
   if (chooser_ == nullptr) return Status::ok;
-  chooser_->refreshed(rows, index.kind(), index.builds());
+  chooser_->refreshed(rows, index.kind(), index.planner().builds());
   if (index.kind() != now) {
     StructureChoice choice;
     chooser_->report(choice);
@@ -258,7 +234,7 @@ void PartitionState::count_queries(QueryKind kind, std::size_t count) const noex
 }
 
 Status PartitionState::prepare(QueryKind kind, std::size_t count, QueryView& view) const {
-  if (stale_.load(std::memory_order_acquire)) index.note_query();
+  if (stale_.load(std::memory_order_acquire)) index.planner().note_query();
   if (const Status status = settle(); status != Status::ok) return status;
   count_queries(kind, count);
   if (index.queries_stale()) {
@@ -271,25 +247,82 @@ Status PartitionState::prepare(QueryKind kind, std::size_t count, QueryView& vie
   return Status::ok;
 }
 
+Status PartitionState::self_pairs(PairBuffer& out, const PairOptions& options,
+                                  PairEvents* events) const {
+  const StageScope stage(WorkStage::pairs);
+  SelfPairsQuery query{out, options};
+  if (events != nullptr) query.events.emplace(pairs_.events_of(*events, out));
+  // Only one buffer is tracked at a time. A query concurrent with a tracked one is not tracked.
+  Lock lock = Lock::try_acquire(tracker_mutex_);
+  query.tracked = lock.owns_lock() && options.incremental;
+  const bool all = !options.incremental || out.empty();
+  Status status = refresh();
+  query.resting = status == Status::ok && pairs_.can_stay_resting(query);
+  if (status == Status::ok && pairs_.resting().active() && !query.resting) {
+    if (!lock.owns_lock()) lock.lock();
+    end_deferring();
+    status = refresh();
+  }
+  if (status == Status::ok) {
+    count_queries(QueryKind::pairs, 1);
+    status = pairs_.find(query);
+  }
+  if (status != Status::ok) {
+    pairs_.undo(query);
+  } else if (chooser_ != nullptr) {
+    if (all) count_queries(QueryKind::all_pairs, 1);
+    // The number of pairs that pass a predicate is not a property of the scene.
+    if (options.predicate.accept == nullptr) chooser_->note_pairs(out.size());
+  }
+  return status;
+}
+
+Status PartitionState::pairs_with(const PartitionState& other, const PairOptions& options,
+                                  PairBuffer& out) const {
+  const StageScope stage(WorkStage::pairs);
+  if (const Status status = settle(); status != Status::ok) return status;
+  if (const Status status = other.settle(); status != Status::ok) return status;
+  // Query with the smaller side: each query costs about the logarithm of the other side.
+  const Status status =
+      rows.size() <= other.rows.size()
+          ? pairs_.find_with(other.pairs_, HitMode::query_first, options.predicate, out)
+          : other.pairs_.find_with(pairs_, HitMode::query_second, options.predicate, out);
+  const std::size_t slots = std::max(rows.keys().slot_count(), other.rows.keys().slot_count());
+  if (status == Status::ok && (options.order == Order::fast || PairTracker::sort(out, slots))) {
+    return Status::ok;
+  }
+  out.clear();
+  return Status::out_of_memory;
+}
+
+Status PartitionState::reserve_pairs(PairBuffer& out, std::size_t pairs,
+                                     Pages pages) const noexcept {
+  const std::size_t most = with_stable_index([this] { return rows.pool().capacity(); });
+  return pairs_.reserve(out, pairs, most, pages) ? Status::ok : Status::out_of_memory;
+}
+
+bool PartitionState::reserve_events(PairEvents& out, std::size_t pairs,
+                                    Pages pages) const noexcept {
+  const std::size_t objects = with_stable_index([this] { return rows.keys().capacity(); });
+  return EventWriter::reserve(out, pairs, objects, pages);
+}
+
 void PartitionState::clear() noexcept {
-  deferred_.drop();
-  pairs_.resting.end();
+  pairs_.resting().end();
+  pairs_.forget_buffer();
   rows.clear();
-  pairs_.tracked_serial = 0;
   if (chooser_ != nullptr) chooser_->clear();
   note_changes(0);
 }
 
 void PartitionState::release_memory() noexcept {
   end_deferring();
-  deferred_.release();
-  pairs_.resting.release();
-  near_.release();
+  pairs_.resting().release();
   listed_.release();
   index.release_memory();
   rows.release_memory();
   if (rows.size() == 0) {
-    pairs_.tracked_serial = 0;
+    pairs_.forget_buffer();
     // An empty partition has no features, so the choice restarts from its first structure.
     if (chooser_ != nullptr) (void)index.set_structure(chooser_->first());
   }
@@ -305,25 +338,19 @@ Footprint PartitionState::footprint() const noexcept {
   result.structure = {own, own};
   rows.add_bytes(result);
   index.add_bytes(result);
-  result.bounds += deferred_.bytes();
+  pairs_.resting().add_bytes(result);
   result.scratch += listed_.bytes();
-  result.scratch += near_.footprint().total();
-  result.structure += pairs_.resting.bytes();
   return result;
 }
 
 bool PartitionState::is_exact() const noexcept {
-  return rows.pool().volume() == Volume::aabb && rows.fat_margin().is_none() &&
-         with_stable_index([&] { return index.structure().tests_volumes(); });
+  return with_stable_index([this] { return pairs_.is_exact(); });
 }
 
 Statistics PartitionState::statistics() const noexcept {
   Statistics s;
   with_stable_index([&] { index.add_statistics(s); });
-  s.full_queries = pairs_.full_queries.load(std::memory_order_relaxed);
-  s.incremental_queries = pairs_.incremental_queries.load(std::memory_order_relaxed);
-  s.last_tests = pairs_.last_tests.load(std::memory_order_relaxed);
-  s.last_pairs = pairs_.last_pairs.load(std::memory_order_relaxed);
+  pairs_.add_statistics(s);
   return s;
 }
 

@@ -1,40 +1,21 @@
 #pragma once
 
-// The implementation of Partition: PartitionState owns the rows, the index over them, the tracking
-// of pairs and the chooser of the structure. partition.cpp and queries/ call it.
+// The implementation of Partition: the rows, the index over them, the finder of pairs and the
+// chooser of the structure. partition.cpp and queries/ call it.
 
 #include <winnow/partitions/partition.h>
 #include "core/threads/mutex.h"
 #include "partitions/choice/chooser.h"
 #include "partitions/index/query_view.h"
 #include "partitions/index/spatial_index.h"
+#include "partitions/pairs/pair_finder.h"
 #include "partitions/rows/rows.h"
-#include "partitions/rows/verlet_skin.h"
-#include "partitions/state/resting.h"
 
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
 
 namespace winnow {
-
-class EventWriter;
-class LinkedPairs;
-
-/// The pair buffer that is updated incrementally, and counters of pair queries.
-struct PairTracking {
-  explicit PairTracking(std::pmr::memory_resource* memory) noexcept;
-
-  const std::uint64_t identity;      // of the partition
-  std::uint64_t tracked_serial = 0;  // 0: no buffer is tracked
-  // Only grows, so that an old buffer cannot match.
-  std::atomic<std::uint64_t> last_serial{0};
-  std::atomic<std::uint64_t> full_queries{0};
-  std::atomic<std::uint64_t> incremental_queries{0};
-  std::atomic<std::uint64_t> last_tests{0};
-  std::atomic<std::uint64_t> last_pairs{0};
-  RestDetector resting;
-};
 
 /// All data of a partition.
 class PartitionState {
@@ -66,7 +47,7 @@ class PartitionState {
 
   /// Called at the end of a mutation of `count` objects: marks the structure as stale if rows
   /// changed.
-  void note_changes(std::size_t count) noexcept;
+  void note_changes(std::size_t count) const noexcept;
   /// Brings the structure up to date, except that deferred boxes stay deferred; for pair queries of
   /// a tracked buffer.
   Status refresh() const;
@@ -89,12 +70,9 @@ class PartitionState {
     return call();
   }
 
-  [[nodiscard]] Status find_self_pairs(PairBuffer& out, const PairOptions& options,
-                                       PairEvents* events) const;
-  /// Appends the pairs (object of this, object of other). Queries `other` with every object of
-  /// this.
-  Status query_other(const PartitionState& other, HitMode mode, const PairPredicate& predicate,
-                     PairBuffer& out) const;
+  Status self_pairs(PairBuffer& out, const PairOptions& options, PairEvents* events) const;
+  /// `out` must be empty.
+  Status pairs_with(const PartitionState& other, const PairOptions& options, PairBuffer& out) const;
 
   [[nodiscard]] bool is_exact() const noexcept;
   [[nodiscard]] Footprint footprint() const noexcept;
@@ -109,51 +87,11 @@ class PartitionState {
   SpatialIndex index;
 
  private:
-  struct SelfTasks;
-
   Status refresh_now();
   void end_deferring() const noexcept;
-  Status full_self_pairs(PairBuffer& out, const PairPredicate& predicate,
-                         EventWriter* events) const;
-  Status incremental_self_pairs(PairBuffer& out, const PairPredicate& predicate,
-                                EventWriter* events) const;
-  Status linked_self_pairs(PairBuffer& out, const PairPredicate& predicate,
-                           EventWriter* events) const;
-  Status query_moved(PairBuffer& out, const PairPredicate& predicate) const;
-  [[nodiscard]] bool select_moved_rows() const noexcept;
-  void try_start_resting(PairBuffer& out, const PairOptions& options) const noexcept;
-  [[nodiscard]] bool watch_all(std::size_t most) const noexcept;
-  [[nodiscard]] bool can_stay_deferred(const PairBuffer& out, const PairOptions& options,
-                                       const EventWriter* events) const noexcept;
-  Status resting_self_pairs(PairBuffer& out, EventWriter* events) const;
-  [[nodiscard]] bool keep_near(PairBuffer& out, std::size_t kept) const noexcept;
-  Status query_near(std::span<const std::uint32_t> query_rows, PairBuffer& out,
-                    std::uint64_t& tests) const;
-  [[nodiscard]] bool watch_rows(std::size_t begin, std::size_t end,
-                                std::size_t stride) const noexcept;
-  [[nodiscard]] bool is_watched(const Pair& pair) const noexcept;
-  [[nodiscard]] bool note_watched(LinkedPairs& linked) const noexcept;
-  [[nodiscard]] bool update_in_place(PairBuffer& out) const noexcept;
-  Status redo_self_pairs(PairBuffer& out, const PairOptions& options, bool update,
-                         EventWriter* events) const;
-  Status run_self_pairs(PairBuffer& out, const PairOptions& options, EventWriter* events) const;
-  Status track_self_pairs(PairBuffer& out, const PairOptions& options, bool tracked,
-                          EventWriter* events) const;
-  void finish_frame(PairBuffer& out, bool tracked, EventWriter* events) const noexcept;
-  void undo_self_pairs(PairBuffer& out, bool resting, EventWriter* events) const noexcept;
-  [[nodiscard]] bool can_update_in_place(const PairBuffer& out, const PairOptions& options,
-                                         const EventWriter* events) const noexcept;
-  bool finish_pairs(PairBuffer& out, Order order, bool all, EventWriter* events) const noexcept;
-  [[nodiscard]] bool can_update(const PairBuffer& out) const noexcept;
-  [[nodiscard]] bool is_update_cheaper(const PairBuffer& out) const noexcept;
-  bool run_self_task(const SelfTasks& tasks, std::size_t task, PairSink& sink) const noexcept;
-  void note_work(std::uint64_t tests, std::uint64_t queries,
-                 SpatialIndex::PairQueryKind kind) const noexcept;
 
   Chooser* chooser_ = nullptr;
-  mutable PairTracking pairs_;
-  mutable VerletSkin deferred_;
-  mutable PairBuffer near_;       // scratch for finding the pairs to watch
+  mutable PairFinder pairs_;
   Column<std::uint32_t> listed_;  // entries of a mask
   mutable Mutex refresh_mutex_;
   mutable Mutex tracker_mutex_;

@@ -1,5 +1,15 @@
-// Bounding-volume hierarchies: block trees over all rows. LinearBvh and StaticBvh differ only in
-// the order of the rows.
+// Bounding-volume hierarchies: block trees over all rows. The classes here say in which order the
+// rows are; SpatialIndex, which owns the tree (`tree_`), does the rest. With other structures the
+// same tree contains the rows that are in no cell. Its parts:
+//
+//   nodes            tree/block_tree.h: 16 children per node, in arrays by level
+//   order of leaves  SpatialIndex::build (index/rebuild.cpp) -> OrderPlan -> KdCuts
+//                    (tree/kd_order.h), or append_in_sah_order (tree/sah_order.h)
+//   when to build    RebuildPlanner (index/rebuild_planner.h)
+//   refit            SpatialIndex::refit (index/spatial_index.cpp) -> BlockTree::refit
+//   self pairs       self_pairs in tree/block_tree.kernel.cpp
+//   pairs of moved   query in tree/block_tree.kernel.cpp
+//   rays, regions    kernels in queries/, over the tree of SpatialIndex::view
 
 #include "partitions/structures/costs.h"
 #include "partitions/structures/structure.h"
@@ -15,9 +25,6 @@ namespace {
 /// nodes above moved rows; the order is rebuilt when wear exceeds the price of a build. It needs no
 /// parameter and no world bounds and suits every scene, including mixed sizes. Self pairs: O(n log
 /// n + pairs) for boxes of bounded overlap. Exact.
-///
-/// The hierarchy itself is the block tree of SpatialIndex (index/, tree/), which contains all rows
-/// that a structure does not order; this class only selects it.
 class LinearBvh final : public Structure {
  public:
   using Structure::Structure;

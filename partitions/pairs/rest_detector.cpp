@@ -1,6 +1,6 @@
-#include "partitions/state/resting.h"
+// Detects resting scenes for RestingPairs.
 
-#include "core/memory/columns.h"
+#include "partitions/pairs/resting_pairs.h"
 
 #include <array>
 #include <cfloat>
@@ -76,16 +76,15 @@ void RestDetector::end() noexcept {
   delay_left_ = delay_;
   frames_ = 0;
   frames_compared_ = 0;
-  watched.clear();
 }
 
 void RestDetector::release() noexcept {
-  release_columns(watched, sample_);
+  sample_.release();
   frames_compared_ = 0;
 }
 
 Bytes RestDetector::bytes() const noexcept {
-  return bytes_of(watched, sample_);
+  return sample_.bytes();
 }
 
 }  // namespace winnow

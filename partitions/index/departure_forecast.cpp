@@ -1,9 +1,8 @@
-#include "partitions/index/rebuild_forecast.h"
+#include "partitions/index/departure_forecast.h"
 
 namespace winnow {
 
 void DepartureForecast::begin(const Rows& rows) noexcept {
-  refreshes_ = 0;
   samples_.clear();
   const std::size_t regular = rows.regions().regular;
   for (std::size_t i = 0; i < kSample && regular >= kSample; ++i) {
@@ -16,10 +15,10 @@ void DepartureForecast::begin(const Rows& rows) noexcept {
   }
 }
 
-float DepartureForecast::share(const Rows& rows, const Structure& structure,
+float DepartureForecast::share(const Rows& rows, const Structure& structure, std::size_t frames,
                                std::size_t ahead) const noexcept {
-  if (samples_.empty() || refreshes_ == 0) return 0.0F;
-  const float steps = static_cast<float>(ahead) / static_cast<float>(refreshes_);
+  if (samples_.empty() || frames == 0) return 0.0F;
+  const float steps = static_cast<float>(ahead) / static_cast<float>(frames);
   std::size_t staying = 0;
   std::size_t leaving = 0;
   for (const SampledRow& sampled : samples_) {

@@ -23,12 +23,9 @@ class DepartureForecast {
   }
   /// Stores the positions of a sample of the regular rows. Room must have been reserved. O(1).
   void begin(const Rows& rows) noexcept;
-  /// Counts a refresh after which objects have moved.
-  void note_refresh() noexcept { ++refreshes_; }
-  [[nodiscard]] std::size_t refreshes() const noexcept { return refreshes_; }
   /// Returns the expected share of the sampled objects still in regular rows that will have left
-  /// after `ahead` refreshes. O(1).
-  [[nodiscard]] float share(const Rows& rows, const Structure& structure,
+  /// after `ahead` more frames, if the positions were stored `frames` frames ago. O(1).
+  [[nodiscard]] float share(const Rows& rows, const Structure& structure, std::size_t frames,
                             std::size_t ahead) const noexcept;
   void release() noexcept { samples_.release(); }
   [[nodiscard]] Bytes bytes() const noexcept { return samples_.bytes(); }
@@ -41,29 +38,6 @@ class DepartureForecast {
     std::array<float, 3> low;
   };
   Column<SampledRow> samples_;
-  std::size_t refreshes_ = 0;
-};
-
-/// Extrapolates a count that grows from refresh to refresh, at a constant or growing rate.
-class GrowthForecast {
- public:
-  /// Restarts: the next count is the first.
-  void begin() noexcept { last_ = step_ = acceleration_ = 0; }
-  void note(std::uint64_t count) noexcept {
-    const std::uint64_t step = count > last_ ? count - last_ : 0;
-    acceleration_ = last_ != 0 && step > step_ ? step - step_ : 0;
-    step_ = last_ != 0 ? step : 0;
-    last_ = count;
-  }
-  /// Returns the expected count after `refreshes` more refreshes.
-  [[nodiscard]] std::uint64_t in(std::size_t refreshes) const noexcept {
-    return last_ + step_ * refreshes + acceleration_ * refreshes * (refreshes + 1) / 2;
-  }
-
- private:
-  std::uint64_t last_ = 0;
-  std::uint64_t step_ = 0;
-  std::uint64_t acceleration_ = 0;  // increase of the step
 };
 
 }  // namespace winnow
