@@ -12,8 +12,8 @@ class BasicMatrix;
 
 namespace detail {
 
-/// A matrix type with an operator()(row, column) that returns a T, except BasicMatrix: matrices and
-/// expressions of Eigen, and user types with this interface. If its size is known at compile time
+/// A matrix type other than BasicMatrix with an operator()(row, column) that returns a T, such as a
+/// matrix or expression of Eigen, or a user type. If the size of the type is known at compile time,
 /// it must be N x N.
 template <typename Matrix, typename T, int N>
 concept MatrixLike = !std::derived_from<Matrix, BasicMatrix<T, N>> && requires(const Matrix& m) {

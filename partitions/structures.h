@@ -39,7 +39,7 @@ class WINNOW_API StructureKind {
 /// X(function, parameters) for each structure, in the order in which reports list them. The code
 /// is in folders of partitions/structures/; a folder can be deleted together with its lines here.
 #define WINNOW_STRUCTURES(X)                                                                       \
-  /** Every pair, untested: n(n-1)/2 pairs. The baseline that shows what a test is worth. */       \
+  /** Every pair, untested: n(n-1)/2 pairs. A baseline for the value of pruning. */                \
   X(n_squared, )                                                                                   \
   /** Brute force: every volume against every other, 16 at a time. Least memory; fastest for a     \
      few dozen objects. */                                                                         \

@@ -137,7 +137,8 @@ class WINNOW_API NarrowResult {
   /// values must agree with what the accessors guarantee.
   [[nodiscard]] NarrowColumns columns() noexcept;
 
-  /// Returns the bytes of all columns under `results`: exactly what is allocated from the resource.
+  /// Returns the memory of all columns. `results.reserved` is exactly the number of bytes that are
+  /// allocated from the resource; all other purposes are 0.
   [[nodiscard]] Footprint footprint() const noexcept;
 
  private:

@@ -199,7 +199,7 @@ class WINNOW_API Scene {
   Scene& operator=(const Scene&) = delete;
 
   /// Adds a body. `invalid_key` if neither pool contains the shape; `invalid_pose`;
-  /// `invalid_argument` for offsets or a layer out of range; `too_many_objects` beyond 2^28.
+  /// `invalid_argument` for offsets or a layer out of range; `too_many_objects` from 2^28 on.
   Status add(const BodyDefinition& body, Key& key);
   /// As above, but returns the key, or the null key (which every call refuses) on failure.
   Key add(const BodyDefinition& body) {

@@ -9,8 +9,8 @@ namespace winnow::bench {
 
 /// Cost of frustum queries compared with reading every box.
 struct FrustumCosts {
-  /// Milliseconds per frustum for each partition, and last of reading the six columns of all boxes
-  /// once; one entry per round.
+  /// ms[i][round]: milliseconds of one frustum query of partition i. The last i is not a partition,
+  /// but one pass over the six columns of all boxes.
   std::vector<std::vector<double>> ms;
   double found_a_question = 0;  ///< mean number of objects
 };

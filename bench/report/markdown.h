@@ -14,7 +14,8 @@ namespace winnow::bench {
 /// missing or the results have no frames to show.
 [[nodiscard]] std::string with_figures(const std::string& text, const Results& results);
 
-/// Prints the parts that the layout shows on a terminal, then missing measurements and problems.
+/// Prints the tables that the layout shows in the target "terminal", then missing measurements,
+/// warnings and problems.
 void print_summary(const Results& results);
 
 }  // namespace winnow::bench

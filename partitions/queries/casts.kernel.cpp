@@ -94,7 +94,7 @@ class FirstSegmentThenRest {
         candidate_filter_(view, filter),
         hits_(casts, candidate_filter_, found, limit_),
         count_(count) {
-    // Without trees all rows are tested in any case, so the first segment has no end.
+    // If there are no trees, every cast tests all rows, so the first segment is the whole cast.
     const float edge = view.leaf_edge;
     const float segment = edge > 0.0F ? kSegment * edge : __builtin_inff();
     for (std::uint32_t s = 0; s < count; ++s) {

@@ -109,8 +109,9 @@ typedef struct winnow_bytes {
   size_t reserved;
 } winnow_bytes;
 
-/// Bytes by purpose. The sum of `reserved` equals the bytes allocated from the memory. The object
-/// behind a handle such as winnow_partition* counts as `structure`.
+/// Memory of an object, by purpose. The sum of `reserved` equals the bytes that the object has
+/// allocated from its winnow_memory. The object behind a handle such as winnow_partition* counts as
+/// `structure`.
 typedef struct winnow_footprint {
   size_t size;  ///< set by the caller to sizeof(winnow_footprint)
   winnow_bytes bounds;

@@ -9,9 +9,10 @@
 
 namespace winnow::mid {
 
-/// Finds the pairs of primitives that may touch, for a chunk of body pairs. Writes primitives to an
-/// arena as numbers within the bodies; find_primitive_pairs.cpp converts the results after all
-/// tasks have finished their searches.
+/// Finds the pairs of primitives that may touch, for a chunk of body pairs. Writes each primitive
+/// to an arena, as its number in its body. After the searches of all tasks,
+/// find_primitive_pairs.cpp copies the shapes, poses and pairs of these primitives to
+/// PrimitivePairs.
 class PrimitivePairSearch {
  public:
   PrimitivePairSearch(const ShapeTables& tables, BumpAllocator& arena) noexcept;

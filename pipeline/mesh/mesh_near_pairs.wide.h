@@ -325,8 +325,8 @@ class NearPairTraversal {
   float length_[3];
   float slack_ = 0.0F;
   double limit_ = 0.0;
-  /// `most_` is the limit in the scaled frame, or the distance of two corners if it is less;
-  /// `square_` is its square plus a bound on rounding.
+  /// `most_` is the least of the limits in the scaled frame and the upper bounds that
+  /// cut_by_corners computed; `square_` is the square of `most_` plus a bound on rounding.
   float most_ = __builtin_inff();
   float square_ = __builtin_inff();
   PlacedNodes nodes_;

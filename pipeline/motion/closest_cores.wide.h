@@ -95,12 +95,13 @@ struct ClosestLanes {
 
 /// Required accuracy of a distance.
 struct ClosestOptions {
-  /// Largest error relative to the distance minus `roundings`. If this difference is below
-  /// `precise`, the distance is computed as accurately as possible.
+  /// The gap of a pair is the distance of its cores minus `roundings`, the sum of the rounding
+  /// radii. If the gap is greater than `precise`, the search ends when the bounds of the distance
+  /// differ by at most share * gap.
   double share;
   const Doubles& roundings;
   const Doubles& precise;
-  /// The search ends if the bounds of the distance differ by at most this.
+  /// For any gap, the search ends when the bounds of the distance differ by at most this.
   const Doubles& noise;
 };
 

@@ -99,8 +99,8 @@ struct TurningAlong {
 
 class ImpactStep : BlockStep {
  public:
-  /// `coarse`: this is the first sample. It proves nothing about earlier times, so one GJK step
-  /// suffices.
+  /// `coarse`: this is the first sample of the block. One GJK step is enough if it separates the
+  /// cores; lanes that it does not separate are sampled again with the full number of steps.
   ImpactStep(const ImpactJob& job, ImpactBlock& block, bool coarse)
       : BlockStep(job, block),
         is_exact_(has_closed_form(tables_.a.kind, tables_.b.kind)),

@@ -99,7 +99,8 @@ Status SceneState::reserve_sets(const SceneCapacity& room, Pages pages) {
     if (status == Status::ok) {
       status = target.partition->reserve_pairs(target.with_dynamic, room.pairs, pages);
     }
-    // A call that adds n bodies grows body_of to its size plus n: see place_boxes.
+    // Twice, because place_boxes allocates an entry for each body that it adds, in addition to the
+    // entries in use. Either number may be `bodies`.
     if (status == Status::ok && !target.body_of.reserve(2 * bodies, pages)) {
       status = Status::out_of_memory;
     }

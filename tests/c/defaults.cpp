@@ -328,7 +328,7 @@ void show_line(const char* name, double of_cpp, double of_c) {
   (void)std::fprintf(stderr, "%s is %g in C++, %g in C\n", name, of_cpp, of_c);
 }
 
-/// Structs that C does not have or does not read as a whole.
+/// Structs that the C interface does not have, or of which it has only some members.
 void show_others() {
   show("FeatureImpactOptions", FeatureImpactOptions{});
   show("DeformableMeshOptions", DeformableMeshOptions{});

@@ -1,4 +1,5 @@
-// Conversions of volumes under a host that rounds in any direction and flushes denormal numbers.
+// Tests conversions of volumes with tiny coordinates in every floating-point mode that a host
+// program may set: each rounding direction, with and without flushing of denormal numbers.
 
 #include <gtest/gtest.h>
 #include <winnow/core/capsule.h>

@@ -82,8 +82,8 @@ class Bytes {
     return box;
   }
 
-  /// Returns a valid pose: multiples of 1/16 as position, and for half of all bytes a rotation of
-  /// grid values.
+  /// Returns a valid pose. Coordinates are multiples of 1/16. For half of the values of a byte, the
+  /// orientation is a quaternion of grid values; else it is the identity.
   Pose pose() {
     Pose pose;
     for (double& x : pose.position) x = 0.25 * grid_value();

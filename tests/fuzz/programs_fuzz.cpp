@@ -43,7 +43,8 @@ void load(Bytes8 bytes) {
   }
 }
 
-/// Bodies of all convex kinds, in the scene whose snapshots are the seeds.
+/// A scene of bodies with seven kinds of convex shapes. `fuzz_seeds` saves its snapshots as seeds;
+/// `load_scene` loads mutated snapshots into it.
 struct FuzzedScene {
   FuzzedScene()
       : world(12),

@@ -119,7 +119,7 @@ TEST(RebuildPlanner, largest_budget_or_few_objects_plan_nothing) {
   EXPECT_TRUE(PlannerAfter(20, 50, 100).plans_ahead(n));
 }
 
-TEST(RebuildPlanner, plan_out_of_date_stops_planning_for_four_builds) {
+TEST(RebuildPlanner, outdated_plan_stops_planning_for_four_builds) {
   PlannerAfter planner(20, 50);
   ASSERT_TRUE(planner.forecast_build(ordered_tree()).near);
   planner.note_mistake();
@@ -148,7 +148,7 @@ TEST(RebuildPlanner, plan_takes_two_fifths_of_life_of_order) {
   EXPECT_EQ(PlannerAfter(25, 0, 77).planning_work(n), 77U);
 }
 
-TEST(RebuildPlanner, plan_that_is_ready_is_applied_except_in_pause) {
+TEST(RebuildPlanner, ready_plan_is_applied_except_in_pause) {
   PlannerAfter planner(20);
   RowNumbers n = ordered_tree();
   planner.note_plan(n);

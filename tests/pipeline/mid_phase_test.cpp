@@ -1,5 +1,5 @@
-// CompositePool::find_primitive_pairs and visit: pairs of primitives compared with all pairs of
-// primitives of two bodies.
+// Compares CompositePool::find_primitive_pairs, visit and visit_near with loops over all primitives
+// of one or two bodies.
 
 #include "tests/pipeline/composite_world.h"
 

@@ -268,7 +268,9 @@ struct TwoScenes {
   Scene scene{world.pool, {.memory = &memory, .execution = Execution::serial()}};
   Scene other{other_world.pool, {.execution = Execution::serial()}};
 
-  /// Refuses requests from the given one on, or only that one; then repeats the call.
+  /// Runs `call` on `scene` with memory for `granted` requests; the next request is refused, and
+  /// also all later ones unless `once` is set. Repeats the call if it failed. Then runs `call` on
+  /// `other`. Returns true if the first call failed.
   template <typename Call>
   bool was_refused(std::size_t granted, bool once, Call&& call) {
     if (once) {

@@ -77,8 +77,8 @@ class BruteForce : public Structure {
   const KernelFor kernel_for_;
 };
 
-/// Reports every pair of objects without testing bounds: the baseline for the value of a test, and
-/// the reference for tests of every other structure.
+/// Reports every pair of objects without testing bounds. Benchmarks use it as a baseline. Fuzz
+/// tests use it for reference scenes, whose pairs then do not depend on bounds.
 class NSquared final : public BruteForce {
  public:
   explicit NSquared(const StructureInput& input) noexcept : BruteForce(input, untested) {}

@@ -88,7 +88,8 @@ static inline LineCells cells_of_line(const GridLevel& g, std::uint32_t number) 
   return {(slow & 1U) != 0 ? g.mids - 1 - mid : mid, slow};
 }
 
-/// Places are stored lines, of all levels consecutively; units are blocks of 16 rows.
+/// A place is an index of LevelsView::line, which has the lines of all levels. A unit is a block of
+/// 16 rows.
 using HierarchicalGridKernels = CellKernels<LevelsView>;
 
 WINNOW_KERNELS(HierarchicalGridKernels, hierarchical_grid_kernels);

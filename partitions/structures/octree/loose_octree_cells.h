@@ -45,8 +45,8 @@ class LooseOctreeCells {
     std::array<float, 3> low;
     std::array<float, 3> high;
   };
-  /// Returns the bounds of the cell with this level and Morton code; loose_bounds returns the
-  /// bounds of the loose cell.
+  /// Returns the bounds of the cell with this code (see code_of). loose_bounds returns the bounds
+  /// of the loose cell, which is larger on each side by reach_ + kSpare times the cell's edge.
   [[nodiscard]] CellBounds cell_bounds(std::uint32_t code) const noexcept {
     return bounds_of(code, 0.0);
   }

@@ -46,7 +46,8 @@ struct CurvedPair {
   double frame[9];
   /// Position of the second minus position of the first, in world axes and the caller's units.
   double offset[3];
-  /// Upper bound of all lengths that occur.
+  /// The sum of the bounding radii of both cores about their origins and of |shift| (L1 norm),
+  /// scaled: an upper bound of all lengths in the search.
   double size;
   double rounding;
   /// The search stops with state `far` if the distance of the cores (without roundings) exceeds

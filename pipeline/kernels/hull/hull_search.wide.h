@@ -45,8 +45,8 @@ class HullSearch {
   /// Scaled; if the support point is less than this below the nearest point along `gap`, there is
   /// no progress.
   static constexpr float kNoGain = 4e-7F;
-  /// Scaled error of a support's height, which may be below the highest by kLaneBits units in the
-  /// last place.
+  /// Error bound of the height of a support point, scaled. It includes the error in the choice of
+  /// the highest vertex (see kLaneBits).
   static constexpr float kLengthError = 6e-6F;
 
   void refill(int lane) {

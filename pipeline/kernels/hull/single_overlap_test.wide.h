@@ -34,7 +34,8 @@ class SingleOverlapTest {
   static constexpr double kLengthError = static_cast<double>(hull::OverlapTest::kLengthError);
   /// Tolerance of the product of a length and two edges.
   static constexpr double kPlaneError = 1e-14;
-  /// A step that reduces the square by less than this fraction is no progress.
+  /// The search stops if |v|^2 - v . w is at most this fraction of |v|^2, where v is the point of
+  /// the simplex nearest to the origin and w the new support point.
   static constexpr double kNoGain = 1e-14;
   static constexpr int kMaxSteps = 48;
   /// If the nearest point is closer to the origin than this, it is not used as a direction.

@@ -73,8 +73,8 @@ template <typename T>
   const Vec3<T> next = select(x_first, on_y, on_x);
   const Lanes<T> low_name = select(x_first, name_x, name_y);
   const Lanes<T> next_name = select(x_first, name_y, name_x);
-  // Opposite corners are at 0 and 2 quarter turns, or at 1 and 3. So their names add up to 2 or 4
-  // quarters.
+  // The name of a corner is its number on the rim. Opposite corners are at 0 and 2 quarter turns,
+  // or at 1 and 3, so the sum of their names is 2 kQuarter or 4 kQuarter.
   const Lanes<T> across[2] = {Lanes<T>(T(2 * kQuarter)), Lanes<T>(T(4 * kQuarter))};
   const Lanes<T> low_across = select(x_first, across[0], across[1]) - low_name;
   const Lanes<T> next_across = select(x_first, across[1], across[0]) - next_name;

@@ -22,8 +22,9 @@ template <typename T>
   return nearest;
 }
 
-/// The direction with the larger separation of origin and triangle: the triangle's normal, or, in
-/// the lanes `is_away`, the direction to the closest point.
+/// Tests two axes and returns the axis with the larger separation of origin and triangle. One is
+/// the triangle's normal, if the triangle has one. The other, only in the lanes `is_away`, is the
+/// direction to the closest point `w`.
 template <typename T>
 [[gnu::always_inline]] inline AxisGap<T> widest_gap(const TriangleView<T>& b, const Vec3<T>& w,
                                                     const Lanes<T>& length,
