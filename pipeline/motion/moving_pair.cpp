@@ -3,8 +3,8 @@
 
 #include "pipeline/motion/moving_pair.h"
 
+#include "pipeline/kinds/hypotenuse.h"
 #include "pipeline/motion/deterministic_trig.h"
-#include "pipeline/shapes/hypotenuse.h"
 #include "pipeline/shapes/two_diff.h"
 
 #include <algorithm>
@@ -17,7 +17,6 @@ namespace {
 
 using solver::AxisRange;
 using solver::Core;
-using solver::CoreKind;
 using solver::kEpsilon;
 
 constexpr double kForever = std::numeric_limits<double>::infinity();

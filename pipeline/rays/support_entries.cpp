@@ -1,8 +1,8 @@
 // Ray tests for ellipsoids and user shapes: conservative advancement with GJK (solver/gjk.h), and a
 // closed form for ellipsoids without rounding whose radii are not near 0.
 
+#include "pipeline/kinds/kinds.h"
 #include "pipeline/rays/shape_entries.h"
-#include "pipeline/shapes/support_core.h"
 #include "pipeline/solver/gjk.h"
 
 #include <algorithm>
@@ -25,7 +25,7 @@ struct Foreground {
 class SupportTarget {
  public:
   SupportTarget(const SupportCore& core, double scale) noexcept {
-    body_.kind = solver::CoreKind::support;
+    body_.kind = CoreKind::support;
     body_.farthest = core;
     body_.unit[0] = scale;
   }

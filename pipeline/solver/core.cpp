@@ -3,7 +3,7 @@
 
 #include "pipeline/solver/core.h"
 
-#include "pipeline/shapes/hypotenuse.h"
+#include "pipeline/kinds/hypotenuse.h"
 
 #include <algorithm>
 #include <cmath>

@@ -5,7 +5,7 @@
 
 #include <winnow/core/pose.h>
 #include <winnow/pipeline/shapes.h>
-#include "pipeline/shapes/support_core.h"
+#include "pipeline/kinds/shape_core.h"
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -17,18 +17,6 @@ namespace winnow::solver {
 
 using Vec = Eigen::Vector3d;
 using Mat = Eigen::Matrix3d;
-
-enum class CoreKind : std::uint8_t {
-  point,
-  segment,
-  box,
-  triangle,
-  hull,
-  cylinder,
-  cone,
-  support,
-  half_space
-};
 
 /// A core in world axes, scaled to the units of its Problem. All functions of a core are exact up
 /// to a few roundings relative to the core's size.
