@@ -29,7 +29,7 @@ inline constexpr ShapeKind kLastConvexKind =
 
 /// Calls visit(KindOf<Shape>) with the struct of a kind, and returns its result.
 template <typename Visit>
-constexpr decltype(auto) with_kind(ShapeKind kind, Visit&& visit) {
+[[gnu::always_inline]] constexpr decltype(auto) with_kind(ShapeKind kind, Visit&& visit) {
   switch (kind) {
 #define WINNOW_CASE(enumerator, Shape, table) \
   case ShapeKind::enumerator:                 \
@@ -42,7 +42,8 @@ constexpr decltype(auto) with_kind(ShapeKind kind, Visit&& visit) {
 
 /// Calls visit(shape), and returns its result.
 template <typename Visit>
-constexpr decltype(auto) with_shape(const ShapeTables& tables, ShapeId id, Visit&& visit) {
+[[gnu::always_inline]] constexpr decltype(auto) with_shape(const ShapeTables& tables, ShapeId id,
+                                                           Visit&& visit) {
   return with_kind(id.kind(),
                    [&](auto of) -> decltype(auto) { return visit(of.in(tables)[id.index()]); });
 }
