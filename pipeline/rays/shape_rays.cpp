@@ -4,7 +4,6 @@
 #include <winnow/core/rotation.h>
 #include <winnow/pipeline/shape_rays.h>
 #include "core/threads/float_environment.h"
-#include "pipeline/kinds/kinds.h"
 #include "pipeline/rays/shape_entries.h"
 
 #include <Eigen/Geometry>
