@@ -123,33 +123,29 @@ class WINNOW_API ShapePool {
     Column<Shape> shapes;
     Column<std::uint8_t> live;
     Column<std::uint32_t> free;
+    void swap(Table& other) noexcept {
+      shapes.swap(other.shapes);
+      live.swap(other.live);
+      free.swap(other.free);
+    }
   };
   /// @endcond
 
+  /// Returns the table of a kind of shape.
+  template <typename Shape, typename Pool>
+  static auto& table_of(Pool& pool) noexcept;
   template <typename Shape>
-  Status put(Table<Shape>& table, ShapeKind kind, const Shape& shape, ShapeId& id);
+  Status put(const Shape& shape, ShapeId& id);
   template <typename Make>
   Status put_hull(double rounding, ShapeId& id, Make&& make);
-  /// Calls `body` with the table of a kind.
-  template <typename Pool, typename Body>
-  static decltype(auto) with_table(Pool& pool, ShapeKind kind, Body&& body);
-  /// Calls visit(table, table of the same kind in another pool) for each kind.
-  template <typename Pool, typename Visit>
-  static void for_tables(Pool& pool, Pool& other, Visit&& visit);
   void refresh_tables() noexcept;
 
   std::pmr::memory_resource* memory_;
-  Table<SphereShape> spheres_;
-  Table<CapsuleShape> capsules_;
-  Table<BoxShape> boxes_;
-  Table<CylinderShape> cylinders_;
-  Table<ConeShape> cones_;
-  Table<HullShape> hulls_;
-  Table<TriangleShape> triangles_;
-  Table<HalfSpaceShape> half_spaces_;
-  Table<EllipsoidShape> ellipsoids_;
-  Table<TaperedCapsuleShape> tapered_capsules_;
-  Table<SupportShape> supports_;
+  /// @cond The tables: spheres_, capsules_ and so on.
+#define WINNOW_TABLE(kind, Shape, table) Table<Shape> table##_{memory_};
+  WINNOW_CONVEX_SHAPES(WINNOW_TABLE)
+#undef WINNOW_TABLE
+  /// @endcond
   ShapeTables tables_;
 };
 

@@ -38,12 +38,27 @@ enum class CompositeKind : std::uint8_t {
 /// All kind numbers, convex and composite, are below this.
 inline constexpr std::uint32_t kShapeKinds = 14;
 
+/// The kinds of convex shapes in order, as WINNOW_X(enumerator of ShapeKind, struct, member of
+/// ShapeTables).
+#define WINNOW_CONVEX_SHAPES(WINNOW_X)                             \
+  WINNOW_X(sphere, SphereShape, spheres)                           \
+  WINNOW_X(capsule, CapsuleShape, capsules)                        \
+  WINNOW_X(box, BoxShape, boxes)                                   \
+  WINNOW_X(cylinder, CylinderShape, cylinders)                     \
+  WINNOW_X(cone, ConeShape, cones)                                 \
+  WINNOW_X(hull, HullShape, hulls)                                 \
+  WINNOW_X(triangle, TriangleShape, triangles)                     \
+  WINNOW_X(half_space, HalfSpaceShape, half_spaces)                \
+  WINNOW_X(ellipsoid, EllipsoidShape, ellipsoids)                  \
+  WINNOW_X(tapered_capsule, TaperedCapsuleShape, tapered_capsules) \
+  WINNOW_X(support, SupportShape, supports)
+
 /// All enumerators of ShapeKind, in order.
 inline constexpr ShapeKind kConvexKinds[] = {
-    ShapeKind::sphere,          ShapeKind::capsule,    ShapeKind::box,
-    ShapeKind::cylinder,        ShapeKind::cone,       ShapeKind::hull,
-    ShapeKind::triangle,        ShapeKind::half_space, ShapeKind::ellipsoid,
-    ShapeKind::tapered_capsule, ShapeKind::support};
+#define WINNOW_ENUMERATOR(kind, Shape, table) ShapeKind::kind,
+    WINNOW_CONVEX_SHAPES(WINNOW_ENUMERATOR)
+#undef WINNOW_ENUMERATOR
+};
 
 /// Returns the enumerator's name; never null.
 [[nodiscard]] WINNOW_API const char* to_string(ShapeKind kind) noexcept;

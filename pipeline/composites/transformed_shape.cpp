@@ -2,9 +2,11 @@
 
 #include "pipeline/composites/transformed_shape.h"
 
+#include "pipeline/kinds/kinds.h"
 #include "pipeline/shapes/extent.h"
 
 #include <algorithm>
+#include <type_traits>
 
 namespace winnow::mid {
 namespace {
@@ -31,44 +33,16 @@ Box3 Corners::box() const noexcept {
 
 PlacedPart::PlacedPart(const ShapeTables& tables, ShapeId id, std::uint32_t of_body,
                        const Mat& turned, const Vec& at) noexcept
-    : shape(id),
-      number(of_body),
-      rotation(turned),
-      position(at),
-      radius(radius_of(tables, id) * (1.0 + kSlack)) {
-  reach = radius;
-  switch (id.kind()) {
-    case ShapeKind::sphere:
-      inner = tables.spheres[id.index()].radius;
-      break;
-    case ShapeKind::capsule:
-      inner = tables.capsules[id.index()].radius;
-      break;
-    case ShapeKind::box: {
-      const BoxShape& box = tables.boxes[id.index()];
-      inner = std::min({box.half[0], box.half[1], box.half[2]}) + box.rounding;
-      break;
+    : shape(id), number(of_body), rotation(turned), position(at) {
+  with_shape(tables, id, [&](const auto& one) {
+    radius = winnow::radius_of(one) * (1.0 + kSlack);
+    reach = radius;
+    inner = inner_radius_of(one);
+    if constexpr (std::is_same_v<decltype(one), const HullShape&>) {
+      middle = rotation * Eigen::Map<const Vec>(one.center);
+      reach = (one.radius + one.rounding) * (1.0 + kSlack);
     }
-    case ShapeKind::hull: {
-      const HullShape& hull = tables.hulls[id.index()];
-      middle = rotation * Eigen::Map<const Vec>(hull.center);
-      reach = (hull.radius + hull.rounding) * (1.0 + kSlack);
-      inner = hull.inner_radius;
-      break;
-    }
-    case ShapeKind::ellipsoid: {
-      const EllipsoidShape& ball = tables.ellipsoids[id.index()];
-      inner = std::min({ball.radius[0], ball.radius[1], ball.radius[2]}) + ball.rounding;
-      break;
-    }
-    case ShapeKind::tapered_capsule: {
-      const TaperedCapsuleShape& taper = tables.tapered_capsules[id.index()];
-      inner = std::min(taper.radius[0], taper.radius[1]);
-      break;
-    }
-    default:
-      break;
-  }
+  });
 }
 
 TransformedShape::TransformedShape(const Composites& composites, const ShapeTables& pool,

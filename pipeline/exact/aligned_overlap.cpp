@@ -61,43 +61,20 @@ struct AlignedShape {
   double rounding;
 };
 
-void set_lengths(const QuarterTurns& turns, const double (&local)[3],
-                 AlignedShape& shape) noexcept {
-  for (int k = 0; k < 3; ++k) shape.half[k] = local[turns.axis[k]];
-}
-
-/// Returns false for other kinds and for frames that are not aligned.
-[[nodiscard]] bool align(const ShapeTables& tables, ShapeId id, const Pose& pose,
-                         AlignedShape& shape) noexcept {
-  if (id.kind() == ShapeKind::sphere) {
-    shape = {{0.0, 0.0, 0.0}, kNoAxis, tables.spheres[id.index()].radius};
+/// Returns false for other cores and for frames that are not aligned.
+[[nodiscard]] bool align(const ShapeCore& core, const Pose& pose, AlignedShape& shape) noexcept {
+  if (core.kind == CoreKind::point) {
+    shape = {{0.0, 0.0, 0.0}, kNoAxis, core.rounding};
     return true;
   }
+  const bool is_round = core.kind == CoreKind::cylinder;
+  if (!is_round && core.kind != CoreKind::segment && core.kind != CoreKind::box) return false;
   QuarterTurns turns;
   if (!quarter_turns(pose, turns)) return false;
-  switch (id.kind()) {
-    case ShapeKind::capsule: {
-      const CapsuleShape& capsule = tables.capsules[id.index()];
-      set_lengths(turns, {0.0, 0.0, capsule.half_length}, shape);
-      shape.rounding = capsule.radius;
-      return true;
-    }
-    case ShapeKind::box: {
-      const BoxShape& box = tables.boxes[id.index()];
-      set_lengths(turns, box.half, shape);
-      shape.rounding = box.rounding;
-      return true;
-    }
-    case ShapeKind::cylinder: {
-      const CylinderShape& cylinder = tables.cylinders[id.index()];
-      set_lengths(turns, {cylinder.radius, cylinder.radius, cylinder.half_length}, shape);
-      shape.round = turns.axis[0] == 2 ? 0 : turns.axis[1] == 2 ? 1 : 2;
-      shape.rounding = cylinder.rounding;
-      return true;
-    }
-    default:
-      return false;
-  }
+  for (int k = 0; k < 3; ++k) shape.half[k] = core.half[turns.axis[k]];
+  if (is_round) shape.round = turns.axis[0] == 2 ? 0 : turns.axis[1] == 2 ? 1 : 2;
+  shape.rounding = core.rounding;
+  return true;
 }
 
 [[nodiscard]] Dyadic magnitude(const Dyadic& x) noexcept {
@@ -386,25 +363,21 @@ class FlatTriangle {
 }
 
 /// True for half-spaces and triangles: aligned_overlap makes them the first shape.
-[[nodiscard]] bool is_flat(ShapeId id) noexcept {
-  return id.kind() == ShapeKind::half_space || id.kind() == ShapeKind::triangle;
+[[nodiscard]] bool is_flat(const ShapeCore& core) noexcept {
+  return core.kind == CoreKind::half_space || core.kind == CoreKind::triangle;
 }
 
 }  // namespace
 
-ExactVerdict aligned_overlap(const ShapeTables& tables, ShapeId a, const Pose& pose_a, ShapeId b,
+ExactVerdict aligned_overlap(const ShapeCore& a, const Pose& pose_a, const ShapeCore& b,
                              const Pose& pose_b) noexcept {
-  if (is_flat(b) && !is_flat(a)) return aligned_overlap(tables, b, pose_b, a, pose_a);
+  if (is_flat(b) && !is_flat(a)) return aligned_overlap(b, pose_b, a, pose_a);
   AlignedShape second;
-  if (!align(tables, b, pose_b, second)) return ExactVerdict::undecided;
-  if (a.kind() == ShapeKind::half_space) {
-    return over_plane(tables.half_spaces[a.index()], pose_a, second, pose_b);
-  }
-  if (a.kind() == ShapeKind::triangle) {
-    return on_triangle(tables.triangles[a.index()], pose_a, second, pose_b);
-  }
+  if (!align(b, pose_b, second)) return ExactVerdict::undecided;
+  if (a.kind == CoreKind::half_space) return over_plane(*a.half_space, pose_a, second, pose_b);
+  if (a.kind == CoreKind::triangle) return on_triangle(*a.triangle, pose_a, second, pose_b);
   AlignedShape first;
-  if (!align(tables, a, pose_a, first)) return ExactVerdict::undecided;
+  if (!align(a, pose_a, first)) return ExactVerdict::undecided;
   return AlignedPair(first, second, pose_a, pose_b).verdict();
 }
 

@@ -38,23 +38,27 @@ void add_disc(CoreVertices& core, const CoreDisc& disc) noexcept {
 
 /// The convex hull of discs at both ends of the z axis, the upper one not larger; a segment if they
 /// have no radius.
-void set_axis(CoreVertices& core, double half_length, double low_radius, double high_radius,
-              double rounding) noexcept {
+void set_axis(CoreVertices& core, double half_length, double low_radius,
+              double high_radius) noexcept {
   core.count = 0;
-  core.rounding = rounding;
   core.has_discs = low_radius > 0.0;
   core.disc[0] = {-half_length, low_radius};
   core.disc[1] = {half_length, high_radius};
   for (const CoreDisc& disc : core.disc) add_disc(core, disc);
 }
 
-void set_box(CoreVertices& core, const BoxShape& box) noexcept {
+void set_box(CoreVertices& core, const Eigen::Vector3d& half) noexcept {
   core.count = 8;
-  core.rounding = box.rounding;
   for (std::uint32_t i = 0; i < 8; ++i) {
-    set_point(core, i, (i & 1U) != 0 ? box.half[0] : -box.half[0],
-              (i & 2U) != 0 ? box.half[1] : -box.half[1],
-              (i & 4U) != 0 ? box.half[2] : -box.half[2]);
+    set_point(core, i, (i & 1U) != 0 ? half.x() : -half.x(), (i & 2U) != 0 ? half.y() : -half.y(),
+              (i & 4U) != 0 ? half.z() : -half.z());
+  }
+}
+
+void set_triangle(CoreVertices& core, const TriangleShape& triangle) noexcept {
+  core.count = 3;
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    set_point(core, i, triangle.vertex[i][0], triangle.vertex[i][1], triangle.vertex[i][2]);
   }
 }
 
@@ -107,47 +111,33 @@ struct Bounds {
 
 }  // namespace
 
-bool core_vertices(const ShapeTables& tables, ShapeId id, CoreVertices& core) noexcept {
-  switch (id.kind()) {
-    case ShapeKind::sphere:
+bool core_vertices(const ShapeCore& shape, CoreVertices& core) noexcept {
+  core.rounding = shape.rounding;
+  const double radius = shape.half.x();
+  switch (shape.kind) {
+    case CoreKind::point:
       core.count = 1;
-      core.rounding = tables.spheres[id.index()].radius;
       set_point(core, 0, 0.0, 0.0, 0.0);
       return true;
-    case ShapeKind::capsule: {
-      const CapsuleShape& capsule = tables.capsules[id.index()];
-      set_axis(core, capsule.half_length, 0.0, 0.0, capsule.radius);
+    case CoreKind::segment:
+      set_axis(core, shape.half.z(), 0.0, 0.0);
       return true;
-    }
-    case ShapeKind::cylinder: {
-      const CylinderShape& cylinder = tables.cylinders[id.index()];
-      set_axis(core, cylinder.half_length, cylinder.radius, cylinder.radius, cylinder.rounding);
+    case CoreKind::cylinder:
+      set_axis(core, shape.half.z(), radius, radius);
       return true;
-    }
-    case ShapeKind::cone: {
-      const ConeShape& cone = tables.cones[id.index()];
-      set_axis(core, cone.half_length, cone.radius, 0.0, cone.rounding);
+    case CoreKind::cone:
+      set_axis(core, shape.half.z(), radius, 0.0);
       return true;
-    }
-    case ShapeKind::box:
-      set_box(core, tables.boxes[id.index()]);
+    case CoreKind::box:
+      set_box(core, shape.half);
       return true;
-    case ShapeKind::triangle: {
-      const TriangleShape& triangle = tables.triangles[id.index()];
-      core.count = 3;
-      core.rounding = triangle.rounding;
-      for (std::uint32_t i = 0; i < 3; ++i) {
-        set_point(core, i, triangle.vertex[i][0], triangle.vertex[i][1], triangle.vertex[i][2]);
-      }
+    case CoreKind::triangle:
+      set_triangle(core, *shape.triangle);
       return true;
-    }
-    case ShapeKind::hull: {
-      const HullShape& hull = tables.hulls[id.index()];
-      core.count = hull.vertex_count;
-      core.rounding = hull.rounding;
-      for (int k = 0; k < 3; ++k) core.column[k] = hull.vertex[k];
+    case CoreKind::hull:
+      core.count = shape.hull->vertex_count;
+      for (int k = 0; k < 3; ++k) core.column[k] = shape.hull->vertex[k];
       return true;
-    }
     default:
       return false;
   }

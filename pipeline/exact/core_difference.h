@@ -3,6 +3,7 @@
 #include <winnow/core/pose.h>
 #include <winnow/pipeline/shapes.h>
 #include "pipeline/exact/exact_vector.h"
+#include "pipeline/kinds/shape_core.h"
 
 #include <cstdint>
 
@@ -37,8 +38,8 @@ struct CoreVertices {
   void include_lengths(BitSpan& span) const noexcept;
 };
 
-/// Fills `core`; returns false for half-spaces and for kinds with a support function.
-bool core_vertices(const ShapeTables& tables, ShapeId id, CoreVertices& core) noexcept;
+/// Fills `core`; returns false for half-spaces and support functions.
+bool core_vertices(const ShapeCore& shape, CoreVertices& core) noexcept;
 
 /// Returns the vertex farthest along `direction` and its exact height. Bounds in double exclude
 /// most vertices; only those near the maximum are computed exactly. O(vertices).

@@ -6,6 +6,7 @@
 #include "pipeline/exact/aligned_overlap.h"
 #include "pipeline/exact/core_difference.h"
 #include "pipeline/exact/exact_gjk.h"
+#include "pipeline/kinds/kinds.h"
 
 #include <algorithm>
 #include <cmath>
@@ -114,16 +115,13 @@ namespace {
   return direction;
 }
 
-[[nodiscard]] ExactVerdict half_space_pair(const ShapeTables& tables, ShapeId half_space,
-                                           const Pose& half_space_pose, ShapeId other,
+[[nodiscard]] ExactVerdict half_space_pair(const HalfSpaceShape& shape, const Pose& pose,
+                                           const ShapeCore& other,
                                            const Pose& other_pose) noexcept {
-  const HalfSpaceShape& shape = tables.half_spaces[half_space.index()];
   CoreVertices core;
-  if (core_vertices(tables, other, core)) {
-    return half_space_verdict(shape, half_space_pose, core, other_pose);
-  }
-  if (other.kind() != ShapeKind::half_space) return ExactVerdict::undecided;
-  return half_spaces_verdict(shape, half_space_pose, tables.half_spaces[other.index()], other_pose);
+  if (core_vertices(other, core)) return half_space_verdict(shape, pose, core, other_pose);
+  if (other.kind != CoreKind::half_space) return ExactVerdict::undecided;
+  return half_spaces_verdict(shape, pose, *other.half_space, other_pose);
 }
 
 /// The minimum, over the directions passed to `test_axis` and their opposites, of the height of the
@@ -197,14 +195,20 @@ class MinHeight {
 
 ExactVerdict exact_overlap(const ShapeTables& tables, ShapeId a, const Pose& pose_a, ShapeId b,
                            const Pose& pose_b, const double axis[3]) noexcept {
-  const ExactVerdict aligned = aligned_overlap(tables, a, pose_a, b, pose_b);
+  const ShapeCore shape_a = core_of(tables, a);
+  const ShapeCore shape_b = core_of(tables, b);
+  const ExactVerdict aligned = aligned_overlap(shape_a, pose_a, shape_b, pose_b);
   if (aligned != ExactVerdict::undecided) return aligned;
-  if (a.kind() == ShapeKind::half_space) return half_space_pair(tables, a, pose_a, b, pose_b);
-  if (b.kind() == ShapeKind::half_space) return half_space_pair(tables, b, pose_b, a, pose_a);
-  const bool are_boxes = a.kind() == ShapeKind::box && b.kind() == ShapeKind::box;
+  if (shape_a.kind == CoreKind::half_space) {
+    return half_space_pair(*shape_a.half_space, pose_a, shape_b, pose_b);
+  }
+  if (shape_b.kind == CoreKind::half_space) {
+    return half_space_pair(*shape_b.half_space, pose_b, shape_a, pose_a);
+  }
+  const bool are_boxes = shape_a.kind == CoreKind::box && shape_b.kind == CoreKind::box;
   CoreVertices core_a;
   CoreVertices core_b;
-  if (!core_vertices(tables, a, core_a) || !core_vertices(tables, b, core_b)) {
+  if (!core_vertices(shape_a, core_a) || !core_vertices(shape_b, core_b)) {
     return ExactVerdict::undecided;
   }
   const CoreDifference difference(core_a, pose_a, core_b, pose_b);

@@ -16,7 +16,7 @@ Status ShapePool::add(const BoxShape& shape, ShapeId& id) {
     return Status::invalid_shape;
   }
   link_kernels_of_box();
-  return put(boxes_, ShapeKind::box, shape, id);
+  return put(shape, id);
 }
 
 }  // namespace winnow

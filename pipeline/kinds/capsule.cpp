@@ -16,7 +16,7 @@ Status ShapePool::add(const CapsuleShape& shape, ShapeId& id) {
   const DefaultFloatEnvironment environment;
   if (!are_lengths({shape.radius, shape.half_length})) return Status::invalid_shape;
   link_kernels_of_capsule();
-  return put(capsules_, ShapeKind::capsule, shape, id);
+  return put(shape, id);
 }
 
 }  // namespace winnow

@@ -20,7 +20,7 @@ Status ShapePool::add(const ConeShape& shape, ShapeId& id) {
   const DefaultFloatEnvironment environment;
   if (!are_lengths({shape.radius, shape.half_length, shape.rounding})) return Status::invalid_shape;
   link_kernels_of_cone();
-  return put(cones_, ShapeKind::cone, shape, id);
+  return put(shape, id);
 }
 
 }  // namespace winnow

@@ -19,7 +19,7 @@ Status ShapePool::add(const CylinderShape& shape, ShapeId& id) {
   const DefaultFloatEnvironment environment;
   if (!are_lengths({shape.radius, shape.half_length, shape.rounding})) return Status::invalid_shape;
   link_kernels_of_cylinder();
-  return put(cylinders_, ShapeKind::cylinder, shape, id);
+  return put(shape, id);
 }
 
 }  // namespace winnow

@@ -23,7 +23,7 @@ Status ShapePool::add(const EllipsoidShape& shape, ShapeId& id) {
     return Status::invalid_shape;
   }
   link_kernels_of_ellipsoid();
-  return put(ellipsoids_, ShapeKind::ellipsoid, shape, id);
+  return put(shape, id);
 }
 
 }  // namespace winnow

@@ -26,14 +26,13 @@ Status ShapePool::add(const HalfSpaceShape& shape, ShapeId& id) {
   // are exact.
   constexpr double kRounding = 8.0 * std::numeric_limits<double>::epsilon();
   if (std::abs(normal.squaredNorm() - 1.0) <= kRounding) {
-    return put(half_spaces_, ShapeKind::half_space, shape, id);
+    return put(shape, id);
   }
   const Eigen::Vector3d scaled = normal / largest;
   const Eigen::Vector3d unit = scaled.normalized();
   const double offset = shape.offset / largest / scaled.norm();
   if (!std::isfinite(offset)) return Status::invalid_shape;
-  return put(half_spaces_, ShapeKind::half_space,
-             HalfSpaceShape{{unit.x(), unit.y(), unit.z()}, offset}, id);
+  return put(HalfSpaceShape{{unit.x(), unit.y(), unit.z()}, offset}, id);
 }
 
 }  // namespace winnow

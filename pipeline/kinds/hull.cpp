@@ -24,7 +24,7 @@ Status ShapePool::put_hull(double rounding, ShapeId& id, Make&& make) {
   if (status != Status::ok) return status;
   hull.rounding = rounding;
   link_kernels_of_hull();
-  status = put(hulls_, ShapeKind::hull, hull, id);
+  status = put(hull, id);
   if (status != Status::ok) release_hull(hull, memory_);
   return status;
 }

@@ -12,7 +12,7 @@ Status ShapePool::add(const SphereShape& shape, ShapeId& id) {
   const DefaultFloatEnvironment environment;
   if (!are_lengths({shape.radius})) return Status::invalid_shape;
   link_kernels_of_sphere();
-  return put(spheres_, ShapeKind::sphere, shape, id);
+  return put(shape, id);
 }
 
 }  // namespace winnow

@@ -69,7 +69,7 @@ Status ShapePool::add(const SupportShape& shape, ShapeId& id) {
     return Status::invalid_shape;
   }
   link_kernels_of_support();
-  return put(supports_, ShapeKind::support, shape, id);
+  return put(shape, id);
 }
 
 }  // namespace winnow

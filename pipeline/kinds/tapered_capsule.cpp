@@ -24,7 +24,7 @@ Status ShapePool::add(const TaperedCapsuleShape& shape, ShapeId& id) {
     return Status::invalid_shape;
   }
   link_kernels_of_tapered_capsule();
-  return put(tapered_capsules_, ShapeKind::tapered_capsule, shape, id);
+  return put(shape, id);
 }
 
 }  // namespace winnow

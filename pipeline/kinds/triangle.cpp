@@ -25,7 +25,7 @@ Status ShapePool::add(const TriangleShape& shape, ShapeId& id) {
     }
   }
   link_kernels_of_triangle();
-  return put(triangles_, ShapeKind::triangle, shape, id);
+  return put(shape, id);
 }
 
 // The primitives of composite shapes are triangles that are in no pool, so link their kernels here.

@@ -3,8 +3,8 @@
 
 #include "pipeline/manifold/polygon_clip.h"
 
+#include "pipeline/kinds/hypotenuse.h"
 #include "pipeline/shapes/directions_around.h"
-#include "pipeline/shapes/hypotenuse.h"
 
 #include <algorithm>
 #include <cmath>

@@ -158,8 +158,7 @@ void ImpactSearch::sample_half_space(PairSample& result) const noexcept {
   result.axis = -b.normal;
   result.gap = pair_.gap(result.axis);
   result.most = result.gap + 2.0 * pair_.noise();
-  const Vec y =
-      a.kind == solver::CoreKind::half_space ? Vec(a.normal * a.offset) : support(a, result.axis);
+  const Vec y = a.kind == CoreKind::half_space ? Vec(a.normal * a.offset) : support(a, result.axis);
   result.on_a = y;
   result.between = result.axis * (result.gap + pair_.noise() + pair_.roundings());
   result.slope = pair_.parting(result.axis, y, y + result.between - b.center);
@@ -414,7 +413,7 @@ Impact ImpactSearch::run() noexcept {
   const double first = std::max(window.first, span_.first);
   const double last = std::min(window.last, span_.last);
   if (first > std::min(last, until_)) return {};
-  if (pair_.a().kind == solver::CoreKind::half_space) {
+  if (pair_.a().kind == CoreKind::half_space) {
     const Impact at_start = start();
     if (at_start.gap <= 0.0 || pair_.touches_soon()) return at_start;
   }

@@ -4,7 +4,6 @@
 #include "pipeline/motion/moving_pair.h"
 
 #include "pipeline/motion/deterministic_trig.h"
-#include "pipeline/shapes/hypotenuse.h"
 #include "pipeline/shapes/two_diff.h"
 
 #include <algorithm>
@@ -17,106 +16,11 @@ namespace {
 
 using solver::AxisRange;
 using solver::Core;
-using solver::CoreKind;
 using solver::kEpsilon;
 
 constexpr double kForever = std::numeric_limits<double>::infinity();
 /// Squares above this keep all their digits.
 constexpr double kExact = 1e-290;
-/// Axes that differ by less count as equal; the difference is covered by the noise.
-constexpr double kSameAxis = 16.0 * kEpsilon;
-
-/// Length of the part orthogonal to z; |w| is at most 1.
-double across_z(const Vec& w) noexcept {
-  return std::sqrt(w.x() * w.x() + w.y() * w.y());
-}
-
-/// The largest distance of a rim of `radius` at height z from an axis w.
-double rim_reach(double radius, double z, const Vec& w) noexcept {
-  const double nearest = std::max(0.0, std::abs(z * w.z()) - radius * across_z(w));
-  return std::sqrt(std::max(0.0, radius * radius + z * z - nearest * nearest));
-}
-
-/// As above, for the vertices of a hull.
-double corner_reach(const Core& core, const Vec& w) noexcept {
-  const HullShape& hull = *core.hull;
-  double square = 0.0;
-  for (std::uint32_t i = 0; i < hull.vertex_count; ++i) {
-    const auto own = [&](std::size_t axis) {
-      return hull.vertex[axis][i] * core.unit[0] * core.unit[1];
-    };
-    const double x = own(1) * w.z() - own(2) * w.y();
-    const double y = own(2) * w.x() - own(0) * w.z();
-    const double z = own(0) * w.y() - own(1) * w.x();
-    square = std::max(square, x * x + y * y + z * z);
-  }
-  return std::sqrt(square);
-}
-
-/// Returns an upper bound on the distance of an unrotated core's points from the axis w through its
-/// centre.
-double reach_of(const Core& core, const Vec& w) noexcept {
-  switch (core.kind) {
-    case CoreKind::point:
-      return 0.0;
-    case CoreKind::segment:
-      return core.half.z() * across_z(w);
-    case CoreKind::cylinder:
-      return rim_reach(core.half.x(), core.half.z(), w);
-    case CoreKind::cone:
-      return std::max(rim_reach(core.half.x(), -core.half.z(), w), core.half.z() * across_z(w));
-    case CoreKind::half_space:
-      return 0.0;
-    case CoreKind::support:
-      return core.size - core.rounding;
-    case CoreKind::hull:
-      return corner_reach(core, w);
-    default:
-      break;
-  }
-  double square = 0.0;
-  for (std::uint32_t i = 0; i < vertex_count(core); ++i) {
-    square = std::max(square, (vertex(core, i) - core.center).cross(w).squaredNorm());
-  }
-  return std::sqrt(square);
-}
-
-/// Returns whether rotation about the axis leaves the core unchanged.
-bool is_invariant(const Core& core, const Vec& w) noexcept {
-  switch (core.kind) {
-    case CoreKind::point:
-      return true;
-    case CoreKind::segment:
-    case CoreKind::cylinder:
-    case CoreKind::cone:
-      return across_z(w) <= kSameAxis;
-    case CoreKind::half_space:
-      return core.normal.cross(w).norm() <= kSameAxis;
-    default:
-      return false;
-  }
-}
-
-/// About half of the core's diameter, plus its rounding.
-double extent_of(const Core& core) noexcept {
-  switch (core.kind) {
-    case CoreKind::triangle:
-      return core.rounding + std::max({(core.corner[1] - core.corner[0]).norm(),
-                                       (core.corner[2] - core.corner[1]).norm(),
-                                       (core.corner[0] - core.corner[2]).norm()}) /
-                                 2.0;
-    case CoreKind::hull:
-      return core.rounding + core.hull->radius * core.unit[0] * core.unit[1];
-    case CoreKind::half_space:
-      return 0.0;
-    case CoreKind::cylinder:
-    case CoreKind::cone:
-      return core.rounding + hypotenuse(core.half.x(), core.half.z());
-    default:
-      return core.size;
-  }
-}
-
 /// Makes a half-space's offset relative to the position of its body.
 void take_arm(Core& core, const Quaternion& from, const Vec& arm) noexcept {
   const solver::Mat to_world = rotation_of(from);
@@ -160,8 +64,8 @@ TurningCore turning(Core& core, const RigidMotion& motion, const Vec& arm) noexc
   if (result.arm.isZero(0.0) && is_invariant(core, local_axis)) return result;
   result.angle = angle;
   if (core.kind == CoreKind::half_space) return result;
-  result.reach =
-      (reach_of(core, local_axis) + result.arm.cross(result.axis).norm()) * (1.0 + kSameAxis);
+  result.reach = (reach_about(core, local_axis) + result.arm.cross(result.axis).norm()) *
+                 (1.0 + solver::kSameAxis);
   const AxisRange range = project(core, local_axis);
   const double height = result.arm.dot(result.axis);
   result.along = {height + range.low, height + range.high};
@@ -209,7 +113,7 @@ double swept_high(const TurningCore& turning, const Core& core, const Vec& axis)
 
 double acceleration(const TurningCore& turning, const Vec& axis) noexcept {
   if (turning.angle == 0.0) return 0.0;
-  const double across = axis.cross(turning.axis).norm() + kSameAxis;
+  const double across = axis.cross(turning.axis).norm() + solver::kSameAxis;
   return turning.angle * turning.angle * across * turning.reach;
 }
 
@@ -272,8 +176,8 @@ MovingPair::MovingPair(const ShapeTables& tables, const MovingPart& a,
     // position.
     noise_ += kEpsilon * (64.0 + 4.0 * turn_b_.angle) * (between_.norm() + travel_.norm());
   }
-  const double least = std::min(extent_of(problem_.a), extent_of(problem_.b));
-  size_ = least > 0.0 ? least : std::max(extent_of(problem_.a), extent_of(problem_.b));
+  const double least = std::min(extent(problem_.a), extent(problem_.b));
+  size_ = least > 0.0 ? least : std::max(extent(problem_.a), extent(problem_.b));
 }
 
 void MovingPair::place(double time) noexcept {

@@ -3,8 +3,8 @@
 // tapered capsules use Newton's method on the distance to the core. Called by shape_rays.cpp.
 
 #include "pipeline/rays/shape_entries.h"
+#include "pipeline/kinds/hypotenuse.h"
 #include "pipeline/shapes/accurate_cross.h"
-#include "pipeline/shapes/hypotenuse.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>

@@ -6,6 +6,7 @@
 
 #include <winnow/pipeline/shape_rays.h>
 #include <winnow/pipeline/shapes.h>
+#include "pipeline/kinds/kinds.h"
 
 #include <Eigen/Core>
 #include <cstdint>
@@ -110,7 +111,13 @@ class PlaneClip {
 /// the space scaled by the radii. Else: conservative advancement.
 [[nodiscard]] FirstEntry enter(const LocalRay& ray, const EllipsoidShape& ellipsoid,
                                double scale) noexcept;
-[[nodiscard]] FirstEntry enter(const LocalRay& ray, const SupportShape& shape,
-                               double scale) noexcept;
+/// By conservative advancement to the core of a shape that is given by its support function.
+[[nodiscard]] FirstEntry enter_core(const LocalRay& ray, const SupportCore& core,
+                                    double scale) noexcept;
+/// All other shapes have such a core.
+template <typename Shape>
+[[nodiscard]] FirstEntry enter(const LocalRay& ray, const Shape& shape, double scale) noexcept {
+  return enter_core(ray, core_of(shape).support, scale);
+}
 
 }  // namespace winnow

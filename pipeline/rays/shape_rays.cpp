@@ -24,45 +24,6 @@ using Eigen::Vector3d;
   return std::clamp(exponent, -1000, 1000);
 }
 
-[[nodiscard]] double size_of(const SphereShape& s) noexcept {
-  return s.radius;
-}
-[[nodiscard]] double size_of(const CapsuleShape& s) noexcept {
-  return std::max(s.radius, s.half_length);
-}
-[[nodiscard]] double size_of(const BoxShape& s) noexcept {
-  return std::max({s.half[0], s.half[1], s.half[2], s.rounding});
-}
-[[nodiscard]] double size_of(const CylinderShape& s) noexcept {
-  return std::max({s.radius, s.half_length, s.rounding});
-}
-[[nodiscard]] double size_of(const ConeShape& s) noexcept {
-  return std::max({s.radius, s.half_length, s.rounding});
-}
-[[nodiscard]] double size_of(const HullShape& s) noexcept {
-  return std::max({s.radius, s.rounding, Vector3d::Map(s.center).cwiseAbs().maxCoeff()});
-}
-[[nodiscard]] double size_of(const TriangleShape& s) noexcept {
-  double size = s.rounding;
-  for (const auto& vertex : s.vertex) {
-    size = std::max(size, Vector3d::Map(vertex).cwiseAbs().maxCoeff());
-  }
-  return size;
-}
-[[nodiscard]] double size_of(const HalfSpaceShape& s) noexcept {
-  return std::fabs(s.offset);
-}
-
-[[nodiscard]] double size_of(const EllipsoidShape& s) noexcept {
-  return std::max({s.radius[0], s.radius[1], s.radius[2], s.rounding});
-}
-[[nodiscard]] double size_of(const TaperedCapsuleShape& s) noexcept {
-  return std::max({s.radius[0], s.radius[1], s.half_length});
-}
-[[nodiscard]] double size_of(const SupportShape& s) noexcept {
-  return std::max(s.radius, s.rounding);
-}
-
 /// A ray relative to a body's position, in world axes, scaled. The caller's t is (shift + local t *
 /// 2^t_exponent) * 2^exponent.
 struct RelativeRay {
@@ -161,42 +122,7 @@ Status cast_ray(const ShapeTables& tables, ShapeId shape, const Pose& pose, cons
   }
   if (!is_valid(ray)) return Status::invalid_argument;
   if (!pose.is_valid()) return Status::invalid_pose;
-  const std::uint32_t i = shape.index();
-  switch (shape.kind()) {
-    case ShapeKind::sphere:
-      cast(tables.spheres[i], pose, ray, hit);
-      break;
-    case ShapeKind::capsule:
-      cast(tables.capsules[i], pose, ray, hit);
-      break;
-    case ShapeKind::box:
-      cast(tables.boxes[i], pose, ray, hit);
-      break;
-    case ShapeKind::cylinder:
-      cast(tables.cylinders[i], pose, ray, hit);
-      break;
-    case ShapeKind::cone:
-      cast(tables.cones[i], pose, ray, hit);
-      break;
-    case ShapeKind::hull:
-      cast(tables.hulls[i], pose, ray, hit);
-      break;
-    case ShapeKind::triangle:
-      cast(tables.triangles[i], pose, ray, hit);
-      break;
-    case ShapeKind::half_space:
-      cast(tables.half_spaces[i], pose, ray, hit);
-      break;
-    case ShapeKind::ellipsoid:
-      cast(tables.ellipsoids[i], pose, ray, hit);
-      break;
-    case ShapeKind::tapered_capsule:
-      cast(tables.tapered_capsules[i], pose, ray, hit);
-      break;
-    case ShapeKind::support:
-      cast(tables.supports[i], pose, ray, hit);
-      break;
-  }
+  with_shape(tables, shape, [&](const auto& one) { cast(one, pose, ray, hit); });
   return Status::ok;
 }
 

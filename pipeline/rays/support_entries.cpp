@@ -2,7 +2,6 @@
 // closed form for ellipsoids without rounding whose radii are not near 0.
 
 #include "pipeline/rays/shape_entries.h"
-#include "pipeline/shapes/support_core.h"
 #include "pipeline/solver/gjk.h"
 
 #include <algorithm>
@@ -25,7 +24,7 @@ struct Foreground {
 class SupportTarget {
  public:
   SupportTarget(const SupportCore& core, double scale) noexcept {
-    body_.kind = solver::CoreKind::support;
+    body_.kind = CoreKind::support;
     body_.farthest = core;
     body_.unit[0] = scale;
   }
@@ -43,12 +42,13 @@ class SupportTarget {
   solver::Core body_;
 };
 
-/// Advances the ray from one separating plane to the next; the core is behind each plane, so no
-/// step passes the entry (van den Bergen, "Ray casting against general convex objects with
-/// application to continuous collision detection", 2004). If a ray grazes, each step only halves
-/// the remaining distance.
-[[nodiscard]] FirstEntry approach_core(const LocalRay& ray, const SupportCore& core,
-                                       double scale) noexcept {
+}  // namespace
+
+// Advances the ray from one separating plane to the next; the core is behind each plane, so no
+// step passes the entry (van den Bergen, "Ray casting against general convex objects with
+// application to continuous collision detection", 2004). If a ray grazes, each step only halves
+// the remaining distance.
+FirstEntry enter_core(const LocalRay& ray, const SupportCore& core, double scale) noexcept {
   constexpr int kMaxSteps = 200;
   const double rounding = scale * core.rounding;
   FirstEntry entry;
@@ -75,13 +75,11 @@ class SupportTarget {
   return entry;
 }
 
-}  // namespace
-
 FirstEntry enter(const LocalRay& ray, const EllipsoidShape& ellipsoid, double scale) noexcept {
   constexpr double kThin = 1e-12;
   const Vector3d radius = scale * Vector3d::Map(ellipsoid.radius);
   if (ellipsoid.rounding > 0.0 || !(radius.minCoeff() > kThin)) {
-    return approach_core(ray, support_core(ellipsoid), scale);
+    return enter_core(ray, support_core(ellipsoid), scale);
   }
   LocalRay stretched = ray;
   stretched.origin = ray.origin.cwiseQuotient(radius);
@@ -91,10 +89,6 @@ FirstEntry enter(const LocalRay& ray, const EllipsoidShape& ellipsoid, double sc
   FirstEntry entry;
   entry.merge_span(ray, span);
   return entry;
-}
-
-FirstEntry enter(const LocalRay& ray, const SupportShape& shape, double scale) noexcept {
-  return approach_core(ray, support_core(shape), scale);
 }
 
 }  // namespace winnow

@@ -3,6 +3,7 @@
 
 #include "core/memory/new_in.h"
 #include "core/memory/saved_keys.h"
+#include "pipeline/kinds/with_shape.h"
 #include "pipeline/narrow/tier_number.h"
 #include "pipeline/recording/composite_bytes.h"
 #include "pipeline/recording/contact_digest.h"
@@ -12,6 +13,7 @@
 #include "pipeline/shapes/hull_bytes.h"
 
 #include <algorithm>
+#include <type_traits>
 
 namespace winnow {
 namespace {
@@ -27,35 +29,6 @@ RecordedBody recorded(const BodyDefinition& body, std::uint32_t shape) noexcept 
   out.filter[2] = body.filter.environment;
   out.data = body.data;
   return out;
-}
-
-/// Calls use(shape) with the shape struct of its kind.
-template <typename Use>
-void with_shape(const ShapeTables& tables, ShapeId id, Use&& use) {
-  switch (id.kind()) {
-    case ShapeKind::sphere:
-      return use(tables.spheres[id.index()]);
-    case ShapeKind::capsule:
-      return use(tables.capsules[id.index()]);
-    case ShapeKind::box:
-      return use(tables.boxes[id.index()]);
-    case ShapeKind::cylinder:
-      return use(tables.cylinders[id.index()]);
-    case ShapeKind::cone:
-      return use(tables.cones[id.index()]);
-    case ShapeKind::hull:
-      return use(tables.hulls[id.index()]);
-    case ShapeKind::triangle:
-      return use(tables.triangles[id.index()]);
-    case ShapeKind::half_space:
-      return use(tables.half_spaces[id.index()]);
-    case ShapeKind::ellipsoid:
-      return use(tables.ellipsoids[id.index()]);
-    case ShapeKind::tapered_capsule:
-      return use(tables.tapered_capsules[id.index()]);
-    case ShapeKind::support:
-      return use(tables.supports[id.index()]);
-  }
 }
 
 std::uint64_t digest_of(const ShapeTables& tables, ShapeId id) noexcept {

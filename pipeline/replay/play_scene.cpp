@@ -1,5 +1,6 @@
 // Plays calls of scenes: shapes, bodies, contacts and snapshots.
 
+#include "pipeline/kinds/with_shape.h"
 #include "pipeline/narrow/tier_number.h"
 #include "pipeline/recording/composite_bytes.h"
 #include "pipeline/recording/contact_digest.h"
@@ -8,19 +9,19 @@
 #include "pipeline/shapes/hull_bytes.h"
 
 #include <algorithm>
+#include <type_traits>
 
 namespace winnow {
 namespace {
 
 /// Reads a shape struct and adds it to the pool. The digest is of the shape in the pool.
 template <typename Shape>
-Status add_plain(ByteReader& in, ShapePool& pool, ShapeId& id,
-                 const Shape* const ShapeTables::*table, Digest& digest) {
+Status add_plain(ByteReader& in, ShapePool& pool, ShapeId& id, Digest& digest) {
   Shape shape{};
   if (!in.get_bytes(&shape, sizeof shape)) return Status::invalid_argument;
   const Status status = pool.add(shape, id);
   if (status != Status::ok) return status;
-  digest.add(std::as_bytes(std::span((pool.tables().*table) + id.index(), 1)));
+  digest.add(std::as_bytes(std::span(KindOf<Shape>::in(pool.tables()) + id.index(), 1)));
   return status;
 }
 
@@ -156,46 +157,21 @@ Status ReplayState::change_scene(RecordedCall call, ReplayedWorld& of) {
 
 /// If the shape in the pool differs from the recorded one, this counts as a difference.
 Status ReplayState::add_shape(ReplayedWorld& of) {
-  ShapePool& pool = *of.shapes;
   ShapeId id;
   Digest digest;
-  Status taken = Status::invalid_argument;
-  const auto kind = in.get_enum(ShapeKind::tapered_capsule);
+  const auto kind = in.get_enum(kLastConvexKind);
   if (!in.ok()) return reading();
-  switch (kind) {
-    case ShapeKind::sphere:
-      taken = add_plain(in, pool, id, &ShapeTables::spheres, digest);
-      break;
-    case ShapeKind::capsule:
-      taken = add_plain(in, pool, id, &ShapeTables::capsules, digest);
-      break;
-    case ShapeKind::box:
-      taken = add_plain(in, pool, id, &ShapeTables::boxes, digest);
-      break;
-    case ShapeKind::cylinder:
-      taken = add_plain(in, pool, id, &ShapeTables::cylinders, digest);
-      break;
-    case ShapeKind::cone:
-      taken = add_plain(in, pool, id, &ShapeTables::cones, digest);
-      break;
-    case ShapeKind::hull:
-      taken = add_hull(of, id, digest);
-      break;
-    case ShapeKind::triangle:
-      taken = add_plain(in, pool, id, &ShapeTables::triangles, digest);
-      break;
-    case ShapeKind::half_space:
-      taken = add_plain(in, pool, id, &ShapeTables::half_spaces, digest);
-      break;
-    case ShapeKind::ellipsoid:
-      taken = add_plain(in, pool, id, &ShapeTables::ellipsoids, digest);
-      break;
-    case ShapeKind::tapered_capsule:
-      taken = add_plain(in, pool, id, &ShapeTables::tapered_capsules, digest);
-      break;
-    case ShapeKind::support:
-      break;
-  }
+  if (ShapeId::of(kind, 0).is_composite()) return Status::invalid_argument;
+  const Status taken = with_kind(kind, [&](auto its) {
+    using Shape = typename decltype(its)::Shape;
+    if constexpr (std::is_same_v<Shape, HullShape>) {
+      return add_hull(of, id, digest);
+    } else if constexpr (std::is_same_v<Shape, SupportShape>) {
+      return Status::invalid_argument;
+    } else {
+      return add_plain<Shape>(in, *of.shapes, id, digest);
+    }
+  });
   if (taken != Status::ok) return taken;
   if (!of.shape_ids.push_back(id)) return Status::out_of_memory;
   return compare(digest);

@@ -2,16 +2,12 @@
 
 #include <winnow/core/aabb.h>
 #include <winnow/pipeline/shapes.h>
+#include "pipeline/kinds/support_extent.h"
 #include "pipeline/shapes/frame.h"
 
 namespace winnow::mid {
 
-/// The range of d . x over a shape, and the magnitude of the numbers it was computed from.
-struct SupportExtent {
-  double low;
-  double high;
-  double scale;
-};
+using winnow::SupportExtent;
 
 /// SupportExtent along any finite direction d, in the shape's own frame. The error is a few
 /// roundings of `scale`. Infinite for a half-space.

@@ -1,11 +1,13 @@
 #pragma once
 
-// Defines ShapePool::put, which adds a shape to the table of its kind.
+// Defines ShapePool::put, which adds a shape to the table of its kind, and ShapePool::table_of.
 
 #include <winnow/pipeline/shape_pool.h>
+#include "pipeline/kinds/with_shape.h"
 
 #include <cmath>
 #include <initializer_list>
+#include <type_traits>
 
 namespace winnow {
 
@@ -16,8 +18,21 @@ namespace winnow {
   return true;
 }
 
+template <typename Shape, typename Pool>
+auto& ShapePool::table_of(Pool& pool) noexcept {
+#define WINNOW_TABLE(kind, Other, table)        \
+  if constexpr (std::is_same_v<Shape, Other>) { \
+    return pool.table##_;                       \
+  } else
+  WINNOW_CONVEX_SHAPES(WINNOW_TABLE) {
+    static_assert(sizeof(Shape) == 0, "not a convex shape");
+  }
+#undef WINNOW_TABLE
+}
+
 template <typename Shape>
-Status ShapePool::put(Table<Shape>& table, ShapeKind kind, const Shape& shape, ShapeId& id) {
+Status ShapePool::put(const Shape& shape, ShapeId& id) {
+  Table<Shape>& table = table_of<Shape>(*this);
   std::uint32_t index = 0;
   if (!table.free.empty()) {
     index = table.free[table.free.size() - 1];
@@ -35,7 +50,7 @@ Status ShapePool::put(Table<Shape>& table, ShapeKind kind, const Shape& shape, S
     table.live.set_size(index + 1U);
     table.live[index] = 1;
   }
-  id = ShapeId::of(kind, index);
+  id = ShapeId::of(KindOf<Shape>::kKind, index);
   refresh_tables();
   return Status::ok;
 }

@@ -6,6 +6,7 @@
 #include "core/threads/float_environment.h"
 #include "pipeline/shapes/hull_builder.h"
 #include "pipeline/shapes/hull_bytes.h"
+#include "pipeline/shapes/shape_pool_put.h"
 
 #include <type_traits>
 
@@ -53,27 +54,13 @@ template <typename Shape>
 
 }  // namespace
 
-template <typename Pool, typename Visit>
-void ShapePool::for_tables(Pool& pool, Pool& other, Visit&& visit) {
-  visit(pool.spheres_, other.spheres_);
-  visit(pool.capsules_, other.capsules_);
-  visit(pool.boxes_, other.boxes_);
-  visit(pool.cylinders_, other.cylinders_);
-  visit(pool.cones_, other.cones_);
-  visit(pool.hulls_, other.hulls_);
-  visit(pool.triangles_, other.triangles_);
-  visit(pool.half_spaces_, other.half_spaces_);
-  visit(pool.ellipsoids_, other.ellipsoids_);
-  visit(pool.tapered_capsules_, other.tapered_capsules_);
-  visit(pool.supports_, other.supports_);
-}
-
 Status ShapePool::save(Column<std::byte>& out) const {
   // Function pointers cannot be saved.
   if (size(ShapeKind::support) != 0) return logged(Status::unsupported, "ShapePool::save");
   const Status status = write_snapshot(out, kShapesMagic, kShapesVersion, [&](ByteWriter& writer) {
     writer.put(kShapeKinds);
-    for_tables(*this, *this, [&](const auto& table, const auto&) {
+    for_each_kind([&](auto of) {
+      const auto& table = table_of<typename decltype(of)::Shape>(*this);
       write_slots(writer, table.shapes.size(), table.free);
       for (std::size_t i = 0; i < table.shapes.size(); ++i) {
         if (table.live[i] != 0) put_shape(writer, table.shapes[i]);
@@ -90,8 +77,9 @@ Status ShapePool::load(std::span<const std::byte> saved) {
   ByteReader in = open_snapshot(saved, kShapesMagic, kShapesVersion);
   ShapePool fresh(memory_);
   Status status = in.get<std::uint32_t>() == kShapeKinds ? Status::ok : Status::invalid_argument;
-  for_tables(fresh, fresh, [&](auto& table, auto&) {
-    using Shape = std::remove_reference_t<decltype(table.shapes[0])>;
+  for_each_kind([&](auto of) {
+    using Shape = typename decltype(of)::Shape;
+    auto& table = table_of<Shape>(fresh);
     SlotReader places(memory_);
     if (status != Status::ok || !places.read(in)) return;
     if (!places.open(in, table.shapes, table.free, nothing<Shape>())) return;
@@ -107,10 +95,9 @@ Status ShapePool::load(std::span<const std::byte> saved) {
   if (!in.ok()) status = status_of(in);
   if (status == Status::ok && !in.rest().empty()) status = Status::invalid_argument;
   if (status != Status::ok) return logged(snapshot_status(status), "ShapePool::load");
-  for_tables(*this, fresh, [](auto& table, auto& read) {
-    table.shapes.swap(read.shapes);
-    table.live.swap(read.live);
-    table.free.swap(read.free);
+  for_each_kind([&](auto of) {
+    using Shape = typename decltype(of)::Shape;
+    table_of<Shape>(*this).swap(table_of<Shape>(fresh));
   });
   refresh_tables();
   return Status::ok;

@@ -5,7 +5,7 @@
 
 #include <winnow/core/pose.h>
 #include <winnow/pipeline/shapes.h>
-#include "pipeline/shapes/support_core.h"
+#include "pipeline/kinds/shape_core.h"
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -17,18 +17,6 @@ namespace winnow::solver {
 
 using Vec = Eigen::Vector3d;
 using Mat = Eigen::Matrix3d;
-
-enum class CoreKind : std::uint8_t {
-  point,
-  segment,
-  box,
-  triangle,
-  hull,
-  cylinder,
-  cone,
-  support,
-  half_space
-};
 
 /// A core in world axes, scaled to the units of its Problem. All functions of a core are exact up
 /// to a few roundings relative to the core's size.
@@ -66,6 +54,9 @@ struct AxisRange {
   double high;
 };
 
+/// The vertices at the ends of an edge.
+using Edge = std::array<std::uint32_t, 2>;
+
 /// Returns the first of the hull's vertices that are farthest along `d`, a direction in the hull's
 /// frame; `value` receives its dot product with `d`.
 std::uint32_t farthest_vertex(const HullShape& hull, const Vec& d, double& value) noexcept;
@@ -92,7 +83,7 @@ std::uint32_t farthest_vertex(const HullShape& hull, const Vec& d, double& value
 [[nodiscard]] std::uint32_t vertex_count(const Core& core) noexcept;
 [[nodiscard]] Vec vertex(const Core& core, std::uint32_t i) noexcept;
 [[nodiscard]] std::uint32_t edge_count(const Core& core) noexcept;
-[[nodiscard]] std::array<std::uint32_t, 2> edge(const Core& core, std::uint32_t i) noexcept;
+[[nodiscard]] Edge edge(const Core& core, std::uint32_t i) noexcept;
 
 /// Directions of the edges, of any length, which may be zero. A box has three, as parallel edges
 /// count once; a cylinder or cone has one, its axis.
@@ -114,6 +105,17 @@ std::uint32_t farthest_vertex(const HullShape& hull, const Vec& d, double& value
                                       std::uint32_t i) noexcept;
 /// Unit and outward; for a triangle either of its two normals.
 [[nodiscard]] Vec face_normal(const Core& core, std::uint32_t face) noexcept;
+
+/// Axes that differ by less count as equal; the difference is covered by the noise.
+inline constexpr double kSameAxis = 16.0 * std::numeric_limits<double>::epsilon();
+
+/// Returns an upper bound on the distance of a core's points from the axis w through its centre; 0
+/// for a half-space. The core must not be rotated.
+[[nodiscard]] double reach_about(const Core& core, const Vec& w) noexcept;
+/// Returns whether rotation about the axis w leaves the core unchanged.
+[[nodiscard]] bool is_invariant(const Core& core, const Vec& w) noexcept;
+/// About half of the core's diameter, plus its rounding; 0 for a half-space.
+[[nodiscard]] double extent(const Core& core) noexcept;
 
 /// Returns the unit vector along v, or zero if v is zero. Neither overflows nor underflows for any
 /// finite v.

@@ -4,10 +4,10 @@
 #include "pipeline/solver/manifold.h"
 
 #include <winnow/core/rounding.h>
+#include "pipeline/kinds/hypotenuse.h"
 #include "pipeline/manifold/contact_patch.h"
 #include "pipeline/manifold/polygon_clip.h"
 #include "pipeline/shapes/directions_around.h"
-#include "pipeline/shapes/hypotenuse.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "pipeline/solver/point_distance.h"
 
-#include "pipeline/shapes/hypotenuse.h"
+#include "pipeline/kinds/hypotenuse.h"
 
 #include <cmath>
 

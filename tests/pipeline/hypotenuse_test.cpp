@@ -7,8 +7,8 @@
 #include <cmath>
 #include <iterator>
 
+#include "pipeline/kinds/hypotenuse.h"
 #include "pipeline/shapes/directions_around.h"
-#include "pipeline/shapes/hypotenuse.h"
 #include "tests/support/random.h"
 
 namespace winnow::test {

@@ -6,125 +6,47 @@
 #include "pipeline/c/binding/handles.h"
 #include "pipeline/c/binding/layout_compatible.h"
 #include "pipeline/c/binding/views.h"
+#include "pipeline/kinds/with_shape.h"
 
 #include <winnow/pipeline/shape_rays.h>
 
-#include <algorithm>
+#include <cstring>
+#include <type_traits>
 
 namespace winnow::c {
 namespace {
 
-[[nodiscard]] SphereShape read(const decltype(winnow_shape::as.sphere)& s) noexcept {
-  return {s.radius};
-}
-[[nodiscard]] CapsuleShape read(const decltype(winnow_shape::as.capsule)& s) noexcept {
-  return {s.radius, s.half_length};
-}
-[[nodiscard]] BoxShape read(const decltype(winnow_shape::as.box)& s) noexcept {
-  return {{s.half[0], s.half[1], s.half[2]}, s.rounding};
-}
-[[nodiscard]] CylinderShape read(const decltype(winnow_shape::as.cylinder)& s) noexcept {
-  return {s.radius, s.half_length, s.rounding};
-}
-[[nodiscard]] ConeShape read(const decltype(winnow_shape::as.cone)& s) noexcept {
-  return {s.radius, s.half_length, s.rounding};
-}
-[[nodiscard]] TriangleShape read(const decltype(winnow_shape::as.triangle)& s) noexcept {
-  TriangleShape triangle;
-  std::copy(&s.vertex[0][0], &s.vertex[0][0] + 9, &triangle.vertex[0][0]);
-  triangle.rounding = s.rounding;
-  return triangle;
-}
-[[nodiscard]] HalfSpaceShape read(const decltype(winnow_shape::as.half_space)& s) noexcept {
-  return {{s.normal[0], s.normal[1], s.normal[2]}, s.offset};
+/// Returns false unless the number is of a convex kind.
+[[nodiscard]] bool read_kind(winnow_shape_kind number, ShapeKind& kind) noexcept {
+  return read_choice(number, kLastConvexKind, kind) && !ShapeId::of(kind, 0).is_composite();
 }
 
-[[nodiscard]] EllipsoidShape read(const decltype(winnow_shape::as.ellipsoid)& s) noexcept {
-  return {{s.radius[0], s.radius[1], s.radius[2]}, s.rounding};
-}
-[[nodiscard]] TaperedCapsuleShape read(
-    const decltype(winnow_shape::as.tapered_capsule)& s) noexcept {
-  return {{s.radius[0], s.radius[1]}, s.half_length};
-}
-[[nodiscard]] SupportShape read(const decltype(winnow_shape::as.support)& s) noexcept {
-  return {s.function, s.context, s.radius, s.rounding};
-}
+// The C structs of all kinds but hulls have the same members as the C++ structs, in the same order.
 
 [[nodiscard]] Status add(ShapePool& pool, const winnow_shape& shape, ShapeId& id) {
-  switch (shape.kind) {
-    case WINNOW_SHAPE_SPHERE:
-      return pool.add(read(shape.as.sphere), id);
-    case WINNOW_SHAPE_CAPSULE:
-      return pool.add(read(shape.as.capsule), id);
-    case WINNOW_SHAPE_BOX:
-      return pool.add(read(shape.as.box), id);
-    case WINNOW_SHAPE_CYLINDER:
-      return pool.add(read(shape.as.cylinder), id);
-    case WINNOW_SHAPE_CONE:
-      return pool.add(read(shape.as.cone), id);
-    case WINNOW_SHAPE_TRIANGLE:
-      return pool.add(read(shape.as.triangle), id);
-    case WINNOW_SHAPE_HALF_SPACE:
-      return pool.add(read(shape.as.half_space), id);
-    case WINNOW_SHAPE_ELLIPSOID:
-      return pool.add(read(shape.as.ellipsoid), id);
-    case WINNOW_SHAPE_TAPERED_CAPSULE:
-      return pool.add(read(shape.as.tapered_capsule), id);
-    case WINNOW_SHAPE_SUPPORT:
-      return pool.add(read(shape.as.support), id);
-    default:
+  ShapeKind kind{};
+  if (!read_kind(shape.kind, kind)) return Status::invalid_argument;
+  return with_kind(kind, [&](auto of) {
+    using Shape = typename decltype(of)::Shape;
+    if constexpr (std::is_same_v<Shape, HullShape>) {
       return Status::invalid_argument;
-  }
+    } else {
+      Shape one;
+      static_assert(sizeof one <= sizeof shape.as);
+      std::memcpy(&one, &shape.as, sizeof one);
+      return pool.add(one, id);
+    }
+  });
 }
 
-/// Copies a C++ shape to the C struct, which has the same members in the same order.
-template <typename Shape, typename Member>
-void write(const Shape& shape, Member& member) noexcept {
-  static_assert(sizeof(Shape) == sizeof(Member));
-  const auto* from = reinterpret_cast<const double*>(&shape);
-  std::copy(from, from + sizeof(Shape) / sizeof(double), reinterpret_cast<double*>(&member));
-}
-
+/// Leaves `as` empty for hulls.
 [[nodiscard]] winnow_shape shape_at(const ShapeTables& tables, ShapeId id) noexcept {
   winnow_shape shape{};
   shape.kind = static_cast<winnow_shape_kind>(id.kind_index());
-  const std::uint32_t i = id.index();
-  switch (id.kind()) {
-    case ShapeKind::sphere:
-      write(tables.spheres[i], shape.as.sphere);
-      break;
-    case ShapeKind::capsule:
-      write(tables.capsules[i], shape.as.capsule);
-      break;
-    case ShapeKind::box:
-      write(tables.boxes[i], shape.as.box);
-      break;
-    case ShapeKind::cylinder:
-      write(tables.cylinders[i], shape.as.cylinder);
-      break;
-    case ShapeKind::cone:
-      write(tables.cones[i], shape.as.cone);
-      break;
-    case ShapeKind::triangle:
-      write(tables.triangles[i], shape.as.triangle);
-      break;
-    case ShapeKind::half_space:
-      write(tables.half_spaces[i], shape.as.half_space);
-      break;
-    case ShapeKind::ellipsoid:
-      write(tables.ellipsoids[i], shape.as.ellipsoid);
-      break;
-    case ShapeKind::tapered_capsule:
-      write(tables.tapered_capsules[i], shape.as.tapered_capsule);
-      break;
-    case ShapeKind::support: {
-      const SupportShape& own = tables.supports[i];
-      shape.as.support = {own.function, own.context, own.radius, own.rounding};
-      break;
-    }
-    case ShapeKind::hull:
-      break;
-  }
+  if (id.kind() == ShapeKind::hull) return shape;
+  with_shape(tables, id, [&](const auto& one) {
+    if constexpr (sizeof one <= sizeof shape.as) std::memcpy(&shape.as, &one, sizeof one);
+  });
   return shape;
 }
 
@@ -158,7 +80,7 @@ const char* winnow_shape_kind_name(winnow_shape_kind kind) {
       break;
   }
   winnow::ShapeKind known{};
-  return read_choice(kind, winnow::ShapeKind::support, known) ? winnow::to_string(known) : "none";
+  return read_kind(kind, known) ? winnow::to_string(known) : "none";
 }
 
 winnow_status winnow_shape_pool_create(const winnow_memory* memory, winnow_shape_pool** pool) {
@@ -224,11 +146,7 @@ winnow_status winnow_shape_pool_contains(const winnow_shape_pool* pool, winnow_s
 winnow_status winnow_shape_pool_size(const winnow_shape_pool* pool, winnow_shape_kind kind,
                                      size_t* size) {
   winnow::ShapeKind which{};
-  const bool is_composite = kind >= WINNOW_SHAPE_MESH && kind <= WINNOW_SHAPE_HEIGHT_FIELD;
-  if (!are_given(pool, size) || is_composite ||
-      !read_choice(kind, winnow::ShapeKind::support, which)) {
-    return WINNOW_INVALID_ARGUMENT;
-  }
+  if (!are_given(pool, size) || !read_kind(kind, which)) return WINNOW_INVALID_ARGUMENT;
   *size = pool->value.size(which);
   return WINNOW_OK;
 }

@@ -27,7 +27,6 @@ namespace {
 
 using mid::kInfinity;
 using solver::CoreDistance;
-using solver::CoreKind;
 using solver::GjkResult;
 using solver::kEpsilon;
 using solver::Problem;

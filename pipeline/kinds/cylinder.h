@@ -1,0 +1,32 @@
+#pragma once
+
+#include "pipeline/kinds/support_extent.h"
+
+namespace winnow {
+
+template <typename Direction>
+[[nodiscard]] SupportExtent extent_of(const CylinderShape& cylinder,
+                                      const Direction& direction) noexcept {
+  return symmetric(cylinder.radius * direction.across() +
+                   cylinder.half_length * std::abs(direction.d.z()) +
+                   cylinder.rounding * direction.length());
+}
+[[nodiscard]] inline double radius_of(const CylinderShape& cylinder) noexcept {
+  return hypotenuse(cylinder.radius, cylinder.half_length) + cylinder.rounding;
+}
+[[nodiscard]] inline double rounding_of(const CylinderShape& cylinder) noexcept {
+  return cylinder.rounding;
+}
+[[nodiscard]] inline double inner_radius_of(const CylinderShape& /*cylinder*/) noexcept {
+  return 0.0;
+}
+[[nodiscard]] inline double size_of(const CylinderShape& cylinder) noexcept {
+  return std::max({cylinder.radius, cylinder.half_length, cylinder.rounding});
+}
+[[nodiscard]] inline ShapeCore core_of(const CylinderShape& cylinder) noexcept {
+  const CoreKind kind = cylinder.radius > 0.0 ? CoreKind::cylinder : CoreKind::segment;
+  return ShapeCore::of_lengths(kind, {cylinder.radius, cylinder.radius, cylinder.half_length},
+                               cylinder.rounding);
+}
+
+}  // namespace winnow
