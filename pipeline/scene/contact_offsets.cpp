@@ -1,7 +1,7 @@
 // Contact and rest offsets of bodies. Each pair has its own contact distance, which is its margin
 // in the narrow phase; contacts are then measured from the surfaces moved by the rest offsets.
-// Collision calls this before the narrow phase (limit and margins) and after it. In a scene without
-// offsets, all pairs have the scene's margin, and the other functions return at once.
+// Collision (collide.cpp) calls this before the narrow phase (limit and margins) and after it. In a
+// scene without offsets, all pairs have the scene's margin, and the other functions return at once.
 
 #include "core/hooks/log.h"
 #include "core/sort/parallel_ranges.h"
@@ -74,19 +74,20 @@ double SceneState::gap_of(const BodyPair& pair) const noexcept {
 // Sets the limit that decides for all pairs whether they are in contact; no pair's own contact
 // distance exceeds it. `trim` therefore replaces a distance that exceeds the pair's own contact
 // distance by the limit plus the excess.
-void Collision::find_limit() noexcept {
-  limit_ = scene_.options.contact_margin;
+void ContactFilters::find_limit() noexcept {
+  call_.limit = scene_.options.contact_margin;
   if (!scene_.has_offsets()) return;
   for (const Column<BodyPair>* const list : {&scene_.convex, &scene_.composite}) {
     for (const BodyPair& pair : *list) {
       const double gap = scene_.gap_of(pair);
       const double rest = scene_.offsets_of(pair.a).rest + scene_.offsets_of(pair.b).rest;
-      limit_ = std::max(limit_, std::min(gap - std::min(rest, 0.0), kLargestLength));
+      call_.limit = std::max(call_.limit, std::min(gap - std::min(rest, 0.0), kLargestLength));
     }
   }
 }
 
-bool Collision::find_margins(const Column<BodyPair>& pairs, double more, PairMargins& margins) {
+bool ContactFilters::find_margins(const Column<BodyPair>& pairs, double more,
+                                  PairMargins& margins) {
   margins = std::min(scene_.options.contact_margin + more, kLargestLength);
   if (!scene_.has_offsets()) return true;
   Column<double>& gaps = scene_.gaps;
@@ -100,7 +101,7 @@ bool Collision::find_margins(const Column<BodyPair>& pairs, double more, PairMar
   return true;
 }
 
-bool Collision::find_part_margins(PairMargins& margins) {
+bool ContactFilters::find_part_margins(PairMargins& margins) {
   margins = scene_.options.contact_margin;
   if (!scene_.has_offsets()) return true;
   const PrimitivePairs& parts = scene_.parts->pairs;
@@ -116,16 +117,16 @@ bool Collision::find_part_margins(PairMargins& margins) {
   return true;
 }
 
-void Collision::trim(double gap, std::uint32_t at, const NarrowColumns& answers) noexcept {
+void ContactFilters::trim(double gap, std::uint32_t at, const NarrowColumns& answers) noexcept {
   double& distance = answers.distance[at];
   const double beyond = distance - gap;
   if (!(beyond > 0.0)) return;
-  distance =
-      std::min(std::max(limit_ + beyond, std::nextafter(limit_, kLargestLength)), kLargestLength);
+  distance = std::min(std::max(call_.limit + beyond, std::nextafter(call_.limit, kLargestLength)),
+                      kLargestLength);
 }
 
-void Collision::trim_convex() noexcept {
-  if (level_ < ContactLevel::distance || !scene_.has_offsets()) return;
+void ContactFilters::trim_convex() noexcept {
+  if (call_.level < ContactLevel::distance || !scene_.has_offsets()) return;
   const NarrowColumns answers = scene_.answers.columns();
   for_each_range(scene_.options.execution, scene_.convex.size(), kOffsetPairsPerRange,
                  [&](std::size_t first, std::size_t end) {
@@ -136,8 +137,8 @@ void Collision::trim_convex() noexcept {
                  });
 }
 
-void Collision::trim_parts() noexcept {
-  if (level_ < ContactLevel::distance || !scene_.has_offsets()) return;
+void ContactFilters::trim_parts() noexcept {
+  if (call_.level < ContactLevel::distance || !scene_.has_offsets()) return;
   const PartAnswers& parts = *scene_.parts;
   const NarrowColumns answers = scene_.parts->answers.columns();
   for_each_range(scene_.options.execution, parts.gaps.size(), kOffsetPairsPerRange,
@@ -149,15 +150,15 @@ void Collision::trim_parts() noexcept {
 }
 
 // Measures distance and points from the surfaces moved by the rest offsets.
-void Collision::rest(const BodyPair& bodies, std::uint32_t at,
-                     const NarrowColumns& answers) noexcept {
+void ContactFilters::rest(const BodyPair& bodies, std::uint32_t at,
+                          const NarrowColumns& answers) noexcept {
   const double rest[2] = {scene_.offsets_of(bodies.a).rest, scene_.offsets_of(bodies.b).rest};
   double& distance = answers.distance[at];
-  if ((rest[0] == 0.0 && rest[1] == 0.0) || distance > limit_) return;
+  if ((rest[0] == 0.0 && rest[1] == 0.0) || distance > call_.limit) return;
   answers.error_bound[at] += sum_error(distance, rest);
   distance -= rest[0] + rest[1];
   const double normal[3] = {answers.normal[0][at], answers.normal[1][at], answers.normal[2][at]};
-  if (level_ == ContactLevel::distance) {
+  if (call_.level == ContactLevel::distance) {
     for (int k = 0; k < 3; ++k) answers.point[k][at] += rest[0] * normal[k];
     return;
   }
@@ -169,14 +170,14 @@ void Collision::rest(const BodyPair& bodies, std::uint32_t at,
   }
 }
 
-void Collision::rest_parts() noexcept {
-  if (level_ < ContactLevel::distance || !scene_.has_offsets()) return;
+void ContactFilters::rest_parts() noexcept {
+  if (call_.level < ContactLevel::distance || !scene_.has_offsets()) return;
   const NarrowColumns answers = scene_.parts->answers.columns();
   for_each_range(scene_.options.execution, scene_.composite.size(), kOffsetPairsPerRange,
                  [&](std::size_t first, std::size_t end) {
                    for (std::size_t i = first; i < end; ++i) {
                      const BodyPair& bodies = scene_.composite[i];
-                     if (reduces_) {
+                     if (call_.reduces) {
                        rest_regions(bodies, i);
                        continue;
                      }
@@ -188,7 +189,7 @@ void Collision::rest_parts() noexcept {
                  });
 }
 
-void Collision::rest_regions(const BodyPair& bodies, std::size_t pair) noexcept {
+void ContactFilters::rest_regions(const BodyPair& bodies, std::size_t pair) noexcept {
   const double rest[2] = {scene_.offsets_of(bodies.a).rest, scene_.offsets_of(bodies.b).rest};
   if (rest[0] == 0.0 && rest[1] == 0.0) return;
   ContactRegions& all = scene_.parts->regions;

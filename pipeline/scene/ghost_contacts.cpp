@@ -1,6 +1,6 @@
 // Suppresses ghost contacts at seams (internal edges) between fixed bodies whose surfaces are flush
-// and form one floor. Collision::answer calls drop_ghost_contacts after the narrow phase of all
-// pairs.
+// and form one floor. Collision (collide.cpp) calls drop_ghost_contacts after the narrow phase of
+// all pairs.
 //
 // Each manifold of a dynamic body with a fixed body defines a floor plane: perpendicular to the
 // normal, through the point of the fixed surface at which the dynamic body is deepest. Except for
@@ -45,11 +45,6 @@ constexpr double kEqualShare = 1e-6;
 constexpr double kOppositeCosine = -0.5;
 /// The sine of the angle whose cosine is kRegionCosine.
 constexpr double kRegionSine = 0.08715574274765817;
-
-[[nodiscard]] bool is_floor_pair(const SceneState& scene, const BodyPair& pair) noexcept {
-  return scene.body_state[pair.a] == BodyState::fixed ||
-         scene.body_state[pair.b] == BodyState::fixed;
-}
 
 /// Decides whether a contact of a body is a ghost contact at a seam.
 class GhostContactTest {
@@ -216,7 +211,7 @@ class FloorGroups {
 }  // namespace
 
 /// Converts the points of manifolds to points on the fixed body's surface.
-class Collision::FloorWriter {
+class ContactFilters::FloorWriter {
  public:
   /// `index`: of the pair in its list.
   FloorWriter(const SceneState& scene, const BodyPair& pair, std::uint32_t index) noexcept
@@ -252,18 +247,15 @@ class Collision::FloorWriter {
   double most_ = 0.0;
 };
 
-bool Collision::is_cacheable(const BodyPair& pair) const noexcept {
-  return !scene_.options.suppress_ghost_contacts || !is_floor_pair(scene_, pair);
-}
-
-bool Collision::list_floor_answer(const NarrowResult& answers, FloorContact::Source source,
-                                  std::uint32_t at, const double* offset, FloorWriter& writer) {
+bool ContactFilters::list_floor_answer(const NarrowResult& answers, FloorContact::Source source,
+                                       std::uint32_t at, const double* offset,
+                                       FloorWriter& writer) {
   const double distance = answers.distance()[at];
-  if (!(distance <= limit_)) return true;
+  if (!(distance <= call_.limit)) return true;
   const Vec normal(answers.normal(0)[at], answers.normal(1)[at], answers.normal(2)[at]);
   const Vec from = offset != nullptr ? Vec(Vec::Map(offset)) : Vec(Vec::Zero());
   writer.begin(source, at, distance, normal);
-  if (level_ == ContactLevel::distance) {
+  if (call_.level == ContactLevel::distance) {
     const Vec on_a(answers.point(0)[at], answers.point(1)[at], answers.point(2)[at]);
     writer.add(from + on_a + 0.5 * distance * normal, -distance);
   } else {
@@ -276,24 +268,24 @@ bool Collision::list_floor_answer(const NarrowResult& answers, FloorContact::Sou
   return scene_.floor_contacts.push_back(writer.contact());
 }
 
-bool Collision::list_floor_contacts() {
+bool ContactFilters::list_floor_contacts() {
   scene_.floor_contacts.clear();
   for (std::uint32_t i = 0; i < scene_.convex.size(); ++i) {
-    if (!is_floor_pair(scene_, scene_.convex[i])) continue;
+    if (!call_.is_floor_pair(scene_.convex[i])) continue;
     FloorWriter writer(scene_, scene_.convex[i], i);
     if (!list_floor_answer(scene_.answers, FloorContact::Source::convex, i, nullptr, writer)) {
       return false;
     }
   }
   for (std::uint32_t i = 0; i < scene_.composite.size(); ++i) {
-    if (!is_floor_pair(scene_, scene_.composite[i])) continue;
+    if (!call_.is_floor_pair(scene_.composite[i])) continue;
     FloorWriter writer(scene_, scene_.composite[i], i);
-    if (reduces_ ? !list_floor_regions(i, writer) : !list_floor_parts(i, writer)) return false;
+    if (call_.reduces ? !list_floor_regions(i, writer) : !list_floor_parts(i, writer)) return false;
   }
   return true;
 }
 
-bool Collision::list_floor_parts(std::uint32_t pair, FloorWriter& writer) {
+bool ContactFilters::list_floor_parts(std::uint32_t pair, FloorWriter& writer) {
   const PrimitivePairs& parts = scene_.parts->pairs;
   for (std::uint32_t k = parts.first[pair]; k < parts.first[pair + 1]; ++k) {
     if (!list_floor_answer(scene_.parts->answers, FloorContact::Source::part, scene_.parts->slot[k],
@@ -304,7 +296,7 @@ bool Collision::list_floor_parts(std::uint32_t pair, FloorWriter& writer) {
   return true;
 }
 
-bool Collision::list_floor_regions(std::uint32_t pair, FloorWriter& writer) {
+bool ContactFilters::list_floor_regions(std::uint32_t pair, FloorWriter& writer) {
   const std::uint32_t first = scene_.parts->regions.first[pair];
   for (std::uint32_t k = first; k < first + scene_.parts->regions.count[pair]; ++k) {
     const ContactRegion& region = scene_.parts->regions.regions[k];
@@ -318,8 +310,8 @@ bool Collision::list_floor_regions(std::uint32_t pair, FloorWriter& writer) {
   return true;
 }
 
-void Collision::drop(const FloorContact& seam) noexcept {
-  const double beyond = std::nextafter(limit_, std::numeric_limits<double>::max());
+void ContactFilters::drop(const FloorContact& seam) noexcept {
+  const double beyond = std::nextafter(call_.limit, std::numeric_limits<double>::max());
   if (seam.source == FloorContact::Source::convex) {
     scene_.answers.columns().distance[seam.answer] = beyond;
   } else if (seam.source == FloorContact::Source::part) {
@@ -329,8 +321,8 @@ void Collision::drop(const FloorContact& seam) noexcept {
   }
 }
 
-bool Collision::drop_ghost_contacts() {
-  if (!scene_.options.suppress_ghost_contacts || level_ < ContactLevel::distance) return true;
+bool ContactFilters::drop_ghost_contacts() {
+  if (!scene_.options.suppress_ghost_contacts || call_.level < ContactLevel::distance) return true;
   if (!list_floor_contacts()) return false;
   Column<FloorContact>& all = scene_.floor_contacts;
   if (!scene_.floor_order.resize(all.size())) return false;
@@ -353,11 +345,11 @@ bool Collision::drop_ghost_contacts() {
 }
 
 // Drops the seams of one body.
-void Collision::drop_ghost_contacts_of(FloorContact* first, FloorContact* end) noexcept {
+void ContactFilters::drop_ghost_contacts_of(FloorContact* first, FloorContact* end) noexcept {
   const double radius = scene_.radius(first->body);
   if (end - first < 2 || !std::isfinite(radius)) return;
   const FloorGroups groups({first, end}, scene_.floor_order.data());
-  const GhostContactTest judge(scene_, radius, limit_);
+  const GhostContactTest judge(scene_, radius, call_.limit);
   for (FloorContact* one = first; one != end; ++one) {
     if (!groups.is_seam_of_any(*one, judge)) continue;
     drop(*one);
@@ -366,8 +358,8 @@ void Collision::drop_ghost_contacts_of(FloorContact* first, FloorContact* end) n
 }
 
 // Removes regions that were dropped, which have no points.
-void Collision::close_regions() noexcept {
-  if (!reduces_ || scene_.composite.empty()) return;
+void ContactFilters::close_regions() noexcept {
+  if (!call_.reduces || scene_.composite.empty()) return;
   ContactRegions& all = scene_.parts->regions;
   for (std::uint32_t i = 0; i < scene_.composite.size(); ++i) {
     ContactRegion* const first = all.regions.data() + all.first[i];

@@ -113,7 +113,7 @@ Status SceneState::reserve_sets(const SceneCapacity& room, Pages pages) {
 Status SceneState::reserve_answers(const SceneCapacity& room, Pages pages) {
   if (!pairs.reserve(room.pairs, pages)) return Status::out_of_memory;
   if (room.level == ContactLevel::pairs) return Status::ok;
-  const std::size_t batch = Collision::batch_size(options, room.pairs);
+  const std::size_t batch = CollideCall::batch_size(options, room.pairs);
   if (options.composites != nullptr && !composite.reserve(batch, pages)) {
     return Status::out_of_memory;
   }
@@ -128,7 +128,7 @@ Status SceneState::reserve_answers(const SceneCapacity& room, Pages pages) {
       ++bodies;
     }
   }
-  if (!convex.reserve(Collision::batch_room(options, room.pairs), pages) ||
+  if (!convex.reserve(CollideCall::batch_room(options, room.pairs), pages) ||
       (has_offsets() && !gaps.reserve(batch, pages)) || !list_rehearsal(bodies / 2, batch)) {
     return Status::out_of_memory;
   }
@@ -190,8 +190,8 @@ bool ContactsState::reserve(const SceneCapacity& room, const SceneOptions& optio
   const std::size_t remembered = uses_cache ? room.pairs + shown : shown;
   const std::size_t cached_room = uses_cache ? remembered : 0;
   // Caching is decided for all pairs before the narrow phase begins.
-  const std::size_t batch = Collision::batch_size(options, room.pairs);
-  const std::size_t batch_room = Collision::batch_room(options, room.pairs);
+  const std::size_t batch = CollideCall::batch_size(options, room.pairs);
+  const std::size_t batch_room = CollideCall::batch_room(options, room.pairs);
   const std::size_t record_room = uses_cache ? std::max(room.pairs, batch_room) : batch_room;
   const std::size_t source_room = room.level == ContactLevel::pairs ? 0 : batch_room;
   const std::size_t origin_room = room.level == ContactLevel::pairs ? 0 : record_room;
@@ -209,7 +209,7 @@ bool ContactsState::reserve(const SceneCapacity& room, const SceneOptions& optio
          dormant_cached.reserve(uses_cache ? shown : 0, pages) &&
          source.reserve(source_room, pages) && origin.reserve(origin_room, pages) &&
          old_record.reserve(record_room, pages) &&
-         sums.reserve(batch / Collision::kPairsPerTask + 1, pages);
+         sums.reserve(batch / CollideCall::kPairsPerTask + 1, pages);
 }
 
 }  // namespace winnow
