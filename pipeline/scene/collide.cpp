@@ -169,11 +169,11 @@ Status Collision::collide_batch() {
 
 // Lists the pairs that need new contacts, convex and composite ones separately.
 bool Collision::list_pairs() {
-  scene_.convex.clear();
-  scene_.composite.clear();
+  scene_.batch.convex.clear();
+  scene_.batch.composite.clear();
   if (call_.level == ContactLevel::pairs) return true;
   if (!call_.resize_for_batch(contacts_.source) ||
-      !scene_.convex.grow(call_.batch_room(scene_.options, call_.pair_count())) ||
+      !scene_.batch.convex.grow(call_.batch_room(scene_.options, call_.pair_count())) ||
       (!call_.uses_cache && !call_.resize_for_batch(contacts_.origin))) {
     return false;
   }
@@ -185,7 +185,8 @@ bool Collision::list_pairs() {
     }
     const ContactSource origin = call_.origin_of(i);
     if (origin == ContactSource::cached) continue;
-    Column<BodyPair>& list = origin == ContactSource::convex ? scene_.convex : scene_.composite;
+    Column<BodyPair>& list =
+        origin == ContactSource::convex ? scene_.batch.convex : scene_.batch.composite;
     contacts_.source[i - call_.batch_first] = static_cast<std::uint32_t>(list.size());
     if (!list.push_back(pair)) return false;
   }
@@ -193,51 +194,53 @@ bool Collision::list_pairs() {
 }
 
 Status Collision::collide_convex() {
-  if (call_.level == ContactLevel::pairs || scene_.convex.empty()) return Status::ok;
+  if (call_.level == ContactLevel::pairs || scene_.batch.convex.empty()) return Status::ok;
   PairMargins margins = 0.0;
-  if (!filters_.find_margins(scene_.convex, 0.0, margins)) return Status::out_of_memory;
-  const Status status = scene_.narrow.collide(
+  if (!filters_.find_margins(scene_.batch.convex, 0.0, margins)) return Status::out_of_memory;
+  const Status status = scene_.batch.narrow.collide(
       scene_.shapes,
       {{scene_.shape.data(), scene_.shape.size()}, {scene_.pose.data(), scene_.pose.size()}},
-      {scene_.convex.data(), scene_.convex.size()},
-      narrow_options(scene_.options, call_.level, margins), scene_.answers);
+      {scene_.batch.convex.data(), scene_.batch.convex.size()},
+      narrow_options(scene_.options, call_.level, margins), scene_.batch.answers);
   if (status != Status::ok) return status;
-  scene_.statistics.convex += scene_.narrow.statistics();
+  scene_.statistics.convex += scene_.batch.narrow.statistics();
   filters_.trim_convex();
   return Status::ok;
 }
 
 Status Collision::collide_composite() {
-  if (call_.level == ContactLevel::pairs || scene_.composite.empty()) return Status::ok;
+  if (call_.level == ContactLevel::pairs || scene_.batch.composite.empty()) return Status::ok;
   const SceneOptions& options = scene_.options;
-  if (scene_.parts == nullptr) scene_.parts = new_in<PartAnswers>(options.memory, options.memory);
-  if (scene_.parts == nullptr) return Status::out_of_memory;
-  PrimitivePairs& parts = scene_.parts->pairs;
+  if (scene_.batch.parts == nullptr)
+    scene_.batch.parts = new_in<PartAnswers>(options.memory, options.memory);
+  if (scene_.batch.parts == nullptr) return Status::out_of_memory;
+  PrimitivePairs& parts = scene_.batch.parts->pairs;
   // Primitives farther apart than this cannot touch before the pair's contacts are computed again.
   PairMargins margins = 0.0;
-  if (!filters_.find_margins(scene_.composite, call_.uses_cache ? options.cache_tolerance : 0.0,
-                             margins)) {
+  if (!filters_.find_margins(scene_.batch.composite,
+                             call_.uses_cache ? options.cache_tolerance : 0.0, margins)) {
     return Status::out_of_memory;
   }
   Status status = options.composites->find_primitive_pairs(
       scene_.shapes,
       {{scene_.shape.data(), scene_.shape.size()}, {scene_.pose.data(), scene_.pose.size()}},
-      {scene_.composite.data(), scene_.composite.size()}, margins, options.execution, parts);
+      {scene_.batch.composite.data(), scene_.batch.composite.size()}, margins, options.execution,
+      parts);
   if (status != Status::ok) return status;
   if (!filters_.find_part_margins(margins)) return Status::out_of_memory;
-  status = scene_.parts->narrow.collide(
+  status = scene_.batch.parts->narrow.collide(
       parts.tables(scene_.shapes),
       {{parts.shapes.data(), parts.shapes.size()}, {parts.poses.data(), parts.poses.size()}},
       {parts.pairs.data(), parts.pairs.size()}, narrow_options(options, call_.level, margins),
-      scene_.parts->answers);
+      scene_.batch.parts->answers);
   if (status != Status::ok) return status;
   if (call_.level >= ContactLevel::distance) {
     options.composites->correct_internal_edges(scene_.shapes, parts, margins, options.execution,
-                                               scene_.parts->answers);
+                                               scene_.batch.parts->answers);
   }
-  scene_.statistics.parts += scene_.parts->narrow.statistics();
+  scene_.statistics.parts += scene_.batch.parts->narrow.statistics();
   scene_.statistics.primitive_pairs += parts.pairs.size();
-  if (!invert(scene_.parts->answers, options.execution, scene_.parts->slot)) {
+  if (!invert(scene_.batch.parts->answers, options.execution, scene_.batch.parts->slot)) {
     return Status::out_of_memory;
   }
   filters_.trim_parts();
@@ -249,11 +252,11 @@ Status Collision::collide_composite() {
 Status Collision::reduce_composite() {
   if (!call_.reduces) return Status::ok;
   PairMargins margins = 0.0;
-  if (!filters_.find_margins(scene_.composite, 0.0, margins)) return Status::out_of_memory;
+  if (!filters_.find_margins(scene_.batch.composite, 0.0, margins)) return Status::out_of_memory;
   const SceneOptions& options = scene_.options;
-  return options.composites->reduce_contacts(scene_.shapes, scene_.parts->pairs,
-                                             scene_.parts->answers, margins, options.execution,
-                                             scene_.parts->regions);
+  return options.composites->reduce_contacts(scene_.shapes, scene_.batch.parts->pairs,
+                                             scene_.batch.parts->answers, margins,
+                                             options.execution, scene_.batch.parts->regions);
 }
 
 // If ghost contacts are suppressed, all pairs are one batch, because the suppression compares all

@@ -100,8 +100,8 @@ struct CollideCall {
   [[nodiscard]] ContactSource origin_of(std::uint32_t pair) const noexcept {
     return static_cast<ContactSource>(contacts.origin[pair - known_from]);
   }
-  /// Index in SceneState::convex or composite of a pair that is not cached. For a convex pair
-  /// this is also the index of its result, because SceneState::convex is sorted by kinds, as
+  /// Index in PairBatch::convex or composite of a pair that is not cached. For a convex pair
+  /// this is also the index of its result, because PairBatch::convex is sorted by kinds, as
   /// results are.
   [[nodiscard]] std::uint32_t source_of(std::uint32_t pair) const noexcept {
     return contacts.source[pair - batch_first];
@@ -206,6 +206,8 @@ class ContactFilters {
   [[nodiscard]] bool drop_ghost_contacts();
 
  private:
+  /// Contact distance of a pair: bodies at most this far apart are in contact.
+  [[nodiscard]] double gap_of(const BodyPair& pair) const noexcept;
   void trim(double gap, std::uint32_t at, const NarrowColumns& answers) noexcept;
   void rest(const BodyPair& bodies, std::uint32_t at, const NarrowColumns& answers) noexcept;
   void rest_regions(const BodyPair& bodies, std::size_t pair) noexcept;

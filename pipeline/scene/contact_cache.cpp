@@ -265,11 +265,12 @@ double ContactCache::clearance(std::uint32_t pair) const noexcept {
   };
   double least = std::numeric_limits<double>::infinity();
   if (call_.origin_of(pair) == ContactSource::convex) {
-    least = of(scene_.answers, call_.source_of(pair));
+    least = of(scene_.batch.answers, call_.source_of(pair));
   } else {
-    const std::uint32_t* const first = scene_.parts->pairs.first.data() + call_.source_of(pair);
+    const std::uint32_t* const first =
+        scene_.batch.parts->pairs.first.data() + call_.source_of(pair);
     for (std::uint32_t i = first[0]; i < first[1]; ++i) {
-      least = std::min(least, of(scene_.parts->answers, scene_.parts->slot[i]));
+      least = std::min(least, of(scene_.batch.parts->answers, scene_.batch.parts->slot[i]));
     }
   }
   return least;

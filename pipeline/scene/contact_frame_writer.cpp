@@ -96,19 +96,21 @@ ContactFrame::Cursor ContactFrameWriter::extent(std::uint32_t pair) const noexce
   };
   if (call_.origin_of(pair) == ContactSource::convex) {
     const std::uint32_t at = call_.source_of(pair);
-    return touches(scene_.answers, at) ? Cursor{1, 1, points(scene_.answers, at)} : Cursor{};
+    return touches(scene_.batch.answers, at) ? Cursor{1, 1, points(scene_.batch.answers, at)}
+                                             : Cursor{};
   }
   Cursor sum;
   if (call_.reduces) {
-    const auto regions = scene_.parts->regions.of(call_.source_of(pair));
+    const auto regions = scene_.batch.parts->regions.of(call_.source_of(pair));
     for (const ContactRegion& region : regions) sum += {0, 1, region.count};
     sum.pair = regions.empty() ? 0 : 1;
     return sum;
   }
-  const std::uint32_t* const first = scene_.parts->pairs.first.data() + call_.source_of(pair);
+  const std::uint32_t* const first = scene_.batch.parts->pairs.first.data() + call_.source_of(pair);
   for (std::uint32_t i = first[0]; i < first[1]; ++i) {
-    const std::uint32_t at = scene_.parts->slot[i];
-    if (touches(scene_.parts->answers, at)) sum += {1, 1, points(scene_.parts->answers, at)};
+    const std::uint32_t at = scene_.batch.parts->slot[i];
+    if (touches(scene_.batch.parts->answers, at))
+      sum += {1, 1, points(scene_.batch.parts->answers, at)};
   }
   if (sum.pair != 0) sum.pair = 1;
   return sum;
@@ -139,9 +141,9 @@ ContactFrame::Cursor ContactFrameWriter::count(std::uint32_t first,
     if (is_fresh_convex(i)) {
       // Without a branch, because contact is unpredictable.
       const std::uint32_t at = call_.source_of(i++);
-      const std::uint32_t touching = touches(scene_.answers, at) ? 1 : 0;
+      const std::uint32_t touching = touches(scene_.batch.answers, at) ? 1 : 0;
       const std::uint32_t points =
-          call_.level == ContactLevel::manifold ? scene_.answers.contact_count()[at] : 0;
+          call_.level == ContactLevel::manifold ? scene_.batch.answers.contact_count()[at] : 0;
       sum += {touching, touching, touching * points};
       continue;
     }
@@ -233,7 +235,7 @@ void ContactFrameWriter::write_convex(std::uint32_t first, std::uint32_t end, Cu
   std::uint32_t touching[CollideCall::kPairsPerTask];
   std::uint32_t count = 0;
   for (std::uint32_t i = first; i < end; ++i) {
-    const bool is_shown = touches(scene_.answers, call_.source_of(i));
+    const bool is_shown = touches(scene_.batch.answers, call_.source_of(i));
     if (call_.uses_cache) cache_.remember(i, is_shown ? at.pair + count : kNoEntry);
     touching[count] = i;
     count += is_shown ? 1 : 0;
@@ -256,7 +258,7 @@ void ContactFrameWriter::write_answers(std::span<const std::uint32_t> pairs, Cur
     double* const out = to.data() + at.manifold;
     for (std::uint32_t i = 0; i < count; ++i) out[i] = from[call_.source_of(pairs[i])];
   };
-  const NarrowResult& answers = scene_.answers;
+  const NarrowResult& answers = scene_.batch.answers;
   ContactFrame& frame = contacts_.frame;
   if (call_.level >= ContactLevel::distance) {
     copy(answers.distance(), frame.distance);
@@ -281,20 +283,20 @@ void ContactFrameWriter::write_composite(std::uint32_t pair, const Cursor& to) n
   frame.manifold_first[to.pair] = to.manifold;
   Cursor at = to;
   if (call_.reduces) {
-    for (const ContactRegion& region : scene_.parts->regions.of(call_.source_of(pair))) {
+    for (const ContactRegion& region : scene_.batch.parts->regions.of(call_.source_of(pair))) {
       write_region(region, at);
     }
     return;
   }
-  const PrimitivePairs& parts = scene_.parts->pairs;
+  const PrimitivePairs& parts = scene_.batch.parts->pairs;
   const std::uint32_t* const first = parts.first.data() + call_.source_of(pair);
   for (std::uint32_t i = first[0]; i < first[1]; ++i) {
-    const std::uint32_t answer = scene_.parts->slot[i];
-    if (!touches(scene_.parts->answers, answer)) continue;
+    const std::uint32_t answer = scene_.batch.parts->slot[i];
+    if (!touches(scene_.batch.parts->answers, answer)) continue;
     const BodyPair primitives = parts.pairs[i];
     frame.part[0][at.manifold] = parts.part[primitives.a];
     frame.part[1][at.manifold] = parts.part[primitives.b];
-    write_manifold(scene_.parts->answers, answer, parts.poses[primitives.a].position, at);
+    write_manifold(scene_.batch.parts->answers, answer, parts.poses[primitives.a].position, at);
   }
 }
 

@@ -96,20 +96,20 @@ class GhostContactTest {
       Vec::Map(pose.position) = apart;
       most = highest(scene_.shapes.tables(), scene_.shape[contact.floor], pose, along);
     } else {
-      const bool floor_is_a = scene_.composite[contact.pair].a == contact.floor;
+      const bool floor_is_a = scene_.batch.composite[contact.pair].a == contact.floor;
       most = highest_of_parts(contact, along, floor_is_a);
       if (floor_is_a) most += along.dot(apart);
     }
     // Rest offsets move the surface out or in. If it moves in, corners move farther than faces do.
-    const double rest = scene_.offsets_of(contact.floor).rest;
+    const double rest = scene_.offsets.of(contact.floor).rest;
     return most + (rest < 0.0 ? rest * (kRegionCosine + kRegionSine) : rest);
   }
 
   /// As `highest`, relative to the position of body a of the pair.
   [[nodiscard]] double highest_of_parts(const FloorContact& contact, const Vec& along,
                                         bool floor_is_a) const noexcept {
-    const PrimitivePairs& parts = scene_.parts->pairs;
-    const NarrowResult& answers = scene_.parts->answers;
+    const PrimitivePairs& parts = scene_.batch.parts->pairs;
+    const NarrowResult& answers = scene_.batch.parts->answers;
     const ShapeTables tables = parts.tables(scene_.shapes);
     const auto highest_of = [&](std::uint32_t k) {
       const std::uint32_t primitive = floor_is_a ? parts.pairs[k].a : parts.pairs[k].b;
@@ -121,7 +121,7 @@ class GhostContactTest {
     double most = -mid::kInfinity;
     const Vec normal = floor_is_a ? Vec(Vec::Map(contact.normal)) : Vec(-Vec::Map(contact.normal));
     for (std::uint32_t k = parts.first[contact.pair]; k < parts.first[contact.pair + 1]; ++k) {
-      const std::uint32_t at = scene_.parts->slot[k];
+      const std::uint32_t at = scene_.batch.parts->slot[k];
       const Vec own(answers.normal(0)[at], answers.normal(1)[at], answers.normal(2)[at]);
       const bool is_in_region =
           answers.distance()[at] <= limit_ && own.dot(normal) >= kRegionCosine;
@@ -265,31 +265,33 @@ bool ContactFilters::list_floor_answer(const NarrowResult& answers, FloorContact
                  static_cast<double>(point.depth));
     }
   }
-  return scene_.floor_contacts.push_back(writer.contact());
+  return scene_.batch.floor_contacts.push_back(writer.contact());
 }
 
 bool ContactFilters::list_floor_contacts() {
-  scene_.floor_contacts.clear();
-  for (std::uint32_t i = 0; i < scene_.convex.size(); ++i) {
-    if (!call_.is_floor_pair(scene_.convex[i])) continue;
-    FloorWriter writer(scene_, scene_.convex[i], i);
-    if (!list_floor_answer(scene_.answers, FloorContact::Source::convex, i, nullptr, writer)) {
+  scene_.batch.floor_contacts.clear();
+  for (std::uint32_t i = 0; i < scene_.batch.convex.size(); ++i) {
+    if (!call_.is_floor_pair(scene_.batch.convex[i])) continue;
+    FloorWriter writer(scene_, scene_.batch.convex[i], i);
+    if (!list_floor_answer(scene_.batch.answers, FloorContact::Source::convex, i, nullptr,
+                           writer)) {
       return false;
     }
   }
-  for (std::uint32_t i = 0; i < scene_.composite.size(); ++i) {
-    if (!call_.is_floor_pair(scene_.composite[i])) continue;
-    FloorWriter writer(scene_, scene_.composite[i], i);
+  for (std::uint32_t i = 0; i < scene_.batch.composite.size(); ++i) {
+    if (!call_.is_floor_pair(scene_.batch.composite[i])) continue;
+    FloorWriter writer(scene_, scene_.batch.composite[i], i);
     if (call_.reduces ? !list_floor_regions(i, writer) : !list_floor_parts(i, writer)) return false;
   }
   return true;
 }
 
 bool ContactFilters::list_floor_parts(std::uint32_t pair, FloorWriter& writer) {
-  const PrimitivePairs& parts = scene_.parts->pairs;
+  const PrimitivePairs& parts = scene_.batch.parts->pairs;
   for (std::uint32_t k = parts.first[pair]; k < parts.first[pair + 1]; ++k) {
-    if (!list_floor_answer(scene_.parts->answers, FloorContact::Source::part, scene_.parts->slot[k],
-                           parts.poses[parts.pairs[k].a].position, writer)) {
+    if (!list_floor_answer(scene_.batch.parts->answers, FloorContact::Source::part,
+                           scene_.batch.parts->slot[k], parts.poses[parts.pairs[k].a].position,
+                           writer)) {
       return false;
     }
   }
@@ -297,15 +299,15 @@ bool ContactFilters::list_floor_parts(std::uint32_t pair, FloorWriter& writer) {
 }
 
 bool ContactFilters::list_floor_regions(std::uint32_t pair, FloorWriter& writer) {
-  const std::uint32_t first = scene_.parts->regions.first[pair];
-  for (std::uint32_t k = first; k < first + scene_.parts->regions.count[pair]; ++k) {
-    const ContactRegion& region = scene_.parts->regions.regions[k];
+  const std::uint32_t first = scene_.batch.parts->regions.first[pair];
+  for (std::uint32_t k = first; k < first + scene_.batch.parts->regions.count[pair]; ++k) {
+    const ContactRegion& region = scene_.batch.parts->regions.regions[k];
     writer.begin(FloorContact::Source::region, k, region.distance, Vec::Map(region.normal));
     for (const ContactPoint& point : std::span(region.point, region.count)) {
       writer.add(Eigen::Map<const Eigen::Vector3f>(point.position).cast<double>(),
                  static_cast<double>(point.depth));
     }
-    if (!scene_.floor_contacts.push_back(writer.contact())) return false;
+    if (!scene_.batch.floor_contacts.push_back(writer.contact())) return false;
   }
   return true;
 }
@@ -313,19 +315,19 @@ bool ContactFilters::list_floor_regions(std::uint32_t pair, FloorWriter& writer)
 void ContactFilters::drop(const FloorContact& seam) noexcept {
   const double beyond = std::nextafter(call_.limit, std::numeric_limits<double>::max());
   if (seam.source == FloorContact::Source::convex) {
-    scene_.answers.columns().distance[seam.answer] = beyond;
+    scene_.batch.answers.columns().distance[seam.answer] = beyond;
   } else if (seam.source == FloorContact::Source::part) {
-    scene_.parts->answers.columns().distance[seam.answer] = beyond;
+    scene_.batch.parts->answers.columns().distance[seam.answer] = beyond;
   } else {
-    scene_.parts->regions.regions[seam.answer].count = 0;
+    scene_.batch.parts->regions.regions[seam.answer].count = 0;
   }
 }
 
 bool ContactFilters::drop_ghost_contacts() {
   if (!scene_.options.suppress_ghost_contacts || call_.level < ContactLevel::distance) return true;
   if (!list_floor_contacts()) return false;
-  Column<FloorContact>& all = scene_.floor_contacts;
-  if (!scene_.floor_order.resize(all.size())) return false;
+  Column<FloorContact>& all = scene_.batch.floor_contacts;
+  if (!scene_.batch.floor_order.resize(all.size())) return false;
   // Groups contacts by body, in the order in which they were listed.
   const auto is_before = [](const FloorContact& one, const FloorContact& other) {
     return std::tuple(one.body, one.source, one.answer) <
@@ -348,7 +350,7 @@ bool ContactFilters::drop_ghost_contacts() {
 void ContactFilters::drop_ghost_contacts_of(FloorContact* first, FloorContact* end) noexcept {
   const double radius = scene_.radius(first->body);
   if (end - first < 2 || !std::isfinite(radius)) return;
-  const FloorGroups groups({first, end}, scene_.floor_order.data());
+  const FloorGroups groups({first, end}, scene_.batch.floor_order.data());
   const GhostContactTest judge(scene_, radius, call_.limit);
   for (FloorContact* one = first; one != end; ++one) {
     if (!groups.is_seam_of_any(*one, judge)) continue;
@@ -359,9 +361,9 @@ void ContactFilters::drop_ghost_contacts_of(FloorContact* first, FloorContact* e
 
 // Removes regions that were dropped, which have no points.
 void ContactFilters::close_regions() noexcept {
-  if (!call_.reduces || scene_.composite.empty()) return;
-  ContactRegions& all = scene_.parts->regions;
-  for (std::uint32_t i = 0; i < scene_.composite.size(); ++i) {
+  if (!call_.reduces || scene_.batch.composite.empty()) return;
+  ContactRegions& all = scene_.batch.parts->regions;
+  for (std::uint32_t i = 0; i < scene_.batch.composite.size(); ++i) {
     ContactRegion* const first = all.regions.data() + all.first[i];
     const ContactRegion* const end = std::remove_if(
         first, first + all.count[i], [](const ContactRegion& region) { return region.count == 0; });

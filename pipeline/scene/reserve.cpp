@@ -64,8 +64,10 @@ Status Scene::reserve_contacts(Contacts& out, const SceneCapacity& room, Pages p
 
 // Partitions come last, because a new partition is visible to callers.
 Status SceneState::reserve(const SceneCapacity& room, Pages pages) {
-  if (!reserve_bodies(room, pages)) return Status::out_of_memory;
-  const Status status = reserve_answers(room, pages);
+  if (!reserve_bodies(room, pages) || !pairs.reserve(room.pairs, pages)) {
+    return Status::out_of_memory;
+  }
+  const Status status = batch.reserve(shapes, options, room, offsets.any, pages);
   return status == Status::ok ? reserve_sets(room, pages) : status;
 }
 
@@ -74,13 +76,14 @@ bool SceneState::reserve_bodies(const SceneCapacity& room, Pages pages) noexcept
   if (!reserve(bodies > keys.size() ? bodies - keys.size() : 0)) return false;
   // One call may move all bodies, and passes boxes to one set at a time.
   const std::size_t largest = *std::ranges::max_element(room.bodies);
-  if (!reserve_all(largest, pages, boxes, boxes_of, boxes_body) ||
-      !reserve_all(bodies, pages, chosen) || !reserve_all(bodies, pages, old_keys)) {
+  if (!reserve_all(largest, pages, staged.boxes, staged.keys, staged.data) ||
+      !reserve_all(bodies, pages, staged.chosen) || !reserve_all(bodies, pages, staged.old_keys)) {
     return false;
   }
   if (pages == Pages::prefaulted) {
     keys.touch();
-    touch_columns(shape, pose, body_state, place, ball, moved_at, shaped_at, stale, is_stale);
+    touch_columns(shape, pose, body_state, place, ball, moved_at, shaped_at, stale.bodies,
+                  stale.flag);
     anchor.touch();
   }
   return true;
@@ -110,8 +113,8 @@ Status SceneState::reserve_sets(const SceneCapacity& room, Pages pages) {
   return status;
 }
 
-Status SceneState::reserve_answers(const SceneCapacity& room, Pages pages) {
-  if (!pairs.reserve(room.pairs, pages)) return Status::out_of_memory;
+Status PairBatch::reserve(const ShapePool& shapes, const SceneOptions& options,
+                          const SceneCapacity& room, bool with_offsets, Pages pages) {
   if (room.level == ContactLevel::pairs) return Status::ok;
   const std::size_t batch = CollideCall::batch_size(options, room.pairs);
   if (options.composites != nullptr && !composite.reserve(batch, pages)) {
@@ -129,7 +132,7 @@ Status SceneState::reserve_answers(const SceneCapacity& room, Pages pages) {
     }
   }
   if (!convex.reserve(CollideCall::batch_room(options, room.pairs), pages) ||
-      (has_offsets() && !gaps.reserve(batch, pages)) || !list_rehearsal(bodies / 2, batch)) {
+      (with_offsets && !gaps.reserve(batch, pages)) || !list_rehearsal(bodies / 2, batch)) {
     return Status::out_of_memory;
   }
   const Status status = narrow.collide(
@@ -151,7 +154,7 @@ Status SceneState::reserve_answers(const SceneCapacity& room, Pages pages) {
 // two kinds, because the narrow phase ends each run of pairs of equal kinds with a partial job.
 // These pairs are in swapped order, so that their results must be mirrored. All other pairs are of
 // kind 0.
-bool SceneState::list_rehearsal(std::size_t kinds, std::size_t count) noexcept {
+bool PairBatch::list_rehearsal(std::size_t kinds, std::size_t count) noexcept {
   if (!convex.reserve(count)) return false;
   convex.clear();
   for (std::uint32_t a = 0; a < kinds; ++a) {
