@@ -4,8 +4,8 @@
 // support point bounds the distance from below; the nearest point of the simplex bounds it from
 // above. Used by overlap_test.wide.h and by the curved kernels (curved_search.wide.h).
 
-#include "pipeline/kernels/hull/core_lanes.wide.h"
-#include "pipeline/kernels/hull/simplex.wide.h"
+#include "pipeline/kernels/cores/core_lanes.wide.h"
+#include "pipeline/kernels/cores/simplex.wide.h"
 
 namespace winnow::WINNOW_ISA_NAME::hull {
 
