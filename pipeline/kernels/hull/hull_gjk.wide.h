@@ -266,6 +266,8 @@ class HullSearch {
   }
 
  private:
+  using Columns = SimplexColumns<float>;
+
   static constexpr std::uint32_t kMaxSteps = 48;
   /// Maximal number of steps after a restart from outside.
   static constexpr std::uint32_t kRestartSteps = 8;
@@ -297,8 +299,7 @@ class HullSearch {
     const float near = scaled(pair.rounding) - kLengthError;
     near_[lane] = overlap_only_ && near > 0.0F ? near * near : -1.0F;
     depth_[lane] = __builtin_inff();
-    for (int s = 0; s < kSlots; ++s) present_[s][lane] = 0.0F;
-    fresh_[lane] = 1.0F;
+    simplex_.clear(static_cast<unsigned>(lane));
     restarted_[lane] = 0.0F;
     for (int k = 0; k < 3; ++k) goal_[k][lane] = 0.0F;
     pair.trail_length = 0;
@@ -307,10 +308,10 @@ class HullSearch {
     start_direction(pair, center);
     float square = 0.0F;
     for (int i = 0; i < 3; ++i) {
-      gap_[i][lane] = center[i];
+      simplex_.gap[i][lane] = center[i];
       square += center[i] * center[i];
     }
-    square_[lane] = square;
+    simplex_.square[lane] = square;
   }
 
   /// The vector from the second's center to the first's: a point of their difference.
@@ -339,15 +340,9 @@ class HullSearch {
   /// Advances all lanes by one step; returns the lanes that are done.
   Mask16 step() {
     const Floats zero(0.0F);
-    Simplex<float> simplex;
-    for (int s = 0; s < kSlots; ++s) {
-      simplex.point[s] = {Floats::load(slot_[s][0]), Floats::load(slot_[s][1]),
-                          Floats::load(slot_[s][2])};
-      simplex.present[s] = Floats::load(present_[s]) > zero;
-    }
-    const Vec3<float> gap{Floats::load(gap_[0]), Floats::load(gap_[1]), Floats::load(gap_[2])};
-    const Floats square = Floats::load(square_);
-    const LaneMask<float> fresh = Floats::load(fresh_) > zero;
+    const Simplex<float> simplex = simplex_.load();
+    const Vec3<float> gap = Columns::load3(simplex_.gap);
+    const Floats square = Floats::load(simplex_.square);
     const LaneMask<float> restarted = Floats::load(restarted_) > zero;
     Floats name;
     const Vec3<float> w = support(gap, name);
@@ -361,27 +356,23 @@ class HullSearch {
     const Floats gain = square - height;
     const LaneMask<float> no_gain =
         (gain <= zero) | (gain * gain <= Floats(kNoGain * kNoGain) * square);
-    const SimplexNearest<float> nearest = nearest_of(simplex, w);
-    const Floats next_square = dot(nearest.point, nearest.point);
-    const LaneMask<float> stuck = (!fresh) &
-                                  (no_gain | nearest.repeated | (next_square >= square)) &
-                                  (!(nearest.inside | far));
-    const LaneMask<float> inside = nearest.inside & !far;
-    const LaneMask<float> moves = !(far | stuck | inside);
-    keep(simplex, nearest, moves, w, name, gap, next_square);
+    const Columns::Step found = simplex_.add(
+        simplex, w, gap, square, far, no_gain, [&](int s, const LaneMask<float>& take) {
+          select(take, name, Floats::load(slot_name_[s])).store(slot_name_[s]);
+        });
     const Mask16 restarted_bits = bits(restarted);
     const Mask16 far_bits = bits(far) & active_;
-    const Mask16 stuck_bits = bits(stuck) & active_;
-    const Mask16 inside_bits = bits(inside) & active_;
-    const Mask16 move = bits(moves) & active_;
-    const Mask16 near_bits = bits(next_square <= Floats::load(near_)) & move;
+    const Mask16 stuck_bits = bits(found.stuck) & active_;
+    const Mask16 inside_bits = bits(found.inside) & active_;
+    const Mask16 move = bits(found.moves) & active_;
+    const Mask16 near_bits = bits(found.square <= Floats::load(near_)) & move;
     const Mask16 touch_bits =
-        bits(next_square <= Floats(kTouching * kTouching)) & move & ~near_bits;
+        bits(found.square <= Floats(kTouching * kTouching)) & move & ~near_bits;
     mark(far_bits, HullState::far);
     mark(stuck_bits & ~restarted_bits, HullState::apart);
     mark(stuck_bits & restarted_bits, HullState::close);
-    mark(inside_bits & bits(nearest.deep), HullState::inside);
-    mark(inside_bits & ~bits(nearest.deep), HullState::close);
+    mark(inside_bits & bits(found.deep), HullState::inside);
+    mark(inside_bits & ~bits(found.deep), HullState::close);
     mark(near_bits, HullState::inside);
     mark(touch_bits, HullState::close);
     Mask16 done = far_bits | stuck_bits | inside_bits | near_bits | touch_bits;
@@ -402,13 +393,12 @@ class HullSearch {
       const float reach = depth * kOutside / __builtin_sqrtf(square);
       square = 0.0F;
       for (int k = 0; k < 3; ++k) {
-        gap_[k][lane] = lowest_[k][lane] * reach;
-        goal_[k][lane] = -gap_[k][lane];
-        square += gap_[k][lane] * gap_[k][lane];
+        simplex_.gap[k][lane] = lowest_[k][lane] * reach;
+        goal_[k][lane] = -simplex_.gap[k][lane];
+        square += simplex_.gap[k][lane] * simplex_.gap[k][lane];
       }
-      square_[lane] = square;
-      for (int s = 0; s < kSlots; ++s) present_[s][lane] = 0.0F;
-      fresh_[lane] = 1.0F;
+      simplex_.square[lane] = square;
+      simplex_.clear(lane);
       restarted_[lane] = 1.0F;
       steps_[lane] = kMaxSteps - kRestartSteps;
       restarts |= 1U << lane;
@@ -458,31 +448,6 @@ class HullSearch {
     }
   }
 
-  /// In the lanes `moves`, the nearest feature becomes the simplex.
-  void keep(const Simplex<float>& simplex, const SimplexNearest<float>& nearest,
-            const LaneMask<float>& moves, const Vec3<float>& w, const Floats& name,
-            const Vec3<float>& gap, const Floats& next_square) {
-    const Floats zero(0.0F);
-    const Floats one(1.0F);
-    LaneMask<float> placed = !moves;
-    for (int s = 0; s < kSlots; ++s) {
-      const LaneMask<float> take = (!placed) & (!nearest.keep[s]);
-      placed = placed | take;
-      select(take, w.x, simplex.point[s].x).store(slot_[s][0]);
-      select(take, w.y, simplex.point[s].y).store(slot_[s][1]);
-      select(take, w.z, simplex.point[s].z).store(slot_[s][2]);
-      select(take, name, Floats::load(slot_name_[s])).store(slot_name_[s]);
-      const Floats filled = select(take | nearest.keep[s], one, zero);
-      select(moves, filled, Floats::load(present_[s])).store(present_[s]);
-    }
-    const Vec3<float> next = select(moves, nearest.point, gap);
-    next.x.store(gap_[0]);
-    next.y.store(gap_[1]);
-    next.z.store(gap_[2]);
-    select(moves, next_square, Floats::load(square_)).store(square_);
-    zero.store(fresh_);
-  }
-
   void mark(Mask16 lanes, HullState state) {
     for (; lanes != 0; lanes &= lanes - 1) pair_[first(lanes)]->state = state;
   }
@@ -491,11 +456,11 @@ class HullSearch {
     HullPair& pair = *pair_[lane];
     pair.count = 0;
     for (int s = 0; s < kSlots; ++s) {
-      if (present_[s][lane] > 0.0F && pair.count < 3) {
+      if (simplex_.present[s][lane] > 0.0F && pair.count < 3) {
         pair.vertices[pair.count++] = __builtin_bit_cast(std::uint32_t, slot_name_[s][lane]);
       }
     }
-    for (int i = 0; i < 3; ++i) pair.gap[i] = gap_[i][lane];
+    for (int i = 0; i < 3; ++i) pair.gap[i] = simplex_.gap[i][lane];
     pair.lower = height_along_[lane];
     pair.depth_squared = depth_[lane];
   }
@@ -506,23 +471,19 @@ class HullSearch {
   Mask16 active_ = 0;
   FarthestVertices firsts_;
   Seconds seconds_;
+  Columns simplex_;
   HullPair* pair_[kLanes] = {};
   std::uint32_t steps_[kLanes] = {};
   alignas(64) float scale_[kLanes] = {};
   alignas(64) float far_[kLanes] = {};
   alignas(64) float near_[kLanes] = {};
-  alignas(64) float fresh_[kLanes] = {};
   /// 1 if the origin is inside and the search continues from the point `goal_` outside.
   alignas(64) float restarted_[kLanes] = {};
   alignas(64) float goal_[3][kLanes] = {};
   alignas(64) float lowest_[3][kLanes] = {};
   alignas(64) float depth_[kLanes] = {};
-  alignas(64) float gap_[3][kLanes] = {};
-  alignas(64) float square_[kLanes] = {};
   alignas(64) float height_along_[kLanes] = {};
-  alignas(64) float slot_[kSlots][3][kLanes] = {};
   alignas(64) float slot_name_[kSlots][kLanes] = {};
-  alignas(64) float present_[kSlots][kLanes] = {};
 };
 
 }  // namespace winnow::WINNOW_ISA_NAME::hull
