@@ -3,7 +3,7 @@
 // Closest points of two cores in each lane: GJK (Gilbert, Johnson and Keerthi 1988) in double,
 // started from the simplex with which the lane's last search ended (warm start).
 
-#include "pipeline/kernels/hull/simplex.wide.h"
+#include "pipeline/kernels/cores/simplex.wide.h"
 #include "pipeline/motion/moving_cores.wide.h"
 
 namespace winnow::WINNOW_ISA_NAME::impact {

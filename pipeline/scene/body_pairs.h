@@ -1,7 +1,7 @@
 #pragma once
 
 // The sorted list of a scene's pairs of bodies, made from the pairs that its partitions find.
-// SceneState::find_pairs fills it; Collision reads it.
+// SceneState::find_pairs fills it; Collision (collide.cpp) reads it.
 
 #include <winnow/core/column.h>
 #include <winnow/core/execution.h>

@@ -4,7 +4,7 @@
 
 namespace winnow {
 
-/// Applies SceneState::may_pair to pairs of objects of two partitions.
+/// Applies BodyPairRules::may_pair to pairs of objects of two partitions.
 struct BodyPredicate {
   const SceneState& scene;
   const std::uint32_t* first_body;
@@ -14,11 +14,11 @@ struct BodyPredicate {
   /// object must outlive the query.
   [[nodiscard]] PairOptions options() const noexcept {
     PairOptions options;
-    if (scene.accepts_all()) return options;
+    if (scene.rules.accepts_all()) return options;
     options.predicate = {[](void* context, ObjectId first, ObjectId second) {
                            const auto& predicate = *static_cast<const BodyPredicate*>(context);
-                           return predicate.scene.may_pair(predicate.first_body[first],
-                                                           predicate.second_body[second]);
+                           return predicate.scene.rules.may_pair(predicate.first_body[first],
+                                                                 predicate.second_body[second]);
                          },
                          const_cast<BodyPredicate*>(this)};
     return options;

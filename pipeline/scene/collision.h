@@ -1,7 +1,8 @@
 #pragma once
 
-// The class behind Scene::collide. collide.cpp runs the stages; each group of members below names
-// the file that implements it.
+// The stages of Scene::collide, which collide.cpp calls one after the other: ContactCache matches
+// pairs with the last frame, ContactFilters changes results of the narrow phase, and
+// ContactFrameWriter writes the new frame. CollideCall is the data that they share.
 
 #include "pipeline/scene/contact_frame.h"
 #include "pipeline/scene/ghost_contacts.h"
@@ -14,14 +15,46 @@
 
 namespace winnow {
 
-/// One call of Scene::collide. Decides which pairs keep their contacts, computes the contacts of
-/// all other pairs, and writes the contacts of all pairs into a new frame, in batches.
-class Collision {
- public:
+/// Where a pair's contacts come from: the last frame, or the results of a new test.
+enum class ContactSource : std::uint8_t { cached, convex, composite };
+
+/// One call of Scene::collide.
+struct CollideCall {
   static constexpr std::size_t kPairsPerTask = 512;
   /// Pairs whose results are computed before they are written into the frame: few enough that
   /// results stay in cache and use little memory, enough to occupy many threads.
   static constexpr std::uint32_t kPairsPerBatch = 32768;
+
+  CollideCall(SceneState& of, ContactsState& into, ContactLevel at) noexcept
+      : scene(of),
+        contacts(into),
+        level(at),
+        uses_cache(of.options.cache_tolerance > 0.0 && at >= ContactLevel::distance),
+        reduces(of.options.contact_reduction && at == ContactLevel::manifold),
+        stores_positions(of.options.warm_start),
+        same_scene(into.scene == of.serial),
+        same_level(same_scene && into.level == at) {}
+
+  SceneState& scene;
+  ContactsState& contacts;
+  const ContactLevel level;
+  /// The scene has a contact cache and the level allows it.
+  const bool uses_cache;
+  /// Manifolds of composite shapes are merged into contact regions.
+  const bool reduces;
+  /// SceneOptions::warm_start: previous indices of contacts are required.
+  const bool stores_positions;
+  /// The contacts were last filled by this scene; and at this level.
+  const bool same_scene;
+  const bool same_level;
+  /// Pairs with at most this distance are in contact (ContactFilters::find_limit).
+  double limit = 0.0;
+  /// The current batch is [batch_first, batch_end). It is all pairs until the narrow phase begins.
+  std::uint32_t batch_first = 0;
+  std::uint32_t batch_end = 0;
+  /// First pair of the columns `origin` and `old_record`: the batch's first pair, or 0 with
+  /// caching, which is decided for all pairs at once.
+  std::uint32_t known_from = 0;
 
   /// Returns the number of pairs in one batch.
   [[nodiscard]] static std::uint32_t batch_size(const SceneOptions& options,
@@ -29,22 +62,104 @@ class Collision {
   /// Returns the capacity of columns that have one element for each pair of a batch.
   [[nodiscard]] static std::size_t batch_room(const SceneOptions& options,
                                               std::size_t pairs) noexcept;
+  [[nodiscard]] std::uint32_t pair_count() const noexcept {
+    return static_cast<std::uint32_t>(scene.pairs.size());
+  }
+  template <typename T>
+  [[nodiscard]] bool resize_for_batch(Column<T>& column) const noexcept {
+    return column.grow(batch_room(scene.options, pair_count())) &&
+           column.resize(batch_end - batch_first);
+  }
+  /// Number of tasks in the batch.
+  [[nodiscard]] std::size_t task_count() const noexcept {
+    return (batch_end - batch_first + kPairsPerTask - 1) / kPairsPerTask;
+  }
+  /// Calls body(task, first pair, end) in parallel for consecutive ranges of the batch's pairs.
+  template <typename Body>
+  void for_tasks(Body&& body) const {
+    scene.options.execution.for_each(task_count(), [&](std::size_t task) {
+      const auto first = batch_first + static_cast<std::uint32_t>(task * kPairsPerTask);
+      body(task, first, std::min(batch_end, first + static_cast<std::uint32_t>(kPairsPerTask)));
+    });
+  }
 
-  Collision(SceneState& scene, ContactsState& contacts, ContactLevel level) noexcept;
+  /// True if one of the bodies is fixed, so that contacts of the pair may be ghost contacts.
+  [[nodiscard]] bool is_floor_pair(const BodyPair& pair) const noexcept {
+    return scene.body_state[pair.a] == BodyState::fixed ||
+           scene.body_state[pair.b] == BodyState::fixed;
+  }
+  /// False if other pairs decide which contacts of the pair are ghost contacts.
+  [[nodiscard]] bool is_cacheable(const BodyPair& pair) const noexcept {
+    return !scene.options.suppress_ghost_contacts || !is_floor_pair(pair);
+  }
+  [[nodiscard]] ContactSource origin_of_fresh(const BodyPair& pair) const noexcept {
+    const bool is_composite =
+        scene.shape[pair.a].is_composite() || scene.shape[pair.b].is_composite();
+    return is_composite ? ContactSource::composite : ContactSource::convex;
+  }
+  [[nodiscard]] ContactSource origin_of(std::uint32_t pair) const noexcept {
+    return static_cast<ContactSource>(contacts.origin[pair - known_from]);
+  }
+  /// Index in PairBatch::convex or composite of a pair that is not cached. For a convex pair
+  /// this is also the index of its result, because PairBatch::convex is sorted by kinds, as
+  /// results are.
+  [[nodiscard]] std::uint32_t source_of(std::uint32_t pair) const noexcept {
+    return contacts.source[pair - batch_first];
+  }
+};
 
-  [[nodiscard]] Status run();
+/// The data that contacts keep from frame to frame: records of pairs, which also store sleeping
+/// pairs and find ended ones (contact_cache.cpp); with caching, how far each pair may move until
+/// its contacts are computed again (contact_cache.cpp); and for warm starts, the index of each
+/// contact in the last frame (contact_history.cpp).
+class ContactCache {
+ public:
+  explicit ContactCache(CollideCall& call) noexcept
+      : call_(call), scene_(call.scene), contacts_(call.contacts) {}
+
+  /// Lists the records of the last frame, with those of pairs that may have woken, and with
+  /// caching finds the record of each pair. Returns false if memory is refused.
+  [[nodiscard]] bool open_records();
+  /// Decides for every pair where its contacts come from. Returns false if all pairs keep their
+  /// contacts and the last frame can stay as it is.
+  [[nodiscard]] bool decide();
+  /// Prepares the records of the new frame, after ContactFrameWriter::open.
+  [[nodiscard]] bool open_frame();
+  /// Without caching: finds the record of each pair of the batch.
+  [[nodiscard]] bool match_batch();
+  /// Index of a pair's contacts in the last frame, or kNoEntry.
+  [[nodiscard]] std::uint32_t shown_before(std::uint32_t pair) const noexcept {
+    const std::uint32_t record = same_pairs_ ? pair : contacts_.old_record[pair - call_.known_from];
+    return record == kNoEntry ? kNoEntry : contacts_.records_before.shown_of(record);
+  }
+  /// Value of Contacts::previous_pair: a pair that slept was not in the last frame.
+  [[nodiscard]] std::uint32_t last_point_of(std::uint32_t shown) const noexcept {
+    return has_slept(shown) ? kNoContact : shown;
+  }
+  /// Stores the data that caching of the pair needs in the next call. The columns must have room.
+  void remember(std::uint32_t pair, std::uint32_t shown) noexcept;
+  /// Resizes to the frame.
+  [[nodiscard]] bool grow_history() noexcept;
+  /// Completes the records after the last batch: pairs of the last frame that are not in this frame
+  /// have ended, or sleep.
+  [[nodiscard]] bool close_frame();
+  /// Matches the points of all pairs of the frame.
+  void match_points() noexcept;
+  /// Called if the frame stays as it is: every contact keeps its index.
+  [[nodiscard]] bool store_positions() noexcept;
+  /// Stores the keys and data of all bodies.
+  [[nodiscard]] bool note_bodies();
 
  private:
-  /// Where a pair's contacts come from.
-  enum class ContactSource : std::uint8_t { cached, convex, composite };
-  using Cursor = ContactFrame::Cursor;
-
-  // Records of pairs from the last call (pair_records.cpp).
+  [[nodiscard]] bool list_records();
   [[nodiscard]] bool wake_dormant();
   void merge_dormant() noexcept;
-  [[nodiscard]] bool list_records();
+  [[nodiscard]] bool match_cached();
   void match(const PairRecords& records) noexcept;
-  [[nodiscard]] bool close_frame();
+  [[nodiscard]] bool keep(std::uint32_t pair, std::uint32_t record) noexcept;
+  void turn(CachedPair& cached, std::uint32_t shown, const double (&to)[4]) noexcept;
+  [[nodiscard]] float cache_limit(std::uint32_t pair, std::uint32_t shown) const noexcept;
+  [[nodiscard]] double clearance(std::uint32_t pair) const noexcept;
   [[nodiscard]] bool put_to_sleep();
   [[nodiscard]] bool list_ended();
   [[nodiscard]] bool sleeps(const BodyPair& pair) const noexcept;
@@ -53,101 +168,101 @@ class Collision {
   [[nodiscard]] bool has_slept(std::uint32_t shown) const noexcept {
     return shown >= last_pairs_ && shown != kNoEntry;
   }
-  [[nodiscard]] bool note_bodies();
-
-  // The contact cache (contact_cache.cpp).
-  [[nodiscard]] bool match_cached();
-  [[nodiscard]] bool decide();
-  [[nodiscard]] bool keep(std::uint32_t pair, std::uint32_t record) noexcept;
-  void turn(CachedPair& cached, std::uint32_t shown, const double (&to)[4]) noexcept;
-  void remember(std::uint32_t pair, std::uint32_t shown) noexcept;
-  [[nodiscard]] float cache_limit(std::uint32_t pair, std::uint32_t shown) const noexcept;
-  [[nodiscard]] double clearance(std::uint32_t pair) const noexcept;
-
-  // Indices of contacts in the last frame (contact_history.cpp).
   [[nodiscard]] bool begin_history() noexcept;
-  [[nodiscard]] bool grow_history() noexcept;
-  [[nodiscard]] bool reserve_history() noexcept;
-  void match_points() noexcept;
   void match_points(std::uint32_t shown) noexcept;
-  [[nodiscard]] bool store_positions() noexcept;
   void note_poses() noexcept;
 
-  // Batches and the narrow phase (collide.cpp).
-  [[nodiscard]] Status show();
-  [[nodiscard]] Status answer();
-  [[nodiscard]] bool list_pairs();
-  [[nodiscard]] Status answer_convex();
-  [[nodiscard]] Status answer_composite();
-  [[nodiscard]] Status reduce_composite();
+  CollideCall& call_;
+  SceneState& scene_;
+  ContactsState& contacts_;
+  /// Number of pairs in the contacts before this call; and including sleeping pairs that may have
+  /// woken.
+  std::uint32_t last_pairs_ = 0;
+  std::uint32_t last_records_ = 0;
+  /// Record i belongs to pair i: the pairs are the same as in the last call.
+  bool same_pairs_ = false;
+};
 
-  // Offsets of bodies (contact_offsets.cpp).
+/// Changes results of the narrow phase: offsets of bodies (contact_offsets.cpp) and suppression of
+/// ghost contacts (ghost_contacts.cpp). In a scene without both, all pairs have the scene's margin,
+/// and all other functions return at once.
+class ContactFilters {
+ public:
+  explicit ContactFilters(CollideCall& call) noexcept : call_(call), scene_(call.scene) {}
+
+  /// Sets CollideCall::limit for the batch.
   void find_limit() noexcept;
   /// Computes the contact distance of each pair of bodies, grown by `more`. Returns false if memory
   /// is refused.
   [[nodiscard]] bool find_margins(const Column<BodyPair>& pairs, double more, PairMargins& margins);
   /// As find_margins, but for pairs of primitives and not grown.
   [[nodiscard]] bool find_part_margins(PairMargins& margins);
-  void trim(double gap, std::uint32_t at, const NarrowColumns& answers) noexcept;
+  /// Apply the offsets: to results of convex pairs; and to those of primitive pairs, before and
+  /// after they are merged into contact regions.
   void trim_convex() noexcept;
   void trim_parts() noexcept;
-  void rest(const BodyPair& bodies, std::uint32_t at, const NarrowColumns& answers) noexcept;
   void rest_parts() noexcept;
+  /// Drops ghost contacts. Returns false if memory is refused.
+  [[nodiscard]] bool drop_ghost_contacts();
+
+ private:
+  /// Contact distance of a pair: bodies at most this far apart are in contact.
+  [[nodiscard]] double gap_of(const BodyPair& pair) const noexcept;
+  void trim(double gap, std::uint32_t at, const NarrowColumns& answers) noexcept;
+  void rest(const BodyPair& bodies, std::uint32_t at, const NarrowColumns& answers) noexcept;
   void rest_regions(const BodyPair& bodies, std::size_t pair) noexcept;
 
-  // Suppression of ghost contacts (ghost_contacts.cpp).
   class FloorWriter;
-  [[nodiscard]] bool is_cacheable(const BodyPair& pair) const noexcept;
   [[nodiscard]] bool list_floor_contacts();
-  void drop_ghost_contacts_of(FloorContact* first, FloorContact* end) noexcept;
   [[nodiscard]] bool list_floor_answer(const NarrowResult& answers, FloorContact::Source source,
                                        std::uint32_t at, const double* offset, FloorWriter& writer);
   [[nodiscard]] bool list_floor_parts(std::uint32_t pair, FloorWriter& writer);
   [[nodiscard]] bool list_floor_regions(std::uint32_t pair, FloorWriter& writer);
-  [[nodiscard]] bool drop_ghost_contacts();
+  void drop_ghost_contacts_of(FloorContact* first, FloorContact* end) noexcept;
   void drop(const FloorContact& seam) noexcept;
   void close_regions() noexcept;
 
-  // Output of the frame (write_contacts.cpp).
-  [[nodiscard]] bool reads_last_manifolds() const noexcept {
-    return uses_cache_ || stores_positions_;
-  }
-  [[nodiscard]] bool open_frame();
+  CollideCall& call_;
+  SceneState& scene_;
+};
+
+/// Writes the contacts of all pairs into the frame, batch by batch (contact_frame_writer.cpp).
+class ContactFrameWriter {
+ public:
+  using Cursor = ContactFrame::Cursor;
+
+  ContactFrameWriter(const CollideCall& call, ContactCache& cache) noexcept
+      : call_(call), cache_(cache), scene_(call.scene), contacts_(call.contacts) {}
+
+  /// Makes the current frame the last frame, or clears it if nothing reads the last frame. Returns
+  /// false if memory is refused, like all of the following.
+  [[nodiscard]] bool open();
+  /// Counts the contacts of a batch, makes room, and writes them from `end` on.
+  [[nodiscard]] bool write_batch(Cursor& end);
+  /// Completes the frame after the last batch.
   [[nodiscard]] bool close(const Cursor& end);
-  [[nodiscard]] bool show_batch(Cursor& end);
+
+ private:
+  [[nodiscard]] bool reads_last_manifolds() const noexcept {
+    return call_.uses_cache || call_.stores_positions;
+  }
+  [[nodiscard]] bool touches(const NarrowResult& answers, std::size_t at) const noexcept {
+    return call_.level == ContactLevel::boolean ? answers.overlaps(at)
+                                                : answers.distance()[at] <= call_.limit;
+  }
+  [[nodiscard]] bool is_fresh_convex(std::uint32_t pair) const noexcept {
+    return call_.origin_of(pair) == ContactSource::convex;
+  }
   [[nodiscard]] bool grow_frame(const Cursor& end);
-  [[nodiscard]] bool reserve_next();
-  /// Index of a pair's contacts in the last frame, or kNoEntry.
-  [[nodiscard]] std::uint32_t shown_before(std::uint32_t pair) const noexcept;
   [[nodiscard]] std::uint32_t count_cached(std::uint32_t pair, std::uint32_t end) const noexcept;
-  [[nodiscard]] ContactSource origin_of_fresh(const BodyPair& pair) const noexcept {
-    const bool is_composite =
-        scene_.shape[pair.a].is_composite() || scene_.shape[pair.b].is_composite();
-    return is_composite ? ContactSource::composite : ContactSource::convex;
-  }
-  [[nodiscard]] ContactSource origin_of(std::uint32_t pair) const noexcept {
-    return static_cast<ContactSource>(contacts_.origin[pair - known_from_]);
-  }
-  /// Index in SceneState::convex or composite of a pair that is not cached. For a convex pair
-  /// this is also the index of its result, because SceneState::convex is sorted by kinds, as
-  /// results are.
-  [[nodiscard]] std::uint32_t source_of(std::uint32_t pair) const noexcept {
-    return contacts_.source[pair - batch_first_];
-  }
-  [[nodiscard]] bool is_fresh_convex(std::uint32_t pair) const noexcept;
   [[nodiscard]] Cursor extent(std::uint32_t pair) const noexcept;
   [[nodiscard]] Cursor count(std::uint32_t first, std::uint32_t end) const noexcept;
   void write_task(std::uint32_t first, std::uint32_t end, Cursor at) noexcept;
-  [[nodiscard]] bool touches(const NarrowResult& answers, std::size_t at) const noexcept;
   void write_bodies(std::span<const std::uint32_t> pairs, std::uint32_t to) noexcept;
   void write_all(std::uint32_t first, std::uint32_t end, std::uint32_t to) noexcept;
   void write_convex(std::uint32_t first, std::uint32_t end, Cursor& at) noexcept;
   void write_answers(std::span<const std::uint32_t> pairs, Cursor& at) noexcept;
   void write_composite(std::uint32_t pair, const Cursor& to) noexcept;
-  /// Value of Contacts::previous_pair: a pair that slept was not in the last frame.
-  [[nodiscard]] std::uint32_t last_point_of(std::uint32_t shown) const noexcept {
-    return has_slept(shown) ? kNoContact : shown;
-  }
   void write_manifold(const NarrowResult& answers, std::size_t at, const double* offset,
                       Cursor& to) noexcept;
   void write_points(const NarrowResult& answers, std::size_t at, const double* offset,
@@ -155,54 +270,10 @@ class Collision {
   void write_region(const ContactRegion& region, Cursor& to) noexcept;
   [[nodiscard]] bool write_runs();
 
-  [[nodiscard]] std::uint32_t pair_count() const noexcept {
-    return static_cast<std::uint32_t>(scene_.pairs.size());
-  }
-  template <typename T>
-  [[nodiscard]] bool resize_for_batch(Column<T>& column) const noexcept {
-    return column.grow(batch_room(scene_.options, pair_count())) &&
-           column.resize(batch_end_ - batch_first_);
-  }
-  /// Number of tasks in the batch.
-  [[nodiscard]] std::size_t task_count() const noexcept {
-    return (batch_end_ - batch_first_ + kPairsPerTask - 1) / kPairsPerTask;
-  }
-  /// Calls body(task, first pair, end) in parallel for consecutive ranges of the batch's pairs.
-  template <typename Body>
-  void for_tasks(Body&& body) const {
-    scene_.options.execution.for_each(task_count(), [&](std::size_t task) {
-      const auto first = batch_first_ + static_cast<std::uint32_t>(task * kPairsPerTask);
-      body(task, first, std::min(batch_end_, first + static_cast<std::uint32_t>(kPairsPerTask)));
-    });
-  }
-
+  const CollideCall& call_;
+  ContactCache& cache_;
   SceneState& scene_;
   ContactsState& contacts_;
-  ContactLevel level_;
-  /// The scene has a contact cache and the level allows it.
-  bool uses_cache_;
-  /// Manifolds of composite shapes are merged into contact regions.
-  bool reduces_;
-  /// SceneOptions::warm_start: previous indices of contacts are required.
-  bool stores_positions_;
-  /// Pairs with at most this distance are in contact.
-  double limit_ = 0.0;
-  /// Number of pairs in the contacts before this call; and including sleeping pairs that may have
-  /// woken.
-  std::uint32_t last_pairs_ = 0;
-  std::uint32_t last_records_ = 0;
-  /// The contacts were last filled by this scene; and at this level.
-  bool same_scene_;
-  bool same_level_;
-  /// Record i belongs to pair i: the pairs are the same as in the last call.
-  bool same_pairs_ = false;
-  /// The current batch is [batch_first_, batch_end_). It is all pairs until the narrow phase
-  /// begins.
-  std::uint32_t batch_first_ = 0;
-  std::uint32_t batch_end_ = 0;
-  /// First pair of the columns `origin` and `old_record`: the batch's first pair, or 0 with
-  /// caching, which is decided for all pairs at once.
-  std::uint32_t known_from_ = 0;
 };
 
 }  // namespace winnow

@@ -1,8 +1,11 @@
-// Caching: pairs that have hardly moved since their contacts were computed keep them; points and
-// normals rotate with body a. `remember` stores how far each pair may move, `decide` compares.
-// Called by Collision::run (collide.cpp) and the tasks in write_contacts.cpp.
+// Records of pairs between calls of Scene::collide: they match the pairs of this call with the last
+// frame, store sleeping pairs, and list the pairs that ended. With caching, pairs that have hardly
+// moved since their contacts were computed keep them; points and normals rotate with body a.
+// `remember` stores how far each pair may move, `decide` compares. Collision (collide.cpp) calls
+// this, and the tasks in contact_frame_writer.cpp call `remember`.
 
 #include <winnow/core/rotation.h>
+#include "core/sort/parallel_ranges.h"
 #include "pipeline/narrow/tight_growth.h"
 #include "pipeline/scene/collision.h"
 #include "pipeline/scene/motion_bound.h"
@@ -11,9 +14,12 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace winnow {
 namespace {
+
+constexpr std::size_t kPairsPerListing = 8192;
 
 // Relative error of one rotation of a point in float.
 constexpr double kTurnError = 4.0e-7;
@@ -48,13 +54,104 @@ struct PoseChange {
 
 }  // namespace
 
+bool ContactCache::open_records() {
+  return list_records() && wake_dormant() && match_cached();
+}
+
+// Lists the records of the last frame if they were not kept.
+bool ContactCache::list_records() {
+  ContactsState& c = contacts_;
+  last_records_ = last_pairs_ = static_cast<std::uint32_t>(c.frame.pairs());
+  if (last_pairs_ == 0 || c.records.size() != 0) return true;
+  if (!resize_tightly(c.records.bits, last_pairs_)) return false;
+  for (const ContactRun& run : c.frame.runs) {
+    const std::uint32_t code = KindPairs::index(run.kind_a, run.kind_b);
+    for_each_range(scene_.options.execution, run.count, kPairsPerListing,
+                   [&](std::size_t first, std::size_t end) {
+                     for (std::size_t i = run.first + first; i < run.first + end; ++i) {
+                       const BodyPair bodies{c.frame.key[0][i].id, c.frame.key[1][i].id};
+                       c.records.bits[i] = PairOrder::of(code, bodies).bits;
+                     }
+                   });
+  }
+  return true;
+}
+
+// Appends sleeping pairs to the last frame again if bodies may have woken.
+bool ContactCache::wake_dormant() {
+  ContactsState& c = contacts_;
+  if (!call_.same_level) {
+    c.dormant_records.clear();
+    c.dormant_cached.clear();
+  }
+  const std::size_t count = c.dormant_records.size();
+  if (count == 0 || c.regroupings == scene_.regroupings) return true;
+  ContactFrame::Cursor at{static_cast<std::uint32_t>(c.frame.pairs()),
+                          static_cast<std::uint32_t>(c.frame.manifolds),
+                          static_cast<std::uint32_t>(c.frame.points.size())};
+  if (!c.frame.resize(call_.level, at.pair + count, at.manifold + c.dormant.manifolds,
+                      at.point + c.dormant.points.size()) ||
+      !c.records_before.reserve(c.records.size() + count) ||
+      (call_.uses_cache && !c.cached_before.resize(c.records.size() + count))) {
+    return false;
+  }
+  for (std::uint32_t& shown : c.dormant_records.shown) {
+    c.frame.copy(c.dormant, shown, 1, at);
+    const ContactFrame::Cursor taken = c.dormant.extent(shown);
+    shown = at.pair;
+    at += taken;
+  }
+  c.frame.close(call_.level, at);
+  last_records_ = at.pair;
+  merge_dormant();
+  return true;
+}
+
+// Merges two sorted lists. The columns must have room.
+void ContactCache::merge_dormant() noexcept {
+  ContactsState& c = contacts_;
+  const PairRecords& slept = c.dormant_records;
+  c.records_before.clear();
+  std::size_t one = 0;
+  std::size_t other = 0;
+  for (std::size_t i = 0; i < c.records.size() + slept.size(); ++i) {
+    const bool first = other == slept.size() ||
+                       (one < c.records.size() && c.records.bits[one] < slept.bits[other]);
+    if (call_.uses_cache) c.cached_before[i] = first ? c.cached[one] : c.dormant_cached[other];
+    const PairRecords& from = first ? c.records : slept;
+    const std::size_t at = first ? one++ : other++;
+    c.records_before.push_back_within_room(from.order_of(at), from.shown_of(at));
+  }
+  c.records.swap(c.records_before);
+  c.cached.swap(c.cached_before);
+  c.dormant_records.clear();
+  c.dormant_cached.clear();
+}
+
+// Finds the record of each pair of the batch; both lists are sorted alike. The column must have
+// room.
+void ContactCache::match(const PairRecords& records) noexcept {
+  const std::uint64_t* const begin = records.bits.begin();
+  const std::uint64_t* const none = records.bits.end();
+  call_.for_tasks([&](std::size_t, std::uint32_t first, std::uint32_t end) {
+    const std::uint64_t* record = std::lower_bound(begin, none, scene_.pairs.order(first).bits);
+    for (std::uint32_t i = first; i < end; ++i) {
+      const std::uint64_t order = scene_.pairs.order(i).bits;
+      while (record != none && *record < order) ++record;
+      const bool found = record != none && *record == order;
+      contacts_.old_record[i - call_.known_from] =
+          found ? static_cast<std::uint32_t>(record++ - begin) : kNoEntry;
+    }
+  });
+}
+
 // Finds each pair's record of the last call. With caching this comes before the narrow phase and
 // covers all pairs at once.
-bool Collision::match_cached() {
-  if (!uses_cache_) return true;
+bool ContactCache::match_cached() {
+  if (!call_.uses_cache) return true;
   ContactsState& c = contacts_;
-  const std::size_t pairs = pair_count();
-  same_pairs_ = same_level_ && c.pairs_serial == scene_.pairs.serial() &&
+  const std::size_t pairs = call_.pair_count();
+  same_pairs_ = call_.same_level && c.pairs_serial == scene_.pairs.serial() &&
                 c.records.size() == pairs && c.cached.size() == pairs;
   if (!resize_tightly(c.origin, pairs)) return false;
   if (same_pairs_) return true;
@@ -63,20 +160,18 @@ bool Collision::match_cached() {
   return true;
 }
 
-// Decides for every pair where its contacts come from. Returns false if all pairs keep their
-// contacts and the last frame can stay as it is.
-bool Collision::decide() {
-  if (!uses_cache_) return true;
+bool ContactCache::decide() {
+  if (!call_.uses_cache) return true;
   ContactsState& c = contacts_;
   std::atomic<std::uint32_t> kept{0};
-  const bool may_keep = same_level_ && c.cached.size() == c.records.size();
-  for_tasks([&](std::size_t, std::uint32_t first, std::uint32_t end) {
+  const bool may_keep = call_.same_level && c.cached.size() == c.records.size();
+  call_.for_tasks([&](std::size_t, std::uint32_t first, std::uint32_t end) {
     std::uint32_t count = 0;
     for (std::uint32_t i = first; i < end; ++i) {
       const BodyPair pair = scene_.pairs[i];
       const std::uint32_t record = same_pairs_ ? i : c.old_record[i];
-      ContactSource origin = origin_of_fresh(pair);
-      if (may_keep && record != kNoEntry && is_cacheable(pair) && keep(i, record)) {
+      ContactSource origin = call_.origin_of_fresh(pair);
+      if (may_keep && record != kNoEntry && call_.is_cacheable(pair) && keep(i, record)) {
         origin = ContactSource::cached;
         ++count;
       }
@@ -85,7 +180,7 @@ bool Collision::decide() {
     kept.fetch_add(count, std::memory_order_relaxed);
   });
   c.cached_count = kept.load();
-  if (!same_pairs_ || c.cached_count != pair_count()) return true;
+  if (!same_pairs_ || c.cached_count != call_.pair_count()) return true;
   if (!c.is_settled) {
     std::fill(c.frame.event.begin(), c.frame.event.end(), ContactEvent::persisted);
     c.ended.clear();
@@ -96,7 +191,7 @@ bool Collision::decide() {
 
 // Returns true if a pair has moved so little that it keeps its contacts. Rotates them if their
 // total error would exceed the limit otherwise.
-bool Collision::keep(std::uint32_t pair, std::uint32_t record) noexcept {
+bool ContactCache::keep(std::uint32_t pair, std::uint32_t record) noexcept {
   ContactsState& c = contacts_;
   const BodyPair bodies = scene_.pairs[pair];
   CachedPair& cached = c.cached[record];
@@ -134,16 +229,16 @@ bool Collision::keep(std::uint32_t pair, std::uint32_t record) noexcept {
 }
 
 // Rotates normals and points with body a.
-void Collision::turn(CachedPair& cached, std::uint32_t shown, const double (&to)[4]) noexcept {
+void ContactCache::turn(CachedPair& cached, std::uint32_t shown, const double (&to)[4]) noexcept {
   ContactFrame& frame = contacts_.frame;
   const PoseChange turn(to, cached.turn);
   const std::uint32_t first = frame.manifold_first[shown];
   const std::uint32_t end = frame.manifold_first[shown + 1];
   for (std::uint32_t m = first; m < end; ++m) {
     turn.apply(frame.normal, m);
-    if (level_ == ContactLevel::distance) turn.apply(frame.point, m);
+    if (call_.level == ContactLevel::distance) turn.apply(frame.point, m);
   }
-  if (level_ == ContactLevel::manifold) {
+  if (call_.level == ContactLevel::manifold) {
     for (std::uint32_t p = frame.point_first[first]; p < frame.point_first[end]; ++p) {
       turn.apply(frame.points.position, p);
     }
@@ -151,42 +246,42 @@ void Collision::turn(CachedPair& cached, std::uint32_t shown, const double (&to)
   std::copy_n(to, 4, cached.turn);
 }
 
-float Collision::cache_limit(std::uint32_t pair, std::uint32_t shown) const noexcept {
+float ContactCache::cache_limit(std::uint32_t pair, std::uint32_t shown) const noexcept {
   const double cache_tolerance = scene_.options.cache_tolerance;
   const double clear = shown == kNoEntry ? std::max(clearance(pair), 0.0) : cache_tolerance;
-  return round_down(origin_of(pair) == ContactSource::convex ? clear
-                                                             : std::min(clear, cache_tolerance));
+  return round_down(
+      call_.origin_of(pair) == ContactSource::convex ? clear : std::min(clear, cache_tolerance));
 }
 
 // Returns a lower bound on the distance beyond the margin of a pair that is not in contact. For
 // composite shapes it covers only the primitive pairs that the mid phase found.
-double Collision::clearance(std::uint32_t pair) const noexcept {
+double ContactCache::clearance(std::uint32_t pair) const noexcept {
   const auto of = [&](const NarrowResult& answers, std::size_t at) {
     // At level manifold, a distance beyond the margin may be a lower bound of the true distance.
     // The error bound then applies only upwards, and half of the excess is left for rounding.
-    const double beyond = answers.distance()[at] - limit_;
+    const double beyond = answers.distance()[at] - call_.limit;
     return std::max(beyond - answers.error_bound()[at],
-                    level_ == ContactLevel::manifold ? 0.5 * beyond : 0.0);
+                    call_.level == ContactLevel::manifold ? 0.5 * beyond : 0.0);
   };
   double least = std::numeric_limits<double>::infinity();
-  if (origin_of(pair) == ContactSource::convex) {
-    least = of(scene_.answers, source_of(pair));
+  if (call_.origin_of(pair) == ContactSource::convex) {
+    least = of(scene_.batch.answers, call_.source_of(pair));
   } else {
-    const std::uint32_t* const first = scene_.parts->pairs.first.data() + source_of(pair);
+    const std::uint32_t* const first =
+        scene_.batch.parts->pairs.first.data() + call_.source_of(pair);
     for (std::uint32_t i = first[0]; i < first[1]; ++i) {
-      least = std::min(least, of(scene_.parts->answers, scene_.parts->slot[i]));
+      least = std::min(least, of(scene_.batch.parts->answers, scene_.batch.parts->slot[i]));
     }
   }
   return least;
 }
 
-// Stores the data that caching of the pair needs in the next call. The columns must have room.
-void Collision::remember(std::uint32_t pair, std::uint32_t shown) noexcept {
+void ContactCache::remember(std::uint32_t pair, std::uint32_t shown) noexcept {
   ContactsState& c = contacts_;
   const BodyPair bodies = scene_.pairs[pair];
   c.records.bits[pair] = scene_.pairs.order(pair).bits;
   c.records.shown[pair] = shown;
-  if (origin_of(pair) == ContactSource::cached) {
+  if (call_.origin_of(pair) == ContactSource::cached) {
     if (!same_pairs_) c.cached[pair] = c.cached_before[c.old_record[pair]];
     return;
   }
@@ -200,8 +295,147 @@ void Collision::remember(std::uint32_t pair, std::uint32_t shown) noexcept {
   std::copy_n(with_unit_turn(a).orientation, 4, cached.turn);
   cached.radius = round_up(std::min(radius_a, radius_b));
   cached.radius_a = round_up(radius_a);
-  cached.limit = is_cacheable(bodies) ? cache_limit(pair, shown) : CachedPair::kNever;
+  cached.limit = call_.is_cacheable(bodies) ? cache_limit(pair, shown) : CachedPair::kNever;
   c.cached[pair] = cached;
+}
+
+bool ContactCache::open_frame() {
+  ContactsState& c = contacts_;
+  if (same_pairs_) {
+    // Records stay in place except for their frame indices: tasks read old indices of some pairs
+    // after they wrote new ones of others.
+    c.records.shown.swap(c.records_before.shown);
+  } else {
+    c.records.swap(c.records_before);
+    c.cached.swap(c.cached_before);
+  }
+  const std::size_t records = call_.uses_cache ? call_.pair_count() : 0;
+  if (!resize_tightly(c.records.bits, records) || !resize_tightly(c.records.shown, records) ||
+      !c.cached.resize(records) || !resize_tightly(c.shown_again, last_records_)) {
+    return false;
+  }
+  std::fill(c.shown_again.begin(), c.shown_again.end(), std::uint8_t{0});
+  return begin_history();
+}
+
+bool ContactCache::match_batch() {
+  if (call_.uses_cache) return true;
+  call_.known_from = call_.batch_first;
+  if (!call_.resize_for_batch(contacts_.old_record)) return false;
+  match(contacts_.records_before);
+  return true;
+}
+
+bool ContactCache::close_frame() {
+  ContactsState& c = contacts_;
+  // The next call swaps the records and may find as many pairs, and it flags this frame's points.
+  if (!c.records_before.reserve(c.records.bits.capacity()) ||
+      !c.cached_before.reserve(c.cached.capacity()) ||
+      (call_.stores_positions && !c.history.taken.reserve(c.frame.points.size()))) {
+    return false;
+  }
+  // A body falls asleep by changing its partition, which makes find_pairs run again.
+  const bool may_sleep = call_.same_level && !same_pairs_ && c.regroupings != scene_.regroupings;
+  if ((may_sleep && !put_to_sleep()) || !list_ended()) return false;
+  c.is_settled =
+      c.ended.empty() && std::all_of(c.frame.event.begin(), c.frame.event.end(),
+                                     [](ContactEvent e) { return e == ContactEvent::persisted; });
+  if (!call_.uses_cache) {
+    // The next call lists them again, in the same memory.
+    c.records.swap(c.records_before);
+    c.records.clear();
+  }
+  return true;
+}
+
+// True if both bodies still exist and neither is dynamic any more, so that the pair is no longer
+// tested.
+bool ContactCache::sleeps(const BodyPair& pair) const noexcept {
+  for (const std::uint32_t body : {pair.a, pair.b}) {
+    if (!scene_.keys.is_valid(contacts_.known.key(body)) ||
+        scene_.body_state[body] == BodyState::dynamic) {
+      return false;
+    }
+  }
+  return true;
+}
+
+bool ContactCache::put_to_sleep() {
+  ContactsState& c = contacts_;
+  PairRecords& slept = c.dormant_records;
+  if (!slept.reserve(last_records_) ||
+      (call_.uses_cache && !c.dormant_cached.reserve(last_records_))) {
+    return false;
+  }
+  ContactFrame::Cursor room;
+  for (std::size_t r = 0; r < c.records_before.size(); ++r) {
+    const PairOrder order = c.records_before.order_of(r);
+    const std::uint32_t shown = c.records_before.shown_of(r);
+    if (shown == kNoEntry || c.shown_again[shown] != 0 || !sleeps(order.bodies())) continue;
+    c.shown_again[shown] = 1;
+    room += c.before.extent(shown);
+    slept.push_back_within_room(order, shown);
+    if (!call_.uses_cache) continue;
+    CachedPair& cached = c.cached_before[r];
+    if (!has_slept(shown)) cached.tested_at = c.clock;
+    (void)c.dormant_cached.push_back(cached);
+  }
+  if (room.pair == 0) return true;
+  c.dormant.with_parts = c.frame.with_parts;
+  if (!c.dormant.resize(call_.level, room.pair, room.manifold, room.point)) return false;
+  ContactFrame::Cursor at;
+  for (std::size_t i = 0; i < slept.size(); ++i) {
+    const BodyPair bodies = slept.order_of(i).bodies();
+    const std::uint32_t ids[2] = {bodies.a, bodies.b};
+    for (int side = 0; side < 2; ++side) c.dormant.key[side][at.pair] = c.known.key(ids[side]);
+    c.dormant.event[at.pair] = ContactEvent::persisted;
+    const std::uint32_t shown = std::exchange(slept.shown[i], at.pair);
+    c.dormant.copy(c.before, shown, 1, at);
+    at += c.before.extent(shown);
+  }
+  c.dormant.close(call_.level, at);
+  return true;
+}
+
+// Lists ended pairs in the order of the last frame; pairs that slept follow.
+bool ContactCache::list_ended() {
+  ContactsState& c = contacts_;
+  c.ended.clear();
+  const Column<std::uint64_t>& known = same_pairs_ ? c.records.bits : c.records_before.bits;
+  const auto list = [&](bool slept) {
+    for (std::size_t r = 0; r < known.size(); ++r) {
+      const std::uint32_t shown = c.records_before.shown_of(r);
+      if (shown == kNoEntry || has_slept(shown) != slept || c.shown_again[shown] != 0) {
+        continue;
+      }
+      const auto [a, b] = PairOrder{known[r]}.bodies();
+      const EndedContact ended{c.known.key(a), c.known.key(b), c.known.data[a], c.known.data[b]};
+      if (!c.ended.push_back(ended)) return false;
+    }
+    return true;
+  };
+  return list(false) && (last_records_ == last_pairs_ || list(true));
+}
+
+// Stores nothing if there are no contacts. If no body was added or removed, the stored keys and
+// data are still valid.
+bool ContactCache::note_bodies() {
+  KnownBodies& known = contacts_.known;
+  if (contacts_.frame.pairs() == 0 && contacts_.dormant_records.size() == 0) {
+    known.clear();
+    return true;
+  }
+  const std::span<const std::uint32_t> stamps = scene_.keys.stamps();
+  const std::span<const ClientData> data = scene_.keys.all_client_data();
+  if (known.stamp.size() == stamps.size() && known.live == scene_.keys.size() &&
+      contacts_.regroupings == scene_.regroupings) {
+    return true;
+  }
+  if (!known.stamp.resize(stamps.size()) || !known.data.resize(data.size())) return false;
+  std::ranges::copy(stamps, known.stamp.begin());
+  std::ranges::copy(data, known.data.begin());
+  known.live = scene_.keys.size();
+  return true;
 }
 
 }  // namespace winnow

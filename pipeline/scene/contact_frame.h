@@ -8,8 +8,8 @@
 #include <winnow/pipeline/contacts.h>
 #include <winnow/pipeline/narrow_result.h>
 #include "pipeline/scene/body_pairs.h"
-#include "pipeline/scene/contact_history.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <memory_resource>
 
@@ -186,6 +186,28 @@ struct CachedPair {
   bool widened;
 };
 
+/// Maps the pairs and points of a ContactFrame to their indices in the frame before, for warm
+/// starts. Empty without SceneOptions::warm_start.
+struct ContactHistory {
+  explicit ContactHistory(std::pmr::memory_resource* memory) noexcept
+      : pair(memory), point(memory), taken(memory), pose(memory) {}
+
+  /// Index in the frame before, by pair and by point, or kNoContact.
+  Column<std::uint32_t> pair;
+  Column<std::uint32_t> point;
+  /// By point of the frame before: 1 if a point of this frame matched it.
+  Column<std::uint8_t> taken;
+  /// Pose at the last `collide`, by body id.
+  Column<Pose> pose;
+  /// The last call kept the whole frame: every pair and point maps to itself.
+  bool is_same = false;
+
+  void clear() noexcept;
+  /// Reserves for Scene::reserve_contacts.
+  [[nodiscard]] bool reserve(std::size_t pairs, std::size_t points, std::size_t bodies,
+                             Pages pages) noexcept;
+};
+
 /// The state of Contacts.
 struct ContactsState {
   explicit ContactsState(std::pmr::memory_resource* memory) noexcept;
@@ -216,7 +238,7 @@ struct ContactsState {
   std::size_t cached_count = 0;
 
   /// By pair of the batch (`old_record` and `origin` with caching: of the scene): its record of
-  /// the last call; its index in the input of the narrow phase; and its Collision::ContactSource.
+  /// the last call; its index in the input of the narrow phase; and its ContactSource.
   Column<std::uint32_t> old_record;
   Column<std::uint32_t> source;
   Column<std::uint8_t> origin;

@@ -1,8 +1,6 @@
 // Warm starts: finds the index of each contact in the last frame. Pairs match by key; points match
 // by primitives and features, and the remaining ones by position on either body. Collision
-// (collide.cpp, write_contacts.cpp) calls this.
-
-#include "pipeline/scene/contact_history.h"
+// (collide.cpp) and ContactFrameWriter (contact_frame_writer.cpp) call this.
 
 #include <winnow/core/eigen.h>
 #include <winnow/core/rotation.h>
@@ -18,6 +16,12 @@ namespace winnow {
 namespace {
 
 constexpr std::size_t kBodiesPerCopy = 4096;
+/// A point that has no feature match may have moved by at most this share of the smaller body's
+/// radius, measured on the body on which it moved less, to match a point of the last frame.
+constexpr double kSamePointFraction = 0.02;
+/// If a pair has more unmatched points of the last frame than this, its points are matched by
+/// feature only: matching by position is quadratic.
+constexpr std::uint32_t kMaxUnmatched = 256;
 
 /// A range of manifolds or points.
 struct IndexRange {
@@ -178,8 +182,8 @@ bool ContactHistory::reserve(std::size_t pairs, std::size_t points, std::size_t 
          taken.reserve(points, pages) && pose.reserve(bodies, pages);
 }
 
-bool Collision::begin_history() noexcept {
-  if (!stores_positions_) return true;
+bool ContactCache::begin_history() noexcept {
+  if (!call_.stores_positions) return true;
   ContactHistory& history = contacts_.history;
   if (!history.taken.resize(contacts_.before.points.size()) ||
       !history.pose.grow(scene_.pose.size())) {
@@ -190,23 +194,16 @@ bool Collision::begin_history() noexcept {
   return true;
 }
 
-// Resizes to the frame.
-bool Collision::grow_history() noexcept {
+bool ContactCache::grow_history() noexcept {
   ContactHistory& history = contacts_.history;
-  return !stores_positions_ || (history.pair.resize(contacts_.frame.pairs()) &&
-                                history.point.resize(contacts_.frame.points.size()));
+  return !call_.stores_positions || (history.pair.resize(contacts_.frame.pairs()) &&
+                                     history.point.resize(contacts_.frame.points.size()));
 }
 
-// Reserves for the next call, which flags this frame's points.
-bool Collision::reserve_history() noexcept {
-  return !stores_positions_ || contacts_.history.taken.reserve(contacts_.frame.points.size());
-}
-
-// Matches the points of all pairs of the frame.
-void Collision::match_points() noexcept {
-  if (!stores_positions_) return;
-  if (level_ == ContactLevel::manifold) {
-    for_each_range(scene_.options.execution, contacts_.frame.pairs(), kPairsPerTask,
+void ContactCache::match_points() noexcept {
+  if (!call_.stores_positions) return;
+  if (call_.level == ContactLevel::manifold) {
+    for_each_range(scene_.options.execution, contacts_.frame.pairs(), CollideCall::kPairsPerTask,
                    [&](std::size_t first, std::size_t end) {
                      for (std::size_t i = first; i < end; ++i) {
                        match_points(static_cast<std::uint32_t>(i));
@@ -216,7 +213,7 @@ void Collision::match_points() noexcept {
   note_poses();
 }
 
-void Collision::match_points(std::uint32_t shown) noexcept {
+void ContactCache::match_points(std::uint32_t shown) noexcept {
   const ContactFrame& frame = contacts_.frame;
   const ContactFrame& before = contacts_.before;
   ContactHistory& history = contacts_.history;
@@ -226,7 +223,7 @@ void Collision::match_points(std::uint32_t shown) noexcept {
   if (history.pair[shown] == kNoContact || before.point_first.empty()) return;
   PointMatch match(frame, before, history, shown);
   match.by_part();
-  if (reduces_ && !match.is_done()) match.by_feature();
+  if (call_.reduces && !match.is_done()) match.by_feature();
   if (match.is_done() || match.left_over() > kMaxUnmatched) return;
   const std::uint32_t bodies[2] = {frame.key[0][shown].id, frame.key[1][shown].id};
   const double reach =
@@ -236,9 +233,8 @@ void Collision::match_points(std::uint32_t shown) noexcept {
                  reach);
 }
 
-// Called if the frame stays as it is: every contact keeps its index.
-bool Collision::store_positions() noexcept {
-  if (!stores_positions_) return true;
+bool ContactCache::store_positions() noexcept {
+  if (!call_.stores_positions) return true;
   ContactHistory& history = contacts_.history;
   if (!history.pose.grow(scene_.pose.size())) return false;
   if (!history.is_same) {
@@ -251,7 +247,7 @@ bool Collision::store_positions() noexcept {
 }
 
 // Stores the poses of bodies that have moved or are new.
-void Collision::note_poses() noexcept {
+void ContactCache::note_poses() noexcept {
   Column<Pose>& known = contacts_.history.pose;
   const std::size_t old = known.size();
   known.set_size(scene_.pose.size());

@@ -1,7 +1,7 @@
 // Contact and rest offsets of bodies. Each pair has its own contact distance, which is its margin
 // in the narrow phase; contacts are then measured from the surfaces moved by the rest offsets.
-// Collision calls this before the narrow phase (limit and margins) and after it. In a scene without
-// offsets, all pairs have the scene's margin, and the other functions return at once.
+// Collision (collide.cpp) calls this before the narrow phase (limit and margins) and after it. In a
+// scene without offsets, all pairs have the scene's margin, and the other functions return at once.
 
 #include "core/hooks/log.h"
 #include "core/sort/parallel_ranges.h"
@@ -48,67 +48,68 @@ Status Scene::set_offsets(Key key, const ContactOffsets& offsets) {
   SceneState& s = *state_;
   if (!s.keys.is_valid(key)) return logged(Status::invalid_key, "Scene::set_offsets");
   if (!are_good(offsets)) return logged(Status::invalid_argument, "Scene::set_offsets");
-  if (s.offsets_of(key.id) == offsets) return Status::ok;
-  if (!s.begin_offsets()) return logged(Status::out_of_memory, "Scene::set_offsets");
-  s.offsets[key.id] = offsets;
+  if (s.offsets.of(key.id) == offsets) return Status::ok;
+  if (!s.offsets.begin(s.shape.size(), s.shape.capacity()))
+    return logged(Status::out_of_memory, "Scene::set_offsets");
+  s.offsets.column[key.id] = offsets;
   s.shaped_at[key.id] = s.clock;
-  s.mark_stale(key.id);
+  s.stale.mark(key.id);
   return Status::ok;
 }
 
-// From the first offsets on, the column has an element for every body.
-bool SceneState::begin_offsets() noexcept {
-  if (has_offsets()) return true;
-  if (!offsets.grow(shape.capacity())) return false;
-  with_offsets = true;
-  offsets.set_size(shape.size());
-  std::fill(offsets.begin(), offsets.end(), ContactOffsets{});
+bool BodyOffsets::begin(std::size_t bodies, std::size_t room) noexcept {
+  if (any) return true;
+  if (!column.grow(room)) return false;
+  any = true;
+  column.set_size(bodies);
+  std::fill(column.begin(), column.end(), ContactOffsets{});
   return true;
 }
 
-double SceneState::gap_of(const BodyPair& pair) const noexcept {
-  const double own = offsets_of(pair.a).contact + offsets_of(pair.b).contact;
-  return std::min(options.contact_margin + own, kLargestLength);
+double ContactFilters::gap_of(const BodyPair& pair) const noexcept {
+  const double own = scene_.offsets.of(pair.a).contact + scene_.offsets.of(pair.b).contact;
+  return std::min(scene_.options.contact_margin + own, kLargestLength);
 }
 
 // Sets the limit that decides for all pairs whether they are in contact; no pair's own contact
 // distance exceeds it. `trim` therefore replaces a distance that exceeds the pair's own contact
 // distance by the limit plus the excess.
-void Collision::find_limit() noexcept {
-  limit_ = scene_.options.contact_margin;
-  if (!scene_.has_offsets()) return;
-  for (const Column<BodyPair>* const list : {&scene_.convex, &scene_.composite}) {
+void ContactFilters::find_limit() noexcept {
+  call_.limit = scene_.options.contact_margin;
+  if (!scene_.offsets.any) return;
+  for (const Column<BodyPair>* const list : {&scene_.batch.convex, &scene_.batch.composite}) {
     for (const BodyPair& pair : *list) {
-      const double gap = scene_.gap_of(pair);
-      const double rest = scene_.offsets_of(pair.a).rest + scene_.offsets_of(pair.b).rest;
-      limit_ = std::max(limit_, std::min(gap - std::min(rest, 0.0), kLargestLength));
+      const double gap = gap_of(pair);
+      const double rest = scene_.offsets.of(pair.a).rest + scene_.offsets.of(pair.b).rest;
+      call_.limit = std::max(call_.limit, std::min(gap - std::min(rest, 0.0), kLargestLength));
     }
   }
 }
 
-bool Collision::find_margins(const Column<BodyPair>& pairs, double more, PairMargins& margins) {
+bool ContactFilters::find_margins(const Column<BodyPair>& pairs, double more,
+                                  PairMargins& margins) {
   margins = std::min(scene_.options.contact_margin + more, kLargestLength);
-  if (!scene_.has_offsets()) return true;
-  Column<double>& gaps = scene_.gaps;
+  if (!scene_.offsets.any) return true;
+  Column<double>& gaps = scene_.batch.gaps;
   if (!resize_tightly(gaps, pairs.size())) return false;
   double largest = 0.0;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
-    gaps[i] = std::min(scene_.gap_of(pairs[i]) + more, kLargestLength);
+    gaps[i] = std::min(gap_of(pairs[i]) + more, kLargestLength);
     largest = std::max(largest, gaps[i]);
   }
   margins = {largest, {gaps.data(), gaps.size()}};
   return true;
 }
 
-bool Collision::find_part_margins(PairMargins& margins) {
+bool ContactFilters::find_part_margins(PairMargins& margins) {
   margins = scene_.options.contact_margin;
-  if (!scene_.has_offsets()) return true;
-  const PrimitivePairs& parts = scene_.parts->pairs;
-  Column<double>& gaps = scene_.parts->gaps;
+  if (!scene_.offsets.any) return true;
+  const PrimitivePairs& parts = scene_.batch.parts->pairs;
+  Column<double>& gaps = scene_.batch.parts->gaps;
   if (!resize_tightly(gaps, parts.pairs.size())) return false;
   double largest = 0.0;
-  for (std::size_t i = 0; i < scene_.composite.size(); ++i) {
-    const double gap = scene_.gap_of(scene_.composite[i]);
+  for (std::size_t i = 0; i < scene_.batch.composite.size(); ++i) {
+    const double gap = gap_of(scene_.batch.composite[i]);
     std::fill(gaps.begin() + parts.first[i], gaps.begin() + parts.first[i + 1], gap);
     largest = std::max(largest, gap);
   }
@@ -116,30 +117,30 @@ bool Collision::find_part_margins(PairMargins& margins) {
   return true;
 }
 
-void Collision::trim(double gap, std::uint32_t at, const NarrowColumns& answers) noexcept {
+void ContactFilters::trim(double gap, std::uint32_t at, const NarrowColumns& answers) noexcept {
   double& distance = answers.distance[at];
   const double beyond = distance - gap;
   if (!(beyond > 0.0)) return;
-  distance =
-      std::min(std::max(limit_ + beyond, std::nextafter(limit_, kLargestLength)), kLargestLength);
+  distance = std::min(std::max(call_.limit + beyond, std::nextafter(call_.limit, kLargestLength)),
+                      kLargestLength);
 }
 
-void Collision::trim_convex() noexcept {
-  if (level_ < ContactLevel::distance || !scene_.has_offsets()) return;
-  const NarrowColumns answers = scene_.answers.columns();
-  for_each_range(scene_.options.execution, scene_.convex.size(), kOffsetPairsPerRange,
+void ContactFilters::trim_convex() noexcept {
+  if (call_.level < ContactLevel::distance || !scene_.offsets.any) return;
+  const NarrowColumns answers = scene_.batch.answers.columns();
+  for_each_range(scene_.options.execution, scene_.batch.convex.size(), kOffsetPairsPerRange,
                  [&](std::size_t first, std::size_t end) {
                    for (auto i = static_cast<std::uint32_t>(first); i < end; ++i) {
-                     trim(scene_.gaps[i], i, answers);
-                     rest(scene_.convex[i], i, answers);
+                     trim(scene_.batch.gaps[i], i, answers);
+                     rest(scene_.batch.convex[i], i, answers);
                    }
                  });
 }
 
-void Collision::trim_parts() noexcept {
-  if (level_ < ContactLevel::distance || !scene_.has_offsets()) return;
-  const PartAnswers& parts = *scene_.parts;
-  const NarrowColumns answers = scene_.parts->answers.columns();
+void ContactFilters::trim_parts() noexcept {
+  if (call_.level < ContactLevel::distance || !scene_.offsets.any) return;
+  const PartAnswers& parts = *scene_.batch.parts;
+  const NarrowColumns answers = scene_.batch.parts->answers.columns();
   for_each_range(scene_.options.execution, parts.gaps.size(), kOffsetPairsPerRange,
                  [&](std::size_t first, std::size_t end) {
                    for (std::size_t k = first; k < end; ++k) {
@@ -149,15 +150,15 @@ void Collision::trim_parts() noexcept {
 }
 
 // Measures distance and points from the surfaces moved by the rest offsets.
-void Collision::rest(const BodyPair& bodies, std::uint32_t at,
-                     const NarrowColumns& answers) noexcept {
-  const double rest[2] = {scene_.offsets_of(bodies.a).rest, scene_.offsets_of(bodies.b).rest};
+void ContactFilters::rest(const BodyPair& bodies, std::uint32_t at,
+                          const NarrowColumns& answers) noexcept {
+  const double rest[2] = {scene_.offsets.of(bodies.a).rest, scene_.offsets.of(bodies.b).rest};
   double& distance = answers.distance[at];
-  if ((rest[0] == 0.0 && rest[1] == 0.0) || distance > limit_) return;
+  if ((rest[0] == 0.0 && rest[1] == 0.0) || distance > call_.limit) return;
   answers.error_bound[at] += sum_error(distance, rest);
   distance -= rest[0] + rest[1];
   const double normal[3] = {answers.normal[0][at], answers.normal[1][at], answers.normal[2][at]};
-  if (level_ == ContactLevel::distance) {
+  if (call_.level == ContactLevel::distance) {
     for (int k = 0; k < 3; ++k) answers.point[k][at] += rest[0] * normal[k];
     return;
   }
@@ -169,29 +170,29 @@ void Collision::rest(const BodyPair& bodies, std::uint32_t at,
   }
 }
 
-void Collision::rest_parts() noexcept {
-  if (level_ < ContactLevel::distance || !scene_.has_offsets()) return;
-  const NarrowColumns answers = scene_.parts->answers.columns();
-  for_each_range(scene_.options.execution, scene_.composite.size(), kOffsetPairsPerRange,
+void ContactFilters::rest_parts() noexcept {
+  if (call_.level < ContactLevel::distance || !scene_.offsets.any) return;
+  const NarrowColumns answers = scene_.batch.parts->answers.columns();
+  for_each_range(scene_.options.execution, scene_.batch.composite.size(), kOffsetPairsPerRange,
                  [&](std::size_t first, std::size_t end) {
                    for (std::size_t i = first; i < end; ++i) {
-                     const BodyPair& bodies = scene_.composite[i];
-                     if (reduces_) {
+                     const BodyPair& bodies = scene_.batch.composite[i];
+                     if (call_.reduces) {
                        rest_regions(bodies, i);
                        continue;
                      }
-                     const std::uint32_t* const of = scene_.parts->pairs.first.data() + i;
+                     const std::uint32_t* const of = scene_.batch.parts->pairs.first.data() + i;
                      for (std::uint32_t k = of[0]; k < of[1]; ++k) {
-                       rest(bodies, scene_.parts->slot[k], answers);
+                       rest(bodies, scene_.batch.parts->slot[k], answers);
                      }
                    }
                  });
 }
 
-void Collision::rest_regions(const BodyPair& bodies, std::size_t pair) noexcept {
-  const double rest[2] = {scene_.offsets_of(bodies.a).rest, scene_.offsets_of(bodies.b).rest};
+void ContactFilters::rest_regions(const BodyPair& bodies, std::size_t pair) noexcept {
+  const double rest[2] = {scene_.offsets.of(bodies.a).rest, scene_.offsets.of(bodies.b).rest};
   if (rest[0] == 0.0 && rest[1] == 0.0) return;
-  ContactRegions& all = scene_.parts->regions;
+  ContactRegions& all = scene_.batch.parts->regions;
   for (ContactRegion& region : std::span(all.regions.data() + all.first[pair], all.count[pair])) {
     region.error_bound += sum_error(region.distance, rest);
     region.distance -= rest[0] + rest[1];

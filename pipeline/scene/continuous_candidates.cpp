@@ -42,12 +42,12 @@ struct PathPairFilter {
       const std::uint32_t other = stationary->body_of[second];
       return is_selected(way, state.bodies.body_state[other], way.bullet) &&
              state.mover_of[other] == kNoMover &&
-             state.bodies.may_pair(state.movers[way.mover], other);
+             state.bodies.rules.may_pair(state.movers[way.mover], other);
     }
     const PathPiece then = state.pieces[second];
     return is_selected(way, then.body_state, way.bullet || then.bullet) &&
            way.mover != then.mover && way.overlaps(then) &&
-           state.bodies.may_pair(state.movers[way.mover], state.movers[then.mover]);
+           state.bodies.rules.may_pair(state.movers[way.mover], state.movers[then.mover]);
   }
   [[nodiscard]] PairOptions pair_options() const noexcept {
     PairOptions pair_options;
@@ -92,7 +92,7 @@ Status ContinuousState::take(std::span<const Key> keys, const PoseView& ends) no
     return RigidMotion::between(start, end);
   };
   if (keys.size() != ends.count) return Status::size_mismatch;
-  if (!bodies.are_distinct(keys)) return Status::invalid_key;
+  if (!bodies.stale.are_distinct(bodies.keys, keys)) return Status::invalid_key;
   if (!motions.resize(keys.size())) return Status::out_of_memory;
   for_movers([&](std::size_t mover) { motions[mover] = motion_to(mover); });
   return take_bodies(keys);
@@ -101,7 +101,7 @@ Status ContinuousState::take(std::span<const Key> keys, const PoseView& ends) no
 Status ContinuousState::take(std::span<const Key> keys,
                              std::span<const RigidMotion> given) noexcept {
   if (keys.size() != given.size()) return Status::size_mismatch;
-  if (!bodies.are_distinct(keys)) return Status::invalid_key;
+  if (!bodies.stale.are_distinct(bodies.keys, keys)) return Status::invalid_key;
   if (!motions.resize(keys.size())) return Status::out_of_memory;
   std::ranges::copy(given, motions.begin());
   return take_bodies(keys);

@@ -1,6 +1,6 @@
 // Suppresses ghost contacts at seams (internal edges) between fixed bodies whose surfaces are flush
-// and form one floor. Collision::answer calls drop_ghost_contacts after the narrow phase of all
-// pairs.
+// and form one floor. Collision (collide.cpp) calls drop_ghost_contacts after the narrow phase of
+// all pairs.
 //
 // Each manifold of a dynamic body with a fixed body defines a floor plane: perpendicular to the
 // normal, through the point of the fixed surface at which the dynamic body is deepest. Except for
@@ -45,11 +45,6 @@ constexpr double kEqualShare = 1e-6;
 constexpr double kOppositeCosine = -0.5;
 /// The sine of the angle whose cosine is kRegionCosine.
 constexpr double kRegionSine = 0.08715574274765817;
-
-[[nodiscard]] bool is_floor_pair(const SceneState& scene, const BodyPair& pair) noexcept {
-  return scene.body_state[pair.a] == BodyState::fixed ||
-         scene.body_state[pair.b] == BodyState::fixed;
-}
 
 /// Decides whether a contact of a body is a ghost contact at a seam.
 class GhostContactTest {
@@ -101,20 +96,20 @@ class GhostContactTest {
       Vec::Map(pose.position) = apart;
       most = highest(scene_.shapes.tables(), scene_.shape[contact.floor], pose, along);
     } else {
-      const bool floor_is_a = scene_.composite[contact.pair].a == contact.floor;
+      const bool floor_is_a = scene_.batch.composite[contact.pair].a == contact.floor;
       most = highest_of_parts(contact, along, floor_is_a);
       if (floor_is_a) most += along.dot(apart);
     }
     // Rest offsets move the surface out or in. If it moves in, corners move farther than faces do.
-    const double rest = scene_.offsets_of(contact.floor).rest;
+    const double rest = scene_.offsets.of(contact.floor).rest;
     return most + (rest < 0.0 ? rest * (kRegionCosine + kRegionSine) : rest);
   }
 
   /// As `highest`, relative to the position of body a of the pair.
   [[nodiscard]] double highest_of_parts(const FloorContact& contact, const Vec& along,
                                         bool floor_is_a) const noexcept {
-    const PrimitivePairs& parts = scene_.parts->pairs;
-    const NarrowResult& answers = scene_.parts->answers;
+    const PrimitivePairs& parts = scene_.batch.parts->pairs;
+    const NarrowResult& answers = scene_.batch.parts->answers;
     const ShapeTables tables = parts.tables(scene_.shapes);
     const auto highest_of = [&](std::uint32_t k) {
       const std::uint32_t primitive = floor_is_a ? parts.pairs[k].a : parts.pairs[k].b;
@@ -126,7 +121,7 @@ class GhostContactTest {
     double most = -mid::kInfinity;
     const Vec normal = floor_is_a ? Vec(Vec::Map(contact.normal)) : Vec(-Vec::Map(contact.normal));
     for (std::uint32_t k = parts.first[contact.pair]; k < parts.first[contact.pair + 1]; ++k) {
-      const std::uint32_t at = scene_.parts->slot[k];
+      const std::uint32_t at = scene_.batch.parts->slot[k];
       const Vec own(answers.normal(0)[at], answers.normal(1)[at], answers.normal(2)[at]);
       const bool is_in_region =
           answers.distance()[at] <= limit_ && own.dot(normal) >= kRegionCosine;
@@ -216,7 +211,7 @@ class FloorGroups {
 }  // namespace
 
 /// Converts the points of manifolds to points on the fixed body's surface.
-class Collision::FloorWriter {
+class ContactFilters::FloorWriter {
  public:
   /// `index`: of the pair in its list.
   FloorWriter(const SceneState& scene, const BodyPair& pair, std::uint32_t index) noexcept
@@ -252,18 +247,15 @@ class Collision::FloorWriter {
   double most_ = 0.0;
 };
 
-bool Collision::is_cacheable(const BodyPair& pair) const noexcept {
-  return !scene_.options.suppress_ghost_contacts || !is_floor_pair(scene_, pair);
-}
-
-bool Collision::list_floor_answer(const NarrowResult& answers, FloorContact::Source source,
-                                  std::uint32_t at, const double* offset, FloorWriter& writer) {
+bool ContactFilters::list_floor_answer(const NarrowResult& answers, FloorContact::Source source,
+                                       std::uint32_t at, const double* offset,
+                                       FloorWriter& writer) {
   const double distance = answers.distance()[at];
-  if (!(distance <= limit_)) return true;
+  if (!(distance <= call_.limit)) return true;
   const Vec normal(answers.normal(0)[at], answers.normal(1)[at], answers.normal(2)[at]);
   const Vec from = offset != nullptr ? Vec(Vec::Map(offset)) : Vec(Vec::Zero());
   writer.begin(source, at, distance, normal);
-  if (level_ == ContactLevel::distance) {
+  if (call_.level == ContactLevel::distance) {
     const Vec on_a(answers.point(0)[at], answers.point(1)[at], answers.point(2)[at]);
     writer.add(from + on_a + 0.5 * distance * normal, -distance);
   } else {
@@ -273,67 +265,69 @@ bool Collision::list_floor_answer(const NarrowResult& answers, FloorContact::Sou
                  static_cast<double>(point.depth));
     }
   }
-  return scene_.floor_contacts.push_back(writer.contact());
+  return scene_.batch.floor_contacts.push_back(writer.contact());
 }
 
-bool Collision::list_floor_contacts() {
-  scene_.floor_contacts.clear();
-  for (std::uint32_t i = 0; i < scene_.convex.size(); ++i) {
-    if (!is_floor_pair(scene_, scene_.convex[i])) continue;
-    FloorWriter writer(scene_, scene_.convex[i], i);
-    if (!list_floor_answer(scene_.answers, FloorContact::Source::convex, i, nullptr, writer)) {
+bool ContactFilters::list_floor_contacts() {
+  scene_.batch.floor_contacts.clear();
+  for (std::uint32_t i = 0; i < scene_.batch.convex.size(); ++i) {
+    if (!call_.is_floor_pair(scene_.batch.convex[i])) continue;
+    FloorWriter writer(scene_, scene_.batch.convex[i], i);
+    if (!list_floor_answer(scene_.batch.answers, FloorContact::Source::convex, i, nullptr,
+                           writer)) {
       return false;
     }
   }
-  for (std::uint32_t i = 0; i < scene_.composite.size(); ++i) {
-    if (!is_floor_pair(scene_, scene_.composite[i])) continue;
-    FloorWriter writer(scene_, scene_.composite[i], i);
-    if (reduces_ ? !list_floor_regions(i, writer) : !list_floor_parts(i, writer)) return false;
+  for (std::uint32_t i = 0; i < scene_.batch.composite.size(); ++i) {
+    if (!call_.is_floor_pair(scene_.batch.composite[i])) continue;
+    FloorWriter writer(scene_, scene_.batch.composite[i], i);
+    if (call_.reduces ? !list_floor_regions(i, writer) : !list_floor_parts(i, writer)) return false;
   }
   return true;
 }
 
-bool Collision::list_floor_parts(std::uint32_t pair, FloorWriter& writer) {
-  const PrimitivePairs& parts = scene_.parts->pairs;
+bool ContactFilters::list_floor_parts(std::uint32_t pair, FloorWriter& writer) {
+  const PrimitivePairs& parts = scene_.batch.parts->pairs;
   for (std::uint32_t k = parts.first[pair]; k < parts.first[pair + 1]; ++k) {
-    if (!list_floor_answer(scene_.parts->answers, FloorContact::Source::part, scene_.parts->slot[k],
-                           parts.poses[parts.pairs[k].a].position, writer)) {
+    if (!list_floor_answer(scene_.batch.parts->answers, FloorContact::Source::part,
+                           scene_.batch.parts->slot[k], parts.poses[parts.pairs[k].a].position,
+                           writer)) {
       return false;
     }
   }
   return true;
 }
 
-bool Collision::list_floor_regions(std::uint32_t pair, FloorWriter& writer) {
-  const std::uint32_t first = scene_.parts->regions.first[pair];
-  for (std::uint32_t k = first; k < first + scene_.parts->regions.count[pair]; ++k) {
-    const ContactRegion& region = scene_.parts->regions.regions[k];
+bool ContactFilters::list_floor_regions(std::uint32_t pair, FloorWriter& writer) {
+  const std::uint32_t first = scene_.batch.parts->regions.first[pair];
+  for (std::uint32_t k = first; k < first + scene_.batch.parts->regions.count[pair]; ++k) {
+    const ContactRegion& region = scene_.batch.parts->regions.regions[k];
     writer.begin(FloorContact::Source::region, k, region.distance, Vec::Map(region.normal));
     for (const ContactPoint& point : std::span(region.point, region.count)) {
       writer.add(Eigen::Map<const Eigen::Vector3f>(point.position).cast<double>(),
                  static_cast<double>(point.depth));
     }
-    if (!scene_.floor_contacts.push_back(writer.contact())) return false;
+    if (!scene_.batch.floor_contacts.push_back(writer.contact())) return false;
   }
   return true;
 }
 
-void Collision::drop(const FloorContact& seam) noexcept {
-  const double beyond = std::nextafter(limit_, std::numeric_limits<double>::max());
+void ContactFilters::drop(const FloorContact& seam) noexcept {
+  const double beyond = std::nextafter(call_.limit, std::numeric_limits<double>::max());
   if (seam.source == FloorContact::Source::convex) {
-    scene_.answers.columns().distance[seam.answer] = beyond;
+    scene_.batch.answers.columns().distance[seam.answer] = beyond;
   } else if (seam.source == FloorContact::Source::part) {
-    scene_.parts->answers.columns().distance[seam.answer] = beyond;
+    scene_.batch.parts->answers.columns().distance[seam.answer] = beyond;
   } else {
-    scene_.parts->regions.regions[seam.answer].count = 0;
+    scene_.batch.parts->regions.regions[seam.answer].count = 0;
   }
 }
 
-bool Collision::drop_ghost_contacts() {
-  if (!scene_.options.suppress_ghost_contacts || level_ < ContactLevel::distance) return true;
+bool ContactFilters::drop_ghost_contacts() {
+  if (!scene_.options.suppress_ghost_contacts || call_.level < ContactLevel::distance) return true;
   if (!list_floor_contacts()) return false;
-  Column<FloorContact>& all = scene_.floor_contacts;
-  if (!scene_.floor_order.resize(all.size())) return false;
+  Column<FloorContact>& all = scene_.batch.floor_contacts;
+  if (!scene_.batch.floor_order.resize(all.size())) return false;
   // Groups contacts by body, in the order in which they were listed.
   const auto is_before = [](const FloorContact& one, const FloorContact& other) {
     return std::tuple(one.body, one.source, one.answer) <
@@ -353,11 +347,11 @@ bool Collision::drop_ghost_contacts() {
 }
 
 // Drops the seams of one body.
-void Collision::drop_ghost_contacts_of(FloorContact* first, FloorContact* end) noexcept {
+void ContactFilters::drop_ghost_contacts_of(FloorContact* first, FloorContact* end) noexcept {
   const double radius = scene_.radius(first->body);
   if (end - first < 2 || !std::isfinite(radius)) return;
-  const FloorGroups groups({first, end}, scene_.floor_order.data());
-  const GhostContactTest judge(scene_, radius, limit_);
+  const FloorGroups groups({first, end}, scene_.batch.floor_order.data());
+  const GhostContactTest judge(scene_, radius, call_.limit);
   for (FloorContact* one = first; one != end; ++one) {
     if (!groups.is_seam_of_any(*one, judge)) continue;
     drop(*one);
@@ -366,10 +360,10 @@ void Collision::drop_ghost_contacts_of(FloorContact* first, FloorContact* end) n
 }
 
 // Removes regions that were dropped, which have no points.
-void Collision::close_regions() noexcept {
-  if (!reduces_ || scene_.composite.empty()) return;
-  ContactRegions& all = scene_.parts->regions;
-  for (std::uint32_t i = 0; i < scene_.composite.size(); ++i) {
+void ContactFilters::close_regions() noexcept {
+  if (!call_.reduces || scene_.batch.composite.empty()) return;
+  ContactRegions& all = scene_.batch.parts->regions;
+  for (std::uint32_t i = 0; i < scene_.batch.composite.size(); ++i) {
     ContactRegion* const first = all.regions.data() + all.first[i];
     const ContactRegion* const end = std::remove_if(
         first, first + all.count[i], [](const ContactRegion& region) { return region.count == 0; });

@@ -13,7 +13,7 @@ struct FloorContact {
 
   std::uint32_t body;
   std::uint32_t floor;
-  /// Index of the pair in SceneState::convex or SceneState::composite.
+  /// Index of the pair in PairBatch::convex or PairBatch::composite.
   std::uint32_t pair;
   /// Index of the result in its source.
   std::uint32_t answer;

@@ -64,8 +64,10 @@ Status Scene::reserve_contacts(Contacts& out, const SceneCapacity& room, Pages p
 
 // Partitions come last, because a new partition is visible to callers.
 Status SceneState::reserve(const SceneCapacity& room, Pages pages) {
-  if (!reserve_bodies(room, pages)) return Status::out_of_memory;
-  const Status status = reserve_answers(room, pages);
+  if (!reserve_bodies(room, pages) || !pairs.reserve(room.pairs, pages)) {
+    return Status::out_of_memory;
+  }
+  const Status status = batch.reserve(shapes, options, room, offsets.any, pages);
   return status == Status::ok ? reserve_sets(room, pages) : status;
 }
 
@@ -74,13 +76,14 @@ bool SceneState::reserve_bodies(const SceneCapacity& room, Pages pages) noexcept
   if (!reserve(bodies > keys.size() ? bodies - keys.size() : 0)) return false;
   // One call may move all bodies, and passes boxes to one set at a time.
   const std::size_t largest = *std::ranges::max_element(room.bodies);
-  if (!reserve_all(largest, pages, boxes, boxes_of, boxes_body) ||
-      !reserve_all(bodies, pages, chosen) || !reserve_all(bodies, pages, old_keys)) {
+  if (!reserve_all(largest, pages, staged.boxes, staged.keys, staged.data) ||
+      !reserve_all(bodies, pages, staged.chosen) || !reserve_all(bodies, pages, staged.old_keys)) {
     return false;
   }
   if (pages == Pages::prefaulted) {
     keys.touch();
-    touch_columns(shape, pose, body_state, place, ball, moved_at, shaped_at, stale, is_stale);
+    touch_columns(shape, pose, body_state, place, ball, moved_at, shaped_at, stale.bodies,
+                  stale.flag);
     anchor.touch();
   }
   return true;
@@ -111,10 +114,10 @@ Status SceneState::reserve_sets(const SceneCapacity& room, Pages pages) {
   return status;
 }
 
-Status SceneState::reserve_answers(const SceneCapacity& room, Pages pages) {
-  if (!pairs.reserve(room.pairs, pages)) return Status::out_of_memory;
+Status PairBatch::reserve(const ShapePool& shapes, const SceneOptions& options,
+                          const SceneCapacity& room, bool with_offsets, Pages pages) {
   if (room.level == ContactLevel::pairs) return Status::ok;
-  const std::size_t batch = Collision::batch_size(options, room.pairs);
+  const std::size_t batch = CollideCall::batch_size(options, room.pairs);
   if (options.composites != nullptr && !composite.reserve(batch, pages)) {
     return Status::out_of_memory;
   }
@@ -129,8 +132,8 @@ Status SceneState::reserve_answers(const SceneCapacity& room, Pages pages) {
       ++bodies;
     }
   }
-  if (!convex.reserve(Collision::batch_room(options, room.pairs), pages) ||
-      (has_offsets() && !gaps.reserve(batch, pages)) || !list_rehearsal(bodies / 2, batch)) {
+  if (!convex.reserve(CollideCall::batch_room(options, room.pairs), pages) ||
+      (with_offsets && !gaps.reserve(batch, pages)) || !list_rehearsal(bodies / 2, batch)) {
     return Status::out_of_memory;
   }
   const Status status = narrow.collide(
@@ -152,7 +155,7 @@ Status SceneState::reserve_answers(const SceneCapacity& room, Pages pages) {
 // two kinds, because the narrow phase ends each run of pairs of equal kinds with a partial job.
 // These pairs are in swapped order, so that their results must be mirrored. All other pairs are of
 // kind 0.
-bool SceneState::list_rehearsal(std::size_t kinds, std::size_t count) noexcept {
+bool PairBatch::list_rehearsal(std::size_t kinds, std::size_t count) noexcept {
   if (!convex.reserve(count)) return false;
   convex.clear();
   for (std::uint32_t a = 0; a < kinds; ++a) {
@@ -191,8 +194,8 @@ bool ContactsState::reserve(const SceneCapacity& room, const SceneOptions& optio
   const std::size_t remembered = uses_cache ? room.pairs + shown : shown;
   const std::size_t cached_room = uses_cache ? remembered : 0;
   // Caching is decided for all pairs before the narrow phase begins.
-  const std::size_t batch = Collision::batch_size(options, room.pairs);
-  const std::size_t batch_room = Collision::batch_room(options, room.pairs);
+  const std::size_t batch = CollideCall::batch_size(options, room.pairs);
+  const std::size_t batch_room = CollideCall::batch_room(options, room.pairs);
   const std::size_t record_room = uses_cache ? std::max(room.pairs, batch_room) : batch_room;
   const std::size_t source_room = room.level == ContactLevel::pairs ? 0 : batch_room;
   const std::size_t origin_room = room.level == ContactLevel::pairs ? 0 : record_room;
@@ -210,7 +213,7 @@ bool ContactsState::reserve(const SceneCapacity& room, const SceneOptions& optio
          dormant_cached.reserve(uses_cache ? shown : 0, pages) &&
          source.reserve(source_room, pages) && origin.reserve(origin_room, pages) &&
          old_record.reserve(record_room, pages) &&
-         sums.reserve(batch / Collision::kPairsPerTask + 1, pages);
+         sums.reserve(batch / CollideCall::kPairsPerTask + 1, pages);
 }
 
 }  // namespace winnow

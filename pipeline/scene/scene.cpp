@@ -1,5 +1,5 @@
 // The public interface of Scene: checks arguments and calls SceneState (scene_state.cpp). Other
-// members of Scene are in collide.cpp, pair_filter.cpp, contact_offsets.cpp, contact_groups.cpp,
+// members of Scene are in collide.cpp, pair_rules.cpp, contact_offsets.cpp, contact_groups.cpp,
 // reserve.cpp, scene_snapshot.cpp and contacts_snapshot.cpp.
 
 #include <winnow/pipeline/scene.h>
@@ -10,27 +10,9 @@
 #include "pipeline/scene/scene_state.h"
 
 #include <algorithm>
-#include <atomic>
-#include <cmath>
 
 namespace winnow {
 namespace {
-
-[[nodiscard]] bool is_length(double value) noexcept {
-  return std::isfinite(value) && value >= 0.0;
-}
-
-[[nodiscard]] bool are_good(const SceneOptions& options) noexcept {
-  const auto known = [](StructureKind kind) { return kind != StructureKind{}; };
-  return is_length(options.contact_margin) && is_length(options.cache_tolerance) &&
-         std::all_of(std::begin(options.structures), std::end(options.structures), known) &&
-         options.tier <= NarrowTier::reference;
-}
-
-[[nodiscard]] std::uint64_t next_serial() noexcept {
-  static std::atomic<std::uint64_t> serial{0};
-  return ++serial;
-}
 
 [[nodiscard]] bool is_body_state(BodyState state) noexcept {
   return state <= BodyState::sleeping;
@@ -81,45 +63,6 @@ Bytes PartAnswers::bytes() const noexcept {
   return sum;
 }
 
-SceneState::SceneState(const ShapePool& pool, const SceneOptions& given) noexcept
-    : shapes(pool),
-      options(given),
-      options_are_good(are_good(given)),
-      growth(given.contact_margin * 0.5 + given.cache_tolerance),
-      keys(given.memory),
-      shape(given.memory),
-      pose(given.memory),
-      body_state(given.memory),
-      place(given.memory),
-      moved_at(given.memory),
-      shaped_at(given.memory),
-      anchor(given.memory),
-      ball(given.memory),
-      offsets(given.memory),
-      layer(given.memory),
-      layers(given.memory),
-      stale(given.memory),
-      is_stale(given.memory),
-      boxes(given.memory),
-      boxes_of(given.memory),
-      boxes_body(given.memory),
-      chosen(given.memory),
-      old_keys(given.memory),
-      sets{SceneSet(given.memory), SceneSet(given.memory), SceneSet(given.memory)},
-      serial(next_serial()),
-      pairs(given.memory),
-      narrow(given.memory),
-      answers(given.memory),
-      convex(given.memory),
-      composite(given.memory),
-      gaps(given.memory),
-      floor_contacts(given.memory),
-      floor_order(given.memory),
-      ignored(given.memory),
-      ignores(given.memory) {
-  if (given.composites != nullptr) composites_seen = given.composites->revision();
-}
-
 Scene::Scene(const ShapePool& shapes, const SceneOptions& options) noexcept
     : state_(new_in<SceneState>(options.memory, shapes, options)) {}
 
@@ -149,8 +92,9 @@ Status Scene::add(std::span<const BodyDefinition> bodies, std::span<Key> keys) {
     if (const Status good = s.check(body.shape, body.pose); good != Status::ok)
       return logged(good, "Scene::add");
   }
-  if (!s.reserve(bodies.size()) || (with_offsets && !s.begin_offsets()) ||
-      (with_layers && !s.begin_layers()))
+  if (!s.reserve(bodies.size()) ||
+      (with_offsets && !s.offsets.begin(s.shape.size(), s.shape.capacity())) ||
+      (with_layers && !s.rules.begin_layers(s.shape.size(), s.shape.capacity())))
     return logged(Status::out_of_memory, "Scene::add");
   const bool is_first = s.keys.size() == 0;
   for (std::size_t i = 0; i < bodies.size(); ++i) keys[i] = s.acquire(bodies[i]);
@@ -173,11 +117,11 @@ Status Scene::remove(std::span<const Key> keys) {
   const DefaultFloatEnvironment environment;
   if (state_ == nullptr) return logged(Status::out_of_memory, "Scene::remove");
   SceneState& s = *state_;
-  if (!s.are_distinct(keys)) return logged(Status::invalid_key, "Scene::remove");
+  if (!s.stale.are_distinct(s.keys, keys)) return logged(Status::invalid_key, "Scene::remove");
   for (const BodyState which : kAllBodyStates) s.take_out(keys, which);
   ++s.regroupings;
-  s.forget_stale();
-  s.forget_ignored(keys);
+  s.stale.forget_removed(s.keys);
+  s.rules.forget_ignored(keys, s.keys);
   return Status::ok;
 }
 
@@ -190,12 +134,10 @@ void Scene::clear() noexcept {
     ++set.changes;
   }
   s.keys.clear();
-  s.offsets.clear();
-  s.layer.clear();
-  s.with_offsets = s.with_layers = false;
-  s.forget_stale();
-  s.ignored.clear();
-  s.ignores.clear();
+  s.offsets.column.clear();
+  s.offsets.any = false;
+  s.stale.forget_removed(s.keys);
+  s.rules.forget_bodies();
   ++s.regroupings;
 }
 
@@ -236,7 +178,8 @@ Status Scene::set_body_state(std::span<const Key> keys, BodyState state) {
   if (state_ == nullptr) return logged(Status::out_of_memory, "Scene::set_body_state");
   SceneState& s = *state_;
   if (!is_body_state(state)) return logged(Status::invalid_argument, "Scene::set_body_state");
-  if (!s.are_distinct(keys)) return logged(Status::invalid_key, "Scene::set_body_state");
+  if (!s.stale.are_distinct(s.keys, keys))
+    return logged(Status::invalid_key, "Scene::set_body_state");
   return logged(s.move_to_set(keys, state), "Scene::set_body_state");
 }
 
@@ -249,7 +192,7 @@ Status Scene::set_shape(Key key, ShapeId shape) {
     return logged(good, "Scene::set_shape");
   s.shape[key.id] = shape;
   s.shaped_at[key.id] = s.clock;
-  s.mark_stale(key.id);
+  s.stale.mark(key.id);
   return Status::ok;
 }
 
@@ -285,8 +228,8 @@ Status Scene::body(Key key, BodyDefinition& body) const noexcept {
   body.pose = s.pose[key.id];
   body.state = s.body_state[key.id];
   body.data = s.keys.client_data(key.id);
-  body.offsets = s.offsets_of(key.id);
-  body.layer = s.layer_of(key.id);
+  body.offsets = s.offsets.of(key.id);
+  body.layer = s.rules.layer_of(key.id);
   return s.set(body.state).partition->filter(s.place[key.id], body.filter);
 }
 
@@ -335,13 +278,12 @@ SceneFootprint Scene::footprint() const noexcept {
   footprint.bodies += s.keys.key_bytes();
   footprint.bodies += s.keys.client_data_bytes();
   for (const Bytes& bytes :
-       {s.shape.bytes(),    s.pose.bytes(),       s.body_state.bytes(), s.place.bytes(),
-        s.moved_at.bytes(), s.shaped_at.bytes(),  s.anchor.bytes(),     s.ball.bytes(),
-        s.offsets.bytes(),  s.stale.bytes(),      s.is_stale.bytes(),   s.boxes.bytes(),
-        s.boxes_of.bytes(), s.boxes_body.bytes(), s.chosen.bytes(),     s.old_keys.bytes(),
-        s.ignored.bytes(),  s.ignores.bytes(),    s.layer.bytes(),      s.layers.bytes()}) {
+       {s.shape.bytes(), s.pose.bytes(), s.body_state.bytes(), s.place.bytes(), s.moved_at.bytes(),
+        s.shaped_at.bytes(), s.anchor.bytes(), s.ball.bytes(), s.offsets.column.bytes(),
+        s.stale.bodies.bytes(), s.stale.flag.bytes(), s.rules.bytes()}) {
     footprint.bodies += bytes;
   }
+  footprint.bodies += s.staged.bytes();
   for (std::size_t i = 0; i < kBodyStates; ++i) {
     const SceneSet& set = s.sets[i];
     if (set.partition.has_value()) footprint.partitions[i] += set.partition->footprint().total();
@@ -349,14 +291,14 @@ SceneFootprint Scene::footprint() const noexcept {
     footprint.pairs += set.with_dynamic.footprint().total();
   }
   footprint.pairs += s.pairs.bytes();
-  footprint.mid_phase += s.composite.bytes();
-  footprint.mid_phase += s.gaps.bytes();
-  if (s.parts != nullptr) footprint.mid_phase += s.parts->bytes();
-  footprint.narrow_phase += s.convex.bytes();
-  footprint.narrow_phase += s.floor_contacts.bytes();
-  footprint.narrow_phase += s.floor_order.bytes();
-  footprint.narrow_phase += s.narrow.footprint().total();
-  footprint.narrow_phase += s.answers.footprint().total();
+  footprint.mid_phase += s.batch.composite.bytes();
+  footprint.mid_phase += s.batch.gaps.bytes();
+  if (s.batch.parts != nullptr) footprint.mid_phase += s.batch.parts->bytes();
+  footprint.narrow_phase += s.batch.convex.bytes();
+  footprint.narrow_phase += s.batch.floor_contacts.bytes();
+  footprint.narrow_phase += s.batch.floor_order.bytes();
+  footprint.narrow_phase += s.batch.narrow.footprint().total();
+  footprint.narrow_phase += s.batch.answers.footprint().total();
   return footprint;
 }
 

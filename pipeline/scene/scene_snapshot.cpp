@@ -31,8 +31,8 @@ void visit_body_columns(State& scene, Visit&& visit) {
   visit(scene.moved_at);
   visit(scene.shaped_at);
   if (scene.options.cache_tolerance > 0.0) visit(scene.anchor);
-  if (scene.with_offsets) visit(scene.offsets);
-  if (scene.with_layers) visit(scene.layer);
+  if (scene.offsets.any) visit(scene.offsets.column);
+  if (scene.rules.with_layers) visit(scene.rules.layer);
 }
 
 void put_options(ByteWriter& out, const SceneOptions& options) noexcept {
@@ -111,16 +111,18 @@ void put_set(ByteWriter& out, const SceneState& scene, BodyState which) noexcept
 void put_scene(ByteWriter& out, const SceneState& scene) noexcept {
   put_options(out, scene.options);
   put_keys(out, scene.keys);
-  out.put(scene.with_offsets);
-  out.put(scene.with_layers);
+  out.put(scene.offsets.any);
+  out.put(scene.rules.with_layers);
   visit_body_columns(scene, [&](const auto& column) {
     for_live(scene.keys.stamps(),
              [&](ObjectId body) { out.put_bytes(&column[body], sizeof column[body]); });
   });
   put_clocks(out, scene);
-  out.put_array(std::span<const std::uint32_t>(scene.stale.data(), scene.stale.size()));
-  out.put_array(std::span<const std::uint64_t>(scene.ignored.data(), scene.ignored.size()));
-  out.put_array(scene.layers.words());
+  out.put_array(
+      std::span<const std::uint32_t>(scene.stale.bodies.data(), scene.stale.bodies.size()));
+  out.put_array(
+      std::span<const std::uint64_t>(scene.rules.ignored.data(), scene.rules.ignored.size()));
+  out.put_array(scene.rules.layers.words());
   for (const BodyState which : kAllBodyStates) put_set(out, scene, which);
 }
 
@@ -154,8 +156,10 @@ class SceneReader {
   [[nodiscard]] bool read_columns() {
     const std::size_t slots = keys_.stamps.size();
     Column<std::uint8_t> seen(scene_.options.memory);
-    if (in_.get_bool() && !scene_.begin_offsets()) return in_.refuse_memory();
-    if (in_.get_bool() && !scene_.begin_layers()) return in_.refuse_memory();
+    if (in_.get_bool() && !scene_.offsets.begin(scene_.shape.size(), scene_.shape.capacity()))
+      return in_.refuse_memory();
+    if (in_.get_bool() && !scene_.rules.begin_layers(scene_.shape.size(), scene_.shape.capacity()))
+      return in_.refuse_memory();
     if (!scene_.reserve(slots) || !seen.resize(slots)) return in_.refuse_memory();
     if (!KeyTable::are_consistent(keys_.saved(), seen)) return in_.fail();
     visit_body_columns(scene_, [&](auto& column) {
@@ -167,8 +171,8 @@ class SceneReader {
     scene_.ball.set_size(slots);
     scene_.place.set_size(slots);
     std::fill(scene_.place.begin(), scene_.place.end(), Key{});
-    scene_.is_stale.set_size(slots);
-    std::fill(scene_.is_stale.begin(), scene_.is_stale.end(), std::uint8_t{0});
+    scene_.stale.flag.set_size(slots);
+    std::fill(scene_.stale.flag.begin(), scene_.stale.flag.end(), std::uint8_t{0});
     bool good = in_.ok();
     if (names_ != nullptr) {
       for_live(keys_.all_stamps(),
@@ -178,7 +182,7 @@ class SceneReader {
       good = good && scene_.body_state[body] <= BodyState::sleeping &&
              scene_.check(scene_.shape[body], scene_.pose[body]) == Status::ok &&
              (scene_.anchor.empty() || scene_.anchor[body].is_valid()) &&
-             are_good(scene_.offsets_of(body)) && scene_.layer_of(body) < kSceneLayers;
+             are_good(scene_.offsets.of(body)) && scene_.rules.layer_of(body) < kSceneLayers;
     });
     return good || in_.fail();
   }
@@ -187,25 +191,25 @@ class SceneReader {
     Column<std::uint32_t> stale(scene_.options.memory);
     if (!in_.get_array(stale)) return false;
     for (const std::uint32_t body : stale) {
-      if (!is_live(body) || scene_.is_stale[body] != 0) return in_.fail();
-      scene_.mark_stale(body);
+      if (!is_live(body) || scene_.stale.flag[body] != 0) return in_.fail();
+      scene_.stale.mark(body);
     }
     return true;
   }
 
   [[nodiscard]] bool read_ignored() {
     const std::size_t slots = keys_.stamps.size();
-    if (!in_.get_array(scene_.ignored)) return false;
-    if (scene_.ignored.empty()) return true;
-    if (!scene_.ignores.resize(slots)) return in_.refuse_memory();
-    std::fill(scene_.ignores.begin(), scene_.ignores.end(), std::uint8_t{0});
+    if (!in_.get_array(scene_.rules.ignored)) return false;
+    if (scene_.rules.ignored.empty()) return true;
+    if (!scene_.rules.ignores.resize(slots)) return in_.refuse_memory();
+    std::fill(scene_.rules.ignores.begin(), scene_.rules.ignores.end(), std::uint8_t{0});
     std::uint64_t before = 0;
-    for (const std::uint64_t pair : scene_.ignored) {
+    for (const std::uint64_t pair : scene_.rules.ignored) {
       const auto first = static_cast<std::uint32_t>(pair >> 32U);
       const auto second = static_cast<std::uint32_t>(pair);
       const bool good = first < second && pair > before && is_live(first) && is_live(second);
       if (!good) return in_.fail();
-      scene_.ignores[first] = scene_.ignores[second] = 1;
+      scene_.rules.ignores[first] = scene_.rules.ignores[second] = 1;
       before = pair;
     }
     return true;
@@ -214,7 +218,7 @@ class SceneReader {
   [[nodiscard]] bool read_layers() {
     Column<std::uint64_t> words(scene_.options.memory);
     if (!in_.get_array(words)) return false;
-    switch (scene_.layers.restore({words.data(), words.size()})) {
+    switch (scene_.rules.layers.restore({words.data(), words.size()})) {
       case LayerMatrix::Restored::good:
         return true;
       case LayerMatrix::Restored::out_of_memory:
@@ -229,27 +233,28 @@ class SceneReader {
     SceneSet& set = scene_.set(which);
     (void)in_.get_bytes(set.origin.data(), 3 * sizeof(double));
     if (!set.origin.allFinite()) in_.fail();
-    const BoxRoom room(scene_);
-    scene_.chosen.clear();
+    const BoxRoom room(scene_.staged);
+    scene_.staged.chosen.clear();
     bool has_room = true;
     for_live(keys_.all_stamps(), [&](ObjectId body) {
-      if (scene_.body_state[body] == which) has_room = has_room && scene_.chosen.push_back(body);
+      if (scene_.body_state[body] == which)
+        has_room = has_room && scene_.staged.chosen.push_back(body);
     });
     if (!has_room) return Status::out_of_memory;
-    const std::size_t count = scene_.chosen.size();
+    const std::size_t count = scene_.staged.chosen.size();
     if (count > in_.rest().size() / sizeof(PlainBox)) in_.fail();
     if (!in_.ok()) return status_of(in_);
     if (count == 0) return in_.get_bool() ? Status::invalid_argument : status_of(in_);
-    if (!scene_.boxes.resize(count)) return Status::out_of_memory;
-    (void)in_.get_bytes(scene_.boxes.data(), count * sizeof(PlainBox));
-    scene_.set_balls({scene_.chosen.data(), count}, set.origin);
-    const Status placed = scene_.place_boxes(which, {scene_.chosen.data(), count});
+    if (!scene_.staged.boxes.resize(count)) return Status::out_of_memory;
+    (void)in_.get_bytes(scene_.staged.boxes.data(), count * sizeof(PlainBox));
+    scene_.set_balls({scene_.staged.chosen.data(), count}, set.origin);
+    const Status placed = scene_.place_boxes(which, {scene_.staged.chosen.data(), count});
     return placed == Status::ok ? read_filters(set) : placed;
   }
 
   [[nodiscard]] Status read_filters(SceneSet& set) {
     if (!in_.get_bool()) return status_of(in_);
-    for (const std::uint32_t body : scene_.chosen) {
+    for (const std::uint32_t body : scene_.staged.chosen) {
       ObjectFilter filter;
       if (!in_.get_bytes(&filter, sizeof filter)) return status_of(in_);
       if (filter == ObjectFilter{}) continue;
@@ -293,15 +298,11 @@ void take_over(SceneState& scene, SceneState& read, const ReadKeys& keys) noexce
   scene.shaped_at.swap(read.shaped_at);
   scene.anchor.swap(read.anchor);
   scene.ball.swap(read.ball);
-  scene.offsets.swap(read.offsets);
-  scene.with_offsets = read.with_offsets;
-  scene.layer.swap(read.layer);
-  scene.with_layers = read.with_layers;
-  scene.layers.swap(read.layers);
-  scene.stale.swap(read.stale);
-  scene.is_stale.swap(read.is_stale);
-  scene.ignored.swap(read.ignored);
-  scene.ignores.swap(read.ignores);
+  scene.offsets.column.swap(read.offsets.column);
+  scene.offsets.any = read.offsets.any;
+  scene.stale.bodies.swap(read.stale.bodies);
+  scene.stale.flag.swap(read.stale.flag);
+  scene.rules.swap_bodies(read.rules);
   for (std::size_t i = 0; i < kBodyStates; ++i) {
     SceneSet& set = scene.sets[i];
     std::swap(set.partition, read.sets[i].partition);

@@ -14,12 +14,29 @@
 #include "pipeline/scene/scene_origin.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <utility>
 
 namespace winnow {
 namespace {
+
+[[nodiscard]] bool is_length(double value) noexcept {
+  return std::isfinite(value) && value >= 0.0;
+}
+
+[[nodiscard]] bool are_good(const SceneOptions& options) noexcept {
+  const auto known = [](StructureKind kind) { return kind != StructureKind{}; };
+  return is_length(options.contact_margin) && is_length(options.cache_tolerance) &&
+         std::all_of(std::begin(options.structures), std::end(options.structures), known) &&
+         options.tier <= NarrowTier::reference;
+}
+
+[[nodiscard]] std::uint64_t next_serial() noexcept {
+  static std::atomic<std::uint64_t> serial{0};
+  return ++serial;
+}
 
 constexpr std::size_t kBodiesPerRange = 256;
 constexpr std::size_t kFewBoxes = 128;
@@ -38,14 +55,74 @@ void trim(PairBuffer& pairs) noexcept {
 
 }  // namespace
 
-BoxRoom::BoxRoom(SceneState& scene) noexcept : scene_(scene) {
+SceneState::SceneState(const ShapePool& pool, const SceneOptions& given) noexcept
+    : shapes(pool),
+      options(given),
+      options_are_good(are_good(given)),
+      growth(given.contact_margin * 0.5 + given.cache_tolerance),
+      keys(given.memory),
+      shape(given.memory),
+      pose(given.memory),
+      body_state(given.memory),
+      place(given.memory),
+      moved_at(given.memory),
+      shaped_at(given.memory),
+      anchor(given.memory),
+      ball(given.memory),
+      offsets(given.memory),
+      stale(given.memory),
+      staged(given.memory),
+      sets{SceneSet(given.memory), SceneSet(given.memory), SceneSet(given.memory)},
+      serial(next_serial()),
+      pairs(given.memory),
+      batch(given.memory),
+      rules(given.memory) {
+  if (given.composites != nullptr) composites_seen = given.composites->revision();
+}
+
+// Marks bodies with the second bit of `flag` to find duplicates.
+bool StaleBodies::are_distinct(const KeyTable& keys, std::span<const Key> given) noexcept {
+  constexpr std::uint8_t kSeen = 2;
+  std::size_t marked = 0;
+  for (; marked < given.size(); ++marked) {
+    const Key key = given[marked];
+    if (!keys.is_valid(key) || (flag[key.id] & kSeen) != 0) break;
+    flag[key.id] |= kSeen;
+  }
+  for (std::size_t i = 0; i < marked; ++i) {
+    flag[given[i].id] = static_cast<std::uint8_t>(flag[given[i].id] & ~kSeen);
+  }
+  return marked == given.size();
+}
+
+void StaleBodies::forget_removed(const KeyTable& keys) noexcept {
+  std::size_t kept = 0;
+  for (const std::uint32_t body : bodies) {
+    if (keys.is_live(body)) {
+      bodies[kept++] = body;
+    } else {
+      flag[body] = 0;
+    }
+  }
+  bodies.set_size(kept);
+}
+
+BoxView StagedBoxes::view() const noexcept {
+  const PlainBox* const first = boxes.data();
+  return {{&first->min[0], &first->min[1], &first->min[2]},
+          {&first->max[0], &first->max[1], &first->max[2]},
+          boxes.size(),
+          sizeof(PlainBox)};
+}
+
+BoxRoom::BoxRoom(StagedBoxes& staged) noexcept : staged_(staged) {
   std::size_t i = 0;
-  scene_.visit_box_columns([&](auto& column) { room_[i++] = column.capacity(); });
+  staged_.visit_columns([&](auto& column) { room_[i++] = column.capacity(); });
 }
 
 BoxRoom::~BoxRoom() {
   std::size_t i = 0;
-  scene_.visit_box_columns([&](auto& column) {
+  staged_.visit_columns([&](auto& column) {
     if (column.capacity() <= std::max(room_[i++], kBoxesPerBatch)) return;
     column.clear();
     // If the smaller allocation is refused, the larger one stays.
@@ -136,7 +213,7 @@ BodyBall SceneState::ball_from(const Eigen::Vector3d& from, std::uint32_t body) 
     length += std::abs(center);
     is_float = is_float && std::isfinite(made.center[axis]);
   }
-  const double grown = radius(body) + growth + offsets_of(body).contact +
+  const double grown = radius(body) + growth + offsets.of(body).contact +
                        (length * kCenterError + std::numeric_limits<float>::min());
   made.radius = is_float ? round_up(grown) : std::numeric_limits<float>::infinity();
   return made;
@@ -152,24 +229,15 @@ void SceneState::set_balls(std::span<const std::uint32_t> bodies,
                  });
 }
 
-// A view of `boxes`.
-BoxView SceneState::box_view() const noexcept {
-  const PlainBox* const first = boxes.data();
-  return {{&first->min[0], &first->min[1], &first->min[2]},
-          {&first->max[0], &first->max[1], &first->max[2]},
-          boxes.size(),
-          sizeof(PlainBox)};
-}
-
 Status SceneState::place_bodies(BodyState which, std::span<const std::uint32_t> bodies) {
   if (bodies.empty()) return Status::ok;
   SceneSet& target = set(which);
   if (const Status made = make_partition_of(which); made != Status::ok) return made;
   if (target.partition->size() == 0) target.origin = origin;
-  if (!boxes.resize(bodies.size())) return Status::out_of_memory;
+  if (!staged.boxes.resize(bodies.size())) return Status::out_of_memory;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    boxes[i] = bounds_from(target.origin, shape[bodies[i]], pose[bodies[i]],
-                           growth + offsets_of(bodies[i]).contact);
+    staged.boxes[i] = bounds_from(target.origin, shape[bodies[i]], pose[bodies[i]],
+                                  growth + offsets.of(bodies[i]).contact);
   }
   if (const Status placed = place_boxes(which, bodies); placed != Status::ok) return placed;
   for (const std::uint32_t body : bodies) {
@@ -185,21 +253,21 @@ Status SceneState::place_boxes(BodyState which, std::span<const std::uint32_t> b
   if (const Status made = make_partition_of(which); made != Status::ok) return made;
   const std::size_t count = bodies.size();
   // New ids of the partition are below its largest former id count plus `count`.
-  if (!boxes_of.resize(count) || !boxes_body.resize(count) ||
+  if (!staged.keys.resize(count) || !staged.data.resize(count) ||
       !target.body_of.grow(target.body_of.size() + count)) {
     return Status::out_of_memory;
   }
-  for (std::size_t i = 0; i < count; ++i) boxes_body[i] = bodies[i];
-  const std::span<Key> keys_given{boxes_of.data(), count};
+  for (std::size_t i = 0; i < count; ++i) staged.data[i] = bodies[i];
+  const std::span<Key> keys_given{staged.keys.data(), count};
   const Status status =
-      target.partition->insert(box_view(), {boxes_body.data(), count}, keys_given);
+      target.partition->insert(staged.view(), {staged.data.data(), count}, keys_given);
   if (status != Status::ok) return status;
   std::size_t objects = target.body_of.size();
   for (const Key& key : keys_given) objects = std::max(objects, key.id + std::size_t{1});
   target.body_of.set_size(objects);
   for (std::size_t i = 0; i < count; ++i) {
-    place[bodies[i]] = boxes_of[i];
-    target.body_of[boxes_of[i].id] = bodies[i];
+    place[bodies[i]] = staged.keys[i];
+    target.body_of[staged.keys[i].id] = bodies[i];
   }
   ++target.changes;
   return Status::ok;
@@ -235,11 +303,11 @@ bool SceneState::reserve(std::size_t fresh) noexcept {
   if (!keys.reserve(keys.size() + fresh)) return false;
   const std::size_t slots = keys.slots_with(fresh);
   const bool with_anchors = options.cache_tolerance == 0.0 || anchor.grow(slots);
-  const bool has_room =
-      (!has_offsets() || offsets.grow(slots)) && (!with_layers || layer.grow(slots));
+  const bool has_room = (!offsets.any || offsets.column.grow(slots)) &&
+                        (!rules.with_layers || rules.layer.grow(slots));
   return with_anchors && has_room && shape.grow(slots) && pose.grow(slots) &&
          body_state.grow(slots) && ball.grow(slots) && place.grow(slots) && moved_at.grow(slots) &&
-         shaped_at.grow(slots) && stale.grow(slots) && is_stale.grow(slots);
+         shaped_at.grow(slots) && stale.bodies.grow(slots) && stale.flag.grow(slots);
 }
 
 Key SceneState::acquire(const BodyDefinition& body) noexcept {
@@ -253,35 +321,35 @@ Key SceneState::acquire(const BodyDefinition& body) noexcept {
     ball.set_size(slots);
     moved_at.set_size(slots);
     shaped_at.set_size(slots);
-    is_stale.set_size(slots);
-    is_stale[key.id] = 0;
+    stale.flag.set_size(slots);
+    stale.flag[key.id] = 0;
     if (options.cache_tolerance > 0.0) anchor.set_size(slots);
-    if (has_offsets()) offsets.set_size(slots);
-    if (with_layers) layer.set_size(slots);
+    if (offsets.any) offsets.column.set_size(slots);
+    if (rules.with_layers) rules.layer.set_size(slots);
   }
   shape[key.id] = body.shape;
   pose[key.id] = body.pose;
   body_state[key.id] = body.state;
   place[key.id] = {};
   moved_at[key.id] = shaped_at[key.id] = clock;
-  if (has_offsets()) offsets[key.id] = body.offsets;
-  if (with_layers) layer[key.id] = body.layer;
+  if (offsets.any) offsets.column[key.id] = body.offsets;
+  if (rules.with_layers) rules.layer[key.id] = body.layer;
   return key;
 }
 
 std::span<const std::uint32_t> SceneState::choose(std::span<const Key> given,
                                                   BodyState which) noexcept {
-  chosen.clear();
+  staged.chosen.clear();
   for (const Key& key : given) {
-    if (body_state[key.id] == which) (void)chosen.push_back(key.id);
+    if (body_state[key.id] == which) (void)staged.chosen.push_back(key.id);
   }
-  return {chosen.data(), chosen.size()};
+  return {staged.chosen.data(), staged.chosen.size()};
 }
 
 // Inserts bodies that have just got their keys into their partitions: all of them or none.
 Status SceneState::settle(std::span<const BodyDefinition> bodies, std::span<const Key> given) {
-  const BoxRoom room(*this);
-  if (!chosen.grow(bodies.size())) return Status::out_of_memory;
+  const BoxRoom room(staged);
+  if (!staged.chosen.grow(bodies.size())) return Status::out_of_memory;
   std::size_t settled = 0;
   Status status = Status::ok;
   for (; settled < kBodyStates && status == Status::ok; ++settled) {
@@ -299,76 +367,41 @@ Status SceneState::settle(std::span<const BodyDefinition> bodies, std::span<cons
   return status;
 }
 
-// Marks bodies with the second bit of `is_stale` to find duplicates.
-bool SceneState::are_distinct(std::span<const Key> given) noexcept {
-  constexpr std::uint8_t kSeen = 2;
-  std::size_t marked = 0;
-  for (; marked < given.size(); ++marked) {
-    const Key key = given[marked];
-    if (!keys.is_valid(key) || (is_stale[key.id] & kSeen) != 0) break;
-    is_stale[key.id] |= kSeen;
-  }
-  for (std::size_t i = 0; i < marked; ++i) {
-    is_stale[given[i].id] = static_cast<std::uint8_t>(is_stale[given[i].id] & ~kSeen);
-  }
-  return marked == given.size();
-}
-
-// Takes removed bodies off the list.
-void SceneState::forget_stale() noexcept {
-  std::size_t kept = 0;
-  for (const std::uint32_t body : stale) {
-    if (keys.is_live(body)) {
-      stale[kept++] = body;
-    } else {
-      is_stale[body] = 0;
-    }
-  }
-  stale.set_size(kept);
-}
-
-void SceneState::mark_stale(std::uint32_t body) noexcept {
-  if (is_stale[body] != 0) return;
-  is_stale[body] = 1;
-  stale[stale.size()] = body;
-  stale.set_size(stale.size() + 1);
-}
-
 void SceneState::set_pose(std::uint32_t body, const Pose& to) noexcept {
   pose[body] = to;
   moved_at[body] = clock;
-  mark_stale(body);
+  stale.mark(body);
 }
 
 // Every body is inserted in its new partition, with its filter, before the first one is removed
 // from its old partition. Until then everything can be undone.
 Status SceneState::move_to_set(std::span<const Key> given, BodyState to) {
-  const BoxRoom room(*this);
-  chosen.clear();
-  if (!chosen.grow(given.size())) return Status::out_of_memory;
+  const BoxRoom room(staged);
+  staged.chosen.clear();
+  if (!staged.chosen.grow(given.size())) return Status::out_of_memory;
   for (const Key& key : given) {
-    if (body_state[key.id] != to) (void)chosen.push_back(key.id);
+    if (body_state[key.id] != to) (void)staged.chosen.push_back(key.id);
   }
-  const std::span<const std::uint32_t> bodies{chosen.data(), chosen.size()};
+  const std::span<const std::uint32_t> bodies{staged.chosen.data(), staged.chosen.size()};
   if (bodies.empty()) return Status::ok;
-  if (!old_keys.resize(bodies.size())) return Status::out_of_memory;
-  for (std::size_t i = 0; i < bodies.size(); ++i) old_keys[i] = place[bodies[i]];
+  if (!staged.old_keys.resize(bodies.size())) return Status::out_of_memory;
+  for (std::size_t i = 0; i < bodies.size(); ++i) staged.old_keys[i] = place[bodies[i]];
   Status status = place_bodies(to, bodies);
   if (status != Status::ok) return status;
   for (std::size_t i = 0; i < bodies.size() && status == Status::ok; ++i) {
     ObjectFilter filter;
-    status = set(body_state[bodies[i]]).partition->filter(old_keys[i], filter);
+    status = set(body_state[bodies[i]]).partition->filter(staged.old_keys[i], filter);
     if (status == Status::ok && filter != ObjectFilter{}) {
       status = set(to).partition->set_filter(place[bodies[i]], filter);
     }
   }
   if (status != Status::ok) {
     take_back(bodies, to);
-    for (std::size_t i = 0; i < bodies.size(); ++i) place[bodies[i]] = old_keys[i];
+    for (std::size_t i = 0; i < bodies.size(); ++i) place[bodies[i]] = staged.old_keys[i];
     return status;
   }
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    displace(body_state[bodies[i]], {&old_keys[i], 1});
+    displace(body_state[bodies[i]], {&staged.old_keys[i], 1});
     body_state[bodies[i]] = to;
   }
   ++regroupings;
@@ -390,7 +423,7 @@ Status SceneState::refresh() {
     for (std::uint32_t body = 0; body < shape.size(); ++body) {
       if (!keys.is_live(body) || !shape[body].is_composite()) continue;
       shaped_at[body] = clock;
-      mark_stale(body);
+      stale.mark(body);
     }
   }
   // Bodies are sampled only after many boxes were updated, so a sample costs little beside the
@@ -402,7 +435,6 @@ Status SceneState::refresh() {
     const Status status = refresh_set(static_cast<BodyState>(which));
     if (status != Status::ok) return status;
   }
-  for (const std::uint32_t body : stale) is_stale[body] = 0;
   stale.clear();
   return Status::ok;
 }
@@ -411,13 +443,13 @@ Status SceneState::refresh_set(BodyState which) {
   SceneSet& target = set(which);
   if (!target.partition.has_value()) return Status::ok;
   if (target.origin != origin) return move_origin(which);
-  for (std::size_t next = 0; next < stale.size();) {
-    chosen.clear();
-    if (!chosen.reserve(std::min(stale.size() - next, kBoxesPerBatch)))
+  for (std::size_t next = 0; next < stale.bodies.size();) {
+    staged.chosen.clear();
+    if (!staged.chosen.reserve(std::min(stale.bodies.size() - next, kBoxesPerBatch)))
       return Status::out_of_memory;
-    for (; next < stale.size() && chosen.size() < kBoxesPerBatch; ++next) {
-      const std::uint32_t body = stale[next];
-      if (body_state[body] == which && needs_box(body)) (void)chosen.push_back(body);
+    for (; next < stale.bodies.size() && staged.chosen.size() < kBoxesPerBatch; ++next) {
+      const std::uint32_t body = stale.bodies[next];
+      if (body_state[body] == which && needs_box(body)) (void)staged.chosen.push_back(body);
     }
     if (const Status status = renew_boxes(target); status != Status::ok) return status;
   }
@@ -427,37 +459,37 @@ Status SceneState::refresh_set(BodyState which) {
 // Updates all boxes of a set in one call. If the update is refused, all boxes keep the old origin.
 Status SceneState::move_origin(BodyState which) {
   SceneSet& target = set(which);
-  const BoxRoom room(*this);
-  chosen.clear();
-  if (!chosen.reserve(target.partition->size())) return Status::out_of_memory;
+  const BoxRoom room(staged);
+  staged.chosen.clear();
+  if (!staged.chosen.reserve(target.partition->size())) return Status::out_of_memory;
   for (std::uint32_t body = 0; body < keys.slot_count(); ++body) {
-    if (keys.is_live(body) && body_state[body] == which) (void)chosen.push_back(body);
+    if (keys.is_live(body) && body_state[body] == which) (void)staged.chosen.push_back(body);
   }
   if (const Status status = renew_boxes(target); status != Status::ok) return status;
   target.origin = origin;
   return Status::ok;
 }
 
-// Gives the partition new boxes of the bodies in `chosen`.
+// Gives the partition new boxes of the bodies in `staged.chosen`.
 Status SceneState::renew_boxes(SceneSet& target) {
-  const std::size_t count = chosen.size();
+  const std::size_t count = staged.chosen.size();
   if (count == 0) return Status::ok;
-  if (!boxes.resize(count) || !boxes_of.resize(count)) return Status::out_of_memory;
+  if (!staged.boxes.resize(count) || !staged.keys.resize(count)) return Status::out_of_memory;
   for_each_range(
       options.execution, count, kBodiesPerRange, [&](std::size_t first, std::size_t end) {
         for (std::size_t i = first; i < end; ++i) {
-          const std::uint32_t body = chosen[i];
-          boxes[i] =
-              bounds_from(origin, shape[body], pose[body], growth + offsets_of(body).contact);
-          boxes_of[i] = place[chosen[i]];
+          const std::uint32_t body = staged.chosen[i];
+          staged.boxes[i] =
+              bounds_from(origin, shape[body], pose[body], growth + offsets.of(body).contact);
+          staged.keys[i] = place[staged.chosen[i]];
         }
       });
-  const Status status = target.partition->update({boxes_of.data(), count}, box_view());
+  const Status status = target.partition->update({staged.keys.data(), count}, staged.view());
   if (status != Status::ok) return status;
   if (!anchor.empty()) {
-    for (const std::uint32_t body : chosen) anchor[body] = with_unit_turn(pose[body]);
+    for (const std::uint32_t body : staged.chosen) anchor[body] = with_unit_turn(pose[body]);
   }
-  set_balls({chosen.data(), count}, origin);
+  set_balls({staged.chosen.data(), count}, origin);
   boxes_since_sampling += count;
   boxes_updated += count;
   ++target.changes;

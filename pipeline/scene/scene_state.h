@@ -1,16 +1,17 @@
 #pragma once
 
 // The data of a Scene: bodies as columns by id, one partition for each set (fixed, dynamic,
-// sleeping) and the buffers of `collide`. scene.cpp and scene_state.cpp implement most of it; other
-// .cpp files are named at the members that they implement.
+// sleeping), rules about pairs and the buffers of `collide`. scene_state.cpp implements most of it,
+// reserve.cpp and pair_rules.cpp the rest.
 
 #include <winnow/pipeline/scene.h>
+#include "core/memory/columns.h"
 #include "core/memory/key_table.h"
 #include "core/memory/new_in.h"
 #include "partitions/pairs/linked_pairs.h"
 #include "pipeline/scene/body_pairs.h"
-#include "pipeline/scene/ghost_contacts.h"
-#include "pipeline/scene/layers.h"
+#include "pipeline/scene/pair_batch.h"
+#include "pipeline/scene/pair_rules.h"
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -49,26 +50,70 @@ struct SceneSet {
   std::uint64_t changes = 0;
 };
 
-/// Input and results of the mid and narrow phase for pairs that have a composite shape.
-struct PartAnswers {
-  explicit PartAnswers(std::pmr::memory_resource* memory) noexcept
-      : pairs(memory),
-        gaps(memory),
-        narrow(memory),
-        answers(memory),
-        slot(memory),
-        regions(memory) {}
+/// Contact and rest offsets of bodies (contact_offsets.cpp).
+struct BodyOffsets {
+  explicit BodyOffsets(std::pmr::memory_resource* memory) noexcept : column(memory) {}
 
-  PrimitivePairs pairs;
-  /// Contact distance of the two bodies, by pair of primitives. Empty without offsets.
-  Column<double> gaps;
-  NarrowPhase narrow;
-  NarrowResult answers;
-  /// Index of the result in `answers`, by pair of primitives.
-  Column<std::uint32_t> slot;
-  ContactRegions regions;
+  /// Empty until a body has offsets that are not zero.
+  Column<ContactOffsets> column;
+  bool any = false;
 
-  [[nodiscard]] Bytes bytes() const noexcept;
+  [[nodiscard]] ContactOffsets of(std::uint32_t body) const noexcept {
+    return any ? column[body] : ContactOffsets{};
+  }
+  /// From the first offsets on, the column has an element for every body. Returns false if memory
+  /// is refused.
+  [[nodiscard]] bool begin(std::size_t bodies, std::size_t room) noexcept;
+};
+
+/// Bodies whose boxes may be out of date, and a flag by id.
+struct StaleBodies {
+  explicit StaleBodies(std::pmr::memory_resource* memory) noexcept : bodies(memory), flag(memory) {}
+
+  Column<std::uint32_t> bodies;
+  Column<std::uint8_t> flag;
+
+  void mark(std::uint32_t body) noexcept {
+    if (flag[body] != 0) return;
+    flag[body] = 1;
+    bodies[bodies.size()] = body;
+    bodies.set_size(bodies.size() + 1);
+  }
+  void clear() noexcept {
+    for (const std::uint32_t body : bodies) flag[body] = 0;
+    bodies.clear();
+  }
+  /// Takes removed bodies off the list.
+  void forget_removed(const KeyTable& keys) noexcept;
+  /// True if all keys are valid and different.
+  [[nodiscard]] bool are_distinct(const KeyTable& keys, std::span<const Key> given) noexcept;
+};
+
+/// Boxes to be given to a partition, with their keys and bodies; and scratch of calls that work on
+/// the bodies of one set: these bodies, and the keys that they had in their partition.
+struct StagedBoxes {
+  explicit StagedBoxes(std::pmr::memory_resource* memory) noexcept
+      : boxes(memory), keys(memory), data(memory), chosen(memory), old_keys(memory) {}
+
+  Column<PlainBox> boxes;
+  Column<Key> keys;
+  Column<ClientData> data;
+  Column<std::uint32_t> chosen;
+  Column<Key> old_keys;
+
+  [[nodiscard]] Bytes bytes() const noexcept {
+    return bytes_of(boxes, keys, data, chosen, old_keys);
+  }
+  /// A view of `boxes`.
+  [[nodiscard]] BoxView view() const noexcept;
+  template <typename Visit>
+  void visit_columns(Visit&& visit) noexcept {
+    visit(boxes);
+    visit(keys);
+    visit(data);
+    visit(chosen);
+    visit(old_keys);
+  }
 };
 
 /// The state of a Scene. Body numbers are the ids of their keys; columns are indexed by id and have
@@ -77,7 +122,6 @@ struct SceneState {
   SceneState(const ShapePool& pool, const SceneOptions& given) noexcept;
   SceneState(const SceneState&) = delete;
   SceneState& operator=(const SceneState&) = delete;
-  ~SceneState() { delete_in(options.memory, parts); }
 
   const ShapePool& shapes;
   SceneOptions options;
@@ -99,32 +143,9 @@ struct SceneState {
   /// Bounding ball of the body at the time of its last box, relative to the partition's origin and
   /// grown like the box.
   Column<BodyBall> ball;
-  /// Empty until a body has offsets that are not zero.
-  Column<ContactOffsets> offsets;
-  bool with_offsets = false;
-  /// Layers of bodies, empty until a body is in a layer other than 0; and the layers that collide.
-  Column<std::uint16_t> layer;
-  bool with_layers = false;
-  LayerMatrix layers;
-  /// Bodies whose boxes may be out of date, and a flag by id.
-  Column<std::uint32_t> stale;
-  Column<std::uint8_t> is_stale;
-  /// Boxes to be given to a partition, with their keys and bodies.
-  Column<PlainBox> boxes;
-  Column<Key> boxes_of;
-  Column<ClientData> boxes_body;
-  /// Scratch: bodies of one set that a call works on, and the keys that they had in their
-  /// partition.
-  Column<std::uint32_t> chosen;
-  Column<Key> old_keys;
-  template <typename Visit>
-  void visit_box_columns(Visit&& visit) noexcept {
-    visit(boxes);
-    visit(boxes_of);
-    visit(boxes_body);
-    visit(chosen);
-    visit(old_keys);
-  }
+  BodyOffsets offsets;
+  StaleBodies stale;
+  StagedBoxes staged;
 
   SceneSet sets[kBodyStates];
   /// World point from which boxes are measured; see BodySample.
@@ -143,27 +164,9 @@ struct SceneState {
   BodyPairs pairs;
   /// Null except on ranks of a cluster.
   const PairSelection* selection = nullptr;
-  NarrowPhase narrow;
-  NarrowResult answers;
-  /// The pairs of `pairs` that go to the narrow phase: pairs of convex shapes, and pairs that have
-  /// a composite shape.
-  Column<BodyPair> convex;
-  Column<BodyPair> composite;
-  /// Contact distance by pair of `convex` or of `composite`, whichever list the narrow phase works
-  /// on. Empty without offsets.
-  Column<double> gaps;
-  /// Results for `composite`; created for the first such pair.
-  PartAnswers* parts = nullptr;
-  /// Used only with SceneOptions::suppress_ghost_contacts.
-  Column<FloorContact> floor_contacts;
-  /// Scratch: the order of one body's floor contacts.
-  Column<std::uint32_t> floor_order;
+  PairBatch batch;
   SceneStatistics statistics;
-  /// Pairs of bodies to ignore, as (smaller id << 32 | larger id), sorted; and by id a flag of the
-  /// bodies in these pairs, with one entry for each id that existed at the last set_ignored.
-  Column<std::uint64_t> ignored;
-  Column<std::uint8_t> ignores;
-  PairPredicate predicate;
+  BodyPairRules rules;
   /// Boxes given to partitions since the last `collide`.
   std::uint64_t boxes_updated = 0;
 
@@ -175,30 +178,20 @@ struct SceneState {
   }
   /// False if no body has a composite shape. May stay true after the last such body was removed.
   [[nodiscard]] bool has_composites() const noexcept;
-  [[nodiscard]] bool is_up_to_date() const noexcept { return stale.empty() && has_one_origin(); }
+  [[nodiscard]] bool is_up_to_date() const noexcept {
+    return stale.bodies.empty() && has_one_origin();
+  }
   /// False while the boxes of some set are measured from a former origin.
   [[nodiscard]] bool has_one_origin() const noexcept;
   void choose_origin() noexcept;
   [[nodiscard]] Status check(ShapeId id, const Pose& at) const noexcept;
-  /// Offsets of bodies (contact_offsets.cpp).
-  [[nodiscard]] bool has_offsets() const noexcept { return with_offsets; }
-  [[nodiscard]] ContactOffsets offsets_of(std::uint32_t body) const noexcept {
-    return has_offsets() ? offsets[body] : ContactOffsets{};
-  }
-  [[nodiscard]] bool begin_offsets() noexcept;
-  /// Contact distance of a pair: bodies at most this far apart are in contact.
-  [[nodiscard]] double gap_of(const BodyPair& pair) const noexcept;
   [[nodiscard]] bool reserve(std::size_t fresh) noexcept;
   /// Implements Scene::reserve (reserve.cpp).
   [[nodiscard]] Status reserve(const SceneCapacity& room, Pages pages);
   [[nodiscard]] bool reserve_bodies(const SceneCapacity& room, Pages pages) noexcept;
   [[nodiscard]] Status reserve_sets(const SceneCapacity& room, Pages pages);
-  [[nodiscard]] Status reserve_answers(const SceneCapacity& room, Pages pages);
-  [[nodiscard]] bool list_rehearsal(std::size_t kinds, std::size_t count) noexcept;
   [[nodiscard]] Key acquire(const BodyDefinition& body) noexcept;
   [[nodiscard]] Status settle(std::span<const BodyDefinition> bodies, std::span<const Key> given);
-  [[nodiscard]] bool are_distinct(std::span<const Key> given) noexcept;
-  void forget_stale() noexcept;
   /// Upper bound on the distance of the body's points from its position.
   [[nodiscard]] double radius(std::uint32_t body) const noexcept;
   /// Returns the box of a shape, grown in every direction, relative to `from`.
@@ -207,14 +200,14 @@ struct SceneState {
   /// Recomputes the balls of bodies whose boxes are measured from `from`.
   void set_balls(std::span<const std::uint32_t> bodies, const Eigen::Vector3d& from) noexcept;
   [[nodiscard]] BodyBall ball_from(const Eigen::Vector3d& from, std::uint32_t body) const noexcept;
-  [[nodiscard]] BoxView box_view() const noexcept;
   [[nodiscard]] Status make_partition_of(BodyState which);
-  /// Writes the bodies of the given keys that are in a set into `chosen`, which must have room.
+  /// Writes the bodies of the given keys that are in a set into `staged.chosen`, which must have
+  /// room.
   [[nodiscard]] std::span<const std::uint32_t> choose(std::span<const Key> given,
                                                       BodyState which) noexcept;
   /// Inserts bodies whose columns are set into the partition of a set.
   [[nodiscard]] Status place_bodies(BodyState which, std::span<const std::uint32_t> bodies);
-  /// Inserts bodies with the boxes in `boxes`, one for each body, measured from the set's origin.
+  /// Inserts bodies with the boxes in `staged`, one for each body, measured from the set's origin.
   [[nodiscard]] Status place_boxes(BodyState which, std::span<const std::uint32_t> bodies);
   /// Removes the objects `places` from the partition of a set.
   void displace(BodyState which, std::span<const Key> places);
@@ -224,7 +217,6 @@ struct SceneState {
   void take_back(std::span<const std::uint32_t> bodies, BodyState which);
   /// Moves the given bodies that are in other sets to the set `to`. A failure changes nothing.
   [[nodiscard]] Status move_to_set(std::span<const Key> given, BodyState to);
-  void mark_stale(std::uint32_t body) noexcept;
   void set_pose(std::uint32_t body, const Pose& to) noexcept;
   [[nodiscard]] Status refresh();
   [[nodiscard]] Status refresh_set(BodyState which);
@@ -234,27 +226,10 @@ struct SceneState {
   /// Finds all pairs whose boxes overlap, or (`all` false) only those whose bounding balls overlap
   /// too.
   [[nodiscard]] Status find_pairs(bool all);
-  /// Filters of pairs beyond sets and object filters (pair_filter.cpp).
-  [[nodiscard]] bool accepts_all() const noexcept {
-    return ignored.empty() && layers.all_collide() && predicate.accept == nullptr;
-  }
-  [[nodiscard]] bool begin_layers() noexcept;
-  [[nodiscard]] std::uint16_t layer_of(std::uint32_t body) const noexcept {
-    return with_layers ? layer[body] : std::uint16_t{0};
-  }
-  [[nodiscard]] bool may_pair(ObjectId a, ObjectId b) const noexcept;
   /// True if `collide` would make a pair of two live bodies, provided that their boxes overlap:
-  /// tests sets, filters, layers, ignored pairs and the predicate.
+  /// tests sets, filters and rules (pair_rules.cpp).
   [[nodiscard]] bool accepts_pair(ObjectId a, ObjectId b) const noexcept;
   [[nodiscard]] ObjectFilter filter_of(ObjectId body) const noexcept;
-  [[nodiscard]] bool is_ignored(ObjectId a, ObjectId b) const noexcept;
-  [[nodiscard]] bool add_ignored(std::span<const KeyPair> key_pairs) noexcept;
-  void forget_ignored(std::span<const Key> removed) noexcept;
-  template <typename Unwanted>
-  void drop_ignored(Unwanted&& is_unwanted) noexcept {
-    std::uint64_t* const end = std::remove_if(ignored.begin(), ignored.end(), is_unwanted);
-    ignored.set_size(static_cast<std::size_t>(end - ignored.begin()));
-  }
   /// Makes the next `collide` find all pairs again.
   void invalidate_pairs() noexcept;
 };
@@ -263,13 +238,13 @@ struct SceneState {
 /// batch, unless they were larger at construction.
 class BoxRoom {
  public:
-  explicit BoxRoom(SceneState& scene) noexcept;
+  explicit BoxRoom(StagedBoxes& staged) noexcept;
   BoxRoom(const BoxRoom&) = delete;
   BoxRoom& operator=(const BoxRoom&) = delete;
   ~BoxRoom();
 
  private:
-  SceneState& scene_;
+  StagedBoxes& staged_;
   std::size_t room_[5];
 };
 

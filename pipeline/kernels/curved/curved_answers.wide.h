@@ -4,12 +4,12 @@
 // (curved_search.wide.h), and finished one at a time (curved_depth, parallel_depth, curved_patch).
 // Level boolean first tries the faster overlap tests of hull/single_overlap_test.wide.h.
 
+#include "pipeline/kernels/cores/single_overlap_test.wide.h"
 #include "pipeline/kernels/curved/curved_depth.wide.h"
 #include "pipeline/kernels/curved/curved_patch.wide.h"
 #include "pipeline/kernels/curved/curved_search.wide.h"
 #include "pipeline/kernels/curved/parallel_depth.wide.h"
-#include "pipeline/kernels/hull/hull_finish.wide.h"
-#include "pipeline/kernels/hull/single_overlap_test.wide.h"
+#include "pipeline/kernels/hull/hull_manifold.wide.h"
 #include "pipeline/kernels/kernels.h"
 
 namespace winnow::WINNOW_ISA_NAME::curved {

@@ -3,8 +3,8 @@
 // Contacts of one pair with curved shapes: the supporting features of both cores along a normal, as
 // patches for contact_patch. Features are numbered as in solver/manifold.cpp.
 
-#include "pipeline/kernels/hull/farthest_points.wide.h"
-#include "pipeline/kernels/hull/hull_features.wide.h"
+#include "pipeline/kernels/cores/farthest_points.wide.h"
+#include "pipeline/kernels/cores/hull_core.wide.h"
 #include "pipeline/manifold/contact_patch.h"
 
 namespace winnow::WINNOW_ISA_NAME::curved {

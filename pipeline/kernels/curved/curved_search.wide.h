@@ -3,8 +3,8 @@
 // Closest points of pairs of cores in double, by GJK with one pair per lane (search_lanes.wide.h).
 // A lane that is done takes the next pair. Called by curved_answers.wide.h.
 
+#include "pipeline/kernels/cores/search_lanes.wide.h"
 #include "pipeline/kernels/curved/curved_tangent.wide.h"
-#include "pipeline/kernels/hull/search_lanes.wide.h"
 
 namespace winnow::WINNOW_ISA_NAME::curved {
 

@@ -7,7 +7,7 @@
 // towards the nearest point of the box's rectangle as seen along the axis: of all directions with
 // the same slope, the one in that plane has the least depth. Called by curved_answers.wide.h.
 
-#include "pipeline/kernels/hull/curved_pair.wide.h"
+#include "pipeline/kernels/cores/curved_pair.wide.h"
 
 namespace winnow::WINNOW_ISA_NAME::curved {
 

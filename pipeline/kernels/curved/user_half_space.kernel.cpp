@@ -1,7 +1,7 @@
 // Half-spaces against user shapes (support functions): the lowest point over the plane and, for
 // contacts, the support points of directions that are slightly off.
 
-#include "pipeline/kernels/hull/curved_pair.wide.h"
+#include "pipeline/kernels/cores/curved_pair.wide.h"
 #include "pipeline/kernels/kernels.h"
 #include "pipeline/kernels/round/half_space_common.wide.h"
 

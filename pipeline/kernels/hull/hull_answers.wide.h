@@ -1,13 +1,18 @@
 #pragma once
 
-// Runs the jobs of the hull kernels: pairs are placed, searched by GJK in float lanes
-// (hull_search.wide.h), and then finished one at a time in double (hull_depth, hull_finish,
-// hull_contacts). Level boolean first tries the faster overlap tests of single_overlap_test.wide.h.
+// Runs the jobs of the hull kernels, in this sequence:
+// 1. place_hulls reads both hulls and poses of each pair of a chunk (hull_gjk.wide.h).
+// 2. HullSearch finds the closest features of all pairs, by GJK in float lanes (hull_gjk.wide.h).
+// 3. HullDepth finds the depth of pairs that touch, one pair at a time (hull_depth.wide.h).
+// 4. finish_apart, finish_depth and write_contacts compute the results of each pair in double
+//    (hull_manifold.wide.h).
+// Level boolean first tries the faster overlap tests of cores/single_overlap_test.wide.h.
 
-#include "pipeline/kernels/hull/hull_contacts.wide.h"
-#include "pipeline/kernels/hull/hull_finish.wide.h"
-#include "pipeline/kernels/hull/hull_search.wide.h"
-#include "pipeline/kernels/hull/single_overlap_test.wide.h"
+#include "pipeline/kernels/cores/single_overlap_test.wide.h"
+#include "pipeline/kernels/fetch_ahead.wide.h"
+#include "pipeline/kernels/hull/hull_depth.wide.h"
+#include "pipeline/kernels/hull/hull_gjk.wide.h"
+#include "pipeline/kernels/hull/hull_manifold.wide.h"
 #include "pipeline/kernels/kernels.h"
 
 namespace winnow::WINNOW_ISA_NAME::hull {

@@ -1,7 +1,7 @@
 // Half-spaces against hulls: the lowest vertex over the plane and, for contacts, the face or edge
 // at it that faces the plane.
 
-#include "pipeline/kernels/hull/hull_features.wide.h"
+#include "pipeline/kernels/cores/hull_core.wide.h"
 #include "pipeline/kernels/kernels.h"
 #include "pipeline/kernels/round/half_space_common.wide.h"
 #include "simd/lanes/rows.h"

@@ -2,7 +2,7 @@
 
 // Support points of cores and of their Minkowski difference, for one pair at a time.
 
-#include "pipeline/kernels/hull/curved_pair.wide.h"
+#include "pipeline/kernels/cores/curved_pair.wide.h"
 
 namespace winnow::WINNOW_ISA_NAME::curved {
 

@@ -3,8 +3,9 @@
 // One pair of convex shapes in double: the curved kernels pass it from stage to stage, and single
 // pairs are tested with it. Lengths are scaled by a power of two so that the largest is in [1, 2).
 
-#include "pipeline/kernels/hull/core_lanes.wide.h"
-#include "pipeline/kernels/hull/hull_pair.wide.h"
+#include "pipeline/kernels/cores/core_lanes.wide.h"
+#include "pipeline/kernels/cores/hull_core.wide.h"
+#include "pipeline/kernels/kernels.h"
 #include "pipeline/kernels/user_support.wide.h"
 
 namespace winnow::WINNOW_ISA_NAME::curved {

@@ -1,6 +1,6 @@
 // Writes the contacts of a batch into the frame: tasks count the contacts of their pairs, and once
-// there is room for all, each task writes its own range of the columns. Collision::show
-// (collide.cpp) calls this.
+// there is room for all, each task writes its own range of the columns. Collision (collide.cpp)
+// calls this.
 
 #include "pipeline/narrow/tight_growth.h"
 #include "pipeline/scene/collision.h"
@@ -17,8 +17,7 @@ constexpr double kProjectionSlack = 1.02;
 
 }  // namespace
 
-// Makes the current frame the last frame, or clears it if nothing reads the last frame.
-bool Collision::open_frame() {
+bool ContactFrameWriter::open() {
   ContactsState& c = contacts_;
   if (reads_last_manifolds()) {
     c.frame.swap(c.before);
@@ -26,31 +25,15 @@ bool Collision::open_frame() {
     // May have contents from a call at another level.
     c.before.clear();
   }
-  if (same_pairs_) {
-    // Records stay in place except for their frame indices: tasks read old indices of some pairs
-    // after they wrote new ones of others.
-    c.records.shown.swap(c.records_before.shown);
-  } else {
-    c.records.swap(c.records_before);
-    c.cached.swap(c.cached_before);
-  }
-  const std::size_t records = uses_cache_ ? pair_count() : 0;
   c.frame.with_parts = scene_.has_composites();
-  if (!c.frame.resize(level_, 0, 0, 0) || !resize_tightly(c.records.bits, records) ||
-      !resize_tightly(c.records.shown, records) || !c.cached.resize(records) ||
-      !resize_tightly(c.shown_again, last_records_)) {
-    return false;
-  }
-  std::fill(c.shown_again.begin(), c.shown_again.end(), std::uint8_t{0});
-  return begin_history();
+  return c.frame.resize(call_.level, 0, 0, 0);
 }
 
-// Counts the contacts of a batch, makes room, and writes them from `end` on.
-bool Collision::show_batch(Cursor& end) {
+bool ContactFrameWriter::write_batch(Cursor& end) {
   ContactsState& c = contacts_;
-  const std::size_t tasks = task_count();
+  const std::size_t tasks = call_.task_count();
   if (!c.sums.resize(tasks)) return false;
-  for_tasks([&](std::size_t task, std::uint32_t first, std::uint32_t last) {
+  call_.for_tasks([&](std::size_t task, std::uint32_t first, std::uint32_t last) {
     c.sums[task] = count(first, last);
   });
   for (std::size_t task = 0; task < tasks; ++task) {
@@ -58,7 +41,7 @@ bool Collision::show_batch(Cursor& end) {
     end += taken;
   }
   if (!grow_frame(end)) return false;
-  for_tasks([&](std::size_t task, std::uint32_t first, std::uint32_t last) {
+  call_.for_tasks([&](std::size_t task, std::uint32_t first, std::uint32_t last) {
     write_task(first, last, c.sums[task]);
   });
   return true;
@@ -66,64 +49,39 @@ bool Collision::show_batch(Cursor& end) {
 
 // Resizes the frame to `end`. If it has to grow, reserves for the remaining batches too, on the
 // assumption that they have as many contacts per pair.
-bool Collision::grow_frame(const Cursor& end) {
+bool ContactFrameWriter::grow_frame(const Cursor& end) {
   ContactsState& c = contacts_;
   ContactFrame& frame = c.frame;
-  const bool has_room = frame.has_room(level_, end.pair, end.manifold, end.point);
-  if (!has_room && batch_end_ < pair_count()) {
+  const bool has_room = frame.has_room(call_.level, end.pair, end.manifold, end.point);
+  if (!has_room && call_.batch_end < call_.pair_count()) {
     const auto projected = [&](std::uint32_t taken) {
-      const double all = static_cast<double>(taken) * pair_count() / batch_end_;
+      const double all = static_cast<double>(taken) * call_.pair_count() / call_.batch_end;
       return static_cast<std::size_t>(all * kProjectionSlack);
     };
-    if (!frame.reserve(level_, frame.with_parts, projected(end.pair), projected(end.manifold),
+    if (!frame.reserve(call_.level, frame.with_parts, projected(end.pair), projected(end.manifold),
                        projected(end.point), Pages::untouched)) {
       return false;
     }
   }
-  return frame.resize(level_, end.pair, end.manifold, end.point) && grow_history();
+  return frame.resize(call_.level, end.pair, end.manifold, end.point) && cache_.grow_history();
 }
 
-// Reserves for the next call, which swaps the frames and may find as many contacts.
-bool Collision::reserve_next() {
+bool ContactFrameWriter::close(const Cursor& end) {
   ContactsState& c = contacts_;
-  const bool has_room = !reads_last_manifolds() || c.before.reserve_as(c.frame);
-  return has_room && c.records_before.reserve(c.records.bits.capacity()) &&
-         c.cached_before.reserve(c.cached.capacity()) && reserve_history();
-}
-
-// Completes the frame after the last batch.
-bool Collision::close(const Cursor& end) {
-  contacts_.frame.close(level_, end);
-  if (!reserve_next() || !write_runs() || !close_frame()) return false;
-  if (!uses_cache_) {
-    // The next call lists them again, in the same memory.
-    contacts_.records.swap(contacts_.records_before);
-    contacts_.records.clear();
-  }
-  return true;
-}
-
-bool Collision::is_fresh_convex(std::uint32_t pair) const noexcept {
-  return origin_of(pair) == ContactSource::convex;
-}
-
-bool Collision::touches(const NarrowResult& answers, std::size_t at) const noexcept {
-  return level_ == ContactLevel::boolean ? answers.overlaps(at) : answers.distance()[at] <= limit_;
-}
-
-std::uint32_t Collision::shown_before(std::uint32_t pair) const noexcept {
-  const std::uint32_t record = same_pairs_ ? pair : contacts_.old_record[pair - known_from_];
-  return record == kNoEntry ? kNoEntry : contacts_.records_before.shown_of(record);
+  c.frame.close(call_.level, end);
+  // The next call swaps the frames and may find as many contacts.
+  return (!reads_last_manifolds() || c.before.reserve_as(c.frame)) && write_runs();
 }
 
 // Returns the number of pairs from this one on that are cached and whose contacts are
 // adjacent in the last frame, so that they are copied in one piece. Pairs not in contact do not
 // interrupt the range.
-std::uint32_t Collision::count_cached(std::uint32_t pair, std::uint32_t end) const noexcept {
+std::uint32_t ContactFrameWriter::count_cached(std::uint32_t pair,
+                                               std::uint32_t end) const noexcept {
   std::uint32_t at = pair;
   std::uint32_t next = kNoEntry;
-  for (; at < end && origin_of(at) == ContactSource::cached; ++at) {
-    const std::uint32_t shown = shown_before(at);
+  for (; at < end && call_.origin_of(at) == ContactSource::cached; ++at) {
+    const std::uint32_t shown = cache_.shown_before(at);
     if (shown == kNoEntry) continue;
     if (next != kNoEntry && shown != next) break;
     next = shown + 1;
@@ -132,25 +90,27 @@ std::uint32_t Collision::count_cached(std::uint32_t pair, std::uint32_t end) con
 }
 
 // Returns the size of a pair's new contacts; 0 if it is not in contact.
-ContactFrame::Cursor Collision::extent(std::uint32_t pair) const noexcept {
+ContactFrame::Cursor ContactFrameWriter::extent(std::uint32_t pair) const noexcept {
   const auto points = [&](const NarrowResult& answers, std::size_t at) {
-    return level_ == ContactLevel::manifold ? answers.contact_count()[at] : 0U;
+    return call_.level == ContactLevel::manifold ? answers.contact_count()[at] : 0U;
   };
-  if (origin_of(pair) == ContactSource::convex) {
-    const std::uint32_t at = source_of(pair);
-    return touches(scene_.answers, at) ? Cursor{1, 1, points(scene_.answers, at)} : Cursor{};
+  if (call_.origin_of(pair) == ContactSource::convex) {
+    const std::uint32_t at = call_.source_of(pair);
+    return touches(scene_.batch.answers, at) ? Cursor{1, 1, points(scene_.batch.answers, at)}
+                                             : Cursor{};
   }
   Cursor sum;
-  if (reduces_) {
-    const auto regions = scene_.parts->regions.of(source_of(pair));
+  if (call_.reduces) {
+    const auto regions = scene_.batch.parts->regions.of(call_.source_of(pair));
     for (const ContactRegion& region : regions) sum += {0, 1, region.count};
     sum.pair = regions.empty() ? 0 : 1;
     return sum;
   }
-  const std::uint32_t* const first = scene_.parts->pairs.first.data() + source_of(pair);
+  const std::uint32_t* const first = scene_.batch.parts->pairs.first.data() + call_.source_of(pair);
   for (std::uint32_t i = first[0]; i < first[1]; ++i) {
-    const std::uint32_t at = scene_.parts->slot[i];
-    if (touches(scene_.parts->answers, at)) sum += {1, 1, points(scene_.parts->answers, at)};
+    const std::uint32_t at = scene_.batch.parts->slot[i];
+    if (touches(scene_.batch.parts->answers, at))
+      sum += {1, 1, points(scene_.batch.parts->answers, at)};
   }
   if (sum.pair != 0) sum.pair = 1;
   return sum;
@@ -173,16 +133,17 @@ struct Touching {
 }  // namespace
 
 // Returns the size of the contacts of pairs [first, end).
-ContactFrame::Cursor Collision::count(std::uint32_t first, std::uint32_t end) const noexcept {
-  if (level_ == ContactLevel::pairs) return {end - first, 0, 0};
+ContactFrame::Cursor ContactFrameWriter::count(std::uint32_t first,
+                                               std::uint32_t end) const noexcept {
+  if (call_.level == ContactLevel::pairs) return {end - first, 0, 0};
   Cursor sum;
   for (std::uint32_t i = first; i < end;) {
     if (is_fresh_convex(i)) {
       // Without a branch, because contact is unpredictable.
-      const std::uint32_t at = source_of(i++);
-      const std::uint32_t touching = touches(scene_.answers, at) ? 1 : 0;
+      const std::uint32_t at = call_.source_of(i++);
+      const std::uint32_t touching = touches(scene_.batch.answers, at) ? 1 : 0;
       const std::uint32_t points =
-          level_ == ContactLevel::manifold ? scene_.answers.contact_count()[at] : 0;
+          call_.level == ContactLevel::manifold ? scene_.batch.answers.contact_count()[at] : 0;
       sum += {touching, touching, touching * points};
       continue;
     }
@@ -192,15 +153,16 @@ ContactFrame::Cursor Collision::count(std::uint32_t first, std::uint32_t end) co
       continue;
     }
     Touching touching;
-    for (const std::uint32_t last = i + cached; i < last; ++i) touching.take(shown_before(i));
+    for (const std::uint32_t last = i + cached; i < last; ++i)
+      touching.take(cache_.shown_before(i));
     if (touching.count != 0) sum += contacts_.before.extent(touching.first, touching.count);
   }
   return sum;
 }
 
 // Writes pairs [first, end) and their records.
-void Collision::write_task(std::uint32_t first, std::uint32_t end, Cursor at) noexcept {
-  if (level_ == ContactLevel::pairs) return write_all(first, end, at.pair);
+void ContactFrameWriter::write_task(std::uint32_t first, std::uint32_t end, Cursor at) noexcept {
+  if (call_.level == ContactLevel::pairs) return write_all(first, end, at.pair);
   ContactsState& c = contacts_;
   for (std::uint32_t i = first; i < end;) {
     if (is_fresh_convex(i)) {
@@ -213,37 +175,38 @@ void Collision::write_task(std::uint32_t first, std::uint32_t end, Cursor at) no
     if (cached == 0) {
       const Cursor taken = extent(i);
       if (taken.pair != 0) write_composite(i, at);
-      if (uses_cache_) remember(i, taken.pair != 0 ? at.pair : kNoEntry);
+      if (call_.uses_cache) cache_.remember(i, taken.pair != 0 ? at.pair : kNoEntry);
       at += taken;
       ++i;
       continue;
     }
     Touching touching;
     for (const std::uint32_t last = i + cached; i < last; ++i) {
-      const std::uint32_t shown = shown_before(i);
-      remember(i, shown == kNoEntry ? kNoEntry : at.pair + touching.count);
+      const std::uint32_t shown = cache_.shown_before(i);
+      cache_.remember(i, shown == kNoEntry ? kNoEntry : at.pair + touching.count);
       touching.take(shown);
     }
     if (touching.count == 0) continue;
     c.frame.copy(c.before, touching.first, touching.count, at);
     std::fill_n(c.frame.event.data() + at.pair, touching.count, ContactEvent::persisted);
     std::fill_n(c.shown_again.data() + touching.first, touching.count, std::uint8_t{1});
-    for (std::uint32_t k = 0; stores_positions_ && k < touching.count; ++k) {
-      c.history.pair[at.pair + k] = last_point_of(touching.first + k);
+    for (std::uint32_t k = 0; call_.stores_positions && k < touching.count; ++k) {
+      c.history.pair[at.pair + k] = cache_.last_point_of(touching.first + k);
     }
     at += c.before.extent(touching.first, touching.count);
   }
 }
 
 // Writes keys and events of pairs that are in contact and not cached.
-void Collision::write_bodies(std::span<const std::uint32_t> pairs, std::uint32_t to) noexcept {
+void ContactFrameWriter::write_bodies(std::span<const std::uint32_t> pairs,
+                                      std::uint32_t to) noexcept {
   ContactsState& c = contacts_;
   ContactFrame& frame = c.frame;
   for (const std::uint32_t pair : pairs) scene_.keys.fetch(scene_.pairs[pair].b);
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     const std::size_t at = to + i;
     const BodyPair bodies = scene_.pairs[pairs[i]];
-    const std::uint32_t shown = shown_before(pairs[i]);
+    const std::uint32_t shown = cache_.shown_before(pairs[i]);
     bool persists = shown != kNoEntry;
     const std::uint32_t ids[2] = {bodies.a, bodies.b};
     for (int side = 0; side < 2; ++side) {
@@ -253,25 +216,27 @@ void Collision::write_bodies(std::span<const std::uint32_t> pairs, std::uint32_t
     }
     frame.event[at] = persists ? ContactEvent::persisted : ContactEvent::begun;
     if (persists) c.shown_again[shown] = 1;
-    if (stores_positions_) c.history.pair[at] = persists ? last_point_of(shown) : kNoContact;
+    if (call_.stores_positions)
+      c.history.pair[at] = persists ? cache_.last_point_of(shown) : kNoContact;
   }
 }
 
 // Writes pairs [first, end), at most one task's, at level pairs.
-void Collision::write_all(std::uint32_t first, std::uint32_t end, std::uint32_t to) noexcept {
-  std::uint32_t pairs[kPairsPerTask];
+void ContactFrameWriter::write_all(std::uint32_t first, std::uint32_t end,
+                                   std::uint32_t to) noexcept {
+  std::uint32_t pairs[CollideCall::kPairsPerTask];
   std::iota(pairs, pairs + (end - first), first);
   write_bodies({pairs, end - first}, to);
 }
 
 // Writes the pairs of [first, end) that are in contact, column by column. All are convex and not
 // cached; at most one task's pairs.
-void Collision::write_convex(std::uint32_t first, std::uint32_t end, Cursor& at) noexcept {
-  std::uint32_t touching[kPairsPerTask];
+void ContactFrameWriter::write_convex(std::uint32_t first, std::uint32_t end, Cursor& at) noexcept {
+  std::uint32_t touching[CollideCall::kPairsPerTask];
   std::uint32_t count = 0;
   for (std::uint32_t i = first; i < end; ++i) {
-    const bool is_shown = touches(scene_.answers, source_of(i));
-    if (uses_cache_) remember(i, is_shown ? at.pair + count : kNoEntry);
+    const bool is_shown = touches(scene_.batch.answers, call_.source_of(i));
+    if (call_.uses_cache) cache_.remember(i, is_shown ? at.pair + count : kNoEntry);
     touching[count] = i;
     count += is_shown ? 1 : 0;
   }
@@ -287,70 +252,70 @@ void Collision::write_convex(std::uint32_t first, std::uint32_t end, Cursor& at)
 }
 
 // Writes results of the narrow phase for convex pairs in contact.
-void Collision::write_answers(std::span<const std::uint32_t> pairs, Cursor& at) noexcept {
+void ContactFrameWriter::write_answers(std::span<const std::uint32_t> pairs, Cursor& at) noexcept {
   const auto count = static_cast<std::uint32_t>(pairs.size());
   const auto copy = [&](std::span<const double> from, Column<double>& to) {
     double* const out = to.data() + at.manifold;
-    for (std::uint32_t i = 0; i < count; ++i) out[i] = from[source_of(pairs[i])];
+    for (std::uint32_t i = 0; i < count; ++i) out[i] = from[call_.source_of(pairs[i])];
   };
-  const NarrowResult& answers = scene_.answers;
+  const NarrowResult& answers = scene_.batch.answers;
   ContactFrame& frame = contacts_.frame;
-  if (level_ >= ContactLevel::distance) {
+  if (call_.level >= ContactLevel::distance) {
     copy(answers.distance(), frame.distance);
     copy(answers.error_bound(), frame.error_bound);
     for (int k = 0; k < 3; ++k) copy(answers.normal(k), frame.normal[k]);
   }
-  if (level_ == ContactLevel::distance) {
+  if (call_.level == ContactLevel::distance) {
     for (int k = 0; k < 3; ++k) copy(answers.point(k), frame.point[k]);
   }
-  for (std::uint32_t i = 0; level_ == ContactLevel::manifold && i < count; ++i) {
+  for (std::uint32_t i = 0; call_.level == ContactLevel::manifold && i < count; ++i) {
     frame.point_first[at.manifold + i] = at.point;
-    write_points(answers, source_of(pairs[i]), nullptr, at.point);
+    write_points(answers, call_.source_of(pairs[i]), nullptr, at.point);
   }
   at.pair += count;
   at.manifold += count;
 }
 
 // Writes a pair with a composite shape that is in contact and not cached.
-void Collision::write_composite(std::uint32_t pair, const Cursor& to) noexcept {
+void ContactFrameWriter::write_composite(std::uint32_t pair, const Cursor& to) noexcept {
   write_bodies({&pair, 1}, to.pair);
   ContactFrame& frame = contacts_.frame;
   frame.manifold_first[to.pair] = to.manifold;
   Cursor at = to;
-  if (reduces_) {
-    for (const ContactRegion& region : scene_.parts->regions.of(source_of(pair))) {
+  if (call_.reduces) {
+    for (const ContactRegion& region : scene_.batch.parts->regions.of(call_.source_of(pair))) {
       write_region(region, at);
     }
     return;
   }
-  const PrimitivePairs& parts = scene_.parts->pairs;
-  const std::uint32_t* const first = parts.first.data() + source_of(pair);
+  const PrimitivePairs& parts = scene_.batch.parts->pairs;
+  const std::uint32_t* const first = parts.first.data() + call_.source_of(pair);
   for (std::uint32_t i = first[0]; i < first[1]; ++i) {
-    const std::uint32_t answer = scene_.parts->slot[i];
-    if (!touches(scene_.parts->answers, answer)) continue;
+    const std::uint32_t answer = scene_.batch.parts->slot[i];
+    if (!touches(scene_.batch.parts->answers, answer)) continue;
     const BodyPair primitives = parts.pairs[i];
     frame.part[0][at.manifold] = parts.part[primitives.a];
     frame.part[1][at.manifold] = parts.part[primitives.b];
-    write_manifold(scene_.parts->answers, answer, parts.poses[primitives.a].position, at);
+    write_manifold(scene_.batch.parts->answers, answer, parts.poses[primitives.a].position, at);
   }
 }
 
 // Writes the result of a pair of primitives; `offset` is the position of a's primitive relative to
 // body a.
-void Collision::write_manifold(const NarrowResult& answers, std::size_t at, const double* offset,
-                               Cursor& to) noexcept {
+void ContactFrameWriter::write_manifold(const NarrowResult& answers, std::size_t at,
+                                        const double* offset, Cursor& to) noexcept {
   ContactFrame& frame = contacts_.frame;
-  if (level_ >= ContactLevel::distance) {
+  if (call_.level >= ContactLevel::distance) {
     frame.distance[to.manifold] = answers.distance()[at];
     frame.error_bound[to.manifold] = answers.error_bound()[at];
     for (int k = 0; k < 3; ++k) {
       frame.normal[k][to.manifold] = answers.normal(k)[at];
-      if (level_ == ContactLevel::distance) {
+      if (call_.level == ContactLevel::distance) {
         frame.point[k][to.manifold] = answers.point(k)[at] + offset[k];
       }
     }
   }
-  if (level_ == ContactLevel::manifold) {
+  if (call_.level == ContactLevel::manifold) {
     frame.point_first[to.manifold] = to.point;
     write_points(answers, at, offset, to.point);
   }
@@ -358,8 +323,8 @@ void Collision::write_manifold(const NarrowResult& answers, std::size_t at, cons
 }
 
 // Writes the points of a result; `offset` is null if body a is convex.
-void Collision::write_points(const NarrowResult& answers, std::size_t at, const double* offset,
-                             std::uint32_t& to) noexcept {
+void ContactFrameWriter::write_points(const NarrowResult& answers, std::size_t at,
+                                      const double* offset, std::uint32_t& to) noexcept {
   ContactColumns& points = contacts_.frame.points;
   const ContactColumns& from = answers.contact_columns();
   const std::uint32_t first = answers.contact_first()[at];
@@ -375,7 +340,7 @@ void Collision::write_points(const NarrowResult& answers, std::size_t at, const 
   }
 }
 
-void Collision::write_region(const ContactRegion& region, Cursor& to) noexcept {
+void ContactFrameWriter::write_region(const ContactRegion& region, Cursor& to) noexcept {
   ContactFrame& frame = contacts_.frame;
   for (int side = 0; side < 2; ++side) frame.part[side][to.manifold] = region.part[side];
   frame.distance[to.manifold] = region.distance;
@@ -392,7 +357,7 @@ void Collision::write_region(const ContactRegion& region, Cursor& to) noexcept {
 }
 
 // Writes the runs of pairs that have the same two shape kinds.
-bool Collision::write_runs() {
+bool ContactFrameWriter::write_runs() {
   ContactFrame& frame = contacts_.frame;
   frame.runs.clear();
   const auto run_at = [&](std::uint32_t i) {

@@ -6,12 +6,23 @@
 // that is done takes the next pair. Lengths are divided by the pair's size.
 
 #include "pipeline/kernels/answers.wide.h"
-#include "pipeline/kernels/hull/hull_supports.wide.h"
-#include "pipeline/kernels/hull/loaded_cores.wide.h"
-#include "pipeline/kernels/hull/search_lanes.wide.h"
+#include "pipeline/kernels/cores/hull_core.wide.h"
+#include "pipeline/kernels/cores/loaded_cores.wide.h"
+#include "pipeline/kernels/cores/search_lanes.wide.h"
 #include "pipeline/kernels/user_support.wide.h"
 
 namespace winnow::WINNOW_ISA_NAME::hull {
+
+/// Returns the vertices that for_farthest_vertices finds; 0 in the other lanes.
+[[gnu::noinline]] static Vec3<float> farthest_vertices(const HullShape* const* hull,
+                                                       const Vec3<float>& direction, Mask16 active,
+                                                       VertexHeights& rows) {
+  alignas(64) float x[3][kLanes] = {};
+  for_farthest_vertices(hull, direction, active, rows, [&](unsigned lane, std::uint32_t vertex) {
+    for (int i = 0; i < 3; ++i) x[i][lane] = hull[lane]->vertex_float[i][vertex];
+  });
+  return {Floats::load(x[0]), Floats::load(x[1]), Floats::load(x[2])};
+}
 
 class OverlapTest {
  public:

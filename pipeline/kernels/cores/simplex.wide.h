@@ -1,7 +1,8 @@
 #pragma once
 
 // Simplices of up to four points and their features nearest to the origin, one per lane: the step
-// of GJK (Gilbert, Johnson, Keerthi 1988).
+// of GJK (Gilbert, Johnson, Keerthi 1988). Searches that keep their simplices in memory add points
+// by SimplexColumns::add: SearchLanes (search_lanes.wide.h) and HullSearch (hull_gjk.wide.h).
 
 #include "simd/lanes/vectors.h"
 
@@ -128,5 +129,90 @@ static inline SimplexNearest<T> nearest_of(const Simplex<T>& simplex, const Vec3
   }
   return r;
 }
+
+/// The simplices of searches, one per lane, in memory: a lane that is done takes the next pair.
+template <typename T>
+struct SimplexColumns {
+  static constexpr int kWidth = Lanes<T>::kCount;
+  using Column = T[kWidth];
+
+  /// The outcome of adding a support point, by lane.
+  struct Step {
+    /// The search makes no progress; the origin is in the simplex (`deep` if that is certain); the
+    /// nearest feature has become the simplex.
+    LaneMask<T> stuck;
+    LaneMask<T> inside;
+    LaneMask<T> deep;
+    LaneMask<T> moves;
+    /// Squared distance of the nearest feature.
+    Lanes<T> square;
+  };
+
+  void clear(unsigned lane) {
+    for (int s = 0; s < kSlots; ++s) present[s][lane] = T(0);
+    fresh[lane] = T(1);
+  }
+
+  [[nodiscard]] [[gnu::always_inline]] Simplex<T> load() const {
+    Simplex<T> simplex;
+    for (int s = 0; s < kSlots; ++s) {
+      simplex.point[s] = load3(slot[s]);
+      simplex.present[s] = Lanes<T>::load(present[s]) > Lanes<T>(T(0));
+    }
+    return simplex;
+  }
+
+  /// Adds the support point w to `simplex`, unless the lane `is_far`. `nearest_yet` is the nearest
+  /// point before, `square_yet` its square. `no_gain`: w is hardly nearer to the origin than this
+  /// point. In the lanes that move, the nearest feature becomes the simplex; for each slot,
+  /// keep_more(slot, lanes that take w) stores more data about w.
+  template <typename KeepMore>
+  [[gnu::always_inline]] Step add(const Simplex<T>& simplex, const Vec3<T>& w,
+                                  const Vec3<T>& nearest_yet, const Lanes<T>& square_yet,
+                                  const LaneMask<T>& is_far, const LaneMask<T>& no_gain,
+                                  KeepMore&& keep_more) {
+    const Lanes<T> zero(T(0));
+    const Lanes<T> one(T(1));
+    const LaneMask<T> is_fresh = Lanes<T>::load(fresh) > zero;
+    const SimplexNearest<T> nearest = nearest_of(simplex, w);
+    const Lanes<T> next_square = dot(nearest.point, nearest.point);
+    const LaneMask<T> stuck = (!is_fresh) &
+                              (no_gain | nearest.repeated | (next_square >= square_yet)) &
+                              (!(nearest.inside | is_far));
+    const LaneMask<T> inside = nearest.inside & !is_far;
+    const LaneMask<T> moves = !(is_far | stuck | inside);
+    LaneMask<T> placed = !moves;
+    for (int s = 0; s < kSlots; ++s) {
+      const LaneMask<T> take = (!placed) & (!nearest.keep[s]);
+      placed = placed | take;
+      store3(select(take, w, simplex.point[s]), slot[s]);
+      keep_more(s, take);
+      const Lanes<T> filled = select(take | nearest.keep[s], one, zero);
+      select(moves, filled, Lanes<T>::load(present[s])).store(present[s]);
+    }
+    store3(select(moves, nearest.point, nearest_yet), gap);
+    select(moves, next_square, square_yet).store(square);
+    zero.store(fresh);
+    return {stuck, inside, nearest.deep, moves, next_square};
+  }
+
+  static Vec3<T> load3(const Column* v) {
+    return {Lanes<T>::load(v[0]), Lanes<T>::load(v[1]), Lanes<T>::load(v[2])};
+  }
+  static void store3(const Vec3<T>& v, Column* to) {
+    v.x.store(to[0]);
+    v.y.store(to[1]);
+    v.z.store(to[2]);
+  }
+
+  /// The simplex; `present` is 1 where there is a point.
+  alignas(64) Column slot[kSlots][3] = {};
+  alignas(64) Column present[kSlots] = {};
+  /// 1 before the first step.
+  alignas(64) Column fresh = {};
+  /// The nearest point of the simplex, and its square.
+  alignas(64) Column gap[3] = {};
+  alignas(64) Column square = {};
+};
 
 }  // namespace winnow::WINNOW_ISA_NAME::hull

@@ -1,6 +1,8 @@
-// Filters of pairs beyond sets and object filters: layers, ignored pairs and the caller's
+// Rules about pairs beyond sets and object filters: layers, ignored pairs and the caller's
 // predicate. SceneState::find_pairs and ContinuousCollision apply them through `may_pair`, queries
 // about two bodies or sets through `accepts_pair`.
+
+#include "pipeline/scene/pair_rules.h"
 
 #include "core/hooks/log.h"
 #include "pipeline/scene/scene_state.h"
@@ -34,28 +36,20 @@ Status Scene::set_ignored(std::span<const KeyPair> pairs, bool ignored) {
   }
   if (pairs.empty()) return Status::ok;
   if (ignored) {
-    if (!s.add_ignored(pairs)) return Status::out_of_memory;
+    if (!s.rules.add_ignored(pairs, s.shape.size())) return Status::out_of_memory;
   } else {
-    const auto number_of = [](std::uint64_t pair) { return pair & ~kMark; };
-    for (const KeyPair& pair : pairs) {
-      const std::uint64_t number = pair_number(pair.first.id, pair.second.id);
-      std::uint64_t* const at =
-          std::ranges::lower_bound(s.ignored.begin(), s.ignored.end(), number, {}, number_of);
-      if (at != s.ignored.end() && number_of(*at) == number) *at |= kMark;
-    }
-    s.drop_ignored([](std::uint64_t pair) { return (pair & kMark) != 0; });
+    s.rules.remove_ignored(pairs);
   }
   s.invalidate_pairs();
   return Status::ok;
 }
 
-/// Merges new pairs into the sorted list.
-bool SceneState::add_ignored(std::span<const KeyPair> key_pairs) noexcept {
+bool BodyPairRules::add_ignored(std::span<const KeyPair> key_pairs, std::size_t bodies) noexcept {
   const std::size_t before = ignored.size();
   const std::size_t all = before + key_pairs.size();
   const std::size_t known = ignores.size();
-  if (!ignored.grow(all + key_pairs.size()) || !ignores.grow(shape.size())) return false;
-  ignores.set_size(shape.size());
+  if (!ignored.grow(all + key_pairs.size()) || !ignores.grow(bodies)) return false;
+  ignores.set_size(bodies);
   std::fill(ignores.begin() + known, ignores.end(), std::uint8_t{0});
   // The new pairs are sorted beyond the end of the merged list.
   ignored.set_size(all + key_pairs.size());
@@ -76,17 +70,28 @@ bool SceneState::add_ignored(std::span<const KeyPair> key_pairs) noexcept {
   return true;
 }
 
+void BodyPairRules::remove_ignored(std::span<const KeyPair> key_pairs) noexcept {
+  const auto number_of = [](std::uint64_t pair) { return pair & ~kMark; };
+  for (const KeyPair& pair : key_pairs) {
+    const std::uint64_t number = pair_number(pair.first.id, pair.second.id);
+    std::uint64_t* const at =
+        std::ranges::lower_bound(ignored.begin(), ignored.end(), number, {}, number_of);
+    if (at != ignored.end() && number_of(*at) == number) *at |= kMark;
+  }
+  drop_ignored([](std::uint64_t pair) { return (pair & kMark) != 0; });
+}
+
 bool Scene::is_ignored(Key a, Key b) const noexcept {
-  return contains(a) && contains(b) && state_->is_ignored(a.id, b.id);
+  return contains(a) && contains(b) && state_->rules.is_ignored(a.id, b.id);
 }
 
 void Scene::set_predicate(const PairPredicate& predicate) noexcept {
   if (state_ == nullptr) return;
-  state_->predicate = predicate;
+  state_->rules.predicate = predicate;
   state_->invalidate_pairs();
 }
 
-bool SceneState::is_ignored(ObjectId a, ObjectId b) const noexcept {
+bool BodyPairRules::is_ignored(ObjectId a, ObjectId b) const noexcept {
   const auto may_be = [&](ObjectId body) { return body < ignores.size() && ignores[body] != 0; };
   return may_be(a) && may_be(b) &&
          std::binary_search(ignored.begin(), ignored.end(), pair_number(a, b));
@@ -98,17 +103,17 @@ Status Scene::set_layers_collide(std::uint16_t a, std::uint16_t b, bool collide)
     return logged(Status::invalid_argument, "Scene::set_layers_collide");
   }
   SceneState& s = *state_;
-  if (s.layers.collide(a, b) == collide) return Status::ok;
-  if (!s.layers.grow_to(std::max(a, b))) {
+  if (s.rules.layers.collide(a, b) == collide) return Status::ok;
+  if (!s.rules.layers.grow_to(std::max(a, b))) {
     return logged(Status::out_of_memory, "Scene::set_layers_collide");
   }
-  s.layers.set(a, b, collide);
+  s.rules.layers.set(a, b, collide);
   s.invalidate_pairs();
   return Status::ok;
 }
 
 bool Scene::layers_collide(std::uint16_t a, std::uint16_t b) const noexcept {
-  return state_ == nullptr || state_->layers.collide(a, b);
+  return state_ == nullptr || state_->rules.layers.collide(a, b);
 }
 
 Status Scene::set_layer(Key key, std::uint16_t layer) {
@@ -116,28 +121,28 @@ Status Scene::set_layer(Key key, std::uint16_t layer) {
   SceneState& s = *state_;
   if (!s.keys.is_valid(key)) return logged(Status::invalid_key, "Scene::set_layer");
   if (layer >= kSceneLayers) return logged(Status::invalid_argument, "Scene::set_layer");
-  if (s.layer_of(key.id) == layer) return Status::ok;
-  if (!s.begin_layers()) return logged(Status::out_of_memory, "Scene::set_layer");
-  s.layer[key.id] = layer;
+  if (s.rules.layer_of(key.id) == layer) return Status::ok;
+  if (!s.rules.begin_layers(s.shape.size(), s.shape.capacity()))
+    return logged(Status::out_of_memory, "Scene::set_layer");
+  s.rules.layer[key.id] = layer;
   s.invalidate_pairs();
   return Status::ok;
 }
 
 std::uint16_t Scene::layer(Key key) const noexcept {
-  return contains(key) ? state_->layer_of(key.id) : std::uint16_t{0};
+  return contains(key) ? state_->rules.layer_of(key.id) : std::uint16_t{0};
 }
 
-// From the first layer other than 0 on, the column has an element for every body.
-bool SceneState::begin_layers() noexcept {
+bool BodyPairRules::begin_layers(std::size_t bodies, std::size_t room) noexcept {
   if (with_layers) return true;
-  if (!layer.grow(shape.capacity())) return false;
+  if (!layer.grow(room)) return false;
   with_layers = true;
-  layer.set_size(shape.size());
+  layer.set_size(bodies);
   std::fill(layer.begin(), layer.end(), std::uint16_t{0});
   return true;
 }
 
-bool SceneState::may_pair(ObjectId a, ObjectId b) const noexcept {
+bool BodyPairRules::may_pair(ObjectId a, ObjectId b) const noexcept {
   if (!layers.collide(layer_of(a), layer_of(b))) return false;
   if (is_ignored(a, b)) return false;
   return predicate.accept == nullptr || predicate.accept(predicate.context, a, b);
@@ -149,7 +154,7 @@ bool SceneState::accepts_pair(ObjectId a, ObjectId b) const noexcept {
     return false;
   // The predicate gets the two bodies in the order in which partitions return them.
   if (body_state[b] == BodyState::dynamic && place[b].id < place[a].id) std::swap(a, b);
-  return may_pair(a, b);
+  return rules.may_pair(a, b);
 }
 
 ObjectFilter SceneState::filter_of(ObjectId body) const noexcept {
@@ -158,8 +163,7 @@ ObjectFilter SceneState::filter_of(ObjectId body) const noexcept {
   return filter;
 }
 
-// Forgets the ignored pairs of removed bodies, because new bodies may get their ids.
-void SceneState::forget_ignored(std::span<const Key> removed) noexcept {
+void BodyPairRules::forget_ignored(std::span<const Key> removed, const KeyTable& keys) noexcept {
   bool had_ignored = false;
   for (const Key& key : removed) {
     if (key.id >= ignores.size()) continue;
@@ -171,6 +175,27 @@ void SceneState::forget_ignored(std::span<const Key> removed) noexcept {
     return !keys.is_live(static_cast<ObjectId>(pair >> 32U)) ||
            !keys.is_live(static_cast<ObjectId>(pair));
   });
+}
+
+void BodyPairRules::forget_bodies() noexcept {
+  layer.clear();
+  with_layers = false;
+  ignored.clear();
+  ignores.clear();
+}
+
+void BodyPairRules::swap_bodies(BodyPairRules& other) noexcept {
+  layer.swap(other.layer);
+  std::swap(with_layers, other.with_layers);
+  layers.swap(other.layers);
+  ignored.swap(other.ignored);
+  ignores.swap(other.ignores);
+}
+
+Bytes BodyPairRules::bytes() const noexcept {
+  Bytes sum = bytes_of(layer, ignored, ignores);
+  sum += layers.bytes();
+  return sum;
 }
 
 void SceneState::invalidate_pairs() noexcept {

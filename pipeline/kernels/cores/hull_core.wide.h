@@ -1,76 +1,18 @@
 #pragma once
 
-// A pair of convex polytopes, possibly rounded, as the hull kernels pass it from stage to stage,
-// and the support function of a hull, sixteen vertices at a time.
+// A hull as a core: its support function, sixteen vertices at a time, for one pair or one pair per
+// lane; and its feature at a supporting vertex along a direction: a face or an edge that is within
+// 14 degrees of perpendicular to the direction (contact_patch.h), or else the vertex. The limit is
+// wide because bodies rock over their faces and edges.
 
-#include "pipeline/kernels/fetch_ahead.wide.h"
+#include <winnow/core/pose.h>
+#include <winnow/pipeline/shapes.h>
 #include "pipeline/kernels/single_vectors.wide.h"
+#include "pipeline/manifold/contact_patch.h"
+#include "simd/lanes/rows.h"
 #include "simd/lanes/vectors.h"
 
 namespace winnow::WINNOW_ISA_NAME::hull {
-
-/// Result of the float search about the cores.
-enum class HullState : std::uint32_t {
-  /// Farther apart than the caller needs.
-  far,
-  /// Closest features found, but not proven.
-  apart,
-  /// The overlap exceeds the errors of float.
-  inside,
-  /// Touching or overlapping, up to the errors of float.
-  close,
-};
-
-/// "First" is body a of the pair, or body b if `swapped`: see comes_second.
-struct HullPair {
-  const HullShape* first;
-  const HullShape* second;
-  /// From the second's frame to the first's: x -> turn x + shift; stored by rows.
-  double turn[9];
-  double shift[3];
-  /// From the first's frame to world axes; stored by rows.
-  double frame[9];
-  /// Position of the second minus position of the first, in world axes.
-  double offset[3];
-  /// An upper bound of every length that occurs: the distance of the hulls' origins, plus the
-  /// reach_of each hull.
-  double size;
-  /// Sum of the roundings.
-  double rounding;
-  /// The search stops with state far if the cores are farther apart than this plus the rounding;
-  /// infinite to never stop.
-  double far;
-  /// `turn` and `shift` in float. The `scaled_` numbers are multiplied by `scale`, a power of two
-  /// that brings `size` into [1, 2).
-  float turn_float[9];
-  float scaled_turn[9];
-  float scaled_shift[3];
-  float scale;
-  std::uint32_t index;
-  bool swapped;
-  // Outcome of the search.
-  HullState state;
-  /// `count` vertex pairs of the closest features: vertex of the first | vertex of the second <<
-  /// 16.
-  std::uint32_t count;
-  std::uint32_t vertices[3];
-  /// first - second at the closest points, scaled.
-  float gap[3];
-  /// State far: a lower bound of the distance of the cores, times the length of `gap`, scaled.
-  float lower;
-  /// Square of an upper bound of the penetration depth, scaled.
-  float depth_squared;
-  /// The latest support points of first - second, scaled.
-  static constexpr std::uint32_t kTrail = 8;
-  float trail[kTrail][3];
-  std::uint32_t trail_length;
-};
-
-/// Beyond these sizes, products of four floats may not be normal numbers.
-inline constexpr double kSmallestHull = 1e-8;
-inline constexpr double kLargestHull = 1e8;
-/// The search stores vertex numbers in 16 bits.
-inline constexpr std::uint32_t kMaxHullVertices = 65535;
 
 /// Bound of the rounding errors of lengths computed in double from a HullPair, relative to size:
 /// some forty operations of half a unit each.
@@ -130,63 +72,6 @@ static inline bool comes_second(const HullShape& a, const HullShape& b, const Po
     if (d != 0.0) return d < 0.0;
   }
   return false;
-}
-
-/// The power of two that brings a size in float's range into [1, 2).
-static inline float scale_of(double size) {
-  const std::uint64_t exponent = __builtin_bit_cast(std::uint64_t, size) >> 52U;
-  return static_cast<float>(__builtin_bit_cast(double, (2046U - exponent) << 52U));
-}
-
-/// Fills in the inputs of the search, with b first if `swapped`; returns false if poses or sizes
-/// are out of range. `PointSecond`: the second is a point at its origin, so its orientation is not
-/// read.
-template <bool PointSecond = false>
-static inline bool place_hulls(const HullShape& a, const HullShape& b, const Pose& pose_a,
-                               const Pose& pose_b, bool swapped, HullPair& pair) {
-  pair.swapped = swapped;
-  const Pose& first = swapped ? pose_b : pose_a;
-  const Pose& second = swapped ? pose_a : pose_b;
-  pair.first = swapped ? &b : &a;
-  pair.second = swapped ? &a : &b;
-  double frame[9];
-  double turn[9] = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
-  if (!rotation_of(first.orientation, frame)) return false;
-  if constexpr (!PointSecond) {
-    double axes[9];
-    if (!rotation_of(second.orientation, axes)) return false;
-    for (int i = 0; i < 3; ++i) {
-      for (int k = 0; k < 3; ++k) {
-        turn[3 * i + k] =
-            frame[i] * axes[k] + frame[3 + i] * axes[3 + k] + frame[6 + i] * axes[6 + k];
-      }
-    }
-  }
-  double offset[3];
-  double shift[3];
-  for (int i = 0; i < 3; ++i) offset[i] = second.position[i] - first.position[i];
-  turn_back3(frame, offset, shift);
-  pair.rounding = a.rounding + b.rounding;
-  const double size = reach_of(a) + reach_of(b) + __builtin_fabs(shift[0]) +
-                      __builtin_fabs(shift[1]) + __builtin_fabs(shift[2]);
-  if (!(size > kSmallestHull && size < kLargestHull)) return false;
-  if (!(pair.rounding < kLargestHull)) return false;
-  const float scale = scale_of(size);
-  pair.size = size;
-  pair.scale = scale;
-  for (int i = 0; i < 9; ++i) {
-    const auto turn_float = static_cast<float>(turn[i]);
-    pair.frame[i] = frame[i];
-    pair.turn[i] = turn[i];
-    pair.turn_float[i] = turn_float;
-    pair.scaled_turn[i] = turn_float * scale;
-  }
-  for (int i = 0; i < 3; ++i) {
-    pair.offset[i] = offset[i];
-    pair.shift[i] = shift[i];
-    pair.scaled_shift[i] = static_cast<float>(shift[i]) * scale;
-  }
-  return true;
 }
 
 /// The four low bits of a float are replaced by its lane's number, so that a maximum also names its
@@ -394,6 +279,164 @@ template <typename T>
 [[gnu::always_inline]] static inline void vertex_at(const HullShape& hull, std::uint32_t i, T* x) {
   const T* const* vertex = columns_of(hull, T());
   for (int k = 0; k < 3; ++k) x[k] = vertex[k][i];
+}
+
+/// The number of a vertex as the bit pattern of a lane.
+constexpr float number_pattern(std::uint32_t number) {
+  return __builtin_bit_cast(float, number);
+}
+
+/// One row per lane: the heights of the hull's sixteen vertices. If the hull has more, entry i is
+/// the largest height of the vertices i, i + 16, ..., and `block` stores from which block of
+/// sixteen it is.
+struct VertexHeights {
+  alignas(64) float height[kLanes * kLanes];
+  alignas(64) float block[kLanes * kLanes];
+};
+
+/// Calls found(lane, vertex) for all `active` lanes with the vertex of hull[lane] that is farthest
+/// along the lane's direction, in float and in the hull's own frame.
+template <typename Found>
+[[gnu::always_inline]] static inline void for_farthest_vertices(const HullShape* const* hull,
+                                                                const Vec3<float>& direction,
+                                                                Mask16 active, VertexHeights& rows,
+                                                                Found&& found) {
+  alignas(64) float along[3][kLanes];
+  direction.x.store(along[0]);
+  direction.y.store(along[1]);
+  direction.z.store(along[2]);
+  for (Mask16 rest = active; rest != 0; rest &= rest - 1) {
+    const unsigned lane = first(rest);
+    const float d[3] = {along[0][lane], along[1][lane], along[2][lane]};
+    heights(*hull[lane], d, rows.height + lane * kLanes, rows.block + lane * kLanes);
+  }
+  alignas(64) float highest[kLanes];
+  reduce_max_rows(rows.height).store_unaligned(highest);
+  for (Mask16 rest = active; rest != 0; rest &= rest - 1) {
+    const unsigned lane = first(rest);
+    found(lane, vertex_of(*hull[lane], highest[lane], rows.height + lane * kLanes,
+                          rows.block + lane * kLanes));
+  }
+}
+
+/// The supporting vertices of the hulls in the lanes, and their numbers.
+class FarthestVertices {
+ public:
+  void put(int lane, const HullShape& hull) { hull_[lane] = &hull; }
+
+  void find(const Vec3<float>& direction, Mask16 active) {
+    for_farthest_vertices(hull_, direction, active, rows_,
+                          [&](unsigned lane, std::uint32_t vertex) {
+                            number_[lane] = vertex;
+                            for (int i = 0; i < 3; ++i) {
+                              vertex_[i][lane] = hull_[lane]->vertex_float[i][vertex];
+                            }
+                          });
+  }
+
+  [[nodiscard]] Vec3<float> vertex() const {
+    return {Floats::load(vertex_[0]), Floats::load(vertex_[1]), Floats::load(vertex_[2])};
+  }
+  /// The numbers times 2^shift.
+  [[nodiscard]] Floats numbers(std::uint32_t shift) const {
+    alignas(64) float pattern[kLanes];
+    for (int lane = 0; lane < kLanes; ++lane)
+      pattern[lane] = number_pattern(number_[lane] << shift);
+    return Floats::load(pattern);
+  }
+
+ private:
+  const HullShape* hull_[kLanes] = {};
+  std::uint32_t number_[kLanes] = {};
+  alignas(64) float vertex_[3][kLanes] = {};
+  VertexHeights rows_;
+};
+
+inline constexpr std::uint32_t kNoFeature = ~0U;
+
+/// The edge between two vertices.
+static inline std::uint32_t find_edge(const HullShape& hull, std::uint32_t v, std::uint32_t w) {
+  for (std::uint32_t i = 0; i < hull.edge_count; ++i) {
+    const std::uint32_t* ends = hull.edges[i].vertex;
+    if ((ends[0] == v && ends[1] == w) || (ends[0] == w && ends[1] == v)) return i;
+  }
+  return kNoFeature;
+}
+
+/// Cosines that differ by at most this may be in the wrong order in float.
+inline constexpr float kTiedCosines = 1e-6F;
+
+/// `face_across` in double, for faces that are nearly coplanar.
+static inline std::uint32_t tied_face_across(const HullShape& hull, const double* direction,
+                                             const float* x, float doubt) {
+  const float* const* plane = hull.plane_float;
+  std::uint32_t best = kNoFeature;
+  double most = kFaceCosine;
+  for (std::uint32_t i = 0; i < hull.face_count; ++i) {
+    const float n[3] = {plane[0][i], plane[1][i], plane[2][i]};
+    const double cosine = dot3(hull.faces[i].normal, direction);
+    if (!(cosine > most) || !(plane[3][i] - dot3(n, x) <= doubt)) continue;
+    most = cosine;
+    best = i;
+  }
+  return best;
+}
+
+/// Returns the face that is most along the direction, among the faces whose planes pass within
+/// `doubt` of the vertex at x; kNoFeature if no cosine is above kFaceCosine.
+static inline std::uint32_t face_across(const HullShape& hull, const double* direction,
+                                        const float* x, float doubt) {
+  const float* const* plane = hull.plane_float;
+  const Vec3<float> along{static_cast<float>(direction[0]), static_cast<float>(direction[1]),
+                          static_cast<float>(direction[2])};
+  const Floats slack(doubt);
+  std::uint32_t best = kNoFeature;
+  auto most = static_cast<float>(kFaceCosine);
+  float next = most;
+  for (std::uint32_t row = 0; row < hull.face_count; row += kLanes) {
+    const Vec3<float> n{Floats::load(plane[0] + row), Floats::load(plane[1] + row),
+                        Floats::load(plane[2] + row)};
+    const Floats cosine = dot(n, along);
+    const Floats below = Floats::load(plane[3] + row) - dot(n, Vec3<float>{x[0], x[1], x[2]});
+    Mask16 hit = bits((cosine > Floats(next)) & (below <= slack));
+    const std::uint32_t left = hull.face_count - row;
+    if (left < kLanes) hit &= lanes_below(left);
+    if (hit == 0) continue;
+    alignas(64) float value[kLanes];
+    cosine.store(value);
+    for (; hit != 0; hit &= hit - 1) {
+      const unsigned lane = winnow::WINNOW_ISA_NAME::first(hit);
+      if (!(value[lane] > most)) {
+        next = value[lane] > next ? value[lane] : next;
+        continue;
+      }
+      next = most;
+      most = value[lane];
+      best = row + lane;
+    }
+  }
+  const bool is_tied = best != kNoFeature && most - next <= kTiedCosines;
+  return is_tied ? tied_face_across(hull, direction, x, doubt) : best;
+}
+
+/// Returns the neighbour to which the edge from a vertex is closest to perpendicular to the
+/// direction; kNoFeature if no edge is within kEdgeSine of it.
+static inline std::uint32_t neighbour_across(const HullShape& hull, const float* direction,
+                                             std::uint32_t vertex, const float* x) {
+  std::uint32_t best = kNoFeature;
+  auto least = static_cast<float>(kEdgeSine * kEdgeSine);
+  if (hull.dimension == 0) return best;
+  for (std::uint32_t i = hull.neighbour_first[vertex]; i < hull.neighbour_first[vertex + 1]; ++i) {
+    float y[3];
+    vertex_at(hull, hull.neighbour[i], y);
+    for (int k = 0; k < 3; ++k) y[k] -= x[k];
+    const float drop = dot3(direction, y);
+    const float slope = drop * drop / dot3(y, y);
+    if (!(slope < least)) continue;
+    least = slope;
+    best = hull.neighbour[i];
+  }
+  return best;
 }
 
 }  // namespace winnow::WINNOW_ISA_NAME::hull

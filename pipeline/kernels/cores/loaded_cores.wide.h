@@ -3,8 +3,8 @@
 // Loads the shapes of a block of pairs as cores in float lanes. For hulls and user shapes only
 // their bounds are loaded, not their points. Used by overlap_test.wide.h.
 
-#include "pipeline/kernels/hull/core_lanes.wide.h"
-#include "pipeline/kernels/hull/hull_pair.wide.h"
+#include "pipeline/kernels/cores/core_lanes.wide.h"
+#include "pipeline/kernels/cores/hull_core.wide.h"
 #include "pipeline/kernels/pair_lanes.wide.h"
 
 namespace winnow::WINNOW_ISA_NAME::hull {
