@@ -33,7 +33,7 @@ namespace {
     } else {
       Shape one;
       static_assert(sizeof one <= sizeof shape.as);
-      std::memcpy(&one, &shape.as, sizeof one);
+      std::memcpy(static_cast<void*>(&one), &shape.as, sizeof one);
       return pool.add(one, id);
     }
   });
