@@ -84,14 +84,16 @@ ShapeId PartTables::put(std::size_t slot, const SubShape& part) noexcept {
 }
 
 bool SubShapeQuery::contains(ShapeId shape) const noexcept {
-  if (shape.is_composite()) return composites_ != nullptr && composites_->contains(shape);
+  if (shape.is_composite())
+    return composites_ != nullptr && mid_phase().contains(*composites_, shape);
   return shapes_.contains(shape);
 }
 
 PreciseBox SubShapeQuery::box(const PlacedShape& placed) const noexcept {
   const Pose here = at_origin(placed.pose);
-  const Aabb local = placed.shape.is_composite() ? composites_->bounds(placed.shape, here)
-                                                 : shapes_.bounds(placed.shape, here);
+  const Aabb local = placed.shape.is_composite()
+                         ? mid_phase().bounds(*composites_, placed.shape, here)
+                         : shapes_.bounds(placed.shape, here);
   return placed_box(local, placed.pose.position);
 }
 
@@ -129,9 +131,9 @@ void SubShapeQuery::traverse(const PlacedShape& placed, MovingBox moving_box, do
                                     },
                                     &visitor};
   if (near) {
-    composites_->visit_near(placed.shape, placed.pose, moving_box, limit, primitives);
+    mid_phase().visit_near(*composites_, placed.shape, placed.pose, moving_box, limit, primitives);
   } else {
-    composites_->visit(placed.shape, placed.pose, moving_box, primitives);
+    mid_phase().visit(*composites_, placed.shape, placed.pose, moving_box, primitives);
   }
 }
 

@@ -1,11 +1,12 @@
 #pragma once
 
 // Traversal of the convex parts of any shape for the queries (scene queries, sensors, times of
-// impact): a convex shape has itself as its only part; for a composite shape it calls MidPhase.
+// impact): a convex shape has itself as its only part; for a composite shape it calls
+// mid::MidPhase.
 
 #include <winnow/core/pose.h>
-#include <winnow/pipeline/mid_phase.h>
 #include <winnow/pipeline/shape_pool.h>
+#include "pipeline/composites/mid_phase.h"
 #include "pipeline/shapes/extent.h"
 #include "pipeline/shapes/two_diff.h"
 
@@ -68,7 +69,7 @@ class PartTables {
 /// Traverses the parts of shapes; a convex shape is its own only part.
 class SubShapeQuery {
  public:
-  SubShapeQuery(const ShapePool& shapes, const MidPhase* composites) noexcept
+  SubShapeQuery(const ShapePool& shapes, const CompositePool* composites) noexcept
       : shapes_(shapes), composites_(composites) {}
 
   [[nodiscard]] const ShapePool& shapes() const noexcept { return shapes_; }
@@ -76,17 +77,18 @@ class SubShapeQuery {
   /// Upper bound on the distance of points of the shape from its origin; infinite for a half-space.
   [[nodiscard]] double radius(ShapeId shape) const noexcept {
     // Inline, so that scenes that use only this function do not link composite shapes.
-    return shape.is_composite() ? composites_->radius(shape)
+    return shape.is_composite() ? mid_phase().radius(*composites_, shape)
                                 : mid::radius_of(shapes_.tables(), shape);
   }
-  /// True if a solid contains a point of the other shape; see MidPhase::solid_contains.
+  /// True if a solid contains a point of the other shape; see mid::solid_contains_shape.
   [[nodiscard]] bool solid_contains(const PlacedShape& solid, const PlacedShape& other) const {
     return solid.shape.is_composite() &&
-           composites_->solid_contains(solid.shape, solid.pose, other.shape, other.pose);
+           mid_phase().solid_contains_shape(*composites_, solid.shape, solid.pose, other.shape,
+                                            other.pose);
   }
   [[nodiscard]] bool solid_contains(const PlacedShape& solid, const double point[3]) const {
     return solid.shape.is_composite() &&
-           composites_->solid_contains(solid.shape, solid.pose, point);
+           mid_phase().solid_contains_point(*composites_, solid.shape, solid.pose, point);
   }
   /// Returns a box that contains the shape.
   [[nodiscard]] PreciseBox box(const PlacedShape& placed) const noexcept;
@@ -107,8 +109,8 @@ class SubShapeQuery {
     using Callbacks =
         RayCallbacks<std::remove_reference_t<VisitHit>, std::remove_reference_t<VisitCandidate>>;
     Callbacks callbacks{visit_hit, visit_candidate};
-    composites_->visit_rays(
-        placed.shape, placed.pose, rays, limits,
+    mid_phase().visit_rays(
+        *composites_, placed.shape, placed.pose, rays, limits,
         {&Callbacks::call_visit_hit, &Callbacks::call_visit_candidate, &callbacks});
   }
   /// As above, for one ray and a mesh prepared by `prepare_ray_surface`.
@@ -118,13 +120,13 @@ class SubShapeQuery {
     using Callbacks =
         RayCallbacks<std::remove_reference_t<VisitHit>, std::remove_reference_t<VisitCandidate>>;
     Callbacks callbacks{visit_hit, visit_candidate};
-    composites_->visit_ray(
-        surface, ray, limit,
+    mid_phase().visit_ray(
+        *composites_, surface, ray, limit,
         {&Callbacks::call_visit_hit, &Callbacks::call_visit_candidate, &callbacks});
   }
-  /// See MidPhase::prepare_ray_surface.
+  /// See mid::prepare_ray_surface.
   [[nodiscard]] bool prepare_ray_surface(const PlacedShape& placed, RaySurface& surface) const {
-    return composites_->prepare_ray_surface(placed.shape, placed.pose, surface);
+    return mid_phase().prepare_ray_surface(*composites_, placed.shape, placed.pose, surface);
   }
   /// Calls visit(a, b) for pairs of parts of two meshes that may share a point, until it returns
   /// false. Returns false, without a call, if the shapes are not two meshes.
@@ -132,8 +134,8 @@ class SubShapeQuery {
   bool pairs(const PlacedShape& a, const PlacedShape& b, Visit&& visit) const {
     using Visitor = std::remove_reference_t<Visit>;
     if (!a.shape.is_composite() || !b.shape.is_composite()) return false;
-    return composites_->visit_pairs(
-        a.shape, a.pose, b.shape, b.pose,
+    return mid_phase().visit_pairs(
+        *composites_, a.shape, a.pose, b.shape, b.pose,
         {[](void* context, const Primitive& first, const Primitive& second) {
            return (*static_cast<Visitor*>(context))(part_of(first), part_of(second));
          },
@@ -141,15 +143,15 @@ class SubShapeQuery {
   }
   /// Calls visit(a, b, limit) for pairs of parts of two meshes that may be within `limit` of each
   /// other. `visit` returns the new limit, as in `visit_parts`; for `normal` see NearPairVisitor.
-  /// Returns false, without a call, if the shapes are not two meshes or MidPhase does not support
-  /// them.
+  /// Returns false, without a call, if the shapes are not two meshes or the mid phase does not
+  /// support them.
   template <typename Visit>
   bool near_pairs(const PlacedShape& a, const PlacedShape& b, double limit, const double* normal,
                   Visit&& visit) const {
     using Visitor = std::remove_reference_t<Visit>;
     if (!a.shape.is_composite() || !b.shape.is_composite()) return false;
-    return composites_->visit_near_pairs(
-        a.shape, a.pose, b.shape, b.pose, limit,
+    return mid_phase().visit_near_pairs(
+        *composites_, a.shape, a.pose, b.shape, b.pose, limit,
         {[](void* context, const Primitive& first, const Primitive& second, double most) {
            return (*static_cast<Visitor*>(context))(part_of(first), part_of(second), most);
          },
@@ -197,8 +199,12 @@ class SubShapeQuery {
   void traverse(const PlacedShape& placed, MovingBox moving_box, double limit, bool near,
                 PartVisitor visitor) const;
 
+  [[nodiscard]] const mid::MidPhase& mid_phase() const noexcept {
+    return mid::mid_phase_of(*composites_);
+  }
+
   const ShapePool& shapes_;
-  const MidPhase* composites_;
+  const CompositePool* composites_;
 };
 
 /// True if `triangle` has no rounding and its pose has no rotation.

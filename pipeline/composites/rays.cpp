@@ -1,4 +1,4 @@
-// Rays against meshes, height fields and compounds (MidPhase::visit_rays and visit_ray). Rays are
+// Rays against meshes, height fields and compounds (mid::visit_rays and visit_ray). Rays are
 // transformed to the frame of the surface; the surface and its triangles are not transformed.
 // Intersections are computed by pipeline/mesh (mesh_rays.h, height_grid.h).
 
@@ -532,9 +532,11 @@ constexpr double kLimitRoom = 1.0 + 0x1p-20;
 
 }  // namespace
 
-void visit_rays(const Composites& all, ShapeId id, const Pose& pose, std::span<const ShapeRay> rays,
-                const double* limits, const RayVisitor& visitor) {
-  const TransformedShape body = TransformedShape::at(all, id, pose);
+void visit_rays(const CompositePool& pool, ShapeId id, const Pose& pose,
+                std::span<const ShapeRay> rays, const double* limits, const RayVisitor& visitor) {
+  const Composites* const all = composites_with(pool, id);
+  if (all == nullptr) return;
+  const TransformedShape body = TransformedShape::at(*all, id, pose);
   if (body.is_surface()) return visit_surface(body, body.position, rays, limits, visitor);
   for (std::size_t i = 0; i < rays.size(); ++i) {
     if (!(limits[i] >= 0.0)) continue;
@@ -548,23 +550,24 @@ void visit_rays(const Composites& all, ShapeId id, const Pose& pose, std::span<c
   }
 }
 
-bool prepare_ray_surface(const Composites& all, ShapeId id, const Pose& pose,
+bool prepare_ray_surface(const CompositePool& pool, ShapeId id, const Pose& pose,
                          RaySurface& surface) noexcept {
-  if (all.mesh(id) == nullptr) return false;
-  const TransformedShape body = TransformedShape::at(all, id, pose);
+  const Composites* const all = composites_of(pool);
+  if (all == nullptr || all->mesh(id) == nullptr) return false;
+  const TransformedShape body = TransformedShape::at(*all, id, pose);
   const RayTarget target(body, body.position);
   surface = {.shape = id,
              .pose = pose,
-             .revision = all.revision,
+             .revision = pool.revision(),
              .mesh = body.mesh,
              .frame = target.frame,
              .front = body.front};
   return true;
 }
 
-void visit_ray(const Composites& all, const RaySurface& surface, const ShapeRay& ray, double limit,
-               const RayVisitor& visitor) {
-  if (limit >= 0.0) SingleRay(all, surface, ray, limit, visitor).go();
+void visit_ray(const CompositePool& pool, const RaySurface& surface, const ShapeRay& ray,
+               double limit, const RayVisitor& visitor) {
+  if (limit >= 0.0) SingleRay(*composites_of(pool), surface, ray, limit, visitor).go();
 }
 
 }  // namespace winnow::mid

@@ -183,15 +183,19 @@ Status check_solid(const Composites& all, ShapeId id) noexcept {
   return volume > 0.0 ? Status::ok : Status::invalid_shape;
 }
 
-bool solid_contains(const Composites& all, ShapeId id, const Pose& pose,
-                    const double point[3]) noexcept {
-  return is_in_solid(TransformedShape::at(all, id, pose), Vec::Map(point));
+bool solid_contains_point(const CompositePool& pool, ShapeId id, const Pose& pose,
+                          const double point[3]) noexcept {
+  const Composites* const all = composites_with(pool, id);
+  return all != nullptr && !all->solid.empty() &&
+         is_in_solid(TransformedShape::at(*all, id, pose), Vec::Map(point));
 }
 
-bool solid_contains(const Composites& all, ShapeId id, const Pose& pose, ShapeId other,
-                    const Pose& other_pose) noexcept {
-  const TransformedShape solid = TransformedShape::at(all, id, pose);
-  return any_point(TransformedShape::at(all, other, other_pose),
+bool solid_contains_shape(const CompositePool& pool, ShapeId id, const Pose& pose, ShapeId other,
+                          const Pose& other_pose) noexcept {
+  const Composites* const all = composites_with(pool, id);
+  if (all == nullptr || all->solid.empty()) return false;
+  const TransformedShape solid = TransformedShape::at(*all, id, pose);
+  return any_point(TransformedShape::at(*all, other, other_pose),
                    [&](const Vec& point) { return is_in_solid(solid, point); });
 }
 

@@ -2,12 +2,19 @@
 
 // Rays in the frame of a mesh or height field, and ray-triangle hits. Only plain structs.
 
-#include <winnow/pipeline/surface_frame.h>
-
 #include <cstddef>
 #include <cstdint>
 
 namespace winnow {
+
+/// Frame of a surface (mesh or height field) in the world.
+struct SurfaceFrame {
+  double position[3];           ///< position of the surface's origin in the world
+  double world_to_local[3][3];  ///< columns of the matrix from world vectors to the frame
+  bool is_rotated;              ///< false if that matrix is the identity
+  double reach;                 ///< upper bound of the surface's coordinates in the frame
+  double size;                  ///< upper bound of them in world axes, about the origin
+};
 
 /// Rays that are traversed together.
 inline constexpr std::uint32_t kRaysAtOnce = 64;

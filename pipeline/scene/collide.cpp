@@ -215,10 +215,12 @@ Status Collision::answer_composite() {
   if (!find_margins(scene_.composite, uses_cache_ ? options.cache_tolerance : 0.0, margins)) {
     return Status::out_of_memory;
   }
-  Status status = options.composites->find_primitive_pairs(
-      scene_.shapes,
-      {{scene_.shape.data(), scene_.shape.size()}, {scene_.pose.data(), scene_.pose.size()}},
-      {scene_.composite.data(), scene_.composite.size()}, margins, options.execution, parts);
+  Status status = mid::mid_phase_of(*options.composites)
+                      .find_primitive_pairs(*options.composites, scene_.shapes,
+                                            {{scene_.shape.data(), scene_.shape.size()},
+                                             {scene_.pose.data(), scene_.pose.size()}},
+                                            {scene_.composite.data(), scene_.composite.size()},
+                                            margins, options.execution, parts);
   if (status != Status::ok) return status;
   if (!find_part_margins(margins)) return Status::out_of_memory;
   status = scene_.parts->narrow.collide(
@@ -228,8 +230,9 @@ Status Collision::answer_composite() {
       scene_.parts->answers);
   if (status != Status::ok) return status;
   if (level_ >= ContactLevel::distance) {
-    options.composites->correct_internal_edges(scene_.shapes, parts, margins, options.execution,
-                                               scene_.parts->answers);
+    mid::mid_phase_of(*options.composites)
+        .correct_internal_edges(scene_.shapes, parts, margins, options.execution,
+                                scene_.parts->answers);
   }
   scene_.statistics.parts += scene_.parts->narrow.statistics();
   scene_.statistics.primitive_pairs += parts.pairs.size();
@@ -247,9 +250,9 @@ Status Collision::reduce_composite() {
   PairMargins margins = 0.0;
   if (!find_margins(scene_.composite, 0.0, margins)) return Status::out_of_memory;
   const SceneOptions& options = scene_.options;
-  return options.composites->reduce_contacts(scene_.shapes, scene_.parts->pairs,
-                                             scene_.parts->answers, margins, options.execution,
-                                             scene_.parts->regions);
+  return mid::mid_phase_of(*options.composites)
+      .reduce_contacts(scene_.shapes, scene_.parts->pairs, scene_.parts->answers, margins,
+                       options.execution, scene_.parts->regions);
 }
 
 }  // namespace winnow

@@ -8,6 +8,7 @@
 #include "core/memory/key_table.h"
 #include "core/memory/new_in.h"
 #include "partitions/pairs/linked_pairs.h"
+#include "pipeline/composites/mid_phase.h"
 #include "pipeline/scene/body_pairs.h"
 #include "pipeline/scene/ghost_contacts.h"
 #include "pipeline/scene/layers.h"

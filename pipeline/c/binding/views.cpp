@@ -49,7 +49,7 @@ void for_entries(const IndexSubset* entries, std::size_t count, Read&& read) noe
   if (entries == nullptr) {
     for (std::size_t i = 0; i < count; ++i) read(i);
   } else if (!entries->is_mask()) {
-    for (const std::uint32_t i : entries->numbers()) {
+    for (const std::uint32_t i : entries->indices()) {
       if (i < count) read(i);
     }
   } else {

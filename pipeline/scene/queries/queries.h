@@ -44,8 +44,8 @@ struct RayHit {
   BodyRayHit at;
 };
 
-/// A small direct-mapped cache of meshes that MidPhase::prepare_ray_surface prepared for single
-/// rays. If two bodies map to the same entry, the later one stays.
+/// A small direct-mapped cache of meshes that mid::prepare_ray_surface prepared for single rays. If
+/// two bodies map to the same entry, the later one stays.
 class RaySurfaces {
  public:
   /// Returns the prepared mesh of a body at its present pose, or null if the body is not a mesh.
@@ -119,7 +119,7 @@ struct QueryState {
   [[nodiscard]] static Status check_state(const QueryState* state) noexcept {
     if (state == nullptr) return Status::out_of_memory;
     const SceneState& scene = state->scene;
-    const MidPhase* const composites = scene.options.composites;
+    const CompositePool* const composites = scene.options.composites;
     const bool has_changed =
         composites != nullptr && composites->revision() != scene.composites_seen;
     return scene.is_up_to_date() && !has_changed ? Status::ok : Status::invalid_argument;
