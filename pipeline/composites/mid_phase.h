@@ -15,7 +15,7 @@
 #include <winnow/pipeline/narrow_phase.h>
 #include <winnow/pipeline/shape_pool.h>
 #include <winnow/pipeline/shape_rays.h>
-#include "pipeline/mesh/surface_rays.h"
+#include "pipeline/mesh/mesh_rays.kernel.h"
 #include "pipeline/narrow/contact_regions.h"
 #include "pipeline/narrow/primitive_pairs.h"
 
@@ -46,30 +46,22 @@ struct PrimitiveVisitor {
   void* context = nullptr;  ///< passed to `visit`
 };
 
-/// Callbacks for the hits of several rays. Each returns the new limit of its ray, as in
-/// PrimitiveVisitor.
-struct RayVisitor {
-  /// Called for a triangle that the ray certainly hits.
-  double (*visit_hit)(void* context, std::size_t ray, std::uint32_t part, const ShapeHit& hit,
-                      double limit) = nullptr;
-  /// Called for a primitive that the ray may hit. The primitive is relative to the position of
-  /// the composite shape's pose. Test it with a ray whose origin is relative to that position too:
-  /// the difference of the two, rounded to double.
-  double (*visit_candidate)(void* context, std::size_t ray, const Primitive& primitive,
-                            double limit) = nullptr;
-  void* context = nullptr;  ///< passed to both
+/// A hit of a ray on a part of a composite shape.
+struct PartHit {
+  bool found = false;  ///< false: the other members are not set
+  std::uint32_t part;  ///< see Primitive::part
+  double t;            ///< of the ray
+  double normal[3];    ///< unit normal of the surface, against the ray
 };
 
-struct MeshView;
-
-/// A mesh at a pose, prepared for single rays; see mid::prepare_ray_surface.
+/// A mesh or height field at a pose, prepared for rays.
 struct RaySurface {
   ShapeId shape;                   ///< the default id if nothing was prepared
-  Pose pose;                       ///< pose of the mesh
+  Pose pose;                       ///< pose of the surface
   std::uint64_t revision = 0;      ///< CompositePool::revision when it was prepared
-  const MeshView* mesh = nullptr;  ///< the mesh, in its own frame
-  SurfaceFrame frame = {};         ///< frame of the mesh in the world
-  int front = 0;                   ///< see Primitive::front
+  const MeshView* mesh = nullptr;  ///< the mesh, in its own frame; null for a height field
+  SurfaceFrame frame = {};         ///< frame of the surface in the world
+  bool is_one_sided = false;       ///< see CompositePool::set_one_sided
 };
 
 /// Callback for pairs of primitives that may share a point.
@@ -154,19 +146,13 @@ Status reduce_contacts(const ShapePool& shapes, const PrimitivePairs& pairs,
 /// hits). Visits nothing if the shape does not exist, as do the functions below.
 void visit(const CompositePool& pool, ShapeId id, const Pose& pose, const MovingBox& moving_box,
            const PrimitiveVisitor& visitor);
-/// Reports every primitive that a ray hits or may hit at t up to its limit, roughly in order of t
-/// along each ray; the order between rays is arbitrary. Rays are valid. There is one limit per ray,
-/// at most its max_t; a ray with a negative limit hits nothing. The hits of a ray do not depend on
-/// the other rays.
-void visit_rays(const CompositePool& pool, ShapeId id, const Pose& pose,
-                std::span<const ShapeRay> rays, const double* limits, const RayVisitor& visitor);
-/// Prepares a mesh for `visit_ray`. Returns false and writes nothing for all other shapes.
-[[nodiscard]] bool prepare_ray_surface(const CompositePool& pool, ShapeId id, const Pose& pose,
-                                       RaySurface& surface) noexcept;
-/// As `visit_rays`, for one ray, whose number is 0. The surface was prepared by
-/// `prepare_ray_surface` for this pool, which has not changed since.
-void visit_ray(const CompositePool& pool, const RaySurface& surface, const ShapeRay& ray,
-               double limit, const RayVisitor& visitor);
+/// Finds the closest hit of each ray on a shape at t up to its limit, which is at most its max_t;
+/// of equal t, the hit on the part with the smallest number. With `any`, finds any hit. A ray with
+/// a negative limit hits nothing. Rays are valid. The hits of a ray do not depend on the other
+/// rays. `prepared` may be null; else a mesh is prepared in it, unless it was by an earlier call.
+void cast_rays(const CompositePool& pool, ShapeId id, const Pose& pose,
+               std::span<const ShapeRay> rays, const double* limits, bool any, RaySurface* prepared,
+               PartHit* hits);
 /// Visits every primitive whose box may be within `limit` of the static box `from`, roughly nearest
 /// first.
 void visit_near(const CompositePool& pool, ShapeId id, const Pose& pose, const MovingBox& from,
@@ -200,9 +186,7 @@ struct MidPhase {
   decltype(&mid::correct_internal_edges) correct_internal_edges;
   decltype(&mid::reduce_contacts) reduce_contacts;
   decltype(&mid::visit) visit;
-  decltype(&mid::visit_rays) visit_rays;
-  decltype(&mid::prepare_ray_surface) prepare_ray_surface;
-  decltype(&mid::visit_ray) visit_ray;
+  decltype(&mid::cast_rays) cast_rays;
   decltype(&mid::visit_near) visit_near;
   decltype(&mid::visit_pairs) visit_pairs;
   decltype(&mid::visit_near_pairs) visit_near_pairs;

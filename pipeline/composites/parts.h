@@ -66,6 +66,13 @@ class PartTables {
   SphereShape balls_[2];
 };
 
+[[nodiscard]] inline SubShape part_of(const Primitive& primitive) noexcept {
+  SubShape part{primitive.shape, primitive.pose, primitive.part};
+  if (primitive.shape.kind() == ShapeKind::triangle) part.triangle = &primitive.triangle;
+  part.front = primitive.front;
+  return part;
+}
+
 /// Traverses the parts of shapes; a convex shape is its own only part.
 class SubShapeQuery {
  public:
@@ -100,33 +107,11 @@ class SubShapeQuery {
   void visit_parts(const PlacedShape& placed, const MovingBox& moving_box, Visit&& visit) const {
     traverse(placed, moving_box, moving_box.max_t, false, visitor(visit));
   }
-  /// For a composite shape, calls visit_hit(ray, part, hit, limit) for triangles that a ray
-  /// certainly hits, and visit_candidate(ray, part, limit) for all other parts that it may hit up
-  /// to its limit. See RayVisitor.
-  template <typename VisitHit, typename VisitCandidate>
-  void visit_rays(const PlacedShape& placed, std::span<const ShapeRay> rays, const double* limits,
-                  VisitHit&& visit_hit, VisitCandidate&& visit_candidate) const {
-    using Callbacks =
-        RayCallbacks<std::remove_reference_t<VisitHit>, std::remove_reference_t<VisitCandidate>>;
-    Callbacks callbacks{visit_hit, visit_candidate};
-    mid_phase().visit_rays(
-        *composites_, placed.shape, placed.pose, rays, limits,
-        {&Callbacks::call_visit_hit, &Callbacks::call_visit_candidate, &callbacks});
-  }
-  /// As above, for one ray and a mesh prepared by `prepare_ray_surface`.
-  template <typename VisitHit, typename VisitCandidate>
-  void visit_ray(const RaySurface& surface, const ShapeRay& ray, double limit, VisitHit&& visit_hit,
-                 VisitCandidate&& visit_candidate) const {
-    using Callbacks =
-        RayCallbacks<std::remove_reference_t<VisitHit>, std::remove_reference_t<VisitCandidate>>;
-    Callbacks callbacks{visit_hit, visit_candidate};
-    mid_phase().visit_ray(
-        *composites_, surface, ray, limit,
-        {&Callbacks::call_visit_hit, &Callbacks::call_visit_candidate, &callbacks});
-  }
-  /// See mid::prepare_ray_surface.
-  [[nodiscard]] bool prepare_ray_surface(const PlacedShape& placed, RaySurface& surface) const {
-    return mid_phase().prepare_ray_surface(*composites_, placed.shape, placed.pose, surface);
+  /// See mid::cast_rays; the shape is composite.
+  void cast_rays(const PlacedShape& placed, std::span<const ShapeRay> rays, const double* limits,
+                 bool any, RaySurface* prepared, PartHit* hits) const {
+    mid_phase().cast_rays(*composites_, placed.shape, placed.pose, rays, limits, any, prepared,
+                          hits);
   }
   /// Calls visit(a, b) for pairs of parts of two meshes that may share a point, until it returns
   /// false. Returns false, without a call, if the shapes are not two meshes.
@@ -165,26 +150,6 @@ class SubShapeQuery {
   }
 
  private:
-  [[nodiscard]] static SubShape part_of(const Primitive& primitive) noexcept {
-    SubShape part{primitive.shape, primitive.pose, primitive.part};
-    if (primitive.shape.kind() == ShapeKind::triangle) part.triangle = &primitive.triangle;
-    part.front = primitive.front;
-    return part;
-  }
-  template <typename VisitHit, typename VisitCandidate>
-  struct RayCallbacks {
-    VisitHit& visit_hit;
-    VisitCandidate& visit_candidate;
-
-    static double call_visit_hit(void* context, std::size_t ray, std::uint32_t part,
-                                 const ShapeHit& hit, double limit) {
-      return static_cast<RayCallbacks*>(context)->visit_hit(ray, part, hit, limit);
-    }
-    static double call_visit_candidate(void* context, std::size_t ray, const Primitive& primitive,
-                                       double limit) {
-      return static_cast<RayCallbacks*>(context)->visit_candidate(ray, part_of(primitive), limit);
-    }
-  };
   struct PartVisitor {
     double (*visit)(void* context, const SubShape& part, double limit);
     void* context;
@@ -206,6 +171,16 @@ class SubShapeQuery {
   const ShapePool& shapes_;
   const CompositePool* composites_;
 };
+
+/// Upper bound on the distance between copies of a common corner of adjacent triangles, which are
+/// rounded separately. Triangles that are this thick leave no gaps between them.
+[[nodiscard]] double corner_error(const SubShape& part) noexcept;
+
+/// Finds where a ray enters a part, at any t up to its max_t. Returns false if it does not, or if
+/// it begins behind a one-sided triangle. A ray that misses a triangle by no more than
+/// `corner_error` enters it.
+[[nodiscard]] bool enters(const ShapePool& shapes, const ShapeRay& ray, const SubShape& part,
+                          ShapeHit& hit) noexcept;
 
 /// True if `triangle` has no rounding and its pose has no rotation.
 [[nodiscard]] bool is_unrotated(const SubShape& part) noexcept;

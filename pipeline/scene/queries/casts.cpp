@@ -8,7 +8,7 @@
 #include <winnow/core/cast.h>
 #include <winnow/core/rounding.h>
 #include "core/threads/float_environment.h"
-#include "pipeline/mesh/mesh_traversal.h"
+#include "pipeline/mesh/mesh_rays.kernel.h"
 #include "pipeline/rays/shape_entries.h"
 #include "pipeline/scene/queries/composite_cast.h"
 #include "pipeline/scene/queries/linear_casts.h"
@@ -440,16 +440,6 @@ struct RayInScene {
   const QueryState& state;
   const ShapeRay& ray;
 
-  /// True if the ray hits a convex part of a body by t = most.
-  [[nodiscard]] bool find_contact(std::uint32_t body, const SubShape& part, double most,
-                                  BodyRayHit& contact) const {
-    const RayCast linear_cast(state.scene.shapes, ray);
-    const TwoDiff from = difference(ray.origin, state.scene.pose[body].position);
-    CastContact found;
-    if (!linear_cast.find_contact(from.difference, part, most, {}, found)) return false;
-    contact = BodyRayHit::at(body, part.part, found.t, found.normal);
-    return true;
-  }
   /// Fills in a hit, which must be a null hit.
   void show(const BodyRayHit& best, SceneHit& hit) const noexcept {
     if (best.body == kNoObject) return;
@@ -479,24 +469,10 @@ struct RayInScene {
 /// Tests a single ray on a body that `test_small_sets` found, up to the limit.
 void test_ray(QueryState& state, const RayInScene& scene_ray, std::uint32_t body, bool any,
               BodyRayHit& best, double& limit) {
-  const auto visit_hit = [&](std::size_t, std::uint32_t part, const ShapeHit& found, double) {
-    best.improve(BodyRayHit::at(body, part, found.t, found.normal), any, limit);
-    return limit;
-  };
-  const auto visit_candidate = [&](std::size_t, const SubShape& part, double most) {
-    BodyRayHit contact;
-    if (!scene_ray.find_contact(body, part, std::min(most, limit), contact))
-      return std::min(most, limit);
-    best.improve(contact, any, limit);
-    return limit;
-  };
-  if (const RaySurface* const mesh = state.surfaces.find(state.parts, state.scene, body)) {
-    state.parts.visit_ray(*mesh, scene_ray.ray, limit, visit_hit, visit_candidate);
-  } else {
-    const double end = limit;
-    state.parts.visit_rays(state.placed(body), {&scene_ray.ray, 1}, &end, visit_hit,
-                           visit_candidate);
-  }
+  PartHit hit;
+  state.parts.cast_rays(state.placed(body), {&scene_ray.ray, 1}, &limit, any,
+                        &state.surfaces.of(body), &hit);
+  if (hit.found) best.improve(BodyRayHit::of(body, hit), any, limit);
 }
 
 /// Finds the first hit of a single ray, or with `any` any hit. The ray must be valid.
@@ -586,18 +562,11 @@ class RaysTogether {
 };
 
 void RaysTogether::test_rays(std::uint32_t body) {
-  const auto visit_hit = [&](std::size_t i, std::uint32_t part, const ShapeHit& hit, double) {
-    best_[i].improve(BodyRayHit::at(body, part, hit.t, hit.normal), any_, limit_[i]);
-    return limit_[i];
-  };
-  const auto visit_candidate = [&](std::size_t i, const SubShape& part, double limit) {
-    BodyRayHit contact;
-    const double most = std::min(limit, limit_[i]);
-    if (!RayInScene{state_, ray_[i]}.find_contact(body, part, most, contact)) return most;
-    best_[i].improve(contact, any_, limit_[i]);
-    return limit_[i];
-  };
-  state_.parts.visit_rays(state_.placed(body), {ray_, count_}, limit_, visit_hit, visit_candidate);
+  PartHit hits[kRaysAtOnce];
+  state_.parts.cast_rays(state_.placed(body), {ray_, count_}, limit_, any_, nullptr, hits);
+  for (std::size_t i = 0; i < count_; ++i) {
+    if (hits[i].found) best_[i].improve(BodyRayHit::of(body, hits[i]), any_, limit_[i]);
+  }
 }
 
 void RaysTogether::start(const ShapeRayBatch& rays, std::size_t first, std::size_t count,
