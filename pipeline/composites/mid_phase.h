@@ -15,7 +15,7 @@
 #include <winnow/pipeline/narrow_phase.h>
 #include <winnow/pipeline/shape_pool.h>
 #include <winnow/pipeline/shape_rays.h>
-#include "pipeline/mesh/mesh_rays.kernel.h"
+#include "pipeline/mesh/mesh_view.h"
 #include "pipeline/narrow/contact_regions.h"
 #include "pipeline/narrow/primitive_pairs.h"
 
@@ -44,14 +44,6 @@ struct PrimitiveVisitor {
   /// traversal. Must not throw.
   double (*visit)(void* context, const Primitive& primitive, double limit) = nullptr;
   void* context = nullptr;  ///< passed to `visit`
-};
-
-/// A hit of a ray on a part of a composite shape.
-struct PartHit {
-  bool found = false;  ///< false: the other members are not set
-  std::uint32_t part;  ///< see Primitive::part
-  double t;            ///< of the ray
-  double normal[3];    ///< unit normal of the surface, against the ray
 };
 
 /// A mesh or height field at a pose, prepared for rays.

@@ -187,7 +187,7 @@ struct RayResult {
     ShapeHit entry;
     if (!enters(shapes, ray, part_of(primitive), entry)) return limit;
     return add(
-        {true, primitive.part, entry.t, {entry.normal[0], entry.normal[1], entry.normal[2]}});
+        {true, true, primitive.part, entry.t, {entry.normal[0], entry.normal[1], entry.normal[2]}});
   }
 };
 
@@ -241,6 +241,7 @@ class RayPacket {
     closest_.any = any;
     closest_.is_one_sided = target.surface.is_one_sided;
     closest_.frame = &target.surface.frame;
+    closest_.first_part = target.body != nullptr ? target.body->first_number : 0;
     closest_.test = [](void* context, std::uint32_t i, std::uint32_t slot, double limit) {
       return static_cast<RayPacket*>(context)->test(i, slot, limit);
     };
@@ -289,7 +290,7 @@ void RayPacket<Room>::add(std::size_t ray, double limit) noexcept {
   }
   number_[count_] = ray;
   closest_.limit[count_] = limit;
-  closest_.best[count_].number = TriangleHit::kNone;
+  closest_.best[count_] = hits_ + ray;
   ++count_;
 }
 
@@ -312,6 +313,10 @@ std::uint64_t RayPacket<Room>::place_by_kernel() noexcept {
 template <std::uint32_t Room>
 std::uint64_t RayPacket<Room>::place() noexcept {
   std::uint64_t unplaced = 0;
+  if constexpr (Room == 1) {
+    if (place_ray(target_.surface.frame, rays_[number_[0]], 0, own_)) [[likely]]
+      return 0;
+  }
   for (std::uint64_t left = place_by_kernel(); left != 0; left &= left - 1) {
     const auto i = static_cast<std::uint32_t>(std::countr_zero(left));
     if (place_ray(target_.surface.frame, rays_[number_[i]], i, own_)) continue;
@@ -325,6 +330,7 @@ std::uint64_t RayPacket<Room>::place() noexcept {
 template <std::uint32_t Room>
 void RayPacket<Room>::go() {
   if (count_ == 0) return;
+  const std::uint32_t count = Room == 1 ? 1 : count_;
   for (std::uint64_t left = place(); left != 0; left &= left - 1) {
     const auto i = static_cast<std::uint32_t>(std::countr_zero(left));
     const NearBody near = target_.near(rays_[number_[i]]);
@@ -333,7 +339,7 @@ void RayPacket<Room>::go() {
     test_all_on_ray(near, result, {});
     closest_.limit[i] = -1.0;
   }
-  for (std::uint32_t i = 0; i < count_; ++i) {
+  for (std::uint32_t i = 0; i < count; ++i) {
     closest_.unit[i] = 1.0 / own_.t_scale[i];
     const LocalRayTime own = closest_.time(own_, i);
     const double limit = closest_.limit[i];
@@ -345,18 +351,14 @@ void RayPacket<Room>::go() {
   if (target_.surface.mesh != nullptr) {
     go_through_mesh();
   } else {
-    for (std::uint32_t i = 0; i < count_; ++i) go_through_field(i);
+    for (std::uint32_t i = 0; i < count; ++i) go_through_field(i);
   }
-  const std::uint32_t first_number = target_.body != nullptr ? target_.body->first_number : 0;
-  for (std::uint32_t i = 0; i < count_; ++i) {
-    const TriangleHit& best = closest_.best[i];
-    if (best.number == TriangleHit::kNone) continue;
-    PartHit hit{
-        true, first_number + best.number, best.t, {best.normal[0], best.normal[1], best.normal[2]}};
-    if (!best.has_unit_normal) [[unlikely]] {
-      Vec::Map(hit.normal) = unit_under(target_.surface.frame, Vec::Map(best.normal));
+  for (std::uint32_t i = 0; i < count; ++i) {
+    PartHit& hit = *closest_.best[i];
+    if (hit.found && !hit.has_unit_normal) [[unlikely]] {
+      Vec::Map(hit.normal) = unit_under(target_.surface.frame, Vec::Map(hit.normal));
+      hit.has_unit_normal = true;
     }
-    improve(hits_[number_[i]], hit);
   }
   count_ = 0;
 }

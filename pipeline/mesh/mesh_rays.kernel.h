@@ -11,15 +11,6 @@
 
 namespace winnow {
 
-/// Frame of a surface (mesh or height field) in the world.
-struct SurfaceFrame {
-  double position[3];           ///< position of the surface's origin in the world
-  double world_to_local[3][3];  ///< columns of the matrix from world vectors to the frame
-  bool is_rotated;              ///< false if that matrix is the identity
-  double reach;                 ///< upper bound of the surface's coordinates in the frame
-  double size;                  ///< upper bound of them in world axes, about the origin
-};
-
 /// Rays that are traversed together.
 inline constexpr std::uint32_t kRaysAtOnce = 64;
 /// Rays prepared at once, one per lane. Columns of more than one ray are padded to a multiple of
@@ -122,23 +113,9 @@ struct CrossingVisitor {
   void* context = nullptr;
 };
 
-/// A triangle that a ray certainly crosses.
-struct TriangleHit {
-  static constexpr std::uint32_t kNone = ~0U;
-
-  /// The triangle's number; kNone if there is none.
-  std::uint32_t number = kNone;
-  /// The caller's t.
-  double t;
-  /// Unit normal in the world, against the ray.
-  double normal[3];
-  /// False if computing the unit normal might overflow; then `normal` is that of SurfaceHit.
-  bool has_unit_normal;
-};
-
 /// Transforms the normal of a hit to the world, and normalises it.
 [[gnu::always_inline]] inline void set_normal(const SurfaceFrame& frame, const double (&given)[3],
-                                              TriangleHit& hit) noexcept {
+                                              PartHit& hit) noexcept {
   constexpr double kSafe = 1e200;
   double n[3] = {given[0], given[1], given[2]};
   if (frame.is_rotated) {
@@ -153,7 +130,7 @@ struct TriangleHit {
   for (int i = 0; i < 3; ++i) hit.normal[i] = (hit.has_unit_normal ? n[i] : given[i]) * scale;
 }
 
-/// The closest hit of each ray: of equal t, that with the smallest number; or any hit.
+/// The closest hit of each ray: of equal t, the one with the smallest part number; or any hit.
 template <std::uint32_t Room>
 struct ClosestHits {
   /// Ends a ray at its first hit.
@@ -161,8 +138,10 @@ struct ClosestHits {
   /// Ignores triangles that rays reach from behind.
   bool is_one_sided;
   const SurfaceFrame* frame;
+  /// Added to the numbers of triangles.
+  std::uint32_t first_part;
   /// Tests a triangle that the ray may cross. Returns the new limit in the caller's t, negative to
-  /// end the ray; keeps the hit itself.
+  /// end the ray; improves the hit itself.
   double (*test)(void* context, std::uint32_t ray, std::uint32_t slot, double limit);
   void* context;
   /// Limits in the caller's t, and the initial ones in own t. A negative limit skips a ray.
@@ -170,7 +149,8 @@ struct ClosestHits {
   alignas(kRayAlignment<Room>) double own_limit[Room];
   /// See LocalRayTime.
   double unit[Room];
-  TriangleHit best[Room];
+  /// The hit of each ray so far.
+  PartHit* best[Room];
 
   [[nodiscard, gnu::always_inline]] LocalRayTime time(const SurfaceRayColumns<Room>& rays,
                                                       std::uint32_t i) const noexcept {
@@ -190,9 +170,11 @@ struct ClosestHits {
                                      double own_before) noexcept {
     const double t = rays.shift[i] + hit.t * rays.t_scale[i];
     if (!(t <= limit[i]) || (is_one_sided && hit.from_behind)) return own_before;
-    TriangleHit& to = best[i];
-    if (to.number != TriangleHit::kNone && t == to.t && to.number < number) return own_before;
-    to.number = number;
+    PartHit& to = *best[i];
+    const std::uint32_t part = first_part + number;
+    if (to.found && t == to.t && to.part < part) return own_before;
+    to.found = true;
+    to.part = part;
     to.t = t;
     set_normal(*frame, hit.normal, to);
     return lower(rays, i, any ? -1.0 : t, own_before);

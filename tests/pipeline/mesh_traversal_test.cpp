@@ -541,6 +541,8 @@ TEST(MeshRays, rays_hit_flat_and_thin_meshes) {
   }
 }
 
+constexpr std::uint32_t kNone = ~0U;
+
 /// The closest hits of rays. Counts the triangles in doubt, and ignores them.
 template <std::uint32_t Room>
 struct Closest {
@@ -550,6 +552,7 @@ struct Closest {
     hits.any = false;
     hits.is_one_sided = false;
     hits.frame = &kFrame;
+    hits.first_part = 0;
     hits.test = [](void* context, std::uint32_t ray, std::uint32_t, double limit) {
       ++static_cast<Closest*>(context)->in_doubt[ray];
       return limit;
@@ -560,15 +563,16 @@ struct Closest {
   void set(std::uint32_t i, double limit) {
     hits.limit[i] = hits.own_limit[i] = limit;
     hits.unit[i] = 1.0;
+    hits.best[i] = &found[i];
   }
   [[nodiscard]] auto result(std::uint32_t i) const {
-    const TriangleHit& hit = hits.best[i];
-    const bool found = hit.number != TriangleHit::kNone;
-    return std::tuple(hit.number, found ? hit.t : 0.0, found ? hit.normal[0] : 0.0);
+    const PartHit& hit = found[i];
+    return hit.found ? std::tuple(hit.part, hit.t, hit.normal[0]) : std::tuple(kNone, 0.0, 0.0);
   }
 
   SurfaceRayColumns<Room> rays;
   ClosestHits<Room> hits;
+  PartHit found[Room];
   int in_doubt[Room] = {};
 };
 
@@ -579,7 +583,7 @@ std::pair<std::uint32_t, double> closest_of_all(const MeshView& mesh, const Sing
     const MeshView& mesh;
     double limit;
     std::pair<double, std::uint32_t> best;
-  } found{mesh, limit, {std::numeric_limits<double>::infinity(), TriangleHit::kNone}};
+  } found{mesh, limit, {std::numeric_limits<double>::infinity(), kNone}};
   mesh_ray_kernels().all(
       mesh, ray, limit,
       {[](void* context, std::uint32_t slot, const SurfaceHit& hit, double most) {
@@ -589,7 +593,7 @@ std::pair<std::uint32_t, double> closest_of_all(const MeshView& mesh, const Sing
          return most;
        },
        [](void*, std::uint32_t, double most) { return most; }, &found});
-  return {found.best.second, found.best.second == TriangleHit::kNone ? 0.0 : found.best.first};
+  return {found.best.second, found.best.second == kNone ? 0.0 : found.best.first};
 }
 
 TEST_F(Meshes, closest_hits_of_packet_match_single_rays) {

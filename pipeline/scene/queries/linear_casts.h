@@ -1,7 +1,7 @@
 #pragma once
 
 // Rays and shapes that move along a line without turning, tested against the parts of one body.
-// casts.cpp calls BodyContact::find for each candidate body.
+// cast_query.cpp calls BodyContact::find for each candidate body.
 
 #include <winnow/pipeline/scene_queries.h>
 #include "pipeline/composites/parts.h"

@@ -1,7 +1,8 @@
 #pragma once
 
 // Shared by the queries of a scene: the state of SceneQueries, filters and ray hits.
-// scene_queries.cpp, casts.cpp, motion_casts.cpp and set_distance.cpp implement the queries.
+// ray_query.cpp, shape_cast_query.cpp, scene_queries.cpp, motion_casts.cpp and set_distance.cpp
+// implement the queries.
 
 #include <winnow/pipeline/scene_queries.h>
 #include "pipeline/composites/parts.h"
