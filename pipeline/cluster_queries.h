@@ -5,7 +5,6 @@
 #include <winnow/core/pose.h>
 #include <winnow/core/status.h>
 #include <winnow/pipeline/cluster_scene.h>
-#include <winnow/pipeline/mid_phase.h>
 #include <winnow/pipeline/shape_rays.h>
 #include <winnow/pipeline/shapes.h>
 

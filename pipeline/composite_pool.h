@@ -1,13 +1,20 @@
 #pragma once
 
-// Storage of meshes, height fields and compounds. A Scene uses CompositePool through its base class
-// MidPhase. The implementation is in composites/; the trees of meshes are in mesh/.
+// Storage of meshes, height fields and compounds. The implementation is in composites/, with the
+// functions that a Scene uses in composites/mid_phase.h; the trees of meshes are in mesh/.
 
+#include <winnow/core/aabb.h>
+#include <winnow/core/column.h>
+#include <winnow/core/execution.h>
 #include <winnow/core/export.h>
+#include <winnow/core/footprint.h>
 #include <winnow/core/large_pages.h>
 #include <winnow/core/point_view.h>
+#include <winnow/core/pose.h>
+#include <winnow/core/status.h>
+#include <winnow/pipeline/contact_types.h>
 #include <winnow/pipeline/height_field.h>
-#include <winnow/pipeline/mid_phase.h>
+#include <winnow/pipeline/shape_pool.h>
 #include <winnow/pipeline/triangle_mesh.h>
 
 #include <array>
@@ -18,9 +25,15 @@
 
 namespace winnow {
 
+class CompositePool;
+
+/// Internal names.
 namespace mid {
 class IdSet;
 struct Composites;
+struct MidPhase;
+const Composites* composites_of(const CompositePool& pool) noexcept;
+const MidPhase& mid_phase_of(const CompositePool& pool) noexcept;
 }  // namespace mid
 
 /// A shape and its pose in a compound.
@@ -39,13 +52,15 @@ struct CompoundPart {
 /// and of these surfaces. Bodies refer to shapes by id and may share them; one mesh may be used at
 /// many poses and scales. Queries are transformed into the frame of the shape, so moving a mesh
 /// does not change its tree.
-class WINNOW_API CompositePool final : public MidPhase {
+class WINNOW_API CompositePool {
  public:
   /// Creates an empty pool. `shapes` contains the convex children of compounds and must outlive the
   /// pool.
   explicit CompositePool(const ShapePool& shapes,
                          std::pmr::memory_resource* memory = default_memory()) noexcept;
-  ~CompositePool() override;
+  ~CompositePool();
+  CompositePool(const CompositePool&) = delete;
+  CompositePool& operator=(const CompositePool&) = delete;
 
   /// Adds a mesh; see TriangleMesh::build for parameters and errors.
   Status add_mesh(const PointView& vertices, const IndexView& triangles, ShapeId& id,
@@ -147,43 +162,23 @@ class WINNOW_API CompositePool final : public MidPhase {
   /// to. O(log n).
   [[nodiscard]] CompoundPart part(ShapeId compound, std::uint32_t part) const noexcept;
 
-  [[nodiscard]] bool contains(ShapeId id) const noexcept override;
-  [[nodiscard]] Aabb bounds(ShapeId id, const Pose& pose) const noexcept override;
-  [[nodiscard]] double radius(ShapeId id) const noexcept override;
-  [[nodiscard]] std::uint64_t revision() const noexcept override;
-  Status find_primitive_pairs(const ShapePool& shapes, const Bodies& bodies,
-                              std::span<const BodyPair> pairs, const PairMargins& margins,
-                              const Execution& execution, PrimitivePairs& out) const override;
-  void correct_internal_edges(const ShapePool& shapes, const PrimitivePairs& pairs,
-                              const PairMargins& margins, const Execution& execution,
-                              NarrowResult& result) const override;
-  Status reduce_contacts(const ShapePool& shapes, const PrimitivePairs& pairs,
-                         const NarrowResult& answers, const PairMargins& margins,
-                         const Execution& execution, ContactRegions& out) const override;
-  void visit(ShapeId id, const Pose& pose, const MovingBox& moving_box,
-             const PrimitiveVisitor& visitor) const override;
-  void visit_rays(ShapeId id, const Pose& pose, std::span<const ShapeRay> rays,
-                  const double* limits, const RayVisitor& visitor) const override;
-  [[nodiscard]] bool prepare_ray_surface(ShapeId id, const Pose& pose,
-                                         RaySurface& surface) const override;
-  void visit_ray(const RaySurface& surface, const ShapeRay& ray, double limit,
-                 const RayVisitor& visitor) const override;
-  void visit_near(ShapeId id, const Pose& pose, const MovingBox& from, double limit,
-                  const PrimitiveVisitor& visitor) const override;
-  bool visit_pairs(ShapeId a, const Pose& pose_a, ShapeId b, const Pose& pose_b,
-                   const PrimitivePairVisitor& visitor) const override;
-  bool visit_near_pairs(ShapeId a, const Pose& pose_a, ShapeId b, const Pose& pose_b, double limit,
-                        const NearPairVisitor& visitor) const override;
-  [[nodiscard]] bool solid_contains(ShapeId id, const Pose& pose,
-                                    const double point[3]) const override;
-  [[nodiscard]] bool solid_contains(ShapeId id, const Pose& pose, ShapeId other,
-                                    const Pose& other_pose) const override;
+  /// True if the shape exists.
+  [[nodiscard]] bool contains(ShapeId id) const noexcept;
+  /// Returns a float box that contains the shape at a valid pose, rounded outward.
+  [[nodiscard]] Aabb bounds(ShapeId id, const Pose& pose) const noexcept;
+  /// Returns an upper bound on the distance of the shape's points from the origin of its frame.
+  [[nodiscard]] double radius(ShapeId id) const noexcept;
+  /// Returns a counter that grows when a shape is changed in place (refit) or removed. Cached data
+  /// about pairs of composite shapes are then invalid.
+  [[nodiscard]] std::uint64_t revision() const noexcept { return revision_; }
   /// Returns the bytes of meshes, height fields, compounds and the pool itself.
-  [[nodiscard]] Footprint footprint() const noexcept override;
+  [[nodiscard]] Footprint footprint() const noexcept;
 
  private:
+  friend const mid::Composites* mid::composites_of(const CompositePool& pool) noexcept;
+  friend const mid::MidPhase& mid::mid_phase_of(const CompositePool& pool) noexcept;
+
   [[nodiscard]] bool can_be_child(ShapeId id) const noexcept;
-  [[nodiscard]] bool has_solids() const noexcept;
   [[nodiscard]] Status set_flag(mid::IdSet& set, ShapeId surface, bool now) noexcept;
   /// Returns the state, which is created for the first shape: a pool without shapes takes no
   /// memory. Null if memory is refused.
@@ -191,7 +186,10 @@ class WINNOW_API CompositePool final : public MidPhase {
 
   const ShapePool& shapes_;
   std::pmr::memory_resource* memory_;
+  /// The functions that scenes use, by a pointer, so that a program without a pool links none.
+  const mid::MidPhase* mid_phase_;
   mid::Composites* state_ = nullptr;
+  std::uint64_t revision_ = 0;
 };
 
 }  // namespace winnow

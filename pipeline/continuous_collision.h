@@ -6,7 +6,6 @@
 #include <winnow/core/large_pages.h>
 #include <winnow/core/pose_view.h>
 #include <winnow/core/status.h>
-#include <winnow/pipeline/mid_phase.h>
 #include <winnow/pipeline/rigid_motion.h>
 #include <winnow/pipeline/scene.h>
 

@@ -181,7 +181,7 @@ struct RecordedShape {
 /// of them are recorded with the next query. For a predicate, the pairs that it accepts are
 /// recorded.
 ///
-/// The recording ends with `unsupported` on: a body whose shape is in another MidPhase, is
+/// The recording ends with `unsupported` on: a body whose shape is in another CompositePool, is
 /// one-sided or a solid, or has a support function; SceneOptions::suppress_ghost_contacts; and a
 /// `collide` into Contacts that this scene filled, but not in its last `collide`. So use one
 /// Contacts per scene; it may be cleared, filled by another scene in between, or loaded by

@@ -2,7 +2,7 @@
 
 // The main interface of the pipeline: bodies with shapes and poses, whose contacts `Scene::collide`
 // writes to Contacts. Each set of bodies has a Partition (broad phase); pairs with composite shapes
-// go through a MidPhase; NarrowPhase computes the contacts. The implementation is in scene/.
+// go through a CompositePool; NarrowPhase computes the contacts. The implementation is in scene/.
 
 #include <winnow/core/aabb.h>
 #include <winnow/core/column.h>
@@ -21,7 +21,6 @@
 #include <winnow/partitions/partition.h>
 #include <winnow/pipeline/contact_groups.h>
 #include <winnow/pipeline/contacts.h>
-#include <winnow/pipeline/mid_phase.h>
 #include <winnow/pipeline/narrow_phase.h>
 #include <winnow/pipeline/shape_pool.h>
 
@@ -31,6 +30,7 @@
 
 namespace winnow {
 
+class CompositePool;
 struct SceneState;
 
 /// State of a body: the set of the scene that contains it. Dynamic bodies collide with all others.
@@ -67,7 +67,7 @@ struct SceneOptions {
   double cache_tolerance = 0.0;
   /// At level manifold, for pairs with a mesh, a height field or a compound: merges the manifolds
   /// of all pairs of parts that touch into one manifold per contact region, with at most
-  /// kManifoldPoints points each (see MidPhase::reduce_contacts and ContactRegion). Jolt does this
+  /// kManifoldPoints points each (see mid::reduce_contacts). Jolt does this
   /// by default; Bullet keeps one manifold per pair of bodies. bench/rows/standing_rows.cpp
   /// measures the cost. False: reports one manifold per pair of parts.
   bool contact_reduction = false;
@@ -96,7 +96,7 @@ struct SceneOptions {
   std::size_t build_budget = 0;
   /// Pool of meshes, height fields and compounds; null for a scene without composite shapes. It
   /// must outlive the scene.
-  const MidPhase* composites = nullptr;
+  const CompositePool* composites = nullptr;
 };
 
 /// Distances from its surface at which a body gets contacts and at which it rests. The offsets of

@@ -11,7 +11,6 @@
 #include <winnow/core/pair_events.h>
 #include <winnow/core/pose.h>
 #include <winnow/core/status.h>
-#include <winnow/pipeline/mid_phase.h>
 #include <winnow/pipeline/rigid_motion.h>
 #include <winnow/pipeline/scene.h>
 #include <winnow/pipeline/shape_rays.h>

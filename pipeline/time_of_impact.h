@@ -10,7 +10,6 @@
 #include <winnow/core/large_pages.h>
 #include <winnow/core/status.h>
 #include <winnow/pipeline/contact_types.h>
-#include <winnow/pipeline/mid_phase.h>
 #include <winnow/pipeline/rigid_motion.h>
 #include <winnow/pipeline/shape_pool.h>
 
@@ -26,6 +25,8 @@ namespace impact {
 struct Impact;
 }  // namespace impact
 class SubShapeQuery;
+
+class CompositePool;
 
 /// Moving bodies: body i has shape shapes[i] and moves by motions[i].
 struct MovingBodies {
@@ -45,7 +46,7 @@ struct ImpactOptions {
   /// How work is run in parallel; results do not depend on it.
   Execution execution = Execution::serial();
   /// Pool of meshes, height fields and compounds; null if there are none.
-  const MidPhase* composites = nullptr;
+  const CompositePool* composites = nullptr;
 };
 
 /// Results of `time_of_impact`, in columns: one element per pair, in the order of the input. The

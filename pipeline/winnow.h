@@ -49,13 +49,11 @@
 #include <winnow/pipeline/cluster_transport.h>
 #include <winnow/pipeline/composite_pool.h>
 #include <winnow/pipeline/contact_groups.h>
-#include <winnow/pipeline/contact_regions.h>
 #include <winnow/pipeline/contacts.h>
 #include <winnow/pipeline/continuous_collision.h>
 #include <winnow/pipeline/deformable_mesh.h>
 #include <winnow/pipeline/feature_impacts.h>
 #include <winnow/pipeline/height_field.h>
-#include <winnow/pipeline/mid_phase.h>
 #include <winnow/pipeline/narrow_phase.h>
 #include <winnow/pipeline/recording.h>
 #include <winnow/pipeline/replay.h>

@@ -2,6 +2,7 @@
 
 #include "bench/common/need.h"
 #include "bench/contenders/partitions.h"
+#include "pipeline/composites/mid_phase.h"
 
 #include <span>
 
@@ -54,11 +55,11 @@ FlowTimes FlowPhases::run() {
   mesh_pairs_.clear();
   for (const Pair& pair : with_mesh_.pairs()) mesh_pairs_.push_back({pair.first, mesh});
 
-  const Stopwatch mid;
-  need(flow_.composites().find_primitive_pairs(flow_.shapes(), bodies, mesh_pairs_, 0.0, execution_,
-                                               primitives_),
+  const Stopwatch finding;
+  need(mid::find_primitive_pairs(flow_.composites(), flow_.shapes(), bodies, mesh_pairs_, 0.0,
+                                 execution_, primitives_),
        "triangles");
-  times.mid = mid.ms();
+  times.mid = finding.ms();
 
   const NarrowOptions options{.execution = execution_};
   const Stopwatch narrow;
@@ -71,9 +72,9 @@ FlowTimes FlowPhases::run() {
   times.narrow = narrow.ms();
 
   const Stopwatch smoothing;
-  flow_.composites().correct_internal_edges(flow_.shapes(), primitives_, options.contact_margin,
-                                            execution_, parts_);
-  times.mid += smoothing.ms();
+  mid::correct_internal_edges(flow_.shapes(), primitives_, options.contact_margin, execution_,
+                              parts_);
+  times.narrow += smoothing.ms();
   return times;
 }
 

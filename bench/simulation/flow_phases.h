@@ -4,6 +4,7 @@
 #include <winnow/partitions/partition.h>
 #include <winnow/pipeline/narrow_phase.h>
 #include "bench/simulation/granular_flow.h"
+#include "pipeline/narrow/primitive_pairs.h"
 
 #include <memory>
 #include <vector>

@@ -7,6 +7,7 @@
 #include "bench/common/exact_math.h"
 #include "bench/common/need.h"
 #include "bench/common/random.h"
+#include "bench/simulation/mid_phase_clock.h"
 
 #include <algorithm>
 #include <bit>
@@ -61,9 +62,9 @@ GranularFlow::GranularFlow(const FlowOptions& options)
       objects_(options.objects),
       shapes_(options.memory),
       composites_(shapes_, options.memory),
-      mid_phase_(composites_),
-      scene_(shapes_,
-             {.memory = options.memory, .execution = options.execution, .composites = &mid_phase_}),
+      scene_(
+          shapes_,
+          {.memory = options.memory, .execution = options.execution, .composites = &composites_}),
       contacts_(options.memory),
       found_pairs_(options.memory),
       funnel_(funnel_for(options.objects)),
@@ -196,16 +197,16 @@ void GranularFlow::find_contacts(bool profiled) {
     need(scene_.collide(ContactLevel::pairs, found_pairs_), "pairs");
     times_.broad += searching.ms();
     // The scene keeps its pairs, so that finding them a second time costs almost nothing.
+    const MidPhaseClock mid_phase;
     const Stopwatch colliding;
     need(scene_.collide(ContactLevel::manifold, contacts_), "contacts");
-    times_.mid = mid_phase_.take_ms();
+    times_.mid = mid_phase.ms();
     times_.narrow = colliding.ms() - times_.mid;
     return;
   }
   const Stopwatch colliding;
   need(scene_.collide(ContactLevel::manifold, contacts_), "contacts");
   times_.narrow = colliding.ms();
-  mid_phase_.take_ms();
 }
 
 void GranularFlow::step(bool profiled) {

@@ -8,7 +8,6 @@
 #include "bench/scenes/meshes.h"
 #include "bench/simulation/flow_bodies.h"
 #include "bench/simulation/soft_contacts.h"
-#include "bench/simulation/timed_mid_phase.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -116,7 +115,6 @@ class GranularFlow {
   std::size_t objects_;
   ShapePool shapes_;
   CompositePool composites_;
-  TimedMidPhase mid_phase_;
   Scene scene_;
   Contacts contacts_;
   Contacts found_pairs_;

@@ -1,25 +1,84 @@
-// Casts of a partition: rays and swept volumes. The public functions prepare casts
-// (prepared_cast.h), call a kernel (casts.kernel.cpp) and write hits (hit_writer.h). Batches of
-// rays run in parallel.
+// Casts of a partition: rays and swept volumes. The public functions prepare casts, call a kernel
+// (casts.kernel.cpp) and convert its results; hit_writer.h sorts all hits. Batches of rays run in
+// parallel.
 
+#include <winnow/core/rounding.h>
 #include "core/threads/float_environment.h"
 #include "partitions/pairs/pair_writer.h"
 #include "partitions/queries/box_intersection.h"
-#include "partitions/queries/cast.kernel.h"
 #include "partitions/queries/hit_writer.h"
-#include "partitions/queries/prepared_cast.h"
-#include "partitions/queries/query_filter.h"
+#include "partitions/queries/kernel_arguments.h"
 #include "partitions/state/partition_state.h"
 
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <cstdint>
+#include <limits>
 #include <variant>
 
 namespace winnow {
 
 WINNOW_DEFINE_KERNELS(CastKernels, cast_kernels)
 
+void prepare_cast(KernelCast& s, const Aabb& box, const Eigen::Vector3d& direction, double min_t,
+                  double max_t) noexcept {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  // Below this speed, relative to the fastest axis, the reciprocal is not a normal float.
+  constexpr double kSlowest = 0x1p-120;
+  s.touch = nullptr;
+  s.shape = nullptr;
+  s.min_t = min_t;
+  s.max_t = max_t;
+  const Eigen::Vector3d speed = direction.cwiseAbs();
+  const double most = speed.maxCoeff();
+  // The next power of two above `most`: its exponent bits plus one.
+  const auto exponent = std::bit_cast<std::uint64_t>(most) >> 52U;
+  s.scale = std::bit_cast<double>((exponent + 1) << 52U);
+  s.from = round_down(min_t * s.scale);
+  for (int axis = 0; axis < 3; ++axis) {
+    const double d = direction[axis];
+    const auto a = static_cast<std::uint8_t>(axis);
+    // Branchless: the direction is unpredictable.
+    const auto back = static_cast<unsigned>(d < 0.0);
+    const float end[2] = {box.max[axis], box.min[axis]};
+    s.near_column[a] = static_cast<std::uint8_t>(a + 3 * back);
+    s.far_column[a] = static_cast<std::uint8_t>(a + 3 - 3 * back);
+    s.near_origin[a] = end[back];
+    s.far_origin[a] = end[1 - back];
+    s.exact_near_column[a] = s.near_column[a];
+    s.exact_near_origin[a] = static_cast<double>(s.near_origin[a]);
+    s.exact_far_origin[a] = static_cast<double>(s.far_origin[a]);
+    s.exact_inverse[a] = 1.0 / d;
+    s.inverse[a] = static_cast<float>(s.exact_inverse[a] * s.scale);
+    if (d == 0.0) {
+      s.exact_inverse[a] = std::numeric_limits<double>::infinity();
+      // Boxes beyond the range of float have infinite ends, which have no next float.
+      if (s.near_origin[a] < kInfinity) s.near_origin[a] = next_up(s.near_origin[a]);
+      if (s.far_origin[a] > -kInfinity) s.far_origin[a] = -next_up(-s.far_origin[a]);
+      s.inverse[a] = kInfinity;
+    }
+  }
+  const double slow = kSlowest * s.scale;
+  if (speed.minCoeff() >= slow) return;
+  const int fastest = speed.x() == most ? 0 : speed.y() == most ? 1 : 2;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (speed[axis] == 0.0 || speed[axis] >= slow) continue;
+    s.near_column[axis] = s.near_column[fastest];
+    s.far_column[axis] = s.far_column[fastest];
+    s.near_origin[axis] = s.near_origin[fastest];
+    s.far_origin[axis] = s.far_origin[fastest];
+    s.inverse[axis] = s.inverse[fastest];
+  }
+}
+
 namespace {
+
+/// A ray is the cast of a point.
+void prepare_ray(KernelCast& cast, const Ray& ray) noexcept {
+  prepare_cast(cast, Aabb{ray.origin, ray.origin}, ray.direction.cast<double>(),
+               static_cast<double>(ray.min_t), static_cast<double>(ray.max_t));
+}
 
 /// A cast prepared for the kernels. Not movable, because the kernel's cast points into it.
 class PreparedCast {
@@ -39,7 +98,7 @@ class PreparedCast {
   [[nodiscard]] const KernelCast& kernel_cast() const noexcept { return kernel_cast_; }
 
  private:
-  void prepare(const Ray& ray) noexcept { prepare_cast(kernel_cast_, ray); }
+  void prepare(const Ray& ray) noexcept { prepare_ray(kernel_cast_, ray); }
   void prepare(const BoxCast& cast) noexcept { prepare_box(cast.box, cast); }
   void prepare(const SphereCast& cast) noexcept {
     prepare_box(cast.sphere.bounds(), cast);
@@ -89,9 +148,9 @@ unsigned octant(const Ray& ray) noexcept {
 }
 
 /// A part of a batch of rays, split into groups of one octant that traverse the trees together.
-class RayGroup {
+class RayChunk {
  public:
-  RayGroup(const RayBatch& rays, std::size_t begin, std::size_t end) noexcept : rays_(rays) {
+  RayChunk(const RayBatch& rays, std::size_t begin, std::size_t end) noexcept : rays_(rays) {
     std::array<std::uint32_t, 9> start{};
     for (std::size_t i = begin; i < end; ++i) ++start[octant(rays[i]) + 1];
     for (std::size_t o = 0; o < 8; ++o) start[o + 1] += start[o];
@@ -101,15 +160,15 @@ class RayGroup {
     left_ = ray_index_.data();
     end_ = left_ + (end - begin);
   }
-  RayGroup(const RayGroup&) = delete;
-  RayGroup& operator=(const RayGroup&) = delete;
+  RayChunk(const RayChunk&) = delete;
+  RayChunk& operator=(const RayChunk&) = delete;
 
   /// Prepares the next group. False if there is none.
   bool next() noexcept {
     query_numbers_ = left_;
     count_ = 0;
     while (left_ != end_ && count_ < kMaxCasts) {
-      prepare_cast(kernel_cast_[count_], rays_[*left_]);
+      prepare_ray(kernel_cast_[count_], rays_[*left_]);
       if (count_ != 0 && !same_octant(kernel_cast_[0], kernel_cast_[count_])) break;
       ++count_;
       ++left_;
@@ -179,7 +238,7 @@ Status find_hits(const PartitionState& state, FindHits find, const RayBatch& ray
   // Small tasks, so that a batch of a few thousand rays occupies every thread.
   constexpr std::size_t kTask = kGroup / 4;
   state.rows.execution().for_each((rays.count + kTask - 1) / kTask, [&](std::size_t task) {
-    RayGroup group(rays, task * kTask, std::min(rays.count, (task + 1) * kTask));
+    RayChunk group(rays, task * kTask, std::min(rays.count, (task + 1) * kTask));
     std::array<std::uint64_t, kMaxCasts> found;
     while (group.next()) {
       find(view, group.kernel_casts(), group.count(), kernel_filter.query_filter(), found.data());
@@ -264,7 +323,7 @@ Status Partition::all(const RayBatch& rays, HitBuffer& hits, const Filter& filte
     const std::size_t groups = (last - first + kGroup - 1) / kGroup;
     const Status status = writer.append(groups, [&](std::size_t task, PairSink& sink) {
       const std::size_t begin = first + task * kGroup;
-      RayGroup group(rays, begin, std::min(last, begin + kGroup));
+      RayChunk group(rays, begin, std::min(last, begin + kGroup));
       while (!kernel_filter.matches_nothing() && group.next()) {
         if (!cast_kernels().all(view, group.kernel_casts(), group.count(), group.query_numbers(),
                                 kernel_filter.query_filter(), sink)) {

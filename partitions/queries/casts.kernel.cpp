@@ -1,9 +1,9 @@
 // Kernels of casts: closest, any and all hits of up to kMaxCasts casts. casts.cpp calls them;
-// the tests of boxes and the joint traversal are in prepared_cast.wide.h, the ordered descent in
+// the tests of boxes and the joint traversal are in cast_tests.wide.h, the ordered descent in
 // descent.wide.h.
 
 #include "partitions/queries/cast.kernel.h"
-#include "partitions/queries/prepared_cast.wide.h"
+#include "partitions/queries/cast_tests.wide.h"
 
 namespace winnow {
 namespace WINNOW_ISA_NAME {

@@ -1,6 +1,6 @@
 #include "partitions/queries/hit_writer.h"
 
-#include "partitions/queries/cast.kernel.h"
+#include "partitions/queries/kernel_arguments.h"
 
 #include <algorithm>
 #include <array>

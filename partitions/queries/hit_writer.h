@@ -4,18 +4,10 @@
 #include <winnow/core/hits.h>
 #include "core/memory/key_table.h"
 
-#include <bit>
 #include <cstddef>
 #include <cstdint>
 
 namespace winnow {
-
-/// Returns the hit encoded as (bits of t) << 32 | id.
-[[nodiscard]] inline Hit to_hit(const KeyTable& keys, std::uint64_t found) noexcept {
-  const auto id = static_cast<ObjectId>(found);
-  return {keys.key_of(id), keys.client_data(id),
-          std::bit_cast<float>(static_cast<std::uint32_t>(found >> 32U))};
-}
 
 /// Access of queries to the private data of a HitBuffer. Cast kernels write two pairs per hit,
 /// (query, object) and (bits of t, 0). Groups of queries come in order, hits within a group do

@@ -4,7 +4,7 @@
 #include "partitions/queries/nearest.kernel.h"
 
 #include "partitions/queries/hit_writer.h"
-#include "partitions/queries/query_filter.h"
+#include "partitions/queries/kernel_arguments.h"
 #include "partitions/state/partition_state.h"
 
 namespace winnow {

@@ -5,7 +5,7 @@
 #include "core/threads/float_environment.h"
 #include "partitions/pairs/pair_tracker.h"
 #include "partitions/pairs/pair_writer.h"
-#include "partitions/queries/query_filter.h"
+#include "partitions/queries/kernel_arguments.h"
 #include "partitions/queries/regions.h"
 #include "partitions/rows/box_source.h"
 #include "partitions/state/partition_state.h"

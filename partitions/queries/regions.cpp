@@ -5,7 +5,7 @@
 #include "partitions/queries/regions.h"
 
 #include "partitions/queries/box_intersection.h"
-#include "partitions/queries/prepared_cast.h"
+#include "partitions/queries/kernel_arguments.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>

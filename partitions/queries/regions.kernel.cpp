@@ -2,8 +2,8 @@
 // CapsuleProbe), and the traversal of flat blocks and trees with them (RegionTraversal).
 // regions.cpp and overlaps.cpp call them.
 
+#include "partitions/queries/cast_tests.wide.h"
 #include "partitions/queries/descent.wide.h"
-#include "partitions/queries/prepared_cast.wide.h"
 #include "partitions/queries/region.kernel.h"
 #include "partitions/tree/hits.wide.h"
 

@@ -228,7 +228,7 @@ Status RankScene::refresh() {
 /// Notes all bodies with composite shapes if a shape of their pool changed: a change in place gives
 /// a body a new box without a move.
 void RankScene::note_changed_composites() {
-  const MidPhase* const composites = state().options.composites;
+  const CompositePool* const composites = state().options.composites;
   if (is_single_rank_ || composites == nullptr || composites->revision() == state().composites_seen)
     return;
   for (ObjectId id = 0; id < flags_.size(); ++id) {

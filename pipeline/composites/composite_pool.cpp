@@ -1,13 +1,13 @@
-// CompositePool: adds, scales, refits and removes meshes, height fields and compounds, and forwards
-// the functions of MidPhase to the other files of this folder.
+// CompositePool: adds, scales, refits and removes meshes, height fields and compounds; and the
+// table of the mid phase (mid_phase.h), whose functions are in the other files of this folder.
 
 #include <winnow/pipeline/composite_pool.h>
 
-#include "core/hooks/stage_scope.h"
 #include "core/memory/new_in.h"
 #include "core/threads/float_environment.h"
 #include "pipeline/composites/composites.h"
 #include "pipeline/composites/solids.h"
+#include "pipeline/kernels/link.h"
 #include "pipeline/mesh/mesh_view.h"
 #include "pipeline/shapes/extent.h"
 
@@ -241,10 +241,32 @@ void Composites::release(Compound* compound) noexcept {
   memory->deallocate(compound, bytes, alignof(std::max_align_t));
 }
 
+namespace {
+
+constexpr MidPhase kMidPhase = {
+    .contains = [](const CompositePool& pool, ShapeId id) noexcept { return pool.contains(id); },
+    .bounds = [](const CompositePool& pool, ShapeId id,
+                 const Pose& pose) noexcept { return pool.bounds(id, pose); },
+    .radius = [](const CompositePool& pool, ShapeId id) noexcept { return pool.radius(id); },
+    .find_primitive_pairs = find_primitive_pairs,
+    .correct_internal_edges = correct_internal_edges,
+    .reduce_contacts = reduce_contacts,
+    .visit = visit,
+    .cast_rays = cast_rays,
+    .visit_near = visit_near,
+    .visit_pairs = visit_pairs,
+    .visit_near_pairs = visit_near_pairs,
+    .solid_contains_point = solid_contains_point,
+    .solid_contains_shape = solid_contains_shape,
+};
+
+}  // namespace
 }  // namespace mid
 
 CompositePool::CompositePool(const ShapePool& shapes, std::pmr::memory_resource* memory) noexcept
-    : shapes_(shapes), memory_(memory) {}
+    : shapes_(shapes), memory_(memory), mid_phase_(&mid::kMidPhase) {
+  link_triangle_kernels();
+}
 
 CompositePool::~CompositePool() {
   delete_in(memory_, state_);
@@ -302,7 +324,7 @@ Status CompositePool::refit_mesh(ShapeId mesh, const PointView& vertices,
     const mid::MeshEntry* const entry = state_->mesh(id);
     return entry != nullptr && entry->shared == &shared;
   });
-  ++state_->revision;
+  ++revision_;
   return Status::ok;
 }
 
@@ -330,7 +352,7 @@ Status CompositePool::update_height_field(ShapeId field, std::uint32_t column, s
   const Status status = state_->field(field)->update(column, row, samples);
   if (status != Status::ok) return status;
   state_->fit_users([&](ShapeId id) { return id == field; });
-  ++state_->revision;
+  ++revision_;
   return Status::ok;
 }
 
@@ -385,7 +407,7 @@ Status CompositePool::set_flag(mid::IdSet& set, ShapeId surface, bool now) noexc
   if (set.has(surface) == now) return Status::ok;
   if (!now) set.remove(surface);
   if (now && !set.add(surface)) return Status::out_of_memory;
-  ++state_->revision;
+  ++revision_;
   return Status::ok;
 }
 
@@ -426,7 +448,7 @@ Status CompositePool::remove(ShapeId id) {
       state_->fields.take(id.index());
       break;
   }
-  ++state_->revision;
+  ++revision_;
   return Status::ok;
 }
 
@@ -478,90 +500,6 @@ Aabb CompositePool::bounds(ShapeId id, const Pose& pose) const noexcept {
 double CompositePool::radius(ShapeId id) const noexcept {
   const DefaultFloatEnvironment environment;
   return contains(id) ? state_->radius(id) : 0.0;
-}
-
-std::uint64_t CompositePool::revision() const noexcept {
-  return state_ != nullptr ? state_->revision : 0;
-}
-
-Status CompositePool::find_primitive_pairs(const ShapePool& shapes, const Bodies& bodies,
-                                           std::span<const BodyPair> pairs,
-                                           const PairMargins& margins, const Execution& execution,
-                                           PrimitivePairs& out) const {
-  const DefaultFloatEnvironment environment;
-  const StageScope stage(WorkStage::mid_phase);
-  return mid::find_primitive_pairs(state_, shapes.tables(), bodies, pairs, margins, execution, out);
-}
-
-void CompositePool::correct_internal_edges(const ShapePool& shapes, const PrimitivePairs& pairs,
-                                           const PairMargins& margins, const Execution& execution,
-                                           NarrowResult& result) const {
-  const DefaultFloatEnvironment environment;
-  mid::correct_internal_edges(shapes, pairs, margins, execution, result);
-}
-
-Status CompositePool::reduce_contacts(const ShapePool& shapes, const PrimitivePairs& pairs,
-                                      const NarrowResult& answers, const PairMargins& margins,
-                                      const Execution& execution, ContactRegions& out) const {
-  const DefaultFloatEnvironment environment;
-  return mid::reduce_contacts(shapes, pairs, answers, margins, execution, out);
-}
-
-void CompositePool::visit(ShapeId id, const Pose& pose, const MovingBox& moving_box,
-                          const PrimitiveVisitor& visitor) const {
-  const DefaultFloatEnvironment environment;
-  if (contains(id)) mid::visit(*state_, id, pose, moving_box, visitor);
-}
-
-void CompositePool::visit_rays(ShapeId id, const Pose& pose, std::span<const ShapeRay> rays,
-                               const double* limits, const RayVisitor& visitor) const {
-  const DefaultFloatEnvironment environment;
-  if (contains(id)) mid::visit_rays(*state_, id, pose, rays, limits, visitor);
-}
-
-bool CompositePool::prepare_ray_surface(ShapeId id, const Pose& pose, RaySurface& surface) const {
-  const DefaultFloatEnvironment environment;
-  return contains(id) && mid::prepare_ray_surface(*state_, id, pose, surface);
-}
-
-void CompositePool::visit_ray(const RaySurface& surface, const ShapeRay& ray, double limit,
-                              const RayVisitor& visitor) const {
-  const DefaultFloatEnvironment environment;
-  mid::visit_ray(*state_, surface, ray, limit, visitor);
-}
-
-void CompositePool::visit_near(ShapeId id, const Pose& pose, const MovingBox& from, double limit,
-                               const PrimitiveVisitor& visitor) const {
-  const DefaultFloatEnvironment environment;
-  if (contains(id)) mid::visit_near(*state_, id, pose, from, limit, visitor);
-}
-
-bool CompositePool::visit_pairs(ShapeId a, const Pose& pose_a, ShapeId b, const Pose& pose_b,
-                                const PrimitivePairVisitor& visitor) const {
-  const DefaultFloatEnvironment environment;
-  return contains(a) && contains(b) && mid::visit_pairs(*state_, a, pose_a, b, pose_b, visitor);
-}
-
-bool CompositePool::visit_near_pairs(ShapeId a, const Pose& pose_a, ShapeId b, const Pose& pose_b,
-                                     double limit, const NearPairVisitor& visitor) const {
-  const DefaultFloatEnvironment environment;
-  return contains(a) && contains(b) &&
-         mid::visit_near_pairs(*state_, a, pose_a, b, pose_b, limit, visitor);
-}
-
-bool CompositePool::has_solids() const noexcept {
-  return state_ != nullptr && !state_->solid.empty();
-}
-
-bool CompositePool::solid_contains(ShapeId id, const Pose& pose, const double point[3]) const {
-  const DefaultFloatEnvironment environment;
-  return has_solids() && contains(id) && mid::solid_contains(*state_, id, pose, point);
-}
-
-bool CompositePool::solid_contains(ShapeId id, const Pose& pose, ShapeId other,
-                                   const Pose& other_pose) const {
-  const DefaultFloatEnvironment environment;
-  return has_solids() && contains(id) && mid::solid_contains(*state_, id, pose, other, other_pose);
 }
 
 Footprint CompositePool::footprint() const noexcept {

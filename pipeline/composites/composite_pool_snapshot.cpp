@@ -221,7 +221,7 @@ Status CompositePool::load(std::span<const std::byte> saved, const Execution& ex
     }
   }
   if (status != Status::ok) return logged(snapshot_status(status), "CompositePool::load");
-  if (fresh.state_ != nullptr) fresh.state_->revision = revision() + 1;
+  if (fresh.state_ != nullptr) ++revision_;
   std::swap(state_, fresh.state_);
   return Status::ok;
 }

@@ -1,4 +1,4 @@
-// Traversals of composite shapes for queries (MidPhase::visit, visit_pairs, visit_near_pairs and
+// Traversals of composite shapes for queries (mid::visit, visit_pairs, visit_near_pairs and
 // visit_near): the primitives that a moving box may hit, or that are near a box. Rays are in
 // rays.cpp; the tree traversals are in pipeline/mesh.
 
@@ -184,9 +184,11 @@ void visit(const TransformedShape& body, const MovingBox& moving_box,
   }
 }
 
-void visit(const Composites& all, ShapeId id, const Pose& pose, const MovingBox& moving_box,
+void visit(const CompositePool& pool, ShapeId id, const Pose& pose, const MovingBox& moving_box,
            const PrimitiveVisitor& visitor) {
-  const TransformedShape body = TransformedShape::at(all, id, pose);
+  const Composites* const all = composites_with(pool, id);
+  if (all == nullptr) return;
+  const TransformedShape body = TransformedShape::at(*all, id, pose);
   auto show_child = [&](std::uint32_t number, double limit) {
     const TransformedShape child = body.child(number);
     return visit_child(child, limit, visitor, [&](const PrimitiveVisitor& keeping) {
@@ -198,10 +200,12 @@ void visit(const Composites& all, ShapeId id, const Pose& pose, const MovingBox&
   visit(body, moving_box, visitor, ChildVisitor::of(show_child));
 }
 
-bool visit_pairs(const Composites& all, ShapeId a, const Pose& pose_a, ShapeId b,
+bool visit_pairs(const CompositePool& pool, ShapeId a, const Pose& pose_a, ShapeId b,
                  const Pose& pose_b, const PrimitivePairVisitor& visitor) {
-  const TransformedShape first = TransformedShape::at(all, a, pose_a);
-  const TransformedShape second = TransformedShape::at(all, b, pose_b);
+  const Composites* const all = composites_with(pool, a);
+  if (all == nullptr || !all->contains(b)) return false;
+  const TransformedShape first = TransformedShape::at(*all, a, pose_a);
+  const TransformedShape second = TransformedShape::at(*all, b, pose_b);
   if (first.kind != TransformedShape::Kind::mesh || second.kind != TransformedShape::Kind::mesh)
     return false;
   PairGuide guide{first, second, visitor};
@@ -216,13 +220,15 @@ bool visit_pairs(const Composites& all, ShapeId a, const Pose& pose_a, ShapeId b
   return true;
 }
 
-bool visit_near_pairs(const Composites& all, ShapeId a, const Pose& pose_a, ShapeId b,
+bool visit_near_pairs(const CompositePool& pool, ShapeId a, const Pose& pose_a, ShapeId b,
                       const Pose& pose_b, double limit, const NearPairVisitor& visitor) {
-  const TransformedShape first = TransformedShape::at(all, a, pose_a);
-  const TransformedShape second = TransformedShape::at(all, b, pose_b);
+  const Composites* const all = composites_with(pool, a);
+  if (all == nullptr || !all->contains(b)) return false;
+  const TransformedShape first = TransformedShape::at(*all, a, pose_a);
+  const TransformedShape second = TransformedShape::at(*all, b, pose_b);
   if (first.kind != TransformedShape::Kind::mesh || second.kind != TransformedShape::Kind::mesh)
     return false;
-  const double(&scale)[3] = all.mesh(a)->scale;
+  const double(&scale)[3] = all->mesh(a)->scale;
   if (std::abs(scale[0]) != std::abs(scale[1]) || std::abs(scale[0]) != std::abs(scale[2])) {
     return false;
   }
@@ -259,9 +265,11 @@ void visit_near(const TransformedShape& body, const MovingBox& from, double limi
 
 }  // namespace
 
-void visit_near(const Composites& all, ShapeId id, const Pose& pose, const MovingBox& from,
+void visit_near(const CompositePool& pool, ShapeId id, const Pose& pose, const MovingBox& from,
                 double limit, const PrimitiveVisitor& visitor) {
-  const TransformedShape body = TransformedShape::at(all, id, pose);
+  const Composites* const all = composites_with(pool, id);
+  if (all == nullptr) return;
+  const TransformedShape body = TransformedShape::at(*all, id, pose);
   auto show_child = [&](std::uint32_t number, double most) {
     const TransformedShape child = body.child(number);
     return visit_child(child, most, visitor, [&](const PrimitiveVisitor& keeping) {

@@ -1,12 +1,10 @@
 #pragma once
 
-// Storage of a CompositePool, and the functions that its members forward to: `find_primitive_pairs`
-// (find_primitive_pairs.cpp, primitive_pair_search.cpp), `correct_internal_edges`
-// (internal_edges.cpp), `reduce_contacts` (manifold_reduction.cpp), and the traversals of queries
-// (composite_traversal.cpp, rays.cpp).
+// Storage of a CompositePool.
 
 #include <winnow/core/column.h>
 #include <winnow/pipeline/composite_pool.h>
+#include "pipeline/composites/mid_phase.h"
 #include "pipeline/shapes/frame.h"
 
 #include <algorithm>
@@ -217,7 +215,6 @@ struct Composites {
   IdSet solid;      ///< solid meshes
   SharedMesh* first_mesh = nullptr;
   Compound* first_compound_with_surfaces = nullptr;
-  std::uint64_t revision = 0;
 
  private:
   template <typename Is>
@@ -228,59 +225,11 @@ struct Composites {
   }
 };
 
-/// See MidPhase::find_primitive_pairs. If `all` is null, there are no composite shapes. O(pairs of
-/// bodies + pairs of primitives); each traversal is O(log n + found).
-///
-/// Tasks search fixed chunks of body pairs and write numbers to a shared arena. Then the results
-/// are counted, and tasks for the same chunks write them to their final positions. Neither step
-/// depends on the number of threads.
-Status find_primitive_pairs(const Composites* all, const ShapeTables& tables, const Bodies& bodies,
-                            std::span<const BodyPair> pairs, const PairMargins& margins,
-                            const Execution& execution, PrimitivePairs& out);
-
-/// See MidPhase::correct_internal_edges.
-///
-/// A triangle touches with an edge or a corner if this feature is its farthest point along the
-/// contact normal. If a neighbouring triangle continues the surface at the feature, the feature is
-/// no edge of the surface as a whole (an internal edge). Then the contact gets the normal of the
-/// face:
-/// - Spheres, shapes that are apart, and shapes that overlap only by their rounding keep their
-///   distance and its error bound. The point of a sphere is moved to its deepest point along the
-///   new normal, so that the contact exerts no torque; other shapes keep their points.
-/// - Other shapes are clipped against the triangle along the new normal. The depth becomes the
-///   depth of the clipped points, but at least the previous depth. If the deepest point is not over
-///   the triangle, or if its depth would exceed kMaxDeeper times the largest depth of the contacts
-///   of the two bodies with the same kinds, the distance and the points are kept: the body is then
-///   beside the surface, not above it.
-///
-/// No contact is lost, because the distance to the plane of a face is at most the distance to the
-/// face. Contacts of two mesh triangles are changed only if their normal points to the back of a
-/// one-sided triangle; otherwise it is ambiguous which normal to use. Active edges are computed
-/// only for the front of a surface. On its back, where concave edges look convex, concave edges
-/// also count as internal, so that a floor is flat for either winding.
-void correct_internal_edges(const ShapePool& shapes, const PrimitivePairs& pairs,
-                            const PairMargins& margins, const Execution& execution,
-                            NarrowResult& result) noexcept;
-
-/// See MidPhase::reduce_contacts.
-Status reduce_contacts(const ShapePool& shapes, const PrimitivePairs& pairs,
-                       const NarrowResult& answers, const PairMargins& margins,
-                       const Execution& execution, ContactRegions& out);
-
-/// See the members of MidPhase with the same names. `id` must exist and `pose` must be valid.
-void visit(const Composites& all, ShapeId id, const Pose& pose, const MovingBox& moving_box,
-           const PrimitiveVisitor& visitor);
-void visit_rays(const Composites& all, ShapeId id, const Pose& pose, std::span<const ShapeRay> rays,
-                const double* limits, const RayVisitor& visitor);
-[[nodiscard]] bool prepare_ray_surface(const Composites& all, ShapeId id, const Pose& pose,
-                                       RaySurface& surface) noexcept;
-void visit_ray(const Composites& all, const RaySurface& surface, const ShapeRay& ray, double limit,
-               const RayVisitor& visitor);
-bool visit_pairs(const Composites& all, ShapeId a, const Pose& pose_a, ShapeId b,
-                 const Pose& pose_b, const PrimitivePairVisitor& visitor);
-bool visit_near_pairs(const Composites& all, ShapeId a, const Pose& pose_a, ShapeId b,
-                      const Pose& pose_b, double limit, const NearPairVisitor& visitor);
-void visit_near(const Composites& all, ShapeId id, const Pose& pose, const MovingBox& from,
-                double limit, const PrimitiveVisitor& visitor);
+/// Returns the shapes of a pool if they contain `id`, else null.
+[[nodiscard]] inline const Composites* composites_with(const CompositePool& pool,
+                                                       ShapeId id) noexcept {
+  const Composites* const all = composites_of(pool);
+  return all != nullptr && all->contains(id) ? all : nullptr;
+}
 
 }  // namespace winnow::mid

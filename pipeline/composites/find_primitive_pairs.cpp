@@ -1,7 +1,8 @@
-// Finds the pairs of primitives of pairs of bodies (MidPhase::find_primitive_pairs).
-// PrimitivePairSearch (primitive_pair_search.cpp) finds the pairs of one chunk of body pairs; this
-// file runs the chunks as tasks, and copies the results to PrimitivePairs.
+// Finds the pairs of primitives of pairs of bodies (mid_phase.h). PrimitivePairSearch
+// (primitive_pair_search.cpp) finds the pairs of one chunk of body pairs; this file runs the chunks
+// as tasks, and copies the results to PrimitivePairs.
 
+#include "core/hooks/stage_scope.h"
 #include "pipeline/composites/composites.h"
 #include "pipeline/composites/primitive_pair_search.h"
 
@@ -229,9 +230,12 @@ void PrimitivePairFinder::write_triangle(const TransformedShape& body, std::uint
 
 }  // namespace
 
-Status find_primitive_pairs(const Composites* all, const ShapeTables& tables, const Bodies& bodies,
-                            std::span<const BodyPair> pairs, const PairMargins& margins,
-                            const Execution& execution, PrimitivePairs& out) {
+Status find_primitive_pairs(const CompositePool& pool, const ShapePool& shapes,
+                            const Bodies& bodies, std::span<const BodyPair> pairs,
+                            const PairMargins& margins, const Execution& execution,
+                            PrimitivePairs& out) {
+  const StageScope stage(WorkStage::mid_phase);
+  const Composites* const all = composites_of(pool);
   out.clear();
   if (pairs.empty() || all == nullptr) {
     if (!out.first.resize(pairs.size() + 1)) return Status::out_of_memory;
@@ -239,7 +243,7 @@ Status find_primitive_pairs(const Composites* all, const ShapeTables& tables, co
     return Status::ok;
   }
   const Status status =
-      PrimitivePairFinder(*all, tables, bodies, pairs, margins, out).run(execution);
+      PrimitivePairFinder(*all, shapes.tables(), bodies, pairs, margins, out).run(execution);
   if (status != Status::ok) out.clear();
   return status;
 }

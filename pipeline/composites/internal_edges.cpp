@@ -1,5 +1,5 @@
 // Corrects contacts at internal edges of meshes and height fields, and contacts from behind
-// one-sided triangles (MidPhase::correct_internal_edges; composites.h describes the method). Called
+// one-sided triangles (mid::correct_internal_edges; mid_phase.h describes the method). Called
 // by the scene after the narrow phase and before `reduce_contacts`. In this file, an answer is the
 // narrow-phase result of one pair of primitives.
 

@@ -1,4 +1,4 @@
-// Contact reduction (MidPhase::reduce_contacts): merges the manifolds of each pair of bodies into
+// Contact reduction (mid::reduce_contacts): merges the manifolds of each pair of bodies into
 // regions of nearly parallel normals, and chooses the points of each region
 // (manifold/region_points.h). Called by the scene after `correct_internal_edges`, if
 // SceneOptions::contact_reduction is set. In this file, an answer is the narrow-phase result of one

@@ -46,6 +46,33 @@ PreciseBox triangle_box(const TriangleShape& triangle, const Pose& pose) noexcep
   return PreciseBox{position + box.min, position + box.max}.grown(slack);
 }
 
+/// True if the ray certainly misses a triangle, grown by `doubt`, of a body without rotation: the
+/// signed volumes of the ray and each side have different signs (Platis, Theoharis, "Fast
+/// ray-tetrahedron intersection using Pluecker coordinates", 2003), beyond their rounding.
+[[nodiscard]] bool passes_by(const double from[3], const double direction[3], const SubShape& part,
+                             double doubt) noexcept {
+  if (!is_unrotated(part)) return false;
+  const Vector3d d = Vector3d::Map(direction);
+  const Vector3d first = Vector3d::Map(part.pose.position) - Vector3d::Map(from);
+  const Vector3d a = first + Vector3d::Map(part.triangle->vertex[0]);
+  const Vector3d b = first + Vector3d::Map(part.triangle->vertex[1]);
+  const Vector3d c = first + Vector3d::Map(part.triangle->vertex[2]);
+  const double far = a.cwiseAbs().sum() + b.cwiseAbs().sum() + c.cwiseAbs().sum();
+  const double error = d.cwiseAbs().sum() * far * (0x1p-48 * far + 4.0 * doubt);
+  const double volume[3] = {d.dot(c.cross(b)), d.dot(a.cross(c)), d.dot(b.cross(a))};
+  const double low = std::min({volume[0], volume[1], volume[2]});
+  const double high = std::max({volume[0], volume[1], volume[2]});
+  return low < -error && high > error;
+}
+
+/// Computes the hit of the exact shape.
+[[nodiscard]] bool cast_on(const ShapePool& shapes, const ShapeRay& ray, const SubShape& part,
+                           ShapeHit& hit) noexcept {
+  PartTables tables(shapes);
+  const ShapeId shape = tables.put(0, part);
+  return cast_ray(tables.tables(), shape, part.pose, ray, hit) == Status::ok && hit.hit;
+}
+
 }  // namespace
 
 PreciseBox PreciseBox::grown(double by) const noexcept {
@@ -84,14 +111,16 @@ ShapeId PartTables::put(std::size_t slot, const SubShape& part) noexcept {
 }
 
 bool SubShapeQuery::contains(ShapeId shape) const noexcept {
-  if (shape.is_composite()) return composites_ != nullptr && composites_->contains(shape);
+  if (shape.is_composite())
+    return composites_ != nullptr && mid_phase().contains(*composites_, shape);
   return shapes_.contains(shape);
 }
 
 PreciseBox SubShapeQuery::box(const PlacedShape& placed) const noexcept {
   const Pose here = at_origin(placed.pose);
-  const Aabb local = placed.shape.is_composite() ? composites_->bounds(placed.shape, here)
-                                                 : shapes_.bounds(placed.shape, here);
+  const Aabb local = placed.shape.is_composite()
+                         ? mid_phase().bounds(*composites_, placed.shape, here)
+                         : shapes_.bounds(placed.shape, here);
   return placed_box(local, placed.pose.position);
 }
 
@@ -129,10 +158,35 @@ void SubShapeQuery::traverse(const PlacedShape& placed, MovingBox moving_box, do
                                     },
                                     &visitor};
   if (near) {
-    composites_->visit_near(placed.shape, placed.pose, moving_box, limit, primitives);
+    mid_phase().visit_near(*composites_, placed.shape, placed.pose, moving_box, limit, primitives);
   } else {
-    composites_->visit(placed.shape, placed.pose, moving_box, primitives);
+    mid_phase().visit(*composites_, placed.shape, placed.pose, moving_box, primitives);
   }
+}
+
+double corner_error(const SubShape& part) noexcept {
+  if (part.triangle == nullptr) return 0.0;
+  double size = Vector3d::Map(part.pose.position).cwiseAbs().sum();
+  for (const auto& corner : part.triangle->vertex) {
+    size = std::max(size, Vector3d::Map(corner).cwiseAbs().sum());
+  }
+  return 0x1p-48 * size;
+}
+
+bool enters(const ShapePool& shapes, const ShapeRay& ray, const SubShape& part,
+            ShapeHit& hit) noexcept {
+  const double thickness = corner_error(part);
+  if (part.triangle != nullptr && passes_by(ray.origin, ray.direction, part, thickness)) {
+    return false;
+  }
+  const Vector3d start = Vector3d::Map(ray.origin);
+  if (is_behind_triangle({start, start}, part)) return false;
+  // Tests the whole ray: whether the thick triangle is used must not depend on a limit.
+  if (cast_on(shapes, ray, part, hit)) return true;
+  if (thickness == 0.0) return false;
+  SubShape thick = part;
+  thick.thickness = thickness;
+  return cast_on(shapes, ray, thick, hit);
 }
 
 bool is_unrotated(const SubShape& part) noexcept {

@@ -1,11 +1,12 @@
 #pragma once
 
 // Traversal of the convex parts of any shape for the queries (scene queries, sensors, times of
-// impact): a convex shape has itself as its only part; for a composite shape it calls MidPhase.
+// impact): a convex shape has itself as its only part; for a composite shape it calls
+// mid::MidPhase.
 
 #include <winnow/core/pose.h>
-#include <winnow/pipeline/mid_phase.h>
 #include <winnow/pipeline/shape_pool.h>
+#include "pipeline/composites/mid_phase.h"
 #include "pipeline/shapes/extent.h"
 #include "pipeline/shapes/two_diff.h"
 
@@ -65,10 +66,17 @@ class PartTables {
   SphereShape balls_[2];
 };
 
+[[nodiscard]] inline SubShape part_of(const Primitive& primitive) noexcept {
+  SubShape part{primitive.shape, primitive.pose, primitive.part};
+  if (primitive.shape.kind() == ShapeKind::triangle) part.triangle = &primitive.triangle;
+  part.front = primitive.front;
+  return part;
+}
+
 /// Traverses the parts of shapes; a convex shape is its own only part.
 class SubShapeQuery {
  public:
-  SubShapeQuery(const ShapePool& shapes, const MidPhase* composites) noexcept
+  SubShapeQuery(const ShapePool& shapes, const CompositePool* composites) noexcept
       : shapes_(shapes), composites_(composites) {}
 
   [[nodiscard]] const ShapePool& shapes() const noexcept { return shapes_; }
@@ -76,17 +84,18 @@ class SubShapeQuery {
   /// Upper bound on the distance of points of the shape from its origin; infinite for a half-space.
   [[nodiscard]] double radius(ShapeId shape) const noexcept {
     // Inline, so that scenes that use only this function do not link composite shapes.
-    return shape.is_composite() ? composites_->radius(shape)
+    return shape.is_composite() ? mid_phase().radius(*composites_, shape)
                                 : mid::radius_of(shapes_.tables(), shape);
   }
-  /// True if a solid contains a point of the other shape; see MidPhase::solid_contains.
+  /// True if a solid contains a point of the other shape; see mid::solid_contains_shape.
   [[nodiscard]] bool solid_contains(const PlacedShape& solid, const PlacedShape& other) const {
     return solid.shape.is_composite() &&
-           composites_->solid_contains(solid.shape, solid.pose, other.shape, other.pose);
+           mid_phase().solid_contains_shape(*composites_, solid.shape, solid.pose, other.shape,
+                                            other.pose);
   }
   [[nodiscard]] bool solid_contains(const PlacedShape& solid, const double point[3]) const {
     return solid.shape.is_composite() &&
-           composites_->solid_contains(solid.shape, solid.pose, point);
+           mid_phase().solid_contains_point(*composites_, solid.shape, solid.pose, point);
   }
   /// Returns a box that contains the shape.
   [[nodiscard]] PreciseBox box(const PlacedShape& placed) const noexcept;
@@ -98,33 +107,11 @@ class SubShapeQuery {
   void visit_parts(const PlacedShape& placed, const MovingBox& moving_box, Visit&& visit) const {
     traverse(placed, moving_box, moving_box.max_t, false, visitor(visit));
   }
-  /// For a composite shape, calls visit_hit(ray, part, hit, limit) for triangles that a ray
-  /// certainly hits, and visit_candidate(ray, part, limit) for all other parts that it may hit up
-  /// to its limit. See RayVisitor.
-  template <typename VisitHit, typename VisitCandidate>
-  void visit_rays(const PlacedShape& placed, std::span<const ShapeRay> rays, const double* limits,
-                  VisitHit&& visit_hit, VisitCandidate&& visit_candidate) const {
-    using Callbacks =
-        RayCallbacks<std::remove_reference_t<VisitHit>, std::remove_reference_t<VisitCandidate>>;
-    Callbacks callbacks{visit_hit, visit_candidate};
-    composites_->visit_rays(
-        placed.shape, placed.pose, rays, limits,
-        {&Callbacks::call_visit_hit, &Callbacks::call_visit_candidate, &callbacks});
-  }
-  /// As above, for one ray and a mesh prepared by `prepare_ray_surface`.
-  template <typename VisitHit, typename VisitCandidate>
-  void visit_ray(const RaySurface& surface, const ShapeRay& ray, double limit, VisitHit&& visit_hit,
-                 VisitCandidate&& visit_candidate) const {
-    using Callbacks =
-        RayCallbacks<std::remove_reference_t<VisitHit>, std::remove_reference_t<VisitCandidate>>;
-    Callbacks callbacks{visit_hit, visit_candidate};
-    composites_->visit_ray(
-        surface, ray, limit,
-        {&Callbacks::call_visit_hit, &Callbacks::call_visit_candidate, &callbacks});
-  }
-  /// See MidPhase::prepare_ray_surface.
-  [[nodiscard]] bool prepare_ray_surface(const PlacedShape& placed, RaySurface& surface) const {
-    return composites_->prepare_ray_surface(placed.shape, placed.pose, surface);
+  /// See mid::cast_rays; the shape is composite.
+  void cast_rays(const PlacedShape& placed, std::span<const ShapeRay> rays, const double* limits,
+                 bool any, RaySurface* prepared, PartHit* hits) const {
+    mid_phase().cast_rays(*composites_, placed.shape, placed.pose, rays, limits, any, prepared,
+                          hits);
   }
   /// Calls visit(a, b) for pairs of parts of two meshes that may share a point, until it returns
   /// false. Returns false, without a call, if the shapes are not two meshes.
@@ -132,8 +119,8 @@ class SubShapeQuery {
   bool pairs(const PlacedShape& a, const PlacedShape& b, Visit&& visit) const {
     using Visitor = std::remove_reference_t<Visit>;
     if (!a.shape.is_composite() || !b.shape.is_composite()) return false;
-    return composites_->visit_pairs(
-        a.shape, a.pose, b.shape, b.pose,
+    return mid_phase().visit_pairs(
+        *composites_, a.shape, a.pose, b.shape, b.pose,
         {[](void* context, const Primitive& first, const Primitive& second) {
            return (*static_cast<Visitor*>(context))(part_of(first), part_of(second));
          },
@@ -141,15 +128,15 @@ class SubShapeQuery {
   }
   /// Calls visit(a, b, limit) for pairs of parts of two meshes that may be within `limit` of each
   /// other. `visit` returns the new limit, as in `visit_parts`; for `normal` see NearPairVisitor.
-  /// Returns false, without a call, if the shapes are not two meshes or MidPhase does not support
-  /// them.
+  /// Returns false, without a call, if the shapes are not two meshes or the mid phase does not
+  /// support them.
   template <typename Visit>
   bool near_pairs(const PlacedShape& a, const PlacedShape& b, double limit, const double* normal,
                   Visit&& visit) const {
     using Visitor = std::remove_reference_t<Visit>;
     if (!a.shape.is_composite() || !b.shape.is_composite()) return false;
-    return composites_->visit_near_pairs(
-        a.shape, a.pose, b.shape, b.pose, limit,
+    return mid_phase().visit_near_pairs(
+        *composites_, a.shape, a.pose, b.shape, b.pose, limit,
         {[](void* context, const Primitive& first, const Primitive& second, double most) {
            return (*static_cast<Visitor*>(context))(part_of(first), part_of(second), most);
          },
@@ -163,26 +150,6 @@ class SubShapeQuery {
   }
 
  private:
-  [[nodiscard]] static SubShape part_of(const Primitive& primitive) noexcept {
-    SubShape part{primitive.shape, primitive.pose, primitive.part};
-    if (primitive.shape.kind() == ShapeKind::triangle) part.triangle = &primitive.triangle;
-    part.front = primitive.front;
-    return part;
-  }
-  template <typename VisitHit, typename VisitCandidate>
-  struct RayCallbacks {
-    VisitHit& visit_hit;
-    VisitCandidate& visit_candidate;
-
-    static double call_visit_hit(void* context, std::size_t ray, std::uint32_t part,
-                                 const ShapeHit& hit, double limit) {
-      return static_cast<RayCallbacks*>(context)->visit_hit(ray, part, hit, limit);
-    }
-    static double call_visit_candidate(void* context, std::size_t ray, const Primitive& primitive,
-                                       double limit) {
-      return static_cast<RayCallbacks*>(context)->visit_candidate(ray, part_of(primitive), limit);
-    }
-  };
   struct PartVisitor {
     double (*visit)(void* context, const SubShape& part, double limit);
     void* context;
@@ -197,9 +164,23 @@ class SubShapeQuery {
   void traverse(const PlacedShape& placed, MovingBox moving_box, double limit, bool near,
                 PartVisitor visitor) const;
 
+  [[nodiscard]] const mid::MidPhase& mid_phase() const noexcept {
+    return mid::mid_phase_of(*composites_);
+  }
+
   const ShapePool& shapes_;
-  const MidPhase* composites_;
+  const CompositePool* composites_;
 };
+
+/// Upper bound on the distance between copies of a common corner of adjacent triangles, which are
+/// rounded separately. Triangles that are this thick leave no gaps between them.
+[[nodiscard]] double corner_error(const SubShape& part) noexcept;
+
+/// Finds where a ray enters a part, at any t up to its max_t. Returns false if it does not, or if
+/// it begins behind a one-sided triangle. A ray that misses a triangle by no more than
+/// `corner_error` enters it.
+[[nodiscard]] bool enters(const ShapePool& shapes, const ShapeRay& ray, const SubShape& part,
+                          ShapeHit& hit) noexcept;
 
 /// True if `triangle` has no rounding and its pose has no rotation.
 [[nodiscard]] bool is_unrotated(const SubShape& part) noexcept;

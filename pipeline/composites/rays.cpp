@@ -1,31 +1,30 @@
-// Rays against meshes, height fields and compounds (MidPhase::visit_rays and visit_ray). Rays are
-// transformed to the frame of the surface; the surface and its triangles are not transformed.
-// Intersections are computed by pipeline/mesh (mesh_rays.h, height_grid.h).
+// Rays against meshes, height fields and compounds: the closest hit of each ray (mid::cast_rays).
+// Rays are transformed to the frame of a surface; the surface and its triangles are not
+// transformed. Kernels of pipeline/mesh find the triangles that rays certainly hit. Triangles for
+// which rounding errors decide, and convex children, are tested as convex shapes (`enters`).
 
 #include "pipeline/composites/composites.h"
+#include "pipeline/composites/parts.h"
 #include "pipeline/composites/transformed_shape.h"
 #include "pipeline/mesh/height_grid.h"
-#include "pipeline/mesh/mesh_rays.h"
+#include "pipeline/mesh/mesh_rays.kernel.h"
 #include "pipeline/shapes/two_diff.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 
 namespace winnow::mid {
 namespace {
 
-/// Transforms a normal from the frame of the surface to the world, and normalises it.
+/// Transforms a normal of extreme length from the frame of the surface to the world, and normalises
+/// it.
 [[nodiscard]] Vec unit_under(const SurfaceFrame& frame, const Vec& normal) noexcept {
   const Eigen::Map<const Mat> transposed(frame.world_to_local[0]);
-  const auto times = [&](const Vec& of) {
-    return Vec(transposed.col(0).dot(of), transposed.col(1).dot(of), transposed.col(2).dot(of));
-  };
-  const Vec plain = frame.is_rotated ? times(normal) : normal;
-  const double square = plain.squaredNorm();
-  constexpr double kSafe = 1e200;
-  if (square > 1.0 / kSafe && square < kSafe) return plain * (1.0 / std::sqrt(square));
-  return times(normal.stableNormalized()).stableNormalized();
+  const Vec of = normal.stableNormalized();
+  return Vec(transposed.col(0).dot(of), transposed.col(1).dot(of), transposed.col(2).dot(of))
+      .stableNormalized();
 }
 
 /// Returns the power of two that scales a positive x into [1/2, 1).
@@ -66,29 +65,6 @@ struct NearBody {
 
   ShapeRay ray;
   TransformedShape body;
-};
-
-/// A surface as the target of rays. Visitors get primitives relative to `about`.
-struct RayTarget {
-  RayTarget(const TransformedShape& placed, const Vec& show_about) noexcept
-      : body(placed), about(show_about) {
-    const bool is_mesh = body.kind == TransformedShape::Kind::mesh;
-    const Aabb bounds = is_mesh ? body.shared->mesh.bounds() : body.field->bounds();
-    Vec corner;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      corner[static_cast<Eigen::Index>(axis)] =
-          static_cast<double>(std::max(std::abs(bounds.min[axis]), std::abs(bounds.max[axis])));
-    }
-    Vec::Map(frame.position) = body.position;
-    Mat::Map(frame.world_to_local[0]) = body.to_local;
-    frame.is_rotated = body.to_local != Mat::Identity();
-    frame.reach = corner.maxCoeff();
-    frame.size = (body.to_world.cwiseAbs() * corner).sum();
-  }
-
-  const TransformedShape& body;
-  const Vec& about;
-  SurfaceFrame frame;
 };
 
 /// Transforms a vector to the frame of the surface; sums in the order of the columns.
@@ -160,73 +136,147 @@ template <std::uint32_t Room>
   return true;
 }
 
-/// Converts t of the caller to t of the ray in the frame of a surface ("own" t).
-struct LocalRayTime {
-  double shift;
-  /// 1 / t_scale, a power of two.
-  double unit;
+/// Compares the bits, so that -0 and 0 differ.
+[[nodiscard]] bool is_same(const Pose& a, const Pose& b) noexcept {
+  using Bits = std::array<std::uint64_t, sizeof(Pose) / sizeof(std::uint64_t)>;
+  const auto of_a = std::bit_cast<Bits>(a);
+  const auto of_b = std::bit_cast<Bits>(b);
+  std::uint64_t differ = 0;
+  for (std::size_t i = 0; i < of_a.size(); ++i) differ |= of_a[i] ^ of_b[i];
+  return differ == 0;
+}
 
-  [[nodiscard]] double operator()(double t) const noexcept { return (t - shift) * unit; }
-  /// Upper bound of own t, including rounding errors.
-  [[nodiscard]] double limit(double t) const noexcept {
-    return (*this)(t) + 0x1p-51 * (std::abs(t) + std::abs(shift)) * unit;
+/// Prepares a mesh or height field.
+void prepare(const TransformedShape& body, RaySurface& surface) noexcept {
+  const bool is_mesh = body.kind == TransformedShape::Kind::mesh;
+  const Aabb bounds = is_mesh ? body.shared->mesh.bounds() : body.field->bounds();
+  Vec corner;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    corner[static_cast<Eigen::Index>(axis)] =
+        static_cast<double>(std::max(std::abs(bounds.min[axis]), std::abs(bounds.max[axis])));
   }
-  /// As above with a wider bound, for a limit that comes from another surface: rounding may make
-  /// the hit of a triangle that the ray grazes earlier than the entry into its box.
-  [[nodiscard]] double first_limit(double t, double reach) const noexcept {
-    const double most = limit(t);
-    return most + 0x1p-20 * (std::abs(most) + reach);
+  surface.mesh = body.mesh;
+  surface.is_one_sided = body.front != 0;
+  Vec::Map(surface.frame.position) = body.position;
+  Mat::Map(surface.frame.world_to_local[0]) = body.to_local;
+  surface.frame.is_rotated = body.to_local != Mat::Identity();
+  surface.frame.reach = corner.maxCoeff();
+  surface.frame.size = (body.to_world.cwiseAbs() * corner).sum();
+}
+
+void improve(PartHit& best, const PartHit& hit) noexcept {
+  if (!best.found || hit.t < best.t || (hit.t == best.t && hit.part < best.part)) best = hit;
+}
+
+/// The closest hit of a ray so far, among primitives that are tested as convex shapes. The ray and
+/// the primitives are relative to the same point.
+struct RayResult {
+  const ShapePool& shapes;
+  const ShapeRay& ray;
+  bool any;
+  double limit;
+  PartHit& hit;
+
+  /// Functions return the new limit.
+  double add(const PartHit& found) noexcept {
+    if (!(found.t <= limit)) return limit;
+    improve(hit, found);
+    return limit = any ? -1.0 : found.t;
   }
-  /// Returns the new own limit after the caller's limit changed from `before` to `now`.
-  [[nodiscard]] double after(double before, double now, double own_before) const noexcept {
-    if (now < 0.0) return -1.0;
-    return now < before ? limit(now) : own_before;
+  double test(const Primitive& primitive) noexcept {
+    ShapeHit entry;
+    if (!enters(shapes, ray, part_of(primitive), entry)) return limit;
+    return add(
+        {true, true, primitive.part, entry.t, {entry.normal[0], entry.normal[1], entry.normal[2]}});
   }
 };
 
-/// Traces up to `Room` rays through a surface and reports the triangles that they hit.
+/// Tests all primitives whose boxes the ray hits; for a compound that has surfaces, calls
+/// `children` instead.
+void test_all_on_ray(const NearBody& near, RayResult& result, const ChildVisitor& children) {
+  // Relative growth of the ray's box before the box tests, which round coordinates.
+  constexpr double kGrowth = 0x1p-47;
+  const Eigen::Map<const Vec> from(near.ray.origin);
+  const double grow = kGrowth * from.cwiseAbs().maxCoeff();
+  MovingBox moving_box;
+  for (int i = 0; i < 3; ++i) {
+    moving_box.min[i] = from[i] - grow;
+    moving_box.max[i] = from[i] + grow;
+    moving_box.direction[i] = near.ray.direction[i];
+  }
+  moving_box.max_t = near.ray.max_t;
+  visit(near.body, moving_box,
+        {[](void* context, const Primitive& primitive, double) {
+           return static_cast<RayResult*>(context)->test(primitive);
+         },
+         &result},
+        children);
+}
+
+/// A mesh or height field as the target of rays.
+struct RayTarget {
+  const Composites& all;
+  const RaySurface& surface;
+  /// The body, and the point that its primitives and rays are relative to when they are tested as
+  /// convex shapes. Null if the surface was prepared by an earlier call; then `near` makes the
+  /// body.
+  const TransformedShape* body = nullptr;
+  Vec about = Vec::Zero();
+
+  [[nodiscard]] NearBody near(const ShapeRay& ray) const noexcept {
+    if (body != nullptr) return {*body, about, ray};
+    const TransformedShape made = TransformedShape::at(all, surface.shape, surface.pose);
+    return {made, made.position, ray};
+  }
+};
+
+/// Up to `Room` rays that are traced through a surface together.
 template <std::uint32_t Room>
 class RayPacket {
  public:
-  RayPacket(const RayTarget& target, std::span<const ShapeRay> rays,
-            const RayVisitor& visitor) noexcept
-      : target_(target), rays_(rays), visitor_(visitor) {}
+  /// `hits` has an entry for each ray, which `go` improves.
+  RayPacket(const RayTarget& target, std::span<const ShapeRay> rays, bool any,
+            PartHit* hits) noexcept
+      : target_(target), rays_(rays), hits_(hits) {
+    closest_.any = any;
+    closest_.is_one_sided = target.surface.is_one_sided;
+    closest_.frame = &target.surface.frame;
+    closest_.first_part = target.body != nullptr ? target.body->first_number : 0;
+    closest_.test = [](void* context, std::uint32_t i, std::uint32_t slot, double limit) {
+      return static_cast<RayPacket*>(context)->test(i, slot, limit);
+    };
+    closest_.context = this;
+  }
+  RayPacket(const RayPacket&) = delete;
+  RayPacket& operator=(const RayPacket&) = delete;
 
   [[nodiscard]] bool is_full() const noexcept { return count_ == Room; }
   void add(std::size_t ray, double limit) noexcept;
-  /// Traces the added rays. Calls elsewhere(ray) for rays that cannot be transformed to the frame.
-  template <typename Elsewhere>
-  void go(Elsewhere&& elsewhere);
+  /// Traces the added rays.
+  void go();
 
  private:
-  /// Transforms the rays with the kernel. Returns one bit for each ray that is left to place_ray.
+  /// Transforms the rays to the frame of the surface. Returns one bit for each ray whose numbers
+  /// are too large or too small for that.
   [[nodiscard]] std::uint64_t place() noexcept;
+  /// Transforms the rays with the kernel. Returns one bit for each ray that is left to place_ray.
+  [[nodiscard]] std::uint64_t place_by_kernel() noexcept;
   void go_through_mesh();
   void go_through_field(std::uint32_t i);
-  [[nodiscard]] LocalRayTime time(std::uint32_t i) const noexcept {
-    return {own_.shift[i], unit_[i]};
-  }
-  // Functions that report triangles return the new own limit.
-  [[nodiscard]] double visit_hit(std::uint32_t i, std::uint32_t slot, const SurfaceHit& found,
-                                 double own_before);
-  [[nodiscard]] double visit_candidate(std::uint32_t i, std::uint32_t slot, double own_before);
-  [[nodiscard]] double show(std::uint32_t i, std::uint32_t slot, double own_before);
-  /// Sets the limit in the caller's t, and returns the new own limit.
-  [[nodiscard]] double after(std::uint32_t i, double limit, double own_before) noexcept;
+  /// Tests a triangle as a convex shape. Returns the new limit in the caller's t.
+  [[nodiscard]] double test(std::uint32_t i, std::uint32_t slot, double limit);
+  /// Tests a triangle of a height field. Returns the new limit in own t.
+  [[nodiscard]] double test_in_field(std::uint32_t i, std::uint32_t slot, double own_before);
 
   const RayTarget& target_;
   std::span<const ShapeRay> rays_;
-  const RayVisitor& visitor_;
+  PartHit* hits_;
   std::uint32_t count_ = 0;
-  /// Indices of the rays that the visitor is called with.
+  /// Index of each ray in `rays_`.
   std::size_t number_[Room];
-  /// Limits in the caller's t, and initial limits in own t.
-  double limit_[Room];
-  alignas(kRayAlignment<Room>) double own_limit_[Room];
   RayColumns<Room> world_;
   SurfaceRayColumns<Room> own_;
-  /// See LocalRayTime.
-  double unit_[Room];
+  ClosestHits<Room> closest_;
 };
 
 template <std::uint32_t Room>
@@ -239,12 +289,13 @@ void RayPacket<Room>::add(std::size_t ray, double limit) noexcept {
     }
   }
   number_[count_] = ray;
-  limit_[count_] = limit;
+  closest_.limit[count_] = limit;
+  closest_.best[count_] = hits_ + ray;
   ++count_;
 }
 
 template <std::uint32_t Room>
-std::uint64_t RayPacket<Room>::place() noexcept {
+std::uint64_t RayPacket<Room>::place_by_kernel() noexcept {
   if constexpr (Room == 1) {
     return 1;
   } else {
@@ -254,317 +305,194 @@ std::uint64_t RayPacket<Room>::place() noexcept {
       std::fill_n(world_.origin[axis] + count_, rest, world_.origin[axis][last]);
       std::fill_n(world_.direction[axis] + count_, rest, world_.direction[axis][last]);
     }
-    std::fill_n(own_limit_ + count_, rest, -1.0);
-    return mesh_kernels().place_rays(target_.frame, world_, count_, own_);
+    std::fill_n(closest_.own_limit + count_, rest, -1.0);
+    return mesh_ray_kernels().place(target_.surface.frame, world_, count_, own_);
   }
 }
 
 template <std::uint32_t Room>
-template <typename Elsewhere>
-void RayPacket<Room>::go(Elsewhere&& elsewhere) {
-  if (count_ == 0) return;
-  for (std::uint64_t left = place(); left != 0; left &= left - 1) {
+std::uint64_t RayPacket<Room>::place() noexcept {
+  std::uint64_t unplaced = 0;
+  if constexpr (Room == 1) {
+    if (place_ray(target_.surface.frame, rays_[number_[0]], 0, own_)) [[likely]]
+      return 0;
+  }
+  for (std::uint64_t left = place_by_kernel(); left != 0; left &= left - 1) {
     const auto i = static_cast<std::uint32_t>(std::countr_zero(left));
-    if (place_ray(target_.frame, rays_[number_[i]], i, own_)) continue;
-    elsewhere(number_[i]);
-    limit_[i] = -1.0;
+    if (place_ray(target_.surface.frame, rays_[number_[i]], i, own_)) continue;
+    unplaced |= std::uint64_t{1} << i;
     own_.shift[i] = 0.0;
     own_.t_scale[i] = 1.0;
   }
-  for (std::uint32_t i = 0; i < count_; ++i) {
-    unit_[i] = 1.0 / own_.t_scale[i];
-    const LocalRayTime own = time(i);
-    own_limit_[i] = limit_[i] >= 0.0 ? own.first_limit(limit_[i], target_.frame.reach) : -1.0;
+  return unplaced;
+}
+
+template <std::uint32_t Room>
+void RayPacket<Room>::go() {
+  if (count_ == 0) return;
+  const std::uint32_t count = Room == 1 ? 1 : count_;
+  for (std::uint64_t left = place(); left != 0; left &= left - 1) {
+    const auto i = static_cast<std::uint32_t>(std::countr_zero(left));
+    const NearBody near = target_.near(rays_[number_[i]]);
+    RayResult result{target_.all.shapes, near.ray, closest_.any, closest_.limit[i],
+                     hits_[number_[i]]};
+    test_all_on_ray(near, result, {});
+    closest_.limit[i] = -1.0;
+  }
+  for (std::uint32_t i = 0; i < count; ++i) {
+    closest_.unit[i] = 1.0 / own_.t_scale[i];
+    const LocalRayTime own = closest_.time(own_, i);
+    const double limit = closest_.limit[i];
+    closest_.own_limit[i] =
+        limit >= 0.0 ? own.first_limit(limit, target_.surface.frame.reach) : -1.0;
     own_.low[i] = own(0.0);
     own_.high[i] = own(rays_[number_[i]].max_t);
   }
-  if (target_.body.kind == TransformedShape::Kind::mesh) {
+  if (target_.surface.mesh != nullptr) {
     go_through_mesh();
   } else {
-    for (std::uint32_t i = 0; i < count_; ++i) go_through_field(i);
+    for (std::uint32_t i = 0; i < count; ++i) go_through_field(i);
+  }
+  for (std::uint32_t i = 0; i < count; ++i) {
+    PartHit& hit = *closest_.best[i];
+    if (hit.found && !hit.has_unit_normal) [[unlikely]] {
+      Vec::Map(hit.normal) = unit_under(target_.surface.frame, Vec::Map(hit.normal));
+      hit.has_unit_normal = true;
+    }
   }
   count_ = 0;
 }
 
 template <std::uint32_t Room>
 void RayPacket<Room>::go_through_mesh() {
-  const RaySlotVisitor visitor{
-      [](void* context, std::uint32_t ray, std::uint32_t slot, const SurfaceHit& found,
-         double limit) {
-        return static_cast<RayPacket*>(context)->visit_hit(ray, slot, found, limit);
-      },
-      [](void* context, std::uint32_t ray, std::uint32_t slot, double limit) {
-        return static_cast<RayPacket*>(context)->visit_candidate(ray, slot, limit);
-      },
-      this};
+  const MeshView& mesh = *target_.surface.mesh;
   if constexpr (Room == 1) {
-    mesh_ray(*target_.body.mesh, own_, own_limit_[0], visitor);
+    mesh_ray_kernels().closest_of_one(mesh, own_, closest_);
   } else {
-    mesh_rays(*target_.body.mesh, own_, own_limit_, count_, visitor);
+    mesh_ray_kernels().closest(mesh, own_, count_, closest_);
   }
 }
 
 template <std::uint32_t Room>
+double RayPacket<Room>::test(std::uint32_t i, std::uint32_t slot, double limit) {
+  Primitive primitive;
+  const NearBody near = target_.near(rays_[number_[i]]);
+  if (!near.body.primitive(slot, primitive)) return limit;
+  RayResult result{target_.all.shapes, near.ray, closest_.any, limit, hits_[number_[i]]};
+  return result.test(primitive);
+}
+
+template <std::uint32_t Room>
 void RayPacket<Room>::go_through_field(std::uint32_t i) {
-  if (own_limit_[i] < 0.0) return;
+  if (closest_.own_limit[i] < 0.0) return;
   struct FieldRay {
-    RayPacket* guides;
+    RayPacket* packet;
     std::uint32_t ray;
-  } way{this, i};
+  } field_ray{this, i};
   const SurfaceRay ray = own_[i];
   const Vec start = Vec::Map(ray.origin);
   const Vec low = start.array() - ray.slack;
   const Vec high = start.array() + ray.slack;
-  height_cast(grid_of(*target_.body.field), low.data(), high.data(), ray.direction, own_limit_[i],
+  height_cast(grid_of(*target_.body->field), low.data(), high.data(), ray.direction,
+              closest_.own_limit[i],
               {[](void* context, const std::uint32_t* slots, std::uint32_t count, double limit) {
                  const FieldRay& on = *static_cast<FieldRay*>(context);
                  for (std::uint32_t k = 0; k < count && limit >= 0.0; ++k) {
-                   limit = on.guides->show(on.ray, slots[k], limit);
+                   limit = on.packet->test_in_field(on.ray, slots[k], limit);
                  }
                  return limit;
                },
-               &way});
+               &field_ray});
 }
 
 template <std::uint32_t Room>
-double RayPacket<Room>::show(std::uint32_t i, std::uint32_t slot, double own_before) {
+double RayPacket<Room>::test_in_field(std::uint32_t i, std::uint32_t slot, double own_before) {
   double corner[3][3];
-  if (!target_.body.own_corners(slot, corner)) return own_before;
+  if (!target_.body->own_corners(slot, corner)) return own_before;
   SurfaceHit found;
-  switch (cross_triangle(own_[i], corner, found)) {
+  switch (mesh_ray_kernels().cross(own_[i], corner, found)) {
     case Crossing::none:
       break;
     case Crossing::found:
-      return visit_hit(i, slot, found, own_before);
+      return closest_.take(own_, i, slot, found, own_before);
     case Crossing::uncertain:
-      return visit_candidate(i, slot, own_before);
+      return closest_.lower(own_, i, test(i, slot, closest_.limit[i]), own_before);
   }
   return own_before;
 }
 
 template <std::uint32_t Room>
-double RayPacket<Room>::visit_hit(std::uint32_t i, std::uint32_t slot, const SurfaceHit& found,
-                                  double own_before) {
-  ShapeHit hit;
-  hit.hit = true;
-  hit.t = own_.shift[i] + found.t * own_.t_scale[i];
-  if (!(hit.t <= limit_[i])) return own_before;
-  if (target_.body.front != 0) {
-    double corner[3][3];
-    (void)target_.body.own_corners(slot, corner);
-    if (comes_from_behind(own_[i], corner)) return own_before;
-  }
-  Vec::Map(hit.normal) = unit_under(target_.frame, Vec::Map(found.normal));
-  const std::uint32_t number = target_.body.shown_number(slot);
-  return after(i, visitor_.visit_hit(visitor_.context, number_[i], number, hit, limit_[i]),
-               own_before);
-}
-
-template <std::uint32_t Room>
-double RayPacket<Room>::visit_candidate(std::uint32_t i, std::uint32_t slot, double own_before) {
-  Primitive primitive;
-  const NearBody near(target_.body, target_.about, rays_[number_[i]]);
-  if (!near.body.primitive(slot, primitive)) return own_before;
-  return after(i, visitor_.visit_candidate(visitor_.context, number_[i], primitive, limit_[i]),
-               own_before);
-}
-
-template <std::uint32_t Room>
-double RayPacket<Room>::after(std::uint32_t i, double limit, double own_before) noexcept {
-  const double before = limit_[i];
-  limit_[i] = limit;
-  return time(i).after(before, limit, own_before);
-}
-
-/// Calls `visitor.visit_candidate` for all primitives whose boxes ray `number` hits; for a compound
-/// that has surfaces, calls `children` instead.
-void visit_all_on_ray(const NearBody& near, std::size_t number, const RayVisitor& visitor,
-                      const ChildVisitor& children) {
-  // Relative growth of the ray's box before the box tests, which round coordinates.
-  constexpr double kGrowth = 0x1p-47;
-  const Eigen::Map<const Vec> from(near.ray.origin);
-  const double grow = kGrowth * from.cwiseAbs().maxCoeff();
-  MovingBox moving_box;
-  for (int i = 0; i < 3; ++i) {
-    moving_box.min[i] = from[i] - grow;
-    moving_box.max[i] = from[i] + grow;
-    moving_box.direction[i] = near.ray.direction[i];
-  }
-  moving_box.max_t = near.ray.max_t;
-  struct ChildRay {
-    const RayVisitor& visitor;
-    std::size_t number;
-  } child_ray{visitor, number};
-  visit(near.body, moving_box,
-        {[](void* context, const Primitive& primitive, double most) {
-           const ChildRay& by = *static_cast<ChildRay*>(context);
-           return by.visitor.visit_candidate(by.visitor.context, by.number, primitive, most);
-         },
-         &child_ray},
-        children);
-}
-
-/// One ray, number 0, through a mesh that was prepared by `prepare_ray_surface`.
-class SingleRay {
- public:
-  SingleRay(const Composites& all, const RaySurface& surface, const ShapeRay& ray, double limit,
-            const RayVisitor& visitor) noexcept
-      : all_(all), surface_(surface), ray_(ray), visitor_(visitor), limit_(limit) {}
-
-  void go();
-
- private:
-  [[nodiscard]] LocalRayTime time() const noexcept { return {own_.shift[0], unit_}; }
-  [[nodiscard]] NearBody near() const noexcept {
-    const TransformedShape body = TransformedShape::at(all_, surface_.shape, surface_.pose);
-    return {body, body.position, ray_};
-  }
-  // As in RayPacket.
-  [[nodiscard]] double visit_hit(std::uint32_t slot, const SurfaceHit& found, double own_before);
-  [[nodiscard]] double visit_candidate(std::uint32_t slot, double own_before);
-  [[nodiscard]] double after(double limit, double own_before) noexcept {
-    const double before = limit_;
-    limit_ = limit;
-    return time().after(before, limit, own_before);
-  }
-
-  const Composites& all_;
-  const RaySurface& surface_;
-  const ShapeRay& ray_;
-  const RayVisitor& visitor_;
-  double limit_;
-  double unit_ = 1.0;
-  SingleSurfaceRay own_;
-};
-
-void SingleRay::go() {
-  if (!place_ray(surface_.frame, ray_, 0, own_)) return visit_all_on_ray(near(), 0, visitor_, {});
-  unit_ = 1.0 / own_.t_scale[0];
-  own_.low[0] = time()(0.0);
-  own_.high[0] = time()(ray_.max_t);
-  mesh_ray(
-      *surface_.mesh, own_, time().first_limit(limit_, surface_.frame.reach),
-      {[](void* context, std::uint32_t, std::uint32_t slot, const SurfaceHit& found, double limit) {
-         return static_cast<SingleRay*>(context)->visit_hit(slot, found, limit);
-       },
-       [](void* context, std::uint32_t, std::uint32_t slot, double limit) {
-         return static_cast<SingleRay*>(context)->visit_candidate(slot, limit);
-       },
-       this});
-}
-
-double SingleRay::visit_hit(std::uint32_t slot, const SurfaceHit& found, double own_before) {
-  ShapeHit hit;
-  hit.hit = true;
-  hit.t = own_.shift[0] + found.t * own_.t_scale[0];
-  if (!(hit.t <= limit_)) return own_before;
-  if (surface_.front != 0) {
-    double corner[3][3];
-    put_corners(*surface_.mesh, slot, corner);
-    if (comes_from_behind(own_[0], corner)) return own_before;
-  }
-  Vec::Map(hit.normal) = unit_under(surface_.frame, Vec::Map(found.normal));
-  const std::uint32_t number = surface_.mesh->triangle[slot] & kTriangleNumberMask;
-  return after(visitor_.visit_hit(visitor_.context, 0, number, hit, limit_), own_before);
-}
-
-double SingleRay::visit_candidate(std::uint32_t slot, double own_before) {
-  Primitive primitive;
-  if (!near().body.primitive(slot, primitive)) return own_before;
-  return after(visitor_.visit_candidate(visitor_.context, 0, primitive, limit_), own_before);
-}
-
-template <std::uint32_t Room>
-void guide_rays(const RayTarget& target, std::span<const ShapeRay> rays, const double* limits,
-                const RayVisitor& visitor) {
-  const auto visit_candidates = [&](std::size_t ray) {
-    visit_all_on_ray(NearBody(target.body, target.about, rays[ray]), ray, visitor, {});
-  };
-  RayPacket<Room> guides(target, rays, visitor);
+void cast_in_packets(const RayTarget& target, std::span<const ShapeRay> rays, const double* limits,
+                     bool any, PartHit* hits) {
+  RayPacket<Room> packet(target, rays, any, hits);
   for (std::size_t i = 0; i < rays.size(); ++i) {
     if (!(limits[i] >= 0.0)) continue;
-    guides.add(i, limits[i]);
-    if (guides.is_full()) guides.go(visit_candidates);
+    packet.add(i, limits[i]);
+    if (packet.is_full()) packet.go();
   }
-  guides.go(visit_candidates);
+  packet.go();
 }
 
-/// Visitors get primitives relative to `about`.
-void visit_surface(const TransformedShape& surface, const Vec& about,
-                   std::span<const ShapeRay> rays, const double* limits,
-                   const RayVisitor& visitor) {
-  const RayTarget target(surface, about);
+void cast_on_surface(const RayTarget& target, std::span<const ShapeRay> rays, const double* limits,
+                     bool any, PartHit* hits) {
   const bool is_single = rays.size() == 1;
-  (is_single ? guide_rays<1> : guide_rays<kRaysAtOnce>)(target, rays, limits, visitor);
+  (is_single ? cast_in_packets<1> : cast_in_packets<kRaysAtOnce>)(target, rays, limits, any, hits);
 }
 
-/// Traces ray `number` through a child of a compound that has surfaces; both are relative to the
-/// compound. Returns the new limit.
-[[nodiscard]] double visit_child(const TransformedShape& child, const ShapeRay& ray,
-                                 std::size_t number, double limit, const RayVisitor& visitor) {
+/// Tests a child of a compound that has surfaces; it is relative to the compound, as the ray is.
+/// Returns the new limit.
+[[nodiscard]] double cast_on_child(const TransformedShape& child, RayResult& result) {
   if (!child.is_surface()) {
     Primitive primitive;
     (void)child.primitive(0, primitive);
-    return visitor.visit_candidate(visitor.context, number, primitive, limit);
+    return result.test(primitive);
   }
-  struct ForwardedRay {
-    const RayVisitor& to;
-    std::size_t number;
-    double limit;
-  } passing{visitor, number, limit};
-  visit_surface(
-      child, Vec::Zero(), {&ray, 1}, &limit,
-      {[](void* context, std::size_t, std::uint32_t part, const ShapeHit& hit, double most) {
-         ForwardedRay& by = *static_cast<ForwardedRay*>(context);
-         return by.limit = by.to.visit_hit(by.to.context, by.number, part, hit, most);
-       },
-       [](void* context, std::size_t, const Primitive& primitive, double most) {
-         ForwardedRay& by = *static_cast<ForwardedRay*>(context);
-         return by.limit = by.to.visit_candidate(by.to.context, by.number, primitive, most);
-       },
-       &passing});
-  return passing.limit;
+  RaySurface surface;
+  prepare(child, surface);
+  PartHit hit;
+  cast_on_surface({child.all, surface, &child}, {&result.ray, 1}, &result.limit, result.any, &hit);
+  return hit.found ? result.add(hit) : result.limit;
 }
 
 /// Limits for boxes of children are multiplied by this: rounding may make the hit of a triangle
 /// earlier than the entry into the box of its child.
 constexpr double kLimitRoom = 1.0 + 0x1p-20;
 
-}  // namespace
-
-void visit_rays(const Composites& all, ShapeId id, const Pose& pose, std::span<const ShapeRay> rays,
-                const double* limits, const RayVisitor& visitor) {
-  const TransformedShape body = TransformedShape::at(all, id, pose);
-  if (body.is_surface()) return visit_surface(body, body.position, rays, limits, visitor);
+void cast_on_compound(const TransformedShape& body, std::span<const ShapeRay> rays,
+                      const double* limits, bool any, PartHit* hits) {
   for (std::size_t i = 0; i < rays.size(); ++i) {
     if (!(limits[i] >= 0.0)) continue;
     const NearBody near(body, body.position, rays[i]);
-    double limit = limits[i];
-    auto show_child = [&](std::uint32_t number, double) {
-      limit = visit_child(near.body.child(number), near.ray, i, limit, visitor);
-      return limit * kLimitRoom;
+    RayResult result{body.all.shapes, near.ray, any, limits[i], hits[i]};
+    auto cast_child = [&](std::uint32_t number, double) {
+      return cast_on_child(near.body.child(number), result) * kLimitRoom;
     };
-    visit_all_on_ray(near, i, visitor, ChildVisitor::of(show_child));
+    test_all_on_ray(near, result, ChildVisitor::of(cast_child));
   }
 }
 
-bool prepare_ray_surface(const Composites& all, ShapeId id, const Pose& pose,
-                         RaySurface& surface) noexcept {
-  if (all.mesh(id) == nullptr) return false;
-  const TransformedShape body = TransformedShape::at(all, id, pose);
-  const RayTarget target(body, body.position);
-  surface = {.shape = id,
-             .pose = pose,
-             .revision = all.revision,
-             .mesh = body.mesh,
-             .frame = target.frame,
-             .front = body.front};
-  return true;
-}
+}  // namespace
 
-void visit_ray(const Composites& all, const RaySurface& surface, const ShapeRay& ray, double limit,
-               const RayVisitor& visitor) {
-  if (limit >= 0.0) SingleRay(all, surface, ray, limit, visitor).go();
+void cast_rays(const CompositePool& pool, ShapeId id, const Pose& pose,
+               std::span<const ShapeRay> rays, const double* limits, bool any, RaySurface* prepared,
+               PartHit* hits) {
+  for (std::size_t i = 0; i < rays.size(); ++i) hits[i].found = false;
+  const Composites* const all = composites_with(pool, id);
+  if (all == nullptr) return;
+  const bool is_prepared = prepared != nullptr && prepared->shape == id &&
+                           prepared->revision == pool.revision() && is_same(prepared->pose, pose);
+  if (is_prepared) return cast_on_surface({*all, *prepared}, rays, limits, any, hits);
+  const TransformedShape body = TransformedShape::at(*all, id, pose);
+  if (!body.is_surface()) return cast_on_compound(body, rays, limits, any, hits);
+  RaySurface surface;
+  prepare(body, surface);
+  if (prepared != nullptr && surface.mesh != nullptr) {
+    surface.shape = id;
+    surface.pose = pose;
+    surface.revision = pool.revision();
+    *prepared = surface;
+  }
+  cast_on_surface({*all, surface, &body, body.position}, rays, limits, any, hits);
 }
 
 }  // namespace winnow::mid

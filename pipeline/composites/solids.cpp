@@ -3,7 +3,7 @@
 #include "pipeline/composites/solids.h"
 
 #include "pipeline/mesh/mesh_edges.h"
-#include "pipeline/mesh/mesh_rays.h"
+#include "pipeline/mesh/mesh_rays.kernel.h"
 
 #include <cmath>
 #include <limits>
@@ -57,23 +57,17 @@ class Winding {
     single.t_scale[0] = 1.0;
     single.low[0] = 0.0;
     single.high[0] = std::numeric_limits<double>::infinity();
-    ray_ = single[0];
-    mesh_ray(
-        *body_.mesh, single, single.high[0],
-        {[](void* context, std::uint32_t, std::uint32_t slot, const SurfaceHit&, double limit) {
-           static_cast<Winding*>(context)->cross(slot);
-           return limit;
-         },
-         [](void* context, std::uint32_t, std::uint32_t, double) {
-           static_cast<Winding*>(context)->is_uncertain_ = true;
-           return -1.0;
-         },
-         this});
-  }
-  void cross(std::uint32_t slot) noexcept {
-    double corner[3][3];
-    (void)body_.own_corners(slot, corner);
-    crossings_ += comes_from_behind(ray_, corner) ? 1 : -1;
+    mesh_ray_kernels().all(*body_.mesh, single, single.high[0],
+                           {[](void* context, std::uint32_t, const SurfaceHit& hit, double limit) {
+                              static_cast<Winding*>(context)->crossings_ +=
+                                  hit.from_behind ? 1 : -1;
+                              return limit;
+                            },
+                            [](void* context, std::uint32_t, double) {
+                              static_cast<Winding*>(context)->is_uncertain_ = true;
+                              return -1.0;
+                            },
+                            this});
   }
   /// Solid angle of the mesh: 4 pi times the winding number (van Oosterom, Strackee, "The solid
   /// angle of a plane triangle", 1983). O(n).
@@ -96,7 +90,6 @@ class Winding {
   const TransformedShape& body_;
   const Vec at_;
   double slack_;
-  SurfaceRay ray_;
   int crossings_ = 0;
   bool is_uncertain_ = false;
 };
@@ -183,15 +176,19 @@ Status check_solid(const Composites& all, ShapeId id) noexcept {
   return volume > 0.0 ? Status::ok : Status::invalid_shape;
 }
 
-bool solid_contains(const Composites& all, ShapeId id, const Pose& pose,
-                    const double point[3]) noexcept {
-  return is_in_solid(TransformedShape::at(all, id, pose), Vec::Map(point));
+bool solid_contains_point(const CompositePool& pool, ShapeId id, const Pose& pose,
+                          const double point[3]) noexcept {
+  const Composites* const all = composites_with(pool, id);
+  return all != nullptr && !all->solid.empty() &&
+         is_in_solid(TransformedShape::at(*all, id, pose), Vec::Map(point));
 }
 
-bool solid_contains(const Composites& all, ShapeId id, const Pose& pose, ShapeId other,
-                    const Pose& other_pose) noexcept {
-  const TransformedShape solid = TransformedShape::at(all, id, pose);
-  return any_point(TransformedShape::at(all, other, other_pose),
+bool solid_contains_shape(const CompositePool& pool, ShapeId id, const Pose& pose, ShapeId other,
+                          const Pose& other_pose) noexcept {
+  const Composites* const all = composites_with(pool, id);
+  if (all == nullptr || all->solid.empty()) return false;
+  const TransformedShape solid = TransformedShape::at(*all, id, pose);
+  return any_point(TransformedShape::at(*all, other, other_pose),
                    [&](const Vec& point) { return is_in_solid(solid, point); });
 }
 

@@ -12,10 +12,4 @@ namespace winnow::mid {
 /// one; triangles that are segments are skipped. `out_of_memory` if memory is refused. O(n log n).
 [[nodiscard]] Status check_solid(const Composites& all, ShapeId mesh) noexcept;
 
-/// See MidPhase::solid_contains. Ids must exist, poses must be valid.
-[[nodiscard]] bool solid_contains(const Composites& all, ShapeId id, const Pose& pose,
-                                  const double point[3]) noexcept;
-[[nodiscard]] bool solid_contains(const Composites& all, ShapeId id, const Pose& pose,
-                                  ShapeId other, const Pose& other_pose) noexcept;
-
 }  // namespace winnow::mid

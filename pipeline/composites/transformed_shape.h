@@ -162,7 +162,7 @@ struct ChildVisitor {
   }
 };
 
-/// Calls `visitor` for the primitives that the moving box may hit (see MidPhase::visit). For a
+/// Calls `visitor` for the primitives that the moving box may hit (see mid::visit). For a
 /// compound that has surfaces, calls `children` instead.
 void visit(const TransformedShape& body, const MovingBox& moving_box,
            const PrimitiveVisitor& visitor, const ChildVisitor& children);

@@ -14,6 +14,9 @@ namespace winnow {
 /// Registers the kernels of a pair kind, a <= b, for narrow_kernels(). Thread-safe.
 void link_kernels(ShapeKind a, ShapeKind b, const NarrowKernels& (*kernels)() noexcept) noexcept;
 
+/// Links the kernels of triangles, for the primitives of composite shapes, which are in no pool.
+void link_triangle_kernels() noexcept;
+
 }  // namespace winnow
 
 /// For the file of a kind: defines `link_kernels_of_<kind>()`, which links the kernels of the pairs

@@ -1,4 +1,4 @@
-#include <winnow/pipeline/mid_phase.h>
+#include <winnow/pipeline/shape_pool.h>
 #include "core/threads/float_environment.h"
 #include "pipeline/kernels/link.h"
 #include "pipeline/shapes/shape_pool_put.h"
@@ -28,8 +28,7 @@ Status ShapePool::add(const TriangleShape& shape, ShapeId& id) {
   return put(shape, id);
 }
 
-// The primitives of composite shapes are triangles that are in no pool, so link their kernels here.
-MidPhase::MidPhase() noexcept {
+void link_triangle_kernels() noexcept {
   link_kernels_of_triangle();
 }
 

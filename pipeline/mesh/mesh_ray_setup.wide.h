@@ -3,10 +3,10 @@
 // Transforms rays to the frame of a surface and prepares them for the traversal of a mesh's nodes:
 // eight at a time, one per SIMD lane, or a single ray. make_ready computes in double, without fused
 // operations, so that lanes and scalars have equal results on every instruction set.
-// make_near_ready prepares a single ray in float. mesh_rays.wide.h uses this.
+// make_near_ready prepares a single ray in float. mesh_rays.kernel.cpp uses this.
 
 #include "pipeline/mesh/mesh_lanes.wide.h"
-#include "pipeline/mesh/mesh_traversal.h"
+#include "pipeline/mesh/mesh_rays.kernel.h"
 #include "simd/lanes/float_axes.h"
 #include "simd/lanes/vectors.h"
 

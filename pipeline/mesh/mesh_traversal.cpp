@@ -3,6 +3,8 @@
 
 #include "pipeline/mesh/mesh_traversal.h"
 
+#include "pipeline/mesh/mesh_rays.kernel.h"
+
 #include <winnow/core/rounding.h>
 #include <winnow/simd/isa.h>
 #include "pipeline/mesh/mesh_tree.h"
@@ -15,6 +17,7 @@
 namespace winnow {
 
 WINNOW_DEFINE_KERNELS(MeshKernels, mesh_kernels)
+WINNOW_DEFINE_KERNELS(MeshRayKernels, mesh_ray_kernels)
 
 namespace {
 

@@ -1,11 +1,11 @@
 #pragma once
 
 // The interface to a mesh's tree: traversals that mesh_traversal.cpp prepares as jobs and that the
-// kernels in the *.wide.h files of this folder run. composites/ calls these functions.
+// kernels in the *.wide.h files of this folder run. composites/ calls these functions. Rays are in
+// mesh_rays.kernel.h.
 
 #include <winnow/pipeline/shapes.h>
 #include "pipeline/mesh/mesh_view.h"
-#include "pipeline/mesh/surface_rays.h"
 #include "simd/kernels/kernels.h"
 
 #include <cstdint>
@@ -145,18 +145,6 @@ struct MeshNearJob {
   double scale[3];
 };
 
-/// Receives the triangles that rays cross. The functions return the ray's new limit; a negative
-/// limit ends the ray.
-struct RaySlotVisitor {
-  /// Called for a triangle that the ray certainly crosses.
-  double (*visit_hit)(void* context, std::uint32_t ray, std::uint32_t slot, const SurfaceHit& hit,
-                      double limit) = nullptr;
-  /// Called for a triangle that the ray may cross.
-  double (*visit_candidate)(void* context, std::uint32_t ray, std::uint32_t slot,
-                            double limit) = nullptr;
-  void* context = nullptr;
-};
-
 struct MeshKernels {
   void (*overlap)(const MeshView& mesh, const MeshBoxJob& job, SlotSink& out);
   void (*pairs)(const MeshView& a, const MeshView& b, const MeshPairJob& job, SlotPairSink& out);
@@ -164,15 +152,6 @@ struct MeshKernels {
                const SlotVisitor& visitor);
   void (*near_pairs)(const MeshView& a, const MeshView& b, const MeshPairJob& job, double limit,
                      const SlotPairVisitor& visitor);
-  /// Transforms rays to the frame of a surface; returns a bit for each ray that the caller must
-  /// transform.
-  std::uint64_t (*place_rays)(const SurfaceFrame& frame, const RayColumns<kRaysAtOnce>& world,
-                              std::uint32_t count, SurfaceRays& own);
-  void (*rays)(const MeshView& mesh, const SurfaceRays& rays, const double* limits,
-               std::uint32_t count, const RaySlotVisitor& visitor);
-  void (*ray)(const MeshView& mesh, const SingleSurfaceRay& ray, double limit,
-              const RaySlotVisitor& visitor);
-  Crossing (*cross)(const SurfaceRay& ray, const double (&corner)[3][3], SurfaceHit& hit);
   void (*near)(const MeshView& mesh, const MeshNearJob& job, double limit,
                const SlotVisitor& visitor);
 };

@@ -2,7 +2,6 @@
 #include "pipeline/mesh/mesh_near_pairs.wide.h"
 #include "pipeline/mesh/mesh_overlaps.wide.h"
 #include "pipeline/mesh/mesh_pairs.wide.h"
-#include "pipeline/mesh/mesh_rays.wide.h"
 
 namespace winnow {
 namespace WINNOW_ISA_NAME::mesh {
@@ -35,8 +34,6 @@ void show_near(const MeshView& mesh, const MeshNearJob& job, double limit,
 extern const MeshKernels WINNOW_KERNEL_TABLE(mesh_kernels) = {
     WINNOW_ISA_NAME::mesh::find_overlaps, WINNOW_ISA_NAME::mesh::find_pairs,
     WINNOW_ISA_NAME::mesh::show_cast,     WINNOW_ISA_NAME::mesh::show_near_pairs,
-    WINNOW_ISA_NAME::mesh::place_rays,    WINNOW_ISA_NAME::mesh::trace_rays,
-    WINNOW_ISA_NAME::mesh::trace_ray,     WINNOW_ISA_NAME::mesh::cross_triangle,
     WINNOW_ISA_NAME::mesh::show_near,
 };
 

@@ -43,6 +43,24 @@ struct MeshSpan {
   double units_volume;
 };
 
+/// Frame of a surface (mesh or height field) in the world.
+struct SurfaceFrame {
+  double position[3];           ///< position of the surface's origin in the world
+  double world_to_local[3][3];  ///< columns of the matrix from world vectors to the frame
+  bool is_rotated;              ///< false if that matrix is the identity
+  double reach;                 ///< upper bound of the surface's coordinates in the frame
+  double size;                  ///< upper bound of them in world axes, about the origin
+};
+
+/// A hit of a ray on a part of a composite shape.
+struct PartHit {
+  bool found = false;    ///< false: the other members are not set
+  bool has_unit_normal;  ///< false, during the traversal only, if normalising may overflow
+  std::uint32_t part;    ///< number of the triangle or child
+  double t;              ///< of the ray
+  double normal[3];      ///< unit normal of the surface in the world, against the ray
+};
+
 /// A triangle mesh as its traversals read it. A slot is a position in the order of the tree: leaf i
 /// has slots [16 i, 16 i + 16). Columns indexed by slot are padded to a multiple of 16 with copies
 /// of the last slot, levels with empty boxes.

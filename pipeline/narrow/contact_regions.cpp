@@ -1,4 +1,4 @@
-#include <winnow/pipeline/contact_regions.h>
+#include "pipeline/narrow/contact_regions.h"
 
 namespace winnow {
 

@@ -1,4 +1,4 @@
-#include <winnow/pipeline/mid_phase.h>
+#include "pipeline/narrow/primitive_pairs.h"
 
 namespace winnow {
 

@@ -221,11 +221,13 @@ Status Collision::collide_composite() {
                              call_.uses_cache ? options.cache_tolerance : 0.0, margins)) {
     return Status::out_of_memory;
   }
-  Status status = options.composites->find_primitive_pairs(
-      scene_.shapes,
-      {{scene_.shape.data(), scene_.shape.size()}, {scene_.pose.data(), scene_.pose.size()}},
-      {scene_.batch.composite.data(), scene_.batch.composite.size()}, margins, options.execution,
-      parts);
+  Status status =
+      mid::mid_phase_of(*options.composites)
+          .find_primitive_pairs(*options.composites, scene_.shapes,
+                                {{scene_.shape.data(), scene_.shape.size()},
+                                 {scene_.pose.data(), scene_.pose.size()}},
+                                {scene_.batch.composite.data(), scene_.batch.composite.size()},
+                                margins, options.execution, parts);
   if (status != Status::ok) return status;
   if (!filters_.find_part_margins(margins)) return Status::out_of_memory;
   status = scene_.batch.parts->narrow.collide(
@@ -235,8 +237,9 @@ Status Collision::collide_composite() {
       scene_.batch.parts->answers);
   if (status != Status::ok) return status;
   if (call_.level >= ContactLevel::distance) {
-    options.composites->correct_internal_edges(scene_.shapes, parts, margins, options.execution,
-                                               scene_.batch.parts->answers);
+    mid::mid_phase_of(*options.composites)
+        .correct_internal_edges(scene_.shapes, parts, margins, options.execution,
+                                scene_.batch.parts->answers);
   }
   scene_.statistics.parts += scene_.batch.parts->narrow.statistics();
   scene_.statistics.primitive_pairs += parts.pairs.size();
@@ -254,9 +257,9 @@ Status Collision::reduce_composite() {
   PairMargins margins = 0.0;
   if (!filters_.find_margins(scene_.batch.composite, 0.0, margins)) return Status::out_of_memory;
   const SceneOptions& options = scene_.options;
-  return options.composites->reduce_contacts(scene_.shapes, scene_.batch.parts->pairs,
-                                             scene_.batch.parts->answers, margins,
-                                             options.execution, scene_.batch.parts->regions);
+  return mid::mid_phase_of(*options.composites)
+      .reduce_contacts(scene_.shapes, scene_.batch.parts->pairs, scene_.batch.parts->answers,
+                       margins, options.execution, scene_.batch.parts->regions);
 }
 
 // If ghost contacts are suppressed, all pairs are one batch, because the suppression compares all

@@ -2,9 +2,9 @@
 
 // The pairs of one batch of Scene::collide that need new contacts, and their results.
 
-#include <winnow/pipeline/mid_phase.h>
 #include <winnow/pipeline/narrow_phase.h>
 #include "core/memory/new_in.h"
+#include "pipeline/composites/mid_phase.h"
 #include "pipeline/scene/ghost_contacts.h"
 
 #include <cstdint>

@@ -131,9 +131,11 @@ BoxRoom::~BoxRoom() {
 }
 
 Status SceneState::check(ShapeId id, const Pose& at) const noexcept {
-  const bool known = id.is_composite()
-                         ? options.composites != nullptr && options.composites->contains(id)
-                         : shapes.contains(id);
+  const bool known =
+      id.is_composite()
+          ? options.composites != nullptr &&
+                mid::mid_phase_of(*options.composites).contains(*options.composites, id)
+          : shapes.contains(id);
   if (!known) return Status::invalid_key;
   return at.is_valid() ? Status::ok : Status::invalid_pose;
 }
@@ -171,7 +173,9 @@ PlainBox SceneState::bounds_from(const Eigen::Vector3d& from, ShapeId id, const 
     growth_to[axis] = grown_by + (high - low);
   }
   const Aabb box =
-      id.is_composite() ? options.composites->bounds(id, moved) : shapes.bounds(id, moved);
+      id.is_composite()
+          ? mid::mid_phase_of(*options.composites).bounds(*options.composites, id, moved)
+          : shapes.bounds(id, moved);
   PlainBox grown;
   for (int axis = 0; axis < 3; ++axis) {
     grown.min[axis] = round_down(add_down(static_cast<double>(box.min[axis]), -growth_to[axis]));

@@ -227,8 +227,8 @@ struct NarrowWorld {
     return status;
   }
   Status find_primitive_pairs() {
-    const Status status = scene.composites.find_primitive_pairs(scene.shapes, scene.bodies(), mixed,
-                                                                0.1, execution, primitives);
+    const Status status = mid::find_primitive_pairs(scene.composites, scene.shapes, scene.bodies(),
+                                                    mixed, 0.1, execution, primitives);
     if (status == Status::ok) answers.push_back(primitives.pairs.size());
     return status;
   }

@@ -151,7 +151,7 @@ TEST(CompositePool, edited_surface_updates_its_compounds) {
     // The compound's tree is updated too: a cast finds the highest sample.
     int visited = 0;
     const MovingBox high{{-10, -10, 89}, {10, 10, 91}};
-    pool.visit(compound, {}, high,
+    mid::visit(pool, compound, {}, high,
                {[](void* context, const Primitive&, double limit) {
                   ++*static_cast<int*>(context);
                   return limit;
@@ -215,9 +215,9 @@ Landing land(const ShapePool& shapes, const CompositePool& pool, ShapeId body, c
   const Pose poses[2] = {ground_first ? ground : at, ground_first ? at : ground};
   const BodyPair pair[] = {{0, 1}};
   PrimitivePairs pairs;
-  EXPECT_EQ(
-      pool.find_primitive_pairs(shapes, {ids, poses}, pair, margin, Execution::serial(), pairs),
-      Status::ok);
+  EXPECT_EQ(mid::find_primitive_pairs(pool, shapes, {ids, poses}, pair, margin, Execution::serial(),
+                                      pairs),
+            Status::ok);
   NarrowPhase narrow;
   NarrowResult result;
   EXPECT_EQ(narrow.collide(pairs.tables(shapes),
@@ -228,7 +228,7 @@ Landing land(const ShapePool& shapes, const CompositePool& pool, ShapeId body, c
             Status::ok);
   std::size_t before = 0;
   for (const double distance : result.distance()) before += distance <= margin ? 1 : 0;
-  pool.correct_internal_edges(shapes, pairs, margin, Execution::serial(), result);
+  mid::correct_internal_edges(shapes, pairs, margin, Execution::serial(), result);
   Landing landing;
   for (std::size_t i = 0; i < result.size(); ++i) {
     if (!(result.distance()[i] <= margin)) continue;
@@ -389,15 +389,15 @@ TEST(InternalEdges, smoothing_matches_on_threads_and_without_memory) {
     world.pairs.push_back({i, 0});
   }
   PrimitivePairs pairs;
-  ASSERT_EQ(world.composites.find_primitive_pairs(world.shapes, world.bodies(), world.pairs, 0.0,
-                                                  Execution::serial(), pairs),
+  ASSERT_EQ(mid::find_primitive_pairs(world.composites, world.shapes, world.bodies(), world.pairs,
+                                      0.0, Execution::serial(), pairs),
             Status::ok);
   const auto answer = [&](std::pmr::memory_resource* memory, Execution execution,
                           CountingMemory* refusing) {
     auto result = std::make_unique<NarrowResult>(memory);
     winnow::test::answer(world.shapes, pairs, {}, *result);
     if (refusing != nullptr) refusing->refuse_after(0);
-    world.composites.correct_internal_edges(world.shapes, pairs, 0.0, execution, *result);
+    mid::correct_internal_edges(world.shapes, pairs, 0.0, execution, *result);
     if (refusing != nullptr) refusing->grant_all();
     return result;
   };

@@ -7,6 +7,8 @@
 #include <winnow/core/pose_view.h>
 #include <winnow/pipeline/composite_pool.h>
 #include <winnow/pipeline/narrow_phase.h>
+#include "pipeline/composites/mid_phase.h"
+
 #include <Eigen/Core>
 
 #include <array>
@@ -216,12 +218,12 @@ inline std::vector<Primitive> parts_of(const CompositeWorld& world, ShapeId id, 
     return {whole};
   }
   MovingBox all{{-1e30, -1e30, -1e30}, {1e30, 1e30, 1e30}};
-  world.composites.visit(id, pose, all,
-                         {[](void* context, const Primitive& primitive, double limit) {
-                            static_cast<std::vector<Primitive>*>(context)->push_back(primitive);
-                            return limit;
-                          },
-                          &parts});
+  mid::visit(world.composites, id, pose, all,
+             {[](void* context, const Primitive& primitive, double limit) {
+                static_cast<std::vector<Primitive>*>(context)->push_back(primitive);
+                return limit;
+              },
+              &parts});
   return parts;
 }
 

@@ -199,18 +199,17 @@ struct Reduced {
   }
 
   void solve(const Execution& execution) {
-    ASSERT_EQ(world.composites.find_primitive_pairs(world.shapes, world.bodies(), world.pairs,
-                                                    margin_, execution, pairs),
+    ASSERT_EQ(mid::find_primitive_pairs(world.composites, world.shapes, world.bodies(), world.pairs,
+                                        margin_, execution, pairs),
               Status::ok);
     answer(world.shapes, pairs,
            {.level = ContactLevel::manifold, .contact_margin = margin_, .execution = execution},
            answers);
-    world.composites.correct_internal_edges(world.shapes, pairs, margin_, execution, answers);
+    mid::correct_internal_edges(world.shapes, pairs, margin_, execution, answers);
     ASSERT_EQ(reduce_contacts(execution), Status::ok);
   }
   [[nodiscard]] Status reduce_contacts(const Execution& execution) {
-    return world.composites.reduce_contacts(world.shapes, pairs, answers, margin_, execution,
-                                            regions);
+    return mid::reduce_contacts(world.shapes, pairs, answers, margin_, execution, regions);
   }
 
   [[nodiscard]] Vec normal(std::size_t i) const {
@@ -472,8 +471,8 @@ TEST(ContactReduction, second_call_allocates_nothing_and_footprint_is_exact) {
     Reduced all(scaled(200), 0.05, 31);
     ContactRegions regions(&memory);
     const auto reduce_contacts = [&] {
-      return all.world.composites.reduce_contacts(all.world.shapes, all.pairs, all.answers, 0.05,
-                                                  Execution::serial(), regions);
+      return mid::reduce_contacts(all.world.shapes, all.pairs, all.answers, 0.05,
+                                  Execution::serial(), regions);
     };
     for (std::size_t granted = 0;; ++granted) {
       memory.refuse_after(granted);

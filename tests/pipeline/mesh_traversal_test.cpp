@@ -3,7 +3,7 @@
 
 #include "pipeline/mesh/mesh_traversal.h"
 #include <gtest/gtest.h>
-#include "pipeline/mesh/mesh_rays.h"
+#include "pipeline/mesh/mesh_rays.kernel.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -12,6 +12,8 @@
 #include <limits>
 #include <map>
 #include <set>
+#include <tuple>
+#include <utility>
 
 #include "tests/support/config.h"
 #include "tests/support/meshes.h"
@@ -439,13 +441,13 @@ TEST_F(Meshes, ray_visits_triangle_at_which_it_aims) {
       ray.high = limit;
       const Slots shown = on_all_isas([&] {
         Seen seen{{}, 0.0, true};
-        mesh_ray(view_of(mesh), lone(ray), limit,
-                 {[](void* context, std::uint32_t, std::uint32_t slot, const SurfaceHit&,
-                     double most) { return Seen::visit(context, &slot, 1, most); },
-                  [](void* context, std::uint32_t, std::uint32_t slot, double most) {
-                    return Seen::visit(context, &slot, 1, most);
-                  },
-                  &seen});
+        mesh_ray_kernels().all(view_of(mesh), lone(ray), limit,
+                               {[](void* context, std::uint32_t slot, const SurfaceHit&,
+                                   double most) { return Seen::visit(context, &slot, 1, most); },
+                                [](void* context, std::uint32_t slot, double most) {
+                                  return Seen::visit(context, &slot, 1, most);
+                                },
+                                &seen});
         std::sort(seen.slots.begin(), seen.slots.end());
         return std::binary_search(seen.slots.begin(), seen.slots.end(), aim) ? Slots{aim} : Slots{};
       });
@@ -457,7 +459,7 @@ TEST_F(Meshes, ray_visits_triangle_at_which_it_aims) {
         }
       }
       SurfaceHit hit{};
-      const Crossing crossing = cross_triangle(ray, corner, hit);
+      const Crossing crossing = mesh_ray_kernels().cross(ray, corner, hit);
       EXPECT_NE(crossing, Crossing::none);
       if (crossing != Crossing::found) continue;
       const Point normal = cross(minus(triangles[aim].corner[1], triangles[aim].corner[0]),
@@ -486,18 +488,18 @@ bool is_shown(const TriangleMesh& mesh, const Eigen::Vector3d& from, const Eigen
     std::uint32_t slot;
     bool is_seen;
   } sought{aim, false};
-  mesh_ray(view_of(mesh), lone(ray), ray.high,
-           {[](void* context, std::uint32_t, std::uint32_t slot, const SurfaceHit&, double most) {
-              auto& by = *static_cast<Sought*>(context);
-              by.is_seen = by.is_seen || by.slot == slot;
-              return most;
-            },
-            [](void* context, std::uint32_t, std::uint32_t slot, double most) {
-              auto& by = *static_cast<Sought*>(context);
-              by.is_seen = by.is_seen || by.slot == slot;
-              return most;
-            },
-            &sought});
+  mesh_ray_kernels().all(view_of(mesh), lone(ray), ray.high,
+                         {[](void* context, std::uint32_t slot, const SurfaceHit&, double most) {
+                            auto& by = *static_cast<Sought*>(context);
+                            by.is_seen = by.is_seen || by.slot == slot;
+                            return most;
+                          },
+                          [](void* context, std::uint32_t slot, double most) {
+                            auto& by = *static_cast<Sought*>(context);
+                            by.is_seen = by.is_seen || by.slot == slot;
+                            return most;
+                          },
+                          &sought});
   return sought.is_seen;
 }
 
@@ -539,34 +541,68 @@ TEST(MeshRays, rays_hit_flat_and_thin_meshes) {
   }
 }
 
-/// The triangles that a traversal reports for each of several rays, with the time of the hit, or -1
-/// if the hit is in doubt.
-struct SeenByRays {
-  std::map<std::uint32_t, double> slots[kRaysAtOnce];
+constexpr std::uint32_t kNone = ~0U;
 
-  [[nodiscard]] RaySlotVisitor visitor() {
-    return {[](void* context, std::uint32_t ray, std::uint32_t slot, const SurfaceHit& hit,
-               double limit) { return note(context, ray, slot, hit.t, limit); },
-            [](void* context, std::uint32_t ray, std::uint32_t slot, double limit) {
-              return note(context, ray, slot, -1.0, limit);
-            },
-            this};
+/// The closest hits of rays. Counts the triangles in doubt, and ignores them.
+template <std::uint32_t Room>
+struct Closest {
+  static constexpr SurfaceFrame kFrame = {{}, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, false, 0.0, 0.0};
+
+  explicit Closest(const SurfaceRayColumns<Room>& given) : rays(given) {
+    hits.any = false;
+    hits.is_one_sided = false;
+    hits.frame = &kFrame;
+    hits.first_part = 0;
+    hits.test = [](void* context, std::uint32_t ray, std::uint32_t, double limit) {
+      ++static_cast<Closest*>(context)->in_doubt[ray];
+      return limit;
+    };
+    hits.context = this;
+    std::fill_n(hits.own_limit, Room, -1.0);
   }
-  static double note(void* context, std::uint32_t ray, std::uint32_t slot, double t, double limit) {
-    auto& seen = static_cast<SeenByRays*>(context)->slots[ray];
-    EXPECT_TRUE(seen.emplace(slot, t).second);
-    return limit;
+  void set(std::uint32_t i, double limit) {
+    hits.limit[i] = hits.own_limit[i] = limit;
+    hits.unit[i] = 1.0;
+    hits.best[i] = &found[i];
   }
+  [[nodiscard]] auto result(std::uint32_t i) const {
+    const PartHit& hit = found[i];
+    return hit.found ? std::tuple(hit.part, hit.t, hit.normal[0]) : std::tuple(kNone, 0.0, 0.0);
+  }
+
+  SurfaceRayColumns<Room> rays;
+  ClosestHits<Room> hits;
+  PartHit found[Room];
+  int in_doubt[Room] = {};
 };
 
-TEST_F(Meshes, ray_packet_matches_single_rays) {
+/// Returns the closest of all triangles that the ray certainly crosses, by number and t.
+std::pair<std::uint32_t, double> closest_of_all(const MeshView& mesh, const SingleSurfaceRay& ray,
+                                                double limit) {
+  struct Found {
+    const MeshView& mesh;
+    double limit;
+    std::pair<double, std::uint32_t> best;
+  } found{mesh, limit, {std::numeric_limits<double>::infinity(), kNone}};
+  mesh_ray_kernels().all(
+      mesh, ray, limit,
+      {[](void* context, std::uint32_t slot, const SurfaceHit& hit, double most) {
+         auto& to = *static_cast<Found*>(context);
+         const std::uint32_t number = to.mesh.triangle[slot] & kTriangleNumberMask;
+         if (hit.t <= to.limit) to.best = std::min(to.best, std::pair(hit.t, number));
+         return most;
+       },
+       [](void*, std::uint32_t, double most) { return most; }, &found});
+  return {found.best.second, found.best.second == kNone ? 0.0 : found.best.first};
+}
+
+TEST_F(Meshes, closest_hits_of_packet_match_single_rays) {
   Random random(13);
   for (const TriangleMesh& mesh : meshes_) {
     const auto triangles = reference_triangles(view_of(mesh));
     for (const std::uint32_t count : {1U, 2U, 9U, kRaysAtOnce}) {
       SurfaceRays rays{};
-      alignas(64) double limits[kRaysAtOnce] = {};
-      std::fill_n(limits, kRaysAtOnce, -1.0);
+      double limits[kRaysAtOnce] = {};
       for (std::uint32_t i = 0; i < count; ++i) {
         const Eigen::Vector3d at = point_of(triangles[random.below(triangles.size())], random);
         for (int axis = 0; axis < 3; ++axis) {
@@ -575,17 +611,25 @@ TEST_F(Meshes, ray_packet_matches_single_rays) {
           rays.ray.origin[axis][i] = at[axis] - mesh.radius() * rays.ray.direction[axis][i];
         }
         rays.slack[i] = 0x1p-46 * mesh.radius();
+        rays.t_scale[i] = 1.0;
         rays.high[i] = 4.0 * mesh.radius();
         limits[i] = random.chance(0.2) ? -1.0 : mesh.radius() * random.uniform(0, 3);
       }
       for (const Isa isa : available_isas()) {
         const IsaScope scope(isa);
-        SeenByRays together;
-        mesh_rays(view_of(mesh), rays, limits, count, together.visitor());
+        Closest<kRaysAtOnce> together(rays);
+        for (std::uint32_t i = 0; i < count; ++i) together.set(i, limits[i]);
+        mesh_ray_kernels().closest(view_of(mesh), rays, count, together.hits);
         for (std::uint32_t i = 0; i < count; ++i) {
-          SeenByRays single;
-          mesh_ray(view_of(mesh), lone(rays[i]), limits[i], single.visitor());
-          EXPECT_EQ(together.slots[i], single.slots[0]) << "ray " << i << " of " << count;
+          SingleSurfaceRay ray = lone(rays[i]);
+          ray.t_scale[0] = 1.0;
+          Closest<1> single(ray);
+          single.set(0, limits[i]);
+          mesh_ray_kernels().closest_of_one(view_of(mesh), ray, single.hits);
+          EXPECT_EQ(together.result(i), single.result(0)) << "ray " << i << " of " << count;
+          const auto [number, t] = closest_of_all(view_of(mesh), ray, limits[i]);
+          EXPECT_EQ(number, std::get<0>(single.result(0)));
+          EXPECT_EQ(t, std::get<1>(single.result(0)));
         }
       }
     }

@@ -97,8 +97,8 @@ TEST(MidPhase, primitive_pairs_match_brute_force) {
   list_all_pairs(world, all, owner);
   for (const double margin : {0.0, 0.25}) {
     PrimitivePairs pairs;
-    ASSERT_EQ(world.composites.find_primitive_pairs(world.shapes, world.bodies(), world.pairs,
-                                                    margin, Execution::serial(), pairs),
+    ASSERT_EQ(mid::find_primitive_pairs(world.composites, world.shapes, world.bodies(), world.pairs,
+                                        margin, Execution::serial(), pairs),
               Status::ok);
     // Far from the origin poses are rounded differently.
     const double slack = 1e-9;
@@ -118,16 +118,16 @@ TEST(MidPhase, pairs_match_on_any_threads_and_isa) {
   world.add_shapes(random);
   world.add_pairs(random, scaled(300), 1.5, {0.0, 0.0, 0.0});
   PrimitivePairs one;
-  ASSERT_EQ(world.composites.find_primitive_pairs(world.shapes, world.bodies(), world.pairs, 0.1,
-                                                  Execution::serial(), one),
+  ASSERT_EQ(mid::find_primitive_pairs(world.composites, world.shapes, world.bodies(), world.pairs,
+                                      0.1, Execution::serial(), one),
             Status::ok);
   for (const Isa isa : available_isas()) {
     const IsaScope scope(isa);
     for (const Workers& workers : all_workers()) {
       PrimitivePairs many;
       ASSERT_EQ(Threads(workers.threads).run([&] {
-        return world.composites.find_primitive_pairs(world.shapes, world.bodies(), world.pairs, 0.1,
-                                                     workers.execution(), many);
+        return mid::find_primitive_pairs(world.composites, world.shapes, world.bodies(),
+                                         world.pairs, 0.1, workers.execution(), many);
       }),
                 Status::ok);
       EXPECT_TRUE(same(one.shapes, many.shapes) && same(one.poses, many.poses) &&
@@ -156,8 +156,8 @@ TEST(MidPhase, second_call_allocates_nothing_and_footprint_is_exact) {
       std::size_t before = scratch.requests();
       for (int call = 0; call < 2; ++call) {
         before = scratch.requests();
-        ASSERT_EQ(world.composites.find_primitive_pairs(world.shapes, world.bodies(), world.pairs,
-                                                        0.1, execution, pairs),
+        ASSERT_EQ(mid::find_primitive_pairs(world.composites, world.shapes, world.bodies(),
+                                            world.pairs, 0.1, execution, pairs),
                   Status::ok);
       }
       EXPECT_EQ(scratch.requests(), before);
@@ -186,14 +186,14 @@ TEST(MidPhase, refused_memory_changes_nothing) {
     CountingMemory memory;
     memory.refuse_after(grants);
     PrimitivePairs pairs(&memory);
-    const Status status = world.composites.find_primitive_pairs(
-        world.shapes, world.bodies(), world.pairs, 0.1, Execution::serial(), pairs);
+    const Status status = mid::find_primitive_pairs(world.composites, world.shapes, world.bodies(),
+                                                    world.pairs, 0.1, Execution::serial(), pairs);
     if (status == Status::ok) break;
     ASSERT_EQ(status, Status::out_of_memory);
     EXPECT_EQ(pairs.pairs.size(), 0U);
     memory.grant_all();
-    EXPECT_EQ(world.composites.find_primitive_pairs(world.shapes, world.bodies(), world.pairs, 0.1,
-                                                    Execution::serial(), pairs),
+    EXPECT_EQ(mid::find_primitive_pairs(world.composites, world.shapes, world.bodies(), world.pairs,
+                                        0.1, Execution::serial(), pairs),
               Status::ok);
   }
   const Surface surface = soup(random, 40, 2.0, 0.5);
@@ -237,8 +237,8 @@ TEST(MidPhase, unknown_shapes_give_no_pairs) {
   const Pose poses[4];
   const BodyPair some[] = {{0, 3}, {3, 1}, {2, 3}, {3, 9}, {3, 3}};
   PrimitivePairs pairs;
-  ASSERT_EQ(world.composites.find_primitive_pairs(world.shapes, {bodies, poses}, some, 0.0,
-                                                  Execution::serial(), pairs),
+  ASSERT_EQ(mid::find_primitive_pairs(world.composites, world.shapes, {bodies, poses}, some, 0.0,
+                                      Execution::serial(), pairs),
             Status::ok);
   ASSERT_EQ(pairs.first.size(), 6U);
   EXPECT_EQ(pairs.first[4], 0U);
@@ -265,16 +265,15 @@ TEST(MidPhase, extreme_poses_and_scales_give_no_nan) {
   }
   for (const double margin : {0.0, 1e300}) {
     PrimitivePairs pairs;
-    ASSERT_EQ(world.composites.find_primitive_pairs(world.shapes, world.bodies(), world.pairs,
-                                                    margin, Execution::serial(), pairs),
+    ASSERT_EQ(mid::find_primitive_pairs(world.composites, world.shapes, world.bodies(), world.pairs,
+                                        margin, Execution::serial(), pairs),
               Status::ok);
     // With this margin every pair of primitives is returned. Tests a sample of them.
     const std::size_t count = std::min<std::size_t>(pairs.pairs.size(), 2000);
     pairs.pairs.set_size(count);
     NarrowResult result;
     answer(world.shapes, pairs, {.contact_margin = margin}, result);
-    world.composites.correct_internal_edges(world.shapes, pairs, margin, Execution::serial(),
-                                            result);
+    mid::correct_internal_edges(world.shapes, pairs, margin, Execution::serial(), result);
     for (const double distance : result.distance()) EXPECT_FALSE(std::isnan(distance));
   }
 }
@@ -302,8 +301,8 @@ TEST(Visits, visits_find_all_primitives_in_reach) {
         static_cast<std::set<std::uint32_t>*>(context)->insert(primitive.part);
         return limit;
       };
-      world.composites.visit(id, pose, box, {note, &visited});
-      world.composites.visit_near(id, pose, box, 0.7, {note, &near});
+      mid::visit(world.composites, id, pose, box, {note, &visited});
+      mid::visit_near(world.composites, id, pose, box, 0.7, {note, &near});
       // Compares with the narrow phase: a box against each primitive.
       CompositeWorld probe;
       ShapeId cube = add(probe.shapes,
@@ -356,9 +355,9 @@ TEST(Visits, negative_limit_ends_visit) {
       return -1.0;
     };
     const MovingBox all{{-1e9, -1e9, -1e9}, {1e9, 1e9, 1e9}};
-    world.composites.visit(id, Pose{}, all, {once, &shown});
+    mid::visit(world.composites, id, Pose{}, all, {once, &shown});
     EXPECT_EQ(shown, 1);
-    world.composites.visit_near(id, Pose{}, all, 1.0, {once, &shown});
+    mid::visit_near(world.composites, id, Pose{}, all, 1.0, {once, &shown});
     EXPECT_EQ(shown, 2);
   }
 }

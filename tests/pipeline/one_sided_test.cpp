@@ -80,8 +80,8 @@ struct FacingWorld : CompositeWorld {
                                                 double margin) {
   PrimitivePairs found;
   const BodyPair pair[] = {world.pairs[i]};
-  EXPECT_EQ(world.composites.find_primitive_pairs(world.shapes, world.bodies(), pair, margin,
-                                                  Execution::serial(), found),
+  EXPECT_EQ(mid::find_primitive_pairs(world.composites, world.shapes, world.bodies(), pair, margin,
+                                      Execution::serial(), found),
             Status::ok);
   std::set<std::uint32_t> parts;
   for (const BodyPair& of : found.pairs) parts.insert(found.part[of.a]);

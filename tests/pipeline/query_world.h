@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 #include <winnow/pipeline/composite_pool.h>
 #include <winnow/pipeline/scene.h>
+#include "pipeline/composites/mid_phase.h"
 #include "pipeline/solver/solver.h"
 
 #include <algorithm>
@@ -51,8 +52,8 @@ struct QueryWorld {
       static_cast<std::vector<FlatPart>*>(list)->push_back({p.shape, p.pose, p.part, p.triangle});
       return limit;
     };
-    composites.visit_near(shape, here, {}, std::numeric_limits<double>::infinity(),
-                          {collect, &result});
+    mid::visit_near(composites, shape, here, {}, std::numeric_limits<double>::infinity(),
+                    {collect, &result});
     return result;
   }
   [[nodiscard]] std::vector<FlatPart> parts(std::size_t body) const {

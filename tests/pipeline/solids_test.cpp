@@ -196,10 +196,11 @@ TEST(Solids, inside_test_matches_winding_number) {
         const Vec stretched = own.cwiseProduct(Vec::Map(scale.data()));
         const Vec world = Vec::Map(pose.position) + turn * stretched;
         (is_inside ? inside : outside) += 1;
-        ASSERT_EQ(pool.solid_contains(scaled_id, pose, world.data()), is_inside)
+        ASSERT_EQ(mid::solid_contains_point(pool, scaled_id, pose, world.data()), is_inside)
             << mesh.name << " " << own.transpose();
         const Vec in_child = world + turn * Vec(0.5, -2.0, 1.0);
-        ASSERT_EQ(pool.solid_contains(compound, pose, in_child.data()), is_inside) << mesh.name;
+        ASSERT_EQ(mid::solid_contains_point(pool, compound, pose, in_child.data()), is_inside)
+            << mesh.name;
       }
     }
   }
@@ -249,7 +250,7 @@ TEST(Solids, distance_of_inner_points_is_negative) {
     ASSERT_EQ(solid.part, plain.part);
     if (plain.distance < 1e-9) continue;  // on the surface
     const bool is_contained =
-        world.composites.solid_contains(world.solid, world.pose, point.data());
+        mid::solid_contains_point(world.composites, world.solid, world.pose, point.data());
     ASSERT_EQ(solid.distance, is_contained ? -plain.distance : plain.distance);
     ASSERT_EQ(solid.normal[0], is_contained ? -plain.normal[0] : plain.normal[0]);
     ASSERT_EQ(solid.point_b[2], plain.point_b[2]);

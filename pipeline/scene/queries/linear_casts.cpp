@@ -30,12 +30,12 @@ MovingBox moving_box_from(const LinearCast& linear_cast, const double from[3], d
   return moving_box;
 }
 
-CastContact contact_at(const ShapeRay& ray, const ShapeHit& hit) noexcept {
+CastContact contact_at(const ShapeRay& ray, double t, const double (&normal)[3]) noexcept {
   CastContact contact;
-  contact.t = hit.t;
+  contact.t = t;
   for (int i = 0; i < 3; ++i) {
-    contact.normal[i] = hit.normal[i];
-    contact.point[i] = ray.origin[i] + hit.t * ray.direction[i];
+    contact.normal[i] = normal[i];
+    contact.point[i] = ray.origin[i] + t * ray.direction[i];
   }
   return contact;
 }
@@ -63,25 +63,6 @@ Vector3d closest_point(const Vector3d (&corner)[3], const Vector3d& p) noexcept 
     return corner[1] + (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (corner[2] - corner[1]);
   }
   return corner[0] + (vb * ab + vc * ac) / (va + vb + vc);
-}
-
-/// True if the ray certainly misses a triangle, grown by `doubt`, of a body without rotation: the
-/// signed volumes of the ray and each side have different signs (Platis, Theoharis, "Fast
-/// ray-tetrahedron intersection using Pluecker coordinates", 2003), beyond their rounding.
-bool passes_by(const double from[3], const double direction[3], const SubShape& part,
-               double doubt) noexcept {
-  if (!is_unrotated(part)) return false;
-  const Vector3d d = Vector3d::Map(direction);
-  const Vector3d first = Vector3d::Map(part.pose.position) - Vector3d::Map(from);
-  const Vector3d a = first + Vector3d::Map(part.triangle->vertex[0]);
-  const Vector3d b = first + Vector3d::Map(part.triangle->vertex[1]);
-  const Vector3d c = first + Vector3d::Map(part.triangle->vertex[2]);
-  const double far = a.cwiseAbs().sum() + b.cwiseAbs().sum() + c.cwiseAbs().sum();
-  const double error = d.cwiseAbs().sum() * far * (0x1p-48 * far + 4.0 * doubt);
-  const double volume[3] = {d.dot(c.cross(b)), d.dot(a.cross(c)), d.dot(b.cross(a))};
-  const double low = std::min({volume[0], volume[1], volume[2]});
-  const double high = std::max({volume[0], volume[1], volume[2]});
-  return low < -error && high > error;
 }
 
 }  // namespace
@@ -127,48 +108,20 @@ bool CastMotions::part(const ShapeTables& tables,
 void LinearCast::note_contact(const double[3], const SubShape&,
                               impact::RestingContacts&) const noexcept {}
 
-double corner_error(const SubShape& part) noexcept {
-  if (part.triangle == nullptr) return 0.0;
-  double size = Vector3d::Map(part.pose.position).cwiseAbs().sum();
-  for (const auto& corner : part.triangle->vertex) {
-    size = std::max(size, Vector3d::Map(corner).cwiseAbs().sum());
-  }
-  return 0x1p-48 * size;
-}
-
 RayCast::RayCast(const ShapePool& shapes, const ShapeRay& ray) noexcept
     : LinearCast(ray), shapes_(shapes), ray_(ray) {}
 
 bool RayCast::find_contact(const double from[3], const SubShape& part, double limit,
                            const EarlierContacts& /*known*/, CastContact& contact) const noexcept {
-  const double thickness = corner_error(part);
-  if (part.triangle != nullptr && passes_by(from, ray_.direction, part, thickness)) return false;
-  const Vector3d start = Vector3d::Map(from);
-  if (is_behind_triangle({start, start}, part)) return false;
-  // Tests the whole ray: whether the thick triangle is used must not depend on the limit.
   ShapeRay ray = ray_;
   std::copy_n(from, 3, ray.origin);
-  if (!enters(ray, part, contact)) {
-    if (thickness == 0.0) return false;
-    SubShape thick = part;
-    thick.thickness = thickness;
-    if (!enters(ray, thick, contact)) return false;
-  }
+  ShapeHit hit;
+  if (!enters(shapes_, ray, part, hit)) return false;
+  contact = contact_at(ray, hit.t, hit.normal);
   return contact.t <= limit;
 }
 
 void RayCast::describe(const double[3], const SubShape&, CastContact&) const noexcept {}
-
-bool RayCast::enters(const ShapeRay& ray, const SubShape& part,
-                     CastContact& contact) const noexcept {
-  PartTables tables(shapes_);
-  const ShapeId shape = tables.put(0, part);
-  ShapeHit hit;
-  const Status status = cast_ray(tables.tables(), shape, part.pose, ray, hit);
-  if (status != Status::ok || !hit.hit) return false;
-  contact = contact_at(ray, hit);
-  return true;
-}
 
 ConvexCast::ConvexCast(const SubShapeQuery& parts, const ShapeCast& cast, double tolerance) noexcept
     : LinearCast(parts.box(PlacedShape{cast.shape, at_origin(cast.pose)}), cast, tolerance),
@@ -345,6 +298,17 @@ void BodyContact::note_contacts(const SubShapeQuery& parts, const LinearCast& li
                     record);
 }
 
+bool BodyContact::find(const SubShapeQuery& parts, const ShapeRay& ray, const PlacedShape& body,
+                       double limit, bool any) noexcept {
+  PartHit hit;
+  parts.cast_rays(body, {&ray, 1}, &limit, any, nullptr, &hit);
+  if (!hit.found) return false;
+  ShapeRay own = ray;
+  std::copy_n(from_, 3, own.origin);
+  take({body.shape, body.pose, hit.part}, contact_at(own, hit.t, hit.normal));
+  return true;
+}
+
 bool BodyContact::find(const SubShapeQuery& parts, const LinearCast& linear_cast,
                        const PlacedShape& body, double limit, bool any) noexcept {
   CastContact contact;
@@ -365,6 +329,7 @@ bool BodyContact::find(const SubShapeQuery& parts, const LinearCast& linear_cast
   std::copy_n(body.pose.position, 3, base_);
   const TwoDiff start = difference(linear_cast.start(), base_);
   std::copy_n(start.difference, 3, from_);
+  if (linear_cast.ray() != nullptr) return find(parts, *linear_cast.ray(), body, limit, any);
   PlacedShape placed = body;
   for (int i = 0; i < 3; ++i) placed.pose.position[i] = -start.rest[i];
   if (at_rest != nullptr) note_contacts(parts, linear_cast, placed, resting);
@@ -381,23 +346,7 @@ bool BodyContact::find(const SubShapeQuery& parts, const LinearCast& linear_cast
     const LinearCast::EarlierContacts known{found ? &contact_ : nullptr, at_rest};
     return linear_cast.find_contact(from_, part, most, known, contact) ? improve(part) : most;
   };
-  if (linear_cast.ray() == nullptr) {
-    parts.visit_parts(placed, moving_box_from(linear_cast, from_, limit), test_part);
-    return found;
-  }
-  const ShapeRay& ray = *linear_cast.ray();
-  const auto visit_hit = [&](std::size_t, std::uint32_t part, const ShapeHit& hit, double) {
-    if (hit.t > limit) return limit;
-    ShapeRay own = ray;
-    std::copy_n(from_, 3, own.origin);
-    contact = contact_at(own, hit);
-    return improve({body.shape, placed.pose, part});
-  };
-  const auto visit_candidate = [&](std::size_t, const SubShape& part, double most) {
-    return test_part(part, most);
-  };
-  const double end = limit;
-  parts.visit_rays(body, {&ray, 1}, &end, visit_hit, visit_candidate);
+  parts.visit_parts(placed, moving_box_from(linear_cast, from_, limit), test_part);
   return found;
 }
 

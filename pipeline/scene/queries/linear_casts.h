@@ -1,7 +1,7 @@
 #pragma once
 
 // Rays and shapes that move along a line without turning, tested against the parts of one body.
-// casts.cpp calls BodyContact::find for each candidate body.
+// cast_query.cpp calls BodyContact::find for each candidate body.
 
 #include <winnow/pipeline/scene_queries.h>
 #include "pipeline/composites/parts.h"
@@ -50,10 +50,6 @@ class CastMotions {
 
 /// Boxes are grown by this share of their coordinates before box tests, which round.
 inline constexpr double kCastBoxGrowth = 0x1p-47;
-
-/// Upper bound on the distance between copies of a common corner of adjacent triangles, which are
-/// rounded separately. Triangles that are this thick leave no gaps between them.
-[[nodiscard]] double corner_error(const SubShape& part) noexcept;
 
 /// A ray, or a shape that moves along a line without turning.
 class LinearCast {
@@ -128,9 +124,6 @@ class RayCast final : public LinearCast {
                 CastContact& contact) const noexcept override;
 
  private:
-  [[nodiscard]] bool enters(const ShapeRay& ray, const SubShape& part,
-                            CastContact& contact) const noexcept;
-
   const ShapePool& shapes_;
   const ShapeRay& ray_;
 };
@@ -186,6 +179,9 @@ class BodyContact {
   [[nodiscard]] SceneHit hit(const LinearCast& linear_cast) const noexcept;
 
  private:
+  /// As above, for a ray and a composite body.
+  [[nodiscard]] bool find(const SubShapeQuery& parts, const ShapeRay& ray, const PlacedShape& body,
+                          double limit, bool any) noexcept;
   void take(const SubShape& part, const CastContact& contact) noexcept;
   /// Records the contacts with a composite body at the start.
   void note_contacts(const SubShapeQuery& parts, const LinearCast& linear_cast,

@@ -1,14 +1,12 @@
 #pragma once
 
 // Shared by the queries of a scene: the state of SceneQueries, filters and ray hits.
-// scene_queries.cpp, casts.cpp, motion_casts.cpp and set_distance.cpp implement the queries.
+// ray_query.cpp, shape_cast_query.cpp, scene_queries.cpp, motion_casts.cpp and set_distance.cpp
+// implement the queries.
 
 #include <winnow/pipeline/scene_queries.h>
 #include "pipeline/composites/parts.h"
 #include "pipeline/scene/scene_state.h"
-
-#include <array>
-#include <bit>
 
 namespace winnow {
 
@@ -19,9 +17,8 @@ struct BodyRayHit {
   double t;
   double normal[3];
 
-  [[nodiscard]] static BodyRayHit at(std::uint32_t body, std::uint32_t part, double t,
-                                     const double (&normal)[3]) noexcept {
-    return {body, part, t, {normal[0], normal[1], normal[2]}};
+  [[nodiscard]] static BodyRayHit of(std::uint32_t body, const PartHit& hit) noexcept {
+    return {body, hit.part, hit.t, {hit.normal[0], hit.normal[1], hit.normal[2]}};
   }
   /// Replaces this hit with `other` if `other` is within the limit and earlier, or equally early
   /// with a lower body id or part. Lowers the limit to the t of `other`, or with `any` to below
@@ -44,35 +41,13 @@ struct RayHit {
   BodyRayHit at;
 };
 
-/// A small direct-mapped cache of meshes that MidPhase::prepare_ray_surface prepared for single
-/// rays. If two bodies map to the same entry, the later one stays.
+/// Meshes that mid::cast_rays prepared for single rays, in a small direct-mapped cache.
 class RaySurfaces {
  public:
-  /// Returns the prepared mesh of a body at its present pose, or null if the body is not a mesh.
-  [[nodiscard]] const RaySurface* find(const SubShapeQuery& parts, const SceneState& scene,
-                                       std::uint32_t body) {
-    RaySurface& kept = kept_[body % kEntries];
-    const ShapeId shape = scene.shape[body];
-    const Pose& pose = scene.pose[body];
-    if (kept.shape == shape && kept.revision == scene.composites_seen && is_same(kept.pose, pose)) {
-      return &kept;
-    }
-    return parts.prepare_ray_surface({shape, pose}, kept) ? &kept : nullptr;
-  }
+  [[nodiscard]] RaySurface& of(std::uint32_t body) noexcept { return kept_[body % kEntries]; }
 
  private:
   static constexpr std::size_t kEntries = 8;
-
-  /// Compares the bits, so that -0 and 0 differ.
-  [[nodiscard]] static bool is_same(const Pose& a, const Pose& b) noexcept {
-    using Bits = std::array<std::uint64_t, sizeof(Pose) / sizeof(std::uint64_t)>;
-    const auto of_a = std::bit_cast<Bits>(a);
-    const auto of_b = std::bit_cast<Bits>(b);
-    std::uint64_t differ = 0;
-    for (std::size_t i = 0; i < of_a.size(); ++i) differ |= of_a[i] ^ of_b[i];
-    return differ == 0;
-  }
-
   RaySurface kept_[kEntries];
 };
 
@@ -119,7 +94,7 @@ struct QueryState {
   [[nodiscard]] static Status check_state(const QueryState* state) noexcept {
     if (state == nullptr) return Status::out_of_memory;
     const SceneState& scene = state->scene;
-    const MidPhase* const composites = scene.options.composites;
+    const CompositePool* const composites = scene.options.composites;
     const bool has_changed =
         composites != nullptr && composites->revision() != scene.composites_seen;
     return scene.is_up_to_date() && !has_changed ? Status::ok : Status::invalid_argument;

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <winnow/core/column.h>
-#include <winnow/core/export.h>
 #include <winnow/core/footprint.h>
 #include <winnow/core/large_pages.h>
 #include <winnow/pipeline/contact_types.h>
@@ -33,9 +32,9 @@ struct ContactRegion {
   ContactPoint point[kManifoldPoints];  ///< only the first `count` are set
 };
 
-/// Contact regions of pairs of bodies, computed by MidPhase::reduce_contacts from the manifolds of
+/// Contact regions of pairs of bodies, computed by mid::reduce_contacts from the manifolds of
 /// their parts. The caller keeps the object from frame to frame.
-class WINNOW_API ContactRegions {
+class ContactRegions {
  public:
   /// Creates an empty list. Every allocation comes from `memory`, which must outlive the object;
   /// there are none before the first use.

@@ -1,167 +1,46 @@
-#pragma once
-
 // Ray traversal of a mesh: tests sixteen nodes at a time in their 16-bit units, nearest first, then
-// sixteen triangles at a time. All tests are in float and keep nodes and triangles for which
-// rounding makes the result uncertain; u is half an ulp of 1.
-//
-// Triangles are tested in a frame sheared along the ray, so that the ray becomes an axis, by the
-// signs of the areas between the ray and the triangle's sides (Woop, Benthin, Wald, "Watertight
-// ray/triangle intersection", JCGT 2013). Coordinates are in node units; if the mesh stores
-// quantised vertices (MeshView::leaf_point, four bytes each), these are used. The triangles that
-// remain are tested in double (mesh_crossing.wide.h).
+// the triangles of a leaf (mesh_ray_triangles.wide.h). All tests of nodes are in float and keep
+// nodes for which rounding makes the result uncertain. One ray is traversed alone, several side by
+// side.
+
+#include "pipeline/mesh/mesh_rays.kernel.h"
 
 #include "partitions/tree/traversal.wide.h"
-#include "pipeline/mesh/mesh_crossing.wide.h"
-#include "pipeline/mesh/mesh_ray_setup.wide.h"
-#include "simd/lanes/packed_points.h"
+#include "pipeline/mesh/mesh_ray_triangles.wide.h"
 #include "simd/lanes/positive_min_max.h"
 
-namespace winnow::WINNOW_ISA_NAME::mesh {
+namespace winnow {
+namespace WINNOW_ISA_NAME::mesh {
+namespace {
 
-/// Corners of triangles in the sheared frame: their coordinates relative to the ray on the two axes
-/// other than the ray's fastest axis.
-struct CornersAcross {
-  Floats x[3];
-  Floats y[3];
+/// Passes the triangles of a leaf to ClosestHits. Functions return the ray's new limit.
+template <std::uint32_t Room>
+struct ClosestReceiver {
+  const MeshView& mesh;
+  const SurfaceRayColumns<Room>& rays;
+  ClosestHits<Room>& hits;
+
+  [[gnu::always_inline]] double hit(std::uint32_t ray, std::uint32_t slot, const SurfaceHit& found,
+                                    double limit) {
+    return hits.take(rays, ray, mesh.triangle[slot] & kTriangleNumberMask, found, limit);
+  }
+  [[gnu::always_inline]] double candidate(std::uint32_t ray, std::uint32_t slot, double limit) {
+    const double lowered = hits.test(hits.context, ray, slot, hits.limit[ray]);
+    return hits.lower(rays, ray, lowered, limit);
+  }
 };
 
-/// The triangles of a leaf that the line of a ray may cross, and a subset that it certainly
-/// crosses.
-struct LineTriangles {
-  Mask16 may;
-  Mask16 sure;
-};
+/// Passes them to a visitor of all triangles.
+struct AllReceiver {
+  const CrossingVisitor& visitor;
 
-/// Tests which of sixteen triangles the line of the ray crosses. The error of coordinates is less
-/// than `wrong`, which includes 0.05 units for the rounding of products, 6 u of a coordinate of
-/// 2^17. A crossing is certain if the areas exceed their error by `surely`.
-///
-/// The product of two coordinates has an error of less than `wrong` times the sum of their
-/// magnitudes, plus twice the square of `wrong`.
-[[gnu::always_inline]] inline LineTriangles around_line(const CornersAcross& at, float wrong,
-                                                        float surely) {
-  const auto norm_l1 = [&](int k) { return abs(at.x[k]) + abs(at.y[k]); };
-  const Floats error_bound = multiply_add(norm_l1(0) + norm_l1(1) + norm_l1(2), Floats(wrong),
-                                          Floats(2.1F * wrong * wrong));
-  const Floats a = at.x[2] * at.y[1] - at.y[2] * at.x[1];
-  const Floats b = at.x[0] * at.y[2] - at.y[0] * at.x[2];
-  const Floats c = at.x[1] * at.y[0] - at.y[1] * at.x[0];
-  const Floats most = max(max(a, b), c);
-  const Floats least = min(min(a, b), c);
-  const Floats beyond = error_bound + Floats(surely);
-  const LaneMask<float> misses = (most > error_bound) & (least < -error_bound);
-  const LaneMask<float> sure = (least > beyond) | (most < -beyond);
-  return {~bits(misses) & 0xFFFFU, bits(sure)};
-}
-
-/// The line of a ray, in node units.
-class RayLine {
- public:
-  template <std::uint32_t Room>
-  [[gnu::always_inline]] void set(const ReadyRays<Room>& rays, std::uint32_t ray) {
-    constexpr std::uint32_t kNext[3] = {1, 2, 0};
-    const auto size = [&](std::uint32_t axis) { return __builtin_fabsf(rays.inverse[axis][ray]); };
-    const std::uint32_t faster = size(1) < size(0) ? 1 : 0;
-    fastest_ = size(2) < size(faster) ? 2 : faster;
-    side_[0] = kNext[fastest_];
-    side_[1] = kNext[side_[0]];
-    const float along = rays.inverse[fastest_][ray];
-    float wrong[2];
-    for (std::uint32_t k = 0; k < 2; ++k) {
-      const std::uint32_t axis = side_[k];
-      const float slope = -along / rays.inverse[axis][ray];
-      slope_[k] = slope;
-      at_[k] = rays.at[axis][ray] + slope * rays.at[fastest_][ray];
-      wrong[k] = rays.grow[axis][ray] + __builtin_fabsf(slope) * rays.grow[fastest_][ray];
-    }
-    wrong_ = larger(wrong[0], wrong[1]) + kRoundings;
-    surely_ = rays.surely[ray] * __builtin_fabsf(along);
+  [[gnu::always_inline]] double hit(std::uint32_t, std::uint32_t slot, const SurfaceHit& found,
+                                    double limit) {
+    return visitor.visit_hit(visitor.context, slot, found, limit);
   }
-
-  /// The triangles of a leaf that the line may cross.
-  [[gnu::always_inline]] LineTriangles near(const MeshView& mesh, std::uint32_t leaf) const {
-    const int blocks = mesh.leaf_point != nullptr ? vertex_blocks(mesh, leaf) : 0;
-    if (blocks == 1) return near_listed<1>(mesh, leaf);
-    if (blocks == 2) return near_listed<2>(mesh, leaf);
-    return near_corners(mesh, leaf);
+  [[gnu::always_inline]] double candidate(std::uint32_t, std::uint32_t slot, double limit) {
+    return visitor.visit_candidate(visitor.context, slot, limit);
   }
-
- private:
-  /// Covers the rounding of coordinates computed in this class, up to 65536 units, and of their
-  /// products.
-  static constexpr float kRoundings = 0.12F;
-
-  [[gnu::always_inline]] static float larger(float a, float b) { return a > b ? a : b; }
-
-  /// Uses the quantised vertices that the leaf lists, each with an error of half a step.
-  template <int Blocks>
-  [[gnu::always_inline]] LineTriangles near_listed(const MeshView& mesh, std::uint32_t leaf) const {
-    constexpr float kShare = 1.0F / kMaxLeafPoint;
-    const std::uint16_t* const bounds = mesh.node[0] + place_of_bound(leaf, 0);
-    const auto low = [&](std::uint32_t axis) { return static_cast<float>(bounds[axis * kLanes]); };
-    const auto extent = [&](std::uint32_t axis) {
-      return static_cast<float>(bounds[(3 + axis) * kLanes] - bounds[axis * kLanes]);
-    };
-    const float low_along = low(fastest_);
-    const float extent_along = extent(fastest_);
-    float from[2];
-    float step[2];
-    float tilt[2];
-    float steps[2];
-    for (int k = 0; k < 2; ++k) {
-      from[k] = (low(side_[k]) - at_[k]) + slope_[k] * low_along;
-      step[k] = extent(side_[k]) * kShare;
-      tilt[k] = extent_along * (slope_[k] * kShare);
-      steps[k] = step[k] + __builtin_fabsf(tilt[k]);
-    }
-    Floats x[Blocks];
-    Floats y[Blocks];
-    for (int block = 0; block < Blocks; ++block) {
-      const std::uint32_t* const points =
-          mesh.leaf_point + block_of(mesh, leaf, block) * kMeshFanout;
-      const Floats along = load_packed(points, fastest_);
-      x[block] = multiply_add(load_packed(points, side_[0]), Floats(step[0]),
-                              multiply_add(along, Floats(tilt[0]), Floats(from[0])));
-      y[block] = multiply_add(load_packed(points, side_[1]), Floats(step[1]),
-                              multiply_add(along, Floats(tilt[1]), Floats(from[1])));
-    }
-    CornersAcross at;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const LanePermutation places(places_of(mesh, leaf, k));
-      at.x[k] = places.pick(x);
-      at.y[k] = places.pick(y);
-    }
-    return around_line(at, wrong_ + 0.51F * larger(steps[0], steps[1]), surely_);
-  }
-
-  /// Uses each corner's vertex.
-  [[gnu::always_inline]] LineTriangles near_corners(const MeshView& mesh,
-                                                    std::uint32_t leaf) const {
-    CornersAcross at;
-    for (std::size_t k = 0; k < 3; ++k) {
-      Floats corner[3];
-      load_corners(mesh, leaf, k, corner);
-      for (int axis = 0; axis < 3; ++axis) {
-        corner[axis] =
-            (corner[axis] - Floats(mesh.origin[axis])) * Floats(mesh.span.float_units[axis]);
-      }
-      const Floats along = corner[fastest_];
-      at.x[k] = multiply_add(along, Floats(slope_[0]), corner[side_[0]] - Floats(at_[0]));
-      at.y[k] = multiply_add(along, Floats(slope_[1]), corner[side_[1]] - Floats(at_[1]));
-    }
-    return around_line(at, wrong_, surely_);
-  }
-
-  /// The fastest axis, and the other two.
-  std::uint32_t fastest_;
-  std::uint32_t side_[2];
-  /// Shear: the change of the other two coordinates per unit along the fastest axis, and the
-  /// sheared position of the ray.
-  float slope_[2];
-  float at_[2];
-  float wrong_;
-  /// See ReadyRays::surely.
-  float surely_;
 };
 
 /// The next step of a ray: enter an inner node; enter a leaf to find the triangles that it may
@@ -196,8 +75,8 @@ class RayTraversal {
  public:
   static constexpr std::uint32_t kRoom = Single ? 1 : kRaysAtOnce;
 
-  /// Begins the traversal; `ray` is the ray's index in the columns and for the visitor. Returns the
-  /// first node.
+  /// Begins the traversal; `ray` is the ray's index in the columns and for the receiver. Returns
+  /// the first node.
   [[gnu::always_inline]] RayNode start(const MeshView& mesh, const SurfaceRayColumns<kRoom>& own,
                                        const ReadyRays<kRoom>& rays, std::uint32_t ray,
                                        double limit) {
@@ -238,9 +117,9 @@ class RayTraversal {
   /// Runs the whole traversal of one ray. If triangles have boxes, a leaf's triangles are tested
   /// after the next nodes, so that their vertices are fetched in the meantime. Else nearly all data
   /// of a leaf are already in cache, and its triangles are tested at once.
-  [[gnu::always_inline]] void go(const MeshView& mesh, RayNode node,
-                                 const RaySlotVisitor& visitor) {
-    if (mesh.box != nullptr) return go_through_boxes(mesh, node, visitor);
+  template <typename Receiver>
+  [[gnu::always_inline]] void go(const MeshView& mesh, RayNode node, Receiver& receiver) {
+    if (mesh.box != nullptr) return go_through_boxes(mesh, node, receiver);
     for (;;) {
       while (node.is_inner()) node = enter_inner(mesh, node);
       if (node.is_some()) {
@@ -248,7 +127,8 @@ class RayTraversal {
         if (mesh.leaf_vertex != nullptr) fetch_some_vertices(mesh, leaf);
         const LineTriangles line = line_.near(mesh, leaf);
         const Mask16 triangles = triangles_of(mesh, leaf) & line.may;
-        if (triangles != 0 && !cross_triangles(mesh, {leaf, 0.0F, triangles, line.sure}, visitor)) {
+        if (triangles != 0 &&
+            !cross_triangles(mesh, {leaf, 0.0F, triangles, line.sure}, receiver)) {
           return;
         }
       }
@@ -296,9 +176,10 @@ class RayTraversal {
     __builtin_prefetch(mesh.triangle + node_.number * kMeshFanout);
     return candidates_.triangles != 0;
   }
-  /// Returns false if the visitor ends the ray.
-  [[gnu::always_inline]] bool cross_triangles(const MeshView& mesh, const RaySlotVisitor& visitor) {
-    return cross_triangles(mesh, candidates_, visitor);
+  /// Returns false if the receiver ends the ray.
+  template <typename Receiver>
+  [[gnu::always_inline]] bool cross_triangles(const MeshView& mesh, Receiver& receiver) {
+    return cross_triangles(mesh, candidates_, receiver);
   }
 
  private:
@@ -318,7 +199,8 @@ class RayTraversal {
     Mask16 sure = 0;
   };
 
-  void go_through_boxes(const MeshView& mesh, RayNode node, const RaySlotVisitor& visitor) {
+  template <typename Receiver>
+  [[gnu::noinline]] void go_through_boxes(const MeshView& mesh, RayNode node, Receiver& receiver) {
     LeafCandidates before;
     for (;;) {
       while (node.is_inner()) node = enter_inner(mesh, node);
@@ -328,7 +210,7 @@ class RayTraversal {
         if (now.triangles != 0) fetch_vertices(mesh, now);
       }
       if (before.triangles != 0 && before.entry <= last_ &&
-          !cross_triangles(mesh, before, visitor)) {
+          !cross_triangles(mesh, before, receiver)) {
         return;
       }
       before = now;
@@ -528,8 +410,8 @@ class RayTraversal {
     __builtin_prefetch(mesh.triangle + first_slot);
   }
 
-  bool cross_triangles(const MeshView& mesh, const LeafCandidates& candidates,
-                       const RaySlotVisitor& visitor) {
+  template <typename Receiver>
+  bool cross_triangles(const MeshView& mesh, const LeafCandidates& candidates, Receiver& receiver) {
     const std::uint32_t first_slot = candidates.leaf * kMeshFanout;
     for (Mask16 rest = candidates.triangles; rest != 0; rest &= rest - 1) {
       const std::uint32_t lane = first(rest);
@@ -538,9 +420,8 @@ class RayTraversal {
       const Crossing crossing =
           cross_slot((*own_)[place()], mesh, slot, (candidates.sure >> lane & 1U) != 0, hit);
       if (crossing == Crossing::none) continue;
-      const double limit = crossing == Crossing::found
-                               ? visitor.visit_hit(visitor.context, ray_, slot, hit, limit_)
-                               : visitor.visit_candidate(visitor.context, ray_, slot, limit_);
+      const double limit = crossing == Crossing::found ? receiver.hit(ray_, slot, hit, limit_)
+                                                       : receiver.candidate(ray_, slot, limit_);
       if (limit < 0.0) return false;
       if (limit != limit_) set_limit(limit);
     }
@@ -610,16 +491,16 @@ class WaitingRays {
 /// that need the same kind of step take it one after another, which makes branches predictable.
 class RaysSideBySide {
  public:
-  RaysSideBySide(const MeshView& mesh, const RaySlotVisitor& visitor, WaitingRays& waiting)
-      : mesh_(mesh), visitor_(visitor), waiting_(waiting) {}
+  RaysSideBySide(const MeshView& mesh, ClosestReceiver<kRaysAtOnce>& receiver, WaitingRays& waiting)
+      : mesh_(mesh), receiver_(receiver), waiting_(waiting) {}
 
-  void run() {
+  [[gnu::noinline]] void run() {
     for (Walk& walk : walk_) begin(walk);
     while (going_ != 0) {
       // Prefetch before other rays take their steps.
       for (Walk* const walk : steps_[kEnterLeaf]) walk->fetch_leaf(mesh_);
       each(kCrossTriangles, [&](Walk& walk) {
-        put(walk, walk.cross_triangles(mesh_, visitor_) ? walk.next_step() : kEnd);
+        put(walk, walk.cross_triangles(mesh_, receiver_) ? walk.next_step() : kEnd);
       });
       each(kFetchVertices, [&](Walk& walk) {
         walk.fetch_vertices(mesh_);
@@ -679,30 +560,52 @@ class RaysSideBySide {
   }
 
   const MeshView& mesh_;
-  const RaySlotVisitor& visitor_;
+  ClosestReceiver<kRaysAtOnce>& receiver_;
   WaitingRays& waiting_;
   std::uint32_t going_ = 0;
   StepQueue steps_[kRaySteps];
   Walk walk_[kWalks];
 };
 
-/// Passes to the visitor the triangles that each ray may cross, nearest leaf first.
-inline void trace_rays(const MeshView& mesh, const SurfaceRays& rays, const double* limits,
-                       std::uint32_t count, const RaySlotVisitor& visitor) {
-  WaitingRays waiting(mesh, rays, limits, count);
-  RaysSideBySide(mesh, visitor, waiting).run();
+void find_closest(const MeshView& mesh, const SurfaceRays& rays, std::uint32_t count,
+                  ClosestHits<kRaysAtOnce>& hits) {
+  if (mesh.triangle_count == 0 || count == 0) return;
+  ClosestReceiver<kRaysAtOnce> receiver{mesh, rays, hits};
+  WaitingRays waiting(mesh, rays, hits.own_limit, count);
+  RaysSideBySide(mesh, receiver, waiting).run();
 }
-/// As above, for one ray.
-inline void trace_ray(const MeshView& mesh, const SingleSurfaceRay& ray, double limit,
-                      const RaySlotVisitor& visitor) {
-  if (!(limit >= 0.0)) return;
+
+template <typename Receiver>
+void trace_ray(const MeshView& mesh, const SingleSurfaceRay& ray, double limit,
+               Receiver& receiver) {
+  if (mesh.triangle_count == 0 || !(limit >= 0.0)) return;
   ReadyRays<1> ready;
   if (!make_near_ready(mesh.span, ray, ready) &&
       make_ready<ScalarRay>(mesh.span, ray, &limit, 0, ready) == 0) {
     return;
   }
   RayTraversal<true> walk;
-  walk.go(mesh, walk.start(mesh, ray, ready, 0, limit), visitor);
+  walk.go(mesh, walk.start(mesh, ray, ready, 0, limit), receiver);
 }
 
-}  // namespace winnow::WINNOW_ISA_NAME::mesh
+void find_closest_of_one(const MeshView& mesh, const SingleSurfaceRay& ray, ClosestHits<1>& hits) {
+  ClosestReceiver<1> receiver{mesh, ray, hits};
+  trace_ray(mesh, ray, hits.own_limit[0], receiver);
+}
+
+void visit_all(const MeshView& mesh, const SingleSurfaceRay& ray, double limit,
+               const CrossingVisitor& visitor) {
+  AllReceiver receiver{visitor};
+  trace_ray(mesh, ray, limit, receiver);
+}
+
+}  // namespace
+}  // namespace WINNOW_ISA_NAME::mesh
+
+extern const MeshRayKernels WINNOW_KERNEL_TABLE(mesh_ray_kernels) = {
+    WINNOW_ISA_NAME::mesh::place_rays,          WINNOW_ISA_NAME::mesh::find_closest,
+    WINNOW_ISA_NAME::mesh::find_closest_of_one, WINNOW_ISA_NAME::mesh::visit_all,
+    WINNOW_ISA_NAME::mesh::cross_triangle,
+};
+
+}  // namespace winnow

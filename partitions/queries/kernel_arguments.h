@@ -1,10 +1,25 @@
 #pragma once
 
+// What queries pass to the kernels, and what they get back: the prepared cast, the caller's filter,
+// and hits.
+
+#include <winnow/core/cast.h>
 #include <winnow/core/filter.h>
+#include <winnow/core/hits.h>
 #include "core/memory/key_table.h"
 #include "partitions/index/query_view.h"
+#include "partitions/queries/cast.kernel.h"
+
+#include <Eigen/Core>
+#include <bit>
+#include <cstdint>
 
 namespace winnow {
+
+/// Prepares the cast of a box along direction * [min_t, max_t]; the direction is not zero. Writes
+/// in place, because copying a struct that was just written stalls on its stores.
+void prepare_cast(KernelCast& cast, const Aabb& box, const Eigen::Vector3d& direction, double min_t,
+                  double max_t) noexcept;
 
 /// Converts a caller's filter for the kernels. Not movable, because its QueryFilter points to it.
 class KernelFilter {
@@ -40,5 +55,12 @@ class KernelFilter {
   const KeyTable& keys_;
   bool matches_nothing_ = false;
 };
+
+/// Returns the hit encoded as (bits of t) << 32 | id.
+[[nodiscard]] inline Hit to_hit(const KeyTable& keys, std::uint64_t found) noexcept {
+  const auto id = static_cast<ObjectId>(found);
+  return {keys.key_of(id), keys.client_data(id),
+          std::bit_cast<float>(static_cast<std::uint32_t>(found >> 32U))};
+}
 
 }  // namespace winnow

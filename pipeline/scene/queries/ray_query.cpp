@@ -1,0 +1,300 @@
+// SceneQueries: rays. Up to kRaysAtOnce rays are tested together, a single ray as a group of one.
+// Bodies of small sets (cast_query.h) are tested by mid::cast_rays, which traces the rays of a
+// group through a mesh side by side; then each ray is tested on crowds by CastQuery.
+
+#include "core/threads/float_environment.h"
+#include "pipeline/mesh/mesh_rays.kernel.h"
+#include "pipeline/rays/shape_entries.h"
+#include "pipeline/scene/queries/cast_query.h"
+
+#include <algorithm>
+
+namespace winnow {
+namespace {
+
+using mid::kInfinity;
+
+/// Up to `Room` rays that are tested together, which is cheaper than one by one if they reach the
+/// same surfaces. Results of a ray depend only on the ray.
+template <std::size_t Room>
+class RayGroup {
+ public:
+  RayGroup(QueryState& state, const Filter& filter) noexcept : state_(state), filter_(filter) {}
+  RayGroup(const RayGroup&) = delete;
+  RayGroup& operator=(const RayGroup&) = delete;
+
+  /// Begins a group of at most `Room` rays, which must be valid and outlive it.
+  void start(std::span<const ShapeRay> rays) noexcept { rays_ = rays; }
+  /// Calls visit(i, hit) for ray i of the group with its first hit in the scene, or with `any` some
+  /// hit. The null hit if there is none.
+  template <typename Visit>
+  Status find_each(bool any, Visit&& visit);
+  /// Appends all hits of the rays to the state's `hits`, and where the hits of each ray end to its
+  /// `hits_first`.
+  Status find_all(std::size_t first);
+
+ private:
+  void forget_hits() noexcept;
+  /// Improves the hits of all rays with their hits on a body.
+  void test_rays(std::uint32_t body, bool any);
+  /// Lists each ray's first hits on all bodies of small sets, sorted by ray, in the state's `few`,
+  /// and sets whether there are crowds.
+  Status list_few(bool& has_crowd);
+  /// Tests a ray on crowds; `hit` is the result so far.
+  Status query_crowds(std::size_t i, bool any, SceneHit& hit);
+  /// Fills in a hit, which must be a null hit.
+  [[gnu::always_inline]] void show(std::size_t i, const BodyRayHit& at,
+                                   SceneHit& hit) const noexcept;
+
+  QueryState& state_;
+  const Filter& filter_;
+  std::span<const ShapeRay> rays_;
+  /// Time of the first hit so far, or the end of the ray; with `any`, negative after a hit.
+  double limit_[Room];
+  BodyRayHit best_[Room];
+};
+
+template <std::size_t Room>
+void RayGroup<Room>::forget_hits() noexcept {
+  for (std::size_t i = 0; i < rays_.size(); ++i) {
+    limit_[i] = rays_[i].max_t;
+    best_[i].body = kNoObject;
+  }
+}
+
+template <std::size_t Room>
+void RayGroup<Room>::test_rays(std::uint32_t body, bool any) {
+  PartHit hits[Room];
+  RaySurface* const prepared = rays_.size() == 1 ? &state_.surfaces.of(body) : nullptr;
+  state_.parts.cast_rays(state_.placed(body), rays_, limit_, any, prepared, hits);
+  for (std::size_t i = 0; i < rays_.size(); ++i) {
+    if (hits[i].found) best_[i].improve(BodyRayHit::of(body, hits[i]), any, limit_[i]);
+  }
+}
+
+template <std::size_t Room>
+inline void RayGroup<Room>::show(std::size_t i, const BodyRayHit& at,
+                                 SceneHit& hit) const noexcept {
+  if (at.body == kNoObject) return;
+  hit.key = state_.scene.keys.key_of(at.body);
+  hit.data = state_.scene.keys.client_data(at.body);
+  hit.part = at.part;
+  hit.t = at.t;
+  // Summed in an order that keeps precision for distant bodies.
+  const double* const base = state_.scene.pose[at.body].position;
+  const TwoDiff from = difference(rays_[i].origin, base);
+  for (int k = 0; k < 3; ++k) {
+    hit.normal[k] = at.normal[k];
+    hit.point[k] = base[k] + (from.difference[k] + at.t * rays_[i].direction[k]);
+  }
+}
+
+template <std::size_t Room>
+Status RayGroup<Room>::query_crowds(std::size_t i, bool any, SceneHit& hit) {
+  if (any && best_[i].body != kNoObject) return Status::ok;
+  const RayCast linear_cast(state_.scene.shapes, rays_[i]);
+  CastQuery query(state_, linear_cast, filter_);
+  return any ? query.any_in_crowds(hit) : query.closest_in_crowds(best_[i].body, best_[i].t, hit);
+}
+
+template <std::size_t Room>
+template <typename Visit>
+Status RayGroup<Room>::find_each(bool any, Visit&& visit) {
+  forget_hits();
+  auto test_body = [&](std::uint32_t body) {
+    test_rays(body, any);
+    return false;
+  };
+  const bool has_crowd = test_small_sets(state_.scene, filter_, test_body);
+  for (std::size_t i = 0; i < rays_.size(); ++i) {
+    SceneHit hit;
+    show(i, best_[i], hit);
+    const Status status = has_crowd ? query_crowds(i, any, hit) : Status::ok;
+    if (status != Status::ok) return status;
+    visit(i, hit);
+  }
+  return Status::ok;
+}
+
+template <std::size_t Room>
+Status RayGroup<Room>::list_few(bool& has_crowd) {
+  Column<RayHit>& few = state_.few;
+  few.clear();
+  bool has_room = true;
+  auto test_body = [&](std::uint32_t body) {
+    forget_hits();
+    test_rays(body, false);
+    for (std::size_t i = 0; i < rays_.size(); ++i) {
+      if (best_[i].body != kNoObject) has_room = few.push_back({i, best_[i]}) && has_room;
+    }
+    return false;
+  };
+  has_crowd = test_small_sets(state_.scene, filter_, test_body);
+  const auto is_earlier = [](const RayHit& a, const RayHit& b) { return a.ray < b.ray; };
+  // The hits of one body are in order already.
+  const bool is_ordered = std::is_sorted(few.begin(), few.end(), is_earlier);
+  if (!is_ordered) std::sort(few.begin(), few.end(), is_earlier);
+  return has_room ? Status::ok : Status::out_of_memory;
+}
+
+template <std::size_t Room>
+Status RayGroup<Room>::find_all(std::size_t first) {
+  bool has_crowd = false;
+  if (const Status status = list_few(has_crowd); status != Status::ok) return status;
+  const RayHit* next = state_.few.begin();
+  for (std::size_t i = 0; i < rays_.size(); ++i) {
+    const std::size_t before = state_.hits.size();
+    for (; next != state_.few.end() && next->ray == i; ++next) {
+      SceneHit hit;
+      show(i, next->at, hit);
+      if (!state_.hits.push_back(hit)) return Status::out_of_memory;
+    }
+    if (has_crowd) {
+      const RayCast linear_cast(state_.scene.shapes, rays_[i]);
+      const Status status = CastQuery(state_, linear_cast, filter_).all_in_crowds(before);
+      if (status != Status::ok) return status;
+    } else {
+      order_hits(state_.hits, before);
+    }
+    state_.hits_first[first + i + 1] = state_.hits.size();
+  }
+  return Status::ok;
+}
+
+/// Divides a batch of rays into groups.
+class RayGroups {
+ public:
+  explicit RayGroups(const ShapeRayBatch& rays) noexcept : rays_(rays) {}
+
+  [[nodiscard]] std::size_t first() const noexcept { return first_; }
+  /// Returns the next rays; empty if there are none.
+  [[nodiscard]] std::span<const ShapeRay> next() noexcept {
+    first_ += count_;
+    count_ = std::min<std::size_t>(kRaysAtOnce, rays_.count - first_);
+    for (std::size_t i = 0; i < count_; ++i) ray_[i] = rays_[first_ + i];
+    return {ray_, count_};
+  }
+
+ private:
+  const ShapeRayBatch& rays_;
+  std::size_t first_ = 0;
+  std::size_t count_ = 0;
+  ShapeRay ray_[kRaysAtOnce];
+};
+
+Status check(const QueryState* state, const ShapeRay& ray) noexcept {
+  if (const Status status = QueryState::check_state(state); status != Status::ok) return status;
+  return is_valid(ray) ? Status::ok : Status::invalid_argument;
+}
+
+Status check(const QueryState* state, const ShapeRayBatch& rays) noexcept {
+  if (const Status status = QueryState::check_state(state); status != Status::ok) {
+    return status;
+  }
+  for (std::size_t i = 0; i < rays.count; ++i) {
+    if (!is_valid(rays[i])) return Status::invalid_argument;
+  }
+  return Status::ok;
+}
+
+template <typename T>
+void put(T* column, std::size_t row, const T& value) noexcept {
+  if (column != nullptr) column[row] = value;
+}
+
+void put(const SceneHitColumns& columns, std::size_t row, const SceneHit& hit) noexcept {
+  put(columns.key, row, hit.key);
+  put(columns.data, row, hit.data);
+  put(columns.part, row, hit.part);
+  put(columns.t, row, hit ? hit.t : kInfinity);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    put(columns.normal[axis], row, hit.normal[axis]);
+    put(columns.point[axis], row, hit.point[axis]);
+  }
+}
+
+Status find_one(QueryState* state, const ShapeRay& ray, const Filter& filter, bool any,
+                SceneHit& hit) {
+  if (const Status status = check(state, ray); status != Status::ok) return status;
+  RayGroup<1> group(*state, filter);
+  group.start({&ray, 1});
+  return group.find_each(any, [&](std::size_t, const SceneHit& found) { hit = found; });
+}
+
+Status find_many(QueryState* state, const ShapeRayBatch& rays, const Filter& filter, bool any,
+                 const SceneHitColumns& hits) {
+  if (const Status status = check(state, rays); status != Status::ok) return status;
+  RayGroups groups(rays);
+  RayGroup<kRaysAtOnce> group(*state, filter);
+  for (auto some = groups.next(); !some.empty(); some = groups.next()) {
+    group.start(some);
+    const Status status = group.find_each(
+        any, [&](std::size_t i, const SceneHit& hit) { put(hits, groups.first() + i, hit); });
+    if (status != Status::ok) return status;
+  }
+  return Status::ok;
+}
+
+/// Prepares the state for all hits of n rays.
+Status start_all(QueryState& state, std::size_t rays) {
+  state.hits.clear();
+  if (!state.hits_first.resize(rays + 1)) return Status::out_of_memory;
+  state.hits_first[0] = 0;
+  return Status::ok;
+}
+
+}  // namespace
+
+Status SceneQueries::closest(const ShapeRay& ray, SceneHit& hit, const Filter& filter) {
+  const DefaultFloatEnvironment environment;
+  return find_one(state_, ray, filter, false, hit);
+}
+
+Status SceneQueries::any(const ShapeRay& ray, SceneHit& hit, const Filter& filter) {
+  const DefaultFloatEnvironment environment;
+  return find_one(state_, ray, filter, true, hit);
+}
+
+Status SceneQueries::all(const ShapeRay& ray, std::span<const SceneHit>& hits,
+                         const Filter& filter) {
+  const DefaultFloatEnvironment environment;
+  Status status = check(state_, ray);
+  if (status == Status::ok) status = start_all(*state_, 1);
+  if (status != Status::ok) return status;
+  RayGroup<1> group(*state_, filter);
+  group.start({&ray, 1});
+  status = group.find_all(0);
+  if (status == Status::ok) hits = {state_->hits.data(), state_->hits.size()};
+  return status;
+}
+
+Status SceneQueries::closest(const ShapeRayBatch& rays, const SceneHitColumns& hits,
+                             const Filter& filter) {
+  const DefaultFloatEnvironment environment;
+  return find_many(state_, rays, filter, false, hits);
+}
+
+Status SceneQueries::any(const ShapeRayBatch& rays, const SceneHitColumns& hits,
+                         const Filter& filter) {
+  const DefaultFloatEnvironment environment;
+  return find_many(state_, rays, filter, true, hits);
+}
+
+Status SceneQueries::all(const ShapeRayBatch& rays, SceneHitLists& hits, const Filter& filter) {
+  const DefaultFloatEnvironment environment;
+  Status status = check(state_, rays);
+  if (status == Status::ok) status = start_all(*state_, rays.count);
+  if (status != Status::ok) return status;
+  RayGroups groups(rays);
+  RayGroup<kRaysAtOnce> group(*state_, filter);
+  for (auto some = groups.next(); !some.empty(); some = groups.next()) {
+    group.start(some);
+    status = group.find_all(groups.first());
+    if (status != Status::ok) return status;
+  }
+  const Column<std::size_t>& first = state_->hits_first;
+  hits = {{state_->hits.data(), state_->hits.size()}, {first.data(), first.size()}};
+  return Status::ok;
+}
+
+}  // namespace winnow
