@@ -5,6 +5,7 @@
 // implement the queries.
 
 #include <winnow/pipeline/scene_queries.h>
+#include "pipeline/composites/mid_phase.h"
 #include "pipeline/composites/parts.h"
 #include "pipeline/scene/scene_state.h"
 
