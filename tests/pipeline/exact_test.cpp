@@ -28,6 +28,8 @@ struct Pair {
   ConeShape cones[2];
   TriangleShape triangles[2];
   HalfSpaceShape half_spaces[2];
+  EllipsoidShape ellipsoids[2];
+  TaperedCapsuleShape tapered_capsules[2];
   HullShape hulls[2];
   Pose poses[2];
 
@@ -41,6 +43,8 @@ struct Pair {
     result.hulls = hulls;
     result.triangles = triangles;
     result.half_spaces = half_spaces;
+    result.ellipsoids = ellipsoids;
+    result.tapered_capsules = tapered_capsules;
     return result;
   }
   [[nodiscard]] ExactVerdict verdict(ShapeKind a, ShapeKind b,
