@@ -1,7 +1,7 @@
 #pragma once
 
 // Decides when the rows of a SpatialIndex are reordered: now, later, or in stages over several
-// refreshes. It knows the rows only by numbers; SpatialIndex carries its decisions out.
+// refreshes. Its only input are numbers (RowNumbers); SpatialIndex carries its decisions out.
 
 #include "partitions/tree/kd_order.h"
 
@@ -73,7 +73,7 @@ class RebuildPlanner {
 
   // Decisions.
 
-  /// What a refresh does with the order of the rows.
+  /// The step that a refresh takes with the order of the rows.
   enum class OrderStep : std::uint8_t { keep, build, apply_plan };
   /// Begins a refresh.
   [[nodiscard]] OrderStep begin_refresh(const RowNumbers& n) noexcept;
@@ -83,7 +83,7 @@ class RebuildPlanner {
   [[nodiscard]] bool may_be_scattered(const RowNumbers& n, std::size_t blocks) const noexcept;
   [[nodiscard]] bool is_scattered(const RowNumbers& n, float typical_edge) const noexcept;
 
-  /// What to do about blocks that outliers made wide.
+  /// The step that a refresh takes about blocks that outliers made wide.
   enum class OutlierStep : std::uint8_t { none, search, build };
   /// True if enough objects changed to count wide blocks.
   [[nodiscard]] bool may_have_outliers(const RowNumbers& n) const noexcept;

@@ -12,6 +12,16 @@
 #include <utility>
 
 namespace winnow {
+namespace {
+
+/// Returns the number of rows behind the order of the last build.
+std::size_t tail_rows(const Rows& rows) noexcept {
+  const std::size_t ordered = rows.regions().ordered;
+  return rows.pool().rows() > ordered ? rows.pool().rows() - ordered : 0;
+}
+
+}  // namespace
+
 SpatialIndex::SpatialIndex(std::pmr::memory_resource* memory, Rows& rows,
                            std::size_t build_budget) noexcept
     : rows_(rows),
@@ -37,7 +47,7 @@ RowNumbers SpatialIndex::numbers() const noexcept {
   n.objects = rows_.size();
   n.rows = rows_.pool().rows();
   n.regular = regions.regular;
-  n.tail = n.rows > regions.ordered ? n.rows - regions.ordered : 0;
+  n.tail = tail_rows(rows_);
   n.changed = stale.all() ? n.objects : stale.ids().size();
   n.all_changed = stale.all();
   n.built = regions.built;
@@ -82,7 +92,7 @@ Status SpatialIndex::absorb_changes(bool all) {
     rows_.regions().regular = rows_.pool().rows();
     return refit_trees() ? Status::ok : Status::out_of_memory;
   }
-  const std::size_t tail = numbers().tail;
+  const std::size_t tail = tail_rows(rows_);
   const std::size_t limit = RebuildPlanner::tail_limit(rows_.size());
   const std::size_t room = limit - std::min(limit, tail);
   const bool any_row = all || rows_.stale().all();
@@ -110,7 +120,7 @@ Status SpatialIndex::absorb_changes(bool all) {
   const Status status = find_outliers(n);
   if (status != Status::ok || planner_.builds() != builds) return status;
   if (!planner_.is_next_frame(n)) return Status::ok;
-  planner_.note_frame(numbers().tail);
+  planner_.note_frame(tail_rows(rows_));
   continue_planning();
   return Status::ok;
 }

@@ -1,7 +1,7 @@
 #pragma once
 
-// What queries pass to the kernels, and what they get back: the prepared cast, the caller's filter,
-// and hits.
+// Arguments and results of the kernels of queries: the prepared cast, the caller's filter, and
+// hits.
 
 #include <winnow/core/cast.h>
 #include <winnow/core/filter.h>

@@ -1,7 +1,7 @@
 #pragma once
 
-// What the library computes from the struct of each kind of convex shape, one header for each kind.
-// All kinds have these functions, overloaded by struct:
+// Functions of the struct of each kind of convex shape, one header for each kind. All kinds have
+// these functions, overloaded by struct:
 //
 //   SupportExtent extent_of(shape, direction)  range along an AnyDirection or UnitDirection
 //   double radius_of(shape)        upper bound on the distance of points from the shape's origin

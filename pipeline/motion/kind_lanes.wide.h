@@ -1,8 +1,8 @@
 #pragma once
 
-// What the impact kernels compute for each kind of shape, for one core per lane: its numbers, its
-// support function, and bounds of its size and of its rotation. Called through with_core
-// (moving_cores.wide.h).
+// The functions of each kind of shape that the impact kernels call, for one core per lane: its
+// numbers, its support function, and bounds of its size and of its rotation. Called through
+// with_core (moving_cores.wide.h).
 
 #include "pipeline/motion/core_table.wide.h"
 

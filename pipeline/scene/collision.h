@@ -219,7 +219,7 @@ class ContactFilters {
   [[nodiscard]] bool list_floor_parts(std::uint32_t pair, FloorWriter& writer);
   [[nodiscard]] bool list_floor_regions(std::uint32_t pair, FloorWriter& writer);
   void drop_ghost_contacts_of(FloorContact* first, FloorContact* end) noexcept;
-  void drop(const FloorContact& seam) noexcept;
+  void drop(const FloorContact& contact) noexcept;
   void close_regions() noexcept;
 
   CollideCall& call_;

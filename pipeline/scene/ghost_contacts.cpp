@@ -312,14 +312,14 @@ bool ContactFilters::list_floor_regions(std::uint32_t pair, FloorWriter& writer)
   return true;
 }
 
-void ContactFilters::drop(const FloorContact& seam) noexcept {
+void ContactFilters::drop(const FloorContact& contact) noexcept {
   const double beyond = std::nextafter(call_.limit, std::numeric_limits<double>::max());
-  if (seam.source == FloorContact::Source::convex) {
-    scene_.batch.answers.columns().distance[seam.answer] = beyond;
-  } else if (seam.source == FloorContact::Source::part) {
-    scene_.batch.parts->answers.columns().distance[seam.answer] = beyond;
+  if (contact.source == FloorContact::Source::convex) {
+    scene_.batch.answers.columns().distance[contact.answer] = beyond;
+  } else if (contact.source == FloorContact::Source::part) {
+    scene_.batch.parts->answers.columns().distance[contact.answer] = beyond;
   } else {
-    scene_.batch.parts->regions.regions[seam.answer].count = 0;
+    scene_.batch.parts->regions.regions[contact.answer].count = 0;
   }
 }
 
