@@ -86,9 +86,6 @@ void turn_into(const SurfaceFrame& frame, const double (&v)[3], double (&own)[3]
 [[nodiscard]] double largest_of(const double (&v)[3]) noexcept {
   return std::max(std::max(std::abs(v[0]), std::abs(v[1])), std::abs(v[2]));
 }
-[[nodiscard]] double dot(const double (&a)[3], const double (&b)[3]) noexcept {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 
 /// Transforms one ray to the frame of a surface, like the kernel for eight rays. If the ray starts
 /// far away, its origin is moved along the ray close to the surface. Returns false if its numbers
@@ -104,8 +101,9 @@ template <std::uint32_t Room>
     return false;
   }
   // The closest approach to the surface's origin is at t = towards / square.
-  const double towards = -dot(start, ray.direction);
-  const double square = dot(ray.direction, ray.direction);
+  const Vec3d direction(ray.direction);
+  const double towards = -direction.dot(Vec3d(start));
+  const double square = direction.squared_norm();
   double shift = 0.0;
   if (towards > 4.0 * frame.size * (square / fastest)) [[unlikely]] {
     shift = std::max(0.0, towards / square - 4.0 * frame.size / fastest);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <winnow/core/vec3.h>
+
 #include <cmath>
 
 namespace winnow {
@@ -17,53 +19,38 @@ class EdgeBend {
   /// triangle has no area.
   [[nodiscard]] bool is_active(const double (&u)[3], const double (&v)[3], const double (&p)[3],
                                const double (&q)[3], bool consistent) const noexcept {
-    const Vector edge = between(u, v);
-    const Vector to_p = between(u, p);
-    const Vector to_q = between(u, q);
-    Vector n = cross(edge, to_p);
-    Vector m = cross(to_q, edge);
-    const double nn = dot(n, n);
-    const double mm = dot(m, m);
-    const double ee = dot(edge, edge);
-    const double pp = dot(to_p, to_p);
-    const double qq = dot(to_q, to_q);
+    const Vec3d edge = Vec3d(v) - Vec3d(u);
+    const Vec3d to_p = Vec3d(p) - Vec3d(u);
+    const Vec3d to_q = Vec3d(q) - Vec3d(u);
+    Vec3d n = edge.cross(to_p);
+    Vec3d m = to_q.cross(edge);
+    const double nn = n.squared_norm();
+    const double mm = m.squared_norm();
+    const double ee = edge.squared_norm();
+    const double pp = to_p.squared_norm();
+    const double qq = to_q.squared_norm();
     // The cross product of parallel edges is only rounding error.
     if (!(nn > kFlat * ee * pp) || !(mm > kFlat * ee * qq)) return true;
     if (consistent && is_above(n, nn, to_q, qq) && is_above(m, mm, to_p, pp)) return false;
-    n = scaled(n, 1.0 / std::sqrt(nn));
-    m = scaled(m, 1.0 / std::sqrt(mm));
+    n *= 1.0 / std::sqrt(nn);
+    m *= 1.0 / std::sqrt(mm);
     // The sine of bend - angle; the difference is between -pi and pi.
-    const Vector c = cross(n, m);
-    const double bend_sine = std::sqrt(dot(c, c));
-    const double bend_cosine = dot(n, m);
+    const double bend_sine = n.cross(m).norm();
+    const double bend_cosine = n.dot(m);
     const bool folded = bend_cosine < 0.0 && bend_sine <= kRounding;
     if (folded) return !is_straight_;
     return bend_sine * cosine_ - bend_cosine * sine_ > kRounding;
   }
 
  private:
-  struct Vector {
-    double x, y, z;
-  };
   static constexpr double kFlat = 1e-24;
   static constexpr double kRounding = 1e-12;
 
   /// Returns whether `to` is above the plane by more than rounding; `nn` and `tt` are the squared
   /// lengths.
-  static bool is_above(const Vector& normal, double nn, const Vector& to, double tt) noexcept {
-    const double height = dot(normal, to);
+  static bool is_above(const Vec3d& normal, double nn, const Vec3d& to, double tt) noexcept {
+    const double height = normal.dot(to);
     return height > 0.0 && height * height > kFlat * nn * tt;
-  }
-
-  static Vector between(const double (&a)[3], const double (&b)[3]) noexcept {
-    return {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
-  }
-  static Vector cross(const Vector& a, const Vector& b) noexcept {
-    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-  }
-  static Vector scaled(const Vector& a, double s) noexcept { return {a.x * s, a.y * s, a.z * s}; }
-  static double dot(const Vector& a, const Vector& b) noexcept {
-    return a.x * b.x + a.y * b.y + a.z * b.z;
   }
 
   double cosine_;

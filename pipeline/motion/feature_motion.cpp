@@ -19,39 +19,22 @@ constexpr double kPlaneError = 0x1p-48;
 /// Intervals up to this length are not halved.
 constexpr double kShortest = 0x1p-52;
 
-/// The three consecutive components of a vector.
-using Numbers3 = const double*;
-
-double dot(Numbers3 a, Numbers3 b) noexcept {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-void cross(Numbers3 a, Numbers3 b, double* out) noexcept {
-  out[0] = a[1] * b[2] - a[2] * b[1];
-  out[1] = a[2] * b[0] - a[0] * b[2];
-  out[2] = a[0] * b[1] - a[1] * b[0];
-}
-
-void subtract(const Vec3d& a, const Vec3d& b, double* out) noexcept {
-  for (int axis = 0; axis < 3; ++axis) out[axis] = a[axis] - b[axis];
-}
-
 void read_state(FeaturePair kind, const std::array<Vec3d, 4>& p, int end,
                 FeatureMotion& motion) noexcept {
   auto* const corner = motion.corner[end];
   if (kind == FeaturePair::vertex_face) {
-    for (int k = 0; k < 3; ++k) subtract(p[0], p[static_cast<std::size_t>(k) + 1], corner[k]);
-    subtract(p[2], p[1], motion.edge[0][end]);
-    subtract(p[3], p[1], motion.edge[1][end]);
+    for (std::size_t k = 0; k < 3; ++k) corner[k] = p[0] - p[k + 1];
+    motion.edge[0][end] = p[2] - p[1];
+    motion.edge[1][end] = p[3] - p[1];
   } else {
-    subtract(p[0], p[2], corner[0]);
-    subtract(p[1], p[2], corner[1]);
-    subtract(p[1], p[3], corner[2]);
-    subtract(p[0], p[3], corner[3]);
-    subtract(p[1], p[0], motion.edge[0][end]);
-    subtract(p[3], p[2], motion.edge[1][end]);
+    corner[0] = p[0] - p[2];
+    corner[1] = p[1] - p[2];
+    corner[2] = p[1] - p[3];
+    corner[3] = p[0] - p[3];
+    motion.edge[0][end] = p[1] - p[0];
+    motion.edge[1][end] = p[3] - p[2];
   }
-  for (int axis = 0; axis < 3; ++axis) motion.across[end][axis] = corner[0][axis];
+  motion.across[end] = corner[0];
 }
 
 template <typename Change>
@@ -95,7 +78,7 @@ struct SpannedVolume {
 double largest_volume(const FeatureMotion& motion) noexcept {
   double most[3][3];
   for (int axis = 0; axis < 3; ++axis) {
-    const auto larger = [&](const double(&ends)[2][3]) {
+    const auto larger = [&](const Vec3d(&ends)[2]) {
       return std::max(std::abs(ends[0][axis]), std::abs(ends[1][axis]));
     };
     most[0][axis] = larger(motion.across);
@@ -109,26 +92,19 @@ double largest_volume(const FeatureMotion& motion) noexcept {
 }
 
 SpannedVolume volume_of(const FeatureMotion& motion) noexcept {
-  double first[3];
-  double mixed[3];
-  double other[3];
-  double last[3];
-  cross(motion.edge[0][0], motion.edge[1][0], first);
-  cross(motion.edge[0][0], motion.edge[1][1], mixed);
-  cross(motion.edge[0][1], motion.edge[1][0], other);
-  cross(motion.edge[0][1], motion.edge[1][1], last);
-  for (int axis = 0; axis < 3; ++axis) mixed[axis] += other[axis];
-  const double* const start = motion.across[0];
-  const double* const end = motion.across[1];
-  SpannedVolume volume{{dot(start, first), (dot(end, first) + dot(start, mixed)) / 3.0,
-                        (dot(start, last) + dot(end, mixed)) / 3.0, dot(end, last)},
+  const Vec3d first = motion.edge[0][0].cross(motion.edge[1][0]);
+  const Vec3d mixed =
+      motion.edge[0][0].cross(motion.edge[1][1]) + motion.edge[0][1].cross(motion.edge[1][0]);
+  const Vec3d last = motion.edge[0][1].cross(motion.edge[1][1]);
+  const Vec3d& start = motion.across[0];
+  const Vec3d& end = motion.across[1];
+  SpannedVolume volume{{start.dot(first), (end.dot(first) + start.dot(mixed)) / 3.0,
+                        (start.dot(last) + end.dot(mixed)) / 3.0, end.dot(last)},
                        kVolumeError * largest_volume(motion) + kLostByUnderflow};
   if (motion.separation > 0.0) {
     // The normal is a quadratic polynomial in time with the Bernstein coefficients `first`, `mixed`
     // / 2 and `last`.
-    const double longest =
-        std::max({std::sqrt(dot(first, first)), 0.5 * std::sqrt(dot(mixed, mixed)),
-                  std::sqrt(dot(last, last))});
+    const double longest = std::max({first.norm(), 0.5 * mixed.norm(), last.norm()});
     const double sizes = 1e-150 + longest;
     volume.band = (volume.band + motion.separation * sizes) * (1.0 + 0x1p-40);
   }
@@ -212,20 +188,12 @@ class PlaneSearch {
   /// Returns whether it found such a plane; `apart` becomes the part of the interval in which the
   /// plane separates.
   bool find(const TimeInterval& time, double middle, TimeInterval& apart) noexcept {
-    for (int k = 0; k < motion_.corners; ++k) place(k, middle, at_[k]);
-    double n[3] = {};
-    nearest_of_border(n);
-    if (keeps_apart(n, time, middle, apart)) return true;
-    double side[2][3];
-    for (int axis = 0; axis < 3; ++axis) {
-      side[0][axis] = at_[1][axis] - at_[0][axis];
-      side[1][axis] = at_[motion_.corners - 1][axis] - at_[0][axis];
+    for (int k = 0; k < motion_.corners; ++k) {
+      at_[k] = (1.0 - middle) * motion_.corner[0][k] + middle * motion_.corner[1][k];
     }
-    cross(side[0], side[1], n);
-    if (dot(n, at_[0]) < 0.0) {
-      for (double& x : n) x = -x;
-    }
-    return keeps_apart(n, time, middle, apart);
+    if (keeps_apart(nearest_of_border(), time, middle, apart)) return true;
+    const Vec3d n = (at_[1] - at_[0]).cross(at_[motion_.corners - 1] - at_[0]);
+    return keeps_apart(n.dot(at_[0]) < 0.0 ? -n : n, time, middle, apart);
   }
 
   /// Returns whether, during the whole step, the polygon is farther than the separation on one side
@@ -247,54 +215,49 @@ class PlaneSearch {
   }
 
  private:
-  void place(int k, double t, double* out) const noexcept {
-    for (int axis = 0; axis < 3; ++axis) {
-      out[axis] = mix(motion_.corner[0][k][axis], motion_.corner[1][k][axis], t);
-    }
-  }
-
-  /// Writes the direction from the origin to the nearest point of the polygon's border. The
+  /// Returns the direction from the origin to the nearest point of the polygon's border. The
   /// direction is made orthogonal to the side that contains the point: if the point is near the
   /// origin, cancellation leaves only few correct digits of the direction.
-  void nearest_of_border(double (&nearest)[3]) const noexcept {
+  [[nodiscard]] Vec3d nearest_of_border() const noexcept {
+    Vec3d nearest;
     double least = std::numeric_limits<double>::infinity();
     for (int k = 0; k < motion_.corners; ++k) {
-      const double* const a = at_[k];
-      const double* const b = at_[k + 1 == motion_.corners ? 0 : k + 1];
-      const double side[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
-      const double square = dot(side, side);
-      const double s = square > 0.0 ? std::clamp(-dot(a, side) / square, 0.0, 1.0) : 0.0;
-      const double q[3] = {a[0] + s * side[0], a[1] + s * side[1], a[2] + s * side[2]};
-      const double distance = dot(q, q);
+      const Vec3d& a = at_[k];
+      const Vec3d side = at_[k + 1 == motion_.corners ? 0 : k + 1] - a;
+      const double square = side.squared_norm();
+      const double s = square > 0.0 ? std::clamp(-a.dot(side) / square, 0.0, 1.0) : 0.0;
+      const Vec3d q = a + s * side;
+      const double distance = q.squared_norm();
       if (!(distance < least)) continue;
       least = distance;
-      const double along = s > 0.0 && s < 1.0 ? dot(q, side) / square : 0.0;
-      for (int axis = 0; axis < 3; ++axis) nearest[axis] = q[axis] - along * side[axis];
+      const double along = s > 0.0 && s < 1.0 ? q.dot(side) / square : 0.0;
+      nearest = q - along * side;
     }
+    return nearest;
   }
 
-  bool keeps_apart(double (&n)[3], const TimeInterval& time, double middle,
+  bool keeps_apart(const Vec3d& normal, const TimeInterval& time, double middle,
                    TimeInterval& apart) const noexcept {
-    const double most = std::max({std::abs(n[0]), std::abs(n[1]), std::abs(n[2])});
+    const double most = std::max({std::abs(normal[0]), std::abs(normal[1]), std::abs(normal[2])});
     if (!(most > 0.0)) return false;
+    const Vec3d n = normal / most;
     double least = kLostByUnderflow;
     for (int axis = 0; axis < 3; ++axis) {
-      n[axis] /= most;
       least += kPlaneError * std::abs(n[axis]) * motion_.reach[axis];
     }
     if (motion_.separation > 0.0) {
-      least += motion_.separation * std::sqrt(dot(n, n)) * (1.0 + 0x1p-50);
+      least += motion_.separation * n.norm() * (1.0 + 0x1p-50);
     }
     double f[4];
     for (int k = 0; k < motion_.corners; ++k) {
-      f[k] = dot(n, at_[k]);
+      f[k] = n.dot(at_[k]);
       if (!(f[k] > least)) return false;
     }
     double before = 1.0;
     double after = 1.0;
     for (int k = 0; k < motion_.corners; ++k) {
-      const double start = dot(n, motion_.corner[0][k]);
-      const double end = dot(n, motion_.corner[1][k]);
+      const double start = n.dot(motion_.corner[0][k]);
+      const double end = n.dot(motion_.corner[1][k]);
       const double above = f[k] - least;
       before = std::min(before, part_above(above, mix(start, end, time.low) - least));
       after = std::min(after, part_above(above, mix(start, end, time.high) - least));
@@ -313,7 +276,7 @@ class PlaneSearch {
   }
 
   const FeatureMotion& motion_;
-  double at_[4][3];
+  Vec3d at_[4];
 };
 
 }  // namespace

@@ -10,12 +10,12 @@ namespace winnow {
 /// half an ulp.
 struct FeatureMotion {
   int corners = 0;
-  double corner[2][4][3];  ///< at the start and at the end, in order around the polygon
+  Vec3d corner[2][4];  ///< at the start and at the end, in order around the polygon
   // The columns of the determinant that is zero at the times at which the features are coplanar: a
   // corner and two edges.
-  double across[2][3];
-  double edge[2][2][3];  ///< [first or second edge][start or end]
-  double reach[3];       ///< the largest magnitude of a corner's coordinate, at either end
+  Vec3d across[2];
+  Vec3d edge[2][2];  ///< [first or second edge][start or end]
+  Vec3d reach;       ///< the largest magnitude of a corner's coordinate, at either end
   double separation = 0.0;
 };
 

@@ -6,6 +6,7 @@
 #include <winnow/core/eigen.h>
 #include <winnow/core/rotation.h>
 #include "pipeline/shapes/extent.h"
+#include "pipeline/shapes/triangle_direction.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -38,31 +39,6 @@ CastContact contact_at(const ShapeRay& ray, double t, const double (&normal)[3])
     contact.point[i] = ray.origin[i] + t * ray.direction[i];
   }
   return contact;
-}
-
-/// Returns approximately the point of a triangle that is closest to p (Ericson, "Real-Time
-/// Collision Detection", 2005, 5.1.5).
-Vector3d closest_point(const Vector3d (&corner)[3], const Vector3d& p) noexcept {
-  const Vector3d ab = corner[1] - corner[0];
-  const Vector3d ac = corner[2] - corner[0];
-  const double d1 = ab.dot(p - corner[0]);
-  const double d2 = ac.dot(p - corner[0]);
-  if (d1 <= 0.0 && d2 <= 0.0) return corner[0];
-  const double d3 = ab.dot(p - corner[1]);
-  const double d4 = ac.dot(p - corner[1]);
-  if (d3 >= 0.0 && d4 <= d3) return corner[1];
-  const double d5 = ab.dot(p - corner[2]);
-  const double d6 = ac.dot(p - corner[2]);
-  if (d6 >= 0.0 && d5 <= d6) return corner[2];
-  const double vc = d1 * d4 - d3 * d2;
-  if (vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0) return corner[0] + d1 / (d1 - d3) * ab;
-  const double vb = d5 * d2 - d1 * d6;
-  if (vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0) return corner[0] + d2 / (d2 - d6) * ac;
-  const double va = d3 * d6 - d5 * d4;
-  if (va <= 0.0 && d4 >= d3 && d5 >= d6) {
-    return corner[1] + (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (corner[2] - corner[1]);
-  }
-  return corner[0] + (vb * ab + vc * ac) / (va + vb + vc);
 }
 
 }  // namespace
@@ -221,7 +197,8 @@ bool ConvexCast::is_beside(const double from[3], const SubShape& part,
     corner[k] = to_part + Vector3d::Map(part.triangle->vertex[k]);
     size = std::max(size, corner[k].cwiseAbs().sum());
   }
-  const Vector3d axis = middle_ - closest_point(corner, middle_);
+  const Vector3d axis =
+      mid::direction_to(middle_ - corner[0], corner[1] - corner[0], corner[2] - corner[0]);
   if (!(axis.dot(way) < -mid::kSlack * axis.cwiseAbs().sum() * way.cwiseAbs().sum())) return false;
   const double low = mid::extent(shapes_.tables(), cast_.shape, to_shape_ * axis).low;
   const double top = std::max({axis.dot(corner[0]), axis.dot(corner[1]), axis.dot(corner[2])});
