@@ -3,7 +3,7 @@
 // Closest points of two cores in each lane: GJK (Gilbert, Johnson and Keerthi 1988) in double,
 // started from the simplex with which the lane's last search ended (warm start).
 
-#include "pipeline/kernels/cores/simplex.wide.h"
+#include "pipeline/kernels/cores/gjk_lanes.wide.h"
 #include "pipeline/motion/moving_cores.wide.h"
 
 namespace winnow::WINNOW_ISA_NAME::impact {
@@ -110,76 +110,18 @@ struct ClosestOptions {
 /// search ends.
 inline constexpr double kRounding = 1e-2;
 
-/// A support point `w` of the Minkowski difference of two cores, and the points of both cores of
-/// which `w` is the difference, each in the frame of its core.
-struct FarthestPoint {
-  const Vector& of_a;
-  const Vector& of_b;
-  const Vector& w;
-};
-
-/// Returns the feature, nearest to the origin, of the simplex of the new point `w` and the point in
-/// slot 0, if this slot is in use. Equals `hull::nearest_of`.
-[[nodiscard]] static inline hull::SimplexNearest<double> nearest_of_edge(
-    const hull::Simplex<double>& others, const Vector& w) {
-  const Doubles zero(0.0);
-  const Doubles one(1.0);
-  const DoubleMask none = zero > one;
-  const Vector edge = select(others.present[0], others.point[0] - w, zero_vector());
-  const Doubles square = dot(edge, edge);
-  const Doubles reach = -dot(edge, w);
-  const Doubles t = min(reach / max(square, Doubles(hull::kVanishing<double>)), one);
-  const Vector x = w + edge * t;
-  const DoubleMask nearer = (reach > zero) & (dot(x, x) < dot(w, w));
-  const DoubleMask repeated = others.present[0] & (square <= zero);
-  return {select(nearer, x, w), {nearer, none, none}, none, none, repeated};
-}
-
-/// Returns the feature nearest to the origin that contains the new point. The computation covers
-/// only as many points as the largest simplex of all lanes has.
-[[nodiscard]] static inline hull::SimplexNearest<double> nearest_feature(
-    const hull::Simplex<double>& others, const Vector& w, const DoubleMask& lanes) {
-  if (bits(lanes & (others.present[1] | others.present[2])) != 0) {
-    return hull::nearest_of(others, w);
-  }
-  if (bits(lanes & others.present[0]) != 0) return nearest_of_edge(others, w);
-  const DoubleMask none = lanes & !lanes;
-  return {w, {none, none, none}, none, none, none};
-}
-
-/// Returns the simplex without points equal to `w`, so that no point is in the simplex twice after
-/// `w` is added.
-[[nodiscard]] static inline hull::Simplex<double> without(const hull::Simplex<double>& simplex,
-                                                          const Vector& w) {
-  hull::Simplex<double> others = simplex;
+/// Removes the points equal to `w` from a simplex, so that no point is in it twice after `w` is
+/// added. Returns the lanes that had such a point.
+[[nodiscard]] static inline DoubleMask drop_repeated(const Vector (&point)[kSlots], const Vector& w,
+                                                     DoubleMask (&present)[kSlots]) {
+  DoubleMask dropped = w.x < w.x;
   for (int s = 0; s < kSlots; ++s) {
-    const Vector& p = others.point[s];
-    others.present[s] = others.present[s] & !((p.x == w.x) & (p.y == w.y) & (p.z == w.z));
+    const Vector& p = point[s];
+    const DoubleMask same = (p.x == w.x) & (p.y == w.y) & (p.z == w.z);
+    dropped = dropped | (present[s] & same);
+    present[s] = present[s] & !same;
   }
-  return others;
-}
-
-[[nodiscard]] static inline DoubleMask has_more_than(const hull::Simplex<double>& simplex,
-                                                     const hull::Simplex<double>& others) {
-  DoubleMask more = simplex.present[0] & !others.present[0];
-  for (int s = 1; s < kSlots; ++s) more = more | (simplex.present[s] & !others.present[s]);
-  return more;
-}
-
-/// In the lanes of `moves`, replaces the simplex by its nearest feature, which contains the new
-/// point `added`.
-static inline void keep(const hull::SimplexNearest<double>& nearest, const DoubleMask& moves,
-                        const FarthestPoint& added, hull::Simplex<double>& simplex,
-                        SimplexLanes& witness) {
-  DoubleMask placed = !moves;
-  for (int s = 0; s < kSlots; ++s) {
-    const DoubleMask take = (!placed) & (!nearest.keep[s]);
-    placed = placed | take;
-    simplex.point[s] = select(take, added.w, simplex.point[s]);
-    witness.a[s] = select(take, added.of_a, witness.a[s]);
-    witness.b[s] = select(take, added.of_b, witness.b[s]);
-    simplex.present[s] = (moves & (take | nearest.keep[s])) | ((!moves) & simplex.present[s]);
-  }
+  return dropped;
 }
 
 /// A point of a simplex, given by the weights of the points in slots 1 and 2 of the simplex.
@@ -255,7 +197,7 @@ class ClosestSearch {
     }
     hull::Simplex<double> others = simplex_;
     others.present[0] = zero > Doubles(1.0);
-    const hull::SimplexNearest<double> nearest = nearest_feature(others, simplex_.point[0], kept);
+    const auto nearest = hull::nearest_of_few(others, simplex_.point[0], kept);
     gap_ = select(kept, nearest.point, from);
     for (int s = 1; s < kSlots; ++s) {
       simplex_.present[s] = simplex_.present[s] & nearest.keep[s];
@@ -278,23 +220,28 @@ class ClosestSearch {
     const Doubles left = distance - options_.roundings;
     const Doubles share = select(left > options_.precise, Doubles(options_.share), Doubles(0.0));
     const Doubles known = max(options_.noise, share * left) * distance;
-    const hull::Simplex<double> others = without(simplex_, w);
-    const DoubleMask ends =
-        (gain <= Doubles(kRounding) * distance * left) & has_more_than(simplex_, others);
+    hull::Simplex<double> others = simplex_;
+    const DoubleMask repeated = drop_repeated(others.point, w, others.present);
+    const DoubleMask ends = (gain <= Doubles(kRounding) * distance * left) & repeated;
     const DoubleMask close = (!fresh_) & ((gain <= known) | ends);
     if (bits(open_ & !close) == 0) {
       open_ = fresh_ & !fresh_;
       return;
     }
-    const hull::SimplexNearest<double> nearest = nearest_feature(others, w, open_);
-    const Doubles next_square = dot(nearest.point, nearest.point);
-    const DoubleMask stuck = (!fresh_) & (!close) & (!nearest.inside) & (next_square >= square);
-    const DoubleMask moves = open_ & !(close | stuck | nearest.inside);
-    keep(nearest, moves, {own_a, own_b, w}, simplex_, witness_);
-    gap_ = select(moves, nearest.point, gap_);
-    fresh_ = fresh_ & !moves;
-    const DoubleMask lost = open_ & stuck & (gain > known * Doubles(kLost)) & !begun_anew_;
-    open_ = moves | lost;
+    const auto nearest = hull::nearest_of_few(others, w, open_);
+    const DoubleMask none = open_ & !open_;
+    const auto step = hull::judge_step(nearest, square, fresh_, close | !open_, none);
+    hull::keep_nearest(
+        nearest, step.moves, [&](int s, const DoubleMask& take, const DoubleMask& used) {
+          simplex_.point[s] = select(take, w, simplex_.point[s]);
+          simplex_.present[s] = (step.moves & used) | ((!step.moves) & simplex_.present[s]);
+          witness_.a[s] = select(take, own_a, witness_.a[s]);
+          witness_.b[s] = select(take, own_b, witness_.b[s]);
+        });
+    gap_ = select(step.moves, nearest.point, gap_);
+    fresh_ = fresh_ & !step.moves;
+    const DoubleMask lost = step.stuck & (gain > known * Doubles(kLost)) & !begun_anew_;
+    open_ = step.moves | lost;
     if (bits(lost) != 0) begin_anew(lost);
   }
 

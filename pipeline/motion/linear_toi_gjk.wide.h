@@ -51,19 +51,6 @@ class LinearToiGjk : BlockStep {
   }
 
  private:
-  /// Computes which slots of the simplex are in use, and which of these differ from the new point.
-  void compare_with(const Vector& way) {
-    for (int s = 0; s < kSlots; ++s) {
-      const Vector& old = p_.witness.b[s];
-      used_[s] = p_.witness.present[s] > Doubles(0.0);
-      differs_[s] = used_[s] & !((old.x == way.x) & (old.y == way.y) & (old.z == way.z));
-    }
-  }
-  [[nodiscard]] DoubleMask is_there_already() const {
-    DoubleMask is = used_[0] & !differs_[0];
-    for (int s = 1; s < kSlots; ++s) is = is | (used_[s] & !differs_[s]);
-    return is;
-  }
   /// The simplex at the lanes' current positions.
   [[nodiscard]] hull::Simplex<double> placed(const DoubleMask (&present)[kSlots]) const {
     hull::Simplex<double> simplex;
@@ -94,7 +81,8 @@ class LinearToiGjk : BlockStep {
     pair.facing(direction, bits(active_), own_a, own_b);
     closest.on_a = pair.on_a(own_a);
     way_ = pair.on_b(own_b) - closest.on_a;
-    compare_with(way_);
+    for (int s = 0; s < kSlots; ++s) used_[s] = differs_[s] = p_.witness.present[s] > Doubles(0.0);
+    const DoubleMask repeated = drop_repeated(p_.witness.b, way_, differs_);
     const Vector w = sample_.between + way_;
     const Doubles reach = dot(direction, w);
     const Doubles over = Doubles(1.0) / size;
@@ -108,7 +96,7 @@ class LinearToiGjk : BlockStep {
     }
     const Doubles left = closest.upper - p_.roundings;
     const DoubleMask ends =
-        (gain <= Doubles(kRounding) * closest.upper * left) & is_there_already() & !guessed_;
+        (gain <= Doubles(kRounding) * closest.upper * left) & repeated & !guessed_;
     // Rounding perturbs the direction the more, the shorter the vector is. The support point
     // changes with the direction.
     settled_ = used_[0] & ((gain <= sample_.noise * Doubles(kEnough) * (closest.upper + p_.sizes)) |
@@ -205,30 +193,21 @@ class LinearToiGjk : BlockStep {
   void move_on(const Doubles& before) {
     sample_.between = p_.start + p_.travel * p_.time;
     const Vector w = sample_.between + way_;
-    const auto nearest = nearest_feature(placed(differs_), w, active_);
-    const Doubles square = dot(nearest.point, nearest.point);
-    const DoubleMask unmoved = used_[0] & (p_.time <= before);
-    const DoubleMask stuck = unmoved & (square >= square_);
-    end_unsure(nearest.inside | !(square > Doubles(0.0)));
-    p_.proves = one_where(stuck & !guessed_);
-    const DoubleMask moves = active_ & !stuck;
-    keep(nearest, moves);
+    const auto nearest = hull::nearest_of_few(placed(differs_), w, active_);
+    const DoubleMask moved = !(used_[0] & (p_.time <= before));
+    const DoubleMask none = moved & !moved;
+    const auto step = hull::judge_step(nearest, square_, moved, !active_, none);
+    end_unsure(nearest.inside | !(step.square > Doubles(0.0)));
+    p_.proves = one_where(step.stuck & !guessed_);
+    const DoubleMask moves = active_ & step.moves;
+    hull::keep_nearest(nearest, moves, [&](int s, const DoubleMask& take, const DoubleMask& used) {
+      p_.witness.a[s] = select(take, sample_.closest.on_a, p_.witness.a[s]);
+      p_.witness.b[s] = select(take, way_, p_.witness.b[s]);
+      p_.witness.present[s] = select(moves, one_where(used), p_.witness.present[s]);
+    });
     p_.axis = select(moves, nearest.point, p_.axis);
     if (Elsewhere && guesses_) {
       SecantDirection(sample_.between, p_.axis, p_.tried).note({tried_, way_, guessed_}, active_);
-    }
-  }
-
-  /// In lanes in `moves`, replaces the simplex by its nearest feature.
-  void keep(const hull::SimplexNearest<double>& nearest, const DoubleMask& moves) {
-    DoubleMask placed = !moves;
-    for (int s = 0; s < kSlots; ++s) {
-      const DoubleMask take = (!placed) & (!nearest.keep[s]);
-      placed = placed | take;
-      p_.witness.a[s] = select(take, sample_.closest.on_a, p_.witness.a[s]);
-      p_.witness.b[s] = select(take, way_, p_.witness.b[s]);
-      p_.witness.present[s] =
-          select(moves, one_where(take | nearest.keep[s]), p_.witness.present[s]);
     }
   }
 

@@ -35,18 +35,11 @@ enum class CurvedState : std::uint32_t {
   close,
 };
 
-/// The first is body a of the pair, or body b if `swapped` is set.
-struct CurvedPair {
+/// The first is body a of the pair, or body b if `swapped` is set. `offset` is in the caller's
+/// units.
+struct CurvedPair : hull::PairPlacement {
   CoreDesc first;
   CoreDesc second;
-  /// Transform from the frame of the second core to the frame of the first: x -> turn x + shift.
-  /// `turn` is a row-major 3 x 3 matrix.
-  double turn[9];
-  double shift[3];
-  /// Rotation from the frame of the first to world axes, a row-major 3 x 3 matrix.
-  double frame[9];
-  /// Position of the second minus position of the first, in world axes and the caller's units.
-  double offset[3];
   /// The sum of the bounding radii of both cores about their origins and of |shift| (L1 norm),
   /// scaled: an upper bound of all lengths in the search.
   double size;
@@ -208,39 +201,21 @@ static inline bool place_pair(const NarrowJob& job, BodyPair bodies, CurvedPair&
   const Pose& pose_a = job.poses[bodies.a];
   const Pose& pose_b = job.poses[bodies.b];
   pair.swapped = ids[0].kind() == ids[1].kind() && comes_second(pose_a, pose_b);
-  const Pose& first = pair.swapped ? pose_b : pose_a;
-  const Pose& second = pair.swapped ? pose_a : pose_b;
   double size = make_core(*job.tables, ids[pair.swapped ? 1 : 0], pair.first) +
                 make_core(*job.tables, ids[pair.swapped ? 0 : 1], pair.second);
-  double frame[9];
-  double axes[9];
-  if (!hull::rotation_of(first.orientation, frame) ||
-      !hull::rotation_of(second.orientation, axes)) {
+  if (!hull::place(pair.swapped ? pose_b : pose_a, pair.swapped ? pose_a : pose_b, pair)) {
     return false;
   }
-  double offset[3];
-  double shift[3];
-  for (int i = 0; i < 3; ++i) offset[i] = second.position[i] - first.position[i];
-  turn_back3(frame, offset, shift);
-  for (const double x : shift) size += __builtin_fabs(x);
+  for (const double x : pair.shift) size += __builtin_fabs(x);
   const double rounding = pair.first.rounding + pair.second.rounding;
   if (!(size > kSmallest && size < kLargestSize)) return false;
   if (!(rounding < 1e6 * size)) return false;
-  const std::uint64_t exponent = __builtin_bit_cast(std::uint64_t, size) >> 52U;
-  const double scale = __builtin_bit_cast(double, (2046U - exponent) << 52U);
+  const double scale = hull::scale_of(size);
   pair.scale = scale;
   pair.unit = 1.0 / scale;
   pair.size = size * scale;
   pair.rounding = rounding * scale;
-  for (int i = 0; i < 3; ++i) {
-    pair.offset[i] = offset[i];
-    pair.shift[i] = shift[i] * scale;
-    for (int k = 0; k < 3; ++k) {
-      pair.frame[3 * i + k] = frame[3 * i + k];
-      pair.turn[3 * i + k] =
-          frame[i] * axes[k] + frame[3 + i] * axes[3 + k] + frame[6 + i] * axes[6 + k];
-    }
-  }
+  for (double& x : pair.shift) x *= scale;
   for (CoreDesc* form : {&pair.first, &pair.second}) {
     for (double& x : form->number) x *= scale;
     for (double& x : form->center) x *= scale;

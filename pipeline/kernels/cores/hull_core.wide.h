@@ -10,6 +10,7 @@
 #include "pipeline/kernels/single_vectors.wide.h"
 #include "pipeline/manifold/contact_patch.h"
 #include "simd/lanes/rows.h"
+#include "simd/lanes/scalar_lane.h"
 #include "simd/lanes/vectors.h"
 
 namespace winnow::WINNOW_ISA_NAME::hull {
@@ -30,14 +31,15 @@ static inline bool rotation_of(const double* q, double* m) {
   const double x = q[1] * s;
   const double y = q[2] * s;
   const double z = q[3] * s;
-  const double wx = q[0] * x;
-  const double wy = q[0] * y;
-  const double wz = q[0] * z;
+  // Products that are both added and subtracted: see `opaque`.
+  const double wx = opaque(q[0] * x);
+  const double wy = opaque(q[0] * y);
+  const double wz = opaque(q[0] * z);
   const double xx = q[1] * x;
-  const double xy = q[1] * y;
-  const double xz = q[1] * z;
+  const double xy = opaque(q[1] * y);
+  const double xz = opaque(q[1] * z);
   const double yy = q[2] * y;
-  const double yz = q[2] * z;
+  const double yz = opaque(q[2] * z);
   const double zz = q[3] * z;
   m[0] = 1.0 - (yy + zz);
   m[1] = xy - wz;
@@ -49,6 +51,46 @@ static inline bool rotation_of(const double* q, double* m) {
   m[7] = yz + wx;
   m[8] = 1.0 - (xx + yy);
   return true;
+}
+
+/// Two placed shapes, the second in the frame of the first.
+struct PairPlacement {
+  /// From the second's frame to the first's: x -> turn x + shift; stored by rows.
+  double turn[9];
+  double shift[3];
+  /// From the first's frame to world axes; stored by rows.
+  double frame[9];
+  /// Position of the second minus position of the first, in world axes.
+  double offset[3];
+};
+
+/// Returns false if an orientation is out of range. `PointSecond`: the second is a point at its
+/// origin, so its orientation is not read.
+template <bool PointSecond = false>
+static inline bool place(const Pose& first, const Pose& second, PairPlacement& pair) {
+  double axes[9] = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
+  if (!rotation_of(first.orientation, pair.frame)) return false;
+  if constexpr (PointSecond) {
+    for (int i = 0; i < 9; ++i) pair.turn[i] = axes[i];
+  } else {
+    if (!rotation_of(second.orientation, axes)) return false;
+    const double* const frame = pair.frame;
+    for (int i = 0; i < 3; ++i) {
+      for (int k = 0; k < 3; ++k) {
+        pair.turn[3 * i + k] =
+            frame[i] * axes[k] + frame[3 + i] * axes[3 + k] + frame[6 + i] * axes[6 + k];
+      }
+    }
+  }
+  for (int i = 0; i < 3; ++i) pair.offset[i] = second.position[i] - first.position[i];
+  turn_back3(pair.frame, pair.offset, pair.shift);
+  return true;
+}
+
+/// The power of two that brings a normal number into [1, 2).
+static inline double scale_of(double size) {
+  const std::uint64_t exponent = __builtin_bit_cast(std::uint64_t, size) >> 52U;
+  return __builtin_bit_cast(double, (2046U - exponent) << 52U);
 }
 
 static inline double reach_of(const HullShape& hull) {

@@ -231,17 +231,10 @@ class OverlapTest {
 
   [[gnu::noinline]] static Vec3<float> user_points(const Singles& singles, int side, Mask16 active,
                                                    const Vec3<float>& along) {
-    alignas(64) float d[3][kWidth];
-    alignas(64) float x[3][kWidth] = {};
-    Search::store3(along, d);
-    for (; active != 0; active &= active - 1) {
-      const unsigned lane = first(active);
-      const float direction[3] = {d[0][lane], d[1][lane], d[2][lane]};
-      float point[3];
-      user_support(*singles.own[side][lane], direction, singles.scale[lane], point);
-      for (int k = 0; k < 3; ++k) x[k][lane] = point[k];
-    }
-    return Search::load3(x);
+    return Search::one_by_one(
+        along, active, [&](unsigned lane, const float* direction, float* point) {
+          user_support(*singles.own[side][lane], direction, singles.scale[lane], point);
+        });
   }
 
   void decide(Mask16 lanes, std::uint32_t first_pair, std::uint8_t overlap) {

@@ -1,8 +1,7 @@
 #pragma once
 
-// Simplices of up to four points and their features nearest to the origin, one per lane: the step
-// of GJK (Gilbert, Johnson, Keerthi 1988). Searches that keep their simplices in memory add points
-// by SimplexColumns::add: SearchLanes (search_lanes.wide.h) and HullSearch (hull_gjk.wide.h).
+// Simplices of up to four points and their features nearest to the origin, one per lane, for GJK
+// (gjk_lanes.wide.h).
 
 #include "simd/lanes/vectors.h"
 
@@ -46,11 +45,37 @@ struct SimplexNearest {
   LaneMask<T> repeated;
 };
 
+/// Finds whether the origin is in a tetrahedron, given by the edges from one of its corners and by
+/// the three faces at this corner: their normals, the normals' squared lengths, and the heights of
+/// the corner over the planes through the origin.
+template <typename T>
+[[gnu::always_inline]] static inline void find_inside(const Vec3<T> (&edge)[kSlots],
+                                                      const Vec3<T> (&normal)[kSlots],
+                                                      const Lanes<T> (&area)[kSlots],
+                                                      const Lanes<T> (&height)[kSlots],
+                                                      SimplexNearest<T>& r) {
+  const Lanes<T> zero(T(0));
+  // The heights of the origin over the three faces, and over the opposite face, have the volume's
+  // sign if the origin is inside.
+  const Lanes<T> volume = dot(cross(edge[1], edge[2]), edge[0]);
+  const Lanes<T> side = sign_or_one(volume);
+  const Vec3<T> across = normal[0] + normal[1] + normal[2];
+  const Lanes<T> opposite = (volume + height[0] + height[1] + height[2]) * side;
+  const Lanes<T> doubt(kNoiseSquare<T>);
+  r.inside = (abs(volume) > zero) & (opposite > zero);
+  r.deep = opposite * opposite > doubt * dot(across, across);
+  for (int s = 0; s < kSlots; ++s) {
+    const Lanes<T> h = -height[s] * side;
+    r.inside = r.inside & (h > zero);
+    r.deep = r.deep & (h * h > doubt * area[s]);
+  }
+}
+
 /// Finds the nearest feature after adding w to a simplex. Along the direction of the old nearest
 /// point, w is nearer to the origin than all points of the simplex. So the new nearest feature
 /// contains w, and only eight of the tetrahedron's fifteen features are tested. Lengths are about
-/// 1.
-template <typename T>
+/// 1. Only the first `Slots` slots may be in use.
+template <int Slots = kSlots, typename T>
 static inline SimplexNearest<T> nearest_of(const Simplex<T>& simplex, const Vec3<T>& w) {
   const Lanes<T> zero(T(0));
   const Lanes<T> one(T(1));
@@ -60,17 +85,17 @@ static inline SimplexNearest<T> nearest_of(const Simplex<T>& simplex, const Vec3
   Vec3<T> arm[kSlots];
   Lanes<T> length[kSlots];
   r.repeated = zero > one;
+  for (LaneMask<T>& keep : r.keep) keep = zero > one;
   Lanes<T> best = dot(w, w);
   r.point = w;
-  for (int s = 0; s < kSlots; ++s) {
-    r.keep[s] = zero > one;
+  for (int s = 0; s < Slots; ++s) {
     edge[s] = select(simplex.present[s], simplex.point[s] - w, none);
     length[s] = dot(edge[s], edge[s]);
     r.repeated = r.repeated | (simplex.present[s] & (length[s] <= zero));
     // Distance from the edge's line to the origin, as a vector times the edge's length.
     arm[s] = cross(edge[s], w);
   }
-  for (int s = 0; s < kSlots; ++s) {
+  for (int s = 0; s < Slots; ++s) {
     const Lanes<T> reach = -dot(edge[s], w);
     const Lanes<T> t = min(reach / max(length[s], Lanes<T>(kVanishing<T>)), one);
     const Vec3<T> x = w + edge[s] * t;
@@ -84,10 +109,10 @@ static inline SimplexNearest<T> nearest_of(const Simplex<T>& simplex, const Vec3
   Vec3<T> normal[kSlots];
   Lanes<T> area[kSlots];
   Lanes<T> height[kSlots];
-  const Lanes<T> volume = dot(cross(edge[1], edge[2]), edge[0]);
   for (int s = 0; s < kSlots; ++s) {
     const int i = (s + 1) % kSlots;
     const int k = (s + 2) % kSlots;
+    if (i >= Slots || k >= Slots) continue;
     normal[s] = cross(edge[i], edge[k]);
     area[s] = dot(normal[s], normal[s]);
     height[s] = dot(normal[s], w);
@@ -113,106 +138,36 @@ static inline SimplexNearest<T> nearest_of(const Simplex<T>& simplex, const Vec3
     r.keep[i] = r.keep[i] | nearer;
     r.keep[k] = r.keep[k] | nearer;
   }
-  // The heights of the origin over the three faces at w, and over the opposite face, have the
-  // volume's sign if the origin is inside.
-  const Lanes<T> side = sign_or_one(volume);
-  const Vec3<T> across = normal[0] + normal[1] + normal[2];
-  const Lanes<T> opposite = (volume + height[0] + height[1] + height[2]) * side;
-  const Lanes<T> doubt(kNoiseSquare<T>);
-  r.inside = abs(volume) > zero;
-  r.inside = r.inside & (opposite > zero);
-  r.deep = opposite * opposite > doubt * dot(across, across);
-  for (int s = 0; s < kSlots; ++s) {
-    const Lanes<T> h = -height[s] * side;
-    r.inside = r.inside & (h > zero);
-    r.deep = r.deep & (h * h > doubt * area[s]);
+  if constexpr (Slots == kSlots) {
+    find_inside(edge, normal, area, height, r);
+  } else {
+    r.inside = r.deep = zero > one;
   }
   return r;
 }
 
-/// The simplices of searches, one per lane, in memory: a lane that is done takes the next pair.
+/// As nearest_of, but computes only as many points as the largest simplex in `lanes` has.
 template <typename T>
-struct SimplexColumns {
-  static constexpr int kWidth = Lanes<T>::kCount;
-  using Column = T[kWidth];
+static inline SimplexNearest<T> nearest_of_few(const Simplex<T>& simplex, const Vec3<T>& w,
+                                               const LaneMask<T>& lanes) {
+  if (bits(lanes & simplex.present[2]) != 0) return nearest_of(simplex, w);
+  if (bits(lanes & simplex.present[1]) != 0) return nearest_of<2>(simplex, w);
+  if (bits(lanes & simplex.present[0]) != 0) return nearest_of<1>(simplex, w);
+  const LaneMask<T> none = lanes & !lanes;
+  return {w, {none, none, none}, none, none, none};
+}
 
-  /// The outcome of adding a support point, by lane.
-  struct Step {
-    /// The search makes no progress; the origin is in the simplex (`deep` if that is certain); the
-    /// nearest feature has become the simplex.
-    LaneMask<T> stuck;
-    LaneMask<T> inside;
-    LaneMask<T> deep;
-    LaneMask<T> moves;
-    /// Squared distance of the nearest feature.
-    Lanes<T> square;
-  };
-
-  void clear(unsigned lane) {
-    for (int s = 0; s < kSlots; ++s) present[s][lane] = T(0);
-    fresh[lane] = T(1);
+/// Replaces simplices by their nearest features, in the lanes that move: put(slot, lanes that store
+/// the new point there, lanes in which the slot is then in use).
+template <typename T, typename Put>
+[[gnu::always_inline]] static inline void keep_nearest(const SimplexNearest<T>& nearest,
+                                                       const LaneMask<T>& moves, Put&& put) {
+  LaneMask<T> placed = !moves;
+  for (int s = 0; s < kSlots; ++s) {
+    const LaneMask<T> take = (!placed) & (!nearest.keep[s]);
+    placed = placed | take;
+    put(s, take, take | nearest.keep[s]);
   }
-
-  [[nodiscard]] [[gnu::always_inline]] Simplex<T> load() const {
-    Simplex<T> simplex;
-    for (int s = 0; s < kSlots; ++s) {
-      simplex.point[s] = load3(slot[s]);
-      simplex.present[s] = Lanes<T>::load(present[s]) > Lanes<T>(T(0));
-    }
-    return simplex;
-  }
-
-  /// Adds the support point w to `simplex`, unless the lane `is_far`. `nearest_yet` is the nearest
-  /// point before, `square_yet` its square. `no_gain`: w is hardly nearer to the origin than this
-  /// point. In the lanes that move, the nearest feature becomes the simplex; for each slot,
-  /// keep_more(slot, lanes that take w) stores more data about w.
-  template <typename KeepMore>
-  [[gnu::always_inline]] Step add(const Simplex<T>& simplex, const Vec3<T>& w,
-                                  const Vec3<T>& nearest_yet, const Lanes<T>& square_yet,
-                                  const LaneMask<T>& is_far, const LaneMask<T>& no_gain,
-                                  KeepMore&& keep_more) {
-    const Lanes<T> zero(T(0));
-    const Lanes<T> one(T(1));
-    const LaneMask<T> is_fresh = Lanes<T>::load(fresh) > zero;
-    const SimplexNearest<T> nearest = nearest_of(simplex, w);
-    const Lanes<T> next_square = dot(nearest.point, nearest.point);
-    const LaneMask<T> stuck = (!is_fresh) &
-                              (no_gain | nearest.repeated | (next_square >= square_yet)) &
-                              (!(nearest.inside | is_far));
-    const LaneMask<T> inside = nearest.inside & !is_far;
-    const LaneMask<T> moves = !(is_far | stuck | inside);
-    LaneMask<T> placed = !moves;
-    for (int s = 0; s < kSlots; ++s) {
-      const LaneMask<T> take = (!placed) & (!nearest.keep[s]);
-      placed = placed | take;
-      store3(select(take, w, simplex.point[s]), slot[s]);
-      keep_more(s, take);
-      const Lanes<T> filled = select(take | nearest.keep[s], one, zero);
-      select(moves, filled, Lanes<T>::load(present[s])).store(present[s]);
-    }
-    store3(select(moves, nearest.point, nearest_yet), gap);
-    select(moves, next_square, square_yet).store(square);
-    zero.store(fresh);
-    return {stuck, inside, nearest.deep, moves, next_square};
-  }
-
-  static Vec3<T> load3(const Column* v) {
-    return {Lanes<T>::load(v[0]), Lanes<T>::load(v[1]), Lanes<T>::load(v[2])};
-  }
-  static void store3(const Vec3<T>& v, Column* to) {
-    v.x.store(to[0]);
-    v.y.store(to[1]);
-    v.z.store(to[2]);
-  }
-
-  /// The simplex; `present` is 1 where there is a point.
-  alignas(64) Column slot[kSlots][3] = {};
-  alignas(64) Column present[kSlots] = {};
-  /// 1 before the first step.
-  alignas(64) Column fresh = {};
-  /// The nearest point of the simplex, and its square.
-  alignas(64) Column gap[3] = {};
-  alignas(64) Column square = {};
-};
+}
 
 }  // namespace winnow::WINNOW_ISA_NAME::hull

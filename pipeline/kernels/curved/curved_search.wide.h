@@ -58,19 +58,18 @@ class CurvedSearch {
   /// At least one pair; all pairs have the same kinds. `overlap_only`: the search stops with state
   /// inside as soon as the rounded shapes certainly overlap.
   CurvedSearch(CurvedPair* pairs, std::uint32_t count, bool overlap_only)
-      : next_(pairs),
-        end_(pairs + count),
+      : pairs_(pairs, count),
         overlap_only_(overlap_only),
         kind_{pairs->first.kind, pairs->second.kind},
         tries_features_(may_have_features(*pairs)),
         lanes_(has_user_shape(*pairs)) {}
 
   void run() {
-    for (int lane = 0; lane < kWidth; ++lane) refill(lane);
-    while (active_ != 0) {
+    for (unsigned lane = 0; lane < kWidth; ++lane) refill(lane);
+    while (pairs_.active() != 0) {
       Mask16 done = step();
       for (; done != 0; done &= done - 1) {
-        const int lane = static_cast<int>(first(done));
+        const unsigned lane = first(done);
         hand_back(lane);
         confirm_inside(lane);
         if (needs_restart(lane)) {
@@ -80,8 +79,8 @@ class CurvedSearch {
           refill(lane);
         }
       }
-      for (Mask16 rest = active_; rest != 0; rest &= rest - 1) {
-        const int lane = static_cast<int>(first(rest));
+      for (Mask16 rest = pairs_.active(); rest != 0; rest &= rest - 1) {
+        const unsigned lane = first(rest);
         if (tries_features_ && is_near(lane) && ends_on_features(lane)) refill(lane);
       }
     }
@@ -103,14 +102,10 @@ class CurvedSearch {
   static constexpr double kAskew[3] = {0.3125, -0.234375, 0.171875};
   static constexpr double kUnrelated[3] = {-0.21875, 0.15625, 0.40625};
 
-  void refill(int lane) {
-    if (next_ == end_) {
-      active_ &= ~(1U << lane);
-      return;
-    }
-    CurvedPair& pair = *next_++;
-    active_ |= 1U << lane;
-    pair_[lane] = &pair;
+  void refill(unsigned lane) {
+    CurvedPair* const next = pairs_.refill(lane);
+    if (next == nullptr) return;
+    CurvedPair& pair = *next;
     const CoreDesc* const forms[2] = {&pair.first, &pair.second};
     for (int side = 0; side < 2; ++side) {
       for (int i = 0; i < hull::kCoreNumbers; ++i) number_[side][i][lane] = forms[side]->number[i];
@@ -128,16 +123,16 @@ class CurvedSearch {
 
   /// If shapes are aligned, the origin may be on an edge or a face of the simplex although the
   /// cores overlap. A second search from another start avoids that.
-  bool needs_restart(int lane) {
-    if (pair_[lane]->state != CurvedState::close || is_askew_[lane]) return false;
+  bool needs_restart(unsigned lane) {
+    if (pairs_[lane].state != CurvedState::close || is_askew_[lane]) return false;
     is_askew_[lane] = true;
     return true;
   }
 
   /// Tests whether the origin is certainly inside. If the depth is needed, only after the second
   /// search: a polytope that starts from the simplex of the second search takes fewer steps.
-  void confirm_inside(int lane) {
-    CurvedPair& pair = *pair_[lane];
+  void confirm_inside(unsigned lane) {
+    CurvedPair& pair = pairs_[lane];
     if (pair.state != CurvedState::close || !(overlap_only_ || is_askew_[lane])) return;
     if (is_surrounded(pair)) pair.state = CurvedState::inside;
   }
@@ -171,8 +166,8 @@ class CurvedSearch {
   }
 
   /// Starts a search from a point of the difference, moved by `aside` times the sizes.
-  void start(int lane, const double* aside) {
-    const CurvedPair& pair = *pair_[lane];
+  void start(unsigned lane, const double* aside) {
+    const CurvedPair& pair = pairs_[lane];
     lanes_.start(lane);
     double middle[3];
     turn3(pair.turn, pair.second.center, middle);
@@ -191,10 +186,10 @@ class CurvedSearch {
 
   /// Adds a support point along an unrelated direction: for two balls, all points that are found
   /// from one starting direction are in one plane with the origin.
-  void add_unrelated_support(int lane) {
+  void add_unrelated_support(unsigned lane) {
     double w[3];
     double mine[3];
-    difference_point(*pair_[lane], kUnrelated, w, mine);
+    difference_point(pairs_[lane], kUnrelated, w, mine);
     for (int k = 0; k < 3; ++k) {
       lanes_.slot[0][k][lane] = w[k];
       lanes_.slot_mine[0][k][lane] = mine[k];
@@ -212,33 +207,22 @@ class CurvedSearch {
   }
 
   [[gnu::noinline]] Vec3<double> one_by_one(int side, const Vec3<double>& along) {
-    alignas(64) double d[3][kWidth];
-    alignas(64) double x[3][kWidth] = {};
-    Search::store3(along, d);
-    for (Mask16 rest = active_; rest != 0; rest &= rest - 1) {
-      const unsigned lane = first(rest);
-      const double direction[3] = {d[0][lane], d[1][lane], d[2][lane]};
-      double point[3];
-      const CurvedPair& pair = *pair_[lane];
-      single_support(side == 0 ? pair.first : pair.second, direction, pair.scale, point);
-      for (int k = 0; k < 3; ++k) x[k][lane] = point[k];
-    }
-    return Search::load3(x);
+    return Search::one_by_one(
+        along, pairs_.active(), [&](unsigned lane, const double* direction, double* point) {
+          const CurvedPair& pair = pairs_[lane];
+          single_support(side == 0 ? pair.first : pair.second, direction, pair.scale, point);
+        });
   }
 
   /// Advances all lanes by one step; returns the lanes that are done.
   Mask16 step() {
-    const hull::SearchEnds ends =
-        lanes_.step(active_, [&](int side, const Vec3<double>& d) { return support_of(side, d); });
-    mark(ends.far, CurvedState::far);
-    mark(ends.apart, CurvedState::apart);
-    mark(ends.inside, CurvedState::inside);
-    mark(ends.close, CurvedState::close);
+    const hull::SearchEnds ends = lanes_.step(
+        pairs_.active(), [&](int side, const Vec3<double>& d) { return support_of(side, d); });
+    pairs_.mark(ends.far, CurvedState::far);
+    pairs_.mark(ends.apart, CurvedState::apart);
+    pairs_.mark(ends.inside, CurvedState::inside);
+    pairs_.mark(ends.close, CurvedState::close);
     return ends.all();
-  }
-
-  void mark(Mask16 lanes, CurvedState state) {
-    for (; lanes != 0; lanes &= lanes - 1) pair_[first(lanes)]->state = state;
   }
 
   /// False for user shapes against shapes with flat parts or edges: ends_on_tangent needs a smooth
@@ -251,7 +235,7 @@ class CurvedSearch {
 
   /// True at a few steps if the bounds are near each other: the simplex then likely contains the
   /// closest features.
-  [[nodiscard]] bool is_near(int lane) const {
+  [[nodiscard]] bool is_near(unsigned lane) const {
     const std::uint32_t steps = lanes_.steps[lane];
     if (steps != 4 && steps != 7 && steps != 12) return false;
     return lanes_.height_along[lane] > kNear * lanes_.square[lane];
@@ -259,8 +243,8 @@ class CurvedSearch {
 
   /// Tests whether the closest points of the features in the simplex are the closest points of the
   /// cores. On curved sides, GJK converges ever more slowly.
-  bool ends_on_features(int lane) {
-    CurvedPair& pair = *pair_[lane];
+  bool ends_on_features(unsigned lane) {
+    CurvedPair& pair = pairs_[lane];
     const double length = __builtin_sqrt(lanes_.square[lane]);
     double near[3];
     for (int k = 0; k < 3; ++k) near[k] = -lanes_.gap[k][lane] / length;
@@ -273,7 +257,7 @@ class CurvedSearch {
     return true;
   }
 
-  bool ends_on_sum(int lane, CurvedPair& pair, const double* near) {
+  bool ends_on_sum(unsigned lane, CurvedPair& pair, const double* near) {
     double point[3][3];
     double on_first_core[3][3];
     const std::uint32_t count = take_simplex(lane, point, on_first_core);
@@ -310,7 +294,7 @@ class CurvedSearch {
   }
 
   /// Copies the points of the simplex and the points of the first in them; returns their number.
-  std::uint32_t take_simplex(int lane, double (*point)[3], double (*mine)[3]) const {
+  std::uint32_t take_simplex(unsigned lane, double (*point)[3], double (*mine)[3]) const {
     std::uint32_t count = 0;
     for (int s = 0; s < hull::kSlots; ++s) {
       if (!(lanes_.present[s][lane] > 0.0)) continue;
@@ -323,8 +307,8 @@ class CurvedSearch {
     return count;
   }
 
-  void hand_back(int lane) {
-    CurvedPair& pair = *pair_[lane];
+  void hand_back(unsigned lane) {
+    CurvedPair& pair = pairs_[lane];
     pair.count = take_simplex(lane, pair.difference, pair.on_first);
     for (int k = 0; k < 3; ++k) {
       pair.difference[3][k] = lanes_.latest[k][lane];
@@ -335,13 +319,10 @@ class CurvedSearch {
     for (int k = 0; k < 3; ++k) pair.gap[k] = lanes_.gap[k][lane];
   }
 
-  CurvedPair* next_;
-  CurvedPair* end_;
+  hull::LanePairs<CurvedPair, kWidth> pairs_;
   bool overlap_only_;
-  Mask16 active_ = 0;
   ShapeKind kind_[2];
   bool tries_features_;
-  CurvedPair* pair_[kWidth] = {};
   bool is_askew_[kWidth] = {};
   alignas(64) double number_[2][hull::kCoreNumbers][kWidth] = {};
   Search lanes_;

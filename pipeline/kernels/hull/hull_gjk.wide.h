@@ -11,8 +11,8 @@
 // nearest one. The limits of the states far and inside include the errors of float. All other
 // results are guesses, which the later steps prove before they use them.
 
+#include "pipeline/kernels/cores/gjk_lanes.wide.h"
 #include "pipeline/kernels/cores/hull_core.wide.h"
-#include "pipeline/kernels/cores/simplex.wide.h"
 
 namespace winnow::WINNOW_ISA_NAME::hull {
 
@@ -29,16 +29,9 @@ enum class HullState : std::uint32_t {
 };
 
 /// "First" is body a of the pair, or body b if `swapped`: see comes_second.
-struct HullPair {
+struct HullPair : PairPlacement {
   const HullShape* first;
   const HullShape* second;
-  /// From the second's frame to the first's: x -> turn x + shift; stored by rows.
-  double turn[9];
-  double shift[3];
-  /// From the first's frame to world axes; stored by rows.
-  double frame[9];
-  /// Position of the second minus position of the first, in world axes.
-  double offset[3];
   /// An upper bound of every length that occurs: the distance of the hulls' origins, plus the
   /// reach_of each hull.
   double size;
@@ -79,60 +72,29 @@ inline constexpr double kLargestHull = 1e8;
 /// The search stores vertex numbers in 16 bits.
 inline constexpr std::uint32_t kMaxHullVertices = 65535;
 
-/// The power of two that brings a size in float's range into [1, 2).
-static inline float scale_of(double size) {
-  const std::uint64_t exponent = __builtin_bit_cast(std::uint64_t, size) >> 52U;
-  return static_cast<float>(__builtin_bit_cast(double, (2046U - exponent) << 52U));
-}
-
 /// Fills in the inputs of the search, with b first if `swapped`; returns false if poses or sizes
-/// are out of range. `PointSecond`: the second is a point at its origin, so its orientation is not
-/// read.
+/// are out of range. `PointSecond`: see `place`.
 template <bool PointSecond = false>
 static inline bool place_hulls(const HullShape& a, const HullShape& b, const Pose& pose_a,
                                const Pose& pose_b, bool swapped, HullPair& pair) {
   pair.swapped = swapped;
-  const Pose& first = swapped ? pose_b : pose_a;
-  const Pose& second = swapped ? pose_a : pose_b;
   pair.first = swapped ? &b : &a;
   pair.second = swapped ? &a : &b;
-  double frame[9];
-  double turn[9] = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
-  if (!rotation_of(first.orientation, frame)) return false;
-  if constexpr (!PointSecond) {
-    double axes[9];
-    if (!rotation_of(second.orientation, axes)) return false;
-    for (int i = 0; i < 3; ++i) {
-      for (int k = 0; k < 3; ++k) {
-        turn[3 * i + k] =
-            frame[i] * axes[k] + frame[3 + i] * axes[3 + k] + frame[6 + i] * axes[6 + k];
-      }
-    }
-  }
-  double offset[3];
-  double shift[3];
-  for (int i = 0; i < 3; ++i) offset[i] = second.position[i] - first.position[i];
-  turn_back3(frame, offset, shift);
+  if (!place<PointSecond>(swapped ? pose_b : pose_a, swapped ? pose_a : pose_b, pair)) return false;
   pair.rounding = a.rounding + b.rounding;
-  const double size = reach_of(a) + reach_of(b) + __builtin_fabs(shift[0]) +
-                      __builtin_fabs(shift[1]) + __builtin_fabs(shift[2]);
+  const double size = reach_of(a) + reach_of(b) + __builtin_fabs(pair.shift[0]) +
+                      __builtin_fabs(pair.shift[1]) + __builtin_fabs(pair.shift[2]);
   if (!(size > kSmallestHull && size < kLargestHull)) return false;
   if (!(pair.rounding < kLargestHull)) return false;
-  const float scale = scale_of(size);
+  const auto scale = static_cast<float>(scale_of(size));
   pair.size = size;
   pair.scale = scale;
   for (int i = 0; i < 9; ++i) {
-    const auto turn_float = static_cast<float>(turn[i]);
-    pair.frame[i] = frame[i];
-    pair.turn[i] = turn[i];
+    const auto turn_float = static_cast<float>(pair.turn[i]);
     pair.turn_float[i] = turn_float;
     pair.scaled_turn[i] = turn_float * scale;
   }
-  for (int i = 0; i < 3; ++i) {
-    pair.offset[i] = offset[i];
-    pair.shift[i] = shift[i];
-    pair.scaled_shift[i] = static_cast<float>(shift[i]) * scale;
-  }
+  for (int i = 0; i < 3; ++i) pair.scaled_shift[i] = static_cast<float>(pair.shift[i]) * scale;
   return true;
 }
 
@@ -151,7 +113,7 @@ struct SecondSupport {
 /// Second hulls as stored in the pool.
 class HullSeconds {
  public:
-  void put(int lane, const HullPair& pair) {
+  void put(unsigned lane, const HullPair& pair) {
     vertices_.put(lane, *pair.second);
     for (int i = 0; i < 9; ++i) turn_[i][lane] = pair.scaled_turn[i];
     for (int i = 0; i < 3; ++i) shift_[i][lane] = pair.scaled_shift[i];
@@ -180,7 +142,7 @@ class HullSeconds {
 template <int Axes>
 class CenteredSeconds {
  public:
-  void put(int lane, const HullPair& pair) {
+  void put(unsigned lane, const HullPair& pair) {
     for (int i = 0; i < 3; ++i) middle_[i][lane] = pair.scaled_shift[i];
     for (int k = 0; k < Axes; ++k) {
       // A segment runs along z.
@@ -211,7 +173,7 @@ class CenteredSeconds {
 
 class TriangleSeconds {
  public:
-  void put(int lane, const HullPair& pair) {
+  void put(unsigned lane, const HullPair& pair) {
     const float* const* vertex = pair.second->vertex_float;
     for (int v = 0; v < 3; ++v) {
       const float x[3] = {vertex[0][v], vertex[1][v], vertex[2][v]};
@@ -251,14 +213,14 @@ class HullSearch {
   /// `overlap_only`: the search stops with state inside as soon as the rounded shapes certainly
   /// overlap, and does not restart.
   HullSearch(HullPair* pairs, std::uint32_t count, bool overlap_only)
-      : next_(pairs), end_(pairs + count), overlap_only_(overlap_only) {}
+      : pairs_(pairs, count), overlap_only_(overlap_only) {}
 
   void run() {
-    for (int lane = 0; lane < kLanes; ++lane) refill(lane);
-    while (active_ != 0) {
+    for (unsigned lane = 0; lane < kLanes; ++lane) refill(lane);
+    while (pairs_.active() != 0) {
       Mask16 done = step();
       for (; done != 0; done &= done - 1) {
-        const int lane = static_cast<int>(first(done));
+        const unsigned lane = first(done);
         hand_back(lane);
         refill(lane);
       }
@@ -266,52 +228,42 @@ class HullSearch {
   }
 
  private:
-  using Columns = SimplexColumns<float>;
+  using Search = GjkLanes<float>;
 
   static constexpr std::uint32_t kMaxSteps = 48;
   /// Maximal number of steps after a restart from outside.
   static constexpr std::uint32_t kRestartSteps = 8;
   /// Distance of the restart's goal from the origin, relative to the lowest height found.
   static constexpr float kOutside = 1.25F;
-  /// Scaled; if its nearest point is closer, the simplex counts as touching the origin.
-  static constexpr float kTouching = 2e-6F;
-  /// Scaled; if the support point is less than this below the nearest point along `gap`, there is
-  /// no progress.
-  static constexpr float kNoGain = 4e-7F;
   /// Error bound of the height of a support point, scaled. It includes the error in the choice of
   /// the highest vertex (see kLaneBits).
   static constexpr float kLengthError = 6e-6F;
 
-  void refill(int lane) {
-    if (next_ == end_) {
-      active_ &= ~(1U << lane);
-      return;
-    }
-    HullPair& pair = *next_++;
-    active_ |= 1U << lane;
-    pair_[lane] = &pair;
+  void refill(unsigned lane) {
+    HullPair* const next = pairs_.refill(lane);
+    if (next == nullptr) return;
+    HullPair& pair = *next;
     firsts_.put(lane, *pair.first);
     seconds_.put(lane, pair);
     scale_[lane] = pair.scale;
     const auto scaled = [&](double length) { return static_cast<float>(length) * pair.scale; };
     const float far = scaled(pair.far + pair.rounding) + kLengthError;
-    far_[lane] = far * far;
+    lanes_.far[lane] = far * far;
     const float near = scaled(pair.rounding) - kLengthError;
-    near_[lane] = overlap_only_ && near > 0.0F ? near * near : -1.0F;
+    lanes_.near[lane] = overlap_only_ && near > 0.0F ? near * near : -1.0F;
     depth_[lane] = __builtin_inff();
-    simplex_.clear(static_cast<unsigned>(lane));
+    lanes_.start(lane);
     restarted_[lane] = 0.0F;
     for (int k = 0; k < 3; ++k) goal_[k][lane] = 0.0F;
     pair.trail_length = 0;
-    steps_[lane] = 0;
     float center[3];
     start_direction(pair, center);
     float square = 0.0F;
     for (int i = 0; i < 3; ++i) {
-      simplex_.gap[i][lane] = center[i];
+      lanes_.gap[i][lane] = center[i];
       square += center[i] * center[i];
     }
-    simplex_.square[lane] = square;
+    lanes_.square[lane] = square;
   }
 
   /// The vector from the second's center to the first's: a point of their difference.
@@ -321,63 +273,65 @@ class HullSearch {
     for (int i = 0; i < 3; ++i) {
       d[i] = static_cast<float>(pair.first->center[i] - (middle[i] + pair.shift[i])) * pair.scale;
     }
-    if (!(d[0] * d[0] + d[1] * d[1] + d[2] * d[2] > kTouching * kTouching)) {
+    if (!(d[0] * d[0] + d[1] * d[1] + d[2] * d[2] > Search::kTouching * Search::kTouching)) {
       d[0] = 1.0F;
       d[1] = 0.0F;
       d[2] = 0.0F;
     }
   }
 
-  /// Returns the support point of the difference against a direction, and in `name` its vertices.
-  Vec3<float> support(const Vec3<float>& gap, Floats& name) {
-    firsts_.find(-gap, active_);
-    const SecondSupport second = seconds_.find(gap, active_);
-    name = firsts_.numbers(0) | second.number;
-    const Vec3<float> goal{Floats::load(goal_[0]), Floats::load(goal_[1]), Floats::load(goal_[2])};
-    return firsts_.vertex() * Floats::load(scale_) - second.point - goal;
-  }
+  /// See GjkLanes::step.
+  struct Rules {
+    HullSearch& search;
+    LaneMask<float> restarted;
+    /// The support point and its vertices.
+    Vec3<float> w;
+    Floats name;
+
+    [[gnu::always_inline]] void find(const Vec3<float>& v) {
+      search.firsts_.find(-v, search.pairs_.active());
+      const SecondSupport second = search.seconds_.find(v, search.pairs_.active());
+      name = search.firsts_.numbers(0) | second.number;
+      w = search.firsts_.vertex() * Floats::load(search.scale_) - second.point -
+          Search::load3(search.goal_);
+    }
+    [[gnu::always_inline]] LaneMask<float> ends(const Vec3<float>& v, const Floats& square,
+                                                const Floats& height,
+                                                const Simplex<float>& /*simplex*/) const {
+      if (!search.overlap_only_) search.note_depth(w, v, square, height);
+      return search.lanes_.is_far(height, square) & !restarted;
+    }
+    [[gnu::always_inline]] LaneMask<float> has_no_gain(const Floats& gain,
+                                                       const Floats& square) const {
+      return (gain <= Floats(0.0F)) |
+             (gain * gain <= Floats(Search::kNoGain * Search::kNoGain) * square);
+    }
+    [[gnu::always_inline]] SimplexNearest<float> nearest(const Simplex<float>& simplex) const {
+      return nearest_of(simplex, w);
+    }
+    [[gnu::always_inline]] void keep(int s, const LaneMask<float>& take) const {
+      select(take, name, Floats::load(search.slot_name_[s])).store(search.slot_name_[s]);
+    }
+  };
 
   /// Advances all lanes by one step; returns the lanes that are done.
   Mask16 step() {
-    const Floats zero(0.0F);
-    const Simplex<float> simplex = simplex_.load();
-    const Vec3<float> gap = Columns::load3(simplex_.gap);
-    const Floats square = Floats::load(simplex_.square);
-    const LaneMask<float> restarted = Floats::load(restarted_) > zero;
-    Floats name;
-    const Vec3<float> w = support(gap, name);
-    const Floats height = dot(gap, w);
-    const LaneMask<float> ahead = height > zero;
-    const LaneMask<float> far =
-        ahead & (height * height > Floats::load(far_) * square) & !restarted;
-    height.store(height_along_);
-    if (!overlap_only_) note_depth(w, gap, square, height);
-
-    const Floats gain = square - height;
-    const LaneMask<float> no_gain =
-        (gain <= zero) | (gain * gain <= Floats(kNoGain * kNoGain) * square);
-    const Columns::Step found = simplex_.add(
-        simplex, w, gap, square, far, no_gain, [&](int s, const LaneMask<float>& take) {
-          select(take, name, Floats::load(slot_name_[s])).store(slot_name_[s]);
-        });
+    const LaneMask<float> restarted = Floats::load(restarted_) > Floats(0.0F);
+    Rules rules{*this, restarted, {}, {}};
+    const Mask16 active = pairs_.active();
+    const SearchEnds ends = lanes_.ends_of(lanes_.step(active, rules), active);
     const Mask16 restarted_bits = bits(restarted);
-    const Mask16 far_bits = bits(far) & active_;
-    const Mask16 stuck_bits = bits(found.stuck) & active_;
-    const Mask16 inside_bits = bits(found.inside) & active_;
-    const Mask16 move = bits(found.moves) & active_;
-    const Mask16 near_bits = bits(found.square <= Floats::load(near_)) & move;
-    const Mask16 touch_bits =
-        bits(found.square <= Floats(kTouching * kTouching)) & move & ~near_bits;
-    mark(far_bits, HullState::far);
-    mark(stuck_bits & ~restarted_bits, HullState::apart);
-    mark(stuck_bits & restarted_bits, HullState::close);
-    mark(inside_bits & bits(found.deep), HullState::inside);
-    mark(inside_bits & ~bits(found.deep), HullState::close);
-    mark(near_bits, HullState::inside);
-    mark(touch_bits, HullState::close);
-    Mask16 done = far_bits | stuck_bits | inside_bits | near_bits | touch_bits;
-    if (!overlap_only_) done &= ~restart_from_outside(inside_bits & ~restarted_bits);
-    return done | give_up(active_ & ~done, restarted_bits);
+    pairs_.mark(ends.far, HullState::far);
+    pairs_.mark(ends.apart & ~restarted_bits, HullState::apart);
+    pairs_.mark(ends.apart & restarted_bits, HullState::close);
+    pairs_.mark(ends.inside, HullState::inside);
+    pairs_.mark(ends.close, HullState::close);
+    Mask16 done = ends.all();
+    if (!overlap_only_) done &= ~restart_from_outside(ends.enclosed & ~restarted_bits);
+    const Mask16 late = lanes_.late(active & ~done, kMaxSteps);
+    pairs_.mark(late & ~restarted_bits, HullState::apart);
+    pairs_.mark(late & restarted_bits, HullState::close);
+    return done | late;
   }
 
   /// Restarts the lanes whose origin is inside: the goal becomes a point outside, in the direction
@@ -387,20 +341,20 @@ class HullSearch {
     for (; lanes != 0; lanes &= lanes - 1) {
       const unsigned lane = first(lanes);
       const float depth = __builtin_sqrtf(depth_[lane]);
-      if (!(depth > kTouching && depth < 2.0F)) continue;
+      if (!(depth > Search::kTouching && depth < 2.0F)) continue;
       float square = 0.0F;
       for (int k = 0; k < 3; ++k) square += lowest_[k][lane] * lowest_[k][lane];
       const float reach = depth * kOutside / __builtin_sqrtf(square);
       square = 0.0F;
       for (int k = 0; k < 3; ++k) {
-        simplex_.gap[k][lane] = lowest_[k][lane] * reach;
-        goal_[k][lane] = -simplex_.gap[k][lane];
-        square += simplex_.gap[k][lane] * simplex_.gap[k][lane];
+        lanes_.gap[k][lane] = lowest_[k][lane] * reach;
+        goal_[k][lane] = -lanes_.gap[k][lane];
+        square += lanes_.gap[k][lane] * lanes_.gap[k][lane];
       }
-      simplex_.square[lane] = square;
-      simplex_.clear(lane);
+      lanes_.square[lane] = square;
+      lanes_.start(lane);
       restarted_[lane] = 1.0F;
-      steps_[lane] = kMaxSteps - kRestartSteps;
+      lanes_.steps[lane] = kMaxSteps - kRestartSteps;
       restarts |= 1U << lane;
     }
     return restarts;
@@ -410,79 +364,52 @@ class HullSearch {
   void note_depth(const Vec3<float>& w, const Vec3<float>& gap, const Floats& square,
                   const Floats& height) {
     const Floats zero(0.0F);
-    const Vec3<float> goal{Floats::load(goal_[0]), Floats::load(goal_[1]), Floats::load(goal_[2])};
+    const Vec3<float> goal = Search::load3(goal_);
     const Floats over = height + dot(gap, goal);
     const Floats depth = select(over > zero, zero, over * over / square);
     const Floats before = Floats::load(depth_);
     const LaneMask<float> lower = depth < before;
     select(lower, depth, before).store(depth_);
-    select(lower, gap.x, Floats::load(lowest_[0])).store(lowest_[0]);
-    select(lower, gap.y, Floats::load(lowest_[1])).store(lowest_[1]);
-    select(lower, gap.z, Floats::load(lowest_[2])).store(lowest_[2]);
+    Search::store3(select(lower, gap, Search::load3(lowest_)), lowest_);
     remember(w + goal);
-  }
-
-  /// Ends searches that exceed the step limit.
-  Mask16 give_up(Mask16 lanes, Mask16 restarted) {
-    Mask16 late = 0;
-    for (; lanes != 0; lanes &= lanes - 1) {
-      const unsigned lane = first(lanes);
-      if (++steps_[lane] < kMaxSteps) continue;
-      late |= 1U << lane;
-      pair_[lane]->state = (restarted >> lane & 1U) != 0 ? HullState::close : HullState::apart;
-    }
-    return late;
   }
 
   /// Stores points of the difference for HullDepth.
   void remember(const Vec3<float>& w) {
     alignas(64) float point[3][kLanes];
-    w.x.store(point[0]);
-    w.y.store(point[1]);
-    w.z.store(point[2]);
-    for (Mask16 rest = active_; rest != 0; rest &= rest - 1) {
+    Search::store3(w, point);
+    for (Mask16 rest = pairs_.active(); rest != 0; rest &= rest - 1) {
       const unsigned lane = first(rest);
-      HullPair& pair = *pair_[lane];
+      HullPair& pair = pairs_[lane];
       float* to = pair.trail[pair.trail_length++ % HullPair::kTrail];
       for (int k = 0; k < 3; ++k) to[k] = point[k][lane];
     }
   }
 
-  void mark(Mask16 lanes, HullState state) {
-    for (; lanes != 0; lanes &= lanes - 1) pair_[first(lanes)]->state = state;
-  }
-
-  void hand_back(int lane) {
-    HullPair& pair = *pair_[lane];
+  void hand_back(unsigned lane) {
+    HullPair& pair = pairs_[lane];
     pair.count = 0;
     for (int s = 0; s < kSlots; ++s) {
-      if (simplex_.present[s][lane] > 0.0F && pair.count < 3) {
+      if (lanes_.present[s][lane] > 0.0F && pair.count < 3) {
         pair.vertices[pair.count++] = __builtin_bit_cast(std::uint32_t, slot_name_[s][lane]);
       }
     }
-    for (int i = 0; i < 3; ++i) pair.gap[i] = simplex_.gap[i][lane];
-    pair.lower = height_along_[lane];
+    for (int i = 0; i < 3; ++i) pair.gap[i] = lanes_.gap[i][lane];
+    pair.lower = lanes_.height_along[lane];
     pair.depth_squared = depth_[lane];
   }
 
-  HullPair* next_;
-  HullPair* end_;
+  LanePairs<HullPair, kLanes> pairs_;
   bool overlap_only_;
-  Mask16 active_ = 0;
   FarthestVertices firsts_;
   Seconds seconds_;
-  Columns simplex_;
-  HullPair* pair_[kLanes] = {};
-  std::uint32_t steps_[kLanes] = {};
+  Search lanes_;
   alignas(64) float scale_[kLanes] = {};
-  alignas(64) float far_[kLanes] = {};
-  alignas(64) float near_[kLanes] = {};
   /// 1 if the origin is inside and the search continues from the point `goal_` outside.
   alignas(64) float restarted_[kLanes] = {};
   alignas(64) float goal_[3][kLanes] = {};
   alignas(64) float lowest_[3][kLanes] = {};
   alignas(64) float depth_[kLanes] = {};
-  alignas(64) float height_along_[kLanes] = {};
   alignas(64) float slot_name_[kSlots][kLanes] = {};
 };
 

@@ -56,15 +56,16 @@ static inline void nearest_on_triangle(const double (*w)[3], double* weight) {
     e[k] = w[1][k] - w[0][k];
     f[k] = w[2][k] - w[0][k];
   }
-  const double n[3] = {e[1] * f[2] - e[2] * f[1], e[2] * f[0] - e[0] * f[2],
-                       e[0] * f[1] - e[1] * f[0]};
+  double n[3];
+  double across_e[3];
+  double across_f[3];
+  cross3(e, f, n);
+  cross3(e, w[0], across_e);
+  cross3(f, w[0], across_f);
   const double area = dot3(n, n);
-  const double* p = w[0];
   // Weights of the second and the third corner, times the area.
-  const double u = n[0] * (f[1] * p[2] - f[2] * p[1]) + n[1] * (f[2] * p[0] - f[0] * p[2]) +
-                   n[2] * (f[0] * p[1] - f[1] * p[0]);
-  const double v = -(n[0] * (e[1] * p[2] - e[2] * p[1]) + n[1] * (e[2] * p[0] - e[0] * p[2]) +
-                     n[2] * (e[0] * p[1] - e[1] * p[0]));
+  const double u = dot3(n, across_f);
+  const double v = -dot3(n, across_e);
   if (u >= 0.0 && v >= 0.0 && u + v <= area && area > 0.0) {
     weight[1] = u / area;
     weight[2] = v / area;
@@ -210,15 +211,14 @@ static inline bool crossing_point(const HullPair& pair, HullDistance& answer) {
     r[k] = b[0][k] - a[0][k];
   }
   // Perpendicular to the second edge and the normal.
-  const double* n = answer.normal;
-  const double across[3] = {e[1] * n[2] - e[2] * n[1], e[2] * n[0] - e[0] * n[2],
-                            e[0] * n[1] - e[1] * n[0]};
+  double across[3];
+  cross3(e, answer.normal, across);
   const double sine = dot3(across, d);
   const double t = dot3(across, r) / sine;
   for (int k = 0; k < 3; ++k) answer.point[k] = a[0][k] + t * d[k];
   // The parameter on the second edge, likewise.
-  const double from_first[3] = {d[1] * n[2] - d[2] * n[1], d[2] * n[0] - d[0] * n[2],
-                                d[0] * n[1] - d[1] * n[0]};
+  double from_first[3];
+  cross3(d, answer.normal, from_first);
   const double u = dot3(from_first, r) / sine;
   return t >= 0.0 && t <= 1.0 && u >= 0.0 && u <= 1.0;
 }
