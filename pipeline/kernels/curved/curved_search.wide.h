@@ -220,7 +220,7 @@ class CurvedSearch {
       const double direction[3] = {d[0][lane], d[1][lane], d[2][lane]};
       double point[3];
       const CurvedPair& pair = *pair_[lane];
-      single_support(side == 0 ? pair.first : pair.second, direction, pair.scale, point);
+      hull::single_support(side == 0 ? pair.first : pair.second, direction, pair.scale, point);
       for (int k = 0; k < 3; ++k) x[k][lane] = point[k];
     }
     return Search::load3(x);
