@@ -102,13 +102,13 @@ class Pose(Text):
 
 
 class ShapeId(Text):
-    KINDS = ["sphere", "capsule", "box", "cylinder", "cone", "hull", "triangle", "half_space",
-             "mesh", "compound", "height_field", "ellipsoid", "tapered_capsule", "support"]
-
     def text(self, shape):
         bits = int(shape["bits"])
-        kind = bits >> 28
-        return "%s %d" % (self.KINDS[kind], bits & 0xFFFFFFF) if kind < len(self.KINDS) else "no shape"
+        for kinds in ("winnow::ShapeKind", "winnow::CompositeKind"):
+            for kind in gdb.lookup_type(kinds).fields():
+                if kind.enumval == bits >> 28:
+                    return "%s %d" % (kind.name.split("::")[-1], bits & 0xFFFFFFF)
+        return "no shape"
 
 
 class Column(List):

@@ -63,12 +63,12 @@ struct AlignedShape {
 
 /// Returns false for other cores and for frames that are not aligned.
 [[nodiscard]] bool align(const ShapeCore& core, const Pose& pose, AlignedShape& shape) noexcept {
-  if (core.kind == CoreKind::point) {
+  if (core.kind == ShapeKind::sphere) {
     shape = {{0.0, 0.0, 0.0}, kNoAxis, core.rounding};
     return true;
   }
-  const bool is_round = core.kind == CoreKind::cylinder;
-  if (!is_round && core.kind != CoreKind::segment && core.kind != CoreKind::box) return false;
+  const bool is_round = core.kind == ShapeKind::cylinder;
+  if (!is_round && core.kind != ShapeKind::capsule && core.kind != ShapeKind::box) return false;
   QuarterTurns turns;
   if (!quarter_turns(pose, turns)) return false;
   for (int k = 0; k < 3; ++k) shape.half[k] = core.half[turns.axis[k]];
@@ -364,7 +364,7 @@ class FlatTriangle {
 
 /// True for half-spaces and triangles: aligned_overlap makes them the first shape.
 [[nodiscard]] bool is_flat(const ShapeCore& core) noexcept {
-  return core.kind == CoreKind::half_space || core.kind == CoreKind::triangle;
+  return core.kind == ShapeKind::half_space || core.kind == ShapeKind::triangle;
 }
 
 }  // namespace
@@ -374,8 +374,8 @@ ExactVerdict aligned_overlap(const ShapeCore& a, const Pose& pose_a, const Shape
   if (is_flat(b) && !is_flat(a)) return aligned_overlap(b, pose_b, a, pose_a);
   AlignedShape second;
   if (!align(b, pose_b, second)) return ExactVerdict::undecided;
-  if (a.kind == CoreKind::half_space) return over_plane(*a.half_space, pose_a, second, pose_b);
-  if (a.kind == CoreKind::triangle) return on_triangle(*a.triangle, pose_a, second, pose_b);
+  if (a.kind == ShapeKind::half_space) return over_plane(*a.half_space, pose_a, second, pose_b);
+  if (a.kind == ShapeKind::triangle) return on_triangle(*a.triangle, pose_a, second, pose_b);
   AlignedShape first;
   if (!align(a, pose_a, first)) return ExactVerdict::undecided;
   return AlignedPair(first, second, pose_a, pose_b).verdict();

@@ -36,22 +36,22 @@ void add_disc(CoreVertices& core, const CoreDisc& disc) noexcept {
   }
 }
 
-/// The convex hull of discs at both ends of the z axis, the upper one not larger; a segment if they
-/// have no radius.
-void set_axis(CoreVertices& core, double half_length, double low_radius,
-              double high_radius) noexcept {
+/// The convex hull of discs at both ends of the z axis, the upper one not larger.
+void set_discs(CoreVertices& core, double half_length, double low_radius,
+               double high_radius) noexcept {
   core.count = 0;
-  core.has_discs = low_radius > 0.0;
+  core.has_discs = true;
   core.disc[0] = {-half_length, low_radius};
   core.disc[1] = {half_length, high_radius};
   for (const CoreDisc& disc : core.disc) add_disc(core, disc);
 }
 
-void set_box(CoreVertices& core, const Eigen::Vector3d& half) noexcept {
-  core.count = 8;
-  for (std::uint32_t i = 0; i < 8; ++i) {
-    set_point(core, i, (i & 1U) != 0 ? half.x() : -half.x(), (i & 2U) != 0 ? half.y() : -half.y(),
-              (i & 4U) != 0 ? half.z() : -half.z());
+void set_corners(CoreVertices& core, const CornerTable& corners,
+                 const Eigen::Vector3d& half) noexcept {
+  core.count = corners.corners;
+  for (std::uint32_t i = 0; i < core.count; ++i) {
+    const std::int8_t* const at = corners.corner[i];
+    set_point(core, i, at[0] * half.x(), at[1] * half.y(), at[2] * half.z());
   }
 }
 
@@ -113,34 +113,19 @@ struct Bounds {
 
 bool core_vertices(const ShapeCore& shape, CoreVertices& core) noexcept {
   core.rounding = shape.rounding;
-  const double radius = shape.half.x();
-  switch (shape.kind) {
-    case CoreKind::point:
-      core.count = 1;
-      set_point(core, 0, 0.0, 0.0, 0.0);
-      return true;
-    case CoreKind::segment:
-      set_axis(core, shape.half.z(), 0.0, 0.0);
-      return true;
-    case CoreKind::cylinder:
-      set_axis(core, shape.half.z(), radius, radius);
-      return true;
-    case CoreKind::cone:
-      set_axis(core, shape.half.z(), radius, 0.0);
-      return true;
-    case CoreKind::box:
-      set_box(core, shape.half);
-      return true;
-    case CoreKind::triangle:
-      set_triangle(core, *shape.triangle);
-      return true;
-    case CoreKind::hull:
-      core.count = shape.hull->vertex_count;
-      for (int k = 0; k < 3; ++k) core.column[k] = shape.hull->vertex[k];
-      return true;
-    default:
-      return false;
+  if (shape.hull != nullptr) {
+    core.count = shape.hull->vertex_count;
+    for (int k = 0; k < 3; ++k) core.column[k] = shape.hull->vertex[k];
+  } else if (shape.triangle != nullptr) {
+    set_triangle(core, *shape.triangle);
+  } else if (shape.corners != nullptr) {
+    set_corners(core, *shape.corners, shape.half);
+  } else if (shape.has_discs()) {
+    set_discs(core, shape.half.z(), shape.half.x(), shape.top());
+  } else {
+    return false;
   }
+  return true;
 }
 
 void CoreVertices::include_lengths(BitSpan& span) const noexcept {

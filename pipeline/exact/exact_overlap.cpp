@@ -120,7 +120,7 @@ namespace {
                                            const Pose& other_pose) noexcept {
   CoreVertices core;
   if (core_vertices(other, core)) return half_space_verdict(shape, pose, core, other_pose);
-  if (other.kind != CoreKind::half_space) return ExactVerdict::undecided;
+  if (other.kind != ShapeKind::half_space) return ExactVerdict::undecided;
   return half_spaces_verdict(shape, pose, *other.half_space, other_pose);
 }
 
@@ -199,13 +199,13 @@ ExactVerdict exact_overlap(const ShapeTables& tables, ShapeId a, const Pose& pos
   const ShapeCore shape_b = core_of(tables, b);
   const ExactVerdict aligned = aligned_overlap(shape_a, pose_a, shape_b, pose_b);
   if (aligned != ExactVerdict::undecided) return aligned;
-  if (shape_a.kind == CoreKind::half_space) {
+  if (shape_a.kind == ShapeKind::half_space) {
     return half_space_pair(*shape_a.half_space, pose_a, shape_b, pose_b);
   }
-  if (shape_b.kind == CoreKind::half_space) {
+  if (shape_b.kind == ShapeKind::half_space) {
     return half_space_pair(*shape_b.half_space, pose_b, shape_a, pose_a);
   }
-  const bool are_boxes = shape_a.kind == CoreKind::box && shape_b.kind == CoreKind::box;
+  const bool are_boxes = shape_a.kind == ShapeKind::box && shape_b.kind == ShapeKind::box;
   CoreVertices core_a;
   CoreVertices core_b;
   if (!core_vertices(shape_a, core_a) || !core_vertices(shape_b, core_b)) {

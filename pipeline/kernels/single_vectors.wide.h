@@ -1,9 +1,15 @@
 #pragma once
 
-// Vectors and rotations of one pair at a time, as arrays.
+// Numbers, vectors and rotations of one pair at a time; vectors are arrays.
 
 namespace winnow::WINNOW_ISA_NAME {
 
+static inline double largest_of(double a, double b) {
+  return a > b ? a : b;
+}
+static inline double least_of(double a, double b) {
+  return a < b ? a : b;
+}
 static inline double dot3(const double* a, const double* b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "pipeline/kinds/sphere.h"
 #include "pipeline/kinds/support_extent.h"
 
 namespace winnow {
@@ -22,9 +23,16 @@ template <typename Direction>
 [[nodiscard]] inline double size_of(const CapsuleShape& capsule) noexcept {
   return std::max(capsule.radius, capsule.half_length);
 }
+inline constexpr CornerTable kSegmentCorners{2, {{0, 0, -1}, {0, 0, 1}}, 1, {{0, 1}}, 0, {}, {},
+                                             {}};
+
+[[nodiscard]] inline ShapeCore segment_core(double half_length, double rounding) noexcept {
+  return ShapeCore::of_corners(ShapeKind::capsule, kSegmentCorners, {0.0, 0.0, half_length},
+                               rounding);
+}
 [[nodiscard]] inline ShapeCore core_of(const CapsuleShape& capsule) noexcept {
-  const CoreKind kind = capsule.half_length > 0.0 ? CoreKind::segment : CoreKind::point;
-  return ShapeCore::of_lengths(kind, {0.0, 0.0, capsule.half_length}, capsule.radius);
+  if (!(capsule.half_length > 0.0)) return core_of(SphereShape{capsule.radius});
+  return segment_core(capsule.half_length, capsule.radius);
 }
 
 }  // namespace winnow

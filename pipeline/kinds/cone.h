@@ -1,6 +1,6 @@
 #pragma once
 
-#include "pipeline/kinds/support_extent.h"
+#include "pipeline/kinds/capsule.h"
 
 namespace winnow {
 
@@ -26,8 +26,9 @@ template <typename Direction>
   return std::max({cone.radius, cone.half_length, cone.rounding});
 }
 [[nodiscard]] inline ShapeCore core_of(const ConeShape& cone) noexcept {
-  const CoreKind kind = cone.radius > 0.0 ? CoreKind::cone : CoreKind::segment;
-  return ShapeCore::of_lengths(kind, {cone.radius, cone.radius, cone.half_length}, cone.rounding);
+  if (!(cone.radius > 0.0)) return segment_core(cone.half_length, cone.rounding);
+  return ShapeCore::of_lengths(ShapeKind::cone, {cone.radius, cone.radius, cone.half_length},
+                               cone.rounding);
 }
 
 }  // namespace winnow

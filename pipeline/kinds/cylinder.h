@@ -1,6 +1,6 @@
 #pragma once
 
-#include "pipeline/kinds/support_extent.h"
+#include "pipeline/kinds/capsule.h"
 
 namespace winnow {
 
@@ -24,8 +24,9 @@ template <typename Direction>
   return std::max({cylinder.radius, cylinder.half_length, cylinder.rounding});
 }
 [[nodiscard]] inline ShapeCore core_of(const CylinderShape& cylinder) noexcept {
-  const CoreKind kind = cylinder.radius > 0.0 ? CoreKind::cylinder : CoreKind::segment;
-  return ShapeCore::of_lengths(kind, {cylinder.radius, cylinder.radius, cylinder.half_length},
+  if (!(cylinder.radius > 0.0)) return segment_core(cylinder.half_length, cylinder.rounding);
+  return ShapeCore::of_lengths(ShapeKind::cylinder,
+                               {cylinder.radius, cylinder.radius, cylinder.half_length},
                                cylinder.rounding);
 }
 

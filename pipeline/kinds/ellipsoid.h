@@ -30,7 +30,7 @@ namespace winnow {
 }
 
 [[nodiscard]] inline SupportCore support_core(const EllipsoidShape& ellipsoid) noexcept {
-  return {farthest_of_ellipsoid, &ellipsoid, ShapeKind::ellipsoid,
+  return {farthest_of_ellipsoid, &ellipsoid,
           std::max({ellipsoid.radius[0], ellipsoid.radius[1], ellipsoid.radius[2]}),
           ellipsoid.rounding};
 }
@@ -65,9 +65,9 @@ template <typename Direction>
   const double radius = least_curvature_radius(ellipsoid);
   const double rounding = core.rounding + radius;
   if (rounding <= std::numeric_limits<double>::max()) {
-    core = {farthest_of_eroded, &ellipsoid, ShapeKind::ellipsoid, core.radius - radius, rounding};
+    core = {farthest_of_eroded, &ellipsoid, core.radius - radius, rounding};
   }
-  return ShapeCore::of_support(core);
+  return ShapeCore::of_support(ShapeKind::ellipsoid, core);
 }
 
 }  // namespace winnow

@@ -33,7 +33,7 @@ namespace winnow {
 }
 [[nodiscard]] inline ShapeCore core_of(const HalfSpaceShape& half_space) noexcept {
   ShapeCore core;
-  core.kind = CoreKind::half_space;
+  core.kind = ShapeKind::half_space;
   core.largest = size_of(half_space);
   core.half_space = &half_space;
   return core;

@@ -66,7 +66,7 @@ template <typename Direction>
 }
 [[nodiscard]] inline ShapeCore core_of(const HullShape& hull) noexcept {
   ShapeCore core;
-  core.kind = CoreKind::hull;
+  core.kind = ShapeKind::hull;
   core.rounding = hull.rounding;
   core.largest = std::max(hull.rounding, reach_of_vertices(hull));
   core.hull = &hull;

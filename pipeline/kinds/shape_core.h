@@ -11,16 +11,21 @@
 
 namespace winnow {
 
-enum class CoreKind : std::uint8_t {
-  point,
-  segment,
-  box,
-  triangle,
-  hull,
-  cylinder,
-  cone,
-  support,
-  half_space
+/// The corners, edges and faces of a polytope inside a box, some corners of which are its corners.
+struct CornerTable {
+  static constexpr std::uint32_t kMost = 8;
+  std::uint32_t corners;
+  /// Coordinates of the corners, in half extents.
+  std::int8_t corner[kMost][3];
+  std::uint32_t edges;
+  /// The corners at the ends, the lower number first.
+  std::uint8_t edge[12][2];
+  std::uint32_t faces;
+  std::uint8_t face_size[6];
+  /// Counter-clockwise seen from outside.
+  std::uint8_t face[6][4];
+  /// Outward normals if the box is a cube.
+  std::int8_t normal[6][3];
 };
 
 /// The core of an ellipsoid, a tapered capsule or a user shape, given by its support function, in
@@ -32,7 +37,6 @@ struct SupportCore {
   /// `radius`. The result is always finite and within `radius` of the origin.
   Vec (*function)(const void* shape, const Vec& direction) noexcept = nullptr;
   const void* shape = nullptr;
-  ShapeKind kind = ShapeKind::support;
   /// Upper bound on the distance of the core's points from the origin.
   double radius = 0.0;
   double rounding = 0.0;
@@ -44,21 +48,30 @@ struct SupportCore {
 
 /// A core in the frame and the units of its shape. It refers to the shape, which must outlive it.
 struct ShapeCore {
-  CoreKind kind = CoreKind::point;
-  /// Box: half extents. Segment, cylinder, cone: radius, radius, half length.
+  /// The kind of a shape that has such a core: sphere for a point, capsule for a segment.
+  ShapeKind kind = ShapeKind::sphere;
+  /// Polytope in a box: half extents. Segment, cylinder, cone: radius, radius, half length.
   Eigen::Vector3d half = Eigen::Vector3d::Zero();
   double rounding = 0.0;
   /// The largest of the shape's numbers, or a bound on the distance of its points from its
   /// position: lengths are scaled by it. Finite even if the numbers of the shape are not.
   double largest = 0.0;
-  // The shape, if the core is of this kind; else null.
+  // The data of the core, if it is of this kind; else null.
+  const CornerTable* corners = nullptr;
   const TriangleShape* triangle = nullptr;
   const HullShape* hull = nullptr;
   const HalfSpaceShape* half_space = nullptr;
   SupportCore support;
 
+  /// True for the convex hull of two discs about the z axis: a cylinder, or a cone, the upper disc
+  /// of which has no radius.
+  [[nodiscard]] bool has_discs() const noexcept {
+    return kind == ShapeKind::cylinder || kind == ShapeKind::cone;
+  }
+  [[nodiscard]] double top() const noexcept { return kind == ShapeKind::cone ? 0.0 : half.x(); }
+
   /// A core that is given by `half` and `rounding`.
-  [[nodiscard]] static ShapeCore of_lengths(CoreKind kind, const Eigen::Vector3d& half,
+  [[nodiscard]] static ShapeCore of_lengths(ShapeKind kind, const Eigen::Vector3d& half,
                                             double rounding) noexcept {
     ShapeCore core;
     core.kind = kind;
@@ -67,9 +80,16 @@ struct ShapeCore {
     core.largest = std::max(half.maxCoeff(), rounding);
     return core;
   }
-  [[nodiscard]] static ShapeCore of_support(const SupportCore& support) noexcept {
+  /// A polytope in the box of half extents `half`.
+  [[nodiscard]] static ShapeCore of_corners(ShapeKind kind, const CornerTable& corners,
+                                            const Eigen::Vector3d& half, double rounding) noexcept {
+    ShapeCore core = of_lengths(kind, half, rounding);
+    core.corners = &corners;
+    return core;
+  }
+  [[nodiscard]] static ShapeCore of_support(ShapeKind kind, const SupportCore& support) noexcept {
     ShapeCore core;
-    core.kind = CoreKind::support;
+    core.kind = kind;
     core.rounding = support.rounding;
     core.largest = std::max(support.radius, support.rounding);
     core.support = support;

@@ -21,8 +21,11 @@ template <typename Direction>
 [[nodiscard]] inline double size_of(const SphereShape& sphere) noexcept {
   return sphere.radius;
 }
+inline constexpr CornerTable kPointCorners{1, {}, 0, {}, 0, {}, {}, {}};
+
 [[nodiscard]] inline ShapeCore core_of(const SphereShape& sphere) noexcept {
-  return ShapeCore::of_lengths(CoreKind::point, Eigen::Vector3d::Zero(), sphere.radius);
+  return ShapeCore::of_corners(ShapeKind::sphere, kPointCorners, Eigen::Vector3d::Zero(),
+                               sphere.radius);
 }
 
 }  // namespace winnow

@@ -16,7 +16,7 @@ namespace winnow {
 }
 
 [[nodiscard]] inline SupportCore support_core(const SupportShape& shape) noexcept {
-  return {farthest_of_user_shape, &shape, ShapeKind::support, shape.radius, shape.rounding};
+  return {farthest_of_user_shape, &shape, shape.radius, shape.rounding};
 }
 
 template <typename Direction>
@@ -42,7 +42,7 @@ template <typename Direction>
   return std::max(shape.radius, shape.rounding);
 }
 [[nodiscard]] inline ShapeCore core_of(const SupportShape& shape) noexcept {
-  return ShapeCore::of_support(support_core(shape));
+  return ShapeCore::of_support(ShapeKind::support, support_core(shape));
 }
 
 }  // namespace winnow

@@ -23,7 +23,7 @@ namespace winnow {
   const auto [less, more] = std::minmax(taper.radius[0], taper.radius[1]);
   const double reach =
       std::min(taper.half_length + (more - less), std::numeric_limits<double>::max());
-  return {farthest_of_taper, &taper, ShapeKind::tapered_capsule, reach, less};
+  return {farthest_of_taper, &taper, reach, less};
 }
 
 template <typename Direction>
@@ -49,7 +49,7 @@ template <typename Direction>
   return std::max({taper.radius[0], taper.radius[1], taper.half_length});
 }
 [[nodiscard]] inline ShapeCore core_of(const TaperedCapsuleShape& taper) noexcept {
-  return ShapeCore::of_support(support_core(taper));
+  return ShapeCore::of_support(ShapeKind::tapered_capsule, support_core(taper));
 }
 
 }  // namespace winnow

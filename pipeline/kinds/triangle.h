@@ -41,7 +41,7 @@ template <typename Direction>
 }
 [[nodiscard]] inline ShapeCore core_of(const TriangleShape& triangle) noexcept {
   ShapeCore core;
-  core.kind = CoreKind::triangle;
+  core.kind = ShapeKind::triangle;
   core.rounding = triangle.rounding;
   core.largest = size_of(triangle);
   core.triangle = &triangle;

@@ -4,8 +4,6 @@
 // shapes; a segment and a segment or triangle (by the narrow phase's kernels/round); any core and a
 // half-space.
 
-#include "pipeline/kernels/round/ellipsoid_surface.wide.h"
-#include "pipeline/kernels/round/round.wide.h"
 #include "pipeline/motion/closest_cores.wide.h"
 
 namespace winnow::WINNOW_ISA_NAME::impact {
@@ -14,8 +12,9 @@ namespace winnow::WINNOW_ISA_NAME::impact {
 /// without GJK.
 [[nodiscard]] constexpr bool has_closed_form(ShapeKind a, ShapeKind b) {
   if (b == ShapeKind::half_space) return true;
-  if (a == ShapeKind::sphere) return b != ShapeKind::hull && b != ShapeKind::support;
-  return a == ShapeKind::capsule && (b == ShapeKind::capsule || b == ShapeKind::triangle);
+  const bool of_segment = b == ShapeKind::capsule || b == ShapeKind::triangle;
+  if (a == ShapeKind::sphere) return b == ShapeKind::sphere || of_segment || has_nearest(b);
+  return a == ShapeKind::capsule && of_segment;
 }
 
 /// The vector from the closest point of a to the closest point of b, and the point of a relative to
@@ -24,143 +23,6 @@ struct ClosestVector {
   Vector way;
   Vector on_a;
 };
-
-/// Coordinates in the half-plane of a point and an axis: the distance from the axis (>= 0), and the
-/// position along it.
-struct Meridian {
-  Doubles away;
-  Doubles z;
-};
-
-[[gnu::always_inline]] inline Meridian nearest_of_cylinder(const Vector& half, const Meridian& p) {
-  return {min(p.away, half.x), round::clamp(p.z, -half.z, half.z)};
-}
-
-/// The closest point of a cone's side or base.
-[[gnu::always_inline]] inline Meridian nearest_of_cone(const Vector& half, const Meridian& p) {
-  const Doubles zero(0.0);
-  const Doubles one(1.0);
-  const Doubles rise = half.z + half.z;
-  // From the rim to the tip, the side moves inwards by half.x and up by `rise`.
-  const Doubles square = half.x * half.x + rise * rise;
-  const Doubles x = p.away - half.x;
-  const Doubles y = p.z + half.z;
-  const Doubles place = (y * rise - x * half.x) / select(square > zero, square, one);
-  const Doubles share = max(min(place, one), zero);
-  const Meridian side{half.x * (one - share), rise * share - half.z};
-  const Meridian base{min(p.away, half.x), -half.z};
-  const auto square_to = [&](const Meridian& q) {
-    return (q.away - p.away) * (q.away - p.away) + (q.z - p.z) * (q.z - p.z);
-  };
-  const DoubleMask is_base = square_to(base) < square_to(side);
-  return {select(is_base, base.away, side.away), select(is_base, base.z, side.z)};
-}
-
-/// Returns the closest point of the convex hull of a point and a ball. The ball is above the point
-/// if half.z >= 0, else below. The normal of the conical side has the component `cosine` away from
-/// the axis and `sine` along the axis, from the ball to the point. If p projects beyond an end of
-/// the side, the closest point is the point or is on the ball.
-[[gnu::always_inline]] inline Meridian nearest_of_taper(const Vector& half, const Meridian& p) {
-  const Doubles zero(0.0);
-  const Doubles one(1.0);
-  const DoubleMask up = half.z >= zero;
-  const Doubles height = abs(half.z);
-  const Doubles z = select(up, p.z, -p.z);
-  const Doubles length = height + height;
-  const DoubleMask is_ball = half.x >= length;
-  const Doubles sine = select(is_ball, zero, half.x / length);
-  const Doubles cosine = sqrt((one - sine) * (one + sine));
-  // Relative to the point.
-  const Doubles over = z + height;
-  const Doubles along = cosine * over + sine * p.away;
-  const Doubles outside = cosine * p.away - sine * over;
-  const DoubleMask low = (!is_ball) & (along <= zero);
-  const DoubleMask side = (!is_ball) & (along > zero) & (along < cosine * length);
-  const Doubles from_ball = sqrt(p.away * p.away + (z - height) * (z - height));
-  const Doubles share = half.x / from_ball;
-  const Doubles away = select(low, zero, select(side, p.away - outside * cosine, p.away * share));
-  const Doubles at =
-      select(low, -height, select(side, z + outside * sine, height + (z - height) * share));
-  return {positive_part(away), select(up, at, -at)};
-}
-
-/// The closest point of an ellipsoid eroded by its least radius of curvature.
-static inline Vector nearest_of_ellipsoid(const Vector& radius, const Vector& p) {
-  const auto view = round::view_surface(radius, Vector{abs(p.x), abs(p.y), abs(p.z)});
-  const auto facing = [](const Doubles& like, const Doubles& size) {
-    return select(like < Doubles(0.0), -size, size);
-  };
-  const Vector& outward = view.outward;
-  return farthest_of_ellipsoid(
-      radius, {facing(p.x, outward.x), facing(p.y, outward.y), facing(p.z, outward.z)});
-}
-
-/// The closest point of a core that is round about its z axis.
-[[gnu::always_inline]] inline Vector nearest_of_revolved(const CoreTable& table, const Vector& half,
-                                                         const Vector& p) {
-  const Meridian here{sqrt(p.x * p.x + p.y * p.y), p.z};
-  const Meridian nearest = table.kind == ShapeKind::cylinder ? nearest_of_cylinder(half, here)
-                           : table.kind == ShapeKind::cone   ? nearest_of_cone(half, here)
-                                                             : nearest_of_taper(half, here);
-  const Doubles share = select(here.away > Doubles(1e-150), nearest.away / here.away, Doubles(0.0));
-  return {p.x * share, p.y * share, nearest.z};
-}
-
-/// The point of a core closest to `p`, which must be outside; both in the core's frame.
-[[gnu::always_inline]] inline Vector nearest_to(const CoreTable& table, const MovingCore& core,
-                                                const Vector& p) {
-  switch (table.kind) {
-    case ShapeKind::box:
-      return {round::clamp(p.x, -core.half.x, core.half.x),
-              round::clamp(p.y, -core.half.y, core.half.y),
-              round::clamp(p.z, -core.half.z, core.half.z)};
-    case ShapeKind::cylinder:
-    case ShapeKind::cone:
-    case ShapeKind::tapered_capsule:
-      return nearest_of_revolved(table, core.half, p);
-    case ShapeKind::ellipsoid:
-      return nearest_of_ellipsoid(core.half, p);
-    default:
-      return zero_vector();
-  }
-}
-
-/// The closest points of the segment s u, |s| <= half, of a and the triangle of b, in the frame of
-/// b; `offset` is the vector from the segment's centre to the centre of b. If `is_point` is true,
-/// the segment is a point.
-static inline round::NearestCandidate<double> nearest_of_triangle(const MovingCore& b,
-                                                                  const Vector& offset,
-                                                                  const Vector& u,
-                                                                  const Doubles& half,
-                                                                  bool is_point) {
-  const Doubles zero(0.0);
-  const Doubles one(1.0);
-  const TriangleLanes<double> triangle{{b.corner[0], b.corner[1], b.corner[2]}, b.rounding};
-  const round::TriangleView<double> view = round::view_triangle(triangle, offset);
-  round::NearestCandidate<double> nearest{zero_vector(), Doubles(__builtin_inf()), zero, zero};
-  for (int i = 0; i < 3; ++i) {
-    Doubles s = zero;
-    Doubles t;
-    if (is_point) {
-      const Doubles place = -dot(view.vertex[i], view.edge[i]) / view.square[i];
-      t = select(view.square[i] > zero, max(min(place, one), zero), zero);
-    } else {
-      const Vector across = cross(u, view.edge[i]);
-      const auto feet =
-          round::closest_feet(u, half, {view.vertex[i], view.edge[i], view.square[i], zero, one},
-                              across, one / dot(across, across));
-      s = feet.s;
-      t = feet.t;
-    }
-    const Vector w = view.vertex[i] + view.edge[i] * t - u * s;
-    round::nearer(nearest, zero < one, w, s, zero);
-  }
-  for (const Doubles& s : {-half, half}) {
-    round::nearer_in_face(nearest, view, u * s, s);
-    if (is_point) break;
-  }
-  return nearest;
-}
 
 [[gnu::always_inline]] inline ClosestVector closest_vector(const CorePair& pair) {
   const Doubles zero(0.0);

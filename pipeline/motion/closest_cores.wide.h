@@ -19,18 +19,6 @@ struct SimplexLanes {
   Doubles present[kSlots];
 };
 
-/// Support of a segment or a box along a direction, from its centre.
-[[gnu::always_inline]] inline Doubles height_of_segment(const MovingCore& core,
-                                                        const Vector& direction) {
-  return abs(dot(direction, core.axes.z)) * core.half.z;
-}
-[[gnu::always_inline]] inline Doubles height_of_box(const MovingCore& core,
-                                                    const Vector& direction) {
-  return abs(dot(direction, core.axes.x)) * core.half.x +
-         abs(dot(direction, core.axes.y)) * core.half.y +
-         abs(dot(direction, core.axes.z)) * core.half.z;
-}
-
 /// Two placed cores.
 struct CorePair {
   const CoreTable& table_a;
@@ -62,18 +50,15 @@ struct CorePair {
   /// Support of a core along a direction, from its centre.
   [[gnu::always_inline]] Doubles height(const CoreTable& table, const MovingCore& core,
                                         const Vector& direction, Mask16 lanes) const {
-    switch (table.kind) {
-      case ShapeKind::sphere:
-        return Doubles(0.0);
-      case ShapeKind::capsule:
-        return height_of_segment(core, direction);
-      case ShapeKind::box:
-        return height_of_box(core, direction);
-      default:
-        break;
-    }
-    const Vector own = table.in_world ? direction : core.axes.to_local(direction);
-    return dot(own, farthest(table, core, own, lanes));
+    return with_core(
+        table.kind, [&](auto kind) __attribute__((always_inline))->Doubles {
+          if constexpr (requires { kind.height(core, direction); }) {
+            return kind.height(core, direction);
+          } else {
+            const Vector own = table.in_world ? direction : core.axes.to_local(direction);
+            return dot(own, kind.farthest(table, core, own, lanes));
+          }
+        });
   }
 };
 

@@ -129,14 +129,6 @@ struct MovingCore {
   Doubles extent;
 };
 
-[[nodiscard]] constexpr bool has_corners(ShapeKind kind) {
-  return kind == ShapeKind::triangle || kind == ShapeKind::half_space;
-}
-
-[[nodiscard]] constexpr bool has_faces(ShapeKind kind) {
-  return kind == ShapeKind::box || kind == ShapeKind::hull || kind == ShapeKind::triangle;
-}
-
 /// The members of a core that are not lanes.
 struct CoreTable {
   ShapeKind kind;

@@ -685,7 +685,12 @@ class ImpactRounds {
 
 void run_job(const ImpactJob& job) {
   if (job.count == 0) return;
-  ImpactRounds(job).run();
+  const ShapeId(&shape)[2] = job.queries[job.order[0]].shape;
+  if (has_lanes(shape[0].kind()) && has_lanes(shape[1].kind())) return ImpactRounds(job).run();
+  for (std::uint32_t i = 0; i < job.count; ++i) {
+    job.verdicts[job.order[i]] = ImpactVerdict::unsure;
+    job.found[job.order[i]].time = 0.0;
+  }
 }
 
 }  // namespace

@@ -158,7 +158,8 @@ void ImpactSearch::sample_half_space(PairSample& result) const noexcept {
   result.axis = -b.normal;
   result.gap = pair_.gap(result.axis);
   result.most = result.gap + 2.0 * pair_.noise();
-  const Vec y = a.kind == CoreKind::half_space ? Vec(a.normal * a.offset) : support(a, result.axis);
+  const Vec y =
+      a.kind == ShapeKind::half_space ? Vec(a.normal * a.offset) : support(a, result.axis);
   result.on_a = y;
   result.between = result.axis * (result.gap + pair_.noise() + pair_.roundings());
   result.slope = pair_.parting(result.axis, y, y + result.between - b.center);
@@ -348,7 +349,7 @@ Impact ImpactSearch::impact_at(double time, PairSample& sample) noexcept {
 /// Returns the impact of a sample that separates the shapes. If both are polytopes and the closest
 /// points are not accurate yet, samples again.
 Impact ImpactSearch::impact_of_sample(double time, PairSample& sample) noexcept {
-  const bool polytopes = pair_.a().is_polytope() && pair_.b().is_polytope();
+  const bool polytopes = is_polytope(pair_.a()) && is_polytope(pair_.b());
   if (polytopes && sample.most - sample.gap > 4.0 * pair_.noise()) sample_cores(0.0, sample);
   const solver::Problem& problem = pair_.problem();
   const double gap = sample.between.norm() - pair_.roundings();
@@ -413,7 +414,7 @@ Impact ImpactSearch::run() noexcept {
   const double first = std::max(window.first, span_.first);
   const double last = std::min(window.last, span_.last);
   if (first > std::min(last, until_)) return {};
-  if (pair_.a().kind == CoreKind::half_space) {
+  if (pair_.a().kind == ShapeKind::half_space) {
     const Impact at_start = start();
     if (at_start.gap <= 0.0 || pair_.touches_soon()) return at_start;
   }

@@ -1,9 +1,11 @@
 #pragma once
 
 // The functions of each kind of shape that the impact kernels call, for one core per lane: its
-// numbers, its support function, and bounds of its size and of its rotation. Called through
-// with_core (moving_cores.wide.h).
+// numbers, its support function, its closest points, the directions of its features, and bounds of
+// its size and of its rotation. Called through with_core (moving_cores.wide.h).
 
+#include "pipeline/kernels/round/ellipsoid_surface.wide.h"
+#include "pipeline/kernels/round/round.wide.h"
 #include "pipeline/motion/core_table.wide.h"
 
 namespace winnow::WINNOW_ISA_NAME::impact {
@@ -15,8 +17,26 @@ namespace winnow::WINNOW_ISA_NAME::impact {
 ///   farthest(table, core, d, lanes)     support point in the frame of the core; for a half-space,
 ///                                       the point of its plane along the normal
 ///   reach(core, w)                      upper bound on the distance of points from the axis w
+///   kHasFaces, kHasCorners              the core has flat faces; `corner` is in use
+///
+/// Some kinds also have:
+///
+///   height(core, d)          support of the placed core along d, faster than by `farthest`
+///   nearest(core, p)         point of the core closest to a point outside, both in its frame
+///   nearest_placed(core, p)  the same for a placed core, relative to its centre, in world axes
+///   axes(core, axes)         directions of the faces and edges of the placed core
+///   range(core, n, high, low)  support of the placed core along n and its opposite
 template <typename Shape>
 struct KindLanes;
+
+/// Directions of the faces and edges of a core, in world axes, of any length; for round cores,
+/// their axis.
+struct CoreAxes {
+  Vector normal[3];
+  int normals;
+  Vector edge[3];
+  int edges;
+};
 
 [[gnu::always_inline]] inline Doubles facing(const Doubles& along, const Doubles& reach) {
   return select(along < Doubles(0.0), -reach, reach);
@@ -27,20 +47,13 @@ struct KindLanes;
   return sqrt(w.x * w.x + w.y * w.y);
 }
 
-template <>
-struct KindLanes<SphereShape> {
-  template <typename Index>
-  [[gnu::always_inline]] static void load(const ShapeTables& tables, Index&& index, CoreTable&,
-                                          MovingCore& core) {
-    core.rounding = load_rows1([&](int lane) { return numbers(tables.spheres[index(lane)]); });
-  }
+struct PlainKindLanes {
+  static constexpr bool kHasFaces = false;
+  static constexpr bool kHasCorners = false;
+
   [[gnu::always_inline]] static void measure(const CoreTable&, MovingCore& core) {
     core.size = length(core.half) + core.rounding;
     core.extent = core.size;
-  }
-  [[gnu::always_inline]] static Vector farthest(const CoreTable&, const MovingCore&, const Vector&,
-                                                Mask16) {
-    return zero_vector();
   }
   [[gnu::always_inline]] static Doubles reach(const MovingCore&, const Vector&) {
     return Doubles(0.0);
@@ -48,7 +61,23 @@ struct KindLanes<SphereShape> {
 };
 
 template <>
-struct KindLanes<CapsuleShape> : KindLanes<SphereShape> {
+struct KindLanes<SphereShape> : PlainKindLanes {
+  template <typename Index>
+  [[gnu::always_inline]] static void load(const ShapeTables& tables, Index&& index, CoreTable&,
+                                          MovingCore& core) {
+    core.rounding = load_rows1([&](int lane) { return numbers(tables.spheres[index(lane)]); });
+  }
+  [[gnu::always_inline]] static Vector farthest(const CoreTable&, const MovingCore&, const Vector&,
+                                                Mask16) {
+    return zero_vector();
+  }
+  [[gnu::always_inline]] static Doubles height(const MovingCore&, const Vector&) {
+    return Doubles(0.0);
+  }
+};
+
+template <>
+struct KindLanes<CapsuleShape> : PlainKindLanes {
   template <typename Index>
   [[gnu::always_inline]] static void load(const ShapeTables& tables, Index&& index, CoreTable&,
                                           MovingCore& core) {
@@ -64,10 +93,28 @@ struct KindLanes<CapsuleShape> : KindLanes<SphereShape> {
   [[gnu::always_inline]] static Doubles reach(const MovingCore& core, const Vector& w) {
     return core.half.z * across_z(w);
   }
+  [[gnu::always_inline]] static Doubles height(const MovingCore& core, const Vector& d) {
+    return abs(dot(d, core.axes.z)) * core.half.z;
+  }
+  static Vector nearest_placed(const MovingCore& core, const Vector& p) {
+    return core.axes.z * round::clamp(dot(p, core.axes.z), -core.half.z, core.half.z);
+  }
+  static void axes(const MovingCore& core, CoreAxes& to) {
+    to.normals = 0;
+    to.edges = 1;
+    to.edge[0] = core.axes.z;
+  }
+  [[gnu::always_inline]] static void range(const MovingCore& core, const Vector& n, Doubles& high,
+                                           Doubles& low) {
+    high = height(core, n);
+    low = -high;
+  }
 };
 
 template <>
-struct KindLanes<BoxShape> : KindLanes<SphereShape> {
+struct KindLanes<BoxShape> : PlainKindLanes {
+  static constexpr bool kHasFaces = true;
+
   template <typename Index>
   [[gnu::always_inline]] static void load(const ShapeTables& tables, Index&& index, CoreTable&,
                                           MovingCore& core) {
@@ -90,6 +137,26 @@ struct KindLanes<BoxShape> : KindLanes<SphereShape> {
     }
     return sqrt(square);
   }
+  [[gnu::always_inline]] static Doubles height(const MovingCore& core, const Vector& d) {
+    return abs(dot(d, core.axes.x)) * core.half.x + abs(dot(d, core.axes.y)) * core.half.y +
+           abs(dot(d, core.axes.z)) * core.half.z;
+  }
+  [[gnu::always_inline]] static Vector nearest(const MovingCore& core, const Vector& p) {
+    return {round::clamp(p.x, -core.half.x, core.half.x),
+            round::clamp(p.y, -core.half.y, core.half.y),
+            round::clamp(p.z, -core.half.z, core.half.z)};
+  }
+  static void axes(const MovingCore& core, CoreAxes& to) {
+    to.normals = to.edges = 3;
+    to.normal[0] = to.edge[0] = core.axes.x;
+    to.normal[1] = to.edge[1] = core.axes.y;
+    to.normal[2] = to.edge[2] = core.axes.z;
+  }
+  [[gnu::always_inline]] static void range(const MovingCore& core, const Vector& n, Doubles& high,
+                                           Doubles& low) {
+    high = height(core, n);
+    low = -high;
+  }
 };
 
 /// The support point on the rim of radius half.x about z.
@@ -107,9 +174,51 @@ struct KindLanes<BoxShape> : KindLanes<SphereShape> {
   return sqrt(positive_part(radius * radius + z * z - nearest * nearest));
 }
 
+/// Coordinates in the half-plane of a point and an axis: the distance from the axis (>= 0), and the
+/// position along it.
+struct Meridian {
+  Doubles away;
+  Doubles z;
+};
+
+/// The closest point of a core that is round about its z axis; nearest(half, meridian) computes it
+/// in the half-plane.
+template <typename Nearest>
+[[gnu::always_inline]] inline Vector nearest_of_revolved(const Vector& half, const Vector& p,
+                                                         Nearest&& nearest_of) {
+  const Meridian here{sqrt(p.x * p.x + p.y * p.y), p.z};
+  const Meridian nearest = nearest_of(half, here);
+  const Doubles share = select(here.away > Doubles(1e-150), nearest.away / here.away, Doubles(0.0));
+  return {p.x * share, p.y * share, nearest.z};
+}
+
+[[gnu::always_inline]] inline Meridian nearest_of_cylinder(const Vector& half, const Meridian& p) {
+  return {min(p.away, half.x), round::clamp(p.z, -half.z, half.z)};
+}
+
+/// The closest point of a cone's side or base.
+[[gnu::always_inline]] inline Meridian nearest_of_cone(const Vector& half, const Meridian& p) {
+  const Doubles zero(0.0);
+  const Doubles one(1.0);
+  const Doubles rise = half.z + half.z;
+  // From the rim to the tip, the side moves inwards by half.x and up by `rise`.
+  const Doubles square = half.x * half.x + rise * rise;
+  const Doubles x = p.away - half.x;
+  const Doubles y = p.z + half.z;
+  const Doubles place = (y * rise - x * half.x) / select(square > zero, square, one);
+  const Doubles share = max(min(place, one), zero);
+  const Meridian side{half.x * (one - share), rise * share - half.z};
+  const Meridian base{min(p.away, half.x), -half.z};
+  const auto square_to = [&](const Meridian& q) {
+    return (q.away - p.away) * (q.away - p.away) + (q.z - p.z) * (q.z - p.z);
+  };
+  const DoubleMask is_base = square_to(base) < square_to(side);
+  return {select(is_base, base.away, side.away), select(is_base, base.z, side.z)};
+}
+
 /// A cylinder or cone, the numbers of which are its radius, its half length and its rounding.
 template <typename Shape>
-struct RevolvedKindLanes {
+struct RevolvedKindLanes : PlainKindLanes {
   template <typename Index>
   [[gnu::always_inline]] static void load(const ShapeTables& tables, Index&& index, CoreTable&,
                                           MovingCore& core) {
@@ -123,6 +232,22 @@ struct RevolvedKindLanes {
     core.extent = sqrt(core.half.x * core.half.x + core.half.z * core.half.z) + core.rounding;
     core.size = core.extent;
   }
+  static void axes(const MovingCore& core, CoreAxes& to) {
+    to.normals = to.edges = 1;
+    to.normal[0] = to.edge[0] = core.axes.z;
+  }
+
+ protected:
+  /// Support of the placed core's axis and of a rim, along n.
+  struct Along {
+    Doubles up;
+    Doubles rim;
+  };
+  [[gnu::always_inline]] static Along along(const MovingCore& core, const Vector& n) {
+    const Doubles on_axis = dot(n, core.axes.z);
+    return {on_axis * core.half.z,
+            core.half.x * sqrt(positive_part(dot(n, n) - on_axis * on_axis))};
+  }
 };
 
 template <>
@@ -133,6 +258,15 @@ struct KindLanes<CylinderShape> : RevolvedKindLanes<CylinderShape> {
   }
   [[gnu::always_inline]] static Doubles reach(const MovingCore& core, const Vector& w) {
     return rim_reach(core.half.x, core.half.z, w);
+  }
+  [[gnu::always_inline]] static Vector nearest(const MovingCore& core, const Vector& p) {
+    return nearest_of_revolved(core.half, p, nearest_of_cylinder);
+  }
+  [[gnu::always_inline]] static void range(const MovingCore& core, const Vector& n, Doubles& high,
+                                           Doubles& low) {
+    const auto [up, rim] = along(core, n);
+    high = abs(up) + rim;
+    low = -high;
   }
 };
 
@@ -147,10 +281,59 @@ struct KindLanes<ConeShape> : RevolvedKindLanes<ConeShape> {
   [[gnu::always_inline]] static Doubles reach(const MovingCore& core, const Vector& w) {
     return max(rim_reach(core.half.x, -core.half.z, w), core.half.z * across_z(w));
   }
+  [[gnu::always_inline]] static Vector nearest(const MovingCore& core, const Vector& p) {
+    return nearest_of_revolved(core.half, p, nearest_of_cone);
+  }
+  [[gnu::always_inline]] static void range(const MovingCore& core, const Vector& n, Doubles& high,
+                                           Doubles& low) {
+    const auto [up, rim] = along(core, n);
+    high = max(up, rim - up);
+    low = min(up, -rim - up);
+  }
 };
 
+/// The closest points of the segment s u, |s| <= half, of a and the triangle of b, in the frame of
+/// b; `offset` is the vector from the segment's centre to the centre of b. If `is_point` is true,
+/// the segment is a point.
+static inline round::NearestCandidate<double> nearest_of_triangle(const MovingCore& b,
+                                                                  const Vector& offset,
+                                                                  const Vector& u,
+                                                                  const Doubles& half,
+                                                                  bool is_point) {
+  const Doubles zero(0.0);
+  const Doubles one(1.0);
+  const TriangleLanes<double> triangle{{b.corner[0], b.corner[1], b.corner[2]}, b.rounding};
+  const round::TriangleView<double> view = round::view_triangle(triangle, offset);
+  round::NearestCandidate<double> nearest{zero_vector(), Doubles(__builtin_inf()), zero, zero};
+  for (int i = 0; i < 3; ++i) {
+    Doubles s = zero;
+    Doubles t;
+    if (is_point) {
+      const Doubles place = -dot(view.vertex[i], view.edge[i]) / view.square[i];
+      t = select(view.square[i] > zero, max(min(place, one), zero), zero);
+    } else {
+      const Vector across = cross(u, view.edge[i]);
+      const auto feet =
+          round::closest_feet(u, half, {view.vertex[i], view.edge[i], view.square[i], zero, one},
+                              across, one / dot(across, across));
+      s = feet.s;
+      t = feet.t;
+    }
+    const Vector w = view.vertex[i] + view.edge[i] * t - u * s;
+    round::nearer(nearest, zero < one, w, s, zero);
+  }
+  for (const Doubles& s : {-half, half}) {
+    round::nearer_in_face(nearest, view, u * s, s);
+    if (is_point) break;
+  }
+  return nearest;
+}
+
 template <>
-struct KindLanes<TriangleShape> {
+struct KindLanes<TriangleShape> : PlainKindLanes {
+  static constexpr bool kHasFaces = true;
+  static constexpr bool kHasCorners = true;
+
   template <typename Index>
   [[gnu::always_inline]] static void load(const ShapeTables& tables, Index&& index, CoreTable&,
                                           MovingCore& core) {
@@ -192,10 +375,27 @@ struct KindLanes<TriangleShape> {
     }
     return sqrt(square);
   }
+  static Vector nearest_placed(const MovingCore& core, const Vector& p) {
+    return p + nearest_of_triangle(core, -p, zero_vector(), Doubles(0.0), true).w;
+  }
+  static void axes(const MovingCore& core, CoreAxes& to) {
+    to.edges = 3;
+    for (int i = 0; i < 3; ++i) to.edge[i] = core.corner[(i + 1) % 3] - core.corner[i];
+    to.normals = 1;
+    to.normal[0] = cross(to.edge[0], to.edge[1]);
+  }
+  [[gnu::always_inline]] static void range(const MovingCore& core, const Vector& n, Doubles& high,
+                                           Doubles& low) {
+    const Doubles on[3] = {dot(n, core.corner[0]), dot(n, core.corner[1]), dot(n, core.corner[2])};
+    high = max(max(on[0], on[1]), on[2]);
+    low = min(min(on[0], on[1]), on[2]);
+  }
 };
 
 template <>
-struct KindLanes<HalfSpaceShape> : KindLanes<SphereShape> {
+struct KindLanes<HalfSpaceShape> : PlainKindLanes {
+  static constexpr bool kHasCorners = true;
+
   template <typename Index>
   [[gnu::always_inline]] static void load(const ShapeTables& tables, Index&& index, CoreTable&,
                                           MovingCore& core) {
@@ -231,8 +431,19 @@ static inline Vector farthest_of_ellipsoid(const Vector& radius, const Vector& d
          eroded;
 }
 
+/// The closest point of an ellipsoid eroded by its least radius of curvature.
+static inline Vector nearest_of_ellipsoid(const Vector& radius, const Vector& p) {
+  const auto view = round::view_surface(radius, Vector{abs(p.x), abs(p.y), abs(p.z)});
+  const auto facing = [](const Doubles& like, const Doubles& size) {
+    return select(like < Doubles(0.0), -size, size);
+  };
+  const Vector& outward = view.outward;
+  return farthest_of_ellipsoid(
+      radius, {facing(p.x, outward.x), facing(p.y, outward.y), facing(p.z, outward.z)});
+}
+
 template <>
-struct KindLanes<EllipsoidShape> {
+struct KindLanes<EllipsoidShape> : PlainKindLanes {
   template <typename Index>
   [[gnu::always_inline]] static void load(const ShapeTables& tables, Index&& index, CoreTable&,
                                           MovingCore& core) {
@@ -252,6 +463,9 @@ struct KindLanes<EllipsoidShape> {
   [[gnu::always_inline]] static Doubles reach(const MovingCore& core, const Vector&) {
     return core.extent - core.rounding;
   }
+  [[gnu::always_inline]] static Vector nearest(const MovingCore& core, const Vector& p) {
+    return nearest_of_ellipsoid(core.half, p);
+  }
 };
 
 /// Support point of the convex hull of the smaller end's centre and a ball at the larger end's
@@ -264,8 +478,36 @@ static inline Vector farthest_of_taper(const Vector& half, const Vector& d) {
   return select(dot(small, d) >= dot(large, d), small, large);
 }
 
+/// Returns the closest point of the convex hull of a point and a ball. The ball is above the point
+/// if half.z >= 0, else below. The normal of the conical side has the component `cosine` away from
+/// the axis and `sine` along the axis, from the ball to the point. If p projects beyond an end of
+/// the side, the closest point is the point or is on the ball.
+[[gnu::always_inline]] inline Meridian nearest_of_taper(const Vector& half, const Meridian& p) {
+  const Doubles zero(0.0);
+  const Doubles one(1.0);
+  const DoubleMask up = half.z >= zero;
+  const Doubles height = abs(half.z);
+  const Doubles z = select(up, p.z, -p.z);
+  const Doubles length = height + height;
+  const DoubleMask is_ball = half.x >= length;
+  const Doubles sine = select(is_ball, zero, half.x / length);
+  const Doubles cosine = sqrt((one - sine) * (one + sine));
+  // Relative to the point.
+  const Doubles over = z + height;
+  const Doubles along = cosine * over + sine * p.away;
+  const Doubles outside = cosine * p.away - sine * over;
+  const DoubleMask low = (!is_ball) & (along <= zero);
+  const DoubleMask side = (!is_ball) & (along > zero) & (along < cosine * length);
+  const Doubles from_ball = sqrt(p.away * p.away + (z - height) * (z - height));
+  const Doubles share = half.x / from_ball;
+  const Doubles away = select(low, zero, select(side, p.away - outside * cosine, p.away * share));
+  const Doubles at =
+      select(low, -height, select(side, z + outside * sine, height + (z - height) * share));
+  return {positive_part(away), select(up, at, -at)};
+}
+
 template <>
-struct KindLanes<TaperedCapsuleShape> {
+struct KindLanes<TaperedCapsuleShape> : PlainKindLanes {
   template <typename Index>
   [[gnu::always_inline]] static void load(const ShapeTables& tables, Index&& index, CoreTable&,
                                           MovingCore& core) {
@@ -286,6 +528,9 @@ struct KindLanes<TaperedCapsuleShape> {
   }
   [[gnu::always_inline]] static Doubles reach(const MovingCore& core, const Vector& w) {
     return abs(core.half.z) * across_z(w) + core.half.x;
+  }
+  [[gnu::always_inline]] static Vector nearest(const MovingCore& core, const Vector& p) {
+    return nearest_of_revolved(core.half, p, nearest_of_taper);
   }
 };
 
@@ -310,7 +555,7 @@ static inline Vector farthest_of_user_shape(const CoreTable& table, const Vector
 }
 
 template <>
-struct KindLanes<SupportShape> {
+struct KindLanes<SupportShape> : PlainKindLanes {
   template <typename Index>
   [[gnu::always_inline]] static void load(const ShapeTables& tables, Index&& index,
                                           CoreTable& table, MovingCore& core) {
@@ -494,7 +739,9 @@ static inline void measure_turning_hulls(const CoreTable& table, const Vector& w
 }
 
 template <>
-struct KindLanes<HullShape> : KindLanes<SphereShape> {
+struct KindLanes<HullShape> : PlainKindLanes {
+  static constexpr bool kHasFaces = true;
+
   template <typename Index>
   [[gnu::always_inline]] static void load(const ShapeTables& tables, Index&& index,
                                           CoreTable& table, MovingCore& core) {

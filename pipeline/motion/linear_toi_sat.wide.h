@@ -24,76 +24,45 @@ namespace winnow::WINNOW_ISA_NAME::impact {
   return (has_edges(a) && has_edges(b)) || (a == ShapeKind::box && b == ShapeKind::cone);
 }
 
-/// Directions of the faces and edges of a core, in world axes, of any length; for round cores,
-/// their axis.
-struct AxisCore {
+/// Calls visit(KindLanes<Shape>) for a kind that has directions of faces and edges. No pair with
+/// another kind has a start.
+template <typename Visit>
+[[gnu::always_inline]] inline decltype(auto) with_axes_of(ShapeKind kind, Visit&& visit) {
+  return with_core(
+      kind, [&](auto core) __attribute__((always_inline))->decltype(auto) {
+        if constexpr (requires { &decltype(core)::axes; }) {
+          return visit(core);
+        } else {
+          return visit(KindLanes<BoxShape>{});
+        }
+      });
+}
+
+/// A placed core and its directions.
+struct AxisCore : CoreAxes {
   const CoreTable& table;
   const MovingCore& core;
-  Vector normal[3];
-  int normals;
-  Vector edge[3];
-  int edges;
 
   AxisCore(const CoreTable& of_table, const MovingCore& of_core) : table(of_table), core(of_core) {
-    const Rotation<double>& axes = core.axes;
-    if (table.kind == ShapeKind::box) {
-      normals = edges = 3;
-      normal[0] = edge[0] = axes.x;
-      normal[1] = edge[1] = axes.y;
-      normal[2] = edge[2] = axes.z;
-    } else if (table.kind == ShapeKind::triangle) {
-      edges = 3;
-      for (int i = 0; i < 3; ++i) edge[i] = core.corner[(i + 1) % 3] - core.corner[i];
-      normals = 1;
-      normal[0] = cross(edge[0], edge[1]);
-    } else {
-      normals = table.kind == ShapeKind::capsule ? 0 : 1;
-      edges = 1;
-      normal[0] = edge[0] = axes.z;
-    }
+    with_axes_of(table.kind, [&](auto kind) { kind.axes(core, *this); });
   }
 
   /// Support along a direction and its opposite, from the centre.
   [[gnu::always_inline]] void reach(const Vector& n, Doubles& high, Doubles& low) const {
-    switch (table.kind) {
-      case ShapeKind::triangle: {
-        const Doubles on[3] = {dot(n, core.corner[0]), dot(n, core.corner[1]),
-                               dot(n, core.corner[2])};
-        high = max(max(on[0], on[1]), on[2]);
-        low = min(min(on[0], on[1]), on[2]);
-        return;
-      }
-      case ShapeKind::box:
-        high = height_of_box(core, n);
-        break;
-      case ShapeKind::capsule:
-        high = height_of_segment(core, n);
-        break;
-      default: {
-        const Doubles along = dot(n, core.axes.z);
-        const Doubles up = along * core.half.z;
-        const Doubles rim = core.half.x * sqrt(positive_part(dot(n, n) - along * along));
-        if (table.kind == ShapeKind::cone) {
-          high = max(up, rim - up);
-          low = min(up, -rim - up);
-          return;
-        }
-        high = abs(up) + rim;
-      }
-    }
-    low = -high;
+    with_axes_of(
+        table.kind, [&](auto kind)
+                        __attribute__((always_inline)) { kind.range(core, n, high, low); });
   }
 
   /// The point of the core nearest to `p`, both relative to its centre.
   [[nodiscard]] Vector nearest(const Vector& p) const {
-    switch (table.kind) {
-      case ShapeKind::triangle:
-        return p + nearest_of_triangle(core, -p, zero_vector(), Doubles(0.0), true).w;
-      case ShapeKind::capsule:
-        return core.axes.z * round::clamp(dot(p, core.axes.z), -core.half.z, core.half.z);
-      default:
-        return core.axes.to_world(nearest_to(table, core, core.axes.to_local(p)));
-    }
+    return with_axes_of(table.kind, [&](auto kind) {
+      if constexpr (requires { kind.nearest_placed(core, p); }) {
+        return kind.nearest_placed(core, p);
+      } else {
+        return core.axes.to_world(kind.nearest(core, core.axes.to_local(p)));
+      }
+    });
   }
 };
 

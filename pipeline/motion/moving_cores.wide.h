@@ -8,13 +8,42 @@
 
 namespace winnow::WINNOW_ISA_NAME::impact {
 
-/// Calls visit(KindLanes<Shape>) for the kind of a table, and returns its result.
+/// True for kinds that have a struct KindLanes. Pairs of other kinds go to the scalar search.
+template <typename Shape>
+inline constexpr bool kHasLanes = requires {
+  sizeof(KindLanes<Shape>);
+};
+[[nodiscard]] constexpr bool has_lanes(ShapeKind kind) {
+  return with_kind(kind, [](auto of) { return kHasLanes<typename decltype(of)::Shape>; });
+}
+
+/// Calls visit(KindLanes<Shape>) for a kind that has lanes, and returns its result.
 template <typename Visit>
-[[gnu::always_inline]] inline decltype(auto) with_core(const CoreTable& table, Visit&& visit) {
+[[gnu::always_inline]] constexpr decltype(auto) with_core(ShapeKind kind, Visit&& visit) {
   return with_kind(
-      table.kind, [&](auto of) __attribute__((always_inline)) {
-        return visit(KindLanes<typename decltype(of)::Shape>{});
+      kind, [&](auto of) __attribute__((always_inline))->decltype(auto) {
+        using Shape = typename decltype(of)::Shape;
+        if constexpr (kHasLanes<Shape>) {
+          return visit(KindLanes<Shape>{});
+        } else {
+          return visit(KindLanes<HullShape>{});
+        }
       });
+}
+
+[[nodiscard]] constexpr bool has_faces(ShapeKind kind) {
+  return with_core(kind, [](auto core) { return decltype(core)::kHasFaces; });
+}
+[[nodiscard]] constexpr bool has_corners(ShapeKind kind) {
+  return with_core(kind, [](auto core) { return decltype(core)::kHasCorners; });
+}
+/// Returns whether nearest_to supports a kind.
+[[nodiscard]] constexpr bool has_nearest(ShapeKind kind) {
+  return with_core(kind, [](auto core) {
+    return requires(const MovingCore& placed, const Vector& p) {
+      core.nearest(placed, p);
+    };
+  });
 }
 
 /// Support point of a core, in its own frame; for a half-space, the point of its plane along the
@@ -22,8 +51,22 @@ template <typename Visit>
 [[gnu::always_inline]] inline Vector farthest(const CoreTable& table, const MovingCore& core,
                                               const Vector& d, Mask16 lanes) {
   return with_core(
-      table, [&](auto kind)
-                 __attribute__((always_inline)) { return kind.farthest(table, core, d, lanes); });
+      table.kind, [&](auto kind) __attribute__((always_inline)) {
+        return kind.farthest(table, core, d, lanes);
+      });
+}
+
+/// The point of a core closest to `p`, which must be outside; both in the core's frame.
+[[gnu::always_inline]] inline Vector nearest_to(const CoreTable& table, const MovingCore& core,
+                                                const Vector& p) {
+  return with_core(
+      table.kind, [&](auto kind) __attribute__((always_inline))->Vector {
+        if constexpr (requires { kind.nearest(core, p); }) {
+          return kind.nearest(core, p);
+        } else {
+          return zero_vector();
+        }
+      });
 }
 
 /// Places a core at a time.
@@ -41,13 +84,13 @@ template <typename Index>
   core.rounding = Doubles(0.0);
   for (Vector& corner : core.corner) corner = zero_vector();
   with_core(
-      table, [&](auto kind)
-                 __attribute__((always_inline)) { kind.load(tables, index, table, core); });
+      table.kind, [&](auto kind)
+                      __attribute__((always_inline)) { kind.load(tables, index, table, core); });
 }
 
 /// Computes the sizes of a core whose numbers are loaded.
 static inline void measure(const CoreTable& table, MovingCore& core) {
-  with_core(table, [&](auto kind) { kind.measure(table, core); });
+  with_core(table.kind, [&](auto kind) { kind.measure(table, core); });
 }
 
 /// Rotates a triangle's corners to world axes; its frame is then the world.
@@ -94,7 +137,7 @@ template <typename Row>
   if (table.kind == ShapeKind::hull) {
     measure_turning_hulls(table, own, core);
   } else {
-    core.reach = with_core(table, [&](auto kind) { return kind.reach(core, own); });
+    core.reach = with_core(table.kind, [&](auto kind) { return kind.reach(core, own); });
     core.low = dot(own, farthest(table, core, -own, kAllLanes<double>));
     core.high = dot(own, farthest(table, core, own, kAllLanes<double>));
   }

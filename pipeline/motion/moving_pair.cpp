@@ -43,16 +43,16 @@ void take_drift(Core& core, const Vec* drift, const solver::Scale& scaled,
 /// `core` is not rotated yet.
 TurningCore turning(Core& core, const RigidMotion& motion, const Vec& arm) noexcept {
   TurningCore result;
-  if (core.kind == CoreKind::point && arm.isZero(0.0)) return result;
+  if (core.kind == ShapeKind::sphere && arm.isZero(0.0)) return result;
   result.from = normalized(scale_to_unit_max(motion.start.orientation));
   result.first_arm = arm;
-  if (core.kind == CoreKind::half_space) {
+  if (core.kind == ShapeKind::half_space) {
     take_arm(core, result.from, arm);
     result.normal = core.normal;
   } else {
     result.arm = arm;
   }
-  if (core.kind == CoreKind::triangle) {
+  if (core.kind == ShapeKind::triangle) {
     result.corner = core.corner;
     result.side = core.side;
   }
@@ -63,7 +63,7 @@ TurningCore turning(Core& core, const RigidMotion& motion, const Vec& arm) noexc
   const Vec local_axis = to_world.transpose() * result.axis;
   if (result.arm.isZero(0.0) && is_invariant(core, local_axis)) return result;
   result.angle = angle;
-  if (core.kind == CoreKind::half_space) return result;
+  if (core.kind == ShapeKind::half_space) return result;
   result.reach = (reach_about(core, local_axis) + result.arm.cross(result.axis).norm()) *
                  (1.0 + solver::kSameAxis);
   const AxisRange range = project(core, local_axis);
@@ -85,22 +85,22 @@ void bend(const TurningCore& turning, double time, Core& core) noexcept {
 }
 
 void place_core(TurningCore& turning, double time, Core& core) noexcept {
-  if (core.kind != CoreKind::half_space) turning.arm = turning.arm_at(time);
+  if (core.kind != ShapeKind::half_space) turning.arm = turning.arm_at(time);
   core.rotation = rotation_of(orientation_at(turning, time));
-  if (core.kind == CoreKind::triangle) {
+  if (core.kind == ShapeKind::triangle) {
     for (std::size_t i = 0; i < 3; ++i) {
       core.corner[i] = core.rotation * turning.corner[i];
       core.side[i] = core.rotation * turning.side[i];
     }
     if (turning.drifts) bend(turning, time, core);
-  } else if (core.kind == CoreKind::half_space) {
+  } else if (core.kind == ShapeKind::half_space) {
     core.normal = solver::unit(core.rotation * turning.normal);
   }
 }
 
 /// Support of a core along the axis, from its centre. For a half-space the axis must be its normal.
 double high(const Core& core, const Vec& axis) noexcept {
-  return core.kind == CoreKind::half_space ? core.offset : highest(core, axis);
+  return core.kind == ShapeKind::half_space ? core.offset : highest(core, axis);
 }
 
 /// Support, from the body's position, of the volume that the core sweeps as it rotates.

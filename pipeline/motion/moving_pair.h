@@ -83,12 +83,12 @@ class MovingPair {
   /// From the position of body a to the centre of a, at the current placement.
   [[nodiscard]] const Vec& arm() const noexcept { return turn_a_.arm; }
   [[nodiscard]] double roundings() const noexcept { return a().rounding + b().rounding; }
-  [[nodiscard]] bool has_half_space() const noexcept { return b().kind == CoreKind::half_space; }
+  [[nodiscard]] bool has_half_space() const noexcept { return b().kind == ShapeKind::half_space; }
   /// One of the shapes is a triangle that deforms.
   [[nodiscard]] bool bends() const noexcept { return turn_a_.drifts || turn_b_.drifts; }
   /// Both shapes are half-spaces and at least one rotates. They touch at time 0 or right after it.
   [[nodiscard]] bool touches_soon() const noexcept {
-    return a().kind == CoreKind::half_space && (turn_a_.angle > 0.0 || turn_b_.angle > 0.0);
+    return a().kind == ShapeKind::half_space && (turn_a_.angle > 0.0 || turn_b_.angle > 0.0);
   }
 
   /// Upper bound on the rounding of any gap.

@@ -53,7 +53,7 @@ class RestingContacts::OrderedPair {
         pair_(tables, mirrored_ ? b : a, mirrored_ ? a : b) {}
 
   [[nodiscard]] MovingPair& pair() noexcept { return pair_; }
-  [[nodiscard]] bool is_there() const noexcept { return pair_.a().kind != CoreKind::half_space; }
+  [[nodiscard]] bool is_there() const noexcept { return pair_.a().kind != ShapeKind::half_space; }
   /// Converts a normal between the caller's order and the solver's.
   [[nodiscard]] Vec turned(const Vec& normal) const noexcept {
     return mirrored_ ? Vec(-normal) : normal;

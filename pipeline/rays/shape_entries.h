@@ -111,13 +111,13 @@ class PlaneClip {
 /// the space scaled by the radii. Else: conservative advancement.
 [[nodiscard]] FirstEntry enter(const LocalRay& ray, const EllipsoidShape& ellipsoid,
                                double scale) noexcept;
-/// By conservative advancement to the core of a shape that is given by its support function.
-[[nodiscard]] FirstEntry enter_core(const LocalRay& ray, const SupportCore& core,
+/// By conservative advancement to a core that is given by its support function or its corners.
+[[nodiscard]] FirstEntry enter_core(const LocalRay& ray, const ShapeCore& core,
                                     double scale) noexcept;
 /// All other shapes have such a core.
 template <typename Shape>
 [[nodiscard]] FirstEntry enter(const LocalRay& ray, const Shape& shape, double scale) noexcept {
-  return enter_core(ray, core_of(shape).support, scale);
+  return enter_core(ray, core_of(shape), scale);
 }
 
 }  // namespace winnow

@@ -1,5 +1,6 @@
-// Ray tests for ellipsoids and user shapes: conservative advancement with GJK (solver/gjk.h), and a
-// closed form for ellipsoids without rounding whose radii are not near 0.
+// Ray tests for ellipsoids, user shapes and kinds without a function of their own: conservative
+// advancement with GJK (solver/gjk.h), and a closed form for ellipsoids without rounding whose
+// radii are not near 0.
 
 #include "pipeline/rays/shape_entries.h"
 #include "pipeline/solver/gjk.h"
@@ -23,9 +24,11 @@ struct Foreground {
 
 class SupportTarget {
  public:
-  SupportTarget(const SupportCore& core, double scale) noexcept {
-    body_.kind = CoreKind::support;
-    body_.farthest = core;
+  SupportTarget(const ShapeCore& core, double scale) noexcept {
+    body_.kind = core.kind;
+    body_.half = scale * core.half;
+    body_.corners = core.corners;
+    body_.farthest = core.support;
     body_.unit[0] = scale;
   }
 
@@ -48,11 +51,12 @@ class SupportTarget {
 // step passes the entry (van den Bergen, "Ray casting against general convex objects with
 // application to continuous collision detection", 2004). If a ray grazes, each step only halves
 // the remaining distance.
-FirstEntry enter_core(const LocalRay& ray, const SupportCore& core, double scale) noexcept {
+FirstEntry enter_core(const LocalRay& ray, const ShapeCore& core, double scale) noexcept {
   constexpr int kMaxSteps = 200;
   const double rounding = scale * core.rounding;
   FirstEntry entry;
-  const RaySpan ball = ball_span(ray, Vector3d::Zero(), scale * core.radius + rounding);
+  const RaySpan ball =
+      ball_span(ray, Vector3d::Zero(), scale * (core.half.norm() + core.support.radius) + rounding);
   if (ball.is_empty() || ball.out < ray.low) return entry;
   SupportTarget target(core, scale);
   double t = std::max(ball.in, ray.low);
@@ -79,7 +83,8 @@ FirstEntry enter(const LocalRay& ray, const EllipsoidShape& ellipsoid, double sc
   constexpr double kThin = 1e-12;
   const Vector3d radius = scale * Vector3d::Map(ellipsoid.radius);
   if (ellipsoid.rounding > 0.0 || !(radius.minCoeff() > kThin)) {
-    return enter_core(ray, support_core(ellipsoid), scale);
+    return enter_core(ray, ShapeCore::of_support(ShapeKind::ellipsoid, support_core(ellipsoid)),
+                      scale);
   }
   LocalRay stretched = ray;
   stretched.origin = ray.origin.cwiseQuotient(radius);

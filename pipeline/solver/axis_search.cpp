@@ -97,7 +97,7 @@ void test_hull_products(const Problem& problem, AxisSearch& search) noexcept {
 }
 
 bool is_solid_hull(const Core& core) noexcept {
-  return core.kind == CoreKind::hull && core.hull->dimension == 3;
+  return core.kind == ShapeKind::hull && core.hull->dimension == 3;
 }
 
 }  // namespace
@@ -152,13 +152,13 @@ bool test_features(const Problem& problem, AxisSearch& search) noexcept {
 namespace {
 
 bool is_round(const Core& core) noexcept {
-  return core.kind == CoreKind::point || core.kind == CoreKind::segment ||
-         core.kind == CoreKind::cylinder || core.kind == CoreKind::cone;
+  return core.kind == ShapeKind::sphere || core.kind == ShapeKind::capsule ||
+         core.kind == ShapeKind::cylinder || core.kind == ShapeKind::cone;
 }
 
 /// Tests the two normals of a cone's side in the plane of its axis and `across`.
 void test_side(const Core& core, const Vec& across, AxisSearch& search) noexcept {
-  if (core.kind != CoreKind::cone) return;
+  if (core.kind != ShapeKind::cone) return;
   const Vec out = across * (2.0 * core.half.z());
   const Vec up = core.rotation.col(2) * core.half.x();
   search.test_axis(unit(out + up));
@@ -171,14 +171,14 @@ double sine_between_axes(const Problem& problem) noexcept {
   const Core& a = problem.a;
   const Core& b = problem.b;
   if (!is_round(a) || !is_round(b)) return std::numeric_limits<double>::infinity();
-  if (a.kind == CoreKind::point || b.kind == CoreKind::point) return 0.0;
+  if (a.kind == ShapeKind::sphere || b.kind == ShapeKind::sphere) return 0.0;
   return a.rotation.col(2).cross(b.rotation.col(2)).norm();
 }
 
 void test_revolution(const Problem& problem, AxisSearch& search) noexcept {
   const Core& a = problem.a;
   const Core& b = problem.b;
-  const Core& first = a.kind != CoreKind::point ? a : b;
+  const Core& first = a.kind != ShapeKind::sphere ? a : b;
   const Vec axis = first.rotation.col(2);
   Vec across = without(b.center - a.center, axis);
   // If the centers lie on the axis, every direction across is equally good: take the first tie

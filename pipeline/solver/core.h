@@ -21,10 +21,11 @@ using Mat = Eigen::Matrix3d;
 /// A core in world axes, scaled to the units of its Problem. All functions of a core are exact up
 /// to a few roundings relative to the core's size.
 struct Core {
-  CoreKind kind = CoreKind::point;
+  /// As ShapeCore::kind.
+  ShapeKind kind = ShapeKind::sphere;
   Mat rotation = Mat::Identity();
   Vec center = Vec::Zero();
-  /// Box: half extents. Segment, cylinder, cone: (radius, radius, half length).
+  /// Polytope in a box: half extents. Segment, cylinder, cone: (radius, radius, half length).
   Vec half = Vec::Zero();
   double rounding = 0.0;
   /// Upper bound of the distance of the shape's points from `center`, rounding included.
@@ -35,6 +36,8 @@ struct Core {
   /// the triangle's frame, then rotated: the difference of two rotated corners far from the center
   /// would have their rounding errors.
   std::array<Vec, 3> side{};
+  /// Polytope in a box.
+  const CornerTable* corners = nullptr;
   const HullShape* hull = nullptr;
   /// Ellipsoid, tapered capsule or user shape.
   SupportCore farthest;
@@ -44,9 +47,6 @@ struct Core {
   /// Half-space: unit outward normal in world axes, and offset of the plane from the center.
   Vec normal = Vec::UnitZ();
   double offset = 0.0;
-
-  /// True for cores with corners: all but cylinders, cones, support functions and half-spaces.
-  [[nodiscard]] bool is_polytope() const noexcept { return kind < CoreKind::cylinder; }
 };
 
 struct AxisRange {
@@ -78,6 +78,9 @@ std::uint32_t farthest_vertex(const HullShape& hull, const Vec& d, double& value
 /// contains the supporting point and the line of the side through it. Other cores are returned
 /// unchanged, and so are cylinders and cones if `direction` runs along their axis.
 [[nodiscard]] Core meridian(const Core& core, const Vec& direction) noexcept;
+
+/// True for cores with corners: all but cylinders, cones, support functions and half-spaces.
+[[nodiscard]] bool is_polytope(const Core& core) noexcept;
 
 // Corners, edges and faces of polytopes. If extents are zero, some of them coincide.
 [[nodiscard]] std::uint32_t vertex_count(const Core& core) noexcept;
@@ -114,6 +117,9 @@ inline constexpr double kSameAxis = 16.0 * std::numeric_limits<double>::epsilon(
 [[nodiscard]] double reach_about(const Core& core, const Vec& w) noexcept;
 /// Returns whether rotation about the axis w leaves the core unchanged.
 [[nodiscard]] bool is_invariant(const Core& core, const Vec& w) noexcept;
+/// Shrinks a cylinder, so that a body with the returned rounding around it fits in the cylinder;
+/// the rounding is the largest possible. Returns 0 for other cores, which do not change.
+[[nodiscard]] double inscribe(Core& core) noexcept;
 /// About half of the core's diameter, plus its rounding; 0 for a half-space.
 [[nodiscard]] double extent(const Core& core) noexcept;
 

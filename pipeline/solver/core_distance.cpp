@@ -165,7 +165,7 @@ CoreDistance half_space_distance(const Problem& problem) noexcept {
   const Core& b = problem.b;
   CoreDistance found;
   found.doubt = problem.noise();
-  if (a.kind == CoreKind::half_space) {
+  if (a.kind == ShapeKind::half_space) {
     found.axis = a.normal;
     found.on_a = a.normal * a.offset;
     if ((a.normal + b.normal).cwiseAbs().maxCoeff() <= 4.0 * kEpsilon) {
@@ -188,9 +188,9 @@ CoreDistance half_space_distance(const Problem& problem) noexcept {
 void test_across_line(const Problem& problem, AxisSearch& search) noexcept {
   Vec line = Vec::Zero();
   for (const Core* core : {&problem.a, &problem.b}) {
-    const bool is_line =
-        core->kind == CoreKind::hull ? core->hull->dimension < 2 : core->kind <= CoreKind::triangle;
-    if (!is_line || core->kind == CoreKind::box) return;
+    const bool is_line = core->hull != nullptr ? core->hull->dimension < 2
+                                               : is_polytope(*core) && face_count(*core) < 2;
+    if (!is_line) return;
     for (std::uint32_t i = 0; i < direction_count(*core) && line == Vec::Zero(); ++i) {
       line = unit(direction(*core, i));
     }
@@ -252,7 +252,7 @@ Vec contact_point(const Problem& problem, const Vec& axis, double depth) noexcep
   Vec x = gjk_result.simplex.on_a();
   // If the simplex is a flat tetrahedron, the origin is inside, but its weights are inaccurate.
   gjk_result.upper = gjk_result.simplex.closest().norm();
-  if (gjk_result.upper > kTieTolerance * noise && a.is_polytope() && moved.is_polytope()) {
+  if (gjk_result.upper > kTieTolerance * noise && is_polytope(a) && is_polytope(moved)) {
     ClosestPoints points;
     if (closest_features(a, moved, axis, 0.0, gjk_result.upper, noise, points)) x = points.on_a;
   } else if (gjk_result.upper > kTieTolerance * noise) {
@@ -270,7 +270,7 @@ CoreDistance closest(const Problem& problem, const GjkResult& start, const AxisS
   Vec between = start.between;
   found.on_a = start.simplex.on_a();
   double gap = upper - search.separation();
-  const bool polytopes = problem.a.is_polytope() && problem.b.is_polytope();
+  const bool polytopes = is_polytope(problem.a) && is_polytope(problem.b);
   if (gap > kTieTolerance * noise && polytopes) {
     ++counts.bounded;
     ClosestPoints points;
@@ -297,10 +297,7 @@ CoreDistance closest(const Problem& problem, const GjkResult& start, const AxisS
 Core inscribed(const Core& core) noexcept {
   Core inner = core;
   inner.rounding = 0.0;
-  if (core.kind != CoreKind::cylinder) return inner;
-  inner.rounding = std::min(core.half.x(), core.half.z());
-  inner.half -= Vec::Constant(inner.rounding);
-  inner.kind = inner.half.x() > 0.0 ? CoreKind::cylinder : CoreKind::segment;
+  inner.rounding = inscribe(inner);
   return inner;
 }
 
@@ -333,7 +330,7 @@ double gap_of_round(const Problem& problem, double turn, double gap, AxisSearch&
 double test_by_expansion(const Problem& problem, const GjkResult& start, double turn,
                          AxisSearch& search, SolverCounts& counts) noexcept {
   const double noise = problem.noise();
-  const bool polytopes = problem.a.is_polytope() && problem.b.is_polytope();
+  const bool polytopes = is_polytope(problem.a) && is_polytope(problem.b);
   const double tolerance = polytopes ? noise : kSmoothTolerance * problem.size;
   const DepthBounds bounds = expand_polytope(problem.a, problem.b, start.simplex, noise, tolerance);
   search.test_axis(bounds.axis);
@@ -363,7 +360,7 @@ CoreDistance penetration(const Problem& problem, const GjkResult& start, Contact
   const Core& a = problem.a;
   const Core& b = problem.b;
   const double noise = problem.noise();
-  const bool polytopes = a.is_polytope() && b.is_polytope();
+  const bool polytopes = is_polytope(a) && is_polytope(b);
   AxisSearch search(a, b);
   double gap = 0.0;
   const double turn = sine_between_axes(problem);
@@ -413,7 +410,7 @@ bool surely_overlap(const Problem& problem, const GjkResult& start) noexcept {
 
 CoreDistance core_distance(const Problem& problem, ContactLevel level, double enough,
                            SolverCounts& counts) noexcept {
-  if (problem.b.kind == CoreKind::half_space) return half_space_distance(problem);
+  if (problem.b.kind == ShapeKind::half_space) return half_space_distance(problem);
   const Vec known = axis_from_point(problem);
   if (known != Vec::Zero()) return distance_along(problem, known);
   const Core& a = problem.a;
@@ -442,7 +439,7 @@ CoreDistance core_distance(const Problem& problem, ContactLevel level, double en
   search.test_axis(found.axis);
   search.test_axis(unit(found.between));
   if (found.upper - search.separation() > kConvergence * noise) test_simplex(found, search);
-  const bool polytopes = a.is_polytope() && b.is_polytope();
+  const bool polytopes = is_polytope(a) && is_polytope(b);
   if (found.upper - search.separation() > kConvergence * noise) {
     const bool all = test_features(problem, search);
     if (!polytopes) refine_curved(a, b, search.axis(), noise, found);

@@ -36,16 +36,12 @@ class SupportingPatch {
     return {vertex_, vertex_feature_.data(), edge_feature_.data(), count_, feature_, rounding_};
   }
 
+  // Called by the form of the core (core_forms.h).
+  void add(const Vec& v, std::uint32_t vertex_feature, std::uint32_t edge_feature) noexcept;
+  void set_feature(std::uint32_t feature) noexcept { feature_ = feature; }
+
  private:
   SupportingPatch() noexcept = default;
-  void add(const Vec& v, std::uint32_t vertex_feature, std::uint32_t edge_feature) noexcept;
-  void add_face(const Core& core, std::uint32_t face) noexcept;
-  void add_edge(const Core& core, std::uint32_t edge, std::uint32_t feature) noexcept;
-  void add_hull(const Core& core, const Vec& outward) noexcept;
-  void add_cap(const Core& core, double z) noexcept;
-  void add_round(const Core& core, const Vec& outward) noexcept;
-  void add_taper(const Core& core, const Vec& outward) noexcept;
-  void add_samples(const Core& core, const Vec& outward) noexcept;
 
   double vertex_[kRoom][3];
   std::array<std::uint32_t, kRoom> vertex_feature_;

@@ -31,21 +31,22 @@ void set_units(int exponent, Core& core) noexcept {
 void place(const ShapeCore& shape, const Pose& pose, int exponent, const Scale& scale,
            Core& core) noexcept {
   core.kind = shape.kind;
+  core.corners = shape.corners;
   core.rotation = rotation_of(scale_to_unit_max(pose.orientation));
   for (int i = 0; i < 3; ++i) core.half[i] = scale(shape.half[i]);
   core.rounding = scale(shape.rounding);
   core.size = core.half.norm() + core.rounding;
-  if (shape.kind == CoreKind::triangle) {
+  if (shape.triangle != nullptr) {
     place_triangle(*shape.triangle, scale, core);
-  } else if (shape.kind == CoreKind::support) {
+  } else if (shape.support.function != nullptr) {
     core.farthest = shape.support;
     set_units(exponent, core);
     core.size += scale(core.farthest.radius);
-  } else if (shape.kind == CoreKind::hull) {
+  } else if (shape.hull != nullptr) {
     core.hull = shape.hull;
     set_units(exponent, core);
     core.size += reach_of_vertices(*core.hull) * core.unit[0] * core.unit[1];
-  } else if (shape.kind == CoreKind::half_space) {
+  } else if (shape.half_space != nullptr) {
     core.normal = unit(core.rotation * Eigen::Map<const Vec>(shape.half_space->normal));
     core.offset = scale(shape.half_space->offset);
     core.size = std::abs(core.offset);

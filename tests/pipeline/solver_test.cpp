@@ -73,7 +73,7 @@ void for_pairs(PairStyle style, Body&& body) {
 
 /// Returns how far x is outside the core's shape along the worst of some directions.
 double outside(const solver::Core& core, const Vec& x, const Vec& along, Random& random) {
-  if (core.kind == CoreKind::half_space) {
+  if (core.kind == ShapeKind::half_space) {
     return core.normal.dot(x - core.center) - core.offset;
   }
   double worst = -std::numeric_limits<double>::infinity();

@@ -1,27 +1,16 @@
 #pragma once
 
-// One pair of convex shapes in double: the curved kernels pass it from stage to stage, and single
-// pairs are tested with it. Lengths are scaled by a power of two so that the largest is in [1, 2).
+// One pair of convex shapes in double, and support points of its Minkowski difference: the curved
+// kernels pass it from stage to stage, and single pairs are tested with it. Lengths are scaled by a
+// power of two so that the largest is in [1, 2).
 
-#include "pipeline/kernels/cores/core_lanes.wide.h"
-#include "pipeline/kernels/cores/hull_core.wide.h"
+#include "pipeline/kernels/cores/core_kinds.wide.h"
 #include "pipeline/kernels/kernels.h"
-#include "pipeline/kernels/user_support.wide.h"
 
 namespace winnow::WINNOW_ISA_NAME::curved {
 
-/// The core of a shape in its own frame.
-struct CoreDesc {
-  ShapeKind kind;
-  /// The same numbers as in CoreLanes.
-  double number[hull::kCoreNumbers];
-  /// Null unless the shape is a hull, and a user shape, respectively.
-  const HullShape* hull;
-  const SupportShape* own;
-  double rounding;
-  /// A point of the core.
-  double center[3];
-};
+using hull::CoreDesc;
+using hull::farthest;
 
 /// Result of the search for the closest points of the cores.
 enum class CurvedState : std::uint32_t {
@@ -80,109 +69,8 @@ inline constexpr double kRoundingError = 40.0 * 0x1p-53;
 inline constexpr double kSmallest = 1e-60;
 inline constexpr double kLargestSize = 1e60;
 
-static inline double largest_of(double a, double b) {
-  return a > b ? a : b;
-}
-static inline double least_of(double a, double b) {
-  return a < b ? a : b;
-}
 static inline double dot2(const double* a, const double* b) {
   return a[0] * b[0] + a[1] * b[1];
-}
-
-/// Two unit vectors perpendicular to the unit vector d and to each other, stable while d jitters:
-/// see kAxisCosine.
-static inline void directions_across(const double* d, double (*across)[3]) {
-  int axis = 0;
-  while (axis < 2 && !(__builtin_fabs(d[axis]) <= kAxisCosine)) ++axis;
-  double u[3];
-  for (int k = 0; k < 3; ++k) u[k] = (k == axis ? 1.0 : 0.0) - d[axis] * d[k];
-  const double length = __builtin_sqrt(dot3(u, u));
-  for (double& x : u) x /= length;
-  double v[3];
-  cross3(d, u, v);
-  for (int k = 0; k < 3; ++k) across[0][k] = kOffAxes[0] * u[k] + kOffAxes[1] * v[k];
-  cross3(d, across[0], across[1]);
-}
-
-/// Sets the core, without scaling, and returns an upper bound on the distance of its points from
-/// its origin.
-static inline double make_core(const ShapeTables& tables, ShapeId id, CoreDesc& form) {
-  form.kind = id.kind();
-  form.hull = nullptr;
-  form.own = nullptr;
-  for (double& x : form.number) x = 0.0;
-  for (double& x : form.center) x = 0.0;
-  const std::uint32_t i = id.index();
-  switch (form.kind) {
-    case ShapeKind::sphere:
-      form.rounding = tables.spheres[i].radius;
-      break;
-    case ShapeKind::capsule:
-      form.number[2] = tables.capsules[i].half_length;
-      form.rounding = tables.capsules[i].radius;
-      break;
-    case ShapeKind::box:
-      for (int k = 0; k < 3; ++k) form.number[k] = tables.boxes[i].half[k];
-      form.rounding = tables.boxes[i].rounding;
-      break;
-    case ShapeKind::cylinder:
-      form.number[0] = tables.cylinders[i].radius;
-      form.number[2] = tables.cylinders[i].half_length;
-      form.rounding = tables.cylinders[i].rounding;
-      break;
-    case ShapeKind::cone:
-      form.number[0] = tables.cones[i].radius;
-      form.number[2] = tables.cones[i].half_length;
-      form.rounding = tables.cones[i].rounding;
-      break;
-    case ShapeKind::ellipsoid: {
-      const double* r = tables.ellipsoids[i].radius;
-      const double most = largest_of(largest_of(r[0], r[1]), r[2]);
-      const double least = least_of(least_of(r[0], r[1]), r[2]);
-      for (int k = 0; k < 3; ++k) form.number[k] = r[k];
-      form.number[3] = most > 0.0 ? least * (least / most) : 0.0;
-      form.rounding = tables.ellipsoids[i].rounding + form.number[3];
-      break;
-    }
-    case ShapeKind::tapered_capsule: {
-      const TaperedCapsuleShape& s = tables.tapered_capsules[i];
-      const double more = __builtin_fabs(s.radius[1] - s.radius[0]);
-      const double end = s.radius[1] > s.radius[0] ? s.half_length : -s.half_length;
-      const bool is_ball = more >= 2.0 * s.half_length;
-      form.number[0] = is_ball ? 0.0 : more;
-      form.number[1] = end;
-      form.number[2] = is_ball ? end : -end;
-      form.center[2] = is_ball ? end : 0.0;
-      form.rounding = (s.radius[1] > s.radius[0]) == is_ball ? s.radius[1] : s.radius[0];
-      return form.number[0] + s.half_length;
-    }
-    case ShapeKind::triangle: {
-      double most = 0.0;
-      for (int v = 0; v < 3; ++v) {
-        double reach = 0.0;
-        for (int k = 0; k < 3; ++k) {
-          const double x = tables.triangles[i].vertex[v][k];
-          form.number[3 * v + k] = x;
-          form.center[k] += x / 3.0;
-          reach += __builtin_fabs(x);
-        }
-        most = largest_of(most, reach);
-      }
-      form.rounding = tables.triangles[i].rounding;
-      return most;
-    }
-    case ShapeKind::support:
-      form.own = &tables.supports[i];
-      form.rounding = form.own->rounding;
-      return form.own->radius;
-    default:
-      form.hull = &tables.hulls[i];
-      form.rounding = form.hull->rounding;
-      for (int k = 0; k < 3; ++k) form.center[k] = form.hull->center[k];
-      return hull::reach_of(*form.hull);
-  }
-  return form.number[0] + form.number[1] + form.number[2];
 }
 
 /// True if b is the first. Two shapes of one kind are ordered by their positions, so that (a, b)
@@ -201,8 +89,8 @@ static inline bool place_pair(const NarrowJob& job, BodyPair bodies, CurvedPair&
   const Pose& pose_a = job.poses[bodies.a];
   const Pose& pose_b = job.poses[bodies.b];
   pair.swapped = ids[0].kind() == ids[1].kind() && comes_second(pose_a, pose_b);
-  double size = make_core(*job.tables, ids[pair.swapped ? 1 : 0], pair.first) +
-                make_core(*job.tables, ids[pair.swapped ? 0 : 1], pair.second);
+  double size = hull::make_core(*job.tables, ids[pair.swapped ? 1 : 0], pair.first) +
+                hull::make_core(*job.tables, ids[pair.swapped ? 0 : 1], pair.second);
   if (!hull::place(pair.swapped ? pose_b : pose_a, pair.swapped ? pose_a : pose_b, pair)) {
     return false;
   }
@@ -224,22 +112,18 @@ static inline bool place_pair(const NarrowJob& job, BodyPair bodies, CurvedPair&
   return true;
 }
 
-/// Writes the vertex of a hull that is farthest along d, times `scale`.
-template <typename T>
-static inline void hull_support(const HullShape& shape, const T* d, T scale, T* x) {
-  const std::uint32_t vertex = hull::highest_vertex(shape, Vec3<T>{d[0], d[1], d[2]});
-  const T* const* column = hull::columns_of(shape, T());
-  for (int k = 0; k < 3; ++k) x[k] = column[k][vertex] * scale;
-}
-
-/// Support point of a core for which there is no lane code: a hull or a user shape.
-template <typename T>
-static inline void single_support(const CoreDesc& form, const T* d, T scale, T* x) {
-  if (form.kind == ShapeKind::support) {
-    user_support(*form.own, d, scale, x);
-  } else {
-    hull_support(*form.hull, d, scale, x);
-  }
+/// The support point w of first - second along n, and the point `mine` of the first in it.
+static inline void difference_point(const CurvedPair& pair, const double* n, double* w,
+                                    double* mine) {
+  double back[3];
+  double local[3];
+  double theirs[3];
+  farthest(pair.first, n, pair.scale, mine);
+  turn_back3(pair.turn, n, back);
+  for (double& x : back) x = -x;
+  farthest(pair.second, back, pair.scale, local);
+  turn3(pair.turn, local, theirs);
+  for (int k = 0; k < 3; ++k) w[k] = mine[k] - (theirs[k] + pair.shift[k]);
 }
 
 }  // namespace winnow::WINNOW_ISA_NAME::curved

@@ -6,8 +6,8 @@
 // that is done takes the next pair. Lengths are divided by the pair's size.
 
 #include "pipeline/kernels/answers.wide.h"
+#include "pipeline/kernels/cores/core_kinds.wide.h"
 #include "pipeline/kernels/cores/hull_core.wide.h"
-#include "pipeline/kernels/cores/loaded_cores.wide.h"
 #include "pipeline/kernels/cores/search_lanes.wide.h"
 #include "pipeline/kernels/user_support.wide.h"
 
@@ -59,9 +59,6 @@ class OverlapTest {
     const SupportShape* own[2][kWidth];
     alignas(64) float scale[kWidth];
   };
-  static bool is_single(ShapeKind kind) {
-    return kind == ShapeKind::hull || kind == ShapeKind::support;
-  }
 
   /// The placement of the cores of a block, with the second in the frame of the first.
   struct PlacedCores {

@@ -4,7 +4,7 @@
 // 1988). It ends as soon as a direction separates the shapes or points of the simplex prove an
 // overlap. The lane version (overlap_test.wide.h) is wasteful for one pair.
 
-#include "pipeline/kernels/cores/farthest_points.wide.h"
+#include "pipeline/kernels/cores/curved_pair.wide.h"
 #include "pipeline/kernels/cores/overlap_test.wide.h"
 
 namespace winnow::WINNOW_ISA_NAME::curved {

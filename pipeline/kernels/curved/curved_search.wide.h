@@ -210,7 +210,7 @@ class CurvedSearch {
     return Search::one_by_one(
         along, pairs_.active(), [&](unsigned lane, const double* direction, double* point) {
           const CurvedPair& pair = pairs_[lane];
-          single_support(side == 0 ? pair.first : pair.second, direction, pair.scale, point);
+          hull::single_support(side == 0 ? pair.first : pair.second, direction, pair.scale, point);
         });
   }
 

@@ -3,7 +3,7 @@
 // The shape of the Minkowski difference of two cores near its least depth, if it is simple, and the
 // support points of each core from which that shape is derived. Used by curved_minimum.wide.h.
 
-#include "pipeline/kernels/cores/farthest_points.wide.h"
+#include "pipeline/kernels/cores/curved_pair.wide.h"
 
 namespace winnow::WINNOW_ISA_NAME::curved {
 

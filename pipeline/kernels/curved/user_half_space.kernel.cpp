@@ -22,7 +22,7 @@ class TiltedSupportPoints {
   TiltedSupportPoints(const SupportShape& shape, const double* up, const double* lowest,
                       double limit) {
     double across[2][3];
-    curved::directions_across(up, across);
+    hull::directions_across(up, across);
     apart_ = sample_tolerance(shape, across, 1.0);
     constexpr int kCorners[kMaxPoints][2] = {{1, 1}, {-1, 1}, {-1, -1}, {1, -1}};
     for (std::uint32_t i = 0; i < kMaxPoints; ++i) {

@@ -188,7 +188,7 @@ SeparationSample Advancement::sample(double t, bool any_plane) noexcept {
   const double noise = problem.noise();
   SeparationSample result;
   double gap = 0.0;
-  if (problem.b.kind == CoreKind::half_space) {
+  if (problem.b.kind == ShapeKind::half_space) {
     const CoreDistance found = core_distance(problem, ContactLevel::boolean, kInfinity, counts_);
     gap = found.distance - roundings - noise;
     face(found.axis, result);
