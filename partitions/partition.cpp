@@ -8,6 +8,7 @@
 #include "core/memory/new_in.h"
 #include "core/threads/float_environment.h"
 #include "partitions/index/debug_draw.h"
+#include "partitions/rows/row_input.h"
 #include "partitions/state/box_partition.h"
 #include "partitions/state/partition_state.h"
 
@@ -32,7 +33,7 @@ Status mutate(const char* call, PartitionState* state, Status otherwise, std::si
 Partition make_box_partition(StructureKind structure, const PartitionOptions& options) noexcept {
   PartitionOptions without = options;
   without.fat_margin = {};
-  return Partition(structure, without, &Rows::boxes_as_given());
+  return Partition(structure, without, &RowInput::boxes_as_given());
 }
 
 Partition::Partition(StructureKind structure, const PartitionOptions& options,
@@ -44,10 +45,10 @@ Partition::Partition(StructureKind structure, const PartitionOptions& options,
 }
 
 Partition::Partition(StructureKind structure) noexcept
-    : Partition(structure, {}, &Rows::boxes_as_given()) {}
+    : Partition(structure, {}, &RowInput::boxes_as_given()) {}
 
 Partition::Partition(StructureKind structure, const PartitionOptions& options) noexcept
-    : Partition(structure, options, Rows::input_of(options.volume, options.fat_margin)) {}
+    : Partition(structure, options, RowInput::of(options.volume, options.fat_margin)) {}
 
 Partition::~Partition() {
   if (state_ != nullptr) delete_in(state_->memory, state_);
@@ -100,7 +101,7 @@ Status Partition::insert(std::span<const Sphere> spheres, std::span<const Client
                          std::span<Key> keys) {
   const DefaultFloatEnvironment environment;
   return mutate("Partition::insert", state_, status_, keys.size(),
-                [&](Rows& rows) { return rows.insert(spheres, data, keys); });
+                [&](Rows& rows) { return RowInput(rows).insert(spheres, data, keys); });
 }
 
 template <int K>
@@ -108,7 +109,7 @@ Status Partition::insert(std::span<const Kdop<K>> kdops, std::span<const ClientD
                          std::span<Key> keys) {
   const DefaultFloatEnvironment environment;
   return mutate("Partition::insert", state_, status_, keys.size(),
-                [&](Rows& rows) { return rows.insert(kdops, data, keys); });
+                [&](Rows& rows) { return RowInput(rows).insert(kdops, data, keys); });
 }
 
 Status Partition::update(std::span<const Key> keys, const BoxView& boxes) {
@@ -132,14 +133,14 @@ Status Partition::update(Key key, const Aabb& box) {
 Status Partition::update(std::span<const Key> keys, std::span<const Sphere> spheres) {
   const DefaultFloatEnvironment environment;
   return mutate("Partition::update", state_, status_, keys.size(),
-                [&](Rows& rows) { return rows.update(keys, spheres); });
+                [&](Rows& rows) { return RowInput(rows).update(keys, spheres); });
 }
 
 template <int K>
 Status Partition::update(std::span<const Key> keys, std::span<const Kdop<K>> kdops) {
   const DefaultFloatEnvironment environment;
   return mutate("Partition::update", state_, status_, keys.size(),
-                [&](Rows& rows) { return rows.update(keys, kdops); });
+                [&](Rows& rows) { return RowInput(rows).update(keys, kdops); });
 }
 
 template Status Partition::insert(std::span<const Kdop<14>>, std::span<const ClientData>,

@@ -151,16 +151,10 @@ void SpatialIndex::continue_planning() noexcept {
 
 void SpatialIndex::drop_plan() noexcept {
   plan_.drop();
-  stash(std::exchange(next_, {}));
+  structures_.stash(std::exchange(next_, {}), reserved_);
 }
 
 // Exchange of the structure.
-
-// Keeps a structure with its reserved memory for later use, or destroys it.
-void SpatialIndex::stash(const OwnedStructure& one) noexcept {
-  if (one.structure == nullptr) return;
-  if (!reserved_ || !structures_.keep(one)) structures_.destroy(one);
-}
 
 void SpatialIndex::install(Structure* structure, StructureKind kind) noexcept {
   drop_plan();
@@ -205,18 +199,18 @@ Status SpatialIndex::refresh_as(StructureKind kind, bool& refused) {
   const OwnedStructure before{kind_, structure_};
   install(made, kind);
   if (refresh() == Status::ok) {
-    stash(before);
+    structures_.stash(before, reserved_);
     return Status::ok;
   }
   refused = true;
-  stash({kind, made});
+  structures_.stash({kind, made}, reserved_);
   install(before.structure, before.kind);
   return refresh();
 }
 
 void SpatialIndex::install_planned_structure() noexcept {
   if (!swap_is_planned()) return;
-  stash({kind_, structure_});
+  structures_.stash({kind_, structure_}, reserved_);
   kind_ = next_.kind;
   structure_ = std::exchange(next_, {}).structure;
   if (!structure_->prunes_rows() && !reserved_) regular_tree_.release();

@@ -20,6 +20,25 @@ std::size_t tail_rows(const Rows& rows) noexcept {
   return rows.pool().rows() > ordered ? rows.pool().rows() - ordered : 0;
 }
 
+/// Adds the regular rows that no longer fit the structure to the selection: tests all rows, with
+/// `scratch`, or only the changed ones if it is null. Returns false if there are more than `most`
+/// misfits, or if a sample predicts more.
+bool collect_misfits(const Rows& rows, Structure& structure, std::uint32_t* scratch,
+                     std::size_t most) noexcept {
+  const std::size_t regular = rows.regions().regular;
+  if (regular == 0) return true;
+  Column<std::uint32_t>& misfits = rows.selection().list;
+  if (scratch != nullptr) return structure.find_misfits(scratch, misfits, most);
+  for (const ObjectId id : rows.changes().stale.ids()) {
+    if (!rows.keys().is_live(id)) continue;
+    const std::uint32_t row = rows.keys().row_of(id);
+    if (row >= regular || structure.fits(row, structure.box_of_row(row))) continue;
+    if (misfits.size() == most) return false;
+    (void)misfits.push_back(row);
+  }
+  return true;
+}
+
 }  // namespace
 
 SpatialIndex::SpatialIndex(std::pmr::memory_resource* memory, Rows& rows,
@@ -41,7 +60,7 @@ SpatialIndex::~SpatialIndex() {
 
 RowNumbers SpatialIndex::numbers() const noexcept {
   const RowRegions& regions = rows_.regions();
-  const ChangeList& stale = rows_.stale();
+  const ChangeList& stale = rows_.changes().stale;
   const bool flat = structure_->is_flat();
   RowNumbers n;
   n.objects = rows_.size();
@@ -95,13 +114,14 @@ Status SpatialIndex::absorb_changes(bool all) {
   const std::size_t tail = tail_rows(rows_);
   const std::size_t limit = RebuildPlanner::tail_limit(rows_.size());
   const std::size_t room = limit - std::min(limit, tail);
-  const bool any_row = all || rows_.stale().all();
+  const bool any_row = all || rows_.changes().stale.all();
   RowSelection& misfits = rows_.selection();
   if (!misfits.start(limit) || (any_row && rows_.regions().regular != 0 &&
                                 !spare_.reserve(rows_.pool().capacity() + 2 * kBlockRows))) {
     return Status::out_of_memory;
   }
-  if (tail > limit || !collect_misfits(any_row, room)) {
+  auto* const scratch = any_row ? reinterpret_cast<std::uint32_t*>(spare_.data()) : nullptr;
+  if (tail > limit || !collect_misfits(rows_, *structure_, scratch, room)) {
     if (all) planner_.note_mistake();
     return build();
   }
@@ -123,24 +143,6 @@ Status SpatialIndex::absorb_changes(bool all) {
   planner_.note_frame(tail_rows(rows_));
   continue_planning();
   return Status::ok;
-}
-
-// Returns false if there are more than `most` misfits, or if a sample predicts more.
-bool SpatialIndex::collect_misfits(bool any_row, std::size_t most) noexcept {
-  const std::size_t regular = rows_.regions().regular;
-  if (regular == 0) return true;
-  Column<std::uint32_t>& misfits = rows_.selection().list;
-  if (any_row) {
-    return structure_->find_misfits(reinterpret_cast<std::uint32_t*>(spare_.data()), misfits, most);
-  }
-  for (const ObjectId id : rows_.stale().ids()) {
-    if (!rows_.keys().is_live(id)) continue;
-    const std::uint32_t row = rows_.keys().row_of(id);
-    if (row >= regular || structure_->fits(row, structure_->box_of_row(row))) continue;
-    if (misfits.size() == most) return false;
-    (void)misfits.push_back(row);
-  }
-  return true;
 }
 
 Status SpatialIndex::find_outliers(const RowNumbers& n) {
@@ -254,7 +256,7 @@ bool SpatialIndex::refit(BlockTree& tree, std::size_t first, std::size_t blocks,
     tree.refit_all(rows, rows_.execution_for(rows_.pool().rows()));
     return true;
   };
-  if (reshape || order_changed || rows_.stale().all()) return refit_all();
+  if (reshape || order_changed || rows_.changes().stale.all()) return refit_all();
   // The sorted tail, and blocks that were added or removed at the end, have to be refitted.
   std::size_t changed_from = std::min(blocks, blocks_before) - (blocks < blocks_before ? 1 : 0);
   if (tail_changed) {
@@ -266,11 +268,11 @@ bool SpatialIndex::refit(BlockTree& tree, std::size_t first, std::size_t blocks,
   constexpr std::size_t kRefitShare = 4;
   if (kRefitShare * behind > blocks) return refit_all();
   RowSelection& leaves = rows_.selection();
-  if (!leaves.start(rows_.stale().ids().size() + behind) || !leaves.reserve_bits(blocks)) {
+  if (!leaves.start(rows_.changes().stale.ids().size() + behind) || !leaves.reserve_bits(blocks)) {
     rows_.regions().built = false;
     return false;
   }
-  for (const ObjectId id : rows_.stale().ids()) {
+  for (const ObjectId id : rows_.changes().stale.ids()) {
     if (!rows_.keys().is_live(id)) continue;
     const std::size_t block = rows_.keys().row_of(id) / kBlockRows;
     if (block >= first && block - first < blocks) leaves.add(block - first);

@@ -99,7 +99,6 @@ class SpatialIndex {
 
   // Refresh.
   Status absorb_changes(bool all);
-  [[nodiscard]] bool collect_misfits(bool any_row, std::size_t most) noexcept;
   Status find_outliers(const RowNumbers& n);
   Status move_outliers_to_tail(std::size_t tail);
   bool move_to_tail(std::span<const std::uint32_t> rows) noexcept;
@@ -118,7 +117,6 @@ class SpatialIndex {
   [[nodiscard]] BlockTree::NodeContent node_content() const noexcept;
 
   // Exchange of the structure.
-  void stash(const OwnedStructure& one) noexcept;
   void install(Structure* structure, StructureKind kind) noexcept;
   void install_planned_structure() noexcept;
   [[nodiscard]] bool reserve_order(std::size_t rows, std::size_t behind, Pages pages) noexcept;
@@ -141,7 +139,7 @@ class SpatialIndex {
   DepartureForecast departures_;
   StructureStore structures_;
   OwnedStructure next_;    // the structure of the plan, if it will replace the current one
-  bool reserved_ = false;  // memory is reserved for every structure
+  bool reserved_ = false;  // memory is reserved for every structure, and kept if one is replaced
   bool swap_refused_ = false;
 
   Column<float> spare_;               // scratch for permuting columns

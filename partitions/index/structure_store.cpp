@@ -22,6 +22,10 @@ bool StructureStore::keep(const OwnedStructure& one) noexcept {
   return true;
 }
 
+void StructureStore::stash(const OwnedStructure& one, bool spare) noexcept {
+  if (one.structure != nullptr && !(spare && keep(one))) destroy(one);
+}
+
 bool StructureStore::make_spares(std::span<const StructureKind> kinds,
                                  StructureKind used) noexcept {
   for (const StructureKind kind : kinds) {

@@ -31,8 +31,9 @@ class StructureStore {
   /// Returns a spare structure or a new one; null if an allocation fails.
   [[nodiscard]] Structure* make(StructureKind kind) noexcept;
   void destroy(const OwnedStructure& one) noexcept;
-  /// Keeps a structure as a spare. Returns false if an allocation fails.
-  [[nodiscard]] bool keep(const OwnedStructure& one) noexcept;
+  /// Keeps a structure, which may be null, as a spare if `spare` is true and memory for its entry
+  /// is granted; destroys it otherwise.
+  void stash(const OwnedStructure& one, bool spare) noexcept;
   /// Makes a spare of each kind except `used`. Returns false if an allocation fails.
   [[nodiscard]] bool make_spares(std::span<const StructureKind> kinds, StructureKind used) noexcept;
   void destroy_spares() noexcept;
@@ -44,6 +45,9 @@ class StructureStore {
   [[nodiscard]] Bytes bytes() const noexcept { return spares_.bytes(); }
 
  private:
+  /// Keeps a structure as a spare. Returns false if an allocation fails.
+  [[nodiscard]] bool keep(const OwnedStructure& one) noexcept;
+
   std::pmr::memory_resource* memory_;
   const Rows& rows_;
   const BlockTree& regular_tree_;

@@ -81,7 +81,7 @@ bool PairFinder::can_stay_resting(const SelfPairsQuery& query) const noexcept {
 // True if the buffer contains the pairs of the last tracked query, and the objects that moved since
 // are known.
 bool PairFinder::can_update(const PairBuffer& out) const noexcept {
-  return tracks() && !rows_.moved().all() &&
+  return tracks() && !rows_.changes().moved.all() &&
          PairTracker::provenance(out) == PairBuffer::Provenance{identity_, tracked_serial_};
 }
 
@@ -94,7 +94,7 @@ bool PairFinder::may_reorder(const SelfPairsQuery& query) const noexcept {
 // True if nothing moved, or if few objects moved (LinkedPairs::is_due) and the buffer is linked.
 // Links the buffer if necessary; false if memory for that is refused.
 bool PairFinder::link_if_due(PairBuffer& out) const noexcept {
-  const std::size_t moved = rows_.moved().ids().size();
+  const std::size_t moved = rows_.changes().moved.ids().size();
   LinkedPairs linked(out);
   return moved == 0 ||
          (linked.is_due(moved, rows_.size()) && linked.link(rows_.keys().slot_count()));
@@ -112,7 +112,7 @@ bool PairFinder::is_update_cheaper(const PairBuffer& out) const noexcept {
   const std::size_t base = costs != nullptr && costs->has_cells ? kCells : kTree;
   const std::size_t share =
       index_.structure().is_flat() ? kFlat : base + 3 * out.size() / (4 * rows_.size() + 1);
-  return share * rows_.moved().ids().size() <= rows_.size() + 64;
+  return share * rows_.changes().moved.ids().size() <= rows_.size() + 64;
 }
 
 // Strategies.
@@ -124,7 +124,7 @@ Status PairFinder::find_resting(SelfPairsQuery& query) {
   std::uint64_t tests = 0;
   const std::size_t kept = out.size();
   if (query.events) query.events->hold_none(out);
-  if (!rows_.moved().empty()) {
+  if (!rows_.changes().moved.empty()) {
     if (!LinkedPairs(out).link(rows_.keys().slot_count()) || !select_moved_rows()) {
       return Status::out_of_memory;
     }
@@ -138,7 +138,7 @@ Status PairFinder::find_resting(SelfPairsQuery& query) {
 Status PairFinder::find_linked(SelfPairsQuery& query) {
   incremental_queries_.fetch_add(1, std::memory_order_relaxed);
   PairBuffer& out = query.out;
-  if (rows_.moved().empty()) {
+  if (rows_.changes().moved.empty()) {
     last_tests_.store(0, std::memory_order_relaxed);
     return !query.events || query.events->store_changes(out, {}, {}, {}) ? Status::ok
                                                                          : Status::out_of_memory;
@@ -151,12 +151,12 @@ Status PairFinder::find_linked(SelfPairsQuery& query) {
 
 // Updates a linked buffer in place. Its pairs from `kept` on were found for moved objects.
 Status PairFinder::finish_in_place(SelfPairsQuery& query, std::size_t kept, bool resting) {
-  const std::span<const ObjectId> moved = rows_.moved().ids();
+  const std::span<const ObjectId> moved = rows_.changes().moved.ids();
   std::optional<EventWriter>& events = query.events;
   if (events) events->find_reused(moved);
   const auto reused = [&](ObjectId id) { return events && events->is_reused(id); };
   LinkedPairs linked(query.out);
-  if (!linked.compare(kept, moved, rows_.moved().bits(), reused) ||
+  if (!linked.compare(kept, moved, rows_.changes().moved.bits(), reused) ||
       (resting && !resting_.note_watched(linked)) || !linked.sort() ||
       (events && !events->store_changes(query.out, linked.begun(), linked.ended(), moved))) {
     return Status::out_of_memory;
@@ -168,7 +168,7 @@ Status PairFinder::finish_in_place(SelfPairsQuery& query, std::size_t kept, bool
 Status PairFinder::find_incremental(SelfPairsQuery& query) {
   incremental_queries_.fetch_add(1, std::memory_order_relaxed);
   PairBuffer& out = query.out;
-  const ChangeList& moved = rows_.moved();
+  const ChangeList& moved = rows_.changes().moved;
   LinkedPairs(out).unlink_pairs(moved.ids().size(), rows_.size());
   Status status = Status::ok;
   if (moved.empty()) {
@@ -199,7 +199,7 @@ Status PairFinder::finish_found(SelfPairsQuery& query, bool all) noexcept {
   PairBuffer& out = query.out;
   std::size_t unsorted = out.size();
   if (query.events) {
-    const auto moved = all ? std::span<const ObjectId>() : rows_.moved().ids();
+    const auto moved = all ? std::span<const ObjectId>() : rows_.changes().moved.ids();
     if (!query.events->compare(out, moved, all)) return Status::out_of_memory;
     unsorted = query.events->persisting();
   }
@@ -218,7 +218,7 @@ void PairFinder::finish_frame(SelfPairsQuery& query) noexcept {
   PairTracker::set_provenance(query.out, provenance);
   if (query.events) query.events->finish_frame(provenance);
   if (!query.tracked) return;
-  rows_.forget_moves();
+  rows_.changes().moved.clear();
   tracked_serial_ = provenance.serial;
 }
 

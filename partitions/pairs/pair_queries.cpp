@@ -99,7 +99,7 @@ bool PairFinder::run_task(const FullTasks& tasks, std::size_t task, PairSink& si
 
 // Selects the rows of the live objects that moved. False if memory is refused.
 bool PairFinder::select_moved_rows() const noexcept {
-  const std::span<const ObjectId> moved = rows_.moved().ids();
+  const std::span<const ObjectId> moved = rows_.changes().moved.ids();
   const std::size_t limit = rows_.pool().rows();
   RowSelection& query_rows = rows_.selection();
   if (!query_rows.start(moved.size()) || !query_rows.reserve_bits(limit)) return false;

@@ -10,7 +10,7 @@
 #include "partitions/pairs/linked_pairs.h"
 #include "partitions/pairs/pair_tracker.h"
 #include "partitions/pairs/pair_writer.h"
-#include "partitions/rows/box_source.h"
+#include "partitions/rows/row_input.h"
 
 #include <algorithm>
 #include <cfloat>
@@ -67,17 +67,18 @@ bool RestingPairs::start(float skin) noexcept {
 }
 
 Status RestingPairs::update(const UpdateSubset& entries, const BoxView& boxes) {
-  if (const Status status = rows_.check(entries, boxes); status != Status::ok) return status;
+  if (const Status status = RowInput(rows_).check(entries, boxes); status != Status::ok)
+    return status;
   pending_ = true;
   if (!copy(entries, boxes)) {
     (void)write();
     end();
-    return rows_.update(entries, boxes);
+    return RowInput(rows_).update(entries, boxes);
   }
   for (const ObjectId id : departed_) {
     const Key key = rows_.keys().key_of(id);
     // If a key is repeated, the row gets the last box, which may be within the skin again.
-    (void)rows_.update(UpdateSubset(std::span(&key, 1)), view_of(given_.data() + id, 1));
+    (void)RowInput(rows_).update(UpdateSubset(std::span(&key, 1)), view_of(given_.data() + id, 1));
     stored_[id] = given_[id];
   }
   return Status::ok;
@@ -94,7 +95,7 @@ Status RestingPairs::update(Key key, const Aabb& box) {
   pending_ = true;
   if (!departed) return Status::ok;
   stored_[key.id] = given;
-  return rows_.update(key, box);
+  return RowInput(rows_).update(key, box);
 }
 
 // Collects in departed_ the ids whose boxes left the skin. False if there are more than
@@ -144,7 +145,7 @@ void RestingPairs::read_bounds(std::span<const Key> keys, std::span<Aabb> boxes)
 }
 
 bool RestingPairs::write() noexcept {
-  if (pending_) rows_.write_by_id(view_of(given_.data(), given_.size()));
+  if (pending_) RowInput(rows_).write_by_id(view_of(given_.data(), given_.size()));
   return std::exchange(pending_, false);
 }
 
@@ -298,7 +299,7 @@ struct RestingPairs::NearBatch {
 bool RestingPairs::is_cheaper(const PairBuffer& out) const noexcept {
   // If more than 1/16 of the objects were inserted, removed, filtered or left their skin, a full
   // query is cheaper.
-  const std::size_t disturbed = rows_.moved().ids().size();
+  const std::size_t disturbed = rows_.changes().moved.ids().size();
   return 16 * disturbed <= rows_.size() && LinkedPairs::is_linked(out) &&
          watched_.size() <= max_watched(out.size());
 }
@@ -334,7 +335,7 @@ Status RestingPairs::query_moved(PairBuffer& out, std::uint64_t& tests) {
 // Filters the pairs that moved objects found: keeps overlapping ones as (smaller id, larger id),
 // and watches the ones whose overlap may change.
 bool RestingPairs::keep_near(PairBuffer& out, std::size_t kept) noexcept {
-  const std::uint64_t* const bits = rows_.moved().bits();
+  const std::uint64_t* const bits = rows_.changes().moved.bits();
   const auto has_moved = [&](ObjectId id) { return (bits[id >> 6U] >> (id & 63U) & 1U) != 0; };
   WatchedPair* const left = std::remove_if(
       watched_.begin(), watched_.end(),

@@ -23,6 +23,7 @@ namespace winnow {
 
 class LinkedPairs;
 class SpatialIndex;
+struct UpdateSubset;
 
 /// Detects resting scenes.
 ///

@@ -7,7 +7,7 @@
 #include "partitions/pairs/pair_writer.h"
 #include "partitions/queries/kernel_arguments.h"
 #include "partitions/queries/regions.h"
-#include "partitions/rows/box_source.h"
+#include "partitions/rows/row_input.h"
 #include "partitions/state/partition_state.h"
 
 #include <algorithm>

@@ -38,4 +38,16 @@ Bytes ChangeList::bytes() const noexcept {
   return bytes_of(bits_, list_);
 }
 
+void RowChanges::end_refresh(bool track_moves) noexcept {
+  if (track_moves) {
+    if (stale.all()) {
+      moved.add_all();
+    } else {
+      for (const ObjectId id : stale.ids()) moved.add(id);
+    }
+  }
+  stale.clear();
+  any = false;
+}
+
 }  // namespace winnow

@@ -58,4 +58,46 @@ class ChangeList {
   bool all_ = false;
 };
 
+/// The objects of a partition that changed.
+struct RowChanges {
+  explicit RowChanges(std::pmr::memory_resource* memory) noexcept : stale(memory), moved(memory) {}
+
+  bool any = false;          ///< true from a change until `end_refresh`
+  ChangeList stale;          ///< changed since the last refresh
+  mutable ChangeList moved;  ///< changed since the pair tracker cleared it, if moves are tracked
+
+  void add(ObjectId id) noexcept {
+    stale.add(id);
+    any = true;
+  }
+  void add_all() noexcept {
+    stale.add_all();
+    any = true;
+  }
+  /// Clears `stale`. If `track_moves` is true, adds its objects to `moved` first.
+  void end_refresh(bool track_moves) noexcept;
+
+  // These functions do the same for both lists.
+  [[nodiscard]] bool reserve(std::size_t slots) noexcept {
+    return stale.reserve(slots) && moved.reserve(slots);
+  }
+  void touch() noexcept {
+    stale.touch();
+    moved.touch();
+  }
+  void clear() noexcept {
+    stale.clear();
+    moved.clear();
+  }
+  void release() noexcept {
+    stale.release();
+    moved.release();
+  }
+  [[nodiscard]] Bytes bytes() const noexcept {
+    Bytes sum = stale.bytes();
+    sum += moved.bytes();
+    return sum;
+  }
+};
+
 }  // namespace winnow

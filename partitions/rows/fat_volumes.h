@@ -7,7 +7,7 @@
 #include <winnow/core/fat_margin.h>
 #include <winnow/core/rounding.h>
 #include <winnow/core/volume.h>
-#include "partitions/rows/box_source.h"
+#include "partitions/rows/row_input.h"
 #include "partitions/rows/volume_source.h"
 
 #include <algorithm>

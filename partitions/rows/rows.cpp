@@ -1,11 +1,11 @@
-// Storage of objects in rows: capacity, removal, filters, snapshots and reordering. Insert
-// and update are in box_update.cpp and volume_update.cpp.
+// Storage of objects in rows: capacity, removal, filters, snapshots and reordering. RowInput
+// (row_input.cpp) inserts and updates.
 
 #include "partitions/rows/rows.h"
 
 #include "core/memory/columns.h"
 #include "core/sort/scatter_by_owner.h"
-#include "partitions/rows/box_source.h"
+#include "partitions/rows/row_input.h"
 
 #include <algorithm>
 #include <cfloat>
@@ -22,8 +22,7 @@ Rows::Rows(std::pmr::memory_resource* memory, const Execution& execution, const 
       pool_(memory, input.volume),
       keys_(memory),
       filters_(memory),
-      stale_(memory),
-      moved_(memory),
+      changes_(memory),
       selection_(memory) {}
 
 Execution Rows::execution_for(std::size_t objects) const noexcept {
@@ -52,7 +51,7 @@ bool Rows::make_room(std::size_t objects) noexcept {
       holes == 0 ? pool_.reserve(needed) : pool_.reserve_exact(room) || pool_.reserve(needed);
   if (!grown || !keys_.reserve(objects)) return false;
   const std::size_t slots = keys_.slots_with(added);
-  return filters_.reserve(slots) && stale_.reserve(slots) && moved_.reserve(slots);
+  return filters_.reserve(slots) && changes_.reserve(slots);
 }
 
 void Rows::compact() noexcept {
@@ -69,7 +68,7 @@ void Rows::compact() noexcept {
   regions_.built = false;
   regions_.regular = 0;
   regions_.planned = 0;
-  changed_ = true;
+  changes_.any = true;
 }
 
 void Rows::remove_row(ObjectId id) noexcept {
@@ -79,10 +78,9 @@ void Rows::remove_row(ObjectId id) noexcept {
   // holes there.
   const std::size_t fixed = std::max({regions_.ordered, regions_.sorted, regions_.planned});
   if (row + 1 == pool_.rows() && row >= fixed) pool_.drop_last();
-  stale_.add(id);
+  changes_.add(id);
   filters_.reset(id);
   keys_.release(id);
-  changed_ = true;
 }
 
 Status Rows::remove(Key key) {
@@ -122,8 +120,7 @@ void Rows::clear() noexcept {
   filters_.clear();
   pool_.clear();
   pool_.end_filters();
-  stale_.clear();
-  moved_.clear();
+  changes_.clear();
   invalidate_order();
 }
 
@@ -137,8 +134,7 @@ void Rows::touch() noexcept {
   pool_.touch();
   keys_.touch();
   filters_.touch();
-  stale_.touch();
-  moved_.touch();
+  changes_.touch();
 }
 
 void Rows::release_memory() noexcept {
@@ -146,8 +142,7 @@ void Rows::release_memory() noexcept {
   if (keys_.size() != 0) return;
   pool_.release();
   filters_.release();
-  stale_.release();
-  moved_.release();
+  changes_.release();
   keys_.release_if_unused();
   clear();
 }
@@ -172,8 +167,7 @@ Status Rows::set_filter(std::span<const Key> keys, std::span<const ObjectFilter>
     if (filters_.of(id) == filters[i]) continue;
     filters_.set(id, filters[i]);
     pool_.set_filter(keys_.row_of(id), filters[i]);
-    stale_.add(id);
-    changed_ = true;
+    changes_.add(id);
   }
   return Status::ok;
 }
@@ -224,8 +218,7 @@ Status Rows::restore(const SavedRows& saved, Rows& other) {
     filters_.set(id, saved.filters[row]);
     pool_.set_filter(row, saved.filters[row]);
   }
-  stale_.add_all();
-  changed_ = true;
+  changes_.add_all();
   return Status::ok;
 }
 
@@ -276,27 +269,14 @@ void Rows::add_bytes(Footprint& footprint) const noexcept {
   footprint.client_data += keys_.client_data_bytes();
   footprint.structure += filters_.bytes();
   footprint.structure += pool_.filter_bytes();
-  footprint.structure += stale_.bytes();
-  footprint.structure += moved_.bytes();
+  footprint.structure += changes_.bytes();
   footprint.scratch += selection_.bytes();
-}
-
-void Rows::clear_stale(bool track_moves) noexcept {
-  if (track_moves) {
-    if (stale_.all()) {
-      moved_.add_all();
-    } else {
-      for (const ObjectId id : stale_.ids()) moved_.add(id);
-    }
-  }
-  stale_.clear();
-  changed_ = false;
 }
 
 void Rows::invalidate_order() noexcept {
   ++arrangement_;
   regions_ = {};
-  changed_ = true;
+  changes_.any = true;
 }
 
 void Rows::reorder(std::span<const std::uint32_t> order, Column<float>& spare) noexcept {

@@ -3,7 +3,7 @@
 // The objects of a partition as rows of columns. PartitionState owns the rows, SpatialIndex orders
 // them, and kernels read them through RowView.
 
-#include <winnow/core/box_view.h>
+#include <winnow/core/aabb.h>
 #include <winnow/core/execution.h>
 #include <winnow/core/fat_margin.h>
 #include <winnow/core/footprint.h>
@@ -22,50 +22,7 @@
 
 namespace winnow {
 
-struct BoxOfId;
-struct BoxSource;
-struct EntryOfRow;
-struct SampledBoxes;
-class Rows;
-
-/// The entries of keys and volumes that an update processes: all of them, or a list of indices.
-struct UpdateSubset {
-  std::span<const Key> keys;
-  std::size_t count = 0;
-  const std::uint32_t* number = nullptr;  ///< null: all
-
-  /// Entries without keys.
-  explicit UpdateSubset(std::size_t all) noexcept : count(all) {}
-  explicit UpdateSubset(std::span<const Key> all) noexcept : keys(all), count(all.size()) {}
-  UpdateSubset(std::span<const Key> all, std::span<const std::uint32_t> numbers) noexcept
-      : keys(all), count(numbers.size()), number(numbers.data()) {}
-
-  [[nodiscard]] std::size_t operator[](std::size_t j) const noexcept {
-    return number == nullptr ? j : number[j];
-  }
-  [[nodiscard]] Key key(std::size_t j) const noexcept { return keys[(*this)[j]]; }
-
-  /// Shorter runs are handled entry by entry, because a call per run costs more.
-  static constexpr std::size_t kLongRun = 16;
-
-  /// Returns the end, at most `end`, of the longest run of consecutive indices that starts at the
-  /// j-th entry.
-  [[nodiscard]] std::size_t run_end(std::size_t j, std::size_t end) const noexcept {
-    if (number == nullptr) return end;
-    std::size_t next = j + 1;
-    while (next < end && number[next] - number[j] == next - j) ++next;
-    return next;
-  }
-};
-
-/// How boxes are converted into the stored volume. All functions are null if boxes are stored as
-/// given. A program links only the code of the tables that it names.
-struct VolumeInput {
-  Volume volume;
-  Status (*insert)(Rows&, const BoxView&, std::span<const ClientData>, std::span<Key>);
-  Status (*update)(Rows&, const UpdateSubset&, const BoxView&);
-  Status (*update_one)(Rows&, Key, const BoxView&);
-};
+struct VolumeInput;
 
 /// A saved set of objects: slots of keys, and per live object, by id, its volume and filter.
 struct SavedRows {
@@ -92,32 +49,13 @@ struct RowRegions {
 };
 
 /// The objects of a partition: keys, client data, filters and bounding volumes, and which of them
-/// changed. Rows are independent of the structure that prunes them.
+/// changed. RowInput inserts and updates them. Rows are independent of the structure that prunes
+/// them.
 class Rows {
  public:
-  /// Input of boxes that are stored as given, without a margin.
-  [[nodiscard]] static const VolumeInput& boxes_as_given() noexcept;
-  /// Input of a volume, with or without a margin; null for an invalid volume. Links all volumes.
-  [[nodiscard]] static const VolumeInput* input_of(Volume volume,
-                                                   const FatMargin& fat_margin) noexcept;
-
   /// `input` must outlive the rows.
   Rows(std::pmr::memory_resource* memory, const Execution& execution, const VolumeInput& input,
        const FatMargin& fat_margin) noexcept;
-
-  Status insert(const BoxView& boxes, std::span<const ClientData> data, std::span<Key> keys);
-  Status update(const UpdateSubset& entries, const BoxView& boxes);
-  Status update(Key key, const Aabb& box);
-  /// As above with spheres or k-DOPs; `unsupported_volume` if another volume is stored.
-  template <typename V>
-  Status insert(std::span<const V> volumes, std::span<const ClientData> data, std::span<Key> keys);
-  template <typename V>
-  Status update(std::span<const Key> keys, std::span<const V> volumes);
-
-  /// Returns the status that an update with these boxes would have.
-  [[nodiscard]] Status check(const UpdateSubset& entries, const BoxView& boxes) const;
-  /// Gives every row the box at the index of its object's id, if there is one.
-  void write_by_id(const BoxView& boxes) noexcept;
 
   Status remove(Key key);
   Status remove(std::span<const Key> keys);
@@ -146,6 +84,8 @@ class Rows {
   [[nodiscard]] const Execution& execution() const noexcept { return execution_; }
   [[nodiscard]] const FatMargin& fat_margin() const noexcept { return fat_margin_; }
   [[nodiscard]] const RowRegions& regions() const noexcept { return regions_; }
+  [[nodiscard]] const RowChanges& changes() const noexcept { return changes_; }
+  [[nodiscard]] RowChanges& changes() noexcept { return changes_; }
   /// Returns the pointers that kernels use.
   [[nodiscard]] RowView view() const noexcept;
   /// Returns serial execution if there are too few objects to share the work.
@@ -153,18 +93,6 @@ class Rows {
   void add_bytes(Footprint& footprint) const noexcept;
 
   // For SpatialIndex, which orders the rows.
-
-  /// True from a change until `clear_stale`.
-  [[nodiscard]] bool changed() const noexcept { return changed_; }
-  /// Objects that changed since the last `clear_stale`.
-  [[nodiscard]] const ChangeList& stale() const noexcept { return stale_; }
-  /// Ends a refresh: clears `stale`. If `track_moves` is true, adds the objects in `stale` to
-  /// `moved` first.
-  void clear_stale(bool track_moves) noexcept;
-  /// Objects that changed since `forget_moves`, if moves were tracked.
-  [[nodiscard]] const ChangeList& moved() const noexcept { return moved_; }
-  void forget_moves() const noexcept { moved_.clear(); }
-
   [[nodiscard]] RowRegions& regions() noexcept { return regions_; }
   /// Requires the next refresh to order the rows.
   void invalidate_order() noexcept;
@@ -180,7 +108,7 @@ class Rows {
   /// Moves rows behind the last one and leaves holes. Requires room.
   void move_to_end(std::span<const std::uint32_t> rows) noexcept;
   /// Called when the rows have been ordered. If one update then moves most objects by more than
-  /// `far`, the order is lost (see `order_is_lost`); if `far` is 0, it never is.
+  /// `far`, the order is lost (see RowInput::order_is_lost); if `far` is 0, it never is.
   void note_build(float far) noexcept {
     filters_.note_build({pool_.ids(), pool_.rows()});
     order_reach_ = far;
@@ -190,36 +118,13 @@ class Rows {
   [[nodiscard]] RowSelection& selection() const noexcept { return selection_; }
 
  private:
+  friend class RowInput;
+  friend struct VolumeUpdate;
+
   [[nodiscard]] bool make_room(std::size_t objects) noexcept;
   [[nodiscard]] bool begin_filters() noexcept;
   void remove_row(ObjectId id) noexcept;
   void fetch_row(std::size_t row) const noexcept;
-
-  // Insert and update, in box_update.cpp; volumes other than boxes as given use them, too.
-  friend struct VolumeUpdate;
-  [[nodiscard]] Status begin_insert(std::size_t count, std::span<const ClientData> data,
-                                    std::span<Key> keys, std::size_t& first);
-  void number_rows(std::span<const Key> keys, std::size_t begin, std::size_t end) noexcept;
-  void place_new(std::span<const Key> keys, std::size_t first, std::size_t begin,
-                 std::size_t end) noexcept;
-  [[nodiscard]] Status check_insert(std::size_t count, std::span<const ClientData> data,
-                                    std::span<Key> keys) const noexcept;
-  [[nodiscard]] Status check_keys(std::size_t volumes, const UpdateSubset& entries,
-                                  bool& ascending) const;
-  [[nodiscard]] Status check(const UpdateSubset& entries, const BoxView& boxes,
-                             bool& ascending) const;
-  [[nodiscard]] bool writes_by_rows(const UpdateSubset& entries, bool ascending, BoxOfId& entry_of);
-  void write_by_rows(const BoxSource& source, const EntryOfRow& entry_of);
-  template <typename Visit>
-  void for_entries(const UpdateSubset& entries, bool ascending, const Visit& visit);
-  void write_new(const BoxSource& source, std::span<const Key> keys, std::size_t first,
-                 std::size_t begin, std::size_t end) noexcept;
-  [[nodiscard]] bool may_lose_order(const UpdateSubset& entries) const noexcept;
-  [[nodiscard]] bool order_is_lost(const SampledBoxes& sample,
-                                   std::span<const Key> keys) const noexcept;
-  template <typename Source>
-  [[nodiscard]] bool loses_order(const Source& source, const UpdateSubset& entries) const noexcept;
-  void note_stale(const UpdateSubset& entries) noexcept;
 
   Execution execution_;
   FatMargin fat_margin_;
@@ -229,10 +134,8 @@ class Rows {
   FilterTable filters_;
   RowRegions regions_;
   float order_reach_ = 0.0F;
-  bool changed_ = false;
   std::uint64_t arrangement_ = 1;  // see RowView
-  ChangeList stale_;
-  mutable ChangeList moved_;
+  RowChanges changes_;
   mutable RowSelection selection_;
 };
 

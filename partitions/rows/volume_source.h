@@ -8,7 +8,7 @@
 #include <winnow/core/sphere.h>
 #include <winnow/core/volume.h>
 #include "core/memory/bounds_pool.h"
-#include "partitions/rows/box_source.h"
+#include "partitions/rows/row_input.h"
 
 #include <cstddef>
 #include <span>

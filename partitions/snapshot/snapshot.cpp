@@ -5,6 +5,7 @@
 #include "core/memory/saved_keys.h"
 #include "core/memory/snapshot_frame.h"
 #include "core/threads/float_environment.h"
+#include "partitions/rows/row_input.h"
 #include "partitions/state/partition_state.h"
 
 #include <utility>
@@ -80,7 +81,7 @@ Status load_into(PartitionState*& state, std::span<const std::byte> saved) {
   const StructureKind structure = read.read(in, options);
   if (!in.ok()) return status_of(in);
   PartitionState* fresh =
-      PartitionState::make(structure, options, *Rows::input_of(options.volume, options.fat_margin));
+      PartitionState::make(structure, options, *RowInput::of(options.volume, options.fat_margin));
   if (fresh == nullptr) return Status::out_of_memory;
   const Status status = fresh->restore(read.rows(options.volume), *state);
   if (status == Status::ok) std::swap(state, fresh);

@@ -7,6 +7,7 @@
 #include "core/hooks/stage_scope.h"
 #include "core/memory/new_in.h"
 #include "partitions/pairs/pair_tracker.h"
+#include "partitions/rows/row_input.h"
 
 #include <algorithm>
 #include <bit>
@@ -61,7 +62,7 @@ bool PartitionState::set_structure(StructureKind given) noexcept {
 
 Status PartitionState::insert(const BoxView& boxes, std::span<const ClientData> data,
                               std::span<Key> keys) {
-  const Status status = rows.insert(boxes, data, keys);
+  const Status status = RowInput(rows).insert(boxes, data, keys);
   RestingPairs& resting = pairs_.resting();
   if (status == Status::ok && resting.active() && !resting.insert(keys, boxes)) end_deferring();
   resting.disturb(keys.size());
@@ -108,7 +109,7 @@ Status PartitionState::set_filter(std::span<const Key> keys,
 Status PartitionState::update(const UpdateSubset& entries, const BoxView& boxes) {
   RestingPairs& resting = pairs_.resting();
   const Status status =
-      resting.active() ? resting.update(entries, boxes) : rows.update(entries, boxes);
+      resting.active() ? resting.update(entries, boxes) : RowInput(rows).update(entries, boxes);
   // Deferred boxes change no rows.
   note_changes(resting.active() ? 0 : entries.count);
   return status;
@@ -135,7 +136,8 @@ Status PartitionState::update(std::span<const Key> keys, const BoxView& boxes,
 
 Status PartitionState::update(Key key, const Aabb& box) {
   RestingPairs& resting = pairs_.resting();
-  const Status status = resting.active() ? resting.update(key, box) : rows.update(key, box);
+  const Status status =
+      resting.active() ? resting.update(key, box) : RowInput(rows).update(key, box);
   note_changes(resting.active() ? 0 : 1);
   return status;
 }
@@ -156,7 +158,7 @@ Status PartitionState::bounds(std::span<const Key> keys, std::span<Aabb> boxes) 
 void PartitionState::note_changes(std::size_t count) const noexcept {
   if (chooser_ != nullptr) chooser_->note_changes(count);
   const bool counts = chooser_ != nullptr && count != 0;
-  if (counts || rows.changed()) stale_.store(true, std::memory_order_relaxed);
+  if (counts || rows.changes().any) stale_.store(true, std::memory_order_relaxed);
 }
 
 // Writes the rows although it is const. No other thread reads them at the same time: a mutation has
@@ -213,12 +215,12 @@ Status PartitionState::refresh_now() {
   Status status = Status::ok;
   if (chosen != now) {
     status = index.refresh_as(chosen, refused);
-  } else if (rows.changed()) {
+  } else if (rows.changes().any) {
     status = index.refresh();
   }
   if (refused || (chooser_ != nullptr && index.swap_refused())) chooser_->refused();
   if (status != Status::ok) return status;
-  rows.clear_stale(pairs_.tracks());
+  rows.changes().end_refresh(pairs_.tracks());
   if (chooser_ == nullptr) return Status::ok;
   chooser_->refreshed(rows, index.kind(), index.planner().builds());
   if (index.kind() != now) {

@@ -17,6 +17,8 @@
 
 namespace winnow {
 
+struct UpdateSubset;
+
 /// All data of a partition.
 class PartitionState {
  public:

@@ -2,7 +2,7 @@
 
 #include "pipeline/cluster/rank_bodies.h"
 
-#include "partitions/rows/box_source.h"
+#include "partitions/rows/row_input.h"
 #include "pipeline/cluster/load_balance.h"
 
 #include <algorithm>

@@ -65,90 +65,26 @@ Status with_volumes(ReplayState& state, Use&& use) {
   return as_volumes<Aabb>(state.floats, use);
 }
 
-}  // namespace
-
-Status ReplayState::change_partition(RecordedCall call, ReplayedWorld& of) {
-  if (call == RecordedCall::make_partition) {
-    PartitionOptions made{.memory = options.memory, .execution = options.execution};
-    const StructureKind structure = read_structure(in);
-    made.volume = in.get_enum(Volume::kdop26);
-    made.fat_margin.distance = in.get<float>();
-    made.fat_margin.share = in.get<float>();
-    made.build_budget = static_cast<std::size_t>(in.get<std::uint64_t>());
-    if (reading() != Status::ok) return reading();
-    return of.partition.emplace(structure, made).status();
-  }
-  Partition& partition = *of.partition;
-  switch (call) {
-    case RecordedCall::set_structure: {
-      const StructureKind structure = read_structure(in);
-      return in.ok() ? partition.set_structure(structure) : reading();
-    }
-    case RecordedCall::insert:
-      return insert(of);
-    case RecordedCall::update:
-      return update(of);
-    case RecordedCall::remove:
-      return read_keys(partition) ? partition.remove({keys.data(), keys.size()}) : reading();
-    case RecordedCall::clear:
-      partition.clear();
-      return Status::ok;
-    case RecordedCall::release_memory:
-      partition.release_memory();
-      return Status::ok;
-    case RecordedCall::set_filter:
-      if (!read_keys(partition) || !in.get_array(filters)) return reading();
-      return partition.set_filter({keys.data(), keys.size()}, {filters.data(), filters.size()});
-    case RecordedCall::refresh:
-      return partition.refresh();
-    case RecordedCall::self_pairs:
-      return self_pairs(of);
-    case RecordedCall::pairs_with:
-      return pairs_with(of);
-    case RecordedCall::closest_cast:
-    case RecordedCall::any_cast:
-    case RecordedCall::all_casts:
-      return cast(call, of);
-    case RecordedCall::closest_rays:
-    case RecordedCall::any_rays:
-    case RecordedCall::all_rays:
-      return cast_rays(call, of);
-    case RecordedCall::overlap_region:
-    case RecordedCall::overlap_boxes:
-      return overlap(call, of);
-    default:
-      return nearest(of);
-  }
-}
-
-/// Reads ids and looks up their keys. Ids without a live object become null keys, which every call
-/// refuses.
-bool ReplayState::read_keys(const Partition& of) {
-  if (!in.get_array(ids)) return false;
-  if (!keys.resize(ids.size())) return in.refuse_memory();
-  for (std::size_t i = 0; i < ids.size(); ++i) keys[i] = of.key_of(ids[i]);
-  return true;
-}
-
-Status ReplayState::insert(ReplayedWorld& into) {
-  return with_volumes(*this, [&](const auto& volumes) {
-    if (!in.get_array(data)) return reading();
-    if (!keys.resize(volumes.size())) return Status::out_of_memory;
-    return into.partition->insert(volumes, {data.data(), data.size()},
-                                  std::span<Key>(keys.data(), keys.size()));
+Status insert(ReplayState& replay, ReplayedWorld& into) {
+  return with_volumes(replay, [&](const auto& volumes) {
+    if (!replay.in.get_array(replay.data)) return replay.reading();
+    if (!replay.keys.resize(volumes.size())) return Status::out_of_memory;
+    return into.partition->insert(volumes, {replay.data.data(), replay.data.size()},
+                                  std::span<Key>(replay.keys.data(), replay.keys.size()));
   });
 }
 
-Status ReplayState::update(ReplayedWorld& of) {
-  if (!read_keys(*of.partition)) return reading();
-  return with_volumes(*this, [&](const auto& volumes) {
-    if (!in.ok()) return reading();
-    return of.partition->update(std::span<const Key>(keys.data(), keys.size()), volumes);
+Status update(ReplayState& replay, ReplayedWorld& of) {
+  if (!replay.read_keys(*of.partition)) return replay.reading();
+  return with_volumes(replay, [&](const auto& volumes) {
+    if (!replay.in.ok()) return replay.reading();
+    return of.partition->update(std::span<const Key>(replay.keys.data(), replay.keys.size()),
+                                volumes);
   });
 }
 
 /// Returns the result that a query updates; if it updates none, the oldest result, cleared.
-ReplayedPairs& ReplayState::source_query(ReplayedWorld& of, std::uint64_t number) noexcept {
+ReplayedPairs& source_query(ReplayedWorld& of, std::uint64_t number) noexcept {
   ReplayedPairs* oldest = of.pair_results.data();
   for (ReplayedPairs& one : of.pair_results) {
     if (number != 0 && one.number == number) return one;
@@ -159,126 +95,186 @@ ReplayedPairs& ReplayState::source_query(ReplayedWorld& of, std::uint64_t number
   return *oldest;
 }
 
-Status ReplayState::self_pairs(ReplayedWorld& of) {
-  const auto form = in.get_enum(PairForm::events);
+Status self_pairs(ReplayState& replay, ReplayedWorld& of) {
+  const auto form = replay.in.get_enum(PairForm::events);
   PairOptions pair_options;
-  pair_options.order = in.get_enum(Order::canonical);
-  pair_options.incremental = in.get_bool();
-  const auto before = in.get<std::uint64_t>();
-  const bool follows = in.get_bool();
-  pair_options.predicate = filter.read_passed_pairs(in);
-  if (!in.ok()) return reading();
+  pair_options.order = replay.in.get_enum(Order::canonical);
+  pair_options.incremental = replay.in.get_bool();
+  const auto before = replay.in.get<std::uint64_t>();
+  const bool follows = replay.in.get_bool();
+  pair_options.predicate = replay.filter.read_passed_pairs(replay.in);
+  if (!replay.in.ok()) return replay.reading();
   ReplayedPairs& to = source_query(of, before);
   if (!follows && form != PairForm::buffer) to.events.clear();
   to.number = ++of.pair_queries;
   const Partition& partition = *of.partition;
-  Status answered = Status::ok;
   switch (form) {
     case PairForm::buffer:
-      answered = partition.self_pairs(to.pairs, pair_options);
-      return answered == Status::ok ? compare(to.pairs) : answered;
+      return replay.compare_if(partition.self_pairs(to.pairs, pair_options), to.pairs);
     case PairForm::buffer_and_events:
-      answered = partition.self_pairs(to.pairs, to.events, pair_options);
-      return answered == Status::ok ? compare(to.pairs, to.events) : answered;
+      return replay.compare_if(partition.self_pairs(to.pairs, to.events, pair_options), to.pairs,
+                               to.events);
     case PairForm::events:
       break;
   }
-  answered = partition.self_pairs(to.events, pair_options);
-  return answered == Status::ok ? compare(to.events) : answered;
+  return replay.compare_if(partition.self_pairs(to.events, pair_options), to.events);
 }
 
-Status ReplayState::pairs_with(ReplayedWorld& of) {
-  const ReplayedWorld* const other = world(in.get<std::uint32_t>());
+Status pairs_with(ReplayState& replay, ReplayedWorld& of) {
+  const ReplayedWorld* const other = replay.world(replay.in.get<std::uint32_t>());
   PairOptions pair_options;
-  pair_options.order = in.get_enum(Order::canonical);
-  pair_options.incremental = in.get_bool();
-  pair_options.predicate = filter.read_passed_pairs(in);
-  if (!in.ok() || other == nullptr || !other->partition) {
-    return in.ok() ? Status::invalid_argument : reading();
+  pair_options.order = replay.in.get_enum(Order::canonical);
+  pair_options.incremental = replay.in.get_bool();
+  pair_options.predicate = replay.filter.read_passed_pairs(replay.in);
+  if (!replay.in.ok() || other == nullptr || !other->partition) {
+    return replay.in.ok() ? Status::invalid_argument : replay.reading();
   }
   of.other_pairs.clear();
-  const Status answered = of.partition->pairs_with(*other->partition, of.other_pairs, pair_options);
-  return answered == Status::ok ? compare(of.other_pairs) : answered;
+  return replay.compare_if(
+      of.partition->pairs_with(*other->partition, of.other_pairs, pair_options), of.other_pairs);
 }
 
-Status ReplayState::cast(RecordedCall call, ReplayedWorld& of) {
-  const Cast query = read_variant<Cast>(in, in.get<std::uint8_t>(), planes);
-  filter.read_filter(in);
-  filter.read_passed_objects(in);
-  if (!in.ok()) return reading();
+Status cast(ReplayState& replay, RecordedCall call, ReplayedWorld& of) {
+  const Cast query = read_variant<Cast>(replay.in, replay.in.get<std::uint8_t>(), replay.planes);
+  replay.filter.read_filter(replay.in);
+  replay.filter.read_passed_objects(replay.in);
+  if (!replay.in.ok()) return replay.reading();
   const Partition& partition = *of.partition;
   if (call == RecordedCall::all_casts) {
-    const Status answered = partition.all(query, of.hits, filter.filter());
-    return answered == Status::ok ? compare(of.hits) : answered;
+    return replay.compare_if(partition.all(query, of.hits, replay.filter.filter()), of.hits);
   }
   Hit hit;
-  const Status answered = call == RecordedCall::any_cast
-                              ? partition.any(query, hit, filter.filter())
-                              : partition.closest(query, hit, filter.filter());
-  return answered == Status::ok ? compare(std::span<const Hit>(&hit, 1)) : answered;
+  return replay.compare_if(call == RecordedCall::any_cast
+                               ? partition.any(query, hit, replay.filter.filter())
+                               : partition.closest(query, hit, replay.filter.filter()),
+                           std::span<const Hit>(&hit, 1));
 }
 
-Status ReplayState::cast_rays(RecordedCall call, ReplayedWorld& of) {
-  (void)in.get_array(rays);
-  filter.read_filter(in);
-  filter.read_passed_objects(in);
+Status cast_rays(ReplayState& replay, RecordedCall call, ReplayedWorld& of) {
+  (void)replay.in.get_array(replay.rays);
+  replay.filter.read_filter(replay.in);
+  replay.filter.read_passed_objects(replay.in);
   const Partition& partition = *of.partition;
-  const RayBatch batch(std::span<const Ray>(rays.data(), rays.size()));
+  const RayBatch batch(std::span<const Ray>(replay.rays.data(), replay.rays.size()));
   if (call == RecordedCall::all_rays) {
-    if (!in.ok()) return reading();
-    const Status answered = partition.all(batch, of.hits, filter.filter());
-    return answered == Status::ok ? compare(of.hits) : answered;
+    if (!replay.in.ok()) return replay.reading();
+    return replay.compare_if(partition.all(batch, of.hits, replay.filter.filter()), of.hits);
   }
-  const bool has_key = in.get_bool();
-  const bool has_data = in.get_bool();
-  const bool has_t = in.get_bool();
-  if (!in.ok()) return reading();
-  if (!keys.resize(rays.size()) || !data.resize(rays.size()) || !floats.resize(rays.size())) {
+  const bool has_key = replay.in.get_bool();
+  const bool has_data = replay.in.get_bool();
+  const bool has_t = replay.in.get_bool();
+  if (!replay.in.ok()) return replay.reading();
+  if (!replay.keys.resize(replay.rays.size()) || !replay.data.resize(replay.rays.size()) ||
+      !replay.floats.resize(replay.rays.size())) {
     return Status::out_of_memory;
   }
-  const HitColumns hits{has_key ? keys.data() : nullptr, has_data ? data.data() : nullptr,
-                        has_t ? floats.data() : nullptr};
+  const HitColumns hits{has_key ? replay.keys.data() : nullptr,
+                        has_data ? replay.data.data() : nullptr,
+                        has_t ? replay.floats.data() : nullptr};
   const Status answered = call == RecordedCall::any_rays
-                              ? partition.any(batch, hits, filter.filter())
-                              : partition.closest(batch, hits, filter.filter());
-  return answered == Status::ok ? compare(digest_of_columns(hits, rays.size())) : answered;
+                              ? partition.any(batch, hits, replay.filter.filter())
+                              : partition.closest(batch, hits, replay.filter.filter());
+  return answered == Status::ok ? replay.compare(digest_of_columns(hits, replay.rays.size()))
+                                : answered;
 }
 
-Status ReplayState::overlap(RecordedCall call, ReplayedWorld& of) {
+Status overlap(ReplayState& replay, RecordedCall call, ReplayedWorld& of) {
   const Partition& partition = *of.partition;
   if (call == RecordedCall::overlap_region) {
-    const Region region = read_variant<Region>(in, in.get<std::uint8_t>(), planes);
-    filter.read_filter(in);
-    const auto order = in.get_enum(Order::canonical);
-    filter.read_passed_objects(in);
-    if (!in.ok()) return reading();
-    const Status answered = partition.overlap(region, of.objects, filter.filter(), order);
-    return answered == Status::ok ? compare(of.objects) : answered;
+    const Region region =
+        read_variant<Region>(replay.in, replay.in.get<std::uint8_t>(), replay.planes);
+    replay.filter.read_filter(replay.in);
+    const auto order = replay.in.get_enum(Order::canonical);
+    replay.filter.read_passed_objects(replay.in);
+    if (!replay.in.ok()) return replay.reading();
+    return replay.compare_if(partition.overlap(region, of.objects, replay.filter.filter(), order),
+                             of.objects);
   }
-  return with_volumes(*this, [&](const auto& volumes) {
-    filter.read_filter(in);
-    const auto order = in.get_enum(Order::canonical);
-    filter.read_passed_objects(in);
+  return with_volumes(replay, [&](const auto& volumes) {
+    replay.filter.read_filter(replay.in);
+    const auto order = replay.in.get_enum(Order::canonical);
+    replay.filter.read_passed_objects(replay.in);
     if constexpr (std::is_same_v<std::decay_t<decltype(volumes)>, std::span<const Aabb>>) {
-      if (!in.ok()) return reading();
+      if (!replay.in.ok()) return replay.reading();
       of.other_pairs.clear();
-      const Status answered = partition.overlap(volumes, of.other_pairs, filter.filter(), order);
-      return answered == Status::ok ? compare(of.other_pairs) : answered;
+      return replay.compare_if(
+          partition.overlap(volumes, of.other_pairs, replay.filter.filter(), order),
+          of.other_pairs);
     } else {
       return Status::invalid_argument;
     }
   });
 }
 
-Status ReplayState::nearest(ReplayedWorld& of) {
-  const Aabb from = read_floats<Aabb>(in);
-  const auto count = static_cast<std::size_t>(in.get<std::uint64_t>());
-  const auto radius = in.get<float>();
-  filter.read_filter(in);
-  filter.read_passed_objects(in);
-  if (!in.ok()) return reading();
-  const Status answered = of.partition->nearest(from, count, radius, of.hits, filter.filter());
-  return answered == Status::ok ? compare(of.hits) : answered;
+Status nearest(ReplayState& replay, ReplayedWorld& of) {
+  const Aabb from = read_floats<Aabb>(replay.in);
+  const auto count = static_cast<std::size_t>(replay.in.get<std::uint64_t>());
+  const auto radius = replay.in.get<float>();
+  replay.filter.read_filter(replay.in);
+  replay.filter.read_passed_objects(replay.in);
+  if (!replay.in.ok()) return replay.reading();
+  return replay.compare_if(
+      of.partition->nearest(from, count, radius, of.hits, replay.filter.filter()), of.hits);
+}
+
+}  // namespace
+
+Status change_partition(ReplayState& replay, RecordedCall call, ReplayedWorld& of) {
+  if (call == RecordedCall::make_partition) {
+    PartitionOptions made{.memory = replay.options.memory, .execution = replay.options.execution};
+    const StructureKind structure = read_structure(replay.in);
+    made.volume = replay.in.get_enum(Volume::kdop26);
+    made.fat_margin.distance = replay.in.get<float>();
+    made.fat_margin.share = replay.in.get<float>();
+    made.build_budget = static_cast<std::size_t>(replay.in.get<std::uint64_t>());
+    if (replay.reading() != Status::ok) return replay.reading();
+    return of.partition.emplace(structure, made).status();
+  }
+  Partition& partition = *of.partition;
+  switch (call) {
+    case RecordedCall::set_structure: {
+      const StructureKind structure = read_structure(replay.in);
+      return replay.in.ok() ? partition.set_structure(structure) : replay.reading();
+    }
+    case RecordedCall::insert:
+      return insert(replay, of);
+    case RecordedCall::update:
+      return update(replay, of);
+    case RecordedCall::remove:
+      return replay.read_keys(partition)
+                 ? partition.remove({replay.keys.data(), replay.keys.size()})
+                 : replay.reading();
+    case RecordedCall::clear:
+      partition.clear();
+      return Status::ok;
+    case RecordedCall::release_memory:
+      partition.release_memory();
+      return Status::ok;
+    case RecordedCall::set_filter:
+      if (!replay.read_keys(partition) || !replay.in.get_array(replay.filters))
+        return replay.reading();
+      return partition.set_filter({replay.keys.data(), replay.keys.size()},
+                                  {replay.filters.data(), replay.filters.size()});
+    case RecordedCall::refresh:
+      return partition.refresh();
+    case RecordedCall::self_pairs:
+      return self_pairs(replay, of);
+    case RecordedCall::pairs_with:
+      return pairs_with(replay, of);
+    case RecordedCall::closest_cast:
+    case RecordedCall::any_cast:
+    case RecordedCall::all_casts:
+      return cast(replay, call, of);
+    case RecordedCall::closest_rays:
+    case RecordedCall::any_rays:
+    case RecordedCall::all_rays:
+      return cast_rays(replay, call, of);
+    case RecordedCall::overlap_region:
+    case RecordedCall::overlap_boxes:
+      return overlap(replay, call, of);
+    default:
+      return nearest(replay, of);
+  }
 }
 
 }  // namespace winnow

@@ -54,178 +54,154 @@ void read(ByteReader& in, MotionCast& cast) noexcept {
   (void)in.get_bytes(&cast.motion, sizeof cast.motion);
 }
 
-}  // namespace
-
-/// Reads the filter at the end of a query; false if it is incomplete.
-bool ReplayState::read_query_filter() noexcept {
-  filter.read_filter(in);
-  filter.read_passed_objects(in);
-  return in.ok();
-}
-
-bool ReplayState::read_shape(const ReplayedWorld& of, ShapeId& id) noexcept {
-  const auto number = in.get<std::uint32_t>();
-  if (!in.ok() || number >= of.shape_ids.size()) return in.fail();
-  id = of.shape_ids[number];
-  return true;
-}
-
-Status ReplayState::query_scene(RecordedCall call, ReplayedWorld& of) {
-  if (!of.queries) of.queries.emplace(*of.scene, options.memory);
-  switch (call) {
-    case RecordedCall::query_ray:
-      return query_ray(of);
-    case RecordedCall::query_rays:
-      return query_rays(of);
-    case RecordedCall::query_overlap:
-      return query_overlap(of);
-    case RecordedCall::query_shape_cast:
-      return query_cast<ShapeCast>(of);
-    case RecordedCall::query_motion_cast:
-      return query_cast<MotionCast>(of);
-    case RecordedCall::query_nearest:
-      return query_nearest(of);
-    case RecordedCall::query_any_contact:
-    case RecordedCall::query_any_contact_of_sets:
-      return query_any_contact(call, of);
-    default:
-      return query_sets(call, of);
-  }
-}
-
-Status ReplayState::query_ray(ReplayedWorld& of) {
-  const auto form = in.get_enum(HitForm::all);
+Status query_ray(ReplayState& replay, ReplayedWorld& of) {
+  const auto form = replay.in.get_enum(HitForm::all);
   ShapeRay ray;
-  read(in, ray);
-  if (!read_query_filter()) return reading();
+  read(replay.in, ray);
+  if (!replay.read_query_filter()) return replay.reading();
   if (form == HitForm::all) {
     std::span<const SceneHit> hits;
-    const Status answered = of.queries->all(ray, hits, filter.filter());
-    return answered == Status::ok ? compare(hits) : answered;
+    return replay.compare_if(of.queries->all(ray, hits, replay.filter.filter()), hits);
   }
   SceneHit hit;
-  const Status answered = form == HitForm::any ? of.queries->any(ray, hit, filter.filter())
-                                               : of.queries->closest(ray, hit, filter.filter());
-  return answered == Status::ok ? compare(hit) : answered;
+  return replay.compare_if(form == HitForm::any
+                               ? of.queries->any(ray, hit, replay.filter.filter())
+                               : of.queries->closest(ray, hit, replay.filter.filter()),
+                           hit);
 }
 
-Status ReplayState::query_rays(ReplayedWorld& of) {
-  const auto form = in.get_enum(HitForm::all);
-  const auto which = in.get<std::uint16_t>();
-  const auto count = in.get<std::uint64_t>();
-  if (!in.ok() || count > in.rest().size() / sizeof(ShapeRay)) return Status::invalid_argument;
-  if (!shape_rays.resize(static_cast<std::size_t>(count))) return Status::out_of_memory;
-  for (ShapeRay& ray : shape_rays) read(in, ray);
-  if (!read_query_filter()) return reading();
-  const ShapeRayBatch batch(std::span<const ShapeRay>(shape_rays.data(), shape_rays.size()));
+Status query_rays(ReplayState& replay, ReplayedWorld& of) {
+  const auto form = replay.in.get_enum(HitForm::all);
+  const auto which = replay.in.get<std::uint16_t>();
+  const auto count = replay.in.get<std::uint64_t>();
+  if (!replay.in.ok() || count > replay.in.rest().size() / sizeof(ShapeRay))
+    return Status::invalid_argument;
+  if (!replay.shape_rays.resize(static_cast<std::size_t>(count))) return Status::out_of_memory;
+  for (ShapeRay& ray : replay.shape_rays) read(replay.in, ray);
+  if (!replay.read_query_filter()) return replay.reading();
+  const ShapeRayBatch batch(
+      std::span<const ShapeRay>(replay.shape_rays.data(), replay.shape_rays.size()));
   if (form == HitForm::all) {
     SceneHitLists hits;
-    const Status answered = of.queries->all(batch, hits, filter.filter());
-    return answered == Status::ok ? compare(hits) : answered;
+    return replay.compare_if(of.queries->all(batch, hits, replay.filter.filter()), hits);
   }
-  RequestedColumns requested(options.memory);
+  RequestedColumns requested(replay.options.memory);
   if (!requested.resize(batch.count)) return Status::out_of_memory;
   const SceneHitColumns hits = requested.columns(which);
-  const Status answered = form == HitForm::any ? of.queries->any(batch, hits, filter.filter())
-                                               : of.queries->closest(batch, hits, filter.filter());
-  return answered == Status::ok ? compare(digest_of_columns(hits, batch.count)) : answered;
+  const Status answered = form == HitForm::any
+                              ? of.queries->any(batch, hits, replay.filter.filter())
+                              : of.queries->closest(batch, hits, replay.filter.filter());
+  return answered == Status::ok ? replay.compare(digest_of_columns(hits, batch.count)) : answered;
 }
 
-Status ReplayState::query_overlap(ReplayedWorld& of) {
+Status query_overlap(ReplayState& replay, ReplayedWorld& of) {
   ShapeId shape;
   Pose pose;
-  if (!read_shape(of, shape)) return reading();
-  (void)in.get_bytes(&pose, sizeof pose);
-  if (!read_query_filter()) return reading();
+  if (!replay.read_shape(of, shape)) return replay.reading();
+  (void)replay.in.get_bytes(&pose, sizeof pose);
+  if (!replay.read_query_filter()) return replay.reading();
   std::span<const SceneOverlap> found;
-  const Status answered = of.queries->overlap(shape, pose, found, filter.filter());
-  return answered == Status::ok ? compare(found) : answered;
+  return replay.compare_if(of.queries->overlap(shape, pose, found, replay.filter.filter()), found);
 }
 
 template <typename Moving>
-Status ReplayState::query_cast(ReplayedWorld& of) {
-  const auto form = in.get_enum(HitForm::all_from_touch);
+Status query_cast(ReplayState& replay, ReplayedWorld& of) {
+  const auto form = replay.in.get_enum(HitForm::all_from_touch);
   Moving cast;
   cast.touching = form < HitForm::closest_from_touch;
-  if (!read_shape(of, cast.shape)) return reading();
-  const auto tolerance = in.get<double>();
-  read(in, cast);
-  if (!read_query_filter()) return reading();
+  if (!replay.read_shape(of, cast.shape)) return replay.reading();
+  const auto tolerance = replay.in.get<double>();
+  read(replay.in, cast);
+  if (!replay.read_query_filter()) return replay.reading();
   if (form == HitForm::any) return Status::invalid_argument;
   if (form == HitForm::all || form == HitForm::all_from_touch) {
     std::span<const SceneHit> hits;
-    const Status answered = of.queries->all(cast, hits, filter.filter(), tolerance);
-    return answered == Status::ok ? compare(hits) : answered;
+    return replay.compare_if(of.queries->all(cast, hits, replay.filter.filter(), tolerance), hits);
   }
   SceneHit hit;
-  const Status answered = of.queries->closest(cast, hit, filter.filter(), tolerance);
-  return answered == Status::ok ? compare(hit) : answered;
+  return replay.compare_if(of.queries->closest(cast, hit, replay.filter.filter(), tolerance), hit);
 }
 
 /// Plays a call of `any_contact`, for the whole scene or for two sets of bodies.
-Status ReplayState::query_any_contact(RecordedCall call, ReplayedWorld& of) {
-  const auto rules = in.get_enum(PairRules::none);
-  const auto contact_margin = in.get<double>();
+Status query_any_contact(ReplayState& replay, RecordedCall call, ReplayedWorld& of) {
+  const auto rules = replay.in.get_enum(PairRules::none);
+  const auto contact_margin = replay.in.get<double>();
   KeyPair pair;
   if (call == RecordedCall::query_any_contact) {
-    if (!in.ok()) return reading();
-    const Status answered = of.queries->any_contact(pair, contact_margin, rules);
-    return answered == Status::ok ? compare(pair) : answered;
+    if (!replay.in.ok()) return replay.reading();
+    return replay.compare_if(of.queries->any_contact(pair, contact_margin, rules), pair);
   }
-  if (!read_sets(of)) return reading();
-  const Status answered =
-      of.queries->any_contact(first_set(), second_set(), pair, contact_margin, rules);
-  return answered == Status::ok ? compare(pair) : answered;
-}
-
-bool ReplayState::read_sets(ReplayedWorld& of) {
-  if (!read_keys(*of.scene)) return false;
-  keys.swap(others);
-  return read_keys(*of.scene);
+  if (!replay.read_sets(of)) return replay.reading();
+  return replay.compare_if(
+      of.queries->any_contact(replay.first_set(), replay.second_set(), pair, contact_margin, rules),
+      pair);
 }
 
 /// Plays calls of `distance`, `least_distance` and `overlaps`.
-Status ReplayState::query_sets(RecordedCall call, ReplayedWorld& of) {
+Status query_sets(ReplayState& replay, RecordedCall call, ReplayedWorld& of) {
   const bool any_two = call == RecordedCall::query_distance ||
                        call == RecordedCall::query_least_distance ||
                        call == RecordedCall::query_overlaps;
   const PairRules rules = any_two ? PairRules::none : PairRules::scene;
   if (call == RecordedCall::query_distance || call == RecordedCall::query_distance_by_rules) {
-    const Key a = of.scene->key_of(in.get<ObjectId>());
-    const Key b = of.scene->key_of(in.get<ObjectId>());
-    const auto limit = in.get<double>();
+    const Key a = of.scene->key_of(replay.in.get<ObjectId>());
+    const Key b = of.scene->key_of(replay.in.get<ObjectId>());
+    const auto limit = replay.in.get<double>();
     SceneDistance answer;
-    if (!in.ok()) return reading();
-    const Status answered = of.queries->distance(a, b, answer, limit, rules);
-    return answered == Status::ok ? compare(answer) : answered;
+    if (!replay.in.ok()) return replay.reading();
+    return replay.compare_if(of.queries->distance(a, b, answer, limit, rules), answer);
   }
-  if (!read_sets(of)) return reading();
-  const std::span<const Key> first = first_set();
-  const std::span<const Key> second = second_set();
+  if (!replay.read_sets(of)) return replay.reading();
+  const std::span<const Key> first = replay.first_set();
+  const std::span<const Key> second = replay.second_set();
   if (call == RecordedCall::query_least_distance ||
       call == RecordedCall::query_least_distance_by_rules) {
-    const auto limit = in.get<double>();
+    const auto limit = replay.in.get<double>();
     SetDistance answer;
-    if (!in.ok()) return reading();
-    const Status answered = of.queries->least_distance(first, second, answer, limit, rules);
-    return answered == Status::ok ? compare(answer) : answered;
+    if (!replay.in.ok()) return replay.reading();
+    return replay.compare_if(of.queries->least_distance(first, second, answer, limit, rules),
+                             answer);
   }
-  const auto most = static_cast<std::size_t>(in.get<std::uint64_t>());
-  if (!in.ok()) return reading();
+  const auto most = static_cast<std::size_t>(replay.in.get<std::uint64_t>());
+  if (!replay.in.ok()) return replay.reading();
   std::span<const KeyPair> pairs;
-  const Status answered = of.queries->overlaps(first, second, pairs, most, rules);
-  return answered == Status::ok ? compare(pairs) : answered;
+  return replay.compare_if(of.queries->overlaps(first, second, pairs, most, rules), pairs);
 }
 
-Status ReplayState::query_nearest(ReplayedWorld& of) {
+Status query_nearest(ReplayState& replay, ReplayedWorld& of) {
   double point[3] = {};
-  (void)in.get_bytes(point, sizeof point);
-  const auto count = static_cast<std::size_t>(in.get<std::uint64_t>());
-  const auto radius = in.get<double>();
-  if (!read_query_filter()) return reading();
+  (void)replay.in.get_bytes(point, sizeof point);
+  const auto count = static_cast<std::size_t>(replay.in.get<std::uint64_t>());
+  const auto radius = replay.in.get<double>();
+  if (!replay.read_query_filter()) return replay.reading();
   std::span<const SceneDistance> found;
-  const Status answered = of.queries->nearest(point, count, radius, found, filter.filter());
-  return answered == Status::ok ? compare(found) : answered;
+  return replay.compare_if(of.queries->nearest(point, count, radius, found, replay.filter.filter()),
+                           found);
+}
+
+}  // namespace
+
+Status query_scene(ReplayState& replay, RecordedCall call, ReplayedWorld& of) {
+  if (!of.queries) of.queries.emplace(*of.scene, replay.options.memory);
+  switch (call) {
+    case RecordedCall::query_ray:
+      return query_ray(replay, of);
+    case RecordedCall::query_rays:
+      return query_rays(replay, of);
+    case RecordedCall::query_overlap:
+      return query_overlap(replay, of);
+    case RecordedCall::query_shape_cast:
+      return query_cast<ShapeCast>(replay, of);
+    case RecordedCall::query_motion_cast:
+      return query_cast<MotionCast>(replay, of);
+    case RecordedCall::query_nearest:
+      return query_nearest(replay, of);
+    case RecordedCall::query_any_contact:
+    case RecordedCall::query_any_contact_of_sets:
+      return query_any_contact(replay, call, of);
+    default:
+      return query_sets(replay, call, of);
+  }
 }
 
 }  // namespace winnow

@@ -125,17 +125,54 @@ Status ReplayState::play_world(RecordedCall call, std::uint32_t number) {
     worlds[number] = nullptr;
     return Status::ok;
   }
-  if (call == RecordedCall::make_scene) return make_scene(*of);
+  if (call == RecordedCall::make_scene) return make_scene(*this, *of);
   if (call > RecordedCall::make_scene) {
     if (!of->scene) return Status::invalid_argument;
-    if (call >= RecordedCall::query_distance_by_rules) return query_scene(call, *of);
-    if (call >= RecordedCall::find_impacts) return find_impacts(call, *of);
-    if (call >= RecordedCall::make_sensors) return play_sensors(call, *of);
+    if (call >= RecordedCall::query_distance_by_rules) return query_scene(*this, call, *of);
+    if (call >= RecordedCall::find_impacts) return find_impacts(*this, call, *of);
+    if (call >= RecordedCall::make_sensors) return play_sensors(*this, call, *of);
     const bool is_query = call >= RecordedCall::query_ray && call < RecordedCall::load_scene;
-    return is_query ? query_scene(call, *of) : change_scene(call, *of);
+    return is_query ? query_scene(*this, call, *of) : change_scene(*this, call, *of);
   }
   if (call != RecordedCall::make_partition && !of->partition) return Status::invalid_argument;
-  return change_partition(call, *of);
+  return change_partition(*this, call, *of);
+}
+
+// Reads of arguments that several groups of calls have.
+
+bool ReplayState::read_poses(std::size_t count, PoseView& poses) {
+  const bool turns = in.get_bool();
+  if (!in.get_array(doubles)) return false;
+  const std::size_t width = turns ? 7 : 3;
+  if (doubles.size() != count * width) return in.fail();
+  const double* const at = doubles.data();
+  poses = {};
+  poses.count = count;
+  poses.position_stride = poses.orientation_stride = width * sizeof(double);
+  if (at == nullptr) return true;
+  poses.position = {at, at + 1, at + 2};
+  if (turns) poses.orientation = {at + 3, at + 4, at + 5, at + 6};
+  return true;
+}
+
+/// Reads the filter at the end of a query; false if it is incomplete.
+bool ReplayState::read_query_filter() noexcept {
+  filter.read_filter(in);
+  filter.read_passed_objects(in);
+  return in.ok();
+}
+
+bool ReplayState::read_shape(const ReplayedWorld& of, ShapeId& id) noexcept {
+  const auto number = in.get<std::uint32_t>();
+  if (!in.ok() || number >= of.shape_ids.size()) return in.fail();
+  id = of.shape_ids[number];
+  return true;
+}
+
+bool ReplayState::read_sets(ReplayedWorld& of) {
+  if (!read_keys(*of.scene)) return false;
+  keys.swap(others);
+  return read_keys(*of.scene);
 }
 
 /// Worlds are created in the order of their numbers, with two exceptions: partitions that could not

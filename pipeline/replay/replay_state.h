@@ -99,49 +99,19 @@ struct ReplayState {
     return in.out_of_memory() ? Status::out_of_memory : Status::invalid_argument;
   }
 
-  // Partitions (play_partition.cpp).
-  [[nodiscard]] Status change_partition(RecordedCall call, ReplayedWorld& of);
-  [[nodiscard]] Status insert(ReplayedWorld& into);
-  [[nodiscard]] Status update(ReplayedWorld& of);
-  [[nodiscard]] static ReplayedPairs& source_query(ReplayedWorld& of,
-                                                   std::uint64_t number) noexcept;
-  [[nodiscard]] Status self_pairs(ReplayedWorld& of);
-  [[nodiscard]] Status pairs_with(ReplayedWorld& of);
-  [[nodiscard]] Status cast(RecordedCall call, ReplayedWorld& of);
-  [[nodiscard]] Status cast_rays(RecordedCall call, ReplayedWorld& of);
-  [[nodiscard]] Status overlap(RecordedCall call, ReplayedWorld& of);
-  [[nodiscard]] Status nearest(ReplayedWorld& of);
-  [[nodiscard]] bool read_keys(const Partition& of);
+  [[nodiscard]] static SceneState* state_of(Scene& scene) noexcept { return scene.state_; }
 
-  // Scenes (play_scene.cpp).
-  [[nodiscard]] Status make_scene(ReplayedWorld& of);
-  [[nodiscard]] Status change_scene(RecordedCall call, ReplayedWorld& of);
-  [[nodiscard]] Status add_shape(ReplayedWorld& of);
-  [[nodiscard]] Status add_hull(ReplayedWorld& of, ShapeId& id, Digest& digest);
-  [[nodiscard]] Status add_composite(ReplayedWorld& of);
-  [[nodiscard]] Status change_composite(ReplayedWorld& of);
-  [[nodiscard]] Status add_bodies(ReplayedWorld& of);
-  [[nodiscard]] Status move(ReplayedWorld& of);
-  [[nodiscard]] Status collide(ReplayedWorld& of);
-  [[nodiscard]] Status pairs_passed(ReplayedWorld& of);
-  [[nodiscard]] Status load_scene(ReplayedWorld& of);
-  [[nodiscard]] bool read_keys(const Scene& of);
-  [[nodiscard]] bool read_poses(std::size_t count, PoseView& poses);
+  // Reads of arguments that several groups of calls have.
 
-  // Sensors and continuous collision detection (play_sensors.cpp).
-  [[nodiscard]] Status play_sensors(RecordedCall call, ReplayedWorld& of);
-  [[nodiscard]] Status change_sensor(RecordedCall call, ReplayedWorld& of, ReplayedSensors& all);
-  [[nodiscard]] Status find_impacts(RecordedCall call, ReplayedWorld& of);
-
-  // Scene queries (play_queries.cpp).
-  [[nodiscard]] Status query_scene(RecordedCall call, ReplayedWorld& of);
-  [[nodiscard]] Status query_ray(ReplayedWorld& of);
-  [[nodiscard]] Status query_rays(ReplayedWorld& of);
-  [[nodiscard]] Status query_overlap(ReplayedWorld& of);
-  template <typename Moving>
-  [[nodiscard]] Status query_cast(ReplayedWorld& of);
-  [[nodiscard]] Status query_sets(RecordedCall call, ReplayedWorld& of);
-  [[nodiscard]] Status query_any_contact(RecordedCall call, ReplayedWorld& of);
+  /// Reads ids into `ids` and looks up their keys. Ids without a live object become null keys,
+  /// which every call refuses.
+  template <typename Owner>
+  [[nodiscard]] bool read_keys(const Owner& of) {
+    if (!in.get_array(ids)) return false;
+    if (!keys.resize(ids.size())) return in.refuse_memory();
+    for (std::size_t i = 0; i < ids.size(); ++i) keys[i] = of.key_of(ids[i]);
+    return true;
+  }
   /// Reads two sets of bodies into `others` and `keys`.
   [[nodiscard]] bool read_sets(ReplayedWorld& of);
   [[nodiscard]] std::span<const Key> first_set() const noexcept {
@@ -150,14 +120,20 @@ struct ReplayState {
   [[nodiscard]] std::span<const Key> second_set() const noexcept {
     return {keys.data(), keys.size()};
   }
-  [[nodiscard]] Status query_nearest(ReplayedWorld& of);
+  [[nodiscard]] bool read_poses(std::size_t count, PoseView& poses);
   [[nodiscard]] bool read_shape(const ReplayedWorld& of, ShapeId& id) noexcept;
+  /// Reads the filter at the end of a query; false if it is incomplete.
   [[nodiscard]] bool read_query_filter() noexcept;
 
   /// Compares the digest of the results with the recorded digest.
   template <typename... Answer>
   [[nodiscard]] Status compare(const Answer&... answer) noexcept {
     return compare(digest_of_answers(answer...));
+  }
+  /// As above if the query succeeded; returns its status otherwise.
+  template <typename... Answer>
+  [[nodiscard]] Status compare_if(Status answered, const Answer&... answer) noexcept {
+    return answered == Status::ok ? compare(answer...) : answered;
   }
   [[nodiscard]] Status compare(const Digest& digest) noexcept { return compare(digest.value()); }
   [[nodiscard]] Status compare(std::uint64_t digest) noexcept {
@@ -198,5 +174,13 @@ struct ReplayState {
   Column<std::uint8_t> flags;
   RecordedFilter filter;
 };
+
+// These functions play one group of calls each; the rest of the call is read from `replay.in`.
+[[nodiscard]] Status change_partition(ReplayState& replay, RecordedCall call, ReplayedWorld& of);
+[[nodiscard]] Status make_scene(ReplayState& replay, ReplayedWorld& of);
+[[nodiscard]] Status change_scene(ReplayState& replay, RecordedCall call, ReplayedWorld& of);
+[[nodiscard]] Status play_sensors(ReplayState& replay, RecordedCall call, ReplayedWorld& of);
+[[nodiscard]] Status find_impacts(ReplayState& replay, RecordedCall call, ReplayedWorld& of);
+[[nodiscard]] Status query_scene(ReplayState& replay, RecordedCall call, ReplayedWorld& of);
 
 }  // namespace winnow

@@ -1,19 +1,14 @@
 // One call of Scene::collide. The stages are named in Collision::run and Collision::collide_batch:
 // find pairs, match them with the last frame, decide which keep their contacts, compute the
 // contacts of all others in the narrow phase (and the mid phase, for composite shapes), filter the
-// results, and write them into a frame, batch by batch. collision.h has the classes of the other
-// stages.
+// results, and write them into a frame, batch by batch. collision.h has the classes of the stages.
 
 #include "core/hooks/log.h"
 #include "core/hooks/stage_scope.h"
-#include "core/sort/parallel_ranges.h"
 #include "core/threads/float_environment.h"
-#include "pipeline/narrow/answer_slots.h"
-#include "pipeline/narrow/tight_growth.h"
 #include "pipeline/scene/collision.h"
 
 #include <algorithm>
-#include <bit>
 #include <utility>
 
 namespace winnow {
@@ -44,19 +39,6 @@ class BorrowedStorage {
   bool is_borrowed_;
 };
 
-[[nodiscard]] NarrowOptions narrow_options(const SceneOptions& options, ContactLevel level,
-                                           const PairMargins& margins) noexcept {
-  return {level, options.tier, margins.largest, options.execution, margins.each};
-}
-
-// Computes the index of the result for each input pair.
-[[nodiscard]] bool invert(const NarrowResult& answers, const Execution& execution,
-                          Column<std::uint32_t>& slots) noexcept {
-  if (!resize_tightly(slots, answers.size())) return false;
-  find_slots(answers, execution, slots.data());
-  return true;
-}
-
 class Collision {
  public:
   Collision(SceneState& scene, ContactsState& contacts, ContactLevel level) noexcept
@@ -65,6 +47,7 @@ class Collision {
         contacts_(contacts),
         cache_(call_),
         filters_(call_),
+        fresh_(call_, filters_),
         writer_(call_, cache_) {}
 
   [[nodiscard]] Status run();
@@ -72,16 +55,13 @@ class Collision {
  private:
   [[nodiscard]] Status write_frame();
   [[nodiscard]] Status collide_batch();
-  [[nodiscard]] bool list_pairs();
-  [[nodiscard]] Status collide_convex();
-  [[nodiscard]] Status collide_composite();
-  [[nodiscard]] Status reduce_composite();
 
   CollideCall call_;
   SceneState& scene_;
   ContactsState& contacts_;
   ContactCache cache_;
   ContactFilters filters_;
+  FreshContacts fresh_;
   ContactFrameWriter writer_;
 };
 
@@ -159,121 +139,12 @@ Status Collision::write_frame() {
 
 // Computes the contacts of a batch's pairs that are not cached.
 Status Collision::collide_batch() {
-  if (!cache_.match_batch() || !list_pairs()) return Status::out_of_memory;
+  if (!cache_.match_batch() || !fresh_.list_pairs()) return Status::out_of_memory;
   filters_.find_limit();
-  for (const Status status : {collide_convex(), collide_composite()}) {
+  for (const Status status : {fresh_.collide_convex(), fresh_.collide_composite()}) {
     if (status != Status::ok) return status;
   }
   return filters_.drop_ghost_contacts() ? Status::ok : Status::out_of_memory;
-}
-
-// Lists the pairs that need new contacts, convex and composite ones separately.
-bool Collision::list_pairs() {
-  scene_.batch.convex.clear();
-  scene_.batch.composite.clear();
-  if (call_.level == ContactLevel::pairs) return true;
-  if (!call_.resize_for_batch(contacts_.source) ||
-      !scene_.batch.convex.grow(call_.batch_room(scene_.options, call_.pair_count())) ||
-      (!call_.uses_cache && !call_.resize_for_batch(contacts_.origin))) {
-    return false;
-  }
-  for (std::uint32_t i = call_.batch_first; i < call_.batch_end; ++i) {
-    const BodyPair pair = scene_.pairs[i];
-    if (!call_.uses_cache) {
-      contacts_.origin[i - call_.known_from] =
-          static_cast<std::uint8_t>(call_.origin_of_fresh(pair));
-    }
-    const ContactSource origin = call_.origin_of(i);
-    if (origin == ContactSource::cached) continue;
-    Column<BodyPair>& list =
-        origin == ContactSource::convex ? scene_.batch.convex : scene_.batch.composite;
-    contacts_.source[i - call_.batch_first] = static_cast<std::uint32_t>(list.size());
-    if (!list.push_back(pair)) return false;
-  }
-  return true;
-}
-
-Status Collision::collide_convex() {
-  if (call_.level == ContactLevel::pairs || scene_.batch.convex.empty()) return Status::ok;
-  PairMargins margins = 0.0;
-  if (!filters_.find_margins(scene_.batch.convex, 0.0, margins)) return Status::out_of_memory;
-  const Status status = scene_.batch.narrow.collide(
-      scene_.shapes,
-      {{scene_.shape.data(), scene_.shape.size()}, {scene_.pose.data(), scene_.pose.size()}},
-      {scene_.batch.convex.data(), scene_.batch.convex.size()},
-      narrow_options(scene_.options, call_.level, margins), scene_.batch.answers);
-  if (status != Status::ok) return status;
-  scene_.statistics.convex += scene_.batch.narrow.statistics();
-  filters_.trim_convex();
-  return Status::ok;
-}
-
-Status Collision::collide_composite() {
-  if (call_.level == ContactLevel::pairs || scene_.batch.composite.empty()) return Status::ok;
-  const SceneOptions& options = scene_.options;
-  if (scene_.batch.parts == nullptr)
-    scene_.batch.parts = new_in<PartAnswers>(options.memory, options.memory);
-  if (scene_.batch.parts == nullptr) return Status::out_of_memory;
-  PrimitivePairs& parts = scene_.batch.parts->pairs;
-  // Primitives farther apart than this cannot touch before the pair's contacts are computed again.
-  PairMargins margins = 0.0;
-  if (!filters_.find_margins(scene_.batch.composite,
-                             call_.uses_cache ? options.cache_tolerance : 0.0, margins)) {
-    return Status::out_of_memory;
-  }
-  Status status =
-      mid::mid_phase_of(*options.composites)
-          .find_primitive_pairs(*options.composites, scene_.shapes,
-                                {{scene_.shape.data(), scene_.shape.size()},
-                                 {scene_.pose.data(), scene_.pose.size()}},
-                                {scene_.batch.composite.data(), scene_.batch.composite.size()},
-                                margins, options.execution, parts);
-  if (status != Status::ok) return status;
-  if (!filters_.find_part_margins(margins)) return Status::out_of_memory;
-  status = scene_.batch.parts->narrow.collide(
-      parts.tables(scene_.shapes),
-      {{parts.shapes.data(), parts.shapes.size()}, {parts.poses.data(), parts.poses.size()}},
-      {parts.pairs.data(), parts.pairs.size()}, narrow_options(options, call_.level, margins),
-      scene_.batch.parts->answers);
-  if (status != Status::ok) return status;
-  if (call_.level >= ContactLevel::distance) {
-    mid::mid_phase_of(*options.composites)
-        .correct_internal_edges(scene_.shapes, parts, margins, options.execution,
-                                scene_.batch.parts->answers);
-  }
-  scene_.statistics.parts += scene_.batch.parts->narrow.statistics();
-  scene_.statistics.primitive_pairs += parts.pairs.size();
-  if (!invert(scene_.batch.parts->answers, options.execution, scene_.batch.parts->slot)) {
-    return Status::out_of_memory;
-  }
-  filters_.trim_parts();
-  if (const Status reduced = reduce_composite(); reduced != Status::ok) return reduced;
-  filters_.rest_parts();
-  return Status::ok;
-}
-
-Status Collision::reduce_composite() {
-  if (!call_.reduces) return Status::ok;
-  PairMargins margins = 0.0;
-  if (!filters_.find_margins(scene_.batch.composite, 0.0, margins)) return Status::out_of_memory;
-  const SceneOptions& options = scene_.options;
-  return mid::mid_phase_of(*options.composites)
-      .reduce_contacts(scene_.shapes, scene_.batch.parts->pairs, scene_.batch.parts->answers,
-                       margins, options.execution, scene_.batch.parts->regions);
-}
-
-// If ghost contacts are suppressed, all pairs are one batch, because the suppression compares all
-// contacts of a body.
-std::uint32_t CollideCall::batch_size(const SceneOptions& options, std::size_t pairs) noexcept {
-  const auto all = static_cast<std::uint32_t>(pairs);
-  return options.suppress_ghost_contacts ? all : std::min(all, kPairsPerBatch);
-}
-
-// The size of a batch that is not full is rounded up to a power of two, so that most small
-// increases of the number of pairs need no new allocation.
-std::size_t CollideCall::batch_room(const SceneOptions& options, std::size_t pairs) noexcept {
-  const std::size_t batch = batch_size(options, pairs);
-  return batch == 0 || batch > kPairsPerBatch ? batch : std::bit_ceil(batch);
 }
 
 }  // namespace winnow

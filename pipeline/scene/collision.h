@@ -1,8 +1,9 @@
 #pragma once
 
 // The stages of Scene::collide, which collide.cpp calls one after the other: ContactCache matches
-// pairs with the last frame, ContactFilters changes results of the narrow phase, and
-// ContactFrameWriter writes the new frame. CollideCall is the data that they share.
+// pairs with the last frame, FreshContacts computes the contacts of the others, ContactFilters
+// changes results of the narrow phase, and ContactFrameWriter writes the new frame. CollideCall is
+// the data that they share.
 
 #include "pipeline/scene/contact_frame.h"
 #include "pipeline/scene/ghost_contacts.h"
@@ -224,6 +225,28 @@ class ContactFilters {
 
   CollideCall& call_;
   SceneState& scene_;
+};
+
+/// Computes the contacts of a batch's pairs that are not cached (fresh_contacts.cpp).
+class FreshContacts {
+ public:
+  FreshContacts(CollideCall& call, ContactFilters& filters) noexcept
+      : call_(call), filters_(filters), scene_(call.scene), batch_(call.scene.batch) {}
+
+  /// Lists the pairs, convex and composite ones separately. Returns false if memory is refused.
+  [[nodiscard]] bool list_pairs();
+  /// Call the narrow phase for the listed pairs; for composite shapes after the mid phase.
+  [[nodiscard]] Status collide_convex();
+  [[nodiscard]] Status collide_composite();
+
+ private:
+  [[nodiscard]] NarrowOptions narrow_options(const PairMargins& margins) const noexcept;
+  [[nodiscard]] Status reduce_composite();
+
+  CollideCall& call_;
+  ContactFilters& filters_;
+  SceneState& scene_;
+  PairBatch& batch_;
 };
 
 /// Writes the contacts of all pairs into the frame, batch by batch (contact_frame_writer.cpp).

@@ -9,6 +9,8 @@
 #include "pipeline/scene/contact_frame.h"
 
 #include <algorithm>
+#include <tuple>
+#include <utility>
 
 namespace winnow {
 namespace {
@@ -22,6 +24,27 @@ template <typename T>
 void copy_range(const Column<T>& from, std::size_t first, std::size_t count, Column<T>& to,
                 std::size_t at) noexcept {
   if (!from.empty()) std::copy_n(from.data() + first, count, to.data() + at);
+}
+
+/// Returns all columns of a frame except its runs.
+template <typename Frame>
+[[nodiscard]] auto columns_of(Frame& f) noexcept {
+  return std::tie(f.key[0], f.key[1], f.event, f.manifold_first, f.part[0], f.part[1], f.distance,
+                  f.error_bound, f.normal[0], f.normal[1], f.normal[2], f.point[0], f.point[1],
+                  f.point[2], f.point_first, f.points.position[0], f.points.position[1],
+                  f.points.position[2], f.points.depth, f.points.feature);
+}
+
+/// Calls visit(column, same column of the other frame) for each, until one call returns false.
+template <typename To, typename From, typename Visit, std::size_t... I>
+bool for_both(const To& to, const From& from, Visit&& visit, std::index_sequence<I...>) noexcept {
+  return (visit(std::get<I>(to), std::get<I>(from)) && ...);
+}
+template <typename From, typename Visit>
+bool for_columns_of_both(ContactFrame& to, From& from, Visit&& visit) noexcept {
+  const auto all = columns_of(to);
+  return for_both(all, columns_of(from), visit,
+                  std::make_index_sequence<std::tuple_size_v<decltype(all)>>{});
 }
 
 }  // namespace
@@ -96,81 +119,30 @@ bool ContactFrame::reserve(ContactLevel level, bool parts, std::size_t pair_coun
 }
 
 bool ContactFrame::reserve_as(const ContactFrame& other) noexcept {
-  bool good = event.reserve(other.event.capacity()) &&
-              manifold_first.reserve(other.manifold_first.capacity()) &&
-              distance.reserve(other.distance.capacity()) &&
-              error_bound.reserve(other.error_bound.capacity()) &&
-              point_first.reserve(other.point_first.capacity()) &&
-              points.depth.reserve(other.points.depth.capacity()) &&
-              points.feature.reserve(other.points.feature.capacity());
-  for (int side = 0; side < 2; ++side) {
-    good = good && key[side].reserve(other.key[side].capacity()) &&
-           part[side].reserve(other.part[side].capacity());
-  }
-  for (int axis = 0; axis < 3; ++axis) {
-    good = good && normal[axis].reserve(other.normal[axis].capacity()) &&
-           point[axis].reserve(other.point[axis].capacity()) &&
-           points.position[axis].reserve(other.points.position[axis].capacity());
-  }
-  return good;
+  return for_columns_of_both(*this, other, [](auto& column, const auto& model) {
+    return column.reserve(model.capacity());
+  });
 }
 
 void ContactFrame::clear() noexcept {
   runs.clear();
-  event.clear();
-  manifold_first.clear();
-  for (int side = 0; side < 2; ++side) {
-    key[side].clear();
-    part[side].clear();
-  }
-  distance.clear();
-  error_bound.clear();
-  for (int axis = 0; axis < 3; ++axis) {
-    normal[axis].clear();
-    point[axis].clear();
-  }
-  point_first.clear();
-  points.set_size(0);
+  std::apply([](auto&... column) { (column.clear(), ...); }, columns_of(*this));
   manifolds = 0;
 }
 
 void ContactFrame::swap(ContactFrame& other) noexcept {
   runs.swap(other.runs);
-  event.swap(other.event);
-  manifold_first.swap(other.manifold_first);
-  for (int side = 0; side < 2; ++side) {
-    key[side].swap(other.key[side]);
-    part[side].swap(other.part[side]);
-  }
-  distance.swap(other.distance);
-  error_bound.swap(other.error_bound);
-  for (int axis = 0; axis < 3; ++axis) {
-    normal[axis].swap(other.normal[axis]);
-    point[axis].swap(other.point[axis]);
-    points.position[axis].swap(other.points.position[axis]);
-  }
-  point_first.swap(other.point_first);
-  points.depth.swap(other.points.depth);
-  points.feature.swap(other.points.feature);
+  for_columns_of_both(*this, other, [](auto& column, auto& of_other) {
+    column.swap(of_other);
+    return true;
+  });
   std::swap(manifolds, other.manifolds);
   std::swap(with_parts, other.with_parts);
 }
 
 Bytes ContactFrame::bytes() const noexcept {
-  Bytes sum = points.bytes();
-  for (const Bytes& bytes : {runs.bytes(), event.bytes(), manifold_first.bytes(), distance.bytes(),
-                             error_bound.bytes(), point_first.bytes()}) {
-    sum += bytes;
-  }
-  for (int side = 0; side < 2; ++side) {
-    sum += key[side].bytes();
-    sum += part[side].bytes();
-  }
-  for (int axis = 0; axis < 3; ++axis) {
-    sum += normal[axis].bytes();
-    sum += point[axis].bytes();
-  }
-  return sum;
+  return std::apply([&](const auto&... column) { return bytes_of(runs, column...); },
+                    columns_of(*this));
 }
 
 ContactFrame::Cursor ContactFrame::extent(std::uint32_t first, std::uint32_t count) const noexcept {

@@ -56,20 +56,11 @@ void trim(PairBuffer& pairs) noexcept {
 }  // namespace
 
 SceneState::SceneState(const ShapePool& pool, const SceneOptions& given) noexcept
-    : shapes(pool),
+    : BodyColumns(given.memory),
+      shapes(pool),
       options(given),
       options_are_good(are_good(given)),
       growth(given.contact_margin * 0.5 + given.cache_tolerance),
-      keys(given.memory),
-      shape(given.memory),
-      pose(given.memory),
-      body_state(given.memory),
-      place(given.memory),
-      moved_at(given.memory),
-      shaped_at(given.memory),
-      anchor(given.memory),
-      ball(given.memory),
-      offsets(given.memory),
       stale(given.memory),
       staged(given.memory),
       sets{SceneSet(given.memory), SceneSet(given.memory), SceneSet(given.memory)},

@@ -116,18 +116,20 @@ struct StagedBoxes {
   }
 };
 
-/// The state of a Scene. Body numbers are the ids of their keys; columns are indexed by id and have
-/// holes for removed bodies.
-struct SceneState {
-  SceneState(const ShapePool& pool, const SceneOptions& given) noexcept;
-  SceneState(const SceneState&) = delete;
-  SceneState& operator=(const SceneState&) = delete;
-
-  const ShapePool& shapes;
-  SceneOptions options;
-  bool options_are_good;
-  /// Boxes are grown by this in every direction, in addition to contact offsets.
-  double growth;
+/// The bodies of a scene as columns, which are indexed by the ids of their keys and have holes for
+/// removed bodies.
+struct BodyColumns {
+  explicit BodyColumns(std::pmr::memory_resource* memory) noexcept
+      : keys(memory),
+        shape(memory),
+        pose(memory),
+        body_state(memory),
+        place(memory),
+        moved_at(memory),
+        shaped_at(memory),
+        anchor(memory),
+        ball(memory),
+        offsets(memory) {}
 
   KeyTable keys;
   Column<ShapeId> shape;
@@ -144,6 +146,20 @@ struct SceneState {
   /// grown like the box.
   Column<BodyBall> ball;
   BodyOffsets offsets;
+};
+
+/// The state of a Scene. Body numbers are ids, the indices of the columns.
+struct SceneState : BodyColumns {
+  SceneState(const ShapePool& pool, const SceneOptions& given) noexcept;
+  SceneState(const SceneState&) = delete;
+  SceneState& operator=(const SceneState&) = delete;
+
+  const ShapePool& shapes;
+  SceneOptions options;
+  bool options_are_good;
+  /// Boxes are grown by this in every direction, in addition to contact offsets.
+  double growth;
+
   StaleBodies stale;
   StagedBoxes staged;
 

@@ -2,9 +2,8 @@
 // into the rows. PartitionState calls the public functions. If boxes are not stored as given, the
 // functions of VolumeInput (volume_update.cpp) do the same for spheres, k-DOPs and fat volumes.
 
+#include "partitions/rows/row_input.h"
 #include "core/memory/columns.h"
-#include "partitions/rows/box_source.h"
-#include "partitions/rows/rows.h"
 
 #include <algorithm>
 #include <array>
@@ -15,82 +14,64 @@ namespace winnow {
 
 WINNOW_DEFINE_KERNELS(BoxInputKernels, box_input_kernels)
 
-const VolumeInput& Rows::boxes_as_given() noexcept {
+const VolumeInput& RowInput::boxes_as_given() noexcept {
   static constexpr VolumeInput kInput{Volume::aabb, nullptr, nullptr, nullptr};
   return kInput;
 }
 
 // Update.
 
-Status Rows::update(const UpdateSubset& entries, const BoxView& boxes) {
-  if (input_.update != nullptr) return input_.update(*this, entries, boxes);
+Status RowInput::update(const UpdateSubset& entries, const BoxView& boxes) {
+  if (rows_.input_.update != nullptr) return rows_.input_.update(*this, entries, boxes);
   bool ascending = false;
   const Status status = check(entries, boxes, ascending);
   if (status != Status::ok || entries.count == 0) return status;
-  note_stale(entries);
-  const BoxSource source{boxes};
-  BoxOfId entry_of{};
-  if (!writes_by_rows(entries, ascending, entry_of)) {
-    const PoolColumns columns(pool_);
-    for_entries(entries, ascending, [&](std::size_t i, std::size_t row, std::size_t) {
-      source.write(i, columns.pointers, row);
-    });
-  } else if (loses_order(source, entries)) {
-    // All objects get new rows, in the order of the keys.
-    pool_.clear();
-    pool_.append(entries.count);
-    for_ranges(execution_, entries.count, [&](std::size_t begin, std::size_t end) {
-      number_rows(entries.keys, begin, end);
-      write_new(source, entries.keys, 0, begin, end);
-    });
-    invalidate_order();
-  } else {
-    write_by_rows(source, {entry_of, pool_.ids()});
-  }
+  write(BoxSource{boxes}, entries, ascending);
   return Status::ok;
 }
 
-Status Rows::update(Key key, const Aabb& box) {
-  if (!keys_.is_valid(key)) return Status::invalid_key;
+Status RowInput::update(Key key, const Aabb& box) {
+  if (!rows_.keys_.is_valid(key)) return Status::invalid_key;
   const BoxView one(std::span<const Aabb>(&box, 1));
-  if (input_.update_one != nullptr) return input_.update_one(*this, key, one);
+  if (rows_.input_.update_one != nullptr) return rows_.input_.update_one(*this, key, one);
   const BoxSource source{one};
   if (!source.valid(0)) return Status::invalid_bounds;
-  source.write(0, PoolColumns(pool_).pointers, keys_.row_of(key.id));
-  stale_.add(key.id);
-  changed_ = true;
+  source.write(0, PoolColumns(rows_.pool_).pointers, rows_.keys_.row_of(key.id));
+  rows_.changes_.add(key.id);
   return Status::ok;
 }
 
-Status Rows::check(const UpdateSubset& entries, const BoxView& boxes) const {
+Status RowInput::check(const UpdateSubset& entries, const BoxView& boxes) const {
   bool ascending = false;
   return check(entries, boxes, ascending);
 }
 
-Status Rows::check(const UpdateSubset& entries, const BoxView& boxes, bool& ascending) const {
+Status RowInput::check(const UpdateSubset& entries, const BoxView& boxes, bool& ascending) const {
   const Status status = check_keys(boxes.count, entries, ascending);
   if (status != Status::ok) return status;
-  return all_valid(BoxSource{boxes}, entries, execution_) ? Status::ok : Status::invalid_bounds;
+  return all_valid(BoxSource{boxes}, entries, rows_.execution_) ? Status::ok
+                                                                : Status::invalid_bounds;
 }
 
 // Checks the keys of an update with that many volumes. Sets `ascending` if the ids strictly ascend.
-Status Rows::check_keys(std::size_t volumes, const UpdateSubset& entries, bool& ascending) const {
+Status RowInput::check_keys(std::size_t volumes, const UpdateSubset& entries,
+                            bool& ascending) const {
   if (entries.keys.size() != volumes) return Status::size_mismatch;
   std::atomic<bool> known{true};
   std::atomic<bool> rising{true};
   // Checks entries [begin, end), whose indices are consecutive.
   const auto check_run = [&](std::size_t begin, std::size_t end) {
     if (end - begin >= UpdateSubset::kLongRun) {
-      return keys_.check_keys(entries.keys.subspan(entries[begin], end - begin));
+      return rows_.keys_.check_keys(entries.keys.subspan(entries[begin], end - begin));
     }
     KeyTable::KeysCheck run;
     for (std::size_t j = begin; j < end; ++j) {
-      run.valid &= keys_.is_valid(entries.key(j));
+      run.valid &= rows_.keys_.is_valid(entries.key(j));
       run.ascending &= j == begin || entries.key(j - 1).id < entries.key(j).id;
     }
     return run;
   };
-  for_ranges(execution_, entries.count, [&](std::size_t begin, std::size_t end) {
+  for_ranges(rows_.execution_, entries.count, [&](std::size_t begin, std::size_t end) {
     bool ok = true;
     bool up = true;
     for (std::size_t next = begin; begin < end; begin = next) {
@@ -107,13 +88,11 @@ Status Rows::check_keys(std::size_t volumes, const UpdateSubset& entries, bool& 
   return known.load() ? Status::ok : Status::invalid_key;
 }
 
-void Rows::note_stale(const UpdateSubset& entries) noexcept {
-  if (entries.count > stale_.limit()) {
-    stale_.add_all();
-  } else {
-    for (std::size_t j = 0; j < entries.count; ++j) stale_.add(entries.key(j).id);
-  }
-  changed_ = true;
+void RowInput::note_stale(const UpdateSubset& entries) noexcept {
+  RowChanges& changes = rows_.changes_;
+  if (entries.count > changes.stale.limit()) return changes.add_all();
+  for (std::size_t j = 0; j < entries.count; ++j) changes.stale.add(entries.key(j).id);
+  changes.any = true;
 }
 
 namespace {
@@ -137,16 +116,16 @@ std::ranges::minmax_result<ObjectId> ends_of_ids(const UpdateSubset& entries,
 // then reads entries in arbitrary order but writes each of the six columns in order, which touches
 // a sixth of the cache lines. A table maps ids to entries unless ids and entries correspond one to
 // one. False if a key occurs twice, because its entries must be written in order.
-bool Rows::writes_by_rows(const UpdateSubset& entries, bool ascending, BoxOfId& entry_of) {
+bool RowInput::writes_by_rows(const UpdateSubset& entries, bool ascending, BoxOfId& entry_of) {
   const std::size_t count = entries.count;
-  if (2 * count <= pool_.rows()) return false;
+  if (2 * count <= rows_.pool_.rows()) return false;
   const auto [first, last] = ends_of_ids(entries, ascending);
   const std::size_t ids = last - first + std::size_t{1};
   if (ids > count + count / 2) return false;
   entry_of = {first, static_cast<std::uint32_t>(ids)};
   if (ascending && ids == count && entries.number == nullptr) return true;
-  if (!selection_.list.resize(ids)) return false;
-  std::uint32_t* const table = selection_.list.data();
+  if (!rows_.selection_.list.resize(ids)) return false;
+  std::uint32_t* const table = rows_.selection_.list.data();
   entry_of.table = table;
   std::fill(table, table + ids, kNoObject);
   if (ascending && entries.number == nullptr) {
@@ -162,53 +141,36 @@ bool Rows::writes_by_rows(const UpdateSubset& entries, bool ascending, BoxOfId& 
   return true;
 }
 
-// Writes every row whose object has an entry. Packed boxes are written 16 rows at a time.
-void Rows::write_by_rows(const BoxSource& source, const EntryOfRow& entry_of) {
-  const PoolColumns columns(pool_);
-  for_ranges(execution_, pool_.rows(), [&](std::size_t begin, std::size_t end) {
-    if (source.packed()) {
-      const std::size_t whole = end - end % kBlockRows;
-      source.write_rows(entry_of.of_id, entry_of.id, columns.pointers, begin, whole);
-      begin = whole;
-    }
-    for (std::size_t row = begin; row < end; ++row) {
-      const std::size_t i = entry_of[row];
-      if (i != kNoObject) source.write(i, columns.pointers, row);
-    }
-  });
-}
-
-void Rows::write_by_id(const BoxView& boxes) noexcept {
+void RowInput::write_by_id(const BoxView& boxes) noexcept {
   const BoxOfId all{.first = 0, .ids = static_cast<std::uint32_t>(boxes.count)};
-  write_by_rows(BoxSource{boxes}, {all, pool_.ids()});
-  stale_.add_all();
-  changed_ = true;
+  write_by_rows(BoxSource{boxes}, {all, rows_.pool_.ids()});
+  rows_.changes_.add_all();
 }
 
 // True if an update of all objects may make the order of the rows worthless. With few rows the
 // order does not matter.
-bool Rows::may_lose_order(const UpdateSubset& entries) const noexcept {
+bool RowInput::may_lose_order(const UpdateSubset& entries) const noexcept {
   constexpr std::size_t kFewRows = 256;
-  return entries.number == nullptr && entries.count == keys_.size() && regions_.built &&
-         order_reach_ > 0.0F && entries.count >= kFewRows;
+  return entries.number == nullptr && entries.count == rows_.keys_.size() && rows_.regions_.built &&
+         rows_.order_reach_ > 0.0F && entries.count >= kFewRows;
 }
 
 // True if most objects move far and in different directions.
-bool Rows::order_is_lost(const SampledBoxes& sample, std::span<const Key> keys) const noexcept {
+bool RowInput::order_is_lost(const SampledBoxes& sample, std::span<const Key> keys) const noexcept {
   std::array<float, 3> before{};
   std::array<float, 3> edge_before{};
   std::size_t apart = 0;
   for (std::size_t k = 0; k < SampledBoxes::kSize; ++k) {
     const float* const box = sample.box[k];
-    const std::size_t row = keys_.row_of(keys[SampledBoxes::entry(k, keys.size())].id);
+    const std::size_t row = rows_.keys_.row_of(keys[SampledBoxes::entry(k, keys.size())].id);
     bool far = false;
     for (std::size_t a = 0; a < 3; ++a) {
-      const float step = box[a] - pool_.column(a)[row];
+      const float step = box[a] - rows_.pool_.column(a)[row];
       const float edge = box[3 + a] - box[a];
       // Steps are compared with the previous sample's, because a common motion keeps the order. The
       // difference must also exceed the edges of both objects, because order_reach_ may stem from
       // much smaller objects.
-      far |= std::abs(step - before[a]) > std::max({order_reach_, edge, edge_before[a]});
+      far |= std::abs(step - before[a]) > std::max({rows_.order_reach_, edge, edge_before[a]});
       before[a] = step;
       edge_before[a] = edge;
     }
@@ -218,64 +180,57 @@ bool Rows::order_is_lost(const SampledBoxes& sample, std::span<const Key> keys) 
 }
 
 // Gives object i row i, for i in [begin, end).
-void Rows::number_rows(std::span<const Key> keys, std::size_t begin, std::size_t end) noexcept {
+void RowInput::number_rows(std::span<const Key> keys, std::size_t begin, std::size_t end) noexcept {
   for (std::size_t i = begin; i < end; ++i) {
-    keys_.set_row(keys[i].id, static_cast<std::uint32_t>(i));
+    rows_.keys_.set_row(keys[i].id, static_cast<std::uint32_t>(i));
   }
 }
 
 // Insert.
 
-Status Rows::insert(const BoxView& boxes, std::span<const ClientData> data, std::span<Key> keys) {
-  if (input_.insert != nullptr) return input_.insert(*this, boxes, data, keys);
+Status RowInput::insert(const BoxView& boxes, std::span<const ClientData> data,
+                        std::span<Key> keys) {
+  if (rows_.input_.insert != nullptr) return rows_.input_.insert(*this, boxes, data, keys);
   const std::size_t count = boxes.count;
   if (const Status status = check_insert(count, data, keys); status != Status::ok) return status;
   const BoxSource source{boxes};
-  if (!all_valid(source, UpdateSubset(count), execution_)) return Status::invalid_bounds;
+  if (!all_valid(source, UpdateSubset(count), rows_.execution_)) return Status::invalid_bounds;
   std::size_t first = 0;
   const Status status = begin_insert(count, data, keys, first);
   if (status != Status::ok || count == 0) return status;
-  for_ranges(execution_, count, [&](std::size_t begin, std::size_t end) {
+  for_ranges(rows_.execution_, count, [&](std::size_t begin, std::size_t end) {
     write_new(source, keys, first, begin, end);
   });
   return Status::ok;
 }
 
-Status Rows::check_insert(std::size_t count, std::span<const ClientData> data,
-                          std::span<Key> keys) const noexcept {
+Status RowInput::check_insert(std::size_t count, std::span<const ClientData> data,
+                              std::span<Key> keys) const noexcept {
   if (keys.size() != count || (!data.empty() && data.size() != count)) return Status::size_mismatch;
-  return count > kMaxObjects - keys_.size() ? Status::too_many_objects : Status::ok;
+  return count > kMaxObjects - rows_.keys_.size() ? Status::too_many_objects : Status::ok;
 }
 
 // Makes `count` rows from row `first` on, and their keys.
-Status Rows::begin_insert(std::size_t count, std::span<const ClientData> data, std::span<Key> keys,
-                          std::size_t& first) {
-  if (!make_room(keys_.size() + count)) return Status::out_of_memory;
+Status RowInput::begin_insert(std::size_t count, std::span<const ClientData> data,
+                              std::span<Key> keys, std::size_t& first) {
+  if (!rows_.make_room(rows_.keys_.size() + count)) return Status::out_of_memory;
   if (count == 0) return Status::ok;
-  first = pool_.rows();
-  ++arrangement_;
-  filters_.note_new();
-  pool_.append(count);
-  keys_.acquire(static_cast<std::uint32_t>(first), data, keys, execution_);
+  first = rows_.pool_.rows();
+  ++rows_.arrangement_;
+  rows_.filters_.note_new();
+  rows_.pool_.append(count);
+  rows_.keys_.acquire(static_cast<std::uint32_t>(first), data, keys, rows_.execution_);
   note_stale(UpdateSubset(std::span<const Key>(keys)));
   return Status::ok;
 }
 
 // Writes the id and the filter of object i to row first + i, for i in [begin, end).
-void Rows::place_new(std::span<const Key> keys, std::size_t first, std::size_t begin,
-                     std::size_t end) noexcept {
-  for (std::size_t i = begin; i < end; ++i) pool_.ids()[first + i] = keys[i].id;
-  for (std::size_t i = begin; i < end && pool_.has_filters(); ++i) {
-    pool_.set_filter(first + i, filters_.of(keys[i].id));
+void RowInput::place_new(std::span<const Key> keys, std::size_t first, std::size_t begin,
+                         std::size_t end) noexcept {
+  for (std::size_t i = begin; i < end; ++i) rows_.pool_.ids()[first + i] = keys[i].id;
+  for (std::size_t i = begin; i < end && rows_.pool_.has_filters(); ++i) {
+    rows_.pool_.set_filter(first + i, rows_.filters_.of(keys[i].id));
   }
-}
-
-void Rows::write_new(const BoxSource& source, std::span<const Key> keys, std::size_t first,
-                     std::size_t begin, std::size_t end) noexcept {
-  const PoolColumns columns(pool_);
-  place_new(keys, first, begin, end);
-  if (source.packed()) return source.write_in_order(begin, end, columns.pointers, first + begin);
-  for (std::size_t i = begin; i < end; ++i) source.write(i, columns.pointers, first + i);
 }
 
 }  // namespace winnow
