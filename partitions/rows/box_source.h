@@ -21,9 +21,10 @@
 
 namespace winnow {
 
-/// Column pointers of a pool.
+/// One pointer per column.
 using ColumnPointers = float* const*;
 
+/// Column pointers of a pool.
 struct PoolColumns {
   explicit PoolColumns(BoundsPool& pool) noexcept {
     for (std::size_t c = 0; c < pool.columns(); ++c) pointers[c] = pool.column(c);
@@ -31,10 +32,10 @@ struct PoolColumns {
   float* pointers[kMaxColumns] = {};
 };
 
-inline void write_slab(ColumnPointers columns, std::size_t low, std::size_t high, std::size_t row,
-                       float a, float b) noexcept {
-  columns[low][row] = std::max(a, -FLT_MAX);
-  columns[high][row] = std::min(b, FLT_MAX);
+inline void write_slab(ColumnPointers columns, std::size_t low_column, std::size_t high_column,
+                       std::size_t row, float low, float high) noexcept {
+  columns[low_column][row] = std::max(low, -FLT_MAX);
+  columns[high_column][row] = std::min(high, FLT_MAX);
 }
 
 inline constexpr std::size_t kEntriesPerTask = 8192;
@@ -42,7 +43,8 @@ inline constexpr std::size_t kEntriesPerTask = 8192;
 // Prefetch distance, in entries, for boxes and rows that are read in arbitrary order.
 inline constexpr std::size_t kFetchAhead = 12;
 
-/// Calls work(begin, end) for ranges that cover [0, count), in parallel.
+/// Calls work(begin, end) for ranges that cover [0, count), in parallel. Ranges begin at multiples
+/// of 64, so that no two share a block of rows, or a word of a bitmap.
 template <typename Work>
 void for_ranges(const Execution& execution, std::size_t count, Work&& work) {
   for_each_even_range(execution, count, kEntriesPerTask, work);
@@ -67,13 +69,13 @@ template <typename Source>
 
 /// Maps a row to the entry of its object in an update; kNoObject if it has none.
 struct EntryOfRow {
-  BoxOfId of_id;
+  EntryOfId entry_of_id;
   const ObjectId* id;  ///< by row
 
   [[nodiscard]] std::size_t operator[](std::size_t row) const noexcept {
-    const ObjectId k = id[row] - of_id.first;
-    if (k >= of_id.ids) return kNoObject;
-    return of_id.table == nullptr ? k : of_id.table[k];
+    const ObjectId k = id[row] - entry_of_id.first;
+    if (k >= entry_of_id.ids) return kNoObject;
+    return entry_of_id.table == nullptr ? k : entry_of_id.table[k];
   }
 };
 
@@ -115,11 +117,11 @@ struct BoxSource {
     }
     return true;
   }
-  /// Writes the rows of [begin, end) whose objects have a box; `begin` and `end` are multiples
+  /// Writes the rows of [begin, end) whose objects have an entry; `begin` and `end` are multiples
   /// of 16. Requires packed boxes.
-  void write_rows(const BoxOfId& box_of, const ObjectId* ids, ColumnPointers columns,
+  void write_rows(const EntryOfId& entry_of_id, const ObjectId* ids, ColumnPointers columns,
                   std::size_t begin, std::size_t end) const noexcept {
-    box_input_kernels().write_rows(boxes.min[0], box_of, ids, columns, begin, end);
+    box_input_kernels().write_rows(boxes.min[0], entry_of_id, ids, columns, begin, end);
   }
   /// Writes entries [begin, end) to the rows from `row` on. Requires packed boxes.
   void write_in_order(std::size_t begin, std::size_t end, ColumnPointers columns,
@@ -160,8 +162,8 @@ bool Rows::loses_order(const Source& source, const UpdateSubset& entries) const 
   return order_is_lost(sample, entries.keys);
 }
 
-/// Calls visit(entry, its row, j) for the j-th entry. Threads never share an aligned group of 64
-/// entries, so that `visit` may set bit j of a bitmap.
+/// Calls visit(entry, its row, j) for the j-th entry; `visit` may set bit j of a bitmap (see
+/// `for_ranges`).
 template <typename Visit>
 void Rows::for_entries(const UpdateSubset& entries, bool ascending, const Visit& visit) {
   const std::size_t count = entries.count;

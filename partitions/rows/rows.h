@@ -22,7 +22,7 @@
 
 namespace winnow {
 
-struct BoxOfId;
+struct EntryOfId;
 struct BoxSource;
 struct EntryOfRow;
 struct SampledBoxes;
@@ -87,7 +87,8 @@ struct RowRegions {
   std::size_t regular = 0;  ///< rows [0, regular) belong to the structure
   std::size_t ordered = 0;  ///< the tail starts here
   std::size_t sorted = 0;   ///< tail rows below this are in spatial order
-  /// An order is being planned for rows below this; none of them is given to another object.
+  /// An order is being planned for rows below this; a removed object leaves a hole there until
+  /// the plan is applied or dropped.
   std::size_t planned = 0;
 };
 
@@ -208,7 +209,8 @@ class Rows {
                                   bool& ascending) const;
   [[nodiscard]] Status check(const UpdateSubset& entries, const BoxView& boxes,
                              bool& ascending) const;
-  [[nodiscard]] bool writes_by_rows(const UpdateSubset& entries, bool ascending, BoxOfId& entry_of);
+  [[nodiscard]] bool writes_by_rows(const UpdateSubset& entries, bool ascending,
+                                    EntryOfId& entry_of_id);
   void write_by_rows(const BoxSource& source, const EntryOfRow& entry_of);
   template <typename Visit>
   void for_entries(const UpdateSubset& entries, bool ascending, const Visit& visit);

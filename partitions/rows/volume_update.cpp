@@ -112,8 +112,8 @@ struct VolumeUpdate {
   static Status write(Rows& rows, const Source& source, const UpdateSubset& entries,
                       bool ascending) {
     rows.note_stale(entries);
-    BoxOfId entry_of{};
-    if (!rows.writes_by_rows(entries, ascending, entry_of)) {
+    EntryOfId entry_of_id{};
+    if (!rows.writes_by_rows(entries, ascending, entry_of_id)) {
       const PoolColumns columns(rows.pool_);
       rows.for_entries(entries, ascending, [&](std::size_t i, std::size_t row, std::size_t) {
         source.write(i, columns.pointers, row);
@@ -124,7 +124,7 @@ struct VolumeUpdate {
       write_new(rows, source, entries.keys, 0, true);
       rows.invalidate_order();
     } else {
-      write_by_rows(rows, source, {entry_of, rows.pool_.ids()});
+      write_by_rows(rows, source, {entry_of_id, rows.pool_.ids()});
     }
     return Status::ok;
   }
@@ -150,7 +150,7 @@ struct VolumeUpdate {
   static Status write(Rows& rows, const FatSource<Source>& fat, const UpdateSubset& entries,
                       bool ascending) {
     const PoolColumns columns(rows.pool_);
-    BoxOfId entry_of_id{};
+    EntryOfId entry_of_id{};
     const bool by_rows = rows.writes_by_rows(entries, ascending, entry_of_id);
     const EntryOfRow entry_of{entry_of_id, rows.pool_.ids()};
     const std::size_t slots = by_rows ? rows.pool_.rows() : entries.count;
