@@ -1,6 +1,6 @@
-// Public functions of Partition: they set the floating-point environment, log errors and call
-// PartitionState. Casts, regions and nearest queries are in queries/, snapshots in
-// snapshot/snapshot.cpp.
+// Public functions of Partition: they set the floating-point environment, call PartitionState, and
+// log refused mutations and self pairs. Casts, regions and nearest queries are in queries/,
+// snapshots in snapshot/snapshot.cpp.
 
 #include <winnow/partitions/partition.h>
 
@@ -228,7 +228,7 @@ Status Partition::filter(Key key, ObjectFilter& filter) const noexcept {
 
 Status Partition::refresh() const {
   const DefaultFloatEnvironment environment;
-  return logged(state_ == nullptr ? status_ : state_->refresh_for_queries(), "Partition::refresh");
+  return logged(state_ == nullptr ? status_ : state_->refresh_early(), "Partition::refresh");
 }
 
 Status Partition::self_pairs(PairBuffer& out, const PairOptions& options) const {

@@ -191,8 +191,8 @@ Status PartitionState::refresh() const {
   return status;
 }
 
-// The kind of the first query is unknown, so the first build is made as for casts and regions.
-Status PartitionState::refresh_for_queries() const {
+// The first build is made as for casts and regions.
+Status PartitionState::refresh_early() const {
   if (stale_.load(std::memory_order_acquire)) {
     const Lock lock(refresh_mutex_);
     if (index.planner().builds() == 0) index.planner().note_query();
@@ -234,13 +234,14 @@ void PartitionState::count_queries(QueryKind kind, std::size_t count) const noex
 }
 
 Status PartitionState::prepare(QueryKind kind, std::size_t count, QueryView& view) const {
+  // A build in this refresh may be made with more care (RebuildPlanner::precision).
   if (stale_.load(std::memory_order_acquire)) index.planner().note_query();
   if (const Status status = settle(); status != Status::ok) return status;
   count_queries(kind, count);
-  if (index.queries_stale()) {
+  if (index.query_trees_stale()) {
     const Lock lock(refresh_mutex_);
-    if (index.queries_stale()) {
-      if (const Status status = index.refresh_queries(); status != Status::ok) return status;
+    if (index.query_trees_stale()) {
+      if (const Status status = index.refresh_query_trees(); status != Status::ok) return status;
     }
   }
   index.view(view);
