@@ -23,7 +23,7 @@ Status mutate(const char* call, PartitionState* state, Status otherwise, std::si
               Change&& change) {
   if (state == nullptr) return logged(otherwise, call);
   const Status status = change(state->rows);
-  state->note_changes(count);
+  state->note_changes(status, count);
   return logged(status, call);
 }
 
@@ -158,9 +158,7 @@ Status Partition::remove(std::span<const Key> keys) {
 }
 
 Status Partition::remove(Key key) {
-  const DefaultFloatEnvironment environment;
-  return mutate("Partition::remove", state_, status_, 1,
-                [&](Rows& rows) { return rows.remove(key); });
+  return remove(std::span<const Key>(&key, 1));
 }
 
 void Partition::clear() noexcept {

@@ -65,22 +65,22 @@ Status PartitionState::insert(const BoxView& boxes, std::span<const ClientData> 
   RestingPairs& resting = pairs_.resting();
   if (status == Status::ok && resting.active() && !resting.insert(keys, boxes)) end_deferring();
   resting.disturb(keys.size());
-  note_changes(keys.size());
-  if (chooser_ != nullptr) chooser_->note_inserted(keys.size());
+  note_changes(status, keys.size());
+  if (chooser_ != nullptr && status == Status::ok) chooser_->note_inserted(keys.size());
   return status;
 }
 
 Status PartitionState::remove(std::span<const Key> keys) {
   const Status status = rows.remove(keys);
   pairs_.resting().disturb(keys.size());
-  note_changes(keys.size());
+  note_changes(status, keys.size());
   return status;
 }
 
 Status PartitionState::restore(const SavedRows& saved, PartitionState& other) {
   const Status status = rows.restore(saved, other.rows);
   if (status != Status::ok) return status;
-  note_changes(saved.objects);
+  note_changes(status, saved.objects);
   if (chooser_ != nullptr) chooser_->note_inserted(saved.objects);
   return status;
 }
@@ -93,7 +93,7 @@ Status PartitionState::reserve(std::size_t objects, Pages pages) {
   const bool reserved =
       status == Status::ok && index.reserve(most, pages, later) && pairs_.resting().reserve(pages);
   if (reserved && pages == Pages::prefaulted) rows.touch();
-  note_changes(0);
+  note_changes(status, 0);
   return status == Status::ok && !reserved ? Status::out_of_memory : status;
 }
 
@@ -101,7 +101,7 @@ Status PartitionState::set_filter(std::span<const Key> keys,
                                   std::span<const ObjectFilter> filters) {
   const Status status = rows.set_filter(keys, filters);
   pairs_.resting().disturb(keys.size());
-  note_changes(0);
+  note_changes(status, 0);
   return status;
 }
 
@@ -110,7 +110,7 @@ Status PartitionState::update(const UpdateSubset& entries, const BoxView& boxes)
   const Status status =
       resting.active() ? resting.update(entries, boxes) : rows.update(entries, boxes);
   // Deferred boxes change no rows.
-  note_changes(resting.active() ? 0 : entries.count);
+  note_changes(status, resting.active() ? 0 : entries.count);
   return status;
 }
 
@@ -136,7 +136,7 @@ Status PartitionState::update(std::span<const Key> keys, const BoxView& boxes,
 Status PartitionState::update(Key key, const Aabb& box) {
   RestingPairs& resting = pairs_.resting();
   const Status status = resting.active() ? resting.update(key, box) : rows.update(key, box);
-  note_changes(resting.active() ? 0 : 1);
+  note_changes(status, resting.active() ? 0 : 1);
   return status;
 }
 
@@ -153,9 +153,9 @@ Status PartitionState::bounds(std::span<const Key> keys, std::span<Aabb> boxes) 
   return Status::ok;
 }
 
-void PartitionState::note_changes(std::size_t count) const noexcept {
-  if (chooser_ != nullptr) chooser_->note_changes(count);
-  const bool counts = chooser_ != nullptr && count != 0;
+void PartitionState::note_changes(Status status, std::size_t count) const noexcept {
+  const bool counts = chooser_ != nullptr && count != 0 && status == Status::ok;
+  if (counts) chooser_->note_changes(count);
   if (counts || rows.changed()) stale_.store(true, std::memory_order_relaxed);
 }
 
@@ -165,7 +165,7 @@ void PartitionState::note_changes(std::size_t count) const noexcept {
 void PartitionState::end_deferring() const noexcept {
   if (!pairs_.resting().active()) return;
   const Lock lock(refresh_mutex_);
-  if (pairs_.resting().write()) note_changes(rows.size());
+  if (pairs_.resting().write()) note_changes(Status::ok, rows.size());
   pairs_.resting().end();
 }
 
@@ -313,7 +313,7 @@ void PartitionState::clear() noexcept {
   pairs_.forget_buffer();
   rows.clear();
   if (chooser_ != nullptr) chooser_->clear();
-  note_changes(0);
+  note_changes(Status::ok, 0);
 }
 
 void PartitionState::release_memory() noexcept {
@@ -327,7 +327,7 @@ void PartitionState::release_memory() noexcept {
     // An empty partition has no features, so the choice restarts from its first structure.
     if (chooser_ != nullptr) (void)index.set_structure(chooser_->first());
   }
-  note_changes(0);
+  note_changes(Status::ok, 0);
 }
 
 Footprint PartitionState::footprint() const noexcept {

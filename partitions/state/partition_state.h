@@ -45,9 +45,9 @@ class PartitionState {
   Status update(Key key, const Aabb& box);
   Status bounds(std::span<const Key> keys, std::span<Aabb> boxes) const noexcept;
 
-  /// Called at the end of a mutation of `count` objects: marks the structure as stale if rows
-  /// changed.
-  void note_changes(std::size_t count) const noexcept;
+  /// Called at the end of a mutation with its status, also if it was refused: marks the structure
+  /// as stale if rows changed. `count` objects changed, unless the mutation was refused.
+  void note_changes(Status status, std::size_t count) const noexcept;
   /// Brings the structure up to date, except that deferred boxes stay deferred; for pair queries of
   /// a tracked buffer.
   Status refresh() const;
