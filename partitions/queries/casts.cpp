@@ -55,7 +55,7 @@ void prepare_cast(KernelCast& cast, const Aabb& box, const Eigen::Vector3d& dire
     cast.inverse[a] = static_cast<float>(cast.exact_inverse[a] * cast.scale);
     if (d == 0.0) {
       cast.exact_inverse[a] = std::numeric_limits<double>::infinity();
-      // Boxes beyond the range of float have infinite ends, which have no next float.
+      // Bounds of spheres beyond the range of float have infinite ends, which have no next float.
       if (cast.near_origin[a] < kInfinity) cast.near_origin[a] = next_up(cast.near_origin[a]);
       if (cast.far_origin[a] > -kInfinity) cast.far_origin[a] = -next_up(-cast.far_origin[a]);
       cast.inverse[a] = kInfinity;
