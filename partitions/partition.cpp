@@ -1,6 +1,6 @@
-// Public functions of Partition: they set the floating-point environment, log errors and call
-// PartitionState. Casts, regions and nearest queries are in queries/, snapshots in
-// snapshot/snapshot.cpp.
+// Public functions of Partition: they set the floating-point environment, call PartitionState, and
+// log refused mutations and self pairs. Casts, regions and nearest queries are in queries/,
+// snapshots in snapshot/snapshot.cpp.
 
 #include <winnow/partitions/partition.h>
 
@@ -24,7 +24,7 @@ Status mutate(const char* call, PartitionState* state, Status otherwise, std::si
               Change&& change) {
   if (state == nullptr) return logged(otherwise, call);
   const Status status = change(state->rows);
-  state->note_changes(count);
+  state->note_changes(status, count);
   return logged(status, call);
 }
 
@@ -159,9 +159,7 @@ Status Partition::remove(std::span<const Key> keys) {
 }
 
 Status Partition::remove(Key key) {
-  const DefaultFloatEnvironment environment;
-  return mutate("Partition::remove", state_, status_, 1,
-                [&](Rows& rows) { return rows.remove(key); });
+  return remove(std::span<const Key>(&key, 1));
 }
 
 void Partition::clear() noexcept {
@@ -229,7 +227,7 @@ Status Partition::filter(Key key, ObjectFilter& filter) const noexcept {
 
 Status Partition::refresh() const {
   const DefaultFloatEnvironment environment;
-  return logged(state_ == nullptr ? status_ : state_->refresh_for_queries(), "Partition::refresh");
+  return logged(state_ == nullptr ? status_ : state_->refresh_early(), "Partition::refresh");
 }
 
 Status Partition::self_pairs(PairBuffer& out, const PairOptions& options) const {

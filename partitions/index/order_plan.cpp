@@ -17,7 +17,8 @@ namespace {
 constexpr std::size_t kSlack = 4 * kBlockRows;
 // This many cuts of a row take as long as one visit of the row.
 constexpr std::size_t kCutsPerRow = 2;
-constexpr std::size_t kMaxWork = std::numeric_limits<std::size_t>::max() / kCutsPerRow;
+// More work than this overflows when it is counted in cuts.
+constexpr std::size_t kMaxCutWork = std::numeric_limits<std::size_t>::max() / kCutsPerRow;
 
 }  // namespace
 
@@ -26,7 +27,8 @@ bool OrderPlan::reserve(std::size_t rows, std::size_t moved, Pages pages) noexce
          moves_.reserve(moved, pages) && placed_.reserve(moved, pages);
 }
 
-bool OrderPlan::start(Rows& rows, Structure& structure, std::size_t room, KdParts parts) noexcept {
+bool OrderPlan::start(Rows& rows, Structure& structure, std::size_t room,
+                      KdPrecision precision) noexcept {
   drop();
   const std::size_t most = rows.pool().rows() + room + kSlack;
   order_.clear();
@@ -41,7 +43,7 @@ bool OrderPlan::start(Rows& rows, Structure& structure, std::size_t room, KdPart
   phase_ = PlanPhase::structure;
   structure_stage_ = 0;
   resumed_ = false;
-  parts_ = parts;
+  precision_ = precision;
   rows.regions().planned = planned_rows_;
   // Cells would mix the environments, and each object would be tested against objects of all
   // environments. In the tree, rows are sorted by environment, and queries skip nodes of other
@@ -54,8 +56,9 @@ bool OrderPlan::start(Rows& rows, Structure& structure, std::size_t room, KdPart
 }
 
 bool OrderPlan::advance(std::size_t work) noexcept {
-  sort_moves();
-  // If no rows remain for the tree, the stage `rest` takes no work.
+  sort_moves();  // Structure::plan searches the moves by row
+  // If no rows remain for the tree, the stage `rest` takes no work, so the plan becomes ready in
+  // this refresh.
   const auto is_as_good_as_ready = [&] { return phase_ == PlanPhase::rest && rest_.empty(); };
   while ((work != 0 && !ready()) || is_as_good_as_ready()) {
     if (!run_stage(work)) return false;
@@ -78,7 +81,7 @@ bool OrderPlan::run_stage(std::size_t& work) noexcept {
     case PlanPhase::rest:
       return begin_rest(work);
     case PlanPhase::cuts: {
-      const bool done = cuts_.advance(work > kMaxWork ? work : kCutsPerRow * work,
+      const bool done = cuts_.advance(work > kMaxCutWork ? work : kCutsPerRow * work,
                                       rows_->execution_for(rest_.size()));
       work = 0;
       if (done) append_rest();
@@ -118,10 +121,11 @@ bool OrderPlan::begin_rest(std::size_t& work) noexcept {
     return ordered == Structure::RestOrder::done;
   }
   if (!order_.grow(order_.size() + rest.size()) ||
-      !cuts_.start(pool, rest, order_.end(), points_, execution, parts_)) {
+      !cuts_.start(pool, rest, order_.end(), points_, execution, precision_)) {
     return false;
   }
   phase_ = PlanPhase::cuts;
+  // One block needs no cuts, so the plan is ready without another refresh.
   if (rest.size() <= kBlockRows) append_rest();
   return true;
 }
@@ -154,7 +158,7 @@ void OrderPlan::sort_moves() noexcept {
 }
 
 void OrderPlan::place_moved() noexcept {
-  sort_moves();
+  sort_moves();  // moves were noted since the last stage
   const ObjectId* const ids = rows_->pool().ids();
   const KeyTable& keys = rows_->keys();
   for (std::uint32_t& row : order_) {

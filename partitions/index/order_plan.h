@@ -12,10 +12,11 @@
 
 namespace winnow {
 
-/// Plans the next order of the rows: the order that the structure and the tree beside it need. The
-/// stages may be spread over refreshes, and objects may move, be inserted or removed between
-/// stages. A plan that is out of date is harmless: the caller that reorders the rows then searches
-/// for rows that no longer fit.
+/// Plans the next order of the rows: the order that the structure and the tree beside it need, in
+/// stages: the structure's regular rows; the start of the rest, which reads the centres, so that
+/// later motion does not change the cuts; the cuts; ready. The stages may be spread over refreshes,
+/// and objects may move, be inserted or removed between stages. A plan that is out of date is
+/// harmless: the caller that reorders the rows then searches for rows that no longer fit.
 class OrderPlan {
  public:
   explicit OrderPlan(std::pmr::memory_resource* memory) noexcept
@@ -39,9 +40,9 @@ class OrderPlan {
   /// Starts a plan for the current rows; at most `room` further rows may be added behind the order.
   /// Returns false if an allocation fails.
   [[nodiscard]] bool start(Rows& rows, Structure& structure, std::size_t room,
-                           KdParts parts) noexcept;
-  /// Runs stages that visit about `work` rows in total, at least one stage. Returns false if an
-  /// allocation fails; the caller then drops the plan.
+                           KdPrecision precision) noexcept;
+  /// Runs stages that visit about `work` rows in total: at least one if `work` is not 0, and at
+  /// most one of cuts. Returns false if an allocation fails; the caller then drops the plan.
   [[nodiscard]] bool advance(std::size_t work) noexcept;
   void drop() noexcept;
 
@@ -100,15 +101,15 @@ class OrderPlan {
   std::size_t planned_objects_ = 0;
   std::size_t regular_ = 0;
   PlanPhase phase_ = PlanPhase::structure;
-  unsigned structure_stage_ = 0;
-  bool resumed_ = false;  // rows may have become empty since the start
-  KdParts parts_ = KdParts::tiles;
+  unsigned structure_stage_ = 0;  // the next argument of Structure::plan
+  bool resumed_ = false;          // rows may have become empty since the start
+  KdPrecision precision_ = KdPrecision::tiles;
   KdCuts cuts_;
 
   Column<std::uint32_t> order_;
   Column<std::uint32_t> rest_;
   Column<RowMove> moves_;
-  Column<std::uint32_t> placed_;  // rows beyond planned_rows_ that have a planned new row
+  Column<std::uint32_t> placed_;  // ascending rows beyond planned_rows_ that have a planned new row
   Column<std::uint64_t> items_;
   Column<std::uint32_t> list_;
   Column<float> points_;  // positions of rows, used as sort keys

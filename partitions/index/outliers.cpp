@@ -16,7 +16,7 @@ constexpr float kWide = 3.0F;
 // median distance plus half the width of a wide block.
 constexpr float kFar = 4.0F;
 
-/// The bounded objects of one block of rows.
+/// The objects of one block of rows.
 struct BlockMembers {
   std::size_t count = 0;
   std::array<std::uint32_t, kBlockRows> row;
@@ -26,13 +26,10 @@ struct BlockMembers {
     const std::size_t last = std::min(first + kBlockRows, pool.rows());
     for (std::size_t at = first; at < last; ++at) {
       if (pool.ids()[at] == kNoObject) continue;
-      float sum = 0.0F;
       for (std::size_t a = 0; a < 3; ++a) {
         centre[a][count] = 0.5F * pool.column(a)[at] + 0.5F * pool.column(3 + a)[at];
-        sum += centre[a][count];
       }
-      row[count] = static_cast<std::uint32_t>(at);
-      count += std::isfinite(sum) ? 1U : 0U;
+      row[count++] = static_cast<std::uint32_t>(at);
     }
   }
 

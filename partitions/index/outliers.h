@@ -7,6 +7,9 @@
 
 namespace winnow {
 
+// All functions require that there are no regular rows: then block i of the tree is block i of the
+// rows.
+
 /// Counts the blocks in the order of the last build that are wide compared with `edge`, the edge of
 /// a typical block after the build.
 [[nodiscard]] std::size_t count_wide_blocks(const Rows& rows, const BlockTree& tree,

@@ -11,10 +11,10 @@
 namespace winnow {
 
 /// The rows of a partition as queries see them. Every row is either in a block of one of the trees
-/// or in a flat block; flat blocks are all tested.
+/// or in a flat block; flat blocks are all tested. If there are regular rows in no flat block,
+/// tree[0] is theirs.
 struct QueryView {
-  /// Lower bounds x, y, z, then upper bounds; set by SpatialIndex::view.
-  const float* column[6];
+  const float* column[6] = {};  ///< lower bounds x, y, z, then upper bounds
   const std::uint32_t* id = nullptr;
   FilterColumns filter;  ///< by row
   FilterSpan span;       ///< summary of the filters of all objects

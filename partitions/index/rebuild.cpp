@@ -1,6 +1,6 @@
 // SpatialIndex: builds, which reorder the rows at once or by a plan that was made ahead over
-// several refreshes, and exchanges of the structure. refresh() in spatial_index.cpp calls `build`;
-// RebuildPlanner decides, OrderPlan computes the order.
+// several refreshes. refresh() in spatial_index.cpp calls `build`; RebuildPlanner decides,
+// OrderPlan computes the order.
 
 #include "core/hooks/stage_scope.h"
 #include "core/memory/columns.h"
@@ -9,36 +9,19 @@
 #include "partitions/tree/environment_order.h"
 
 #include <algorithm>
-#include <array>
 #include <numeric>
 #include <utility>
 
 namespace winnow {
 namespace {
 
-// Median, over a sample of blocks, of the mean edge of the box around a block.
+// Median edge of the blocks of all rows, also of those in cells, which the tree does not contain.
 float edge_of_block(const BoundsPool& pool) noexcept {
-  constexpr std::size_t kSample = 31;
-  std::array<float, kSample> edge;
-  const std::size_t count = std::min(kSample, pool.blocks());
-  if (count == 0) return 0.0F;
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::size_t row = pool.blocks() * i / count * kBlockRows;
-    edge[i] = 0.0F;
-    for (std::size_t a = 0; a < 3; ++a) {
-      const float* const low = pool.column(a) + row;
-      const float* const high = pool.column(3 + a) + row;
-      const float from = *std::min_element(low, low + kBlockRows);
-      edge[i] += (*std::max_element(high, high + kBlockRows) - from) / 3.0F;
-    }
-  }
-  std::nth_element(edge.begin(), edge.begin() + count / 2, edge.begin() + count);
-  return edge[count / 2];
-}
-
-// Rows that a build of `objects` objects reserves for the tail.
-std::size_t spare_rows(const Structure& structure, std::size_t objects) noexcept {
-  return (structure.prunes_rows() ? 2 : 1) * RebuildPlanner::max_in_tail(objects);
+  return median_edge(pool.blocks(), [&](std::size_t block, std::size_t a) {
+    const float* const low = pool.column(a) + block * kBlockRows;
+    const float* const high = pool.column(3 + a) + block * kBlockRows;
+    return *std::max_element(high, high + kBlockRows) - *std::min_element(low, low + kBlockRows);
+  });
 }
 
 }  // namespace
@@ -58,7 +41,7 @@ Status SpatialIndex::build() {
 }
 
 // The rows are not changed before all steps that can fail have succeeded.
-Status SpatialIndex::apply_plan(bool moved) {
+Status SpatialIndex::apply_plan(bool foreseen) {
   RowRegions& regions = rows_.regions();
   regions.built = false;
   const Structure& next = *plan_.structure();
@@ -66,10 +49,11 @@ Status SpatialIndex::apply_plan(bool moved) {
   const std::size_t ordered = order.size();
   const std::size_t regular = plan_.regular();
   const std::size_t first_block = blocks_of(regular);
-  const bool complete = !moved || plan_.complete();
+  // `complete` appends the rows added since the start of the plan: they are the tail.
+  const bool completed = !foreseen || plan_.complete();
   const std::size_t rows = order.size();
   const bool prunes = next.prunes_rows();
-  if (!complete || !rows_.reserve_rows(rows + spare_rows(next, rows_.size())) ||
+  if (!completed || !rows_.reserve_rows(rows + tail_room(next, rows_.size())) ||
       !spare_.reserve(rows_.pool().capacity() + 2 * kBlockRows) ||
       !tree_.cover(first_block, blocks_of(rows) - first_block, node_content()) ||
       (prunes && !regular_tree_.cover(0, blocks_of(regular), node_content())) ||
@@ -81,12 +65,12 @@ Status SpatialIndex::apply_plan(bool moved) {
   install_planned_structure();
   regions = {.built = false, .regular = regular, .ordered = ordered, .sorted = ordered};
   const std::size_t holes = rows - rows_.size();
-  structure_->finish_build(plan_.row_plan(), moved);
+  structure_->finish_build(plan_.row_plan(), foreseen);
   plan_.drop();
   const Execution execution = rows_.execution_for(rows);
   tree_.refit_all(rows_.view(), execution);
-  planner_.note_build(moved, holes, tree_.typical_edge());
-  planner_.note_wide(count_wide_blocks(rows_, tree_, planner_.built_edge()));
+  planner_.note_build(foreseen, holes, tree_.typical_edge());
+  if (regular == 0) planner_.note_wide(count_wide_blocks(rows_, tree_, planner_.built_edge()));
   if (prunes) regular_tree_.refit_all(rows_.view(), execution);
   regions.built = true;
   rows_.note_build(edge_of_block(rows_.pool()));
@@ -127,8 +111,13 @@ Status SpatialIndex::build_flat() {
 
 bool SpatialIndex::start_plan(Structure& structure) noexcept {
   planner_.note_plan(numbers());
-  return plan_.start(rows_, structure, spare_rows(structure, rows_.size()),
-                     planner_.precision(structure.first_parts()));
+  return plan_.start(rows_, structure, tail_room(structure, rows_.size()),
+                     planner_.precision(structure.first_precision()));
+}
+
+// Rows that a build of `objects` objects reserves for the tail.
+std::size_t SpatialIndex::tail_room(const Structure& structure, std::size_t objects) noexcept {
+  return (structure.prunes_rows() ? 2 : 1) * RebuildPlanner::max_in_tail(objects);
 }
 
 // Starts a plan if a build is near, and runs the stages of this refresh.
@@ -152,125 +141,6 @@ void SpatialIndex::continue_planning() noexcept {
 void SpatialIndex::drop_plan() noexcept {
   plan_.drop();
   structures_.stash(std::exchange(next_, {}), reserved_);
-}
-
-// Exchange of the structure.
-
-void SpatialIndex::install(Structure* structure, StructureKind kind) noexcept {
-  drop_plan();
-  structure_ = structure;
-  kind_ = kind;
-  if (reserved_) {
-    (void)tree_.cover(0, 0);
-    (void)regular_tree_.cover(0, 0);
-  } else {
-    tree_.release();
-    regular_tree_.release();
-    release_scratch();
-    rows_.selection().release();
-  }
-  planner_.note_new_structure();
-  rows_.invalidate_order();
-}
-
-bool SpatialIndex::set_structure(StructureKind kind) noexcept {
-  Structure* const made = structures_.make(kind);
-  if (made == nullptr) return false;
-  structures_.destroy_spares();
-  structures_.destroy({kind_, structure_});
-  install(made, kind);
-  return true;
-}
-
-Status SpatialIndex::refresh_as(StructureKind kind, bool& refused) {
-  Structure* const made = structures_.make(kind);
-  refused = made == nullptr;
-  if (refused) return refresh();
-  const RowNumbers n = numbers();
-  if (planner_.plans_ahead(n) && !n.flat && !made->is_flat() && !planner_.needs_build(n)) {
-    drop_plan();
-    // The scratch of the current structure's plan is of no use to the next structure.
-    if (!reserved_) plan_.release();
-    if (start_plan(*made)) {
-      next_ = {kind, made};
-      return refresh();
-    }
-  }
-  const OwnedStructure before{kind_, structure_};
-  install(made, kind);
-  if (refresh() == Status::ok) {
-    structures_.stash(before, reserved_);
-    return Status::ok;
-  }
-  refused = true;
-  structures_.stash({kind, made}, reserved_);
-  install(before.structure, before.kind);
-  return refresh();
-}
-
-void SpatialIndex::install_planned_structure() noexcept {
-  if (!swap_is_planned()) return;
-  structures_.stash({kind_, structure_}, reserved_);
-  kind_ = next_.kind;
-  structure_ = std::exchange(next_, {}).structure;
-  if (!structure_->prunes_rows() && !reserved_) regular_tree_.release();
-}
-
-// Reservation of memory.
-
-bool SpatialIndex::reserve(std::size_t objects, Pages pages,
-                           std::span<const StructureKind> later) noexcept {
-  drop_plan();
-  if (!structures_.make_spares(later, kind_)) return false;
-  std::size_t holes = 0;
-  std::size_t behind = 0;
-  bool flat = true;
-  bool prunes = false;
-  const auto count_in = [&](const Structure& structure) {
-    flat = flat && structure.is_flat();
-    prunes = prunes || structure.prunes_rows();
-    holes = std::max(holes, structure.max_holes());
-    behind = std::max(behind, spare_rows(structure, objects));
-  };
-  count_in(*structure_);
-  for (const OwnedStructure& one : structures_.spares()) {
-    if (one.structure != nullptr) count_in(*one.structure);
-  }
-  const std::size_t ordered = objects + holes + kBlockRows;
-  reserved_ = flat || (reserve_order(ordered, behind, pages) &&
-                       (!prunes || regular_tree_.reserve(blocks_of(ordered), pages)));
-  const BuildRoom room = plan_.room_for(objects, pages);
-  reserved_ = reserved_ && structure_->reserve(room);
-  for (const OwnedStructure& one : structures_.spares()) {
-    if (one.structure != nullptr) reserved_ = reserved_ && one.structure->reserve(room);
-  }
-  return reserved_;
-}
-
-// Makes room for `rows` rows in order and for `behind` rows in the tail.
-bool SpatialIndex::reserve_order(std::size_t rows, std::size_t behind, Pages pages) noexcept {
-  return rows_.reserve_rows(rows + behind) &&
-         spare_.reserve(rows_.pool().capacity() + 2 * kBlockRows, pages) &&
-         plan_.reserve(rows + behind, behind, pages) && tree_.reserve(blocks_of(rows), pages) &&
-         departures_.reserve(rows);
-}
-
-void SpatialIndex::release_scratch() noexcept {
-  drop_plan();
-  release_columns(spare_, tail_order_);
-  plan_.release();
-}
-
-void SpatialIndex::release_memory() noexcept {
-  reserved_ = false;
-  structures_.destroy_spares();
-  release_scratch();
-  structure_->release_scratch();
-  if (rows_.size() != 0) return;
-  tree_.release();
-  regular_tree_.release();
-  departures_.release();
-  structure_->release_memory();
 }
 
 }  // namespace winnow

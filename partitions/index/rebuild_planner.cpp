@@ -6,7 +6,7 @@
 namespace winnow {
 namespace {
 
-// With fewer rows a build is short enough to be done at once.
+// With fewer objects, and without a build budget, a build is short enough to be done at once.
 constexpr std::size_t kWorthPlanning = 1024;
 // A plan starts this many refreshes early: one refresh applies the order, and the forecast is late
 // if objects accelerate.
@@ -25,16 +25,17 @@ constexpr std::uint64_t kSearchCost = 16;
 // There is no search if fewer than one object in this many changed: then wear, which is counted in
 // tests, leads to a build if it is necessary.
 constexpr std::size_t kFewChanges = 256;
-// There is no search either if few blocks became wide: the limit is the price of a build (in tests)
-// divided by this number.
-constexpr std::size_t kWearOfPrice = 512;
+// There is no search either if few blocks became wide: at most one for this many tests of the price
+// of a build.
+constexpr std::size_t kPriceOfWideBlock = 512;
 
 }  // namespace
 
 // Builds that are due.
 
 RebuildPlanner::OrderStep RebuildPlanner::begin_refresh(const RowNumbers& n) noexcept {
-  // If few objects move now, their refreshes should not pay for the wear of earlier motion.
+  // While few objects move, the plan pauses (`is_paused`): it would repair the wear of earlier
+  // motion at the cost of quiet refreshes.
   const bool quiet =
       n.plan_rows != 0 && build_budget_ == 0 && kQuietFactor * n.changed < changed_at_plan_;
   quiet_refreshes_ = quiet ? quiet_refreshes_ + 1 : 0;
@@ -84,7 +85,7 @@ RebuildPlanner::OutlierStep RebuildPlanner::step_for_outliers(const RowNumbers& 
                                                               std::size_t blocks) noexcept {
   known_wide_ = std::min(known_wide_, wide);
   const std::uint64_t price = n.build_price * blocks;
-  if (wide <= known_wide_ + price / kWearOfPrice) return OutlierStep::none;
+  if (wide <= known_wide_ + price / kPriceOfWideBlock) return OutlierStep::none;
   // If the search would cost more than a build, build instead.
   return wide * kSearchCost > price ? OutlierStep::build : OutlierStep::search;
 }
@@ -135,21 +136,21 @@ bool RebuildPlanner::is_near_if_leaving(const RowNumbers& n, float leaving) noex
   return leaving > 0.0F && behind > due;
 }
 
-// More than kOften refreshes for rays and regions since the last build, or any before the first
-// build, justify an order that takes longer to compute. If the last order lasted at most kTorn
-// refreshes, a coarser order is computed.
-KdParts RebuildPlanner::precision(KdParts first) const noexcept {
-  constexpr std::size_t kOften = 4;
-  constexpr std::size_t kTorn = 2;
+// More than kManyQueried refreshes for rays and regions since the last build, or any before the
+// first build, justify an order that takes longer to compute. If the last order lasted at most
+// kShortLife refreshes, a coarser order is computed.
+KdPrecision RebuildPlanner::precision(KdPrecision first) const noexcept {
+  constexpr std::size_t kManyQueried = 4;
+  constexpr std::size_t kShortLife = 2;
   const std::size_t queried = queried_refreshes_.load(std::memory_order_relaxed);
-  if (queried > (builds_ == 0 ? 0 : kOften)) return KdParts::blocks;
+  if (queried > (builds_ == 0 ? 0 : kManyQueried)) return KdPrecision::blocks;
   if (builds_ == 0) return first;
-  return frames_ <= kTorn ? KdParts::cells : KdParts::tiles;
+  return frames_ <= kShortLife ? KdPrecision::cells : KdPrecision::tiles;
 }
 
 // A second refresh with few changes and no query in between does not count as a frame, because the
 // forecasts of builds extrapolate growth per frame.
-bool RebuildPlanner::is_next_frame(const RowNumbers& n) const noexcept {
+bool RebuildPlanner::begin_frame(const RowNumbers& n) noexcept {
   const bool queried = queried_.exchange(false, std::memory_order_relaxed);
   return queried || n.all_changed || 4 * n.changed >= n.objects;
 }
@@ -190,9 +191,9 @@ void RebuildPlanner::note_mistake() noexcept {
   builds_without_planning_ = kBuildsAfterMistake;
 }
 
-void RebuildPlanner::note_build(bool planned, std::size_t holes, float edge) noexcept {
+void RebuildPlanner::note_build(bool foreseen, std::size_t holes, float edge) noexcept {
   ++builds_;
-  planned_builds_ += planned ? 1 : 0;
+  planned_builds_ += foreseen ? 1 : 0;
   if (builds_without_planning_ != 0) --builds_without_planning_;
   built_holes_ = holes;
   built_edge_ = edge;

@@ -60,6 +60,9 @@ class GrowthForecast {
 /// al., Algorithmica 3, 1988). Decisions count tests, never time, so every machine builds in the
 /// same frame.
 ///
+/// An order is lost in four ways: one update moves most objects (Rows::order_is_lost before the
+/// boxes are written, `is_scattered` after the refit), few objects jump (outliers), or wear grows.
+///
 /// Most of a build is spent on the order. A build can be foreseen if objects approach the borders
 /// of their cells, or if the tail or the wear grows. Then the order is planned in stages over the
 /// refreshes before the build (see OrderPlan).
@@ -108,9 +111,10 @@ class RebuildPlanner {
   /// True if planning pauses in this refresh.
   [[nodiscard]] bool is_paused() const noexcept;
   /// Returns the precision of the order of the next build; `first` is that of the first one.
-  [[nodiscard]] KdParts precision(KdParts first) const noexcept;
-  /// True if a refresh counts as a frame for the forecasts. Resets the mark of `note_query`.
-  [[nodiscard]] bool is_next_frame(const RowNumbers& n) const noexcept;
+  [[nodiscard]] KdPrecision precision(KdPrecision first) const noexcept;
+  /// Returns true if this refresh counts as a frame for the forecasts, and forgets the queries
+  /// before it.
+  [[nodiscard]] bool begin_frame(const RowNumbers& n) noexcept;
 
   /// A build is due if the tail has more rows than this.
   [[nodiscard]] static std::size_t tail_limit(std::size_t objects) noexcept {
@@ -137,9 +141,10 @@ class RebuildPlanner {
   /// A plan was out of date when it was applied.
   void note_mistake() noexcept;
   /// A build ended. `edge`: of a typical block; `holes`: between the regions.
-  void note_build(bool planned, std::size_t holes, float edge) noexcept;
+  void note_build(bool foreseen, std::size_t holes, float edge) noexcept;
   void note_flat_build() noexcept { ++builds_; }
-  /// That many blocks are wide, but not because of outliers.
+  /// That many blocks are wide after a build or a search, so a search would find no outliers in
+  /// them.
   void note_wide(std::size_t wide) noexcept { known_wide_ = wide; }
   void note_new_structure() noexcept;
 

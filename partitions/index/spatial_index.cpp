@@ -99,12 +99,13 @@ Status SpatialIndex::refresh() {
       status = absorb_changes(false);
       break;
   }
-  queries_stale_.store(true, std::memory_order_relaxed);
+  query_trees_stale_.store(true, std::memory_order_relaxed);
   return status;
 }
 
-// If `all` is true, any row may no longer fit its position in the order, even if it did not change
-// now.
+// Keeps the order: moves misfits to the tail, sorts the tail and refits the trees; then builds
+// after all if the planner finds that the order is lost, or plans ahead. If `all` is true, any row
+// may no longer fit its position in the order, even if it did not change now.
 Status SpatialIndex::absorb_changes(bool all) {
   planner_.note_refit();
   if (structure_->is_flat()) {
@@ -139,7 +140,7 @@ Status SpatialIndex::absorb_changes(bool all) {
   const std::uint64_t builds = planner_.builds();
   const Status status = find_outliers(n);
   if (status != Status::ok || planner_.builds() != builds) return status;
-  if (!planner_.is_next_frame(n)) return Status::ok;
+  if (!planner_.begin_frame(n)) return Status::ok;
   planner_.note_frame(tail_rows(rows_));
   continue_planning();
   return Status::ok;
@@ -264,7 +265,7 @@ bool SpatialIndex::refit(BlockTree& tree, std::size_t first, std::size_t blocks,
     changed_from = std::min(changed_from, tail_block - first);
   }
   const std::size_t behind = blocks - changed_from;
-  // If more than one block in four changed, refitting all blocks takes less time.
+  // If more than one block in four is behind `changed_from`, refitting all blocks takes less time.
   constexpr std::size_t kRefitShare = 4;
   if (kRefitShare * behind > blocks) return refit_all();
   RowSelection& leaves = rows_.selection();
@@ -283,7 +284,7 @@ bool SpatialIndex::refit(BlockTree& tree, std::size_t first, std::size_t blocks,
   return true;
 }
 
-Status SpatialIndex::refresh_queries() const {
+Status SpatialIndex::refresh_query_trees() const {
   const std::size_t regular = rows_.regions().regular;
   const bool own_tree = !structure_->is_flat() && !structure_->prunes_rows();
   if (regular != 0 && own_tree) {
@@ -295,7 +296,7 @@ Status SpatialIndex::refresh_queries() const {
   }
   const bool mostly_regular = 2 * regular > rows_.pool().rows();
   leaf_edge_ = (mostly_regular ? regular_tree_ : tree_).typical_edge();
-  queries_stale_.store(false, std::memory_order_release);
+  query_trees_stale_.store(false, std::memory_order_release);
   return Status::ok;
 }
 

@@ -22,7 +22,8 @@ struct Statistics;
 
 /// Finds rows: owns the structure over the regular rows (see RowRegions) and a block tree over all
 /// other rows, and keeps both up to date while rows change. PartitionState calls it. Refreshes and
-/// queries are in spatial_index.cpp, builds and exchanges of the structure in rebuild.cpp.
+/// queries are in spatial_index.cpp, builds in rebuild.cpp, exchanges of the structure in
+/// exchange.cpp.
 ///
 /// All rows behind the regular rows are in the leaves of the block tree: objects that do not suit
 /// the structure (oversize, unbounded, in overfull cells), objects inserted since the last build,
@@ -31,7 +32,7 @@ struct Statistics;
 ///
 /// Queries other than pairs use block trees only. The cells and strips of a structure are ranges of
 /// rows, so these queries use a second block tree over the regular rows. It is built for the first
-/// such query and refitted after changes; a scene without such queries does not pay for it.
+/// such query and recomputed after changes; a scene without such queries does not pay for it.
 ///
 /// Filters are tested after boxes. Tree nodes store a summary of the filters below them, so that a
 /// query skips subtrees that its filter excludes. Flat structures have such nodes without boxes for
@@ -76,11 +77,12 @@ class SpatialIndex {
   /// True if the last refresh dropped that plan because an allocation failed.
   [[nodiscard]] bool swap_refused() const noexcept { return swap_refused_; }
 
-  /// True if one thread has to call `refresh_queries` before queries other than pairs.
-  [[nodiscard]] bool queries_stale() const noexcept {
-    return queries_stale_.load(std::memory_order_acquire) && !structure_->is_flat();
+  /// True if one thread has to call `refresh_query_trees` before queries other than pairs.
+  [[nodiscard]] bool query_trees_stale() const noexcept {
+    return query_trees_stale_.load(std::memory_order_acquire) && !structure_->is_flat();
   }
-  Status refresh_queries() const;
+  /// Updates the trees that only queries other than pairs use.
+  Status refresh_query_trees() const;
   /// Fills in the rows and trees that queries other than pairs read.
   void view(QueryView& view) const noexcept;
 
@@ -109,14 +111,16 @@ class SpatialIndex {
 
   // Builds, in rebuild.cpp.
   Status build();
-  Status apply_plan(bool moved);
+  Status apply_plan(bool foreseen);
   Status build_flat();
+  [[nodiscard]] static std::size_t tail_room(const Structure& structure,
+                                             std::size_t objects) noexcept;
   [[nodiscard]] bool start_plan(Structure& structure) noexcept;
   void continue_planning() noexcept;
   void drop_plan() noexcept;
   [[nodiscard]] BlockTree::NodeContent node_content() const noexcept;
 
-  // Exchange of the structure.
+  // Exchange of the structure, in exchange.cpp.
   void install(Structure* structure, StructureKind kind) noexcept;
   void install_planned_structure() noexcept;
   [[nodiscard]] bool reserve_order(std::size_t rows, std::size_t behind, Pages pages) noexcept;
@@ -130,9 +134,10 @@ class SpatialIndex {
   // these queries, except if the structure prunes rows or is flat.
   mutable BlockTree regular_tree_;
   mutable float leaf_edge_ = 0.0F;  // edge of a typical block
-  mutable std::atomic<bool> queries_stale_{true};
-  bool tail_changed_ = false;   // rows of the tail were reordered
-  bool order_changed_ = false;  // other rows were reordered, too
+  mutable std::atomic<bool> query_trees_stale_{true};
+  // Rows of the tail changed that are not in Rows::stale: they were sorted, or moved there.
+  bool tail_changed_ = false;
+  bool order_changed_ = false;  // so did rows before the tail
 
   RebuildPlanner planner_;
   OrderPlan plan_;

@@ -1,21 +1,5 @@
-// Chooses how a query finds all pairs, and tracks the buffer for the next query. An object counts
-// as moved if it was updated, inserted, removed or given another filter. `choose` tests the
-// strategies in this order; all of them return the same set of pairs:
-//
-//   resting      When: boxes are deferred, at most 1/16 of the objects left their skins, and there
-//                is no predicate. Why: only watched pairs can begin or end. Cost: a test of two
-//                boxes for each watched pair (RestingPairs).
-//   linked       When: nothing moved, or at most 1/48 of the objects moved, now and in the last
-//                query. Why: each object has a list of its pairs, so that the buffer is changed in
-//                place. Cost: moved objects and their pairs (LinkedPairs).
-//   incremental  When: few objects moved (`is_update_cheaper`), or events are reported. Why: pairs
-//                of objects that did not move stay. Cost: a pass over all pairs to drop those of
-//                moved objects, and a query for each moved object (PairTracker).
-//   full         Otherwise. Cost: O(n log n + pairs) for trees, in parallel tasks
-//                (pair_queries.cpp).
-//
-// All but `full` require a tracked buffer. Resting and linked also require Order::fast, and events
-// that describe the frame of the buffer, if there are any.
+// Chooses how a query finds all pairs, by one of the four strategies that the table in
+// .github/ARCHITECTURE.md compares, and tracks the buffer for the next query.
 
 #include "partitions/pairs/pair_finder.h"
 
@@ -38,7 +22,8 @@ PairFinder::PairFinder(std::pmr::memory_resource* memory, Rows& rows,
     : rows_(rows), index_(index), resting_(memory, rows, index), identity_(next_identity()) {}
 
 Status PairFinder::find(SelfPairsQuery& query) {
-  const bool anew = query.tracked && !can_update(query.out);
+  // If the buffer was not the tracked one, or most objects moved, the query is full.
+  const bool starts_tracking = query.tracked && !can_update(query.out);
   Status status = Status::ok;
   switch (choose(query)) {
     case Strategy::resting:
@@ -58,7 +43,8 @@ Status PairFinder::find(SelfPairsQuery& query) {
   last_pairs_.store(query.out.size(), std::memory_order_relaxed);
   if (query.tracked || query.events) finish_frame(query);
   const PairOptions& options = query.options;
-  if (anew && options.order == Order::fast && options.predicate.accept == nullptr && is_exact()) {
+  if (starts_tracking && options.order == Order::fast && options.predicate.accept == nullptr &&
+      is_exact()) {
     resting_.try_start(query.out);
   }
   return Status::ok;

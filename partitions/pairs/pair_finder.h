@@ -26,7 +26,7 @@ struct SelfPairsQuery {
   bool resting = false;                 ///< the result of `can_stay_resting`
 };
 
-/// Finds all pairs of a partition, by the cheapest of four strategies (see pair_finder.cpp), and
+/// Finds all pairs of a partition, by the cheapest of four strategies (`choose`), and
 /// tracks the buffer that the next query can update. One buffer is tracked at a time: it contains
 /// the pairs of the last tracked query, as its serial shows, and Rows collects the objects that
 /// moved since. A query that is not tracked may run concurrently with others.

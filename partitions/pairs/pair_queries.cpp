@@ -39,24 +39,24 @@ QueryBatch volume_batch(const Rows& rows, std::size_t begin, std::size_t end) no
 /// Tasks of a full pair query in order: the structure's tasks for regular rows, tasks over the
 /// tree, and the rows of the tree against the regular rows.
 struct PairFinder::FullTasks {
-  std::size_t regular = 0;
-  std::size_t tree = 0;
-  std::size_t cross = 0;
+  std::size_t regular_tasks = 0;
+  std::size_t tree_tasks = 0;
+  std::size_t cross_tasks = 0;
   std::size_t groups_per_task = 1;
   std::size_t queries_per_task = kQueriesPerTask;
   std::size_t first_tree_row = 0;
 
   FullTasks(const Rows& rows, const SpatialIndex& index) noexcept
-      : regular(index.structure().pair_tasks()),
+      : regular_tasks(index.structure().pair_tasks()),
         groups_per_task(std::max<std::size_t>(1, index.tree().groups() / kTreeTasks)),
         first_tree_row(index.tree().first_block() * kBlockRows) {
     if (index.structure().is_flat() || index.tree().blocks() == 0) return;
-    tree = ceil_divide(index.tree().groups(), groups_per_task);
+    tree_tasks = ceil_divide(index.tree().groups(), groups_per_task);
     if (rows.regions().regular != 0) {
       const std::size_t query_rows = rows.pool().rows() - first_tree_row;
       // Each task gets whole blocks.
       queries_per_task *= ceil_divide(query_rows, kTreeTasks * kQueriesPerTask);
-      cross = ceil_divide(query_rows, queries_per_task);
+      cross_tasks = ceil_divide(query_rows, queries_per_task);
     }
   }
   /// Returns the largest number of tasks for that many rows.
@@ -65,7 +65,9 @@ struct PairFinder::FullTasks {
     return std::min(kMaxTasks, most_rows) + std::min(2 * kTreeTasks, groups) +
            std::min(kTreeTasks, most_rows / kQueriesPerTask + 1);
   }
-  [[nodiscard]] std::size_t count() const noexcept { return regular + tree + cross; }
+  [[nodiscard]] std::size_t count() const noexcept {
+    return regular_tasks + tree_tasks + cross_tasks;
+  }
 };
 
 Status PairFinder::query_all(PairBuffer& out, const PairPredicate& predicate) {
@@ -81,9 +83,9 @@ Status PairFinder::query_all(PairBuffer& out, const PairPredicate& predicate) {
 }
 
 bool PairFinder::run_task(const FullTasks& tasks, std::size_t task, PairSink& sink) const noexcept {
-  if (task < tasks.regular) return index_.structure().run_pair_task(task, sink);
-  task -= tasks.regular;
-  if (task < tasks.tree) {
+  if (task < tasks.regular_tasks) return index_.structure().run_pair_task(task, sink);
+  task -= tasks.regular_tasks;
+  if (task < tasks.tree_tasks) {
     const BlockTree& tree = index_.tree();
     const std::size_t begin = task * tasks.groups_per_task;
     const std::size_t end = std::min(tree.groups(), begin + tasks.groups_per_task);
@@ -91,7 +93,7 @@ bool PairFinder::run_task(const FullTasks& tasks, std::size_t task, PairSink& si
                                            static_cast<std::uint32_t>(begin),
                                            static_cast<std::uint32_t>(end), sink);
   }
-  task -= tasks.tree;
+  task -= tasks.tree_tasks;
   const std::size_t begin = tasks.first_tree_row + task * tasks.queries_per_task;
   const std::size_t end = std::min(rows_.pool().rows(), begin + tasks.queries_per_task);
   return index_.structure().query(volume_batch(rows_, begin, end), sink);

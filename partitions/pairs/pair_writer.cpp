@@ -78,12 +78,14 @@ bool PairWriter::reserve(PairBuffer& out, std::size_t pairs, std::size_t tasks,
          out.page_table_.reserve(count + tasks + 1, pages);
 }
 
+/// Output of the tasks on one thread, one after the other: the buffer's array, or storage beside it
+/// until the number of the first pairs is known.
 struct PairWriter::SerialOutput {
   const PairWriter& writer;
   Column<Pair>& pairs;
   const std::size_t before;  // pairs in the buffer at the start
   const std::size_t tasks;
-  Pair* few;                     // storage of the first pairs, or null for the array
+  Pair* beside;                  // storage of the first pairs, or null for the array
   std::size_t task = 0;          // running task
   std::size_t checked = before;  // pairs that passed the predicate
 
@@ -102,18 +104,18 @@ struct PairWriter::SerialOutput {
 
   // Takes over the pairs that the sink received; false if memory is refused.
   [[nodiscard]] bool take(const PairSink& sink) {
-    if (few != nullptr) return take_few(sink);
+    if (beside != nullptr) return take_beside(sink);
     const auto used = static_cast<std::size_t>(sink.cursor - words(pairs.data())) / 2;
     checked += writer.keep_accepted(pairs.data() + checked, used - checked);
     pairs.set_size(checked);
     return true;
   }
-  [[nodiscard]] bool take_few(const PairSink& sink) {
-    const auto found = static_cast<std::size_t>(sink.cursor - words(few)) / 2;
-    const std::size_t kept = writer.keep_accepted(few, found);
+  [[nodiscard]] bool take_beside(const PairSink& sink) {
+    const auto found = static_cast<std::size_t>(sink.cursor - words(beside)) / 2;
+    const std::size_t kept = writer.keep_accepted(beside, found);
     if (!pairs.grow(checked + kept)) return false;
-    std::copy_n(few, kept, pairs.data() + checked);
-    few = nullptr;
+    std::copy_n(beside, kept, pairs.data() + checked);
+    beside = nullptr;
     checked += kept;
     pairs.set_size(checked);
     return true;
@@ -137,12 +139,12 @@ Status PairWriter::append_serial(std::size_t tasks, void* context, WriteTask run
   // The first pairs are therefore written beside the array, which then grows to the actual number.
   constexpr std::size_t kBeside = 2 * kSinkSlack;
   alignas(Pair) std::byte bytes[kBeside * sizeof(Pair)];  // uninitialized, unlike Pair[]
-  auto* const room = reinterpret_cast<Pair*>(bytes);
+  auto* const beside = reinterpret_cast<Pair*>(bytes);
   const bool is_tight = before + kBeside > pairs.capacity();
-  SerialOutput output{*this, pairs, before, tasks, is_tight ? room : nullptr};
+  SerialOutput output{*this, pairs, before, tasks, is_tight ? beside : nullptr};
   PairSink sink;
   if (is_tight) {
-    aim(sink, room, room + kBeside);
+    aim(sink, beside, beside + kBeside);
   } else {
     aim(sink, pairs.data() + before, pairs.data() + pairs.capacity());
   }
@@ -228,9 +230,9 @@ struct PairWriter::TaskOutput {
   const std::size_t task;
   Pair* begin = nullptr;  // current destination, or null
   Pair* end = nullptr;
-  std::size_t checked = 0;  // pairs from `begin` on that passed the predicate
-  std::size_t page = PageClaims::kNone;
-  std::size_t in_array = 0;  // pairs written to the array
+  std::size_t checked = 0;               // pairs from `begin` on that passed the predicate
+  std::size_t page = PageClaims::kNone;  // the last claimed one
+  std::size_t in_array = 0;              // pairs written to the array
 
   bool write(void* context, WriteTask run) {
     const bool leads = claims.leading.load(std::memory_order_acquire) == task;

@@ -10,6 +10,7 @@
 #include "partitions/pairs/linked_pairs.h"
 #include "partitions/pairs/pair_tracker.h"
 #include "partitions/pairs/pair_writer.h"
+#include "partitions/rows/box_compare.kernel.h"
 #include "partitions/rows/row_input.h"
 
 #include <algorithm>
@@ -90,8 +91,8 @@ Status RestingPairs::update(Key key, const Aabb& box) {
   if (!BoxSource{view}.valid(0)) return Status::invalid_bounds;
   const DeferredBox given = as_given(box);
   const bool departed =
-      box_input_kernels().copy_near(given.min, stored_[key.id].min, given_[key.id].min, 1, skin_,
-                                    departed_.data(), 0) != 0;
+      box_compare_kernels().copy_near(given.min, stored_[key.id].min, given_[key.id].min, 1, skin_,
+                                      departed_.data(), 0) != 0;
   pending_ = true;
   if (!departed) return Status::ok;
   stored_[key.id] = given;
@@ -116,7 +117,7 @@ bool RestingPairs::copy(const UpdateSubset& entries, const BoxView& boxes) noexc
     const DeferredBox one = packed ? DeferredBox{} : as_given(boxes[i]);
     const float* const from = packed ? boxes.min[0] + 6 * i : one.min;
     std::uint32_t* const departed = departed_.end();
-    const std::uint32_t found = box_input_kernels().copy_near(
+    const std::uint32_t found = box_compare_kernels().copy_near(
         from, stored_[first].min, given_[first].min, end - begin, skin_, departed,
         max_departed_ - static_cast<std::uint32_t>(departed_.size()));
     for (std::uint32_t k = 0; k < found; ++k) departed[k] += first;

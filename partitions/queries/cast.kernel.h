@@ -13,25 +13,27 @@ namespace winnow {
 /// box reaches first, `far` is the other end, and the origins are ends of the moving box. A ray is
 /// a box of zero extent.
 ///
-/// The float tests of 16 boxes never miss a hit; a test in double decides on the rows that pass.
-/// The float tests scale t by a power of two, so that the largest component of the direction is in
-/// [1/2, 1) and underflow stays within the slack of the tests. On an axis without motion the
-/// reciprocal is infinite, and the origins are moved outward by one float, so that 0 * infinity
-/// occurs only without a hit. An axis whose motion is too slow for a float reciprocal uses the
-/// values of the fastest axis; only the test in double tests the slow axis.
+/// The float tests of 16 boxes never miss a hit; a test in double, with the members exact_*,
+/// decides on the rows that pass. Three rules hold for the values of the float tests:
+/// - They scale t by a power of two, so that the largest component of the direction is in [1/2, 1)
+///   and underflow stays within the slack of the tests.
+/// - On an axis without motion the reciprocal is infinite, and the origins are moved outward by one
+///   float, so that 0 * infinity occurs only without a hit.
+/// - A slow axis, whose motion is too slow for a float reciprocal, has the values of the fastest
+///   axis; only the test in double tests it.
 struct KernelCast {
   float near_origin[3];
   float far_origin[3];
   float inverse[3];
   std::uint8_t near_column[3];
   std::uint8_t far_column[3];
-  float from;  ///< scaled min_t, rounded down
+  float scaled_from;  ///< scaled min_t, rounded down
   double scale;
 
   double exact_near_origin[3];
   double exact_far_origin[3];
   double exact_inverse[3];
-  std::uint8_t exact_near_column[3];
+  std::uint8_t exact_near_column[3];  ///< near_column, except on slow axes
   double min_t;
   double max_t;
 
@@ -44,7 +46,8 @@ struct KernelCast {
 /// Largest number of casts in one joint traversal. Their directions must satisfy `same_octant`.
 inline constexpr std::uint32_t kMaxCasts = 64;
 
-/// True if two casts reach the same columns of boxes first.
+/// True if two casts reach the same columns of boxes first, so that one choice of columns serves
+/// both.
 static inline bool same_octant(const KernelCast& a, const KernelCast& b) {
   bool same = true;
   for (int i = 0; i < 3; ++i) {
@@ -69,7 +72,7 @@ struct CastKernels {
   void (*any)(const QueryView&, const KernelCast*, std::uint32_t count, const QueryFilter&,
               std::uint64_t* found);
   /// Finds all hits of `count` <= kMaxCasts casts, unsorted. Writes two pairs per hit:
-  /// (query[s], id) and (bits of t, 0). False if the sink is full.
+  /// (query[i], id) and (bits of t, 0) for a hit of cast i. False if the sink is full.
   bool (*all)(const QueryView&, const KernelCast*, std::uint32_t count, const std::uint32_t* query,
               const QueryFilter&, PairSink&);
   /// Sorts at most kMaxSorted results.

@@ -21,54 +21,56 @@ namespace winnow {
 
 WINNOW_DEFINE_KERNELS(CastKernels, cast_kernels)
 
-void prepare_cast(KernelCast& s, const Aabb& box, const Eigen::Vector3d& direction, double min_t,
+void prepare_cast(KernelCast& cast, const Aabb& box, const Eigen::Vector3d& direction, double min_t,
                   double max_t) noexcept {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
-  // Below this speed, relative to the fastest axis, the reciprocal is not a normal float.
+  // Below this speed, relative to the fastest axis, the product of the reciprocal and a length may
+  // exceed the range of float.
   constexpr double kSlowest = 0x1p-120;
-  s.touch = nullptr;
-  s.shape = nullptr;
-  s.min_t = min_t;
-  s.max_t = max_t;
+  cast.touch = nullptr;
+  cast.shape = nullptr;
+  cast.min_t = min_t;
+  cast.max_t = max_t;
   const Eigen::Vector3d speed = direction.cwiseAbs();
   const double most = speed.maxCoeff();
   // The next power of two above `most`: its exponent bits plus one.
   const auto exponent = std::bit_cast<std::uint64_t>(most) >> 52U;
-  s.scale = std::bit_cast<double>((exponent + 1) << 52U);
-  s.from = round_down(min_t * s.scale);
+  cast.scale = std::bit_cast<double>((exponent + 1) << 52U);
+  cast.scaled_from = round_down(min_t * cast.scale);
   for (int axis = 0; axis < 3; ++axis) {
     const double d = direction[axis];
     const auto a = static_cast<std::uint8_t>(axis);
-    // Branchless: the direction is unpredictable.
+    // Branchless: the direction is unpredictable. The leading end of the moving box reaches the
+    // near end of a tested box, the trailing end leaves its far end.
     const auto back = static_cast<unsigned>(d < 0.0);
     const float end[2] = {box.max[axis], box.min[axis]};
-    s.near_column[a] = static_cast<std::uint8_t>(a + 3 * back);
-    s.far_column[a] = static_cast<std::uint8_t>(a + 3 - 3 * back);
-    s.near_origin[a] = end[back];
-    s.far_origin[a] = end[1 - back];
-    s.exact_near_column[a] = s.near_column[a];
-    s.exact_near_origin[a] = static_cast<double>(s.near_origin[a]);
-    s.exact_far_origin[a] = static_cast<double>(s.far_origin[a]);
-    s.exact_inverse[a] = 1.0 / d;
-    s.inverse[a] = static_cast<float>(s.exact_inverse[a] * s.scale);
+    cast.near_column[a] = static_cast<std::uint8_t>(a + 3 * back);
+    cast.far_column[a] = static_cast<std::uint8_t>(a + 3 - 3 * back);
+    cast.near_origin[a] = end[back];
+    cast.far_origin[a] = end[1 - back];
+    cast.exact_near_column[a] = cast.near_column[a];
+    cast.exact_near_origin[a] = static_cast<double>(cast.near_origin[a]);
+    cast.exact_far_origin[a] = static_cast<double>(cast.far_origin[a]);
+    cast.exact_inverse[a] = 1.0 / d;
+    cast.inverse[a] = static_cast<float>(cast.exact_inverse[a] * cast.scale);
     if (d == 0.0) {
-      s.exact_inverse[a] = std::numeric_limits<double>::infinity();
-      // Boxes beyond the range of float have infinite ends, which have no next float.
-      if (s.near_origin[a] < kInfinity) s.near_origin[a] = next_up(s.near_origin[a]);
-      if (s.far_origin[a] > -kInfinity) s.far_origin[a] = -next_up(-s.far_origin[a]);
-      s.inverse[a] = kInfinity;
+      cast.exact_inverse[a] = std::numeric_limits<double>::infinity();
+      // Bounds of spheres beyond the range of float have infinite ends, which have no next float.
+      if (cast.near_origin[a] < kInfinity) cast.near_origin[a] = next_up(cast.near_origin[a]);
+      if (cast.far_origin[a] > -kInfinity) cast.far_origin[a] = -next_up(-cast.far_origin[a]);
+      cast.inverse[a] = kInfinity;
     }
   }
-  const double slow = kSlowest * s.scale;
+  const double slow = kSlowest * cast.scale;
   if (speed.minCoeff() >= slow) return;
   const int fastest = speed.x() == most ? 0 : speed.y() == most ? 1 : 2;
   for (int axis = 0; axis < 3; ++axis) {
     if (speed[axis] == 0.0 || speed[axis] >= slow) continue;
-    s.near_column[axis] = s.near_column[fastest];
-    s.far_column[axis] = s.far_column[fastest];
-    s.near_origin[axis] = s.near_origin[fastest];
-    s.far_origin[axis] = s.far_origin[fastest];
-    s.inverse[axis] = s.inverse[fastest];
+    cast.near_column[axis] = cast.near_column[fastest];
+    cast.far_column[axis] = cast.far_column[fastest];
+    cast.near_origin[axis] = cast.near_origin[fastest];
+    cast.far_origin[axis] = cast.far_origin[fastest];
+    cast.inverse[axis] = cast.inverse[fastest];
   }
 }
 
@@ -169,6 +171,7 @@ class RayChunk {
     count_ = 0;
     while (left_ != end_ && count_ < kMaxCasts) {
       prepare_ray(kernel_cast_[count_], rays_[*left_]);
+      // A slow axis has the columns of another axis.
       if (count_ != 0 && !same_octant(kernel_cast_[0], kernel_cast_[count_])) break;
       ++count_;
       ++left_;
@@ -238,12 +241,12 @@ Status find_hits(const PartitionState& state, FindHits find, const RayBatch& ray
   // Small tasks, so that a batch of a few thousand rays occupies every thread.
   constexpr std::size_t kTask = kGroup / 4;
   state.rows.execution().for_each((rays.count + kTask - 1) / kTask, [&](std::size_t task) {
-    RayChunk group(rays, task * kTask, std::min(rays.count, (task + 1) * kTask));
+    RayChunk chunk(rays, task * kTask, std::min(rays.count, (task + 1) * kTask));
     std::array<std::uint64_t, kMaxCasts> found;
-    while (group.next()) {
-      find(view, group.kernel_casts(), group.count(), kernel_filter.query_filter(), found.data());
-      for (std::uint32_t i = 0; i < group.count(); ++i) {
-        write_columns(hits, group.query_numbers()[i], hit_or_null(keys, found[i]));
+    while (chunk.next()) {
+      find(view, chunk.kernel_casts(), chunk.count(), kernel_filter.query_filter(), found.data());
+      for (std::uint32_t i = 0; i < chunk.count(); ++i) {
+        write_columns(hits, chunk.query_numbers()[i], hit_or_null(keys, found[i]));
       }
     }
   });
@@ -323,9 +326,9 @@ Status Partition::all(const RayBatch& rays, HitBuffer& hits, const Filter& filte
     const std::size_t groups = (last - first + kGroup - 1) / kGroup;
     const Status status = writer.append(groups, [&](std::size_t task, PairSink& sink) {
       const std::size_t begin = first + task * kGroup;
-      RayChunk group(rays, begin, std::min(last, begin + kGroup));
-      while (!kernel_filter.matches_nothing() && group.next()) {
-        if (!cast_kernels().all(view, group.kernel_casts(), group.count(), group.query_numbers(),
+      RayChunk chunk(rays, begin, std::min(last, begin + kGroup));
+      while (!kernel_filter.matches_nothing() && chunk.next()) {
+        if (!cast_kernels().all(view, chunk.kernel_casts(), chunk.count(), chunk.query_numbers(),
                                 kernel_filter.query_filter(), sink)) {
           return false;
         }

@@ -1,17 +1,18 @@
-// Kernels of casts: closest, any and all hits of up to kMaxCasts casts. casts.cpp calls them;
-// the tests of boxes and the joint traversal are in cast_tests.wide.h, the ordered descent in
-// descent.wide.h.
+// Kernels of casts: closest, any and all hits of up to kMaxCasts casts. casts.cpp calls them. One
+// cast visits the blocks (descent.wide.h) and tests their rows (cast_tests.wide.h); several casts
+// first traverse the trees together (joint_casts.wide.h).
 
 #include "partitions/queries/cast.kernel.h"
 #include "partitions/queries/cast_tests.wide.h"
+#include "partitions/queries/joint_casts.wide.h"
 
 namespace winnow {
 namespace WINNOW_ISA_NAME {
 namespace {
 
-/// Calls found(t, id) for each of the 16 rows from `first_row` on that the cast touches at or
-/// before `limit`; rows slightly behind the limit may be included. `found` returns false to end the
-/// descent.
+/// Calls found(t, id), with exact t, for each of the 16 rows from `first_row` on that the cast
+/// touches at or before `limit`; rows slightly behind the limit may be included. `found` returns
+/// false to end the descent.
 template <typename Found>
 bool test_rows(const QueryView& view, const KernelCast& cast, const CastTest& probe,
                const CandidateFilter& candidate_filter, std::uint32_t first_row, const float& limit,
@@ -46,10 +47,11 @@ class NearestHits {
     // Branchless: the comparison is unpredictable.
     const std::uint64_t best = hit < best_[s] ? hit : best_[s];
     best_[s] = best;
-    // The limit is the next float, because an object with the same rounded t may have a smaller id.
-    const float shown = value_of(static_cast<std::uint32_t>(best >> 32U) + 1);
-    const float next = scaled_limit(casts_[s], static_cast<double>(shown));
-    limit_[s] = next < limit_[s] ? next : limit_[s];
+    // The limit is that of the next float t, because an object with the same rounded t may have a
+    // smaller id.
+    const float next_t = value_of(static_cast<std::uint32_t>(best >> 32U) + 1);
+    const float next_limit = scaled_limit(casts_[s], static_cast<double>(next_t));
+    limit_[s] = next_limit < limit_[s] ? next_limit : limit_[s];
   }
 
  private:
@@ -58,6 +60,40 @@ class NearestHits {
   std::uint64_t* best_;
   float* limit_;
 };
+
+/// Finds the least hit of one cast.
+void closest_of_one(const QueryView& view, const KernelCast& cast, const QueryFilter& filter,
+                    std::uint64_t& best) {
+  const CandidateFilter candidate_filter(view, filter);
+  const CastTest probe(cast);
+  float limit = scaled_limit(cast, cast.max_t);
+  best = kNoHit;
+  NearestHits hits(&cast, candidate_filter, &best, &limit);
+  visit_nearest_first(view, probe, candidate_filter, limit, [&](std::uint32_t first_row) {
+    return test_rows(view, cast, probe, candidate_filter, first_row, limit,
+                     [&](double t, std::uint32_t id) {
+                       hits.touched(0, t, id);
+                       return true;
+                     });
+  });
+}
+
+/// Finds any hit of one cast.
+void any_of_one(const QueryView& view, const KernelCast& cast, const QueryFilter& filter,
+                std::uint64_t& found) {
+  const CandidateFilter candidate_filter(view, filter);
+  const CastTest probe(cast);
+  const float limit = scaled_limit(cast, cast.max_t);
+  found = kNoHit;
+  visit_in_row_order(view, probe, candidate_filter, limit, [&](std::uint32_t first_row) {
+    return test_rows(view, cast, probe, candidate_filter, first_row, limit,
+                     [&](double t, std::uint32_t id) {
+                       if (!candidate_filter.accepts(id)) return true;
+                       found = hit_of(t, id);
+                       return false;
+                     });
+  });
+}
 
 /// Keeps the first found hit of every cast, and ends that cast.
 class AnyHits {
@@ -99,7 +135,7 @@ class FirstSegmentThenRest {
     const float segment = edge > 0.0F ? kSegment * edge : __builtin_inff();
     for (std::uint32_t s = 0; s < count; ++s) {
       found[s] = kNoHit;
-      from_[s] = casts[s].from;
+      from_[s] = casts[s].scaled_from;
       last_[s] = scaled_limit(casts[s], casts[s].max_t);
       // One unit of scaled t is about one unit of length.
       const float end = from_[s] + segment;
@@ -116,7 +152,7 @@ class FirstSegmentThenRest {
       if (is_finished(s)) continue;
       const CastTest probe(casts_[s], end_[s]);
       float& limit = limit_[s];
-      limit = last_[s];
+      limit = last_[s];  // the next row that the cast touches lowers it to the best hit
       visit_blocks(probe, candidate_filter_, limit, [&](std::uint32_t first_row) {
         return test_rows(view_, casts_[s], probe, candidate_filter_, first_row, limit,
                          [&](double t, std::uint32_t id) {
@@ -141,6 +177,7 @@ class FirstSegmentThenRest {
   const CandidateFilter candidate_filter_;
   Hits hits_;
   std::uint32_t count_;
+  // Scaled t of each cast: its start, its limit, the end of its segment, and its end.
   float from_[kMaxCasts];
   float limit_[kMaxCasts];
   float end_[kMaxCasts];
@@ -149,26 +186,10 @@ class FirstSegmentThenRest {
 
 void closest(const QueryView& view, const KernelCast* casts, std::uint32_t count,
              const QueryFilter& filter, std::uint64_t* best) {
+  if (count == 1) return closest_of_one(view, casts[0], filter, best[0]);
   FirstSegmentThenRest<NearestHits>(view, casts, count, filter, best)
       .run([&](const CastTest& probe, const CandidateFilter& candidate_filter, const float& limit,
-               auto&& test) { visit_in_order(view, probe, candidate_filter, limit, test); });
-}
-
-/// As `any`, for one cast, which needs no joint traversal.
-void any_of_one(const QueryView& view, const KernelCast& cast, const QueryFilter& filter,
-                std::uint64_t& found) {
-  const CandidateFilter candidate_filter(view, filter);
-  const CastTest probe(cast);
-  const float limit = scaled_limit(cast, cast.max_t);
-  found = kNoHit;
-  visit_in_row_order(view, probe, candidate_filter, limit, [&](std::uint32_t first_row) {
-    return test_rows(view, cast, probe, candidate_filter, first_row, limit,
-                     [&](double t, std::uint32_t id) {
-                       if (!candidate_filter.accepts(id)) return true;
-                       found = hit_of(t, id);
-                       return false;
-                     });
-  });
+               auto&& test) { visit_nearest_first(view, probe, candidate_filter, limit, test); });
 }
 
 void any(const QueryView& view, const KernelCast* casts, std::uint32_t count,
@@ -208,7 +229,7 @@ bool all(const QueryView& view, const KernelCast* casts, std::uint32_t count,
   float from[kMaxCasts];
   float limit[kMaxCasts];
   for (std::uint32_t s = 0; s < count; ++s) {
-    from[s] = casts[s].from;
+    from[s] = casts[s].scaled_from;
     limit[s] = scaled_limit(casts[s], casts[s].max_t);
   }
   AllHits hits(candidate_filter, query, sink);
@@ -220,14 +241,13 @@ bool all(const QueryView& view, const KernelCast* casts, std::uint32_t count,
 /// bits, so that all keys are distinct. An insertion sort then orders elements that differ only in
 /// the other bits.
 void sort_few(std::uint64_t* results, std::uint32_t size) {
-  constexpr std::uint32_t kMinNormal = 0x00800000U;  // denormals may compare as zero
   alignas(64) float key[kMaxSorted];
   std::uint64_t copy[kMaxSorted];
   const std::uint32_t blocks = (size + kLanes - 1) / kLanes;
   for (std::uint32_t i = 0; i < size; ++i) {
     copy[i] = results[i];
     const auto t = static_cast<std::uint32_t>(results[i] >> 33U);
-    key[i] = value_of(((t & ~(kMaxSorted - 1)) | i) + kMinNormal);
+    key[i] = value_of((t & ~(kMaxSorted - 1)) | i);
   }
   for (std::uint32_t i = size; i < blocks * kLanes; ++i) key[i] = __builtin_inff();
   for (std::uint32_t i = 0; i < size; ++i) {

@@ -39,8 +39,8 @@ class CandidateFilter {
   const QueryFilter& filter_;
 };
 
-/// Returns the bits of a float >= 0, which sort like the float. The sign is masked out: the sum of
-/// +0 and -0 is -0 if the host rounds down, although compilers assume +0.
+/// Returns the bits of a float >= 0, which sort like the float. The sign is masked out, because the
+/// value may be -0: min_t of a cast may be.
 inline std::uint32_t order_of(float value) {
   std::uint32_t bits;
   __builtin_memcpy(&bits, &value, sizeof bits);
@@ -62,11 +62,11 @@ inline std::uint32_t order_of_rounded_down(double value) {
 /// Upper bound of the order of a node; a larger value means that there is no node.
 inline constexpr float kMaxOrder = 1e38F;
 
-/// The open nodes of a nearest-first descent. Each level stores the 16 siblings opened last, with a
-/// key each; siblings with keys up to gone_to_ are done. A key is the node's order with the lane in
-/// its low four bits, so that keys of siblings are distinct; keys are never denormal, which may
-/// compare as zero. Probe: `Mask16 test(columns, at, limit, Floats& order)`, where order is in [0,
-/// kMaxOrder], and infinite in lanes that fail.
+/// The open nodes of `descend`, depth first and the nearest child first. Each level stores the 16
+/// siblings opened last, with a key each; siblings with keys up to done_to_ are done. A key is the
+/// node's order with the lane in its low four bits, so that keys of siblings are distinct. Keys are
+/// positive, although an order may be -0. Probe: `Mask16 test(columns, at, limit, Floats& order)`,
+/// where order is in [0, kMaxOrder], and infinite in lanes that fail.
 template <typename Probe>
 class OpenNodes {
  public:
@@ -90,7 +90,7 @@ class OpenNodes {
     if (mask != reached) [[unlikely]]
       leave_out(reached & ~mask, key_[level]);
     const std::uint32_t nearest = reduce_min_positive(Floats::load(key_[level]));
-    go_to(nearest, level);
+    mark_done(nearest, level);
     first_node_[level] = first_node;
     open_ |= ((mask & (mask - 1)) != 0 ? 1U : 0U) << level;
     node = first_node + nearest % kLanes;
@@ -103,11 +103,11 @@ class OpenNodes {
     while (open_ != 0) {
       level = static_cast<std::uint32_t>(__builtin_ctz(open_));
       const Floats key = Floats::load(key_[level]);
-      const Floats left = select(key > Floats(gone_to_[level]), key, Floats(kLargest<float>));
+      const Floats left = select(key > Floats(done_to_[level]), key, Floats(kLargest<float>));
       const std::uint32_t nearest = reduce_min_positive(left);
       if (nearest <= last) {
-        go_to(nearest, level);
-        const Mask16 others = bits((key > Floats(gone_to_[level])) & (key <= Floats(kMaxKey)));
+        mark_done(nearest, level);
+        const Mask16 others = bits((key > Floats(done_to_[level])) & (key <= Floats(kMaxKey)));
         open_ ^= (others == 0 ? 1U : 0U) << level;
         node = first_node_[level] + nearest % kLanes;
         return true;
@@ -134,8 +134,8 @@ class OpenNodes {
     const float most = limit_ < kMaxOrder ? limit_ : kMaxOrder;
     return value_of(order_of(most > kMinOrder ? most : kMinOrder) | (kLanes - 1U));
   }
-  // always_inline: compilers remove calls of functions that only prefetch.
-  /// Prefetches the rows of blocks that are visited later.
+  /// Prefetches the rows of blocks that are visited later. Always inline: compilers remove calls of
+  /// functions that only prefetch.
   [[gnu::always_inline]] void fetch_rows(std::uint32_t first_block, Mask16 blocks) const {
     for (; blocks != 0; blocks &= blocks - 1) {
       const std::size_t block = tree_.first_block + first_block + first(blocks);
@@ -145,7 +145,7 @@ class OpenNodes {
   static void leave_out(Mask16 lanes, float* key) {
     for (; lanes != 0; lanes &= lanes - 1) key[first(lanes)] = kLargest<float>;
   }
-  void go_to(std::uint32_t key, std::uint32_t level) { gone_to_[level] = value_of(key); }
+  void mark_done(std::uint32_t key, std::uint32_t level) { done_to_[level] = value_of(key); }
 
   const QueryView& view_;
   const TreeShape& tree_;
@@ -155,7 +155,7 @@ class OpenNodes {
   /// A bit per level that has remaining siblings.
   std::uint32_t open_ = 0;
   std::uint32_t first_node_[kMaxTreeLevels];
-  float gone_to_[kMaxTreeLevels];
+  float done_to_[kMaxTreeLevels];
   alignas(64) float key_[kMaxTreeLevels][kLanes];
 };
 
@@ -184,11 +184,13 @@ bool visit_in_row_order(const QueryView& view, const Probe& probe,
   return true;
 }
 
-/// Visits blocks that the probe reaches within `limit`, approximately nearest first. A visit may
-/// lower the limit. `visit(first_row)` returns false to end the descent.
+/// Visits blocks that the probe reaches within `limit`, approximately nearest first in each tree;
+/// the second tree starts with the limit that the first one left. A visit may lower the limit.
+/// `visit(first_row)` returns false to end the descent.
 template <typename Probe, typename Visit>
-bool visit_in_order(const QueryView& view, const Probe& probe,
-                    const CandidateFilter& candidate_filter, const float& limit, Visit&& visit) {
+bool visit_nearest_first(const QueryView& view, const Probe& probe,
+                         const CandidateFilter& candidate_filter, const float& limit,
+                         Visit&& visit) {
   for (std::uint32_t block = 0; block < view.flat_blocks; ++block) {
     if (!visit(block * kLanes)) return false;
   }

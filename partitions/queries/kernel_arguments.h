@@ -17,7 +17,7 @@
 namespace winnow {
 
 /// Prepares the cast of a box along direction * [min_t, max_t]; the direction is not zero. Writes
-/// in place, because copying a struct that was just written stalls on its stores.
+/// in place, because copying a struct that was just written stalls on its stores. In casts.cpp.
 void prepare_cast(KernelCast& cast, const Aabb& box, const Eigen::Vector3d& direction, double min_t,
                   double max_t) noexcept;
 
@@ -29,11 +29,11 @@ class KernelFilter {
     query_filter_.object = filter.object();
     FilterSpan query_span;
     query_span.add(query_filter_.object);
-    // If the partition stores no filters, every object has the default filter, so one test decides
-    // for all.
     const bool matches_all = surely_match(query_span, view.span);
     const bool filtered = view.filter.layers != nullptr;
     query_filter_.by_object = filtered && !matches_all;
+    // If the partition stores no filters, every object has the default filter, so one test decides
+    // for all.
     matches_nothing_ = !filtered && !matches_all;
     if (predicate_.accept == nullptr) return;
     query_filter_.context = this;

@@ -95,7 +95,7 @@ bool nearest(const QueryView& view, const NearestQuery& query, const QueryFilter
   const CandidateFilter candidate_filter(view, filter);
   Heap heap(nearest_heap);
   float limit = square_limit(query.radius);
-  return visit_in_order(view, probe, candidate_filter, limit, [&](std::uint32_t first_row) {
+  return visit_nearest_first(view, probe, candidate_filter, limit, [&](std::uint32_t first_row) {
     Floats order;
     Mask16 mask = probe.test(view.column, first_row, limit, order);
     mask = candidate_filter.rows(first_row, mask);

@@ -7,6 +7,7 @@
 #include <winnow/core/fat_margin.h>
 #include <winnow/core/rounding.h>
 #include <winnow/core/volume.h>
+#include "partitions/rows/box_compare.kernel.h"
 #include "partitions/rows/row_input.h"
 #include "partitions/rows/volume_source.h"
 
@@ -169,7 +170,7 @@ inline void write_departed_boxes(const FatSource<BoxSource>& fat, const EntryOfR
   std::size_t written = 0;
   if (source.packed()) {
     written = (end - begin) / kBlockRows * kBlockRows;
-    source.write_rows(entries.of_id, entries.id + begin, given_columns, 0, written);
+    source.write_rows(entries.entry_of_id, entries.id + begin, given_columns, 0, written);
   }
   std::uint64_t has_entry[kRowsAtOnce / 64] = {};
   for (std::size_t k = 0; k < end - begin; ++k) {
@@ -178,8 +179,8 @@ inline void write_departed_boxes(const FatSource<BoxSource>& fat, const EntryOfR
     if (k >= written && i != kNoObject) source.write(i, given_columns, k);
   }
   std::uint64_t within[kRowsAtOnce / 64] = {};
-  box_input_kernels().within(given_columns, stored, end - begin, fat.margin.distance,
-                             fat.margin.share, within);
+  box_compare_kernels().within(given_columns, stored, end - begin, fat.margin.distance,
+                               fat.margin.share, within);
   for (std::size_t w = 0; w < kRowsAtOnce / 64; ++w) {
     for (std::uint64_t out = has_entry[w] & ~within[w]; out != 0; out &= out - 1) {
       const std::size_t k = 64 * w + static_cast<std::size_t>(std::countr_zero(out));

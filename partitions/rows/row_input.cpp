@@ -4,6 +4,7 @@
 
 #include "partitions/rows/row_input.h"
 #include "core/memory/columns.h"
+#include "partitions/rows/box_compare.kernel.h"
 
 #include <algorithm>
 #include <array>
@@ -13,6 +14,7 @@
 namespace winnow {
 
 WINNOW_DEFINE_KERNELS(BoxInputKernels, box_input_kernels)
+WINNOW_DEFINE_KERNELS(BoxCompareKernels, box_compare_kernels)
 
 const VolumeInput& RowInput::boxes_as_given() noexcept {
   static constexpr VolumeInput kInput{Volume::aabb, nullptr, nullptr, nullptr};
@@ -57,8 +59,8 @@ Status RowInput::check(const UpdateSubset& entries, const BoxView& boxes, bool& 
 Status RowInput::check_keys(std::size_t volumes, const UpdateSubset& entries,
                             bool& ascending) const {
   if (entries.keys.size() != volumes) return Status::size_mismatch;
-  std::atomic<bool> known{true};
-  std::atomic<bool> rising{true};
+  std::atomic<bool> all_known{true};
+  std::atomic<bool> all_ascending{true};
   // Checks entries [begin, end), whose indices are consecutive.
   const auto check_run = [&](std::size_t begin, std::size_t end) {
     if (end - begin >= UpdateSubset::kLongRun) {
@@ -73,19 +75,19 @@ Status RowInput::check_keys(std::size_t volumes, const UpdateSubset& entries,
   };
   for_ranges(rows_.execution_, entries.count, [&](std::size_t begin, std::size_t end) {
     bool ok = true;
-    bool up = true;
+    bool ascend = true;
     for (std::size_t next = begin; begin < end; begin = next) {
       next = entries.run_end(begin, end);
       if (next + kFetchAhead < end) __builtin_prefetch(&entries.keys[entries[next + kFetchAhead]]);
       const KeyTable::KeysCheck run = check_run(begin, next);
       ok &= run.valid;
-      up &= run.ascending && (begin == 0 || entries.key(begin - 1).id < entries.key(begin).id);
+      ascend &= run.ascending && (begin == 0 || entries.key(begin - 1).id < entries.key(begin).id);
     }
-    if (!ok) known.store(false, std::memory_order_relaxed);
-    if (!up) rising.store(false, std::memory_order_relaxed);
+    if (!ok) all_known.store(false, std::memory_order_relaxed);
+    if (!ascend) all_ascending.store(false, std::memory_order_relaxed);
   });
-  ascending = rising.load();
-  return known.load() ? Status::ok : Status::invalid_key;
+  ascending = all_ascending.load();
+  return all_known.load() ? Status::ok : Status::invalid_key;
 }
 
 void RowInput::note_stale(const UpdateSubset& entries) noexcept {
@@ -112,21 +114,22 @@ std::ranges::minmax_result<ObjectId> ends_of_ids(const UpdateSubset& entries,
 }  // namespace
 
 // True if an update writes rows in row order instead of entry order: if more than half of the rows
-// change, and there are at most half as many other ids between the smallest and the largest one. It
-// then reads entries in arbitrary order but writes each of the six columns in order, which touches
-// a sixth of the cache lines. A table maps ids to entries unless ids and entries correspond one to
-// one. False if a key occurs twice, because its entries must be written in order.
-bool RowInput::writes_by_rows(const UpdateSubset& entries, bool ascending, BoxOfId& entry_of) {
+// change, and there are at most half as many other ids between the smallest and the largest one. In
+// the order of entries, each box touches a cache line in each of the six columns; in the order of
+// rows, it touches only the one or two that it is read from, and the columns are written in order.
+// A table maps ids to entries unless ids and entries correspond one to one. False if a key occurs
+// twice, because its entries must be written in order.
+bool RowInput::writes_by_rows(const UpdateSubset& entries, bool ascending, EntryOfId& entry_of_id) {
   const std::size_t count = entries.count;
   if (2 * count <= rows_.pool_.rows()) return false;
   const auto [first, last] = ends_of_ids(entries, ascending);
   const std::size_t ids = last - first + std::size_t{1};
   if (ids > count + count / 2) return false;
-  entry_of = {first, static_cast<std::uint32_t>(ids)};
+  entry_of_id = {first, static_cast<std::uint32_t>(ids)};
   if (ascending && ids == count && entries.number == nullptr) return true;
   if (!rows_.selection_.list.resize(ids)) return false;
   std::uint32_t* const table = rows_.selection_.list.data();
-  entry_of.table = table;
+  entry_of_id.table = table;
   std::fill(table, table + ids, kNoObject);
   if (ascending && entries.number == nullptr) {
     std::uint32_t entry = 0;
@@ -142,7 +145,7 @@ bool RowInput::writes_by_rows(const UpdateSubset& entries, bool ascending, BoxOf
 }
 
 void RowInput::write_by_id(const BoxView& boxes) noexcept {
-  const BoxOfId all{.first = 0, .ids = static_cast<std::uint32_t>(boxes.count)};
+  const EntryOfId all{.first = 0, .ids = static_cast<std::uint32_t>(boxes.count)};
   write_by_rows(BoxSource{boxes}, {all, rows_.pool_.ids()});
   rows_.changes_.add_all();
 }
@@ -155,7 +158,8 @@ bool RowInput::may_lose_order(const UpdateSubset& entries) const noexcept {
          rows_.order_reach_ > 0.0F && entries.count >= kFewRows;
 }
 
-// True if most objects move far and in different directions.
+// True if most objects move far and in different directions. RebuildPlanner lists the other signs
+// of a lost order.
 bool RowInput::order_is_lost(const SampledBoxes& sample, std::span<const Key> keys) const noexcept {
   std::array<float, 3> before{};
   std::array<float, 3> edge_before{};
@@ -179,7 +183,7 @@ bool RowInput::order_is_lost(const SampledBoxes& sample, std::span<const Key> ke
   return 2 * apart > SampledBoxes::kSize;
 }
 
-// Gives object i row i, for i in [begin, end).
+// Gives the object of keys[i] row i, for i in [begin, end).
 void RowInput::number_rows(std::span<const Key> keys, std::size_t begin, std::size_t end) noexcept {
   for (std::size_t i = begin; i < end; ++i) {
     rows_.keys_.set_row(keys[i].id, static_cast<std::uint32_t>(i));
@@ -224,7 +228,7 @@ Status RowInput::begin_insert(std::size_t count, std::span<const ClientData> dat
   return Status::ok;
 }
 
-// Writes the id and the filter of object i to row first + i, for i in [begin, end).
+// Writes the id and the filter of the object of keys[i] to row first + i, for i in [begin, end).
 void RowInput::place_new(std::span<const Key> keys, std::size_t first, std::size_t begin,
                          std::size_t end) noexcept {
   for (std::size_t i = begin; i < end; ++i) rows_.pool_.ids()[first + i] = keys[i].id;

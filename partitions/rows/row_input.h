@@ -52,9 +52,10 @@ struct UpdateSubset {
   }
 };
 
-/// Column pointers of a pool.
+/// One pointer per column.
 using ColumnPointers = float* const*;
 
+/// Column pointers of a pool.
 struct PoolColumns {
   explicit PoolColumns(BoundsPool& pool) noexcept {
     for (std::size_t c = 0; c < pool.columns(); ++c) pointers[c] = pool.column(c);
@@ -62,10 +63,10 @@ struct PoolColumns {
   float* pointers[kMaxColumns] = {};
 };
 
-inline void write_slab(ColumnPointers columns, std::size_t low, std::size_t high, std::size_t row,
-                       float a, float b) noexcept {
-  columns[low][row] = std::max(a, -FLT_MAX);
-  columns[high][row] = std::min(b, FLT_MAX);
+inline void write_slab(ColumnPointers columns, std::size_t low_column, std::size_t high_column,
+                       std::size_t row, float low, float high) noexcept {
+  columns[low_column][row] = std::max(low, -FLT_MAX);
+  columns[high_column][row] = std::min(high, FLT_MAX);
 }
 
 inline constexpr std::size_t kEntriesPerTask = 8192;
@@ -73,7 +74,8 @@ inline constexpr std::size_t kEntriesPerTask = 8192;
 // Prefetch distance, in entries, for boxes and rows that are read in arbitrary order.
 inline constexpr std::size_t kFetchAhead = 12;
 
-/// Calls work(begin, end) for ranges that cover [0, count), in parallel.
+/// Calls work(begin, end) for ranges that cover [0, count), in parallel. Ranges begin at multiples
+/// of 64, so that no two share a block of rows, or a word of a bitmap.
 template <typename Work>
 void for_ranges(const Execution& execution, std::size_t count, Work&& work) {
   for_each_even_range(execution, count, kEntriesPerTask, work);
@@ -98,13 +100,13 @@ template <typename Source>
 
 /// Maps a row to the entry of its object in an update; kNoObject if it has none.
 struct EntryOfRow {
-  BoxOfId of_id;
+  EntryOfId entry_of_id;
   const ObjectId* id;  ///< by row
 
   [[nodiscard]] std::size_t operator[](std::size_t row) const noexcept {
-    const ObjectId k = id[row] - of_id.first;
-    if (k >= of_id.ids) return kNoObject;
-    return of_id.table == nullptr ? k : of_id.table[k];
+    const ObjectId k = id[row] - entry_of_id.first;
+    if (k >= entry_of_id.ids) return kNoObject;
+    return entry_of_id.table == nullptr ? k : entry_of_id.table[k];
   }
 };
 
@@ -146,11 +148,11 @@ struct BoxSource {
     }
     return true;
   }
-  /// Writes the rows of [begin, end) whose objects have a box; `begin` and `end` are multiples
+  /// Writes the rows of [begin, end) whose objects have an entry; `begin` and `end` are multiples
   /// of 16. Requires packed boxes.
-  void write_rows(const BoxOfId& box_of, const ObjectId* ids, ColumnPointers columns,
+  void write_rows(const EntryOfId& entry_of_id, const ObjectId* ids, ColumnPointers columns,
                   std::size_t begin, std::size_t end) const noexcept {
-    box_input_kernels().write_rows(boxes.min[0], box_of, ids, columns, begin, end);
+    box_input_kernels().write_rows(boxes.min[0], entry_of_id, ids, columns, begin, end);
   }
   /// Writes entries [begin, end) to the rows from `row` on. Requires packed boxes.
   void write_in_order(std::size_t begin, std::size_t end, ColumnPointers columns,
@@ -231,7 +233,8 @@ class RowInput {
                                   bool& ascending) const;
   [[nodiscard]] Status check(const UpdateSubset& entries, const BoxView& boxes,
                              bool& ascending) const;
-  [[nodiscard]] bool writes_by_rows(const UpdateSubset& entries, bool ascending, BoxOfId& entry_of);
+  [[nodiscard]] bool writes_by_rows(const UpdateSubset& entries, bool ascending,
+                                    EntryOfId& entry_of_id);
   /// Writes valid volumes, and notes their objects as changed.
   template <typename Source>
   void write(const Source& source, const UpdateSubset& entries, bool ascending);
@@ -265,8 +268,8 @@ bool RowInput::loses_order(const Source& source, const UpdateSubset& entries) co
   return order_is_lost(sample, entries.keys);
 }
 
-/// Calls visit(entry, its row, j) for the j-th entry. Threads never share an aligned group of 64
-/// entries, so that `visit` may set bit j of a bitmap.
+/// Calls visit(entry, its row, j) for the j-th entry. `visit` may set bit j of
+/// a bitmap (see for_ranges).
 template <typename Visit>
 void RowInput::for_entries(const UpdateSubset& entries, bool ascending, const Visit& visit) {
   const std::size_t count = entries.count;
@@ -289,14 +292,15 @@ void RowInput::for_entries(const UpdateSubset& entries, bool ascending, const Vi
 template <typename Source>
 void RowInput::write(const Source& source, const UpdateSubset& entries, bool ascending) {
   note_stale(entries);
-  BoxOfId entry_of{};
-  if (!writes_by_rows(entries, ascending, entry_of)) {
+  EntryOfId entry_of_id{};
+  if (!writes_by_rows(entries, ascending, entry_of_id)) {
     const PoolColumns columns(rows_.pool_);
     for_entries(entries, ascending, [&](std::size_t i, std::size_t row, std::size_t) {
       source.write(i, columns.pointers, row);
     });
   } else if (loses_order(source, entries)) {
-    // All objects get new rows, in the order of the keys.
+    // The next refresh builds in any case, so all objects get new rows in the order of the keys,
+    // which are written without a search.
     rows_.pool_.clear();
     rows_.pool_.append(entries.count);
     for_ranges(rows_.execution_, entries.count, [&](std::size_t begin, std::size_t end) {
@@ -305,7 +309,7 @@ void RowInput::write(const Source& source, const UpdateSubset& entries, bool asc
     });
     rows_.invalidate_order();
   } else {
-    write_by_rows(source, {entry_of, rows_.pool_.ids()});
+    write_by_rows(source, {entry_of_id, rows_.pool_.ids()});
   }
 }
 
@@ -317,7 +321,7 @@ void RowInput::write_by_rows(const Source& source, const EntryOfRow& entry_of) {
     if constexpr (requires { source.packed(); }) {
       if (source.packed()) {
         const std::size_t whole = end - end % kBlockRows;
-        source.write_rows(entry_of.of_id, entry_of.id, columns.pointers, begin, whole);
+        source.write_rows(entry_of.entry_of_id, entry_of.id, columns.pointers, begin, whole);
         begin = whole;
       }
     }

@@ -21,7 +21,8 @@ struct PairSink {
   std::uint64_t tests = 0;  ///< tests of 16 volumes at once
 };
 
-/// The pairs of one block with another, and one more full store.
+/// Pairs that a kernel may write before it compares the cursor with the limit again: those of one
+/// block with another, and one more full store.
 inline constexpr std::size_t kSinkSlack = 16 * 16 + 16;
 
 /// Columns of a BoundsPool. The first six are the box. The further slabs of a k-DOP follow (lower

@@ -44,7 +44,8 @@ struct RowRegions {
   std::size_t regular = 0;  ///< rows [0, regular) belong to the structure
   std::size_t ordered = 0;  ///< the tail starts here
   std::size_t sorted = 0;   ///< tail rows below this are in spatial order
-  /// An order is being planned for rows below this; none of them is given to another object.
+  /// An order is being planned for rows below this; a removed object leaves a hole there until
+  /// the plan is applied or dropped.
   std::size_t planned = 0;
 };
 

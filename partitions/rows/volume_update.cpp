@@ -110,7 +110,7 @@ struct VolumeUpdate : RowInput {
   template <typename Source>
   Status write_all(const FatSource<Source>& fat, const UpdateSubset& entries, bool ascending) {
     const PoolColumns columns(rows_.pool_);
-    BoxOfId entry_of_id{};
+    EntryOfId entry_of_id{};
     const bool by_rows = writes_by_rows(entries, ascending, entry_of_id);
     const EntryOfRow entry_of{entry_of_id, rows_.pool_.ids()};
     const std::size_t slots = by_rows ? rows_.pool_.rows() : entries.count;

@@ -66,22 +66,22 @@ Status PartitionState::insert(const BoxView& boxes, std::span<const ClientData> 
   RestingPairs& resting = pairs_.resting();
   if (status == Status::ok && resting.active() && !resting.insert(keys, boxes)) end_deferring();
   resting.disturb(keys.size());
-  note_changes(keys.size());
-  if (chooser_ != nullptr) chooser_->note_inserted(keys.size());
+  note_changes(status, keys.size());
+  if (chooser_ != nullptr && status == Status::ok) chooser_->note_inserted(keys.size());
   return status;
 }
 
 Status PartitionState::remove(std::span<const Key> keys) {
   const Status status = rows.remove(keys);
   pairs_.resting().disturb(keys.size());
-  note_changes(keys.size());
+  note_changes(status, keys.size());
   return status;
 }
 
 Status PartitionState::restore(const SavedRows& saved, PartitionState& other) {
   const Status status = rows.restore(saved, other.rows);
   if (status != Status::ok) return status;
-  note_changes(saved.objects);
+  note_changes(status, saved.objects);
   if (chooser_ != nullptr) chooser_->note_inserted(saved.objects);
   return status;
 }
@@ -94,7 +94,7 @@ Status PartitionState::reserve(std::size_t objects, Pages pages) {
   const bool reserved =
       status == Status::ok && index.reserve(most, pages, later) && pairs_.resting().reserve(pages);
   if (reserved && pages == Pages::prefaulted) rows.touch();
-  note_changes(0);
+  note_changes(status, 0);
   return status == Status::ok && !reserved ? Status::out_of_memory : status;
 }
 
@@ -102,7 +102,7 @@ Status PartitionState::set_filter(std::span<const Key> keys,
                                   std::span<const ObjectFilter> filters) {
   const Status status = rows.set_filter(keys, filters);
   pairs_.resting().disturb(keys.size());
-  note_changes(0);
+  note_changes(status, 0);
   return status;
 }
 
@@ -111,7 +111,7 @@ Status PartitionState::update(const UpdateSubset& entries, const BoxView& boxes)
   const Status status =
       resting.active() ? resting.update(entries, boxes) : RowInput(rows).update(entries, boxes);
   // Deferred boxes change no rows.
-  note_changes(resting.active() ? 0 : entries.count);
+  note_changes(status, resting.active() ? 0 : entries.count);
   return status;
 }
 
@@ -138,7 +138,7 @@ Status PartitionState::update(Key key, const Aabb& box) {
   RestingPairs& resting = pairs_.resting();
   const Status status =
       resting.active() ? resting.update(key, box) : RowInput(rows).update(key, box);
-  note_changes(resting.active() ? 0 : 1);
+  note_changes(status, resting.active() ? 0 : 1);
   return status;
 }
 
@@ -155,9 +155,9 @@ Status PartitionState::bounds(std::span<const Key> keys, std::span<Aabb> boxes) 
   return Status::ok;
 }
 
-void PartitionState::note_changes(std::size_t count) const noexcept {
-  if (chooser_ != nullptr) chooser_->note_changes(count);
-  const bool counts = chooser_ != nullptr && count != 0;
+void PartitionState::note_changes(Status status, std::size_t count) const noexcept {
+  const bool counts = chooser_ != nullptr && count != 0 && status == Status::ok;
+  if (counts) chooser_->note_changes(count);
   if (counts || rows.changes().any) stale_.store(true, std::memory_order_relaxed);
 }
 
@@ -167,7 +167,7 @@ void PartitionState::note_changes(std::size_t count) const noexcept {
 void PartitionState::end_deferring() const noexcept {
   if (!pairs_.resting().active()) return;
   const Lock lock(refresh_mutex_);
-  if (pairs_.resting().write()) note_changes(rows.size());
+  if (pairs_.resting().write()) note_changes(Status::ok, rows.size());
   pairs_.resting().end();
 }
 
@@ -193,8 +193,8 @@ Status PartitionState::refresh() const {
   return status;
 }
 
-// The kind of the first query is unknown, so the first build is made as for casts and regions.
-Status PartitionState::refresh_for_queries() const {
+// The first build is made as for casts and regions.
+Status PartitionState::refresh_early() const {
   if (stale_.load(std::memory_order_acquire)) {
     const Lock lock(refresh_mutex_);
     if (index.planner().builds() == 0) index.planner().note_query();
@@ -236,13 +236,14 @@ void PartitionState::count_queries(QueryKind kind, std::size_t count) const noex
 }
 
 Status PartitionState::prepare(QueryKind kind, std::size_t count, QueryView& view) const {
+  // A build in this refresh may be made with more care (RebuildPlanner::precision).
   if (stale_.load(std::memory_order_acquire)) index.planner().note_query();
   if (const Status status = settle(); status != Status::ok) return status;
   count_queries(kind, count);
-  if (index.queries_stale()) {
+  if (index.query_trees_stale()) {
     const Lock lock(refresh_mutex_);
-    if (index.queries_stale()) {
-      if (const Status status = index.refresh_queries(); status != Status::ok) return status;
+    if (index.query_trees_stale()) {
+      if (const Status status = index.refresh_query_trees(); status != Status::ok) return status;
     }
   }
   index.view(view);
@@ -314,7 +315,7 @@ void PartitionState::clear() noexcept {
   pairs_.forget_buffer();
   rows.clear();
   if (chooser_ != nullptr) chooser_->clear();
-  note_changes(0);
+  note_changes(Status::ok, 0);
 }
 
 void PartitionState::release_memory() noexcept {
@@ -328,7 +329,7 @@ void PartitionState::release_memory() noexcept {
     // An empty partition has no features, so the choice restarts from its first structure.
     if (chooser_ != nullptr) (void)index.set_structure(chooser_->first());
   }
-  note_changes(0);
+  note_changes(Status::ok, 0);
 }
 
 Footprint PartitionState::footprint() const noexcept {

@@ -47,20 +47,21 @@ class PartitionState {
   Status update(Key key, const Aabb& box);
   Status bounds(std::span<const Key> keys, std::span<Aabb> boxes) const noexcept;
 
-  /// Called at the end of a mutation of `count` objects: marks the structure as stale if rows
-  /// changed.
-  void note_changes(std::size_t count) const noexcept;
+  /// Called at the end of a mutation with its status, also if it was refused: marks the structure
+  /// as stale if rows changed. `count` objects changed, unless the mutation was refused.
+  void note_changes(Status status, std::size_t count) const noexcept;
   /// Brings the structure up to date, except that deferred boxes stay deferred; for pair queries of
   /// a tracked buffer.
   Status refresh() const;
-  /// Refreshes for unknown queries: `Partition::refresh`.
-  Status refresh_for_queries() const;
+  /// Refreshes before the kind of the first query is known: `Partition::refresh`.
+  Status refresh_early() const;
   /// Writes deferred boxes to the rows, for functions that read them.
   void write_deferred() const;
   /// Calls `write_deferred` and `refresh`.
   Status settle() const;
-  /// Calls `settle`, updates the trees that casts, regions and nearest queries use, counts `count`
-  /// queries of this kind, and fills in the view of rows and trees.
+  /// Prepares casts, regions or nearest queries: notes them for the precision of the next build,
+  /// calls `settle`, counts `count` queries of this kind, updates the trees that only these queries
+  /// use, and fills in the view of rows and trees.
   Status prepare(QueryKind kind, std::size_t count, QueryView& view) const;
   void count_queries(QueryKind kind, std::size_t count) const noexcept;
 

@@ -70,7 +70,7 @@ template <typename T>
           .costs = costs};
 }
 
-/// An object that was moved behind all others, and its former row.
+/// An object that was moved behind all others while a plan is underway, and its former row.
 struct RowMove {
   std::uint32_t row;
   ObjectId id;
@@ -160,15 +160,15 @@ class Structure {
     return RestOrder::none;
   }
   /// Precision of the rest's order in the first build if there were no queries for rays or regions.
-  [[nodiscard]] virtual KdParts first_parts() const noexcept { return KdParts::tiles; }
+  [[nodiscard]] virtual KdPrecision first_precision() const noexcept { return KdPrecision::tiles; }
   /// The price of a build in tests of 16 volumes per object, for comparison with wear. The default
   /// was measured.
   [[nodiscard]] virtual std::uint64_t build_price() const noexcept { return 12; }
   /// The approximate number of passes over all rows in a plan, including the order of the rest.
   [[nodiscard]] virtual std::size_t plan_passes() const noexcept { return 4; }
-  /// Called when the rows are in the planned order. `moved`: objects may have moved since the plan
-  /// was started.
-  virtual void finish_build(const RowPlan&, bool /*moved*/) noexcept {}
+  /// Called when the rows are in the planned order. `foreseen`: the plan was started in an earlier
+  /// refresh, so that objects may have moved since.
+  virtual void finish_build(const RowPlan&, bool /*foreseen*/) noexcept {}
 
   // Rows that no longer fit.
 

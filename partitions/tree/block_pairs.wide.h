@@ -1,7 +1,7 @@
 #pragma once
 
-// Self pairs of blocks of rows in registers, for the block tree (block_tree.kernel.cpp) and the
-// kernels of cell structures (cells/cells.wide.h).
+// Self pairs of blocks of rows, for the block tree (block_tree.kernel.cpp) and the kernels of cell
+// structures (cells/cells.wide.h).
 
 #include "partitions/tree/hits.wide.h"
 #include "simd/lanes/boxes.h"
@@ -11,7 +11,7 @@ namespace winnow::WINNOW_ISA_NAME {
 
 /// Finds the pairs of a block of up to 16 rows with each other and with rows behind them. The rows
 /// of a block are close together: the box around them first selects candidate rows, 16 at a time,
-/// and then each candidate is tested against the whole block, which stays in registers.
+/// and then each candidate is tested against a copy of the whole block, which stays in registers.
 template <bool Filtered>
 class BlockPairs {
  public:
@@ -50,9 +50,9 @@ class BlockPairs {
     const std::uint32_t last = (end + kLanes - 1) / kLanes;
     next_ = last > next_ ? last : next_;
     for (; first < last; first += kLanes) {
-      if (blocks_ > kBlockRoom - kLanes && !test_blocks()) return false;
-      count_from(first).store_unaligned(block_ + blocks_);
-      blocks_ += last - first < kLanes ? last - first : kLanes;
+      if (candidate_blocks_ > kBlockRoom - kLanes && !test_blocks()) return false;
+      count_from(first).store_unaligned(candidate_block_ + candidate_blocks_);
+      candidate_blocks_ += last - first < kLanes ? last - first : kLanes;
     }
     return true;
   }
@@ -60,8 +60,9 @@ class BlockPairs {
   /// Adds the blocks of rows first + i for each bit i of the mask as candidates. These must be
   /// behind the block, and each may be added only once.
   bool add_blocks(std::uint32_t first, Mask16 mask) {
-    if (blocks_ > kBlockRoom - kLanes && !test_blocks()) return false;
-    blocks_ += compress_store(mask, count_from(first), block_ + blocks_);
+    if (candidate_blocks_ > kBlockRoom - kLanes && !test_blocks()) return false;
+    candidate_blocks_ +=
+        compress_store(mask, count_from(first), candidate_block_ + candidate_blocks_);
     return true;
   }
 
@@ -96,25 +97,25 @@ class BlockPairs {
   bool test_blocks() {
     const float low[3] = {low_[0], low_[1], low_[2]};
     const float high[3] = {high_[0], high_[1], high_[2]};
-    unsigned listed = listed_;
-    for (unsigned k = 0; k < blocks_; ++k) {
+    unsigned listed = candidate_rows_;
+    for (unsigned k = 0; k < candidate_blocks_; ++k) {
       if (listed > kRowRoom - kLanes) {
-        listed_ = listed;
+        candidate_rows_ = listed;
         if (!test_rows()) return false;
         listed = 0;
       }
-      const std::uint32_t at = block_[k] * kLanes;
-      const std::uint32_t ahead = block_[k + kAhead] * kLanes;
+      const std::uint32_t at = candidate_block_[k] * kLanes;
+      const std::uint32_t ahead = candidate_block_[k + kAhead] * kLanes;
       for (int c = 0; c < 6; ++c) __builtin_prefetch(rows_.column[c] + ahead);
       // The rows of the block itself may end within this block of rows.
       const std::uint32_t own = behind_ > at ? behind_ - at : 0;
       const Mask16 overlapping = overlap(load_slabs<3>(rows_.column, at), low, high);
       const Mask16 mask = overlapping & ~lanes_below(own);
-      listed += compress_store(mask, count_from(at), row_ + listed);
+      listed += compress_store(mask, count_from(at), candidate_row_ + listed);
     }
-    sink_.tests += blocks_;
-    listed_ = listed;
-    blocks_ = 0;
+    sink_.tests += candidate_blocks_;
+    candidate_rows_ = listed;
+    candidate_blocks_ = 0;
     return true;
   }
 
@@ -122,13 +123,13 @@ class BlockPairs {
   bool test_rows() {
     const Box16 rows = own_rows();
     unsigned hits = hits_;
-    for (unsigned k = 0; k < listed_; ++k) {
-      const QueryBox q(rows_.column, row_[k]);
-      add_hits(row_[k], overlap(rows, q.low, q.high), hits);
+    for (unsigned k = 0; k < candidate_rows_; ++k) {
+      const QueryBox q(rows_.column, candidate_row_[k]);
+      add_hits(candidate_row_[k], overlap(rows, q.low, q.high), hits);
     }
-    sink_.tests += listed_;
+    sink_.tests += candidate_rows_;
     hits_ = hits;
-    listed_ = 0;
+    candidate_rows_ = 0;
     return report_hits();
   }
 
@@ -170,7 +171,7 @@ class BlockPairs {
       }
       const std::uint32_t id = row_id[hit_row_[k]];
       const Mask16 mask = passing(hit_mask_[k], hit_row_[k]);
-      cursor += 2 * emit_pairs<true>(mask, ids, id, cursor);
+      cursor += 2 * emit_pairs<true>(mask, ids, id, cursor);  // the smaller id first
     }
     sink_.cursor = cursor;
     hits_ = 0;
@@ -198,15 +199,15 @@ class BlockPairs {
   alignas(64) float own_[6][kLanes];
   bool filtered_ = false;
   std::uint32_t at_ = 0;
-  std::uint32_t behind_ = 0;
-  std::uint32_t next_ = 0;  // first block of rows that is not listed yet
+  std::uint32_t behind_ = 0;  // end of the rows of the block
+  std::uint32_t next_ = 0;    // for add_run: first block of rows that is not listed yet
   float low_[3];
   float high_[3];
-  unsigned blocks_ = 0;
-  unsigned listed_ = 0;
+  unsigned candidate_blocks_ = 0;
+  unsigned candidate_rows_ = 0;
   unsigned hits_ = 0;
-  std::uint32_t block_[kBlockRoom + kLanes] = {};
-  std::uint32_t row_[kRowRoom + kLanes];
+  std::uint32_t candidate_block_[kBlockRoom + kLanes] = {};
+  std::uint32_t candidate_row_[kRowRoom + kLanes];
   std::uint32_t hit_row_[kRowRoom + 2 * kLanes];
   std::uint32_t hit_at_[kRowRoom + 2 * kLanes];  // for volumes other than boxes
   std::uint32_t hit_mask_[kRowRoom + 2 * kLanes];

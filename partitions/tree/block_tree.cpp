@@ -168,19 +168,10 @@ void BlockTree::refit(const RowView& rows, std::span<std::uint32_t> leaves) noex
 }
 
 float BlockTree::typical_edge() const noexcept {
-  constexpr std::size_t kSample = 31;
-  std::array<float, kSample> edge;
-  const std::size_t count = std::min(kSample, blocks());
-  if (count == 0) return 0.0F;
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::size_t leaf = blocks() * i / count;
+  return median_edge(blocks(), [&](std::size_t leaf, std::size_t a) {
     const float* const* const ends = shape().node[0];
-    float sum = 0.0F;
-    for (std::size_t c = 0; c < 3; ++c) sum += (ends[3 + c][leaf] - ends[c][leaf]) / 3.0F;
-    edge[i] = sum;
-  }
-  std::nth_element(edge.begin(), edge.begin() + count / 2, edge.begin() + count);
-  return edge[count / 2];
+    return ends[3 + a][leaf] - ends[a][leaf];
+  });
 }
 
 void BlockTree::release() noexcept {

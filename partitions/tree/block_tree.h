@@ -5,12 +5,29 @@
 #include "partitions/tree/block_tree.kernel.h"
 #include "partitions/tree/node_filters.h"
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory_resource>
 #include <span>
 
 namespace winnow {
+
+/// Returns the median, over a sample of `blocks` blocks, of a block's mean edge; 0 if there are no
+/// blocks. edge_of(block, axis) returns the length of an edge.
+template <typename EdgeOf>
+[[nodiscard]] float median_edge(std::size_t blocks, EdgeOf&& edge_of) {
+  constexpr std::size_t kSample = 31;
+  std::array<float, kSample> edge{};
+  const std::size_t count = std::min(kSample, blocks);
+  if (count == 0) return 0.0F;
+  for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t a = 0; a < 3; ++a) edge[i] += edge_of(blocks * i / count, a) / 3.0F;
+  }
+  std::nth_element(edge.begin(), edge.begin() + count / 2, edge.begin() + count);
+  return edge[count / 2];
+}
 
 /// The node boxes of an implicit 16-ary tree over consecutive blocks of rows. The tree does not
 /// order the rows: it prunes well if rows that are close in space are close in the pool. Results
@@ -63,7 +80,7 @@ class BlockTree {
   /// Nodes one level above the blocks: the units of work of pair finding.
   [[nodiscard]] std::size_t groups() const noexcept { return (blocks() + 15) / 16; }
 
-  /// Returns the median, over a sample of blocks, of a block's mean edge; 0 if there are no blocks.
+  /// Returns the median edge of the leaves; 0 if there are none.
   [[nodiscard]] float typical_edge() const noexcept;
 
   /// True if the mean edge of a block is longer than `edge`.

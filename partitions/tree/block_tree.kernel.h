@@ -8,7 +8,7 @@
 
 namespace winnow {
 
-/// Levels of a 16-ary tree over at most 2^28 blocks.
+/// One more than a 16-ary tree over 2^28 blocks has.
 inline constexpr std::uint32_t kMaxTreeLevels = 8;
 
 /// Summaries of the filters of objects below the nodes of one level; all null if no filter was ever

@@ -1,5 +1,5 @@
 // Divides a large set of points into cells by counting (kernels in coarse_cut.kernel.cpp); the
-// first step of KdCuts with KdParts::cells.
+// first step of KdCuts with KdPrecision::cells.
 
 #include "partitions/tree/coarse_cut.h"
 

@@ -21,7 +21,8 @@ WINNOW_DEFINE_KERNELS(TileOrderKernels, tile_order_kernels)
 
 namespace {
 
-// Sets up to this size are sorted in tiles.
+// Sets that cuts leave are sorted in tiles from this size down, the set of all rows from
+// kMaxInTiles down.
 constexpr std::size_t kTiledPart = 4096;
 // Tiling a set takes about as long as this many cuts of each row.
 constexpr std::size_t kCutsOfTiles = 2;
@@ -42,37 +43,39 @@ bool sort_in_tiles(const KdSet& set) {
   return tile_order_kernels().sort(tiles);
 }
 
-// Cuts a set until the parts are blocks, or are sorted in tiles.
-void finish_part(KdSet set, KdParts parts) {
-  while (parts != KdParts::blocks && set.count >= kMinInTiles) {
+// Cuts a set until its parts are blocks, or are sorted in tiles. `split` leaves the first part in
+// `set` and returns the second.
+void finish_set(KdSet set, KdPrecision precision) {
+  while (precision != KdPrecision::blocks && set.count >= kMinInTiles) {
     if (set.count <= kTiledPart && sort_in_tiles(set)) return;
-    finish_part(kd_order_kernels().split(set), parts);
+    finish_set(kd_order_kernels().split(set), precision);
   }
   kd_order_kernels().finish(set);
 }
 
-// The cost of finish_part, in cuts of each row.
-std::size_t cuts_of(std::size_t count, KdParts parts) noexcept {
-  return parts != KdParts::blocks ? kCutsOfTiles
-                                  : static_cast<std::size_t>(std::bit_width(count / kBlockRows));
+// The cost of finish_set, in cuts of each row.
+std::size_t cuts_of(std::size_t count, KdPrecision precision) noexcept {
+  return precision != KdPrecision::blocks
+             ? kCutsOfTiles
+             : static_cast<std::size_t>(std::bit_width(count / kBlockRows));
 }
 
 }  // namespace
 
-KdSet KdCuts::part_of(const RowRange& part) const noexcept {
+KdSet KdCuts::set_of(const RowRange& range) const noexcept {
   KdSet set;
-  set.row = rows_.data() + part.begin;
-  set.row_room = room_ + part.begin;
-  set.count = part.count;
+  set.row = rows_.data() + range.begin;
+  set.row_room = room_ + range.begin;
+  set.count = range.count;
   for (std::size_t a = 0; a < 3; ++a) {
-    set.at[a] = at_[a] + part.begin;
-    set.at_room[a] = at_room_[a] + part.begin;
+    set.at[a] = at_[a] + range.begin;
+    set.at_room[a] = at_room_[a] + range.begin;
   }
   return set;
 }
 
 bool KdCuts::start(const BoundsPool& pool, std::span<std::uint32_t> rows, std::uint32_t* room,
-                   Column<float>& scratch, const Execution& execution, KdParts parts) {
+                   Column<float>& scratch, const Execution& execution, KdPrecision precision) {
   const std::size_t count = rows.size();
   if (!scratch.resize(kd_scratch(count))) return false;
   rows_ = rows;
@@ -82,10 +85,10 @@ bool KdCuts::start(const BoundsPool& pool, std::span<std::uint32_t> rows, std::u
     at_room_[a] = scratch.data() + (3 + a) * count;
   }
   open_ = 0;
-  parts_ = parts;
-  // Smaller sets are tiled as parts.
-  whole_ = parts != KdParts::blocks && count > kTiledPart && count <= kMaxInTiles;
-  coarse_ = parts == KdParts::cells && count > kMaxInTiles;
+  precision_ = precision;
+  // At most kTiledPart rows are one set, which `advance` finishes.
+  whole_ = precision != KdPrecision::blocks && count > kTiledPart && count <= kMaxInTiles;
+  coarse_ = precision == KdPrecision::cells && count > kMaxInTiles;
   if (count <= kBlockRows) return true;
   sets_[open_++] = {0, static_cast<std::uint32_t>(count)};
   const std::array<const float*, 6> boxes = box_columns(pool);
@@ -99,7 +102,7 @@ bool KdCuts::start(const BoundsPool& pool, std::span<std::uint32_t> rows, std::u
 bool KdCuts::tile_whole(std::size_t& work) {
   if (!std::exchange(whole_, false)) return false;
   work -= std::min(work, kCutsOfTiles * rows_.size());
-  if (!sort_in_tiles(part_of(sets_[0]))) return false;
+  if (!sort_in_tiles(set_of(sets_[0]))) return false;
   open_ = 0;
   return true;
 }
@@ -109,7 +112,7 @@ bool KdCuts::tile_whole(std::size_t& work) {
 void KdCuts::cut_coarsely(std::size_t& work, const Execution& execution) {
   if (!std::exchange(coarse_, false)) return;
   work -= std::min(work, kCutsOfTiles * rows_.size());
-  KdSet all = part_of(sets_[0]);
+  KdSet all = set_of(sets_[0]);
   CoarseSizes sizes;
   if (!cut_in_cells(all, rows_.size() / kCoarsePart, execution, sizes)) return;
   std::copy_n(all.at, 3, at_);
@@ -122,9 +125,9 @@ void KdCuts::cut_coarsely(std::size_t& work, const Execution& execution) {
   }
 }
 
-// Cuts every set that is too large for tiles in two. Returns false if there is none, or no room for
-// more sets.
-bool KdCuts::cut_widest(std::size_t& work, const Execution& execution) {
+// Cuts every set that is too large for tiles in two, on all threads. Returns false if there is
+// none, or if twice as many sets might not have room.
+bool KdCuts::cut_each_in_two(std::size_t& work, const Execution& execution) {
   const std::size_t before = open_;
   if (2 * before > kMaxSets) return false;
   execution.for_each(before, [&](std::size_t i) {
@@ -132,7 +135,8 @@ bool KdCuts::cut_widest(std::size_t& work, const Execution& execution) {
     RowRange& second = sets_[before + i];
     second = {first.begin, 0};
     if (first.count <= kTiledPart) return;
-    KdSet set = part_of(first);
+    KdSet set = set_of(first);
+    // `split` returns the second side.
     second.count = static_cast<std::uint32_t>(kd_order_kernels().split(set).count);
     first.count -= second.count;
     second.begin += first.count;
@@ -148,24 +152,24 @@ bool KdCuts::cut_widest(std::size_t& work, const Execution& execution) {
 bool KdCuts::advance(std::size_t work, const Execution& execution) {
   if (tile_whole(work)) return true;
   cut_coarsely(work, execution);
-  while (work != 0 && open_ != 0 && cut_widest(work, execution)) {
+  while (work != 0 && open_ != 0 && cut_each_in_two(work, execution)) {
   }
   // One thread finishes each of the remaining sets.
   std::size_t taken = 0;
   for (; taken < open_ && work != 0; ++taken) {
     const std::size_t count = sets_[open_ - 1 - taken].count;
-    work -= std::min(work, count * cuts_of(count, parts_));
+    work -= std::min(work, count * cuts_of(count, precision_));
   }
   execution.for_each(taken,
-                     [&](std::size_t i) { finish_part(part_of(sets_[open_ - 1 - i]), parts_); });
+                     [&](std::size_t i) { finish_set(set_of(sets_[open_ - 1 - i]), precision_); });
   open_ -= taken;
   return open_ == 0;
 }
 
 bool sort_by_kd_cuts(const BoundsPool& pool, std::span<std::uint32_t> rows, std::uint32_t* room,
-                     Column<float>& scratch, const Execution& execution, KdParts parts) {
+                     Column<float>& scratch, const Execution& execution, KdPrecision precision) {
   KdCuts cuts;
-  if (!cuts.start(pool, rows, room, scratch, execution, parts)) return false;
+  if (!cuts.start(pool, rows, room, scratch, execution, precision)) return false;
   (void)cuts.advance(std::numeric_limits<std::size_t>::max(), execution);
   return true;
 }

@@ -17,11 +17,12 @@ namespace winnow {
   return 6 * rows;
 }
 
-/// Precision of the cuts. `blocks`: down to blocks of 16. `tiles`: to sets of some thousand rows,
+/// How far a set is cut. `blocks`: down to blocks of 16. `tiles`: to sets of some thousand rows,
 /// which are sorted in tiles (tile_order.kernel.h); this is faster and costs some percent more
 /// tests. `cells`: evenly spread rows are first divided into cells by counting (coarse_cut.h),
-/// which parallelizes better and costs some percent more tests again.
-enum class KdParts : std::uint8_t { blocks, tiles, cells };
+/// if they are more than kMaxInTiles, which parallelizes better and costs some percent more
+/// tests again.
+enum class KdPrecision : std::uint8_t { blocks, tiles, cells };
 
 /// Sorts rows for a block tree over them by k-d cuts: sets of rows are cut in two from the top
 /// down, near the median of the axis along which their centres have the largest range. A cut always
@@ -36,7 +37,8 @@ enum class KdParts : std::uint8_t { blocks, tiles, cells };
 /// instruction set. Returns false and leaves `rows` unchanged if an allocation fails.
 [[nodiscard]] bool sort_by_kd_cuts(const BoundsPool& pool, std::span<std::uint32_t> rows,
                                    std::uint32_t* room, Column<float>& scratch,
-                                   const Execution& execution, KdParts parts = KdParts::tiles);
+                                   const Execution& execution,
+                                   KdPrecision precision = KdPrecision::tiles);
 
 /// As sort_by_kd_cuts, in steps between which boxes may change: the order uses the boxes at the
 /// start.
@@ -46,7 +48,7 @@ class KdCuts {
   /// Returns false if an allocation fails.
   [[nodiscard]] bool start(const BoundsPool& pool, std::span<std::uint32_t> rows,
                            std::uint32_t* room, Column<float>& scratch, const Execution& execution,
-                           KdParts parts = KdParts::tiles);
+                           KdPrecision precision = KdPrecision::tiles);
   /// Continues with about `work` cuts of one row each; returns true when the rows are sorted.
   bool advance(std::size_t work, const Execution& execution);
 
@@ -58,10 +60,10 @@ class KdCuts {
     std::uint32_t begin;
     std::uint32_t count;
   };
-  [[nodiscard]] KdSet part_of(const RowRange& part) const noexcept;
+  [[nodiscard]] KdSet set_of(const RowRange& range) const noexcept;
   [[nodiscard]] bool tile_whole(std::size_t& work);
   void cut_coarsely(std::size_t& work, const Execution& execution);
-  [[nodiscard]] bool cut_widest(std::size_t& work, const Execution& execution);
+  [[nodiscard]] bool cut_each_in_two(std::size_t& work, const Execution& execution);
 
   std::span<std::uint32_t> rows_;
   std::uint32_t* room_ = nullptr;
@@ -69,7 +71,7 @@ class KdCuts {
   float* at_room_[3] = {};
   std::array<RowRange, kMaxSets> sets_;
   std::size_t open_ = 0;
-  KdParts parts_ = KdParts::tiles;
+  KdPrecision precision_ = KdPrecision::tiles;
   // Pending first steps: tile all rows at once; or, if there are more, divide them into cells.
   bool whole_ = false;
   bool coarse_ = false;

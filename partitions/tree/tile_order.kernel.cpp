@@ -21,7 +21,7 @@ struct TileAxis {
   TileAxis(const float* points, std::size_t count)
       : x(points), reach(AxisExtent::of(points, count)) {}
 
-  /// Writes the place of each point (see equal_parts.wide.h).
+  /// Writes the place of each point: one of kPlacesPerAxis equal steps of the axis.
   void find_places(std::size_t count, std::uint8_t* place) const {
     const float scale = places_per(reach.half());
     alignas(64) std::uint32_t whole[kLanes];
@@ -41,7 +41,7 @@ struct TileCuts {
 
   TileCuts(const TileAxis& fast_axis, const TileAxis& mid_axis, const TileAxis& slow_axis,
            std::size_t count) {
-    const float longest = fast_axis.reach.half();
+    const float longest = fast_axis.reach.half();  // half lengths: only ratios count
     if (longest > kMinExtent) {
       const float m = mid_axis.reach.half() / longest;
       const float s = slow_axis.reach.half() / longest;
@@ -74,6 +74,7 @@ class Tiles {
     int order[3];
     order_by_length(length, order);
     const TileCuts cuts(axis[order[0]], axis[order[1]], axis[order[2]], count_);
+    // Only for the test of concentration: lines are sorted in steps, not cut into parts.
     constexpr std::uint32_t kPartsOfLine = 64;
     const std::uint32_t parts[3] = {kPartsOfLine, cuts.mid, cuts.slow};
     for (int k = 0; k < 3; ++k) {
@@ -132,7 +133,8 @@ class Tiles {
         line[s][p] = s * cuts.mid + ((s & 1U) != 0 ? cuts.mid - 1 - part[p] : part[p]);
       }
     }
-    // Eight steps of a line for each of its tiles.
+    // At most one key per point, so that a line has 8 to 16 steps for each of its tiles of 16
+    // points.
     while (step_bits_ > 2 && cuts.slow * cuts.mid << step_bits_ > count_) --step_bits_;
     const std::uint32_t last_step = (1U << step_bits_) - 1;
     for (std::size_t i = 0; i < count_; ++i) {

@@ -19,12 +19,12 @@ struct TileSet {
 inline constexpr std::size_t kMinInTiles = 64;
 inline constexpr std::size_t kMaxInTiles = 16384;
 
-/// Orders some thousand rows for a block tree only by counting, instead of cutting from the top
-/// down (compare sort-tile-recursive packing: Leutenegger, Lopez and Edgington, "STR: a simple and
-/// efficient algorithm for R-tree packing", ICDE 1997). One axis is cut into slabs, and slabs into
-/// lines, with about equal numbers of points, and each line is sorted in steps along the third and
-/// longest axis. Successive lines run in opposite directions, so that a block that starts in one
-/// line may end in the next. Pairs take some percent more tests than after cuts.
+/// Orders kMinInTiles to kMaxInTiles rows for a block tree only by counting, instead of cutting
+/// from the top down (compare sort-tile-recursive packing: Leutenegger, Lopez and Edgington, "STR:
+/// a simple and efficient algorithm for R-tree packing", ICDE 1997). One axis is cut into slabs,
+/// and slabs into lines, with about equal numbers of points, and each line is sorted in steps along
+/// the third and longest axis. Successive lines run in opposite directions, so that a block that
+/// starts in one line may end in the next. Pairs take some percent more tests than after cuts.
 struct TileOrderKernels {
   /// Sorts `kMinInTiles` to `kMaxInTiles` rows. Returns false and changes nothing if too many
   /// rows are in too small a part of their range.

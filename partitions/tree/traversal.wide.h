@@ -138,12 +138,12 @@ class JointTraversal {
 };
 
 /// Visits nodes of level 0 approximately in the order of a measure, the nearest child first.
-/// `OpenNodeStore` stores open nodes: `bool open(level, first of 16 nodes, node)` tests 16 nodes,
+/// `OpenNodes` stores open nodes: `bool open(level, first of 16 nodes, node)` tests 16 nodes,
 /// returns the one to continue with in `node` and stores the others, or returns false if none
 /// passes; `bool pop(level, node)` removes the next stored node, or returns false if there is
 /// none. visit(node) returns false to stop the descent.
-template <typename OpenNodeStore, typename Visit>
-[[gnu::always_inline]] inline bool descend(std::uint32_t levels, OpenNodeStore& open_nodes,
+template <typename OpenNodes, typename Visit>
+[[gnu::always_inline]] inline bool descend(std::uint32_t levels, OpenNodes& open_nodes,
                                            Visit&& visit) {
   // The children of this node are opened next; a node of level 0 is visited.
   std::uint32_t level = levels;

@@ -2,6 +2,7 @@
 
 #include "pipeline/cluster/rank_bodies.h"
 
+#include "partitions/rows/box_compare.kernel.h"
 #include "partitions/rows/row_input.h"
 #include "pipeline/cluster/load_balance.h"
 
@@ -96,7 +97,7 @@ void RankBodies::find_beyond(const BoxView& boxes) {
   if (BoxSource{boxes}.packed()) {
     const float around[6] = {region_.min[0], region_.min[1], region_.min[2],
                              region_.max[0], region_.max[1], region_.max[2]};
-    found = box_input_kernels().beyond(boxes.min[0], around, boxes.count, beyond_.data());
+    found = box_compare_kernels().beyond(boxes.min[0], around, boxes.count, beyond_.data());
   } else {
     for (std::uint32_t i = 0; i < boxes.count; ++i) {
       if (!is_within(boxes[i])) beyond_[found++] = i;

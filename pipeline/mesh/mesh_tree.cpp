@@ -257,7 +257,7 @@ bool order_triangles(const float* vertex, const std::uint32_t* const corner[3],
     }
   });
   return sort_by_kd_cuts(pool, std::span<std::uint32_t>(order.data(), count), room.data(), scratch,
-                         execution, KdParts::blocks);
+                         execution, KdPrecision::blocks);
 }
 
 std::size_t plan_mesh_levels(MeshView& view) noexcept {

@@ -118,7 +118,7 @@ class FeatureRows {
     if (!order.resize(count) || !room.resize(count)) return false;
     std::copy_n(boxes.ids(), count, order.data());
     return sort_by_kd_cuts(boxes, {order.data(), count}, room.data(), scratch, execution,
-                           KdParts::blocks);
+                           KdPrecision::blocks);
   }
 
   /// Reorders the ids spatially. Does not move the boxes: call `fit` afterwards.

@@ -190,6 +190,35 @@ TEST_P(AutomaticChoice, choice_does_not_depend_on_isa_and_threads) {
   EXPECT_EQ(choices(config()), choices(auto_configs().front()));
 }
 
+TEST_P(AutomaticChoice, refused_calls_do_not_change_the_choice) {
+  TurningWorld plain(config());
+  TurningWorld refused(config());
+  PairBuffer pairs;
+  PairBuffer same_pairs;
+  for (TurningWorld* scene : {&plain, &refused}) scene->fill(kMany);
+  Partition& partition = refused.world.partition();
+  std::vector<Key> stale_keys = refused.keys;
+  stale_keys.back() = {};
+  std::vector<Aabb> no_boxes = refused.boxes;
+  no_boxes.back().min[0] = std::numeric_limits<float>::quiet_NaN();
+  for (std::size_t frame = 0; frame < kFramesOfEach; ++frame) {
+    for (TurningWorld* scene : {&plain, &refused}) {
+      scene->world.update(scene->keys[frame], scene->boxes[frame]);
+    }
+    ASSERT_EQ(partition.update(stale_keys, refused.boxes), Status::invalid_key);
+    ASSERT_EQ(partition.update(refused.keys, no_boxes), Status::invalid_bounds);
+    ASSERT_EQ(partition.update(refused.keys[0], no_boxes.back()), Status::invalid_bounds);
+    ASSERT_EQ(partition.remove(stale_keys), Status::invalid_key);
+    ASSERT_EQ(partition.insert(no_boxes, {}, stale_keys), Status::invalid_bounds);
+    ASSERT_EQ(plain.world.self_pairs(pairs), Status::ok);
+    ASSERT_EQ(refused.world.self_pairs(same_pairs), Status::ok);
+    ASSERT_EQ(refused.chosen(), plain.chosen()) << "frame " << frame;
+    ASSERT_EQ(refused.changes(), plain.changes()) << "frame " << frame;
+  }
+  // The update of one object per frame changes the choice, an update of all objects would not.
+  EXPECT_GE(plain.changes(), 1U);
+}
+
 // Each switch must save twice as much as the switch before it. The number of switches therefore
 // grows only with the logarithm of the number of frames.
 TEST_P(AutomaticChoice, alternating_scene_switches_less_and_less) {

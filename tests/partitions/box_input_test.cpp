@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 #include <winnow/simd/isa.h>
+#include "partitions/rows/box_compare.kernel.h"
 #include "partitions/rows/box_input.kernel.h"
 
 #include <algorithm>
@@ -54,7 +55,7 @@ TEST_P(BoxInput, boxes_not_within_a_box_are_found) {
         if (!inside) expected.push_back(i);
       }
       std::vector<std::uint32_t> found(count);
-      found.resize(box_input_kernels().beyond(boxes.data(), around, count, found.data()));
+      found.resize(box_compare_kernels().beyond(boxes.data(), around, count, found.data()));
       EXPECT_EQ(found, expected);
     }
   }
@@ -78,8 +79,8 @@ TEST_P(BoxInput, boxes_are_copied_and_distant_ones_found) {
       }
       std::vector<float> to(boxes.size());
       std::vector<std::uint32_t> left(count + 32);
-      left.resize(box_input_kernels().copy_near(boxes.data(), near.data(), to.data(), count, skin,
-                                                left.data(), static_cast<std::uint32_t>(count)));
+      left.resize(box_compare_kernels().copy_near(boxes.data(), near.data(), to.data(), count, skin,
+                                                  left.data(), static_cast<std::uint32_t>(count)));
       EXPECT_EQ(left, expected);
       EXPECT_EQ(to, boxes);
     }
@@ -141,8 +142,8 @@ TEST_P(BoxInput, boxes_still_inside_their_margin_are_found) {
       stored_columns[c] = stored[c].data();
     }
     std::vector<std::uint64_t> words((rows + 63) / 64, ~std::uint64_t{0});
-    box_input_kernels().within(given_columns, stored_columns, count, kDistance, kShare,
-                               words.data());
+    box_compare_kernels().within(given_columns, stored_columns, count, kDistance, kShare,
+                                 words.data());
     for (std::size_t i = 0; i < count; ++i) {
       EXPECT_EQ((words[i / 64] >> i % 64 & 1U) != 0, expected[i]) << i << " of " << count;
     }
@@ -159,7 +160,7 @@ TEST_P(BoxInput, rows_get_only_the_boxes_of_their_objects) {
     std::vector<std::uint32_t> table(80, ~0U);
     const bool listed = round % 2 == 0;
     for (std::uint32_t k = 0; listed && k < 60; ++k) table[k + k / 4] = k;
-    const BoxOfId box_of{10, listed ? 80U : 60U, listed ? table.data() : nullptr};
+    const EntryOfId entry_of_id{10, listed ? 80U : 60U, listed ? table.data() : nullptr};
     std::vector<std::uint32_t> ids(kRows + 32, ~0U);
     for (std::uint32_t& id : ids) {
       if (random.below(8) != 0) id = static_cast<std::uint32_t>(random.below(100));
@@ -167,7 +168,7 @@ TEST_P(BoxInput, rows_get_only_the_boxes_of_their_objects) {
     std::vector<std::vector<float>> columns(kFloats, std::vector<float>(kRows + 16, 77.0F));
     float* pointers[kFloats];
     for (std::size_t c = 0; c < kFloats; ++c) pointers[c] = columns[c].data();
-    box_input_kernels().write_rows(boxes.data(), box_of, ids.data(), pointers, 16, kRows);
+    box_input_kernels().write_rows(boxes.data(), entry_of_id, ids.data(), pointers, 16, kRows);
     for (std::size_t row = 0; row < kRows + 16; ++row) {
       const std::uint32_t k = ids[row] - 10;
       const bool known = row >= 16 && row < kRows && k < box_of.ids;

@@ -200,13 +200,13 @@ TEST(RebuildPlanner, blocks_far_wider_than_after_build_are_scattered) {
 
 TEST(RebuildPlanner, queries_before_first_build_get_precise_order) {
   RebuildPlanner planner(0);
-  EXPECT_EQ(planner.precision(KdParts::cells), KdParts::cells);
+  EXPECT_EQ(planner.precision(KdPrecision::cells), KdPrecision::cells);
   planner.note_query();
-  EXPECT_EQ(planner.precision(KdParts::cells), KdParts::blocks);
+  EXPECT_EQ(planner.precision(KdPrecision::cells), KdPrecision::blocks);
   planner.note_build(false, 0, 1.0F);
-  EXPECT_EQ(planner.precision(KdParts::cells), KdParts::cells);  // a second build at once
+  EXPECT_EQ(planner.precision(KdPrecision::cells), KdPrecision::cells);  // a second build at once
   for (int frame = 0; frame < 3; ++frame) planner.note_frame(0);
-  EXPECT_EQ(planner.precision(KdParts::cells), KdParts::tiles);
+  EXPECT_EQ(planner.precision(KdPrecision::cells), KdPrecision::tiles);
 }
 
 TEST(RebuildPlanner, repeated_refresh_with_few_changes_is_no_frame) {
@@ -214,10 +214,10 @@ TEST(RebuildPlanner, repeated_refresh_with_few_changes_is_no_frame) {
   RowNumbers n = ordered_tree();
   n.all_changed = false;
   n.changed = 1;
-  EXPECT_FALSE(planner.is_next_frame(n));
+  EXPECT_FALSE(planner.begin_frame(n));
   planner.note_query();
-  EXPECT_TRUE(planner.is_next_frame(n));
-  EXPECT_FALSE(planner.is_next_frame(n));
+  EXPECT_TRUE(planner.begin_frame(n));
+  EXPECT_FALSE(planner.begin_frame(n));
 }
 
 }  // namespace

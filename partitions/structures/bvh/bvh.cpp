@@ -1,6 +1,6 @@
-// Bounding-volume hierarchies: block trees over all rows. The classes here say in which order the
-// rows are; SpatialIndex, which owns the tree (`tree_`), does the rest. With other structures the
-// same tree contains the rows that are in no cell. Its parts:
+// Bounding-volume hierarchies: block trees over all rows. The classes here choose the order of
+// the rows and the price of a build; SpatialIndex, which owns the tree (`tree_`), does the rest.
+// With other structures the same tree contains the rows that are in no cell. Its parts:
 //
 //   nodes            tree/block_tree.h: 16 children per node, in arrays by level
 //   order of leaves  SpatialIndex::build (index/rebuild.cpp) -> OrderPlan -> KdCuts
@@ -22,9 +22,9 @@ namespace {
 /// 16, 256, 4096 ... rows is compact (tree/kd_order.h). Blocks of 16 rows are the leaves; above
 /// them are implicit nodes with 16 children whose boxes are tested by one SIMD compare. There are
 /// no pointers, and nodes store only boxes (and filters, if they are in use). Each frame refits the
-/// nodes above moved rows; the order is rebuilt when wear exceeds the price of a build. It needs no
-/// parameter and no world bounds and suits every scene, including mixed sizes. Self pairs: O(n log
-/// n + pairs) for boxes of bounded overlap. Exact.
+/// nodes above moved rows; the order is rebuilt when wear (see RebuildPlanner) exceeds the price of
+/// a build. It needs no parameter and no world bounds and suits every scene, including mixed sizes.
+/// Self pairs: O(n log n + pairs) for boxes of bounded overlap. Exact.
 class LinearBvh final : public Structure {
  public:
   using Structure::Structure;

@@ -29,7 +29,7 @@ class CellStructure : public Structure {
         rows, most);
   }
   /// The first build should take little time, so the tree's rows are ordered coarsely.
-  [[nodiscard]] KdParts first_parts() const noexcept final { return KdParts::cells; }
+  [[nodiscard]] KdPrecision first_precision() const noexcept final { return KdPrecision::cells; }
   [[nodiscard]] std::size_t pair_tasks() const noexcept final { return pair_cut().tasks(); }
   bool run_pair_task(std::size_t task, PairSink& sink) const noexcept final {
     const TaskCut cut = pair_cut();

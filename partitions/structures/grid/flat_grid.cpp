@@ -37,7 +37,7 @@ class FlatGrid final : public CellStructure {
   [[nodiscard]] bool reserve(const BuildRoom& room) noexcept override;
   [[nodiscard]] PlanStatus plan(const RowPlan& plan, unsigned stage) noexcept override;
   [[nodiscard]] std::size_t plan_passes() const noexcept override { return 2; }
-  void finish_build(const RowPlan& plan, bool moved) noexcept override;
+  void finish_build(const RowPlan& plan, bool foreseen) noexcept override;
   [[nodiscard]] bool fits(std::size_t row, const ObjectBox& place) const noexcept override;
   [[nodiscard]] std::size_t places() const noexcept override;
   [[nodiscard]] std::uint32_t first_row(std::uint32_t line) const noexcept override;

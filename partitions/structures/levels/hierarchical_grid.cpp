@@ -137,7 +137,7 @@ class HierarchicalGrid final : public CellStructure {
   [[nodiscard]] std::size_t max_holes() const noexcept override { return kMaxHoles; }
   [[nodiscard]] PlanStatus plan(const RowPlan& plan, unsigned stage) noexcept override;
   [[nodiscard]] std::size_t plan_passes() const noexcept override { return 4; }
-  void finish_build(const RowPlan& plan, bool moved) noexcept override;
+  void finish_build(const RowPlan& plan, bool foreseen) noexcept override;
   [[nodiscard]] bool fits(std::size_t row, const ObjectBox& place) const noexcept override;
   [[nodiscard]] std::size_t places() const noexcept override { return used_.line.size(); }
   [[nodiscard]] std::uint32_t first_row(std::uint32_t line) const noexcept override {

@@ -59,7 +59,7 @@ class LooseTree : public CellStructure {
   [[nodiscard]] bool reserve(const BuildRoom& room) noexcept override;
   [[nodiscard]] PlanStatus plan(const RowPlan& plan, unsigned stage) noexcept override;
   [[nodiscard]] std::size_t plan_passes() const noexcept override { return kKeyStages + 3; }
-  void finish_build(const RowPlan& plan, bool moved) noexcept override;
+  void finish_build(const RowPlan& plan, bool foreseen) noexcept override;
   [[nodiscard]] bool prunes_rows() const noexcept override { return true; }
   [[nodiscard]] bool fits(std::size_t row, const ObjectBox& place) const noexcept override;
   [[nodiscard]] std::size_t places() const noexcept override { return used_.node.size(); }

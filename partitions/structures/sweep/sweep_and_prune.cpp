@@ -97,7 +97,7 @@ class SweepAndPrune final : public CellStructure {
   [[nodiscard]] bool reserve(const BuildRoom& room) noexcept override;
   [[nodiscard]] PlanStatus plan(const RowPlan& plan, unsigned stage) noexcept override;
   [[nodiscard]] std::size_t plan_passes() const noexcept override { return 4; }
-  void finish_build(const RowPlan& plan, bool moved) noexcept override;
+  void finish_build(const RowPlan& plan, bool foreseen) noexcept override;
   [[nodiscard]] bool fits(std::size_t row, const ObjectBox& place) const noexcept override;
   [[nodiscard]] std::size_t places() const noexcept override { return layout_.cells(); }
   [[nodiscard]] std::uint32_t first_row(std::uint32_t strip) const noexcept override {
