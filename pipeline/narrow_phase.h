@@ -56,7 +56,7 @@ struct NarrowStatistics {
   std::uint64_t without_lanes = 0;
   /// Pairs whose sign double precision could not decide; computed in exact arithmetic.
   std::uint64_t exact = 0;
-  /// Runs of the solver that reached their iteration limit and fell back to enumeration.
+  /// Searches of the solver that did not close their bounds; several may be of one pair.
   std::uint64_t bounded = 0;
 
   /// Adds the counters of another call.

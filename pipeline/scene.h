@@ -67,9 +67,9 @@ struct SceneOptions {
   double cache_tolerance = 0.0;
   /// At level manifold, for pairs with a mesh, a height field or a compound: merges the manifolds
   /// of all pairs of parts that touch into one manifold per contact region, with at most
-  /// kManifoldPoints points each (see mid::reduce_contacts). Jolt does this
-  /// by default; Bullet keeps one manifold per pair of bodies. bench/rows/standing_rows.cpp
-  /// measures the cost. False: reports one manifold per pair of parts.
+  /// kManifoldPoints points each (see mid::reduce_contacts). Jolt does this by default; Bullet
+  /// keeps one manifold per pair of bodies. bench/rows/standing_rows.cpp measures the cost. False:
+  /// reports one manifold per pair of parts.
   bool contact_reduction = false;
   /// Suppresses ghost contacts at the seams between fixed bodies with flush surfaces, so that
   /// bodies slide over them as over one floor. At levels distance and manifold, a contact of a
@@ -84,9 +84,9 @@ struct SceneOptions {
   ///   degrees.
   ///
   /// Such a contact is with a side or an edge of a seam. Contacts with steps, kerbs, walls, slopes
-  /// and ridges stay. Pairs with fixed bodies are not cached. The test runs on the calling
-  /// thread in O(n log n) for n contacts with fixed bodies, plus O(1) for each pair of contacts of
-  /// one body whose normals differ by that angle.
+  /// and ridges stay. Pairs with fixed bodies are not cached. The test runs on the calling thread
+  /// in O(n log n) for n contacts with fixed bodies, plus O(1) for each pair of contacts of one
+  /// body whose normals differ by that angle.
   bool suppress_ghost_contacts = false;
   /// Stores for each pair and each point its index in the previous frame (Contacts::previous_pair
   /// and previous_point), so that a solver can warm start. Takes 4 bytes per pair, 5 per point and

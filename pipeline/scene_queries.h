@@ -138,7 +138,7 @@ struct MotionCast {
 /// allocates nothing. Any number of these objects may query a scene at the same time while nothing
 /// changes the scene. Call `Scene::refresh` first, and again after every change of bodies and every
 /// in-place change of composite shapes; otherwise queries return `invalid_argument`. A failed query
-/// leaves its output unchanged, but makes spans of earlier queries invalid.
+/// leaves its output unchanged (but see batches of rays), and spans of earlier queries are invalid.
 class WINNOW_API SceneQueries {
  public:
   /// Creates queries on `scene`, which must outlive this object. Every allocation comes from
@@ -161,7 +161,7 @@ class WINNOW_API SceneQueries {
   /// next query.
   Status all(const ShapeRay& ray, std::span<const SceneHit>& hits, const Filter& filter = {});
   /// Finds the hit of least t of each ray; results equal the single query. One invalid ray makes
-  /// any call with a batch fail.
+  /// any call with a batch fail. If memory is refused, some rays' columns may have been written.
   Status closest(const ShapeRayBatch& rays, const SceneHitColumns& hits, const Filter& filter = {});
   /// Finds any one hit of each ray.
   Status any(const ShapeRayBatch& rays, const SceneHitColumns& hits, const Filter& filter = {});

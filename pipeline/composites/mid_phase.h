@@ -140,8 +140,9 @@ void visit(const CompositePool& pool, ShapeId id, const Pose& pose, const Moving
            const PrimitiveVisitor& visitor);
 /// Finds the closest hit of each ray on a shape at t up to its limit, which is at most its max_t;
 /// of equal t, the hit on the part with the smallest number. With `any`, finds any hit. A ray with
-/// a negative limit hits nothing. Rays are valid. The hits of a ray do not depend on the other
-/// rays. `prepared` may be null; else a mesh is prepared in it, unless it was by an earlier call.
+/// a negative limit hits nothing. Rays are valid. The closest hit of a ray does not depend on the
+/// other rays; with `any`, the hit that is found may. `prepared` may be null; else a mesh is
+/// prepared in it, unless it was by an earlier call.
 void cast_rays(const CompositePool& pool, ShapeId id, const Pose& pose,
                std::span<const ShapeRay> rays, const double* limits, bool any, RaySurface* prepared,
                PartHit* hits);

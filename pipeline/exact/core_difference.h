@@ -17,7 +17,7 @@ struct CoreDisc {
 
 /// The vertices of a shape's core, in the shape's frame. The core of a cylinder or cone is the
 /// convex hull of two discs; `column` then contains polygons inscribed in the discs. `column`
-/// points into this object or into the shape.
+/// points into this object, which has room for two polygons of 16 corners, or into the shape.
 struct CoreVertices {
   CoreVertices() noexcept = default;
   CoreVertices(const CoreVertices&) = delete;
@@ -46,9 +46,9 @@ bool core_vertices(const ShapeCore& shape, CoreVertices& core) noexcept;
 std::uint32_t farthest_vertex(const CoreVertices& core, const ExactVector& direction,
                               Dyadic& height) noexcept;
 
-/// The Minkowski difference of two cores: the points x - y with x in core a and y in core b, times
-/// `scale`. The scale is the product of the squared lengths of both quaternions; with it
-/// coordinates are polynomials of the input.
+/// The Minkowski difference a - b of two cores (the solver's GJK uses b - a): the points x - y with
+/// x in core a and y in core b, times `scale`. The scale is the product of the squared lengths of
+/// both quaternions; with it coordinates are polynomials of the input.
 class CoreDifference {
  public:
   /// `core_a` and `core_b` must outlive it.

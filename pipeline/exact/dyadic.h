@@ -8,9 +8,9 @@
 
 namespace winnow {
 
-/// Number of 64-bit digits in a Dyadic. Callers use `lowest_bit` and `highest_bit` of the input to
-/// ensure that no result needs more. An operation whose result would not fit returns zero and never
-/// writes out of bounds.
+/// Number of 64-bit digits in a Dyadic. Callers must ensure by BitSpan and fits_dyadic
+/// (exact_vector.h) that no result needs more: an operation whose result would not fit returns
+/// zero, without a report, and never writes out of bounds.
 inline constexpr int kDyadicDigits = 96;
 
 /// The magnitude of a finite double, as magnitude * 2^exponent.

@@ -14,8 +14,8 @@ struct ExactSimplex {
 
 /// Returns whether the origin projects into the interior of the segment; `toward` then becomes a
 /// direction from the segment to the origin.
-[[nodiscard]] bool segment_faces(const ExactVector& a, const ExactVector& b,
-                                 ExactVector& toward) noexcept {
+[[nodiscard]] bool is_beside_segment(const ExactVector& a, const ExactVector& b,
+                                     ExactVector& toward) noexcept {
   const ExactVector edge = b - a;
   const Dyadic along = dot(a, edge);
   if (along.sign() >= 0 || dot(b, edge).sign() <= 0) return false;
@@ -23,8 +23,9 @@ struct ExactSimplex {
   return true;
 }
 
-[[nodiscard]] bool triangle_faces(const ExactVector& a, const ExactVector& b, const ExactVector& c,
-                                  ExactVector& toward) noexcept {
+/// As above, for a triangle; `toward` is zero if the origin is in it.
+[[nodiscard]] bool is_beside_triangle(const ExactVector& a, const ExactVector& b,
+                                      const ExactVector& c, ExactVector& toward) noexcept {
   const ExactVector normal = cross(b - a, c - a);
   if (dot(normal, cross(b, c)).sign() <= 0 || dot(normal, cross(c, a)).sign() <= 0 ||
       dot(normal, cross(a, b)).sign() <= 0) {
@@ -49,21 +50,22 @@ struct SimplexFace {
   return face;
 }
 
+/// Johnson's conditions for the face `mask`; see keep_nearest_face.
 [[nodiscard]] bool is_nearest(const ExactSimplex& s, unsigned mask, ExactVector& toward) noexcept {
   const SimplexFace face = face_of(mask);
   const ExactVector& first = s.point[face.index[0]];
-  bool faces = true;
+  bool is_beside = true;
   switch (face.count) {
     case 1:
       toward = -first;
       break;
     case 2:
-      faces = segment_faces(first, s.point[face.index[1]], toward);
+      is_beside = is_beside_segment(first, s.point[face.index[1]], toward);
       break;
     default:
-      faces = triangle_faces(first, s.point[face.index[1]], s.point[face.index[2]], toward);
+      is_beside = is_beside_triangle(first, s.point[face.index[1]], s.point[face.index[2]], toward);
   }
-  if (!faces) return false;
+  if (!is_beside) return false;
   const Dyadic plane = dot(toward, first);
   for (int i = 0; i < s.size; ++i) {
     if ((mask >> i & 1U) == 0 && compare(dot(toward, s.point[i]), plane) > 0) return false;
@@ -116,16 +118,16 @@ void keep_nearest_face(ExactSimplex& simplex, ExactVector& toward) noexcept {
 }
 
 /// GJK (Gilbert, Johnson and Keerthi 1988) in exact arithmetic: descends towards the origin until
-/// the simplex contains it (returns true) or `is_outside(direction, height)` proves that it never
-/// will. Each step gets strictly closer to the origin, so no simplex recurs and the loop
+/// the simplex contains it (returns true) or `is_end(direction, height)` is true for a support
+/// point. Each step gets strictly closer to the origin, so no simplex recurs and the loop
 /// terminates.
-template <typename Outside>
-[[nodiscard]] bool descend(const CoreDifference& difference, const Outside& is_outside,
+template <typename End>
+[[nodiscard]] bool descend(const CoreDifference& difference, const End& is_end,
                            ExactVector direction, ExactSimplex& simplex) noexcept {
   Dyadic height;
   while (!is_zero(direction)) {
     difference.support(direction, simplex.point[simplex.size], height);
-    if (is_outside(direction, height)) return false;
+    if (is_end(direction, height)) return false;
     ++simplex.size;
     keep_nearest_face(simplex, direction);
   }
@@ -190,21 +192,19 @@ template <typename Outside>
   const Dyadic square = length * length;
   ExactSimplex simplex;
   bool apart = false;
-  const auto is_outside = [&](const ExactVector& d, const Dyadic& height) {
+  const auto is_end = [&](const ExactVector& d, const Dyadic& height) {
     // Only the first direction's plane is tested: it often decides, and later directions have more
     // digits.
     if (simplex.size == 0) {
       apart = height.sign() < 0 && compare(height * height, square * dot(d, d)) > 0;
       return apart;
     }
+    // No point is closer to the origin than the simplex.
     return compare(height, dot(d, simplex.point[0])) <= 0;
   };
-  if (descend(difference, is_outside, direction, simplex)) return ExactVerdict::overlapping;
+  if (descend(difference, is_end, direction, simplex)) return ExactVerdict::overlapping;
   if (apart) return ExactVerdict::separated;
-  const int sign = compare_square_distance(simplex, square);
-  return sign > 0   ? ExactVerdict::separated
-         : sign < 0 ? ExactVerdict::overlapping
-                    : ExactVerdict::touching;
+  return verdict_of(compare_square_distance(simplex, square));
 }
 
 }  // namespace

@@ -13,8 +13,9 @@ enum class ExactVerdict : unsigned char {
   touching,
   /// The interiors overlap.
   overlapping,
-  /// Not decided: the contact of the pair is not a rational predicate (cylinders, cones, shapes
-  /// given by a support function), or the exponents of the input span too wide a range.
+  /// Not decided: the pair has a shape given by a support function, or a cylinder or cone in a
+  /// general position that no proof below covers, or the exponents of the input span too wide a
+  /// range.
   undecided,
 };
 

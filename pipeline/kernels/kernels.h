@@ -30,8 +30,8 @@ struct ContactWriter {
   std::uint32_t size;
 };
 
-/// Consecutive pairs of one kind, and the columns for their answers: element i of every column
-/// belongs to pairs[i]. In every pair the shape of `a` is of the smaller kind.
+/// Consecutive pairs of the same two kinds, and the columns for their answers: element i of every
+/// column belongs to pairs[i]. In every pair the shape of `a` is of the smaller kind.
 struct NarrowJob {
   const BodyPair* pairs;
   std::uint32_t count;
@@ -60,13 +60,13 @@ struct NarrowJob {
   /// closest point on b is point + distance * normal.
   double* point[3];
   /// Level manifold: the contacts of pair i are [contact_first[i], contact_first[i] +
-  /// contact_count[i]).
+  /// contact_count[i]). Contacts of uncertified pairs follow those of all other pairs.
   std::uint32_t* contact_first;
   std::uint32_t* contact_count;
   ContactWriter contacts;
 
-  /// Room for `count` indices of pairs that the kernel could not certify. The other columns of
-  /// these pairs are unspecified.
+  /// Room for `count` indices of pairs that the kernel could not certify, among them all pairs with
+  /// an invalid pose. The other columns of these pairs are unspecified, also `contact_count`.
   std::uint32_t* uncertified;
 
   [[nodiscard]] double margin_of(std::uint32_t pair) const {

@@ -13,10 +13,10 @@ namespace winnow {
 
 /// The corners, edges and faces of a polytope inside a box, some corners of which are its corners.
 struct CornerTable {
-  static constexpr std::uint32_t kMost = 8;
+  static constexpr std::uint32_t kMaxCorners = 8;
   std::uint32_t corners;
   /// Coordinates of the corners, in half extents.
-  std::int8_t corner[kMost][3];
+  std::int8_t corner[kMaxCorners][3];
   std::uint32_t edges;
   /// The corners at the ends, the lower number first.
   std::uint8_t edge[12][2];

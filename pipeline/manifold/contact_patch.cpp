@@ -155,7 +155,7 @@ class PointSelection {
   double extent_ = 0.0;
 };
 
-ContactPoint write(const ClipPoint& m, const PatchFrame& frame, const double rounding[2]) {
+ContactPoint contact_of(const ClipPoint& m, const PatchFrame& frame, const double rounding[2]) {
   const double top = m.height[0] + rounding[0];
   const double bottom = m.height[1] - rounding[1];
   const double middle = 0.5 * (top + bottom);
@@ -196,7 +196,7 @@ struct PatchIntersection {
     PointSelection places(direction);
     for (std::uint32_t i = 0; i < corners.count; ++i) {
       const ClipPoint& m = corners.point[i];
-      places.add(m.x, m.y, rise(m));
+      places.add(m.x, m.y, core_depth(m));
     }
     std::uint32_t chosen[kManifoldPoints];
     const std::uint32_t count = places.choose(chosen);
@@ -217,7 +217,7 @@ struct PatchIntersection {
 
  private:
   [[nodiscard]] ContactPoint contact(std::uint32_t i) const noexcept {
-    return write(corners.point[i], frame, rounding);
+    return contact_of(corners.point[i], frame, rounding);
   }
 
   void intersect(const Outline& a, const Outline& b, double margin) noexcept {
@@ -236,17 +236,18 @@ struct PatchIntersection {
     return p.size < kSmaller * q.size;
   }
 
-  [[nodiscard]] static double rise(const ClipPoint& m) noexcept {
+  // The depth at a corner, without rounding.
+  [[nodiscard]] static double core_depth(const ClipPoint& m) noexcept {
     return m.height[0] - m.height[1];
   }
 
   // Among equally deep corners takes the first.
   void find_deepest() noexcept {
-    double highest = rise(corners.point[0]);
+    double most = core_depth(corners.point[0]);
     for (std::uint32_t i = 1; i < corners.count; ++i) {
-      highest = std::max(highest, rise(corners.point[i]));
+      most = std::max(most, core_depth(corners.point[i]));
     }
-    while (rise(corners.point[deepest]) < highest - corners.same) ++deepest;
+    while (core_depth(corners.point[deepest]) < most - corners.same) ++deepest;
   }
 
   void drop_beyond(double margin) noexcept {
@@ -255,7 +256,9 @@ struct PatchIntersection {
     std::uint32_t first = 0;
     for (std::uint32_t i = 0; i < corners.count; ++i) {
       if (i == deepest) first = kept;
-      if (i == deepest || rise(corners.point[i]) >= least) corners.point[kept++] = corners.point[i];
+      if (i == deepest || core_depth(corners.point[i]) >= least) {
+        corners.point[kept++] = corners.point[i];
+      }
     }
     deepest = first;
     corners.count = kept;

@@ -140,9 +140,10 @@ struct ClipPoints {
   /// Keeps the next corner, unless it coincides with the first or the last one.
   void keep_next() noexcept {
     const ClipPoint& m = point[count];
-    for (std::uint32_t i = 0; i<count; i += count> 1 ? count - 1 : 1) {
-      if (std::abs(point[i].x - m.x) <= same && std::abs(point[i].y - m.y) <= same) return;
-    }
+    const auto is_at = [&](std::uint32_t i) {
+      return std::abs(point[i].x - m.x) <= same && std::abs(point[i].y - m.y) <= same;
+    };
+    if (count > 0 && (is_at(0) || is_at(count - 1))) return;
     ++count;
   }
   void add(const ClipPoint& m) noexcept {

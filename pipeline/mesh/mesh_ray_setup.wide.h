@@ -26,9 +26,9 @@ inline constexpr double kMaxSlack = 1e200;
 /// The origin is at most this many units away along any axis, so that the ray leaves the mesh
 /// before tau = 200.
 inline constexpr float kNearUnits = 0x1p22F;
-/// Error bound of the ray's position and of its distance to a bound: a fraction of the position,
-/// plus a fraction of the largest bound. 32 u covers 12 roundings, or 24 in a directed rounding
-/// mode.
+/// Error bound of the ray's position and of its distance to a bound, which take at most 12
+/// roundings: kNearShare, 32 u, of the position, plus kNearError, in units, which is more than the
+/// same share of the largest bound, 65536.
 inline constexpr float kNearShare = 0x1p-19F;
 inline constexpr float kNearError = 0.5F;
 
@@ -314,8 +314,8 @@ template <typename Rays>
   const AxisInterval<D> interval{own_slack, most};
   const D in = largest_of(by_axis(interval, start, direction, inverse, spread<V>(mesh.least),
                                   spread<V>(mesh.most), leaves));
-  const Mask16 come = bits((in <= least_of(leaves)) & (most >= D(0.0)));
-  if (come == 0) return come;
+  const Mask16 hits_box = bits((in <= least_of(leaves)) & (most >= D(0.0)));
+  if (hits_box == 0) return hits_box;
   store(in, ready.entry + first);
   const V moved = direction * in;
   const V from = start + moved;
@@ -323,9 +323,9 @@ template <typename Rays>
   const D slack = min(D(kMaxSlack), own_slack + D(0x1p-51) * farthest);
   // No ray is in the box, grown by the slack, for longer than twice `longest`.
   const D extent(mesh.extent);
-  const auto is_slack = slack > D(0x1p-10) * extent;
-  const D longest = select(is_slack, extent + D(2.0) * slack, extent);
-  const D pace = select(is_slack, one / longest, D(mesh.pace));
+  const auto has_large_slack = slack > D(0x1p-10) * extent;
+  const D longest = select(has_large_slack, extent + D(2.0) * slack, extent);
+  const D pace = select(has_large_slack, one / longest, D(mesh.pace));
   store(pace, ready.pace + first);
   V near;
   V far;
@@ -347,18 +347,17 @@ template <typename Rays>
   store(grow, ready.grow, first);
   store(rate, ready.inverse, first);
   const V away = abs_of(start - spread<V>(mesh.low));
-  store(sure_area(mesh, away.x + away.y + away.z, own_slack, select(is_slack, longest, extent)),
-        ready.surely + first);
+  store(sure_area(mesh, away.x + away.y + away.z, own_slack, longest), ready.surely + first);
   store(near, ready.near, first);
   store(far, ready.far, first);
-  return come;
+  return hits_box;
 }
 
 /// As make_ready, for a single ray that begins near the mesh (kNearUnits) and has a small slack;
 /// tau is measured from its origin. Does not test the mesh's box, because the traversal tests the
 /// nodes. Returns false for other rays.
 ///
-/// The position takes three roundings, its inverse as many, and a bound's conversion to tau four,
+/// The position takes three roundings, `inverse` as many, and a bound's conversion to tau four,
 /// each of half an ulp of at most the sum of |at| and the largest bound.
 [[gnu::always_inline]] inline bool make_near_ready(const MeshSpan& mesh,
                                                    const SingleSurfaceRay& ray,

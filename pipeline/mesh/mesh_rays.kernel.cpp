@@ -90,7 +90,7 @@ class RayTraversal {
       far_bound_[axis] = (axis + 3U - 3U * upper) * kMeshFanout;
     }
     if (mesh.box == nullptr) line_.set(rays, ray);
-    set_last(limit);
+    store_limit(limit);
     open_ = 0;
     // A top level with one or two nodes is skipped: its children are tested at once.
     const std::uint32_t top = mesh.levels - 1;
@@ -169,8 +169,7 @@ class RayTraversal {
   /// the vertices of the first triangle only, since there are hardly ever more.
   [[gnu::always_inline]] bool find_triangles(const MeshView& mesh) {
     const LineTriangles line = line_.near(mesh, node_.number);
-    candidates_ = {node_.number, node_.entry, triangles_of(mesh, node_.number) & line.may,
-                   line.sure};
+    candidates_ = {node_.number, 0.0F, triangles_of(mesh, node_.number) & line.may, line.sure};
     fetch_vertices(mesh,
                    node_.number * kMeshFanout + first(candidates_.triangles | 1U << (kLanes - 1)));
     __builtin_prefetch(mesh.triangle + node_.number * kMeshFanout);
@@ -190,8 +189,8 @@ class RayTraversal {
   /// Keys distinguish this many nodes.
   static constexpr std::uint32_t kNumbers = 2 * kLanes;
 
-  /// A leaf to be tested: the time at which the ray enters it, the triangles that it may cross, and
-  /// a subset that it certainly crosses.
+  /// A leaf to be tested: the time at which the ray enters it (only for go_through_boxes), the
+  /// triangles that it may cross, and a subset that it certainly crosses.
   struct LeafCandidates {
     std::uint32_t leaf = 0;
     float entry = 0.0F;
@@ -209,7 +208,7 @@ class RayTraversal {
         now = select_triangles(mesh, node);
         if (now.triangles != 0) fetch_vertices(mesh, now);
       }
-      if (before.triangles != 0 && before.entry <= last_ &&
+      if (before.triangles != 0 && before.entry <= limit_tau_ &&
           !cross_triangles(mesh, before, receiver)) {
         return;
       }
@@ -223,17 +222,17 @@ class RayTraversal {
     }
   }
 
-  void set_last(double limit) {
+  void store_limit(double limit) {
     limit_ = limit;
     const double rest = (limit - rays_->entry[place()]) * rays_->pace[place()] * (1.0 + 0x1p-20);
     const float most = rest < 1e38 ? static_cast<float>(rest) : kMaxTau;
-    last_ = most > kMinTau ? most : kMinTau;
-    last_key_ =
-        __builtin_bit_cast(float, __builtin_bit_cast(std::uint32_t, last_) | (kNumbers - 1U));
+    limit_tau_ = most > kMinTau ? most : kMinTau;
+    limit_key_ =
+        __builtin_bit_cast(float, __builtin_bit_cast(std::uint32_t, limit_tau_) | (kNumbers - 1U));
   }
   /// Lowers the limit; closes open nodes beyond it.
   void set_limit(double limit) {
-    set_last(limit);
+    store_limit(limit);
     for (std::uint32_t rest = open_; rest != 0; rest &= rest - 1) {
       const std::uint32_t at = first(rest);
       open_ ^= (is_open(Floats::load(key_[at]), gone_to_[at]) ^ 1U) << at;
@@ -241,14 +240,14 @@ class RayTraversal {
   }
   /// Returns 1 if nodes with these keys come after `gone_to` and before the limit, else 0.
   [[nodiscard, gnu::always_inline]] std::uint32_t is_open(const Floats& key, float gone_to) const {
-    return bits((key > Floats(gone_to)) & (key <= Floats(last_key_))) != 0 ? 1U : 0U;
+    return bits((key > Floats(gone_to)) & (key <= Floats(limit_key_))) != 0 ? 1U : 0U;
   }
 
   /// Returns which of the sixteen boxes in columns at `bounds` the ray intersects, and writes the
   /// times at which it enters them to `in`.
   [[gnu::always_inline]] LaneMask<float> enter(const std::uint16_t* bounds, Floats& in) const {
     in = Floats(kMinTau);
-    Floats out(last_);
+    Floats out(limit_tau_);
     for (int axis = 0; axis < 3; ++axis) {
       const Floats inverse(rays_->inverse[axis][place()]);
       const Floats near = load_short(bounds + near_bound_[axis]);
@@ -438,10 +437,11 @@ class RayTraversal {
   /// Offsets of the bounds of sixteen nodes that the ray passes as it enters and as it leaves.
   std::uint32_t near_bound_[3];
   std::uint32_t far_bound_[3];
+  /// The limit in own t, as tau (see ReadyRays), and as an upper bound on the keys of nodes that
+  /// the ray enters by then.
   double limit_;
-  float last_;
-  /// Upper bound on the keys of nodes that the ray enters by `last_`.
-  float last_key_;
+  float limit_tau_;
+  float limit_key_;
   /// For rays side by side: the next node, and the last leaf to be tested.
   RayNode node_;
   LeafCandidates candidates_;
@@ -464,17 +464,17 @@ class WaitingRays {
               std::uint32_t count)
       : mesh_(mesh), rays_(rays), limits_(limits) {
     for (std::uint32_t first = 0; first < count; first += kRayLanes) {
-      const Mask16 come = make_ready<LaneRays>(mesh.span, rays, limits, first, ready_);
-      come_ |= std::uint64_t{come} << first;
+      const Mask16 hits_box = make_ready<LaneRays>(mesh.span, rays, limits, first, ready_);
+      waiting_ |= std::uint64_t{hits_box} << first;
     }
-    if (count < kRaysAtOnce) come_ &= (std::uint64_t{1} << count) - 1U;
+    if (count < kRaysAtOnce) waiting_ &= (std::uint64_t{1} << count) - 1U;
   }
 
   /// Starts the next ray that does not miss the mesh; returns false if there is none.
   [[gnu::always_inline]] bool start(RayTraversal<false>& walk, RayStep& step) {
-    if (come_ == 0) return false;
-    const auto ray = static_cast<std::uint32_t>(__builtin_ctzll(come_));
-    come_ &= come_ - 1;
+    if (waiting_ == 0) return false;
+    const auto ray = static_cast<std::uint32_t>(__builtin_ctzll(waiting_));
+    waiting_ &= waiting_ - 1;
     step = walk.step_to(walk.start(mesh_, rays_, ready_, ray, limits_[ray]));
     return true;
   }
@@ -483,12 +483,14 @@ class WaitingRays {
   const MeshView& mesh_;
   const SurfaceRays& rays_;
   const double* limits_;
-  std::uint64_t come_ = 0;
+  std::uint64_t waiting_ = 0;
   ReadyRays<kRaysAtOnce> ready_;
 };
 
 /// Traverses rays side by side, so that prefetches have time to complete. In each round, all rays
 /// that need the same kind of step take it one after another, which makes branches predictable.
+/// Triangles are tested first in a round, because a hit lowers the limit and closes nodes; new rays
+/// begin last.
 class RaysSideBySide {
  public:
   RaysSideBySide(const MeshView& mesh, ClosestReceiver<kRaysAtOnce>& receiver, WaitingRays& waiting)

@@ -11,7 +11,7 @@
 
 namespace winnow {
 
-/// Rays that are traversed together.
+/// Rays that are placed and prepared together; half of them are traversed at a time.
 inline constexpr std::uint32_t kRaysAtOnce = 64;
 /// Rays prepared at once, one per lane. Columns of more than one ray are padded to a multiple of
 /// this with copies of the last ray.
@@ -33,8 +33,8 @@ struct RayColumns {
   alignas(kRayAlignment<Room>) double direction[3][Room];
 };
 
-/// A ray in the frame of a mesh or height field. Its parameter is scaled so that lengths along it
-/// are about equal to t.
+/// A ray in the frame of a mesh or height field. Its parameter (own t) is scaled so that it is
+/// about the length along the ray.
 struct SurfaceRay {
   double origin[3];
   /// The largest component is in [1/2, 1) in magnitude.
@@ -94,7 +94,9 @@ struct LocalRayTime {
 /// Whether a ray crosses a triangle; `uncertain` if rounding or the ray's slack may change this.
 enum class Crossing : std::uint8_t { none, found, uncertain };
 
+/// A ray's hit on one triangle, in the frame of the surface.
 struct SurfaceHit {
+  /// Own t.
   double t;
   /// Orthogonal to the triangle, against the ray; of any length.
   double normal[3];
@@ -181,13 +183,15 @@ struct ClosestHits {
   }
 };
 
+/// `closest` and `closest_of_one` trace rays of scenes, `all` tests solids; `place` and `cross` are
+/// steps of callers that trace rays through other surfaces, too.
 struct MeshRayKernels {
   /// Transforms rays to the frame of a surface; returns a bit for each ray that the caller must
   /// transform.
   std::uint64_t (*place)(const SurfaceFrame& frame, const RayColumns<kRaysAtOnce>& world,
                          std::uint32_t count, SurfaceRays& own);
-  /// Finds the closest hits of the first `count` rays. Rays and own limits are padded as RayColumns
-  /// are.
+  /// Finds the closest hits of the first `count` rays. Rays are padded with copies of the last ray
+  /// to a multiple of kRayLanes, and their own limits with -1.
   void (*closest)(const MeshView& mesh, const SurfaceRays& rays, std::uint32_t count,
                   ClosestHits<kRaysAtOnce>& hits);
   void (*closest_of_one)(const MeshView& mesh, const SingleSurfaceRay& ray, ClosestHits<1>& hits);

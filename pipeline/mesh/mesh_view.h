@@ -26,6 +26,7 @@ inline constexpr std::uint32_t kMaxLeafPoint = (1U << kLeafPointBits) - 1U;
 
 /// Constants of a mesh that every ray needs.
 struct MeshSpan {
+  /// MeshView::origin and step in double, and node units per length: 1 / step.
   double low[3];
   double step[3];
   double units[3];
@@ -57,13 +58,18 @@ struct PartHit {
   bool found = false;    ///< false: the other members are not set
   bool has_unit_normal;  ///< false, during the traversal only, if normalising may overflow
   std::uint32_t part;    ///< number of the triangle or child
-  double t;              ///< of the ray
+  double t;              ///< parameter of the caller's ray
   double normal[3];      ///< unit normal of the surface in the world, against the ray
 };
 
 /// A triangle mesh as its traversals read it. A slot is a position in the order of the tree: leaf i
 /// has slots [16 i, 16 i + 16). Columns indexed by slot are padded to a multiple of 16 with copies
 /// of the last slot, levels with empty boxes.
+///
+/// Corners are in `corner`, or in lists of vertices by leaf (`leaf_vertex`, `leaf_place`) unless
+/// most leaves have more than sixteen vertices. If a mesh has more vertices than triangles, few
+/// triangles share a vertex, and each slot has a box (`box`). Otherwise rays test the quantised
+/// vertices of such lists (`leaf_point`), or the corners if the mesh has none.
 struct MeshView {
   /// x, y and z of each vertex, vertex by vertex, plus one extra float, because vertices may be
   /// read four floats at a time.

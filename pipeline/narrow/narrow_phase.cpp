@@ -2,8 +2,7 @@
 // 1. PairBuckets (pair_buckets.h) validates the pairs and sorts them by the kinds of their shapes.
 // 2. State::run cuts each kind into chunks of up to kJobPairs, and collects them in waves of 64.
 // 3. State::answer_wave answers the chunks of a wave in parallel: `answer_job` calls the SIMD
-// kernel
-//    of the kinds, then the solver for each pair that the kernel could not certify.
+//    kernel of the kinds, then the solver for each pair that the kernel could not certify.
 // 4. If a pair was given in the other order of kinds, `mirror_answer` turns its result around.
 // 5. At level manifold, contacts go directly into the result (one thread, `take_contacts`) or from
 //    scratch into the result (`gather_contacts`).
@@ -62,7 +61,7 @@ struct ChunkOutcome {
   SolverCounts solver;
 };
 
-/// Consecutive pairs of one kind that one task answers.
+/// Consecutive sorted pairs of the same two kinds that one task answers.
 struct PairChunk {
   NarrowJob job;
   NarrowKernel kernel;
@@ -119,7 +118,7 @@ void write_answer(NarrowJob& job, ContactLevel level, std::uint32_t i,
 }
 
 /// Answers a job: by `kernel` (null if there is none), then by the solver for each uncertified
-/// pair.
+/// pair. Pairs with an invalid pose, which kernels do not certify, get no answer.
 void answer_job(NarrowJob& job, ContactLevel level, NarrowKernel kernel,
                 ChunkOutcome& outcome) noexcept {
   std::uint32_t uncertified[kJobPairs];
@@ -193,7 +192,8 @@ struct Call {
       chunk.job.margins = margins;
     }
     answer_job(chunk.job, options.level, chunk.kernel, chunk.outcome);
-    if (!any_mirrored) return;
+    // Pairs with an invalid pose have no answer to mirror, and the call fails.
+    if (!any_mirrored || chunk.outcome.bad_body != ~0U) return;
     for (std::uint32_t i = 0; i < chunk.job.count; ++i) {
       const BodyPair& given = pairs[result.pair_of(chunk.first + i)];
       if (given.a != chunk.job.pairs[i].a) mirror_answer(chunk.job, options.level, i);
@@ -216,8 +216,8 @@ struct NarrowPhase::State {
 
   [[nodiscard]] Status collide(const Call& call, NarrowResult& result);
   [[nodiscard]] Status run(const Call& call, NarrowResult& result);
-  void begin(PairChunk& chunk, const Call& call, NarrowResult& result, std::uint32_t first,
-             std::uint32_t count) const noexcept;
+  void fill_job(PairChunk& chunk, const Call& call, NarrowResult& result, std::uint32_t first,
+                std::uint32_t count) const noexcept;
   [[nodiscard]] bool answer_wave(const Call& call, std::span<PairChunk> wave, NarrowResult& result);
   static void take_contacts(const PairChunk& chunk, NarrowResult& result) noexcept;
   [[nodiscard]] bool gather_contacts(const Call& call, std::span<const PairChunk> wave,
@@ -282,7 +282,7 @@ Status NarrowPhase::State::run(const Call& call, NarrowResult& result) {
     for (std::uint32_t at = 0; at < run.count; at += kJobPairs) {
       PairChunk& chunk = wave.add();
       chunk.kernel = kernel;
-      begin(chunk, call, result, run.first + at, std::min(kJobPairs, run.count - at));
+      fill_job(chunk, call, result, run.first + at, std::min(kJobPairs, run.count - at));
       if (!wave.full()) continue;
       if (!answer_wave(call, wave.chunks(), result)) return Status::out_of_memory;
       wave.clear();
@@ -299,8 +299,8 @@ Status NarrowPhase::State::run(const Call& call, NarrowResult& result) {
   return call.bad_body == ~0U ? Status::ok : Status::invalid_pose;
 }
 
-void NarrowPhase::State::begin(PairChunk& chunk, const Call& call, NarrowResult& result,
-                               std::uint32_t first, std::uint32_t count) const noexcept {
+void NarrowPhase::State::fill_job(PairChunk& chunk, const Call& call, NarrowResult& result,
+                                  std::uint32_t first, std::uint32_t count) const noexcept {
   chunk.first = first;
   NarrowJob& job = chunk.job;
   job.pairs = buckets.pairs() + first;

@@ -90,11 +90,10 @@ Status PairBuckets::sort(const ShapeTables& tables, std::span<const ShapeId> sha
   if (shapes.size() >= kTopBit) return Status::invalid_argument;
   if (pairs.size() == 1) return take_one(tables, shapes, pairs, order, runs, bad_body);
   std::ranges::fill(counts_, 0U);
-  there_ = {};
+  range_ = {};
   // If the pool contains only one kind, the kinds of the pairs need not be read. Checking the
   // shapes of all bodies instead pays only if there are at most kClassifyCost bodies per pair.
-  constexpr std::size_t kClassifyCost =
-      8;  // estimated cost of classifying a pair, in checks of a body
+  constexpr std::size_t kClassifyCost = 8;  // estimate of the cost per pair, in checks of a body
   const std::uint32_t only =
       shapes.size() / kClassifyCost <= pairs.size() ? only_kind(tables) : kShapeKinds;
   const bool one_kind = only != kShapeKinds && all_are(shapes, only, tables.count[only], execution);
@@ -118,7 +117,7 @@ Status PairBuckets::sort(const ShapeTables& tables, std::span<const ShapeId> sha
               }
             });
   if (const Status status = sum_up(bad_body); status != Status::ok) return status;
-  if (there_.low >= there_.high && !any_mirrored_) return add_runs(runs);
+  if (range_.low >= range_.high && !any_mirrored_) return add_runs(runs);
   if (!sorted_.resize(pairs.size())) return Status::out_of_memory;
   find_offsets();
   for_tasks(pairs, execution,
@@ -169,8 +168,8 @@ void PairBuckets::for_tasks(std::span<const BodyPair> pairs, const Execution& ex
   });
 }
 
-// Calls note(i, code) for all pairs; stops with `invalid_key` at a shape that does not exist. All
-// bodies must exist.
+// Calls note(i, code) for all pairs and stores the codes in codes_; stops with `invalid_key` at a
+// shape that does not exist. All bodies must exist.
 template <typename Note>
 void PairBuckets::for_codes(const ShapeTables& tables, std::span<const ShapeId> shapes,
                             std::span<const BodyPair> pairs, std::size_t first, TaskCounts& task,
@@ -227,8 +226,8 @@ Status PairBuckets::sum_up(std::uint32_t& bad_body) noexcept {
     for (std::uint32_t code = task.codes.low; code <= task.codes.high; ++code) {
       counts_[code] += task.counts[code];
     }
-    there_.low = std::min(there_.low, task.codes.low);
-    there_.high = std::max(there_.high, task.codes.high);
+    range_.low = std::min(range_.low, task.codes.low);
+    range_.high = std::max(range_.high, task.codes.high);
   }
   if (refused == nullptr) return Status::ok;
   bad_body = refused->bad_body;
@@ -238,7 +237,7 @@ Status PairBuckets::sum_up(std::uint32_t& bad_body) noexcept {
 // Turns the counts into the index of the first pair of each task, by code.
 void PairBuckets::find_offsets() noexcept {
   std::uint32_t next = 0;
-  for (std::uint32_t code = there_.low; code <= there_.high; ++code) {
+  for (std::uint32_t code = range_.low; code <= range_.high; ++code) {
     for (TaskCounts& task : tasks_) next += std::exchange(task.counts[code], next);
   }
 }
@@ -256,7 +255,7 @@ void PairBuckets::place(std::span<const BodyPair> pairs, std::size_t first, Task
 
 Status PairBuckets::add_runs(Column<NarrowRun>& runs) const {
   std::uint32_t first = 0;
-  for (std::uint32_t code = there_.low; code <= there_.high; ++code) {
+  for (std::uint32_t code = range_.low; code <= range_.high; ++code) {
     if (counts_[code] == 0) continue;
     const NarrowRun run{static_cast<ShapeKind>(KindPairs::first(code)),
                         static_cast<ShapeKind>(KindPairs::second(code)), first, counts_[code]};

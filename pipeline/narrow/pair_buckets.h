@@ -26,9 +26,9 @@ class PairBuckets {
   explicit PairBuckets(std::pmr::memory_resource* memory) noexcept
       : sorted_(memory), codes_(memory), tasks_(memory) {}
 
-  /// Sorts the pairs, unless they are in order already; order[i] becomes the input index of sorted
-  /// pair i. Returns `invalid_argument` for a body that does not exist, `invalid_key` for a shape
-  /// that does not exist (`bad_body` is then its body).
+  /// Sorts the pairs, unless all have the same two kinds and none has its bodies swapped; order[i]
+  /// becomes the input index of sorted pair i. Returns `invalid_argument` for a body that does not
+  /// exist, `invalid_key` for a shape that does not exist (`bad_body` is then its body).
   Status sort(const ShapeTables& tables, std::span<const ShapeId> shapes,
               std::span<const BodyPair> pairs, const Execution& execution,
               Column<std::uint32_t>& order, Column<NarrowRun>& runs, std::uint32_t& bad_body);
@@ -40,7 +40,7 @@ class PairBuckets {
 
  private:
   /// The range of the pair codes that occur.
-  struct Codes {
+  struct CodeRange {
     std::uint32_t low = KindPairs::kCount;
     std::uint32_t high = 0;
 
@@ -54,7 +54,7 @@ class PairBuckets {
     Status status;
     std::uint32_t bad_body;
     std::uint32_t mirrored;
-    Codes codes;
+    CodeRange codes;
     /// Pairs by code. While pairs are sorted: the index of the next pair with this code.
     std::uint32_t counts[KindPairs::kCount];
 
@@ -91,7 +91,7 @@ class PairBuckets {
   Column<std::uint8_t> codes_;
   Column<TaskCounts> tasks_;
   std::uint32_t counts_[KindPairs::kCount] = {};
-  Codes there_;
+  CodeRange range_;
   const BodyPair* pairs_ = nullptr;
   bool any_mirrored_ = false;
 };

@@ -106,7 +106,9 @@ class BodyPairs {
     const PairSelection* selection;
   };
 
-  /// Replaces the pairs with the pairs of at most kMaxSources sources. O(n).
+  /// Replaces the pairs with the pairs of at most kMaxSources sources. Tasks choose the pairs to
+  /// keep and pack them as items, which a radix sort then orders: the order does not depend on the
+  /// sources or on threads. O(n).
   Status assign(std::span<const PairSource> sources, const BodyData& known,
                 const Execution& execution);
 

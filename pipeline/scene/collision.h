@@ -109,47 +109,53 @@ struct CollideCall {
   }
 };
 
-/// The data that contacts keep from frame to frame: records of pairs, which also store sleeping
-/// pairs and find ended ones (contact_cache.cpp); with caching, how far each pair may move until
-/// its contacts are computed again (contact_cache.cpp); and for warm starts, the index of each
-/// contact in the last frame (contact_history.cpp).
+/// The data that contacts keep from frame to frame.
 class ContactCache {
  public:
   explicit ContactCache(CollideCall& call) noexcept
       : call_(call), scene_(call.scene), contacts_(call.contacts) {}
 
+  // Records of pairs, which also store sleeping pairs and find ended ones (contact_cache.cpp).
+
   /// Lists the records of the last frame, with those of pairs that may have woken, and with
   /// caching finds the record of each pair. Returns false if memory is refused.
   [[nodiscard]] bool open_records();
-  /// Decides for every pair where its contacts come from. Returns false if all pairs keep their
-  /// contacts and the last frame can stay as it is.
-  [[nodiscard]] bool decide();
   /// Prepares the records of the new frame, after ContactFrameWriter::open.
   [[nodiscard]] bool open_frame();
   /// Without caching: finds the record of each pair of the batch.
   [[nodiscard]] bool match_batch();
   /// Index of a pair's contacts in the last frame, or kNoEntry.
-  [[nodiscard]] std::uint32_t shown_before(std::uint32_t pair) const noexcept {
+  [[nodiscard]] std::uint32_t index_before(std::uint32_t pair) const noexcept {
     const std::uint32_t record = same_pairs_ ? pair : contacts_.old_record[pair - call_.known_from];
-    return record == kNoEntry ? kNoEntry : contacts_.records_before.shown_of(record);
+    return record == kNoEntry ? kNoEntry : contacts_.records_before.frame_index_of(record);
   }
-  /// Value of Contacts::previous_pair: a pair that slept was not in the last frame.
-  [[nodiscard]] std::uint32_t last_point_of(std::uint32_t shown) const noexcept {
-    return has_slept(shown) ? kNoContact : shown;
-  }
-  /// Stores the data that caching of the pair needs in the next call. The columns must have room.
-  void remember(std::uint32_t pair, std::uint32_t shown) noexcept;
-  /// Resizes to the frame.
-  [[nodiscard]] bool grow_history() noexcept;
   /// Completes the records after the last batch: pairs of the last frame that are not in this frame
   /// have ended, or sleep.
   [[nodiscard]] bool close_frame();
+  /// Stores the keys and data of all bodies.
+  [[nodiscard]] bool note_bodies();
+
+  // Caching: how far each pair may move until its contacts are computed again (contact_cache.cpp).
+
+  /// Decides for every pair where its contacts come from. Returns false if all pairs keep their
+  /// contacts and the last frame can stay as it is.
+  [[nodiscard]] bool decide();
+  /// Stores the record of a pair, whose index in the new frame is `index` or kNoEntry, and the data
+  /// that its caching needs in the next call. The columns must have room.
+  void remember(std::uint32_t pair, std::uint32_t index) noexcept;
+
+  // Warm starts: the index of each contact in the last frame (contact_history.cpp).
+
+  /// Value of Contacts::previous_pair: a pair that slept was not in the last frame.
+  [[nodiscard]] std::uint32_t previous_pair_of(std::uint32_t index) const noexcept {
+    return has_slept(index) ? kNoContact : index;
+  }
+  /// Resizes to the frame.
+  [[nodiscard]] bool grow_history() noexcept;
   /// Matches the points of all pairs of the frame.
   void match_points() noexcept;
   /// Called if the frame stays as it is: every contact keeps its index.
   [[nodiscard]] bool store_positions() noexcept;
-  /// Stores the keys and data of all bodies.
-  [[nodiscard]] bool note_bodies();
 
  private:
   [[nodiscard]] bool list_records();
@@ -158,19 +164,19 @@ class ContactCache {
   [[nodiscard]] bool match_cached();
   void match(const PairRecords& records) noexcept;
   [[nodiscard]] bool keep(std::uint32_t pair, std::uint32_t record) noexcept;
-  void turn(CachedPair& cached, std::uint32_t shown, const double (&to)[4]) noexcept;
-  [[nodiscard]] float cache_limit(std::uint32_t pair, std::uint32_t shown) const noexcept;
+  void turn(CachedPair& cached, std::uint32_t index, const double (&to)[4]) noexcept;
+  [[nodiscard]] float cache_limit(std::uint32_t pair, std::uint32_t index) const noexcept;
   [[nodiscard]] double clearance(std::uint32_t pair) const noexcept;
   [[nodiscard]] bool put_to_sleep();
   [[nodiscard]] bool list_ended();
   [[nodiscard]] bool sleeps(const BodyPair& pair) const noexcept;
-  /// True if index `shown` belongs to a pair that slept: wake_dormant appends such pairs to the
-  /// pairs of the last frame.
-  [[nodiscard]] bool has_slept(std::uint32_t shown) const noexcept {
-    return shown >= last_pairs_ && shown != kNoEntry;
+  /// True if an index in the last frame belongs to a pair that slept: wake_dormant appends such
+  /// pairs to the frame.
+  [[nodiscard]] bool has_slept(std::uint32_t index) const noexcept {
+    return index >= last_pairs_ && index != kNoEntry;
   }
   [[nodiscard]] bool begin_history() noexcept;
-  void match_points(std::uint32_t shown) noexcept;
+  void match_points(std::uint32_t index) noexcept;
   void note_poses() noexcept;
 
   CollideCall& call_;
@@ -278,7 +284,7 @@ class ContactFrameWriter {
   }
   [[nodiscard]] bool grow_frame(const Cursor& end);
   [[nodiscard]] std::uint32_t count_cached(std::uint32_t pair, std::uint32_t end) const noexcept;
-  [[nodiscard]] Cursor extent(std::uint32_t pair) const noexcept;
+  [[nodiscard]] Cursor composite_extent(std::uint32_t pair) const noexcept;
   [[nodiscard]] Cursor count(std::uint32_t first, std::uint32_t end) const noexcept;
   void write_task(std::uint32_t first, std::uint32_t end, Cursor at) noexcept;
   void write_bodies(std::span<const std::uint32_t> pairs, std::uint32_t to) noexcept;

@@ -58,7 +58,8 @@ bool ContactCache::open_records() {
   return list_records() && wake_dormant() && match_cached();
 }
 
-// Lists the records of the last frame if they were not kept.
+// Lists the records of the last frame, which will be overwritten, if they were not kept (see
+// PairRecords).
 bool ContactCache::list_records() {
   ContactsState& c = contacts_;
   last_records_ = last_pairs_ = static_cast<std::uint32_t>(c.frame.pairs());
@@ -95,10 +96,10 @@ bool ContactCache::wake_dormant() {
       (call_.uses_cache && !c.cached_before.resize(c.records.size() + count))) {
     return false;
   }
-  for (std::uint32_t& shown : c.dormant_records.shown) {
-    c.frame.copy(c.dormant, shown, 1, at);
-    const ContactFrame::Cursor taken = c.dormant.extent(shown);
-    shown = at.pair;
+  for (std::uint32_t& index : c.dormant_records.frame_index) {
+    c.frame.copy(c.dormant, index, 1, at);
+    const ContactFrame::Cursor taken = c.dormant.extent(index);
+    index = at.pair;
     at += taken;
   }
   c.frame.close(call_.level, at);
@@ -120,7 +121,7 @@ void ContactCache::merge_dormant() noexcept {
     if (call_.uses_cache) c.cached_before[i] = first ? c.cached[one] : c.dormant_cached[other];
     const PairRecords& from = first ? c.records : slept;
     const std::size_t at = first ? one++ : other++;
-    c.records_before.push_back_within_room(from.order_of(at), from.shown_of(at));
+    c.records_before.push_back_within_room(from.order_of(at), from.frame_index_of(at));
   }
   c.records.swap(c.records_before);
   c.cached.swap(c.cached_before);
@@ -196,8 +197,8 @@ bool ContactCache::keep(std::uint32_t pair, std::uint32_t record) noexcept {
   const BodyPair bodies = scene_.pairs[pair];
   CachedPair& cached = c.cached[record];
   if (cached.limit == CachedPair::kNever) return false;
-  const std::uint32_t shown = c.records.shown_of(record);
-  const std::uint32_t since = has_slept(shown) ? cached.tested_at : c.clock;
+  const std::uint32_t index = c.records.frame_index_of(record);
+  const std::uint32_t since = has_slept(index) ? cached.tested_at : c.clock;
   if (scene_.shaped_at[bodies.a] > since || scene_.shaped_at[bodies.b] > since) return false;
   if (scene_.moved_at[bodies.a] <= since && scene_.moved_at[bodies.b] <= since) return true;
   const Pose& a = scene_.pose[bodies.a];
@@ -207,21 +208,21 @@ bool ContactCache::keep(std::uint32_t pair, std::uint32_t record) noexcept {
                        static_cast<double>(cached.drift);
   const auto limit = static_cast<double>(cached.limit);
   if (!(moved <= limit)) return false;
-  if (shown == kNoEntry) return true;
+  if (index == kNoEntry) return true;
   const Pose unit = with_unit_turn(a);
   const double turned =
-      turn_bound(cached.turn, unit.orientation, static_cast<double>(cached.radius_a));
+      turn_bound(cached.turned_for, unit.orientation, static_cast<double>(cached.radius_a));
   if (moved + turned == 0.0) return true;
   if (!(moved + turned <= limit)) {
     const double drift = static_cast<double>(cached.radius_a) * kTurnError;
     if (!(moved + drift <= limit)) return false;
     cached.drift = round_up(static_cast<double>(cached.drift) + drift);
-    turn(cached, shown, unit.orientation);
+    turn(cached, index, unit.orientation);
   }
   if (!cached.widened) {
     cached.widened = true;
-    const std::uint32_t end = c.frame.manifold_first[shown + 1];
-    for (std::uint32_t m = c.frame.manifold_first[shown]; m < end; ++m) {
+    const std::uint32_t end = c.frame.manifold_first[index + 1];
+    for (std::uint32_t m = c.frame.manifold_first[index]; m < end; ++m) {
       c.frame.error_bound[m] += scene_.options.cache_tolerance;
     }
   }
@@ -229,11 +230,11 @@ bool ContactCache::keep(std::uint32_t pair, std::uint32_t record) noexcept {
 }
 
 // Rotates normals and points with body a.
-void ContactCache::turn(CachedPair& cached, std::uint32_t shown, const double (&to)[4]) noexcept {
+void ContactCache::turn(CachedPair& cached, std::uint32_t index, const double (&to)[4]) noexcept {
   ContactFrame& frame = contacts_.frame;
-  const PoseChange turn(to, cached.turn);
-  const std::uint32_t first = frame.manifold_first[shown];
-  const std::uint32_t end = frame.manifold_first[shown + 1];
+  const PoseChange turn(to, cached.turned_for);
+  const std::uint32_t first = frame.manifold_first[index];
+  const std::uint32_t end = frame.manifold_first[index + 1];
   for (std::uint32_t m = first; m < end; ++m) {
     turn.apply(frame.normal, m);
     if (call_.level == ContactLevel::distance) turn.apply(frame.point, m);
@@ -243,12 +244,14 @@ void ContactCache::turn(CachedPair& cached, std::uint32_t shown, const double (&
       turn.apply(frame.points.position, p);
     }
   }
-  std::copy_n(to, 4, cached.turn);
+  std::copy_n(to, 4, cached.turned_for);
 }
 
-float ContactCache::cache_limit(std::uint32_t pair, std::uint32_t shown) const noexcept {
+// A composite pair may move by no more than the tolerance, because the mid phase lists only pairs
+// of primitives within the tolerance beyond the margin (Collision::collide_composite).
+float ContactCache::cache_limit(std::uint32_t pair, std::uint32_t index) const noexcept {
   const double cache_tolerance = scene_.options.cache_tolerance;
-  const double clear = shown == kNoEntry ? std::max(clearance(pair), 0.0) : cache_tolerance;
+  const double clear = index == kNoEntry ? std::max(clearance(pair), 0.0) : cache_tolerance;
   return round_down(
       call_.origin_of(pair) == ContactSource::convex ? clear : std::min(clear, cache_tolerance));
 }
@@ -276,11 +279,11 @@ double ContactCache::clearance(std::uint32_t pair) const noexcept {
   return least;
 }
 
-void ContactCache::remember(std::uint32_t pair, std::uint32_t shown) noexcept {
+void ContactCache::remember(std::uint32_t pair, std::uint32_t index) noexcept {
   ContactsState& c = contacts_;
   const BodyPair bodies = scene_.pairs[pair];
   c.records.bits[pair] = scene_.pairs.order(pair).bits;
-  c.records.shown[pair] = shown;
+  c.records.frame_index[pair] = index;
   if (call_.origin_of(pair) == ContactSource::cached) {
     if (!same_pairs_) c.cached[pair] = c.cached_before[c.old_record[pair]];
     return;
@@ -292,10 +295,10 @@ void ContactCache::remember(std::uint32_t pair, std::uint32_t shown) noexcept {
   const double radius_b = scene_.radius(bodies.b);
   cached.from_b = radius_a <= radius_b;
   cached.relative = cached.from_b ? relative_pose(b, a) : relative_pose(a, b);
-  std::copy_n(with_unit_turn(a).orientation, 4, cached.turn);
+  std::copy_n(with_unit_turn(a).orientation, 4, cached.turned_for);
   cached.radius = round_up(std::min(radius_a, radius_b));
   cached.radius_a = round_up(radius_a);
-  cached.limit = call_.is_cacheable(bodies) ? cache_limit(pair, shown) : CachedPair::kNever;
+  cached.limit = call_.is_cacheable(bodies) ? cache_limit(pair, index) : CachedPair::kNever;
   c.cached[pair] = cached;
 }
 
@@ -304,17 +307,17 @@ bool ContactCache::open_frame() {
   if (same_pairs_) {
     // Records stay in place except for their frame indices: tasks read old indices of some pairs
     // after they wrote new ones of others.
-    c.records.shown.swap(c.records_before.shown);
+    c.records.frame_index.swap(c.records_before.frame_index);
   } else {
     c.records.swap(c.records_before);
     c.cached.swap(c.cached_before);
   }
   const std::size_t records = call_.uses_cache ? call_.pair_count() : 0;
-  if (!resize_tightly(c.records.bits, records) || !resize_tightly(c.records.shown, records) ||
-      !c.cached.resize(records) || !resize_tightly(c.shown_again, last_records_)) {
+  if (!resize_tightly(c.records.bits, records) || !resize_tightly(c.records.frame_index, records) ||
+      !c.cached.resize(records) || !resize_tightly(c.is_in_new_frame, last_records_)) {
     return false;
   }
-  std::fill(c.shown_again.begin(), c.shown_again.end(), std::uint8_t{0});
+  std::fill(c.is_in_new_frame.begin(), c.is_in_new_frame.end(), std::uint8_t{0});
   return begin_history();
 }
 
@@ -370,14 +373,14 @@ bool ContactCache::put_to_sleep() {
   ContactFrame::Cursor room;
   for (std::size_t r = 0; r < c.records_before.size(); ++r) {
     const PairOrder order = c.records_before.order_of(r);
-    const std::uint32_t shown = c.records_before.shown_of(r);
-    if (shown == kNoEntry || c.shown_again[shown] != 0 || !sleeps(order.bodies())) continue;
-    c.shown_again[shown] = 1;
-    room += c.before.extent(shown);
-    slept.push_back_within_room(order, shown);
+    const std::uint32_t index = c.records_before.frame_index_of(r);
+    if (index == kNoEntry || c.is_in_new_frame[index] != 0 || !sleeps(order.bodies())) continue;
+    c.is_in_new_frame[index] = 1;
+    room += c.before.extent(index);
+    slept.push_back_within_room(order, index);
     if (!call_.uses_cache) continue;
     CachedPair& cached = c.cached_before[r];
-    if (!has_slept(shown)) cached.tested_at = c.clock;
+    if (!has_slept(index)) cached.tested_at = c.clock;
     (void)c.dormant_cached.push_back(cached);
   }
   if (room.pair == 0) return true;
@@ -389,23 +392,24 @@ bool ContactCache::put_to_sleep() {
     const std::uint32_t ids[2] = {bodies.a, bodies.b};
     for (int side = 0; side < 2; ++side) c.dormant.key[side][at.pair] = c.known.key(ids[side]);
     c.dormant.event[at.pair] = ContactEvent::persisted;
-    const std::uint32_t shown = std::exchange(slept.shown[i], at.pair);
-    c.dormant.copy(c.before, shown, 1, at);
-    at += c.before.extent(shown);
+    const std::uint32_t index = std::exchange(slept.frame_index[i], at.pair);
+    c.dormant.copy(c.before, index, 1, at);
+    at += c.before.extent(index);
   }
   c.dormant.close(call_.level, at);
   return true;
 }
 
-// Lists ended pairs in the order of the last frame; pairs that slept follow.
+// Lists ended pairs in the order of the last frame; pairs that slept follow, although the records
+// of both are sorted together.
 bool ContactCache::list_ended() {
   ContactsState& c = contacts_;
   c.ended.clear();
   const Column<std::uint64_t>& known = same_pairs_ ? c.records.bits : c.records_before.bits;
   const auto list = [&](bool slept) {
     for (std::size_t r = 0; r < known.size(); ++r) {
-      const std::uint32_t shown = c.records_before.shown_of(r);
-      if (shown == kNoEntry || has_slept(shown) != slept || c.shown_again[shown] != 0) {
+      const std::uint32_t index = c.records_before.frame_index_of(r);
+      if (index == kNoEntry || has_slept(index) != slept || c.is_in_new_frame[index] != 0) {
         continue;
       }
       const auto [a, b] = PairOrder{known[r]}.bodies();

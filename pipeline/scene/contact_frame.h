@@ -97,40 +97,45 @@ struct ContactFrame {
                    const Cursor& to) noexcept;
 };
 
-/// Records of pairs that are kept from one `collide` to the next: with caching of all pairs,
-/// otherwise of the pairs in contact. They are sorted like BodyPairs.
+/// Records of the pairs of one frame, sorted like BodyPairs.
+///
+/// With caching, ContactsState has records of all pairs, in contact or not, from call to call.
+/// Without, `collide` lists the records of the pairs in the last frame before it overwrites that
+/// frame, and drops them at its end. It lists only `bits`, in the spare buffer of BodyPairs, if no
+/// pair sleeps: record i then belongs to pair i of the frame.
 struct PairRecords {
-  explicit PairRecords(std::pmr::memory_resource* memory) noexcept : bits(memory), shown(memory) {}
+  explicit PairRecords(std::pmr::memory_resource* memory) noexcept
+      : bits(memory), frame_index(memory) {}
 
   /// PairOrder::bits.
   Column<std::uint64_t> bits;
-  /// Index in the ContactFrame, or kNoEntry if the pair is not in contact. Empty if record i
+  /// Index of the pair in the ContactFrame, or kNoEntry if it is not in contact. Empty if record i
   /// belongs to pair i of the frame.
-  Column<std::uint32_t> shown;
+  Column<std::uint32_t> frame_index;
 
   [[nodiscard]] std::size_t size() const noexcept { return bits.size(); }
   [[nodiscard]] PairOrder order_of(std::size_t record) const noexcept { return {bits[record]}; }
-  [[nodiscard]] std::uint32_t shown_of(std::size_t record) const noexcept {
-    return shown.empty() ? static_cast<std::uint32_t>(record) : shown[record];
+  [[nodiscard]] std::uint32_t frame_index_of(std::size_t record) const noexcept {
+    return frame_index.empty() ? static_cast<std::uint32_t>(record) : frame_index[record];
   }
   void push_back_within_room(PairOrder of, std::uint32_t at) noexcept {
     (void)bits.push_back(of.bits);
-    (void)shown.push_back(at);
+    (void)frame_index.push_back(at);
   }
   [[nodiscard]] bool reserve(std::size_t count, Pages pages = Pages::untouched) noexcept {
-    return bits.reserve(count, pages) && shown.reserve(count, pages);
+    return bits.reserve(count, pages) && frame_index.reserve(count, pages);
   }
   void clear() noexcept {
     bits.clear();
-    shown.clear();
+    frame_index.clear();
   }
   void swap(PairRecords& other) noexcept {
     bits.swap(other.bits);
-    shown.swap(other.shown);
+    frame_index.swap(other.frame_index);
   }
   [[nodiscard]] Bytes bytes() const noexcept {
     Bytes sum = bits.bytes();
-    sum += shown.bytes();
+    sum += frame_index.bytes();
     return sum;
   }
 };
@@ -169,7 +174,7 @@ struct CachedPair {
   /// of b if `from_b`.
   Pose relative;
   /// Orientation of a for which normals and points are stored.
-  double turn[4];
+  double turned_for[4];
   /// The pair may move by at most this, relative to `relative`, before its contacts are computed
   /// again.
   float limit;
@@ -217,8 +222,7 @@ struct ContactsState {
   /// The last frame, if manifolds are cached or points are matched with it.
   ContactFrame before;
   Column<EndedContact> ended;
-  /// Without caching, `records` and `records_before` are empty between two calls, because the
-  /// frame has the same data.
+  /// See PairRecords for when they are not empty.
   PairRecords records;
   PairRecords records_before;
   KnownBodies known;
@@ -243,7 +247,7 @@ struct ContactsState {
   Column<std::uint32_t> source;
   Column<std::uint8_t> origin;
   /// By pair of the last frame: 1 if the pair is in the new frame too.
-  Column<std::uint8_t> shown_again;
+  Column<std::uint8_t> is_in_new_frame;
   /// Counts by task, which become the write positions of the tasks.
   Column<ContactFrame::Cursor> sums;
   /// In the last call all pairs persisted and none ended.

@@ -81,24 +81,16 @@ std::uint32_t ContactFrameWriter::count_cached(std::uint32_t pair,
   std::uint32_t at = pair;
   std::uint32_t next = kNoEntry;
   for (; at < end && call_.origin_of(at) == ContactSource::cached; ++at) {
-    const std::uint32_t shown = cache_.shown_before(at);
-    if (shown == kNoEntry) continue;
-    if (next != kNoEntry && shown != next) break;
-    next = shown + 1;
+    const std::uint32_t index = cache_.index_before(at);
+    if (index == kNoEntry) continue;
+    if (next != kNoEntry && index != next) break;
+    next = index + 1;
   }
   return at - pair;
 }
 
-// Returns the size of a pair's new contacts; 0 if it is not in contact.
-ContactFrame::Cursor ContactFrameWriter::extent(std::uint32_t pair) const noexcept {
-  const auto points = [&](const NarrowResult& answers, std::size_t at) {
-    return call_.level == ContactLevel::manifold ? answers.contact_count()[at] : 0U;
-  };
-  if (call_.origin_of(pair) == ContactSource::convex) {
-    const std::uint32_t at = call_.source_of(pair);
-    return touches(scene_.batch.answers, at) ? Cursor{1, 1, points(scene_.batch.answers, at)}
-                                             : Cursor{};
-  }
+// Returns the size of the new contacts of a pair with a composite shape; 0 if it is not in contact.
+ContactFrame::Cursor ContactFrameWriter::composite_extent(std::uint32_t pair) const noexcept {
   Cursor sum;
   if (call_.reduces) {
     const auto regions = scene_.batch.parts->regions.of(call_.source_of(pair));
@@ -107,10 +99,11 @@ ContactFrame::Cursor ContactFrameWriter::extent(std::uint32_t pair) const noexce
     return sum;
   }
   const std::uint32_t* const first = scene_.batch.parts->pairs.first.data() + call_.source_of(pair);
+  const NarrowResult& answers = scene_.batch.parts->answers;
   for (std::uint32_t i = first[0]; i < first[1]; ++i) {
     const std::uint32_t at = scene_.batch.parts->slot[i];
-    if (touches(scene_.batch.parts->answers, at))
-      sum += {1, 1, points(scene_.batch.parts->answers, at)};
+    if (!touches(answers, at)) continue;
+    sum += {1, 1, call_.level == ContactLevel::manifold ? answers.contact_count()[at] : 0U};
   }
   if (sum.pair != 0) sum.pair = 1;
   return sum;
@@ -123,9 +116,9 @@ struct Touching {
   std::uint32_t first = kNoEntry;
   std::uint32_t count = 0;
 
-  void take(std::uint32_t shown) noexcept {
-    if (shown == kNoEntry) return;
-    if (first == kNoEntry) first = shown;
+  void take(std::uint32_t index) noexcept {
+    if (index == kNoEntry) return;
+    if (first == kNoEntry) first = index;
     ++count;
   }
 };
@@ -149,12 +142,12 @@ ContactFrame::Cursor ContactFrameWriter::count(std::uint32_t first,
     }
     const std::uint32_t cached = count_cached(i, end);
     if (cached == 0) {
-      sum += extent(i++);
+      sum += composite_extent(i++);
       continue;
     }
     Touching touching;
     for (const std::uint32_t last = i + cached; i < last; ++i)
-      touching.take(cache_.shown_before(i));
+      touching.take(cache_.index_before(i));
     if (touching.count != 0) sum += contacts_.before.extent(touching.first, touching.count);
   }
   return sum;
@@ -173,7 +166,7 @@ void ContactFrameWriter::write_task(std::uint32_t first, std::uint32_t end, Curs
     }
     const std::uint32_t cached = count_cached(i, end);
     if (cached == 0) {
-      const Cursor taken = extent(i);
+      const Cursor taken = composite_extent(i);
       if (taken.pair != 0) write_composite(i, at);
       if (call_.uses_cache) cache_.remember(i, taken.pair != 0 ? at.pair : kNoEntry);
       at += taken;
@@ -182,16 +175,16 @@ void ContactFrameWriter::write_task(std::uint32_t first, std::uint32_t end, Curs
     }
     Touching touching;
     for (const std::uint32_t last = i + cached; i < last; ++i) {
-      const std::uint32_t shown = cache_.shown_before(i);
-      cache_.remember(i, shown == kNoEntry ? kNoEntry : at.pair + touching.count);
-      touching.take(shown);
+      const std::uint32_t index = cache_.index_before(i);
+      cache_.remember(i, index == kNoEntry ? kNoEntry : at.pair + touching.count);
+      touching.take(index);
     }
     if (touching.count == 0) continue;
     c.frame.copy(c.before, touching.first, touching.count, at);
     std::fill_n(c.frame.event.data() + at.pair, touching.count, ContactEvent::persisted);
-    std::fill_n(c.shown_again.data() + touching.first, touching.count, std::uint8_t{1});
+    std::fill_n(c.is_in_new_frame.data() + touching.first, touching.count, std::uint8_t{1});
     for (std::uint32_t k = 0; call_.stores_positions && k < touching.count; ++k) {
-      c.history.pair[at.pair + k] = cache_.last_point_of(touching.first + k);
+      c.history.pair[at.pair + k] = cache_.previous_pair_of(touching.first + k);
     }
     at += c.before.extent(touching.first, touching.count);
   }
@@ -206,8 +199,8 @@ void ContactFrameWriter::write_bodies(std::span<const std::uint32_t> pairs,
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     const std::size_t at = to + i;
     const BodyPair bodies = scene_.pairs[pairs[i]];
-    const std::uint32_t shown = cache_.shown_before(pairs[i]);
-    bool persists = shown != kNoEntry;
+    const std::uint32_t index = cache_.index_before(pairs[i]);
+    bool persists = index != kNoEntry;
     const std::uint32_t ids[2] = {bodies.a, bodies.b};
     for (int side = 0; side < 2; ++side) {
       const Key key = scene_.keys.key_of(ids[side]);
@@ -215,9 +208,9 @@ void ContactFrameWriter::write_bodies(std::span<const std::uint32_t> pairs,
       persists = persists && c.known.key(ids[side]) == key;
     }
     frame.event[at] = persists ? ContactEvent::persisted : ContactEvent::begun;
-    if (persists) c.shown_again[shown] = 1;
+    if (persists) c.is_in_new_frame[index] = 1;
     if (call_.stores_positions)
-      c.history.pair[at] = persists ? cache_.last_point_of(shown) : kNoContact;
+      c.history.pair[at] = persists ? cache_.previous_pair_of(index) : kNoContact;
   }
 }
 
@@ -229,16 +222,16 @@ void ContactFrameWriter::write_all(std::uint32_t first, std::uint32_t end,
   write_bodies({pairs, end - first}, to);
 }
 
-// Writes the pairs of [first, end) that are in contact, column by column. All are convex and not
-// cached; at most one task's pairs.
+// Writes the pairs of [first, end) that are in contact, column by column: bodies, events and parts
+// here, results by write_answers. All are convex and not cached; at most one task's pairs.
 void ContactFrameWriter::write_convex(std::uint32_t first, std::uint32_t end, Cursor& at) noexcept {
   std::uint32_t touching[CollideCall::kPairsPerTask];
   std::uint32_t count = 0;
   for (std::uint32_t i = first; i < end; ++i) {
-    const bool is_shown = touches(scene_.batch.answers, call_.source_of(i));
-    if (call_.uses_cache) cache_.remember(i, is_shown ? at.pair + count : kNoEntry);
+    const bool is_touching = touches(scene_.batch.answers, call_.source_of(i));
+    if (call_.uses_cache) cache_.remember(i, is_touching ? at.pair + count : kNoEntry);
     touching[count] = i;
-    count += is_shown ? 1 : 0;
+    count += is_touching ? 1 : 0;
   }
   ContactFrame& frame = contacts_.frame;
   write_bodies({touching, count}, at.pair);
@@ -251,7 +244,7 @@ void ContactFrameWriter::write_convex(std::uint32_t first, std::uint32_t end, Cu
   write_answers({touching, count}, at);
 }
 
-// Writes results of the narrow phase for convex pairs in contact.
+// Writes the results of the narrow phase for convex pairs in contact, and advances `at`.
 void ContactFrameWriter::write_answers(std::span<const std::uint32_t> pairs, Cursor& at) noexcept {
   const auto count = static_cast<std::uint32_t>(pairs.size());
   const auto copy = [&](std::span<const double> from, Column<double>& to) {

@@ -213,19 +213,19 @@ void ContactCache::match_points() noexcept {
   note_poses();
 }
 
-void ContactCache::match_points(std::uint32_t shown) noexcept {
+void ContactCache::match_points(std::uint32_t index) noexcept {
   const ContactFrame& frame = contacts_.frame;
   const ContactFrame& before = contacts_.before;
   ContactHistory& history = contacts_.history;
-  const std::uint32_t first = frame.point_first[frame.manifold_first[shown]];
-  const std::uint32_t end = frame.point_first[frame.manifold_first[shown + 1]];
+  const std::uint32_t first = frame.point_first[frame.manifold_first[index]];
+  const std::uint32_t end = frame.point_first[frame.manifold_first[index + 1]];
   std::fill(history.point.data() + first, history.point.data() + end, kNoContact);
-  if (history.pair[shown] == kNoContact || before.point_first.empty()) return;
-  PointMatch match(frame, before, history, shown);
+  if (history.pair[index] == kNoContact || before.point_first.empty()) return;
+  PointMatch match(frame, before, history, index);
   match.by_part();
   if (call_.reduces && !match.is_done()) match.by_feature();
   if (match.is_done() || match.left_over() > kMaxUnmatched) return;
-  const std::uint32_t bodies[2] = {frame.key[0][shown].id, frame.key[1][shown].id};
+  const std::uint32_t bodies[2] = {frame.key[0][index].id, frame.key[1][index].id};
   const double reach =
       kSamePointFraction * std::min(scene_.radius(bodies[0]), scene_.radius(bodies[1]));
   match.by_place(PairPoints({scene_.pose[bodies[0]], scene_.pose[bodies[1]]},

@@ -221,7 +221,7 @@ ContactsState::ContactsState(std::pmr::memory_resource* memory) noexcept
       old_record(memory),
       source(memory),
       origin(memory),
-      shown_again(memory),
+      is_in_new_frame(memory),
       sums(memory) {}
 
 void ContactsState::clear() noexcept {
@@ -368,7 +368,8 @@ Footprint Contacts::footprint() const noexcept {
        {s.before.bytes(), s.dormant.bytes(), s.records.bytes(), s.records_before.bytes(),
         s.known.bytes(), s.cached.bytes(), s.cached_before.bytes(), s.dormant_records.bytes(),
         s.dormant_cached.bytes(), s.old_record.bytes(), s.source.bytes(), s.origin.bytes(),
-        s.shown_again.bytes(), s.sums.bytes(), s.history.taken.bytes(), s.history.pose.bytes()}) {
+        s.is_in_new_frame.bytes(), s.sums.bytes(), s.history.taken.bytes(),
+        s.history.pose.bytes()}) {
     footprint.scratch += bytes;
   }
   return footprint;

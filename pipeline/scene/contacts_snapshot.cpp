@@ -26,7 +26,7 @@ constexpr std::uint32_t kContactsVersion = 2;
 struct SavedRecord {
   BodyPair pair;
   std::uint32_t code;
-  std::uint32_t shown;
+  std::uint32_t frame_index;
 };
 
 static_assert(sizeof(SavedRecord) == 16 && sizeof(EndedContact) == 32);
@@ -114,7 +114,7 @@ class ContactsWriter {
     out_.put(std::uint64_t{cached.size()});
     for (const CachedPair& one : cached) {
       out_.put_bytes(&one.relative, sizeof one.relative);
-      out_.put_bytes(one.turn, sizeof one.turn);
+      out_.put_bytes(one.turned_for, sizeof one.turned_for);
       out_.put(one.limit);
       out_.put(one.tested_at);
       out_.put(one.radius);
@@ -129,7 +129,8 @@ class ContactsWriter {
     const bool are_kept = records.size() != 0;
     out_.put(std::uint64_t{are_kept ? records.size() : frame.pairs()});
     for (std::size_t r = 0; r < records.size(); ++r) {
-      put_record(records.order_of(r).bodies(), records.order_of(r).code(), records.shown_of(r));
+      put_record(records.order_of(r).bodies(), records.order_of(r).code(),
+                 records.frame_index_of(r));
     }
     for (const ContactRun& run : std::span(frame.runs.data(), are_kept ? 0 : frame.runs.size())) {
       const std::uint32_t code = KindPairs::index(run.kind_a, run.kind_b);
@@ -138,8 +139,8 @@ class ContactsWriter {
       }
     }
   }
-  void put_record(const BodyPair& pair, std::uint32_t code, std::uint32_t shown) noexcept {
-    for (const std::uint32_t number : {pair.a, pair.b, code, shown}) out_.put(number);
+  void put_record(const BodyPair& pair, std::uint32_t code, std::uint32_t frame_index) noexcept {
+    for (const std::uint32_t number : {pair.a, pair.b, code, frame_index}) out_.put(number);
   }
   void put_ended(const Column<EndedContact>& ended) noexcept {
     out_.put(std::uint64_t{ended.size()});
@@ -245,7 +246,7 @@ class ContactsReader {
     std::fill(known.stamp.begin() + noted, known.stamp.end(), 0U);
     std::fill(known.data.begin() + noted, known.data.end(), ClientData{0});
     for (const SavedRecord& record : saved) {
-      records.push_back_within_room(PairOrder::of(record.code, record.pair), record.shown);
+      records.push_back_within_room(PairOrder::of(record.code, record.pair), record.frame_index);
     }
     for (int side = 0; side < 2; ++side) {
       for (std::size_t i = 0; i < frame.pairs(); ++i) {
@@ -266,7 +267,7 @@ class ContactsReader {
     if (!make_room(cached, count, sizeof(Pose))) return false;
     for (CachedPair& one : cached) {
       (void)in_.get_bytes(&one.relative, sizeof one.relative);
-      (void)in_.get_bytes(one.turn, sizeof one.turn);
+      (void)in_.get_bytes(one.turned_for, sizeof one.turned_for);
       one.limit = in_.get<float>();
       one.tested_at = in_.get<std::uint32_t>();
       one.radius = in_.get<float>();
@@ -328,19 +329,19 @@ class ContactsReader {
     Column<std::uint8_t> seen(frame.event.memory());
     if (!seen.resize(frame.pairs())) return in_.refuse_memory();
     std::fill(seen.begin(), seen.end(), std::uint8_t{0});
-    std::size_t shown = 0;
+    std::size_t in_contact = 0;
     for (std::size_t i = 0; i < records.size(); ++i) {
       const SavedRecord& record = records[i];
       const bool is_pair = record.code < KindPairs::kCount && record.pair.a < bodies &&
                            record.pair.b < bodies && record.pair.a != record.pair.b;
       if (!is_pair || (i > 0 && !(order(records[i - 1]) < order(record)))) return false;
-      if (record.shown == kNoEntry) continue;
-      if (record.shown >= frame.pairs() || seen[record.shown]++ != 0) return false;
-      if (frame.key[0][record.shown].id != record.pair.a) return false;
-      if (frame.key[1][record.shown].id != record.pair.b) return false;
-      ++shown;
+      if (record.frame_index == kNoEntry) continue;
+      if (record.frame_index >= frame.pairs() || seen[record.frame_index]++ != 0) return false;
+      if (frame.key[0][record.frame_index].id != record.pair.a) return false;
+      if (frame.key[1][record.frame_index].id != record.pair.b) return false;
+      ++in_contact;
     }
-    return shown == frame.pairs() && (uses_cache_ || shown == records.size());
+    return in_contact == frame.pairs() && (uses_cache_ || in_contact == records.size());
   }
 
   [[nodiscard]] bool read_ended() noexcept {

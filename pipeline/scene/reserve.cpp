@@ -204,10 +204,11 @@ bool ContactsState::reserve(const SceneCapacity& room, const SceneOptions& optio
   // column is borrowed from the scene (see BorrowedStorage in collide.cpp).
   const bool two_orders = uses_cache || may_sleep;
   const bool one_order = two_orders || frame.event.memory() != options.memory;
-  return reserve_all(shown, pages, ended, shown_again) &&
+  return reserve_all(shown, pages, ended, is_in_new_frame) &&
          records.bits.reserve(one_order ? remembered : 0, pages) &&
          records_before.bits.reserve(two_orders ? remembered : 0, pages) &&
-         reserve_all(two_orders ? remembered : 0, pages, records.shown, records_before.shown) &&
+         reserve_all(two_orders ? remembered : 0, pages, records.frame_index,
+                     records_before.frame_index) &&
          (!may_sleep || dormant_records.reserve(shown, pages)) &&
          reserve_all(cached_room, pages, cached, cached_before) &&
          dormant_cached.reserve(uses_cache ? shown : 0, pages) &&

@@ -37,10 +37,11 @@ void test_normals(const Problem& problem, AxisSearch& search) noexcept;
 
 /// Tests the face normals of both cores and the cross products of their edges; for cylinders and
 /// cones the caps and the axis. If polytopes overlap, one of these axes is the axis of least depth;
-/// if they do not, one of these separates them. For two hulls only edge pairs that make a face of
-/// the Minkowski difference are tested (Gregorius, "The separating axis test between convex
-/// polyhedra", 2013), and only if they may beat the best axis so far. O(edges of a x edges of b);
-/// returns false if that exceeds kMaxEdgePairs and the products of edges were left out.
+/// if they do not, one of these separates them. (Cores that are all on one line also need the axes
+/// of test_across_line in core_distance.cpp.) For two hulls only edge pairs that make a face of the
+/// Minkowski difference are tested (Gregorius, "The separating axis test between convex polyhedra",
+/// 2013), and only if they may beat the best axis so far. O(edges of a x edges of b); returns false
+/// if that exceeds kMaxEdgePairs and the products of edges were left out.
 bool test_features(const Problem& problem, AxisSearch& search) noexcept;
 
 /// The largest number of edge products that test_features tests.

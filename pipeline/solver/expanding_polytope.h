@@ -6,7 +6,8 @@
 namespace winnow::solver {
 
 struct DepthBounds {
-  /// A lower bound of the depth. The depth along `axis` (unit, from a to b) is an upper bound.
+  /// A lower bound of the depth; 0 if none is proven. The depth along `axis` (unit, from a to b) is
+  /// an upper bound.
   double lower = 0.0;
   Vec axis = Vec::Zero();
 };

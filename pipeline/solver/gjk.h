@@ -6,7 +6,8 @@
 
 namespace winnow::solver {
 
-/// A point w of the Minkowski difference b - a, and the points of a and b that make it.
+/// A point w of the Minkowski difference b - a, and the points of a and b that make it. (Exact
+/// tests and hull kernels use a - b.)
 struct DifferencePoint {
   Vec w;
   Vec a;

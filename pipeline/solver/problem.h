@@ -27,7 +27,8 @@ struct Problem {
   /// The columns are +x, +y, +z of the caller's a, as directions from a to b; break_ties uses them.
   Mat tie_axes = Mat::Identity();
 
-  /// A generous bound of the rounding error of any length of the pair.
+  /// A generous bound of the rounding error of any length of the pair. The support functions of
+  /// user shapes are exact to a few roundings, too (SupportShape).
   [[nodiscard]] double noise() const noexcept { return 32.0 * kEpsilon * size; }
 };
 

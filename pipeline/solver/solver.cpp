@@ -25,7 +25,8 @@ struct PairQuery {
   const Pose& pose_b;
 };
 
-/// True if the pair is solved as (b, a). The order does not depend on which shape is called a, so
+/// True if the pair is solved as (b, a): shapes of two kinds in the order that `prepare` requires,
+/// others in the order of their positions. The order does not depend on which shape is called a, so
 /// that the answers for (a, b) and (b, a) mirror each other; except for two shapes of one kind at
 /// the same position.
 bool is_solved_mirrored(ShapeId a, const Pose& pose_a, ShapeId b, const Pose& pose_b) noexcept {
@@ -90,7 +91,8 @@ PairAnswer solve(const PairQuery& query, bool mirrored, ContactLevel level, doub
   const Vec point = found.on_a + found.axis * problem.a.rounding;
   put(problem, point, answer.point);
   if (level == ContactLevel::manifold && answer.distance <= margin) {
-    // Lengths are about 1 here: a margin above 8 has the effect of 8.
+    // Lengths are about 1 here, and no two contact points are 8 apart: a larger margin, which may
+    // be infinite when scaled, has the same effect.
     const double reach = std::min(std::ldexp(margin, -problem.exponent), 8.0);
     make_manifold(problem, point, scaled, reach, answer);
   }
@@ -102,7 +104,6 @@ PairAnswer solve(const PairQuery& query, bool mirrored, ContactLevel level, doub
 PairAnswer solve_pair(const ShapeTables& tables, ShapeId a, const Pose& pose_a, ShapeId b,
                       const Pose& pose_b, ContactLevel level, double margin,
                       SolverCounts& counts) noexcept {
-  ++counts.pairs;
   if (!is_solved_mirrored(a, pose_a, b, pose_b)) {
     return solve({tables, a, pose_a, b, pose_b}, false, level, margin, counts);
   }

@@ -1,5 +1,8 @@
 #pragma once
 
+// The scalar narrow phase: solve_pair. problem.h has its input, core_distance.h the distance of the
+// cores, manifold.h the contacts; exact/exact_overlap.h decides signs.
+
 #include <winnow/core/pose.h>
 #include <winnow/pipeline/contact_types.h>
 #include <winnow/pipeline/shapes.h>
@@ -9,18 +12,11 @@
 namespace winnow {
 
 struct SolverCounts {
-  std::uint64_t pairs = 0;
   /// Pairs whose sign double could not decide, which were passed to exact arithmetic.
   std::uint64_t exact = 0;
-  /// Iterations that reached their bound and fell back to enumeration.
+  /// Times that a search did not close its bounds: GJK reached its limit of iterations, features
+  /// had to be enumerated, or EPA left a gap. A pair may count several times.
   std::uint64_t bounded = 0;
-
-  SolverCounts& operator+=(const SolverCounts& other) noexcept {
-    pairs += other.pairs;
-    exact += other.exact;
-    bounded += other.bounded;
-    return *this;
-  }
 };
 
 /// Solves any pair of valid shapes at valid poses, one pair at a time, in double; exact arithmetic

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstring>
 #include <limits>
+#include <memory_resource>
 #include <utility>
 #include <vector>
 
@@ -19,6 +21,51 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// Fills blocks with large numbers, so that a call that uses elements before it writes them
+/// fails.
+class FilledMemory final : public std::pmr::memory_resource {
+  void* do_allocate(std::size_t bytes, std::size_t alignment) override {
+    void* const block = std::pmr::new_delete_resource()->allocate(bytes, alignment);
+    std::memset(block, 0x7f, bytes);
+    return block;
+  }
+  void do_deallocate(void* block, std::size_t bytes, std::size_t alignment) override {
+    std::pmr::new_delete_resource()->deallocate(block, bytes, alignment);
+  }
+  [[nodiscard]] bool do_is_equal(const memory_resource& other) const noexcept override {
+    return this == &other;
+  }
+};
+
+/// Checks that a batch is refused, and its body named, if pair `bad` has an invalid pose, whichever
+/// shape of the pair has it and comes first.
+void expect_bad_pose_refused(PairScene& scene, std::size_t bad, const NarrowOptions& options) {
+  BodyPair& pair = scene.pairs[bad];
+  const BodyPair before = pair;
+  for (const std::uint32_t body : {before.a, before.b}) {
+    const Pose good = scene.poses[body];
+    for (const Pose& pose :
+         {Pose::at(kNan, 0, 0), Pose::at(2, 0, -kInfinity), Pose{{1, 2, 3}, {1, kNan, 0, 0}}}) {
+      // Spheres ignore their quaternion.
+      if (scene.shapes[body].kind() == ShapeKind::sphere && pose.position[0] == 1.0) continue;
+      scene.poses[body] = pose;
+      for (const BodyPair given : {before, BodyPair{before.b, before.a}}) {
+        pair = given;
+        FilledMemory memory;
+        NarrowPhase phase(&memory);
+        NarrowResult result(&memory);
+        EXPECT_EQ(phase.collide(scene.pool, scene.bodies(), scene.pairs, options, result),
+                  Status::invalid_pose);
+        EXPECT_EQ(phase.bad_body(), body);
+        EXPECT_EQ(result.size(), 0U);
+        EXPECT_EQ(result.contacts(), 0U);
+      }
+    }
+    scene.poses[body] = good;
+  }
+  pair = before;
+}
 
 class NarrowInput : public testing::Test {
  protected:
@@ -218,6 +265,49 @@ TEST_F(NarrowInput, bad_pose_is_refused_and_named) {
   ASSERT_EQ(collide(), Status::ok);
   const auto after = answers_of(result_, scene_.pairs.size());
   for (std::size_t i = 0; i < after.size(); ++i) EXPECT_TRUE(same(after[i], reference[i])) << i;
+}
+
+TEST_F(NarrowInput, bad_pose_reads_no_unwritten_result) {
+  std::vector<ShapeKind> kinds = all_kinds();
+  kinds.push_back(ShapeKind::support);
+  Random random(29);
+  for (const ShapeKind a : kinds) {
+    for (const ShapeKind b : kinds) {
+      if (b < a) continue;
+      PairScene scene;
+      add_pairs(scene, a, b, PairStyle::ordinary, 3, random);
+      add_pairs(scene, ShapeKind::sphere, ShapeKind::box, PairStyle::ordinary, 1, random);
+      for (const NarrowTier tier : {NarrowTier::robust, NarrowTier::reference}) {
+        for (const ContactLevel level :
+             {ContactLevel::boolean, ContactLevel::distance, ContactLevel::manifold}) {
+          SCOPED_TRACE(testing::Message()
+                       << to_string(a) << ", " << to_string(b) << ", tier "
+                       << static_cast<int>(tier) << ", level " << static_cast<int>(level));
+          for (std::size_t bad = 0; bad < 3; ++bad) {
+            expect_bad_pose_refused(scene, bad, {.level = level, .tier = tier});
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST_F(NarrowInput, bad_pose_in_task_reads_no_unwritten_result) {
+  constexpr std::size_t kMany = 1400;  // three tasks
+  Random random(31);
+  PairScene scene;
+  add_pairs(scene, ShapeKind::box, ShapeKind::sphere, PairStyle::ordinary, kMany, random);
+  for (const NarrowTier tier : {NarrowTier::robust, NarrowTier::reference}) {
+    const NarrowOptions options{.level = ContactLevel::manifold,
+                                .tier = tier,
+                                .execution = Execution::parallel(),
+                                .contact_margins = {}};
+    for (const int threads : {1, 3}) {
+      for (const std::size_t bad : {std::size_t{0}, kMany / 2, kMany - 1}) {
+        Threads(threads).run([&] { expect_bad_pose_refused(scene, bad, options); });
+      }
+    }
+  }
 }
 
 TEST_F(NarrowInput, single_pair_function_refuses_like_narrow_phase) {

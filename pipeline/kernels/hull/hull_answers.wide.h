@@ -1,8 +1,8 @@
 #pragma once
 
 // Runs the jobs of the hull kernels, in this sequence:
-// 1. place_hulls reads both hulls and poses of each pair of a chunk (hull_gjk.wide.h).
-// 2. HullSearch finds the closest features of all pairs, by GJK in float lanes (hull_gjk.wide.h).
+// 1. place_hulls reads both hulls and poses of up to kRoom pairs of the job (hull_gjk.wide.h).
+// 2. HullSearch finds the closest features of these pairs, by GJK in float lanes (hull_gjk.wide.h).
 // 3. HullDepth finds the depth of pairs that touch, one pair at a time (hull_depth.wide.h).
 // 4. finish_apart, finish_depth and write_contacts compute the results of each pair in double
 //    (hull_manifold.wide.h).
@@ -17,7 +17,8 @@
 
 namespace winnow::WINNOW_ISA_NAME::hull {
 
-/// Answers jobs of one level. `Shapes` provides the hulls of the pairs:
+/// Answers jobs of one level: 0 boolean, 1 distance, 2 manifold (kernel_index). `Shapes` provides
+/// the hulls of the pairs:
 /// - kRoom: the number of pairs that it can store at once.
 /// - place(job, bodies, slot, pair): fills in a pair; false if it is out of range.
 /// - complete(slot): computes the planes of faces, for pairs that the search has not decided; false
@@ -43,8 +44,9 @@ class HullAnswers {
   }
 
  private:
-  static constexpr std::uint32_t kChunk = Shapes::kRoom;
+  static constexpr std::uint32_t kPairsAtOnce = Shapes::kRoom;
 
+  /// Level boolean: calls `take` for the pairs that the overlap tests leave.
   template <typename Answers>
   friend std::uint32_t answer_uncertified(NarrowJob& job, std::uint32_t count);
 
@@ -58,7 +60,7 @@ class HullAnswers {
 
   void take(std::uint32_t i) {
     if (!place(i, taken_, pair_[taken_])) return give_up(i);
-    if (++taken_ == kChunk) answer_taken();
+    if (++taken_ == kPairsAtOnce) answer_taken();
   }
 
   void answer_taken() {
@@ -197,7 +199,8 @@ class HullAnswers {
                            static_cast<double>(pair.gap[2])};
     const double length = __builtin_sqrt(dot3(gap, gap));
     const double scale = 1.0 / static_cast<double>(pair.scale);
-    // Slightly less than HullSearch::kLengthError; the rest covers roundings here.
+    // Exceeds the error of the height `lower`. HullSearch added more to the margin (kLengthError),
+    // so that after the roundings here the bound is still above the margin.
     constexpr double doubt = 5.5e-6;
     const double lower = (static_cast<double>(pair.lower) / length - doubt) * scale;
     const double upper = (length + doubt) * scale;
@@ -217,7 +220,7 @@ class HullAnswers {
   Shapes shapes_;
   std::uint32_t uncertified_ = 0;
   std::uint32_t taken_ = 0;
-  HullPair pair_[kChunk];
+  HullPair pair_[kPairsAtOnce];
   HullDepth depth_;
 };
 

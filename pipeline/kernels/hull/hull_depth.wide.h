@@ -10,8 +10,11 @@
 // higher than the best depth along them; an arc is skipped if one point is higher at both ends,
 // since heights are concave in between. Skipped directions are deeper than the result by more than
 // the errors of float, so the few candidates that are kept contain the true minimum. HullMeasure
-// measures candidates in double, over all vertices; HullTies completes the search in double for
-// nearly parallel hulls. hull_manifold.wide.h calls both.
+// measures candidates in double, over all vertices.
+//
+// If several vertices of the second have the same height along a face normal of the first, up to
+// the errors of float (a tie), HullDepth keeps the face as a candidate and skips its arcs; HullTies
+// searches these arcs in double. hull_manifold.wide.h calls HullMeasure and HullTies.
 
 #include "pipeline/kernels/hull/hull_gjk.wide.h"
 
@@ -57,8 +60,8 @@ class HullDepth {
   static constexpr std::uint32_t kMaxFaces = 512;
   static constexpr std::uint32_t kMaxCandidates = 24;
 
-  /// Finds the candidates. Returns false if there are more than fit, or if the result is not
-  /// certain.
+  /// Finds the candidates. Returns false if there are more than fit, if the cores may be apart, or
+  /// if an arc has more parts than the search can follow.
   bool find(const HullPair& pair) {
     if (pair.first->dimension != 3 || pair.first->face_count > kMaxFaces ||
         pair.second->face_count > kMaxFaces) {
@@ -76,13 +79,12 @@ class HullDepth {
     return best_ + slack_ > 0.0F && follow_arcs() && count_ <= kMaxCandidates;
   }
 
-  [[nodiscard]] float best() const { return best_; }
   [[nodiscard]] std::uint32_t count() const { return count_; }
   [[nodiscard]] const HullCandidate& candidate(std::uint32_t i) const { return candidates_[i]; }
-  /// All other directions are at least this deep.
-  [[nodiscard]] float floor() const { return best_ + slack_; }
 
  private:
+  /// Heights that differ by less than this fraction of the slack are tied.
+  static constexpr float kTie = 0.25F;
   /// The number of edges of a hull of kMaxFaces triangles.
   static constexpr std::uint32_t kMaxEdges = kMaxFaces / 2 * 3;
 
@@ -292,6 +294,7 @@ class HullDepth {
     const HullShape& hull = *first_.hull;
     if (hull.edge_count > kMaxEdges) return false;
     const std::uint32_t count = list_open_arcs(hull);
+    measure_ends(hull, count);
     for (std::uint32_t i = 0; i < count; ++i) {
       const HullEdge& edge = hull.edges[open_[i]];
       if (is_deep(edge) || is_deeper_than_tie(edge)) continue;
@@ -312,8 +315,7 @@ class HullDepth {
     return true;
   }
 
-  /// Fills open_. Measures the faces that are not closed, except the neighbours of a tied face that
-  /// is_deeper_than_tie excludes.
+  /// Fills open_; returns the number of arcs.
   std::uint32_t list_open_arcs(const HullShape& hull) {
     std::uint32_t count = 0;
     for (std::uint32_t e = 0; e < hull.edge_count; ++e) {
@@ -324,6 +326,12 @@ class HullDepth {
       open_[count] = e;
       count += (a & b) == 0 ? 1U : 0U;
     }
+    return count;
+  }
+
+  /// Measures the faces of the first that are not closed, which are ends of open arcs, except the
+  /// neighbours of a tied face that is_deeper_than_tie excludes.
+  void measure_ends(const HullShape& hull, std::uint32_t count) {
     for (std::uint32_t i = 0; i < count; ++i) {
       const HullEdge& edge = hull.edges[open_[i]];
       if (is_deeper_than_tie(edge)) continue;
@@ -331,7 +339,6 @@ class HullDepth {
         if (closed_by(face) == 0) measured(face);
       }
     }
-    return count;
   }
 
   /// Bits of the known points that are higher than the best depth along a face of the first.
@@ -479,9 +486,6 @@ class HullDepth {
     return end.depth <= best_ + slack_ && least >= end.depth - kTie * slack_;
   }
 
-  /// Heights that differ by less than this fraction of the slack are tied.
-  static constexpr float kTie = 0.25F;
-
   enum class ArcDepth : std::uint8_t { deep, near, lost };
 
   /// Bounds the heights along an arc from below by the two points found at its ends. The bound is
@@ -536,6 +540,8 @@ class HullDepth {
   TestedHull second_;
   Tie tie_;
   float best_;
+  /// Twice the error of a height in float: directions that are deeper than the best by more are
+  /// deeper in double, too.
   float slack_;
   std::uint32_t count_;
   std::uint32_t records_;
@@ -672,7 +678,7 @@ class HullTies {
   /// there is more to search than there is room for.
   bool around(std::uint32_t face, double depth) {
     const HullFace& f = pair_.first->faces[face];
-    return !has_ties(f.normal, f.offset - depth) || follow_all(face, f.offset - depth);
+    return !has_ties(f.normal, f.offset - depth) || search_arcs(face, f.offset - depth);
   }
 
   /// Searches an arc again on which a third vertex is nearer than the two that were found.
@@ -683,7 +689,7 @@ class HullTies {
     double ends[2][3];
     arc_ends(pair_, arc, ends);
     vertex_at(*pair_.first, pair_.first->edges[arc.edge].vertex[0], mine_);
-    return follow(arc.edge, ends[0], ends[1]);
+    return search_arc(arc.edge, ends[0], ends[1]);
   }
 
   void bound(double depth) { lower_ = depth < lower_ ? depth : lower_; }
@@ -704,7 +710,7 @@ class HullTies {
   };
 
   /// `least`: the height of the second's lowest vertices along the face's normal.
-  [[gnu::noinline]] bool follow_all(std::uint32_t face, double least) {
+  [[gnu::noinline]] bool search_arcs(std::uint32_t face, double least) {
     const HullShape& hull = *pair_.first;
     const double* normal = hull.faces[face].normal;
     double local[3];
@@ -720,8 +726,8 @@ class HullTies {
       const std::uint32_t* sides = hull.edges[edge].face;
       const std::uint32_t other = sides[0] == face ? sides[1] : sides[0];
       vertex_at(hull, hull.edges[edge].vertex[0], mine_);
-      if (is_deep(middle, normal, hull.faces[other].normal)) continue;
-      if (!follow(edge, normal, hull.faces[other].normal)) return false;
+      if (bounds_arc(middle, normal, hull.faces[other].normal)) continue;
+      if (!search_arc(edge, normal, hull.faces[other].normal)) return false;
     }
     return true;
   }
@@ -749,11 +755,11 @@ class HullTies {
     for (int k = 0; k < 3; ++k) local[k] = -local[k];
   }
 
-  bool follow(std::uint32_t edge, const double* from, const double* to) {
+  bool search_arc(std::uint32_t edge, const double* from, const double* to) {
     const std::uint32_t last = nearest(to);
     double theirs[3];
     second_vertex_at(pair_, last, theirs);
-    if (is_deep(theirs, from, to)) return true;
+    if (bounds_arc(theirs, from, to)) return true;
     const double* ends[2] = {from, to};
     ArcPart stack[kMaxParts];
     for (int i = 0; i < 2; ++i) {
@@ -772,7 +778,7 @@ class HullTies {
 
   /// Bounds an arc by one point of the second if at both ends that point is at least as deep as the
   /// best: its height is concave in between.
-  bool is_deep(const double* point, const double* from, const double* to) {
+  bool bounds_arc(const double* point, const double* from, const double* to) {
     double w[3];
     for (int k = 0; k < 3; ++k) w[k] = mine_[k] - point[k];
     const double here = dot3(from, w) / __builtin_sqrt(dot3(from, from));

@@ -1,3 +1,5 @@
+// Hull against hull; hull_answers.wide.h runs the jobs.
+
 #include "pipeline/kernels/hull/hull_answers.wide.h"
 
 namespace winnow {

@@ -13,9 +13,8 @@ bool is_before(const SceneHit& a, const SceneHit& b) noexcept {
 
 }  // namespace
 
-bool is_few(const SceneState& scene, const SceneSet& set) noexcept {
-  constexpr std::size_t kFew = 4;
-  return set.partition.has_value() && set.body_of.size() <= kFew &&
+bool is_small_set(const SceneState& scene, const SceneSet& set) noexcept {
+  return set.partition.has_value() && set.body_of.size() <= kMaxSmallSet &&
          std::all_of(set.body_of.begin(), set.body_of.end(),
                      [&](std::uint32_t body) { return scene.shape[body].is_composite(); });
 }
@@ -38,7 +37,7 @@ BoxPath CastQuery::box_path() const noexcept {
           linear_cast_.max_t()};
 }
 
-SceneHit CastQuery::shown(std::uint32_t body, const BodyContact& contact) const noexcept {
+SceneHit CastQuery::hit_of(std::uint32_t body, const BodyContact& contact) const noexcept {
   SceneHit hit = contact.hit(linear_cast_);
   hit.key = state_.scene.keys.key_of(body);
   hit.data = state_.scene.keys.client_data(body);
@@ -46,7 +45,7 @@ SceneHit CastQuery::shown(std::uint32_t body, const BodyContact& contact) const 
 }
 
 bool CastQuery::improves(std::uint32_t body) noexcept {
-  if (const bool* const known = memo_.find(body)) return *known;
+  if (const bool* const known = tested_.find(body)) return *known;
   BodyContact contact;
   bool better = find_contact(body, limit_, false, contact);
   // Equal t are ordered by the bodies' ids.
@@ -56,13 +55,13 @@ bool CastQuery::improves(std::uint32_t body) noexcept {
     best_ = contact;
     limit_ = contact.t();
   }
-  return memo_.note(body, better);
+  return tested_.note(body, better);
 }
 
 template <typename Query>
-Status CastQuery::each_crowd(Query&& query) const {
+Status CastQuery::each_large_set(Query&& query) const {
   for (const SceneSet& set : state_.scene.sets) {
-    if (!set.partition.has_value() || is_few(state_.scene, set)) continue;
+    if (!set.partition.has_value() || is_small_set(state_.scene, set)) continue;
     if (const Status status = query(*set.partition); status != Status::ok) return status;
   }
   return Status::ok;
@@ -84,7 +83,7 @@ Status CastQuery::test_rest(const Partition& partition, const BoxPath& path, Tes
 /// such a body. The traversal returns this box, and every box before it has been tested. The second
 /// traversal tests the remaining boxes, from this box to the hit on the exact shape. Both
 /// traversals are short if boxes are tight.
-Status CastQuery::closest_in_crowds() {
+Status CastQuery::closest_in_large_sets() {
   BoxPath path = box_path();
   auto test_body = [&](std::uint32_t body) { return improves(body); };
   auto test_and_reject = [&](std::uint32_t body) {
@@ -94,7 +93,7 @@ Status CastQuery::closest_in_crowds() {
   BodyCandidateFilter first(state_.scene, filter_, test_body);
   BodyCandidateFilter second(state_.scene, filter_, test_and_reject);
   while (path.next() && !(found() && limit_ < path.begin())) {
-    const Status status = each_crowd([&](const Partition& partition) {
+    const Status status = each_large_set([&](const Partition& partition) {
       if (path.is_rest()) return test_rest(partition, path, test_body);
       Hit box;
       BoxCast cast = path.cast(limit_);
@@ -112,32 +111,32 @@ Status CastQuery::closest_in_crowds() {
 
 Status CastQuery::closest(SceneHit& hit) {
   auto test_body = [&](std::uint32_t body) { return improves(body); };
-  const bool has_crowd = test_small_sets(state_.scene, filter_, test_body);
-  const Status status = has_crowd ? closest_in_crowds() : Status::ok;
-  if (status == Status::ok) hit = found() ? shown(body_, best_) : SceneHit{};
+  const bool has_large_set = test_small_sets(state_.scene, filter_, test_body);
+  const Status status = has_large_set ? closest_in_large_sets() : Status::ok;
+  if (status == Status::ok) hit = found() ? hit_of(body_, best_) : SceneHit{};
   return status;
 }
 
-Status CastQuery::closest_in_crowds(std::uint32_t body, double t, SceneHit& hit) {
-  body_ = body;
-  if (found()) limit_ = t;
-  const Status status = closest_in_crowds();
-  if (status == Status::ok && body_ != body) hit = shown(body_, best_);
+Status CastQuery::closest_in_large_sets(const BodyRayHit& found_before, SceneHit& hit) {
+  body_ = found_before.body;
+  if (found()) limit_ = found_before.t;
+  const Status status = closest_in_large_sets();
+  if (status == Status::ok && body_ != found_before.body) hit = hit_of(body_, best_);
   return status;
 }
 
-Status CastQuery::any_in_crowds(SceneHit& hit) {
+Status CastQuery::any_in_large_sets(SceneHit& hit) {
   auto test_body = [&](std::uint32_t body) {
     if (found()) return true;
-    if (const bool* const known = memo_.find(body)) return *known;
-    if (!find_contact(body, limit_, true, best_)) return memo_.note(body, false);
+    if (const bool* const known = tested_.find(body)) return *known;
+    if (!find_contact(body, limit_, true, best_)) return tested_.note(body, false);
     body_ = body;
     return true;
   };
   BoxPath path = box_path();
   BodyCandidateFilter body_filter(state_.scene, filter_, test_body);
   while (!found() && path.next()) {
-    const Status status = each_crowd([&](const Partition& partition) {
+    const Status status = each_large_set([&](const Partition& partition) {
       if (found()) return Status::ok;
       if (path.is_rest()) return test_rest(partition, path, test_body);
       Hit box;
@@ -145,7 +144,7 @@ Status CastQuery::any_in_crowds(SceneHit& hit) {
     });
     if (status != Status::ok) return status;
   }
-  if (found()) hit = shown(body_, best_);
+  if (found()) hit = hit_of(body_, best_);
   return Status::ok;
 }
 
@@ -156,22 +155,22 @@ Status CastQuery::all() {
     has_room = adds(body) && has_room;
     return false;
   };
-  const bool has_crowd = test_small_sets(state_.scene, filter_, test_body);
+  const bool has_large_set = test_small_sets(state_.scene, filter_, test_body);
   if (!has_room) return Status::out_of_memory;
-  if (has_crowd) return all_in_crowds(before);
+  if (has_large_set) return all_in_large_sets(before);
   order_hits(state_.hits, before);
   return Status::ok;
 }
 
 bool CastQuery::adds(std::uint32_t body) {
-  if (memo_.find(body) != nullptr) return true;
-  memo_.note(body, false);
+  if (tested_.find(body) != nullptr) return true;
+  tested_.note(body, false);
   BodyContact contact;
   return !find_contact(body, linear_cast_.max_t(), false, contact) ||
-         state_.hits.push_back(shown(body, contact));
+         state_.hits.push_back(hit_of(body, contact));
 }
 
-Status CastQuery::all_in_crowds(std::size_t before) {
+Status CastQuery::all_in_large_sets(std::size_t before) {
   bool has_room = true;
   auto test_body = [&](std::uint32_t body) {
     has_room = adds(body) && has_room;
@@ -180,7 +179,7 @@ Status CastQuery::all_in_crowds(std::size_t before) {
   BoxPath path = box_path();
   BodyCandidateFilter body_filter(state_.scene, filter_, test_body);
   while (path.next()) {
-    const Status status = each_crowd([&](const Partition& partition) {
+    const Status status = each_large_set([&](const Partition& partition) {
       if (path.is_rest()) return test_rest(partition, path, test_body);
       return partition.all(path.cast(linear_cast_.max_t()), state_.boxes, body_filter.filter());
     });

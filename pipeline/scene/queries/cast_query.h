@@ -1,10 +1,10 @@
 #pragma once
 
-// A ray or a moving shape in the sets of a scene. Sets of at most four bodies, all composite, are
-// tested directly, without their partitions (`test_small_sets`), as with a terrain; "crowds" are
-// all other sets. The partitions of crowds find the bodies whose boxes the moving box overlaps (see
-// BoxPath for why none is missed) and call a predicate, which tests the exact shape by BodyContact
-// (CastQuery).
+// A ray or a moving shape in the sets of a scene. Small sets, of at most four bodies, all
+// composite, are tested directly, without their partitions (`test_small_sets`), as with a terrain.
+// The partitions of all other sets (large sets) find the bodies whose boxes the moving box overlaps
+// (see BoxPath for why none is missed) and call a predicate, which tests the exact shape by
+// BodyContact (CastQuery).
 
 #include "pipeline/scene/queries/box_path.h"
 #include "pipeline/scene/queries/linear_casts.h"
@@ -12,29 +12,31 @@
 
 namespace winnow {
 
-/// True for a set with at most kFew bodies, all composite: a traversal of its partition is not
-/// worth its cost, because the bodies have their own trees.
-[[nodiscard]] bool is_few(const SceneState& scene, const SceneSet& set) noexcept;
+inline constexpr std::size_t kMaxSmallSet = 4;
 
-/// Calls test_body(body) for all bodies that pass the filter and are in sets for which is_few is
-/// true. Returns true if there are other sets, whose partitions must be queried.
+/// True for a set with at most kMaxSmallSet bodies, all composite: a traversal of its partition
+/// is not worth its cost, because the bodies have their own trees.
+[[nodiscard]] bool is_small_set(const SceneState& scene, const SceneSet& set) noexcept;
+
+/// Calls test_body(body), whose result is ignored, for all bodies of small sets that pass the
+/// filter. Returns true if there are large sets, whose partitions must be queried.
 template <typename TestBody>
 [[nodiscard]] bool test_small_sets(const SceneState& scene, const Filter& filter,
                                    TestBody& test_body) {
   const BodyCandidateFilter body_filter(scene, filter, test_body);
-  bool has_crowd = false;
+  bool has_large_set = false;
   for (const SceneSet& set : scene.sets) {
-    if (!is_few(scene, set)) {
-      has_crowd = has_crowd || set.partition.has_value();
+    if (!is_small_set(scene, set)) {
+      has_large_set = has_large_set || set.partition.has_value();
       continue;
     }
     for (std::size_t id = 0; id < set.body_of.size(); ++id) {
       // Ids of removed objects keep their entry; skip them.
       const std::uint32_t body = set.body_of[id];
-      if (scene.place[body].id == id) body_filter.show(*set.partition, body);
+      if (scene.place[body].id == id) body_filter.test(*set.partition, body);
     }
   }
-  return has_crowd;
+  return has_large_set;
 }
 
 /// Sorts the hits from `before` on and removes duplicates: a body whose box extends over two pieces
@@ -42,8 +44,8 @@ template <typename TestBody>
 void order_hits(Column<SceneHit>& hits, std::size_t before) noexcept;
 
 /// Results for bodies that were tested and may be found again, because a partition calls the
-/// predicate once per piece of the path. The cache is direct-mapped: if two bodies have the same
-/// entry, the later one stays.
+/// predicate once per traversal and piece of the path. The cache is direct-mapped: if two bodies
+/// have the same entry, the later one stays.
 class ResultCache {
  public:
   /// Returns the result for the body, or null.
@@ -74,15 +76,18 @@ class CastQuery {
   CastQuery(QueryState& state, const LinearCast& linear_cast, const Filter& filter) noexcept
       : state_(state), linear_cast_(linear_cast), filter_(filter), limit_(linear_cast.max_t()) {}
 
+  // For moving shapes: small and large sets.
   Status closest(SceneHit& hit);
-  /// Appends the hits to the hits of earlier rays.
+  /// Appends the hits to the results.
   Status all();
-  /// As `all`, for crowds only: `test_small_sets` found the hits from `before` on.
-  Status all_in_crowds(std::size_t before);
-  /// As `closest`, for crowds only: `test_small_sets` found `body`, or kNoObject, at time t. Leaves
-  /// `hit` unchanged unless there is a better one.
-  Status closest_in_crowds(std::uint32_t body, double t, SceneHit& hit);
-  Status any_in_crowds(SceneHit& hit);
+
+  // For rays, which are tested on small sets in groups (ray_query.cpp): only large sets.
+  /// Small sets contain the hits from `before` on.
+  Status all_in_large_sets(std::size_t before);
+  /// `found_before` is the hit in small sets; its body is kNoObject if there is none. Leaves `hit`
+  /// unchanged unless there is a better one.
+  Status closest_in_large_sets(const BodyRayHit& found_before, SceneHit& hit);
+  Status any_in_large_sets(SceneHit& hit);
 
  private:
   [[nodiscard]] BoxPath box_path() const noexcept;
@@ -91,17 +96,16 @@ class CastQuery {
                                   BodyContact& contact) const noexcept {
     return contact.find(state_.parts, linear_cast_, state_.placed(body), limit, any);
   }
-  [[nodiscard]] SceneHit shown(std::uint32_t body, const BodyContact& contact) const noexcept;
-  /// Tests bodies in crowds only.
-  Status closest_in_crowds();
+  [[nodiscard]] SceneHit hit_of(std::uint32_t body, const BodyContact& contact) const noexcept;
+  Status closest_in_large_sets();
   /// Returns true if this body becomes the closest hit.
   bool improves(std::uint32_t body) noexcept;
   /// Appends the body's hit if there is one and the body was not tested before; returns false if
   /// memory is refused.
   [[nodiscard]] bool adds(std::uint32_t body);
-  /// Calls query(partition) for each crowd until a call does not return ok.
+  /// Calls query(partition) for each large set until a call does not return ok.
   template <typename Query>
-  [[nodiscard]] Status each_crowd(Query&& query) const;
+  [[nodiscard]] Status each_large_set(Query&& query) const;
   template <typename TestBody>
   [[nodiscard]] Status test_rest(const Partition& partition, const BoxPath& path,
                                  TestBody& test_body);
@@ -114,7 +118,7 @@ class CastQuery {
   std::uint32_t body_ = kNoObject;
   double limit_;
   BodyContact best_;
-  ResultCache memo_;
+  ResultCache tested_;
 };
 
 }  // namespace winnow

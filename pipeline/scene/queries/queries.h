@@ -60,7 +60,7 @@ struct QueryState {
         objects(memory),
         hits(memory),
         hits_first(memory),
-        few(memory),
+        small_set_hits(memory),
         overlaps(memory),
         distances(memory),
         bounds(memory),
@@ -78,8 +78,9 @@ struct QueryState {
   Column<SceneHit> hits;
   /// For a batch of rays: where the hits of each ray begin, and the end.
   Column<std::size_t> hits_first;
-  /// Hits of a group of rays, before they are sorted by ray.
-  Column<RayHit> few;
+  /// Hits of a group of rays on the bodies of small sets (cast_query.h), before they are sorted by
+  /// ray.
+  Column<RayHit> small_set_hits;
   Column<SceneOverlap> overlaps;
   Column<SceneDistance> distances;
   /// Boxes of the second set of bodies, one column for each bound, and their squared distances from
@@ -132,7 +133,7 @@ class BodyCandidateFilter {
   }
 
   /// Applies the filters to a body without a query of its partition, as if its box were hit.
-  void show(const Partition& partition, std::uint32_t body) const {
+  void test(const Partition& partition, std::uint32_t body) const {
     ObjectFilter own;
     const Status status = partition.filter(scene_.place[body], own);
     if (status == Status::ok && filters_allow(filter_.object(), own)) (void)accept(body);

@@ -1,6 +1,6 @@
 // SceneQueries: rays. Up to kRaysAtOnce rays are tested together, a single ray as a group of one.
 // Bodies of small sets (cast_query.h) are tested by mid::cast_rays, which traces the rays of a
-// group through a mesh side by side; then each ray is tested on crowds by CastQuery.
+// group through a mesh side by side; then each ray is tested on large sets by CastQuery.
 
 #include "core/threads/float_environment.h"
 #include "pipeline/mesh/mesh_rays.kernel.h"
@@ -15,7 +15,8 @@ namespace {
 using mid::kInfinity;
 
 /// Up to `Room` rays that are tested together, which is cheaper than one by one if they reach the
-/// same surfaces. Results of a ray depend only on the ray.
+/// same surfaces. The closest hit and all hits of a ray depend only on the ray; which hit `any`
+/// finds may depend on the group.
 template <std::size_t Room>
 class RayGroup {
  public:
@@ -34,28 +35,28 @@ class RayGroup {
   Status find_all(std::size_t first);
 
  private:
-  void forget_hits() noexcept;
+  void reset_hits() noexcept;
   /// Improves the hits of all rays with their hits on a body.
   void test_rays(std::uint32_t body, bool any);
-  /// Lists each ray's first hits on all bodies of small sets, sorted by ray, in the state's `few`,
-  /// and sets whether there are crowds.
-  Status list_few(bool& has_crowd);
-  /// Tests a ray on crowds; `hit` is the result so far.
-  Status query_crowds(std::size_t i, bool any, SceneHit& hit);
+  /// Lists each ray's first hits on all bodies of small sets, sorted by ray, in the state's
+  /// `small_set_hits`, and sets whether there are large sets.
+  Status list_small_sets(bool& has_large_set);
+  /// Tests a ray on large sets; `hit` is the result so far.
+  Status query_large_sets(std::size_t i, bool any, SceneHit& hit);
   /// Fills in a hit, which must be a null hit.
-  [[gnu::always_inline]] void show(std::size_t i, const BodyRayHit& at,
-                                   SceneHit& hit) const noexcept;
+  [[gnu::always_inline]] void fill_in(std::size_t i, const BodyRayHit& at,
+                                      SceneHit& hit) const noexcept;
 
   QueryState& state_;
   const Filter& filter_;
   std::span<const ShapeRay> rays_;
-  /// Time of the first hit so far, or the end of the ray; with `any`, negative after a hit.
+  /// t of the first hit so far, or max_t; with `any`, negative after a hit.
   double limit_[Room];
   BodyRayHit best_[Room];
 };
 
 template <std::size_t Room>
-void RayGroup<Room>::forget_hits() noexcept {
+void RayGroup<Room>::reset_hits() noexcept {
   for (std::size_t i = 0; i < rays_.size(); ++i) {
     limit_[i] = rays_[i].max_t;
     best_[i].body = kNoObject;
@@ -73,8 +74,8 @@ void RayGroup<Room>::test_rays(std::uint32_t body, bool any) {
 }
 
 template <std::size_t Room>
-inline void RayGroup<Room>::show(std::size_t i, const BodyRayHit& at,
-                                 SceneHit& hit) const noexcept {
+inline void RayGroup<Room>::fill_in(std::size_t i, const BodyRayHit& at,
+                                    SceneHit& hit) const noexcept {
   if (at.body == kNoObject) return;
   hit.key = state_.scene.keys.key_of(at.body);
   hit.data = state_.scene.keys.client_data(at.body);
@@ -90,26 +91,26 @@ inline void RayGroup<Room>::show(std::size_t i, const BodyRayHit& at,
 }
 
 template <std::size_t Room>
-Status RayGroup<Room>::query_crowds(std::size_t i, bool any, SceneHit& hit) {
+Status RayGroup<Room>::query_large_sets(std::size_t i, bool any, SceneHit& hit) {
   if (any && best_[i].body != kNoObject) return Status::ok;
   const RayCast linear_cast(state_.scene.shapes, rays_[i]);
   CastQuery query(state_, linear_cast, filter_);
-  return any ? query.any_in_crowds(hit) : query.closest_in_crowds(best_[i].body, best_[i].t, hit);
+  return any ? query.any_in_large_sets(hit) : query.closest_in_large_sets(best_[i], hit);
 }
 
 template <std::size_t Room>
 template <typename Visit>
 Status RayGroup<Room>::find_each(bool any, Visit&& visit) {
-  forget_hits();
+  reset_hits();
   auto test_body = [&](std::uint32_t body) {
     test_rays(body, any);
     return false;
   };
-  const bool has_crowd = test_small_sets(state_.scene, filter_, test_body);
+  const bool has_large_set = test_small_sets(state_.scene, filter_, test_body);
   for (std::size_t i = 0; i < rays_.size(); ++i) {
     SceneHit hit;
-    show(i, best_[i], hit);
-    const Status status = has_crowd ? query_crowds(i, any, hit) : Status::ok;
+    fill_in(i, best_[i], hit);
+    const Status status = has_large_set ? query_large_sets(i, any, hit) : Status::ok;
     if (status != Status::ok) return status;
     visit(i, hit);
   }
@@ -117,41 +118,41 @@ Status RayGroup<Room>::find_each(bool any, Visit&& visit) {
 }
 
 template <std::size_t Room>
-Status RayGroup<Room>::list_few(bool& has_crowd) {
-  Column<RayHit>& few = state_.few;
-  few.clear();
+Status RayGroup<Room>::list_small_sets(bool& has_large_set) {
+  Column<RayHit>& list = state_.small_set_hits;
+  list.clear();
   bool has_room = true;
   auto test_body = [&](std::uint32_t body) {
-    forget_hits();
+    reset_hits();
     test_rays(body, false);
     for (std::size_t i = 0; i < rays_.size(); ++i) {
-      if (best_[i].body != kNoObject) has_room = few.push_back({i, best_[i]}) && has_room;
+      if (best_[i].body != kNoObject) has_room = list.push_back({i, best_[i]}) && has_room;
     }
     return false;
   };
-  has_crowd = test_small_sets(state_.scene, filter_, test_body);
+  has_large_set = test_small_sets(state_.scene, filter_, test_body);
   const auto is_earlier = [](const RayHit& a, const RayHit& b) { return a.ray < b.ray; };
   // The hits of one body are in order already.
-  const bool is_ordered = std::is_sorted(few.begin(), few.end(), is_earlier);
-  if (!is_ordered) std::sort(few.begin(), few.end(), is_earlier);
+  const bool is_ordered = std::is_sorted(list.begin(), list.end(), is_earlier);
+  if (!is_ordered) std::sort(list.begin(), list.end(), is_earlier);
   return has_room ? Status::ok : Status::out_of_memory;
 }
 
 template <std::size_t Room>
 Status RayGroup<Room>::find_all(std::size_t first) {
-  bool has_crowd = false;
-  if (const Status status = list_few(has_crowd); status != Status::ok) return status;
-  const RayHit* next = state_.few.begin();
+  bool has_large_set = false;
+  if (const Status status = list_small_sets(has_large_set); status != Status::ok) return status;
+  const RayHit* next = state_.small_set_hits.begin();
   for (std::size_t i = 0; i < rays_.size(); ++i) {
     const std::size_t before = state_.hits.size();
-    for (; next != state_.few.end() && next->ray == i; ++next) {
+    for (; next != state_.small_set_hits.end() && next->ray == i; ++next) {
       SceneHit hit;
-      show(i, next->at, hit);
+      fill_in(i, next->at, hit);
       if (!state_.hits.push_back(hit)) return Status::out_of_memory;
     }
-    if (has_crowd) {
+    if (has_large_set) {
       const RayCast linear_cast(state_.scene.shapes, rays_[i]);
-      const Status status = CastQuery(state_, linear_cast, filter_).all_in_crowds(before);
+      const Status status = CastQuery(state_, linear_cast, filter_).all_in_large_sets(before);
       if (status != Status::ok) return status;
     } else {
       order_hits(state_.hits, before);

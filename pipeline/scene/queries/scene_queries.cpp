@@ -153,8 +153,9 @@ Footprint SceneQueries::footprint() const noexcept {
   Footprint sum;
   if (state_ == nullptr) return sum;
   sum.structure = {sizeof(QueryState), sizeof(QueryState)};
-  for (const Bytes& bytes : {state_->boxes.footprint().total(), state_->objects.footprint().total(),
-                             state_->bounds.bytes(), state_->gaps.bytes(), state_->few.bytes()}) {
+  for (const Bytes& bytes :
+       {state_->boxes.footprint().total(), state_->objects.footprint().total(),
+        state_->bounds.bytes(), state_->gaps.bytes(), state_->small_set_hits.bytes()}) {
     sum.scratch += bytes;
   }
   for (const Bytes& bytes :
