@@ -159,7 +159,8 @@ Status Partition::remove(std::span<const Key> keys) {
 }
 
 Status Partition::remove(Key key) {
-  return remove(std::span<const Key>(&key, 1));
+  const DefaultFloatEnvironment environment;
+  return logged(state_ == nullptr ? status_ : state_->remove(key), "Partition::remove");
 }
 
 void Partition::clear() noexcept {

@@ -78,6 +78,13 @@ Status PartitionState::remove(std::span<const Key> keys) {
   return status;
 }
 
+Status PartitionState::remove(Key key) {
+  const Status status = rows.remove(key);
+  pairs_.resting().disturb(1);
+  note_changes(status, 1);
+  return status;
+}
+
 Status PartitionState::restore(const SavedRows& saved, PartitionState& other) {
   const Status status = rows.restore(saved, other.rows);
   if (status != Status::ok) return status;

@@ -36,6 +36,7 @@ class PartitionState {
 
   Status insert(const BoxView& boxes, std::span<const ClientData> data, std::span<Key> keys);
   Status remove(std::span<const Key> keys);
+  Status remove(Key key);
   /// Requires a state that never contained an object; see Rows::restore.
   Status restore(const SavedRows& saved, PartitionState& other);
   Status reserve(std::size_t objects, Pages pages);

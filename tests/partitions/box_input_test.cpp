@@ -171,7 +171,7 @@ TEST_P(BoxInput, rows_get_only_the_boxes_of_their_objects) {
     box_input_kernels().write_rows(boxes.data(), entry_of_id, ids.data(), pointers, 16, kRows);
     for (std::size_t row = 0; row < kRows + 16; ++row) {
       const std::uint32_t k = ids[row] - 10;
-      const bool known = row >= 16 && row < kRows && k < box_of.ids;
+      const bool known = row >= 16 && row < kRows && k < entry_of_id.ids;
       const std::uint32_t number = !known ? ~0U : listed ? table[k] : k;
       for (std::size_t c = 0; c < kFloats; ++c) {
         float expected = 77.0F;

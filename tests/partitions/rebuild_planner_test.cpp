@@ -210,7 +210,7 @@ TEST(RebuildPlanner, queries_before_first_build_get_precise_order) {
 }
 
 TEST(RebuildPlanner, repeated_refresh_with_few_changes_is_no_frame) {
-  const PlannerAfter planner(1);
+  PlannerAfter planner(1);
   RowNumbers n = ordered_tree();
   n.all_changed = false;
   n.changed = 1;
