@@ -94,13 +94,13 @@ void add_commands(CLI::App& app) {
   CLI::App& dev = *app.add_subcommand(kDev,
                                       "Measures single parts, and checks winnow and its "
                                       "documents: `winnow dev --help` lists the commands");
-  dev.group("For work on winnow");
   add_compare(dev);
   add_goals(dev);
   add_results(dev);
   add_fit(dev);
   add_trust(dev);
   add_measurements(dev);
+  dev.group("For work on winnow");  // commands that are added later would inherit it
   for (CLI::App* const group : {&app, &dev}) {
     group->require_subcommand(0, 1);
     group->callback([group] {

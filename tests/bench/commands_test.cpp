@@ -226,7 +226,7 @@ TEST_F(ToolCommands, wrong_query_is_named_with_file_index_and_member) {
   EXPECT_EQ(message(R"({"a": {"type": "mesh")" + moving +
                     R"("v": [[0, 0, 0], [1, 0, 0], [0, 1, 0]], "triangles": [[0, 1, 3]]}, "b": )" +
                     ball + "}"),
-            ".a.triangles[0]: expected indices below 3, given [0,1,3] (invalid_argument)\n");
+            ".a.triangles[0]: expected indices below 3, given [0,1,3] (invalid_shape)\n");
   const std::string types = message(R"({"a": {"type": "spere", "radius": 1}, "b": )" + ball + "}");
   EXPECT_EQ(types.find(".a.type: expected one of sphere, capsule"), 0U) << types;
   EXPECT_NE(types.find("given \"spere\""), std::string::npos) << types;
