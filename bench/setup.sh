@@ -17,7 +17,7 @@ WINNOW_MESH_PACKAGES=(libassimp-dev)
 WINNOW_SITE_PACKAGES=(mkdocs python3-pygments doxygen)
 # The spell checker of the test house_spelling.
 WINNOW_SPELLING_PACKAGES=(codespell)
-# Headless Chromium, in which tests open the pages of `winnow draw`.
+# Headless Chromium, in which tests open the pages of `winnow view`.
 WINNOW_BROWSER_PACKAGES=(chromium-headless-shell)
 # Other libraries that winnow can be compared with.
 WINNOW_PEER_PACKAGES=(libbullet-dev libfcl-dev libcgal-dev libembree-dev libode-dev
@@ -64,6 +64,13 @@ winnow_need() {
     return 1
   fi
   rm -f "$log"
+}
+
+# winnow_minutes SECONDS: prints how long this machine takes for work that takes one core SECONDS.
+winnow_minutes() {
+  local cores
+  cores=$(nproc)
+  printf 'about %d minutes on %d cores' $((($1 / cores + 59) / 60)) "$cores"
 }
 
 # winnow_steps LOG: copies standard input to LOG and prints the number of finished ninja steps to standard

@@ -72,11 +72,11 @@ void Advise::measure() {
 
 }  // namespace
 
-Command add_advise(CLI::App& app) {
-  return command<Advise>(
-      app, "advise",
-      "Measures all partitions on a recording or scene, in turns, and recommends one, with the "
-      "reason and the line of C++ that creates it. Medians exclude the first six frames.");
+void add_advise(CLI::App& app) {
+  command<Advise>(
+      app, "advise", "Measures all structures on a recording or scene and recommends one",
+      "Structures take turns. Prints the reason for the recommendation, and the line of "
+      "C++ that creates it. Medians exclude the first six frames.");
 }
 
 }  // namespace winnow::bench

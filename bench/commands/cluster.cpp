@@ -19,6 +19,7 @@
 #include <array>
 #include <exception>
 #include <filesystem>
+#include <fstream>
 #include <iostream>
 #include <optional>
 #include <string>
@@ -141,30 +142,15 @@ void ClusterCommand::run_over_mpi() const {
 
 /// Replaces this process by mpirun, which starts this command in `ranks` processes.
 void ClusterCommand::start_ranks() const {
-  const std::string self = std::filesystem::read_symlink("/proc/self/exe").string();
-  std::vector<std::string> words{"mpirun",
-                                 "--oversubscribe",
-                                 "-n",
-                                 std::to_string(ranks),
-                                 self,
-                                 "cluster",
-                                 target.name,
-                                 "--threads",
-                                 std::to_string(threads),
-                                 "--time-limit",
-                                 std::to_string(time_limit)};
+  std::vector<std::string> words{"mpirun", "--oversubscribe", "-n", std::to_string(ranks),
+                                 std::filesystem::read_symlink("/proc/self/exe").string()};
   if (geteuid() == 0) words.insert(words.begin() + 1, "--allow-run-as-root");
-  const auto add = [&words](const char* name, const std::string& value) {
-    if (!value.empty()) words.insert(words.end(), {name, value});
-  };
-  add("--objects", target.objects ? std::to_string(*target.objects) : "");
-  add("--seed", target.seed ? std::to_string(*target.seed) : "");
-  add("--level", level);
-  add("--frames", frames != 0 ? std::to_string(frames) : "");
-  add("--isa", isa);
-  add("--json", json);
+  std::ifstream own("/proc/self/cmdline");
+  std::string word;
+  std::getline(own, word, '\0');  // the name of this program
+  while (std::getline(own, word, '\0')) words.push_back(word);
   std::vector<char*> arguments;
-  for (std::string& word : words) arguments.push_back(word.data());
+  for (std::string& one : words) arguments.push_back(one.data());
   arguments.push_back(nullptr);
   std::cout.flush();
   execvp("mpirun", arguments.data());
@@ -208,11 +194,11 @@ void ClusterCommand::print(const ClusterRun& run, const std::string& scene,
 
 }  // namespace
 
-Command add_cluster(CLI::App& app) {
-  return command<ClusterCommand>(
-      app, "cluster",
-      "Finds all pairs in every frame of a recording or scene on many ranks: processes started by "
-      "mpirun, or virtual ranks in one process. Times are the times of the slowest process.");
+void add_cluster(CLI::App& app) {
+  command<ClusterCommand>(app, "cluster",
+                          "Finds all pairs in every frame of a recording or scene on many ranks",
+                          "Ranks are processes started by mpirun, or virtual ranks in one process. "
+                          "Times are the times of the slowest process.");
 }
 
 }  // namespace winnow::bench

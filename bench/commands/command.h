@@ -3,49 +3,50 @@
 #include "bench/common/errors.h"
 
 #include <CLI/CLI.hpp>
-#include <functional>
 #include <memory>
-#include <vector>
+#include <string>
+#include <utility>
 
 namespace winnow::bench {
-
-/// A subcommand. `run` returns the exit status.
-struct Command {
-  CLI::App* app = nullptr;
-  std::function<int()> run;
-};
 
 inline constexpr int kDone = 0;
 inline constexpr int kFailed = 1;  ///< a check or comparison failed
 inline constexpr int kBadArgument = 2;
 
-/// Makes a subcommand from a class whose members are the options: `Subcommand` has
-/// `add_options(app)` and `run()`.
-template <typename Subcommand>
-Command command(CLI::App& app, const char* name, const char* what) {
-  auto subcommand = std::make_shared<Subcommand>();
+/// Adds a subcommand from a class whose members are the options: `Subcommand` has
+/// `add_options(app)` and `run()`, which returns the exit status. CLI11 calls `run` after it has
+/// parsed all arguments. The help of the subcommand ends with `details`.
+template <typename Subcommand, typename... Arguments>
+void command(CLI::App& app, const char* name, const char* what, const std::string& details = "",
+             Arguments&&... arguments) {
+  auto subcommand = std::make_shared<Subcommand>(std::forward<Arguments>(arguments)...);
   CLI::App* sub = app.add_subcommand(name, what);
   subcommand->add_options(*sub);
-  return {sub, [subcommand] { return subcommand->run(); }};
+  sub->footer(details);
+  sub->callback([subcommand] {
+    if (const int status = subcommand->run(); status != kDone) throw CLI::RuntimeError(status);
+  });
 }
 
 // Each of these is defined in a file of its own, named after the command.
-Command add_scenes(CLI::App& app);
-Command add_record(CLI::App& app);
-Command add_replay(CLI::App& app);
-Command add_goals(CLI::App& app);
-Command add_draw(CLI::App& app);
-Command add_query(CLI::App& app);
-Command add_simulate(CLI::App& app);
-Command add_advise(CLI::App& app);
-Command add_cluster(CLI::App& app);
-Command add_report(CLI::App& app);
-Command add_compare(CLI::App& app);
-Command add_results(CLI::App& app);
-Command add_fit(CLI::App& app);
-Command add_trust(CLI::App& app);
+void add_report(CLI::App& app);
+void add_advise(CLI::App& app);
+void add_view(CLI::App& app);
+void add_replay(CLI::App& app);
+void add_record(CLI::App& app);
+void add_query(CLI::App& app);
+void add_simulate(CLI::App& app);
+void add_cluster(CLI::App& app);
+void add_micro(CLI::App& app);
+void add_scenes(CLI::App& app);
 
-/// Commands that only measure rows.
-std::vector<Command> add_measurements(CLI::App& app);
+// Subcommands of `winnow dev`.
+void add_compare(CLI::App& app);
+void add_goals(CLI::App& app);
+void add_results(CLI::App& app);
+void add_fit(CLI::App& app);
+void add_trust(CLI::App& app);
+/// Adds the commands that only measure rows.
+void add_measurements(CLI::App& app);
 
 }  // namespace winnow::bench

@@ -1,4 +1,4 @@
-// The command `winnow compare`: compares two reports (results.json) value by value and prints a
+// The command `winnow dev compare`: compares two reports (results.json) value by value and prints a
 // summary for each table. The comparison itself is in report/compare.
 
 #include "bench/report/compare.h"
@@ -250,11 +250,11 @@ int Compare::run() const {
 
 }  // namespace
 
-Command add_compare(CLI::App& app) {
-  return command<Compare>(
-      app, "compare",
-      "Compares two reports (results.json): the ratio of each value of each row. Exit status 1 if "
-      "a value got worse or different pairs were found, 2 if a file is not a report.");
+void add_compare(CLI::App& app) {
+  command<Compare>(app, "compare",
+                   "Compares two reports (results.json): the ratio of each value of each row",
+                   "Exit status 1 if a value got worse or different pairs were found, 2 if a file "
+                   "is not a report.");
 }
 
 }  // namespace winnow::bench

@@ -1,4 +1,4 @@
-// The command `winnow fit`: fits the cost constants of AutoPartition to times measured on this
+// The command `winnow dev fit`: fits the cost constants of AutoPartition to times measured on this
 // machine, and prints how far its choices are from the best. The fit itself is in measure/cost_fit.
 
 #include "bench/commands/command.h"
@@ -27,9 +27,24 @@ struct Fit {
   bool only_checks = false;
   std::string figures;
 
+  void add_options(CLI::App& app);
   int run();
   [[nodiscard]] std::vector<CostSample> measured() const;
 };
+
+void Fit::add_options(CLI::App& app) {
+  one_of(app, "--scene", scenes, scene_names(), "Scenes");
+  add_objects_option(app, objects, "Numbers of objects");
+  number(app, "--moving", moving, 1e-6, 1.0, "Shares of objects that move in a frame");
+  number(app, "--frames", frames, 0, 1e6, "Number of frames; 0: chosen by the number of objects");
+  add_isa_option(app, isa);
+  app.add_flag("--check", only_checks,
+               "Evaluate the present constants instead of fitting new ones");
+  app.add_option("--figures", figures,
+                 "Evaluate the choice by times measured elsewhere: a CSV file with the columns "
+                 "scene, objects, threads, kind, median_ms")
+      ->check(CLI::ExistingFile);
+}
 
 std::vector<CostSample> Fit::measured() const {
   std::vector<CostSample> samples;
@@ -136,25 +151,10 @@ int Fit::run() {
 
 }  // namespace
 
-Command add_fit(CLI::App& app) {
-  auto fit = std::make_shared<Fit>();
-  CLI::App* sub = app.add_subcommand(
-      "fit",
-      "Fits the constants of the cost model of the automatic structure to times measured here, and "
-      "prints how much slower its choice is than the best structure.");
-  one_of(*sub, "--scene", fit->scenes, scene_names(), "Scenes");
-  add_objects_option(*sub, fit->objects, "Numbers of objects");
-  number(*sub, "--moving", fit->moving, 1e-6, 1.0, "Shares of objects that move in a frame");
-  number(*sub, "--frames", fit->frames, 0, 1e6,
-         "Number of frames; 0: chosen by the number of objects");
-  add_isa_option(*sub, fit->isa);
-  sub->add_flag("--check", fit->only_checks,
-                "Evaluate the present constants instead of fitting new ones");
-  sub->add_option("--figures", fit->figures,
-                  "Evaluate the choice by times measured elsewhere: a CSV file with the columns "
-                  "scene, objects, threads, kind, median_ms")
-      ->check(CLI::ExistingFile);
-  return {sub, [fit] { return fit->run(); }};
+void add_fit(CLI::App& app) {
+  command<Fit>(app, "fit",
+               "Fits the constants of the cost model of the automatic structure to times measured "
+               "here, and prints how much slower its choice is than the best structure");
 }
 
 }  // namespace winnow::bench

@@ -104,10 +104,9 @@ int Goals::run() const {
 
 }  // namespace
 
-Command add_goals(CLI::App& app) {
-  return command<Goals>(app, "goals",
-                        "Measures winnow and compares each figure with its requirement. Times of "
-                        "other libraries are scaled by a reference sweep in the same run.");
+void add_goals(CLI::App& app) {
+  command<Goals>(app, "goals", "Measures winnow and compares each figure with its requirement",
+                 "Times of other libraries are scaled by a reference sweep in the same run.");
 }
 
 }  // namespace winnow::bench

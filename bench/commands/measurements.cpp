@@ -21,6 +21,7 @@
 #include "bench/scenes/scene.h"
 
 #include <algorithm>
+#include <functional>
 #include <memory>
 #include <span>
 
@@ -31,22 +32,17 @@ namespace {
 class ScenesCommand : public RowsCommand {
  public:
   void add_options(CLI::App& app) {
-    add_scene_options(app);
-    add_threads_option(app, threads_, "Numbers of threads");
-  }
-
- protected:
-  /// Adds all options but `--threads`.
-  void add_scene_options(CLI::App& app) {
     option(app, "--scene", scenes_,
            "Scenes, or files of recordings (.aabbs or .winnow, also compressed as .xz), which have "
            "a fixed number of objects");
     add_objects_option(app, objects_, "Numbers of objects");
     add_partitions_option(app, partitions_);
+    add_threads_option(app, threads_, "Numbers of threads");
     add_seed_option(app, seed_);
     add_rows_options(app);
   }
 
+ protected:
   ScenesCommand(std::vector<std::string> scenes, std::vector<int> threads)
       : scenes_(std::move(scenes)), threads_(std::move(threads)) {}
 
@@ -127,84 +123,62 @@ class Throughput final : public ScenesCommand {
   std::size_t frames_ = 0;
 };
 
-class FootprintCommand final : public ScenesCommand {
- public:
-  FootprintCommand() : ScenesCommand({"uniform"}, {usual_threads().back()}) {}
+/// A measurement of partitions by a function of bench/rows.
+struct PartitionMeasurement {
+  using Add = std::function<void(Results&, const NamedScene&, std::size_t objects,
+                                 std::uint64_t seed, const std::vector<std::string>& partitions,
+                                 int threads, std::size_t count)>;
 
- private:
-  void measure() override {
-    declare_memory(results);
-    keep_resident_set_exact();
-    measure_all();
-    print("memory", {"bounds", "keys", "client_data", "structure", "scratch", "results", "reserved",
-                     "used", "pair_buffer", "exact", "peak_first", "peak_later"});
-    print("memory_ratio");
-  }
-  void measure_scene(const std::string& what, const NamedScene& scene,
-                     std::size_t objects) override {
-    const std::vector<std::string> partitions = partitions_for(partitions_, objects).taken;
-    for (const int threads : threads_) {
-      step(what, [&] { add_footprints(results, scene, objects, seed_, partitions, threads); });
-    }
-  }
+  void (*declare)(Results&);
+  Add add;
+  std::vector<std::string> scenes;
+  std::vector<int> threads;
+  const char* count_option = nullptr;  ///< null: none
+  const char* count_meaning = "";
+  std::size_t count = 0;
+  std::vector<std::string> tables;
+  std::vector<std::string> values{};  ///< of the first table; empty: all
+  std::vector<std::size_t> objects{10'000, 100'000};
+  std::vector<std::string> partitions{"all"};
 };
 
-class Cold final : public ScenesCommand {
+class MeasurePartitions final : public ScenesCommand {
  public:
-  Cold() : ScenesCommand(kColdScenes, usual_threads()) { objects_ = {1000, 10'000, 100'000}; }
-
-  void add_options(CLI::App& app) {
-    ScenesCommand::add_options(app);
-    number(app, "--rounds", rounds_, 1, 1000, "Number of new partitions of each kind");
-  }
-
- private:
-  void measure() override {
-    declare_cold(results);
-    measure_all();
-    print("cold", {"insert_ms", "build_ms", "pairs_ms", "total_ms", "reserved_ms", "ready_ms",
-                   "reserve_ms", "over_yardstick"});
-  }
-  void measure_scene(const std::string& what, const NamedScene& scene,
-                     std::size_t objects) override {
-    const std::vector<std::string> partitions = partitions_for(partitions_, objects).taken;
-    for (const int threads : threads_) {
-      step(what + ", " + threads_text(threads),
-           [&] { add_cold(results, scene, objects, seed_, partitions, threads, rounds_); });
-    }
-  }
-
-  std::size_t rounds_ = 7;
-};
-
-class HostsCommand final : public ScenesCommand {
- public:
-  HostsCommand() : ScenesCommand({"uniform", "mixed"}, {2}) {
-    partitions_ = {"LinearBvh", "SweepAndPrune", "HierarchicalGrid"};
+  explicit MeasurePartitions(PartitionMeasurement measurement)
+      : ScenesCommand(measurement.scenes, measurement.threads),
+        measurement_(std::move(measurement)) {
+    objects_ = measurement_.objects;
+    partitions_ = measurement_.partitions;
   }
 
   void add_options(CLI::App& app) {
     ScenesCommand::add_options(app);
-    number(app, "--frames", frames_, 1, 1e6, "Number of timed frames");
+    if (measurement_.count_option == nullptr) return;
+    number(app, measurement_.count_option, measurement_.count, 1, 1e6, measurement_.count_meaning);
   }
 
  private:
   void measure() override {
-    declare_hosts(results);
+    measurement_.declare(results);
     measure_all();
-    print("hosts");
+    print(measurement_.tables.front(), measurement_.values);
+    for (std::size_t i = 1; i < measurement_.tables.size(); ++i) print(measurement_.tables[i]);
   }
   void measure_scene(const std::string& what, const NamedScene& scene,
                      std::size_t objects) override {
     const std::vector<std::string> partitions = partitions_for(partitions_, objects).taken;
     for (const int threads : threads_) {
-      step(what + ", " + threads_text(threads),
-           [&] { add_hosts(results, scene, objects, seed_, partitions, threads, frames_); });
+      step(what + ", " + threads_text(threads), [&] {
+        measurement_.add(results, scene, objects, seed_, partitions, threads, measurement_.count);
+      });
     }
   }
 
-  std::size_t frames_ = 101;
+  PartitionMeasurement measurement_;
 };
+
+constexpr const char* kRounds = "--rounds";
+constexpr const char* kRoundsMeaning = "Number of rounds; all contenders take turns in each";
 
 /// A built-in scene or a recording.
 struct SceneOrRecording {
@@ -222,31 +196,6 @@ struct SceneOrRecording {
   }
 };
 
-class Filters final : public ScenesCommand {
- public:
-  Filters() : ScenesCommand(kFilterScenes, {1}) {}
-
-  void add_options(CLI::App& app) {
-    add_scene_options(app);
-    number(app, "--rounds", rounds_, 1, 1000,
-           "Number of rounds; all contenders take turns in each");
-  }
-
- private:
-  void measure() override {
-    declare_filters(results);
-    measure_all();
-    print("filters");
-  }
-  void measure_scene(const std::string& what, const NamedScene& scene,
-                     std::size_t objects) override {
-    const std::vector<std::string> partitions = partitions_for(partitions_, objects).taken;
-    step(what, [&] { add_filters(results, scene, objects, seed_, partitions, rounds_); });
-  }
-
-  std::size_t rounds_ = 15;
-};
-
 class Queries final : public RowsCommand {
  public:
   void add_options(CLI::App& app) {
@@ -256,8 +205,7 @@ class Queries final : public RowsCommand {
     add_threads_option(app, options_.threads);
     number(app, "--rays", options_.rays, 1, 1e8,
            "Number of rays in a set; sets of slower queries are smaller");
-    number(app, "--rounds", options_.rounds, 1, 1000,
-           "Number of rounds; all contenders take turns in each");
+    number(app, kRounds, options_.rounds, 1, 1000, kRoundsMeaning);
     const auto names = query_set_names();
     one_of(app, "--set", options_.sets, {names.begin(), names.end()}, "Sets of queries");
     add_seed_option(app, options_.seed);
@@ -388,8 +336,7 @@ class Narrow final : public PairsCommand {
     number(app, "--pairs", pairs_, 1, 1e7,
            "Numbers of pairs; the shapes of more than 16,384 pairs are scattered in memory");
     add_threads_option(app, threads_, "Numbers of threads for winnow");
-    number(app, "--rounds", race_.rounds, 1, 1000,
-           "Number of rounds; all contenders take turns in each");
+    number(app, kRounds, race_.rounds, 1, 1000, kRoundsMeaning);
     app.add_flag("--one-a-call", one_a_call_,
                  "Also measure one call for each pair, which is how other libraries work");
     app.add_flag("--upright", upright_,
@@ -562,8 +509,7 @@ class Impacts final : public RowsCommand {
     turns_.add_to(app, "--turn", {kPairTurnNames.begin(), kPairTurnNames.end()},
                   "Rotation of the bodies of a pair");
     number(app, "--pairs", pairs_, 1, 1e6, "Number of pairs of each kind");
-    number(app, "--rounds", rounds_, 1, 1000,
-           "Number of rounds; all contenders take turns in each");
+    number(app, kRounds, rounds_, 1, 1000, kRoundsMeaning);
     number(app, "--bodies", continuous_.bodies, 1, 1e6, "Number of bodies in the scene");
     number(app, "--fast", continuous_.fast, 1, 1e6, "Number of fast bodies among them");
     add_threads_option(app, continuous_.threads);
@@ -629,8 +575,7 @@ class Kernels final : public RowsCommand {
  public:
   void add_options(CLI::App& app) {
     option(app, "--kernel", text_, "Only kernels whose names contain this text");
-    number(app, "--rounds", rounds_, 1, 1000,
-           "Number of rounds; all contenders take turns in each");
+    number(app, kRounds, rounds_, 1, 1000, kRoundsMeaning);
     add_rows_options(app);
   }
 
@@ -648,55 +593,105 @@ class Kernels final : public RowsCommand {
 
 }  // namespace
 
-std::vector<Command> add_measurements(CLI::App& app) {
-  return {
-      command<Throughput>(app, "throughput",
-                          "Measures partitions and other libraries, which take turns: time and "
-                          "memory of a frame, growth with the number of objects, and speedup by "
-                          "threads. All must find the same pairs."),
-      command<Cold>(app, "cold",
-                    "Measures first frames of new partitions, on memory that was written before "
-                    "and on memory that was not: insertion, build, all pairs, and the yardstick's "
-                    "frame for comparison."),
-      command<HostsCommand>(app, "hosts",
-                            "Measures frames of partitions whose tasks run on a simple thread pool "
-                            "(a JobSystem) and on oneTBB, in turns."),
-      command<Filters>(app, "filters",
-                       "Measures the cost of layers and masks for pairs, rays and boxes: each "
-                       "query and the same query of a partition without filters, in turns. Results "
-                       "are checked by brute force."),
-      command<FootprintCommand>(app, "footprint",
-                                "Measures bytes per object by purpose, and checks them against the "
-                                "allocated memory and the resident set of the process."),
-      command<Queries>(app, "queries",
-                       "Measures rays, boxes, frusta, balls, swept volumes and nearest objects on "
-                       "one frame of a scene, with partitions and Embree in turns. Results are "
-                       "compared hit by hit; \"undecided\" counts queries whose result is within "
-                       "the rounding error of Embree's float arithmetic."),
-      command<Narrow>(
-          app, "narrow",
-          "Measures the time per pair of shapes: winnow's tiers and other libraries, in turns, on "
-          "the same random pairs. Other libraries start without cached results of earlier calls."),
-      command<AccuracyCommand>(
-          app, "accuracy",
-          "Measures the error and time of pairs of shapes by kind, tier and size ratio, for winnow "
-          "and other libraries. Every second pair overlaps, and half of the pairs nearly touch."),
-      command<Impacts>(app, "impacts",
-                       "Measures times of impact: the time per pair of shapes for winnow and other "
-                       "libraries, in turns, on the same motions; missed and late impacts, and the "
-                       "remaining gaps; features of meshes; impacts of a scene with some fast "
-                       "bodies, compared with its contacts."),
-      command<Pipeline>(app, "pipeline",
-                        "Measures the time from poses to contacts in whole scenes, for winnow and "
-                        "other libraries in turns: a pile of 20,000 bodies and 2,000 hulls on a "
-                        "terrain of 200,978 triangles, each moving slightly (without carry-over) "
-                        "and at rest (with carry-over), and two tori of 20,000 triangles."),
-      command<Volumes>(app, "volumes",
-                       "Compares bounding volumes and margins: false positives and time, including "
-                       "the exact test of the pairs."),
-      command<Kernels>(app, "kernels",
-                       "Measures the kernels of partitions on every instruction set, on cubes that "
-                       "stay in the cache.")};
+void add_measurements(CLI::App& app) {
+  command<Throughput>(
+      app, "throughput",
+      "Measures partitions and other libraries, which take turns: time and memory of a frame",
+      "Also measures growth with the number of objects, and speedup by threads. All must find the "
+      "same pairs.");
+  command<MeasurePartitions>(
+      app, "cold",
+      "Measures first frames of new partitions: insertion, build, all pairs, and the yardstick",
+      "Memory was written before, or not.",
+      PartitionMeasurement{.declare = declare_cold,
+                           .add = [](auto&&... of) { add_cold(of...); },
+                           .scenes = kColdScenes,
+                           .threads = usual_threads(),
+                           .count_option = kRounds,
+                           .count_meaning = "Number of new partitions of each kind",
+                           .count = 7,
+                           .tables = {"cold"},
+                           .values = {"insert_ms", "build_ms", "pairs_ms", "total_ms",
+                                      "reserved_ms", "ready_ms", "reserve_ms", "over_yardstick"},
+                           .objects = {1000, 10'000, 100'000}});
+  command<MeasurePartitions>(
+      app, "hosts",
+      "Measures partitions whose tasks run on a thread pool (a JobSystem) and on oneTBB, in turns",
+      "",
+      PartitionMeasurement{.declare = declare_hosts,
+                           .add = [](auto&&... of) { add_hosts(of...); },
+                           .scenes = {"uniform", "mixed"},
+                           .threads = {2},
+                           .count_option = "--frames",
+                           .count_meaning = "Number of timed frames",
+                           .count = 101,
+                           .tables = {"hosts"},
+                           .partitions = {"LinearBvh", "SweepAndPrune", "HierarchicalGrid"}});
+  command<MeasurePartitions>(
+      app, "filters", "Measures the cost of layers and masks for pairs, rays and boxes",
+      "Each query and the same query of a partition without filters take turns, on one thread. "
+      "Results are checked by brute force.",
+      PartitionMeasurement{
+          .declare = declare_filters,
+          .add =
+              [](Results& results, const NamedScene& scene, std::size_t objects, std::uint64_t seed,
+                 const std::vector<std::string>& partitions, int /*threads*/, std::size_t rounds) {
+                add_filters(results, scene, objects, seed, partitions, rounds);
+              },
+          .scenes = kFilterScenes,
+          .threads = {1},
+          .count_option = kRounds,
+          .count_meaning = kRoundsMeaning,
+          .count = 15,
+          .tables = {"filters"}});
+  command<MeasurePartitions>(
+      app, "footprint", "Measures bytes per object by purpose",
+      "The bytes are checked against the allocated memory and the resident set of the process.",
+      PartitionMeasurement{
+          .declare =
+              [](Results& results) {
+                declare_memory(results);
+                keep_resident_set_exact();
+              },
+          .add =
+              [](Results& results, const NamedScene& scene, std::size_t objects, std::uint64_t seed,
+                 const std::vector<std::string>& partitions, int threads, std::size_t) {
+                add_footprints(results, scene, objects, seed, partitions, threads);
+              },
+          .scenes = {"uniform"},
+          .threads = {usual_threads().back()},
+          .tables = {"memory", "memory_ratio"},
+          .values = {"bounds", "keys", "client_data", "structure", "scratch", "results", "reserved",
+                     "used", "pair_buffer", "exact", "peak_first", "peak_later"}});
+  command<Queries>(
+      app, "queries",
+      "Measures rays, boxes, frusta, balls, swept volumes and nearest objects on one frame of a "
+      "scene",
+      "Partitions and Embree take turns. Results are compared hit by hit; \"undecided\" counts "
+      "queries whose result is within the rounding error of Embree's float arithmetic.");
+  command<Narrow>(
+      app, "narrow",
+      "Measures the time per pair of shapes: tiers of winnow and other libraries, in turns",
+      "All compute the same random pairs. Other libraries start without cached results of earlier "
+      "calls.");
+  command<AccuracyCommand>(
+      app, "accuracy",
+      "Measures the error and time of pairs of shapes by kind, tier and size ratio",
+      "Every second pair overlaps, and half of the pairs nearly touch.");
+  command<Impacts>(app, "impacts",
+                   "Measures times of impact of pairs of shapes, features of meshes, and scenes",
+                   "Winnow and other libraries take turns on the same motions. Counts missed and "
+                   "late impacts, and the remaining gaps; impacts of a scene with some fast bodies "
+                   "are compared with its contacts.");
+  command<Pipeline>(app, "pipeline", "Measures the time from poses to contacts in whole scenes",
+                    "Winnow and other libraries take turns: a pile of 20,000 bodies and 2,000 "
+                    "hulls on a terrain of 200,978 triangles, each moving slightly (without "
+                    "carry-over) and at rest (with carry-over), and two tori of 20,000 triangles.");
+  command<Volumes>(app, "volumes",
+                   "Compares bounding volumes and margins: false positives and time",
+                   "Times include the exact test of the pairs.");
+  command<Kernels>(app, "kernels", "Measures the kernels of partitions on every instruction set",
+                   "Inputs are cubes that stay in the cache.");
 }
 
 }  // namespace winnow::bench

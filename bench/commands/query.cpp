@@ -1,5 +1,6 @@
 #include "bench/commands/options.h"
 #include "bench/commands/rows_command.h"
+#include "bench/questions/query_format.h"
 #include "bench/questions/questions.h"
 #include "bench/rows/hard_case_rows.h"
 
@@ -13,16 +14,10 @@ namespace {
 const std::map<std::string, NarrowTier> kTiersByName{{"robust", NarrowTier::robust},
                                                      {"reference", NarrowTier::reference}};
 
-Json read_questions(const std::string& path) {
-  Json questions = read_json(path);
-  if (!questions.is_array()) throw ArgumentError(path + ": not an array of questions");
-  return questions;
-}
-
 class Query final : public RowsCommand {
  public:
   void add_options(CLI::App& app) {
-    app.add_option("file", file_, "JSON: an array of questions")->required();
+    app.add_option("file", file_, "JSON: an array of queries, in the format below")->required();
     option(app, "--tier", tier_, "Tier: robust or reference")->check(CLI::IsMember(kTiersByName));
     app.add_flag("--judge", judge_,
                  "For files of hard cases with expected results: count the correct answers of each "
@@ -32,18 +27,34 @@ class Query final : public RowsCommand {
 
  private:
   void measure() override {
-    const Json questions = read_questions(file_);
+    const Json queries = read_json(file_);
+    if (!queries.is_array()) throw ArgumentError(file_ + ": expected an array of queries");
     if (!judge_) {
-      answers_ = answer(questions, kTiersByName.at(tier_));
+      answers_ = answer(queries, kTiersByName.at(tier_));
+      explain_refusals(queries);
       if (!is_written()) std::cout << answers_.dump(1) << '\n';
       return;
     }
     plan(1);
     declare_hard_cases(results);
     step(file_, [&] {
-      add_hard_cases(results, std::filesystem::path(file_).stem().string(), questions, true);
+      add_hard_cases(results, std::filesystem::path(file_).stem().string(), queries, true);
     });
     print("hard_cases");
+  }
+  /// Prints the fault of each query without an answer, and makes the command fail if there is one.
+  void explain_refusals(const Json& queries) {
+    for (std::size_t i = 0; i < queries.size(); ++i) {
+      const std::string status = answers_[i]["status"];
+      if (status == to_string(Status::ok)) continue;
+      fail();
+      std::cerr << "winnow: " << file_ << ": [" << i << "]";
+      if (const auto fault = fault_of(queries[i])) {
+        std::cerr << (fault->member.empty() ? "" : ".") << fault->member << ": expected "
+                  << fault->expected << ", given " << fault->given;
+      }
+      std::cerr << " (" << status << ")\n";
+    }
   }
   [[nodiscard]] Json document() const override {
     return judge_ ? RowsCommand::document() : answers_;
@@ -57,10 +68,10 @@ class Query final : public RowsCommand {
 
 }  // namespace
 
-Command add_query(CLI::App& app) {
-  return command<Query>(app, "query",
-                        "Answers a JSON file of questions about pairs of shapes, rays and motions "
-                        "(see pipeline/FORMATS.md)");
+void add_query(CLI::App& app) {
+  command<Query>(app, "query",
+                 "Answers a JSON file of queries about pairs of shapes, rays and motions",
+                 query_format());
 }
 
 }  // namespace winnow::bench

@@ -34,8 +34,8 @@ struct Record {
 
 }  // namespace
 
-Command add_record(CLI::App& app) {
-  return command<Record>(app, "record", "Writes a built-in scene to an .aabbs file");
+void add_record(CLI::App& app) {
+  command<Record>(app, "record", "Writes frames of a built-in scene to an .aabbs file");
 }
 
 }  // namespace winnow::bench

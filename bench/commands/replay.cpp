@@ -133,14 +133,14 @@ void Replay::print(const std::vector<Run>& runs, const std::string& scene,
 
 }  // namespace
 
-Command add_replay(CLI::App& app) {
-  return command<Replay>(
+void add_replay(CLI::App& app) {
+  command<Replay>(
       app, "replay",
-      "Finds all pairs in every frame of a recording or scene. The time of a frame includes one "
-      "bulk update of the changed boxes (the partition is given the list of changes, as in a "
-      "simulation) and writing all pairs into one buffer; medians exclude the first frame. A "
-      "program's own recording is also played call by call, and every result is compared with the "
-      "recorded one.");
+      "Finds all pairs in every frame of a recording or scene, and compares all structures",
+      "The time of a frame includes one bulk update of the changed boxes (the structure is given "
+      "the list of changes, as in a simulation) and writing all pairs into one buffer; medians "
+      "exclude the first frame. A program's own recording is also played call by call, and every "
+      "result is compared with the recorded one.");
 }
 
 }  // namespace winnow::bench

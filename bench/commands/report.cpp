@@ -74,7 +74,7 @@ ReportOptions ReportCommand::options() const {
   options.threads = threads;
   sort_once(options.threads);
   for (const Isa one : available_isas()) {
-    if (one != active_isa()) options.isas.push_back(one);
+    if (WINNOW_NATIVE == 0 && one != active_isa()) options.isas.push_back(one);
   }
   options.isas.push_back(active_isa());
   options.peers = has_peers() && !no_peers;
@@ -141,11 +141,10 @@ int ReportCommand::run() {
 
 }  // namespace
 
-Command add_report(CLI::App& app) {
-  return command<ReportCommand>(
-      app, "report",
-      "Measures speed and error of all parts and writes one page: throughput, memory, volumes, "
-      "pairs of shapes, hard cases, queries, whole scenes, and a recommended partition.");
+void add_report(CLI::App& app) {
+  command<ReportCommand>(app, "report", "Measures speed and error of all parts and writes one page",
+                         "The page shows throughput, memory, volumes, pairs of shapes, hard cases, "
+                         "queries and whole scenes, and recommends a structure.");
 }
 
 }  // namespace winnow::bench

@@ -53,7 +53,7 @@ void print_difference(const std::string& path, const std::string& is, const std:
     std::cout << path << ":" << number
               << " differs from the results\n  is:     " << (more ? is_line : "the end")
               << "\n  should: " << (more_should ? should_line : "the end")
-              << "\nrun `bench/run results` to write it again\n";
+              << "\nrun `bench/run dev results` to write it again\n";
     return;
   }
 }
@@ -85,10 +85,10 @@ int ResultsCommand::run() const {
 
 }  // namespace
 
-Command add_results(CLI::App& app) {
-  return command<ResultsCommand>(app, "results",
-                                 "Writes the tables of a report's results.json as Markdown, and "
-                                 "its main figures into README.md");
+void add_results(CLI::App& app) {
+  command<ResultsCommand>(app, "results",
+                          "Writes the tables of a report's results.json as Markdown, and its main "
+                          "figures into README.md");
 }
 
 }  // namespace winnow::bench

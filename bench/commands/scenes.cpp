@@ -17,7 +17,7 @@ double pairs_an_object(std::string_view scene) {
   return static_cast<double>(sweep.pairs().size()) / static_cast<double>(kObjects);
 }
 
-int run_scenes() {
+void print_scenes() {
   Table table({"scene", "pairs an object", "description"});
   table.flush_left(2);
   for (const SceneInfo& info : scene_infos()) {
@@ -28,13 +28,12 @@ int run_scenes() {
             << " objects (N). Unless stated otherwise,\n"
             << "speeds are up to 5 % of the edge per frame and axis; objects are reflected at the "
                "walls.\n";
-  return kDone;
 }
 
 }  // namespace
 
-Command add_scenes(CLI::App& app) {
-  return {app.add_subcommand("scenes", "Lists the built-in scenes"), run_scenes};
+void add_scenes(CLI::App& app) {
+  app.add_subcommand("scenes", "Lists the built-in scenes")->callback(print_scenes);
 }
 
 }  // namespace winnow::bench

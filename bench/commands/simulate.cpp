@@ -1,5 +1,5 @@
-// The command `winnow simulate`: runs a granular flow, structures that must stand, or fast bodies
-// that must not pass barriers, on winnow's scene, and checks the results. The simulations are in
+// The command `winnow simulate`: runs a granular flow, bodies that stand on each other, or fast
+// bodies at barriers, on winnow's scene, and checks the results. The simulations are in
 // bench/simulation, the rows in bench/rows.
 
 #include <winnow/simd/isa.h>
@@ -129,13 +129,12 @@ void Simulate::add_options(CLI::App& app) {
   structures.emplace_back(kAll);
   one_of(
       app, "--standing", standing_, structures,
-      "Instead of the flow, simulate a structure that must stand, with a solver with warm start");
+      "Instead of the flow, simulate bodies at rest on each other, with a solver with warm start");
   number(app, "--seconds", seconds_, 1, 1e6, "Simulated time for --standing, in seconds");
   std::vector<std::string> barriers = barrier_names();
   barriers.emplace_back(kAll);
-  one_of(
-      app, "--barrier", barrier_, barriers,
-      "Instead of the flow, simulate fast bodies and thin barriers, which must not be tunnelled");
+  one_of(app, "--barrier", barrier_, barriers,
+         "Instead of the flow, simulate fast bodies that hit thin barriers");
   add_threads_option(app, options_.threads);
   add_seed_option(app, options_.seed);
   add_rows_options(app);
@@ -266,14 +265,15 @@ void Simulate::measure() {
 
 }  // namespace
 
-Command add_simulate(CLI::App& app) {
-  return command<Simulate>(
+void add_simulate(CLI::App& app) {
+  command<Simulate>(
       app, "simulate",
-      "Simulates granular flow through a funnel of triangles, with winnow embedded: an end-to-end "
-      "benchmark and soak test. It fails if contacts create energy, or if a check finds a missing, "
-      "false or duplicate contact. With --standing it simulates structures that must stand, and "
-      "fails if one drifts. With --barrier it simulates fast bodies in a funnel, a spinning blade, "
-      "or a cloth that drops on a ball, and fails if anything tunnels.");
+      "Simulates granular flow, buildings of blocks, or fast bodies, and checks the contacts",
+      "Without options, grains flow through a funnel of triangles. The command fails if contacts "
+      "create energy, or if a check finds a missing, false or duplicate contact. With --standing, "
+      "bodies are at rest on each other, and the command fails if one drifts. With --barrier, fast "
+      "bodies hit a funnel or a spinning blade, or a cloth drops on a ball, and the command fails "
+      "if anything tunnels.");
 }
 
 }  // namespace winnow::bench

@@ -41,10 +41,10 @@ int TrustCommand::run() const {
 
 }  // namespace
 
-Command add_trust(CLI::App& app) {
-  return command<TrustCommand>(app, "trust",
-                               "Prints the results of tests, fuzzers and checks, with their dates "
-                               "and the commands that repeat them");
+void add_trust(CLI::App& app) {
+  command<TrustCommand>(app, "trust",
+                        "Prints the results of tests, fuzzers and checks, with their dates and the "
+                        "commands that repeat them");
 }
 
 }  // namespace winnow::bench

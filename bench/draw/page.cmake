@@ -3,7 +3,7 @@
 find_path(WINNOW_THREE_JS_FOLDER three.min.js
           PATHS /usr/share/javascript/three /usr/share/nodejs/three/build)
 if(NOT WINNOW_THREE_JS_FOLDER)
-  message(STATUS "winnow draw: three.js is not installed (Debian: libjs-three)")
+  message(STATUS "winnow view: three.js is not installed (Debian: libjs-three)")
   set(WINNOW_THREE_JS_FOLDER /usr/share/javascript/three)
 endif()
 

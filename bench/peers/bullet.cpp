@@ -91,11 +91,12 @@ class BulletAdapter : public PairsAdapter {
 
 /// Bullet 3 in float: btDbvtBroadphase, two dynamic trees (moving and resting) with a hashed cache
 /// of overlapping pairs. Only changed boxes are set. Bullet supports one thread only.
-/// Settings, the best of those tried (measured by `winnow throughput --peers`): deferred collision,
-/// except in a frame after one that changed the tree for at most 1/16 of the boxes; a margin of a
-/// tenth of the mean edge, twice the usual step; otherwise defaults. A full clean-up of the pair
-/// cache per frame and dynamic balancing were slower. Because of the margin and the gradual
-/// clean-up, the pair cache is a superset and is filtered by the exact boxes in the proxies.
+/// Settings, the best of those tried (measured by `winnow dev throughput --peers`): deferred
+/// collision, except in a frame after one that changed the tree for at most 1/16 of the boxes; a
+/// margin of a tenth of the mean edge, twice the usual step; otherwise defaults. A full clean-up of
+/// the pair cache per frame and dynamic balancing were slower. Because of the margin and the
+/// gradual clean-up, the pair cache is a superset and is filtered by the exact boxes in the
+/// proxies.
 class BulletTrees final : public BulletAdapter {
  public:
   // Frees the proxies directly: Bullet's own destruction of a proxy searches the whole pair cache,
@@ -194,8 +195,8 @@ class RowPairs final : public btHashedOverlappingPairCache {
 /// only pairs that change. Bullet supports one thread only. Coordinates are quantised to 31 bits of
 /// the world; boxes that are closer than a quantum are reported as well. Each object is inserted
 /// singly and passes half of the others on each axis.
-/// Settings, the best of those tried (measured by `winnow throughput --peers`): a world four times
-/// as wide as the first boxes, and no tree for rays.
+/// Settings, the best of those tried (measured by `winnow dev throughput --peers`): a world four
+/// times as wide as the first boxes, and no tree for rays.
 class BulletSweep final : public BulletAdapter {
  public:
   ~BulletSweep() override { allocated_bytes = &bytes_; }

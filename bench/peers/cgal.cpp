@@ -42,9 +42,9 @@ struct BoxTraits {
 /// With more than one thread its parallel version, which does more work in total, is tried too: the
 /// first three frames run sequentially, in parallel and sequentially, and the faster version is
 /// used from then on, until the number of boxes has doubled.
-/// Settings, the best of those tried (measured by `winnow throughput --peers`): boxes by value, not
-/// by pointer; a cutoff of 4 sqrt(n) instead of 10; and an order of axes in which the first axis,
-/// which CGAL sweeps, prunes most, and the last one, which CGAL divides, prunes second most.
+/// Settings, the best of those tried (measured by `winnow dev throughput --peers`): boxes by value,
+/// not by pointer; a cutoff of 4 sqrt(n) instead of 10; and an order of axes in which the first
+/// axis, which CGAL sweeps, prunes most, and the last one, which CGAL divides, prunes second most.
 class CgalEngine final : public PairsAdapter {
  public:
   explicit CgalEngine(int threads) : serial_(threads < 2), decided_(serial_) {}

@@ -16,9 +16,9 @@ namespace {
 /// Embree 3: rtcCollide of a scene with itself; the boxes are one user geometry. Building and
 /// colliding run on the threads of the calling arena. The device setting `threads=N` is not used,
 /// as it would limit the threads of every TBB user in the process.
-/// Settings, the best of those tried (measured by `winnow throughput --peers`): a dynamic scene of
-/// low build quality, committed every frame. Medium quality was slower, and so was refitting, which
-/// gets worse as objects move. Embree has no cheaper update for few moved or new objects.
+/// Settings, the best of those tried (measured by `winnow dev throughput --peers`): a dynamic scene
+/// of low build quality, committed every frame. Medium quality was slower, and so was refitting,
+/// which gets worse as objects move. Embree has no cheaper update for few moved or new objects.
 /// rtcCollide reports each pair in both orders, and other pairs of primitives that share a leaf;
 /// the callback filters them.
 class EmbreeEngine final : public PairsAdapter {

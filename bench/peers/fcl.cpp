@@ -44,12 +44,12 @@ bool collect(Object* a, Object* b, void* pairs) {
 
 /// FCL: DynamicAABBTreeCollisionManager, in float, which its templates allow and which is faster
 /// than the double of its library. FCL supports one thread only.
-/// Settings, the best of those tried (measured by `winnow throughput --peers`): refits the whole
-/// tree, and rebuilds it once the time lost to its degradation exceeds the time of a build. If few
-/// objects moved, they are inserted again instead. Objects that left their last box are always
-/// inserted again, because refitting them would enlarge the upper nodes; if they are many, the tree
-/// is rebuilt. FCL's other managers were slower, except its two sweeps in scenes in which hardly
-/// anything moves.
+/// Settings, the best of those tried (measured by `winnow dev throughput --peers`): refits the
+/// whole tree, and rebuilds it once the time lost to its degradation exceeds the time of a build.
+/// If few objects moved, they are inserted again instead. Objects that left their last box are
+/// always inserted again, because refitting them would enlarge the upper nodes; if they are many,
+/// the tree is rebuilt. FCL's other managers were slower, except its two sweeps in scenes in which
+/// hardly anything moves.
 class FclEngine final : public PairsAdapter {
  public:
   [[nodiscard]] std::string name() const override { return "FCL tree"; }

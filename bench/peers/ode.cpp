@@ -81,9 +81,9 @@ std::uint32_t row_of(dGeomID geom) {
 /// ODE in double: the sweep-and-prune space. ODE's own box geoms compute bounds from centre and
 /// half length, with rounding, so a geom class with a box as its data gives exact bounds. ODE's
 /// spaces support one thread only.
-/// Settings, the best of those tried (measured by `winnow throughput --peers`): sweep and prune,
-/// with its axes ordered by how much they prune. The hash space and the quadtree space were slower.
-/// Updates of few objects are cheap, but each search covers all objects.
+/// Settings, the best of those tried (measured by `winnow dev throughput --peers`): sweep and
+/// prune, with its axes ordered by how much they prune. The hash space and the quadtree space were
+/// slower. Updates of few objects are cheap, but each search covers all objects.
 class OdeEngine final : public PairsAdapter {
  public:
   OdeEngine() { Library::get(); }

@@ -29,23 +29,23 @@ bool read_hexadecimal(std::string_view text, double& out) {
   return true;
 }
 
-bool read_any_number(const Json& value, double& out) {
-  return read_number(value, out) ||
-         (value.is_string() && read_hexadecimal(value.get_ref<const std::string&>(), out));
-}
-
 bool read_four_points(const Json& value, std::array<Vec3d, 4>& points) {
   if (!value.is_array() || value.size() != points.size()) return false;
   for (std::size_t k = 0; k < points.size(); ++k) {
     if (!value[k].is_array() || value[k].size() != 3) return false;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      if (!read_any_number(value[k][axis], points[k][axis])) return false;
+      if (!read_exact_number(value[k][axis], points[k][axis])) return false;
     }
   }
   return true;
 }
 
 }  // namespace
+
+bool read_exact_number(const Json& value, double& out) {
+  return read_number(value, out) ||
+         (value.is_string() && read_hexadecimal(value.get_ref<const std::string&>(), out));
+}
 
 Status answer_motion(const Json& question, Json& answer) {
   const Json& motion = member(question, "motion");
@@ -59,7 +59,7 @@ Status answer_motion(const Json& question, Json& answer) {
     return Status::invalid_argument;
   }
   if (question.contains("min_separation") &&
-      !read_any_number(question["min_separation"], options.min_separation)) {
+      !read_exact_number(question["min_separation"], options.min_separation)) {
     return Status::invalid_argument;
   }
   const FeaturePair pair =

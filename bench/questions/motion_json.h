@@ -15,4 +15,7 @@ namespace winnow::bench {
 /// `feature_impact`. Writes nothing unless the status is `ok`.
 [[nodiscard]] Status answer_motion(const Json& question, Json& answer);
 
+/// Reads a number as `read_number` does, or a string in C's hexadecimal notation.
+[[nodiscard]] bool read_exact_number(const Json& value, double& out);
+
 }  // namespace winnow::bench

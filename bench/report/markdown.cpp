@@ -60,7 +60,8 @@ std::string run_text(const Results& results) {
 std::string results_markdown(const Results& results) {
   std::string text =
       "# Results\n\n" + run_text(results) +
-      ". `bench/run results` generates this page from `bench/results/results.json`, which has a "
+      ". `bench/run dev results` generates this page from `bench/results/results.json`, which has "
+      "a "
       "row for every figure. Other libraries are Debian packages, run at their best settings and "
       "with `-O3 -march=native`. The yardstick is a blocked sweep without state between frames. "
       "Times are medians; the best value of a column is bold.\n\n";

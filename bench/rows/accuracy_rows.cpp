@@ -56,8 +56,8 @@ void add_columns(std::vector<ValueColumn>& columns, const std::string& of, const
 
 std::string accuracy_command(const AccuracyOptions& options) {
   const PairSetOptions& set = options.set;
-  std::string text = "bench/run accuracy --kind " + std::string(options.kind.name) + " --ratio " +
-                     key_text(set.ratio);
+  std::string text = "bench/run dev accuracy --kind " + std::string(options.kind.name) +
+                     " --ratio " + key_text(set.ratio);
   if (set.offset) text += " --offset " + key_text(*set.offset);
   if (set.angle) text += " --angle " + key_text(*set.angle);
   if (set.thinness < 1.0) text += " --thinness " + key_text(set.thinness);
@@ -123,7 +123,7 @@ void add_accuracy_row(Results& results, const std::string& table, Json row,
 }
 
 std::string narrow_command(const NarrowMeasurement& measured, const NarrowMeasureOptions& options) {
-  return "bench/run narrow --kind " + std::string(measured.kind.name) + " --tier all --pairs " +
+  return "bench/run dev narrow --kind " + std::string(measured.kind.name) + " --tier all --pairs " +
          std::to_string(measured.pairs) + " --rounds " + std::to_string(options.race.rounds) +
          " --isa " + isa_name() +
          (options.seed == 1 ? "" : " --seed " + std::to_string(options.seed));

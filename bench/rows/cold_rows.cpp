@@ -53,7 +53,7 @@ void add_cold(Results& results, const NamedScene& scene, std::size_t objects, st
              {"build_ms", to_value(one.build_ms)},
              {"pairs_ms", to_value(one.pairs_ms)},
              {"total_ms", to_value(one.total_ms)},
-             {"command", "bench/run cold" + scene.words(count, seed) + " --threads " +
+             {"command", "bench/run dev cold" + scene.words(count, seed) + " --threads " +
                              std::to_string(threads) + " --isa " + isa_name() + " --partition " +
                              one.partition}};
     if (!one.ready_ms.empty()) {

@@ -55,7 +55,7 @@ void add_every_scene(Results& results, const EverySceneOptions& options) {
         {"first_ms", run.frame_ms.front()},
         {"worst_ratio", settled.max / settled.median},
         {"pairs", run.pairs_a_frame()},
-        {"command", "bench/run throughput" + options.scene.words(raced.objects, options.seed) +
+        {"command", "bench/run dev throughput" + options.scene.words(raced.objects, options.seed) +
                         " --threads " + std::to_string(run.threads) + " --isa " +
                         to_string(run.isa) + " --frames " + std::to_string(run.frame_ms.size()) +
                         (run.engine == kYardstickName ? " --partition LinearBvh --yardstick"

@@ -35,7 +35,7 @@ void add_filters(Results& results, const NamedScene& scene, std::size_t objects,
                               {"filtered_ms", to_value(one.filtered_ms)},
                               {"over_plain", one.over_plain()},
                               {"wrong", one.wrong},
-                              {"command", "bench/run filters" + scene.words(count, seed) +
+                              {"command", "bench/run dev filters" + scene.words(count, seed) +
                                               " --rounds " + std::to_string(rounds) + " --isa " +
                                               isa_name() + " --partition " + partition}});
     }

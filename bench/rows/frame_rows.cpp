@@ -228,15 +228,15 @@ Measurement add_frame_race(Results& results, const NamedScene& scene, MeasureOpt
   for (const Run& run : measured.partitions()) {
     if (only_peers) break;
     add_run(results, scene, measured, run, distance_ns,
-            "bench/run throughput" + command(run, run.engine));
+            "bench/run dev throughput" + command(run, run.engine));
   }
   for (const Run& run : measured.peers()) {
     // A library is raced together with a partition that must find the same pairs.
     const std::string beside =
         measured.partition_runs > 0 ? measured.runs.front().engine : std::string("LinearBvh");
     add_run(results, scene, measured, run, distance_ns,
-            (run.engine == kYardstickName ? "bench/run throughput --yardstick"
-                                          : "bench/run --with-peers throughput --peers") +
+            (run.engine == kYardstickName ? "bench/run dev throughput --yardstick"
+                                          : "bench/run --with-peers dev throughput --peers") +
                 command(run, beside));
   }
   note_skipped(results, measured.objects, measured.skipped, options.peers);
@@ -250,7 +250,7 @@ void note_skipped(Results& results, std::size_t objects, const std::vector<std::
     results.add("throughput_skipped",
                 {{"objects", objects},
                  {"skipped", text},
-                 {"command", "bench/run throughput --objects " + std::to_string(objects) +
+                 {"command", "bench/run dev throughput --objects " + std::to_string(objects) +
                                  (peers ? " --peers" : "")}});
   }
 }

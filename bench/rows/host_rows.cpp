@@ -29,9 +29,9 @@ void add_hosts(Results& results, const NamedScene& scene, std::size_t objects, s
                           {"arena_ms", to_value(race.arena_ms)},
                           {"pool_ms", to_value(race.pool_ms)},
                           {"over_arena", median_of(race.pool_ms) / median_of(race.arena_ms)},
-                          {"command", "bench/run hosts" + scene.words(count, seed) + " --threads " +
-                                          std::to_string(threads) + " --isa " + isa_name() +
-                                          " --partition " + partition}});
+                          {"command", "bench/run dev hosts" + scene.words(count, seed) +
+                                          " --threads " + std::to_string(threads) + " --isa " +
+                                          isa_name() + " --partition " + partition}});
   }
 }
 

@@ -20,7 +20,7 @@ void add_kernels(Results& results, std::size_t rounds, const std::string& text) 
     Json row{{"kernel", one.kernel},
              {"isa", to_string(one.isa)},
              {"ns", to_value(one.ns)},
-             {"command", "bench/run kernels --kernel " + shell_word(one.kernel) + " --rounds " +
+             {"command", "bench/run dev kernels --kernel " + shell_word(one.kernel) + " --rounds " +
                              std::to_string(rounds)}};
     if (one.tests != 0) {
       row["tests_per_us"] = 1e3 * static_cast<double>(one.tests) / median_of(one.ns);

@@ -86,7 +86,7 @@ Measurement add_beside_peers(Results& results, const NamedScene& scene, MeasureO
                  {"best_ms", frames.of(*best)},
                  {"best", best->engine},
                  {"frames", frames.count},
-                 {"command", "bench/run --with-peers throughput --peers" +
+                 {"command", "bench/run --with-peers dev throughput --peers" +
                                  scene.words(raced.objects, options.seed) + " --threads " +
                                  std::to_string(peer.threads) + " --partition " + best->engine +
                                  " --frames " + std::to_string(frames.first + frames.count)}});

@@ -107,9 +107,9 @@ void add_footprints(Results& results, const NamedScene& scene, std::size_t objec
                     {"objects", held.objects},
                     {"partition", held.partition},
                     {"threads", threads}};
-    const std::string command = "bench/run footprint" + scene.words(objects, seed) + " --threads " +
-                                std::to_string(threads) + " --isa " + isa_name() + " --partition " +
-                                partition;
+    const std::string command = "bench/run dev footprint" + scene.words(objects, seed) +
+                                " --threads " + std::to_string(threads) + " --isa " + isa_name() +
+                                " --partition " + partition;
     add_held(results, keys, held, command);
     derive_ratio(results, keys, command);
   }
@@ -118,9 +118,9 @@ void add_footprints(Results& results, const NamedScene& scene, std::size_t objec
 
 void add_footprints_apart(Results& results, const NamedScene& scene, std::size_t objects,
                           std::uint64_t seed, int threads) {
-  std::vector<std::string> arguments{
-      "footprint", "--scene", scene.argument, "--threads", std::to_string(threads),
-      "--isa",     isa_name()};
+  std::vector<std::string> arguments{"dev",          "footprint", "--scene",
+                                     scene.argument, "--threads", std::to_string(threads),
+                                     "--isa",        isa_name()};
   if (!scene.is_recording()) {
     arguments.insert(arguments.end(),
                      {"--objects", std::to_string(objects), "--seed", std::to_string(seed)});

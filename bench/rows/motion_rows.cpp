@@ -14,7 +14,7 @@ namespace {
 constexpr double kMinGapShown = 1e-12;
 
 std::string impacts_command(const ImpactRaceOptions& options) {
-  std::string text = "bench/run impacts --what pairs --kind " + std::string(options.kind.name) +
+  std::string text = "bench/run dev impacts --what pairs --kind " + std::string(options.kind.name) +
                      " --turn \"" + std::string(to_text(options.turn)) + "\" --pairs " +
                      std::to_string(options.pairs) + " --isa " + isa_name();
   if (options.seed != 1) text += " --seed " + std::to_string(options.seed);
@@ -104,7 +104,7 @@ void add_feature_impacts(Results& results, std::size_t pairs, std::size_t rounds
                    {"hits", timing.hits},
                    {"missed", timing.missed},
                    {"invented", timing.invented},
-                   {"command", "bench/run impacts --what features --pairs " +
+                   {"command", "bench/run dev impacts --what features --pairs " +
                                    std::to_string(pairs) + " --isa " + isa_name()}});
     }
   }
@@ -125,7 +125,7 @@ void add_continuous_collision(Results& results, const ContinuousRaceOptions& opt
        {"all_over_collide", median_of(timing.all_ms) / collide},
        {"pairs", timing.pairs},
        {"impacts", timing.impacts},
-       {"command", "bench/run impacts --what scene --bodies " + std::to_string(options.bodies) +
+       {"command", "bench/run dev impacts --what scene --bodies " + std::to_string(options.bodies) +
                        " --fast " + std::to_string(options.fast) + " --threads " +
                        std::to_string(options.threads) + " --isa " + isa_name()}});
 }

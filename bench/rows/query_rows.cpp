@@ -65,7 +65,7 @@ QueryMeasurement add_queries(Results& results, const NamedScene& scene,
   options.scene = scene.argument;
   options.recording = scene.recording.get();
   QueryMeasurement measured = measure_queries(options);
-  std::string where = "bench/run queries" +
+  std::string where = "bench/run dev queries" +
                       std::string(scene.is_recording() ? " --recording " : " --scene ") +
                       shell_word(scene.argument);
   if (!scene.is_recording()) where += " --objects " + std::to_string(options.objects);
@@ -103,7 +103,7 @@ void add_frusta(Results& results, std::size_t objects, std::size_t rounds) {
                              {"engine", i < partitions.size() ? partitions[i] : kReading},
                              {"ms", to_value(costs.ms[i])},
                              {"found", costs.found_a_question},
-                             {"command", "bench/run goals --topic queries"}});
+                             {"command", "bench/run dev goals --topic queries"}});
     }
   }
 }

@@ -24,7 +24,7 @@ std::string scene_command(const PipelineMeasureOptions& options, const std::stri
   for (const int count : options.threads) {
     threads += (threads.empty() ? "" : ",") + std::to_string(count);
   }
-  std::string text = "bench/run pipeline --scene " + options.scene + " --level " + level +
+  std::string text = "bench/run dev pipeline --scene " + options.scene + " --level " + level +
                      " --threads " + threads + " --frames " + std::to_string(options.frames) +
                      " --seed " + std::to_string(options.seed) + " --isa " + isa_name();
   if (options.bodies != 0) text += " --bodies " + std::to_string(options.bodies);
@@ -134,7 +134,7 @@ void add_scene_level(Results& results, PipelineMeasureOptions options, const std
 
 void add_scene_costs(Results& results, const SceneCostOptions& options) {
   const std::string again =
-      "bench/run pipeline --costs --scene " + options.scene + " --threads " +
+      "bench/run dev pipeline --costs --scene " + options.scene + " --threads " +
       std::to_string(options.threads) + " --frames " + std::to_string(options.frames) + " --seed " +
       std::to_string(options.seed) + " --isa " + isa_name() +
       (options.bodies != 0 ? " --bodies " + std::to_string(options.bodies) : "");
@@ -158,8 +158,8 @@ void add_scene_costs(Results& results, const SceneCostOptions& options) {
 
 MeshMeasurement add_tori(Results& results, std::size_t rounds, bool peers, bool machine_clock) {
   MeshMeasurement measured = measure_meshes(rounds, peers, machine_clock);
-  const std::string again =
-      "bench/run pipeline --scene tori --frames " + std::to_string(rounds) + " --isa " + isa_name();
+  const std::string again = "bench/run dev pipeline --scene tori --frames " +
+                            std::to_string(rounds) + " --isa " + isa_name();
   for (const MeshTiming& timing : measured.timings) {
     results.add("mesh_builds", {{"engine", timing.engine},
                                 {"ms", to_value(timing.build_ms)},

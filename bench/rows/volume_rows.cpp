@@ -44,7 +44,7 @@ Json volume_row_of(const VolumeRow& row, const VolumeRow& boxes) {
 }
 
 std::string volumes_command(const VolumeRowOptions& options, double step) {
-  std::string text = "bench/run volumes --setting " + options.setting;
+  std::string text = "bench/run dev volumes --setting " + options.setting;
   const bool recorded = options.setting == "scene" && options.scene.is_recording();
   if (options.setting == "scene") {
     text += (recorded ? " --recording " : " --scene ") + shell_word(options.scene.argument);

@@ -28,7 +28,7 @@ void add_ledger(Results& results) {
                             {"date", row["date"]},
                             {"commit", row["commit"]},
                             {"made_by", row["command"]},
-                            {"command", "bench/run trust"}});
+                            {"command", "bench/run dev trust"}});
     }
   }
 }

@@ -1,4 +1,4 @@
-// Tests of `winnow goals`: how a goal is computed from rows, and that the file of goals can be
+// Tests of `winnow dev goals`: how a goal is computed from rows, and that the file of goals can be
 // read.
 
 #include "bench/goals/evaluate.h"

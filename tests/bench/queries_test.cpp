@@ -1,4 +1,4 @@
-// The races of `winnow queries`: all engines return equal answers, and a difference is noticed.
+// The races of `winnow dev queries`: all engines return equal answers, and a difference is noticed.
 
 #include "bench/contenders/partition_queries.h"
 #include "bench/contenders/partitions.h"

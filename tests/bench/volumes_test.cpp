@@ -1,4 +1,4 @@
-// The figures of `winnow volumes` are consistent.
+// The figures of `winnow dev volumes` are consistent.
 
 #include <winnow/core/eigen.h>
 #include "bench/measure/volume_race.h"

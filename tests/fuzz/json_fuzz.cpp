@@ -51,7 +51,7 @@ void query(const Json& questions) {
   }
 }
 
-/// Calls the code of `winnow compare`, `winnow results` and `winnow report --from`.
+/// Calls the code of `winnow dev compare`, `winnow dev results` and `winnow report --from`.
 void report(const std::string& path) {
   bench::Results results = bench::read_results(path);
   (void)bench::compare(results, results, {}).passes();

@@ -431,6 +431,6 @@ def test_interpreter_exits_cleanly_with_threads_at_work(predicate):
     for _ in range(3):
         ended = subprocess.run(
             [sys.executable, "-c", textwrap.dedent(program)],
-            capture_output=True, text=True, timeout=120,
+            capture_output=True, text=True, timeout=900,
         )
         assert ended.stdout == "over\n" and ended.returncode == 0, ended

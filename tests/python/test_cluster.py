@@ -209,7 +209,7 @@ def test_mpi_processes_find_the_same_pairs():
     for ranks in (1, 3):
         command = ["mpirun", "--allow-run-as-root", "--oversubscribe", "-n", str(ranks), sys.executable,
                    "-c", textwrap.dedent(program)]
-        done = subprocess.run(command, capture_output=True, text=True, timeout=300)
+        done = subprocess.run(command, capture_output=True, text=True, timeout=900)
         assert done.returncode == 0, done.stderr
         outputs.add(done.stdout.strip())
     assert len(outputs) == 1 and int(outputs.pop().split()[1]) > 100

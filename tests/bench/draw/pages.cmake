@@ -1,4 +1,4 @@
-# Compares the counts that `winnow draw` prints with the picture that a browser draws.
+# Compares the counts that `winnow view` prints with the picture that a browser draws.
 # cmake -DWINNOW=<the tool> -DRECORD_PILE=<record_pile> -DWORK=<folder> -P pages.cmake
 #
 # Opens each page in headless Chromium with a software renderer. The page reports how much it sent
@@ -12,16 +12,16 @@ if(NOT browser)
 endif()
 file(MAKE_DIRECTORY ${WORK})
 
-# draw(<name of the page> <arguments of winnow draw>...): writes <name>.html and <name>.json.
+# draw(<name of the page> <arguments of winnow view>...): writes <name>.html and <name>.json.
 function(draw name)
   execute_process(
-    COMMAND ${WINNOW} draw ${ARGN} --out ${WORK}/${name}.html --json ${WORK}/${name}.json
+    COMMAND ${WINNOW} view ${ARGN} --out ${WORK}/${name}.html --json ${WORK}/${name}.json
     RESULT_VARIABLE status OUTPUT_QUIET ERROR_VARIABLE error)
   if(error MATCHES "needs three.js")
     message("skipped: ${error}")
   endif()
   if(NOT status EQUAL 0)
-    message(FATAL_ERROR "winnow draw ${ARGN}: ${error}")
+    message(FATAL_ERROR "winnow view ${ARGN}: ${error}")
   endif()
 endfunction()
 

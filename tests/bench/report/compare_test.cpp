@@ -1,4 +1,5 @@
-// Tests of `winnow compare`: its verdicts (worse, better, noise, other pairs) and its exit status.
+// Tests of `winnow dev compare`: its verdicts (worse, better, noise, other pairs) and its exit
+// status.
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -71,7 +72,7 @@ Outcome compared(const std::string& before, const std::string& after,
   std::filesystem::create_directories(folder);
   std::ofstream(folder / "old.json") << before;
   std::ofstream(folder / "new.json") << after;
-  const std::string command = std::string("'") + WINNOW_TOOL + "' compare '" +
+  const std::string command = std::string("'") + WINNOW_TOOL + "' dev compare '" +
                               (folder / "old.json").string() + "' '" +
                               (folder / "new.json").string() + "' --json '" +
                               (folder / "out.json").string() + "' " + options + " >/dev/null 2>&1";

@@ -50,7 +50,7 @@ class HostileFiles : public testing::Test {
       std::filesystem::temp_directory_path() / ("winnow_hostile_" + std::to_string(::getpid()));
 };
 
-const char* const kCommands[] = {"query FILE", "query --judge FILE", "compare FILE FILE",
+const char* const kCommands[] = {"query FILE", "query --judge FILE", "dev compare FILE FILE",
                                  "report --from FILE --out /nowhere"};
 
 TEST_F(HostileFiles, invalid_json_is_refused) {
@@ -74,7 +74,9 @@ TEST_F(HostileFiles, deeply_nested_json_is_refused) {
 }
 
 TEST_F(HostileFiles, brackets_in_strings_are_read) {
-  const Ending ending = run("query FILE", "[{\"id\":\"\\\"" + std::string(1000, '[') + "\"}]");
+  const std::string ball = R"({"type": "sphere", "radius": 1})";
+  const Ending ending = run("query FILE", "[{\"id\":\"\\\"" + std::string(1000, '[') +
+                                              "\", \"a\": " + ball + ", \"b\": " + ball + "}]");
   EXPECT_EQ(ending.status, 0) << ending.message;
 }
 

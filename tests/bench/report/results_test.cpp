@@ -1,5 +1,5 @@
-// Tests of `winnow results`: it writes the figures of a report into a readme and leaves all other
-// text of the readme unchanged.
+// Tests of `winnow dev results`: it writes the figures of a report into a readme and leaves all
+// other text of the readme unchanged.
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -69,7 +69,7 @@ class Documents : public testing::Test {
   }
   [[nodiscard]] int run(const std::string& option = "") const {
     const auto path = [&](const char* name) { return " '" + (folder_ / name).string() + "' "; };
-    const std::string command = std::string("'") + WINNOW_TOOL + "' results " + option +
+    const std::string command = std::string("'") + WINNOW_TOOL + "' dev results " + option +
                                 path("results.json") + "--out" + path("RESULTS.md") + "--readme" +
                                 path("readme.md") + ">/dev/null 2>&1";
     const int status = std::system(command.c_str());

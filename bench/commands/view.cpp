@@ -14,7 +14,7 @@
 namespace winnow::bench {
 namespace {
 
-struct Draw {
+struct View {
   Target target;
   std::size_t frame = 0;
   std::size_t frames = 1;
@@ -22,7 +22,7 @@ struct Draw {
   std::vector<std::string> rays;
   std::vector<std::string> boxes;
   PictureOptions options;
-  std::string out;
+  std::string out = "winnow-view.html";
   std::string json;
 
   void add_options(CLI::App& app);
@@ -32,7 +32,7 @@ struct Draw {
   [[nodiscard]] Json draw_frames(const NamedScene& scene, FrameSource& source) const;
 };
 
-void Draw::add_options(CLI::App& app) {
+void View::add_options(CLI::App& app) {
   target.add_to(app);
   number(app, "--frame", frame, 0, 1e6, "Number of the frame, from 0");
   number(app, "--frames", frames, 0, 1e6,
@@ -51,19 +51,19 @@ void Draw::add_options(CLI::App& app) {
   number(app, "--max-depth", options.max_depth, 0, 64,
          "Levels of nodes that are drawn, from the root");
   app.add_flag("--labels", options.labels, "Draw the client data of the first 500 objects");
-  app.add_option("--out", out, "HTML page to write")->required();
+  option(app, "--out", out, "HTML page to write");
   add_json_option(app, json);
 }
 
-Json Draw::draw_frames(const NamedScene& scene, FrameSource& source) const {
+Json View::draw_frames(const NamedScene& scene, FrameSource& source) const {
   constexpr std::size_t kOfEndless = 1000;  // built-in scenes have no last frame
   Stage stage(partition, source);
   while (stage.frame() < frame) {
     if (stage.advance()) continue;
     throw ArgumentError("--frame: the last frame is " + std::to_string(stage.frame()));
   }
-  constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
-  const std::size_t there_are = scene.is_recording() ? kAll : kOfEndless;
+  constexpr std::size_t kNoLimit = std::numeric_limits<std::size_t>::max();
+  const std::size_t there_are = scene.is_recording() ? kNoLimit : kOfEndless;
   const std::size_t most = frames == 0 ? there_are : frames;
   std::vector<std::vector<RecordedContact>> contacts;
   if (scene.is_recording()) contacts = read_contacts(target.name);
@@ -75,7 +75,7 @@ Json Draw::draw_frames(const NamedScene& scene, FrameSource& source) const {
   return pictures;
 }
 
-int Draw::run() {
+int View::run() {
   for (const std::string& ray : rays) options.rays.push_back(parse_ray(ray));
   for (const std::string& box : boxes) options.boxes.push_back(parse_box(box));
   const NamedScene scene = target.named();  // a recording must outlive its source
@@ -104,11 +104,10 @@ int Draw::run() {
 
 }  // namespace
 
-Command add_draw(CLI::App& app) {
-  return command<Draw>(app, "draw",
-                       "Writes frames as an HTML page with a view that can be rotated, moved and "
-                       "zoomed: objects, the partition's structure, overlapping pairs, hits of "
-                       "rays and boxes, and the contacts of a scene that a program recorded.");
+void add_view(CLI::App& app) {
+  command<View>(app, "view", "Writes frames of a recording or scene as an HTML page with a 3D view",
+                "The view can be rotated, moved and zoomed. It shows objects, the structure, "
+                "overlapping pairs, hits of rays and boxes, and the contacts of a recorded scene.");
 }
 
 }  // namespace winnow::bench

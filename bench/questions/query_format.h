@@ -1,0 +1,31 @@
+#pragma once
+
+#include "bench/common/json.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace winnow::bench {
+
+/// The first member of a query that prevents an answer.
+struct QueryFault {
+  std::string member;  ///< path from the query, for example "a.pose.position[2]"; empty: the query
+  std::string expected;  ///< for example "a finite number >= 0"
+  std::string given;     ///< the value as JSON, shortened, or "nothing"
+};
+
+/// Returns the first member that is missing, has the wrong type or is outside its range. Returns
+/// nothing if there is none: the input may still be refused, for example if a result overflows.
+[[nodiscard]] std::optional<QueryFault> fault_of(const Json& query);
+
+/// Returns a file of queries that has each member at least once.
+[[nodiscard]] const std::string& query_example();
+
+/// Returns the names of all members and types of shapes.
+[[nodiscard]] std::vector<std::string> query_words();
+
+/// Returns a description of the format: the example, and each member with its unit.
+[[nodiscard]] std::string query_format();
+
+}  // namespace winnow::bench
