@@ -33,15 +33,12 @@ Command command(CLI::App& app, const char* name, const char* what) {
 Command add_scenes(CLI::App& app);
 Command add_record(CLI::App& app);
 Command add_replay(CLI::App& app);
-Command add_goals(CLI::App& app);
 Command add_draw(CLI::App& app);
 Command add_query(CLI::App& app);
 Command add_simulate(CLI::App& app);
 Command add_advise(CLI::App& app);
 Command add_cluster(CLI::App& app);
 Command add_report(CLI::App& app);
-Command add_compare(CLI::App& app);
-Command add_results(CLI::App& app);
 Command add_fit(CLI::App& app);
 Command add_trust(CLI::App& app);
 

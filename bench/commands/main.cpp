@@ -29,10 +29,10 @@ int run_tool(int argc, char** argv) {
                "winnow"};
   app.require_subcommand(0, 1);
   app.set_version_flag("--version", std::string("winnow ") + kVersion + " (" + kCommit + ")");
-  std::vector<Command> commands{
-      add_report(app),   add_compare(app), add_results(app), add_fit(app),   add_scenes(app),
-      add_record(app),   add_replay(app),  add_query(app),   add_goals(app), add_draw(app),
-      add_simulate(app), add_advise(app),  add_cluster(app), add_trust(app)};
+  std::vector<Command> commands{add_report(app),  add_fit(app),      add_scenes(app),
+                                add_record(app),  add_replay(app),   add_query(app),
+                                add_draw(app),    add_simulate(app), add_advise(app),
+                                add_cluster(app), add_trust(app)};
   for (Command& one : add_measurements(app)) commands.push_back(std::move(one));
   try {
     app.parse(argc, argv);

@@ -97,7 +97,6 @@ class Throughput final : public ScenesCommand {
           "--yardstick: this tool was built without it; set the CMake variable WINNOW_YARDSTICK to "
           "the folder of the prototype");
     }
-    declare_frames(results);
     measure_all();
     print("throughput", {"frame_ms", "update_ms", "worst_ms", "first_ms", "pairs", "pairs_per_s",
                          "bytes_per_object", "core_distance_ns", "frames", "fingerprint"});
@@ -133,7 +132,6 @@ class FootprintCommand final : public ScenesCommand {
 
  private:
   void measure() override {
-    declare_memory(results);
     keep_resident_set_exact();
     measure_all();
     print("memory", {"bounds", "keys", "client_data", "structure", "scratch", "results", "reserved",
@@ -160,7 +158,6 @@ class Cold final : public ScenesCommand {
 
  private:
   void measure() override {
-    declare_cold(results);
     measure_all();
     print("cold", {"insert_ms", "build_ms", "pairs_ms", "total_ms", "reserved_ms", "ready_ms",
                    "reserve_ms", "over_yardstick"});
@@ -190,7 +187,6 @@ class HostsCommand final : public ScenesCommand {
 
  private:
   void measure() override {
-    declare_hosts(results);
     measure_all();
     print("hosts");
   }
@@ -234,7 +230,6 @@ class Filters final : public ScenesCommand {
 
  private:
   void measure() override {
-    declare_filters(results);
     measure_all();
     print("filters");
   }
@@ -268,7 +263,6 @@ class Queries final : public RowsCommand {
   void measure() override {
     const NamedScene named = scene_.named();
     plan(1);
-    declare_queries(results);
     step(named.name + ", " + grouped(named.objects(options_.objects)) + " objects, " +
              threads_text(options_.threads),
          [&] { add_queries(results, named, options_); });
@@ -304,7 +298,6 @@ class Volumes final : public RowsCommand {
   void measure() override {
     options_.scene = scene_.named();
     plan(settings_.size());
-    declare_volumes(results);
     for (const std::string& setting : settings_) {
       options_.setting = setting;
       step(setting, [&] { add_volumes(results, options_); });
@@ -401,7 +394,6 @@ class Narrow final : public PairsCommand {
  private:
   void measure() override {
     plan(kinds().size() * pairs_.size());
-    declare_pair_times(results, PairKeys::settings);
     for (const std::size_t count : pairs_) {
       for (const PairKind& kind : kinds()) {
         step(std::string(kind.name) + ", " + grouped(count) + " pairs", [&] {
@@ -458,7 +450,6 @@ class AccuracyCommand final : public PairsCommand {
  private:
   void measure() override {
     plan(kinds().size() * ratios_.size());
-    declare_pair_errors(results, PairKeys::settings);
     for (const PairKind& kind : kinds()) {
       for (const double ratio : ratios_) {
         AccuracyOptions options{
@@ -501,7 +492,6 @@ class Pipeline final : public RowsCommand {
  private:
   void measure() override {
     plan(2 * scenes_.size() * levels_.size());
-    declare_scenes(results, true);
     for (const std::string& scene : scenes_) {
       if (costs_) {
         step(scene, [&] { measure_costs(scene); });
@@ -582,7 +572,6 @@ class Impacts final : public RowsCommand {
     constexpr const char* kWhat[] = {kPairs, kFeatures, kScene};
     const auto what = what_.of(std::span<const char* const>(kWhat), text);
     plan(what.size());
-    declare_motion(results);
     for (const char* const one : what) {
       step(one, [&] {
         if (one == kPairs) measure_pairs();
@@ -637,7 +626,6 @@ class Kernels final : public RowsCommand {
  private:
   void measure() override {
     plan(1);
-    declare_kernels(results);
     step("kernels", [&] { add_kernels(results, rounds_, text_); });
     print("kernels");
   }

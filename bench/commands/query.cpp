@@ -39,13 +39,12 @@ class Query final : public RowsCommand {
       return;
     }
     plan(1);
-    declare_hard_cases(results);
     step(file_, [&] {
       add_hard_cases(results, std::filesystem::path(file_).stem().string(), questions, true);
     });
     print("hard_cases");
   }
-  [[nodiscard]] Json document() const override {
+  [[nodiscard]] Json document() override {
     return judge_ ? RowsCommand::document() : answers_;
   }
 

@@ -44,16 +44,6 @@ void add_shown(Json& row, const std::string& of) {
   row["worst_" + of + "_or_floor"] = std::max(at->get<double>(), kMinErrorShown);
 }
 
-void add_columns(std::vector<ValueColumn>& columns, const std::string& of, const std::string& label,
-                 const std::string& unit) {
-  for (const char* which : {"median", "p99", "worst"}) {
-    const std::string rank = which == std::string("p99") ? "99 %" : which;
-    columns.push_back({which + ("_" + of), rank + " " + label, unit, Better::less, Format::tiny});
-  }
-  columns.push_back({"worst_" + of + "_or_floor", "worst " + label + ", at least 1e-17", unit,
-                     Better::less, Format::tiny});
-}
-
 std::string accuracy_command(const AccuracyOptions& options) {
   const PairSetOptions& set = options.set;
   std::string text = "bench/run accuracy --kind " + std::string(options.kind.name) + " --ratio " +
@@ -70,52 +60,13 @@ std::string accuracy_command(const AccuracyOptions& options) {
   return text;
 }
 
-std::vector<ValueColumn> accuracy_columns() {
-  std::vector<ValueColumn> columns{
-      {"pairs", "pairs judged", "", Better::neither, Format::count},
-      {"wrong", "wrong verdicts", "", Better::less, Format::count},
-      {"missing", "without distance or normal", "", Better::less, Format::count}};
-  add_columns(columns, "error", "error of the signed distance", "of the size");
-  add_columns(columns, "distance", "error of the distance", "of the size");
-  add_columns(columns, "depth", "error of the depth", "of the size");
-  add_columns(columns, "degrees", "error of the normal", "degrees");
-  const std::vector<ValueColumn> counts{
-      {"measured", "distances measured", "", Better::neither, Format::count},
-      {"beyond_bound", "beyond the bound given", "", Better::less, Format::count},
-      {"normals", "normals that are unique", "", Better::neither, Format::count},
-      {"normals_off", "of them off by 0.01 degrees", "", Better::less, Format::count},
-      {"recomputed", "recomputed", "", Better::neither, Format::percent},
-      {"judge", "judge", "", Better::neither, Format::text}};
-  columns.insert(columns.end(), counts.begin(), counts.end());
-  return columns;
-}
-
-std::vector<ValueColumn> accuracy_curve_columns() {
-  constexpr std::array<std::string_view, 11> kept{"pairs",
-                                                  "wrong",
-                                                  "missing",
-                                                  "median_error",
-                                                  "p99_error",
-                                                  "worst_error",
-                                                  "worst_error_or_floor",
-                                                  "worst_distance",
-                                                  "worst_depth",
-                                                  "worst_degrees",
-                                                  "judge"};
-  std::vector<ValueColumn> columns = accuracy_columns();
-  std::erase_if(columns, [&](const ValueColumn& column) {
-    return std::find(kept.begin(), kept.end(), column.name) == kept.end();
-  });
-  return columns;
-}
-
 void add_accuracy_row(Results& results, const std::string& table, Json row,
                       const Accuracy& accuracy, const AccuracyOptions& options) {
   Json figures = figures_of(accuracy);
   for (const char* of : {"error", "distance", "depth", "degrees"}) add_shown(figures, of);
   figures["judge"] = judge_name(options.judge);
   for (const auto& [name, value] : figures.items()) {
-    if (results.column(table, name) != nullptr) row[name] = value;
+    row[name] = value;
   }
   if (!row.contains("command")) row["command"] = accuracy_command(options);
   if (is_peer(accuracy.engine)) row["command"] = with_peers(row["command"]);
@@ -139,9 +90,9 @@ const NarrowTiming* best_peer(const NarrowMeasurement& measured, ContactLevel le
   return best;
 }
 
-/// Adds the row of one engine and returns its id.
-std::string add_timing(Results& results, const NarrowMeasurement& measured,
-                       const NarrowTiming& timing, const std::string& command, PairKeys keys) {
+/// Adds the row of one engine.
+void add_timing(Results& results, const NarrowMeasurement& measured, const NarrowTiming& timing,
+                const std::string& command, PairKeys keys) {
   const bool manifold = timing.level == ContactLevel::manifold;
   Json row{{"kind", measured.kind.name},
            {"level", to_text(timing.level)},
@@ -156,47 +107,17 @@ std::string add_timing(Results& results, const NarrowMeasurement& measured,
   if (timing.level != ContactLevel::boolean) row["other_depth"] = timing.other_depth;
   if (manifold) row["contacts"] = timing.contacts;
   if (keys == PairKeys::settings) row["threads"] = timing.threads;
-  return results.add("narrow_speed", std::move(row));
+  results.add("narrow_speed", std::move(row));
 }
 
 }  // namespace
-
-void declare_pair_times(Results& results, PairKeys keys) {
-  TableSpec speed{"narrow_speed",
-                  "narrow",
-                  "random pairs of shapes, every second one overlaps; one thread",
-                  {"kind", "level", "engine"},
-                  {{"ns", "a pair", "ns", Better::less},
-                   {"right", "right by and large", "", Better::neither, Format::text},
-                   {"pairs", "pairs", "", Better::neither, Format::count},
-                   {"compared", "compared with robust", "", Better::neither, Format::count},
-                   {"disagree", "other verdicts", "", Better::less, Format::count},
-                   {"other_depth", "other depths", "", Better::less, Format::percent},
-                   {"contacts", "contacts an overlapping pair", "", Better::more},
-                   {"recomputed", "recomputed", "", Better::neither, Format::percent}}};
-  TableSpec best{"narrow_best",
-                 "narrow",
-                 "the tier robust against the fastest other library that is right",
-                 {"kind", "level"},
-                 {{"best_peer", "fastest that is right", "", Better::neither, Format::text},
-                  {"speedup", "its time over that of robust", "times", Better::more}}};
-  if (keys == PairKeys::settings) {
-    speed.title = "random pairs of shapes, every second one overlaps";
-    speed.keys = {"kind", "pairs", "level", "engine", "threads"};
-    std::erase_if(speed.values, [](const ValueColumn& one) { return one.name == "pairs"; });
-    best.keys = {"kind", "pairs", "level"};
-  }
-  results.declare(speed);
-  results.declare(best);
-}
 
 NarrowMeasurement add_pair_times(Results& results, const NarrowMeasureOptions& options,
                                  PairKeys keys) {
   NarrowMeasurement measured = measure_narrow(options);
   const std::string command = narrow_command(measured, options);
-  std::map<const NarrowTiming*, std::string> ids;
   for (const NarrowTiming& timing : measured.timings) {
-    ids[&timing] = add_timing(results, measured, timing, command, keys);
+    add_timing(results, measured, timing, command, keys);
   }
   for (const ContactLevel level : options.levels) {
     const NarrowTiming* peer = best_peer(measured, level);
@@ -206,27 +127,11 @@ NarrowMeasurement add_pair_times(Results& results, const NarrowMeasureOptions& o
              {"level", to_text(level)},
              {"best_peer", peer->engine},
              {"speedup", peer->median_ns() / own->median_ns()},
-             {"command", with_peers(command)},
-             {"from", derived("speedup", "ratio", "ns", {ids[peer], ids[own]})}};
+             {"command", with_peers(command)}};
     if (keys == PairKeys::settings) row["pairs"] = measured.pairs;
     results.add("narrow_best", std::move(row));
   }
   return measured;
-}
-
-void declare_pair_errors(Results& results, PairKeys keys) {
-  std::vector<ValueColumn> columns = accuracy_columns();
-  columns.insert(columns.begin(), {"ns", "a pair", "ns", Better::less});
-  TableSpec errors{"narrow_error",
-                   "narrow",
-                   "errors of pairs, half of which are nearly touching, sizes 1:1",
-                   {"kind", "level", "engine"},
-                   std::move(columns)};
-  if (keys == PairKeys::settings) {
-    errors.title = "errors of pairs, half of which are nearly touching";
-    errors.keys = {"kind", "ratio", "gap", "level", "engine"};
-  }
-  results.declare(errors);
 }
 
 void add_pair_errors(Results& results, const AccuracyOptions& options, bool by_gap, PairKeys keys) {
@@ -237,7 +142,7 @@ void add_pair_errors(Results& results, const AccuracyOptions& options, bool by_g
     return row;
   };
   for (const Accuracy& one : measured.engines) {
-    Json row = row_of(one, "all");
+    Json row = row_of(one, nullptr);
     row["ns"] = to_value(one.ns);
     add_accuracy_row(results, "narrow_error", std::move(row), one, options);
   }
@@ -255,11 +160,6 @@ void add_pair_errors(Results& results, const AccuracyOptions& options, bool by_g
                        one.accuracy, options);
     }
   }
-}
-
-void declare_error_curve(Results& results, const std::string& table, const std::string& section,
-                         const std::string& title, const std::vector<std::string>& keys) {
-  results.declare({table, section, title, keys, accuracy_curve_columns()});
 }
 
 void add_error_curve(Results& results, const std::string& table, const Json& keys,

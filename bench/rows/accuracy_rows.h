@@ -20,22 +20,14 @@ enum class PairKeys {
   settings,  ///< also the pairs and threads of a race, or the ratio and gap of errors
 };
 
-/// Declares narrow_speed, and narrow_best: the robust tier against the fastest other library whose
-/// answers are right.
-void declare_pair_times(Results& results, PairKeys keys = PairKeys::kind);
 NarrowMeasurement add_pair_times(Results& results, const NarrowMeasureOptions& options,
                                  PairKeys keys = PairKeys::kind);
 
-/// Declares narrow_error.
-void declare_pair_errors(Results& results, PairKeys keys = PairKeys::kind);
 /// Adds the errors. With `by_gap` it also adds the errors for each power of ten of |distance| over
 /// size: in separate rows if the gap is a key, else at level distance in `narrow_gap`.
 void add_pair_errors(Results& results, const AccuracyOptions& options, bool by_gap,
                      PairKeys keys = PairKeys::kind);
 
-/// Declares a table of error curves, which has few columns and many rows.
-void declare_error_curve(Results& results, const std::string& table, const std::string& section,
-                         const std::string& title, const std::vector<std::string>& keys);
 /// Adds a row of distance errors for each engine; `keys` are the row's keys except the engine.
 void add_error_curve(Results& results, const std::string& table, const Json& keys,
                      const AccuracyOptions& options);

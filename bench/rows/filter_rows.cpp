@@ -7,17 +7,6 @@
 
 namespace winnow::bench {
 
-void declare_filters(Results& results) {
-  results.declare({"filters",
-                   "throughput",
-                   "cost of filters in a query",
-                   {"scene", "objects", "partition", "filters", "question"},
-                   {{"plain_ms", "without filters", "ms", Better::less},
-                    {"filtered_ms", "with filters", "ms", Better::less},
-                    {"over_plain", "with filters over without", "times", Better::less},
-                    {"wrong", "wrong results", "", Better::less, Format::count}}});
-}
-
 void add_filters(Results& results, const NamedScene& scene, std::size_t objects, std::uint64_t seed,
                  const std::vector<std::string>& partitions, std::size_t rounds) {
   const std::size_t count = scene.source(objects, seed)->objects();

@@ -13,9 +13,6 @@ namespace winnow::bench {
 /// The scenes for which the cost of filters is measured.
 inline const std::vector<std::string> kFilterScenes{"uniform", "mixed"};
 
-/// Declares filters: queries on partitions whose objects have filters, compared with partitions
-/// without filters; see FilterRow.
-void declare_filters(Results& results);
 /// Adds the rows, measured on one thread. Throws std::runtime_error after that if an answer was
 /// wrong.
 void add_filters(Results& results, const NamedScene& scene, std::size_t objects, std::uint64_t seed,

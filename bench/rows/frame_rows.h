@@ -14,10 +14,6 @@ namespace winnow::bench {
 /// can be compared.
 inline constexpr std::size_t kFingerprintFrames = 3;
 
-/// Declares throughput and the tables that are derived from it: throughput_growth, throughput_simd,
-/// throughput_threads, throughput_skipped.
-void declare_frames(Results& results);
-
 /// Runs a race on a scene, whose name and recording are written to the options, and adds a row of
 /// `throughput` for each run, with `only_peers` only for runs of other libraries. Throws
 /// std::runtime_error after that if not all found the same pairs.
@@ -32,14 +28,9 @@ void note_skipped(Results& results, std::size_t objects, const std::vector<std::
 /// threads, and the growth of the time with size.
 void derive_frames(Results& results, const std::string& scene, std::size_t objects);
 
-/// Declares keys: nanoseconds of operations on keys, in bulk and singly.
-void declare_keys(Results& results);
 void add_key_costs(Results& results, const std::string& partition, std::size_t objects,
                    bool random_order);
 
-/// Declares limits: the fastest partition compared with the time that memory access requires, see
-/// FrameLimit.
-void declare_limits(Results& results);
 /// Adds the row of the fastest partition on one thread among the rows of `throughput` of the active
 /// instruction set; adds nothing if there are no such rows.
 void add_limit(Results& results, const std::string& scene, std::size_t objects);

@@ -5,16 +5,6 @@
 
 namespace winnow::bench {
 
-void declare_kernels(Results& results) {
-  results.declare({"kernels",
-                   "throughput",
-                   "kernels of partitions on cubes that stay in the cache",
-                   {"kernel", "isa"},
-                   {{"ns", "a call", "ns", Better::less},
-                    {"tests_per_us", "tests of a box against a box", "a microsecond", Better::more},
-                    {"pairs", "pairs found", "", Better::neither, Format::count}}});
-}
-
 void add_kernels(Results& results, std::size_t rounds, const std::string& text) {
   for (const KernelTiming& one : race_kernels(rounds, text)) {
     Json row{{"kernel", one.kernel},

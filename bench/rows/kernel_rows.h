@@ -7,9 +7,6 @@
 
 namespace winnow::bench {
 
-/// Declares kernels.
-void declare_kernels(Results& results);
-
 /// Adds the kernels whose names contain the text, on every instruction set.
 void add_kernels(Results& results, std::size_t rounds, const std::string& text = "");
 

@@ -27,45 +27,6 @@ double share_of(std::size_t part, std::size_t of) {
 
 }  // namespace
 
-void declare_motion(Results& results) {
-  results.declare({"impacts",
-                   "motion",
-                   "times of impact of two moving shapes",
-                   {"kind", "turning", "engine"},
-                   {{"ns", "a pair", "ns", Better::less},
-                    {"over_distance", "times winnow's distance query", "", Better::less},
-                    {"pairs", "pairs", "", Better::neither, Format::count},
-                    {"hits", "of them hit", "", Better::neither, Format::count},
-                    {"missed", "missed", "", Better::less, Format::count},
-                    {"late", "late", "", Better::less, Format::count},
-                    {"loose", "gaps above 1e-6", "", Better::less, Format::count},
-                    {"false_share", "missed or late", "", Better::less, Format::percent},
-                    {"median_gap", "median gap", "of the radius", Better::less, Format::tiny},
-                    {"worst_gap", "worst gap", "of the radius", Better::less, Format::tiny},
-                    {"worst_gap_or_floor", "worst gap, at least 1e-12", "of the radius",
-                     Better::less, Format::tiny}}});
-  results.declare({"feature_impacts",
-                   "motion",
-                   "times of impact of two features of meshes",
-                   {"features", "steps"},
-                   {{"ns", "a pair", "ns", Better::less},
-                    {"pairs", "pairs", "", Better::neither, Format::count},
-                    {"hits", "impacts", "", Better::neither, Format::count},
-                    {"missed", "missed or late", "", Better::less, Format::count},
-                    {"invented", "invented", "", Better::less, Format::count}}});
-  results.declare({"swept_scenes",
-                   "motion",
-                   "a heap of which some bodies are fast: first impacts beside contacts",
-                   {"bodies", "fast", "threads"},
-                   {{"collide_ms", "contacts", "ms", Better::less},
-                    {"sweep_ms", "impacts of the fast bodies", "ms", Better::less},
-                    {"all_ms", "the same while the others jitter", "ms", Better::less},
-                    {"over_collide", "impacts over contacts", "", Better::less},
-                    {"all_over_collide", "the same while the others jitter", "", Better::less},
-                    {"pairs", "pairs tested", "", Better::neither, Format::count},
-                    {"impacts", "impacts", "", Better::neither, Format::count}}});
-}
-
 ImpactMeasurement add_impacts(Results& results, const ImpactRaceOptions& options) {
   ImpactMeasurement measured = measure_impacts(options);
   const double distance_ns = median_of(measured.distance_ns);

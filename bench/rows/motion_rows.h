@@ -9,9 +9,6 @@ namespace winnow::bench {
 
 // Continuous collision detection: times of impact of moving shapes, features and scenes.
 
-/// Declares impacts, feature_impacts and swept_scenes.
-void declare_motion(Results& results);
-
 /// Runs a race on moving pairs of one kind.
 ImpactMeasurement add_impacts(Results& results, const ImpactRaceOptions& options);
 

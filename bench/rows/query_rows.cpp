@@ -40,26 +40,6 @@ Json query_row_of(const QueryRun& run) {
 
 }  // namespace
 
-void declare_queries(Results& results) {
-  results.declare({"queries",
-                   "queries",
-                   "queries of the objects of a scene",
-                   {"scene", "objects", "set", "engine", "asked", "threads"},
-                   {{"ns", "time", "ns/query", Better::less},
-                    {"found", "objects found", "a query", Better::neither},
-                    {"kind", "kind", "", Better::neither, Format::text},
-                    {"questions", "queries", "", Better::neither, Format::count},
-                    {"wrong", "wrong results", "", Better::less, Format::count},
-                    {"undecided", "undecided in float", "", Better::neither, Format::count},
-                    {"fingerprint", "results", "", Better::neither, Format::text}}});
-  results.declare({"frusta",
-                   "queries",
-                   "a frustum beside reading every box",
-                   {"objects", "set", "engine"},
-                   {{"ms", "a frustum", "ms", Better::less},
-                    {"found", "objects found", "a frustum", Better::neither}}});
-}
-
 QueryMeasurement add_queries(Results& results, const NamedScene& scene,
                              QueryMeasureOptions options) {
   options.scene = scene.argument;

@@ -8,9 +8,6 @@
 
 namespace winnow::bench {
 
-/// Declares queries and frusta.
-void declare_queries(Results& results);
-
 /// Runs a race of queries on the first frame of a scene, whose name and recording are written to
 /// the options, and adds a row for each run that returned answers. Throws std::runtime_error after
 /// that if a query was refused or not all engines found the same.

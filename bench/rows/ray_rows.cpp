@@ -10,22 +10,6 @@ const char* name_of(RayQueryType query_type) {
 
 }  // namespace
 
-void declare_mesh_rays(Results& results) {
-  results.declare(
-      {"mesh_rays",
-       "pipeline",
-       "rays through a mesh",
-       {"mesh", "triangles", "want", "asking", "engine"},
-       {{"ns", "a ray", "ns", Better::less},
-        {"hits", "rays that hit it", "", Better::neither, Format::count},
-        {"differ", "rays with another result than winnow's", "", Better::neither, Format::count}}});
-  results.declare({"ray_meshes",
-                   "pipeline",
-                   "meshes that rays are taken through",
-                   {"mesh", "triangles"},
-                   {{"bytes_per_triangle", "memory", "bytes/triangle", Better::less}}});
-}
-
 RayMeasurement add_mesh_rays(Results& results, const RayRaceOptions& options) {
   RayMeasurement measured = measure_rays(options);
   const Json mesh{{"mesh", options.mesh}, {"triangles", options.triangles}};

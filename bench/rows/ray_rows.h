@@ -5,9 +5,6 @@
 
 namespace winnow::bench {
 
-/// Declares mesh_rays and ray_meshes.
-void declare_mesh_rays(Results& results);
-
 /// Runs a race of ray casts against a mesh.
 RayMeasurement add_mesh_rays(Results& results, const RayRaceOptions& options);
 

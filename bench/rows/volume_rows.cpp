@@ -8,22 +8,6 @@
 namespace winnow::bench {
 namespace {
 
-std::vector<ValueColumn> volume_values() {
-  return {{"reported", "reported pairs", "a frame", Better::less, Format::count},
-          {"overlapping", "of them overlap", "a frame", Better::neither, Format::count},
-          {"missed", "missed pairs", "", Better::less, Format::count},
-          {"false_positives", "false positives", "", Better::less, Format::percent},
-          {"make_ms", "making the volumes", "ms", Better::less},
-          {"broad_ms", "broad phase", "ms", Better::less},
-          {"narrow_ms", "exact test", "ms", Better::less},
-          {"found_ms", "making and broad phase", "ms", Better::less},
-          {"sum_ms", "all three", "ms", Better::less},
-          {"pays_from_ns", "pays if a test costs", "ns", Better::less},
-          {"bytes_per_object", "memory", "bytes/object", Better::less},
-          {"frames", "frames", "", Better::neither, Format::count},
-          {"fingerprint", "overlapping pairs", "", Better::neither, Format::text}};
-}
-
 Json volume_row_of(const VolumeRow& row, const VolumeRow& boxes) {
   const std::size_t frames = row.broad.size();
   Json values{{"volume", row.volume},
@@ -57,19 +41,6 @@ std::string volumes_command(const VolumeRowOptions& options, double step) {
 }
 
 }  // namespace
-
-void declare_volumes(Results& results) {
-  results.declare({"volumes",
-                   "volumes",
-                   "a frame with volumes of one kind",
-                   {"objects_are", "objects", "step", "partition", "volume"},
-                   volume_values()});
-  results.declare({"margins",
-                   "volumes",
-                   "a frame of rotated cubes with a margin about their boxes",
-                   {"objects", "step", "partition", "volume"},
-                   volume_values()});
-}
 
 void add_volumes(Results& results, const VolumeRowOptions& options, const std::string& table) {
   VolumeSetting made =

@@ -24,9 +24,6 @@ struct VolumeRowOptions {
   std::size_t frames = 9;
 };
 
-/// Declares volumes and margins.
-void declare_volumes(Results& results);
-
 /// Adds a row for each volume; `margins` gets only rows of boxes. Throws std::runtime_error after
 /// that if a volume missed overlapping pairs.
 void add_volumes(Results& results, const VolumeRowOptions& options,
