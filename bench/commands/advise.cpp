@@ -59,7 +59,6 @@ void Advise::measure() {
         scene.is_recording() ? std::min(scene.recording->frames.size(), kMaxFrames) : kAdviceFrames;
   }
   plan(1);
-  declare_advice(results);
   Advice advice;
   step(scene.name, [&] {
     advice = add_advice(results, scene, count, target_.seed.value_or(1), partitions.taken, frames_,

@@ -41,9 +41,6 @@ void add_micro(CLI::App& app);
 void add_scenes(CLI::App& app);
 
 // Subcommands of `winnow dev`.
-void add_compare(CLI::App& app);
-void add_goals(CLI::App& app);
-void add_results(CLI::App& app);
 void add_fit(CLI::App& app);
 void add_trust(CLI::App& app);
 /// Adds the commands that only measure rows.

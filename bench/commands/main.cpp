@@ -94,9 +94,6 @@ void add_commands(CLI::App& app) {
   CLI::App& dev = *app.add_subcommand(kDev,
                                       "Measures single parts, and checks winnow and its "
                                       "documents: `winnow dev --help` lists the commands");
-  add_compare(dev);
-  add_goals(dev);
-  add_results(dev);
   add_fit(dev);
   add_trust(dev);
   add_measurements(dev);

@@ -85,7 +85,6 @@ class Throughput final : public ScenesCommand {
           "--yardstick: this tool was built without it; set the CMake variable WINNOW_YARDSTICK to "
           "the folder of the prototype");
     }
-    declare_frames(results);
     measure_all();
     print("throughput", {"frame_ms", "update_ms", "worst_ms", "first_ms", "pairs", "pairs_per_s",
                          "bytes_per_object", "core_distance_ns", "frames", "fingerprint"});
@@ -121,7 +120,7 @@ struct PartitionMeasurement {
                                  std::uint64_t seed, const std::vector<std::string>& partitions,
                                  int threads, std::size_t count)>;
 
-  void (*declare)(Results&);
+  void (*prepare)() = nullptr;  ///< null: nothing
   Add add;
   std::vector<std::string> scenes;
   std::vector<int> threads;
@@ -151,7 +150,7 @@ class MeasurePartitions final : public ScenesCommand {
 
  private:
   void measure() override {
-    measurement_.declare(results);
+    if (measurement_.prepare != nullptr) measurement_.prepare();
     measure_all();
     print(measurement_.tables.front(), measurement_.values);
     for (std::size_t i = 1; i < measurement_.tables.size(); ++i) print(measurement_.tables[i]);
@@ -189,7 +188,6 @@ class Pipeline final : public RowsCommand {
  private:
   void measure() override {
     plan(2 * scenes_.size() * levels_.size());
-    declare_scenes(results, true);
     for (const std::string& scene : scenes_) {
       if (costs_) {
         step(scene, [&] { measure_costs(scene); });
@@ -247,8 +245,7 @@ void add_measurements(CLI::App& app) {
       app, "cold",
       "Measures first frames of new partitions: insertion, build, all pairs, and the yardstick",
       "Memory was written before, or not.",
-      PartitionMeasurement{.declare = declare_cold,
-                           .add = [](auto&&... of) { add_cold(of...); },
+      PartitionMeasurement{.add = [](auto&&... of) { add_cold(of...); },
                            .scenes = kColdScenes,
                            .threads = usual_threads(),
                            .count_option = "--rounds",
@@ -262,8 +259,7 @@ void add_measurements(CLI::App& app) {
       app, "hosts",
       "Measures partitions whose tasks run on a thread pool (a JobSystem) and on oneTBB, in turns",
       "",
-      PartitionMeasurement{.declare = declare_hosts,
-                           .add = [](auto&&... of) { add_hosts(of...); },
+      PartitionMeasurement{.add = [](auto&&... of) { add_hosts(of...); },
                            .scenes = {"uniform", "mixed"},
                            .threads = {2},
                            .count_option = "--frames",
@@ -275,11 +271,7 @@ void add_measurements(CLI::App& app) {
       app, "footprint", "Measures bytes per object by purpose",
       "The bytes are checked against the allocated memory and the resident set of the process.",
       PartitionMeasurement{
-          .declare =
-              [](Results& results) {
-                declare_memory(results);
-                keep_resident_set_exact();
-              },
+          .prepare = keep_resident_set_exact,
           .add =
               [](Results& results, const NamedScene& scene, std::size_t objects, std::uint64_t seed,
                  const std::vector<std::string>& partitions, int threads, std::size_t) {

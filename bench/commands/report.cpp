@@ -1,8 +1,9 @@
 #include "bench/report/report.h"
 #include "bench/commands/command.h"
 #include "bench/commands/options.h"
-#include "bench/report/markdown.h"
+#include "bench/common/json.h"
 #include "bench/rows/machine.h"
+#include "bench/rows/print.h"
 #include "bench/scenes/scene.h"
 
 #include <algorithm>
@@ -24,7 +25,7 @@ struct ReportCommand {
   bool million = false;
   bool quick = false;
   bool no_peers = false;
-  std::string from;
+  std::vector<std::string> from;
   std::string out = "winnow-report";
 
   void add_options(CLI::App& app);
@@ -32,7 +33,7 @@ struct ReportCommand {
 
  private:
   [[nodiscard]] ReportOptions options() const;
-  [[nodiscard]] std::vector<const ReportSection*> sections() const;
+  [[nodiscard]] Json merged() const;
   void note_settings(const ReportOptions& options, Results& results) const;
 };
 
@@ -43,22 +44,23 @@ void sort_once(std::vector<T>& values) {
 }
 
 void ReportCommand::add_options(CLI::App& app) {
-  option(app, "--out", out,
-         "Folder for index.html, results.json and CSV files; created if missing");
+  option(app, "--out", out, "Folder for index.html and results.json; created if missing");
   option(app, "--scene", scenes,
          "Scenes, or files of recordings (.aabbs or .winnow, also compressed as .xz)");
   add_objects_option(app, objects, "Numbers of objects");
   add_threads_option(app, threads, "Numbers of threads");
   add_seed_option(app, seed);
   add_isa_option(app, isa);
-  std::vector<std::string> ids;
-  for (const ReportSection& section : report_sections()) ids.emplace_back(section.id);
-  one_of(app, "--section", section_ids, ids, "Sections");
+  one_of(app, "--section", section_ids, report_sections(),
+         "Sections (default: all but goals, whose rows only bench/run goals needs)");
   app.add_flag("--million", million, "Also measure 1,000,000 objects");
   app.add_flag("--quick", quick,
                "Measure small scenes in seconds, with unreliable times: a preview");
   app.add_flag("--no-peers", no_peers, "Do not measure other libraries");
-  option(app, "--from", from, "Measure nothing: write the page and CSV files of this results.json");
+  option(
+      app, "--from", from,
+      "Measure nothing: write the report of the rows of these files (results.json, or results of "
+      "Google Benchmark); the first one's context remains");
 }
 
 ReportOptions ReportCommand::options() const {
@@ -84,33 +86,41 @@ ReportOptions ReportCommand::options() const {
   return options;
 }
 
-std::vector<const ReportSection*> ReportCommand::sections() const {
-  std::vector<const ReportSection*> chosen;
-  for (const ReportSection& section : report_sections()) {
-    const bool is_selected =
-        std::find(section_ids.begin(), section_ids.end(), section.id) != section_ids.end();
-    if (is_selected || section_ids.empty()) chosen.push_back(&section);
+/// Joins the rows of files. Throws ArgumentError if a file has none.
+Json ReportCommand::merged() const {
+  Json document;
+  for (const std::string& path : from) {
+    Json one = read_json(path);
+    if (!member(one, "benchmarks").is_array() || !member(one, "context").is_object()) {
+      throw ArgumentError(path + ": there are no \"context\" and \"benchmarks\" in it");
+    }
+    if (document.is_null()) {
+      document = std::move(one);
+      continue;
+    }
+    Json& rows = document["benchmarks"];
+    rows.insert(rows.end(), one["benchmarks"].begin(), one["benchmarks"].end());
   }
-  return chosen;
+  return document;
 }
 
 void ReportCommand::note_settings(const ReportOptions& options, Results& results) const {
   Json names = Json::array();
   for (const NamedScene& scene : options.scenes) names.push_back(scene.name);
-  results.document()["settings"] = {{"scenes", names},
-                                    {"objects", options.objects},
-                                    {"threads", options.threads},
-                                    {"seed", options.seed},
-                                    {"quick", quick},
-                                    {"other_libraries", options.peers}};
+  results.context()["settings"] = {{"scenes", names},
+                                   {"objects", options.objects},
+                                   {"threads", options.threads},
+                                   {"seed", options.seed},
+                                   {"quick", quick},
+                                   {"other_libraries", options.peers}};
   if (no_peers) {
-    results.document()["missing"].push_back("Other libraries were left out (--no-peers).");
+    results.context()["missing"].push_back("Other libraries were left out (--no-peers).");
     return;
   }
   for (const MissingPeer& peer : missing_peers()) {
-    results.document()["missing"].push_back("Not measured against " + peer.name +
-                                            ", which is not installed (Debian: " + peer.package +
-                                            ", or all of them: bench/run --with-peers report).");
+    results.context()["missing"].push_back("Not measured against " + peer.name +
+                                           ", which is not installed (Debian: " + peer.package +
+                                           ", or all of them: bench/run --with-peers report).");
   }
 }
 
@@ -118,25 +128,27 @@ int ReportCommand::run() {
   choose_isa(isa);
   if (out.empty()) throw ArgumentError("--out: a folder is needed");
   if (!from.empty()) {
-    Results results = read_results(from);
-    try {
-      write_report(out, results);
-    } catch (const Json::exception& error) {
-      throw ArgumentError("--from: " + from + ": " + error.what());
-    }
+    write_report(out, merged());
     std::cout << out << "/index.html\n";
     return kDone;
   }
   const ReportOptions chosen = options();
   Results results;
-  results.document()["machine"] = machine_facts();
+  results.context() = machine_facts();
+  for (const char* notes : {"missing", "warnings", "problems"}) {
+    results.context()[notes] = Json::array();
+  }
   note_settings(chosen, results);
-  const bool complete = make_report(out, chosen, sections(), results);
-  print_summary(results);
+  const bool complete = make_report(out, chosen, report_steps(chosen, section_ids), results);
+  print_rows(std::cout, results, "hard_cases_all");
+  print_rows(std::cout, results, "advice", {"take", "next", "next_over_best", "auto_over_best"});
+  for (const char* notes : {"missing", "warnings", "problems"}) {
+    for (const Json& one : results.context()[notes]) std::cout << one.get<std::string>() << '\n';
+  }
   std::cout << out << "/index.html: open it in a browser"
             << (complete ? "" : "; it contains the measurements up to the interruption") << '\n';
   if (!complete) return kInterrupted;
-  return results.document()["problems"].empty() ? kDone : kFailed;
+  return results.context()["problems"].empty() ? kDone : kFailed;
 }
 
 }  // namespace

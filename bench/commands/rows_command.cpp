@@ -2,6 +2,7 @@
 
 #include "bench/commands/options.h"
 #include "bench/common/json.h"
+#include "bench/rows/machine.h"
 #include "bench/rows/print.h"
 
 #include <exception>
@@ -35,8 +36,9 @@ void RowsCommand::step(const std::string& what, const std::function<void()>& mea
   }
 }
 
-Json RowsCommand::document() const {
-  return all_rows_of(results);
+Json RowsCommand::document() {
+  results.context() = machine_facts();
+  return results.document();
 }
 
 void RowsCommand::print(const std::string& table, const std::vector<std::string>& values) {

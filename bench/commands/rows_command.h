@@ -37,8 +37,8 @@ class RowsCommand {
   /// Prints the rows of a table, with all values or the named ones.
   void print(const std::string& table, const std::vector<std::string>& values = {});
 
-  /// The document written by --json; by default all rows.
-  [[nodiscard]] virtual Json document() const;
+  /// The document written by --json; by default all rows, and the facts of the machine.
+  [[nodiscard]] virtual Json document();
   [[nodiscard]] bool is_written() const noexcept { return !json_.empty(); }
   /// Makes the command end with kFailed.
   void fail() noexcept { failed_ = true; }

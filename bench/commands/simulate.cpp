@@ -8,10 +8,11 @@
 #include "bench/common/arena.h"
 #include "bench/common/table.h"
 #include "bench/measure/fingerprint.h"
+#include "bench/pages/page.h"
 #include "bench/recordings/recording.h"
-#include "bench/report/page.h"
 #include "bench/rows/barrier_rows.h"
 #include "bench/rows/flow_rows.h"
+#include "bench/rows/machine.h"
 #include "bench/rows/standing_rows.h"
 #include "bench/simulation/mesh_files.h"
 
@@ -99,7 +100,6 @@ class Simulate final : public RowsCommand {
   void measure_standing();
   void measure_barriers();
   [[nodiscard]] FlowFacts facts(const FlowRun& run) const;
-  void write_flow_page(const FlowFacts& facts) const;
 
   FlowRowOptions options_{.objects = 10'000, .steps = 2'000, .threads = usual_threads().back()};
   std::string mesh_;
@@ -173,18 +173,8 @@ FlowFacts Simulate::facts(const FlowRun& run) const {
   return facts;
 }
 
-void Simulate::write_flow_page(const FlowFacts& facts) const {
-  const PageParts page = section_parts(results, section_of("pipeline"));
-  Json shown_facts = Json::object();
-  for (const auto& [what, much] : facts) shown_facts[what] = much;
-  write_plot_page(out_, "winnow simulate",
-                  "<h1>Granular flow</h1>\n" + facts_table("run", shown_facts) + page.html,
-                  page.plots);
-}
-
 // Measures each structure twice: with the manifolds of all parts, and with one manifold per region.
 void Simulate::measure_standing() {
-  declare_standing(results);
   std::vector<std::string> names{standing_};
   if (standing_ == kAll) names = standing_names();
   plan(2 * names.size());
@@ -203,7 +193,6 @@ void Simulate::measure_standing() {
 }
 
 void Simulate::measure_barriers() {
-  declare_barriers(results);
   std::vector<std::string> names{barrier_};
   if (barrier_ == kAll) names = barrier_names();
   plan(names.size());
@@ -229,8 +218,6 @@ void Simulate::measure() {
     measure_barriers();
     return;
   }
-  declare_flows(results);
-  declare_flow_checks(results);
   FlowOptions options = flow_options(options_);
   if (!mesh_.empty()) {
     try {
@@ -258,7 +245,10 @@ void Simulate::measure() {
     print("phases");
     const FlowFacts all = facts(run);
     for (const auto& [what, much] : all) std::cout << what << ": " << much << '\n';
-    if (!out_.empty()) write_flow_page(all);
+    if (!out_.empty()) {
+      results.context() = machine_facts();
+      write_page(out_, kResultsPage, results.document());
+    }
     if (run.faults().total() != 0 || run.history().greatest_rise() >= kMaxRise) fail();
   });
 }

@@ -3,8 +3,8 @@
 #include "bench/common/json.h"
 #include "bench/common/table.h"
 #include "bench/contenders/partitions.h"
-#include "bench/draw/page.h"
 #include "bench/draw/picture.h"
+#include "bench/pages/page.h"
 #include "bench/recordings/recording.h"
 
 #include <algorithm>
@@ -85,7 +85,7 @@ int View::run() {
                         grouped(most) + " objects");
   }
   const Json pictures = draw_frames(scene, *source);
-  const std::size_t bytes = write_page(out, pictures);
+  const std::size_t bytes = write_page(out, kDrawPage, pictures);
   Json counts = pictures.front()["counts"];
   if (pictures.size() > 1) counts["frames"] = pictures.size();
   Table table({"in the picture", "number"});

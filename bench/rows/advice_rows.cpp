@@ -25,7 +25,7 @@ struct AdvicePlace {
   Json keys;
   std::string command;
 
-  std::string add_ranked(Results& results, const Advised& one) const {
+  void add_ranked(Results& results, const Advised& one) const {
     Json row = keys;
     row["partition"] = one.partition;
     row["frame_ms"] = to_value(one.settled);
@@ -33,71 +33,38 @@ struct AdvicePlace {
     row["bytes_per_object"] = static_cast<double>(one.bytes) / keys["objects"].get<double>();
     row["why"] = one.why;
     row["command"] = command;
-    return results.add("advice_ranking", std::move(row));
+    results.add("advice_ranking", std::move(row));
   }
 };
 
 void add_ranking(Results& results, const AdvicePlace& place, const Advice& advice) {
   const Advised* next = next_best(advice);
   Json row = place.keys;
-  row["take"] = advice.best().partition;
+  row["take"] = word_of(advice.best().partition);
   row["moving"] = advice.moving;
   row["pairs_per_object"] = advice.pairs / static_cast<double>(advice.objects);
   row["why"] = advice.best().why;
   row["code"] = advice.code();
   row["command"] = place.command;
-  std::string best_id;
-  std::string next_id;
-  std::string auto_id;
+  bool has_chooser = false;
   for (const Advised& one : advice.ranking) {
-    const std::string id = place.add_ranked(results, one);
-    if (&one == &advice.best()) best_id = id;
-    if (&one == next) next_id = id;
+    place.add_ranked(results, one);
     if (one.partition != kChooser) continue;
-    auto_id = id;
+    has_chooser = true;
     row["auto_over_best"] = one.times_best;
   }
-  Json from = Json::array();
   if (next != nullptr) {
-    row["next"] = next->partition;
+    row["next"] = word_of(next->partition);
     row["next_over_best"] = next->times_best;
-    from.push_back(derived("next_over_best", "ratio", "frame_ms", {next_id, best_id}));
   }
-  if (!auto_id.empty()) {
-    row["auto_holds"] = advice.chosen;
+  if (has_chooser) {
+    row["auto_holds"] = word_of(advice.chosen);
     row["auto_why"] = advice.reason;
-    from.push_back(derived("auto_over_best", "ratio", "frame_ms", {auto_id, best_id}));
   }
-  if (!from.empty()) row["from"] = std::move(from);
   results.add("advice", std::move(row));
 }
 
 }  // namespace
-
-void declare_advice(Results& results) {
-  results.declare({"advice",
-                   "advice",
-                   "which partition to take",
-                   {"scene", "objects", "threads"},
-                   {{"take", "take", "", Better::neither, Format::text},
-                    {"moving", "move in a frame", "", Better::neither, Format::percent},
-                    {"pairs_per_object", "pairs an object", ""},
-                    {"next", "next best", "", Better::neither, Format::text},
-                    {"next_over_best", "next best / best", "times"},
-                    {"auto_holds", "AutoPartition holds", "", Better::neither, Format::text},
-                    {"auto_over_best", "AutoPartition / best", "times", Better::less},
-                    {"why", "why", "", Better::neither, Format::text},
-                    {"auto_why", "why AutoPartition does", "", Better::neither, Format::text},
-                    {"code", "in C++", "", Better::neither, Format::text}}});
-  results.declare({"advice_ranking",
-                   "advice",
-                   "the partitions that were to choose from",
-                   {"scene", "objects", "threads", "partition"},
-                   {{"frame_ms", "frame", "ms", Better::less},
-                    {"first_ms", "first frame", "ms"},
-                    {"bytes_per_object", "memory", "bytes/object"},
-                    {"why", "why", "", Better::neither, Format::text}}});
-}
 
 Advice add_advice(Results& results, const NamedScene& scene, std::size_t objects,
                   std::uint64_t seed, const std::vector<std::string>& partitions,

@@ -11,9 +11,6 @@
 
 namespace winnow::bench {
 
-/// Declares advice and advice_ranking.
-void declare_advice(Results& results);
-
 /// Adds the rows. Throws std::runtime_error after that if not all partitions found the same pairs.
 Advice add_advice(Results& results, const NamedScene& scene, std::size_t objects,
                   std::uint64_t seed, const std::vector<std::string>& partitions,

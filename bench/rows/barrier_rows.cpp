@@ -46,20 +46,6 @@ bool add_row(Results& results, const BarrierRowOptions& row_options, const Simul
 
 }  // namespace
 
-void declare_barriers(Results& results) {
-  results.declare({"barriers",
-                   "motion",
-                   "fast bodies and thin barriers",
-                   {"scene", "objects", "steps"},
-                   {{"ms", "a step", "ms", Better::less},
-                    {"fastest", "longest way in a step", "radii", Better::neither},
-                    {"impacts", "impacts", "", Better::neither, Format::count},
-                    {"passed", "passed through", "", Better::less, Format::count},
-                    {"cut_short", "steps cut short", "", Better::less, Format::count},
-                    {"stretch", "longest edge over its length at rest, less 1", "", Better::less},
-                    {"fingerprint", "all bits", "", Better::neither, Format::text}}});
-}
-
 bool add_barrier(Results& results, const BarrierRowOptions& row_options) {
   const Execution execution =
       row_options.threads == 1 ? Execution::serial() : Execution::parallel();

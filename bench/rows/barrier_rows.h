@@ -18,8 +18,6 @@ struct BarrierRowOptions {
   int threads = 1;
 };
 
-/// Declares barriers.
-void declare_barriers(Results& results);
 /// Runs one simulation and adds its row. Returns false if something tunnelled.
 bool add_barrier(Results& results, const BarrierRowOptions& row_options);
 

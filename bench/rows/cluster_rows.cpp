@@ -101,29 +101,6 @@ void add_run(Results& results, const ClusterRowOptions& options, std::uint32_t r
 
 }  // namespace
 
-void declare_cluster_runs(Results& results) {
-  results.declare({"cluster_runs",
-                   "ranks",
-                   "one scene on many ranks",
-                   {"scene", "objects", "ranks"},
-                   {{"same", "pairs as on one", "", Better::neither, Format::text},
-                    {"pairs", "pairs", "", Better::neither, Format::count},
-                    {"ghosts", "ghosts of each object", "", Better::less, Format::percent},
-                    {"formula", "by the formula", "", Better::neither, Format::percent},
-                    {"sent_bytes", "sent a frame", "bytes", Better::less, Format::count},
-                    {"messages", "messages a frame", "", Better::less, Format::count},
-                    {"imbalance", "most work over mean", "", Better::less},
-                    {"bytes_per_object", "held", "bytes/object", Better::less},
-                    {"fingerprint", "all pairs", "", Better::neither, Format::text}}});
-  results.declare(
-      {"cluster_model",
-       "ranks",
-       "evenly spread objects, by the formula",
-       {"scene", "objects", "ranks"},
-       {{"ghosts", "ghosts of each object", "", Better::neither, Format::percent},
-        {"rank_bytes", "sent by a rank if all moves", "bytes", Better::neither, Format::count}}});
-}
-
 double ghosts_by_formula(double objects, double ranks, double density, double edge) {
   const double side = std::cbrt(objects / ranks / density);
   return std::pow(1.0 + edge / side, 3.0) - 1.0;

@@ -22,8 +22,6 @@ struct ClusterRowOptions {
   bool is_uniform = false;
 };
 
-/// Declares cluster_runs and cluster_model.
-void declare_cluster_runs(Results& results);
 /// Adds the rows. Throws std::runtime_error if a number of ranks finds other pairs than one rank.
 void add_cluster_runs(Results& results, const ClusterRowOptions& options);
 

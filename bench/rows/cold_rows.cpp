@@ -19,24 +19,6 @@ double touched_ms(const ColdRace& race, const std::string& partition) {
 
 }  // namespace
 
-void declare_cold(Results& results) {
-  results.declare({"cold",
-                   "throughput",
-                   "the first frame of a fresh partition",
-                   {"scene", "objects", "partition", "memory", "threads"},
-                   {{"insert_ms", "insert", "ms"},
-                    {"build_ms", "build", "ms"},
-                    {"pairs_ms", "pairs", "ms"},
-                    {"total_ms", "first frame", "ms", Better::less},
-                    {"reserved_ms", "after reserve", "ms", Better::less},
-                    {"ready_ms", "after reserve that touches", "ms", Better::less},
-                    {"reserve_ms", "that reserve", "ms"},
-                    {"pages_ms", "pages of the bytes held", "ms"},
-                    {"over_pages", "beyond touched memory, in these", "times", Better::less},
-                    {"yardstick_ms", "the yardstick's frame", "ms"},
-                    {"over_yardstick", "over the yardstick", "times"}}});
-}
-
 void add_cold(Results& results, const NamedScene& scene, std::size_t objects, std::uint64_t seed,
               const std::vector<std::string>& partitions, int threads, std::size_t rounds,
               bool yardstick) {

@@ -13,8 +13,6 @@ namespace winnow::bench {
 /// The scenes whose first frames are measured.
 inline const std::vector<std::string> kColdScenes{"uniform", "mixed", "clustered"};
 
-/// Declares cold: first frames of new partitions, see ColdRace.
-void declare_cold(Results& results);
 /// Adds the rows of the first frame of a scene.
 void add_cold(Results& results, const NamedScene& scene, std::size_t objects, std::uint64_t seed,
               const std::vector<std::string>& partitions, int threads, std::size_t rounds = 7,

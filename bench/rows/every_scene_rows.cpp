@@ -19,19 +19,6 @@ Spread settled_spread(const Run& run) {
 
 }  // namespace
 
-void declare_every_scene(Results& results) {
-  results.declare({"every_scene",
-                   "throughput",
-                   "the median, the worst and the first frame, once settled",
-                   {"scene", "objects", "partition", "threads"},
-                   {{"median_ms", "median frame", "ms", Better::less},
-                    {"worst_ms", "worst frame", "ms"},
-                    {"first_ms", "first frame", "ms"},
-                    {"worst_ratio", "worst / median", "times"},
-                    {"over_yardstick", "median over the yardstick", "times"},
-                    {"pairs", "pairs", "", Better::neither, Format::count}}});
-}
-
 void add_every_scene(Results& results, const EverySceneOptions& options) {
   const Measurement raced = measure({.scene = options.scene.argument,
                                      .recording = options.scene.recording.get(),

@@ -17,8 +17,6 @@ struct EverySceneOptions {
   std::size_t frames = 61;  ///< including the first one
 };
 
-/// Declares every_scene: the median, worst and first frame of all partitions.
-void declare_every_scene(Results& results);
 /// Adds the rows of all partitions without a size limit. Throws std::runtime_error after that if
 /// not all found the same pairs.
 void add_every_scene(Results& results, const EverySceneOptions& options);

@@ -33,25 +33,18 @@ Json with_keys(const FlowRowOptions& row_options, Json row) {
 
 /// Adds the times of the second half of the flow, when bodies touch each other.
 void add_phases(Results& results, const FlowRowOptions& row_options, const FlowHistory& history) {
-  std::vector<std::pair<Json, std::string>> added;
+  std::vector<Json> added;
   double sum = 0.0;
   for (const FlowPhase& phase : kFlowPhases) {
     Json row = with_keys(row_options,
                          {{"phase", phase.name},
                           {"ms", to_value(history.phase_ms(phase.ms, row_options.steps / 2))}});
     sum += value_of(row, "ms");
-    std::string id = results.add("phases", row);
-    added.emplace_back(std::move(row), std::move(id));
+    added.push_back(std::move(row));
   }
-  for (const auto& [row, id] : added) {
-    std::vector<std::string> from{id};
-    for (const auto& other : added) {
-      if (other.second != id) from.push_back(other.second);
-    }
-    Json with_share = row;
-    with_share["share"] = value_of(row, "ms") / sum;
-    with_share["from"] = derived("share", "share", "ms", from);
-    results.add("phases", std::move(with_share));
+  for (Json& row : added) {
+    row["share"] = value_of(row, "ms") / sum;
+    results.add("phases", std::move(row));
   }
 }
 
@@ -74,49 +67,6 @@ void add_samples(Results& results, const FlowRowOptions& row_options, const Flow
 
 }  // namespace
 
-void declare_flows(Results& results) {
-  results.declare({"phases",
-                   "pipeline",
-                   "phases of a step of the granular flow",
-                   {"shape", "objects", "phase"},
-                   {{"ms", "time", "ms", Better::less},
-                    {"share", "share of a step", "", Better::neither, Format::percent}}});
-  results.declare({"flows",
-                   "pipeline",
-                   "a granular flow as a whole",
-                   {"shape", "objects", "steps"},
-                   {{"rise", "greatest rise of the energy", "of the greatest kinetic energy",
-                     Better::less, Format::tiny},
-                    {"deepest", "deepest penetration", "edges of a body", Better::less},
-                    {"pairs", "touching pairs at the end", "", Better::neither, Format::count},
-                    {"points", "contact points at the end", "", Better::neither, Format::count},
-                    {"fingerprint", "all bodies' bits", "", Better::neither, Format::text}}});
-  results.declare({"flow",
-                   "pipeline",
-                   "steps of the granular flow",
-                   {"shape", "objects", "step"},
-                   {{"seconds", "time", "s"},
-                    {"kinetic", "kinetic", "energy"},
-                    {"potential", "potential", "energy"},
-                    {"elastic", "in contacts", "energy"},
-                    {"balance", "all, without what refilling adds", "energy"},
-                    {"deepest", "deepest penetration", "edges of a body"},
-                    {"pairs", "touching pairs", "", Better::neither, Format::count},
-                    {"points", "contact points", "", Better::neither, Format::count}}});
-}
-
-void declare_flow_checks(Results& results) {
-  results.declare({"flow_checks",
-                   "pipeline",
-                   "memory and contacts of a granular flow",
-                   {"shape", "objects", "steps"},
-                   {{"allocations", "allocations in the second half", ""},
-                    {"steady_allocations", "with no more contacts than ever before", ""},
-                    {"lost", "contacts lost", "", Better::less, Format::count},
-                    {"invented", "contacts invented", "", Better::less, Format::count},
-                    {"doubled", "contacts doubled", "", Better::less, Format::count}}});
-}
-
 FlowOptions flow_options(const FlowRowOptions& row_options) {
   FlowOptions options;
   options.objects = row_options.objects;
@@ -137,7 +87,6 @@ void add_flow(Results& results, const FlowRowOptions& row_options, const FlowRun
                                                {"pairs", last.contacts},
                                                {"points", last.points},
                                                {"fingerprint", to_hex(run.flow().fingerprint())}}));
-  if (results.table("flow_checks") == nullptr) return;
   results.add("flow_checks", {{"shape", row_options.shape},
                               {"objects", row_options.objects},
                               {"steps", run.flow().steps()},

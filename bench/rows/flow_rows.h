@@ -19,11 +19,6 @@ struct FlowRowOptions {
   std::size_t check = 0;  ///< see FlowRun
 };
 
-/// Declares phases, flows and flow (samples of the steps at equal intervals).
-void declare_flows(Results& results);
-/// Declares flow_checks: memory, and a comparison of the contacts with a test of all pairs.
-void declare_flow_checks(Results& results);
-
 [[nodiscard]] FlowOptions flow_options(const FlowRowOptions& row_options);
 /// Adds the rows of a flow that has run, and of its checks if they are declared.
 void add_flow(Results& results, const FlowRowOptions& row_options, const FlowRun& run);

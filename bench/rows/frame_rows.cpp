@@ -30,11 +30,6 @@ std::vector<double> without_first(std::vector<double> values) {
   return values;
 }
 
-std::vector<double> scaled(std::vector<double> values, double factor) {
-  for (double& value : values) value *= factor;
-  return values;
-}
-
 void add_run(Results& results, const NamedScene& scene, const Measurement& measured, const Run& run,
              double distance_ns, std::string command) {
   const std::vector<double> ms = without_first(run.frame_ms);
@@ -46,7 +41,6 @@ void add_run(Results& results, const NamedScene& scene, const Measurement& measu
            {"threads", run.threads},
            {"isa", to_string(run.isa)},
            {"frame_ms", to_value(ms)},
-           {"us_per_object", to_value(scaled(ms, 1e3 / n))},
            {"first_ms", run.frame_ms.front()},
            {"pairs", run.pairs_a_frame()},
            {"pairs_per_s", 1e-3 * run.pairs_a_frame() / median_of(ms)},
@@ -67,7 +61,6 @@ void add_run(Results& results, const NamedScene& scene, const Measurement& measu
 
 /// A copy of a row's members, because adding rows invalidates pointers to rows.
 struct ThroughputTime {
-  std::string id;
   Json objects;
   Json partition;
   Json threads;
@@ -89,8 +82,8 @@ std::vector<ThroughputTime> times_of(const Results& results, const Json& where) 
   for (const Json* row : results.rows("throughput", where)) {
     const double ms = value_of(*row, "frame_ms");
     if (!(ms > 0.0)) continue;
-    times.push_back({(*row)["id"], (*row)["objects"], (*row)["partition"], (*row)["threads"],
-                     (*row)["isa"], row->value("command", ""), ms});
+    times.push_back({(*row)["objects"], (*row)["partition"], (*row)["threads"], (*row)["isa"],
+                     row->value("command", ""), ms});
   }
   return times;
 }
@@ -102,8 +95,8 @@ const ThroughputTime* time_where(const std::vector<ThroughputTime>& times,
 }
 
 /// Returns the narrowest instruction set of this machine that was measured.
-Json narrowest_isa(const Results& results, const std::vector<ThroughputTime>& times) {
-  for (const Json& isa : results.document()["machine"]["isas"]) {
+Json narrowest_isa(const std::vector<ThroughputTime>& times) {
+  for (const std::string& isa : isa_names()) {
     if (time_where(times, [&](const ThroughputTime& one) { return one.isa == isa; })) return isa;
   }
   return nullptr;
@@ -111,21 +104,19 @@ Json narrowest_isa(const Results& results, const std::vector<ThroughputTime>& ti
 
 void derive_simd(Results& results, const std::string& scene,
                  const std::vector<ThroughputTime>& times) {
-  const Json narrowest = narrowest_isa(results, times);
+  const Json narrowest = narrowest_isa(times);
   for (const ThroughputTime& wide : times) {
     const ThroughputTime* narrow = time_where(times, [&](const ThroughputTime& one) {
       return one.isa == narrowest && one.partition == wide.partition && one.threads == wide.threads;
     });
     if (narrow == nullptr || wide.isa == narrowest) continue;
-    results.add("throughput_simd",
-                {{"scene", scene},
-                 {"objects", wide.objects},
-                 {"partition", wide.partition},
-                 {"threads", wide.threads},
-                 {"isa", wide.isa},
-                 {"speedup", narrow->ms / wide.ms},
-                 {"command", throughput_commands({narrow, &wide})},
-                 {"from", derived("speedup", "ratio", "frame_ms", {narrow->id, wide.id})}});
+    results.add("throughput_simd", {{"scene", scene},
+                                    {"objects", wide.objects},
+                                    {"partition", wide.partition},
+                                    {"threads", wide.threads},
+                                    {"isa", wide.isa},
+                                    {"speedup", narrow->ms / wide.ms},
+                                    {"command", throughput_commands({narrow, &wide})}});
   }
 }
 
@@ -136,80 +127,35 @@ void derive_threads(Results& results, const std::string& scene,
       return one.threads == 1 && one.partition == many.partition;
     });
     if (one_thread == nullptr || many.threads == 1) continue;
-    results.add("throughput_threads",
-                {{"scene", scene},
-                 {"objects", many.objects},
-                 {"partition", many.partition},
-                 {"threads", many.threads},
-                 {"speedup", one_thread->ms / many.ms},
-                 {"command", throughput_commands({one_thread, &many})},
-                 {"from", derived("speedup", "ratio", "frame_ms", {one_thread->id, many.id})}});
+    results.add("throughput_threads", {{"scene", scene},
+                                       {"objects", many.objects},
+                                       {"partition", many.partition},
+                                       {"threads", many.threads},
+                                       {"speedup", one_thread->ms / many.ms},
+                                       {"command", throughput_commands({one_thread, &many})}});
   }
 }
 
 void derive_growth(Results& results, const std::string& scene,
                    const std::vector<ThroughputTime>& times) {
   for (const ThroughputTime& first : times) {
-    std::vector<std::string> ids;
     std::vector<const ThroughputTime*> sizes;
     std::vector<GrowthPoint> points;
     for (const ThroughputTime& one : times) {
       if (one.partition != first.partition || one.threads != first.threads) continue;
-      ids.push_back(one.id);
       sizes.push_back(&one);
       points.push_back({one.objects.get<double>(), one.ms});
     }
-    if (ids.size() < 2 || ids.front() != first.id) continue;
+    if (sizes.size() < 2 || sizes.front() != &first) continue;
     results.add("throughput_growth", {{"scene", scene},
                                       {"partition", first.partition},
                                       {"threads", first.threads},
                                       {"exponent", fitted_exponent(points)},
-                                      {"command", throughput_commands(sizes)},
-                                      {"from", derived("exponent", "exponent", "frame_ms", ids)}});
+                                      {"command", throughput_commands(sizes)}});
   }
 }
 
 }  // namespace
-
-void declare_frames(Results& results) {
-  results.declare(
-      {"throughput",
-       "throughput",
-       "a frame of every partition and library",
-       {"scene", "objects", "partition", "threads", "isa"},
-       {{"frame_ms", "frame", "ms", Better::less},
-        {"us_per_object", "frame", "us/object"},
-        {"update_ms", "of it update", "ms"},
-        {"update_share", "share of the update", "", Better::neither, Format::percent},
-        {"worst_ms", "worst frame", "ms"},
-        {"first_ms", "first frame", "ms", Better::less},
-        {"pairs", "pairs", "", Better::neither, Format::count},
-        {"pairs_per_s", "pairs", "million/s", Better::more},
-        {"bytes_per_object", "memory", "bytes/object", Better::less},
-        {"frames", "frames", "", Better::neither, Format::count},
-        {"core_distance_ns", "from core to core", "ns"},
-        {"fingerprint", "pairs of the first 3 frames", "", Better::neither, Format::text}}});
-  results.declare({"throughput_growth",
-                   "throughput",
-                   "exponents of growth: time = a * objects^exponent",
-                   {"scene", "partition", "threads"},
-                   {{"exponent", "exponent", "", Better::less}}});
-  results.declare({"throughput_simd",
-                   "throughput",
-                   "speedup by wider instruction sets",
-                   {"scene", "objects", "partition", "threads", "isa"},
-                   {{"speedup", "speedup", "times", Better::more}}});
-  results.declare({"throughput_threads",
-                   "throughput",
-                   "speedup by threads",
-                   {"scene", "objects", "partition", "threads"},
-                   {{"speedup", "speedup", "times", Better::more}}});
-  results.declare({"throughput_skipped",
-                   "throughput",
-                   "skipped partitions, and the reason",
-                   {"objects", "skipped"},
-                   {}});
-}
 
 Measurement add_frame_race(Results& results, const NamedScene& scene, MeasureOptions options,
                            bool only_peers) {
@@ -255,27 +201,13 @@ void note_skipped(Results& results, std::size_t objects, const std::vector<std::
 }
 
 void derive_frames(Results& results, const std::string& scene, std::size_t objects) {
-  const Json isa = results.document()["machine"]["isa"];
+  const Json isa = isa_name();
   derive_simd(results, scene, times_of(results, {{"scene", scene}, {"objects", objects}}));
   derive_threads(results, scene,
                  times_of(results, {{"scene", scene}, {"objects", objects}, {"isa", isa}}));
   derive_growth(results, scene, times_of(results, {{"scene", scene}, {"isa", isa}}));
 }
 
-void declare_limits(Results& results) {
-  results.declare(
-      {"limits",
-       "throughput",
-       "a frame over the time of its memory accesses if everything moves and nothing is kept",
-       {"scene", "objects"},
-       {{"bandwidth_ms", "boxes read, written, read", "ms"},
-        {"sort_ms", "a key each sorted", "ms"},
-        {"permute_ms", "boxes fetched in another order", "ms"},
-        {"emission_ms", "pairs written", "ms"},
-        {"limit_ms", "all four", "ms"},
-        {"partition", "best partition", "", Better::neither, Format::text},
-        {"frame_ms", "its frame", "ms", Better::less},
-        {"ratio", "frame / all four", "times", Better::less}}});
 }
 
 void add_limit(Results& results, const std::string& scene, std::size_t objects) {
@@ -297,7 +229,7 @@ void add_limit(Results& results, const std::string& scene, std::size_t objects) 
                          {"permute_ms", limit.permute},
                          {"emission_ms", limit.emission},
                          {"limit_ms", limit.total()},
-                         {"partition", (*best)["partition"]},
+                         {"partition", word_of((*best)["partition"].get<std::string>())},
                          {"frame_ms", ms},
                          {"ratio", ms / limit.total()},
                          {"command", "bench/run report --section throughput"}});

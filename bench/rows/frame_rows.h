@@ -14,10 +14,6 @@ namespace winnow::bench {
 /// can be compared.
 inline constexpr std::size_t kFingerprintFrames = 3;
 
-/// Declares throughput and the tables that are derived from it: throughput_growth, throughput_simd,
-/// throughput_threads, throughput_skipped.
-void declare_frames(Results& results);
-
 /// Runs a race on a scene, whose name and recording are written to the options, and adds a row of
 /// `throughput` for each run, with `only_peers` only for runs of other libraries. Throws
 /// std::runtime_error after that if not all found the same pairs.
@@ -32,9 +28,6 @@ void note_skipped(Results& results, std::size_t objects, const std::vector<std::
 /// threads, and the growth of the time with size.
 void derive_frames(Results& results, const std::string& scene, std::size_t objects);
 
-/// Declares limits: the fastest partition compared with the time that memory access requires, see
-/// FrameLimit.
-void declare_limits(Results& results);
 /// Adds the row of the fastest partition on one thread among the rows of `throughput` of the active
 /// instruction set; adds nothing if there are no such rows.
 void add_limit(Results& results, const std::string& scene, std::size_t objects);

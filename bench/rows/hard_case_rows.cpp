@@ -202,26 +202,6 @@ std::vector<HardCaseTally> judge_hard_cases(const Json& questions, bool peers) {
 
 }  // namespace
 
-void declare_hard_cases(Results& results) {
-  results.declare({"hard_cases",
-                   "stability",
-                   "cases whose results were derived by reasoning",
-                   {"family", "engine"},
-                   {{"right", "right", "cases", Better::more, Format::count},
-                    {"wrong", "wrong", "cases", Better::less, Format::count},
-                    {"wrong_verdicts", "of them verdicts", "cases", Better::less, Format::count},
-                    {"not_taken", "not taken", "cases", Better::neither, Format::count},
-                    {"worst_error", "worst error", "of the size", Better::less, Format::tiny},
-                    {"worst_over_allowed", "worst error over the allowed error", "times",
-                     Better::less, Format::tiny},
-                    {"faults", "faults", "", Better::neither, Format::text}}});
-  results.declare({"hard_cases_all",
-                   "stability",
-                   "hard cases of all families",
-                   {"engine", "answer"},
-                   {{"cases", "cases", "", Better::neither, Format::count}}});
-}
-
 void add_hard_cases(Results& results, const std::string& family, const Json& questions,
                     bool peers) {
   const std::string command = "bench/run query tests/hard_cases/" + family + ".json --judge";
@@ -248,15 +228,10 @@ void add_hard_case_totals(Results& results) {
          {"not_taken", "not taken"}}};
     for (const auto& [value, name] : answers) {
       double sum = 0.0;
-      std::vector<std::string> ids;
       for (const Json* row : results.rows("hard_cases", {{"engine", engine}})) {
         sum += value_of(*row, value);
-        ids.push_back((*row)["id"]);
       }
-      results.add("hard_cases_all", {{"engine", engine},
-                                     {"answer", name},
-                                     {"cases", sum},
-                                     {"from", derived("cases", "sum", value, ids)}});
+      results.add("hard_cases_all", {{"engine", engine}, {"answer", name}, {"cases", sum}});
     }
   }
 }

@@ -6,9 +6,6 @@
 
 namespace winnow::bench {
 
-/// Declares hard_cases, and hard_cases_all with its sums.
-void declare_hard_cases(Results& results);
-
 /// Adds the results of winnow's tiers, each with its guaranteed error, and of other libraries, with
 /// an allowed error of 1e-4 of the size, for the cases of a family. Other libraries get no
 /// roundings, rays or bad input. libccd starts from the shapes' origins and therefore gets only

@@ -6,16 +6,6 @@
 
 namespace winnow::bench {
 
-void declare_hosts(Results& results) {
-  results.declare({"hosts",
-                   "throughput",
-                   "frames on a program's own threads",
-                   {"scene", "objects", "partition", "threads"},
-                   {{"arena_ms", "oneTBB", "ms", Better::less},
-                    {"pool_ms", "a plain pool", "ms", Better::less},
-                    {"over_arena", "the pool over oneTBB", "times", Better::less}}});
-}
-
 void add_hosts(Results& results, const NamedScene& scene, std::size_t objects, std::uint64_t seed,
                const std::vector<std::string>& partitions, int threads, std::size_t frames) {
   for (const std::string& partition : partitions) {

@@ -10,8 +10,6 @@
 
 namespace winnow::bench {
 
-/// Declares hosts: frames on a program's own threads compared with oneTBB, see HostRace.
-void declare_hosts(Results& results);
 void add_hosts(Results& results, const NamedScene& scene, std::size_t objects, std::uint64_t seed,
                const std::vector<std::string>& partitions, int threads, std::size_t frames = 101);
 

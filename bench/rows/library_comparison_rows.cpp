@@ -54,18 +54,6 @@ const Run* best_of(const Measurement& raced, int threads, const JudgedFrames& fr
 
 }  // namespace
 
-void declare_beside_peers(Results& results) {
-  results.declare({"beside_peers",
-                   "throughput",
-                   "other libraries over the best partition, in the frames that both ran",
-                   {"scene", "objects", "partition", "threads", "of"},
-                   {{"times", "over the best", "times", Better::more},
-                    {"ms", "frame", "ms"},
-                    {"best_ms", "frame of the best", "ms"},
-                    {"best", "best", "", Better::neither, Format::text},
-                    {"frames", "frames", "", Better::neither, Format::count}}});
-}
-
 Measurement add_beside_peers(Results& results, const NamedScene& scene, MeasureOptions options) {
   options.scene = scene.argument;
   options.recording = scene.recording.get();

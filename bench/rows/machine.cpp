@@ -64,8 +64,10 @@ Json machine_facts() {
   const long pages = sysconf(_SC_PHYS_PAGES);
   const double gigabytes =
       static_cast<double>(pages) * static_cast<double>(sysconf(_SC_PAGESIZE)) / 1e9;
-  return {{"processor", line_of("/proc/cpuinfo", "model name")},
-          {"cores", std::thread::hardware_concurrency()},
+  return {{"date", date_now()},
+          {"executable", "winnow"},
+          {"num_cpus", std::thread::hardware_concurrency()},
+          {"machine", line_of("/proc/cpuinfo", "model name")},
           {"memory_GB", static_cast<int>(gigabytes + 0.5)},
           {"system", system_name()},
           {"compiler",
@@ -80,7 +82,6 @@ Json machine_facts() {
           {"commit", kCommit},
           {"isa", isa_name()},
           {"isas", isa_names()},
-          {"date", date_now()},
           {"reference_sweep_ms", reference_sweep_ms()}};
 }
 

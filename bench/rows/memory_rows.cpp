@@ -9,10 +9,10 @@
 namespace winnow::bench {
 namespace {
 
-void require_exact(const Results& results, const NamedScene& scene) {
-  if (!results.rows("memory", {{"scene", scene.name}, {"exact", "NO"}}).empty()) {
-    throw std::runtime_error("a footprint does not equal what was allocated");
-  }
+constexpr const char* kInexact = "a footprint does not equal what was allocated";
+
+bool is_inexact(const Json& row) {
+  return row.value("exact", "yes") != "yes";
 }
 
 void add_held(Results& results, const Json& keys, const Held& held, const std::string& command) {
@@ -58,46 +58,11 @@ void derive_ratio(Results& results, const Json& keys, const std::string& command
   Json ratio = keys;
   ratio["ratio"] =
       value_of(*resident, "bytes_per_object") / value_of(*reserved, "bytes_per_object");
-  ratio["from"] =
-      derived("ratio", "ratio", "bytes_per_object",
-              {(*resident)["id"].get<std::string>(), (*reserved)["id"].get<std::string>()});
   ratio["command"] = command;
   results.add("memory_ratio", std::move(ratio));
 }
 
 }  // namespace
-
-void declare_memory(Results& results) {
-  std::vector<ValueColumn> values;
-  for (const Purpose& purpose : kPurposes) {
-    values.push_back({purpose.name, purpose.label, "bytes/object"});
-  }
-  values.push_back({"reserved", "reserved", "bytes/object", Better::less});
-  values.push_back({"peak_first", "peak of the first frame", "bytes/object", Better::less});
-  values.push_back({"peak_later", "peak of a later frame", "bytes/object", Better::less});
-  for (const Purpose& purpose : kPurposes) {
-    const std::string name = purpose.name;
-    values.push_back({name + "_used", std::string(purpose.label) + ", used", "bytes/object"});
-  }
-  values.push_back({"used", "used", "bytes/object"});
-  values.push_back({"pair_buffer", "the caller's pairs", "bytes/object"});
-  values.push_back({"exact", "equals what was allocated", "", Better::neither, Format::text});
-  results.declare({"memory",
-                   "memory",
-                   "bytes an object by purpose",
-                   {"scene", "objects", "partition", "threads"},
-                   std::move(values)});
-  results.declare({"memory_check",
-                   "memory",
-                   "the whole partition, measured in three ways",
-                   {"scene", "objects", "partition", "threads", "by"},
-                   {{"bytes_per_object", "memory", "bytes/object"}}});
-  results.declare({"memory_ratio",
-                   "memory",
-                   "resident memory over the reserved memory that footprint() returns",
-                   {"scene", "objects", "partition", "threads"},
-                   {{"ratio", "resident / reserved", "times"}}});
-}
 
 void add_footprints(Results& results, const NamedScene& scene, std::size_t objects,
                     std::uint64_t seed, const std::vector<std::string>& partitions, int threads) {
@@ -113,7 +78,10 @@ void add_footprints(Results& results, const NamedScene& scene, std::size_t objec
     add_held(results, keys, held, command);
     derive_ratio(results, keys, command);
   }
-  require_exact(results, scene);
+  const auto rows = results.rows("memory", {{"scene", scene.name}});
+  if (std::any_of(rows.begin(), rows.end(), [](const Json* row) { return is_inexact(*row); })) {
+    throw std::runtime_error(kInexact);
+  }
 }
 
 void add_footprints_apart(Results& results, const NamedScene& scene, std::size_t objects,
@@ -125,21 +93,9 @@ void add_footprints_apart(Results& results, const NamedScene& scene, std::size_t
     arguments.insert(arguments.end(),
                      {"--objects", std::to_string(objects), "--seed", std::to_string(seed)});
   }
-  for (Json row : run_own(arguments)) {
-    const std::string id = row["id"];
-    const std::string table = id.substr(0, id.find('/'));
-    // Rows of the other process contain its name of the scene, which may differ. The ratio, which
-    // refers to ids of such rows, is derived again below.
-    if (table == "memory_ratio") continue;
-    row.erase("id");
-    row["scene"] = scene.name;
-    results.add(table, row);
-    if (table != "memory_check" || row["by"] != kByResident) continue;
-    const std::string command = row["command"];
-    for (const char* member : {"by", "bytes_per_object", "command"}) row.erase(member);
-    derive_ratio(results, row, command);
-  }
-  require_exact(results, scene);
+  const Json rows = run_own(arguments)["benchmarks"];
+  results.adopt(rows);
+  if (std::any_of(rows.begin(), rows.end(), is_inexact)) throw std::runtime_error(kInexact);
 }
 
 }  // namespace winnow::bench

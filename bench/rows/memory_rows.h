@@ -14,9 +14,6 @@ inline constexpr const char* kByFootprint = "footprint()";
 inline constexpr const char* kByResource = "memory resource";
 inline constexpr const char* kByResident = "resident set";
 
-/// Declares memory, memory_check (measured in three ways) and memory_ratio.
-void declare_memory(Results& results);
-
 /// Runs a scene in each partition and adds the memory that the partition has allocated. The rows by
 /// resident set are correct only if keep_resident_set_exact was called before. Throws
 /// std::runtime_error after that if a footprint differs from the allocated bytes.

@@ -3,75 +3,86 @@
 #include "bench/common/table.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdio>
 #include <ostream>
 
 namespace winnow::bench {
 namespace {
 
-std::string key_shown(const Json& key) {
-  return key.is_number_unsigned() ? grouped(key.get<std::size_t>()) : key_text(key);
+std::string number_text(double value) {
+  if (value == 0.0 || std::abs(value) >= 1e-3) return short_number(value);
+  char text[32];
+  std::snprintf(text, sizeof text, "%.1e", value);
+  return text;
 }
 
-std::string value_shown(const Json& row, const Json& column) {
-  return shown(row, column) + spread_text(row, column["name"], column["format"]);
-}
-
-std::vector<const Json*> columns_to_print(const Json& table, const std::vector<std::string>& values,
-                                          const std::vector<const Json*>& rows) {
-  std::vector<const Json*> columns;
-  for (const Json& column : table["values"]) {
-    const std::string name = column["name"];
-    const bool is_selected =
-        values.empty() || std::find(values.begin(), values.end(), name) != values.end();
-    const bool known =
-        std::any_of(rows.begin(), rows.end(), [&](const Json* row) { return row->contains(name); });
-    if (is_selected && known) columns.push_back(&column);
+std::string shown(const Json& value) {
+  if (value.is_object()) {
+    return shown(value["median"]) + " (" + shown(value["min"]) + " to " + shown(value["max"]) + ")";
   }
-  return columns;
+  if (value.is_number_integer() && value >= 0) return grouped(value.get<std::size_t>());
+  return value.is_number() ? number_text(value.get<double>()) : key_text(value);
+}
+
+/// Returns "update ms" for "update_ms".
+std::string heading(std::string name) {
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return name;
+}
+
+bool any_has(const std::vector<const Json*>& rows, const std::string& name) {
+  return std::any_of(rows.begin(), rows.end(),
+                     [&](const Json* row) { return row->contains(name); });
+}
+
+std::vector<std::string> values_of(const std::vector<const Json*>& rows,
+                                   const std::vector<std::string>& keys) {
+  std::vector<std::string> names;
+  for (const Json* row : rows) {
+    for (const auto& [name, value] : row->items()) {
+      const bool is_key = std::find(keys.begin(), keys.end(), name) != keys.end();
+      const bool is_known = std::find(names.begin(), names.end(), name) != names.end();
+      if (!is_key && !is_known && name != "name" && name != "command") names.push_back(name);
+    }
+  }
+  return names;
 }
 
 }  // namespace
 
-void print_rows(std::ostream& out, const Results& results, const std::string& name,
+void print_rows(std::ostream& out, const Results& results, const std::string& family,
                 const std::vector<std::string>& values) {
-  const Json* table = results.table(name);
-  const auto rows = results.rows(name);
-  if (table == nullptr || rows.empty()) return;
-  std::string shared;
-  std::vector<std::string> keys;
-  std::vector<std::string> header;
-  for (const std::string key : (*table)["keys"]) {
+  const auto rows = results.rows(family);
+  if (rows.empty()) return;
+  const auto keys = keys_of(family);
+  std::string title = heading(family);
+  std::vector<std::string> columns;
+  for (const std::string& key : keys) {
     if (rows.size() > 1 && distinct(rows, key).size() == 1) {
-      shared += ", " + key + " " + key_shown((*rows.front())[key]);
-      continue;
+      title += ", " + key + " " + shown((*rows.front())[key]);
+    } else if (any_has(rows, key)) {
+      columns.push_back(key);
     }
-    keys.push_back(key);
-    header.push_back(key);
   }
-  const auto columns = columns_to_print(*table, values, rows);
-  for (const Json* column : columns) header.push_back(heading_of(*column));
+  for (const std::string& value : values.empty() ? values_of(rows, keys) : values) {
+    if (any_has(rows, value)) columns.push_back(value);
+  }
+  std::vector<std::string> header;
+  for (const std::string& column : columns) header.push_back(heading(column));
   Table text(header);
-  for (std::size_t k = 1; k < keys.size(); ++k) {
-    if ((*rows.front())[keys[k]].is_string()) text.flush_left(k);
-  }
   for (std::size_t c = 0; c < columns.size(); ++c) {
-    if ((*columns[c])["format"] == "text") text.flush_left(keys.size() + c);
+    const Json& first = *rows.front();
+    if (first.contains(columns[c]) && first[columns[c]].is_string()) text.flush_left(c);
   }
   for (const Json* row : rows) {
     std::vector<std::string> cells;
-    for (const std::string& key : keys) cells.push_back(key_shown((*row)[key]));
-    for (const Json* column : columns) cells.push_back(value_shown(*row, *column));
+    for (const std::string& column : columns) {
+      cells.push_back(row->contains(column) ? shown((*row)[column]) : "-");
+    }
     text.add(std::move(cells));
   }
-  out << '\n' << (*table)["title"].get<std::string>() << shared << '\n' << text << std::flush;
-}
-
-Json all_rows_of(const Results& results) {
-  Json rows = Json::array();
-  for (const Json& table : results.document()["tables"]) {
-    for (const Json& row : table["rows"]) rows.push_back(row);
-  }
-  return rows;
+  out << '\n' << title << '\n' << text << std::flush;
 }
 
 }  // namespace winnow::bench

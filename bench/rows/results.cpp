@@ -1,26 +1,87 @@
-// The document of a report: tables, rows and their ids, and the formatting of values. Commands and
-// bench/rows add rows; bench/report reads them. document_check.cpp validates documents from files.
-
 #include "bench/rows/results.h"
 
-#include <winnow/simd/isa.h>
-#include "bench/common/errors.h"
-#include "bench/common/table.h"
-#include "bench/rows/document_check.h"
-#include "bench/rows/machine.h"
+#include "bench/common/sample.h"
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <sstream>
 #include <stdexcept>
 
 namespace winnow::bench {
 namespace {
 
-constexpr std::array<const char*, 5> kFormats{"number", "tiny", "count", "percent", "text"};
-constexpr std::array<const char*, 3> kBetter{"neither", "less", "more"};
+/// Keys of a family in the order of its names, and the value that becomes `real_time`.
+struct Family {
+  std::string_view name;
+  const char* keys;
+  std::string_view time = "";
+};
+
+constexpr std::array kFamilies = std::to_array<Family>({
+    {"throughput", "scene objects threads partition isa", "frame_ms"},
+    {"throughput_growth", "scene partition threads"},
+    {"throughput_simd", "scene objects partition threads isa"},
+    {"throughput_threads", "scene objects partition threads"},
+    {"throughput_skipped", "objects skipped"},
+    {"every_scene", "scene objects partition threads", "median_ms"},
+    {"cold", "scene objects partition memory threads", "total_ms"},
+    {"limits", "scene objects", "frame_ms"},
+    {"hosts", "scene objects partition threads", "pool_ms"},
+    {"beside_peers", "scene objects partition threads of", "ms"},
+    {"memory", "scene objects partition threads"},
+    {"memory_check", "scene objects partition threads by"},
+    {"memory_ratio", "scene objects partition threads"},
+    {"hard_cases", "family engine"},
+    {"hard_cases_all", "engine answer"},
+    {"barriers", "scene objects steps", "ms"},
+    {"whole_scenes", "scene motion engine threads", "ms"},
+    {"scene_ratios", "scene motion engine threads"},
+    {"scene_levels", "scene level motion threads", "ms"},
+    {"scene_costs", "scene level margin threads", "ms"},
+    {"phases", "shape objects phase", "ms"},
+    {"flows", "shape objects steps"},
+    {"flow", "shape objects step"},
+    {"flow_checks", "shape objects steps"},
+    {"standing", "structure manifolds seconds"},
+    {"cluster_runs", "scene objects ranks"},
+    {"cluster_model", "scene objects ranks"},
+    {"advice", "scene objects threads"},
+    {"advice_ranking", "scene objects threads partition", "frame_ms"},
+    {"worst_frames", "scene objects threads partition"},
+    {"first_frames", "scene objects threads"},
+    {"changes", "from into objects threads"},
+    {"trust", "row figure"},
+    {"keys", "partition objects order operation mode", "ns"},
+    {"filters", "scene objects partition filters question", "filtered_ms"},
+    {"kernels", "kernel isa", "ns"},
+    {"volumes", "objects_are objects step partition volume", "sum_ms"},
+    {"margins", "objects step partition volume", "sum_ms"},
+    {"queries", "scene objects set engine asked threads", "ns"},
+    {"frusta", "objects set engine", "ms"},
+    {"narrow_speed", "kind level engine pairs threads", "ns"},
+    {"narrow_best", "kind level pairs"},
+    {"narrow_error", "kind ratio gap level engine", "ns"},
+    {"narrow_gap", "kind engine gap"},
+    {"stability_curves", "curve kind engine parameter"},
+    {"impacts", "kind turning engine", "ns"},
+    {"feature_impacts", "features steps", "ns"},
+    {"swept_scenes", "bodies fast threads", "sweep_ms"},
+    {"tori", "pose engine", "ms"},
+    {"mesh_builds", "engine", "ms"},
+    {"mesh_rays", "mesh triangles want asking engine", "ns"},
+    {"ray_meshes", "mesh triangles", "ms"},
+});
+
+const Family& family_named(const std::string& name) {
+  const auto at = std::find_if(kFamilies.begin(), kFamilies.end(),
+                               [&](const Family& one) { return one.name == name; });
+  if (at == kFamilies.end()) throw std::logic_error("no family of rows " + name);
+  return *at;
+}
 
 bool matches(const Json& row, const Json& where) {
   return std::all_of(where.items().begin(), where.items().end(), [&](const auto& member) {
@@ -28,116 +89,134 @@ bool matches(const Json& row, const Json& where) {
   });
 }
 
-bool is_known(const Json& table, const std::string& member) {
-  if (member == "command" || member == "from") return true;
-  const Json& keys = table["keys"];
-  const Json& values = table["values"];
-  return std::find(keys.begin(), keys.end(), member) != keys.end() ||
-         std::any_of(values.begin(), values.end(),
-                     [&](const Json& value) { return value["name"] == member; });
+std::string name_of(const std::string& family, const Json& row) {
+  std::string name = family;
+  for (const std::string& key : keys_of(family)) {
+    const auto at = row.find(key);
+    if (at == row.end()) continue;
+    const std::string text = key_text(*at);
+    name += "/" + (at->is_string() && key != "isa" ? word_of(text) : key + ":" + text);
+  }
+  return name;
+}
+
+/// Returns a row in the form of Google Benchmark.
+Json benchmark_of(const Family& family, const Json& row) {
+  Json shown{{"name", row["name"]},
+             {"run_name", row["name"]},
+             {"run_type", "iteration"},
+             {"iterations", 1},
+             {"real_time", 0.0},
+             {"cpu_time", 0.0},
+             {"time_unit", family.time == "ns" ? "ns" : "ms"}};
+  const auto keys = keys_of(std::string(family.name));
+  for (const auto& [member, value] : row.items()) {
+    if (member == "name" || std::find(keys.begin(), keys.end(), member) != keys.end()) continue;
+    const bool is_time = member == family.time;
+    const std::string name = is_time ? "real_time" : member;
+    shown[name] = value.is_object() ? value["median"] : value;
+    if (is_time) shown["cpu_time"] = shown[name];
+    if (!value.is_object()) continue;
+    shown[name + "_min"] = value["min"];
+    shown[name + "_max"] = value["max"];
+    if (is_time) shown["iterations"] = value["samples"];
+  }
+  return shown;
 }
 
 }  // namespace
 
-Results::Results()
-    : document_({{"format", kReportFormat},
-                 {"complete", false},
-                 {"machine", {{"isa", isa_name()}, {"isas", isa_names()}}},
-                 {"settings", Json::object()},
-                 {"missing", Json::array()},
-                 {"warnings", Json::array()},
-                 {"problems", Json::array()},
-                 {"sections", Json::array()},
-                 {"tables", Json::array()}}) {}
-
-Results::Results(Json document) : document_(std::move(document)) {
-  if (const std::string fault = fault_of_report(document_); !fault.empty()) {
-    throw ArgumentError(std::string("this is no \"") + kReportFormat + "\": " + fault);
-  }
-}
-
-Json* Results::find_table(const std::string& name) {
-  for (Json& table : document_["tables"]) {
-    if (table["name"] == name) return &table;
-  }
-  return nullptr;
-}
-
-const Json* Results::table(const std::string& name) const {
-  return const_cast<Results*>(this)->find_table(name);
-}
-
-void Results::declare(const TableSpec& spec) {
-  if (find_table(spec.name) != nullptr) return;
-  Json values = Json::array();
-  for (const ValueColumn& value : spec.values) {
-    values.push_back({{"name", value.name},
-                      {"label", value.label},
-                      {"unit", value.unit},
-                      {"better", kBetter[static_cast<std::size_t>(value.better)]},
-                      {"format", kFormats[static_cast<std::size_t>(value.format)]}});
-  }
-  document_["tables"].push_back({{"name", spec.name},
-                                 {"section", spec.section},
-                                 {"title", spec.title},
-                                 {"keys", spec.keys},
-                                 {"values", std::move(values)},
-                                 {"rows", Json::array()}});
-}
-
-std::string Results::add(const std::string& name, Json row) {
-  Json* table = find_table(name);
-  if (table == nullptr) throw std::logic_error("no table " + name);
-  Json whole{{"id", row_id(*table, row)}};
+std::string Results::add(const std::string& family, Json row) {
+  std::string name = name_of(family, row);
+  Json whole{{"name", name}};
   for (const auto& [member, value] : row.items()) {
-    if (!is_known(*table, member)) throw std::logic_error(name + " has no " + member);
     const bool unknown =
         value.is_null() || (value.is_number_float() && !std::isfinite(value.get<double>()));
     if (!unknown) whole[member] = value;
   }
-  const std::string id = whole["id"];
-  Json& rows = (*table)["rows"];
-  const auto at =
-      std::find_if(rows.begin(), rows.end(), [&](const Json& other) { return other["id"] == id; });
+  std::deque<Json>& rows = families_[family];
+  if (rows.empty()) order_.push_back(family);
+  const auto at = std::find_if(rows.begin(), rows.end(),
+                               [&](const Json& other) { return other["name"] == name; });
   if (at != rows.end()) {
     *at = std::move(whole);
   } else {
     rows.push_back(std::move(whole));
   }
-  return id;
+  return name;
 }
 
-std::vector<const Json*> Results::rows(const std::string& name, const Json& where) const {
+void Results::adopt(const Json& benchmarks) {
+  adopted_.insert(adopted_.end(), benchmarks.begin(), benchmarks.end());
+}
+
+std::vector<const Json*> Results::rows(const std::string& family, const Json& where) const {
   std::vector<const Json*> found;
-  const Json* of = table(name);
-  if (of == nullptr) return found;
-  for (const Json& row : (*of)["rows"]) {
+  const auto of = families_.find(family);
+  if (of == families_.end()) return found;
+  for (const Json& row : of->second) {
     if (matches(row, where)) found.push_back(&row);
   }
   return found;
 }
 
-const Json* Results::row(const std::string& name, const Json& where) const {
-  const auto found = rows(name, where);
+const Json* Results::row(const std::string& family, const Json& where) const {
+  const auto found = rows(family, where);
   return found.empty() ? nullptr : found.front();
 }
 
-const Json* Results::column(const std::string& name, const std::string& value) const {
-  const Json* of = table(name);
-  if (of == nullptr) return nullptr;
-  for (const Json& column : (*of)["values"]) {
-    if (column["name"] == value) return &column;
+Json Results::document() const {
+  Json benchmarks = Json::array();
+  for (const std::string& name : order_) {
+    const Family& family = family_named(name);
+    for (const Json& row : families_.at(name)) benchmarks.push_back(benchmark_of(family, row));
   }
-  return nullptr;
+  benchmarks.insert(benchmarks.end(), adopted_.begin(), adopted_.end());
+  return {{"context", context_}, {"benchmarks", std::move(benchmarks)}};
 }
 
-Results read_results(const std::string& path) {
-  Json document = read_json(path);
-  try {
-    return Results(std::move(document));
-  } catch (const ArgumentError& error) {
-    throw ArgumentError(path + ": " + error.what());
+std::string document_text(const Json& document) {
+  const auto line = [](const Json& json, int indent) {
+    return json.dump(indent, ' ', true, Json::error_handler_t::replace);
+  };
+  std::string text = "{\n\"context\": " + line(document["context"], 1) + ",\n\"benchmarks\": [";
+  const char* before = "\n";
+  for (const Json& row : document["benchmarks"]) {
+    text += before + line(row, -1);
+    before = ",\n";
   }
+  return text + "\n]\n}\n";
+}
+
+std::vector<std::string> keys_of(const std::string& family) {
+  std::istringstream words(family_named(family).keys);
+  std::vector<std::string> keys;
+  for (std::string word; words >> word;) keys.push_back(word);
+  return keys;
+}
+
+std::string word_of(std::string_view text) {
+  const auto is = [&](std::size_t i, int (*kind)(int)) {
+    return i < text.size() && kind(static_cast<unsigned char>(text[i])) != 0;
+  };
+  std::string word;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    const bool starts =
+        i > 0 && is(i, std::isupper) &&
+        (is(i - 1, std::islower) || (is(i - 1, std::isupper) && is(i + 1, std::islower)));
+    if (starts) word += '_';
+    if (c == '%') {
+      word += word.ends_with('_') ? "percent" : "_percent";
+    } else if (c == '+') {
+      word += "plus";
+    } else if (c != '(' && c != ')') {
+      word += c == ' ' || c == '/' || c == ':'
+                  ? '_'
+                  : static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    }
+  }
+  return word;
 }
 
 Json to_value(const std::vector<double>& samples) {
@@ -149,52 +228,12 @@ Json to_value(const std::vector<double>& samples) {
           {"samples", samples.size()}};
 }
 
-std::string heading_of(const Json& column) {
-  const std::string unit = column["unit"];
-  const std::string label = column["label"];
-  return unit.empty() ? label : label + ", " + unit;
-}
-
 double value_of(const Json& row, const std::string& name) {
   const auto at = row.find(name);
-  if (at == row.end()) return std::numeric_limits<double>::quiet_NaN();
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  if (at == row.end()) return kNone;
   if (at->is_number()) return at->get<double>();
-  if (at->is_object()) return at->value("median", std::numeric_limits<double>::quiet_NaN());
-  return std::numeric_limits<double>::quiet_NaN();
-}
-
-Json derived(const std::string& name, const std::string& rule, const std::string& field,
-             const std::vector<std::string>& rows) {
-  return {{"value", name}, {"rule", rule}, {"field", field}, {"rows", rows}};
-}
-
-std::string shown(double value, const std::string& format) {
-  if (!std::isfinite(value)) return "-";
-  if (format == "percent") return percent(value);
-  if (format == "count") {
-    const std::string digits = grouped(static_cast<std::size_t>(std::llround(std::abs(value))));
-    return value < 0.0 ? "-" + digits : digits;
-  }
-  if (format == "tiny" && value != 0.0) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.1e", value);
-    return text;
-  }
-  return short_number(value);
-}
-
-std::string shown(const Json& row, const Json& column) {
-  const std::string name = column["name"];
-  const auto at = row.find(name);
-  if (at != row.end() && at->is_string()) return at->get<std::string>();
-  return shown(value_of(row, name), column["format"].get<std::string>());
-}
-
-std::string spread_text(const Json& row, const std::string& name, const std::string& format) {
-  const auto at = row.find(name);
-  if (at == row.end() || !at->is_object()) return "";
-  return " (" + shown((*at)["min"].get<double>(), format) + " to " +
-         shown((*at)["max"].get<double>(), format) + ")";
+  return at->is_object() ? at->value("median", kNone) : kNone;
 }
 
 std::vector<Json> distinct(const std::vector<const Json*>& rows, const std::string& key) {
@@ -205,16 +244,6 @@ std::vector<Json> distinct(const std::vector<const Json*>& rows, const std::stri
     if (std::find(found.begin(), found.end(), value) == found.end()) found.push_back(value);
   }
   return found;
-}
-
-std::string row_id(const Json& table, const Json& row) {
-  std::string id = table["name"];
-  for (const Json& key : table["keys"]) {
-    const std::string name = key;
-    if (!row.contains(name)) throw std::logic_error(id + ": a row without " + name);
-    id += '/' + key_text(row[name]);
-  }
-  return id;
 }
 
 std::string key_text(const Json& key) {

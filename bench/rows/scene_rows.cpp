@@ -32,40 +32,6 @@ std::string scene_command(const PipelineMeasureOptions& options, const std::stri
 
 }  // namespace
 
-void declare_scenes(Results& results, bool levels_by_setting) {
-  results.declare({"whole_scenes",
-                   "pipeline",
-                   "a frame from new poses to contact points",
-                   {"scene", "motion", "engine", "threads"},
-                   {{"ms", "a frame", "ms", Better::less},
-                    {"touching", "touching pairs", "", Better::neither, Format::count},
-                    {"points", "contact points", "", Better::neither, Format::count},
-                    {"bodies", "bodies", "", Better::neither, Format::count},
-                    {"triangles", "triangles", "", Better::neither, Format::count}}});
-  results.declare({"scene_ratios",
-                   "pipeline",
-                   "times of winnow's frame on the first number of threads",
-                   {"scene", "motion", "engine", "threads"},
-                   {{"ratio", "times winnow's", ""}}});
-  const std::vector<std::string> level_keys{"scene", "level"};
-  const std::vector<std::string> setting_keys{"scene", "level", "motion", "threads"};
-  results.declare({"scene_levels",
-                   "pipeline",
-                   "a frame by contact level",
-                   levels_by_setting ? setting_keys : level_keys,
-                   {{"ms", "a frame", "ms", Better::less},
-                    {"touching", "pairs reported", "", Better::neither, Format::count},
-                    {"points", "contact points", "", Better::neither, Format::count}}});
-  results.declare({"scene_costs",
-                   "pipeline",
-                   "bytes of contacts, and what a margin costs",
-                   {"scene", "level", "margin", "threads"},
-                   {{"ms", "a frame", "ms", Better::less},
-                    {"over_none", "times the frame without a margin", "", Better::less},
-                    {"bytes_per_contact", "all bytes a pair that touches", "bytes", Better::less},
-                    {"touching", "touching pairs", "", Better::neither, Format::count}}});
-}
-
 PipelineMeasurement add_scene_race(Results& results, const PipelineMeasureOptions& options) {
   PipelineMeasurement measured = measure_pipeline(options);
   const char* motion = motion_of(options);
@@ -81,18 +47,16 @@ PipelineMeasurement add_scene_race(Results& results, const PipelineMeasureOption
                     {"bodies", measured.bodies},
                     {"triangles", measured.triangles},
                     {"command", scene_command(options, "manifold")}});
-    rows.back()["id"] = results.add("whole_scenes", rows.back());
+    results.add("whole_scenes", rows.back());
   }
   const Json& first = rows.front();
   for (const Json& row : rows) {
     if (&row == &first) continue;
-    results.add("scene_ratios",
-                {{"scene", options.scene},
-                 {"motion", motion},
-                 {"engine", row["engine"]},
-                 {"threads", row["threads"]},
-                 {"ratio", value_of(row, "ms") / value_of(first, "ms")},
-                 {"from", derived("ratio", "ratio", "ms", {row["id"], first["id"]})}});
+    results.add("scene_ratios", {{"scene", options.scene},
+                                 {"motion", motion},
+                                 {"engine", row["engine"]},
+                                 {"threads", row["threads"]},
+                                 {"ratio", value_of(row, "ms") / value_of(first, "ms")}});
   }
   return measured;
 }
@@ -103,13 +67,11 @@ void add_scene_level(Results& results, PipelineMeasureOptions options, const std
     if (level == to_text(one)) options.level = one;
   }
   options.peers = false;
-  const Json& keys = (*results.table("scene_levels"))["keys"];
-  const bool by_setting = std::find(keys.begin(), keys.end(), "threads") != keys.end();
   for (const SceneTiming& timing : measure_pipeline(options).timings) {
     Json row{{"scene", options.scene},        {"level", level},
              {"ms", to_value(timing.ms)},     {"touching", timing.finds.touching},
              {"points", timing.finds.points}, {"command", scene_command(options, level)}};
-    if (by_setting) {
+    if (options.resting || timing.threads != 1) {
       row["motion"] = motion_of(options);
       row["threads"] = timing.threads;
     }

@@ -8,10 +8,6 @@
 
 namespace winnow::bench {
 
-/// Declares whole_scenes, scene_ratios, scene_levels and scene_costs. The keys of
-/// levels are scene and level, and with `levels_by_setting` also motion and threads.
-void declare_scenes(Results& results, bool levels_by_setting = false);
-
 /// Runs a race on a scene of the whole pipeline, up to contact points.
 PipelineMeasurement add_scene_race(Results& results, const PipelineMeasureOptions& options);
 /// Measures only winnow, up to a level.

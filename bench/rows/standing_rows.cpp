@@ -22,25 +22,6 @@ std::string command_of(const StandingRowOptions& row_options) {
 
 }  // namespace
 
-void declare_standing(Results& results) {
-  results.declare(
-      {"standing",
-       "pipeline",
-       "structures that stand",
-       {"structure", "manifolds", "seconds"},
-       {{"bodies", "bodies", "", Better::neither, Format::count},
-        {"points", "contact points at the end", "", Better::neither, Format::count},
-        {"settled", "moved in the first second", "edges", Better::less, Format::tiny},
-        {"drift", "moved after it", "edges", Better::less, Format::tiny},
-        {"tilt", "turned after it", "radians", Better::less, Format::tiny},
-        {"deepest", "deepest penetration at the end", "edges", Better::less, Format::tiny},
-        {"kept", "points that were there before, least share of a frame", "", Better::neither,
-         Format::percent},
-        {"islands", "islands", "", Better::neither, Format::count},
-        {"colours", "colours", "", Better::neither, Format::count},
-        {"fingerprint", "all bodies' bits", "", Better::neither, Format::text}}});
-}
-
 bool add_standing(Results& results, const StandingRowOptions& row_options) {
   StandingOptions options;
   options.contact_reduction = row_options.reduced;

@@ -18,8 +18,6 @@ struct StandingRowOptions {
   int threads = 1;
 };
 
-/// Declares standing: structures that a solver keeps upright.
-void declare_standing(Results& results);
 /// Simulates one structure and adds its row. Returns false if it moved too far.
 bool add_standing(Results& results, const StandingRowOptions& row_options);
 

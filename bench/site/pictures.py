@@ -2,15 +2,16 @@
 """Usage: pictures.py FOLDER [RESULTS]
 
 Draws the site's pictures into FOLDER as SVG: concepts, computed from small scenes, and results, from the
-tables of RESULTS (bench/results). Without RESULTS it draws only contacts.svg, which README.md shows and
+rows of RESULTS (bench/results/results.json). Without RESULTS it draws only contacts.svg, which README.md shows and
 which is therefore committed, in bench/site/pages.
 """
 
-import csv
 import html
+import json
 import math
 import pathlib
 import random
+import re
 import sys
 
 # Distinguishable with any colour vision (Okabe and Ito, "Color Universal Design", 2008).
@@ -287,9 +288,14 @@ def contacts(folder):
     picture.write(folder / "contacts.svg")
 
 
-def read(path):
-    with open(path, newline="") as file:
-        return list(csv.DictReader(file))
+def times(results, name):
+    """Returns the times of the rows whose names match, by the match's group."""
+    found = {}
+    for row in json.loads(results.read_text())["benchmarks"]:
+        match = re.fullmatch(name, row["name"])
+        if match:
+            found[match[1]] = min(row["real_time"], found.get(match[1], math.inf))
+    return found
 
 
 def three_digits(value):
@@ -327,33 +333,25 @@ def bars(path, title, groups, unit):
 
 
 def frames(folder, results):
-    rows = [row for row in read(results / "throughput.csv")
-            if row["objects"] == "100000" and row["threads"] == "2"]
-    others = ("Embree", "FCL tree", "CGAL boxes", "Bullet dbvt")
-    skipped = (*others, "yardstick", "ODE SAP", "Bullet sweep", "NSquared", "BoundsNSquared")
+    others = ("embree", "fcl_tree", "cgal_boxes", "bullet_dbvt")
+    skipped = (*others, "yardstick", "ode_sap", "bullet_sweep", "n_squared", "bounds_n_squared")
     groups = []
     for scene in ("uniform", "mixed", "clustered", "pile"):
-        times = {}
-        for row in rows:
-            if row["scene"] == scene:
-                time = float(row["frame_ms_median"])
-                times[row["partition"]] = min(time, times.get(row["partition"], time))
-        best = min((name for name in times if name not in skipped), key=times.get)
-        listed = [("winnow", times[best], True)]
-        listed += [(name, times[name], False) for name in others if name in times]
+        found = times(results, rf"throughput/{scene}/objects:100000/threads:2/(\w+)/isa:\w+")
+        best = min(time for name, time in found.items() if name not in skipped)
+        listed = [("winnow", best, True)]
+        listed += [(name.replace("_", " "), found[name], False) for name in others if name in found]
         groups.append((scene, listed))
     bars(folder / "frames.svg", "Time of a frame by scene", groups, "ms")
 
 
 def shapes(folder, results):
-    rows = [row for row in read(results / "narrow_speed.csv") if row["level"] == "distance"]
     groups = []
     for kind in ("sphere-box", "capsule-capsule", "box-box", "triangle-triangle", "hull16-hull16"):
-        times = {row["engine"]: float(row["ns_median"]) for row in rows
-                 if row["kind"] == kind and row["ns_median"]}
-        listed = [("winnow robust", times["robust"], True)]
-        listed += [(name, times[name], False) for name in ("Bullet", "FCL libccd", "FCL indep")
-                   if name in times]
+        robust = times(results, rf"pair/{kind}/distance/(isa:\w+)")
+        others = times(results, rf"pair/{kind}/distance/((?:bullet|fcl)\w*)")
+        listed = [("winnow robust", min(robust.values()), True)]
+        listed += [(name.replace("_", " "), time, False) for name, time in others.items()]
         groups.append((kind, listed))
     bars(folder / "shapes.svg", "Time of a pair by kind", groups, "ns")
 

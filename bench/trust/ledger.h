@@ -17,8 +17,6 @@ extern const char* const kLedgerJson;
 
 [[nodiscard]] const Json& ledger();
 
-/// Declares the table `trust`, and adds a row for each figure of the ledger.
-void declare_ledger(Results& results);
 void add_ledger(Results& results);
 
 }  // namespace winnow::bench

@@ -6,7 +6,7 @@ if(NOT browser)
 endif()
 
 # look(<path of the page> <variable> [<fragment> [<width> <height>]]): returns the page after its
-# scripts have run. Fails if the page logs an error.
+# scripts have run. Fails if the page logs an error. look_options are further options of the browser.
 function(look path result)
   set(fragment check)
   set(size 900,600)
@@ -18,7 +18,7 @@ function(look path result)
   endif()
   execute_process(
     COMMAND ${browser} --headless --no-sandbox --disable-dev-shm-usage --enable-unsafe-swiftshader
-            --user-data-dir=${WORK}/profile --window-size=${size} --virtual-time-budget=2000
+            --user-data-dir=${WORK}/profile --window-size=${size} --virtual-time-budget=2000 ${look_options}
             --enable-logging=stderr --dump-dom "file://${path}#${fragment}"
     TIMEOUT 600 RESULT_VARIABLE status OUTPUT_VARIABLE page ERROR_VARIABLE log)
   if(NOT status EQUAL 0)

@@ -29,7 +29,6 @@ NamedScene scene_named(const char* name) {
 TEST(FrameRows, worst_frame_is_present_only_after_settling) {
   for (const std::size_t frames : {6U, 12U}) {
     Results results;
-    declare_frames(results);
     const Measurement raced =
         add_frame_race(results, scene_named("teleport"),
                        {.objects = 200, .partitions = {"FlatGrid"}, .frames = frames});
@@ -44,7 +43,6 @@ TEST(FrameRows, worst_frame_is_present_only_after_settling) {
 
 TEST(FrameRows, rows_compare_with_the_yardstick_if_present) {
   Results results;
-  declare_every_scene(results);
   add_every_scene(results, {.scene = scene_named("jumps"), .objects = 300, .frames = 12});
   const auto rows = results.rows("every_scene");
   ASSERT_GT(rows.size(), 5U);
@@ -62,8 +60,6 @@ TEST(FrameRows, rows_compare_with_the_yardstick_if_present) {
 
 TEST(FrameRows, rows_without_the_yardstick_leave_it_out) {
   Results results;
-  declare_every_scene(results);
-  declare_cold(results);
   add_every_scene(results,
                   {.scene = scene_named("shear"), .objects = 100, .yardstick = false, .frames = 3});
   add_cold(results, scene_named("shear"), 100, 1, {"LinearBvh"}, 1, 1, false);
@@ -73,7 +69,6 @@ TEST(FrameRows, rows_without_the_yardstick_leave_it_out) {
 
 std::vector<Json> rows_beside_peers(const char* scene, const TimeBounds& bounds) {
   Results results;
-  declare_beside_peers(results);
   add_beside_peers(results, scene_named(scene),
                    {.objects = 400,
                     .partitions = {"FlatGrid", "LinearBvh"},
@@ -121,7 +116,6 @@ TEST(BesidePeers, slow_library_is_judged_by_its_finished_frames) {
 
 TEST(HostRows, each_partition_has_a_row_with_both_times) {
   Results results;
-  declare_hosts(results);
   add_hosts(results, scene_named("uniform"), 300, 1, {"LinearBvh", "FlatGrid"}, 2, 4);
   const auto rows = results.rows("hosts");
   ASSERT_EQ(rows.size(), 2U);

@@ -7,7 +7,6 @@ namespace {
 
 TEST(SceneCosts, rows_count_bytes_and_contacts_by_margin) {
   Results results;
-  declare_scenes(results);
   add_scene_costs(results, {.scene = "balls", .frames = 2, .bodies = 500});
   const auto rows = results.rows("scene_costs");
   ASSERT_EQ(rows.size(), 4U);

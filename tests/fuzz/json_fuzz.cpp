@@ -1,4 +1,4 @@
-// Untrusted files of queries, hard cases and reports are processed, or refused with an error that
+// Untrusted files of queries and hard cases are processed, or refused with an error that
 // names the file and its fault.
 
 #include <algorithm>
@@ -10,9 +10,6 @@
 #include "bench/common/json.h"
 #include "bench/questions/hard_cases.h"
 #include "bench/questions/questions.h"
-#include "bench/report/compare.h"
-#include "bench/report/markdown.h"
-#include "bench/report/report.h"
 #include "tests/fuzz/target.h"
 
 namespace winnow::test {
@@ -51,16 +48,6 @@ void query(const Json& questions) {
   }
 }
 
-/// Calls the code of `winnow dev compare`, `winnow dev results` and `winnow report --from`.
-void report(const std::string& path) {
-  bench::Results results = bench::read_results(path);
-  (void)bench::compare(results, results, {}).passes();
-  (void)bench::machine_ratio(results, results);
-  (void)bench::other_machine(results, results);
-  (void)bench::results_markdown(results);
-  bench::write_report(path + "_report", results);
-}
-
 std::string text_of(const std::filesystem::path& path) {
   std::ifstream file(path);
   return {std::istreambuf_iterator<char>(file), {}};
@@ -78,28 +65,10 @@ void fuzz(std::span<const std::uint8_t> input) {
     return;
   }
   if (document.is_array()) query(document);
-  try {
-    report(file.path());
-  } catch (const bench::ArgumentError& error) {
-    WINNOW_REQUIRE(std::string(error.what()).find(file.path()) == 0);
-  }
-  std::filesystem::remove_all(file.path() + "_report");
 }
 
 std::vector<std::string> fuzz_seeds() {
-  std::vector<std::string> seeds{
-      "",
-      "[]",
-      "{}",
-      "[[[[[[1]]]]]]",
-      "[1e999, -1e999, \"nan\"]",
-      R"({"format": "winnow report 1", "complete": true, "machine": {}, "settings": {},
-          "missing": [], "problems": [], "sections": [],
-          "tables": [{"name": "t", "section": "s", "title": "x", "keys": ["k"],
-            "values": [{"name": "v", "label": "v", "unit": "ms", "better": "less",
-                        "format": "number"}],
-            "rows": [{"id": "t/1", "k": "1", "v": {"min": 1, "median": 2, "max": 3,
-                      "samples": [1, 2, 3]}, "command": "c"}]}]})"};
+  std::vector<std::string> seeds{"", "[]", "{}", "[[[[[[1]]]]]]", "[1e999, -1e999, \"nan\"]"};
   // Seeds that are short enough for a fuzzer: the first six queries of each file one by one, and
   // the same queries without one member and with a wrong member.
   for (const auto& entry : std::filesystem::directory_iterator(WINNOW_HARD_CASES)) {

@@ -1,6 +1,6 @@
 // The pictures that the tool wrote, one per frame. Columns are base64 of little-endian values.
 
-const kPictures = JSON.parse(document.getElementById("pictures").textContent);
+const kPictures = JSON.parse(document.getElementById("data").textContent);
 
 function bytesOf(text) {
   const binary = atob(text);

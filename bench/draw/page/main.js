@@ -1,82 +1,4 @@
-// Assembles the page, and writes to #report how many things were sent to the GPU. If the address
-// ends in #check it also reads back pixels, switches every layer off and on, points at the centre
-// of the frame, and shows all frames.
-
-const kErrors = [];
-window.addEventListener("error", (e) => kErrors.push(String(e.message)));
-
-function readPixels() {
-  draw();
-  const gl = kRenderer.getContext();
-  const [width, height] = [gl.drawingBufferWidth, gl.drawingBufferHeight];
-  const pixels = new Uint8Array(4 * width * height);
-  gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
-  const words = new Uint32Array(pixels.buffer);
-  const colours = new Map();
-  for (const word of words) colours.set(word, (colours.get(word) || 0) + 1);
-  const ground = Math.max(...colours.values());
-  return {width, height, colours: colours.size, drawn: words.length - ground, error: gl.getError()};
-}
-
-function check() {
-  const pixels = readPixels();
-  const boxes = [...document.querySelectorAll("#legend input[type=checkbox]")];
-  const shown = boxes.filter((box) => box.checked);
-  shown.forEach((box) => box.click());
-  const withoutLayers = readPixels().drawn;
-  shown.forEach((box) => box.click());
-  const middle = new THREE.Vector3(0, 0, 0).project(kCamera);
-  choose(objectAt(0.5 * (middle.x + 1) * window.innerWidth,
-                  0.5 * (1 - middle.y) * window.innerHeight));
-  const pointedAt = document.getElementById("info").textContent;
-  choose(-1);
-  return {pixels, withoutLayers, pointedAt};
-}
-
-function drawnNow() {
-  const drawn = {structure: {}};
-  for (const layer of kLayers) {
-    if (layer.id === "labels") continue;
-    const into = layer.part ? drawn.structure : drawn;
-    const name = layer.part || layer.id;
-    into[name] = (into[name] || 0) + drawnBy(layer.counted);
-  }
-  return drawn;
-}
-
-// Counts the frames that draw other numbers of objects, pairs or contacts than their pictures
-// state.
-function wrongFrames() {
-  let wrong = 0;
-  kPictures.forEach((picture, index) => {
-    showFrame(index);
-    const drawn = drawnNow();
-    const same = (name) => (drawn[name] || 0) === picture.counts[name];
-    wrong += same("objects_drawn") && same("pairs_drawn") && same("contacts") ? 0 : 1;
-  });
-  showFrame(0);
-  return wrong;
-}
-
-function report() {
-  const result = {drawn: drawnNow(), frames: kPictures.length, labels: kLabels.length,
-                  three: THREE.REVISION, errors: kErrors};
-  if (location.hash === "#check") {
-    Object.assign(result, check());
-    if (kPictures.length > 1) result.wrongFrames = wrongFrames();
-  }
-  document.getElementById("report").textContent = JSON.stringify(result);
-}
-
-function fail(error) {
-  kErrors.push(String(error));
-  const panel = document.createElement("section");
-  panel.className = "panel";
-  panel.id = "failure";
-  panel.textContent = `This page cannot be drawn: ${error.message || error}`;
-  document.body.append(panel);
-  document.getElementById("report").textContent = JSON.stringify({errors: kErrors});
-}
+// Assembles the page.
 
 try {
   writeCaption();
@@ -85,7 +7,10 @@ try {
   writeLegend();
   startPicking();
   startPlayer();
-  report();
 } catch (error) {
-  fail(error);
+  const panel = document.createElement("section");
+  panel.className = "panel";
+  panel.id = "failure";
+  panel.textContent = `This page cannot be drawn: ${error.message || error}`;
+  document.body.append(panel);
 }

@@ -50,7 +50,7 @@ class HostileFiles : public testing::Test {
       std::filesystem::temp_directory_path() / ("winnow_hostile_" + std::to_string(::getpid()));
 };
 
-const char* const kCommands[] = {"query FILE", "query --judge FILE", "dev compare FILE FILE",
+const char* const kCommands[] = {"query FILE", "query --judge FILE",
                                  "report --from FILE --out /nowhere"};
 
 TEST_F(HostileFiles, invalid_json_is_refused) {

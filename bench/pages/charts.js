@@ -1,0 +1,179 @@
+"use strict";
+// Declarations of Chart.js for the views: bars, lines and dots of rows, and what all charts share.
+
+const style = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+const is_dark = () => style("--dark") === "1";
+
+// Cold hues are winnow, warm hues other libraries, grey what both are compared with.
+const hues = {own: [210, 165, 255, 188, 232, 140, 280, 200], library: [25, 5, 42, 345, 15, 55]};
+const places = new Map();
+function colour(name, purpose = is_base(name) ? "base" : is_library(name) ? "library" : "own") {
+  const light = is_dark() ? 66 : 42;
+  if (purpose === "base") return `hsl(0 0% ${light + 8}%)`;
+  if (!places.has(name)) {
+    places.set(name, [...places.keys()].filter((n) => is_library(n) === is_library(name)).length);
+  }
+  const place = places.get(name);
+  const of = hues[purpose];
+  return `hsl(${of[place % of.length]} 70% ${light + 7 * (Math.floor(place / of.length) % 3)}%)`;
+}
+const bar_colour = (name) =>
+  is_base(name) ? colour(name) : is_library(name) ? style("--library") : style("--own");
+
+// Right and wrong have colours of their own; other parts are steps from dark to light.
+const MEANINGS = {right: "hsl(145 55% 42%)", wrong: "hsl(5 70% 50%)", not_taken: "hsl(0 0% 62%)"};
+const part_colour = (field, i, count) => MEANINGS[field] || `hsl(${210 + 60 * (i % 2)} 55% ${30 + 50 * i / count}%)`;
+
+const decade = (value) => 10 ** Math.floor(Math.log10(value) + 1e-9);
+const is_decade = (value) => Math.abs(Math.log10(value) - Math.round(Math.log10(value))) < 1e-6;
+
+// An axis from a decade to a decade, if the values are above 0 and span more than one decade.
+function axis(title, values, logarithmic) {
+  const positive = values.filter((v) => v > 0);
+  const least = Math.min(...positive);
+  const most = Math.max(...positive);
+  const common = {title: {display: true, text: title, color: style("--ink")},
+                  grid: {color: style("--line")}, ticks: {color: style("--faint"), maxRotation: 0}};
+  if (logarithmic === false || positive.length === 0 || (!logarithmic && most < 10 * least)) {
+    common.ticks.callback = (value) => short(value);
+    return {...common, type: "linear", beginAtZero: true};
+  }
+  const zero = values.some((v) => v === 0);
+  const from = decade(least) / (zero ? 10 : 1);
+  const to = is_decade(most) ? decade(most) : 10 * decade(most);
+  const decades = Math.log10(to / from);
+  const every = Math.ceil(decades / 8);
+  common.ticks.autoSkip = false;
+  common.ticks.callback = (value) => {
+    if (!is_decade(value)) return decades < 2.5 && /^[25]/.test(value.toExponential()) ? short(value) : "";
+    return Math.round(Math.log10(value / from)) % every ? "" : zero && value === from ? "0" : short(value);
+  };
+  common.grid.color = (line) => is_decade(line.tick.value) ? style("--line") : "transparent";
+  return {...common, type: "logarithmic", min: from, max: to > from ? to : 10 * from};
+}
+
+// Draws the value at the end of each bar, and a whisker from the least to the greatest sample.
+const values_on_bars = {
+  id: "values",
+  afterDatasetsDraw(chart) {
+    const {ctx, scales: {x, y}, chartArea} = chart;
+    if (chart.options.indexAxis !== "y") return;
+    ctx.save();
+    ctx.font = "11px system-ui, sans-serif";
+    ctx.textBaseline = "middle";
+    const last = chart.getSortedVisibleDatasetMetas().at(-1);
+    last?.data.forEach((bar, i) => {
+      const row = chart.data.datasets[last.index].data[i];
+      if (!row) return;
+      const field = chart.data.datasets[last.index].parsing.xAxisKey;
+      const least = row[`${field}_min`];
+      const most = row[`${field}_max`];
+      let end = Number.isFinite(bar.x) ? bar.x : x.left;
+      if (least > 0 && most >= least) {
+        ctx.strokeStyle = style("--faint");
+        ctx.beginPath();
+        ctx.moveTo(x.getPixelForValue(Math.max(least, x.min)), bar.y);
+        ctx.lineTo(end = Math.max(end, Math.min(x.right, x.getPixelForValue(most))), bar.y);
+        ctx.stroke();
+      }
+      const total = chart.data.datasets.reduce((sum, set) => sum + (set.data[i]?.[set.parsing.xAxisKey] || 0), 0);
+      const text = chart.data.datasets.length > 1 ? short(total) : short(row[field]);
+      const width = ctx.measureText(text).width;
+      const outside = end + 4 + width < chartArea.right;
+      const at = outside ? end + 4 : chartArea.right - width - 3;
+      if (!outside) {
+        ctx.fillStyle = style("--paper");
+        ctx.fillRect(at - 2, bar.y - 7, width + 4, 14);
+      }
+      ctx.fillStyle = style("--ink");
+      ctx.fillText(text, at, bar.y);
+    });
+    ctx.restore();
+  }};
+
+// Writes its name beside each dot if every series has one dot, unless another name is there.
+const names_at_dots = {
+  id: "names",
+  afterDatasetsDraw(chart) {
+    const {ctx, chartArea} = chart;
+    ctx.save();
+    ctx.font = "11px system-ui, sans-serif";
+    ctx.fillStyle = style("--ink");
+    const taken = [];
+    chart.getSortedVisibleDatasetMetas().forEach((meta) => {
+      const set = chart.data.datasets[meta.index];
+      if (set.front) return;
+      const {x, y} = meta.data[0];
+      const width = ctx.measureText(set.label).width;
+      const left = x + 7 + width < chartArea.right ? x + 7 : x - 7 - width;
+      if (taken.some(([a, b, c]) => left < b && left + width > a && Math.abs(y - c) < 12)) return;
+      taken.push([left, left + width, y]);
+      ctx.fillText(set.label, left, y - 5);
+    });
+    ctx.restore();
+  }};
+
+// The dots that no other dot beats in both values.
+function front_of(dots, x) {
+  const front = [];
+  for (const dot of dots.slice().sort((a, b) => a[x] - b[x] || a.at - b.at)) {
+    if (front.length === 0 || dot.at < front.at(-1).at) front.push(dot);
+  }
+  return {label: "best in both", front: true, data: front, parsing: {xAxisKey: x, yAxisKey: "at"}, showLine: true, stepped: "before",
+          borderColor: style("--faint"), backgroundColor: style("--faint"), borderWidth: 1, borderDash: [2, 3], pointRadius: 0};
+}
+
+const shared = (title, tooltip) => ({
+  animation: false, responsive: true, maintainAspectRatio: false, normalized: true,
+  plugins: {
+    title: {display: title !== "", text: title, color: style("--ink")},
+    legend: {position: "bottom", labels: {color: style("--ink"), usePointStyle: true, boxWidth: 8, font: {size: 11}}},
+    tooltip: {callbacks: {title: () => "", label: tooltip}}}});
+
+const note = (field) => (item) => {
+  const row = item.raw;
+  const at = typeof field === "function" ? field(item) : field;
+  const ends = row[`${at}_max`] === undefined ? "" : ` (${short(row[`${at}_min`])} to ${short(row[`${at}_max`])})`;
+  return [String(row.run_name || row.name), `${label(at)}: ${short(row[at])}${ends}`];
+};
+
+// One named bar for each row, the best first; several fields are stacked.
+function bars(list, key, fields, title, unit) {
+  const sum = (row) => fields.reduce((total, field) => total + (row[field] || 0), 0);
+  const sorted = list.filter((row) => Number.isFinite(sum(row))).sort((a, b) => sum(a) - sum(b));
+  const options = shared(title, note((item) => item.dataset.parsing.xAxisKey));
+  options.plugins.legend.display = fields.length > 1;
+  return {
+    type: "bar", plugins: [values_on_bars],
+    data: {labels: sorted.map((row) => row[key]),
+           datasets: fields.map((field, i) => ({
+             label: label(field), data: sorted, parsing: {xAxisKey: field, yAxisKey: key},
+             backgroundColor: fields.length > 1 ? part_colour(field, i, fields.length)
+                                                : sorted.map((row) => bar_colour(String(row[key]))),
+             barPercentage: 0.8, categoryPercentage: 0.95, minBarLength: 1}))},
+    options: {...options, indexAxis: "y",
+              scales: {x: {...axis(unit, sorted.map(sum), fields.length > 1 ? false : undefined), stacked: fields.length > 1},
+                       y: {stacked: fields.length > 1, grid: {display: false},
+                           ticks: {autoSkip: false, color: style("--ink"), callback: (i) => shown_name(sorted[i]?.[key] ?? "")}}}}};
+}
+
+const marks = ["circle", "triangle", "rect", "rectRot", "star", "crossRot", "rectRounded"];
+
+// A line, or dots, for each value of `by`.
+function curves(list, by, x, y, title, x_title, y_title, line) {
+  const known = list.filter((row) => Number.isFinite(row[x]) && Number.isFinite(row[y]));
+  const scales = {x: axis(x_title, known.map((row) => row[x])), y: axis(y_title, known.map((row) => row[y]))};
+  // An error of 0 is drawn at the end of a logarithmic axis.
+  const drawn = known.map((row) => ({...row, at: scales.y.type === "logarithmic" ? Math.max(row[y], scales.y.min) : row[y]}));
+  const names = by ? distinct(drawn, by) : [y];
+  const sets = names.map((name, i) => {
+    const data = drawn.filter((row) => !by || row[by] === name).sort((a, b) => a[x] - b[x]);
+    const tint = colour(String(name));
+    return {label: shown_name(name), data, parsing: {xAxisKey: x, yAxisKey: "at"}, showLine: line,
+            borderColor: tint, backgroundColor: tint, borderWidth: 1.5, pointStyle: marks[i % marks.length],
+            borderDash: is_library(String(name)) ? [5, 3] : [], pointRadius: data.length > 60 ? 1 : 3.5, clip: 8};
+  });
+  const named = !line && sets.every((set) => set.data.length === 1);
+  if (!line && drawn.length > 2) sets.push(front_of(drawn, x));
+  return {type: "scatter", plugins: named ? [names_at_dots] : [], data: {datasets: sets}, options: {...shared(title, note(y)), scales}};
+}
