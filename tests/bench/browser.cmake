@@ -20,7 +20,7 @@ function(look path result)
     COMMAND ${browser} --headless --no-sandbox --disable-dev-shm-usage --enable-unsafe-swiftshader
             --user-data-dir=${WORK}/profile --window-size=${size} --virtual-time-budget=2000 ${look_options}
             --enable-logging=stderr --dump-dom "file://${path}#${fragment}"
-    TIMEOUT 120 RESULT_VARIABLE status OUTPUT_VARIABLE page ERROR_VARIABLE log)
+    TIMEOUT 300 RESULT_VARIABLE status OUTPUT_VARIABLE page ERROR_VARIABLE log)
   if(NOT status EQUAL 0)
     message(FATAL_ERROR "${path}: the browser ended with ${status}: ${log}")
   endif()
