@@ -29,7 +29,7 @@ const chart_box = () => make("div", {className: "chart"}, make("canvas", {ariaLa
 
 const HIDDEN = new Set(["name", "run_name", "run_type", "cpu_time", "$keys", "$family", "command", "repetitions",
                         "repetition_index", "time_unit", "family_index", "per_family_instance_index", "aggregate_name"]);
-const MOST_LINES = 300;
+const MOST_LINES = 100;
 
 // A table of all members of the rows; a click on a heading sorts by it.
 function table(list) {

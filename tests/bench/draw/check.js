@@ -1,4 +1,4 @@
-// Added to a page of `winnow draw` by pages.cmake: writes to #report how many things were sent to the GPU, reads
+// Added to a page of `winnow view` by pages.cmake: writes to #report how many things were sent to the GPU, reads
 // back pixels, switches every layer off and on, points at the centre of the frame, and shows all frames.
 
 const kErrors = [...document.querySelectorAll("#failure")].map((panel) => panel.textContent);
