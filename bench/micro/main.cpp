@@ -98,10 +98,11 @@ std::vector<NamedScene> take_scenes(std::vector<std::string>& arguments) {
 void add_context() {
   const Json facts = machine_facts();
   for (const auto& [key, value] : facts.items()) {
-    if (key == "date") continue;  // Google Benchmark adds it
+    // Google Benchmark adds these.
+    if (key == "date" || key == "executable" || key == "num_cpus") continue;
     std::string text = value.is_string() ? value.get<std::string>() : value.dump();
     if (value.is_array()) std::erase_if(text, [](char c) { return c == '"'; });
-    benchmark::AddCustomContext(key == "processor" ? "machine" : key, text);
+    benchmark::AddCustomContext(key, text);
   }
 }
 

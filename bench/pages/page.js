@@ -76,7 +76,7 @@ function add_section(title, of_section) {
     if (!details.open) return;
     const choose = (key) => (value) => { state.set(key, value); draw(); };
     let list = rows(at.family).filter(at.where);
-    const asked = [select("show", of_section.map((one) => one.title), at.title, (name) => {
+    const menus = [select("show", of_section.map((one) => one.title), at.title, (name) => {
       at = of_section.find((one) => one.title === name);
       draw();
     })];
@@ -85,14 +85,14 @@ function add_section(title, of_section) {
       if (choices.length < 2) continue;
       const before = state.get(name);
       const chosen = choices.includes(before) ? before : usual(name, choices, list);
-      asked.push(select(name, choices, chosen, choose(name)));
+      menus.push(select(name, choices, chosen, choose(name)));
       list = list.filter((row) => row[name] === chosen);
     }
     const fields = at.fields.filter((field) => [field].flat().some((name) => list.some((row) => Number.isFinite(row[name]))));
     const key = `value of ${at.title}`;
     const field = fields.includes(state.get(key)) ? state.get(key) : fields[0];
-    if (fields.length > 1) asked.push(select("value", fields, field, choose(key)));
-    controls.replaceChildren(...asked);
+    if (fields.length > 1) menus.push(select("value", fields, field, choose(key)));
+    controls.replaceChildren(...menus);
     text.textContent = at.text;
     box.hidden = field === undefined;
     if (field !== undefined) chart_into(box, at.draw(list, field, ""), distinct(list, at.keys[0]).length);
@@ -154,14 +154,14 @@ function add_card() {
   card.append(controls, make("div", {className: "answer"}, make("div", {}, answer, facts), box));
   function draw() {
     let list = all;
-    const asked = [];
+    const menus = [];
     for (const name of ["scene", "objects", "threads"]) {
       const choices = distinct(list, name).sort((a, b) => typeof a === "number" ? a - b : 0);
       if (!choices.includes(state[name])) state[name] = usual(name, choices, list);
-      asked.push(select(name, choices, state[name], (value) => { state[name] = value; draw(); }));
+      menus.push(select(name, choices, state[name], (value) => { state[name] = value; draw(); }));
       list = list.filter((row) => row[name] === state[name]);
     }
-    controls.replaceChildren(make("span", {textContent: "My scene is like"}), ...asked);
+    controls.replaceChildren(make("span", {textContent: "My scene is like"}), ...menus);
     const ranked = list.slice().sort((a, b) => a.real_time - b.real_time);
     const own = ranked.filter((row) => !is_library(row.partition) && !is_base(row.partition) && row.partition !== "auto_partition");
     const best = own[0];

@@ -20,7 +20,7 @@ const WORDS = {
   partition: "engine query scene", memory_read: "what", mesh: "what engine", kernel: "kernel volume",
   continuous: "what", scene: "query"};
 const CURVES = ["angle", "ratio", "offset", "thinness"];
-const WHOLE = {batch: {asked: "batch"}, single: {asked: "single"}, real_time: {}};
+const WHOLE = {batch: {call: "batch"}, single: {call: "single"}, real_time: {}, manual_time: {}};
 
 const file = JSON.parse(document.getElementById("data").textContent);
 const context = file.context || {};
@@ -38,7 +38,7 @@ function parsed(row) {
     else keys[words.shift() || `word${Object.keys(keys).length}`] = segment;
   }
   if (family === "pair" && !keys.engine) keys.engine = "robust";
-  if (family === "partition") Object.assign(keys, {asked: keys.asked || "single", threads: keys.threads || 1});
+  if (family === "partition") Object.assign(keys, {call: keys.call || "single", threads: keys.threads || 1});
   for (const curve of family === "stability" ? CURVES : []) {
     if (curve in keys) Object.assign(keys, {curve, parameter: keys[curve]});
     delete keys[curve];

@@ -181,7 +181,7 @@ TEST(QueryFormat, each_wrong_value_is_refused_and_named) {
   }
 }
 
-TEST_F(ToolCommands, wrong_query_is_named_with_file_index_and_member) {
+TEST_F(ToolCommands, wrong_query_names_file_index_and_member) {
   const auto message = [&](const std::string& query_text) {
     const Ending ending = query(R"([{"a": {"type": "sphere", "radius": 1},
                                      "b": {"type": "sphere", "radius": 1}}, )" +
