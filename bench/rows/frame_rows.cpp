@@ -208,8 +208,6 @@ void derive_frames(Results& results, const std::string& scene, std::size_t objec
   derive_growth(results, scene, times_of(results, {{"scene", scene}, {"isa", isa}}));
 }
 
-}
-
 void add_limit(Results& results, const std::string& scene, std::size_t objects) {
   const Json where{
       {"scene", scene}, {"objects", objects}, {"threads", 1}, {"isa", to_string(active_isa())}};
