@@ -55,9 +55,7 @@ class Query final : public RowsCommand {
       std::cerr << " (" << status << ")\n";
     }
   }
-  [[nodiscard]] Json document() override {
-    return judge_ ? RowsCommand::document() : answers_;
-  }
+  [[nodiscard]] Json document() override { return judge_ ? RowsCommand::document() : answers_; }
 
   std::string file_;
   std::string tier_ = "robust";
