@@ -21,7 +21,7 @@ namespace {
 
 RankScene::RankScene(std::uint32_t rank, std::uint32_t ranks, const ShapePool& shapes,
                      const SceneOptions& options)
-    : NamedBodies(shapes, options),
+    : RankMembers(shapes, options),
       rank_(rank),
       is_single_rank_(ranks == 1),
       region_(Regions().of(0)),

@@ -5,8 +5,8 @@
 
 #include <winnow/pipeline/cluster_scene.h>
 #include "pipeline/cluster/contact_events.h"
-#include "pipeline/cluster/named_bodies.h"
 #include "pipeline/cluster/rank_group.h"
+#include "pipeline/cluster/rank_members.h"
 #include "pipeline/cluster/regions.h"
 #include "pipeline/cluster/send_queue.h"
 #include "pipeline/scene/body_pairs.h"
@@ -20,7 +20,7 @@ namespace winnow {
 
 /// The bodies of one rank: changes by the caller, migration, and contacts. Throws std::bad_alloc if
 /// memory is refused.
-class RankScene : public NamedBodies {
+class RankScene : public RankMembers {
  public:
   RankScene(std::uint32_t rank, std::uint32_t ranks, const ShapePool& shapes,
             const SceneOptions& options);

@@ -32,9 +32,9 @@ static_assert(sizeof(BodyRecord) == 80);
 
 /// The bodies of one rank: bodies that belong to the rank, copies (ghosts) of other ranks' bodies
 /// whose boxes overlap its region, and replicated bodies.
-class NamedBodies {
+class RankMembers {
  public:
-  NamedBodies(const ShapePool& shapes, const SceneOptions& options);
+  RankMembers(const ShapePool& shapes, const SceneOptions& options);
 
   /// False if the options are out of range.
   [[nodiscard]] bool is_good() const noexcept;

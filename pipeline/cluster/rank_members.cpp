@@ -1,17 +1,17 @@
-#include "pipeline/cluster/named_bodies.h"
+#include "pipeline/cluster/rank_members.h"
 
 #include "pipeline/scene/scene_state.h"
 
 namespace winnow {
 
-NamedBodies::NamedBodies(const ShapePool& shapes, const SceneOptions& options)
+RankMembers::RankMembers(const ShapePool& shapes, const SceneOptions& options)
     : scene_(shapes, options), table_(options.memory) {}
 
-bool NamedBodies::is_good() const noexcept {
+bool RankMembers::is_good() const noexcept {
   return state().options_are_good;
 }
 
-Status NamedBodies::find_keys(std::span<const BodyName> names, std::uint8_t flag,
+Status RankMembers::find_keys(std::span<const BodyName> names, std::uint8_t flag,
                               std::vector<Key>& keys) const {
   keys.clear();
   for (const BodyName name : names) {
@@ -23,14 +23,14 @@ Status NamedBodies::find_keys(std::span<const BodyName> names, std::uint8_t flag
                                                                       : Status::ok;
 }
 
-Status NamedBodies::key_of(BodyName name, Key& key) const noexcept {
+Status RankMembers::key_of(BodyName name, Key& key) const noexcept {
   const std::uint32_t id = table_.find(name);
   if (id == NameTable::kNone || (flags_[id] & kOwned) == 0) return Status::invalid_key;
   key = state().keys.key_of(id);
   return Status::ok;
 }
 
-Status NamedBodies::bodies(std::span<ClusterBody> bodies) const {
+Status RankMembers::bodies(std::span<ClusterBody> bodies) const {
   if (bodies.size() != size()) return Status::size_mismatch;
   std::size_t count = 0;
   for (ObjectId id = 0; id < flags_.size(); ++id) {
@@ -40,7 +40,7 @@ Status NamedBodies::bodies(std::span<ClusterBody> bodies) const {
   return Status::ok;
 }
 
-void NamedBodies::records(std::vector<BodyName>& names, std::vector<BodyRecord>& bodies) const {
+void RankMembers::records(std::vector<BodyName>& names, std::vector<BodyRecord>& bodies) const {
   for (ObjectId id = 0; id < flags_.size(); ++id) {
     if (!is_owned(state().keys.key_of(id))) continue;
     names.push_back(names_[id]);
@@ -48,24 +48,24 @@ void NamedBodies::records(std::vector<BodyName>& names, std::vector<BodyRecord>&
   }
 }
 
-Aabb NamedBodies::box_of(ObjectId id) const noexcept {
+Aabb RankMembers::box_of(ObjectId id) const noexcept {
   Aabb box;
   (void)state().set(state().body_state[id]).partition->bounds(state().place[id], box);
   return box;
 }
 
-BodyRecord NamedBodies::record_of(ObjectId id) const noexcept {
+BodyRecord RankMembers::record_of(ObjectId id) const noexcept {
   BodyRecord record{state().pose[id], state().shape[id], {}, state().body_state[id]};
   (void)state().set(record.state).partition->filter(state().place[id], record.filter);
   record.is_new = (flags_[id] & kNew) != 0 ? 1 : 0;
   return record;
 }
 
-Status NamedBodies::check_shape(ShapeId shape, const Pose& pose) const noexcept {
+Status RankMembers::check_shape(ShapeId shape, const Pose& pose) const noexcept {
   return state().check(shape, pose);
 }
 
-Aabb NamedBodies::box_around(ShapeId shape, const Pose& pose) const noexcept {
+Aabb RankMembers::box_around(ShapeId shape, const Pose& pose) const noexcept {
   const PlainBox box = state().bounds_from(state().origin, shape, pose, 0.0);
   return {{box.min[0], box.min[1], box.min[2]}, {box.max[0], box.max[1], box.max[2]}};
 }
