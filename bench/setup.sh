@@ -5,7 +5,7 @@
 WINNOW_BUILD_PACKAGES=(cmake ninja-build g++ pkg-config libeigen3-dev libxsimd-dev libtbb-dev)
 # Also required by the winnow tool.
 WINNOW_BENCH_PACKAGES=(libcli11-dev nlohmann-json3-dev liblzma-dev xz-utils
-                       libjs-three libjs-chart.js)
+                       libjs-three libjs-chart.js libbenchmark-dev)
 # Required by the Python package, and by its tests.
 WINNOW_PYTHON_PACKAGES=(pybind11-dev python3-dev python3-numpy)
 WINNOW_PYTHON_TEST_PACKAGES=(python3-pytest python3-hypothesis python3-venv mypy python3-mpi4py)

@@ -1,4 +1,4 @@
-// Single and batched queries of a partition, as measure/query_race times them, and the conversion
+// Single and batched queries of a partition, as bench/micro times them, and the conversion
 // of their results to rows.
 
 #include "bench/contenders/partition_queries.h"

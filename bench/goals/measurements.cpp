@@ -7,29 +7,21 @@
 #include "bench/contenders/partitions.h"
 #include "bench/goals/scenes_of.h"
 #include "bench/measure/partition_costs.h"
-#include "bench/measure/query_costs.h"
 #include "bench/questions/hard_cases.h"
-#include "bench/rows/accuracy_rows.h"
 #include "bench/rows/advice_rows.h"
 #include "bench/rows/barrier_rows.h"
 #include "bench/rows/cold_rows.h"
-#include "bench/rows/filter_rows.h"
 #include "bench/rows/flow_rows.h"
 #include "bench/rows/frame_rows.h"
 #include "bench/rows/hard_case_rows.h"
 #include "bench/rows/host_rows.h"
-#include "bench/rows/kernel_rows.h"
 #include "bench/rows/library_comparison_rows.h"
 #include "bench/rows/machine.h"
-#include "bench/rows/motion_rows.h"
-#include "bench/rows/query_rows.h"
-#include "bench/rows/ray_rows.h"
 #include "bench/rows/scene_rows.h"
 #include "bench/simulation/flow_phases.h"
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <stdexcept>
 #include <system_error>
@@ -99,16 +91,6 @@ void goal_hosts(const Json& options, MeasurementCache& /*measurement_cache*/, Me
   }
 }
 
-/// Queries with and without filters, for every partition that suits the size.
-void goal_filters(const Json& options, MeasurementCache& /*measurement_cache*/,
-                  Measured& measured) {
-  declare_filters(measured.results);
-  const std::size_t objects = options.at("objects");
-  for (const NamedScene& scene : scenes_of(options, measured)) {
-    add_filters(measured.results, scene, objects, 1, partitions_for({"all"}, objects).taken);
-  }
-}
-
 /// Compares the pairs of every partition, instruction set and number of threads with the reference.
 void goal_same_pairs(const Json& options, MeasurementCache& /*measurement_cache*/,
                      Measured& measured) {
@@ -137,30 +119,12 @@ void goal_same_pairs(const Json& options, MeasurementCache& /*measurement_cache*
   }
 }
 
-void goal_keys(const Json& options, MeasurementCache& /*measurement_cache*/, Measured& measured) {
-  declare_keys(measured.results);
-  for (const std::string& partition : testing_partitions()) {
-    for (const std::size_t objects : options.at("objects")) {
-      add_key_costs(measured.results, partition, objects, options.at("order") == "random");
-    }
-  }
-}
-
 void goal_limits(const Json& options, MeasurementCache& measurement_cache, Measured& measured) {
   Json frames = Json::object();
   frames["frames"] = options;
   measured.results = measurement_cache.measured(frames).results;
   declare_limits(measured.results);
   add_limit(measured.results, options.at("scene"), options.at("objects"));
-}
-
-void goal_kernels(const Json& options, MeasurementCache& /*measurement_cache*/,
-                  Measured& measured) {
-  const auto isas = isa_names();
-  measured.absent = std::find(isas.begin(), isas.end(), options.at("isa")) == isas.end();
-  if (measured.absent) return;
-  declare_kernels(measured.results);
-  add_kernels(measured.results, 9);
 }
 
 void goal_advice(const Json& options, MeasurementCache& /*measurement_cache*/, Measured& measured) {
@@ -172,43 +136,6 @@ void goal_advice(const Json& options, MeasurementCache& /*measurement_cache*/, M
                                    : frames_of_goal(objects);
     add_advice(measured.results, scene, objects, 1, partitions_for({"all"}, objects).taken, frames,
                options.at("threads"));
-  }
-}
-
-/// Queries of one partition and of other libraries, on one thread.
-void goal_queries(const Json& options, MeasurementCache& /*measurement_cache*/,
-                  Measured& measured) {
-  declare_queries(measured.results);
-  measured.machine_ms =
-      add_queries(measured.results, scenes_of(options, measured).front(),
-                  {.objects = options.at("objects"),
-                   .partitions = {options.at("partition")},
-                   .rays = 50'000,
-                   .rounds = 7,
-                   .sets = {"ray closest", "ray all", "ray all near", "box 1", "box 5", "box 20"},
-                   .peers = true})
-          .machine_ms;
-}
-
-void goal_frusta(const Json& options, MeasurementCache& /*measurement_cache*/, Measured& measured) {
-  declare_queries(measured.results);
-  add_frusta(measured.results, options.at("objects"), 15);
-}
-
-/// Allocations of every partition when the same queries are repeated.
-void goal_second_rounds(const Json& options, MeasurementCache& /*measurement_cache*/,
-                        Measured& measured) {
-  measured.results.declare({"second_rounds",
-                            "queries",
-                            "allocations of repeated queries",
-                            {"partition", "set"},
-                            {{"allocations", "allocations", "", Better::less}}});
-  for (const std::string& partition : testing_partitions()) {
-    for (const SecondRound& round : measure_second_rounds(partition, options.at("objects"))) {
-      measured.results.add(
-          "second_rounds",
-          {{"partition", partition}, {"set", round.set}, {"allocations", round.allocations}});
-    }
   }
 }
 
@@ -279,43 +206,6 @@ void goal_worlds(const Json& options, MeasurementCache& /*measurement_cache*/, M
   }
 }
 
-/// Races winnow and other libraries on pairs of one kind, on one thread; winnow also on two threads
-/// if the pairs do not fit the caches.
-void goal_pairs(const Json& options, MeasurementCache& /*measurement_cache*/, Measured& measured) {
-  const std::string name = options.at("kind");
-  const PairKind* kind = find_pair_kind(name);
-  if (kind == nullptr) throw std::runtime_error("no kind of pairs " + name);
-  const std::size_t pairs = options.at("pairs");
-  declare_pair_times(measured.results, PairKeys::settings);
-  measured.machine_ms =
-      add_pair_times(measured.results,
-                     {.kind = *kind,
-                      .pairs = pairs,
-                      .contenders = {.threads = pairs > kMaxPairsInCache ? std::vector<int>{1, 2}
-                                                                         : std::vector<int>{1},
-                                     .peers = true}},
-                     PairKeys::settings)
-          .machine_ms;
-}
-
-/// Errors of one tier on all kinds of pairs.
-void goal_errors(const Json& options, MeasurementCache& /*measurement_cache*/, Measured& measured) {
-  const auto pairs = options.at("pairs").get<std::map<std::string, std::size_t>>();
-  declare_pair_errors(measured.results);
-  for (const PairKind& kind : main_pair_kinds()) {
-    const auto own = pairs.find(std::string(kind.name));
-    AccuracyOptions accuracy{
-        .kind = kind,
-        .levels = {kLevels.begin(), kLevels.end()},
-        .tiers = {options.at("tier") == "robust" ? NarrowTier::robust : NarrowTier::reference},
-        .peers = false};
-    accuracy.set.pairs = own != pairs.end() ? own->second : pairs.at("others");
-    accuracy.set.ratio = options.at("ratio");
-    if (options.at("judge") == "reference") accuracy.judge = TruthSource::reference;
-    add_pair_errors(measured.results, accuracy, false);
-  }
-}
-
 /// Hard cases, from the files of a folder, with both orders of each pair.
 void goal_hard_cases(const Json& options, MeasurementCache& /*measurement_cache*/,
                      Measured& measured) {
@@ -332,42 +222,11 @@ void goal_hard_cases(const Json& options, MeasurementCache& /*measurement_cache*
   measured.absent = measured.results.rows("hard_cases").empty();
 }
 
-/// Moving pairs of one kind.
-void goal_impacts(const Json& options, MeasurementCache& /*measurement_cache*/,
-                  Measured& measured) {
-  const std::string name = options.at("kind");
-  const PairKind* kind = find_pair_kind(name);
-  if (kind == nullptr) throw std::runtime_error("no kind of pairs " + name);
-  declare_motion(measured.results);
-  for (const PairTurn turn : kPairTurns) {
-    measured.machine_ms =
-        add_impacts(measured.results,
-                    {.kind = *kind, .turn = turn, .pairs = options.at("pairs"), .peers = true})
-            .machine_ms;
-  }
-}
-
-void goal_features(const Json& options, MeasurementCache& /*measurement_cache*/,
-                   Measured& measured) {
-  declare_motion(measured.results);
-  add_feature_impacts(measured.results, options.at("pairs"), 5, 1);
-}
-
 void goal_barriers(const Json& options, MeasurementCache& /*measurement_cache*/,
                    Measured& measured) {
   declare_barriers(measured.results);
   for (const std::string& scene : barrier_names()) {
     add_barrier(measured.results, {.scene = scene, .steps = options.at("steps")});
-  }
-}
-
-void goal_continuous_collision(const Json& options, MeasurementCache& /*measurement_cache*/,
-                               Measured& measured) {
-  declare_motion(measured.results);
-  for (const int threads : options.at("threads").get<std::vector<int>>()) {
-    add_continuous_collision(
-        measured.results,
-        {.bodies = options.at("bodies"), .fast = options.at("fast"), .threads = threads});
   }
 }
 
@@ -382,21 +241,6 @@ void goal_scene_costs(const Json& options, MeasurementCache& /*measurement_cache
                       Measured& measured) {
   declare_scenes(measured.results);
   add_scene_costs(measured.results, {.scene = options.at("scene")});
-}
-
-void goal_tori(const Json& /*options*/, MeasurementCache& /*measurement_cache*/,
-               Measured& measured) {
-  declare_scenes(measured.results);
-  measured.machine_ms = add_tori(measured.results, 11, true, true).machine_ms;
-}
-
-/// Rays through a mesh of some kind and size.
-void goal_mesh_rays(const Json& options, MeasurementCache& /*measurement_cache*/,
-                    Measured& measured) {
-  declare_mesh_rays(measured.results);
-  measured.machine_ms = add_mesh_rays(measured.results, {.mesh = options.at("mesh"),
-                                                         .triangles = options.at("triangles")})
-                            .machine_ms;
 }
 
 /// A frame of the granular flow, compared with the sum of its phases measured one by one.
@@ -437,43 +281,29 @@ void goal_flow_soak(const Json& options, MeasurementCache& /*measurement_cache*/
 }  // namespace
 
 const Measurer* find_measurer(const std::string& name) {
-  static const std::map<std::string, Measurer> all{
-      {"frames", goal_frames},
-      {"beside_peers", goal_beside_peers},
-      {"cold", goal_cold},
-      {"hosts", goal_hosts},
-      {"filters", goal_filters},
-      {"same_pairs", goal_same_pairs},
-      {"keys", goal_keys},
-      {"limits", goal_limits},
-      {"kernels", goal_kernels},
-      {"advice", goal_advice},
-      {"first_frames", measure_first_frames},
-      {"changes", measure_changes},
-      {"worst_frames", measure_worst_frames},
-      {"queries", goal_queries},
-      {"frusta", goal_frusta},
-      {"second_rounds", goal_second_rounds},
-      {"churn", goal_churn},
-      {"pair_events", goal_pair_events},
-      {"worlds", goal_worlds},
-      {"quiet_frames", goal_quiet_frames},
-      {"pairs", goal_pairs},
-      {"errors", goal_errors},
-      {"hard_cases", goal_hard_cases},
-      {"impacts", goal_impacts},
-      {"features", goal_features},
-      {"continuous_collision", goal_continuous_collision},
-      {"barriers", goal_barriers},
-      {"scenes", goal_scenes},
-      {"scene_costs", goal_scene_costs},
-      {"tori", goal_tori},
-      {"mesh_rays", goal_mesh_rays},
-      {"flow_frames", goal_flow_frames},
-      {"flow_soak", goal_flow_soak},
-      {"default_report", measure_default_report},
-      {"lone_report", measure_lone_report},
-      {"killed_report", measure_killed_report}};
+  static const std::map<std::string, Measurer> all{{"frames", goal_frames},
+                                                   {"beside_peers", goal_beside_peers},
+                                                   {"cold", goal_cold},
+                                                   {"hosts", goal_hosts},
+                                                   {"same_pairs", goal_same_pairs},
+                                                   {"limits", goal_limits},
+                                                   {"advice", goal_advice},
+                                                   {"first_frames", measure_first_frames},
+                                                   {"changes", measure_changes},
+                                                   {"worst_frames", measure_worst_frames},
+                                                   {"churn", goal_churn},
+                                                   {"pair_events", goal_pair_events},
+                                                   {"worlds", goal_worlds},
+                                                   {"quiet_frames", goal_quiet_frames},
+                                                   {"hard_cases", goal_hard_cases},
+                                                   {"barriers", goal_barriers},
+                                                   {"scenes", goal_scenes},
+                                                   {"scene_costs", goal_scene_costs},
+                                                   {"flow_frames", goal_flow_frames},
+                                                   {"flow_soak", goal_flow_soak},
+                                                   {"default_report", measure_default_report},
+                                                   {"lone_report", measure_lone_report},
+                                                   {"killed_report", measure_killed_report}};
   const auto at = all.find(name);
   return at == all.end() ? nullptr : &at->second;
 }

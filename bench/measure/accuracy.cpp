@@ -1,18 +1,13 @@
-// Runs narrow-phase engines on pairs with reference results and computes the errors of their
-// distances, depths and normals. bench/rows/accuracy_rows.cpp calls `measure_accuracy`;
-// ground_truth.cpp gives the reference results.
+// Compares results of narrow-phase engines with reference results: computes the errors of their
+// distances, depths and normals. bench/micro/pairs.cpp calls it; ground_truth.cpp gives the
+// reference results.
 
 #include "bench/measure/accuracy.h"
-
-#include <winnow/simd/isa.h>
-#include "bench/measure/narrow_race.h"
 
 #include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
-#include <exception>
-#include <map>
 #include <numbers>
 
 namespace winnow::bench {
@@ -101,75 +96,6 @@ Accuracy summary_of(std::span<const PairError> errors) {
   sum.depth = spread_of_errors(depth);
   sum.degrees = spread_of_errors(degrees);
   return sum;
-}
-
-Accuracy judge_engine(NarrowEngine& engine, ContactLevel level, const PairSet& set,
-                      std::span<const PairTruth> truths, std::size_t runs) {
-  std::vector<double> ns;
-  for (std::size_t run = 0; run < runs; ++run) {
-    const ThreadStopwatch clock;
-    engine.run(level, set.pairs);
-    ns.push_back(clock.ms() * 1e6 / static_cast<double>(set.pairs.size()));
-  }
-  Accuracy accuracy = summary_of(errors_of(engine, level, set, truths));
-  accuracy.engine = engine.name();
-  accuracy.level = level;
-  accuracy.ns = std::move(ns);
-  accuracy.recomputed = engine.recomputed();
-  return accuracy;
-}
-
-namespace {
-
-/// The result for an engine that throws: all answers are missing.
-Accuracy no_answers(const NarrowEngine& engine, ContactLevel level, std::size_t pairs) {
-  Accuracy accuracy;
-  accuracy.engine = engine.name();
-  accuracy.level = level;
-  accuracy.pairs = pairs;
-  accuracy.missing = pairs;
-  return accuracy;
-}
-
-std::vector<AccuracyAtGap> split_by_gap(const Accuracy& whole,
-                                        const std::vector<PairError>& errors) {
-  std::map<int, std::vector<PairError>> by_power;
-  for (const PairError& one : errors) {
-    if (one.gap > 0.0) by_power[static_cast<int>(std::floor(std::log10(one.gap)))].push_back(one);
-  }
-  std::vector<AccuracyAtGap> split;
-  for (const auto& [power, some] : by_power) {
-    Accuracy accuracy = summary_of(some);
-    accuracy.engine = whole.engine;
-    accuracy.level = whole.level;
-    split.push_back({std::pow(10.0, power), std::move(accuracy)});
-  }
-  return split;
-}
-
-}  // namespace
-
-AccuracyMeasurement measure_accuracy(const AccuracyOptions& options) {
-  const auto set = make_pair_set(options.kind, options.set);
-  const auto truths = truths_of(*set, options.judge);
-  const auto contenders = narrow_contenders(*set, {.tiers = options.tiers, .peers = options.peers});
-  AccuracyMeasurement measured;
-  for (const ContactLevel level : options.levels) {
-    for (const auto& [engine, threads] : contenders) {
-      if (!engine->takes(options.kind, level)) continue;
-      try {
-        measured.engines.push_back(judge_engine(*engine, level, *set, truths, options.runs));
-      } catch (const std::exception&) {
-        measured.engines.push_back(no_answers(*engine, level, set->pairs.size()));
-        continue;
-      }
-      const auto errors = errors_of(*engine, level, *set, truths);
-      for (AccuracyAtGap& one : split_by_gap(measured.engines.back(), errors)) {
-        measured.by_gap.push_back(std::move(one));
-      }
-    }
-  }
-  return measured;
 }
 
 std::string judge_name(TruthSource judge) {

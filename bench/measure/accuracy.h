@@ -1,6 +1,5 @@
 #pragma once
 
-#include "bench/common/sample.h"
 #include "bench/contenders/narrow_engine.h"
 #include "bench/measure/ground_truth.h"
 #include "bench/scenes/pair_set.h"
@@ -36,10 +35,8 @@ struct ErrorSpread {
   double worst = 0.0;
 };
 
-/// Errors and times of one engine on the pairs of a set at a level.
+/// Errors of one engine on some pairs.
 struct Accuracy {
-  std::string engine;
-  ContactLevel level{};
   std::size_t pairs = 0;  ///< number of pairs with a reference result
   std::size_t wrong = 0;
   /// At level manifold, only overlapping pairs count.
@@ -50,8 +47,6 @@ struct Accuracy {
   ErrorSpread degrees{};
   std::size_t beyond_bound = 0;
   std::size_t normals_off = 0;  ///< normals off by more than 0.01 degrees
-  std::vector<double> ns{};     ///< ns per pair on one thread, one entry per run over the set
-  double recomputed = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// Returns the errors of the engine's last run, which must have covered all pairs of the set: one
@@ -60,43 +55,12 @@ struct Accuracy {
                                                const PairSet& set,
                                                std::span<const PairTruth> truths);
 
-/// Summarizes errors; the engine, the level and the times are not set.
+/// Summarizes errors.
 [[nodiscard]] Accuracy summary_of(std::span<const PairError> errors);
 
-/// Runs a started engine several times over all pairs of the set and compares its results with the
-/// reference.
-[[nodiscard]] Accuracy judge_engine(NarrowEngine& engine, ContactLevel level, const PairSet& set,
-                                    std::span<const PairTruth> truths, std::size_t runs = 3);
-
-/// Value of PairSetOptions::nearest for AccuracyOptions: the smallest gap or depth of pairs, in
-/// radii of the smaller body.
+/// Value of PairSetOptions::nearest of pairs whose errors are measured: the smallest gap or depth,
+/// in radii of the smaller body.
 inline constexpr double kNearestPairs = 1e-6;
-
-/// Pairs of one kind, and the engines to measure on them.
-struct AccuracyOptions {
-  PairKind kind;
-  PairSetOptions set{.pairs = 400, .nearest = kNearestPairs};
-  std::vector<ContactLevel> levels{ContactLevel::distance};
-  std::vector<NarrowTier> tiers{NarrowTier::robust, NarrowTier::reference};
-  bool peers = true;  ///< also other libraries, if the tool was built with them
-  TruthSource judge = TruthSource::oracle;
-  std::size_t runs = 3;  ///< number of timed runs
-};
-
-/// Errors of the pairs whose |distance| / size has the same power of ten.
-struct AccuracyAtGap {
-  double gap = 0.0;  ///< lower end of the decade: 1e-3 for [1e-3, 1e-2)
-  Accuracy accuracy;
-};
-
-struct AccuracyMeasurement {
-  std::vector<Accuracy> engines;  ///< by level, winnow's tiers first
-  /// By level and engine, then by gap, ascending; pairs that touch exactly are left out.
-  std::vector<AccuracyAtGap> by_gap;
-};
-
-/// Measures all engines. If an engine throws, all its answers count as missing.
-[[nodiscard]] AccuracyMeasurement measure_accuracy(const AccuracyOptions& options);
 
 /// Returns "100 digits", or the name of the tier that replaces the oracle if the tool was built
 /// without the oracle.

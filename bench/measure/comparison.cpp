@@ -1,5 +1,5 @@
 // Compares the results of query engines with each other and with a test of every box in double.
-// query_race.cpp calls it; reference_queries.cpp decides doubtful cases.
+// bench/micro/partitions.cpp calls it; reference_queries.cpp decides doubtful cases.
 
 #include "bench/measure/reference_queries.h"
 

@@ -1,5 +1,5 @@
-// Races winnow's Scene and other libraries on scenes of bodies (pile, terrain, balls), and meshes
-// on two tori. bench/rows/scene_rows.cpp calls it.
+// Races winnow's Scene and other libraries on scenes of bodies (pile, terrain, balls).
+// bench/rows/scene_rows.cpp calls it.
 
 #include "bench/measure/scene_race.h"
 
@@ -10,24 +10,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 
 namespace winnow::bench {
 
 namespace {
 
 constexpr std::size_t kWarming = 2;
-
-/// Counts pairs in only one of the lists, after sorting both and removing duplicates.
-std::size_t count_differing(MeshEngine::TrianglePairs& a, MeshEngine::TrianglePairs& b) {
-  for (MeshEngine::TrianglePairs* pairs : {&a, &b}) {
-    std::sort(pairs->begin(), pairs->end());
-    pairs->erase(std::unique(pairs->begin(), pairs->end()), pairs->end());
-  }
-  MeshEngine::TrianglePairs differ;
-  std::set_symmetric_difference(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(differ));
-  return differ.size();
-}
 
 }  // namespace
 
@@ -50,37 +38,6 @@ std::vector<SceneTiming> race_scene(const BodySet& set, const PoseNoise& by,
     timings[i].ms = std::move(ms[i]);
     timings[i].finds = contenders[i].engine->finds();
     timings[i].bytes = contenders[i].engine->bytes();
-  }
-  return timings;
-}
-
-std::vector<MeshTiming> race_meshes(std::span<const std::unique_ptr<MeshEngine>> engines,
-                                    std::size_t rounds) {
-  const Triangles torus = make_race_torus();
-  Arenas arenas(1);
-  const auto turns = [&](std::size_t warming, const auto& work) {
-    return run_interleaved(engines.size(), rounds, warming, [&](std::size_t, std::size_t i) {
-      return timed(1, arenas, [&] { work(*engines[i]); });
-    });
-  };
-  std::vector<MeshTiming> timings(engines.size());
-  auto build_ms = turns(0, [&](MeshEngine& engine) { engine.build(torus); });
-  for (std::size_t i = 0; i < engines.size(); ++i) {
-    timings[i].engine = engines[i]->name();
-    timings[i].build_ms = std::move(build_ms[i]);
-  }
-  for (std::size_t p = 0; p < torus_poses().size(); ++p) {
-    const Pose& pose = torus_poses()[p].pose;
-    auto ms = turns(kWarming, [&](MeshEngine& engine) { engine.collide(Pose{}, pose); });
-    MeshEngine::TrianglePairs expected = engines.front()->pairs();
-    for (std::size_t i = 0; i < engines.size(); ++i) {
-      MeshEngine::TrianglePairs found = engines[i]->pairs();
-      timings[i].collide_ms[p] = std::move(ms[i]);
-      timings[i].differ[p] = count_differing(expected, found);
-      timings[i].pairs[p] = found.size();
-      timings[i].bytes_per_triangle =
-          static_cast<double>(engines[i]->bytes()) / static_cast<double>(torus.size());
-    }
   }
   return timings;
 }
@@ -158,21 +115,6 @@ std::vector<SceneCost> measure_scene_costs(const SceneCostOptions& options) {
   std::vector<SceneTiming> timings = race_scene(*set, kMoving, contenders, options.frames);
   for (std::size_t i = 0; i < costs.size(); ++i) costs[i].timing = std::move(timings[i]);
   return costs;
-}
-
-MeshMeasurement measure_meshes(std::size_t rounds, bool peers, bool machine_clock) {
-  std::vector<std::unique_ptr<MeshEngine>> engines;
-  engines.push_back(make_winnow_mesh());
-  if (peers) {
-    for (std::unique_ptr<MeshEngine>& peer : make_mesh_peers()) engines.push_back(std::move(peer));
-  }
-  MeshMeasurement measured;
-  MachineClock clock(machine_clock);
-  tick(clock);
-  measured.timings = race_meshes(engines, rounds);
-  tick(clock);
-  measured.machine_ms = clock.median_ms();
-  return measured;
 }
 
 }  // namespace winnow::bench

@@ -34,21 +34,6 @@ struct SceneTiming {
                                                   std::span<SceneContender> contenders,
                                                   std::size_t frames);
 
-/// Results of one engine on two tori.
-struct MeshTiming {
-  std::string engine;
-  std::vector<double> build_ms{};
-  double bytes_per_triangle = 0.0;
-  /// Times, pairs and differences for each of torus_poses().
-  std::vector<double> collide_ms[4]{};
-  std::size_t pairs[4]{};
-  /// Pairs that only the first engine or only this one found.
-  std::size_t differ[4]{};
-};
-
-[[nodiscard]] std::vector<MeshTiming> race_meshes(
-    std::span<const std::unique_ptr<MeshEngine>> engines, std::size_t rounds);
-
 /// Options of a race on a scene of the whole pipeline.
 struct PipelineMeasureOptions {
   std::string scene = "pile";  ///< pile, terrain or balls
@@ -94,14 +79,5 @@ struct SceneCost {
 
 /// Measures the levels distance and manifold.
 [[nodiscard]] std::vector<SceneCost> measure_scene_costs(const SceneCostOptions& options);
-
-struct MeshMeasurement {
-  std::vector<MeshTiming> timings;  ///< winnow first
-  double machine_ms = 0.0;
-};
-
-/// Races all engines on two tori, on one thread.
-[[nodiscard]] MeshMeasurement measure_meshes(std::size_t rounds, bool peers,
-                                             bool machine_clock = true);
 
 }  // namespace winnow::bench

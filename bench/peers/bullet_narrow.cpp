@@ -73,8 +73,8 @@ class Report final : public btManifoldResult {
 /// Bullet in float. Manifolds: the algorithm that its dispatcher picks for the kinds (or the one
 /// for spheres and boxes, which the dispatcher has but does not pick), into an empty manifold.
 /// Verdicts and distances: closed forms if Bullet has them, otherwise GJK and EPA of
-/// btGjkEpaSolver2; btGjkPairDetector is slower (measured by `winnow dev narrow`). Verdicts of
-/// boxes: its SAT.
+/// btGjkEpaSolver2; btGjkPairDetector is slower (measured by bench/micro). Verdicts of boxes:
+/// its SAT.
 class BulletNarrow final : public NarrowAdapter<BulletNarrow> {
  public:
   BulletNarrow() : dispatcher_(&configuration_) {}

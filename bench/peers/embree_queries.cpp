@@ -1,5 +1,5 @@
 // Adapter of Embree for queries on boxes: rays, boxes, balls and nearest neighbours, each query by
-// a call of its own. peers.cpp makes it through adapters.h; measure/query_race times it.
+// a call of its own. peers.cpp makes it through adapters.h; bench/micro times it.
 
 #include "bench/peers/adapters.h"
 

@@ -13,7 +13,7 @@ namespace {
 /// Embree 3: a triangle geometry of high build quality, in one of its two modes: fast, which may
 /// miss hits at edges and vertices, or robust. Single rays use rtcIntersect1 and rtcOccluded1.
 /// Batches use streams (rtcIntersect1M, rtcOccluded1M), the fastest of Embree's functions for
-/// incoherent rays that takes rays in any order (measured by measure/ray_race). As there is one
+/// incoherent rays that takes rays in any order (measured by bench/micro). As there is one
 /// mesh, all hits are the closest one.
 class EmbreeRays final : public RayEngine {
  public:

@@ -12,7 +12,7 @@ namespace {
 using namespace in_fcl;
 
 /// FCL's continuous collision in double, by conservative advancement of linear motions. It uses
-/// FCL's own GJK; libccd's is slower here (measured by `winnow dev impacts`). Motions are given by
+/// FCL's own GJK; libccd's is slower here (measured by bench/micro). Motions are given by
 /// their ends, so rotations of more than half a turn are not supported. A pair for which FCL throws
 /// counts as no hit.
 class FclImpacts final : public ImpactEngine {

@@ -9,11 +9,8 @@
 #include "bench/rows/cluster_rows.h"
 #include "bench/rows/cold_rows.h"
 #include "bench/rows/every_scene_rows.h"
-#include "bench/rows/filter_rows.h"
 #include "bench/rows/frame_rows.h"
 #include "bench/rows/memory_rows.h"
-#include "bench/rows/query_rows.h"
-#include "bench/rows/volume_rows.h"
 #include "bench/scenes/scene.h"
 
 #include <algorithm>
@@ -138,45 +135,6 @@ void measure_peers(Results& results, const ReportOptions& options, const NamedSc
   derive_frames(results, scene.name, objects);
 }
 
-void measure_keys(Results& results, std::size_t objects, bool quick) {
-  for (const std::string& partition : testing_partitions()) {
-    if (quick && partition != "LinearBvh") continue;
-    for (const bool random_order : {false, true}) {
-      add_key_costs(results, partition, objects, random_order);
-    }
-  }
-}
-
-/// Returns the races of volumes, in the partition in which all volumes are compared.
-std::vector<VolumeRowOptions> volume_questions(const ReportOptions& options) {
-  VolumeRowOptions request{.objects = objects_up_to(options, 10'000), .seed = options.seed};
-  request.frames = options.quick ? 2 : volume_frames(request.objects);
-  std::vector<VolumeRowOptions> all;
-  // All boxes of built-in scenes are axis-aligned, so that one scene represents all.
-  for (const NamedScene& scene : few_scenes(options, {"uniform"})) {
-    all.push_back(request);
-    all.back().setting = "scene";
-    all.back().scene = scene;
-    all.back().objects = scene.objects(request.objects);
-    all.back().frames = options.quick ? 2 : volume_frames(all.back().objects);
-  }
-  for (const char* setting : {"cubes", "rods", "slow"}) {
-    all.push_back(request);
-    all.back().setting = setting;
-  }
-  return all;
-}
-
-void add_volume_step(ReportSteps& steps, const VolumeRowOptions& request,
-                     const std::string& table) {
-  constexpr double kEach = 3e-5;  // seconds for each object and frame
-  steps.push_back(
-      {(request.setting == "scene" ? request.scene.name : request.setting) + " in " +
-           request.partition,
-       kEach * static_cast<double>(request.objects) * static_cast<double>(request.frames + 1),
-       [=](Results& results) { add_volumes(results, request, table); }});
-}
-
 /// Measures the requested scenes; all scenes if the default ones are requested.
 void plan_every_scene(const ReportOptions& options, ReportSteps& steps) {
   std::vector<std::string> names;
@@ -208,20 +166,6 @@ void plan_cold(const ReportOptions& options, ReportSteps& steps) {
   });
 }
 
-void plan_filters(const ReportOptions& options, ReportSteps& steps) {
-  for (const NamedScene& scene : few_scenes(options, {"uniform"})) {
-    const std::size_t objects = scene.objects(objects_up_to(options, 10'000));
-    const std::size_t rounds = options.quick ? 1 : 7;
-    for (const std::string& partition : unlimited_partitions()) {
-      if (options.quick && partition != "LinearBvh") continue;
-      steps.push_back({named(scene, objects) + ", filters in " + partition,
-                       6e-6 * static_cast<double>((rounds + 4) * objects), [=](Results& results) {
-                         add_filters(results, scene, objects, options.seed, {partition}, rounds);
-                       }});
-    }
-  }
-}
-
 }  // namespace
 
 ReportSteps plan_throughput(const ReportOptions& options) {
@@ -237,11 +181,6 @@ ReportSteps plan_throughput(const ReportOptions& options) {
   });
   plan_every_scene(options, steps);
   plan_cold(options, steps);
-  plan_filters(options, steps);
-  const std::size_t keyed = objects_up_to(options, 10'000);
-  steps.push_back({"keys", options.quick ? 0.1 : 1.5, [=, quick = options.quick](Results& results) {
-                     measure_keys(results, keyed, quick);
-                   }});
   const std::size_t limited = objects_up_to(options, 100'000);
   steps.push_back({"limits", options.quick ? 0.1 : 1.0, [=](Results& results) {
                      for (const NamedScene& scene : options.scenes) {
@@ -278,67 +217,6 @@ ReportSteps plan_ranks(const ReportOptions& options) {
     }
     steps.push_back({"ranks: " + scene.name, options.quick ? 0.1 : 3.0,
                      [request](Results& results) { add_cluster_runs(results, request); }});
-  }
-  return steps;
-}
-
-ReportSteps plan_volumes(const ReportOptions& options) {
-  ReportSteps steps;
-  const auto all = volume_questions(options);
-  for (const VolumeRowOptions& request : all) add_volume_step(steps, request, "volumes");
-  for (VolumeRowOptions request : all) {
-    if (request.setting != "cubes" && !request.scene.is_recording()) continue;
-    for (const std::string_view partition : volume_partitions()) {
-      const bool is_quadratic = partition == "BoundsNSquared" && request.objects > 2000;
-      const bool is_left_out = options.quick && partition != "FlatGrid";
-      if (partition == kVolumesPartition || is_quadratic || is_left_out) continue;
-      request.partition = partition;
-      add_volume_step(steps, request, "volumes");
-    }
-  }
-  VolumeRowOptions cubes = *std::find_if(
-      all.begin(), all.end(), [](const VolumeRowOptions& one) { return one.setting == "cubes"; });
-  // Distances an object moves in a frame, in edge lengths, at which margins are compared.
-  for (const double step : {0.001, 0.003, 0.01, 0.03, 0.1}) {
-    if (options.quick && step != 0.001 && step != 0.1) continue;
-    cubes.step = step;
-    add_volume_step(steps, cubes, "margins");
-  }
-  return steps;
-}
-
-/// Measures a scene with equal sizes and scenes with different sizes.
-ReportSteps plan_queries(const ReportOptions& options) {
-  const std::size_t objects = objects_up_to(options, 100'000);
-  ReportSteps steps;
-  const auto add = [&](const NamedScene& scene, std::size_t rays, int threads,
-                       const std::string& partition) {
-    const QueryMeasureOptions request{.objects = objects,
-                                      .seed = options.seed,
-                                      .partitions = {partition},
-                                      .threads = threads,
-                                      .rays = rays,
-                                      .rounds = options.quick ? 2U : 5U,
-                                      .machine_clock = false,
-                                      .peers = options.peers};
-    const double partitions = partition == "all" ? 9.0 : 2.0;
-    steps.push_back({scene.name + ", " + threads_text(threads),
-                     1e-4 * partitions * static_cast<double>(rays),
-                     [=](Results& results) { add_queries(results, scene, request); }});
-  };
-  const auto scenes = few_scenes(options, {"uniform", "mixed"});
-  for (const NamedScene& scene : scenes) {
-    const bool is_first = &scene == &scenes.front();
-    const std::size_t rays = options.quick ? 100 : is_first ? 10'000 : 5'000;
-    add(scene, rays, 1, "all");
-    const int most = options.threads.back();
-    if (most != 1 && is_first) add(scene, rays, most, "LinearBvh");
-  }
-  if (!std::all_of(scenes.begin(), scenes.end(),
-                   [](const NamedScene& one) { return one.is_recording(); })) {
-    steps.push_back({"frusta", 1.0, [objects, quick = options.quick](Results& results) {
-                       add_frusta(results, objects, quick ? 2 : 15);
-                     }});
   }
   return steps;
 }

@@ -49,14 +49,11 @@ struct ReportSection {
 // Sections about partitions.
 [[nodiscard]] ReportSteps plan_throughput(const ReportOptions& options);
 [[nodiscard]] ReportSteps plan_memory(const ReportOptions& options);
-[[nodiscard]] ReportSteps plan_volumes(const ReportOptions& options);
-[[nodiscard]] ReportSteps plan_queries(const ReportOptions& options);
 [[nodiscard]] ReportSteps plan_advice(const ReportOptions& options);
 [[nodiscard]] ReportSteps plan_ranks(const ReportOptions& options);
 // Section about tests that try to break the library.
 [[nodiscard]] ReportSteps plan_trust(const ReportOptions& options);
 // Sections about the pipeline.
-[[nodiscard]] ReportSteps plan_narrow(const ReportOptions& options);
 [[nodiscard]] ReportSteps plan_stability(const ReportOptions& options);
 [[nodiscard]] ReportSteps plan_motion(const ReportOptions& options);
 [[nodiscard]] ReportSteps plan_pipeline(const ReportOptions& options);

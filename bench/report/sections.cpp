@@ -1,20 +1,15 @@
 #include "bench/report/section.h"
-#include "bench/rows/accuracy_rows.h"
 #include "bench/rows/advice_rows.h"
 #include "bench/rows/barrier_rows.h"
 #include "bench/rows/cluster_rows.h"
 #include "bench/rows/cold_rows.h"
 #include "bench/rows/every_scene_rows.h"
-#include "bench/rows/filter_rows.h"
 #include "bench/rows/flow_rows.h"
 #include "bench/rows/frame_rows.h"
 #include "bench/rows/hard_case_rows.h"
 #include "bench/rows/memory_rows.h"
-#include "bench/rows/motion_rows.h"
-#include "bench/rows/query_rows.h"
 #include "bench/rows/scene_rows.h"
 #include "bench/rows/standing_rows.h"
-#include "bench/rows/volume_rows.h"
 #include "bench/trust/ledger.h"
 
 namespace winnow::bench {
@@ -24,30 +19,7 @@ void declare_throughput(Results& results) {
   declare_frames(results);
   declare_every_scene(results);
   declare_cold(results);
-  declare_filters(results);
-  declare_keys(results);
   declare_limits(results);
-}
-
-void declare_narrow(Results& results) {
-  declare_pair_times(results);
-  declare_pair_errors(results);
-  declare_error_curve(results, "narrow_gap", "narrow",
-                      "errors of such pairs by |distance| over their size",
-                      {"kind", "engine", "gap"});
-}
-
-void declare_stability(Results& results) {
-  declare_hard_cases(results);
-  declare_error_curve(
-      results, "stability_curves", "stability",
-      "errors of pairs, half of which are nearly touching, that get harder and harder",
-      {"curve", "kind", "engine", "parameter"});
-}
-
-void declare_moving(Results& results) {
-  declare_motion(results);
-  declare_barriers(results);
 }
 
 void declare_pipeline(Results& results) {
@@ -65,11 +37,8 @@ ReportSteps plan_trust(const ReportOptions& /*options*/) {
 std::span<const ReportSection> report_sections() noexcept {
   static constexpr ReportSection kAll[] = {{"throughput", declare_throughput, plan_throughput},
                                            {"memory", declare_memory, plan_memory},
-                                           {"volumes", declare_volumes, plan_volumes},
-                                           {"narrow", declare_narrow, plan_narrow},
-                                           {"stability", declare_stability, plan_stability},
-                                           {"motion", declare_moving, plan_motion},
-                                           {"queries", declare_queries, plan_queries},
+                                           {"stability", declare_hard_cases, plan_stability},
+                                           {"motion", declare_barriers, plan_motion},
                                            {"pipeline", declare_pipeline, plan_pipeline},
                                            {"ranks", declare_cluster_runs, plan_ranks},
                                            {"advice", declare_advice, plan_advice},

@@ -1,13 +1,12 @@
 // Rows about frames of partitions: races of update and self_pairs, the ratios derived from them
-// (SIMD, threads, growth with size), costs of keys, and the limit set by memory. bench/commands,
-// bench/goals and bench/report call these functions; bench/measure takes the times.
+// (SIMD, threads, growth with size), and the limit set by memory. bench/commands, bench/goals and
+// bench/report call these functions; bench/measure takes the times.
 
 #include "bench/rows/frame_rows.h"
 
 #include "bench/common/sample.h"
 #include "bench/measure/core_distance.h"
 #include "bench/measure/frame_limit.h"
-#include "bench/measure/key_costs.h"
 #include "bench/peers/yardstick.h"
 #include "bench/rows/machine.h"
 
@@ -261,30 +260,6 @@ void derive_frames(Results& results, const std::string& scene, std::size_t objec
   derive_threads(results, scene,
                  times_of(results, {{"scene", scene}, {"objects", objects}, {"isa", isa}}));
   derive_growth(results, scene, times_of(results, {{"scene", scene}, {"isa", isa}}));
-}
-
-void declare_keys(Results& results) {
-  results.declare({"keys",
-                   "throughput",
-                   "operations on keys, a tenth of the objects at a time",
-                   {"partition", "objects", "order", "operation", "mode"},
-                   {{"ns", "an object", "ns", Better::less}}});
-}
-
-void add_key_costs(Results& results, const std::string& partition, std::size_t objects,
-                   bool random_order) {
-  const KeyCosts costs = measure_key_costs(partition, objects, random_order);
-  for (std::size_t operation = 0; operation < kKeyOperations.size(); ++operation) {
-    for (std::size_t mode = 0; mode < kKeyModes.size(); ++mode) {
-      results.add("keys", {{"partition", partition},
-                           {"objects", objects},
-                           {"order", random_order ? "random" : "insertion"},
-                           {"operation", kKeyOperations[operation]},
-                           {"mode", kKeyModes[mode]},
-                           {"ns", costs[operation][mode]},
-                           {"command", "bench/run report --section throughput"}});
-    }
-  }
 }
 
 void declare_limits(Results& results) {

@@ -32,11 +32,6 @@ void note_skipped(Results& results, std::size_t objects, const std::vector<std::
 /// threads, and the growth of the time with size.
 void derive_frames(Results& results, const std::string& scene, std::size_t objects);
 
-/// Declares keys: nanoseconds of operations on keys, in bulk and singly.
-void declare_keys(Results& results);
-void add_key_costs(Results& results, const std::string& partition, std::size_t objects,
-                   bool random_order);
-
 /// Declares limits: the fastest partition compared with the time that memory access requires, see
 /// FrameLimit.
 void declare_limits(Results& results);

@@ -5,7 +5,6 @@
 #include "bench/rows/hard_case_rows.h"
 
 #include "bench/common/errors.h"
-#include "bench/measure/narrow_race.h"
 #include "bench/peers/peers.h"
 #include "bench/questions/hard_cases.h"
 #include "bench/questions/questions.h"

@@ -1,6 +1,5 @@
 // Rows about whole scenes: races from poses to contact points against other libraries, levels of
-// contact, memory and margins, and meshes. bench/commands, bench/goals and bench/report call these
-// functions.
+// contact, memory and margins. bench/commands, bench/goals and bench/report call these functions.
 
 #include "bench/rows/scene_rows.h"
 
@@ -65,20 +64,6 @@ void declare_scenes(Results& results, bool levels_by_setting) {
                     {"over_none", "times the frame without a margin", "", Better::less},
                     {"bytes_per_contact", "all bytes a pair that touches", "bytes", Better::less},
                     {"touching", "touching pairs", "", Better::neither, Format::count}}});
-  results.declare(
-      {"tori",
-       "pipeline",
-       "all contacts of two tori of 20,000 triangles",
-       {"pose", "engine"},
-       {{"ms", "time by pose", "ms", Better::less},
-        {"pairs", "touching triangles by pose", "", Better::neither, Format::count},
-        {"differ", "pairs that not both found, by pose", "", Better::neither, Format::count}}});
-  results.declare({"mesh_builds",
-                   "pipeline",
-                   "the tree of a torus",
-                   {"engine"},
-                   {{"ms", "build", "ms", Better::less},
-                    {"bytes_per_triangle", "memory", "bytes/triangle", Better::less}}});
 }
 
 PipelineMeasurement add_scene_race(Results& results, const PipelineMeasureOptions& options) {
@@ -154,27 +139,6 @@ void add_scene_costs(Results& results, const SceneCostOptions& options) {
                  {"touching", cost.timing.finds.touching},
                  {"command", again}});
   }
-}
-
-MeshMeasurement add_tori(Results& results, std::size_t rounds, bool peers, bool machine_clock) {
-  MeshMeasurement measured = measure_meshes(rounds, peers, machine_clock);
-  const std::string again = "bench/run dev pipeline --scene tori --frames " +
-                            std::to_string(rounds) + " --isa " + isa_name();
-  for (const MeshTiming& timing : measured.timings) {
-    results.add("mesh_builds", {{"engine", timing.engine},
-                                {"ms", to_value(timing.build_ms)},
-                                {"bytes_per_triangle", timing.bytes_per_triangle},
-                                {"command", again}});
-    for (std::size_t p = 0; p < torus_poses().size(); ++p) {
-      results.add("tori", {{"pose", p + 1},
-                           {"engine", timing.engine},
-                           {"ms", to_value(timing.collide_ms[p])},
-                           {"pairs", timing.pairs[p]},
-                           {"differ", timing.differ[p]},
-                           {"command", again}});
-    }
-  }
-  return measured;
 }
 
 std::vector<std::string> scene_level_names() {

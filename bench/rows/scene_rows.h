@@ -8,8 +8,8 @@
 
 namespace winnow::bench {
 
-/// Declares whole_scenes, scene_ratios, scene_levels, scene_costs, tori and mesh_builds. The keys
-/// of levels are scene and level, and with `levels_by_setting` also motion and threads.
+/// Declares whole_scenes, scene_ratios, scene_levels and scene_costs. The keys of
+/// levels are scene and level, and with `levels_by_setting` also motion and threads.
 void declare_scenes(Results& results, bool levels_by_setting = false);
 
 /// Runs a race on a scene of the whole pipeline, up to contact points.
@@ -18,8 +18,6 @@ PipelineMeasurement add_scene_race(Results& results, const PipelineMeasureOption
 void add_scene_level(Results& results, PipelineMeasureOptions options, const std::string& level);
 /// Measures only winnow: bytes of contacts, and the cost of a contact margin.
 void add_scene_costs(Results& results, const SceneCostOptions& options);
-/// Measures two tori: their contacts, and building the tree that finds them.
-MeshMeasurement add_tori(Results& results, std::size_t rounds, bool peers, bool machine_clock);
 
 /// Returns "pairs", "boolean", "distance", "manifold".
 [[nodiscard]] std::vector<std::string> scene_level_names();

@@ -64,11 +64,9 @@ void Solids::add_turned(const Eigen::Vector3f& center, const Eigen::Vector3f& ha
 Solids Solids::of_boxes(std::span<const Aabb> boxes) {
   constexpr double kUpright[4] = {1.0, 0.0, 0.0, 0.0};
   Solids solids;
-  for (std::size_t row = 0; row < boxes.size(); ++row) {
-    const Eigen::Vector3f half = 0.5F * (boxes[row].max - boxes[row].min);
-    if (!half.allFinite()) continue;
-    solids.add({boxes[row].min + half, half, Eigen::Matrix3f::Identity()}, kUpright);
-    solids.row_.push_back(row);
+  for (const Aabb& box : boxes) {
+    const Eigen::Vector3f half = 0.5F * (box.max - box.min);
+    if (half.allFinite()) solids.add({box.min + half, half, Eigen::Matrix3f::Identity()}, kUpright);
   }
   return solids;
 }
@@ -112,17 +110,6 @@ std::vector<OrientedBox> Solids::boxes_at_last_refit(float share) const {
         since * share * as_eigen(box.max - box.min).maxCoeff() / fastest * velocity_[i];
   }
   return then;
-}
-
-void Solids::follow(std::span<const Aabb> boxes) {
-  for (std::size_t i = 0; i < row_.size(); ++i) {
-    const Aabb& box = boxes[row_[i]];
-    const Eigen::Vector3f half = 0.5F * (box.max - box.min);
-    if (!half.allFinite()) continue;
-    if (half != boxes_[i].half) ids_[i] = shape_of(half);
-    boxes_[i].half = half;
-    put(i, box.min + half);
-  }
 }
 
 void Solids::advance(double step) {

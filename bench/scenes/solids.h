@@ -34,9 +34,6 @@ class Solids {
   [[nodiscard]] const ShapePool& shapes() const noexcept { return shapes_; }
   [[nodiscard]] Bodies bodies() const noexcept { return {ids_, poses_}; }
 
-  /// Sets each object to its box in this frame of the source that `of_boxes` was given; an
-  /// unbounded box leaves it unchanged. Only for solids made by `of_boxes`.
-  void follow(std::span<const Aabb> boxes);
   /// Moves each object by `step` times its mean edge in its own direction.
   void advance(double step);
 
@@ -50,7 +47,6 @@ class Solids {
   std::vector<Pose> poses_;
   std::vector<ShapeId> ids_;
   std::vector<Eigen::Vector3f> velocity_;
-  std::vector<std::size_t> row_;  // row of each object's box in `of_boxes`
   ShapePool shapes_;
 };
 

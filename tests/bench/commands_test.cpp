@@ -87,8 +87,7 @@ TEST_F(ToolCommands, dev_help_lists_all_other_commands) {
   EXPECT_EQ(help.status, 0);
   EXPECT_EQ(listed_below("Subcommands:", help.out),
             (std::vector<std::string>{"compare", "goals", "results", "fit", "trust", "throughput",
-                                      "cold", "hosts", "filters", "footprint", "queries", "narrow",
-                                      "accuracy", "impacts", "pipeline", "volumes", "kernels"}));
+                                      "cold", "hosts", "footprint", "pipeline"}));
   EXPECT_EQ(run("dev").out, help.out);
 }
 

@@ -1,13 +1,11 @@
 // Result rows for median, worst and first frames, for first frames on touched and untouched memory,
-// for other libraries, threads and filters.
+// for other libraries and threads.
 
 #include "bench/rows/frame_rows.h"
 #include "bench/common/reused_memory.h"
 #include "bench/measure/cold_frames.h"
-#include "bench/measure/filter_race.h"
 #include "bench/rows/cold_rows.h"
 #include "bench/rows/every_scene_rows.h"
-#include "bench/rows/filter_rows.h"
 #include "bench/rows/host_rows.h"
 #include "bench/rows/library_comparison_rows.h"
 #include "bench/rows/machine.h"
@@ -130,20 +128,6 @@ TEST(HostRows, each_partition_has_a_row_with_both_times) {
   for (const Json* row : rows) {
     EXPECT_GT(value_of(*row, "arena_ms"), 0.0);
     EXPECT_GT(value_of(*row, "over_arena"), 0.0);
-  }
-}
-
-TEST(FilterRows, each_setting_and_query_has_a_faultless_row) {
-  Results results;
-  declare_filters(results);
-  add_filters(results, scene_named("mixed"), 400, 1, {"LinearBvh", "SweepAndPrune"}, 2);
-  const auto rows = results.rows("filters");
-  const std::size_t questions = filter_question_names().size();
-  ASSERT_EQ(rows.size(), 2 * questions * filter_setting_names().size());
-  for (const Json* row : rows) {
-    EXPECT_GT(value_of(*row, "plain_ms"), 0.0);
-    EXPECT_GT(value_of(*row, "over_plain"), 0.0);
-    EXPECT_EQ(value_of(*row, "wrong"), 0.0);
   }
 }
 

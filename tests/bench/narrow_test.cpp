@@ -2,7 +2,6 @@
 
 #include "bench/contenders/winnow_narrow.h"
 #include "bench/measure/accuracy.h"
-#include "bench/measure/narrow_race.h"
 
 #include <gtest/gtest.h>
 
@@ -115,7 +114,7 @@ class FixedAnswer final : public NarrowEngine {
 Accuracy judged(const NarrowAnswer& answer, const PairTruth& truth) {
   const auto set = make_pair_set(pair_kinds().front(), {.pairs = 1});
   FixedAnswer fixed(answer);
-  return judge_engine(fixed, ContactLevel::distance, *set, std::span(&truth, 1));
+  return summary_of(errors_of(fixed, ContactLevel::distance, *set, std::span(&truth, 1)));
 }
 
 const PairTruth kApart{.known = true,
@@ -165,18 +164,6 @@ TEST(Accuracy, depths_and_distances_are_counted_apart) {
   EXPECT_EQ(accuracy.apart.worst, 2.0);
   EXPECT_EQ(accuracy.depth.worst, 9.0);
   EXPECT_EQ(accuracy.all.count, 4U);
-}
-
-TEST(NarrowRace, verdicts_that_differ_from_the_first_are_counted) {
-  const auto set = make_pair_set(pair_kinds().front(), {.pairs = kPairs});
-  std::vector<NarrowContender> contenders;
-  contenders.push_back({std::make_unique<WinnowNarrow>(NarrowTier::robust, 1), 1});
-  contenders.push_back({std::make_unique<FixedAnswer>(NarrowAnswer{.overlap = true}), 1});
-  for (const NarrowContender& contender : contenders) contender.engine->start(*set);
-  const auto timings = race_pairs(*set, ContactLevel::boolean, contenders, {.rounds = 1});
-  ASSERT_EQ(timings.size(), 2U);
-  EXPECT_EQ(timings[0].disagree, 0U);
-  EXPECT_EQ(timings[1].disagree, kPairs / 2);
 }
 
 }  // namespace

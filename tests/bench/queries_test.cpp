@@ -1,15 +1,13 @@
-// The races of `winnow dev queries`: all engines return equal answers, and a difference is noticed.
+// Query engines return equal answers, and a difference is noticed.
 
 #include "bench/contenders/partition_queries.h"
 #include "bench/contenders/partitions.h"
-#include "bench/measure/query_race.h"
-#include "bench/measure/ray_race.h"
+#include "bench/measure/reference_queries.h"
 #include "bench/peers/peers.h"
 #include "bench/scenes/scene.h"
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <vector>
@@ -17,51 +15,39 @@
 namespace winnow::bench {
 namespace {
 
-std::vector<QueryRun> race_on(const std::string& scene, std::vector<QueryContender>& contenders,
-                              int threads) {
-  const auto source = make_scene(scene, 300, 5);
-  for (const std::string& name : all_partitions()) {
-    contenders.push_back({std::make_unique<PartitionQueries>(name, threads), false});
-  }
-  for (auto& peer : make_query_peers()) contenders.push_back({std::move(peer), true});
-  const auto sets = make_query_sets(source->boxes(), 200, 9);
-  return race_queries(source->boxes(), sets, contenders,
-                      {.rounds = 1, .threads = threads, .judged = 200});
-}
+class Engines : public testing::TestWithParam<const char*> {};
 
-class Race : public testing::TestWithParam<const char*> {};
-
-TEST_P(Race, every_engine_has_the_same_answers) {
+TEST_P(Engines, every_engine_has_the_same_answers) {
+  constexpr std::size_t kJudged = 200;
+  const auto source = make_scene(GetParam(), 300, 5);
+  const ReferenceQueries judge(source->boxes());
   for (const int threads : {1, 2}) {
-    std::vector<QueryContender> contenders;
-    const std::vector<QueryRun> runs = race_on(GetParam(), contenders, threads);
-    for (const QueryRun& run : runs) {
-      EXPECT_TRUE(run.answered()) << run.engine << ": " << run.set << ": " << run.refusal;
-      EXPECT_TRUE(run.comparison.agree())
-          << run.engine << ": " << run.set << ": " << run.comparison.first;
+    std::vector<std::unique_ptr<QueryEngine>> engines = make_query_peers();
+    const std::size_t peers = engines.size();
+    for (const std::string& name : all_partitions()) {
+      engines.push_back(std::make_unique<PartitionQueries>(name, threads));
     }
-    // Every engine answers the queries of each set one by one. Partitions also answer rays and
-    // boxes in batches.
-    EXPECT_GE(runs.size(), all_partitions().size() * (query_set_names().size() + 7));
+    for (const auto& engine : engines) engine->start(source->boxes());
+    for (const QuerySet& set : make_query_sets(source->boxes(), 200, 9)) {
+      const QueryResults expected = engines.back()->answers(set, QueryMode::single, set.size());
+      EXPECT_TRUE(compare_by_force(judge, set, source->boxes().size(), expected, kJudged).agree());
+      for (std::size_t i = 0; i < engines.size(); ++i) {
+        for (const QueryMode mode : {QueryMode::single, QueryMode::batch}) {
+          if (!engines[i]->takes(set, mode)) continue;
+          const QueryResults got = engines[i]->answers(set, mode, set.size());
+          const Comparison found = i < peers ? compare_in_float(judge, set, expected, got)
+                                             : compare_exactly(judge, set, expected, got);
+          EXPECT_TRUE(found.agree()) << engines[i]->name() << ": " << set.name << found.first;
+          std::size_t hits = 0;
+          for (std::size_t q = 0; q < got.questions(); ++q) hits += got.of(q).size();
+          EXPECT_EQ(engines[i]->run(set, mode, set.size()), hits) << engines[i]->name();
+        }
+      }
+    }
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, Race, testing::Values("uniform", "mixed", "pile"));
-
-TEST(Race, timed_round_has_the_hits_that_were_compared) {
-  std::vector<QueryContender> contenders;
-  const std::vector<QueryRun> runs = race_on("uniform", contenders, 1);
-  for (const QueryRun& run : runs) {
-    const auto first = std::find_if(runs.begin(), runs.end(), [&](const QueryRun& other) {
-      return other.engine == "LinearBvh" && other.set == run.set;
-    });
-    ASSERT_NE(first, runs.end());
-    if (run.comparison.undecided == 0) {
-      EXPECT_EQ(run.found, first->found) << run.engine << ": " << run.set;
-    }
-    EXPECT_EQ(run.ms.size(), 1U);
-  }
-}
+INSTANTIATE_TEST_SUITE_P(Scenes, Engines, testing::Values("uniform", "mixed", "pile"));
 
 /// Two unit boxes in a row and one ray, which passes through both or misses both.
 class Comparisons : public testing::Test {
@@ -130,23 +116,6 @@ TEST_F(Comparisons, rounding_is_allowed_to_float_engines_only) {
   const Comparison grazing = in_float({{0, 1.0F}}, {});
   EXPECT_TRUE(grazing.agree());
   EXPECT_EQ(grazing.undecided, 1U);
-}
-
-TEST(RayRace, single_rays_and_batches_hit_the_same) {
-  for (const char* const mesh : {"terrain", "soup"}) {
-    SCOPED_TRACE(mesh);
-    const RayMeasurement measured = measure_rays(
-        {.mesh = mesh, .triangles = 800, .rays = 300, .rounds = 1, .machine_clock = false});
-    ASSERT_FALSE(measured.timings.empty());
-    const std::size_t hits = measured.timings.front().hits;
-    EXPECT_GT(hits, 0U);
-    for (const RayTiming& timing : measured.timings) {
-      SCOPED_TRACE(timing.engine);
-      if (timing.engine == "Embree fast") continue;  // this engine misses edges
-      EXPECT_EQ(timing.hits, hits);
-      EXPECT_EQ(timing.differ, 0U);
-    }
-  }
 }
 
 }  // namespace

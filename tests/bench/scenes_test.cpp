@@ -1,10 +1,12 @@
 // Built-in scenes of the benchmarks: equal seeds make equal scenes, and each moves as its name
 // implies.
 
+#include <winnow/core/eigen.h>
 #include "bench/contenders/reference_sweep.h"
 #include "bench/measure/fingerprint.h"
 #include "bench/measure/race.h"
 #include "bench/scenes/scene.h"
+#include "bench/scenes/solids.h"
 
 #include <gtest/gtest.h>
 #include <Eigen/Core>
@@ -230,6 +232,22 @@ TEST(Scenes, growth_race_finds_equal_pairs) {
 
 TEST(Scenes, scene_of_an_unknown_name_is_null) {
   EXPECT_EQ(make_scene("no_such", 10, 1), nullptr);
+}
+
+TEST(Solids, margins_begin_at_different_times) {
+  constexpr float kShare = 0.2F;
+  const Solids solids = Solids::rods(200, 1);
+  const std::vector<OrientedBox> then = solids.boxes_at_last_refit(kShare);
+  double sum = 0.0;
+  for (std::size_t i = 0; i < then.size(); ++i) {
+    const OrientedBox& now = solids.boxes()[i];
+    const Aabb bounds = now.bounds();
+    const float margin = kShare * (as_eigen(bounds.max) - as_eigen(bounds.min)).maxCoeff();
+    const float way = (as_eigen(then[i].center) - as_eigen(now.center)).cwiseAbs().maxCoeff();
+    EXPECT_LE(way, 1.001F * margin) << i;
+    sum += static_cast<double>(way / margin);
+  }
+  EXPECT_NEAR(sum / static_cast<double>(then.size()), 0.5, 0.1);
 }
 
 }  // namespace

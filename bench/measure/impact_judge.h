@@ -2,20 +2,16 @@
 
 #include <winnow/pipeline/narrow_phase.h>
 #include "bench/contenders/impact_engine.h"
-#include "bench/measure/narrow_race.h"
 
 #include <cstddef>
 #include <cstdint>
-#include <string>
 #include <vector>
 
 namespace winnow::bench {
 
-/// Times and errors of one engine on moving pairs.
-struct ImpactTiming {
-  std::string engine;
-  std::vector<double> ns{};  ///< ns per pair, one entry per round
-  std::size_t judged = 0;    ///< number of pairs that were checked
+/// Errors of one engine on moving pairs.
+struct ImpactFaults {
+  std::size_t judged = 0;  ///< number of pairs that were checked
   std::size_t hits = 0;
   /// Pairs that overlap at a tested time, with no hit reported.
   std::size_t missed = 0;
@@ -36,7 +32,7 @@ class ImpactJudge {
   explicit ImpactJudge(const MovingPairSet& set);
 
   /// Runs an engine that was started with the set on all pairs, and checks its results.
-  void judge(ImpactEngine& engine, ImpactTiming& timing);
+  [[nodiscard]] ImpactFaults judge(ImpactEngine& engine);
 
  private:
   [[nodiscard]] double size_of(std::uint32_t body) const;
@@ -50,24 +46,5 @@ class ImpactJudge {
   NarrowPhase narrow_;
   NarrowResult result_;
 };
-
-struct ImpactRaceOptions {
-  PairKind kind;
-  PairTurn turn = PairTurn::none;
-  std::size_t pairs = 2048;
-  std::size_t rounds = 7;
-  bool peers = false;  ///< also other libraries, if the tool was built with them
-  std::uint64_t seed = 1;
-};
-
-struct ImpactMeasurement {
-  std::vector<ImpactTiming> timings;  ///< winnow first
-  /// ns per pair of winnow's distance query on the same pairs in the middle of their motions.
-  std::vector<double> distance_ns;
-  double machine_ms = 0.0;  ///< of the MachineClock, before and after the race
-};
-
-/// Races all engines on the same pairs, with a distance query for comparison, on one thread.
-[[nodiscard]] ImpactMeasurement measure_impacts(const ImpactRaceOptions& options);
 
 }  // namespace winnow::bench

@@ -1,28 +1,32 @@
-// Times queries of a partition with filters and without, and compares the results with all pairs
-// that pass the filter. bench/rows/filter_rows.cpp calls `race_filters`.
+// Benchmarks of filters in queries of partitions, beside the same queries without filters. The
+// results are compared with all pairs that pass the filters.
 
-#include "bench/measure/filter_race.h"
+#include "bench/micro/micro.h"
 
 #include "bench/common/need.h"
 #include "bench/common/random.h"
+#include "bench/common/sample.h"
 #include "bench/contenders/partitions.h"
 
 #include <algorithm>
 #include <array>
-#include <iterator>
-#include <utility>
 
-namespace winnow::bench {
+namespace winnow::bench::micro {
 namespace {
 
-constexpr std::size_t kWarmingRounds = 4;
 constexpr std::size_t kRays = 1000;
 constexpr std::size_t kBoxes = 1000;
 constexpr std::size_t kFew = 20;  // one object of this many moves
 constexpr float kBoxEdges = 4.0F;
 
-constexpr std::array<std::string_view, 5> kSettings{"1 % apart", "mixed", "static", "never, mixed",
-                                                    "never, apart"};
+/// "1 % apart": pairs within a random 1 % of the objects are excluded. "mixed": two random layers,
+/// no pairs excluded. "static": pairs within a random nine tenths of the objects are excluded.
+/// "never, mixed" and "never, apart": two layers with pairs only within each, assigned at random or
+/// by position. "none": no filters, for comparison.
+constexpr std::array<std::string_view, 6> kSettings{"1 % apart",    "mixed",        "static",
+                                                    "never, mixed", "never, apart", "none"};
+/// "all move" and "few move" find all pairs after all or few boxes changed; "another" finds pairs
+/// with a second partition; "rays" finds closest hits; "boxes" finds objects that overlap boxes.
 constexpr std::array<std::string_view, 5> kQuestions{"all move", "few move", "another", "rays",
                                                      "boxes"};
 enum Setting : std::size_t { one_percent, mixed, still, never_mixed, never_apart };
@@ -99,14 +103,14 @@ class FilteredPartition {
     if (question_ == another) need(other_.set_filter(other_keys_, other_filters_), "filters");
   }
 
-  /// Updates the partition and returns the milliseconds of the query.
+  /// Updates the partition and returns the seconds of the query.
   double run(std::span<const Aabb> frame, std::size_t round) {
     move(frame, round);
     if (question_ != all_move && question_ != few_move) need(partition_.refresh(), "refresh");
     if (question_ == another) need(other_.refresh(), "refresh");
     const ThreadStopwatch clock;
     run_query();
-    return clock.ms();
+    return 1e-3 * clock.ms();
   }
 
   /// Returns the results of the last query.
@@ -253,58 +257,47 @@ FoundPairs FilteredPartition::truth() const {
   return found;
 }
 
-/// Counts the results that are in only one of the two lists.
-std::size_t differences(const FoundPairs& a, const FoundPairs& b) {
-  FoundPairs apart;
-  std::ranges::set_symmetric_difference(a, b, std::back_inserter(apart));
-  return apart.size();
-}
+/// A partition and the scene that it follows.
+struct Following {
+  std::unique_ptr<FrameSource> source;
+  FilteredPartition partition;
+  std::size_t round = 0;
 
-/// Returns milliseconds by contestant and round. The contestant that starts a round changes from
-/// round to round, because it finds other data in the caches and branch predictors than the
-/// contestants after it.
-std::vector<std::vector<double>> time_interleaved(
-    const std::vector<std::unique_ptr<FilteredPartition>>& all, FrameSource& source,
-    std::size_t rounds) {
-  std::vector<std::vector<double>> ms(all.size());
-  for (std::size_t round = 0; round < kWarmingRounds + rounds; ++round) {
-    (void)source.advance();
-    for (std::size_t i = 0; i < all.size(); ++i) {
-      const std::size_t turn = (round + i) % all.size();
-      const double one = all[turn]->run(source.boxes(), round);
-      if (round >= kWarmingRounds) ms[turn].push_back(one);
-    }
+  Following(const NamedScene& scene, std::size_t objects, const std::string& structure,
+            std::size_t question, std::size_t setting)
+      : source(scene.source(objects, 1)), partition(structure, question, source->boxes()) {
+    if (kSettings[setting] != "none") partition.set_filters(setting);
+    // The first frames build, and later ones test only what moved.
+    for (int warming = 0; warming < 4; ++warming) run();
+    check(partition.found() == partition.truth(), "a query returned a wrong result");
   }
-  return ms;
-}
+  double run() {
+    (void)source->advance();
+    return partition.run(source->boxes(), round++);
+  }
+};
 
 }  // namespace
 
-std::span<const std::string_view> filter_setting_names() noexcept {
-  return kSettings;
-}
-
-std::span<const std::string_view> filter_question_names() noexcept {
-  return kQuestions;
-}
-
-std::vector<FilterRow> race_filters(const MakeFrames& frames, std::string_view partition,
-                                    std::size_t rounds) {
-  std::vector<FilterRow> rows;
-  for (std::size_t question = 0; question < kQuestions.size(); ++question) {
-    const auto source = frames();
-    std::vector<std::unique_ptr<FilteredPartition>> all;
-    for (std::size_t i = 0; i <= kSettings.size(); ++i) {
-      all.push_back(std::make_unique<FilteredPartition>(partition, question, source->boxes()));
-      if (i != 0) all.back()->set_filters(i - 1);
-    }
-    const auto ms = time_interleaved(all, *source, rounds);
-    for (std::size_t i = 1; i < all.size(); ++i) {
-      rows.push_back({std::string(kSettings[i - 1]), std::string(kQuestions[question]), ms[0],
-                      ms[i], differences(all[i]->found(), all[i]->truth())});
+void add_filters(const std::vector<NamedScene>& scenes) {
+  for (const NamedScene& scene : scenes) {
+    const std::size_t objects = scene.objects(10'000);
+    for (std::size_t question = 0; question < kQuestions.size(); ++question) {
+      for (std::size_t setting = 0; setting < kSettings.size(); ++setting) {
+        for (const std::string& structure : unlimited_partitions()) {
+          const std::string path = "filter/" + path_of(kQuestions[question]) + "/" +
+                                   path_of(kSettings[setting]) + "/" + path_of(scene.name) +
+                                   "/objects:" + std::to_string(objects) + "/" + path_of(structure);
+          add(path, [=](benchmark::State& state) {
+            auto& following = prepared<Following>(path, [&] {
+              return std::make_unique<Following>(scene, objects, structure, question, setting);
+            });
+            run(state, 1, [&] { state.SetIterationTime(following.run()); });
+          })->UseManualTime();
+        }
+      }
     }
   }
-  return rows;
 }
 
-}  // namespace winnow::bench
+}  // namespace winnow::bench::micro

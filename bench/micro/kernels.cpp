@@ -1,11 +1,9 @@
-// Times the kernels of partitions (flat, tree, grid, sweep) on every instruction set, on unit cubes
-// in the columns that the kernels read. bench/rows/kernel_rows.cpp calls `race_kernels`.
+// Benchmarks of the kernels of partitions (flat, tree, grid, sweep) on every instruction set, on
+// unit cubes in the columns that the kernels read. All sets must find the same pairs in the same
+// order.
 
-#include "bench/measure/kernel_race.h"
+#include "bench/micro/micro.h"
 
-#include "bench/common/interleaved_runs.h"
-#include "bench/common/sample.h"
-#include "bench/measure/isa_guard.h"
 #include "bench/scenes/cameras.h"
 #include "bench/scenes/scene.h"
 #include "core/memory/bounds_pool.h"
@@ -16,22 +14,20 @@
 #include "partitions/structures/sweep/sweep_and_prune.kernel.h"
 #include "partitions/tree/block_tree.h"
 
+#include <winnow/simd/isa.h>
+
 #include <algorithm>
 #include <array>
-#include <functional>
 #include <limits>
-#include <memory>
 #include <new>
 #include <numeric>
-#include <stdexcept>
 
-namespace winnow::bench {
+namespace winnow::bench::micro {
 namespace {
 
 constexpr std::size_t kKernelObjects = 4096;
 /// Capacity of the result buffer, in pairs.
 constexpr std::size_t kRoom = std::size_t{1} << 18U;
-constexpr double kTurnMs = 1.0;
 
 using CellCounts = std::array<std::uint32_t, 3>;
 
@@ -163,120 +159,119 @@ class KernelRows {
   std::vector<float> key_;            // lower end of each row on axis 0
 };
 
-struct Kernel {
-  std::string name;
-  /// Writes pairs; returns false if the buffer is full.
-  std::function<bool(PairSink&)> call;
+/// Writes pairs; returns false if the buffer is full.
+using Kernel = std::function<bool(const KernelRows&, PairSink&)>;
+/// What the rows are made of.
+struct RowsOptions {
+  std::size_t objects = kKernelObjects;
+  CellCounts cells{1, 1, 1};
+  Volume volume = Volume::aabb;
 };
 
-void add_flat(std::vector<Kernel>& all, const std::string& name, std::size_t objects, Volume volume,
-              FlatKernel FlatKernels::*kernel) {
-  const auto rows = std::make_shared<const KernelRows>(objects, CellCounts{1, 1, 1}, volume);
-  const std::string suffix = name + " " + std::to_string(objects);
-  all.push_back({"flat self pairs, " + suffix, [=](PairSink& sink) {
-                   const auto blocks = static_cast<std::uint32_t>(rows->pool.blocks());
-                   return (flat_kernels().*kernel).self_pairs(rows->flat(), 0, blocks, sink);
-                 }});
-  all.push_back({"flat query, " + suffix, [=](PairSink& sink) {
-                   return (flat_kernels().*kernel).query(rows->flat(), rows->all_rows(), sink);
-                 }});
-}
-
-void add_tree(std::vector<Kernel>& all) {
-  // Ordered by cells of about 16 objects, so that blocks are compact.
-  const auto rows = std::make_shared<const KernelRows>(kKernelObjects, CellCounts{6, 6, 6});
-  all.push_back({"tree refit", [=](PairSink&) {
-                   const TreeView tree = rows->nodes();
-                   block_tree_kernels().refit_leaves(tree, 0, tree.count[0]);
-                   for (std::uint32_t level = 1; level < tree.levels; ++level) {
-                     block_tree_kernels().refit_nodes(tree, level, 0, tree.count[level]);
-                   }
-                   return true;
-                 }});
-  all.push_back({"tree self pairs", [=](PairSink& sink) {
-                   const auto groups = static_cast<std::uint32_t>(rows->tree.groups());
-                   return block_tree_kernels().self_pairs(rows->nodes(), 0, groups, sink);
-                 }});
-  all.push_back({"tree query", [=](PairSink& sink) {
-                   return block_tree_kernels().query(rows->nodes(), rows->all_rows(), sink);
-                 }});
-}
-
-void add_cells(std::vector<Kernel>& all) {
-  // The world has edge 20, so cells have edge 1.4.
-  const auto cells = std::make_shared<const KernelRows>(kKernelObjects, CellCounts{15, 15, 15});
-  all.push_back({"grid self pairs", [=](PairSink& sink) {
-                   return flat_grid_kernels().self_pairs(cells->grid(), 0, cells->lines(), sink);
-                 }});
-  all.push_back({"grid query", [=](PairSink& sink) {
-                   return flat_grid_kernels().query(cells->grid(), cells->all_rows(), sink);
-                 }});
-  // One entry for each row, and one full vector store past the end.
-  const auto misfits = std::make_shared<std::vector<std::uint32_t>>(kKernelObjects + 16);
-  all.push_back({"grid find misfits", [=](PairSink&) {
-                   const GridView grid = cells->grid();
-                   (void)flat_grid_kernels().find_misfits(grid, 0, cells->lines(), misfits->data());
-                   return true;
-                 }});
-  const auto strips = std::make_shared<const KernelRows>(kKernelObjects, CellCounts{1, 5, 5});
-  all.push_back({"sweep self pairs", [=](PairSink& sink) {
-                   return sweep_kernels().self_pairs(strips->strips(), 0, strips->lines(), sink);
-                 }});
-  all.push_back({"sweep query", [=](PairSink& sink) {
-                   return sweep_kernels().query(strips->strips(), strips->all_rows(), sink);
-                 }});
-}
-
-std::vector<Kernel> all_kernels() {
-  std::vector<Kernel> all;
-  add_flat(all, "untested", 256, Volume::aabb, &FlatKernels::untested);
-  add_flat(all, "aabb", 256, Volume::aabb, &FlatKernels::aabb);
-  add_flat(all, "aabb", 2048, Volume::aabb, &FlatKernels::aabb);
-  add_flat(all, "sphere", 256, Volume::sphere, &FlatKernels::sphere);
-  add_flat(all, "sphere", 2048, Volume::sphere, &FlatKernels::sphere);
-  add_flat(all, "14-DOP", 2048, Volume::kdop14, &FlatKernels::kdop14);
-  add_flat(all, "18-DOP", 2048, Volume::kdop18, &FlatKernels::kdop18);
-  add_flat(all, "26-DOP", 2048, Volume::kdop26, &FlatKernels::kdop26);
-  add_tree(all);
-  add_cells(all);
-  return all;
-}
-
-/// Calls a kernel once; all calls write to the same buffer.
-void call(const Kernel& kernel, std::vector<std::uint32_t>& room, KernelTiming& timing) {
-  PairSink sink;
+/// Calls a kernel once and returns the numbers that it wrote: two for each pair.
+std::span<const std::uint32_t> call(const Kernel& kernel, const KernelRows& rows, PairSink& sink) {
+  static std::vector<std::uint32_t> room(2 * (kRoom + kSinkSlack));
+  sink = {};
   sink.cursor = room.data();
   sink.limit = room.data() + 2 * kRoom;
   sink.grow = [](PairSink&) { return false; };
-  if (!kernel.call(sink)) throw std::runtime_error(kernel.name + ": too many pairs");
-  timing.tests = 16 * sink.tests;
-  timing.pairs = static_cast<std::uint64_t>(sink.cursor - room.data()) / 2;
+  check(kernel(rows, sink), "too many pairs");
+  return {room.data(), sink.cursor};
+}
+
+void add_kernel(const std::string& name, const RowsOptions& options, const Kernel& kernel) {
+  for (const Isa isa : available_isas()) {
+    add("kernel/" + name + "/isa:" + to_string(isa), [=](benchmark::State& state) {
+      const std::string key = std::to_string(options.objects) + " " +
+                              std::to_string(options.cells[0]) + " " +
+                              std::to_string(static_cast<int>(options.volume));
+      const auto& rows = prepared<const KernelRows>(key, [&] {
+        return std::make_unique<const KernelRows>(options.objects, options.cells, options.volume);
+      });
+      PairSink sink;
+      IsaGuard::choose(available_isas().front());
+      const auto found = call(kernel, rows, sink);
+      const std::vector<std::uint32_t> expected(found.begin(), found.end());
+      IsaGuard::choose(isa);
+      check(std::ranges::equal(call(kernel, rows, sink), expected), "other pairs were found");
+      run(state, 1, [&] { call(kernel, rows, sink); });
+      count(state, "tests", 16 * sink.tests);
+      count(state, "pairs", expected.size() / 2);
+    });
+  }
+}
+
+void add_flat(const std::string& name, std::size_t objects, Volume volume,
+              FlatKernel FlatKernels::*kernel) {
+  const std::string suffix = "/" + name + "/objects:" + std::to_string(objects);
+  const RowsOptions options{.objects = objects, .volume = volume};
+  add_kernel("flat_self_pairs" + suffix, options, [=](const KernelRows& rows, PairSink& sink) {
+    const auto blocks = static_cast<std::uint32_t>(rows.pool.blocks());
+    return (flat_kernels().*kernel).self_pairs(rows.flat(), 0, blocks, sink);
+  });
+  add_kernel("flat_query" + suffix, options, [=](const KernelRows& rows, PairSink& sink) {
+    return (flat_kernels().*kernel).query(rows.flat(), rows.all_rows(), sink);
+  });
+}
+
+void add_tree() {
+  // Ordered by cells of about 16 objects, so that blocks are compact.
+  const RowsOptions options{.cells = {6, 6, 6}};
+  add_kernel("tree_refit", options, [](const KernelRows& rows, PairSink&) {
+    const TreeView tree = rows.nodes();
+    block_tree_kernels().refit_leaves(tree, 0, tree.count[0]);
+    for (std::uint32_t level = 1; level < tree.levels; ++level) {
+      block_tree_kernels().refit_nodes(tree, level, 0, tree.count[level]);
+    }
+    return true;
+  });
+  add_kernel("tree_self_pairs", options, [](const KernelRows& rows, PairSink& sink) {
+    const auto groups = static_cast<std::uint32_t>(rows.tree.groups());
+    return block_tree_kernels().self_pairs(rows.nodes(), 0, groups, sink);
+  });
+  add_kernel("tree_query", options, [](const KernelRows& rows, PairSink& sink) {
+    return block_tree_kernels().query(rows.nodes(), rows.all_rows(), sink);
+  });
+}
+
+void add_cells() {
+  // The world has edge 20, so cells have edge 1.4.
+  const RowsOptions cells{.cells = {15, 15, 15}};
+  add_kernel("grid_self_pairs", cells, [](const KernelRows& rows, PairSink& sink) {
+    return flat_grid_kernels().self_pairs(rows.grid(), 0, rows.lines(), sink);
+  });
+  add_kernel("grid_query", cells, [](const KernelRows& rows, PairSink& sink) {
+    return flat_grid_kernels().query(rows.grid(), rows.all_rows(), sink);
+  });
+  add_kernel("grid_find_misfits", cells, [](const KernelRows& rows, PairSink&) {
+    // One entry for each row, and one full vector store past the end.
+    static std::array<std::uint32_t, kKernelObjects + 16> misfits;
+    const GridView grid = rows.grid();
+    (void)flat_grid_kernels().find_misfits(grid, 0, rows.lines(), misfits.data());
+    return true;
+  });
+  const RowsOptions strips{.cells = {1, 5, 5}};
+  add_kernel("sweep_self_pairs", strips, [](const KernelRows& rows, PairSink& sink) {
+    return sweep_kernels().self_pairs(rows.strips(), 0, rows.lines(), sink);
+  });
+  add_kernel("sweep_query", strips, [](const KernelRows& rows, PairSink& sink) {
+    return sweep_kernels().query(rows.strips(), rows.all_rows(), sink);
+  });
 }
 
 }  // namespace
 
-std::vector<KernelTiming> race_kernels(std::size_t rounds, const std::string& text) {
-  const IsaGuard guard;
-  std::vector<Kernel> kernels = all_kernels();
-  std::erase_if(kernels,
-                [&](const Kernel& one) { return one.name.find(text) == std::string::npos; });
-  std::vector<KernelTiming> timings;
-  for (const Kernel& kernel : kernels) {
-    for (const Isa isa : available_isas()) timings.push_back({.kernel = kernel.name, .isa = isa});
-  }
-  std::vector<std::uint32_t> room(2 * (kRoom + kSinkSlack));
-  auto ns = run_interleaved(timings.size(), rounds, 0, [&](std::size_t, std::size_t i) {
-    const Kernel& kernel = kernels[i / available_isas().size()];
-    IsaGuard::choose(timings[i].isa);
-    const ThreadStopwatch once;
-    call(kernel, room, timings[i]);  // warms the caches and determines the number of calls per turn
-    const auto calls = static_cast<std::size_t>(kTurnMs / std::max(once.ms(), 1e-4)) + 1;
-    const ThreadStopwatch clock;
-    for (std::size_t c = 0; c < calls; ++c) call(kernel, room, timings[i]);
-    return clock.ms() * 1e6 / static_cast<double>(calls);
-  });
-  for (std::size_t i = 0; i < timings.size(); ++i) timings[i].ns = std::move(ns[i]);
-  return timings;
+void add_kernels() {
+  add_flat("untested", 256, Volume::aabb, &FlatKernels::untested);
+  add_flat("aabb", 256, Volume::aabb, &FlatKernels::aabb);
+  add_flat("aabb", 2048, Volume::aabb, &FlatKernels::aabb);
+  add_flat("sphere", 256, Volume::sphere, &FlatKernels::sphere);
+  add_flat("sphere", 2048, Volume::sphere, &FlatKernels::sphere);
+  add_flat("14-dop", 2048, Volume::kdop14, &FlatKernels::kdop14);
+  add_flat("18-dop", 2048, Volume::kdop18, &FlatKernels::kdop18);
+  add_flat("26-dop", 2048, Volume::kdop26, &FlatKernels::kdop26);
+  add_tree();
+  add_cells();
 }
 
-}  // namespace winnow::bench
+}  // namespace winnow::bench::micro

@@ -1,0 +1,375 @@
+// Benchmarks of triangle meshes: builds, refits, rays, and collisions of two tori, with other
+// libraries; and of single queries on a heap of bodies.
+
+#include "bench/micro/micro.h"
+
+#include <winnow/pipeline/scene_queries.h>
+#include <winnow/pipeline/triangle_mesh.h>
+#include "bench/common/need.h"
+#include "bench/common/random.h"
+#include "bench/contenders/winnow_rays.h"
+#include "bench/contenders/winnow_scene.h"
+#include "bench/peers/peers.h"
+#include "bench/scenes/body_scenes.h"
+#include "bench/scenes/random_shapes.h"
+
+#include <winnow/simd/isa.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace winnow::bench::micro {
+namespace {
+
+constexpr std::size_t kRays = 4'000;
+constexpr std::array kMeshNames{"terrain", "soup"};
+
+/// A terrain, or random triangles in a cube, and rays at it. All numbers of rays are floats, which
+/// some engines need.
+struct MeshInput {
+  Triangles mesh;
+  std::vector<ShapeRay> rays;
+
+  MeshInput(const std::string& name, std::size_t triangles) {
+    const bool is_terrain = name == "terrain";
+    const double cells = std::round(std::sqrt(static_cast<double>(triangles) / 2.0));
+    mesh = is_terrain ? make_terrain(make_hills(static_cast<std::uint32_t>(cells), 1.0, 20.0, 1))
+                      : make_soup(triangles, 1);
+    Eigen::AlignedBox3d box;
+    for (const Eigen::Vector3d& vertex : mesh.vertices) box.extend(vertex);
+    const Eigen::Vector3d size = box.sizes();
+    const double away = 0.5 * size.maxCoeff();
+    Random random(2);
+    // Rays start above a terrain, up to half its width, or outside one of the six sides of a soup.
+    for (std::size_t i = 0; i < kRays; ++i) {
+      const int axis = is_terrain ? 2 : static_cast<int>(random.below(3));
+      const bool below = !is_terrain && random.below(2) == 0;
+      Eigen::AlignedBox3d from = box;
+      from.min()[axis] = below ? box.min()[axis] - away : box.max()[axis];
+      from.max()[axis] = below ? box.min()[axis] : box.max()[axis] + away;
+      Eigen::AlignedBox3d to(box.min() + 0.05 * size, box.max() - 0.05 * size);
+      to.min()[axis] = below ? box.max()[axis] : box.min()[axis] - 0.1 * away;
+      to.max()[axis] = to.min()[axis];
+      rays.push_back(ray_between(random, from, to));
+    }
+  }
+
+ private:
+  static ShapeRay ray_between(Random& random, const Eigen::AlignedBox3d& from,
+                              const Eigen::AlignedBox3d& to) {
+    ShapeRay ray;
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto start = static_cast<float>(random.in(from.min()[axis], from.max()[axis]));
+      const auto end = static_cast<float>(random.in(to.min()[axis], to.max()[axis]));
+      ray.origin[axis] = static_cast<double>(start);
+      ray.direction[axis] = static_cast<double>(end - start);
+    }
+    ray.max_t = std::numeric_limits<double>::infinity();
+    return ray;
+  }
+};
+
+/// A mesh of a name and size.
+struct MeshName {
+  std::string name;
+  std::size_t triangles;
+
+  [[nodiscard]] std::string path() const {
+    return name + "/triangles:" + std::to_string(triangles);
+  }
+  [[nodiscard]] const MeshInput& input() const {
+    return prepared<const MeshInput>(
+        path(), [&] { return std::make_unique<const MeshInput>(name, triangles); });
+  }
+};
+
+using MakeRays = std::function<std::unique_ptr<RayEngine>()>;
+
+RayEngine& started(const MeshName& mesh, const std::string& name, const MakeRays& make) {
+  return prepared<RayEngine>(mesh.path() + name, [&] {
+    std::unique_ptr<RayEngine> engine = make();
+    engine->start(mesh.input().mesh);
+    return engine;
+  });
+}
+
+/// Runs all rays and returns where they hit.
+std::vector<double> hits_of(RayEngine& engine, const std::vector<ShapeRay>& rays,
+                            RayQueryType query_type, QueryMode mode) {
+  engine.take(rays);
+  engine.run(query_type, mode);
+  return engine.hits();
+}
+
+/// Counts the rays for which one has no hit, or t differs by more than the rounding of float.
+std::size_t count_differing(const std::vector<double>& expected, const std::vector<double>& found) {
+  std::size_t differ = 0;
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    if (expected[i] == found[i]) continue;
+    if (!(std::abs(expected[i] - found[i]) <= 1e-4 * expected[i])) ++differ;
+  }
+  return differ;
+}
+
+void add_rays(const MeshName& mesh, const std::string& name, const MakeRays& make, bool is_peer) {
+  static constexpr std::array kNames{"closest_ray", "any_ray", "all_rays"};
+  for (const RayQueryType type : {RayQueryType::closest, RayQueryType::any, RayQueryType::all}) {
+    for (const QueryMode mode : {QueryMode::single, QueryMode::batch}) {
+      add(std::string("mesh/") + kNames[static_cast<std::size_t>(type)] + "/" + mesh.path() +
+              (mode == QueryMode::single ? "/single/" : "/batch/") + name,
+          [=](benchmark::State& state) {
+            const std::vector<ShapeRay>& rays = mesh.input().rays;
+            RayEngine& reference = started(mesh, "winnow", make_winnow_rays);
+            IsaGuard::choose(available_isas().front());
+            const auto expected = hits_of(reference, rays, type, QueryMode::single);
+            IsaGuard::choose(available_isas().back());
+            RayEngine& engine = started(mesh, name, make);
+            const auto hits = hits_of(engine, rays, type, mode);
+            const std::size_t differ = count_differing(expected, hits);
+            check(is_peer || differ == 0, "other rays hit the mesh");
+            run(state, 1, [&] { engine.run(type, mode); });
+            count_ns(state, "ns_per_ray", rays.size());
+            count(state, "hits", static_cast<double>(std::ranges::count_if(hits, [](double t) {
+                    return std::isfinite(t);
+                  })));
+            count(state, "differ", differ);
+            if (engine.bytes() == 0) return;
+            count(state, "bytes_per_triangle",
+                  static_cast<double>(engine.bytes()) /
+                      static_cast<double>(mesh.input().mesh.size()));
+          });
+    }
+  }
+}
+
+std::span<const Eigen::Vector3d> vertices_of(const Triangles& mesh) {
+  return mesh.vertices;
+}
+std::span<const std::uint32_t> corners_of(const Triangles& mesh) {
+  return mesh.corners;
+}
+
+void add_builds(const MeshName& mesh) {
+  const auto count_mesh = [mesh](benchmark::State& state, const TriangleMesh& built) {
+    const std::size_t triangles = mesh.input().mesh.size();
+    count_ns(state, "ns_per_triangle", triangles);
+    count(state, "bytes_per_triangle",
+          static_cast<double>(built.footprint().total().used) / static_cast<double>(triangles));
+  };
+  add("mesh/build/" + mesh.path() + "/winnow", [=](benchmark::State& state) {
+    const Triangles& input = mesh.input().mesh;
+    TriangleMesh built;
+    run(state, 1, [&] { need(built.build(vertices_of(input), corners_of(input)), "the mesh"); });
+    count_mesh(state, built);
+  });
+  add("mesh/refit/" + mesh.path() + "/winnow", [=](benchmark::State& state) {
+    const Triangles& input = mesh.input().mesh;
+    TriangleMesh built;
+    need(built.build(vertices_of(input), corners_of(input)), "the mesh");
+    run(state, 1, [&] { need(built.refit(vertices_of(input)), "the mesh"); });
+    count_mesh(state, built);
+  });
+}
+
+using MakeMesh = std::function<std::unique_ptr<MeshEngine>()>;
+
+MeshEngine::TrianglePairs sorted(MeshEngine::TrianglePairs pairs) {
+  std::ranges::sort(pairs);
+  const auto rest = std::ranges::unique(pairs);
+  pairs.erase(rest.begin(), rest.end());
+  return pairs;
+}
+
+/// Two tori at a pose, from the build of the mesh to pairs of triangles.
+void add_tori(const std::string& name, const MakeMesh& make) {
+  const auto torus = []() -> const Triangles& {
+    return prepared<const Triangles>(
+        "torus", [] { return std::make_unique<const Triangles>(make_race_torus()); });
+  };
+  const auto built = [torus](const std::string& engine_name, const MakeMesh& make_engine) -> auto& {
+    return prepared<MeshEngine>("torus " + engine_name, [&] {
+      std::unique_ptr<MeshEngine> engine = make_engine();
+      engine->build(torus());
+      return engine;
+    });
+  };
+  add("mesh/build/triangles:20000/" + name, [=](benchmark::State& state) {
+    const auto engine = make();
+    run(state, 1, [&] { engine->build(torus()); });
+    count_ns(state, "ns_per_triangle", torus().size());
+    count(state, "bytes_per_triangle",
+          static_cast<double>(engine->bytes()) / static_cast<double>(torus().size()));
+  });
+  for (std::size_t p = 0; p < torus_poses().size(); ++p) {
+    add("mesh/tori/pose:" + std::to_string(p + 1) + "/" + name, [=](benchmark::State& state) {
+      const Pose& pose = torus_poses()[p].pose;
+      MeshEngine& reference = built("winnow", make_winnow_mesh);
+      reference.collide(Pose{}, pose);
+      const auto expected = sorted(reference.pairs());
+      MeshEngine& engine = built(name, make);
+      engine.collide(Pose{}, pose);
+      const auto found = sorted(engine.pairs());
+      MeshEngine::TrianglePairs differ;
+      std::ranges::set_symmetric_difference(expected, found, std::back_inserter(differ));
+      const double about = static_cast<double>(torus_poses()[p].about);
+      check(std::abs(static_cast<double>(expected.size()) - about) <= 0.5 * about,
+            "another number of triangles");
+      run(state, 1, [&] { engine.collide(Pose{}, pose); });
+      count(state, "pairs", found.size());
+      count(state, "differ", differ.size());
+    });
+  }
+}
+
+/// A heap of bodies, and places and shapes of queries.
+struct QueryScene {
+  static constexpr std::size_t kBodies = 2'000;
+  static constexpr std::size_t kQueries = 500;
+
+  std::unique_ptr<BodySet> set = make_heap(kBodies, 1);
+  Scene scene{set->pool, {.execution = Execution::serial()}};
+  std::vector<Key> keys = std::vector<Key>(kBodies);
+  std::vector<ShapeRay> rays;
+  std::vector<Pose> starts;
+  std::vector<Pose> ends;
+
+  QueryScene() {
+    std::vector<BodyDefinition> bodies(kBodies);
+    for (std::size_t i = 0; i < kBodies; ++i) {
+      bodies[i].shape = set->shapes[i];
+      bodies[i].pose = set->poses[i];
+    }
+    need(scene.add(bodies, keys), "the bodies");
+    need(scene.refresh(), "the scene");
+    Random random(3);
+    for (std::size_t i = 0; i < kQueries; ++i) {
+      const auto body = random.below(static_cast<std::uint32_t>(kBodies));
+      starts.push_back(set->poses[body]);
+      ends.push_back(set->poses[random.below(static_cast<std::uint32_t>(kBodies))]);
+      for (int axis = 0; axis < 3; ++axis) starts.back().position[axis] += random.in(-1.0, 1.0);
+      ShapeRay& ray = rays.emplace_back();
+      for (int axis = 0; axis < 3; ++axis) {
+        ray.origin[axis] = starts.back().position[axis];
+        ray.direction[axis] = ends.back().position[axis] - ray.origin[axis];
+      }
+      ray.max_t = std::numeric_limits<double>::infinity();
+    }
+  }
+};
+
+/// A query about place i, which returns a number that depends on its results.
+using SceneQuery = std::function<double(const QueryScene&, SceneQueries&, std::size_t i)>;
+
+/// Registers a query, whose results must be equal on all instruction sets.
+void add_scene_query(const std::string& name, const SceneQuery& query) {
+  add("scene/" + name + "/bodies:" + std::to_string(QueryScene::kBodies),
+      [=](benchmark::State& state) {
+        const auto& scene = prepared<const QueryScene>(
+            "queries", [] { return std::make_unique<const QueryScene>(); });
+        SceneQueries queries(scene.scene);
+        std::vector<double> results[2];
+        for (const std::size_t which : {0, 1}) {
+          IsaGuard::choose(which == 0 ? available_isas().front() : available_isas().back());
+          for (std::size_t i = 0; i < QueryScene::kQueries; ++i) {
+            results[which].push_back(query(scene, queries, i));
+          }
+        }
+        check(results[0] == results[1], "the results depend on the instruction set");
+        double found = 0.0;
+        for (const double one : results[0]) found += one != 0.0 ? 1.0 : 0.0;
+        check(found > 0.0, "nothing was found");
+        run(state, 1, [&] {
+          for (std::size_t i = 0; i < QueryScene::kQueries; ++i) {
+            benchmark::DoNotOptimize(query(scene, queries, i));
+          }
+        });
+        count_ns(state, "ns_per_query", QueryScene::kQueries);
+        count(state, "found", found / static_cast<double>(QueryScene::kQueries));
+      });
+}
+
+double number_of(const SceneHit& hit) {
+  return hit ? 1.0 + hit.t + hit.key.id : 0.0;
+}
+
+}  // namespace
+
+void add_meshes() {
+  for (const std::string name : kMeshNames) {
+    for (const std::size_t triangles : {std::size_t{100'000}, std::size_t{500'000}}) {
+      const MeshName mesh{name, triangles};
+      add_rays(mesh, "winnow", make_winnow_rays, false);
+      const auto peers = make_ray_peers();
+      for (std::size_t i = 0; i < peers.size(); ++i) {
+        add_rays(
+            mesh, path_of(peers[i]->name()), [i] { return std::move(make_ray_peers()[i]); }, true);
+      }
+      add_builds(mesh);
+    }
+  }
+  add_tori("winnow", make_winnow_mesh);
+  const auto peers = make_mesh_peers();
+  for (std::size_t i = 0; i < peers.size(); ++i) {
+    add_tori(path_of(peers[i]->name()), [i] { return std::move(make_mesh_peers()[i]); });
+  }
+}
+
+void add_scenes() {
+  add_scene_query("closest_ray", [](const QueryScene& scene, SceneQueries& queries, std::size_t i) {
+    SceneHit hit;
+    need(queries.closest(scene.rays[i], hit), "a ray");
+    return number_of(hit);
+  });
+  add_scene_query("any_ray", [](const QueryScene& scene, SceneQueries& queries, std::size_t i) {
+    SceneHit hit;
+    need(queries.any(scene.rays[i], hit), "a ray");
+    return hit ? 1.0 : 0.0;
+  });
+  add_scene_query("all_rays", [](const QueryScene& scene, SceneQueries& queries, std::size_t i) {
+    std::span<const SceneHit> hits;
+    need(queries.all(scene.rays[i], hits), "a ray");
+    double sum = 0.0;
+    for (const SceneHit& hit : hits) sum += number_of(hit);
+    return sum;
+  });
+  add_scene_query("overlap", [](const QueryScene& scene, SceneQueries& queries, std::size_t i) {
+    std::span<const SceneOverlap> bodies;
+    need(queries.overlap(scene.set->shapes[i], scene.starts[i], bodies), "a shape");
+    double sum = 0.0;
+    for (const SceneOverlap& body : bodies) sum += 1.0 + body.key.id;
+    return sum;
+  });
+  add_scene_query("shape_cast", [](const QueryScene& scene, SceneQueries& queries, std::size_t i) {
+    ShapeCast cast{.shape = scene.set->shapes[i], .pose = scene.starts[i]};
+    std::copy_n(scene.rays[i].direction, 3, cast.direction);
+    SceneHit hit;
+    need(queries.closest(cast, hit), "a shape cast");
+    return number_of(hit);
+  });
+  add_scene_query("motion_cast", [](const QueryScene& scene, SceneQueries& queries, std::size_t i) {
+    const MotionCast cast{.shape = scene.set->shapes[i],
+                          .motion = RigidMotion::between(scene.starts[i], scene.ends[i])};
+    SceneHit hit;
+    need(queries.closest(cast, hit), "a motion cast");
+    return number_of(hit);
+  });
+  add_scene_query("distance", [](const QueryScene& scene, SceneQueries& queries, std::size_t i) {
+    SceneDistance answer;
+    need(queries.distance(scene.keys[i], scene.keys[QueryScene::kBodies - 1 - i], answer),
+         "a distance");
+    return answer.distance;
+  });
+  add_scene_query("nearest_4", [](const QueryScene& scene, SceneQueries& queries, std::size_t i) {
+    std::span<const SceneDistance> bodies;
+    constexpr double kAnyDistance = std::numeric_limits<double>::infinity();
+    need(queries.nearest(scene.starts[i].position, 4, kAnyDistance, bodies), "a point");
+    double sum = 0.0;
+    for (const SceneDistance& body : bodies) sum += 1.0 + body.distance + body.key.id;
+    return sum;
+  });
+}
+
+}  // namespace winnow::bench::micro

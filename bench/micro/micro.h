@@ -1,0 +1,82 @@
+// Benchmarks of single operations, run by Google Benchmark. Each source of this folder registers
+// one family; main.cpp calls all of them. A name is a path: words, and parameters "key:value". The
+// path is stable, because results of two commits are compared by name.
+
+#pragma once
+
+#include <benchmark/benchmark.h>
+#include "bench/common/arena.h"
+#include "bench/measure/isa_guard.h"
+#include "bench/rows/named_scene.h"
+
+#include <cstddef>
+#include <functional>
+#include <map>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace winnow::bench::micro {
+
+void add_kernels();                                          // kernel/
+void add_pairs();                                            // pair/
+void add_errors();                                           // error/ and stability/
+void add_motion();                                           // toi/, feature/ and continuous/
+void add_partitions(const std::vector<NamedScene>& scenes);  // partition/ and memory/
+void add_keys();                                             // keys/
+void add_filters(const std::vector<NamedScene>& scenes);     // filter/
+void add_volumes(const std::vector<NamedScene>& scenes);     // volume/
+void add_meshes();                                           // mesh/
+void add_scenes();                                           // scene/
+
+using Body = std::function<void(benchmark::State&)>;
+
+/// Registers a benchmark. If its body throws, the benchmark is reported as failed, with the text.
+benchmark::internal::Benchmark* add(const std::string& name, Body body);
+
+/// Registers a benchmark that several threads of oneTBB run; it is timed by the wall clock.
+benchmark::internal::Benchmark* add(const std::string& name, int threads, Body body);
+
+/// Returns a name as a part of a path: "FCL libccd" as fcl_libccd, "LinearBvh" as linear_bvh,
+/// "1 % apart" as 1_percent_apart.
+[[nodiscard]] std::string path_of(std::string_view name);
+/// Returns a number as short as possible.
+[[nodiscard]] std::string path_of(double value);
+
+/// Throws std::runtime_error with the text unless `right`.
+void check(bool right, const std::string& text);
+
+/// Returns the value stored under `key`. The first call makes and stores it, so that repetitions of
+/// a benchmark, and benchmarks on the same input, share it.
+template <typename Value, typename Make>
+Value& prepared(const std::string& key, Make&& make) {
+  static std::map<std::string, std::unique_ptr<Value>> all;
+  const auto at = all.find(key);
+  if (at != all.end()) return *at->second;
+  std::unique_ptr<Value> made = make();
+  return *all.emplace(key, std::move(made)).first->second;
+}
+
+/// Calls `work` for each iteration, inside an arena of `threads` threads.
+template <typename Work>
+void run(benchmark::State& state, int threads, Work&& work) {
+  static Arenas arenas(2);
+  arenas.run(threads, [&] {
+    for (auto iteration : state) {
+      static_cast<void>(iteration);
+      work();
+    }
+  });
+}
+
+/// Sets the counter `name` to nanoseconds for each of `count` equal parts of an iteration.
+void count_ns(benchmark::State& state, const std::string& name, std::size_t count);
+
+/// Sets a counter to a number.
+void count(benchmark::State& state, const std::string& name, double value);
+void count(benchmark::State& state, const std::string& name, std::size_t value);
+
+}  // namespace winnow::bench::micro

@@ -1,0 +1,207 @@
+// Benchmarks of continuous collision detection: times of impact of moving shapes (winnow and other
+// libraries) and of mesh features, and impacts of a heap with some fast bodies beside its contacts.
+
+#include "bench/micro/micro.h"
+
+#include <winnow/pipeline/contacts.h>
+#include <winnow/pipeline/continuous_collision.h>
+#include "bench/common/need.h"
+#include "bench/contenders/partitions.h"
+#include "bench/contenders/winnow_impacts.h"
+#include "bench/measure/impact_judge.h"
+#include "bench/peers/peers.h"
+#include "bench/scenes/body_scenes.h"
+#include "bench/scenes/feature_steps.h"
+#include "bench/scenes/random_shapes.h"
+
+#include <cmath>
+
+namespace winnow::bench::micro {
+namespace {
+
+constexpr std::size_t kMovingPairs = 2048;
+constexpr std::size_t kFeatures = 20'000;
+
+/// Moving pairs of one kind, with what is known about them.
+struct JudgedMotions {
+  MovingPairSet set;
+  ImpactJudge judge;
+
+  JudgedMotions(const PairKind& kind, PairTurn turn)
+      : set(make_moving_pairs(kind, turn, {.pairs = kMovingPairs})), judge(set) {}
+};
+
+using MakeImpacts = std::function<std::unique_ptr<ImpactEngine>()>;
+
+void add_impacts(const PairKind& kind, PairTurn turn, const std::string& name,
+                 const MakeImpacts& make, bool is_winnow) {
+  const std::string path = "toi/" + std::string(kind.name) + "/turn:" + path_of(to_text(turn));
+  add(path + "/" + name, [=](benchmark::State& state) {
+    auto& motions =
+        prepared<JudgedMotions>(path, [&] { return std::make_unique<JudgedMotions>(kind, turn); });
+    ImpactEngine& engine = prepared<ImpactEngine>(path + name, [&] {
+      std::unique_ptr<ImpactEngine> made = make();
+      made->start(motions.set);
+      return made;
+    });
+    const ImpactFaults faults = motions.judge.judge(engine);
+    if (is_winnow) check(faults.missed + faults.late + faults.loose == 0, "an impact is wrong");
+    const std::vector<BodyPair>& pairs = motions.set.middle->pairs;
+    run(state, 1, [&] { engine.run(pairs); });
+    count_ns(state, "ns_per_pair", pairs.size());
+    count(state, "pairs", faults.judged);
+    count(state, "hits", faults.hits);
+    count(state, "missed", faults.missed);
+    count(state, "late", faults.late);
+    count(state, "loose", faults.loose);
+    count(state, "median_gap", faults.median_gap);
+    count(state, "worst_gap", faults.worst_gap);
+  });
+}
+
+void add_features(FeaturePair kind, FeatureSteps steps) {
+  const std::string path = "feature/" + std::string(to_text(kind)) + "/" + path_of(to_text(steps));
+  add(path, [=](benchmark::State& state) {
+    const auto& set = prepared<const FeatureStepSet>(path, [&] {
+      return std::make_unique<const FeatureStepSet>(make_feature_steps(kind, steps, kFeatures, 1));
+    });
+    std::vector<double> times(kFeatures);
+    need(feature_impacts(kind, set.columns(), times), "features");
+    std::size_t hits = 0;
+    std::size_t missed = 0;
+    std::size_t invented = 0;
+    for (const double time : times) {
+      const bool hit = std::isfinite(time);
+      hits += hit ? 1 : 0;
+      missed += steps == FeatureSteps::touching && !(time <= kTouchTime) ? 1 : 0;
+      invented += steps == FeatureSteps::passing && hit ? 1 : 0;
+    }
+    check(missed == 0 && invented == 0, "an impact was missed or invented");
+    run(state, 1, [&] { need(feature_impacts(kind, set.columns(), times), "features"); });
+    count_ns(state, "ns_per_pair", kFeatures);
+    count(state, "pairs", kFeatures);
+    count(state, "hits", hits);
+    count(state, "missed", missed);
+    count(state, "invented", invented);
+  });
+}
+
+/// A heap in which some bodies move by up to ten times their size in a frame, and all others by a
+/// little.
+class MovingHeap {
+ public:
+  MovingHeap(std::size_t bodies, std::size_t fast, int threads)
+      : set_(make_heap(bodies, 1)),
+        scene_(set_->pool, {.execution = execution_for(threads)}),
+        ccd_(scene_),
+        keys_(bodies),
+        bullets_(bodies) {
+    std::vector<BodyDefinition> definitions(bodies);
+    for (std::size_t i = 0; i < bodies; ++i) {
+      definitions[i].shape = set_->shapes[i];
+      definitions[i].pose = set_->poses[i];
+    }
+    need(scene_.add(definitions, keys_), "the bodies");
+    // The kinds of shapes are consecutive in the heap: fast bodies are spread evenly over all of
+    // them.
+    for (std::size_t i = 0; i < fast; ++i) bullets_[i * bodies / fast] = 1;
+    for (std::uint64_t frame = 0; frame < 2; ++frame) next_frame();
+  }
+
+  void next_frame() {
+    apply_pose_noise(*set_, kMoving, frame_, poses_);
+    need(scene_.move(keys_, poses_), "poses");
+    apply_pose_noise(*set_, kMoving, ++frame_, ends_);
+    fast_keys_.clear();
+    fast_ends_.clear();
+    for (std::size_t i = 0; i < keys_.size(); ++i) {
+      if (bullets_[i] == 0) continue;
+      const Eigen::Vector3d way = random_.in(0.1, 1.0) * kFarthest * random_unit(random_);
+      for (int axis = 0; axis < 3; ++axis) ends_[i].position[axis] += way[axis];
+      fast_keys_.push_back(keys_[i]);
+      fast_ends_.push_back(ends_[i]);
+    }
+  }
+
+  void collide() { need(scene_.collide(ContactLevel::manifold, contacts_), "contacts"); }
+  void find_impacts_of_fast() {
+    need(ccd_.find_impacts(fast_keys_, std::span<const Pose>(fast_ends_), {.first_only = true}),
+         "impacts");
+  }
+  void find_all_impacts() {
+    need(ccd_.find_impacts(
+             keys_, std::span<const Pose>(ends_),
+             {.pairs = ContinuousPairs::bullets, .bullets = bullets_, .first_only = true}),
+         "impacts");
+  }
+  [[nodiscard]] const Contacts& contacts() const { return contacts_; }
+  [[nodiscard]] const ContinuousCollision& ccd() const { return ccd_; }
+
+ private:
+  /// In sizes of the bodies, which are about 1.
+  static constexpr double kFarthest = 10.0;
+
+  std::unique_ptr<BodySet> set_;
+  Scene scene_;
+  ContinuousCollision ccd_;
+  Contacts contacts_;
+  std::vector<Key> keys_;
+  std::vector<std::uint8_t> bullets_;
+  std::vector<Pose> poses_;
+  std::vector<Pose> ends_;
+  std::vector<Key> fast_keys_;
+  std::vector<Pose> fast_ends_;
+  Random random_{1};
+  std::uint64_t frame_ = 0;
+};
+
+/// Registers one call on a heap. Every iteration has new poses, which are set outside of the time.
+void add_heap(const std::string& what, void (MovingHeap::*call)(), std::size_t bodies,
+              std::size_t fast, int threads) {
+  const std::string of_heap = "/bodies:" + std::to_string(bodies) +
+                              "/fast:" + std::to_string(fast) +
+                              "/threads:" + std::to_string(threads);
+  add("continuous/" + what + of_heap, threads, [=](benchmark::State& state) {
+    auto& heap = prepared<MovingHeap>(
+        of_heap, [&] { return std::make_unique<MovingHeap>(bodies, fast, threads); });
+    run(state, threads, [&] {
+      state.PauseTiming();
+      heap.next_frame();
+      state.ResumeTiming();
+      (heap.*call)();
+    });
+    const bool contacts = what == "collide";
+    const std::size_t found = contacts ? heap.contacts().size() : heap.ccd().impacts().size();
+    if (found == 0) return state.SkipWithError("nothing was hit");
+    count(state, contacts ? "contacts" : "impacts", found);
+    if (!contacts) count(state, "pairs", std::size_t{heap.ccd().statistics().body_pairs});
+  });
+}
+
+}  // namespace
+
+void add_motion() {
+  for (const PairKind& kind : pair_kinds()) {
+    for (const PairTurn turn : kPairTurns) {
+      add_impacts(
+          kind, turn, "winnow", [] { return std::make_unique<WinnowImpacts>(); }, true);
+      const auto peers = make_impact_peers();
+      for (std::size_t i = 0; i < peers.size(); ++i) {
+        if (!peers[i]->takes(kind, turn)) continue;
+        add_impacts(
+            kind, turn, path_of(peers[i]->name()),
+            [i] { return std::move(make_impact_peers()[i]); }, false);
+      }
+    }
+  }
+  for (const FeaturePair kind : kFeaturePairs) {
+    for (const FeatureSteps steps : kFeatureSteps) add_features(kind, steps);
+  }
+  for (const int threads : {1, 2}) {
+    add_heap("collide", &MovingHeap::collide, 10'000, 1'000, threads);
+    add_heap("fast", &MovingHeap::find_impacts_of_fast, 10'000, 1'000, threads);
+    add_heap("all", &MovingHeap::find_all_impacts, 10'000, 1'000, threads);
+  }
+}
+
+}  // namespace winnow::bench::micro
