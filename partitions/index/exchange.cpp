@@ -85,7 +85,7 @@ bool SpatialIndex::reserve(std::size_t objects, Pages pages,
     flat = flat && structure.is_flat();
     prunes = prunes || structure.prunes_rows();
     holes = std::max(holes, structure.max_holes());
-    behind = std::max(behind, tail_room(structure, objects));
+    behind = std::max(behind, RebuildPlanner::tail_room(structure.prunes_rows(), objects));
   };
   count_in(*structure_);
   for (const OwnedStructure& one : structures_.spares()) {

@@ -53,7 +53,7 @@ Status SpatialIndex::apply_plan(bool foreseen) {
   const bool completed = !foreseen || plan_.complete();
   const std::size_t rows = order.size();
   const bool prunes = next.prunes_rows();
-  if (!completed || !rows_.reserve_rows(rows + tail_room(next, rows_.size())) ||
+  if (!completed || !rows_.reserve_rows(rows + RebuildPlanner::tail_room(prunes, rows_.size())) ||
       !spare_.reserve(rows_.pool().capacity() + 2 * kBlockRows) ||
       !tree_.cover(first_block, blocks_of(rows) - first_block, node_content()) ||
       (prunes && !regular_tree_.cover(0, blocks_of(regular), node_content())) ||
@@ -111,13 +111,9 @@ Status SpatialIndex::build_flat() {
 
 bool SpatialIndex::start_plan(Structure& structure) noexcept {
   planner_.note_plan(numbers());
-  return plan_.start(rows_, structure, tail_room(structure, rows_.size()),
+  return plan_.start(rows_, structure,
+                     RebuildPlanner::tail_room(structure.prunes_rows(), rows_.size()),
                      planner_.precision(structure.first_precision()));
-}
-
-// Rows that a build of `objects` objects reserves for the tail.
-std::size_t SpatialIndex::tail_room(const Structure& structure, std::size_t objects) noexcept {
-  return (structure.prunes_rows() ? 2 : 1) * RebuildPlanner::max_in_tail(objects);
 }
 
 // Starts a plan if a build is near, and runs the stages of this refresh.

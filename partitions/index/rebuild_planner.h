@@ -124,6 +124,10 @@ class RebuildPlanner {
   [[nodiscard]] static std::size_t max_in_tail(std::size_t objects) noexcept {
     return std::min(tail_limit(objects), objects);
   }
+  /// The rows that a build reserves for the tail. `prunes_rows`: see Structure::prunes_rows.
+  [[nodiscard]] static std::size_t tail_room(bool prunes_rows, std::size_t objects) noexcept {
+    return (prunes_rows ? 2 : 1) * max_in_tail(objects);
+  }
 
   // Events.
 

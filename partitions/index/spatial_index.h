@@ -113,8 +113,6 @@ class SpatialIndex {
   Status build();
   Status apply_plan(bool foreseen);
   Status build_flat();
-  [[nodiscard]] static std::size_t tail_room(const Structure& structure,
-                                             std::size_t objects) noexcept;
   [[nodiscard]] bool start_plan(Structure& structure) noexcept;
   void continue_planning() noexcept;
   void drop_plan() noexcept;

@@ -177,7 +177,7 @@ struct ProbeOverlap {
   using Answer = ClusterOverlap;
 
   static Status check(const RankScene& rank, const ShapeProbe& probe) noexcept {
-    return rank.check(probe.shape, probe.pose);
+    return rank.check_shape(probe.shape, probe.pose);
   }
   static void find_ranks(const RankGroup& group, const RankScene& rank, const ShapeProbe& probe,
                          std::vector<std::uint32_t>& ranks) {

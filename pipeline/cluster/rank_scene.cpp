@@ -21,24 +21,20 @@ namespace {
 
 RankScene::RankScene(std::uint32_t rank, std::uint32_t ranks, const ShapePool& shapes,
                      const SceneOptions& options)
-    : rank_(rank),
+    : RankMembers(shapes, options),
+      rank_(rank),
       is_single_rank_(ranks == 1),
       region_(Regions().of(0)),
-      scene_(shapes, options),
       contacts_(options.memory),
-      events_(rank, ranks),
-      table_(options.memory) {
+      events_(rank, ranks) {
   if (scene_.state_ == nullptr || contacts_.state_ == nullptr) throw_bad_alloc();
+  state_ = scene_.state_;
   selection_.accept = [](const void* self, std::uint32_t a, std::uint32_t b) {
     return static_cast<const RankScene*>(self)->reports(a, b);
   };
   selection_.context = this;
   state().keeps_origin = true;
   state().selection = &selection_;
-}
-
-bool RankScene::is_good() const noexcept {
-  return state().options_are_good;
 }
 
 // ---- changes by the caller
@@ -143,18 +139,6 @@ Status RankScene::move(std::span<const Key> keys, const PoseView& poses) {
   return Status::ok;
 }
 
-Status RankScene::find_keys(std::span<const BodyName> names, std::uint8_t flag,
-                            std::vector<Key>& keys) const {
-  keys.clear();
-  for (const BodyName name : names) {
-    const std::uint32_t id = table_.find(name);
-    if (id == NameTable::kNone || (flags_[id] & flag) == 0) return Status::invalid_key;
-    keys.push_back(state().keys.key_of(id));
-  }
-  return has_twice(std::vector<BodyName>(names.begin(), names.end())) ? Status::invalid_key
-                                                                      : Status::ok;
-}
-
 Status RankScene::move(std::span<const BodyName> names, const PoseView& poses) {
   if (names.size() != poses.count) return Status::size_mismatch;
   const Status status = find_keys(names, kOwned, keys_);
@@ -176,45 +160,7 @@ Status RankScene::remove(std::span<const BodyName> names) {
   return Status::ok;
 }
 
-Status RankScene::key_of(BodyName name, Key& key) const noexcept {
-  const std::uint32_t id = table_.find(name);
-  if (id == NameTable::kNone || (flags_[id] & kOwned) == 0) return Status::invalid_key;
-  key = state().keys.key_of(id);
-  return Status::ok;
-}
-
-Status RankScene::bodies(std::span<ClusterBody> bodies) const {
-  if (bodies.size() != size()) return Status::size_mismatch;
-  std::size_t count = 0;
-  for (ObjectId id = 0; id < flags_.size(); ++id) {
-    const Key key = state().keys.key_of(id);
-    if (is_owned(key)) bodies[count++] = {names_[id], key};
-  }
-  return Status::ok;
-}
-
-void RankScene::records(std::vector<BodyName>& names, std::vector<BodyRecord>& bodies) const {
-  for (ObjectId id = 0; id < flags_.size(); ++id) {
-    if (!is_owned(state().keys.key_of(id))) continue;
-    names.push_back(names_[id]);
-    bodies.push_back(record_of(id));
-  }
-}
-
 // ---- migration
-
-Aabb RankScene::box_of(ObjectId id) const noexcept {
-  Aabb box;
-  (void)state().set(state().body_state[id]).partition->bounds(state().place[id], box);
-  return box;
-}
-
-BodyRecord RankScene::record_of(ObjectId id) const noexcept {
-  BodyRecord record{state().pose[id], state().shape[id], {}, state().body_state[id]};
-  (void)state().set(record.state).partition->filter(state().place[id], record.filter);
-  record.is_new = (flags_[id] & kNew) != 0 ? 1 : 0;
-  return record;
-}
 
 bool RankScene::is_within(const Aabb& box) const noexcept {
   return contains(region_, box);
@@ -490,15 +436,6 @@ CutWork RankScene::cut_work() {
     works_of_owned_.push_back(id < works_.size() ? works_[id] : 1);
   }
   return {work_boxes_, works_of_owned_};
-}
-
-Status RankScene::check(ShapeId shape, const Pose& pose) const noexcept {
-  return state().check(shape, pose);
-}
-
-Aabb RankScene::box_around(ShapeId shape, const Pose& pose) const noexcept {
-  const PlainBox box = state().bounds_from(state().origin, shape, pose, 0.0);
-  return {{box.min[0], box.min[1], box.min[2]}, {box.max[0], box.max[1], box.max[2]}};
 }
 
 Bytes RankScene::bytes() const noexcept {

@@ -3,11 +3,10 @@
 // One rank of a ClusterScene: its bodies and copies, their migration to and from other ranks, and
 // its contacts. Used by cluster_scene.cpp and cluster_queries.cpp.
 
-#include <winnow/core/object_filter.h>
 #include <winnow/pipeline/cluster_scene.h>
 #include "pipeline/cluster/contact_events.h"
-#include "pipeline/cluster/name_table.h"
 #include "pipeline/cluster/rank_group.h"
+#include "pipeline/cluster/rank_members.h"
 #include "pipeline/cluster/regions.h"
 #include "pipeline/cluster/send_queue.h"
 #include "pipeline/scene/body_pairs.h"
@@ -19,35 +18,14 @@
 
 namespace winnow {
 
-struct SceneState;
-
-/// All data of a body, as ranks send and store it. Without padding.
-struct BodyRecord {
-  Pose pose{};
-  ShapeId shape{};
-  ObjectFilter filter{};
-  BodyState state = BodyState::dynamic;
-  std::uint8_t is_new = 0;  ///< added since the last `collide`
-  std::uint8_t spare[6] = {};
-
-  [[nodiscard]] BodyDefinition definition(BodyName name) const noexcept {
-    return {shape, pose, state, filter, name};
-  }
-};
-static_assert(sizeof(BodyRecord) == 80);
-
-/// The bodies of one rank of a ClusterScene, in one scene: bodies that belong to the rank, copies
-/// (ghosts) of other ranks' bodies whose boxes overlap its region, and replicated bodies. Throws
-/// std::bad_alloc if memory is refused.
-class RankScene {
+/// The bodies of one rank: changes by the caller, migration, and contacts. Throws std::bad_alloc if
+/// memory is refused.
+class RankScene : public RankMembers {
  public:
   RankScene(std::uint32_t rank, std::uint32_t ranks, const ShapePool& shapes,
             const SceneOptions& options);
   RankScene(const RankScene&) = delete;
   RankScene& operator=(const RankScene&) = delete;
-
-  /// False if the options are out of range.
-  [[nodiscard]] bool is_good() const noexcept;
 
   // Changes by the caller. A refused call changes nothing.
 
@@ -96,34 +74,13 @@ class RankScene {
   /// Boxes of the bodies that belong to this rank, and the work of each; 1 if it was not measured.
   [[nodiscard]] CutWork cut_work();
 
-  [[nodiscard]] std::size_t size() const noexcept { return owned_; }
-  [[nodiscard]] Status bodies(std::span<ClusterBody> bodies) const;
-  /// Returns all bodies that belong to this rank.
-  void records(std::vector<BodyName>& names, std::vector<BodyRecord>& bodies) const;
-  [[nodiscard]] Status key_of(BodyName name, Key& key) const noexcept;
   [[nodiscard]] std::span<const ClusterBody> arrived() const noexcept { return arrived_; }
   [[nodiscard]] std::span<const BodyName> departed() const noexcept { return departed_; }
   /// Returns the names of bodies that were removed since the last call.
   [[nodiscard]] std::vector<BodyName> take_removed() { return std::exchange(removed_, {}); }
   [[nodiscard]] Bytes bytes() const noexcept;
 
-  [[nodiscard]] const Scene& scene() const noexcept { return scene_; }
-  /// Checks whether a shape and a pose are valid.
-  [[nodiscard]] Status check(ShapeId shape, const Pose& pose) const noexcept;
-  /// Box around a valid shape at a valid pose.
-  [[nodiscard]] Aabb box_around(ShapeId shape, const Pose& pose) const noexcept;
-
  private:
-  /// State of a body, indexed by the id of its key.
-  enum Flag : std::uint8_t {
-    kOwned = 1,         // belongs to this rank
-    kCrosses = 2,       // its box is not contained in this rank's region
-    kMoved = 4,         // is in moved_
-    kRemoved = 8,       // to be removed here and on other ranks
-    kReplicated = 16,   // is on every rank
-    kNew = 32,          // added since the last collide
-    kWasInterior = 64,  // at the last collide belonged to this rank and did not cross
-  };
   /// A body about which other ranks may need a message.
   struct MovedBody {
     Key key;
@@ -136,20 +93,8 @@ class RankScene {
     friend constexpr auto operator<=>(const NamedId&, const NamedId&) noexcept = default;
   };
 
-  [[nodiscard]] SceneState& state() noexcept { return *scene_.state_; }
-  [[nodiscard]] const SceneState& state() const noexcept { return *scene_.state_; }
-  [[nodiscard]] bool is_owned(Key key) const noexcept {
-    return scene_.contains(key) && (flags_[key.id] & (kOwned | kRemoved)) == kOwned;
-  }
-  [[nodiscard]] bool stayed_interior(ObjectId id) const noexcept {
-    return (flags_[id] & (kWasInterior | kOwned | kCrosses)) == (kWasInterior | kOwned);
-  }
-  [[nodiscard]] Aabb box_of(ObjectId id) const noexcept;
-  [[nodiscard]] BodyRecord record_of(ObjectId id) const noexcept;
   [[nodiscard]] bool is_within(const Aabb& box) const noexcept;
   [[nodiscard]] bool reports(ObjectId a, ObjectId b) const noexcept;
-  [[nodiscard]] Status find_keys(std::span<const BodyName> names, std::uint8_t flag,
-                                 std::vector<Key>& keys) const;
   [[nodiscard]] Status add_bodies(std::span<const BodyName> names,
                                   std::span<const BodyRecord> bodies);
   void note(ObjectId id, bool has_changed);
@@ -165,14 +110,9 @@ class RankScene {
   std::uint32_t rank_;
   bool is_single_rank_;
   Aabb region_;
-  Scene scene_;
   Contacts contacts_;
   ContactEvents events_;
   PairSelection selection_;
-  std::vector<BodyName> names_;      // by id
-  std::vector<std::uint8_t> flags_;  // by id
-  NameTable table_;                  // to ids
-  std::size_t owned_ = 0;
   std::size_t ghosts_ = 0;
   std::vector<MovedBody> moved_;
   std::vector<BodyName> removed_;

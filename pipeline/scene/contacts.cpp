@@ -1,5 +1,5 @@
 // ContactFrame's columns, and the public interface of Contacts, which only reads them.
-// Scene::collide fills them (write_contacts.cpp).
+// Scene::collide fills them (contact_frame_writer.cpp).
 
 #include <winnow/pipeline/contacts.h>
 

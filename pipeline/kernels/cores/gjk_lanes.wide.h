@@ -115,11 +115,11 @@ class GjkLanes {
     steps[lane] = 1;
   }
 
-  /// Advances the `active` lanes by one step. `Rules` defines the search:
+  /// Advances the `active` lanes by one step: adds a support point to the simplex of each lane and
+  /// keeps the feature that is nearest to the origin. `Rules` defines the search:
   /// - find(v) computes `w`, the support point of the difference against v.
   /// - ends(v, v . v, v . w, simplex) returns the lanes that end at w. It may remove points from
-  /// the
-  ///   simplex.
+  ///   the simplex.
   /// - has_no_gain(v . v - v . w, v . v) returns the lanes without progress.
   /// - nearest(simplex) returns the nearest feature after adding w.
   /// - keep(slot, lanes) stores more about w in the lanes in which w enters the slot.

@@ -289,7 +289,11 @@ class LocalMinimum {
     const SidePlace place(*pair_, side == 1);
     if (points.is_round()) return add_round(points, place, side);
     if (points.is_tapered()) return add_taper(points, place, side);
-    if (points.is_smooth()) return add_ellipsoid(*points.form, place, side);
+    if (points.is_smooth()) {
+      add_point(points.form->center, place, side);
+      add_ellipsoid(points.form->number, points.form->number[3], place);
+      return true;
+    }
     const double* other = nullptr;
     for (int i = 1; i < 3; ++i) {
       if (are_same(points.at[i], points.at[0])) continue;
@@ -322,13 +326,7 @@ class LocalMinimum {
     return !is_side || add_edge(along, place);
   }
 
-  bool add_ellipsoid(const CoreDesc& form, const SidePlace& place, int side) {
-    add_point(form.center, place, side);
-    set_ellipsoid(form.number, form.number[3], place);
-    return true;
-  }
-
-  void set_ellipsoid(const double* radius, double off, const SidePlace& place) {
+  void add_ellipsoid(const double* radius, double off, const SidePlace& place) {
     LocalMinkowskiSum::Ellipsoid& s = sum_.ellipsoid[sum_.ellipsoids++];
     for (int k = 0; k < 3; ++k) {
       double axis[3] = {0.0, 0.0, 0.0};
@@ -350,7 +348,7 @@ class LocalMinimum {
     if (tips == 3) return true;
     if (tips == 0) {
       const double radius[3] = {more, more, more};
-      if (more > 0.0) set_ellipsoid(radius, 0.0, place);
+      if (more > 0.0) add_ellipsoid(radius, 0.0, place);
       return true;
     }
     if (!(more > 0.0)) {
