@@ -161,7 +161,7 @@ class KernelRows {
 
 /// Writes pairs; returns false if the buffer is full.
 using Kernel = std::function<bool(const KernelRows&, PairSink&)>;
-/// What the rows are made of.
+/// Options of the rows on which a kernel runs.
 struct RowsOptions {
   std::size_t objects = kKernelObjects;
   CellCounts cells{1, 1, 1};

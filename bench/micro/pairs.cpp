@@ -135,7 +135,7 @@ Differences compare(const PairSet& set, const std::vector<NarrowAnswer>& expecte
   return found;
 }
 
-/// What must hold for the answers of an engine, beside the counters that show the differences.
+/// Conditions of the answers of an engine, beside the counters that show the differences.
 enum class Demand {
   nothing,       ///< other libraries: `right` is a counter
   by_and_large,  ///< they are right

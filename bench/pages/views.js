@@ -1,5 +1,5 @@
 "use strict";
-// What the sections of the page show. A view draws rows of a family by a declaration of Chart.js;
+// Views: the contents of the sections of the page. A view draws rows of a family by a declaration of Chart.js;
 // keys that its chart does not show become selections, as do its fields if there are several.
 
 const unit_of = (list, field) => field === "real_time" ? `time, ${list[0]?.time_unit}` : label(field);

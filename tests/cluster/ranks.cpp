@@ -24,7 +24,7 @@ namespace {
 constexpr double kLimit = 120.0;
 constexpr double kAwaitedLimit = 3.0;
 
-/// Where ranks write their files.
+/// The folder of the files of ranks.
 std::filesystem::path folder;
 
 std::filesystem::path file_of(std::uint32_t rank) {
