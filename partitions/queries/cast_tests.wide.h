@@ -46,7 +46,8 @@ class CastTest {
     return test_ends(near, far, at, limit, enter);
   }
   /// As above without `enter`.
-  Mask16 test(const float* const* column, std::size_t at, float limit) const {
+  [[gnu::always_inline]] Mask16 test(const float* const* column, std::size_t at,
+                                     float limit) const {
     Floats enter;
     return test(column, at, limit, enter);
   }

@@ -1,6 +1,7 @@
-// Kernels of casts: closest, any and all hits of up to kMaxCasts casts. casts.cpp calls them. One
-// cast visits the blocks (descent.wide.h) and tests their rows (cast_tests.wide.h); several casts
-// first traverse the trees together (joint_casts.wide.h).
+// Kernels of casts: closest, any and all hits of up to kMaxCasts casts. casts.cpp calls them. The
+// casts first traverse the trees together (joint_casts.wide.h), for closest and any hits only up to
+// the end of a first segment; the rest of each cast visits blocks (descent.wide.h) and tests their
+// rows (cast_tests.wide.h).
 
 #include "partitions/queries/cast.kernel.h"
 #include "partitions/queries/cast_tests.wide.h"
@@ -60,40 +61,6 @@ class NearestHits {
   std::uint64_t* best_;
   float* limit_;
 };
-
-/// Finds the least hit of one cast.
-void closest_of_one(const QueryView& view, const KernelCast& cast, const QueryFilter& filter,
-                    std::uint64_t& best) {
-  const CandidateFilter candidate_filter(view, filter);
-  const CastTest probe(cast);
-  float limit = scaled_limit(cast, cast.max_t);
-  best = kNoHit;
-  NearestHits hits(&cast, candidate_filter, &best, &limit);
-  visit_nearest_first(view, probe, candidate_filter, limit, [&](std::uint32_t first_row) {
-    return test_rows(view, cast, probe, candidate_filter, first_row, limit,
-                     [&](double t, std::uint32_t id) {
-                       hits.touched(0, t, id);
-                       return true;
-                     });
-  });
-}
-
-/// Finds any hit of one cast.
-void any_of_one(const QueryView& view, const KernelCast& cast, const QueryFilter& filter,
-                std::uint64_t& found) {
-  const CandidateFilter candidate_filter(view, filter);
-  const CastTest probe(cast);
-  const float limit = scaled_limit(cast, cast.max_t);
-  found = kNoHit;
-  visit_in_row_order(view, probe, candidate_filter, limit, [&](std::uint32_t first_row) {
-    return test_rows(view, cast, probe, candidate_filter, first_row, limit,
-                     [&](double t, std::uint32_t id) {
-                       if (!candidate_filter.accepts(id)) return true;
-                       found = hit_of(t, id);
-                       return false;
-                     });
-  });
-}
 
 /// Keeps the first found hit of every cast, and ends that cast.
 class AnyHits {
@@ -186,10 +153,26 @@ class FirstSegmentThenRest {
 
 void closest(const QueryView& view, const KernelCast* casts, std::uint32_t count,
              const QueryFilter& filter, std::uint64_t* best) {
-  if (count == 1) return closest_of_one(view, casts[0], filter, best[0]);
   FirstSegmentThenRest<NearestHits>(view, casts, count, filter, best)
       .run([&](const CastTest& probe, const CandidateFilter& candidate_filter, const float& limit,
                auto&& test) { visit_nearest_first(view, probe, candidate_filter, limit, test); });
+}
+
+/// Finds any hit of one cast, which needs no joint traversal.
+void any_of_one(const QueryView& view, const KernelCast& cast, const QueryFilter& filter,
+                std::uint64_t& found) {
+  const CandidateFilter candidate_filter(view, filter);
+  const CastTest probe(cast);
+  const float limit = scaled_limit(cast, cast.max_t);
+  found = kNoHit;
+  visit_in_row_order(view, probe, candidate_filter, limit, [&](std::uint32_t first_row) {
+    return test_rows(view, cast, probe, candidate_filter, first_row, limit,
+                     [&](double t, std::uint32_t id) {
+                       if (!candidate_filter.accepts(id)) return true;
+                       found = hit_of(t, id);
+                       return false;
+                     });
+  });
 }
 
 void any(const QueryView& view, const KernelCast* casts, std::uint32_t count,
