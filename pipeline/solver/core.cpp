@@ -57,11 +57,12 @@ std::uint32_t farthest_vertex(const HullShape& hull, const Vec& d, double& value
   return best_at < hull.vertex_count ? best_at : 0;
 }
 
-Vec support(const Core& core, const Vec& direction) noexcept {
+// The searches spend most of their time here: everything is inlined.
+[[gnu::flatten]] Vec support(const Core& core, const Vec& direction) noexcept {
   return with_form(core, [&](auto form) { return form.support(core, direction); });
 }
 
-AxisRange project(const Core& core, const Vec& n) noexcept {
+[[gnu::flatten]] AxisRange project(const Core& core, const Vec& n) noexcept {
   return with_form(core, [&](auto form) { return form.project(core, n); });
 }
 

@@ -29,6 +29,12 @@ inline double rim_reach(double radius, double z, const Vec& w) noexcept {
   return std::sqrt(std::max(0.0, radius * radius + z * z - nearest * nearest));
 }
 
+/// Returns h with the sign of d; h if d is -0. Without a branch, because directions of searches are
+/// unpredictable.
+inline double towards(double h, double d) noexcept {
+  return std::copysign(h, d + 0.0);
+}
+
 struct PointForm {
   static constexpr bool kIsPolytope = true;
   static constexpr bool kTouchesInPoint = true;
@@ -254,8 +260,7 @@ struct RevolvedForm : PointForm {
 struct SegmentForm : RevolvedForm {
   static Vec support(const Core& core, const Vec& direction) noexcept {
     const Vec d = core.rotation.transpose() * direction;
-    return core.center +
-           core.rotation * Vec(0.0, 0.0, d.z() < 0.0 ? -core.half.z() : core.half.z());
+    return core.center + core.rotation * Vec(0.0, 0.0, towards(core.half.z(), d.z()));
   }
   static AxisRange project(const Core& core, const Vec& n) noexcept {
     const Vec d = core.rotation.transpose() * n;
@@ -286,8 +291,7 @@ struct BoxForm : PolytopeForm {
   static Vec support(const Core& core, const Vec& direction) noexcept {
     const Vec d = core.rotation.transpose() * direction;
     const Vec& h = core.half;
-    const Vec local(d.x() < 0.0 ? -h.x() : h.x(), d.y() < 0.0 ? -h.y() : h.y(),
-                    d.z() < 0.0 ? -h.z() : h.z());
+    const Vec local(towards(h.x(), d.x()), towards(h.y(), d.y()), towards(h.z(), d.z()));
     return core.center + core.rotation * local;
   }
   static AxisRange project(const Core& core, const Vec& n) noexcept {
@@ -511,7 +515,7 @@ struct CappedForm : RevolvedForm {
 struct CylinderForm : CappedForm {
   static Vec support(const Core& core, const Vec& direction) noexcept {
     const Vec d = core.rotation.transpose() * direction;
-    const double z = d.z() < 0.0 ? -core.half.z() : core.half.z();
+    const double z = towards(core.half.z(), d.z());
     return core.center + core.rotation * rim(core, d, z);
   }
   static AxisRange project(const Core& core, const Vec& n) noexcept {
