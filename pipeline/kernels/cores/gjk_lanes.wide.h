@@ -205,10 +205,10 @@ class GjkLanes {
     }
     return simplex;
   }
-  static Vec3<T> load3(const Column* v) {
+  [[gnu::always_inline]] static Vec3<T> load3(const Column* v) {
     return {Lanes<T>::load(v[0]), Lanes<T>::load(v[1]), Lanes<T>::load(v[2])};
   }
-  static void store3(const Vec3<T>& v, Column* to) {
+  [[gnu::always_inline]] static void store3(const Vec3<T>& v, Column* to) {
     v.x.store(to[0]);
     v.y.store(to[1]);
     v.z.store(to[2]);
