@@ -183,7 +183,8 @@ class GjkLanes {
 
   /// Vectors of lanes that are computed one after the other: compute(lane, argument, result).
   template <typename Compute>
-  static Vec3<T> one_by_one(const Vec3<T>& arguments, Mask16 lanes, Compute&& compute) {
+  [[gnu::always_inline]] static Vec3<T> one_by_one(const Vec3<T>& arguments, Mask16 lanes,
+                                                   Compute&& compute) {
     alignas(64) T d[3][kWidth];
     alignas(64) T x[3][kWidth] = {};
     store3(arguments, d);
