@@ -118,9 +118,9 @@ Status find_primitive_pairs(const CompositePool& pool, const ShapePool& shapes,
 /// one-sided triangle; otherwise it is ambiguous which normal to use. Active edges are computed
 /// only for the front of a surface. On its back, where concave edges look convex, concave edges
 /// also count as internal, so that a floor is flat for either winding.
-void correct_internal_edges(const ShapePool& shapes, const PrimitivePairs& pairs,
-                            const PairMargins& margins, const Execution& execution,
-                            NarrowResult& result) noexcept;
+Status correct_surface_contacts(const ShapePool& shapes, PrimitivePairs& pairs,
+                                const PairMargins& margins, const Execution& execution,
+                                NarrowResult& result) noexcept;
 
 /// Merges the manifolds of each pair of bodies within its margin into contact regions. The deepest
 /// manifold (among equals, the first in `pairs`) and all manifolds whose normals are within 5
@@ -176,7 +176,7 @@ struct MidPhase {
   Aabb (*bounds)(const CompositePool& pool, ShapeId id, const Pose& pose) noexcept;
   double (*radius)(const CompositePool& pool, ShapeId id) noexcept;
   decltype(&mid::find_primitive_pairs) find_primitive_pairs;
-  decltype(&mid::correct_internal_edges) correct_internal_edges;
+  decltype(&mid::correct_surface_contacts) correct_surface_contacts;
   decltype(&mid::reduce_contacts) reduce_contacts;
   decltype(&mid::visit) visit;
   decltype(&mid::cast_rays) cast_rays;

@@ -95,8 +95,9 @@ Status FreshContacts::collide_composite() {
       {parts.pairs.data(), parts.pairs.size()}, narrow_options(margins), found.answers);
   if (status != Status::ok) return status;
   if (call_.level >= ContactLevel::distance) {
-    mid_phase.correct_internal_edges(scene_.shapes, found.pairs, margins, options.execution,
-                                     found.answers);
+    status = mid_phase.correct_surface_contacts(scene_.shapes, found.pairs, margins,
+                                                options.execution, found.answers);
+    if (status != Status::ok) return status;
   }
   scene_.statistics.parts += found.narrow.statistics();
   scene_.statistics.primitive_pairs += parts.pairs.size();

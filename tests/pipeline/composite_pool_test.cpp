@@ -1,5 +1,5 @@
 // Meshes, height fields and compounds in a CompositePool: input checks, lifetimes, bounds, part
-// numbers, and the correction of normals at internal edges (CompositePool::correct_internal_edges).
+// numbers, and the correction of normals at internal edges (CompositePool::correct_surface_contacts).
 
 #include <winnow/core/eigen.h>
 #include <winnow/pipeline/scene.h>
@@ -201,7 +201,7 @@ TEST(CompositePool, bounds_and_radius_contain_every_part) {
   }
 }
 
-/// Contacts of a body with a surface after `correct_internal_edges`.
+/// Contacts of a body with a surface after `correct_surface_contacts`.
 struct Landing {
   std::vector<Eigen::Vector3d> normals;  ///< from the body to the surface
   double deepest = std::numeric_limits<double>::infinity();
@@ -228,7 +228,8 @@ Landing land(const ShapePool& shapes, const CompositePool& pool, ShapeId body, c
             Status::ok);
   std::size_t before = 0;
   for (const double distance : result.distance()) before += distance <= margin ? 1 : 0;
-  mid::correct_internal_edges(shapes, pairs, margin, Execution::serial(), result);
+  EXPECT_EQ(mid::correct_surface_contacts(shapes, pairs, margin, Execution::serial(), result),
+            Status::ok);
   Landing landing;
   for (std::size_t i = 0; i < result.size(); ++i) {
     if (!(result.distance()[i] <= margin)) continue;
@@ -397,7 +398,8 @@ TEST(InternalEdges, smoothing_matches_on_threads_and_without_memory) {
     auto result = std::make_unique<NarrowResult>(memory);
     winnow::test::answer(world.shapes, pairs, {}, *result);
     if (refusing != nullptr) refusing->refuse_after(0);
-    mid::correct_internal_edges(world.shapes, pairs, 0.0, execution, *result);
+    EXPECT_EQ(mid::correct_surface_contacts(world.shapes, pairs, 0.0, execution, *result),
+              Status::ok);
     if (refusing != nullptr) refusing->grant_all();
     return result;
   };

@@ -205,7 +205,8 @@ struct Reduced {
     answer(world.shapes, pairs,
            {.level = ContactLevel::manifold, .contact_margin = margin_, .execution = execution},
            answers);
-    mid::correct_internal_edges(world.shapes, pairs, margin_, execution, answers);
+    EXPECT_EQ(mid::correct_surface_contacts(world.shapes, pairs, margin_, execution, answers),
+              Status::ok);
     ASSERT_EQ(reduce_contacts(execution), Status::ok);
   }
   [[nodiscard]] Status reduce_contacts(const Execution& execution) {

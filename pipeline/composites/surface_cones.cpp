@@ -1,0 +1,149 @@
+// Normal cones of touched surfaces (surface_cones.h). Called by surface_contacts.cpp.
+
+#include "pipeline/composites/surface_cones.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace winnow::mid {
+namespace {
+
+// Heights of corners along the normal that differ by less than this share of the longest edge count
+// as equal.
+constexpr double kLevel = 1e-6;
+// Relative distance by which rounded vertices may be beside the edge of a triangle that contains
+// them.
+constexpr double kBeside = 1e-5;
+// Sine of the angle by which a triangle may rise above a supporting plane; rounding of vertices to
+// float bends flat surfaces.
+constexpr double kFlatSine = 1e-4;
+
+}  // namespace
+
+Facet::Facet(const TriangleShape& triangle, const Pose& pose) noexcept {
+  const Eigen::Map<const Vec> at(pose.position);
+  const double(&q)[4] = pose.orientation;
+  const bool is_turned = q[1] != 0.0 || q[2] != 0.0 || q[3] != 0.0;
+  const Mat rotation = is_turned ? Mat(rotation_of(scale_to_unit_max(q))) : Mat(Mat::Identity());
+  for (int k = 0; k < 3; ++k) {
+    const Eigen::Map<const Vec> vertex(triangle.vertex[k]);
+    corner[k] = at + (is_turned ? Vec(rotation * vertex) : Vec(vertex));
+  }
+  const Vec edge[3] = {corner[1] - corner[0], corner[2] - corner[1], corner[0] - corner[2]};
+  size = std::sqrt(std::max({edge[0].squaredNorm(), edge[1].squaredNorm(), edge[2].squaredNorm()}));
+  const Vec across = edge[0].cross(edge[1]);
+  const double length = across.norm();
+  // Also false for NaN.
+  normal = length > 0.0 && length < kInfinity ? Vec(across / length) : Vec(Vec::Zero());
+}
+
+bool Facet::contains(const Vec& point, double slack) const noexcept {
+  for (int axis = 0; axis < 3; ++axis) {
+    const double low = std::min({corner[0][axis], corner[1][axis], corner[2][axis]});
+    const double high = std::max({corner[0][axis], corner[1][axis], corner[2][axis]});
+    if (point[axis] < low - slack || point[axis] > high + slack) return false;
+  }
+  if (!(std::abs(normal.dot(point - corner[0])) <= slack)) return false;
+  for (int k = 0; k < 3; ++k) {
+    const Vec edge = corner[(k + 1) % 3] - corner[k];
+    if (normal.cross(edge).dot(point - corner[k]) < -slack * edge.norm()) return false;
+  }
+  return true;
+}
+
+double Facet::top(const Vec& direction) const noexcept {
+  return std::max({direction.dot(corner[0]), direction.dot(corner[1]), direction.dot(corner[2])});
+}
+
+Facet SurfaceCones::facet(std::uint32_t primitive) const noexcept {
+  return {tables_.triangles[pairs_.shapes[primitive].index()], pairs_.poses[primitive]};
+}
+
+Vec SurfaceCones::touched_point(std::size_t i) const noexcept {
+  const Eigen::Map<const Vec> from(pairs_.poses[primitive(i, false)].position);
+  if (result_.level() != ContactLevel::manifold) {
+    return from + Vec(result_.point(0)[i], result_.point(1)[i], result_.point(2)[i]);
+  }
+  const ContactPoint contact = result_.contact(result_.contact_first()[i]);
+  return from + Eigen::Map<const Eigen::Vector3f>(contact.position).cast<double>();
+}
+
+bool SurfaceCones::has_normal(std::size_t i, const AnswerGroup& group) const noexcept {
+  return has_normal(i, group, false) && has_normal(i, group, true);
+}
+
+bool SurfaceCones::has_normal(std::size_t i, const AnswerGroup& group, bool second) const noexcept {
+  const std::uint32_t own = primitive(i, second);
+  if (!is_triangle(own)) return true;
+  const Facet triangle = facet(own);
+  if (triangle.normal.isZero()) return true;
+  const Vec outward = second ? Vec(-normal(i)) : normal(i);
+  const double top = triangle.top(outward);
+  std::size_t highest = 0;
+  std::size_t at[3];
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (top - outward.dot(triangle.corner[k]) <= kLevel * triangle.size) at[highest++] = k;
+  }
+  if (highest == 3) return true;
+  Vec touched = triangle.corner[at[0]];
+  if (highest == 2) {
+    const Vec edge = triangle.corner[at[1]] - touched;
+    const double along = edge.dot(touched_point(i) - touched) / edge.squaredNorm();
+    touched += std::clamp(along, 0.0, 1.0) * edge;
+  }
+
+  bool has_neighbour = false;
+  for (std::size_t k = group.first; k < group.end; ++k) {
+    const std::uint32_t other = primitive(k, second);
+    if (other == own || !is_triangle(other)) continue;
+    const Facet neighbour = facet(other);
+    if (!neighbour.contains(touched, kBeside * triangle.size)) continue;
+    has_neighbour = true;
+    for (const Vec& corner : neighbour.corner) {
+      const Vec to_corner = corner - touched;
+      if (outward.dot(to_corner) > kFlatSine * to_corner.norm()) return false;
+    }
+  }
+  if (has_neighbour) return true;
+  // No triangle of the group continues the surface: the flags of the whole surface decide.
+  const std::uint32_t active = pairs_.active_edges[pairs_.shapes[own].index()];
+  if (highest == 1) return (active >> (3 + at[0]) & 1U) != 0;
+  const std::size_t edge = at[1] == at[0] + 1 ? at[0] : 2;
+  return (active >> edge & 1U) != 0;
+}
+
+bool SurfaceCones::parts(std::size_t s, std::size_t i) const noexcept {
+  const Vec along = normal(s);
+  return is_below(primitive(i, false), primitive(s, false), along) &&
+         is_below(primitive(i, true), primitive(s, true), -along);
+}
+
+bool SurfaceCones::is_below(std::uint32_t primitive, std::uint32_t limit,
+                            const Vec& direction) const noexcept {
+  if (primitive == limit) return true;
+  if (!is_triangle(primitive) || !is_triangle(limit)) return false;
+  const Facet low = facet(primitive);
+  return low.top(direction) <= facet(limit).top(direction) + kFlatSine * low.size;
+}
+
+bool SurfaceCones::are_neighbours(std::size_t i, std::size_t k) const noexcept {
+  return share_corner(primitive(i, false), primitive(k, false)) &&
+         share_corner(primitive(i, true), primitive(k, true));
+}
+
+// True for two equal primitives, too.
+bool SurfaceCones::share_corner(std::uint32_t one, std::uint32_t two) const noexcept {
+  if (one == two) return true;
+  if (!is_triangle(one) || !is_triangle(two)) return false;
+  const Facet first = facet(one);
+  const Facet second = facet(two);
+  const double slack = kBeside * first.size;
+  for (const Vec& p : first.corner) {
+    for (const Vec& q : second.corner) {
+      if ((p - q).squaredNorm() <= slack * slack) return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace winnow::mid

@@ -1,0 +1,88 @@
+#pragma once
+
+#include <winnow/pipeline/narrow_result.h>
+#include "pipeline/narrow/primitive_pairs.h"
+#include "pipeline/shapes/frame.h"
+
+#include <cstddef>
+#include <cstdint>
+
+namespace winnow::mid {
+
+/// A triangle of a surface, in the frame of the contacts.
+struct Facet {
+  Vec corner[3];
+  /// Unit normal by the winding; zero if the triangle has no area.
+  Vec normal;
+  /// Length of the longest edge.
+  double size = 0.0;
+
+  /// The triangle at a pose.
+  Facet(const TriangleShape& triangle, const Pose& pose) noexcept;
+
+  /// Returns whether the point is on the triangle, up to `slack`.
+  [[nodiscard]] bool contains(const Vec& point, double slack) const noexcept;
+  /// Height of the highest corner along a direction.
+  [[nodiscard]] double top(const Vec& direction) const noexcept;
+};
+
+/// Answers of the narrow phase for one pair of bodies whose primitives have the same kinds.
+struct AnswerGroup {
+  std::size_t first = 0;
+  std::size_t end = 0;
+};
+
+/// Tests contacts of surfaces against the normal cones of the surfaces.
+///
+/// A triangle touches with its face, an edge or a corner: its supporting feature along the contact
+/// normal. An edge or corner can only be touched along a direction in its normal cone: no triangle
+/// around the feature reaches farther along the direction. All these triangles contain the touched
+/// point, so they touch the other body, too, and have answers in the same group. So the cones are
+/// found from the triangles of the group, as they are placed, scaled, mirrored and deformed; seen
+/// from the side of the contact, whatever the winding; and also if vertices are not shared
+/// (T-junctions).
+class SurfaceCones {
+ public:
+  SurfaceCones(const ShapeTables& tables, const PrimitivePairs& pairs,
+               const NarrowResult& result) noexcept
+      : tables_(tables), pairs_(pairs), result_(result) {}
+
+  /// Returns whether the normal of answer i is in the normal cones of both supporting features.
+  /// O(size of the group).
+  [[nodiscard]] bool has_normal(std::size_t i, const AnswerGroup& group) const noexcept;
+
+  /// Returns whether a translation that parts the primitives of answer s along its normal also
+  /// parts those of answer i: the plane through the supporting feature of s has both on their own
+  /// sides.
+  [[nodiscard]] bool parts(std::size_t s, std::size_t i) const noexcept;
+
+  /// Returns whether the triangles of the two answers share a corner, in both bodies.
+  [[nodiscard]] bool are_neighbours(std::size_t i, std::size_t k) const noexcept;
+
+  [[nodiscard]] bool is_triangle(std::uint32_t primitive) const noexcept {
+    return pairs_.shapes[primitive].kind() == ShapeKind::triangle;
+  }
+  [[nodiscard]] Facet facet(std::uint32_t primitive) const noexcept;
+  [[nodiscard]] Vec normal(std::size_t i) const noexcept {
+    return {result_.normal(0)[i], result_.normal(1)[i], result_.normal(2)[i]};
+  }
+
+ private:
+  [[nodiscard]] bool has_normal(std::size_t i, const AnswerGroup& group,
+                                bool second) const noexcept;
+  [[nodiscard]] bool share_corner(std::uint32_t one, std::uint32_t two) const noexcept;
+  [[nodiscard]] bool is_below(std::uint32_t primitive, std::uint32_t limit,
+                              const Vec& direction) const noexcept;
+  /// The deepest point of the contact; on the surface of body a or in the middle of the gap.
+  [[nodiscard]] Vec touched_point(std::size_t i) const noexcept;
+  [[nodiscard]] std::uint32_t primitive(std::size_t i, bool second) const noexcept {
+    const BodyPair& pair = pairs_.pairs[result_.pair_of(i)];
+    return second ? pair.b : pair.a;
+  }
+
+  const ShapeTables& tables_;
+  const PrimitivePairs& pairs_;
+  const NarrowResult& result_;
+};
+
+}  // namespace winnow::mid
