@@ -14,9 +14,7 @@ constexpr double kLevel = 1e-6;
 // Relative distance by which rounded vertices may be beside the edge of a triangle that contains
 // them.
 constexpr double kBeside = 1e-5;
-// Sine of the angle by which a triangle may rise above a supporting plane; rounding of vertices to
-// float bends flat surfaces.
-constexpr double kFlatSine = 1e-4;
+constexpr std::uint32_t kNone = ~0U;
 
 }  // namespace
 
@@ -38,11 +36,6 @@ Facet::Facet(const TriangleShape& triangle, const Pose& pose) noexcept {
 }
 
 bool Facet::contains(const Vec& point, double slack) const noexcept {
-  for (int axis = 0; axis < 3; ++axis) {
-    const double low = std::min({corner[0][axis], corner[1][axis], corner[2][axis]});
-    const double high = std::max({corner[0][axis], corner[1][axis], corner[2][axis]});
-    if (point[axis] < low - slack || point[axis] > high + slack) return false;
-  }
   if (!(std::abs(normal.dot(point - corner[0])) <= slack)) return false;
   for (int k = 0; k < 3; ++k) {
     const Vec edge = corner[(k + 1) % 3] - corner[k];
@@ -53,6 +46,16 @@ bool Facet::contains(const Vec& point, double slack) const noexcept {
 
 double Facet::top(const Vec& direction) const noexcept {
   return std::max({direction.dot(corner[0]), direction.dot(corner[1]), direction.dot(corner[2])});
+}
+
+bool Facet::shares_corner(const Facet& other) const noexcept {
+  const double slack = kBeside * size;
+  for (const Vec& p : corner) {
+    for (const Vec& q : other.corner) {
+      if ((p - q).squaredNorm() <= slack * slack) return true;
+    }
+  }
+  return false;
 }
 
 Facet SurfaceCones::facet(std::uint32_t primitive) const noexcept {
@@ -92,24 +95,59 @@ bool SurfaceCones::has_normal(std::size_t i, const AnswerGroup& group, bool seco
     touched += std::clamp(along, 0.0, 1.0) * edge;
   }
 
-  bool has_neighbour = false;
-  for (std::size_t k = group.first; k < group.end; ++k) {
-    const std::uint32_t other = primitive(k, second);
-    if (other == own || !is_triangle(other)) continue;
-    const Facet neighbour = facet(other);
-    if (!neighbour.contains(touched, kBeside * triangle.size)) continue;
-    has_neighbour = true;
-    for (const Vec& corner : neighbour.corner) {
-      const Vec to_corner = corner - touched;
-      if (outward.dot(to_corner) > kFlatSine * to_corner.norm()) return false;
-    }
+  switch (around(touched, outward, kBeside * triangle.size, own, second, group)) {
+    case Surroundings::above:
+      return false;
+    case Surroundings::below:
+      return true;
+    case Surroundings::none:
+      break;
   }
-  if (has_neighbour) return true;
   // No triangle of the group continues the surface: the flags of the whole surface decide.
   const std::uint32_t active = pairs_.active_edges[pairs_.shapes[own].index()];
   if (highest == 1) return (active >> (3 + at[0]) & 1U) != 0;
   const std::size_t edge = at[1] == at[0] + 1 ? at[0] : 2;
   return (active >> edge & 1U) != 0;
+}
+
+bool SurfaceCones::is_blocked(const Vec& point, const Vec& outward, double slack, bool second,
+                              const AnswerGroup& group) const noexcept {
+  return around(point, outward, slack, kNone, second, group) == Surroundings::above;
+}
+
+// True if the box of a triangle contains the point, and for all turned triangles.
+bool SurfaceCones::is_near(std::uint32_t primitive, const Vec& point, double slack) const noexcept {
+  const Pose& pose = pairs_.poses[primitive];
+  const TriangleShape& triangle = tables_.triangles[pairs_.shapes[primitive].index()];
+  const Vec at = point - Eigen::Map<const Vec>(pose.position);
+  const double(&q)[4] = pose.orientation;
+  if (q[1] != 0.0 || q[2] != 0.0 || q[3] != 0.0) return true;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double x[3] = {triangle.vertex[0][axis], triangle.vertex[1][axis],
+                         triangle.vertex[2][axis]};
+    if (at[axis] < std::min({x[0], x[1], x[2]}) - slack) return false;
+    if (at[axis] > std::max({x[0], x[1], x[2]}) + slack) return false;
+  }
+  return true;
+}
+
+SurfaceCones::Surroundings SurfaceCones::around(const Vec& point, const Vec& outward, double slack,
+                                                std::uint32_t own, bool second,
+                                                const AnswerGroup& group) const noexcept {
+  Surroundings found = Surroundings::none;
+  for (std::size_t k = group.first; k < group.end; ++k) {
+    const std::uint32_t other = primitive(k, second);
+    if (other == own || !is_triangle(other)) continue;
+    if (!is_near(other, point, slack)) continue;
+    const Facet neighbour = facet(other);
+    if (!neighbour.contains(point, slack)) continue;
+    found = Surroundings::below;
+    for (const Vec& corner : neighbour.corner) {
+      const Vec to_corner = corner - point;
+      if (outward.dot(to_corner) > kFlatSine * to_corner.norm() + slack) return Surroundings::above;
+    }
+  }
+  return found;
 }
 
 bool SurfaceCones::parts(std::size_t s, std::size_t i) const noexcept {
@@ -135,15 +173,7 @@ bool SurfaceCones::are_neighbours(std::size_t i, std::size_t k) const noexcept {
 bool SurfaceCones::share_corner(std::uint32_t one, std::uint32_t two) const noexcept {
   if (one == two) return true;
   if (!is_triangle(one) || !is_triangle(two)) return false;
-  const Facet first = facet(one);
-  const Facet second = facet(two);
-  const double slack = kBeside * first.size;
-  for (const Vec& p : first.corner) {
-    for (const Vec& q : second.corner) {
-      if ((p - q).squaredNorm() <= slack * slack) return true;
-    }
-  }
-  return false;
+  return facet(one).shares_corner(facet(two));
 }
 
 }  // namespace winnow::mid

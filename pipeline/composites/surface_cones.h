@@ -15,8 +15,11 @@ struct Facet {
   /// Unit normal by the winding; zero if the triangle has no area.
   Vec normal;
   /// Length of the longest edge.
-  double size = 0.0;
+  double size;
 
+  /// Leaves the members uninitialised.
+  Facet() noexcept {
+  }  // NOLINT(modernize-use-equals-default,cppcoreguidelines-pro-type-member-init)
   /// The triangle at a pose.
   Facet(const TriangleShape& triangle, const Pose& pose) noexcept;
 
@@ -24,7 +27,13 @@ struct Facet {
   [[nodiscard]] bool contains(const Vec& point, double slack) const noexcept;
   /// Height of the highest corner along a direction.
   [[nodiscard]] double top(const Vec& direction) const noexcept;
+  /// Returns whether the triangles share a corner, up to rounding.
+  [[nodiscard]] bool shares_corner(const Facet& other) const noexcept;
 };
+
+/// Sine of the angle by which a triangle may rise above a plane that bounds it: rounding of
+/// vertices to float bends flat surfaces.
+inline constexpr double kFlatSine = 1e-4;
 
 /// Answers of the narrow phase for one pair of bodies whose primitives have the same kinds.
 struct AnswerGroup {
@@ -51,6 +60,11 @@ class SurfaceCones {
   /// O(size of the group).
   [[nodiscard]] bool has_normal(std::size_t i, const AnswerGroup& group) const noexcept;
 
+  /// Returns whether a triangle of the group contains the point, up to `slack`, and rises above it
+  /// along `outward`: then the direction is not in the normal cone at the point.
+  [[nodiscard]] bool is_blocked(const Vec& point, const Vec& outward, double slack, bool second,
+                                const AnswerGroup& group) const noexcept;
+
   /// Returns whether a translation that parts the primitives of answer s along its normal also
   /// parts those of answer i: the plane through the supporting feature of s has both on their own
   /// sides.
@@ -66,19 +80,28 @@ class SurfaceCones {
   [[nodiscard]] Vec normal(std::size_t i) const noexcept {
     return {result_.normal(0)[i], result_.normal(1)[i], result_.normal(2)[i]};
   }
+  /// The primitive of body a or, if `second`, of body b.
+  [[nodiscard]] std::uint32_t primitive(std::size_t i, bool second) const noexcept {
+    const BodyPair& pair = pairs_.pairs[result_.pair_of(i)];
+    return second ? pair.b : pair.a;
+  }
 
  private:
+  /// What the triangles of a group do at a point of another triangle.
+  enum class Surroundings : std::uint8_t { none, below, above };
+
+  [[nodiscard]] Surroundings around(const Vec& point, const Vec& outward, double slack,
+                                    std::uint32_t own, bool second,
+                                    const AnswerGroup& group) const noexcept;
   [[nodiscard]] bool has_normal(std::size_t i, const AnswerGroup& group,
                                 bool second) const noexcept;
+  [[nodiscard]] bool is_near(std::uint32_t primitive, const Vec& point,
+                             double slack) const noexcept;
   [[nodiscard]] bool share_corner(std::uint32_t one, std::uint32_t two) const noexcept;
   [[nodiscard]] bool is_below(std::uint32_t primitive, std::uint32_t limit,
                               const Vec& direction) const noexcept;
   /// The deepest point of the contact; on the surface of body a or in the middle of the gap.
   [[nodiscard]] Vec touched_point(std::size_t i) const noexcept;
-  [[nodiscard]] std::uint32_t primitive(std::size_t i, bool second) const noexcept {
-    const BodyPair& pair = pairs_.pairs[result_.pair_of(i)];
-    return second ? pair.b : pair.a;
-  }
 
   const ShapeTables& tables_;
   const PrimitivePairs& pairs_;

@@ -7,6 +7,7 @@
 #include <winnow/core/rounding.h>
 #include <winnow/pipeline/contact_types.h>
 #include "pipeline/composites/composites.h"
+#include "pipeline/composites/convex_patch.h"
 #include "pipeline/composites/surface_cones.h"
 #include "pipeline/shapes/extent.h"
 #include "pipeline/solver/manifold.h"
@@ -36,6 +37,8 @@ enum class Change : std::uint8_t {
   clip,
   /// As `clip`; if the deepest point is not over the face, the contact is dropped.
   clip_or_drop,
+  /// The normal and the depth are those of the convex patch around the triangle.
+  follow_patch,
   drop,
 };
 
@@ -43,6 +46,8 @@ constexpr double kSameNormal = 1e-13;
 // A normal whose component towards the back of a triangle is smaller counts as parallel to the
 // triangle.
 constexpr double kBackNormal = 1e-9;
+// Error of a touched point of a patch, relative to the size of the patch.
+constexpr double kPatchSlack = 1e-6;
 // Sine of the angle up to which a normal counts as that of the face.
 constexpr double kNearlyFace = 1e-6;
 
@@ -55,6 +60,8 @@ struct FacePair {
   const Pose& pose_b;
   /// True if the mesh triangle is b.
   bool second;
+  /// The deepest point must be over the triangle.
+  bool must_be_over;
 };
 
 /// Contacts along the normal of the triangle's face.
@@ -104,7 +111,9 @@ constexpr double kFloatSlack = 1e-6;
   out.count = contact_patch(a.view(), b.view(), normal.data(), reach, out.points);
   ContactPoint& deepest = out.points[0];
   const solver::Core& triangle = pair.second ? problem.b : problem.a;
-  if (!is_over(triangle, normal, deepest.position, problem.size)) return false;
+  if (pair.must_be_over && !is_over(triangle, normal, deepest.position, problem.size)) {
+    return false;
+  }
   const double unit = unscaled(problem, 1.0);
   out.depth = static_cast<double>(deepest.depth) * unit;
   if (!(out.depth <= most)) return false;
@@ -154,6 +163,26 @@ class SurfaceContacts {
     bool has_room = false;
   };
 
+  /// The contact of the patches around the triangles of an answer.
+  struct PatchContact {
+    ConvexPatch side[2];
+    /// The primitives that are no triangles of surfaces.
+    std::uint32_t other[2] = {};
+    Vec normal;
+    double distance = 0.0;
+    double error = 0.0;
+    /// The normal is in the normal cones of both patches.
+    bool is_valid = false;
+
+    [[nodiscard]] bool is_of(const BodyPair& bodies) const noexcept {
+      const std::uint32_t own[2] = {bodies.a, bodies.b};
+      for (std::size_t k = 0; k < 2; ++k) {
+        if (side[k].is_empty() ? other[k] != own[k] : !side[k].contains(own[k])) return false;
+      }
+      return !side[0].is_empty() || !side[1].is_empty();
+    }
+  };
+
   void run_wave(const Execution& execution, std::span<AnswerChunk> wave) noexcept;
   void align(AnswerChunk& chunk) const noexcept;
   [[nodiscard]] AnswerGroup group_from(std::size_t i) const noexcept;
@@ -164,13 +193,16 @@ class SurfaceContacts {
   void close_gaps(std::span<AnswerChunk> wave, std::size_t from) noexcept;
 
   [[nodiscard]] Change first_choice(std::size_t i, const AnswerGroup& group) const noexcept;
-  [[nodiscard]] Change correction(std::size_t i, const AnswerGroup& group) const noexcept;
+  void correct(std::size_t i, const AnswerGroup& group, PatchContact& patch) noexcept;
+  [[nodiscard]] bool follow_patch(std::size_t i, const AnswerGroup& group,
+                                  PatchContact& patch) noexcept;
+  void solve_patch(std::size_t i, const AnswerGroup& group, PatchContact& patch) const noexcept;
   [[nodiscard]] bool is_backside(std::size_t i, const AnswerGroup& group) const noexcept;
   [[nodiscard]] bool is_level_with(std::size_t i, std::size_t s) const noexcept;
   [[nodiscard]] bool points_back(std::size_t i, Vec& front) const noexcept;
   [[nodiscard]] Vec front_of(std::uint32_t primitive) const noexcept;
   [[nodiscard]] Vec face_normal(std::size_t i, const AnswerGroup& group) const noexcept;
-  void choose_side(const BodyPair& pair, bool second, Vec& away) const noexcept;
+  [[nodiscard]] Vec outward_of(std::size_t i, bool second, const AnswerGroup& group) const noexcept;
   void straighten(std::size_t i) noexcept;
   void apply(AnswerChunk& chunk, std::size_t i, double most) noexcept;
   void drop(std::size_t i) noexcept;
@@ -186,8 +218,9 @@ class SurfaceContacts {
   [[nodiscard]] bool is_kept(std::size_t i) const noexcept {
     return changes_[i] == Change::none || changes_[i] == Change::straighten;
   }
-  [[nodiscard]] static bool is_turned(Change change) noexcept {
-    return change == Change::turn || change == Change::clip || change == Change::clip_or_drop;
+  [[nodiscard]] static bool is_clipped(Change change) noexcept {
+    return change == Change::clip || change == Change::clip_or_drop ||
+           change == Change::follow_patch;
   }
   [[nodiscard]] bool has_contacts() const noexcept {
     return result_.level() == ContactLevel::manifold;
@@ -274,9 +307,7 @@ void SurfaceContacts::choose_changes(AnswerChunk& chunk) noexcept {
     const AnswerGroup group = group_from(i);
     choose_changes(group);
     for (; i < group.end; ++i) {
-      if (changes_[i] == Change::clip || changes_[i] == Change::clip_or_drop) {
-        chunk.used += kManifoldPoints;
-      }
+      if (is_clipped(changes_[i])) chunk.used += kManifoldPoints;
     }
   }
 }
@@ -292,15 +323,17 @@ void SurfaceContacts::choose_changes(const AnswerGroup& group) noexcept {
     all_kept = all_kept && is_kept(i);
     one_region = one_region && cones_.normal(i).dot(cones_.normal(leader)) >= kRegionCosine;
   }
-  for (std::size_t i = group.first; i < group.end && !all_kept; ++i) {
-    if (changes_[i] == Change::turn) changes_[i] = correction(i, group);
+  if (!all_kept) {
+    PatchContact patch;
+    for (std::size_t i = group.first; i < group.end; ++i) {
+      if (changes_[i] == Change::turn) correct(i, group, patch);
+    }
   }
   for (std::size_t i = group.first; i < group.end && !one_region; ++i) {
     if (is_kept(i) && is_backside(i, group)) changes_[i] = Change::drop;
   }
   for (std::size_t i = group.first; i < group.end; ++i) {
     if (changes_[i] == Change::straighten) straighten(i);
-    if (is_turned(changes_[i])) set_normal(i, face_normal(i, group));
   }
 }
 
@@ -321,15 +354,21 @@ Change SurfaceContacts::first_choice(std::size_t i, const AnswerGroup& group) co
     if (columns_.distance[i] > 0.0 || front.isZero()) return Change::drop;
     return Change::turn;
   }
-  if (!cones_.has_normal(i, group)) return Change::turn;
-  if (is_facet(bodies.a) == is_facet(bodies.b)) return Change::none;
-  const Facet face = cones_.facet(is_facet(bodies.b) ? bodies.b : bodies.a);
-  const double off = face.normal.cross(cones_.normal(i)).norm();
-  return off > kSameNormal && off <= kNearlyFace ? Change::straighten : Change::none;
+  if (is_facet(bodies.a) != is_facet(bodies.b)) {
+    // Most contacts are with faces.
+    const Facet face = cones_.facet(is_facet(bodies.b) ? bodies.b : bodies.a);
+    const double off = face.normal.cross(cones_.normal(i)).norm();
+    const bool has_area = !face.normal.isZero();
+    if (has_area && off <= kNearlyFace) {
+      return off > kSameNormal ? Change::straighten : Change::none;
+    }
+  }
+  return cones_.has_normal(i, group) ? Change::none : Change::turn;
 }
 
-// Returns the change of an answer whose normal is not valid.
-Change SurfaceContacts::correction(std::size_t i, const AnswerGroup& group) const noexcept {
+// Corrects an answer whose normal is not valid.
+void SurfaceContacts::correct(std::size_t i, const AnswerGroup& group,
+                              PatchContact& patch) noexcept {
   const BodyPair& bodies = pair(i);
   const bool second = is_facet(bodies.b);
   const bool one_surface = is_facet(bodies.a) != second;
@@ -340,18 +379,106 @@ Change SurfaceContacts::correction(std::size_t i, const AnswerGroup& group) cons
     is_parted = true;
     is_level = is_level || (one_surface && is_level_with(i, s));
   }
-  if (is_parted && !is_level) return Change::drop;
-  const ShapeId other = pairs_.shapes[second ? bodies.a : bodies.b];
-  if (!one_surface) {
-    // Two surfaces: only a normal that points to a back is changed.
-    Vec front;
-    return points_back(i, front) ? Change::turn : Change::doubtful;
+  if (is_parted && !is_level) {
+    changes_[i] = Change::drop;
+    return;
   }
   const double distance = columns_.distance[i];
-  const bool is_deep = other.kind() != ShapeKind::sphere && distance <= 0.0 &&
-                       distance + rounding_of(tables_, other) <= 0.0;
-  if (is_level) return is_deep ? Change::clip_or_drop : Change::drop;
-  return is_deep ? Change::clip : Change::turn;
+  const double rounding =
+      rounding_of(tables_, pairs_.shapes[bodies.a]) + rounding_of(tables_, pairs_.shapes[bodies.b]);
+  const bool is_deep = distance <= 0.0 && distance + rounding <= 0.0;
+  if (!is_parted && is_deep && follow_patch(i, group, patch)) return;
+  const Vec face = face_normal(i, group);
+  if (is_level) {
+    changes_[i] = is_deep ? Change::clip_or_drop : Change::drop;
+  } else if (!face.isZero()) {
+    changes_[i] = is_deep && one_surface ? Change::clip : Change::turn;
+  } else {
+    changes_[i] = Change::doubtful;
+  }
+  if (changes_[i] != Change::doubtful) set_normal(i, face);
+}
+
+// Gives an answer the normal and depth of the convex patches around its triangles, if their normal
+// is in the normal cones. A triangle that does not reach the plane of the contact is dropped.
+bool SurfaceContacts::follow_patch(std::size_t i, const AnswerGroup& group,
+                                   PatchContact& patch) noexcept {
+  const BodyPair& bodies = pair(i);
+  if (!patch.is_of(bodies)) solve_patch(i, group, patch);
+  if (!patch.is_valid) return false;
+  bool reaches = true;
+  for (const bool second : {false, true}) {
+    const ConvexPatch& own = patch.side[second ? 1 : 0];
+    if (own.is_empty()) continue;
+    const Vec outward = second ? Vec(-patch.normal) : patch.normal;
+    const Facet facet = cones_.facet(second ? bodies.b : bodies.a);
+    reaches = reaches && facet.top(outward) >= own.top(outward) - kFlatSine * facet.size;
+  }
+  changes_[i] = reaches ? Change::follow_patch : Change::drop;
+  if (!reaches) return true;
+  set_normal(i, patch.normal);
+  columns_.distance[i] = patch.distance;
+  columns_.error_bound[i] += patch.error;
+  return true;
+}
+
+void SurfaceContacts::solve_patch(std::size_t i, const AnswerGroup& group,
+                                  PatchContact& patch) const noexcept {
+  const BodyPair& bodies = pair(i);
+  patch.other[0] = bodies.a;
+  patch.other[1] = bodies.b;
+  for (const bool second : {false, true}) {
+    ConvexPatch& own = patch.side[second ? 1 : 0];
+    own.clear();
+    const std::uint32_t start = second ? bodies.b : bodies.a;
+    if (is_facet(start)) own.grow(cones_, group, start, second, outward_of(i, second, group));
+  }
+  const PairAnswer answer =
+      solve_patches(tables_, {pairs_.shapes[bodies.a], pairs_.poses[bodies.a], patch.side[0]},
+                    {pairs_.shapes[bodies.b], pairs_.poses[bodies.b], patch.side[1]});
+  patch.normal = Eigen::Map<const Vec>(answer.normal);
+  patch.distance = answer.distance;
+  patch.error = answer.error_bound;
+  patch.is_valid = answer.distance <= 0.0 && std::isfinite(answer.distance);
+  const Pose from = patch.side[0].is_empty() ? pairs_.poses[bodies.a] : patch.side[0].pose();
+  const Vec on_a = Eigen::Map<const Vec>(from.position) + Eigen::Map<const Vec>(answer.point);
+  for (const bool second : {false, true}) {
+    const ConvexPatch& own = patch.side[second ? 1 : 0];
+    if (own.is_empty() || !patch.is_valid) continue;
+    const Vec touched = second ? Vec(on_a + patch.distance * patch.normal) : on_a;
+    const Vec outward = second ? Vec(-patch.normal) : patch.normal;
+    patch.is_valid = !cones_.is_blocked(touched, outward, kPatchSlack * own.size(), second, group);
+  }
+}
+
+// Returns the normal of a triangle towards its front; else to the side to which the other body, as
+// far as it is in the group, has the shorter path out.
+Vec SurfaceContacts::outward_of(std::size_t i, bool second,
+                                const AnswerGroup& group) const noexcept {
+  const BodyPair& bodies = pair(i);
+  const std::uint32_t own = second ? bodies.b : bodies.a;
+  const Vec front = front_of(own);
+  if (!front.isZero()) return front;
+  const Facet facet = cones_.facet(own);
+  const double plane = facet.normal.dot(facet.corner[0]);
+  double low = kInfinity;
+  double high = -kInfinity;
+  if (is_facet(second ? bodies.a : bodies.b)) {
+    for (std::size_t k = group.first; k < group.end; ++k) {
+      const Facet other = cones_.facet(cones_.primitive(k, !second));
+      high = std::max(high, other.top(facet.normal));
+      low = std::min(low, -other.top(-facet.normal));
+    }
+  } else {
+    const std::uint32_t other = second ? bodies.a : bodies.b;
+    const Mat rotation = rotation_of(scale_to_unit_max(pairs_.poses[other].orientation));
+    const SupportExtent reach =
+        extent(tables_, pairs_.shapes[other], rotation.transpose() * facet.normal);
+    const double at = facet.normal.dot(Eigen::Map<const Vec>(pairs_.poses[other].position));
+    low = at + reach.low;
+    high = at + reach.high;
+  }
+  return plane - low > high - plane ? Vec(-facet.normal) : facet.normal;
 }
 
 // True if the face of a triangle is nearly normal to the normal of answer s.
@@ -399,21 +526,23 @@ bool SurfaceContacts::points_back(std::size_t i, Vec& front) const noexcept {
 }
 
 // Returns the normal of the triangle's face, from a to b: towards its front; else to the side of a
-// valid contact of the same plane; else to the nearer side.
+// valid contact of the same plane; else to the nearer side. Zero for two surfaces, if neither has a
+// front that the normal points away from: it is unknown whose face to use.
 Vec SurfaceContacts::face_normal(std::size_t i, const AnswerGroup& group) const noexcept {
   Vec front;
   if (points_back(i, front)) return front;
   const BodyPair& bodies = pair(i);
   const bool second = is_facet(bodies.b);
-  Vec face = front_of(second ? bodies.b : bodies.a);
-  if (!face.isZero()) return second ? Vec(-face) : face;
-  face = cones_.facet(second ? bodies.b : bodies.a).normal;
+  if (is_facet(bodies.a) == second) return Vec::Zero();
+  const std::uint32_t own = second ? bodies.b : bodies.a;
+  const Vec outward = outward_of(i, second, group);
+  const Vec face = second ? Vec(-outward) : outward;
+  if (!front_of(own).isZero()) return face;
   for (std::size_t s = group.first; s < group.end; ++s) {
     if (!is_kept(s) || !is_level_with(i, s) || !cones_.parts(s, i)) continue;
     return face.dot(cones_.normal(s)) < 0.0 ? Vec(-face) : face;
   }
-  choose_side(bodies, second, face);
-  return second ? Vec(-face) : face;
+  return face;
 }
 
 // Sets the normal to that of the face, on the same side.
@@ -451,6 +580,9 @@ void SurfaceContacts::apply(AnswerChunk& chunk, std::size_t i, double most) noex
     case Change::clip_or_drop:
       if (!clip(chunk, i, most)) drop(i);
       break;
+    case Change::follow_patch:
+      if (!clip(chunk, i, kInfinity)) drop(i);
+      break;
     case Change::drop:
       drop(i);
       break;
@@ -487,19 +619,6 @@ void SurfaceContacts::drop(std::size_t i) noexcept {
   columns_.distance[i] =
       std::max(columns_.distance[i], std::nextafter(margin(i), std::numeric_limits<double>::max()));
   if (has_contacts()) columns_.contact_count[i] = 0;
-}
-
-// Orients `face` to the side of the triangle's plane to which the other shape has the shorter path
-// out.
-void SurfaceContacts::choose_side(const BodyPair& bodies, bool second, Vec& face) const noexcept {
-  const std::uint32_t triangle = second ? bodies.b : bodies.a;
-  const std::uint32_t other = second ? bodies.a : bodies.b;
-  const Mat rotation = rotation_of(scale_to_unit_max(pairs_.poses[other].orientation));
-  const SupportExtent reach = extent(tables_, pairs_.shapes[other], rotation.transpose() * face);
-  const Eigen::Map<const Vec> at(pairs_.poses[other].position);
-  const Eigen::Map<const Vec> plane(pairs_.poses[triangle].position);
-  const double base = face.dot(at - plane);
-  if (-(base + reach.low) > base + reach.high) face = -face;
 }
 
 void SurfaceContacts::set_normal(std::size_t i, const Vec& normal) noexcept {
@@ -541,7 +660,8 @@ bool SurfaceContacts::clip(AnswerChunk& chunk, std::size_t i, double most) noexc
                        pairs_.poses[bodies.a],
                        pairs_.shapes[bodies.b],
                        pairs_.poses[bodies.b],
-                       is_facet(bodies.b)};
+                       is_facet(bodies.b),
+                       changes_[i] != Change::follow_patch || is_level_with(i, i)};
   FaceContacts found;
   if (!clip_to_face(faces, normal, margin(i), -columns_.distance[i], most, found)) return false;
   columns_.distance[i] = -found.depth;
