@@ -75,7 +75,7 @@ SupportShape ConvexPatch::shape() const noexcept {
         best = &corner;
       }
     }
-    Eigen::Map<Vec>(point) = *best - patch.facet_[0].corner[0];
+    Vec::Map(point) = *best - patch.facet_[0].corner[0];
   };
   double square = 0.0;
   for (std::size_t k = 0; k < count_; ++k) {

@@ -84,6 +84,14 @@ struct MovingBox {
 
 namespace mid {
 
+/// The pairs of bodies of a call of the mid phase.
+struct CollidedPairs {
+  const CompositePool& pool;
+  const ShapePool& shapes;
+  Bodies bodies;
+  std::span<const BodyPair> pairs;
+};
+
 /// Finds all pairs of primitives that are within the margin of their bodies, and some that are not.
 /// At least one body of each pair is composite; shapes that do not exist have no pairs. O(pairs of
 /// bodies + pairs of primitives); each traversal is O(log n + found).
@@ -126,7 +134,7 @@ Status find_primitive_pairs(const CompositePool& pool, const ShapePool& shapes,
 /// contacts, except for those of one-sided triangles.
 ///
 /// O(answers of a pair of bodies squared) at worst; linear if all normals are those of faces.
-Status correct_surface_contacts(const ShapePool& shapes, PrimitivePairs& pairs,
+Status correct_surface_contacts(const CollidedPairs& collided, PrimitivePairs& pairs,
                                 const PairMargins& margins, const Execution& execution,
                                 NarrowResult& result) noexcept;
 

@@ -2,6 +2,11 @@
 
 #include "pipeline/composites/surface_cones.h"
 
+#include "pipeline/composites/mid_phase.h"
+#include "pipeline/composites/transformed_shape.h"
+#include "pipeline/mesh/height_grid.h"
+#include "pipeline/mesh/mesh_traversal.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -15,6 +20,17 @@ constexpr double kLevel = 1e-6;
 // them.
 constexpr double kBeside = 1e-5;
 constexpr std::uint32_t kNone = ~0U;
+// Triangles around a point that are tested.
+constexpr std::uint64_t kMostAround = 64;
+
+/// True if a corner is higher than a point along `outward`.
+[[nodiscard]] bool rises(const Vec (&corner)[3], const Vec& point, const Vec& outward,
+                         double slack) noexcept {
+  return std::ranges::any_of(corner, [&](const Vec& at) {
+    const Vec to_corner = at - point;
+    return outward.dot(to_corner) > kFlatSine * to_corner.norm() + slack;
+  });
+}
 
 }  // namespace
 
@@ -142,10 +158,46 @@ SurfaceCones::Surroundings SurfaceCones::around(const Vec& point, const Vec& out
     const Facet neighbour = facet(other);
     if (!neighbour.contains(point, slack)) continue;
     found = Surroundings::below;
-    for (const Vec& corner : neighbour.corner) {
-      const Vec to_corner = corner - point;
-      if (outward.dot(to_corner) > kFlatSine * to_corner.norm() + slack) return Surroundings::above;
-    }
+    if (rises(neighbour.corner, point, outward, slack)) return Surroundings::above;
+  }
+  const Surroundings all = around_in_surface(point, outward, slack, second, group);
+  return all == Surroundings::none ? found : all;
+}
+
+// Finds the triangles around the point in the mesh or height field; none for other shapes.
+SurfaceCones::Surroundings SurfaceCones::around_in_surface(
+    const Vec& point, const Vec& outward, double slack, bool second,
+    const AnswerGroup& group) const noexcept {
+  const BodyPair& pair = collided_.pairs[group.bodies];
+  const std::uint32_t body = second ? pair.b : pair.a;
+  const ShapeId shape = collided_.bodies.shapes[body];
+  const Composites* const all = composites_of(collided_.pool);
+  if (!shape.is_composite() || all == nullptr || all->compound(shape) != nullptr) {
+    return Surroundings::none;
+  }
+  const Eigen::Map<const Vec> position(collided_.bodies.poses[body].position);
+  const Eigen::Map<const Vec> origin(collided_.bodies.poses[pair.a].position);
+  const TransformedShape surface(*all, tables_, shape, collided_.bodies.poses[body],
+                                 body == pair.a ? Vec(Vec::Zero()) : finite(position - origin));
+  const Vec at = surface.to_local * (point - surface.position);
+  const Vec out = slack * surface.to_local.rowwise().norm();
+  const Vec low = at - out;
+  const Vec high = at + out;
+  std::uint32_t slots[kMostAround];
+  SlotSink sink{slots, kMostAround, 0};
+  if (surface.kind == TransformedShape::Kind::mesh) {
+    mesh_overlap(*surface.mesh, low.data(), high.data(), sink);
+  } else {
+    height_overlap(grid_of(*surface.field), low.data(), high.data(), sink);
+  }
+  Surroundings found = Surroundings::none;
+  for (std::uint64_t k = 0; k < std::min<std::uint64_t>(sink.size, kMostAround); ++k) {
+    Corners corners;
+    if (!surface.corners(slots[k], corners)) continue;
+    const Facet neighbour(corners.triangle(), pose_of(corners.first, {1.0, 0.0, 0.0, 0.0}));
+    if (!neighbour.contains(point, slack)) continue;
+    if (rises(neighbour.corner, point, outward, slack)) return Surroundings::above;
+    found = Surroundings::below;
   }
   return found;
 }

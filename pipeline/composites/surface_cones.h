@@ -1,6 +1,7 @@
 #pragma once
 
-#include <winnow/pipeline/narrow_result.h>
+#include <winnow/pipeline/narrow_phase.h>
+#include "pipeline/composites/mid_phase.h"
 #include "pipeline/narrow/primitive_pairs.h"
 #include "pipeline/shapes/frame.h"
 
@@ -39,22 +40,24 @@ inline constexpr double kFlatSine = 1e-4;
 struct AnswerGroup {
   std::size_t first = 0;
   std::size_t end = 0;
+  /// The pair of bodies.
+  std::size_t bodies = 0;
 };
 
 /// Tests contacts of surfaces against the normal cones of the surfaces.
 ///
 /// A triangle touches with its face, an edge or a corner: its supporting feature along the contact
 /// normal. An edge or corner can only be touched along a direction in its normal cone: no triangle
-/// around the feature reaches farther along the direction. All these triangles contain the touched
-/// point, so they touch the other body, too, and have answers in the same group. So the cones are
-/// found from the triangles of the group, as they are placed, scaled, mirrored and deformed; seen
-/// from the side of the contact, whatever the winding; and also if vertices are not shared
-/// (T-junctions).
+/// around the feature reaches farther along the direction. These triangles are found by the touched
+/// point, which they contain, as they are placed, scaled, mirrored and deformed; seen from the side
+/// of the contact, whatever the winding; and also if vertices are not shared (T-junctions). Most of
+/// them touch the other body, too, and have answers in the same group; the others are found in the
+/// tree of the mesh.
 class SurfaceCones {
  public:
-  SurfaceCones(const ShapeTables& tables, const PrimitivePairs& pairs,
-               const NarrowResult& result) noexcept
-      : tables_(tables), pairs_(pairs), result_(result) {}
+  SurfaceCones(const CollidedPairs& collided, const ShapeTables& tables,
+               const PrimitivePairs& pairs, const NarrowResult& result) noexcept
+      : collided_(collided), tables_(tables), pairs_(pairs), result_(result) {}
 
   /// Returns whether the normal of answer i is in the normal cones of both supporting features.
   /// O(size of the group).
@@ -90,6 +93,9 @@ class SurfaceCones {
   /// What the triangles of a group do at a point of another triangle.
   enum class Surroundings : std::uint8_t { none, below, above };
 
+  [[nodiscard]] Surroundings around_in_surface(const Vec& point, const Vec& outward, double slack,
+                                               bool second,
+                                               const AnswerGroup& group) const noexcept;
   [[nodiscard]] Surroundings around(const Vec& point, const Vec& outward, double slack,
                                     std::uint32_t own, bool second,
                                     const AnswerGroup& group) const noexcept;
@@ -103,6 +109,7 @@ class SurfaceCones {
   /// The deepest point of the contact; on the surface of body a or in the middle of the gap.
   [[nodiscard]] Vec touched_point(std::size_t i) const noexcept;
 
+  const CollidedPairs& collided_;
   const ShapeTables& tables_;
   const PrimitivePairs& pairs_;
   const NarrowResult& result_;

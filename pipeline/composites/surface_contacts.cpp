@@ -140,14 +140,14 @@ constexpr double kMaxDeeper = 4.0;
 class SurfaceContacts {
  public:
   /// `changes` has one entry per answer.
-  SurfaceContacts(const ShapePool& shapes, const PrimitivePairs& pairs, const PairMargins& margins,
-                  NarrowResult& result, Change* changes) noexcept
-      : tables_(pairs.tables(shapes)),
+  SurfaceContacts(const CollidedPairs& collided, const PrimitivePairs& pairs,
+                  const PairMargins& margins, NarrowResult& result, Change* changes) noexcept
+      : tables_(pairs.tables(collided.shapes)),
         pairs_(pairs),
         margins_(margins),
         result_(result),
         columns_(result.columns()),
-        cones_(tables_, pairs, result),
+        cones_(collided, tables_, pairs, result),
         changes_(changes) {}
 
   void run(const Execution& execution) noexcept;
@@ -193,7 +193,8 @@ class SurfaceContacts {
   void close_gaps(std::span<AnswerChunk> wave, std::size_t from) noexcept;
 
   [[nodiscard]] Change first_choice(std::size_t i, const AnswerGroup& group) const noexcept;
-  void correct(std::size_t i, const AnswerGroup& group, PatchContact& patch) noexcept;
+  void correct_all(const AnswerGroup& group) noexcept;
+  [[nodiscard]] bool follow_valid(std::size_t i, const AnswerGroup& group) noexcept;
   [[nodiscard]] bool follow_patch(std::size_t i, const AnswerGroup& group,
                                   PatchContact& patch) noexcept;
   void solve_patch(std::size_t i, const AnswerGroup& group, PatchContact& patch) const noexcept;
@@ -215,8 +216,14 @@ class SurfaceContacts {
   [[nodiscard]] bool is_facet(std::uint32_t primitive) const noexcept {
     return cones_.is_triangle(primitive) && pairs_.part[primitive] != kWholeShape;
   }
-  [[nodiscard]] bool is_kept(std::size_t i) const noexcept {
-    return changes_[i] == Change::none || changes_[i] == Change::straighten;
+  [[nodiscard]] bool is_of_two_surfaces(std::size_t i) const noexcept {
+    return is_facet(pair(i).a) == is_facet(pair(i).b);
+  }
+  [[nodiscard]] bool is_deep(std::size_t i) const noexcept;
+  /// True if the normal is in the normal cones.
+  [[nodiscard]] bool is_valid(std::size_t i) const noexcept {
+    return changes_[i] == Change::none || changes_[i] == Change::straighten ||
+           changes_[i] == Change::follow_patch;
   }
   [[nodiscard]] static bool is_clipped(Change change) noexcept {
     return change == Change::clip || change == Change::clip_or_drop ||
@@ -290,7 +297,8 @@ AnswerGroup SurfaceContacts::group_from(std::size_t i) const noexcept {
   const Column<std::uint32_t>& first = pairs_.first;
   const std::uint32_t* const next = std::upper_bound(first.begin(), first.end(), rest[0]);
   const auto end = std::lower_bound(rest.begin(), rest.end(), *next);
-  return {i, i + static_cast<std::size_t>(end - rest.begin())};
+  return {i, i + static_cast<std::size_t>(end - rest.begin()),
+          static_cast<std::size_t>(next - first.begin()) - 1};
 }
 
 // Moves both ends of the chunk to the next begin of a group.
@@ -313,24 +321,19 @@ void SurfaceContacts::choose_changes(AnswerChunk& chunk) noexcept {
 }
 
 void SurfaceContacts::choose_changes(const AnswerGroup& group) noexcept {
-  bool all_kept = true;
+  bool all_valid = true;
   bool one_region = true;
   std::size_t leader = group.end;
   for (std::size_t i = group.first; i < group.end; ++i) {
     changes_[i] = first_choice(i, group);
     if (changes_[i] == Change::apart) continue;
     if (leader == group.end) leader = i;
-    all_kept = all_kept && is_kept(i);
+    all_valid = all_valid && is_valid(i);
     one_region = one_region && cones_.normal(i).dot(cones_.normal(leader)) >= kRegionCosine;
   }
-  if (!all_kept) {
-    PatchContact patch;
-    for (std::size_t i = group.first; i < group.end; ++i) {
-      if (changes_[i] == Change::turn) correct(i, group, patch);
-    }
-  }
+  if (!all_valid) correct_all(group);
   for (std::size_t i = group.first; i < group.end && !one_region; ++i) {
-    if (is_kept(i) && is_backside(i, group)) changes_[i] = Change::drop;
+    if (is_valid(i) && is_backside(i, group)) changes_[i] = Change::drop;
   }
   for (std::size_t i = group.first; i < group.end; ++i) {
     if (changes_[i] == Change::straighten) straighten(i);
@@ -354,7 +357,7 @@ Change SurfaceContacts::first_choice(std::size_t i, const AnswerGroup& group) co
     if (columns_.distance[i] > 0.0 || front.isZero()) return Change::drop;
     return Change::turn;
   }
-  if (is_facet(bodies.a) != is_facet(bodies.b)) {
+  if (!is_of_two_surfaces(i)) {
     // Most contacts are with faces.
     const Facet face = cones_.facet(is_facet(bodies.b) ? bodies.b : bodies.a);
     const double off = face.normal.cross(cones_.normal(i)).norm();
@@ -366,37 +369,48 @@ Change SurfaceContacts::first_choice(std::size_t i, const AnswerGroup& group) co
   return cones_.has_normal(i, group) ? Change::none : Change::turn;
 }
 
-// Corrects an answer whose normal is not valid.
-void SurfaceContacts::correct(std::size_t i, const AnswerGroup& group,
-                              PatchContact& patch) noexcept {
-  const BodyPair& bodies = pair(i);
-  const bool second = is_facet(bodies.b);
-  const bool one_surface = is_facet(bodies.a) != second;
+// Corrects the answers whose normals are not valid: first by valid contacts and by patches, then,
+// with the contacts of patches as further valid ones, the rest.
+void SurfaceContacts::correct_all(const AnswerGroup& group) noexcept {
+  PatchContact patch;
+  for (std::size_t i = group.first; i < group.end; ++i) {
+    if (changes_[i] != Change::turn || follow_valid(i, group) || !is_deep(i)) continue;
+    static_cast<void>(follow_patch(i, group, patch));
+  }
+  for (std::size_t i = group.first; i < group.end; ++i) {
+    if (changes_[i] != Change::turn || follow_valid(i, group)) continue;
+    const Vec face = face_normal(i, group);
+    if (face.isZero()) {
+      changes_[i] = Change::doubtful;
+      continue;
+    }
+    set_normal(i, face);
+    if (is_deep(i) && !is_of_two_surfaces(i)) changes_[i] = Change::clip;
+  }
+}
+
+// Drops an answer whose shapes a valid contact parts, or clips the shape against a face in the
+// plane of that contact. Returns false if no valid contact parts the shapes.
+bool SurfaceContacts::follow_valid(std::size_t i, const AnswerGroup& group) noexcept {
   bool is_parted = false;
-  bool is_level = false;
   for (std::size_t s = group.first; s < group.end; ++s) {
-    if (!is_kept(s) || !cones_.parts(s, i)) continue;
+    if (!is_valid(s) || !cones_.parts(s, i)) continue;
     is_parted = true;
-    is_level = is_level || (one_surface && is_level_with(i, s));
+    if (is_of_two_surfaces(i) || !is_level_with(i, s) || !is_deep(i)) continue;
+    changes_[i] = Change::clip_or_drop;
+    set_normal(i, cones_.normal(s));
+    return true;
   }
-  if (is_parted && !is_level) {
-    changes_[i] = Change::drop;
-    return;
-  }
-  const double distance = columns_.distance[i];
+  if (is_parted) changes_[i] = Change::drop;
+  return is_parted;
+}
+
+// True if the shapes overlap by more than their rounding.
+bool SurfaceContacts::is_deep(std::size_t i) const noexcept {
+  const BodyPair& bodies = pair(i);
   const double rounding =
       rounding_of(tables_, pairs_.shapes[bodies.a]) + rounding_of(tables_, pairs_.shapes[bodies.b]);
-  const bool is_deep = distance <= 0.0 && distance + rounding <= 0.0;
-  if (!is_parted && is_deep && follow_patch(i, group, patch)) return;
-  const Vec face = face_normal(i, group);
-  if (is_level) {
-    changes_[i] = is_deep ? Change::clip_or_drop : Change::drop;
-  } else if (!face.isZero()) {
-    changes_[i] = is_deep && one_surface ? Change::clip : Change::turn;
-  } else {
-    changes_[i] = Change::doubtful;
-  }
-  if (changes_[i] != Change::doubtful) set_normal(i, face);
+  return columns_.distance[i] <= 0.0 && columns_.distance[i] + rounding <= 0.0;
 }
 
 // Gives an answer the normal and depth of the convex patches around its triangles, if their normal
@@ -489,11 +503,13 @@ bool SurfaceContacts::is_level_with(std::size_t i, std::size_t s) const noexcept
 }
 
 // True if a triangle is touched from behind: a contact of its neighbour parts the bodies, and its
-// own does not.
+// own does not. If the shapes are apart, any contact of overlapping shapes that parts them will do.
 bool SurfaceContacts::is_backside(std::size_t i, const AnswerGroup& group) const noexcept {
   for (std::size_t s = group.first; s < group.end; ++s) {
-    if (s == i || !is_kept(s) || cones_.normal(i).dot(cones_.normal(s)) >= kRegionCosine) continue;
-    if (cones_.are_neighbours(s, i) && cones_.parts(s, i) && !cones_.parts(i, s)) return true;
+    if (s == i || !is_valid(s) || cones_.normal(i).dot(cones_.normal(s)) >= kRegionCosine) continue;
+    if (!cones_.parts(s, i)) continue;
+    if (columns_.distance[i] > 0.0 && columns_.distance[s] <= 0.0) return true;
+    if (cones_.are_neighbours(s, i) && !cones_.parts(i, s)) return true;
   }
   return false;
 }
@@ -525,24 +541,16 @@ bool SurfaceContacts::points_back(std::size_t i, Vec& front) const noexcept {
   return true;
 }
 
-// Returns the normal of the triangle's face, from a to b: towards its front; else to the side of a
-// valid contact of the same plane; else to the nearer side. Zero for two surfaces, if neither has a
-// front that the normal points away from: it is unknown whose face to use.
+// Returns the normal of the triangle's face, from a to b, towards its front or else to the nearer
+// side. Zero for two surfaces, unless the normal points to the back of one: it is unknown whose
+// face to use.
 Vec SurfaceContacts::face_normal(std::size_t i, const AnswerGroup& group) const noexcept {
   Vec front;
   if (points_back(i, front)) return front;
-  const BodyPair& bodies = pair(i);
-  const bool second = is_facet(bodies.b);
-  if (is_facet(bodies.a) == second) return Vec::Zero();
-  const std::uint32_t own = second ? bodies.b : bodies.a;
+  if (is_of_two_surfaces(i)) return Vec::Zero();
+  const bool second = is_facet(pair(i).b);
   const Vec outward = outward_of(i, second, group);
-  const Vec face = second ? Vec(-outward) : outward;
-  if (!front_of(own).isZero()) return face;
-  for (std::size_t s = group.first; s < group.end; ++s) {
-    if (!is_kept(s) || !is_level_with(i, s) || !cones_.parts(s, i)) continue;
-    return face.dot(cones_.normal(s)) < 0.0 ? Vec(-face) : face;
-  }
-  return face;
+  return second ? Vec(-outward) : outward;
 }
 
 // Sets the normal to that of the face, on the same side.
@@ -699,7 +707,7 @@ void SurfaceContacts::take(AnswerChunk& chunk, std::size_t i,
 
 }  // namespace
 
-Status correct_surface_contacts(const ShapePool& shapes, PrimitivePairs& pairs,
+Status correct_surface_contacts(const CollidedPairs& collided, PrimitivePairs& pairs,
                                 const PairMargins& margins, const Execution& execution,
                                 NarrowResult& result) noexcept {
   if (result.level() == ContactLevel::boolean || result.size() == 0) return Status::ok;
@@ -708,7 +716,7 @@ Status correct_surface_contacts(const ShapePool& shapes, PrimitivePairs& pairs,
     return Status::out_of_memory;
   }
   auto* const changes = reinterpret_cast<Change*>(pairs.scratch.data());
-  SurfaceContacts(shapes, pairs, margins, result, changes).run(execution);
+  SurfaceContacts(collided, pairs, margins, result, changes).run(execution);
   return Status::ok;
 }
 

@@ -1,5 +1,6 @@
 // Meshes, height fields and compounds in a CompositePool: input checks, lifetimes, bounds, part
-// numbers, and the correction of normals at internal edges (CompositePool::correct_surface_contacts).
+// numbers, and the correction of normals at internal edges
+// (CompositePool::correct_surface_contacts).
 
 #include <winnow/core/eigen.h>
 #include <winnow/pipeline/scene.h>
@@ -228,7 +229,8 @@ Landing land(const ShapePool& shapes, const CompositePool& pool, ShapeId body, c
             Status::ok);
   std::size_t before = 0;
   for (const double distance : result.distance()) before += distance <= margin ? 1 : 0;
-  EXPECT_EQ(mid::correct_surface_contacts(shapes, pairs, margin, Execution::serial(), result),
+  EXPECT_EQ(mid::correct_surface_contacts({pool, shapes, {ids, poses}, pair}, pairs, margin,
+                                          Execution::serial(), result),
             Status::ok);
   Landing landing;
   for (std::size_t i = 0; i < result.size(); ++i) {
@@ -398,8 +400,10 @@ TEST(InternalEdges, smoothing_matches_on_threads_and_without_memory) {
     auto result = std::make_unique<NarrowResult>(memory);
     winnow::test::answer(world.shapes, pairs, {}, *result);
     if (refusing != nullptr) refusing->refuse_after(0);
-    EXPECT_EQ(mid::correct_surface_contacts(world.shapes, pairs, 0.0, execution, *result),
-              Status::ok);
+    EXPECT_EQ(
+        mid::correct_surface_contacts({world.composites, world.shapes, world.bodies(), world.pairs},
+                                      pairs, 0.0, execution, *result),
+        Status::ok);
     if (refusing != nullptr) refusing->grant_all();
     return result;
   };

@@ -205,8 +205,10 @@ struct Reduced {
     answer(world.shapes, pairs,
            {.level = ContactLevel::manifold, .contact_margin = margin_, .execution = execution},
            answers);
-    EXPECT_EQ(mid::correct_surface_contacts(world.shapes, pairs, margin_, execution, answers),
-              Status::ok);
+    EXPECT_EQ(
+        mid::correct_surface_contacts({world.composites, world.shapes, world.bodies(), world.pairs},
+                                      pairs, margin_, execution, answers),
+        Status::ok);
     ASSERT_EQ(reduce_contacts(execution), Status::ok);
   }
   [[nodiscard]] Status reduce_contacts(const Execution& execution) {
