@@ -37,8 +37,13 @@ enum class Change : std::uint8_t {
   clip,
   /// As `clip`; if the deepest point is not over the face, the contact is dropped.
   clip_or_drop,
-  /// The normal and the depth are those of the convex patch around the triangle.
+  /// The normal and the depth are those of the convex patch around the triangle, which is touched
+  /// in
+  /// this triangle.
   follow_patch,
+  /// As `follow_patch`, but the patch is touched elsewhere: the contact is dropped if its deepest
+  /// point is not over the triangle.
+  reach_patch,
   drop,
 };
 
@@ -171,6 +176,8 @@ class SurfaceContacts {
     Vec normal;
     double distance = 0.0;
     double error = 0.0;
+    /// The deepest points of a and b.
+    Vec touched[2];
     /// The normal is in the normal cones of both patches.
     bool is_valid = false;
 
@@ -223,11 +230,11 @@ class SurfaceContacts {
   /// True if the normal is in the normal cones.
   [[nodiscard]] bool is_valid(std::size_t i) const noexcept {
     return changes_[i] == Change::none || changes_[i] == Change::straighten ||
-           changes_[i] == Change::follow_patch;
+           changes_[i] == Change::follow_patch || changes_[i] == Change::reach_patch;
   }
   [[nodiscard]] static bool is_clipped(Change change) noexcept {
     return change == Change::clip || change == Change::clip_or_drop ||
-           change == Change::follow_patch;
+           change == Change::follow_patch || change == Change::reach_patch;
   }
   [[nodiscard]] bool has_contacts() const noexcept {
     return result_.level() == ContactLevel::manifold;
@@ -420,16 +427,19 @@ bool SurfaceContacts::follow_patch(std::size_t i, const AnswerGroup& group,
   const BodyPair& bodies = pair(i);
   if (!patch.is_of(bodies)) solve_patch(i, group, patch);
   if (!patch.is_valid) return false;
+  bool is_touched = true;
   bool reaches = true;
   for (const bool second : {false, true}) {
-    const ConvexPatch& own = patch.side[second ? 1 : 0];
+    const std::size_t k = second ? 1 : 0;
+    const ConvexPatch& own = patch.side[k];
     if (own.is_empty()) continue;
     const Vec outward = second ? Vec(-patch.normal) : patch.normal;
     const Facet facet = cones_.facet(second ? bodies.b : bodies.a);
+    is_touched = is_touched && facet.contains(patch.touched[k], kPatchSlack * own.size());
     reaches = reaches && facet.top(outward) >= own.top(outward) - kFlatSine * facet.size;
   }
-  changes_[i] = reaches ? Change::follow_patch : Change::drop;
-  if (!reaches) return true;
+  changes_[i] = is_touched ? Change::follow_patch : reaches ? Change::reach_patch : Change::drop;
+  if (changes_[i] == Change::drop) return true;
   set_normal(i, patch.normal);
   columns_.distance[i] = patch.distance;
   columns_.error_bound[i] += patch.error;
@@ -455,11 +465,12 @@ void SurfaceContacts::solve_patch(std::size_t i, const AnswerGroup& group,
   patch.error = answer.error_bound;
   patch.is_valid = answer.distance <= 0.0 && std::isfinite(answer.distance);
   const Pose from = patch.side[0].is_empty() ? pairs_.poses[bodies.a] : patch.side[0].pose();
-  const Vec on_a = Eigen::Map<const Vec>(from.position) + Eigen::Map<const Vec>(answer.point);
+  patch.touched[0] = Eigen::Map<const Vec>(from.position) + Eigen::Map<const Vec>(answer.point);
+  patch.touched[1] = patch.touched[0] + patch.distance * patch.normal;
   for (const bool second : {false, true}) {
     const ConvexPatch& own = patch.side[second ? 1 : 0];
     if (own.is_empty() || !patch.is_valid) continue;
-    const Vec touched = second ? Vec(on_a + patch.distance * patch.normal) : on_a;
+    const Vec& touched = patch.touched[second ? 1 : 0];
     const Vec outward = second ? Vec(-patch.normal) : patch.normal;
     patch.is_valid = !cones_.is_blocked(touched, outward, kPatchSlack * own.size(), second, group);
   }
@@ -589,6 +600,9 @@ void SurfaceContacts::apply(AnswerChunk& chunk, std::size_t i, double most) noex
       if (!clip(chunk, i, most)) drop(i);
       break;
     case Change::follow_patch:
+      static_cast<void>(clip(chunk, i, kInfinity));
+      break;
+    case Change::reach_patch:
       if (!clip(chunk, i, kInfinity)) drop(i);
       break;
     case Change::drop:
@@ -669,7 +683,8 @@ bool SurfaceContacts::clip(AnswerChunk& chunk, std::size_t i, double most) noexc
                        pairs_.shapes[bodies.b],
                        pairs_.poses[bodies.b],
                        is_facet(bodies.b),
-                       changes_[i] != Change::follow_patch || is_level_with(i, i)};
+                       changes_[i] == Change::clip || changes_[i] == Change::clip_or_drop ||
+                           (changes_[i] == Change::reach_patch && is_level_with(i, i))};
   FaceContacts found;
   if (!clip_to_face(faces, normal, margin(i), -columns_.distance[i], most, found)) return false;
   columns_.distance[i] = -found.depth;
