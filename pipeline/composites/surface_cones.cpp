@@ -6,6 +6,8 @@
 #include "pipeline/composites/transformed_shape.h"
 #include "pipeline/mesh/height_grid.h"
 #include "pipeline/mesh/mesh_traversal.h"
+#include "pipeline/shapes/extent.h"
+#include "pipeline/solver/solver.h"
 
 #include <algorithm>
 #include <cmath>
@@ -19,6 +21,8 @@ constexpr double kLevel = 1e-6;
 // Relative distance by which rounded vertices may be beside the edge of a triangle that contains
 // them.
 constexpr double kBeside = 1e-5;
+// Distance, relative to the radius of a part, up to which parts of compounds lie flush.
+constexpr double kFlush = 1e-5;
 constexpr std::uint32_t kNone = ~0U;
 // Triangles around a point that are tested.
 constexpr std::uint64_t kMostAround = 64;
@@ -93,7 +97,7 @@ bool SurfaceCones::has_normal(std::size_t i, const AnswerGroup& group) const noe
 
 bool SurfaceCones::has_normal(std::size_t i, const AnswerGroup& group, bool second) const noexcept {
   const std::uint32_t own = primitive(i, second);
-  if (!is_triangle(own)) return true;
+  if (!is_triangle(own)) return !is_covered(i, group, second);
   const Facet triangle = facet(own);
   if (triangle.normal.isZero()) return true;
   const Vec outward = second ? Vec(-normal(i)) : normal(i);
@@ -211,9 +215,76 @@ bool SurfaceCones::parts(std::size_t s, std::size_t i) const noexcept {
 bool SurfaceCones::is_below(std::uint32_t primitive, std::uint32_t limit,
                             const Vec& direction) const noexcept {
   if (primitive == limit) return true;
-  if (!is_triangle(primitive) || !is_triangle(limit)) return false;
-  const Facet low = facet(primitive);
-  return low.top(direction) <= facet(limit).top(direction) + kFlatSine * low.size;
+  const double size = is_triangle(primitive)
+                          ? kFlatSine * facet(primitive).size
+                          : kFlush * radius_of(tables_, pairs_.shapes[primitive]);
+  return top(primitive, direction) <= top(limit, direction) + size;
+}
+
+double SurfaceCones::top(std::uint32_t primitive, const Vec& direction) const noexcept {
+  if (is_triangle(primitive)) return facet(primitive).top(direction);
+  const Pose& pose = pairs_.poses[primitive];
+  const Mat rotation = rotation_of(scale_to_unit_max(pose.orientation));
+  return direction.dot(Eigen::Map<const Vec>(pose.position)) +
+         extent(tables_, pairs_.shapes[primitive], rotation.transpose() * direction).high;
+}
+
+// Tests a convex part of a compound. A face is touched in the middle of its contact points.
+bool SurfaceCones::is_covered(std::size_t i, const AnswerGroup& group, bool second) const noexcept {
+  const std::uint32_t own = primitive(i, second);
+  if (pairs_.part[own] == kWholeShape) return false;
+  const Vec outward = second ? Vec(-normal(i)) : normal(i);
+  const double slack = kFlush * radius_of(tables_, pairs_.shapes[own]);
+  const Vec touched = middle_of_contact(i, second);
+  const double height = outward.dot(touched);
+  for (std::size_t k = group.first; k < group.end; ++k) {
+    const std::uint32_t other = primitive(k, second);
+    if (other == own || pairs_.part[other] == pairs_.part[own]) continue;
+    if (top(other, outward) <= height + kFlatSine * slack / kFlush) continue;
+    if (part_contains(other, touched, slack)) return true;
+  }
+  return false;
+}
+
+bool SurfaceCones::part_contains(std::uint32_t primitive, const Vec& point,
+                                 double slack) const noexcept {
+  if (is_triangle(primitive)) return facet(primitive).contains(point, slack);
+  const SphereShape ball{slack};
+  ShapeTables with_ball = tables_;
+  with_ball.spheres = &ball;
+  // The part may be a sphere itself.
+  const ShapeId shape = pairs_.shapes[primitive];
+  const Pose& pose = pairs_.poses[primitive];
+  if (shape.kind() == ShapeKind::sphere) {
+    const double reach = tables_.spheres[shape.index()].radius + slack;
+    return (point - Eigen::Map<const Vec>(pose.position)).squaredNorm() <= reach * reach;
+  }
+  SolverCounts counts;
+  const Pose at = pose_of(point, {1.0, 0.0, 0.0, 0.0});
+  return solve_pair(with_ball, ShapeId::of(ShapeKind::sphere, 0), at, shape, pose,
+                    ContactLevel::boolean, 0.0, counts)
+      .overlap;
+}
+
+// The middle of all contact points, on the surface of one body.
+Vec SurfaceCones::middle_of_contact(std::size_t i, bool second) const noexcept {
+  const Eigen::Map<const Vec> from(pairs_.poses[primitive(i, false)].position);
+  const double distance = result_.distance()[i];
+  if (result_.level() != ContactLevel::manifold) {
+    const Vec on_a = from + Vec(result_.point(0)[i], result_.point(1)[i], result_.point(2)[i]);
+    return second ? Vec(on_a + distance * normal(i)) : on_a;
+  }
+  const std::uint32_t count = result_.contact_count()[i];
+  Vec sum = Vec::Zero();
+  double depth = 0.0;
+  for (std::uint32_t k = 0; k < count; ++k) {
+    const ContactPoint contact = result_.contact(result_.contact_first()[i] + k);
+    sum += Eigen::Map<const Eigen::Vector3f>(contact.position).cast<double>();
+    depth += static_cast<double>(contact.depth);
+  }
+  const Vec middle = from + sum / count;
+  const double half = 0.5 * depth / count;
+  return middle + (second ? -half : half) * normal(i);
 }
 
 bool SurfaceCones::are_neighbours(std::size_t i, std::size_t k) const noexcept {

@@ -53,6 +53,10 @@ struct AnswerGroup {
 /// of the contact, whatever the winding; and also if vertices are not shared (T-junctions). Most of
 /// them touch the other body, too, and have answers in the same group; the others are found in the
 /// tree of the mesh.
+///
+/// Convex parts of a compound are tested likewise, with their faces: a part that contains the
+/// touched point and reaches farther along the direction covers it. So parts that lie flush, and
+/// parts that overlap, are a union. Only parts of the same group are compared.
 class SurfaceCones {
  public:
   SurfaceCones(const CollidedPairs& collided, const ShapeTables& tables,
@@ -101,11 +105,18 @@ class SurfaceCones {
                                     const AnswerGroup& group) const noexcept;
   [[nodiscard]] bool has_normal(std::size_t i, const AnswerGroup& group,
                                 bool second) const noexcept;
+  [[nodiscard]] bool is_covered(std::size_t i, const AnswerGroup& group,
+                                bool second) const noexcept;
+  [[nodiscard]] bool part_contains(std::uint32_t primitive, const Vec& point,
+                                   double slack) const noexcept;
+  /// Height of a primitive along a unit direction.
+  [[nodiscard]] double top(std::uint32_t primitive, const Vec& direction) const noexcept;
   [[nodiscard]] bool is_near(std::uint32_t primitive, const Vec& point,
                              double slack) const noexcept;
   [[nodiscard]] bool share_corner(std::uint32_t one, std::uint32_t two) const noexcept;
   [[nodiscard]] bool is_below(std::uint32_t primitive, std::uint32_t limit,
                               const Vec& direction) const noexcept;
+  [[nodiscard]] Vec middle_of_contact(std::size_t i, bool second) const noexcept;
   /// The deepest point of the contact; on the surface of body a or in the middle of the gap.
   [[nodiscard]] Vec touched_point(std::size_t i) const noexcept;
 

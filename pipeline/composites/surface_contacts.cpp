@@ -425,6 +425,7 @@ bool SurfaceContacts::is_deep(std::size_t i) const noexcept {
 bool SurfaceContacts::follow_patch(std::size_t i, const AnswerGroup& group,
                                    PatchContact& patch) noexcept {
   const BodyPair& bodies = pair(i);
+  if (!is_facet(bodies.a) && !is_facet(bodies.b)) return false;
   if (!patch.is_of(bodies)) solve_patch(i, group, patch);
   if (!patch.is_valid) return false;
   bool is_touched = true;
