@@ -245,7 +245,8 @@ Landing land(const ShapePool& shapes, const CompositePool& pool, ShapeId body, c
     const ContactPoint first = result.contact(result.contact_first()[i]);
     EXPECT_NEAR(static_cast<double>(first.depth), -result.distance()[i], 1e-5);
   }
-  EXPECT_EQ(landing.normals.size(), before);
+  EXPECT_LE(landing.normals.size(), before);
+  EXPECT_EQ(landing.normals.empty(), before == 0);
   return landing;
 }
 
