@@ -123,7 +123,7 @@ bool SurfaceCones::has_normal(std::size_t i, const AnswerGroup& group, bool seco
     case Surroundings::none:
       break;
   }
-  // No triangle of the group continues the surface: the flags of the whole surface decide.
+  // A mesh in a compound, no other triangle of which is touched here: the flags of its edges decide.
   const std::uint32_t active = pairs_.active_edges[pairs_.shapes[own].index()];
   if (highest == 1) return (active >> (3 + at[0]) & 1U) != 0;
   const std::size_t edge = at[1] == at[0] + 1 ? at[0] : 2;
