@@ -32,7 +32,7 @@ constexpr std::uint64_t kMostAround = 64;
                          double slack) noexcept {
   return std::ranges::any_of(corner, [&](const Vec& at) {
     const Vec to_corner = at - point;
-    return outward.dot(to_corner) > kFlatSine * to_corner.norm() + slack;
+    return outward.dot(to_corner) > kNearlyFace * to_corner.norm() + slack;
   });
 }
 
@@ -123,7 +123,8 @@ bool SurfaceCones::has_normal(std::size_t i, const AnswerGroup& group, bool seco
     case Surroundings::none:
       break;
   }
-  // A mesh in a compound, no other triangle of which is touched here: the flags of its edges decide.
+  // A mesh in a compound, no other triangle of which is touched here: the flags of its edges
+  // decide.
   const std::uint32_t active = pairs_.active_edges[pairs_.shapes[own].index()];
   if (highest == 1) return (active >> (3 + at[0]) & 1U) != 0;
   const std::size_t edge = at[1] == at[0] + 1 ? at[0] : 2;

@@ -35,6 +35,8 @@ struct Facet {
 /// Sine of the angle by which a triangle may rise above a plane that bounds it: rounding of
 /// vertices to float bends flat surfaces.
 inline constexpr double kFlatSine = 1e-4;
+/// Sine of the angle up to which a normal counts as that of a face.
+inline constexpr double kNearlyFace = 1e-5;
 
 /// Answers of the narrow phase for one pair of bodies whose primitives have the same kinds.
 struct AnswerGroup {

@@ -35,15 +35,19 @@ enum class Change : std::uint8_t {
   turn,
   /// As `turn`; then the other shape is clipped against the face.
   clip,
-  /// As `clip`; if the deepest point is not over the face, the contact is dropped.
+  /// The other shape is clipped along the new normal; without points over the face, the contact is
+  /// dropped.
   clip_or_drop,
   /// The normal and the depth are those of the convex patch around the triangle, which is touched
   /// in
   /// this triangle.
   follow_patch,
-  /// As `follow_patch`, but the patch is touched elsewhere: the contact is dropped if its deepest
-  /// point is not over the triangle.
+  /// As `follow_patch`, but the patch is touched elsewhere: without points over the face, the
+  /// contact
+  /// is dropped.
   reach_patch,
+  /// Found to have no points over the face.
+  beside,
   drop,
 };
 
@@ -53,8 +57,6 @@ constexpr double kSameNormal = 1e-13;
 constexpr double kBackNormal = 1e-9;
 // Error of a touched point of a patch, relative to the size of the patch.
 constexpr double kPatchSlack = 1e-6;
-// Sine of the angle up to which a normal counts as that of the face.
-constexpr double kNearlyFace = 1e-6;
 
 /// An overlapping pair of a mesh triangle and another shape.
 struct FacePair {
@@ -65,8 +67,6 @@ struct FacePair {
   const Pose& pose_b;
   /// True if the mesh triangle is b.
   bool second;
-  /// The deepest point must be over the triangle.
-  bool must_be_over;
 };
 
 /// Contacts along the normal of the triangle's face.
@@ -103,11 +103,36 @@ constexpr double kFloatSlack = 1e-6;
   return finite_float(static_cast<double>(x) * unit);
 }
 
-/// Clips the supporting feature of the other shape along `normal` (face normal, from a to b)
-/// against the triangle. The depth is at least `least`. Returns false if the deepest point is not
-/// over the triangle, where its depth would be meaningless, or is deeper than `most`.
+/// The points of a clipped feature that are kept.
+enum class Kept : std::uint8_t {
+  /// All; the deepest point may be beside the triangle.
+  all,
+  /// All, if the deepest point is over the triangle: its depth would be meaningless elsewhere.
+  deepest_over,
+  /// Those over the triangle.
+  over,
+};
+
+/// Removes points that are not over the triangle, and puts the deepest first.
+void keep_over(const solver::Core& triangle, const Vec& normal, double size,
+               FaceContacts& found) noexcept {
+  const auto is_beside = [&](const ContactPoint& point) {
+    return !is_over(triangle, normal, point.position, size);
+  };
+  ContactPoint* const end = std::remove_if(found.points, found.points + found.count, is_beside);
+  found.count = static_cast<std::uint32_t>(end - found.points);
+  if (found.count == 0) return;
+  std::iter_swap(found.points,
+                 std::max_element(found.points, end,
+                                  [](const auto& p, const auto& q) { return p.depth < q.depth; }));
+}
+
+/// Clips the supporting feature of the other shape along `normal` (from a to b) against the
+/// triangle. The depth is at least `least`, unless only points over the triangle are kept. Returns
+/// false if no points are kept, if the depth is more than `most`, or if the gap is above the
+/// margin.
 [[nodiscard]] bool clip_to_face(const FacePair& pair, const Vec& normal, double margin,
-                                double least, double most, FaceContacts& out) noexcept {
+                                double least, double most, Kept kept, FaceContacts& out) noexcept {
   solver::Problem problem;
   prepare(pair.tables, pair.a, pair.pose_a, pair.b, pair.pose_b, false, problem);
   const solver::SupportingPatch a(problem.a, normal);
@@ -116,19 +141,25 @@ constexpr double kFloatSlack = 1e-6;
   out.count = contact_patch(a.view(), b.view(), normal.data(), reach, out.points);
   ContactPoint& deepest = out.points[0];
   const solver::Core& triangle = pair.second ? problem.b : problem.a;
-  if (pair.must_be_over && !is_over(triangle, normal, deepest.position, problem.size)) {
+  if (kept == Kept::over) {
+    keep_over(triangle, normal, problem.size, out);
+    if (out.count == 0) return false;
+  } else if (kept == Kept::deepest_over &&
+             !is_over(triangle, normal, deepest.position, problem.size)) {
     return false;
   }
   const double unit = unscaled(problem, 1.0);
   out.depth = static_cast<double>(deepest.depth) * unit;
-  if (!(out.depth <= most)) return false;
-  out.depth = std::max(out.depth, least);
-  out.noise = unscaled(problem, problem.noise()) + kFloatError * out.depth;
+  if (!(out.depth <= most) || -out.depth > margin) return false;
+  out.noise = unscaled(problem, problem.noise()) + kFloatError * std::abs(out.depth);
   for (std::uint32_t k = 0; k < out.count; ++k) {
     for (float& x : out.points[k].position) x = scaled(x, unit);
     out.points[k].depth = scaled(out.points[k].depth, unit);
   }
-  deepest.depth = std::max(deepest.depth, scaled(1.0F, least));
+  if (kept != Kept::over && out.depth < least) {
+    out.depth = least;
+    deepest.depth = std::max(deepest.depth, scaled(1.0F, least));
+  }
   return true;
 }
 
@@ -213,10 +244,11 @@ class SurfaceContacts {
   [[nodiscard]] Vec outward_of(std::size_t i, bool second, const AnswerGroup& group) const noexcept;
   void straighten(std::size_t i) noexcept;
   void apply(AnswerChunk& chunk, std::size_t i, double most) noexcept;
+  void drop_beside(const AnswerGroup& group, bool has_contact) noexcept;
   void drop(std::size_t i) noexcept;
   void set_normal(std::size_t i, const Vec& normal) noexcept;
   void lower_sphere(std::size_t i, const Vec& normal) noexcept;
-  [[nodiscard]] bool clip(AnswerChunk& chunk, std::size_t i, double most) noexcept;
+  [[nodiscard]] bool clip(AnswerChunk& chunk, std::size_t i, double most, Kept kept) noexcept;
   void take(AnswerChunk& chunk, std::size_t i, std::span<const ContactPoint> points) noexcept;
 
   /// True for a triangle of a composite shape.
@@ -231,6 +263,10 @@ class SurfaceContacts {
   [[nodiscard]] bool is_valid(std::size_t i) const noexcept {
     return changes_[i] == Change::none || changes_[i] == Change::straighten ||
            changes_[i] == Change::follow_patch || changes_[i] == Change::reach_patch;
+  }
+  /// True for a contact that remains.
+  [[nodiscard]] static bool is_applied(Change change) noexcept {
+    return change != Change::apart && change != Change::beside && change != Change::drop;
   }
   [[nodiscard]] static bool is_clipped(Change change) noexcept {
     return change == Change::clip || change == Change::clip_or_drop ||
@@ -403,7 +439,7 @@ bool SurfaceContacts::follow_valid(std::size_t i, const AnswerGroup& group) noex
   for (std::size_t s = group.first; s < group.end; ++s) {
     if (!is_valid(s) || !cones_.parts(s, i)) continue;
     is_parted = true;
-    if (is_of_two_surfaces(i) || !is_level_with(i, s) || !is_deep(i)) continue;
+    if (is_of_two_surfaces(i) || !is_level_with(i, s)) continue;
     changes_[i] = Change::clip_or_drop;
     set_normal(i, cones_.normal(s));
     return true;
@@ -439,6 +475,9 @@ bool SurfaceContacts::follow_patch(std::size_t i, const AnswerGroup& group,
     is_touched = is_touched && facet.contains(patch.touched[k], kPatchSlack * own.size());
     reaches = reaches && facet.top(outward) >= own.top(outward) - kFlatSine * facet.size;
   }
+  const bool is_back = front_of(bodies.a).dot(patch.normal) < -kBackNormal ||
+                       front_of(bodies.b).dot(patch.normal) > kBackNormal;
+  if (reaches && is_back) return false;
   changes_[i] = is_touched ? Change::follow_patch : reaches ? Change::reach_patch : Change::drop;
   if (changes_[i] == Change::drop) return true;
   set_normal(i, patch.normal);
@@ -585,35 +624,49 @@ void SurfaceContacts::apply_changes(AnswerChunk& chunk) noexcept {
     for (std::size_t k = i; k < group.end; ++k) {
       deepest = std::max(deepest, -columns_.distance[k]);
     }
-    for (; i < group.end; ++i) apply(chunk, i, kMaxDeeper * deepest);
+    bool has_contact = false;
+    for (; i < group.end; ++i) {
+      apply(chunk, i, kMaxDeeper * deepest);
+      has_contact = has_contact || is_applied(changes_[i]);
+    }
+    drop_beside(group, has_contact);
   }
 }
 
+// Clips and turns; answers without points over their triangles become `beside`.
 void SurfaceContacts::apply(AnswerChunk& chunk, std::size_t i, double most) noexcept {
   switch (changes_[i]) {
     case Change::turn:
       lower_sphere(i, cones_.normal(i));
       break;
     case Change::clip:
-      static_cast<void>(clip(chunk, i, most));
+      static_cast<void>(clip(chunk, i, most, Kept::deepest_over));
       break;
     case Change::clip_or_drop:
-      if (!clip(chunk, i, most)) drop(i);
+      if (!clip(chunk, i, most, Kept::over)) changes_[i] = Change::beside;
       break;
     case Change::follow_patch:
-      static_cast<void>(clip(chunk, i, kInfinity));
+      if (!clip(chunk, i, kInfinity, Kept::all)) changes_[i] = Change::beside;
       break;
-    case Change::reach_patch:
-      if (!clip(chunk, i, kInfinity)) drop(i);
+    case Change::reach_patch: {
+      const Kept kept = is_level_with(i, i) ? Kept::over : Kept::all;
+      if (!clip(chunk, i, kInfinity, kept)) changes_[i] = Change::beside;
       break;
+    }
     case Change::drop:
       drop(i);
       break;
-    case Change::none:
-    case Change::apart:
-    case Change::doubtful:
-    case Change::straighten:
+    default:
       break;
+  }
+}
+
+// Drops the answers that touch beside their triangles; keeps one if the group has no other contact.
+void SurfaceContacts::drop_beside(const AnswerGroup& group, bool has_contact) noexcept {
+  for (std::size_t i = group.first; i < group.end; ++i) {
+    if (changes_[i] != Change::beside) continue;
+    if (has_contact) drop(i);
+    has_contact = true;
   }
 }
 
@@ -675,7 +728,7 @@ void SurfaceContacts::lower_sphere(std::size_t i, const Vec& normal) noexcept {
   }
 }
 
-bool SurfaceContacts::clip(AnswerChunk& chunk, std::size_t i, double most) noexcept {
+bool SurfaceContacts::clip(AnswerChunk& chunk, std::size_t i, double most, Kept kept) noexcept {
   const BodyPair& bodies = pair(i);
   const Vec normal(columns_.normal[0][i], columns_.normal[1][i], columns_.normal[2][i]);
   const FacePair faces{tables_,
@@ -683,11 +736,11 @@ bool SurfaceContacts::clip(AnswerChunk& chunk, std::size_t i, double most) noexc
                        pairs_.poses[bodies.a],
                        pairs_.shapes[bodies.b],
                        pairs_.poses[bodies.b],
-                       is_facet(bodies.b),
-                       changes_[i] == Change::clip || changes_[i] == Change::clip_or_drop ||
-                           (changes_[i] == Change::reach_patch && is_level_with(i, i))};
+                       is_facet(bodies.b)};
   FaceContacts found;
-  if (!clip_to_face(faces, normal, margin(i), -columns_.distance[i], most, found)) return false;
+  if (!clip_to_face(faces, normal, margin(i), -columns_.distance[i], most, kept, found)) {
+    return false;
+  }
   columns_.distance[i] = -found.depth;
   columns_.error_bound[i] += found.noise;
   if (has_contacts()) {
