@@ -56,7 +56,7 @@ constexpr double kSameNormal = 1e-13;
 // triangle.
 constexpr double kBackNormal = 1e-9;
 // Error of a touched point of a patch, relative to the size of the patch.
-constexpr double kPatchSlack = 1e-6;
+constexpr double kPatchSlack = 1e-5;
 
 /// An overlapping pair of a mesh triangle and another shape.
 struct FacePair {
