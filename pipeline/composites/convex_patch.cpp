@@ -21,7 +21,7 @@ void ConvexPatch::grow(const SurfaceCones& cones, const AnswerGroup& group, std:
     before = count_;
     for (std::size_t k = group.first; k < group.end && count_ < kMostFacets; ++k) {
       const std::uint32_t next = cones.primitive(k, second);
-      if (!cones.is_triangle(next) || contains(next)) continue;
+      if (!cones.overlaps(k) || !cones.is_triangle(next) || contains(next)) continue;
       Facet facet = cones.facet(next);
       facet.normal *= turn;
       if (!accepts(facet)) continue;

@@ -10,7 +10,7 @@
 namespace winnow::mid {
 
 /// A locally convex patch of a touched surface, as one convex shape: a triangle and those around it
-/// that have answers in the same group, as far as they lie behind each other's planes.
+/// that overlap the other body in the same group, as far as they lie behind each other's planes.
 class ConvexPatch {
  public:
   /// Grows the patch around a triangle of one side of a group. `outward`: the triangle's normal

@@ -82,6 +82,7 @@ class SurfaceCones {
   /// Returns whether the triangles of the two answers share a corner, in both bodies.
   [[nodiscard]] bool are_neighbours(std::size_t i, std::size_t k) const noexcept;
 
+  [[nodiscard]] bool overlaps(std::size_t i) const noexcept { return result_.overlaps(i); }
   [[nodiscard]] bool is_triangle(std::uint32_t primitive) const noexcept {
     return pairs_.shapes[primitive].kind() == ShapeKind::triangle;
   }
