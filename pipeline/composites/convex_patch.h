@@ -20,6 +20,8 @@ class ConvexPatch {
   /// Makes the patch empty.
   void clear() noexcept { count_ = 0; }
 
+  /// The triangles, with normals outwards.
+  [[nodiscard]] std::span<const Facet> facets() const noexcept { return {facet_, count_}; }
   [[nodiscard]] bool is_empty() const noexcept { return count_ == 0; }
   [[nodiscard]] bool contains(std::uint32_t primitive) const noexcept;
   /// Height of the highest corner along a direction.
@@ -37,7 +39,6 @@ class ConvexPatch {
 
   std::size_t count_ = 0;
   std::uint32_t primitive_[kMostFacets];
-  /// With normals outwards.
   Facet facet_[kMostFacets];
 };
 

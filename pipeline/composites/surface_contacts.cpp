@@ -55,6 +55,8 @@ constexpr double kSameNormal = 1e-13;
 // A normal whose component towards the back of a triangle is smaller counts as parallel to the
 // triangle.
 constexpr double kBackNormal = 1e-9;
+// Cosine of the angle between two normals of a patch that counts as gentle.
+constexpr double kGentleCosine = 0.99;
 // Error of a touched point of a patch, relative to the size of the patch.
 constexpr double kPatchSlack = 1e-5;
 
@@ -235,6 +237,7 @@ class SurfaceContacts {
   [[nodiscard]] bool follow_valid(std::size_t i, const AnswerGroup& group) noexcept;
   [[nodiscard]] bool follow_patch(std::size_t i, const AnswerGroup& group,
                                   PatchContact& patch) noexcept;
+  [[nodiscard]] bool solve_gentle(const BodyPair& bodies, PatchContact& patch) const noexcept;
   void solve_patch(std::size_t i, const AnswerGroup& group, PatchContact& patch) const noexcept;
   [[nodiscard]] bool is_backside(std::size_t i, const AnswerGroup& group) const noexcept;
   [[nodiscard]] bool is_level_with(std::size_t i, std::size_t s) const noexcept;
@@ -497,6 +500,7 @@ void SurfaceContacts::solve_patch(std::size_t i, const AnswerGroup& group,
     const std::uint32_t start = second ? bodies.b : bodies.a;
     if (is_facet(start)) own.grow(cones_, group, start, second, outward_of(i, second, group));
   }
+  if (solve_gentle(bodies, patch)) return;
   const PairAnswer answer =
       solve_patches(tables_, {pairs_.shapes[bodies.a], pairs_.poses[bodies.a], patch.side[0]},
                     {pairs_.shapes[bodies.b], pairs_.poses[bodies.b], patch.side[1]});
@@ -514,6 +518,37 @@ void SurfaceContacts::solve_patch(std::size_t i, const AnswerGroup& group,
     const Vec outward = second ? Vec(-patch.normal) : patch.normal;
     patch.is_valid = !cones_.is_blocked(touched, outward, kPatchSlack * own.size(), second, group);
   }
+}
+
+// Solves a patch that bends so little that the best of its face normals is as good as any
+// direction: the depth along any normal between those of the faces is at least kGentleCosine of
+// that depth.
+bool SurfaceContacts::solve_gentle(const BodyPair& bodies, PatchContact& patch) const noexcept {
+  const bool second = patch.side[0].is_empty();
+  const ConvexPatch& own = patch.side[second ? 1 : 0];
+  if (!patch.side[second ? 0 : 1].is_empty()) return false;
+  const std::span<const Facet> facets = own.facets();
+  const Vec& middle = facets[0].normal;
+  const auto is_bent = [&](const Facet& one) { return one.normal.dot(middle) < kGentleCosine; };
+  if (std::ranges::any_of(facets, is_bent)) return false;
+  const std::uint32_t other = second ? bodies.a : bodies.b;
+  const Mat rotation = rotation_of(scale_to_unit_max(pairs_.poses[other].orientation));
+  const Eigen::Map<const Vec> at(pairs_.poses[other].position);
+  patch.distance = -kInfinity;
+  for (const Facet& facet : facets) {
+    const SupportExtent reach =
+        extent(tables_, pairs_.shapes[other], rotation.transpose() * facet.normal);
+    const double gap = facet.normal.dot(at - facet.corner[0]) + reach.low;
+    if (gap <= patch.distance) continue;
+    patch.distance = gap;
+    patch.normal = second ? Vec(-facet.normal) : facet.normal;
+    patch.error = kSlack * (reach.scale + at.lpNorm<1>() + facet.corner[0].lpNorm<1>());
+  }
+  patch.error += (1.0 - kGentleCosine) * std::abs(patch.distance);
+  // Each triangle that reaches the plane is clipped against it.
+  patch.touched[0] = patch.touched[1] = Vec::Constant(kInfinity);
+  patch.is_valid = patch.distance <= 0.0;
+  return true;
 }
 
 // Returns the normal of a triangle towards its front; else to the side to which the other body, as
