@@ -115,7 +115,14 @@ bool SurfaceCones::has_normal(std::size_t i, const AnswerGroup& group, bool seco
     touched += std::clamp(along, 0.0, 1.0) * edge;
   }
 
-  switch (around(touched, outward, kBeside * triangle.size, own, second, group)) {
+  const double slack = kBeside * triangle.size;
+  const Surroundings near = around(touched, outward, slack, own, second, group);
+  // The touched point of shapes that are apart is within the margin of the other body, and so are
+  // all triangles around it.
+  const bool is_known = near == Surroundings::above || result_.distance()[i] > 0.0;
+  const Surroundings all =
+      is_known ? near : around_in_surface(touched, outward, slack, second, group);
+  switch (all == Surroundings::none ? near : all) {
     case Surroundings::above:
       return false;
     case Surroundings::below:
@@ -133,7 +140,8 @@ bool SurfaceCones::has_normal(std::size_t i, const AnswerGroup& group, bool seco
 
 bool SurfaceCones::is_blocked(const Vec& point, const Vec& outward, double slack, bool second,
                               const AnswerGroup& group) const noexcept {
-  return around(point, outward, slack, kNone, second, group) == Surroundings::above;
+  return around(point, outward, slack, kNone, second, group) == Surroundings::above ||
+         around_in_surface(point, outward, slack, second, group) == Surroundings::above;
 }
 
 // True if the box of a triangle contains the point, and for all turned triangles.
@@ -165,8 +173,7 @@ SurfaceCones::Surroundings SurfaceCones::around(const Vec& point, const Vec& out
     found = Surroundings::below;
     if (rises(neighbour.corner, point, outward, slack)) return Surroundings::above;
   }
-  const Surroundings all = around_in_surface(point, outward, slack, second, group);
-  return all == Surroundings::none ? found : all;
+  return found;
 }
 
 // Finds the triangles around the point in the mesh or height field; none for other shapes.
@@ -216,15 +223,25 @@ bool SurfaceCones::parts(std::size_t s, std::size_t i) const noexcept {
 bool SurfaceCones::is_below(std::uint32_t primitive, std::uint32_t limit,
                             const Vec& direction) const noexcept {
   if (primitive == limit) return true;
-  const double size = is_triangle(primitive)
-                          ? kFlatSine * facet(primitive).size
-                          : kFlush * radius_of(tables_, pairs_.shapes[primitive]);
-  return top(primitive, direction) <= top(limit, direction) + size;
+  const double gap = top(limit, direction) - top(primitive, direction);
+  if (gap >= 0.0) return true;
+  const double slack = is_triangle(primitive)
+                           ? kFlatSine * facet(primitive).size
+                           : kFlush * radius_of(tables_, pairs_.shapes[primitive]);
+  return gap >= -slack;
 }
 
 double SurfaceCones::top(std::uint32_t primitive, const Vec& direction) const noexcept {
-  if (is_triangle(primitive)) return facet(primitive).top(direction);
   const Pose& pose = pairs_.poses[primitive];
+  const double(&q)[4] = pose.orientation;
+  if (is_triangle(primitive) && q[1] == 0.0 && q[2] == 0.0 && q[3] == 0.0) {
+    const TriangleShape& triangle = tables_.triangles[pairs_.shapes[primitive].index()];
+    double top = -kInfinity;
+    for (const auto& vertex : triangle.vertex) {
+      top = std::max(top, direction.dot(Eigen::Map<const Vec>(vertex)));
+    }
+    return top + direction.dot(Eigen::Map<const Vec>(pose.position));
+  }
   const Mat rotation = rotation_of(scale_to_unit_max(pose.orientation));
   return direction.dot(Eigen::Map<const Vec>(pose.position)) +
          extent(tables_, pairs_.shapes[primitive], rotation.transpose() * direction).high;
