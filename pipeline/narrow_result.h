@@ -133,7 +133,7 @@ class WINNOW_API NarrowResult {
   /// Returns the points as columns.
   [[nodiscard]] const ContactColumns& contact_columns() const noexcept { return contacts_; }
 
-  /// Returns the columns for corrections in place (see mid::correct_internal_edges). Written
+  /// Returns the columns for corrections in place (see mid::correct_surface_contacts). Written
   /// values must agree with what the accessors guarantee.
   [[nodiscard]] NarrowColumns columns() noexcept;
 

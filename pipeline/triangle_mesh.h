@@ -19,10 +19,12 @@ struct MeshView;
 
 /// Options of building a mesh.
 struct MeshOptions {
-  /// Angle in radians above which a convex edge is active. An edge of two triangles is active if
-  /// the mesh is convex there and bends by more than this. Edges of one triangle, or of more than
-  /// two, are always active; so are all bent edges of triangles with inconsistent winding or
-  /// without area. Vertices at the same position count as one. In [0, pi].
+  /// Used for meshes in compounds only, and there for contacts with edges whose other triangle does
+  /// not touch: an edge that is not active has contacts along the normal of its face. Angle in
+  /// radians above which a convex edge is active. An edge of two triangles is active if the mesh is
+  /// convex there and bends by more than this. Edges of one triangle, or of more than two, are
+  /// always active; so are all bent edges of triangles with inconsistent winding or without area.
+  /// Vertices at the same position count as one. In [0, pi].
   double active_edge_angle = 0.02;
 };
 

@@ -73,8 +73,9 @@ FlowTimes FlowPhases::run() {
   times.narrow = narrow.ms();
 
   const Stopwatch smoothing;
-  mid::correct_internal_edges(flow_.shapes(), primitives_, options.contact_margin, execution_,
-                              parts_);
+  need(mid::correct_surface_contacts({flow_.composites(), flow_.shapes(), bodies, mesh_pairs_},
+                                     primitives_, options.contact_margin, execution_, parts_),
+       "contacts");
   times.mid += smoothing.ms();
   return times;
 }

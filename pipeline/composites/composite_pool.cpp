@@ -249,7 +249,7 @@ constexpr MidPhase kMidPhase = {
                  const Pose& pose) noexcept { return pool.bounds(id, pose); },
     .radius = [](const CompositePool& pool, ShapeId id) noexcept { return pool.radius(id); },
     .find_primitive_pairs = find_primitive_pairs,
-    .correct_internal_edges = correct_internal_edges,
+    .correct_surface_contacts = correct_surface_contacts,
     .reduce_contacts = reduce_contacts,
     .visit = visit,
     .cast_rays = cast_rays,

@@ -1,6 +1,6 @@
 // Contact reduction (mid::reduce_contacts): merges the manifolds of each pair of bodies into
 // regions of nearly parallel normals, and chooses the points of each region
-// (manifold/region_points.h). Called by the scene after `correct_internal_edges`, if
+// (manifold/region_points.h). Called by the scene after `correct_surface_contacts`, if
 // SceneOptions::contact_reduction is set. In this file, an answer is the narrow-phase result of one
 // pair of primitives.
 
@@ -37,7 +37,7 @@ constexpr double kGapSlack = kBesideSlack + kTiedDepth;
 constexpr double kOffCorners[3] = {0.3624, 0.932, 0.65};
 
 /// The mesh triangle of a contact along the normal of its face. Distinguishes contacts with the
-/// face from contacts with an internal edge, to which `correct_internal_edges` gave the same
+/// face from contacts with an internal edge, to which `correct_surface_contacts` gave the same
 /// normal. For all other contacts it is default-constructed: then `has` is always true.
 class FaceOfMesh {
  public:

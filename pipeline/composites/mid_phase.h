@@ -3,7 +3,7 @@
 // The mid phase: the functions by which scenes and queries use the composite shapes of a
 // CompositePool. They split pairs of bodies into pairs of convex primitives, which the narrow phase
 // computes, and traverse the primitives of a shape. The sources of this folder implement them:
-// find_primitive_pairs.cpp, internal_edges.cpp, manifold_reduction.cpp, composite_traversal.cpp,
+// find_primitive_pairs.cpp, surface_contacts.cpp, manifold_reduction.cpp, composite_traversal.cpp,
 // rays.cpp and solids.cpp.
 //
 // Ids and poses are valid, and the shapes exist, unless stated otherwise.
@@ -84,6 +84,14 @@ struct MovingBox {
 
 namespace mid {
 
+/// The pairs of bodies of a call of the mid phase.
+struct CollidedPairs {
+  const CompositePool& pool;
+  const ShapePool& shapes;
+  Bodies bodies;
+  std::span<const BodyPair> pairs;
+};
+
 /// Finds all pairs of primitives that are within the margin of their bodies, and some that are not.
 /// At least one body of each pair is composite; shapes that do not exist have no pairs. O(pairs of
 /// bodies + pairs of primitives); each traversal is O(log n + found).
@@ -96,31 +104,39 @@ Status find_primitive_pairs(const CompositePool& pool, const ShapePool& shapes,
                             const PairMargins& margins, const Execution& execution,
                             PrimitivePairs& out);
 
-/// Corrects contacts at internal edges of meshes (ghost contacts): sets their normals to the normal
-/// of the face. Call it after the narrow phase has computed `pairs` at level distance or manifold.
-/// `margins` are the margins of pairs of primitives that the narrow phase used.
+/// Corrects the contacts of surfaces of triangles, so that they are those of the surface, not of
+/// its single triangles: ghost contacts at internal edges are gone. Call it after the narrow phase
+/// has computed `pairs` at level distance or manifold. `margins` are the margins of pairs of
+/// primitives that the narrow phase used. Memory of `pairs` is used for scratch. `out_of_memory`
+/// changes nothing.
 ///
-/// A triangle touches with an edge or a corner if this feature is its farthest point along the
-/// contact normal. If a neighbouring triangle continues the surface at the feature, the feature is
-/// no edge of the surface as a whole (an internal edge). Then the contact gets the normal of the
-/// face:
-/// - Spheres, shapes that are apart, and shapes that overlap only by their rounding keep their
-///   distance and its error bound. The point of a sphere is moved to its deepest point along the
-///   new normal, so that the contact exerts no torque; other shapes keep their points.
-/// - Other shapes are clipped against the triangle along the new normal. The depth becomes the
-///   depth of the clipped points, but at least the previous depth. If the deepest point is not over
-///   the triangle, or if its depth would exceed kMaxDeeper times the largest depth of the contacts
-///   of the two bodies with the same kinds, the distance and the points are kept: the body is then
-///   beside the surface, not above it.
+/// A triangle touches with its face, an edge or a corner: its supporting feature along the contact
+/// normal. The normal is valid if it is in the normal cone of the surface at the touched point: no
+/// triangle around the point reaches farther along it (SurfaceCones). For two surfaces it must be
+/// in the cones of both. All valid contacts of one convex piece of a surface have the same depth,
+/// that of the piece. Other contacts are changed:
+/// - If a valid contact of the same pair of primitives' bodies parts them, too (both lie on their
+///   sides of its plane), they are dropped. If the face lies in that plane, and the shapes overlap,
+///   the other shape is clipped against it instead, so that a manifold spans all triangles of a
+///   flat floor; the contact is dropped if its deepest point is not over the triangle.
+/// - Else, if the shapes overlap, they get the normal and the depth of the convex patch of touched
+///   triangles around them (ConvexPatch), if that normal is valid.
+/// - Else they get the normal of the face, and overlapping shapes are clipped against the face. The
+///   distance is kept if the deepest point is not over the triangle, or if its depth would exceed
+///   kMaxDeeper times the largest depth of the contacts of the two bodies with the same kinds.
+///   Spheres, and shapes that overlap only by their rounding, keep their distance; the point of a
+///   sphere is moved to its deepest point along the new normal, so that the contact exerts no
+///   torque. Contacts of two surfaces are left as they are.
 ///
-/// No contact is lost, because the distance to the plane of a face is at most the distance to the
-/// face. Contacts of two mesh triangles are changed only if their normal points to the back of a
-/// one-sided triangle; otherwise it is ambiguous which normal to use. Active edges are computed
-/// only for the front of a surface. On its back, where concave edges look convex, concave edges
-/// also count as internal, so that a floor is flat for either winding.
-void correct_internal_edges(const ShapePool& shapes, const PrimitivePairs& pairs,
-                            const PairMargins& margins, const Execution& execution,
-                            NarrowResult& result) noexcept;
+/// Contacts whose normal points to the back of a one-sided triangle are not valid; if the shapes
+/// are apart, they are dropped. So is the contact of a triangle that is touched from behind, if the
+/// valid contact of a neighbour parts the bodies. Each pair of bodies keeps at least one of its
+/// contacts, except for those of one-sided triangles.
+///
+/// O(answers of a pair of bodies squared) at worst; linear if all normals are those of faces.
+Status correct_surface_contacts(const CollidedPairs& collided, PrimitivePairs& pairs,
+                                const PairMargins& margins, const Execution& execution,
+                                NarrowResult& result) noexcept;
 
 /// Merges the manifolds of each pair of bodies within its margin into contact regions. The deepest
 /// manifold (among equals, the first in `pairs`) and all manifolds whose normals are within 5
@@ -176,7 +192,7 @@ struct MidPhase {
   Aabb (*bounds)(const CompositePool& pool, ShapeId id, const Pose& pose) noexcept;
   double (*radius)(const CompositePool& pool, ShapeId id) noexcept;
   decltype(&mid::find_primitive_pairs) find_primitive_pairs;
-  decltype(&mid::correct_internal_edges) correct_internal_edges;
+  decltype(&mid::correct_surface_contacts) correct_surface_contacts;
   decltype(&mid::reduce_contacts) reduce_contacts;
   decltype(&mid::visit) visit;
   decltype(&mid::cast_rays) cast_rays;

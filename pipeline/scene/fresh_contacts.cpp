@@ -81,10 +81,11 @@ Status FreshContacts::collide_composite() {
   PairMargins margins = 0.0;
   const double more = call_.uses_cache ? options.cache_tolerance : 0.0;
   if (!filters_.find_margins(batch_.composite, more, margins)) return Status::out_of_memory;
-  Status status = mid_phase.find_primitive_pairs(
-      *options.composites, scene_.shapes,
-      {{scene_.shape.data(), scene_.shape.size()}, {scene_.pose.data(), scene_.pose.size()}},
-      {batch_.composite.data(), batch_.composite.size()}, margins, options.execution, found.pairs);
+  const Bodies bodies{{scene_.shape.data(), scene_.shape.size()},
+                      {scene_.pose.data(), scene_.pose.size()}};
+  Status status = mid_phase.find_primitive_pairs(*options.composites, scene_.shapes, bodies,
+                                                 {batch_.composite.data(), batch_.composite.size()},
+                                                 margins, options.execution, found.pairs);
   if (status != Status::ok) return status;
 
   if (!filters_.find_part_margins(margins)) return Status::out_of_memory;
@@ -95,8 +96,13 @@ Status FreshContacts::collide_composite() {
       {parts.pairs.data(), parts.pairs.size()}, narrow_options(margins), found.answers);
   if (status != Status::ok) return status;
   if (call_.level >= ContactLevel::distance) {
-    mid_phase.correct_internal_edges(scene_.shapes, found.pairs, margins, options.execution,
-                                     found.answers);
+    status =
+        mid_phase.correct_surface_contacts({*options.composites,
+                                            scene_.shapes,
+                                            bodies,
+                                            {batch_.composite.data(), batch_.composite.size()}},
+                                           found.pairs, margins, options.execution, found.answers);
+    if (status != Status::ok) return status;
   }
   scene_.statistics.parts += found.narrow.statistics();
   scene_.statistics.primitive_pairs += parts.pairs.size();

@@ -1,5 +1,5 @@
 // Contact manifolds of single pairs; see manifold.h. Called by
-// the solver and by composites/internal_edges.cpp and manifold_reduction.cpp.
+// the solver and by composites/surface_contacts.cpp and manifold_reduction.cpp.
 
 #include "pipeline/solver/manifold.h"
 

@@ -273,7 +273,10 @@ TEST(MidPhase, extreme_poses_and_scales_give_no_nan) {
     pairs.pairs.set_size(count);
     NarrowResult result;
     answer(world.shapes, pairs, {.contact_margin = margin}, result);
-    mid::correct_internal_edges(world.shapes, pairs, margin, Execution::serial(), result);
+    ASSERT_EQ(
+        mid::correct_surface_contacts({world.composites, world.shapes, world.bodies(), world.pairs},
+                                      pairs, margin, Execution::serial(), result),
+        Status::ok);
     for (const double distance : result.distance()) EXPECT_FALSE(std::isnan(distance));
   }
 }
