@@ -19,7 +19,7 @@ void ConvexPatch::grow(const SurfaceCones& cones, const AnswerGroup& group, std:
   count_ = 1;
   for (std::size_t before = 0; before != count_;) {
     before = count_;
-    for (std::size_t k = group.first; k < group.end && count_ < kMostFacets; ++k) {
+    for (std::size_t k = group.first; k < group.end && count_ < kMaxFacets; ++k) {
       const std::uint32_t next = cones.primitive(k, second);
       if (!cones.overlaps(k) || !cones.is_triangle(next) || contains(next)) continue;
       Facet facet = cones.facet(next);

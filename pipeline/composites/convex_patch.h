@@ -33,13 +33,13 @@ class ConvexPatch {
   [[nodiscard]] Pose pose() const noexcept;
 
  private:
-  static constexpr std::size_t kMostFacets = 64;
+  static constexpr std::size_t kMaxFacets = 64;
 
   [[nodiscard]] bool accepts(const Facet& facet) const noexcept;
 
   std::size_t count_ = 0;
-  std::uint32_t primitive_[kMostFacets];
-  Facet facet_[kMostFacets];
+  std::uint32_t primitive_[kMaxFacets];
+  Facet facet_[kMaxFacets];
 };
 
 /// The least translation that parts two convex shapes, each of which may be a patch.

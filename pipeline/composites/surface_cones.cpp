@@ -25,7 +25,7 @@ constexpr double kBeside = 1e-5;
 constexpr double kFlush = 1e-5;
 constexpr std::uint32_t kNone = ~0U;
 // Triangles around a point that are tested.
-constexpr std::uint64_t kMostAround = 64;
+constexpr std::uint64_t kMaxAround = 64;
 
 /// True if a corner is higher than a point along `outward`.
 [[nodiscard]] bool rises(const Vec (&corner)[3], const Vec& point, const Vec& outward,
@@ -195,15 +195,15 @@ SurfaceCones::Surroundings SurfaceCones::around_in_surface(
   const Vec out = slack * surface.to_local.rowwise().norm();
   const Vec low = at - out;
   const Vec high = at + out;
-  std::uint32_t slots[kMostAround];
-  SlotSink sink{slots, kMostAround, 0};
+  std::uint32_t slots[kMaxAround];
+  SlotSink sink{slots, kMaxAround, 0};
   if (surface.kind == TransformedShape::Kind::mesh) {
     mesh_overlap(*surface.mesh, low.data(), high.data(), sink);
   } else {
     height_overlap(grid_of(*surface.field), low.data(), high.data(), sink);
   }
   Surroundings found = Surroundings::none;
-  for (std::uint64_t k = 0; k < std::min<std::uint64_t>(sink.size, kMostAround); ++k) {
+  for (std::uint64_t k = 0; k < std::min<std::uint64_t>(sink.size, kMaxAround); ++k) {
     Corners corners;
     if (!surface.corners(slots[k], corners)) continue;
     const Facet neighbour(corners.triangle(), pose_of(corners.first, {1.0, 0.0, 0.0, 0.0}));
