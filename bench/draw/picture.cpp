@@ -13,7 +13,6 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
-#include <limits>
 #include <string_view>
 #include <type_traits>
 
@@ -21,8 +20,6 @@ namespace winnow::bench {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "the page reads little-endian columns");
-
-constexpr std::uint32_t kNotDrawn = std::numeric_limits<std::uint32_t>::max();
 
 /// Encodes the memory of the values as base64 (RFC 4648, with padding).
 template <typename T>
@@ -93,65 +90,57 @@ struct Sketch final : DebugDraw {
   }
 };
 
-/// The objects that are drawn.
-struct Drawn {
-  std::vector<ObjectId> ids;         ///< ascending
-  std::vector<std::uint32_t> place;  ///< index into `ids` of each object, or kNotDrawn
-
-  /// Selects the objects that are hit, and `most` of all at equal intervals.
-  Drawn(const std::vector<bool>& hit, std::size_t most) : place(hit.size(), kNotDrawn) {
-    const std::size_t all = hit.size();
-    for (std::size_t i = 0; i < all; ++i) {
-      const bool chosen = most >= all || (i + 1) * most / all != i * most / all;
-      if (!chosen && !hit[i]) continue;
-      place[i] = static_cast<std::uint32_t>(ids.size());
-      ids.push_back(static_cast<ObjectId>(i));
-    }
-  }
-
-  [[nodiscard]] std::string places_of(std::span<const ObjectId> objects) const {
-    std::vector<std::uint32_t> places;
-    for (const ObjectId id : objects) places.push_back(place[id]);
-    return column(places);
-  }
+/// What a query returns, and the numbers of its parts.
+struct Answers {
+  Json data = Json::array();
+  std::size_t first = 0;   ///< rays that hit something; objects inside of boxes
+  std::size_t second = 0;  ///< hits of rays; objects that cross the border of a box
 };
 
-struct RayAnswer {
-  Ray ray;
-  Hit closest{};
-  std::vector<ObjectId> hits{};  ///< sorted by t
-  std::vector<float> ts{};
-};
-
-struct BoxAnswer {
-  Aabb box;
-  std::vector<ObjectId> inside{};
-  std::vector<ObjectId> crossing{};
-};
-
-std::vector<RayAnswer> query_rays(const Partition& partition, std::span<const Ray> rays) {
-  std::vector<RayAnswer> answers;
+/// Queries rays and marks the objects that they hit.
+Answers query_rays(const Partition& partition, std::span<const Ray> rays, std::vector<bool>& hit) {
+  Answers answers;
   HitBuffer hits;
   for (const Ray& ray : rays) {
-    RayAnswer& answer = answers.emplace_back(RayAnswer{ray});
-    need(partition.closest(Cast(ray), answer.closest), "closest");
+    Hit closest;
+    need(partition.closest(Cast(ray), closest), "closest");
     need(partition.all(Cast(ray), hits), "all");
-    for (const Hit& hit : hits) {
-      answer.hits.push_back(hit.key.id);
-      answer.ts.push_back(hit.t);
+    std::vector<ObjectId> ids;
+    std::vector<float> ts;
+    for (const Hit& one : hits) {
+      hit[one.key.id] = true;
+      ids.push_back(one.key.id);
+      ts.push_back(one.t);
     }
+    Json answer{{"ray", column(std::vector{ray})}, {"hits", column(ids)}, {"t", column(ts)}};
+    if (closest) {
+      answer["closest"] = closest.key.id;
+      answer["closest_t"] = closest.t;
+      ++answers.first;
+    }
+    answers.second += ids.size();
+    answers.data.push_back(std::move(answer));
   }
   return answers;
 }
 
-std::vector<BoxAnswer> query_boxes(const Partition& partition, std::span<const Aabb> boxes) {
-  std::vector<BoxAnswer> answers;
+/// Queries boxes and marks the objects that overlap them.
+Answers query_boxes(const Partition& partition, std::span<const Aabb> boxes,
+                    std::vector<bool>& hit) {
+  Answers answers;
   OverlapBuffer found;
   for (const Aabb& box : boxes) {
     need(partition.overlap(Region(box), found, {}, Order::canonical), "overlap");
-    answers.push_back({box,
-                       {found.inside().begin(), found.inside().end()},
-                       {found.crossing().begin(), found.crossing().end()}});
+    const std::vector<ObjectId> inside(found.inside().begin(), found.inside().end());
+    const std::vector<ObjectId> crossing(found.crossing().begin(), found.crossing().end());
+    for (const auto* ids : {&inside, &crossing}) {
+      for (const ObjectId id : *ids) hit[id] = true;
+    }
+    answers.first += inside.size();
+    answers.second += crossing.size();
+    answers.data.push_back({{"box", column(std::vector{box})},
+                            {"inside", column(inside)},
+                            {"crossing", column(crossing)}});
   }
   return answers;
 }
@@ -213,38 +202,29 @@ Json picture_of(const std::string& scene, const Stage& stage, const PictureOptio
   Sketch sketch;
   need(partition.debug_draw(sketch, {.labels = options.labels, .max_depth = options.max_depth}),
        "debug_draw");
-  const std::vector<RayAnswer> ray_answers = query_rays(partition, options.rays);
-  const std::vector<BoxAnswer> box_answers = query_boxes(partition, options.boxes);
-  std::vector<bool> hit(sketch.objects.size());
-  const auto mark = [&](const std::vector<ObjectId>& ids) {
-    for (const ObjectId id : ids) hit[id] = true;
-    return ids.size();
-  };
-  std::size_t ray_hits = 0;
-  std::size_t rays_that_hit = 0;
-  for (const RayAnswer& answer : ray_answers) {
-    ray_hits += mark(answer.hits);
-    rays_that_hit += static_cast<bool>(answer.closest);
+  const std::size_t all = sketch.objects.size();
+  std::vector<bool> drawn(all);
+  const Answers rays = query_rays(partition, options.rays, drawn);
+  const Answers boxes = query_boxes(partition, options.boxes, drawn);
+  // Selects as many objects as are allowed, at equal intervals.
+  const std::size_t most = std::min(options.most_objects, all);
+  for (std::size_t i = 0; i < all; ++i) {
+    if ((i + 1) * most / all != i * most / all) drawn[i] = true;
   }
-  std::size_t inside = 0;
-  std::size_t crossing = 0;
-  for (const BoxAnswer& answer : box_answers) {
-    inside += mark(answer.inside);
-    crossing += mark(answer.crossing);
-  }
-  const Drawn drawn(hit, options.most_objects);
-
-  std::vector<Aabb> boxes;
+  std::vector<Aabb> bounds;
+  std::vector<ObjectId> ids;
   std::vector<ClientData> client_data;
-  for (const ObjectId id : drawn.ids) {
-    boxes.push_back(sketch.objects[id]);
+  for (ObjectId id = 0; id < all; ++id) {
+    if (!drawn[id]) continue;
+    bounds.push_back(sketch.objects[id]);
+    ids.push_back(id);
     client_data.push_back(partition.client_data_of(id));
   }
-  std::vector<std::uint32_t> pairs;
+  std::vector<ObjectId> pairs;
   for (const Pair& pair : stage.pairs()) {
-    const std::uint32_t first = drawn.place[pair.first];
-    const std::uint32_t second = drawn.place[pair.second];
-    if (first != kNotDrawn && second != kNotDrawn) pairs.insert(pairs.end(), {first, second});
+    if (drawn[pair.first] && drawn[pair.second]) {
+      pairs.insert(pairs.end(), {pair.first, pair.second});
+    }
   }
   const std::vector<Vec3f> contact_ends = ends_of(contacts, sketch.objects);
   Json layers = Json::array();
@@ -259,30 +239,13 @@ Json picture_of(const std::string& scene, const Stage& stage, const PictureOptio
                       {"boxes", column(layer.boxes)},
                       {"lines", column(layer.line_ends)}});
   }
-  Json ray_data = Json::array();
-  for (const RayAnswer& answer : ray_answers) {
-    Json ray{{"ray", column(std::vector{answer.ray})},
-             {"hits", drawn.places_of(answer.hits)},
-             {"t", column(answer.ts)}};
-    if (answer.closest) {
-      ray["closest"] = drawn.place[answer.closest.key.id];
-      ray["closest_t"] = answer.closest.t;
-    }
-    ray_data.push_back(std::move(ray));
-  }
-  Json box_data = Json::array();
-  for (const BoxAnswer& answer : box_answers) {
-    box_data.push_back({{"box", column(std::vector{answer.box})},
-                        {"inside", drawn.places_of(answer.inside)},
-                        {"crossing", drawn.places_of(answer.crossing)}});
-  }
   const Statistics statistics = partition.statistics();
   return {{"counts",
            {{"scene", scene},
             {"frame", stage.frame()},
             {"partition", partition.name()},
-            {"objects", sketch.objects.size()},
-            {"objects_drawn", drawn.ids.size()},
+            {"objects", all},
+            {"objects_drawn", ids.size()},
             {"regular", statistics.regular},
             {"irregular", statistics.irregular},
             {"cells", statistics.cells},
@@ -293,19 +256,19 @@ Json picture_of(const std::string& scene, const Stage& stage, const PictureOptio
             {"reported", stage.reported()},
             {"pairs_drawn", pairs.size() / 2},
             {"contacts", contact_ends.size() / 2},
-            {"rays", ray_answers.size()},
-            {"rays_that_hit", rays_that_hit},
-            {"ray_hits", ray_hits},
-            {"boxes", box_answers.size()},
-            {"inside", inside},
-            {"crossing", crossing}}},
+            {"rays", rays.data.size()},
+            {"rays_that_hit", rays.first},
+            {"ray_hits", rays.second},
+            {"boxes", boxes.data.size()},
+            {"inside", boxes.first},
+            {"crossing", boxes.second}}},
           {"objects",
-           {{"boxes", column(boxes)}, {"rows", column(drawn.ids)}, {"data", column(client_data)}}},
+           {{"boxes", column(bounds)}, {"rows", column(ids)}, {"data", column(client_data)}}},
           {"pairs", column(pairs)},
           {"contacts", column(contact_ends)},
           {"structure", {{"layers", layers}, {"texts", sketch.texts}}},
-          {"rays", ray_data},
-          {"boxes", box_data}};
+          {"rays", rays.data},
+          {"boxes", boxes.data}};
 }
 
 }  // namespace winnow::bench

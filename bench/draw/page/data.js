@@ -72,10 +72,20 @@ function placed(value, axis) {
 }
 const placedColumn = (values) => Float32Array.from(values, (value, i) => placed(value, i % 3));
 
-// The picture of the frame that is shown.
+// The picture of the frame that is shown. The tool names objects by their rows, and the page by
+// their places among the drawn ones.
 let now;
 function show(picture) {
   now = decoded(picture);
+  const placeOf = new Map(Array.from(now.objects.rows, (row, place) => [row, place]));
+  const places = (rows) => rows.map((row) => placeOf.get(row));
+  for (const ray of now.rays) {
+    Object.assign(ray, {hits: places(ray.hits), closest: placeOf.get(ray.closest)});
+  }
+  for (const box of now.boxes) {
+    Object.assign(box, {inside: places(box.inside), crossing: places(box.crossing)});
+  }
+  now.pairs = places(now.pairs);
   now.partners = partnersOf(now.pairs);
   now.placed = placedColumn(now.objects.boxes);
 }
