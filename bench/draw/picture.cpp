@@ -90,16 +90,22 @@ struct Sketch final : DebugDraw {
   }
 };
 
-/// What a query returns, and the numbers of its parts.
-struct Answers {
+struct RayAnswers {
   Json data = Json::array();
-  std::size_t first = 0;   ///< rays that hit something; objects inside of boxes
-  std::size_t second = 0;  ///< hits of rays; objects that cross the border of a box
+  std::size_t rays_that_hit = 0;
+  std::size_t hits = 0;
+};
+
+struct BoxAnswers {
+  Json data = Json::array();
+  std::size_t inside = 0;
+  std::size_t crossing = 0;
 };
 
 /// Queries rays and marks the objects that they hit.
-Answers query_rays(const Partition& partition, std::span<const Ray> rays, std::vector<bool>& hit) {
-  Answers answers;
+RayAnswers query_rays(const Partition& partition, std::span<const Ray> rays,
+                      std::vector<bool>& hit) {
+  RayAnswers answers;
   HitBuffer hits;
   for (const Ray& ray : rays) {
     Hit closest;
@@ -116,18 +122,18 @@ Answers query_rays(const Partition& partition, std::span<const Ray> rays, std::v
     if (closest) {
       answer["closest"] = closest.key.id;
       answer["closest_t"] = closest.t;
-      ++answers.first;
+      ++answers.rays_that_hit;
     }
-    answers.second += ids.size();
+    answers.hits += ids.size();
     answers.data.push_back(std::move(answer));
   }
   return answers;
 }
 
 /// Queries boxes and marks the objects that overlap them.
-Answers query_boxes(const Partition& partition, std::span<const Aabb> boxes,
-                    std::vector<bool>& hit) {
-  Answers answers;
+BoxAnswers query_boxes(const Partition& partition, std::span<const Aabb> boxes,
+                       std::vector<bool>& hit) {
+  BoxAnswers answers;
   OverlapBuffer found;
   for (const Aabb& box : boxes) {
     need(partition.overlap(Region(box), found, {}, Order::canonical), "overlap");
@@ -136,8 +142,8 @@ Answers query_boxes(const Partition& partition, std::span<const Aabb> boxes,
     for (const auto* ids : {&inside, &crossing}) {
       for (const ObjectId id : *ids) hit[id] = true;
     }
-    answers.first += inside.size();
-    answers.second += crossing.size();
+    answers.inside += inside.size();
+    answers.crossing += crossing.size();
     answers.data.push_back({{"box", column(std::vector{box})},
                             {"inside", column(inside)},
                             {"crossing", column(crossing)}});
@@ -204,8 +210,8 @@ Json picture_of(const std::string& scene, const Stage& stage, const PictureOptio
        "debug_draw");
   const std::size_t all = sketch.objects.size();
   std::vector<bool> drawn(all);
-  const Answers rays = query_rays(partition, options.rays, drawn);
-  const Answers boxes = query_boxes(partition, options.boxes, drawn);
+  const RayAnswers rays = query_rays(partition, options.rays, drawn);
+  const BoxAnswers boxes = query_boxes(partition, options.boxes, drawn);
   // Selects as many objects as are allowed, at equal intervals.
   const std::size_t most = std::min(options.most_objects, all);
   for (std::size_t i = 0; i < all; ++i) {
@@ -257,11 +263,11 @@ Json picture_of(const std::string& scene, const Stage& stage, const PictureOptio
             {"pairs_drawn", pairs.size() / 2},
             {"contacts", contact_ends.size() / 2},
             {"rays", rays.data.size()},
-            {"rays_that_hit", rays.first},
-            {"ray_hits", rays.second},
+            {"rays_that_hit", rays.rays_that_hit},
+            {"ray_hits", rays.hits},
             {"boxes", boxes.data.size()},
-            {"inside", boxes.first},
-            {"crossing", boxes.second}}},
+            {"inside", boxes.inside},
+            {"crossing", boxes.crossing}}},
           {"objects",
            {{"boxes", column(bounds)}, {"rows", column(ids)}, {"data", column(client_data)}}},
           {"pairs", column(pairs)},

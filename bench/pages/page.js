@@ -197,12 +197,13 @@ function add_origin() {
   document.getElementById("notes").append(...notes.map((text) => make("span", {className: "note", textContent: text})));
 }
 
-const root = document.documentElement;
-document.getElementById("theme").onclick = () => {
-  root.dataset.theme = is_dark() ? "light" : "dark";
+const dress = (dark) => {
+  document.documentElement.dataset.theme = dark ? "dark" : "light";
   draw_all();
 };
-matchMedia("(prefers-color-scheme: dark)").onchange = draw_all;
+document.getElementById("theme").onclick = () => dress(!is_dark());
+const night = matchMedia("(prefers-color-scheme: dark)");
+night.onchange = () => dress(night.matches);
 
 add_origin();
 add_card();
@@ -212,4 +213,4 @@ for (const section of distinct(views, "section")) {
 }
 add_every_row();
 if (location.hash === "#all" || document.getElementById("card").hidden) for (const details of document.querySelectorAll("details")) details.open = true;
-draw_all();
+dress(night.matches);
