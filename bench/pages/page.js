@@ -90,7 +90,7 @@ function add_section(title, of_section) {
     controls.replaceChildren(views_menu, ...menus);
     text.textContent = at.text;
     box.hidden = field === undefined;
-    if (field !== undefined) chart_into(box, at.draw(list, field, ""), distinct(list, at.keys[0]).length);
+    if (field !== undefined) chart_into(box, at.draw(list, field), distinct(list, at.keys[0]).length);
     rows_box.replaceChildren(table(list));
     command.textContent = list.find((row) => row.command)?.command || "";
   }
@@ -178,7 +178,7 @@ function add_card() {
     if (robust) lines.push(["exact shapes", `distances of ${robust.kinds} kinds of pairs, tier robust: worst error ${short(robust.worst)} of the size, ${robust.wrong} of ${short(robust.pairs)} verdicts wrong`]);
     if (loud) lines.push(["noise", `a median is typically ${percent(loud.share)} above the least time of its samples (${short(loud.count)} measurements); smaller differences are noise`]);
     facts.replaceChildren(...lines.flatMap(([head, line]) => [make("dt", {textContent: head}), make("dd", {textContent: line})]));
-    chart_into(box, bars(list, "partition", ["real_time"], "", "ms a frame"), list.length);
+    chart_into(box, bars(list, "partition", ["real_time"], "ms a frame"), list.length);
   }
   redraws.push(draw);
   card.append(make("p", {className: "text", textContent: "Bars are medians; blue is winnow, orange other libraries, grey the yardstick, a sweep without state between frames. Whiskers go from the least to the greatest sample."}));

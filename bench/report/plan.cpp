@@ -136,7 +136,7 @@ void plan_throughput(Plan& plan) {
                               .seed = options.seed,
                               .threads = {options.threads.front()},
                               .yardstick = options.yardstick,
-                              .frames = plan.quick_or<std::size_t>(9, 61)};
+                              .frames = plan.quick_or<std::size_t>(kSettlingFrames + 3, 61)};
     plan.add(scene.name + ", worst frames", [=](Results& to) { add_every_scene(to, scene, race); });
   }
   const auto cold = plan.few_scenes(kColdScenes);
