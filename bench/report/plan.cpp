@@ -242,8 +242,7 @@ void plan_ranks(Plan& plan) {
         .objects = plan.quick_or<std::size_t>(500, 20'000),
         .frames = plan.quick_or<std::size_t>(3, 6),
         .ranks = plan.quick_or<std::vector<std::uint32_t>>({1, 2, 8}, {1, 2, 3, 8, 64, 512}),
-        .seed = plan.options.seed,
-        .is_uniform = scene.name == "uniform" && !scene.is_recording()};
+        .seed = plan.options.seed};
     plan.add(scene.name, [request](Results& to) { add_cluster_runs(to, request); });
   }
 }

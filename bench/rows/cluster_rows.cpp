@@ -73,46 +73,48 @@ bool are_same(const ClusterRun& a, const ClusterRun& b) {
   });
 }
 
-void add_run(Results& results, const ClusterRowOptions& options, std::uint32_t ranks,
-             const ClusterRun& run, bool same, const BoxSpread& spread) {
-  const ClusterStatistics& last = run.frames.back().statistics;
+Json row_of(const ClusterRowOptions& options, std::uint32_t ranks, const ClusterRun& run,
+            bool same) {
+  const ClusterFrame& last = run.frames.back();
   const std::size_t count = options.scene.objects(options.objects);
   const auto objects = static_cast<double>(count);
-  Json row{{"scene", options.scene.name},
-           {"objects", count},
-           {"ranks", ranks},
-           {"same", same ? "yes" : "NO"},
-           {"pairs", run.frames.back().pairs.pairs},
-           {"ghosts", static_cast<double>(last.ghosts) / objects},
-           {"sent_bytes", last.bytes},
-           {"messages", last.messages},
-           {"imbalance", last.imbalance},
-           {"bytes_per_object", static_cast<double>(run.bytes) / objects},
-           {"fingerprint", to_hex(run.frames.back().pairs.fingerprint)},
-           {"command", cluster_command(options, ranks)}};
-  if (options.is_uniform && ranks > 1) {
-    row["formula"] = ghosts_by_formula(objects, ranks, spread);
-  }
-  results.add("cluster_runs", std::move(row));
+  return {{"scene", options.scene.name},
+          {"objects", count},
+          {"ranks", ranks},
+          {"same", same ? "yes" : "NO"},
+          {"pairs", last.pairs.pairs},
+          {"ghosts", static_cast<double>(last.statistics.ghosts) / objects},
+          {"sent_bytes", last.statistics.bytes},
+          {"messages", last.statistics.messages},
+          {"imbalance", last.statistics.imbalance},
+          {"bytes_per_object", static_cast<double>(run.bytes) / objects},
+          {"fingerprint", to_hex(last.pairs.fingerprint)},
+          {"command", cluster_command(options, ranks)}};
 }
 
 }  // namespace
 
 void add_cluster_runs(Results& results, const ClusterRowOptions& options) {
+  const bool is_uniform = options.scene.name == "uniform" && !options.scene.is_recording();
+  BoxSpread spread{};
   ClusterRun one;
   bool all_same = true;
   for (const std::uint32_t ranks : options.ranks) {
     const auto source = options.scene.source(options.objects, options.seed);
-    const BoxSpread spread = spread_of_boxes(*source);
+    spread = spread_of_boxes(*source);
     LoopbackTransport transport(ranks);
     const ClusterRun run =
         run_cluster(*source, transport, {options.frames, std::nullopt}, Execution::serial());
     if (one.frames.empty()) one = run;
     const bool same = are_same(one, run);
     all_same = all_same && same;
-    add_run(results, options, ranks, run, same, spread);
-    if (options.is_uniform && ranks == options.ranks.front()) add_model(results, options, spread);
+    Json row = row_of(options, ranks, run, same);
+    if (is_uniform && ranks > 1) {
+      row["formula"] = ghosts_by_formula(value_of(row, "objects"), ranks, spread);
+    }
+    results.add("cluster_runs", std::move(row));
   }
+  if (is_uniform) add_model(results, options, spread);
   if (!all_same) throw std::runtime_error(options.scene.name + ": ranks find other pairs than one");
 }
 

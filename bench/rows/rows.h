@@ -149,11 +149,9 @@ struct ClusterRowOptions {
   std::size_t frames = 6;
   std::vector<std::uint32_t> ranks;  ///< ascending; the first is 1, the reference
   std::uint64_t seed = 1;
-  /// True if the objects are spread evenly. The formula for ghosts is then added to the rows, and
-  /// `cluster_model` gets its predictions for up to 1e9 objects.
-  bool is_uniform = false;
 };
-/// All numbers of ranks must find the pairs of one rank.
+/// All numbers of ranks must find the pairs of one rank. For the scene `uniform`, whose objects are
+/// spread evenly, the formula for ghosts is added, and its predictions for up to 1e9 objects.
 void add_cluster_runs(Results& results, const ClusterRowOptions& options);
 
 }  // namespace winnow::bench
