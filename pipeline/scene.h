@@ -68,7 +68,7 @@ struct SceneOptions {
   /// At level manifold, for pairs with a mesh, a height field or a compound: merges the manifolds
   /// of all pairs of parts that touch into one manifold per contact region, with at most
   /// kManifoldPoints points each (see mid::reduce_contacts). Jolt does this by default; Bullet
-  /// keeps one manifold per pair of bodies. bench/rows/standing_rows.cpp measures the cost. False:
+  /// keeps one manifold per pair of bodies. `winnow simulate --standing` measures the cost. False:
   /// reports one manifold per pair of parts.
   bool contact_reduction = false;
   /// Suppresses ghost contacts at the seams between fixed bodies with flush surfaces, so that

@@ -2,7 +2,7 @@
 #include "bench/commands/rows_command.h"
 #include "bench/common/table.h"
 #include "bench/contenders/partitions.h"
-#include "bench/rows/advice_rows.h"
+#include "bench/rows/rows.h"
 
 #include <algorithm>
 #include <cmath>

@@ -6,12 +6,8 @@
 #include "bench/common/table.h"
 #include "bench/contenders/partitions.h"
 #include "bench/measure/resident_set.h"
-#include "bench/rows/cold_rows.h"
-#include "bench/rows/frame_rows.h"
-#include "bench/rows/host_rows.h"
 #include "bench/rows/machine.h"
-#include "bench/rows/memory_rows.h"
-#include "bench/rows/scene_rows.h"
+#include "bench/rows/rows.h"
 #include "bench/scenes/scene.h"
 
 #include <functional>

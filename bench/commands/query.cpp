@@ -2,7 +2,7 @@
 #include "bench/commands/rows_command.h"
 #include "bench/questions/query_format.h"
 #include "bench/questions/questions.h"
-#include "bench/rows/hard_case_rows.h"
+#include "bench/rows/rows.h"
 
 #include <filesystem>
 #include <iostream>

@@ -3,7 +3,6 @@
 #include "bench/commands/options.h"
 #include "bench/common/json.h"
 #include "bench/rows/machine.h"
-#include "bench/rows/print.h"
 #include "bench/scenes/scene.h"
 
 #include <algorithm>
@@ -117,7 +116,7 @@ void ReportCommand::note_settings(const ReportOptions& options, Results& results
     results.context()["missing"].push_back("Other libraries were left out (--no-peers).");
     return;
   }
-  for (const MissingPeer& peer : missing_peers()) {
+  for (const Peer& peer : missing_peers()) {
     results.context()["missing"].push_back("Not measured against " + peer.name +
                                            ", which is not installed (Debian: " + peer.package +
                                            ", or all of them: bench/run --with-peers report).");

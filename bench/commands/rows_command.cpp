@@ -3,7 +3,6 @@
 #include "bench/commands/options.h"
 #include "bench/common/json.h"
 #include "bench/rows/machine.h"
-#include "bench/rows/print.h"
 
 #include <exception>
 #include <iostream>

@@ -10,10 +10,8 @@
 #include "bench/measure/fingerprint.h"
 #include "bench/pages/page.h"
 #include "bench/recordings/recording.h"
-#include "bench/rows/barrier_rows.h"
-#include "bench/rows/flow_rows.h"
 #include "bench/rows/machine.h"
-#include "bench/rows/standing_rows.h"
+#include "bench/rows/rows.h"
 #include "bench/simulation/mesh_files.h"
 
 #include <algorithm>
@@ -181,11 +179,7 @@ void Simulate::measure_standing() {
   Arenas(options_.threads).run(options_.threads, [&] {
     for (const std::string& name : names) {
       for (const bool reduced : {false, true}) {
-        step(name, [&] {
-          if (!add_standing(results, {standing_named(name), reduced, seconds_, options_.threads})) {
-            fail();
-          }
-        });
+        step(name, [&] { add_standing(results, {name, reduced, seconds_, options_.threads}); });
       }
     }
   });
@@ -201,9 +195,7 @@ void Simulate::measure_barriers() {
       BarrierRowOptions options{.scene = name, .threads = options_.threads};
       if (steps_->count() != 0) options.steps = options_.steps;
       if (objects_->count() != 0) options.size = options_.objects;
-      step(name, [&] {
-        if (!add_barrier(results, options)) fail();
-      });
+      step(name, [&] { add_barrier(results, options); });
     }
   });
   print("barriers");

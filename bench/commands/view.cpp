@@ -70,7 +70,7 @@ Json View::draw_frames(const NamedScene& scene, FrameSource& source) const {
   Json pictures = Json::array();
   do {
     contacts.resize(std::max(contacts.size(), stage.frame() + 1));
-    pictures.push_back(Picture(source.name(), stage, options, contacts[stage.frame()]).data());
+    pictures.push_back(picture_of(source.name(), stage, options, contacts[stage.frame()]));
   } while (pictures.size() < most && stage.advance());
   return pictures;
 }

@@ -1,58 +1,164 @@
-// One frame as data for the page: selects the objects, pairs and contacts to draw, and encodes them
-// as JSON with base64 columns. commands/draw.cpp calls it; draw/page/data.js reads the result.
+// One frame as data for the page: what the partition draws, pairs, contacts and the answers to
+// queries, as JSON with base64 columns. commands/view.cpp calls it; page/data.js reads the result.
 
 #include "bench/draw/picture.h"
 
-#include "bench/draw/base64.h"
+#include <winnow/partitions/debug_colours.h>
+#include "bench/common/errors.h"
+#include "bench/common/need.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
-#include <limits>
+#include <cstdint>
+#include <cstdlib>
+#include <string_view>
+#include <type_traits>
 
 namespace winnow::bench {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "the page reads little-endian columns");
 
-constexpr std::uint32_t kNotDrawn = std::numeric_limits<std::uint32_t>::max();
+/// Encodes the memory of the values as base64 (RFC 4648, with padding).
+template <typename T>
+std::string column(const std::vector<T>& values) {
+  static_assert(std::is_standard_layout_v<T>);
+  constexpr const char* kDigits =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  const auto bytes = std::as_bytes(std::span(values));
+  std::string text;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    const std::size_t taken = std::min<std::size_t>(3, bytes.size() - i);
+    std::uint32_t group = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      group = group << 8U | (k < taken ? std::to_integer<std::uint32_t>(bytes[i + k]) : 0U);
+    }
+    for (std::size_t k = 0; k < 4; ++k) {
+      text += k <= taken ? kDigits[group >> (18U - 6U * k) & 63U] : '=';
+    }
+  }
+  return text;
+}
 
 Json colour_data(Colour colour) {
   return Json::array({colour.r, colour.g, colour.b});
 }
 
-template <typename T>
-std::string column(const std::vector<T>& values) {
-  return base64_of(std::span<const T>(values));
+/// Boxes and lines of one colour, which the page shows or hides together.
+struct Layer {
+  std::string name;
+  Colour colour;
+  std::vector<Aabb> boxes{};
+  std::vector<Vec3f> line_ends{};  ///< two per line
+};
+
+/// Stores what a partition draws, sorted into layers by colour.
+struct Sketch final : DebugDraw {
+  std::vector<Aabb> objects;  ///< in ascending order of their ids
+  std::vector<Layer> layers;  ///< the last one takes unknown colours
+  Json texts = Json::array();
+
+  Sketch() {
+    layers = {
+        {"axis", kAxisColour}, {"cells", kCellColour}, {"contents of cells", kContentsColour}};
+    for (std::size_t depth = 0; depth < kNodeColours.size(); ++depth) {
+      layers.push_back({"nodes, depth " + std::to_string(depth), node_colour(depth)});
+    }
+    layers.push_back({"other", Colour{}});
+  }
+
+  void box(const Aabb& box, Colour colour) override {
+    (colour == kObjectColour ? objects : layer_of(colour).boxes).push_back(box);
+  }
+  void line(const Vec3f& from, const Vec3f& to, Colour colour) override {
+    std::vector<Vec3f>& ends = layer_of(colour).line_ends;
+    ends.insert(ends.end(), {from, to});
+  }
+  void sphere(const Sphere& sphere, Colour colour) override { box(sphere.bounds(), colour); }
+  void text(const Vec3f& at, std::string_view text, Colour colour) override {
+    texts.push_back(
+        {{"at", column(std::vector{at})}, {"text", text}, {"colour", colour_data(colour)}});
+  }
+
+ private:
+  Layer& layer_of(Colour colour) {
+    return *std::find_if(layers.begin(), layers.end() - 1,
+                         [&](const Layer& layer) { return layer.colour == colour; });
+  }
+};
+
+struct RayAnswers {
+  Json data = Json::array();
+  std::size_t rays_that_hit = 0;
+  std::size_t hits = 0;
+};
+
+struct BoxAnswers {
+  Json data = Json::array();
+  std::size_t inside = 0;
+  std::size_t crossing = 0;
+};
+
+/// Queries rays and marks the objects that they hit.
+RayAnswers query_rays(const Partition& partition, std::span<const Ray> rays,
+                      std::vector<bool>& hit) {
+  RayAnswers answers;
+  HitBuffer hits;
+  for (const Ray& ray : rays) {
+    Hit closest;
+    need(partition.closest(Cast(ray), closest), "closest");
+    need(partition.all(Cast(ray), hits), "all");
+    std::vector<ObjectId> ids;
+    std::vector<float> ts;
+    for (const Hit& one : hits) {
+      hit[one.key.id] = true;
+      ids.push_back(one.key.id);
+      ts.push_back(one.t);
+    }
+    Json answer{{"ray", column(std::vector{ray})}, {"hits", column(ids)}, {"t", column(ts)}};
+    if (closest) {
+      answer["closest"] = closest.key.id;
+      answer["closest_t"] = closest.t;
+      ++answers.rays_that_hit;
+    }
+    answers.hits += ids.size();
+    answers.data.push_back(std::move(answer));
+  }
+  return answers;
 }
 
-}  // namespace
-
-Picture::Picture(std::string scene, const Stage& stage, const PictureOptions& options,
-                 std::span<const RecordedContact> contacts)
-    : scene_(std::move(scene)),
-      frame_(stage.frame()),
-      partition_(stage.partition().name()),
-      all_pairs_(stage.pairs().size()),
-      reported_(stage.reported()),
-      rays_(query_rays(stage.partition(), options.rays)),
-      boxes_(query_boxes(stage.partition(), options.boxes)) {
-  const Partition& partition = stage.partition();
-  const DebugDrawOptions drawing{.labels = options.labels, .max_depth = options.max_depth};
-  require_ok(partition.debug_draw(sketch_, drawing), "debug_draw");
-  statistics_ = partition.statistics();
-  choose_objects(options.most_objects);
-  for (const ObjectId id : drawn_) data_.push_back(partition.client_data_of(id));
-  choose_pairs(stage.pairs());
-  draw_contacts(contacts);
+/// Queries boxes and marks the objects that overlap them.
+BoxAnswers query_boxes(const Partition& partition, std::span<const Aabb> boxes,
+                       std::vector<bool>& hit) {
+  BoxAnswers answers;
+  OverlapBuffer found;
+  for (const Aabb& box : boxes) {
+    need(partition.overlap(Region(box), found, {}, Order::canonical), "overlap");
+    const std::vector<ObjectId> inside(found.inside().begin(), found.inside().end());
+    const std::vector<ObjectId> crossing(found.crossing().begin(), found.crossing().end());
+    for (const auto* ids : {&inside, &crossing}) {
+      for (const ObjectId id : *ids) hit[id] = true;
+    }
+    answers.inside += inside.size();
+    answers.crossing += crossing.size();
+    answers.data.push_back({{"box", column(std::vector{box})},
+                            {"inside", column(inside)},
+                            {"crossing", column(crossing)}});
+  }
+  return answers;
 }
 
-// Draws each contact as a line from its point along the normal, half the median thickness of the
-// objects long.
-void Picture::draw_contacts(std::span<const RecordedContact> contacts) {
-  if (contacts.empty()) return;
+/// Returns the two ends of a line for each contact: from its point along the normal, half the
+/// median thickness of the objects long.
+std::vector<Vec3f> ends_of(std::span<const RecordedContact> contacts,
+                           const std::vector<Aabb>& objects) {
+  std::vector<Vec3f> ends;
+  if (contacts.empty()) return ends;
   std::vector<float> edges;
-  for (const Aabb& box : sketch_.objects()) {
+  for (const Aabb& box : objects) {
     const Vec3f size = box.max - box.min;
     edges.push_back(std::min({size.x(), size.y(), size.z()}));
   }
@@ -60,146 +166,115 @@ void Picture::draw_contacts(std::span<const RecordedContact> contacts) {
   std::nth_element(edges.begin(), middle, edges.end());
   const float length = std::isfinite(*middle) && *middle > 0.0F ? 0.5F * *middle : 1.0F;
   for (const RecordedContact& contact : contacts) {
-    contact_ends_.push_back(contact.at);
-    contact_ends_.push_back(contact.at + contact.normal * length);
+    ends.insert(ends.end(), {contact.at, contact.at + contact.normal * length});
   }
+  return ends;
 }
 
-void Picture::choose_objects(std::size_t most) {
-  const std::size_t all = sketch_.objects().size();
-  std::vector<bool> hit(all);
-  for (const RayResult& answer : rays_) {
-    for (const Hit& h : answer.hits) hit[h.key.id] = true;
+std::array<float, 6> six_numbers(const std::string& option, const std::string& text) {
+  std::array<float, 6> numbers{};
+  const char* at = text.c_str();
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    char* end = nullptr;
+    numbers[i] = std::strtof(at, &end);
+    const char expected = i + 1 < numbers.size() ? ',' : '\0';
+    if (end == at || *end != expected) {
+      throw ArgumentError(option + ": " + text + " is not six numbers with commas between them");
+    }
+    at = end + 1;
   }
-  for (const BoxResult& answer : boxes_) {
-    for (const ObjectId id : answer.inside) hit[id] = true;
-    for (const ObjectId id : answer.crossing) hit[id] = true;
-  }
-  place_.assign(all, kNotDrawn);
+  return numbers;
+}
+
+}  // namespace
+
+Ray parse_ray(const std::string& text) {
+  const std::array<float, 6> n = six_numbers("--ray", text);
+  const Ray ray{{n[0], n[1], n[2]}, {n[3], n[4], n[5]}};
+  if (ray.is_valid()) return ray;
+  throw ArgumentError("--ray: " + text + " needs finite numbers and a direction that is not zero");
+}
+
+Aabb parse_box(const std::string& text) {
+  const std::array<float, 6> n = six_numbers("--box", text);
+  const Aabb box{{n[0], n[1], n[2]}, {n[3], n[4], n[5]}};
+  if (box.is_valid()) return box;
+  throw ArgumentError("--box: " + text + " needs three lower ends, then three upper ends");
+}
+
+Json picture_of(const std::string& scene, const Stage& stage, const PictureOptions& options,
+                std::span<const RecordedContact> contacts) {
+  const Partition& partition = stage.partition();
+  Sketch sketch;
+  need(partition.debug_draw(sketch, {.labels = options.labels, .max_depth = options.max_depth}),
+       "debug_draw");
+  const std::size_t all = sketch.objects.size();
+  std::vector<bool> drawn(all);
+  const RayAnswers rays = query_rays(partition, options.rays, drawn);
+  const BoxAnswers boxes = query_boxes(partition, options.boxes, drawn);
+  // Selects as many objects as are allowed, at equal intervals.
+  const std::size_t most = std::min(options.most_objects, all);
   for (std::size_t i = 0; i < all; ++i) {
-    // Selects `most` of the objects at equal intervals.
-    const bool chosen = most >= all || (i + 1) * most / all != i * most / all;
-    if (!chosen && !hit[i]) continue;
-    place_[i] = static_cast<std::uint32_t>(drawn_.size());
-    drawn_.push_back(static_cast<ObjectId>(i));
+    if ((i + 1) * most / all != i * most / all) drawn[i] = true;
   }
-}
-
-void Picture::choose_pairs(const std::vector<Pair>& pairs) {
-  for (const Pair& pair : pairs) {
-    const std::uint32_t first = place_[pair.first];
-    const std::uint32_t second = place_[pair.second];
-    if (first != kNotDrawn && second != kNotDrawn) pairs_.insert(pairs_.end(), {first, second});
+  std::vector<Aabb> bounds;
+  std::vector<ObjectId> ids;
+  std::vector<ClientData> client_data;
+  for (ObjectId id = 0; id < all; ++id) {
+    if (!drawn[id]) continue;
+    bounds.push_back(sketch.objects[id]);
+    ids.push_back(id);
+    client_data.push_back(partition.client_data_of(id));
   }
-}
-
-Json Picture::counts() const {
-  Json layers = Json::object();
-  std::size_t lines = 0;
-  for (const SketchLayer* layer : sketch_.structure()) {
-    if (!layer->boxes.empty()) layers[layer->name] = layer->boxes.size();
-    lines += layer->line_ends.size() / 2;
+  std::vector<ObjectId> pairs;
+  for (const Pair& pair : stage.pairs()) {
+    if (drawn[pair.first] && drawn[pair.second]) {
+      pairs.insert(pairs.end(), {pair.first, pair.second});
+    }
   }
-  std::size_t ray_hits = 0;
-  std::size_t rays_that_hit = 0;
-  for (const RayResult& answer : rays_) {
-    ray_hits += answer.hits.size();
-    rays_that_hit += static_cast<bool>(answer.closest);
-  }
-  std::size_t inside = 0;
-  std::size_t crossing = 0;
-  for (const BoxResult& answer : boxes_) {
-    inside += answer.inside.size();
-    crossing += answer.crossing.size();
-  }
-  return {{"scene", scene_},
-          {"frame", frame_},
-          {"partition", partition_},
-          {"objects", sketch_.objects().size()},
-          {"objects_drawn", drawn_.size()},
-          {"regular", statistics_.regular},
-          {"irregular", statistics_.irregular},
-          {"cells", statistics_.cells},
-          {"depth", statistics_.depth},
-          {"structure", layers},
-          {"structure_lines", lines},
-          {"pairs", all_pairs_},
-          {"reported", reported_},
-          {"pairs_drawn", pairs_.size() / 2},
-          {"contacts", contact_ends_.size() / 2},
-          {"rays", rays_.size()},
-          {"rays_that_hit", rays_that_hit},
-          {"ray_hits", ray_hits},
-          {"boxes", boxes_.size()},
-          {"inside", inside},
-          {"crossing", crossing}};
-}
-
-Json Picture::data() const {
-  Json data{{"counts", counts()}};
-  data["objects"] = objects_data();
-  data["pairs"] = column(pairs_);
-  data["contacts"] = column(contact_ends_);
-  data["structure"] = structure_data();
-  data.update(questions_data());
-  return data;
-}
-
-Json Picture::objects_data() const {
-  // Objects are drawn in ascending order of their ids.
-  std::vector<Aabb> boxes;
-  for (const ObjectId id : drawn_) boxes.push_back(sketch_.objects()[id]);
-  return {{"boxes", column(boxes)}, {"rows", column(drawn_)}, {"data", column(data_)}};
-}
-
-Json Picture::structure_data() const {
+  const std::vector<Vec3f> contact_ends = ends_of(contacts, sketch.objects);
   Json layers = Json::array();
-  for (const SketchLayer* layer : sketch_.structure()) {
-    layers.push_back({{"name", layer->name},
-                      {"colour", colour_data(layer->colour)},
-                      {"boxes", column(layer->boxes)},
-                      {"lines", column(layer->line_ends)}});
+  Json layer_counts = Json::object();
+  std::size_t lines = 0;
+  for (const Layer& layer : sketch.layers) {
+    if (layer.boxes.empty() && layer.line_ends.empty()) continue;
+    if (!layer.boxes.empty()) layer_counts[layer.name] = layer.boxes.size();
+    lines += layer.line_ends.size() / 2;
+    layers.push_back({{"name", layer.name},
+                      {"colour", colour_data(layer.colour)},
+                      {"boxes", column(layer.boxes)},
+                      {"lines", column(layer.line_ends)}});
   }
-  Json texts = Json::array();
-  for (const SketchText& text : sketch_.texts()) {
-    const std::span<const float> at(text.at.data(), 3);
-    texts.push_back(
-        {{"at", base64_of(at)}, {"text", text.text}, {"colour", colour_data(text.colour)}});
-  }
-  return {{"layers", layers}, {"texts", texts}};
-}
-
-std::string Picture::places_of(std::span<const ObjectId> ids) const {
-  std::vector<std::uint32_t> places;
-  for (const ObjectId id : ids) places.push_back(place_[id]);
-  return column(places);
-}
-
-Json Picture::questions_data() const {
-  Json rays = Json::array();
-  for (const RayResult& answer : rays_) {
-    std::vector<ObjectId> ids;
-    std::vector<float> ts;
-    for (const Hit& hit : answer.hits) {
-      ids.push_back(hit.key.id);
-      ts.push_back(hit.t);
-    }
-    Json ray{{"ray", base64_of(std::span<const Ray>(&answer.ray, 1))},
-             {"hits", places_of(ids)},
-             {"t", column(ts)}};
-    if (answer.closest) {
-      ray["closest"] = place_[answer.closest.key.id];
-      ray["closest_t"] = answer.closest.t;
-    }
-    rays.push_back(std::move(ray));
-  }
-  Json boxes = Json::array();
-  for (const BoxResult& answer : boxes_) {
-    boxes.push_back({{"box", base64_of(std::span<const Aabb>(&answer.box, 1))},
-                     {"inside", places_of(answer.inside)},
-                     {"crossing", places_of(answer.crossing)}});
-  }
-  return {{"rays", rays}, {"boxes", boxes}};
+  const Statistics statistics = partition.statistics();
+  return {{"counts",
+           {{"scene", scene},
+            {"frame", stage.frame()},
+            {"partition", partition.name()},
+            {"objects", all},
+            {"objects_drawn", ids.size()},
+            {"regular", statistics.regular},
+            {"irregular", statistics.irregular},
+            {"cells", statistics.cells},
+            {"depth", statistics.depth},
+            {"structure", layer_counts},
+            {"structure_lines", lines},
+            {"pairs", stage.pairs().size()},
+            {"reported", stage.reported()},
+            {"pairs_drawn", pairs.size() / 2},
+            {"contacts", contact_ends.size() / 2},
+            {"rays", rays.data.size()},
+            {"rays_that_hit", rays.rays_that_hit},
+            {"ray_hits", rays.hits},
+            {"boxes", boxes.data.size()},
+            {"inside", boxes.inside},
+            {"crossing", boxes.crossing}}},
+          {"objects",
+           {{"boxes", column(bounds)}, {"rows", column(ids)}, {"data", column(client_data)}}},
+          {"pairs", column(pairs)},
+          {"contacts", column(contact_ends)},
+          {"structure", {{"layers", layers}, {"texts", sketch.texts}}},
+          {"rays", rays.data},
+          {"boxes", boxes.data}};
 }
 
 }  // namespace winnow::bench

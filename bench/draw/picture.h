@@ -1,13 +1,11 @@
 #pragma once
 
 #include "bench/common/json.h"
-#include "bench/draw/questions.h"
-#include "bench/draw/sketch.h"
 #include "bench/draw/stage.h"
 #include "bench/recordings/recording.h"
 
 #include <cstddef>
-#include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -22,43 +20,17 @@ struct PictureOptions {
   std::vector<Aabb> boxes;
 };
 
-/// One frame of a scene in one partition, with everything that the page shows of it.
-class Picture {
- public:
-  /// `contacts` are the contacts of this frame.
-  Picture(std::string scene, const Stage& stage, const PictureOptions& options,
-          std::span<const RecordedContact> contacts = {});
+/// Parses "ox,oy,oz,dx,dy,dz". Throws ArgumentError, as does parse_box.
+[[nodiscard]] Ray parse_ray(const std::string& text);
+/// Parses "x0,y0,z0,x1,y1,z1"; ends may be inf or -inf.
+[[nodiscard]] Aabb parse_box(const std::string& text);
 
-  /// Returns the numbers of things in the picture: the tool prints them, and the page must draw as
-  /// many.
-  [[nodiscard]] Json counts() const;
-  /// Returns the whole picture in the form that page/data.js reads.
-  [[nodiscard]] Json data() const;
-
- private:
-  void choose_objects(std::size_t most);
-  void choose_pairs(const std::vector<Pair>& pairs);
-  void draw_contacts(std::span<const RecordedContact> contacts);
-  [[nodiscard]] std::string places_of(std::span<const ObjectId> ids) const;
-  [[nodiscard]] Json objects_data() const;
-  [[nodiscard]] Json structure_data() const;
-  [[nodiscard]] Json questions_data() const;
-
-  std::string scene_;
-  std::size_t frame_;
-  std::string partition_;
-  Statistics statistics_;
-  std::size_t all_pairs_;
-  std::size_t reported_;
-  Sketch sketch_;
-  std::vector<RayResult> rays_;
-  std::vector<BoxResult> boxes_;
-
-  std::vector<ObjectId> drawn_;       // ascending
-  std::vector<ClientData> data_;      // of each object in drawn_
-  std::vector<std::uint32_t> place_;  // index into drawn_ of each object, or kNotDrawn
-  std::vector<std::uint32_t> pairs_;  // two indices into drawn_ per pair
-  std::vector<Vec3f> contact_ends_;   // two ends per contact, the contact point first
-};
+/// Returns one frame of a scene in one partition, with everything that the page shows of it, in the
+/// form that page/data.js reads. The member "counts" has the numbers of things in the picture: the
+/// tool prints them, and the page must draw as many. `contacts` are the contacts of this frame.
+/// Throws std::runtime_error if the partition returns an error.
+[[nodiscard]] Json picture_of(const std::string& scene, const Stage& stage,
+                              const PictureOptions& options,
+                              std::span<const RecordedContact> contacts = {});
 
 }  // namespace winnow::bench

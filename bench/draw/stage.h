@@ -4,7 +4,6 @@
 #include "bench/scenes/frame_source.h"
 
 #include <cstddef>
-#include <memory>
 #include <string_view>
 #include <vector>
 
@@ -28,10 +27,10 @@ class Stage {
   /// reported but whose boxes do not overlap.
   [[nodiscard]] const std::vector<Pair>& pairs() const noexcept { return pairs_; }
   /// Number of pairs that the partition reported.
-  [[nodiscard]] std::size_t reported() const noexcept { return reported_; }
+  [[nodiscard]] std::size_t reported() const noexcept { return buffer_.size(); }
 
  private:
-  void step(std::span<const Aabb> boxes);
+  void insert_new();
   void find_pairs();
 
   FrameSource& source_;
@@ -41,10 +40,6 @@ class Stage {
   std::vector<Key> keys_;
   std::vector<Aabb> boxes_;
   std::vector<Pair> pairs_;
-  std::size_t reported_ = 0;
 };
-
-/// Throws std::runtime_error unless `status` is ok.
-void require_ok(Status status, const char* call);
 
 }  // namespace winnow::bench

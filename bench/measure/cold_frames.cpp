@@ -1,5 +1,5 @@
 // Times the first frame of new partitions, on fresh and on used memory, with and without reserved
-// room. bench/rows/cold_rows.cpp calls `race_cold_frames`.
+// room. bench/rows/frame_rows.cpp calls `race_cold_frames`.
 
 #include "bench/measure/cold_frames.h"
 

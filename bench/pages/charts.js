@@ -123,10 +123,9 @@ function front_of(dots, x) {
           borderColor: style("--faint"), backgroundColor: style("--faint"), borderWidth: 1, borderDash: [2, 3], pointRadius: 0};
 }
 
-const shared = (title, tooltip) => ({
+const shared = (tooltip) => ({
   animation: false, responsive: true, maintainAspectRatio: false, normalized: true,
   plugins: {
-    title: {display: title !== "", text: title, color: style("--ink")},
     legend: {position: "bottom", labels: {color: style("--ink"), usePointStyle: true, boxWidth: 8, font: {size: 11}}},
     tooltip: {callbacks: {title: () => "", label: tooltip}}}});
 
@@ -138,10 +137,10 @@ const note = (field) => (item) => {
 };
 
 // One named bar for each row, the best first; several fields are stacked.
-function bars(list, key, fields, title, unit) {
+function bars(list, key, fields, unit) {
   const sum = (row) => fields.reduce((total, field) => total + (row[field] || 0), 0);
   const sorted = list.filter((row) => Number.isFinite(sum(row))).sort((a, b) => sum(a) - sum(b));
-  const options = shared(title, note((item) => item.dataset.parsing.xAxisKey));
+  const options = shared(note((item) => item.dataset.parsing.xAxisKey));
   options.plugins.legend.display = fields.length > 1;
   return {
     type: "bar", plugins: [values_on_bars],
@@ -160,7 +159,7 @@ function bars(list, key, fields, title, unit) {
 const marks = ["circle", "triangle", "rect", "rectRot", "star", "crossRot", "rectRounded"];
 
 // A line, or dots, for each value of `by`.
-function curves(list, by, x, y, title, x_title, y_title, line) {
+function curves(list, by, x, y, x_title, y_title, line) {
   const known = list.filter((row) => Number.isFinite(row[x]) && Number.isFinite(row[y]));
   const scales = {x: axis(x_title, known.map((row) => row[x])), y: axis(y_title, known.map((row) => row[y]))};
   // An error of 0 is drawn at the end of a logarithmic axis.
@@ -175,5 +174,5 @@ function curves(list, by, x, y, title, x_title, y_title, line) {
   });
   const named = !line && sets.every((set) => set.data.length === 1);
   if (!line && drawn.length > 2) sets.push(front_of(drawn, x));
-  return {type: "scatter", plugins: named ? [names_at_dots] : [], data: {datasets: sets}, options: {...shared(title, note(y)), scales}};
+  return {type: "scatter", plugins: named ? [names_at_dots] : [], data: {datasets: sets}, options: {...shared(note(y)), scales}};
 }

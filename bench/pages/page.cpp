@@ -29,6 +29,13 @@ std::string library(const std::string& path) {
 
 }  // namespace
 
+void write_text(const std::string& path, const std::string& text) {
+  std::ofstream file(path, std::ios::binary);
+  file << text;
+  file.close();
+  if (!file) throw ArgumentError("cannot write " + path + ": " + std::strerror(errno));
+}
+
 std::size_t write_page(const std::string& path, const char* page, const Json& data) {
   const std::string source = "<script src=\"/";
   const std::string place = "id=\"data\">";
@@ -43,10 +50,7 @@ std::size_t write_page(const std::string& path, const char* page, const Json& da
   // A "<" in a text of the data could end the element.
   text.insert(text.find(place) + place.size(),
               replaced(data.dump(-1, ' ', true, Json::error_handler_t::replace), "<", "\\u003c"));
-  std::ofstream file(path, std::ios::binary);
-  file << text;
-  file.close();
-  if (!file) throw ArgumentError("cannot write " + path + ": " + std::strerror(errno));
+  write_text(path, text);
   return text.size();
 }
 

@@ -11,6 +11,9 @@ namespace winnow::bench {
 extern const char* const kResultsPage;
 extern const char* const kDrawPage;
 
+/// Writes a file. Throws ArgumentError if that fails.
+void write_text(const std::string& path, const std::string& text);
+
 /// Writes a self-contained page (no network, no other files) that shows the data, and returns its
 /// size in bytes. Scripts with an absolute path, which are libraries, are read from there. Equal
 /// data give equal bytes. Throws ArgumentError if a library is not installed, with Debian's

@@ -1,12 +1,6 @@
 "use strict";
 // Builds the page: the card that answers which partition to take, and folded sections of views.
 
-const make = (tag, members = {}, ...children) => {
-  const element = Object.assign(document.createElement(tag), members);
-  element.append(...children);
-  return element;
-};
-
 Chart.defaults.font.family = "system-ui, sans-serif";
 const redraws = [];  // functions that draw what is visible again
 const draw_all = () => redraws.forEach((redraw) => redraw());
@@ -47,18 +41,25 @@ function table(list) {
     make("th", {onclick: () => order(name), className: list.some((row) => typeof row[name] === "string") ? "words" : "", textContent: name === "real_time" ? `time, ${list[0].time_unit}` : label(name)})))), body);
 }
 
-// The keys of the rows by which the reader selects, with the values to choose from.
-function selections(list, shown) {
-  const names = [...new Set(list.flatMap((row) => Object.keys(row.$keys)))].filter((name) => !shown.includes(name));
-  return names.map((name) => [name, distinct(list, name).sort((a, b) => typeof a === "number" ? a - b : 0)])
-    .filter(([, choices]) => choices.length > 1);
-}
 // The choice at first: the most objects, the threads with the most rows, this machine's instructions.
 function usual(name, choices, list) {
   const count = (choice) => list.filter((row) => row[name] === choice).length;
   if (name === "threads") return choices.reduce((best, one) => count(one) >= count(best) ? one : best);
   if (name === "objects") return choices.at(-1);
   return choices.find((choice) => ["distance", "box-box", context.isa].includes(choice)) ?? choices[0];
+}
+
+// Menus of the values of these keys, if there are at least so many, and the rows that have the chosen ones.
+function selection(list, names, state, redraw, fewest = 2) {
+  const menus = [];
+  for (const name of names) {
+    const choices = distinct(list, name).sort((a, b) => typeof a === "number" ? a - b : 0);
+    if (choices.length < fewest) continue;
+    const chosen = choices.includes(state.get(name)) ? state.get(name) : usual(name, choices, list);
+    menus.push(select(name, choices, chosen, (value) => { state.set(name, value); redraw(); }));
+    list = list.filter((row) => row[name] === chosen);
+  }
+  return [menus, list];
 }
 
 // A section: a selection of its views, the selections of the view, a chart, a table and a command.
@@ -74,28 +75,22 @@ function add_section(title, of_section) {
                        controls, text, box, rows_box, command);
   function draw() {
     if (!details.open) return;
-    const choose = (key) => (value) => { state.set(key, value); draw(); };
-    let list = rows(at.family).filter(at.where);
-    const menus = [select("show", of_section.map((one) => one.title), at.title, (name) => {
+    const views_menu = select("show", of_section.map((one) => one.title), at.title, (name) => {
       at = of_section.find((one) => one.title === name);
       draw();
-    })];
-    for (const [name] of selections(list, at.keys)) {
-      const choices = distinct(list, name).sort((a, b) => typeof a === "number" ? a - b : 0);
-      if (choices.length < 2) continue;
-      const before = state.get(name);
-      const chosen = choices.includes(before) ? before : usual(name, choices, list);
-      menus.push(select(name, choices, chosen, choose(name)));
-      list = list.filter((row) => row[name] === chosen);
-    }
+    });
+    // The reader selects by the keys that the chart does not show.
+    const all = rows(at.family).filter(at.where);
+    const keys = new Set(all.flatMap((row) => Object.keys(row.$keys)));
+    const [menus, list] = selection(all, [...keys].filter((key) => !at.keys.includes(key)), state, draw);
     const fields = at.fields.filter((field) => [field].flat().some((name) => list.some((row) => Number.isFinite(row[name]))));
     const key = `value of ${at.title}`;
     const field = fields.includes(state.get(key)) ? state.get(key) : fields[0];
-    if (fields.length > 1) menus.push(select("value", fields, field, choose(key)));
-    controls.replaceChildren(...menus);
+    if (fields.length > 1) menus.push(select("value", fields, field, (value) => { state.set(key, value); draw(); }));
+    controls.replaceChildren(views_menu, ...menus);
     text.textContent = at.text;
     box.hidden = field === undefined;
-    if (field !== undefined) chart_into(box, at.draw(list, field, ""), distinct(list, at.keys[0]).length);
+    if (field !== undefined) chart_into(box, at.draw(list, field), distinct(list, at.keys[0]).length);
     rows_box.replaceChildren(table(list));
     command.textContent = list.find((row) => row.command)?.command || "";
   }
@@ -144,7 +139,7 @@ function add_card() {
   const card = document.getElementById("card");
   card.hidden = all.length === 0;
   if (card.hidden) return;
-  const state = {};
+  const state = new Map();
   const exact = exactness();
   const robust = exact.find((one) => one.name === "robust");
   const controls = make("div", {className: "controls"});
@@ -153,14 +148,7 @@ function add_card() {
   const box = chart_box();
   card.append(controls, make("div", {className: "answer"}, make("div", {}, answer, facts), box));
   function draw() {
-    let list = all;
-    const menus = [];
-    for (const name of ["scene", "objects", "threads"]) {
-      const choices = distinct(list, name).sort((a, b) => typeof a === "number" ? a - b : 0);
-      if (!choices.includes(state[name])) state[name] = usual(name, choices, list);
-      menus.push(select(name, choices, state[name], (value) => { state[name] = value; draw(); }));
-      list = list.filter((row) => row[name] === state[name]);
-    }
+    const [menus, list] = selection(all, ["scene", "objects", "threads"], state, draw, 1);
     controls.replaceChildren(make("span", {textContent: "My scene is like"}), ...menus);
     const ranked = list.slice().sort((a, b) => a.real_time - b.real_time);
     const own = ranked.filter((row) => !is_library(row.partition) && !is_base(row.partition) && row.partition !== "auto_partition");
@@ -190,7 +178,7 @@ function add_card() {
     if (robust) lines.push(["exact shapes", `distances of ${robust.kinds} kinds of pairs, tier robust: worst error ${short(robust.worst)} of the size, ${robust.wrong} of ${short(robust.pairs)} verdicts wrong`]);
     if (loud) lines.push(["noise", `a median is typically ${percent(loud.share)} above the least time of its samples (${short(loud.count)} measurements); smaller differences are noise`]);
     facts.replaceChildren(...lines.flatMap(([head, line]) => [make("dt", {textContent: head}), make("dd", {textContent: line})]));
-    chart_into(box, bars(list, "partition", ["real_time"], "", "ms a frame"), list.length);
+    chart_into(box, bars(list, "partition", ["real_time"], "ms a frame"), list.length);
   }
   redraws.push(draw);
   card.append(make("p", {className: "text", textContent: "Bars are medians; blue is winnow, orange other libraries, grey the yardstick, a sweep without state between frames. Whiskers go from the least to the greatest sample."}));
@@ -209,12 +197,13 @@ function add_origin() {
   document.getElementById("notes").append(...notes.map((text) => make("span", {className: "note", textContent: text})));
 }
 
-const root = document.documentElement;
-document.getElementById("theme").onclick = () => {
-  root.dataset.theme = is_dark() ? "light" : "dark";
+const dress = (dark) => {
+  document.documentElement.dataset.theme = dark ? "dark" : "light";
   draw_all();
 };
-matchMedia("(prefers-color-scheme: dark)").onchange = draw_all;
+document.getElementById("theme").onclick = () => dress(!is_dark());
+const night = matchMedia("(prefers-color-scheme: dark)");
+night.onchange = () => dress(night.matches);
 
 add_origin();
 add_card();
@@ -224,4 +213,4 @@ for (const section of distinct(views, "section")) {
 }
 add_every_row();
 if (location.hash === "#all" || document.getElementById("card").hidden) for (const details of document.querySelectorAll("details")) details.open = true;
-draw_all();
+dress(night.matches);

@@ -1,23 +1,33 @@
-# winnow_page(NAME HTML): writes NAME.cpp, which defines the text of a page as the constant NAME, with the
-# style sheet and the scripts that are beside it. Scripts with an absolute path, which are libraries, are
-# read when the tool writes a page.
-function(winnow_page name html)
-  get_filename_component(folder ${html} DIRECTORY)
-  file(READ ${html} text)
-  string(REGEX MATCHALL "\"[a-z_]+[.](css|js)\"" files "${text}")
-  foreach(file IN LISTS files)
-    string(REPLACE "\"" "" file ${file})
-    file(READ ${folder}/${file} content)
-    string(REPLACE "<link rel=\"stylesheet\" href=\"${file}\">" "<style>\n${content}</style>" text "${text}")
-    string(REPLACE "<script src=\"${file}\"></script>" "<script>\n${content}</script>" text "${text}")
-    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${folder}/${file})
+# winnow_page(NAME FOLDER TITLE LIBRARIES <library>... SCRIPTS <script>...): writes NAME.cpp, which defines the
+# text of a page as the constant NAME: page.html with body.html, style.css and the scripts of the folder. The
+# JavaScript libraries are read when the tool writes a page.
+function(winnow_page name folder title)
+  cmake_parse_arguments(PARSE_ARGV 3 arg "" "" "LIBRARIES;SCRIPTS")
+  set(page ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/page.html)
+  set(elements ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/elements.js)
+  list(TRANSFORM arg_LIBRARIES REPLACE "(.+)" "<script src=\"/usr/share/javascript/\\1\"></script>\n")
+  list(JOIN arg_LIBRARIES "" libraries)
+  file(READ ${page} text)
+  file(READ ${folder}/body.html body)
+  file(READ ${folder}/style.css style)
+  list(TRANSFORM arg_SCRIPTS REPLACE "(.+)" "${folder}/\\1.js")
+  foreach(script ${elements} ${arg_SCRIPTS})
+    file(READ ${script} content)
+    string(APPEND scripts "<script>\n${content}</script>\n")
   endforeach()
-  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${html})
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS
+               ${page} ${folder}/body.html ${folder}/style.css ${elements} ${arg_SCRIPTS})
+  string(CONFIGURE "${text}" text @ONLY)
   file(CONFIGURE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/${name}.cpp @ONLY CONTENT "#include \"bench/pages/page.h\"
 namespace winnow::bench {
 const char* const @name@ = R\"winnow(@text@)winnow\";
 }
 ")
 endfunction()
-winnow_page(kResultsPage ${CMAKE_CURRENT_LIST_DIR}/index.html)
-winnow_page(kDrawPage ${CMAKE_CURRENT_LIST_DIR}/../draw/page/index.html)
+winnow_page(kResultsPage ${CMAKE_CURRENT_LIST_DIR} "winnow: results"
+            LIBRARIES chart.js/chart.min.js SCRIPTS rows charts views page)
+winnow_page(kDrawPage ${CMAKE_CURRENT_LIST_DIR}/../draw/page winnow
+            LIBRARIES three/three.min.js three/examples/js/controls/OrbitControls.js
+                      three/examples/js/lines/LineSegmentsGeometry.js three/examples/js/lines/LineMaterial.js
+                      three/examples/js/lines/LineSegments2.js
+            SCRIPTS data meshes layers view picking legend player main)

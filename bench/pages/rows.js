@@ -17,7 +17,7 @@ const WORDS = {
   keys: "operation mode order partition", filter: "question filters scene partition",
   volume: "setting partition volume", pair: "kind level engine", error: "kind level engine",
   stability: "kind engine", toi: "kind turn engine", feature: "features steps",
-  partition: "engine query scene", memory_read: "what", mesh: "what engine", kernel: "kernel volume",
+  partition: "engine query scene", mesh: "what engine", kernel: "kernel volume",
   continuous: "what", scene: "query"};
 const CURVES = ["angle", "ratio", "offset", "thinness"];
 const WHOLE = {batch: {call: "batch"}, single: {call: "single"}, real_time: {}, manual_time: {}};

@@ -4,15 +4,15 @@
 
 const unit_of = (list, field) => field === "real_time" ? `time, ${list[0]?.time_unit}` : label(field);
 
-const by_bars = (key) => ({keys: [key], draw: (list, field, title) =>
-  bars(list, key, [field].flat(), title, Array.isArray(field) ? "sum of the parts" : unit_of(list, field))});
-const by_lines = (by, x, x_title, line = true, also = []) => ({keys: [by, x, ...also], draw: (list, field, title) =>
-  curves(list, by, x, field, title, x_title, unit_of(list, field), line)});
+const by_bars = (key) => ({keys: [key], draw: (list, field) =>
+  bars(list, key, [field].flat(), Array.isArray(field) ? "sum of the parts" : unit_of(list, field))});
+const by_lines = (by, x, x_title, line = true, also = []) => ({keys: [by, x, ...also], draw: (list, field) =>
+  curves(list, by, x, field, x_title, unit_of(list, field), line)});
 // Stacks the rows that differ only in `by`.
-const by_stacks = (key, by) => ({keys: [key, by], draw: (list, field, title) => {
+const by_stacks = (key, by) => ({keys: [key, by], draw: (list, field) => {
   const merged = distinct(list, key).map((name) => Object.assign({[key]: name, run_name: name},
     ...list.filter((row) => row[key] === name).map((row) => ({[row[by]]: row[field]}))));
-  return bars(merged, key, distinct(list, by), title, unit_of(list, field));
+  return bars(merged, key, distinct(list, by), unit_of(list, field));
 }});
 
 const views = [];

@@ -1,32 +1,17 @@
-// Lists the measurements of a report: for each section, which races run on which scenes and sizes,
-// and with how many frames. report.cpp runs the steps; bench/rows has the measurements.
+// Lists the measurements of a report: for each section, which measurements of bench/rows run on
+// which scenes and sizes, and with how many frames. report.cpp runs the steps.
 
-#include "bench/report/plan.h"
+#include "bench/report/report.h"
 
 #include "bench/common/table.h"
 #include "bench/contenders/partitions.h"
 #include "bench/questions/hard_case_files.h"
-#include "bench/rows/advice_rows.h"
-#include "bench/rows/barrier_rows.h"
-#include "bench/rows/choice_rows.h"
-#include "bench/rows/cluster_rows.h"
-#include "bench/rows/cold_rows.h"
-#include "bench/rows/every_scene_rows.h"
-#include "bench/rows/flow_rows.h"
-#include "bench/rows/frame_rows.h"
-#include "bench/rows/hard_case_rows.h"
-#include "bench/rows/host_rows.h"
-#include "bench/rows/library_comparison_rows.h"
-#include "bench/rows/memory_rows.h"
-#include "bench/rows/scene_rows.h"
-#include "bench/rows/standing_rows.h"
+#include "bench/rows/rows.h"
 #include "bench/scenes/scene.h"
 #include "bench/trust/ledger.h"
 
 #include <algorithm>
-#include <initializer_list>
 #include <limits>
-#include <memory>
 #include <stdexcept>
 #include <utility>
 
@@ -37,26 +22,22 @@ constexpr std::size_t kLargestForPeers = 150'000;
 /// With more objects, the structures of all instruction sets at once would exceed the memory.
 constexpr std::size_t kLargestForOneRace = 300'000;
 
-/// The steps of one section.
-class Plan {
- public:
-  Plan(const ReportOptions& scope, ReportSteps& steps) : options(scope), steps_(steps) {}
-
+/// The steps of a report.
+struct Plan {
   const ReportOptions& options;
-  std::string section;
+  std::string section{};
+  ReportSteps steps{};
 
   void add(std::string what, std::function<void(Results&)> run) {
-    steps_.push_back({section, std::move(what), std::move(run)});
+    steps.push_back({section, std::move(what), std::move(run)});
+  }
+  template <typename T>
+  [[nodiscard]] T quick_or(T quick, T full) const {
+    return options.quick ? quick : full;
   }
   /// Returns the requested scenes. If they are the default ones, only those named in `few`.
-  [[nodiscard]] std::vector<NamedScene> few_scenes(
-      std::initializer_list<std::string_view> few) const {
-    if (!are_default()) return options.scenes;
-    std::vector<NamedScene> scenes = options.scenes;
-    std::erase_if(scenes, [&](const NamedScene& scene) {
-      return std::find(few.begin(), few.end(), scene.name) == few.end();
-    });
-    return scenes;
+  [[nodiscard]] std::vector<NamedScene> few_scenes(const std::vector<std::string>& few) const {
+    return are_default() ? named_scenes(few) : options.scenes;
   }
   [[nodiscard]] std::vector<NamedScene> every_scene() const {
     return are_default() ? named_scenes(scene_names()) : options.scenes;
@@ -80,15 +61,9 @@ class Plan {
       }
     }
   }
-
- private:
   [[nodiscard]] bool are_default() const {
-    std::vector<std::string> names;
-    for (const NamedScene& scene : options.scenes) names.push_back(scene.name);
-    return names == main_scenes();
+    return std::ranges::equal(options.scenes, main_scenes(), {}, &NamedScene::name);
   }
-
-  ReportSteps& steps_;
 };
 
 /// Returns the number of frames whose median is stable at little cost.
@@ -103,40 +78,34 @@ std::size_t frames_of_slow(bool quick, std::size_t objects) {
   return quick || objects > 20'000 ? kFingerprintFrames : 6;
 }
 
-/// Runs one race of all instruction sets, or one race each if there are too many objects.
-void race_partitions(Results& results, const NamedScene& scene, MeasureOptions race) {
-  if (race.partitions.empty()) return;
-  if (race.objects <= kLargestForOneRace) {
-    add_frame_race(results, scene, race);
-    return;
-  }
-  for (const Isa isa : std::exchange(race.isas, {})) {
-    race.isas = {isa};
-    add_frame_race(results, scene, race);
-  }
-}
-
 /// Measures partitions without a size limit first, then the slower ones.
 void measure_throughput(Results& results, const ReportOptions& options, const NamedScene& scene,
                         std::size_t objects) {
   const Partitions partitions = partitions_for({"all"}, objects);
   note_skipped(results, objects, partitions.skipped, false);
-  MeasureOptions fast{.objects = objects,
-                      .seed = options.seed,
-                      .threads = options.threads,
-                      .isas = options.isas,
-                      .frames = throughput_frames(options.quick, objects)};
-  MeasureOptions slow = fast;
-  fast.yardstick = options.yardstick;
-  slow.frames = frames_of_slow(options.quick, objects);
-  fast.partitions.clear();
-  slow.partitions.clear();
-  for (const std::string& name : partitions.taken) {
-    const bool limited = largest_for(name) != std::numeric_limits<std::size_t>::max();
-    (limited ? slow : fast).partitions.push_back(name);
+  for (const bool slow : {false, true}) {
+    MeasureOptions race{.objects = objects,
+                        .seed = options.seed,
+                        .partitions = partitions.taken,
+                        .threads = options.threads,
+                        .isas = options.isas,
+                        .yardstick = options.yardstick && !slow,
+                        .frames = slow ? frames_of_slow(options.quick, objects)
+                                       : throughput_frames(options.quick, objects)};
+    std::erase_if(race.partitions, [&](const std::string& name) {
+      const bool is_limited = largest_for(name) != std::numeric_limits<std::size_t>::max();
+      return is_limited != slow;
+    });
+    if (race.partitions.empty()) continue;
+    if (objects <= kLargestForOneRace) {
+      add_frame_race(results, scene, race);
+      continue;
+    }
+    for (const Isa isa : options.isas) {
+      race.isas = {isa};
+      add_frame_race(results, scene, race);
+    }
   }
-  race_partitions(results, scene, fast);
-  race_partitions(results, scene, slow);
   derive_frames(results, scene.name, objects);
   const Json where{{"scene", scene.name}, {"objects", objects}};
   if (distinct(results.rows("throughput", where), "fingerprint").size() > 1) {
@@ -144,40 +113,33 @@ void measure_throughput(Results& results, const ReportOptions& options, const Na
   }
 }
 
-/// Measures other libraries with the largest number of threads, together with a partition that must
-/// find the same pairs.
-void measure_peers(Results& results, const ReportOptions& options, const NamedScene& scene,
-                   std::size_t objects) {
-  add_frame_race(results, scene,
-                 {.objects = objects,
-                  .seed = options.seed,
-                  .partitions = {"LinearBvh"},
-                  .threads = {options.threads.back()},
-                  .isas = {options.isas.back()},
-                  .peers = true,
-                  .frames = frames_of_slow(options.quick, objects)},
-                 true);
-  derive_frames(results, scene.name, objects);
-}
-
 void plan_throughput(Plan& plan) {
   const ReportOptions& options = plan.options;
   plan.each_size(options.scenes, [&](const NamedScene& scene, std::size_t objects, auto name) {
     plan.add(name, [=](Results& to) { measure_throughput(to, options, scene, objects); });
     if (!options.peers || objects > kLargestForPeers) return;
-    plan.add(name + ", other libraries",
-             [=](Results& to) { measure_peers(to, options, scene, objects); });
+    // With the largest number of threads, together with a partition that must find the same pairs.
+    const MeasureOptions race{.objects = objects,
+                              .seed = options.seed,
+                              .partitions = {"LinearBvh"},
+                              .threads = {options.threads.back()},
+                              .isas = {options.isas.back()},
+                              .peers = true,
+                              .frames = frames_of_slow(options.quick, objects)};
+    plan.add(name + ", other libraries", [=](Results& to) {
+      add_frame_race(to, scene, race, true);
+      derive_frames(to, scene.name, objects);
+    });
   });
   for (const NamedScene& scene : plan.every_scene()) {
-    EverySceneOptions request{.scene = scene,
-                              .objects = scene.objects(plan.objects_up_to(10'000)),
+    const MeasureOptions race{.objects = scene.objects(plan.objects_up_to(10'000)),
                               .seed = options.seed,
-                              .threads = options.threads.front(),
-                              .yardstick = options.yardstick};
-    if (options.quick) request.frames = kSettlingFrames + 3;
-    plan.add(scene.name + ", worst frames", [=](Results& to) { add_every_scene(to, request); });
+                              .threads = {options.threads.front()},
+                              .yardstick = options.yardstick,
+                              .frames = plan.quick_or<std::size_t>(kSettlingFrames + 3, 61)};
+    plan.add(scene.name + ", worst frames", [=](Results& to) { add_every_scene(to, scene, race); });
   }
-  const auto cold = plan.few_scenes({"uniform", "mixed", "clustered"});
+  const auto cold = plan.few_scenes(kColdScenes);
   plan.each_size(cold, [&](const NamedScene& scene, std::size_t objects, auto name) {
     if (objects > kLargestForPeers) return;
     const std::size_t rounds = options.quick ? 1 : objects > 20'000 ? 3 : 7;
@@ -215,23 +177,17 @@ void plan_stability(Plan& plan) {
 
 void plan_motion(Plan& plan) {
   for (const std::string& scene : barrier_names()) {
-    BarrierRowOptions request{.scene = scene};
-    if (plan.options.quick) {
-      request.steps = 5;
-      request.size = 8;
-    }
-    plan.add("barrier: " + scene, [request](Results& to) {
-      if (!add_barrier(to, request)) {
-        throw std::runtime_error(request.scene + ": something passed through");
-      }
-    });
+    const BarrierRowOptions request{.scene = scene,
+                                    .steps = plan.quick_or<std::size_t>(5, 200),
+                                    .size = plan.quick_or<std::size_t>(8, 0)};
+    plan.add("barrier: " + scene, [request](Results& to) { add_barrier(to, request); });
   }
 }
 
 /// Runs the races on one scene; `bodies` 0 chooses the scene's default number.
 void measure_scene(Results& results, const ReportOptions& options, const std::string& scene,
                    std::size_t bodies) {
-  const std::unique_ptr<BodySet> set = make_pipeline_scene(scene, bodies, options.seed);
+  const auto set = make_pipeline_scene(scene, bodies, options.seed);
   PipelineMeasureOptions race{.scene = scene,
                               .threads = options.threads,
                               .peers = options.peers,
@@ -258,43 +214,35 @@ void plan_pipeline(Plan& plan) {
     });
   }
   for (const char* const scene : {"pile", "terrain", "balls"}) {
-    SceneCostOptions costs{.scene = scene, .seed = options.seed};
-    if (options.quick) {
-      costs.bodies = 60;
-      costs.frames = 2;
-    }
+    const SceneCostOptions costs{.scene = scene,
+                                 .frames = plan.quick_or<std::size_t>(2, 9),
+                                 .bodies = plan.quick_or<std::size_t>(60, 0),
+                                 .seed = options.seed};
     plan.add(std::string(scene) + ", costs", [=](Results& to) { add_scene_costs(to, costs); });
   }
   for (const std::string& shape : flow_shape_names()) {
-    FlowRowOptions request{.shape = shape, .seed = options.seed};
-    if (options.quick) {
-      request.objects = 60;
-      request.steps = 200;
-    }
+    const FlowRowOptions request{.shape = shape,
+                                 .objects = plan.quick_or<std::size_t>(60, 500),
+                                 .steps = plan.quick_or<std::size_t>(200, 3000),
+                                 .seed = options.seed};
     plan.add("granular flow of " + shape, [=](Results& to) { add_flow(to, request); });
   }
-  for (const StandingScene scene : kStandingScenes) {
+  for (const std::string& structure : standing_names()) {
     for (const bool reduced : {false, true}) {
-      const StandingRowOptions request{scene, reduced, options.quick ? 2.0 : 60.0};
-      plan.add(name_of(scene), [request](Results& to) {
-        if (!add_standing(to, request)) {
-          throw std::runtime_error(name_of(request.scene) + " does not stand");
-        }
-      });
+      const StandingRowOptions request{structure, reduced, plan.quick_or(2.0, 60.0)};
+      plan.add(structure, [request](Results& to) { add_standing(to, request); });
     }
   }
 }
 
 void plan_ranks(Plan& plan) {
   for (const NamedScene& scene : plan.few_scenes({"uniform", "clustered"})) {
-    ClusterRowOptions request{
-        .scene = scene, .ranks = {1, 2, 3, 8, 64, 512}, .seed = plan.options.seed};
-    request.is_uniform = scene.name == "uniform" && !scene.is_recording();
-    if (plan.options.quick) {
-      request.objects = 500;
-      request.frames = 3;
-      request.ranks = {1, 2, 8};
-    }
+    const ClusterRowOptions request{
+        .scene = scene,
+        .objects = plan.quick_or<std::size_t>(500, 20'000),
+        .frames = plan.quick_or<std::size_t>(3, 6),
+        .ranks = plan.quick_or<std::vector<std::uint32_t>>({1, 2, 8}, {1, 2, 3, 8, 64, 512}),
+        .seed = plan.options.seed};
     plan.add(scene.name, [request](Results& to) { add_cluster_runs(to, request); });
   }
 }
@@ -303,7 +251,7 @@ void plan_advice(Plan& plan) {
   const ReportOptions& options = plan.options;
   for (const NamedScene& scene : options.scenes) {
     const std::size_t objects = scene.objects(plan.objects_up_to(10'000));
-    const std::size_t requested = options.quick ? 9 : 41;
+    const auto requested = plan.quick_or<std::size_t>(9, 41);
     const std::size_t frames =
         scene.is_recording() ? std::min(requested, scene.recording->frames.size()) : requested;
     for (const int threads : options.threads) {
@@ -324,7 +272,7 @@ void plan_trust(Plan& plan) {
 /// is checked by brute force.
 void plan_goals(Plan& plan) {
   const ReportOptions& options = plan.options;
-  const std::size_t frames = options.quick ? 12 : 81;
+  const auto frames = plan.quick_or<std::size_t>(12, 81);
   plan.each_size(plan.every_scene(), [&](const NamedScene& scene, std::size_t objects, auto name) {
     if (!options.peers || objects > kLargestForPeers) return;
     plan.add(name + ", other libraries", [=](Results& to) {
@@ -358,8 +306,10 @@ void plan_goals(Plan& plan) {
   }
   plan.add("changes of the scene",
            [=](Results& to) { add_changes(to, few, options.quick ? 8 : 30); });
-  FlowRowOptions flow{.objects = 2000, .steps = 10'000, .threads = 2, .check = 500};
-  if (options.quick) flow = {.objects = 60, .steps = 200, .threads = 2, .check = 50};
+  const FlowRowOptions flow{.objects = plan.quick_or<std::size_t>(60, 2000),
+                            .steps = plan.quick_or<std::size_t>(200, 10'000),
+                            .threads = 2,
+                            .check = plan.quick_or<std::size_t>(50, 500)};
   plan.add("a long granular flow", [=](Results& to) { add_flow(to, flow); });
 }
 
@@ -378,16 +328,13 @@ std::vector<std::string> report_sections() {
 }
 
 ReportSteps report_steps(const ReportOptions& options, const std::vector<std::string>& sections) {
-  ReportSteps steps;
-  Plan plan(options, steps);
+  Plan plan{options};
   for (const auto& [name, add_steps] : kSections) {
-    const bool is_default = sections.empty() && add_steps != plan_goals;
-    if (!is_default && std::find(sections.begin(), sections.end(), name) == sections.end())
-      continue;
     plan.section = name;
-    add_steps(plan);
+    const bool is_default = sections.empty() && add_steps != plan_goals;
+    if (is_default || std::ranges::find(sections, name) != sections.end()) add_steps(plan);
   }
-  return steps;
+  return std::move(plan.steps);
 }
 
 }  // namespace winnow::bench

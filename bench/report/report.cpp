@@ -13,11 +13,9 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <csignal>
-#include <cstring>
+#include <exception>
 #include <filesystem>
-#include <fstream>
 #include <string_view>
 #include <system_error>
 
@@ -31,59 +29,26 @@ constexpr double kQuickMsBetweenWrites = 500.0;
 template <typename Write>
 void replace_file(const std::filesystem::path& path, Write write) {
   const std::filesystem::path fresh = path.string() + ".new";
-  std::error_code failed;
   try {
     write(fresh.string());
-  } catch (...) {
+    std::filesystem::rename(fresh, path);
+  } catch (const std::exception& fault) {
+    std::error_code failed;
     std::filesystem::remove(fresh, failed);
-    throw;
+    throw ArgumentError(fault.what());
   }
-  std::filesystem::rename(fresh, path, failed);
-  if (!failed) return;
-  const std::string fault = "cannot write " + path.string() + ": " + failed.message();
-  std::filesystem::remove(fresh, failed);
-  throw ArgumentError(fault);
-}
-
-void write_text(const std::string& path, const std::string& text) {
-  std::ofstream file(path, std::ios::binary);
-  file << text;
-  file.close();
-  if (!file) throw ArgumentError("cannot write " + path + ": " + std::strerror(errno));
 }
 
 std::sig_atomic_t volatile g_stop_requested = 0;
 
-/// While an object of this class exists, the first SIGINT or SIGTERM stops the report after the
-/// current step; a second one ends the process.
-class StopSignals {
- public:
-  StopSignals() {
-    g_stop_requested = 0;
-    struct sigaction action {};
-    action.sa_handler = [](int) {
-      g_stop_requested = 1;
-      constexpr std::string_view kWord =
-          "\nwinnow: stopping after the step that runs; once more stops at once\n";
-      if (::write(STDERR_FILENO, kWord.data(), kWord.size()) < 0) return;
-    };
-    action.sa_flags = static_cast<int>(SA_RESETHAND);
-    sigaction(SIGINT, &action, &old_interrupt_);
-    sigaction(SIGTERM, &action, &old_terminate_);
-  }
-  StopSignals(const StopSignals&) = delete;
-  StopSignals& operator=(const StopSignals&) = delete;
-  ~StopSignals() {
-    sigaction(SIGINT, &old_interrupt_, nullptr);
-    sigaction(SIGTERM, &old_terminate_, nullptr);
-  }
-
-  [[nodiscard]] static bool requested() noexcept { return g_stop_requested != 0; }
-
- private:
-  struct sigaction old_interrupt_ {};
-  struct sigaction old_terminate_ {};
-};
+/// The first signal stops the report after the current step; a second one ends the process.
+void stop_after_step(int signal) {
+  g_stop_requested = 1;
+  std::signal(signal, SIG_DFL);
+  constexpr std::string_view kWord =
+      "\nwinnow: stopping after the step that runs; once more stops at once\n";
+  if (::write(STDERR_FILENO, kWord.data(), kWord.size()) < 0) return;
+}
 
 /// Adds a warning if other processes used the machine or its speed changed during the run.
 void note_disturbances(const OtherWork& others, Json& context) {
@@ -102,14 +67,6 @@ void note_disturbances(const OtherWork& others, Json& context) {
         "The machine's speed changed while this was measured: the reference sweep took " +
         short_number(before) + " ms at the beginning and " + short_number(after) +
         " at the end. Compare values within one table, not between tables.");
-  }
-}
-
-void run_step(const ReportStep& step, Results& results) {
-  try {
-    step.run(results);
-  } catch (const std::exception& error) {
-    results.context()["problems"].push_back(step.section + ", " + step.what + ": " + error.what());
   }
 }
 
@@ -136,7 +93,7 @@ void write_report(const std::string& folder, Json document) {
 bool make_report(const std::string& folder, const ReportOptions& options, const ReportSteps& steps,
                  Results& results) {
   const OtherWork others;
-  const StopSignals signals;
+  for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, stop_after_step);
   Progress progress(steps.size());
   Json& context = results.context();
   context["steps"] = steps.size();
@@ -146,9 +103,13 @@ bool make_report(const std::string& folder, const ReportOptions& options, const 
   Stopwatch since_written;
   std::size_t done = 0;
   for (const ReportStep& step : steps) {
-    if (StopSignals::requested()) break;
+    if (g_stop_requested != 0) break;
     progress.step(step.section + ": " + step.what);
-    run_step(step, results);
+    try {
+      step.run(results);
+    } catch (const std::exception& error) {
+      context["problems"].push_back(step.section + ", " + step.what + ": " + error.what());
+    }
     context["steps_done"] = ++done;
     if (since_written.ms() < (options.quick ? kQuickMsBetweenWrites : kMsBetweenWrites)) continue;
     write_report(folder, results.document());

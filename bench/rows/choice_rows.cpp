@@ -1,11 +1,10 @@
-// Rows about AutoPartition and worst frames: the first frames of AutoPartition and its frames after
-// a scene changes, compared with the best partition, and the worst frames of any partition,
-// compared with the median.
+// Rows about the choice of a partition: the advice for a scene, the first frames of AutoPartition
+// and its frames after a scene changes, compared with the best partition, and the worst frames of
+// any partition, compared with the median.
 
-#include "bench/rows/choice_rows.h"
+#include "bench/rows/rows.h"
 
 #include "bench/contenders/partitions.h"
-#include "bench/measure/race.h"
 #include "bench/scenes/scene.h"
 
 #include <algorithm>
@@ -13,10 +12,13 @@
 #include <memory>
 #include <numeric>
 #include <span>
+#include <stdexcept>
 #include <utility>
 
 namespace winnow::bench {
 namespace {
+
+constexpr const char* kChooser = "AutoPartition";
 
 /// Races all partitions several times on the same frames and keeps each frame's minimum. Other work
 /// on the machine may disturb a frame in one of these races, but seldom the same frame in all. A
@@ -54,7 +56,7 @@ struct OwnAndBest {
       const auto at = run.frame_ms.begin();
       const auto stop = static_cast<std::ptrdiff_t>(std::min(end, run.frame_ms.size()));
       const double ms = std::accumulate(at + static_cast<std::ptrdiff_t>(begin), at + stop, 0.0);
-      if (run.engine == "AutoPartition") {
+      if (run.engine == kChooser) {
         own_ms = ms;
       } else if (best.empty() || ms < best_ms) {
         best_ms = ms;
@@ -64,36 +66,8 @@ struct OwnAndBest {
   }
 };
 
-/// A scene that changes abruptly: several scenes in sequence, with the same number of objects.
-class TurningScene final : public FrameSource {
- public:
-  TurningScene(std::vector<std::string> scenes, std::size_t objects, std::size_t frames_each)
-      : scenes_(std::move(scenes)), objects_(objects), frames_each_(frames_each) {
-    turn_to(0);
-  }
-
-  [[nodiscard]] std::string name() const override { return "turns"; }
-  [[nodiscard]] Aabb world() const override { return source_->world(); }
-  [[nodiscard]] std::span<const Aabb> boxes() const override { return source_->boxes(); }
-  bool advance() override {
-    if (++frame_ % frames_each_ != 0) return source_->advance();
-    if (frame_ / frames_each_ == scenes_.size()) return false;
-    turn_to(frame_ / frames_each_);
-    return true;
-  }
-
- private:
-  void turn_to(std::size_t scene) { source_ = scene_or_error(scenes_[scene], objects_, 1); }
-
-  std::vector<std::string> scenes_;
-  std::size_t objects_;
-  std::size_t frames_each_;
-  std::size_t frame_ = 0;
-  std::unique_ptr<FrameSource> source_;
-};
-
-// Returns the times of the frames after settling in which something moved. Frames without motion
-// are much cheaper and would distort the median.
+/// Returns the times of the frames after settling in which something moved. Frames without motion
+/// are much cheaper and would distort the median.
 std::vector<double> working_frames(const Run& run) {
   std::vector<double> working;
   for (std::size_t f = kSettlingFrames; f < run.frame_ms.size(); ++f) {
@@ -102,9 +76,9 @@ std::vector<double> working_frames(const Run& run) {
   return working;
 }
 
-// Returns the greatest ratio of a frame to the median of the frames around it. The work of a scene
-// may grow manyfold during a run, so a frame far above the median of all frames need not be a
-// hitch.
+/// Returns the greatest ratio of a frame to the median of the frames around it. The work of a scene
+/// may grow manyfold during a run, so a frame far above the median of all frames need not be a
+/// hitch.
 double worst_hitch(std::span<const double> frames) {
   constexpr std::size_t kAround = 30;  // on each side
   double worst = 0.0;
@@ -117,6 +91,47 @@ double worst_hitch(std::span<const double> frames) {
 }
 
 }  // namespace
+
+Advice add_advice(Results& results, const NamedScene& scene, std::size_t objects,
+                  std::uint64_t seed, const std::vector<std::string>& partitions,
+                  std::size_t frames, int threads) {
+  Advice advice = advise(*scene.source(objects, seed), partitions, frames, threads);
+  const Json keys{{"scene", scene.name}, {"objects", advice.objects}, {"threads", threads}};
+  const std::string size =
+      " --objects " + std::to_string(objects) + " --seed " + std::to_string(seed);
+  const std::string command =
+      command_text("advise ", shell_word(scene.argument), scene.is_recording() ? "" : size,
+                   settings_text(threads), " --frames ", frames);
+  Json row = keys;
+  row["take"] = word_of(advice.best().partition);
+  row["moving"] = advice.moving;
+  row["pairs_per_object"] = advice.pairs / static_cast<double>(advice.objects);
+  row["why"] = advice.best().why;
+  row["code"] = advice.code();
+  row["command"] = command;
+  for (const Advised& one : advice.ranking) {  // fastest first
+    Json ranked = keys;
+    ranked["partition"] = one.partition;
+    ranked["frame_ms"] = to_value(one.settled);
+    ranked["first_ms"] = one.first_ms;
+    ranked["bytes_per_object"] =
+        static_cast<double>(one.bytes) / static_cast<double>(advice.objects);
+    ranked["why"] = one.why;
+    ranked["command"] = command;
+    results.add("advice_ranking", std::move(ranked));
+    if (one.partition == kChooser) {
+      row["auto_over_best"] = one.times_best;
+      row["auto_holds"] = word_of(advice.chosen);
+      row["auto_why"] = advice.reason;
+    } else if (one.partition != advice.best().partition && !row.contains("next")) {
+      row["next"] = word_of(one.partition);
+      row["next_over_best"] = one.times_best;
+    }
+  }
+  results.add("advice", std::move(row));
+  if (!advice.same_pairs) throw std::runtime_error("not all found the same pairs");
+  return advice;
+}
 
 void add_first_frames(Results& results, const NamedScene& scene, std::size_t objects, int threads) {
   const auto runs = race_minima([&] { return scene.source(objects, 1); }, kSettlingFrames, threads);
@@ -132,9 +147,16 @@ void add_first_frames(Results& results, const NamedScene& scene, std::size_t obj
 
 void add_changes(Results& results, std::size_t objects, std::size_t frames_each) {
   const std::vector<std::string> scenes{"uniform", "wall", "sleepy", "mixed", "pile"};
-  const auto runs =
-      race_minima([&] { return std::make_unique<TurningScene>(scenes, objects, frames_each); },
-                  frames_each * scenes.size(), 1);
+  Recording turns;
+  for (const std::string& scene : scenes) {
+    const auto source = scene_or_error(scene, objects, 1);
+    turns.world.merge(source->world());
+    for (std::size_t frame = 0; frame < frames_each; ++frame) {
+      turns.frames.emplace_back(source->boxes().begin(), source->boxes().end());
+      source->advance();
+    }
+  }
+  const auto runs = race_minima([&] { return play(turns); }, frames_each * scenes.size(), 1);
   for (std::size_t turn = 1; turn < scenes.size(); ++turn) {
     const OwnAndBest of(runs, turn * frames_each, (turn + 1) * frames_each);
     const double frame = of.best_ms / static_cast<double>(frames_each);

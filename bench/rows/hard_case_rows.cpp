@@ -1,28 +1,22 @@
 // Rows about hard cases: counts the right and wrong answers of winnow's tiers and of other
-// libraries. bench/commands, bench/goals and bench/report call these functions; check_hard_case()
-// in bench/questions compares single answers.
+// libraries. check_hard_case() in bench/questions compares single answers.
 
-#include "bench/rows/hard_case_rows.h"
+#include "bench/rows/rows.h"
 
 #include "bench/common/errors.h"
 #include "bench/peers/peers.h"
 #include "bench/questions/hard_cases.h"
 #include "bench/questions/questions.h"
 #include "bench/rows/machine.h"
-#include "bench/rows/named_scene.h"
 #include "bench/scenes/pair_set.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <exception>
 #include <limits>
 #include <map>
 #include <memory>
-#include <optional>
-#include <string>
 #include <utility>
-#include <vector>
 
 namespace winnow::bench {
 namespace {
@@ -43,60 +37,29 @@ struct HardCaseTally {
   double worst_over_allowed = std::numeric_limits<double>::quiet_NaN();
   std::map<std::string, std::size_t> faults{};  ///< number of wrong answers by fault
 
-  void add(const CaseVerdict& verdict);
-  /// Formats the counts of faults, for example "contact lost 3, distance 2".
-  [[nodiscard]] std::string faults_text() const;
-};
-
-void HardCaseTally::add(const CaseVerdict& verdict) {
-  ++(verdict.fault.empty() ? right : wrong);
-  if (!verdict.fault.empty()) ++faults[verdict.fault];
-  if (verdict.fault == kContactLost || verdict.fault == kFalseContact) ++wrong_verdicts;
-  worst_error = std::fmax(worst_error, verdict.error);
-  worst_over_allowed = std::fmax(worst_over_allowed, verdict.over_allowed);
-}
-
-std::string HardCaseTally::faults_text() const {
-  std::string text;
-  for (const auto& [what, count] : faults) {
-    text += (text.empty() ? "" : ", ") + what + " " + std::to_string(count);
+  void add(const CaseVerdict& verdict) {
+    ++(verdict.fault.empty() ? right : wrong);
+    if (!verdict.fault.empty()) ++faults[verdict.fault];
+    if (verdict.fault == kContactLost || verdict.fault == kFalseContact) ++wrong_verdicts;
+    worst_error = std::fmax(worst_error, verdict.error);
+    worst_over_allowed = std::fmax(worst_over_allowed, verdict.over_allowed);
   }
-  return text;
-}
+  /// Formats the counts of faults, for example "contact lost 3, distance 2"; "-" for none.
+  [[nodiscard]] std::string faults_text() const {
+    std::string text;
+    for (const auto& [what, count] : faults) {
+      text += (text.empty() ? "" : ", ") + what + " " + std::to_string(count);
+    }
+    return text.empty() ? "-" : text;
+  }
+};
 
 /// A hard case in a form that other libraries accept.
 struct PeerCase {
   PairSet set;
   double sign = 1.0;          ///< -1 if a and b are swapped
-  bool around_origin = true;  ///< both shapes contain the origin of their frames
+  bool around_origin = true;  ///< the bounds of both shapes contain the origin of their frames
 };
-
-const PairKind* kind_of_shapes(ShapeKind a, ShapeKind b) {
-  for (const PairKind& kind : main_pair_kinds()) {
-    if (kind.a == a && kind.b == b) return &kind;
-  }
-  return nullptr;
-}
-
-/// Returns whether the origin is within the bounds of the shape's vertices; true for shapes without
-/// vertices.
-bool is_around_origin(const Json& shape) {
-  if (!shape.contains("v")) return true;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    double low = 0.0;
-    double high = 0.0;
-    bool first = true;
-    for (const Json& v : member(shape, "v")) {
-      double x = 0.0;
-      if (!read_number(element(v, axis), x)) return false;
-      low = first ? x : std::min(low, x);
-      high = first ? x : std::max(high, x);
-      first = false;
-    }
-    if (low > 0.0 || high < 0.0) return false;
-  }
-  return true;
-}
 
 /// Throws unless the case has all members that are read without a check.
 void check_case(const Json& question) {
@@ -129,14 +92,20 @@ std::unique_ptr<PeerCase> peer_case(const Json& question) {
     if (read_shape(shape, set.pool, set.shapes[i], set.poses[i]) != Status::ok) return nullptr;
     // Other libraries have no rounding.
     if (shape.contains("rounding")) return nullptr;
-    made->around_origin = made->around_origin && is_around_origin(shape);
+    const Aabb bounds = set.pool.bounds(set.shapes[i], Pose{});
+    made->around_origin = made->around_origin && bounds.overlaps({{0, 0, 0}, {0, 0, 0}});
   }
-  const PairKind* straight = kind_of_shapes(set.shapes[0].kind(), set.shapes[1].kind());
-  const PairKind* turned = kind_of_shapes(set.shapes[1].kind(), set.shapes[0].kind());
-  if (straight == nullptr && turned == nullptr) return nullptr;
-  made->sign = straight != nullptr ? 1.0 : -1.0;
-  set.kind = straight != nullptr ? *straight : *turned;
-  set.pairs.push_back(straight != nullptr ? BodyPair{0, 1} : BodyPair{1, 0});
+  const auto kind_of = [&](std::size_t a, std::size_t b) {
+    return std::ranges::find_if(main_pair_kinds(), [&](const PairKind& kind) {
+      return kind.a == set.shapes[a].kind() && kind.b == set.shapes[b].kind();
+    });
+  };
+  const bool straight = kind_of(0, 1) != main_pair_kinds().end();
+  const auto kind = straight ? kind_of(0, 1) : kind_of(1, 0);
+  if (kind == main_pair_kinds().end()) return nullptr;
+  made->sign = straight ? 1.0 : -1.0;
+  set.kind = *kind;
+  set.pairs.push_back(straight ? BodyPair{0, 1} : BodyPair{1, 0});
   return made;
 }
 
@@ -165,68 +134,67 @@ CaseVerdict query_library(NarrowEngine& engine, const PeerCase& converted, const
   return check_hard_case(question, to_json(question, answer, converted.sign), kPeersError);
 }
 
-void add_peers(const Json& questions, std::vector<HardCaseTally>& tallies) {
-  std::vector<HardCaseTally> peers;
-  for (const auto& peer : make_narrow_peers()) peers.push_back({.engine = peer->name()});
+void judge_peers(const Json& questions, std::vector<HardCaseTally>& all) {
+  std::vector<HardCaseTally> tallies;
+  for (const auto& peer : make_narrow_peers()) tallies.push_back({.engine = peer->name()});
   for (const Json& question : questions) {
     const auto converted = peer_case(question);
     // An engine can be started only once.
     const auto fresh = make_narrow_peers();
-    for (std::size_t i = 0; i < peers.size(); ++i) {
-      const bool needs_origin = peers[i].engine.starts_with("libccd");
+    for (std::size_t i = 0; i < tallies.size(); ++i) {
+      const bool needs_origin = tallies[i].engine.starts_with("libccd");
       if (converted == nullptr || !fresh[i]->takes(converted->set.kind, ContactLevel::manifold) ||
           (needs_origin && !converted->around_origin)) {
-        ++peers[i].not_taken;
+        ++tallies[i].not_taken;
       } else {
-        peers[i].add(query_library(*fresh[i], *converted, question));
+        tallies[i].add(query_library(*fresh[i], *converted, question));
       }
     }
   }
-  tallies.insert(tallies.end(), peers.begin(), peers.end());
+  all.insert(all.end(), tallies.begin(), tallies.end());
 }
 
-std::vector<HardCaseTally> judge_hard_cases(const Json& questions, bool peers) {
-  for (const Json& question : questions) check_case(question);
-  std::vector<HardCaseTally> tallies;
-  for (const NarrowTier tier : kTiers) {
-    HardCaseTally tally{.engine = std::string(to_text(tier))};
-    const Json answers = answer(questions, tier);
-    for (std::size_t i = 0; i < questions.size(); ++i) {
-      tally.add(check_hard_case(questions[i], answers[i], guaranteed_error(tier)));
-    }
-    tallies.push_back(std::move(tally));
+HardCaseTally judge_tier(const Json& questions, NarrowTier tier) {
+  HardCaseTally tally{.engine = std::string(to_text(tier))};
+  const Json answers = answer(questions, tier);
+  for (std::size_t i = 0; i < questions.size(); ++i) {
+    tally.add(check_hard_case(questions[i], answers[i], guaranteed_error(tier)));
   }
-  if (peers) add_peers(questions, tallies);
-  return tallies;
+  return tally;
 }
 
 }  // namespace
 
 void add_hard_cases(Results& results, const std::string& family, const Json& questions,
                     bool peers) {
-  const std::string command = "bench/run query tests/hard_cases/" + family + ".json --judge";
-  for (const HardCaseTally& one : judge_hard_cases(questions, peers)) {
-    results.add("hard_cases", {{"family", family},
-                               {"engine", one.engine},
-                               {"right", one.right},
-                               {"wrong", one.wrong},
-                               {"wrong_verdicts", one.wrong_verdicts},
-                               {"not_taken", one.not_taken},
-                               {"worst_error", one.worst_error},
-                               {"worst_over_allowed", one.worst_over_allowed},
-                               {"faults", one.wrong == 0 ? "-" : one.faults_text()},
-                               {"command", is_peer(one.engine) ? with_peers(command) : command}});
+  for (const Json& question : questions) check_case(question);
+  std::vector<HardCaseTally> tallies;
+  for (const NarrowTier tier : kTiers) tallies.push_back(judge_tier(questions, tier));
+  if (peers) judge_peers(questions, tallies);
+  for (const HardCaseTally& one : tallies) {
+    results.add("hard_cases",
+                {{"family", family},
+                 {"engine", one.engine},
+                 {"right", one.right},
+                 {"wrong", one.wrong},
+                 {"wrong_verdicts", one.wrong_verdicts},
+                 {"not_taken", one.not_taken},
+                 {"worst_error", one.worst_error},
+                 {"worst_over_allowed", one.worst_over_allowed},
+                 {"faults", one.faults_text()},
+                 {"command", command_text(is_peer(one.engine) ? "--with-peers " : "",
+                                          "query tests/hard_cases/", family, ".json --judge")}});
   }
 }
 
 void add_hard_case_totals(Results& results) {
+  constexpr std::pair<const char*, const char*> kAnswers[] = {
+      {"right", "right"},
+      {"wrong", "wrong"},
+      {"wrong_verdicts", "of them verdicts"},
+      {"not_taken", "not taken"}};
   for (const Json& engine : distinct(results.rows("hard_cases"), "engine")) {
-    const std::array<std::pair<const char*, const char*>, 4> answers{
-        {{"right", "right"},
-         {"wrong", "wrong"},
-         {"wrong_verdicts", "of them verdicts"},
-         {"not_taken", "not taken"}}};
-    for (const auto& [value, name] : answers) {
+    for (const auto& [value, name] : kAnswers) {
       double sum = 0.0;
       for (const Json* row : results.rows("hard_cases", {{"engine", engine}})) {
         sum += value_of(*row, value);

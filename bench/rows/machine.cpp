@@ -9,9 +9,9 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <ctime>
 #include <fstream>
+#include <iterator>
 #include <string>
 #include <thread>
 
@@ -47,16 +47,9 @@ std::string system_name() {
   return line_of("/etc/os-release", "PRETTY_NAME") + ", " + name.sysname + " " + name.release;
 }
 
-struct KnownPeer {
-  const char* name;
-  const char* package;
-};
-constexpr std::array<KnownPeer, 6> kKnownPeers{{{"Bullet", "libbullet-dev"},
-                                                {"FCL", "libfcl-dev"},
-                                                {"CGAL", "libcgal-dev"},
-                                                {"Embree", "libembree-dev"},
-                                                {"ODE", "libode-dev"},
-                                                {"libccd", "libccd-dev"}}};
+const Peer kPeers[] = {{"Bullet", "libbullet-dev"}, {"FCL", "libfcl-dev"},
+                       {"CGAL", "libcgal-dev"},     {"Embree", "libembree-dev"},
+                       {"ODE", "libode-dev"},       {"libccd", "libccd-dev"}};
 
 }  // namespace
 
@@ -97,14 +90,12 @@ std::vector<std::string> isa_names() {
   return names;
 }
 
-std::vector<MissingPeer> missing_peers() {
+std::vector<Peer> missing_peers() {
   const std::string found = std::string(" ") + kPeersFound + " ";
-  std::vector<MissingPeer> missing;
-  for (const KnownPeer& peer : kKnownPeers) {
-    if (found.find(std::string(" ") + peer.name + " ") == std::string::npos) {
-      missing.push_back({peer.name, peer.package});
-    }
-  }
+  std::vector<Peer> missing(std::begin(kPeers), std::end(kPeers));
+  std::erase_if(missing, [&](const Peer& peer) {
+    return found.find(" " + peer.name + " ") != std::string::npos;
+  });
   return missing;
 }
 
@@ -118,8 +109,7 @@ bool has_yardstick() {
 
 bool is_peer(std::string_view name) {
   return name == kYardstickName ||
-         std::any_of(kKnownPeers.begin(), kKnownPeers.end(),
-                     [&](const KnownPeer& peer) { return name.starts_with(peer.name); });
+         std::ranges::any_of(kPeers, [&](const Peer& peer) { return name.starts_with(peer.name); });
 }
 
 }  // namespace winnow::bench

@@ -19,12 +19,13 @@ namespace winnow::bench {
 /// Returns the instruction sets that both the machine and the build support, narrowest first.
 [[nodiscard]] std::vector<std::string> isa_names();
 
-/// A library that winnow can be compared with but that this tool was built without.
-struct MissingPeer {
+/// A library that winnow can be compared with.
+struct Peer {
   std::string name;
   std::string package;  ///< Debian's package
 };
-[[nodiscard]] std::vector<MissingPeer> missing_peers();
+/// Returns the libraries that this tool was built without.
+[[nodiscard]] std::vector<Peer> missing_peers();
 
 /// Returns whether the tool was built with at least one other library.
 [[nodiscard]] bool has_peers() noexcept;

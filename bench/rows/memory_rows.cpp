@@ -1,25 +1,25 @@
-#include "bench/rows/memory_rows.h"
+#include "bench/rows/rows.h"
 
-#include <winnow/simd/isa.h>
-#include "bench/contenders/partitions.h"
-#include "bench/rows/own_process.h"
+#include "bench/measure/footprint.h"
 
+#include <unistd.h>
+
+#include <cstdio>
 #include <stdexcept>
 
 namespace winnow::bench {
 namespace {
 
-constexpr const char* kInexact = "a footprint does not equal what was allocated";
-
-bool is_inexact(const Json& row) {
-  return row.value("exact", "yes") != "yes";
-}
-
 void add_held(Results& results, const Json& keys, const Held& held, const std::string& command) {
   const auto each = [&](std::size_t bytes) {
     return static_cast<double>(bytes) / static_cast<double>(held.objects);
   };
-  Json row = keys;
+  const auto add = [&](const char* family, Json row) {
+    row.update(keys);
+    row["command"] = command;
+    results.add(family, std::move(row));
+  };
+  Json row;
   for (const Purpose& purpose : kPurposes) {
     const Bytes& bytes = held.footprint.*purpose.bytes;
     row[purpose.name] = each(bytes.reserved);
@@ -32,70 +32,62 @@ void add_held(Results& results, const Json& keys, const Held& held, const std::s
   row["peak_later"] = each(held.peak_later);
   row["pair_buffer"] = each(held.buffer.total().reserved);
   row["exact"] = held.exact() ? "yes" : "NO";
-  row["command"] = command;
-  results.add("memory", std::move(row));
-  const auto add_check = [&](const char* by, std::size_t bytes) {
-    Json check = keys;
-    check["by"] = by;
-    check["bytes_per_object"] = each(bytes);
-    check["command"] = command;
-    results.add("memory_check", std::move(check));
-  };
-  add_check(kByFootprint, total.reserved);
-  add_check(kByResource, held.outstanding);
-  if (held.resident != 0) add_check(kByResident, held.resident);  // 0: not reported by the system
+  add("memory", std::move(row));
+  add("memory_check", {{"by", "footprint()"}, {"bytes_per_object", each(total.reserved)}});
+  add("memory_check", {{"by", "memory resource"}, {"bytes_per_object", each(held.outstanding)}});
+  if (held.resident == 0) return;  // not reported by the system
+  add("memory_check", {{"by", "resident set"}, {"bytes_per_object", each(held.resident)}});
+  add("memory_ratio", {{"ratio", each(held.resident) / each(total.reserved)}});
 }
 
-void derive_ratio(Results& results, const Json& keys, const std::string& command) {
-  const auto find_check = [&](const char* by) {
-    Json where = keys;
-    where["by"] = by;
-    return results.row("memory_check", where);
-  };
-  const Json* resident = find_check(kByResident);
-  const Json* reserved = find_check(kByFootprint);
-  if (resident == nullptr || reserved == nullptr) return;
-  Json ratio = keys;
-  ratio["ratio"] =
-      value_of(*resident, "bytes_per_object") / value_of(*reserved, "bytes_per_object");
-  ratio["command"] = command;
-  results.add("memory_ratio", std::move(ratio));
+void require_exact(bool exact) {
+  if (!exact) throw std::runtime_error("a footprint does not equal what was allocated");
+}
+
+/// Runs this tool in a second process with a subcommand and its options, and returns what it writes
+/// with --json, whatever its exit status. An interrupt from the terminal does not reach it. Throws
+/// std::runtime_error if it cannot start or wrote nothing.
+Json run_own(const std::string& subcommand) {
+  // The shell's standard output is the pipe, which becomes the JSON file of the tool.
+  const std::string command = "trap '' INT; exec /proc/" + std::to_string(::getpid()) + "/exe " +
+                              subcommand + " --json /dev/fd/3 3>&1 >/dev/null";
+  std::FILE* const written = ::popen(command.c_str(), "r");
+  if (written == nullptr) throw std::runtime_error("cannot start this tool once more");
+  std::string text;
+  char part[4096];
+  while (const std::size_t size = std::fread(part, 1, sizeof part, written))
+    text.append(part, size);
+  ::pclose(written);
+  Json json = Json::parse(text, nullptr, false);
+  if (json.is_discarded()) throw std::runtime_error(subcommand + " wrote nothing");
+  return json;
 }
 
 }  // namespace
 
 void add_footprints(Results& results, const NamedScene& scene, std::size_t objects,
                     std::uint64_t seed, const std::vector<std::string>& partitions, int threads) {
+  bool exact = true;
   for (const std::string& partition : partitions) {
     const Held held = measure_held(partition, *scene.source(objects, seed), threads);
     const Json keys{{"scene", scene.name},
                     {"objects", held.objects},
                     {"partition", held.partition},
                     {"threads", threads}};
-    const std::string command = "bench/run dev footprint" + scene.words(objects, seed) +
-                                " --threads " + std::to_string(threads) + " --isa " + isa_name() +
-                                " --partition " + partition;
-    add_held(results, keys, held, command);
-    derive_ratio(results, keys, command);
+    add_held(results, keys, held,
+             command_text("dev footprint", scene.words(objects, seed), settings_text(threads),
+                          " --partition ", partition));
+    exact = exact && held.exact();
   }
-  const auto rows = results.rows("memory", {{"scene", scene.name}});
-  if (std::any_of(rows.begin(), rows.end(), [](const Json* row) { return is_inexact(*row); })) {
-    throw std::runtime_error(kInexact);
-  }
+  require_exact(exact);
 }
 
 void add_footprints_apart(Results& results, const NamedScene& scene, std::size_t objects,
                           std::uint64_t seed, int threads) {
-  std::vector<std::string> arguments{"dev",          "footprint", "--scene",
-                                     scene.argument, "--threads", std::to_string(threads),
-                                     "--isa",        isa_name()};
-  if (!scene.is_recording()) {
-    arguments.insert(arguments.end(),
-                     {"--objects", std::to_string(objects), "--seed", std::to_string(seed)});
-  }
-  const Json rows = run_own(arguments)["benchmarks"];
+  const Json rows =
+      run_own("dev footprint" + scene.words(objects, seed) + settings_text(threads))["benchmarks"];
   results.adopt(rows);
-  if (std::any_of(rows.begin(), rows.end(), is_inexact)) throw std::runtime_error(kInexact);
+  for (const Json& row : rows) require_exact(row.value("exact", "yes") == "yes");
 }
 
 }  // namespace winnow::bench

@@ -61,9 +61,8 @@ std::string shell_word(const std::string& word) {
   return quoted + "'";
 }
 
-std::string with_peers(const std::string& command) {
-  const std::string run = "bench/run ";
-  return run + "--with-peers " + command.substr(run.size());
+std::string settings_text(int threads, Isa isa) {
+  return " --threads " + std::to_string(threads) + " --isa " + to_string(isa);
 }
 
 }  // namespace winnow::bench

@@ -1,11 +1,13 @@
 #pragma once
 
+#include <winnow/simd/isa.h>
 #include "bench/recordings/recording.h"
 #include "bench/scenes/frame_source.h"
 
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -33,7 +35,15 @@ struct NamedScene {
 /// Quotes a word for a shell if necessary.
 [[nodiscard]] std::string shell_word(const std::string& word);
 
-/// Returns a command that installs the other libraries first.
-[[nodiscard]] std::string with_peers(const std::string& command);
+/// Returns the command of bench/run that measures a row again.
+template <typename... Parts>
+[[nodiscard]] std::string command_text(const Parts&... parts) {
+  std::ostringstream text;
+  text << "bench/run ";
+  (text << ... << parts);
+  return text.str();
+}
+/// Returns " --threads 2 --isa avx2".
+[[nodiscard]] std::string settings_text(int threads, Isa isa = active_isa());
 
 }  // namespace winnow::bench

@@ -1,4 +1,4 @@
-#include "bench/rows/print.h"
+#include "bench/rows/results.h"
 
 #include "bench/common/table.h"
 
@@ -31,19 +31,15 @@ std::string heading(std::string name) {
   return name;
 }
 
-bool any_has(const std::vector<const Json*>& rows, const std::string& name) {
-  return std::any_of(rows.begin(), rows.end(),
-                     [&](const Json* row) { return row->contains(name); });
+bool has(const std::vector<std::string>& names, const std::string& name) {
+  return std::ranges::find(names, name) != names.end();
 }
 
-std::vector<std::string> values_of(const std::vector<const Json*>& rows,
-                                   const std::vector<std::string>& keys) {
+std::vector<std::string> members_of(const std::vector<const Json*>& rows) {
   std::vector<std::string> names;
   for (const Json* row : rows) {
     for (const auto& [name, value] : row->items()) {
-      const bool is_key = std::find(keys.begin(), keys.end(), name) != keys.end();
-      const bool is_known = std::find(names.begin(), names.end(), name) != names.end();
-      if (!is_key && !is_known && name != "name" && name != "command") names.push_back(name);
+      if (!has(names, name) && name != "name" && name != "command") names.push_back(name);
     }
   }
   return names;
@@ -56,17 +52,18 @@ void print_rows(std::ostream& out, const Results& results, const std::string& fa
   const auto rows = results.rows(family);
   if (rows.empty()) return;
   const auto keys = keys_of(family);
+  const auto members = members_of(rows);
   std::string title = heading(family);
   std::vector<std::string> columns;
   for (const std::string& key : keys) {
     if (rows.size() > 1 && distinct(rows, key).size() == 1) {
       title += ", " + key + " " + shown((*rows.front())[key]);
-    } else if (any_has(rows, key)) {
+    } else if (has(members, key)) {
       columns.push_back(key);
     }
   }
-  for (const std::string& value : values.empty() ? values_of(rows, keys) : values) {
-    if (any_has(rows, value)) columns.push_back(value);
+  for (const std::string& value : values.empty() ? members : values) {
+    if (has(members, value) && !has(keys, value)) columns.push_back(value);
   }
   std::vector<std::string> header;
   for (const std::string& column : columns) header.push_back(heading(column));

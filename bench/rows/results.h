@@ -3,7 +3,9 @@
 #include "bench/common/json.h"
 
 #include <deque>
+#include <iosfwd>
 #include <map>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -51,6 +53,12 @@ class Results {
 /// Formats a document with one row per line, so that versions can be compared with diff.
 [[nodiscard]] std::string document_text(const Json& document);
 
+/// Prints the rows of a family: the keys that all rows share in one line, then a column for each
+/// other key and for each of these values (none: all) that any row has. Spreads are shown as median
+/// (least to greatest). Prints nothing if there are no rows.
+void print_rows(std::ostream& out, const Results& results, const std::string& family,
+                const std::vector<std::string>& values = {});
+
 /// Returns the keys of a family in the order of its names. Throws std::logic_error if it is
 /// unknown.
 [[nodiscard]] std::vector<std::string> keys_of(const std::string& family);
@@ -59,7 +67,7 @@ class Results {
 [[nodiscard]] std::string word_of(std::string_view text);
 
 /// Converts samples to the value of a row: {"min", "median", "max", "samples"}.
-[[nodiscard]] Json to_value(const std::vector<double>& samples);
+[[nodiscard]] Json to_value(std::span<const double> samples);
 
 /// Returns a row's value, the median of a spread; NaN if there is none.
 [[nodiscard]] double value_of(const Json& row, const std::string& name);

@@ -1,5 +1,5 @@
 // Cloth that falls on a ball, simulated with DeformableMesh: self_proximity keeps features apart,
-// self_impacts and impacts_with cut the steps. bench/rows/barrier_rows.cpp runs it.
+// self_impacts and impacts_with cut the steps. bench/rows/simulation_rows.cpp runs it.
 
 #include "bench/simulation/cloth_drop.h"
 

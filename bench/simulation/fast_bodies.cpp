@@ -1,6 +1,6 @@
 // Fast bodies in a funnel or beside a rotating blade, advanced from impact to impact by
 // ContinuousCollision, and a brute-force check whether a centre passed through.
-// bench/rows/barrier_rows.cpp runs it.
+// bench/rows/simulation_rows.cpp runs it.
 
 #include "bench/simulation/fast_bodies.h"
 

@@ -1,5 +1,5 @@
 // Builds structures that stand only if contacts are good (stack, card house, wheel, arch) and
-// simulates them with ContactSolver. bench/rows/standing_rows.cpp runs it.
+// simulates them with ContactSolver. bench/rows/simulation_rows.cpp runs it.
 
 #include "bench/simulation/standing.h"
 

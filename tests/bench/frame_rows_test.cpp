@@ -1,14 +1,10 @@
 // Result rows for median, worst and first frames, for first frames on touched and untouched memory,
 // for other libraries and threads.
 
-#include "bench/rows/frame_rows.h"
 #include "bench/common/reused_memory.h"
 #include "bench/measure/cold_frames.h"
-#include "bench/rows/cold_rows.h"
-#include "bench/rows/every_scene_rows.h"
-#include "bench/rows/host_rows.h"
-#include "bench/rows/library_comparison_rows.h"
 #include "bench/rows/machine.h"
+#include "bench/rows/rows.h"
 #include "bench/scenes/scene.h"
 
 #include <gtest/gtest.h>
@@ -43,7 +39,7 @@ TEST(FrameRows, worst_frame_is_present_only_after_settling) {
 
 TEST(FrameRows, rows_compare_with_the_yardstick_if_present) {
   Results results;
-  add_every_scene(results, {.scene = scene_named("jumps"), .objects = 300, .frames = 12});
+  add_every_scene(results, scene_named("jumps"), {.objects = 300, .yardstick = true, .frames = 12});
   const auto rows = results.rows("every_scene");
   ASSERT_GT(rows.size(), 5U);
   for (const Json* row : rows) {
@@ -60,8 +56,7 @@ TEST(FrameRows, rows_compare_with_the_yardstick_if_present) {
 
 TEST(FrameRows, rows_without_the_yardstick_leave_it_out) {
   Results results;
-  add_every_scene(results,
-                  {.scene = scene_named("shear"), .objects = 100, .yardstick = false, .frames = 3});
+  add_every_scene(results, scene_named("shear"), {.objects = 100, .frames = 3});
   add_cold(results, scene_named("shear"), 100, 1, {"LinearBvh"}, 1, 1, false);
   EXPECT_TRUE(results.rows("every_scene", {{"partition", "yardstick"}}).empty());
   EXPECT_FALSE(results.rows("cold").front()->contains("over_yardstick"));

@@ -1,4 +1,4 @@
-#include "bench/rows/scene_rows.h"
+#include "bench/rows/rows.h"
 
 #include <gtest/gtest.h>
 

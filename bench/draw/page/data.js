@@ -2,43 +2,22 @@
 
 const kPictures = JSON.parse(document.getElementById("data").textContent);
 
-function bytesOf(text) {
-  const binary = atob(text);
-  const bytes = new Uint8Array(binary.length);
-  for (let i = 0; i < binary.length; ++i) bytes[i] = binary.charCodeAt(i);
-  return bytes.buffer;
-}
+const kColumns = {
+  boxes: Float32Array, lines: Float32Array, contacts: Float32Array, at: Float32Array,
+  ray: Float32Array, box: Float32Array, t: Float32Array, rows: Uint32Array, pairs: Uint32Array,
+  hits: Uint32Array, inside: Uint32Array, crossing: Uint32Array, data: BigUint64Array,
+};
+const bytesOf = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0)).buffer;
 
-const floatsOf = (text) => new Float32Array(bytesOf(text));
-const indicesOf = (text) => new Uint32Array(bytesOf(text));
-const wideOf = (text) => new BigUint64Array(bytesOf(text));
-
-// Decodes one picture. A box is six floats: the lower corner, then the upper one.
-function read(picture) {
-  const objects = {
-    boxes: floatsOf(picture.objects.boxes),
-    rows: indicesOf(picture.objects.rows),
-    data: wideOf(picture.objects.data),
-  };
-  objects.count = objects.rows.length;
-  const rays = picture.rays.map((r) => {
-    const ray = floatsOf(r.ray);
-    return {
-      origin: ray.slice(0, 3),
-      direction: ray.slice(3, 6),
-      closest: r.closest,
-      closestT: r.closest_t,
-      hits: indicesOf(r.hits),
-      t: floatsOf(r.t),
-    };
-  });
-  const questionBoxes = picture.boxes.map((b) => ({
-    box: floatsOf(b.box),
-    inside: indicesOf(b.inside),
-    crossing: indicesOf(b.crossing),
-  }));
-  const pairs = indicesOf(picture.pairs);
-  return {picture, objects, pairs, rays, questionBoxes, partners: partnersOf(pairs)};
+// Decodes the columns of a picture, or of a part of it. A box is six floats: the lower corner, then
+// the upper one; a ray is its origin, then its direction.
+function decoded(part, name) {
+  if (typeof part === "string") {
+    return name in kColumns ? new kColumns[name](bytesOf(part)) : part;
+  }
+  if (Array.isArray(part)) return part.map((one) => decoded(one));
+  if (typeof part !== "object") return part;
+  return Object.fromEntries(Object.entries(part).map(([key, value]) => [key, decoded(value, key)]));
 }
 
 // Maps the index of each object that has a pair to the indices of its partners.
@@ -53,33 +32,23 @@ function partnersOf(pairs) {
   return partners;
 }
 
-// The decoded picture of the frame that is shown.
-let now = read(kPictures[0]);
-
 // Returns the box that the camera shows. It contains the middle 96 % of the ends of all boxes and
 // extends past them by at most half of their range, so that one box far away does not shrink all
 // others to a dot.
-function findFrame() {
+function frameOf(boxes) {
   const low = [0, 0, 0];
   const high = [0, 0, 0];
+  const at = (column, share) => column[Math.round(share * (column.length - 1))];
   for (let axis = 0; axis < 3; ++axis) {
-    let ends = [new Float32Array(now.objects.count), new Float32Array(now.objects.count)];
-    for (let i = 0; i < now.objects.count; ++i) {
-      ends[0][i] = now.objects.boxes[6 * i + axis];
-      ends[1][i] = now.objects.boxes[6 * i + 3 + axis];
-    }
-    ends = ends.map((column) => column.filter(Number.isFinite).sort());
-    const at = (column, share) => column[Math.round(share * (column.length - 1))];
-    if (ends[0].length === 0 || ends[1].length === 0) {
-      low[axis] = ends[0].length ? ends[0][0] : ends[1].length ? ends[1][0] : -1;
-      high[axis] = ends[1].length ? at(ends[1], 1) : ends[0].length ? at(ends[0], 1) : 1;
-      continue;
-    }
-    const from = at(ends[0], 0.02);
-    const to = at(ends[1], 0.98);
+    let [lows, highs] = [axis, axis + 3].map(
+        (end) => boxes.filter((x, i) => i % 6 === end && Number.isFinite(x)).sort());
+    if (lows.length === 0) lows = highs.length ? highs : [-1, 1];
+    if (highs.length === 0) highs = lows;
+    const from = at(lows, 0.02);
+    const to = at(highs, 0.98);
     const margin = 0.5 * Math.abs(to - from);
-    low[axis] = Math.max(ends[0][0], from - margin);
-    high[axis] = Math.min(at(ends[1], 1), to + margin);
+    low[axis] = Math.max(lows[0], from - margin);
+    high[axis] = Math.min(at(highs, 1), to + margin);
     if (low[axis] > high[axis]) [low[axis], high[axis]] = [high[axis], low[axis]];
   }
   const centre = low.map((l, axis) => 0.5 * l + 0.5 * high[axis]);
@@ -90,8 +59,7 @@ function findFrame() {
 // The GPU gets coordinates relative to the frame's centre, in units of its radius, so that floats
 // far from the origin, very large or very small lose no precision. All pictures use the frame of
 // the first one, so that motion is visible.
-const kFrame = now.objects.count ? findFrame() : {low: [-1, -1, -1], high: [1, 1, 1],
-                                               centre: [0, 0, 0], radius: Math.sqrt(3)};
+const kFrame = frameOf(decoded(kPictures[0]).objects.boxes);
 const kFarthest = 40;
 
 // Ends at infinity are drawn slightly outside of the frame.
@@ -102,19 +70,25 @@ function placed(value, axis) {
   if (value === Infinity) return (kFrame.high[axis] - c) / r + 0.15;
   return Math.min(kFarthest, Math.max(-kFarthest, (value - c) / r));
 }
+const placedColumn = (values) => Float32Array.from(values, (value, i) => placed(value, i % 3));
 
-function placedColumn(values) {
-  const result = new Float32Array(values.length);
-  for (let i = 0; i < values.length; ++i) result[i] = placed(values[i], i % 3);
-  return result;
-}
-
+// The picture of the frame that is shown. The tool names objects by their rows, and the page by
+// their places among the drawn ones.
+let now;
 function show(picture) {
-  now = read(picture);
+  now = decoded(picture);
+  const placeOf = new Map(Array.from(now.objects.rows, (row, place) => [row, place]));
+  const places = (rows) => rows.map((row) => placeOf.get(row));
+  for (const ray of now.rays) {
+    Object.assign(ray, {hits: places(ray.hits), closest: placeOf.get(ray.closest)});
+  }
+  for (const box of now.boxes) {
+    Object.assign(box, {inside: places(box.inside), crossing: places(box.crossing)});
+  }
+  now.pairs = places(now.pairs);
+  now.partners = partnersOf(now.pairs);
   now.placed = placedColumn(now.objects.boxes);
 }
-now.placed = placedColumn(now.objects.boxes);
+show(kPictures[0]);
 
-function centreOfObject(i, axis) {
-  return 0.5 * (now.placed[6 * i + axis] + now.placed[6 * i + 3 + axis]);
-}
+const centreOfObject = (i, axis) => 0.5 * (now.placed[6 * i + axis] + now.placed[6 * i + 3 + axis]);

@@ -13,7 +13,6 @@ const kColours = {
   contact: [220, 50, 32],
 };
 
-const kScene = new THREE.Scene();
 const kLayers = [];
 const kLabels = [];
 const kSwitched = new Map();  // layer name -> on or off, for layers that the user switched
@@ -32,41 +31,32 @@ function addLayer({meshes, counted = meshes[0], mark = "box", shown = true, ...f
   kLayers.push(layer);
 }
 
-function boxesAt(places) {
-  const boxes = new Float32Array(6 * places.length);
-  places.forEach((place, i) => {
-    boxes.set(now.placed.subarray(6 * place, 6 * place + 6), 6 * i);
-  });
-  return boxes;
-}
+// The boxes of objects, each once.
+const boxesAt = (places) => Float32Array.from([...new Set(places)].flatMap(
+    (place) => [...now.placed.subarray(6 * place, 6 * place + 6)]));
 
 // Draws large numbers of things fainter, so that things behind them remain visible.
 const thinned = (opacity, count) => Math.max(0.05, opacity * Math.min(1, Math.sqrt(500 / count)));
 
 function addObjects() {
-  const paired = new Uint8Array(now.objects.count);
-  for (const place of now.pairs) paired[place] = 1;
   const places = [[], []];
-  for (let i = 0; i < now.objects.count; ++i) places[paired[i]].push(i);
+  now.objects.rows.forEach((row, i) => places[Number(now.partners.has(i))].push(i));
   const names = ["touch nothing", "in a pair"];
   [kColours.object, kColours.paired].forEach((colour, which) => {
     const boxes = boxesAt(places[which]);
     // Orange edges are sufficient; orange faces would hide the chosen object.
     const fill = colour.map((c, k) => 0.45 * c + 0.55 * kColours.object[k]);
     addLayer({
-      id: "objects_drawn",
-      paired: which === 1,
-      group: "Objects",
-      name: names[which],
-      colour,
-      count: places[which].length,
-      mark: "fill",
+      id: "objects_drawn", paired: which === 1, group: "Objects", name: names[which], colour,
+      count: places[which].length, mark: "fill",
       meshes: [boxFaces(boxes, fill, 1, 1), boxEdges(boxes, colour, 0.9, 3)],
     });
   });
 }
 
-const withGhost = (mesh, kind, opacity) => [mesh, ghost(mesh, kind, opacity)];
+// Boxes with filled faces, whose edges are seen through other objects.
+const marked = (boxes, colour, fill, order, opacity) =>
+    [boxFaces(boxes, colour, fill, 4), ...withGhost(boxEdges(boxes, colour, 1, order), opacity)];
 
 function addPairs() {
   const ends = new Float32Array(3 * now.pairs.length);
@@ -77,19 +67,18 @@ function addPairs() {
   addLayer({
     id: "pairs_drawn", group: "Objects", name: "pairs", colour: kColours.pair, count,
     mark: "line", shown: count <= 100000,
-    meshes: withGhost(wideLines(ends, kColours.pair, 1, 1.6, 5), "lines", thinned(0.8, count)),
+    meshes: withGhost(wideLines(ends, kColours.pair, 1, 1.6, 5), thinned(0.8, count)),
   });
 }
 
 function addContacts() {
-  const ends = placedColumn(floatsOf(now.picture.contacts));
-  const points = new Float32Array(ends.length / 2);
-  for (let i = 0; i < points.length; ++i) points[i] = ends[6 * Math.floor(i / 3) + i % 3];
+  const ends = placedColumn(now.contacts);
+  const points = ends.filter((x, i) => i % 6 < 3);
   const colour = kColours.contact;
   const count = ends.length / 6;
   addLayer({
     id: "contacts", group: "Objects", name: "contacts", colour, count, mark: "line",
-    meshes: [...withGhost(wideLines(ends, colour, 1, 2.2, 7), "lines", 0.6),
+    meshes: [...withGhost(wideLines(ends, colour, 1, 2.2, 7), 0.6),
              dots(points, colour, 7, 8)],
   });
 }
@@ -99,17 +88,14 @@ const kCell = kPictures[0].counts.partition === "SweepAndPrune" ? "strip" : "cel
 
 function addStructure() {
   let budget = 4000;  // at most this many boxes can be distinguished on a screen
-  for (const layer of now.picture.structure.layers) {
-    const boxes = placedColumn(floatsOf(layer.boxes));
-    const lines = placedColumn(floatsOf(layer.lines));
+  for (const layer of now.structure.layers) {
+    const boxes = placedColumn(layer.boxes);
+    const lines = placedColumn(layer.lines);
     const count = boxes.length / 6;
     const meshes = [];
-    if (lines.length) {
-      meshes.push(...withGhost(wideLines(lines, layer.colour, 1, 2.4, 6), "lines", 0.6));
-    }
+    if (lines.length) meshes.push(...withGhost(wideLines(lines, layer.colour, 1, 2.4, 6), 0.6));
     if (count) {
-      const edges = boxEdges(boxes, layer.colour, 1, 4);
-      meshes.push(...withGhost(edges, "edges", thinned(0.35, count)));
+      meshes.push(...withGhost(boxEdges(boxes, layer.colour, 1, 4), thinned(0.35, count)));
     }
     const shown = count <= budget && layer.name !== "contents of cells";
     if (shown) budget -= count;
@@ -122,22 +108,15 @@ function addStructure() {
   }
 }
 
-const unique = (places) => [...new Set(places)].sort((a, b) => a - b);
-
 // Returns the ray parameter up to which a ray is drawn: past the frame and past its last hit.
-function endOfRay(ray) {
-  const o = [0, 1, 2].map((axis) => (ray.origin[axis] - kFrame.centre[axis]) / kFrame.radius);
-  const d = Array.from(ray.direction, (x) => x / kFrame.radius);
-  const dd = d.reduce((sum, x) => sum + x * x, 0);
-  const middle = -o.reduce((sum, x, axis) => sum + x * d[axis], 0) / dd;
-  const apart = o.reduce((sum, x, axis) => sum + (x + middle * d[axis]) ** 2, 0);
-  const half = Math.sqrt(Math.max(0, 1.3 ** 2 - apart) / dd);
-  const last = ray.t.length ? ray.t[ray.t.length - 1] : 0;
-  return Math.max(middle + half, 1.05 * last, 0.3 / Math.sqrt(dd));
+function endOfRay({ray, t}) {
+  const distance = Math.hypot(...[0, 1, 2].map((axis) => ray[axis] - kFrame.centre[axis]));
+  const past = (distance + 1.3 * kFrame.radius) / Math.hypot(...ray.subarray(3));
+  return Math.max(past, 1.05 * (t[t.length - 1] || 0));
 }
 
-const pointOn = (ray, t) => [0, 1, 2].map(
-    (axis) => placed(ray.origin[axis] + t * ray.direction[axis], axis));
+const pointOn = ({ray}, t) =>
+    [0, 1, 2].map((axis) => placed(ray[axis] + t * ray[axis + 3], axis));
 
 function addRays() {
   const colour = kColours.hit;
@@ -147,62 +126,50 @@ function addRays() {
   addLayer({
     id: "rays", group: "Queries", name: "rays", colour: kColours.ray, count: now.rays.length,
     mark: "line",
-    meshes: [...withGhost(wideLines(lines, kColours.ray, 1, 2.2, 7), "lines", 0.6),
+    meshes: [...withGhost(wideLines(lines, kColours.ray, 1, 2.2, 7), 0.6),
              dots(starts, kColours.ray, 7, 8)],
   });
   const closest = now.rays.filter((ray) => ray.closest !== undefined);
-  const points = closest.flatMap((ray) => pointOn(ray, ray.closestT));
+  const points = closest.flatMap((ray) => pointOn(ray, ray.closest_t));
   const closestDots = dots(new Float32Array(points), colour, 13, 9);
-  const first = boxesAt(unique(closest.map((ray) => ray.closest)));
+  const first = boxesAt(closest.map((ray) => ray.closest));
   addLayer({
     id: "rays_that_hit", group: "Queries", name: "closest hits", colour, count: closest.length,
-    mark: "fill",
-    meshes: [boxFaces(first, colour, 0.75, 4),
-             ...withGhost(boxEdges(first, colour, 1, 7), "edges", 0.9),
-             closestDots],
+    mark: "fill", meshes: [...marked(first, colour, 0.75, 7, 0.9), closestDots],
     counted: closestDots,
   });
   const all = now.rays.flatMap((ray) => Array.from(ray.t, (t) => pointOn(ray, t))).flat();
   const allDots = dots(new Float32Array(all), colour, 8, 8);
-  const hits = boxesAt(unique(now.rays.flatMap((ray) => Array.from(ray.hits))));
+  const hits = boxesAt(now.rays.flatMap((ray) => [...ray.hits]));
   addLayer({
     id: "ray_hits", group: "Queries", name: "all hits", colour, count: all.length / 3,
-    meshes: [boxFaces(hits, colour, 0.4, 4),
-             ...withGhost(boxEdges(hits, colour, 1, 6), "edges", 0.7),
-             allDots],
-    counted: allDots,
+    meshes: [...marked(hits, colour, 0.4, 6, 0.7), allDots], counted: allDots,
   });
 }
 
 function addQuestionBoxes() {
   const colour = kColours.box;
-  const boxes = placedColumn(now.questionBoxes.flatMap((question) => Array.from(question.box)));
+  const boxes = placedColumn(now.boxes.flatMap((question) => [...question.box]));
   addLayer({
-    id: "boxes", group: "Queries", name: "boxes of queries", colour,
-    count: now.questionBoxes.length,
-    meshes: [boxFaces(boxes, colour, 0.12, 5),
-             ...withGhost(boxEdges(boxes, colour, 1, 7), "edges", 0.7)],
+    id: "boxes", group: "Queries", name: "boxes of queries", colour, count: now.boxes.length,
+    meshes: marked(boxes, colour, 0.12, 7, 0.7),
   });
   for (const [id, name, opacity] of [["inside", "inside of a box", 0.6],
                                      ["crossing", "crossing its border", 0.25]]) {
-    const places = now.questionBoxes.flatMap((question) => Array.from(question[id]));
-    const found = boxesAt(unique(places));
+    const places = now.boxes.flatMap((question) => [...question[id]]);
     addLayer({
       id, group: "Queries", name, colour, count: places.length, mark: "fill",
-      meshes: [boxFaces(found, colour, opacity, 4),
-               ...withGhost(boxEdges(found, colour, 1, 6), "edges", 0.6)],
+      meshes: marked(boxesAt(places), colour, opacity, 6, 0.6),
     });
   }
 }
 
 // Client data are a text layer of their own; labels of the structure belong to its layer.
 function addLabels() {
-  const labels = now.picture.structure.texts.slice(0, 500).map((text) => {
-    const element = document.createElement("span");
-    element.textContent = text.text;
-    element.style.color = `rgb(${text.colour.join(",")})`;
+  const labels = now.structure.texts.slice(0, 500).map((text) => {
+    const element = make("span", {textContent: text.text, style: `color: rgb(${text.colour})`});
     document.getElementById("labels").append(element);
-    return {element, at: new THREE.Vector3(...placedColumn(floatsOf(text.at))), visible: true,
+    return {element, at: new THREE.Vector3(...placedColumn(text.at)), visible: true,
             layer: kLayers.find((l) => l.colour.join() === text.colour.join())};
   });
   kLabels.push(...labels);
@@ -220,6 +187,7 @@ function removeLayers() {
       kScene.remove(mesh);
       mesh.geometry.dispose();
       mesh.material.dispose();
+      if (mesh.material.map) mesh.material.map.dispose();
     }
   }
   kLabels.length = 0;

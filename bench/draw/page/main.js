@@ -8,9 +8,6 @@ try {
   startPicking();
   startPlayer();
 } catch (error) {
-  const panel = document.createElement("section");
-  panel.className = "panel";
-  panel.id = "failure";
-  panel.textContent = `This page cannot be drawn: ${error.message || error}`;
-  document.body.append(panel);
+  document.body.append(make("section", {className: "panel", id: "failure",
+    textContent: `This page cannot be drawn: ${error.message || error}`}));
 }

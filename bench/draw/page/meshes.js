@@ -1,151 +1,21 @@
-// Meshes of a layer: instanced boxes (edges and faces), lines with a width in pixels, and dots.
-// Each takes one draw call, whatever the number of instances.
+// Meshes of a layer: boxes (edges and faces), lines with a width in pixels, and dots. Things far
+// behind the middle fade into the background.
 
-const kUniforms = {
-  resolution: {value: new THREE.Vector2(1, 1)},
-  pixelRatio: {value: 1},
-  // Distance of the camera from its target; things behind the target fade.
-  reach: {value: 3},
-};
+const kBackground = 0x12161c;
+const kScene = new THREE.Scene();
+kScene.fog = new THREE.Fog(kBackground);
+// The fog leaves everything visible.
+THREE.ShaderChunk.fog_fragment =
+    THREE.ShaderChunk.fog_fragment.replace("fogFactor )", "0.7 * fogFactor )");
+const kLight = new THREE.HemisphereLight(0xffffff, 0x000000, 0.8);
+kLight.position.set(0.3, -0.5, 0.8);
+kScene.add(kLight);
 
-const kVertexStart = `
-precision highp float;
-uniform mat4 modelViewMatrix;
-uniform mat4 projectionMatrix;
-uniform vec2 resolution;
-uniform float pixelRatio;
-uniform float reach;
-uniform float width;
-varying float shade;
-float fade(float distance) { return mix(1.0, 0.3, clamp((distance - reach + 0.9) / 1.8, 0.0, 1.0)); }
-`;
-
-const kVertexShaders = {
-  edges: `
-attribute vec3 position, low, high;
-void main() {
-  vec4 seen = modelViewMatrix * vec4(mix(low, high, position), 1.0);
-  shade = fade(-seen.z);
-  gl_Position = projectionMatrix * seen;
-}`,
-  faces: `
-attribute vec3 position, normal, low, high;
-void main() {
-  vec4 seen = modelViewMatrix * vec4(mix(low, high, position), 1.0);
-  vec3 n = (modelViewMatrix * vec4(normal, 0.0)).xyz;
-  shade = (0.4 + 0.6 * fade(-seen.z)) * (0.2 + 0.5 * abs(dot(n, normalize(vec3(0.3, 0.5, 0.8)))));
-  gl_Position = projectionMatrix * seen;
-}`,
-  lines: `
-attribute vec3 position, from, to;
-void main() {
-  vec4 seenA = modelViewMatrix * vec4(from, 1.0);
-  vec4 seenB = modelViewMatrix * vec4(to, 1.0);
-  float near = -0.001;
-  if (seenA.z > near && seenB.z < near) seenA = mix(seenA, seenB, (near - seenA.z) / (seenB.z - seenA.z));
-  if (seenB.z > near && seenA.z < near) seenB = mix(seenB, seenA, (near - seenB.z) / (seenA.z - seenB.z));
-  vec4 a = projectionMatrix * seenA;
-  vec4 b = projectionMatrix * seenB;
-  vec2 along = (b.xy / b.w - a.xy / a.w) * resolution;
-  vec2 across = length(along) > 0.0 ? normalize(vec2(-along.y, along.x)) : vec2(0.0, 1.0);
-  vec4 end = mix(a, b, position.x);
-  end.xy += across * position.y * width * pixelRatio / resolution * end.w;
-  shade = fade(-mix(seenA.z, seenB.z, position.x));
-  gl_Position = end;
-}`,
-  dots: `
-attribute vec3 position;
-void main() {
-  vec4 seen = modelViewMatrix * vec4(position, 1.0);
-  shade = 1.0;
-  gl_PointSize = width * pixelRatio;
-  gl_Position = projectionMatrix * seen;
-}`,
-};
-
-const kFragmentShaders = {
-  faces: `
-precision highp float;
-uniform vec3 colour;
-uniform float opacity;
-varying float shade;
-void main() { gl_FragColor = vec4(mix(vec3(0.07, 0.086, 0.11), colour, shade), opacity); }`,
-  plain: `
-precision highp float;
-uniform vec3 colour;
-uniform float opacity;
-varying float shade;
-void main() { gl_FragColor = vec4(colour, opacity * shade); }`,
-  dots: `
-precision highp float;
-uniform vec3 colour;
-uniform float opacity;
-varying float shade;
-void main() {
-  float r = length(gl_PointCoord - 0.5) * 2.0;
-  if (r > 1.0) discard;
-  gl_FragColor = vec4(mix(colour, vec3(1.0), step(r, 0.45)), opacity * shade);
-}`,
-};
-
-// A material for things that are visible, or with `hidden` for things behind solid objects, which
-// are drawn a second time and fainter.
-function material(kind, colour, opacity, width, hidden) {
-  return new THREE.RawShaderMaterial({
-    uniforms: {
-      ...kUniforms,
-      colour: {value: new THREE.Color(...colour.map((c) => c / 255))},
-      opacity: {value: opacity},
-      width: {value: width || 1},
-    },
-    vertexShader: kVertexStart + kVertexShaders[kind],
-    fragmentShader: kFragmentShaders[kind] || kFragmentShaders.plain,
-    transparent: true,
-    depthTest: kind !== "dots",
-    depthFunc: hidden ? THREE.GreaterDepth : THREE.LessEqualDepth,
-    depthWrite: kind === "faces" && opacity === 1,
-    polygonOffset: kind === "faces",
-    polygonOffsetFactor: 1,
-    polygonOffsetUnits: 1,
-    side: THREE.DoubleSide,
-  });
-}
-
-const kCorners = [0, 1, 2, 3, 4, 5, 6, 7].map((i) => [i & 1, (i >> 1) & 1, (i >> 2) & 1]);
-const kEdgeVertices = [];
-for (let a = 0; a < 8; ++a) {
-  for (const bit of [1, 2, 4]) {
-    if (!(a & bit)) kEdgeVertices.push(...kCorners[a], ...kCorners[a | bit]);
-  }
-}
-const kFaceVertices = [];
-const kFaceNormals = [];
-for (let axis = 0; axis < 3; ++axis) {
-  for (const side of [0, 1]) {
-    for (const [u, v] of [[0, 0], [1, 0], [1, 1], [0, 0], [1, 1], [0, 1]]) {
-      const corner = [0, 0, 0];
-      corner[axis] = side;
-      corner[(axis + 1) % 3] = u;
-      corner[(axis + 2) % 3] = v;
-      const normal = [0, 0, 0];
-      normal[axis] = 1;
-      kFaceVertices.push(...corner);
-      kFaceNormals.push(...normal);
-    }
-  }
-}
-
-function instanced(vertices, count, first, second, columns) {
-  const geometry = new THREE.InstancedBufferGeometry();
-  geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(vertices), 3));
-  const buffer = new THREE.InstancedInterleavedBuffer(columns, 6, 1);
-  geometry.setAttribute(first, new THREE.InterleavedBufferAttribute(buffer, 3, 0));
-  geometry.setAttribute(second, new THREE.InterleavedBufferAttribute(buffer, 3, 3));
-  // The name of this member depends on the version of three.js.
-  geometry.maxInstancedCount = count;
-  geometry.instanceCount = count;
-  return geometry;
-}
+// What all materials have in common.
+const materialOf = (colour, opacity, more) => ({
+  color: new THREE.Color(...colour.map((c) => c / 255)), opacity, transparent: true,
+  depthWrite: false, side: THREE.DoubleSide, ...more,
+});
 
 function finished(mesh, order) {
   mesh.frustumCulled = false;
@@ -153,46 +23,88 @@ function finished(mesh, order) {
   return mesh;
 }
 
+// The corners at which the edges of a box end: bit `axis` is set at the upper end.
+const kEdgeCorners = [];
+for (let corner = 0; corner < 8; ++corner) {
+  for (const bit of [1, 2, 4]) if (!(corner & bit)) kEdgeCorners.push(corner, corner | bit);
+}
+
 // `boxes`: six placed floats per box.
 function boxEdges(boxes, colour, opacity, order) {
-  const geometry = instanced(kEdgeVertices, boxes.length / 6, "low", "high", boxes);
-  const lines = new THREE.LineSegments(geometry, material("edges", colour, opacity));
-  return finished(lines, order);
+  const ends = new Float32Array(12 * boxes.length);
+  for (let i = 0; i < ends.length; ++i) {
+    const axis = i % 3;
+    const corner = kEdgeCorners[Math.floor(i / 3) % 24];
+    ends[i] = boxes[6 * Math.floor(i / 72) + axis + 3 * (corner >> axis & 1)];
+  }
+  const geometry = new THREE.BufferGeometry();
+  geometry.setAttribute("position", new THREE.BufferAttribute(ends, 3));
+  const material = new THREE.LineBasicMaterial(materialOf(colour, opacity));
+  return finished(new THREE.LineSegments(geometry, material), order);
 }
 
 function boxFaces(boxes, colour, opacity, order) {
-  const geometry = instanced(kFaceVertices, boxes.length / 6, "low", "high", boxes);
-  geometry.setAttribute("normal",
-                        new THREE.BufferAttribute(new Float32Array(kFaceNormals), 3));
-  return finished(new THREE.Mesh(geometry, material("faces", colour, opacity)), order);
+  const material = new THREE.MeshLambertMaterial(materialOf(colour, opacity, {
+    depthWrite: opacity === 1, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
+  }));
+  const count = boxes.length / 6;
+  const mesh = new THREE.InstancedMesh(new THREE.BoxBufferGeometry(1, 1, 1), material, count);
+  const matrices = mesh.instanceMatrix.array;
+  for (let i = 0; i < count; ++i) {
+    for (let axis = 0; axis < 3; ++axis) {
+      const [low, high] = [boxes[6 * i + axis], boxes[6 * i + 3 + axis]];
+      matrices[16 * i + 5 * axis] = Math.max(1e-6, high - low);  // a flat box has normals, too
+      matrices[16 * i + 12 + axis] = 0.5 * (low + high);
+    }
+    matrices[16 * i + 15] = 1;
+  }
+  return finished(mesh, order);
+}
+
+// Wide lines have their opacity, and the size of the window, in uniforms.
+const kResolution = new THREE.Vector2(1, 1);
+function setUniforms(material, opacity) {
+  material.uniforms.opacity.value = opacity;
+  material.uniforms.resolution.value = kResolution;
 }
 
 // `ends`: six placed floats per line.
 function wideLines(ends, colour, opacity, width, order) {
-  const quad = [0, -1, 0, 1, -1, 0, 1, 1, 0, 0, -1, 0, 1, 1, 0, 0, 1, 0];
-  const geometry = instanced(quad, ends.length / 6, "from", "to", ends);
-  return finished(new THREE.Mesh(geometry, material("lines", colour, opacity, width)), order);
+  const geometry = new THREE.LineSegmentsGeometry().setPositions(ends);
+  const material = new THREE.LineMaterial(materialOf(colour, opacity, {linewidth: width, fog: true}));
+  setUniforms(material, opacity);
+  return finished(new THREE.LineSegments2(geometry, material), order);
 }
 
-// Returns a copy of the mesh that draws only the parts behind solid objects.
-function ghost(mesh, kind, opacity) {
-  const {colour, width} = mesh.material.uniforms;
-  const rgb = colour.value.toArray().map((c) => 255 * c);
-  const faint = material(kind, rgb, opacity, width.value, true);
-  const copy = mesh.isLineSegments ? new THREE.LineSegments(mesh.geometry, faint)
-                                   : new THREE.Mesh(mesh.geometry, faint);
-  return finished(copy, mesh.renderOrder);
-}
-
+// Discs with a white core.
 function dots(points, colour, size, order) {
+  const disc = make("canvas", {width: 32, height: 32});
+  const pen = disc.getContext("2d");
+  for (const [fill, radius] of [[`rgb(${colour})`, 16], ["white", 7]]) {
+    pen.fillStyle = fill;
+    pen.arc(16, 16, radius, 0, 7);
+    pen.fill();
+    pen.beginPath();
+  }
   const geometry = new THREE.BufferGeometry();
   geometry.setAttribute("position", new THREE.BufferAttribute(points, 3));
-  return finished(new THREE.Points(geometry, material("dots", colour, 1, size)), order);
+  const material = new THREE.PointsMaterial(materialOf([255, 255, 255], 1, {
+    map: new THREE.CanvasTexture(disc), size, sizeAttenuation: false, depthTest: false, fog: false,
+  }));
+  return finished(new THREE.Points(geometry, material), order);
+}
+
+// Returns the mesh, and a copy that draws its parts behind solid objects fainter.
+function withGhost(mesh, opacity) {
+  const material = Object.assign(mesh.material.clone(), {opacity, depthFunc: THREE.GreaterDepth});
+  if (material.isLineMaterial) setUniforms(material, opacity);
+  return [mesh, finished(new mesh.constructor(mesh.geometry, material), mesh.renderOrder)];
 }
 
 // Returns the number of boxes, lines or dots that a mesh sends to the GPU.
 function drawnBy(mesh) {
-  const geometry = mesh.geometry;
-  return geometry.isInstancedBufferGeometry ? geometry.maxInstancedCount
-                                            : geometry.attributes.position.count;
+  const {instanceStart, position} = mesh.geometry.attributes;
+  if (mesh.isInstancedMesh) return mesh.count;
+  if (instanceStart) return instanceStart.count;
+  return position.count / (mesh.isLineSegments ? 24 : 1);
 }

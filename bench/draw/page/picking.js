@@ -2,39 +2,27 @@
 
 const kChosen = {place: -1, pinned: false, mesh: null};
 
-// Returns whether the layers of objects without and with a pair are shown.
-function pickable() {
-  const shown = (paired) => kLayers.some((l) => l.paired === paired && l.shown);
-  return [shown(false), shown(true)];
-}
-
-function entry(boxes, place, eye, direction) {
-  let from = 0;
-  let to = Infinity;
-  for (let axis = 0; axis < 3; ++axis) {
-    const inverse = 1 / direction[axis];
-    const a = (boxes[6 * place + axis] - eye[axis]) * inverse;
-    const b = (boxes[6 * place + 3 + axis] - eye[axis]) * inverse;
-    from = Math.max(from, Math.min(a, b));
-    to = Math.min(to, Math.max(a, b));
-  }
-  return from <= to ? from : Infinity;
-}
-
 function objectAt(x, y) {
-  const pointer = new THREE.Vector3(2 * x / window.innerWidth - 1, 1 - 2 * y / window.innerHeight, 0.5);
-  const eye = kCamera.position.toArray();
-  const direction = pointer.unproject(kCamera).sub(kCamera.position).normalize().toArray();
+  const pointer = {x: 2 * x / window.innerWidth - 1, y: 1 - 2 * y / window.innerHeight};
+  const caster = new THREE.Raycaster();
+  caster.setFromCamera(pointer, kCamera);
+  const {ray} = caster;
+  // Whether the layers of objects without and with a pair are shown.
+  const shown = [false, true].map((paired) => kLayers.some((l) => l.paired === paired && l.shown));
   let best = -1;
   let nearest = Infinity;
-  const shown = pickable();
-  for (let place = 0; place < now.objects.count; ++place) {
-    const t = entry(now.placed, place, eye, direction);
+  const box = new THREE.Box3();
+  const point = new THREE.Vector3();
+  for (let place = 0; place < now.objects.rows.length; ++place) {
+    box.min.fromArray(now.placed, 6 * place);
+    box.max.fromArray(now.placed, 6 * place + 3);
     // Skips boxes that contain the eye: they would hide everything, and are seldom the target.
-    if (t > 0 && t < nearest && shown[Number(now.partners.has(place))]) {
-      nearest = t;
-      best = place;
-    }
+    if (!shown[Number(now.partners.has(place))] || box.containsPoint(ray.origin)) continue;
+    if (ray.intersectBox(box, point) === null) continue;
+    const distance = point.distanceToSquared(ray.origin);
+    if (distance >= nearest) continue;
+    nearest = distance;
+    best = place;
   }
   return best;
 }
@@ -73,7 +61,7 @@ function factsOf(place) {
     facts.push([`ray ${i + 1}`, `t = ${Number(ray.t[at].toPrecision(7))}` +
                                 (ray.closest === place ? ", the closest" : "")]);
   });
-  now.questionBoxes.forEach((question, i) => {
+  now.boxes.forEach((question, i) => {
     if (question.inside.includes(place)) facts.push([`box ${i + 1}`, "inside"]);
     if (question.crossing.includes(place)) facts.push([`box ${i + 1}`, "crossing"]);
   });
@@ -84,15 +72,8 @@ function showInfo(place) {
   const info = document.getElementById("info");
   info.hidden = place < 0;
   if (place < 0) return;
-  const table = document.createElement("table");
-  for (const [name, value] of factsOf(place)) {
-    const row = table.insertRow();
-    const head = document.createElement("th");
-    head.textContent = name;
-    row.append(head);
-    row.insertCell().textContent = value;
-  }
-  info.replaceChildren(table);
+  info.replaceChildren(make("table", {}, ...factsOf(place).map(([name, value]) =>
+    make("tr", {}, make("th", {textContent: name}), make("td", {textContent: value})))));
 }
 
 function startPicking() {

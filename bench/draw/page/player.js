@@ -16,7 +16,7 @@ function showFrame(index) {
   if (row >= 0) choose(now.objects.rows.indexOf(row));
   document.getElementById("at").value = index;
   document.getElementById("which").textContent =
-      `frame ${now.picture.counts.frame} of ${kPictures[0].counts.frame} to ` +
+      `frame ${now.counts.frame} of ${kPictures[0].counts.frame} to ` +
       `${kPictures[kPictures.length - 1].counts.frame}`;
   drawSoon();
 }

@@ -1,7 +1,6 @@
 // The camera. Draws on demand only, so that an idle page costs nothing.
 
-const kBackground = 0x12161c;
-const kRenderer = new THREE.WebGLRenderer({antialias: true, preserveDrawingBuffer: false});
+const kRenderer = new THREE.WebGLRenderer({antialias: true});
 const kCamera = new THREE.PerspectiveCamera(32, 1, 0.001, 200);
 const kCanvas = kRenderer.domElement;
 const kControls = new THREE.OrbitControls(kCamera, kCanvas);
@@ -19,7 +18,8 @@ function drawSoon() {
 
 function draw() {
   const distance = kCamera.position.distanceTo(kControls.target);
-  kUniforms.reach.value = distance;
+  kScene.fog.near = distance - 0.9;
+  kScene.fog.far = distance + 0.9;
   kCamera.near = Math.max(1e-4, distance / 500);
   kCamera.far = distance + 200;
   kCamera.updateProjectionMatrix();
@@ -28,11 +28,9 @@ function draw() {
 }
 
 function fitWindow() {
-  const ratio = window.devicePixelRatio || 1;
-  kRenderer.setPixelRatio(ratio);
+  kRenderer.setPixelRatio(window.devicePixelRatio || 1);
   kRenderer.setSize(window.innerWidth, window.innerHeight);
-  kUniforms.pixelRatio.value = ratio;
-  kUniforms.resolution.value.set(window.innerWidth * ratio, window.innerHeight * ratio);
+  kResolution.set(window.innerWidth, window.innerHeight);
   kCamera.aspect = window.innerWidth / window.innerHeight;
   // Centres the picture in the area beside the panels.
   const legend = window.innerWidth > 700 ? 262 : 0;
@@ -71,7 +69,6 @@ function placeLabels() {
 
 function startView() {
   kRenderer.setClearColor(kBackground);
-  kRenderer.sortObjects = true;
   kCamera.up.set(0, 0, 1);
   document.body.prepend(kCanvas);
   kControls.screenSpacePanning = true;

@@ -1,7 +1,6 @@
 // Tests of the rows of results: their names, and the form in which they are written.
 
 #include "bench/rows/results.h"
-#include "bench/rows/print.h"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,211 @@
+// Rows about simulations: granular flow (the time of each phase, a summary, samples over time),
+// structures that must stand, and barriers that nothing may pass. bench/simulation runs them.
+
+#include "bench/rows/rows.h"
+
+#include "bench/common/table.h"
+#include "bench/contenders/partitions.h"
+#include "bench/measure/fingerprint.h"
+#include "bench/simulation/cloth_drop.h"
+#include "bench/simulation/fast_bodies.h"
+#include "bench/simulation/standing.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+namespace winnow::bench {
+namespace {
+
+constexpr std::pair<const char*, FlowShape> kFlowShapes[] = {
+    {"spheres", FlowShape::spheres}, {"mixed", FlowShape::mixed}, {"boxes", FlowShape::boxes}};
+/// Number of steps of a flow that get a row.
+constexpr std::size_t kFlowRows = 200;
+
+/// Simulated seconds before the drift is measured: until then the contact springs are compressed
+/// by the weight.
+constexpr double kSettling = 1.0;
+/// A stable structure with edges of about 1 drifts by less than this after it has settled.
+constexpr double kStandingDrift = 0.02;
+
+Json with_keys(const FlowRowOptions& row_options, Json row) {
+  row["shape"] = row_options.shape;
+  row["objects"] = row_options.objects;
+  row["command"] = command_text("simulate --shape ", row_options.shape, " --objects ",
+                                row_options.objects, " --steps ", row_options.steps, " --seed ",
+                                row_options.seed, settings_text(row_options.threads));
+  return row;
+}
+
+/// Adds the times of the second half of the flow, when bodies touch each other.
+void add_phases(Results& results, const FlowRowOptions& row_options, const FlowHistory& history) {
+  const auto ms_of = [&](const FlowPhase& phase) {
+    return history.phase_ms(phase.ms, row_options.steps / 2);
+  };
+  double sum = 0.0;
+  for (const FlowPhase& phase : kFlowPhases) sum += median_of(ms_of(phase));
+  for (const FlowPhase& phase : kFlowPhases) {
+    const std::vector<double> ms = ms_of(phase);
+    results.add("phases", with_keys(row_options, {{"phase", phase.name},
+                                                  {"ms", to_value(ms)},
+                                                  {"share", median_of(ms) / sum}}));
+  }
+}
+
+void add_samples(Results& results, const FlowRowOptions& row_options, const FlowHistory& history) {
+  const std::vector<FlowSample>& samples = history.samples();
+  const std::size_t every = std::max<std::size_t>(1, samples.size() / kFlowRows);
+  for (std::size_t i = 0; i < samples.size(); i += every) {
+    const FlowSample& sample = samples[i];
+    results.add("flow", with_keys(row_options, {{"step", i + 1},
+                                                {"seconds", sample.time},
+                                                {"kinetic", sample.energy.kinetic},
+                                                {"potential", sample.energy.potential},
+                                                {"elastic", sample.energy.elastic},
+                                                {"balance", sample.balance()},
+                                                {"deepest", sample.deepest},
+                                                {"pairs", sample.contacts},
+                                                {"points", sample.points}}));
+  }
+}
+
+/// Runs a simulation of fast motion and adds its row, whose first values are of `row_of`.
+template <typename Simulation, typename RowOf>
+void run_barrier(Results& results, const BarrierRowOptions& row_options, Simulation simulation,
+                 RowOf&& row_of) {
+  std::vector<double> ms;
+  for (std::size_t i = 0; i < row_options.steps; ++i) {
+    const Stopwatch clock;
+    simulation.step();
+    ms.push_back(clock.ms());
+  }
+  Json row = row_of(simulation);
+  row["scene"] = row_options.scene;
+  row["steps"] = simulation.steps();
+  row["impacts"] = simulation.impacts();
+  row["passed"] = simulation.passed();
+  row["cut_short"] = simulation.cut_short();
+  row["ms"] = to_value(ms);
+  row["fingerprint"] = to_hex(simulation.fingerprint());
+  row["command"] =
+      command_text("simulate --barrier ", row_options.scene, " --steps ", row_options.steps,
+                   settings_text(row_options.threads),
+                   row_options.size != 0 ? " --objects " + std::to_string(row_options.size) : "");
+  results.add("barriers", std::move(row));
+  if (simulation.passed() != 0) {
+    throw std::runtime_error(row_options.scene + ": something passed through");
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> flow_shape_names() {
+  std::vector<std::string> names;
+  for (const auto& [name, shape] : kFlowShapes) names.emplace_back(name);
+  return names;
+}
+
+FlowOptions flow_options(const FlowRowOptions& row_options) {
+  FlowOptions options;
+  options.objects = row_options.objects;
+  for (const auto& [name, shape] : kFlowShapes) {
+    if (row_options.shape == name) options.shape = shape;
+  }
+  options.seed = row_options.seed;
+  options.execution = execution_for(row_options.threads);
+  return options;
+}
+
+void add_flow(Results& results, const FlowRowOptions& row_options, const FlowRun& run) {
+  const FlowHistory& history = run.history();
+  add_phases(results, row_options, history);
+  add_samples(results, row_options, history);
+  const FlowSample& last = history.samples().back();
+  results.add("flows", with_keys(row_options, {{"steps", run.flow().steps()},
+                                               {"rise", history.greatest_rise()},
+                                               {"deepest", history.deepest()},
+                                               {"pairs", last.contacts},
+                                               {"points", last.points},
+                                               {"fingerprint", to_hex(run.flow().fingerprint())}}));
+  results.add("flow_checks", {{"shape", row_options.shape},
+                              {"objects", row_options.objects},
+                              {"steps", run.flow().steps()},
+                              {"allocations", run.allocations()},
+                              {"steady_allocations", run.steady_allocations()},
+                              {"lost", run.faults().lost},
+                              {"invented", run.faults().invented},
+                              {"doubled", run.faults().doubled}});
+}
+
+void add_flow(Results& results, const FlowRowOptions& row_options) {
+  FlowRun run(flow_options(row_options), row_options.steps, row_options.check);
+  for (std::size_t i = 0; i < row_options.steps; ++i) run.step();
+  add_flow(results, row_options, run);
+}
+
+std::vector<std::string> standing_names() {
+  std::vector<std::string> names;
+  for (const StandingScene scene : kStandingScenes) names.push_back(name_of(scene));
+  return names;
+}
+
+void add_standing(Results& results, const StandingRowOptions& row_options) {
+  StandingOptions options;
+  options.contact_reduction = row_options.reduced;
+  options.execution = execution_for(row_options.threads);
+  const auto named = std::ranges::find(kStandingScenes, row_options.structure,
+                                       [](StandingScene scene) { return name_of(scene); });
+  Standing standing(*named, options);
+  while (standing.time() < std::min(kSettling, row_options.seconds)) standing.step();
+  const double settled = standing.drift();
+  standing.mark();
+  double kept = 1.0;
+  while (standing.time() < row_options.seconds) {
+    standing.step();
+    kept = std::min(kept, standing.kept_points());
+  }
+  results.add("standing",
+              {{"structure", row_options.structure},
+               {"manifolds", row_options.reduced ? "one a region" : "of all parts"},
+               {"seconds", row_options.seconds},
+               {"bodies", standing.bodies()},
+               {"points", standing.contacts().points()},
+               {"settled", settled},
+               {"drift", standing.drift()},
+               {"tilt", standing.tilt()},
+               {"deepest", standing.deepest()},
+               {"kept", kept},
+               {"islands", standing.islands()},
+               {"colours", standing.colours()},
+               {"fingerprint", to_hex(standing.fingerprint())},
+               {"command", command_text("simulate --standing ", row_options.structure,
+                                        " --seconds ", short_number(row_options.seconds),
+                                        settings_text(row_options.threads))}});
+  if (!(standing.drift() < kStandingDrift)) {
+    throw std::runtime_error(row_options.structure + " does not stand");
+  }
+}
+
+std::vector<std::string> barrier_names() {
+  return {"funnel", "blade", "cloth"};
+}
+
+void add_barrier(Results& results, const BarrierRowOptions& row_options) {
+  const Execution execution = execution_for(row_options.threads);
+  if (row_options.scene == "cloth") {
+    ClothOptions options{.execution = execution};
+    if (row_options.size != 0) options.side = row_options.size;
+    run_barrier(results, row_options, ClothDrop(options), [](const ClothDrop& cloth) {
+      return Json{{"objects", cloth.triangles()}, {"stretch", cloth.max_strain()}};
+    });
+    return;
+  }
+  FastBodiesOptions options{.execution = execution};
+  options.scene = row_options.scene == "blade" ? FastScene::blade : FastScene::funnel;
+  options.bodies = row_options.size != 0 ? row_options.size : 16;
+  run_barrier(results, row_options, FastBodies(options), [](const FastBodies& bodies) {
+    return Json{{"objects", bodies.bodies()}, {"fastest", bodies.fastest()}};
+  });
+}
+
+}  // namespace winnow::bench
