@@ -116,7 +116,8 @@ bool SurfaceCones::has_normal(std::size_t i, const AnswerGroup& group, bool seco
   }
 
   const double slack = kBeside * triangle.size;
-  const Surroundings near = around(touched, outward, slack, own, second, group);
+  const Surroundings near =
+      around(touched, outward, slack, own, second, group, result_.distance()[i]);
   // The touched point of shapes that are apart is within the margin of the other body, and so are
   // all triangles around it.
   const bool is_known = near == Surroundings::above || result_.distance()[i] > 0.0;
@@ -140,7 +141,7 @@ bool SurfaceCones::has_normal(std::size_t i, const AnswerGroup& group, bool seco
 
 bool SurfaceCones::is_blocked(const Vec& point, const Vec& outward, double slack, bool second,
                               const AnswerGroup& group) const noexcept {
-  return around(point, outward, slack, kNone, second, group) == Surroundings::above ||
+  return around(point, outward, slack, kNone, second, group, 0.0) == Surroundings::above ||
          around_in_surface(point, outward, slack, second, group) == Surroundings::above;
 }
 
@@ -160,13 +161,17 @@ bool SurfaceCones::is_near(std::uint32_t primitive, const Vec& point, double sla
   return true;
 }
 
+// Triangles around the point of a contact are at most as far from the other body as the contact.
+// Others of the group are left out, because the group depends on the margin.
 SurfaceCones::Surroundings SurfaceCones::around(const Vec& point, const Vec& outward, double slack,
                                                 std::uint32_t own, bool second,
-                                                const AnswerGroup& group) const noexcept {
+                                                const AnswerGroup& group,
+                                                double distance) const noexcept {
   Surroundings found = Surroundings::none;
   for (std::size_t k = group.first; k < group.end; ++k) {
     const std::uint32_t other = primitive(k, second);
     if (other == own || !is_triangle(other)) continue;
+    if (result_.distance()[k] > std::max(distance, 0.0) + slack) continue;
     if (!is_near(other, point, slack)) continue;
     const Facet neighbour = facet(other);
     if (!neighbour.contains(point, slack)) continue;
@@ -255,9 +260,11 @@ bool SurfaceCones::is_covered(std::size_t i, const AnswerGroup& group, bool seco
   const double slack = kFlush * radius_of(tables_, pairs_.shapes[own]);
   const Vec touched = middle_of_contact(i, second);
   const double height = outward.dot(touched);
+  const double reach = std::max(result_.distance()[i], 0.0);
   for (std::size_t k = group.first; k < group.end; ++k) {
     const std::uint32_t other = primitive(k, second);
     if (other == own || pairs_.part[other] == pairs_.part[own]) continue;
+    if (result_.distance()[k] > reach + slack) continue;
     if (top(other, outward) <= height + kFlatSine * slack / kFlush) continue;
     if (part_contains(other, touched, slack)) return true;
   }

@@ -104,8 +104,8 @@ class SurfaceCones {
                                                bool second,
                                                const AnswerGroup& group) const noexcept;
   [[nodiscard]] Surroundings around(const Vec& point, const Vec& outward, double slack,
-                                    std::uint32_t own, bool second,
-                                    const AnswerGroup& group) const noexcept;
+                                    std::uint32_t own, bool second, const AnswerGroup& group,
+                                    double distance) const noexcept;
   [[nodiscard]] bool has_normal(std::size_t i, const AnswerGroup& group,
                                 bool second) const noexcept;
   [[nodiscard]] bool is_covered(std::size_t i, const AnswerGroup& group,
