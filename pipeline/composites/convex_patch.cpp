@@ -14,8 +14,8 @@ void ConvexPatch::grow(const SurfaceCones& cones, const AnswerGroup& group, std:
   primitive_[0] = start;
   facet_[0] = cones.facet(start);
   // Neighbours are wound alike.
-  const double turn = facet_[0].normal.dot(outward) < 0.0 ? -1.0 : 1.0;
-  facet_[0].normal *= turn;
+  turn_ = facet_[0].normal.dot(outward) < 0.0 ? -1.0 : 1.0;
+  facet_[0].normal *= turn_;
   count_ = 1;
   for (std::size_t before = 0; before != count_;) {
     before = count_;
@@ -23,7 +23,7 @@ void ConvexPatch::grow(const SurfaceCones& cones, const AnswerGroup& group, std:
       const std::uint32_t next = cones.primitive(k, second);
       if (!cones.overlaps(k) || !cones.is_triangle(next) || contains(next)) continue;
       Facet facet = cones.facet(next);
-      facet.normal *= turn;
+      facet.normal *= turn_;
       if (!accepts(facet)) continue;
       primitive_[count_] = next;
       facet_[count_++] = facet;
@@ -53,6 +53,14 @@ double ConvexPatch::top(const Vec& direction) const noexcept {
   double top = facet_[0].top(direction);
   for (std::size_t k = 1; k < count_; ++k) top = std::max(top, facet_[k].top(direction));
   return top;
+}
+
+bool ConvexPatch::is_under(const Vec& point) const noexcept {
+  return std::any_of(facet_, facet_ + count_, [&](Facet facet) {
+    const Vec down = facet.normal * facet.normal.dot(facet.corner[0] - point);
+    facet.normal *= turn_;
+    return facet.contains(point + down, kFlatSine * facet.size);
+  });
 }
 
 double ConvexPatch::size() const noexcept {

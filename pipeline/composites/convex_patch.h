@@ -26,6 +26,8 @@ class ConvexPatch {
   [[nodiscard]] bool contains(std::uint32_t primitive) const noexcept;
   /// Height of the highest corner along a direction.
   [[nodiscard]] double top(const Vec& direction) const noexcept;
+  /// Returns whether the projection of a point to the plane of one of the triangles is in it.
+  [[nodiscard]] bool is_under(const Vec& point) const noexcept;
   /// Length of the longest edge.
   [[nodiscard]] double size() const noexcept;
   /// The convex hull of the patch, in the frame of `pose`; refers to the patch.
@@ -38,6 +40,8 @@ class ConvexPatch {
   [[nodiscard]] bool accepts(const Facet& facet) const noexcept;
 
   std::size_t count_ = 0;
+  /// 1 if outward is the side from which the corners are counter-clockwise, else -1.
+  double turn_ = 1.0;
   std::uint32_t primitive_[kMaxFacets];
   Facet facet_[kMaxFacets];
 };

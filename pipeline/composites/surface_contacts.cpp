@@ -544,6 +544,15 @@ bool SurfaceContacts::solve_gentle(const BodyPair& bodies, PatchContact& patch) 
     patch.normal = second ? Vec(-facet.normal) : facet.normal;
     patch.error = kSlack * (reach.scale + at.lpNorm<1>() + facet.corner[0].lpNorm<1>());
   }
+  solver::Problem problem;
+  prepare(tables_, pairs_.shapes[bodies.a], pairs_.poses[bodies.a], pairs_.shapes[bodies.b],
+          pairs_.poses[bodies.b], false, problem);
+  const Vec deepest =
+      solver::support(second ? problem.a : problem.b, second ? patch.normal : Vec(-patch.normal));
+  if (!own.is_under(Eigen::Map<const Vec>(pairs_.poses[bodies.a].position) +
+                    unscaled(problem, 1.0) * deepest)) {
+    return false;
+  }
   patch.error += (1.0 - kGentleCosine) * std::abs(patch.distance);
   // Each triangle that reaches the plane is clipped against it.
   patch.touched[0] = patch.touched[1] = Vec::Constant(kInfinity);
@@ -700,7 +709,12 @@ void SurfaceContacts::apply(AnswerChunk& chunk, std::size_t i, double most) noex
 void SurfaceContacts::drop_beside(const AnswerGroup& group, bool has_contact) noexcept {
   for (std::size_t i = group.first; i < group.end; ++i) {
     if (changes_[i] != Change::beside) continue;
-    if (has_contact) drop(i);
+    if (has_contact) {
+      drop(i);
+    } else if (has_contacts()) {
+      columns_.distance[i] =
+          -static_cast<double>(columns_.contacts.depth[columns_.contact_first[i]]);
+    }
     has_contact = true;
   }
 }

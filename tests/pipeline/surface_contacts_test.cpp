@@ -204,7 +204,9 @@ TEST(SurfaceContacts, convex_mesh_touches_like_its_hull) {
       }
       EXPECT_GE(deepest, right.distance - slack);
       // The triangles of two meshes may miss the deepest point.
-      if (body.shape == body.convex) EXPECT_LE(deepest, right.distance + slack);
+      if (body.shape == body.convex) {
+        EXPECT_LE(deepest, right.distance + slack);
+      }
     }
   }
 }
