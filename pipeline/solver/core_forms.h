@@ -7,6 +7,7 @@
 #include <winnow/core/rounding.h>
 #include "pipeline/kinds/hypotenuse.h"
 #include "pipeline/kinds/with_shape.h"
+#include "pipeline/manifold/feature_rules.h"
 #include "pipeline/manifold/polygon_clip.h"
 #include "pipeline/shapes/directions_around.h"
 #include "pipeline/solver/core.h"
