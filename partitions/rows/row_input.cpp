@@ -3,7 +3,6 @@
 // functions of VolumeInput (volume_update.cpp) do the same for spheres, k-DOPs and fat volumes.
 
 #include "partitions/rows/row_input.h"
-#include "core/memory/columns.h"
 #include "partitions/rows/box_compare.kernel.h"
 
 #include <algorithm>

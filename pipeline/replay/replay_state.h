@@ -169,7 +169,6 @@ struct ReplayState {
   Column<Ray> rays;
   Column<ShapeRay> shape_rays;
   Column<Plane> planes;
-  Column<std::uint32_t> numbers;
   Column<RigidMotion> motions;
   Column<std::uint8_t> flags;
   RecordedFilter filter;

@@ -2,7 +2,6 @@
 // there is room for all, each task writes its own range of the columns. Collision (collide.cpp)
 // calls this.
 
-#include "pipeline/narrow/tight_growth.h"
 #include "pipeline/scene/collision.h"
 
 #include <algorithm>

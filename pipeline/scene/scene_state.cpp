@@ -8,7 +8,6 @@
 #include "core/sort/parallel_ranges.h"
 #include "partitions/state/box_partition.h"
 #include "pipeline/composites/parts.h"
-#include "pipeline/narrow/tight_growth.h"
 #include "pipeline/scene/body_predicate.h"
 #include "pipeline/scene/motion_bound.h"
 #include "pipeline/scene/scene_origin.h"

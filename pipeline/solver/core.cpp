@@ -6,7 +6,6 @@
 #include "pipeline/kinds/hypotenuse.h"
 #include "pipeline/solver/core_forms.h"
 
-#include <algorithm>
 #include <cmath>
 
 namespace winnow::solver {

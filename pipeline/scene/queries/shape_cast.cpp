@@ -19,8 +19,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <utility>
 
 namespace winnow {
 namespace {
