@@ -115,24 +115,23 @@ void try_tetrahedron(GjkSimplex& s, SimplexPoint& best) noexcept {
   for (const auto& face : kTetrahedronFace) try_triangle(s, face[0], face[1], face[2], best);
 }
 
+Vec weighted(const GjkSimplex& s, Vec DifferencePoint::*which) noexcept {
+  Vec v = Vec::Zero();
+  const auto count = static_cast<std::size_t>(s.count);
+  for (std::size_t i = 0; i < count; ++i) v += s.weight[i] * (s.point[i].*which);
+  return v;
+}
+
 }  // namespace
 
 Vec GjkSimplex::closest() const noexcept {
-  Vec v = Vec::Zero();
-  for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) v += weight[i] * point[i].w;
-  return v;
+  return weighted(*this, &DifferencePoint::w);
 }
-
 Vec GjkSimplex::on_a() const noexcept {
-  Vec v = Vec::Zero();
-  for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) v += weight[i] * point[i].a;
-  return v;
+  return weighted(*this, &DifferencePoint::a);
 }
-
 Vec GjkSimplex::on_b() const noexcept {
-  Vec v = Vec::Zero();
-  for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) v += weight[i] * point[i].b;
-  return v;
+  return weighted(*this, &DifferencePoint::b);
 }
 
 void reduce(GjkSimplex& simplex) noexcept {

@@ -135,10 +135,11 @@ inline constexpr std::uint32_t kLaneBits = 15;
   return (value & keep) | numbers;
 }
 
-[[gnu::always_inline]] static inline Floats along(const float* const* vertex, std::uint32_t row,
-                                                  const Vec3<float>& d) {
-  return Floats::load(vertex[0] + row) * d.x + Floats::load(vertex[1] + row) * d.y +
-         Floats::load(vertex[2] + row) * d.z;
+template <typename T>
+[[gnu::always_inline]] static inline Lanes<T> along(const T* const* vertex, std::uint32_t row,
+                                                    const Vec3<T>& d) {
+  return Lanes<T>::load(vertex[0] + row) * d.x + Lanes<T>::load(vertex[1] + row) * d.y +
+         Lanes<T>::load(vertex[2] + row) * d.z;
 }
 
 /// Computes sixteen heights along `direction` with their lanes' numbers in the low bits; the
@@ -199,11 +200,6 @@ inline constexpr std::uint32_t kLaneBits = 15;
   return vertex_of(hull, reduce_max(Floats::load(height)), height, block);
 }
 
-[[gnu::always_inline]] static inline Doubles along(const double* const* vertex, std::uint32_t row,
-                                                   const Vec3<double>& d) {
-  return Doubles::load(vertex[0] + row) * d.x + Doubles::load(vertex[1] + row) * d.y +
-         Doubles::load(vertex[2] + row) * d.z;
-}
 [[gnu::always_inline]] static inline const double* const* columns_of(const HullShape& hull,
                                                                      double) {
   return hull.vertex;
