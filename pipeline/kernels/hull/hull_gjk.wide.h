@@ -308,8 +308,7 @@ class HullSearch {
     }
     /// After a restart, distances from the goal bound no distance of the cores.
     [[gnu::always_inline]] LaneMask<float> ends(const Vec3<float>& v, const Floats& square,
-                                                const Floats& height,
-                                                const Simplex<float>& /*simplex*/) const {
+                                                const Floats& height) const {
       if (!search.overlap_only_) search.note_depth(w, v, square, height);
       return search.lanes_.is_far(height, square) & !restarted;
     }
@@ -319,9 +318,6 @@ class HullSearch {
                                                        const Floats& square) const {
       return (gain <= Floats(0.0F)) |
              (gain * gain <= Floats(Search::kNoGain * Search::kNoGain) * square);
-    }
-    [[gnu::always_inline]] SimplexNearest<float> nearest(const Simplex<float>& simplex) const {
-      return nearest_of(simplex, w);
     }
     [[gnu::always_inline]] void keep(int s, const LaneMask<float>& take) const {
       select(take, name, Floats::load(search.slot_name_[s])).store(search.slot_name_[s]);
