@@ -88,7 +88,7 @@ bool EventWriter::sort_into(Column<std::uint64_t>& list, std::span<const Pair> p
   constexpr std::size_t kFew = 512;
   const std::size_t count = pairs.size();
   if (!list.resize(count)) return false;
-  std::transform(pairs.begin(), pairs.end(), list.begin(), packed);
+  std::transform(pairs.begin(), pairs.end(), list.begin(), as_number);
   if (count < kFew) {
     std::sort(list.begin(), list.end());
     return true;
