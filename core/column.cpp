@@ -3,6 +3,8 @@
 #include "core/memory/catch_bad_alloc.h"
 #include "core/memory/prefault_each_page.h"
 
+#include <cstring>
+
 namespace winnow {
 namespace {
 

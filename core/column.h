@@ -7,9 +7,7 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <memory_resource>
-#include <new>
 #include <type_traits>
 #include <utility>
 

@@ -2,7 +2,6 @@
 
 #include <winnow/core/export.h>
 
-#include <cstddef>
 #include <cstdint>
 #include <span>
 

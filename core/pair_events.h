@@ -7,7 +7,6 @@
 #include <winnow/core/large_pages.h>
 #include <winnow/core/pair_buffer.h>
 
-#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <memory_resource>

@@ -200,8 +200,8 @@ class WINNOW_API Partition final {
   template <int K>
   Status insert(std::span<const Kdop<K>> kdops, std::span<const ClientData> data,
                 std::span<Key> keys);
-  template <int K>
   /// Gives each object a new k-DOP.
+  template <int K>
   Status update(std::span<const Key> keys, std::span<const Kdop<K>> kdops);
 
   /// Removes the objects. `invalid_key` if a key occurs twice.

@@ -9,7 +9,6 @@
 #include <winnow/pipeline/rigid_motion.h>
 #include <winnow/pipeline/scene.h>
 
-#include <cstddef>
 #include <cstdint>
 #include <memory_resource>
 #include <span>

@@ -6,7 +6,6 @@
 
 #include <winnow/core/export.h>
 
-#include <cstddef>
 #include <cstdint>
 
 namespace winnow {

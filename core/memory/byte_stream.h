@@ -4,6 +4,7 @@
 // Digest detects damage. Snapshots (snapshot_frame.h) and recordings use these classes.
 #include <winnow/core/column.h>
 #include <winnow/core/status.h>
+#include "core/memory/scattered.h"
 
 #include <bit>
 #include <cstddef>
@@ -19,17 +20,12 @@ namespace winnow {
 static_assert(std::endian::native == std::endian::little && std::numeric_limits<float>::is_iec559,
               "files are read and written as numbers lie in memory");
 
-/// A checksum of all bytes and their order. It detects accidental damage, not forgery. The mixing
-/// function is SplitMix64 (Steele et al., "Fast splittable pseudorandom number generators", OOPSLA
-/// 2014).
+/// A checksum of all bytes and their order. It detects accidental damage, not forgery. Each step is
+/// one of SplitMix64.
 class Digest {
  public:
   void add(std::uint64_t value) noexcept {
-    std::uint64_t z = state_ ^ value;
-    z += 0x9E3779B97F4A7C15U;
-    z = (z ^ (z >> 30U)) * 0xBF58476D1CE4E5B9U;
-    z = (z ^ (z >> 27U)) * 0x94D049BB133111EBU;
-    state_ = z ^ (z >> 31U);
+    state_ = scattered((state_ ^ value) + 0x9E3779B97F4A7C15U);
   }
   void add(double value) noexcept { add(std::bit_cast<std::uint64_t>(value)); }
   void add(float value) noexcept { add(std::uint64_t{std::bit_cast<std::uint32_t>(value)}); }
@@ -186,5 +182,11 @@ class ByteReader {
   bool ok_ = true;
   bool out_of_memory_ = false;
 };
+
+/// Returns the reason why the bytes cannot be read, or ok.
+[[nodiscard]] inline Status status_of(const ByteReader& in) noexcept {
+  if (in.ok()) return Status::ok;
+  return in.out_of_memory() ? Status::out_of_memory : Status::invalid_argument;
+}
 
 }  // namespace winnow

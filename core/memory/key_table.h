@@ -5,7 +5,6 @@
 #include <winnow/core/column.h>
 #include <winnow/core/execution.h>
 #include <winnow/core/key.h>
-#include <winnow/core/status.h>
 #include "core/memory/partition_tag_pool.h"
 
 #include <cstddef>

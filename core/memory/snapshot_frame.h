@@ -57,10 +57,4 @@ template <typename Write>
   return in;
 }
 
-/// Returns the reason why a snapshot cannot be read, or ok.
-[[nodiscard]] inline Status status_of(const ByteReader& in) noexcept {
-  if (in.ok()) return Status::ok;
-  return in.out_of_memory() ? Status::out_of_memory : Status::invalid_argument;
-}
-
 }  // namespace winnow

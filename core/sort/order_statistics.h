@@ -22,6 +22,14 @@ template <typename Before>
   return end[at];
 }
 
+/// Returns the upper median of the first `count` values; `count` is not 0.
+template <typename T, std::size_t Room>
+[[nodiscard]] T median_of(std::array<T, Room> values, std::size_t count) noexcept {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(count / 2);
+  std::nth_element(values.begin(), middle, values.begin() + static_cast<std::ptrdiff_t>(count));
+  return *middle;
+}
+
 /// A range that contains most of a set of values: from their 2 % to their 98 % quantile, extended
 /// by half of its length on either side.
 struct InterquantileRange {

@@ -1,7 +1,6 @@
 #include <winnow/partitions/structures.h>
 
 #include <algorithm>
-#include <iterator>
 
 namespace winnow {
 

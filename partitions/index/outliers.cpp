@@ -2,6 +2,8 @@
 
 #include "partitions/index/outliers.h"
 
+#include "core/sort/order_statistics.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -33,17 +35,11 @@ struct BlockMembers {
     }
   }
 
-  [[nodiscard]] float median_of(std::array<float, kBlockRows> values) const noexcept {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(count / 2);
-    std::nth_element(values.begin(), middle, values.begin() + static_cast<std::ptrdiff_t>(count));
-    return *middle;
-  }
-
   /// The distance of each object from the median, along the axis where it is largest.
   [[nodiscard]] std::array<float, kBlockRows> distances() const noexcept {
     std::array<float, kBlockRows> far{};
     for (const auto& along : centre) {
-      const float middle = median_of(along);
+      const float middle = median_of(along, count);
       for (std::size_t i = 0; i < count; ++i) {
         far[i] = std::max(far[i], std::abs(along[i] - middle));
       }
@@ -72,7 +68,7 @@ bool select_outliers(const Rows& rows, const BlockTree& tree, float edge,
     const BlockMembers objects(rows.pool(), (tree.first_block() + block) * kBlockRows);
     if (objects.count == 0) continue;
     const auto distance = objects.distances();
-    const float far = kFar * objects.median_of(distance) + 0.5F * kWide * edge;
+    const float far = kFar * median_of(distance, objects.count) + 0.5F * kWide * edge;
     for (std::size_t i = 0; i < objects.count; ++i) {
       if (distance[i] > far) outliers.add(objects.row[i]);
     }

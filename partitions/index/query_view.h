@@ -5,7 +5,6 @@
 #include "partitions/rows/filter_span.h"
 #include "partitions/tree/block_tree.kernel.h"
 
-#include <cstddef>
 #include <cstdint>
 
 namespace winnow {

@@ -3,7 +3,6 @@
 // OrderPlan computes the order.
 
 #include "core/hooks/stage_scope.h"
-#include "core/memory/columns.h"
 #include "partitions/index/outliers.h"
 #include "partitions/index/spatial_index.h"
 #include "partitions/tree/environment_order.h"

@@ -11,9 +11,6 @@
 namespace winnow {
 namespace {
 
-constexpr std::uint64_t packed(const Pair& pair) {
-  return static_cast<std::uint64_t>(pair.first) << 32U | pair.second;
-}
 constexpr ObjectId first_of(std::uint64_t pair) {
   return static_cast<ObjectId>(pair >> 32U);
 }
@@ -91,7 +88,7 @@ bool EventWriter::sort_into(Column<std::uint64_t>& list, std::span<const Pair> p
   constexpr std::size_t kFew = 512;
   const std::size_t count = pairs.size();
   if (!list.resize(count)) return false;
-  std::transform(pairs.begin(), pairs.end(), list.begin(), packed);
+  std::transform(pairs.begin(), pairs.end(), list.begin(), as_number);
   if (count < kFew) {
     std::sort(list.begin(), list.end());
     return true;
@@ -129,13 +126,13 @@ bool EventWriter::store_changes(const PairBuffer& out, std::span<const Pair> beg
   e.ended_.clear();
   e.after_is_all_ = false;
   for (const std::uint32_t index : ended) {
-    if (!end(packed(out[index]))) return false;
+    if (!end(as_number(out[index]))) return false;
   }
   std::ranges::sort(e.ended_, {}, [](const KeyPair& pair) {
-    return packed({pair.first.id, pair.second.id});
+    return as_number({pair.first.id, pair.second.id});
   });
   for (const Pair& pair : begun) {
-    if (!begin(packed(pair))) return false;
+    if (!begin(as_number(pair))) return false;
   }
   e.persisting_ = out.size() - begun.size() - ended.size();
   return write_client_data() && reserve_frame(moved, false);

@@ -39,11 +39,6 @@ struct FoundTable {
   }
 };
 
-// Returns the pair as a number that is never 0, because first < second.
-constexpr std::uint64_t as_number(const Pair& pair) noexcept {
-  return static_cast<std::uint64_t>(pair.first) << 32U | pair.second;
-}
-
 }  // namespace
 
 bool LinkedPairs::is_worthwhile(std::size_t moved, std::size_t objects) const noexcept {

@@ -7,6 +7,11 @@
 
 namespace winnow {
 
+/// Returns the pair as a number, which is not 0 if the ids differ in the order first < second.
+[[nodiscard]] constexpr std::uint64_t as_number(const Pair& pair) noexcept {
+  return static_cast<std::uint64_t>(pair.first) << 32U | pair.second;
+}
+
 /// Access of a partition to the private data of a PairBuffer.
 class PairTracker {
  public:

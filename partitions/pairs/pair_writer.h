@@ -6,7 +6,6 @@
 #include <winnow/core/status.h>
 #include "partitions/rows/row_view.h"
 
-#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <type_traits>

@@ -2,10 +2,13 @@
 
 #include "partitions/queries/box_intersection.h"
 
+#include <winnow/core/plane.h>
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 namespace winnow {
 namespace {

@@ -2,12 +2,10 @@
 
 #include <winnow/core/capsule.h>
 #include <winnow/core/oriented_box.h>
-#include <winnow/core/plane.h>
 #include <winnow/core/sphere.h>
 #include "partitions/queries/region.kernel.h"
 
 #include <Eigen/Core>
-#include <span>
 
 namespace winnow {
 

@@ -14,7 +14,6 @@
 #include <algorithm>
 #include <bit>
 #include <cfloat>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <type_traits>

@@ -3,7 +3,6 @@
 // functions of VolumeInput (volume_update.cpp) do the same for spheres, k-DOPs and fat volumes.
 
 #include "partitions/rows/row_input.h"
-#include "core/memory/columns.h"
 #include "partitions/rows/box_compare.kernel.h"
 
 #include <algorithm>
@@ -126,12 +125,12 @@ bool RowInput::writes_by_rows(const UpdateSubset& entries, bool ascending, Entry
   const std::size_t ids = last - first + std::size_t{1};
   if (ids > count + count / 2) return false;
   entry_of_id = {first, static_cast<std::uint32_t>(ids)};
-  if (ascending && ids == count && entries.number == nullptr) return true;
+  if (ascending && ids == count && entries.entry == nullptr) return true;
   if (!rows_.selection_.list.resize(ids)) return false;
   std::uint32_t* const table = rows_.selection_.list.data();
   entry_of_id.table = table;
   std::fill(table, table + ids, kNoObject);
-  if (ascending && entries.number == nullptr) {
+  if (ascending && entries.entry == nullptr) {
     std::uint32_t entry = 0;
     for (const Key& key : entries.keys) table[key.id - first] = entry++;
     return true;
@@ -154,7 +153,7 @@ void RowInput::write_by_id(const BoxView& boxes) noexcept {
 // order does not matter.
 bool RowInput::may_lose_order(const UpdateSubset& entries) const noexcept {
   constexpr std::size_t kFewRows = 256;
-  return entries.number == nullptr && entries.count == rows_.keys_.size() && rows_.regions_.built &&
+  return entries.entry == nullptr && entries.count == rows_.keys_.size() && rows_.regions_.built &&
          rows_.order_reach_ > 0.0F && entries.count >= kFewRows;
 }
 

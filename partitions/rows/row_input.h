@@ -26,16 +26,16 @@ namespace winnow {
 struct UpdateSubset {
   std::span<const Key> keys;
   std::size_t count = 0;
-  const std::uint32_t* number = nullptr;  ///< null: all
+  const std::uint32_t* entry = nullptr;  ///< indices of the entries; null: all
 
   /// Entries without keys.
   explicit UpdateSubset(std::size_t all) noexcept : count(all) {}
   explicit UpdateSubset(std::span<const Key> all) noexcept : keys(all), count(all.size()) {}
-  UpdateSubset(std::span<const Key> all, std::span<const std::uint32_t> numbers) noexcept
-      : keys(all), count(numbers.size()), number(numbers.data()) {}
+  UpdateSubset(std::span<const Key> all, std::span<const std::uint32_t> indices) noexcept
+      : keys(all), count(indices.size()), entry(indices.data()) {}
 
   [[nodiscard]] std::size_t operator[](std::size_t j) const noexcept {
-    return number == nullptr ? j : number[j];
+    return entry == nullptr ? j : entry[j];
   }
   [[nodiscard]] Key key(std::size_t j) const noexcept { return keys[(*this)[j]]; }
 
@@ -45,9 +45,9 @@ struct UpdateSubset {
   /// Returns the end, at most `end`, of the longest run of consecutive indices that starts at the
   /// j-th entry.
   [[nodiscard]] std::size_t run_end(std::size_t j, std::size_t end) const noexcept {
-    if (number == nullptr) return end;
+    if (entry == nullptr) return end;
     std::size_t next = j + 1;
-    while (next < end && number[next] - number[j] == next - j) ++next;
+    while (next < end && entry[next] - entry[j] == next - j) ++next;
     return next;
   }
 };
@@ -139,9 +139,9 @@ struct BoxSource {
                                    std::size_t end) const noexcept {
     if (packed()) {
       const float* const floats = boxes.min[0];
-      return entries.number == nullptr
+      return entries.entry == nullptr
                  ? box_input_kernels().legal(floats + 6 * begin, end - begin)
-                 : box_input_kernels().legal_listed(floats, entries.number + begin, end - begin);
+                 : box_input_kernels().legal_listed(floats, entries.entry + begin, end - begin);
     }
     for (std::size_t j = begin; j < end; ++j) {
       if (!valid(entries[j])) return false;

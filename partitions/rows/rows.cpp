@@ -3,7 +3,6 @@
 
 #include "partitions/rows/rows.h"
 
-#include "core/memory/columns.h"
 #include "core/sort/scatter_by_owner.h"
 #include "partitions/rows/row_input.h"
 

@@ -3,7 +3,6 @@
 // the sources in volume_source.h and fat_volumes.h validate and write. Nothing in a program that
 // uses only boxes refers to this code.
 
-#include "core/memory/columns.h"
 #include "partitions/rows/fat_volumes.h"
 #include "partitions/rows/volume_source.h"
 

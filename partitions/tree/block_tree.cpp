@@ -6,7 +6,6 @@
 #include "core/memory/columns.h"
 
 #include <algorithm>
-#include <array>
 #include <limits>
 
 namespace winnow {

@@ -3,7 +3,6 @@
 #include "partitions/rows/row_view.h"
 #include "simd/kernels/kernels.h"
 
-#include <cstddef>
 #include <cstdint>
 
 namespace winnow {

@@ -1,6 +1,7 @@
 #include "partitions/tree/environment_order.h"
 
 #include "core/sort/radix_sort.h"
+#include "partitions/tree/kd_order.h"
 
 #include <algorithm>
 

@@ -4,7 +4,6 @@
 #include <winnow/core/execution.h>
 #include <winnow/core/object_filter.h>
 #include "core/memory/bounds_pool.h"
-#include "partitions/tree/kd_order.h"
 
 #include <cstdint>
 #include <span>

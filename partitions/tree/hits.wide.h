@@ -167,15 +167,6 @@ inline bool has_room(PairSink& sink) {
   return sink.cursor <= sink.limit || sink.grow(sink);
 }
 
-/// The box in row r of six columns.
-struct QueryBox {
-  float low[3];
-  float high[3];
-  [[gnu::always_inline]] QueryBox(const float* const* column, std::size_t r)
-      : low{column[0][r], column[1][r], column[2][r]},
-        high{column[3][r], column[4][r], column[5][r]} {}
-};
-
 /// Returns the lanes, of rows from `at` on, that row r reports in HitMode::moved: rows that did not
 /// move, and moved rows behind r. `moved` is readable for 32 bits from any row on.
 inline Mask16 reported_lanes(const std::uint64_t* moved, std::uint32_t r, std::uint32_t at) {

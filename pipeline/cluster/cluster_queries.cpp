@@ -14,6 +14,7 @@
 
 #include <algorithm>
 #include <deque>
+#include <new>
 #include <tuple>
 #include <utility>
 #include <vector>

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "core/memory/scattered.h"
+
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -8,14 +10,6 @@
 #include <vector>
 
 namespace winnow {
-
-/// Hash function: the finalizer of SplitMix64 (Steele, Lea, Flood 2014). Every input bit affects
-/// all output bits.
-[[nodiscard]] constexpr std::uint64_t scattered(std::uint64_t x) noexcept {
-  x = (x ^ (x >> 30U)) * 0xBF58476D1CE4E5B9ULL;
-  x = (x ^ (x >> 27U)) * 0x94D049BB133111EBULL;
-  return x ^ (x >> 31U);
-}
 
 /// True if a value occurs twice. Sorts a copy. O(n log n).
 template <typename T>

@@ -5,7 +5,6 @@
 #include "pipeline/cluster/id_directory.h"
 #include "pipeline/cluster/regions.h"
 
-#include <algorithm>
 #include <cstdint>
 #include <deque>
 #include <limits>

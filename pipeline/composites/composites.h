@@ -8,7 +8,6 @@
 #include "pipeline/shapes/frame.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>

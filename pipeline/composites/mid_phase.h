@@ -19,7 +19,6 @@
 #include "pipeline/narrow/contact_regions.h"
 #include "pipeline/narrow/primitive_pairs.h"
 
-#include <cstddef>
 #include <cstdint>
 #include <span>
 

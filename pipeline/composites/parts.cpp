@@ -5,7 +5,6 @@
 #include <winnow/core/rotation.h>
 #include <winnow/core/rounding.h>
 #include "pipeline/shapes/extent.h"
-#include "pipeline/shapes/frame.h"
 #include "pipeline/shapes/one_sided.h"
 
 #include <algorithm>
@@ -17,8 +16,8 @@ namespace {
 using Eigen::Vector3d;
 
 /// Moves a float box about the origin of a shape to its position, rounded outward.
-PreciseBox placed_box(const Aabb& box, const double position[3]) noexcept {
-  PreciseBox result;
+mid::Box3 placed_box(const Aabb& box, const double position[3]) noexcept {
+  mid::Box3 result;
   for (int i = 0; i < 3; ++i) {
     const auto low = static_cast<double>(box.min[i]);
     const auto high = static_cast<double>(box.max[i]);
@@ -28,9 +27,9 @@ PreciseBox placed_box(const Aabb& box, const double position[3]) noexcept {
   return result;
 }
 
-PreciseBox triangle_box(const TriangleShape& triangle, const Pose& pose) noexcept {
+mid::Box3 triangle_box(const TriangleShape& triangle, const Pose& pose) noexcept {
   const Eigen::Matrix3d turn = rotation_of_unit(normalized(scale_to_unit_max(pose.orientation)));
-  PreciseBox box;
+  mid::Box3 box;
   double scale = 0.0;
   for (int k = 0; k < 3; ++k) {
     const Vector3d local = Vector3d::Map(triangle.vertex[k]);
@@ -43,7 +42,7 @@ PreciseBox triangle_box(const TriangleShape& triangle, const Pose& pose) noexcep
   const Vector3d position = Vector3d::Map(pose.position);
   const double slack = triangle.rounding +
                        mid::kSlack * (scale + triangle.rounding + position.cwiseAbs().maxCoeff());
-  return PreciseBox{position + box.min, position + box.max}.grown(slack);
+  return box.moved(position).grown(slack);
 }
 
 /// True if the ray certainly misses a triangle, grown by `doubt`, of a body without rotation: the
@@ -75,14 +74,10 @@ PreciseBox triangle_box(const TriangleShape& triangle, const Pose& pose) noexcep
 
 }  // namespace
 
-PreciseBox PreciseBox::grown(double by) const noexcept {
-  return {min.array() - by, max.array() + by};
-}
-
-MovingBox PreciseBox::stationary() const noexcept {
+MovingBox stationary(const mid::Box3& box) noexcept {
   MovingBox moving_box;
-  Vector3d::Map(moving_box.min) = min;
-  Vector3d::Map(moving_box.max) = max;
+  Vector3d::Map(moving_box.min) = box.min;
+  Vector3d::Map(moving_box.max) = box.max;
   return moving_box;
 }
 
@@ -116,7 +111,7 @@ bool SubShapeQuery::contains(ShapeId shape) const noexcept {
   return shapes_.contains(shape);
 }
 
-PreciseBox SubShapeQuery::box(const PlacedShape& placed) const noexcept {
+mid::Box3 SubShapeQuery::box(const PlacedShape& placed) const noexcept {
   const Pose here = at_origin(placed.pose);
   const Aabb local = placed.shape.is_composite()
                          ? mid_phase().bounds(*composites_, placed.shape, here)
@@ -124,11 +119,11 @@ PreciseBox SubShapeQuery::box(const PlacedShape& placed) const noexcept {
   return placed_box(local, placed.pose.position);
 }
 
-PreciseBox SubShapeQuery::box(const SubShape& part) const noexcept {
+mid::Box3 SubShapeQuery::box(const SubShape& part) const noexcept {
   if (part.triangle != nullptr) return triangle_box(*part.triangle, part.pose);
   if (part.ball != nullptr) {
     const Vector3d center = Vector3d::Map(part.pose.position);
-    return PreciseBox{center, center}.grown(part.ball->radius);
+    return mid::Box3{center, center}.grown(part.ball->radius);
   }
   return box(PlacedShape{part.shape, part.pose});
 }
@@ -144,7 +139,7 @@ void SubShapeQuery::traverse(const PlacedShape& placed, MovingBox moving_box, do
   const auto is_infinite = [](double end) { return std::isinf(end); };
   if (std::any_of(moving_box.min, moving_box.min + 3, is_infinite) ||
       std::any_of(moving_box.max, moving_box.max + 3, is_infinite)) {
-    const PreciseBox own = box(placed);
+    const mid::Box3 own = box(placed);
     for (int i = 0; i < 3; ++i) {
       if (std::isinf(moving_box.min[i]))
         moving_box.min[i] = std::min(own.min[i], moving_box.max[i]);
@@ -194,7 +189,7 @@ bool is_unrotated(const SubShape& part) noexcept {
   return part.triangle->rounding == 0.0 && q[1] == 0.0 && q[2] == 0.0 && q[3] == 0.0;
 }
 
-bool is_behind_triangle(const PreciseBox& box, const SubShape& part) noexcept {
+bool is_behind_triangle(const mid::Box3& box, const SubShape& part) noexcept {
   if (part.front == 0) return false;
   const Eigen::Matrix3d turn =
       rotation_of_unit(normalized(scale_to_unit_max(part.pose.orientation)));

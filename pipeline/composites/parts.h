@@ -8,9 +8,9 @@
 #include <winnow/pipeline/shape_pool.h>
 #include "pipeline/composites/mid_phase.h"
 #include "pipeline/shapes/extent.h"
+#include "pipeline/shapes/frame.h"
 #include "pipeline/shapes/two_diff.h"
 
-#include <Eigen/Core>
 #include <cmath>
 #include <cstdint>
 #include <span>
@@ -18,15 +18,8 @@
 
 namespace winnow {
 
-/// A box in double, in world axes.
-struct PreciseBox {
-  Eigen::Vector3d min;
-  Eigen::Vector3d max;
-
-  /// Returns the box enlarged by `by` on every side.
-  [[nodiscard]] PreciseBox grown(double by) const noexcept;
-  [[nodiscard]] MovingBox stationary() const noexcept;
-};
+/// Returns a box that does not move.
+[[nodiscard]] MovingBox stationary(const mid::Box3& box) noexcept;
 
 /// Any shape at a pose.
 struct PlacedShape {
@@ -98,8 +91,8 @@ class SubShapeQuery {
            mid_phase().solid_contains_point(*composites_, solid.shape, solid.pose, point);
   }
   /// Returns a box that contains the shape.
-  [[nodiscard]] PreciseBox box(const PlacedShape& placed) const noexcept;
-  [[nodiscard]] PreciseBox box(const SubShape& part) const noexcept;
+  [[nodiscard]] mid::Box3 box(const PlacedShape& placed) const noexcept;
+  [[nodiscard]] mid::Box3 box(const SubShape& part) const noexcept;
 
   /// Calls visit(part, limit) for every part that the moving box may hit, roughly in order of time.
   /// `visit` returns the limit of t for the rest of the traversal; a negative limit ends it.
@@ -145,8 +138,8 @@ class SubShapeQuery {
   /// Calls visit(part, limit) for every part that may be within `limit` of a box; `visit` returns
   /// the new limit, as in `visit_parts`.
   template <typename Visit>
-  void near(const PlacedShape& placed, const PreciseBox& from, double limit, Visit&& visit) const {
-    traverse(placed, from.stationary(), limit, true, visitor(visit));
+  void near(const PlacedShape& placed, const mid::Box3& from, double limit, Visit&& visit) const {
+    traverse(placed, stationary(from), limit, true, visitor(visit));
   }
 
  private:
@@ -186,7 +179,7 @@ class SubShapeQuery {
 [[nodiscard]] bool is_unrotated(const SubShape& part) noexcept;
 
 /// True if the part is a one-sided triangle and the centre of the box is behind it.
-[[nodiscard]] bool is_behind_triangle(const PreciseBox& box, const SubShape& part) noexcept;
+[[nodiscard]] bool is_behind_triangle(const mid::Box3& box, const SubShape& part) noexcept;
 
 [[nodiscard]] inline bool is_finite(const double point[3]) noexcept {
   return std::isfinite(point[0]) && std::isfinite(point[1]) && std::isfinite(point[2]);

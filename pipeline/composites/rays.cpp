@@ -68,10 +68,10 @@ struct NearBody {
 };
 
 /// Transforms a vector to the frame of the surface; sums in the order of the columns.
-void turn_into(const SurfaceFrame& frame, const double (&v)[3], double (&own)[3]) noexcept {
+void turn_into(const SurfaceFrame& frame, const double (&v)[3], double (&turned)[3]) noexcept {
   const auto& column = frame.world_to_local;
   for (int i = 0; i < 3; ++i) {
-    own[i] = column[0][i] * v[0] + column[1][i] * v[1] + column[2][i] * v[2];
+    turned[i] = column[0][i] * v[0] + column[1][i] * v[1] + column[2][i] * v[2];
   }
 }
 /// Upper bound on the coordinates of the transformed vector, for any signs of `v`.
@@ -105,8 +105,8 @@ template <std::uint32_t Room>
   const double towards = -direction.dot(Vec3d(start));
   const double square = direction.squared_norm();
   double shift = 0.0;
-  if (towards > 4.0 * frame.size * (square / fastest)) [[unlikely]] {
-    shift = std::max(0.0, towards / square - 4.0 * frame.size / fastest);
+  if (towards > kFarSizes * frame.size * (square / fastest)) [[unlikely]] {
+    shift = std::max(0.0, towards / square - kFarSizes * frame.size / fastest);
     for (int i = 0; i < 3; ++i) {
       start[i] = moved(ray.origin[i], frame.position[i], shift, ray.direction[i]);
     }
@@ -162,10 +162,6 @@ void prepare(const TransformedShape& body, RaySurface& surface) noexcept {
   surface.frame.size = (body.to_world.cwiseAbs() * corner).sum();
 }
 
-void improve(PartHit& best, const PartHit& hit) noexcept {
-  if (!best.found || hit.t < best.t || (hit.t == best.t && hit.part < best.part)) best = hit;
-}
-
 /// The closest hit of a ray so far, among primitives that are tested as convex shapes. The ray and
 /// the primitives are relative to the same point.
 struct RayResult {
@@ -178,7 +174,7 @@ struct RayResult {
   /// Functions return the new limit.
   double add(const PartHit& found) noexcept {
     if (!(found.t <= limit)) return limit;
-    improve(hit, found);
+    if (!hit.found || found.t < hit.t || (found.t == hit.t && found.part < hit.part)) hit = found;
     return limit = any ? -1.0 : found.t;
   }
   double test(const Primitive& primitive) noexcept {
@@ -232,7 +228,7 @@ struct RayTarget {
 template <std::uint32_t Room>
 class RayPacket {
  public:
-  /// `hits` has an entry for each ray, which `go` improves.
+  /// `hits` has an entry for each ray, which `trace` improves.
   RayPacket(const RayTarget& target, std::span<const ShapeRay> rays, bool any,
             PartHit* hits) noexcept
       : target_(target), rays_(rays), hits_(hits) {
@@ -251,7 +247,7 @@ class RayPacket {
   [[nodiscard]] bool is_full() const noexcept { return count_ == Room; }
   void add(std::size_t ray, double limit) noexcept;
   /// Traces the added rays.
-  void go();
+  void trace();
 
  private:
   /// Transforms the rays to the frame of the surface. Returns one bit for each ray whose numbers
@@ -259,8 +255,10 @@ class RayPacket {
   [[nodiscard]] std::uint64_t place() noexcept;
   /// Transforms the rays with the kernel. Returns one bit for each ray that is left to place_ray.
   [[nodiscard]] std::uint64_t place_by_kernel() noexcept;
-  void go_through_mesh();
-  void go_through_field(std::uint32_t i);
+  /// The kernel visits the triangles of a mesh, and calls `test` for the uncertain ones.
+  void trace_mesh();
+  /// A height field has no kernel for its cells: `height_cast` walks over them.
+  void trace_field(std::uint32_t i);
   /// Tests a triangle as a convex shape. Returns the new limit in the caller's t.
   [[nodiscard]] double test(std::uint32_t i, std::uint32_t slot, double limit);
   /// Tests a triangle of a height field. Returns the new limit in own t.
@@ -326,9 +324,11 @@ std::uint64_t RayPacket<Room>::place() noexcept {
 }
 
 template <std::uint32_t Room>
-void RayPacket<Room>::go() {
+void RayPacket<Room>::trace() {
   if (count_ == 0) return;
   const std::uint32_t count = Room == 1 ? 1 : count_;
+  // Rays that have no place in the frame of the surface are tested against all primitives, and then
+  // have no limit left.
   for (std::uint64_t left = place(); left != 0; left &= left - 1) {
     const auto i = static_cast<std::uint32_t>(std::countr_zero(left));
     const NearBody near = target_.near(rays_[number_[i]]);
@@ -339,18 +339,20 @@ void RayPacket<Room>::go() {
   }
   for (std::uint32_t i = 0; i < count; ++i) {
     closest_.unit[i] = 1.0 / own_.t_scale[i];
-    const LocalRayTime own = closest_.time(own_, i);
+    const LocalRayTime to_own = closest_.time(own_, i);
     const double limit = closest_.limit[i];
     closest_.own_limit[i] =
-        limit >= 0.0 ? own.first_limit(limit, target_.surface.frame.reach) : -1.0;
-    own_.low[i] = own(0.0);
-    own_.high[i] = own(rays_[number_[i]].max_t);
+        limit >= 0.0 ? to_own.first_limit(limit, target_.surface.frame.reach) : -1.0;
+    own_.low[i] = to_own(0.0);
+    own_.high[i] = to_own(rays_[number_[i]].max_t);
   }
   if (target_.surface.mesh != nullptr) {
-    go_through_mesh();
+    trace_mesh();
   } else {
-    for (std::uint32_t i = 0; i < count; ++i) go_through_field(i);
+    for (std::uint32_t i = 0; i < count; ++i) trace_field(i);
   }
+  // Finish the normals that `set_normal` leaves as they are, because their squares are no normal
+  // numbers.
   for (std::uint32_t i = 0; i < count; ++i) {
     PartHit& hit = *closest_.best[i];
     if (hit.found && !hit.has_unit_normal) [[unlikely]] {
@@ -362,7 +364,7 @@ void RayPacket<Room>::go() {
 }
 
 template <std::uint32_t Room>
-void RayPacket<Room>::go_through_mesh() {
+void RayPacket<Room>::trace_mesh() {
   const MeshView& mesh = *target_.surface.mesh;
   if constexpr (Room == 1) {
     mesh_ray_kernels().closest_of_one(mesh, own_, closest_);
@@ -381,7 +383,7 @@ double RayPacket<Room>::test(std::uint32_t i, std::uint32_t slot, double limit) 
 }
 
 template <std::uint32_t Room>
-void RayPacket<Room>::go_through_field(std::uint32_t i) {
+void RayPacket<Room>::trace_field(std::uint32_t i) {
   if (closest_.own_limit[i] < 0.0) return;
   struct FieldRay {
     RayPacket* packet;
@@ -426,9 +428,9 @@ void cast_in_packets(const RayTarget& target, std::span<const ShapeRay> rays, co
   for (std::size_t i = 0; i < rays.size(); ++i) {
     if (!(limits[i] >= 0.0)) continue;
     packet.add(i, limits[i]);
-    if (packet.is_full()) packet.go();
+    if (packet.is_full()) packet.trace();
   }
-  packet.go();
+  packet.trace();
 }
 
 void cast_on_surface(const RayTarget& target, std::span<const ShapeRay> rays, const double* limits,

@@ -2,8 +2,6 @@
 
 #include "pipeline/composites/transformed_shape.h"
 
-#include <cstdint>
-
 namespace winnow::mid {
 
 /// Checks that the triangles of a mesh enclose a volume. `invalid_shape` unless each edge is shared

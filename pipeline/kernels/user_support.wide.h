@@ -4,7 +4,7 @@
 
 #include <winnow/pipeline/shapes.h>
 #include "pipeline/kernels/single_vectors.wide.h"
-#include "pipeline/manifold/contact_patch.h"
+#include "pipeline/manifold/feature_rules.h"
 
 namespace winnow::WINNOW_ISA_NAME {
 

@@ -4,6 +4,7 @@
 #include "pipeline/manifold/polygon_clip.h"
 
 #include "pipeline/kinds/hypotenuse.h"
+#include "pipeline/manifold/feature_rules.h"
 #include "pipeline/shapes/directions_around.h"
 
 #include <algorithm>

@@ -2,11 +2,11 @@
 
 #include "pipeline/manifold/region_points.h"
 
+#include "core/memory/scattered.h"
 #include "pipeline/shapes/directions_around.h"
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <limits>
 
 namespace winnow {
@@ -18,13 +18,6 @@ constexpr double kTiedSpan = 1e-3;
 constexpr double kMinWider = 1e-4;
 /// Points within this many times the tie tolerance of each other count as one position.
 constexpr double kPlaces = 4.0;
-
-/// Finalizer of SplitMix64 (Steele, Lea, Flood 2014), a bijection.
-[[nodiscard]] std::uint64_t scrambled(std::uint64_t x) noexcept {
-  x = (x ^ (x >> 30U)) * 0xBF58476D1CE4E5B9U;
-  x = (x ^ (x >> 27U)) * 0x94D049BB133111EBU;
-  return x ^ (x >> 31U);
-}
 
 }  // namespace
 
@@ -46,7 +39,7 @@ std::uint64_t feature_among_parts(std::uint64_t feature, const std::uint32_t (&p
     feature = kHalf << 32U | b;
     parts |= kHalf << 32U;
   }
-  return scrambled(feature ^ scrambled(parts));
+  return scattered(feature ^ scattered(parts));
 }
 
 RegionPoints::RegionPoints(const double normal[3], const double direction[3], double tie) noexcept

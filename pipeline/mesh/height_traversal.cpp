@@ -7,8 +7,6 @@
 #include "pipeline/shapes/frame.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
 namespace winnow {
 namespace {

@@ -186,7 +186,7 @@ template <typename OnEntries>
   store(D(kRaySlack) * (coordinate + D(frame.reach)), own.slack + first);
   store(D(0.0), own.shift + first);
   store(t_scale, own.t_scale + first);
-  const auto near = towards <= D(4.0 * frame.size) * (square / fastest);
+  const auto near = towards <= D(kFarSizes * frame.size) * (square / fastest);
   const auto in_range = (largest_of(abs_of(start)) < D(kMaxRayLength)) &
                         (fastest < D(kMaxRayLength)) & (fastest > D(1.0 / kMaxRayLength)) &
                         (longest > D(kMinLength)) & (longest < D(1.0 / kMinLength)) &

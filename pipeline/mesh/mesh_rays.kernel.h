@@ -19,6 +19,11 @@ inline constexpr std::uint32_t kRayLanes = 8;
 
 /// Products of the components of longer vectors may leave the range of double.
 inline constexpr double kMaxRayLength = 1e150;
+/// A ray begins far away if the point of it that is nearest to the surface's origin is more than
+/// this many sizes of the surface ahead. Its origin is then moved along the ray until that point is
+/// so far ahead: the ray still begins outside of the surface, and its coordinates have no larger
+/// rounding errors than those of the surface.
+inline constexpr double kFarSizes = 4.0;
 /// Slack relative to coordinates: a few roundings of a ray's transformation to a surface's frame,
 /// and of triangles' transformation to the world.
 inline constexpr double kRaySlack = 0x1p-46;

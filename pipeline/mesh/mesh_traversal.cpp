@@ -6,7 +6,6 @@
 #include "pipeline/mesh/mesh_rays.kernel.h"
 
 #include <winnow/core/rounding.h>
-#include <winnow/simd/isa.h>
 #include "pipeline/mesh/mesh_tree.h"
 #include "pipeline/shapes/frame.h"
 

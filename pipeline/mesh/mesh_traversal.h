@@ -8,8 +8,6 @@
 #include "pipeline/mesh/mesh_view.h"
 #include "simd/kernels/kernels.h"
 
-#include <cstdint>
-
 namespace winnow {
 
 // Traversals of a mesh's tree, in the mesh's own unscaled frame. They miss no triangle, and may

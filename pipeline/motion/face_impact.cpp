@@ -43,7 +43,7 @@ class FaceImpactSearch {
   void test(const MovingShape& part, const Interval& within) noexcept;
   void walk(const Interval& given, int halvings);
   [[nodiscard]] Vec seen(const Vec& start, const Vec& end, double time) const noexcept;
-  [[nodiscard]] PreciseBox way(const Interval& within, double& bend) const noexcept;
+  [[nodiscard]] mid::Box3 way(const Interval& within, double& bend) const noexcept;
 
   const SubShapeQuery& parts_;
   const MovingBody& body_;
@@ -81,8 +81,8 @@ Vec FaceImpactSearch::seen(const Vec& start, const Vec& end, double time) const 
 /// a point's acceleration is at most its distance from the origin times rate^2 plus twice its speed
 /// relative to the position of the frame (without rotation) times rate. The point leaves its chord
 /// by at most an eighth of this bound times the squared duration.
-PreciseBox FaceImpactSearch::way(const Interval& within, double& bend) const noexcept {
-  PreciseBox box{Vec::Constant(mid::kInfinity), Vec::Constant(-mid::kInfinity)};
+mid::Box3 FaceImpactSearch::way(const Interval& within, double& bend) const noexcept {
+  mid::Box3 box;
   const double width = within.last - within.first;
   const double turned = length_of(body_.motion.turn) * width;
   double scale = 0.0;
@@ -105,7 +105,7 @@ void FaceImpactSearch::walk(const Interval& given, int halvings) {
   const Interval within = before(given, found_);
   if (within.first > within.last) return;
   double bend = 0.0;
-  const PreciseBox box = way(within, bend);
+  const mid::Box3 box = way(within, bend);
   const double extent = (box.max - box.min).maxCoeff();
   if (halvings < kMaxCuts && bend > kLooseBend * extent) {
     const double middle = 0.5 * (within.first + within.last);
@@ -113,7 +113,7 @@ void FaceImpactSearch::walk(const Interval& given, int halvings) {
     walk({middle, within.last}, halvings + 1);
     return;
   }
-  parts_.visit_parts(PlacedShape{body_.shape, Pose{}}, box.stationary(),
+  parts_.visit_parts(PlacedShape{body_.shape, Pose{}}, stationary(box),
                      [&](const SubShape& part, double limit) {
                        test(moving_part(parts_, part, body_.motion), before(within, found_));
                        return limit;

@@ -167,14 +167,13 @@ void ImpactSearch::sample_half_space(PairSample& result) const noexcept {
 
 /// GJK, started from the simplex of the last sample if there is one.
 GjkResult ImpactSearch::closest_points(double share) const noexcept {
-  const double noise = solver::kConvergence * pair_.problem().noise();
+  const solver::GjkLimits limits{.noise = solver::kConvergence * pair_.problem().noise(),
+                                 .share = share,
+                                 .roundings = pair_.roundings()};
   const solver::Core& b = pair_.b();
-  if (witness_.is_there()) {
-    return gjk(pair_.a(), b, witness_.placed(pair_.a(), b), noise, kUnbounded, share,
-               pair_.roundings());
-  }
+  if (witness_.is_there()) return gjk(pair_.a(), b, witness_.placed(pair_.a(), b), limits);
   const Vec start = b.center.isZero(0.0) ? Vec::UnitX() : b.center;
-  return gjk(pair_.a(), b, start, noise, kUnbounded, share, pair_.roundings());
+  return gjk(pair_.a(), b, start, limits);
 }
 
 /// Samples by GJK, which ends once the gap has the relative accuracy `share`.

@@ -9,8 +9,6 @@
 #include "pipeline/motion/relative_motion_bounds.h"
 #include "pipeline/motion/result_chunk.h"
 
-#include <algorithm>
-
 namespace winnow {
 namespace {
 
@@ -30,7 +28,7 @@ constexpr std::size_t kFacesPerRange = 16;
                              const Vec3d& origin) noexcept {
   const RigidMotion frame = RigidMotion::stationary(Pose::at(origin.x(), origin.y(), origin.z()));
   const impact::MovingShape whole = impact::whole_shape(parts, obstacle.shape, obstacle.motion);
-  const PreciseBox box =
+  const mid::Box3 box =
       impact::RelativeMotionBounds(parts, frame, whole).box({0.0, 1.0}).grown(obstacle.separation);
   return Aabb::outward(box.min, box.max);
 }

@@ -3,6 +3,7 @@
 
 #include "pipeline/motion/moving_pair.h"
 
+#include "pipeline/motion/core_reach.h"
 #include "pipeline/motion/deterministic_trig.h"
 #include "pipeline/shapes/two_diff.h"
 
@@ -64,8 +65,8 @@ TurningCore turning(Core& core, const RigidMotion& motion, const Vec& arm) noexc
   if (result.arm.isZero(0.0) && is_invariant(core, local_axis)) return result;
   result.angle = angle;
   if (core.kind == ShapeKind::half_space) return result;
-  result.reach = (reach_about(core, local_axis) + result.arm.cross(result.axis).norm()) *
-                 (1.0 + solver::kSameAxis);
+  result.reach =
+      (reach_about(core, local_axis) + result.arm.cross(result.axis).norm()) * (1.0 + kSameAxis);
   const AxisRange range = project(core, local_axis);
   const double height = result.arm.dot(result.axis);
   result.along = {height + range.low, height + range.high};
@@ -113,7 +114,7 @@ double swept_high(const TurningCore& turning, const Core& core, const Vec& axis)
 
 double acceleration(const TurningCore& turning, const Vec& axis) noexcept {
   if (turning.angle == 0.0) return 0.0;
-  const double across = axis.cross(turning.axis).norm() + solver::kSameAxis;
+  const double across = axis.cross(turning.axis).norm() + kSameAxis;
   return turning.angle * turning.angle * across * turning.reach;
 }
 

@@ -87,7 +87,7 @@ RelativeMotionBounds::RelativePose RelativeMotionBounds::place(double time) cons
 }
 
 /// The box of the shape with its body rotated by `turn`, relative to the shape's own position.
-PreciseBox RelativeMotionBounds::about(const Quaternion& turn) const noexcept {
+mid::Box3 RelativeMotionBounds::about(const Quaternion& turn) const noexcept {
   SubShape shape = shape_.shape;
   std::fill_n(shape.pose.position, 3, 0.0);
   const Quaternion q = multiply(turn, scale_to_unit_max(shape_.shape.pose.orientation));
@@ -127,25 +127,24 @@ MovingBox RelativeMotionBounds::moving_box(const Interval& within) const noexcep
   const double path = path_bend(far, width);
   const Vec ball = Vec::Constant(shape_.own_radius);
   if (!std::isfinite(shape_.radius) || path > far) {
-    return PreciseBox{-ball, ball}.grown(far + slack).stationary();
+    return stationary(mid::Box3{-ball, ball}.grown(far + slack));
   }
   const RelativePose first = place(within.first);
   const RelativePose last = place(within.last);
-  PreciseBox box{-ball, ball};
+  mid::Box3 box{-ball, ball};
   double bent = turning_bend(width);
   if (bent == 0.0) {
     box = about(first.turn);
   } else if (bent < shape_.own_radius) {
     const Vec most = ball - Vec::Constant(bent);
     box = about(first.turn);
-    const PreciseBox then = about(last.turn);
+    const mid::Box3 then = about(last.turn);
     box.min = box.min.cwiseMin(then.min).cwiseMax(-most);
     box.max = box.max.cwiseMax(then.max).cwiseMin(most);
   } else {
     bent = 0.0;
   }
-  box = {first.position + box.min, first.position + box.max};
-  MovingBox moving_box = box.grown(bent + path + slack).stationary();
+  MovingBox moving_box = stationary(box.moved(first.position).grown(bent + path + slack));
   Vec::Map(moving_box.direction) = last.position - first.position;
   moving_box.max_t = 1.0;
   return moving_box;
@@ -159,13 +158,13 @@ std::uint32_t RelativeMotionBounds::piece_count() const noexcept {
   return static_cast<std::uint32_t>(std::clamp(count, 1.0, kMaxCount));
 }
 
-PreciseBox RelativeMotionBounds::box(const Interval& within) const noexcept {
+mid::Box3 RelativeMotionBounds::box(const Interval& within) const noexcept {
   constexpr double kMaxTurned = 0.5;
   constexpr double kMaxPieces = 256.0;
   const double width = within.last - within.first;
   const double turned = (frame_rate_ + shape_rate_) * width;
   const double pieces = std::clamp(std::ceil(turned / kMaxTurned), 1.0, kMaxPieces);
-  PreciseBox all{Vec::Constant(mid::kInfinity), Vec::Constant(-mid::kInfinity)};
+  mid::Box3 all;
   for (double piece = 0.0; piece < pieces; ++piece) {
     const MovingBox way = moving_box(
         {within.first + piece / pieces * width, within.first + (piece + 1.0) / pieces * width});

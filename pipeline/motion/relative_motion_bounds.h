@@ -51,7 +51,7 @@ class RelativeMotionBounds {
   /// A fixed box that contains the shape at all times of an interval: the union of the moving boxes
   /// of up to 256 equal parts of the interval. Unless more parts would be necessary, the rotations
   /// of the shape and of the frame sum to at most half a radian in each part.
-  [[nodiscard]] PreciseBox box(const Interval& within) const noexcept;
+  [[nodiscard]] mid::Box3 box(const Interval& within) const noexcept;
   /// The number of pieces, at most 8, into which to cut the motion before boxes are put around it.
   /// Unless more than 8 are necessary, the shape moves by more than its diameter along at most one
   /// axis in each piece.
@@ -67,7 +67,7 @@ class RelativeMotionBounds {
     Quaternion turn;
   };
   [[nodiscard]] RelativePose place(double time) const noexcept;
-  [[nodiscard]] PreciseBox about(const Quaternion& turn) const noexcept;
+  [[nodiscard]] mid::Box3 about(const Quaternion& turn) const noexcept;
   /// The growth due to rotation of orientations, and due to the path of the position.
   [[nodiscard]] double turning_bend(double width) const noexcept;
   [[nodiscard]] double path_bend(double far, double width) const noexcept;

@@ -18,7 +18,7 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <memory>
+#include <new>
 #include <numeric>
 #include <type_traits>
 #include <utility>

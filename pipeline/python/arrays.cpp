@@ -7,7 +7,6 @@
 
 #include <winnow/core/rounding.h>
 
-#include <algorithm>
 #include <bit>
 #include <cstdlib>
 #include <cstring>

@@ -18,8 +18,6 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <string>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -41,12 +39,10 @@ class Numbers {
   [[nodiscard]] bool is_single() const noexcept { return single_; }
   /// True if a single entry is used for all.
   [[nodiscard]] bool is_one() const noexcept { return one_; }
-  void repeat(std::size_t count) noexcept { count_ = count; }
   /// Throws a size_mismatch unless there are `count` entries; repeats a single entry.
   void expect(std::size_t count);
 
   [[nodiscard]] std::ptrdiff_t stride() const noexcept { return stride_; }
-  [[nodiscard]] std::ptrdiff_t inner_stride() const noexcept { return inner_[0]; }
   /// Component (j, k) of the first entry. T must be float if `is_single`, else double.
   template <typename T>
   [[nodiscard]] const T* column(std::size_t j, std::size_t k = 0) const noexcept {

@@ -6,9 +6,6 @@
 
 #include <winnow/pipeline/contact_groups.h>
 
-#include <memory>
-#include <string>
-
 namespace winnow::python {
 namespace {
 

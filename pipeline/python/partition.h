@@ -17,7 +17,6 @@
 #include <atomic>
 #include <cstddef>
 #include <memory>
-#include <memory_resource>
 #include <mutex>
 #include <shared_mutex>
 #include <string>

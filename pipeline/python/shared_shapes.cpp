@@ -10,7 +10,6 @@
 #include <winnow/pipeline/shape_rays.h>
 
 #include <limits>
-#include <utility>
 #include <vector>
 
 namespace winnow::python {

@@ -8,7 +8,6 @@
 #include "pipeline/python/refusal.h"
 
 #include <cstring>
-#include <utility>
 
 namespace winnow::python {
 namespace {

@@ -9,7 +9,6 @@
 #include "pipeline/kinds/kinds.h"
 
 #include <Eigen/Core>
-#include <cstdint>
 #include <limits>
 #include <span>
 

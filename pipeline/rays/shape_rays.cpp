@@ -6,10 +6,8 @@
 #include "core/threads/float_environment.h"
 #include "pipeline/rays/shape_entries.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace winnow {
 namespace {

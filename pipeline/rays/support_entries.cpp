@@ -29,13 +29,13 @@ class SupportTarget {
     body_.half = scale * core.half;
     body_.corners = core.corners;
     body_.farthest = core.support;
-    body_.unit[0] = scale;
+    body_.scale = solver::Scale::by(scale);
   }
 
   [[nodiscard]] Foreground seen_from(const Vector3d& point) noexcept {
     point_.center = point;
     const Vector3d start = point.isZero(0.0) ? Vector3d(Vector3d::UnitX()) : Vector3d(-point);
-    const solver::GjkResult found = solver::gjk(point_, body_, start, kGrazing, kNoEnd);
+    const solver::GjkResult found = solver::gjk(point_, body_, start, {.noise = kGrazing});
     if (found.contact) return {0.0, Vector3d::Zero(), true};
     return {found.lower, -found.axis, false};
   }

@@ -150,10 +150,6 @@ struct RecordedName {
   std::uint32_t number;
 };
 
-[[nodiscard]] inline RecordedPair as_recorded(const Pair& pair) noexcept {
-  return {pair.first, pair.second};
-}
-
 // Digests of results: overloads of add_to, here and in contact_digest.h, query_digest.h and
 // impact_digest.h.
 

@@ -5,7 +5,6 @@
 #include "partitions/pairs/pair_tracker.h"
 #include "pipeline/recording/recorder_state.h"
 
-#include <algorithm>
 #include <type_traits>
 #include <variant>
 

@@ -1,11 +1,9 @@
 #pragma once
 
-#include <winnow/core/kdop.h>
 #include "pipeline/recording/format.h"
 
 #include <algorithm>
 #include <memory_resource>
-#include <span>
 
 namespace winnow {
 

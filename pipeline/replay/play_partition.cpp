@@ -67,7 +67,7 @@ Status with_volumes(ReplayState& state, Use&& use) {
 
 Status insert(ReplayState& replay, ReplayedWorld& into) {
   return with_volumes(replay, [&](const auto& volumes) {
-    if (!replay.in.get_array(replay.data)) return replay.reading();
+    if (!replay.in.get_array(replay.data)) return status_of(replay.in);
     if (!replay.keys.resize(volumes.size())) return Status::out_of_memory;
     return into.partition->insert(volumes, {replay.data.data(), replay.data.size()},
                                   std::span<Key>(replay.keys.data(), replay.keys.size()));
@@ -75,9 +75,9 @@ Status insert(ReplayState& replay, ReplayedWorld& into) {
 }
 
 Status update(ReplayState& replay, ReplayedWorld& of) {
-  if (!replay.read_keys(*of.partition)) return replay.reading();
+  if (!replay.read_keys(*of.partition)) return status_of(replay.in);
   return with_volumes(replay, [&](const auto& volumes) {
-    if (!replay.in.ok()) return replay.reading();
+    if (!replay.in.ok()) return status_of(replay.in);
     return of.partition->update(std::span<const Key>(replay.keys.data(), replay.keys.size()),
                                 volumes);
   });
@@ -103,7 +103,7 @@ Status self_pairs(ReplayState& replay, ReplayedWorld& of) {
   const auto before = replay.in.get<std::uint64_t>();
   const bool follows = replay.in.get_bool();
   pair_options.predicate = replay.filter.read_passed_pairs(replay.in);
-  if (!replay.in.ok()) return replay.reading();
+  if (!replay.in.ok()) return status_of(replay.in);
   ReplayedPairs& to = source_query(of, before);
   if (!follows && form != PairForm::buffer) to.events.clear();
   to.number = ++of.pair_queries;
@@ -127,7 +127,7 @@ Status pairs_with(ReplayState& replay, ReplayedWorld& of) {
   pair_options.incremental = replay.in.get_bool();
   pair_options.predicate = replay.filter.read_passed_pairs(replay.in);
   if (!replay.in.ok() || other == nullptr || !other->partition) {
-    return replay.in.ok() ? Status::invalid_argument : replay.reading();
+    return replay.in.ok() ? Status::invalid_argument : status_of(replay.in);
   }
   of.other_pairs.clear();
   return replay.compare_if(
@@ -138,7 +138,7 @@ Status cast(ReplayState& replay, RecordedCall call, ReplayedWorld& of) {
   const Cast query = read_variant<Cast>(replay.in, replay.in.get<std::uint8_t>(), replay.planes);
   replay.filter.read_filter(replay.in);
   replay.filter.read_passed_objects(replay.in);
-  if (!replay.in.ok()) return replay.reading();
+  if (!replay.in.ok()) return status_of(replay.in);
   const Partition& partition = *of.partition;
   if (call == RecordedCall::all_casts) {
     return replay.compare_if(partition.all(query, of.hits, replay.filter.filter()), of.hits);
@@ -157,13 +157,13 @@ Status cast_rays(ReplayState& replay, RecordedCall call, ReplayedWorld& of) {
   const Partition& partition = *of.partition;
   const RayBatch batch(std::span<const Ray>(replay.rays.data(), replay.rays.size()));
   if (call == RecordedCall::all_rays) {
-    if (!replay.in.ok()) return replay.reading();
+    if (!replay.in.ok()) return status_of(replay.in);
     return replay.compare_if(partition.all(batch, of.hits, replay.filter.filter()), of.hits);
   }
   const bool has_key = replay.in.get_bool();
   const bool has_data = replay.in.get_bool();
   const bool has_t = replay.in.get_bool();
-  if (!replay.in.ok()) return replay.reading();
+  if (!replay.in.ok()) return status_of(replay.in);
   if (!replay.keys.resize(replay.rays.size()) || !replay.data.resize(replay.rays.size()) ||
       !replay.floats.resize(replay.rays.size())) {
     return Status::out_of_memory;
@@ -186,7 +186,7 @@ Status overlap(ReplayState& replay, RecordedCall call, ReplayedWorld& of) {
     replay.filter.read_filter(replay.in);
     const auto order = replay.in.get_enum(Order::canonical);
     replay.filter.read_passed_objects(replay.in);
-    if (!replay.in.ok()) return replay.reading();
+    if (!replay.in.ok()) return status_of(replay.in);
     return replay.compare_if(partition.overlap(region, of.objects, replay.filter.filter(), order),
                              of.objects);
   }
@@ -195,7 +195,7 @@ Status overlap(ReplayState& replay, RecordedCall call, ReplayedWorld& of) {
     const auto order = replay.in.get_enum(Order::canonical);
     replay.filter.read_passed_objects(replay.in);
     if constexpr (std::is_same_v<std::decay_t<decltype(volumes)>, std::span<const Aabb>>) {
-      if (!replay.in.ok()) return replay.reading();
+      if (!replay.in.ok()) return status_of(replay.in);
       of.other_pairs.clear();
       return replay.compare_if(
           partition.overlap(volumes, of.other_pairs, replay.filter.filter(), order),
@@ -212,7 +212,7 @@ Status nearest(ReplayState& replay, ReplayedWorld& of) {
   const auto radius = replay.in.get<float>();
   replay.filter.read_filter(replay.in);
   replay.filter.read_passed_objects(replay.in);
-  if (!replay.in.ok()) return replay.reading();
+  if (!replay.in.ok()) return status_of(replay.in);
   return replay.compare_if(
       of.partition->nearest(from, count, radius, of.hits, replay.filter.filter()), of.hits);
 }
@@ -227,14 +227,14 @@ Status change_partition(ReplayState& replay, RecordedCall call, ReplayedWorld& o
     made.fat_margin.distance = replay.in.get<float>();
     made.fat_margin.share = replay.in.get<float>();
     made.build_budget = static_cast<std::size_t>(replay.in.get<std::uint64_t>());
-    if (replay.reading() != Status::ok) return replay.reading();
+    if (status_of(replay.in) != Status::ok) return status_of(replay.in);
     return of.partition.emplace(structure, made).status();
   }
   Partition& partition = *of.partition;
   switch (call) {
     case RecordedCall::set_structure: {
       const StructureKind structure = read_structure(replay.in);
-      return replay.in.ok() ? partition.set_structure(structure) : replay.reading();
+      return replay.in.ok() ? partition.set_structure(structure) : status_of(replay.in);
     }
     case RecordedCall::insert:
       return insert(replay, of);
@@ -243,7 +243,7 @@ Status change_partition(ReplayState& replay, RecordedCall call, ReplayedWorld& o
     case RecordedCall::remove:
       return replay.read_keys(partition)
                  ? partition.remove({replay.keys.data(), replay.keys.size()})
-                 : replay.reading();
+                 : status_of(replay.in);
     case RecordedCall::clear:
       partition.clear();
       return Status::ok;
@@ -252,7 +252,7 @@ Status change_partition(ReplayState& replay, RecordedCall call, ReplayedWorld& o
       return Status::ok;
     case RecordedCall::set_filter:
       if (!replay.read_keys(partition) || !replay.in.get_array(replay.filters))
-        return replay.reading();
+        return status_of(replay.in);
       return partition.set_filter({replay.keys.data(), replay.keys.size()},
                                   {replay.filters.data(), replay.filters.size()});
     case RecordedCall::refresh:

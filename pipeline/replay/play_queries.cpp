@@ -58,7 +58,7 @@ Status query_ray(ReplayState& replay, ReplayedWorld& of) {
   const auto form = replay.in.get_enum(HitForm::all);
   ShapeRay ray;
   read(replay.in, ray);
-  if (!replay.read_query_filter()) return replay.reading();
+  if (!replay.read_query_filter()) return status_of(replay.in);
   if (form == HitForm::all) {
     std::span<const SceneHit> hits;
     return replay.compare_if(of.queries->all(ray, hits, replay.filter.filter()), hits);
@@ -78,7 +78,7 @@ Status query_rays(ReplayState& replay, ReplayedWorld& of) {
     return Status::invalid_argument;
   if (!replay.shape_rays.resize(static_cast<std::size_t>(count))) return Status::out_of_memory;
   for (ShapeRay& ray : replay.shape_rays) read(replay.in, ray);
-  if (!replay.read_query_filter()) return replay.reading();
+  if (!replay.read_query_filter()) return status_of(replay.in);
   const ShapeRayBatch batch(
       std::span<const ShapeRay>(replay.shape_rays.data(), replay.shape_rays.size()));
   if (form == HitForm::all) {
@@ -97,9 +97,9 @@ Status query_rays(ReplayState& replay, ReplayedWorld& of) {
 Status query_overlap(ReplayState& replay, ReplayedWorld& of) {
   ShapeId shape;
   Pose pose;
-  if (!replay.read_shape(of, shape)) return replay.reading();
+  if (!replay.read_shape(of, shape)) return status_of(replay.in);
   (void)replay.in.get_bytes(&pose, sizeof pose);
-  if (!replay.read_query_filter()) return replay.reading();
+  if (!replay.read_query_filter()) return status_of(replay.in);
   std::span<const SceneOverlap> found;
   return replay.compare_if(of.queries->overlap(shape, pose, found, replay.filter.filter()), found);
 }
@@ -109,10 +109,10 @@ Status query_cast(ReplayState& replay, ReplayedWorld& of) {
   const auto form = replay.in.get_enum(HitForm::all_from_touch);
   Moving cast;
   cast.touching = form < HitForm::closest_from_touch;
-  if (!replay.read_shape(of, cast.shape)) return replay.reading();
+  if (!replay.read_shape(of, cast.shape)) return status_of(replay.in);
   const auto tolerance = replay.in.get<double>();
   read(replay.in, cast);
-  if (!replay.read_query_filter()) return replay.reading();
+  if (!replay.read_query_filter()) return status_of(replay.in);
   if (form == HitForm::any) return Status::invalid_argument;
   if (form == HitForm::all || form == HitForm::all_from_touch) {
     std::span<const SceneHit> hits;
@@ -128,10 +128,10 @@ Status query_any_contact(ReplayState& replay, RecordedCall call, ReplayedWorld& 
   const auto contact_margin = replay.in.get<double>();
   KeyPair pair;
   if (call == RecordedCall::query_any_contact) {
-    if (!replay.in.ok()) return replay.reading();
+    if (!replay.in.ok()) return status_of(replay.in);
     return replay.compare_if(of.queries->any_contact(pair, contact_margin, rules), pair);
   }
-  if (!replay.read_sets(of)) return replay.reading();
+  if (!replay.read_sets(of)) return status_of(replay.in);
   return replay.compare_if(
       of.queries->any_contact(replay.first_set(), replay.second_set(), pair, contact_margin, rules),
       pair);
@@ -148,22 +148,22 @@ Status query_sets(ReplayState& replay, RecordedCall call, ReplayedWorld& of) {
     const Key b = of.scene->key_of(replay.in.get<ObjectId>());
     const auto limit = replay.in.get<double>();
     SceneDistance answer;
-    if (!replay.in.ok()) return replay.reading();
+    if (!replay.in.ok()) return status_of(replay.in);
     return replay.compare_if(of.queries->distance(a, b, answer, limit, rules), answer);
   }
-  if (!replay.read_sets(of)) return replay.reading();
+  if (!replay.read_sets(of)) return status_of(replay.in);
   const std::span<const Key> first = replay.first_set();
   const std::span<const Key> second = replay.second_set();
   if (call == RecordedCall::query_least_distance ||
       call == RecordedCall::query_least_distance_by_rules) {
     const auto limit = replay.in.get<double>();
     SetDistance answer;
-    if (!replay.in.ok()) return replay.reading();
+    if (!replay.in.ok()) return status_of(replay.in);
     return replay.compare_if(of.queries->least_distance(first, second, answer, limit, rules),
                              answer);
   }
   const auto most = static_cast<std::size_t>(replay.in.get<std::uint64_t>());
-  if (!replay.in.ok()) return replay.reading();
+  if (!replay.in.ok()) return status_of(replay.in);
   std::span<const KeyPair> pairs;
   return replay.compare_if(of.queries->overlaps(first, second, pairs, most, rules), pairs);
 }
@@ -173,7 +173,7 @@ Status query_nearest(ReplayState& replay, ReplayedWorld& of) {
   (void)replay.in.get_bytes(point, sizeof point);
   const auto count = static_cast<std::size_t>(replay.in.get<std::uint64_t>());
   const auto radius = replay.in.get<double>();
-  if (!replay.read_query_filter()) return replay.reading();
+  if (!replay.read_query_filter()) return status_of(replay.in);
   std::span<const SceneDistance> found;
   return replay.compare_if(of.queries->nearest(point, count, radius, found, replay.filter.filter()),
                            found);

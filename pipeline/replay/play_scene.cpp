@@ -42,7 +42,7 @@ BodyState body_state_of(std::uint32_t number, ByteReader& in) noexcept {
 Status add_hull(ReplayState& replay, ReplayedWorld& of, ShapeId& id, Digest& digest) {
   ReadHull hull(replay.options.memory);
   hull.read(replay.in);
-  if (!replay.in.ok()) return replay.reading();
+  if (!replay.in.ok()) return status_of(replay.in);
   const Status taken = of.shapes->add_built_hull(hull.points(), hull.faces(), hull.rounding, id);
   if (taken == Status::ok) add_to(digest, of.shapes->tables().hulls[id.index()]);
   return taken;
@@ -53,7 +53,7 @@ Status add_shape(ReplayState& replay, ReplayedWorld& of) {
   ShapeId id;
   Digest digest;
   const auto kind = replay.in.get_enum(kLastConvexKind);
-  if (!replay.in.ok()) return replay.reading();
+  if (!replay.in.ok()) return status_of(replay.in);
   if (ShapeId::of(kind, 0).is_composite()) return Status::invalid_argument;
   const Status taken = with_kind(kind, [&](auto its) {
     using Shape = typename decltype(its)::Shape;
@@ -87,7 +87,7 @@ Status add_composite(ReplayState& replay, ReplayedWorld& of) {
     child.shape = of.shape_ids[number];
     (void)replay.in.get_bytes(&child.pose, sizeof child.pose);
   }
-  if (!replay.in.ok()) return replay.reading();
+  if (!replay.in.ok()) return status_of(replay.in);
   ShapeId id;
   Status taken = Status::invalid_argument;
   if (kind == static_cast<std::uint8_t>(CompositeKind::mesh)) {
@@ -104,7 +104,7 @@ Status add_composite(ReplayState& replay, ReplayedWorld& of) {
 
 Status change_composite(ReplayState& replay, ReplayedWorld& of) {
   const auto number = replay.in.get<std::uint32_t>();
-  if (!replay.in.get_array(replay.floats)) return replay.reading();
+  if (!replay.in.get_array(replay.floats)) return status_of(replay.in);
   if (number >= of.shape_ids.size()) return Status::invalid_argument;
   const ShapeId id = of.shape_ids[number];
   const float* const at = replay.floats.data();
@@ -123,7 +123,7 @@ Status change_composite(ReplayState& replay, ReplayedWorld& of) {
 }
 
 Status add_bodies(ReplayState& replay, ReplayedWorld& of) {
-  if (!replay.in.get_array(replay.recorded_bodies)) return replay.reading();
+  if (!replay.in.get_array(replay.recorded_bodies)) return status_of(replay.in);
   if (!replay.bodies.resize(replay.recorded_bodies.size()) ||
       !replay.keys.resize(replay.recorded_bodies.size())) {
     return Status::out_of_memory;
@@ -140,7 +140,7 @@ Status add_bodies(ReplayState& replay, ReplayedWorld& of) {
     body.data = one.data;
     replay.bodies[i] = body;
   }
-  if (!replay.in.ok()) return replay.reading();
+  if (!replay.in.ok()) return status_of(replay.in);
   return of.scene->add({replay.bodies.data(), replay.bodies.size()},
                        std::span<Key>(replay.keys.data(), replay.keys.size()));
 }
@@ -148,7 +148,7 @@ Status add_bodies(ReplayState& replay, ReplayedWorld& of) {
 Status move(ReplayState& replay, ReplayedWorld& of) {
   PoseView given;
   if (!replay.read_keys(*of.scene) || !replay.read_poses(replay.keys.size(), given))
-    return replay.reading();
+    return status_of(replay.in);
   return of.scene->move(std::span<const Key>(replay.keys.data(), replay.keys.size()), given);
 }
 
@@ -157,7 +157,8 @@ Status load_scene(ReplayState& replay, ReplayedWorld& of) {
   const std::span<const std::byte> saved = replay.in.get_nested();
   Column<RecordedName> recorded(replay.options.memory);
   Column<SavedNames::Name> names(replay.options.memory);
-  if (!replay.in.get_array(recorded) || !replay.in.get_array(replay.ids)) return replay.reading();
+  if (!replay.in.get_array(recorded) || !replay.in.get_array(replay.ids))
+    return status_of(replay.in);
   if (!names.resize(recorded.size())) return Status::out_of_memory;
   for (std::size_t i = 0; i < names.size(); ++i) {
     if (recorded[i].number >= of.shape_ids.size()) return Status::invalid_argument;
@@ -173,7 +174,7 @@ Status load_scene(ReplayState& replay, ReplayedWorld& of) {
 }
 
 Status pairs_passed(ReplayState& replay, ReplayedWorld& of) {
-  if (!replay.in.get_array(of.passed)) return replay.reading();
+  if (!replay.in.get_array(of.passed)) return status_of(replay.in);
   std::sort(of.passed.begin(), of.passed.end());
   return Status::ok;
 }
@@ -181,7 +182,7 @@ Status pairs_passed(ReplayState& replay, ReplayedWorld& of) {
 Status collide(ReplayState& replay, ReplayedWorld& of) {
   const auto level = replay.in.get_enum(ContactLevel::manifold);
   const bool continues = replay.in.get_bool();
-  if (!replay.in.ok()) return replay.reading();
+  if (!replay.in.ok()) return status_of(replay.in);
   if (!continues) of.contacts.clear();
   return replay.compare_if(of.scene->collide(level, of.contacts), of.contacts);
 }
@@ -199,7 +200,7 @@ Status make_scene(ReplayState& replay, ReplayedWorld& of) {
   made.contact_reduction = replay.in.get_bool();
   made.warm_start = replay.in.get_bool();
   made.build_budget = static_cast<std::size_t>(replay.in.get<std::uint64_t>());
-  if (!replay.in.ok()) return replay.reading();
+  if (!replay.in.ok()) return status_of(replay.in);
   of.shapes.emplace(replay.options.memory);
   of.composites.emplace(*of.shapes, replay.options.memory);
   made.composites = &*of.composites;
@@ -218,16 +219,16 @@ Status change_scene(ReplayState& replay, RecordedCall call, ReplayedWorld& of) {
     case RecordedCall::add_bodies:
       return add_bodies(replay, of);
     case RecordedCall::remove_bodies:
-      return replay.read_keys(scene) ? scene.remove(all_keys()) : replay.reading();
+      return replay.read_keys(scene) ? scene.remove(all_keys()) : status_of(replay.in);
     case RecordedCall::clear_bodies:
       scene.clear();
       return Status::ok;
     case RecordedCall::move:
       return move(replay, of);
     case RecordedCall::set_body_state: {
-      if (!replay.read_keys(scene)) return replay.reading();
+      if (!replay.read_keys(scene)) return status_of(replay.in);
       const auto state = replay.in.get_enum(BodyState::sleeping);
-      return replay.in.ok() ? scene.set_body_state(all_keys(), state) : replay.reading();
+      return replay.in.ok() ? scene.set_body_state(all_keys(), state) : status_of(replay.in);
     }
     case RecordedCall::set_shape: {
       const Key key = scene.key_of(replay.in.get<ObjectId>());
@@ -246,23 +247,23 @@ Status change_scene(ReplayState& replay, RecordedCall call, ReplayedWorld& of) {
       ContactOffsets given;
       given.contact = replay.in.get<double>();
       given.rest = replay.in.get<double>();
-      return replay.in.ok() ? scene.set_offsets(key, given) : replay.reading();
+      return replay.in.ok() ? scene.set_offsets(key, given) : status_of(replay.in);
     }
     case RecordedCall::set_layer: {
       const Key key = scene.key_of(replay.in.get<ObjectId>());
       const auto layer = replay.in.get<std::uint16_t>();
-      return replay.in.ok() ? scene.set_layer(key, layer) : replay.reading();
+      return replay.in.ok() ? scene.set_layer(key, layer) : status_of(replay.in);
     }
     case RecordedCall::set_layers_collide: {
       const auto a = replay.in.get<std::uint16_t>();
       const auto b = replay.in.get<std::uint16_t>();
       const bool collide = replay.in.get_bool();
-      return replay.in.ok() ? scene.set_layers_collide(a, b, collide) : replay.reading();
+      return replay.in.ok() ? scene.set_layers_collide(a, b, collide) : status_of(replay.in);
     }
     case RecordedCall::set_ignored: {
       const bool ignored = replay.in.get_bool();
       Column<RecordedPair> pairs(replay.options.memory);
-      if (!replay.in.get_array(pairs)) return replay.reading();
+      if (!replay.in.get_array(pairs)) return status_of(replay.in);
       if (!replay.key_pairs.resize(pairs.size())) return Status::out_of_memory;
       for (std::size_t i = 0; i < pairs.size(); ++i) {
         replay.key_pairs[i] = {scene.key_of(pairs[i].first), scene.key_of(pairs[i].second)};
@@ -278,7 +279,7 @@ Status change_scene(ReplayState& replay, RecordedCall call, ReplayedWorld& of) {
       return change_composite(replay, of);
     case RecordedCall::set_predicate: {
       const bool has_predicate = replay.in.get_bool();
-      if (!replay.in.ok()) return replay.reading();
+      if (!replay.in.ok()) return status_of(replay.in);
       scene.set_predicate(has_predicate ? among<lower_first>(of.passed) : PairPredicate{});
       return Status::ok;
     }
@@ -290,7 +291,7 @@ Status change_scene(ReplayState& replay, RecordedCall call, ReplayedWorld& of) {
       return load_scene(replay, of);
     case RecordedCall::load_contacts: {
       const std::span<const std::byte> saved = replay.in.get_nested();
-      return replay.in.ok() ? scene.load_contacts(saved, of.contacts) : replay.reading();
+      return replay.in.ok() ? scene.load_contacts(saved, of.contacts) : status_of(replay.in);
     }
     default:
       return collide(replay, of);

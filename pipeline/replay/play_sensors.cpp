@@ -11,18 +11,18 @@ Status change_sensor(ReplayState& replay, RecordedCall call, ReplayedWorld& of,
   const auto id = replay.in.get<ObjectId>();
   const Key key = id < all.keys.size() ? all.keys[id] : Key{};
   if (call == RecordedCall::remove_sensor)
-    return replay.in.ok() ? all.sensors.remove(key) : replay.reading();
+    return replay.in.ok() ? all.sensors.remove(key) : status_of(replay.in);
   SensorDefinition sensor;
   if (call == RecordedCall::move_sensor) {
-    if (!replay.in.get_bytes(&sensor.pose, sizeof sensor.pose)) return replay.reading();
+    if (!replay.in.get_bytes(&sensor.pose, sizeof sensor.pose)) return status_of(replay.in);
     return all.sensors.move(key, sensor.pose);
   }
-  if (!replay.read_shape(of, sensor.shape)) return replay.reading();
+  if (!replay.read_shape(of, sensor.shape)) return status_of(replay.in);
   (void)replay.in.get_bytes(&sensor.pose, sizeof sensor.pose);
   (void)replay.in.get_bytes(&sensor.filter, sizeof sensor.filter);
   sensor.carrier = of.scene->key_of(replay.in.get<ObjectId>());
   sensor.data = replay.in.get<ClientData>();
-  if (!replay.in.ok()) return replay.reading();
+  if (!replay.in.ok()) return status_of(replay.in);
   if (call == RecordedCall::set_sensor) return all.sensors.set(key, sensor);
   Key made;
   const Status added = all.sensors.add(sensor, made);
@@ -39,7 +39,7 @@ Status change_sensor(ReplayState& replay, RecordedCall call, ReplayedWorld& of,
 
 Status play_sensors(ReplayState& replay, RecordedCall call, ReplayedWorld& of) {
   const auto number = replay.in.get<std::uint32_t>();
-  if (!replay.in.ok()) return replay.reading();
+  if (!replay.in.ok()) return status_of(replay.in);
   if (call == RecordedCall::make_sensors) {
     if (number != of.sensors.size()) return Status::invalid_argument;
     auto* const made =
@@ -61,19 +61,19 @@ Status play_sensors(ReplayState& replay, RecordedCall call, ReplayedWorld& of) {
 Status find_impacts(ReplayState& replay, RecordedCall call, ReplayedWorld& of) {
   if (!of.ccd) of.ccd.emplace(*of.scene, replay.options.memory);
   PoseView ends;
-  if (!replay.read_keys(*of.scene)) return replay.reading();
+  if (!replay.read_keys(*of.scene)) return status_of(replay.in);
   const bool between = call == RecordedCall::find_impacts;
   if (!(between ? replay.read_poses(replay.keys.size(), ends)
                 : replay.in.get_array(replay.motions)))
-    return replay.reading();
+    return status_of(replay.in);
   ContinuousOptions how;
   how.pairs = replay.in.get_enum(ContinuousPairs::bullets_and_fixed);
-  if (!replay.in.get_array(replay.flags)) return replay.reading();
+  if (!replay.in.get_array(replay.flags)) return status_of(replay.in);
   how.bullets = {replay.flags.data(), replay.flags.size()};
   how.tolerance = replay.in.get<double>();
   how.touching = replay.in.get_bool();
   how.first_only = replay.in.get_bool();
-  if (!replay.in.ok()) return replay.reading();
+  if (!replay.in.ok()) return status_of(replay.in);
   const std::span<const Key> moving(replay.keys.data(), replay.keys.size());
   const std::span<const RigidMotion> ways(replay.motions.data(), replay.motions.size());
   return replay.compare_if(

@@ -39,7 +39,6 @@ ReplayState::ReplayState(std::span<const std::byte> bytes, const ReplayOptions& 
       rays(given.memory),
       shape_rays(given.memory),
       planes(given.memory),
-      numbers(given.memory),
       motions(given.memory),
       flags(given.memory),
       filter(given.memory) {

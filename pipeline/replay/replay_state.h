@@ -93,12 +93,6 @@ struct ReplayState {
     return number < worlds.size() ? worlds[number] : nullptr;
   }
   [[nodiscard]] ReplayedWorld* add_world(std::uint32_t number) noexcept;
-  /// Returns `ok` if every read of the current block succeeded.
-  [[nodiscard]] Status reading() const noexcept {
-    if (in.ok()) return Status::ok;
-    return in.out_of_memory() ? Status::out_of_memory : Status::invalid_argument;
-  }
-
   [[nodiscard]] static SceneState* state_of(Scene& scene) noexcept { return scene.state_; }
 
   // Reads of arguments that several groups of calls have.
@@ -140,7 +134,7 @@ struct ReplayState {
     const auto recorded = in.get<std::uint64_t>();
     ++queries;
     if (recorded != digest) ++differences;
-    return reading();
+    return status_of(in);
   }
 
   ReplayOptions options;
@@ -169,7 +163,6 @@ struct ReplayState {
   Column<Ray> rays;
   Column<ShapeRay> shape_rays;
   Column<Plane> planes;
-  Column<std::uint32_t> numbers;
   Column<RigidMotion> motions;
   Column<std::uint8_t> flags;
   RecordedFilter filter;

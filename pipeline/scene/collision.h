@@ -53,7 +53,7 @@ struct CollideCall {
   /// The current batch is [batch_first, batch_end). It is all pairs until the narrow phase begins.
   std::uint32_t batch_first = 0;
   std::uint32_t batch_end = 0;
-  /// First pair of the columns `origin` and `old_record`: the batch's first pair, or 0 with
+  /// First pair of the columns `source` and `old_record`: the batch's first pair, or 0 with
   /// caching, which is decided for all pairs at once.
   std::uint32_t known_from = 0;
 
@@ -93,19 +93,19 @@ struct CollideCall {
   [[nodiscard]] bool is_cacheable(const BodyPair& pair) const noexcept {
     return !scene.options.suppress_ghost_contacts || !is_floor_pair(pair);
   }
-  [[nodiscard]] ContactSource origin_of_fresh(const BodyPair& pair) const noexcept {
+  [[nodiscard]] ContactSource source_of_fresh(const BodyPair& pair) const noexcept {
     const bool is_composite =
         scene.shape[pair.a].is_composite() || scene.shape[pair.b].is_composite();
     return is_composite ? ContactSource::composite : ContactSource::convex;
   }
-  [[nodiscard]] ContactSource origin_of(std::uint32_t pair) const noexcept {
-    return static_cast<ContactSource>(contacts.origin[pair - known_from]);
+  [[nodiscard]] ContactSource source_of(std::uint32_t pair) const noexcept {
+    return static_cast<ContactSource>(contacts.source[pair - known_from]);
   }
   /// Index in PairBatch::convex or composite of a pair that is not cached. For a convex pair
   /// this is also the index of its result, because PairBatch::convex is sorted by kinds, as
   /// results are.
-  [[nodiscard]] std::uint32_t source_of(std::uint32_t pair) const noexcept {
-    return contacts.source[pair - batch_first];
+  [[nodiscard]] std::uint32_t input_of(std::uint32_t pair) const noexcept {
+    return contacts.input[pair - batch_first];
   }
 };
 
@@ -280,7 +280,7 @@ class ContactFrameWriter {
                                                 : answers.distance()[at] <= call_.limit;
   }
   [[nodiscard]] bool is_fresh_convex(std::uint32_t pair) const noexcept {
-    return call_.origin_of(pair) == ContactSource::convex;
+    return call_.source_of(pair) == ContactSource::convex;
   }
   [[nodiscard]] bool grow_frame(const Cursor& end);
   [[nodiscard]] std::uint32_t count_cached(std::uint32_t pair, std::uint32_t end) const noexcept;

@@ -12,7 +12,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -154,7 +153,7 @@ bool ContactCache::match_cached() {
   const std::size_t pairs = call_.pair_count();
   same_pairs_ = call_.same_level && c.pairs_serial == scene_.pairs.serial() &&
                 c.records.size() == pairs && c.cached.size() == pairs;
-  if (!resize_tightly(c.origin, pairs)) return false;
+  if (!resize_tightly(c.source, pairs)) return false;
   if (same_pairs_) return true;
   if (!resize_tightly(c.old_record, pairs)) return false;
   match(c.records);
@@ -171,12 +170,12 @@ bool ContactCache::decide() {
     for (std::uint32_t i = first; i < end; ++i) {
       const BodyPair pair = scene_.pairs[i];
       const std::uint32_t record = same_pairs_ ? i : c.old_record[i];
-      ContactSource origin = call_.origin_of_fresh(pair);
+      ContactSource source = call_.source_of_fresh(pair);
       if (may_keep && record != kNoEntry && call_.is_cacheable(pair) && keep(i, record)) {
-        origin = ContactSource::cached;
+        source = ContactSource::cached;
         ++count;
       }
-      c.origin[i] = static_cast<std::uint8_t>(origin);
+      c.source[i] = static_cast<std::uint8_t>(source);
     }
     kept.fetch_add(count, std::memory_order_relaxed);
   });
@@ -253,7 +252,7 @@ float ContactCache::cache_limit(std::uint32_t pair, std::uint32_t index) const n
   const double cache_tolerance = scene_.options.cache_tolerance;
   const double clear = index == kNoEntry ? std::max(clearance(pair), 0.0) : cache_tolerance;
   return round_down(
-      call_.origin_of(pair) == ContactSource::convex ? clear : std::min(clear, cache_tolerance));
+      call_.source_of(pair) == ContactSource::convex ? clear : std::min(clear, cache_tolerance));
 }
 
 // Returns a lower bound on the distance beyond the margin of a pair that is not in contact. For
@@ -267,11 +266,11 @@ double ContactCache::clearance(std::uint32_t pair) const noexcept {
                     call_.level == ContactLevel::manifold ? 0.5 * beyond : 0.0);
   };
   double least = std::numeric_limits<double>::infinity();
-  if (call_.origin_of(pair) == ContactSource::convex) {
-    least = of(scene_.batch.answers, call_.source_of(pair));
+  if (call_.source_of(pair) == ContactSource::convex) {
+    least = of(scene_.batch.answers, call_.input_of(pair));
   } else {
     const std::uint32_t* const first =
-        scene_.batch.parts->pairs.first.data() + call_.source_of(pair);
+        scene_.batch.parts->pairs.first.data() + call_.input_of(pair);
     for (std::uint32_t i = first[0]; i < first[1]; ++i) {
       least = std::min(least, of(scene_.batch.parts->answers, scene_.batch.parts->slot[i]));
     }
@@ -284,7 +283,7 @@ void ContactCache::remember(std::uint32_t pair, std::uint32_t index) noexcept {
   const BodyPair bodies = scene_.pairs[pair];
   c.records.bits[pair] = scene_.pairs.order(pair).bits;
   c.records.frame_index[pair] = index;
-  if (call_.origin_of(pair) == ContactSource::cached) {
+  if (call_.source_of(pair) == ContactSource::cached) {
     if (!same_pairs_) c.cached[pair] = c.cached_before[c.old_record[pair]];
     return;
   }

@@ -241,11 +241,11 @@ struct ContactsState {
   std::uint64_t regroupings = 0;
   std::size_t cached_count = 0;
 
-  /// By pair of the batch (`old_record` and `origin` with caching: of the scene): its record of
+  /// By pair of the batch (`old_record` and `source` with caching: of the scene): its record of
   /// the last call; its index in the input of the narrow phase; and its ContactSource.
   Column<std::uint32_t> old_record;
-  Column<std::uint32_t> source;
-  Column<std::uint8_t> origin;
+  Column<std::uint32_t> input;
+  Column<std::uint8_t> source;
   /// By pair of the last frame: 1 if the pair is in the new frame too.
   Column<std::uint8_t> is_in_new_frame;
   /// Counts by task, which become the write positions of the tasks.

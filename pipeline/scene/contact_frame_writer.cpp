@@ -2,7 +2,6 @@
 // there is room for all, each task writes its own range of the columns. Collision (collide.cpp)
 // calls this.
 
-#include "pipeline/narrow/tight_growth.h"
 #include "pipeline/scene/collision.h"
 
 #include <algorithm>
@@ -80,7 +79,7 @@ std::uint32_t ContactFrameWriter::count_cached(std::uint32_t pair,
                                                std::uint32_t end) const noexcept {
   std::uint32_t at = pair;
   std::uint32_t next = kNoEntry;
-  for (; at < end && call_.origin_of(at) == ContactSource::cached; ++at) {
+  for (; at < end && call_.source_of(at) == ContactSource::cached; ++at) {
     const std::uint32_t index = cache_.index_before(at);
     if (index == kNoEntry) continue;
     if (next != kNoEntry && index != next) break;
@@ -93,12 +92,12 @@ std::uint32_t ContactFrameWriter::count_cached(std::uint32_t pair,
 ContactFrame::Cursor ContactFrameWriter::composite_extent(std::uint32_t pair) const noexcept {
   Cursor sum;
   if (call_.reduces) {
-    const auto regions = scene_.batch.parts->regions.of(call_.source_of(pair));
+    const auto regions = scene_.batch.parts->regions.of(call_.input_of(pair));
     for (const ContactRegion& region : regions) sum += {0, 1, region.count};
     sum.pair = regions.empty() ? 0 : 1;
     return sum;
   }
-  const std::uint32_t* const first = scene_.batch.parts->pairs.first.data() + call_.source_of(pair);
+  const std::uint32_t* const first = scene_.batch.parts->pairs.first.data() + call_.input_of(pair);
   const NarrowResult& answers = scene_.batch.parts->answers;
   for (std::uint32_t i = first[0]; i < first[1]; ++i) {
     const std::uint32_t at = scene_.batch.parts->slot[i];
@@ -133,7 +132,7 @@ ContactFrame::Cursor ContactFrameWriter::count(std::uint32_t first,
   for (std::uint32_t i = first; i < end;) {
     if (is_fresh_convex(i)) {
       // Without a branch, because contact is unpredictable.
-      const std::uint32_t at = call_.source_of(i++);
+      const std::uint32_t at = call_.input_of(i++);
       const std::uint32_t touching = touches(scene_.batch.answers, at) ? 1 : 0;
       const std::uint32_t points =
           call_.level == ContactLevel::manifold ? scene_.batch.answers.contact_count()[at] : 0;
@@ -228,7 +227,7 @@ void ContactFrameWriter::write_convex(std::uint32_t first, std::uint32_t end, Cu
   std::uint32_t touching[CollideCall::kPairsPerTask];
   std::uint32_t count = 0;
   for (std::uint32_t i = first; i < end; ++i) {
-    const bool is_touching = touches(scene_.batch.answers, call_.source_of(i));
+    const bool is_touching = touches(scene_.batch.answers, call_.input_of(i));
     if (call_.uses_cache) cache_.remember(i, is_touching ? at.pair + count : kNoEntry);
     touching[count] = i;
     count += is_touching ? 1 : 0;
@@ -249,7 +248,7 @@ void ContactFrameWriter::write_answers(std::span<const std::uint32_t> pairs, Cur
   const auto count = static_cast<std::uint32_t>(pairs.size());
   const auto copy = [&](std::span<const double> from, Column<double>& to) {
     double* const out = to.data() + at.manifold;
-    for (std::uint32_t i = 0; i < count; ++i) out[i] = from[call_.source_of(pairs[i])];
+    for (std::uint32_t i = 0; i < count; ++i) out[i] = from[call_.input_of(pairs[i])];
   };
   const NarrowResult& answers = scene_.batch.answers;
   ContactFrame& frame = contacts_.frame;
@@ -263,7 +262,7 @@ void ContactFrameWriter::write_answers(std::span<const std::uint32_t> pairs, Cur
   }
   for (std::uint32_t i = 0; call_.level == ContactLevel::manifold && i < count; ++i) {
     frame.point_first[at.manifold + i] = at.point;
-    write_points(answers, call_.source_of(pairs[i]), nullptr, at.point);
+    write_points(answers, call_.input_of(pairs[i]), nullptr, at.point);
   }
   at.pair += count;
   at.manifold += count;
@@ -276,13 +275,13 @@ void ContactFrameWriter::write_composite(std::uint32_t pair, const Cursor& to) n
   frame.manifold_first[to.pair] = to.manifold;
   Cursor at = to;
   if (call_.reduces) {
-    for (const ContactRegion& region : scene_.batch.parts->regions.of(call_.source_of(pair))) {
+    for (const ContactRegion& region : scene_.batch.parts->regions.of(call_.input_of(pair))) {
       write_region(region, at);
     }
     return;
   }
   const PrimitivePairs& parts = scene_.batch.parts->pairs;
-  const std::uint32_t* const first = parts.first.data() + call_.source_of(pair);
+  const std::uint32_t* const first = parts.first.data() + call_.input_of(pair);
   for (std::uint32_t i = first[0]; i < first[1]; ++i) {
     const std::uint32_t answer = scene_.batch.parts->slot[i];
     if (!touches(scene_.batch.parts->answers, answer)) continue;

@@ -219,8 +219,8 @@ ContactsState::ContactsState(std::pmr::memory_resource* memory) noexcept
       dormant_cached(memory),
       history(memory),
       old_record(memory),
+      input(memory),
       source(memory),
-      origin(memory),
       is_in_new_frame(memory),
       sums(memory) {}
 
@@ -367,7 +367,7 @@ Footprint Contacts::footprint() const noexcept {
   for (const Bytes& bytes :
        {s.before.bytes(), s.dormant.bytes(), s.records.bytes(), s.records_before.bytes(),
         s.known.bytes(), s.cached.bytes(), s.cached_before.bytes(), s.dormant_records.bytes(),
-        s.dormant_cached.bytes(), s.old_record.bytes(), s.source.bytes(), s.origin.bytes(),
+        s.dormant_cached.bytes(), s.old_record.bytes(), s.input.bytes(), s.source.bytes(),
         s.is_in_new_frame.bytes(), s.sums.bytes(), s.history.taken.bytes(),
         s.history.pose.bytes()}) {
     footprint.scratch += bytes;

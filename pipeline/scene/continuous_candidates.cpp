@@ -158,7 +158,7 @@ void ContinuousState::box_path(std::uint32_t mover) noexcept {
   const std::uint32_t begin = first_piece[mover];
   const std::uint32_t count = first_piece[mover + 1] - begin;
   for (std::uint32_t i = 0; i < count; ++i) {
-    const PreciseBox box = passage.box(impact::piece_of(i, count));
+    const mid::Box3 box = passage.box(impact::piece_of(i, count));
     const Aabb outward = Aabb::outward(box.min, box.max);
     for (int axis = 0; axis < 3; ++axis) {
       boxes[begin + i].min[axis] = outward.min[axis];

@@ -30,21 +30,21 @@ bool FreshContacts::list_pairs() {
   batch_.convex.clear();
   batch_.composite.clear();
   if (call_.level == ContactLevel::pairs) return true;
-  if (!call_.resize_for_batch(contacts.source) ||
+  if (!call_.resize_for_batch(contacts.input) ||
       !batch_.convex.grow(call_.batch_room(scene_.options, call_.pair_count())) ||
-      (!call_.uses_cache && !call_.resize_for_batch(contacts.origin))) {
+      (!call_.uses_cache && !call_.resize_for_batch(contacts.source))) {
     return false;
   }
   for (std::uint32_t i = call_.batch_first; i < call_.batch_end; ++i) {
     const BodyPair pair = scene_.pairs[i];
     if (!call_.uses_cache) {
-      contacts.origin[i - call_.known_from] =
-          static_cast<std::uint8_t>(call_.origin_of_fresh(pair));
+      contacts.source[i - call_.known_from] =
+          static_cast<std::uint8_t>(call_.source_of_fresh(pair));
     }
-    const ContactSource origin = call_.origin_of(i);
-    if (origin == ContactSource::cached) continue;
-    Column<BodyPair>& list = origin == ContactSource::convex ? batch_.convex : batch_.composite;
-    contacts.source[i - call_.batch_first] = static_cast<std::uint32_t>(list.size());
+    const ContactSource source = call_.source_of(i);
+    if (source == ContactSource::cached) continue;
+    Column<BodyPair>& list = source == ContactSource::convex ? batch_.convex : batch_.composite;
+    contacts.input[i - call_.batch_first] = static_cast<std::uint32_t>(list.size());
     if (!list.push_back(pair)) return false;
   }
   return true;

@@ -2,8 +2,6 @@
 
 #include <cstdint>
 
-#include "pipeline/shapes/frame.h"
-
 namespace winnow {
 
 /// A manifold of a dynamic body with a fixed one, in world axes, relative to the dynamic body's

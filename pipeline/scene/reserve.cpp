@@ -197,8 +197,8 @@ bool ContactsState::reserve(const SceneCapacity& room, const SceneOptions& optio
   const std::size_t batch = CollideCall::batch_size(options, room.pairs);
   const std::size_t batch_room = CollideCall::batch_room(options, room.pairs);
   const std::size_t record_room = uses_cache ? std::max(room.pairs, batch_room) : batch_room;
-  const std::size_t source_room = room.level == ContactLevel::pairs ? 0 : batch_room;
-  const std::size_t origin_room = room.level == ContactLevel::pairs ? 0 : record_room;
+  const std::size_t input_room = room.level == ContactLevel::pairs ? 0 : batch_room;
+  const std::size_t source_room = room.level == ContactLevel::pairs ? 0 : record_room;
   // Without caching and sleeping pairs, `records` and `records_before` share one column, of
   // which only `bits` is used. If the scene and the contacts have the same memory resource, the
   // column is borrowed from the scene (see BorrowedStorage in collide.cpp).
@@ -212,7 +212,7 @@ bool ContactsState::reserve(const SceneCapacity& room, const SceneOptions& optio
          (!may_sleep || dormant_records.reserve(shown, pages)) &&
          reserve_all(cached_room, pages, cached, cached_before) &&
          dormant_cached.reserve(uses_cache ? shown : 0, pages) &&
-         source.reserve(source_room, pages) && origin.reserve(origin_room, pages) &&
+         input.reserve(input_room, pages) && source.reserve(source_room, pages) &&
          old_record.reserve(record_room, pages) &&
          sums.reserve(batch / CollideCall::kPairsPerTask + 1, pages);
 }

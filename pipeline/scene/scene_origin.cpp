@@ -1,5 +1,7 @@
 #include "pipeline/scene/scene_origin.h"
 
+#include "core/sort/order_statistics.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -14,12 +16,6 @@ constexpr double kFineStep = 0x1p-10;
 constexpr double kWorthMoving = 8.0;
 /// Beyond this, differences to the origin could overflow floats.
 constexpr double kFarthestOrigin = 0x1p120;
-
-double median_of(std::array<double, BodySample::kMaxSamples> values, std::size_t count) noexcept {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(count / 2);
-  std::nth_element(values.begin(), middle, values.begin() + static_cast<std::ptrdiff_t>(count));
-  return *middle;
-}
 
 }  // namespace
 

@@ -13,7 +13,6 @@
 #include "pipeline/scene/scene_state.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 namespace winnow {

@@ -8,7 +8,6 @@
 #include "core/sort/parallel_ranges.h"
 #include "partitions/state/box_partition.h"
 #include "pipeline/composites/parts.h"
-#include "pipeline/narrow/tight_growth.h"
 #include "pipeline/scene/body_predicate.h"
 #include "pipeline/scene/motion_bound.h"
 #include "pipeline/scene/scene_origin.h"
@@ -46,9 +45,9 @@ constexpr std::size_t kBoxesPerBatch = 16384;
 constexpr std::size_t kKeysPerCall = 512;
 
 // A buffer that grows while pairs are found grows by half. The number of pairs is about the same in
-// most frames, so most of the unused part is freed. If the smaller allocation is refused, the
-// larger one stays.
-void trim(PairBuffer& pairs) noexcept {
+// most frames, so the capacity shrinks to that number and a sixteenth more. If the smaller
+// allocation is refused, the larger one stays.
+void shrink_to_steady(PairBuffer& pairs) noexcept {
   const std::size_t steady = pairs.size() + pairs.size() / 16;
   if (pairs.capacity() * sizeof(Pair) >= kSmallColumn) (void)pairs.shrink(steady);
 }
@@ -514,7 +513,7 @@ Status SceneState::find_pairs(bool all) {
             ? dynamic.partition->self_pairs(other.with_dynamic, pair_options)
             : dynamic.partition->pairs_with(*other.partition, other.with_dynamic, pair_options);
     if (status != Status::ok) return status;
-    if (other.with_dynamic.capacity() > room) trim(other.with_dynamic);
+    if (other.with_dynamic.capacity() > room) shrink_to_steady(other.with_dynamic);
     sources[count++] = {other.with_dynamic.pairs(), dynamic.body_of.data(), other.body_of.data()};
   }
   const Status status = pairs.assign(

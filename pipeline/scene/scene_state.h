@@ -135,7 +135,8 @@ struct BodyColumns {
   Column<ShapeId> shape;
   Column<Pose> pose;
   Column<BodyState> body_state;
-  /// The body's key in the partition of its set.
+  /// A body is an object of the partition of its set, under a key of that partition: place[body].
+  /// SceneSet::body_of maps the object back to the body.
   Column<Key> place;
   /// The `clock` at the last change of the pose, and of the shape.
   Column<std::uint32_t> moved_at;

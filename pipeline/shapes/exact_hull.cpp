@@ -6,7 +6,6 @@
 #include "pipeline/exact/exact_vector.h"
 #include "pipeline/shapes/accurate_cross.h"
 
-#include <Eigen/Geometry>
 #include <cmath>
 #include <utility>
 

@@ -34,6 +34,15 @@ struct Box3 {
     }
     return true;
   }
+  /// Returns the box enlarged by `by` on every side.
+  [[nodiscard]] Box3 grown(double by) const noexcept {
+    return {min.array() - by, max.array() + by};
+  }
+  [[nodiscard]] Box3 moved(const Vec& by) const noexcept { return {min + by, max + by}; }
+  /// The largest coordinate, without its sign.
+  [[nodiscard]] double largest() const noexcept {
+    return std::max(min.cwiseAbs().maxCoeff(), max.cwiseAbs().maxCoeff());
+  }
   void merge(const Box3& other) noexcept {
     min = min.cwiseMin(other.min);
     max = max.cwiseMax(other.max);

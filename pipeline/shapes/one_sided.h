@@ -3,7 +3,6 @@
 // Culling for one-sided triangles: objects behind a triangle do not collide with it.
 
 #include <Eigen/Core>
-#include <algorithm>
 
 namespace winnow {
 

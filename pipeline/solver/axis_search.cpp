@@ -140,7 +140,7 @@ bool test_features(const Problem& problem, AxisSearch& search) noexcept {
   const Core& b = problem.b;
   test_normals(problem, search);
   const std::uint64_t products = std::uint64_t{direction_count(a)} * direction_count(b);
-  if (products > kMaxEdgePairs) return false;
+  if (products > kMaxFeaturePairs) return false;
   if (is_solid_hull(a) && is_solid_hull(b)) {
     test_hull_products(problem, search);
   } else {

@@ -4,6 +4,7 @@
 #include "pipeline/solver/gjk.h"
 #include "pipeline/solver/problem.h"
 
+#include <cstdint>
 #include <limits>
 
 namespace winnow::solver {
@@ -41,11 +42,12 @@ void test_normals(const Problem& problem, AxisSearch& search) noexcept;
 /// of test_across_line in core_distance.cpp.) For two hulls only edge pairs that make a face of the
 /// Minkowski difference are tested (Gregorius, "The separating axis test between convex polyhedra",
 /// 2013), and only if they may beat the best axis so far. O(edges of a x edges of b); returns false
-/// if that exceeds kMaxEdgePairs and the products of edges were left out.
+/// if that exceeds kMaxFeaturePairs and the products of edges were left out.
 bool test_features(const Problem& problem, AxisSearch& search) noexcept;
 
-/// The largest number of edge products that test_features tests.
-inline constexpr std::uint64_t kMaxEdgePairs = 4'000'000;
+/// The largest number of pairs of edges, or of corners and faces, that are tested for one pair of
+/// cores.
+inline constexpr std::uint64_t kMaxFeaturePairs = 4'000'000;
 
 /// Returns the sine of the angle between the axes of two points, segments, cylinders or cones: 0 if
 /// one is a point, infinity for other cores.

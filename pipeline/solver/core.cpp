@@ -6,7 +6,6 @@
 #include "pipeline/kinds/hypotenuse.h"
 #include "pipeline/solver/core_forms.h"
 
-#include <algorithm>
 #include <cmath>
 
 namespace winnow::solver {
@@ -70,7 +69,7 @@ double highest(const Core& core, const Vec& n) noexcept {
   if (core.kind != ShapeKind::hull) return project(core, n).high;
   double value = 0.0;
   farthest_vertex(*core.hull, core.rotation.transpose() * n, value);
-  return value * core.unit[0] * core.unit[1];
+  return core.scale(value);
 }
 
 double separation(const Core& a, const Core& b, const Vec& axis) noexcept {
@@ -134,20 +133,11 @@ std::uint32_t face_edge(const Core& core, std::uint32_t face, std::uint32_t i) n
 Vec face_normal(const Core& core, std::uint32_t face) noexcept {
   return with_form(core, [&](auto form) { return form.face_normal(core, face); });
 }
-double reach_about(const Core& core, const Vec& w) noexcept {
-  return with_form(core, [&](auto form) { return form.reach_about(core, w); });
-}
-bool is_invariant(const Core& core, const Vec& w) noexcept {
-  return with_form(core, [&](auto form) { return form.is_invariant(core, w); });
-}
 bool is_polytope(const Core& core) noexcept {
   return with_form(core, [](auto form) { return form.kIsPolytope; });
 }
 double inscribe(Core& core) noexcept {
   return with_form(core, [&](auto form) { return form.inscribe(core); });
-}
-double extent(const Core& core) noexcept {
-  return with_form(core, [&](auto form) { return form.extent(core); });
 }
 
 }  // namespace winnow::solver

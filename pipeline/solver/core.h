@@ -3,9 +3,9 @@
 // The core of a shape: the shape without its rounding, which the solver treats separately. See
 // problem.h for the frame and the units.
 
-#include <winnow/core/pose.h>
 #include <winnow/pipeline/shapes.h>
 #include "pipeline/kinds/shape_core.h"
+#include "pipeline/solver/scale.h"
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -41,9 +41,8 @@ struct Core {
   const HullShape* hull = nullptr;
   /// Ellipsoid, tapered capsule or user shape.
   SupportCore farthest;
-  /// Two factors that scale a hull's or a support function's lengths to the problem's units; a
-  /// single factor could overflow.
-  double unit[2] = {1.0, 1.0};
+  /// Scales the lengths of a hull or a support function to the problem's units.
+  Scale scale{0};
   /// Half-space: unit outward normal in world axes, and offset of the plane from the center.
   Vec normal = Vec::UnitZ();
   double offset = 0.0;
@@ -109,19 +108,9 @@ std::uint32_t farthest_vertex(const HullShape& hull, const Vec& d, double& value
 /// Unit and outward; for a triangle either of its two normals.
 [[nodiscard]] Vec face_normal(const Core& core, std::uint32_t face) noexcept;
 
-/// Axes that differ by less count as equal; the difference is covered by the noise.
-inline constexpr double kSameAxis = 16.0 * std::numeric_limits<double>::epsilon();
-
-/// Returns an upper bound on the distance of a core's points from the axis w through its centre; 0
-/// for a half-space. The core must not be rotated.
-[[nodiscard]] double reach_about(const Core& core, const Vec& w) noexcept;
-/// Returns whether rotation about the axis w leaves the core unchanged.
-[[nodiscard]] bool is_invariant(const Core& core, const Vec& w) noexcept;
 /// Shrinks a cylinder, so that a body with the returned rounding around it fits in the cylinder;
 /// the rounding is the largest possible. Returns 0 for other cores, which do not change.
 [[nodiscard]] double inscribe(Core& core) noexcept;
-/// About half of the core's diameter, plus its rounding; 0 for a half-space.
-[[nodiscard]] double extent(const Core& core) noexcept;
 
 /// Returns the unit vector along v, or zero if v is zero. Neither overflows nor underflows for any
 /// finite v.

@@ -26,8 +26,6 @@ struct ClosestPoints {
   double square = std::numeric_limits<double>::infinity();
 };
 
-constexpr std::uint64_t kMaxFeaturePairs = 4'000'000;
-
 /// The part of a polytope that contains the closest point: axis . x >= `from`.
 struct Slab {
   const Core& core;
@@ -144,6 +142,10 @@ bool corners_faces(const Slab& corners, const Slab& faces, bool flip,
 /// `upper` apart: only features that reach into the two slabs that can contain the closest points
 /// are tested. O(features of a x features of b in the slabs); returns false if that is above
 /// kMaxFeaturePairs.
+///
+/// Proof of the slabs: along the axis, b begins at least `lower` behind the last point of a. A
+/// point of a that is farther than upper - lower before that last point is more than `upper` from
+/// b, and is not the closest; likewise for b.
 bool closest_features(const Core& a, const Core& b, const Vec& axis, double lower, double upper,
                       double noise, ClosestPoints& points) noexcept {
   const double depth = upper - lower + noise;
@@ -219,8 +221,7 @@ void refine_curved(const Core& a, const Core& b, const Vec& axis, double noise,
   const Core straight_b = meridian(b, -axis);
   for (const auto& [x, y] :
        {std::pair{&straight_a, &straight_b}, {&straight_a, &b}, {&a, &straight_b}}) {
-    const GjkResult straight =
-        gjk(*x, *y, axis, kConvergence * noise, std::numeric_limits<double>::infinity());
+    const GjkResult straight = gjk(*x, *y, axis, {.noise = kConvergence * noise});
     if (!straight.contact && !(straight.upper < found.upper)) continue;
     found.simplex = straight.simplex;
     found.between = straight.between;
@@ -247,8 +248,7 @@ Vec contact_point(const Problem& problem, const Vec& axis, double depth) noexcep
   const double noise = problem.noise();
   Core moved = problem.b;
   moved.center += axis * depth;
-  GjkResult gjk_result =
-      gjk(a, moved, axis, kConvergence * noise, std::numeric_limits<double>::infinity());
+  GjkResult gjk_result = gjk(a, moved, axis, {.noise = kConvergence * noise});
   Vec x = gjk_result.simplex.on_a();
   // If the simplex is a flat tetrahedron, the origin is inside, but its weights are inaccurate.
   gjk_result.upper = gjk_result.simplex.closest().norm();
@@ -262,8 +262,11 @@ Vec contact_point(const Problem& problem, const Vec& axis, double depth) noexcep
   return x + axis * (project(a, axis).high - axis.dot(x - a.center));
 }
 
-CoreDistance closest(const Problem& problem, const GjkResult& start, const AxisSearch& search,
-                     SolverCounts& counts) noexcept {
+/// The distance of separate cores. It is between the separation along the best axis, which proves
+/// that they are at least so far apart, and the length of `between`, which joins two of their
+/// points. If these bounds of polytopes differ by more than rounding, the features decide.
+CoreDistance distance_apart(const Problem& problem, const GjkResult& start,
+                            const AxisSearch& search, SolverCounts& counts) noexcept {
   CoreDistance found;
   const double noise = problem.noise();
   double upper = start.upper;
@@ -301,13 +304,14 @@ Core inscribed(const Core& core) noexcept {
   return inner;
 }
 
-/// Returns a lower bound of the depth: the depth of the bodies inscribed in both cores.
+/// Returns a lower bound of the depth: the depth of the bodies inscribed in both cores. A
+/// translation that separates the cores also separates these, as they are parts of the cores; their
+/// own depth is at least the sum of their roundings less the distance of their cores.
 double inscribed_depth(const Problem& problem) noexcept {
   const Core a = inscribed(problem.a);
   const Core b = inscribed(problem.b);
   const Vec start = b.center == Vec::Zero() ? Vec(problem.tie_axes.col(0)) : b.center;
-  const GjkResult gjk_result =
-      gjk(a, b, start, kConvergence * problem.noise(), std::numeric_limits<double>::infinity());
+  const GjkResult gjk_result = gjk(a, b, start, {.noise = kConvergence * problem.noise()});
   return a.rounding + b.rounding - (gjk_result.contact ? 0.0 : gjk_result.upper);
 }
 
@@ -354,7 +358,10 @@ bool touch_along_normal(const Problem& problem, AxisSearch& search) noexcept {
   return search.separation() >= -kTieTolerance * problem.noise();
 }
 
-/// The depth along the best axis, or the distance if that axis separates the cores.
+/// The depth along the best axis, or the distance if that axis separates the cores. The depth along
+/// any axis is an upper bound of the least depth; `gap` is by how much it may exceed that. It is 0
+/// after tests of axes that include one of least depth: the face normals and edge products of
+/// polytopes, and the normals of a body of revolution.
 CoreDistance penetration(const Problem& problem, const GjkResult& start, ContactLevel level,
                          SolverCounts& counts) noexcept {
   const Core& a = problem.a;
@@ -387,15 +394,17 @@ CoreDistance penetration(const Problem& problem, const GjkResult& start, Contact
   return found;
 }
 
-/// True if a simplex with the origin well inside, or the roundings, prove that the shapes overlap.
+/// True if the roundings or the simplex of GJK prove that the shapes overlap: the cores are nearer
+/// than the sum of their roundings; or the origin lies in a tetrahedron of points of b - a, farther
+/// from each face than rounding can move that face, so that b - a contains the origin and the cores
+/// share a point.
 bool surely_overlap(const Problem& problem, const GjkResult& start) noexcept {
   const double roundings = problem.a.rounding + problem.b.rounding;
   const double noise = problem.noise();
   if (start.upper + noise < roundings) return true;
   if (!start.simplex.inside) return false;
-  constexpr std::size_t kFace[4][3] = {{1, 2, 3}, {0, 2, 3}, {0, 1, 3}, {0, 1, 2}};
   const auto& point = start.simplex.point;
-  for (const auto& [i, j, k] : kFace) {
+  for (const auto& [i, j, k] : kTetrahedronFace) {
     const Vec e = point[j].w - point[i].w;
     const Vec f = point[k].w - point[i].w;
     const Vec n = perpendicular(unit(e), unit(f));
@@ -419,8 +428,9 @@ CoreDistance core_distance(const Problem& problem, ContactLevel level, double en
   const Vec start = b.center == Vec::Zero() ? Vec(problem.tie_axes.col(0)) : b.center;
   // Level boolean needs no more than that the rounded cores overlap.
   const double near = level == ContactLevel::boolean ? a.rounding + b.rounding - 2.0 * noise : 0.0;
-  GjkResult found = gjk(a, b, start, kConvergence * noise, enough, 0.0, 0.0, near);
-  if (found.bounded) ++counts.bounded;
+  GjkResult found =
+      gjk(a, b, start, {.noise = kConvergence * noise, .enough = enough, .near = near});
+  if (found.hit_limit) ++counts.bounded;
   CoreDistance answer;
   if (found.far) {
     answer.far = true;
@@ -452,7 +462,7 @@ CoreDistance core_distance(const Problem& problem, ContactLevel level, double en
       search.test_axis(inside.axis);
     }
   }
-  return closest(problem, found, search, counts);
+  return distance_apart(problem, found, search, counts);
 }
 
 }  // namespace winnow::solver

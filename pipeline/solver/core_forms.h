@@ -1,12 +1,13 @@
 #pragma once
 
 // The kinds of cores in the solver, one struct for each: its support function, projection, features
-// (vertices, edges, faces), supporting feature and bounds of its rotation. Called through with_form
-// by core.cpp and manifold.cpp.
+// (vertices, edges, faces) and supporting feature. Called through with_form by core.cpp and
+// manifold.cpp.
 
 #include <winnow/core/rounding.h>
 #include "pipeline/kinds/hypotenuse.h"
 #include "pipeline/kinds/with_shape.h"
+#include "pipeline/manifold/feature_rules.h"
 #include "pipeline/manifold/polygon_clip.h"
 #include "pipeline/shapes/directions_around.h"
 #include "pipeline/solver/core.h"
@@ -17,17 +18,6 @@
 #include <iterator>
 
 namespace winnow::solver {
-
-/// Length of the part orthogonal to z; |w| is at most 1.
-inline double across_z(const Vec& w) noexcept {
-  return std::sqrt(w.x() * w.x() + w.y() * w.y());
-}
-
-/// The largest distance of a rim of `radius` at height z from an axis w.
-inline double rim_reach(double radius, double z, const Vec& w) noexcept {
-  const double nearest = std::max(0.0, std::abs(z * w.z()) - radius * across_z(w));
-  return std::sqrt(std::max(0.0, radius * radius + z * z - nearest * nearest));
-}
 
 /// Returns h with the sign of d; h if d is -0. Without a branch, because directions of searches are
 /// unpredictable.
@@ -66,9 +56,6 @@ struct PointForm {
   static Vec face_normal(const Core& core, std::uint32_t /*face*/) noexcept {
     return core.rotation.col(2);
   }
-  static double reach_about(const Core& /*core*/, const Vec& /*w*/) noexcept { return 0.0; }
-  static bool is_invariant(const Core& /*core*/, const Vec& /*w*/) noexcept { return true; }
-  static double extent(const Core& core) noexcept { return core.size; }
   static void add_feature(const Core& core, const Vec& /*outward*/,
                           SupportingPatch& patch) noexcept {
     patch.add(core.center, 0, 0);
@@ -106,15 +93,6 @@ struct CornersForm : PointForm {
     }
     patch.set_feature(feature);
   }
-  template <typename Form>
-  static double reach_of_corners(const Core& core, const Vec& w) noexcept {
-    double square = 0.0;
-    for (std::uint32_t i = 0; i < Form::vertex_count(core); ++i) {
-      square = std::max(square, (Form::vertex(core, i) - core.center).cross(w).squaredNorm());
-    }
-    return std::sqrt(square);
-  }
-  static bool is_invariant(const Core& /*core*/, const Vec& /*w*/) noexcept { return false; }
 };
 
 /// Adds the supporting feature of a core with faces, edges and corners: a face, an edge or a
@@ -242,22 +220,12 @@ struct PolytopeForm : CornersForm {
     }
     return core.rotation * unit(scaled == Vec::Zero() ? n : scaled);
   }
-  static double reach_about(const Core& core, const Vec& w) noexcept {
-    return reach_of_corners<PolytopeForm>(core, w);
-  }
   static void add_feature(const Core& core, const Vec& outward, SupportingPatch& patch) noexcept {
     add_polytope_feature<PolytopeForm>(core, outward, patch);
   }
 };
 
-/// A core that is symmetric about its z axis.
-struct RevolvedForm : PointForm {
-  static bool is_invariant(const Core& /*core*/, const Vec& w) noexcept {
-    return across_z(w) <= kSameAxis;
-  }
-};
-
-struct SegmentForm : RevolvedForm {
+struct SegmentForm : PointForm {
   static Vec support(const Core& core, const Vec& direction) noexcept {
     const Vec d = core.rotation.transpose() * direction;
     return core.center + core.rotation * Vec(0.0, 0.0, towards(core.half.z(), d.z()));
@@ -273,9 +241,6 @@ struct SegmentForm : RevolvedForm {
   }
   static std::uint32_t edge_count(const Core& /*core*/) noexcept { return 1; }
   static std::uint32_t direction_count(const Core& /*core*/) noexcept { return 1; }
-  static double reach_about(const Core& core, const Vec& w) noexcept {
-    return core.half.z() * across_z(w);
-  }
   static constexpr bool kTouchesInPoint = false;
   static void add_feature(const Core& core, const Vec& /*outward*/,
                           SupportingPatch& patch) noexcept {
@@ -366,18 +331,9 @@ struct TriangleForm : CornersForm {
   static Vec face_normal(const Core& core, std::uint32_t face) noexcept {
     return normal(core, face);
   }
-  static double reach_about(const Core& core, const Vec& w) noexcept {
-    return reach_of_corners<TriangleForm>(core, w);
-  }
   static void add_feature(const Core& core, const Vec& /*outward*/,
                           SupportingPatch& patch) noexcept {
     add_face<TriangleForm>(core, 0, patch);
-  }
-  static double extent(const Core& core) noexcept {
-    return core.rounding + std::max({(core.corner[1] - core.corner[0]).norm(),
-                                     (core.corner[2] - core.corner[1]).norm(),
-                                     (core.corner[0] - core.corner[2]).norm()}) /
-                               2.0;
   }
 };
 
@@ -392,14 +348,14 @@ struct HullForm : CornersForm {
     AxisRange range{};
     farthest_vertex(*core.hull, d, range.high);
     farthest_vertex(*core.hull, -d, range.low);
-    range.low = -range.low * core.unit[0] * core.unit[1];
-    range.high = range.high * core.unit[0] * core.unit[1];
+    range.low = core.scale(-range.low);
+    range.high = core.scale(range.high);
     return range;
   }
   static std::uint32_t vertex_count(const Core& core) noexcept { return core.hull->vertex_count; }
   static Vec vertex(const Core& core, std::uint32_t i) noexcept {
     const Vec local(core.hull->vertex[0][i], core.hull->vertex[1][i], core.hull->vertex[2][i]);
-    const Vec point = core.rotation * (local * core.unit[0] * core.unit[1]);
+    const Vec point = core.rotation * local.unaryExpr(core.scale);
     return core.center + point;
   }
   static std::uint32_t edge_count(const Core& core) noexcept { return core.hull->edge_count; }
@@ -429,23 +385,6 @@ struct HullForm : CornersForm {
   static Vec face_normal(const Core& core, std::uint32_t face) noexcept {
     return core.rotation * Eigen::Map<const Vec>(core.hull->faces[face].normal);
   }
-  static double reach_about(const Core& core, const Vec& w) noexcept {
-    const HullShape& hull = *core.hull;
-    double square = 0.0;
-    for (std::uint32_t i = 0; i < hull.vertex_count; ++i) {
-      const auto own = [&](std::size_t axis) {
-        return hull.vertex[axis][i] * core.unit[0] * core.unit[1];
-      };
-      const double x = own(1) * w.z() - own(2) * w.y();
-      const double y = own(2) * w.x() - own(0) * w.z();
-      const double z = own(0) * w.y() - own(1) * w.x();
-      square = std::max(square, x * x + y * y + z * z);
-    }
-    return std::sqrt(square);
-  }
-  static double extent(const Core& core) noexcept {
-    return core.rounding + core.hull->radius * core.unit[0] * core.unit[1];
-  }
   // In the hull's frame and units.
   static std::uint32_t highest_vertex(const Core& core, const Vec& d, double& height) noexcept {
     return farthest_vertex(*core.hull, d, height);
@@ -472,15 +411,12 @@ inline double radial(const Core& core, const Vec& local) noexcept {
 }
 
 /// A cylinder or cone: its direction and its normal are its axis.
-struct CappedForm : RevolvedForm {
+struct CappedForm : PointForm {
   static constexpr bool kIsPolytope = false;
   static constexpr bool kTouchesInPoint = false;
 
   static std::uint32_t direction_count(const Core& /*core*/) noexcept { return 1; }
   static std::uint32_t normal_count(const Core& /*core*/) noexcept { return 1; }
-  static double extent(const Core& core) noexcept {
-    return core.rounding + hypotenuse(core.half.x(), core.half.z());
-  }
   static void add_cap(const Core& core, double z, SupportingPatch& patch) noexcept {
     const std::uint32_t first = z > 0.0 ? 0 : kRimCorners;
     static_assert(kRimCorners == std::size(kSixteenthsOfTurn));
@@ -523,9 +459,6 @@ struct CylinderForm : CappedForm {
     const double reach = radial(core, d) + std::abs(d.z()) * core.half.z();
     return {-reach, reach};
   }
-  static double reach_about(const Core& core, const Vec& w) noexcept {
-    return rim_reach(core.half.x(), core.half.z(), w);
-  }
   static void add_feature(const Core& core, const Vec& outward, SupportingPatch& patch) noexcept {
     add_side(core, outward, false, patch);
   }
@@ -552,9 +485,6 @@ struct ConeForm : CappedForm {
     const double side = radial(core, d);
     return {std::min(tip, -side - tip), std::max(tip, side - tip)};
   }
-  static double reach_about(const Core& core, const Vec& w) noexcept {
-    return std::max(rim_reach(core.half.x(), -core.half.z(), w), core.half.z() * across_z(w));
-  }
   static void add_feature(const Core& core, const Vec& outward, SupportingPatch& patch) noexcept {
     add_side(core, outward, true, patch);
   }
@@ -566,7 +496,7 @@ struct SupportForm : PointForm {
 
   /// Relative to the center, in the core's axes; `d` is unit.
   static Vec farthest_point(const Core& core, const Vec& d) noexcept {
-    return core.farthest.farthest(d) * core.unit[0] * core.unit[1];
+    return core.farthest.farthest(d).unaryExpr(core.scale);
   }
   static Vec support(const Core& core, const Vec& direction) noexcept {
     const Vec d = core.rotation.transpose() * direction;
@@ -578,10 +508,6 @@ struct SupportForm : PointForm {
     const Vec u = unit(d);
     return {d.dot(farthest_point(core, -u)), d.dot(farthest_point(core, u))};
   }
-  static double reach_about(const Core& core, const Vec& /*w*/) noexcept {
-    return core.size - core.rounding;
-  }
-  static bool is_invariant(const Core& /*core*/, const Vec& /*w*/) noexcept { return false; }
   /// Keeps the points that are in the plane of point 0, the point farthest from it, and the point
   /// with which these two span the largest triangle. Returns their number.
   static std::uint32_t keep_coplanar(Vec* x, std::uint32_t count) noexcept {
@@ -642,10 +568,9 @@ struct EllipsoidForm : SupportForm {
 struct TaperForm : SupportForm {
   static void add_feature(const Core& core, const Vec& outward, SupportingPatch& patch) noexcept {
     const auto& taper = *static_cast<const TaperedCapsuleShape*>(core.farthest.shape);
-    const auto scaled = [&](double length) { return length * core.unit[0] * core.unit[1]; };
-    const double half = scaled(taper.half_length);
-    const double more = scaled(std::max(taper.radius[0] - taper.radius[1], 0.0));
-    const double less = scaled(std::max(taper.radius[1] - taper.radius[0], 0.0));
+    const double half = core.scale(taper.half_length);
+    const double more = core.scale(std::max(taper.radius[0] - taper.radius[1], 0.0));
+    const double less = core.scale(std::max(taper.radius[1] - taper.radius[0], 0.0));
     const Vec axis = core.rotation.col(2) * half;
     // A ball inside the other one is not part of the surface.
     if (more == 0.0 || more < 2.0 * half) patch.add(core.center + axis + outward * less, 0, 0);
@@ -657,11 +582,6 @@ struct TaperForm : SupportForm {
 struct HalfSpaceForm : PointForm {
   static constexpr bool kIsPolytope = false;
   static constexpr bool kTouchesInPoint = false;
-
-  static bool is_invariant(const Core& core, const Vec& w) noexcept {
-    return core.normal.cross(w).norm() <= kSameAxis;
-  }
-  static double extent(const Core& /*core*/) noexcept { return 0.0; }
 };
 
 /// The form of a shape's core. A kind with a CornerTable needs no form of its own.

@@ -20,7 +20,7 @@ struct DepthBounds {
 /// (about two thousand faces, on the stack).
 ///
 /// `simplex` contains the origin, up to rounding; it is completed to a tetrahedron. If the
-/// difference of the cores is flat, the depth is 0 along its normal. `noise`: as in gjk.
+/// difference of the cores is flat, the depth is 0 along its normal. `noise`: as GjkLimits::noise.
 [[nodiscard]] DepthBounds expand_polytope(const Core& a, const Core& b, const GjkSimplex& simplex,
                                           double noise, double tolerance) noexcept;
 

@@ -78,14 +78,13 @@ void try_triangle(const GjkSimplex& s, std::size_t i, std::size_t j, std::size_t
 }
 
 void try_tetrahedron(GjkSimplex& s, SimplexPoint& best) noexcept {
-  constexpr std::size_t kFace[4][3] = {{1, 2, 3}, {0, 2, 3}, {0, 1, 3}, {0, 1, 2}};
   std::array<double, 4> weight{};
   std::array<bool, 4> beyond{};
   bool inside = true;
   for (std::size_t i = 0; i < 4; ++i) {
-    const Vec& p = s.point[kFace[i][0]].w;
-    const Vec& q = s.point[kFace[i][1]].w;
-    const Vec& r = s.point[kFace[i][2]].w;
+    const Vec& p = s.point[kTetrahedronFace[i][0]].w;
+    const Vec& q = s.point[kTetrahedronFace[i][1]].w;
+    const Vec& r = s.point[kTetrahedronFace[i][2]].w;
     const Vec e = q - p;
     const Vec f = r - p;
     const Vec g = s.point[i].w - p;
@@ -110,30 +109,29 @@ void try_tetrahedron(GjkSimplex& s, SimplexPoint& best) noexcept {
   for (std::size_t i = 0; i < 4; ++i) {
     if (!beyond[i]) continue;
     any = true;
-    try_triangle(s, kFace[i][0], kFace[i][1], kFace[i][2], best);
+    try_triangle(s, kTetrahedronFace[i][0], kTetrahedronFace[i][1], kTetrahedronFace[i][2], best);
   }
   if (any) return;
-  for (const auto& face : kFace) try_triangle(s, face[0], face[1], face[2], best);
+  for (const auto& face : kTetrahedronFace) try_triangle(s, face[0], face[1], face[2], best);
+}
+
+Vec weighted(const GjkSimplex& s, Vec DifferencePoint::*which) noexcept {
+  Vec v = Vec::Zero();
+  const auto count = static_cast<std::size_t>(s.count);
+  for (std::size_t i = 0; i < count; ++i) v += s.weight[i] * (s.point[i].*which);
+  return v;
 }
 
 }  // namespace
 
 Vec GjkSimplex::closest() const noexcept {
-  Vec v = Vec::Zero();
-  for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) v += weight[i] * point[i].w;
-  return v;
+  return weighted(*this, &DifferencePoint::w);
 }
-
 Vec GjkSimplex::on_a() const noexcept {
-  Vec v = Vec::Zero();
-  for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) v += weight[i] * point[i].a;
-  return v;
+  return weighted(*this, &DifferencePoint::a);
 }
-
 Vec GjkSimplex::on_b() const noexcept {
-  Vec v = Vec::Zero();
-  for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) v += weight[i] * point[i].b;
-  return v;
+  return weighted(*this, &DifferencePoint::b);
 }
 
 void reduce(GjkSimplex& simplex) noexcept {
@@ -184,22 +182,21 @@ bool contains(const GjkSimplex& simplex, const Vec& w) noexcept {
 }
 
 /// Runs GJK from the closest point of the simplex in `result`.
-void iterate(const Core& a, const Core& b, double noise, double enough, double share,
-             double roundings, double near, GjkResult& result) noexcept {
+void iterate(const Core& a, const Core& b, const GjkLimits& limits, GjkResult& result) noexcept {
   GjkSimplex& simplex = result.simplex;
   Vec v = simplex.closest();
   result.lower = -std::numeric_limits<double>::infinity();
-  result.bounded = true;
+  result.hit_limit = true;
   for (int i = 0; i < kIterations; ++i) {
     const double square = v.squaredNorm();
     const double length = std::sqrt(square);
-    if (length <= noise) {
+    if (length <= limits.noise) {
       result.contact = true;
-      result.bounded = false;
+      result.hit_limit = false;
       break;
     }
-    if (length < near) {
-      result.bounded = false;
+    if (length < limits.near) {
+      result.hit_limit = false;
       break;
     }
     const DifferencePoint p = support_towards(a, b, v);
@@ -208,10 +205,11 @@ void iterate(const Core& a, const Core& b, double noise, double enough, double s
       result.lower = reach / length;
       result.axis = v / length;
     }
-    result.far = result.lower > enough;
-    const double known = std::max(2.0 * kEpsilon * square, share * length * (length - roundings));
+    result.far = result.lower > limits.enough;
+    const double known =
+        std::max(2.0 * kEpsilon * square, limits.share * length * (length - limits.roundings));
     if (result.far || square - reach <= known || contains(simplex, p.w)) {
-      result.bounded = false;
+      result.hit_limit = false;
       break;
     }
     const GjkSimplex before = simplex;
@@ -220,12 +218,12 @@ void iterate(const Core& a, const Core& b, double noise, double enough, double s
     const Vec next = simplex.closest();
     if (simplex.inside) {
       result.contact = true;
-      result.bounded = false;
+      result.hit_limit = false;
       break;
     }
     if (!(next.squaredNorm() < square)) {
       simplex = before;
-      result.bounded = false;
+      result.hit_limit = false;
       break;
     }
     v = next;
@@ -237,23 +235,22 @@ void iterate(const Core& a, const Core& b, double noise, double enough, double s
 
 }  // namespace
 
-GjkResult gjk(const Core& a, const Core& b, const Vec& start, double noise, double enough,
-              double share, double roundings, double near) noexcept {
+GjkResult gjk(const Core& a, const Core& b, const Vec& start, const GjkLimits& limits) noexcept {
   GjkResult result;
   result.simplex.point[0] = support_towards(a, b, start);
   result.simplex.weight[0] = 1.0;
   result.simplex.count = 1;
-  iterate(a, b, noise, enough, share, roundings, near, result);
+  iterate(a, b, limits, result);
   return result;
 }
 
-GjkResult gjk(const Core& a, const Core& b, const GjkSimplex& start, double noise, double enough,
-              double share, double roundings) noexcept {
+GjkResult gjk(const Core& a, const Core& b, const GjkSimplex& start,
+              const GjkLimits& limits) noexcept {
   GjkResult result;
   result.simplex = start;
   reduce(result.simplex);
   result.contact = result.simplex.inside;
-  if (!result.contact) iterate(a, b, noise, enough, share, roundings, 0.0, result);
+  if (!result.contact) iterate(a, b, limits, result);
   return result;
 }
 

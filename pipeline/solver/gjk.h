@@ -3,6 +3,8 @@
 #include "pipeline/solver/core.h"
 
 #include <array>
+#include <cstddef>
+#include <limits>
 
 namespace winnow::solver {
 
@@ -27,6 +29,9 @@ struct GjkSimplex {
   [[nodiscard]] Vec on_b() const noexcept;
 };
 
+/// Face i of a tetrahedron is opposite to point i.
+inline constexpr std::size_t kTetrahedronFace[4][3] = {{1, 2, 3}, {0, 2, 3}, {0, 1, 3}, {0, 1, 2}};
+
 /// Sets the weights to the point of the simplex that is closest to the origin, and drops the points
 /// that it does not need. The region is chosen by signed volumes, areas and lengths (Montanari,
 /// Petrinic, Barbieri, "Improving the GJK algorithm", 2017); if one of these is too small to have a
@@ -45,28 +50,35 @@ struct GjkResult {
   Vec axis = Vec::Zero();
   /// The cores share a point, up to rounding.
   bool contact = false;
-  /// Stopped early: `lower` is above `enough`.
+  /// Stopped early: `lower` is above GjkLimits::enough.
   bool far = false;
-  /// Stopped by the bound on iterations.
-  bool bounded = false;
+  /// Stopped by the limit of iterations.
+  bool hit_limit = false;
+};
+
+/// When a search by GJK may stop early.
+struct GjkLimits {
+  /// Lengths up to this cannot be distinguished from zero: the cores are then in contact.
+  double noise = 0.0;
+  /// Stops, with GjkResult::far, as soon as the cores are certainly farther apart than this.
+  double enough = std::numeric_limits<double>::infinity();
+  /// If positive, stops as soon as the distance less `roundings` is exact to this relative error.
+  double share = 0.0;
+  double roundings = 0.0;
+  /// Stops as soon as the distance is below this; the lower bound is then not tight.
+  double near = 0.0;
 };
 
 /// Computes the distance of two bounded cores by GJK (Gilbert, Johnson, Keerthi 1988), with
 /// simplices reduced by signed volumes. Ends when the relative difference between the length of
 /// `between` and the separation along it is as small as doubles allow, or when there is no
 /// progress: in at most 64 iterations for polytopes of any size that are not degenerate, never in
-/// more than 256.
-///
-/// `start`: the first search direction, from a to b. `noise`: lengths up to this cannot be
-/// distinguished from zero. `enough`: stops if the cores are farther apart. `share`: if positive,
-/// stops as soon as the distance less `roundings` is exact to this relative error. `near`: stops as
-/// soon as the distance is below it; the lower bound is then not tight.
-[[nodiscard]] GjkResult gjk(const Core& a, const Core& b, const Vec& start, double noise,
-                            double enough, double share = 0.0, double roundings = 0.0,
-                            double near = 0.0) noexcept;
+/// more than 256. `start` is the first search direction, from a to b.
+[[nodiscard]] GjkResult gjk(const Core& a, const Core& b, const Vec& start,
+                            const GjkLimits& limits) noexcept;
 /// As above, but starts from a simplex of points of both cores, such as the result before the cores
 /// moved a little.
-[[nodiscard]] GjkResult gjk(const Core& a, const Core& b, const GjkSimplex& start, double noise,
-                            double enough, double share, double roundings) noexcept;
+[[nodiscard]] GjkResult gjk(const Core& a, const Core& b, const GjkSimplex& start,
+                            const GjkLimits& limits) noexcept;
 
 }  // namespace winnow::solver

@@ -5,6 +5,7 @@
 
 #include <winnow/core/rounding.h>
 #include "pipeline/manifold/contact_patch.h"
+#include "pipeline/manifold/feature_rules.h"
 #include "pipeline/manifold/polygon_clip.h"
 #include "pipeline/solver/core_forms.h"
 

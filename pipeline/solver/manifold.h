@@ -4,6 +4,7 @@
 // manifold/contact_patch.h.
 
 #include "pipeline/manifold/contact_patch.h"
+#include "pipeline/manifold/feature_rules.h"
 #include "pipeline/solver/core.h"
 #include "pipeline/solver/problem.h"
 #include "pipeline/solver/solver.h"
@@ -23,7 +24,7 @@ class SupportingPatch {
   /// edge or vertex of a hull, a cap of a cylinder or cone as a polygon of 16 corners or a line of
   /// its side, the line between the balls of a tapered capsule, or, for a support function, the
   /// support points of eight directions around `outward`. Features may deviate from `outward` by
-  /// the angles of contact_patch.h, because bodies rock over them; each contains the supporting
+  /// the angles of feature_rules.h, because bodies rock over them; each contains the supporting
   /// point. Corners of boxes are numbered by the bits x > 0, y > 0, z > 0; edges by 4 x their axis
   /// plus the bits of the other axes; faces by 2 x their axis plus the sign. Caps begin at +x and
   /// are numbered around the rim.

@@ -97,17 +97,16 @@ Vec axis_from_point(const Problem& problem) noexcept {
   const Core& b = problem.b;
   if (problem.a.kind != ShapeKind::sphere || b.farthest.function == nullptr) return Vec::Zero();
   const Vec q = b.rotation.transpose() * (problem.a.center - b.center);
-  const auto scaled = [&](double length) { return length * b.unit[0] * b.unit[1]; };
   Vec outward = Vec::Zero();
   if (b.kind == ShapeKind::ellipsoid) {
     const auto& shape = *static_cast<const EllipsoidShape*>(b.farthest.shape);
     outward = outward_of_ellipsoid(
-        {scaled(shape.radius[0]), scaled(shape.radius[1]), scaled(shape.radius[2])}, q);
+        {b.scale(shape.radius[0]), b.scale(shape.radius[1]), b.scale(shape.radius[2])}, q);
   } else if (b.kind == ShapeKind::tapered_capsule) {
     const auto& shape = *static_cast<const TaperedCapsuleShape*>(b.farthest.shape);
     const double less = b.farthest.rounding;
-    outward = outward_of_taper(scaled(shape.radius[0] - less), scaled(shape.radius[1] - less),
-                               scaled(shape.half_length), q);
+    outward = outward_of_taper(b.scale(shape.radius[0] - less), b.scale(shape.radius[1] - less),
+                               b.scale(shape.half_length), q);
   }
   return b.rotation * -outward;
 }

@@ -23,15 +23,10 @@ void place_triangle(const TriangleShape& triangle, const Scale& scale, Core& cor
   }
 }
 
-void set_units(int exponent, Core& core) noexcept {
-  core.unit[0] = std::ldexp(1.0, -exponent / 2);
-  core.unit[1] = std::ldexp(1.0, -exponent - -exponent / 2);
-}
-
-void place(const ShapeCore& shape, const Pose& pose, int exponent, const Scale& scale,
-           Core& core) noexcept {
+void place(const ShapeCore& shape, const Pose& pose, const Scale& scale, Core& core) noexcept {
   core.kind = shape.kind;
   core.corners = shape.corners;
+  core.scale = scale;
   core.rotation = rotation_of(scale_to_unit_max(pose.orientation));
   for (int i = 0; i < 3; ++i) core.half[i] = scale(shape.half[i]);
   core.rounding = scale(shape.rounding);
@@ -40,12 +35,10 @@ void place(const ShapeCore& shape, const Pose& pose, int exponent, const Scale& 
     place_triangle(*shape.triangle, scale, core);
   } else if (shape.support.function != nullptr) {
     core.farthest = shape.support;
-    set_units(exponent, core);
     core.size += scale(core.farthest.radius);
   } else if (shape.hull != nullptr) {
     core.hull = shape.hull;
-    set_units(exponent, core);
-    core.size += reach_of_vertices(*core.hull) * core.unit[0] * core.unit[1];
+    core.size += scale(reach_of_vertices(*core.hull));
   } else if (shape.half_space != nullptr) {
     core.normal = unit(core.rotation * Eigen::Map<const Vec>(shape.half_space->normal));
     core.offset = scale(shape.half_space->offset);
@@ -70,8 +63,8 @@ void prepare(const ShapeTables& tables, ShapeId a, const Pose& pose_a, ShapeId b
   problem.exponent += halved;
   const Scale scale(problem.exponent);
   for (int i = 0; i < 3; ++i) problem.b.center[i] = std::ldexp(c[i], halved - problem.exponent);
-  place(core_a, pose_a, problem.exponent, scale, problem.a);
-  place(core_b, pose_b, problem.exponent, scale, problem.b);
+  place(core_a, pose_a, scale, problem.a);
+  place(core_b, pose_b, scale, problem.b);
   problem.size = problem.b.center.norm() + problem.a.size + problem.b.size;
   problem.tie_axes = mirrored ? Mat(-problem.b.rotation) : problem.a.rotation;
 }

@@ -7,12 +7,6 @@
 #include <winnow/pipeline/shapes.h>
 #include "pipeline/solver/core.h"
 
-#include <algorithm>
-#include <bit>
-#include <cmath>
-#include <cstdint>
-#include <cstdlib>
-
 namespace winnow::solver {
 
 /// A pair in one frame: the origin is the position of a, the axes are the world's, and lengths are
@@ -50,27 +44,6 @@ void prepare(const ShapeTables& tables, ShapeId a, const Pose& pose_a, ShapeId b
 /// all else unchanged. Returns false and changes nothing if the exponent would differ. `largest` is
 /// the `largest_length` of the two shapes.
 [[nodiscard]] bool move(const Vec& between, double largest, Problem& problem) noexcept;
-
-/// Multiplies by 2^-exponent, in two steps as that factor may be no double.
-class Scale {
- public:
-  explicit Scale(int exponent) noexcept {
-    constexpr int kLargest = 1000;
-    const int second = std::min(exponent + kLargest, 0);
-    factor_[0] = power_of_two(second - exponent);
-    factor_[1] = power_of_two(-second);
-  }
-  [[nodiscard]] double operator()(double x) const noexcept { return x * factor_[0] * factor_[1]; }
-
- private:
-  [[nodiscard]] static double power_of_two(int exponent) noexcept {
-    constexpr int kNormal = 1022;
-    if (std::abs(exponent) > kNormal) return std::ldexp(1.0, exponent);
-    return std::bit_cast<double>(static_cast<std::uint64_t>(exponent + kNormal + 1) << 52U);
-  }
-
-  double factor_[2];
-};
 
 /// Returns length * 2^exponent, clamped to the finite range; a length that is not finite is
 /// returned as it is.

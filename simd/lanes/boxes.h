@@ -1,7 +1,7 @@
 #pragma once
 
 // Sixteen boxes, or volumes of more slabs, in lanes: loads them from columns or from separate
-// addresses, and tests them for overlap with one other volume.
+// addresses, and tests them for overlap with one other volume (QueryBox).
 
 #include "simd/lanes/lanes.h"
 
@@ -14,6 +14,15 @@ struct Slabs16 {
   Floats high[Slabs];
 };
 using Box16 = Slabs16<3>;
+
+/// The box in row r of six columns.
+struct QueryBox {
+  float low[3];
+  float high[3];
+  [[gnu::always_inline]] QueryBox(const float* const* column, std::size_t r)
+      : low{column[0][r], column[1][r], column[2][r]},
+        high{column[3][r], column[4][r], column[5][r]} {}
+};
 
 /// Loads rows [row, row + 16) of columns; `row` is a multiple of 16. Always inline, because a call
 /// would pass the boxes through memory, and compilers stop inlining in files that instantiate a

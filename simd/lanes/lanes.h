@@ -15,7 +15,6 @@
 #error "lanes.h is for *.kernel.cpp files, which the build compiles once per instruction set"
 #endif
 
-#include <cstddef>
 #include <cstdint>
 #include <xsimd/xsimd.hpp>
 

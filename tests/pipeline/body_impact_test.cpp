@@ -382,7 +382,7 @@ TEST(BodyImpact, moving_boxes_contain_whole_motion) {
     const impact::RelativeMotionBounds passage(parts, frame, moving);
     const double first = random.unit();
     const double last = random.uniform(first, 1.0);
-    const PreciseBox all_time = passage.box({first, last});
+    const mid::Box3 all_time = passage.box({first, last});
     const MovingBox moving_box = passage.moving_box({first, last});
     for (double t = 0.0; t <= 1.0; t += 0.125) {
       const double time = first + t * (last - first);
@@ -396,7 +396,7 @@ TEST(BodyImpact, moving_boxes_contain_whole_motion) {
       const double share = moving_box.max_t * t;
       for (const ReferencePart& part : shown) {
         const Pose placed = MovingReference::placed(there, part.pose);
-        const PreciseBox box = parts.box(PlacedShape{part.shape, placed});
+        const mid::Box3 box = parts.box(PlacedShape{part.shape, placed});
         for (int i = 0; i < 3; ++i) {
           // The pool stores bounds of shapes as floats.
           const double slack = 1e-6 * (1.0 + std::abs(box.max[i] - box.min[i]));

@@ -6,7 +6,6 @@
 #include <array>
 #include <cfloat>
 #include <cmath>
-#include <limits>
 
 namespace winnow {
 namespace {

@@ -8,8 +8,6 @@
 #include "partitions/structures/costs.h"
 #include "partitions/structures/grid/flat_grid.kernel.h"
 
-#include <algorithm>
-
 namespace winnow {
 
 WINNOW_DEFINE_KERNELS(FlatGridKernels, flat_grid_kernels)

@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cfloat>
 #include <span>
 
 namespace winnow {

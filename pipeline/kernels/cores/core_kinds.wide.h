@@ -10,7 +10,7 @@
 #include "pipeline/kernels/pair_lanes.wide.h"
 #include "pipeline/kernels/user_support.wide.h"
 #include "pipeline/kinds/with_shape.h"
-#include "pipeline/manifold/contact_patch.h"
+#include "pipeline/manifold/feature_rules.h"
 
 namespace winnow::WINNOW_ISA_NAME::hull {
 

@@ -73,9 +73,9 @@ static inline double dot2(const double* a, const double* b) {
   return a[0] * b[0] + a[1] * b[1];
 }
 
-/// True if b is the first. Two shapes of one kind are ordered by their positions, so that (a, b)
-/// and (b, a) are computed alike.
-static inline bool comes_second(const Pose& a, const Pose& b) {
+/// True if the pair is computed with b first. Two shapes of one kind are ordered by their
+/// positions, so that (a, b) and (b, a) are computed alike.
+static inline bool computes_b_first(const Pose& a, const Pose& b) {
   for (int i = 0; i < 3; ++i) {
     const double c = b.position[i] - a.position[i];
     if (c != 0.0) return c < 0.0;
@@ -88,7 +88,7 @@ static inline bool place_pair(const NarrowJob& job, BodyPair bodies, CurvedPair&
   const ShapeId ids[2] = {job.shapes[bodies.a], job.shapes[bodies.b]};
   const Pose& pose_a = job.poses[bodies.a];
   const Pose& pose_b = job.poses[bodies.b];
-  pair.swapped = ids[0].kind() == ids[1].kind() && comes_second(pose_a, pose_b);
+  pair.swapped = ids[0].kind() == ids[1].kind() && computes_b_first(pose_a, pose_b);
   double size = hull::make_core(*job.tables, ids[pair.swapped ? 1 : 0], pair.first) +
                 hull::make_core(*job.tables, ids[pair.swapped ? 0 : 1], pair.second);
   if (!hull::place(pair.swapped ? pose_b : pose_a, pair.swapped ? pose_a : pose_b, pair)) {

@@ -118,29 +118,27 @@ class GjkLanes {
   /// Advances the `active` lanes by one step: adds a support point to the simplex of each lane and
   /// keeps the feature that is nearest to the origin. `Rules` defines the search:
   /// - find(v) computes `w`, the support point of the difference against v.
-  /// - ends(v, v . v, v . w, simplex) returns the lanes that end at w. It may remove points from
-  ///   the simplex.
+  /// - ends(v, v . v, v . w) returns the lanes that end at w.
   /// - has_no_gain(v . v - v . w, v . v) returns the lanes without progress.
-  /// - nearest(simplex) returns the nearest feature after adding w.
   /// - keep(slot, lanes) stores more about w in the lanes in which w enters the slot.
   template <typename Rules>
   [[gnu::always_inline]] GjkStep<T> step(Mask16 active, Rules& rules) {
     const Lanes<T> zero(T(0));
     const Lanes<T> one(T(1));
-    Simplex<T> simplex = load();
+    const Simplex<T> simplex = load();
     const Vec3<T> nearest_yet = load3(gap);
     const Lanes<T> square_yet = Lanes<T>::load(square);
     rules.find(nearest_yet);
     const Lanes<T> height = dot(nearest_yet, rules.w);
     height.store(height_along);
-    const LaneMask<T> ended = rules.ends(nearest_yet, square_yet, height, simplex);
+    const LaneMask<T> ended = rules.ends(nearest_yet, square_yet, height);
     if ((active & ~bits(ended)) == 0) {
       const LaneMask<T> none = zero > one;
       return {ended, none, none, none, square_yet, none};
     }
     const LaneMask<T> is_fresh = Lanes<T>::load(fresh) > zero;
     const LaneMask<T> no_gain = rules.has_no_gain(square_yet - height, square_yet);
-    const SimplexNearest<T> nearest = rules.nearest(simplex);
+    const SimplexNearest<T> nearest = nearest_of(simplex, rules.w);
     const GjkStep<T> r = judge_step(nearest, square_yet, is_fresh, ended, no_gain);
     keep_nearest(nearest, r.moves, [&](int s, const LaneMask<T>& take, const LaneMask<T>& used) {
       store3(select(take, rules.w, simplex.point[s]), slot[s]);

@@ -2,13 +2,13 @@
 
 // A hull as a core: its support function, sixteen vertices at a time, for one pair or one pair per
 // lane; and its feature at a supporting vertex along a direction: a face or an edge that is within
-// 14 degrees of perpendicular to the direction (contact_patch.h), or else the vertex. The limit is
+// 14 degrees of perpendicular to the direction (feature_rules.h), or else the vertex. The limit is
 // wide because bodies rock over their faces and edges.
 
 #include <winnow/core/pose.h>
 #include <winnow/pipeline/shapes.h>
 #include "pipeline/kernels/single_vectors.wide.h"
-#include "pipeline/manifold/contact_patch.h"
+#include "pipeline/manifold/feature_rules.h"
 #include "simd/lanes/rows.h"
 #include "simd/lanes/scalar_lane.h"
 #include "simd/lanes/vectors.h"
@@ -101,8 +101,8 @@ static inline double reach_of(const HullShape& hull) {
 /// True if the pair is computed with b first. The order does not depend on which body is called a,
 /// so (a, b) and (b, a) are computed alike: if only one hull is solid, it is first; otherwise the
 /// positions decide, then the addresses of the hulls, then the orientations.
-static inline bool comes_second(const HullShape& a, const HullShape& b, const Pose& pose_a,
-                                const Pose& pose_b) {
+static inline bool computes_b_first(const HullShape& a, const HullShape& b, const Pose& pose_a,
+                                    const Pose& pose_b) {
   if ((a.dimension == 3) != (b.dimension == 3)) return b.dimension == 3;
   for (int i = 0; i < 3; ++i) {
     const double c = pose_b.position[i] - pose_a.position[i];
@@ -135,10 +135,11 @@ inline constexpr std::uint32_t kLaneBits = 15;
   return (value & keep) | numbers;
 }
 
-[[gnu::always_inline]] static inline Floats along(const float* const* vertex, std::uint32_t row,
-                                                  const Vec3<float>& d) {
-  return Floats::load(vertex[0] + row) * d.x + Floats::load(vertex[1] + row) * d.y +
-         Floats::load(vertex[2] + row) * d.z;
+template <typename T>
+[[gnu::always_inline]] static inline Lanes<T> along(const T* const* vertex, std::uint32_t row,
+                                                    const Vec3<T>& d) {
+  return Lanes<T>::load(vertex[0] + row) * d.x + Lanes<T>::load(vertex[1] + row) * d.y +
+         Lanes<T>::load(vertex[2] + row) * d.z;
 }
 
 /// Computes sixteen heights along `direction` with their lanes' numbers in the low bits; the
@@ -199,11 +200,6 @@ inline constexpr std::uint32_t kLaneBits = 15;
   return vertex_of(hull, reduce_max(Floats::load(height)), height, block);
 }
 
-[[gnu::always_inline]] static inline Doubles along(const double* const* vertex, std::uint32_t row,
-                                                   const Vec3<double>& d) {
-  return Doubles::load(vertex[0] + row) * d.x + Doubles::load(vertex[1] + row) * d.y +
-         Doubles::load(vertex[2] + row) * d.z;
-}
 [[gnu::always_inline]] static inline const double* const* columns_of(const HullShape& hull,
                                                                      double) {
   return hull.vertex;

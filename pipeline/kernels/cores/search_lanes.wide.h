@@ -72,8 +72,7 @@ class SearchLanes : public GjkLanes<T> {
       w = mine - (theirs + load3(lanes.shift));
     }
     [[gnu::always_inline]] LaneMask<T> ends(const Vec3<T>& /*v*/, const Lanes<T>& square,
-                                            const Lanes<T>& height,
-                                            const Simplex<T>& /*simplex*/) const {
+                                            const Lanes<T>& height) const {
       return lanes.is_far(height, square);
     }
     [[gnu::always_inline]] LaneMask<T> has_no_gain(const Lanes<T>& gain,
@@ -81,9 +80,6 @@ class SearchLanes : public GjkLanes<T> {
       return (gain <= Lanes<T>(lanes.enough_) * square) |
              ((gain * gain <= Lanes<T>(Base::kNoGain * Base::kNoGain) * square) &
               (gain <= Lanes<T>(kNoTurn) * square));
-    }
-    [[gnu::always_inline]] SimplexNearest<T> nearest(const Simplex<T>& simplex) const {
-      return nearest_of(simplex, w);
     }
     [[gnu::always_inline]] void keep(int s, const LaneMask<T>& take) const {
       if constexpr (Points) {

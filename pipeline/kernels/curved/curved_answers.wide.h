@@ -57,8 +57,6 @@ class CurvedAnswers {
 
  private:
   static constexpr std::uint32_t kChunk = 64;
-  /// Scaled; larger than any distance that occurs.
-  static constexpr double kFarthest = 1e10;
   /// If the bounds of a distance differ by more than this fraction of it, they are recomputed.
   static constexpr double kLoose = 1e-10;
   /// The largest error bound of an answer, relative to the sizes, and the same for user shapes.
@@ -80,7 +78,7 @@ class CurvedAnswers {
     CurvedPair& pair = pair_[taken_];
     pair.index = i;
     pair.far = Level == 0 ? 0.0 : (Level == 1 ? __builtin_inf() : job_.margin_of(i));
-    if (!place_pair(job_, job_.pairs[i], pair)) return give_up(i);
+    if (!place_pair(job_, job_.pairs[i], pair)) return leave_uncertified(i);
     if (++taken_ == kChunk) answer_taken();
   }
 
@@ -88,7 +86,7 @@ class CurvedAnswers {
     if (taken_ == 0) return;
     CurvedSearch(pair_, taken_, Level == 0).run();
     for (std::uint32_t i = 0; i < taken_; ++i) {
-      if (!answer(pair_[i])) give_up(pair_[i].index);
+      if (!answer(pair_[i])) leave_uncertified(pair_[i].index);
     }
     taken_ = 0;
   }
@@ -97,7 +95,8 @@ class CurvedAnswers {
   /// the upper one. So the error is the absolute difference.
   static double width_between(double lower, double upper) { return __builtin_fabs(upper - lower); }
 
-  void give_up(std::uint32_t i) { job_.uncertified[uncertified_++] = i; }
+  /// Leaves pair i of the job to the solver.
+  void leave_uncertified(std::uint32_t i) { job_.uncertified[uncertified_++] = i; }
 
   bool answer(CurvedPair& pair) {
     switch (pair.state) {

@@ -5,6 +5,7 @@
 
 #include "pipeline/kernels/cores/curved_pair.wide.h"
 #include "pipeline/manifold/contact_patch.h"
+#include "pipeline/manifold/feature_rules.h"
 
 namespace winnow::WINNOW_ISA_NAME::curved {
 

@@ -4,6 +4,7 @@
 #include "pipeline/kernels/cores/curved_pair.wide.h"
 #include "pipeline/kernels/kernels.h"
 #include "pipeline/kernels/round/half_space_common.wide.h"
+#include "pipeline/manifold/contact_patch.h"
 
 namespace winnow {
 namespace WINNOW_ISA_NAME::round {

@@ -245,11 +245,6 @@ WINNOW_SHARED_BY_LEVELS BoxAxis<T> best_axis(const BoxPair<T>& pair) {
 }
 
 template <typename T>
-[[gnu::always_inline]] inline Lanes<T> clamp(const Lanes<T>& v, const Lanes<T>& reach) {
-  return max(min(v, reach), -reach);
-}
-
-template <typename T>
 [[gnu::always_inline]] inline Lanes<T> square_of(const Lanes<T> (&v)[3]) {
   return v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
 }
@@ -334,8 +329,8 @@ template <typename T>
   const Lanes<T> s = (along_a - cosine * along_b) / axis.length2;
   const Lanes<T> t = s * cosine - along_b;
   for (int r = 0; r < 3; ++r) {
-    reach.a[r] = select(is_i[r], clamp(s, pair.half_a[r]), reach.a[r]);
-    reach.b[r] = select(is_j[r], clamp(t, pair.half_b[r]), reach.b[r]);
+    reach.a[r] = select(is_i[r], clamp_to(s, pair.half_a[r]), reach.a[r]);
+    reach.b[r] = select(is_j[r], clamp_to(t, pair.half_b[r]), reach.b[r]);
   }
 }
 
@@ -408,13 +403,13 @@ WINNOW_SHARED_BY_LEVELS BoxPoints<T> closest_points(const BoxPair<T>& pair, cons
   for (int j = 0; j < 3; ++j) {
     b[j] = select(
         by_edges, reach.b[j],
-        select(vertex_of_b, of_b.sign[j] * pair.half_b[j], clamp(next_to_a[j], pair.half_b[j])));
+        select(vertex_of_b, of_b.sign[j] * pair.half_b[j], clamp_to(next_to_a[j], pair.half_b[j])));
   }
   BoxPoints<T> points;
   from_b(pair, b, points.b);
   for (int r = 0; r < 3; ++r) {
     points.a[r] = select(by_edges, reach.a[r],
-                         select(vertex_of_b, clamp(points.b[r], pair.half_a[r]), vertex_a[r]));
+                         select(vertex_of_b, clamp_to(points.b[r], pair.half_a[r]), vertex_a[r]));
   }
   return points;
 }

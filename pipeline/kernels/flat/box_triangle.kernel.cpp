@@ -167,15 +167,6 @@ template <typename T>
   return r;
 }
 
-template <typename T>
-[[gnu::always_inline]] inline Lanes<T> clamp_to(const Lanes<T>& v, const Lanes<T>& reach) {
-  return max(min(v, reach), -reach);
-}
-template <typename T>
-[[gnu::always_inline]] inline Vec3<T> clamp_to(const Vec3<T>& v, const Vec3<T>& half) {
-  return {clamp_to(v.x, half.x), clamp_to(v.y, half.y), clamp_to(v.z, half.z)};
-}
-
 /// Returns the index of the closest pair of a vertex and the other shape: i for vertex i of the
 /// triangle and the box, 3 + 8 j + v for vertex v of the box (one bit per positive coordinate) and
 /// edge j.

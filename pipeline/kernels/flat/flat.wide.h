@@ -295,6 +295,14 @@ struct PointPair {
 inline constexpr double kDeepest = 1e-6;
 
 template <typename T>
+[[gnu::always_inline]] inline Lanes<T> clamp_to(const Lanes<T>& v, const Lanes<T>& reach) {
+  return max(min(v, reach), -reach);
+}
+template <typename T>
+[[gnu::always_inline]] inline Vec3<T> clamp_to(const Vec3<T>& v, const Vec3<T>& half) {
+  return {clamp_to(v.x, half.x), clamp_to(v.y, half.y), clamp_to(v.z, half.z)};
+}
+template <typename T>
 [[gnu::always_inline]] inline Lanes<T> clamp_unit(const Lanes<T>& t) {
   return max(min(t, Lanes<T>(T(1))), Lanes<T>(T(0)));
 }

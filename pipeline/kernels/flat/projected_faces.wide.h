@@ -6,6 +6,7 @@
 
 #include "pipeline/kernels/pair_lanes.wide.h"
 #include "pipeline/manifold/contact_patch.h"
+#include "pipeline/manifold/feature_rules.h"
 
 namespace winnow::WINNOW_ISA_NAME::flat {
 

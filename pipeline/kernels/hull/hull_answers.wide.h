@@ -59,7 +59,7 @@ class HullAnswers {
   }
 
   void take(std::uint32_t i) {
-    if (!place(i, taken_, pair_[taken_])) return give_up(i);
+    if (!place(i, taken_, pair_[taken_])) return leave_uncertified(i);
     if (++taken_ == kPairsAtOnce) answer_taken();
   }
 
@@ -67,7 +67,7 @@ class HullAnswers {
     if (taken_ == 0) return;
     HullSearch<typename Shapes::Seconds>(pair_, taken_, Level == 0).run();
     for (std::uint32_t i = 0; i < taken_; ++i) {
-      if (!answer(pair_[i], i)) give_up(pair_[i].index);
+      if (!answer(pair_[i], i)) leave_uncertified(pair_[i].index);
     }
     taken_ = 0;
   }
@@ -84,7 +84,8 @@ class HullAnswers {
            pair.second->vertex_count <= kMaxHullVertices;
   }
 
-  void give_up(std::uint32_t i) { job_.uncertified[uncertified_++] = i; }
+  /// Leaves pair i of the job to the solver.
+  void leave_uncertified(std::uint32_t i) { job_.uncertified[uncertified_++] = i; }
 
   bool answer(const HullPair& pair, std::uint32_t slot) {
     if (pair.state == HullState::far) {
@@ -199,10 +200,10 @@ class HullAnswers {
                            static_cast<double>(pair.gap[2])};
     const double length = __builtin_sqrt(dot3(gap, gap));
     const double scale = 1.0 / static_cast<double>(pair.scale);
-    // Exceeds the error of the height `lower`. HullSearch added more to the margin (kLengthError),
+    // Exceeds the error of `height_along`. HullSearch added more to the margin (kLengthError),
     // so that after the roundings here the bound is still above the margin.
     constexpr double doubt = 5.5e-6;
-    const double lower = (static_cast<double>(pair.lower) / length - doubt) * scale;
+    const double lower = (static_cast<double>(pair.height_along) / length - doubt) * scale;
     const double upper = (length + doubt) * scale;
     double normal[3];
     for (int k = 0; k < 3; ++k) normal[k] = -gap[k] / length;

@@ -585,13 +585,13 @@ static inline void arc_ends(const HullPair& pair, const HullArc& arc, double (*e
 }
 
 /// Measures a candidate: `depth` is an upper bound of the smallest depth, attained along `normal`;
-/// `lower` is a lower bound for all directions that the candidate stands for.
+/// `lower_bound` is a lower bound for all directions that the candidate stands for.
 class HullMeasure {
  public:
   explicit HullMeasure(const HullPair& pair) : pair_(pair) {}
 
   double depth;
-  double lower;
+  double lower_bound;
   double normal[3];
 
   void face(const HullCandidate& c) {
@@ -604,7 +604,7 @@ class HullMeasure {
       for (double& x : normal) x = -x;
     }
     depth = depth_along(pair_, normal);
-    lower = depth;
+    lower_bound = depth;
   }
 
   /// Bounds an arc as HullDepth::cut does.
@@ -646,7 +646,7 @@ class HullMeasure {
     depth = depth_along(pair_, normal);
     const double heights[2] = {dot3(normal, w[0]), dot3(normal, w[1])};
     const int low = heights[0] < heights[1] ? 0 : 1;
-    lower = heights[crosses ? low : top];
+    lower_bound = heights[crosses ? low : top];
   }
 
   /// If both points rise along an arc, the larger of their heights is smallest at an end: lowers
@@ -656,7 +656,7 @@ class HullMeasure {
       const double heights[2] = {dot3(end[i], w[0]), dot3(end[i], w[1])};
       const double height = (heights[0] > heights[1] ? heights[0] : heights[1]) /
                             __builtin_sqrt(dot3(end[i], end[i]));
-      lower = height < lower ? height : lower;
+      lower_bound = height < lower_bound ? height : lower_bound;
     }
   }
 
@@ -670,9 +670,9 @@ class HullMeasure {
 /// changes. This class distinguishes them in double, on all arcs around the face.
 class HullTies {
  public:
-  /// `best` is the smallest depth found, `lower` a lower bound of the depth.
-  HullTies(const HullPair& pair, double best, double lower)
-      : pair_(pair), measure_(pair), best_(best), lower_(lower) {}
+  /// `best` is the smallest depth found, `lower_bound` a lower bound of the depth.
+  HullTies(const HullPair& pair, double best, double lower_bound)
+      : pair_(pair), measure_(pair), best_(best), lower_bound_(lower_bound) {}
 
   /// Searches around a face of the first, along whose normal the depth is `depth`; returns false if
   /// there is more to search than there is room for.
@@ -692,10 +692,10 @@ class HullTies {
     return search_arc(arc.edge, ends[0], ends[1]);
   }
 
-  void bound(double depth) { lower_ = depth < lower_ ? depth : lower_; }
+  void bound(double depth) { lower_bound_ = depth < lower_bound_ ? depth : lower_bound_; }
 
   [[nodiscard]] double best() const { return best_; }
-  [[nodiscard]] double lower() const { return lower_; }
+  [[nodiscard]] double lower_bound() const { return lower_bound_; }
   [[nodiscard]] bool found() const { return found_; }
   [[nodiscard]] const HullCandidate& winner() const { return winner_; }
   [[nodiscard]] const double* normal() const { return normal_; }
@@ -807,13 +807,13 @@ class HullTies {
     }
     measure_.crossing(part.end, w);
     measure_.bound_ends(part.end, w);
-    if (measure_.lower + rounding >= best_) return;
+    if (measure_.lower_bound + rounding >= best_) return;
     const double* normal = measure_.normal;
     std::uint32_t third = nearest(normal);
     if (measure_.depth < best_) keep(edge, part);
-    if (measure_.depth - measure_.lower <= rounding || third == part.vertex[0] ||
+    if (measure_.depth - measure_.lower_bound <= rounding || third == part.vertex[0] ||
         third == part.vertex[1]) {
-      return bound(measure_.lower);
+      return bound(measure_.lower_bound);
     }
     ArcPart halves[2] = {part, part};
     for (int k = 0; k < 3; ++k) halves[0].end[1][k] = halves[1].end[0][k] = normal[k];
@@ -836,7 +836,7 @@ class HullTies {
   const HullPair& pair_;
   HullMeasure measure_;
   double best_;
-  double lower_;
+  double lower_bound_;
   bool found_ = false;
   double normal_[3];
   HullCandidate winner_ = {};

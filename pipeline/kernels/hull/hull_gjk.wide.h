@@ -10,6 +10,15 @@
 // restarts towards a point outside and finds a face of the difference that is a good guess for the
 // nearest one. The limits of the states far and inside include the errors of float. All other
 // results are guesses, which the later steps prove before they use them.
+//
+// A step of GJK has the nearest point v of the simplex, and computes the support point w of the
+// difference against v. No point of the difference is lower along v than w: |v| is an upper bound
+// of its distance from the origin, v . w / |v| a lower one. A lane ends
+// - far if the lower bound exceeds the caller's limit;
+// - apart if the two bounds are equal up to rounding, if w is already in the simplex, or if adding
+//   it leads no nearer to the origin;
+// - inside or close if the simplex contains the origin;
+// - after too many steps, as if it were apart.
 
 #include "pipeline/kernels/cores/gjk_lanes.wide.h"
 #include "pipeline/kernels/cores/hull_core.wide.h"
@@ -28,7 +37,7 @@ enum class HullState : std::uint32_t {
   close,
 };
 
-/// "First" is body a of the pair, or body b if `swapped`: see comes_second.
+/// "First" is body a of the pair, or body b if `swapped`: see computes_b_first.
 struct HullPair : PairPlacement {
   const HullShape* first;
   const HullShape* second;
@@ -56,8 +65,10 @@ struct HullPair : PairPlacement {
   std::uint32_t vertices[3];
   /// first - second at the closest points, scaled.
   float gap[3];
-  /// State far: a lower bound of the distance of the cores, times the length of `gap`, scaled.
-  float lower;
+  /// State far: a lower bound of the distance of the cores, times the length of `gap`, scaled. It
+  /// is the height along `gap` of the last support point, above which lie all points of the
+  /// difference.
+  float height_along;
   /// Square of an upper bound of the penetration depth, scaled.
   float depth_squared;
   /// The latest support points of first - second, scaled.
@@ -295,26 +306,27 @@ class HullSearch {
       w = search.firsts_.vertex() * Floats::load(search.scale_) - second.point -
           Search::load3(search.goal_);
     }
+    /// After a restart, distances from the goal bound no distance of the cores.
     [[gnu::always_inline]] LaneMask<float> ends(const Vec3<float>& v, const Floats& square,
-                                                const Floats& height,
-                                                const Simplex<float>& /*simplex*/) const {
+                                                const Floats& height) const {
       if (!search.overlap_only_) search.note_depth(w, v, square, height);
       return search.lanes_.is_far(height, square) & !restarted;
     }
+    /// The bounds |v| and v . w / |v| differ by at most kNoGain. `gain` is v . v - v . w; rounding
+    /// may make it negative.
     [[gnu::always_inline]] LaneMask<float> has_no_gain(const Floats& gain,
                                                        const Floats& square) const {
       return (gain <= Floats(0.0F)) |
              (gain * gain <= Floats(Search::kNoGain * Search::kNoGain) * square);
-    }
-    [[gnu::always_inline]] SimplexNearest<float> nearest(const Simplex<float>& simplex) const {
-      return nearest_of(simplex, w);
     }
     [[gnu::always_inline]] void keep(int s, const LaneMask<float>& take) const {
       select(take, name, Floats::load(search.slot_name_[s])).store(search.slot_name_[s]);
     }
   };
 
-  /// Advances all lanes by one step; returns the lanes that are done.
+  /// Advances all lanes by one step; returns the lanes that are done. A lane that has been
+  /// restarted cannot end apart: its origin is inside, and the nearest feature to the goal is a
+  /// guess for the nearest face.
   Mask16 step() {
     const LaneMask<float> restarted = Floats::load(restarted_) > Floats(0.0F);
     Rules rules{*this, restarted, {}, {}};
@@ -354,6 +366,7 @@ class HullSearch {
       lanes_.square[lane] = square;
       lanes_.start(lane);
       restarted_[lane] = 1.0F;
+      // `late` ends the lane after kRestartSteps more.
       lanes_.steps[lane] = kMaxSteps - kRestartSteps;
       restarts |= 1U << lane;
     }
@@ -368,9 +381,9 @@ class HullSearch {
     const Floats over = height + dot(gap, goal);
     const Floats depth = select(over > zero, zero, over * over / square);
     const Floats before = Floats::load(depth_);
-    const LaneMask<float> lower = depth < before;
-    select(lower, depth, before).store(depth_);
-    Search::store3(select(lower, gap, Search::load3(lowest_)), lowest_);
+    const LaneMask<float> is_lower = depth < before;
+    select(is_lower, depth, before).store(depth_);
+    Search::store3(select(is_lower, gap, Search::load3(lowest_)), lowest_);
     remember(w + goal);
   }
 
@@ -395,7 +408,7 @@ class HullSearch {
       }
     }
     for (int i = 0; i < 3; ++i) pair.gap[i] = lanes_.gap[i][lane];
-    pair.lower = lanes_.height_along[lane];
+    pair.height_along = lanes_.height_along[lane];
     pair.depth_squared = depth_[lane];
   }
 

@@ -4,6 +4,8 @@
 #include "pipeline/kernels/cores/hull_core.wide.h"
 #include "pipeline/kernels/kernels.h"
 #include "pipeline/kernels/round/half_space_common.wide.h"
+#include "pipeline/manifold/contact_patch.h"
+#include "pipeline/manifold/feature_rules.h"
 #include "simd/lanes/rows.h"
 
 namespace winnow {

@@ -16,7 +16,7 @@ struct HullAndHull {
     const HullShape& b = job.tables->hulls[job.shapes[bodies.b].index()];
     const Pose& pose_a = job.poses[bodies.a];
     const Pose& pose_b = job.poses[bodies.b];
-    return place_hulls(a, b, pose_a, pose_b, comes_second(a, b, pose_a, pose_b), pair);
+    return place_hulls(a, b, pose_a, pose_b, computes_b_first(a, b, pose_a, pose_b), pair);
   }
   static bool complete(std::uint32_t /*slot*/) { return true; }
 };

@@ -9,6 +9,8 @@
 // along the normal, and passes them as patches to contact_patch.
 
 #include "pipeline/kernels/hull/hull_depth.wide.h"
+#include "pipeline/manifold/contact_patch.h"
+#include "pipeline/manifold/feature_rules.h"
 
 namespace winnow::WINNOW_ISA_NAME::hull {
 
@@ -87,7 +89,9 @@ static inline void nearest_on_triangle(const double (*w)[3], double* weight) {
   }
 }
 
-/// The distance of separate cores, from the search's simplex.
+/// The distance of separate cores, from the vertices of the search's last simplex. Float may have
+/// ended at another feature than the closest: the bounds in double then differ, and the error shows
+/// it.
 static inline void finish_apart(const HullPair& pair, HullDistance& answer) {
   double a[3][3];
   double w[3][3];
@@ -111,9 +115,11 @@ static inline void finish_apart(const HullPair& pair, HullDistance& answer) {
   const double length = __builtin_sqrt(dot3(gap, gap));
   const double inverse = 1.0 / length;
   for (int k = 0; k < 3; ++k) answer.normal[k] = -gap[k] * inverse;
-  const double lower =
+  // The plane of the first's highest vertices and the plane of the second's lowest separate the
+  // cores.
+  const double between_planes =
       lowest_of_second(pair, answer.normal) - height_of(*pair.first, answer.normal);
-  const double doubt = length - lower;
+  const double doubt = length - between_planes;
   answer.distance = length;
   answer.error = (doubt > 0.0 ? doubt : 0.0) + kDoubleError * pair.size;
   answer.winner = nullptr;
@@ -124,7 +130,7 @@ static inline void finish_apart(const HullPair& pair, HullDistance& answer) {
 /// Searches around the candidates for minima that float may have missed. Returns false if the
 /// minimum cannot be determined.
 static inline bool finish_ties(const HullPair& pair, const HullDepth& found, const double* depth,
-                               const double* least, double& best, double& lower,
+                               const double* least, double& best, double& lower_bound,
                                HullDistance& answer) {
   HullTies ties(pair, best, __builtin_inf());
   const double reach = best + 4.0 * static_cast<double>(kFloatError) * pair.size;
@@ -140,7 +146,7 @@ static inline bool finish_ties(const HullPair& pair, const HullDepth& found, con
     if (!ties.around(c.face, depth[i])) return false;
   }
   best = ties.best();
-  lower = ties.lower();
+  lower_bound = ties.lower_bound();
   if (!ties.found()) return true;
   answer.found = ties.winner();
   answer.winner = &answer.found;
@@ -154,7 +160,7 @@ static inline void finish_depth(const HullPair& pair, const HullDepth& found,
                                 HullDistance& answer) {
   HullMeasure measure(pair);
   double best = __builtin_inf();
-  double lower = best;
+  double lower_bound = best;
   double depth[HullDepth::kMaxCandidates];
   double least[HullDepth::kMaxCandidates];
   answer.winner = nullptr;
@@ -166,16 +172,16 @@ static inline void finish_depth(const HullPair& pair, const HullDepth& found,
       measure.face(c);
     }
     depth[i] = measure.depth;
-    least[i] = measure.lower;
-    lower = measure.lower < lower ? measure.lower : lower;
+    least[i] = measure.lower_bound;
+    lower_bound = measure.lower_bound < lower_bound ? measure.lower_bound : lower_bound;
     if (!(measure.depth < best)) continue;
     best = measure.depth;
     answer.winner = &c;
     for (int k = 0; k < 3; ++k) answer.normal[k] = measure.normal[k];
   }
   const bool sure =
-      answer.winner != nullptr && finish_ties(pair, found, depth, least, best, lower, answer);
-  const double doubt = best - lower;
+      answer.winner != nullptr && finish_ties(pair, found, depth, least, best, lower_bound, answer);
+  const double doubt = best - lower_bound;
   answer.distance = -best;
   answer.error = (doubt > 0.0 ? doubt : 0.0) + kDoubleError * pair.size;
   if (!sure) answer.error = __builtin_inf();

@@ -5,7 +5,7 @@
 
 #include "pipeline/kernels/kernels.h"
 #include "pipeline/kernels/round/round.wide.h"
-#include "pipeline/manifold/contact_patch.h"
+#include "pipeline/manifold/feature_rules.h"
 
 namespace winnow {
 namespace WINNOW_ISA_NAME::round {

@@ -5,6 +5,7 @@
 #include "pipeline/kernels/kernels.h"
 #include "pipeline/kernels/round/half_space_common.wide.h"
 #include "pipeline/manifold/contact_patch.h"
+#include "pipeline/manifold/feature_rules.h"
 
 namespace winnow {
 namespace WINNOW_ISA_NAME::round {

@@ -17,21 +17,17 @@ constexpr int kMaxPieces = 5;
 /// Slightly below the range of float.
 constexpr double kFarthest = 0x1p120;
 
-double most_of(const PreciseBox& box) noexcept {
-  return std::max(box.min.cwiseAbs().maxCoeff(), box.max.cwiseAbs().maxCoeff());
-}
-
 }  // namespace
 
-BoxPath::BoxPath(const PreciseBox& box, const Vector3d& origin, const double direction[3],
+BoxPath::BoxPath(const mid::Box3& box, const Vector3d& origin, const double direction[3],
                  double max_t) noexcept
-    : box_{box.min - origin, box.max - origin} {
+    : box_(box.moved(-origin)) {
   const Vector3d given = Vector3d::Map(direction);
   std::frexp(given.cwiseAbs().maxCoeff(), &exponent_);
   for (int i = 0; i < 3; ++i) step_[i] = std::ldexp(given[i], -exponent_);
   last_ = std::ldexp(max_t, exponent_);
-  reach_ = most_of(box_);
-  rounded_reach_ = std::max(reach_, most_of(box));
+  reach_ = box_.largest();
+  rounded_reach_ = std::max(reach_, box.largest());
 }
 
 bool BoxPath::next() noexcept {
@@ -54,13 +50,13 @@ double BoxPath::slack(double end) const noexcept {
   return 0x1p-23 * (end - from_) + 0x1p-47 * (rounded_reach_ + end);
 }
 
-PreciseBox BoxPath::at(double path) const noexcept {
-  return {box_.min + path * step_, box_.max + path * step_};
+mid::Box3 BoxPath::at(double path) const noexcept {
+  return box_.moved(path * step_);
 }
 
 BoxCast BoxPath::cast(double limit) const noexcept {
   const double end = std::clamp(std::ldexp(limit, exponent_), from_, to_);
-  const PreciseBox start = at(from_).grown(slack(to_));
+  const mid::Box3 start = at(from_).grown(slack(to_));
   BoxCast cast;
   cast.box = Aabb::outward(start.min, start.max);
   cast.direction = step_.cast<float>();
@@ -70,7 +66,7 @@ BoxCast BoxPath::cast(double limit) const noexcept {
 
 Aabb BoxPath::rest(double limit) const noexcept {
   const double end = std::clamp(std::ldexp(limit, exponent_), from_, to_);
-  PreciseBox sum = at(from_);
+  mid::Box3 sum = at(from_);
   for (int i = 0; i < 3; ++i) {
     if (step_[i] == 0.0) continue;
     const double path = end * step_[i];

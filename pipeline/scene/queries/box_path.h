@@ -24,7 +24,7 @@ class BoxPath {
  public:
   /// The direction must be finite and not zero, max_t >= 0 may be infinite, the box must be finite.
   /// Partition coordinates are relative to `origin`.
-  BoxPath(const PreciseBox& box, const Eigen::Vector3d& origin, const double direction[3],
+  BoxPath(const mid::Box3& box, const Eigen::Vector3d& origin, const double direction[3],
           double max_t) noexcept;
 
   /// Advances to the next piece; call it for the first piece too. Returns false at the end.
@@ -40,11 +40,11 @@ class BoxPath {
   [[nodiscard]] Aabb rest(double limit) const noexcept;
 
  private:
-  [[nodiscard]] PreciseBox at(double path) const noexcept;
+  [[nodiscard]] mid::Box3 at(double path) const noexcept;
   [[nodiscard]] double slack(double end) const noexcept;
 
   // Path parameters are t times 2^exponent_, which makes them approximately lengths.
-  PreciseBox box_;
+  mid::Box3 box_;
   Eigen::Vector3d step_;
   int exponent_ = 0;
   double reach_ = 0.0;

@@ -52,16 +52,14 @@ class CompositeCast::PartSearch {
   /// The moving box of the fixed part in the frame of the composite shape; if that is unbounded,
   /// the box of the whole shape.
   [[nodiscard]] MovingBox way(double limit, double more) const noexcept {
-    const PreciseBox box = composite_.parts_.box(stationary_).grown(stationary_.thickness + more);
-    const PreciseBox& own = composite_.extent();
-    const double reach = std::max(own.min.cwiseAbs().maxCoeff(), own.max.cwiseAbs().maxCoeff()) +
-                         std::max(box.min.cwiseAbs().maxCoeff(), box.max.cwiseAbs().maxCoeff());
+    const mid::Box3 box = composite_.parts_.box(stationary_).grown(stationary_.thickness + more);
+    const double reach = composite_.extent().largest() + box.largest();
     MovingBox moving_box;
     if (std::isfinite(reach)) {
-      moving_box = box.grown(kCastBoxGrowth * reach).stationary();
+      moving_box = stationary(box.grown(kCastBoxGrowth * reach));
       for (int i = 0; i < 3; ++i) moving_box.direction[i] = -composite_.direction()[i];
     } else {
-      moving_box = composite_.parts_.box(moving_).stationary();
+      moving_box = stationary(composite_.parts_.box(moving_));
     }
     moving_box.max_t = limit;
     return moving_box;

@@ -20,12 +20,9 @@ using Eigen::Vector3d;
 MovingBox moving_box_from(const LinearCast& linear_cast, const double from[3], double limit,
                           double more = 0.0) noexcept {
   const Vector3d start = Vector3d::Map(from);
-  const PreciseBox& extent = linear_cast.extent();
-  const double reach = start.cwiseAbs().maxCoeff() +
-                       std::max(extent.min.cwiseAbs().maxCoeff(), extent.max.cwiseAbs().maxCoeff());
-  const PreciseBox box =
-      PreciseBox{start + extent.min, start + extent.max}.grown(kCastBoxGrowth * reach + more);
-  MovingBox moving_box = box.stationary();
+  const mid::Box3& extent = linear_cast.extent();
+  const double reach = start.cwiseAbs().maxCoeff() + extent.largest();
+  MovingBox moving_box = stationary(extent.moved(start).grown(kCastBoxGrowth * reach + more));
   std::copy_n(linear_cast.direction(), 3, moving_box.direction);
   moving_box.max_t = limit;
   return moving_box;
@@ -163,9 +160,8 @@ CastPair ConvexCast::pair(PartTables& tables, const double from[3],
   return pair;
 }
 
-PreciseBox ConvexCast::box_at(const double from[3]) const noexcept {
-  const Vector3d start = Vector3d::Map(from);
-  return {start + extent().min, start + extent().max};
+mid::Box3 ConvexCast::box_at(const double from[3]) const noexcept {
+  return extent().moved(Vector3d::Map(from));
 }
 
 // The plane of an earlier contact bounds the shape at t = limit. The shape approaches this plane,

@@ -60,7 +60,7 @@ class LinearCast {
 
   /// Start position, and a box around the shape relative to it.
   [[nodiscard]] const double* start() const noexcept { return start_; }
-  [[nodiscard]] const PreciseBox& extent() const noexcept { return extent_; }
+  [[nodiscard]] const mid::Box3& extent() const noexcept { return extent_; }
   [[nodiscard]] const double* direction() const noexcept { return direction_; }
   [[nodiscard]] double max_t() const noexcept { return max_t_; }
   /// Null for a shape.
@@ -90,7 +90,7 @@ class LinearCast {
                         CastContact& contact) const noexcept = 0;
 
  protected:
-  LinearCast(const PreciseBox& extent, const ShapeCast& cast, double tolerance) noexcept
+  LinearCast(const mid::Box3& extent, const ShapeCast& cast, double tolerance) noexcept
       : extent_(extent),
         start_(cast.pose.position),
         direction_(cast.direction),
@@ -104,7 +104,7 @@ class LinearCast {
         max_t_(ray.max_t) {}
 
  private:
-  PreciseBox extent_;
+  mid::Box3 extent_;
   const double* start_;
   const double* direction_;
   double max_t_;
@@ -152,7 +152,7 @@ class ConvexCast final : public LinearCast {
                                double limit) const noexcept;
   void set_height(const double from[3], CastContact& contact) const noexcept;
   /// The box of the shape at its start.
-  [[nodiscard]] PreciseBox box_at(const double from[3]) const noexcept;
+  [[nodiscard]] mid::Box3 box_at(const double from[3]) const noexcept;
   [[nodiscard]] CastPair pair(PartTables& tables, const double from[3],
                               const SubShape& part) const noexcept;
 

@@ -64,7 +64,7 @@ Status MotionQuery::each_piece(const double& limit, TestBody&& test_body) {
   for (std::uint32_t i = 0; i < pieces; ++i) {
     const impact::Interval within = impact::piece_of(i, pieces);
     if (within.first > limit) break;
-    const PreciseBox box = way_.box(within);
+    const mid::Box3 box = way_.box(within);
     auto test_candidate = [&](std::uint32_t body) {
       test_body(body, within);
       return false;

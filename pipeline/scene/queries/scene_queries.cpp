@@ -7,12 +7,9 @@
 #include "pipeline/scene/queries/queries.h"
 #include "pipeline/scene/queries/shape_distance.h"
 #include "pipeline/shapes/frame.h"
-#include "pipeline/solver/solver.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
-#include <utility>
 
 namespace winnow {
 namespace {

@@ -8,7 +8,6 @@
 #include "pipeline/scene/queries/shape_distance.h"
 
 #include <cmath>
-#include <limits>
 
 namespace winnow {
 

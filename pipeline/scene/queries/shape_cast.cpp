@@ -19,8 +19,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <utility>
 
 namespace winnow {
 namespace {
@@ -195,8 +193,9 @@ SeparationSample Advancement::sample(double t, bool any_plane) noexcept {
   } else {
     const bool is_known = !normal_.isZero(0.0);
     const Vec start = is_known ? Vec(mirrored_ ? -normal_ : normal_) : problem.b.center;
-    const GjkResult found = gjk(problem.a, problem.b, start, solver::kConvergence * noise,
-                                any_plane ? roundings + 2.0 * noise : kInfinity);
+    const GjkResult found = gjk(problem.a, problem.b, start,
+                                {.noise = solver::kConvergence * noise,
+                                 .enough = any_plane ? roundings + 2.0 * noise : kInfinity});
     if (found.contact || found.upper + noise <= roundings) return result;
     gap = found.lower - roundings - noise;
     face(found.axis, result);

@@ -86,7 +86,7 @@ struct Pairing {
   };
   if (parts.pairs(pair.a, pair.b, test_pair)) return found;
   auto test_parts_near = [&](const SubShape& a, double) {
-    parts.visit_parts(pair.b, parts.box(a).stationary(),
+    parts.visit_parts(pair.b, stationary(parts.box(a)),
                       [&](const SubShape& b, double) { return test_pair(a, b) ? 0.0 : -1.0; });
     return found ? -1.0 : 0.0;
   };
@@ -95,7 +95,7 @@ struct Pairing {
   if (!pair.a.shape.is_composite()) {
     test_parts_near({pair.a.shape, pair.a.pose}, 0.0);
   } else {
-    parts.visit_parts(pair.a, parts.box(pair.b).stationary(), test_parts_near);
+    parts.visit_parts(pair.a, stationary(parts.box(pair.b)), test_parts_near);
   }
   return found;
 }
