@@ -5,7 +5,7 @@
 #include "bench/commands/rows_command.h"
 #include "bench/common/table.h"
 #include "bench/contenders/partitions.h"
-#include "bench/measure/resident_set.h"
+#include "bench/measure/footprint.h"
 #include "bench/rows/cold_rows.h"
 #include "bench/rows/frame_rows.h"
 #include "bench/rows/host_rows.h"

@@ -14,8 +14,8 @@ void require(Status status, std::string_view partition, const char* what) {
 
 }  // namespace
 
-PartitionEngine::PartitionEngine(std::string_view name, int threads)
-    : partition_(make_named(name, {.memory = &memory_, .execution = execution_for(threads)})) {}
+PartitionEngine::PartitionEngine(std::string_view name, const Execution& execution)
+    : partition_(make_named(name, {.memory = &memory_, .execution = execution})) {}
 
 void PartitionEngine::start(std::span<const Aabb> boxes) {
   const Stopwatch clock;

@@ -40,6 +40,11 @@ struct Held {
   [[nodiscard]] bool exact() const { return footprint.total().reserved == outstanding; }
 };
 
+/// Makes the resident set of the process follow its allocations page by page: large blocks get
+/// pages of their own, which are returned to the system when freed, and huge pages are disabled.
+/// Slows allocations down, so it must not be used in a process that times something afterwards.
+void keep_resident_set_exact();
+
 /// Runs the next kFootprintFrames frames of the source on a partition. `resident` is valid only if
 /// keep_resident_set_exact was called before.
 [[nodiscard]] Held measure_held(const std::string& partition, FrameSource& source, int threads);

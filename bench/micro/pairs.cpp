@@ -216,7 +216,7 @@ struct JudgedPairs {
   std::vector<PairTruth> truths;
 
   JudgedPairs(const PairKind& kind, const PairSetOptions& options)
-      : set(make_pair_set(kind, options)), truths(truths_of(*set, TruthSource::oracle)) {}
+      : set(make_pair_set(kind, options)), truths(truths_of(*set)) {}
 };
 
 void count_spread(benchmark::State& state, const std::string& of, const ErrorSpread& spread) {
@@ -259,7 +259,7 @@ void add_judged(const std::string& path, const PairKind& kind, ContactLevel leve
         of_set, [&] { return std::make_unique<const JudgedPairs>(kind, options); });
     const auto& started = prepared<const Started>(
         of_set + name, [&] { return std::make_unique<const Started>(*judged.set, make); });
-    state.SetLabel(judge_name(TruthSource::oracle));
+    state.SetLabel(judge_name());
     started.engine->run(level, judged.set->pairs);
     const Accuracy errors =
         summary_of(errors_at(errors_of(*started.engine, level, *judged.set, judged.truths), gap));
