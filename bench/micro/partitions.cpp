@@ -111,9 +111,8 @@ void time_queries(benchmark::State& state, const QueryBenchmark& what) {
   QueryEngine& engine = started(what.engine, what.make, what.where, what.threads);
   const std::size_t count_of_queries = std::min(set.size(), engine.most_questions());
   const QueryResults results = engine.answers(set, what.mode, count_of_queries);
-  const std::size_t differing =
-      count_differing(set.query_type, expected_results(what.where, set), results,
-                      what.is_peer ? kRounding : 0.0F);
+  const std::size_t differing = count_differing(set.query_type, expected_results(what.where, set),
+                                                results, what.is_peer ? kRounding : 0.0F);
   check(what.is_peer || differing == 0, "other objects were found");
   const auto* const own = dynamic_cast<const PartitionQueries*>(&engine);
   (void)engine.run(set, what.mode, count_of_queries);
@@ -367,10 +366,8 @@ void add_partitions(const std::vector<NamedScene>& scenes) {
       add_query_peers(where, 1);
       const bool is_first = &scene == &scenes.front();
       if (is_first && requested == 100'000) {
-        add_queries({.engine = kParallel,
-                     .make = winnow_queries(kParallel),
-                     .where = where,
-                     .threads = 2});
+        add_queries(
+            {.engine = kParallel, .make = winnow_queries(kParallel), .where = where, .threads = 2});
         add_query_peers(where, 2);
       }
       if (is_first) {

@@ -9,6 +9,7 @@
 #include "bench/common/exact_math.h"
 #include "bench/common/need.h"
 #include "bench/common/random.h"
+#include "bench/scenes/random_shapes.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -42,18 +43,6 @@ ShapeId add_hull(ShapePool& pool, Random& random, std::size_t vertices, double r
   ShapeId id;
   need(pool.add_hull(points, 0.0, id), "a hull");
   return id;
-}
-
-void turn_at_random(Random& random, Pose& pose) {
-  double length = 0.0;
-  do {
-    length = 0.0;
-    for (double& q : pose.orientation) {
-      q = random.in(-1, 1);
-      length += q * q;
-    }
-  } while (length < 0.01 || length > 1.0);
-  for (double& q : pose.orientation) q /= std::sqrt(length);
 }
 
 void add_heap_shapes(BodySet& set, std::size_t bodies, Random& random) {
