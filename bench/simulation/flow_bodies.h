@@ -3,31 +3,13 @@
 #include <winnow/core/execution.h>
 #include <winnow/core/pose.h>
 #include <winnow/core/pose_view.h>
+#include <winnow/core/vec3.h>
 
-#include <array>
 #include <cstddef>
 #include <memory_resource>
 #include <vector>
 
 namespace winnow::bench {
-
-using Vec = std::array<double, 3>;
-
-[[nodiscard]] inline Vec operator+(const Vec& a, const Vec& b) noexcept {
-  return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
-}
-[[nodiscard]] inline Vec operator-(const Vec& a, const Vec& b) noexcept {
-  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-[[nodiscard]] inline Vec operator*(double s, const Vec& a) noexcept {
-  return {s * a[0], s * a[1], s * a[2]};
-}
-[[nodiscard]] inline double dot(const Vec& a, const Vec& b) noexcept {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-[[nodiscard]] inline Vec cross(const Vec& a, const Vec& b) noexcept {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
 
 /// Rigid bodies of a simulation as columns of doubles, with orientations in float. A body with zero
 /// inverse mass is static.
@@ -51,10 +33,10 @@ struct FlowBodies {
   Column inverse_inertia[3];  ///< in the body's axes
 };
 
-[[nodiscard]] inline Vec at(const FlowBodies::Column (&columns)[3], std::size_t i) noexcept {
+[[nodiscard]] inline Vec3d at(const FlowBodies::Column (&columns)[3], std::size_t i) noexcept {
   return {columns[0][i], columns[1][i], columns[2][i]};
 }
-inline void put(FlowBodies::Column (&columns)[3], std::size_t i, const Vec& value) noexcept {
+inline void put(FlowBodies::Column (&columns)[3], std::size_t i, const Vec3d& value) noexcept {
   for (std::size_t axis = 0; axis < 3; ++axis) columns[axis][i] = value[axis];
 }
 

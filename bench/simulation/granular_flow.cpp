@@ -29,7 +29,7 @@ constexpr double kFall = 4.0;
 /// The mass of a shape and its moments of inertia in its own axes.
 struct Inertia {
   double mass;
-  Vec moment;
+  Vec3d moment;
 };
 
 Inertia inertia_of(const ShapeTables& tables, ShapeId id) {
@@ -237,10 +237,10 @@ void GranularFlow::step(bool profiled) {
 double GranularFlow::energy_of(std::size_t i) const noexcept {
   const double mass = 1.0 / bodies_.inverse_mass[i];
   // The energy that `integrate` will count, with half of the next step's gravity.
-  Vec velocity = at(bodies_.velocity, i);
-  velocity[2] -= 0.5 * options_.gravity * options_.step;
-  return 0.5 * mass * dot(velocity, velocity) +
-         0.5 * dot(at(bodies_.spin, i), at(bodies_.momentum, i)) +
+  Vec3d velocity = at(bodies_.velocity, i);
+  velocity.z() -= 0.5 * options_.gravity * options_.step;
+  return 0.5 * mass * velocity.squared_norm() +
+         0.5 * at(bodies_.spin, i).dot(at(bodies_.momentum, i)) +
          mass * options_.gravity * bodies_.position[2][i];
 }
 

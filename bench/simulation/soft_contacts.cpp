@@ -23,30 +23,29 @@ struct Touch {
 
   std::size_t a;
   std::size_t b;
-  Vec between;
+  Vec3d between;
   double stiffness = 0.0;
   double damping = 0.0;
 };
 
 /// Adds the force of one contact point; all points of a pair share the spring.
 void add_point(const FlowBodies& bodies, const Touch& touch, const SoftContacts& law,
-               const ContactPoint& point, const Vec& normal, double share, PairForce& sum) {
+               const ContactPoint& point, const Vec3d& normal, double share, PairForce& sum) {
   const auto depth = static_cast<double>(point.depth);
-  const Vec arm_a{static_cast<double>(point.position[0]), static_cast<double>(point.position[1]),
-                  static_cast<double>(point.position[2])};
-  const Vec arm_b = arm_a - touch.between;
-  const Vec velocity = at(bodies.velocity, touch.b) + cross(at(bodies.spin, touch.b), arm_b) -
-                       at(bodies.velocity, touch.a) - cross(at(bodies.spin, touch.a), arm_a);
-  const double parting = dot(velocity, normal);
+  const Vec3d arm_a = Vec3f(point.position).cast<double>();
+  const Vec3d arm_b = arm_a - touch.between;
+  const Vec3d velocity = at(bodies.velocity, touch.b) + at(bodies.spin, touch.b).cross(arm_b) -
+                         at(bodies.velocity, touch.a) - at(bodies.spin, touch.a).cross(arm_a);
+  const double parting = velocity.dot(normal);
   const double damping = share * touch.damping;
   const double push = std::max(0.0, share * touch.stiffness * depth - damping * parting);
-  const Vec sliding = velocity - parting * normal;
-  const double speed = std::sqrt(dot(sliding, sliding));
+  const Vec3d sliding = velocity - parting * normal;
+  const double speed = sliding.norm();
   const double drag = std::min(kCreep * damping, speed > 0.0 ? law.friction * push / speed : 0.0);
-  const Vec force = push * normal - drag * sliding;
-  sum.force = sum.force + force;
-  sum.torque_a = sum.torque_a - cross(arm_a, force);
-  sum.torque_b = sum.torque_b + cross(arm_b, force);
+  const Vec3d force = push * normal - drag * sliding;
+  sum.force += force;
+  sum.torque_a -= arm_a.cross(force);
+  sum.torque_b += arm_b.cross(force);
   sum.elastic += 0.5 * share * touch.stiffness * depth * depth;
   sum.deepest = std::max(sum.deepest, depth);
 }
@@ -64,7 +63,7 @@ PairForce force_of(const Contacts& contacts, std::size_t pair, const SoftContact
     depths += std::max(0.0, static_cast<double>(contacts.contact(p).depth));
   }
   for (std::uint32_t m = first; m < last; ++m) {
-    const Vec normal{contacts.normal(0)[m], contacts.normal(1)[m], contacts.normal(2)[m]};
+    const Vec3d normal{contacts.normal(0)[m], contacts.normal(1)[m], contacts.normal(2)[m]};
     for (std::uint32_t p = point_first[m]; p < point_first[m + 1]; ++p) {
       const ContactPoint point = contacts.contact(p);
       if (point.depth <= 0.0F) continue;
@@ -78,7 +77,7 @@ PairForce force_of(const Contacts& contacts, std::size_t pair, const SoftContact
   return sum;
 }
 
-void add(FlowBodies::Column (&columns)[3], std::size_t i, const Vec& value) {
+void add(FlowBodies::Column (&columns)[3], std::size_t i, const Vec3d& value) {
   for (std::size_t axis = 0; axis < 3; ++axis) columns[axis][i] += value[axis];
 }
 
@@ -100,7 +99,7 @@ ContactSums apply_contacts(const Contacts& contacts, const SoftContacts& law, Fl
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const std::size_t a = contacts.data_a()[i];
     const std::size_t b = contacts.data_b()[i];
-    add(bodies.force, a, -1.0 * scratch[i].force);
+    add(bodies.force, a, -scratch[i].force);
     add(bodies.force, b, scratch[i].force);
     add(bodies.torque, a, scratch[i].torque_a);
     add(bodies.torque, b, scratch[i].torque_b);
