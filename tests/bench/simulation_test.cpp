@@ -9,6 +9,7 @@
 #include "tests/support/config.h"
 
 #include <gtest/gtest.h>
+#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <array>
