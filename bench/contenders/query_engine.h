@@ -1,6 +1,7 @@
 #pragma once
 
 #include <winnow/core/aabb.h>
+#include "bench/common/interface.h"
 #include "bench/scenes/query_set.h"
 
 #include <cstddef>
@@ -27,12 +28,8 @@ class QueryError : public std::runtime_error {
 ///
 /// An object is identified by its row, 0..N-1. All calls come from one thread, inside a
 /// `tbb::task_arena` of the thread count that the engine was made for.
-class QueryEngine {
+class QueryEngine : public Interface {
  public:
-  QueryEngine(const QueryEngine&) = delete;
-  QueryEngine& operator=(const QueryEngine&) = delete;
-  virtual ~QueryEngine() = default;
-
   /// A short constant name, e.g. "LinearBvh".
   [[nodiscard]] virtual std::string name() const = 0;
 
@@ -55,9 +52,6 @@ class QueryEngine {
   /// Runs the queries and returns the results. Not timed; single queries run on one thread.
   [[nodiscard]] virtual QueryResults answers(const QuerySet& set, QueryMode mode,
                                              std::size_t count) = 0;
-
- protected:
-  QueryEngine() = default;
 };
 
 }  // namespace winnow::bench

@@ -8,7 +8,6 @@
 #include "bench/common/address_range.h"
 #include "bench/common/arena.h"
 #include "bench/common/need.h"
-#include "bench/common/reused_memory.h"
 #include "bench/common/sample.h"
 #include "bench/contenders/partitions.h"
 #include "bench/measure/fingerprint.h"
@@ -117,6 +116,13 @@ struct FirstFrames {
   }
 };
 
+/// Memory that is handed out again after each frame. No allocation may be alive then.
+struct ReusedMemory {
+  AddressRange range;
+  std::pmr::monotonic_buffer_resource resource{range.begin(), range.bytes(),
+                                               std::pmr::null_memory_resource()};
+};
+
 void forget_frames(ColdRace& race) {
   for (ColdFrames& one : race.frames) {
     for (auto* times : {&one.insert_ms, &one.build_ms, &one.pairs_ms, &one.total_ms,
@@ -138,8 +144,8 @@ ColdRace race_cold_frames(std::span<const Aabb> boxes, const std::vector<std::st
     }
   }
   FirstFrames frames{boxes, threads};
-  ReusedMemory untouched(room_for(boxes.size()));
-  ReusedMemory prefaulted(room_for(boxes.size()));
+  ReusedMemory untouched{AddressRange(room_for(boxes.size()))};
+  ReusedMemory prefaulted{AddressRange(room_for(boxes.size()))};
   const std::unique_ptr<Engine> yardstick = with_yardstick ? make_yardstick(threads) : nullptr;
   std::vector<PairSummary> found;
   const auto run_all = [&] {
@@ -151,14 +157,15 @@ ColdRace race_cold_frames(std::span<const Aabb> boxes, const std::vector<std::st
     }
     for (ColdFrames& one : race.frames) {
       if (one.memory == kTouched) {
-        prefaulted.rewind();
-        found.push_back(frames.run(one, prefaulted));
+        prefaulted.resource.release();
+        found.push_back(frames.run(one, prefaulted.resource));
         continue;
       }
       const auto on_fresh_pages = [&](const auto& run) {
         if (one.memory == kUntouched) {
-          untouched.rewind_untouched();
-          found.push_back(run(untouched));
+          untouched.resource.release();
+          untouched.range.forget();
+          found.push_back(run(untouched.resource));
         } else {
           LargePages large;
           found.push_back(run(large));
