@@ -230,7 +230,7 @@ class Pipeline final : public RowsCommand {
   std::vector<std::string> scenes_{"pile", "terrain"};
   std::vector<std::string> levels_{"manifold"};
   bool costs_ = false;
-  PipelineMeasureOptions options_{.machine_clock = false};
+  PipelineMeasureOptions options_;
 };
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include "bench/scenes/meshes.h"
 
 #include <cstddef>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -32,5 +33,8 @@ class RayEngine : public Interface {
   /// For RayQueryType::any a hit has t = 0. Not timed.
   [[nodiscard]] virtual std::vector<double> hits() const = 0;
 };
+
+/// Returns winnow's SceneQueries on a scene of one fixed mesh.
+[[nodiscard]] std::unique_ptr<RayEngine> make_winnow_rays();
 
 }  // namespace winnow::bench

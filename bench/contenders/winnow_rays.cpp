@@ -1,9 +1,8 @@
-#include "bench/contenders/winnow_rays.h"
-
 #include <winnow/pipeline/composite_pool.h>
 #include <winnow/pipeline/scene.h>
 #include <winnow/pipeline/scene_queries.h>
 #include "bench/common/need.h"
+#include "bench/contenders/ray_engine.h"
 
 #include <limits>
 

@@ -5,7 +5,6 @@
 
 #include "bench/common/arena.h"
 #include "bench/common/sample.h"
-#include "bench/contenders/reference_sweep.h"
 #include "bench/peers/peers.h"
 
 #include <algorithm>
@@ -20,11 +19,6 @@ constexpr std::size_t kBalls = 100'000;
 constexpr std::size_t kTerrainBodies = 2'000;
 /// 200,978 triangles.
 constexpr std::uint32_t kTerrainCells = 317;
-constexpr int kTicks = 3;
-
-void tick(MachineClock& clock) {
-  for (int i = 0; i < kTicks; ++i) clock.tick();
-}
 
 double frame_ms(const SceneContender& contender, Arenas& arenas, std::span<const Pose> poses) {
   if (contender.threads == 1) {
@@ -100,12 +94,8 @@ PipelineMeasurement measure_pipeline(const PipelineMeasureOptions& options) {
       contenders.push_back({std::move(peer), 1});
     }
   }
-  MachineClock clock(options.machine_clock);
-  tick(clock);
   measured.timings =
       race_scene(*set, options.resting ? kResting : kMoving, contenders, options.frames);
-  tick(clock);
-  measured.machine_ms = clock.median_ms();
   return measured;
 }
 

@@ -7,7 +7,7 @@
 #include <winnow/pipeline/triangle_mesh.h>
 #include "bench/common/need.h"
 #include "bench/common/random.h"
-#include "bench/contenders/winnow_rays.h"
+#include "bench/contenders/ray_engine.h"
 #include "bench/contenders/winnow_scene.h"
 #include "bench/peers/peers.h"
 #include "bench/scenes/body_scenes.h"
