@@ -82,7 +82,9 @@ class GranularFlow {
   [[nodiscard]] const ShapePool& shapes() const noexcept { return shapes_; }
   [[nodiscard]] const Scene& scene() const noexcept { return scene_; }
   [[nodiscard]] ShapeId shape(std::size_t i) const noexcept { return shape_of_[i]; }
-  [[nodiscard]] Pose pose(std::size_t i) const noexcept { return bodies_.pose(i); }
+  [[nodiscard]] Pose pose(std::size_t i) const noexcept {
+    return poses_of(bodies_, objects_ + 1)[i];
+  }
   [[nodiscard]] const Triangles& mesh() const noexcept { return mesh_; }
   [[nodiscard]] Aabb box(std::size_t i) const noexcept {
     return shapes_.bounds(shape_of_[i], pose(i));
