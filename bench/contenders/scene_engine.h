@@ -1,7 +1,7 @@
 #pragma once
 
 #include "bench/common/interface.h"
-#include "bench/scenes/body_set.h"
+#include "bench/scenes/body_scenes.h"
 
 #include <cstddef>
 #include <cstdint>

@@ -94,14 +94,8 @@ class MovingHeap {
       : set_(make_heap(bodies, 1)),
         scene_(set_->pool, {.execution = execution_for(threads)}),
         ccd_(scene_),
-        keys_(bodies),
+        keys_(add_bodies(*set_, scene_)),
         bullets_(bodies) {
-    std::vector<BodyDefinition> definitions(bodies);
-    for (std::size_t i = 0; i < bodies; ++i) {
-      definitions[i].shape = set_->shapes[i];
-      definitions[i].pose = set_->poses[i];
-    }
-    need(scene_.add(definitions, keys_), "the bodies");
     // The kinds of shapes are consecutive in the heap: fast bodies are spread evenly over all of
     // them.
     for (std::size_t i = 0; i < fast; ++i) bullets_[i * bodies / fast] = 1;
