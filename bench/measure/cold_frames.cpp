@@ -3,12 +3,11 @@
 
 #include "bench/measure/cold_frames.h"
 
-#include <winnow/core/hooks.h>
 #include <winnow/core/large_pages.h>
 #include "bench/common/address_range.h"
 #include "bench/common/arena.h"
 #include "bench/common/need.h"
-#include "bench/common/sample.h"
+#include "bench/common/stage_clock.h"
 #include "bench/contenders/partitions.h"
 #include "bench/measure/fingerprint.h"
 #include "bench/peers/yardstick.h"
@@ -34,37 +33,17 @@ struct Parts {
   double found = 0.0;
 };
 
-/// Records when the structure of the current frame was built, by a hook. Calling `refresh` before
-/// would change the measurement: programs query pairs directly, and the structure built for other
-/// queries takes longer.
-class BuildEnd {
- public:
-  explicit BuildEnd(const Stopwatch& clock) : before_(set_stage_hook(note)) { clock_ = &clock; }
-  ~BuildEnd() { set_stage_hook(before_); }
-  BuildEnd(const BuildEnd&) = delete;
-  BuildEnd& operator=(const BuildEnd&) = delete;
-
-  [[nodiscard]] static double ms() { return ms_; }
-
- private:
-  static void note(WorkStage stage, bool begins) {
-    if (stage == WorkStage::refresh && !begins) ms_ = clock_->ms();
-  }
-
-  static inline thread_local const Stopwatch* clock_ = nullptr;
-  static inline thread_local double ms_ = 0.0;
-  StageHook before_;
-};
-
 Parts run_frame(std::span<const Aabb> boxes, Partition& partition, std::vector<Key>& keys,
                 PairBuffer& pairs, const Stopwatch& clock) {
-  const BuildEnd build(clock);
+  // Calling `refresh` before would change the measurement: programs query pairs directly, and the
+  // structure built for other queries takes longer.
+  const StageClock build(WorkStage::refresh);
   Parts parts;
   need(partition.insert(boxes, {}, keys), "objects");
   parts.inserted = clock.ms();
   need(partition.self_pairs(pairs), "pairs");
   parts.found = clock.ms();
-  parts.built = BuildEnd::ms();
+  parts.built = parts.inserted + build.ms();
   return parts;
 }
 

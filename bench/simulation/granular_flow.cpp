@@ -7,7 +7,7 @@
 #include "bench/common/exact_math.h"
 #include "bench/common/need.h"
 #include "bench/common/random.h"
-#include "bench/simulation/mid_phase_clock.h"
+#include "bench/common/stage_clock.h"
 
 #include <algorithm>
 #include <bit>
@@ -197,7 +197,7 @@ void GranularFlow::find_contacts(bool profiled) {
     need(scene_.collide(ContactLevel::pairs, found_pairs_), "pairs");
     times_.broad += searching.ms();
     // The scene keeps its pairs, so that finding them a second time costs almost nothing.
-    const MidPhaseClock mid_phase;
+    const StageClock mid_phase(WorkStage::mid_phase);
     const Stopwatch colliding;
     need(scene_.collide(ContactLevel::manifold, contacts_), "contacts");
     times_.mid = mid_phase.ms();
