@@ -2,8 +2,9 @@
 // (BulletSweep). Bullet's allocator is global, so the bytes of an engine are counted while it
 // works.
 
+#include "bench/contenders/engine.h"
 #include "bench/peers/adapter_tools.h"
-#include "bench/peers/adapters.h"
+#include "bench/peers/registry.h"
 
 #include <malloc.h>
 
@@ -74,7 +75,10 @@ btBroadphaseProxy* make_proxy(btBroadphaseInterface& broad_phase, std::size_t ro
 /// Common parts of both broad phases: one thread, proxies by row, and bytes.
 class BulletAdapter : public PairsAdapter {
  public:
-  BulletAdapter() { allocated_bytes = &bytes_; }
+  BulletAdapter() {
+    count_memory();
+    allocated_bytes = &bytes_;
+  }
   ~BulletAdapter() override { allocated_bytes = &nobodys_bytes; }
 
   [[nodiscard]] bool is_serial() const final { return true; }
@@ -278,16 +282,8 @@ class BulletSweep final : public BulletAdapter {
   std::size_t handles_ = 0;
 };
 
+const RegisteredPeer<Engine, BulletTrees> kBulletTrees;
+const RegisteredPeer<Engine, BulletSweep> kBulletSweep;
+
 }  // namespace
-
-std::unique_ptr<Engine> make_bullet() {
-  count_memory();
-  return std::make_unique<BulletTrees>();
-}
-
-std::unique_ptr<Engine> make_bullet_sweep() {
-  count_memory();
-  return std::make_unique<BulletSweep>();
-}
-
 }  // namespace winnow::bench

@@ -1,5 +1,6 @@
-#include "bench/peers/adapters.h"
+#include "bench/contenders/impact_engine.h"
 #include "bench/peers/bullet_shapes.h"
+#include "bench/peers/registry.h"
 
 #include <BulletCollision/NarrowPhaseCollision/btContinuousConvexCollision.h>
 #include <BulletCollision/NarrowPhaseCollision/btGjkEpaPenetrationDepthSolver.h>
@@ -85,14 +86,9 @@ class BulletImpacts final : public ImpactAdapter<BulletImpacts<Cast>> {
   std::vector<Body> bodies_;
 };
 
+const RegisteredPeer<ImpactEngine, BulletImpacts<btContinuousConvexCollision>>
+    kBulletImpactsContinuous;
+const RegisteredPeer<ImpactEngine, BulletImpacts<btSubsimplexConvexCast>> kBulletImpactsSubSimplex;
+
 }  // namespace
-
-std::unique_ptr<ImpactEngine> make_bullet_continuous() {
-  return std::make_unique<BulletImpacts<btContinuousConvexCollision>>();
-}
-
-std::unique_ptr<ImpactEngine> make_bullet_sub_simplex() {
-  return std::make_unique<BulletImpacts<btSubsimplexConvexCast>>();
-}
-
 }  // namespace winnow::bench

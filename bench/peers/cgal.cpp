@@ -1,5 +1,6 @@
+#include "bench/contenders/engine.h"
 #include "bench/peers/adapter_tools.h"
-#include "bench/peers/adapters.h"
+#include "bench/peers/registry.h"
 
 // CGAL compiles its parallel version only with this macro.
 #define CGAL_LINKED_WITH_TBB
@@ -139,10 +140,7 @@ class CgalEngine final : public PairsAdapter {
   double parallel_ms_ = 0.0;
 };
 
+const RegisteredPeer<Engine, CgalEngine> kCgalEngine;
+
 }  // namespace
-
-std::unique_ptr<Engine> make_cgal(int threads) {
-  return std::make_unique<CgalEngine>(threads);
-}
-
 }  // namespace winnow::bench

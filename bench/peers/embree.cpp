@@ -1,5 +1,6 @@
+#include "bench/contenders/engine.h"
 #include "bench/peers/adapter_tools.h"
-#include "bench/peers/adapters.h"
+#include "bench/peers/registry.h"
 
 #include <embree3/rtcore.h>
 #include <tbb/enumerable_thread_specific.h>
@@ -112,10 +113,7 @@ class EmbreeEngine final : public PairsAdapter {
   tbb::enumerable_thread_specific<std::vector<Pair>> found_;
 };
 
+const RegisteredPeer<Engine, EmbreeEngine> kEmbreeEngine;
+
 }  // namespace
-
-std::unique_ptr<Engine> make_embree() {
-  return std::make_unique<EmbreeEngine>();
-}
-
 }  // namespace winnow::bench

@@ -1,5 +1,6 @@
+#include "bench/contenders/engine.h"
 #include "bench/peers/adapter_tools.h"
-#include "bench/peers/adapters.h"
+#include "bench/peers/registry.h"
 
 #include <fcl/broadphase/broadphase_dynamic_AABB_tree.h>
 
@@ -131,10 +132,7 @@ class FclEngine final : public PairsAdapter {
   double best_search_ms_ = 0.0;
 };
 
+const RegisteredPeer<Engine, FclEngine> kFclEngine;
+
 }  // namespace
-
-std::unique_ptr<Engine> make_fcl() {
-  return std::make_unique<FclEngine>();
-}
-
 }  // namespace winnow::bench

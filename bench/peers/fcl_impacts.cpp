@@ -1,5 +1,6 @@
-#include "bench/peers/adapters.h"
+#include "bench/contenders/impact_engine.h"
 #include "bench/peers/fcl_shapes.h"
+#include "bench/peers/registry.h"
 
 #include <fcl/narrowphase/continuous_collision.h>
 
@@ -66,10 +67,7 @@ class FclImpacts final : public ImpactAdapter<FclImpacts> {
   std::vector<Body> bodies_;
 };
 
+const RegisteredPeer<ImpactEngine, FclImpacts> kFclImpacts;
+
 }  // namespace
-
-std::unique_ptr<ImpactEngine> make_fcl_impacts() {
-  return std::make_unique<FclImpacts>();
-}
-
 }  // namespace winnow::bench

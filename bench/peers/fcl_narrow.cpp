@@ -1,9 +1,10 @@
 // Adapter of FCL's narrow phase: calls its solver's functions for each pair of kinds and level, and
-// converts the results. peers.cpp makes it through adapters.h.
+// converts the results. It registers itself in registry.h.
 
-#include "bench/peers/adapters.h"
+#include "bench/contenders/narrow_engine.h"
 #include "bench/peers/fcl_shapes.h"
 #include "bench/peers/narrow_adapter.h"
+#include "bench/peers/registry.h"
 
 #include <fcl/narrowphase/detail/gjk_solver_indep.h>
 #include <fcl/narrowphase/detail/gjk_solver_libccd.h>
@@ -306,14 +307,9 @@ class FclNarrow final : public NarrowAdapter<FclNarrow<Solver>> {
   Contacts* no_contacts_ = nullptr;
 };
 
+const RegisteredPeer<NarrowEngine, FclNarrow<fcl::detail::GJKSolver_libccd<double>>>
+    kFclNarrowLibccd;
+const RegisteredPeer<NarrowEngine, FclNarrow<fcl::detail::GJKSolver_indep<double>>> kFclNarrowIndep;
+
 }  // namespace
-
-std::unique_ptr<NarrowEngine> make_fcl_libccd() {
-  return std::make_unique<FclNarrow<fcl::detail::GJKSolver_libccd<double>>>();
-}
-
-std::unique_ptr<NarrowEngine> make_fcl_indep() {
-  return std::make_unique<FclNarrow<fcl::detail::GJKSolver_indep<double>>>();
-}
-
 }  // namespace winnow::bench

@@ -1,8 +1,9 @@
 // Adapter of libccd: support functions for winnow's shapes, and its GJK with EPA and its MPR on
-// them. peers.cpp makes it through adapters.h.
+// them. It registers itself in registry.h.
 
-#include "bench/peers/adapters.h"
+#include "bench/contenders/narrow_engine.h"
 #include "bench/peers/narrow_adapter.h"
+#include "bench/peers/registry.h"
 #include "bench/scenes/lens.h"
 
 #include <ccd/ccd.h>
@@ -265,14 +266,8 @@ class LibccdNarrow final : public NarrowAdapter<LibccdNarrow> {
   std::vector<double> corners_;  // by triangle, columns of coordinates
 };
 
+const RegisteredPeer<NarrowEngine, LibccdNarrow, false> kLibccdNarrowGjk;
+const RegisteredPeer<NarrowEngine, LibccdNarrow, true> kLibccdNarrowMpr;
+
 }  // namespace
-
-std::unique_ptr<NarrowEngine> make_libccd_gjk() {
-  return std::make_unique<LibccdNarrow>(false);
-}
-
-std::unique_ptr<NarrowEngine> make_libccd_mpr() {
-  return std::make_unique<LibccdNarrow>(true);
-}
-
 }  // namespace winnow::bench

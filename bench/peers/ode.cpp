@@ -1,7 +1,8 @@
-// Adapter of ODE's sweep-and-prune space as a broad phase. peers.cpp makes it through adapters.h.
+// Adapter of ODE's sweep-and-prune space as a broad phase; it registers itself in registry.h.
 
+#include "bench/contenders/engine.h"
 #include "bench/peers/adapter_tools.h"
-#include "bench/peers/adapters.h"
+#include "bench/peers/registry.h"
 
 #include <ode/ode.h>
 
@@ -148,10 +149,7 @@ class OdeEngine final : public PairsAdapter {
   std::span<const Aabb> boxes_;
 };
 
+const RegisteredPeer<Engine, OdeEngine> kOdeEngine;
+
 }  // namespace
-
-std::unique_ptr<Engine> make_ode() {
-  return std::make_unique<OdeEngine>();
-}
-
 }  // namespace winnow::bench
