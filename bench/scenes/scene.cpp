@@ -194,19 +194,20 @@ MovingBodies jitter(std::size_t objects, std::uint64_t seed) {
   constexpr double kStep = 2.0 / 2001.0;
   constexpr double kJitter = 1e-5;
   Bodies start = uniform(objects, seed);
-  std::vector<Vec3d> homes;
+  std::vector<Vec3d> rest_positions;
   for (Body& body : start.all) {
     for (int axis = 0; axis < 3; ++axis) {
       body.centre[axis] = kStep * std::floor(body.centre[axis] / kStep);
     }
-    homes.push_back(body.centre);
+    rest_positions.push_back(body.centre);
   }
   start.walls.low -= Vec3d::constant(kStep);  // room for the jitter
-  return {std::move(start), [homes = std::move(homes)](Bodies& bodies) {
-            for (std::size_t i = 0; i < homes.size(); ++i) {
+  return {std::move(start), [rest_positions = std::move(rest_positions)](Bodies& bodies) {
+            for (std::size_t i = 0; i < rest_positions.size(); ++i) {
               if (i % 100 == 99) continue;
               for (int axis = 0; axis < 3; ++axis) {
-                bodies.all[i].centre[axis] = homes[i][axis] + bodies.random.in(-kJitter, kJitter);
+                bodies.all[i].centre[axis] =
+                    rest_positions[i][axis] + bodies.random.in(-kJitter, kJitter);
               }
             }
           }};
@@ -244,11 +245,11 @@ MovingBodies pile(std::size_t objects, std::uint64_t seed) {
   std::vector<Walls> around(objects);
   for (std::size_t i = 1; i < objects; ++i) {
     const std::size_t cell = (i - 1) / kLayers;
-    const Vec3d home(static_cast<double>(cell % across), static_cast<double>(cell / across),
-                     0.5 + static_cast<double>((i - 1) % kLayers));
-    around[i] = {home - Vec3d::constant(kJitter), home + Vec3d::constant(kJitter)};
+    const Vec3d resting(static_cast<double>(cell % across), static_cast<double>(cell / across),
+                        0.5 + static_cast<double>((i - 1) % kLayers));
+    around[i] = {resting - Vec3d::constant(kJitter), resting + Vec3d::constant(kJitter)};
     for (int axis = 0; axis < 3; ++axis) {
-      bodies[i].centre[axis] = home[axis] + random.in(-kJitter, kJitter);
+      bodies[i].centre[axis] = resting[axis] + random.in(-kJitter, kJitter);
     }
     bodies[i].velocity = draw_velocity(random, 1.0);
   }
