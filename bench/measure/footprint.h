@@ -11,18 +11,16 @@ namespace winnow::bench {
 
 /// A member of Footprint, which counts the bytes allocated for one purpose.
 struct Purpose {
-  const char* name;   ///< in JSON
-  const char* label;  ///< in tables
+  const char* name;  ///< in JSON
   Bytes Footprint::*bytes;
 };
 
-inline constexpr std::array<Purpose, 6> kPurposes{
-    {{"bounds", "bounds", &Footprint::bounds},
-     {"keys", "keys", &Footprint::keys},
-     {"client_data", "client data", &Footprint::client_data},
-     {"structure", "structure", &Footprint::structure},
-     {"scratch", "scratch", &Footprint::scratch},
-     {"results", "results", &Footprint::results}}};
+inline constexpr std::array<Purpose, 6> kPurposes{{{"bounds", &Footprint::bounds},
+                                                   {"keys", &Footprint::keys},
+                                                   {"client_data", &Footprint::client_data},
+                                                   {"structure", &Footprint::structure},
+                                                   {"scratch", &Footprint::scratch},
+                                                   {"results", &Footprint::results}}};
 
 inline constexpr std::size_t kFootprintFrames = 5;
 
