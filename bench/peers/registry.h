@@ -22,13 +22,14 @@ std::vector<MakePeer<Engine>>& registered_peers() {
 template <typename Engine, typename Adapter, auto... arguments>
 struct RegisteredPeer {
   RegisteredPeer() {
-    registered_peers<Engine>().push_back([](int threads) -> std::unique_ptr<Engine> {
-      if constexpr (sizeof...(arguments) == 0 && std::is_constructible_v<Adapter, int>) {
-        return std::make_unique<Adapter>(threads);
-      } else {
-        return std::make_unique<Adapter>(arguments...);
-      }
-    });
+    registered_peers<Engine>().push_back(
+        []([[maybe_unused]] int threads) -> std::unique_ptr<Engine> {
+          if constexpr (sizeof...(arguments) == 0 && std::is_constructible_v<Adapter, int>) {
+            return std::make_unique<Adapter>(threads);
+          } else {
+            return std::make_unique<Adapter>(arguments...);
+          }
+        });
   }
 };
 

@@ -257,7 +257,7 @@ MovingBodies pile(std::size_t objects, std::uint64_t seed) {
   // The undersides of the lowest cubes are within the jitter of z = 0; the ground's top at kJitter
   // touches each of them.
   const auto edge = static_cast<float>(side + 1.0);
-  start.ground = {{-1.0F, -1.0F, -1.0F}, {edge, edge, static_cast<float>(kJitter)}};
+  start.ground = Aabb{{-1.0F, -1.0F, -1.0F}, {edge, edge, static_cast<float>(kJitter)}};
   return {std::move(start), [around = std::move(around)](Bodies& moving) {
             for (std::size_t i = 1; i < around.size(); ++i) drift(moving.all[i], around[i]);
           }};
