@@ -21,10 +21,10 @@ constexpr float kBoxEdges = 4.0F;
 
 /// "1 % apart": pairs within a random 1 % of the objects are excluded. "mixed": two random layers,
 /// no pairs excluded. "static": pairs within a random nine tenths of the objects are excluded.
-/// "never, mixed" and "never, apart": two layers with pairs only within each, assigned at random or
+/// "never mixed" and "never apart": two layers with pairs only within each, assigned at random or
 /// by position. "none": no filters, for comparison.
-constexpr std::array<std::string_view, 6> kSettings{"1 % apart",    "mixed",        "static",
-                                                    "never, mixed", "never, apart", "none"};
+constexpr std::array<std::string_view, 6> kSettings{"1 % apart",   "mixed",       "static",
+                                                    "never mixed", "never apart", "none"};
 /// "all move" and "few move" find all pairs after all or few boxes changed; "another" finds pairs
 /// with a second partition; "rays" finds closest hits; "boxes" finds objects that overlap boxes.
 constexpr std::array<std::string_view, 5> kQuestions{"all move", "few move", "another", "rays",
@@ -285,9 +285,9 @@ void add_filters(const std::vector<NamedScene>& scenes) {
     for (std::size_t question = 0; question < kQuestions.size(); ++question) {
       for (std::size_t setting = 0; setting < kSettings.size(); ++setting) {
         for (const std::string& structure : unlimited_partitions()) {
-          const std::string path = "filter/" + path_of(kQuestions[question]) + "/" +
-                                   path_of(kSettings[setting]) + "/" + path_of(scene.name) +
-                                   "/objects:" + std::to_string(objects) + "/" + path_of(structure);
+          const std::string path = "filter/" + word_of(kQuestions[question]) + "/" +
+                                   word_of(kSettings[setting]) + "/" + word_of(scene.name) +
+                                   "/objects:" + std::to_string(objects) + "/" + word_of(structure);
           add(path, [=](benchmark::State& state) {
             auto& following = prepared<Following>(path, [&] {
               return std::make_unique<Following>(scene, objects, structure, question, setting);

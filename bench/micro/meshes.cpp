@@ -292,7 +292,7 @@ void add_meshes() {
       const auto peers = make_ray_peers();
       for (std::size_t i = 0; i < peers.size(); ++i) {
         add_rays(
-            mesh, path_of(peers[i]->name()), [i] { return std::move(make_ray_peers()[i]); }, true);
+            mesh, word_of(peers[i]->name()), [i] { return std::move(make_ray_peers()[i]); }, true);
       }
       add_builds(mesh);
     }
@@ -300,7 +300,7 @@ void add_meshes() {
   add_tori("winnow", make_winnow_mesh);
   const auto peers = make_mesh_peers();
   for (std::size_t i = 0; i < peers.size(); ++i) {
-    add_tori(path_of(peers[i]->name()), [i] { return std::move(make_mesh_peers()[i]); });
+    add_tori(word_of(peers[i]->name()), [i] { return std::move(make_mesh_peers()[i]); });
   }
 }
 

@@ -35,7 +35,7 @@ using MakeImpacts = std::function<std::unique_ptr<ImpactEngine>()>;
 
 void add_impacts(const PairKind& kind, PairTurn turn, const std::string& name,
                  const MakeImpacts& make, bool is_winnow) {
-  const std::string path = "toi/" + std::string(kind.name) + "/turn:" + path_of(to_text(turn));
+  const std::string path = "toi/" + std::string(kind.name) + "/turn:" + word_of(to_text(turn));
   add(path + "/" + name, [=](benchmark::State& state) {
     auto& motions =
         prepared<JudgedMotions>(path, [&] { return std::make_unique<JudgedMotions>(kind, turn); });
@@ -60,7 +60,7 @@ void add_impacts(const PairKind& kind, PairTurn turn, const std::string& name,
 }
 
 void add_features(FeaturePair kind, FeatureSteps steps) {
-  const std::string path = "feature/" + std::string(to_text(kind)) + "/" + path_of(to_text(steps));
+  const std::string path = "feature/" + std::string(to_text(kind)) + "/" + word_of(to_text(steps));
   add(path, [=](benchmark::State& state) {
     const auto& set = prepared<const FeatureStepSet>(path, [&] {
       return std::make_unique<const FeatureStepSet>(make_feature_steps(kind, steps, kFeatures, 1));
@@ -183,7 +183,7 @@ void add_motion() {
       for (std::size_t i = 0; i < peers.size(); ++i) {
         if (!peers[i]->takes(kind, turn)) continue;
         add_impacts(
-            kind, turn, path_of(peers[i]->name()),
+            kind, turn, word_of(peers[i]->name()),
             [i] { return std::move(make_impact_peers()[i]); }, false);
       }
     }

@@ -42,7 +42,7 @@ void each_peer(const PairKind& kind, ContactLevel level, Visit&& visit) {
   const auto peers = make_narrow_peers();
   for (std::size_t i = 0; i < peers.size(); ++i) {
     if (!peers[i]->takes(kind, level)) continue;
-    visit(path_of(peers[i]->name()), [i] { return std::move(make_narrow_peers()[i]); });
+    visit(word_of(peers[i]->name()), [i] { return std::move(make_narrow_peers()[i]); });
   }
 }
 

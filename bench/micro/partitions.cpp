@@ -37,7 +37,7 @@ struct Where {
   std::size_t objects = 0;
 
   [[nodiscard]] std::string path() const {
-    return path_of(scene.name) + "/objects:" + std::to_string(objects);
+    return word_of(scene.name) + "/objects:" + std::to_string(objects);
   }
 };
 
@@ -100,7 +100,7 @@ struct QueryBenchmark {
   bool is_peer = false;  ///< computes in float; its results are counted but not required
 
   [[nodiscard]] std::string path() const {
-    return "partition/" + path_of(engine) + "/" + kQueries[set] +
+    return "partition/" + word_of(engine) + "/" + kQueries[set] +
            (mode == QueryMode::batch ? "/batch/" : "/") + where.path() +
            (threads > 1 ? "/threads:" + std::to_string(threads) : "");
   }
@@ -175,7 +175,7 @@ struct Alternating {
 };
 
 void add_build(const std::string& structure, const Where& where) {
-  add("partition/" + path_of(structure) + "/build/" + where.path(), [=](benchmark::State& state) {
+  add("partition/" + word_of(structure) + "/build/" + where.path(), [=](benchmark::State& state) {
     const Input& input = input_of(where);
     std::vector<Key> keys(input.boxes().size());
     Partition partition(StructureKind{});
@@ -197,7 +197,7 @@ void add_build(const std::string& structure, const Where& where) {
 /// Registers a call after all objects moved.
 void add_call(const std::string& name, const std::string& structure, const Where& where,
               const std::function<void(Alternating&)>& call) {
-  add("partition/" + path_of(structure) + "/" + name + "/" + where.path(),
+  add("partition/" + word_of(structure) + "/" + name + "/" + where.path(),
       [=](benchmark::State& state) {
         auto& moving = prepared<Alternating>("moving " + structure + " " + where.path(), [&] {
           return std::make_unique<Alternating>(structure, where);
@@ -340,7 +340,7 @@ class KeyRounds {
 void add_key_operation(std::size_t operation, bool bulk, bool random_order, std::size_t objects,
                        const std::string& structure) {
   const std::string of_keys = std::string(random_order ? "/random" : "/insertion") +
-                              "/objects:" + std::to_string(objects) + "/" + path_of(structure);
+                              "/objects:" + std::to_string(objects) + "/" + word_of(structure);
   add("keys/" + std::string(KeyRounds::kOperations[operation]) + (bulk ? "/bulk" : "/single") +
           of_keys,
       [=](benchmark::State& state) {
