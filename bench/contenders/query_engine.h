@@ -8,19 +8,12 @@
 #include <cstdint>
 #include <limits>
 #include <span>
-#include <stdexcept>
 #include <string>
 
 namespace winnow::bench {
 
 /// Queries are run by one call each, or by one call for many.
 enum class QueryMode { single, batch };
-
-/// Thrown by an engine that fails at queries that it supports; the text is the reason.
-class QueryError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
 
 /// Base of everything that runs queries on boxes: winnow's partitions and other libraries. The
 /// harness times `run` from outside. All work that a user pays for (sorting hits, removing
