@@ -11,6 +11,7 @@
 #include <BulletCollision/BroadphaseCollision/btAxisSweep3.h>
 #include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
 #include <LinearMath/btAlignedAllocator.h>
+#include <Eigen/Core>
 
 #include <algorithm>
 #include <atomic>
