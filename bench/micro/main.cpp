@@ -28,10 +28,6 @@ benchmark::internal::Benchmark* add(const std::string& name, int threads, Body b
   return threads == 1 ? added : added->UseRealTime();
 }
 
-std::string word_of(double value) {
-  return key_text(Json(value));
-}
-
 void check(bool right, const std::string& text) {
   if (!right) throw std::runtime_error(text);
 }

@@ -41,9 +41,6 @@ benchmark::internal::Benchmark* add(const std::string& name, Body body);
 /// Registers a benchmark that several threads of oneTBB run; it is timed by the wall clock.
 benchmark::internal::Benchmark* add(const std::string& name, int threads, Body body);
 
-/// Returns a number as short as possible.
-[[nodiscard]] std::string path_of(double value);
-
 /// Throws std::runtime_error with the text unless `right`.
 void check(bool right, const std::string& text);
 

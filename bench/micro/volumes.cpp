@@ -181,7 +181,7 @@ class VolumeFrames {
 
 void add_volume(const VolumeSetting& setting, std::size_t objects, const std::string& structure,
                 const VolumeKind& kind) {
-  const std::string path = "volume/" + setting.name + "/step:" + path_of(setting.step) +
+  const std::string path = "volume/" + setting.name + "/step:" + key_text(setting.step) +
                            "/objects:" + std::to_string(objects) + "/" + word_of(structure) + "/" +
                            kind.name;
   add(path, [=](benchmark::State& state) {
