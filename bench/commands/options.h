@@ -32,7 +32,16 @@ CLI::Option* option(CLI::App& app, const char* name, T& value, const std::string
 template <typename T>
 CLI::Option* number(CLI::App& app, const char* name, T& value, double least, double most,
                     const std::string& what) {
-  return option(app, name, value, what)->check(CLI::Range(least, most));
+  const auto one = [] {
+    if constexpr (requires { typename T::value_type; }) {
+      return typename T::value_type{};
+    } else {
+      return T{};
+    }
+  };
+  using Each = decltype(one());
+  return option(app, name, value, what)
+      ->check(CLI::Range(static_cast<Each>(least), static_cast<Each>(most)));
 }
 
 /// Adds an option whose text, or each text of a list, is one of `names`.
