@@ -149,11 +149,8 @@ void ClusterCommand::start_ranks() const {
   std::string word;
   std::getline(own, word, '\0');  // the name of this program
   while (std::getline(own, word, '\0')) words.push_back(word);
-  std::vector<char*> arguments;
-  for (std::string& one : words) arguments.push_back(one.data());
-  arguments.push_back(nullptr);
   std::cout.flush();
-  execvp("mpirun", arguments.data());
+  become(words);
   throw ArgumentError("mpirun cannot be started (Debian: openmpi-bin)");
 }
 

@@ -2,10 +2,13 @@
 
 #include "bench/common/errors.h"
 
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
 #include <memory>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace winnow::bench {
 
@@ -26,6 +29,14 @@ void command(CLI::App& app, const char* name, const char* what, const std::strin
   sub->callback([subcommand] {
     if (const int status = subcommand->run(); status != kDone) throw CLI::RuntimeError(status);
   });
+}
+
+/// Replaces this process by another program; returns only if that fails.
+inline void become(std::vector<std::string> words) {
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  execvp(arguments.front(), arguments.data());
 }
 
 // Each of these is defined in a file of its own, named after the command.

@@ -7,15 +7,10 @@
 #include <algorithm>
 #include <cstdlib>
 #include <iostream>
-#include <numeric>
 #include <string>
-#include <string_view>
-#include <vector>
 
 namespace winnow::bench {
 namespace {
-
-constexpr const char* kDev = "dev";
 
 /// Throws ArgumentError if WINNOW_ISA names no available instruction set. The library itself would
 /// fall back to the widest one without an error.
@@ -26,58 +21,6 @@ void check_isa_of_environment() {
   throw ArgumentError(
       std::string("WINNOW_ISA=") + name +
       " is not available in this build or on this machine; available: " + listed(names));
-}
-
-/// Returns the number of insertions, deletions, replacements and swaps of neighbours that change
-/// one word into the other.
-std::size_t edit_distance(std::string_view from, std::string_view to) {
-  std::vector<std::size_t> before(to.size() + 1);
-  std::vector<std::size_t> row(to.size() + 1);
-  std::vector<std::size_t> next(to.size() + 1);
-  std::iota(row.begin(), row.end(), 0);
-  for (std::size_t i = 1; i <= from.size(); ++i) {
-    next[0] = i;
-    for (std::size_t k = 1; k <= to.size(); ++k) {
-      const bool same = from[i - 1] == to[k - 1];
-      next[k] = std::min({row[k] + 1, next[k - 1] + 1, row[k - 1] + (same ? 0 : 1)});
-      const bool swapped = i > 1 && k > 1 && from[i - 1] == to[k - 2] && from[i - 2] == to[k - 1];
-      if (swapped) next[k] = std::min(next[k], before[k - 2] + 1);
-    }
-    before.swap(row);
-    row.swap(next);
-  }
-  return row.back();
-}
-
-/// Returns the nearest command as a user writes it, for example "dev goals"; "" if none is similar.
-std::string nearest_command(const CLI::App& app, const std::string& given) {
-  std::string nearest;
-  std::size_t least = (given.size() + 2) / 3 + 1;
-  const auto consider = [&](const CLI::App& group, const std::string& before) {
-    for (const CLI::App* const one : group.get_subcommands([](const CLI::App*) { return true; })) {
-      const std::size_t distance = edit_distance(given, one->get_name());
-      if (distance >= least) continue;
-      least = distance;
-      nearest = before + one->get_name();
-    }
-  };
-  consider(app, "");
-  consider(*app.get_subcommand(kDev), std::string(kDev) + " ");
-  return nearest;
-}
-
-/// Throws ArgumentError if a word precedes the command, or is in place of it.
-void refuse_unknown_commands(const CLI::App& app) {
-  const CLI::App& dev = *app.get_subcommand(kDev);
-  for (const CLI::App* const group : {&app, &dev}) {
-    const std::vector<std::string> words = group->remaining();
-    if (words.empty() || words.front().starts_with('-')) continue;
-    const std::string before = group == &dev ? std::string(kDev) + " " : "";
-    const std::string nearest = nearest_command(app, words.front());
-    throw ArgumentError("no command '" + before + words.front() + "'. " +
-                        (nearest.empty() ? "`winnow " + before + "--help` lists all."
-                                         : "Did you mean '" + nearest + "'?"));
-  }
 }
 
 void add_commands(CLI::App& app) {
@@ -91,7 +34,7 @@ void add_commands(CLI::App& app) {
   add_cluster(app);
   add_micro(app);
   add_scenes(app);
-  CLI::App& dev = *app.add_subcommand(kDev,
+  CLI::App& dev = *app.add_subcommand("dev",
                                       "Measures single parts, and checks winnow and its "
                                       "documents: `winnow dev --help` lists the commands");
   add_fit(dev);
@@ -117,7 +60,6 @@ int run_tool(int argc, char** argv) {
   } catch (const CLI::RuntimeError& status) {
     return status.get_exit_code();
   } catch (const CLI::ParseError& error) {
-    refuse_unknown_commands(app);
     return app.exit(error) == kDone ? kDone : kBadArgument;
   }
   return kDone;

@@ -5,7 +5,7 @@
 #include "bench/commands/rows_command.h"
 #include "bench/common/table.h"
 #include "bench/contenders/partitions.h"
-#include "bench/measure/resident_set.h"
+#include "bench/measure/footprint.h"
 #include "bench/rows/machine.h"
 #include "bench/rows/rows.h"
 #include "bench/scenes/scene.h"
@@ -226,7 +226,7 @@ class Pipeline final : public RowsCommand {
   std::vector<std::string> scenes_{"pile", "terrain"};
   std::vector<std::string> levels_{"manifold"};
   bool costs_ = false;
-  PipelineMeasureOptions options_{.machine_clock = false};
+  PipelineMeasureOptions options_;
 };
 
 }  // namespace

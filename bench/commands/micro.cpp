@@ -1,7 +1,5 @@
 #include "bench/commands/command.h"
 
-#include <unistd.h>
-
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -15,10 +13,7 @@ namespace {
   const std::filesystem::path folder =
       std::filesystem::read_symlink("/proc/self/exe").parent_path();
   words.insert(words.begin(), (folder / "winnow_micro").string());
-  std::vector<char*> arguments;
-  for (std::string& word : words) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
-  execv(words.front().c_str(), arguments.data());
+  become(words);
   if (errno == ENOENT) {
     throw ArgumentError(words.front() +
                         " is not built. Build it with: bench/run micro, or cmake --build " +

@@ -15,26 +15,15 @@ namespace winnow::bench {
 // Options that several subcommands share, so that names and help texts agree.
 
 template <typename T>
-struct OptionValue {
-  static constexpr bool is_list = false;
-  using Each = T;
-};
+inline constexpr bool kIsList = false;
 template <typename T>
-struct OptionValue<std::vector<T>> {
-  static constexpr bool is_list = true;
-  using Each = T;
-};
-template <typename T>
-struct OptionValue<std::optional<T>> {
-  static constexpr bool is_list = false;
-  using Each = T;
-};
+inline constexpr bool kIsList<std::vector<T>> = true;
 
 /// Adds an option and shows its default if it has one. A list is comma-separated or repeated.
 template <typename T>
 CLI::Option* option(CLI::App& app, const char* name, T& value, const std::string& what) {
   CLI::Option* added = app.add_option(name, value, what);
-  if constexpr (OptionValue<T>::is_list) added->delimiter(',');
+  if constexpr (kIsList<T>) added->delimiter(',');
   if (!(value == T{})) added->capture_default_str();
   return added;
 }
@@ -43,7 +32,14 @@ CLI::Option* option(CLI::App& app, const char* name, T& value, const std::string
 template <typename T>
 CLI::Option* number(CLI::App& app, const char* name, T& value, double least, double most,
                     const std::string& what) {
-  using Each = typename OptionValue<T>::Each;
+  const auto one = [] {
+    if constexpr (requires { typename T::value_type; }) {
+      return typename T::value_type{};
+    } else {
+      return T{};
+    }
+  };
+  using Each = decltype(one());
   return option(app, name, value, what)
       ->check(CLI::Range(static_cast<Each>(least), static_cast<Each>(most)));
 }

@@ -7,7 +7,6 @@
 #include "bench/commands/rows_command.h"
 #include "bench/common/arena.h"
 #include "bench/common/table.h"
-#include "bench/measure/fingerprint.h"
 #include "bench/pages/page.h"
 #include "bench/recordings/recording.h"
 #include "bench/rows/machine.h"
@@ -16,7 +15,6 @@
 
 #include <algorithm>
 #include <iostream>
-#include <utility>
 #include <vector>
 
 namespace winnow::bench {
@@ -30,9 +28,6 @@ constexpr double kMaxRise = 1e-3;
 
 /// Selects every structure or barrier.
 constexpr const char* kAll = "all";
-
-/// Facts about a run to print: name and value.
-using FlowFacts = std::vector<std::pair<std::string, std::string>>;
 
 /// Runs steps and announces some of them.
 class AnnouncedSteps {
@@ -97,7 +92,6 @@ class Simulate final : public RowsCommand {
   void measure() override;
   void measure_standing();
   void measure_barriers();
-  [[nodiscard]] FlowFacts facts(const FlowRun& run) const;
 
   FlowRowOptions options_{.objects = 10'000, .steps = 2'000, .threads = usual_threads().back()};
   std::string mesh_;
@@ -136,39 +130,6 @@ void Simulate::add_options(CLI::App& app) {
   add_threads_option(app, options_.threads);
   add_seed_option(app, options_.seed);
   add_rows_options(app);
-}
-
-FlowFacts Simulate::facts(const FlowRun& run) const {
-  const GranularFlow& flow = run.flow();
-  const FlowSample& last = run.history().samples().back();
-  FlowFacts facts{
-      {"objects", grouped(flow.objects()) + " " + options_.shape},
-      {"mesh",
-       (mesh_.empty() ? "funnel" : mesh_) + ", " + grouped(flow.mesh().size()) + " triangles"},
-      {"steps", grouped(flow.steps()) + ", " + short_number(flow.time()) + " s"},
-      {"put back at the top", grouped(flow.returned())},
-      {"contacts in the last step",
-       grouped(last.contacts) + " pairs, " + grouped(last.points) + " points"},
-      {"energy in the last step", short_number(last.energy.kinetic) + " kinetic, " +
-                                      short_number(last.energy.potential) + " potential, " +
-                                      short_number(last.energy.elastic) + " in contacts"},
-      {"greatest rise of the energy",
-       short_number(100.0 * run.history().greatest_rise()) + " % of the greatest kinetic energy"},
-      {"greatest penetration", short_number(run.history().deepest())},
-      {"bytes", grouped(run.bytes())},
-      {"allocations after " + grouped(run.warm_up()) + " steps",
-       grouped(run.allocations()) + ", " + grouped(run.steady_allocations()) +
-           " in steps with no more contacts than in an earlier step"}};
-  if (options_.check != 0) {
-    const FlowFaults& faults = run.faults();
-    facts.emplace_back("checked by brute force",
-                       grouped(run.checks()) + " steps, " + grouped(faults.compared) +
-                           " contacts: " + grouped(faults.lost) + " lost, " +
-                           grouped(faults.invented) + " invented, " + grouped(faults.doubled) +
-                           " doubled");
-  }
-  facts.emplace_back("fingerprint", to_hex(flow.fingerprint()));
-  return facts;
 }
 
 // Measures each structure twice: with the manifolds of all parts, and with one manifold per region.
@@ -234,9 +195,7 @@ void Simulate::measure() {
               << "; medians of the profiled steps in the second half\n";
     options_.steps = run.flow().steps();
     add_flow(results, options_, run);
-    print("phases");
-    const FlowFacts all = facts(run);
-    for (const auto& [what, much] : all) std::cout << what << ": " << much << '\n';
+    for (const char* table : {"phases", "flows", "flow_checks"}) print(table);
     if (!out_.empty()) {
       results.context() = machine_facts();
       write_page(out_, kResultsPage, results.document());

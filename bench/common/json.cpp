@@ -2,43 +2,25 @@
 
 #include "bench/common/errors.h"
 
-#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
-#include <sstream>
 
 namespace winnow::bench {
-namespace {
-
-/// Returns the deepest nesting of lists and objects. The text need not be valid JSON.
-std::size_t depth_of(const std::string& text) {
-  std::size_t depth = 0;
-  std::size_t deepest = 0;
-  bool in_string = false;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const char c = text[i];
-    if (in_string && c == '\\') ++i;
-    if (c == '"') in_string = !in_string;
-    if (in_string) continue;
-    if (c == '[' || c == '{') deepest = std::max(deepest, ++depth);
-    if ((c == ']' || c == '}') && depth > 0) --depth;
-  }
-  return deepest;
-}
-
-}  // namespace
 
 Json read_json(const std::string& path) {
   std::ifstream file(path);
-  std::ostringstream text;
-  if (!file || !(text << file.rdbuf())) throw ArgumentError(path + ": it cannot be read");
-  if (const std::size_t depth = depth_of(text.str()); depth > kDeepestJson) {
-    throw ArgumentError(path + ": nested " + std::to_string(depth) + " deep, and no more than " +
-                        std::to_string(kDeepestJson) + " are read");
+  if (!file || file.peek() == std::ifstream::traits_type::eof()) {
+    throw ArgumentError(path + ": it cannot be read");
   }
+  const auto check_depth = [&](int depth, Json::parse_event_t event, const Json&) {
+    using enum Json::parse_event_t;
+    const bool opens = event == array_start || event == object_start;
+    if (!opens || depth < static_cast<int>(kDeepestJson)) return true;
+    throw ArgumentError(path + ": nested deeper than " + std::to_string(kDeepestJson));
+  };
   try {
-    return Json::parse(text.str());
+    return Json::parse(file, check_depth);
   } catch (const Json::exception& error) {
     // Skips the error number with which the library begins its message.
     const std::string what = error.what();

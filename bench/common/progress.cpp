@@ -7,19 +7,10 @@
 
 namespace winnow::bench {
 
-void Progress::step(const std::string& what, double seconds) {
-  const double gone = clock_.ms() / 1000.0;
-  char left[32] = "";
-  if (expected_ > 0.0) {
-    // Scales the estimate: this machine may be slower than the one that the seconds were measured
-    // on.
-    const double pace = begun_ > 0.1 * expected_ ? gone / begun_ : 1.0;
-    std::snprintf(left, sizeof left, ", %.0f s left", std::max(0.0, expected_ - begun_) * pace);
-  }
-  begun_ += seconds;
+void Progress::step(const std::string& what) {
   char text[256];
-  std::snprintf(text, sizeof text, "[%zu/%zu, %.0f s%s] %s", done_ + 1, std::max(steps_, done_ + 1),
-                gone, left, what.c_str());
+  std::snprintf(text, sizeof text, "[%zu/%zu, %.0f s] %s", done_ + 1, std::max(steps_, done_ + 1),
+                clock_.ms() / 1000.0, what.c_str());
   ++done_;
   const std::string line = text;
   if (::isatty(STDERR_FILENO) != 0) {

@@ -12,14 +12,12 @@ namespace winnow::bench {
 class Progress {
  public:
   explicit Progress(std::size_t steps) : steps_(steps) {}
-  /// Also prints the time left; `seconds` is the estimated time of all steps.
-  Progress(std::size_t steps, double seconds) : steps_(steps), expected_(seconds) {}
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
   ~Progress() { clear(); }
 
-  /// Announces the next step; `seconds` is its estimated time.
-  void step(const std::string& what, double seconds = 0.0);
+  /// Announces the next step.
+  void step(const std::string& what);
   /// Clears the line, so that other output can be printed.
   void clear();
 
@@ -27,8 +25,6 @@ class Progress {
   std::size_t steps_;
   std::size_t done_ = 0;
   std::size_t width_ = 0;
-  double expected_ = 0.0;  // estimated seconds of all steps
-  double begun_ = 0.0;     // estimated seconds of the steps announced so far
   Stopwatch clock_;
 };
 

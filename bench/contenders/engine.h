@@ -2,6 +2,7 @@
 
 #include <winnow/core/aabb.h>
 #include <winnow/core/pair_buffer.h>
+#include "bench/common/interface.h"
 #include "bench/common/sample.h"
 
 #include <cstddef>
@@ -23,12 +24,8 @@ struct GaveUp {};
 /// An object is identified by its row, 0..N-1, for the whole run; later frames may add rows. All
 /// calls come from one thread, inside a `tbb::task_arena` of the thread count that the engine was
 /// made for.
-class Engine {
+class Engine : public Interface {
  public:
-  Engine(const Engine&) = delete;
-  Engine& operator=(const Engine&) = delete;
-  virtual ~Engine() = default;
-
   /// A short constant name, e.g. "FlatGrid" or "Bullet dbvt".
   [[nodiscard]] virtual std::string name() const = 0;
 
@@ -70,8 +67,6 @@ class Engine {
   [[nodiscard]] virtual double update_ms() const { return 0.0; }
 
  protected:
-  Engine() = default;
-
   /// Throws GaveUp if the time bound is exceeded.
   void check_time(const Stopwatch& since_start) const {
     if (since_start.ms() > most_ms_) throw GaveUp{};

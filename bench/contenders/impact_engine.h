@@ -1,5 +1,6 @@
 #pragma once
 
+#include "bench/common/interface.h"
 #include "bench/scenes/moving_pairs.h"
 
 #include <cstddef>
@@ -16,12 +17,8 @@ struct ImpactAnswer {
 
 /// Base of everything that computes times of impact of pairs of moving bodies: winnow and other
 /// libraries. Used by the harness like NarrowEngine.
-class ImpactEngine {
+class ImpactEngine : public Interface {
  public:
-  ImpactEngine(const ImpactEngine&) = delete;
-  ImpactEngine& operator=(const ImpactEngine&) = delete;
-  virtual ~ImpactEngine() = default;
-
   /// A short constant name, e.g. "winnow" or "Bullet continuous".
   [[nodiscard]] virtual std::string name() const = 0;
   /// True if the engine supports such pairs.
@@ -32,9 +29,6 @@ class ImpactEngine {
   virtual void run(std::span<const BodyPair> pairs) = 0;
   /// Returns the result for pair i of the last run.
   [[nodiscard]] virtual ImpactAnswer answer(std::size_t i) const = 0;
-
- protected:
-  ImpactEngine() = default;
 };
 
 }  // namespace winnow::bench

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "bench/common/interface.h"
 #include "bench/scenes/pair_set.h"
 
 #include <cstddef>
@@ -27,12 +28,8 @@ struct NarrowAnswer {
 /// Base of everything that computes contacts of pairs of bodies: winnow and other libraries. The
 /// harness times `run` from outside. Shapes and poses have been converted to the engine's types
 /// before, as in a simulation that uses the engine. Nothing is cached per pair between runs.
-class NarrowEngine {
+class NarrowEngine : public Interface {
  public:
-  NarrowEngine(const NarrowEngine&) = delete;
-  NarrowEngine& operator=(const NarrowEngine&) = delete;
-  virtual ~NarrowEngine() = default;
-
   /// A short constant name, e.g. "robust" or "FCL libccd".
   [[nodiscard]] virtual std::string name() const = 0;
   /// True if the engine supports such pairs at the level.
@@ -47,9 +44,6 @@ class NarrowEngine {
   [[nodiscard]] virtual double recomputed() const {
     return std::numeric_limits<double>::quiet_NaN();
   }
-
- protected:
-  NarrowEngine() = default;
 };
 
 }  // namespace winnow::bench

@@ -1,26 +1,17 @@
 #include "bench/contenders/partition_engine.h"
 
+#include "bench/common/need.h"
 #include "bench/common/sample.h"
 
-#include <stdexcept>
-
 namespace winnow::bench {
-namespace {
 
-void require(Status status, std::string_view partition, const char* what) {
-  if (status == Status::ok) return;
-  throw std::runtime_error(std::string(partition) + ": " + what + ": " + to_string(status));
-}
-
-}  // namespace
-
-PartitionEngine::PartitionEngine(std::string_view name, int threads)
-    : partition_(make_named(name, {.memory = &memory_, .execution = execution_for(threads)})) {}
+PartitionEngine::PartitionEngine(std::string_view name, const Execution& execution)
+    : partition_(make_named(name, {.memory = &memory_, .execution = execution})) {}
 
 void PartitionEngine::start(std::span<const Aabb> boxes) {
   const Stopwatch clock;
   keys_.resize(boxes.size());
-  require(partition_.insert(boxes, {}, keys_), partition_.name(), "insert");
+  need(partition_.insert(boxes, {}, keys_), "insert");
   update_ms_ = clock.ms();
   find_pairs();
 }
@@ -31,22 +22,21 @@ void PartitionEngine::frame(std::span<const std::uint32_t> changed_rows,
   const std::size_t known = keys_.size();
   const std::span<const Aabb> old_boxes = all_boxes.first(known);
   if (changed_rows.size() == known) {
-    require(partition_.update(keys_, old_boxes), partition_.name(), "update");
+    need(partition_.update(keys_, old_boxes), "update");
   } else {
-    require(partition_.update(keys_, old_boxes, IndexSubset::listed(changed_rows)),
-            partition_.name(), "update");
+    need(partition_.update(keys_, old_boxes, IndexSubset::listed(changed_rows)), "update");
   }
   if (all_boxes.size() > known) {
     keys_.resize(all_boxes.size());
-    require(partition_.insert(all_boxes.subspan(known), {}, std::span(keys_).subspan(known)),
-            partition_.name(), "insert");
+    need(partition_.insert(all_boxes.subspan(known), {}, std::span(keys_).subspan(known)),
+         "insert");
   }
   update_ms_ = clock.ms();
   find_pairs();
 }
 
 void PartitionEngine::find_pairs() {
-  require(partition_.self_pairs(pairs_), partition_.name(), "self_pairs");
+  need(partition_.self_pairs(pairs_), "self_pairs");
 }
 
 std::size_t PartitionEngine::bytes() const {

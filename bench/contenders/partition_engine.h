@@ -15,7 +15,9 @@ namespace winnow::bench {
 class PartitionEngine final : public Engine {
  public:
   /// `name` is one of all_partitions().
-  PartitionEngine(std::string_view name, int threads);
+  PartitionEngine(std::string_view name, int threads)
+      : PartitionEngine(name, execution_for(threads)) {}
+  PartitionEngine(std::string_view name, const Execution& execution);
 
   [[nodiscard]] std::string name() const override { return std::string(partition_.name()); }
   [[nodiscard]] std::size_t largest() const override { return largest_for(partition_.name()); }

@@ -3,6 +3,8 @@
 
 #include "bench/contenders/partition_queries.h"
 
+#include "bench/common/need.h"
+
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
@@ -16,10 +18,6 @@ namespace {
 
 /// Largest number of box tests for one run on a partition that tests every box per query.
 constexpr double kMaxTests = 2e8;
-
-void require(Status status) {
-  if (status != Status::ok) throw QueryError(to_string(status));
-}
 
 template <typename Variant>
 Cast to_cast(const Variant& cast) {
@@ -54,8 +52,8 @@ std::size_t PartitionQueries::most_questions() const {
 void PartitionQueries::start(std::span<const Aabb> boxes) {
   keys_.resize(boxes.size());
   // The objects of a new partition have the ids 0, 1, 2, ..., which are therefore rows.
-  require(partition_.insert(boxes, {}, keys_));
-  require(partition_.refresh());
+  need(partition_.insert(boxes, {}, keys_), "a query");
+  need(partition_.refresh(), "a query");
 }
 
 /// Calls `visit(results)` after each query, with a Hit, a HitBuffer or an OverlapBuffer.
@@ -65,16 +63,17 @@ void PartitionQueries::run_each(const QuerySet& set, std::size_t begin, std::siz
   const Partition& partition = partition_;
   const auto cast_one = [&](const Cast& cast) {
     if (set.query_type == QueryType::all) {
-      require(partition.all(cast, buffers.hits));
+      need(partition.all(cast, buffers.hits), "a query");
       visit(buffers.hits);
       return;
     }
-    require(set.query_type == QueryType::any ? partition.any(cast, buffers.hit)
-                                             : partition.closest(cast, buffers.hit));
+    need(set.query_type == QueryType::any ? partition.any(cast, buffers.hit)
+                                          : partition.closest(cast, buffers.hit),
+         "a query");
     visit(buffers.hit);
   };
   const auto overlap_one = [&](const Region& region) {
-    require(partition.overlap(region, buffers.overlaps));
+    need(partition.overlap(region, buffers.overlaps), "a query");
     visit(buffers.overlaps);
   };
   for (std::size_t i = begin; i < end; ++i) {
@@ -88,7 +87,7 @@ void PartitionQueries::run_each(const QuerySet& set, std::size_t begin, std::siz
       overlap_one(set.boxes[i]);
     } else {
       constexpr float kAnyDistance = std::numeric_limits<float>::infinity();
-      require(partition.nearest(set.boxes[i], set.count, kAnyDistance, buffers.hits));
+      need(partition.nearest(set.boxes[i], set.count, kAnyDistance, buffers.hits), "a query");
       visit(buffers.hits);
     }
   }
@@ -98,19 +97,20 @@ void PartitionQueries::run_each(const QuerySet& set, std::size_t begin, std::siz
 void PartitionQueries::run_batch(const QuerySet& set, std::size_t count) {
   const Partition& partition = partition_;
   if (set.rays.empty()) {
-    require(partition.overlap(std::span(set.boxes).first(count), buffers_.pairs));
+    need(partition.overlap(std::span(set.boxes).first(count), buffers_.pairs), "a query");
     return;
   }
   const RayBatch rays(std::span(set.rays).first(count));
   if (set.query_type == QueryType::all) {
-    require(partition.all(rays, buffers_.hits));
+    need(partition.all(rays, buffers_.hits), "a query");
     return;
   }
   buffers_.keys.resize(count);
   buffers_.t.resize(count);
   const HitColumns columns{.key = buffers_.keys.data(), .t = buffers_.t.data()};
-  require(set.query_type == QueryType::any ? partition.any(rays, columns)
-                                           : partition.closest(rays, columns));
+  need(set.query_type == QueryType::any ? partition.any(rays, columns)
+                                        : partition.closest(rays, columns),
+       "a query");
 }
 
 std::uint64_t PartitionQueries::run(const QuerySet& set, QueryMode mode, std::size_t count) {

@@ -23,7 +23,7 @@ class PartitionQueries final : public QueryEngine {
   [[nodiscard]] bool takes(const QuerySet& set, QueryMode mode) const override;
   [[nodiscard]] std::size_t most_questions() const override;
   void start(std::span<const Aabb> boxes) override;
-  /// Throws QueryError if the partition returns an error.
+  /// Throws std::runtime_error if the partition returns an error.
   std::uint64_t run(const QuerySet& set, QueryMode mode, std::size_t count) override;
   [[nodiscard]] QueryResults answers(const QuerySet& set, QueryMode mode,
                                      std::size_t count) override;

@@ -1,13 +1,13 @@
 #pragma once
 
 #include <winnow/core/aabb.h>
+#include "bench/common/interface.h"
 #include "bench/scenes/query_set.h"
 
 #include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <span>
-#include <stdexcept>
 #include <string>
 
 namespace winnow::bench {
@@ -15,24 +15,14 @@ namespace winnow::bench {
 /// Queries are run by one call each, or by one call for many.
 enum class QueryMode { single, batch };
 
-/// Thrown by an engine that fails at queries that it supports; the text is the reason.
-class QueryError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
-
 /// Base of everything that runs queries on boxes: winnow's partitions and other libraries. The
 /// harness times `run` from outside. All work that a user pays for (sorting hits, removing
 /// candidates that do not overlap, building a structure over a batch) therefore belongs in `run`.
 ///
 /// An object is identified by its row, 0..N-1. All calls come from one thread, inside a
 /// `tbb::task_arena` of the thread count that the engine was made for.
-class QueryEngine {
+class QueryEngine : public Interface {
  public:
-  QueryEngine(const QueryEngine&) = delete;
-  QueryEngine& operator=(const QueryEngine&) = delete;
-  virtual ~QueryEngine() = default;
-
   /// A short constant name, e.g. "LinearBvh".
   [[nodiscard]] virtual std::string name() const = 0;
 
@@ -55,9 +45,6 @@ class QueryEngine {
   /// Runs the queries and returns the results. Not timed; single queries run on one thread.
   [[nodiscard]] virtual QueryResults answers(const QuerySet& set, QueryMode mode,
                                              std::size_t count) = 0;
-
- protected:
-  QueryEngine() = default;
 };
 
 }  // namespace winnow::bench

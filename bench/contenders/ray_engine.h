@@ -1,10 +1,12 @@
 #pragma once
 
 #include <winnow/pipeline/shape_rays.h>
+#include "bench/common/interface.h"
 #include "bench/contenders/query_engine.h"
 #include "bench/scenes/meshes.h"
 
 #include <cstddef>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -17,12 +19,8 @@ enum class RayQueryType { closest, any, all };
 
 /// Base of everything that casts rays at one triangle mesh: winnow and other libraries. The harness
 /// times `run` from outside, on one thread.
-class RayEngine {
+class RayEngine : public Interface {
  public:
-  RayEngine(const RayEngine&) = delete;
-  RayEngine& operator=(const RayEngine&) = delete;
-  virtual ~RayEngine() = default;
-
   [[nodiscard]] virtual std::string name() const = 0;
   /// Prepares everything. Called once; `mesh` outlives the engine.
   virtual void start(const Triangles& mesh) = 0;
@@ -34,9 +32,9 @@ class RayEngine {
   /// Returns the ray parameter t of each ray's first hit in the last `run`, infinity without a hit.
   /// For RayQueryType::any a hit has t = 0. Not timed.
   [[nodiscard]] virtual std::vector<double> hits() const = 0;
-
- protected:
-  RayEngine() = default;
 };
+
+/// Returns winnow's SceneQueries on a scene of one fixed mesh.
+[[nodiscard]] std::unique_ptr<RayEngine> make_winnow_rays();
 
 }  // namespace winnow::bench

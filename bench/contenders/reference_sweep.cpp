@@ -69,14 +69,11 @@ std::size_t ReferenceSweep::bytes() const {
   return entries_.capacity() * sizeof(Entry);
 }
 
-MachineClock::MachineClock(bool enabled) {
-  if (!enabled) return;
-  scene_ = make_scene("uniform", 10'000, 1);
+MachineClock::MachineClock() : scene_(make_scene("uniform", 10'000, 1)) {
   sweep_.start(scene_->boxes());
 }
 
 void MachineClock::tick() {
-  if (scene_ == nullptr) return;
   const Stopwatch clock;
   sweep_.frame({}, scene_->boxes());
   times_.push_back(clock.ms());

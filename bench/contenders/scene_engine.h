@@ -1,6 +1,7 @@
 #pragma once
 
-#include "bench/scenes/body_set.h"
+#include "bench/common/interface.h"
+#include "bench/scenes/body_scenes.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -21,12 +22,8 @@ struct SceneFinds {
 /// Base of everything that finds the contacts of a scene, from poses to contact points: winnow and
 /// other libraries. The harness times `start` and `frame` from outside, on one thread inside a
 /// `tbb::task_arena`.
-class SceneEngine {
+class SceneEngine : public Interface {
  public:
-  SceneEngine(const SceneEngine&) = delete;
-  SceneEngine& operator=(const SceneEngine&) = delete;
-  virtual ~SceneEngine() = default;
-
   [[nodiscard]] virtual std::string name() const = 0;
   /// True if it reuses contacts of the last frame, so that scenes at rest are cheaper.
   [[nodiscard]] virtual bool caches_contacts() const = 0;
@@ -38,20 +35,13 @@ class SceneEngine {
   [[nodiscard]] virtual SceneFinds finds() const = 0;
   /// Bytes allocated in total after the last frame; 0 if unavailable.
   [[nodiscard]] virtual std::size_t bytes() const { return 0; }
-
- protected:
-  SceneEngine() = default;
 };
 
 /// Base of everything that builds a triangle mesh and finds the triangles that overlap triangles of
 /// a copy.
-class MeshEngine {
+class MeshEngine : public Interface {
  public:
   using TrianglePairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
-
-  MeshEngine(const MeshEngine&) = delete;
-  MeshEngine& operator=(const MeshEngine&) = delete;
-  virtual ~MeshEngine() = default;
 
   [[nodiscard]] virtual std::string name() const = 0;
   /// Builds the mesh anew.
@@ -62,9 +52,6 @@ class MeshEngine {
   virtual void collide(const Pose& a, const Pose& b) = 0;
   /// Returns the pairs of the last `collide`. Not timed.
   [[nodiscard]] virtual TrianglePairs pairs() const = 0;
-
- protected:
-  MeshEngine() = default;
 };
 
 }  // namespace winnow::bench

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <winnow/pipeline/time_of_impact.h>
+#include "bench/common/need.h"
 #include "bench/contenders/impact_engine.h"
 
 namespace winnow::bench {
@@ -12,7 +13,11 @@ class WinnowImpacts final : public ImpactEngine {
   [[nodiscard]] bool takes(const PairKind&, PairTurn) const override { return true; }
   void start(const MovingPairSet& set) override { set_ = &set; }
   /// Throws std::runtime_error if winnow returns an error.
-  void run(std::span<const BodyPair> pairs) override;
+  void run(std::span<const BodyPair> pairs) override {
+    const PairSet& middle = *set_->middle;
+    need(time_of_impact(middle.pool, {middle.shapes, set_->motions}, pairs, {}, result_),
+         "moving pairs");
+  }
   [[nodiscard]] ImpactAnswer answer(std::size_t i) const override {
     return {result_.hits(i), result_.time()[i]};
   }

@@ -1,9 +1,8 @@
-#include "bench/contenders/winnow_rays.h"
-
 #include <winnow/pipeline/composite_pool.h>
 #include <winnow/pipeline/scene.h>
 #include <winnow/pipeline/scene_queries.h>
 #include "bench/common/need.h"
+#include "bench/contenders/ray_engine.h"
 
 #include <limits>
 
@@ -16,9 +15,7 @@ class WinnowRays final : public RayEngine {
 
   void start(const Triangles& mesh) override {
     ShapeId shape;
-    const std::span<const Eigen::Vector3d> vertices = mesh.vertices;
-    const std::span<const std::uint32_t> corners = mesh.corners;
-    need(composites_.add_mesh(vertices, corners, shape), "the mesh");
+    need(composites_.add_mesh(mesh.points(), mesh.indices(), shape), "the mesh");
     Key key;
     need(scene_.add({.shape = shape, .state = BodyState::fixed}, key), "the body");
     need(scene_.refresh(), "the scene");

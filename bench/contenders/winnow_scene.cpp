@@ -12,13 +12,6 @@
 namespace winnow::bench {
 namespace {
 
-std::span<const Eigen::Vector3d> vertices_of(const Triangles& mesh) {
-  return mesh.vertices;
-}
-std::span<const std::uint32_t> corners_of(const Triangles& mesh) {
-  return mesh.corners;
-}
-
 class WinnowScene final : public SceneEngine {
  public:
   WinnowScene(int threads, const WinnowSceneOptions& options)
@@ -35,18 +28,11 @@ class WinnowScene final : public SceneEngine {
                                           .contact_margin = options_.contact_margin,
                                           .cache_tolerance = options_.cache_tolerance,
                                           .composites = &*composites_});
-    std::vector<BodyDefinition> bodies(set.poses.size());
-    for (std::size_t i = 0; i < bodies.size(); ++i) {
-      bodies[i].shape = set.shapes[i];
-      bodies[i].pose = set.poses[i];
-    }
-    keys_.resize(bodies.size());
-    need(scene_->add(bodies, keys_), "the bodies");
+    keys_ = add_bodies(set, *scene_);
     if (set.mesh.size() == 0) return;
     BodyDefinition terrain;
     terrain.state = BodyState::fixed;
-    need(composites_->add_mesh(vertices_of(set.mesh), corners_of(set.mesh), terrain.shape),
-         "the mesh");
+    need(composites_->add_mesh(set.mesh.points(), set.mesh.indices(), terrain.shape), "the mesh");
     Key key;
     need(scene_->add(terrain, key), "the mesh");
   }
@@ -79,7 +65,7 @@ class WinnowMesh final : public MeshEngine {
   [[nodiscard]] std::string name() const override { return "winnow"; }
 
   void build(const Triangles& mesh) override {
-    need(mesh_.build(vertices_of(mesh), corners_of(mesh)), "the mesh");
+    need(mesh_.build(mesh.points(), mesh.indices()), "the mesh");
     triangles_ = &mesh;
   }
 
@@ -103,7 +89,7 @@ class WinnowMesh final : public MeshEngine {
  private:
   void add_bodies() {
     std::vector<BodyDefinition> bodies(2);
-    need(composites_.add_mesh(vertices_of(*triangles_), corners_of(*triangles_), bodies[0].shape),
+    need(composites_.add_mesh(triangles_->points(), triangles_->indices(), bodies[0].shape),
          "the mesh");
     bodies[1].shape = bodies[0].shape;
     keys_.resize(2);

@@ -98,8 +98,4 @@ Accuracy summary_of(std::span<const PairError> errors) {
   return sum;
 }
 
-std::string judge_name(TruthSource judge) {
-  return judge == TruthSource::oracle && has_oracle() ? "100 digits" : "reference";
-}
-
 }  // namespace winnow::bench

@@ -62,8 +62,4 @@ struct Accuracy {
 /// in radii of the smaller body.
 inline constexpr double kNearestPairs = 1e-6;
 
-/// Returns "100 digits", or the name of the tier that replaces the oracle if the tool was built
-/// without the oracle.
-[[nodiscard]] std::string judge_name(TruthSource judge);
-
 }  // namespace winnow::bench

@@ -5,23 +5,16 @@
 
 #include <winnow/pipeline/cluster_scene.h>
 #include <winnow/pipeline/shape_pool.h>
+#include "bench/common/need.h"
 #include "bench/common/random.h"
 #include "bench/common/sample.h"
 
 #include <algorithm>
 #include <cstring>
-#include <stdexcept>
-#include <string>
 #include <unordered_set>
 
 namespace winnow::bench {
 namespace {
-
-void require_ok(Status status, const char* what) {
-  if (status != Status::ok) {
-    throw std::runtime_error(std::string("cluster: ") + what + ": " + to_string(status));
-  }
-}
 
 /// Adds batches; returns the first error of any of them.
 template <typename Batch, typename Ranks>
@@ -65,7 +58,7 @@ struct BodyCluster {
   /// Adds the shapes of new bodies. Every process adds all of them, in the order of rows.
   void see(std::span<const Aabb> boxes) {
     for (std::size_t i = shapes.size(); i < boxes.size(); ++i) {
-      require_ok(pool.add(box_shape_of(boxes[i]), shapes.emplace_back()), "shape");
+      need(pool.add(box_shape_of(boxes[i]), shapes.emplace_back()), "shape");
     }
   }
 
@@ -125,7 +118,7 @@ class ClusterEngine {
     apply_changes();
     ClusterFrame frame;
     frame.update_ms = clock.ms();
-    require_ok(ranks_.find(), "pairs");
+    need(ranks_.find(), "pairs");
     frame.frame_ms = clock.ms();
     follow();
     summarize_into(frame);
@@ -134,7 +127,7 @@ class ClusterEngine {
 
   std::uint64_t bytes() {
     std::uint64_t sum = cluster_.bytes().reserved;
-    require_ok(transport_.reduce(std::span(&sum, 1), {}), "bytes");
+    need(transport_.reduce(std::span(&sum, 1), {}), "bytes");
     return sum;
   }
 
@@ -171,15 +164,15 @@ class ClusterEngine {
   /// Starts the frame on all processes at the same time.
   void synchronize() {
     std::uint64_t nothing = 0;
-    require_ok(transport_.reduce(std::span(&nothing, 1), {}), "start of a frame");
+    need(transport_.reduce(std::span(&nothing, 1), {}), "start of a frame");
   }
 
   void apply_changes() {
     for (std::size_t r = 0; r < keys_.size(); ++r) {
       if (keys_[r].empty()) continue;
-      require_ok(ranks_.move(rank_of(r), keys_[r], boxes_[r]), "move");
+      need(ranks_.move(rank_of(r), keys_[r], boxes_[r]), "move");
     }
-    if (grows_) require_ok(ranks_.add(fresh_, fresh_boxes_), "add");
+    if (grows_) need(ranks_.add(fresh_, fresh_boxes_), "add");
   }
 
   /// Updates the list of each rank's own bodies, sorted by key: moves are fastest in that order.
@@ -212,11 +205,11 @@ class ClusterEngine {
     constexpr double kNanoseconds = 1e6;
     std::uint64_t times[2] = {static_cast<std::uint64_t>(frame.frame_ms * kNanoseconds),
                               static_cast<std::uint64_t>(frame.update_ms * kNanoseconds)};
-    require_ok(transport_.reduce(std::span(&fingerprint, 1), times), "fingerprint");
+    need(transport_.reduce(std::span(&fingerprint, 1), times), "fingerprint");
     frame.pairs.fingerprint = fingerprint;
     frame.frame_ms = static_cast<double>(times[0]) / kNanoseconds;
     frame.update_ms = static_cast<double>(times[1]) / kNanoseconds;
-    require_ok(cluster_.digest(frame.digest), "digest");
+    need(cluster_.digest(frame.digest), "digest");
   }
 
   Transport& transport_;

@@ -3,13 +3,11 @@
 
 #include "bench/measure/cold_frames.h"
 
-#include <winnow/core/hooks.h>
 #include <winnow/core/large_pages.h>
 #include "bench/common/address_range.h"
 #include "bench/common/arena.h"
 #include "bench/common/need.h"
-#include "bench/common/reused_memory.h"
-#include "bench/common/sample.h"
+#include "bench/common/stage_clock.h"
 #include "bench/contenders/partitions.h"
 #include "bench/measure/fingerprint.h"
 #include "bench/peers/yardstick.h"
@@ -35,37 +33,17 @@ struct Parts {
   double found = 0.0;
 };
 
-/// Records when the structure of the current frame was built, by a hook. Calling `refresh` before
-/// would change the measurement: programs query pairs directly, and the structure built for other
-/// queries takes longer.
-class BuildEnd {
- public:
-  explicit BuildEnd(const Stopwatch& clock) : before_(set_stage_hook(note)) { clock_ = &clock; }
-  ~BuildEnd() { set_stage_hook(before_); }
-  BuildEnd(const BuildEnd&) = delete;
-  BuildEnd& operator=(const BuildEnd&) = delete;
-
-  [[nodiscard]] static double ms() { return ms_; }
-
- private:
-  static void note(WorkStage stage, bool begins) {
-    if (stage == WorkStage::refresh && !begins) ms_ = clock_->ms();
-  }
-
-  static inline thread_local const Stopwatch* clock_ = nullptr;
-  static inline thread_local double ms_ = 0.0;
-  StageHook before_;
-};
-
 Parts run_frame(std::span<const Aabb> boxes, Partition& partition, std::vector<Key>& keys,
                 PairBuffer& pairs, const Stopwatch& clock) {
-  const BuildEnd build(clock);
+  // Calling `refresh` before would change the measurement: programs query pairs directly, and the
+  // structure built for other queries takes longer.
+  const StageClock build(WorkStage::refresh);
   Parts parts;
   need(partition.insert(boxes, {}, keys), "objects");
   parts.inserted = clock.ms();
   need(partition.self_pairs(pairs), "pairs");
   parts.found = clock.ms();
-  parts.built = BuildEnd::ms();
+  parts.built = parts.inserted + build.ms();
   return parts;
 }
 
@@ -117,6 +95,13 @@ struct FirstFrames {
   }
 };
 
+/// Memory that is handed out again after each frame. No allocation may be alive then.
+struct ReusedMemory {
+  AddressRange range;
+  std::pmr::monotonic_buffer_resource resource{range.begin(), range.bytes(),
+                                               std::pmr::null_memory_resource()};
+};
+
 void forget_frames(ColdRace& race) {
   for (ColdFrames& one : race.frames) {
     for (auto* times : {&one.insert_ms, &one.build_ms, &one.pairs_ms, &one.total_ms,
@@ -138,8 +123,8 @@ ColdRace race_cold_frames(std::span<const Aabb> boxes, const std::vector<std::st
     }
   }
   FirstFrames frames{boxes, threads};
-  ReusedMemory untouched(room_for(boxes.size()));
-  ReusedMemory prefaulted(room_for(boxes.size()));
+  ReusedMemory untouched{AddressRange(room_for(boxes.size()))};
+  ReusedMemory prefaulted{AddressRange(room_for(boxes.size()))};
   const std::unique_ptr<Engine> yardstick = with_yardstick ? make_yardstick(threads) : nullptr;
   std::vector<PairSummary> found;
   const auto run_all = [&] {
@@ -151,14 +136,15 @@ ColdRace race_cold_frames(std::span<const Aabb> boxes, const std::vector<std::st
     }
     for (ColdFrames& one : race.frames) {
       if (one.memory == kTouched) {
-        prefaulted.rewind();
-        found.push_back(frames.run(one, prefaulted));
+        prefaulted.resource.release();
+        found.push_back(frames.run(one, prefaulted.resource));
         continue;
       }
       const auto on_fresh_pages = [&](const auto& run) {
         if (one.memory == kUntouched) {
-          untouched.rewind_untouched();
-          found.push_back(run(untouched));
+          untouched.resource.release();
+          untouched.range.forget();
+          found.push_back(run(untouched.resource));
         } else {
           LargePages large;
           found.push_back(run(large));

@@ -11,18 +11,16 @@ namespace winnow::bench {
 
 /// A member of Footprint, which counts the bytes allocated for one purpose.
 struct Purpose {
-  const char* name;   ///< in JSON
-  const char* label;  ///< in tables
+  const char* name;  ///< in JSON
   Bytes Footprint::*bytes;
 };
 
-inline constexpr std::array<Purpose, 6> kPurposes{
-    {{"bounds", "bounds", &Footprint::bounds},
-     {"keys", "keys", &Footprint::keys},
-     {"client_data", "client data", &Footprint::client_data},
-     {"structure", "structure", &Footprint::structure},
-     {"scratch", "scratch", &Footprint::scratch},
-     {"results", "results", &Footprint::results}}};
+inline constexpr std::array<Purpose, 6> kPurposes{{{"bounds", &Footprint::bounds},
+                                                   {"keys", &Footprint::keys},
+                                                   {"client_data", &Footprint::client_data},
+                                                   {"structure", &Footprint::structure},
+                                                   {"scratch", &Footprint::scratch},
+                                                   {"results", &Footprint::results}}};
 
 inline constexpr std::size_t kFootprintFrames = 5;
 
@@ -39,6 +37,11 @@ struct Held {
 
   [[nodiscard]] bool exact() const { return footprint.total().reserved == outstanding; }
 };
+
+/// Makes the resident set of the process follow its allocations page by page: large blocks get
+/// pages of their own, which are returned to the system when freed, and huge pages are disabled.
+/// Slows allocations down, so it must not be used in a process that times something afterwards.
+void keep_resident_set_exact();
 
 /// Runs the next kFootprintFrames frames of the source on a partition. `resident` is valid only if
 /// keep_resident_set_exact was called before.

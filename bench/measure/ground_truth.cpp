@@ -26,7 +26,7 @@ PairTruth query_oracle(const PairSet& set, const BodyPair& pair) {
   std::copy_n(truth.normal, 3, result.normal);
   return result;
 }
-#endif
+#else
 
 std::vector<PairTruth> query_reference(const PairSet& set) {
   WinnowNarrow reference(NarrowTier::reference, 2);
@@ -43,27 +43,27 @@ std::vector<PairTruth> query_reference(const PairSet& set) {
   }
   return truths;
 }
+#endif
 
 }  // namespace
 
-bool has_oracle() noexcept {
+std::vector<PairTruth> truths_of(const PairSet& set) {
 #if WINNOW_HAVE_ORACLE
-  return true;
+  std::vector<PairTruth> truths(set.pairs.size());
+  tbb::parallel_for(std::size_t{0}, truths.size(),
+                    [&](std::size_t i) { truths[i] = query_oracle(set, set.pairs[i]); });
+  return truths;
 #else
-  return false;
+  return query_reference(set);
 #endif
 }
 
-std::vector<PairTruth> truths_of(const PairSet& set, [[maybe_unused]] TruthSource judge) {
+std::string judge_name() {
 #if WINNOW_HAVE_ORACLE
-  if (judge == TruthSource::oracle) {
-    std::vector<PairTruth> truths(set.pairs.size());
-    tbb::parallel_for(std::size_t{0}, truths.size(),
-                      [&](std::size_t i) { truths[i] = query_oracle(set, set.pairs[i]); });
-    return truths;
-  }
+  return "100 digits";
+#else
+  return "reference";
 #endif
-  return query_reference(set);
 }
 
 }  // namespace winnow::bench

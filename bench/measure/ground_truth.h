@@ -3,7 +3,7 @@
 #include "bench/scenes/pair_set.h"
 
 #include <cstddef>
-#include <cstdint>
+#include <string>
 #include <vector>
 
 namespace winnow::bench {
@@ -20,17 +20,11 @@ struct PairTruth {
   double size = 0.0;
 };
 
-/// The source of reference results.
-enum class TruthSource : std::uint8_t {
-  oracle,     ///< 100 digits, see bench/oracle
-  reference,  ///< winnow's tier of this name, which in turn is tested against the oracle
-};
-
-/// Returns true if the tool was built with the oracle.
-[[nodiscard]] bool has_oracle() noexcept;
-
 /// Returns the reference results of all pairs of a set, computed on all cores. Without the oracle
 /// the tier `reference` is used, which sets no normals.
-[[nodiscard]] std::vector<PairTruth> truths_of(const PairSet& set, TruthSource judge);
+[[nodiscard]] std::vector<PairTruth> truths_of(const PairSet& set);
+
+/// Returns "100 digits", or the name of that tier.
+[[nodiscard]] std::string judge_name();
 
 }  // namespace winnow::bench

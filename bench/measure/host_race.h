@@ -15,9 +15,8 @@ struct HostRace {
   std::vector<double> pool_ms{};   ///< a simple thread pool, see ThreadPool
 };
 
-/// Runs frames of a scene on two partitions of one kind, with `threads` threads each. The host that
-/// runs first alternates; the first frames, which build, are not counted. Throws std::runtime_error
-/// if the pairs or their order differ.
+/// Races two partitions of one kind on frames of a scene, with `threads` threads each. The first
+/// frames, which build, are not counted. Throws std::runtime_error if the pairs differ.
 [[nodiscard]] HostRace race_hosts(FrameSource& source, std::string_view partition, int threads,
                                   std::size_t frames);
 

@@ -136,7 +136,6 @@ std::vector<Run> race(FrameSource& source, std::vector<Contender>& contenders,
   }
   FrameBlocks blocks(source);
   for (std::size_t done = 0; done < options.frames;) {
-    if (options.clock != nullptr) options.clock->tick();
     const std::size_t requested = done == 0 ? 1 : std::min(options.block, options.frames - done);
     const std::vector<Frame>& frames = blocks.next(requested);
     for (std::size_t c = 0; c < contenders.size(); ++c) {
@@ -230,18 +229,10 @@ Measurement measure(const MeasureOptions& options) {
   if (options.peers) add_peers(options, contenders, result);
   if (options.yardstick) add_yardstick(options, contenders);
   result.peer_runs = contenders.size() - result.partition_runs;
-  if (options.reference) {
-    contenders.push_back({std::make_unique<ReferenceSweep>(-1), 1, active_isa()});
-  }
 
-  RaceOptions race_options;
-  race_options.frames = options.frames != 0 ? options.frames : frames_for(result.objects);
-  MachineClock clock(options.machine_clock);
-  race_options.clock = &clock;
-  race_options.bounds = options.bounds;
-  result.runs = race(*source, contenders, race_options);
-  clock.tick();
-  result.machine_ms = clock.median_ms();
+  result.runs = race(*source, contenders,
+                     {.frames = options.frames != 0 ? options.frames : frames_for(result.objects),
+                      .bounds = options.bounds});
   return result;
 }
 

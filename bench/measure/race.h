@@ -3,7 +3,6 @@
 #include <winnow/simd/isa.h>
 #include "bench/common/sample.h"
 #include "bench/contenders/engine.h"
-#include "bench/contenders/reference_sweep.h"
 #include "bench/measure/fingerprint.h"
 #include "bench/recordings/recording.h"
 #include "bench/scenes/frame_source.h"
@@ -67,7 +66,6 @@ struct RaceOptions {
   /// Frames that a contender runs in sequence before the next one runs the same: long enough to
   /// keep its data in the caches, short enough that disturbances affect all contenders alike.
   std::size_t block = 5;
-  MachineClock* clock = nullptr;  ///< ticks before each block
   TimeBounds bounds{};
 };
 
@@ -95,21 +93,18 @@ struct MeasureOptions {
   std::vector<Isa> isas{};  ///< empty: the active one
   bool peers = false;       ///< also other libraries, if the tool was built with them
   bool yardstick = false;   ///< also the yardstick, if the tool was built with it
-  bool reference = false;   ///< also the reference sweep, as the reference for pairs
-  bool machine_clock = false;
-  std::size_t frames = 0;  ///< including the first; 0: chosen by the number of objects
-  TimeBounds bounds{};     ///< if any is set, libraries too slow for the size are measured as well
+  std::size_t frames = 0;   ///< including the first; 0: chosen by the number of objects
+  TimeBounds bounds{};      ///< if any is set, libraries too slow for the size are measured as well
 };
 
 struct Measurement {
   std::string scene{};
   std::size_t objects = 0;
   bool grows = false;                ///< objects may be added from frame to frame
-  std::vector<Run> runs;             ///< partitions, then peers, then the reference
+  std::vector<Run> runs;             ///< partitions, then peers
   std::size_t partition_runs = 0;    ///< number of partitions, at the front of `runs`
   std::size_t peer_runs = 0;         ///< other libraries, behind the partitions; the yardstick last
   std::vector<std::string> skipped;  ///< libraries too slow for the size
-  double machine_ms = 0.0;           ///< of the MachineClock, interleaved with the race
 
   [[nodiscard]] std::span<const Run> partitions() const {
     return std::span(runs).first(partition_runs);

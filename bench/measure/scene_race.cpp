@@ -3,19 +3,37 @@
 
 #include "bench/measure/scene_race.h"
 
-#include "bench/common/interleaved_runs.h"
-#include "bench/common/timed.h"
-#include "bench/contenders/reference_sweep.h"
+#include "bench/common/arena.h"
+#include "bench/common/sample.h"
 #include "bench/peers/peers.h"
 
 #include <algorithm>
 #include <cmath>
 
 namespace winnow::bench {
-
 namespace {
 
 constexpr std::size_t kWarming = 2;
+constexpr std::size_t kPileBodies = 20'000;
+constexpr std::size_t kBalls = 100'000;
+constexpr std::size_t kTerrainBodies = 2'000;
+/// 200,978 triangles.
+constexpr std::uint32_t kTerrainCells = 317;
+
+double frame_ms(const SceneContender& contender, Arenas& arenas, std::span<const Pose> poses) {
+  if (contender.threads == 1) {
+    const ThreadStopwatch own_clock;
+    contender.engine->frame(poses);
+    return own_clock.ms();
+  }
+  double ms = 0.0;
+  arenas.run(contender.threads, [&] {
+    const Stopwatch clock;
+    contender.engine->frame(poses);
+    ms = clock.ms();
+  });
+  return ms;
+}
 
 }  // namespace
 
@@ -26,36 +44,23 @@ std::vector<SceneTiming> race_scene(const BodySet& set, const PoseNoise& by,
   for (const SceneContender& contender : contenders) {
     most_threads = std::max(most_threads, contender.threads);
     timings.push_back({.engine = contender.engine->name(), .threads = contender.threads});
+    contender.engine->start(set);
   }
   Arenas arenas(most_threads);
-  for (const SceneContender& contender : contenders) contender.engine->start(set);
   std::vector<Pose> poses;
-  auto ms = run_interleaved(contenders.size(), frames, kWarming, [&](std::size_t f, std::size_t i) {
-    if (i == 0) apply_pose_noise(set, by, f, poses);
-    return timed(contenders[i].threads, arenas, [&] { contenders[i].engine->frame(poses); });
-  });
+  for (std::size_t frame = 0; frame < kWarming + frames; ++frame) {
+    apply_pose_noise(set, by, frame, poses);
+    for (std::size_t i = 0; i < contenders.size(); ++i) {
+      const double ms = frame_ms(contenders[i], arenas, poses);
+      if (frame >= kWarming) timings[i].ms.push_back(ms);
+    }
+  }
   for (std::size_t i = 0; i < contenders.size(); ++i) {
-    timings[i].ms = std::move(ms[i]);
     timings[i].finds = contenders[i].engine->finds();
     timings[i].bytes = contenders[i].engine->bytes();
   }
   return timings;
 }
-
-namespace {
-
-constexpr std::size_t kPileBodies = 20'000;
-constexpr std::size_t kBalls = 100'000;
-constexpr std::size_t kTerrainBodies = 2'000;
-/// 200,978 triangles.
-constexpr std::uint32_t kTerrainCells = 317;
-constexpr int kTicks = 3;
-
-void tick(MachineClock& clock) {
-  for (int i = 0; i < kTicks; ++i) clock.tick();
-}
-
-}  // namespace
 
 std::unique_ptr<BodySet> make_pipeline_scene(const std::string& scene, std::size_t bodies,
                                              std::uint64_t seed) {
@@ -89,12 +94,8 @@ PipelineMeasurement measure_pipeline(const PipelineMeasureOptions& options) {
       contenders.push_back({std::move(peer), 1});
     }
   }
-  MachineClock clock(options.machine_clock);
-  tick(clock);
   measured.timings =
       race_scene(*set, options.resting ? kResting : kMoving, contenders, options.frames);
-  tick(clock);
-  measured.machine_ms = clock.median_ms();
   return measured;
 }
 

@@ -45,7 +45,6 @@ struct PipelineMeasureOptions {
   const BodySet* set = nullptr;  ///< the scene's bodies, if already made
   std::size_t bodies = 0;        ///< number of bodies to make; 0: the scene's default
   std::uint64_t seed = 1;
-  bool machine_clock = true;
 };
 
 /// Makes the bodies of a scene, equal for each race on it. Takes seconds for the pile.
@@ -56,7 +55,6 @@ struct PipelineMeasurement {
   std::vector<SceneTiming> timings;
   std::size_t bodies = 0;
   std::size_t triangles = 0;
-  double machine_ms = 0.0;  ///< of the MachineClock, before and after the race, if enabled
 };
 
 [[nodiscard]] PipelineMeasurement measure_pipeline(const PipelineMeasureOptions& options);

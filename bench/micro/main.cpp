@@ -6,10 +6,8 @@
 
 #include <winnow/simd/isa.h>
 #include "bench/rows/machine.h"
-#include "bench/rows/results.h"
 
 #include <algorithm>
-#include <cctype>
 #include <iostream>
 
 namespace winnow::bench::micro {
@@ -28,39 +26,6 @@ benchmark::internal::Benchmark* add(const std::string& name, Body body) {
 benchmark::internal::Benchmark* add(const std::string& name, int threads, Body body) {
   auto* const added = add(name, std::move(body));
   return threads == 1 ? added : added->UseRealTime();
-}
-
-std::string path_of(std::string_view name) {
-  const auto is_upper = [&](std::size_t i) {
-    return i < name.size() && std::isupper(static_cast<unsigned char>(name[i])) != 0;
-  };
-  const auto is_lower = [&](std::size_t i) {
-    return i < name.size() && std::islower(static_cast<unsigned char>(name[i])) != 0;
-  };
-  std::string path;
-  const auto separate = [&] {
-    if (!path.empty() && path.back() != '_') path += '_';
-  };
-  for (std::size_t i = 0; i < name.size(); ++i) {
-    const char c = name[i];
-    if (c == ' ' || c == ',') {
-      separate();
-    } else if (c == '%') {
-      path += "percent";
-    } else if (c == '+') {
-      path += "plus";
-    } else {
-      const bool starts_word =
-          is_upper(i) && i > 0 && (is_lower(i - 1) || (is_upper(i - 1) && is_lower(i + 1)));
-      if (starts_word) separate();
-      path += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    }
-  }
-  return path;
-}
-
-std::string path_of(double value) {
-  return key_text(Json(value));
 }
 
 void check(bool right, const std::string& text) {

@@ -7,7 +7,7 @@
 #include <winnow/pipeline/triangle_mesh.h>
 #include "bench/common/need.h"
 #include "bench/common/random.h"
-#include "bench/contenders/winnow_rays.h"
+#include "bench/contenders/ray_engine.h"
 #include "bench/contenders/winnow_scene.h"
 #include "bench/peers/peers.h"
 #include "bench/scenes/body_scenes.h"
@@ -145,13 +145,6 @@ void add_rays(const MeshName& mesh, const std::string& name, const MakeRays& mak
   }
 }
 
-std::span<const Eigen::Vector3d> vertices_of(const Triangles& mesh) {
-  return mesh.vertices;
-}
-std::span<const std::uint32_t> corners_of(const Triangles& mesh) {
-  return mesh.corners;
-}
-
 void add_builds(const MeshName& mesh) {
   const auto count_mesh = [mesh](benchmark::State& state, const TriangleMesh& built) {
     const std::size_t triangles = mesh.input().mesh.size();
@@ -162,14 +155,14 @@ void add_builds(const MeshName& mesh) {
   add("mesh/build/" + mesh.path() + "/winnow", [=](benchmark::State& state) {
     const Triangles& input = mesh.input().mesh;
     TriangleMesh built;
-    run(state, 1, [&] { need(built.build(vertices_of(input), corners_of(input)), "the mesh"); });
+    run(state, 1, [&] { need(built.build(input.points(), input.indices()), "the mesh"); });
     count_mesh(state, built);
   });
   add("mesh/refit/" + mesh.path() + "/winnow", [=](benchmark::State& state) {
     const Triangles& input = mesh.input().mesh;
     TriangleMesh built;
-    need(built.build(vertices_of(input), corners_of(input)), "the mesh");
-    run(state, 1, [&] { need(built.refit(vertices_of(input)), "the mesh"); });
+    need(built.build(input.points(), input.indices()), "the mesh");
+    run(state, 1, [&] { need(built.refit(input.points()), "the mesh"); });
     count_mesh(state, built);
   });
 }
@@ -231,18 +224,12 @@ struct QueryScene {
 
   std::unique_ptr<BodySet> set = make_heap(kBodies, 1);
   Scene scene{set->pool, {.execution = Execution::serial()}};
-  std::vector<Key> keys = std::vector<Key>(kBodies);
+  std::vector<Key> keys = add_bodies(*set, scene);
   std::vector<ShapeRay> rays;
   std::vector<Pose> starts;
   std::vector<Pose> ends;
 
   QueryScene() {
-    std::vector<BodyDefinition> bodies(kBodies);
-    for (std::size_t i = 0; i < kBodies; ++i) {
-      bodies[i].shape = set->shapes[i];
-      bodies[i].pose = set->poses[i];
-    }
-    need(scene.add(bodies, keys), "the bodies");
     need(scene.refresh(), "the scene");
     Random random(3);
     for (std::size_t i = 0; i < kQueries; ++i) {
@@ -305,7 +292,7 @@ void add_meshes() {
       const auto peers = make_ray_peers();
       for (std::size_t i = 0; i < peers.size(); ++i) {
         add_rays(
-            mesh, path_of(peers[i]->name()), [i] { return std::move(make_ray_peers()[i]); }, true);
+            mesh, word_of(peers[i]->name()), [i] { return std::move(make_ray_peers()[i]); }, true);
       }
       add_builds(mesh);
     }
@@ -313,7 +300,7 @@ void add_meshes() {
   add_tori("winnow", make_winnow_mesh);
   const auto peers = make_mesh_peers();
   for (std::size_t i = 0; i < peers.size(); ++i) {
-    add_tori(path_of(peers[i]->name()), [i] { return std::move(make_mesh_peers()[i]); });
+    add_tori(word_of(peers[i]->name()), [i] { return std::move(make_mesh_peers()[i]); });
   }
 }
 

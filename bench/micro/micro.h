@@ -8,6 +8,7 @@
 #include "bench/common/arena.h"
 #include "bench/measure/isa_guard.h"
 #include "bench/rows/named_scene.h"
+#include "bench/rows/results.h"
 
 #include <cstddef>
 #include <functional>
@@ -39,12 +40,6 @@ benchmark::internal::Benchmark* add(const std::string& name, Body body);
 
 /// Registers a benchmark that several threads of oneTBB run; it is timed by the wall clock.
 benchmark::internal::Benchmark* add(const std::string& name, int threads, Body body);
-
-/// Returns a name as a part of a path: "FCL libccd" as fcl_libccd, "LinearBvh" as linear_bvh,
-/// "1 % apart" as 1_percent_apart.
-[[nodiscard]] std::string path_of(std::string_view name);
-/// Returns a number as short as possible.
-[[nodiscard]] std::string path_of(double value);
 
 /// Throws std::runtime_error with the text unless `right`.
 void check(bool right, const std::string& text);

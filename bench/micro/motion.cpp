@@ -35,7 +35,7 @@ using MakeImpacts = std::function<std::unique_ptr<ImpactEngine>()>;
 
 void add_impacts(const PairKind& kind, PairTurn turn, const std::string& name,
                  const MakeImpacts& make, bool is_winnow) {
-  const std::string path = "toi/" + std::string(kind.name) + "/turn:" + path_of(to_text(turn));
+  const std::string path = "toi/" + std::string(kind.name) + "/turn:" + word_of(to_text(turn));
   add(path + "/" + name, [=](benchmark::State& state) {
     auto& motions =
         prepared<JudgedMotions>(path, [&] { return std::make_unique<JudgedMotions>(kind, turn); });
@@ -60,7 +60,7 @@ void add_impacts(const PairKind& kind, PairTurn turn, const std::string& name,
 }
 
 void add_features(FeaturePair kind, FeatureSteps steps) {
-  const std::string path = "feature/" + std::string(to_text(kind)) + "/" + path_of(to_text(steps));
+  const std::string path = "feature/" + std::string(to_text(kind)) + "/" + word_of(to_text(steps));
   add(path, [=](benchmark::State& state) {
     const auto& set = prepared<const FeatureStepSet>(path, [&] {
       return std::make_unique<const FeatureStepSet>(make_feature_steps(kind, steps, kFeatures, 1));
@@ -94,14 +94,8 @@ class MovingHeap {
       : set_(make_heap(bodies, 1)),
         scene_(set_->pool, {.execution = execution_for(threads)}),
         ccd_(scene_),
-        keys_(bodies),
+        keys_(add_bodies(*set_, scene_)),
         bullets_(bodies) {
-    std::vector<BodyDefinition> definitions(bodies);
-    for (std::size_t i = 0; i < bodies; ++i) {
-      definitions[i].shape = set_->shapes[i];
-      definitions[i].pose = set_->poses[i];
-    }
-    need(scene_.add(definitions, keys_), "the bodies");
     // The kinds of shapes are consecutive in the heap: fast bodies are spread evenly over all of
     // them.
     for (std::size_t i = 0; i < fast; ++i) bullets_[i * bodies / fast] = 1;
@@ -189,7 +183,7 @@ void add_motion() {
       for (std::size_t i = 0; i < peers.size(); ++i) {
         if (!peers[i]->takes(kind, turn)) continue;
         add_impacts(
-            kind, turn, path_of(peers[i]->name()),
+            kind, turn, word_of(peers[i]->name()),
             [i] { return std::move(make_impact_peers()[i]); }, false);
       }
     }

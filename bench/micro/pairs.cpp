@@ -42,7 +42,7 @@ void each_peer(const PairKind& kind, ContactLevel level, Visit&& visit) {
   const auto peers = make_narrow_peers();
   for (std::size_t i = 0; i < peers.size(); ++i) {
     if (!peers[i]->takes(kind, level)) continue;
-    visit(path_of(peers[i]->name()), [i] { return std::move(make_narrow_peers()[i]); });
+    visit(word_of(peers[i]->name()), [i] { return std::move(make_narrow_peers()[i]); });
   }
 }
 
@@ -216,7 +216,7 @@ struct JudgedPairs {
   std::vector<PairTruth> truths;
 
   JudgedPairs(const PairKind& kind, const PairSetOptions& options)
-      : set(make_pair_set(kind, options)), truths(truths_of(*set, TruthSource::oracle)) {}
+      : set(make_pair_set(kind, options)), truths(truths_of(*set)) {}
 };
 
 void count_spread(benchmark::State& state, const std::string& of, const ErrorSpread& spread) {
@@ -254,12 +254,12 @@ void add_judged(const std::string& path, const PairKind& kind, ContactLevel leve
                 const PairSetOptions& options, const std::string& name, const MakeEngine& make,
                 double gap = 0.0) {
   const std::string of_set = path + " " + std::string(kind.name);
-  add(path + (gap > 0.0 ? "/gap:" + path_of(gap) : "") + "/" + name, [=](benchmark::State& state) {
+  add(path + (gap > 0.0 ? "/gap:" + key_text(gap) : "") + "/" + name, [=](benchmark::State& state) {
     const auto& judged = prepared<const JudgedPairs>(
         of_set, [&] { return std::make_unique<const JudgedPairs>(kind, options); });
     const auto& started = prepared<const Started>(
         of_set + name, [&] { return std::make_unique<const Started>(*judged.set, make); });
-    state.SetLabel(judge_name(TruthSource::oracle));
+    state.SetLabel(judge_name());
     started.engine->run(level, judged.set->pairs);
     const Accuracy errors =
         summary_of(errors_at(errors_of(*started.engine, level, *judged.set, judged.truths), gap));
@@ -297,7 +297,7 @@ void add_errors_of(const PairKind& kind) {
         .pairs = judged_pairs(kind, ratio), .ratio = ratio, .nearest = kNearestPairs};
     for (const ContactLevel level : kLevels) {
       const std::string path = "error/" + std::string(kind.name) + "/" +
-                               std::string(to_text(level)) + "/ratio:" + path_of(ratio);
+                               std::string(to_text(level)) + "/ratio:" + key_text(ratio);
       add_judged_engines(path, kind, level, options, ratio == 1.0);
       const bool by_gap =
           ratio == 1.0 && level == ContactLevel::distance &&
@@ -343,7 +343,7 @@ void add_curve(const StabilityCurve& curve, const PairKind& kind) {
     PairSetOptions options{.pairs = kind.hull_vertices > 0 ? std::size_t{60} : std::size_t{200},
                            .nearest = kNearestPairs};
     curve.set(options, value);
-    add_judged_engines("stability/" + std::string(curve.name) + ":" + path_of(value) + "/" +
+    add_judged_engines("stability/" + std::string(curve.name) + ":" + key_text(value) + "/" +
                            std::string(kind.name),
                        kind, ContactLevel::distance, options, true);
   }

@@ -181,8 +181,8 @@ class VolumeFrames {
 
 void add_volume(const VolumeSetting& setting, std::size_t objects, const std::string& structure,
                 const VolumeKind& kind) {
-  const std::string path = "volume/" + setting.name + "/step:" + path_of(setting.step) +
-                           "/objects:" + std::to_string(objects) + "/" + path_of(structure) + "/" +
+  const std::string path = "volume/" + setting.name + "/step:" + key_text(setting.step) +
+                           "/objects:" + std::to_string(objects) + "/" + word_of(structure) + "/" +
                            kind.name;
   add(path, [=](benchmark::State& state) {
     auto& frames = prepared<VolumeFrames>(
@@ -210,7 +210,7 @@ std::vector<VolumeSetting> volume_settings(const std::vector<NamedScene>& scenes
                                       {"rods", kFast, [] { return Solids::rods(kObjects, 1); }},
                                       {"slow", kSlow, cubes}};
   for (const NamedScene& scene : scenes) {
-    settings.push_back({path_of(scene.name), kFast, [scene] {
+    settings.push_back({word_of(scene.name), kFast, [scene] {
                           const auto source = scene.source(scene.objects(kObjects), 1);
                           return Solids::of_boxes(source->boxes());
                         }});

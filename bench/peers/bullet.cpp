@@ -2,15 +2,16 @@
 // (BulletSweep). Bullet's allocator is global, so the bytes of an engine are counted while it
 // works.
 
-#include "bench/common/sample.h"
+#include "bench/contenders/engine.h"
 #include "bench/peers/adapter_tools.h"
-#include "bench/peers/adapters.h"
+#include "bench/peers/registry.h"
 
 #include <malloc.h>
 
 #include <BulletCollision/BroadphaseCollision/btAxisSweep3.h>
 #include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
 #include <LinearMath/btAlignedAllocator.h>
+#include <Eigen/Core>
 
 #include <algorithm>
 #include <atomic>
@@ -75,7 +76,10 @@ btBroadphaseProxy* make_proxy(btBroadphaseInterface& broad_phase, std::size_t ro
 /// Common parts of both broad phases: one thread, proxies by row, and bytes.
 class BulletAdapter : public PairsAdapter {
  public:
-  BulletAdapter() { allocated_bytes = &bytes_; }
+  BulletAdapter() {
+    count_memory();
+    allocated_bytes = &bytes_;
+  }
   ~BulletAdapter() override { allocated_bytes = &nobodys_bytes; }
 
   [[nodiscard]] bool is_serial() const final { return true; }
@@ -108,20 +112,22 @@ class BulletTrees final : public BulletAdapter {
 
   [[nodiscard]] std::string name() const override { return "Bullet dbvt"; }
 
-  void start(std::span<const Aabb> boxes) override {
-    const Stopwatch watch;
+ private:
+  struct Trees : btDbvtBroadphase {
+    Trees() { m_deferedcollide = true; }
+  };
+
+  void build(std::span<const Aabb> boxes, const Stopwatch&) override {
     allocated_bytes = &bytes_;
     gDbvtMargin = static_cast<btScalar>(0.1 * mean_edge(boxes));
     margin_ = gDbvtMargin;
     add_proxies(boxes);
     trees_.optimize();
-    update_ms_ = watch.ms();
-    find_pairs();
+    defer_next_ = trees_.m_deferedcollide;
   }
 
-  void frame(std::span<const std::uint32_t> changed_rows,
-             std::span<const Aabb> all_boxes) override {
-    const Stopwatch watch;
+  void update(std::span<const std::uint32_t> changed_rows, std::span<const Aabb> all_boxes,
+              const Stopwatch&) override {
     allocated_bytes = &bytes_;
     gDbvtMargin = margin_;  // a global of Bullet; another engine may have changed it
     const unsigned known = trees_.m_updates_done;
@@ -130,16 +136,8 @@ class BulletTrees final : public BulletAdapter {
                      nullptr);
     }
     add_proxies(all_boxes);
-    const std::size_t inserted = trees_.m_updates_done - known;
-    update_ms_ = watch.ms();
-    find_pairs();
-    trees_.m_deferedcollide = inserted > proxies_.size() / 16;
+    defer_next_ = trees_.m_updates_done - known > proxies_.size() / 16;
   }
-
- private:
-  struct Trees : btDbvtBroadphase {
-    Trees() { m_deferedcollide = true; }
-  };
 
   /// Adds proxies for new rows.
   void add_proxies(std::span<const Aabb> boxes) {
@@ -149,8 +147,9 @@ class BulletTrees final : public BulletAdapter {
     }
   }
 
-  void find_pairs() {
+  void find_pairs(std::span<const Aabb>) override {
     trees_.calculateOverlappingPairs(nullptr);
+    trees_.m_deferedcollide = defer_next_;
     pairs_.clear();
     const btOverlappingPairCache& cache = *trees_.getOverlappingPairCache();
     const btBroadphasePair* found = cache.getOverlappingPairArrayPtr();
@@ -164,6 +163,7 @@ class BulletTrees final : public BulletAdapter {
 
   Trees trees_;
   btScalar margin_ = 0;
+  bool defer_next_ = true;
 };
 
 /// A pair cache that also stores its pairs as rows, so that they need not be copied out.
@@ -205,15 +205,15 @@ class BulletSweep final : public BulletAdapter {
   /// The first frame takes seconds for more objects, and minutes for 100,000.
   [[nodiscard]] std::size_t largest() const override { return 5'000; }
 
-  void start(std::span<const Aabb> boxes) override {
-    const Stopwatch watch;
+ private:
+  static constexpr std::size_t kRowsOfCheck = 64;
+
+  void build(std::span<const Aabb> boxes, const Stopwatch& watch) override {
     build(boxes, boxes.size(), watch);
-    update_ms_ = watch.ms();
   }
 
-  void frame(std::span<const std::uint32_t> changed_rows,
-             std::span<const Aabb> all_boxes) override {
-    const Stopwatch watch;
+  void update(std::span<const std::uint32_t> changed_rows, std::span<const Aabb> all_boxes,
+              const Stopwatch& watch) override {
     allocated_bytes = &bytes_;
     if (!has_room_for(changed_rows, all_boxes)) {
       build(all_boxes, 2 * all_boxes.size(), watch);
@@ -226,11 +226,9 @@ class BulletSweep final : public BulletAdapter {
       }
       add_proxies(all_boxes, watch);
     }
-    update_ms_ = watch.ms();
   }
 
- private:
-  static constexpr std::size_t kRowsOfCheck = 64;
+  void find_pairs(std::span<const Aabb>) override {}
 
   [[nodiscard]] bool is_inside(const Aabb& box) const {
     for (int axis = 0; axis < 3; ++axis) {
@@ -285,16 +283,8 @@ class BulletSweep final : public BulletAdapter {
   std::size_t handles_ = 0;
 };
 
+const RegisteredPeer<Engine, BulletTrees> kBulletTrees;
+const RegisteredPeer<Engine, BulletSweep> kBulletSweep;
+
 }  // namespace
-
-std::unique_ptr<Engine> make_bullet() {
-  count_memory();
-  return std::make_unique<BulletTrees>();
-}
-
-std::unique_ptr<Engine> make_bullet_sweep() {
-  count_memory();
-  return std::make_unique<BulletSweep>();
-}
-
 }  // namespace winnow::bench

@@ -1,5 +1,6 @@
-#include "bench/peers/adapters.h"
+#include "bench/contenders/impact_engine.h"
 #include "bench/peers/bullet_shapes.h"
+#include "bench/peers/registry.h"
 
 #include <BulletCollision/NarrowPhaseCollision/btContinuousConvexCollision.h>
 #include <BulletCollision/NarrowPhaseCollision/btGjkEpaPenetrationDepthSolver.h>
@@ -17,7 +18,7 @@ using namespace in_bullet;
 /// shapes with translation and rotation, or its sub-simplex cast, without rotation. Motions are
 /// given by their ends, so rotations of more than half a turn are not supported.
 template <typename Cast>
-class BulletImpacts final : public ImpactEngine {
+class BulletImpacts final : public ImpactAdapter<BulletImpacts<Cast>> {
  public:
   static constexpr bool kTurns = std::is_same_v<Cast, btContinuousConvexCollision>;
 
@@ -51,18 +52,11 @@ class BulletImpacts final : public ImpactEngine {
     }
   }
 
-  void run(std::span<const BodyPair> pairs) override {
-    answers_.resize(pairs.size());
-    for (std::size_t i = 0; i < pairs.size(); ++i) {
-      const Body& a = bodies_[pairs[i].a];
-      const Body& b = bodies_[pairs[i].b];
-      btConvexCast::CastResult result;
-      const bool hit = cast(a, b, result);
-      answers_[i] = {hit, hit ? static_cast<double>(result.m_fraction) : 1.0};
-    }
+  ImpactAnswer impact(const BodyPair& pair) {
+    btConvexCast::CastResult result;
+    const bool hit = cast(bodies_[pair.a], bodies_[pair.b], result);
+    return {hit, hit ? static_cast<double>(result.m_fraction) : 1.0};
   }
-
-  [[nodiscard]] ImpactAnswer answer(std::size_t i) const override { return answers_[i]; }
 
  private:
   /// Either a convex shape or a plane.
@@ -90,17 +84,11 @@ class BulletImpacts final : public ImpactEngine {
   btVoronoiSimplexSolver simplex_;
   btGjkEpaPenetrationDepthSolver depth_;
   std::vector<Body> bodies_;
-  std::vector<ImpactAnswer> answers_;
 };
 
+const RegisteredPeer<ImpactEngine, BulletImpacts<btContinuousConvexCollision>>
+    kBulletImpactsContinuous;
+const RegisteredPeer<ImpactEngine, BulletImpacts<btSubsimplexConvexCast>> kBulletImpactsSubSimplex;
+
 }  // namespace
-
-std::unique_ptr<ImpactEngine> make_bullet_continuous() {
-  return std::make_unique<BulletImpacts<btContinuousConvexCollision>>();
-}
-
-std::unique_ptr<ImpactEngine> make_bullet_sub_simplex() {
-  return std::make_unique<BulletImpacts<btSubsimplexConvexCast>>();
-}
-
 }  // namespace winnow::bench

@@ -1,9 +1,10 @@
 // Adapter of Bullet's narrow phase: picks, for each pair of kinds and level, the fastest of
-// Bullet's algorithms, and converts its result. peers.cpp makes it through adapters.h.
+// Bullet's algorithms, and converts its result. It registers itself in registry.h.
 
-#include "bench/peers/adapters.h"
+#include "bench/contenders/narrow_engine.h"
 #include "bench/peers/bullet_shapes.h"
 #include "bench/peers/narrow_adapter.h"
+#include "bench/peers/registry.h"
 
 #include <BulletCollision/CollisionDispatch/SphereTriangleDetector.h>
 #include <BulletCollision/CollisionDispatch/btBoxBoxDetector.h>
@@ -307,10 +308,7 @@ class BulletNarrow final : public NarrowAdapter<BulletNarrow> {
   std::vector<btCollisionObject> objects_;
 };
 
+const RegisteredPeer<NarrowEngine, BulletNarrow> kBulletNarrow;
+
 }  // namespace
-
-std::unique_ptr<NarrowEngine> make_bullet_narrow() {
-  return std::make_unique<BulletNarrow>();
-}
-
 }  // namespace winnow::bench

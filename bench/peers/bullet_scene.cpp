@@ -1,5 +1,6 @@
-#include "bench/peers/adapters.h"
+#include "bench/contenders/scene_engine.h"
 #include "bench/peers/bullet_shapes.h"
+#include "bench/peers/registry.h"
 
 #include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
 #include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
@@ -109,10 +110,7 @@ class BulletScene final : public SceneEngine {
   bool has_terrain_ = false;
 };
 
+const RegisteredPeer<SceneEngine, BulletScene> kBulletScene;
+
 }  // namespace
-
-std::unique_ptr<SceneEngine> make_bullet_scene() {
-  return std::make_unique<BulletScene>();
-}
-
 }  // namespace winnow::bench

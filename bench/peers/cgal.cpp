@@ -1,6 +1,6 @@
-#include "bench/common/sample.h"
+#include "bench/contenders/engine.h"
 #include "bench/peers/adapter_tools.h"
-#include "bench/peers/adapters.h"
+#include "bench/peers/registry.h"
 
 // CGAL compiles its parallel version only with this macro.
 #define CGAL_LINKED_WITH_TBB
@@ -51,28 +51,28 @@ class CgalEngine final : public PairsAdapter {
 
   [[nodiscard]] std::string name() const override { return "CGAL boxes"; }
 
-  void start(std::span<const Aabb> boxes) override {
-    axes_ = axes_by_pruning(boxes);
-    std::swap(axes_[1], axes_[2]);  // the second best axis is the last
-    find_pairs(boxes);
-  }
-
-  void frame(std::span<const std::uint32_t>, std::span<const Aabb> all_boxes) override {
-    if (!serial_ && decided_ && all_boxes.size() > 2 * decided_for_) {
-      decided_ = parallel_ = false;
-      parallel_ms_ = 0.0;
-    }
-    find_pairs(all_boxes);
-  }
-
   /// At the peak of a search: the boxes and CGAL's copies of them.
   [[nodiscard]] std::size_t bytes() const override {
     return boxes_.capacity() * sizeof(Box) * (parallel_ ? 10 : 2);
   }
 
  private:
-  void find_pairs(std::span<const Aabb> boxes) {
-    const Stopwatch watch;
+  void build(std::span<const Aabb> boxes, const Stopwatch&) override {
+    axes_ = axes_by_pruning(boxes);
+    std::swap(axes_[1], axes_[2]);  // the second best axis is the last
+    copy(boxes);
+  }
+
+  void update(std::span<const std::uint32_t>, std::span<const Aabb> all_boxes,
+              const Stopwatch&) override {
+    if (!serial_ && decided_ && all_boxes.size() > 2 * decided_for_) {
+      decided_ = parallel_ = false;
+      parallel_ms_ = 0.0;
+    }
+    copy(all_boxes);
+  }
+
+  void copy(std::span<const Aabb> boxes) {
     boxes_.resize(boxes.size());
     for (std::size_t i = 0; i < boxes.size(); ++i) {
       Box& box = boxes_[i];
@@ -82,8 +82,10 @@ class CgalEngine final : public PairsAdapter {
       }
       box.row = static_cast<std::uint32_t>(i);
     }
-    update_ms_ = watch.ms();
+  }
 
+  void find_pairs(std::span<const Aabb>) override {
+    const Stopwatch watch;
     pairs_.clear();
     if (parallel_) {
       search_parallel();
@@ -138,10 +140,7 @@ class CgalEngine final : public PairsAdapter {
   double parallel_ms_ = 0.0;
 };
 
+const RegisteredPeer<Engine, CgalEngine> kCgalEngine;
+
 }  // namespace
-
-std::unique_ptr<Engine> make_cgal(int threads) {
-  return std::make_unique<CgalEngine>(threads);
-}
-
 }  // namespace winnow::bench

@@ -1,6 +1,6 @@
-#include "bench/common/sample.h"
+#include "bench/contenders/engine.h"
 #include "bench/peers/adapter_tools.h"
-#include "bench/peers/adapters.h"
+#include "bench/peers/registry.h"
 
 #include <embree3/rtcore.h>
 #include <tbb/enumerable_thread_specific.h>
@@ -38,8 +38,13 @@ class EmbreeEngine final : public PairsAdapter {
 
   [[nodiscard]] std::string name() const override { return "Embree"; }
 
-  void start(std::span<const Aabb> boxes) override {
-    const Stopwatch watch;
+  /// Bytes according to the device.
+  [[nodiscard]] std::size_t bytes() const override {
+    return static_cast<std::size_t>(bytes_.load());
+  }
+
+ private:
+  void build(std::span<const Aabb> boxes, const Stopwatch&) override {
     geometry_ = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_USER);
     rtcSetGeometryUserPrimitiveCount(geometry_, static_cast<unsigned>(boxes.size()));
     rtcSetGeometryUserData(geometry_, this);
@@ -49,13 +54,10 @@ class EmbreeEngine final : public PairsAdapter {
     rtcCommitGeometry(geometry_);
     rtcAttachGeometry(scene_, geometry_);
     rtcCommitScene(scene_);
-    update_ms_ = watch.ms();
-    find_pairs();
   }
 
-  void frame(std::span<const std::uint32_t> changed_rows,
-             std::span<const Aabb> all_boxes) override {
-    const Stopwatch watch;
+  void update(std::span<const std::uint32_t> changed_rows, std::span<const Aabb> all_boxes,
+              const Stopwatch&) override {
     const bool has_grown = all_boxes.size() != boxes_.size();
     boxes_ = all_boxes;
     if (has_grown)
@@ -64,16 +66,8 @@ class EmbreeEngine final : public PairsAdapter {
       rtcCommitGeometry(geometry_);
       rtcCommitScene(scene_);
     }
-    update_ms_ = watch.ms();
-    find_pairs();
   }
 
-  /// Bytes according to the device.
-  [[nodiscard]] std::size_t bytes() const override {
-    return static_cast<std::size_t>(bytes_.load());
-  }
-
- private:
   static bool count_memory(void* bytes, std::ptrdiff_t change, bool) {
     *static_cast<std::atomic<std::ptrdiff_t>*>(bytes) += change;
     return true;
@@ -101,7 +95,7 @@ class EmbreeEngine final : public PairsAdapter {
     }
   }
 
-  void find_pairs() {
+  void find_pairs(std::span<const Aabb>) override {
     pairs_.clear();
     if (boxes_.size() < 2) return;
     for (std::vector<Pair>& pairs : found_) pairs.clear();
@@ -119,10 +113,7 @@ class EmbreeEngine final : public PairsAdapter {
   tbb::enumerable_thread_specific<std::vector<Pair>> found_;
 };
 
+const RegisteredPeer<Engine, EmbreeEngine> kEmbreeEngine;
+
 }  // namespace
-
-std::unique_ptr<Engine> make_embree() {
-  return std::make_unique<EmbreeEngine>();
-}
-
 }  // namespace winnow::bench

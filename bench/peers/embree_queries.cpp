@@ -1,7 +1,8 @@
 // Adapter of Embree for queries on boxes: rays, boxes, balls and nearest neighbours, each query by
-// a call of its own. peers.cpp makes it through adapters.h; bench/micro times it.
+// a call of its own; it registers itself in registry.h; bench/micro times it.
 
-#include "bench/peers/adapters.h"
+#include "bench/contenders/query_engine.h"
+#include "bench/peers/registry.h"
 
 #include <embree3/rtcore.h>
 #include <tbb/blocked_range.h>
@@ -311,10 +312,7 @@ class EmbreeQueries final : public QueryEngine {
   tbb::enumerable_thread_specific<Hits> hits_;
 };
 
+const RegisteredPeer<QueryEngine, EmbreeQueries> kEmbreeQueries;
+
 }  // namespace
-
-std::unique_ptr<QueryEngine> make_embree_queries() {
-  return std::make_unique<EmbreeQueries>();
-}
-
 }  // namespace winnow::bench

@@ -1,4 +1,5 @@
-#include "bench/peers/adapters.h"
+#include "bench/contenders/ray_engine.h"
+#include "bench/peers/registry.h"
 
 #include <embree3/rtcore.h>
 
@@ -111,10 +112,8 @@ class EmbreeRays final : public RayEngine {
   std::vector<RTCRay> occluded_;
 };
 
+const RegisteredPeer<RayEngine, EmbreeRays, false> kFast;
+const RegisteredPeer<RayEngine, EmbreeRays, true> kRobust;
+
 }  // namespace
-
-std::unique_ptr<RayEngine> make_embree_rays(bool robust) {
-  return std::make_unique<EmbreeRays>(robust);
-}
-
 }  // namespace winnow::bench

@@ -1,6 +1,6 @@
-#include "bench/common/sample.h"
+#include "bench/contenders/engine.h"
 #include "bench/peers/adapter_tools.h"
-#include "bench/peers/adapters.h"
+#include "bench/peers/registry.h"
 
 #include <fcl/broadphase/broadphase_dynamic_AABB_tree.h>
 
@@ -55,37 +55,6 @@ class FclEngine final : public PairsAdapter {
   [[nodiscard]] std::string name() const override { return "FCL tree"; }
   [[nodiscard]] bool is_serial() const override { return true; }
 
-  void start(std::span<const Aabb> boxes) override {
-    const Stopwatch watch;
-    add_objects(boxes);
-    build();
-    update_ms_ = watch.ms();
-    find_pairs();
-  }
-
-  void frame(std::span<const std::uint32_t> changed_rows,
-             std::span<const Aabb> all_boxes) override {
-    const Stopwatch watch;
-    const std::size_t known = objects_.size();
-    const bool few = changed_rows.size() < known / 64;
-    displaced_.clear();
-    for (const std::uint32_t row : changed_rows) {
-      if (few || !shapes_[row]->overlaps(all_boxes[row])) displaced_.push_back(handles_[row]);
-      shapes_[row]->set(all_boxes[row]);
-      objects_[row]->computeAABB();
-    }
-    add_objects(all_boxes);
-    if (lost_ms_ > build_ms_ || displaced_.size() + objects_.size() - known > known / 4) {
-      build();
-    } else {
-      for (std::size_t i = known; i < objects_.size(); ++i) tree_.registerObject(handles_[i]);
-      if (!displaced_.empty()) tree_.update(displaced_);
-      if (!few && !changed_rows.empty()) tree_.update();
-    }
-    update_ms_ = watch.ms();
-    find_pairs();
-  }
-
   /// A lower bound: objects, shapes, nodes and the entries of the tree's hash table, without
   /// overhead of the allocator.
   [[nodiscard]] std::size_t bytes() const override {
@@ -96,6 +65,31 @@ class FclEngine final : public PairsAdapter {
   }
 
  private:
+  void build(std::span<const Aabb> boxes, const Stopwatch&) override {
+    add_objects(boxes);
+    build_tree();
+  }
+
+  void update(std::span<const std::uint32_t> changed_rows, std::span<const Aabb> all_boxes,
+              const Stopwatch&) override {
+    const std::size_t known = objects_.size();
+    const bool few = changed_rows.size() < known / 64;
+    displaced_.clear();
+    for (const std::uint32_t row : changed_rows) {
+      if (few || !shapes_[row]->overlaps(all_boxes[row])) displaced_.push_back(handles_[row]);
+      shapes_[row]->set(all_boxes[row]);
+      objects_[row]->computeAABB();
+    }
+    add_objects(all_boxes);
+    if (lost_ms_ > build_ms_ || displaced_.size() + objects_.size() - known > known / 4) {
+      build_tree();
+    } else {
+      for (std::size_t i = known; i < objects_.size(); ++i) tree_.registerObject(handles_[i]);
+      if (!displaced_.empty()) tree_.update(displaced_);
+      if (!few && !changed_rows.empty()) tree_.update();
+    }
+  }
+
   /// Adds objects for new rows.
   void add_objects(std::span<const Aabb> boxes) {
     shapes_.reserve(boxes.size());
@@ -109,7 +103,7 @@ class FclEngine final : public PairsAdapter {
     }
   }
 
-  void build() {
+  void build_tree() {
     const Stopwatch watch;
     tree_.clear();
     tree_.registerObjects(handles_);
@@ -119,7 +113,7 @@ class FclEngine final : public PairsAdapter {
     best_search_ms_ = std::numeric_limits<double>::infinity();
   }
 
-  void find_pairs() {
+  void find_pairs(std::span<const Aabb>) override {
     const Stopwatch watch;
     pairs_.clear();
     tree_.collide(&pairs_, collect);
@@ -138,10 +132,7 @@ class FclEngine final : public PairsAdapter {
   double best_search_ms_ = 0.0;
 };
 
+const RegisteredPeer<Engine, FclEngine> kFclEngine;
+
 }  // namespace
-
-std::unique_ptr<Engine> make_fcl() {
-  return std::make_unique<FclEngine>();
-}
-
 }  // namespace winnow::bench

@@ -1,5 +1,6 @@
-#include "bench/peers/adapters.h"
+#include "bench/contenders/impact_engine.h"
 #include "bench/peers/fcl_shapes.h"
+#include "bench/peers/registry.h"
 
 #include <fcl/narrowphase/continuous_collision.h>
 
@@ -15,7 +16,7 @@ using namespace in_fcl;
 /// FCL's own GJK; libccd's is slower here (measured by bench/micro). Motions are given by
 /// their ends, so rotations of more than half a turn are not supported. A pair for which FCL throws
 /// counts as no hit.
-class FclImpacts final : public ImpactEngine {
+class FclImpacts final : public ImpactAdapter<FclImpacts> {
  public:
   FclImpacts() {
     request_.ccd_motion_type = fcl::CCDM_LINEAR;
@@ -42,23 +43,18 @@ class FclImpacts final : public ImpactEngine {
     }
   }
 
-  void run(std::span<const BodyPair> pairs) override {
-    answers_.resize(pairs.size());
-    for (std::size_t i = 0; i < pairs.size(); ++i) {
-      const Body& a = bodies_[pairs[i].a];
-      const Body& b = bodies_[pairs[i].b];
-      fcl::ContinuousCollisionResult<double> result;
-      try {
-        fcl::continuousCollide(a.geometry.get(), a.from, a.to, b.geometry.get(), b.from, b.to,
-                               request_, result);
-      } catch (const std::exception&) {
-        result.is_collide = false;
-      }
-      answers_[i] = {result.is_collide, result.is_collide ? result.time_of_contact : 1.0};
+  ImpactAnswer impact(const BodyPair& pair) {
+    const Body& a = bodies_[pair.a];
+    const Body& b = bodies_[pair.b];
+    fcl::ContinuousCollisionResult<double> result;
+    try {
+      fcl::continuousCollide(a.geometry.get(), a.from, a.to, b.geometry.get(), b.from, b.to,
+                             request_, result);
+    } catch (const std::exception&) {
+      result.is_collide = false;
     }
+    return {result.is_collide, result.is_collide ? result.time_of_contact : 1.0};
   }
-
-  [[nodiscard]] ImpactAnswer answer(std::size_t i) const override { return answers_[i]; }
 
  private:
   struct Body {
@@ -69,13 +65,9 @@ class FclImpacts final : public ImpactEngine {
 
   fcl::ContinuousCollisionRequest<double> request_;
   std::vector<Body> bodies_;
-  std::vector<ImpactAnswer> answers_;
 };
 
+const RegisteredPeer<ImpactEngine, FclImpacts> kFclImpacts;
+
 }  // namespace
-
-std::unique_ptr<ImpactEngine> make_fcl_impacts() {
-  return std::make_unique<FclImpacts>();
-}
-
 }  // namespace winnow::bench

@@ -1,9 +1,10 @@
 // Adapter of FCL's narrow phase: calls its solver's functions for each pair of kinds and level, and
-// converts the results. peers.cpp makes it through adapters.h.
+// converts the results. It registers itself in registry.h.
 
-#include "bench/peers/adapters.h"
+#include "bench/contenders/narrow_engine.h"
 #include "bench/peers/fcl_shapes.h"
 #include "bench/peers/narrow_adapter.h"
+#include "bench/peers/registry.h"
 
 #include <fcl/narrowphase/detail/gjk_solver_indep.h>
 #include <fcl/narrowphase/detail/gjk_solver_libccd.h>
@@ -48,24 +49,9 @@ class FclNarrow final : public NarrowAdapter<FclNarrow<Solver>> {
     if (kind.a == triangle && kind.b == triangle) {
       return pick(level, &Self::cross, &Self::triangle_gap, &Self::cut);
     }
-    switch (kind.a) {
-      case sphere:
-        return with_second<SphereGeometry>(kind.b, level);
-      case capsule:
-        return with_second<CapsuleGeometry>(kind.b, level);
-      case box:
-        return with_second<BoxGeometry>(kind.b, level);
-      case cylinder:
-        return with_second<CylinderGeometry>(kind.b, level);
-      case cone:
-        return with_second<ConeGeometry>(kind.b, level);
-      case hull:
-        return with_second<HullGeometry>(kind.b, level);
-      case ellipsoid:
-        return with_second<EllipsoidGeometry>(kind.b, level);
-      default:
-        return over_plane<Corners>(level);
-    }
+    return with_geometry(kind.a, [&]<typename A>(A*) -> PairFunction {
+      return with_geometry(kind.b, [&]<typename B>(B*) { return function_for<A, B>(level); });
+    });
   }
 
   void start(const PairSet& set) override {
@@ -111,42 +97,44 @@ class FclNarrow final : public NarrowAdapter<FclNarrow<Solver>> {
     }
   }
 
-  /// Selects the function for a shape A and a second kind, which is not before A in order.
-  template <typename A>
-  static PairFunction with_second(ShapeKind b, ContactLevel level) {
-    switch (b) {
+  /// Calls `visit` with a null pointer to FCL's type for a kind; the type of a triangle is Corners.
+  template <typename Visit>
+  static PairFunction with_geometry(ShapeKind kind, Visit&& visit) {
+    switch (kind) {
       case ShapeKind::sphere:
-        return of_shapes<A, SphereGeometry>(level);
+        return visit(static_cast<SphereGeometry*>(nullptr));
       case ShapeKind::capsule:
-        return of_shapes<A, CapsuleGeometry>(level);
+        return visit(static_cast<CapsuleGeometry*>(nullptr));
       case ShapeKind::box:
-        return of_shapes<A, BoxGeometry>(level);
+        return visit(static_cast<BoxGeometry*>(nullptr));
       case ShapeKind::cylinder:
-        return of_shapes<A, CylinderGeometry>(level);
+        return visit(static_cast<CylinderGeometry*>(nullptr));
       case ShapeKind::cone:
-        return of_shapes<A, ConeGeometry>(level);
+        return visit(static_cast<ConeGeometry*>(nullptr));
       case ShapeKind::hull:
-        return of_shapes<A, HullGeometry>(level);
+        return visit(static_cast<HullGeometry*>(nullptr));
       case ShapeKind::ellipsoid:
-        return of_shapes<A, EllipsoidGeometry>(level);
+        return visit(static_cast<EllipsoidGeometry*>(nullptr));
       case ShapeKind::triangle:
-        return of_shapes<A, Corners>(level);
+        return visit(static_cast<Corners*>(nullptr));
       default:
-        return over_plane<A>(level);
+        return visit(static_cast<HalfSpaceGeometry*>(nullptr));
     }
   }
 
-  /// FCL has no distances from half-spaces.
-  template <typename A>
-  static PairFunction over_plane(ContactLevel level) {
-    return pick(level, &Self::template verdict<A, HalfSpaceGeometry>, nullptr,
-                &Self::template contacts<A, HalfSpaceGeometry>);
-  }
-
+  /// Triangles and half-spaces are second, except for a triangle over a half-space.
   template <typename A, typename B>
-  static PairFunction of_shapes(ContactLevel level) {
-    return pick(level, &Self::template verdict<A, B>, &Self::template distance<A, B>,
-                &Self::template contacts<A, B>);
+  static PairFunction function_for(ContactLevel level) {
+    constexpr bool kOverPlane = std::is_same_v<B, HalfSpaceGeometry>;
+    if constexpr (std::is_same_v<A, HalfSpaceGeometry> ||
+                  (std::is_same_v<A, Corners> && !kOverPlane)) {
+      return nullptr;
+    } else if constexpr (kOverPlane) {  // FCL has no distances from half-spaces
+      return pick(level, &Self::template verdict<A, B>, nullptr, &Self::template contacts<A, B>);
+    } else {
+      return pick(level, &Self::template verdict<A, B>, &Self::template distance<A, B>,
+                  &Self::template contacts<A, B>);
+    }
   }
 
   template <typename Shape>
@@ -319,14 +307,9 @@ class FclNarrow final : public NarrowAdapter<FclNarrow<Solver>> {
   Contacts* no_contacts_ = nullptr;
 };
 
+const RegisteredPeer<NarrowEngine, FclNarrow<fcl::detail::GJKSolver_libccd<double>>>
+    kFclNarrowLibccd;
+const RegisteredPeer<NarrowEngine, FclNarrow<fcl::detail::GJKSolver_indep<double>>> kFclNarrowIndep;
+
 }  // namespace
-
-std::unique_ptr<NarrowEngine> make_fcl_libccd() {
-  return std::make_unique<FclNarrow<fcl::detail::GJKSolver_libccd<double>>>();
-}
-
-std::unique_ptr<NarrowEngine> make_fcl_indep() {
-  return std::make_unique<FclNarrow<fcl::detail::GJKSolver_indep<double>>>();
-}
-
 }  // namespace winnow::bench

@@ -1,5 +1,6 @@
-#include "bench/peers/adapters.h"
+#include "bench/contenders/scene_engine.h"
 #include "bench/peers/fcl_shapes.h"
+#include "bench/peers/registry.h"
 
 #include <fcl/broadphase/broadphase_dynamic_AABB_tree.h>
 #include <fcl/geometry/bvh/BVH_model.h>
@@ -117,14 +118,8 @@ class FclMesh final : public MeshEngine {
   fcl::CollisionResult<double> result_;
 };
 
+const RegisteredPeer<SceneEngine, FclScene> kFclScene;
+const RegisteredPeer<MeshEngine, FclMesh> kFclMesh;
+
 }  // namespace
-
-std::unique_ptr<SceneEngine> make_fcl_scene() {
-  return std::make_unique<FclScene>();
-}
-
-std::unique_ptr<MeshEngine> make_fcl_mesh() {
-  return std::make_unique<FclMesh>();
-}
-
 }  // namespace winnow::bench

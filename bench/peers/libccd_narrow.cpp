@@ -1,8 +1,9 @@
 // Adapter of libccd: support functions for winnow's shapes, and its GJK with EPA and its MPR on
-// them. peers.cpp makes it through adapters.h.
+// them. It registers itself in registry.h.
 
-#include "bench/peers/adapters.h"
+#include "bench/contenders/narrow_engine.h"
 #include "bench/peers/narrow_adapter.h"
+#include "bench/peers/registry.h"
 #include "bench/scenes/lens.h"
 
 #include <ccd/ccd.h>
@@ -10,144 +11,118 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 
 namespace winnow::bench {
 namespace {
 
+using Vector = Eigen::Vector3d;
+
 /// A body, as the support functions read it.
 struct CcdBody {
-  double turn[9];  // rotation, by columns
-  double position[3];
+  Eigen::Matrix3d turn;
+  Vector position;
   double size[3];  // half lengths of a box; radii and half length of round shapes
   const Lens* lens;
   const double* vertex[3];  // columns of coordinates
   std::uint32_t vertices;
 };
 
-void to_local(const CcdBody& body, const ccd_vec3_t& world, double (&local)[3]) {
-  for (int i = 0; i < 3; ++i) {
-    const double* column = body.turn + 3 * i;
-    local[i] = column[0] * world.v[0] + column[1] * world.v[1] + column[2] * world.v[2];
-  }
-}
+// Support functions of libccd: the support point of a body in a direction of any length, both in
+// world coordinates.
 
-void to_world(const CcdBody& body, const double (&local)[3], ccd_vec3_t& world) {
-  for (int i = 0; i < 3; ++i) {
-    world.v[i] = body.position[i] + body.turn[i] * local[0] + body.turn[3 + i] * local[1] +
-                 body.turn[6 + i] * local[2];
-  }
+const CcdBody& body_of(const void* object) {
+  return *static_cast<const CcdBody*>(object);
 }
-
-double length_of(const ccd_vec3_t& v) {
-  return std::sqrt(v.v[0] * v.v[0] + v.v[1] * v.v[1] + v.v[2] * v.v[2]);
-}
-
-void add_radius(const ccd_vec3_t& direction, double radius, ccd_vec3_t& point) {
-  const double factor = radius / length_of(direction);
-  for (int i = 0; i < 3; ++i) point.v[i] += factor * direction.v[i];
-}
-
-// Support functions: the support point of a body in a direction of any length, both in world
-// coordinates.
 
 void of_sphere(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* point) {
-  const CcdBody& body = *static_cast<const CcdBody*>(object);
-  std::copy_n(body.position, 3, point->v);
-  add_radius(*direction, body.size[0], *point);
+  const CcdBody& body = body_of(object);
+  const auto along = Vector::Map(direction->v);
+  Vector::Map(point->v) = body.position + body.size[0] / along.norm() * along;
 }
 
 void of_capsule(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* point) {
-  const CcdBody& body = *static_cast<const CcdBody*>(object);
-  const double* axis = body.turn + 6;
-  const double along =
-      axis[0] * direction->v[0] + axis[1] * direction->v[1] + axis[2] * direction->v[2];
-  const double h = along < 0.0 ? -body.size[1] : body.size[1];
-  for (int i = 0; i < 3; ++i) point->v[i] = body.position[i] + h * axis[i];
-  add_radius(*direction, body.size[0], *point);
+  const CcdBody& body = body_of(object);
+  const auto along = Vector::Map(direction->v);
+  const double h = std::copysign(body.size[1], body.turn.col(2).dot(along));
+  Vector::Map(point->v) =
+      body.position + h * body.turn.col(2) + body.size[0] / along.norm() * along;
 }
 
 void of_taper(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* point) {
-  const CcdBody& body = *static_cast<const CcdBody*>(object);
-  const double* axis = body.turn + 6;
-  const double along =
-      axis[0] * direction->v[0] + axis[1] * direction->v[1] + axis[2] * direction->v[2];
-  const double rise = (body.size[0] - body.size[1]) * length_of(*direction);
-  const bool low = rise > 2.0 * body.size[2] * along;
+  const CcdBody& body = body_of(object);
+  const auto along = Vector::Map(direction->v);
+  const double length = along.norm();
+  const double rise = (body.size[0] - body.size[1]) * length;
+  const bool low = rise > 2.0 * body.size[2] * body.turn.col(2).dot(along);
   const double h = low ? -body.size[2] : body.size[2];
-  for (int i = 0; i < 3; ++i) point->v[i] = body.position[i] + h * axis[i];
-  add_radius(*direction, body.size[low ? 0 : 1], *point);
+  Vector::Map(point->v) =
+      body.position + h * body.turn.col(2) + body.size[low ? 0 : 1] / length * along;
 }
 
-void of_box(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* point) {
-  const CcdBody& body = *static_cast<const CcdBody*>(object);
-  double local[3];
-  to_local(body, *direction, local);
-  for (int i = 0; i < 3; ++i) local[i] = std::copysign(body.size[i], local[i]);
-  to_world(body, local, *point);
+// Support functions in the frame of the body.
+
+Vector box_corner(const CcdBody& body, const Vector& along) {
+  Vector corner;
+  for (int i = 0; i < 3; ++i) corner[i] = std::copysign(body.size[i], along[i]);
+  return corner;
 }
 
-void of_cylinder(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* point) {
-  const CcdBody& body = *static_cast<const CcdBody*>(object);
-  double local[3];
-  to_local(body, *direction, local);
-  const double across = std::hypot(local[0], local[1]);
+Vector rim_point(const CcdBody& body, const Vector& along, double z) {
+  const double across = std::hypot(along.x(), along.y());
   const double reach = across > 0.0 ? body.size[0] / across : 0.0;
-  const double at[3] = {reach * local[0], reach * local[1], std::copysign(body.size[1], local[2])};
-  to_world(body, at, *point);
+  return {reach * along.x(), reach * along.y(), z};
 }
 
-void of_cone(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* point) {
-  const CcdBody& body = *static_cast<const CcdBody*>(object);
-  double local[3];
-  to_local(body, *direction, local);
-  const double across = std::hypot(local[0], local[1]);
-  const double reach = across > 0.0 ? body.size[0] / across : 0.0;
-  const bool apex = 2.0 * body.size[1] * local[2] > body.size[0] * across;
-  const double at[3] = {apex ? 0.0 : reach * local[0], apex ? 0.0 : reach * local[1],
-                        apex ? body.size[1] : -body.size[1]};
-  to_world(body, at, *point);
+Vector on_cylinder(const CcdBody& body, const Vector& along) {
+  return rim_point(body, along, std::copysign(body.size[1], along.z()));
 }
 
-void of_ellipsoid(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* point) {
-  const CcdBody& body = *static_cast<const CcdBody*>(object);
-  double local[3];
-  to_local(body, *direction, local);
-  for (int i = 0; i < 3; ++i) local[i] *= body.size[i];
-  const double length = std::hypot(local[0], local[1], local[2]);
-  for (int i = 0; i < 3; ++i) local[i] *= length > 0.0 ? body.size[i] / length : 0.0;
-  to_world(body, local, *point);
+Vector on_cone(const CcdBody& body, const Vector& along) {
+  const double across = std::hypot(along.x(), along.y());
+  const bool apex = 2.0 * body.size[1] * along.z() > body.size[0] * across;
+  return apex ? Vector(0.0, 0.0, body.size[1]) : rim_point(body, along, -body.size[1]);
 }
 
-void of_lens(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* point) {
-  const CcdBody& body = *static_cast<const CcdBody*>(object);
-  double local[3];
-  double at[3];
-  to_local(body, *direction, local);
-  farthest_of_lens(*body.lens, local, at);
-  to_world(body, at, *point);
+Vector on_ellipsoid(const CcdBody& body, const Vector& along) {
+  const auto radii = Vector::Map(body.size);
+  const Vector scaled = radii.cwiseProduct(along);
+  const double length = scaled.norm();
+  return length > 0.0 ? Vector(radii.cwiseProduct(scaled) / length) : Vector::Zero();
 }
 
-void of_points(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* point) {
-  const CcdBody& body = *static_cast<const CcdBody*>(object);
-  double local[3];
-  to_local(body, *direction, local);
+Vector on_lens(const CcdBody& body, const Vector& along) {
+  Vector point;
+  farthest_of_lens(*body.lens, along.data(), point.data());
+  return point;
+}
+
+Vector farthest_vertex(const CcdBody& body, const Vector& along) {
+  const auto vertex = [&](std::uint32_t i) {
+    return Vector(body.vertex[0][i], body.vertex[1][i], body.vertex[2][i]);
+  };
   std::uint32_t best = 0;
   double most = -HUGE_VAL;
   for (std::uint32_t i = 0; i < body.vertices; ++i) {
-    const double along =
-        body.vertex[0][i] * local[0] + body.vertex[1][i] * local[1] + body.vertex[2][i] * local[2];
-    if (along > most) {
-      most = along;
+    const double value = vertex(i).dot(along);
+    if (value > most) {
+      most = value;
       best = i;
     }
   }
-  const double at[3] = {body.vertex[0][best], body.vertex[1][best], body.vertex[2][best]};
-  to_world(body, at, *point);
+  return vertex(best);
+}
+
+template <Vector (*farthest)(const CcdBody&, const Vector&)>
+void rotated(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* point) {
+  const CcdBody& body = body_of(object);
+  const Vector along = body.turn.transpose() * Vector::Map(direction->v);
+  Vector::Map(point->v) = body.position + body.turn * farthest(body, along);
 }
 
 /// Returns the position of the body: all shapes in the race contain the origin of their frame.
 void center_of(const void* object, ccd_vec3_t* center) {
-  std::copy_n(static_cast<const CcdBody*>(object)->position, 3, center->v);
+  Vector::Map(center->v) = body_of(object).position;
 }
 
 ccd_support_fn support_of(ShapeKind kind) {
@@ -157,19 +132,19 @@ ccd_support_fn support_of(ShapeKind kind) {
     case ShapeKind::capsule:
       return of_capsule;
     case ShapeKind::box:
-      return of_box;
+      return rotated<box_corner>;
     case ShapeKind::cylinder:
-      return of_cylinder;
+      return rotated<on_cylinder>;
     case ShapeKind::cone:
-      return of_cone;
+      return rotated<on_cone>;
     case ShapeKind::ellipsoid:
-      return of_ellipsoid;
+      return rotated<on_ellipsoid>;
     case ShapeKind::tapered_capsule:
       return of_taper;
     case ShapeKind::support:
-      return of_lens;
+      return rotated<on_lens>;
     default:
-      return of_points;
+      return rotated<farthest_vertex>;
   }
 }
 
@@ -177,51 +152,49 @@ ccd_support_fn support_of(ShapeKind kind) {
 CcdBody make_body(const ShapeTables& tables, ShapeId id, const Pose& pose,
                   std::vector<double>& corners) {
   CcdBody body{};
-  Eigen::Map<Eigen::Matrix3d>(body.turn) = orientation_of(pose).toRotationMatrix();
-  std::copy_n(pose.position, 3, body.position);
+  body.turn = orientation_of(pose).toRotationMatrix();
+  body.position = Vector::Map(pose.position);
+  const std::uint32_t i = id.index();
+  const auto set_sizes = [&](std::initializer_list<double> sizes) {
+    std::copy(sizes.begin(), sizes.end(), body.size);
+  };
   switch (id.kind()) {
     case ShapeKind::sphere:
-      body.size[0] = tables.spheres[id.index()].radius;
+      set_sizes({tables.spheres[i].radius});
       break;
     case ShapeKind::capsule:
-      body.size[0] = tables.capsules[id.index()].radius;
-      body.size[1] = tables.capsules[id.index()].half_length;
+      set_sizes({tables.capsules[i].radius, tables.capsules[i].half_length});
+      break;
+    case ShapeKind::cylinder:
+      set_sizes({tables.cylinders[i].radius, tables.cylinders[i].half_length});
+      break;
+    case ShapeKind::cone:
+      set_sizes({tables.cones[i].radius, tables.cones[i].half_length});
       break;
     case ShapeKind::box:
-      std::copy_n(tables.boxes[id.index()].half, 3, body.size);
+      std::copy_n(tables.boxes[i].half, 3, body.size);
       break;
     case ShapeKind::ellipsoid:
-      std::copy_n(tables.ellipsoids[id.index()].radius, 3, body.size);
+      std::copy_n(tables.ellipsoids[i].radius, 3, body.size);
       break;
     case ShapeKind::tapered_capsule: {
-      const TaperedCapsuleShape& taper = tables.tapered_capsules[id.index()];
-      std::copy_n(taper.radius, 2, body.size);
-      body.size[2] = taper.half_length;
+      const TaperedCapsuleShape& taper = tables.tapered_capsules[i];
+      set_sizes({taper.radius[0], taper.radius[1], taper.half_length});
       break;
     }
     case ShapeKind::support:
-      body.lens = static_cast<const Lens*>(tables.supports[id.index()].context);
-      break;
-    case ShapeKind::cylinder:
-      body.size[0] = tables.cylinders[id.index()].radius;
-      body.size[1] = tables.cylinders[id.index()].half_length;
-      break;
-    case ShapeKind::cone:
-      body.size[0] = tables.cones[id.index()].radius;
-      body.size[1] = tables.cones[id.index()].half_length;
+      body.lens = static_cast<const Lens*>(tables.supports[i].context);
       break;
     case ShapeKind::triangle:
       for (int axis = 0; axis < 3; ++axis) {
-        for (const auto& vertex : tables.triangles[id.index()].vertex) {
-          corners.push_back(vertex[axis]);
-        }
+        for (const auto& vertex : tables.triangles[i].vertex) corners.push_back(vertex[axis]);
         body.vertex[axis] = &corners.back() - 2;
       }
       body.vertices = 3;
       break;
     case ShapeKind::hull:
-      std::copy_n(tables.hulls[id.index()].vertex, 3, body.vertex);
-      body.vertices = tables.hulls[id.index()].vertex_count;
+      std::copy_n(tables.hulls[i].vertex, 3, body.vertex);
+      body.vertices = tables.hulls[i].vertex_count;
       break;
     default:
       break;
@@ -293,14 +266,8 @@ class LibccdNarrow final : public NarrowAdapter<LibccdNarrow> {
   std::vector<double> corners_;  // by triangle, columns of coordinates
 };
 
+const RegisteredPeer<NarrowEngine, LibccdNarrow, false> kLibccdNarrowGjk;
+const RegisteredPeer<NarrowEngine, LibccdNarrow, true> kLibccdNarrowMpr;
+
 }  // namespace
-
-std::unique_ptr<NarrowEngine> make_libccd_gjk() {
-  return std::make_unique<LibccdNarrow>(false);
-}
-
-std::unique_ptr<NarrowEngine> make_libccd_mpr() {
-  return std::make_unique<LibccdNarrow>(true);
-}
-
 }  // namespace winnow::bench

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "bench/contenders/impact_engine.h"
 #include "bench/contenders/narrow_engine.h"
 
 #include <Eigen/Geometry>
@@ -33,6 +34,23 @@ class NarrowAdapter : public NarrowEngine {
  private:
   PairKind kind_;
   std::vector<NarrowAnswer> answers_;
+};
+
+/// Base of adapters for times of impact, which computes each pair by Adapter::impact and stores the
+/// answers.
+template <typename Adapter>
+class ImpactAdapter : public ImpactEngine {
+ public:
+  void run(std::span<const BodyPair> pairs) final {
+    answers_.resize(pairs.size());
+    auto& adapter = static_cast<Adapter&>(*this);
+    for (std::size_t i = 0; i < pairs.size(); ++i) answers_[i] = adapter.impact(pairs[i]);
+  }
+
+  [[nodiscard]] ImpactAnswer answer(std::size_t i) const final { return answers_[i]; }
+
+ private:
+  std::vector<ImpactAnswer> answers_;
 };
 
 [[nodiscard]] inline Eigen::Quaterniond orientation_of(const Pose& pose) {

@@ -1,8 +1,8 @@
-// Adapter of ODE's sweep-and-prune space as a broad phase. peers.cpp makes it through adapters.h.
+// Adapter of ODE's sweep-and-prune space as a broad phase; it registers itself in registry.h.
 
-#include "bench/common/sample.h"
+#include "bench/contenders/engine.h"
 #include "bench/peers/adapter_tools.h"
-#include "bench/peers/adapters.h"
+#include "bench/peers/registry.h"
 
 #include <ode/ode.h>
 
@@ -96,35 +96,29 @@ class OdeEngine final : public PairsAdapter {
   /// ODE sweeps along one axis: a frame with more objects takes over a second.
   [[nodiscard]] std::size_t largest() const override { return 100'000; }
 
-  void start(std::span<const Aabb> boxes) override {
-    const Stopwatch watch;
-    dAllocateODEDataForThread(static_cast<unsigned>(dAllocateMaskAll));
-    space_ = dSweepAndPruneSpaceCreate(nullptr, sap_order(axes_by_pruning(boxes)));
-    add_geoms(boxes);
-    dSpaceClean(space_);
-    update_ms_ = watch.ms();
-    find_pairs(boxes);
-  }
-
-  void frame(std::span<const std::uint32_t> changed_rows,
-             std::span<const Aabb> all_boxes) override {
-    const Stopwatch watch;
-    for (const std::uint32_t row : changed_rows) {
-      *static_cast<Aabb*>(dGeomGetClassData(geoms_[row])) = all_boxes[row];
-      dGeomMoved(geoms_[row]);
-    }
-    add_geoms(all_boxes);
-    dSpaceClean(space_);
-    update_ms_ = watch.ms();
-    find_pairs(all_boxes);
-  }
-
   /// Bytes allocated by ODE, for all ODE engines together.
   [[nodiscard]] std::size_t bytes() const override {
     return allocated_bytes + geoms_.capacity() * sizeof(geoms_[0]);
   }
 
  private:
+  void build(std::span<const Aabb> boxes, const Stopwatch&) override {
+    dAllocateODEDataForThread(static_cast<unsigned>(dAllocateMaskAll));
+    space_ = dSweepAndPruneSpaceCreate(nullptr, sap_order(axes_by_pruning(boxes)));
+    add_geoms(boxes);
+    dSpaceClean(space_);
+  }
+
+  void update(std::span<const std::uint32_t> changed_rows, std::span<const Aabb> all_boxes,
+              const Stopwatch&) override {
+    for (const std::uint32_t row : changed_rows) {
+      *static_cast<Aabb*>(dGeomGetClassData(geoms_[row])) = all_boxes[row];
+      dGeomMoved(geoms_[row]);
+    }
+    add_geoms(all_boxes);
+    dSpaceClean(space_);
+  }
+
   /// Adds geoms for new rows.
   void add_geoms(std::span<const Aabb> boxes) {
     geoms_.reserve(boxes.size());
@@ -144,7 +138,7 @@ class OdeEngine final : public PairsAdapter {
     if (engine.boxes_[i].overlaps(engine.boxes_[j])) engine.pairs_.push_back(ordered(i, j));
   }
 
-  void find_pairs(std::span<const Aabb> boxes) {
+  void find_pairs(std::span<const Aabb> boxes) override {
     boxes_ = boxes;
     pairs_.clear();
     dSpaceCollide(space_, this, collect);
@@ -155,10 +149,7 @@ class OdeEngine final : public PairsAdapter {
   std::span<const Aabb> boxes_;
 };
 
+const RegisteredPeer<Engine, OdeEngine> kOdeEngine;
+
 }  // namespace
-
-std::unique_ptr<Engine> make_ode() {
-  return std::make_unique<OdeEngine>();
-}
-
 }  // namespace winnow::bench

@@ -1,92 +1,39 @@
 #include "bench/peers/peers.h"
 
-#include "bench/peers/adapters.h"
+#include "bench/peers/registry.h"
 
 namespace winnow::bench {
+namespace {
 
-std::vector<std::unique_ptr<Engine>> make_peers([[maybe_unused]] int threads) {
-  std::vector<std::unique_ptr<Engine>> peers;
-#ifdef WINNOW_PEER_BULLET
-  peers.push_back(make_bullet());
-  peers.push_back(make_bullet_sweep());
-#endif
-#ifdef WINNOW_PEER_FCL
-  peers.push_back(make_fcl());
-#endif
-#ifdef WINNOW_PEER_CGAL
-  peers.push_back(make_cgal(threads));
-#endif
-#ifdef WINNOW_PEER_EMBREE
-  peers.push_back(make_embree());
-#endif
-#ifdef WINNOW_PEER_ODE
-  peers.push_back(make_ode());
-#endif
-  return peers;
+template <typename Engine>
+std::vector<std::unique_ptr<Engine>> make_all(int threads = 1) {
+  std::vector<std::unique_ptr<Engine>> engines;
+  for (const MakePeer<Engine> make : registered_peers<Engine>()) engines.push_back(make(threads));
+  return engines;
 }
 
+}  // namespace
+
+std::vector<std::unique_ptr<Engine>> make_peers(int threads) {
+  return make_all<Engine>(threads);
+}
 std::vector<std::unique_ptr<QueryEngine>> make_query_peers() {
-  std::vector<std::unique_ptr<QueryEngine>> peers;
-#ifdef WINNOW_PEER_EMBREE
-  peers.push_back(make_embree_queries());
-#endif
-  return peers;
+  return make_all<QueryEngine>();
 }
-
 std::vector<std::unique_ptr<NarrowEngine>> make_narrow_peers() {
-  std::vector<std::unique_ptr<NarrowEngine>> peers;
-#ifdef WINNOW_PEER_BULLET
-  peers.push_back(make_bullet_narrow());
-#endif
-#ifdef WINNOW_PEER_FCL
-  peers.push_back(make_fcl_libccd());
-  peers.push_back(make_fcl_indep());
-#endif
-#ifdef WINNOW_PEER_LIBCCD
-  peers.push_back(make_libccd_gjk());
-  peers.push_back(make_libccd_mpr());
-#endif
-  return peers;
+  return make_all<NarrowEngine>();
 }
-
 std::vector<std::unique_ptr<ImpactEngine>> make_impact_peers() {
-  std::vector<std::unique_ptr<ImpactEngine>> peers;
-#ifdef WINNOW_PEER_BULLET
-  peers.push_back(make_bullet_continuous());
-  peers.push_back(make_bullet_sub_simplex());
-#endif
-#ifdef WINNOW_PEER_FCL
-  peers.push_back(make_fcl_impacts());
-#endif
-  return peers;
+  return make_all<ImpactEngine>();
 }
-
 std::vector<std::unique_ptr<SceneEngine>> make_scene_peers() {
-  std::vector<std::unique_ptr<SceneEngine>> peers;
-#ifdef WINNOW_PEER_BULLET
-  peers.push_back(make_bullet_scene());
-#endif
-#ifdef WINNOW_PEER_FCL
-  peers.push_back(make_fcl_scene());
-#endif
-  return peers;
+  return make_all<SceneEngine>();
 }
-
 std::vector<std::unique_ptr<RayEngine>> make_ray_peers() {
-  std::vector<std::unique_ptr<RayEngine>> peers;
-#ifdef WINNOW_PEER_EMBREE
-  peers.push_back(make_embree_rays(false));
-  peers.push_back(make_embree_rays(true));
-#endif
-  return peers;
+  return make_all<RayEngine>();
 }
-
 std::vector<std::unique_ptr<MeshEngine>> make_mesh_peers() {
-  std::vector<std::unique_ptr<MeshEngine>> peers;
-#ifdef WINNOW_PEER_FCL
-  peers.push_back(make_fcl_mesh());
-#endif
-  return peers;
+  return make_all<MeshEngine>();
 }
 
 }  // namespace winnow::bench

@@ -1,6 +1,6 @@
-// The format of queries in JSON as tables of members, from which `fault_of` explains why a query is
-// refused and `query_format` writes the help of `winnow query`. shape_json.cpp and motion_json.cpp
-// read the same format.
+// The format of queries in JSON as tables of members. By them `is_readable` checks types before
+// shape_json.cpp and motion_json.cpp read a query, `fault_of` explains why a query is refused, and
+// `query_format` writes the help of `winnow query`.
 
 #include "bench/questions/query_format.h"
 
@@ -14,11 +14,12 @@
 namespace winnow::bench {
 namespace {
 
-/// A condition on a value; `element` applies to each element of an array.
+/// A condition on a value: on its type, on each element of an array, and on the range of numbers.
 struct Rule {
   const char* expected;
-  bool (*holds)(const Json& value);
+  bool (*has_type)(const Json& value);
   const Rule* element = nullptr;
+  bool (*is_in_range)(const Json& value) = nullptr;  ///< called only if the type is right
 };
 
 struct Member {
@@ -33,16 +34,28 @@ struct ShapeFormat {
   std::vector<Member> members;
 };
 
-bool is_finite(const Json& value) {
-  double number = 0.0;
-  return read_number(value, number) && std::isfinite(number);
+/// Returns the number, or NaN if the value is none.
+double number_of(const Json& value) {
+  double number = std::nan("");
+  static_cast<void>(read_exact_number(value, number));
+  return number;
 }
-bool is_length(const Json& value) {
-  return is_finite(value) && value.get<double>() >= 0.0;
+bool is_number(const Json& value) {
+  double number = 0.0;
+  return read_number(value, number);
 }
 bool is_exact(const Json& value) {
   double number = 0.0;
-  return read_exact_number(value, number) && std::isfinite(number);
+  return read_exact_number(value, number);
+}
+bool is_finite(const Json& value) {
+  return std::isfinite(number_of(value));
+}
+bool is_length(const Json& value) {
+  return is_finite(value) && number_of(value) >= 0.0;
+}
+bool is_not_negative(const Json& value) {
+  return number_of(value) >= 0.0;
 }
 template <std::size_t N>
 bool has_size(const Json& value) {
@@ -55,49 +68,46 @@ bool is_list(const Json& value) {
 bool has_nonzero(const Json& value) {
   return std::any_of(value.begin(), value.end(), [](const Json& one) { return one != 0.0; });
 }
+bool has_no_zero(const Json& value) {
+  return std::none_of(value.begin(), value.end(), [](const Json& one) { return one == 0.0; });
+}
 /// Returns whether the rows of an array that are arrays have equal lengths.
 bool has_equal_rows(const Json& value) {
   return is_list(value) && std::all_of(value.begin(), value.end(), [&](const Json& row) {
            return !row.is_array() || !value[0].is_array() || row.size() == value[0].size();
          });
 }
+bool is_index(const Json& value) {
+  return value.is_number_unsigned();
+}
+bool is_kind_of_features(const Json& value) {
+  return value == "vertex_face" || value == "edge_edge";
+}
 
-constexpr Rule kNumber{"a finite number", is_finite};
-constexpr Rule kLength{"a finite number >= 0", is_length};
-constexpr Rule kRayEnd{"a number >= 0, or \"inf\"",
-                       [](const Json& value) { return value == "inf" || is_length(value); }};
-constexpr Rule kExact{"a finite number, or a string such as \"0x1.8p+1\"", is_exact};
-constexpr Rule kSeparation{"a finite number >= 0, or a string such as \"0x1.8p+1\"",
-                           [](const Json& value) {
-                             double number = 0.0;
-                             return read_exact_number(value, number) && number >= 0.0;
-                           }};
+constexpr Rule kNumber{"a finite number", is_number, nullptr, is_finite};
+constexpr Rule kLength{"a finite number >= 0", is_number, nullptr, is_length};
+constexpr Rule kRayEnd{"a number >= 0, or \"inf\"", is_number, nullptr, is_not_negative};
+constexpr Rule kExact{"a finite number, or a string such as \"0x1.8p+1\"", is_exact, nullptr,
+                      is_finite};
+constexpr Rule kSeparation{"a finite number >= 0, or a string such as \"0x1.8p+1\"", is_exact,
+                           nullptr, is_length};
 constexpr Rule kVector{"three numbers [x, y, z]", has_size<3>, &kNumber};
-constexpr Rule kDirection{
-    "three numbers [x, y, z], not all 0",
-    [](const Json& value) { return has_size<3>(value) && has_nonzero(value); }, &kNumber};
-constexpr Rule kQuaternion{
-    "four numbers [w, x, y, z], not all 0",
-    [](const Json& value) { return has_size<4>(value) && has_nonzero(value); }, &kNumber};
+constexpr Rule kDirection{"three numbers [x, y, z], not all 0", has_size<3>, &kNumber, has_nonzero};
+constexpr Rule kQuaternion{"four numbers [w, x, y, z], not all 0", has_size<4>, &kNumber,
+                           has_nonzero};
 constexpr Rule kLengths3{"three numbers >= 0", has_size<3>, &kLength};
 constexpr Rule kLengths2{"two numbers >= 0", has_size<2>, &kLength};
-constexpr Rule kSpacing{
-    "two numbers > 0",
-    [](const Json& value) { return has_size<2>(value) && value[0] != 0.0 && value[1] != 0.0; },
-    &kLength};
+constexpr Rule kSpacing{"two numbers > 0", has_size<2>, &kLength, has_no_zero};
 constexpr Rule kPoints{"an array of points [x, y, z]", is_list, &kVector};
 constexpr Rule kThreePoints{"three points [x, y, z]", has_size<3>, &kVector};
-constexpr Rule kIndex{"an index of a point, from 0",
-                      [](const Json& value) { return value.is_number_unsigned(); }};
+constexpr Rule kIndex{"an index of a point, from 0", is_index};
 constexpr Rule kCorners{"three indices [i, j, k]", has_size<3>, &kIndex};
 constexpr Rule kTriangles{"an array of triangles [i, j, k]", is_list, &kCorners};
 constexpr Rule kRow{"an array of numbers", is_list, &kNumber};
 constexpr Rule kRows{"rows with equally many numbers", has_equal_rows, &kRow};
 constexpr Rule kExactPoint{"three numbers [x, y, z]", has_size<3>, &kExact};
 constexpr Rule kFourPoints{"four points [x, y, z]", has_size<4>, &kExactPoint};
-constexpr Rule kFeatures{"\"vertex_face\" or \"edge_edge\"", [](const Json& value) {
-                           return value == "vertex_face" || value == "edge_edge";
-                         }};
+constexpr Rule kFeatures{"\"vertex_face\" or \"edge_edge\"", is_kind_of_features};
 
 const std::vector<Member> kPose{
     {"position", &kVector, "position of the shape's frame; length; 0 if missing", false},
@@ -162,111 +172,110 @@ std::string joined(const std::string& path, const char* name) {
   return path.empty() ? name : path + "." + name;
 }
 
-/// Each function below returns the first fault, or nothing.
 using Fault = std::optional<QueryFault>;
-
-Fault check_value(const Json& value, const Rule& rule, const std::string& path) {
-  if (!rule.holds(value)) return fault_at(path, rule.expected, value);
-  if (rule.element == nullptr) return {};
-  for (std::size_t i = 0; i < value.size(); ++i) {
-    if (Fault fault = check_value(value[i], *rule.element, path + "[" + std::to_string(i) + "]")) {
-      return fault;
-    }
-  }
-  return {};
-}
-
-Fault check_member(const Json& object, const Member& member, const std::string& path) {
-  if (object.contains(member.name)) {
-    return check_value(object[member.name], *member.rule, joined(path, member.name));
-  }
-  if (!member.required) return {};
-  return fault_at(joined(path, member.name), member.rule->expected, Json::value_t::discarded);
-}
-
-Fault check_members(const Json& object, std::span<const Member> members, const std::string& path) {
-  if (!object.is_object()) return fault_at(path, "an object", object);
-  for (const Member& member : members) {
-    if (Fault fault = check_member(object, member, path)) return fault;
-  }
-  return {};
-}
-
-Fault check_pose(const Json& shape, const char* name, const std::string& path) {
-  if (!shape.contains(name)) return {};
-  return check_members(shape[name], kPose, joined(path, name));
-}
-
-/// The pool accepts only indices of vertices.
-Fault check_indices(const Json& mesh, const std::string& path) {
-  const std::size_t count = mesh["v"].size();
-  const Json& triangles = mesh["triangles"];
-  for (std::size_t i = 0; i < triangles.size(); ++i) {
-    for (const Json& corner : triangles[i]) {
-      if (corner.get<std::uint64_t>() < count) continue;
-      return fault_at(path + ".triangles[" + std::to_string(i) + "]",
-                      "indices below " + std::to_string(count), triangles[i]);
-    }
-  }
-  return {};
-}
 
 enum class Allowed { convex, child, any };
 
-Fault check_shape(const Json& shape, Allowed allowed, const std::string& path);
+/// Each function returns the first fault, or nothing.
+class FormatCheck {
+ public:
+  /// Without `ranges` only types are checked.
+  explicit FormatCheck(bool ranges) : ranges_(ranges) {}
 
-Fault check_children(const Json& shape, const std::string& path) {
-  const std::string list = joined(path, "children");
-  if (!shape.contains("children")) {
-    return fault_at(list, "an array of shapes", Json::value_t::discarded);
-  }
-  const Json& children = shape["children"];
-  if (!is_list(children)) return fault_at(list, "an array of shapes", children);
-  for (std::size_t i = 0; i < children.size(); ++i) {
-    const std::string child = list + "[" + std::to_string(i) + "]";
-    if (Fault fault = check_shape(children[i], Allowed::child, child)) return fault;
-  }
-  return {};
-}
-
-Fault check_shape(const Json& shape, Allowed allowed, const std::string& path) {
-  if (!shape.is_object()) return fault_at(path, "a shape, {\"type\": ...}", shape);
-  for (const char* const pose : {"pose", "end_pose"}) {
-    if (Fault fault = check_pose(shape, pose, path)) return fault;
-  }
-  const Json& type = member(shape, "type");
-  if (allowed == Allowed::any && type == "compound") return check_children(shape, path);
-  std::string types;
-  for (const auto* const formats : {&kConvex, &kComposite}) {
-    if (allowed == Allowed::convex && formats == &kComposite) break;
-    for (const ShapeFormat& format : *formats) {
-      types += (types.empty() ? "" : ", ") + std::string(format.type);
-      if (type != format.type) continue;
-      Fault fault = check_members(shape, format.members, path);
-      return fault || type != "mesh" ? fault : check_indices(shape, path);
+  [[nodiscard]] Fault members(const Json& object, std::span<const Member> members,
+                              const std::string& path) const {
+    if (!object.is_object()) return fault_at(path, "an object", object);
+    for (const Member& one : members) {
+      if (Fault fault = member_of(object, one, path)) return fault;
     }
+    return {};
   }
-  if (allowed == Allowed::any) types += ", compound";
-  return fault_at(joined(path, "type"), "one of " + types,
-                  shape.contains("type") ? type : Json(Json::value_t::discarded));
-}
+  [[nodiscard]] Fault member_of(const Json& object, const Member& member,
+                                const std::string& path) const {
+    if (object.contains(member.name)) {
+      return value(object[member.name], *member.rule, joined(path, member.name));
+    }
+    if (!member.required) return {};
+    return fault_at(joined(path, member.name), member.rule->expected, Json::value_t::discarded);
+  }
+  [[nodiscard]] Fault shape(const Json& shape, Allowed allowed, const std::string& path) const {
+    if (!shape.is_object()) return fault_at(path, "a shape, {\"type\": ...}", shape);
+    for (const char* const pose : {"pose", "end_pose"}) {
+      if (!shape.contains(pose)) continue;
+      if (Fault fault = members(shape[pose], kPose, joined(path, pose))) return fault;
+    }
+    const Json& type = member(shape, "type");
+    if (allowed == Allowed::any && type == "compound") return children(shape, path);
+    std::string types;
+    for (const auto* const formats : {&kConvex, &kComposite}) {
+      if (allowed == Allowed::convex && formats == &kComposite) break;
+      for (const ShapeFormat& format : *formats) {
+        types += (types.empty() ? "" : ", ") + std::string(format.type);
+        if (type != format.type) continue;
+        Fault fault = members(shape, format.members, path);
+        return fault || type != "mesh" ? fault : indices(shape, path);
+      }
+    }
+    if (allowed == Allowed::any) types += ", compound";
+    return fault_at(joined(path, "type"), "one of " + types,
+                    shape.contains("type") ? type : Json(Json::value_t::discarded));
+  }
 
-Fault check_required_shape(const Json& query, const char* name, Allowed allowed) {
-  if (query.contains(name)) return check_shape(query[name], allowed, name);
+ private:
+  [[nodiscard]] Fault value(const Json& value, const Rule& rule, const std::string& path) const {
+    const bool is_right = rule.has_type(value);
+    for (std::size_t i = 0; is_right && rule.element != nullptr && i < value.size(); ++i) {
+      const std::string element = path + "[" + std::to_string(i) + "]";
+      if (Fault fault = this->value(value[i], *rule.element, element)) return fault;
+    }
+    if (is_right && (!ranges_ || rule.is_in_range == nullptr || rule.is_in_range(value))) return {};
+    return fault_at(path, rule.expected, value);
+  }
+  /// The pool accepts only indices of vertices.
+  [[nodiscard]] Fault indices(const Json& mesh, const std::string& path) const {
+    const std::size_t count = mesh["v"].size();
+    const Json& triangles = mesh["triangles"];
+    for (std::size_t i = 0; ranges_ && i < triangles.size(); ++i) {
+      for (const Json& corner : triangles[i]) {
+        if (corner.get<std::uint64_t>() < count) continue;
+        return fault_at(path + ".triangles[" + std::to_string(i) + "]",
+                        "indices below " + std::to_string(count), triangles[i]);
+      }
+    }
+    return {};
+  }
+  [[nodiscard]] Fault children(const Json& shape, const std::string& path) const {
+    const std::string list = joined(path, "children");
+    const Json nothing(Json::value_t::discarded);
+    const Json& children = shape.contains("children") ? shape["children"] : nothing;
+    if (!is_list(children)) return fault_at(list, "an array of shapes", children);
+    for (std::size_t i = 0; i < children.size(); ++i) {
+      const std::string child = list + "[" + std::to_string(i) + "]";
+      if (Fault fault = this->shape(children[i], Allowed::child, child)) return fault;
+    }
+    return {};
+  }
+
+  bool ranges_;
+};
+
+Fault fault_of_shape(const Json& query, const char* name, Allowed allowed) {
+  if (query.contains(name)) return FormatCheck(true).shape(query[name], allowed, name);
   return fault_at(name, "a shape, {\"type\": ...}", Json::value_t::discarded);
 }
 
 }  // namespace
 
 std::optional<QueryFault> fault_of(const Json& query) {
+  const FormatCheck check(true);
   if (!query.is_object()) return fault_at("", "an object", query);
   if (query.contains("ray")) {
-    if (Fault fault = check_members(query["ray"], kRay, "ray")) return fault;
-    return check_required_shape(query, "target", Allowed::convex);
+    if (Fault fault = check.members(query["ray"], kRay, "ray")) return fault;
+    return fault_of_shape(query, "target", Allowed::convex);
   }
   if (query.contains("motion")) {
-    if (Fault fault = check_members(query["motion"], kMotion, "motion")) return fault;
-    return check_member(query, kMinSeparation, "");
+    if (Fault fault = check.members(query["motion"], kMotion, "motion")) return fault;
+    return check.member_of(query, kMinSeparation, "");
   }
   if (!query.contains("a") && !query.contains("b")) {
     return fault_at("", "the members \"a\" and \"b\", \"ray\" and \"target\", or \"motion\"",
@@ -274,8 +283,23 @@ std::optional<QueryFault> fault_of(const Json& query) {
   }
   const bool moves = has_end_pose(member(query, "a")) || has_end_pose(member(query, "b"));
   const Allowed allowed = moves ? Allowed::any : Allowed::convex;
-  if (Fault fault = check_required_shape(query, "a", allowed)) return fault;
-  return check_required_shape(query, "b", allowed);
+  if (Fault fault = fault_of_shape(query, "a", allowed)) return fault;
+  return fault_of_shape(query, "b", allowed);
+}
+
+bool is_readable(const Json& value, QueryPart part) {
+  const FormatCheck check(false);
+  switch (part) {
+    case QueryPart::convex_shape:
+      return !check.shape(value, Allowed::convex, "");
+    case QueryPart::any_shape:
+      return !check.shape(value, Allowed::any, "");
+    case QueryPart::ray:
+      return !check.members(value, kRay, "");
+    default:
+      return !check.members(member(value, "motion"), kMotion, "") &&
+             !check.member_of(value, kMinSeparation, "");
+  }
 }
 
 const std::string& query_example() {

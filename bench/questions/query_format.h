@@ -19,6 +19,12 @@ struct QueryFault {
 /// nothing if there is none: the input may still be refused, for example if a result overflows.
 [[nodiscard]] std::optional<QueryFault> fault_of(const Json& query);
 
+/// A part of a query; `motion` is the whole query.
+enum class QueryPart { convex_shape, any_shape, ray, motion };
+
+/// Returns whether a part has all members, each of the right type. Numbers may be out of range.
+[[nodiscard]] bool is_readable(const Json& value, QueryPart part);
+
 /// Returns a file of queries that has each member at least once.
 [[nodiscard]] const std::string& query_example();
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "bench/common/interface.h"
+
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -10,20 +12,13 @@
 namespace winnow::bench {
 
 /// A file read from front to back.
-class ByteSource {
+class ByteSource : public Interface {
  public:
-  ByteSource(const ByteSource&) = delete;
-  ByteSource& operator=(const ByteSource&) = delete;
-  virtual ~ByteSource() = default;
-
   /// Fills `out` and returns the number of bytes, less than its size only at the end of the file.
   /// Throws RecordingError.
   virtual std::size_t read(std::span<std::byte> out) = 0;
   /// Returns the whole size in bytes, if it is available before reading.
   [[nodiscard]] virtual std::optional<std::uint64_t> size() const = 0;
-
- protected:
-  ByteSource() = default;
 };
 
 /// Opens a file and decompresses it if it has the magic bytes of xz. Throws RecordingError.

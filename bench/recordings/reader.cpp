@@ -185,18 +185,4 @@ std::vector<std::vector<RecordedContact>> read_contacts(const std::string& path)
   }
 }
 
-std::vector<std::string> recordings_in(const std::string& folder) {
-  std::vector<std::string> files;
-  std::error_code absent;
-  for (const auto& entry : std::filesystem::directory_iterator(folder, absent)) {
-    const std::string name = entry.path().filename().string();
-    const std::string plain = name.ends_with(".xz") ? name.substr(0, name.size() - 3) : name;
-    if (plain.ends_with(".aabbs") || plain.ends_with(".winnow")) {
-      files.push_back(entry.path().string());
-    }
-  }
-  std::sort(files.begin(), files.end());
-  return files;
-}
-
 }  // namespace winnow::bench

@@ -77,10 +77,6 @@ struct RecordedContact {
 [[nodiscard]] std::vector<std::vector<RecordedContact>> read_program_contacts(
     const std::string& path, std::span<const std::byte> bytes);
 
-/// Returns the .aabbs and .winnow files of a folder, including .xz ones, sorted by name; none if
-/// the folder does not exist.
-[[nodiscard]] std::vector<std::string> recordings_in(const std::string& folder);
-
 /// Writes the source's current frame and `steps` more. Throws RecordingError.
 void write_recording(const std::string& path, FrameSource& source, const std::string& object_type,
                      std::size_t steps);

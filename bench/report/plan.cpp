@@ -194,8 +194,7 @@ void measure_scene(Results& results, const ReportOptions& options, const std::st
                               .frames = options.quick ? 2U : 5U,
                               .set = set.get(),
                               .bodies = bodies,
-                              .seed = options.seed,
-                              .machine_clock = false};
+                              .seed = options.seed};
   for (const bool resting : {false, true}) {
     race.resting = resting;
     add_scene_race(results, race);

@@ -9,6 +9,7 @@
 #include "bench/common/exact_math.h"
 #include "bench/common/need.h"
 #include "bench/common/random.h"
+#include "bench/scenes/random_shapes.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -44,18 +45,6 @@ ShapeId add_hull(ShapePool& pool, Random& random, std::size_t vertices, double r
   return id;
 }
 
-void turn_at_random(Random& random, Pose& pose) {
-  double length = 0.0;
-  do {
-    length = 0.0;
-    for (double& q : pose.orientation) {
-      q = random.in(-1, 1);
-      length += q * q;
-    }
-  } while (length < 0.01 || length > 1.0);
-  for (double& q : pose.orientation) q /= std::sqrt(length);
-}
-
 void add_heap_shapes(BodySet& set, std::size_t bodies, Random& random) {
   std::vector<ShapeId> hulls;
   for (std::size_t i = 0; i < kHulls; ++i) {
@@ -87,14 +76,7 @@ void add_heap_shapes(BodySet& set, std::size_t bodies, Random& random) {
 /// Separates overlapping bodies, all in parallel, and keeps them inside the cube.
 void push_apart(BodySet& set, double side) {
   Scene scene(set.pool);
-  std::vector<BodyDefinition> bodies(set.poses.size());
-  std::vector<Key> keys(set.poses.size());
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
-    bodies[i].shape = set.shapes[i];
-    bodies[i].pose = set.poses[i];
-    bodies[i].data = i;
-  }
-  need(scene.add(bodies, keys), "the heap");
+  const std::vector<Key> keys = add_bodies(set, scene);
   Contacts contacts;
   for (int push = 0; push < kPushes; ++push) {
     need(scene.collide(ContactLevel::distance, contacts), "the heap");
@@ -198,6 +180,16 @@ std::unique_ptr<BodySet> make_landscape(std::size_t bodies, std::uint32_t cells,
     set->poses.push_back(pose);
   }
   return set;
+}
+
+std::vector<Key> add_bodies(const BodySet& set, Scene& scene) {
+  std::vector<BodyDefinition> bodies(set.poses.size());
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    bodies[i] = {.shape = set.shapes[i], .pose = set.poses[i], .data = i};
+  }
+  std::vector<Key> keys(bodies.size());
+  need(scene.add(bodies, keys), "the bodies");
+  return keys;
 }
 
 void apply_pose_noise(const BodySet& set, const PoseNoise& by, std::uint64_t frame,

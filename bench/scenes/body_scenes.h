@@ -1,7 +1,9 @@
 #pragma once
 
 #include <winnow/core/pose.h>
-#include "bench/scenes/body_set.h"
+#include <winnow/pipeline/scene.h>
+#include <winnow/pipeline/shape_pool.h>
+#include "bench/scenes/meshes.h"
 
 #include <array>
 #include <cstddef>
@@ -10,6 +12,15 @@
 #include <vector>
 
 namespace winnow::bench {
+
+/// Input of a scene engine: moving bodies, and a fixed triangle mesh at the origin (none if it is
+/// empty).
+struct BodySet {
+  ShapePool pool;
+  std::vector<ShapeId> shapes;
+  std::vector<Pose> poses;
+  Triangles mesh;
+};
 
 /// Returns a dense heap of boxes, spheres, capsules and hulls of 16 vertices, a quarter each, of
 /// about unit size, at random positions in a cube. Overlapping bodies were pushed apart several
@@ -24,6 +35,9 @@ namespace winnow::bench {
 /// size; every 40th hull leans on its neighbour.
 [[nodiscard]] std::unique_ptr<BodySet> make_landscape(std::size_t bodies, std::uint32_t cells,
                                                       std::uint64_t seed);
+
+/// Adds the bodies to a scene; their client data are their rows.
+[[nodiscard]] std::vector<Key> add_bodies(const BodySet& set, Scene& scene);
 
 /// Largest displacement of a scene's bodies from their poses, along each axis and about it (in
 /// radians).

@@ -1,5 +1,7 @@
 #include "bench/scenes/cameras.h"
+
 #include <winnow/core/eigen.h>
+#include "bench/scenes/random_shapes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -43,18 +45,6 @@ Aabb world_of(std::span<const Aabb> boxes) noexcept {
   return world;
 }
 
-Eigen::Vector3f random_direction(Random& random) noexcept {
-  for (;;) {
-    const double x = random.in(-1.0, 1.0);
-    const double y = random.in(-1.0, 1.0);
-    const double z = random.in(-1.0, 1.0);
-    const double square = x * x + y * y + z * z;
-    // Rejection sampling in the unit ball; close to its centre the direction would be imprecise.
-    if (square > 1.0 || square < 1e-4) continue;
-    return (Eigen::Vector3d(x, y, z) / std::sqrt(square)).cast<float>();
-  }
-}
-
 Frustum camera_that_sees(double share, std::span<const Aabb> boxes, const Aabb& world,
                          Random& random) {
   const Eigen::Vector3f center = 0.5F * (world.min + world.max);
@@ -63,8 +53,8 @@ Frustum camera_that_sees(double share, std::span<const Aabb> boxes, const Aabb& 
   Frustum camera;
   // A camera at the border that looks outward cannot see enough boxes, so another one is drawn.
   for (int attempt = 0; attempt < 20; ++attempt) {
-    const Eigen::Vector3f forward = random_direction(random);
-    const Eigen::Vector3f up = random_direction(random);
+    const Eigen::Vector3f forward = random_unit(random).cast<float>();
+    const Eigen::Vector3f up = random_unit(random).cast<float>();
     Eigen::Vector3f eye = center - 0.7F * diagonal * forward;
     if (share < 0.1) {
       for (int axis = 0; axis < 3; ++axis) {

@@ -12,9 +12,6 @@ namespace winnow::bench {
 /// Returns the bounds of all bounded boxes; a unit box if there are none.
 [[nodiscard]] Aabb world_of(std::span<const Aabb> boxes) noexcept;
 
-/// Returns a uniform direction of unit length.
-[[nodiscard]] Eigen::Vector3f random_direction(Random& random) noexcept;
-
 /// Returns a random camera with a vertical field of view of 60 degrees that sees about this share
 /// of the boxes. The camera is inside the world for small shares and outside for large ones; its
 /// far plane is chosen so that the share is right.

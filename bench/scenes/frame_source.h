@@ -1,6 +1,7 @@
 #pragma once
 
 #include <winnow/core/aabb.h>
+#include "bench/common/interface.h"
 
 #include <cstddef>
 #include <span>
@@ -10,12 +11,8 @@ namespace winnow::bench {
 
 /// Provides the boxes of the same objects frame by frame: a built-in scene or a recording. A scene
 /// that grows appends rows.
-class FrameSource {
+class FrameSource : public Interface {
  public:
-  FrameSource(const FrameSource&) = delete;
-  FrameSource& operator=(const FrameSource&) = delete;
-  virtual ~FrameSource() = default;
-
   [[nodiscard]] virtual std::string name() const = 0;
   /// Returns bounds that contain every box of every frame.
   [[nodiscard]] virtual Aabb world() const = 0;
@@ -25,9 +22,6 @@ class FrameSource {
   [[nodiscard]] virtual std::size_t objects() const { return boxes().size(); }
   /// Moves to the next frame; returns false without a change if there is none.
   virtual bool advance() = 0;
-
- protected:
-  FrameSource() = default;
 };
 
 }  // namespace winnow::bench

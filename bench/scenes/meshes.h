@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace winnow::bench {
@@ -13,6 +14,9 @@ struct Triangles {
   std::vector<std::uint32_t> corners;
 
   [[nodiscard]] std::size_t size() const noexcept { return corners.size() / 3; }
+  // As arguments of winnow's functions.
+  [[nodiscard]] std::span<const Eigen::Vector3d> points() const noexcept { return vertices; }
+  [[nodiscard]] std::span<const std::uint32_t> indices() const noexcept { return corners; }
 };
 
 /// A funnel about the z axis, open at both ends: a cone that widens from `outlet` at z = -depth to

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <string_view>
 
 namespace winnow::bench {
@@ -13,7 +14,7 @@ namespace winnow::bench {
 /// A kind of pair that is measured. `a` precedes `b` in the order of the kinds, except that
 /// triangles and half-spaces are last.
 struct PairKind {
-  std::string_view name;
+  std::string name{};
   ShapeKind a{};
   ShapeKind b{};
   /// Number of vertices of the pair's hulls, if any: points on an ellipsoid, all of which are
@@ -22,13 +23,13 @@ struct PairKind {
 };
 
 /// Returns the kinds that every benchmark uses, cheapest first.
-[[nodiscard]] std::span<const PairKind> main_pair_kinds() noexcept;
+[[nodiscard]] std::span<const PairKind> main_pair_kinds();
 /// Returns all kinds: the main ones, then all remaining pairs of sphere, capsule, box, cylinder,
 /// cone, hull, ellipsoid, tapered capsule ("taper" in names), lens ("own" in names: a user shape),
 /// triangle and half-space.
-[[nodiscard]] std::span<const PairKind> pair_kinds() noexcept;
+[[nodiscard]] std::span<const PairKind> pair_kinds();
 /// Returns null if there is no kind of this name.
-[[nodiscard]] const PairKind* find_pair_kind(std::string_view name) noexcept;
+[[nodiscard]] const PairKind* find_pair_kind(std::string_view name);
 
 /// Levels of a narrow-phase query.
 inline constexpr std::array kLevels{ContactLevel::boolean, ContactLevel::distance,

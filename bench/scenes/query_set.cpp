@@ -6,6 +6,7 @@
 #include <winnow/core/eigen.h>
 #include "bench/common/random.h"
 #include "bench/scenes/cameras.h"
+#include "bench/scenes/random_shapes.h"
 
 #include <algorithm>
 #include <array>
@@ -80,7 +81,7 @@ class QuerySetBuilder {
     for (std::size_t i = 0; i < rays_; ++i) {
       Ray& ray = set.rays.emplace_back();
       ray.origin = point();
-      ray.direction = random_direction(random_);
+      ray.direction = random_unit(random_).cast<float>();
       if (set.name == "ray all near") ray.max_t = static_cast<float>(10.0 * edge_);
     }
     return set;
@@ -113,11 +114,11 @@ class QuerySetBuilder {
     for (std::size_t i = 0; i < at_least_one(rays_ / 10); ++i) {
       if (set.name == "swept box") {
         BoxCast cast{.box = cube(0.5)};
-        cast.direction = random_direction(random_);
+        cast.direction = random_unit(random_).cast<float>();
         set.casts.emplace_back(cast);
       } else {
         SphereCast cast{.sphere = {point(), static_cast<float>(0.25 * edge_)}};
-        cast.direction = random_direction(random_);
+        cast.direction = random_unit(random_).cast<float>();
         set.casts.emplace_back(cast);
       }
     }
@@ -139,7 +140,33 @@ class QuerySetBuilder {
   Random random_{0};
 };
 
+bool are_same(QueryType query_type, std::span<const Found> expected, std::span<const Found> got,
+              float rounding) {
+  if (query_type == QueryType::any) return expected.empty() == got.empty();
+  std::vector<Found> a(expected.begin(), expected.end());
+  std::vector<Found> b(got.begin(), got.end());
+  const bool in_any_order =
+      query_type == QueryType::overlap || (query_type == QueryType::all && rounding > 0.0F);
+  for (std::vector<Found>* const found : {&a, &b}) {
+    if (in_any_order) std::ranges::sort(*found, {}, &Found::row);
+  }
+  const bool any_row = rounding > 0.0F && !in_any_order;
+  return std::ranges::equal(a, b, [&](const Found& x, const Found& y) {
+    const bool same_t = x.t == y.t || std::abs(x.t - y.t) <= rounding * std::max(x.t, y.t);
+    return same_t && (any_row || x.row == y.row);
+  });
+}
+
 }  // namespace
+
+std::size_t count_differing(QueryType query_type, const QueryResults& expected,
+                            const QueryResults& got, float rounding) {
+  std::size_t differing = 0;
+  for (std::size_t i = 0; i < std::min(expected.questions(), got.questions()); ++i) {
+    if (!are_same(query_type, expected.of(i), got.of(i), rounding)) ++differing;
+  }
+  return differing;
+}
 
 std::span<const std::string_view> query_set_names() noexcept {
   return kNames;

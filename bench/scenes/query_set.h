@@ -66,6 +66,12 @@ class QueryResults {
   std::vector<std::size_t> start_{0};
 };
 
+/// Returns the number of queries whose results differ, of those that both ran. QueryType::any
+/// compares only whether there is a hit. `rounding` is the largest relative difference of t; if it
+/// is positive, hits with equal t may be in another order, and one of them may stand for another.
+[[nodiscard]] std::size_t count_differing(QueryType query_type, const QueryResults& expected,
+                                          const QueryResults& got, float rounding = 0.0F);
+
 /// Returns the names of the query sets, in the order of reports.
 [[nodiscard]] std::span<const std::string_view> query_set_names() noexcept;
 

@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,7 +17,7 @@ struct SceneInfo {
 };
 
 /// Returns the built-in scenes. The first six are used by every benchmark.
-[[nodiscard]] std::span<const SceneInfo> scene_infos() noexcept;
+[[nodiscard]] std::vector<SceneInfo> scene_infos();
 
 /// Number of scenes, from the front, that every benchmark uses.
 inline constexpr std::size_t kMainScenes = 6;

@@ -2,10 +2,10 @@
 
 #include <winnow/core/eigen.h>
 #include <winnow/core/rotation.h>
+#include "bench/common/need.h"
 #include "bench/common/random.h"
 
 #include <cmath>
-#include <stdexcept>
 
 namespace winnow::bench {
 namespace {
@@ -49,7 +49,7 @@ ShapeId Solids::shape_of(const Eigen::Vector3f& half) {
   BoxShape shape;
   for (int i = 0; i < 3; ++i) shape.half[i] = static_cast<double>(half[i]);
   ShapeId id;
-  if (shapes_.add(shape, id) != Status::ok) throw std::runtime_error("a box was refused");
+  need(shapes_.add(shape, id), "a box");
   return id;
 }
 

@@ -1,6 +1,7 @@
 #include "bench/simulation/flow_bodies.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace winnow::bench {
@@ -11,92 +12,72 @@ constexpr std::size_t kChunk = 2048;
 
 using Turn = std::array<double, 4>;
 
-Vec turned(const Turn& q, const Vec& v) {
-  const Vec u{q[1], q[2], q[3]};
-  const Vec t = 2.0 * cross(u, v);
-  return v + q[0] * t + cross(u, t);
+Vec3d turned(const Turn& q, const Vec3d& v) {
+  const Vec3d u(&q[1]);
+  const Vec3d t = 2.0 * u.cross(v);
+  return v + q[0] * t + u.cross(t);
 }
 
-Vec turned_back(const Turn& q, const Vec& v) {
+Vec3d turned_back(const Turn& q, const Vec3d& v) {
   return turned({q[0], -q[1], -q[2], -q[3]}, v);
 }
 
 /// Returns the orientation after rotating for `time`, to first order, normalized.
-Turn integrate_orientation(const Turn& q, const Vec& spin, double time) {
+Turn integrate_orientation(const Turn& q, const Vec3d& spin, double time) {
   const double h = 0.5 * time;
-  const Vec u{q[1], q[2], q[3]};
-  const Vec v = u + (h * q[0]) * spin + h * cross(spin, u);
-  const double w = q[0] - h * dot(spin, u);
-  const double scale = 1.0 / std::sqrt(w * w + dot(v, v));
-  return {scale * w, scale * v[0], scale * v[1], scale * v[2]};
+  const Vec3d u(&q[1]);
+  const Vec3d v = u + (h * q[0]) * spin + h * spin.cross(u);
+  const double w = q[0] - h * spin.dot(u);
+  const double scale = 1.0 / std::sqrt(w * w + v.squared_norm());
+  return {scale * w, scale * v.x(), scale * v.y(), scale * v.z()};
 }
 
-bool is_round(const Vec& inertia) {
+bool is_round(const Vec3d& inertia) {
   return inertia[0] == inertia[1] && inertia[0] == inertia[2];
 }
 
-Vec spin_of(const Turn& q, const Vec& momentum, const Vec& inverse_inertia) {
+Vec3d spin_of(const Turn& q, const Vec3d& momentum, const Vec3d& inverse_inertia) {
   if (is_round(inverse_inertia)) return inverse_inertia[0] * momentum;
-  Vec own = turned_back(q, momentum);
+  Vec3d own = turned_back(q, momentum);
   for (std::size_t axis = 0; axis < 3; ++axis) own[axis] *= inverse_inertia[axis];
   return turned(q, own);
 }
 
-/// Moves body i and adds its energy before the move.
-void move_body(FlowBodies& bodies, std::size_t i, double gravity, double step, FlowEnergy& energy) {
-  const double inverse_mass = bodies.inverse_mass[i];
-  if (inverse_mass == 0.0) return;
-  const double mass = 1.0 / inverse_mass;
-  const Vec before = at(bodies.velocity, i);
-  const Vec pull{0.0, 0.0, -gravity};
-  const Vec after = before + step * (inverse_mass * at(bodies.force, i) + pull);
-  const Vec mean = 0.5 * (before + after);
-  const Vec place = at(bodies.position, i);
-  energy.kinetic += 0.5 * mass * dot(mean, mean);
-  energy.potential += mass * gravity * place[2];
-  put(bodies.velocity, i, after);
-  put(bodies.position, i, place + step * after);
+/// Moves a body and adds its energy before the move.
+void move_body(FlowBody& body, double gravity, double step, FlowEnergy& energy) {
+  if (body.inverse_mass == 0.0) return;
+  const double mass = 1.0 / body.inverse_mass;
+  const Vec3d before = body.velocity;
+  const Vec3d pull{0.0, 0.0, -gravity};
+  body.velocity = before + step * (body.inverse_mass * body.force + pull);
+  const Vec3d mean = 0.5 * (before + body.velocity);
+  energy.kinetic += 0.5 * mass * mean.squared_norm();
+  energy.potential += mass * gravity * body.position.z();
+  body.position += step * body.velocity;
 
   Turn q;
-  for (std::size_t k = 0; k < 4; ++k) q[k] = static_cast<double>(bodies.orientation[k][i]);
-  const Vec inverse_inertia = at(bodies.inverse_inertia, i);
-  const Vec turn = at(bodies.momentum, i);
-  const Vec twist = step * at(bodies.torque, i);
-  const Vec middle = turn + 0.5 * twist;
-  energy.kinetic += 0.5 * dot(middle, spin_of(q, middle, inverse_inertia));
-  const Vec turning = turn + twist;
-  Vec spin = spin_of(q, turning, inverse_inertia);
+  for (std::size_t k = 0; k < 4; ++k) q[k] = static_cast<double>(body.orientation[k]);
+  const Vec3d twist = step * body.torque;
+  const Vec3d middle = body.momentum + 0.5 * twist;
+  energy.kinetic += 0.5 * middle.dot(spin_of(q, middle, body.inverse_inertia));
+  body.momentum += twist;
+  Vec3d spin = spin_of(q, body.momentum, body.inverse_inertia);
   // Uses the spin at half the step; otherwise bodies with unequal moments of inertia would gain
   // energy.
-  if (!is_round(inverse_inertia)) {
-    spin = spin_of(integrate_orientation(q, spin, 0.5 * step), turning, inverse_inertia);
+  if (!is_round(body.inverse_inertia)) {
+    spin = spin_of(integrate_orientation(q, spin, 0.5 * step), body.momentum, body.inverse_inertia);
   }
   q = integrate_orientation(q, spin, step);
-  put(bodies.momentum, i, turning);
-  put(bodies.spin, i, spin_of(q, turning, inverse_inertia));
-  for (std::size_t k = 0; k < 4; ++k) bodies.orientation[k][i] = static_cast<float>(q[k]);
+  body.spin = spin_of(q, body.momentum, body.inverse_inertia);
+  for (std::size_t k = 0; k < 4; ++k) body.orientation[k] = static_cast<float>(q[k]);
 }
 
 }  // namespace
 
-FlowBodies::FlowBodies(std::size_t count, std::pmr::memory_resource* memory)
-    : position{Column(count, memory), Column(count, memory), Column(count, memory)},
-      velocity{Column(count, memory), Column(count, memory), Column(count, memory)},
-      orientation{std::pmr::vector<float>(count, 1.0F, memory),
-                  std::pmr::vector<float>(count, memory), std::pmr::vector<float>(count, memory),
-                  std::pmr::vector<float>(count, memory)},
-      momentum{Column(count, memory), Column(count, memory), Column(count, memory)},
-      spin{Column(count, memory), Column(count, memory), Column(count, memory)},
-      force{Column(count, memory), Column(count, memory), Column(count, memory)},
-      torque{Column(count, memory), Column(count, memory), Column(count, memory)},
-      inverse_mass(count, memory),
-      inverse_inertia{Column(count, memory), Column(count, memory), Column(count, memory)} {}
-
-PoseView FlowBodies::poses(std::size_t count) const noexcept {
-  return {
-      {position[0].data(), position[1].data(), position[2].data()},
-      {orientation[0].data(), orientation[1].data(), orientation[2].data(), orientation[3].data()},
-      count};
+PoseView poses_of(const FlowBodies& bodies, std::size_t count) noexcept {
+  const double* const p = bodies.front().position.data();
+  const float* const q = bodies.front().orientation.data();
+  return {{p, p + 1, p + 2}, {q, q + 1, q + 2, q + 3}, count, sizeof(FlowBody), sizeof(FlowBody)};
 }
 
 FlowEnergy integrate(FlowBodies& bodies, double gravity, double step, const Execution& execution,
@@ -106,7 +87,7 @@ FlowEnergy integrate(FlowBodies& bodies, double gravity, double step, const Exec
   execution.for_each(chunks, [&](std::size_t chunk) {
     const std::size_t end = std::min(bodies.size(), (chunk + 1) * kChunk);
     for (std::size_t i = chunk * kChunk; i < end; ++i) {
-      move_body(bodies, i, gravity, step, scratch[chunk]);
+      move_body(bodies[i], gravity, step, scratch[chunk]);
     }
   });
   FlowEnergy sum;

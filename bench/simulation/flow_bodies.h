@@ -1,8 +1,8 @@
 #pragma once
 
 #include <winnow/core/execution.h>
-#include <winnow/core/pose.h>
 #include <winnow/core/pose_view.h>
+#include <winnow/core/vec3.h>
 
 #include <array>
 #include <cstddef>
@@ -11,52 +11,23 @@
 
 namespace winnow::bench {
 
-using Vec = std::array<double, 3>;
-
-[[nodiscard]] inline Vec operator+(const Vec& a, const Vec& b) noexcept {
-  return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
-}
-[[nodiscard]] inline Vec operator-(const Vec& a, const Vec& b) noexcept {
-  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-[[nodiscard]] inline Vec operator*(double s, const Vec& a) noexcept {
-  return {s * a[0], s * a[1], s * a[2]};
-}
-[[nodiscard]] inline double dot(const Vec& a, const Vec& b) noexcept {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-[[nodiscard]] inline Vec cross(const Vec& a, const Vec& b) noexcept {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
-/// Rigid bodies of a simulation as columns of doubles, with orientations in float. A body with zero
-/// inverse mass is static.
-struct FlowBodies {
-  using Column = std::pmr::vector<double>;
-
-  explicit FlowBodies(std::size_t count, std::pmr::memory_resource* memory);
-
-  [[nodiscard]] std::size_t size() const noexcept { return inverse_mass.size(); }
-  [[nodiscard]] PoseView poses(std::size_t count) const noexcept;
-  [[nodiscard]] Pose pose(std::size_t i) const noexcept { return poses(size())[i]; }
-
-  Column position[3];
-  Column velocity[3];
-  std::pmr::vector<float> orientation[4];
-  Column momentum[3];  ///< angular momentum about the centre of mass
-  Column spin[3];      ///< angular velocity, computed from momentum and orientation
-  Column force[3];
-  Column torque[3];
-  Column inverse_mass;
-  Column inverse_inertia[3];  ///< in the body's axes
+/// A rigid body of a simulation, with its orientation in float. A body with zero inverse mass is
+/// static.
+struct FlowBody {
+  Vec3d position;
+  Vec3d velocity;
+  Vec3d momentum;  ///< angular momentum about the centre of mass
+  Vec3d spin;      ///< angular velocity, computed from momentum and orientation
+  Vec3d force;
+  Vec3d torque;
+  Vec3d inverse_inertia;  ///< in the body's axes
+  double inverse_mass = 0.0;
+  std::array<float, 4> orientation{1.0F, 0.0F, 0.0F, 0.0F};
 };
+using FlowBodies = std::pmr::vector<FlowBody>;
 
-[[nodiscard]] inline Vec at(const FlowBodies::Column (&columns)[3], std::size_t i) noexcept {
-  return {columns[0][i], columns[1][i], columns[2][i]};
-}
-inline void put(FlowBodies::Column (&columns)[3], std::size_t i, const Vec& value) noexcept {
-  for (std::size_t axis = 0; axis < 3; ++axis) columns[axis][i] = value[axis];
-}
+/// Views the poses of the first bodies.
+[[nodiscard]] PoseView poses_of(const FlowBodies& bodies, std::size_t count) noexcept;
 
 struct FlowEnergy {
   double kinetic = 0.0;

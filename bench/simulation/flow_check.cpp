@@ -13,8 +13,8 @@
 namespace winnow::bench {
 namespace {
 
-/// Largest number of pairs of bodies that are tested.
-constexpr double kMaxRowPairs = 1e8;
+/// Largest number of pairs that are tested.
+constexpr double kMaxRowPairs = 4e6;
 
 /// Two rows, the smaller first. Rows from objects() on are the mesh's triangles.
 struct RowPair {
@@ -76,56 +76,16 @@ class Check {
     return found;
   }
 
-  [[nodiscard]] double radius_of(ShapeId id) const {
-    const ShapeTables& tables = flow_.shapes().tables();
-    if (id.kind() == ShapeKind::sphere) return tables.spheres[id.index()].radius;
-    const double* half = tables.boxes[id.index()].half;
-    return std::hypot(half[0], half[1], half[2]);
-  }
-
-  /// Adds the pairs of bodies whose bounding spheres overlap.
-  void add_bodies(std::vector<BodyPair>& pairs) const {
-    std::vector<double> radius;
-    for (std::size_t i = 0; i < objects_; ++i) {
-      radius.push_back(radius_of(flow_.shape(i)) * (1.0 + 1e-12));
-    }
+  /// Returns the pairs of each body to look at with all other bodies and all triangles.
+  [[nodiscard]] std::vector<BodyPair> pairs_to_test() const {
+    std::vector<BodyPair> pairs;
     for (std::size_t i = 0; i < objects_; i += stride_) {
-      const double* p = flow_.contact_poses()[i].position;
-      for (std::size_t j = 0; j < objects_; ++j) {
+      for (std::size_t j = 0; j < objects_ + flow_.mesh().size(); ++j) {
         if (j == i || (j < i && is_looked_at(j))) continue;
-        const double* q = flow_.contact_poses()[j].position;
-        const double reach = radius[i] + radius[j];
-        double gap = 0.0;
-        for (int axis = 0; axis < 3; ++axis) gap += (p[axis] - q[axis]) * (p[axis] - q[axis]);
-        if (gap > reach * reach) continue;
         pairs.push_back({static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(j)});
       }
     }
-  }
-
-  /// Adds the pairs of a body and a triangle for which the box around the body's bounding sphere
-  /// overlaps the triangle's box.
-  void add_triangles(const std::vector<TriangleShape>& triangles,
-                     std::vector<BodyPair>& pairs) const {
-    for (std::size_t t = 0; t < triangles.size(); ++t) {
-      double low[3];
-      double high[3];
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        const auto& v = triangles[t].vertex;
-        low[axis] = std::min({v[0][axis], v[1][axis], v[2][axis]});
-        high[axis] = std::max({v[0][axis], v[1][axis], v[2][axis]});
-      }
-      for (std::size_t i = 0; i < objects_; i += stride_) {
-        const double* p = flow_.contact_poses()[i].position;
-        const double reach = radius_of(flow_.shape(i)) * (1.0 + 1e-12);
-        bool overlaps = true;
-        for (int axis = 0; axis < 3; ++axis) {
-          overlaps = overlaps && p[axis] >= low[axis] - reach && p[axis] <= high[axis] + reach;
-        }
-        if (!overlaps) continue;
-        pairs.push_back({static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(objects_ + t)});
-      }
-    }
+    return pairs;
   }
 
   [[nodiscard]] std::vector<TriangleShape> triangles() const {
@@ -142,9 +102,7 @@ class Check {
 
   [[nodiscard]] RowPairs touching() const {
     const std::vector<TriangleShape> triangle = triangles();
-    std::vector<BodyPair> pairs;
-    add_bodies(pairs);
-    add_triangles(triangle, pairs);
+    const std::vector<BodyPair> pairs = pairs_to_test();
 
     ShapeTables tables = flow_.shapes().tables();
     tables.triangles = triangle.data();

@@ -23,10 +23,9 @@ struct FlowFaults {
   }
 };
 
-/// Collides every pair of bodies, and of a body and a mesh triangle, whose bounding spheres or
-/// boxes overlap. Uses only the narrow phase: no partition, tree or scene. If there are more than
-/// 1e8 such tests, only every n-th body is tested against all others. The flow must keep contact
-/// poses.
+/// Collides every pair of bodies, and of a body and a mesh triangle, by the narrow phase: without a
+/// partition, tree or scene. If there are more than 4e6 pairs, only every n-th body is tested
+/// against all others. The flow must keep contact poses.
 [[nodiscard]] FlowFaults check_contacts(const GranularFlow& flow, const Contacts& contacts);
 [[nodiscard]] inline FlowFaults check_contacts(const GranularFlow& flow) {
   return check_contacts(flow, flow.contacts());

@@ -27,25 +27,19 @@ class FlowRun {
     flow_.step(i % kProfiledSteps == 0);
     history_.add(flow_);
     steady_.note(flow_, memory_.allocations());
-    if (check_ != 0 && i % check_ == 0) {
-      faults_ += check_contacts(flow_);
-      ++checks_;
-    }
+    if (check_ != 0 && i % check_ == 0) faults_ += check_contacts(flow_);
   }
 
   [[nodiscard]] const GranularFlow& flow() const { return flow_; }
   [[nodiscard]] const FlowHistory& history() const { return history_; }
-  [[nodiscard]] std::size_t bytes() const { return memory_.outstanding(); }
   // Counted after the warm-up.
-  [[nodiscard]] std::size_t warm_up() const { return warm_up_; }
   [[nodiscard]] std::size_t allocations() const {
     return memory_.allocations() - allocations_before_;
   }
   /// Returns the allocations in steps without more contacts than before.
   [[nodiscard]] std::size_t steady_allocations() const { return steady_.count() - steady_before_; }
-  // Sums over all checks.
+  /// Returns the sums over all checks.
   [[nodiscard]] const FlowFaults& faults() const { return faults_; }
-  [[nodiscard]] std::size_t checks() const { return checks_; }
 
  private:
   FlowOptions with_memory(FlowOptions options) {
@@ -59,7 +53,6 @@ class FlowRun {
   std::size_t warm_up_;
   std::size_t check_;
   FlowFaults faults_;
-  std::size_t checks_ = 0;
   SteadyAllocations steady_;
   std::size_t allocations_before_ = 0;
   std::size_t steady_before_ = 0;

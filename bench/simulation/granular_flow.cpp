@@ -7,7 +7,7 @@
 #include "bench/common/exact_math.h"
 #include "bench/common/need.h"
 #include "bench/common/random.h"
-#include "bench/simulation/mid_phase_clock.h"
+#include "bench/common/stage_clock.h"
 
 #include <algorithm>
 #include <bit>
@@ -29,7 +29,7 @@ constexpr double kFall = 4.0;
 /// The mass of a shape and its moments of inertia in its own axes.
 struct Inertia {
   double mass;
-  Vec moment;
+  Vec3d moment;
 };
 
 Inertia inertia_of(const ShapeTables& tables, ShapeId id) {
@@ -129,10 +129,10 @@ void GranularFlow::make_shapes() {
                         (options_.shape == FlowShape::mixed && random.below(2) == 1);
     shape_of_.push_back((is_box ? boxes : spheres)[random.below(kSizes)]);
     const Inertia inertia = inertia_of(shapes_.tables(), shape_of_.back());
-    bodies_.inverse_mass[i] = 1.0 / inertia.mass;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      bodies_.inverse_inertia[axis][i] = 1.0 / inertia.moment[axis];
-      bodies_.velocity[axis][i] = random.in(-options_.stir, options_.stir);
+    bodies_[i].inverse_mass = 1.0 / inertia.mass;
+    for (int axis = 0; axis < 3; ++axis) {
+      bodies_[i].inverse_inertia[axis] = 1.0 / inertia.moment[axis];
+      bodies_[i].velocity[axis] = random.in(-options_.stir, options_.stir);
     }
   }
   const bool round = options_.shape == FlowShape::spheres;
@@ -158,7 +158,7 @@ void GranularFlow::fill() {
     const double inside = std::lerp(funnel_.outlet, funnel_.radius, height) - 0.75 * spacing_;
     for (std::size_t s = 0; s < spots_.size() && i < objects_; ++s) {
       if (std::hypot(spots_[s].x, spots_[s].y) > inside) continue;
-      put(bodies_.position, i, {spots_[s].x, spots_[s].y, z});
+      bodies_[i].position = {spots_[s].x, spots_[s].y, z};
       spots_[s].last = i;
       spot_of_[i++] = s;
     }
@@ -174,7 +174,7 @@ void GranularFlow::add_to_scene() {
   std::vector<BodyDefinition> definitions(objects_ + 1);
   for (std::size_t i = 0; i < objects_; ++i) {
     definitions[i].shape = shape_of_[i];
-    definitions[i].pose = bodies_.pose(i);
+    definitions[i].pose = pose(i);
     definitions[i].data = i;
   }
   definitions[objects_].shape = mesh_shape_;
@@ -187,7 +187,7 @@ void GranularFlow::add_to_scene() {
 void GranularFlow::find_contacts(bool profiled) {
   if (keeps_poses_) {
     then_.resize(bodies_.size());
-    for (std::size_t i = 0; i < bodies_.size(); ++i) then_[i] = bodies_.pose(i);
+    for (std::size_t i = 0; i < bodies_.size(); ++i) then_[i] = pose(i);
   }
   if (profiled) {
     const Stopwatch refreshing;
@@ -197,7 +197,7 @@ void GranularFlow::find_contacts(bool profiled) {
     need(scene_.collide(ContactLevel::pairs, found_pairs_), "pairs");
     times_.broad += searching.ms();
     // The scene keeps its pairs, so that finding them a second time costs almost nothing.
-    const MidPhaseClock mid_phase;
+    const StageClock mid_phase(WorkStage::mid_phase);
     const Stopwatch colliding;
     need(scene_.collide(ContactLevel::manifold, contacts_), "contacts");
     times_.mid = mid_phase.ms();
@@ -222,26 +222,26 @@ void GranularFlow::step(bool profiled) {
   deepest_ = sums.deepest;
   fed_then_ = fed_;
   for (std::size_t i = 0; i < objects_; ++i) {
-    const bool is_aside = std::abs(bodies_.position[0][i]) > 3.0 * funnel_.radius ||
-                          std::abs(bodies_.position[1][i]) > 3.0 * funnel_.radius;
-    if (bodies_.position[2][i] < floor_ || is_aside) put_back(i);
+    const Vec3d& at = bodies_[i].position;
+    const double aside = std::max(std::abs(at.x()), std::abs(at.y()));
+    if (at.z() < floor_ || aside > 3.0 * funnel_.radius) put_back(i);
   }
   times_.solver = solving.ms();
 
   const Stopwatch moving;
-  need(scene_.move(std::span(keys_).first(objects_), bodies_.poses(objects_)), "poses");
+  need(scene_.move(std::span(keys_).first(objects_), poses_of(bodies_, objects_)), "poses");
   times_.move = moving.ms();
   ++steps_;
 }
 
 double GranularFlow::energy_of(std::size_t i) const noexcept {
-  const double mass = 1.0 / bodies_.inverse_mass[i];
+  const FlowBody& body = bodies_[i];
+  const double mass = 1.0 / body.inverse_mass;
   // The energy that `integrate` will count, with half of the next step's gravity.
-  Vec velocity = at(bodies_.velocity, i);
-  velocity[2] -= 0.5 * options_.gravity * options_.step;
-  return 0.5 * mass * dot(velocity, velocity) +
-         0.5 * dot(at(bodies_.spin, i), at(bodies_.momentum, i)) +
-         mass * options_.gravity * bodies_.position[2][i];
+  Vec3d velocity = body.velocity;
+  velocity.z() -= 0.5 * options_.gravity * options_.step;
+  return 0.5 * mass * velocity.squared_norm() + 0.5 * body.spin.dot(body.momentum) +
+         mass * options_.gravity * body.position.z();
 }
 
 void GranularFlow::put_back(std::size_t i) {
@@ -251,12 +251,11 @@ void GranularFlow::put_back(std::size_t i) {
   double z = refill_;
   // If the previous body at this spot has not fallen far enough, places this body above it.
   if (spot.last < objects_ && spot.last != i && spot_of_[spot.last] == s) {
-    z = std::max(z, bodies_.position[2][spot.last] + spacing_);
+    z = std::max(z, bodies_[spot.last].position.z() + spacing_);
   }
-  put(bodies_.position, i, {spot.x, spot.y, z});
-  for (auto* columns : {&bodies_.velocity, &bodies_.momentum, &bodies_.spin}) {
-    put(*columns, i, {});
-  }
+  FlowBody& body = bodies_[i];
+  body.position = {spot.x, spot.y, z};
+  body.velocity = body.momentum = body.spin = {};
   spot.last = i;
   spot_of_[i] = s;
   fed_ += energy_of(i) - before;
@@ -268,11 +267,11 @@ std::uint64_t GranularFlow::fingerprint() const noexcept {
   for (std::size_t i = 0; i < objects_; ++i) {
     std::uint64_t body = i;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      body = mix(body ^ std::bit_cast<std::uint64_t>(bodies_.position[axis][i]));
-      body = mix(body ^ std::bit_cast<std::uint64_t>(bodies_.velocity[axis][i]));
+      body = mix(body ^ std::bit_cast<std::uint64_t>(bodies_[i].position[axis]));
+      body = mix(body ^ std::bit_cast<std::uint64_t>(bodies_[i].velocity[axis]));
     }
     for (std::size_t k = 0; k < 4; ++k) {
-      body = mix(body ^ std::bit_cast<std::uint32_t>(bodies_.orientation[k][i]));
+      body = mix(body ^ std::bit_cast<std::uint32_t>(bodies_[i].orientation[k]));
     }
     sum += body;
   }

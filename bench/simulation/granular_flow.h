@@ -80,12 +80,12 @@ class GranularFlow {
   void keep_contact_poses() noexcept { keeps_poses_ = true; }
 
   [[nodiscard]] const ShapePool& shapes() const noexcept { return shapes_; }
-  [[nodiscard]] const CompositePool& composites() const noexcept { return composites_; }
   [[nodiscard]] const Scene& scene() const noexcept { return scene_; }
   [[nodiscard]] ShapeId shape(std::size_t i) const noexcept { return shape_of_[i]; }
-  [[nodiscard]] Pose pose(std::size_t i) const noexcept { return bodies_.pose(i); }
+  [[nodiscard]] Pose pose(std::size_t i) const noexcept {
+    return poses_of(bodies_, objects_ + 1)[i];
+  }
   [[nodiscard]] const Triangles& mesh() const noexcept { return mesh_; }
-  [[nodiscard]] ShapeId mesh_shape() const noexcept { return mesh_shape_; }
   [[nodiscard]] Aabb box(std::size_t i) const noexcept {
     return shapes_.bounds(shape_of_[i], pose(i));
   }

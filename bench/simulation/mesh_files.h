@@ -20,7 +20,4 @@ class MeshFileError : public std::runtime_error {
 /// vertices. Throws MeshFileError.
 [[nodiscard]] Triangles read_mesh(const std::string& path);
 
-/// Writes a mesh in the format of the file's extension: .obj, .stl or .ply. Throws MeshFileError.
-void write_mesh(const std::string& path, const Triangles& mesh);
-
 }  // namespace winnow::bench

@@ -14,47 +14,45 @@ constexpr double kCreep = 0.25;
 
 /// Two bodies in contact, and the spring of their reduced mass.
 struct Touch {
-  Touch(const FlowBodies& bodies, std::size_t row_a, std::size_t row_b, const SoftContacts& law)
-      : a(row_a), b(row_b), between(at(bodies.position, row_b) - at(bodies.position, row_a)) {
-    const double mass = 1.0 / (bodies.inverse_mass[a] + bodies.inverse_mass[b]);
+  Touch(const FlowBody& first, const FlowBody& second, const SoftContacts& law)
+      : a(first), b(second) {
+    const double mass = 1.0 / (a.inverse_mass + b.inverse_mass);
     stiffness = mass * law.frequency * law.frequency;
     damping = 2.0 * law.damping * mass * law.frequency;
   }
 
-  std::size_t a;
-  std::size_t b;
-  Vec between;
+  const FlowBody& a;
+  const FlowBody& b;
   double stiffness = 0.0;
   double damping = 0.0;
 };
 
 /// Adds the force of one contact point; all points of a pair share the spring.
-void add_point(const FlowBodies& bodies, const Touch& touch, const SoftContacts& law,
-               const ContactPoint& point, const Vec& normal, double share, PairForce& sum) {
+void add_point(const Touch& touch, const SoftContacts& law, const ContactPoint& point,
+               const Vec3d& normal, double share, PairForce& sum) {
+  const auto& [a, b, stiffness, full_damping] = touch;
   const auto depth = static_cast<double>(point.depth);
-  const Vec arm_a{static_cast<double>(point.position[0]), static_cast<double>(point.position[1]),
-                  static_cast<double>(point.position[2])};
-  const Vec arm_b = arm_a - touch.between;
-  const Vec velocity = at(bodies.velocity, touch.b) + cross(at(bodies.spin, touch.b), arm_b) -
-                       at(bodies.velocity, touch.a) - cross(at(bodies.spin, touch.a), arm_a);
-  const double parting = dot(velocity, normal);
-  const double damping = share * touch.damping;
-  const double push = std::max(0.0, share * touch.stiffness * depth - damping * parting);
-  const Vec sliding = velocity - parting * normal;
-  const double speed = std::sqrt(dot(sliding, sliding));
+  const Vec3d arm_a = Vec3f(point.position).cast<double>();
+  const Vec3d arm_b = arm_a - (b.position - a.position);
+  const Vec3d velocity = b.velocity + b.spin.cross(arm_b) - a.velocity - a.spin.cross(arm_a);
+  const double parting = velocity.dot(normal);
+  const double damping = share * full_damping;
+  const double push = std::max(0.0, share * stiffness * depth - damping * parting);
+  const Vec3d sliding = velocity - parting * normal;
+  const double speed = sliding.norm();
   const double drag = std::min(kCreep * damping, speed > 0.0 ? law.friction * push / speed : 0.0);
-  const Vec force = push * normal - drag * sliding;
-  sum.force = sum.force + force;
-  sum.torque_a = sum.torque_a - cross(arm_a, force);
-  sum.torque_b = sum.torque_b + cross(arm_b, force);
-  sum.elastic += 0.5 * share * touch.stiffness * depth * depth;
+  const Vec3d force = push * normal - drag * sliding;
+  sum.force += force;
+  sum.torque_a -= arm_a.cross(force);
+  sum.torque_b += arm_b.cross(force);
+  sum.elastic += 0.5 * share * stiffness * depth * depth;
   sum.deepest = std::max(sum.deepest, depth);
 }
 
 PairForce force_of(const Contacts& contacts, std::size_t pair, const SoftContacts& law,
                    const FlowBodies& bodies) {
   PairForce sum;
-  const Touch touch(bodies, contacts.data_a()[pair], contacts.data_b()[pair], law);
+  const Touch touch(bodies[contacts.data_a()[pair]], bodies[contacts.data_b()[pair]], law);
   const auto manifold_first = contacts.manifold_first();
   const auto point_first = contacts.point_first();
   const std::uint32_t first = manifold_first[pair];
@@ -64,7 +62,7 @@ PairForce force_of(const Contacts& contacts, std::size_t pair, const SoftContact
     depths += std::max(0.0, static_cast<double>(contacts.contact(p).depth));
   }
   for (std::uint32_t m = first; m < last; ++m) {
-    const Vec normal{contacts.normal(0)[m], contacts.normal(1)[m], contacts.normal(2)[m]};
+    const Vec3d normal{contacts.normal(0)[m], contacts.normal(1)[m], contacts.normal(2)[m]};
     for (std::uint32_t p = point_first[m]; p < point_first[m + 1]; ++p) {
       const ContactPoint point = contacts.contact(p);
       if (point.depth <= 0.0F) continue;
@@ -72,14 +70,10 @@ PairForce force_of(const Contacts& contacts, std::size_t pair, const SoftContact
       // changes nothing. The weights of a pair of bodies add up to 1, so that a fine mesh is not
       // stiffer than a coarse one.
       const double share = static_cast<double>(point.depth) / depths;
-      add_point(bodies, touch, law, point, normal, share, sum);
+      add_point(touch, law, point, normal, share, sum);
     }
   }
   return sum;
-}
-
-void add(FlowBodies::Column (&columns)[3], std::size_t i, const Vec& value) {
-  for (std::size_t axis = 0; axis < 3; ++axis) columns[axis][i] += value[axis];
 }
 
 }  // namespace
@@ -93,17 +87,15 @@ ContactSums apply_contacts(const Contacts& contacts, const SoftContacts& law, Fl
       scratch[i] = force_of(contacts, i, law, bodies);
     }
   });
-  for (auto* columns : {&bodies.force, &bodies.torque}) {
-    for (FlowBodies::Column& column : *columns) std::fill(column.begin(), column.end(), 0.0);
-  }
+  for (FlowBody& body : bodies) body.force = body.torque = {};
   ContactSums sums;
   for (std::size_t i = 0; i < contacts.size(); ++i) {
-    const std::size_t a = contacts.data_a()[i];
-    const std::size_t b = contacts.data_b()[i];
-    add(bodies.force, a, -1.0 * scratch[i].force);
-    add(bodies.force, b, scratch[i].force);
-    add(bodies.torque, a, scratch[i].torque_a);
-    add(bodies.torque, b, scratch[i].torque_b);
+    FlowBody& a = bodies[contacts.data_a()[i]];
+    FlowBody& b = bodies[contacts.data_b()[i]];
+    a.force -= scratch[i].force;
+    b.force += scratch[i].force;
+    a.torque += scratch[i].torque_a;
+    b.torque += scratch[i].torque_b;
     sums.elastic += scratch[i].elastic;
     sums.deepest = std::max(sums.deepest, scratch[i].deepest);
   }

@@ -22,9 +22,9 @@ struct SoftContacts {
 
 /// Force of a pair on b (a gets its opposite), and torques about both centres.
 struct PairForce {
-  Vec force{};
-  Vec torque_a{};
-  Vec torque_b{};
+  Vec3d force;
+  Vec3d torque_a;
+  Vec3d torque_b;
   double elastic = 0.0;
   double deepest = 0.0;
 };

@@ -63,19 +63,8 @@ Eigen::Vector2d centre_of(const std::vector<Eigen::Vector2d>& polygon) {
 }  // namespace
 
 std::string name_of(StandingScene scene) {
-  switch (scene) {
-    case StandingScene::stack:
-      return "stack";
-    case StandingScene::hull_stack:
-      return "hull_stack";
-    case StandingScene::card_house:
-      return "card_house";
-    case StandingScene::wheel:
-      return "wheel";
-    case StandingScene::arch:
-      return "arch";
-  }
-  return {};
+  constexpr const char* kNames[] = {"stack", "hull_stack", "card_house", "wheel", "arch"};
+  return kNames[static_cast<std::size_t>(scene)];
 }
 
 Standing::Standing(StandingScene scene, const StandingOptions& options)

@@ -1,7 +1,6 @@
 // Result rows for median, worst and first frames, for first frames on touched and untouched memory,
 // for other libraries and threads.
 
-#include "bench/common/reused_memory.h"
 #include "bench/measure/cold_frames.h"
 #include "bench/rows/machine.h"
 #include "bench/rows/rows.h"
@@ -139,21 +138,6 @@ TEST(ColdFrames, cold_frames_are_measured_in_all_memories) {
       EXPECT_EQ(one.reserve_ms.size(), reserved);
     }
   }
-}
-
-TEST(ReusedMemory, memory_after_a_rewind_is_handed_out_again) {
-  ReusedMemory memory(1U << 16U);
-  const auto first = static_cast<char*>(memory.allocate(100, 64));
-  const auto second = static_cast<char*>(memory.allocate(5000, 64));
-  EXPECT_GE(second, first + 100);
-  std::memset(second, 7, 5000);
-  memory.rewind();
-  EXPECT_EQ(memory.allocate(100, 64), first);
-  EXPECT_EQ(second[4999], 7);
-  memory.rewind_untouched();
-  EXPECT_EQ(memory.allocate(1U << 16U, 64), first);
-  EXPECT_EQ(second[4999], 0);
-  EXPECT_THROW((void)memory.allocate(1, 1), std::bad_alloc);
 }
 
 }  // namespace

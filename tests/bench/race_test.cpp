@@ -1,6 +1,7 @@
 // Races with time bounds: an engine that is too slow stops, and the other engines continue.
 
 #include "bench/measure/race.h"
+#include "bench/contenders/reference_sweep.h"
 #include "bench/scenes/scene.h"
 
 #include <gtest/gtest.h>
