@@ -7,7 +7,9 @@
 #include "bench/common/need.h"
 #include "bench/contenders/partitions.h"
 
+#include <array>
 #include <optional>
+#include <vector>
 
 namespace winnow::bench {
 namespace {
@@ -73,27 +75,34 @@ class WinnowMesh final : public MeshEngine {
 
   void collide(const Pose& a, const Pose& b) override {
     if (keys_.empty()) add_bodies();
-    const Pose poses[] = {a, b};
-    need(scene_.move(keys_, poses), "poses");
+    poses_ = {a, b};
+    need(scene_.move(keys_, poses_), "poses");
     need(scene_.collide(ContactLevel::manifold, contacts_), "contacts");
   }
 
+  // A contact may stand for several pairs of triangles: level boolean lists them all.
   [[nodiscard]] TrianglePairs pairs() const override {
+    Scene scene(shapes_, {.execution = Execution::serial(), .composites = &composites_});
+    std::vector<Key> keys(2);
+    need(scene.add(bodies_, keys), "two bodies");
+    need(scene.move(keys, poses_), "poses");
+    Contacts contacts;
+    need(scene.collide(ContactLevel::boolean, contacts), "pairs of triangles");
     TrianglePairs pairs;
-    for (std::size_t m = 0; m < contacts_.manifolds(); ++m) {
-      pairs.emplace_back(contacts_.part_a()[m], contacts_.part_b()[m]);
+    for (std::size_t m = 0; m < contacts.manifolds(); ++m) {
+      pairs.emplace_back(contacts.part_a()[m], contacts.part_b()[m]);
     }
     return pairs;
   }
 
  private:
   void add_bodies() {
-    std::vector<BodyDefinition> bodies(2);
-    need(composites_.add_mesh(triangles_->points(), triangles_->indices(), bodies[0].shape),
+    bodies_.resize(2);
+    need(composites_.add_mesh(triangles_->points(), triangles_->indices(), bodies_[0].shape),
          "the mesh");
-    bodies[1].shape = bodies[0].shape;
+    bodies_[1].shape = bodies_[0].shape;
     keys_.resize(2);
-    need(scene_.add(bodies, keys_), "two bodies");
+    need(scene_.add(bodies_, keys_), "two bodies");
   }
 
   ShapePool shapes_;
@@ -102,6 +111,8 @@ class WinnowMesh final : public MeshEngine {
   Contacts contacts_;
   TriangleMesh mesh_;
   const Triangles* triangles_ = nullptr;
+  std::vector<BodyDefinition> bodies_;
+  std::array<Pose, 2> poses_;
   std::vector<Key> keys_;
 };
 

@@ -91,7 +91,7 @@ view(in_section, "Impacts of a heap", "continuous", ["real_time", "impacts", "pa
 view(in_section, "Barriers", "barriers", ["real_time", "passed", "impacts", "fastest", "cut_short", "stretch"], by_bars("scene"), "Fast bodies, a spinning blade, a cloth on a ball. passed: objects that tunnelled, counted by brute force.");
 
 in_section = "Queries";
-view(in_section, "Time of a query", "partition", ["each", "found", "wrong", "undecided"], by_bars("engine"), "Boxes are 1, 5 and 20 mean edges wide; a near ray is 10 long. Results are compared one by one.");
+view(in_section, "Time of a query", "partition", ["each", "found", "differ", "wrong", "undecided"], by_bars("engine"), "Boxes are 1, 5 and 20 mean edges wide; a near ray is 10 long. Results are compared one by one.");
 view(in_section, "Time against objects found", "partition", ["each"], by_lines("engine", "found", "objects found by a query", false, ["query"]), "Each mark is a kind of query.");
 view(in_section, "Rays on meshes, two tori, builds", "mesh", ["real_time", "each", "pairs", "differ", "bytes_per_triangle"], by_bars("engine"), "");
 

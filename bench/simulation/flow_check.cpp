@@ -63,14 +63,7 @@ class Check {
       const std::size_t a = std::min(contacts.data_a()[i], contacts.data_b()[i]);
       const std::size_t b = std::max(contacts.data_a()[i], contacts.data_b()[i]);
       if (!is_looked_at(a) && (b == objects_ || !is_looked_at(b))) continue;
-      if (b < objects_) {
-        found.push_back({a, b});
-        continue;
-      }
-      const auto first = contacts.manifold_first();
-      for (std::uint32_t m = first[i]; m < first[i + 1]; ++m) {
-        found.push_back({a, objects_ + contacts.part_b()[m]});
-      }
+      found.push_back({a, b});
     }
     std::sort(found.begin(), found.end());
     return found;
@@ -126,9 +119,13 @@ class Check {
     for (std::size_t i = 0; i < result.size(); ++i) {
       if (!result.overlaps(i)) continue;
       const BodyPair& pair = pairs[result.pair_of(i)];
-      touching.push_back({std::min(pair.a, pair.b), std::max(pair.a, pair.b)});
+      // All triangles are one body: a contact of the mesh may stand for several of them.
+      const std::size_t a = std::min<std::size_t>(pair.a, objects_);
+      const std::size_t b = std::min<std::size_t>(pair.b, objects_);
+      touching.push_back({std::min(a, b), std::max(a, b)});
     }
     std::sort(touching.begin(), touching.end());
+    touching.erase(std::unique(touching.begin(), touching.end()), touching.end());
     return touching;
   }
 
