@@ -56,6 +56,7 @@ Facet::Facet(const TriangleShape& triangle, const Pose& pose) noexcept {
 }
 
 bool Facet::contains(const Vec& point, double slack) const noexcept {
+  if (normal.isZero()) return false;
   if (!(std::abs(normal.dot(point - corner[0])) <= slack)) return false;
   for (int k = 0; k < 3; ++k) {
     const Vec edge = corner[(k + 1) % 3] - corner[k];

@@ -24,7 +24,7 @@ struct Facet {
   /// The triangle at a pose.
   Facet(const TriangleShape& triangle, const Pose& pose) noexcept;
 
-  /// Returns whether the point is on the triangle, up to `slack`.
+  /// Returns whether the point is on the triangle, up to `slack`; false without area.
   [[nodiscard]] bool contains(const Vec& point, double slack) const noexcept;
   /// Height of the highest corner along a direction.
   [[nodiscard]] double top(const Vec& direction) const noexcept;

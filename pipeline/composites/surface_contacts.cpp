@@ -38,11 +38,10 @@ enum class Change : std::uint8_t {
   /// The other shape is clipped along the new normal; without points over the face, the contact is
   /// dropped.
   clip_or_drop,
-  /// The normal and the depth are those of the convex patch around the triangle, which is touched
-  /// in
-  /// this triangle.
+  /// The normal and the depth are those of the convex patch around the triangle, which contains the
+  /// touched point of the patch.
   follow_patch,
-  /// As `follow_patch`, but the patch is touched elsewhere: without points over the face, the
+  /// As `follow_patch`, for another triangle of the patch: without points over the face, the
   /// contact
   /// is dropped.
   reach_patch,
