@@ -114,10 +114,10 @@ Status find_primitive_pairs(const CompositePool& pool, const ShapePool& shapes,
 /// triangle around the point reaches farther along it (SurfaceCones). For two surfaces it must be
 /// in the cones of both. All valid contacts of one convex piece of a surface have the same depth,
 /// that of the piece. Other contacts are changed:
-/// - If a valid contact of the same pair of primitives' bodies parts them, too (both lie on their
-///   sides of its plane), they are dropped. If the face lies in that plane, and the shapes overlap,
-///   the other shape is clipped against it instead, so that a manifold spans all triangles of a
-///   flat floor; the contact is dropped if its deepest point is not over the triangle.
+/// - If a valid contact of the same two bodies parts the primitives, too (both lie on their sides of
+///   its plane), they are dropped. If the face lies in that plane, the other shape is clipped along
+///   the normal of the valid contact instead, so that a manifold spans all triangles of a flat
+///   floor; only points over the triangle are kept.
 /// - Else, if the shapes overlap, they get the normal and the depth of the convex patch of touched
 ///   triangles around them (ConvexPatch), if that normal is valid.
 /// - Else they get the normal of the face, and overlapping shapes are clipped against the face. The
@@ -129,8 +129,8 @@ Status find_primitive_pairs(const CompositePool& pool, const ShapePool& shapes,
 ///
 /// Contacts whose normal points to the back of a one-sided triangle are not valid; if the shapes
 /// are apart, they are dropped. So is the contact of a triangle that is touched from behind, if the
-/// valid contact of a neighbour parts the bodies. Each pair of bodies keeps at least one of its
-/// contacts, except for those of one-sided triangles.
+/// valid contact of a neighbour parts the bodies, and if the shapes are apart, any valid contact of
+/// overlapping shapes. Parts of a compound that lie flush or overlap count as one shape.
 ///
 /// O(answers of a pair of bodies squared) at worst; linear if all normals are those of faces.
 Status correct_surface_contacts(const CollidedPairs& collided, PrimitivePairs& pairs,
