@@ -114,7 +114,8 @@ Status find_primitive_pairs(const CompositePool& pool, const ShapePool& shapes,
 /// triangle around the point reaches farther along it (SurfaceCones). For two surfaces it must be
 /// in the cones of both. All valid contacts of one convex piece of a surface have the same depth,
 /// that of the piece. Other contacts are changed:
-/// - If a valid contact of the same two bodies parts the primitives, too (both lie on their sides of
+/// - If a valid contact of the same two bodies parts the primitives, too (both lie on their sides
+/// of
 ///   its plane), they are dropped. If the face lies in that plane, the other shape is clipped along
 ///   the normal of the valid contact instead, so that a manifold spans all triangles of a flat
 ///   floor; only points over the triangle are kept.
