@@ -19,8 +19,7 @@ struct Facet {
   double size;
 
   /// Leaves the members uninitialised.
-  Facet() noexcept {
-  }  // NOLINT(modernize-use-equals-default,cppcoreguidelines-pro-type-member-init)
+  Facet() noexcept = default;
   /// The triangle at a pose.
   Facet(const TriangleShape& triangle, const Pose& pose) noexcept;
 

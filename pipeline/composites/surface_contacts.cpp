@@ -70,7 +70,7 @@ struct FacePair {
   bool second;
 };
 
-/// Contacts along the normal of the triangle's face.
+/// Contacts of a triangle along the normal of an answer.
 struct FaceContacts {
   ContactPoint points[kManifoldPoints];
   std::uint32_t count = 0;
@@ -84,7 +84,7 @@ struct FaceContacts {
 constexpr double kFloatError = 1.2e-7;
 constexpr double kFloatSlack = 1e-6;
 
-/// True if the projection of a point along the triangle's normal is in the triangle.
+/// True if the projection of a point along a normal is in the triangle.
 [[nodiscard]] bool is_over(const solver::Core& triangle, const Vec& normal, const float* point,
                            double size) noexcept {
   const Vec at = Eigen::Map<const Eigen::Vector3f>(point).cast<double>() - triangle.center;
@@ -257,6 +257,10 @@ class SurfaceContacts {
   [[nodiscard]] bool is_facet(std::uint32_t primitive) const noexcept {
     return cones_.is_triangle(primitive) && pairs_.part[primitive] != kWholeShape;
   }
+  /// The triangle of a surface; of two surfaces, that of b.
+  [[nodiscard]] Facet facet_of(std::size_t i) const noexcept {
+    return cones_.facet(is_facet(pair(i).b) ? pair(i).b : pair(i).a);
+  }
   [[nodiscard]] bool is_of_two_surfaces(std::size_t i) const noexcept {
     return is_facet(pair(i).a) == is_facet(pair(i).b);
   }
@@ -404,7 +408,7 @@ Change SurfaceContacts::first_choice(std::size_t i, const AnswerGroup& group) co
   }
   if (!is_of_two_surfaces(i)) {
     // Most contacts are with faces.
-    const Facet face = cones_.facet(is_facet(bodies.b) ? bodies.b : bodies.a);
+    const Facet face = facet_of(i);
     const double off = face.normal.cross(cones_.normal(i)).norm();
     const bool has_area = !face.normal.isZero();
     if (has_area && off <= kNearlyFace) {
@@ -520,8 +524,8 @@ void SurfaceContacts::solve_patch(std::size_t i, const AnswerGroup& group,
 }
 
 // Solves a patch that bends so little that the best of its face normals is as good as any
-// direction: the depth along any normal between those of the faces is at least kGentleCosine of
-// that depth.
+// direction, if the other shape is deepest over the patch: then the depth along any normal between
+// those of the faces is at least kGentleCosine of that depth.
 bool SurfaceContacts::solve_gentle(const BodyPair& bodies, PatchContact& patch) const noexcept {
   const bool second = patch.side[0].is_empty();
   const ConvexPatch& own = patch.side[second ? 1 : 0];
@@ -591,8 +595,7 @@ Vec SurfaceContacts::outward_of(std::size_t i, bool second,
 
 // True if the face of a triangle is nearly normal to the normal of answer s.
 bool SurfaceContacts::is_level_with(std::size_t i, std::size_t s) const noexcept {
-  const BodyPair& bodies = pair(i);
-  const Facet face = cones_.facet(is_facet(bodies.b) ? bodies.b : bodies.a);
+  const Facet face = facet_of(i);
   return std::abs(face.normal.dot(cones_.normal(s))) >= kRegionCosine;
 }
 
@@ -649,8 +652,7 @@ Vec SurfaceContacts::face_normal(std::size_t i, const AnswerGroup& group) const 
 
 // Sets the normal to that of the face, on the same side.
 void SurfaceContacts::straighten(std::size_t i) noexcept {
-  const BodyPair& bodies = pair(i);
-  const Facet face = cones_.facet(is_facet(bodies.b) ? bodies.b : bodies.a);
+  const Facet face = facet_of(i);
   const Vec normal = cones_.normal(i);
   const Vec straight = face.normal.dot(normal) < 0.0 ? Vec(-face.normal) : face.normal;
   double size = std::abs(columns_.distance[i]);
@@ -778,7 +780,7 @@ void SurfaceContacts::lower_sphere(std::size_t i, const Vec& normal) noexcept {
 
 bool SurfaceContacts::clip(AnswerChunk& chunk, std::size_t i, double most, Kept kept) noexcept {
   const BodyPair& bodies = pair(i);
-  const Vec normal(columns_.normal[0][i], columns_.normal[1][i], columns_.normal[2][i]);
+  const Vec normal = cones_.normal(i);
   const FacePair faces{tables_,
                        pairs_.shapes[bodies.a],
                        pairs_.poses[bodies.a],
