@@ -7,20 +7,68 @@
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
-#include <span>
+#include <iterator>
+#include <type_traits>
+#include <utility>
 
 namespace winnow {
 
 namespace detail {
 
-/// A contiguous container whose elements store x, y and z one after another.
-template <typename Points>
-concept ArrayOfPoints = requires(const Points& points) {
-  { std::size(points) } -> std::convertible_to<std::size_t>;
-  std::data(points)->x() + std::data(points)->y() + std::data(points)->z();
-  requires std::same_as<decltype(std::data(points)->data()), const float*> ||
-      std::same_as<decltype(std::data(points)->data()), const double*>;
+/// A contiguous container.
+template <typename Elements>
+concept Contiguous = requires(const Elements& elements) {
+  { std::size(elements) } -> std::convertible_to<std::size_t>;
+  *std::data(elements);
 };
+template <typename Elements>
+using ElementOf = std::remove_cvref_t<decltype(*std::data(std::declval<const Elements&>()))>;
+
+/// Returns the address of a coordinate of a point: of a vector with data(), an array, or a struct
+/// with members x, y and z; null for any other type.
+template <typename Point>
+[[nodiscard]] constexpr auto coordinate_of(const Point* point, std::size_t axis) noexcept {
+  if constexpr (requires { point->data() + axis; }) {
+    return point->data() + axis;
+  } else if constexpr (std::is_array_v<Point>) {
+    return &(*point)[axis];
+  } else if constexpr (requires { &point->x == &point->y&& & point->y == &point->z; }) {
+    return axis == 0 ? &point->x : axis == 1 ? &point->y : &point->z;
+  } else {
+    return nullptr;
+  }
+}
+
+template <typename Point>
+concept StoresFloats =
+    std::same_as<decltype(coordinate_of(static_cast<const Point*>(nullptr), 0)), const float*>;
+template <typename Point>
+concept StoresDoubles =
+    std::same_as<decltype(coordinate_of(static_cast<const Point*>(nullptr), 0)), const double*>;
+
+/// A contiguous container of points.
+template <typename Points>
+concept ArrayOfPoints = Contiguous<Points> &&
+    (StoresFloats<ElementOf<Points>> || StoresDoubles<ElementOf<Points>>);
+
+/// An index of 16 or 32 bits.
+template <typename T>
+concept Index = std::is_integral_v<T> &&(sizeof(T) == 2 || sizeof(T) == 4);
+
+/// Returns the address of the first index of a triangle, or of a single index; null for any other
+/// type.
+template <typename Corners>
+[[nodiscard]] constexpr auto first_index(const Corners* corners) noexcept {
+  if constexpr (Index<Corners>) {
+    return corners;
+  } else if constexpr (requires { corners->data(); }) {
+    return corners->data();
+  } else if constexpr (std::is_array_v<Corners>) {
+    return &(*corners)[0];
+  } else {
+    return nullptr;
+  }
+}
 
 }  // namespace detail
 
@@ -36,13 +84,31 @@ struct PointView {
   std::size_t count = 0;  ///< number of points
 
   PointView() = default;
-  /// Views any contiguous container of vectors: winnow's, Eigen's, and others whose data() points
-  /// to their coordinates in float or double.
-  template <detail::ArrayOfPoints Points>
-  PointView(const Points& points) noexcept  // NOLINT(google-explicit-constructor)
-      : stride(sizeof(*std::data(points))), count(std::size(points)) {
-    if (count == 0) return;
-    for (std::size_t axis = 0; axis < 3; ++axis) set_column(axis, std::data(points)->data() + axis);
+  /// Views any contiguous container of points in float or double: winnow's vectors, Eigen's, and
+  /// others whose data() points to their coordinates, arrays of 3, and structs with members x, y
+  /// and z; or of numbers, where x, y and z of each point follow one another (one or two extra
+  /// numbers are ignored).
+  template <detail::Contiguous Points>
+  PointView(const Points& points) noexcept {  // NOLINT(google-explicit-constructor)
+    using Point = detail::ElementOf<Points>;
+    const auto* const first = std::data(points);
+    if constexpr (std::same_as<Point, float> || std::same_as<Point, double>) {
+      count = std::size(points) / 3;
+      stride = 3 * sizeof(Point);
+      for (std::size_t axis = 0; axis < 3 && count != 0; ++axis) set_column(axis, first + axis);
+    } else {
+      static_assert(detail::ArrayOfPoints<Points>,
+                    "a PointView takes a contiguous container of points with data(), of arrays "
+                    "float[3] or double[3], of structs with members x, y and z, or of float or "
+                    "double x, y, z, x, y, z, ...");
+      if constexpr (detail::ArrayOfPoints<Points>) {
+        count = std::size(points);
+        stride = sizeof(Point);
+        for (std::size_t axis = 0; axis < 3 && count != 0; ++axis) {
+          set_column(axis, detail::coordinate_of(first, axis));
+        }
+      }
+    }
   }
   /// Views columns of floats, or float members of any struct.
   PointView(std::array<const float*, 3> columns, std::size_t points,
@@ -84,13 +150,32 @@ struct IndexView {
   std::size_t count = 0;  ///< number of triangles
 
   IndexView() = default;
-  /// Views three indices per triangle, one triangle after another. One or two extra indices are
-  /// ignored.
-  IndexView(std::span<const std::uint32_t> corners) noexcept  // NOLINT(google-explicit-constructor)
-      : wide(corners.data()), count(corners.size() / 3) {}
-  /// As above, for indices of 16 bits.
-  IndexView(std::span<const std::uint16_t> corners) noexcept  // NOLINT(google-explicit-constructor)
-      : narrow(corners.data()), stride(3 * sizeof(std::uint16_t)), count(corners.size() / 3) {}
+  /// Views any contiguous container of indices of 16 or 32 bits, signed or unsigned, where the
+  /// three of each triangle follow one another (one or two extra ones are ignored); or of
+  /// triangles: arrays of 3 indices, and vectors whose data() points to three. Negative indices are
+  /// of no vertex.
+  template <detail::Contiguous Corners>
+  IndexView(const Corners& corners) noexcept {  // NOLINT(google-explicit-constructor)
+    using Element = detail::ElementOf<Corners>;
+    const auto* const first = detail::first_index(std::data(corners));
+    using Pointer = std::remove_cv_t<decltype(first)>;
+    using Number = std::remove_const_t<std::remove_pointer_t<Pointer>>;
+    static_assert(detail::Index<Number>,
+                  "an IndexView takes a contiguous container of integers of 16 or 32 bits, three "
+                  "for each triangle, or of arrays of three");
+    if constexpr (detail::Index<Number>) {
+      constexpr bool kSingle = std::same_as<Element, Number>;
+      static_assert(kSingle || sizeof(Element) >= 3 * sizeof(Number), "a triangle has 3 indices");
+      count = std::size(corners) / (kSingle ? 3 : 1);
+      stride = kSingle ? 3 * sizeof(Number) : sizeof(Element);
+      if (count == 0) return;
+      if constexpr (sizeof(Number) == 4) {
+        wide = reinterpret_cast<const std::uint32_t*>(first);
+      } else {
+        narrow = reinterpret_cast<const std::uint16_t*>(first);
+      }
+    }
+  }
   /// Views indices as members of any struct.
   IndexView(const std::uint32_t* corners, std::size_t triangles, std::size_t stride_bytes) noexcept
       : wide(corners), stride(stride_bytes), count(triangles) {}

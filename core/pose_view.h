@@ -31,8 +31,9 @@ struct PoseView {
   /// Views an array of poses.
   PoseView(std::span<const Pose> poses) noexcept {  // NOLINT(google-explicit-constructor)
     if (poses.empty()) return;
-    for (std::size_t axis = 0; axis < 3; ++axis) position[axis] = poses.data()->position + axis;
-    for (std::size_t k = 0; k < 4; ++k) orientation[k] = poses.data()->orientation + k;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      position[axis] = poses.data()->position.data() + axis;
+    for (std::size_t k = 0; k < 4; ++k) orientation[k] = poses.data()->orientation.data() + k;
     position_stride = orientation_stride = sizeof(Pose);
     count = poses.size();
   }
@@ -52,7 +53,8 @@ struct PoseView {
   /// Views an array of positions, which are vectors in double, without orientations; see PointView.
   template <detail::ArrayOfPoints Points>
   [[nodiscard]] static PoseView of_positions(const Points& positions) noexcept {
-    static_assert(std::same_as<decltype(std::data(positions)->data()), const double*>);
+    static_assert(detail::StoresDoubles<detail::ElementOf<Points>>,
+                  "positions of bodies are in double");
     const PointView points(positions);
     return {points.precise, points.count, points.stride};
   }

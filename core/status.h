@@ -29,7 +29,7 @@ enum class [[nodiscard]] Status : std::uint8_t{
     invalid_shape,
     /// A pose has a NaN or infinity, or its quaternion is zero.
     invalid_pose,
-    /// This build of the library lacks a feature that the call needs.
+    /// This build of the library, or the object as it was created, lacks what the call needs.
     unsupported,
     /// A rank of a cluster does not respond, or a message failed; no later call can succeed.
     communication_failed,

@@ -4,6 +4,7 @@
 // vectors without including Eigen.
 #include <winnow/core/export.h>
 
+#include <array>
 #include <cmath>
 #include <concepts>
 #include <type_traits>
@@ -15,13 +16,27 @@ class BasicVec3;
 
 namespace detail {
 
-/// A vector type whose x(), y() and z() return T, except BasicVec3: vectors and expressions of
-/// Eigen, and user types with this interface.
+/// A number that converts to T without loss, such as float to double.
+template <typename Number, typename T>
+concept FitsIn = std::is_arithmetic_v<Number> && requires(Number number) {
+  T{number};
+};
+
+/// A vector type with x(), y() and z(), except BasicVec3 of the same number: vectors and
+/// expressions of Eigen, and user types with this interface.
 template <typename Vector, typename T>
-concept VectorLike = !std::derived_from<Vector, BasicVec3<T>> && requires(const Vector& v) {
-  requires std::same_as<std::remove_cvref_t<decltype(v.x())>, T>;
-  requires std::same_as<std::remove_cvref_t<decltype(v.y())>, T>;
-  requires std::same_as<std::remove_cvref_t<decltype(v.z())>, T>;
+concept HasAccessors = !std::derived_from<Vector, BasicVec3<T>> && requires(const Vector& v) {
+  requires FitsIn<std::remove_cvref_t<decltype(v.x())>, T>;
+  requires FitsIn<std::remove_cvref_t<decltype(v.y())>, T>;
+  requires FitsIn<std::remove_cvref_t<decltype(v.z())>, T>;
+};
+
+/// A struct with members x, y and z.
+template <typename Vector, typename T>
+concept HasMembers = requires(const Vector& v) {
+  requires FitsIn<std::remove_cvref_t<decltype(v.x)>, T>;
+  requires FitsIn<std::remove_cvref_t<decltype(v.y)>, T>;
+  requires FitsIn<std::remove_cvref_t<decltype(v.z)>, T>;
 };
 
 /// An Eigen vector that stores three elements. It is recognised by its members, without Eigen's
@@ -45,9 +60,10 @@ template <typename Expression>
 
 }  // namespace detail
 
-/// A point or direction in space: three contiguous numbers. Any vector whose x(), y() and z()
-/// return T, such as Eigen's, converts to it, and it converts to Eigen vectors.
-/// <winnow/core/eigen.h> views it as an Eigen vector in place.
+/// A point or direction in space: three contiguous numbers. Arrays of three numbers, structs with
+/// members x, y and z, and vectors with x(), y() and z(), such as Eigen's, convert to it if no
+/// number can lose digits; it converts to Eigen vectors. <winnow/core/eigen.h> views it as an Eigen
+/// vector in place.
 template <typename T>
 class BasicVec3 {
   static_assert(std::is_floating_point_v<T>);
@@ -60,14 +76,26 @@ class BasicVec3 {
   /// Creates a vector from three contiguous numbers.
   explicit constexpr BasicVec3(const T* numbers) noexcept
       : at_{numbers[0], numbers[1], numbers[2]} {}
-  /// Converts a vector of another type.
-  template <detail::VectorLike<T> Vector>
+  /// Converts three numbers of the caller.
+  /// @{
+  template <detail::FitsIn<T> Number>
+  constexpr BasicVec3(const Number (&numbers)[3]) noexcept  // NOLINT(google-explicit-constructor)
+      : at_{numbers[0], numbers[1], numbers[2]} {}
+  template <detail::FitsIn<T> Number>
+  constexpr BasicVec3(  // NOLINT(google-explicit-constructor)
+      const std::array<Number, 3>& numbers) noexcept
+      : at_{numbers[0], numbers[1], numbers[2]} {}
+  template <detail::HasMembers<T> Vector>
+  constexpr BasicVec3(const Vector& v) noexcept  // NOLINT(google-explicit-constructor)
+      : at_{v.x, v.y, v.z} {}
+  template <detail::HasAccessors<T> Vector>
   constexpr BasicVec3(const Vector& other) noexcept {  // NOLINT(google-explicit-constructor)
     decltype(auto) v = detail::value_of(other);
     at_[0] = v.x();
     at_[1] = v.y();
     at_[2] = v.z();
   }
+  /// @}
   /// Converts to an Eigen vector.
   template <detail::EigenVector<T> Vector>
   operator Vector() const noexcept {  // NOLINT(google-explicit-constructor)
@@ -101,6 +129,14 @@ class BasicVec3 {
   [[nodiscard]] constexpr const T* data() const noexcept { return at_; }
   /// Returns a writable pointer to the three contiguous coordinates.
   [[nodiscard]] constexpr T* data() noexcept { return at_; }
+
+  /// Iterators over the three coordinates.
+  /// @{
+  [[nodiscard]] constexpr const T* begin() const noexcept { return at_; }
+  [[nodiscard]] constexpr const T* end() const noexcept { return at_ + 3; }
+  [[nodiscard]] constexpr T* begin() noexcept { return at_; }
+  [[nodiscard]] constexpr T* end() noexcept { return at_ + 3; }
+  /// @}
 
   /// Returns the vector with each coordinate converted to another type, rounded to nearest.
   template <typename Other>

@@ -19,11 +19,11 @@ struct ClusterQueryState;
 
 /// Hit of a ray on a body of any rank; see SceneHit.
 struct ClusterHit {
-  BodyName name = 0;                   ///< the body
-  double t = 0.0;                      ///< parameter of the hit, in units of the direction
-  double normal[3] = {0.0, 0.0, 0.0};  ///< unit normal of the surface, against the ray
-  double point[3] = {0.0, 0.0, 0.0};   ///< point of the hit, in the world
-  std::uint32_t part = kWholeShape;    ///< triangle or child; kWholeShape for a convex body
+  BodyName name = 0;                 ///< the body
+  double t = 0.0;                    ///< parameter of the hit, in units of the direction
+  Vec3d normal{};                    ///< unit normal of the surface, against the ray
+  Vec3d point{};                     ///< point of the hit, in the world
+  std::uint32_t part = kWholeShape;  ///< triangle or child; kWholeShape for a convex body
 };
 
 /// A body that overlaps a query shape; see SceneOverlap.
@@ -34,12 +34,12 @@ struct ClusterOverlap {
 
 /// Distance from a point to a body; see SceneDistance.
 struct ClusterDistance {
-  BodyName name = 0;                   ///< the body
-  double distance = 0.0;               ///< negative inside a solid
-  double error_bound = 0.0;            ///< the true distance is within distance +- this
-  double normal[3] = {0.0, 0.0, 0.0};  ///< unit vector from the point to the body
-  double point[3] = {0.0, 0.0, 0.0};   ///< closest point of the body, in the world
-  std::uint32_t part = kWholeShape;    ///< closest part
+  BodyName name = 0;                 ///< the body
+  double distance = 0.0;             ///< negative inside a solid
+  double error_bound = 0.0;          ///< the true distance is within distance +- this
+  Vec3d normal{};                    ///< unit vector from the point to the body
+  Vec3d point{};                     ///< closest point of the body, in the world
+  std::uint32_t part = kWholeShape;  ///< closest part
 };
 
 /// A shape at a pose, for overlap queries.
@@ -50,7 +50,7 @@ struct ShapeProbe {
 
 /// A point, for nearest-body queries.
 struct NearestProbe {
-  double point[3] = {0.0, 0.0, 0.0};                        ///< finite
+  Vec3d point{};                                            ///< finite
   std::size_t count = 1;                                    ///< largest number of bodies
   double radius = std::numeric_limits<double>::infinity();  ///< largest distance; >= 0
 };

@@ -58,6 +58,7 @@ class WINNOW_API CompositePool {
   /// pool.
   explicit CompositePool(const ShapePool& shapes,
                          std::pmr::memory_resource* memory = default_memory()) noexcept;
+  explicit CompositePool(ShapePool&& shapes, std::pmr::memory_resource* memory = nullptr) = delete;
   ~CompositePool();
   CompositePool(const CompositePool&) = delete;
   CompositePool& operator=(const CompositePool&) = delete;

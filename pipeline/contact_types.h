@@ -4,6 +4,7 @@
 // include this header.
 
 #include <winnow/core/export.h>
+#include <winnow/core/vec3.h>
 
 #include <cstdint>
 
@@ -37,7 +38,7 @@ inline constexpr std::uint32_t kWholeShape = ~0U;
 /// (lower half) that generated the point; it has the same value in each frame in which these two
 /// generate the point.
 struct ContactPoint {
-  float position[3];      ///< x, y, z
+  Vec3f position;
   float depth;            ///< positive if the bodies overlap there, negative if they are apart
   std::uint64_t feature;  ///< equal features in two frames are the same point
 };
@@ -55,10 +56,10 @@ struct PairAnswer {
   double distance = 0.0;
   /// The true distance is within distance +- error_bound.
   double error_bound = 0.0;
-  double normal[3] = {1.0, 0.0, 0.0};  ///< unit vector from a to b, in world axes
+  Vec3d normal = {1.0, 0.0, 0.0};  ///< unit vector from a to b, in world axes
   /// Closest (or deepest) point of a, relative to the position of a, in world axes. The point of b
   /// is point + distance * normal.
-  double point[3] = {0.0, 0.0, 0.0};
+  Vec3d point{};
   bool overlap = false;                         ///< true if the shapes share a point
   std::uint32_t contact_count = 0;              ///< number of contact points
   ContactPoint contacts[kManifoldPoints] = {};  ///< empty if the gap exceeds the margin

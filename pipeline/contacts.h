@@ -10,6 +10,7 @@
 #include <winnow/core/indexed_view.h>
 #include <winnow/core/key.h>
 #include <winnow/core/large_pages.h>
+#include <winnow/core/vec3.h>
 #include <winnow/pipeline/contact_types.h>
 
 #include <cstdint>
@@ -19,6 +20,7 @@
 namespace winnow {
 
 struct ContactColumns;
+class Contacts;
 struct ContactsState;
 
 /// Whether a pair of bodies was present when these Contacts were last filled.
@@ -69,11 +71,92 @@ using DataColumn = IndexedView<DataLookup>;
 /// Part of one shape in each manifold. Used like a span.
 using PartColumn = IndexedView<PartLookup>;
 
+/// Function that returns a point of a manifold.
+struct PointLookup {
+  const Contacts* contacts;  ///< contacts that contain the point
+  std::uint32_t first;       ///< first point of the manifold
+
+  /// Returns point i of the manifold.
+  [[nodiscard]] ContactPoint operator()(std::size_t i) const noexcept;
+};
+
+/// A manifold of Contacts, and the range of its points, which is empty below level manifold. Valid
+/// until the contacts change.
+class WINNOW_API ContactManifold : public IndexedView<PointLookup> {
+ public:
+  /// Reads manifold `index` of the contacts.
+  ContactManifold(const Contacts& contacts, std::uint32_t index) noexcept;
+
+  /// Returns the index of the manifold in the columns of the contacts.
+  [[nodiscard]] std::uint32_t index() const noexcept { return index_; }
+  /// As Contacts::distance; 0 at level boolean.
+  [[nodiscard]] double distance() const noexcept;
+  /// As Contacts::error_bound; 0 at level boolean.
+  [[nodiscard]] double error_bound() const noexcept;
+  /// Unit normal from a to b, in world axes; zero at level boolean.
+  [[nodiscard]] Vec3d normal() const noexcept;
+  /// As Contacts::point; zero except at level distance.
+  [[nodiscard]] Vec3d point() const noexcept;
+  /// As Contacts::part_a.
+  [[nodiscard]] std::uint32_t part_a() const noexcept;
+  /// As Contacts::part_b.
+  [[nodiscard]] std::uint32_t part_b() const noexcept;
+
+ private:
+  std::uint32_t index_;
+};
+
+/// Function that returns a manifold of a pair.
+struct ManifoldLookup {
+  const Contacts* contacts;  ///< contacts that contain the manifold
+  std::uint32_t first;       ///< first manifold of the pair
+
+  /// Returns manifold i of the pair.
+  [[nodiscard]] ContactManifold operator()(std::size_t i) const noexcept {
+    return {*contacts, first + static_cast<std::uint32_t>(i)};
+  }
+};
+
+/// A pair of bodies of Contacts, and the range of its manifolds, which is empty at level pairs.
+/// Valid until the contacts change.
+class WINNOW_API ContactPair : public IndexedView<ManifoldLookup> {
+ public:
+  /// Reads pair `index` of the contacts.
+  ContactPair(const Contacts& contacts, std::size_t index) noexcept;
+
+  /// Returns the index of the pair in the columns of the contacts.
+  [[nodiscard]] std::size_t index() const noexcept { return index_; }
+  [[nodiscard]] Key a() const noexcept;               ///< first body
+  [[nodiscard]] Key b() const noexcept;               ///< second body
+  [[nodiscard]] ClientData data_a() const noexcept;   ///< client data of a
+  [[nodiscard]] ClientData data_b() const noexcept;   ///< client data of b
+  [[nodiscard]] ContactEvent event() const noexcept;  ///< whether the pair is new
+
+ private:
+  std::size_t index_;
+};
+
+/// Function that returns a pair of Contacts.
+struct PairLookup {
+  const Contacts* contacts;  ///< contacts that contain the pair
+
+  /// Returns pair i.
+  [[nodiscard]] ContactPair operator()(std::size_t i) const noexcept { return {*contacts, i}; }
+};
+
 /// Result of `Scene::collide`, in columns: pairs of bodies, sorted by the kinds of their shapes,
 /// then by body; for each pair its manifolds; for each manifold its points. A pair of convex shapes
 /// has one manifold. A pair with a composite shape has one per pair of parts that touch, or one per
 /// contact region (see SceneOptions::contact_reduction). In a pair, a is the body with the smaller
 /// kind of shape, or with the smaller id if the kinds are equal.
+///
+/// Pairs, manifolds and points can also be read as nested ranges:
+///
+///     for (const winnow::ContactPair& pair : contacts) {
+///       for (const winnow::ContactManifold& manifold : pair) {
+///         for (const winnow::ContactPoint& point : manifold) { ... }
+///       }
+///     }
 ///
 /// The caller keeps the object from frame to frame: it stores the previous frame, for events and
 /// for contacts that are cached. A new or cleared object stores no previous frame. It is not
@@ -91,6 +174,17 @@ class WINNOW_API Contacts {
   [[nodiscard]] ContactLevel level() const noexcept;
   /// Returns the number of pairs.
   [[nodiscard]] std::size_t size() const noexcept;
+  /// Returns pair i; i must be below `size()`.
+  [[nodiscard]] ContactPair operator[](std::size_t i) const noexcept { return {*this, i}; }
+  /// Iterators over the pairs.
+  /// @{
+  [[nodiscard]] IndexedView<PairLookup>::iterator begin() const noexcept {
+    return {PairLookup{this}, 0};
+  }
+  [[nodiscard]] IndexedView<PairLookup>::iterator end() const noexcept {
+    return {PairLookup{this}, size()};
+  }
+  /// @}
   /// Returns the runs of pairs with the same two kinds of shapes; together they are all pairs.
   [[nodiscard]] std::span<const ContactRun> runs() const noexcept;
   /// Returns the first body of each pair.

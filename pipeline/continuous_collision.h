@@ -6,6 +6,7 @@
 #include <winnow/core/large_pages.h>
 #include <winnow/core/pose_view.h>
 #include <winnow/core/status.h>
+#include <winnow/core/vec3.h>
 #include <winnow/pipeline/rigid_motion.h>
 #include <winnow/pipeline/scene.h>
 
@@ -52,8 +53,8 @@ struct SceneImpact {
   double time = 0.0;                   ///< in [0, 1], never late: the two are apart before it
   double gap = 0.0;                    ///< see ImpactResult::gap
   double error_bound = 0.0;            ///< the true gap is within gap +- error_bound
-  double normal[3] = {0.0, 0.0, 0.0};  ///< unit vector from a to b, at that time
-  double point[3] = {0.0, 0.0, 0.0};   ///< contact point of a at that time, in the world
+  Vec3d normal{};                      ///< unit vector from a to b, at that time
+  Vec3d point{};                       ///< contact point of a at that time, in the world
 };
 
 /// Index of no impact; see `ContinuousCollision::first`.

@@ -78,8 +78,8 @@ struct MeshShapeImpact {
   double time = 0.0;         ///< in [0, 1], never late: the two are apart before it
   double gap = 0.0;          ///< at that time, beyond the separation; see ImpactResult
   double error_bound = 0.0;  ///< the true gap is within gap +- error_bound
-  Vec3d normal;              ///< unit vector from the shape to the face, at that time
-  Vec3d point;               ///< contact point on the shape at that time, in the world
+  Vec3d normal{};            ///< unit vector from the shape to the face, at that time
+  Vec3d point{};             ///< contact point on the shape at that time, in the world
 };
 
 /// Callback of the caller that receives chunks of results.

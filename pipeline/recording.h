@@ -324,7 +324,7 @@ class WINNOW_API RecordedQueries {
                      double contact_margin = 0.0, PairRules rules = PairRules::scene);
   Status any_contact(KeyPair& pair, double contact_margin = 0.0,
                      PairRules rules = PairRules::scene);
-  Status nearest(const double point[3], std::size_t count, double radius,
+  Status nearest(const Vec3d& point, std::size_t count, double radius,
                  std::span<const SceneDistance>& bodies, const Filter& filter = {});
   /// @}
 

@@ -2,6 +2,7 @@
 
 #include <winnow/core/export.h>
 #include <winnow/core/pose.h>
+#include <winnow/core/vec3.h>
 
 namespace winnow {
 
@@ -12,13 +13,13 @@ struct RigidMotion {
   /// Largest rotation in radians: about 160,000 turns.
   static constexpr double kMaxTurn = 1e6;
 
-  Pose start;                          ///< pose at time 0
-  double travel[3] = {0.0, 0.0, 0.0};  ///< displacement from time 0 to time 1
-  double turn[3] = {0.0, 0.0, 0.0};    ///< rotation axis times angle in radians, in world axes
+  Pose start;      ///< pose at time 0
+  Vec3d travel{};  ///< displacement from time 0 to time 1
+  Vec3d turn{};    ///< rotation axis times angle in radians, in world axes
 
   /// Returns the motion of a body at rest.
   [[nodiscard]] static constexpr RigidMotion stationary(const Pose& pose) noexcept {
-    return {pose, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}};
+    return {pose, {}, {}};
   }
   /// Returns the motion from one pose to another by the shorter rotation, at most half a turn. For
   /// exactly half a turn, the axis is the vector part of end * conjugate(start). The motion is
@@ -26,9 +27,8 @@ struct RigidMotion {
   [[nodiscard]] WINNOW_API static RigidMotion between(const Pose& start, const Pose& end) noexcept;
   /// Returns the motion at constant velocities for a duration, in world axes. Velocities are in
   /// lengths and radians per unit of `duration`. The rotation may exceed a full turn.
-  [[nodiscard]] WINNOW_API static RigidMotion by_velocities(const Pose& start,
-                                                            const double (&linear)[3],
-                                                            const double (&angular)[3],
+  [[nodiscard]] WINNOW_API static RigidMotion by_velocities(const Pose& start, const Vec3d& linear,
+                                                            const Vec3d& angular,
                                                             double duration) noexcept;
 
   /// True if the start is valid, all numbers and the last position are finite, and the rotation is

@@ -194,12 +194,14 @@ class WINNOW_API Scene {
   /// memory for the scene itself is refused, the scene stays empty and every call returns
   /// `out_of_memory`.
   explicit Scene(const ShapePool& shapes, const SceneOptions& options = {}) noexcept;
+  explicit Scene(ShapePool&& shapes, const SceneOptions& options = {}) = delete;
   ~Scene();
   Scene(const Scene&) = delete;
   Scene& operator=(const Scene&) = delete;
 
-  /// Adds a body. `invalid_key` if neither pool contains the shape; `invalid_pose`;
-  /// `invalid_argument` for offsets or a layer out of range; `too_many_objects` from 2^28 on.
+  /// Adds a body. `invalid_key` if neither pool contains the shape; `unsupported` for a composite
+  /// shape in a scene without SceneOptions::composites; `invalid_pose`; `invalid_argument` for
+  /// offsets or a layer out of range; `too_many_objects` from 2^28 on.
   Status add(const BodyDefinition& body, Key& key);
   /// As above, but returns the key, or the null key (which every call refuses) on failure.
   Key add(const BodyDefinition& body) {

@@ -11,6 +11,7 @@
 #include <winnow/core/pair_events.h>
 #include <winnow/core/pose.h>
 #include <winnow/core/status.h>
+#include <winnow/core/vec3.h>
 #include <winnow/pipeline/rigid_motion.h>
 #include <winnow/pipeline/scene.h>
 #include <winnow/pipeline/shape_rays.h>
@@ -37,9 +38,9 @@ struct SceneHit {
   double t = 0.0;
   /// Unit normal of the body's surface, against the motion. If a moving shape overlaps the body at
   /// the start: the direction of the shortest way out.
-  double normal[3] = {0.0, 0.0, 0.0};
+  Vec3d normal{};
   /// Point of contact, in the world.
-  double point[3] = {0.0, 0.0, 0.0};
+  Vec3d point{};
 
   /// True if there is a hit.
   [[nodiscard]] explicit operator bool() const noexcept { return key.id != kNoObject; }
@@ -84,9 +85,9 @@ struct SceneDistance {
   double distance = 0.0;
   double error_bound = 0.0;  ///< the true distance is within distance +- error_bound
   /// Unit vector from the first body (or the point) to the second body.
-  double normal[3] = {0.0, 0.0, 0.0};
-  double point_a[3] = {0.0, 0.0, 0.0};  ///< closest point of the first body, in the world
-  double point_b[3] = {0.0, 0.0, 0.0};  ///< closest point of the second body, in the world
+  Vec3d normal{};
+  Vec3d point_a{};  ///< closest point of the first body, in the world
+  Vec3d point_b{};  ///< closest point of the second body, in the world
 
   /// True if a second body was found.
   [[nodiscard]] explicit operator bool() const noexcept { return key.id != kNoObject; }
@@ -116,7 +117,7 @@ struct ShapeCast {
   ShapeId shape;  ///< convex, mesh, height field or compound; not a half-space
   Pose pose;      ///< pose at t = 0
   /// Displacement per unit of t; finite, not zero.
-  double direction[3] = {1.0, 0.0, 0.0};
+  Vec3d direction = {1.0, 0.0, 0.0};
   double max_t = 1.0;  ///< finite, >= 0
   /// True: a body that touches the shape at the start is hit at t = 0. False: it is hit at t = 0
   /// only if the motion increases the penetration by more than the tolerance. If the shape slides
@@ -146,6 +147,7 @@ class WINNOW_API SceneQueries {
   /// return `out_of_memory`.
   explicit SceneQueries(const Scene& scene,
                         std::pmr::memory_resource* memory = default_memory()) noexcept;
+  explicit SceneQueries(Scene&& scene, std::pmr::memory_resource* memory = nullptr) = delete;
   ~SceneQueries();
   SceneQueries(const SceneQueries&) = delete;
   SceneQueries& operator=(const SceneQueries&) = delete;
@@ -238,7 +240,7 @@ class WINNOW_API SceneQueries {
                      PairRules rules = PairRules::scene);
   /// Finds the bodies nearest to a point, at most `count`, within distance `radius`, sorted by
   /// distance. Inside a solid the distance is negative.
-  Status nearest(const double point[3], std::size_t count, double radius,
+  Status nearest(const Vec3d& point, std::size_t count, double radius,
                  std::span<const SceneDistance>& bodies, const Filter& filter = {});
 
   /// Returns the bytes of results and scratch; all others under `structure`.

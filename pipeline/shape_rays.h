@@ -3,6 +3,7 @@
 #include <winnow/core/export.h>
 #include <winnow/core/pose.h>
 #include <winnow/core/status.h>
+#include <winnow/core/vec3.h>
 #include <winnow/pipeline/shapes.h>
 
 #include <array>
@@ -15,8 +16,8 @@ namespace winnow {
 /// A ray: origin + t * direction for 0 <= t <= max_t, in double, in world axes. The direction may
 /// have any length; t is in its units. Without max_t the ray is infinite, also in a batch.
 struct ShapeRay {
-  double origin[3] = {0.0, 0.0, 0.0};                      ///< finite
-  double direction[3] = {1.0, 0.0, 0.0};                   ///< finite, not zero
+  Vec3d origin{};                                          ///< finite
+  Vec3d direction = {1.0, 0.0, 0.0};                       ///< finite, not zero
   double max_t = std::numeric_limits<double>::infinity();  ///< >= 0
 };
 
@@ -35,8 +36,8 @@ struct ShapeRayBatch {
       : count(rays.size()), stride(sizeof(ShapeRay)) {
     if (rays.empty()) return;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      origin[axis] = rays.data()->origin + axis;
-      direction[axis] = rays.data()->direction + axis;
+      origin[axis] = rays.data()->origin.data() + axis;
+      direction[axis] = rays.data()->direction.data() + axis;
     }
     max_t = &rays.data()->max_t;
   }
@@ -71,7 +72,7 @@ struct ShapeHit {
   double t = 0.0;
   /// Outward unit normal, against the ray. If the ray starts inside: minus its direction,
   /// normalised. On an edge: the normal of one of its faces.
-  double normal[3] = {0.0, 0.0, 0.0};
+  Vec3d normal{};
 };
 
 /// Finds the point at which a ray enters a shape. Shapes are closed sets: a ray that grazes the

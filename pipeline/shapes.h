@@ -5,6 +5,7 @@
 // ShapePool.
 
 #include <winnow/core/export.h>
+#include <winnow/core/vec3.h>
 
 #include <cstdint>
 
@@ -117,8 +118,8 @@ struct CapsuleShape {
 
 /// Core: |x_i| <= half_i.
 struct BoxShape {
-  double half[3] = {0.0, 0.0, 0.0};  ///< from the centre to the faces, along x, y, z
-  double rounding = 0.0;             ///< radius of rounded edges and corners, added outside
+  Vec3d half{};           ///< from the centre to the faces, along x, y, z
+  double rounding = 0.0;  ///< radius of rounded edges and corners, added outside
 };
 
 /// Core: x^2 + y^2 <= radius^2, |z| <= half_length.
@@ -137,22 +138,22 @@ struct ConeShape {
 
 /// Core: the triangle. Two-sided, without interior.
 struct TriangleShape {
-  double vertex[3][3] = {};  ///< [corner][axis]
-  double rounding = 0.0;     ///< greatest distance from the core
+  Vec3d vertex[3]{};
+  double rounding = 0.0;  ///< greatest distance from the core
 };
 
 /// The points with normal . x <= offset, an unbounded set. The normal may be any finite vector
 /// except zero; a ShapePool divides both members by the length of the normal.
 struct HalfSpaceShape {
-  double normal[3] = {0.0, 0.0, 1.0};  ///< outward; a unit vector in a ShapePool
-  double offset = 0.0;                 ///< distance of the plane from the origin, times |normal|
+  Vec3d normal = {0.0, 0.0, 1.0};  ///< outward; a unit vector in a ShapePool
+  double offset = 0.0;             ///< distance of the plane from the origin, times |normal|
 };
 
 /// Core: (x / radius[0])^2 + (y / radius[1])^2 + (z / radius[2])^2 <= 1; flat along axes whose
 /// radius is 0.
 struct EllipsoidShape {
-  double radius[3] = {0.0, 0.0, 0.0};  ///< semi-axes along x, y, z
-  double rounding = 0.0;               ///< added outside
+  Vec3d radius{};         ///< semi-axes along x, y, z
+  double rounding = 0.0;  ///< added outside
 };
 
 /// The convex hull of two balls on the z axis. One ball may contain the other.
@@ -183,7 +184,7 @@ struct SupportShape {
 /// A face of a hull; coplanar adjacent faces are merged. normal . x <= offset for every vertex. Its
 /// vertices are `loop[first + i]`, counter-clockwise as seen from outside.
 struct HullFace {
-  double normal[3];     ///< unit, outward
+  Vec3d normal{};       ///< unit, outward
   double offset;        ///< distance of the plane from the origin
   std::uint32_t first;  ///< index in `loop`
   std::uint32_t count;  ///< number of vertices
@@ -207,7 +208,7 @@ struct HullShape {
   std::uint32_t dimension = 0;     ///< 0 to 3
   double rounding = 0.0;           ///< added outside
   /// Mean of the vertices; inside the hull.
-  double center[3] = {0.0, 0.0, 0.0};
+  Vec3d center{};
   double radius = 0.0;           ///< greatest distance of a vertex from `center`
   double inner_radius = 0.0;     ///< radius of a ball about `center` inside the hull; 0 if flat
   const double* vertex[3] = {};  ///< columns x, y, z

@@ -16,14 +16,14 @@ namespace {
 
 constexpr double kMaxDegrees = 0.01;
 
-double degrees_between(const double (&a)[3], const double (&b)[3]) {
+double degrees_between(const Vec3d& a, const Vec3d& b) {
   const Eigen::Vector3d u(a[0], a[1], a[2]);
   const Eigen::Vector3d v(b[0], b[1], b[2]);
   return std::atan2(u.cross(v).norm(), u.dot(v)) * 180.0 / std::numbers::pi;
 }
 
 /// Returns false for the zero vector that stands for a missing normal.
-bool is_direction(const double (&v)[3]) {
+bool is_direction(const Vec3d& v) {
   const double square = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
   return std::isfinite(square) && square > 0.0;
 }

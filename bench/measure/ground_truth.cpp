@@ -23,7 +23,7 @@ PairTruth query_oracle(const PairSet& set, const BodyPair& pair) {
                    .distance = truth.distance,
                    .normal_unique = truth.normal_unique,
                    .size = truth.size};
-  std::copy_n(truth.normal, 3, result.normal);
+  result.normal = truth.normal;
   return result;
 }
 #else

@@ -13,7 +13,7 @@ struct PairTruth {
   bool known = false;
   bool overlap = false;
   long double distance = 0.0L;
-  double normal[3] = {};
+  Vec3d normal{};
   /// The normal is unique to 0.1 degrees.
   bool normal_unique = false;
   /// Sum of the radii of balls that contain the shapes; errors are relative to it.

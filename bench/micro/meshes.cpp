@@ -331,7 +331,7 @@ void add_scenes() {
   });
   add_scene_query("shape_cast", [](const QueryScene& scene, SceneQueries& queries, std::size_t i) {
     ShapeCast cast{.shape = scene.set->shapes[i], .pose = scene.starts[i]};
-    std::copy_n(scene.rays[i].direction, 3, cast.direction);
+    cast.direction = scene.rays[i].direction;
     SceneHit hit;
     need(queries.closest(cast, hit), "a shape cast");
     return number_of(hit);

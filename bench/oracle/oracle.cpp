@@ -68,8 +68,8 @@ Placed place_pair(Polytope a, const Pose& pose_a, Polytope b, const Pose& pose_b
   for (const auto& v : placed.a.vertex) reach = std::max(reach, length(v));
   for (const auto& v : placed.b.vertex) reach = std::max(reach, length(v));
   placed.scale = scale_for(reach);
-  place(placed.a, pose_a.orientation, {}, placed.scale);
-  place(placed.b, pose_b.orientation, between, placed.scale);
+  place(placed.a, pose_a.orientation.data(), {}, placed.scale);
+  place(placed.b, pose_b.orientation.data(), between, placed.scale);
   return placed;
 }
 
@@ -128,7 +128,7 @@ struct Body {
   }
   /// Rotates a world direction into the frame of the shape.
   [[nodiscard]] Vector<Number> local(const Vector<Number>& n) const {
-    const double* q = pose.orientation;
+    const double* q = pose.orientation.data();
     const double back[4] = {q[0], -q[1], -q[2], -q[3]};
     return rotate(back, n);
   }
@@ -164,7 +164,7 @@ Truth over_half_space(const ShapeTables& tables, ShapeId shape, const Pose& pose
   const HalfSpaceShape& plane = tables.half_spaces[half.index()];
   Vector<Number> n{plane.normal[0], plane.normal[1], plane.normal[2]};
   const Number offset = plane.offset / length(n);
-  n = rotate(half_pose.orientation, n * (1 / length(n)));
+  n = rotate(half_pose.orientation.data(), n * (1 / length(n)));
   const double back[4] = {pose.orientation[0], -pose.orientation[1], -pose.orientation[2],
                           -pose.orientation[3]};
   const Number least = least_along(tables, shape, rotate(back, n));

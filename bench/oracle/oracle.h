@@ -18,7 +18,7 @@ struct Truth {
   /// Upper bound of how much less the exact distance may be: 0 except for cylinders and cones.
   double slack = 0.0;
   /// Unit length, from a to b, in world axes.
-  double normal[3] = {};
+  Vec3d normal{};
   /// True if no direction more than 0.1 degrees away is equally good to within 1e-9 of the sizes.
   bool normal_unique = false;
   /// Sum of the radii of balls that contain the shapes; errors are relative to it.

@@ -39,7 +39,7 @@ void add_segment(Polytope& core, const Vec& from, const Vec& to) {
 
 Polytope box(const BoxShape& shape) {
   Polytope core;
-  const double* h = shape.half;
+  const double* h = shape.half.data();
   for (int i = 0; i < 8; ++i) {
     if ((i & 1 && h[0] == 0.0) || (i & 2 && h[1] == 0.0) || (i & 4 && h[2] == 0.0)) continue;
     core.vertex.push_back(
@@ -62,7 +62,8 @@ bool collinear(const Vec& normal, const Vec& side, const Vec& other) {
 
 Polytope triangle(const TriangleShape& shape) {
   Polytope core;
-  const Vec v[3] = {exact(shape.vertex[0]), exact(shape.vertex[1]), exact(shape.vertex[2])};
+  const Vec v[3] = {exact(shape.vertex[0].data()), exact(shape.vertex[1].data()),
+                    exact(shape.vertex[2].data())};
   const Vec normal = cross(v[1] - v[0], v[2] - v[0]);
   if (collinear(normal, v[1] - v[0], v[2] - v[0])) {
     int longest = 0;
@@ -115,7 +116,7 @@ Polytope hull(const HullShape& shape) {
     added.direction = core.vertex[edge.vertex[1]] - core.vertex[edge.vertex[0]];
     added.has_sides = edge.face[0] < shape.face_count && edge.face[1] < shape.face_count;
     for (int side = 0; side < 2 && added.has_sides; ++side) {
-      const double* n = shape.faces[edge.face[side]].normal;
+      const double* n = shape.faces[edge.face[side]].normal.data();
       added.beside[side] = {n[0], n[1], n[2]};
     }
   }

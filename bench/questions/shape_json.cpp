@@ -106,7 +106,7 @@ Status add_shape(const Json& value, ShapePool& pool, ShapeId& id) {
   const std::vector<Vec3d> v = vertices(value);
   if (type == "hull") return pool.add_hull(v, rounding, id);
   TriangleShape shape;
-  for (std::size_t i = 0; i < 3; ++i) std::copy_n(v[i].data(), 3, shape.vertex[i]);
+  for (std::size_t i = 0; i < 3; ++i) shape.vertex[i] = v[i];
   shape.rounding = rounding;
   return pool.add(shape, id);
 }

@@ -97,7 +97,7 @@ void push_apart(BodySet& set, double side) {
 
 /// Moves a hull vertically until its lowest vertex is kSunk below the terrain.
 void lay_down(const HullShape& hull, const Heights& heights, Pose& pose) {
-  const double* q = pose.orientation;
+  const double* q = pose.orientation.data();
   const Eigen::Quaterniond turn(q[0], q[1], q[2], q[3]);
   double gap = 1e9;
   for (std::uint32_t v = 0; v < hull.vertex_count; ++v) {

@@ -36,7 +36,7 @@ MovingPairSet make_moving_pairs(const PairKind& kind, PairTurn turn,
   Random random(options.seed ^ 0x51D3ULL);
   set.motions.resize(middle.poses.size());
   for (const BodyPair& pair : middle.pairs) {
-    const auto at = [&](std::uint32_t i) { return Eigen::Vector3d::Map(middle.poses[i].position); };
+    const auto at = [&](std::uint32_t i) { return as_eigen(middle.poses[i].position); };
     const double reach = middle.radius[pair.a] + middle.radius[pair.b];
     Eigen::Vector3d way = random.in(2.5, 5.0) * reach * random_unit(random);
     // Chooses the sign for which the bodies start farther apart.

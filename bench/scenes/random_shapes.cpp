@@ -48,7 +48,7 @@ void turn_upright(Random& random, Pose& pose) {
     if (square < 1e-2 || square > 1.0) continue;
     const double scale = 1.0 / std::sqrt(square);
     const double turn[4] = {scale * w, 0.0, 0.0, scale * z};
-    std::copy_n(turn, 4, pose.orientation);
+    pose.orientation = turn;
     return;
   }
 }
@@ -56,10 +56,10 @@ void turn_upright(Random& random, Pose& pose) {
 void turn_from(Random& random, const Pose& from, double angle, Pose& pose) {
   const Eigen::Vector3d half = 0.5 * angle * random_unit(random);
   const Eigen::Quaterniond turn(1.0, half.x(), half.y(), half.z());
-  const double* q = from.orientation;
+  const double* q = from.orientation.data();
   const Eigen::Quaterniond turned = turn.normalized() * Eigen::Quaterniond(q[0], q[1], q[2], q[3]);
   const double parts[4] = {turned.w(), turned.x(), turned.y(), turned.z()};
-  std::copy_n(parts, 4, pose.orientation);
+  pose.orientation = parts;
 }
 
 ShapeSource::ShapeSource(ShapePool& pool, const ShapeStyle& style, Random& random)

@@ -84,7 +84,7 @@ ContactSolver::Point ContactSolver::point_of(const Contacts& contacts, std::uint
                                              const std::vector<RigidBody>& bodies) const {
   Point made;
   const ContactPoint contact = contacts.contact(point);
-  made.arm[0] = Eigen::Map<const Eigen::Vector3f>(contact.position).cast<double>();
+  made.arm[0] = as_eigen(contact.position).cast<double>();
   made.arm[1] = made.arm[0] + bodies[pair.body[0]].position - bodies[pair.body[1]].position;
   made.separation = -static_cast<double>(contact.depth);
   for (int k = 0; k < 3; ++k) made.axis[0][k] = contacts.normal(k)[manifold];

@@ -39,7 +39,7 @@ Inertia inertia_of(const ShapeTables& tables, ShapeId id) {
     const double moment = 0.4 * mass * r * r;
     return {mass, {moment, moment, moment}};
   }
-  const double* h = tables.boxes[id.index()].half;
+  const double* h = tables.boxes[id.index()].half.data();
   const double mass = kDensity * 8.0 * h[0] * h[1] * h[2];
   const auto about = [&](double u, double v) { return mass / 3.0 * (u * u + v * v); };
   return {mass, {about(h[1], h[2]), about(h[0], h[2]), about(h[0], h[1])}};

@@ -51,13 +51,13 @@ class Random {
   std::uint64_t state_ = 1;
 };
 
-void normalize(double (&q)[4]) {
+void normalize(Quaternion& q) {
   const double length = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
   for (double& x : q) x /= length;
 }
 
 // Rotates by a small angle about the (1, 1, 1) axis of the body.
-void turn(double (&q)[4]) {
+void turn(Quaternion& q) {
   constexpr double kTurn = 0.01;
   const double w = q[0];
   const double x = q[1];

@@ -50,8 +50,8 @@ struct RankQueries {
 
 [[nodiscard]] ClusterHit hit_of(const SceneHit& hit) noexcept {
   ClusterHit named{.name = hit.data, .t = hit.t, .part = hit.part};
-  std::copy_n(hit.normal, 3, named.normal);
-  std::copy_n(hit.point, 3, named.point);
+  named.normal = hit.normal;
+  named.point = hit.point;
   return named;
 }
 
@@ -230,8 +230,8 @@ struct PointNearest {
                               .distance = body.distance,
                               .error_bound = body.error_bound,
                               .part = body.part};
-        std::copy_n(body.normal, 3, named.normal);
-        std::copy_n(body.point_b, 3, named.point);
+        named.normal = body.normal;
+        named.point = body.point_b;
         give(i, named);
       }
     }

@@ -67,7 +67,7 @@ void take_out(Entry*& first, Entry* entry) noexcept {
   if (compound == nullptr) return box;
   for (std::uint32_t i = 0; i < compound->count; ++i) {
     const CompoundChild& child = compound->children[i];
-    const Eigen::Map<const Vec> at(child.pose.position);
+    const auto at = as_eigen(child.pose.position);
     const Mat turned = rotation_of(scale_to_unit_max(child.pose.orientation));
     box.merge(bounds_of(all, child.shape, rotation * turned, position + rotation * at));
   }
@@ -75,7 +75,7 @@ void take_out(Entry*& first, Entry* entry) noexcept {
 }
 [[nodiscard]] Box3 bounds_of(const Composites& all, ShapeId id, const Pose& pose) noexcept {
   return bounds_of(all, id, rotation_of(scale_to_unit_max(pose.orientation)),
-                   Eigen::Map<const Vec>(pose.position));
+                   as_eigen(pose.position));
 }
 
 }  // namespace
@@ -218,8 +218,7 @@ Status Composites::fit(Compound& compound) noexcept {
     const Box3 box = bounds_of(*this, child.shape, child.pose);
     compound.boxes[i] = Aabb::outward(box.min, box.max);
     compound.bounds.merge(compound.boxes[i]);
-    const double farthest =
-        radius(child.shape) + Eigen::Map<const Vec>(child.pose.position).stableNorm();
+    const double farthest = radius(child.shape) + as_eigen(child.pose.position).stableNorm();
     compound.radius = std::max(compound.radius, farthest * (1.0 + kSlack));
   }
   if (compound.tree != nullptr) compound.tree->~TriangleMesh();

@@ -159,7 +159,7 @@ void visit(const TransformedShape& body, const MovingBox& moving_box,
   // A box that is never hit has time infinity, which must be later than any limit.
   const double max_t = std::min(moving_box.max_t, std::numeric_limits<double>::max());
   Box3 box = box_in(body, moving_box, body.to_local);
-  const Vec direction = body.to_local * Eigen::Map<const Vec>(moving_box.direction);
+  const Vec direction = body.to_local * as_eigen(moving_box.direction);
   // Rounding of the direction moves the box by a share of the distance that it travels.
   if (body.bounds.is_finite()) {
     const Vec noise = Vec::Constant(4.0 * kSlack *

@@ -65,8 +65,8 @@ class PrimitivePairFinder {
     return kind < kShapeKinds && shape.index() < tables_.count[kind];
   }
   [[nodiscard]] TransformedShape placed(std::uint32_t body, std::uint32_t origin) const noexcept {
-    const Eigen::Map<const Vec> position(bodies_.poses[body].position);
-    const Eigen::Map<const Vec> from(bodies_.poses[origin].position);
+    const auto position = as_eigen(bodies_.poses[body].position);
+    const auto from = as_eigen(bodies_.poses[origin].position);
     return TransformedShape(all_, tables_, bodies_.shapes[body], bodies_.poses[body],
                             body == origin ? Vec(Vec::Zero()) : finite(position - from));
   }

@@ -46,7 +46,7 @@ class FaceOfMesh {
   /// towards the triangle.
   FaceOfMesh(const TriangleShape& triangle, const Vec& at, const Vec& normal) noexcept
       : normal_(normal) {
-    for (int i = 0; i < 3; ++i) corner_[i] = at + Eigen::Map<const Vec>(triangle.vertex[i]);
+    for (int i = 0; i < 3; ++i) corner_[i] = at + as_eigen(triangle.vertex[i]);
     for (int i = 0; i < 3; ++i) side_[i] = corner_[(i + 1) % 3] - corner_[i];
     const Vec face = side_[0].cross(side_[1]).normalized();
     turn_ = face.dot(normal) < 0.0 ? -1.0 : 1.0;
@@ -59,8 +59,7 @@ class FaceOfMesh {
   /// gap from the plane of the triangle. `from`: origin of its position.
   [[nodiscard]] bool has(const ContactPoint& contact, const double* from) const noexcept {
     if (!is_face_) return true;
-    const Vec at = Eigen::Map<const Eigen::Vector3f>(contact.position).cast<double>() +
-                   Eigen::Map<const Vec>(from);
+    const Vec at = as_eigen(contact.position).cast<double>() + Eigen::Map<const Vec>(from);
     const double gap = -static_cast<double>(contact.depth);
     const double height = normal_.dot(corner_[0] - at);
     return (gap <= 0.0 || std::abs(height - 0.5 * gap) <= kGapSlack * reach(at, 0)) && is_under(at);
@@ -158,7 +157,7 @@ class ManifoldReduction {
     return pairs_.pairs[answers_.pair_of(answer)];
   }
   [[nodiscard]] const double* offset(std::uint32_t answer) const noexcept {
-    return pairs_.poses[primitives(answer).a].position;
+    return pairs_.poses[primitives(answer).a].position.data();
   }
   [[nodiscard]] Vec normal(std::uint32_t answer) const noexcept {
     return {answers_.normal(0)[answer], answers_.normal(1)[answer], answers_.normal(2)[answer]};
@@ -339,8 +338,7 @@ FaceOfMesh ManifoldReduction::face_of(std::uint32_t answer) const noexcept {
         pairs_.active_edges[shape.index()] == PrimitivePairs::kAllActive) {
       continue;
     }
-    return {tables_.triangles[shape.index()],
-            Eigen::Map<const Vec>(pairs_.poses[primitive].position),
+    return {tables_.triangles[shape.index()], as_eigen(pairs_.poses[primitive].position),
             primitive == of.b ? normal(answer) : Vec(-normal(answer))};
   }
   return {};

@@ -75,10 +75,10 @@ struct NearPairVisitor {
 /// A box that moves by t * direction for t in [0, max_t], in double, in world axes. max_t = 0: a
 /// static box.
 struct MovingBox {
-  double min[3];                          ///< at t = 0
-  double max[3];                          ///< at t = 0, not below `min`
-  double direction[3] = {0.0, 0.0, 0.0};  ///< finite; zero for a static box
-  double max_t = 0.0;                     ///< finite, >= 0
+  double min[3];       ///< at t = 0
+  double max[3];       ///< at t = 0, not below `min`
+  Vec3d direction{};   ///< finite; zero for a static box
+  double max_t = 0.0;  ///< finite, >= 0
 };
 
 namespace mid {
@@ -178,7 +178,7 @@ bool visit_near_pairs(const CompositePool& pool, ShapeId a, const Pose& pose_a, 
 /// True if a solid (see CompositePool::set_solid), or a solid child of a compound, contains a point
 /// of the world.
 [[nodiscard]] bool solid_contains_point(const CompositePool& pool, ShapeId id, const Pose& pose,
-                                        const double point[3]) noexcept;
+                                        const Vec3d& point) noexcept;
 /// As above, for a point of another shape, convex or not: for a compound, one point of each child;
 /// for a surface, one vertex. A connected shape whose surface does not intersect the surface of the
 /// solid is inside entirely or not at all, so one point decides.

@@ -32,14 +32,14 @@ mid::Box3 triangle_box(const TriangleShape& triangle, const Pose& pose) noexcept
   mid::Box3 box;
   double scale = 0.0;
   for (int k = 0; k < 3; ++k) {
-    const Vector3d local = Vector3d::Map(triangle.vertex[k]);
+    const Vector3d local = as_eigen(triangle.vertex[k]);
     const Vector3d corner = turn * local;
     scale = std::max(scale, local.cwiseAbs().sum());
     box.min = k == 0 ? corner : Vector3d(box.min.cwiseMin(corner));
     box.max = k == 0 ? corner : Vector3d(box.max.cwiseMax(corner));
   }
   // Rounding errors of the rotation and of the sums below.
-  const Vector3d position = Vector3d::Map(pose.position);
+  const Vector3d position = as_eigen(pose.position);
   const double slack = triangle.rounding +
                        mid::kSlack * (scale + triangle.rounding + position.cwiseAbs().maxCoeff());
   return box.moved(position).grown(slack);
@@ -52,10 +52,10 @@ mid::Box3 triangle_box(const TriangleShape& triangle, const Pose& pose) noexcept
                              double doubt) noexcept {
   if (!is_unrotated(part)) return false;
   const Vector3d d = Vector3d::Map(direction);
-  const Vector3d first = Vector3d::Map(part.pose.position) - Vector3d::Map(from);
-  const Vector3d a = first + Vector3d::Map(part.triangle->vertex[0]);
-  const Vector3d b = first + Vector3d::Map(part.triangle->vertex[1]);
-  const Vector3d c = first + Vector3d::Map(part.triangle->vertex[2]);
+  const Vector3d first = as_eigen(part.pose.position) - Vector3d::Map(from);
+  const Vector3d a = first + as_eigen(part.triangle->vertex[0]);
+  const Vector3d b = first + as_eigen(part.triangle->vertex[1]);
+  const Vector3d c = first + as_eigen(part.triangle->vertex[2]);
   const double far = a.cwiseAbs().sum() + b.cwiseAbs().sum() + c.cwiseAbs().sum();
   const double error = d.cwiseAbs().sum() * far * (0x1p-48 * far + 4.0 * doubt);
   const double volume[3] = {d.dot(c.cross(b)), d.dot(a.cross(c)), d.dot(b.cross(a))};
@@ -116,13 +116,13 @@ mid::Box3 SubShapeQuery::box(const PlacedShape& placed) const noexcept {
   const Aabb local = placed.shape.is_composite()
                          ? mid_phase().bounds(*composites_, placed.shape, here)
                          : shapes_.bounds(placed.shape, here);
-  return placed_box(local, placed.pose.position);
+  return placed_box(local, placed.pose.position.data());
 }
 
 mid::Box3 SubShapeQuery::box(const SubShape& part) const noexcept {
   if (part.triangle != nullptr) return triangle_box(*part.triangle, part.pose);
   if (part.ball != nullptr) {
-    const Vector3d center = Vector3d::Map(part.pose.position);
+    const Vector3d center = as_eigen(part.pose.position);
     return mid::Box3{center, center}.grown(part.ball->radius);
   }
   return box(PlacedShape{part.shape, part.pose});
@@ -161,9 +161,9 @@ void SubShapeQuery::traverse(const PlacedShape& placed, MovingBox moving_box, do
 
 double corner_error(const SubShape& part) noexcept {
   if (part.triangle == nullptr) return 0.0;
-  double size = Vector3d::Map(part.pose.position).cwiseAbs().sum();
+  double size = as_eigen(part.pose.position).cwiseAbs().sum();
   for (const auto& corner : part.triangle->vertex) {
-    size = std::max(size, Vector3d::Map(corner).cwiseAbs().sum());
+    size = std::max(size, as_eigen(corner).cwiseAbs().sum());
   }
   return 0x1p-48 * size;
 }
@@ -171,10 +171,11 @@ double corner_error(const SubShape& part) noexcept {
 bool enters(const ShapePool& shapes, const ShapeRay& ray, const SubShape& part,
             ShapeHit& hit) noexcept {
   const double thickness = corner_error(part);
-  if (part.triangle != nullptr && passes_by(ray.origin, ray.direction, part, thickness)) {
+  if (part.triangle != nullptr &&
+      passes_by(ray.origin.data(), ray.direction.data(), part, thickness)) {
     return false;
   }
-  const Vector3d start = Vector3d::Map(ray.origin);
+  const Vector3d start = as_eigen(ray.origin);
   if (is_behind_triangle({start, start}, part)) return false;
   // Tests the whole ray: whether the thick triangle is used must not depend on a limit.
   if (cast_on(shapes, ray, part, hit)) return true;
@@ -185,7 +186,7 @@ bool enters(const ShapePool& shapes, const ShapeRay& ray, const SubShape& part,
 }
 
 bool is_unrotated(const SubShape& part) noexcept {
-  const double* const q = part.pose.orientation;
+  const double* const q = part.pose.orientation.data();
   return part.triangle->rounding == 0.0 && q[1] == 0.0 && q[2] == 0.0 && q[3] == 0.0;
 }
 
@@ -193,22 +194,22 @@ bool is_behind_triangle(const mid::Box3& box, const SubShape& part) noexcept {
   if (part.front == 0) return false;
   const Eigen::Matrix3d turn =
       rotation_of_unit(normalized(scale_to_unit_max(part.pose.orientation)));
-  const Vector3d first = Vector3d::Map(part.triangle->vertex[0]);
-  const Vector3d normal = (Vector3d::Map(part.triangle->vertex[1]) - first)
-                              .cross(Vector3d::Map(part.triangle->vertex[2]) - first);
-  const Vector3d corner = Vector3d::Map(part.pose.position) + turn * first;
+  const Vector3d first = as_eigen(part.triangle->vertex[0]);
+  const Vector3d normal = (as_eigen(part.triangle->vertex[1]) - first)
+                              .cross(as_eigen(part.triangle->vertex[2]) - first);
+  const Vector3d corner = as_eigen(part.pose.position) + turn * first;
   return is_behind(turn * normal * part.front, corner, box.min, box.max);
 }
 
 Pose at_origin(const Pose& pose) noexcept {
   Pose result;
-  std::copy_n(pose.orientation, 4, result.orientation);
+  result.orientation = pose.orientation;
   return result;
 }
 
 Pose relative(const Pose& pose, const double position[3]) noexcept {
   Pose result = pose;
-  std::copy_n(difference(pose.position, position).difference, 3, result.position);
+  result.position = difference(pose.position.data(), position).difference;
   return result;
 }
 

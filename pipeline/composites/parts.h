@@ -86,7 +86,7 @@ class SubShapeQuery {
            mid_phase().solid_contains_shape(*composites_, solid.shape, solid.pose, other.shape,
                                             other.pose);
   }
-  [[nodiscard]] bool solid_contains(const PlacedShape& solid, const double point[3]) const {
+  [[nodiscard]] bool solid_contains(const PlacedShape& solid, const Vec3d& point) const {
     return solid.shape.is_composite() &&
            mid_phase().solid_contains_point(*composites_, solid.shape, solid.pose, point);
   }
@@ -181,7 +181,7 @@ class SubShapeQuery {
 /// True if the part is a one-sided triangle and the centre of the box is behind it.
 [[nodiscard]] bool is_behind_triangle(const mid::Box3& box, const SubShape& part) noexcept;
 
-[[nodiscard]] inline bool is_finite(const double point[3]) noexcept {
+[[nodiscard]] inline bool is_finite(const Vec3d& point) noexcept {
   return std::isfinite(point[0]) && std::isfinite(point[1]) && std::isfinite(point[2]);
 }
 

@@ -21,7 +21,7 @@ constexpr std::uint32_t kOnly[1] = {0};
 /// Finds the triangles of a mesh that are within `margin` of a half-space.
 void find_below(const HalfSpaceShape& shape, const PlacedPart& part,
                 const TransformedShape& surface, double margin, SlotSink& out) noexcept {
-  const Vec normal = part.rotation * Eigen::Map<const Vec>(shape.normal);
+  const Vec normal = part.rotation * as_eigen(shape.normal);
   const Vec from = surface.position - part.position;
   const double base = normal.dot(from);
   const double noise = kSlack * (from.lpNorm<1>() + std::abs(shape.offset));
@@ -64,7 +64,7 @@ struct TrianglePlane {
 
 [[nodiscard]] bool half_space_apart(const HalfSpaceShape& shape, const PlacedPart& part,
                                     const Corners& t, double margin) noexcept {
-  const Vec normal = part.rotation * Eigen::Map<const Vec>(shape.normal);
+  const Vec normal = part.rotation * as_eigen(shape.normal);
   const Vec from = t.first - part.position;
   const double base = normal.dot(from);
   const double rise[2] = {normal.dot(t.edge[0]), normal.dot(t.edge[1])};

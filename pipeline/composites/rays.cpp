@@ -58,8 +58,8 @@ namespace {
 struct NearBody {
   NearBody(const TransformedShape& placed, const Vec& about, const ShapeRay& of) noexcept
       : ray(of), body(placed) {
-    const TwoDiff between = difference(of.origin, about.data());
-    std::copy_n(between.difference, 3, ray.origin);
+    const TwoDiff between = difference(of.origin.data(), about.data());
+    ray.origin = between.difference;
     body.position = (placed.position - about) - Vec::Map(between.rest);
   }
 
@@ -68,14 +68,14 @@ struct NearBody {
 };
 
 /// Transforms a vector to the frame of the surface; sums in the order of the columns.
-void turn_into(const SurfaceFrame& frame, const double (&v)[3], double (&turned)[3]) noexcept {
+void turn_into(const SurfaceFrame& frame, const Vec3d& v, double (&turned)[3]) noexcept {
   const auto& column = frame.world_to_local;
   for (int i = 0; i < 3; ++i) {
     turned[i] = column[0][i] * v[0] + column[1][i] * v[1] + column[2][i] * v[2];
   }
 }
 /// Upper bound on the coordinates of the transformed vector, for any signs of `v`.
-[[nodiscard]] double largest_turned(const SurfaceFrame& frame, const double (&v)[3]) noexcept {
+[[nodiscard]] double largest_turned(const SurfaceFrame& frame, const Vec3d& v) noexcept {
   double largest = 0.0;
   for (int i = 0; i < 3; ++i) {
     const auto part = [&](int k) { return std::abs(frame.world_to_local[k][i]) * std::abs(v[k]); };
@@ -83,7 +83,7 @@ void turn_into(const SurfaceFrame& frame, const double (&v)[3], double (&turned)
   }
   return largest;
 }
-[[nodiscard]] double largest_of(const double (&v)[3]) noexcept {
+[[nodiscard]] double largest_of(const Vec3d& v) noexcept {
   return std::max(std::max(std::abs(v[0]), std::abs(v[1])), std::abs(v[2]));
 }
 
@@ -119,7 +119,7 @@ template <std::uint32_t Room>
     turn_into(frame, start, from);
     coordinate = largest_turned(frame, start);
   } else {
-    std::copy_n(ray.direction, 3, way);
+    std::copy_n(ray.direction.data(), 3, way);
     std::copy_n(start, 3, from);
     coordinate = largest_of(start);
   }
@@ -190,7 +190,7 @@ struct RayResult {
 void test_all_on_ray(const NearBody& near, RayResult& result, const ChildVisitor& children) {
   // Relative growth of the ray's box before the box tests, which round coordinates.
   constexpr double kGrowth = 0x1p-47;
-  const Eigen::Map<const Vec> from(near.ray.origin);
+  const auto from = as_eigen(near.ray.origin);
   const double grow = kGrowth * from.cwiseAbs().maxCoeff();
   MovingBox moving_box;
   for (int i = 0; i < 3; ++i) {

@@ -46,7 +46,7 @@ class Winding {
   }
 
  private:
-  void shoot(const double (&direction)[3]) noexcept {
+  void shoot(const Vec3d& direction) noexcept {
     SingleSurfaceRay single;
     for (int axis = 0; axis < 3; ++axis) {
       single.ray.origin[axis][0] = at_[axis];
@@ -134,7 +134,7 @@ template <typename Visit>
   point = part.position + part.middle;
   if (part.shape.kind() == ShapeKind::triangle) {
     const TriangleShape& triangle = body.tables.triangles[part.shape.index()];
-    point = part.position + part.rotation * Vec::Map(triangle.vertex[0]);
+    point = part.position + part.rotation * as_eigen(triangle.vertex[0]);
   }
   return part.shape.kind() != ShapeKind::half_space;
 }

@@ -39,12 +39,12 @@ constexpr std::uint64_t kMaxAround = 64;
 }  // namespace
 
 Facet::Facet(const TriangleShape& triangle, const Pose& pose) noexcept {
-  const Eigen::Map<const Vec> at(pose.position);
-  const double(&q)[4] = pose.orientation;
+  const auto at = as_eigen(pose.position);
+  const Quaternion& q = pose.orientation;
   const bool is_turned = q[1] != 0.0 || q[2] != 0.0 || q[3] != 0.0;
   const Mat rotation = is_turned ? Mat(rotation_of(scale_to_unit_max(q))) : Mat(Mat::Identity());
   for (int k = 0; k < 3; ++k) {
-    const Eigen::Map<const Vec> vertex(triangle.vertex[k]);
+    const auto vertex = as_eigen(triangle.vertex[k]);
     corner[k] = at + (is_turned ? Vec(rotation * vertex) : Vec(vertex));
   }
   const Vec edge[3] = {corner[1] - corner[0], corner[2] - corner[1], corner[0] - corner[2]};
@@ -84,12 +84,12 @@ Facet SurfaceCones::facet(std::uint32_t primitive) const noexcept {
 }
 
 Vec SurfaceCones::touched_point(std::size_t i) const noexcept {
-  const Eigen::Map<const Vec> from(pairs_.poses[primitive(i, false)].position);
+  const auto from = as_eigen(pairs_.poses[primitive(i, false)].position);
   if (result_.level() != ContactLevel::manifold) {
     return from + Vec(result_.point(0)[i], result_.point(1)[i], result_.point(2)[i]);
   }
   const ContactPoint contact = result_.contact(result_.contact_first()[i]);
-  return from + Eigen::Map<const Eigen::Vector3f>(contact.position).cast<double>();
+  return from + as_eigen(contact.position).cast<double>();
 }
 
 bool SurfaceCones::has_normal(std::size_t i, const AnswerGroup& group) const noexcept {
@@ -150,8 +150,8 @@ bool SurfaceCones::is_blocked(const Vec& point, const Vec& outward, double slack
 bool SurfaceCones::is_near(std::uint32_t primitive, const Vec& point, double slack) const noexcept {
   const Pose& pose = pairs_.poses[primitive];
   const TriangleShape& triangle = tables_.triangles[pairs_.shapes[primitive].index()];
-  const Vec at = point - Eigen::Map<const Vec>(pose.position);
-  const double(&q)[4] = pose.orientation;
+  const Vec at = point - as_eigen(pose.position);
+  const Quaternion& q = pose.orientation;
   if (q[1] != 0.0 || q[2] != 0.0 || q[3] != 0.0) return true;
   for (int axis = 0; axis < 3; ++axis) {
     const double x[3] = {triangle.vertex[0][axis], triangle.vertex[1][axis],
@@ -193,8 +193,8 @@ SurfaceCones::Surroundings SurfaceCones::around_in_surface(
   if (!shape.is_composite() || all == nullptr || all->compound(shape) != nullptr) {
     return Surroundings::none;
   }
-  const Eigen::Map<const Vec> position(collided_.bodies.poses[body].position);
-  const Eigen::Map<const Vec> origin(collided_.bodies.poses[pair.a].position);
+  const auto position = as_eigen(collided_.bodies.poses[body].position);
+  const auto origin = as_eigen(collided_.bodies.poses[pair.a].position);
   const TransformedShape surface(*all, tables_, shape, collided_.bodies.poses[body],
                                  body == pair.a ? Vec(Vec::Zero()) : finite(position - origin));
   const Vec at = surface.to_local * (point - surface.position);
@@ -239,17 +239,17 @@ bool SurfaceCones::is_below(std::uint32_t primitive, std::uint32_t limit,
 
 double SurfaceCones::top(std::uint32_t primitive, const Vec& direction) const noexcept {
   const Pose& pose = pairs_.poses[primitive];
-  const double(&q)[4] = pose.orientation;
+  const Quaternion& q = pose.orientation;
   if (is_triangle(primitive) && q[1] == 0.0 && q[2] == 0.0 && q[3] == 0.0) {
     const TriangleShape& triangle = tables_.triangles[pairs_.shapes[primitive].index()];
     double top = -kInfinity;
     for (const auto& vertex : triangle.vertex) {
-      top = std::max(top, direction.dot(Eigen::Map<const Vec>(vertex)));
+      top = std::max(top, direction.dot(as_eigen(vertex)));
     }
-    return top + direction.dot(Eigen::Map<const Vec>(pose.position));
+    return top + direction.dot(as_eigen(pose.position));
   }
   const Mat rotation = rotation_of(scale_to_unit_max(pose.orientation));
-  return direction.dot(Eigen::Map<const Vec>(pose.position)) +
+  return direction.dot(as_eigen(pose.position)) +
          extent(tables_, pairs_.shapes[primitive], rotation.transpose() * direction).high;
 }
 
@@ -283,7 +283,7 @@ bool SurfaceCones::part_contains(std::uint32_t primitive, const Vec& point,
   const Pose& pose = pairs_.poses[primitive];
   if (shape.kind() == ShapeKind::sphere) {
     const double reach = tables_.spheres[shape.index()].radius + slack;
-    return (point - Eigen::Map<const Vec>(pose.position)).squaredNorm() <= reach * reach;
+    return (point - as_eigen(pose.position)).squaredNorm() <= reach * reach;
   }
   SolverCounts counts;
   const Pose at = pose_of(point, {1.0, 0.0, 0.0, 0.0});
@@ -294,7 +294,7 @@ bool SurfaceCones::part_contains(std::uint32_t primitive, const Vec& point,
 
 // The middle of all contact points, on the surface of one body.
 Vec SurfaceCones::middle_of_contact(std::size_t i, bool second) const noexcept {
-  const Eigen::Map<const Vec> from(pairs_.poses[primitive(i, false)].position);
+  const auto from = as_eigen(pairs_.poses[primitive(i, false)].position);
   const double distance = result_.distance()[i];
   if (result_.level() != ContactLevel::manifold) {
     const Vec on_a = from + Vec(result_.point(0)[i], result_.point(1)[i], result_.point(2)[i]);
@@ -305,7 +305,7 @@ Vec SurfaceCones::middle_of_contact(std::size_t i, bool second) const noexcept {
   double depth = 0.0;
   for (std::uint32_t k = 0; k < count; ++k) {
     const ContactPoint contact = result_.contact(result_.contact_first()[i] + k);
-    sum += Eigen::Map<const Eigen::Vector3f>(contact.position).cast<double>();
+    sum += as_eigen(contact.position).cast<double>();
     depth += static_cast<double>(contact.depth);
   }
   const Vec middle = from + sum / count;

@@ -118,7 +118,7 @@ enum class Kept : std::uint8_t {
 void keep_over(const solver::Core& triangle, const Vec& normal, double size,
                FaceContacts& found) noexcept {
   const auto is_beside = [&](const ContactPoint& point) {
-    return !is_over(triangle, normal, point.position, size);
+    return !is_over(triangle, normal, point.position.data(), size);
   };
   ContactPoint* const end = std::remove_if(found.points, found.points + found.count, is_beside);
   found.count = static_cast<std::uint32_t>(end - found.points);
@@ -146,7 +146,7 @@ void keep_over(const solver::Core& triangle, const Vec& normal, double size,
     keep_over(triangle, normal, problem.size, out);
     if (out.count == 0) return false;
   } else if (kept == Kept::deepest_over &&
-             !is_over(triangle, normal, deepest.position, problem.size)) {
+             !is_over(triangle, normal, deepest.position.data(), problem.size)) {
     return false;
   }
   const double unit = unscaled(problem, 1.0);
@@ -507,12 +507,12 @@ void SurfaceContacts::solve_patch(std::size_t i, const AnswerGroup& group,
   const PairAnswer answer =
       solve_patches(tables_, {pairs_.shapes[bodies.a], pairs_.poses[bodies.a], patch.side[0]},
                     {pairs_.shapes[bodies.b], pairs_.poses[bodies.b], patch.side[1]});
-  patch.normal = Eigen::Map<const Vec>(answer.normal);
+  patch.normal = as_eigen(answer.normal);
   patch.distance = answer.distance;
   patch.error = answer.error_bound;
   patch.is_valid = answer.distance <= 0.0 && std::isfinite(answer.distance);
   const Pose from = patch.side[0].is_empty() ? pairs_.poses[bodies.a] : patch.side[0].pose();
-  patch.touched[0] = Eigen::Map<const Vec>(from.position) + Eigen::Map<const Vec>(answer.point);
+  patch.touched[0] = as_eigen(from.position) + as_eigen(answer.point);
   patch.touched[1] = patch.touched[0] + patch.distance * patch.normal;
   for (const bool second : {false, true}) {
     const ConvexPatch& own = patch.side[second ? 1 : 0];
@@ -536,7 +536,7 @@ bool SurfaceContacts::solve_gentle(const BodyPair& bodies, PatchContact& patch) 
   if (std::ranges::any_of(facets, is_bent)) return false;
   const std::uint32_t other = second ? bodies.a : bodies.b;
   const Mat rotation = rotation_of(scale_to_unit_max(pairs_.poses[other].orientation));
-  const Eigen::Map<const Vec> at(pairs_.poses[other].position);
+  const auto at = as_eigen(pairs_.poses[other].position);
   patch.distance = -kInfinity;
   for (const Facet& facet : facets) {
     const SupportExtent reach =
@@ -552,8 +552,7 @@ bool SurfaceContacts::solve_gentle(const BodyPair& bodies, PatchContact& patch) 
           pairs_.poses[bodies.b], false, problem);
   const Vec deepest =
       solver::support(second ? problem.a : problem.b, second ? patch.normal : Vec(-patch.normal));
-  if (!own.is_under(Eigen::Map<const Vec>(pairs_.poses[bodies.a].position) +
-                    unscaled(problem, 1.0) * deepest)) {
+  if (!own.is_under(as_eigen(pairs_.poses[bodies.a].position) + unscaled(problem, 1.0) * deepest)) {
     return false;
   }
   patch.error += (1.0 - kGentleCosine) * std::abs(patch.distance);
@@ -586,7 +585,7 @@ Vec SurfaceContacts::outward_of(std::size_t i, bool second,
     const Mat rotation = rotation_of(scale_to_unit_max(pairs_.poses[other].orientation));
     const SupportExtent reach =
         extent(tables_, pairs_.shapes[other], rotation.transpose() * facet.normal);
-    const double at = facet.normal.dot(Eigen::Map<const Vec>(pairs_.poses[other].position));
+    const double at = facet.normal.dot(as_eigen(pairs_.poses[other].position));
     low = at + reach.low;
     high = at + reach.high;
   }
@@ -618,9 +617,9 @@ Vec SurfaceContacts::front_of(std::uint32_t primitive) const noexcept {
   const std::uint8_t bits = pairs_.active_edges[shape.index()];
   if ((bits & PrimitivePairs::kOneSided) == 0) return Vec::Zero();
   const TriangleShape& triangle = tables_.triangles[shape.index()];
-  const Vec first = Eigen::Map<const Vec>(triangle.vertex[0]);
-  const Vec normal = (Eigen::Map<const Vec>(triangle.vertex[1]) - first)
-                         .cross(Eigen::Map<const Vec>(triangle.vertex[2]) - first)
+  const Vec first = as_eigen(triangle.vertex[0]);
+  const Vec normal = (as_eigen(triangle.vertex[1]) - first)
+                         .cross(as_eigen(triangle.vertex[2]) - first)
                          .stableNormalized();
   return (bits & PrimitivePairs::kClockwise) != 0 ? Vec(-normal) : normal;
 }
@@ -760,8 +759,8 @@ void SurfaceContacts::lower_sphere(std::size_t i, const Vec& normal) noexcept {
   if (pairs_.shapes[bodies.a].kind() == ShapeKind::sphere) {
     on_a = tables_.spheres[pairs_.shapes[bodies.a].index()].radius * normal;
   } else if (pairs_.shapes[bodies.b].kind() == ShapeKind::sphere) {
-    const Eigen::Map<const Vec> a(pairs_.poses[bodies.a].position);
-    const Eigen::Map<const Vec> b(pairs_.poses[bodies.b].position);
+    const auto a = as_eigen(pairs_.poses[bodies.a].position);
+    const auto b = as_eigen(pairs_.poses[bodies.b].position);
     const double radius = tables_.spheres[pairs_.shapes[bodies.b].index()].radius;
     on_a = b - a - (radius + distance) * normal;
   } else {

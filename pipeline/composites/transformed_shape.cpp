@@ -21,7 +21,7 @@ bool is_identity(const Quaternion& turn) noexcept {
 
 TriangleShape Corners::triangle() const noexcept {
   TriangleShape shape{};
-  for (int k = 0; k < 2; ++k) Vec::Map(shape.vertex[k + 1]) = finite(edge[k]);
+  for (int k = 0; k < 2; ++k) as_eigen(shape.vertex[k + 1]) = finite(edge[k]);
   return shape;
 }
 
@@ -39,7 +39,7 @@ PlacedPart::PlacedPart(const ShapeTables& tables, ShapeId id, std::uint32_t of_b
     reach = radius;
     inner = inner_radius_of(one);
     if constexpr (std::is_same_v<decltype(one), const HullShape&>) {
-      middle = rotation * Eigen::Map<const Vec>(one.center);
+      middle = rotation * as_eigen(one.center);
       reach = (one.radius + one.rounding) * (1.0 + kSlack);
     }
   });
@@ -49,7 +49,7 @@ TransformedShape::TransformedShape(const Composites& composites, const ShapeTabl
                                    ShapeId shape, const Pose& pose, const Vec& at) noexcept
     : TransformedShape(composites, pool, shape, Turned(pose.orientation), at) {}
 
-TransformedShape::Turned::Turned(const double (&orientation)[4]) noexcept
+TransformedShape::Turned::Turned(const Quaternion& orientation) noexcept
     : turn(scale_to_unit_max(orientation)),
       rotation(is_identity(turn) ? Mat(Mat::Identity()) : Mat(rotation_of(turn))) {}
 
@@ -92,7 +92,7 @@ TransformedShape TransformedShape::child(std::uint32_t number) const noexcept {
   const CompoundChild& one = compound->children[number];
   const Mat turned = rotation_of(scale_to_unit_max(one.pose.orientation));
   TransformedShape body(all, tables, one.shape, Turned(part_turn(number), rotation * turned),
-                        position + rotation * Eigen::Map<const Vec>(one.pose.position));
+                        position + rotation * as_eigen(one.pose.position));
   body.is_child = true;
   body.first_number = compound->first_part[number];
   return body;
@@ -100,7 +100,7 @@ TransformedShape TransformedShape::child(std::uint32_t number) const noexcept {
 
 TransformedShape TransformedShape::at(const Composites& all, ShapeId shape,
                                       const Pose& pose) noexcept {
-  return {all, all.shapes.tables(), shape, pose, Eigen::Map<const Vec>(pose.position)};
+  return {all, all.shapes.tables(), shape, pose, as_eigen(pose.position)};
 }
 
 Box3 TransformedShape::box_in(const TransformedShape& other, double margin) const noexcept {
@@ -118,14 +118,14 @@ Box3 TransformedShape::box_in(const TransformedShape& other, double margin) cons
 PlacedPart TransformedShape::part(std::uint32_t number) const noexcept {
   if (kind == Kind::convex) return {tables, id, 0, rotation, position};
   const CompoundChild& child = compound->children[number];
-  const Eigen::Map<const Vec> at(child.pose.position);
+  const auto at = as_eigen(child.pose.position);
   const Mat turned = rotation_of(scale_to_unit_max(child.pose.orientation));
   return {tables, child.shape, number, rotation * turned, position + rotation * at};
 }
 
 Quaternion TransformedShape::part_turn(std::uint32_t number) const noexcept {
   if (kind == Kind::convex) return turn;
-  return multiply(turn, scale_to_unit_max(compound->children[number].pose.orientation));
+  return turn * scale_to_unit_max(compound->children[number].pose.orientation);
 }
 
 bool TransformedShape::own_corners(std::uint32_t number, double (&corner)[3][3]) const noexcept {

@@ -114,7 +114,7 @@ struct TransformedShape {
  private:
   /// A rotation as quaternion and as matrix.
   struct Turned {
-    explicit Turned(const double (&orientation)[4]) noexcept;
+    explicit Turned(const Quaternion& orientation) noexcept;
     Turned(const Quaternion& by, const Mat& matrix) noexcept : turn(by), rotation(matrix) {}
 
     Quaternion turn;

@@ -24,7 +24,7 @@ struct QuarterTurns {
 /// Returns false unless the orientation consists of quarter turns. Those are the quaternions, of
 /// any length, with one, two or four nonzero components of equal magnitude.
 [[nodiscard]] bool quarter_turns(const Pose& pose, QuarterTurns& turns) noexcept {
-  const double* q = pose.orientation;
+  const double* q = pose.orientation.data();
   const double most =
       std::max({std::fabs(q[0]), std::fabs(q[1]), std::fabs(q[2]), std::fabs(q[3])});
   int s[4];
@@ -193,7 +193,7 @@ class AlignedPair {
                                       const AlignedShape& shape, const Pose& shape_pose) noexcept {
   QuarterTurns turns;
   // A normal that is only nearly parallel to an axis can also have length 1, so count the zeros.
-  const bool is_across = std::count(half_space.normal, half_space.normal + 3, 0.0) == 2;
+  const bool is_across = std::count(half_space.normal.begin(), half_space.normal.end(), 0.0) == 2;
   if (!is_across || !quarter_turns(pose, turns)) return ExactVerdict::undecided;
   int k = 0;
   while (half_space.normal[turns.axis[k]] == 0.0) ++k;

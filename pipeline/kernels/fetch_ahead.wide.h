@@ -12,8 +12,8 @@ namespace winnow::WINNOW_ISA_NAME {
   const std::uint32_t bodies[2] = {next.a, next.b};
   for (const std::uint32_t body : bodies) {
     // A pose may extend over two cache lines.
-    __builtin_prefetch(job.poses[body].position);
-    __builtin_prefetch(job.poses[body].orientation + 3);
+    __builtin_prefetch(job.poses[body].position.data());
+    __builtin_prefetch(job.poses[body].orientation.data() + 3);
     __builtin_prefetch(job.shapes + body);
   }
 }

@@ -148,7 +148,8 @@ template <typename Side, typename T>
                                                             const PairBlock<T>& block) {
   constexpr T limit = sizeof(T) == sizeof(double) ? T(1e250) : T(1e25F);
   Lanes<T> q[4];
-  load_columns([&](int lane) { return job.poses[Side::body(block.pairs[lane])].orientation; }, q);
+  load_columns(
+      [&](int lane) { return job.poses[Side::body(block.pairs[lane])].orientation.data(); }, q);
   const Lanes<T> norm = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
   const LaneMask<T> usable = (norm > Lanes<T>(T(1) / limit)) & (norm < Lanes<T>(limit));
   const Lanes<T> scale = select(usable, Lanes<T>(T(2)) / norm, Lanes<T>(T(__builtin_nan(""))));

@@ -6,11 +6,11 @@ namespace winnow {
 
 template <typename Direction>
 [[nodiscard]] SupportExtent extent_of(const BoxShape& box, const Direction& direction) noexcept {
-  return symmetric(Eigen::Vector3d::Map(box.half).dot(direction.d.cwiseAbs()) +
+  return symmetric(as_eigen(box.half).dot(direction.d.cwiseAbs()) +
                    box.rounding * direction.length());
 }
 [[nodiscard]] inline double radius_of(const BoxShape& box) noexcept {
-  return length_bound(Eigen::Vector3d::Map(box.half)) + box.rounding;
+  return length_bound(as_eigen(box.half)) + box.rounding;
 }
 [[nodiscard]] inline double rounding_of(const BoxShape& box) noexcept {
   return box.rounding;
@@ -52,8 +52,7 @@ inline constexpr CornerTable kBoxCorners{
     {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}}};
 
 [[nodiscard]] inline ShapeCore core_of(const BoxShape& box) noexcept {
-  return ShapeCore::of_corners(ShapeKind::box, kBoxCorners, Eigen::Vector3d::Map(box.half),
-                               box.rounding);
+  return ShapeCore::of_corners(ShapeKind::box, kBoxCorners, as_eigen(box.half), box.rounding);
 }
 
 }  // namespace winnow

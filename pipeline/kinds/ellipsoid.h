@@ -9,7 +9,7 @@ namespace winnow {
 [[nodiscard]] inline Eigen::Vector3d farthest_of_ellipsoid(
     const void* shape, const Eigen::Vector3d& direction) noexcept {
   using Vec = Eigen::Vector3d;
-  const Vec radius = Vec::Map(static_cast<const EllipsoidShape*>(shape)->radius);
+  const Vec radius = as_eigen(static_cast<const EllipsoidShape*>(shape)->radius);
   const Vec stretched = radius.cwiseProduct(direction);
   const double largest = stretched.cwiseAbs().maxCoeff();
   if (!(largest > 0.0)) return Vec::Zero();
@@ -38,7 +38,7 @@ namespace winnow {
 template <typename Direction>
 [[nodiscard]] SupportExtent extent_of(const EllipsoidShape& ellipsoid,
                                       const Direction& direction) noexcept {
-  return symmetric(Eigen::Vector3d::Map(ellipsoid.radius).cwiseProduct(direction.d).stableNorm() +
+  return symmetric(as_eigen(ellipsoid.radius).cwiseProduct(direction.d).stableNorm() +
                    ellipsoid.rounding * direction.length());
 }
 [[nodiscard]] inline double radius_of(const EllipsoidShape& ellipsoid) noexcept {

@@ -1,3 +1,5 @@
+#include <winnow/core/eigen.h>
+
 #include "core/threads/float_environment.h"
 #include "pipeline/kernels/link.h"
 #include "pipeline/shapes/shape_pool_put.h"
@@ -16,7 +18,7 @@ WINNOW_DEFINE_LINK(half_space, WINNOW_PAIRS)
 
 Status ShapePool::add(const HalfSpaceShape& shape, ShapeId& id) {
   const DefaultFloatEnvironment environment;
-  const Eigen::Map<const Eigen::Vector3d> normal(shape.normal);
+  const auto normal = as_eigen(shape.normal);
   if (!std::isfinite(shape.offset) || !normal.allFinite()) return Status::invalid_shape;
   // Scale by the largest component first: the squares of a small normal would underflow.
   const double largest = normal.cwiseAbs().maxCoeff();

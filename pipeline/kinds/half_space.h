@@ -13,7 +13,7 @@ namespace winnow {
 [[nodiscard]] inline SupportExtent extent_of(const HalfSpaceShape& half_space,
                                              const UnitDirection& direction) noexcept {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  const Eigen::Map<const Eigen::Vector3d> n(half_space.normal);
+  const auto n = as_eigen(half_space.normal);
   const bool is_above = direction.d == n;
   const bool is_below = direction.d == -n;
   return {is_below ? -half_space.offset : -kInfinity, is_above ? half_space.offset : kInfinity,

@@ -7,12 +7,11 @@ namespace winnow {
 /// Upper bound on |d . p| over the points p of a hull's core.
 [[nodiscard]] inline double height_bound(const HullShape& hull,
                                          const AnyDirection& direction) noexcept {
-  return direction.d.lpNorm<1>() *
-         (Eigen::Vector3d::Map(hull.center).cwiseAbs().maxCoeff() + hull.radius);
+  return direction.d.lpNorm<1>() * (as_eigen(hull.center).cwiseAbs().maxCoeff() + hull.radius);
 }
 [[nodiscard]] inline double height_bound(const HullShape& hull,
                                          const UnitDirection& /*direction*/) noexcept {
-  return Eigen::Vector3d::Map(hull.center).norm() + hull.radius;
+  return as_eigen(hull.center).norm() + hull.radius;
 }
 
 // Vertex columns are padded to a multiple of 16 with copies of vertex 0. Four independent minima
@@ -46,7 +45,7 @@ template <typename Direction>
                  hull.rounding * direction.length());
 }
 [[nodiscard]] inline double radius_of(const HullShape& hull) noexcept {
-  return length_bound(Eigen::Vector3d::Map(hull.center)) + hull.radius + hull.rounding;
+  return length_bound(as_eigen(hull.center)) + hull.radius + hull.rounding;
 }
 [[nodiscard]] inline double rounding_of(const HullShape& hull) noexcept {
   return hull.rounding;
@@ -55,13 +54,12 @@ template <typename Direction>
   return hull.inner_radius;
 }
 [[nodiscard]] inline double size_of(const HullShape& hull) noexcept {
-  return std::max(
-      {hull.radius, hull.rounding, Eigen::Vector3d::Map(hull.center).cwiseAbs().maxCoeff()});
+  return std::max({hull.radius, hull.rounding, as_eigen(hull.center).cwiseAbs().maxCoeff()});
 }
 /// Upper bound of the distance of the vertices from the position; finite even if the hull's numbers
 /// are not.
 [[nodiscard]] inline double reach_of_vertices(const HullShape& hull) noexcept {
-  const double sum = Eigen::Vector3d::Map(hull.center).cwiseAbs().sum() + hull.radius;
+  const double sum = as_eigen(hull.center).cwiseAbs().sum() + hull.radius;
   return std::isfinite(sum) ? sum : std::numeric_limits<double>::max();
 }
 [[nodiscard]] inline ShapeCore core_of(const HullShape& hull) noexcept {

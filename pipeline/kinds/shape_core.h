@@ -3,6 +3,7 @@
 // The core of a shape: the shape without its rounding. Each kind makes its core in core_of (see
 // kinds.h); the solver and the exact tests only use cores.
 
+#include <winnow/core/eigen.h>
 #include <winnow/pipeline/shapes.h>
 
 #include <Eigen/Core>

@@ -11,7 +11,7 @@ template <typename Direction>
   const Eigen::Vector3d& d = direction.d;
   SupportExtent core{kInfinity, -kInfinity, 0.0};
   for (const auto& corner : triangle.vertex) {
-    const Eigen::Map<const Eigen::Vector3d> v(corner);
+    const auto v = as_eigen(corner);
     const double at = v.dot(d);
     core.low = std::min(core.low, at);
     core.high = std::max(core.high, at);
@@ -22,7 +22,7 @@ template <typename Direction>
 [[nodiscard]] inline double radius_of(const TriangleShape& triangle) noexcept {
   double radius = 0.0;
   for (const auto& corner : triangle.vertex) {
-    radius = std::max(radius, Eigen::Vector3d::Map(corner).stableNorm());
+    radius = std::max(radius, as_eigen(corner).stableNorm());
   }
   return radius + triangle.rounding;
 }

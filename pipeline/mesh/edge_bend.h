@@ -17,8 +17,8 @@ class EdgeBend {
   /// are the third corners of the first and second triangle. If `consistent`, outward is the side
   /// from which u, v, p are counter-clockwise; else bends to both sides count. Also true if a
   /// triangle has no area.
-  [[nodiscard]] bool is_active(const double (&u)[3], const double (&v)[3], const double (&p)[3],
-                               const double (&q)[3], bool consistent) const noexcept {
+  [[nodiscard]] bool is_active(const Vec3d& u, const Vec3d& v, const Vec3d& p, const Vec3d& q,
+                               bool consistent) const noexcept {
     const Vec3d edge = Vec3d(v) - Vec3d(u);
     const Vec3d to_p = Vec3d(p) - Vec3d(u);
     const Vec3d to_q = Vec3d(q) - Vec3d(u);

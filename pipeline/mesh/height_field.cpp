@@ -277,7 +277,7 @@ bool HeightField::triangle(std::uint32_t number, TriangleShape& shape) const noe
   for (int k = 0; k < 3; ++k) {
     const SampleStep& step = kCorner[number % 2][k];
     const GridPoint corner(grid, moved(column, step.column), moved(row, step.row));
-    std::copy_n(corner.at, 3, shape.vertex[k]);
+    shape.vertex[k] = corner.at;
   }
   shape.rounding = 0.0;
   return grid.has_square(column, row);

@@ -161,7 +161,7 @@ void BodyImpactSearch::walk(const MovingShape& walked, const MovingShape& other,
   MovingBox way = passage.moving_box(within);
   if (records_) grow(request_.tolerance * other.own_radius, way);
   // If both shapes are composite, a long path also makes many pairs of parts overlap.
-  const double length = other.shape.shape.is_composite() ? Vec::Map(way.direction).norm() : 0.0;
+  const double length = other.shape.shape.is_composite() ? as_eigen(way.direction).norm() : 0.0;
   if (halvings < kMaxHalvings && passage.bend(within) + length > kLoose * other.own_radius &&
       overlaps_many(walked, way)) {
     const double middle = 0.5 * (within.first + within.last);

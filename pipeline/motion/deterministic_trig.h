@@ -55,8 +55,8 @@ struct SineCosine {
 [[nodiscard]] inline Quaternion turned(const Quaternion& from, const double axis[3],
                                        double angle) noexcept {
   const SineCosine half = sine_cosine(0.5 * angle);
-  return multiply({half.cosine, half.sine * axis[0], half.sine * axis[1], half.sine * axis[2]},
-                  from);
+  return Quaternion(half.cosine, half.sine * axis[0], half.sine * axis[1], half.sine * axis[2]) *
+         from;
 }
 
 }  // namespace winnow::impact

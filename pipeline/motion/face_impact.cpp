@@ -20,11 +20,11 @@ class FaceImpactSearch {
   FaceImpactSearch(const SubShapeQuery& parts, const MovingBody& body, const MovingFace& face,
                    double tolerance) noexcept
       : parts_(parts), body_(body), face_(face), tolerance_(tolerance) {
-    Vec::Map(motion_.start.position) = face.start[0];
-    Vec::Map(motion_.travel) = face.end[0] - face.start[0];
+    as_eigen(motion_.start.position) = face.start[0];
+    as_eigen(motion_.travel) = face.end[0] - face.start[0];
     for (std::size_t i = 0; i < 3; ++i) {
       const Vec local = face.start[i] - face.start[0];
-      Vec::Map(triangle_.vertex[i]) = local;
+      as_eigen(triangle_.vertex[i]) = local;
       drift_[i] = (face.end[i] - face.end[0]) - local;
     }
     triangle_.rounding = face.rounding;
@@ -73,7 +73,7 @@ Vec FaceImpactSearch::seen(const Vec& start, const Vec& end, double time) const 
   const Pose pose = body_.motion.at(time);
   const Eigen::Matrix3d axes = rotation_of(scale_to_unit_max(pose.orientation));
   const Vec corner = start + time * (end - start);
-  return axes.transpose() * (corner - Vec::Map(pose.position));
+  return axes.transpose() * (corner - as_eigen(pose.position));
 }
 
 /// Returns a box that contains the face during an interval, in the body's frame, and writes to
@@ -84,7 +84,7 @@ Vec FaceImpactSearch::seen(const Vec& start, const Vec& end, double time) const 
 mid::Box3 FaceImpactSearch::way(const Interval& within, double& bend) const noexcept {
   mid::Box3 box;
   const double width = within.last - within.first;
-  const double turned = length_of(body_.motion.turn) * width;
+  const double turned = length_of(body_.motion.turn.data()) * width;
   double scale = 0.0;
   bend = 0.0;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -92,7 +92,7 @@ mid::Box3 FaceImpactSearch::way(const Interval& within, double& bend) const noex
     const Vec last = seen(face_.start[i], face_.end[i], within.last);
     box.min = box.min.cwiseMin(first).cwiseMin(last);
     box.max = box.max.cwiseMax(first).cwiseMax(last);
-    const Vec travel = face_.end[i] - face_.start[i] - Vec::Map(body_.motion.travel);
+    const Vec travel = face_.end[i] - face_.start[i] - as_eigen(body_.motion.travel);
     const double way = width * travel.norm();
     const double far = std::max(first.norm(), last.norm()) + way;
     bend = std::max(bend, 0.125 * turned * (turned * far + 2.0 * way));

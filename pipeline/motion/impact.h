@@ -10,8 +10,8 @@ struct Impact {
   double time = 1.0;
   double gap = 0.0;
   double error_bound = 0.0;
-  double normal[3] = {0.0, 0.0, 0.0};
-  double point[3] = {0.0, 0.0, 0.0};
+  Vec3d normal{};
+  Vec3d point{};
   /// Number of distance computations by the scalar search (ImpactSearch).
   std::uint32_t samples = 0;
 };

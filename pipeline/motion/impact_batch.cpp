@@ -25,7 +25,7 @@ constexpr std::size_t kMotions = 3;
 constexpr std::uint16_t kNoLanes = kMotions * kShapeKinds * kShapeKinds;
 
 [[nodiscard]] bool is_straight(const ImpactQuery& query, std::size_t side) noexcept {
-  const double(&turn)[3] = query.motion[side]->turn;
+  const Vec3d& turn = query.motion[side]->turn;
   return query.shape[side].kind() == ShapeKind::sphere ||
          (turn[0] == 0.0 && turn[1] == 0.0 && turn[2] == 0.0);
 }

@@ -118,7 +118,7 @@ class ImpactSearch {
 
  private:
   [[nodiscard]] static Impact impact_from(double time, const PairAnswer& answer,
-                                          const double (&from)[3]) noexcept;
+                                          const Vec3d& from) noexcept;
   [[nodiscard]] Impact impact_at(double time, PairSample& sample) noexcept;
   [[nodiscard]] Impact impact_of_sample(double time, PairSample& sample) noexcept;
   [[nodiscard]] Impact start() const noexcept;
@@ -203,7 +203,7 @@ PairAnswer ImpactSearch::answer_at(double time, Pose& pose_a) const noexcept {
   for (const MovingPart* const part : {&a_, &b_}) {
     if (part->drift == nullptr) continue;
     for (int i = 0; i < 3; ++i) {
-      Vec::Map(bent[part->shape.index()].vertex[i]) += time * part->drift[i];
+      as_eigen(bent[part->shape.index()].vertex[i]) += time * part->drift[i];
     }
   }
   ShapeTables tables = tables_;
@@ -219,7 +219,7 @@ void ImpactSearch::sample_accurately(double time, PairSample& result) const noex
   const solver::Scale scaled(pair_.problem().exponent);
   const double distance = scaled(found.distance);
   const double error = scaled(found.error_bound) + pair_.noise();
-  const Vec axis = Vec::Map(found.normal);
+  const Vec axis = as_eigen(found.normal);
   result.most = distance + error;
   result.axis = axis;
   result.gap = pair_.gap(axis);
@@ -227,7 +227,7 @@ void ImpactSearch::sample_accurately(double time, PairSample& result) const noex
     result.axis.setZero();
     result.gap = distance - error;
   }
-  result.on_a = Vec::Map(found.point).unaryExpr(scaled) - axis * pair_.a().rounding;
+  result.on_a = as_eigen(found.point).unaryExpr(scaled) - axis * pair_.a().rounding;
   result.between = axis * (distance + pair_.roundings());
   result.slope = pair_.parting(axis, result.on_a, result.on_a + result.between - pair_.b().center);
 }
@@ -318,13 +318,13 @@ double ImpactSearch::free_until(double time, double end, const PairSample& sampl
 /// Converts an answer at a time. `from` is the vector from the position of body a to the position
 /// of shape a, which the points of the answer are relative to.
 Impact ImpactSearch::impact_from(double time, const PairAnswer& answer,
-                                 const double (&from)[3]) noexcept {
+                                 const Vec3d& from) noexcept {
   Impact impact;
   impact.hit = true;
   impact.time = time;
   impact.gap = answer.distance;
   impact.error_bound = answer.error_bound;
-  std::copy_n(answer.normal, 3, impact.normal);
+  impact.normal = answer.normal;
   for (int i = 0; i < 3; ++i) {
     impact.point[i] = answer.point[i] + from[i];
   }
@@ -359,7 +359,7 @@ Impact ImpactSearch::impact_of_sample(double time, PairSample& sample) noexcept 
   impact.time = time;
   impact.gap = unscaled(problem, std::max(gap, 0.0));
   impact.error_bound = unscaled(problem, std::max(sample.most - gap, gap - sample.gap));
-  Vec::Map(impact.normal) = normal;
+  as_eigen(impact.normal) = normal;
   for (int i = 0; i < 3; ++i) impact.point[i] = unscaled(problem, point[i]);
   return impact;
 }

@@ -749,7 +749,7 @@ struct KindLanes<HullShape> : PlainKindLanes {
       table.hull[lane] = &tables.hulls[index(lane)];
     }
     Doubles middle[4];
-    load_rows4([&](int lane) { return table.hull[lane]->center; }, middle);
+    load_rows4([&](int lane) { return table.hull[lane]->center.data(); }, middle);
     core.half = {middle[0], middle[1], middle[2]};
     core.rounding = load_rows1([&](int lane) { return &table.hull[lane]->rounding; });
     copy_few_vertices(table);

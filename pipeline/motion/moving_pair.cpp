@@ -57,9 +57,9 @@ TurningCore turning(Core& core, const RigidMotion& motion, const Vec& arm) noexc
     result.corner = core.corner;
     result.side = core.side;
   }
-  const double angle = length_of(motion.turn);
+  const double angle = length_of(motion.turn.data());
   if (angle == 0.0) return result;
-  result.axis = Vec::Map(motion.turn) / angle;
+  result.axis = as_eigen(motion.turn) / angle;
   const solver::Mat to_world = rotation_of_unit(result.from);
   const Vec local_axis = to_world.transpose() * result.axis;
   if (result.arm.isZero(0.0) && is_invariant(core, local_axis)) return result;
@@ -153,13 +153,13 @@ MovingPair::MovingPair(const ShapeTables& tables, const MovingPart& a,
                        const MovingPart& b) noexcept {
   const RigidMotion& of_a = a.motion;
   const RigidMotion& of_b = b.motion;
-  const TwoDiff apart = difference(of_b.start.position, of_a.start.position);
+  const TwoDiff apart = difference(of_b.start.position.data(), of_a.start.position.data());
   const Vec start = Vec::Map(apart.difference);
-  const Vec way = Vec::Map(of_b.travel) - Vec::Map(of_a.travel);
+  const Vec way = as_eigen(of_b.travel) - as_eigen(of_a.travel);
   const Vec end = start + way;
   // Use one unit for all times: the unit for the largest distance.
   Pose there;
-  Vec::Map(there.position) = start.cwiseAbs().maxCoeff() > end.cwiseAbs().maxCoeff() ? start : end;
+  as_eigen(there.position) = start.cwiseAbs().maxCoeff() > end.cwiseAbs().maxCoeff() ? start : end;
   there.position[0] += std::copysign(a.arm.norm() + b.arm.norm(), there.position[0]);
   prepare(tables, a.shape, Pose{}, b.shape, there, false, problem_);
   const solver::Scale scaled(problem_.exponent);
@@ -192,7 +192,7 @@ void MovingPair::place(double time) noexcept {
 void MovingPair::poses(double time, Pose& pose_a, Pose& pose_b) const noexcept {
   for (const auto& [turning, pose] : {std::pair{&turn_a_, &pose_a}, {&turn_b_, &pose_b}}) {
     const Quaternion q = orientation_at(*turning, time);
-    std::copy(q.begin(), q.end(), pose->orientation);
+    pose->orientation = q;
   }
   const Vec at_a = turn_a_.arm_at(time);
   const Vec at_b = between_ + time * travel_ + turn_b_.arm_at(time);

@@ -27,9 +27,9 @@ class PartPair {
     } else if (part.part != kWholeShape) {
       const Quaternion turn = normalized(scale_to_unit_max(moving.motion.start.orientation));
       const Eigen::Matrix3d to_world = rotation_of_unit(turn);
-      result.arm = to_world * Vec::Map(part.pose.position);
-      const Quaternion q = multiply(turn, normalized(scale_to_unit_max(part.pose.orientation)));
-      std::copy(q.begin(), q.end(), result.motion.start.orientation);
+      result.arm = to_world * as_eigen(part.pose.position);
+      const Quaternion q = turn * normalized(scale_to_unit_max(part.pose.orientation));
+      result.motion.start.orientation = q;
     }
     result.shape = tables_.put(slot, part);
     return result;

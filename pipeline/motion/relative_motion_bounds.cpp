@@ -25,15 +25,11 @@ namespace {
 }
 
 /// The orientation at a time, of length 1; `rate` is the length of `turn`.
-[[nodiscard]] Quaternion turn_at(const Quaternion& from, const double (&turn)[3], double rate,
+[[nodiscard]] Quaternion turn_at(const Quaternion& from, const Vec3d& turn, double rate,
                                  double time) noexcept {
   if (rate == 0.0) return from;
   const double axis[3] = {turn[0] / rate, turn[1] / rate, turn[2] / rate};
   return turned(from, axis, time * rate);
-}
-
-[[nodiscard]] Quaternion inverse(const Quaternion& unit) noexcept {
-  return {unit[0], -unit[1], -unit[2], -unit[3]};
 }
 
 }  // namespace
@@ -46,11 +42,11 @@ MovingShape whole_shape(const SubShapeQuery& parts, ShapeId shape,
 
 MovingShape moving_part(const SubShapeQuery& parts, const SubShape& part,
                         const RigidMotion& motion) noexcept {
-  const double arm = Vec::Map(part.pose.position).norm();
+  const double arm = as_eigen(part.pose.position).norm();
   double radius = 0.0;
   if (part.triangle != nullptr) {
     for (const auto& corner : part.triangle->vertex) {
-      radius = std::max(radius, Vec::Map(corner).norm());
+      radius = std::max(radius, as_eigen(corner).norm());
     }
     radius += part.triangle->rounding;
   } else {
@@ -64,10 +60,11 @@ RelativeMotionBounds::RelativeMotionBounds(const SubShapeQuery& parts, const Rig
     : parts_(parts),
       frame_(frame),
       shape_(shape),
-      apart_(Vec::Map(difference(shape.motion.start.position, frame.start.position).difference)),
-      travel_(Vec::Map(shape.motion.travel) - Vec::Map(frame.travel)),
-      frame_rate_(length_of(frame.turn)),
-      shape_rate_(length_of(shape.motion.turn)),
+      apart_(Vec::Map(
+          difference(shape.motion.start.position.data(), frame.start.position.data()).difference)),
+      travel_(as_eigen(shape.motion.travel) - as_eigen(frame.travel)),
+      frame_rate_(length_of(frame.turn.data())),
+      shape_rate_(length_of(shape.motion.turn.data())),
       frame_from_(unit_orientation(frame.start)),
       shape_from_(unit_orientation(shape.motion.start)) {}
 
@@ -76,22 +73,22 @@ Vec RelativeMotionBounds::between(double time) const noexcept {
   if (shape_.arm == 0.0) return bodies;
   const Eigen::Matrix3d axes =
       rotation_of_unit(turn_at(shape_from_, shape_.motion.turn, shape_rate_, time));
-  return bodies + axes * Vec::Map(shape_.shape.pose.position);
+  return bodies + axes * as_eigen(shape_.shape.pose.position);
 }
 
 RelativeMotionBounds::RelativePose RelativeMotionBounds::place(double time) const noexcept {
   const Quaternion frame = turn_at(frame_from_, frame_.turn, frame_rate_, time);
   const Eigen::Matrix3d axes = rotation_of_unit(frame);
   return {axes.transpose() * between(time),
-          multiply(inverse(frame), turn_at(shape_from_, shape_.motion.turn, shape_rate_, time))};
+          frame.inverse() * turn_at(shape_from_, shape_.motion.turn, shape_rate_, time)};
 }
 
 /// The box of the shape with its body rotated by `turn`, relative to the shape's own position.
 mid::Box3 RelativeMotionBounds::about(const Quaternion& turn) const noexcept {
   SubShape shape = shape_.shape;
-  std::fill_n(shape.pose.position, 3, 0.0);
-  const Quaternion q = multiply(turn, scale_to_unit_max(shape_.shape.pose.orientation));
-  std::copy(q.begin(), q.end(), shape.pose.orientation);
+  shape.pose.position = {};
+  const Quaternion q = turn * scale_to_unit_max(shape_.shape.pose.orientation);
+  shape.pose.orientation = q;
   return parts_.box(shape);
 }
 
@@ -145,7 +142,7 @@ MovingBox RelativeMotionBounds::moving_box(const Interval& within) const noexcep
     bent = 0.0;
   }
   MovingBox moving_box = stationary(box.moved(first.position).grown(bent + path + slack));
-  Vec::Map(moving_box.direction) = last.position - first.position;
+  as_eigen(moving_box.direction) = last.position - first.position;
   moving_box.max_t = 1.0;
   return moving_box;
 }
@@ -169,8 +166,8 @@ mid::Box3 RelativeMotionBounds::box(const Interval& within) const noexcept {
     const MovingBox way = moving_box(
         {within.first + piece / pieces * width, within.first + (piece + 1.0) / pieces * width});
     for (const double t : {0.0, way.max_t}) {
-      all.min = all.min.cwiseMin(Vec::Map(way.min) + t * Vec::Map(way.direction));
-      all.max = all.max.cwiseMax(Vec::Map(way.max) + t * Vec::Map(way.direction));
+      all.min = all.min.cwiseMin(Vec::Map(way.min) + t * as_eigen(way.direction));
+      all.max = all.max.cwiseMax(Vec::Map(way.max) + t * as_eigen(way.direction));
     }
   }
   return all;

@@ -85,7 +85,7 @@ bool RestingContacts::find(const ShapeTables& tables, OrderedPair& ordered,
   const solver::Scale scaled(pair.problem().exponent);
   pair.place(0.0);
   if (scaled(answer.distance) > tolerance(pair)) return false;
-  const Vec normal = Vec::Map(answer.normal);
+  const Vec normal = as_eigen(answer.normal);
   Vec best = normal;
   double gap = pair.gap(normal);
   // The direction between nearly coincident points is inaccurate, the normal of a face is not; and

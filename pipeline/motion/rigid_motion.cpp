@@ -35,7 +35,7 @@ RigidMotion RigidMotion::between(const Pose& start, const Pose& end) noexcept {
   }
   const Quaternion from = normalized(scale_to_unit_max(start.orientation));
   const Quaternion to = normalized(scale_to_unit_max(end.orientation));
-  Quaternion way = multiply(to, {from[0], -from[1], -from[2], -from[3]});
+  Quaternion way = to * from.inverse();
   if (way[0] < 0.0) {
     for (double& x : way) x = -x;
   }
@@ -47,8 +47,8 @@ RigidMotion RigidMotion::between(const Pose& start, const Pose& end) noexcept {
   return motion;
 }
 
-RigidMotion RigidMotion::by_velocities(const Pose& start, const double (&linear)[3],
-                                       const double (&angular)[3], double duration) noexcept {
+RigidMotion RigidMotion::by_velocities(const Pose& start, const Vec3d& linear, const Vec3d& angular,
+                                       double duration) noexcept {
   const DefaultFloatEnvironment environment;
   RigidMotion motion = stationary(start);
   for (int i = 0; i < 3; ++i) {
@@ -75,12 +75,12 @@ Pose RigidMotion::at(double time) const noexcept {
   const DefaultFloatEnvironment environment;
   Pose pose = start;
   for (int i = 0; i < 3; ++i) pose.position[i] += time * travel[i];
-  const double angle = impact::length_of(turn);
+  const double angle = impact::length_of(turn.data());
   if (angle == 0.0) return pose;
   const double axis[3] = {turn[0] / angle, turn[1] / angle, turn[2] / angle};
   const Quaternion q =
       impact::turned(normalized(scale_to_unit_max(start.orientation)), axis, time * angle);
-  std::copy(q.begin(), q.end(), pose.orientation);
+  pose.orientation = q;
   return pose;
 }
 

@@ -149,8 +149,8 @@ void answer_job(NarrowJob& job, ContactLevel level, NarrowKernel kernel,
 /// Turns answer i of a job into the answer about (b, a).
 void mirror_answer(const NarrowJob& job, ContactLevel level, std::uint32_t i) noexcept {
   if (level == ContactLevel::boolean) return;
-  const double* const a = job.poses[job.pairs[i].a].position;
-  const double* const b = job.poses[job.pairs[i].b].position;
+  const double* const a = job.poses[job.pairs[i].a].position.data();
+  const double* const b = job.poses[job.pairs[i].b].position.data();
   for (int axis = 0; axis < 3; ++axis) {
     const double apart = b[axis] - a[axis];
     if (level == ContactLevel::distance) {

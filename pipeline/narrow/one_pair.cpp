@@ -18,8 +18,8 @@ constexpr BodyPair kOnlyPair{0, 1};
 /// --benchmark_filter=pair/.*/collide).
 [[gnu::always_inline]] inline Pose copy_of(const Pose& pose) noexcept {
   Pose copy;
-  const volatile double* const position = pose.position;
-  const volatile double* const orientation = pose.orientation;
+  const volatile double* const position = pose.position.data();
+  const volatile double* const orientation = pose.orientation.data();
   for (int i = 0; i < 3; ++i) copy.position[i] = position[i];
   for (int i = 0; i < 4; ++i) copy.orientation[i] = orientation[i];
   return copy;
@@ -87,13 +87,13 @@ class OnePair {
     answer.overlap = distance_ <= 0.0;
     answer.distance = distance_;
     answer.error_bound = error_bound_;
-    std::copy_n(normal_, 3, answer.normal);
+    answer.normal = normal_;
     if (options_.level == ContactLevel::distance) {
-      std::copy_n(point_, 3, answer.point);
+      answer.point = point_;
       return;
     }
     // A C caller may pass an uninitialized answer, and mirror() reads the point.
-    std::fill_n(answer.point, 3, 0.0);
+    answer.point = {};
     answer.contact_count = contact_count_;
     for (std::uint32_t k = 0; k < contact_count_; ++k) {
       const std::uint32_t i = contact_first_ + k;

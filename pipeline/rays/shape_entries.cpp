@@ -358,7 +358,7 @@ class ScaledHull {
     return scale_ * Vector3d(hull_.vertex[0][i], hull_.vertex[1][i], hull_.vertex[2][i]);
   }
   [[nodiscard]] Vector3d normal(const HullFace& face) const noexcept {
-    return Vector3d::Map(face.normal);
+    return as_eigen(face.normal);
   }
   [[nodiscard]] std::span<const HullFace> faces() const noexcept {
     return {hull_.faces, hull_.face_count};
@@ -398,7 +398,7 @@ class ScaledHull {
 }  // namespace
 
 FirstEntry enter(const LocalRay& ray, const BoxShape& box, double scale) noexcept {
-  const Vector3d half = scale * Vector3d::Map(box.half);
+  const Vector3d half = scale * as_eigen(box.half);
   const double rounding = scale * box.rounding;
   FirstEntry entry;
   if (rounding == 0.0) {
@@ -415,7 +415,7 @@ FirstEntry enter(const LocalRay& ray, const BoxShape& box, double scale) noexcep
 FirstEntry enter(const LocalRay& ray, const TriangleShape& triangle, double scale) noexcept {
   const double rounding = scale * triangle.rounding;
   std::array<Vector3d, 3> vertex;
-  for (std::size_t i = 0; i < 3; ++i) vertex[i] = scale * Vector3d::Map(triangle.vertex[i]);
+  for (std::size_t i = 0; i < 3; ++i) vertex[i] = scale * as_eigen(triangle.vertex[i]);
   const Vector3d area = accurate_cross(vertex[1] - vertex[0], vertex[2] - vertex[0]);
   FirstEntry entry;
   if (area.stableNorm() > 0.0) {
@@ -454,7 +454,7 @@ FirstEntry enter(const LocalRay& ray, const HullShape& hull, double scale) noexc
 }
 
 FirstEntry enter(const LocalRay& ray, const HalfSpaceShape& half_space, double scale) noexcept {
-  const Vector3d normal = Vector3d::Map(half_space.normal);
+  const Vector3d normal = as_eigen(half_space.normal);
   const double height = normal.dot(ray.at(ray.low)) - scale * half_space.offset;
   const double rate = normal.dot(ray.direction);
   FirstEntry entry;

@@ -39,11 +39,11 @@ struct RelativeRay {
 [[nodiscard]] RelativeRay approach(const ShapeRay& ray, const Pose& pose, double size,
                                    bool may_move) noexcept {
   constexpr double kFar = 8.0;
-  const Vector3d direction = Vector3d::Map(ray.direction);
+  const Vector3d direction = as_eigen(ray.direction);
   // Lengths are multiplied by this, because the difference of two doubles may overflow.
   constexpr double kQuarter = 0.25;
-  const Vector3d from = kQuarter * Vector3d::Map(pose.position);
-  const Vector3d to = kQuarter * Vector3d::Map(ray.origin);
+  const Vector3d from = kQuarter * as_eigen(pose.position);
+  const Vector3d to = kQuarter * as_eigen(ray.origin);
   const Vector3d between = to - from;
   const double reach = between.cwiseAbs().maxCoeff();
   RelativeRay result;
@@ -96,7 +96,7 @@ void cast(const Shape& shape, const Pose& pose, const ShapeRay& ray, ShapeHit& h
   hit.t = t;
   Vector3d normal = turn * entry.normal;
   if (entry.inside || normal.isZero(0.0)) normal = -relative.direction;
-  Vector3d::Map(hit.normal) = normal.normalized();
+  as_eigen(hit.normal) = normal.normalized();
 }
 
 }  // namespace

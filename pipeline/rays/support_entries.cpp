@@ -81,7 +81,7 @@ FirstEntry enter_core(const LocalRay& ray, const ShapeCore& core, double scale) 
 
 FirstEntry enter(const LocalRay& ray, const EllipsoidShape& ellipsoid, double scale) noexcept {
   constexpr double kThin = 1e-12;
-  const Vector3d radius = scale * Vector3d::Map(ellipsoid.radius);
+  const Vector3d radius = scale * as_eigen(ellipsoid.radius);
   if (ellipsoid.rounding > 0.0 || !(radius.minCoeff() > kThin)) {
     return enter_core(ray, ShapeCore::of_support(ShapeKind::ellipsoid, support_core(ellipsoid)),
                       scale);

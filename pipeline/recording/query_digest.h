@@ -9,7 +9,7 @@ namespace winnow {
 
 // Digests of all results of scene queries. Of a key, only the id is added.
 
-inline void add_to(Digest& digest, const double (&vector)[3]) noexcept {
+inline void add_to(Digest& digest, const Vec3d& vector) noexcept {
   for (const double x : vector) digest.add(x);
 }
 

@@ -8,8 +8,8 @@ namespace winnow {
 namespace {
 
 void put_ray(CallWriter& call, const ShapeRay& ray) {
-  call.put_bytes(ray.origin, sizeof ray.origin)
-      .put_bytes(ray.direction, sizeof ray.direction)
+  call.put_bytes(&ray.origin, sizeof ray.origin)
+      .put_bytes(&ray.direction, sizeof ray.direction)
       .put(ray.max_t);
 }
 
@@ -20,7 +20,7 @@ void put_rays(CallWriter& call, const ShapeRayBatch& rays) {
 
 void put_cast(CallWriter& call, const ShapeCast& cast) {
   call.put_bytes(&cast.pose, sizeof cast.pose)
-      .put_bytes(cast.direction, sizeof cast.direction)
+      .put_bytes(&cast.direction, sizeof cast.direction)
       .put(cast.max_t);
 }
 
@@ -283,7 +283,7 @@ Status RecordedQueries::any_contact(KeyPair& pair, double contact_margin, PairRu
   return status;
 }
 
-Status RecordedQueries::nearest(const double point[3], std::size_t count, double radius,
+Status RecordedQueries::nearest(const Vec3d& point, std::size_t count, double radius,
                                 std::span<const SceneDistance>& bodies, const Filter& filter) {
   return record(
       RecordedCall::query_nearest, filter,
@@ -291,7 +291,7 @@ Status RecordedQueries::nearest(const double point[3], std::size_t count, double
         return queries_.nearest(point, count, radius, bodies, wrapped);
       },
       [&](CallWriter& call) {
-        call.put_bytes(point, 3 * sizeof(double)).put(std::uint64_t{count}).put(radius);
+        call.put_bytes(&point, 3 * sizeof(double)).put(std::uint64_t{count}).put(radius);
         return digest_of_answers(bodies);
       });
 }

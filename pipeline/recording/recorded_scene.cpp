@@ -22,8 +22,8 @@ RecordedBody recorded(const BodyDefinition& body, std::uint32_t shape) noexcept 
   RecordedBody out{};
   out.shape = shape;
   out.state = static_cast<std::uint32_t>(body.state);
-  std::copy_n(body.pose.position, 3, out.pose);
-  std::copy_n(body.pose.orientation, 4, out.pose + 3);
+  std::copy_n(body.pose.position.data(), 3, out.pose);
+  std::copy_n(body.pose.orientation.data(), 4, out.pose + 3);
   out.filter[0] = body.filter.layers;
   out.filter[1] = body.filter.mask;
   out.filter[2] = body.filter.environment;

@@ -76,8 +76,8 @@ class CallWriter {
     put(turns).put(std::uint64_t{poses.count * (turns ? 7U : 3U)});
     for (std::size_t i = 0; i < poses.count; ++i) {
       const Pose pose = poses[i];
-      put_bytes(pose.position, sizeof pose.position);
-      if (turns) put_bytes(pose.orientation, sizeof pose.orientation);
+      put_bytes(&pose.position, sizeof pose.position);
+      if (turns) put_bytes(&pose.orientation, sizeof pose.orientation);
     }
     return *this;
   }

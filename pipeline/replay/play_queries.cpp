@@ -39,14 +39,14 @@ class RequestedColumns {
 };
 
 void read(ByteReader& in, ShapeRay& ray) noexcept {
-  (void)in.get_bytes(ray.origin, sizeof ray.origin);
-  (void)in.get_bytes(ray.direction, sizeof ray.direction);
+  (void)in.get_bytes(&ray.origin, sizeof ray.origin);
+  (void)in.get_bytes(&ray.direction, sizeof ray.direction);
   ray.max_t = in.get<double>();
 }
 
 void read(ByteReader& in, ShapeCast& cast) noexcept {
   (void)in.get_bytes(&cast.pose, sizeof cast.pose);
-  (void)in.get_bytes(cast.direction, sizeof cast.direction);
+  (void)in.get_bytes(&cast.direction, sizeof cast.direction);
   cast.max_t = in.get<double>();
 }
 

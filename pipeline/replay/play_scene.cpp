@@ -134,8 +134,7 @@ Status add_bodies(ReplayState& replay, ReplayedWorld& of) {
     BodyDefinition body;
     body.shape = of.shape_ids[one.shape];
     body.state = body_state_of(one.state, replay.in);
-    std::copy_n(one.pose, 3, body.pose.position);
-    std::copy_n(one.pose + 3, 4, body.pose.orientation);
+    body.pose = {Vec3d(one.pose), {one.pose[3], one.pose[4], one.pose[5], one.pose[6]}};
     body.filter = {one.filter[0], one.filter[1], one.filter[2]};
     body.data = one.data;
     replay.bodies[i] = body;

@@ -164,7 +164,7 @@ class ContactCache {
   [[nodiscard]] bool match_cached();
   void match(const PairRecords& records) noexcept;
   [[nodiscard]] bool keep(std::uint32_t pair, std::uint32_t record) noexcept;
-  void turn(CachedPair& cached, std::uint32_t index, const double (&to)[4]) noexcept;
+  void turn(CachedPair& cached, std::uint32_t index, const Quaternion& to) noexcept;
   [[nodiscard]] float cache_limit(std::uint32_t pair, std::uint32_t index) const noexcept;
   [[nodiscard]] double clearance(std::uint32_t pair) const noexcept;
   [[nodiscard]] bool put_to_sleep();

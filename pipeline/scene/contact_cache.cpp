@@ -24,12 +24,12 @@ constexpr std::size_t kPairsPerListing = 8192;
 constexpr double kTurnError = 4.0e-7;
 
 // Upper bound on the motion of points within `radius` under a rotation.
-[[nodiscard]] double turn_bound(const double (&from)[4], const double (&to)[4],
+[[nodiscard]] double turn_bound(const Quaternion& from, const Quaternion& to,
                                 double radius) noexcept {
   Pose a;
   Pose b;
-  std::copy_n(from, 4, a.orientation);
-  std::copy_n(to, 4, b.orientation);
+  a.orientation = from;
+  b.orientation = to;
   return motion_bound(a, b, radius);
 }
 
@@ -37,9 +37,8 @@ struct PoseChange {
   Eigen::Matrix3d m;
 
   // R(to) R(from)^T for unit quaternions.
-  PoseChange(const double (&to)[4], const double (&from)[4]) noexcept
-      : m(rotation_of_unit(
-            multiply({to[0], to[1], to[2], to[3]}, {from[0], -from[1], -from[2], -from[3]}))) {}
+  PoseChange(const Quaternion& to, const Quaternion& from) noexcept
+      : m(rotation_of_unit(to * from.inverse())) {}
 
   template <typename T>
   void apply(Column<T> (&column)[3], std::uint32_t i) const noexcept {
@@ -229,7 +228,7 @@ bool ContactCache::keep(std::uint32_t pair, std::uint32_t record) noexcept {
 }
 
 // Rotates normals and points with body a.
-void ContactCache::turn(CachedPair& cached, std::uint32_t index, const double (&to)[4]) noexcept {
+void ContactCache::turn(CachedPair& cached, std::uint32_t index, const Quaternion& to) noexcept {
   ContactFrame& frame = contacts_.frame;
   const PoseChange turn(to, cached.turned_for);
   const std::uint32_t first = frame.manifold_first[index];
@@ -243,7 +242,7 @@ void ContactCache::turn(CachedPair& cached, std::uint32_t index, const double (&
       turn.apply(frame.points.position, p);
     }
   }
-  std::copy_n(to, 4, cached.turned_for);
+  cached.turned_for = to;
 }
 
 // A composite pair may move by no more than the tolerance, because the mid phase lists only pairs
@@ -294,7 +293,7 @@ void ContactCache::remember(std::uint32_t pair, std::uint32_t index) noexcept {
   const double radius_b = scene_.radius(bodies.b);
   cached.from_b = radius_a <= radius_b;
   cached.relative = cached.from_b ? relative_pose(b, a) : relative_pose(a, b);
-  std::copy_n(with_unit_turn(a).orientation, 4, cached.turned_for);
+  cached.turned_for = with_unit_turn(a).orientation;
   cached.radius = round_up(std::min(radius_a, radius_b));
   cached.radius_a = round_up(radius_a);
   cached.limit = call_.is_cacheable(bodies) ? cache_limit(pair, index) : CachedPair::kNever;

@@ -174,7 +174,7 @@ struct CachedPair {
   /// of b if `from_b`.
   Pose relative;
   /// Orientation of a for which normals and points are stored.
-  double turned_for[4];
+  Quaternion turned_for;
   /// The pair may move by at most this, relative to `relative`, before its contacts are computed
   /// again.
   float limit;

@@ -288,7 +288,8 @@ void ContactFrameWriter::write_composite(std::uint32_t pair, const Cursor& to) n
     const BodyPair primitives = parts.pairs[i];
     frame.part[0][at.manifold] = parts.part[primitives.a];
     frame.part[1][at.manifold] = parts.part[primitives.b];
-    write_manifold(scene_.batch.parts->answers, answer, parts.poses[primitives.a].position, at);
+    write_manifold(scene_.batch.parts->answers, answer, parts.poses[primitives.a].position.data(),
+                   at);
   }
 }
 

@@ -21,7 +21,7 @@ constexpr std::size_t kOffsetPairsPerRange = 256;
 constexpr double kSumError = 0x1p-52;
 
 /// Updates the depth and position of a point after both surfaces moved out by their rest offsets.
-void shift(float& depth, float* const (&position)[3], const double (&normal)[3],
+void shift(float& depth, float* const (&position)[3], const Vec3d& normal,
            const double (&rest)[2]) noexcept {
   depth = static_cast<float>(static_cast<double>(depth) + rest[0] + rest[1]);
   for (int k = 0; k < 3; ++k) {
@@ -197,7 +197,7 @@ void ContactFilters::rest_regions(const BodyPair& bodies, std::size_t pair) noex
     region.error_bound += sum_error(region.distance, rest);
     region.distance -= rest[0] + rest[1];
     for (ContactPoint& point : std::span(region.point, region.count)) {
-      float(&at)[3] = point.position;
+      Vec3f& at = point.position;
       shift(point.depth, {&at[0], &at[1], &at[2]}, region.normal, rest);
     }
   }

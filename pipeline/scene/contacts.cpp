@@ -375,4 +375,72 @@ Footprint Contacts::footprint() const noexcept {
   return footprint;
 }
 
+ContactPoint PointLookup::operator()(std::size_t i) const noexcept {
+  return contacts->contact(first + i);
+}
+
+namespace {
+
+/// Returns entry i of a column, or zero if the level has no such column.
+[[nodiscard]] double entry(std::span<const double> column, std::size_t i) noexcept {
+  return column.empty() ? 0.0 : column[i];
+}
+
+/// Range i of a column of first entries; empty if the level has no such column.
+template <typename Lookup>
+[[nodiscard]] IndexedView<Lookup> range_of(const Contacts& contacts,
+                                           std::span<const std::uint32_t> first,
+                                           std::size_t i) noexcept {
+  if (first.empty()) return {Lookup{&contacts, 0}, 0};
+  return {Lookup{&contacts, first[i]}, first[i + 1] - first[i]};
+}
+
+}  // namespace
+
+ContactManifold::ContactManifold(const Contacts& contacts, std::uint32_t index) noexcept
+    : IndexedView(range_of<PointLookup>(contacts, contacts.point_first(), index)), index_(index) {}
+
+double ContactManifold::distance() const noexcept {
+  return entry(lookup().contacts->distance(), index_);
+}
+double ContactManifold::error_bound() const noexcept {
+  return entry(lookup().contacts->error_bound(), index_);
+}
+Vec3d ContactManifold::normal() const noexcept {
+  const Contacts& contacts = *lookup().contacts;
+  return {entry(contacts.normal(0), index_), entry(contacts.normal(1), index_),
+          entry(contacts.normal(2), index_)};
+}
+Vec3d ContactManifold::point() const noexcept {
+  const Contacts& contacts = *lookup().contacts;
+  return {entry(contacts.point(0), index_), entry(contacts.point(1), index_),
+          entry(contacts.point(2), index_)};
+}
+std::uint32_t ContactManifold::part_a() const noexcept {
+  return lookup().contacts->part_a()[index_];
+}
+std::uint32_t ContactManifold::part_b() const noexcept {
+  return lookup().contacts->part_b()[index_];
+}
+
+ContactPair::ContactPair(const Contacts& contacts, std::size_t index) noexcept
+    : IndexedView(range_of<ManifoldLookup>(contacts, contacts.manifold_first(), index)),
+      index_(index) {}
+
+Key ContactPair::a() const noexcept {
+  return lookup().contacts->a()[index_];
+}
+Key ContactPair::b() const noexcept {
+  return lookup().contacts->b()[index_];
+}
+ClientData ContactPair::data_a() const noexcept {
+  return lookup().contacts->data_a()[index_];
+}
+ClientData ContactPair::data_b() const noexcept {
+  return lookup().contacts->data_b()[index_];
+}
+ContactEvent ContactPair::event() const noexcept {
+  return lookup().contacts->event()[index_];
+}
+
 }  // namespace winnow

@@ -114,7 +114,7 @@ class ContactsWriter {
     out_.put(std::uint64_t{cached.size()});
     for (const CachedPair& one : cached) {
       out_.put_bytes(&one.relative, sizeof one.relative);
-      out_.put_bytes(one.turned_for, sizeof one.turned_for);
+      out_.put_bytes(&one.turned_for, sizeof one.turned_for);
       out_.put(one.limit);
       out_.put(one.tested_at);
       out_.put(one.radius);
@@ -267,7 +267,7 @@ class ContactsReader {
     if (!make_room(cached, count, sizeof(Pose))) return false;
     for (CachedPair& one : cached) {
       (void)in_.get_bytes(&one.relative, sizeof one.relative);
-      (void)in_.get_bytes(one.turned_for, sizeof one.turned_for);
+      (void)in_.get_bytes(&one.turned_for, sizeof one.turned_for);
       one.limit = in_.get<float>();
       one.tested_at = in_.get<std::uint32_t>();
       one.radius = in_.get<float>();

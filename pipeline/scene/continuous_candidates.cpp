@@ -88,7 +88,7 @@ Status ContinuousState::take(std::span<const Key> keys, const PoseView& ends) no
   const auto motion_to = [&](std::size_t i) {
     const Pose& start = bodies.pose[keys[i].id];
     Pose end = ends[i];
-    if (!ends.has_orientations()) std::copy_n(start.orientation, 4, end.orientation);
+    if (!ends.has_orientations()) end.orientation = start.orientation;
     return RigidMotion::between(start, end);
   };
   if (keys.size() != ends.count) return Status::size_mismatch;

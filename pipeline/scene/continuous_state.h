@@ -152,8 +152,8 @@ struct ContinuousState {
                    });
   }
   [[nodiscard]] MovingBall ball_of(const RigidMotion& motion, std::uint32_t body) const noexcept {
-    const double(&at)[3] = motion.start.position;
-    const double(&way)[3] = motion.travel;
+    const Vec3d& at = motion.start.position;
+    const Vec3d& way = motion.travel;
     return {{at[0], at[1], at[2]}, {way[0], way[1], way[2]}, bodies.radius(body)};
   }
   [[nodiscard]] std::array<std::uint32_t, 2> bodies_of(std::size_t candidate) const noexcept {
@@ -169,7 +169,7 @@ struct ContinuousState {
   [[nodiscard]] RigidMotion frame() const noexcept {
     const Eigen::Vector3d& at = bodies.origin;
     RigidMotion frame = RigidMotion::stationary(Pose::at(at.x(), at.y(), at.z()));
-    Eigen::Vector3d::Map(frame.travel) = drift;
+    as_eigen(frame.travel) = drift;
     return frame;
   }
   [[nodiscard]] impact::MovingShape path_of(std::size_t mover) const noexcept {

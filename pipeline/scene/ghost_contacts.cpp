@@ -88,12 +88,12 @@ class GhostContactTest {
   /// Support of the fixed body along a unit direction, relative to the dynamic body's position; for
   /// composite shapes, only of the primitives that are in contact.
   [[nodiscard]] double highest(const FloorContact& contact, const Vec& along) const noexcept {
-    const Vec apart = Vec::Map(scene_.pose[contact.floor].position) -
-                      Vec::Map(scene_.pose[contact.body].position);
+    const Vec apart = as_eigen(scene_.pose[contact.floor].position) -
+                      as_eigen(scene_.pose[contact.body].position);
     double most = -mid::kInfinity;
     if (contact.source == FloorContact::Source::convex) {
       Pose pose = scene_.pose[contact.floor];
-      Vec::Map(pose.position) = apart;
+      as_eigen(pose.position) = apart;
       most = highest(scene_.shapes.tables(), scene_.shape[contact.floor], pose, along);
     } else {
       const bool floor_is_a = scene_.batch.composite[contact.pair].a == contact.floor;
@@ -133,7 +133,7 @@ class GhostContactTest {
   [[nodiscard]] static double highest(const ShapeTables& tables, ShapeId shape, const Pose& pose,
                                       const Vec& along) noexcept {
     const Vec own = as_eigen(rotation_of(scale_to_unit_max(pose.orientation))).transpose() * along;
-    return along.dot(Vec::Map(pose.position)) + mid::extent(tables, shape, own).high;
+    return along.dot(as_eigen(pose.position)) + mid::extent(tables, shape, own).high;
   }
 
   const SceneState& scene_;
@@ -219,8 +219,8 @@ class ContactFilters::FloorWriter {
     contact_.pair = index;
     contact_.body = floor_is_a_ ? pair.b : pair.a;
     contact_.floor = floor_is_a_ ? pair.a : pair.b;
-    const Vec from = Vec::Map(scene.pose[pair.a].position);
-    from_ = floor_is_a_ ? Vec(from - Vec::Map(scene.pose[pair.b].position)) : Vec(Vec::Zero());
+    const Vec from = as_eigen(scene.pose[pair.a].position);
+    from_ = floor_is_a_ ? Vec(from - as_eigen(scene.pose[pair.b].position)) : Vec(Vec::Zero());
   }
 
   void begin(FloorContact::Source source, std::uint32_t answer, double distance,
@@ -261,7 +261,7 @@ bool ContactFilters::list_floor_answer(const NarrowResult& answers, FloorContact
   } else {
     for (std::uint32_t i = 0; i < answers.contact_count()[at]; ++i) {
       const ContactPoint point = answers.contact(answers.contact_first()[at] + i);
-      writer.add(from + Vec(Eigen::Map<const Eigen::Vector3f>(point.position).cast<double>()),
+      writer.add(from + Vec(as_eigen(point.position).cast<double>()),
                  static_cast<double>(point.depth));
     }
   }
@@ -290,8 +290,8 @@ bool ContactFilters::list_floor_parts(std::uint32_t pair, FloorWriter& writer) {
   const PrimitivePairs& parts = scene_.batch.parts->pairs;
   for (std::uint32_t k = parts.first[pair]; k < parts.first[pair + 1]; ++k) {
     if (!list_floor_answer(scene_.batch.parts->answers, FloorContact::Source::part,
-                           scene_.batch.parts->slot[k], parts.poses[parts.pairs[k].a].position,
-                           writer)) {
+                           scene_.batch.parts->slot[k],
+                           parts.poses[parts.pairs[k].a].position.data(), writer)) {
       return false;
     }
   }
@@ -304,8 +304,7 @@ bool ContactFilters::list_floor_regions(std::uint32_t pair, FloorWriter& writer)
     const ContactRegion& region = scene_.batch.parts->regions.regions[k];
     writer.begin(FloorContact::Source::region, k, region.distance, Vec::Map(region.normal));
     for (const ContactPoint& point : std::span(region.point, region.count)) {
-      writer.add(Eigen::Map<const Eigen::Vector3f>(point.position).cast<double>(),
-                 static_cast<double>(point.depth));
+      writer.add(as_eigen(point.position).cast<double>(), static_cast<double>(point.depth));
     }
     if (!scene_.batch.floor_contacts.push_back(writer.contact())) return false;
   }

@@ -162,7 +162,7 @@ Status Scene::move(std::span<const Key> keys, const PoseView& poses) {
   for (std::size_t i = 0; i < keys.size(); ++i) {
     Pose to = poses[i];
     if (!poses.has_orientations()) {
-      std::copy_n(s.pose[keys[i].id].orientation, 4, to.orientation);
+      to.orientation = s.pose[keys[i].id].orientation;
     }
     s.set_pose(keys[i].id, to);
   }

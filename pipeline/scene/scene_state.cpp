@@ -121,11 +121,10 @@ BoxRoom::~BoxRoom() {
 }
 
 Status SceneState::check(ShapeId id, const Pose& at) const noexcept {
-  const bool known =
-      id.is_composite()
-          ? options.composites != nullptr &&
-                mid::mid_phase_of(*options.composites).contains(*options.composites, id)
-          : shapes.contains(id);
+  if (id.is_composite() && options.composites == nullptr) return Status::unsupported;
+  const bool known = id.is_composite()
+                         ? mid::mid_phase_of(*options.composites).contains(*options.composites, id)
+                         : shapes.contains(id);
   if (!known) return Status::invalid_key;
   return at.is_valid() ? Status::ok : Status::invalid_pose;
 }
@@ -189,7 +188,7 @@ void SceneState::choose_origin() noexcept {
   BodySample places;
   for (std::size_t body = 0; body < slots; body += step) {
     const auto id = static_cast<std::uint32_t>(body);
-    if (keys.is_live(id)) places.add(pose[id].position, radius(id));
+    if (keys.is_live(id)) places.add(pose[id].position.data(), radius(id));
   }
   origin = places.origin(origin);
 }

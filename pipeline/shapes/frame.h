@@ -1,6 +1,7 @@
 #pragma once
 
 #include <winnow/core/aabb.h>
+#include <winnow/core/eigen.h>
 #include <winnow/core/pose.h>
 #include <winnow/core/rotation.h>
 

@@ -3,6 +3,7 @@
 // The core of a shape: the shape without its rounding, which the solver treats separately. See
 // problem.h for the frame and the units.
 
+#include <winnow/core/eigen.h>
 #include <winnow/pipeline/shapes.h>
 #include "pipeline/kinds/shape_core.h"
 #include "pipeline/solver/scale.h"

@@ -383,7 +383,7 @@ struct HullForm : CornersForm {
     return core.hull->loop_edge[core.hull->faces[face].first + i];
   }
   static Vec face_normal(const Core& core, std::uint32_t face) noexcept {
-    return core.rotation * Eigen::Map<const Vec>(core.hull->faces[face].normal);
+    return core.rotation * as_eigen(core.hull->faces[face].normal);
   }
   // In the hull's frame and units.
   static std::uint32_t highest_vertex(const Core& core, const Vec& d, double& height) noexcept {

@@ -141,7 +141,7 @@ std::uint32_t feature_contacts(const Problem& problem, const Vec& normal, double
 
 void make_manifold(const Problem& problem, const Vec& point, double distance, double margin,
                    PairAnswer& answer) noexcept {
-  const Vec normal = Vec::Map(answer.normal);
+  const Vec normal = as_eigen(answer.normal);
   // Lengths are about 1: only the depth of two half-spaces, which is unbounded, exceeds 8.
   const ContactPoint single = single_contact(problem, point, normal, std::max(distance, -8.0));
   const bool is_single_point = touches_in_a_point(problem.a) || touches_in_a_point(problem.b) ||

@@ -40,7 +40,7 @@ void place(const ShapeCore& shape, const Pose& pose, const Scale& scale, Core& c
     core.hull = shape.hull;
     core.size += scale(reach_of_vertices(*core.hull));
   } else if (shape.half_space != nullptr) {
-    core.normal = unit(core.rotation * Eigen::Map<const Vec>(shape.half_space->normal));
+    core.normal = unit(core.rotation * as_eigen(shape.half_space->normal));
     core.offset = scale(shape.half_space->offset);
     core.size = std::abs(core.offset);
   }
@@ -51,8 +51,8 @@ void place(const ShapeCore& shape, const Pose& pose, const Scale& scale, Core& c
 void prepare(const ShapeTables& tables, ShapeId a, const Pose& pose_a, ShapeId b,
              const Pose& pose_b, bool mirrored, Problem& problem) noexcept {
   // Positions at opposite ends of the range of doubles have no finite difference: halve it.
-  const Eigen::Map<const Vec> at_a(pose_a.position);
-  const Eigen::Map<const Vec> at_b(pose_b.position);
+  const auto at_a = as_eigen(pose_a.position);
+  const auto at_b = as_eigen(pose_b.position);
   Vec c = at_b - at_a;
   const int halved = c.allFinite() ? 0 : 1;
   if (halved != 0) c = 0.5 * at_b - 0.5 * at_a;

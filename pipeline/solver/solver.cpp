@@ -87,9 +87,9 @@ PairAnswer solve(const PairQuery& query, bool mirrored, ContactLevel level, doub
     settle_sign(query, problem, found.axis, answer.distance, counts);
   }
   answer.overlap = answer.distance <= 0.0;
-  Vec::Map(answer.normal) = found.axis;
+  as_eigen(answer.normal) = found.axis;
   const Vec point = found.on_a + found.axis * problem.a.rounding;
-  put(problem, point, answer.point);
+  put(problem, point, answer.point.data());
   if (level == ContactLevel::manifold && answer.distance <= margin) {
     // Lengths are about 1 here, and no two contact points are 8 apart: a larger margin, which may
     // be infinite when scaled, has the same effect.

@@ -64,8 +64,8 @@ TEST(MovedPairs, pairs_at_any_offset_are_equal) {
 TEST(TurnedPairs, orientations_differ_by_the_given_angle) {
   const auto set = make_pair_set(*find_pair_kind("box-box"), {.pairs = kPairs, .angle = 1e-3});
   for (const BodyPair& pair : set->pairs) {
-    const double* a = set->poses[pair.a].orientation;
-    const double* b = set->poses[pair.b].orientation;
+    const Quaternion& a = set->poses[pair.a].orientation;
+    const Quaternion& b = set->poses[pair.b].orientation;
     const Eigen::Quaterniond from(a[0], a[1], a[2], a[3]);
     const Eigen::Quaterniond to(b[0], b[1], b[2], b[3]);
     EXPECT_NEAR(from.angularDistance(to), 1e-3, 1e-9);

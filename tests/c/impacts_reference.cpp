@@ -14,8 +14,8 @@ namespace {
 
 void note_pose(const trace* t, const RigidMotion& motion, double time) {
   const Pose pose = motion.at(time);
-  note_reals(t, "position", pose.position, 3);
-  note_reals(t, "orientation", pose.orientation, 4);
+  note_reals(t, "position", pose.position.data(), 3);
+  note_reals(t, "orientation", pose.orientation.data(), 4);
 }
 
 void note_answers(const trace* t, const ImpactResult& result) {

@@ -64,8 +64,8 @@ void note_hit(const trace* t, const char* what, const SceneHit& hit) {
   note(t, what, hit.data);
   note(t, what, hit.part);
   note_real(t, what, hit.t);
-  note_reals(t, what, hit.normal, 3);
-  note_reals(t, what, hit.point, 3);
+  note_reals(t, what, hit.normal.data(), 3);
+  note_reals(t, what, hit.point.data(), 3);
 }
 
 void note_hits(const trace* t, const char* what, std::span<const SceneHit> hits) {
@@ -79,9 +79,9 @@ void note_distance(const trace* t, const char* what, const SceneDistance& apart)
   note(t, what, apart.part_a);
   note_real(t, what, apart.distance);
   note_real(t, what, apart.error_bound);
-  note_reals(t, what, apart.normal, 3);
-  note_reals(t, what, apart.point_a, 3);
-  note_reals(t, what, apart.point_b, 3);
+  note_reals(t, what, apart.normal.data(), 3);
+  note_reals(t, what, apart.point_a.data(), 3);
+  note_reals(t, what, apart.point_b.data(), 3);
 }
 
 void query_rays(const trace* t, SceneQueries& queries) {
@@ -194,8 +194,8 @@ void query_state(const trace* t, const Scene& scene, std::span<const Key> keys) 
   note(t, "body", static_cast<std::uint64_t>(body.state));
   note(t, "body", body.filter.mask);
   note(t, "body", body.data);
-  note_reals(t, "body", body.pose.position, 3);
-  note_reals(t, "body", body.pose.orientation, 4);
+  note_reals(t, "body", body.pose.position.data(), 3);
+  note_reals(t, "body", body.pose.orientation.data(), 4);
   note(t, "key", scene.key_of(3) == keys[3]);
   const Eigen::Vector3d origin = scene.origin();
   note_reals(t, "origin", origin.data(), 3);

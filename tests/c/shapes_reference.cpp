@@ -32,7 +32,7 @@ void query_composites(const trace* t, CompositePool& pool, std::span<const Shape
     note(t, "solid", pool.is_solid(ids[i]));
   }
   note(t, "children", pool.children(ids[3]).size());
-  note_reals(t, "child", pool.children(ids[3])[1].pose.position, 3);
+  note_reals(t, "child", pool.children(ids[3])[1].pose.position.data(), 3);
   for (std::uint32_t part = 0; part < pool.parts(ids[3]); ++part) {
     note(t, "child", pool.part(ids[3], part).child);
     note(t, "part", pool.part(ids[3], part).part);
@@ -44,7 +44,7 @@ void note_hull(const trace* t, const HullShape& hull) {
   note(t, "hull", hull.vertex_count);
   note(t, "hull", hull.face_count);
   note_reals(t, "hull", hull.vertex[1], static_cast<int>(hull.vertex_count));
-  note_reals(t, "hull", hull.faces[1].normal, 3);
+  note_reals(t, "hull", hull.faces[1].normal.data(), 3);
   note(t, "hull", hull.loop[hull.faces[1].first]);
 }
 
@@ -100,7 +100,7 @@ void note_pair(const trace* t, ContactLevel level, const PairAnswer& answer) {
 
 Pose pose_in(std::size_t i, std::size_t frame) {
   Pose pose;
-  pose_of(i, frame, pose.position, pose.orientation);
+  pose_of(i, frame, pose.position.data(), pose.orientation);
   return pose;
 }
 
@@ -164,11 +164,11 @@ void run_shapes_in_cpp(const trace* t) {
     (void)cast_ray(pool.tables(), id, pose, {{8, 1, 9}, {-0.2, 0.1, -1}, 30}, hit);
     note(t, "hit", hit.hit);
     note_real(t, "t", hit.t);
-    note_reals(t, "normal", hit.normal, 3);
+    note_reals(t, "normal", hit.normal.data(), 3);
   }
   query_composites(t, composites, composite, pose);
-  note_reals(t, "box", pool.tables().boxes[convex[2].index()].half, 3);
-  note_reals(t, "half-space", pool.tables().half_spaces[convex[6].index()].normal, 3);
+  note_reals(t, "box", pool.tables().boxes[convex[2].index()].half.data(), 3);
+  note_reals(t, "half-space", pool.tables().half_spaces[convex[6].index()].normal.data(), 3);
   note_reals(t, "tapered capsule", pool.tables().tapered_capsules[convex[10].index()].radius, 2);
   note(t, "support", 1);
   note_hull(t, pool.tables().hulls[convex[7].index()]);

@@ -12,7 +12,7 @@ namespace {
 
 [[nodiscard]] Pose pose_of_body(std::size_t i) {
   Pose pose;
-  pose_of(i, 0, pose.position, pose.orientation);
+  pose_of(i, 0, pose.position.data(), pose.orientation);
   return pose;
 }
 
@@ -86,7 +86,7 @@ void query_sensors(const trace* t, Scene& scene, ShapeId ball, std::span<const K
   SensorDefinition stands;
   (void)sensors.sensor(goals[1], stands);
   note(t, "sensor", stands.data);
-  note_reals(t, "sensor", stands.pose.position, 3);
+  note_reals(t, "sensor", stands.pose.position.data(), 3);
   note(t, "sensors", sensors.size());
   note(t, "contains", sensors.contains(goals[0]));
   note(t, "the footprint equals the allocated memory", 1);
@@ -103,8 +103,8 @@ void note_impacts(const trace* t, const ContinuousCollision& ccd) {
     note_real(t, "impact", impact.time);
     note_real(t, "impact", impact.gap);
     note_real(t, "impact", impact.error_bound);
-    note_reals(t, "impact", impact.normal, 3);
-    note_reals(t, "impact", impact.point, 3);
+    note_reals(t, "impact", impact.normal.data(), 3);
+    note_reals(t, "impact", impact.point.data(), 3);
   }
   for (const std::uint32_t first : ccd.first()) note(t, "first impact", first);
 }

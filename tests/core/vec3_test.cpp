@@ -58,8 +58,23 @@ TEST(Vec3, foreign_vectors_convert_in_and_eigen_out) {
   const Eigen::Vector3f max = box.max;
   EXPECT_EQ(Vec3f(max + Eigen::Vector3f(box.min)), Vec3f(5, 7, 9));
   EXPECT_EQ(max - box.min, Vec3f(3, 3, 3));
-  static_assert(!std::is_convertible_v<Vec3d, Vec3f> && !std::is_convertible_v<Vec3f, Vec3d> &&
-                !std::is_convertible_v<Eigen::Vector3d, Vec3f>);
+}
+
+TEST(Vec3, arrays_and_structs_convert_in) {
+  struct Users {
+    float x, y, z;
+  };
+  const float numbers[3] = {1, 2, 3};
+  EXPECT_EQ(Vec3f(numbers), Vec3f(1, 2, 3));
+  EXPECT_EQ(Vec3d(std::array{1.0, 2.0, 3.0}), Vec3d(1, 2, 3));
+  EXPECT_EQ(Vec3d(Users{1, 2, 3}), Vec3d(1, 2, 3));
+}
+
+TEST(Vec3, only_conversions_without_loss_are_implicit) {
+  EXPECT_EQ(Vec3d(Vec3f(0.1F, 0, 0)).x(), static_cast<double>(0.1F));
+  static_assert(std::is_convertible_v<Vec3f, Vec3d> && !std::is_convertible_v<Vec3d, Vec3f> &&
+                !std::is_convertible_v<Eigen::Vector3d, Vec3f> &&
+                !std::is_convertible_v<std::array<double, 3>, Vec3f>);
 }
 
 TEST(Vec3, as_eigen_maps_the_same_memory) {

@@ -240,7 +240,7 @@ void impacts(Style style, const Execution& execution, Digest& digest) {
     const Pose& start = bodies.poses[i];
     Pose end = bodies.pose();
     // One in four does not rotate, one in four does not move.
-    if (i % 4 == 1) std::copy_n(start.orientation, 4, end.orientation);
+    if (i % 4 == 1) end.orientation = start.orientation;
     motions.push_back(i % 4 == 2 ? RigidMotion::stationary(start)
                                  : RigidMotion::between(start, end));
   }

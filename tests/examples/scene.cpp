@@ -39,7 +39,7 @@ int main() {
   // [scene]
   winnow::CompositePool composites(shapes);  // only for meshes, height fields, compounds
   winnow::ShapeId terrain, chair;
-  composites.add_mesh(std::span(points), std::span(corners), terrain);  // see PointView, IndexView
+  composites.add_mesh(points, corners, terrain);  // see PointView, IndexView
   composites.add_compound(parts, chair);  // children at poses; also add_height_field, add_scaled
   winnow::Scene scene(
       shapes, {.contact_margin = 0.01, .cache_tolerance = 0.001, .composites = &composites});
@@ -55,10 +55,10 @@ int main() {
   const auto step = [&] {
     // [contacts]
     scene.collide(winnow::ContactLevel::manifold, contacts);  // or pairs, boolean, distance
-    for (std::size_t i = 0; i < contacts.size(); ++i) {       // pairs of bodies
-      for (auto m = contacts.manifold_first()[i]; m < contacts.manifold_first()[i + 1]; ++m) {
-        push_apart(contacts.a()[i], contacts.b()[i], -contacts.distance()[m]);
-        // also part_a(), part_b(): triangle or child; error_bound(), normal(axis), contact(point)
+    for (const winnow::ContactPair& pair : contacts) {        // pairs of bodies
+      for (const winnow::ContactManifold& manifold : pair) {
+        push_apart(pair.a(), pair.b(), -manifold.distance());
+        // also part_a(), part_b(): triangle or child; error_bound(), normal(), a range of points
       }
     }
     for (const winnow::EndedContact& pair : contacts.ended()) forget(pair);

@@ -19,8 +19,7 @@ namespace winnow::test {
 namespace {
 
 [[nodiscard]] bool same_pose(const Pose& a, const Pose& b) {
-  return std::equal(a.position, a.position + 3, b.position) &&
-         std::equal(a.orientation, a.orientation + 4, b.orientation);
+  return a.position == b.position && a.orientation == b.orientation;
 }
 
 [[nodiscard]] ModelScene::Names names_of(const ModelBody& a, const ModelBody& b) {
@@ -57,14 +56,12 @@ namespace {
 }
 
 [[nodiscard]] bool same_point(const ContactPoint& x, const ContactPoint& y) {
-  return std::equal(x.position, x.position + 3, y.position) && x.depth == y.depth &&
-         x.feature == y.feature;
+  return x.position == y.position && x.depth == y.depth && x.feature == y.feature;
 }
 
 [[nodiscard]] bool same_manifold(const ModelManifold& x, const ModelManifold& y) {
   return std::equal(x.part, x.part + 2, y.part) && x.distance == y.distance &&
-         x.error_bound == y.error_bound && std::equal(x.normal, x.normal + 3, y.normal) &&
-         std::equal(x.point, x.point + 3, y.point) &&
+         x.error_bound == y.error_bound && x.normal == y.normal && x.point == y.point &&
          std::equal(x.points.begin(), x.points.end(), y.points.begin(), y.points.end(), same_point);
 }
 
@@ -101,7 +98,7 @@ namespace {
 }
 
 [[nodiscard]] Eigen::Quaterniond turn_of(const Pose& pose) {
-  const double* const q = pose.orientation;
+  const double* const q = pose.orientation.data();
   return Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized();
 }
 
@@ -155,8 +152,8 @@ void rest(ModelManifold& manifold, ContactLevel level, double rest_a, double res
   ModelManifold manifold;
   manifold.distance = answer.distance;
   manifold.error_bound = answer.error_bound;
-  std::copy_n(answer.normal, 3, manifold.normal);
-  if (level == ContactLevel::distance) std::copy_n(answer.point, 3, manifold.point);
+  manifold.normal = answer.normal;
+  if (level == ContactLevel::distance) manifold.point = answer.point;
   if (level == ContactLevel::manifold) {
     manifold.points.assign(answer.contacts, answer.contacts + answer.contact_count);
   }
@@ -421,7 +418,7 @@ namespace {
   const auto is_near = [&](const Eigen::Vector3d& now, const Eigen::Vector3d& then, double most) {
     return (now - turn * then).norm() <= most + slack * (1.0 + then.norm());
   };
-  const auto vector = [](const double(&v)[3]) { return Eigen::Vector3d(v[0], v[1], v[2]); };
+  const auto vector = [](const Vec3d& v) { return Eigen::Vector3d(v[0], v[1], v[2]); };
   // The cache may leave out a rotation of body a by less than this angle, which moves the surface
   // of the body by less than cache_tolerance. A point of a deep contact can be farther out than the
   // surface; such a rotation then moves the point by more.
@@ -433,7 +430,7 @@ namespace {
   if (!is_near(vector(shown.point), vector(made.point), off(vector(made.point)))) return false;
   for (std::size_t p = 0; p < made.points.size(); ++p) {
     const auto place = [](const ContactPoint& point) {
-      return Eigen::Map<const Eigen::Vector3f>(point.position).cast<double>().eval();
+      return as_eigen(point.position).cast<double>().eval();
     };
     if (made.points[p].feature != shown.points[p].feature ||
         made.points[p].depth != shown.points[p].depth ||

@@ -52,8 +52,8 @@ struct ModelManifold {
   std::uint32_t part[2] = {kWholeShape, kWholeShape};
   double distance = 0.0;
   double error_bound = 0.0;
-  double normal[3] = {};
-  double point[3] = {};  ///< at level distance
+  Vec3d normal{};
+  Vec3d point{};  ///< at level distance
   std::vector<ContactPoint> points{};
 };
 using ModelManifolds = std::vector<ModelManifold>;

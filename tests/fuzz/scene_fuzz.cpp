@@ -252,8 +252,7 @@ bool same_manifold(const Contacts& a, const Contacts& b, std::size_t m) {
   for (std::size_t p = a.point_first()[m]; same && p < a.point_first()[m + 1]; ++p) {
     const ContactPoint x = a.contact(p);
     const ContactPoint y = b.contact(p);
-    same = std::equal(x.position, x.position + 3, y.position) && x.depth == y.depth &&
-           x.feature == y.feature;
+    same = x.position == y.position && x.depth == y.depth && x.feature == y.feature;
   }
   return same;
 }

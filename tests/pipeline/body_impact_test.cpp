@@ -2,6 +2,7 @@
 // primitives.
 
 #include <gtest/gtest.h>
+#include <winnow/core/eigen.h>
 #include <winnow/pipeline/composite_pool.h>
 #include <winnow/pipeline/time_of_impact.h>
 
@@ -178,7 +179,7 @@ struct MovingReference {
     const double apart = std::sqrt(square[1]) + std::sqrt(square[0]);
     double sum = std::sqrt(square[0]);
     for (int k = 0; k < 2; ++k) {
-      const double* const turn = motion[k].turn;
+      const double* const turn = motion[k].turn.data();
       const double own = shape[k]->radius;
       sum += std::hypot(turn[0], turn[1], turn[2]) *
              (std::isfinite(own) ? own : apart + shape[1 - k]->radius);
@@ -193,11 +194,11 @@ struct MovingReference {
   [[nodiscard]] static Pose placed(const Pose& body, const Pose& part) {
     const Quaternion turn = normalized(scale_to_unit_max(body.orientation));
     const Eigen::Matrix3d axes = rotation_of_unit(turn);
-    const Quaternion q = multiply(turn, normalized(scale_to_unit_max(part.orientation)));
-    const Eigen::Vector3d at = axes * Eigen::Vector3d::Map(part.position);
+    const Quaternion q = turn * normalized(scale_to_unit_max(part.orientation));
+    const Eigen::Vector3d at = axes * as_eigen(part.position);
     Pose pose;
     for (int i = 0; i < 3; ++i) pose.position[i] = body.position[i] + at[i];
-    std::copy(q.begin(), q.end(), pose.orientation);
+    pose.orientation = q;
     return pose;
   }
 };
@@ -209,8 +210,8 @@ void make_motion(Random& random, double size, double most_turn, RigidMotion& mot
     motion.turn[i] = random.uniform(-1, 1) * most_turn;
   }
   for (double& q : motion.start.orientation) q = random.uniform(-1, 1);
-  if (random.chance(0.2)) std::fill_n(motion.travel, 3, 0.0);
-  if (random.chance(0.3)) std::fill_n(motion.turn, 3, 0.0);
+  if (random.chance(0.2)) motion.travel = {};
+  if (random.chance(0.3)) motion.turn = {};
   if (random.chance(0.2)) motion.turn[random.below(3)] *= 20.0;
 }
 

@@ -24,12 +24,12 @@ using FlatAnswer = std::vector<std::uint64_t>;
 void add_bits(FlatAnswer& flat, std::initializer_list<double> values) {
   for (const double value : values) flat.push_back(std::bit_cast<std::uint64_t>(value));
 }
-void add_bits(FlatAnswer& flat, const double (&vector)[3]) {
+void add_bits(FlatAnswer& flat, const Vec3d& vector) {
   add_bits(flat, {vector[0], vector[1], vector[2]});
 }
 
-FlatAnswer flat_hit(BodyName name, std::uint32_t part, double t, const double (&normal)[3],
-                    const double (&point)[3]) {
+FlatAnswer flat_hit(BodyName name, std::uint32_t part, double t, const Vec3d& normal,
+                    const Vec3d& point) {
   FlatAnswer flat{name, part};
   add_bits(flat, {t});
   add_bits(flat, normal);

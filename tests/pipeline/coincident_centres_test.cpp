@@ -92,8 +92,8 @@ void add_aligned_pairs(PairScene& scene, std::vector<double>& depth, Random& ran
     add_tilted_pair(a, b, 0.0, random, scene);
     Pose& first = scene.poses[scene.poses.size() - 2];
     Pose& second = scene.poses.back();
-    std::copy_n(lean.begin(), 4, first.orientation);
-    std::copy_n(multiply(lean, turn).begin(), 4, second.orientation);
+    first.orientation = lean;
+    second.orientation = (lean * turn);
     const auto rotation = rotation_of(lean);
     for (int k = 0; k < 3; ++k) second.position[k] = rotation(k, 2) * along;
     depth.push_back(deep);

@@ -173,7 +173,7 @@ TEST(CompositePool, bounds_and_radius_contain_every_part) {
       const Aabb box = world.composites.bounds(id, pose);
       const double radius = world.composites.radius(id);
       ASSERT_TRUE(box.is_valid());
-      const Eigen::Map<const Eigen::Vector3d> at(pose.position);
+      const auto at = as_eigen(pose.position);
       for (const Primitive& part : parts_of(world, id, pose)) {
         Aabb inner;
         double reach = 0.0;
@@ -181,9 +181,9 @@ TEST(CompositePool, bounds_and_radius_contain_every_part) {
           ShapePool one;
           inner = one.bounds(add(one, part.triangle), part.pose);
           for (const auto& corner : part.triangle.vertex) {
-            const Eigen::Map<const Eigen::Vector3d> from(part.pose.position);
+            const auto from = as_eigen(part.pose.position);
             if (world.composites.mesh(id) != nullptr) {
-              reach = (Eigen::Map<const Eigen::Vector3d>(corner) + from - at).norm();
+              reach = (as_eigen(corner) + from - at).norm();
             }
           }
         } else {

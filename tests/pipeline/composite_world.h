@@ -189,7 +189,7 @@ struct CompositeWorld {
     }
   }
 
-  void add_pairs(Random& random, std::size_t count, double reach, const double (&at)[3]) {
+  void add_pairs(Random& random, std::size_t count, double reach, const Vec3d& at) {
     for (std::size_t i = 0; i < count; ++i) {
       ShapeId a = ids[random.below(ids.size())];
       ShapeId b = ids[random.below(ids.size())];

@@ -7,6 +7,7 @@
 #include "tests/pipeline/composite_world.h"
 
 #include <gtest/gtest.h>
+#include <winnow/core/eigen.h>
 #include <winnow/pipeline/scene.h>
 
 #include <algorithm>
@@ -25,7 +26,7 @@ namespace {
 using Vec = Eigen::Vector3d;
 
 [[nodiscard]] Vec position(const ContactPoint& point) {
-  return Eigen::Map<const Eigen::Vector3f>(point.position).cast<double>();
+  return as_eigen(point.position).cast<double>();
 }
 
 /// A scene with one body and one floor.
@@ -220,7 +221,7 @@ struct Reduced {
   }
   /// Returns a contact in the frame that regions use.
   [[nodiscard]] ContactPoint moved(std::size_t i, ContactPoint contact) const {
-    const double* const from = pairs.poses[pairs.pairs[answers.pair_of(i)].a].position;
+    const Vec3d& from = pairs.poses[pairs.pairs[answers.pair_of(i)].a].position;
     for (int k = 0; k < 3; ++k) contact.position[k] += static_cast<float>(from[k]);
     return contact;
   }

@@ -126,7 +126,7 @@ TEST(CurvedKernels, crossed_separate_cylinders_have_distance_of_sides) {
 
 /// Checks depth and normal of a pair to the last digits, and that lanes answered it without the
 /// solver.
-void expect_depth(const PairScene& scene, double depth, const double (&normal)[3]) {
+void expect_depth(const PairScene& scene, double depth, const Vec3d& normal) {
   NarrowPhase narrow;
   NarrowResult result;
   ASSERT_EQ(narrow.collide(scene.pool, scene.bodies(), scene.pairs,
@@ -290,8 +290,8 @@ TEST(CurvedKernels, needle_through_coin_has_least_depth) {
   constexpr double kTurns[2][4] = {
       {-0.63636952790856949, 0.49819173039831766, 0.64560454435751824, -0.35531863388147844},
       {0.85442363077535899, 0.5283548791324173, -0.20992183015313848, -0.96507352250783573}};
-  std::copy_n(kTurns[0], 4, along.orientation);
-  std::copy_n(kTurns[1], 4, coin.orientation);
+  along.orientation = kTurns[0];
+  coin.orientation = kTurns[1];
   const double rounding = 0.25;
   const PairScene scene = pair_of(
       EllipsoidShape{{0.65358348169210523, 0.0, 0.0}, 0.0},
@@ -514,7 +514,7 @@ void expect_contacts_on_both_surfaces(PairScene& scene) {
       const std::uint32_t body = side > 0.0 ? scene.pairs[i].a : scene.pairs[i].b;
       for (const ContactPoint& contact : touch[i].contacts) {
         Pose at = scene.poses[scene.pairs[i].a];
-        std::copy_n(Pose{}.orientation, 4, at.orientation);
+        at.orientation = Pose{}.orientation;
         for (int k = 0; k < 3; ++k) {
           at.position[k] += static_cast<double>(contact.position[k]) +
                             side * static_cast<double>(contact.depth) * touch[i].normal[k];
@@ -555,13 +555,13 @@ TEST_P(CurvedPairs, ordinary_pairs_rarely_need_solver) {
 void make_upright(PairScene& scene, const Quaternion& lean, Random& random) {
   for (std::size_t i = 0; i < scene.poses.size(); ++i) {
     const double spin = random.uniform(0.0, 2.0 * kRightAngle);
-    Quaternion turn = multiply(lean, {std::cos(spin), 0.0, 0.0, std::sin(spin)});
-    if (random.below(2) == 0) turn = multiply(turn, {0.0, 1.0, 0.0, 0.0});
+    Quaternion turn = lean * Quaternion(std::cos(spin), 0.0, 0.0, std::sin(spin));
+    if (random.below(2) == 0) turn = turn * Quaternion(0.0, 1.0, 0.0, 0.0);
     if (scene.shapes[i].kind() == box) {
       constexpr Quaternion kFaces[] = {{1, 0, 0, 0}, {0.5, 0.5, 0.5, 0.5}, {0.5, -0.5, -0.5, -0.5}};
-      turn = multiply(turn, kFaces[random.below(3)]);
+      turn = turn * Quaternion(kFaces[random.below(3)]);
     }
-    std::copy_n(turn.begin(), 4, scene.poses[i].orientation);
+    scene.poses[i].orientation = turn;
   }
 }
 

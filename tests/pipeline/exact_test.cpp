@@ -47,9 +47,9 @@ struct Pair {
     result.tapered_capsules = tapered_capsules;
     return result;
   }
-  [[nodiscard]] ExactVerdict verdict(ShapeKind a, ShapeKind b,
-                                     const double (&axis)[3] = kAxis) const {
-    return exact_overlap(tables(), ShapeId::of(a, 0), poses[0], ShapeId::of(b, 1), poses[1], axis);
+  [[nodiscard]] ExactVerdict verdict(ShapeKind a, ShapeKind b, const Vec3d& axis = kAxis) const {
+    return exact_overlap(tables(), ShapeId::of(a, 0), poses[0], ShapeId::of(b, 1), poses[1],
+                         axis.data());
   }
   [[nodiscard]] ExactVerdict mirrored(ShapeKind a, ShapeKind b) const {
     return exact_overlap(tables(), ShapeId::of(b, 1), poses[1], ShapeId::of(a, 0), poses[0], kAxis);
@@ -650,7 +650,7 @@ TEST(ExactOverlap, turns_spanning_too_far_are_undecided) {
 TEST(ExactOverlap, half_spaces_with_distant_lengths_are_undecided) {
   Pair pair;
   const double turn[4] = {2.0, 1.0, 0.0, 0.0};
-  std::copy_n(turn, 4, pair.poses[0].orientation);
+  pair.poses[0].orientation = turn;
   pair.half_spaces[0] = {{0.0, 0.0, 1.0}, 0.0};
   pair.boxes[1] = {{1.0, 1.0, 1.0}, 0.0};
   pair.poses[1].position[2] = 0x1p600;
@@ -696,7 +696,7 @@ TEST(ExactOverlap, discs_touch_sides_and_corners_of_triangles) {
   // The plane of the triangle is perpendicular to each axis of the world in turn.
   const double turns[][4] = {{1, 0, 0, 0}, {1, 1, 0, 0}, {1, 0, 1, 0}};
   for (const auto& turn : turns) {
-    for (Pose& pose : pair.poses) std::copy_n(turn, 4, pose.orientation);
+    for (Pose& pose : pair.poses) pose.orientation = turn;
     EXPECT_EQ(verdict_of(2.0), ExactVerdict::touching);
     EXPECT_EQ(verdict_of(std::nextafter(2.0, 3.0)), ExactVerdict::separated);
     EXPECT_EQ(verdict_of(-10.0), ExactVerdict::touching);

@@ -5,6 +5,7 @@
 #include "tests/pipeline/user_shapes.h"
 
 #include <gtest/gtest.h>
+#include <winnow/core/eigen.h>
 #include <winnow/winnow.h>
 
 #include <Eigen/Geometry>
@@ -219,9 +220,8 @@ Kept frames_of(Stage& stage, const RestingShape& body, const RestingShape& groun
       BodyDefinition a;
       EXPECT_EQ(scene.body(contacts.a()[0], a), Status::ok);
       const ContactPoint point = contacts.contact(i);
-      now.push_back(
-          Eigen::Vector3f(Eigen::Map<const Eigen::Vector3f>(point.position)).cast<double>() +
-          Eigen::Map<const Vector3d>(a.pose.position));
+      now.push_back(Eigen::Vector3f(as_eigen(point.position)).cast<double>() +
+                    as_eigen(a.pose.position));
       if (frame == 0) continue;
       const std::uint32_t old = contacts.previous_point()[i];
       ++kept.points;

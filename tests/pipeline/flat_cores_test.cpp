@@ -3,6 +3,7 @@
 // a normal. Tier robust must agree with the solver. WINNOW_TEST_SCALE=100 tests a million pairs.
 
 #include <gtest/gtest.h>
+#include <winnow/core/eigen.h>
 
 #include <algorithm>
 #include <cmath>
@@ -32,7 +33,7 @@ PairResults answer_of_one(const PairScene& scene, BodyPair pair, const NarrowOpt
   all.overlap = answer.overlap;
   all.distance = answer.distance;
   all.error_bound = answer.error_bound;
-  all.normal = Eigen::Vector3d::Map(answer.normal);
+  all.normal = as_eigen(answer.normal);
   all.contacts.assign(answer.contacts, answer.contacts + answer.contact_count);
   return all;
 }

@@ -189,8 +189,8 @@ struct FlatReferences {
   double scale;
 
   FlatReferences(const Scene& scene, std::size_t i)
-      : a(scene.reference(scene.pairs[i].a, scene.poses[scene.pairs[i].a].position)),
-        b(scene.reference(scene.pairs[i].b, scene.poses[scene.pairs[i].a].position)),
+      : a(scene.reference(scene.pairs[i].a, scene.poses[scene.pairs[i].a].position.data())),
+        b(scene.reference(scene.pairs[i].b, scene.poses[scene.pairs[i].a].position.data())),
         distance(signed_distance(a, b)),
         scale(scale_of(a, b)) {}
 };

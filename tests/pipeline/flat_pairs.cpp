@@ -113,7 +113,7 @@ class FlatMaker {
     TriangleShape shape;
     const auto points = corners(std::min(d, 2), 3, size);
     for (std::size_t i = 0; i < 3; ++i) {
-      std::copy_n(points[i].data(), 3, shape.vertex[i]);
+      shape.vertex[i] = points[i];
     }
     shape.rounding = round;
     return added(shape, kUpright);
@@ -213,9 +213,9 @@ class FlatMaker {
     const Turn turn = all * own * shape.turn;
     scene_.shapes.push_back(shape.id);
     Pose pose;
-    std::copy_n(at.data(), 3, pose.position);
+    pose.position = at;
     const double orientation[4] = {turn.w(), turn.x(), turn.y(), turn.z()};
-    std::copy_n(orientation, 4, pose.orientation);
+    pose.orientation = orientation;
     scene_.poses.push_back(pose);
   }
 

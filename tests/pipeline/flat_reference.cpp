@@ -12,7 +12,7 @@ namespace {
 using LongMatrix = Eigen::Matrix<long double, 3, 3>;
 
 LongMatrix rotation(const Pose& pose) {
-  const double* q = pose.orientation;
+  const double* q = pose.orientation.data();
   return Eigen::Quaternion<long double>(q[0], q[1], q[2], q[3]).normalized().toRotationMatrix();
 }
 

@@ -4,6 +4,7 @@
 #include "tests/pipeline/composite_world.h"
 
 #include <gtest/gtest.h>
+#include <winnow/core/eigen.h>
 #include <winnow/pipeline/scene.h>
 
 #include <Eigen/Geometry>
@@ -208,7 +209,7 @@ BodyDefinition box_from(ShapePool& shapes, const Eigen::Vector3d& least,
   BodyDefinition body{.shape = add(shapes, BoxShape{{half.x(), half.y(), half.z()}, 0.0}),
                       .state = BodyState::fixed};
   const Eigen::AngleAxisd turn(-angle, Eigen::Vector3d::UnitY());
-  Eigen::Vector3d::Map(body.pose.position) = least + turn * half;
+  as_eigen(body.pose.position) = least + turn * half;
   body.pose.orientation[0] = std::cos(0.5 * angle);
   body.pose.orientation[2] = -std::sin(0.5 * angle);
   return body;
@@ -266,11 +267,11 @@ struct Placement {
   Eigen::Vector3d at;
 
   [[nodiscard]] BodyDefinition operator()(BodyDefinition body) const {
-    const double(&q)[4] = body.pose.orientation;
+    const Quaternion& q = body.pose.orientation;
     const Eigen::Quaterniond turned = turn * Eigen::Quaterniond(q[0], q[1], q[2], q[3]);
-    Eigen::Vector3d::Map(body.pose.position) = turn * Eigen::Vector3d::Map(body.pose.position) + at;
+    as_eigen(body.pose.position) = turn * as_eigen(body.pose.position) + at;
     const double to[4] = {turned.w(), turned.x(), turned.y(), turned.z()};
-    std::copy_n(to, 4, body.pose.orientation);
+    body.pose.orientation = to;
     return body;
   }
 };
@@ -370,12 +371,12 @@ struct FloorManifold {
 
   /// Returns the largest projection of the tile's corners on a direction.
   [[nodiscard]] double highest(const Eigen::Vector3d& along) const {
-    const double(&q)[4] = pose.orientation;
+    const Quaternion& q = pose.orientation;
     const Eigen::Quaterniond turn = Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized();
     double most = -std::numeric_limits<double>::infinity();
     for (int i = 0; i < 8; ++i) {
       const Eigen::Vector3d corner(i & 1 ? 2 : -2, i & 2 ? 2 : -2, i & 4 ? 1 : -1);
-      most = std::max(most, along.dot(Eigen::Vector3d::Map(pose.position) + turn * corner));
+      most = std::max(most, along.dot(as_eigen(pose.position) + turn * corner));
     }
     return most;
   }

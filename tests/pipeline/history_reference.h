@@ -4,6 +4,7 @@
 // warm_start_test.cpp and the contacts fuzzer.
 
 #include <gtest/gtest.h>
+#include <winnow/core/eigen.h>
 #include <winnow/winnow.h>
 #include <Eigen/Geometry>
 
@@ -78,8 +79,7 @@ class HistoryReference {
   [[nodiscard]] static Eigen::Vector3d in_frame_of(const Pose& pose, const Eigen::Vector3d& world) {
     const Eigen::Quaterniond q(pose.orientation[0], pose.orientation[1], pose.orientation[2],
                                pose.orientation[3]);
-    return q.normalized().inverse() *
-           (world - Eigen::Map<const Eigen::Vector3d>(static_cast<const double*>(pose.position)));
+    return q.normalized().inverse() * (world - as_eigen(pose.position));
   }
 
   [[nodiscard]] static PairName name_of(const Scene& scene, Key a, Key b) {
@@ -107,7 +107,7 @@ class HistoryReference {
         }
         Pose turn[2];
         for (int side = 0; side < 2; ++side) {
-          std::copy_n(body[side].pose.orientation, 4, turn[side].orientation);
+          turn[side].orientation = body[side].pose.orientation;
         }
         kept.points.push_back({p,
                                {contacts.part_a()[m], contacts.part_b()[m]},

@@ -14,7 +14,7 @@ using Vector = Eigen::Matrix<long double, 3, 1>;
 using Matrix = Eigen::Matrix<long double, 3, 3>;
 
 Matrix rotation(const Pose& pose) {
-  const double* q = pose.orientation;
+  const double* q = pose.orientation.data();
   Eigen::Quaternion<long double> r(q[0], q[1], q[2], q[3]);
   return r.normalized().toRotationMatrix();
 }

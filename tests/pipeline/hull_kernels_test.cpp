@@ -2,6 +2,7 @@
 // swapped bodies, at other positions of a batch.
 
 #include <gtest/gtest.h>
+#include <winnow/core/eigen.h>
 #include <winnow/simd/isa.h>
 #include "pipeline/kernels/kernels.h"
 #include "pipeline/solver/solver.h"
@@ -189,14 +190,13 @@ TEST_P(HullKernels, answers_match_brute_force_within_error_bounds) {
 /// Returns an upper bound of how far a point is outside a hull.
 double outside(const PairScene& scene, std::uint32_t body, const Eigen::Vector3d& world) {
   const HullShape& hull = scene.pool.tables().hulls[scene.shapes[body].index()];
-  const double* q = scene.poses[body].orientation;
+  const Quaternion& q = scene.poses[body].orientation;
   const Eigen::Quaterniond turn = Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized();
-  const Eigen::Vector3d x =
-      turn.conjugate() * (world - Eigen::Map<const Eigen::Vector3d>(scene.poses[body].position));
+  const Eigen::Vector3d x = turn.conjugate() * (world - as_eigen(scene.poses[body].position));
   double most = -1e9;
   for (std::uint32_t f = 0; f < hull.face_count; ++f) {
     const HullFace& face = hull.faces[f];
-    most = std::max(most, Eigen::Map<const Eigen::Vector3d>(face.normal).dot(x) - face.offset);
+    most = std::max(most, as_eigen(face.normal).dot(x) - face.offset);
   }
   return most - hull.rounding;
 }
@@ -207,8 +207,7 @@ void expect_points_on_both(const PairScene& scene, bool rounded) {
   for (std::uint32_t i = 0; i < answers.count; ++i) {
     if (!answers.is_certified[i]) continue;
     const BodyPair p = scene.pairs[i];
-    const Eigen::Vector3d a =
-        answers.point(i) + Eigen::Map<const Eigen::Vector3d>(scene.poses[p.a].position);
+    const Eigen::Vector3d a = answers.point(i) + as_eigen(scene.poses[p.a].position);
     const Eigen::Vector3d b = a + answers.column[0][i] * answers.normal(i);
     // A point on the rounding of an edge may be inside all face planes.
     EXPECT_LE(outside(scene, p.a, a), doubt) << i;

@@ -2,6 +2,7 @@
 // manifolds for equal shapes given as different kinds.
 
 #include <gtest/gtest.h>
+#include <winnow/core/eigen.h>
 #include <winnow/simd/isa.h>
 
 #include <Eigen/Core>
@@ -172,8 +173,8 @@ TEST(Manifolds, capsule_deep_in_hull_has_deepest_point) {
                            0.61587321541593332};
   scene.poses = {Pose::at(9.3572710803516728, 3.9158354702756637, 8.8810190294935509),
                  Pose::at(10.102228529405721, 3.4847428763075854, 8.9397608177362375)};
-  std::copy_n(turn, 4, scene.poses[0].orientation);
-  std::copy_n(other, 4, scene.poses[1].orientation);
+  scene.poses[0].orientation = turn;
+  scene.poses[1].orientation = other;
   scene.pairs = {{0, 1}};
   for (const NarrowTier tier : kTiers) {
     const PairResults answer = compute_results(scene, {.tier = tier}).at(0);
@@ -238,11 +239,9 @@ TEST(Manifolds, ball_on_hull_has_midpoint_and_closest_feature) {
         const ContactPoint& point = answers[i].contacts[0];
         EXPECT_NEAR(point.depth, depths[i / 2], 1e-5);
         const bool ball_first = i % 2 == 1;
-        const auto body = [&](std::size_t k) {
-          return Eigen::Vector3d::Map(scene.poses[k].position);
-        };
+        const auto body = [&](std::size_t k) { return as_eigen(scene.poses[k].position); };
         const Eigen::Vector3d from_hull =
-            Eigen::Vector3f::Map(point.position).cast<double>() +
+            as_eigen(point.position).cast<double>() +
             (ball_first ? Eigen::Vector3d(body(i / 2 * 2 + 1) - body(i / 2 * 2))
                         : Eigen::Vector3d::Zero());
         EXPECT_LT((from_hull - halfway[i / 2]).norm(), 2e-5);

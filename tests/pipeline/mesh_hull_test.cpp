@@ -1,6 +1,7 @@
 // mesh_overlap with a hull: the traversal compared with distances of all triangles from the hull.
 
 #include <gtest/gtest.h>
+#include <winnow/core/eigen.h>
 #include <winnow/pipeline/narrow_phase.h>
 #include <winnow/pipeline/shape_pool.h>
 #include "pipeline/mesh/mesh_traversal.h"
@@ -74,7 +75,7 @@ struct HullOnMesh {
       }
       query.mesh_in_hull.offset[row] = offset[row];
     }
-    const Vector3d center = linear.inverse() * (Vector3d::Map(shape().center) - offset);
+    const Vector3d center = linear.inverse() * (as_eigen(shape().center) - offset);
     const double infinity = std::numeric_limits<double>::infinity();
     const double low[3] = {-infinity, -infinity, -infinity};
     const double high[3] = {infinity, infinity, infinity};
@@ -94,7 +95,7 @@ struct HullOnMesh {
     for (std::uint32_t slot = 0; slot < count; ++slot) {
       TriangleShape triangle{};
       for (int k = 0; k < 3; ++k) {
-        Vector3d::Map(triangle.vertex[k]) = linear * corner(mesh, slot, k) + offset;
+        as_eigen(triangle.vertex[k]) = linear * corner(mesh, slot, k) + offset;
       }
       ids.emplace_back();
       EXPECT_EQ(shapes.add(triangle, ids.back()), Status::ok);

@@ -68,7 +68,7 @@ class ObstacleReference {
   }
 
   [[nodiscard]] DistanceAt distance(std::uint32_t face, double time) {
-    const double(&origin)[3] = motion_.start.position;
+    const Vec3d& origin = motion_.start.position;
     Pose pose = place_at(motion_, time, origin);
     for (std::size_t k = 0; k < 3; ++k) {
       const Vec3d& from = soup_.start[3 * face + k];

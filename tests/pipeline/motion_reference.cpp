@@ -20,13 +20,13 @@ struct Span {
   double to;
 };
 
-Real norm_of(const double (&v)[3]) {
+Real norm_of(const Vec3d& v) {
   return std::sqrt(static_cast<Real>(v[0]) * v[0] + static_cast<Real>(v[1]) * v[1] +
                    static_cast<Real>(v[2]) * v[2]);
 }
 
 /// Computes the orientation at a time in long double.
-void turn_to(const RigidMotion& motion, double time, double (&orientation)[4]) {
+void turn_to(const RigidMotion& motion, double time, Quaternion& orientation) {
   const Real angle = norm_of(motion.turn);
   const Real half = angle * time / 2;
   const Real s = angle == 0 ? 0 : std::sin(half) / angle;
@@ -68,8 +68,7 @@ double reach_of(const ShapeTables& tables, ShapeId id) {
       return static_cast<double>(most) + tables.triangles[i].rounding;
     }
     case ShapeKind::ellipsoid:
-      return *std::max_element(tables.ellipsoids[i].radius, tables.ellipsoids[i].radius + 3) +
-             tables.ellipsoids[i].rounding;
+      return *std::ranges::max_element(tables.ellipsoids[i].radius) + tables.ellipsoids[i].rounding;
     case ShapeKind::tapered_capsule:
       return tables.tapered_capsules[i].half_length +
              std::max(tables.tapered_capsules[i].radius[0], tables.tapered_capsules[i].radius[1]);
@@ -106,7 +105,7 @@ double relative_way(const MovingShapes& pair, double time) {
   return static_cast<double>(std::sqrt(square));
 }
 
-void set_direction(Random& random, double length, double (&v)[3]) {
+void set_direction(Random& random, double length, Vec3d& v) {
   for (;;) {
     double square = 0.0;
     for (double& x : v) {
@@ -248,7 +247,7 @@ Before before(const ShapePool& pool, const MovingShapes& pair, double time,
                 doubt_of(pool, pair), time, max_samples);
 }
 
-Pose place_at(const RigidMotion& motion, double time, const double (&origin)[3]) {
+Pose place_at(const RigidMotion& motion, double time, const Vec3d& origin) {
   Pose pose;
   turn_to(motion, time, pose.orientation);
   for (int i = 0; i < 3; ++i) {

@@ -77,7 +77,7 @@ enum class Before : std::uint8_t {
                             double doubt, double time, std::size_t max_samples);
 
 /// Returns the pose of a body at a time relative to `origin`, computed in long double.
-[[nodiscard]] Pose place_at(const RigidMotion& motion, double time, const double (&origin)[3]);
+[[nodiscard]] Pose place_at(const RigidMotion& motion, double time, const Vec3d& origin);
 
 /// Returns the smaller half size of the two shapes, or the larger one if the smaller is 0. The half
 /// size of a half-space counts as 0.

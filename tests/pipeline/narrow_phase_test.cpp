@@ -1,6 +1,7 @@
 // Properties of the answers for all kinds of shapes that can be checked without the oracle.
 
 #include <gtest/gtest.h>
+#include <winnow/core/eigen.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -36,8 +37,7 @@ PairScene mixed_scene(PairStyle style, std::size_t count, std::uint64_t seed) {
 }
 
 Eigen::Vector3d between(const PairScene& scene, BodyPair pair) {
-  return Eigen::Map<const Eigen::Vector3d>(scene.poses[pair.b].position) -
-         Eigen::Map<const Eigen::Vector3d>(scene.poses[pair.a].position);
+  return as_eigen(scene.poses[pair.b].position) - as_eigen(scene.poses[pair.a].position);
 }
 
 bool is_curved(const PairScene& scene, BodyPair pair) {
@@ -124,11 +124,10 @@ TEST_P(Properties, common_rotation_keeps_distance_within_error_bound) {
     turn.normalize();
     for (const std::uint32_t body : {pair.a, pair.b}) {
       Pose& pose = turned.poses[body];
-      const double* q = pose.orientation;
+      const Quaternion& q = pose.orientation;
       const Eigen::Quaterniond orientation =
           turn * Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized();
-      pose.orientation[0] = orientation.w();
-      Eigen::Map<Eigen::Vector3d>(pose.orientation + 1) = orientation.vec();
+      pose.orientation = orientation;
       Eigen::Map<Eigen::Vector3d> position(pose.position);
       position = (turn * position).eval();
     }
@@ -140,8 +139,7 @@ TEST_P(Properties, common_rotation_keeps_distance_within_error_bound) {
       // The rotation also rounds positions and orientations.
       const BodyPair pair = scene_.pairs[i];
       const double reach = between(scene_, pair).norm() + std::abs(before[i].distance) +
-                           Eigen::Map<const Eigen::Vector3d>(scene_.poses[pair.a].position).norm() +
-                           extent(scene_, pair);
+                           as_eigen(scene_.poses[pair.a].position).norm() + extent(scene_, pair);
       const double bound = before[i].error_bound + after[i].error_bound + 1e-14 * reach;
       if (!(std::abs(before[i].distance - after[i].distance) <= bound)) {
         complain("turned", pair, after[i].distance, before[i].distance);
@@ -159,14 +157,13 @@ TEST_P(Properties, moving_b_along_normal_adds_to_distance) {
       for (std::size_t i = 0; i < before.size(); ++i) {
         // A full step just separates overlapping shapes, or doubles the distance.
         shift[i] = step * std::abs(before[i].distance);
-        double* position = moved.poses[moved.pairs[i].b].position;
+        Vec3d& position = moved.poses[moved.pairs[i].b].position;
         for (int axis = 0; axis < 3; ++axis) position[axis] += shift[i] * before[i].normal[axis];
       }
       const auto after = compute_results(moved, distances(tier));
       for (std::size_t i = 0; i < before.size(); ++i) {
         const BodyPair pair = scene_.pairs[i];
-        const double position =
-            Eigen::Map<const Eigen::Vector3d>(moved.poses[pair.b].position).norm();
+        const double position = as_eigen(moved.poses[pair.b].position).norm();
         const double rounding = 1e-14 * (position + shift[i] + extent(scene_, pair));
         const double bound = before[i].error_bound + after[i].error_bound + rounding;
         const double expected = before[i].distance + shift[i];
@@ -308,7 +305,7 @@ PairScene boxes_of_any_sizes(int digits, Random& random) {
   for (std::uint32_t i = 0; i < 2 * scaled(2000); ++i) {
     BoxShape box;
     for (double& half : box.half) half = std::abs(any());
-    if (i % 3 == 0) std::fill_n(box.half, 3, box.half[0]);
+    if (i % 3 == 0) box.half = Vec3d::constant(box.half[0]);
     EXPECT_EQ(scene.pool.add(box, scene.shapes.emplace_back()), Status::ok);
     scene.poses.push_back(Pose::at(any(), any(), any()));
     if (i % 2 == 1) scene.pairs.push_back({i - 1, i});

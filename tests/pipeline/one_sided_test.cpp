@@ -5,6 +5,7 @@
 #include "tests/pipeline/composite_world.h"
 
 #include <gtest/gtest.h>
+#include <winnow/core/eigen.h>
 #include <winnow/core/rotation.h>
 #include <winnow/pipeline/scene.h>
 #include <winnow/pipeline/scene_queries.h>
@@ -34,9 +35,9 @@ struct FacingTriangle {
 /// Returns the triangle of a primitive of a surface.
 [[nodiscard]] FacingTriangle facing(const Primitive& part) {
   const Eigen::Matrix3d turn = rotation_of(scale_to_unit_max(part.pose.orientation));
-  const Vec at = Vec::Map(part.pose.position);
+  const Vec at = as_eigen(part.pose.position);
   Vec corner[3];
-  for (int k = 0; k < 3; ++k) corner[k] = at + turn * Vec::Map(part.triangle.vertex[k]);
+  for (int k = 0; k < 3; ++k) corner[k] = at + turn * as_eigen(part.triangle.vertex[k]);
   return {corner[0], (corner[1] - corner[0]).cross(corner[2] - corner[0]) * part.front};
 }
 

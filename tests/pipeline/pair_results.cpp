@@ -8,8 +8,7 @@ namespace winnow::test {
 namespace {
 
 bool same_contact(const ContactPoint& p, const ContactPoint& q) {
-  return std::equal(p.position, p.position + 3, q.position) && p.depth == q.depth &&
-         p.feature == q.feature;
+  return p.position == q.position && p.depth == q.depth && p.feature == q.feature;
 }
 
 PairResults answer_of(const NarrowResult& result, std::size_t i) {

@@ -31,8 +31,8 @@ class Maker {
     const Quaternion turn_b = other_quaternion(turn_a);
     Pose pose_a;
     Pose pose_b;
-    std::copy(turn_a.begin(), turn_a.end(), pose_a.orientation);
-    std::copy(turn_b.begin(), turn_b.end(), pose_b.orientation);
+    pose_a.orientation = turn_a;
+    pose_b.orientation = turn_b;
     place(pose_a, pose_b, reach);
     const auto first = static_cast<std::uint32_t>(scene_.shapes.size());
     const std::uint32_t turned = random_.chance(0.5) ? 1 : 0;
@@ -108,10 +108,10 @@ class Maker {
   }
 
   /// Adds a user shape of a random form.
-  const UserShape& user_shape(double size, const double (&half)[3]) {
+  const UserShape& user_shape(double size, const Vec3d& half) {
     UserShape& set = scene_.own.emplace_back();
     set.form = static_cast<UserShape::Form>(random_.below(4));
-    std::copy_n(half, 3, set.size);
+    std::copy_n(half.data(), 3, set.size);
     if (set.form == UserShape::corners) {
       for (const Eigen::Vector3d& x : hull_points(size)) {
         set.corner.insert(set.corner.end(), x.begin(), x.end());
@@ -247,8 +247,7 @@ double extent_of(const ShapeTables& tables, ShapeId id) {
     case ShapeKind::half_space:
       return std::abs(tables.half_spaces[i].offset);
     case ShapeKind::ellipsoid:
-      return *std::max_element(tables.ellipsoids[i].radius, tables.ellipsoids[i].radius + 3) +
-             tables.ellipsoids[i].rounding;
+      return *std::ranges::max_element(tables.ellipsoids[i].radius) + tables.ellipsoids[i].rounding;
     case ShapeKind::tapered_capsule: {
       const TaperedCapsuleShape& taper = tables.tapered_capsules[i];
       return taper.half_length + std::max(taper.radius[0], taper.radius[1]);

@@ -46,7 +46,7 @@ struct QueryWorld {
   [[nodiscard]] std::vector<FlatPart> parts(ShapeId shape, const Pose& pose) const {
     std::vector<FlatPart> result;
     Pose here = pose;
-    std::fill_n(here.position, 3, 0.0);
+    here.position = {};
     if (!shape.is_composite()) return {{shape, here}};
     const auto collect = [](void* list, const Primitive& p, double limit) {
       static_cast<std::vector<FlatPart>*>(list)->push_back({p.shape, p.pose, p.part, p.triangle});

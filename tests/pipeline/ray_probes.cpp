@@ -1,6 +1,7 @@
 #include "tests/pipeline/ray_probes.h"
 
 #include <gtest/gtest.h>
+#include <winnow/core/eigen.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -108,9 +109,9 @@ void RayProbes::add_box_hull(const Vector3d& half, double r) {
 
 void RayProbes::add_triangle(const Vector3d& a, const Vector3d& b, const Vector3d& c, double r) {
   TriangleShape shape{{}, r};
-  Vector3d::Map(shape.vertex[0]) = a;
-  Vector3d::Map(shape.vertex[1]) = b;
-  Vector3d::Map(shape.vertex[2]) = c;
+  as_eigen(shape.vertex[0]) = a;
+  as_eigen(shape.vertex[1]) = b;
+  as_eigen(shape.vertex[2]) = c;
   ShapeId id;
   const Status status = pool_.add(shape, id);
   put(status, "triangle", id, [=](const Vector3d& p) {

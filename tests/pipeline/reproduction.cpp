@@ -37,7 +37,7 @@ void write_shape(std::ostream& out, const ShapeTables& tables, ShapeId id) {
       write_round(out, tables.capsules[i]);
       break;
     case ShapeKind::box:
-      list(out, "half", tables.boxes[i].half, 3);
+      list(out, "half", tables.boxes[i].half.data(), 3);
       out << "\"rounding\":" << tables.boxes[i].rounding << ',';
       break;
     case ShapeKind::cylinder:
@@ -61,11 +61,11 @@ void write_shape(std::ostream& out, const ShapeTables& tables, ShapeId id) {
       write_points(out, tables.hulls[i]);
       break;
     case ShapeKind::half_space:
-      list(out, "normal", tables.half_spaces[i].normal, 3);
+      list(out, "normal", tables.half_spaces[i].normal.data(), 3);
       out << "\"offset\":" << tables.half_spaces[i].offset << ',';
       break;
     case ShapeKind::ellipsoid:
-      list(out, "radii", tables.ellipsoids[i].radius, 3);
+      list(out, "radii", tables.ellipsoids[i].radius.data(), 3);
       out << "\"rounding\":" << tables.ellipsoids[i].rounding << ',';
       break;
     case ShapeKind::tapered_capsule:
@@ -80,8 +80,8 @@ void write_shape(std::ostream& out, const ShapeTables& tables, ShapeId id) {
 void write_body(std::ostream& out, const PairScene& scene, std::uint32_t body) {
   write_shape(out, scene.pool.tables(), scene.shapes[body]);
   out << "\"pose\":{";
-  list(out, "position", scene.poses[body].position, 3);
-  list(out, "orientation", scene.poses[body].orientation, 4);
+  list(out, "position", scene.poses[body].position.data(), 3);
+  list(out, "orientation", scene.poses[body].orientation.data(), 4);
   out.seekp(-1, std::ios::cur);
   out << "}}";
 }

@@ -113,9 +113,9 @@ PairScene scene_of(Kind kind, PairStyle style, std::size_t count, std::uint64_t 
 struct ReferencePair {
   ReferencePair(const PairScene& scene, BodyPair pair) {
     const Pose& pose = scene.poses[pair.a];
-    a = make_reference(scene.pool.tables(), scene.shapes[pair.a], pose, pose.position);
+    a = make_reference(scene.pool.tables(), scene.shapes[pair.a], pose, pose.position.data());
     b = make_reference(scene.pool.tables(), scene.shapes[pair.b], scene.poses[pair.b],
-                       pose.position);
+                       pose.position.data());
     distance = reference_distance(a, b);
     scale = reference_scale(a, b);
   }

@@ -17,7 +17,7 @@ using Real = long double;
 constexpr Real kInf = std::numeric_limits<Real>::infinity();
 
 Eigen::Matrix<Real, 3, 3> rotation_of(const Pose& pose) {
-  const double* q = pose.orientation;
+  const double* q = pose.orientation.data();
   return Eigen::Quaternion<Real>(q[0], q[1], q[2], q[3]).normalized().toRotationMatrix();
 }
 

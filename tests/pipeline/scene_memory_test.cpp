@@ -72,7 +72,7 @@ TEST(ContactCache, turning_pair_keeps_contact_that_turns_along) {
     Pose poses[2];
     poses[1].position[0] = 1.9 * std::cos(angle);
     poses[1].position[1] = 1.9 * std::sin(angle);
-    for (Pose& pose : poses) std::copy_n(turn, 4, pose.orientation);
+    for (Pose& pose : poses) pose.orientation = turn;
     ASSERT_EQ(scene.move(keys, poses), Status::ok);
     ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
     ASSERT_EQ(contacts.size(), 1U);

@@ -98,7 +98,7 @@ class TinyWorld {
   [[nodiscard]] ShapeId box() const { return box_; }
   [[nodiscard]] double size() const { return size_; }
   /// Returns the position of body i, in a coordinate plane for many bodies.
-  void place(std::size_t i, double (&position)[3]) const {
+  void place(std::size_t i, Vec3d& position) const {
     for (double& x : position) {
       x = 4.0 * size_ * (static_cast<double>(i % 3) - 1.0);
       i /= 3;
@@ -138,7 +138,7 @@ class TinyWorld {
 };
 
 /// Returns a ray along one axis to a position.
-ShapeRay ray_to(const double (&place)[3], int axis, double distance) {
+ShapeRay ray_to(const Vec3d& place, int axis, double distance) {
   ShapeRay ray;
   for (int k = 0; k < 3; ++k) {
     ray.origin[k] = place[k] - (k == axis ? distance : 0.0);
@@ -158,7 +158,7 @@ void query_bodies(TinyWorld& world, Bits& bits, SceneTally& tally) {
   SceneQueries queries(world.scene());
   std::vector<ShapeRay> rays;
   for (std::size_t i = 0; i < TinyWorld::kBodies; ++i) {
-    double place[3];
+    Vec3d place;
     world.place(i, place);
     const auto found = [&](const auto& many) {
       ++tally.query_count;
@@ -203,7 +203,7 @@ void query_bodies(TinyWorld& world, Bits& bits, SceneTally& tally) {
 void query_moving(TinyWorld& world, Bits& bits, SceneTally& tally) {
   SceneQueries queries(world.scene());
   for (std::size_t i = 0; i < TinyWorld::kBodies; ++i) {
-    double place[3];
+    Vec3d place;
     world.place(i, place);
     const double reach = 2.0 * world.size();
     const Pose from = Pose::at(place[0] - reach, place[1], place[2]);
@@ -226,7 +226,7 @@ void query_moving(TinyWorld& world, Bits& bits, SceneTally& tally) {
 /// Moves the first body through its neighbour.
 void find_impacts(TinyWorld& world, Bits& bits, SceneTally& tally) {
   ContinuousCollision ccd(world.scene());
-  double place[3];
+  Vec3d place;
   world.place(2, place);
   const Key mover = world.keys()[0];
   const Pose end = Pose::at(place[0], place[1], place[2]);
@@ -244,7 +244,7 @@ void collide(TinyWorld& world, Bits& bits, SceneTally& tally) {
   Contacts contacts;
   const Key mover = world.keys()[1];
   for (const std::size_t other : {0U, 2U, 3U}) {
-    double place[3];
+    Vec3d place;
     world.place(other, place);
     Pose pose;
     for (int k = 0; k < 3; ++k) pose.position[k] = place[k];

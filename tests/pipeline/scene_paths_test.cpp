@@ -54,8 +54,8 @@ TEST(ScenePaths, long_ray_hits_tiny_body) {
   for (std::size_t n = scaled(500); n-- != 0;) {
     const std::size_t target = random.below(world.bodies.size());
     ShapeRay ray;
-    draw_direction(1.0, random, ray.direction);
-    const double way = random.log_uniform(1e3, 1e6) / length_of(ray.direction);
+    draw_direction(1.0, random, ray.direction.data());
+    const double way = random.log_uniform(1e3, 1e6) / length_of(ray.direction.data());
     for (int i = 0; i < 3; ++i) {
       ray.origin[i] = world.bodies[target].pose.position[i] - way * ray.direction[i];
     }
@@ -65,8 +65,8 @@ TEST(ScenePaths, long_ray_hits_tiny_body) {
     ASSERT_TRUE(hit) << n;
     EXPECT_LE(hit.t, way);
     ShapeCast cast{grain, {}, {}, ray.max_t};
-    std::copy_n(ray.origin, 3, cast.pose.position);
-    std::copy_n(ray.direction, 3, cast.direction);
+    cast.pose.position = ray.origin;
+    cast.direction = ray.direction;
     ASSERT_EQ(queries.closest(cast, hit), Status::ok);
     ASSERT_TRUE(hit) << n;
     EXPECT_LE(hit.t, way);
@@ -143,7 +143,7 @@ TEST(ScenePaths, rays_at_edges_and_corners_hit_mesh) {
   world.add_to_scene();
   SceneQueries queries(*world.scene);
   const std::vector<FlatPart> parts = world.parts(0);
-  const double* const base = world.bodies[0].pose.position;
+  const Vec3d& base = world.bodies[0].pose.position;
   for (std::size_t n = scaled(2000); n-- != 0;) {
     // Leave out the triangles at the border.
     const std::size_t i = 1 + random.below(kCells - 2);
@@ -154,7 +154,7 @@ TEST(ScenePaths, rays_at_edges_and_corners_hit_mesh) {
     const std::size_t corner = random.below(3);
     const double along = random.chance(0.5) ? 0.0 : random.unit();
     ShapeRay ray;
-    draw_direction(1.0, random, ray.direction);
+    draw_direction(1.0, random, ray.direction.data());
     for (int k = 0; k < 3; ++k) {
       const double from = inner->triangle.vertex[corner][k];
       const double to = inner->triangle.vertex[(corner + 1) % 3][k];
@@ -167,8 +167,8 @@ TEST(ScenePaths, rays_at_edges_and_corners_hit_mesh) {
     ASSERT_TRUE(hit) << n;
     EXPECT_LT(hit.t, 4.0 + 1e-6);
     ShapeCast cast{point, {}, {}, kInfinity};
-    std::copy_n(ray.origin, 3, cast.pose.position);
-    std::copy_n(ray.direction, 3, cast.direction);
+    cast.pose.position = ray.origin;
+    cast.direction = ray.direction;
     ASSERT_EQ(queries.closest(cast, hit), Status::ok);
     ASSERT_TRUE(hit) << n;
     EXPECT_LT(hit.t, 4.0 + 1e-6);

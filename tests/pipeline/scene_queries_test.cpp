@@ -161,7 +161,7 @@ std::vector<BodyTime> ray_times(const QueryWorld& world, const ShapeRay& ray) {
   std::vector<BodyTime> times(world.bodies.size());
   for (std::size_t i = 0; i < times.size(); ++i) {
     ShapeRay local = ray;
-    between(ray.origin, world.bodies[i].pose.position, local.origin);
+    between(ray.origin.data(), world.bodies[i].pose.position.data(), local.origin.data());
     for (const FlatPart& part : world.parts(i)) {
       const PartTable table(world.shapes.pool, part);
       ShapeHit hit;
@@ -178,7 +178,7 @@ double part_time(const ShapePool& pool, const ShapeCast& cast, const double from
                  const FlatPart& moving, const FlatPart& stationary) {
   CastPair pair{moving.shape, moving.pose, {}, cast.max_t, stationary.shape, stationary.pose};
   for (int i = 0; i < 3; ++i) pair.from.position[i] += from[i];
-  std::copy_n(cast.direction, 3, pair.direction);
+  pair.direction = cast.direction;
   TriangleShape both[2];
   ShapeTables tables = pool.tables();
   tables.triangles = both;
@@ -199,7 +199,7 @@ std::vector<BodyTime> cast_times(const QueryWorld& world, const ShapeCast& cast)
   const std::vector<FlatPart> own = world.parts(cast.shape, cast.pose);
   for (std::size_t i = 0; i < times.size(); ++i) {
     double from[3];
-    between(cast.pose.position, world.bodies[i].pose.position, from);
+    between(cast.pose.position.data(), world.bodies[i].pose.position.data(), from);
     for (const FlatPart& stationary : world.parts(i)) {
       for (const FlatPart& moving : own) {
         const double t = part_time(world.shapes.pool, cast, from, moving, stationary);
@@ -259,12 +259,12 @@ TEST(SceneQueries, rays_match_brute_force) {
     for (std::size_t n = scaled(60); n-- != 0;) {
       ShapeRay ray;
       const double way = random.chance(0.2) ? 1e5 : 1.5 * world.size;
-      draw_direction(random.log_uniform(1e-4, 1e4), random, ray.direction);
-      const double back = random.chance(0.3) ? 0.0 : way / length_of(ray.direction);
+      draw_direction(random.log_uniform(1e-4, 1e4), random, ray.direction.data());
+      const double back = random.chance(0.3) ? 0.0 : way / length_of(ray.direction.data());
       for (int i = 0; i < 3; ++i) {
         ray.origin[i] = center + random.uniform(-world.size, world.size) - back * ray.direction[i];
       }
-      ray.max_t = random.chance(0.5) ? kInfinity : 1.5 * way / length_of(ray.direction);
+      ray.max_t = random.chance(0.5) ? kInfinity : 1.5 * way / length_of(ray.direction.data());
       const std::vector<BodyTime> truth = ray_times(world, ray);
       SceneHit closest;
       SceneHit any;
@@ -274,7 +274,7 @@ TEST(SceneQueries, rays_match_brute_force) {
       ASSERT_EQ(queries.all(ray, hits), Status::ok);
       // Positions are exact up to the rounding of their difference.
       const double slack =
-          (1e-9 + 1e-15 * std::abs(center) + 1e-14 * way) / length_of(ray.direction);
+          (1e-9 + 1e-15 * std::abs(center) + 1e-14 * way) / length_of(ray.direction.data());
       expect_hits(world, truth, hits, closest, ray.max_t, slack);
       ASSERT_EQ(static_cast<bool>(any), !hits.empty());
       if (any) {
@@ -292,7 +292,7 @@ TEST(SceneQueries, ray_batch_matches_single_rays) {
   SceneQueries queries(*world.scene);
   std::vector<ShapeRay> rays(scaled(100));
   for (ShapeRay& ray : rays) {
-    draw_direction(1.0, random, ray.direction);
+    draw_direction(1.0, random, ray.direction.data());
     for (double& x : ray.origin) x = random.uniform(-world.size, world.size);
     ray.max_t = world.size;
   }
@@ -343,7 +343,7 @@ TEST(SceneQueries, ray_batch_matches_single_rays) {
 /// Returns the signed distance of two bodies: the least over all pairs of their primitives.
 PairAnswer brute_distance(const QueryWorld& world, ShapeId a, const Pose& pose_a, std::size_t b) {
   double offset[3];
-  between(world.bodies[b].pose.position, pose_a.position, offset);
+  between(world.bodies[b].pose.position.data(), pose_a.position.data(), offset);
   PairAnswer best;
   best.distance = kInfinity;
   const std::vector<FlatPart> parts_b = world.parts(b);
@@ -376,23 +376,23 @@ void expect_casts_hit(bool composite, std::size_t casts) {
                              : world.shapes.shapes[random.below(150)];
       cast.pose = random_pose(world.size, random);
       for (double& x : cast.pose.position) x += center;
-      draw_direction(random.log_uniform(1e-3, 1e3), random, cast.direction);
-      cast.max_t = (random.chance(0.3) ? 1e4 : world.size) / length_of(cast.direction);
+      draw_direction(random.log_uniform(1e-3, 1e3), random, cast.direction.data());
+      cast.max_t = (random.chance(0.3) ? 1e4 : world.size) / length_of(cast.direction.data());
       SceneHit closest;
       std::span<const SceneHit> hits;
       ASSERT_EQ(queries.closest(cast, closest, {}, 1e-7), Status::ok);
       ASSERT_EQ(queries.all(cast, hits, {}, 1e-7), Status::ok);
       expect_hits(world, cast_times(world, cast), hits, hits.empty() ? closest : hits[0],
-                  cast.max_t, 2e-7 / length_of(cast.direction));
+                  cast.max_t, 2e-7 / length_of(cast.direction.data()));
       ASSERT_EQ(static_cast<bool>(closest), !hits.empty());
       if (!closest) continue;
-      EXPECT_NEAR(closest.t, hits[0].t, 1e-7 / length_of(cast.direction));
+      EXPECT_NEAR(closest.t, hits[0].t, 1e-7 / length_of(cast.direction.data()));
       if (closest.t == 0.0) continue;
       // Normal and point belong to the body that was hit. On curved shapes that nearly touch, the
       // solver finds points to about 1e-8.
       double along = 0.0;
       for (int i = 0; i < 3; ++i) along += closest.normal[i] * cast.direction[i];
-      EXPECT_LT(along, 1e-9 * length_of(cast.direction));
+      EXPECT_LT(along, 1e-9 * length_of(cast.direction.data()));
       const Pose at = Pose::at(closest.point[0], closest.point[1], closest.point[2]);
       const auto body = static_cast<std::size_t>(closest.data - 1000);
       EXPECT_NEAR(brute_distance(world, point, at, body).distance, 0.0,
@@ -467,7 +467,7 @@ TEST(SceneQueries, exact_touches_are_found) {
         ray.origin[i] = on_lattice(9.0);
         ray.direction[i] = static_cast<double>(random.below(3)) - 1.0;
       }
-    } while (length_of(ray.direction) == 0.0);
+    } while (length_of(ray.direction.data()) == 0.0);
     ray.max_t = random.chance(0.5) ? kInfinity : static_cast<double>(random.below(20));
     std::span<const SceneHit> hits;
     ASSERT_EQ(queries.all(ray, hits), Status::ok);

@@ -54,7 +54,7 @@ TEST(SceneQueryCalls, filters_and_predicates_select_bodies) {
   const double origin[3] = {0.0, 0.0, 0.0};
   for (int n = 0; n < 10; ++n) {
     ShapeRay ray;
-    draw_direction(1.0, random, ray.direction);
+    draw_direction(1.0, random, ray.direction.data());
     ray.max_t = kInfinity;
     std::span<const SceneHit> hits;
     ASSERT_EQ(queries.all(ray, hits), Status::ok);
@@ -164,12 +164,12 @@ std::uint64_t fingerprint(const QueryWorld& world, SceneQueries& queries) {
     ShapeCast cast;
     cast.shape = world.shapes.shapes[random.below(100)];
     cast.pose = random_pose(world.size, random);
-    draw_direction(1.0, random, cast.direction);
+    draw_direction(1.0, random, cast.direction.data());
     cast.max_t = kInfinity;
     ShapeRay ray;
     ray.max_t = kInfinity;
-    std::copy_n(cast.pose.position, 3, ray.origin);
-    std::copy_n(cast.direction, 3, ray.direction);
+    ray.origin = cast.pose.position;
+    ray.direction = cast.direction;
     SceneHit hit;
     std::span<const SceneHit> hits;
     EXPECT_EQ(queries.closest(ray, hit), Status::ok);

@@ -95,8 +95,8 @@ class BallRoom {
         BodyDefinition body;
         EXPECT_EQ(scene.body(key, body), Status::ok);
         if (key == sensor.carrier || (sensor.filter.mask & body.filter.layers) == 0) continue;
-        const double* const a = sensor.pose.position;
-        const double* const b = body.pose.position;
+        const double* const a = sensor.pose.position.data();
+        const double* const b = body.pose.position.data();
         const double reach = radius_of(sensor.shape) + radius_of(body.shape);
         if (std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]) <= reach) {
           sensed.insert({stamped(goal), stamped(key)});

@@ -129,8 +129,8 @@ TEST(ShapeCast, bullet_never_tunnels_through_triangle) {
     ShapeId grown;
     ASSERT_EQ(pool.add(triangle, grown), Status::ok);
     ShapeRay ray;
-    std::copy_n(pair.from.position, 3, ray.origin);
-    std::copy_n(pair.direction, 3, ray.direction);
+    ray.origin = pair.from.position;
+    ray.direction = pair.direction;
     ray.max_t = pair.max_t;
     ShapeHit truth;
     ASSERT_EQ(cast_ray(pool.tables(), grown, pair.pose, ray, truth), Status::ok);

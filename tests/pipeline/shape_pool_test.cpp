@@ -2,6 +2,7 @@
 // narrow-phase kernels.
 
 #include <gtest/gtest.h>
+#include <winnow/core/eigen.h>
 #include <winnow/pipeline/shape_pool.h>
 
 #include <Eigen/Geometry>
@@ -209,7 +210,7 @@ TEST_F(Hulls, hostile_sets_lose_no_points) {
       for (std::size_t k = 0; k < count; ++k) most = std::max(most, along.dot(point(k)));
       return most;
     };
-    const Eigen::Vector3d center = Eigen::Vector3d::Map(hull.center);
+    const Eigen::Vector3d center = as_eigen(hull.center);
     const auto expect_reached = [&](const Eigen::Vector3d& along) {
       const double given = farthest(along, points.size(), [&](std::size_t k) -> Eigen::Vector3d {
         return points[k] - center;
@@ -222,7 +223,7 @@ TEST_F(Hulls, hostile_sets_lose_no_points) {
       EXPECT_LE(given - reached, 1e-12 * hull.radius) << i << ", kind " << i % kHostileKinds;
     };
     for (std::uint32_t f = 0; f < hull.face_count; ++f) {
-      expect_reached(Eigen::Vector3d::Map(hull.faces[f].normal));
+      expect_reached(as_eigen(hull.faces[f].normal));
     }
     for (int k = 0; k < 20; ++k) {
       const auto one = [&] { return points[random.below(points.size())]; };

@@ -2,6 +2,7 @@
 // compared with distance functions (ray_probes.h).
 
 #include <gtest/gtest.h>
+#include <winnow/core/eigen.h>
 #include <winnow/pipeline/shape_pool.h>
 #include <winnow/pipeline/shape_rays.h>
 
@@ -34,7 +35,7 @@ constexpr double kInf = std::numeric_limits<double>::infinity();
 
 [[nodiscard]] Pose any_pose(Random& random) {
   Pose pose;
-  Vector3d::Map(pose.position) = any_point(random, 5.0);
+  as_eigen(pose.position) = any_point(random, 5.0);
   for (double& q : pose.orientation) q = random.uniform(-1.0, 1.0);
   return pose;
 }
@@ -60,8 +61,8 @@ struct Cast {
 [[nodiscard]] Cast cast(const ShapeTables& tables, ShapeId id, const Vector3d& origin,
                         const Vector3d& direction, double max_t = kInf, const Pose& pose = {}) {
   ShapeRay ray;
-  Vector3d::Map(ray.origin) = origin;
-  Vector3d::Map(ray.direction) = direction;
+  as_eigen(ray.origin) = origin;
+  as_eigen(ray.direction) = direction;
   ray.max_t = max_t;
   Cast result{Status::ok, {}};
   result.status = cast_ray(tables, id, pose, ray, result.hit);
@@ -69,7 +70,7 @@ struct Cast {
 }
 
 [[nodiscard]] Vector3d normal_of(const Cast& c) {
-  return Vector3d::Map(c.hit.normal);
+  return as_eigen(c.hit.normal);
 }
 
 TEST(ShapeRays, ray_without_max_t_is_unbounded) {
@@ -112,8 +113,8 @@ TEST(ShapeRays, ray_in_face_edge_or_corner_hits) {
                           (i & 4) != 0   ? 3.0
                           : (i & 8) != 0 ? -3.0
                                          : 0.0);
-    const Vector3d target = rotation_of(pose) * corner + Vector3d::Map(pose.position);
-    const Vector3d middle = Vector3d::Map(pose.position);
+    const Vector3d target = rotation_of(pose) * corner + as_eigen(pose.position);
+    const Vector3d middle = as_eigen(pose.position);
     const Vector3d origin = target + 3.0 * (target - middle);
     const Cast c = cast(pool.tables(), box, origin, middle - origin, kInf, pose);
     ASSERT_TRUE(c.hit.hit);
@@ -166,9 +167,9 @@ TEST(ShapeRays, ray_along_sliver_hits_between_its_tips) {
     TriangleShape sliver;
     double first = kInf;
     double last = 0.0;
-    for (double(&vertex)[3] : sliver.vertex) {
+    for (Vec3d& vertex : sliver.vertex) {
       const double t = random.uniform(0.001, 0.003);
-      Vector3d::Map(vertex) = t * along;
+      as_eigen(vertex) = t * along;
       first = std::min(first, t);
       last = std::max(last, t);
     }
@@ -259,9 +260,9 @@ TEST(ShapeRays, ray_beyond_rounded_sliver_misses) {
     const Vector3d along = any_point(random, 1.0);
     TriangleShape sliver;
     sliver.rounding = 0.15;
-    Vector3d::Map(sliver.vertex[0]) = from;
-    Vector3d::Map(sliver.vertex[1]) = from + along;
-    Vector3d::Map(sliver.vertex[2]) = from + random.uniform(-1.0, 2.0) * along;
+    as_eigen(sliver.vertex[0]) = from;
+    as_eigen(sliver.vertex[1]) = from + along;
+    as_eigen(sliver.vertex[2]) = from + random.uniform(-1.0, 2.0) * along;
     ShapePool pool;
     ShapeId id;
     ASSERT_EQ(pool.add(sliver, id), Status::ok);
@@ -299,13 +300,13 @@ TEST(ShapeRays, hit_is_first_zero_of_distance) {
     int hits = 0;
     for (std::size_t i = 0; i < scaled(400); ++i) {
       const Pose pose = any_pose(random);
-      const Vector3d origin = Vector3d::Map(pose.position) + any_point(random, 4.0);
-      const Vector3d target = Vector3d::Map(pose.position) + any_point(random, 1.2);
+      const Vector3d origin = as_eigen(pose.position) + any_point(random, 4.0);
+      const Vector3d target = as_eigen(pose.position) + any_point(random, 1.2);
       const Vector3d direction = (target - origin) * random.log_uniform(0.1, 10.0);
       const Eigen::Quaterniond turn = rotation_of(pose);
       const auto distance = [&](double t) {
         return probe.distance(turn.conjugate() *
-                              (origin + t * direction - Vector3d::Map(pose.position)));
+                              (origin + t * direction - as_eigen(pose.position)));
       };
       const Cast c = cast(shapes.tables(), probe.id, origin, direction, kInf, pose);
       ASSERT_EQ(c.status, Status::ok);

@@ -194,12 +194,12 @@ TEST(Solids, inside_test_matches_winding_number) {
         const Pose pose = random_pose(random.chance(0.5) ? 10.0 : 1e5, random);
         const Eigen::Matrix3d turn = rotation_of(scale_to_unit_max(pose.orientation));
         const Vec stretched = own.cwiseProduct(Vec::Map(scale.data()));
-        const Vec world = Vec::Map(pose.position) + turn * stretched;
+        const Vec world = as_eigen(pose.position) + turn * stretched;
         (is_inside ? inside : outside) += 1;
-        ASSERT_EQ(mid::solid_contains_point(pool, scaled_id, pose, world.data()), is_inside)
+        ASSERT_EQ(mid::solid_contains_point(pool, scaled_id, pose, world), is_inside)
             << mesh.name << " " << own.transpose();
         const Vec in_child = world + turn * Vec(0.5, -2.0, 1.0);
-        ASSERT_EQ(mid::solid_contains_point(pool, compound, pose, in_child.data()), is_inside)
+        ASSERT_EQ(mid::solid_contains_point(pool, compound, pose, in_child), is_inside)
             << mesh.name;
       }
     }
@@ -241,23 +241,23 @@ TEST(Solids, distance_of_inner_points_is_negative) {
   SceneQueries queries(world.scene);
   std::size_t inside = 0;
   for (const Vec& own : points_about(mesh, random)) {
-    const Vec point = own + Vec::Map(world.pose.position);
+    const Vec point = own + as_eigen(world.pose.position);
     std::span<const SceneDistance> found;
-    ASSERT_EQ(queries.nearest(point.data(), 2, kInfinity, found), Status::ok);
+    ASSERT_EQ(queries.nearest(point, 2, kInfinity, found), Status::ok);
     ASSERT_EQ(found.size(), 2U);
     const SceneDistance solid = found[found[0].key == world.solid_key ? 0 : 1];
     const SceneDistance plain = found[found[0].key == world.solid_key ? 1 : 0];
     ASSERT_EQ(solid.part, plain.part);
     if (plain.distance < 1e-9) continue;  // on the surface
     const bool is_contained =
-        mid::solid_contains_point(world.composites, world.solid, world.pose, point.data());
+        mid::solid_contains_point(world.composites, world.solid, world.pose, point);
     ASSERT_EQ(solid.distance, is_contained ? -plain.distance : plain.distance);
     ASSERT_EQ(solid.normal[0], is_contained ? -plain.normal[0] : plain.normal[0]);
     ASSERT_EQ(solid.point_b[2], plain.point_b[2]);
     if (!is_contained || plain.distance < 0.01) continue;
     ++inside;
     ASSERT_EQ(found[0].key, world.solid_key);
-    ASSERT_EQ(queries.nearest(point.data(), 2, 0.5 * plain.distance, found), Status::ok);
+    ASSERT_EQ(queries.nearest(point, 2, 0.5 * plain.distance, found), Status::ok);
     ASSERT_EQ(found.size(), 1U) << "a point inside is within any radius";
     ASSERT_EQ(found[0].distance, solid.distance);
   }

@@ -2,6 +2,7 @@
 
 #include "pipeline/solver/solver.h"
 #include <gtest/gtest.h>
+#include <winnow/core/eigen.h>
 #include "pipeline/exact/exact_overlap.h"
 #include "pipeline/solver/problem.h"
 
@@ -309,7 +310,7 @@ TEST_F(SolverCases, rod_beside_huge_hull_is_apart) {
       {33828603836.1875, -421841837546.11523, -615947021952.91602},
       {-0.45780498874663866, -0.84916710831400266, 0.10720536226435229, -0.24049287876795233}};
   const PairAnswer answer = solve(rod, at_rod, world, at_world, ContactLevel::distance);
-  ASSERT_EQ(exact_overlap(pool_.tables(), rod, at_rod, world, at_world, answer.normal),
+  ASSERT_EQ(exact_overlap(pool_.tables(), rod, at_rod, world, at_world, answer.normal.data()),
             ExactVerdict::separated);
   EXPECT_FALSE(answer.overlap) << answer.distance << " +- " << answer.error_bound;
 }
@@ -377,8 +378,8 @@ TEST_F(SolverCases, extreme_curved_shapes_give_finite_results) {
     const PairAnswer answer = solve(a, Pose::at(-4e-296, 3e-297, 4e-296), b, Pose{});
     EXPECT_TRUE(answer.overlap);
     EXPECT_TRUE(std::isfinite(answer.distance));
-    EXPECT_TRUE(Vec::Map(answer.point).allFinite());
-    EXPECT_NEAR(Vec::Map(answer.normal).norm(), 1.0, 1e-14);
+    EXPECT_TRUE(as_eigen(answer.point).allFinite());
+    EXPECT_NEAR(as_eigen(answer.normal).norm(), 1.0, 1e-14);
   }
 }
 
@@ -403,8 +404,8 @@ TEST_P(Solver, answers_are_finite_and_levels_agree) {
     const PairAnswer answer = solver_pair.solve(ContactLevel::distance);
     EXPECT_TRUE(std::isfinite(answer.distance));
     EXPECT_TRUE(std::isfinite(answer.error_bound));
-    EXPECT_NEAR(Vec::Map(answer.normal).norm(), 1.0, 1e-14);
-    EXPECT_TRUE(Vec::Map(answer.point).allFinite());
+    EXPECT_NEAR(as_eigen(answer.normal).norm(), 1.0, 1e-14);
+    EXPECT_TRUE(as_eigen(answer.point).allFinite());
     EXPECT_EQ(answer.overlap, answer.distance <= 0.0);
     EXPECT_EQ(solver_pair.solve(ContactLevel::boolean).overlap, answer.overlap);
     const PairAnswer manifold = solver_pair.solve(ContactLevel::manifold);
@@ -431,17 +432,16 @@ TEST_P(Solver, common_motion_keeps_distance_within_error_bounds) {
     Pose moved[2] = {solver_pair.pose_a(), solver_pair.pose_b()};
     const Eigen::Quaterniond turn = Eigen::Quaterniond(0.8, 0.0, 0.36, 0.48).normalized();
     for (Pose& pose : moved) {
-      Vec::Map(pose.position) = turn * Vec::Map(pose.position);
-      const double* q = pose.orientation;
+      as_eigen(pose.position) = turn * as_eigen(pose.position);
+      const double* q = pose.orientation.data();
       const Eigen::Quaterniond turned = turn * Eigen::Quaterniond(q[0], q[1], q[2], q[3]);
-      pose.orientation[0] = turned.w();
-      Vec::Map(pose.orientation + 1) = turned.vec();
+      pose.orientation = turned;
     }
     const PairAnswer answer = solver_pair.solve(ContactLevel::distance);
     const PairAnswer other = solver_pair.solve_at(moved[0], moved[1]);
     // Moving rounds positions and orientations.
-    const double rounding = 1e-15 * (solver_pair.size() + Vec::Map(moved[0].position).norm() +
-                                     Vec::Map(moved[1].position).norm());
+    const double rounding = 1e-15 * (solver_pair.size() + as_eigen(moved[0].position).norm() +
+                                     as_eigen(moved[1].position).norm());
     EXPECT_NEAR(answer.distance, other.distance, answer.error_bound + other.error_bound + rounding);
   });
 }
@@ -455,8 +455,8 @@ TEST_P(Solver, witness_points_lie_on_both_shapes) {
                     solver_pair.pose_a(), solver_pair.scene.shapes[solver_pair.pair.b],
                     solver_pair.pose_b(), false, problem);
     const double scale = std::ldexp(1.0, -problem.exponent);
-    const Vec n = Vec::Map(answer.normal);
-    const Vec on_a = Vec::Map(answer.point) * scale;
+    const Vec n = as_eigen(answer.normal);
+    const Vec on_a = as_eigen(answer.point) * scale;
     const Vec on_b = on_a + n * (answer.distance * scale);
     // If a part of the distance is unproved, the points may be off by its square root, relative to
     // the size.
@@ -473,10 +473,10 @@ TEST_P(Solver, moving_b_by_depth_separates) {
     const PairAnswer answer = solver_pair.solve(ContactLevel::distance);
     if (answer.distance > 0.0) return;
     Pose moved = solver_pair.pose_b();
-    Vec::Map(moved.position) -= Vec::Map(answer.normal) * answer.distance;
+    as_eigen(moved.position) -= as_eigen(answer.normal) * answer.distance;
     const PairAnswer after = solver_pair.solve_at(solver_pair.pose_a(), moved);
     const double rounding = solver_pair.relative_error() * solver_pair.size() +
-                            1e-15 * Vec::Map(solver_pair.pose_b().position).cwiseAbs().maxCoeff();
+                            1e-15 * as_eigen(solver_pair.pose_b().position).cwiseAbs().maxCoeff();
     EXPECT_NEAR(after.distance, 0.0, answer.error_bound + after.error_bound + rounding);
   });
 }
@@ -494,7 +494,7 @@ TEST_P(Solver, manifold_starts_deepest_and_respects_margin) {
       const ContactPoint& contact = answer.contacts[i];
       EXPECT_GE(contact.depth, -margin - 1e-6 * size);
       EXPECT_LE(contact.depth, -answer.distance + 1e-6 * size);
-      EXPECT_LE(Eigen::Vector3f::Map(contact.position).norm(), 1.001 * size);
+      EXPECT_LE(as_eigen(contact.position).norm(), 1.001 * size);
     }
   });
 }

@@ -4,6 +4,7 @@
 #include "tests/pipeline/composite_world.h"
 
 #include <gtest/gtest.h>
+#include <winnow/core/eigen.h>
 #include <winnow/pipeline/continuous_collision.h>
 #include <winnow/pipeline/scene_queries.h>
 #include <winnow/pipeline/time_of_impact.h>
@@ -187,14 +188,14 @@ class LevelRun {
     const Pose pose =
         placed(Pose::at(scale * kStart, scale * 0.013, scale * (mover.height + way.gap)));
     motion_ = RigidMotion::stationary(pose);
-    Eigen::Vector3d::Map(motion_.travel) = way_;
-    Eigen::Vector3d::Map(motion_.turn) = turned * Eigen::Vector3d(0, 0, way.turn);
+    as_eigen(motion_.travel) = way_;
+    as_eigen(motion_.turn) = turned * Eigen::Vector3d(0, 0, way.turn);
   }
 
   [[nodiscard]] SceneHit cast(bool touching = false) const {
     SceneQueries queries(scene_);
     ShapeCast cast{.shape = shape_, .pose = motion_.start, .touching = touching};
-    Eigen::Vector3d::Map(cast.direction) = way_;
+    as_eigen(cast.direction) = way_;
     SceneHit hit;
     EXPECT_EQ(queries.closest(cast, hit, {}, 1e-6 * scale_), Status::ok);
     std::span<const SceneHit> all;
@@ -227,9 +228,9 @@ class LevelRun {
  private:
   [[nodiscard]] Pose placed(const Pose& pose) const {
     Pose result;
-    Eigen::Vector3d::Map(result.position) = turned_ * Eigen::Vector3d::Map(pose.position) + away_;
+    as_eigen(result.position) = turned_ * as_eigen(pose.position) + away_;
     const double turn[4] = {turned_.w(), turned_.x(), turned_.y(), turned_.z()};
-    std::copy_n(turn, 4, result.orientation);
+    result.orientation = turn;
     return result;
   }
 
@@ -315,7 +316,7 @@ TEST(StartTouches, motion_into_initial_touch_hits_at_zero) {
       for (const SceneHit& hit : {run.cast(), run.motion_cast()}) {
         EXPECT_TRUE(hit);
         EXPECT_EQ(hit.t, 0.0);
-        EXPECT_GT(run.up().dot(Eigen::Vector3d::Map(hit.normal)), 0.99);
+        EXPECT_GT(run.up().dot(as_eigen(hit.normal)), 0.99);
       }
     }
   });

@@ -2,6 +2,7 @@
 // equal shapes of other kinds and with closed forms in long double.
 
 #include <gtest/gtest.h>
+#include <winnow/core/eigen.h>
 #include <winnow/winnow.h>
 
 #include <Eigen/Core>
@@ -194,7 +195,7 @@ TEST(SupportShapes, support_shapes_match_equal_shapes) {
 /// (Eberly, "Distance from a point to an ellipse, an ellipsoid, or a hyperellipsoid", 2013). No
 /// coordinate may be 0.
 Real from_ellipsoid(const EllipsoidShape& shape, const RealVec& point) {
-  const RealVec r = Eigen::Vector3d::Map(shape.radius).cast<Real>();
+  const RealVec r = as_eigen(shape.radius).cast<Real>();
   const Real least = r.minCoeff();
   const auto level = [&](Real t) {
     Real sum = -1.0L;
@@ -237,14 +238,13 @@ Real radius_at(const TaperedCapsuleShape& taper, Real t) {
 }
 
 Eigen::Matrix<Real, 3, 3> turn_of(const Pose& pose) {
-  const double* q = pose.orientation;
+  const double* q = pose.orientation.data();
   return Eigen::Quaternion<Real>(q[0], q[1], q[2], q[3]).normalized().toRotationMatrix();
 }
 
 /// Maps a point of b's frame to a's frame.
 RealVec seen_from(const Pose& a, const Pose& b, const RealVec& point) {
-  const RealVec at =
-      Eigen::Vector3d::Map(b.position).cast<Real>() - Eigen::Vector3d::Map(a.position).cast<Real>();
+  const RealVec at = as_eigen(b.position).cast<Real>() - as_eigen(a.position).cast<Real>();
   return turn_of(a).transpose() * (turn_of(b) * point + at);
 }
 
@@ -297,7 +297,7 @@ TEST(Ellipsoids, ellipsoid_distances_match_closed_forms) {
     if (apart > 0.0L) expect_truth(answer_to(taper, other, shape, at), apart);
     const HalfSpaceShape plane{{0.0, 0.0, 1.0}, 0.5};
     const RealVec normal = turn_of(at).transpose() * turn_of(other).col(2);
-    const RealVec r = Eigen::Vector3d::Map(shape.radius).cast<Real>();
+    const RealVec r = as_eigen(shape.radius).cast<Real>();
     const Real height = -normal.dot(seen_from(at, other, RealVec::Zero())) - 0.5L;
     expect_truth(answer_to(plane, other, shape, at), height - r.cwiseProduct(normal).norm());
   }
@@ -313,7 +313,7 @@ TEST(Ellipsoids, shallow_ellipsoid_depths_are_accurate) {
     for (double& r : shape.radius) r = random.uniform(0.6, 1.0);
     EllipsoidShape difference = shape;
     for (double& r : difference.radius) r *= 2.0;
-    const Eigen::Vector3d r = Eigen::Vector3d::Map(shape.radius);
+    const Eigen::Vector3d r = as_eigen(shape.radius);
     const Eigen::Vector3d out =
         Eigen::Vector3d(random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0),
                         random.uniform(-1.0, 1.0))
@@ -422,8 +422,8 @@ TEST(SupportShapes, bounds_contain_shapes_and_are_tight) {
     const Pose pose = random_pose(random, 3.0);
     for (int axis = 0; axis < 3; ++axis) {
       const RealVec row = turn_of(pose).row(axis);
-      const RealVec r = Eigen::Vector3d::Map(ball.radius).cast<Real>();
-      const RealVec h = Eigen::Vector3d::Map(box.half).cast<Real>();
+      const RealVec r = as_eigen(ball.radius).cast<Real>();
+      const RealVec h = as_eigen(box.half).cast<Real>();
       const Real up = row.z() * taper.half_length;
       const Real high[3] = {r.cwiseProduct(row).norm() + 0.1L,
                             std::max(taper.radius[0] - up, taper.radius[1] + up),
@@ -447,7 +447,7 @@ void expect_same_hit(const ShapePool& pool, ShapeId one, ShapeId other, const Po
   ASSERT_EQ(hit.hit, known.hit);
   if (!hit.hit) return;
   EXPECT_NEAR(hit.t, known.t, doubt);
-  const double along = Eigen::Vector3d::Map(hit.normal).dot(Eigen::Vector3d::Map(known.normal));
+  const double along = as_eigen(hit.normal).dot(as_eigen(known.normal));
   // At an edge either face normal is valid.
   EXPECT_GT(along, known.t == 0.0 ? 0.999 : -1e-6);
 }
@@ -473,10 +473,9 @@ TEST(SupportShapes, rays_hit_at_the_surface) {
     }
     expect_same_hit(pool, id[2], id[3], pose, ray, 1e-12);
     const auto height = [&](std::size_t which, Real t) {
-      const RealVec at = Eigen::Vector3d::Map(ray.origin).cast<Real>() +
-                         t * Eigen::Vector3d::Map(ray.direction).cast<Real>();
-      const RealVec point =
-          turn_of(pose).transpose() * (at - Eigen::Vector3d::Map(pose.position).cast<Real>());
+      const RealVec at =
+          as_eigen(ray.origin).cast<Real>() + t * as_eigen(ray.direction).cast<Real>();
+      const RealVec point = turn_of(pose).transpose() * (at - as_eigen(pose.position).cast<Real>());
       if (which == 0) return from_ellipsoid(ball, point);
       return least_of([&](Real share) {
         return (point - centre_at(taper, share)).norm() - radius_at(taper, share);

@@ -60,7 +60,7 @@ struct Region {
   PairAnswer answer;
   EXPECT_EQ(collide(shapes, a, Pose{}, b, pose, {.level = ContactLevel::distance}, answer),
             Status::ok);
-  return {Vec::Map(answer.normal), answer.distance, 0};
+  return {answer.normal, answer.distance, 0};
 }
 
 /// The gap of two convex shapes along a unit direction, with the first at the origin.
@@ -69,7 +69,7 @@ struct Region {
   const Eigen::Matrix3d turn = rotation_of(scale_to_unit_max(pose.orientation));
   const double top = mid::extent(tables, a, normal).high;
   const double bottom = mid::extent(tables, b, turn.transpose() * normal).low;
-  return normal.dot(Vec::Map(pose.position)) + bottom - top;
+  return normal.dot(as_eigen(pose.position)) + bottom - top;
 }
 
 /// The triangles of a box, wound outward.

@@ -343,7 +343,7 @@ TEST(RigidMotions, motion_between_poses_takes_shorter_turn) {
       for (double& q : p.orientation) q = random.uniform(-1, 1);
     }
     // Includes tiny turns and turns by almost half a turn.
-    if (random.chance(0.3)) std::copy_n(pose[0].orientation, 4, pose[1].orientation);
+    if (random.chance(0.3)) pose[1].orientation = pose[0].orientation;
     if (random.chance(0.5)) pose[1].orientation[1] += random.log_uniform(1e-18, 1.0);
     const RigidMotion motion = RigidMotion::between(pose[0], pose[1]);
     ASSERT_TRUE(motion.is_valid());

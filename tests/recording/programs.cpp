@@ -323,7 +323,7 @@ void cast_all(RecordedQueries& queries, SceneWorld& world, ShapeId shape, const 
   SceneHitLists lists;
   EXPECT_EQ(queries.all(ShapeRayBatch(rays), lists, filter), Status::ok);
   ShapeCast cast{shape, world.random_pose()};
-  std::copy_n(rays[3].direction, 3, cast.direction);
+  cast.direction = rays[3].direction;
   EXPECT_EQ(queries.closest(cast, hit, filter), Status::ok);
   EXPECT_EQ(queries.all(cast, hits, filter, 1e-3), Status::ok);
   cast.touching = false;

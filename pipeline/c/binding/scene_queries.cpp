@@ -201,7 +201,7 @@ winnow_status winnow_scene_queries_nearest(winnow_scene_queries* queries, const 
                                            const winnow_scene_distance** bodies, size_t* found) {
   if (!are_given(queries, point, bodies, found)) return WINNOW_INVALID_ARGUMENT;
   return answer_list<winnow::SceneDistance>(bodies, found, [&](auto& near) {
-    return queries->value.nearest(point, count, radius, near, filter_of(filter));
+    return queries->value.nearest(winnow::Vec3d(point), count, radius, near, filter_of(filter));
   });
 }
 

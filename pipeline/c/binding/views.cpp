@@ -145,7 +145,7 @@ Status read_poses(const winnow_pose_view* given, Column<Pose>& room, PoseView& p
     if (status != Status::ok || packed.empty() || turn(*given)) {
       poses = PoseView(packed);
     } else {
-      const double* const first = packed.data()->position;
+      const double* const first = packed.data()->position.data();
       poses = PoseView({first, first + 1, first + 2}, packed.size(), sizeof(Pose));
     }
     return status;

@@ -369,7 +369,7 @@ struct KindCore<EllipsoidShape> : PlainCore {
     return r[0] + r[1] + r[2];
   }
   static double make(const ShapeTables& tables, std::uint32_t i, CoreDesc& core) {
-    const double* r = tables.ellipsoids[i].radius;
+    const double* r = tables.ellipsoids[i].radius.data();
     const double most = largest_of(largest_of(r[0], r[1]), r[2]);
     const double least = least_of(least_of(r[0], r[1]), r[2]);
     for (int k = 0; k < 3; ++k) core.number[k] = r[k];

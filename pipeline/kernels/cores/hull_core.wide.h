@@ -69,11 +69,11 @@ struct PairPlacement {
 template <bool PointSecond = false>
 static inline bool place(const Pose& first, const Pose& second, PairPlacement& pair) {
   double axes[9] = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
-  if (!rotation_of(first.orientation, pair.frame)) return false;
+  if (!rotation_of(first.orientation.data(), pair.frame)) return false;
   if constexpr (PointSecond) {
     for (int i = 0; i < 9; ++i) pair.turn[i] = axes[i];
   } else {
-    if (!rotation_of(second.orientation, axes)) return false;
+    if (!rotation_of(second.orientation.data(), axes)) return false;
     const double* const frame = pair.frame;
     for (int i = 0; i < 3; ++i) {
       for (int k = 0; k < 3; ++k) {
@@ -412,7 +412,7 @@ static inline std::uint32_t tied_face_across(const HullShape& hull, const double
   double most = kFaceCosine;
   for (std::uint32_t i = 0; i < hull.face_count; ++i) {
     const float n[3] = {plane[0][i], plane[1][i], plane[2][i]};
-    const double cosine = dot3(hull.faces[i].normal, direction);
+    const double cosine = dot3(hull.faces[i].normal.data(), direction);
     if (!(cosine > most) || !(plane[3][i] - dot3(n, x) <= doubt)) continue;
     most = cosine;
     best = i;

@@ -106,8 +106,8 @@ inline bool swap_concentric(const NarrowJob& job, const BodyPair& pair) {
   const std::uint32_t shape_a = job.shapes[pair.a].bits;
   const std::uint32_t shape_b = job.shapes[pair.b].bits;
   if (shape_a != shape_b) return shape_b < shape_a;
-  const double* a = job.poses[pair.a].orientation;
-  const double* b = job.poses[pair.b].orientation;
+  const double* a = job.poses[pair.a].orientation.data();
+  const double* b = job.poses[pair.b].orientation.data();
   int i = 0;
   while (i < 3 && a[i] == b[i]) ++i;
   return b[i] < a[i];
@@ -127,8 +127,8 @@ struct OrderedBlock {
       : block{pairs, given.first, given.count} {
     for (int lane = 0; lane < Lanes<T>::kCount; ++lane) {
       const BodyPair pair = given.pairs[lane];
-      const double* a = job.poses[pair.a].position;
-      const double* b = job.poses[pair.b].position;
+      const double* a = job.poses[pair.a].position.data();
+      const double* b = job.poses[pair.b].position.data();
       int i = 0;
       while (i < 2 && a[i] == b[i]) ++i;
       const bool turn = a[i] == b[i] ? swap_concentric(job, pair) : b[i] < a[i];

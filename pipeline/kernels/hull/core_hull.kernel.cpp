@@ -137,7 +137,7 @@ class CoreHull {
     const auto& v = triangle.vertex;
     for (int k = 0; k < 3; ++k) hull_.center[k] = (v[0][k] + v[1][k] + v[2][k]) / 3.0;
     double most = 0.0;
-    for (const double(&x)[3] : v) {
+    for (const Vec3d& x : v) {
       const double d[3] = {x[0] - hull_.center[0], x[1] - hull_.center[1], x[2] - hull_.center[2]};
       const double square = dot3(d, d);
       most = square > most ? square : most;
@@ -159,14 +159,14 @@ class CoreHull {
     if (hull_.dimension == 2) return complete_triangle();
     for (std::uint32_t face = 0; face < hull_.face_count; ++face) {
       // The last vertex of a box is at the positive end of every axis.
-      set_plane(face, hull_.faces[face].normal, vertex_[face / 2][7]);
+      set_plane(face, hull_.faces[face].normal.data(), vertex_[face / 2][7]);
     }
     return true;
   }
 
  private:
-  void begin(const double (*vertex)[3], std::uint32_t count, std::uint32_t dimension,
-             double rounding) {
+  template <typename Point>
+  void begin(const Point* vertex, std::uint32_t count, std::uint32_t dimension, double rounding) {
     hull_ = HullShape{};
     for (auto& column : plane_) {
       for (float& x : column) x = 0.0F;
@@ -204,10 +204,10 @@ class CoreHull {
       face_[1].normal[k] = -face_[0].normal[k];
     }
     for (std::uint32_t side = 0; side < 2; ++side) {
-      face_[side].offset = dot3(face_[side].normal, v[0]);
+      face_[side].offset = dot3(face_[side].normal.data(), v[0]);
       face_[side].first = 3 * side;
       face_[side].count = 3;
-      set_plane(side, face_[side].normal, face_[side].offset);
+      set_plane(side, face_[side].normal.data(), face_[side].offset);
     }
     return true;
   }

@@ -575,8 +575,8 @@ static inline double depth_along(const HullPair& pair, const double* normal) {
 
 /// The directions at the ends of an arc, in the first's frame, not normalized.
 static inline void arc_ends(const HullPair& pair, const HullArc& arc, double (*end)[3]) {
-  const double* n = pair.first->faces[arc.face[0]].normal;
-  const double* m = pair.first->faces[arc.face[1]].normal;
+  const double* n = pair.first->faces[arc.face[0]].normal.data();
+  const double* m = pair.first->faces[arc.face[1]].normal.data();
   for (int i = 0; i < 2; ++i) {
     for (int k = 0; k < 3; ++k) {
       end[i][k] = static_cast<double>(arc.s[i]) * n[k] + static_cast<double>(arc.t[i]) * m[k];
@@ -678,7 +678,7 @@ class HullTies {
   /// there is more to search than there is room for.
   bool around(std::uint32_t face, double depth) {
     const HullFace& f = pair_.first->faces[face];
-    return !has_ties(f.normal, f.offset - depth) || search_arcs(face, f.offset - depth);
+    return !has_ties(f.normal.data(), f.offset - depth) || search_arcs(face, f.offset - depth);
   }
 
   /// Searches an arc again on which a third vertex is nearer than the two that were found.
@@ -712,7 +712,7 @@ class HullTies {
   /// `least`: the height of the second's lowest vertices along the face's normal.
   [[gnu::noinline]] bool search_arcs(std::uint32_t face, double least) {
     const HullShape& hull = *pair_.first;
-    const double* normal = hull.faces[face].normal;
+    const double* normal = hull.faces[face].normal.data();
     double local[3];
     against(normal, local);
     double tied[3];
@@ -726,8 +726,8 @@ class HullTies {
       const std::uint32_t* sides = hull.edges[edge].face;
       const std::uint32_t other = sides[0] == face ? sides[1] : sides[0];
       vertex_at(hull, hull.edges[edge].vertex[0], mine_);
-      if (bounds_arc(middle, normal, hull.faces[other].normal)) continue;
-      if (!search_arc(edge, normal, hull.faces[other].normal)) return false;
+      if (bounds_arc(middle, normal, hull.faces[other].normal.data())) continue;
+      if (!search_arc(edge, normal, hull.faces[other].normal.data())) return false;
     }
     return true;
   }

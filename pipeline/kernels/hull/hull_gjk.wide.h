@@ -280,7 +280,7 @@ class HullSearch {
   /// The vector from the second's center to the first's: a point of their difference.
   static void start_direction(const HullPair& pair, float* d) {
     double middle[3];
-    turn3(pair.turn, pair.second->center, middle);
+    turn3(pair.turn, pair.second->center.data(), middle);
     for (int i = 0; i < 3; ++i) {
       d[i] = static_cast<float>(pair.first->center[i] - (middle[i] + pair.shift[i])) * pair.scale;
     }

@@ -192,7 +192,7 @@ static inline void finish_depth(const HullPair& pair, const HullDepth& found,
 static inline bool contains(const HullShape& hull, const double* x, double doubt) {
   for (std::uint32_t i = 0; i < hull.face_count; ++i) {
     const HullFace& face = hull.faces[i];
-    if (!(dot3(face.normal, x) - face.offset <= doubt)) return false;
+    if (!(dot3(face.normal.data(), x) - face.offset <= doubt)) return false;
   }
   return hull.dimension == 3;
 }
@@ -331,7 +331,7 @@ class HullPatch {
     double most = kFaceCosine;
     for (const std::uint32_t side : hull_.edges[index].face) {
       if (side >= hull_.face_count) continue;
-      const double cosine = dot3(hull_.faces[side].normal, outward_);
+      const double cosine = dot3(hull_.faces[side].normal.data(), outward_);
       if (!(cosine > most)) continue;
       most = cosine;
       best = side;
@@ -390,8 +390,8 @@ class HullPatch {
     if (hull_.dimension == 1) return use_only_edge(0);
     std::uint32_t best = 0;
     for (std::uint32_t i = 1; i < hull_.face_count; ++i) {
-      const bool better =
-          dot3(hull_.faces[i].normal, outward_) > dot3(hull_.faces[best].normal, outward_);
+      const bool better = dot3(hull_.faces[i].normal.data(), outward_) >
+                          dot3(hull_.faces[best].normal.data(), outward_);
       best = better ? i : best;
     }
     face(best);

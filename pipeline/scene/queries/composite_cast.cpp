@@ -16,7 +16,7 @@ class CompositeCast::PartSearch {
       : composite_(composite),
         stationary_(part),
         moving_{composite.cast_.shape, composite.cast_.pose} {
-    const TwoDiff apart = difference(part.pose.position, from);
+    const TwoDiff apart = difference(part.pose.position.data(), from);
     for (int i = 0; i < 3; ++i) {
       stationary_.pose.position[i] = apart.difference[i];
       moving_.pose.position[i] = -apart.rest[i];
@@ -42,7 +42,7 @@ class CompositeCast::PartSearch {
     CastPair pair;
     pair.moving = tables.put(0, thick);
     pair.from = own.pose;
-    std::copy_n(composite_.cast_.direction, 3, pair.direction);
+    pair.direction = composite_.cast_.direction;
     pair.stationary = tables.put(1, stationary_);
     pair.pose = stationary_.pose;
     return pair;

@@ -23,12 +23,12 @@ MovingBox moving_box_from(const LinearCast& linear_cast, const double from[3], d
   const mid::Box3& extent = linear_cast.extent();
   const double reach = start.cwiseAbs().maxCoeff() + extent.largest();
   MovingBox moving_box = stationary(extent.moved(start).grown(kCastBoxGrowth * reach + more));
-  std::copy_n(linear_cast.direction(), 3, moving_box.direction);
+  moving_box.direction = Vec3d(linear_cast.direction());
   moving_box.max_t = limit;
   return moving_box;
 }
 
-CastContact contact_at(const ShapeRay& ray, double t, const double (&normal)[3]) noexcept {
+CastContact contact_at(const ShapeRay& ray, double t, const Vec3d& normal) noexcept {
   CastContact contact;
   contact.t = t;
   for (int i = 0; i < 3; ++i) {
@@ -44,7 +44,7 @@ CastContact contact_of(const CastTouch& touch) noexcept {
   CastContact contact;
   contact.t = touch.t;
   contact.overlaps_at_start = touch.overlaps_at_start;
-  std::copy_n(touch.normal, 3, contact.normal);
+  contact.normal = touch.normal;
   return contact;
 }
 
@@ -53,7 +53,7 @@ void describe_contact(const ShapeTables& tables, const CastPair& pair, const Sub
   CastTouch touch;
   touch.t = contact.t;
   touch.overlaps_at_start = contact.overlaps_at_start;
-  std::copy_n(contact.normal, 3, touch.normal);
+  touch.normal = contact.normal;
   describe_touch(tables, pair, touch);
   for (int i = 0; i < 3; ++i) {
     contact.normal[i] = touch.normal[i];
@@ -87,7 +87,7 @@ RayCast::RayCast(const ShapePool& shapes, const ShapeRay& ray) noexcept
 bool RayCast::find_contact(const double from[3], const SubShape& part, double limit,
                            const EarlierContacts& /*known*/, CastContact& contact) const noexcept {
   ShapeRay ray = ray_;
-  std::copy_n(from, 3, ray.origin);
+  ray.origin = Vec3d(from);
   ShapeHit hit;
   if (!enters(shapes_, ray, part, hit)) return false;
   contact = contact_at(ray, hit.t, hit.normal);
@@ -110,9 +110,9 @@ bool ConvexCast::passes_by(const double from[3], const SubShape& part, double li
   if (!is_unrotated(part)) return false;
   Vector3d corner[3];
   Vector3d side[3];
-  for (int k = 0; k < 3; ++k) corner[k] = Vector3d::Map(part.triangle->vertex[k]);
+  for (int k = 0; k < 3; ++k) corner[k] = as_eigen(part.triangle->vertex[k]);
   for (int k = 0; k < 3; ++k) side[k] = corner[(k + 1) % 3] - corner[k];
-  const Vector3d start = Vector3d::Map(from) - Vector3d::Map(part.pose.position);
+  const Vector3d start = Vector3d::Map(from) - as_eigen(part.pose.position);
   const Vector3d way = Vector3d::Map(direction());
   const double size = start.cwiseAbs().sum() + extent().min.cwiseAbs().sum() +
                       extent().max.cwiseAbs().sum() + corner[0].cwiseAbs().sum() +
@@ -151,8 +151,8 @@ CastPair ConvexCast::pair(PartTables& tables, const double from[3],
   CastPair pair;
   pair.moving = tables.put(0, {cast_.shape, cast_.pose});
   pair.from = cast_.pose;
-  std::copy_n(from, 3, pair.from.position);
-  std::copy_n(cast_.direction, 3, pair.direction);
+  pair.from.position = Vec3d(from);
+  pair.direction = cast_.direction;
   SubShape thick = part;
   thick.thickness = corner_error(part);
   pair.stationary = tables.put(1, thick);
@@ -167,13 +167,13 @@ mid::Box3 ConvexCast::box_at(const double from[3]) const noexcept {
 // The plane of an earlier contact bounds the shape at t = limit. The shape approaches this plane,
 // so it is in front of the plane at all earlier times too and does not reach a triangle behind it.
 bool ConvexCast::is_beyond(const SubShape& part, const CastContact& before) const noexcept {
-  const Vector3d normal = Vector3d::Map(before.normal);
+  const Vector3d normal = as_eigen(before.normal);
   if (!is_unrotated(part)) return false;
-  const Vector3d position = Vector3d::Map(part.pose.position);
+  const Vector3d position = as_eigen(part.pose.position);
   double top = -mid::kInfinity;
   double size = 0.0;
   for (const auto& corner : part.triangle->vertex) {
-    const Vector3d at = position + Vector3d::Map(corner);
+    const Vector3d at = position + as_eigen(corner);
     top = std::max(top, normal.dot(at));
     size = std::max(size, at.cwiseAbs().sum());
   }
@@ -185,12 +185,12 @@ bool ConvexCast::is_beside(const double from[3], const SubShape& part,
   if (!is_unrotated(part)) return false;
   const Vector3d way = Vector3d::Map(direction());
   // Relative to the shape's position at t = limit.
-  const Vector3d to_part = Vector3d::Map(part.pose.position) - Vector3d::Map(from) - limit * way;
+  const Vector3d to_part = as_eigen(part.pose.position) - Vector3d::Map(from) - limit * way;
   Vector3d corner[3];
   double size = extent().min.cwiseAbs().sum() + extent().max.cwiseAbs().sum() +
                 Vector3d::Map(from).cwiseAbs().sum() + limit * way.cwiseAbs().sum();
   for (int k = 0; k < 3; ++k) {
-    corner[k] = to_part + Vector3d::Map(part.triangle->vertex[k]);
+    corner[k] = to_part + as_eigen(part.triangle->vertex[k]);
     size = std::max(size, corner[k].cwiseAbs().sum());
   }
   const Vector3d axis =
@@ -202,7 +202,7 @@ bool ConvexCast::is_beside(const double from[3], const SubShape& part,
 }
 
 void ConvexCast::set_height(const double from[3], CastContact& contact) const noexcept {
-  const Vector3d normal = Vector3d::Map(contact.normal);
+  const Vector3d normal = as_eigen(contact.normal);
   const Vector3d way = Vector3d::Map(direction());
   const Vector3d start = Vector3d::Map(from);
   const double closing = -normal.dot(way);
@@ -235,7 +235,7 @@ bool ConvexCast::find_contact(const double from[3], const SubShape& part, double
   cast_pair.max_t = limit;
   cast_pair.free_until = free_until;
   if (before != nullptr && !before->overlaps_at_start)
-    std::copy_n(before->normal, 3, cast_pair.separating_direction);
+    cast_pair.separating_direction = before->normal;
   if (known.resting != nullptr &&
       CastMotions(cast_pair, max_t()).part(tables.tables(), *known.resting)) {
     return false;
@@ -264,11 +264,11 @@ void BodyContact::note_contacts(const SubShapeQuery& parts, const LinearCast& li
                                 const PlacedShape& placed,
                                 impact::RestingContacts& resting) const noexcept {
   auto record = [&](const SubShape& part, double most) {
-    linear_cast.note_contact(from_, part, resting);
+    linear_cast.note_contact(from_.data(), part, resting);
     return most;
   };
-  parts.visit_parts(placed, moving_box_from(linear_cast, from_, 0.0, linear_cast.tolerance()),
-                    record);
+  parts.visit_parts(
+      placed, moving_box_from(linear_cast, from_.data(), 0.0, linear_cast.tolerance()), record);
 }
 
 bool BodyContact::find(const SubShapeQuery& parts, const ShapeRay& ray, const PlacedShape& body,
@@ -277,7 +277,7 @@ bool BodyContact::find(const SubShapeQuery& parts, const ShapeRay& ray, const Pl
   parts.cast_rays(body, {&ray, 1}, &limit, any, nullptr, &hit);
   if (!hit.found) return false;
   ShapeRay own = ray;
-  std::copy_n(from_, 3, own.origin);
+  own.origin = from_;
   take({body.shape, body.pose, hit.part}, contact_at(own, hit.t, hit.normal));
   return true;
 }
@@ -289,19 +289,20 @@ bool BodyContact::find(const SubShapeQuery& parts, const LinearCast& linear_cast
                                   impact::StartTouch::impact_unless_sliding);
   const impact::RestingContacts* const at_rest = linear_cast.hits_at_start() ? nullptr : &resting;
   if (!body.shape.is_composite()) {
-    std::copy_n(linear_cast.start(), 3, from_);
-    std::fill_n(base_, 3, 0.0);
+    from_ = Vec3d(linear_cast.start());
+    base_ = {};
     const SubShape whole{body.shape, body.pose};
-    if (at_rest != nullptr) linear_cast.note_contact(from_, whole, resting);
-    if (!linear_cast.find_contact(from_, whole, limit, {nullptr, at_rest}, contact)) return false;
+    if (at_rest != nullptr) linear_cast.note_contact(from_.data(), whole, resting);
+    if (!linear_cast.find_contact(from_.data(), whole, limit, {nullptr, at_rest}, contact))
+      return false;
     take(whole, contact);
     return true;
   }
   // The sweep is computed relative to the body, so that parts keep full precision far from the
   // origin. The rounding error of the difference is added to the pose, where it is small.
-  std::copy_n(body.pose.position, 3, base_);
-  const TwoDiff start = difference(linear_cast.start(), base_);
-  std::copy_n(start.difference, 3, from_);
+  base_ = body.pose.position;
+  const TwoDiff start = difference(linear_cast.start(), base_.data());
+  from_ = start.difference;
   if (linear_cast.ray() != nullptr) return find(parts, *linear_cast.ray(), body, limit, any);
   PlacedShape placed = body;
   for (int i = 0; i < 3; ++i) placed.pose.position[i] = -start.rest[i];
@@ -317,9 +318,10 @@ bool BodyContact::find(const SubShapeQuery& parts, const LinearCast& linear_cast
   auto test_part = [&](const SubShape& part, double most) {
     most = std::min(most, limit);
     const LinearCast::EarlierContacts known{found ? &contact_ : nullptr, at_rest};
-    return linear_cast.find_contact(from_, part, most, known, contact) ? improve(part) : most;
+    return linear_cast.find_contact(from_.data(), part, most, known, contact) ? improve(part)
+                                                                              : most;
   };
-  parts.visit_parts(placed, moving_box_from(linear_cast, from_, limit), test_part);
+  parts.visit_parts(placed, moving_box_from(linear_cast, from_.data(), limit), test_part);
   return found;
 }
 
@@ -327,7 +329,7 @@ SceneHit BodyContact::hit(const LinearCast& linear_cast) const noexcept {
   SubShape part = part_;
   if (part.triangle != nullptr) part.triangle = &triangle_;
   CastContact contact = contact_;
-  linear_cast.describe(from_, part, contact);
+  linear_cast.describe(from_.data(), part, contact);
   SceneHit hit;
   hit.t = contact.t;
   hit.part = part.part;

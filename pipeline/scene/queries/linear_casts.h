@@ -16,8 +16,8 @@ struct CastContact {
   double t = 0.0;
   /// For shapes: the normal of a separating plane, until `LinearCast::describe` replaces it with
   /// the surface normal.
-  double normal[3] = {0.0, 0.0, 0.0};
-  double point[3] = {0.0, 0.0, 0.0};
+  Vec3d normal{};
+  Vec3d point{};
   bool overlaps_at_start = false;
   /// For shapes: a lower bound on the shape's height above the origin at time t, along the normal.
   double height = 0.0;
@@ -92,15 +92,15 @@ class LinearCast {
  protected:
   LinearCast(const mid::Box3& extent, const ShapeCast& cast, double tolerance) noexcept
       : extent_(extent),
-        start_(cast.pose.position),
-        direction_(cast.direction),
+        start_(cast.pose.position.data()),
+        direction_(cast.direction.data()),
         max_t_(cast.max_t),
         tolerance_(tolerance),
         hits_at_start_(cast.touching) {}
   explicit LinearCast(const ShapeRay& ray) noexcept
       : extent_{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()},
-        start_(ray.origin),
-        direction_(ray.direction),
+        start_(ray.origin.data()),
+        direction_(ray.direction.data()),
         max_t_(ray.max_t) {}
 
  private:
@@ -191,8 +191,8 @@ class BodyContact {
   SubShape part_;
   TriangleShape triangle_;
   /// Start of the cast, relative to the body's position; and the body's position in the world.
-  double from_[3] = {0.0, 0.0, 0.0};
-  double base_[3] = {0.0, 0.0, 0.0};
+  Vec3d from_{};
+  Vec3d base_{};
 };
 
 }  // namespace winnow

@@ -82,8 +82,8 @@ inline void RayGroup<Room>::fill_in(std::size_t i, const BodyRayHit& at,
   hit.part = at.part;
   hit.t = at.t;
   // Summed in an order that keeps precision for distant bodies.
-  const double* const base = state_.scene.pose[at.body].position;
-  const TwoDiff from = difference(rays_[i].origin, base);
+  const double* const base = state_.scene.pose[at.body].position.data();
+  const TwoDiff from = difference(rays_[i].origin.data(), base);
   for (int k = 0; k < 3; ++k) {
     hit.normal[k] = at.normal[k];
     hit.point[k] = base[k] + (from.difference[k] + at.t * rays_[i].direction[k]);

@@ -30,9 +30,9 @@ bool has_lesser_id(const SceneDistance& a, const SceneDistance& b) noexcept {
 /// within this distance are tested.
 class NearestBodiesQuery {
  public:
-  NearestBodiesQuery(QueryState& state, const double* point, const Filter& filter) noexcept
+  NearestBodiesQuery(QueryState& state, const Vec3d& point, const Filter& filter) noexcept
       : state_(state), filter_(filter) {
-    std::copy_n(point, 3, from_.pose.position);
+    from_.pose.position = point;
     // Clamping to the range of float makes no box farther away.
     constexpr auto kMaxFloat = static_cast<double>(std::numeric_limits<float>::max());
     const Vector3d& origin = state.scene.origin;
@@ -196,7 +196,7 @@ Status SceneQueries::overlap(ShapeId shape, const Pose& pose, std::span<const Sc
   return Status::ok;
 }
 
-Status SceneQueries::nearest(const double point[3], std::size_t count, double radius,
+Status SceneQueries::nearest(const Vec3d& point, std::size_t count, double radius,
                              std::span<const SceneDistance>& bodies, const Filter& filter) {
   const DefaultFloatEnvironment environment;
   if (const Status status = QueryState::check_state(state_); status != Status::ok) return status;

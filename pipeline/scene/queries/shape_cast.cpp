@@ -39,12 +39,12 @@ constexpr std::uint32_t kMaxSeparationSamples = 256;
 class Path {
  public:
   explicit Path(const CastPair& pair) noexcept {
-    const Vec direction = Vec::Map(pair.direction);
+    const Vec direction = as_eigen(pair.direction);
     std::frexp(direction.cwiseAbs().maxCoeff(), &exponent_);
     for (int i = 0; i < 3; ++i) {
       step_[i] = std::ldexp(direction[i], -exponent_);
     }
-    const TwoDiff apart = difference(pair.pose.position, pair.from.position);
+    const TwoDiff apart = difference(pair.pose.position.data(), pair.from.position.data());
     between_ = Vec::Map(apart.difference);
     lost_ = Vec::Map(apart.rest);
     speed_ = step_.norm();
@@ -116,7 +116,7 @@ class Advancement {
     touch.steps = steps_;
     if (!hit) return false;
     touch.t = std::min(path_.shown(free_until_), pair_.max_t);
-    Vec::Map(touch.normal) = -normal_;
+    as_eigen(touch.normal) = -normal_;
     touch.overlaps_at_start = overlap_at_start_;
     return true;
   }
@@ -164,9 +164,9 @@ void Advancement::prepare_at(double t) noexcept {
   is_prepared_ = true;
   Pose moving;
   Pose stationary;
-  std::copy_n(pair_.from.orientation, 4, moving.orientation);
-  std::copy_n(pair_.pose.orientation, 4, stationary.orientation);
-  Vec::Map(stationary.position) = offset;
+  moving.orientation = pair_.from.orientation;
+  stationary.orientation = pair_.pose.orientation;
+  as_eigen(stationary.position) = offset;
   if (mirrored_) {
     prepare(tables_, pair_.stationary, stationary, pair_.moving, moving, true, problem_);
   } else {
@@ -235,7 +235,7 @@ bool Advancement::touches_at_start() noexcept {
   overlap_at_start_ = solve(ContactLevel::boolean).overlap;
   if (overlap_at_start_) return true;
   const PairAnswer apart = solve(ContactLevel::distance);
-  return Vec::Map(apart.normal).dot(path_.step()) > 4.0 * kEpsilon * path_.speed();
+  return as_eigen(apart.normal).dot(path_.step()) > 4.0 * kEpsilon * path_.speed();
 }
 
 /// Returns the next sample time: slightly beyond the time that is known to be free; beyond it by
@@ -255,7 +255,7 @@ double Advancement::next(std::uint32_t step) const noexcept {
 /// True if a plane with the normal `separating_direction` separates the pair at the end, while they
 /// approach along it.
 bool Advancement::is_free_to_end() noexcept {
-  const Vec separating_direction = Vec::Map(pair_.separating_direction);
+  const Vec separating_direction = as_eigen(pair_.separating_direction);
   if (separating_direction.isZero(0.0) || !(path_.end() < kInfinity)) return false;
   normal_ = -separating_direction;
   const SeparationSample found = sample(path_.end(), true);
@@ -306,9 +306,9 @@ void Advancement::describe(CastTouch& touch) noexcept {
   const Vec normal = mirrored_ ? found.axis : Vec(-found.axis);
   // For shapes that almost touch, another axis may be as good; keep the known one if this one is
   // not opposed to the motion.
-  const bool is_known = !Vec::Map(touch.normal).isZero(0.0);
+  const bool is_known = !as_eigen(touch.normal).isZero(0.0);
   if (!touch.overlaps_at_start && normal.dot(path_.step()) >= 0.0 && is_known) return;
-  Vec::Map(touch.normal) = normal;
+  as_eigen(touch.normal) = normal;
 }
 
 }  // namespace

@@ -12,7 +12,7 @@ struct CastPair {
   ShapeId moving;
   Pose from;
   /// Finite, not zero, of any length.
-  double direction[3] = {1.0, 0.0, 0.0};
+  Vec3d direction = {1.0, 0.0, 0.0};
   /// Not negative; may be infinite.
   double max_t = 1.0;
   ShapeId stationary;
@@ -22,7 +22,7 @@ struct CastPair {
   /// A candidate for a separating direction, or zero: the normal of the plane that separates the
   /// moving shape at max_t from another part that it touches there. If a plane with this normal
   /// separates the pair at max_t, and they approach along it, they do not touch before.
-  double separating_direction[3] = {0.0, 0.0, 0.0};
+  Vec3d separating_direction{};
 };
 
 struct CastTouch {
@@ -30,9 +30,9 @@ struct CastTouch {
   double t = 0.0;
   /// Unit vector from the fixed shape to the moving one. Before `describe_touch`: the normal of a
   /// plane that separated the shapes shortly before the touch, or zero.
-  double normal[3] = {0.0, 0.0, 0.0};
+  Vec3d normal{};
   /// On the fixed shape, relative to its position, in world axes. Set by `describe_touch`.
-  double point[3] = {0.0, 0.0, 0.0};
+  Vec3d point{};
   /// The shapes overlap at the start.
   bool overlaps_at_start = false;
   /// Number of distance computations.

@@ -41,7 +41,7 @@ struct Pairing {
 
   Pairing(const PlacedShape& first, const PlacedShape& second) noexcept : a(first), b(second) {
     if (!a.shape.is_composite() && !b.shape.is_composite()) return;
-    std::copy_n(a.pose.position, 3, base);
+    std::copy_n(a.pose.position.data(), 3, base);
     b.pose = relative(b.pose, base);
     a.pose = relative(a.pose, base);
   }
@@ -54,11 +54,11 @@ struct Pairing {
   using mid::Vec;
   if (!is_unrotated(triangle)) return false;
   const TriangleShape& shape = *triangle.triangle;
-  const Vec first = Vec::Map(shape.vertex[0]);
-  const Vec ab = Vec::Map(shape.vertex[1]) - first;
-  const Vec ac = Vec::Map(shape.vertex[2]) - first;
-  const Vec at = Vec::Map(ball.pose.position);
-  const Vec corner = Vec::Map(triangle.pose.position);
+  const Vec first = as_eigen(shape.vertex[0]);
+  const Vec ab = as_eigen(shape.vertex[1]) - first;
+  const Vec ac = as_eigen(shape.vertex[2]) - first;
+  const Vec at = as_eigen(ball.pose.position);
+  const Vec corner = as_eigen(triangle.pose.position);
   const Vec from = (at - corner) - first;
   const Vec axis = mid::direction_to(from, ab, ac);
   const double gap = axis.dot(from) - std::max({0.0, axis.dot(ab), axis.dot(ac)});
@@ -127,7 +127,7 @@ class ClosestParts {
   bool find(SubShape first, PlacedShape second, double limit, SceneDistance& answer) noexcept {
     double base[3] = {0.0, 0.0, 0.0};
     if (second.shape.is_composite()) {
-      std::copy_n(first.pose.position, 3, base);
+      std::copy_n(first.pose.position.data(), 3, base);
       second.pose = relative(second.pose, base);
       first.pose = relative(first.pose, base);
     }
@@ -140,12 +140,13 @@ class ClosestParts {
  private:
   bool find_parts(const Pairing& pair, double limit, SceneDistance& answer) noexcept {
     begin(pair.base, limit, answer);
-    std::fill_n(answer.normal, 3, 0.0);
+    answer.normal = {};
     auto test_and_limit = [&](const SubShape& a, const SubShape& b, double) {
       test_pair(a, b);
       return reach();
     };
-    if (parts_.near_pairs(pair.a, pair.b, reach(), answer.normal, test_and_limit)) return found_;
+    if (parts_.near_pairs(pair.a, pair.b, reach(), answer.normal.data(), test_and_limit))
+      return found_;
     // If a is a single part, the box of b is not needed; for a compound it would visit all
     // children.
     if (!pair.a.shape.is_composite()) {

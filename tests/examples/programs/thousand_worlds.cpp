@@ -104,7 +104,7 @@ class BulletWorld {
 
   void collide(const Heaps& heaps) {
     for (std::size_t i = 0; i < kBodies; ++i) {
-      const double* const p = heaps.poses[first_body_ + i].position;
+      const winnow::Vec3d& p = heaps.poses[first_body_ + i].position;
       bodies_[i].getWorldTransform().setOrigin(
           {static_cast<btScalar>(p[0]), static_cast<btScalar>(p[1]), static_cast<btScalar>(p[2])});
     }

@@ -65,10 +65,10 @@ void bodies_and_contacts() {
   // [contacts]
   winnow::Contacts contacts;  // keep it from frame to frame
   scene.collide(winnow::ContactLevel::manifold, contacts);
-  for (std::size_t i = 0; i < contacts.size(); ++i) {  // pairs of bodies that touch
-    for (auto m = contacts.manifold_first()[i]; m < contacts.manifold_first()[i + 1]; ++m) {
-      for (auto p = contacts.point_first()[m]; p < contacts.point_first()[m + 1]; ++p) {
-        push(contacts.a()[i], contacts.b()[i], contacts.normal(2)[m], contacts.contact(p).depth);
+  for (const winnow::ContactPair& pair : contacts) {  // pairs of bodies that touch
+    for (const winnow::ContactManifold& manifold : pair) {
+      for (const winnow::ContactPoint& point : manifold) {
+        push(pair.a(), pair.b(), manifold.normal().z(), point.depth);
       }
     }
   }
