@@ -11,8 +11,6 @@ WINNOW_PYTHON_PACKAGES=(pybind11-dev python3-dev python3-numpy)
 WINNOW_PYTHON_TEST_PACKAGES=(python3-pytest python3-hypothesis python3-venv mypy python3-mpi4py)
 # Clusters over MPI, and Zoltan, which divides space for them.
 WINNOW_CLUSTER_PACKAGES=(libopenmpi-dev openmpi-bin libtrilinos-zoltan-dev)
-# Mesh files for `winnow simulate`.
-WINNOW_MESH_PACKAGES=(libassimp-dev)
 # Required by bench/site/build: mkdocs with Pygments for pages, and Doxygen for the reference.
 WINNOW_SITE_PACKAGES=(mkdocs python3-pygments doxygen)
 # The spell checker of the test house_spelling.

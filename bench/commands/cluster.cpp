@@ -4,9 +4,8 @@
 
 #include "bench/commands/command.h"
 #include "bench/commands/options.h"
+#include "bench/commands/run_json.h"
 #include "bench/common/arena.h"
-#include "bench/common/json.h"
-#include "bench/common/sample.h"
 #include "bench/common/table.h"
 #include "bench/contenders/partitions.h"
 #include "bench/measure/cluster_run.h"
@@ -27,7 +26,6 @@
 namespace winnow::bench {
 namespace {
 
-constexpr std::size_t kClusterFrames = 30;
 /// Names of the values of ContactLevel.
 constexpr std::array<const char*, 4> kContactLevelNames{"pairs", "boolean", "distance", "manifold"};
 
@@ -35,7 +33,7 @@ struct ClusterCommand {
   Target target;
   std::uint32_t ranks = 2;
   std::uint32_t virtual_ranks = 0;  // 0: processes
-  std::size_t frames = 0;           // 0: all of a recording, kClusterFrames of a scene
+  std::size_t frames = 0;           // see Target::frames
   std::string level;                // empty: pairs of boxes only
   std::string json;
   std::string isa;
@@ -72,38 +70,23 @@ std::string digits_of(const ClusterDigest& digest) {
 }
 
 /// Returns the members that `replay` writes for a run, and the traffic and balance of the ranks.
-Json cluster_json(const ClusterRun& run, const std::string& scene, std::size_t objects, int threads,
+Json cluster_json(const ClusterRun& run, const std::string& scene, std::size_t objects,
                   bool is_virtual, const std::string& level) {
-  using Frame = const ClusterFrame&;
-  const auto ms = run.each([](Frame frame) { return frame.frame_ms; });
-  const Spread spread = spread_of(std::span(ms).subspan(ms.size() > 1 ? 1 : 0));
-  return {{"scene", scene},
-          {"objects", objects},
-          {"frames", run.frames.size()},
-          {"partition", "LinearBvh"},
-          {"ranks", run.ranks},
-          {"virtual", is_virtual},
-          {"level", level.empty() ? "boxes" : level},
-          {"threads", threads},
-          {"isa", isa_name()},
-          {"build_ms", ms.front()},
-          {"min_ms", spread.min},
-          {"median_ms", spread.median},
-          {"max_ms", spread.max},
-          {"frame_ms", ms},
-          {"update_ms", run.each([](Frame frame) { return frame.update_ms; })},
-          {"pairs", run.each([](Frame frame) { return frame.pairs.pairs; })},
-          {"reported", run.each([](Frame frame) { return frame.pairs.reported; })},
-          {"fingerprint", run.each([](Frame frame) { return to_hex(frame.pairs.fingerprint); })},
-          {"digest", run.each([](Frame frame) { return digits_of(frame.digest); })},
-          {"ghosts", run.each([](Frame frame) { return frame.statistics.ghosts; })},
-          {"sent_bytes", run.each([](Frame frame) { return frame.statistics.bytes; })},
-          {"messages", run.each([](Frame frame) { return frame.statistics.messages; })},
-          {"migrated", run.each([](Frame frame) { return frame.statistics.migrated; })},
-          {"imbalance", run.each([](Frame frame) { return frame.statistics.imbalance; })},
-          {"cuts", run.frames.back().statistics.cuts},
-          {"bytes", run.bytes},
-          {"bytes_per_object", static_cast<double>(run.bytes) / static_cast<double>(objects)}};
+  Json json = run_json(run, scene, objects);
+  const auto each = [&](auto ClusterStatistics::*member) {
+    return list_of(run.statistics, [&](const ClusterStatistics& frame) { return frame.*member; });
+  };
+  json.update({{"ranks", run.ranks},
+               {"virtual", is_virtual},
+               {"level", level.empty() ? "boxes" : level},
+               {"digest", list_of(run.digests, digits_of)},
+               {"ghosts", each(&ClusterStatistics::ghosts)},
+               {"sent_bytes", each(&ClusterStatistics::bytes)},
+               {"messages", each(&ClusterStatistics::messages)},
+               {"migrated", each(&ClusterStatistics::migrated)},
+               {"imbalance", each(&ClusterStatistics::imbalance)},
+               {"cuts", run.statistics.back().cuts}});
+  return json;
 }
 
 std::optional<ContactLevel> ClusterCommand::contact_level() const {
@@ -157,36 +140,34 @@ void ClusterCommand::start_ranks() const {
 void ClusterCommand::run_over(Transport& transport, bool is_virtual) const {
   const NamedScene scene = target.named();
   const auto source = target.source(scene);
-  const std::size_t frame_count = frames != 0            ? frames
-                                  : scene.is_recording() ? scene.recording->frames.size()
-                                                         : kClusterFrames;
   ClusterRun result;
   Arenas(threads).run(threads, [&] {
-    result =
-        run_cluster(*source, transport, {frame_count, contact_level()}, execution_for(threads));
+    result = run_cluster(*source, transport, {Target::frames(scene, frames), contact_level()},
+                         execution_for(threads));
   });
+  result.threads = threads;
   if (transport.first_hosted() != 0) return;
   print(result, source->name(), source->objects());
-  write_json(json, Json::array({cluster_json(result, source->name(), source->objects(), threads,
-                                             is_virtual, level)}));
+  write_json(
+      json,
+      Json::array({cluster_json(result, source->name(), source->objects(), is_virtual, level)}));
 }
 
 void ClusterCommand::print(const ClusterRun& run, const std::string& scene,
                            std::size_t objects) const {
-  const ClusterFrame& last = run.frames.back();
+  const ClusterStatistics& last = run.statistics.back();
   const double per_body = 1.0 / static_cast<double>(objects);
-  std::cout << scene << ", " << grouped(objects) << " objects, " << run.frames.size() << " frames, "
-            << run.ranks << (virtual_ranks != 0 ? " virtual ranks, " : " ranks, ")
+  std::cout << scene << ", " << grouped(objects) << " objects, " << run.frame_ms.size()
+            << " frames, " << run.ranks << (virtual_ranks != 0 ? " virtual ranks, " : " ranks, ")
             << threads_text(threads) << ", " << isa_name() << '\n';
   Table table({"ranks", "first ms", "frame ms", "pairs", "ghosts", "sent bytes", "messages",
                "imbalance", "cuts", "bytes/object"});
-  table.add({std::to_string(run.ranks), short_number(run.frames.front().frame_ms),
-             short_number(run.median_ms()), grouped(last.pairs.pairs),
-             percent(static_cast<double>(last.statistics.ghosts) * per_body),
-             grouped(last.statistics.bytes), grouped(last.statistics.messages),
-             short_number(last.statistics.imbalance), std::to_string(last.statistics.cuts),
+  table.add({std::to_string(run.ranks), short_number(run.frame_ms.front()),
+             short_number(run.frame_spread().median), grouped(last.pairs),
+             percent(static_cast<double>(last.ghosts) * per_body), grouped(last.bytes),
+             grouped(last.messages), short_number(last.imbalance), std::to_string(last.cuts),
              short_number(static_cast<double>(run.bytes) * per_body)});
-  std::cout << table << "of the last frame; digest " << digits_of(last.digest) << '\n';
+  std::cout << table << "of the last frame; digest " << digits_of(run.digests.back()) << '\n';
 }
 
 }  // namespace

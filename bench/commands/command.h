@@ -53,7 +53,6 @@ void add_scenes(CLI::App& app);
 
 // Subcommands of `winnow dev`.
 void add_fit(CLI::App& app);
-void add_trust(CLI::App& app);
 /// Adds the commands that only measure rows.
 void add_measurements(CLI::App& app);
 

@@ -5,7 +5,6 @@
 #include "bench/commands/options.h"
 #include "bench/common/table.h"
 #include "bench/measure/cost_fit.h"
-#include "bench/measure/figures_check.h"
 #include "bench/measure/race.h"
 #include "bench/scenes/scene.h"
 
@@ -25,7 +24,6 @@ struct Fit {
   std::size_t frames = 0;
   std::string isa;
   bool only_checks = false;
-  std::string figures;
 
   void add_options(CLI::App& app);
   int run();
@@ -40,10 +38,6 @@ void Fit::add_options(CLI::App& app) {
   add_isa_option(app, isa);
   app.add_flag("--check", only_checks,
                "Evaluate the present constants instead of fitting new ones");
-  app.add_option("--figures", figures,
-                 "Evaluate the choice by times measured elsewhere: a CSV file with the columns "
-                 "scene, objects, threads, kind, median_ms")
-      ->check(CLI::ExistingFile);
 }
 
 std::vector<CostSample> Fit::measured() const {
@@ -85,61 +79,39 @@ void print_costs(const FittedCosts& fitted) {
   }
 }
 
-/// Ratios of the time of the chosen partition to the time of the best one: median and maximum, by
-/// number of objects.
-class Regrets {
- public:
-  void add(std::size_t objects, double regret, const std::string& where) {
-    std::vector<double>& all = by_size_[objects];
-    if (all.empty() || regret > *std::max_element(all.begin(), all.end())) worst_[objects] = where;
-    all.push_back(regret);
-  }
-
-  void print(const std::string& title) {
-    Table table({"objects", "median", "worst", "where"});
-    table.flush_left(3);
-    for (auto& [size, all] : by_size_) {
-      table.add({grouped(size), short_number(median_of(all)),
-                 short_number(*std::max_element(all.begin(), all.end())), worst_[size]});
-    }
-    std::cout << title << '\n' << table << '\n';
-  }
-
- private:
-  std::map<std::size_t, std::vector<double>> by_size_;
-  std::map<std::size_t, std::string> worst_;
-};
-
+/// Prints the ratios of the time of the chosen partition to the time of the best one: median and
+/// maximum, by number of objects.
 void print_regret(const std::vector<CostSample>& samples, const std::vector<StructureCosts>& costs,
                   const std::string& title) {
-  Regrets regrets;
+  struct Regrets {
+    std::vector<double> all;
+    double worst = 0.0;
+    std::string where;
+  };
+  std::map<std::size_t, Regrets> by_size;
   for (const CostSample& sample : samples) {
     std::size_t chosen = 0;
     std::size_t best = 0;
     const double regret = regret_of(sample, costs, chosen, best);
-    regrets.add(sample.features.objects, regret,
-                sample.scene + ", " + short_number(100.0 * sample.moving) +
+    Regrets& of_size = by_size[sample.features.objects];
+    of_size.all.push_back(regret);
+    if (regret <= of_size.worst) continue;
+    of_size.worst = regret;
+    of_size.where = sample.scene + ", " + short_number(100.0 * sample.moving) +
                     " % move: " + std::string(candidates()[chosen].name()) + " for " +
-                    std::string(candidates()[best].name()));
+                    std::string(candidates()[best].name());
   }
-  regrets.print(title);
-}
-
-void print_check(const std::string& figures, std::size_t frames) {
-  constexpr std::size_t kFrames = 16;
-  Regrets regrets;
-  for (const FigureCheck& one : check_figures(figures, frames != 0 ? frames : kFrames)) {
-    regrets.add(one.objects, one.times_best, one.scene + ": " + one.chosen + " for " + one.best);
+  Table table({"objects", "median", "worst", "where"});
+  table.flush_left(3);
+  for (const auto& [size, regrets] : by_size) {
+    table.add({grouped(size), short_number(median_of(regrets.all)), short_number(regrets.worst),
+               regrets.where});
   }
-  regrets.print("chosen structure / best structure, by " + figures);
+  std::cout << title << '\n' << table << '\n';
 }
 
 int Fit::run() {
   choose_isa(isa);
-  if (!figures.empty()) {
-    print_check(figures, frames);
-    return kDone;
-  }
   const std::vector<CostSample> samples = measured();
   print_regret(samples, present_costs(), "chosen structure / best structure, present constants");
   if (only_checks) return kDone;

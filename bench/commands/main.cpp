@@ -38,7 +38,6 @@ void add_commands(CLI::App& app) {
                                       "Measures single parts, and checks winnow and its "
                                       "documents: `winnow dev --help` lists the commands");
   add_fit(dev);
-  add_trust(dev);
   add_measurements(dev);
   dev.group("For work on winnow");  // commands that are added later would inherit it
   for (CLI::App* const group : {&app, &dev}) {

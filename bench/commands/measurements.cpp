@@ -4,69 +4,55 @@
 #include "bench/commands/options.h"
 #include "bench/commands/rows_command.h"
 #include "bench/common/table.h"
-#include "bench/contenders/partitions.h"
 #include "bench/measure/footprint.h"
 #include "bench/rows/machine.h"
 #include "bench/rows/rows.h"
 #include "bench/scenes/scene.h"
 
-#include <functional>
 #include <memory>
 
 namespace winnow::bench {
 namespace {
 
-/// Base of commands that measure partitions on several scenes, sizes and numbers of threads.
-class ScenesCommand : public RowsCommand {
- public:
-  void add_options(CLI::App& app) {
-    option(app, "--scene", scenes_,
-           "Scenes, or files of recordings (.aabbs or .winnow, also compressed as .xz), which have "
-           "a fixed number of objects");
-    add_objects_option(app, objects_, "Numbers of objects");
-    add_partitions_option(app, partitions_);
-    add_threads_option(app, threads_, "Numbers of threads");
-    add_seed_option(app, seed_);
-    add_rows_options(app);
-  }
-
- protected:
-  ScenesCommand(std::vector<std::string> scenes, std::vector<int> threads)
-      : scenes_(std::move(scenes)), threads_(std::move(threads)) {}
-
-  /// Adds the steps of one scene and size; the titles of the steps start with `what`.
-  virtual void measure_scene(const std::string& what, const NamedScene& scene,
-                             std::size_t objects) = 0;
-
-  void measure_all() {
-    const std::vector<NamedScene> scenes = named_scenes(scenes_);
-    plan(objects_.size() * scenes.size() * threads_.size());
-    for (const NamedScene& scene : scenes) {
-      for (const std::size_t requested : objects_) {
-        if (scene.is_recording() && requested != objects_.front()) continue;
-        const std::size_t objects = scene.objects(requested);
-        measure_scene(scene.name + ", " + grouped(objects) + " objects", scene, objects);
-      }
-    }
-  }
-
-  std::vector<std::string> scenes_;
-  std::vector<std::size_t> objects_{10'000, 100'000};
-  std::vector<int> threads_;
-  std::vector<std::string> partitions_{"all"};
-  std::uint64_t seed_ = 1;
+/// A measurement of partitions by a function of bench/rows, on several scenes, sizes and numbers of
+/// threads.
+struct PartitionMeasurement {
+  void (*prepare)() = nullptr;  ///< null: nothing
+  void (*add)(Results&, const PartitionRowOptions&);
+  std::vector<std::string> scenes;
+  std::vector<int> threads;
+  const char* count_option = nullptr;  ///< null: none
+  const char* count_meaning = "";
+  std::size_t count = 0;
+  bool races_peers = false;  ///< has options for other libraries
+  std::vector<std::string> tables;
+  std::vector<std::string> values{};  ///< of the first table; empty: all
+  std::vector<std::size_t> objects{10'000, 100'000};
+  std::vector<std::string> partitions{"all"};
 };
 
-class Throughput final : public ScenesCommand {
+class MeasurePartitions final : public RowsCommand {
  public:
-  Throughput() : ScenesCommand(main_scenes(), usual_threads()) {}
+  explicit MeasurePartitions(PartitionMeasurement measurement)
+      : measurement_(std::move(measurement)) {}
 
   void add_options(CLI::App& app) {
-    ScenesCommand::add_options(app);
+    option(app, "--scene", measurement_.scenes,
+           "Scenes, or files of recordings (.aabbs or .winnow, also compressed as .xz), which have "
+           "a fixed number of objects");
+    add_objects_option(app, measurement_.objects, "Numbers of objects");
+    add_partitions_option(app, measurement_.partitions);
+    add_threads_option(app, measurement_.threads, "Numbers of threads");
+    add_seed_option(app, seed_);
+    add_rows_options(app);
+    if (measurement_.count_option != nullptr) {
+      number(app, measurement_.count_option, measurement_.count, 1, 1e6,
+             measurement_.count_meaning);
+    }
+    if (!measurement_.races_peers) return;
     app.add_flag("--peers", peers_,
                  "Also measure other libraries, and the yardstick if it was built");
     app.add_flag("--yardstick", yardstick_, "Also measure the yardstick");
-    add_frames_option(app, frames_);
   }
 
  private:
@@ -81,87 +67,38 @@ class Throughput final : public ScenesCommand {
           "--yardstick: this tool was built without it; set the CMake variable WINNOW_YARDSTICK to "
           "the folder of the prototype");
     }
-    measure_all();
-    print("throughput", {"frame_ms", "update_ms", "worst_ms", "first_ms", "pairs", "pairs_per_s",
-                         "bytes_per_object", "core_distance_ns", "frames", "fingerprint"});
-    for (const char* table : {"throughput_threads", "throughput_growth", "throughput_skipped"}) {
-      print(table);
-    }
-  }
-  void measure_scene(const std::string& what, const NamedScene& scene,
-                     std::size_t objects) override {
-    for (const int threads : threads_) {
-      step(what + ", " + threads_text(threads), [&] {
-        add_frame_race(results, scene,
-                       {.objects = objects,
-                        .seed = seed_,
-                        .partitions = partitions_,
-                        .threads = {threads},
-                        .peers = peers_,
-                        .yardstick = peers_ || yardstick_,
-                        .frames = frames_});
-      });
-    }
-    derive_frames(results, scene.name, objects);
-  }
-
-  bool peers_ = false;
-  bool yardstick_ = false;
-  std::size_t frames_ = 0;
-};
-
-/// A measurement of partitions by a function of bench/rows.
-struct PartitionMeasurement {
-  using Add = std::function<void(Results&, const NamedScene&, std::size_t objects,
-                                 std::uint64_t seed, const std::vector<std::string>& partitions,
-                                 int threads, std::size_t count)>;
-
-  void (*prepare)() = nullptr;  ///< null: nothing
-  Add add;
-  std::vector<std::string> scenes;
-  std::vector<int> threads;
-  const char* count_option = nullptr;  ///< null: none
-  const char* count_meaning = "";
-  std::size_t count = 0;
-  std::vector<std::string> tables;
-  std::vector<std::string> values{};  ///< of the first table; empty: all
-  std::vector<std::size_t> objects{10'000, 100'000};
-  std::vector<std::string> partitions{"all"};
-};
-
-class MeasurePartitions final : public ScenesCommand {
- public:
-  explicit MeasurePartitions(PartitionMeasurement measurement)
-      : ScenesCommand(measurement.scenes, measurement.threads),
-        measurement_(std::move(measurement)) {
-    objects_ = measurement_.objects;
-    partitions_ = measurement_.partitions;
-  }
-
-  void add_options(CLI::App& app) {
-    ScenesCommand::add_options(app);
-    if (measurement_.count_option == nullptr) return;
-    number(app, measurement_.count_option, measurement_.count, 1, 1e6, measurement_.count_meaning);
-  }
-
- private:
-  void measure() override {
     if (measurement_.prepare != nullptr) measurement_.prepare();
-    measure_all();
+    const std::vector<NamedScene> scenes = named_scenes(measurement_.scenes);
+    plan(measurement_.objects.size() * scenes.size() * measurement_.threads.size());
+    for (const NamedScene& scene : scenes) {
+      for (const std::size_t requested : measurement_.objects) {
+        if (scene.is_recording() && requested != measurement_.objects.front()) continue;
+        for (const int threads : measurement_.threads) {
+          measure_scene(scene, scene.objects(requested), threads);
+        }
+      }
+    }
     print(measurement_.tables.front(), measurement_.values);
     for (std::size_t i = 1; i < measurement_.tables.size(); ++i) print(measurement_.tables[i]);
   }
-  void measure_scene(const std::string& what, const NamedScene& scene,
-                     std::size_t objects) override {
-    const std::vector<std::string> partitions = partitions_for(partitions_, objects).taken;
-    for (const int threads : threads_) {
-      step(what + ", " + threads_text(threads), [&] {
-        measurement_.add(results, scene, objects, seed_, partitions, threads, measurement_.count);
-      });
-    }
+
+  void measure_scene(const NamedScene& scene, std::size_t objects, int threads) {
+    step(scene.name + ", " + grouped(objects) + " objects, " + threads_text(threads), [&] {
+      measurement_.add(results, {.scene = scene,
+                                 .objects = objects,
+                                 .seed = seed_,
+                                 .partitions = measurement_.partitions,
+                                 .threads = threads,
+                                 .count = measurement_.count,
+                                 .peers = peers_,
+                                 .yardstick = peers_ || yardstick_ || !measurement_.races_peers});
+    });
   }
 
   PartitionMeasurement measurement_;
+  std::uint64_t seed_ = 1;
+  bool peers_ = false;
+  bool yardstick_ = false;
 };
 
 class Pipeline final : public RowsCommand {
@@ -232,52 +169,54 @@ class Pipeline final : public RowsCommand {
 }  // namespace
 
 void add_measurements(CLI::App& app) {
-  command<Throughput>(
-      app, "throughput",
+  const auto add = [&](const char* name, const char* what, const char* details,
+                       PartitionMeasurement measurement) {
+    command<MeasurePartitions>(app, name, what, details, std::move(measurement));
+  };
+  add("throughput",
       "Measures partitions and other libraries, which take turns: time and memory of a frame",
       "Also measures growth with the number of objects, and speedup by threads. All must find the "
-      "same pairs.");
-  command<MeasurePartitions>(
-      app, "cold",
+      "same pairs.",
+      {.add = add_throughput,
+       .scenes = main_scenes(),
+       .threads = usual_threads(),
+       .count_option = "--frames",
+       .count_meaning = "Number of frames, including the first one",
+       .races_peers = true,
+       .tables = {"throughput", "throughput_threads", "throughput_growth", "throughput_skipped"},
+       .values = {"frame_ms", "update_ms", "worst_ms", "first_ms", "pairs", "pairs_per_s",
+                  "bytes_per_object", "core_distance_ns", "frames", "fingerprint"}});
+  add("cold",
       "Measures first frames of new partitions: insertion, build, all pairs, and the yardstick",
       "Memory was written before, or not.",
-      PartitionMeasurement{.add = [](auto&&... of) { add_cold(of...); },
-                           .scenes = kColdScenes,
-                           .threads = usual_threads(),
-                           .count_option = "--rounds",
-                           .count_meaning = "Number of new partitions of each kind",
-                           .count = 7,
-                           .tables = {"cold"},
-                           .values = {"insert_ms", "build_ms", "pairs_ms", "total_ms",
-                                      "reserved_ms", "ready_ms", "reserve_ms", "over_yardstick"},
-                           .objects = {1000, 10'000, 100'000}});
-  command<MeasurePartitions>(
-      app, "hosts",
+      {.add = add_cold,
+       .scenes = kColdScenes,
+       .threads = usual_threads(),
+       .count_option = "--rounds",
+       .count_meaning = "Number of new partitions of each kind",
+       .tables = {"cold"},
+       .values = {"insert_ms", "build_ms", "pairs_ms", "total_ms", "reserved_ms", "ready_ms",
+                  "reserve_ms", "over_yardstick"},
+       .objects = {1000, 10'000, 100'000}});
+  add("hosts",
       "Measures partitions whose tasks run on a thread pool (a JobSystem) and on oneTBB, in turns",
       "",
-      PartitionMeasurement{.add = [](auto&&... of) { add_hosts(of...); },
-                           .scenes = {"uniform", "mixed"},
-                           .threads = {2},
-                           .count_option = "--frames",
-                           .count_meaning = "Number of timed frames",
-                           .count = 101,
-                           .tables = {"hosts"},
-                           .partitions = {"LinearBvh", "SweepAndPrune", "HierarchicalGrid"}});
-  command<MeasurePartitions>(
-      app, "footprint", "Measures bytes per object by purpose",
+      {.add = add_hosts,
+       .scenes = {"uniform", "mixed"},
+       .threads = {2},
+       .count_option = "--frames",
+       .count_meaning = "Number of timed frames",
+       .tables = {"hosts"},
+       .partitions = {"LinearBvh", "SweepAndPrune", "HierarchicalGrid"}});
+  add("footprint", "Measures bytes per object by purpose",
       "The bytes are checked against the allocated memory and the resident set of the process.",
-      PartitionMeasurement{
-          .prepare = keep_resident_set_exact,
-          .add =
-              [](Results& results, const NamedScene& scene, std::size_t objects, std::uint64_t seed,
-                 const std::vector<std::string>& partitions, int threads, std::size_t) {
-                add_footprints(results, scene, objects, seed, partitions, threads);
-              },
-          .scenes = {"uniform"},
-          .threads = {usual_threads().back()},
-          .tables = {"memory", "memory_ratio"},
-          .values = {"bounds", "keys", "client_data", "structure", "scratch", "results", "reserved",
-                     "used", "pair_buffer", "exact", "peak_first", "peak_later"}});
+      {.prepare = keep_resident_set_exact,
+       .add = add_footprints,
+       .scenes = {"uniform"},
+       .threads = {usual_threads().back()},
+       .tables = {"memory", "memory_ratio"},
+       .values = {"bounds", "keys", "client_data", "structure", "scratch", "results", "reserved",
+                  "used", "pair_buffer", "exact", "peak_first", "peak_later"}});
   command<Pipeline>(app, "pipeline", "Measures the time from poses to contacts in whole scenes",
                     "Winnow and other libraries take turns: a pile of 20,000 bodies and 2,000 "
                     "hulls on a terrain of 200,978 triangles, each moving slightly (without "

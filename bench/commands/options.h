@@ -80,6 +80,7 @@ void choose_isa(const std::string& name);
 
 /// Default number of objects of a built-in scene.
 inline constexpr std::size_t kSceneObjects = 10'000;
+inline constexpr std::size_t kSceneFrames = 30;
 
 /// The scene that a command runs on: a built-in one by name, or a recording.
 struct Target {
@@ -94,6 +95,11 @@ struct Target {
   /// Returns the frames from the first on. `scene` must outlive the source.
   [[nodiscard]] std::unique_ptr<FrameSource> source(const NamedScene& scene) const {
     return scene.source(objects.value_or(kSceneObjects), seed.value_or(1));
+  }
+  /// Returns `requested`, or for 0 the frames of a recording, and kSceneFrames of a scene.
+  [[nodiscard]] static std::size_t frames(const NamedScene& scene, std::size_t requested) {
+    if (requested != 0) return requested;
+    return scene.is_recording() ? scene.recording->frames.size() : kSceneFrames;
   }
 };
 

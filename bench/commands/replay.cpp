@@ -1,6 +1,6 @@
 #include "bench/commands/command.h"
 #include "bench/commands/options.h"
-#include "bench/common/json.h"
+#include "bench/commands/run_json.h"
 #include "bench/common/progress.h"
 #include "bench/common/table.h"
 #include "bench/contenders/partitions.h"
@@ -11,11 +11,9 @@
 namespace winnow::bench {
 namespace {
 
-constexpr std::size_t kSceneFrames = 30;
-
 struct Replay {
   Target target;
-  std::size_t frames = 0;  // 0: all of a recording, kSceneFrames of a scene
+  std::size_t frames = 0;  // see Target::frames
   std::string json;
   std::vector<std::string> names{"all"};
   std::string isa;
@@ -36,36 +34,6 @@ struct Replay {
   void print(const std::vector<Run>& runs, const std::string& scene, std::size_t count) const;
 };
 
-/// One element of the list that `replay` writes.
-Json replay_json(const Run& run, const std::string& scene, std::size_t objects) {
-  Json pairs = Json::array();
-  Json reported = Json::array();
-  Json fingerprints = Json::array();
-  for (const PairSummary& frame : run.pairs) {
-    pairs.push_back(frame.pairs);
-    reported.push_back(frame.reported);
-    fingerprints.push_back(to_hex(frame.fingerprint));
-  }
-  const Spread spread = run.frame_spread();
-  return {{"scene", scene},
-          {"objects", objects},
-          {"frames", run.frame_ms.size()},
-          {"partition", run.engine},
-          {"threads", run.threads},
-          {"isa", to_string(run.isa)},
-          {"build_ms", run.frame_ms.empty() ? 0.0 : run.frame_ms.front()},
-          {"min_ms", spread.min},
-          {"median_ms", spread.median},
-          {"max_ms", spread.max},
-          {"frame_ms", run.frame_ms},
-          {"update_ms", run.update_ms},
-          {"pairs", pairs},
-          {"reported", reported},
-          {"fingerprint", fingerprints},
-          {"bytes", run.bytes},
-          {"bytes_per_object", static_cast<double>(run.bytes) / static_cast<double>(objects)}};
-}
-
 int Replay::run() {
   choose_isa(isa);
   const NamedScene scene = target.named();
@@ -73,9 +41,7 @@ int Replay::run() {
   const std::size_t count = first->objects();
   const Partitions partitions = partitions_for(names, count);
   RaceOptions options;
-  options.frames = frames != 0            ? frames
-                   : scene.is_recording() ? scene.recording->frames.size()
-                                          : kSceneFrames;
+  options.frames = Target::frames(scene, frames);
 
   std::vector<Run> runs;
   {
@@ -90,9 +56,8 @@ int Replay::run() {
   }
   print(runs, first->name(), count);
   if (!partitions.skipped.empty()) std::cout << "skipped: " << listed(partitions.skipped) << '\n';
-  Json json_runs = Json::array();
-  for (const Run& run : runs) json_runs.push_back(replay_json(run, first->name(), count));
-  write_json(json, json_runs);
+  write_json(json,
+             list_of(runs, [&](const Run& one) { return run_json(one, first->name(), count); }));
   if (scene.is_recording() && !print_answers(*scene.recording)) return kFailed;
   if (all_agree(runs)) return kDone;
   std::cerr << "winnow: the partitions did not find the same pairs\n";

@@ -50,17 +50,28 @@ void View::add_options(CLI::App& app) {
          "addition");
   number(app, "--max-depth", options.max_depth, 0, 64,
          "Levels of nodes that are drawn, from the root");
-  app.add_flag("--labels", options.labels, "Draw the client data of the first 500 objects");
   option(app, "--out", out, "HTML page to write");
   add_json_option(app, json);
 }
 
 Json View::draw_frames(const NamedScene& scene, FrameSource& source) const {
   constexpr std::size_t kOfEndless = 1000;  // built-in scenes have no last frame
-  Stage stage(partition, source);
-  while (stage.frame() < frame) {
-    if (stage.advance()) continue;
-    throw ArgumentError("--frame: the last frame is " + std::to_string(stage.frame()));
+  PartitionEngine engine(partition, 1);
+  ChangedRows changes;
+  std::size_t now = 0;
+  const auto show = [&] {
+    const auto changed = changes.next(source.boxes());
+    now == 0 ? engine.start(source.boxes()) : engine.frame(changed, source.boxes());
+  };
+  const auto advance = [&] {
+    if (!source.advance()) return false;
+    ++now;
+    show();
+    return true;
+  };
+  show();
+  while (now < frame) {
+    if (!advance()) throw ArgumentError("--frame: the last frame is " + std::to_string(now));
   }
   constexpr std::size_t kNoLimit = std::numeric_limits<std::size_t>::max();
   const std::size_t there_are = scene.is_recording() ? kNoLimit : kOfEndless;
@@ -69,9 +80,9 @@ Json View::draw_frames(const NamedScene& scene, FrameSource& source) const {
   if (scene.is_recording()) contacts = read_contacts(target.name);
   Json pictures = Json::array();
   do {
-    contacts.resize(std::max(contacts.size(), stage.frame() + 1));
-    pictures.push_back(picture_of(source.name(), stage, options, contacts[stage.frame()]));
-  } while (pictures.size() < most && stage.advance());
+    contacts.resize(std::max(contacts.size(), now + 1));
+    pictures.push_back(picture_of(source.name(), now, engine, options, contacts[now]));
+  } while (pictures.size() < most && advance());
   return pictures;
 }
 

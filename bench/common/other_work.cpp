@@ -4,7 +4,9 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <fstream>
+#include <numeric>
 #include <string>
 
 namespace winnow::bench {
@@ -15,19 +17,13 @@ namespace {
 std::optional<double> busy_seconds() {
   std::ifstream file("/proc/stat");
   std::string name;
-  double user = 0.0;
-  double nice = 0.0;
-  double system = 0.0;
-  double idle = 0.0;
-  double waiting = 0.0;
-  double interrupts = 0.0;
-  double soft_interrupts = 0.0;
-  double stolen = 0.0;
-  file >> name >> user >> nice >> system >> idle >> waiting >> interrupts >> soft_interrupts >>
-      stolen;
+  // user, nice, system, idle, waiting, interrupts, soft interrupts, stolen
+  std::array<double, 8> times{};
+  file >> name;
+  for (double& time : times) file >> time;
   const auto ticks = static_cast<double>(::sysconf(_SC_CLK_TCK));
   if (!file || name != "cpu" || !(ticks > 0.0)) return std::nullopt;
-  return (user + nice + system + interrupts + soft_interrupts + stolen) / ticks;
+  return (std::accumulate(times.begin(), times.end(), 0.0) - times[3] - times[4]) / ticks;
 }
 
 double own_seconds() noexcept {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <bit>
 #include <cstdint>
 
 namespace winnow::bench {
@@ -11,6 +12,11 @@ namespace winnow::bench {
   x = (x ^ (x >> 30U)) * 0xBF58476D1CE4E5B9ULL;
   x = (x ^ (x >> 27U)) * 0x94D049BB133111EBULL;
   return x ^ (x >> 31U);
+}
+
+/// Mixes the bits of a number into a hash.
+[[nodiscard]] constexpr std::uint64_t mix(std::uint64_t hash, double number) noexcept {
+  return mix(hash ^ std::bit_cast<std::uint64_t>(number));
 }
 
 /// SplitMix64. Uses only integers and operations that IEEE 754 rounds correctly, so that results

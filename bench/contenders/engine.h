@@ -3,7 +3,6 @@
 #include <winnow/core/aabb.h>
 #include <winnow/core/pair_buffer.h>
 #include "bench/common/interface.h"
-#include "bench/common/sample.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -12,9 +11,6 @@
 #include <string>
 
 namespace winnow::bench {
-
-/// Thrown by an engine that exceeds the bound of Engine::give_up_after.
-struct GaveUp {};
 
 /// Base of everything that is raced on a scene: winnow's partitions and other libraries. The
 /// harness times `start` and `frame` from outside and calls everything else outside its timers. All
@@ -30,17 +26,13 @@ class Engine : public Interface {
   [[nodiscard]] virtual std::string name() const = 0;
 
   /// Number of objects above which a run takes unreasonably long. Larger scenes are skipped, and
-  /// reported as skipped, unless the run bounds the time of frames.
+  /// reported as skipped.
   [[nodiscard]] virtual std::size_t largest() const {
     return std::numeric_limits<std::size_t>::max();
   }
 
   /// True if it uses one thread, whatever number it was made for.
   [[nodiscard]] virtual bool is_serial() const { return false; }
-
-  /// After this call a `start` or `frame` that takes longer than `ms` throws GaveUp; then only
-  /// `bytes` may be called. Only engines whose frames may take minutes check the time.
-  void give_up_after(double ms) noexcept { most_ms_ = ms; }
 
   /// Frame 0: takes the boxes (row = index) and finds their pairs. Called once, before `frame`,
   /// `pairs`, `bytes` and `update_ms`.
@@ -65,15 +57,6 @@ class Engine : public Interface {
   /// Milliseconds that the last `start` or `frame` spent on updating boxes before the search for
   /// pairs; 0 if the update and the search cannot be separated.
   [[nodiscard]] virtual double update_ms() const { return 0.0; }
-
- protected:
-  /// Throws GaveUp if the time bound is exceeded.
-  void check_time(const Stopwatch& since_start) const {
-    if (since_start.ms() > most_ms_) throw GaveUp{};
-  }
-
- private:
-  double most_ms_ = std::numeric_limits<double>::infinity();
 };
 
 }  // namespace winnow::bench

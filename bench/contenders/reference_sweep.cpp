@@ -69,18 +69,18 @@ std::size_t ReferenceSweep::bytes() const {
   return entries_.capacity() * sizeof(Entry);
 }
 
-MachineClock::MachineClock() : scene_(make_scene("uniform", 10'000, 1)) {
-  sweep_.start(scene_->boxes());
-}
-
-void MachineClock::tick() {
-  const Stopwatch clock;
-  sweep_.frame({}, scene_->boxes());
-  times_.push_back(clock.ms());
-}
-
-double MachineClock::median_ms() const {
-  return median_of(times_);
+double reference_sweep_ms() {
+  constexpr int kSweeps = 5;
+  const auto scene = make_scene("uniform", 10'000, 1);
+  ReferenceSweep sweep;
+  sweep.start(scene->boxes());
+  std::vector<double> times;
+  for (int i = 0; i < kSweeps; ++i) {
+    const Stopwatch clock;
+    sweep.frame({}, scene->boxes());
+    times.push_back(clock.ms());
+  }
+  return median_of(times);
 }
 
 }  // namespace winnow::bench

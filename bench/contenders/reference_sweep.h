@@ -1,9 +1,7 @@
 #pragma once
 
 #include "bench/contenders/engine.h"
-#include "bench/scenes/frame_source.h"
 
-#include <memory>
 #include <vector>
 
 namespace winnow::bench {
@@ -36,21 +34,8 @@ class ReferenceSweep final : public Engine {
   std::vector<Pair> pairs_;
 };
 
-/// Measures how fast the machine is now: times sweeps on x over the 10,000 objects of `uniform`.
-/// Figures measured on other machines are scaled by it.
-class MachineClock {
- public:
-  MachineClock();
-
-  /// Times one more sweep.
-  void tick();
-  /// Returns the median time, or 0 without a tick.
-  [[nodiscard]] double median_ms() const;
-
- private:
-  std::unique_ptr<FrameSource> scene_;
-  ReferenceSweep sweep_;
-  std::vector<double> times_;
-};
+/// Returns the median time in ms of sweeps on x over the 10,000 objects of `uniform`: how fast the
+/// machine is now. Figures measured on other machines are scaled by it.
+[[nodiscard]] double reference_sweep_ms();
 
 }  // namespace winnow::bench

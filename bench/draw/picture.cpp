@@ -43,10 +43,6 @@ std::string column(const std::vector<T>& values) {
   return text;
 }
 
-Json colour_data(Colour colour) {
-  return Json::array({colour.r, colour.g, colour.b});
-}
-
 /// Boxes and lines of one colour, which the page shows or hides together.
 struct Layer {
   std::string name;
@@ -59,7 +55,6 @@ struct Layer {
 struct Sketch final : DebugDraw {
   std::vector<Aabb> objects;  ///< in ascending order of their ids
   std::vector<Layer> layers;  ///< the last one takes unknown colours
-  Json texts = Json::array();
 
   Sketch() {
     layers = {
@@ -78,10 +73,7 @@ struct Sketch final : DebugDraw {
     ends.insert(ends.end(), {from, to});
   }
   void sphere(const Sphere& sphere, Colour colour) override { box(sphere.bounds(), colour); }
-  void text(const Vec3f& at, std::string_view text, Colour colour) override {
-    texts.push_back(
-        {{"at", column(std::vector{at})}, {"text", text}, {"colour", colour_data(colour)}});
-  }
+  void text(const Vec3f&, std::string_view, Colour) override {}
 
  private:
   Layer& layer_of(Colour colour) {
@@ -202,12 +194,11 @@ Aabb parse_box(const std::string& text) {
   throw ArgumentError("--box: " + text + " needs three lower ends, then three upper ends");
 }
 
-Json picture_of(const std::string& scene, const Stage& stage, const PictureOptions& options,
-                std::span<const RecordedContact> contacts) {
-  const Partition& partition = stage.partition();
+Json picture_of(const std::string& scene, std::size_t frame, const PartitionEngine& engine,
+                const PictureOptions& options, std::span<const RecordedContact> contacts) {
+  const Partition& partition = engine.partition();
   Sketch sketch;
-  need(partition.debug_draw(sketch, {.labels = options.labels, .max_depth = options.max_depth}),
-       "debug_draw");
+  need(partition.debug_draw(sketch, {.max_depth = options.max_depth}), "debug_draw");
   const std::size_t all = sketch.objects.size();
   std::vector<bool> drawn(all);
   const RayAnswers rays = query_rays(partition, options.rays, drawn);
@@ -219,15 +210,16 @@ Json picture_of(const std::string& scene, const Stage& stage, const PictureOptio
   }
   std::vector<Aabb> bounds;
   std::vector<ObjectId> ids;
-  std::vector<ClientData> client_data;
   for (ObjectId id = 0; id < all; ++id) {
     if (!drawn[id]) continue;
     bounds.push_back(sketch.objects[id]);
     ids.push_back(id);
-    client_data.push_back(partition.client_data_of(id));
   }
+  std::size_t overlapping = 0;
   std::vector<ObjectId> pairs;
-  for (const Pair& pair : stage.pairs()) {
+  for (const Pair& pair : engine.pairs()) {
+    if (!sketch.objects[pair.first].overlaps(sketch.objects[pair.second])) continue;
+    ++overlapping;
     if (drawn[pair.first] && drawn[pair.second]) {
       pairs.insert(pairs.end(), {pair.first, pair.second});
     }
@@ -241,14 +233,14 @@ Json picture_of(const std::string& scene, const Stage& stage, const PictureOptio
     if (!layer.boxes.empty()) layer_counts[layer.name] = layer.boxes.size();
     lines += layer.line_ends.size() / 2;
     layers.push_back({{"name", layer.name},
-                      {"colour", colour_data(layer.colour)},
+                      {"colour", {layer.colour.r, layer.colour.g, layer.colour.b}},
                       {"boxes", column(layer.boxes)},
                       {"lines", column(layer.line_ends)}});
   }
   const Statistics statistics = partition.statistics();
   return {{"counts",
            {{"scene", scene},
-            {"frame", stage.frame()},
+            {"frame", frame},
             {"partition", partition.name()},
             {"objects", all},
             {"objects_drawn", ids.size()},
@@ -258,8 +250,8 @@ Json picture_of(const std::string& scene, const Stage& stage, const PictureOptio
             {"depth", statistics.depth},
             {"structure", layer_counts},
             {"structure_lines", lines},
-            {"pairs", stage.pairs().size()},
-            {"reported", stage.reported()},
+            {"pairs", overlapping},
+            {"reported", engine.pairs().size()},
             {"pairs_drawn", pairs.size() / 2},
             {"contacts", contact_ends.size() / 2},
             {"rays", rays.data.size()},
@@ -268,11 +260,10 @@ Json picture_of(const std::string& scene, const Stage& stage, const PictureOptio
             {"boxes", boxes.data.size()},
             {"inside", boxes.inside},
             {"crossing", boxes.crossing}}},
-          {"objects",
-           {{"boxes", column(bounds)}, {"rows", column(ids)}, {"data", column(client_data)}}},
+          {"objects", {{"boxes", column(bounds)}, {"rows", column(ids)}}},
           {"pairs", column(pairs)},
           {"contacts", column(contact_ends)},
-          {"structure", {{"layers", layers}, {"texts", sketch.texts}}},
+          {"structure", layers},
           {"rays", rays.data},
           {"boxes", boxes.data}};
 }

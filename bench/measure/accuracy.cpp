@@ -1,9 +1,11 @@
 // Compares results of narrow-phase engines with reference results: computes the errors of their
-// distances, depths and normals. bench/micro/pairs.cpp calls it; ground_truth.cpp gives the
-// reference results.
+// distances, depths and normals. bench/micro/pairs.cpp calls it.
 
 #include "bench/measure/accuracy.h"
 
+#include "bench/contenders/winnow_narrow.h"
+
+#include <tbb/parallel_for.h>
 #include <Eigen/Geometry>
 
 #include <algorithm>
@@ -28,7 +30,7 @@ bool is_direction(const Vec3d& v) {
   return std::isfinite(square) && square > 0.0;
 }
 
-PairError error_of(const NarrowAnswer& answer, const PairTruth& truth, ContactLevel level) {
+PairError error_of(const NarrowAnswer& answer, const oracle::Truth& truth, ContactLevel level) {
   const long double length = std::abs(truth.distance);
   PairError result;
   result.gap = static_cast<double>(length / static_cast<long double>(truth.size));
@@ -65,8 +67,39 @@ ErrorSpread spread_of_errors(std::vector<double>& errors) {
 
 }  // namespace
 
+std::vector<oracle::Truth> truths_of(const PairSet& set) {
+  std::vector<oracle::Truth> truths(set.pairs.size());
+#if WINNOW_HAVE_ORACLE
+  tbb::parallel_for(std::size_t{0}, truths.size(), [&](std::size_t i) {
+    const auto& [a, b] = set.pairs[i];
+    truths[i] =
+        oracle::solve(set.pool.tables(), set.shapes[a], set.poses[a], set.shapes[b], set.poses[b]);
+  });
+#else
+  WinnowNarrow reference(NarrowTier::reference, 2);
+  reference.start(set);
+  reference.run(ContactLevel::distance, set.pairs);
+  for (std::size_t i = 0; i < truths.size(); ++i) {
+    const NarrowAnswer answer = reference.answer(i);
+    truths[i] = {.known = true,
+                 .overlap = answer.overlap,
+                 .distance = static_cast<long double>(answer.distance),
+                 .size = set.radius[set.pairs[i].a] + set.radius[set.pairs[i].b]};
+  }
+#endif
+  return truths;
+}
+
+std::string judge_name() {
+#if WINNOW_HAVE_ORACLE
+  return "100 digits";
+#else
+  return "reference";
+#endif
+}
+
 std::vector<PairError> errors_of(const NarrowEngine& engine, ContactLevel level, const PairSet& set,
-                                 std::span<const PairTruth> truths) {
+                                 std::span<const oracle::Truth> truths) {
   std::vector<PairError> errors;
   for (std::size_t i = 0; i < set.pairs.size(); ++i) {
     if (truths[i].known) errors.push_back(error_of(engine.answer(i), truths[i], level));

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "bench/contenders/narrow_engine.h"
-#include "bench/measure/ground_truth.h"
+#include "bench/oracle/oracle.h"
 #include "bench/scenes/pair_set.h"
 
 #include <cstddef>
@@ -11,6 +11,13 @@
 #include <vector>
 
 namespace winnow::bench {
+
+/// Returns the reference results of all pairs of a set, computed on all cores. Without the oracle
+/// the tier `reference` is used, which sets no normals.
+[[nodiscard]] std::vector<oracle::Truth> truths_of(const PairSet& set);
+
+/// Returns "100 digits", or the name of that tier.
+[[nodiscard]] std::string judge_name();
 
 /// Error of an engine on one pair with a reference result.
 struct PairError {
@@ -53,7 +60,7 @@ struct Accuracy {
 /// entry for each pair with a reference result.
 [[nodiscard]] std::vector<PairError> errors_of(const NarrowEngine& engine, ContactLevel level,
                                                const PairSet& set,
-                                               std::span<const PairTruth> truths);
+                                               std::span<const oracle::Truth> truths);
 
 /// Summarizes errors.
 [[nodiscard]] Accuracy summary_of(std::span<const PairError> errors);

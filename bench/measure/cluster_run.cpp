@@ -110,19 +110,17 @@ class ClusterEngine {
         fresh_(cluster_.hosted()),
         fresh_boxes_(cluster_.hosted()) {}
 
-  ClusterFrame show(std::span<const Aabb> boxes) {
+  void show(std::span<const Aabb> boxes, ClusterRun& run) {
     find_changes(boxes);
     ranks_.see(boxes);
     synchronize();
     const Stopwatch clock;
     apply_changes();
-    ClusterFrame frame;
-    frame.update_ms = clock.ms();
+    const double update_ms = clock.ms();
     need(ranks_.find(), "pairs");
-    frame.frame_ms = clock.ms();
+    const double frame_ms = clock.ms();
     follow();
-    summarize_into(frame);
-    return frame;
+    summarize_into(run, frame_ms, update_ms);
   }
 
   std::uint64_t bytes() {
@@ -193,9 +191,8 @@ class ClusterEngine {
     }
   }
 
-  void summarize_into(ClusterFrame& frame) {
-    frame.statistics = cluster_.statistics();
-    frame.pairs.reported = frame.pairs.pairs = frame.statistics.pairs;
+  void summarize_into(ClusterRun& run, double frame_ms, double update_ms) {
+    const ClusterStatistics& statistics = run.statistics.emplace_back(cluster_.statistics());
     std::uint64_t fingerprint = 0;
     for (std::size_t r = 0; r < keys_.size(); ++r) {
       ranks_.each_pair(rank_of(r), [&](BodyName first, BodyName second) {
@@ -203,13 +200,13 @@ class ClusterEngine {
       });
     }
     constexpr double kNanoseconds = 1e6;
-    std::uint64_t times[2] = {static_cast<std::uint64_t>(frame.frame_ms * kNanoseconds),
-                              static_cast<std::uint64_t>(frame.update_ms * kNanoseconds)};
+    std::uint64_t times[2] = {static_cast<std::uint64_t>(frame_ms * kNanoseconds),
+                              static_cast<std::uint64_t>(update_ms * kNanoseconds)};
     need(transport_.reduce(std::span(&fingerprint, 1), times), "fingerprint");
-    frame.pairs.fingerprint = fingerprint;
-    frame.frame_ms = static_cast<double>(times[0]) / kNanoseconds;
-    frame.update_ms = static_cast<double>(times[1]) / kNanoseconds;
-    need(cluster_.digest(frame.digest), "digest");
+    run.pairs.push_back({statistics.pairs, statistics.pairs, fingerprint});
+    run.frame_ms.push_back(static_cast<double>(times[0]) / kNanoseconds);
+    run.update_ms.push_back(static_cast<double>(times[1]) / kNanoseconds);
+    need(cluster_.digest(run.digests.emplace_back()), "digest");
   }
 
   Transport& transport_;
@@ -228,11 +225,13 @@ class ClusterEngine {
 template <typename Ranks>
 ClusterRun run_ranks(FrameSource& source, Transport& transport, std::size_t frames, Ranks& ranks) {
   ClusterRun run;
+  run.engine = "LinearBvh";
+  run.isa = active_isa();
   run.ranks = transport.ranks();
   ClusterEngine<Ranks> engine(transport, ranks);
   do {
-    run.frames.push_back(engine.show(source.boxes()));
-  } while (run.frames.size() < frames && source.advance());
+    engine.show(source.boxes(), run);
+  } while (run.frame_ms.size() < frames && source.advance());
   run.bytes = engine.bytes();
   return run;
 }
@@ -255,11 +254,6 @@ Pose middle_of(const Aabb& box) noexcept {
         (static_cast<double>(box.max[axis]) + static_cast<double>(box.min[axis])) * 0.5;
   }
   return pose;
-}
-
-double ClusterRun::median_ms() const {
-  const std::vector<double> ms = each([](const ClusterFrame& frame) { return frame.frame_ms; });
-  return median_of(std::span(ms).subspan(ms.size() > 1 ? 1 : 0));
 }
 
 ClusterRun run_cluster(FrameSource& source, Transport& transport, const ClusterRunOptions& order,

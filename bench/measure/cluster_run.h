@@ -4,7 +4,7 @@
 #include <winnow/pipeline/cluster.h>
 #include <winnow/pipeline/contact_types.h>
 #include <winnow/pipeline/shapes.h>
-#include "bench/measure/fingerprint.h"
+#include "bench/measure/race.h"
 #include "bench/scenes/frame_source.h"
 
 #include <cstddef>
@@ -14,29 +14,12 @@
 
 namespace winnow::bench {
 
-/// Results of one frame, equal on all processes. The times are the slowest process's.
-struct ClusterFrame {
-  double frame_ms = 0.0;
-  double update_ms = 0.0;
-  PairSummary pairs;
-  ClusterDigest digest;
-  ClusterStatistics statistics;
-};
-
-struct ClusterRun {
+/// Results of all ranks, equal on all processes. The times are the slowest process's; `bytes` are
+/// allocated by all ranks at the end.
+struct ClusterRun : Run {
   std::uint32_t ranks = 1;
-  std::vector<ClusterFrame> frames;
-  std::uint64_t bytes = 0;  ///< allocated by all ranks at the end
-
-  /// Median of the frames after the first, or the first frame's time if it is the only one.
-  [[nodiscard]] double median_ms() const;
-  /// Returns one value of each frame.
-  template <typename Get>
-  [[nodiscard]] auto each(Get&& get) const {
-    std::vector<decltype(get(frames.front()))> values;
-    for (const ClusterFrame& frame : frames) values.push_back(get(frame));
-    return values;
-  }
+  std::vector<ClusterDigest> digests;         ///< by frame
+  std::vector<ClusterStatistics> statistics;  ///< by frame
 };
 
 /// Limits and contact level of a run.

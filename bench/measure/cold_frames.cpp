@@ -63,12 +63,12 @@ struct FirstFrames {
     Partition partition = make(frames, memory);
     PairBuffer pairs(&memory);
     const Parts parts = run_frame(boxes, partition, keys, pairs, clock);
-    frames.insert_ms.push_back(parts.inserted);
-    frames.build_ms.push_back(parts.built - parts.inserted);
-    frames.pairs_ms.push_back(parts.found - parts.built);
-    frames.total_ms.push_back(parts.found);
-    frames.pages_ms.push_back(write_to_pages(partition.footprint().total().reserved +
-                                             pairs.footprint().total().reserved));
+    frames.times["insert_ms"].push_back(parts.inserted);
+    frames.times["build_ms"].push_back(parts.built - parts.inserted);
+    frames.times["pairs_ms"].push_back(parts.found - parts.built);
+    frames.times["total_ms"].push_back(parts.found);
+    frames.times["pages_ms"].push_back(write_to_pages(partition.footprint().total().reserved +
+                                                      pairs.footprint().total().reserved));
     return summarize(pairs.pairs(), boxes);
   }
   /// Milliseconds of the first write to `bytes` of ordinary pages.
@@ -89,8 +89,8 @@ struct FirstFrames {
     const double reserved = before.ms();
     const Stopwatch clock;
     const Parts parts = run_frame(boxes, partition, keys, pairs, clock);
-    if (pages == Pages::prefaulted) frames.reserve_ms.push_back(reserved);
-    (pages == Pages::prefaulted ? frames.ready_ms : frames.reserved_ms).push_back(parts.found);
+    if (pages == Pages::prefaulted) frames.times["reserve_ms"].push_back(reserved);
+    frames.times[pages == Pages::prefaulted ? "ready_ms" : "reserved_ms"].push_back(parts.found);
     return summarize(pairs.pairs(), boxes);
   }
 };
@@ -101,16 +101,6 @@ struct ReusedMemory {
   std::pmr::monotonic_buffer_resource resource{range.begin(), range.bytes(),
                                                std::pmr::null_memory_resource()};
 };
-
-void forget_frames(ColdRace& race) {
-  for (ColdFrames& one : race.frames) {
-    for (auto* times : {&one.insert_ms, &one.build_ms, &one.pairs_ms, &one.total_ms,
-                        &one.reserved_ms, &one.ready_ms, &one.reserve_ms, &one.pages_ms}) {
-      times->clear();
-    }
-  }
-  race.yardstick_ms.clear();
-}
 
 }  // namespace
 
@@ -161,7 +151,8 @@ ColdRace race_cold_frames(std::span<const Aabb> boxes, const std::vector<std::st
   Arenas arenas(threads);
   arenas.run(threads, [&] {
     run_all();  // warms up code and the yardstick's own memory
-    forget_frames(race);
+    for (ColdFrames& one : race.frames) one.times.clear();
+    race.yardstick_ms.clear();
     for (std::size_t round = 0; round < rounds; ++round) run_all();
   });
   for (const PairSummary& one : found) {

@@ -3,6 +3,7 @@
 #include <winnow/core/aabb.h>
 
 #include <cstddef>
+#include <map>
 #include <span>
 #include <string>
 #include <string_view>
@@ -16,21 +17,15 @@ inline constexpr std::string_view kUntouched = "untouched";
 inline constexpr std::string_view kTouched = "touched";
 inline constexpr std::string_view kLargePages = "large pages";
 
-/// Milliseconds of the parts of first frames, one entry per frame.
+/// Milliseconds of first frames, one entry per frame.
 struct ColdFrames {
   std::string partition{};
   std::string_view memory{};
-  std::vector<double> insert_ms{};
-  std::vector<double> build_ms{};
-  std::vector<double> pairs_ms{};
-  std::vector<double> total_ms{};
-  // Frames with reserved memory; empty for `kTouched`. All memory was reserved before the frame
-  // (reserved_ms), or reserved and written to (ready_ms), which took reserve_ms.
-  std::vector<double> reserved_ms{};
-  std::vector<double> ready_ms{};
-  std::vector<double> reserve_ms{};
-  // Time of the first write to as many ordinary pages as the partition and its pairs occupy.
-  std::vector<double> pages_ms{};
+  /// By name: the parts insert_ms, build_ms and pairs_ms, and their sum total_ms; pages_ms, the
+  /// time of the first write to as many ordinary pages as the partition and its pairs occupy.
+  /// Except for `kTouched` also total times of frames whose memory was reserved before
+  /// (reserved_ms), or reserved and written to (ready_ms), which took reserve_ms.
+  std::map<std::string, std::vector<double>> times{};
 };
 
 struct ColdRace {

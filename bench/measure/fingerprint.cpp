@@ -3,6 +3,8 @@
 #include "bench/common/random.h"
 
 #include <algorithm>
+#include <cinttypes>
+#include <cstdio>
 
 namespace winnow::bench {
 
@@ -20,10 +22,8 @@ PairSummary summarize(std::span<const Pair> pairs, std::span<const Aabb> boxes) 
 }
 
 std::string to_hex(std::uint64_t value) {
-  std::string digits(16, '0');
-  for (std::size_t i = 0; i < digits.size(); ++i) {
-    digits[i] = "0123456789abcdef"[(value >> (60U - 4U * i)) & 15U];
-  }
+  char digits[17];
+  std::snprintf(digits, sizeof digits, "%016" PRIx64, value);
   return digits;
 }
 

@@ -20,9 +20,16 @@ bool MpiSession::is_started() noexcept {
                      [](const char* name) { return std::getenv(name) != nullptr; });
 }
 
+bool MpiSession::is_available() noexcept {
 #ifdef WINNOW_HAVE_CLUSTER
+  return true;
+#else
+  return false;
+#endif
+}
 
-MpiSession::MpiSession(double time_limit) {
+MpiSession::MpiSession([[maybe_unused]] double time_limit) {
+#ifdef WINNOW_HAVE_CLUSTER
   int given = 0;
   MPI_Init_thread(nullptr, nullptr, MPI_THREAD_SERIALIZED, &given);
   const Status status = make_mpi_transport(static_cast<int>(MPI_Comm_c2f(MPI_COMM_WORLD)),
@@ -30,38 +37,23 @@ MpiSession::MpiSession(double time_limit) {
   if (status != Status::ok) {
     throw std::runtime_error(std::string("cannot use MPI: ") + to_string(status));
   }
+#else
+  throw std::runtime_error("the tool was built without MPI and Zoltan");
+#endif
 }
 
 MpiSession::~MpiSession() {
   transport_.reset();
+#ifdef WINNOW_HAVE_CLUSTER
   MPI_Finalize();
-}
-
-void MpiSession::abort() {
-  MPI_Abort(MPI_COMM_WORLD, EXIT_FAILURE);
-  std::_Exit(EXIT_FAILURE);
-}
-
-bool MpiSession::is_available() noexcept {
-  return true;
-}
-
-#else
-
-MpiSession::MpiSession(double) {
-  throw std::runtime_error("the tool was built without MPI and Zoltan");
-}
-
-MpiSession::~MpiSession() = default;
-
-void MpiSession::abort() {
-  std::_Exit(EXIT_FAILURE);
-}
-
-bool MpiSession::is_available() noexcept {
-  return false;
-}
-
 #endif
+}
+
+void MpiSession::abort() {
+#ifdef WINNOW_HAVE_CLUSTER
+  MPI_Abort(MPI_COMM_WORLD, EXIT_FAILURE);
+#endif
+  std::_Exit(EXIT_FAILURE);
+}
 
 }  // namespace winnow::bench

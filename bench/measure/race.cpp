@@ -12,7 +12,6 @@
 #include "bench/scenes/scene.h"
 
 #include <algorithm>
-#include <cstring>
 #include <limits>
 #include <numeric>
 #include <stdexcept>
@@ -37,15 +36,9 @@ class FrameBlocks {
     while (frames_.size() < count) {
       if (started_ && !source_.advance()) break;
       started_ = true;
-      const std::span<const Aabb> boxes = source_.boxes();
-      Frame& frame = frames_.emplace_back();
-      for (std::size_t i = 0; i < last_.size(); ++i) {
-        if (std::memcmp(&boxes[i], &last_[i], sizeof(Aabb)) != 0) {
-          frame.changed.push_back(static_cast<std::uint32_t>(i));
-        }
-      }
-      frame.boxes.assign(boxes.begin(), boxes.end());
-      last_ = frame.boxes;
+      const auto boxes = source_.boxes();
+      const auto changed = changes_.next(boxes);
+      frames_.push_back({{boxes.begin(), boxes.end()}, {changed.begin(), changed.end()}});
     }
     return frames_;
   }
@@ -53,29 +46,16 @@ class FrameBlocks {
  private:
   FrameSource& source_;
   std::vector<Frame> frames_;
-  std::vector<Aabb> last_;
+  ChangedRows changes_;
   bool started_ = false;
 };
 
-/// Returns whether a contender runs another frame.
-bool goes_on(const Run& run, const TimeBounds& bounds) {
-  if (run.gave_up_ms > 0.0) return false;
-  constexpr std::size_t kFewest = 3;  // not counting the first
-  if (bounds.run == 0.0 || run.frame_ms.size() <= kFewest) return true;
-  return std::accumulate(run.frame_ms.begin() + 1, run.frame_ms.end(), 0.0) < 1e3 * bounds.run;
-}
-
 void run_frame(Contender& contender, const Frame& frame, bool first, Run& run) {
   const Stopwatch clock;
-  try {
-    if (first) {
-      contender.engine->start(frame.boxes);
-    } else {
-      contender.engine->frame(frame.changed, frame.boxes);
-    }
-  } catch (const GaveUp&) {
-    run.gave_up_ms = clock.ms();
-    return;
+  if (first) {
+    contender.engine->start(frame.boxes);
+  } else {
+    contender.engine->frame(frame.changed, frame.boxes);
   }
   run.frame_ms.push_back(clock.ms());
   run.changed.push_back(frame.changed.size());
@@ -102,11 +82,11 @@ double mean_after_first(const std::vector<PairSummary>& frames,
 std::span<const double> Run::settled_ms() const noexcept {
   return std::span(frame_ms).subspan(std::min(kSettlingFrames, frame_ms.size()));
 }
-Spread Run::frame_spread() const {
-  return spread_of(after_first(frame_ms));
+std::span<const double> Run::later_ms() const noexcept {
+  return after_first(frame_ms);
 }
-double Run::median_update_ms() const {
-  return median_of(after_first(update_ms));
+std::span<const double> Run::later_update_ms() const noexcept {
+  return after_first(update_ms);
 }
 double Run::pairs_a_frame() const {
   return mean_after_first(pairs, &PairSummary::pairs);
@@ -132,7 +112,6 @@ std::vector<Run> race(FrameSource& source, std::vector<Contender>& contenders,
     runs[c].engine = contenders[c].engine->name();
     runs[c].threads = contenders[c].threads;
     runs[c].isa = contenders[c].isa;
-    if (options.bounds.frame > 0.0) contenders[c].engine->give_up_after(1e3 * options.bounds.frame);
   }
   FrameBlocks blocks(source);
   for (std::size_t done = 0; done < options.frames;) {
@@ -141,11 +120,7 @@ std::vector<Run> race(FrameSource& source, std::vector<Contender>& contenders,
     for (std::size_t c = 0; c < contenders.size(); ++c) {
       IsaGuard::choose(contenders[c].isa);
       arenas.run(contenders[c].threads, [&] {
-        for (const Frame& frame : frames) {
-          if (goes_on(runs[c], options.bounds)) {
-            run_frame(contenders[c], frame, done == 0, runs[c]);
-          }
-        }
+        for (const Frame& frame : frames) run_frame(contenders[c], frame, done == 0, runs[c]);
       });
     }
     done += frames.size();
@@ -170,25 +145,19 @@ bool all_agree(const std::vector<Run>& runs) noexcept {
 
 namespace {
 
-/// Returns the reason why a library is left out of a race; empty if it is not left out.
-std::string why_skipped(const Engine& engine, const MeasureOptions& options,
-                        const Measurement& result) {
-  if (result.objects <= engine.largest() || options.bounds.any()) return {};
-  return engine.name() + " (more than " + grouped(engine.largest()) + " objects)";
-}
-
 /// Adds the other libraries. Serial ones are added only once, for all numbers of threads.
 void add_peers(const MeasureOptions& options, std::vector<Contender>& contenders,
                Measurement& result) {
   for (const int threads : options.threads) {
-    for (std::unique_ptr<Engine>& engine : make_peers(threads)) {
+    for (std::unique_ptr<Engine>& engine : make_peers<Engine>(threads)) {
       if (engine->is_serial() && threads != options.threads.front()) continue;
-      const std::string text = why_skipped(*engine, options, result);
-      if (text.empty()) {
+      if (result.objects <= engine->largest()) {
         contenders.push_back({std::move(engine), threads, active_isa()});
-      } else if (std::find(result.skipped.begin(), result.skipped.end(), text) ==
-                 result.skipped.end()) {
-        result.skipped.push_back(text);
+        continue;
+      }
+      std::string text = engine->name() + " (more than " + grouped(engine->largest()) + " objects)";
+      if (std::ranges::find(result.skipped, text) == result.skipped.end()) {
+        result.skipped.push_back(std::move(text));
       }
     }
   }
@@ -231,8 +200,7 @@ Measurement measure(const MeasureOptions& options) {
   result.peer_runs = contenders.size() - result.partition_runs;
 
   result.runs = race(*source, contenders,
-                     {.frames = options.frames != 0 ? options.frames : frames_for(result.objects),
-                      .bounds = options.bounds});
+                     {.frames = options.frames != 0 ? options.frames : frames_for(result.objects)});
   return result;
 }
 

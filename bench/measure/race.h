@@ -35,30 +35,19 @@ struct Run {
   std::vector<double> update_ms;
   std::vector<PairSummary> pairs;
   std::vector<std::size_t> changed;  ///< number of changed boxes; 0 for the first frame
-  /// Milliseconds after which the engine gave up the frame after the last entry; 0 if it gave up
-  /// none.
-  double gave_up_ms = 0.0;
   std::size_t bytes = 0;
 
   /// Returns the times of the frames after settling; empty if there are none.
   [[nodiscard]] std::span<const double> settled_ms() const noexcept;
-  /// Spread of the frames after the first, or of the first if it is the only one.
-  [[nodiscard]] Spread frame_spread() const;
-  [[nodiscard]] double median_update_ms() const;
+  /// Returns the times of the frames after the first, or of the first if it is the only one.
+  [[nodiscard]] std::span<const double> later_ms() const noexcept;
+  [[nodiscard]] Spread frame_spread() const { return spread_of(later_ms()); }
+  [[nodiscard]] std::span<const double> later_update_ms() const noexcept;
+  [[nodiscard]] double median_update_ms() const { return median_of(later_update_ms()); }
   [[nodiscard]] double pairs_a_frame() const;
   [[nodiscard]] double reported_a_frame() const;
-  /// Compares the frames that both runs have finished.
+  /// Compares the frames that both runs have.
   [[nodiscard]] bool same_pairs(const Run& other) const noexcept;
-};
-
-/// Time limits of a contender, in seconds; 0 for none.
-struct TimeBounds {
-  /// A contender starts no further frame once its frames after the first have taken this long. It
-  /// runs at least three of them, so that one disturbed frame is not the median.
-  double run = 0.0;
-  double frame = 0.0;  ///< engines that support it give up frames that take longer
-
-  [[nodiscard]] bool any() const noexcept { return run > 0.0 || frame > 0.0; }
 };
 
 struct RaceOptions {
@@ -66,7 +55,6 @@ struct RaceOptions {
   /// Frames that a contender runs in sequence before the next one runs the same: long enough to
   /// keep its data in the caches, short enough that disturbances affect all contenders alike.
   std::size_t block = 5;
-  TimeBounds bounds{};
 };
 
 /// Runs all contenders over the same frames, interleaved. Changed boxes are determined outside the
@@ -79,7 +67,7 @@ struct RaceOptions {
 [[nodiscard]] std::vector<Contender> make_contenders(const std::vector<std::string>& partitions,
                                                      int threads);
 
-/// Returns true if all runs found the same pairs in every frame that they have finished.
+/// Returns true if all runs found the same pairs in every frame.
 [[nodiscard]] bool all_agree(const std::vector<Run>& runs) noexcept;
 
 /// Options of a race on one scene: every partition at every thread count on every instruction set.
@@ -94,7 +82,6 @@ struct MeasureOptions {
   bool peers = false;       ///< also other libraries, if the tool was built with them
   bool yardstick = false;   ///< also the yardstick, if the tool was built with it
   std::size_t frames = 0;   ///< including the first; 0: chosen by the number of objects
-  TimeBounds bounds{};      ///< if any is set, libraries too slow for the size are measured as well
 };
 
 struct Measurement {

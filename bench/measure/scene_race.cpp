@@ -5,7 +5,6 @@
 
 #include "bench/common/arena.h"
 #include "bench/common/sample.h"
-#include "bench/peers/peers.h"
 
 #include <algorithm>
 #include <cmath>
@@ -70,52 +69,6 @@ std::unique_ptr<BodySet> make_pipeline_scene(const std::string& scene, std::size
   const double share = static_cast<double>(bodies) / static_cast<double>(kTerrainBodies);
   const auto cells = static_cast<std::uint32_t>(std::lround(kTerrainCells * std::sqrt(share)));
   return make_landscape(bodies, std::max(1U, cells), seed);
-}
-
-PipelineMeasurement measure_pipeline(const PipelineMeasureOptions& options) {
-  std::unique_ptr<BodySet> made;
-  if (options.set == nullptr) {
-    made = make_pipeline_scene(options.scene, options.bodies, options.seed);
-  }
-  const BodySet* set = options.set != nullptr ? options.set : made.get();
-  PipelineMeasurement measured;
-  measured.bodies = set->poses.size();
-  measured.triangles = set->mesh.size();
-  std::vector<SceneContender> contenders;
-  for (const int threads : options.threads) {
-    contenders.push_back(
-        {make_winnow_scene(threads, {.cache_tolerance = options.resting ? kCacheTolerance : 0.0,
-                                     .level = options.level}),
-         threads});
-  }
-  if (options.peers) {
-    for (std::unique_ptr<SceneEngine>& peer : make_scene_peers()) {
-      if (options.resting && !peer->caches_contacts()) continue;
-      contenders.push_back({std::move(peer), 1});
-    }
-  }
-  measured.timings =
-      race_scene(*set, options.resting ? kResting : kMoving, contenders, options.frames);
-  return measured;
-}
-
-std::vector<SceneCost> measure_scene_costs(const SceneCostOptions& options) {
-  constexpr double kMargin = 0.02;
-  const std::unique_ptr<BodySet> set =
-      make_pipeline_scene(options.scene, options.bodies, options.seed);
-  std::vector<SceneCost> costs;
-  std::vector<SceneContender> contenders;
-  for (const ContactLevel level : {ContactLevel::distance, ContactLevel::manifold}) {
-    for (const double contact_margin : {0.0, kMargin}) {
-      costs.push_back({.level = level, .contact_margin = contact_margin, .timing = {}});
-      contenders.push_back(
-          {make_winnow_scene(options.threads, {.level = level, .contact_margin = contact_margin}),
-           options.threads});
-    }
-  }
-  std::vector<SceneTiming> timings = race_scene(*set, kMoving, contenders, options.frames);
-  for (std::size_t i = 0; i < costs.size(); ++i) costs[i].timing = std::move(timings[i]);
-  return costs;
 }
 
 }  // namespace winnow::bench

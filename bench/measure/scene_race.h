@@ -34,48 +34,9 @@ struct SceneTiming {
                                                   std::span<SceneContender> contenders,
                                                   std::size_t frames);
 
-/// Options of a race on a scene of the whole pipeline.
-struct PipelineMeasureOptions {
-  std::string scene = "pile";  ///< pile, terrain or balls
-  bool resting = false;        ///< bodies rest, and winnow caches contacts
-  ContactLevel level = ContactLevel::manifold;
-  std::vector<int> threads{1, 2};
-  bool peers = true;
-  std::size_t frames = 9;
-  const BodySet* set = nullptr;  ///< the scene's bodies, if already made
-  std::size_t bodies = 0;        ///< number of bodies to make; 0: the scene's default
-  std::uint64_t seed = 1;
-};
-
-/// Makes the bodies of a scene, equal for each race on it. Takes seconds for the pile.
+/// Makes the bodies of the scene pile, terrain or balls, equal for each race on it; 0 bodies: the
+/// usual number. Takes seconds for the pile.
 [[nodiscard]] std::unique_ptr<BodySet> make_pipeline_scene(const std::string& scene,
                                                            std::size_t bodies, std::uint64_t seed);
-
-struct PipelineMeasurement {
-  std::vector<SceneTiming> timings;
-  std::size_t bodies = 0;
-  std::size_t triangles = 0;
-};
-
-[[nodiscard]] PipelineMeasurement measure_pipeline(const PipelineMeasureOptions& options);
-
-/// Options for the cost of a scene's contacts by level and contact margin, with bodies that move a
-/// little.
-struct SceneCostOptions {
-  std::string scene = "balls";
-  int threads = 1;
-  std::size_t frames = 9;
-  std::size_t bodies = 0;
-  std::uint64_t seed = 1;
-};
-
-struct SceneCost {
-  ContactLevel level{};
-  double contact_margin = 0.0;  ///< 0, then a fiftieth of a body's size, for each level
-  SceneTiming timing;
-};
-
-/// Measures the levels distance and manifold.
-[[nodiscard]] std::vector<SceneCost> measure_scene_costs(const SceneCostOptions& options);
 
 }  // namespace winnow::bench

@@ -9,7 +9,6 @@
 #include "bench/common/random.h"
 #include "bench/contenders/ray_engine.h"
 #include "bench/contenders/winnow_scene.h"
-#include "bench/peers/peers.h"
 #include "bench/scenes/body_scenes.h"
 #include "bench/scenes/random_shapes.h"
 
@@ -289,19 +288,15 @@ void add_meshes() {
     for (const std::size_t triangles : {std::size_t{100'000}, std::size_t{500'000}}) {
       const MeshName mesh{name, triangles};
       add_rays(mesh, "winnow", make_winnow_rays, false);
-      const auto peers = make_ray_peers();
-      for (std::size_t i = 0; i < peers.size(); ++i) {
-        add_rays(
-            mesh, word_of(peers[i]->name()), [i] { return std::move(make_ray_peers()[i]); }, true);
-      }
+      each_peer<RayEngine>([&](const RayEngine& peer, const MakeRays& make) {
+        add_rays(mesh, word_of(peer.name()), make, true);
+      });
       add_builds(mesh);
     }
   }
   add_tori("winnow", make_winnow_mesh);
-  const auto peers = make_mesh_peers();
-  for (std::size_t i = 0; i < peers.size(); ++i) {
-    add_tori(word_of(peers[i]->name()), [i] { return std::move(make_mesh_peers()[i]); });
-  }
+  each_peer<MeshEngine>(
+      [](const MeshEngine& peer, const MakeMesh& make) { add_tori(word_of(peer.name()), make); });
 }
 
 void add_scenes() {

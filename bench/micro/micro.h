@@ -7,6 +7,7 @@
 #include <benchmark/benchmark.h>
 #include "bench/common/arena.h"
 #include "bench/measure/isa_guard.h"
+#include "bench/peers/peers.h"
 #include "bench/rows/named_scene.h"
 #include "bench/rows/results.h"
 
@@ -28,6 +29,7 @@ void add_errors();                                           // error/ and stabi
 void add_motion();                                           // toi/, feature/ and continuous/
 void add_partitions(const std::vector<NamedScene>& scenes);  // partition/ and memory/
 void add_keys();                                             // keys/
+void add_changes();                                          // churn/, events/ and worlds/
 void add_filters(const std::vector<NamedScene>& scenes);     // filter/
 void add_volumes(const std::vector<NamedScene>& scenes);     // volume/
 void add_meshes();                                           // mesh/
@@ -53,6 +55,15 @@ Value& prepared(const std::string& key, Make&& make) {
   if (at != all.end()) return *at->second;
   std::unique_ptr<Value> made = make();
   return *all.emplace(key, std::move(made)).first->second;
+}
+
+/// Calls `visit(engine, make)` for each other library; `make` makes another such engine.
+template <typename Interface, typename Visit>
+void each_peer(Visit&& visit) {
+  const auto peers = make_peers<Interface>();
+  for (std::size_t i = 0; i < peers.size(); ++i) {
+    visit(*peers[i], [i] { return std::move(make_peers<Interface>()[i]); });
+  }
 }
 
 /// Calls `work` for each iteration, inside an arena of `threads` threads.

@@ -9,7 +9,6 @@
 #include "bench/contenders/partitions.h"
 #include "bench/contenders/winnow_impacts.h"
 #include "bench/measure/impact_judge.h"
-#include "bench/peers/peers.h"
 #include "bench/scenes/body_scenes.h"
 #include "bench/scenes/feature_steps.h"
 #include "bench/scenes/random_shapes.h"
@@ -179,13 +178,9 @@ void add_motion() {
     for (const PairTurn turn : kPairTurns) {
       add_impacts(
           kind, turn, "winnow", [] { return std::make_unique<WinnowImpacts>(); }, true);
-      const auto peers = make_impact_peers();
-      for (std::size_t i = 0; i < peers.size(); ++i) {
-        if (!peers[i]->takes(kind, turn)) continue;
-        add_impacts(
-            kind, turn, word_of(peers[i]->name()),
-            [i] { return std::move(make_impact_peers()[i]); }, false);
-      }
+      each_peer<ImpactEngine>([&](const ImpactEngine& peer, const MakeImpacts& make) {
+        if (peer.takes(kind, turn)) add_impacts(kind, turn, word_of(peer.name()), make, false);
+      });
     }
   }
   for (const FeaturePair kind : kFeaturePairs) {

@@ -6,7 +6,6 @@
 
 #include "bench/contenders/winnow_narrow.h"
 #include "bench/measure/accuracy.h"
-#include "bench/peers/peers.h"
 
 #include <winnow/simd/isa.h>
 
@@ -38,12 +37,10 @@ MakeEngine winnow_tier(NarrowTier tier, int threads = 1) {
 
 /// Calls `visit(name, make)` for each other library that supports such pairs.
 template <typename Visit>
-void each_peer(const PairKind& kind, ContactLevel level, Visit&& visit) {
-  const auto peers = make_narrow_peers();
-  for (std::size_t i = 0; i < peers.size(); ++i) {
-    if (!peers[i]->takes(kind, level)) continue;
-    visit(word_of(peers[i]->name()), [i] { return std::move(make_narrow_peers()[i]); });
-  }
+void each_pair_peer(const PairKind& kind, ContactLevel level, Visit&& visit) {
+  each_peer<NarrowEngine>([&](const NarrowEngine& peer, const MakeEngine& make) {
+    if (peer.takes(kind, level)) visit(word_of(peer.name()), make);
+  });
 }
 
 /// The pairs of a benchmark, and where they are computed.
@@ -205,7 +202,7 @@ void add_kind(const PairKind& kind, ContactLevel level) {
   add_engine(
       path + "/collide", kind, level,
       [] { return std::make_unique<WinnowOnePair>(NarrowTier::robust); }, Demand::by_and_large);
-  each_peer(kind, level, [&](const std::string& name, const MakeEngine& make) {
+  each_pair_peer(kind, level, [&](const std::string& name, const MakeEngine& make) {
     add_engine(path + "/" + name, kind, level, make, Demand::nothing);
   });
 }
@@ -213,7 +210,7 @@ void add_kind(const PairKind& kind, ContactLevel level) {
 /// Pairs with their true results.
 struct JudgedPairs {
   std::unique_ptr<PairSet> set;
-  std::vector<PairTruth> truths;
+  std::vector<oracle::Truth> truths;
 
   JudgedPairs(const PairKind& kind, const PairSetOptions& options)
       : set(make_pair_set(kind, options)), truths(truths_of(*set)) {}
@@ -280,7 +277,7 @@ void add_judged_engines(const std::string& path, const PairKind& kind, ContactLe
     add_judged(path, kind, level, options, std::string(to_text(tier)), winnow_tier(tier), gap);
   }
   if (!peers) return;
-  each_peer(kind, level, [&](const std::string& name, const MakeEngine& make) {
+  each_pair_peer(kind, level, [&](const std::string& name, const MakeEngine& make) {
     add_judged(path, kind, level, options, name, make, gap);
   });
 }

@@ -11,7 +11,6 @@
 #include "bench/contenders/reference_sweep.h"
 #include "bench/measure/column_read.h"
 #include "bench/measure/fingerprint.h"
-#include "bench/peers/peers.h"
 
 #include <algorithm>
 #include <array>
@@ -24,12 +23,6 @@ constexpr std::size_t kRays = 10'000;
 constexpr float kRounding = 3.0F * 0x1p-23F;
 constexpr const char* kReference = "BoundsNSquared";
 constexpr const char* kParallel = "LinearBvh";  ///< which is also timed on two threads
-
-/// Names of the query sets in paths, in the order of query_set_names().
-constexpr std::array<const char*, 14> kQueries{
-    "closest_ray", "any_ray",      "all_rays",          "all_near_rays",      "box_1",
-    "box_5",       "box_20",       "frustum_1_percent", "frustum_50_percent", "sphere",
-    "swept_box",   "swept_sphere", "nearest_1",         "nearest_16"};
 
 /// A scene and its number of objects.
 struct Where {
@@ -100,7 +93,7 @@ struct QueryBenchmark {
   bool is_peer = false;  ///< computes in float; its results are counted but not required
 
   [[nodiscard]] std::string path() const {
-    return "partition/" + word_of(engine) + "/" + kQueries[set] +
+    return "partition/" + word_of(engine) + "/" + std::string(query_set_names()[set]) +
            (mode == QueryMode::batch ? "/batch/" : "/") + where.path() +
            (threads > 1 ? "/threads:" + std::to_string(threads) : "");
   }
@@ -129,10 +122,9 @@ void time_queries(benchmark::State& state, const QueryBenchmark& what) {
 /// Registers all queries that the engine supports, one by one and in batches.
 void add_queries(QueryBenchmark what) {
   const auto engine = what.make(1);
-  for (what.set = 0; what.set < kQueries.size(); ++what.set) {
-    const std::string name(query_set_names()[what.set]);
+  for (what.set = 0; what.set < query_set_names().size(); ++what.set) {
     static const Aabb kUnit{{0, 0, 0}, {1, 1, 1}};
-    const QuerySet one = make_query_sets(std::span(&kUnit, 1), 1, 1, std::span(&name, 1)).front();
+    const QuerySet one = make_query_set(query_set_names()[what.set], std::span(&kUnit, 1), 1, 1);
     for (const QueryMode mode : {QueryMode::single, QueryMode::batch}) {
       if (!engine->takes(one, mode)) continue;
       what.mode = mode;
@@ -249,16 +241,14 @@ void add_structure(const std::string& structure, const Where& where) {
            [](Alternating& moving) { need(moving.partition.self_pairs(moving.pairs), "pairs"); });
 }
 
-/// Libraries that answer queries, by the index in make_query_peers().
 void add_query_peers(const Where& where, int threads) {
-  const auto peers = make_query_peers();
-  for (std::size_t i = 0; i < peers.size(); ++i) {
-    add_queries({.engine = peers[i]->name(),
-                 .make = [i](int) { return std::move(make_query_peers()[i]); },
+  each_peer<QueryEngine>([&](const QueryEngine& peer, const auto& make) {
+    add_queries({.engine = peer.name(),
+                 .make = [=](int) { return make(); },
                  .where = where,
                  .threads = threads,
                  .is_peer = true});
-  }
+  });
 }
 
 /// A partition from which a tenth of the objects is removed, inserted again and moved.

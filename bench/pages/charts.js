@@ -102,7 +102,6 @@ const names_at_dots = {
     const taken = [];
     chart.getSortedVisibleDatasetMetas().forEach((meta) => {
       const set = chart.data.datasets[meta.index];
-      if (set.front) return;
       const {x, y} = meta.data[0];
       const width = ctx.measureText(set.label).width;
       const left = x + 7 + width < chartArea.right ? x + 7 : x - 7 - width;
@@ -112,16 +111,6 @@ const names_at_dots = {
     });
     ctx.restore();
   }};
-
-// The dots that no other dot beats in both values.
-function front_of(dots, x) {
-  const front = [];
-  for (const dot of dots.slice().sort((a, b) => a[x] - b[x] || a.at - b.at)) {
-    if (front.length === 0 || dot.at < front.at(-1).at) front.push(dot);
-  }
-  return {label: "best in both", front: true, data: front, parsing: {xAxisKey: x, yAxisKey: "at"}, showLine: true, stepped: "before",
-          borderColor: style("--faint"), backgroundColor: style("--faint"), borderWidth: 1, borderDash: [2, 3], pointRadius: 0};
-}
 
 const shared = (tooltip) => ({
   animation: false, responsive: true, maintainAspectRatio: false, normalized: true,
@@ -173,6 +162,5 @@ function curves(list, by, x, y, x_title, y_title, line) {
             borderDash: is_library(String(name)) ? [5, 3] : [], pointRadius: data.length > 60 ? 1 : 3.5, clip: 8};
   });
   const named = !line && sets.every((set) => set.data.length === 1);
-  if (!line && drawn.length > 2) sets.push(front_of(drawn, x));
   return {type: "scatter", plugins: named ? [names_at_dots] : [], data: {datasets: sets}, options: {...shared(note(y)), scales}};
 }

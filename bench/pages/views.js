@@ -108,7 +108,6 @@ view(in_section, "Structures that must stand", "standing", ["drift", "tilt", "de
 
 in_section = "Many processes";
 view(in_section, "Ghosts of an object", "cluster_runs", ["ghosts", "sent_bytes", "messages", "imbalance", "bytes_per_object"], by_lines("scene", "ranks", "ranks"), "A ghost is the copy of an object whose box overlaps another rank's region.");
-view(in_section, "Model of many ranks", "cluster_model", ["ghosts", "rank_bytes"], by_lines("scene", "ranks", "ranks"), "");
 
 in_section = "Choice of a partition";
 view(in_section, "First against later frames", "advice_ranking", ["real_time"], by_lines("partition", "first_ms", "first frame, ms", false), "Lower and further left is better.");

@@ -18,19 +18,19 @@ namespace winnow::bench {
 class PairsAdapter : public Engine {
  public:
   void start(std::span<const Aabb> boxes) final {
-    run(boxes, [&](const Stopwatch& watch) { build(boxes, watch); });
+    run(boxes, [&] { build(boxes); });
   }
   void frame(std::span<const std::uint32_t> changed_rows, std::span<const Aabb> all_boxes) final {
-    run(all_boxes, [&](const Stopwatch& watch) { update(changed_rows, all_boxes, watch); });
+    run(all_boxes, [&] { update(changed_rows, all_boxes); });
   }
   [[nodiscard]] std::span<const Pair> pairs() const final { return pairs_; }
   [[nodiscard]] double update_ms() const final { return update_ms_; }
 
  protected:
-  /// Takes the boxes of the first frame; `watch` runs since the start of the frame.
-  virtual void build(std::span<const Aabb> boxes, const Stopwatch& watch) = 0;
-  virtual void update(std::span<const std::uint32_t> changed_rows, std::span<const Aabb> all_boxes,
-                      const Stopwatch& watch) = 0;
+  /// Takes the boxes of the first frame.
+  virtual void build(std::span<const Aabb> boxes) = 0;
+  virtual void update(std::span<const std::uint32_t> changed_rows,
+                      std::span<const Aabb> all_boxes) = 0;
   /// Sets `pairs_`, unless the update has.
   virtual void find_pairs(std::span<const Aabb> boxes) = 0;
 
@@ -40,7 +40,7 @@ class PairsAdapter : public Engine {
   template <typename Update>
   void run(std::span<const Aabb> boxes, Update&& update_boxes) {
     const Stopwatch watch;
-    update_boxes(watch);
+    update_boxes();
     update_ms_ = watch.ms();
     find_pairs(boxes);
   }

@@ -66,13 +66,6 @@ std::uint32_t row_of(const btBroadphaseProxy& proxy) {
   return static_cast<std::uint32_t>(reinterpret_cast<std::uintptr_t>(proxy.m_clientObject));
 }
 
-btBroadphaseProxy* make_proxy(btBroadphaseInterface& broad_phase, std::size_t row,
-                              const Aabb& box) {
-  return broad_phase.createProxy(to_bullet(box.min), to_bullet(box.max), 0,
-                                 reinterpret_cast<void*>(static_cast<std::uintptr_t>(row)), 1, -1,
-                                 nullptr);
-}
-
 /// Common parts of both broad phases: one thread, proxies by row, and bytes.
 class BulletAdapter : public PairsAdapter {
  public:
@@ -89,6 +82,25 @@ class BulletAdapter : public PairsAdapter {
   }
 
  protected:
+  template <typename BroadPhase>
+  void set_boxes(BroadPhase& broad_phase, std::span<const std::uint32_t> rows,
+                 std::span<const Aabb> boxes) {
+    for (const std::uint32_t row : rows) {
+      broad_phase.setAabb(proxies_[row], to_bullet(boxes[row].min), to_bullet(boxes[row].max),
+                          nullptr);
+    }
+  }
+  /// Adds proxies for new rows.
+  template <typename BroadPhase>
+  void add_proxies(BroadPhase& broad_phase, std::span<const Aabb> boxes) {
+    proxies_.reserve(boxes.size());
+    for (std::size_t i = proxies_.size(); i < boxes.size(); ++i) {
+      proxies_.push_back(broad_phase.createProxy(
+          to_bullet(boxes[i].min), to_bullet(boxes[i].max), 0,
+          reinterpret_cast<void*>(static_cast<std::uintptr_t>(i)), 1, -1, nullptr));
+    }
+  }
+
   std::vector<btBroadphaseProxy*> proxies_;
   Bytes bytes_{0};
 };
@@ -117,34 +129,23 @@ class BulletTrees final : public BulletAdapter {
     Trees() { m_deferedcollide = true; }
   };
 
-  void build(std::span<const Aabb> boxes, const Stopwatch&) override {
+  void build(std::span<const Aabb> boxes) override {
     allocated_bytes = &bytes_;
     gDbvtMargin = static_cast<btScalar>(0.1 * mean_edge(boxes));
     margin_ = gDbvtMargin;
-    add_proxies(boxes);
+    add_proxies(trees_, boxes);
     trees_.optimize();
     defer_next_ = trees_.m_deferedcollide;
   }
 
-  void update(std::span<const std::uint32_t> changed_rows, std::span<const Aabb> all_boxes,
-              const Stopwatch&) override {
+  void update(std::span<const std::uint32_t> changed_rows,
+              std::span<const Aabb> all_boxes) override {
     allocated_bytes = &bytes_;
     gDbvtMargin = margin_;  // a global of Bullet; another engine may have changed it
     const unsigned known = trees_.m_updates_done;
-    for (const std::uint32_t row : changed_rows) {
-      trees_.setAabb(proxies_[row], to_bullet(all_boxes[row].min), to_bullet(all_boxes[row].max),
-                     nullptr);
-    }
-    add_proxies(all_boxes);
+    set_boxes(trees_, changed_rows, all_boxes);
+    add_proxies(trees_, all_boxes);
     defer_next_ = trees_.m_updates_done - known > proxies_.size() / 16;
-  }
-
-  /// Adds proxies for new rows.
-  void add_proxies(std::span<const Aabb> boxes) {
-    proxies_.reserve(boxes.size());
-    for (std::size_t i = proxies_.size(); i < boxes.size(); ++i) {
-      proxies_.push_back(make_proxy(trees_, i, boxes[i]));
-    }
   }
 
   void find_pairs(std::span<const Aabb>) override {
@@ -206,25 +207,16 @@ class BulletSweep final : public BulletAdapter {
   [[nodiscard]] std::size_t largest() const override { return 5'000; }
 
  private:
-  static constexpr std::size_t kRowsOfCheck = 64;
+  void build(std::span<const Aabb> boxes) override { build(boxes, boxes.size()); }
 
-  void build(std::span<const Aabb> boxes, const Stopwatch& watch) override {
-    build(boxes, boxes.size(), watch);
-  }
-
-  void update(std::span<const std::uint32_t> changed_rows, std::span<const Aabb> all_boxes,
-              const Stopwatch& watch) override {
+  void update(std::span<const std::uint32_t> changed_rows,
+              std::span<const Aabb> all_boxes) override {
     allocated_bytes = &bytes_;
     if (!has_room_for(changed_rows, all_boxes)) {
-      build(all_boxes, 2 * all_boxes.size(), watch);
+      build(all_boxes, 2 * all_boxes.size());
     } else {
-      for (std::size_t i = 0; i < changed_rows.size(); ++i) {
-        if (i % kRowsOfCheck == 0) check_time(watch);
-        const std::uint32_t row = changed_rows[i];
-        sweep_->setAabb(proxies_[row], to_bullet(all_boxes[row].min), to_bullet(all_boxes[row].max),
-                        nullptr);
-      }
-      add_proxies(all_boxes, watch);
+      set_boxes(*sweep_, changed_rows, all_boxes);
+      add_proxies(*sweep_, all_boxes);
     }
   }
 
@@ -249,7 +241,7 @@ class BulletSweep final : public BulletAdapter {
                        [&](const Aabb& box) { return is_inside(box); });
   }
 
-  void build(std::span<const Aabb> boxes, std::size_t handles, const Stopwatch& watch) {
+  void build(std::span<const Aabb> boxes, std::size_t handles) {
     allocated_bytes = &bytes_;
     world_ = {};
     for (const Aabb& box : boxes) world_.merge(box);
@@ -265,16 +257,7 @@ class BulletSweep final : public BulletAdapter {
     sweep_ =
         std::make_unique<bt32BitAxisSweep3>(to_bullet(world_.min), to_bullet(world_.max),
                                             static_cast<unsigned>(handles_), cache_.get(), true);
-    add_proxies(boxes, watch);
-  }
-
-  /// Adds proxies for new rows.
-  void add_proxies(std::span<const Aabb> boxes, const Stopwatch& watch) {
-    proxies_.reserve(boxes.size());
-    for (std::size_t i = proxies_.size(); i < boxes.size(); ++i) {
-      if (i % kRowsOfCheck == 0) check_time(watch);
-      proxies_.push_back(make_proxy(*sweep_, i, boxes[i]));
-    }
+    add_proxies(*sweep_, boxes);
   }
 
   std::unique_ptr<RowPairs> cache_;

@@ -57,14 +57,13 @@ class CgalEngine final : public PairsAdapter {
   }
 
  private:
-  void build(std::span<const Aabb> boxes, const Stopwatch&) override {
+  void build(std::span<const Aabb> boxes) override {
     axes_ = axes_by_pruning(boxes);
     std::swap(axes_[1], axes_[2]);  // the second best axis is the last
     copy(boxes);
   }
 
-  void update(std::span<const std::uint32_t>, std::span<const Aabb> all_boxes,
-              const Stopwatch&) override {
+  void update(std::span<const std::uint32_t>, std::span<const Aabb> all_boxes) override {
     if (!serial_ && decided_ && all_boxes.size() > 2 * decided_for_) {
       decided_ = parallel_ = false;
       parallel_ms_ = 0.0;

@@ -44,7 +44,7 @@ class EmbreeEngine final : public PairsAdapter {
   }
 
  private:
-  void build(std::span<const Aabb> boxes, const Stopwatch&) override {
+  void build(std::span<const Aabb> boxes) override {
     geometry_ = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_USER);
     rtcSetGeometryUserPrimitiveCount(geometry_, static_cast<unsigned>(boxes.size()));
     rtcSetGeometryUserData(geometry_, this);
@@ -56,8 +56,8 @@ class EmbreeEngine final : public PairsAdapter {
     rtcCommitScene(scene_);
   }
 
-  void update(std::span<const std::uint32_t> changed_rows, std::span<const Aabb> all_boxes,
-              const Stopwatch&) override {
+  void update(std::span<const std::uint32_t> changed_rows,
+              std::span<const Aabb> all_boxes) override {
     const bool has_grown = all_boxes.size() != boxes_.size();
     boxes_ = all_boxes;
     if (has_grown)

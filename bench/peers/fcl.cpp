@@ -65,13 +65,13 @@ class FclEngine final : public PairsAdapter {
   }
 
  private:
-  void build(std::span<const Aabb> boxes, const Stopwatch&) override {
+  void build(std::span<const Aabb> boxes) override {
     add_objects(boxes);
     build_tree();
   }
 
-  void update(std::span<const std::uint32_t> changed_rows, std::span<const Aabb> all_boxes,
-              const Stopwatch&) override {
+  void update(std::span<const std::uint32_t> changed_rows,
+              std::span<const Aabb> all_boxes) override {
     const std::size_t known = objects_.size();
     const bool few = changed_rows.size() < known / 64;
     displaced_.clear();

@@ -102,15 +102,15 @@ class OdeEngine final : public PairsAdapter {
   }
 
  private:
-  void build(std::span<const Aabb> boxes, const Stopwatch&) override {
+  void build(std::span<const Aabb> boxes) override {
     dAllocateODEDataForThread(static_cast<unsigned>(dAllocateMaskAll));
     space_ = dSweepAndPruneSpaceCreate(nullptr, sap_order(axes_by_pruning(boxes)));
     add_geoms(boxes);
     dSpaceClean(space_);
   }
 
-  void update(std::span<const std::uint32_t> changed_rows, std::span<const Aabb> all_boxes,
-              const Stopwatch&) override {
+  void update(std::span<const std::uint32_t> changed_rows,
+              std::span<const Aabb> all_boxes) override {
     for (const std::uint32_t row : changed_rows) {
       *static_cast<Aabb*>(dGeomGetClassData(geoms_[row])) = all_boxes[row];
       dGeomMoved(geoms_[row]);

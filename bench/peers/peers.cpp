@@ -1,39 +1,28 @@
 #include "bench/peers/peers.h"
 
+#include "bench/contenders/engine.h"
+#include "bench/contenders/impact_engine.h"
+#include "bench/contenders/narrow_engine.h"
+#include "bench/contenders/query_engine.h"
+#include "bench/contenders/ray_engine.h"
+#include "bench/contenders/scene_engine.h"
 #include "bench/peers/registry.h"
 
 namespace winnow::bench {
-namespace {
 
-template <typename Engine>
-std::vector<std::unique_ptr<Engine>> make_all(int threads = 1) {
-  std::vector<std::unique_ptr<Engine>> engines;
-  for (const MakePeer<Engine> make : registered_peers<Engine>()) engines.push_back(make(threads));
+template <typename Interface>
+std::vector<std::unique_ptr<Interface>> make_peers(int threads) {
+  std::vector<std::unique_ptr<Interface>> engines;
+  for (const auto make : registered_peers<Interface>()) engines.push_back(make(threads));
   return engines;
 }
 
-}  // namespace
-
-std::vector<std::unique_ptr<Engine>> make_peers(int threads) {
-  return make_all<Engine>(threads);
-}
-std::vector<std::unique_ptr<QueryEngine>> make_query_peers() {
-  return make_all<QueryEngine>();
-}
-std::vector<std::unique_ptr<NarrowEngine>> make_narrow_peers() {
-  return make_all<NarrowEngine>();
-}
-std::vector<std::unique_ptr<ImpactEngine>> make_impact_peers() {
-  return make_all<ImpactEngine>();
-}
-std::vector<std::unique_ptr<SceneEngine>> make_scene_peers() {
-  return make_all<SceneEngine>();
-}
-std::vector<std::unique_ptr<RayEngine>> make_ray_peers() {
-  return make_all<RayEngine>();
-}
-std::vector<std::unique_ptr<MeshEngine>> make_mesh_peers() {
-  return make_all<MeshEngine>();
-}
+template std::vector<std::unique_ptr<Engine>> make_peers(int);
+template std::vector<std::unique_ptr<QueryEngine>> make_peers(int);
+template std::vector<std::unique_ptr<NarrowEngine>> make_peers(int);
+template std::vector<std::unique_ptr<ImpactEngine>> make_peers(int);
+template std::vector<std::unique_ptr<SceneEngine>> make_peers(int);
+template std::vector<std::unique_ptr<RayEngine>> make_peers(int);
+template std::vector<std::unique_ptr<MeshEngine>> make_peers(int);
 
 }  // namespace winnow::bench

@@ -1,10 +1,9 @@
 // The format of queries in JSON as tables of members. By them `is_readable` checks types before
-// shape_json.cpp and motion_json.cpp read a query, `fault_of` explains why a query is refused, and
+// shape_json.cpp and questions.cpp read a query, `fault_of` explains why a query is refused, and
 // `query_format` writes the help of `winnow query`.
 
 #include "bench/questions/query_format.h"
 
-#include "bench/questions/motion_json.h"
 #include "bench/questions/shape_json.h"
 
 #include <algorithm>

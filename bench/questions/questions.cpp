@@ -4,9 +4,11 @@
 
 #include "bench/questions/questions.h"
 
+#include <winnow/pipeline/feature_impacts.h>
 #include <winnow/pipeline/time_of_impact.h>
-#include "bench/questions/motion_json.h"
+#include "bench/questions/query_format.h"
 
+#include <array>
 #include <utility>
 #include <vector>
 
@@ -15,6 +17,16 @@ namespace {
 
 Json list(double x, double y, double z) {
   return Json::array({number_to_json(x), number_to_json(y), number_to_json(z)});
+}
+
+std::array<Vec3d, 4> four_points(const Json& value) {
+  std::array<Vec3d, 4> points;
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      static_cast<void>(read_exact_number(value[k][axis], points[k][axis]));
+    }
+  }
+  return points;
 }
 
 /// Collects the bodies and pairs of all questions and stores each answer in its question's row.
@@ -30,7 +42,7 @@ class QueryBatch {
     if (is_object && question.contains("ray")) {
       status = compute_ray(question, answer);
     } else if (is_object && question.contains("motion")) {
-      status = answer_motion(question, answer);
+      status = compute_motion(question, answer);
     } else if (is_object && question.contains("a") && question.contains("b")) {
       const bool moves = has_end_pose(question["a"]) || has_end_pose(question["b"]);
       status = moves ? compute_impact(question, answer) : add_pair(row, question);
@@ -89,6 +101,24 @@ class QueryBatch {
     answer["normal"] =
         hit.hit ? list(hit.normal[0], hit.normal[1], hit.normal[2]) : list(0.0, 0.0, 0.0);
     return Status::ok;
+  }
+
+  static Status compute_motion(const Json& question, Json& answer) {
+    if (!is_readable(question, QueryPart::motion)) return Status::invalid_argument;
+    const Json& motion = question["motion"];
+    const FeaturePair pair =
+        motion["kind"] == "vertex_face" ? FeaturePair::vertex_face : FeaturePair::edge_edge;
+    FeatureImpactOptions options;
+    static_cast<void>(
+        read_exact_number(member(question, "min_separation"), options.min_separation));
+    FeatureImpact impact;
+    const Status status = feature_impact(pair, four_points(motion["start"]),
+                                         four_points(motion["end"]), impact, options);
+    if (status != Status::ok) return status;
+    answer["status"] = to_string(status);
+    answer["hit"] = impact.hit;
+    answer["time"] = number_to_json(impact.time);
+    return status;
   }
 
   Status compute_impact(const Json& question, Json& answer) {

@@ -12,7 +12,9 @@ namespace winnow::bench {
 ///   "points", "error_bound"}: its time of impact;
 /// - {"id", "ray", "target": shape} with {"id", "status", "hit", "t", "normal"}: for a miss, t is
 ///   "inf" and the normal zero;
-/// - {"id", "motion", "min_separation"} with {"id", "status", "hit", "time"}: see motion_json.h.
+/// - {"id", "motion": {"kind", "start", "end"}, "min_separation"} with {"id", "status", "hit",
+///   "time"}: the impact of two features that move linearly from time 0 to 1. A number may also be
+///   a string in C's hexadecimal notation such as "-0x1.8p+1", which is exact to the last bit.
 /// If a question is invalid, its answer has only the id and the name of its Status, and the other
 /// questions are still answered. The id is copied from the question, or null if it has none.
 [[nodiscard]] Json answer(const Json& questions, NarrowTier tier);

@@ -1,4 +1,4 @@
-// Reads shapes, poses, motions and rays of JSON queries and adds the shapes to the pools.
+// Reads numbers, shapes, poses, motions and rays of JSON queries and adds the shapes to the pools.
 // questions.cpp calls these functions; shape_json.h states the format.
 
 #include "bench/questions/shape_json.h"
@@ -8,8 +8,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <limits>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace winnow::bench {
@@ -135,6 +137,16 @@ Status add_any_shape(const Json& value, ShapePool& pool, CompositePool& composit
   return composites.add_compound(children, id);
 }
 
+/// Reads a hexadecimal number such as "0x1.8p+1", with or without a sign, that fills the whole
+/// text.
+bool read_hexadecimal(const std::string& text, double& out) {
+  const std::size_t sign = text.starts_with('-') || text.starts_with('+') ? 1 : 0;
+  if (text.compare(sign, 2, "0x") != 0 && text.compare(sign, 2, "0X") != 0) return false;
+  char* end = nullptr;
+  out = std::strtod(text.c_str(), &end);
+  return end == text.c_str() + text.size() && std::isfinite(out);
+}
+
 }  // namespace
 
 Status read_shape(const Json& value, ShapePool& pool, ShapeId& id, Pose& pose) {
@@ -184,6 +196,11 @@ bool read_number(const Json& value, double& out) {
     return false;
   }
   return true;
+}
+
+bool read_exact_number(const Json& value, double& out) {
+  return read_number(value, out) ||
+         (value.is_string() && read_hexadecimal(value.get_ref<const std::string&>(), out));
 }
 
 Json number_to_json(double value) {

@@ -35,6 +35,9 @@ namespace winnow::bench {
 /// Reads a number, or "nan", "inf" or "-inf". Returns false for anything else.
 [[nodiscard]] bool read_number(const Json& value, double& out);
 
+/// Reads a number as `read_number` does, or a string in C's hexadecimal notation.
+[[nodiscard]] bool read_exact_number(const Json& value, double& out);
+
 /// Converts a number to JSON, which has no infinities or NaN: they become "inf", "-inf" and "nan".
 [[nodiscard]] Json number_to_json(double value);
 

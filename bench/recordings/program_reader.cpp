@@ -1,5 +1,5 @@
 // Converts a recording of a program's calls (winnow::Recorder) into frames of boxes or contacts.
-// read_recording() and read_contacts() in reader.cpp call it. The calls are played twice: first to
+// read_recording() and read_contacts() in aabbs.cpp call it. The calls are played twice: first to
 // find the partition or scene with the most objects, then to read its boxes at each frame's end.
 
 #include <winnow/pipeline/replay.h>

@@ -5,7 +5,7 @@
 
 #include "bench/common/table.h"
 #include "bench/contenders/partitions.h"
-#include "bench/questions/hard_case_files.h"
+#include "bench/questions/hard_cases.h"
 #include "bench/rows/rows.h"
 #include "bench/scenes/scene.h"
 #include "bench/trust/ledger.h"
@@ -113,23 +113,28 @@ void measure_throughput(Results& results, const ReportOptions& options, const Na
   }
 }
 
+/// Races other libraries, together with a partition that must find the same pairs.
+void add_peer_race(Plan& plan, const NamedScene& scene, std::size_t objects,
+                   const std::string& name, const std::vector<int>& threads) {
+  const MeasureOptions race{.objects = objects,
+                            .seed = plan.options.seed,
+                            .partitions = {"LinearBvh"},
+                            .threads = threads,
+                            .isas = {plan.options.isas.back()},
+                            .peers = true,
+                            .frames = frames_of_slow(plan.options.quick, objects)};
+  plan.add(name + ", other libraries", [=](Results& to) {
+    add_frame_race(to, scene, race, true);
+    derive_frames(to, scene.name, objects);
+  });
+}
+
 void plan_throughput(Plan& plan) {
   const ReportOptions& options = plan.options;
   plan.each_size(options.scenes, [&](const NamedScene& scene, std::size_t objects, auto name) {
     plan.add(name, [=](Results& to) { measure_throughput(to, options, scene, objects); });
     if (!options.peers || objects > kLargestForPeers) return;
-    // With the largest number of threads, together with a partition that must find the same pairs.
-    const MeasureOptions race{.objects = objects,
-                              .seed = options.seed,
-                              .partitions = {"LinearBvh"},
-                              .threads = {options.threads.back()},
-                              .isas = {options.isas.back()},
-                              .peers = true,
-                              .frames = frames_of_slow(options.quick, objects)};
-    plan.add(name + ", other libraries", [=](Results& to) {
-      add_frame_race(to, scene, race, true);
-      derive_frames(to, scene.name, objects);
-    });
+    add_peer_race(plan, scene, objects, name, {options.threads.back()});
   });
   for (const NamedScene& scene : plan.every_scene()) {
     const MeasureOptions race{.objects = scene.objects(plan.objects_up_to(10'000)),
@@ -142,11 +147,16 @@ void plan_throughput(Plan& plan) {
   const auto cold = plan.few_scenes(kColdScenes);
   plan.each_size(cold, [&](const NamedScene& scene, std::size_t objects, auto name) {
     if (objects > kLargestForPeers) return;
-    const std::size_t rounds = options.quick ? 1 : objects > 20'000 ? 3 : 7;
-    plan.add(name + ", first frames", [=](Results& to) {
-      add_cold(to, scene, objects, options.seed, unlimited_partitions(), options.threads.front(),
-               rounds, options.yardstick);
-    });
+    const PartitionRowOptions frames{.scene = scene,
+                                     .objects = objects,
+                                     .seed = options.seed,
+                                     .partitions = unlimited_partitions(),
+                                     .threads = options.threads.front(),
+                                     .count = options.quick      ? 1U
+                                              : objects > 20'000 ? 3U
+                                                                 : 7U,
+                                     .yardstick = options.yardstick};
+    plan.add(name + ", first frames", [=](Results& to) { add_cold(to, frames); });
   });
   for (const NamedScene& scene : options.scenes) {
     const std::size_t objects = scene.objects(plan.objects_up_to(100'000));
@@ -160,9 +170,11 @@ void plan_memory(Plan& plan) {
   const auto scenes = plan.few_scenes({"uniform", "mixed"});
   plan.each_size(scenes, [&](const NamedScene& scene, std::size_t objects, auto name) {
     if (objects > kLargestForPeers) return;
-    plan.add(name, [=, options = plan.options](Results& to) {
-      add_footprints_apart(to, scene, objects, options.seed, options.threads.back());
-    });
+    const PartitionRowOptions memory{.scene = scene,
+                                     .objects = objects,
+                                     .seed = plan.options.seed,
+                                     .threads = plan.options.threads.back()};
+    plan.add(name, [=](Results& to) { add_footprints_apart(to, memory); });
   });
 }
 
@@ -266,30 +278,30 @@ void plan_trust(Plan& plan) {
   plan.add("the ledger of trust", add_ledger);
 }
 
-/// Rows that only goals need: other libraries in every scene, a plain pool of threads, the first
-/// frames of AutoPartition, its frames after a change of the scene, worst frames, and a flow that
-/// is checked by brute force.
+/// Rows that only goals need: frames of every scene and of other libraries on every number of
+/// threads, a plain pool of threads, the first frames of AutoPartition, its frames after a change
+/// of the scene, worst frames, a flow that is checked by brute force, and frames of a large flow.
 void plan_goals(Plan& plan) {
   const ReportOptions& options = plan.options;
   const auto frames = plan.quick_or<std::size_t>(12, 81);
   plan.each_size(plan.every_scene(), [&](const NamedScene& scene, std::size_t objects, auto name) {
-    if (!options.peers || objects > kLargestForPeers) return;
-    plan.add(name + ", other libraries", [=](Results& to) {
-      add_beside_peers(to, scene,
-                       {.objects = objects,
-                        .partitions = unlimited_partitions(),
-                        .threads = options.threads,
-                        .frames = objects > 20'000 ? std::min<std::size_t>(26, frames) : frames,
-                        .bounds = {.run = 1.0, .frame = 5.0}});
-    });
+    if (objects > kLargestForPeers || scene.name == "growth") return;
+    if (std::ranges::find(options.scenes, scene.name, &NamedScene::name) == options.scenes.end()) {
+      plan.add(name, [=](Results& to) { measure_throughput(to, options, scene, objects); });
+    }
+    if (options.peers) add_peer_race(plan, scene, objects, name, options.threads);
   });
-  plan.each_size(plan.few_scenes({"uniform", "mixed"}), [&](auto scene, std::size_t objects,
-                                                            auto name) {
-    plan.add(name + ", a pool of threads", [=](Results& to) {
-      add_hosts(to, scene, objects, options.seed,
-                {"LinearBvh", "SweepAndPrune", "HierarchicalGrid"}, options.threads.back(), frames);
-    });
-  });
+  plan.each_size(
+      plan.few_scenes({"uniform", "mixed"}), [&](auto scene, std::size_t objects, auto name) {
+        const PartitionRowOptions hosts{
+            .scene = scene,
+            .objects = objects,
+            .seed = options.seed,
+            .partitions = {"LinearBvh", "SweepAndPrune", "HierarchicalGrid"},
+            .threads = options.threads.back(),
+            .count = frames};
+        plan.add(name + ", a pool of threads", [=](Results& to) { add_hosts(to, hosts); });
+      });
   plan.each_size(options.scenes, [&](const NamedScene& scene, std::size_t objects, auto name) {
     for (const int threads : options.threads) {
       plan.add(name + ", first frames of AutoPartition",
@@ -310,6 +322,10 @@ void plan_goals(Plan& plan) {
                             .threads = 2,
                             .check = plan.quick_or<std::size_t>(50, 500)};
   plan.add("a long granular flow", [=](Results& to) { add_flow(to, flow); });
+  const FlowRowOptions large{.shape = "spheres",
+                             .objects = plan.quick_or<std::size_t>(60, 100'000),
+                             .steps = plan.quick_or<std::size_t>(50, 400)};
+  plan.add("frames of a large flow", [=](Results& to) { add_flow_frames(to, large, 9); });
 }
 
 using PlanSection = std::pair<const char*, void (*)(Plan&)>;

@@ -7,6 +7,7 @@
 #include "bench/common/other_work.h"
 #include "bench/common/progress.h"
 #include "bench/common/table.h"
+#include "bench/contenders/reference_sweep.h"
 #include "bench/pages/page.h"
 #include "bench/rows/machine.h"
 

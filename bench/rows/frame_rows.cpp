@@ -4,11 +4,11 @@
 
 #include "bench/rows/rows.h"
 
-#include "bench/contenders/partitions.h"
+#include "bench/common/thread_pool.h"
+#include "bench/contenders/partition_engine.h"
 #include "bench/measure/cold_frames.h"
 #include "bench/measure/core_distance.h"
 #include "bench/measure/frame_limit.h"
-#include "bench/measure/host_race.h"
 #include "bench/peers/yardstick.h"
 #include "bench/rows/machine.h"
 
@@ -38,14 +38,9 @@ std::string throughput_fingerprint(const Run& run) {
   return to_hex(sum);
 }
 
-/// Returns the frames after the first, or the first if it is the only one.
-std::span<const double> after_first(std::span<const double> ms) {
-  return ms.subspan(ms.size() > 1 ? 1 : 0);
-}
-
 void add_run(Results& results, const NamedScene& scene, const Measurement& measured, const Run& run,
              double distance_ns, std::string command) {
-  const auto ms = after_first(run.frame_ms);
+  const auto ms = run.later_ms();
   Json row{{"scene", scene.name},
            {"objects", measured.objects},
            {"partition", run.engine},
@@ -59,7 +54,7 @@ void add_run(Results& results, const NamedScene& scene, const Measurement& measu
            {"fingerprint", throughput_fingerprint(run)},
            {"command", std::move(command)}};
   if (run.median_update_ms() > 0.0) {  // some libraries do not time the update separately
-    row["update_ms"] = to_value(after_first(run.update_ms));
+    row["update_ms"] = to_value(run.later_update_ms());
     row["update_share"] = run.median_update_ms() / median_of(ms);
   }
   if (const auto settled = run.settled_ms(); !settled.empty()) {
@@ -126,53 +121,12 @@ Spread settled_spread(const Run& run) {
   return settled.empty() ? run.frame_spread() : spread_of(settled);
 }
 
-/// The frames of a race by which a library is compared.
-struct JudgedFrames {
-  std::size_t first = 1;
-  std::size_t count = 0;
-  bool mean = false;
-  std::string name;
-
-  JudgedFrames(const Run& peer, bool grows) : mean(grows) {
-    const std::size_t finished = peer.frame_ms.size();
-    if (finished > 1) {
-      count = finished - 1;
-      name = grows ? "mean frame" : "median frame";
-      if (peer.gave_up_ms > 0.0) name += " until it gave up";
-    } else if (peer.gave_up_ms > 0.0) {
-      first = finished;
-      count = 1;
-      name = first == 0 ? "first frame, given up" : "second frame, given up";
-    }
-  }
-
-  [[nodiscard]] double of(const Run& run) const {
-    if (!are_in(run)) return run.gave_up_ms;
-    const auto ms = std::span(run.frame_ms).subspan(first, count);
-    if (!mean) return median_of(ms);
-    return std::accumulate(ms.begin(), ms.end(), 0.0) / static_cast<double>(count);
-  }
-  [[nodiscard]] bool are_in(const Run& run) const noexcept {
-    return first + count <= run.frame_ms.size();
-  }
-};
-
-/// Returns the fastest partition with this many threads; null if none ran all of these frames.
-const Run* best_of(const Measurement& raced, int threads, const JudgedFrames& frames) {
-  const Run* best = nullptr;
-  for (const Run& run : raced.partitions()) {
-    if (run.threads != threads || !frames.are_in(run)) continue;
-    if (best == nullptr || frames.of(run) < frames.of(*best)) best = &run;
-  }
-  return best;
-}
-
 /// Returns the median time of a partition's first frame on pages that were used before.
 double touched_ms(const ColdRace& race, const std::string& partition) {
   const auto one = std::ranges::find_if(race.frames, [&](const ColdFrames& frames) {
     return frames.partition == partition && frames.memory == kTouched;
   });
-  return median_of(one->total_ms);
+  return median_of(one->times.at("total_ms"));
 }
 
 }  // namespace
@@ -280,82 +234,80 @@ void add_every_scene(Results& results, const NamedScene& scene, MeasureOptions o
   require_same_pairs(raced);
 }
 
-void add_beside_peers(Results& results, const NamedScene& scene, MeasureOptions options) {
-  options.peers = true;
-  const Measurement raced = race_on(scene, options);
-  for (const Run& peer : raced.peers()) {
-    const JudgedFrames frames(peer, raced.grows);
-    const Run* best = frames.count > 0 ? best_of(raced, peer.threads, frames) : nullptr;
-    if (best == nullptr) continue;
-    results.add("beside_peers",
-                {{"scene", scene.name},
-                 {"objects", raced.objects},
-                 {"partition", peer.engine},
-                 {"threads", peer.threads},
-                 {"of", frames.name},
-                 {"times", frames.of(peer) / frames.of(*best)},
-                 {"ms", frames.of(peer)},
-                 {"best_ms", frames.of(*best)},
-                 {"best", best->engine},
-                 {"frames", frames.count},
-                 {"command", command_text("--with-peers dev throughput --peers",
-                                          scene.words(raced.objects, options.seed), " --threads ",
-                                          peer.threads, " --partition ", best->engine, " --frames ",
-                                          frames.first + frames.count)}});
-  }
-  require_same_pairs(raced);
+std::string partition_command(const std::string& command, const PartitionRowOptions& options,
+                              std::size_t objects, const std::string& partition) {
+  return command_text(command, options.scene.words(objects, options.seed),
+                      settings_text(options.threads), " --partition ", partition);
 }
 
-void add_cold(Results& results, const NamedScene& scene, std::size_t objects, std::uint64_t seed,
-              const std::vector<std::string>& partitions, int threads, std::size_t rounds,
-              bool yardstick) {
-  const auto source = scene.source(objects, seed);
+void add_throughput(Results& results, const PartitionRowOptions& options) {
+  add_frame_race(results, options.scene,
+                 {.objects = options.objects,
+                  .seed = options.seed,
+                  .partitions = options.partitions,
+                  .threads = {options.threads},
+                  .peers = options.peers,
+                  .yardstick = options.yardstick,
+                  .frames = options.count});
+  derive_frames(results, options.scene.name, options.objects);
+}
+
+void add_cold(Results& results, const PartitionRowOptions& options) {
+  constexpr std::size_t kRounds = 7;
+  const auto source = options.scene.source(options.objects, options.seed);
   const std::size_t count = source->objects();
-  const ColdRace race = race_cold_frames(source->boxes(), partitions, threads, rounds, yardstick);
+  const ColdRace race = race_cold_frames(
+      source->boxes(), partitions_for(options.partitions, count).taken, options.threads,
+      options.count != 0 ? options.count : kRounds, options.yardstick);
   for (const ColdFrames& one : race.frames) {
-    Json row{{"scene", scene.name},
+    Json row{{"scene", options.scene.name},
              {"objects", count},
              {"partition", one.partition},
              {"memory", one.memory},
-             {"threads", threads},
-             {"insert_ms", to_value(one.insert_ms)},
-             {"build_ms", to_value(one.build_ms)},
-             {"pairs_ms", to_value(one.pairs_ms)},
-             {"total_ms", to_value(one.total_ms)},
-             {"command", command_text("dev cold", scene.words(count, seed), settings_text(threads),
-                                      " --partition ", one.partition)}};
-    if (!one.ready_ms.empty()) {
-      row["reserved_ms"] = to_value(one.reserved_ms);
-      row["ready_ms"] = to_value(one.ready_ms);
-      row["reserve_ms"] = to_value(one.reserve_ms);
-      row["pages_ms"] = to_value(one.pages_ms);
+             {"threads", options.threads},
+             {"command", partition_command("dev cold", options, count, one.partition)}};
+    for (const auto& [name, ms] : one.times) row[name] = to_value(ms);
+    const double total = median_of(one.times.at("total_ms"));
+    if (one.memory != kTouched) {
       row["over_pages"] =
-          (median_of(one.total_ms) - touched_ms(race, one.partition)) / median_of(one.pages_ms);
+          (total - touched_ms(race, one.partition)) / median_of(one.times.at("pages_ms"));
     }
     if (!race.yardstick_ms.empty()) {
       row["yardstick_ms"] = to_value(race.yardstick_ms);
-      row["over_yardstick"] = median_of(one.total_ms) / median_of(race.yardstick_ms);
+      row["over_yardstick"] = total / median_of(race.yardstick_ms);
     }
     results.add("cold", std::move(row));
   }
 }
 
-void add_hosts(Results& results, const NamedScene& scene, std::size_t objects, std::uint64_t seed,
-               const std::vector<std::string>& partitions, int threads, std::size_t frames) {
-  for (const std::string& partition : partitions) {
-    const auto source = scene.source(objects, seed);
-    const std::size_t count = source->objects();
-    const HostRace race = race_hosts(*source, partition, threads, frames);
+void add_hosts(Results& results, const PartitionRowOptions& options) {
+  constexpr std::size_t kFrames = 101;
+  constexpr std::size_t kWarmingFrames = 5;
+  const std::size_t objects = options.scene.objects(options.objects);
+  for (const std::string& partition : partitions_for(options.partitions, objects).taken) {
+    const auto source = options.scene.source(options.objects, options.seed);
+    ThreadPool pool(static_cast<std::size_t>(options.threads));
+    std::vector<Contender> contenders;
+    contenders.push_back(
+        {std::make_unique<PartitionEngine>(partition, options.threads), options.threads});
+    contenders.push_back(
+        {std::make_unique<PartitionEngine>(partition, Execution::on(pool.jobs())), 1});
+    const std::size_t frames = options.count != 0 ? options.count : kFrames;
+    const std::vector<Run> runs =
+        race(*source, contenders, {.frames = kWarmingFrames + frames, .block = 1});
+    if (!all_agree(runs)) throw std::runtime_error("the threads of a pool find other pairs");
+    const auto ms_of = [&](const Run& run) {
+      return std::span(run.frame_ms).subspan(std::min(kWarmingFrames, run.frame_ms.size()));
+    };
     results.add("hosts",
-                {{"scene", scene.name},
-                 {"objects", count},
+                {{"scene", options.scene.name},
+                 {"objects", objects},
                  {"partition", partition},
-                 {"threads", threads},
-                 {"arena_ms", to_value(race.arena_ms)},
-                 {"pool_ms", to_value(race.pool_ms)},
-                 {"over_arena", median_of(race.pool_ms) / median_of(race.arena_ms)},
-                 {"command", command_text("dev hosts", scene.words(count, seed),
-                                          settings_text(threads), " --partition ", partition)}});
+                 {"threads", options.threads},
+                 {"arena_ms", to_value(ms_of(runs[0]))},
+                 {"pool_ms", to_value(ms_of(runs[1]))},
+                 {"over_arena", median_of(ms_of(runs[1])) / median_of(ms_of(runs[0]))},
+                 {"command", partition_command("dev hosts", options, objects, partition)}});
   }
 }
 

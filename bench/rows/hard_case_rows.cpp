@@ -4,6 +4,7 @@
 #include "bench/rows/rows.h"
 
 #include "bench/common/errors.h"
+#include "bench/contenders/narrow_engine.h"
 #include "bench/peers/peers.h"
 #include "bench/questions/hard_cases.h"
 #include "bench/questions/questions.h"
@@ -136,11 +137,11 @@ CaseVerdict query_library(NarrowEngine& engine, const PeerCase& converted, const
 
 void judge_peers(const Json& questions, std::vector<HardCaseTally>& all) {
   std::vector<HardCaseTally> tallies;
-  for (const auto& peer : make_narrow_peers()) tallies.push_back({.engine = peer->name()});
+  for (const auto& peer : make_peers<NarrowEngine>()) tallies.push_back({.engine = peer->name()});
   for (const Json& question : questions) {
     const auto converted = peer_case(question);
     // An engine can be started only once.
-    const auto fresh = make_narrow_peers();
+    const auto fresh = make_peers<NarrowEngine>();
     for (std::size_t i = 0; i < tallies.size(); ++i) {
       const bool needs_origin = tallies[i].engine.starts_with("libccd");
       if (converted == nullptr || !fresh[i]->takes(converted->set.kind, ContactLevel::manifold) ||

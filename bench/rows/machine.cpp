@@ -78,12 +78,6 @@ Json machine_facts() {
           {"reference_sweep_ms", reference_sweep_ms()}};
 }
 
-double reference_sweep_ms() {
-  MachineClock clock;
-  for (int i = 0; i < 5; ++i) clock.tick();
-  return clock.median_ms();
-}
-
 std::vector<std::string> isa_names() {
   std::vector<std::string> names;
   for (const Isa isa : available_isas()) names.emplace_back(to_string(isa));

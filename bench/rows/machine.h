@@ -13,9 +13,6 @@ namespace winnow::bench {
 /// in ms, by which machines are compared.
 [[nodiscard]] Json machine_facts();
 
-/// Returns the median time of the reference sweep in ms.
-[[nodiscard]] double reference_sweep_ms();
-
 /// Returns the instruction sets that both the machine and the build support, narrowest first.
 [[nodiscard]] std::vector<std::string> isa_names();
 

@@ -1,5 +1,6 @@
 #include "bench/rows/rows.h"
 
+#include "bench/contenders/partitions.h"
 #include "bench/measure/footprint.h"
 
 #include <unistd.h>
@@ -65,27 +66,26 @@ Json run_own(const std::string& subcommand) {
 
 }  // namespace
 
-void add_footprints(Results& results, const NamedScene& scene, std::size_t objects,
-                    std::uint64_t seed, const std::vector<std::string>& partitions, int threads) {
+void add_footprints(Results& results, const PartitionRowOptions& options) {
   bool exact = true;
-  for (const std::string& partition : partitions) {
-    const Held held = measure_held(partition, *scene.source(objects, seed), threads);
-    const Json keys{{"scene", scene.name},
+  for (const std::string& partition :
+       partitions_for(options.partitions, options.scene.objects(options.objects)).taken) {
+    const Held held = measure_held(partition, *options.scene.source(options.objects, options.seed),
+                                   options.threads);
+    const Json keys{{"scene", options.scene.name},
                     {"objects", held.objects},
                     {"partition", held.partition},
-                    {"threads", threads}};
+                    {"threads", options.threads}};
     add_held(results, keys, held,
-             command_text("dev footprint", scene.words(objects, seed), settings_text(threads),
-                          " --partition ", partition));
+             partition_command("dev footprint", options, options.objects, partition));
     exact = exact && held.exact();
   }
   require_exact(exact);
 }
 
-void add_footprints_apart(Results& results, const NamedScene& scene, std::size_t objects,
-                          std::uint64_t seed, int threads) {
-  const Json rows =
-      run_own("dev footprint" + scene.words(objects, seed) + settings_text(threads))["benchmarks"];
+void add_footprints_apart(Results& results, const PartitionRowOptions& options) {
+  const Json rows = run_own("dev footprint" + options.scene.words(options.objects, options.seed) +
+                            settings_text(options.threads))["benchmarks"];
   results.adopt(rows);
   for (const Json& row : rows) require_exact(row.value("exact", "yes") == "yes");
 }

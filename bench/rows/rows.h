@@ -10,6 +10,7 @@
 #include "bench/rows/named_scene.h"
 #include "bench/rows/results.h"
 #include "bench/simulation/flow_run.h"
+#include "bench/simulation/standing.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -41,27 +42,36 @@ void derive_frames(Results& results, const std::string& scene, std::size_t objec
 void add_limit(Results& results, const std::string& scene, std::size_t objects);
 /// Adds the frames of all partitions without a size limit.
 void add_every_scene(Results& results, const NamedScene& scene, MeasureOptions options);
-/// Compares other libraries with the best partition. The time of a frame that was given up is the
-/// time until then, a lower bound.
-void add_beside_peers(Results& results, const NamedScene& scene, MeasureOptions options);
-/// Adds the first frames of a scene.
-void add_cold(Results& results, const NamedScene& scene, std::size_t objects, std::uint64_t seed,
-              const std::vector<std::string>& partitions, int threads, std::size_t rounds = 7,
-              bool yardstick = true);
+
+/// Partitions on one scene, with one number of threads.
+struct PartitionRowOptions {
+  NamedScene scene;
+  std::size_t objects = 10'000;
+  std::uint64_t seed = 1;
+  std::vector<std::string> partitions{"all"};
+  int threads = 1;
+  std::size_t count = 0;  ///< of frames, or of rounds; 0: chosen by the measurement
+  bool peers = false;
+  bool yardstick = false;
+};
+/// Returns the command that measures a partition again.
+[[nodiscard]] std::string partition_command(const std::string& command,
+                                            const PartitionRowOptions& options, std::size_t objects,
+                                            const std::string& partition);
+/// Adds a race and the rows derived from it.
+void add_throughput(Results& results, const PartitionRowOptions& options);
+/// Adds first frames.
+void add_cold(Results& results, const PartitionRowOptions& options);
 /// Adds frames whose tasks run on a plain pool of threads and on oneTBB.
-void add_hosts(Results& results, const NamedScene& scene, std::size_t objects, std::uint64_t seed,
-               const std::vector<std::string>& partitions, int threads, std::size_t frames = 101);
+void add_hosts(Results& results, const PartitionRowOptions& options);
 
 // Memory.
 
-/// Runs a scene in each partition and adds the memory that the partition has allocated, which must
-/// equal its footprint. The rows by resident set are correct only if keep_resident_set_exact was
-/// called before.
-void add_footprints(Results& results, const NamedScene& scene, std::size_t objects,
-                    std::uint64_t seed, const std::vector<std::string>& partitions, int threads);
+/// Adds the memory that each partition has allocated, which must equal its footprint. The rows by
+/// resident set are correct only if keep_resident_set_exact was called before.
+void add_footprints(Results& results, const PartitionRowOptions& options);
 /// As above, in a separate process, whose memory nothing else changes.
-void add_footprints_apart(Results& results, const NamedScene& scene, std::size_t objects,
-                          std::uint64_t seed, int threads);
+void add_footprints_apart(Results& results, const PartitionRowOptions& options);
 
 // The choice of a partition.
 
@@ -90,10 +100,31 @@ void add_hard_case_totals(Results& results);
 
 // Whole scenes.
 
+struct PipelineMeasureOptions {
+  std::string scene = "pile";  ///< pile, terrain or balls
+  bool resting = false;        ///< bodies rest, and winnow caches contacts
+  std::vector<int> threads{1, 2};
+  bool peers = true;
+  std::size_t frames = 9;
+  const BodySet* set = nullptr;  ///< the scene's bodies
+  std::size_t bodies = 0;        ///< number of bodies; 0: the scene's default
+  std::uint64_t seed = 1;
+};
+/// Options for the cost of a scene's contacts by level and contact margin, with bodies that move a
+/// little.
+struct SceneCostOptions {
+  std::string scene = "balls";
+  int threads = 1;
+  std::size_t frames = 9;
+  std::size_t bodies = 0;
+  std::uint64_t seed = 1;
+};
+
 /// Runs a race on a scene of the whole pipeline, up to contact points.
 void add_scene_race(Results& results, const PipelineMeasureOptions& options);
 /// Measures only winnow, up to a level.
-void add_scene_level(Results& results, PipelineMeasureOptions options, const std::string& level);
+void add_scene_level(Results& results, const PipelineMeasureOptions& options,
+                     const std::string& level);
 /// Measures only winnow: bytes of contacts, and the cost of a contact margin.
 void add_scene_costs(Results& results, const SceneCostOptions& options);
 /// Returns "pairs", "boolean", "distance", "manifold".
@@ -116,13 +147,17 @@ void add_flow(Results& results, const FlowRowOptions& row_options, const FlowRun
 /// Runs a flow and adds its rows.
 void add_flow(Results& results, const FlowRowOptions& row_options);
 
+/// Runs a flow, and adds the time of further frames beside the sum of what they consist of,
+/// measured on its own: boxes and pairs of a partition, and contacts of these pairs by the narrow
+/// phase.
+void add_flow_frames(Results& results, const FlowRowOptions& row_options, std::size_t frames);
+
 struct StandingRowOptions {
   std::string structure = "stack";  ///< see standing_names()
   bool reduced = false;
   double seconds = 60.0;
   int threads = 1;
 };
-[[nodiscard]] std::vector<std::string> standing_names();
 /// Simulates one structure, which must not move.
 void add_standing(Results& results, const StandingRowOptions& row_options);
 
@@ -150,8 +185,7 @@ struct ClusterRowOptions {
   std::vector<std::uint32_t> ranks;  ///< ascending; the first is 1, the reference
   std::uint64_t seed = 1;
 };
-/// All numbers of ranks must find the pairs of one rank. For the scene `uniform`, whose objects are
-/// spread evenly, the formula for ghosts is added, and its predictions for up to 1e9 objects.
+/// All numbers of ranks must find the pairs of one rank.
 void add_cluster_runs(Results& results, const ClusterRowOptions& options);
 
 }  // namespace winnow::bench

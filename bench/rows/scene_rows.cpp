@@ -3,6 +3,7 @@
 
 #include "bench/rows/rows.h"
 
+#include "bench/peers/peers.h"
 #include "bench/rows/machine.h"
 #include "bench/scenes/pair_kind.h"
 
@@ -32,12 +33,28 @@ std::string level_command(const PipelineMeasureOptions& options, const std::stri
   return pipeline_command(options, " --level " + level, threads);
 }
 
+/// Races winnow up to a level and, if wanted, other libraries.
+std::vector<SceneTiming> race_of(const PipelineMeasureOptions& options, ContactLevel level,
+                                 bool peers) {
+  std::vector<SceneContender> contenders;
+  const double tolerance = options.resting ? kCacheTolerance : 0.0;
+  for (const int threads : options.threads) {
+    contenders.push_back(
+        {make_winnow_scene(threads, {.cache_tolerance = tolerance, .level = level}), threads});
+  }
+  for (std::unique_ptr<SceneEngine>& peer : make_peers<SceneEngine>()) {
+    if (!peers || (options.resting && !peer->caches_contacts())) continue;
+    contenders.push_back({std::move(peer), 1});
+  }
+  return race_scene(*options.set, options.resting ? kResting : kMoving, contenders, options.frames);
+}
+
 }  // namespace
 
 void add_scene_race(Results& results, const PipelineMeasureOptions& options) {
-  const PipelineMeasurement measured = measure_pipeline(options);
-  const double first_ms = median_of(measured.timings.front().ms);
-  for (const SceneTiming& timing : measured.timings) {
+  const auto timings = race_of(options, ContactLevel::manifold, options.peers);
+  const double first_ms = median_of(timings.front().ms);
+  for (const SceneTiming& timing : timings) {
     const Json keys{{"scene", options.scene},
                     {"motion", motion_of(options)},
                     {"engine", is_peer(timing.engine) ? timing.engine : "winnow"},
@@ -46,24 +63,24 @@ void add_scene_race(Results& results, const PipelineMeasureOptions& options) {
     row["ms"] = to_value(timing.ms);
     row["touching"] = timing.finds.touching;
     row["points"] = timing.finds.points;
-    row["bodies"] = measured.bodies;
-    row["triangles"] = measured.triangles;
+    row["bodies"] = options.set->poses.size();
+    row["triangles"] = options.set->mesh.size();
     row["command"] = level_command(options, "manifold");
     results.add("whole_scenes", std::move(row));
-    if (&timing == &measured.timings.front()) continue;
+    if (&timing == &timings.front()) continue;
     Json ratio = keys;
     ratio["ratio"] = median_of(timing.ms) / first_ms;
     results.add("scene_ratios", std::move(ratio));
   }
 }
 
-void add_scene_level(Results& results, PipelineMeasureOptions options, const std::string& level) {
-  options.level = ContactLevel::pairs;
+void add_scene_level(Results& results, const PipelineMeasureOptions& options,
+                     const std::string& level) {
+  ContactLevel highest = ContactLevel::pairs;
   for (const ContactLevel one : kLevels) {
-    if (level == to_text(one)) options.level = one;
+    if (level == to_text(one)) highest = one;
   }
-  options.peers = false;
-  for (const SceneTiming& timing : measure_pipeline(options).timings) {
+  for (const SceneTiming& timing : race_of(options, highest, false)) {
     Json row{{"scene", options.scene},        {"level", level},
              {"ms", to_value(timing.ms)},     {"touching", timing.finds.touching},
              {"points", timing.finds.points}, {"command", level_command(options, level)}};
@@ -76,21 +93,31 @@ void add_scene_level(Results& results, PipelineMeasureOptions options, const std
 }
 
 void add_scene_costs(Results& results, const SceneCostOptions& options) {
-  double without = 0.0;
-  for (const SceneCost& cost : measure_scene_costs(options)) {
-    const double ms = median_of(cost.timing.ms);
-    if (cost.contact_margin == 0.0) without = ms;
-    const auto touching = static_cast<double>(cost.timing.finds.touching);
+  constexpr double kMargins[] = {0.0, 0.02};  // the second is a fiftieth of a body's size
+  constexpr ContactLevel kCostLevels[] = {ContactLevel::distance, ContactLevel::manifold};
+  const auto set = make_pipeline_scene(options.scene, options.bodies, options.seed);
+  std::vector<SceneContender> contenders;
+  for (const ContactLevel level : kCostLevels) {
+    for (const double margin : kMargins) {
+      contenders.push_back(
+          {make_winnow_scene(options.threads, {.level = level, .contact_margin = margin}),
+           options.threads});
+    }
+  }
+  const auto timings = race_scene(*set, kMoving, contenders, options.frames);
+  for (std::size_t i = 0; i < timings.size(); ++i) {
+    const SceneTiming& timing = timings[i];
+    const auto touching = static_cast<double>(timing.finds.touching);
     results.add(
         "scene_costs",
         {{"scene", options.scene},
-         {"level", to_text(cost.level)},
-         {"margin", cost.contact_margin},
+         {"level", to_text(kCostLevels[i / 2])},
+         {"margin", kMargins[i % 2]},
          {"threads", options.threads},
-         {"ms", to_value(cost.timing.ms)},
-         {"over_none", ms / without},
-         {"bytes_per_contact", static_cast<double>(cost.timing.bytes) / touching},
-         {"touching", cost.timing.finds.touching},
+         {"ms", to_value(timing.ms)},
+         {"over_none", median_of(timing.ms) / median_of(timings[i - i % 2].ms)},
+         {"bytes_per_contact", static_cast<double>(timing.bytes) / touching},
+         {"touching", timing.finds.touching},
          {"command", pipeline_command(options, " --costs", std::to_string(options.threads))}});
   }
 }

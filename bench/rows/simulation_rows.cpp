@@ -3,6 +3,8 @@
 
 #include "bench/rows/rows.h"
 
+#include <winnow/pipeline/narrow_phase.h>
+#include "bench/common/need.h"
 #include "bench/common/table.h"
 #include "bench/contenders/partitions.h"
 #include "bench/measure/fingerprint.h"
@@ -143,19 +145,58 @@ void add_flow(Results& results, const FlowRowOptions& row_options) {
   add_flow(results, row_options, run);
 }
 
-std::vector<std::string> standing_names() {
-  std::vector<std::string> names;
-  for (const StandingScene scene : kStandingScenes) names.push_back(name_of(scene));
-  return names;
+void add_flow_frames(Results& results, const FlowRowOptions& row_options, std::size_t frames) {
+  GranularFlow flow(flow_options(row_options));
+  flow.keep_contact_poses();
+  for (std::size_t i = 0; i < row_options.steps; ++i) flow.step();
+  std::vector<ShapeId> shapes;
+  std::vector<Aabb> boxes;
+  for (std::size_t i = 0; i < flow.objects(); ++i) {
+    shapes.push_back(flow.shape(i));
+    boxes.push_back(flow.box(i));
+  }
+  const Execution execution = execution_for(row_options.threads);
+  Partition partition = make_named("LinearBvh", {.execution = execution});
+  std::vector<Key> keys(boxes.size());
+  need(partition.insert(boxes, {}, keys), "boxes");
+  PairBuffer found;
+  std::vector<BodyPair> pairs;
+  NarrowPhase narrow;
+  NarrowResult contacts;
+  std::vector<double> frame_ms;
+  std::vector<double> phases_ms;
+  for (std::size_t frame = 0; frame < frames; ++frame) {
+    flow.step();
+    frame_ms.push_back(flow.times().move + flow.times().narrow);
+    const std::vector<Pose> poses(flow.contact_poses().begin(),
+                                  flow.contact_poses().end() - 1);  // without the mesh
+    const Stopwatch clock;
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+      boxes[i] = flow.shapes().bounds(shapes[i], poses[i]);
+    }
+    need(partition.update(keys, boxes), "boxes");
+    need(partition.self_pairs(found), "pairs");
+    pairs.clear();
+    for (const Pair& pair : found) pairs.push_back({pair.first, pair.second});
+    need(narrow.collide(flow.shapes(), {shapes, poses}, pairs, {.execution = execution}, contacts),
+         "contacts");
+    phases_ms.push_back(clock.ms());
+  }
+  results.add("flow_frames", {{"shape", row_options.shape},
+                              {"objects", row_options.objects},
+                              {"how", "frame"},
+                              {"ms", to_value(frame_ms)}});
+  results.add("flow_frames", {{"shape", row_options.shape},
+                              {"objects", row_options.objects},
+                              {"how", "phases"},
+                              {"ms", to_value(phases_ms)}});
 }
 
 void add_standing(Results& results, const StandingRowOptions& row_options) {
   StandingOptions options;
   options.contact_reduction = row_options.reduced;
   options.execution = execution_for(row_options.threads);
-  const auto named = std::ranges::find(kStandingScenes, row_options.structure,
-                                       [](StandingScene scene) { return name_of(scene); });
-  Standing standing(*named, options);
+  Standing standing(row_options.structure, options);
   while (standing.time() < std::min(kSettling, row_options.seconds)) standing.step();
   const double settled = standing.drift();
   standing.mark();

@@ -4,8 +4,11 @@
 #include "bench/common/interface.h"
 
 #include <cstddef>
+#include <cstdint>
+#include <cstring>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace winnow::bench {
 
@@ -22,6 +25,25 @@ class FrameSource : public Interface {
   [[nodiscard]] virtual std::size_t objects() const { return boxes().size(); }
   /// Moves to the next frame; returns false without a change if there is none.
   virtual bool advance() = 0;
+};
+
+/// Finds the objects whose boxes change from frame to frame.
+class ChangedRows {
+ public:
+  /// Returns the rows of the previous frame, in ascending order, whose boxes differ in `boxes`, the
+  /// next frame. Valid until the next call.
+  std::span<const std::uint32_t> next(std::span<const Aabb> boxes) {
+    rows_.clear();
+    for (std::uint32_t i = 0; i < last_.size(); ++i) {
+      if (std::memcmp(&boxes[i], &last_[i], sizeof(Aabb)) != 0) rows_.push_back(i);
+    }
+    last_.assign(boxes.begin(), boxes.end());
+    return rows_;
+  }
+
+ private:
+  std::vector<Aabb> last_;
+  std::vector<std::uint32_t> rows_;
 };
 
 }  // namespace winnow::bench

@@ -11,15 +11,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <stdexcept>
 
 namespace winnow::bench {
 namespace {
 
 constexpr std::array<std::string_view, 14> kNames{
-    "ray closest", "ray any",      "ray all",    "ray all near", "box 1",
-    "box 5",       "box 20",       "frustum 1%", "frustum 50%",  "sphere",
-    "swept box",   "swept sphere", "nearest 1",  "nearest 16"};
+    "closest_ray", "any_ray",      "all_rays",          "all_near_rays",      "box_1",
+    "box_5",       "box_20",       "frustum_1_percent", "frustum_50_percent", "sphere",
+    "swept_box",   "swept_sphere", "nearest_1",         "nearest_16"};
 
 class QuerySetBuilder {
  public:
@@ -43,17 +42,16 @@ class QuerySetBuilder {
     random_ = Random(seed_);
     QuerySet set;
     set.name = name;
-    if (name.starts_with("ray")) return rays(std::move(set));
-    if (name == "box 1") return overlaps(std::move(set), 1.0, rays_);
-    if (name == "box 5") return overlaps(std::move(set), 5.0, rays_ / 10);
-    if (name == "box 20") return overlaps(std::move(set), 20.0, rays_ / 100);
-    if (name == "frustum 1%") return frusta(std::move(set), 0.01, rays_ / 1000);
-    if (name == "frustum 50%") return frusta(std::move(set), 0.5, rays_ / 5000);
+    if (name == "box_1") return overlaps(std::move(set), 1.0, rays_);
+    if (name == "box_5") return overlaps(std::move(set), 5.0, rays_ / 10);
+    if (name == "box_20") return overlaps(std::move(set), 20.0, rays_ / 100);
+    if (name == "frustum_1_percent") return frusta(std::move(set), 0.01, rays_ / 1000);
+    if (name == "frustum_50_percent") return frusta(std::move(set), 0.5, rays_ / 5000);
     if (name == "sphere") return spheres(std::move(set));
     if (name.starts_with("swept")) return casts(std::move(set));
-    if (name == "nearest 1") return nearest(std::move(set), 1);
-    if (name == "nearest 16") return nearest(std::move(set), 16);
-    throw std::runtime_error("there is no set of queries " + std::string(name));
+    if (name == "nearest_1") return nearest(std::move(set), 1);
+    if (name == "nearest_16") return nearest(std::move(set), 16);
+    return rays(std::move(set));
   }
 
  private:
@@ -75,14 +73,14 @@ class QuerySetBuilder {
   }
 
   QuerySet rays(QuerySet set) {
-    set.query_type = set.name == "ray closest" ? QueryType::closest
-                     : set.name == "ray any"   ? QueryType::any
+    set.query_type = set.name == "closest_ray" ? QueryType::closest
+                     : set.name == "any_ray"   ? QueryType::any
                                                : QueryType::all;
     for (std::size_t i = 0; i < rays_; ++i) {
       Ray& ray = set.rays.emplace_back();
       ray.origin = point();
       ray.direction = random_unit(random_).cast<float>();
-      if (set.name == "ray all near") ray.max_t = static_cast<float>(10.0 * edge_);
+      if (set.name == "all_near_rays") ray.max_t = static_cast<float>(10.0 * edge_);
     }
     return set;
   }
@@ -112,7 +110,7 @@ class QuerySetBuilder {
   QuerySet casts(QuerySet set) {
     set.query_type = QueryType::closest;
     for (std::size_t i = 0; i < at_least_one(rays_ / 10); ++i) {
-      if (set.name == "swept box") {
+      if (set.name == "swept_box") {
         BoxCast cast{.box = cube(0.5)};
         cast.direction = random_unit(random_).cast<float>();
         set.casts.emplace_back(cast);
@@ -172,13 +170,17 @@ std::span<const std::string_view> query_set_names() noexcept {
   return kNames;
 }
 
+QuerySet make_query_set(std::string_view name, std::span<const Aabb> boxes, std::size_t rays,
+                        std::uint64_t seed) {
+  return QuerySetBuilder(boxes, rays, seed).make(name);
+}
+
 std::vector<QuerySet> make_query_sets(std::span<const Aabb> boxes, std::size_t rays,
-                                      std::uint64_t seed, std::span<const std::string> names) {
-  QuerySetBuilder asker(boxes, rays, seed);
+                                      std::uint64_t seed) {
   std::vector<QuerySet> sets;
-  for (const std::string& name : names) sets.push_back(asker.make(name));
-  if (!names.empty()) return sets;
-  for (const std::string_view name : kNames) sets.push_back(asker.make(name));
+  for (const std::string_view name : kNames) {
+    sets.push_back(make_query_set(name, boxes, rays, seed));
+  }
   return sets;
 }
 

@@ -75,13 +75,14 @@ class QueryResults {
 /// Returns the names of the query sets, in the order of reports.
 [[nodiscard]] std::span<const std::string_view> query_set_names() noexcept;
 
-/// Returns the sets of these names (all, if there are none) about these boxes; the same seed gives
-/// the same queries. Rays start uniformly in the bounds of the boxes and have uniform directions of
-/// unit length; all other positions are uniform as well. Sizes and distances are relative to the
-/// mean edge of the boxes. `rays` is the number of rays in a set, >= 1; sets of slower queries are
-/// smaller.
+/// Returns the set of a name about these boxes; the same seed gives the same queries. Rays start
+/// uniformly in the bounds of the boxes and have uniform directions of unit length; all other
+/// positions are uniform as well. Sizes and distances are relative to the mean edge of the boxes.
+/// `rays` is the number of rays in a set, >= 1; sets of slower queries are smaller.
+[[nodiscard]] QuerySet make_query_set(std::string_view name, std::span<const Aabb> boxes,
+                                      std::size_t rays, std::uint64_t seed);
+/// Returns all sets.
 [[nodiscard]] std::vector<QuerySet> make_query_sets(std::span<const Aabb> boxes, std::size_t rays,
-                                                    std::uint64_t seed,
-                                                    std::span<const std::string> names = {});
+                                                    std::uint64_t seed);
 
 }  // namespace winnow::bench

@@ -3,18 +3,128 @@
 
 #include "bench/scenes/scene.h"
 
+#include <winnow/core/vec3.h>
 #include "bench/common/errors.h"
 #include "bench/common/exact_math.h"
+#include "bench/common/random.h"
 #include "bench/common/table.h"
-#include "bench/scenes/bodies.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <numeric>
+#include <optional>
+#include <utility>
 
 namespace winnow::bench {
 namespace {
+
+/// A moving cube.
+struct Body {
+  Vec3d centre;
+  Vec3d velocity;     ///< per frame
+  double half = 0.5;  ///< half an edge
+};
+
+/// Bounds of the bodies' centres; a body that reaches a wall is reflected.
+struct Walls {
+  Vec3d low;
+  Vec3d high;
+
+  [[nodiscard]] static Walls cube(double side) noexcept { return {{}, Vec3d::constant(side)}; }
+};
+
+/// Bodies between walls.
+struct Bodies {
+  Walls walls;
+  std::vector<Body> all;
+  Random random;                 ///< for values drawn in each frame
+  std::optional<Aabb> ground{};  ///< replaces the box of the first body
+  std::size_t present;           ///< number of bodies that are in the scene already
+
+  Bodies(const Walls& between, std::vector<Body> bodies, std::uint64_t seed)
+      : walls(between), all(std::move(bodies)), random(mix(seed)), present(all.size()) {}
+};
+
+/// Bodies, and the function that moves them by one frame.
+struct MovingBodies {
+  Bodies bodies;
+  std::function<void(Bodies&)> move;
+};
+
+/// The boxes of moving bodies; they move forever.
+class BodyScene final : public FrameSource {
+ public:
+  BodyScene(std::string name, MovingBodies moving)
+      : name_(std::move(name)), moving_(std::move(moving)), boxes_(moving_.bodies.all.size()) {
+    const Bodies& bodies = moving_.bodies;
+    double half = 0.0;
+    for (const Body& body : bodies.all) half = std::max(half, body.half);
+    // A little larger than the boxes, so that it contains all of them after rounding to float.
+    const Vec3d around = Vec3d::constant(half * 1.000001);
+    world_ = Aabb::outward(bodies.walls.low - around, bodies.walls.high + around);
+    if (bodies.ground) world_.merge(*bodies.ground);
+    place();
+  }
+
+  [[nodiscard]] std::string name() const override { return name_; }
+  [[nodiscard]] Aabb world() const override { return world_; }
+  [[nodiscard]] std::span<const Aabb> boxes() const override {
+    return std::span(boxes_).first(moving_.bodies.present);
+  }
+  [[nodiscard]] std::size_t objects() const override { return boxes_.size(); }
+  bool advance() override {
+    moving_.move(moving_.bodies);
+    place();
+    return true;
+  }
+
+ private:
+  void place() noexcept {
+    const Bodies& bodies = moving_.bodies;
+    for (std::size_t i = 0; i < boxes_.size(); ++i) {
+      const Vec3d half = Vec3d::constant(bodies.all[i].half);
+      boxes_[i] = {(bodies.all[i].centre - half).cast<float>(),
+                   (bodies.all[i].centre + half).cast<float>()};
+    }
+    if (bodies.ground) boxes_[0] = *bodies.ground;
+  }
+
+  std::string name_;
+  MovingBodies moving_;
+  std::vector<Aabb> boxes_;
+  Aabb world_;
+};
+
+/// Draws a uniform velocity of at most 5 % of the edge along each axis.
+Vec3d draw_velocity(Random& random, double edge) noexcept {
+  Vec3d velocity;
+  for (int axis = 0; axis < 3; ++axis) velocity[axis] = edge * random.in(-0.05, 0.05);
+  return velocity;
+}
+
+/// Draws a uniform point between the walls.
+Vec3d draw_point(Random& random, const Walls& walls) noexcept {
+  Vec3d point;
+  for (int axis = 0; axis < 3; ++axis) point[axis] = random.in(walls.low[axis], walls.high[axis]);
+  return point;
+}
+
+/// Moves a body in a straight line for one frame, with reflections at the walls.
+void drift(Body& body, const Walls& walls) noexcept {
+  for (int axis = 0; axis < 3; ++axis) {
+    const double low = walls.low[axis];
+    const double high = walls.high[axis];
+    double c = body.centre[axis] + body.velocity[axis];
+    if (c < low || c > high) {
+      c = c < low ? low + (low - c) : high - (c - high);
+      body.velocity[axis] = -body.velocity[axis];
+    }
+    // If the walls are closer together than one step, a reflection can leave the centre outside.
+    body.centre[axis] = std::clamp(c, low, high);
+  }
+}
 
 // Bodies at the start.
 

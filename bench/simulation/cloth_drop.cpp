@@ -8,7 +8,6 @@
 #include "bench/simulation/crossing.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 namespace winnow::bench {
@@ -286,7 +285,7 @@ double ClothDrop::max_strain() const noexcept {
 std::uint64_t ClothDrop::fingerprint() const noexcept {
   std::uint64_t sum = 0;
   for (const Vec3d& vertex : place_) {
-    for (int i = 0; i < 3; ++i) sum = mix(sum ^ std::bit_cast<std::uint64_t>(vertex[i]));
+    for (int i = 0; i < 3; ++i) sum = mix(sum, vertex[i]);
   }
   return sum;
 }

@@ -10,7 +10,6 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <numbers>
 
@@ -258,11 +257,10 @@ void FastBodies::put_back() {
 
 std::uint64_t FastBodies::fingerprint() const noexcept {
   std::uint64_t sum = 0;
-  const auto add = [&](double x) { sum = mix(sum ^ std::bit_cast<std::uint64_t>(x)); };
   for (const Body& body : bodies_) {
-    for (const double x : body.pose.position) add(x);
-    for (const double x : body.pose.orientation) add(x);
-    for (int i = 0; i < 3; ++i) add(body.velocity[i]);
+    for (const double x : body.pose.position) sum = mix(sum, x);
+    for (const double x : body.pose.orientation) sum = mix(sum, x);
+    for (const double x : body.velocity) sum = mix(sum, x);
   }
   return sum;
 }

@@ -1,12 +1,117 @@
 #pragma once
 
 #include "bench/common/counting_resource.h"
+#include "bench/common/sample.h"
 #include "bench/simulation/flow_check.h"
-#include "bench/simulation/flow_history.h"
+#include "bench/simulation/granular_flow.h"
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
+#include <vector>
 
 namespace winnow::bench {
+
+/// The phases are timed in one of this many steps.
+inline constexpr std::size_t kProfiledSteps = 16;
+
+struct FlowPhase {
+  const char* name;
+  double FlowTimes::*ms;
+};
+inline constexpr std::array<FlowPhase, 5> kFlowPhases{{{"handing over poses", &FlowTimes::move},
+                                                       {"broad phase", &FlowTimes::broad},
+                                                       {"mid phase", &FlowTimes::mid},
+                                                       {"narrow phase", &FlowTimes::narrow},
+                                                       {"solver", &FlowTimes::solver}}};
+
+/// Figures of one step of a flow.
+struct FlowSample {
+  double time = 0.0;
+  FlowEnergy energy{};
+  double fed = 0.0;
+  double deepest = 0.0;
+  std::size_t contacts = 0;  ///< pairs of bodies
+  std::size_t points = 0;
+  FlowTimes times{};
+
+  /// Returns the energy without the energy added by putting bodies back. Gravity conserves it, and
+  /// contacts can only reduce it.
+  [[nodiscard]] double balance() const noexcept { return energy.total() - fed; }
+};
+
+/// Figures of all steps of a flow.
+class FlowHistory {
+ public:
+  /// Records the flow's last step.
+  void add(const GranularFlow& flow) {
+    samples_.push_back({flow.time(), flow.energy(), flow.fed(), flow.deepest(),
+                        flow.contacts().size(), flow.contacts().points(), flow.times()});
+  }
+
+  [[nodiscard]] const std::vector<FlowSample>& samples() const noexcept { return samples_; }
+
+  /// Returns the largest rise of the balance above an earlier value, relative to the largest
+  /// kinetic energy. A rise is energy created by contacts, or an integration error.
+  [[nodiscard]] double greatest_rise() const {
+    double least = samples_.empty() ? 0.0 : samples_.front().balance();
+    double rise = 0.0;
+    double kinetic = 0.0;
+    for (const FlowSample& sample : samples_) {
+      least = std::min(least, sample.balance());
+      rise = std::max(rise, sample.balance() - least);
+      kinetic = std::max(kinetic, sample.energy.kinetic);
+    }
+    return kinetic > 0.0 ? rise / kinetic : rise;
+  }
+
+  [[nodiscard]] double deepest() const {
+    double most = 0.0;
+    for (const FlowSample& sample : samples_) most = std::max(most, sample.deepest);
+    return most;
+  }
+
+  /// Returns one member of the times of the profiled steps, from step `first` on.
+  [[nodiscard]] std::vector<double> phase_ms(double FlowTimes::*phase,
+                                             std::size_t first = 0) const {
+    std::vector<double> ms;
+    for (std::size_t i = first; i < samples_.size(); ++i) {
+      if (samples_[i].times.profiled) ms.push_back(samples_[i].times.*phase);
+    }
+    return ms;
+  }
+
+ private:
+  std::vector<FlowSample> samples_;
+};
+
+/// Counts allocations in steps in which no count of pairs or contacts exceeds its previous maximum;
+/// such a step must not allocate.
+class SteadyAllocations {
+ public:
+  /// Records a step; `allocations` is the total number so far.
+  void note(const GranularFlow& flow, std::size_t allocations) {
+    const Contacts& contacts = flow.contacts();
+    const SceneStatistics& statistics = flow.scene().statistics();
+    const std::array<std::size_t, 6> now{statistics.body_pairs, statistics.primitive_pairs,
+                                         contacts.size(),       contacts.manifolds(),
+                                         contacts.points(),     contacts.ended().size()};
+    bool is_more = false;
+    for (std::size_t i = 0; i < now.size(); ++i) {
+      is_more = is_more || now[i] > most_[i];
+      most_[i] = std::max(most_[i], now[i]);
+    }
+    if (!is_more) count_ += allocations - before_;
+    before_ = allocations;
+  }
+
+  [[nodiscard]] std::size_t count() const noexcept { return count_; }
+
+ private:
+  std::array<std::size_t, 6> most_{};
+  std::size_t before_ = 0;
+  std::size_t count_ = 0;
+};
 
 /// Runs a flow step by step and records its figures.
 class FlowRun {

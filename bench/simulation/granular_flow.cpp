@@ -76,41 +76,18 @@ GranularFlow::GranularFlow(const FlowOptions& options)
       pair_forces_(options.memory),
       energy_parts_(options.memory),
       then_(options.memory) {
-  place_mesh();
+  make_obstacle();
   make_shapes();
   make_spots();
   fill();
   add_to_scene();
 }
 
-void GranularFlow::place_mesh() {
-  mesh_ = std::move(options_.mesh);
-  if (mesh_.vertices.empty()) {
-    mesh_ = make_funnel(funnel_);
-  } else {
-    Eigen::Vector3d low = mesh_.vertices.front();
-    Eigen::Vector3d high = low;
-    for (const Eigen::Vector3d& v : mesh_.vertices) {
-      low = low.cwiseMin(v);
-      high = high.cwiseMax(v);
-    }
-    const double across = (high - low).head<2>().maxCoeff();
-    const double scale = across > 0.0 ? 2.0 * funnel_.radius / across : 1.0;
-    const Eigen::Vector3d top(0.5 * (low.x() + high.x()), 0.5 * (low.y() + high.y()), high.z());
-    for (Eigen::Vector3d& v : mesh_.vertices) {
-      v = (scale * (v - top)).cast<float>().cast<double>();
-    }
-    // The shape of a given mesh is unknown, so all bodies start above it.
-    funnel_.outlet = funnel_.radius;
-    funnel_.depth = 0.0;
-  }
-  need(composites_.add_mesh(std::span<const Eigen::Vector3d>(mesh_.vertices),
-                            std::span<const std::uint32_t>(mesh_.corners), mesh_shape_, {},
-                            options_.execution),
+void GranularFlow::make_obstacle() {
+  mesh_ = make_funnel(funnel_);
+  need(composites_.add_mesh(mesh_.points(), mesh_.indices(), mesh_shape_, {}, options_.execution),
        "the mesh");
-  floor_ = mesh_.vertices.front().z();
-  for (const Eigen::Vector3d& v : mesh_.vertices) floor_ = std::min(floor_, v.z());
-  floor_ -= kFall;
+  floor_ = mesh_.vertices.front().z() - kFall;  // the first ring is the outlet
 }
 
 void GranularFlow::make_shapes() {
@@ -154,7 +131,7 @@ void GranularFlow::make_spots() {
 void GranularFlow::fill() {
   double z = -funnel_.depth + spacing_;
   for (std::size_t i = 0; i < objects_; z += spacing_) {
-    const double height = std::min(1.0, 1.0 + z / std::max(funnel_.depth, 1e-9));
+    const double height = std::min(1.0, 1.0 + z / funnel_.depth);
     const double inside = std::lerp(funnel_.outlet, funnel_.radius, height) - 0.75 * spacing_;
     for (std::size_t s = 0; s < spots_.size() && i < objects_; ++s) {
       if (std::hypot(spots_[s].x, spots_[s].y) > inside) continue;
@@ -267,8 +244,8 @@ std::uint64_t GranularFlow::fingerprint() const noexcept {
   for (std::size_t i = 0; i < objects_; ++i) {
     std::uint64_t body = i;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      body = mix(body ^ std::bit_cast<std::uint64_t>(bodies_[i].position[axis]));
-      body = mix(body ^ std::bit_cast<std::uint64_t>(bodies_[i].velocity[axis]));
+      body = mix(body, bodies_[i].position[axis]);
+      body = mix(body, bodies_[i].velocity[axis]);
     }
     for (std::size_t k = 0; k < 4; ++k) {
       body = mix(body ^ std::bit_cast<std::uint32_t>(bodies_[i].orientation[k]));

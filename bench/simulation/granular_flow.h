@@ -22,9 +22,6 @@ struct FlowOptions {
   std::size_t objects = 10'000;
   FlowShape shape = FlowShape::mixed;
   std::uint64_t seed = 1;
-  /// The obstacle, scaled to the funnel's width and moved to its place; if empty, a funnel that
-  /// suits the number of bodies.
-  Triangles mesh{};
   double step = 1e-3;
   double gravity = 10.0;
   /// Largest speed along each axis at the start; directions are random.
@@ -102,7 +99,7 @@ class GranularFlow {
     std::size_t last;  ///< the last body that was put there
   };
 
-  void place_mesh();
+  void make_obstacle();
   void make_shapes();
   void make_spots();
   void fill();

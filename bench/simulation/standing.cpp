@@ -8,7 +8,6 @@
 #include "bench/scenes/meshes.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <numbers>
 
@@ -62,32 +61,25 @@ Eigen::Vector2d centre_of(const std::vector<Eigen::Vector2d>& polygon) {
 
 }  // namespace
 
-std::string name_of(StandingScene scene) {
-  constexpr const char* kNames[] = {"stack", "hull_stack", "card_house", "wheel", "arch"};
-  return kNames[static_cast<std::size_t>(scene)];
+const Standing::Structure Standing::kStructures[] = {{"stack", &Standing::build_box_stack},
+                                                     {"hull_stack", &Standing::build_hull_stack},
+                                                     {"card_house", &Standing::build_card_house},
+                                                     {"wheel", &Standing::build_wheel},
+                                                     {"arch", &Standing::build_arch}};
+
+std::vector<std::string> standing_names() {
+  std::vector<std::string> names;
+  for (const auto& structure : Standing::kStructures) names.emplace_back(structure.name);
+  return names;
 }
 
-Standing::Standing(StandingScene scene, const StandingOptions& options)
+Standing::Standing(const std::string& structure, const StandingOptions& options)
     : composites_(shapes_),
       scene_(shapes_, scene_options(options, composites_)),
       solver_(options.solver),
       options_(options) {
-  switch (scene) {
-    case StandingScene::stack:
-      build_stack(false);
-      break;
-    case StandingScene::hull_stack:
-      build_stack(true);
-      break;
-    case StandingScene::card_house:
-      build_card_house();
-      break;
-    case StandingScene::wheel:
-      build_wheel();
-      break;
-    case StandingScene::arch:
-      build_arch();
-      break;
+  for (const auto& [name, build] : kStructures) {
+    if (structure == name) (this->*build)();
   }
   mark();
 }
@@ -135,17 +127,24 @@ void Standing::add_floor() {
   add(floor, body);
 }
 
-void Standing::build_stack(bool hulls) {
+void Standing::build_stack(ShapeId box) {
+  for (int i = 0; i < kStacked; ++i) add_solid(box, Vec3::Ones(), {0.0, 0.0, 0.5 + i}, 0.0);
+}
+
+void Standing::build_box_stack() {
   add_floor();
   ShapeId box;
-  if (hulls) {
-    const std::vector<Vec3> corners =
-        prism({{-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}}, 1.0);
-    need(shapes_.add_hull(std::span(corners), 0.0, box), "box");
-  } else {
-    need(shapes_.add(BoxShape{{0.5, 0.5, 0.5}}, box), "box");
-  }
-  for (int i = 0; i < kStacked; ++i) add_solid(box, Vec3::Ones(), {0.0, 0.0, 0.5 + i}, 0.0);
+  need(shapes_.add(BoxShape{{0.5, 0.5, 0.5}}, box), "box");
+  build_stack(box);
+}
+
+void Standing::build_hull_stack() {
+  add_floor();
+  const std::vector<Vec3> corners =
+      prism({{-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}}, 1.0);
+  ShapeId box;
+  need(shapes_.add_hull(std::span(corners), 0.0, box), "box");
+  build_stack(box);
 }
 
 // Three storeys: pairs of cards that lean on each other, and cards between the tops.
@@ -264,10 +263,8 @@ double Standing::kept_points() const {
 std::uint64_t Standing::fingerprint() const {
   std::uint64_t sum = 0;
   for (const RigidBody& body : bodies_) {
-    for (int k = 0; k < 3; ++k) sum = mix(sum ^ std::bit_cast<std::uint64_t>(body.position[k]));
-    for (int k = 0; k < 4; ++k) {
-      sum = mix(sum ^ std::bit_cast<std::uint64_t>(body.turn.coeffs()[k]));
-    }
+    for (const double x : body.position) sum = mix(sum, x);
+    for (const double x : body.turn.coeffs()) sum = mix(sum, x);
   }
   return sum;
 }

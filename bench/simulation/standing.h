@@ -12,12 +12,8 @@
 
 namespace winnow::bench {
 
-/// A structure that stands only if its contacts are good.
-enum class StandingScene : std::uint8_t { stack, hull_stack, card_house, wheel, arch };
-inline constexpr StandingScene kStandingScenes[] = {StandingScene::stack, StandingScene::hull_stack,
-                                                    StandingScene::card_house, StandingScene::wheel,
-                                                    StandingScene::arch};
-[[nodiscard]] std::string name_of(StandingScene scene);
+/// Returns the names of the structures, which stand only if their contacts are good.
+[[nodiscard]] std::vector<std::string> standing_names();
 
 struct StandingOptions {
   bool contact_reduction = false;
@@ -31,7 +27,8 @@ struct StandingOptions {
 /// A structure of bodies with edges of about 1, subject only to a floor and gravity.
 class Standing {
  public:
-  Standing(StandingScene scene, const StandingOptions& options);
+  /// `structure` is one of standing_names().
+  Standing(const std::string& structure, const StandingOptions& options);
 
   void step();
 
@@ -58,7 +55,15 @@ class Standing {
   void add_solid(ShapeId shape, const Eigen::Vector3d& edges, const Eigen::Vector3d& position,
                  double turn_about_y);
   void add_floor();
-  void build_stack(bool hulls);
+  struct Structure {
+    const char* name;
+    void (Standing::*build)();
+  };
+  static const Structure kStructures[];
+  friend std::vector<std::string> standing_names();
+  void build_stack(ShapeId box);
+  void build_box_stack();
+  void build_hull_stack();
   void build_card_house();
   void build_wheel();
   void build_arch();

@@ -15,8 +15,7 @@ void add_ledger(Results& results) {
                             {"value", figure["value"]},
                             {"date", row["date"]},
                             {"commit", row["commit"]},
-                            {"made_by", row["command"]},
-                            {"command", "bench/run dev trust"}});
+                            {"command", row["command"]}});
     }
   }
 }

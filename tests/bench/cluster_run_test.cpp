@@ -68,9 +68,9 @@ TEST(ClusterRuns, ranks_have_the_fingerprints_of_a_partition) {
     const auto partition = run_partition(name, objects);
     for (const std::uint32_t ranks : {1U, 2U, 3U, 4U, 8U, 16U, 128U}) {
       const ClusterRun run = run_on_ranks(name, objects, ranks);
-      ASSERT_EQ(run.frames.size(), partition.pairs.size());
-      for (std::size_t f = 0; f < run.frames.size(); ++f) {
-        EXPECT_TRUE(run.frames[f].pairs.same_pairs(partition.pairs[f]))
+      ASSERT_EQ(run.pairs.size(), partition.pairs.size());
+      for (std::size_t f = 0; f < run.pairs.size(); ++f) {
+        EXPECT_TRUE(run.pairs[f].same_pairs(partition.pairs[f]))
             << name << ", " << ranks << " ranks, frame " << f;
       }
     }
@@ -80,17 +80,15 @@ TEST(ClusterRuns, ranks_have_the_fingerprints_of_a_partition) {
 TEST(ClusterRuns, thousands_of_ranks_have_partition_fingerprints) {
   const auto partition = run_partition("mixed", 1000);
   const ClusterRun run = run_on_ranks("mixed", 1000, 4096);
-  for (std::size_t f = 0; f < run.frames.size(); ++f) {
-    EXPECT_TRUE(run.frames[f].pairs.same_pairs(partition.pairs[f])) << f;
+  for (std::size_t f = 0; f < run.pairs.size(); ++f) {
+    EXPECT_TRUE(run.pairs[f].same_pairs(partition.pairs[f])) << f;
   }
 }
 
 TEST(ClusterRuns, digest_does_not_depend_on_the_rank_count) {
   const ClusterRun one = run_on_ranks("clustered", 500, 1);
   const ClusterRun many = run_on_ranks("clustered", 500, 7);
-  for (std::size_t f = 0; f < one.frames.size(); ++f) {
-    EXPECT_EQ(one.frames[f].digest, many.frames[f].digest);
-  }
+  EXPECT_EQ(one.digests, many.digests);
 }
 
 TEST(ClusterRuns, bodies_on_ranks_have_the_scene_digests) {
@@ -100,8 +98,7 @@ TEST(ClusterRuns, bodies_on_ranks_have_the_scene_digests) {
     const auto digests = digests_of_scene(name, objects, ContactLevel::manifold);
     for (const std::uint32_t ranks : {1U, 3U, 8U}) {
       const ClusterRun run = run_on_ranks(name, objects, ranks, ContactLevel::manifold);
-      EXPECT_EQ(run.each([](const ClusterFrame& frame) { return frame.digest; }), digests)
-          << name << ", " << ranks << " ranks";
+      EXPECT_EQ(run.digests, digests) << name << ", " << ranks << " ranks";
     }
   }
 }

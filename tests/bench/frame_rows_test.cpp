@@ -56,61 +56,33 @@ TEST(FrameRows, rows_compare_with_the_yardstick_if_present) {
 TEST(FrameRows, rows_without_the_yardstick_leave_it_out) {
   Results results;
   add_every_scene(results, scene_named("shear"), {.objects = 100, .frames = 3});
-  add_cold(results, scene_named("shear"), 100, 1, {"LinearBvh"}, 1, 1, false);
+  add_cold(
+      results,
+      {.scene = scene_named("shear"), .objects = 100, .partitions = {"LinearBvh"}, .count = 1});
   EXPECT_TRUE(results.rows("every_scene", {{"partition", "yardstick"}}).empty());
   EXPECT_FALSE(results.rows("cold").front()->contains("over_yardstick"));
 }
 
-std::vector<Json> rows_beside_peers(const char* scene, const TimeBounds& bounds) {
+TEST(FrameRows, library_with_one_thread_has_one_row) {
   Results results;
-  add_beside_peers(results, scene_named(scene),
-                   {.objects = 400,
-                    .partitions = {"FlatGrid", "LinearBvh"},
-                    .threads = {1, 2},
-                    .frames = 12,
-                    .bounds = bounds});
-  std::vector<Json> rows;
-  for (const Json* row : results.rows("beside_peers")) rows.push_back(*row);
-  return rows;
-}
-
-TEST(BesidePeers, library_time_is_divided_by_the_best_partition) {
-  if (!has_peers()) GTEST_SKIP() << "built without them";
-  for (const char* scene : {"jumps", "growth"}) {
-    const auto rows = rows_beside_peers(scene, {});
-    EXPECT_FALSE(rows.empty());
-    for (const Json& row : rows) {
-      EXPECT_DOUBLE_EQ(value_of(row, "times"), value_of(row, "ms") / value_of(row, "best_ms"));
-      EXPECT_EQ(row["of"], scene == std::string("growth") ? "mean frame" : "median frame");
-      EXPECT_EQ(row["frames"], 11);
-      EXPECT_TRUE(row["best"] == "FlatGrid" || row["best"] == "LinearBvh");
-    }
-  }
-}
-
-TEST(BesidePeers, library_with_one_thread_has_one_row) {
-  for (const Json& row : rows_beside_peers("uniform", {})) {
-    const std::string name = row["partition"];
-    const bool is_parallel = name == "Embree" || name == "CGAL boxes";
-    EXPECT_TRUE(is_parallel || row["threads"] == 1) << name;
-  }
-}
-
-TEST(BesidePeers, slow_library_is_judged_by_its_finished_frames) {
-  for (const Json& row : rows_beside_peers("uniform", {.run = 1e-12})) {
-    EXPECT_EQ(row["of"], "median frame");
-    EXPECT_EQ(row["frames"], 3);
-  }
-  for (const Json& row : rows_beside_peers("uniform", {.frame = 1e-12})) {
-    if (row["partition"] != "Bullet sweep") continue;  // this library gives up in its first frame
-    EXPECT_EQ(row["of"], "first frame, given up");
-    EXPECT_GT(value_of(row, "ms"), 0.0);
+  add_frame_race(
+      results, scene_named("uniform"),
+      {.objects = 400, .partitions = {"LinearBvh"}, .threads = {1, 2}, .peers = true, .frames = 3},
+      true);
+  EXPECT_EQ(results.rows("throughput").empty(), !has_peers());
+  for (const Json* row : results.rows("throughput")) {
+    const std::string name = (*row)["partition"];
+    EXPECT_TRUE(name == "Embree" || name == "CGAL boxes" || (*row)["threads"] == 1) << name;
   }
 }
 
 TEST(HostRows, each_partition_has_a_row_with_both_times) {
   Results results;
-  add_hosts(results, scene_named("uniform"), 300, 1, {"LinearBvh", "FlatGrid"}, 2, 4);
+  add_hosts(results, {.scene = scene_named("uniform"),
+                      .objects = 300,
+                      .partitions = {"LinearBvh", "FlatGrid"},
+                      .threads = 2,
+                      .count = 4});
   const auto rows = results.rows("hosts");
   ASSERT_EQ(rows.size(), 2U);
   for (const Json* row : rows) {
@@ -126,16 +98,17 @@ TEST(ColdFrames, cold_frames_are_measured_in_all_memories) {
         race_cold_frames(scene->boxes(), {"FlatGrid", "LinearBvh", "AutoPartition"}, threads, 3);
     ASSERT_EQ(race.frames.size(), 9U);
     EXPECT_EQ(race.yardstick_ms.size(), has_yardstick() ? 3U : 0U);
-    for (const ColdFrames& one : race.frames) {
-      ASSERT_EQ(one.total_ms.size(), 3U) << one.partition;
+    for (ColdFrames one : race.frames) {
+      auto& ms = one.times;
+      ASSERT_EQ(ms["total_ms"].size(), 3U) << one.partition;
       for (std::size_t i = 0; i < 3; ++i) {
-        EXPECT_NEAR(one.insert_ms[i] + one.build_ms[i] + one.pairs_ms[i], one.total_ms[i], 1e-9);
-        EXPECT_GT(one.pairs_ms[i], 0.0);
+        EXPECT_NEAR(ms["insert_ms"][i] + ms["build_ms"][i] + ms["pairs_ms"][i], ms["total_ms"][i],
+                    1e-9);
+        EXPECT_GT(ms["pairs_ms"][i], 0.0);
       }
-      const std::size_t reserved = one.memory == kTouched ? 0 : 3;
-      EXPECT_EQ(one.reserved_ms.size(), reserved);
-      EXPECT_EQ(one.ready_ms.size(), reserved);
-      EXPECT_EQ(one.reserve_ms.size(), reserved);
+      for (const char* name : {"reserved_ms", "ready_ms", "reserve_ms"}) {
+        EXPECT_EQ(ms[name].size(), one.memory == kTouched ? 0U : 3U) << name;
+      }
     }
   }
 }

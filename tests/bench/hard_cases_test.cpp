@@ -2,7 +2,6 @@
 
 #include "bench/questions/hard_cases.h"
 #include <winnow/simd/isa.h>
-#include "bench/questions/hard_case_files.h"
 #include "bench/questions/questions.h"
 #include "tests/support/config.h"
 

@@ -111,18 +111,18 @@ class FixedAnswer final : public NarrowEngine {
   NarrowAnswer answer_;
 };
 
-Accuracy judged(const NarrowAnswer& answer, const PairTruth& truth) {
+Accuracy judged(const NarrowAnswer& answer, const oracle::Truth& truth) {
   const auto set = make_pair_set(pair_kinds().front(), {.pairs = 1});
   FixedAnswer fixed(answer);
   return summary_of(errors_of(fixed, ContactLevel::distance, *set, std::span(&truth, 1)));
 }
 
-const PairTruth kApart{.known = true,
-                       .overlap = false,
-                       .distance = 1.0L,
-                       .normal = {1.0, 0.0, 0.0},
-                       .normal_unique = true,
-                       .size = 3.0};
+const oracle::Truth kApart{.known = true,
+                           .overlap = false,
+                           .distance = 1.0L,
+                           .normal = {1.0, 0.0, 0.0},
+                           .normal_unique = true,
+                           .size = 3.0};
 
 TEST(Accuracy, errors_are_relative_to_size_and_distance) {
   const Accuracy accuracy =

@@ -8,6 +8,7 @@
 #include "bench/scenes/scene.h"
 
 #include <gtest/gtest.h>
+#include <Eigen/Core>
 
 #include <algorithm>
 #include <cmath>
@@ -121,7 +122,7 @@ class Peers : public testing::TestWithParam<const char*> {};
 TEST_P(Peers, each_library_finds_every_pair_once) {
   for (const int threads : {1, 2}) {
     std::vector<Contender> contenders;
-    for (auto& peer : make_peers(threads)) contenders.push_back({std::move(peer), threads});
+    for (auto& peer : make_peers<Engine>(threads)) contenders.push_back({std::move(peer), threads});
     expect_same_pairs(GetParam(), std::move(contenders));
   }
 }

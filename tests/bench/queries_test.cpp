@@ -21,7 +21,7 @@ TEST_P(Engines, every_engine_has_the_same_answers) {
   for (const int threads : {1, 2}) {
     PartitionQueries reference("BoundsNSquared", threads);
     reference.start(source->boxes());
-    std::vector<std::unique_ptr<QueryEngine>> engines = make_query_peers();
+    std::vector<std::unique_ptr<QueryEngine>> engines = make_peers<QueryEngine>();
     const std::size_t peers = engines.size();
     for (const std::string& name : all_partitions()) {
       engines.push_back(std::make_unique<PartitionQueries>(name, threads));

@@ -1,21 +1,14 @@
 // The granular flow simulation: its results are equal on all ISAs and threads, it misses no
-// contact, gains no energy and does not allocate after warm-up. Also mesh files and scene races.
+// contact, gains no energy and does not allocate after warm-up. Also scene races.
 
 #include "bench/common/counting_resource.h"
 #include "bench/measure/scene_race.h"
-#include "bench/simulation/flow_check.h"
-#include "bench/simulation/flow_history.h"
-#include "bench/simulation/mesh_files.h"
+#include "bench/simulation/flow_run.h"
 #include "tests/support/config.h"
 
 #include <gtest/gtest.h>
-#include <Eigen/Geometry>
 
-#include <algorithm>
 #include <array>
-#include <filesystem>
-#include <fstream>
-#include <string>
 #include <vector>
 
 namespace winnow::bench {
@@ -113,23 +106,6 @@ TEST(GranularFlow, warm_flow_does_not_allocate) {
   EXPECT_EQ(memory.allocations(), before);
 }
 
-TEST(GranularFlow, bodies_fall_into_a_mesh_of_the_caller) {
-  FlowOptions options = small_flow();
-  options.mesh = make_terrain(make_hills(8, 1.0, 1.0, 3));
-  GranularFlow flow(options);
-  double low = 0.0;
-  for (const Eigen::Vector3d& v : flow.mesh().vertices) low = std::min(low, v.z());
-  std::size_t contacts = 0;
-  for (std::size_t i = 0; i < 400; ++i) {
-    flow.step();
-    for (const ContactRun& run : flow.contacts().runs()) {
-      contacts += run.kind_b == static_cast<std::uint8_t>(CompositeKind::mesh) ? run.count : 0;
-    }
-  }
-  EXPECT_GT(contacts, 100U);
-  EXPECT_LT(low, 0.0);
-}
-
 TEST(GranularFlow, check_reports_contacts_that_are_missing) {
   GranularFlow flow(small_flow());
   flow.keep_contact_poses();
@@ -137,31 +113,6 @@ TEST(GranularFlow, check_reports_contacts_that_are_missing) {
   const FlowFaults faults = check_contacts(flow, Contacts());
   EXPECT_GT(faults.compared, 10U);
   EXPECT_EQ(faults.lost, faults.compared);
-}
-
-TEST(MeshFiles, polygons_of_a_file_become_triangles) {
-  if (!reads_mesh_files()) GTEST_SKIP() << "built without assimp";
-  const auto path = std::filesystem::temp_directory_path() / "winnow_pyramid.obj";
-  std::ofstream(path) << "v 0 0 0\nv 2 0 0\nv 2 2 0\nv 0 2 0\nv 1 1 1.5\n"
-                         "f 4 3 2 1\nf 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\n";
-  const Triangles read = read_mesh(path.string());
-  std::filesystem::remove(path);
-  EXPECT_EQ(read.size(), 6U);
-  EXPECT_EQ(read.vertices.size(), 5U);
-  double volume = 0.0;
-  for (std::size_t i = 0; i < read.corners.size(); i += 3) {
-    const auto corner = [&](std::size_t k) { return read.vertices[read.corners[i + k]]; };
-    volume += corner(0).cross(corner(1)).dot(corner(2)) / 6.0;
-  }
-  EXPECT_NEAR(volume, 2.0, 1e-6);
-}
-
-TEST(MeshFiles, file_that_is_no_mesh_is_refused) {
-  EXPECT_THROW(read_mesh("/nowhere/mesh.obj"), MeshFileError);
-  const auto path = std::filesystem::temp_directory_path() / "winnow_no_mesh.ply";
-  std::ofstream(path) << "this is no mesh";
-  EXPECT_THROW(read_mesh(path.string()), MeshFileError);
-  std::filesystem::remove(path);
 }
 
 TEST(SceneRace, heaps_of_equal_seeds_are_equal_and_dense) {

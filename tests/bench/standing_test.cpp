@@ -8,17 +8,18 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <string>
 
 namespace winnow::bench {
 namespace {
 
 TEST(Standing, structures_settle_and_stay_in_place) {
-  for (const StandingScene scene : kStandingScenes) {
+  for (const std::string& structure : standing_names()) {
     for (const bool reduced : {false, true}) {
-      SCOPED_TRACE(name_of(scene) + (reduced ? ", regions" : ", raw"));
+      SCOPED_TRACE(structure + (reduced ? ", regions" : ", raw"));
       StandingOptions options;
       options.contact_reduction = reduced;
-      Standing standing(scene, options);
+      Standing standing(structure, options);
       for (int frame = 0; frame < 60; ++frame) standing.step();
       EXPECT_LT(standing.drift(), 0.05);
       standing.mark();
@@ -37,11 +38,11 @@ TEST(Standing, structures_settle_and_stay_in_place) {
 }
 
 TEST(Standing, results_are_equal_on_all_isas_and_threads) {
-  for (const StandingScene scene : kStandingScenes) {
+  for (const std::string& structure : standing_names()) {
     const auto fingerprint = [&](Execution execution) {
       StandingOptions options;
       options.execution = execution;
-      Standing standing(scene, options);
+      Standing standing(structure, options);
       for (int frame = 0; frame < 40; ++frame) standing.step();
       return standing.fingerprint();
     };

@@ -3,9 +3,9 @@
 const kPictures = JSON.parse(document.getElementById("data").textContent);
 
 const kColumns = {
-  boxes: Float32Array, lines: Float32Array, contacts: Float32Array, at: Float32Array,
+  boxes: Float32Array, lines: Float32Array, contacts: Float32Array,
   ray: Float32Array, box: Float32Array, t: Float32Array, rows: Uint32Array, pairs: Uint32Array,
-  hits: Uint32Array, inside: Uint32Array, crossing: Uint32Array, data: BigUint64Array,
+  hits: Uint32Array, inside: Uint32Array, crossing: Uint32Array,
 };
 const bytesOf = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0)).buffer;
 

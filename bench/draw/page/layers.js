@@ -14,14 +14,13 @@ const kColours = {
 };
 
 const kLayers = [];
-const kLabels = [];
 const kSwitched = new Map();  // layer name -> on or off, for layers that the user switched
 
 // Adds a layer unless it is empty. `count` is the number in the legend, `counted` the mesh that
 // draws that number of things, and `id` the name of the number in the counts of the tool.
 function addLayer({meshes, counted = meshes[0], mark = "box", shown = true, ...facts}) {
   if (facts.count === 0) return;
-  for (const mesh of meshes) if (mesh.isObject3D) kScene.add(mesh);
+  for (const mesh of meshes) kScene.add(mesh);
   const layer = {meshes, counted, mark, shown, ...facts};
   layer.show = (on) => {
     layer.shown = on;
@@ -88,7 +87,7 @@ const kCell = kPictures[0].counts.partition === "SweepAndPrune" ? "strip" : "cel
 
 function addStructure() {
   let budget = 4000;  // at most this many boxes can be distinguished on a screen
-  for (const layer of now.structure.layers) {
+  for (const layer of now.structure) {
     const boxes = placedColumn(layer.boxes);
     const lines = placedColumn(layer.lines);
     const count = boxes.length / 6;
@@ -164,34 +163,15 @@ function addQuestionBoxes() {
   }
 }
 
-// Client data are a text layer of their own; labels of the structure belong to its layer.
-function addLabels() {
-  const labels = now.structure.texts.slice(0, 500).map((text) => {
-    const element = make("span", {textContent: text.text, style: `color: rgb(${text.colour})`});
-    document.getElementById("labels").append(element);
-    return {element, at: new THREE.Vector3(...placedColumn(text.at)), visible: true,
-            layer: kLayers.find((l) => l.colour.join() === text.colour.join())};
-  });
-  kLabels.push(...labels);
-  const names = labels.filter((label) => !label.layer);
-  addLayer({
-    id: "labels", group: "Objects", name: "client data", colour: [232, 232, 232],
-    count: names.length, meshes: names, mark: "line", shown: names.length <= 100,
-  });
-}
-
 function removeLayers() {
   for (const layer of kLayers.splice(0)) {
     for (const mesh of layer.meshes) {
-      if (!mesh.isObject3D) continue;
       kScene.remove(mesh);
       mesh.geometry.dispose();
       mesh.material.dispose();
       if (mesh.material.map) mesh.material.map.dispose();
     }
   }
-  kLabels.length = 0;
-  document.getElementById("labels").replaceChildren();
 }
 
 function addLayers() {
@@ -201,5 +181,4 @@ function addLayers() {
   addStructure();
   addRays();
   addQuestionBoxes();
-  addLabels();
 }

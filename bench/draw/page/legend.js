@@ -47,29 +47,10 @@ function entryFor(layer) {
     layer.name, make("span", {className: "count", textContent: grouped(layer.count)}));
 }
 
-// The opacity of faces of objects that the user chose, or null.
-let chosenFill = null;
-function solidity() {
-  const faces = kLayers.filter((l) => l.group === "Objects" && l.mark === "fill")
-                    .map((l) => l.meshes[0].material);
-  const fill = (opacity) => {
-    for (const material of faces) Object.assign(material, {opacity, depthWrite: opacity === 1});
-  };
-  if (chosenFill !== null) fill(chosenFill);
-  return make("label", {}, "fill", make("input", {
-    type: "range", min: 0, max: 1, step: 0.01, value: faces.length ? faces[0].opacity : 0,
-    oninput: ({target}) => {
-      fill(chosenFill = Number(target.value));
-      drawSoon();
-    },
-  }));
-}
-
 function writeLegend() {
   const parts = ["Objects", "Structure", "Queries"].flatMap((group) => {
     const entries = kLayers.filter((layer) => layer.group === group).map(entryFor);
     if (entries.length === 0) return [];
-    if (group === "Objects") entries.push(solidity());
     return [make("h2", {textContent: group}), ...entries];
   });
   document.getElementById("legend").replaceChildren(

@@ -50,7 +50,6 @@ function factsOf(place) {
                          (x) => Number(x.toPrecision(7)).toString());
   const facts = [
     ["row", now.objects.rows[place]],
-    ["client data", now.objects.data[place].toString()],
     ["from", box.slice(0, 3).join(", ")],
     ["to", box.slice(3).join(", ")],
     ["overlaps rows", rowsText(now.partners.get(place) || []) || "none"],

@@ -24,7 +24,6 @@ function draw() {
   kCamera.far = distance + 200;
   kCamera.updateProjectionMatrix();
   kRenderer.render(kScene, kCamera);
-  placeLabels();
 }
 
 function fitWindow() {
@@ -53,18 +52,6 @@ function resetView() {
   kCamera.position.copy(away);
   kControls.update();
   drawSoon();
-}
-
-function placeLabels() {
-  for (const {element, at, visible, layer} of kLabels) {
-    const seen = at.clone().project(kCamera);
-    const shown = layer ? layer.shown : visible;
-    const hidden = !shown || seen.z > 1 || Math.abs(seen.x) > 1 || Math.abs(seen.y) > 1;
-    element.style.display = hidden ? "none" : "";
-    const x = 0.5 * (seen.x + 1) * window.innerWidth;
-    const y = 0.5 * (1 - seen.y) * window.innerHeight;
-    element.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px) translateY(-50%)`;
-  }
 }
 
 function startView() {

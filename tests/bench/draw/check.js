@@ -34,7 +34,6 @@ function switchAndPoint() {
 function drawnNow() {
   const drawn = {structure: {}};
   for (const layer of kLayers) {
-    if (layer.id === "labels") continue;
     const into = layer.part ? drawn.structure : drawn;
     const name = layer.part || layer.id;
     into[name] = (into[name] || 0) + drawnBy(layer.counted);
@@ -56,7 +55,7 @@ function wrongFrames() {
   return wrong;
 }
 
-const kReport = {drawn: drawnNow(), frames: kPictures.length, labels: kLabels.length, errors: kErrors,
+const kReport = {drawn: drawnNow(), frames: kPictures.length, errors: kErrors,
                  ...switchAndPoint()};
 if (kPictures.length > 1) kReport.wrongFrames = wrongFrames();
 const kElement = document.createElement("pre");

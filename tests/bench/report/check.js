@@ -38,6 +38,16 @@ const card = document.getElementById("card").getBoundingClientRect();
 facts.answered = Math.round(document.querySelector("#card dl")?.getBoundingClientRect().bottom || 0);
 facts.card = Math.round(card.bottom);
 facts.closed = document.documentElement.scrollHeight;
+// The names and lengths of the bars of a chart, as they are drawn.
+const bars_of = (box, name) => {
+  const chart = box && Chart.getChart(box.querySelector("canvas"));
+  return chart ? chart.getDatasetMeta(0)._parsed.map(({x}, i) => [name(chart, i), x]) : [];
+};
+const fact_of = (head) => [...document.querySelectorAll("#card dt")].find((dt) => dt.textContent === head)?.nextSibling.textContent;
+const trace = {
+  settings: [...document.querySelectorAll("#card select")].map((list) => list.value),
+  take: document.querySelector("#card strong")?.textContent, fast: fact_of("how fast"),
+  card: bars_of(document.getElementById("card"), (chart, i) => chart.data.labels[i])};
 let wide = beyond();
 let shown = 0;
 let tallest = 0;
@@ -47,6 +57,8 @@ for (const one of details) {
   one.open = true;
   one.dispatchEvent(new Event("toggle"));
 }
+trace.chart = bars_of(details[0], (chart, i) => chart.data.datasets[0].data[i].name);
+facts.trace = JSON.stringify(trace);
 const every_view = new Map(details.map((one) => [one, one.querySelector("select")?.options.length || 0]));
 for (let view = 0; view < Math.max(...every_view.values()); ++view) {
   for (const [one, count] of every_view) {
