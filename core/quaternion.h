@@ -72,10 +72,10 @@ class Quaternion {
     return {std::cos(0.5 * angle), axis.x() * share, axis.y() * share, axis.z() * share};
   }
 
-  [[nodiscard]] constexpr double w() const noexcept { return at_[0]; }
-  [[nodiscard]] constexpr double x() const noexcept { return at_[1]; }
-  [[nodiscard]] constexpr double y() const noexcept { return at_[2]; }
-  [[nodiscard]] constexpr double z() const noexcept { return at_[3]; }
+  [[nodiscard]] constexpr double w() const noexcept { return at_[0]; }  ///< real coordinate
+  [[nodiscard]] constexpr double x() const noexcept { return at_[1]; }  ///< of i
+  [[nodiscard]] constexpr double y() const noexcept { return at_[2]; }  ///< of j
+  [[nodiscard]] constexpr double z() const noexcept { return at_[3]; }  ///< of k
 
   /// Coordinate `i`, 0..3: w, x, y, z.
   template <std::integral Index>

@@ -38,7 +38,7 @@ inline constexpr std::uint32_t kWholeShape = ~0U;
 /// (lower half) that generated the point; it has the same value in each frame in which these two
 /// generate the point.
 struct ContactPoint {
-  Vec3f position;
+  Vec3f position;         ///< relative to the position of body a
   float depth;            ///< positive if the bodies overlap there, negative if they are apart
   std::uint64_t feature;  ///< equal features in two frames are the same point
 };

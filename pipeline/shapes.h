@@ -138,7 +138,7 @@ struct ConeShape {
 
 /// Core: the triangle. Two-sided, without interior.
 struct TriangleShape {
-  Vec3d vertex[3]{};
+  Vec3d vertex[3]{};      ///< corners
   double rounding = 0.0;  ///< greatest distance from the core
 };
 
