@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstring>
 #include <span>
+#include <utility>
 
 namespace winnow {
 namespace {
@@ -85,45 +86,40 @@ struct PairWriter::SerialOutput {
   Column<Pair>& pairs;
   const std::size_t before;  // pairs in the buffer at the start
   const std::size_t tasks;
-  Pair* beside;                  // storage of the first pairs, or null for the array
-  std::size_t task = 0;          // running task
-  std::size_t checked = before;  // pairs that passed the predicate
+  Pair* begin;              // pairs[before], or the storage beside the array
+  std::size_t task = 0;     // running task
+  std::size_t checked = 0;  // pairs from `begin` on that passed the predicate
 
   // Capacity to grow to. Growing copies all pairs into fresh pages, which costs more than finding
   // them, so the total is extrapolated from the tasks that are done.
   [[nodiscard]] std::size_t room() const {
     constexpr std::size_t kEnoughTasks = 3;
     const std::size_t least =
-        std::max(pairs.capacity() + pairs.capacity() / 2, checked + 2 * kSinkSlack);
+        std::max(pairs.capacity() + pairs.capacity() / 2, before + checked + 2 * kSinkSlack);
     if (task < kEnoughTasks) return least;
-    const std::size_t found = checked - before;
-    const std::size_t expected = found * tasks / task;
+    const std::size_t expected = checked * tasks / task;
     return std::clamp(before + expected + expected / 16 + 2 * kSinkSlack, least,
                       std::max(least, 4 * pairs.capacity()));
   }
 
   // Takes over the pairs that the sink received; false if memory is refused.
   [[nodiscard]] bool take(const PairSink& sink) {
-    if (beside != nullptr) return take_beside(sink);
-    const auto used = static_cast<std::size_t>(sink.cursor - words(pairs.data())) / 2;
-    checked += writer.keep_accepted(pairs.data() + checked, used - checked);
-    pairs.set_size(checked);
-    return true;
-  }
-  [[nodiscard]] bool take_beside(const PairSink& sink) {
-    const auto found = static_cast<std::size_t>(sink.cursor - words(beside)) / 2;
-    const std::size_t kept = writer.keep_accepted(beside, found);
-    if (!pairs.grow(checked + kept)) return false;
-    std::copy_n(beside, kept, pairs.data() + checked);
-    beside = nullptr;
-    checked += kept;
-    pairs.set_size(checked);
+    checked += writer.keep_accepted(begin, checked, sink);
+    if (!pairs.grow(before + checked)) return false;
+    Pair* const array = pairs.data() + before;
+    if (begin != array) std::copy_n(std::exchange(begin, array), checked, array);
+    pairs.set_size(before + checked);
     return true;
   }
 };
 
-std::size_t PairWriter::keep_accepted(Pair* pairs, std::size_t count) const noexcept {
+// Drops the pairs behind the first `checked` that the predicate does not accept; returns how many
+// of them it keeps.
+std::size_t PairWriter::keep_accepted(Pair* begin, std::size_t checked,
+                                      const PairSink& sink) const noexcept {
+  const std::size_t count = static_cast<std::size_t>(sink.cursor - words(begin)) / 2 - checked;
   if (predicate_.accept == nullptr) return count;
+  Pair* const pairs = begin + checked;
   std::size_t kept = 0;
   for (std::size_t i = 0; i < count; ++i) {
     const Pair pair = pairs[i];
@@ -141,13 +137,9 @@ Status PairWriter::append_serial(std::size_t tasks, void* context, WriteTask run
   alignas(Pair) std::byte bytes[kBeside * sizeof(Pair)];  // uninitialized, unlike Pair[]
   auto* const beside = reinterpret_cast<Pair*>(bytes);
   const bool is_tight = before + kBeside > pairs.capacity();
-  SerialOutput output{*this, pairs, before, tasks, is_tight ? beside : nullptr};
+  SerialOutput output{*this, pairs, before, tasks, is_tight ? beside : pairs.data() + before};
   PairSink sink;
-  if (is_tight) {
-    aim(sink, beside, beside + kBeside);
-  } else {
-    aim(sink, pairs.data() + before, pairs.data() + pairs.capacity());
-  }
+  aim(sink, output.begin, is_tight ? beside + kBeside : pairs.data() + pairs.capacity());
   sink.owner = &output;
   sink.grow = [](PairSink& full) {
     auto& o = *static_cast<SerialOutput*>(full.owner);
@@ -159,15 +151,13 @@ Status PairWriter::append_serial(std::size_t tasks, void* context, WriteTask run
     if (!enough && !column.reserve(o.room()) && !column.reserve(used + 2 * kSinkSlack)) {
       return false;
     }
+    o.begin = column.data() + o.before;
     aim(full, column.data() + used, column.data() + column.capacity());
     return true;
   };
-  for (; output.task < tasks; ++output.task) {
-    if (run(context, output.task, sink)) continue;
-    pairs.set_size(before);
-    return Status::out_of_memory;
-  }
-  if (!output.take(sink)) {
+  bool done = true;
+  for (; done && output.task < tasks; ++output.task) done = run(context, output.task, sink);
+  if (!done || !output.take(sink)) {
     pairs.set_size(before);
     return Status::out_of_memory;
   }
@@ -271,8 +261,7 @@ struct PairWriter::TaskOutput {
 
   void take(const PairSink& sink) {
     if (begin == nullptr) return;
-    const auto used = static_cast<std::size_t>(sink.cursor - words(begin)) / 2;
-    checked += writer.keep_accepted(begin + checked, used - checked);
+    checked += writer.keep_accepted(begin, checked, sink);
     if (page == PageClaims::kNone) {
       in_array = checked;
     } else {

@@ -55,7 +55,7 @@ class PairWriter {
   static std::size_t more_pages(PageClaims& claims, std::size_t tasks);
   void run_on_pages(std::size_t tasks, PageClaims& claims, void* context, WriteTask run);
   Status gather_pages(std::size_t tasks, PageClaims& claims);
-  std::size_t keep_accepted(Pair* pairs, std::size_t count) const noexcept;
+  std::size_t keep_accepted(Pair* begin, std::size_t checked, const PairSink& sink) const noexcept;
 
   PairBuffer& out_;
   const Execution& execution_;

@@ -68,8 +68,9 @@ bool RestingPairs::start(float skin) noexcept {
 }
 
 Status RestingPairs::update(const UpdateSubset& entries, const BoxView& boxes) {
-  if (const Status status = RowInput(rows_).check(entries, boxes); status != Status::ok)
-    return status;
+  bool ascending = false;
+  const Status status = RowInput(rows_).check(entries, boxes, ascending);
+  if (status != Status::ok) return status;
   pending_ = true;
   if (!copy(entries, boxes)) {
     (void)write();

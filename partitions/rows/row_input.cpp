@@ -42,11 +42,6 @@ Status RowInput::update(Key key, const Aabb& box) {
   return Status::ok;
 }
 
-Status RowInput::check(const UpdateSubset& entries, const BoxView& boxes) const {
-  bool ascending = false;
-  return check(entries, boxes, ascending);
-}
-
 Status RowInput::check(const UpdateSubset& entries, const BoxView& boxes, bool& ascending) const {
   const Status status = check_keys(boxes.count, entries, ascending);
   if (status != Status::ok) return status;
@@ -149,14 +144,6 @@ void RowInput::write_by_id(const BoxView& boxes) noexcept {
   rows_.changes_.add_all();
 }
 
-// True if an update of all objects may make the order of the rows worthless. With few rows the
-// order does not matter.
-bool RowInput::may_lose_order(const UpdateSubset& entries) const noexcept {
-  constexpr std::size_t kFewRows = 256;
-  return entries.entry == nullptr && entries.count == rows_.keys_.size() && rows_.regions_.built &&
-         rows_.order_reach_ > 0.0F && entries.count >= kFewRows;
-}
-
 // True if most objects move far and in different directions. RebuildPlanner lists the other signs
 // of a lost order.
 bool RowInput::order_is_lost(const SampledBoxes& sample, std::span<const Key> keys) const noexcept {
@@ -180,13 +167,6 @@ bool RowInput::order_is_lost(const SampledBoxes& sample, std::span<const Key> ke
     apart += far ? 1 : 0;
   }
   return 2 * apart > SampledBoxes::kSize;
-}
-
-// Gives the object of keys[i] row i, for i in [begin, end).
-void RowInput::number_rows(std::span<const Key> keys, std::size_t begin, std::size_t end) noexcept {
-  for (std::size_t i = begin; i < end; ++i) {
-    rows_.keys_.set_row(keys[i].id, static_cast<std::uint32_t>(i));
-  }
 }
 
 // Insert.
@@ -225,15 +205,6 @@ Status RowInput::begin_insert(std::size_t count, std::span<const ClientData> dat
   rows_.keys_.acquire(static_cast<std::uint32_t>(first), data, keys, rows_.execution_);
   note_stale(UpdateSubset(std::span<const Key>(keys)));
   return Status::ok;
-}
-
-// Writes the id and the filter of the object of keys[i] to row first + i, for i in [begin, end).
-void RowInput::place_new(std::span<const Key> keys, std::size_t first, std::size_t begin,
-                         std::size_t end) noexcept {
-  for (std::size_t i = begin; i < end; ++i) rows_.pool_.ids()[first + i] = keys[i].id;
-  for (std::size_t i = begin; i < end && rows_.pool_.has_filters(); ++i) {
-    rows_.pool_.set_filter(first + i, rows_.filters_.of(keys[i].id));
-  }
 }
 
 }  // namespace winnow

@@ -209,8 +209,10 @@ class RowInput {
   template <typename V>
   Status update(std::span<const Key> keys, std::span<const V> volumes);
 
-  /// Returns the status that an update with these boxes would have.
-  [[nodiscard]] Status check(const UpdateSubset& entries, const BoxView& boxes) const;
+  /// Returns the status that an update with these boxes would have. Sets `ascending` if the ids
+  /// strictly ascend.
+  [[nodiscard]] Status check(const UpdateSubset& entries, const BoxView& boxes,
+                             bool& ascending) const;
   /// Gives every row the box at the index of its object's id, if there is one.
   void write_by_id(const BoxView& boxes) noexcept;
 
@@ -220,9 +222,6 @@ class RowInput {
                                     std::span<Key> keys) const noexcept;
   [[nodiscard]] Status begin_insert(std::size_t count, std::span<const ClientData> data,
                                     std::span<Key> keys, std::size_t& first);
-  void number_rows(std::span<const Key> keys, std::size_t begin, std::size_t end) noexcept;
-  void place_new(std::span<const Key> keys, std::size_t first, std::size_t begin,
-                 std::size_t end) noexcept;
   /// Writes volume i, its id and its filter to row first + i, for i in [begin, end).
   template <typename Source>
   void write_new(const Source& source, std::span<const Key> keys, std::size_t first,
@@ -231,8 +230,6 @@ class RowInput {
   // Update.
   [[nodiscard]] Status check_keys(std::size_t volumes, const UpdateSubset& entries,
                                   bool& ascending) const;
-  [[nodiscard]] Status check(const UpdateSubset& entries, const BoxView& boxes,
-                             bool& ascending) const;
   [[nodiscard]] bool writes_by_rows(const UpdateSubset& entries, bool ascending,
                                     EntryOfId& entry_of_id);
   /// Writes valid volumes, and notes their objects as changed.
@@ -243,7 +240,6 @@ class RowInput {
   void write_by_rows(const Source& source, const EntryOfRow& entry_of);
   template <typename Visit>
   void for_entries(const UpdateSubset& entries, bool ascending, const Visit& visit);
-  [[nodiscard]] bool may_lose_order(const UpdateSubset& entries) const noexcept;
   [[nodiscard]] bool order_is_lost(const SampledBoxes& sample,
                                    std::span<const Key> keys) const noexcept;
   template <typename Source>
@@ -254,9 +250,14 @@ class RowInput {
 };
 
 /// True if the update moves most objects far and in different directions (see `order_is_lost`).
+/// With few rows the order does not matter.
 template <typename Source>
 bool RowInput::loses_order(const Source& source, const UpdateSubset& entries) const noexcept {
-  if (!may_lose_order(entries)) return false;
+  constexpr std::size_t kFewRows = 256;
+  if (entries.entry != nullptr || entries.count != rows_.keys_.size() || !rows_.regions_.built ||
+      !(rows_.order_reach_ > 0.0F) || entries.count < kFewRows) {
+    return false;
+  }
   SampledBoxes sample;
   float volume[kMaxColumns];
   float* columns[kMaxColumns];
@@ -304,7 +305,9 @@ void RowInput::write(const Source& source, const UpdateSubset& entries, bool asc
     rows_.pool_.clear();
     rows_.pool_.append(entries.count);
     for_ranges(rows_.execution_, entries.count, [&](std::size_t begin, std::size_t end) {
-      number_rows(entries.keys, begin, end);
+      for (std::size_t i = begin; i < end; ++i) {
+        rows_.keys_.set_row(entries.keys[i].id, static_cast<std::uint32_t>(i));
+      }
       write_new(source, entries.keys, 0, begin, end);
     });
     rows_.invalidate_order();
@@ -340,7 +343,10 @@ template <typename Source>
 void RowInput::write_new(const Source& source, std::span<const Key> keys, std::size_t first,
                          std::size_t begin, std::size_t end) noexcept {
   const PoolColumns columns(rows_.pool_);
-  place_new(keys, first, begin, end);
+  for (std::size_t i = begin; i < end; ++i) rows_.pool_.ids()[first + i] = keys[i].id;
+  for (std::size_t i = begin; i < end && rows_.pool_.has_filters(); ++i) {
+    rows_.pool_.set_filter(first + i, rows_.filters_.of(keys[i].id));
+  }
   if constexpr (requires { source.packed(); }) {
     if (source.packed()) return source.write_in_order(begin, end, columns.pointers, first + begin);
   }

@@ -213,17 +213,14 @@ class ClosestSearch {
       open_ = fresh_ & !fresh_;
       return;
     }
-    const auto nearest = hull::nearest_of_few(others, w, open_);
-    const DoubleMask none = open_ & !open_;
-    const auto step = hull::judge_step(nearest, square, fresh_, close | !open_, none);
-    hull::keep_nearest(
-        nearest, step.moves, [&](int s, const DoubleMask& take, const DoubleMask& used) {
-          simplex_.point[s] = select(take, w, simplex_.point[s]);
-          simplex_.present[s] = (step.moves & used) | ((!step.moves) & simplex_.present[s]);
-          witness_.a[s] = select(take, own_a, witness_.a[s]);
-          witness_.b[s] = select(take, own_b, witness_.b[s]);
-        });
-    gap_ = select(step.moves, nearest.point, gap_);
+    const auto put = [&](int s, const DoubleMask& take, const DoubleMask& used) {
+      simplex_.point[s] = select(take, w, simplex_.point[s]);
+      simplex_.present[s] = used;
+      witness_.a[s] = select(take, own_a, witness_.a[s]);
+      witness_.b[s] = select(take, own_b, witness_.b[s]);
+    };
+    const auto step = hull::take_step(simplex_.present, hull::nearest_of_few(others, w, open_),
+                                      square, fresh_, close | !open_, open_ & !open_, gap_, put);
     fresh_ = fresh_ & !step.moves;
     const DoubleMask lost = step.stuck & (gain > known * Doubles(kLost)) & !begun_anew_;
     open_ = step.moves | lost;

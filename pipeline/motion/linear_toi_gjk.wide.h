@@ -193,19 +193,17 @@ class LinearToiGjk : BlockStep {
   void move_on(const Doubles& before) {
     sample_.between = p_.start + p_.travel * p_.time;
     const Vector w = sample_.between + way_;
-    const auto nearest = hull::nearest_of_few(placed(differs_), w, active_);
     const DoubleMask moved = !(used_[0] & (p_.time <= before));
-    const DoubleMask none = moved & !moved;
-    const auto step = hull::judge_step(nearest, square_, moved, !active_, none);
-    end_unsure(nearest.inside | !(step.square > Doubles(0.0)));
-    p_.proves = one_where(step.stuck & !guessed_);
-    const DoubleMask moves = active_ & step.moves;
-    hull::keep_nearest(nearest, moves, [&](int s, const DoubleMask& take, const DoubleMask& used) {
+    const auto put = [&](int s, const DoubleMask& take, const DoubleMask& used) {
       p_.witness.a[s] = select(take, sample_.closest.on_a, p_.witness.a[s]);
       p_.witness.b[s] = select(take, way_, p_.witness.b[s]);
-      p_.witness.present[s] = select(moves, one_where(used), p_.witness.present[s]);
-    });
-    p_.axis = select(moves, nearest.point, p_.axis);
+      p_.witness.present[s] = one_where(used);
+    };
+    const auto nearest = hull::nearest_of_few(placed(differs_), w, active_);
+    const auto step =
+        hull::take_step(used_, nearest, square_, moved, !active_, moved & !moved, p_.axis, put);
+    end_unsure(nearest.inside | !(step.square > Doubles(0.0)));
+    p_.proves = one_where(step.stuck & !guessed_);
     if (Elsewhere && guesses_) {
       SecantDirection(sample_.between, p_.axis, p_.tried).note({tried_, way_, guessed_}, active_);
     }

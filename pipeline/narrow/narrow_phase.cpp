@@ -4,8 +4,8 @@
 // 3. State::answer_wave answers the chunks of a wave in parallel: `answer_job` calls the SIMD
 //    kernel of the kinds, then the solver for each pair that the kernel could not certify.
 // 4. If a pair was given in the other order of kinds, `mirror_answer` turns its result around.
-// 5. At level manifold, contacts go directly into the result (one thread, `take_contacts`) or from
-//    scratch into the result (`gather_contacts`).
+// 5. At level manifold, contacts go directly into the result (one thread) or from scratch into the
+//    result (`gather_contacts`).
 
 #include <winnow/pipeline/narrow_phase.h>
 #include "core/hooks/stage_scope.h"
@@ -219,7 +219,6 @@ struct NarrowPhase::State {
   void fill_job(PairChunk& chunk, const Call& call, NarrowResult& result, std::uint32_t first,
                 std::uint32_t count) const noexcept;
   [[nodiscard]] bool answer_wave(const Call& call, std::span<PairChunk> wave, NarrowResult& result);
-  static void take_contacts(const PairChunk& chunk, NarrowResult& result) noexcept;
   [[nodiscard]] bool gather_contacts(const Call& call, std::span<const PairChunk> wave,
                                      NarrowResult& result);
 
@@ -335,10 +334,12 @@ bool NarrowPhase::State::answer_wave(const Call& call, std::span<PairChunk> wave
   } else if (call.options.execution.concurrency() == 1) {
     const std::size_t room = max_room_for(call.pairs.size());
     for (PairChunk& chunk : wave) {
-      if (!result.contacts_.grow(result.contacts() + room)) return false;
-      chunk.job.contacts = writer_to(result.contacts_, result.contacts());
+      const auto base = static_cast<std::uint32_t>(result.contacts());
+      if (!result.contacts_.grow(base + room)) return false;
+      chunk.job.contacts = writer_to(result.contacts_, base);
       call.answer(chunk, result, any_mirrored);
-      take_contacts(chunk, result);
+      for (std::uint32_t i = 0; i < chunk.job.count; ++i) chunk.job.contact_first[i] += base;
+      result.contacts_.set_size(base + chunk.outcome.contacts);
     }
   } else {
     std::size_t from = 0;
@@ -360,13 +361,6 @@ bool NarrowPhase::State::answer_wave(const Call& call, std::span<PairChunk> wave
     call.bad_body = std::min(call.bad_body, chunk.outcome.bad_body);
   }
   return true;
-}
-
-// Completes a chunk that wrote its contacts directly to the result.
-void NarrowPhase::State::take_contacts(const PairChunk& chunk, NarrowResult& result) noexcept {
-  const auto base = static_cast<std::uint32_t>(result.contacts());
-  for (std::uint32_t i = 0; i < chunk.job.count; ++i) chunk.job.contact_first[i] += base;
-  result.contacts_.set_size(base + chunk.outcome.contacts);
 }
 
 bool NarrowPhase::State::gather_contacts(const Call& call, std::span<const PairChunk> wave,

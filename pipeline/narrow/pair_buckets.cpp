@@ -146,9 +146,8 @@ Status PairBuckets::take_one(const ShapeTables& tables, std::span<const ShapeId>
     sorted_[0] = own;
     pairs_ = sorted_.data();
   }
-  if (!order.resize(1)) return Status::out_of_memory;
+  if (!order.resize(1) || !runs.resize(1)) return Status::out_of_memory;
   order[0] = 0;
-  if (!runs.resize(1)) return Status::out_of_memory;
   // Write the members in place: copying a temporary would stall on its stores.
   NarrowRun& run = runs[0];
   run.a = shapes[own.a].kind();

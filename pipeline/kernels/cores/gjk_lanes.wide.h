@@ -1,9 +1,9 @@
 #pragma once
 
 // GJK (Gilbert, Johnson, Keerthi 1988), one search per lane: the step that all searches in lanes
-// share. The height of the last support point bounds the distance from below; the nearest point of
-// the simplex bounds it from above. Used by search_lanes.wide.h and hull_gjk.wide.h. The searches
-// of moving cores, which keep one simplex in registers, use `judge_step` and keep_nearest.
+// share (`take_step`). The height of the last support point bounds the distance from below; the
+// nearest point of the simplex bounds it from above. GjkLanes stores the simplices in columns, for
+// search_lanes.wide.h and hull_gjk.wide.h; the searches of moving cores keep them in registers.
 
 #include "pipeline/kernels/cores/simplex.wide.h"
 
@@ -25,20 +25,28 @@ struct GjkStep {
   LaneMask<T> deep;
 };
 
-/// Decides how the lanes proceed from a nearest feature. `square_yet` is the squared distance
-/// before; `fresh`: there was no simplex; `no_gain`: the new point is hardly nearer to the origin
-/// than the nearest point before.
-template <typename T>
-[[gnu::always_inline]] inline GjkStep<T> judge_step(const SimplexNearest<T>& nearest,
-                                                    const Lanes<T>& square_yet,
-                                                    const LaneMask<T>& fresh,
-                                                    const LaneMask<T>& ended,
-                                                    const LaneMask<T>& no_gain) {
+/// Replaces simplices, whose slots `present` are in use, by their nearest features in the lanes
+/// that proceed: put(slot, lanes that store the new point there, lanes in which the slot is then in
+/// use). `gap` is the nearest point before and after the step, `square_yet` its squared length
+/// before. `fresh`: there was no simplex; `no_gain`: the new point is hardly nearer to the origin
+/// than `gap`.
+template <typename T, typename Put>
+[[gnu::always_inline]] inline GjkStep<T> take_step(
+    const LaneMask<T> (&present)[kSlots], const SimplexNearest<T>& nearest,
+    const Lanes<T>& square_yet, const LaneMask<T>& fresh, const LaneMask<T>& ended,
+    const LaneMask<T>& no_gain, Vec3<T>& gap, Put&& put) {
   const Lanes<T> square = dot(nearest.point, nearest.point);
   const LaneMask<T> stuck = (!fresh) & (no_gain | nearest.repeated | (square >= square_yet)) &
                             (!(nearest.inside | ended));
-  const LaneMask<T> inside = nearest.inside & !ended;
-  return {ended, stuck, inside, !(ended | stuck | inside), square, nearest.deep};
+  const LaneMask<T> moves = !(ended | stuck | nearest.inside);
+  LaneMask<T> placed = !moves;
+  for (int s = 0; s < kSlots; ++s) {
+    const LaneMask<T> take = (!placed) & (!nearest.keep[s]);
+    placed = placed | take;
+    put(s, take, (moves & (take | nearest.keep[s])) | ((!moves) & present[s]));
+  }
+  gap = select(moves, nearest.point, gap);
+  return {ended, stuck, nearest.inside & !ended, moves, square, nearest.deep};
 }
 
 /// The lanes whose search ended, by outcome.
@@ -126,26 +134,25 @@ class GjkLanes {
     const Lanes<T> zero(T(0));
     const Lanes<T> one(T(1));
     const Simplex<T> simplex = load();
-    const Vec3<T> nearest_yet = load3(gap);
+    Vec3<T> v = load3(gap);
     const Lanes<T> square_yet = Lanes<T>::load(square);
-    rules.find(nearest_yet);
-    const Lanes<T> height = dot(nearest_yet, rules.w);
+    rules.find(v);
+    const Lanes<T> height = dot(v, rules.w);
     height.store(height_along);
-    const LaneMask<T> ended = rules.ends(nearest_yet, square_yet, height);
+    const LaneMask<T> ended = rules.ends(v, square_yet, height);
     if ((active & ~bits(ended)) == 0) {
       const LaneMask<T> none = zero > one;
       return {ended, none, none, none, square_yet, none};
     }
-    const LaneMask<T> is_fresh = Lanes<T>::load(fresh) > zero;
     const LaneMask<T> no_gain = rules.has_no_gain(square_yet - height, square_yet);
-    const SimplexNearest<T> nearest = nearest_of(simplex, rules.w);
-    const GjkStep<T> r = judge_step(nearest, square_yet, is_fresh, ended, no_gain);
-    keep_nearest(nearest, r.moves, [&](int s, const LaneMask<T>& take, const LaneMask<T>& used) {
+    const auto put = [&](int s, const LaneMask<T>& take, const LaneMask<T>& used) {
       store3(select(take, rules.w, simplex.point[s]), slot[s]);
       rules.keep(s, take);
-      select(r.moves, select(used, one, zero), Lanes<T>::load(present[s])).store(present[s]);
-    });
-    store3(select(r.moves, nearest.point, nearest_yet), gap);
+      select(used, one, zero).store(present[s]);
+    };
+    const GjkStep<T> r = take_step(simplex.present, nearest_of(simplex, rules.w), square_yet,
+                                   Lanes<T>::load(fresh) > zero, ended, no_gain, v, put);
+    store3(v, gap);
     select(r.moves, r.square, square_yet).store(square);
     zero.store(fresh);
     return r;

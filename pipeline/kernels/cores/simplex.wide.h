@@ -157,17 +157,4 @@ static inline SimplexNearest<T> nearest_of_few(const Simplex<T>& simplex, const 
   return {w, {none, none, none}, none, none, none};
 }
 
-/// Replaces simplices by their nearest features, in the lanes that move: put(slot, lanes that store
-/// the new point there, lanes in which the slot is then in use).
-template <typename T, typename Put>
-[[gnu::always_inline]] static inline void keep_nearest(const SimplexNearest<T>& nearest,
-                                                       const LaneMask<T>& moves, Put&& put) {
-  LaneMask<T> placed = !moves;
-  for (int s = 0; s < kSlots; ++s) {
-    const LaneMask<T> take = (!placed) & (!nearest.keep[s]);
-    placed = placed | take;
-    put(s, take, take | nearest.keep[s]);
-  }
-}
-
 }  // namespace winnow::WINNOW_ISA_NAME::hull
