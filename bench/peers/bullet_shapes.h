@@ -20,7 +20,7 @@
 /// Conversion of shapes and poses to Bullet's types, in float.
 namespace winnow::bench::in_bullet {
 
-inline btVector3 to_bullet(const double* v) {
+inline btVector3 to_bullet(const Vec3d& v) {
   return {static_cast<btScalar>(v[0]), static_cast<btScalar>(v[1]), static_cast<btScalar>(v[2])};
 }
 

@@ -64,7 +64,7 @@ class FclNarrow final : public NarrowAdapter<FclNarrow<Solver>> {
       const bool shared = id.kind() == ShapeKind::hull && hulls[id.index()] != nullptr;
       if (id.kind() == ShapeKind::triangle) {
         for (std::size_t k = 0; k < 3; ++k) {
-          const double* v = set.pool.tables().triangles[id.index()].vertex[k];
+          const Vec3d& v = set.pool.tables().triangles[id.index()].vertex[k];
           body.corners[k] = Vector(v[0], v[1], v[2]);
         }
       } else if (shared) {

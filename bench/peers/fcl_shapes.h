@@ -39,7 +39,7 @@ inline std::shared_ptr<Geometry> make_geometry(const ShapeTables& tables, ShapeI
       return std::make_shared<CapsuleGeometry>(tables.capsules[i].radius,
                                                2.0 * tables.capsules[i].half_length);
     case ShapeKind::box: {
-      const double* half = tables.boxes[i].half;
+      const Vec3d& half = tables.boxes[i].half;
       return std::make_shared<BoxGeometry>(2.0 * half[0], 2.0 * half[1], 2.0 * half[2]);
     }
     case ShapeKind::cylinder:
@@ -49,7 +49,7 @@ inline std::shared_ptr<Geometry> make_geometry(const ShapeTables& tables, ShapeI
       return std::make_shared<ConeGeometry>(tables.cones[i].radius,
                                             2.0 * tables.cones[i].half_length);
     case ShapeKind::ellipsoid: {
-      const double* radius = tables.ellipsoids[i].radius;
+      const Vec3d& radius = tables.ellipsoids[i].radius;
       return std::make_shared<EllipsoidGeometry>(radius[0], radius[1], radius[2]);
     }
     case ShapeKind::half_space: {

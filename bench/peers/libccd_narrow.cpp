@@ -7,6 +7,7 @@
 #include "bench/scenes/lens.h"
 
 #include <ccd/ccd.h>
+#include <winnow/core/eigen.h>
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -153,7 +154,7 @@ CcdBody make_body(const ShapeTables& tables, ShapeId id, const Pose& pose,
                   std::vector<double>& corners) {
   CcdBody body{};
   body.turn = orientation_of(pose).toRotationMatrix();
-  body.position = Vector::Map(pose.position);
+  body.position = as_eigen(pose.position);
   const std::uint32_t i = id.index();
   const auto set_sizes = [&](std::initializer_list<double> sizes) {
     std::copy(sizes.begin(), sizes.end(), body.size);
@@ -172,10 +173,10 @@ CcdBody make_body(const ShapeTables& tables, ShapeId id, const Pose& pose,
       set_sizes({tables.cones[i].radius, tables.cones[i].half_length});
       break;
     case ShapeKind::box:
-      std::copy_n(tables.boxes[i].half, 3, body.size);
+      std::copy_n(tables.boxes[i].half.data(), 3, body.size);
       break;
     case ShapeKind::ellipsoid:
-      std::copy_n(tables.ellipsoids[i].radius, 3, body.size);
+      std::copy_n(tables.ellipsoids[i].radius.data(), 3, body.size);
       break;
     case ShapeKind::tapered_capsule: {
       const TaperedCapsuleShape& taper = tables.tapered_capsules[i];

@@ -54,7 +54,7 @@ class ImpactAdapter : public ImpactEngine {
 };
 
 [[nodiscard]] inline Eigen::Quaterniond orientation_of(const Pose& pose) {
-  const double* q = pose.orientation;
+  const Quaternion& q = pose.orientation;
   return Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized();
 }
 

@@ -8,6 +8,7 @@
 #include "bench/scenes/random_shapes.h"
 #include "bench/simulation/crossing.h"
 
+#include <winnow/core/eigen.h>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -35,7 +36,7 @@ constexpr std::size_t kMaxImpacts = 50;
 constexpr double kSamplesPerRadian = 40.0;
 
 Vec3 position_of(const Pose& pose) {
-  return Vec3::Map(pose.position);
+  return as_eigen(pose.position);
 }
 
 }  // namespace
@@ -188,7 +189,7 @@ bool FastBodies::passes_funnel(const Vec3& from, const Vec3& to) const {
 bool FastBodies::passes_blade(const RigidMotion& body, const RigidMotion& blade,
                               double share) const {
   const auto looks =
-      static_cast<int>(std::ceil(kSamplesPerRadian * share * Vec3::Map(blade.turn).norm())) + 1;
+      static_cast<int>(std::ceil(kSamplesPerRadian * share * as_eigen(blade.turn).norm())) + 1;
   const auto seen = [&](int look) {
     const double time = share * look / looks;
     const Pose at = blade.at(time);
@@ -219,8 +220,8 @@ void FastBodies::collide(const SceneImpact& impact) {
   };
   Body& a = body_of(impact.a);
   Body& b = body_of(impact.b);
-  const Vec3 normal = Vec3::Map(impact.normal);
-  const Vec3 point = Vec3::Map(impact.point);
+  const Vec3 normal = as_eigen(impact.normal);
+  const Vec3 point = as_eigen(impact.point);
   const Vec3 arm_a = point - position_of(a.pose);
   const Vec3 arm_b = point - position_of(b.pose);
   const double closing =

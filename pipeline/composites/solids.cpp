@@ -177,10 +177,10 @@ Status check_solid(const Composites& all, ShapeId id) noexcept {
 }
 
 bool solid_contains_point(const CompositePool& pool, ShapeId id, const Pose& pose,
-                          const double point[3]) noexcept {
+                          const Vec3d& point) noexcept {
   const Composites* const all = composites_with(pool, id);
   return all != nullptr && !all->solid.empty() &&
-         is_in_solid(TransformedShape::at(*all, id, pose), Vec::Map(point));
+         is_in_solid(TransformedShape::at(*all, id, pose), as_eigen(point));
 }
 
 bool solid_contains_shape(const CompositePool& pool, ShapeId id, const Pose& pose, ShapeId other,

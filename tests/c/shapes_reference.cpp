@@ -100,7 +100,7 @@ void note_pair(const trace* t, ContactLevel level, const PairAnswer& answer) {
 
 Pose pose_in(std::size_t i, std::size_t frame) {
   Pose pose;
-  pose_of(i, frame, pose.position.data(), pose.orientation);
+  pose_of(i, frame, pose.position.data(), pose.orientation.data());
   return pose;
 }
 

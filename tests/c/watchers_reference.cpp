@@ -12,7 +12,7 @@ namespace {
 
 [[nodiscard]] Pose pose_of_body(std::size_t i) {
   Pose pose;
-  pose_of(i, 0, pose.position.data(), pose.orientation);
+  pose_of(i, 0, pose.position.data(), pose.orientation.data());
   return pose;
 }
 

@@ -363,8 +363,7 @@ struct FloorManifold {
         distance(contacts.distance()[i]) {
     for (std::uint32_t p = contacts.point_first()[i]; p < contacts.point_first()[i + 1]; ++p) {
       const ContactPoint point = contacts.contact(p);
-      const Eigen::Vector3d at = Eigen::Map<const Point>(point.position).cast<double>() +
-                                 Eigen::Vector3d::Map(pose.position);
+      const Eigen::Vector3d at = as_eigen(point.position).cast<double>() + as_eigen(pose.position);
       points.push_back(at + 0.5 * static_cast<double>(point.depth) * up);
     }
   }

@@ -128,8 +128,7 @@ TEST_P(Properties, common_rotation_keeps_distance_within_error_bound) {
       const Eigen::Quaterniond orientation =
           turn * Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized();
       pose.orientation = orientation;
-      Eigen::Map<Eigen::Vector3d> position(pose.position);
-      position = (turn * position).eval();
+      pose.position = Eigen::Vector3d(turn * as_eigen(pose.position));
     }
   }
   for (const NarrowTier tier : kTiers) {
