@@ -94,8 +94,8 @@ class Pair(Text):
 
 class Pose(Text):
     def text(self, pose):
-        place = numbers(pose["position"][i] for i in range(3))
-        turn = [pose["orientation"][i] for i in range(4)]
+        place = numbers(pose["position"]["at_"][i] for i in range(3))
+        turn = [pose["orientation"]["at_"][i] for i in range(4)]
         if [float(q) for q in turn] == [1.0, 0.0, 0.0, 0.0]:
             return "at " + place
         return "at %s turned %s" % (place, numbers(turn))
