@@ -401,7 +401,7 @@ TEST(SceneInput, bad_input_is_refused_and_changes_nothing) {
   bad.shape = {};
   EXPECT_EQ(scene.add(bad, key), Status::invalid_key);
   bad.shape = ShapeId::of(CompositeKind::mesh, 0);
-  EXPECT_EQ(scene.add(bad, key), Status::invalid_key);
+  EXPECT_EQ(scene.add(bad, key), Status::unsupported);
   bad = world.bodies[0];
   bad.pose.position[1] = kNaN;
   EXPECT_EQ(scene.add(bad, key), Status::invalid_pose);
