@@ -246,7 +246,7 @@ class WINNOW_API Scene {
   /// Moves several bodies to a set, all or none. `invalid_key` also if a key occurs twice.
   Status set_body_state(std::span<const Key> keys, BodyState state);
   /// Replaces the shape of a body; its pose stays. `invalid_key` if the body or the shape does not
-  /// exist.
+  /// exist; `unsupported` as for `add`.
   Status set_shape(Key key, ShapeId shape);
   /// Replaces the filter of a body. It takes effect with the next `collide` or query.
   Status set_filter(Key key, const ObjectFilter& filter);
