@@ -73,21 +73,6 @@ struct VolumeUpdate : RowInput {
     return Status::ok;
   }
 
-  /// The table for boxes that `Source` converts.
-  template <typename Source>
-  static constexpr VolumeInput kInput{
-      Source::kVolume,
-      [](RowInput& in, const BoxView& boxes, std::span<const ClientData> data,
-         std::span<Key> keys) {
-        return VolumeUpdate(in).insert(Source{boxes}, boxes.count, data, keys);
-      },
-      [](RowInput& in, const UpdateSubset& entries, const BoxView& boxes) {
-        return VolumeUpdate(in).update(Source{boxes}, boxes.count, entries);
-      },
-      [](RowInput& in, Key key, const BoxView& box) {
-        return VolumeUpdate(in).update_one(Source{box}, key);
-      }};
-
  private:
   template <typename Source>
   static bool write_one(const Source& source, ColumnPointers columns, std::size_t row) {
@@ -142,6 +127,24 @@ struct VolumeUpdate : RowInput {
   }
 };
 
+namespace {
+
+/// The table for boxes that `Source` converts.
+template <typename Source>
+constexpr VolumeInput kVolumeInput{
+    Source::kVolume,
+    [](RowInput& in, const BoxView& boxes, std::span<const ClientData> data, std::span<Key> keys) {
+      return VolumeUpdate(in).insert(Source{boxes}, boxes.count, data, keys);
+    },
+    [](RowInput& in, const UpdateSubset& entries, const BoxView& boxes) {
+      return VolumeUpdate(in).update(Source{boxes}, boxes.count, entries);
+    },
+    [](RowInput& in, Key key, const BoxView& box) {
+      return VolumeUpdate(in).update_one(Source{box}, key);
+    }};
+
+}  // namespace
+
 template <typename V>
 Status RowInput::insert(std::span<const V> volumes, std::span<const ClientData> data,
                         std::span<Key> keys) {
@@ -160,15 +163,15 @@ Status RowInput::update(std::span<const Key> keys, std::span<const V> volumes) {
 const VolumeInput* RowInput::of(Volume volume, const FatMargin& fat_margin) noexcept {
   switch (volume) {
     case Volume::aabb:
-      return fat_margin.legal().is_none() ? &boxes_as_given() : &VolumeUpdate::kInput<BoxSource>;
+      return fat_margin.legal().is_none() ? &boxes_as_given() : &kVolumeInput<BoxSource>;
     case Volume::sphere:
-      return &VolumeUpdate::kInput<SphereAroundBoxSource>;
+      return &kVolumeInput<SphereAroundBoxSource>;
     case Volume::kdop14:
-      return &VolumeUpdate::kInput<KdopAroundBoxSource<14>>;
+      return &kVolumeInput<KdopAroundBoxSource<14>>;
     case Volume::kdop18:
-      return &VolumeUpdate::kInput<KdopAroundBoxSource<18>>;
+      return &kVolumeInput<KdopAroundBoxSource<18>>;
     case Volume::kdop26:
-      return &VolumeUpdate::kInput<KdopAroundBoxSource<26>>;
+      return &kVolumeInput<KdopAroundBoxSource<26>>;
   }
   return nullptr;
 }
