@@ -39,7 +39,7 @@ inline void become(std::vector<std::string> words) {
   execvp(arguments.front(), arguments.data());
 }
 
-// Each of these is defined in a file of its own, named after the command.
+// Each of these is defined in a file named after the command; `record` is in scenes.cpp.
 void add_report(CLI::App& app);
 void add_advise(CLI::App& app);
 void add_view(CLI::App& app);

@@ -55,26 +55,24 @@ std::vector<CostSample> Fit::measured() const {
   return samples;
 }
 
-void print_constant(const char* name, double value) {
-  if (value != 0.0) std::cout << " ." << name << " = " << short_number(value) << ',';
-}
-
 void print_costs(const FittedCosts& fitted) {
   for (std::size_t k = 0; k < fitted.costs.size(); ++k) {
     const StructureCosts& c = fitted.costs[k];
     std::cout << candidates()[k].name() << ", median error "
               << short_number(100.0 * fitted.error[k]) << " %:\n ";
-    print_constant("frame", c.frame);
-    print_constant("keep", c.keep);
-    print_constant("object", c.object);
-    print_constant("level", c.level);
-    print_constant("crowd", c.crowd);
-    print_constant("square", c.square);
-    print_constant("pair", c.pair);
-    print_constant("moved", c.moved);
-    print_constant("rest", c.rest);
-    print_constant("build", c.build);
-    print_constant("build_level", c.build_level);
+    for (const auto& [name, value] : {std::pair("frame", c.frame),
+                                      {"keep", c.keep},
+                                      {"object", c.object},
+                                      {"level", c.level},
+                                      {"crowd", c.crowd},
+                                      {"square", c.square},
+                                      {"pair", c.pair},
+                                      {"moved", c.moved},
+                                      {"rest", c.rest},
+                                      {"build", c.build},
+                                      {"build_level", c.build_level}}) {
+      if (value != 0.0) std::cout << " ." << name << " = " << short_number(value) << ',';
+    }
     std::cout << '\n';
   }
 }

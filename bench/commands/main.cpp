@@ -1,7 +1,6 @@
 #include "bench/commands/command.h"
 #include "bench/common/table.h"
 #include "bench/recordings/recording.h"
-#include "bench/rows/build_facts.h"
 #include "bench/rows/machine.h"
 
 #include <algorithm>

@@ -18,7 +18,7 @@ namespace {
 /// threads.
 struct PartitionMeasurement {
   void (*prepare)() = nullptr;  ///< null: nothing
-  void (*add)(Results&, const PartitionRowOptions&);
+  void (*add)(Results&, const NamedScene&, const MeasureOptions&);
   std::vector<std::string> scenes;
   std::vector<int> threads;
   const char* count_option = nullptr;  ///< null: none
@@ -84,14 +84,14 @@ class MeasurePartitions final : public RowsCommand {
 
   void measure_scene(const NamedScene& scene, std::size_t objects, int threads) {
     step(scene.name + ", " + grouped(objects) + " objects, " + threads_text(threads), [&] {
-      measurement_.add(results, {.scene = scene,
-                                 .objects = objects,
-                                 .seed = seed_,
-                                 .partitions = measurement_.partitions,
-                                 .threads = threads,
-                                 .count = measurement_.count,
-                                 .peers = peers_,
-                                 .yardstick = peers_ || yardstick_ || !measurement_.races_peers});
+      measurement_.add(results, scene,
+                       {.objects = objects,
+                        .seed = seed_,
+                        .partitions = measurement_.partitions,
+                        .threads = {threads},
+                        .peers = peers_,
+                        .yardstick = peers_ || yardstick_ || !measurement_.races_peers,
+                        .frames = measurement_.count});
     });
   }
 
@@ -123,7 +123,8 @@ class Pipeline final : public RowsCommand {
     plan(2 * scenes_.size() * levels_.size());
     for (const std::string& scene : scenes_) {
       if (costs_) {
-        step(scene, [&] { measure_costs(scene); });
+        options_.scene = scene;
+        step(scene, [&] { add_scene_costs(results, options_); });
       } else {
         measure_scene(scene);
       }
@@ -131,14 +132,6 @@ class Pipeline final : public RowsCommand {
     for (const char* table : {"whole_scenes", "scene_ratios", "scene_levels", "scene_costs"}) {
       print(table);
     }
-  }
-
-  void measure_costs(const std::string& scene) {
-    add_scene_costs(results, {.scene = scene,
-                              .threads = options_.threads.front(),
-                              .frames = options_.frames,
-                              .bodies = options_.bodies,
-                              .seed = options_.seed});
   }
 
   /// All engines are measured at level manifold; at lower levels only winnow.

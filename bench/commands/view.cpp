@@ -7,7 +7,6 @@
 #include "bench/pages/page.h"
 #include "bench/recordings/recording.h"
 
-#include <algorithm>
 #include <iostream>
 #include <limits>
 
@@ -19,8 +18,8 @@ struct View {
   std::size_t frame = 0;
   std::size_t frames = 1;
   std::string partition = "LinearBvh";
-  std::vector<std::string> rays;
-  std::vector<std::string> boxes;
+  std::vector<std::vector<float>> rays;
+  std::vector<std::vector<float>> boxes;
   PictureOptions options;
   std::string out = "winnow-view.html";
   std::string json;
@@ -41,9 +40,11 @@ void View::add_options(CLI::App& app) {
   one_of(app, "--partition", partition, all_partitions(), "Partition");
   app.add_option("--ray", rays,
                  "Ray as ox,oy,oz,dx,dy,dz: draw its closest hit and all hits; repeatable")
+      ->delimiter(',')
       ->allow_extra_args(false);
   app.add_option("--box", boxes,
                  "Box as x0,y0,z0,x1,y1,z1: draw the objects that overlap it; repeatable")
+      ->delimiter(',')
       ->allow_extra_args(false);
   number(app, "--max-objects", options.most_objects, 1, 1e8,
          "Largest number of drawn objects, evenly chosen; objects hit by a ray or box are drawn in "
@@ -76,19 +77,30 @@ Json View::draw_frames(const NamedScene& scene, FrameSource& source) const {
   constexpr std::size_t kNoLimit = std::numeric_limits<std::size_t>::max();
   const std::size_t there_are = scene.is_recording() ? kNoLimit : kOfEndless;
   const std::size_t most = frames == 0 ? there_are : frames;
-  std::vector<std::vector<RecordedContact>> contacts;
-  if (scene.is_recording()) contacts = read_contacts(target.name);
   Json pictures = Json::array();
   do {
-    contacts.resize(std::max(contacts.size(), now + 1));
-    pictures.push_back(picture_of(source.name(), now, engine, options, contacts[now]));
+    std::span<const RecordedContact> contacts;
+    if (scene.is_recording() && now < scene.recording->contacts.size()) {
+      contacts = scene.recording->contacts[now];
+    }
+    pictures.push_back(picture_of(source.name(), now, engine, options, contacts));
   } while (pictures.size() < most && advance());
   return pictures;
 }
 
 int View::run() {
-  for (const std::string& ray : rays) options.rays.push_back(parse_ray(ray));
-  for (const std::string& box : boxes) options.boxes.push_back(parse_box(box));
+  for (const std::vector<float>& n : rays) {
+    if (n.size() != 6 ||
+        !options.rays.emplace_back(Ray{{n[0], n[1], n[2]}, {n[3], n[4], n[5]}}).is_valid()) {
+      throw ArgumentError("--ray needs six finite numbers, and a direction that is not zero");
+    }
+  }
+  for (const std::vector<float>& n : boxes) {
+    if (n.size() != 6 ||
+        !options.boxes.emplace_back(Aabb{{n[0], n[1], n[2]}, {n[3], n[4], n[5]}}).is_valid()) {
+      throw ArgumentError("--box needs three lower ends, then three upper ends");
+    }
+  }
   const NamedScene scene = target.named();  // a recording must outlive its source
   const auto source = target.source(scene);
   if (const std::size_t most = largest_for(partition); source->objects() > most) {

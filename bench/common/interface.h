@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 namespace winnow::bench {
 
 /// Base of abstract classes, whose objects are not copied.
@@ -11,6 +13,13 @@ class Interface {
 
  protected:
   Interface() = default;
+};
+
+/// As above, for objects with names.
+class NamedInterface : public Interface {
+ public:
+  /// Returns a short name, which is equal in each call.
+  [[nodiscard]] virtual std::string name() const = 0;
 };
 
 }  // namespace winnow::bench

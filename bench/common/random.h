@@ -1,7 +1,11 @@
 #pragma once
 
+#include <winnow/core/vec3.h>
+
 #include <bit>
+#include <cstddef>
 #include <cstdint>
+#include <utility>
 
 namespace winnow::bench {
 
@@ -37,6 +41,14 @@ class Random {
 
   /// Uniform in [low, high).
   constexpr double in(double low, double high) noexcept { return low + unit() * (high - low); }
+  /// Uniform in the box with these corners.
+  constexpr Vec3d in(const Vec3d& low, const Vec3d& high) noexcept {
+    return {in(low.x(), high.x()), in(low.y(), high.y()), in(low.z(), high.z())};
+  }
+  /// Uniform in the cube [low, high)^3.
+  constexpr Vec3d in_cube(double low, double high) noexcept {
+    return in(Vec3d::constant(low), Vec3d::constant(high));
+  }
 
   /// Uniform in 0 .. count-1; the bias of 2^-32 * count does not matter here.
   constexpr std::uint32_t below(std::uint32_t count) noexcept {
@@ -48,6 +60,21 @@ class Random {
     double sum = -6.0;
     for (int i = 0; i < 12; ++i) sum += unit();
     return sum;
+  }
+
+  /// Puts the values in random order.
+  template <typename Values>
+  constexpr void shuffle(Values& values) noexcept {
+    for (std::size_t i = values.size(); i > 1; --i) {
+      std::swap(values[i - 1], values[below(static_cast<std::uint32_t>(i))]);
+    }
+  }
+  /// Swaps `count` random values to the front.
+  template <typename Values>
+  constexpr void draw_front(Values& values, std::size_t count) noexcept {
+    for (std::size_t i = 0; i < count; ++i) {
+      std::swap(values[i], values[i + below(static_cast<std::uint32_t>(values.size() - i))]);
+    }
   }
 
  private:

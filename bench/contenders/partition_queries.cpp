@@ -19,16 +19,6 @@ namespace {
 /// Largest number of box tests for one run on a partition that tests every box per query.
 constexpr double kMaxTests = 2e8;
 
-template <typename Variant>
-Cast to_cast(const Variant& cast) {
-  return std::visit([](const auto& one) { return Cast(one); }, cast);
-}
-
-template <typename Variant>
-Region to_region(const Variant& region) {
-  return std::visit([](const auto& one) { return Region(one); }, region);
-}
-
 Found to_found(const Hit& hit) noexcept {
   return {hit.key.id, hit.t};
 }
@@ -80,9 +70,9 @@ void PartitionQueries::run_each(const QuerySet& set, std::size_t begin, std::siz
     if (!set.rays.empty()) {
       cast_one(set.rays[i]);
     } else if (!set.casts.empty()) {
-      cast_one(to_cast(set.casts[i]));
+      cast_one(set.casts[i]);
     } else if (!set.regions.empty()) {
-      overlap_one(to_region(set.regions[i]));
+      overlap_one(set.regions[i]);
     } else if (set.query_type == QueryType::overlap) {
       overlap_one(set.boxes[i]);
     } else {

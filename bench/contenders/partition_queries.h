@@ -1,8 +1,8 @@
 #pragma once
 
 #include "bench/common/counting_resource.h"
+#include "bench/contenders/engines.h"
 #include "bench/contenders/partitions.h"
-#include "bench/contenders/query_engine.h"
 
 #include <tbb/enumerable_thread_specific.h>
 #include <memory>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "bench/contenders/engine.h"
+#include "bench/contenders/engines.h"
 
 #include <vector>
 

@@ -4,15 +4,12 @@
 #include "bench/draw/picture.h"
 
 #include <winnow/partitions/debug_colours.h>
-#include "bench/common/errors.h"
 #include "bench/common/need.h"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
 #include <string_view>
 #include <type_traits>
 
@@ -82,22 +79,12 @@ struct Sketch final : DebugDraw {
   }
 };
 
-struct RayAnswers {
-  Json data = Json::array();
+/// Queries rays, marks the objects that they hit, and counts.
+Json query_rays(const Partition& partition, std::span<const Ray> rays, std::vector<bool>& hit,
+                Json& counts) {
+  Json answers = Json::array();
   std::size_t rays_that_hit = 0;
-  std::size_t hits = 0;
-};
-
-struct BoxAnswers {
-  Json data = Json::array();
-  std::size_t inside = 0;
-  std::size_t crossing = 0;
-};
-
-/// Queries rays and marks the objects that they hit.
-RayAnswers query_rays(const Partition& partition, std::span<const Ray> rays,
-                      std::vector<bool>& hit) {
-  RayAnswers answers;
+  std::size_t ray_hits = 0;
   HitBuffer hits;
   for (const Ray& ray : rays) {
     Hit closest;
@@ -114,18 +101,21 @@ RayAnswers query_rays(const Partition& partition, std::span<const Ray> rays,
     if (closest) {
       answer["closest"] = closest.key.id;
       answer["closest_t"] = closest.t;
-      ++answers.rays_that_hit;
+      ++rays_that_hit;
     }
-    answers.hits += ids.size();
-    answers.data.push_back(std::move(answer));
+    ray_hits += ids.size();
+    answers.push_back(std::move(answer));
   }
+  counts.update({{"rays", rays.size()}, {"rays_that_hit", rays_that_hit}, {"ray_hits", ray_hits}});
   return answers;
 }
 
-/// Queries boxes and marks the objects that overlap them.
-BoxAnswers query_boxes(const Partition& partition, std::span<const Aabb> boxes,
-                       std::vector<bool>& hit) {
-  BoxAnswers answers;
+/// Queries boxes, marks the objects that overlap them, and counts.
+Json query_boxes(const Partition& partition, std::span<const Aabb> boxes, std::vector<bool>& hit,
+                 Json& counts) {
+  Json answers = Json::array();
+  std::size_t all_inside = 0;
+  std::size_t all_crossing = 0;
   OverlapBuffer found;
   for (const Aabb& box : boxes) {
     need(partition.overlap(Region(box), found, {}, Order::canonical), "overlap");
@@ -134,12 +124,13 @@ BoxAnswers query_boxes(const Partition& partition, std::span<const Aabb> boxes,
     for (const auto* ids : {&inside, &crossing}) {
       for (const ObjectId id : *ids) hit[id] = true;
     }
-    answers.inside += inside.size();
-    answers.crossing += crossing.size();
-    answers.data.push_back({{"box", column(std::vector{box})},
-                            {"inside", column(inside)},
-                            {"crossing", column(crossing)}});
+    all_inside += inside.size();
+    all_crossing += crossing.size();
+    answers.push_back({{"box", column(std::vector{box})},
+                       {"inside", column(inside)},
+                       {"crossing", column(crossing)}});
   }
+  counts.update({{"boxes", boxes.size()}, {"inside", all_inside}, {"crossing", all_crossing}});
   return answers;
 }
 
@@ -163,36 +154,7 @@ std::vector<Vec3f> ends_of(std::span<const RecordedContact> contacts,
   return ends;
 }
 
-std::array<float, 6> six_numbers(const std::string& option, const std::string& text) {
-  std::array<float, 6> numbers{};
-  const char* at = text.c_str();
-  for (std::size_t i = 0; i < numbers.size(); ++i) {
-    char* end = nullptr;
-    numbers[i] = std::strtof(at, &end);
-    const char expected = i + 1 < numbers.size() ? ',' : '\0';
-    if (end == at || *end != expected) {
-      throw ArgumentError(option + ": " + text + " is not six numbers with commas between them");
-    }
-    at = end + 1;
-  }
-  return numbers;
-}
-
 }  // namespace
-
-Ray parse_ray(const std::string& text) {
-  const std::array<float, 6> n = six_numbers("--ray", text);
-  const Ray ray{{n[0], n[1], n[2]}, {n[3], n[4], n[5]}};
-  if (ray.is_valid()) return ray;
-  throw ArgumentError("--ray: " + text + " needs finite numbers and a direction that is not zero");
-}
-
-Aabb parse_box(const std::string& text) {
-  const std::array<float, 6> n = six_numbers("--box", text);
-  const Aabb box{{n[0], n[1], n[2]}, {n[3], n[4], n[5]}};
-  if (box.is_valid()) return box;
-  throw ArgumentError("--box: " + text + " needs three lower ends, then three upper ends");
-}
 
 Json picture_of(const std::string& scene, std::size_t frame, const PartitionEngine& engine,
                 const PictureOptions& options, std::span<const RecordedContact> contacts) {
@@ -201,8 +163,9 @@ Json picture_of(const std::string& scene, std::size_t frame, const PartitionEngi
   need(partition.debug_draw(sketch, {.max_depth = options.max_depth}), "debug_draw");
   const std::size_t all = sketch.objects.size();
   std::vector<bool> drawn(all);
-  const RayAnswers rays = query_rays(partition, options.rays, drawn);
-  const BoxAnswers boxes = query_boxes(partition, options.boxes, drawn);
+  Json query_counts;
+  const Json rays = query_rays(partition, options.rays, drawn, query_counts);
+  const Json boxes = query_boxes(partition, options.boxes, drawn, query_counts);
   // Selects as many objects as are allowed, at equal intervals.
   const std::size_t most = std::min(options.most_objects, all);
   for (std::size_t i = 0; i < all; ++i) {
@@ -238,34 +201,26 @@ Json picture_of(const std::string& scene, std::size_t frame, const PartitionEngi
                       {"lines", column(layer.line_ends)}});
   }
   const Statistics statistics = partition.statistics();
-  return {{"counts",
-           {{"scene", scene},
-            {"frame", frame},
-            {"partition", partition.name()},
-            {"objects", all},
-            {"objects_drawn", ids.size()},
-            {"regular", statistics.regular},
-            {"irregular", statistics.irregular},
-            {"cells", statistics.cells},
-            {"depth", statistics.depth},
-            {"structure", layer_counts},
-            {"structure_lines", lines},
-            {"pairs", overlapping},
-            {"reported", engine.pairs().size()},
-            {"pairs_drawn", pairs.size() / 2},
-            {"contacts", contact_ends.size() / 2},
-            {"rays", rays.data.size()},
-            {"rays_that_hit", rays.rays_that_hit},
-            {"ray_hits", rays.hits},
-            {"boxes", boxes.data.size()},
-            {"inside", boxes.inside},
-            {"crossing", boxes.crossing}}},
-          {"objects", {{"boxes", column(bounds)}, {"rows", column(ids)}}},
-          {"pairs", column(pairs)},
-          {"contacts", column(contact_ends)},
-          {"structure", layers},
-          {"rays", rays.data},
-          {"boxes", boxes.data}};
+  Json counts{{"scene", scene},
+              {"frame", frame},
+              {"partition", partition.name()},
+              {"objects", all},
+              {"objects_drawn", ids.size()},
+              {"regular", statistics.regular},
+              {"irregular", statistics.irregular},
+              {"cells", statistics.cells},
+              {"depth", statistics.depth},
+              {"structure", layer_counts},
+              {"structure_lines", lines},
+              {"pairs", overlapping},
+              {"reported", engine.pairs().size()},
+              {"pairs_drawn", pairs.size() / 2},
+              {"contacts", contact_ends.size() / 2}};
+  counts.update(query_counts);
+  return {{"counts", counts},       {"objects", {{"boxes", column(bounds)}, {"rows", column(ids)}}},
+          {"pairs", column(pairs)}, {"contacts", column(contact_ends)},
+          {"structure", layers},    {"rays", rays},
+          {"boxes", boxes}};
 }
 
 }  // namespace winnow::bench

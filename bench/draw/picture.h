@@ -19,11 +19,6 @@ struct PictureOptions {
   std::vector<Aabb> boxes;
 };
 
-/// Parses "ox,oy,oz,dx,dy,dz". Throws ArgumentError, as does parse_box.
-[[nodiscard]] Ray parse_ray(const std::string& text);
-/// Parses "x0,y0,z0,x1,y1,z1"; ends may be inf or -inf.
-[[nodiscard]] Aabb parse_box(const std::string& text);
-
 /// Returns the last frame of an engine, with everything that the page shows of it, in the form that
 /// page/data.js reads. The member "counts" has the numbers of things in the picture: the tool
 /// prints them, and the page must draw as many. `contacts` are the contacts of this frame. Throws

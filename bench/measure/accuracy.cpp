@@ -3,10 +3,9 @@
 
 #include "bench/measure/accuracy.h"
 
-#include "bench/contenders/winnow_narrow.h"
+#include "bench/contenders/winnow_engines.h"
 
 #include <tbb/parallel_for.h>
-#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
@@ -19,15 +18,7 @@ namespace {
 constexpr double kMaxDegrees = 0.01;
 
 double degrees_between(const Vec3d& a, const Vec3d& b) {
-  const Eigen::Vector3d u(a[0], a[1], a[2]);
-  const Eigen::Vector3d v(b[0], b[1], b[2]);
-  return std::atan2(u.cross(v).norm(), u.dot(v)) * 180.0 / std::numbers::pi;
-}
-
-/// Returns false for the zero vector that stands for a missing normal.
-bool is_direction(const Vec3d& v) {
-  const double square = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
-  return std::isfinite(square) && square > 0.0;
+  return std::atan2(a.cross(b).norm(), a.dot(b)) * 180.0 / std::numbers::pi;
 }
 
 PairError error_of(const NarrowAnswer& answer, const oracle::Truth& truth, ContactLevel level) {
@@ -40,7 +31,7 @@ PairError error_of(const NarrowAnswer& answer, const oracle::Truth& truth, Conta
   // apart.
   if (level == ContactLevel::boolean) return result;
   if (level == ContactLevel::manifold && truth.distance > 0.0L) return result;
-  const bool has_normal = is_direction(answer.normal);
+  const bool has_normal = answer.normal.all_finite() && !answer.normal.is_zero();
   const bool has_distance = std::isfinite(answer.distance);
   result.missing = !has_distance || !has_normal;
   if (has_distance) {
@@ -76,11 +67,11 @@ std::vector<oracle::Truth> truths_of(const PairSet& set) {
         oracle::solve(set.pool.tables(), set.shapes[a], set.poses[a], set.shapes[b], set.poses[b]);
   });
 #else
-  WinnowNarrow reference(NarrowTier::reference, 2);
-  reference.start(set);
-  reference.run(ContactLevel::distance, set.pairs);
+  const auto reference = make_winnow_narrow(NarrowTier::reference, 2);
+  reference->start(set);
+  reference->run(ContactLevel::distance, set.pairs);
   for (std::size_t i = 0; i < truths.size(); ++i) {
-    const NarrowAnswer answer = reference.answer(i);
+    const NarrowAnswer answer = reference->answer(i);
     truths[i] = {.known = true,
                  .overlap = answer.overlap,
                  .distance = static_cast<long double>(answer.distance),

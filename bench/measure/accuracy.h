@@ -1,6 +1,6 @@
 #pragma once
 
-#include "bench/contenders/narrow_engine.h"
+#include "bench/contenders/engines.h"
 #include "bench/oracle/oracle.h"
 #include "bench/scenes/pair_set.h"
 

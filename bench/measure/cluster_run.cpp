@@ -239,21 +239,11 @@ ClusterRun run_ranks(FrameSource& source, Transport& transport, std::size_t fram
 }  // namespace
 
 BoxShape box_shape_of(const Aabb& box) noexcept {
-  BoxShape shape;
-  for (int axis = 0; axis < 3; ++axis) {
-    shape.half[axis] =
-        (static_cast<double>(box.max[axis]) - static_cast<double>(box.min[axis])) * 0.5;
-  }
-  return shape;
+  return {0.5 * (box.max.cast<double>() - box.min.cast<double>())};
 }
 
 Pose middle_of(const Aabb& box) noexcept {
-  Pose pose;
-  for (int axis = 0; axis < 3; ++axis) {
-    pose.position[axis] =
-        (static_cast<double>(box.max[axis]) + static_cast<double>(box.min[axis])) * 0.5;
-  }
-  return pose;
+  return Pose::at(0.5 * (box.max.cast<double>() + box.min.cast<double>()));
 }
 
 ClusterRun run_cluster(FrameSource& source, Transport& transport, const ClusterRunOptions& order,

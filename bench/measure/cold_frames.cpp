@@ -10,7 +10,7 @@
 #include "bench/common/stage_clock.h"
 #include "bench/contenders/partitions.h"
 #include "bench/measure/fingerprint.h"
-#include "bench/peers/yardstick.h"
+#include "bench/peers/peers.h"
 
 #include <algorithm>
 #include <memory>

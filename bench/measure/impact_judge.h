@@ -1,7 +1,7 @@
 #pragma once
 
 #include <winnow/pipeline/narrow_phase.h>
-#include "bench/contenders/impact_engine.h"
+#include "bench/contenders/engines.h"
 
 #include <cstddef>
 #include <cstdint>

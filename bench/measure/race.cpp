@@ -8,7 +8,6 @@
 #include "bench/contenders/partition_engine.h"
 #include "bench/measure/isa_guard.h"
 #include "bench/peers/peers.h"
-#include "bench/peers/yardstick.h"
 #include "bench/scenes/scene.h"
 
 #include <algorithm>

@@ -2,7 +2,7 @@
 
 #include <winnow/simd/isa.h>
 #include "bench/common/sample.h"
-#include "bench/contenders/engine.h"
+#include "bench/contenders/engines.h"
 #include "bench/measure/fingerprint.h"
 #include "bench/recordings/recording.h"
 #include "bench/scenes/frame_source.h"

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "bench/common/sample.h"
-#include "bench/contenders/scene_engine.h"
-#include "bench/contenders/winnow_scene.h"
+#include "bench/contenders/engines.h"
+#include "bench/contenders/winnow_engines.h"
 #include "bench/scenes/body_scenes.h"
 
 #include <cstddef>

@@ -8,7 +8,6 @@
 #include "bench/common/sample.h"
 #include "bench/contenders/partitions.h"
 #include "bench/measure/race.h"
-#include "bench/scenes/cameras.h"
 #include "bench/scenes/query_set.h"
 #include "bench/scenes/scene.h"
 
@@ -71,11 +70,8 @@ struct Churned {
     for (std::size_t done = 0; done < kReplacements; ++done) {
       const std::uint32_t i = random.below(static_cast<std::uint32_t>(kObjects));
       const Vec3f edges = boxes[i].max - boxes[i].min;
-      for (int axis = 0; axis < 3; ++axis) {
-        boxes[i].min[axis] =
-            static_cast<float>(random.in(static_cast<double>(world.min[axis]),
-                                         static_cast<double>(world.max[axis] - edges[axis])));
-      }
+      const Vec3d highest = (world.max - edges).cast<double>();
+      boxes[i].min = random.in(world.min.cast<double>(), highest).cast<float>();
       boxes[i].max = boxes[i].min + edges;
       need(worn.partition.remove(worn.keys[i]), "objects");
       need(worn.partition.insert(boxes[i], i, worn.keys[i]), "objects");
@@ -87,8 +83,7 @@ struct Churned {
 
 void add_churn(const std::string& structure, FilledPartition Churned::*one, const char* age) {
   const auto prepared_churn = [structure]() -> Churned& {
-    return prepared<Churned>("churn " + structure,
-                             [&] { return std::make_unique<Churned>(structure); });
+    return prepared<Churned>("churn " + structure, structure);
   };
   const std::string path =
       std::string("/") + age + "/objects:" + std::to_string(kObjects) + "/" + word_of(structure);
@@ -97,9 +92,8 @@ void add_churn(const std::string& structure, FilledPartition Churned::*one, cons
     run(state, 1,
         [&] { need(filled.partition.self_pairs(filled.pairs, {.incremental = false}), "pairs"); });
     const Footprint footprint = filled.partition.footprint();
-    count(state, "bytes_per_object",
-          static_cast<double>(footprint.total().reserved - footprint.results.reserved) /
-              static_cast<double>(kObjects));
+    count(state, "bytes_per_object", footprint.total().reserved - footprint.results.reserved,
+          kObjects);
   });
   add("churn/closest_ray" + path, [=](benchmark::State& state) {
     const Churned& churned = prepared_churn();
@@ -127,16 +121,12 @@ class MovingShare {
   double frame() {
     keys_.clear();
     moved_.clear();
-    for (std::size_t i = 0; i < moving_; ++i) {
-      std::swap(order_[i], order_[i + random_.below(static_cast<std::uint32_t>(kObjects - i))]);
-      Aabb& box = boxes_[order_[i]];
-      for (int axis = 0; axis < 3; ++axis) {
-        const auto by = static_cast<float>(random_.in(-0.05, 0.05));
-        box.min[axis] += by;
-        box.max[axis] += by;
-      }
-      keys_.push_back(filled_.keys[order_[i]]);
-      moved_.push_back(box);
+    random_.draw_front(order_, moving_);
+    for (const std::uint32_t i : std::span(order_).first(moving_)) {
+      const Vec3f by = random_.in_cube(-0.05, 0.05).cast<float>();
+      boxes_[i] = {boxes_[i].min + by, boxes_[i].max + by};
+      keys_.push_back(filled_.keys[i]);
+      moved_.push_back(boxes_[i]);
     }
     const ThreadStopwatch clock;
     if (moving_ != 0) need(filled_.partition.update(keys_, moved_), "objects");
@@ -159,8 +149,7 @@ void add_events(const std::string& structure, double share) {
       "/objects:" + std::to_string(kObjects) + "/" + word_of(structure);
   const std::string path = "events/moving:" + key_text(share) + of_structure;
   add(path, [=](benchmark::State& state) {
-    auto& moving = prepared<MovingShare>(
-        path, [&] { return std::make_unique<MovingShare>(structure, share); });
+    auto& moving = prepared<MovingShare>(path, structure, share);
     run(state, 1, [&] { state.SetIterationTime(moving.frame()); });
   })->UseManualTime();
 }
@@ -210,8 +199,7 @@ void add_worlds(const std::string& structure, std::vector<FilledPartition> World
   const std::string path = std::string("worlds/") + name + "/worlds:" + std::to_string(kWorlds) +
                            "/objects:" + std::to_string(kWorldObjects) + "/" + word_of(structure);
   add(path, [=](benchmark::State& state) {
-    auto& worlds = prepared<Worlds>("worlds " + structure,
-                                    [&] { return std::make_unique<Worlds>(structure); });
+    auto& worlds = prepared<Worlds>("worlds " + structure, structure);
     run(state, 1, [&] {
       state.PauseTiming();
       worlds.advance();

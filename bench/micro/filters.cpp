@@ -19,56 +19,37 @@ constexpr std::size_t kBoxes = 1000;
 constexpr std::size_t kFew = 20;  // one object of this many moves
 constexpr float kBoxEdges = 4.0F;
 
+/// Two filters, of which each object gets one, and the filter of ray and box queries.
+struct Setting {
+  std::string_view name;
+  /// One of this many objects, at random, gets the second filter. 0: every object in the upper half
+  /// of the scene on x.
+  std::uint64_t every = 1;
+  ObjectFilter first{};
+  ObjectFilter second{};
+  ObjectFilter query{};
+
+  /// Returns the filter of an object. `middle` divides the boxes on x.
+  [[nodiscard]] ObjectFilter filter_of(std::size_t object, const Aabb& box, float middle) const {
+    return (every == 0 ? box.min[0] >= middle : mix(object) % every == 0) ? second : first;
+  }
+};
 /// "1 % apart": pairs within a random 1 % of the objects are excluded. "mixed": two random layers,
 /// no pairs excluded. "static": pairs within a random nine tenths of the objects are excluded.
 /// "never mixed" and "never apart": two layers with pairs only within each, assigned at random or
 /// by position. "none": no filters, for comparison.
-constexpr std::array<std::string_view, 6> kSettings{"1 % apart",   "mixed",       "static",
-                                                    "never mixed", "never apart", "none"};
+constexpr std::array<Setting, 6> kSettings{{{"1 % apart", 100, {}, {2, ~2U}, {1, ~2U}},
+                                            {"mixed", 2, {1, ~0U}, {2, ~0U}, {1, ~0U}},
+                                            {"static", 10, {1, 2}, {2, ~0U}, {2, ~0U}},
+                                            {"never mixed", 2, {1, 1}, {2, 2}, {1, 1}},
+                                            {"never apart", 0, {1, 1}, {2, 2}, {1, 1}},
+                                            {"none"}}};
+
 /// "all move" and "few move" find all pairs after all or few boxes changed; "another" finds pairs
 /// with a second partition; "rays" finds closest hits; "boxes" finds objects that overlap boxes.
 constexpr std::array<std::string_view, 5> kQuestions{"all move", "few move", "another", "rays",
                                                      "boxes"};
-enum Setting : std::size_t { one_percent, mixed, still, never_mixed, never_apart };
 enum QueryCase : std::size_t { all_move, few_move, another, rays, boxes };
-
-/// Returns the filter of an object. `middle` divides the boxes on x into two sets.
-ObjectFilter filter_of(std::size_t setting, std::size_t object, const Aabb& box, float middle) {
-  const std::uint64_t chance = mix(object);
-  const bool second = setting == never_apart ? box.min[0] >= middle : chance % 2 == 0;
-  switch (setting) {
-    case one_percent:
-      return chance % 100 == 0 ? ObjectFilter{2, ~2U, 0} : ObjectFilter{};
-    case mixed:
-      return {second ? 2U : 1U, ~0U, 0};
-    case still:
-      return chance % 10 != 0 ? ObjectFilter{1, 2, 0} : ObjectFilter{2, ~0U, 0};
-    default:
-      return second ? ObjectFilter{2, 2, 0} : ObjectFilter{1, 1, 0};
-  }
-}
-
-/// Returns the filter of ray and box queries: one that excludes the few, or the filter of one of
-/// the objects.
-Filter query_filter(std::size_t setting) {
-  const auto as = [](std::uint32_t layers, std::uint32_t mask) {
-    Filter filter;
-    filter.layers = layers;
-    filter.mask = mask;
-    filter.environment = 0;
-    return filter;
-  };
-  switch (setting) {
-    case one_percent:
-      return as(1, ~2U);
-    case mixed:
-      return as(1, ~0U);
-    case still:
-      return as(2, ~0U);
-    default:
-      return as(1, 1);
-  }
-}
 
 /// Sorted results of a query: pairs, or the hit of each ray.
 using FoundPairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
@@ -95,8 +76,8 @@ class FilteredPartition {
     need(other_.insert(other_boxes_, {}, other_keys_), "objects");
   }
 
-  void set_filters(std::size_t setting) {
-    filter_ = query_filter(setting);
+  void set_filters(const Setting& setting) {
+    filter_ = {.layers = setting.query.layers, .mask = setting.query.mask, .environment = 0};
     need(partition_.set_filter(keys_, filters_for(setting, boxes_)), "filters");
     if (question_ != another) return;
     need(other_.set_filter(other_keys_, filters_for(setting, other_boxes_)), "filters");
@@ -130,10 +111,10 @@ class FilteredPartition {
     std::nth_element(values.begin(), middle, values.end());
     return *middle;
   }
-  [[nodiscard]] std::vector<ObjectFilter> filters_for(std::size_t setting,
+  [[nodiscard]] std::vector<ObjectFilter> filters_for(const Setting& setting,
                                                       std::span<const Aabb> of) const {
     std::vector<ObjectFilter> filters;
-    for (const Aabb& box : of) filters.push_back(filter_of(setting, filters.size(), box, middle_));
+    for (const Aabb& box : of) filters.push_back(setting.filter_of(filters.size(), box, middle_));
     return filters;
   }
 
@@ -185,9 +166,7 @@ class FilteredPartition {
   }
   [[nodiscard]] std::vector<Aabb> regions() const {
     std::vector<Aabb> all(other_boxes_.begin(), other_boxes_.begin() + query_count(kBoxes));
-    for (Aabb& box : all) {
-      for (std::size_t a = 0; a < 3; ++a) box.max[a] = box.min[a] + kBoxEdges * edge_;
-    }
+    for (Aabb& box : all) box.max = box.min + Vec3f::constant(kBoxEdges * edge_);
     return all;
   }
 
@@ -212,10 +191,10 @@ struct Following {
   std::size_t round = 0;
 
   Following(const NamedScene& scene, std::size_t objects, const std::string& structure,
-            std::size_t question, std::size_t setting)
+            std::size_t question, const Setting& setting)
       : source(scene.source(objects, 1)), partition(structure, question, source->boxes()) {
     FilteredPartition reference("BoundsNSquared", question, source->boxes());
-    if (kSettings[setting] != "none") {
+    if (setting.name != "none") {
       for (auto* const one : {&partition, &reference}) one->set_filters(setting);
     }
     // The first frames build, and later ones test only what moved.
@@ -237,15 +216,14 @@ void add_filters(const std::vector<NamedScene>& scenes) {
   for (const NamedScene& scene : scenes) {
     const std::size_t objects = scene.objects(10'000);
     for (std::size_t question = 0; question < kQuestions.size(); ++question) {
-      for (std::size_t setting = 0; setting < kSettings.size(); ++setting) {
+      for (const Setting& setting : kSettings) {
         for (const std::string& structure : unlimited_partitions()) {
           const std::string path = "filter/" + word_of(kQuestions[question]) + "/" +
-                                   word_of(kSettings[setting]) + "/" + word_of(scene.name) +
+                                   word_of(setting.name) + "/" + word_of(scene.name) +
                                    "/objects:" + std::to_string(objects) + "/" + word_of(structure);
           add(path, [=](benchmark::State& state) {
-            auto& following = prepared<Following>(path, [&] {
-              return std::make_unique<Following>(scene, objects, structure, question, setting);
-            });
+            auto& following =
+                prepared<Following>(path, scene, objects, structure, question, setting);
             run(state, 1, [&] { state.SetIterationTime(following.run()); });
           })->UseManualTime();
         }

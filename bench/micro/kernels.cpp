@@ -1,10 +1,11 @@
 // Benchmarks of the kernels of partitions (flat, tree, grid, sweep) on every instruction set, on
-// unit cubes in the columns that the kernels read. All sets must find the same pairs in the same
-// order.
+// unit cubes in the columns that the kernels read, and one pass over these columns for comparison.
+// All sets must find the same pairs in the same order.
 
 #include "bench/micro/micro.h"
 
-#include "bench/scenes/cameras.h"
+#include "bench/measure/column_read.h"
+#include "bench/scenes/query_set.h"
 #include "bench/scenes/scene.h"
 #include "core/memory/bounds_pool.h"
 #include "partitions/rows/row_view.h"
@@ -34,10 +35,9 @@ using CellCounts = std::array<std::uint32_t, 3>;
 void store(const Aabb& box, std::size_t row, BoundsPool& pool) {
   if (pool.volume() == Volume::sphere) {
     for (std::size_t a = 0; a < 3; ++a) {
-      const auto axis = static_cast<Eigen::Index>(a);
-      pool.column(a)[row] = box.min[axis];
-      pool.column(3 + a)[row] = box.max[axis];
-      pool.column(kCenterColumn + a)[row] = 0.5F * (box.min[axis] + box.max[axis]);
+      pool.column(a)[row] = box.min[a];
+      pool.column(3 + a)[row] = box.max[a];
+      pool.column(kCenterColumn + a)[row] = 0.5F * (box.min[a] + box.max[a]);
     }
     pool.column(kRadiusColumn)[row] = 0.5F * (box.max.x() - box.min.x());
     return;
@@ -45,8 +45,8 @@ void store(const Aabb& box, std::size_t row, BoundsPool& pool) {
   // The first three slabs of a k-DOP are the box; the diagonal ones follow from its corners.
   const std::size_t slabs = slab_count(pool.volume());
   for (std::size_t s = 0; s < slabs; ++s) {
-    const auto a = static_cast<Eigen::Index>(s % 3);
-    const auto b = static_cast<Eigen::Index>((s + 1) % 3);
+    const std::size_t a = s % 3;
+    const std::size_t b = (s + 1) % 3;
     pool.column(low_column(slabs, s))[row] = s < 3 ? box.min[a] : box.min[a] + box.min[b];
     pool.column(high_column(slabs, s))[row] = s < 3 ? box.max[a] : box.max[a] + box.max[b];
   }
@@ -111,10 +111,9 @@ class KernelRows {
     constexpr float inf = std::numeric_limits<float>::infinity();
     const Aabb world = world_of(boxes);
     for (std::size_t a = 0; a < 3; ++a) {
-      const auto index = static_cast<Eigen::Index>(a);
       const std::uint32_t count = cells[a];
-      const float origin = world.min[index];
-      const float width = (world.max[index] - origin) / static_cast<float>(count);
+      const float origin = world.min[a];
+      const float width = (world.max[a] - origin) / static_cast<float>(count);
       for (std::uint32_t c = 0; c < count; ++c) {
         from_[a].push_back(c == 0 ? -inf : origin + static_cast<float>(c) * width);
         to_[a].push_back(c + 1 == count ? inf : origin + static_cast<float>(c + 1) * width);
@@ -134,9 +133,7 @@ class KernelRows {
   std::vector<std::uint32_t> order_by_cells(std::span<const Aabb> boxes) {
     const auto cell_of = [&](std::uint32_t i) {
       CellCounts at{};
-      for (std::size_t a = 0; a < 3; ++a) {
-        at[a] = last_cell(axis_[a], boxes[i].min[static_cast<Eigen::Index>(a)]);
-      }
+      for (std::size_t a = 0; a < 3; ++a) at[a] = last_cell(axis_[a], boxes[i].min[a]);
       return (at[2] * axis_[1].count + at[1]) * axis_[0].count + at[0];
     };
     std::vector<std::uint32_t> order(boxes.size());
@@ -185,9 +182,8 @@ void add_kernel(const std::string& name, const RowsOptions& options, const Kerne
       const std::string key = std::to_string(options.objects) + " " +
                               std::to_string(options.cells[0]) + " " +
                               std::to_string(static_cast<int>(options.volume));
-      const auto& rows = prepared<const KernelRows>(key, [&] {
-        return std::make_unique<const KernelRows>(options.objects, options.cells, options.volume);
-      });
+      const auto& rows =
+          prepared<const KernelRows>(key, options.objects, options.cells, options.volume);
       PairSink sink;
       IsaGuard::choose(available_isas().front());
       const auto found = call(kernel, rows, sink);
@@ -259,6 +255,15 @@ void add_cells() {
   });
 }
 
+/// Registers one pass over all boxes, to compare partitions with.
+void add_read(std::size_t objects) {
+  add("memory/read_boxes/objects:" + std::to_string(objects), [=](benchmark::State& state) {
+    const KernelRows rows(objects, {1, 1, 1});
+    const RowView view = rows.rows();
+    run(state, 1, [&] { benchmark::DoNotOptimize(read_columns(view.column, objects)); });
+  });
+}
+
 }  // namespace
 
 void add_kernels() {
@@ -272,6 +277,7 @@ void add_kernels() {
   add_flat("26-dop", 2048, Volume::kdop26, &FlatKernels::kdop26);
   add_tree();
   add_cells();
+  for (const std::size_t objects : {10'000U, 100'000U}) add_read(objects);
 }
 
 }  // namespace winnow::bench::micro

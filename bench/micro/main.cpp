@@ -41,8 +41,8 @@ void count_ns(benchmark::State& state, const std::string& name, std::size_t coun
 void count(benchmark::State& state, const std::string& name, double value) {
   state.counters[name] = value;
 }
-void count(benchmark::State& state, const std::string& name, std::size_t value) {
-  state.counters[name] = static_cast<double>(value);
+void count(benchmark::State& state, const std::string& name, std::size_t value, std::size_t parts) {
+  state.counters[name] = static_cast<double>(value) / static_cast<double>(parts);
 }
 
 namespace {
@@ -105,6 +105,7 @@ int run_benchmarks(int argc, char** argv) {
   add_pairs();
   add_errors();
   add_motion();
+  add_features();
   add_partitions(scenes);
   add_keys();
   add_changes();

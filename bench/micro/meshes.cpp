@@ -7,8 +7,8 @@
 #include <winnow/pipeline/triangle_mesh.h>
 #include "bench/common/need.h"
 #include "bench/common/random.h"
-#include "bench/contenders/ray_engine.h"
-#include "bench/contenders/winnow_scene.h"
+#include "bench/contenders/engines.h"
+#include "bench/contenders/winnow_engines.h"
 #include "bench/scenes/body_scenes.h"
 #include "bench/scenes/random_shapes.h"
 
@@ -59,15 +59,9 @@ struct MeshInput {
  private:
   static ShapeRay ray_between(Random& random, const Eigen::AlignedBox3d& from,
                               const Eigen::AlignedBox3d& to) {
-    ShapeRay ray;
-    for (int axis = 0; axis < 3; ++axis) {
-      const auto start = static_cast<float>(random.in(from.min()[axis], from.max()[axis]));
-      const auto end = static_cast<float>(random.in(to.min()[axis], to.max()[axis]));
-      ray.origin[axis] = static_cast<double>(start);
-      ray.direction[axis] = static_cast<double>(end - start);
-    }
-    ray.max_t = std::numeric_limits<double>::infinity();
-    return ray;
+    const Vec3f start = random.in(from.min(), from.max()).cast<float>();
+    const Vec3f end = random.in(to.min(), to.max()).cast<float>();
+    return {start.cast<double>(), (end - start).cast<double>()};
   }
 };
 
@@ -80,19 +74,14 @@ struct MeshName {
     return name + "/triangles:" + std::to_string(triangles);
   }
   [[nodiscard]] const MeshInput& input() const {
-    return prepared<const MeshInput>(
-        path(), [&] { return std::make_unique<const MeshInput>(name, triangles); });
+    return prepared<const MeshInput>(path(), name, triangles);
   }
 };
 
 using MakeRays = std::function<std::unique_ptr<RayEngine>()>;
 
-RayEngine& started(const MeshName& mesh, const std::string& name, const MakeRays& make) {
-  return prepared<RayEngine>(mesh.path() + name, [&] {
-    std::unique_ptr<RayEngine> engine = make();
-    engine->start(mesh.input().mesh);
-    return engine;
-  });
+RayEngine& started_rays(const MeshName& mesh, const std::string& name, const MakeRays& make) {
+  return started<RayEngine>(mesh.path() + name, make, mesh.input().mesh);
 }
 
 /// Runs all rays and returns where they hit.
@@ -121,24 +110,21 @@ void add_rays(const MeshName& mesh, const std::string& name, const MakeRays& mak
               (mode == QueryMode::single ? "/single/" : "/batch/") + name,
           [=](benchmark::State& state) {
             const std::vector<ShapeRay>& rays = mesh.input().rays;
-            RayEngine& reference = started(mesh, "winnow", make_winnow_rays);
+            RayEngine& reference = started_rays(mesh, "winnow", make_winnow_rays);
             IsaGuard::choose(available_isas().front());
             const auto expected = hits_of(reference, rays, type, QueryMode::single);
             IsaGuard::choose(available_isas().back());
-            RayEngine& engine = started(mesh, name, make);
+            RayEngine& engine = started_rays(mesh, name, make);
             const auto hits = hits_of(engine, rays, type, mode);
             const std::size_t differ = count_differing(expected, hits);
             check(is_peer || differ == 0, "other rays hit the mesh");
             run(state, 1, [&] { engine.run(type, mode); });
             count_ns(state, "ns_per_ray", rays.size());
-            count(state, "hits", static_cast<double>(std::ranges::count_if(hits, [](double t) {
-                    return std::isfinite(t);
-                  })));
+            const auto is_hit = [](double t) { return std::isfinite(t); };
+            count(state, "hits", static_cast<double>(std::ranges::count_if(hits, is_hit)));
             count(state, "differ", differ);
             if (engine.bytes() == 0) return;
-            count(state, "bytes_per_triangle",
-                  static_cast<double>(engine.bytes()) /
-                      static_cast<double>(mesh.input().mesh.size()));
+            count(state, "bytes_per_triangle", engine.bytes(), mesh.input().mesh.size());
           });
     }
   }
@@ -148,8 +134,7 @@ void add_builds(const MeshName& mesh) {
   const auto count_mesh = [mesh](benchmark::State& state, const TriangleMesh& built) {
     const std::size_t triangles = mesh.input().mesh.size();
     count_ns(state, "ns_per_triangle", triangles);
-    count(state, "bytes_per_triangle",
-          static_cast<double>(built.footprint().total().used) / static_cast<double>(triangles));
+    count(state, "bytes_per_triangle", built.footprint().total().used, triangles);
   };
   add("mesh/build/" + mesh.path() + "/winnow", [=](benchmark::State& state) {
     const Triangles& input = mesh.input().mesh;
@@ -175,14 +160,28 @@ MeshEngine::TrianglePairs sorted(MeshEngine::TrianglePairs pairs) {
   return pairs;
 }
 
+/// A pose of an upright copy of the torus, and the approximate number of pairs of triangles that
+/// then intersect. From pose to pose the copy is farther from the axis of the torus.
+struct TorusPose {
+  std::size_t about;
+  Pose pose;
+};
+constexpr double kHalf = 0.70710678118654752;
+constexpr std::array<TorusPose, 4> kTorusPoses{{
+    {73, {{1.195, 0.05, 0.02}, {kHalf, kHalf, 0.0, 0.0}}},
+    {288, {{1.245, 0.05, 0.02}, {kHalf, kHalf, 0.0, 0.0}}},
+    {472, {{1.397, 0.05, 0.02}, {kHalf, kHalf, 0.0, 0.0}}},
+    {872, {{2.0, 0.05, 0.02}, {kHalf, kHalf, 0.0, 0.0}}},
+}};
+
 /// Two tori at a pose, from the build of the mesh to pairs of triangles.
 void add_tori(const std::string& name, const MakeMesh& make) {
   const auto torus = []() -> const Triangles& {
-    return prepared<const Triangles>(
-        "torus", [] { return std::make_unique<const Triangles>(make_race_torus()); });
+    static const Triangles made = make_torus(100, 100, 1.0, 0.4);
+    return made;
   };
   const auto built = [torus](const std::string& engine_name, const MakeMesh& make_engine) -> auto& {
-    return prepared<MeshEngine>("torus " + engine_name, [&] {
+    return prepared_by<MeshEngine>("torus " + engine_name, [&] {
       std::unique_ptr<MeshEngine> engine = make_engine();
       engine->build(torus());
       return engine;
@@ -192,12 +191,11 @@ void add_tori(const std::string& name, const MakeMesh& make) {
     const auto engine = make();
     run(state, 1, [&] { engine->build(torus()); });
     count_ns(state, "ns_per_triangle", torus().size());
-    count(state, "bytes_per_triangle",
-          static_cast<double>(engine->bytes()) / static_cast<double>(torus().size()));
+    count(state, "bytes_per_triangle", engine->bytes(), torus().size());
   });
-  for (std::size_t p = 0; p < torus_poses().size(); ++p) {
+  for (std::size_t p = 0; p < kTorusPoses.size(); ++p) {
     add("mesh/tori/pose:" + std::to_string(p + 1) + "/" + name, [=](benchmark::State& state) {
-      const Pose& pose = torus_poses()[p].pose;
+      const Pose& pose = kTorusPoses[p].pose;
       MeshEngine& reference = built("winnow", make_winnow_mesh);
       reference.collide(Pose{}, pose);
       const auto expected = sorted(reference.pairs());
@@ -206,7 +204,7 @@ void add_tori(const std::string& name, const MakeMesh& make) {
       const auto found = sorted(engine.pairs());
       MeshEngine::TrianglePairs differ;
       std::ranges::set_symmetric_difference(expected, found, std::back_inserter(differ));
-      const double about = static_cast<double>(torus_poses()[p].about);
+      const double about = static_cast<double>(kTorusPoses[p].about);
       check(std::abs(static_cast<double>(expected.size()) - about) <= 0.5 * about,
             "another number of triangles");
       run(state, 1, [&] { engine.collide(Pose{}, pose); });
@@ -235,13 +233,9 @@ struct QueryScene {
       const auto body = random.below(static_cast<std::uint32_t>(kBodies));
       starts.push_back(set->poses[body]);
       ends.push_back(set->poses[random.below(static_cast<std::uint32_t>(kBodies))]);
-      for (int axis = 0; axis < 3; ++axis) starts.back().position[axis] += random.in(-1.0, 1.0);
-      ShapeRay& ray = rays.emplace_back();
-      for (int axis = 0; axis < 3; ++axis) {
-        ray.origin[axis] = starts.back().position[axis];
-        ray.direction[axis] = ends.back().position[axis] - ray.origin[axis];
-      }
-      ray.max_t = std::numeric_limits<double>::infinity();
+      starts.back().position += random.in_cube(-1.0, 1.0);
+      const Vec3d from = starts.back().position;
+      rays.push_back({from, ends.back().position - from});
     }
   }
 };
@@ -253,8 +247,7 @@ using SceneQuery = std::function<double(const QueryScene&, SceneQueries&, std::s
 void add_scene_query(const std::string& name, const SceneQuery& query) {
   add("scene/" + name + "/bodies:" + std::to_string(QueryScene::kBodies),
       [=](benchmark::State& state) {
-        const auto& scene = prepared<const QueryScene>(
-            "queries", [] { return std::make_unique<const QueryScene>(); });
+        const auto& scene = prepared<const QueryScene>("queries");
         SceneQueries queries(scene.scene);
         std::vector<double> results[2];
         for (const std::size_t which : {0, 1}) {

@@ -23,11 +23,12 @@
 
 namespace winnow::bench::micro {
 
-void add_kernels();                                          // kernel/
+void add_kernels();                                          // kernel/ and memory/
 void add_pairs();                                            // pair/
 void add_errors();                                           // error/ and stability/
-void add_motion();                                           // toi/, feature/ and continuous/
-void add_partitions(const std::vector<NamedScene>& scenes);  // partition/ and memory/
+void add_motion();                                           // toi/ and continuous/
+void add_features();                                         // feature/
+void add_partitions(const std::vector<NamedScene>& scenes);  // partition/
 void add_keys();                                             // keys/
 void add_changes();                                          // churn/, events/ and worlds/
 void add_filters(const std::vector<NamedScene>& scenes);     // filter/
@@ -49,12 +50,26 @@ void check(bool right, const std::string& text);
 /// Returns the value stored under `key`. The first call makes and stores it, so that repetitions of
 /// a benchmark, and benchmarks on the same input, share it.
 template <typename Value, typename Make>
-Value& prepared(const std::string& key, Make&& make) {
+Value& prepared_by(const std::string& key, Make&& make) {
   static std::map<std::string, std::unique_ptr<Value>> all;
   const auto at = all.find(key);
   if (at != all.end()) return *at->second;
   std::unique_ptr<Value> made = make();
   return *all.emplace(key, std::move(made)).first->second;
+}
+/// As above for a value that is made from the arguments.
+template <typename Value, typename... Arguments>
+Value& prepared(const std::string& key, const Arguments&... arguments) {
+  return prepared_by<Value>(key, [&] { return std::make_unique<Value>(arguments...); });
+}
+/// As above for an engine that `make` returns and that is started with the input.
+template <typename Interface, typename Make, typename Input>
+Interface& started(const std::string& key, Make&& make, const Input& input) {
+  return prepared_by<Interface>(key, [&] {
+    std::unique_ptr<Interface> engine = make();
+    engine->start(input);
+    return engine;
+  });
 }
 
 /// Calls `visit(engine, make)` for each other library; `make` makes another such engine.
@@ -81,8 +96,9 @@ void run(benchmark::State& state, int threads, Work&& work) {
 /// Sets the counter `name` to nanoseconds for each of `count` equal parts of an iteration.
 void count_ns(benchmark::State& state, const std::string& name, std::size_t count);
 
-/// Sets a counter to a number.
+/// Sets a counter to a number, or to a number for each of several parts.
 void count(benchmark::State& state, const std::string& name, double value);
-void count(benchmark::State& state, const std::string& name, std::size_t value);
+void count(benchmark::State& state, const std::string& name, std::size_t value,
+           std::size_t parts = 1);
 
 }  // namespace winnow::bench::micro

@@ -1,5 +1,5 @@
 // Benchmarks of continuous collision detection: times of impact of moving shapes (winnow and other
-// libraries) and of mesh features, and impacts of a heap with some fast bodies beside its contacts.
+// libraries), and impacts of a heap with some fast bodies beside its contacts.
 
 #include "bench/micro/micro.h"
 
@@ -7,10 +7,9 @@
 #include <winnow/pipeline/continuous_collision.h>
 #include "bench/common/need.h"
 #include "bench/contenders/partitions.h"
-#include "bench/contenders/winnow_impacts.h"
+#include "bench/contenders/winnow_engines.h"
 #include "bench/measure/impact_judge.h"
 #include "bench/scenes/body_scenes.h"
-#include "bench/scenes/feature_steps.h"
 #include "bench/scenes/random_shapes.h"
 
 #include <cmath>
@@ -19,7 +18,6 @@ namespace winnow::bench::micro {
 namespace {
 
 constexpr std::size_t kMovingPairs = 2048;
-constexpr std::size_t kFeatures = 20'000;
 
 /// Moving pairs of one kind, with what is known about them.
 struct JudgedMotions {
@@ -36,13 +34,8 @@ void add_impacts(const PairKind& kind, PairTurn turn, const std::string& name,
                  const MakeImpacts& make, bool is_winnow) {
   const std::string path = "toi/" + std::string(kind.name) + "/turn:" + word_of(to_text(turn));
   add(path + "/" + name, [=](benchmark::State& state) {
-    auto& motions =
-        prepared<JudgedMotions>(path, [&] { return std::make_unique<JudgedMotions>(kind, turn); });
-    ImpactEngine& engine = prepared<ImpactEngine>(path + name, [&] {
-      std::unique_ptr<ImpactEngine> made = make();
-      made->start(motions.set);
-      return made;
-    });
+    auto& motions = prepared<JudgedMotions>(path, kind, turn);
+    ImpactEngine& engine = started<ImpactEngine>(path + name, make, motions.set);
     const ImpactFaults faults = motions.judge.judge(engine);
     if (is_winnow) check(faults.missed + faults.late + faults.loose == 0, "an impact is wrong");
     const std::vector<BodyPair>& pairs = motions.set.middle->pairs;
@@ -55,33 +48,6 @@ void add_impacts(const PairKind& kind, PairTurn turn, const std::string& name,
     count(state, "loose", faults.loose);
     count(state, "median_gap", faults.median_gap);
     count(state, "worst_gap", faults.worst_gap);
-  });
-}
-
-void add_features(FeaturePair kind, FeatureSteps steps) {
-  const std::string path = "feature/" + std::string(to_text(kind)) + "/" + word_of(to_text(steps));
-  add(path, [=](benchmark::State& state) {
-    const auto& set = prepared<const FeatureStepSet>(path, [&] {
-      return std::make_unique<const FeatureStepSet>(make_feature_steps(kind, steps, kFeatures, 1));
-    });
-    std::vector<double> times(kFeatures);
-    need(feature_impacts(kind, set.columns(), times), "features");
-    std::size_t hits = 0;
-    std::size_t missed = 0;
-    std::size_t invented = 0;
-    for (const double time : times) {
-      const bool hit = std::isfinite(time);
-      hits += hit ? 1 : 0;
-      missed += steps == FeatureSteps::touching && !(time <= kTouchTime) ? 1 : 0;
-      invented += steps == FeatureSteps::passing && hit ? 1 : 0;
-    }
-    check(missed == 0 && invented == 0, "an impact was missed or invented");
-    run(state, 1, [&] { need(feature_impacts(kind, set.columns(), times), "features"); });
-    count_ns(state, "ns_per_pair", kFeatures);
-    count(state, "pairs", kFeatures);
-    count(state, "hits", hits);
-    count(state, "missed", missed);
-    count(state, "invented", invented);
   });
 }
 
@@ -109,8 +75,7 @@ class MovingHeap {
     fast_ends_.clear();
     for (std::size_t i = 0; i < keys_.size(); ++i) {
       if (bullets_[i] == 0) continue;
-      const Eigen::Vector3d way = random_.in(0.1, 1.0) * kFarthest * random_unit(random_);
-      for (int axis = 0; axis < 3; ++axis) ends_[i].position[axis] += way[axis];
+      ends_[i].position += random_.in(0.1, 1.0) * kFarthest * random_unit(random_);
       fast_keys_.push_back(keys_[i]);
       fast_ends_.push_back(ends_[i]);
     }
@@ -155,8 +120,7 @@ void add_heap(const std::string& what, void (MovingHeap::*call)(), std::size_t b
                               "/fast:" + std::to_string(fast) +
                               "/threads:" + std::to_string(threads);
   add("continuous/" + what + of_heap, threads, [=](benchmark::State& state) {
-    auto& heap = prepared<MovingHeap>(
-        of_heap, [&] { return std::make_unique<MovingHeap>(bodies, fast, threads); });
+    auto& heap = prepared<MovingHeap>(of_heap, bodies, fast, threads);
     run(state, threads, [&] {
       state.PauseTiming();
       heap.next_frame();
@@ -176,15 +140,11 @@ void add_heap(const std::string& what, void (MovingHeap::*call)(), std::size_t b
 void add_motion() {
   for (const PairKind& kind : pair_kinds()) {
     for (const PairTurn turn : kPairTurns) {
-      add_impacts(
-          kind, turn, "winnow", [] { return std::make_unique<WinnowImpacts>(); }, true);
+      add_impacts(kind, turn, "winnow", make_winnow_impacts, true);
       each_peer<ImpactEngine>([&](const ImpactEngine& peer, const MakeImpacts& make) {
         if (peer.takes(kind, turn)) add_impacts(kind, turn, word_of(peer.name()), make, false);
       });
     }
-  }
-  for (const FeaturePair kind : kFeaturePairs) {
-    for (const FeatureSteps steps : kFeatureSteps) add_features(kind, steps);
   }
   for (const int threads : {1, 2}) {
     add_heap("collide", &MovingHeap::collide, 10'000, 1'000, threads);

@@ -4,7 +4,7 @@
 
 #include "bench/micro/micro.h"
 
-#include "bench/contenders/winnow_narrow.h"
+#include "bench/contenders/winnow_engines.h"
 #include "bench/measure/accuracy.h"
 
 #include <winnow/simd/isa.h>
@@ -21,18 +21,8 @@ constexpr std::size_t kManyPairs = 100'000;
 
 using MakeEngine = std::function<std::unique_ptr<NarrowEngine>()>;
 
-/// An engine that has been started, and the set that it was started with.
-struct Started {
-  const PairSet& set;
-  std::unique_ptr<NarrowEngine> engine;
-
-  Started(const PairSet& pairs, const MakeEngine& make) : set(pairs), engine(make()) {
-    engine->start(set);
-  }
-};
-
 MakeEngine winnow_tier(NarrowTier tier, int threads = 1) {
-  return [=] { return std::make_unique<WinnowNarrow>(tier, threads); };
+  return [=] { return make_winnow_narrow(tier, threads); };
 }
 
 /// Calls `visit(name, make)` for each other library that supports such pairs.
@@ -56,7 +46,7 @@ struct PairsOptions {
 };
 
 const PairSet& random_pairs(const PairKind& kind, const PairsOptions& options) {
-  return prepared<const PairSet>(options.set_key(kind), [&] {
+  return prepared_by<const PairSet>(options.set_key(kind), [&] {
     return make_pair_set(
         kind,
         {.pairs = options.pairs, .scattered = options.pairs > kPairs, .upright = options.upright});
@@ -76,13 +66,13 @@ const std::vector<NarrowAnswer>& expected_answers(const PairKind& kind, ContactL
                                                   const PairsOptions& options) {
   using Answers = std::vector<NarrowAnswer>;
   const std::string key = options.set_key(kind) + " " + std::string(to_text(level));
-  return prepared<Answers>(key, [&] {
+  return prepared_by<Answers>(key, [&] {
     const PairSet& set = random_pairs(kind, options);
     const IsaGuard guard;
     IsaGuard::choose(available_isas().front());
-    WinnowNarrow engine(NarrowTier::robust, 1);
-    engine.start(set);
-    return std::make_unique<Answers>(answers_of(engine, level, set.pairs));
+    const auto engine = make_winnow_narrow(NarrowTier::robust);
+    engine->start(set);
+    return std::make_unique<Answers>(answers_of(*engine, level, set.pairs));
   });
 }
 
@@ -170,10 +160,9 @@ void time_pairs(benchmark::State& state, NarrowEngine& engine, const PairKind& k
 void add_engine(const std::string& name, const PairKind& kind, ContactLevel level,
                 const MakeEngine& make, Demand demand, const PairsOptions& options = {}) {
   add(name, options.threads, [=](benchmark::State& state) {
-    const auto& started = prepared<const Started>(
-        name, [&] { return std::make_unique<const Started>(random_pairs(kind, options), make); });
+    auto& engine = started<NarrowEngine>(name, make, random_pairs(kind, options));
     IsaGuard::choose(options.isa);
-    time_pairs(state, *started.engine, kind, level, options, demand);
+    time_pairs(state, engine, kind, level, options, demand);
   });
 }
 
@@ -200,8 +189,8 @@ void add_kind(const PairKind& kind, ContactLevel level) {
   add_engine(path + "/reference", kind, level, winnow_tier(NarrowTier::reference),
              Demand::by_and_large);
   add_engine(
-      path + "/collide", kind, level,
-      [] { return std::make_unique<WinnowOnePair>(NarrowTier::robust); }, Demand::by_and_large);
+      path + "/collide", kind, level, [] { return make_winnow_one_pair(NarrowTier::robust); },
+      Demand::by_and_large);
   each_pair_peer(kind, level, [&](const std::string& name, const MakeEngine& make) {
     add_engine(path + "/" + name, kind, level, make, Demand::nothing);
   });
@@ -252,19 +241,17 @@ void add_judged(const std::string& path, const PairKind& kind, ContactLevel leve
                 double gap = 0.0) {
   const std::string of_set = path + " " + std::string(kind.name);
   add(path + (gap > 0.0 ? "/gap:" + key_text(gap) : "") + "/" + name, [=](benchmark::State& state) {
-    const auto& judged = prepared<const JudgedPairs>(
-        of_set, [&] { return std::make_unique<const JudgedPairs>(kind, options); });
-    const auto& started = prepared<const Started>(
-        of_set + name, [&] { return std::make_unique<const Started>(*judged.set, make); });
+    const auto& judged = prepared<const JudgedPairs>(of_set, kind, options);
+    auto& engine = started<NarrowEngine>(of_set + name, make, *judged.set);
     state.SetLabel(judge_name());
-    started.engine->run(level, judged.set->pairs);
+    engine.run(level, judged.set->pairs);
     const Accuracy errors =
-        summary_of(errors_at(errors_of(*started.engine, level, *judged.set, judged.truths), gap));
+        summary_of(errors_at(errors_of(engine, level, *judged.set, judged.truths), gap));
     check(errors.beyond_bound == 0, "an error exceeds its bound");
-    run(state, 1, [&] { started.engine->run(level, judged.set->pairs); });
+    run(state, 1, [&] { engine.run(level, judged.set->pairs); });
     count_ns(state, "ns_per_pair", judged.set->pairs.size());
     count_errors(state, errors);
-    if (const double share = started.engine->recomputed(); !std::isnan(share)) {
+    if (const double share = engine.recomputed(); !std::isnan(share)) {
       count(state, "recomputed", share);
     }
   });

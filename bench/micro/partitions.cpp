@@ -1,6 +1,6 @@
 // Benchmarks of partitions on one frame of a scene: queries, builds, refits, all pairs and
-// operations on keys, and one pass over the columns of all boxes for comparison. Embree answers the
-// same queries. All partitions must find what BoundsNSquared finds, which tests every box.
+// operations on keys. Embree answers the same queries. All partitions must find what BoundsNSquared
+// finds, which tests every box.
 
 #include "bench/micro/micro.h"
 
@@ -9,7 +9,6 @@
 #include "bench/common/sample.h"
 #include "bench/contenders/partition_queries.h"
 #include "bench/contenders/reference_sweep.h"
-#include "bench/measure/column_read.h"
 #include "bench/measure/fingerprint.h"
 
 #include <algorithm>
@@ -56,7 +55,7 @@ struct Input {
 };
 
 Input& input_of(const Where& where) {
-  return prepared<Input>(where.path(), [&] { return std::make_unique<Input>(where); });
+  return prepared<Input>(where.path(), where);
 }
 
 using MakeQueries = std::function<std::unique_ptr<QueryEngine>(int threads)>;
@@ -66,18 +65,16 @@ MakeQueries winnow_queries(const std::string& structure) {
 }
 
 /// Returns an engine with the boxes of a scene, for all of its queries.
-QueryEngine& started(const std::string& name, const MakeQueries& make, const Where& where,
-                     int threads) {
-  return prepared<QueryEngine>(name + " " + where.path() + " " + std::to_string(threads), [&] {
-    std::unique_ptr<QueryEngine> engine = make(threads);
-    engine->start(input_of(where).boxes());
-    return engine;
-  });
+QueryEngine& started_queries(const std::string& name, const MakeQueries& make, const Where& where,
+                             int threads) {
+  return started<QueryEngine>(
+      name + " " + where.path() + " " + std::to_string(threads), [&] { return make(threads); },
+      input_of(where).boxes());
 }
 
 const QueryResults& expected_results(const Where& where, const QuerySet& set) {
-  return prepared<QueryResults>(where.path() + " " + set.name, [&] {
-    QueryEngine& engine = started(kReference, winnow_queries(kReference), where, 1);
+  return prepared_by<QueryResults>(where.path() + " " + set.name, [&] {
+    QueryEngine& engine = started_queries(kReference, winnow_queries(kReference), where, 1);
     return std::make_unique<QueryResults>(engine.answers(set, QueryMode::single, set.size()));
   });
 }
@@ -101,7 +98,7 @@ struct QueryBenchmark {
 
 void time_queries(benchmark::State& state, const QueryBenchmark& what) {
   const QuerySet& set = input_of(what.where).sets[what.set];
-  QueryEngine& engine = started(what.engine, what.make, what.where, what.threads);
+  QueryEngine& engine = started_queries(what.engine, what.make, what.where, what.threads);
   const std::size_t count_of_queries = std::min(set.size(), engine.most_questions());
   const QueryResults results = engine.answers(set, what.mode, count_of_queries);
   const std::size_t differing = count_differing(set.query_type, expected_results(what.where, set),
@@ -113,7 +110,7 @@ void time_queries(benchmark::State& state, const QueryBenchmark& what) {
   std::uint64_t objects = 0;
   run(state, what.threads, [&] { objects = engine.run(set, what.mode, count_of_queries); });
   count_ns(state, "ns_per_query", count_of_queries);
-  count(state, "found", static_cast<double>(objects) / static_cast<double>(count_of_queries));
+  count(state, "found", objects, count_of_queries);
   count(state, "questions", count_of_queries);
   if (own != nullptr) count(state, "allocations", own->memory().allocations() - before);
   if (what.is_peer) count(state, "differ", differing);
@@ -180,9 +177,7 @@ void add_build(const std::string& structure, const Where& where) {
     });
     check_pairs(partition, input, 0);
     count_ns(state, "ns_per_object", keys.size());
-    count(state, "bytes_per_object",
-          static_cast<double>(partition.footprint().total().reserved) /
-              static_cast<double>(keys.size()));
+    count(state, "bytes_per_object", partition.footprint().total().reserved, keys.size());
   });
 }
 
@@ -191,9 +186,8 @@ void add_call(const std::string& name, const std::string& structure, const Where
               const std::function<void(Alternating&)>& call) {
   add("partition/" + word_of(structure) + "/" + name + "/" + where.path(),
       [=](benchmark::State& state) {
-        auto& moving = prepared<Alternating>("moving " + structure + " " + where.path(), [&] {
-          return std::make_unique<Alternating>(structure, where);
-        });
+        auto& moving =
+            prepared<Alternating>("moving " + structure + " " + where.path(), structure, where);
         run(state, 1, [&] {
           state.PauseTiming();
           moving.next();
@@ -202,35 +196,9 @@ void add_call(const std::string& name, const std::string& structure, const Where
           call(moving);
         });
         count_ns(state, "ns_per_object", moving.keys.size());
-        count(state, "bytes_per_object",
-              static_cast<double>(moving.memory.outstanding()) /
-                  static_cast<double>(moving.keys.size()));
+        count(state, "bytes_per_object", moving.memory.outstanding(), moving.keys.size());
       });
 }
-
-/// The columns of boxes, in the layout of a partition.
-class Columns {
- public:
-  explicit Columns(std::span<const Aabb> boxes)
-      : count_((boxes.size() + 31) / 32 * 32), storage_(6 * count_ + 16) {
-    void* start = storage_.data();
-    std::size_t space = storage_.size() * sizeof(float);
-    auto* aligned = static_cast<float*>(std::align(64, 6 * count_ * sizeof(float), start, space));
-    for (std::size_t c = 0; c < 6; ++c) {
-      float* column = aligned + c * count_;
-      for (std::size_t i = 0; i < boxes.size(); ++i) {
-        column[i] = c < 3 ? boxes[i].min[c] : boxes[i].max[c % 3];
-      }
-      columns_[c] = column;
-    }
-  }
-  [[nodiscard]] float read() const { return read_columns(columns_.data(), count_); }
-
- private:
-  std::size_t count_;
-  std::vector<float> storage_;
-  std::array<const float*, 6> columns_{};
-};
 
 /// Registers what is not a query.
 void add_structure(const std::string& structure, const Where& where) {
@@ -308,13 +276,10 @@ class KeyRounds {
   }
   /// Selects the next keys in order, or swaps random ones to the front.
   void choose() {
-    const std::size_t count = keys_.size();
-    if (!random_order_) {
-      first_ = first_ + 2 * batch_ <= count ? first_ + batch_ : 0;
-      return;
-    }
-    for (std::size_t i = 0; i < batch_; ++i) {
-      std::swap(keys_[i], keys_[i + random_.below(static_cast<std::uint32_t>(count - i))]);
+    if (random_order_) {
+      random_.draw_front(keys_, batch_);
+    } else {
+      first_ = first_ + 2 * batch_ <= keys_.size() ? first_ + batch_ : 0;
     }
   }
 
@@ -334,9 +299,7 @@ void add_key_operation(std::size_t operation, bool bulk, bool random_order, std:
   add("keys/" + std::string(KeyRounds::kOperations[operation]) + (bulk ? "/bulk" : "/single") +
           of_keys,
       [=](benchmark::State& state) {
-        auto& rounds = prepared<KeyRounds>("keys" + of_keys, [&] {
-          return std::make_unique<KeyRounds>(structure, objects, random_order);
-        });
+        auto& rounds = prepared<KeyRounds>("keys" + of_keys, structure, objects, random_order);
         run(state, 1, [&] { state.SetIterationTime(rounds.run(bulk)[operation]); });
         count_ns(state, "ns_per_object", rounds.batch());
       })
@@ -354,18 +317,10 @@ void add_partitions(const std::vector<NamedScene>& scenes) {
         if (where.objects <= largest_for(structure)) add_structure(structure, where);
       }
       add_query_peers(where, 1);
-      const bool is_first = &scene == &scenes.front();
-      if (is_first && requested == 100'000) {
+      if (&scene == &scenes.front() && requested == 100'000) {
         add_queries(
             {.engine = kParallel, .make = winnow_queries(kParallel), .where = where, .threads = 2});
         add_query_peers(where, 2);
-      }
-      if (is_first) {
-        add("memory/read_boxes/objects:" + std::to_string(where.objects),
-            [=](benchmark::State& state) {
-              const Columns columns(input_of(where).boxes());
-              run(state, 1, [&] { benchmark::DoNotOptimize(columns.read()); });
-            });
       }
       if (scene.is_recording()) break;
     }

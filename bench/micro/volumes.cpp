@@ -185,8 +185,7 @@ void add_volume(const VolumeSetting& setting, std::size_t objects, const std::st
                            "/objects:" + std::to_string(objects) + "/" + word_of(structure) + "/" +
                            kind.name;
   add(path, [=](benchmark::State& state) {
-    auto& frames = prepared<VolumeFrames>(
-        path, [&] { return std::make_unique<VolumeFrames>(kind, structure, setting); });
+    auto& frames = prepared<VolumeFrames>(path, kind, structure, setting);
     run(state, 1, [&] { state.SetIterationTime(frames.frame()); });
     const auto all = static_cast<double>(frames.make_ms.size());
     const double reported = std::max(1.0, static_cast<double>(frames.reported));

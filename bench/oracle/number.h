@@ -1,7 +1,8 @@
 #pragma once
 
-#include <boost/multiprecision/cpp_bin_float.hpp>
+#include <winnow/core/vec3.h>
 
+#include <boost/multiprecision/cpp_bin_float.hpp>
 #include <cmath>
 
 namespace winnow::oracle {
@@ -40,6 +41,20 @@ template <typename T>
 T length(const Vector<T>& a) {
   using std::sqrt;
   return sqrt(dot(a, a));
+}
+
+/// `v` is not zero.
+template <typename T>
+Vector<T> unit(const Vector<T>& v) {
+  return v * (T(1) / length(v));
+}
+
+[[nodiscard]] inline bool is_zero(const Vector<Number>& v) {
+  return v.x == 0 && v.y == 0 && v.z == 0;
+}
+
+inline Vector<Number> exact(const Vec3d& v) {
+  return {v.x(), v.y(), v.z()};
 }
 
 inline Vector<double> rounded(const Vector<Number>& v) {

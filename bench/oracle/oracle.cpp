@@ -1,12 +1,11 @@
-// Distance and penetration depth of a pair in 100 digits. Calls min_norm for cores apart,
-// least_overlap for cores that overlap, and round_core for polytopes inside cylinders and cones.
+// Distance and penetration depth of a pair in 100 digits. Calls widest_gap for two cores, and
+// round_core for polytopes inside cylinders and cones.
 
 #include "bench/oracle/oracle.h"
 
-#include "bench/oracle/least_overlap.h"
-#include "bench/oracle/min_norm.h"
 #include "bench/oracle/polytope.h"
 #include "bench/oracle/round_core.h"
+#include "bench/oracle/widest_gap.h"
 
 #include <algorithm>
 #include <cmath>
@@ -24,14 +23,6 @@ constexpr double kEquallyGood = 1e-9;
 /// of refinement rounds.
 constexpr double kClosed = 1e-13;
 constexpr int kRounds = 12;
-/// Cosine of 0.1 degrees.
-constexpr double kSameDirection = 0.99999847691328769;
-
-void set_normal(Truth& truth, const Vector<Number>& n) {
-  truth.normal[0] = n.x.convert_to<double>();
-  truth.normal[1] = n.y.convert_to<double>();
-  truth.normal[2] = n.z.convert_to<double>();
-}
 
 void set_distance(Truth& truth, const Number& scaled, const Number& unit_length) {
   const Number distance = abs(scaled) <= kZero ? Number(0) : Number(scaled * unit_length);
@@ -40,8 +31,7 @@ void set_distance(Truth& truth, const Number& scaled, const Number& unit_length)
 }
 
 Vector<Number> difference(const Pose& a, const Pose& b) {
-  return {Number(b.position[0]) - a.position[0], Number(b.position[1]) - a.position[1],
-          Number(b.position[2]) - a.position[2]};
+  return exact(b.position) - exact(a.position);
 }
 
 /// Returns a power of two that scales lengths up to `length` to the order of 1.
@@ -68,51 +58,22 @@ Placed place_pair(Polytope a, const Pose& pose_a, Polytope b, const Pose& pose_b
   for (const auto& v : placed.a.vertex) reach = std::max(reach, length(v));
   for (const auto& v : placed.b.vertex) reach = std::max(reach, length(v));
   placed.scale = scale_for(reach);
-  place(placed.a, pose_a.orientation.data(), {}, placed.scale);
-  place(placed.b, pose_b.orientation.data(), between, placed.scale);
+  place(placed.a, pose_a.orientation, {}, placed.scale);
+  place(placed.b, pose_b.orientation, between, placed.scale);
   return placed;
 }
 
-/// Signed distance of the cores, its direction, and whether that direction is unique.
-struct CoreGap {
-  bool proven = false;
-  Number width = 0;
-  Vector<Number> normal;
-  bool unique = false;
-};
-
-CoreGap core_gap(const Placed& placed) {
-  CoreGap gap;
-  Simplex simplex{{{0, 0}}};
-  static_cast<void>(nearest_point<double>(placed.a, placed.b, simplex));
-  const Nearest<Number> nearest = nearest_point<Number>(placed.a, placed.b, simplex);
-  if (!nearest.proven) return gap;
-  gap.proven = true;
-  const double slack =
-      std::max(kEquallyGood * (placed.sizes * placed.scale).convert_to<double>(), 1e-30);
-  if (nearest.upper > kZero) {
-    gap.width = nearest.upper;
-    gap.normal = nearest.point * (1 / nearest.upper);
-    gap.unique = nearest.upper > Number(slack);
-    return gap;
-  }
-  const LeastOverlap least = least_overlap(placed.a, placed.b, slack);
-  const auto& best = least.direction.front();
-  gap.width = best.gap;
-  gap.normal = best.normal;
-  gap.unique = std::all_of(least.direction.begin(), least.direction.end(), [&](const auto& d) {
-    return dot(d.normal, best.normal) > kSameDirection;
-  });
-  return gap;
+WidestGap core_gap(const Placed& placed) {
+  const double sizes = (placed.sizes * placed.scale).convert_to<double>();
+  return widest_gap(placed.a, placed.b, std::max(kEquallyGood * sizes, 1e-30));
 }
 
-Truth truth_of(const Placed& placed, const CoreGap& gap) {
+Truth truth_of(const Placed& placed, const WidestGap& gap) {
   Truth truth;
   truth.size = placed.sizes.convert_to<double>();
-  if (!gap.proven) return truth;
   truth.known = true;
   truth.normal_unique = gap.unique;
-  set_normal(truth, gap.normal);
+  truth.normal = rounded(gap.normal);
   set_distance(truth, gap.width - placed.a.rounding - placed.b.rounding, 1 / placed.scale);
   return truth;
 }
@@ -128,9 +89,7 @@ struct Body {
   }
   /// Rotates a world direction into the frame of the shape.
   [[nodiscard]] Vector<Number> local(const Vector<Number>& n) const {
-    const double* q = pose.orientation.data();
-    const double back[4] = {q[0], -q[1], -q[2], -q[3]};
-    return rotate(back, n);
+    return rotate(pose.orientation.inverse(), n);
   }
 };
 
@@ -141,8 +100,7 @@ Truth of_round_shapes(const ShapeTables& tables, Body a, Body b) {
   const Vector<Number> between = difference(a.pose, b.pose);
   for (int round = 0; round < kRounds; ++round) {
     const Placed placed = place_pair(a.core(tables), a.pose, b.core(tables), b.pose);
-    const CoreGap gap = core_gap(placed);
-    if (!gap.proven) return {};
+    const WidestGap gap = core_gap(placed);
     const Vector<Number> n = gap.normal;
     a.aim = a.local(n);
     b.aim = b.local(n * Number(-1));
@@ -162,19 +120,17 @@ Truth of_round_shapes(const ShapeTables& tables, Body a, Body b) {
 Truth over_half_space(const ShapeTables& tables, ShapeId shape, const Pose& pose, ShapeId half,
                       const Pose& half_pose) {
   const HalfSpaceShape& plane = tables.half_spaces[half.index()];
-  Vector<Number> n{plane.normal[0], plane.normal[1], plane.normal[2]};
-  const Number offset = plane.offset / length(n);
-  n = rotate(half_pose.orientation.data(), n * (1 / length(n)));
-  const double back[4] = {pose.orientation[0], -pose.orientation[1], -pose.orientation[2],
-                          -pose.orientation[3]};
-  const Number least = least_along(tables, shape, rotate(back, n));
+  const Vector<Number> local = exact(plane.normal);
+  const Number offset = plane.offset / length(local);
+  const Vector<Number> n = rotate(half_pose.orientation, unit(local));
+  const Number least = least_along(tables, shape, rotate(pose.orientation.inverse(), n));
   const Number radius =
       radius_of(has_polytope(shape.kind()) ? core_of(tables, shape) : inscribed(tables, shape, n));
   const Vector<Number> between = difference(half_pose, pose);
   const Number height = dot(n, between) + least - offset;
   const Number unit_length = length(between) + radius + abs(offset);
   Truth truth;
-  set_normal(truth, n);
+  truth.normal = rounded(n);
   set_distance(truth, unit_length == 0 ? height : Number(height / unit_length),
                unit_length == 0 ? Number(1) : unit_length);
   truth.size = (radius + abs(offset)).convert_to<double>();
@@ -195,7 +151,7 @@ Truth solve(const ShapeTables& tables, ShapeId a, const Pose& pose_a, ShapeId b,
   if (a_is_half) return over_half_space(tables, b, pose_b, a, pose_a);
   if (b_is_half) {
     Truth truth = over_half_space(tables, a, pose_a, b, pose_b);
-    for (double& x : truth.normal) x = -x;
+    truth.normal = -truth.normal;
     return truth;
   }
   if (!has_polytope(a.kind()) || !has_polytope(b.kind())) {

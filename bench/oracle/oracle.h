@@ -25,12 +25,11 @@ struct Truth {
   double size = 0.0;
 };
 
-/// Distances are computed by GJK over all subsets of a simplex (Gilbert, Johnson, Keerthi 1988),
-/// proven by a supporting plane. Depths are the minimum over all normals that a face of the
-/// Minkowski difference can have: normals of faces, and cross products of all pairs of edges.
-/// Cylinders and cones are replaced by inscribed polytopes that are refined until a supporting
-/// plane proves the result. Slow; for hulls the time grows with the product of their numbers of
-/// edges.
+/// Distances and depths are the widest gap over all directions in which features of the shapes can
+/// face each other: normals of faces, cross products of all pairs of edges, and differences of all
+/// vertices and edges. Cylinders and cones are replaced by inscribed polytopes that are refined
+/// until a supporting plane proves the result. Slow; for hulls the time grows with the product of
+/// their numbers of edges.
 [[nodiscard]] Truth solve(const ShapeTables& tables, ShapeId a, const Pose& pose_a, ShapeId b,
                           const Pose& pose_b);
 

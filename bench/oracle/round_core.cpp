@@ -44,11 +44,12 @@ std::vector<Vec> circle(const Vec& aim) {
   return points;
 }
 
-void add_edge(Polytope& core, const Vec& from, const Vec& to, const Vec& beside, const Vec& other) {
-  const Vec along = to - from;
-  if (along.x == 0 && along.y == 0 && along.z == 0) return;
-  const auto unit = [](const Vec& v) { return rounded(v * (1 / length(v))); };
-  core.edge.push_back({along, {unit(beside), unit(other)}, true});
+void add_edge(Polytope& core, std::size_t from, std::size_t to, const Vec& beside,
+              const Vec& other) {
+  core.edge.push_back({static_cast<std::uint32_t>(from),
+                       static_cast<std::uint32_t>(to),
+                       {unit(rounded(beside)), unit(rounded(other))},
+                       true});
 }
 
 }  // namespace
@@ -63,7 +64,7 @@ Polytope inscribed(const ShapeTables& tables, ShapeId shape, const Vector<Number
   const Vec top{0, 0, round.half_length};
   if (round.radius == 0.0) {
     core.vertex = {top, top * Number(-1)};
-    if (round.half_length > 0.0) core.edge.push_back({up, {}, false});
+    core.edge.push_back({0, 1});
     return core;
   }
   const std::vector<Vec> rim = circle(aim);
@@ -78,18 +79,17 @@ Polytope inscribed(const ShapeTables& tables, ShapeId shape, const Vector<Number
     side.push_back(round.has_apex ? out * (2 * Number(round.half_length)) + up * chord : out);
     core.normal.push_back(side.back());
   }
-  const auto at = [&](std::size_t i, int sign) {
-    return rim[i % count] * Number(round.radius) + top * Number(sign);
-  };
-  for (std::size_t i = 0; i < count; ++i) {
-    const Vec& before = side[(i + count - 1) % count];
-    core.vertex.push_back(at(i, -1));
-    if (!round.has_apex) core.vertex.push_back(at(i, 1));
-    add_edge(core, at(i, -1), at(i + 1, -1), down, side[i]);
-    if (!round.has_apex) add_edge(core, at(i, 1), at(i + 1, 1), up, side[i]);
-    add_edge(core, at(i, -1), round.has_apex ? top : at(i, 1), before, side[i]);
+  // The vertices are the lower rim and then the upper rim or the apex.
+  for (const Vec& point : rim) core.vertex.push_back(point * Number(round.radius) - top);
+  for (std::size_t i = 0; i < (round.has_apex ? 1 : count); ++i) {
+    core.vertex.push_back(round.has_apex ? top : rim[i] * Number(round.radius) + top);
   }
-  if (round.has_apex) core.vertex.push_back(top);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t next = (i + 1) % count;
+    add_edge(core, i, next, down, side[i]);
+    if (!round.has_apex) add_edge(core, count + i, count + next, up, side[i]);
+    add_edge(core, i, round.has_apex ? count : count + i, side[(i + count - 1) % count], side[i]);
+  }
   return core;
 }
 

@@ -52,71 +52,11 @@ function axis(title, values, logarithmic) {
   return {...common, type: "logarithmic", min: from, max: to > from ? to : 10 * from};
 }
 
-// Draws the value at the end of each bar, and a whisker from the least to the greatest sample.
-const values_on_bars = {
-  id: "values",
-  afterDatasetsDraw(chart) {
-    const {ctx, scales: {x, y}, chartArea} = chart;
-    if (chart.options.indexAxis !== "y") return;
-    ctx.save();
-    ctx.font = "11px system-ui, sans-serif";
-    ctx.textBaseline = "middle";
-    const last = chart.getSortedVisibleDatasetMetas().at(-1);
-    last?.data.forEach((bar, i) => {
-      const row = chart.data.datasets[last.index].data[i];
-      if (!row) return;
-      const field = chart.data.datasets[last.index].parsing.xAxisKey;
-      const least = row[`${field}_min`];
-      const most = row[`${field}_max`];
-      let end = Number.isFinite(bar.x) ? bar.x : x.left;
-      if (least > 0 && most >= least) {
-        ctx.strokeStyle = style("--faint");
-        ctx.beginPath();
-        ctx.moveTo(x.getPixelForValue(Math.max(least, x.min)), bar.y);
-        ctx.lineTo(end = Math.max(end, Math.min(x.right, x.getPixelForValue(most))), bar.y);
-        ctx.stroke();
-      }
-      const total = chart.data.datasets.reduce((sum, set) => sum + (set.data[i]?.[set.parsing.xAxisKey] || 0), 0);
-      const text = chart.data.datasets.length > 1 ? short(total) : short(row[field]);
-      const width = ctx.measureText(text).width;
-      const outside = end + 4 + width < chartArea.right;
-      const at = outside ? end + 4 : chartArea.right - width - 3;
-      if (!outside) {
-        ctx.fillStyle = style("--paper");
-        ctx.fillRect(at - 2, bar.y - 7, width + 4, 14);
-      }
-      ctx.fillStyle = style("--ink");
-      ctx.fillText(text, at, bar.y);
-    });
-    ctx.restore();
-  }};
-
-// Writes its name beside each dot if every series has one dot, unless another name is there.
-const names_at_dots = {
-  id: "names",
-  afterDatasetsDraw(chart) {
-    const {ctx, chartArea} = chart;
-    ctx.save();
-    ctx.font = "11px system-ui, sans-serif";
-    ctx.fillStyle = style("--ink");
-    const taken = [];
-    chart.getSortedVisibleDatasetMetas().forEach((meta) => {
-      const set = chart.data.datasets[meta.index];
-      const {x, y} = meta.data[0];
-      const width = ctx.measureText(set.label).width;
-      const left = x + 7 + width < chartArea.right ? x + 7 : x - 7 - width;
-      if (taken.some(([a, b, c]) => left < b && left + width > a && Math.abs(y - c) < 12)) return;
-      taken.push([left, left + width, y]);
-      ctx.fillText(set.label, left, y - 5);
-    });
-    ctx.restore();
-  }};
-
 const shared = (tooltip) => ({
   animation: false, responsive: true, maintainAspectRatio: false, normalized: true,
   plugins: {
     legend: {position: "bottom", labels: {color: style("--ink"), usePointStyle: true, boxWidth: 8, font: {size: 11}}},
-    tooltip: {callbacks: {title: () => "", label: tooltip}}}});
+    tooltip: {filter: ({raw}) => !Array.isArray(raw), callbacks: {title: () => "", label: tooltip}}}});
 
 const note = (field) => (item) => {
   const row = item.raw;
@@ -125,24 +65,30 @@ const note = (field) => (item) => {
   return [String(row.run_name || row.name), `${label(at)}: ${short(row[at])}${ends}`];
 };
 
-// One named bar for each row, the best first; several fields are stacked.
+// One bar for each row, named with its value, the best first; several fields are stacked. The bar of one field has a
+// whisker from the least to the greatest sample.
 function bars(list, key, fields, unit) {
   const sum = (row) => fields.reduce((total, field) => total + (row[field] || 0), 0);
   const sorted = list.filter((row) => Number.isFinite(sum(row))).sort((a, b) => sum(a) - sum(b));
+  const stacked = fields.length > 1;
   const options = shared(note((item) => item.dataset.parsing.xAxisKey));
-  options.plugins.legend.display = fields.length > 1;
+  options.plugins.legend.display = stacked;
+  const datasets = fields.map((field, i) => ({
+    label: label(field), data: sorted, parsing: {xAxisKey: field, yAxisKey: key},
+    backgroundColor: stacked ? part_colour(field, i, fields.length) : sorted.map((row) => bar_colour(String(row[key]))),
+    barPercentage: 0.8, categoryPercentage: 0.95, minBarLength: 1}));
+  const ends = sorted.map((row) => [row[`${fields[0]}_min`], row[`${fields[0]}_max`]]);
+  if (!stacked) {
+    datasets.push({data: ends.map((pair) => pair.every(Number.isFinite) ? pair : null), backgroundColor: style("--faint"),
+                   grouped: false, barThickness: 2, order: -1});
+  }
   return {
-    type: "bar", plugins: [values_on_bars],
-    data: {labels: sorted.map((row) => row[key]),
-           datasets: fields.map((field, i) => ({
-             label: label(field), data: sorted, parsing: {xAxisKey: field, yAxisKey: key},
-             backgroundColor: fields.length > 1 ? part_colour(field, i, fields.length)
-                                                : sorted.map((row) => bar_colour(String(row[key]))),
-             barPercentage: 0.8, categoryPercentage: 0.95, minBarLength: 1}))},
+    type: "bar", data: {labels: sorted.map((row) => row[key]), datasets},
     options: {...options, indexAxis: "y",
-              scales: {x: {...axis(unit, sorted.map(sum), fields.length > 1 ? false : undefined), stacked: fields.length > 1},
-                       y: {stacked: fields.length > 1, grid: {display: false},
-                           ticks: {autoSkip: false, color: style("--ink"), callback: (i) => shown_name(sorted[i]?.[key] ?? "")}}}}};
+              scales: {x: {...axis(unit, sorted.map(sum), stacked ? false : undefined), stacked},
+                       y: {stacked, grid: {display: false},
+                           ticks: {autoSkip: false, color: style("--ink"),
+                                   callback: (i) => `${shown_name(sorted[i][key])}  ${short(sum(sorted[i]))}`}}}}};
 }
 
 const marks = ["circle", "triangle", "rect", "rectRot", "star", "crossRot", "rectRounded"];
@@ -161,6 +107,5 @@ function curves(list, by, x, y, x_title, y_title, line) {
             borderColor: tint, backgroundColor: tint, borderWidth: 1.5, pointStyle: marks[i % marks.length],
             borderDash: is_library(String(name)) ? [5, 3] : [], pointRadius: data.length > 60 ? 1 : 3.5, clip: 8};
   });
-  const named = !line && sets.every((set) => set.data.length === 1);
-  return {type: "scatter", plugins: named ? [names_at_dots] : [], data: {datasets: sets}, options: {...shared(note(y)), scales}};
+  return {type: "scatter", data: {datasets: sets}, options: {...shared(note(y)), scales}};
 }

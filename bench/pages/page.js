@@ -80,7 +80,7 @@ function add_section(title, of_section) {
       draw();
     });
     // The reader selects by the keys that the chart does not show.
-    const all = rows(at.family).filter(at.where);
+    const all = rows_of(at);
     const keys = new Set(all.flatMap((row) => Object.keys(row.$keys)));
     const [menus, list] = selection(all, [...keys].filter((key) => !at.keys.includes(key)), state, draw);
     const fields = at.fields.filter((field) => [field].flat().some((name) => list.some((row) => Number.isFinite(row[name]))));
@@ -88,7 +88,7 @@ function add_section(title, of_section) {
     const field = fields.includes(state.get(key)) ? state.get(key) : fields[0];
     if (fields.length > 1) menus.push(select("value", fields, field, (value) => { state.set(key, value); draw(); }));
     controls.replaceChildren(views_menu, ...menus);
-    text.textContent = at.text;
+    text.textContent = at.text ?? "";
     box.hidden = field === undefined;
     if (field !== undefined) chart_into(box, at.draw(list, field), distinct(list, at.keys[0]).length);
     rows_box.replaceChildren(table(list));
@@ -208,7 +208,7 @@ night.onchange = () => dress(night.matches);
 add_origin();
 add_card();
 for (const section of distinct(views, "section")) {
-  const of_section = views.filter((one) => one.section === section && rows(one.family).some(one.where));
+  const of_section = views.filter((one) => one.section === section && rows_of(one).length > 0);
   if (of_section.length > 0) add_section(section, of_section);
 }
 add_every_row();

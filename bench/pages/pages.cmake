@@ -1,6 +1,6 @@
-# winnow_page(NAME FOLDER TITLE LIBRARIES <library>... SCRIPTS <script>...): writes NAME.cpp, which defines the
-# text of a page as the constant NAME: page.html with body.html, style.css and the scripts of the folder. The
-# JavaScript libraries are read when the tool writes a page.
+# winnow_page(NAME FOLDER TITLE LIBRARIES <library>... SCRIPTS <script>...): compiles in a page as the text NAME:
+# page.html with body.html, style.css and the scripts of the folder, in which variables such as @views@ are replaced.
+# The JavaScript libraries are read when the tool writes a page.
 function(winnow_page name folder title)
   cmake_parse_arguments(PARSE_ARGV 3 arg "" "" "LIBRARIES;SCRIPTS")
   set(page ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/page.html)
@@ -13,17 +13,16 @@ function(winnow_page name folder title)
   list(TRANSFORM arg_SCRIPTS REPLACE "(.+)" "${folder}/\\1.js")
   foreach(script ${elements} ${arg_SCRIPTS})
     file(READ ${script} content)
+    string(CONFIGURE "${content}" content @ONLY)
     string(APPEND scripts "<script>\n${content}</script>\n")
   endforeach()
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS
                ${page} ${folder}/body.html ${folder}/style.css ${elements} ${arg_SCRIPTS})
   string(CONFIGURE "${text}" text @ONLY)
-  file(CONFIGURE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/${name}.cpp @ONLY CONTENT "#include \"bench/pages/page.h\"
-namespace winnow::bench {
-const char* const @name@ = R\"winnow(@text@)winnow\";
-}
-")
+  winnow_text(${name} "${text}")
 endfunction()
+file(READ ${CMAKE_CURRENT_LIST_DIR}/views.json views)
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${CMAKE_CURRENT_LIST_DIR}/views.json)
 winnow_page(kResultsPage ${CMAKE_CURRENT_LIST_DIR} "winnow: results"
             LIBRARIES chart.js/chart.min.js SCRIPTS rows charts views page)
 winnow_page(kDrawPage ${CMAKE_CURRENT_LIST_DIR}/../draw/page winnow

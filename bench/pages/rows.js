@@ -1,24 +1,8 @@
 "use strict";
 // Rows of the results as the views read them. A name is a family and segments: "key:value", or a
-// word, whose key depends on its place. WORDS lists the keys of the words of each family.
+// word, which is the value of the next key of the family. pages.cmake inserts rows/families.json.
 
-const WORDS = {
-  throughput: "scene partition", throughput_growth: "scene partition",
-  throughput_simd: "scene partition", throughput_threads: "scene partition",
-  throughput_skipped: "partition", every_scene: "scene partition", cold: "scene partition memory",
-  hosts: "scene partition", worst_frames: "scene partition",
-  first_frames: "scene", changes: "before after", flow_checks: "shape", limits: "scene", memory: "scene partition",
-  memory_check: "scene partition by", memory_ratio: "scene partition",
-  advice: "scene", advice_ranking: "scene partition", hard_cases: "family engine",
-  hard_cases_all: "engine answer", narrow_best: "kind level", whole_scenes: "scene motion engine",
-  scene_ratios: "scene motion engine", scene_levels: "scene level", scene_costs: "scene level",
-  phases: "shape phase", flows: "shape", flow: "shape", flow_frames: "shape how", standing: "structure manifolds",
-  barriers: "scene", cluster_runs: "scene", trust: "row figure",
-  keys: "operation mode order partition", filter: "question filters scene partition",
-  volume: "setting partition volume", pair: "kind level engine", error: "kind level engine",
-  stability: "kind engine", toi: "kind turn engine", feature: "features steps",
-  partition: "engine query scene", mesh: "what engine", kernel: "kernel volume",
-  continuous: "what", scene: "query"};
+const FAMILIES = @kFamilies@;
 const CURVES = ["angle", "ratio", "offset", "thinness"];
 const WHOLE = {batch: {call: "batch"}, single: {call: "single"}, real_time: {}, manual_time: {}};
 
@@ -29,7 +13,7 @@ const number_of = (text) => text !== "" && isFinite(text) ? Number(text) : text;
 
 function parsed(row) {
   const [family, ...segments] = String(row.run_name || row.name).split("/");
-  const words = (WORDS[family] || "").split(" ");
+  const words = (FAMILIES[family]?.keys || []).filter((key) => !segments.some((one) => one.startsWith(`${key}:`)));
   const keys = {};
   for (const segment of segments) {
     const colon = segment.indexOf(":");
@@ -67,10 +51,11 @@ const families = new Map();
   }
 }
 
+const has_all = (row, members) => Object.entries(members).every(([key, value]) => row[key] === value);
+
 // The rows of a family whose members equal those of `where`.
 function rows(family, where = {}) {
-  return (families.get(family) || []).filter((row) =>
-    Object.entries(where).every(([key, value]) => row[key] === value));
+  return (families.get(family) || []).filter((row) => has_all(row, where));
 }
 
 const distinct = (list, key) => [...new Set(list.map((row) => row[key]))].filter((v) => v !== undefined);

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "bench/common/sample.h"
-#include "bench/contenders/engine.h"
+#include "bench/contenders/engines.h"
 
 #include <algorithm>
 #include <array>
@@ -47,6 +47,14 @@ class PairsAdapter : public Engine {
 
   double update_ms_ = 0.0;
 };
+
+/// Converts a row to the pointer that libraries keep for each object, and back.
+[[nodiscard]] inline void* pointer_of(std::size_t row) noexcept {
+  return reinterpret_cast<void*>(static_cast<std::uintptr_t>(row));
+}
+[[nodiscard]] inline std::uint32_t row_of(const void* pointer) noexcept {
+  return static_cast<std::uint32_t>(reinterpret_cast<std::uintptr_t>(pointer));
+}
 
 [[nodiscard]] inline Pair ordered(std::uint32_t a, std::uint32_t b) noexcept {
   return a < b ? Pair{a, b} : Pair{b, a};

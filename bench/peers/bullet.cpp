@@ -2,7 +2,7 @@
 // (BulletSweep). Bullet's allocator is global, so the bytes of an engine are counted while it
 // works.
 
-#include "bench/contenders/engine.h"
+#include "bench/contenders/engines.h"
 #include "bench/peers/adapter_tools.h"
 #include "bench/peers/registry.h"
 
@@ -10,8 +10,8 @@
 
 #include <BulletCollision/BroadphaseCollision/btAxisSweep3.h>
 #include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
+#include <LinearMath/btAabbUtil2.h>
 #include <LinearMath/btAlignedAllocator.h>
-#include <Eigen/Core>
 
 #include <algorithm>
 #include <atomic>
@@ -49,21 +49,12 @@ void count_memory() {
   static_cast<void>(once);
 }
 
-btVector3 to_bullet(const Eigen::Vector3f& v) {
+btVector3 to_bullet(const Vec3f& v) {
   return {v.x(), v.y(), v.z()};
 }
 
-bool overlap(const btBroadphaseProxy& a, const btBroadphaseProxy& b) {
-  for (int axis = 0; axis < 3; ++axis) {
-    if (a.m_aabbMin[axis] > b.m_aabbMax[axis] || b.m_aabbMin[axis] > a.m_aabbMax[axis]) {
-      return false;
-    }
-  }
-  return true;
-}
-
-std::uint32_t row_of(const btBroadphaseProxy& proxy) {
-  return static_cast<std::uint32_t>(reinterpret_cast<std::uintptr_t>(proxy.m_clientObject));
+Pair rows_of(const btBroadphaseProxy& a, const btBroadphaseProxy& b) {
+  return ordered(row_of(a.m_clientObject), row_of(b.m_clientObject));
 }
 
 /// Common parts of both broad phases: one thread, proxies by row, and bytes.
@@ -95,9 +86,8 @@ class BulletAdapter : public PairsAdapter {
   void add_proxies(BroadPhase& broad_phase, std::span<const Aabb> boxes) {
     proxies_.reserve(boxes.size());
     for (std::size_t i = proxies_.size(); i < boxes.size(); ++i) {
-      proxies_.push_back(broad_phase.createProxy(
-          to_bullet(boxes[i].min), to_bullet(boxes[i].max), 0,
-          reinterpret_cast<void*>(static_cast<std::uintptr_t>(i)), 1, -1, nullptr));
+      proxies_.push_back(broad_phase.createProxy(to_bullet(boxes[i].min), to_bullet(boxes[i].max),
+                                                 0, pointer_of(i), 1, -1, nullptr));
     }
   }
 
@@ -158,7 +148,8 @@ class BulletTrees final : public BulletAdapter {
     for (int i = 0; i < count; ++i) {
       const btBroadphaseProxy& a = *found[i].m_pProxy0;
       const btBroadphaseProxy& b = *found[i].m_pProxy1;
-      if (overlap(a, b)) pairs_.push_back(ordered(row_of(a), row_of(b)));
+      if (TestAabbAgainstAabb2(a.m_aabbMin, a.m_aabbMax, b.m_aabbMin, b.m_aabbMax))
+        pairs_.push_back(rows_of(a, b));
     }
   }
 
@@ -175,7 +166,7 @@ class RowPairs final : public btHashedOverlappingPairCache {
   btBroadphasePair* addOverlappingPair(btBroadphaseProxy* a, btBroadphaseProxy* b) override {
     const int known = GetCount();
     btBroadphasePair* const pair = btHashedOverlappingPairCache::addOverlappingPair(a, b);
-    if (GetCount() > known) rows_.push_back(ordered(row_of(*a), row_of(*b)));
+    if (GetCount() > known) rows_.push_back(rows_of(*a, *b));
     return pair;
   }
 

@@ -1,4 +1,4 @@
-#include "bench/contenders/impact_engine.h"
+#include "bench/contenders/engines.h"
 #include "bench/peers/bullet_shapes.h"
 #include "bench/peers/registry.h"
 

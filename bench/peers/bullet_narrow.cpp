@@ -1,7 +1,7 @@
 // Adapter of Bullet's narrow phase: picks, for each pair of kinds and level, the fastest of
 // Bullet's algorithms, and converts its result. It registers itself in registry.h.
 
-#include "bench/contenders/narrow_engine.h"
+#include "bench/contenders/engines.h"
 #include "bench/peers/bullet_shapes.h"
 #include "bench/peers/narrow_adapter.h"
 #include "bench/peers/registry.h"
@@ -56,14 +56,9 @@ class Report final : public btManifoldResult {
     on_b_ = on_b;
   }
 
-  void write(ContactLevel level, NarrowAnswer& answer) const {
-    answer.overlap = distance_ <= 0;
-    if (level == ContactLevel::boolean) return;
-    const btVector3 on_a = on_b_ + normal_on_b_ * distance_;
-    answer.distance = static_cast<double>(distance_);
-    write_vector(answer.normal, -normal_on_b_.x(), -normal_on_b_.y(), -normal_on_b_.z());
-    write_vector(answer.point, on_a.x(), on_a.y(), on_a.z());
-  }
+  [[nodiscard]] btScalar distance() const { return distance_; }
+  [[nodiscard]] btVector3 normal_on_a() const { return -normal_on_b_; }
+  [[nodiscard]] btVector3 on_a() const { return on_b_ + normal_on_b_ * distance_; }
 
  private:
   btScalar distance_ = kFar;
@@ -95,19 +90,10 @@ class BulletNarrow final : public NarrowAdapter<BulletNarrow> {
     if (kind.a == ellipsoid || kind.b == ellipsoid) return nullptr;
     if (level == ContactLevel::manifold) return &BulletNarrow::manifold;
     const bool verdict = level == ContactLevel::boolean;
-    const bool round = kind.b == sphere || kind.b == capsule;
-    if (round)
-      return verdict ? &BulletNarrow::closed<ContactLevel::boolean>
-                     : &BulletNarrow::closed<ContactLevel::distance>;
-    if (kind.a == sphere && kind.b == box)
-      return verdict ? &BulletNarrow::ball_in_box<ContactLevel::boolean>
-                     : &BulletNarrow::ball_in_box<ContactLevel::distance>;
-    if (kind.b == half_space)
-      return verdict ? &BulletNarrow::over_plane<ContactLevel::boolean>
-                     : &BulletNarrow::over_plane<ContactLevel::distance>;
-    if (kind.a == sphere && kind.b == triangle)
-      return verdict ? &BulletNarrow::ball_on_triangle<ContactLevel::boolean>
-                     : &BulletNarrow::ball_on_triangle<ContactLevel::distance>;
+    if (kind.b == sphere || kind.b == capsule) return &BulletNarrow::closed;
+    if (kind.a == sphere && kind.b == box) return &BulletNarrow::ball_in_box;
+    if (kind.b == half_space) return &BulletNarrow::over_plane;
+    if (kind.a == sphere && kind.b == triangle) return &BulletNarrow::ball_on_triangle;
     if (kind.a == box && kind.b == box && verdict) return &BulletNarrow::axes;
     return verdict ? &BulletNarrow::gjk_verdict : &BulletNarrow::gjk_distance;
   }
@@ -177,24 +163,36 @@ class BulletNarrow final : public NarrowAdapter<BulletNarrow> {
       ++answer.contacts;
       if (answer.overlap && static_cast<double>(point.getDistance()) >= answer.distance) continue;
       answer.overlap = true;
-      const btVector3& n = point.m_normalWorldOnB;
       answer.distance = static_cast<double>(point.getDistance());
-      write_vector(answer.normal, -n.x(), -n.y(), -n.z());
+      answer.normal = -point.m_normalWorldOnB;
     }
   }
 
-  template <ContactLevel level>
+  /// Returns the distance above which an algorithm needs to report nothing.
+  [[nodiscard]] btScalar farthest() const { return only_verdicts() ? 0 : kFar; }
+
+  void write(btScalar distance, const btVector3& to_b, const btVector3& on_a,
+             NarrowAnswer& answer) const {
+    answer.overlap = distance <= 0;
+    if (only_verdicts()) return;
+    answer.distance = static_cast<double>(distance);
+    answer.normal = to_b;
+    answer.point = on_a;
+  }
+  void write(const Report& report, NarrowAnswer& answer) const {
+    write(report.distance(), report.normal_on_a(), report.on_a(), answer);
+  }
+
   void closed(const BodyPair& pair, NarrowAnswer& answer) {
     const Wrapped a(objects_[pair.a]);
     const Wrapped b(objects_[pair.b]);
-    Report report(&a.wrapper, &b.wrapper, level == ContactLevel::boolean ? 0 : kFar);
+    Report report(&a.wrapper, &b.wrapper, farthest());
     written_->setBodies(&objects_[pair.a], &objects_[pair.b]);
     report.setPersistentManifold(written_);
     algorithm_->processCollision(&a.wrapper, &b.wrapper, info_, &report);
-    report.write(level, answer);
+    write(report, answer);
   }
 
-  template <ContactLevel level>
   void ball_in_box(const BodyPair& pair, NarrowAnswer& answer) {
     const Wrapped box(objects_[pair.b]);
     btVector3 on_box;
@@ -203,35 +201,28 @@ class BulletNarrow final : public NarrowAdapter<BulletNarrow> {
     auto& algorithm = static_cast<btSphereBoxCollisionAlgorithm&>(*algorithm_);
     const bool found = algorithm.getSphereDistance(
         &box.wrapper, on_box, normal, depth, objects_[pair.a].getWorldTransform().getOrigin(),
-        shape_of<btSphereShape>(pair.a).getRadius(), level == ContactLevel::boolean ? 0 : kFar);
-    answer.overlap = found && depth <= 0;
-    if (level == ContactLevel::boolean) return;
-    const btVector3 on_ball = on_box + normal * depth;
-    answer.distance = static_cast<double>(depth);
-    write_vector(answer.normal, -normal.x(), -normal.y(), -normal.z());
-    write_vector(answer.point, on_ball.x(), on_ball.y(), on_ball.z());
+        shape_of<btSphereShape>(pair.a).getRadius(), farthest());
+    write(found ? depth : kFar, -normal, on_box + normal * depth, answer);
   }
 
   void detect(btDiscreteCollisionDetectorInterface& detector, const BodyPair& pair,
-              ContactLevel level, NarrowAnswer& answer) const {
+              NarrowAnswer& answer) const {
     btDiscreteCollisionDetectorInterface::ClosestPointInput input;
     input.m_transformA = objects_[pair.a].getWorldTransform();
     input.m_transformB = objects_[pair.b].getWorldTransform();
     Report report(nullptr, nullptr, 0);
     detector.getClosestPoints(input, report, nullptr);
-    report.write(level, answer);
+    write(report, answer);
   }
 
-  template <ContactLevel level>
   void ball_on_triangle(const BodyPair& pair, NarrowAnswer& answer) {
     auto* ball = const_cast<btSphereShape*>(&shape_of<btSphereShape>(pair.a));
     auto* triangle = const_cast<btTriangleShape*>(&shape_of<btTriangleShape>(pair.b));
-    SphereTriangleDetector detector(ball, triangle, level == ContactLevel::boolean ? 0 : kFar);
-    detect(detector, pair, level, answer);
+    SphereTriangleDetector detector(ball, triangle, farthest());
+    detect(detector, pair, answer);
   }
 
   /// Finds the lowest point, as btConvexPlaneCollisionAlgorithm does.
-  template <ContactLevel level>
   void over_plane(const BodyPair& pair, NarrowAnswer& answer) {
     const auto& plane = shape_of<btStaticPlaneShape>(pair.b);
     const btTransform& a = objects_[pair.a].getWorldTransform();
@@ -240,16 +231,12 @@ class BulletNarrow final : public NarrowAdapter<BulletNarrow> {
     const btVector3 lowest =
         a(shape_of<btConvexShape>(pair.a).localGetSupportingVertex(-normal * a.getBasis()));
     const btScalar distance = normal.dot(lowest - b.getOrigin()) - plane.getPlaneConstant();
-    answer.overlap = distance <= 0;
-    if (level == ContactLevel::boolean) return;
-    answer.distance = static_cast<double>(distance);
-    write_vector(answer.normal, -normal.x(), -normal.y(), -normal.z());
-    write_vector(answer.point, lowest.x(), lowest.y(), lowest.z());
+    write(distance, -normal, lowest, answer);
   }
 
   void axes(const BodyPair& pair, NarrowAnswer& answer) {
     btBoxBoxDetector detector(&shape_of<btBoxShape>(pair.a), &shape_of<btBoxShape>(pair.b));
-    detect(detector, pair, ContactLevel::boolean, answer);
+    detect(detector, pair, answer);
   }
 
   /// Returns the radius around the core, which a capsule has.
@@ -292,10 +279,7 @@ class BulletNarrow final : public NarrowAdapter<BulletNarrow> {
       on_a = results.witnesses[0];
       distance = results.distance;
     }
-    answer.overlap = distance <= 0;
-    answer.distance = static_cast<double>(distance);
-    write_vector(answer.normal, to_b.x(), to_b.y(), to_b.z());
-    write_vector(answer.point, on_a.x(), on_a.y(), on_a.z());
+    write(distance, to_b, on_a, answer);
   }
 
   btDefaultCollisionConfiguration configuration_;

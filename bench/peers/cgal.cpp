@@ -1,4 +1,4 @@
-#include "bench/contenders/engine.h"
+#include "bench/contenders/engines.h"
 #include "bench/peers/adapter_tools.h"
 #include "bench/peers/registry.h"
 

@@ -1,4 +1,4 @@
-#include "bench/contenders/engine.h"
+#include "bench/contenders/engines.h"
 #include "bench/peers/adapter_tools.h"
 #include "bench/peers/registry.h"
 
@@ -76,13 +76,8 @@ class EmbreeEngine final : public PairsAdapter {
   static void give_bounds(const RTCBoundsFunctionArguments* arguments) {
     const auto& engine = *static_cast<const EmbreeEngine*>(arguments->geometryUserPtr);
     const Aabb& box = engine.boxes_[arguments->primID];
-    RTCBounds& out = *arguments->bounds_o;
-    out.lower_x = box.min.x();
-    out.lower_y = box.min.y();
-    out.lower_z = box.min.z();
-    out.upper_x = box.max.x();
-    out.upper_y = box.max.y();
-    out.upper_z = box.max.z();
+    *arguments->bounds_o = {box.min.x(), box.min.y(), box.min.z(), 0.0F,
+                            box.max.x(), box.max.y(), box.max.z(), 0.0F};
   }
 
   static void collect(void* self, RTCCollision* found, unsigned count) {

@@ -1,7 +1,7 @@
 // Adapter of Embree for queries on boxes: rays, boxes, balls and nearest neighbours, each query by
 // a call of its own; it registers itself in registry.h; bench/micro times it.
 
-#include "bench/contenders/query_engine.h"
+#include "bench/contenders/engines.h"
 #include "bench/peers/registry.h"
 
 #include <embree3/rtcore.h>

@@ -1,4 +1,4 @@
-#include "bench/contenders/ray_engine.h"
+#include "bench/contenders/engines.h"
 #include "bench/peers/registry.h"
 
 #include <embree3/rtcore.h>

@@ -1,4 +1,4 @@
-#include "bench/contenders/engine.h"
+#include "bench/contenders/engines.h"
 #include "bench/peers/adapter_tools.h"
 #include "bench/peers/registry.h"
 
@@ -32,13 +32,10 @@ class BoxShape final : public fcl::CollisionGeometry<float> {
 using Object = fcl::CollisionObject<float>;
 using Tree = fcl::DynamicAABBTreeCollisionManager<float>;
 
-std::uint32_t row_of(const Object* object) {
-  return static_cast<std::uint32_t>(reinterpret_cast<std::uintptr_t>(object->getUserData()));
-}
-
 // FCL calls this only for objects whose exact boxes overlap.
 bool collect(Object* a, Object* b, void* pairs) {
-  static_cast<std::vector<Pair>*>(pairs)->push_back(ordered(row_of(a), row_of(b)));
+  static_cast<std::vector<Pair>*>(pairs)->push_back(
+      ordered(row_of(a->getUserData()), row_of(b->getUserData())));
   return false;
 }
 
@@ -98,7 +95,7 @@ class FclEngine final : public PairsAdapter {
     for (std::size_t i = objects_.size(); i < boxes.size(); ++i) {
       shapes_.push_back(std::make_shared<BoxShape>(boxes[i]));
       objects_.push_back(std::make_unique<Object>(shapes_.back()));
-      objects_.back()->setUserData(reinterpret_cast<void*>(static_cast<std::uintptr_t>(i)));
+      objects_.back()->setUserData(pointer_of(i));
       handles_.push_back(objects_.back().get());
     }
   }

@@ -1,4 +1,4 @@
-#include "bench/contenders/impact_engine.h"
+#include "bench/contenders/engines.h"
 #include "bench/peers/fcl_shapes.h"
 #include "bench/peers/registry.h"
 

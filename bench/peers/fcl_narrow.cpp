@@ -1,7 +1,7 @@
 // Adapter of FCL's narrow phase: calls its solver's functions for each pair of kinds and level, and
 // converts the results. It registers itself in registry.h.
 
-#include "bench/contenders/narrow_engine.h"
+#include "bench/contenders/engines.h"
 #include "bench/peers/fcl_shapes.h"
 #include "bench/peers/narrow_adapter.h"
 #include "bench/peers/registry.h"
@@ -63,10 +63,8 @@ class FclNarrow final : public NarrowAdapter<FclNarrow<Solver>> {
       const ShapeId id = set.shapes[i];
       const bool shared = id.kind() == ShapeKind::hull && hulls[id.index()] != nullptr;
       if (id.kind() == ShapeKind::triangle) {
-        for (std::size_t k = 0; k < 3; ++k) {
-          const Vec3d& v = set.pool.tables().triangles[id.index()].vertex[k];
-          body.corners[k] = Vector(v[0], v[1], v[2]);
-        }
+        const TriangleShape& triangle = set.pool.tables().triangles[id.index()];
+        for (std::size_t k = 0; k < 3; ++k) body.corners[k] = as_eigen(triangle.vertex[k]);
       } else if (shared) {
         body.geometry = hulls[id.index()];
       } else {
@@ -156,9 +154,8 @@ class FclNarrow final : public NarrowAdapter<FclNarrow<Solver>> {
                            NarrowAnswer& answer) {
     answer.overlap = distance <= 0.0;
     answer.distance = distance;
-    write_vector(answer.point, a.x(), a.y(), a.z());
-    const Vector n = (b - a) / distance;
-    write_vector(answer.normal, n.x(), n.y(), n.z());
+    answer.point = a;
+    answer.normal = (b - a) / distance;
   }
 
   /// EPA of the solver "indep" returns negative depths, and normals in the axes of a.
@@ -179,8 +176,8 @@ class FclNarrow final : public NarrowAdapter<FclNarrow<Solver>> {
       if (contact.penetration_depth > deepest->penetration_depth) deepest = &contact;
     }
     answer.distance = -deepest->penetration_depth;
-    write_vector(answer.normal, deepest->normal.x(), deepest->normal.y(), deepest->normal.z());
-    write_vector(answer.point, deepest->pos.x(), deepest->pos.y(), deepest->pos.z());
+    answer.normal = deepest->normal;
+    answer.point = deepest->pos;
   }
 
   template <typename Shape>

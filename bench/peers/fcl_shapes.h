@@ -1,5 +1,6 @@
 #pragma once
 
+#include <winnow/core/eigen.h>
 #include "bench/peers/narrow_adapter.h"
 
 #include <fcl/geometry/shape/box.h>
@@ -54,8 +55,7 @@ inline std::shared_ptr<Geometry> make_geometry(const ShapeTables& tables, ShapeI
     }
     case ShapeKind::half_space: {
       const HalfSpaceShape& half = tables.half_spaces[i];
-      return std::make_shared<HalfSpaceGeometry>(
-          Vector(half.normal[0], half.normal[1], half.normal[2]), half.offset);
+      return std::make_shared<HalfSpaceGeometry>(half.normal, half.offset);
     }
     case ShapeKind::hull: {
       const HullShape& hull = tables.hulls[i];
@@ -80,7 +80,7 @@ inline std::shared_ptr<Geometry> make_geometry(const ShapeTables& tables, ShapeI
 inline Transform transform_of(const Pose& pose) {
   Transform at = Transform::Identity();
   at.linear() = orientation_of(pose).toRotationMatrix();
-  at.translation() = Vector(pose.position[0], pose.position[1], pose.position[2]);
+  at.translation() = as_eigen(pose.position);
   return at;
 }
 

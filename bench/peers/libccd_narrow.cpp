@@ -1,7 +1,7 @@
 // Adapter of libccd: support functions for winnow's shapes, and its GJK with EPA and its MPR on
 // them. It registers itself in registry.h.
 
-#include "bench/contenders/narrow_engine.h"
+#include "bench/contenders/engines.h"
 #include "bench/peers/narrow_adapter.h"
 #include "bench/peers/registry.h"
 #include "bench/scenes/lens.h"
@@ -257,8 +257,8 @@ class LibccdNarrow final : public NarrowAdapter<LibccdNarrow> {
     if (!answer.overlap) return;
     answer.contacts = 1;
     answer.distance = -depth;
-    write_vector(answer.normal, along.v[0], along.v[1], along.v[2]);
-    write_vector(answer.point, point.v[0], point.v[1], point.v[2]);
+    answer.normal = along.v;
+    answer.point = point.v;
   }
 
   bool portals_;

@@ -1,7 +1,6 @@
 #pragma once
 
-#include "bench/contenders/impact_engine.h"
-#include "bench/contenders/narrow_engine.h"
+#include "bench/contenders/engines.h"
 
 #include <Eigen/Geometry>
 #include <vector>
@@ -21,6 +20,7 @@ class NarrowAdapter : public NarrowEngine {
 
   void run(ContactLevel level, std::span<const BodyPair> pairs) final {
     answers_.resize(pairs.size());
+    level_ = level;
     const PairFunction one = Adapter::pair_function(kind_, level);
     auto& adapter = static_cast<Adapter&>(*this);
     for (std::size_t i = 0; i < pairs.size(); ++i) (adapter.*one)(pairs[i], answers_[i]);
@@ -30,9 +30,12 @@ class NarrowAdapter : public NarrowEngine {
 
  protected:
   void set_kind(const PairKind& kind) { kind_ = kind; }
+  /// True if the current run computes only verdicts.
+  [[nodiscard]] bool only_verdicts() const { return level_ == ContactLevel::boolean; }
 
  private:
   PairKind kind_;
+  ContactLevel level_{};
   std::vector<NarrowAnswer> answers_;
 };
 
@@ -54,14 +57,8 @@ class ImpactAdapter : public ImpactEngine {
 };
 
 [[nodiscard]] inline Eigen::Quaterniond orientation_of(const Pose& pose) {
-  const Quaternion& q = pose.orientation;
-  return Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized();
-}
-
-inline void write_vector(double (&to)[3], double x, double y, double z) noexcept {
-  to[0] = x;
-  to[1] = y;
-  to[2] = z;
+  const Eigen::Quaterniond orientation = pose.orientation;
+  return orientation.normalized();
 }
 
 }  // namespace winnow::bench

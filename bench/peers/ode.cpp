@@ -1,6 +1,6 @@
 // Adapter of ODE's sweep-and-prune space as a broad phase; it registers itself in registry.h.
 
-#include "bench/contenders/engine.h"
+#include "bench/contenders/engines.h"
 #include "bench/peers/adapter_tools.h"
 #include "bench/peers/registry.h"
 
@@ -74,10 +74,6 @@ int sap_order(const std::array<int, 3>& axes) {
   return axes[0] | (axes[1] << 2) | (axes[2] << 4);
 }
 
-std::uint32_t row_of(dGeomID geom) {
-  return static_cast<std::uint32_t>(reinterpret_cast<std::uintptr_t>(dGeomGetData(geom)));
-}
-
 /// ODE in double: the sweep-and-prune space. ODE's own box geoms compute bounds from centre and
 /// half length, with rounding, so a geom class with a box as its data gives exact bounds. ODE's
 /// spaces support one thread only.
@@ -125,7 +121,7 @@ class OdeEngine final : public PairsAdapter {
     for (std::size_t i = geoms_.size(); i < boxes.size(); ++i) {
       const dGeomID geom = dCreateGeom(Library::get().box_class());
       *static_cast<Aabb*>(dGeomGetClassData(geom)) = boxes[i];
-      dGeomSetData(geom, reinterpret_cast<void*>(static_cast<std::uintptr_t>(i)));
+      dGeomSetData(geom, pointer_of(i));
       dSpaceAdd(space_, geom);
       geoms_.push_back(geom);
     }
@@ -133,8 +129,8 @@ class OdeEngine final : public PairsAdapter {
 
   static void collect(void* self, dGeomID a, dGeomID b) {
     auto& engine = *static_cast<OdeEngine*>(self);
-    const std::uint32_t i = row_of(a);
-    const std::uint32_t j = row_of(b);
+    const std::uint32_t i = row_of(dGeomGetData(a));
+    const std::uint32_t j = row_of(dGeomGetData(b));
     if (engine.boxes_[i].overlaps(engine.boxes_[j])) engine.pairs_.push_back(ordered(i, j));
   }
 

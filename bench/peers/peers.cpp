@@ -1,11 +1,5 @@
 #include "bench/peers/peers.h"
 
-#include "bench/contenders/engine.h"
-#include "bench/contenders/impact_engine.h"
-#include "bench/contenders/narrow_engine.h"
-#include "bench/contenders/query_engine.h"
-#include "bench/contenders/ray_engine.h"
-#include "bench/contenders/scene_engine.h"
 #include "bench/peers/registry.h"
 
 namespace winnow::bench {
@@ -18,6 +12,7 @@ std::vector<std::unique_ptr<Interface>> make_peers(int threads) {
 }
 
 template std::vector<std::unique_ptr<Engine>> make_peers(int);
+template std::vector<std::unique_ptr<Yardstick>> make_peers(int);
 template std::vector<std::unique_ptr<QueryEngine>> make_peers(int);
 template std::vector<std::unique_ptr<NarrowEngine>> make_peers(int);
 template std::vector<std::unique_ptr<ImpactEngine>> make_peers(int);

@@ -1,9 +1,8 @@
-#include "bench/peers/yardstick.h"
-
-#ifdef WINNOW_HAVE_YARDSTICK
+#include "bench/common/address_range.h"
+#include "bench/peers/peers.h"
+#include "bench/peers/registry.h"
 
 #include <sg3.h>
-#include "bench/common/address_range.h"
 
 #include <algorithm>
 #include <array>
@@ -23,7 +22,7 @@ std::unique_ptr<AddressRange> room_for_pairs(std::size_t objects) {
   return std::make_unique<AddressRange>((pairs + kSlack) * sizeof(u64));
 }
 
-class YardstickEngine final : public Engine {
+class YardstickEngine final : public Yardstick {
  public:
   explicit YardstickEngine(int threads) : threads_(std::min(threads, kMaxThreads)) {
     sweep_.k = 5;  // strips of five mean extents
@@ -92,22 +91,7 @@ class YardstickEngine final : public Engine {
   mutable std::vector<Pair> joined_;
 };
 
+const RegisteredPeer<Yardstick, YardstickEngine> kYardstickEngine;
+
 }  // namespace
-
-std::unique_ptr<Engine> make_yardstick(int threads) {
-  return std::make_unique<YardstickEngine>(threads);
-}
-
 }  // namespace winnow::bench
-
-#else
-
-namespace winnow::bench {
-
-std::unique_ptr<Engine> make_yardstick(int /*threads*/) {
-  return nullptr;
-}
-
-}  // namespace winnow::bench
-
-#endif

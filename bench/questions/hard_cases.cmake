@@ -1,10 +1,12 @@
-# Compiles tests/hard_cases into the library of questions.
+# Compiles tests/hard_cases into the library of questions: an object of the files' arrays by family.
 file(GLOB hard_cases CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tests/hard_cases/*.json)
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${hard_cases})
-set(WINNOW_HARD_CASES "")
+set(families "")
+set(comma "")
 foreach(file IN LISTS hard_cases)
   get_filename_component(family ${file} NAME_WE)
   file(READ ${file} cases)
-  string(APPEND WINNOW_HARD_CASES "    {\"${family}\", R\"winnow_cases(${cases})winnow_cases\"},\n")
+  string(APPEND families "${comma}\"${family}\": ${cases}")
+  set(comma ",\n")
 endforeach()
-configure_file(${CMAKE_CURRENT_LIST_DIR}/hard_case_files.cpp.in hard_case_files.cpp @ONLY)
+winnow_text(kHardCases "{${families}}")

@@ -4,19 +4,13 @@
 #include "bench/questions/shape_json.h"
 
 #include <limits>
-#include <span>
 #include <string>
 
 namespace winnow::bench {
 
-/// A file of tests/hard_cases, compiled in so that the tool does not need the source tree.
-struct HardCaseFile {
-  const char* family;
-  const char* json;
-};
-
-/// Returns all files sorted by name, or none if the tool was built without the tests.
-[[nodiscard]] std::span<const HardCaseFile> hard_case_files() noexcept;
+/// Returns the files of tests/hard_cases, each an array, by their names. They are compiled in;
+/// there are none if the tool was built without the tests.
+[[nodiscard]] const Json& hard_cases();
 
 /// Hard cases are queries in the format of `winnow query` whose results are known independently of
 /// the library. Each has one more member, "expect": either a "status" other than ok, or the result.

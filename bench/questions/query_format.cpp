@@ -1,4 +1,4 @@
-// The format of queries in JSON as tables of members. By them `is_readable` checks types before
+// The format of queries in JSON, which format.json lists. By it `is_readable` checks types before
 // shape_json.cpp and questions.cpp read a query, `fault_of` explains why a query is refused, and
 // `query_format` writes the help of `winnow query`.
 
@@ -8,30 +8,45 @@
 
 #include <algorithm>
 #include <cmath>
-#include <span>
+#include <string_view>
 
 namespace winnow::bench {
+
+extern const char* const kQueryFormat;  // the text of format.json
+
 namespace {
 
-/// A condition on a value: on its type, on each element of an array, and on the range of numbers.
-struct Rule {
-  const char* expected;
-  bool (*has_type)(const Json& value);
-  const Rule* element = nullptr;
-  bool (*is_in_range)(const Json& value) = nullptr;  ///< called only if the type is right
-};
+/// Returns format.json, which lists:
+/// - "rules": conditions on values. A value is a "number", an "exact" number, an "index", one of
+///   "values", or a list "of" a rule. A number is "finite" and has a "least" value; a list has a
+///   "size", or at least one element, "nonzero" elements, and "equal_rows".
+/// - "members": rules and meanings of members, by their names. A name with a type precedes.
+/// - "convex", "composite", "other": the members of each type of shape, and of other objects.
+const Json& format() {
+  static const Json format = Json::parse(kQueryFormat);
+  return format;
+}
 
-struct Member {
-  const char* name;
-  const Rule* rule;
-  const char* meaning;  ///< with the unit
-  bool required = true;
-};
+/// Returns the entry of a member in format.json.
+const Json& entry_of(const std::string& object, const std::string& name) {
+  const Json& members = format()["members"];
+  const auto at = members.find(object + "." + name);
+  return at != members.end() ? *at : members[name];
+}
+const Json& rule_of(const Json& entry) {
+  return format()["rules"][entry["rule"].get_ref<const std::string&>()];
+}
 
-struct ShapeFormat {
-  const char* type;
-  std::vector<Member> members;
-};
+/// Calls `visit(object, name of the member)` for each member of each object, in the order of the
+/// help.
+template <typename Visit>
+void visit_members(Visit&& visit) {
+  for (const char* const group : {"convex", "composite", "other"}) {
+    for (const auto& [object, names] : format()[group].items()) {
+      for (const std::string name : names) visit(object, name);
+    }
+  }
+}
 
 /// Returns the number, or NaN if the value is none.
 double number_of(const Json& value) {
@@ -39,122 +54,38 @@ double number_of(const Json& value) {
   static_cast<void>(read_exact_number(value, number));
   return number;
 }
-bool is_number(const Json& value) {
-  double number = 0.0;
-  return read_number(value, number);
-}
-bool is_exact(const Json& value) {
-  double number = 0.0;
-  return read_exact_number(value, number);
-}
-bool is_finite(const Json& value) {
-  return std::isfinite(number_of(value));
-}
-bool is_length(const Json& value) {
-  return is_finite(value) && number_of(value) >= 0.0;
-}
-bool is_not_negative(const Json& value) {
-  return number_of(value) >= 0.0;
-}
-template <std::size_t N>
-bool has_size(const Json& value) {
-  return value.is_array() && value.size() == N;
-}
-bool is_list(const Json& value) {
-  return value.is_array() && !value.empty();
-}
-/// Returns whether a number of an array differs from 0, or is none.
-bool has_nonzero(const Json& value) {
-  return std::any_of(value.begin(), value.end(), [](const Json& one) { return one != 0.0; });
-}
-bool has_no_zero(const Json& value) {
-  return std::none_of(value.begin(), value.end(), [](const Json& one) { return one == 0.0; });
-}
+
 /// Returns whether the rows of an array that are arrays have equal lengths.
 bool has_equal_rows(const Json& value) {
-  return is_list(value) && std::all_of(value.begin(), value.end(), [&](const Json& row) {
-           return !row.is_array() || !value[0].is_array() || row.size() == value[0].size();
-         });
-}
-bool is_index(const Json& value) {
-  return value.is_number_unsigned();
-}
-bool is_kind_of_features(const Json& value) {
-  return value == "vertex_face" || value == "edge_edge";
+  return std::all_of(value.begin(), value.end(), [&](const Json& row) {
+    return !row.is_array() || !value[0].is_array() || row.size() == value[0].size();
+  });
 }
 
-constexpr Rule kNumber{"a finite number", is_number, nullptr, is_finite};
-constexpr Rule kLength{"a finite number >= 0", is_number, nullptr, is_length};
-constexpr Rule kRayEnd{"a number >= 0, or \"inf\"", is_number, nullptr, is_not_negative};
-constexpr Rule kExact{"a finite number, or a string such as \"0x1.8p+1\"", is_exact, nullptr,
-                      is_finite};
-constexpr Rule kSeparation{"a finite number >= 0, or a string such as \"0x1.8p+1\"", is_exact,
-                           nullptr, is_length};
-constexpr Rule kVector{"three numbers [x, y, z]", has_size<3>, &kNumber};
-constexpr Rule kDirection{"three numbers [x, y, z], not all 0", has_size<3>, &kNumber, has_nonzero};
-constexpr Rule kQuaternion{"four numbers [w, x, y, z], not all 0", has_size<4>, &kNumber,
-                           has_nonzero};
-constexpr Rule kLengths3{"three numbers >= 0", has_size<3>, &kLength};
-constexpr Rule kLengths2{"two numbers >= 0", has_size<2>, &kLength};
-constexpr Rule kSpacing{"two numbers > 0", has_size<2>, &kLength, has_no_zero};
-constexpr Rule kPoints{"an array of points [x, y, z]", is_list, &kVector};
-constexpr Rule kThreePoints{"three points [x, y, z]", has_size<3>, &kVector};
-constexpr Rule kIndex{"an index of a point, from 0", is_index};
-constexpr Rule kCorners{"three indices [i, j, k]", has_size<3>, &kIndex};
-constexpr Rule kTriangles{"an array of triangles [i, j, k]", is_list, &kCorners};
-constexpr Rule kRow{"an array of numbers", is_list, &kNumber};
-constexpr Rule kRows{"rows with equally many numbers", has_equal_rows, &kRow};
-constexpr Rule kExactPoint{"three numbers [x, y, z]", has_size<3>, &kExact};
-constexpr Rule kFourPoints{"four points [x, y, z]", has_size<4>, &kExactPoint};
-constexpr Rule kFeatures{"\"vertex_face\" or \"edge_edge\"", is_kind_of_features};
+/// Returns whether the type of a value, but not of its elements, is right.
+bool has_type(const Json& rule, const Json& value) {
+  double number = 0.0;
+  const Json& type = member(rule, "type");
+  if (type == "number") return read_number(value, number);
+  if (type == "exact") return read_exact_number(value, number);
+  if (type == "index") return value.is_number_unsigned();
+  if (const Json& values = member(rule, "values"); !values.is_null()) {
+    return std::find(values.begin(), values.end(), value) != values.end();
+  }
+  if (!value.is_array() || value.empty()) return false;
+  if (rule.contains("equal_rows") && !has_equal_rows(value)) return false;
+  return !rule.contains("size") || value.size() == rule["size"];
+}
 
-const std::vector<Member> kPose{
-    {"position", &kVector, "position of the shape's frame; length; 0 if missing", false},
-    {"orientation", &kQuaternion, "quaternion [w,x,y,z] of any length; no unit; 1 if missing",
-     false}};
-
-const Member kRadius{"radius", &kLength, "radius; length"};
-const Member kHalfLength{"half_length", &kLength,
-                         "half of the extent along the local z axis, without rounded caps; length"};
-const Member kRounding{"rounding", &kLength,
-                       "radius added outside, for convex shapes; length; 0 if missing", false};
-
-const std::vector<ShapeFormat> kConvex{
-    {"sphere", {kRadius, kRounding}},
-    {"capsule", {kRadius, kHalfLength, kRounding}},
-    {"cylinder", {kRadius, kHalfLength, kRounding}},
-    {"cone", {kRadius, kHalfLength, kRounding}},
-    {"box", {{"half", &kLengths3, "half of the edges along x, y, z; length"}, kRounding}},
-    {"triangle", {{"v", &kThreePoints, "vertices; length"}, kRounding}},
-    {"hull", {{"v", &kPoints, "vertices; length"}, kRounding}},
-    {"half_space",
-     {{"normal", &kDirection, "outward normal of any length"},
-      {"offset", &kNumber,
-       "distance of the plane from the origin; length, times that of the normal"},
-      kRounding}},
-    {"ellipsoid", {{"radii", &kLengths3, "semi-axes along x, y, z; length"}, kRounding}},
-    {"tapered_capsule",
-     {{"radii", &kLengths2, "radii at z = -half_length and z = half_length; length"},
-      kHalfLength,
-      kRounding}}};
-const std::vector<ShapeFormat> kComposite{
-    {"mesh",
-     {{"v", &kPoints, "vertices; length"},
-      {"triangles", &kTriangles, "three indices of vertices each, from 0"}}},
-    {"height_field",
-     {{"heights", &kRows, "rows of heights; length"},
-      {"spacing", &kSpacing, "distance of samples along x and y; length; 1 if missing", false}}}};
-
-const std::vector<Member> kRay{
-    {"origin", &kVector, "start of the ray; length"},
-    {"direction", &kDirection, "direction of any length; the unit of t"},
-    {"max_t", &kRayEnd, "end of the ray in units of the direction; \"inf\" if missing", false}};
-const std::vector<Member> kMotion{
-    {"kind", &kFeatures, "a vertex and the corners of a face, or the ends of two edges"},
-    {"start", &kFourPoints, "points at time 0; length"},
-    {"end", &kFourPoints, "points at time 1; length"}};
-const Member kMinSeparation{"min_separation", &kSeparation,
-                            "distance that counts as contact; length; 0 if missing", false};
+/// Returns whether a value of the right type is in the range.
+bool is_in_range(const Json& rule, const Json& value) {
+  if (rule.contains("finite") && !std::isfinite(number_of(value))) return false;
+  if (rule.contains("least") && !(number_of(value) >= rule["least"].get<double>())) return false;
+  if (!rule.contains("nonzero")) return true;
+  const auto is_nonzero = [](const Json& one) { return one != 0.0; };
+  return rule["nonzero"] == "all" ? std::all_of(value.begin(), value.end(), is_nonzero)
+                                  : std::any_of(value.begin(), value.end(), is_nonzero);
+}
 
 std::string shortened(const Json& value) {
   constexpr std::size_t kLongest = 60;
@@ -167,7 +98,7 @@ QueryFault fault_at(const std::string& path, std::string expected, const Json& v
   return {path, std::move(expected), value.is_discarded() ? "nothing" : shortened(value)};
 }
 
-std::string joined(const std::string& path, const char* name) {
+std::string joined(const std::string& path, const std::string& name) {
   return path.empty() ? name : path + "." + name;
 }
 
@@ -181,37 +112,37 @@ class FormatCheck {
   /// Without `ranges` only types are checked.
   explicit FormatCheck(bool ranges) : ranges_(ranges) {}
 
-  [[nodiscard]] Fault members(const Json& object, std::span<const Member> members,
+  /// Checks the members that format.json lists for a type of shape, in "convex" or "composite", or
+  /// for an object in "other".
+  [[nodiscard]] Fault members(const Json& object, const char* group, const std::string& type,
                               const std::string& path) const {
     if (!object.is_object()) return fault_at(path, "an object", object);
-    for (const Member& one : members) {
-      if (Fault fault = member_of(object, one, path)) return fault;
+    for (const std::string name : format()[group][type]) {
+      const Json& entry = entry_of(type, name);
+      const std::string place = joined(path, name);
+      if (object.contains(name)) {
+        if (Fault fault = value(object[name], rule_of(entry), place)) return fault;
+      } else if (!entry.contains("optional")) {
+        return fault_at(place, rule_of(entry)["expected"], Json::value_t::discarded);
+      }
     }
     return {};
-  }
-  [[nodiscard]] Fault member_of(const Json& object, const Member& member,
-                                const std::string& path) const {
-    if (object.contains(member.name)) {
-      return value(object[member.name], *member.rule, joined(path, member.name));
-    }
-    if (!member.required) return {};
-    return fault_at(joined(path, member.name), member.rule->expected, Json::value_t::discarded);
   }
   [[nodiscard]] Fault shape(const Json& shape, Allowed allowed, const std::string& path) const {
     if (!shape.is_object()) return fault_at(path, "a shape, {\"type\": ...}", shape);
     for (const char* const pose : {"pose", "end_pose"}) {
       if (!shape.contains(pose)) continue;
-      if (Fault fault = members(shape[pose], kPose, joined(path, pose))) return fault;
+      if (Fault fault = members(shape[pose], "other", "pose", joined(path, pose))) return fault;
     }
     const Json& type = member(shape, "type");
     if (allowed == Allowed::any && type == "compound") return children(shape, path);
     std::string types;
-    for (const auto* const formats : {&kConvex, &kComposite}) {
-      if (allowed == Allowed::convex && formats == &kComposite) break;
-      for (const ShapeFormat& format : *formats) {
-        types += (types.empty() ? "" : ", ") + std::string(format.type);
-        if (type != format.type) continue;
-        Fault fault = members(shape, format.members, path);
+    for (const char* const group : {"convex", "composite"}) {
+      if (allowed == Allowed::convex && group != std::string_view("convex")) break;
+      for (const auto& [name, names] : format()[group].items()) {
+        types += (types.empty() ? "" : ", ") + name;
+        if (type != name) continue;
+        Fault fault = members(shape, group, name, path);
         return fault || type != "mesh" ? fault : indices(shape, path);
       }
     }
@@ -221,14 +152,16 @@ class FormatCheck {
   }
 
  private:
-  [[nodiscard]] Fault value(const Json& value, const Rule& rule, const std::string& path) const {
-    const bool is_right = rule.has_type(value);
-    for (std::size_t i = 0; is_right && rule.element != nullptr && i < value.size(); ++i) {
-      const std::string element = path + "[" + std::to_string(i) + "]";
-      if (Fault fault = this->value(value[i], *rule.element, element)) return fault;
+  [[nodiscard]] Fault value(const Json& value, const Json& rule, const std::string& path) const {
+    const bool is_right = has_type(rule, value);
+    for (std::size_t i = 0; is_right && rule.contains("of") && i < value.size(); ++i) {
+      const Json& element = format()["rules"][rule["of"].get_ref<const std::string&>()];
+      if (Fault fault = this->value(value[i], element, path + "[" + std::to_string(i) + "]")) {
+        return fault;
+      }
     }
-    if (is_right && (!ranges_ || rule.is_in_range == nullptr || rule.is_in_range(value))) return {};
-    return fault_at(path, rule.expected, value);
+    if (is_right && (!ranges_ || is_in_range(rule, value))) return {};
+    return fault_at(path, rule["expected"], value);
   }
   /// The pool accepts only indices of vertices.
   [[nodiscard]] Fault indices(const Json& mesh, const std::string& path) const {
@@ -247,7 +180,9 @@ class FormatCheck {
     const std::string list = joined(path, "children");
     const Json nothing(Json::value_t::discarded);
     const Json& children = shape.contains("children") ? shape["children"] : nothing;
-    if (!is_list(children)) return fault_at(list, "an array of shapes", children);
+    if (!children.is_array() || children.empty()) {
+      return fault_at(list, "an array of shapes", children);
+    }
     for (std::size_t i = 0; i < children.size(); ++i) {
       const std::string child = list + "[" + std::to_string(i) + "]";
       if (Fault fault = this->shape(children[i], Allowed::child, child)) return fault;
@@ -269,12 +204,12 @@ std::optional<QueryFault> fault_of(const Json& query) {
   const FormatCheck check(true);
   if (!query.is_object()) return fault_at("", "an object", query);
   if (query.contains("ray")) {
-    if (Fault fault = check.members(query["ray"], kRay, "ray")) return fault;
+    if (Fault fault = check.members(query["ray"], "other", "ray", "ray")) return fault;
     return fault_of_shape(query, "target", Allowed::convex);
   }
   if (query.contains("motion")) {
-    if (Fault fault = check.members(query["motion"], kMotion, "motion")) return fault;
-    return check.member_of(query, kMinSeparation, "");
+    if (Fault fault = check.members(query["motion"], "other", "motion", "motion")) return fault;
+    return check.members(query, "other", "query", "");
   }
   if (!query.contains("a") && !query.contains("b")) {
     return fault_at("", "the members \"a\" and \"b\", \"ray\" and \"target\", or \"motion\"",
@@ -294,73 +229,19 @@ bool is_readable(const Json& value, QueryPart part) {
     case QueryPart::any_shape:
       return !check.shape(value, Allowed::any, "");
     case QueryPart::ray:
-      return !check.members(value, kRay, "");
+      return !check.members(value, "other", "ray", "");
     default:
-      return !check.members(member(value, "motion"), kMotion, "") &&
-             !check.member_of(value, kMinSeparation, "");
+      return !check.members(member(value, "motion"), "other", "motion", "") &&
+             !check.members(value, "other", "query", "");
   }
 }
-
-const std::string& query_example() {
-  static const std::string example = R"([
- {"id": "two shapes",
-  "a": {"type": "sphere", "radius": 1},
-  "b": {"type": "box", "half": [1, 2, 0.5], "rounding": 0.1,
-        "pose": {"position": [2, 0, 0], "orientation": [1, 0, 0, 0]}}},
- {"id": "round shapes",
-  "a": {"type": "capsule", "radius": 0.5, "half_length": 2},
-  "b": {"type": "tapered_capsule", "radii": [0.5, 0.25], "half_length": 1}},
- {"id": "solids of revolution",
-  "a": {"type": "cylinder", "radius": 1, "half_length": 2},
-  "b": {"type": "cone", "radius": 1, "half_length": 1, "pose": {"position": [0, 0, 9]}}},
- {"id": "points",
-  "a": {"type": "triangle", "v": [[0, 0, 0], [1, 0, 0], [0, 1, 0]]},
-  "b": {"type": "hull", "v": [[0, 0, 1], [1, 0, 1], [0, 1, 1], [0, 0, 2]]}},
- {"id": "a ray",
-  "ray": {"origin": [0, 0, 5], "direction": [0, 0, -1], "max_t": 10},
-  "target": {"type": "half_space", "normal": [0, 0, 1], "offset": 1}},
- {"id": "a time of impact",
-  "a": {"type": "ellipsoid", "radii": [1, 2, 3], "pose": {"position": [0, 0, 9]},
-        "end_pose": {"position": [0, 0, -9], "orientation": [0.8, 0.6, 0, 0]}},
-  "b": {"type": "mesh", "v": [[-9, -9, 0], [9, -9, 0], [0, 9, 0]], "triangles": [[0, 1, 2]]}},
- {"id": "a compound on a terrain",
-  "a": {"type": "compound", "pose": {"position": [1, 1, 5]}, "end_pose": {"position": [1, 1, 0]},
-        "children": [{"type": "sphere", "radius": 0.5},
-                     {"type": "box", "half": [1, 1, 1], "pose": {"position": [0, 0, 1]}}]},
-  "b": {"type": "height_field", "heights": [[0, 1, 0], [1, 0, 1], [0, 1, 0]], "spacing": [1, 1]}},
- {"id": "a vertex and a face", "min_separation": 0.01,
-  "motion": {"kind": "vertex_face",
-             "start": [[0.2, 0.2, 1], [0, 0, 0], [1, 0, 0], [0, 1, 0]],
-             "end": [[0.2, 0.2, "-0x1p+0"], [0, 0, 0], [1, 0, 0], [0, 1, 0]]}}
-]
-)";
-  return example;
-}
-
-namespace {
-
-/// Calls `visit(object, member)` for each member of each table, in the order of the help.
-template <typename Visit>
-void visit_members(Visit&& visit) {
-  for (const auto* const formats : {&kConvex, &kComposite}) {
-    for (const ShapeFormat& format : *formats) {
-      for (const Member& member : format.members) visit(format.type, member);
-    }
-  }
-  for (const Member& member : kPose) visit("pose", member);
-  for (const Member& member : kRay) visit("ray", member);
-  for (const Member& member : kMotion) visit("motion", member);
-  visit("query", kMinSeparation);
-}
-
-}  // namespace
 
 std::vector<std::string> query_words() {
   std::vector<std::string> words{"id",     "a",    "b",        "ray",      "target",
                                  "motion", "pose", "end_pose", "compound", "children"};
-  visit_members([&](const char* object, const Member& member) {
-    words.emplace_back(object);
-    words.emplace_back(member.name);
+  visit_members([&](const std::string& object, const std::string& name) {
+    words.push_back(object);
+    words.push_back(name);
   });
   return words;
 }
@@ -369,7 +250,7 @@ std::string query_format() {
   std::string text =
       "The file is an array of queries. This example has every member; `winnow query` answers "
       "it:\n\n" +
-      query_example() +
+      std::string(kQueryExample) +
       "\nAll lengths are in one unit of your choice; points are [x,y,z]. Times run from 0 "
       "(\"pose\") "
       "to 1\n(\"end_pose\"). Numbers may also be \"inf\", \"-inf\" and \"nan\".\n\n"
@@ -382,11 +263,12 @@ std::string query_format() {
       "  end_pose                      of a or b: the answer is the time of impact\n"
       "  compound.children             shapes, each with a pose\n";
   std::vector<std::string> lines;
-  visit_members([&](const char* object, const Member& member) {
-    std::string name =
-        "  " + (member.name == kRounding.name ? "" : std::string(object) + ".") + member.name;
+  visit_members([&](const std::string& object, const std::string& member) {
+    const Json& entry = entry_of(object, member);
+    std::string name = "  " + (member == "rounding" ? "" : object + ".") + member;
     name.resize(std::max<std::size_t>(name.size() + 1, 32), ' ');
-    lines.push_back(name + member.rule->expected + ": " + member.meaning + "\n");
+    lines.push_back(name + rule_of(entry)["expected"].get<std::string>() + ": " +
+                    entry["meaning"].get<std::string>() + "\n");
     if (std::find(lines.begin(), lines.end() - 1, lines.back()) == lines.end() - 1) {
       text += lines.back();
     }

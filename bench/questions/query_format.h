@@ -25,8 +25,8 @@ enum class QueryPart { convex_shape, any_shape, ray, motion };
 /// Returns whether a part has all members, each of the right type. Numbers may be out of range.
 [[nodiscard]] bool is_readable(const Json& value, QueryPart part);
 
-/// Returns a file of queries that has each member at least once.
-[[nodiscard]] const std::string& query_example();
+/// The text of example.json, a file of queries that has each member at least once.
+extern const char* const kQueryExample;
 
 /// Returns the names of all members and types of shapes.
 [[nodiscard]] std::vector<std::string> query_words();

@@ -135,16 +135,6 @@ bool is_program(std::span<const std::byte> bytes) {
          std::memcmp(bytes.data(), kMagic.data(), kMagic.size()) == 0;
 }
 
-/// Calls `read` with the bytes of a file.
-template <typename Read>
-auto with_bytes(const std::string& path, Read&& read) {
-  try {
-    return read(read_bytes(path));
-  } catch (const std::bad_alloc&) {
-    throw RecordingError(path + ": does not fit into memory");
-  }
-}
-
 class Player final : public FrameSource {
  public:
   explicit Player(const Recording& recording) : recording_(recording) {}
@@ -174,16 +164,12 @@ void write(std::ofstream& file, const T& value) {
 }  // namespace
 
 Recording read_recording(const std::string& path) {
-  return with_bytes(path, [&](const std::vector<std::byte>& bytes) {
+  try {
+    const std::vector<std::byte> bytes = read_bytes(path);
     return is_program(bytes) ? read_program(path, bytes) : Reader(path, bytes).read();
-  });
-}
-
-std::vector<std::vector<RecordedContact>> read_contacts(const std::string& path) {
-  using Contacts = std::vector<std::vector<RecordedContact>>;
-  return with_bytes(path, [&](const std::vector<std::byte>& bytes) {
-    return is_program(bytes) ? read_program_contacts(path, bytes) : Contacts{};
-  });
+  } catch (const std::bad_alloc&) {
+    throw RecordingError(path + ": does not fit into memory");
+  }
 }
 
 std::unique_ptr<FrameSource> play(const Recording& recording) {

@@ -1,6 +1,6 @@
-// Converts a recording of a program's calls (winnow::Recorder) into frames of boxes or contacts.
-// read_recording() and read_contacts() in aabbs.cpp call it. The calls are played twice: first to
-// find the partition or scene with the most objects, then to read its boxes at each frame's end.
+// Converts a recording of a program's calls (winnow::Recorder) into frames of boxes and contacts.
+// read_recording() in aabbs.cpp calls it. The calls are played twice: first to find the partition
+// or scene with the most objects, then to read its boxes at each frame's end.
 
 #include <winnow/pipeline/replay.h>
 #include "bench/recordings/recording.h"
@@ -17,13 +17,6 @@ class ProgramReader {
  public:
   ProgramReader(const std::string& path, std::span<const std::byte> bytes)
       : path_(path), bytes_(bytes) {}
-
-  std::vector<std::vector<RecordedContact>> read_contacts() {
-    play_once();
-    std::vector<std::vector<RecordedContact>> frames;
-    each_frame([&](const RecordingPlayer& player) { frames.push_back(contacts_of(player)); });
-    return frames;
-  }
 
   Recording read() {
     recording_.scene = std::filesystem::path(path_).stem().string();
@@ -70,23 +63,17 @@ class ProgramReader {
     return 0;
   }
 
-  /// Calls take(player) at the end of each frame that has objects.
-  template <typename Take>
-  void each_frame(Take&& take) const {
-    RecordingPlayer player(bytes_);
-    for (Played played = player.step(); played != Played::end; played = player.step()) {
-      if (played == frame_end_ && size_of(player, world_) != 0) take(player);
-    }
-  }
-
+  /// Plays the recording again and takes the frames that have objects.
   void take_frames() {
-    each_frame([&](const RecordingPlayer& player) {
-      std::vector<Aabb>& frame = recording_.frames.emplace_back();
-      if (recording_.frames.size() > 1) {
-        frame.resize((recording_.frames.end() - 2)->size());
-      }
+    RecordingPlayer player(bytes_);
+    std::size_t rows = 0;
+    for (Played played = player.step(); played != Played::end; played = player.step()) {
+      if (played != frame_end_ || size_of(player, world_) == 0) continue;
+      std::vector<Aabb>& frame = recording_.frames.emplace_back(rows);
       take_boxes(player, frame);
-    });
+      rows = frame.size();
+      recording_.contacts.push_back(contacts_of(player));
+    }
   }
 
   [[nodiscard]] std::vector<RecordedContact> contacts_of(const RecordingPlayer& player) const {
@@ -194,11 +181,6 @@ class ProgramReader {
 
 Recording read_program(const std::string& path, std::span<const std::byte> bytes) {
   return ProgramReader(path, bytes).read();
-}
-
-std::vector<std::vector<RecordedContact>> read_program_contacts(const std::string& path,
-                                                                std::span<const std::byte> bytes) {
-  return ProgramReader(path, bytes).read_contacts();
 }
 
 }  // namespace winnow::bench

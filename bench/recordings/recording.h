@@ -32,6 +32,12 @@ class RecordingError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// A point at which two bodies of a scene touch.
+struct RecordedContact {
+  Vec3f at;      ///< halfway between the surfaces
+  Vec3f normal;  ///< unit, from one body to the other
+};
+
 struct Recording {
   std::string scene;
   std::string object_type;
@@ -39,6 +45,9 @@ struct Recording {
   /// Sizes never decrease: in a program's recording, a frame has a row for each id used so far. A
   /// row whose id no object has in this frame is a point outside the bounds of all boxes.
   std::vector<std::vector<Aabb>> frames;
+  /// For each frame of a program's recording, the contacts that the scene had computed last by the
+  /// frame's end, at level manifold, at the bodies' poses of that time. Empty for an .aabbs file.
+  std::vector<std::vector<RecordedContact>> contacts;
 
   /// Statistics of playing a program's recording.
   struct Program {
@@ -59,23 +68,8 @@ struct Recording {
 /// with liblzma. Throws RecordingError.
 [[nodiscard]] Recording read_recording(const std::string& path);
 
-/// Plays a program's recording twice and returns its boxes as frames. Throws RecordingError.
+/// Plays a program's recording twice and returns its frames. Throws RecordingError.
 [[nodiscard]] Recording read_program(const std::string& path, std::span<const std::byte> bytes);
-
-/// A point at which two bodies of a scene touch.
-struct RecordedContact {
-  Vec3f at;      ///< halfway between the surfaces
-  Vec3f normal;  ///< unit, from one body to the other
-};
-
-/// Returns, for each frame of `read_recording`, the contacts that the scene had computed last by
-/// the frame's end, at level manifold, at the bodies' poses of that time. Returns no frames for an
-/// .aabbs file. Throws RecordingError.
-[[nodiscard]] std::vector<std::vector<RecordedContact>> read_contacts(const std::string& path);
-
-/// As above, for the bytes of a program's recording.
-[[nodiscard]] std::vector<std::vector<RecordedContact>> read_program_contacts(
-    const std::string& path, std::span<const std::byte> bytes);
 
 /// Writes the source's current frame and `steps` more. Throws RecordingError.
 void write_recording(const std::string& path, FrameSource& source, const std::string& object_type,

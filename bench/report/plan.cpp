@@ -1,5 +1,5 @@
 // Lists the measurements of a report: for each section, which measurements of bench/rows run on
-// which scenes and sizes, and with how many frames. report.cpp runs the steps.
+// which scenes and sizes, and with how many frames. commands/report.cpp runs the steps.
 
 #include "bench/report/report.h"
 
@@ -8,7 +8,6 @@
 #include "bench/questions/hard_cases.h"
 #include "bench/rows/rows.h"
 #include "bench/scenes/scene.h"
-#include "bench/trust/ledger.h"
 
 #include <algorithm>
 #include <limits>
@@ -16,6 +15,9 @@
 #include <utility>
 
 namespace winnow::bench {
+
+extern const char* const kLedger;  // the text of trust/ledger.json
+
 namespace {
 
 constexpr std::size_t kLargestForPeers = 150'000;
@@ -147,16 +149,15 @@ void plan_throughput(Plan& plan) {
   const auto cold = plan.few_scenes(kColdScenes);
   plan.each_size(cold, [&](const NamedScene& scene, std::size_t objects, auto name) {
     if (objects > kLargestForPeers) return;
-    const PartitionRowOptions frames{.scene = scene,
-                                     .objects = objects,
-                                     .seed = options.seed,
-                                     .partitions = unlimited_partitions(),
-                                     .threads = options.threads.front(),
-                                     .count = options.quick      ? 1U
-                                              : objects > 20'000 ? 3U
-                                                                 : 7U,
-                                     .yardstick = options.yardstick};
-    plan.add(name + ", first frames", [=](Results& to) { add_cold(to, frames); });
+    const MeasureOptions frames{.objects = objects,
+                                .seed = options.seed,
+                                .partitions = unlimited_partitions(),
+                                .threads = {options.threads.front()},
+                                .yardstick = options.yardstick,
+                                .frames = options.quick      ? 1U
+                                          : objects > 20'000 ? 3U
+                                                             : 7U};
+    plan.add(name + ", first frames", [=](Results& to) { add_cold(to, scene, frames); });
   });
   for (const NamedScene& scene : options.scenes) {
     const std::size_t objects = scene.objects(plan.objects_up_to(100'000));
@@ -170,18 +171,16 @@ void plan_memory(Plan& plan) {
   const auto scenes = plan.few_scenes({"uniform", "mixed"});
   plan.each_size(scenes, [&](const NamedScene& scene, std::size_t objects, auto name) {
     if (objects > kLargestForPeers) return;
-    const PartitionRowOptions memory{.scene = scene,
-                                     .objects = objects,
-                                     .seed = plan.options.seed,
-                                     .threads = plan.options.threads.back()};
-    plan.add(name, [=](Results& to) { add_footprints_apart(to, memory); });
+    const MeasureOptions memory{
+        .objects = objects, .seed = plan.options.seed, .threads = {plan.options.threads.back()}};
+    plan.add(name, [=](Results& to) { add_footprints_apart(to, scene, memory); });
   });
 }
 
 void plan_stability(Plan& plan) {
   plan.add("hard cases", [peers = plan.options.peers](Results& to) {
-    for (const HardCaseFile& file : hard_case_files()) {
-      add_hard_cases(to, file.family, Json::parse(file.json), peers);
+    for (const auto& [family, cases] : hard_cases().items()) {
+      add_hard_cases(to, family, cases, peers);
     }
     add_hard_case_totals(to);
   });
@@ -225,10 +224,11 @@ void plan_pipeline(Plan& plan) {
     });
   }
   for (const char* const scene : {"pile", "terrain", "balls"}) {
-    const SceneCostOptions costs{.scene = scene,
-                                 .frames = plan.quick_or<std::size_t>(2, 9),
-                                 .bodies = plan.quick_or<std::size_t>(60, 0),
-                                 .seed = options.seed};
+    const PipelineMeasureOptions costs{.scene = scene,
+                                       .threads = {1},
+                                       .frames = plan.quick_or<std::size_t>(2, 9),
+                                       .bodies = plan.quick_or<std::size_t>(60, 0),
+                                       .seed = options.seed};
     plan.add(std::string(scene) + ", costs", [=](Results& to) { add_scene_costs(to, costs); });
   }
   for (const std::string& shape : flow_shape_names()) {
@@ -274,6 +274,20 @@ void plan_advice(Plan& plan) {
   }
 }
 
+/// Adds the figures of all tests that try to break winnow; bench/trust/record writes them.
+void add_ledger(Results& results) {
+  for (const Json& row : Json::parse(kLedger)["rows"]) {
+    for (const Json& figure : row["figures"]) {
+      results.add("trust", {{"row", row["name"]},
+                            {"figure", figure["name"]},
+                            {"value", figure["value"]},
+                            {"date", row["date"]},
+                            {"commit", row["commit"]},
+                            {"command", row["command"]}});
+    }
+  }
+}
+
 void plan_trust(Plan& plan) {
   plan.add("the ledger of trust", add_ledger);
 }
@@ -293,14 +307,12 @@ void plan_goals(Plan& plan) {
   });
   plan.each_size(
       plan.few_scenes({"uniform", "mixed"}), [&](auto scene, std::size_t objects, auto name) {
-        const PartitionRowOptions hosts{
-            .scene = scene,
-            .objects = objects,
-            .seed = options.seed,
-            .partitions = {"LinearBvh", "SweepAndPrune", "HierarchicalGrid"},
-            .threads = options.threads.back(),
-            .count = frames};
-        plan.add(name + ", a pool of threads", [=](Results& to) { add_hosts(to, hosts); });
+        const MeasureOptions hosts{.objects = objects,
+                                   .seed = options.seed,
+                                   .partitions = {"LinearBvh", "SweepAndPrune", "HierarchicalGrid"},
+                                   .threads = {options.threads.back()},
+                                   .frames = frames};
+        plan.add(name + ", a pool of threads", [=](Results& to) { add_hosts(to, scene, hosts); });
       });
   plan.each_size(options.scenes, [&](const NamedScene& scene, std::size_t objects, auto name) {
     for (const int threads : options.threads) {

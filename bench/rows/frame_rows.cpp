@@ -7,9 +7,8 @@
 #include "bench/common/thread_pool.h"
 #include "bench/contenders/partition_engine.h"
 #include "bench/measure/cold_frames.h"
-#include "bench/measure/core_distance.h"
-#include "bench/measure/frame_limit.h"
-#include "bench/peers/yardstick.h"
+#include "bench/measure/machine_limits.h"
+#include "bench/peers/peers.h"
 #include "bench/rows/machine.h"
 
 #include <algorithm>
@@ -38,21 +37,36 @@ std::string throughput_fingerprint(const Run& run) {
   return to_hex(sum);
 }
 
-void add_run(Results& results, const NamedScene& scene, const Measurement& measured, const Run& run,
-             double distance_ns, std::string command) {
+/// Returns the members that rows of runs share.
+Json row_of_run(const NamedScene& scene, const Measurement& measured, std::uint64_t seed,
+                const Run& run) {
+  const bool is_yardstick = run.engine == kYardstickName;
+  const char* const command = is_yardstick          ? "dev throughput --yardstick"
+                              : is_peer(run.engine) ? "--with-peers dev throughput --peers"
+                                                    : "dev throughput";
+  // A library is raced together with a partition that must find the same pairs.
+  const std::string partition = !is_peer(run.engine)          ? run.engine
+                                : measured.partition_runs > 0 ? measured.runs.front().engine
+                                                              : "LinearBvh";
+  return {{"scene", scene.name},
+          {"objects", measured.objects},
+          {"partition", run.engine},
+          {"threads", run.threads},
+          {"first_ms", run.frame_ms.front()},
+          {"pairs", run.pairs_a_frame()},
+          {"command", command_text(command, scene.words(measured.objects, seed),
+                                   settings_text(run.threads, run.isa), " --partition ", partition,
+                                   " --frames ", run.frame_ms.size())}};
+}
+
+/// Adds the members of a row of `throughput` and the row.
+void add_run(Results& results, Json row, const Run& run, double distance_ns) {
   const auto ms = run.later_ms();
-  Json row{{"scene", scene.name},
-           {"objects", measured.objects},
-           {"partition", run.engine},
-           {"threads", run.threads},
-           {"isa", to_string(run.isa)},
-           {"frame_ms", to_value(ms)},
-           {"first_ms", run.frame_ms.front()},
-           {"pairs", run.pairs_a_frame()},
-           {"pairs_per_s", 1e-3 * run.pairs_a_frame() / median_of(ms)},
-           {"frames", run.frame_ms.size()},
-           {"fingerprint", throughput_fingerprint(run)},
-           {"command", std::move(command)}};
+  row.update({{"isa", to_string(run.isa)},
+              {"frame_ms", to_value(ms)},
+              {"pairs_per_s", 1e-3 * run.pairs_a_frame() / median_of(ms)},
+              {"frames", run.frame_ms.size()},
+              {"fingerprint", throughput_fingerprint(run)}});
   if (run.median_update_ms() > 0.0) {  // some libraries do not time the update separately
     row["update_ms"] = to_value(run.later_update_ms());
     row["update_share"] = run.median_update_ms() / median_of(ms);
@@ -61,8 +75,7 @@ void add_run(Results& results, const NamedScene& scene, const Measurement& measu
     row["worst_ms"] = spread_of(settled).max;
   }
   if (run.bytes != 0) {
-    row["bytes_per_object"] =
-        static_cast<double>(run.bytes) / static_cast<double>(measured.objects);
+    row["bytes_per_object"] = static_cast<double>(run.bytes) / row["objects"].get<double>();
   }
   if (run.threads > 1) row["core_distance_ns"] = distance_ns;
   results.add("throughput", std::move(row));
@@ -137,21 +150,8 @@ Measurement add_frame_race(Results& results, const NamedScene& scene, MeasureOpt
   const bool shared =
       std::ranges::any_of(measured.runs, [](const Run& run) { return run.threads > 1; });
   const double distance_ns = shared ? core_distance_ns() : 0.0;
-  const auto add = [&](const Run& run, const char* command, const std::string& partition) {
-    add_run(results, scene, measured, run, distance_ns,
-            command_text(command, scene.words(measured.objects, options.seed),
-                         settings_text(run.threads, run.isa), " --partition ", partition,
-                         " --frames ", run.frame_ms.size()));
-  };
-  for (const Run& run : measured.partitions()) {
-    if (!only_peers) add(run, "dev throughput", run.engine);
-  }
-  for (const Run& run : measured.peers()) {
-    // A library is raced together with a partition that must find the same pairs.
-    add(run,
-        run.engine == kYardstickName ? "dev throughput --yardstick"
-                                     : "--with-peers dev throughput --peers",
-        measured.partition_runs > 0 ? measured.runs.front().engine : "LinearBvh");
+  for (const Run& run : only_peers ? measured.peers() : std::span<const Run>(measured.runs)) {
+    add_run(results, row_of_run(scene, measured, options.seed, run), run, distance_ns);
   }
   note_skipped(results, measured.objects, measured.skipped, options.peers);
   require_same_pairs(measured);
@@ -214,58 +214,42 @@ void add_every_scene(Results& results, const NamedScene& scene, MeasureOptions o
   const double yardstick_ms = last.engine == kYardstickName ? settled_spread(last).median : 0.0;
   for (const Run& run : raced.runs) {
     const Spread settled = settled_spread(run);
-    Json row{{"scene", scene.name},
-             {"objects", raced.objects},
-             {"partition", run.engine},
-             {"threads", run.threads},
-             {"median_ms", settled.median},
-             {"worst_ms", settled.max},
-             {"first_ms", run.frame_ms.front()},
-             {"worst_ratio", settled.max / settled.median},
-             {"pairs", run.pairs_a_frame()},
-             {"command",
-              command_text("dev throughput", scene.words(raced.objects, options.seed),
-                           settings_text(run.threads, run.isa), " --frames ", run.frame_ms.size(),
-                           " --partition ",
-                           run.engine == kYardstickName ? "LinearBvh --yardstick" : run.engine)}};
+    Json row = row_of_run(scene, raced, options.seed, run);
+    row.update({{"median_ms", settled.median},
+                {"worst_ms", settled.max},
+                {"worst_ratio", settled.max / settled.median}});
     if (yardstick_ms > 0.0) row["over_yardstick"] = settled.median / yardstick_ms;
     results.add("every_scene", std::move(row));
   }
   require_same_pairs(raced);
 }
 
-std::string partition_command(const std::string& command, const PartitionRowOptions& options,
-                              std::size_t objects, const std::string& partition) {
-  return command_text(command, options.scene.words(objects, options.seed),
-                      settings_text(options.threads), " --partition ", partition);
+std::string partition_command(const std::string& command, const NamedScene& scene,
+                              const MeasureOptions& options, const std::string& partition) {
+  return command_text(command, scene.words(scene.objects(options.objects), options.seed),
+                      settings_text(options.threads.front()), " --partition ", partition);
 }
 
-void add_throughput(Results& results, const PartitionRowOptions& options) {
-  add_frame_race(results, options.scene,
-                 {.objects = options.objects,
-                  .seed = options.seed,
-                  .partitions = options.partitions,
-                  .threads = {options.threads},
-                  .peers = options.peers,
-                  .yardstick = options.yardstick,
-                  .frames = options.count});
-  derive_frames(results, options.scene.name, options.objects);
+void add_throughput(Results& results, const NamedScene& scene, const MeasureOptions& options) {
+  add_frame_race(results, scene, options);
+  derive_frames(results, scene.name, options.objects);
 }
 
-void add_cold(Results& results, const PartitionRowOptions& options) {
+void add_cold(Results& results, const NamedScene& scene, const MeasureOptions& options) {
   constexpr std::size_t kRounds = 7;
-  const auto source = options.scene.source(options.objects, options.seed);
+  const int threads = options.threads.front();
+  const auto source = scene.source(options.objects, options.seed);
   const std::size_t count = source->objects();
-  const ColdRace race = race_cold_frames(
-      source->boxes(), partitions_for(options.partitions, count).taken, options.threads,
-      options.count != 0 ? options.count : kRounds, options.yardstick);
+  const ColdRace race =
+      race_cold_frames(source->boxes(), partitions_for(options.partitions, count).taken, threads,
+                       options.frames != 0 ? options.frames : kRounds, options.yardstick);
   for (const ColdFrames& one : race.frames) {
-    Json row{{"scene", options.scene.name},
+    Json row{{"scene", scene.name},
              {"objects", count},
              {"partition", one.partition},
              {"memory", one.memory},
-             {"threads", options.threads},
-             {"command", partition_command("dev cold", options, count, one.partition)}};
+             {"threads", threads},
+             {"command", partition_command("dev cold", scene, options, one.partition)}};
     for (const auto& [name, ms] : one.times) row[name] = to_value(ms);
     const double total = median_of(one.times.at("total_ms"));
     if (one.memory != kTouched) {
@@ -280,34 +264,33 @@ void add_cold(Results& results, const PartitionRowOptions& options) {
   }
 }
 
-void add_hosts(Results& results, const PartitionRowOptions& options) {
+void add_hosts(Results& results, const NamedScene& scene, const MeasureOptions& options) {
   constexpr std::size_t kFrames = 101;
   constexpr std::size_t kWarmingFrames = 5;
-  const std::size_t objects = options.scene.objects(options.objects);
+  const int threads = options.threads.front();
+  const std::size_t objects = scene.objects(options.objects);
   for (const std::string& partition : partitions_for(options.partitions, objects).taken) {
-    const auto source = options.scene.source(options.objects, options.seed);
-    ThreadPool pool(static_cast<std::size_t>(options.threads));
+    const auto source = scene.source(options.objects, options.seed);
+    ThreadPool pool(static_cast<std::size_t>(threads));
     std::vector<Contender> contenders;
-    contenders.push_back(
-        {std::make_unique<PartitionEngine>(partition, options.threads), options.threads});
+    contenders.push_back({std::make_unique<PartitionEngine>(partition, threads), threads});
     contenders.push_back(
         {std::make_unique<PartitionEngine>(partition, Execution::on(pool.jobs())), 1});
-    const std::size_t frames = options.count != 0 ? options.count : kFrames;
+    const std::size_t frames = options.frames != 0 ? options.frames : kFrames;
     const std::vector<Run> runs =
         race(*source, contenders, {.frames = kWarmingFrames + frames, .block = 1});
     if (!all_agree(runs)) throw std::runtime_error("the threads of a pool find other pairs");
     const auto ms_of = [&](const Run& run) {
       return std::span(run.frame_ms).subspan(std::min(kWarmingFrames, run.frame_ms.size()));
     };
-    results.add("hosts",
-                {{"scene", options.scene.name},
-                 {"objects", objects},
-                 {"partition", partition},
-                 {"threads", options.threads},
-                 {"arena_ms", to_value(ms_of(runs[0]))},
-                 {"pool_ms", to_value(ms_of(runs[1]))},
-                 {"over_arena", median_of(ms_of(runs[1])) / median_of(ms_of(runs[0]))},
-                 {"command", partition_command("dev hosts", options, objects, partition)}});
+    results.add("hosts", {{"scene", scene.name},
+                          {"objects", objects},
+                          {"partition", partition},
+                          {"threads", threads},
+                          {"arena_ms", to_value(ms_of(runs[0]))},
+                          {"pool_ms", to_value(ms_of(runs[1]))},
+                          {"over_arena", median_of(ms_of(runs[1])) / median_of(ms_of(runs[0]))},
+                          {"command", partition_command("dev hosts", scene, options, partition)}});
   }
 }
 

@@ -4,7 +4,7 @@
 #include "bench/rows/rows.h"
 
 #include "bench/common/errors.h"
-#include "bench/contenders/narrow_engine.h"
+#include "bench/contenders/engines.h"
 #include "bench/peers/peers.h"
 #include "bench/questions/hard_cases.h"
 #include "bench/questions/questions.h"

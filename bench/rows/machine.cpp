@@ -2,8 +2,7 @@
 
 #include <winnow/simd/isa.h>
 #include "bench/contenders/reference_sweep.h"
-#include "bench/peers/yardstick.h"
-#include "bench/rows/build_facts.h"
+#include "bench/peers/peers.h"
 
 #include <sys/utsname.h>
 #include <unistd.h>

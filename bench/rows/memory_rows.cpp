@@ -66,26 +66,26 @@ Json run_own(const std::string& subcommand) {
 
 }  // namespace
 
-void add_footprints(Results& results, const PartitionRowOptions& options) {
+void add_footprints(Results& results, const NamedScene& scene, const MeasureOptions& options) {
   bool exact = true;
   for (const std::string& partition :
-       partitions_for(options.partitions, options.scene.objects(options.objects)).taken) {
-    const Held held = measure_held(partition, *options.scene.source(options.objects, options.seed),
-                                   options.threads);
-    const Json keys{{"scene", options.scene.name},
+       partitions_for(options.partitions, scene.objects(options.objects)).taken) {
+    const Held held = measure_held(partition, *scene.source(options.objects, options.seed),
+                                   options.threads.front());
+    const Json keys{{"scene", scene.name},
                     {"objects", held.objects},
                     {"partition", held.partition},
-                    {"threads", options.threads}};
-    add_held(results, keys, held,
-             partition_command("dev footprint", options, options.objects, partition));
+                    {"threads", options.threads.front()}};
+    add_held(results, keys, held, partition_command("dev footprint", scene, options, partition));
     exact = exact && held.exact();
   }
   require_exact(exact);
 }
 
-void add_footprints_apart(Results& results, const PartitionRowOptions& options) {
-  const Json rows = run_own("dev footprint" + options.scene.words(options.objects, options.seed) +
-                            settings_text(options.threads))["benchmarks"];
+void add_footprints_apart(Results& results, const NamedScene& scene,
+                          const MeasureOptions& options) {
+  const Json rows = run_own("dev footprint" + scene.words(options.objects, options.seed) +
+                            settings_text(options.threads.front()))["benchmarks"];
   results.adopt(rows);
   for (const Json& row : rows) require_exact(row.value("exact", "yes") == "yes");
 }

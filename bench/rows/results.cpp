@@ -1,65 +1,32 @@
+// Rows of results: their names, the form in which they are written, and their tables in a terminal.
+
 #include "bench/rows/results.h"
 
 #include "bench/common/sample.h"
+#include "bench/common/table.h"
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <cmath>
 #include <cstdio>
 #include <limits>
-#include <sstream>
+#include <ostream>
+#include <regex>
 #include <stdexcept>
+#include <utility>
 
 namespace winnow::bench {
+
+extern const char* const kFamilies;  // the text of families.json
+
 namespace {
 
-/// Keys of a family in the order of its names, and the value that becomes `real_time`.
-struct Family {
-  std::string_view name;
-  const char* keys;
-  std::string_view time = "";
-};
-
-constexpr std::array kFamilies = std::to_array<Family>({
-    {"throughput", "scene objects threads partition isa", "frame_ms"},
-    {"throughput_growth", "scene partition threads"},
-    {"throughput_simd", "scene objects partition threads isa"},
-    {"throughput_threads", "scene objects partition threads"},
-    {"throughput_skipped", "objects skipped"},
-    {"every_scene", "scene objects partition threads", "median_ms"},
-    {"cold", "scene objects partition memory threads", "total_ms"},
-    {"limits", "scene objects", "frame_ms"},
-    {"hosts", "scene objects partition threads", "pool_ms"},
-    {"memory", "scene objects partition threads"},
-    {"memory_check", "scene objects partition threads by"},
-    {"memory_ratio", "scene objects partition threads"},
-    {"hard_cases", "family engine"},
-    {"hard_cases_all", "engine answer"},
-    {"barriers", "scene objects steps", "ms"},
-    {"whole_scenes", "scene motion engine threads", "ms"},
-    {"scene_ratios", "scene motion engine threads"},
-    {"scene_levels", "scene level motion threads", "ms"},
-    {"scene_costs", "scene level margin threads", "ms"},
-    {"phases", "shape objects phase", "ms"},
-    {"flows", "shape objects steps"},
-    {"flow", "shape objects step"},
-    {"flow_checks", "shape objects steps"},
-    {"flow_frames", "shape objects how", "ms"},
-    {"standing", "structure manifolds seconds"},
-    {"cluster_runs", "scene objects ranks"},
-    {"advice", "scene objects threads"},
-    {"advice_ranking", "scene objects threads partition", "frame_ms"},
-    {"worst_frames", "scene objects threads partition"},
-    {"first_frames", "scene objects threads"},
-    {"changes", "from into objects threads"},
-    {"trust", "row figure"},
-});
-
-const Family& family_named(const std::string& name) {
-  const auto at = std::find_if(kFamilies.begin(), kFamilies.end(),
-                               [&](const Family& one) { return one.name == name; });
-  if (at == kFamilies.end()) throw std::logic_error("no family of rows " + name);
+/// Returns the entry of a family in families.json: "keys", and as "time" the value that becomes
+/// `real_time`, if there is one.
+const Json& family_named(const std::string& name) {
+  static const Json families = Json::parse(kFamilies);
+  const auto at = families.find(name);
+  if (at == families.end()) throw std::logic_error("no family of rows " + name);
   return *at;
 }
 
@@ -81,15 +48,16 @@ std::string name_of(const std::string& family, const Json& row) {
 }
 
 /// Returns a row in the form of Google Benchmark.
-Json benchmark_of(const Family& family, const Json& row) {
+Json benchmark_of(const std::string& family, const Json& row) {
   Json shown{{"name", row["name"]}, {"run_name", row["name"]}, {"run_type", "iteration"},
              {"iterations", 1},     {"real_time", 0.0},        {"cpu_time", 0.0},
              {"time_unit", "ms"}};
-  const auto keys = keys_of(std::string(family.name));
-  for (const auto& [member, value] : row.items()) {
-    if (member == "name" || std::find(keys.begin(), keys.end(), member) != keys.end()) continue;
-    const bool is_time = member == family.time;
-    const std::string name = is_time ? "real_time" : member;
+  const auto keys = keys_of(family);
+  const Json& time = member(family_named(family), "time");
+  for (const auto& [key, value] : row.items()) {
+    if (key == "name" || std::find(keys.begin(), keys.end(), key) != keys.end()) continue;
+    const bool is_time = key == time;
+    const std::string name = is_time ? "real_time" : key;
     shown[name] = value.is_object() ? value["median"] : value;
     if (is_time) shown["cpu_time"] = shown[name];
     if (!value.is_object()) continue;
@@ -98,6 +66,41 @@ Json benchmark_of(const Family& family, const Json& row) {
     if (is_time) shown["iterations"] = value["samples"];
   }
   return shown;
+}
+
+std::string number_text(double value) {
+  if (value == 0.0 || std::abs(value) >= 1e-3) return short_number(value);
+  char text[32];
+  std::snprintf(text, sizeof text, "%.1e", value);
+  return text;
+}
+
+std::string shown(const Json& value) {
+  if (value.is_object()) {
+    return shown(value["median"]) + " (" + shown(value["min"]) + " to " + shown(value["max"]) + ")";
+  }
+  if (value.is_number_integer() && value >= 0) return grouped(value.get<std::size_t>());
+  return value.is_number() ? number_text(value.get<double>()) : key_text(value);
+}
+
+/// Returns "update ms" for "update_ms".
+std::string heading(std::string name) {
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return name;
+}
+
+bool has(const std::vector<std::string>& names, const std::string& name) {
+  return std::ranges::find(names, name) != names.end();
+}
+
+std::vector<std::string> members_of(const std::vector<const Json*>& rows) {
+  std::vector<std::string> names;
+  for (const Json* row : rows) {
+    for (const auto& [name, value] : row->items()) {
+      if (!has(names, name) && name != "name" && name != "command") names.push_back(name);
+    }
+  }
+  return names;
 }
 
 }  // namespace
@@ -143,9 +146,8 @@ const Json* Results::row(const std::string& family, const Json& where) const {
 
 Json Results::document() const {
   Json benchmarks = Json::array();
-  for (const std::string& name : order_) {
-    const Family& family = family_named(name);
-    for (const Json& row : families_.at(name)) benchmarks.push_back(benchmark_of(family, row));
+  for (const std::string& family : order_) {
+    for (const Json& row : families_.at(family)) benchmarks.push_back(benchmark_of(family, row));
   }
   benchmarks.insert(benchmarks.end(), adopted_.begin(), adopted_.end());
   return {{"context", context_}, {"benchmarks", std::move(benchmarks)}};
@@ -164,34 +166,55 @@ std::string document_text(const Json& document) {
   return text + "\n]\n}\n";
 }
 
+void print_rows(std::ostream& out, const Results& results, const std::string& family,
+                const std::vector<std::string>& values) {
+  const auto rows = results.rows(family);
+  if (rows.empty()) return;
+  const auto keys = keys_of(family);
+  const auto members = members_of(rows);
+  std::string title = heading(family);
+  std::vector<std::string> columns;
+  for (const std::string& key : keys) {
+    if (rows.size() > 1 && distinct(rows, key).size() == 1) {
+      title += ", " + key + " " + shown((*rows.front())[key]);
+    } else if (has(members, key)) {
+      columns.push_back(key);
+    }
+  }
+  for (const std::string& value : values.empty() ? members : values) {
+    if (has(members, value) && !has(keys, value)) columns.push_back(value);
+  }
+  std::vector<std::string> header;
+  for (const std::string& column : columns) header.push_back(heading(column));
+  Table text(header);
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    const Json& first = *rows.front();
+    if (first.contains(columns[c]) && first[columns[c]].is_string()) text.flush_left(c);
+  }
+  for (const Json* row : rows) {
+    std::vector<std::string> cells;
+    for (const std::string& column : columns) {
+      cells.push_back(row->contains(column) ? shown((*row)[column]) : "-");
+    }
+    text.add(std::move(cells));
+  }
+  out << '\n' << title << '\n' << text << std::flush;
+}
+
 std::vector<std::string> keys_of(const std::string& family) {
-  std::istringstream words(family_named(family).keys);
-  std::vector<std::string> keys;
-  for (std::string word; words >> word;) keys.push_back(word);
-  return keys;
+  return family_named(family)["keys"].get<std::vector<std::string>>();
 }
 
 std::string word_of(std::string_view text) {
-  const auto is = [&](std::size_t i, int (*kind)(int)) {
-    return i < text.size() && kind(static_cast<unsigned char>(text[i])) != 0;
-  };
-  std::string word;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const char c = text[i];
-    const bool starts =
-        i > 0 && is(i, std::isupper) &&
-        (is(i - 1, std::islower) || (is(i - 1, std::isupper) && is(i + 1, std::islower)));
-    if (starts) word += '_';
-    if (c == '%') {
-      word += word.ends_with('_') ? "percent" : "_percent";
-    } else if (c == '+') {
-      word += "plus";
-    } else if (c != '(' && c != ')') {
-      word += c == ' ' || c == '/' || c == ':'
-                  ? '_'
-                  : static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    }
-  }
+  static const std::pair<std::regex, const char*> kRules[] = {
+      {std::regex("[a-z](?=[A-Z])|[A-Z](?=[A-Z][a-z])"), "$&_"},  // words that are joined
+      {std::regex(" ?%"), "_percent"},
+      {std::regex("\\+"), "plus"},
+      {std::regex("[()]"), ""},
+      {std::regex("[ /:]"), "_"}};
+  std::string word(text);
+  for (const auto& [pattern, by] : kRules) word = std::regex_replace(word, pattern, by);
+  std::ranges::transform(word, word.begin(), [](unsigned char c) { return std::tolower(c); });
   return word;
 }
 

@@ -13,7 +13,7 @@
 namespace winnow::bench {
 
 /// Rows that were measured, by family ("throughput", "cold"). A row is an object of keys, which
-/// results.cpp lists for each family, and values: numbers, texts, or spreads (see `to_value`).
+/// families.json lists for each family, and values: numbers, texts, or spreads (see `to_value`).
 ///
 /// `document` returns them in the form of Google Benchmark:
 ///

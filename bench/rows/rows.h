@@ -1,6 +1,6 @@
 #pragma once
 
-// Measurements. Each function measures something and adds its rows to the results; results.cpp
+// Measurements. Each function measures something and adds its rows to the results; families.json
 // lists the families of rows. A function that finds a wrong result adds its rows first and throws
 // std::runtime_error then.
 
@@ -43,35 +43,27 @@ void add_limit(Results& results, const std::string& scene, std::size_t objects);
 /// Adds the frames of all partitions without a size limit.
 void add_every_scene(Results& results, const NamedScene& scene, MeasureOptions options);
 
-/// Partitions on one scene, with one number of threads.
-struct PartitionRowOptions {
-  NamedScene scene;
-  std::size_t objects = 10'000;
-  std::uint64_t seed = 1;
-  std::vector<std::string> partitions{"all"};
-  int threads = 1;
-  std::size_t count = 0;  ///< of frames, or of rounds; 0: chosen by the measurement
-  bool peers = false;
-  bool yardstick = false;
-};
+// The functions below, except add_throughput, measure only on the first number of threads; 0 frames
+// are a default of each, and `frames` are rounds of add_cold.
+
 /// Returns the command that measures a partition again.
-[[nodiscard]] std::string partition_command(const std::string& command,
-                                            const PartitionRowOptions& options, std::size_t objects,
+[[nodiscard]] std::string partition_command(const std::string& command, const NamedScene& scene,
+                                            const MeasureOptions& options,
                                             const std::string& partition);
 /// Adds a race and the rows derived from it.
-void add_throughput(Results& results, const PartitionRowOptions& options);
+void add_throughput(Results& results, const NamedScene& scene, const MeasureOptions& options);
 /// Adds first frames.
-void add_cold(Results& results, const PartitionRowOptions& options);
+void add_cold(Results& results, const NamedScene& scene, const MeasureOptions& options);
 /// Adds frames whose tasks run on a plain pool of threads and on oneTBB.
-void add_hosts(Results& results, const PartitionRowOptions& options);
+void add_hosts(Results& results, const NamedScene& scene, const MeasureOptions& options);
 
 // Memory.
 
 /// Adds the memory that each partition has allocated, which must equal its footprint. The rows by
 /// resident set are correct only if keep_resident_set_exact was called before.
-void add_footprints(Results& results, const PartitionRowOptions& options);
+void add_footprints(Results& results, const NamedScene& scene, const MeasureOptions& options);
 /// As above, in a separate process, whose memory nothing else changes.
-void add_footprints_apart(Results& results, const PartitionRowOptions& options);
+void add_footprints_apart(Results& results, const NamedScene& scene, const MeasureOptions& options);
 
 // The choice of a partition.
 
@@ -106,17 +98,8 @@ struct PipelineMeasureOptions {
   std::vector<int> threads{1, 2};
   bool peers = true;
   std::size_t frames = 9;
-  const BodySet* set = nullptr;  ///< the scene's bodies
+  const BodySet* set = nullptr;  ///< the scene's bodies; add_scene_costs makes its own
   std::size_t bodies = 0;        ///< number of bodies; 0: the scene's default
-  std::uint64_t seed = 1;
-};
-/// Options for the cost of a scene's contacts by level and contact margin, with bodies that move a
-/// little.
-struct SceneCostOptions {
-  std::string scene = "balls";
-  int threads = 1;
-  std::size_t frames = 9;
-  std::size_t bodies = 0;
   std::uint64_t seed = 1;
 };
 
@@ -125,8 +108,9 @@ void add_scene_race(Results& results, const PipelineMeasureOptions& options);
 /// Measures only winnow, up to a level.
 void add_scene_level(Results& results, const PipelineMeasureOptions& options,
                      const std::string& level);
-/// Measures only winnow: bytes of contacts, and the cost of a contact margin.
-void add_scene_costs(Results& results, const SceneCostOptions& options);
+/// Measures only winnow, on the first number of threads, with bodies that move a little: bytes of
+/// contacts, and the cost of a contact margin.
+void add_scene_costs(Results& results, const PipelineMeasureOptions& options);
 /// Returns "pairs", "boolean", "distance", "manifold".
 [[nodiscard]] std::vector<std::string> scene_level_names();
 

@@ -16,21 +16,15 @@ const char* motion_of(const PipelineMeasureOptions& options) {
   return options.resting ? "at rest" : "moving a little";
 }
 
-/// Works for PipelineMeasureOptions and SceneCostOptions; `what` is an option of the command.
-template <typename Options>
-std::string pipeline_command(const Options& options, const std::string& what,
-                             const std::string& threads) {
-  return command_text("dev pipeline --scene ", options.scene, what, " --threads ", threads,
-                      " --frames ", options.frames, " --seed ", options.seed, " --isa ", isa_name(),
-                      options.bodies != 0 ? " --bodies " + std::to_string(options.bodies) : "");
-}
-
-std::string level_command(const PipelineMeasureOptions& options, const std::string& level) {
+/// `what` is an option of the command.
+std::string pipeline_command(const PipelineMeasureOptions& options, const std::string& what) {
   std::string threads;
   for (const int count : options.threads) {
     threads += (threads.empty() ? "" : ",") + std::to_string(count);
   }
-  return pipeline_command(options, " --level " + level, threads);
+  return command_text("dev pipeline --scene ", options.scene, what, " --threads ", threads,
+                      " --frames ", options.frames, " --seed ", options.seed, " --isa ", isa_name(),
+                      options.bodies != 0 ? " --bodies " + std::to_string(options.bodies) : "");
 }
 
 /// Races winnow up to a level and, if wanted, other libraries.
@@ -65,7 +59,7 @@ void add_scene_race(Results& results, const PipelineMeasureOptions& options) {
     row["points"] = timing.finds.points;
     row["bodies"] = options.set->poses.size();
     row["triangles"] = options.set->mesh.size();
-    row["command"] = level_command(options, "manifold");
+    row["command"] = pipeline_command(options, " --level manifold");
     results.add("whole_scenes", std::move(row));
     if (&timing == &timings.front()) continue;
     Json ratio = keys;
@@ -81,9 +75,12 @@ void add_scene_level(Results& results, const PipelineMeasureOptions& options,
     if (level == to_text(one)) highest = one;
   }
   for (const SceneTiming& timing : race_of(options, highest, false)) {
-    Json row{{"scene", options.scene},        {"level", level},
-             {"ms", to_value(timing.ms)},     {"touching", timing.finds.touching},
-             {"points", timing.finds.points}, {"command", level_command(options, level)}};
+    Json row{{"scene", options.scene},
+             {"level", level},
+             {"ms", to_value(timing.ms)},
+             {"touching", timing.finds.touching},
+             {"points", timing.finds.points},
+             {"command", pipeline_command(options, " --level " + level)}};
     if (options.resting || timing.threads != 1) {
       row["motion"] = motion_of(options);
       row["threads"] = timing.threads;
@@ -92,33 +89,32 @@ void add_scene_level(Results& results, const PipelineMeasureOptions& options,
   }
 }
 
-void add_scene_costs(Results& results, const SceneCostOptions& options) {
+void add_scene_costs(Results& results, const PipelineMeasureOptions& options) {
   constexpr double kMargins[] = {0.0, 0.02};  // the second is a fiftieth of a body's size
   constexpr ContactLevel kCostLevels[] = {ContactLevel::distance, ContactLevel::manifold};
+  const int threads = options.threads.front();
   const auto set = make_pipeline_scene(options.scene, options.bodies, options.seed);
   std::vector<SceneContender> contenders;
   for (const ContactLevel level : kCostLevels) {
     for (const double margin : kMargins) {
       contenders.push_back(
-          {make_winnow_scene(options.threads, {.level = level, .contact_margin = margin}),
-           options.threads});
+          {make_winnow_scene(threads, {.level = level, .contact_margin = margin}), threads});
     }
   }
   const auto timings = race_scene(*set, kMoving, contenders, options.frames);
   for (std::size_t i = 0; i < timings.size(); ++i) {
     const SceneTiming& timing = timings[i];
     const auto touching = static_cast<double>(timing.finds.touching);
-    results.add(
-        "scene_costs",
-        {{"scene", options.scene},
-         {"level", to_text(kCostLevels[i / 2])},
-         {"margin", kMargins[i % 2]},
-         {"threads", options.threads},
-         {"ms", to_value(timing.ms)},
-         {"over_none", median_of(timing.ms) / median_of(timings[i - i % 2].ms)},
-         {"bytes_per_contact", static_cast<double>(timing.bytes) / touching},
-         {"touching", timing.finds.touching},
-         {"command", pipeline_command(options, " --costs", std::to_string(options.threads))}});
+    results.add("scene_costs",
+                {{"scene", options.scene},
+                 {"level", to_text(kCostLevels[i / 2])},
+                 {"margin", kMargins[i % 2]},
+                 {"threads", threads},
+                 {"ms", to_value(timing.ms)},
+                 {"over_none", median_of(timing.ms) / median_of(timings[i - i % 2].ms)},
+                 {"bytes_per_contact", static_cast<double>(timing.bytes) / touching},
+                 {"touching", timing.finds.touching},
+                 {"command", pipeline_command(options, " --costs")}});
   }
 }
 

@@ -8,8 +8,7 @@
 #include "bench/common/table.h"
 #include "bench/contenders/partitions.h"
 #include "bench/measure/fingerprint.h"
-#include "bench/simulation/cloth_drop.h"
-#include "bench/simulation/fast_bodies.h"
+#include "bench/simulation/barriers.h"
 #include "bench/simulation/standing.h"
 
 #include <algorithm>
@@ -68,34 +67,6 @@ void add_samples(Results& results, const FlowRowOptions& row_options, const Flow
                                                 {"deepest", sample.deepest},
                                                 {"pairs", sample.contacts},
                                                 {"points", sample.points}}));
-  }
-}
-
-/// Runs a simulation of fast motion and adds its row, whose first values are of `row_of`.
-template <typename Simulation, typename RowOf>
-void run_barrier(Results& results, const BarrierRowOptions& row_options, Simulation simulation,
-                 RowOf&& row_of) {
-  std::vector<double> ms;
-  for (std::size_t i = 0; i < row_options.steps; ++i) {
-    const Stopwatch clock;
-    simulation.step();
-    ms.push_back(clock.ms());
-  }
-  Json row = row_of(simulation);
-  row["scene"] = row_options.scene;
-  row["steps"] = simulation.steps();
-  row["impacts"] = simulation.impacts();
-  row["passed"] = simulation.passed();
-  row["cut_short"] = simulation.cut_short();
-  row["ms"] = to_value(ms);
-  row["fingerprint"] = to_hex(simulation.fingerprint());
-  row["command"] =
-      command_text("simulate --barrier ", row_options.scene, " --steps ", row_options.steps,
-                   settings_text(row_options.threads),
-                   row_options.size != 0 ? " --objects " + std::to_string(row_options.size) : "");
-  results.add("barriers", std::move(row));
-  if (simulation.passed() != 0) {
-    throw std::runtime_error(row_options.scene + ": something passed through");
   }
 }
 
@@ -167,7 +138,7 @@ void add_flow_frames(Results& results, const FlowRowOptions& row_options, std::s
   std::vector<double> phases_ms;
   for (std::size_t frame = 0; frame < frames; ++frame) {
     flow.step();
-    frame_ms.push_back(flow.times().move + flow.times().narrow);
+    frame_ms.push_back(flow.last().times.move + flow.last().times.narrow);
     const std::vector<Pose> poses(flow.contact_poses().begin(),
                                   flow.contact_poses().end() - 1);  // without the mesh
     const Stopwatch clock;
@@ -232,21 +203,35 @@ std::vector<std::string> barrier_names() {
 }
 
 void add_barrier(Results& results, const BarrierRowOptions& row_options) {
-  const Execution execution = execution_for(row_options.threads);
-  if (row_options.scene == "cloth") {
-    ClothOptions options{.execution = execution};
-    if (row_options.size != 0) options.side = row_options.size;
-    run_barrier(results, row_options, ClothDrop(options), [](const ClothDrop& cloth) {
-      return Json{{"objects", cloth.triangles()}, {"stretch", cloth.max_strain()}};
-    });
-    return;
+  const auto barrier = make_barrier({.scene = row_options.scene,
+                                     .size = row_options.size,
+                                     .execution = execution_for(row_options.threads)});
+  std::vector<double> ms;
+  for (std::size_t i = 0; i < row_options.steps; ++i) {
+    const Stopwatch clock;
+    barrier->step();
+    ms.push_back(clock.ms());
   }
-  FastBodiesOptions options{.execution = execution};
-  options.scene = row_options.scene == "blade" ? FastScene::blade : FastScene::funnel;
-  options.bodies = row_options.size != 0 ? row_options.size : 16;
-  run_barrier(results, row_options, FastBodies(options), [](const FastBodies& bodies) {
-    return Json{{"objects", bodies.bodies()}, {"fastest", bodies.fastest()}};
-  });
+  const BarrierFigures figures = barrier->figures();
+  results.add("barriers",
+              {{"scene", row_options.scene},
+               {"objects", figures.objects},
+               {"steps", figures.steps},
+               {"fastest", figures.fastest},
+               {"stretch", figures.strain},
+               {"impacts", figures.impacts},
+               {"passed", figures.passed},
+               {"cut_short", figures.cut_short},
+               {"ms", to_value(ms)},
+               {"fingerprint", to_hex(figures.fingerprint)},
+               {"command", command_text("simulate --barrier ", row_options.scene, " --steps ",
+                                        row_options.steps, settings_text(row_options.threads),
+                                        row_options.size != 0
+                                            ? " --objects " + std::to_string(row_options.size)
+                                            : "")}});
+  if (figures.passed != 0) {
+    throw std::runtime_error(row_options.scene + ": something passed through");
+  }
 }
 
 }  // namespace winnow::bench

@@ -1,5 +1,5 @@
-// Builds the scenes of rigid bodies that the races of the whole pipeline use: a heap, balls, a
-// landscape and two tori. bench/measure and bench/rows call make_heap() and the others; meshes.cpp
+// Builds the scenes of rigid bodies that the races of the whole pipeline use: a heap, balls and a
+// landscape. bench/measure and bench/rows call make_heap() and the others; meshes.cpp
 // makes the meshes.
 
 #include "bench/scenes/body_scenes.h"
@@ -50,27 +50,19 @@ void add_heap_shapes(BodySet& set, std::size_t bodies, Random& random) {
   for (std::size_t i = 0; i < kHulls; ++i) {
     hulls.push_back(add_hull(set.pool, random, 16, random.in(0.4, 0.6)));
   }
-  for (std::size_t i = 0; i < bodies; ++i) {
-    ShapeId id;
-    switch (i % 4) {
+  const auto draw = [&](std::size_t kind) -> ShapeId {
+    switch (kind) {
       case 0:
-        need(set.pool.add(SphereShape{random.in(0.3, 0.5)}, id), "a sphere");
-        break;
+        return set.pool.add(SphereShape{random.in(0.3, 0.5)});
       case 1:
-        need(set.pool.add(CapsuleShape{random.in(0.15, 0.25), random.in(0.7, 1.2)}, id),
-             "a capsule");
-        break;
+        return set.pool.add(CapsuleShape{random.in(0.15, 0.25), random.in(0.7, 1.2)});
       case 2:
-        need(set.pool.add(
-                 BoxShape{{random.in(0.08, 0.65), random.in(0.08, 0.65), random.in(0.08, 0.65)}},
-                 id),
-             "a box");
-        break;
+        return set.pool.add(BoxShape{random.in_cube(0.08, 0.65)});
       default:
-        id = hulls[random.below(kHulls)];
+        return hulls[random.below(kHulls)];
     }
-    set.shapes.push_back(id);
-  }
+  };
+  for (std::size_t i = 0; i < bodies; ++i) set.shapes.push_back(draw(i % 4));
 }
 
 /// Separates overlapping bodies, all in parallel, and keeps them inside the cube.
@@ -81,15 +73,13 @@ void push_apart(BodySet& set, double side) {
   for (int push = 0; push < kPushes; ++push) {
     need(scene.collide(ContactLevel::distance, contacts), "the heap");
     for (std::size_t i = 0; i < contacts.size(); ++i) {
-      const double share = -0.4 * contacts.distance()[i];
-      for (int axis = 0; axis < 3; ++axis) {
-        const double by = share * contacts.normal(axis)[i];
-        set.poses[contacts.data_a()[i]].position[axis] -= by;
-        set.poses[contacts.data_b()[i]].position[axis] += by;
-      }
+      const Vec3d normal{contacts.normal(0)[i], contacts.normal(1)[i], contacts.normal(2)[i]};
+      const Vec3d by = -0.4 * contacts.distance()[i] * normal;
+      set.poses[contacts.data_a()[i]].position -= by;
+      set.poses[contacts.data_b()[i]].position += by;
     }
     for (Pose& pose : set.poses) {
-      for (double& p : pose.position) p = std::clamp(p, 0.0, side);
+      pose.position = pose.position.max(Vec3d()).min(Vec3d::constant(side));
     }
     need(scene.move(keys, set.poses), "the heap");
   }
@@ -97,8 +87,7 @@ void push_apart(BodySet& set, double side) {
 
 /// Moves a hull vertically until its lowest vertex is kSunk below the terrain.
 void lay_down(const HullShape& hull, const Heights& heights, Pose& pose) {
-  const double* q = pose.orientation.data();
-  const Eigen::Quaterniond turn(q[0], q[1], q[2], q[3]);
+  const Eigen::Quaterniond turn = pose.orientation;
   double gap = 1e9;
   for (std::uint32_t v = 0; v < hull.vertex_count; ++v) {
     const Eigen::Vector3d at =
@@ -119,20 +108,15 @@ std::unique_ptr<BodySet> make_heap(std::size_t bodies, std::uint64_t seed) {
   // Draws one position in each cell of a lattice. Fully random positions would leave holes.
   const auto across = static_cast<std::size_t>(std::ceil(side / kRoom - 1e-9));
   for (std::size_t i = 0; i < bodies; ++i) {
-    const std::size_t cell[3] = {i % across, i / across % across, i / across / across};
-    for (int axis = 0; axis < 3; ++axis) {
-      set->poses[i].position[axis] = kRoom * (static_cast<double>(cell[axis]) + random.unit());
-    }
+    const Vec3d cell(static_cast<double>(i % across), static_cast<double>(i / across % across),
+                     static_cast<double>(i / across / across));
+    set->poses[i].position = kRoom * (cell + random.in_cube(0.0, 1.0));
     turn_at_random(random, set->poses[i]);
   }
   // Shuffles the positions, because kinds alternate by row and would form layers.
-  for (std::size_t i = bodies; i > 1; --i) {
-    std::swap(set->poses[i - 1], set->poses[random.below(static_cast<std::uint32_t>(i))]);
-  }
+  random.shuffle(set->poses);
   push_apart(*set, side);
-  for (Pose& pose : set->poses) {
-    for (double& p : pose.position) p *= kSqueeze;
-  }
+  for (Pose& pose : set->poses) pose.position *= kSqueeze;
   return set;
 }
 
@@ -141,15 +125,11 @@ std::unique_ptr<BodySet> make_balls(std::size_t bodies, std::uint64_t seed) {
   // Two balls overlap if one's centre is inside the unit ball around the other's centre.
   constexpr double kUnitBall = 4.18879020478639;
   auto set = std::make_unique<BodySet>();
-  ShapeId ball;
-  need(set->pool.add(SphereShape{0.5}, ball), "a ball");
-  set->shapes.assign(bodies, ball);
+  set->shapes.assign(bodies, set->pool.add(SphereShape{0.5}));
   const double side = cube_root(static_cast<double>(bodies) * kUnitBall / (2 * kContactsPerBody));
   Random random(seed);
   set->poses.resize(bodies);
-  for (Pose& pose : set->poses) {
-    for (double& p : pose.position) p = side * random.unit();
-  }
+  for (Pose& pose : set->poses) pose.position = random.in_cube(0.0, side);
   return set;
 }
 
@@ -197,7 +177,7 @@ void apply_pose_noise(const BodySet& set, const PoseNoise& by, std::uint64_t fra
   poses = set.poses;
   Random random(mix(frame));
   for (Pose& pose : poses) {
-    for (double& p : pose.position) p += random.in(-by.along, by.along);
+    pose.position += random.in_cube(-by.along, by.along);
     double length = 0.0;
     for (double& q : pose.orientation) {
       q += random.in(-0.5 * by.about, 0.5 * by.about);
@@ -205,22 +185,6 @@ void apply_pose_noise(const BodySet& set, const PoseNoise& by, std::uint64_t fra
     }
     for (double& q : pose.orientation) q /= std::sqrt(length);
   }
-}
-
-Triangles make_race_torus() {
-  return make_torus(100, 100, 1.0, 0.4);
-}
-
-const std::array<TorusPose, 4>& torus_poses() {
-  // The copy is upright. From pose to pose it is farther from the axis of the first torus.
-  constexpr double kHalf = 0.70710678118654752;
-  static const std::array<TorusPose, 4> poses{{
-      {73, {{1.195, 0.05, 0.02}, {kHalf, kHalf, 0.0, 0.0}}},
-      {288, {{1.245, 0.05, 0.02}, {kHalf, kHalf, 0.0, 0.0}}},
-      {472, {{1.397, 0.05, 0.02}, {kHalf, kHalf, 0.0, 0.0}}},
-      {872, {{2.0, 0.05, 0.02}, {kHalf, kHalf, 0.0, 0.0}}},
-  }};
-  return poses;
 }
 
 }  // namespace winnow::bench

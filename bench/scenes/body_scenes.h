@@ -5,7 +5,6 @@
 #include <winnow/pipeline/shape_pool.h>
 #include "bench/scenes/meshes.h"
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -55,15 +54,5 @@ inline constexpr double kCacheTolerance = 2e-4;
 /// Returns the poses of a frame: each body's pose with a random displacement.
 void apply_pose_noise(const BodySet& set, const PoseNoise& by, std::uint64_t frame,
                       std::vector<Pose>& poses);
-
-/// Returns a torus of 20,000 triangles.
-[[nodiscard]] Triangles make_race_torus();
-
-/// A pose of a second torus, and the number of pairs of triangles that then intersect.
-struct TorusPose {
-  std::size_t about;  ///< approximate number of pairs of triangles
-  Pose pose;
-};
-[[nodiscard]] const std::array<TorusPose, 4>& torus_poses();
 
 }  // namespace winnow::bench

@@ -7,16 +7,14 @@
 #include <cstdint>
 #include <cstring>
 #include <span>
-#include <string>
 #include <vector>
 
 namespace winnow::bench {
 
 /// Provides the boxes of the same objects frame by frame: a built-in scene or a recording. A scene
 /// that grows appends rows.
-class FrameSource : public Interface {
+class FrameSource : public NamedInterface {
  public:
-  [[nodiscard]] virtual std::string name() const = 0;
   /// Returns bounds that contain every box of every frame.
   [[nodiscard]] virtual Aabb world() const = 0;
   /// Returns the boxes of the current frame, row = object; valid until `advance`.

@@ -13,18 +13,9 @@ double most_turn(PairTurn turn) {
 }
 
 /// Returns a motion that passes through the pose at half its time.
-RigidMotion through(const Pose& middle, const Eigen::Vector3d& travel,
-                    const Eigen::Vector3d& turn) {
-  RigidMotion back = RigidMotion::stationary(middle);
-  RigidMotion motion = back;
-  for (int i = 0; i < 3; ++i) {
-    back.travel[i] = -0.5 * travel[i];
-    back.turn[i] = -0.5 * turn[i];
-    motion.travel[i] = travel[i];
-    motion.turn[i] = turn[i];
-  }
-  motion.start = back.at(1.0);
-  return motion;
+RigidMotion through(const Pose& middle, const Vec3d& travel, const Vec3d& turn) {
+  const RigidMotion back{middle, -0.5 * travel, -0.5 * turn};
+  return {back.at(1.0), travel, turn};
 }
 
 }  // namespace
@@ -36,11 +27,10 @@ MovingPairSet make_moving_pairs(const PairKind& kind, PairTurn turn,
   Random random(options.seed ^ 0x51D3ULL);
   set.motions.resize(middle.poses.size());
   for (const BodyPair& pair : middle.pairs) {
-    const auto at = [&](std::uint32_t i) { return as_eigen(middle.poses[i].position); };
     const double reach = middle.radius[pair.a] + middle.radius[pair.b];
-    Eigen::Vector3d way = random.in(2.5, 5.0) * reach * random_unit(random);
+    Vec3d way = random.in(2.5, 5.0) * reach * random_unit(random);
     // Chooses the sign for which the bodies start farther apart.
-    if (way.dot(at(pair.b) - at(pair.a)) > 0.0) way = -way;
+    if (way.dot(middle.poses[pair.b].position - middle.poses[pair.a].position) > 0.0) way = -way;
     for (const auto& [body, share] : {std::pair{pair.a, -0.5}, {pair.b, 0.5}}) {
       const Eigen::Vector3d axis = random_unit(random);
       set.motions[body] =

@@ -49,9 +49,8 @@ class PairDrawing {
     } else {
       draw_until_half_overlap();
     }
-    for (Pose& pose : set_.poses) {
-      for (double& x : pose.position) x += options_.offset.value_or(0.0);
-    }
+    const Vec3d offset = Vec3d::constant(options_.offset.value_or(0.0));
+    for (Pose& pose : set_.poses) pose.position += offset;
   }
 
  private:
@@ -76,9 +75,7 @@ class PairDrawing {
     const std::size_t bodies = 2 * options_.pairs;
     std::vector<std::uint32_t> row(bodies);
     std::iota(row.begin(), row.end(), 0U);
-    for (std::size_t i = bodies; options_.scattered && i > 1; --i) {
-      std::swap(row[i - 1], row[random_.below(static_cast<std::uint32_t>(i))]);
-    }
+    if (options_.scattered) random_.shuffle(row);
     for (std::size_t i = 0; i < options_.pairs; ++i)
       set_.pairs.push_back({row[2 * i], row[2 * i + 1]});
     std::vector<std::uint8_t> is_b(bodies);
@@ -112,19 +109,19 @@ class PairDrawing {
       turn(b);
     }
     const double reach = kReach * (set_.radius[pair.a] + set_.radius[pair.b]);
-    const Eigen::Vector3d offset = random_in_ball(random_, reach);
-    for (int axis = 0; axis < 3; ++axis) {
-      a.position[axis] = on_grid(random_.in(-0.5 * kWorld, 0.5 * kWorld));
-      b.position[axis] = on_grid(a.position[axis] + offset[axis]);
-    }
+    const Vec3d offset = random_in_ball(random_, reach);
+    a.position = on_grid(random_.in_cube(-0.5 * kWorld, 0.5 * kWorld));
+    b.position = on_grid(a.position + offset);
   }
 
   void turn(Pose& pose) {
     options_.upright ? turn_upright(random_, pose) : turn_at_random(random_, pose);
   }
 
-  [[nodiscard]] double on_grid(double x) const {
-    return options_.offset ? kGrid * std::nearbyint(x / kGrid) : x;
+  [[nodiscard]] Vec3d on_grid(Vec3d point) const {
+    if (!options_.offset) return point;
+    for (double& x : point) x = kGrid * std::nearbyint(x / kGrid);
+    return point;
   }
 
   /// Returns whether each of these pairs overlaps, by winnow's test.
@@ -143,7 +140,7 @@ class PairDrawing {
   /// A line through the position of a along which b is placed; the shapes touch between the
   /// distances `inside` and `outside`.
   struct Line {
-    Eigen::Vector3d along;
+    Vec3d along;
     double inside;
     double outside;
     [[nodiscard]] double middle() const { return 0.5 * (inside + outside); }
@@ -186,10 +183,7 @@ class PairDrawing {
 
   void place_on_line(std::uint32_t i, const Line& line, double distance) {
     const BodyPair& pair = set_.pairs[i];
-    for (int axis = 0; axis < 3; ++axis) {
-      set_.poses[pair.b].position[axis] =
-          on_grid(set_.poses[pair.a].position[axis] + distance * line.along[axis]);
-    }
+    set_.poses[pair.b].position = on_grid(set_.poses[pair.a].position + distance * line.along);
   }
 
   PairSet& set_;

@@ -5,7 +5,6 @@
 
 #include <winnow/core/eigen.h>
 #include "bench/common/random.h"
-#include "bench/scenes/cameras.h"
 #include "bench/scenes/random_shapes.h"
 
 #include <algorithm>
@@ -15,15 +14,71 @@
 namespace winnow::bench {
 namespace {
 
-constexpr std::array<std::string_view, 14> kNames{
-    "closest_ray", "any_ray",      "all_rays",          "all_near_rays",      "box_1",
-    "box_5",       "box_20",       "frustum_1_percent", "frustum_50_percent", "sphere",
-    "swept_box",   "swept_sphere", "nearest_1",         "nearest_16"};
+constexpr float kFieldOfView = 1.0471976F;
+constexpr float kAspect = 1.6F;
 
-class QuerySetBuilder {
+/// Returns whether the box intersects the frustum's bounds and is not entirely behind one of its
+/// planes.
+bool sees(const Frustum& camera, const Aabb& box) noexcept {
+  if (!camera.bounds.overlaps(box)) return false;
+  for (const Plane& plane : camera.planes) {
+    const Eigen::Vector3f corner =
+        (as_eigen(plane.normal).array() > 0.0F).select(as_eigen(box.max), as_eigen(box.min));
+    if (plane.normal.dot(corner) + plane.offset < 0.0F) return false;
+  }
+  return true;
+}
+
+/// Returns the share of boxes that are visible, estimated from about 2,000 of them.
+double share_seen(const Frustum& camera, std::span<const Aabb> boxes) noexcept {
+  const std::size_t step = std::max<std::size_t>(1, boxes.size() / 2000);
+  std::size_t seen = 0;
+  std::size_t sampled = 0;
+  for (std::size_t i = 0; i < boxes.size(); i += step, ++sampled) seen += sees(camera, boxes[i]);
+  return sampled == 0 ? 0.0 : static_cast<double>(seen) / static_cast<double>(sampled);
+}
+
+/// Returns a random camera with a vertical field of view of 60 degrees that sees about this share
+/// of the boxes. The camera is inside the world for small shares and outside for large ones; its
+/// far plane is chosen so that the share is right.
+Frustum camera_that_sees(double share, std::span<const Aabb> boxes, const Aabb& world,
+                         Random& random) {
+  const Vec3f center = 0.5F * (world.min + world.max);
+  const Vec3f half = 0.5F * (world.max - world.min);
+  const float diagonal = 2.0F * half.norm();
+  Frustum camera;
+  // A camera at the border that looks outward cannot see enough boxes, so another one is drawn.
+  for (int attempt = 0; attempt < 20; ++attempt) {
+    const Vec3f forward = random_unit(random).cast<float>();
+    const Vec3f up = random_unit(random).cast<float>();
+    Vec3f eye = center - 0.7F * diagonal * forward;
+    if (share < 0.1) {
+      eye = random.in((center - half).cast<double>(), (center + half).cast<double>()).cast<float>();
+    }
+    const float near_t = 1e-3F * diagonal;
+    float low = 2.0F * near_t;
+    float high = 2.0F * diagonal;
+    const auto camera_to = [&](float far_t) {
+      return Frustum::perspective(eye, forward, up, kFieldOfView, kAspect, near_t, far_t);
+    };
+    if (share_seen(camera_to(high), boxes) < share) continue;
+    for (int step = 0; step < 16; ++step) {
+      const float middle = 0.5F * (low + high);
+      (share_seen(camera_to(middle), boxes) < share ? low : high) = middle;
+    }
+    camera = camera_to(high);
+    if (camera.is_valid()) return camera;
+  }
+  const Vec3f forward{1.0F, 0.0F, 0.0F};
+  return Frustum::perspective(center - 0.7F * diagonal * forward, forward, {0.0F, 0.0F, 1.0F},
+                              kFieldOfView, kAspect, 1e-3F * diagonal, 2.0F * diagonal);
+}
+
+/// Draws the parts of queries about boxes.
+class QueryDrawing {
  public:
-  QuerySetBuilder(std::span<const Aabb> boxes, std::size_t rays, std::uint64_t seed)
-      : boxes_(boxes), world_(world_of(boxes)), rays_(rays), seed_(seed) {
+  QueryDrawing(std::span<const Aabb> boxes, std::uint64_t seed)
+      : boxes_(boxes), world_(world_of(boxes)), random_(seed) {
     double sum = 0.0;
     std::size_t finite = 0;
     for (const Aabb& box : boxes) {
@@ -38,105 +93,85 @@ class QuerySetBuilder {
                 : 0.01 * (as_eigen(world_.max) - as_eigen(world_.min)).cast<double>().maxCoeff();
   }
 
-  QuerySet make(std::string_view name) {
-    random_ = Random(seed_);
-    QuerySet set;
-    set.name = name;
-    if (name == "box_1") return overlaps(std::move(set), 1.0, rays_);
-    if (name == "box_5") return overlaps(std::move(set), 5.0, rays_ / 10);
-    if (name == "box_20") return overlaps(std::move(set), 20.0, rays_ / 100);
-    if (name == "frustum_1_percent") return frusta(std::move(set), 0.01, rays_ / 1000);
-    if (name == "frustum_50_percent") return frusta(std::move(set), 0.5, rays_ / 5000);
-    if (name == "sphere") return spheres(std::move(set));
-    if (name.starts_with("swept")) return casts(std::move(set));
-    if (name == "nearest_1") return nearest(std::move(set), 1);
-    if (name == "nearest_16") return nearest(std::move(set), 16);
-    return rays(std::move(set));
+  /// Returns a length in mean edges of the boxes.
+  [[nodiscard]] float length(double edges) const { return static_cast<float>(edges * edge_); }
+  Vec3f point() {
+    return random_.in(world_.min.cast<double>(), world_.max.cast<double>()).cast<float>();
   }
+  Vec3f direction() { return random_unit(random_).cast<float>(); }
+  Ray ray() { return {.origin = point(), .direction = direction()}; }
+  Sphere sphere(double edges) { return {point(), length(edges)}; }
+  Aabb cube(double edges) {
+    const Vec3f half = Vec3f::constant(length(0.5 * edges));
+    const Vec3f center = point();
+    return {center - half, center + half};
+  }
+  Frustum frustum(double share) { return camera_that_sees(share, boxes_, world_, random_); }
 
  private:
-  static std::size_t at_least_one(std::size_t count) { return std::max<std::size_t>(1, count); }
-
-  Eigen::Vector3f point() {
-    Eigen::Vector3f p;
-    for (int axis = 0; axis < 3; ++axis) {
-      p[axis] = static_cast<float>(
-          random_.in(static_cast<double>(world_.min[axis]), static_cast<double>(world_.max[axis])));
-    }
-    return p;
-  }
-
-  Aabb cube(double edges) {
-    const auto half = static_cast<float>(0.5 * edges * edge_);
-    const Eigen::Vector3f center = point();
-    return {center.array() - half, center.array() + half};
-  }
-
-  QuerySet rays(QuerySet set) {
-    set.query_type = set.name == "closest_ray" ? QueryType::closest
-                     : set.name == "any_ray"   ? QueryType::any
-                                               : QueryType::all;
-    for (std::size_t i = 0; i < rays_; ++i) {
-      Ray& ray = set.rays.emplace_back();
-      ray.origin = point();
-      ray.direction = random_unit(random_).cast<float>();
-      if (set.name == "all_near_rays") ray.max_t = static_cast<float>(10.0 * edge_);
-    }
-    return set;
-  }
-
-  QuerySet overlaps(QuerySet set, double edges, std::size_t count) {
-    set.query_type = QueryType::overlap;
-    for (std::size_t i = 0; i < at_least_one(count); ++i) set.boxes.push_back(cube(edges));
-    return set;
-  }
-
-  QuerySet frusta(QuerySet set, double share, std::size_t count) {
-    set.query_type = QueryType::overlap;
-    for (std::size_t i = 0; i < std::clamp<std::size_t>(count, 1, 100); ++i) {
-      set.regions.emplace_back(camera_that_sees(share, boxes_, world_, random_));
-    }
-    return set;
-  }
-
-  QuerySet spheres(QuerySet set) {
-    set.query_type = QueryType::overlap;
-    for (std::size_t i = 0; i < at_least_one(rays_ / 10); ++i) {
-      set.regions.emplace_back(Sphere{point(), static_cast<float>(2.5 * edge_)});
-    }
-    return set;
-  }
-
-  QuerySet casts(QuerySet set) {
-    set.query_type = QueryType::closest;
-    for (std::size_t i = 0; i < at_least_one(rays_ / 10); ++i) {
-      if (set.name == "swept_box") {
-        BoxCast cast{.box = cube(0.5)};
-        cast.direction = random_unit(random_).cast<float>();
-        set.casts.emplace_back(cast);
-      } else {
-        SphereCast cast{.sphere = {point(), static_cast<float>(0.25 * edge_)}};
-        cast.direction = random_unit(random_).cast<float>();
-        set.casts.emplace_back(cast);
-      }
-    }
-    return set;
-  }
-
-  QuerySet nearest(QuerySet set, std::size_t count) {
-    set.query_type = QueryType::nearest;
-    set.count = count;
-    for (std::size_t i = 0; i < at_least_one(rays_ / 10); ++i) set.boxes.push_back(cube(0.0));
-    return set;
-  }
-
   std::span<const Aabb> boxes_;
   Aabb world_;
   double edge_ = 1.0;
-  std::size_t rays_;
-  std::uint64_t seed_;
-  Random random_{0};
+  Random random_;
 };
+
+/// A set of queries: it has a query for each `rays_a_query` rays of a set of rays.
+struct SetKind {
+  std::string_view name;
+  QueryType query_type;
+  std::size_t rays_a_query;
+  void (*add)(QueryDrawing& draw, QuerySet& set);  ///< draws a query
+  std::size_t count = 0;                           ///< see QuerySet
+};
+
+void add_ray(QueryDrawing& draw, QuerySet& set) {
+  set.rays.push_back(draw.ray());
+}
+
+template <int edges>
+void add_cube(QueryDrawing& draw, QuerySet& set) {
+  set.boxes.push_back(draw.cube(edges));
+}
+
+template <int percent>
+void add_frustum(QueryDrawing& draw, QuerySet& set) {
+  set.regions.emplace_back(draw.frustum(0.01 * percent));
+}
+
+constexpr std::array<SetKind, 14> kKinds{{
+    {"closest_ray", QueryType::closest, 1, add_ray},
+    {"any_ray", QueryType::any, 1, add_ray},
+    {"all_rays", QueryType::all, 1, add_ray},
+    {"all_near_rays", QueryType::all, 1,
+     [](QueryDrawing& draw, QuerySet& set) {
+       set.rays.push_back(draw.ray());
+       set.rays.back().max_t = draw.length(10.0);
+     }},
+    {"box_1", QueryType::overlap, 1, add_cube<1>},
+    {"box_5", QueryType::overlap, 10, add_cube<5>},
+    {"box_20", QueryType::overlap, 100, add_cube<20>},
+    {"frustum_1_percent", QueryType::overlap, 1000, add_frustum<1>},
+    {"frustum_50_percent", QueryType::overlap, 5000, add_frustum<50>},
+    {"sphere", QueryType::overlap, 10,
+     [](QueryDrawing& draw, QuerySet& set) { set.regions.emplace_back(draw.sphere(2.5)); }},
+    {"swept_box", QueryType::closest, 10,
+     [](QueryDrawing& draw, QuerySet& set) {
+       set.casts.emplace_back(BoxCast{.box = draw.cube(0.5), .direction = draw.direction()});
+     }},
+    {"swept_sphere", QueryType::closest, 10,
+     [](QueryDrawing& draw, QuerySet& set) {
+       set.casts.emplace_back(
+           SphereCast{.sphere = draw.sphere(0.25), .direction = draw.direction()});
+     }},
+    {"nearest_1", QueryType::nearest, 10, add_cube<0>, 1},
+    {"nearest_16", QueryType::nearest, 10, add_cube<0>, 16},
+}};
+
+constexpr auto kNames = [] {
+  std::array<std::string_view, kKinds.size()> names;
+  std::ranges::transform(kKinds, names.begin(), &SetKind::name);
+  return names;
+}();
 
 bool are_same(QueryType query_type, std::span<const Found> expected, std::span<const Found> got,
               float rounding) {
@@ -157,6 +192,15 @@ bool are_same(QueryType query_type, std::span<const Found> expected, std::span<c
 
 }  // namespace
 
+Aabb world_of(std::span<const Aabb> boxes) noexcept {
+  Aabb world;
+  for (const Aabb& box : boxes) {
+    if (box.min.all_finite() && box.max.all_finite()) world.merge(box);
+  }
+  if (!world.is_valid()) world = {{0.0F, 0.0F, 0.0F}, {1.0F, 1.0F, 1.0F}};
+  return world;
+}
+
 std::size_t count_differing(QueryType query_type, const QueryResults& expected,
                             const QueryResults& got, float rounding) {
   std::size_t differing = 0;
@@ -172,7 +216,12 @@ std::span<const std::string_view> query_set_names() noexcept {
 
 QuerySet make_query_set(std::string_view name, std::span<const Aabb> boxes, std::size_t rays,
                         std::uint64_t seed) {
-  return QuerySetBuilder(boxes, rays, seed).make(name);
+  const SetKind& kind = *std::ranges::find(kKinds, name, &SetKind::name);
+  QuerySet set{.name = std::string(name), .query_type = kind.query_type, .count = kind.count};
+  QueryDrawing draw(boxes, seed);
+  const std::size_t size = std::max<std::size_t>(1, rays / kind.rays_a_query);
+  for (std::size_t i = 0; i < size; ++i) kind.add(draw, set);
+  return set;
 }
 
 std::vector<QuerySet> make_query_sets(std::span<const Aabb> boxes, std::size_t rays,

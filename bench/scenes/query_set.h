@@ -2,19 +2,20 @@
 
 #include <winnow/core/aabb.h>
 #include <winnow/core/cast.h>
-#include <winnow/core/frustum.h>
 #include <winnow/core/ray.h>
-#include <winnow/core/sphere.h>
+#include <winnow/core/region.h>
 
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
-#include <variant>
 #include <vector>
 
 namespace winnow::bench {
+
+/// Returns the bounds of all bounded boxes; a unit box if there are none.
+[[nodiscard]] Aabb world_of(std::span<const Aabb> boxes) noexcept;
 
 /// The result that each query of a set returns.
 enum class QueryType {
@@ -27,12 +28,12 @@ enum class QueryType {
 
 /// Queries of one kind about the same objects.
 struct QuerySet {
-  std::string name;
+  std::string name{};
   QueryType query_type = QueryType::closest;
-  std::vector<Ray> rays;
-  std::vector<Aabb> boxes;  ///< for `nearest`: points, as boxes of zero extent
-  std::vector<std::variant<Sphere, Frustum>> regions;
-  std::vector<std::variant<BoxCast, SphereCast>> casts;
+  std::vector<Ray> rays{};
+  std::vector<Aabb> boxes{};  ///< for `nearest`: points, as boxes of zero extent
+  std::vector<Region> regions{};
+  std::vector<Cast> casts{};
   std::size_t count = 0;  ///< number of objects that each query of `nearest` returns
 
   /// Returns the number of queries. Only one of the columns is filled.

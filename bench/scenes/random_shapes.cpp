@@ -47,8 +47,7 @@ void turn_upright(Random& random, Pose& pose) {
     const double square = w * w + z * z;
     if (square < 1e-2 || square > 1.0) continue;
     const double scale = 1.0 / std::sqrt(square);
-    const double turn[4] = {scale * w, 0.0, 0.0, scale * z};
-    pose.orientation = turn;
+    pose.orientation = {scale * w, 0.0, 0.0, scale * z};
     return;
   }
 }
@@ -56,10 +55,7 @@ void turn_upright(Random& random, Pose& pose) {
 void turn_from(Random& random, const Pose& from, double angle, Pose& pose) {
   const Eigen::Vector3d half = 0.5 * angle * random_unit(random);
   const Eigen::Quaterniond turn(1.0, half.x(), half.y(), half.z());
-  const double* q = from.orientation.data();
-  const Eigen::Quaterniond turned = turn.normalized() * Eigen::Quaterniond(q[0], q[1], q[2], q[3]);
-  const double parts[4] = {turned.w(), turned.x(), turned.y(), turned.z()};
-  pose.orientation = parts;
+  pose.orientation = Quaternion(turn.normalized()) * from.orientation;
 }
 
 ShapeSource::ShapeSource(ShapePool& pool, const ShapeStyle& style, Random& random)
@@ -85,9 +81,7 @@ DrawnShape ShapeSource::draw_triangle() {
   }
   corners.colwise() -= Eigen::Vector3d(corners.rowwise().mean());
   TriangleShape triangle;
-  for (int i = 0; i < 3; ++i) {
-    for (int axis = 0; axis < 3; ++axis) triangle.vertex[i][axis] = corners(axis, i);
-  }
+  for (int i = 0; i < 3; ++i) triangle.vertex[i] = corners.col(i);
   return put(triangle, corners.colwise().norm().maxCoeff());
 }
 
@@ -140,7 +134,7 @@ DrawnShape ShapeSource::draw() {
     }
     case ShapeKind::box: {
       const Eigen::Vector3d half(length(0.25, 1.0), length(0.25, 1.0), length(0.25, 1.0));
-      return put(BoxShape{{half.x(), half.y(), half.z()}, 0.0}, half.norm());
+      return put(BoxShape{half, 0.0}, half.norm());
     }
     case ShapeKind::cylinder: {
       const CylinderShape cylinder{length(0.25, 1.0), length(0.25, 1.0), 0.0};
@@ -152,15 +146,15 @@ DrawnShape ShapeSource::draw() {
     }
     case ShapeKind::ellipsoid: {
       const Eigen::Vector3d radius(length(0.25, 1.0), length(0.25, 1.0), length(0.25, 1.0));
-      return put(EllipsoidShape{{radius.x(), radius.y(), radius.z()}}, radius.maxCoeff());
+      return put(EllipsoidShape{radius}, radius.maxCoeff());
     }
     case ShapeKind::tapered_capsule: {
       const TaperedCapsuleShape taper{{length(0.125, 0.5), length(0.125, 0.5)}, length(0.25, 1.0)};
       return put(taper, taper.half_length + std::max(taper.radius[0], taper.radius[1]));
     }
     case ShapeKind::half_space: {
-      const Eigen::Vector3d normal = random_unit(random_);
-      return put(HalfSpaceShape{{normal.x(), normal.y(), normal.z()}, 0.0}, length(0.25, 1.0));
+      const HalfSpaceShape half_space{random_unit(random_), 0.0};
+      return put(half_space, length(0.25, 1.0));
     }
     case ShapeKind::triangle:
       return draw_triangle();

@@ -99,16 +99,12 @@ class BodyScene final : public FrameSource {
 
 /// Draws a uniform velocity of at most 5 % of the edge along each axis.
 Vec3d draw_velocity(Random& random, double edge) noexcept {
-  Vec3d velocity;
-  for (int axis = 0; axis < 3; ++axis) velocity[axis] = edge * random.in(-0.05, 0.05);
-  return velocity;
+  return edge * random.in_cube(-0.05, 0.05);
 }
 
 /// Draws a uniform point between the walls.
 Vec3d draw_point(Random& random, const Walls& walls) noexcept {
-  Vec3d point;
-  for (int axis = 0; axis < 3; ++axis) point[axis] = random.in(walls.low[axis], walls.high[axis]);
-  return point;
+  return random.in(walls.low, walls.high);
 }
 
 /// Moves a body in a straight line for one frame, with reflections at the walls.
@@ -187,10 +183,8 @@ Bodies clustered(std::size_t objects, std::uint64_t seed) {
   std::vector<Body> bodies(objects);
   for (Body& body : bodies) {
     const Vec3d& centre = centres[random.below(static_cast<std::uint32_t>(centres.size()))];
-    for (int axis = 0; axis < 3; ++axis) {
-      body.centre[axis] = std::clamp(centre[axis] + kDeviation * random.normal(), walls.low[axis],
-                                     walls.high[axis]);
-    }
+    const Vec3d offset{random.normal(), random.normal(), random.normal()};
+    body.centre = (centre + kDeviation * offset).max(walls.low).min(walls.high);
     body.velocity = draw_velocity(random, 1.0);
   }
   return {walls, std::move(bodies), seed};
@@ -215,8 +209,7 @@ void step_at_random(Bodies& bodies) {
 /// Draws a step in a uniform direction by rejection sampling in the unit ball.
 Vec3d draw_step(Random& random, double length) {
   for (;;) {
-    Vec3d step;
-    for (int axis = 0; axis < 3; ++axis) step[axis] = random.in(-1.0, 1.0);
+    const Vec3d step = random.in_cube(-1.0, 1.0);
     const double square = step.squared_norm();
     if (square > 1.0 || square < 1e-6) continue;
     return step * (length / std::sqrt(square));
@@ -258,10 +251,10 @@ Rows rows_of(const Bodies& bodies) {
 MovingBodies sleepy(std::size_t objects, std::uint64_t seed) {
   Bodies start = uniform(objects, seed);
   return {start, [order = rows_of(start)](Bodies& bodies) mutable {
-            const auto count = static_cast<std::uint32_t>(order.size());
-            for (std::uint32_t k = 0; k < std::max(1U, count / 20); ++k) {
-              std::swap(order[k], order[k + bodies.random.below(count - k)]);
-              drift(bodies.all[order[k]], bodies.walls);
+            const std::size_t count = std::max<std::size_t>(1, order.size() / 20);
+            bodies.random.draw_front(order, count);
+            for (const std::uint32_t i : std::span(order).first(count)) {
+              drift(bodies.all[i], bodies.walls);
             }
           }};
 }
@@ -271,9 +264,7 @@ MovingBodies sleepy(std::size_t objects, std::uint64_t seed) {
 MovingBodies respawn(std::size_t objects, std::uint64_t seed) {
   Bodies start = uniform(objects, seed);
   Rows order = rows_of(start);
-  for (std::size_t i = order.size(); i > 1; --i) {
-    std::swap(order[i - 1], order[start.random.below(static_cast<std::uint32_t>(i))]);
-  }
+  start.random.shuffle(order);
   return {std::move(start),
           [order = std::move(order), next = std::size_t{0}](Bodies& bodies) mutable {
             fly(bodies);
@@ -315,10 +306,7 @@ MovingBodies jitter(std::size_t objects, std::uint64_t seed) {
   return {std::move(start), [rest_positions = std::move(rest_positions)](Bodies& bodies) {
             for (std::size_t i = 0; i < rest_positions.size(); ++i) {
               if (i % 100 == 99) continue;
-              for (int axis = 0; axis < 3; ++axis) {
-                bodies.all[i].centre[axis] =
-                    rest_positions[i][axis] + bodies.random.in(-kJitter, kJitter);
-              }
+              bodies.all[i].centre = rest_positions[i] + bodies.random.in_cube(-kJitter, kJitter);
             }
           }};
 }
@@ -358,9 +346,7 @@ MovingBodies pile(std::size_t objects, std::uint64_t seed) {
     const Vec3d resting(static_cast<double>(cell % across), static_cast<double>(cell / across),
                         0.5 + static_cast<double>((i - 1) % kLayers));
     around[i] = {resting - Vec3d::constant(kJitter), resting + Vec3d::constant(kJitter)};
-    for (int axis = 0; axis < 3; ++axis) {
-      bodies[i].centre[axis] = resting[axis] + random.in(-kJitter, kJitter);
-    }
+    bodies[i].centre = resting + random.in_cube(-kJitter, kJitter);
     bodies[i].velocity = draw_velocity(random, 1.0);
   }
   Bodies start({{-kJitter, -kJitter, 0.0}, {side, side, kLayers}}, std::move(bodies), seed);

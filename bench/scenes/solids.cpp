@@ -2,71 +2,35 @@
 
 #include <winnow/core/eigen.h>
 #include <winnow/core/rotation.h>
-#include "bench/common/need.h"
 #include "bench/common/random.h"
+#include "bench/scenes/random_shapes.h"
 
 #include <cmath>
 
 namespace winnow::bench {
-namespace {
 
-/// Sets a unit quaternion, uniform over all rotations.
-void random_turn(Random& random, double* q) {
-  double square = 0.0;
-  for (int i = 0; i < 4; ++i) {
-    q[i] = random.normal();
-    square += q[i] * q[i];
-  }
-  for (int i = 0; i < 4; ++i) q[i] /= std::sqrt(square);
-}
-
-Eigen::Matrix3f matrix_of(const double* q) {
-  return rotation_of_unit({q[0], q[1], q[2], q[3]}).cast<float>();
-}
-
-Eigen::Vector3f random_point(Random& random, double side) {
-  return Eigen::Vector3d(random.in(0.0, side), random.in(0.0, side), random.in(0.0, side))
-      .cast<float>();
-}
-
-}  // namespace
-
-void Solids::add(const OrientedBox& box, const double* quaternion) {
+void Solids::add(const Vec3f& center, const Vec3f& half, const Quaternion& turn) {
   Random random(boxes_.size() + 77);
-  Pose pose = Pose::at(static_cast<double>(box.center.x()), static_cast<double>(box.center.y()),
-                       static_cast<double>(box.center.z()));
-  for (int i = 0; i < 4; ++i) pose.orientation[i] = quaternion[i];
-  const double edge = 2.0 * static_cast<double>(as_eigen(box.half).mean());
-  Eigen::Vector3d way(random.normal(), random.normal(), random.normal());
-  way *= edge / way.norm();
-  boxes_.push_back(box);
-  poses_.push_back(pose);
-  ids_.push_back(shape_of(box.half));
-  velocity_.push_back(way.cast<float>());
+  const double edge = 2.0 * static_cast<double>(as_eigen(half).mean());
+  const Vec3d way{random.normal(), random.normal(), random.normal()};
+  boxes_.push_back({center, half, rotation_of_unit(turn).cast<float>()});
+  poses_.push_back({center.cast<double>(), turn});
+  ids_.push_back(shapes_.add(BoxShape{half.cast<double>()}));
+  velocity_.push_back((way * (edge / way.norm())).cast<float>());
 }
 
-ShapeId Solids::shape_of(const Eigen::Vector3f& half) {
-  BoxShape shape;
-  for (int i = 0; i < 3; ++i) shape.half[i] = static_cast<double>(half[i]);
-  ShapeId id;
-  need(shapes_.add(shape, id), "a box");
-  return id;
-}
-
-void Solids::add_turned(const Eigen::Vector3f& center, const Eigen::Vector3f& half,
-                        std::uint64_t seed) {
+void Solids::add_turned(const Vec3d& center, const Vec3f& half, std::uint64_t seed) {
   Random random(seed);
-  double q[4];
-  random_turn(random, q);
-  add({center, half, matrix_of(q)}, q);
+  Pose pose;
+  turn_at_random(random, pose);
+  add(center.cast<float>(), half, pose.orientation);
 }
 
 Solids Solids::of_boxes(std::span<const Aabb> boxes) {
-  constexpr double kUpright[4] = {1.0, 0.0, 0.0, 0.0};
   Solids solids;
   for (const Aabb& box : boxes) {
-    const Eigen::Vector3f half = 0.5F * (box.max - box.min);
-    if (half.allFinite()) solids.add({box.min + half, half, Eigen::Matrix3f::Identity()}, kUpright);
+    const Vec3f half = 0.5F * (box.max - box.min);
+    if (half.all_finite()) solids.add(box.min + half, half, {});
   }
   return solids;
 }
@@ -76,7 +40,8 @@ Solids Solids::rotated(std::size_t objects, std::uint64_t seed) {
   const double side = std::cbrt(2.0 * static_cast<double>(objects));
   Solids solids;
   for (std::size_t i = 0; i < objects; ++i) {
-    solids.add_turned(random_point(random, side), Eigen::Vector3f::Constant(0.5F), random.next());
+    const Vec3d center = random.in_cube(0.0, side);
+    solids.add_turned(center, Vec3f::constant(0.5F), random.next());
   }
   return solids;
 }
@@ -87,7 +52,8 @@ Solids Solids::rods(std::size_t objects, std::uint64_t seed) {
   const double side = std::cbrt(8.0 * static_cast<double>(objects));
   Solids solids;
   for (std::size_t i = 0; i < objects; ++i) {
-    solids.add_turned(random_point(random, side), {0.125F, 0.125F, 2.5F}, random.next());
+    const Vec3d center = random.in_cube(0.0, side);
+    solids.add_turned(center, {0.125F, 0.125F, 2.5F}, random.next());
   }
   return solids;
 }
@@ -103,7 +69,7 @@ std::vector<OrientedBox> Solids::boxes_at_last_refit(float share) const {
   std::vector<OrientedBox> then = boxes_;
   for (std::size_t i = 0; i < then.size(); ++i) {
     const Aabb box = then[i].bounds();
-    const float fastest = velocity_[i].cwiseAbs().maxCoeff();
+    const float fastest = as_eigen(velocity_[i]).cwiseAbs().maxCoeff();
     const auto since = static_cast<float>(random.in(0.0, 1.0));
     if (!(fastest > 0.0F)) continue;
     then[i].center -=
@@ -114,14 +80,8 @@ std::vector<OrientedBox> Solids::boxes_at_last_refit(float share) const {
 
 void Solids::advance(double step) {
   for (std::size_t i = 0; i < boxes_.size(); ++i) {
-    put(i, boxes_[i].center + static_cast<float>(step) * velocity_[i]);
-  }
-}
-
-void Solids::put(std::size_t i, const Eigen::Vector3f& center) {
-  boxes_[i].center = center;
-  for (int axis = 0; axis < 3; ++axis) {
-    poses_[i].position[axis] = static_cast<double>(center[axis]);
+    boxes_[i].center += static_cast<float>(step) * velocity_[i];
+    poses_[i].position = boxes_[i].center.cast<double>();
   }
 }
 

@@ -6,7 +6,6 @@
 #include <winnow/pipeline/narrow_phase.h>
 #include <winnow/pipeline/shape_pool.h>
 
-#include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -38,15 +37,13 @@ class Solids {
   void advance(double step);
 
  private:
-  ShapeId shape_of(const Eigen::Vector3f& half);
-  void put(std::size_t i, const Eigen::Vector3f& center);
-  void add(const OrientedBox& box, const double* quaternion);
-  void add_turned(const Eigen::Vector3f& center, const Eigen::Vector3f& half, std::uint64_t seed);
+  void add(const Vec3f& center, const Vec3f& half, const Quaternion& turn);
+  void add_turned(const Vec3d& center, const Vec3f& half, std::uint64_t seed);
 
   std::vector<OrientedBox> boxes_;
   std::vector<Pose> poses_;
   std::vector<ShapeId> ids_;
-  std::vector<Eigen::Vector3f> velocity_;
+  std::vector<Vec3f> velocity_;
   ShapePool shapes_;
 };
 

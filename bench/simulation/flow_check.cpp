@@ -1,7 +1,7 @@
 // Checks the contacts of a granular flow by brute force: collides all pairs with the narrow phase
 // and compares the sorted lists. FlowRun::step calls check_contacts().
 
-#include "bench/simulation/flow_check.h"
+#include "bench/simulation/flow_run.h"
 
 #include <winnow/pipeline/narrow_phase.h>
 

@@ -2,7 +2,6 @@
 
 #include "bench/common/counting_resource.h"
 #include "bench/common/sample.h"
-#include "bench/simulation/flow_check.h"
 #include "bench/simulation/granular_flow.h"
 
 #include <algorithm>
@@ -25,29 +24,11 @@ inline constexpr std::array<FlowPhase, 5> kFlowPhases{{{"handing over poses", &F
                                                        {"narrow phase", &FlowTimes::narrow},
                                                        {"solver", &FlowTimes::solver}}};
 
-/// Figures of one step of a flow.
-struct FlowSample {
-  double time = 0.0;
-  FlowEnergy energy{};
-  double fed = 0.0;
-  double deepest = 0.0;
-  std::size_t contacts = 0;  ///< pairs of bodies
-  std::size_t points = 0;
-  FlowTimes times{};
-
-  /// Returns the energy without the energy added by putting bodies back. Gravity conserves it, and
-  /// contacts can only reduce it.
-  [[nodiscard]] double balance() const noexcept { return energy.total() - fed; }
-};
-
 /// Figures of all steps of a flow.
 class FlowHistory {
  public:
   /// Records the flow's last step.
-  void add(const GranularFlow& flow) {
-    samples_.push_back({flow.time(), flow.energy(), flow.fed(), flow.deepest(),
-                        flow.contacts().size(), flow.contacts().points(), flow.times()});
-  }
+  void add(const GranularFlow& flow) { samples_.push_back(flow.last()); }
 
   [[nodiscard]] const std::vector<FlowSample>& samples() const noexcept { return samples_; }
 
@@ -112,6 +93,31 @@ class SteadyAllocations {
   std::size_t before_ = 0;
   std::size_t count_ = 0;
 };
+
+/// Differences between a flow's contacts and contacts found by testing every pair.
+struct FlowFaults {
+  std::size_t compared = 0;  ///< contacts: pairs of bodies, and of a body and a triangle
+  std::size_t lost = 0;
+  std::size_t invented = 0;
+  std::size_t doubled = 0;
+
+  [[nodiscard]] std::size_t total() const noexcept { return lost + invented + doubled; }
+  FlowFaults& operator+=(const FlowFaults& other) noexcept {
+    compared += other.compared;
+    lost += other.lost;
+    invented += other.invented;
+    doubled += other.doubled;
+    return *this;
+  }
+};
+
+/// Collides every pair of bodies, and of a body and a mesh triangle, by the narrow phase: without a
+/// partition, tree or scene. If there are more than 4e6 pairs, only every n-th body is tested
+/// against all others. The flow must keep contact poses.
+[[nodiscard]] FlowFaults check_contacts(const GranularFlow& flow, const Contacts& contacts);
+[[nodiscard]] inline FlowFaults check_contacts(const GranularFlow& flow) {
+  return check_contacts(flow, flow.contacts());
+}
 
 /// Runs a flow step by step and records its figures.
 class FlowRun {

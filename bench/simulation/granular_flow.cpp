@@ -1,6 +1,6 @@
-// Granular flow of granular_flow.h. A step calls Scene::collide, then apply_contacts
-// (soft_contacts.cpp), integrate (flow_bodies.cpp) and Scene::move, and puts bodies that left the
-// funnel back on top. FlowRun and the "simulate" command run it.
+// Granular flow of granular_flow.h. A step calls Scene::collide, then apply_contacts and integrate
+// (flow_bodies.cpp) and Scene::move, and puts bodies that left the funnel back on top. FlowRun and
+// the "simulate" command run it.
 
 #include "bench/simulation/granular_flow.h"
 
@@ -141,10 +141,6 @@ void GranularFlow::fill() {
     }
   }
   refill_ = z;
-  const double most = static_cast<double>(objects_) / static_cast<double>(spots_.size());
-  const double top = refill_ + spacing_ * (most + 2.0);
-  const double side = 4.0 * funnel_.radius;
-  world_ = Aabb::outward({-side, -side, floor_ - funnel_.radius}, {side, side, top});
 }
 
 void GranularFlow::add_to_scene() {
@@ -169,46 +165,50 @@ void GranularFlow::find_contacts(bool profiled) {
   if (profiled) {
     const Stopwatch refreshing;
     need(scene_.refresh(), "boxes");
-    times_.broad = refreshing.ms();
+    last_.times.broad = refreshing.ms();
     const Stopwatch searching;
     need(scene_.collide(ContactLevel::pairs, found_pairs_), "pairs");
-    times_.broad += searching.ms();
+    last_.times.broad += searching.ms();
     // The scene keeps its pairs, so that finding them a second time costs almost nothing.
     const StageClock mid_phase(WorkStage::mid_phase);
     const Stopwatch colliding;
     need(scene_.collide(ContactLevel::manifold, contacts_), "contacts");
-    times_.mid = mid_phase.ms();
-    times_.narrow = colliding.ms() - times_.mid;
+    last_.times.mid = mid_phase.ms();
+    last_.times.narrow = colliding.ms() - last_.times.mid;
     return;
   }
   const Stopwatch colliding;
   need(scene_.collide(ContactLevel::manifold, contacts_), "contacts");
-  times_.narrow = colliding.ms();
+  last_.times.narrow = colliding.ms();
 }
 
 void GranularFlow::step(bool profiled) {
-  times_ = {};
-  times_.profiled = profiled;
+  last_ = {};
+  last_.times.profiled = profiled;
   find_contacts(profiled);
 
   const Stopwatch solving;
   const ContactSums sums =
       apply_contacts(contacts_, options_.law, bodies_, options_.execution, pair_forces_);
-  energy_ = integrate(bodies_, options_.gravity, options_.step, options_.execution, energy_parts_);
-  energy_.elastic = sums.elastic;
-  deepest_ = sums.deepest;
-  fed_then_ = fed_;
+  last_.energy =
+      integrate(bodies_, options_.gravity, options_.step, options_.execution, energy_parts_);
+  last_.energy.elastic = sums.elastic;
+  last_.deepest = sums.deepest;
+  last_.fed = fed_;
   for (std::size_t i = 0; i < objects_; ++i) {
     const Vec3d& at = bodies_[i].position;
     const double aside = std::max(std::abs(at.x()), std::abs(at.y()));
     if (at.z() < floor_ || aside > 3.0 * funnel_.radius) put_back(i);
   }
-  times_.solver = solving.ms();
+  last_.times.solver = solving.ms();
 
   const Stopwatch moving;
   need(scene_.move(std::span(keys_).first(objects_), poses_of(bodies_, objects_)), "poses");
-  times_.move = moving.ms();
+  last_.times.move = moving.ms();
   ++steps_;
+  last_.time = options_.step * static_cast<double>(steps_);
+  last_.contacts = contacts_.size();
+  last_.points = contacts_.points();
 }
 
 double GranularFlow::energy_of(std::size_t i) const noexcept {

@@ -7,7 +7,6 @@
 #include <winnow/pipeline/shape_pool.h>
 #include "bench/scenes/meshes.h"
 #include "bench/simulation/flow_bodies.h"
-#include "bench/simulation/soft_contacts.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -43,6 +42,21 @@ struct FlowTimes {
   [[nodiscard]] double total() const noexcept { return move + broad + mid + narrow + solver; }
 };
 
+/// Figures of one step of a flow; energies and contacts are those at its start.
+struct FlowSample {
+  double time = 0.0;  ///< at the end of the step
+  FlowEnergy energy{};
+  double fed = 0.0;  ///< energy added so far by putting bodies back
+  double deepest = 0.0;
+  std::size_t contacts = 0;  ///< pairs of bodies
+  std::size_t points = 0;
+  FlowTimes times{};
+
+  /// Returns the energy without the energy added by putting bodies back. Gravity conserves it, and
+  /// contacts can only reduce it.
+  [[nodiscard]] double balance() const noexcept { return energy.total() - fed; }
+};
+
 /// Granular flow, written as a simulation that embeds winnow: spheres and boxes of about unit size
 /// fall into a funnel, and bodies that left it are put back above it at rest. Contacts are soft and
 /// steps semi-implicit. The bits of every body are the same on any number of threads and any
@@ -59,15 +73,7 @@ class GranularFlow {
   [[nodiscard]] std::size_t objects() const noexcept { return objects_; }
   [[nodiscard]] std::size_t steps() const noexcept { return steps_; }
   [[nodiscard]] std::size_t returned() const noexcept { return returned_; }
-  [[nodiscard]] double time() const noexcept { return options_.step * static_cast<double>(steps_); }
-
-  // State at the start of the last step.
-  [[nodiscard]] const FlowEnergy& energy() const noexcept { return energy_; }
-  /// Returns the energy added so far by putting bodies back. The total without this energy never
-  /// grows.
-  [[nodiscard]] double fed() const noexcept { return fed_then_; }
-  [[nodiscard]] double deepest() const noexcept { return deepest_; }
-  [[nodiscard]] const FlowTimes& times() const noexcept { return times_; }
+  [[nodiscard]] const FlowSample& last() const noexcept { return last_; }
   /// Returns the contacts, valid until the next step. Client data are rows; row objects() is the
   /// mesh.
   [[nodiscard]] const Contacts& contacts() const noexcept { return contacts_; }
@@ -86,8 +92,6 @@ class GranularFlow {
   [[nodiscard]] Aabb box(std::size_t i) const noexcept {
     return shapes_.bounds(shape_of_[i], pose(i));
   }
-  /// Returns bounds that contain every body at any time.
-  [[nodiscard]] Aabb world() const noexcept { return world_; }
 
   /// Returns a hash of the bits of positions, velocities and orientations.
   [[nodiscard]] std::uint64_t fingerprint() const noexcept;
@@ -121,7 +125,6 @@ class GranularFlow {
   double spacing_ = 0.0;
   double floor_ = 0.0;
   double refill_ = 0.0;  ///< height at which bodies are put back
-  Aabb world_;
 
   FlowBodies bodies_;
   std::pmr::vector<ShapeId> shape_of_;
@@ -136,11 +139,8 @@ class GranularFlow {
 
   std::size_t steps_ = 0;
   std::size_t returned_ = 0;
-  FlowEnergy energy_;
   double fed_ = 0.0;
-  double fed_then_ = 0.0;
-  double deepest_ = 0.0;
-  FlowTimes times_;
+  FlowSample last_;
 };
 
 }  // namespace winnow::bench

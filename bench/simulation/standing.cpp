@@ -20,19 +20,14 @@ constexpr int kStacked = 20;
 
 SceneOptions scene_options(const StandingOptions& options, const CompositePool& composites) {
   return {.execution = options.execution,
-          .contact_margin = options.contact_margin,
+          .contact_margin = 0.02,
           .contact_reduction = options.contact_reduction,
           .warm_start = true,
           .composites = &composites};
 }
 
 Pose pose_of(const RigidBody& body) {
-  Pose pose = Pose::at(body.position.x(), body.position.y(), body.position.z());
-  pose.orientation[0] = body.turn.w();
-  pose.orientation[1] = body.turn.x();
-  pose.orientation[2] = body.turn.y();
-  pose.orientation[3] = body.turn.z();
-  return pose;
+  return {body.position, body.turn};
 }
 
 /// Returns the vertices of a prism whose cross-section is in the xz plane.
@@ -76,7 +71,6 @@ std::vector<std::string> standing_names() {
 Standing::Standing(const std::string& structure, const StandingOptions& options)
     : composites_(shapes_),
       scene_(shapes_, scene_options(options, composites_)),
-      solver_(options.solver),
       options_(options) {
   for (const auto& [name, build] : kStructures) {
     if (structure == name) (this->*build)();
@@ -88,7 +82,7 @@ void Standing::step() {
   need(scene_.collide(ContactLevel::manifold, contacts_), "collide");
   need(scene_.islands(contacts_, islands_), "islands");
   need(scene_.colours(contacts_, colours_), "colours");
-  solver_.step(contacts_, colours_, options_.execution, options_.seconds, bodies_);
+  solver_->step(contacts_, colours_, options_.execution, options_.seconds, bodies_);
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     if (bodies_[i].inverse_mass != 0.0) need(scene_.move(keys_[i], pose_of(bodies_[i])), "move");
   }

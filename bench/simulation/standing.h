@@ -17,10 +17,8 @@ namespace winnow::bench {
 
 struct StandingOptions {
   bool contact_reduction = false;
-  double contact_margin = 0.02;
   /// Duration of a frame; contacts are found once per frame.
   double seconds = 1.0 / 60.0;
-  SolverOptions solver{};
   Execution execution = Execution::serial();
 };
 
@@ -74,7 +72,7 @@ class Standing {
   Contacts contacts_;
   ContactGroups islands_;
   ContactGroups colours_;
-  ContactSolver solver_;
+  std::unique_ptr<ContactSolver> solver_ = make_contact_solver();
   StandingOptions options_;
   std::vector<Key> keys_;
   std::vector<RigidBody> bodies_;

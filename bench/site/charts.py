@@ -6,11 +6,12 @@ Pictures of concepts are in bench/site/pages.
 """
 
 import html
-import json
 import math
 import pathlib
-import re
 import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "results"))
+from rows import Rows, short  # noqa: E402
 
 # Distinguishable with any colour vision (Okabe and Ito, "Color Universal Design", 2008).
 BLUE, GREY, DARK_GREY, INK = ("#0072b2", "#b6bec8", "#5b6675", "#1c2430")
@@ -34,20 +35,12 @@ class Picture:
             'font-family="system-ui, sans-serif">\n' + "\n".join(self.parts) + "\n</svg>\n")
 
 
-def times(results, name):
-    """Returns the times of the rows whose names match, by the match's group."""
+def times(rows, pattern):
+    """Returns the least time of the matching rows by the group `engine`."""
     found = {}
-    for row in json.loads(results.read_text())["benchmarks"]:
-        match = re.fullmatch(name, row["name"])
-        if match:
-            found[match[1]] = min(row["real_time"], found.get(match[1], math.inf))
+    for groups, time in rows.found(pattern, "real_time", only_right=False):
+        found[groups["engine"]] = min(time, found.get(groups["engine"], math.inf))
     return found
-
-
-def three_digits(value):
-    """Formats a value with three significant digits: 2217.3 as 2,220."""
-    digits = max(0, 2 - math.floor(math.log10(value)))
-    return f"{round(value, 2 - math.floor(math.log10(value))):,.{digits}f}"
 
 
 def bars(path, title, groups, unit):
@@ -72,18 +65,18 @@ def bars(path, title, groups, unit):
         for label, value, ours in rows:
             picture.text(left - 8, y + 13, label, 14, INK if ours else DARK_GREY, "end", 600 if ours else 400)
             picture.box(left, y + 2, max(at(value) - left, 2), 15, BLUE if ours else GREY)
-            picture.text(at(value) + 6, y + 14, three_digits(value), 13, INK)
+            picture.text(at(value) + 6, y + 14, short(value), 13, INK)
             y += 22
         y += 10
     picture.write(path)
 
 
-def frames(folder, results):
+def frames(folder, rows):
     others = ("embree", "fcl_tree", "cgal_boxes", "bullet_dbvt")
     skipped = (*others, "yardstick", "ode_sap", "bullet_sweep", "n_squared", "bounds_n_squared")
     groups = []
     for scene in ("uniform", "mixed", "clustered", "pile"):
-        found = times(results, rf"throughput/{scene}/objects:100000/threads:2/(\w+)/isa:\w+")
+        found = times(rows, rf"throughput/{scene}/objects:100000/threads:2/(?P<engine>\w+)/isa:\w+")
         best = min(time for name, time in found.items() if name not in skipped)
         listed = [("winnow", best, True)]
         listed += [(name.replace("_", " "), found[name], False) for name in others if name in found]
@@ -91,11 +84,11 @@ def frames(folder, results):
     bars(folder / "frames.svg", "Time of a frame by scene", groups, "ms")
 
 
-def shapes(folder, results):
+def shapes(folder, rows):
     groups = []
     for kind in ("sphere-box", "capsule-capsule", "box-box", "triangle-triangle", "hull16-hull16"):
-        robust = times(results, rf"pair/{kind}/distance/(isa:\w+)")
-        others = times(results, rf"pair/{kind}/distance/((?:bullet|fcl)\w*)")
+        robust = times(rows, rf"pair/{kind}/distance/(?P<engine>isa:\w+)")
+        others = times(rows, rf"pair/{kind}/distance/(?P<engine>(?:bullet|fcl)\w*)")
         listed = [("winnow robust", min(robust.values()), True)]
         listed += [(name.replace("_", " "), time, False) for name, time in others.items()]
         groups.append((kind, listed))
@@ -103,9 +96,9 @@ def shapes(folder, results):
 
 
 def main():
-    folder, results = map(pathlib.Path, sys.argv[1:])
-    frames(folder, results)
-    shapes(folder, results)
+    folder, rows = pathlib.Path(sys.argv[1]), Rows(sys.argv[2])
+    frames(folder, rows)
+    shapes(folder, rows)
 
 
 if __name__ == "__main__":

@@ -2,10 +2,7 @@
 // each body: position, and quaternion w, x, y, z. `move` passes them to the engine by its usual interface,
 // `detect` finds all contacts with manifolds. No contact is solved: bodies of the other engines are
 // kinematic.
-import {spawn} from 'node:child_process';
-import {once} from 'node:events';
 import {readFile} from 'node:fs/promises';
-import {createInterface} from 'node:readline';
 import {WASI} from 'node:wasi';
 
 const SECONDS = 1 / 60;
@@ -24,23 +21,6 @@ export async function winnowInWasm(file, count) {
     move: () => { exports.drift_move(); },
     detect: () => { touching = exports.drift_detect(); },
     touching: () => touching,
-  };
-}
-
-/// Runs the program as a native process, which measures its own times.
-export async function winnowHere(program, count) {
-  const child = spawn(program, [String(count)]);
-  const lines = createInterface({input: child.stdout})[Symbol.asyncIterator]();
-  await once(child, 'spawn');
-  const name = `winnow, native ${(await lines.next()).value}`;
-  return {
-    name,
-    async frame() {
-      child.stdin.write('frame\n');
-      const [move, detect, touching] = (await lines.next()).value.split(' ').map(Number);
-      return {move, detect, touching};
-    },
-    end: () => child.stdin.end(),
   };
 }
 

@@ -1,16 +1,16 @@
 // Usage: node race.mjs WASM NATIVE BODIES FRAMES; see bench/wasm/run.
 import initJolt from 'jolt-physics';
 import * as rapier3d from '@dimforge/rapier3d/rapier.js';
-import {jolt, rapier, winnowHere, winnowInWasm} from './engines.mjs';
+import {execFileSync} from 'node:child_process';
+import {jolt, rapier, winnowInWasm} from './engines.mjs';
 
 const [wasm, program] = process.argv.slice(2);
 const [count, frames] = process.argv.slice(4).map(Number);
 const WARM_UP = 10;
 
 const winnow = await winnowInWasm(wasm, count);
-const here = await winnowHere(program, count);
 const engines = [winnow, await jolt(initJolt, count), rapier(rapier3d, count)];
-const taken = new Map([...engines, here].map((engine) => [engine, {move: [], detect: [], touching: 0}]));
+const taken = new Map(engines.map((engine) => [engine, {move: [], detect: [], touching: 0}]));
 
 // The order of the engines rotates from frame to frame.
 for (let frame = 0; frame < WARM_UP + frames; ++frame) {
@@ -26,14 +26,13 @@ for (let frame = 0; frame < WARM_UP + frames; ++frame) {
     taken.get(engine).move.push(moved - began);
     taken.get(engine).detect.push(detected - moved);
   }
-  const {move, detect, touching} = await here.frame();
-  if (frame < WARM_UP) continue;
-  taken.get(here).move.push(move);
-  taken.get(here).detect.push(detect);
-  taken.get(here).touching = touching;
 }
 for (const engine of engines) taken.get(engine).touching = engine.touching();
-here.end();
+
+const [isa, ...lines] = execFileSync(program, [count, WARM_UP + frames], {encoding: 'utf8'}).trim().split('\n');
+const native = lines.slice(WARM_UP).map((line) => line.split(' ').map(Number));
+taken.set({name: `winnow, native ${isa}`}, {move: native.map(([move]) => move), detect: native.map(([, detect]) => detect),
+                                            touching: native.at(-1)[2]});
 
 const median = (values) => values.sort((a, b) => a - b)[values.length >> 1];
 const rows = [...taken].map(([engine, {move, detect, touching}]) => {

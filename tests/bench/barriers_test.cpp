@@ -1,8 +1,7 @@
 // Simulations of fast bodies, a blade and a cloth: continuous collision detection lets nothing pass
 // a barrier; without it the passages are counted.
 
-#include "bench/simulation/cloth_drop.h"
-#include "bench/simulation/fast_bodies.h"
+#include "bench/simulation/barriers.h"
 #include "tests/support/config.h"
 
 #include <gtest/gtest.h>
@@ -10,21 +9,14 @@
 namespace winnow::bench {
 namespace {
 
-std::uint64_t fingerprint_of(const FastBodiesOptions& options) {
-  FastBodies bodies(options);
-  for (int i = 0; i < 10; ++i) bodies.step();
-  return bodies.fingerprint();
-}
-
-std::uint64_t fingerprint_of(const ClothOptions& options) {
-  ClothDrop cloth(options);
-  for (int i = 0; i < 40; ++i) cloth.step();
-  return cloth.fingerprint();
+std::uint64_t fingerprint_of(const BarrierOptions& options) {
+  const auto barrier = make_barrier(options);
+  for (int i = 0; i < (options.scene == "cloth" ? 40 : 10); ++i) barrier->step();
+  return barrier->figures().fingerprint;
 }
 
 /// Expects the same fingerprint on all instruction sets and on two threads.
-template <typename Options>
-void expect_the_same_everywhere(Options options) {
+void expect_the_same_everywhere(BarrierOptions options) {
   const std::uint64_t expected = fingerprint_of(options);
   for (const Isa isa : available_isas()) {
     const test::IsaScope scope(isa);
@@ -36,48 +28,49 @@ void expect_the_same_everywhere(Options options) {
 }
 
 TEST(Barriers, continuous_collision_lets_no_fast_body_pass) {
-  for (const FastScene scene : {FastScene::funnel, FastScene::blade}) {
-    FastBodies bodies({.scene = scene, .bodies = 12});
-    for (int i = 0; i < 60; ++i) bodies.step();
-    EXPECT_EQ(bodies.passed(), 0U);
-    EXPECT_EQ(bodies.cut_short(), 0U);
-    EXPECT_GT(bodies.impacts(), 30U);
-    EXPECT_GT(bodies.fastest(), 4.0);
+  for (const char* const scene : {"funnel", "blade"}) {
+    const auto bodies = make_barrier({.scene = scene, .size = 12});
+    for (int i = 0; i < 60; ++i) bodies->step();
+    const BarrierFigures figures = bodies->figures();
+    EXPECT_EQ(figures.passed, 0U);
+    EXPECT_EQ(figures.cut_short, 0U);
+    EXPECT_GT(figures.impacts, 30U);
+    EXPECT_GT(figures.fastest, 4.0);
   }
 }
 
 TEST(Barriers, bodies_without_continuous_collision_pass) {
-  for (const FastScene scene : {FastScene::funnel, FastScene::blade}) {
-    FastBodies bodies({.scene = scene, .bodies = 12, .continuous = false});
-    for (int i = 0; i < 10; ++i) bodies.step();
-    EXPECT_GT(bodies.passed(), 0U);
-    EXPECT_EQ(bodies.impacts(), 0U);
+  for (const char* const scene : {"funnel", "blade"}) {
+    const auto bodies = make_barrier({.scene = scene, .size = 12, .continuous = false});
+    for (int i = 0; i < 10; ++i) bodies->step();
+    EXPECT_GT(bodies->figures().passed, 0U);
+    EXPECT_EQ(bodies->figures().impacts, 0U);
   }
-  ClothDrop cloth({.side = 10, .continuous = false});
+  const auto cloth = make_barrier({.scene = "cloth", .size = 10, .continuous = false});
   std::size_t passed = 0;
   for (int i = 0; i < 45; ++i) {
-    cloth.step();
-    passed += cloth.passed();
+    cloth->step();
+    passed += cloth->figures().passed;
   }
   EXPECT_GT(passed, 0U);
 }
 
 TEST(Barriers, cloth_that_drops_on_a_ball_is_held) {
-  ClothDrop cloth({.side = 14});
+  const auto cloth = make_barrier({.scene = "cloth", .size = 14});
   for (int i = 0; i < 90; ++i) {
-    cloth.step();
-    EXPECT_EQ(cloth.passed(), 0U) << i;
+    cloth->step();
+    EXPECT_EQ(cloth->figures().passed, 0U) << i;
   }
   // The cloth hangs down beside the ball.
-  EXPECT_LT(cloth.lowest(), -0.1);
-  EXPECT_GT(cloth.lowest(), -1.5);
-  EXPECT_LT(cloth.max_strain(), 0.5);
+  EXPECT_LT(cloth->figures().lowest, -0.1);
+  EXPECT_GT(cloth->figures().lowest, -1.5);
+  EXPECT_LT(cloth->figures().strain, 0.5);
 }
 
 TEST(Barriers, results_are_equal_on_all_isas_and_threads) {
-  expect_the_same_everywhere(FastBodiesOptions{.scene = FastScene::funnel, .bodies = 8});
-  expect_the_same_everywhere(FastBodiesOptions{.scene = FastScene::blade, .bodies = 8});
-  expect_the_same_everywhere(ClothOptions{.side = 10});
+  expect_the_same_everywhere({.scene = "funnel", .size = 8});
+  expect_the_same_everywhere({.scene = "blade", .size = 8});
+  expect_the_same_everywhere({.scene = "cloth", .size = 10});
 }
 
 }  // namespace

@@ -129,8 +129,8 @@ TEST_F(ToolCommands, micro_passes_all_arguments_and_the_exit_status) {
 
 TEST_F(ToolCommands, example_of_query_help_is_answered) {
   const std::string help = run("query --help").out;
-  ASSERT_NE(help.find(query_example()), std::string::npos) << help;
-  const Ending ending = query(query_example());
+  ASSERT_NE(help.find(kQueryExample), std::string::npos) << help;
+  const Ending ending = query(kQueryExample);
   EXPECT_EQ(ending.status, 0) << ending.errors;
   for (const Json& one : Json::parse(ending.out)) EXPECT_EQ(one["status"], "ok") << one;
 }
@@ -138,7 +138,8 @@ TEST_F(ToolCommands, example_of_query_help_is_answered) {
 TEST(QueryFormat, example_and_help_have_every_member) {
   for (const std::string& word : query_words()) {
     const bool is_place = word == "query";
-    EXPECT_TRUE(is_place || query_example().find('"' + word + '"') != std::string::npos) << word;
+    EXPECT_TRUE(is_place || std::string(kQueryExample).find('"' + word + '"') != std::string::npos)
+        << word;
     EXPECT_NE(query_format().find(word), std::string::npos) << word;
   }
 }
@@ -158,7 +159,7 @@ void visit_values(Json& value, const std::string& path, Visit&& visit) {
 }
 
 TEST(QueryFormat, each_wrong_value_is_refused_and_named) {
-  Json queries = Json::parse(query_example());
+  Json queries = Json::parse(kQueryExample);
   for (Json& query : queries) {
     EXPECT_FALSE(fault_of(query)) << query;
     visit_values(query, "", [&](Json& value, const std::string& path) {

@@ -56,9 +56,8 @@ TEST(FrameRows, rows_compare_with_the_yardstick_if_present) {
 TEST(FrameRows, rows_without_the_yardstick_leave_it_out) {
   Results results;
   add_every_scene(results, scene_named("shear"), {.objects = 100, .frames = 3});
-  add_cold(
-      results,
-      {.scene = scene_named("shear"), .objects = 100, .partitions = {"LinearBvh"}, .count = 1});
+  add_cold(results, scene_named("shear"),
+           {.objects = 100, .partitions = {"LinearBvh"}, .frames = 1});
   EXPECT_TRUE(results.rows("every_scene", {{"partition", "yardstick"}}).empty());
   EXPECT_FALSE(results.rows("cold").front()->contains("over_yardstick"));
 }
@@ -78,11 +77,8 @@ TEST(FrameRows, library_with_one_thread_has_one_row) {
 
 TEST(HostRows, each_partition_has_a_row_with_both_times) {
   Results results;
-  add_hosts(results, {.scene = scene_named("uniform"),
-                      .objects = 300,
-                      .partitions = {"LinearBvh", "FlatGrid"},
-                      .threads = 2,
-                      .count = 4});
+  add_hosts(results, scene_named("uniform"),
+            {.objects = 300, .partitions = {"LinearBvh", "FlatGrid"}, .threads = {2}, .frames = 4});
   const auto rows = results.rows("hosts");
   ASSERT_EQ(rows.size(), 2U);
   for (const Json* row : rows) {

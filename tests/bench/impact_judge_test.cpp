@@ -2,7 +2,7 @@
 // of fault.
 
 #include "bench/measure/impact_judge.h"
-#include "bench/contenders/winnow_impacts.h"
+#include "bench/contenders/winnow_engines.h"
 
 #include <gtest/gtest.h>
 
@@ -37,8 +37,7 @@ TEST(ImpactJudge, winnow_has_no_faults_on_any_motion) {
        {"sphere-box", "box-box", "triangle-triangle", "own-own", "cylinder-half_space"}) {
     for (const PairTurn turn : kPairTurns) {
       const MovingPairSet set = make_moving_pairs(*find_pair_kind(kind), turn, {.pairs = kPairs});
-      WinnowImpacts winnow;
-      const ImpactFaults faults = judged(set, winnow);
+      const ImpactFaults faults = judged(set, *make_winnow_impacts());
       EXPECT_EQ(faults.missed + faults.late + faults.loose, 0U) << kind;
       EXPECT_GE(faults.hits, kPairs / 2);
       EXPECT_LE(faults.worst_gap, 1e-6);

@@ -1,6 +1,6 @@
 // Pair sets on which the narrow phase is measured, and the error counts of its answers.
 
-#include "bench/contenders/winnow_narrow.h"
+#include "bench/contenders/winnow_engines.h"
 #include "bench/measure/accuracy.h"
 
 #include <gtest/gtest.h>
@@ -15,11 +15,11 @@ namespace {
 constexpr std::size_t kPairs = 100;
 
 std::vector<bool> verdicts(const PairSet& set) {
-  WinnowNarrow engine(NarrowTier::reference, 1);
-  engine.start(set);
-  engine.run(ContactLevel::boolean, set.pairs);
+  const auto engine = make_winnow_narrow(NarrowTier::reference);
+  engine->start(set);
+  engine->run(ContactLevel::boolean, set.pairs);
   std::vector<bool> overlap;
-  for (std::size_t i = 0; i < set.pairs.size(); ++i) overlap.push_back(engine.answer(i).overlap);
+  for (std::size_t i = 0; i < set.pairs.size(); ++i) overlap.push_back(engine->answer(i).overlap);
   return overlap;
 }
 

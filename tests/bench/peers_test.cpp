@@ -4,7 +4,6 @@
 #include "bench/common/random.h"
 #include "bench/contenders/reference_sweep.h"
 #include "bench/measure/race.h"
-#include "bench/peers/yardstick.h"
 #include "bench/scenes/scene.h"
 
 #include <gtest/gtest.h>

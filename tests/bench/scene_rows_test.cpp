@@ -7,7 +7,7 @@ namespace {
 
 TEST(SceneCosts, rows_count_bytes_and_contacts_by_margin) {
   Results results;
-  add_scene_costs(results, {.scene = "balls", .frames = 2, .bodies = 500});
+  add_scene_costs(results, {.scene = "balls", .threads = {1}, .frames = 2, .bodies = 500});
   const auto rows = results.rows("scene_costs");
   ASSERT_EQ(rows.size(), 4U);
   for (std::size_t i = 0; i < rows.size(); i += 2) {

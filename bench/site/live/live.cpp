@@ -48,16 +48,6 @@ void bounce(winnow::Aabb& box, winnow::Vec3f& speed, int axis, float end) {
 
 extern "C" {
 
-#ifdef __wasm__
-// The WASI library cannot throw; an exception traps. No function in this file throws.
-[[noreturn]] __attribute__((weak)) void __cxa_throw(void*, void*, void (*)(void*)) {
-  __builtin_trap();
-}
-__attribute__((weak)) void* __cxa_allocate_exception(std::size_t) {
-  __builtin_trap();
-}
-#endif
-
 /// Adds this many boxes at random positions; returns false if memory ran out.
 EXPORTED("live_start") bool live_start(std::uint32_t count) {
   Live& scene = live();

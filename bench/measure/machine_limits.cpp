@@ -1,4 +1,7 @@
-#include "bench/measure/frame_limit.h"
+// What the machine allows, without winnow: the memory traffic of a frame, and the time between two
+// cores.
+
+#include "bench/measure/machine_limits.h"
 
 #include <winnow/core/aabb.h>
 #include <winnow/core/pair_buffer.h>
@@ -7,7 +10,9 @@
 #include "core/sort/radix_sort.h"
 
 #include <algorithm>
+#include <atomic>
 #include <numeric>
+#include <thread>
 #include <vector>
 
 namespace winnow::bench {
@@ -32,11 +37,43 @@ void use(const void* p) {
 std::vector<std::uint32_t> shuffled(std::size_t count) {
   std::vector<std::uint32_t> order(count);
   std::iota(order.begin(), order.end(), 0U);
-  Random random(1);
-  for (std::size_t i = count; i > 1; --i)
-    std::swap(order[i - 1], order[random.below(static_cast<std::uint32_t>(i))]);
+  Random(1).shuffle(order);
   return order;
 }
+
+constexpr int kTries = 11;
+constexpr int kThere = 1000;       // round trips per try
+constexpr int kSpinLimit = 10000;  // failed reads before yielding, longer than any usual delay
+
+/// Two threads that pass a number back and forth.
+class PingPong {
+ public:
+  void answer() noexcept {
+    for (int ball = 1; ball < 2 * kTries * kThere; ball += 2) {
+      wait_for(ball);
+      ball_.store(ball + 1, std::memory_order_release);
+    }
+  }
+  /// Returns the mean nanoseconds of one direction of a round trip, in one try.
+  double serve(int serve) noexcept {
+    const Stopwatch clock;
+    for (int i = 0; i < kThere; ++i) {
+      const int ball = 2 * (serve * kThere + i) + 1;
+      ball_.store(ball, std::memory_order_release);
+      wait_for(ball + 1);
+    }
+    return 1e6 * clock.ms() / (2 * kThere);
+  }
+
+ private:
+  // Yields if the other thread's core is taken by another program.
+  void wait_for(int ball) const noexcept {
+    for (int looks = 0; ball_.load(std::memory_order_acquire) != ball; ++looks) {
+      if (looks > kSpinLimit) std::this_thread::yield();
+    }
+  }
+  alignas(64) std::atomic<int> ball_{0};
+};
 
 }  // namespace
 
@@ -76,6 +113,16 @@ FrameLimit measure_frame_limit(std::size_t objects, std::size_t pairs, int repea
     use(out.data());
   });
   return limit;
+}
+
+double core_distance_ns() {
+  if (std::thread::hardware_concurrency() < 2) return 0.0;
+  PingPong rally;
+  std::thread other([&] { rally.answer(); });
+  std::vector<double> tries;
+  for (int i = 0; i < kTries; ++i) tries.push_back(rally.serve(i));
+  other.join();
+  return median_of(tries);
 }
 
 }  // namespace winnow::bench
