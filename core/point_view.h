@@ -24,51 +24,55 @@ concept Contiguous = requires(const Elements& elements) {
 template <typename Elements>
 using ElementOf = std::remove_cvref_t<decltype(*std::data(std::declval<const Elements&>()))>;
 
-/// Returns the address of a coordinate of a point: of a vector with data(), an array, or a struct
-/// with members x, y and z; null for any other type.
-template <typename Point>
-[[nodiscard]] constexpr auto coordinate_of(const Point* point, std::size_t axis) noexcept {
-  if constexpr (requires { point->data() + axis; }) {
-    return point->data() + axis;
-  } else if constexpr (std::is_array_v<Point>) {
-    return &(*point)[axis];
-  } else if constexpr (requires { &point->x == &point->y&& & point->y == &point->z; }) {
-    return axis == 0 ? &point->x : axis == 1 ? &point->y : &point->z;
+/// Returns the address of the first number of an element: of the number itself, of a vector with
+/// data(), or of an array; null for any other type.
+template <typename Element>
+[[nodiscard]] constexpr auto first_number(const Element* element) noexcept {
+  if constexpr (std::is_arithmetic_v<Element>) {
+    return element;
+  } else if constexpr (requires { element->data() + 1; }) {
+    return element->data();
+  } else if constexpr (std::is_array_v<Element>) {
+    return &(*element)[0];
   } else {
     return nullptr;
   }
 }
 
+/// Returns the address of a coordinate of a point that first_number takes, or that is a struct with
+/// members x, y and z; null for any other type.
 template <typename Point>
-concept StoresFloats =
-    std::same_as<decltype(coordinate_of(static_cast<const Point*>(nullptr), 0)), const float*>;
-template <typename Point>
-concept StoresDoubles =
-    std::same_as<decltype(coordinate_of(static_cast<const Point*>(nullptr), 0)), const double*>;
+[[nodiscard]] constexpr auto coordinate_of(const Point* point, std::size_t axis) noexcept {
+  if constexpr (requires { std::array{&point->x, &point->y, &point->z}; }) {
+    return std::array{&point->x, &point->y, &point->z}[axis];
+  } else if constexpr (std::is_null_pointer_v<decltype(first_number(point))>) {
+    return nullptr;
+  } else {
+    return first_number(point) + axis;
+  }
+}
 
-/// A contiguous container of points.
+/// True unless an Eigen matrix of numbers stores the three of a point or triangle apart: three
+/// columns by columns, three rows by rows, or a part of another matrix.
+template <typename Elements>
+concept ThreeByThree = !requires { Elements::IsRowMajor; } ||
+    (std::same_as<typename Elements::PlainObject, Elements> &&
+     (Elements::RowsAtCompileTime == (Elements::IsRowMajor ? 1 : 3) ||
+      Elements::ColsAtCompileTime == (Elements::IsRowMajor ? 3 : 1)));
+
+/// A contiguous container of points, or of their coordinates, in T.
+template <typename Points, typename T>
+concept PointsOf = Contiguous<Points> && ThreeByThree<Points> && requires(const Points& points) {
+  { coordinate_of(std::data(points), 0) } -> std::same_as<const T*>;
+};
+
+/// A contiguous container of points in float or double.
 template <typename Points>
-concept ArrayOfPoints = Contiguous<Points> &&
-    (StoresFloats<ElementOf<Points>> || StoresDoubles<ElementOf<Points>>);
+concept ArrayOfPoints = PointsOf<Points, float> || PointsOf<Points, double>;
 
 /// An index of 16 or 32 bits.
 template <typename T>
 concept Index = std::is_integral_v<T> &&(sizeof(T) == 2 || sizeof(T) == 4);
-
-/// Returns the address of the first index of a triangle, or of a single index; null for any other
-/// type.
-template <typename Corners>
-[[nodiscard]] constexpr auto first_index(const Corners* corners) noexcept {
-  if constexpr (Index<Corners>) {
-    return corners;
-  } else if constexpr (requires { corners->data(); }) {
-    return corners->data();
-  } else if constexpr (std::is_array_v<Corners>) {
-    return &(*corners)[0];
-  } else {
-    return nullptr;
-  }
-}
 
 }  // namespace detail
 
@@ -91,22 +95,16 @@ struct PointView {
   template <detail::Contiguous Points>
   PointView(const Points& points) noexcept {  // NOLINT(google-explicit-constructor)
     using Point = detail::ElementOf<Points>;
-    const auto* const first = std::data(points);
-    if constexpr (std::same_as<Point, float> || std::same_as<Point, double>) {
-      count = std::size(points) / 3;
-      stride = 3 * sizeof(Point);
-      for (std::size_t axis = 0; axis < 3 && count != 0; ++axis) set_column(axis, first + axis);
-    } else {
-      static_assert(detail::ArrayOfPoints<Points>,
-                    "a PointView takes a contiguous container of points with data(), of arrays "
-                    "float[3] or double[3], of structs with members x, y and z, or of float or "
-                    "double x, y, z, x, y, z, ...");
-      if constexpr (detail::ArrayOfPoints<Points>) {
-        count = std::size(points);
-        stride = sizeof(Point);
-        for (std::size_t axis = 0; axis < 3 && count != 0; ++axis) {
-          set_column(axis, detail::coordinate_of(first, axis));
-        }
+    static_assert(detail::ArrayOfPoints<Points>,
+                  "a PointView takes a contiguous container of points with data(), of arrays "
+                  "float[3] or double[3], of structs with members x, y and z, or of float or "
+                  "double x, y, z, x, y, z, ...");
+    if constexpr (detail::ArrayOfPoints<Points>) {
+      constexpr std::size_t kElements = std::is_arithmetic_v<Point> ? 3 : 1;  // of a point
+      count = static_cast<std::size_t>(std::size(points)) / kElements;
+      stride = kElements * sizeof(Point);
+      for (std::size_t axis = 0; axis < 3 && count != 0; ++axis) {
+        set_column(axis, detail::coordinate_of(std::data(points), axis));
       }
     }
   }
@@ -157,16 +155,16 @@ struct IndexView {
   template <detail::Contiguous Corners>
   IndexView(const Corners& corners) noexcept {  // NOLINT(google-explicit-constructor)
     using Element = detail::ElementOf<Corners>;
-    const auto* const first = detail::first_index(std::data(corners));
+    const auto* const first = detail::first_number(std::data(corners));
     using Pointer = std::remove_cv_t<decltype(first)>;
     using Number = std::remove_const_t<std::remove_pointer_t<Pointer>>;
-    static_assert(detail::Index<Number>,
+    static_assert(detail::Index<Number> && detail::ThreeByThree<Corners>,
                   "an IndexView takes a contiguous container of integers of 16 or 32 bits, three "
                   "for each triangle, or of arrays of three");
     if constexpr (detail::Index<Number>) {
       constexpr bool kSingle = std::same_as<Element, Number>;
       static_assert(kSingle || sizeof(Element) >= 3 * sizeof(Number), "a triangle has 3 indices");
-      count = std::size(corners) / (kSingle ? 3 : 1);
+      count = static_cast<std::size_t>(std::size(corners)) / (kSingle ? 3 : 1);
       stride = kSingle ? 3 * sizeof(Number) : sizeof(Element);
       if (count == 0) return;
       if constexpr (sizeof(Number) == 4) {

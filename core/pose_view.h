@@ -53,8 +53,7 @@ struct PoseView {
   /// Views an array of positions, which are vectors in double, without orientations; see PointView.
   template <detail::ArrayOfPoints Points>
   [[nodiscard]] static PoseView of_positions(const Points& positions) noexcept {
-    static_assert(detail::StoresDoubles<detail::ElementOf<Points>>,
-                  "positions of bodies are in double");
+    static_assert(detail::PointsOf<Points, double>, "positions of bodies are in double");
     const PointView points(positions);
     return {points.precise, points.count, points.stride};
   }

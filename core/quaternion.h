@@ -20,14 +20,10 @@ namespace detail {
 /// A quaternion type with w(), x(), y() and z(), such as Eigen::Quaterniond.
 template <typename Other>
 concept QuaternionLike = !std::same_as<Other, Quaternion> && requires(const Other& q) {
-  requires FitsIn < std::remove_cvref_t<decltype(q.w())>,
-  double > ;
-  requires FitsIn < std::remove_cvref_t<decltype(q.x())>,
-  double > ;
-  requires FitsIn < std::remove_cvref_t<decltype(q.y())>,
-  double > ;
-  requires FitsIn < std::remove_cvref_t<decltype(q.z())>,
-  double > ;
+  { q.w() } -> FitsIn<double>;
+  { q.x() } -> FitsIn<double>;
+  { q.y() } -> FitsIn<double>;
+  { q.z() } -> FitsIn<double>;
 };
 
 /// An Eigen quaternion of doubles. It is recognised by its members, without Eigen's headers.
@@ -102,15 +98,7 @@ class Quaternion {
     return {at_[0], -at_[1], -at_[2], -at_[3]};
   }
   /// Returns the rotated vector.
-  [[nodiscard]] Vec3d operator*(const Vec3d& v) const noexcept {
-    double largest = 0.0;
-    for (const double q : at_) largest = std::fabs(q) > largest ? std::fabs(q) : largest;
-    const double real = at_[0] / largest;
-    const Vec3d axis{at_[1] / largest, at_[2] / largest, at_[3] / largest};
-    const Vec3d across = axis.cross(v);
-    const double scale = 2.0 / (real * real + axis.squared_norm());
-    return v + (real * across + axis.cross(across)) * scale;
-  }
+  [[nodiscard]] Vec3d operator*(const Vec3d& v) const noexcept;
   /// Returns the rotation that applies `inner` first, then this one. The length of the result is
   /// the product of the lengths.
   [[nodiscard]] constexpr Quaternion operator*(const Quaternion& inner) const noexcept {
@@ -131,5 +119,22 @@ class Quaternion {
 };
 
 static_assert(sizeof(Quaternion) == 32 && std::is_trivially_copyable_v<Quaternion>);
+
+/// Returns the orientation of a valid pose divided by its largest component, so that products of
+/// two components stay in the range of double. Exact for the identity.
+[[nodiscard]] inline Quaternion scale_to_unit_max(const Quaternion& orientation) noexcept {
+  double largest = 0.0;
+  for (const double q : orientation) largest = std::fabs(q) > largest ? std::fabs(q) : largest;
+  return {orientation[0] / largest, orientation[1] / largest, orientation[2] / largest,
+          orientation[3] / largest};
+}
+
+inline Vec3d Quaternion::operator*(const Vec3d& v) const noexcept {
+  const Quaternion q = scale_to_unit_max(*this);
+  const Vec3d axis{q.x(), q.y(), q.z()};
+  const Vec3d across = axis.cross(v);
+  const double scale = 2.0 / (q.w() * q.w() + axis.squared_norm());
+  return v + (q.w() * across + axis.cross(across)) * scale;
+}
 
 }  // namespace winnow

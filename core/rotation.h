@@ -28,15 +28,6 @@ namespace detail {
 
 }  // namespace detail
 
-/// Returns the orientation of a valid pose divided by its largest component, so that products of
-/// two components stay in the range of double. Exact for the identity.
-[[nodiscard]] inline Quaternion scale_to_unit_max(const Quaternion& orientation) noexcept {
-  double largest = 0.0;
-  for (const double q : orientation) largest = std::fabs(q) > largest ? std::fabs(q) : largest;
-  return {orientation[0] / largest, orientation[1] / largest, orientation[2] / largest,
-          orientation[3] / largest};
-}
-
 /// Returns a quaternion of length 1, up to rounding, with the same rotation. `q` is a result of
 /// `scale_to_unit_max`.
 [[nodiscard]] inline Quaternion normalized(const Quaternion& q) noexcept {

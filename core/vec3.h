@@ -18,7 +18,7 @@ namespace detail {
 
 /// A number that converts to T without loss, such as float to double.
 template <typename Number, typename T>
-concept FitsIn = std::is_arithmetic_v<Number> && requires(Number number) {
+concept FitsIn = std::is_arithmetic_v<std::remove_cvref_t<Number>> && requires(Number number) {
   T{number};
 };
 
@@ -26,17 +26,17 @@ concept FitsIn = std::is_arithmetic_v<Number> && requires(Number number) {
 /// expressions of Eigen, and user types with this interface.
 template <typename Vector, typename T>
 concept HasAccessors = !std::derived_from<Vector, BasicVec3<T>> && requires(const Vector& v) {
-  requires FitsIn<std::remove_cvref_t<decltype(v.x())>, T>;
-  requires FitsIn<std::remove_cvref_t<decltype(v.y())>, T>;
-  requires FitsIn<std::remove_cvref_t<decltype(v.z())>, T>;
+  { v.x() } -> FitsIn<T>;
+  { v.y() } -> FitsIn<T>;
+  { v.z() } -> FitsIn<T>;
 };
 
 /// A struct with members x, y and z.
 template <typename Vector, typename T>
 concept HasMembers = requires(const Vector& v) {
-  requires FitsIn<std::remove_cvref_t<decltype(v.x)>, T>;
-  requires FitsIn<std::remove_cvref_t<decltype(v.y)>, T>;
-  requires FitsIn<std::remove_cvref_t<decltype(v.z)>, T>;
+  { v.x } -> FitsIn<T>;
+  { v.y } -> FitsIn<T>;
+  { v.z } -> FitsIn<T>;
 };
 
 /// An Eigen vector that stores three elements. It is recognised by its members, without Eigen's

@@ -156,15 +156,15 @@ std::uint32_t farthest_vertex(const CoreVertices& core, const ExactVector& direc
 CoreDifference::CoreDifference(const CoreVertices& core_a, const Pose& pose_a,
                                const CoreVertices& core_b, const Pose& pose_b) noexcept
     : a_(core_a), b_(core_b) {
-  const Dyadic square_a = square_length(pose_a.orientation.data());
-  const Dyadic square_b = square_length(pose_b.orientation.data());
+  const Dyadic square_a = square_length(pose_a.orientation);
+  const Dyadic square_b = square_length(pose_b.orientation);
   scale_ = square_a * square_b;
-  turn_a_ = scaled_rotation(pose_a.orientation.data());
-  turn_b_ = scaled_rotation(pose_b.orientation.data());
+  turn_a_ = scaled_rotation(pose_a.orientation);
+  turn_b_ = scaled_rotation(pose_b.orientation);
   for (ExactVector& row : turn_a_.row) row = row * square_b;
   for (ExactVector& row : turn_b_.row) row = row * square_a;
   const ExactVector between =
-      exact_vector(pose_b.position.data()) - exact_vector(pose_a.position.data());
+      exact_vector(pose_b.position) - exact_vector(pose_a.position);
   offset_ = between * scale_;
 
   BitSpan lengths;

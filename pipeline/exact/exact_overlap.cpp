@@ -40,7 +40,7 @@ namespace {
                                               const Pose& half_space_pose, const CoreVertices& core,
                                               const Pose& core_pose) noexcept {
   const ExactVector between =
-      exact_vector(core_pose.position.data()) - exact_vector(half_space_pose.position.data());
+      exact_vector(core_pose.position) - exact_vector(half_space_pose.position);
   BitSpan lengths;
   for (const Dyadic& x : between.x) lengths.include(x);
   core.include_lengths(lengths);
@@ -52,11 +52,11 @@ namespace {
   }
 
   // All terms are multiplied by the squared lengths of both quaternions.
-  const Dyadic core_square = square_length(core_pose.orientation.data());
-  const Dyadic scale = core_square * square_length(half_space_pose.orientation.data());
+  const Dyadic core_square = square_length(core_pose.orientation);
+  const Dyadic scale = core_square * square_length(half_space_pose.orientation);
   const ExactVector normal =
-      scaled_rotation(half_space_pose.orientation.data()) * exact_vector(half_space.normal.data());
-  const ExactVector local = transposed_times(scaled_rotation(core_pose.orientation.data()), normal);
+      scaled_rotation(half_space_pose.orientation) * exact_vector(half_space.normal);
+  const ExactVector local = transposed_times(scaled_rotation(core_pose.orientation), normal);
   const Dyadic center = dot(normal, between) * core_square - scale * half_space.offset;
   const Dyadic square = dot(local, local);
   if (!core.has_discs) {
@@ -78,7 +78,7 @@ namespace {
                                                const HalfSpaceShape& b,
                                                const Pose& pose_b) noexcept {
   const ExactVector between =
-      exact_vector(pose_b.position.data()) - exact_vector(pose_a.position.data());
+      exact_vector(pose_b.position) - exact_vector(pose_a.position);
   BitSpan lengths;
   for (const Dyadic& x : between.x) lengths.include(x);
   lengths.include(a.offset);
@@ -87,16 +87,16 @@ namespace {
       rotation_bits(pose_a) + rotation_bits(pose_b) + normal_bits(a) + normal_bits(b);
   if (!fits_dyadic(2, directions + lengths.bits())) return ExactVerdict::undecided;
   const ExactVector normal_a =
-      scaled_rotation(pose_a.orientation.data()) * exact_vector(a.normal.data());
+      scaled_rotation(pose_a.orientation) * exact_vector(a.normal);
   const ExactVector normal_b =
-      scaled_rotation(pose_b.orientation.data()) * exact_vector(b.normal.data());
+      scaled_rotation(pose_b.orientation) * exact_vector(b.normal);
   const bool opposite = is_zero(cross(normal_a, normal_b)) && dot(normal_a, normal_b).sign() < 0;
   if (!opposite) return ExactVerdict::overlapping;
   // The second offset is multiplied by the ratio of the normals' lengths. For opposite normals this
   // is a ratio of dot products.
   const Dyadic along = dot(normal_b, normal_b);
-  const Dyadic reach = dot(normal_a, between) - square_length(pose_a.orientation.data()) * a.offset;
-  const Dyadic other = square_length(pose_b.orientation.data()) * b.offset;
+  const Dyadic reach = dot(normal_a, between) - square_length(pose_a.orientation) * a.offset;
+  const Dyadic other = square_length(pose_b.orientation) * b.offset;
   return verdict_of(compare(reach * along + dot(normal_a, normal_b) * other, 0.0));
 }
 

@@ -13,8 +13,8 @@ struct ExactVector {
   Dyadic x[3];
 };
 
-[[nodiscard]] inline ExactVector exact_vector(const double v[3]) noexcept {
-  return {{v[0], v[1], v[2]}};
+[[nodiscard]] inline ExactVector exact_vector(const Vec3d& v) noexcept {
+  return {{v.x(), v.y(), v.z()}};
 }
 
 [[nodiscard]] inline ExactVector operator-(const ExactVector& a, const ExactVector& b) noexcept {
@@ -83,12 +83,12 @@ struct ExactMatrix {
 }
 
 /// The square of a quaternion's length.
-[[nodiscard]] inline Dyadic square_length(const double q[4]) noexcept {
+[[nodiscard]] inline Dyadic square_length(const Quaternion& q) noexcept {
   return Dyadic(q[0]) * q[0] + Dyadic(q[1]) * q[1] + Dyadic(q[2]) * q[2] + Dyadic(q[3]) * q[3];
 }
 
 /// The rotation matrix of a quaternion times its squared length: a polynomial without division.
-[[nodiscard]] inline ExactMatrix scaled_rotation(const double q[4]) noexcept {
+[[nodiscard]] inline ExactMatrix scaled_rotation(const Quaternion& q) noexcept {
   const Dyadic w(q[0]);
   const Dyadic x(q[1]);
   const Dyadic y(q[2]);

@@ -47,10 +47,6 @@ struct SineCosine {
   }
 }
 
-[[nodiscard]] inline double length_of(const double v[3]) noexcept {
-  return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-}
-
 /// An orientation of length 1, rotated by an angle about a unit axis.
 [[nodiscard]] inline Quaternion turned(const Quaternion& from, const double axis[3],
                                        double angle) noexcept {

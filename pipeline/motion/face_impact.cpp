@@ -84,7 +84,7 @@ Vec FaceImpactSearch::seen(const Vec& start, const Vec& end, double time) const 
 mid::Box3 FaceImpactSearch::way(const Interval& within, double& bend) const noexcept {
   mid::Box3 box;
   const double width = within.last - within.first;
-  const double turned = length_of(body_.motion.turn.data()) * width;
+  const double turned = body_.motion.turn.norm() * width;
   double scale = 0.0;
   bend = 0.0;
   for (std::size_t i = 0; i < 3; ++i) {

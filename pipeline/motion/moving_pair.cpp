@@ -57,7 +57,7 @@ TurningCore turning(Core& core, const RigidMotion& motion, const Vec& arm) noexc
     result.corner = core.corner;
     result.side = core.side;
   }
-  const double angle = length_of(motion.turn.data());
+  const double angle = motion.turn.norm();
   if (angle == 0.0) return result;
   result.axis = as_eigen(motion.turn) / angle;
   const solver::Mat to_world = rotation_of_unit(result.from);

@@ -63,8 +63,8 @@ RelativeMotionBounds::RelativeMotionBounds(const SubShapeQuery& parts, const Rig
       apart_(Vec::Map(
           difference(shape.motion.start.position.data(), frame.start.position.data()).difference)),
       travel_(as_eigen(shape.motion.travel) - as_eigen(frame.travel)),
-      frame_rate_(length_of(frame.turn.data())),
-      shape_rate_(length_of(shape.motion.turn.data())),
+      frame_rate_(frame.turn.norm()),
+      shape_rate_(shape.motion.turn.norm()),
       frame_from_(unit_orientation(frame.start)),
       shape_from_(unit_orientation(shape.motion.start)) {}
 

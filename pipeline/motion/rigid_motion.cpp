@@ -75,7 +75,7 @@ Pose RigidMotion::at(double time) const noexcept {
   const DefaultFloatEnvironment environment;
   Pose pose = start;
   for (int i = 0; i < 3; ++i) pose.position[i] += time * travel[i];
-  const double angle = impact::length_of(turn.data());
+  const double angle = turn.norm();
   if (angle == 0.0) return pose;
   const double axis[3] = {turn[0] / angle, turn[1] / angle, turn[2] / angle};
   const Quaternion q =

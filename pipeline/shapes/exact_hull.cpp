@@ -19,7 +19,7 @@ constexpr std::uint32_t kNone = ~0U;
 constexpr double kUnderflow = 1e-300;
 
 [[nodiscard]] ExactVector exact_difference(const Vector3d& a, const Vector3d& b) noexcept {
-  return exact_vector(a.data()) - exact_vector(b.data());
+  return exact_vector(a) - exact_vector(b);
 }
 
 /// Six times the signed volume of the tetrahedron (a, b, c, d). `volume` is rounded, `sign` is

@@ -11,6 +11,18 @@
 namespace winnow::test {
 namespace {
 
+template <int kRows, int kCols, int kOrder>
+using Matrix = Eigen::Matrix<double, kRows, kCols, kOrder>;
+
+// The three coordinates of each point follow one another.
+static_assert(detail::ArrayOfPoints<Matrix<3, Eigen::Dynamic, Eigen::ColMajor>>);
+static_assert(detail::ArrayOfPoints<Matrix<Eigen::Dynamic, 3, Eigen::RowMajor>>);
+static_assert(detail::ArrayOfPoints<Eigen::VectorXf>);
+static_assert(!detail::ArrayOfPoints<Matrix<Eigen::Dynamic, 3, Eigen::ColMajor>>);
+static_assert(!detail::ArrayOfPoints<Matrix<3, Eigen::Dynamic, Eigen::RowMajor>>);
+static_assert(!detail::ArrayOfPoints<Eigen::Block<Eigen::MatrixXd>>);
+static_assert(!detail::ArrayOfPoints<std::vector<int>>);
+
 struct UsersVertex {
   float u;
   float x, y, z;
@@ -38,6 +50,7 @@ TEST(PointView, numbers_are_viewed_three_by_three) {
   expect_two_points(std::vector<float>{1, 2, 3, 4, 5, 6});
   expect_two_points(std::vector<double>{1, 2, 3, 4, 5, 6, 7});
   expect_two_points(Eigen::Matrix3Xd(Eigen::Matrix<double, 3, 2>{{1, 4}, {2, 5}, {3, 6}}));
+  expect_two_points(Matrix<2, 3, Eigen::RowMajor>{{1, 2, 3}, {4, 5, 6}});
 }
 
 TEST(PointView, empty_container_has_no_points) {
