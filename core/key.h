@@ -32,6 +32,8 @@ struct Key {
   /// partitions.
   std::uint32_t stamp = 0;
 
+  /// True unless the key is null.
+  [[nodiscard]] explicit constexpr operator bool() const noexcept { return id != kNoObject; }
   /// True if both belong to the same object of the same partition.
   friend constexpr bool operator==(const Key&, const Key&) noexcept = default;
 };

@@ -21,6 +21,8 @@ struct KeyPair {
   Key first;   ///< key with the smaller id
   Key second;  ///< key with the larger id
 
+  /// True unless the keys are null.
+  [[nodiscard]] explicit constexpr operator bool() const noexcept { return bool{first}; }
   /// True if both objects are equal.
   friend constexpr bool operator==(const KeyPair&, const KeyPair&) noexcept = default;
 };

@@ -55,10 +55,12 @@ template <typename Point>
 /// True unless an Eigen matrix of numbers stores the three of a point or triangle apart: three
 /// columns by columns, three rows by rows, or a part of another matrix.
 template <typename Elements>
-concept ThreeByThree = !requires { Elements::IsRowMajor; } ||
-    (std::same_as<typename Elements::PlainObject, Elements> &&
-     (Elements::RowsAtCompileTime == (Elements::IsRowMajor ? 1 : 3) ||
-      Elements::ColsAtCompileTime == (Elements::IsRowMajor ? 3 : 1)));
+concept ThreeByThree = !requires {
+  Elements::IsRowMajor;
+}
+|| (std::same_as<typename Elements::PlainObject, Elements> &&
+    (Elements::RowsAtCompileTime == (Elements::IsRowMajor ? 1 : 3) ||
+     Elements::ColsAtCompileTime == (Elements::IsRowMajor ? 3 : 1)));
 
 /// A contiguous container of points, or of their coordinates, in T.
 template <typename Points, typename T>
@@ -128,8 +130,14 @@ struct PointView {
   }
 
  private:
-  void set_column(std::size_t axis, const float* column) noexcept { single[axis] = column; }
-  void set_column(std::size_t axis, const double* column) noexcept { precise[axis] = column; }
+  template <typename T>
+  void set_column(std::size_t axis, const T* column) noexcept {
+    if constexpr (std::same_as<T, float>) {
+      single[axis] = column;
+    } else {
+      precise[axis] = column;
+    }
+  }
 
   template <typename T>
   [[nodiscard]] T at(const T* column, std::size_t i) const noexcept {

@@ -38,4 +38,24 @@ enum class [[nodiscard]] Status : std::uint8_t{
 /// Returns the enumerator's name for messages, never null.
 [[nodiscard]] WINNOW_API const char* to_string(Status status) noexcept;
 
+/// The value that a call returns, together with its status. An answer has the members of the value
+/// and converts to it: `Key key = scene.add(body)`. Unless the status is ok, the value is the
+/// default one.
+template <typename T>
+struct [[nodiscard]] Answer : T {
+  Status status = Status::ok;  ///< errors as documented by the call
+
+  constexpr Answer() noexcept = default;  ///< answers with the default value
+  /// Answers with a value.
+  constexpr Answer(const T& value) noexcept : T(value) {}  // NOLINT(google-explicit-constructor)
+  /// Answers with an error.
+  constexpr Answer(Status error) noexcept  // NOLINT(google-explicit-constructor)
+      : T{}, status(error) {}
+  /// Stores the value unless the status is an error; returns the status.
+  constexpr Status get(T& value) const noexcept {
+    if (status == Status::ok) value = *this;
+    return status;
+  }
+};
+
 }  // namespace winnow

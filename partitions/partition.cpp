@@ -92,9 +92,11 @@ Status Partition::insert(const BoxView& boxes, std::span<const ClientData> data,
                 "Partition::insert");
 }
 
-Status Partition::insert(const Aabb& box, ClientData data, Key& key) {
-  return insert(BoxView(std::span<const Aabb>(&box, 1)), std::span<const ClientData>(&data, 1),
-                std::span<Key>(&key, 1));
+Answer<Key> Partition::insert(const Aabb& box, ClientData data) {
+  Key key;
+  const Status status =
+      insert(BoxView(std::span<const Aabb>(&box, 1)), std::span(&data, 1), std::span(&key, 1));
+  return status == Status::ok ? Answer<Key>(key) : status;
 }
 
 Status Partition::insert(std::span<const Sphere> spheres, std::span<const ClientData> data,
@@ -185,8 +187,10 @@ bool Partition::contains(Key key) const noexcept {
   return state_ != nullptr && state_->rows.keys().is_valid(key);
 }
 
-Status Partition::bounds(Key key, Aabb& box) const noexcept {
-  return bounds({&key, 1}, {&box, 1});
+Answer<Aabb> Partition::bounds(Key key) const noexcept {
+  Aabb box;
+  const Status status = bounds({&key, 1}, {&box, 1});
+  return status == Status::ok ? Answer<Aabb>(box) : status;
 }
 
 Status Partition::bounds(std::span<const Key> keys, std::span<Aabb> boxes) const noexcept {
@@ -195,10 +199,8 @@ Status Partition::bounds(std::span<const Key> keys, std::span<Aabb> boxes) const
   return keys.size() == boxes.size() ? state_->bounds(keys, boxes) : Status::size_mismatch;
 }
 
-Status Partition::client_data(Key key, ClientData& data) const noexcept {
-  if (!contains(key)) return state_ == nullptr ? status_ : Status::invalid_key;
-  data = state_->rows.keys().client_data(key.id);
-  return Status::ok;
+ClientData Partition::client_data(Key key) const noexcept {
+  return contains(key) ? state_->rows.keys().client_data(key.id) : 0;
 }
 
 Key Partition::key_of(ObjectId id) const noexcept {
@@ -206,8 +208,7 @@ Key Partition::key_of(ObjectId id) const noexcept {
 }
 
 ClientData Partition::client_data_of(ObjectId id) const noexcept {
-  return state_ != nullptr && state_->rows.keys().is_live(id) ? state_->rows.keys().client_data(id)
-                                                              : 0;
+  return client_data(key_of(id));
 }
 
 Status Partition::set_filter(std::span<const Key> keys, std::span<const ObjectFilter> filters) {
@@ -220,10 +221,9 @@ Status Partition::set_filter(Key key, const ObjectFilter& filter) {
   return set_filter(std::span<const Key>(&key, 1), std::span<const ObjectFilter>(&filter, 1));
 }
 
-Status Partition::filter(Key key, ObjectFilter& filter) const noexcept {
+Answer<ObjectFilter> Partition::filter(Key key) const noexcept {
   if (!contains(key)) return state_ == nullptr ? status_ : Status::invalid_key;
-  filter = state_->rows.filters().of(key.id);
-  return Status::ok;
+  return state_->rows.filters().of(key.id);
 }
 
 Status Partition::refresh() const {

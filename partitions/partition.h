@@ -171,8 +171,8 @@ class WINNOW_API Partition final {
   /// then. `size_mismatch` if the lengths differ, `invalid_bounds` for a box with NaN, min > max or
   /// wholly at infinity.
   Status insert(const BoxView& boxes, std::span<const ClientData> data, std::span<Key> keys);
-  /// Adds one object.
-  Status insert(const Aabb& box, ClientData data, Key& key);
+  /// Adds one object and returns its key.
+  Answer<Key> insert(const Aabb& box, ClientData data = 0);
   /// Gives each object a new box. If a key occurs twice, its last box counts. `size_mismatch`,
   /// `invalid_key` and `invalid_bounds` change nothing. With a margin, the stored box stays and the
   /// object does not count as moved if the stored box contains the new box and is at most four
@@ -236,11 +236,11 @@ class WINNOW_API Partition final {
   [[nodiscard]] bool contains(Key key) const noexcept;
   /// Returns the box that queries test: float, enlarged by the margin; for other volumes the box
   /// around them. An infinite extent is returned as infinite.
-  Status bounds(Key key, Aabb& box) const noexcept;
+  Answer<Aabb> bounds(Key key) const noexcept;
   /// As above, one box per key. `size_mismatch` and `invalid_key` write nothing. O(keys).
   Status bounds(std::span<const Key> keys, std::span<Aabb> boxes) const noexcept;
-  /// Returns the client data of an object; `invalid_key` writes nothing.
-  Status client_data(Key key, ClientData& data) const noexcept;
+  /// Returns the client data of an object; 0 for a key of no live object.
+  [[nodiscard]] ClientData client_data(Key key) const noexcept;
   /// Returns the key of a live object; the null key for any other id.
   [[nodiscard]] Key key_of(ObjectId id) const noexcept;
   /// Returns the client data of a live object; 0 for any other id.
@@ -251,8 +251,8 @@ class WINNOW_API Partition final {
   Status set_filter(std::span<const Key> keys, std::span<const ObjectFilter> filters);
   /// Sets the filter of one object.
   Status set_filter(Key key, const ObjectFilter& filter);
-  /// Returns the filter of an object; `invalid_key` writes nothing.
-  Status filter(Key key, ObjectFilter& filter) const noexcept;
+  /// Returns the filter of an object.
+  Answer<ObjectFilter> filter(Key key) const noexcept;
 
   /// Brings the structure up to date now instead of in the next query. If the first build is made
   /// here or by a cast, region or nearest query, its tree is split with more care than for a pair
@@ -281,9 +281,9 @@ class WINNOW_API Partition final {
   // capsules). Hits of equal t are ordered by id. `invalid_argument` for an invalid cast.
 
   /// Finds the hit of least t; a null hit if there is none. About O(log n).
-  Status closest(const Cast& cast, Hit& hit, const Filter& filter = {}) const;
+  Answer<Hit> closest(const Cast& cast, const Filter& filter = {}) const;
   /// Finds any one hit; a null hit if there is none.
-  Status any(const Cast& cast, Hit& hit, const Filter& filter = {}) const;
+  Answer<Hit> any(const Cast& cast, const Filter& filter = {}) const;
   /// Finds all hits, sorted by t.
   Status all(const Cast& cast, HitBuffer& hits, const Filter& filter = {}) const;
   /// Finds the hit of least t of each ray. Rays of similar direction share work. One invalid ray

@@ -217,7 +217,7 @@ class WINNOW_API Cluster {
   [[nodiscard]] NamePairs pairs(std::uint32_t rank) const noexcept;
   /// Computes a digest of all pairs, which is the same for any number of ranks and any partitioning
   /// of space. Collective; O(pairs).
-  Status digest(ClusterDigest& digest);
+  Answer<ClusterDigest> digest();
 
   /// Returns the number of bodies that a hosted rank owns.
   [[nodiscard]] std::size_t size(std::uint32_t rank) const noexcept;
@@ -227,7 +227,7 @@ class WINNOW_API Cluster {
   Status bodies(std::uint32_t rank, std::span<ClusterBody> bodies, std::span<Aabb> boxes) const;
   /// Returns the key of a body that `rank` owns; `invalid_key` if it owns no body of this name.
   /// O(1).
-  Status key_of(std::uint32_t rank, BodyName name, Key& key) const noexcept;
+  Answer<Key> key_of(std::uint32_t rank, BodyName name) const noexcept;
   /// Returns the bodies that a hosted rank owns since the last `self_pairs`: new ones, and bodies
   /// from other ranks.
   [[nodiscard]] std::span<const ClusterBody> arrived(std::uint32_t rank) const noexcept;

@@ -117,7 +117,7 @@ class WINNOW_API ClusterScene {
   [[nodiscard]] const Contacts& contacts(std::uint32_t rank) const noexcept;
   /// Computes the digest of all contacts (see `digest_of`), which is the same for any number of
   /// ranks. Collective; O(contacts).
-  Status digest(ClusterDigest& digest);
+  Answer<ClusterDigest> digest();
 
   /// Appends a checkpoint of a hosted rank: its bodies, and which pairs touched, so that events
   /// continue. Replicated bodies are not included. O(bodies + pairs).
@@ -136,9 +136,9 @@ class WINNOW_API ClusterScene {
   Status bodies(std::uint32_t rank, std::span<ClusterBody> bodies) const;
   /// Returns the key of a body that `rank` owns; `invalid_key` if it owns no body of this name.
   /// O(1).
-  Status key_of(std::uint32_t rank, BodyName name, Key& key) const noexcept;
+  Answer<Key> key_of(std::uint32_t rank, BodyName name) const noexcept;
   /// Returns the current state of a body that `rank` owns; its client data are its name. O(1).
-  Status body(std::uint32_t rank, BodyName name, BodyDefinition& body) const noexcept;
+  Answer<BodyDefinition> body(std::uint32_t rank, BodyName name) const noexcept;
   /// Returns the bodies that a hosted rank owns since the last `collide` or query of
   /// ClusterQueries: new ones, and bodies from other ranks.
   [[nodiscard]] std::span<const ClusterBody> arrived(std::uint32_t rank) const noexcept;

@@ -29,7 +29,6 @@ class CompositePool;
 
 /// Internal names.
 namespace mid {
-class IdSet;
 struct Composites;
 struct MidPhase;
 const Composites* composites_of(const CompositePool& pool) noexcept;
@@ -64,25 +63,26 @@ class WINNOW_API CompositePool {
   CompositePool& operator=(const CompositePool&) = delete;
 
   /// Adds a mesh; see TriangleMesh::build for parameters and errors.
-  Status add_mesh(const PointView& vertices, const IndexView& triangles, ShapeId& id,
-                  const MeshOptions& options = {},
-                  const Execution& execution = Execution::parallel());
+  Answer<ShapeId> add_mesh(const PointView& vertices, const IndexView& triangles,
+                           const MeshOptions& options = {},
+                           const Execution& execution = Execution::parallel());
   /// Adds a scaled instance of a mesh: a new id that shares the triangles, multiplied by `scale`
   /// along the axes of the mesh. Factors are finite and not zero; negative ones mirror. Scaling a
   /// scaled instance multiplies the factors. The triangles live until the last id is removed.
   /// `invalid_argument` if a factor, or a product, is not between 1e-100 and 1e100.
-  Status add_scaled(ShapeId mesh, const std::array<double, 3>& scale, ShapeId& id);
+  Answer<ShapeId> add_scaled(ShapeId mesh, const std::array<double, 3>& scale);
   /// Adds a mesh from a snapshot (TriangleMesh::save), with a scale. Errors as for `load` and
   /// `add_scaled`. O(bytes).
-  Status add_saved_mesh(std::span<const std::byte> saved, const std::array<double, 3>& scale,
-                        ShapeId& id, const Execution& execution = Execution::parallel());
+  Answer<ShapeId> add_saved_mesh(std::span<const std::byte> saved,
+                                 const std::array<double, 3>& scale,
+                                 const Execution& execution = Execution::parallel());
   /// Adds a height field from a snapshot (HeightField::save). O(bytes).
-  Status add_saved_height_field(std::span<const std::byte> saved, ShapeId& id);
+  Answer<ShapeId> add_saved_height_field(std::span<const std::byte> saved);
   /// Moves the vertices of a mesh, for all its scaled instances; see TriangleMesh::refit.
   Status refit_mesh(ShapeId mesh, const PointView& vertices,
                     const Execution& execution = Execution::parallel());
   /// Adds a height field; see HeightField::build for errors.
-  Status add_height_field(const HeightSamples& samples, ShapeId& id);
+  Answer<ShapeId> add_height_field(const HeightSamples& samples);
   /// Replaces some heights of a height field; see HeightField::update. `invalid_key` if the id is
   /// not of a height field.
   Status update_height_field(ShapeId field, std::uint32_t column, std::uint32_t row,
@@ -95,7 +95,7 @@ class WINNOW_API CompositePool {
   /// `too_many_objects` beyond 2^31 parts. While the compound exists, its convex children must stay
   /// in the ShapePool, and its surfaces cannot be removed. If a surface is changed in place, the
   /// compound changes too.
-  Status add_compound(std::span<const CompoundChild> children, ShapeId& id);
+  Answer<ShapeId> add_compound(std::span<const CompoundChild> children);
 
   /// Makes the triangles of a mesh or height field one-sided, or two-sided again (the default). The
   /// front of a mesh triangle is the side from which its vertices run counter-clockwise in the
@@ -179,8 +179,6 @@ class WINNOW_API CompositePool {
   friend const mid::Composites* mid::composites_of(const CompositePool& pool) noexcept;
   friend const mid::MidPhase& mid::mid_phase_of(const CompositePool& pool) noexcept;
 
-  [[nodiscard]] bool can_be_child(ShapeId id) const noexcept;
-  [[nodiscard]] Status set_flag(mid::IdSet& set, ShapeId surface, bool now) noexcept;
   /// Returns the state, which is created for the first shape: a pool without shapes takes no
   /// memory. Null if memory is refused.
   [[nodiscard]] mid::Composites* state() noexcept;

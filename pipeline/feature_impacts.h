@@ -57,10 +57,9 @@ struct FeatureImpact {
 ///
 /// `invalid_bounds` if a coordinate is not finite or a difference of two overflows;
 /// `invalid_argument` for options out of range.
-[[nodiscard]] WINNOW_API Status feature_impact(FeaturePair kind, const std::array<Vec3d, 4>& start,
-                                               const std::array<Vec3d, 4>& end,
-                                               FeatureImpact& impact,
-                                               const FeatureImpactOptions& options = {}) noexcept;
+[[nodiscard]] WINNOW_API Answer<FeatureImpact> feature_impact(
+    FeaturePair kind, const std::array<Vec3d, 4>& start, const std::array<Vec3d, 4>& end,
+    const FeatureImpactOptions& options = {}) noexcept;
 
 /// Many pairs of features, in columns in the caller's memory: coordinate `axis` of point k of pair
 /// i at the start is start[k][axis][i]. Nothing is copied, so the object must not outlive the

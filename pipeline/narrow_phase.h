@@ -58,16 +58,6 @@ struct NarrowStatistics {
   std::uint64_t exact = 0;
   /// Searches of the solver that did not close their bounds; several may be of one pair.
   std::uint64_t bounded = 0;
-
-  /// Adds the counters of another call.
-  NarrowStatistics& operator+=(const NarrowStatistics& other) noexcept {
-    pairs += other.pairs;
-    recomputed += other.recomputed;
-    without_lanes += other.without_lanes;
-    exact += other.exact;
-    bounded += other.bounded;
-    return *this;
-  }
 };
 
 /// Computes overlaps, distances or contacts of pairs of bodies. It sorts the pairs by the kinds of

@@ -28,17 +28,12 @@ struct ContactColumns {
   /// Creates empty columns. Every allocation comes from `memory`, which must outlive them.
   explicit ContactColumns(std::pmr::memory_resource* memory) noexcept;
 
-  /// Reserves memory for `count` points. False if memory is refused.
-  [[nodiscard]] bool grow(std::size_t count) noexcept;
+  /// Reserves memory for `count` points, and writes to pages if they are to be prefaulted. False if
+  /// memory is refused.
+  [[nodiscard]] bool grow(std::size_t count, Pages pages = Pages::untouched) noexcept;
   /// Sets the number of points to `count`, within the reserved memory (see `grow`). New points are
   /// not initialised.
   void set_size(std::size_t count) noexcept;
-  /// Writes to the pages of the reserved memory after the last point, to commit them.
-  void touch() noexcept {
-    for (Column<float>& column : position) column.touch();
-    depth.touch();
-    feature.touch();
-  }
   /// Returns the number of points.
   [[nodiscard]] std::size_t size() const noexcept { return depth.size(); }
   /// Returns the bytes of all columns.
@@ -49,18 +44,7 @@ struct ContactColumns {
   Column<std::uint64_t> feature;  ///< see ContactPoint
 };
 
-/// Writable columns of a NarrowResult; see its accessors of the same names. Columns of higher
-/// levels are empty.
-struct NarrowColumns {
-  std::span<double> distance;              ///< one per answer
-  std::span<double> error_bound;           ///< one per answer
-  std::span<double> normal[3];             ///< x, y, z
-  std::span<double> point[3];              ///< x, y, z
-  std::span<std::uint32_t> contact_first;  ///< index into `contacts`
-  std::span<std::uint32_t> contact_count;  ///< at most kManifoldPoints
-  /// Points may be added.
-  ContactColumns& contacts;
-};
+struct NarrowColumns;
 
 /// Results of the narrow phase in columns, grouped by the kinds of the shapes; within a group in
 /// the order of the input. The caller keeps the object from frame to frame.
@@ -133,8 +117,8 @@ class WINNOW_API NarrowResult {
   /// Returns the points as columns.
   [[nodiscard]] const ContactColumns& contact_columns() const noexcept { return contacts_; }
 
-  /// Returns the columns for corrections in place (see mid::correct_surface_contacts). Written
-  /// values must agree with what the accessors guarantee.
+  /// Returns the columns for corrections in place, by the library. Written values must agree with
+  /// what the accessors guarantee.
   [[nodiscard]] NarrowColumns columns() noexcept;
 
   /// Returns the memory of all columns. `results.reserved` is exactly the number of bytes that are

@@ -112,7 +112,7 @@ class WINNOW_API RecordedPartition {
   /// @{
   Status set_structure(StructureKind structure);
   Status insert(const BoxView& boxes, std::span<const ClientData> data, std::span<Key> keys);
-  Status insert(const Aabb& box, ClientData data, Key& key);
+  Answer<Key> insert(const Aabb& box, ClientData data = 0);
   Status insert(std::span<const Sphere> spheres, std::span<const ClientData> data,
                 std::span<Key> keys);
   template <int K>
@@ -136,8 +136,8 @@ class WINNOW_API RecordedPartition {
   Status self_pairs(PairEvents& events, const PairOptions& options = {}) const;
   Status pairs_with(const RecordedPartition& other, PairBuffer& out,
                     const PairOptions& options = {}) const;
-  Status closest(const Cast& cast, Hit& hit, const Filter& filter = {}) const;
-  Status any(const Cast& cast, Hit& hit, const Filter& filter = {}) const;
+  Answer<Hit> closest(const Cast& cast, const Filter& filter = {}) const;
+  Answer<Hit> any(const Cast& cast, const Filter& filter = {}) const;
   Status all(const Cast& cast, HitBuffer& hits, const Filter& filter = {}) const;
   Status closest(const RayBatch& rays, const HitColumns& hits, const Filter& filter = {}) const;
   Status any(const RayBatch& rays, const HitColumns& hits, const Filter& filter = {}) const;
@@ -211,7 +211,7 @@ class WINNOW_API RecordedScene {
 
   /// See the functions of Scene.
   /// @{
-  Status add(const BodyDefinition& body, Key& key);
+  Answer<Key> add(const BodyDefinition& body);
   Status add(std::span<const BodyDefinition> bodies, std::span<Key> keys);
   Status remove(Key key);
   Status remove(std::span<const Key> keys);
@@ -295,45 +295,45 @@ class WINNOW_API RecordedQueries {
 
   /// See the functions of SceneQueries.
   /// @{
-  Status closest(const ShapeRay& ray, SceneHit& hit, const Filter& filter = {});
-  Status any(const ShapeRay& ray, SceneHit& hit, const Filter& filter = {});
-  Status all(const ShapeRay& ray, std::span<const SceneHit>& hits, const Filter& filter = {});
+  Answer<SceneHit> closest(const ShapeRay& ray, const Filter& filter = {});
+  Answer<SceneHit> any(const ShapeRay& ray, const Filter& filter = {});
+  Answer<std::span<const SceneHit>> all(const ShapeRay& ray, const Filter& filter = {});
   Status closest(const ShapeRayBatch& rays, const SceneHitColumns& hits, const Filter& filter = {});
   Status any(const ShapeRayBatch& rays, const SceneHitColumns& hits, const Filter& filter = {});
-  Status all(const ShapeRayBatch& rays, SceneHitLists& hits, const Filter& filter = {});
-  Status overlap(ShapeId shape, const Pose& pose, std::span<const SceneOverlap>& bodies,
-                 const Filter& filter = {});
-  Status closest(const ShapeCast& cast, SceneHit& hit, const Filter& filter = {},
-                 double tolerance = 1e-6);
-  Status all(const ShapeCast& cast, std::span<const SceneHit>& hits, const Filter& filter = {},
-             double tolerance = 1e-6);
-  Status closest(const MotionCast& cast, SceneHit& hit, const Filter& filter = {},
-                 double tolerance = 1e-6);
-  Status all(const MotionCast& cast, std::span<const SceneHit>& hits, const Filter& filter = {},
-             double tolerance = 1e-6);
-  Status distance(Key a, Key b, SceneDistance& answer,
-                  double limit = std::numeric_limits<double>::infinity(),
-                  PairRules rules = PairRules::scene);
-  Status least_distance(std::span<const Key> a, std::span<const Key> b, SetDistance& answer,
-                        double limit = std::numeric_limits<double>::infinity(),
-                        PairRules rules = PairRules::scene);
-  Status overlaps(std::span<const Key> a, std::span<const Key> b, std::span<const KeyPair>& pairs,
-                  std::size_t most = std::numeric_limits<std::size_t>::max(),
-                  PairRules rules = PairRules::scene);
-  Status any_contact(std::span<const Key> a, std::span<const Key> b, KeyPair& pair,
-                     double contact_margin = 0.0, PairRules rules = PairRules::scene);
-  Status any_contact(KeyPair& pair, double contact_margin = 0.0,
-                     PairRules rules = PairRules::scene);
-  Status nearest(const Vec3d& point, std::size_t count, double radius,
-                 std::span<const SceneDistance>& bodies, const Filter& filter = {});
+  Answer<SceneHitLists> all(const ShapeRayBatch& rays, const Filter& filter = {});
+  Answer<std::span<const SceneOverlap>> overlap(ShapeId shape, const Pose& pose,
+                                                const Filter& filter = {});
+  Answer<SceneHit> closest(const ShapeCast& cast, const Filter& filter = {},
+                           double tolerance = 1e-6);
+  Answer<std::span<const SceneHit>> all(const ShapeCast& cast, const Filter& filter = {},
+                                        double tolerance = 1e-6);
+  Answer<SceneHit> closest(const MotionCast& cast, const Filter& filter = {},
+                           double tolerance = 1e-6);
+  Answer<std::span<const SceneHit>> all(const MotionCast& cast, const Filter& filter = {},
+                                        double tolerance = 1e-6);
+  Answer<SceneDistance> distance(Key a, Key b,
+                                 double limit = std::numeric_limits<double>::infinity(),
+                                 PairRules rules = PairRules::scene);
+  Answer<SetDistance> least_distance(std::span<const Key> a, std::span<const Key> b,
+                                     double limit = std::numeric_limits<double>::infinity(),
+                                     PairRules rules = PairRules::scene);
+  Answer<std::span<const KeyPair>> overlaps(
+      std::span<const Key> a, std::span<const Key> b,
+      std::size_t most = std::numeric_limits<std::size_t>::max(),
+      PairRules rules = PairRules::scene);
+  Answer<KeyPair> any_contact(std::span<const Key> a, std::span<const Key> b,
+                              double contact_margin = 0.0, PairRules rules = PairRules::scene);
+  Answer<KeyPair> any_contact(double contact_margin = 0.0, PairRules rules = PairRules::scene);
+  Answer<std::span<const SceneDistance>> nearest(const Vec3d& point, std::size_t count,
+                                                 double radius, const Filter& filter = {});
   /// @}
 
  private:
   template <typename Query, typename Write>
-  Status record(RecordedCall kind, const Filter& filter, Query&& query, Write&& write);
+  auto record(RecordedCall kind, const Filter& filter, Query&& query, Write&& write);
   template <typename Query, typename Write>
-  Status record_with(ShapeId shape, RecordedCall kind, const Filter& filter, Query&& query,
-                     Write&& write);
+  auto record_with(ShapeId shape, RecordedCall kind, const Filter& filter, Query&& query,
+                   Write&& write);
   [[nodiscard]] std::uint32_t number_of(ShapeId shape) noexcept;
   [[nodiscard]] RecordedCall call_by_rules(PairRules rules, RecordedCall any_two,
                                            RecordedCall by_rules) noexcept;
@@ -400,7 +400,7 @@ class WINNOW_API RecordedSensors {
 
   /// See the functions of Sensors.
   /// @{
-  Status add(const SensorDefinition& sensor, Key& key);
+  Answer<Key> add(const SensorDefinition& sensor);
   Status remove(Key key);
   Status move(Key key, const Pose& pose);
   Status set(Key key, const SensorDefinition& sensor);

@@ -180,7 +180,7 @@ struct SceneStatistics {
 ///
 ///     winnow::ShapePool shapes;
 ///     winnow::Scene scene(shapes);
-///     scene.add({.shape = ball, .pose = winnow::Pose::at(0, 0, 2)}, key);
+///     winnow::Key key = scene.add({.shape = ball, .pose = winnow::Pose::at(0, 0, 2)});
 ///     scene.collide(winnow::ContactLevel::manifold, contacts);
 ///
 /// Parallel work runs in the task arena of the calling thread. Results and their order are the same
@@ -202,12 +202,7 @@ class WINNOW_API Scene {
   /// Adds a body. `invalid_key` if neither pool contains the shape; `unsupported` for a composite
   /// shape in a scene without SceneOptions::composites; `invalid_pose`; `invalid_argument` for
   /// offsets or a layer out of range; `too_many_objects` from 2^28 on.
-  Status add(const BodyDefinition& body, Key& key);
-  /// As above, but returns the key, or the null key (which every call refuses) on failure.
-  Key add(const BodyDefinition& body) {
-    Key key;
-    return add(body, key) == Status::ok ? key : Key{};
-  }
+  Answer<Key> add(const BodyDefinition& body);
   /// Adds several bodies, all or none. `size_mismatch` if the numbers of keys and bodies differ.
   Status add(std::span<const BodyDefinition> bodies, std::span<Key> keys);
   /// Removes a body. `invalid_key` if the key is not of a live body.
@@ -292,8 +287,8 @@ class WINNOW_API Scene {
   [[nodiscard]] std::size_t size(BodyState state) const noexcept;
   /// True if the key belongs to a live body of this scene. O(1).
   [[nodiscard]] bool contains(Key key) const noexcept;
-  /// Returns the current state of a body; `invalid_key` writes nothing.
-  Status body(Key key, BodyDefinition& body) const noexcept;
+  /// Returns the current state of a body. `invalid_key` if there is no such body.
+  Answer<BodyDefinition> body(Key key) const noexcept;
   /// Returns the key of a live body by its id; the null key for any other id.
   [[nodiscard]] Key key_of(ObjectId id) const noexcept;
 

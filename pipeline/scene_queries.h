@@ -139,7 +139,7 @@ struct MotionCast {
 /// allocates nothing. Any number of these objects may query a scene at the same time while nothing
 /// changes the scene. Call `Scene::refresh` first, and again after every change of bodies and every
 /// in-place change of composite shapes; otherwise queries return `invalid_argument`. A failed query
-/// leaves its output unchanged (but see batches of rays), and spans of earlier queries are invalid.
+/// changes nothing (but see batches of rays). Lists are valid until the next query.
 class WINNOW_API SceneQueries {
  public:
   /// Creates queries on `scene`, which must outlive this object. Every allocation comes from
@@ -156,25 +156,23 @@ class WINNOW_API SceneQueries {
   // body id, then by part.
 
   /// Finds the hit of least t; a null hit if there is none.
-  Status closest(const ShapeRay& ray, SceneHit& hit, const Filter& filter = {});
+  Answer<SceneHit> closest(const ShapeRay& ray, const Filter& filter = {});
   /// Finds any one hit; a null hit if there is none.
-  Status any(const ShapeRay& ray, SceneHit& hit, const Filter& filter = {});
-  /// Finds the first hit on every body that the ray hits, sorted by t. The span is valid until the
-  /// next query.
-  Status all(const ShapeRay& ray, std::span<const SceneHit>& hits, const Filter& filter = {});
+  Answer<SceneHit> any(const ShapeRay& ray, const Filter& filter = {});
+  /// Finds the first hit on every body that the ray hits, sorted by t.
+  Answer<std::span<const SceneHit>> all(const ShapeRay& ray, const Filter& filter = {});
   /// Finds the hit of least t of each ray; results equal the single query. One invalid ray makes
   /// any call with a batch fail. If memory is refused, some rays' columns may have been written.
   Status closest(const ShapeRayBatch& rays, const SceneHitColumns& hits, const Filter& filter = {});
   /// Finds any one hit of each ray.
   Status any(const ShapeRayBatch& rays, const SceneHitColumns& hits, const Filter& filter = {});
-  /// Finds the first hit on every body that each ray hits, as lists. They are valid until the next
-  /// query.
-  Status all(const ShapeRayBatch& rays, SceneHitLists& hits, const Filter& filter = {});
+  /// Finds the first hit on every body that each ray hits, as lists.
+  Answer<SceneHitLists> all(const ShapeRayBatch& rays, const Filter& filter = {});
 
   /// Finds every body that shares a point with the shape at this pose, sorted by id. The shape may
   /// be composite. The test is exact, as in NarrowTier::robust.
-  Status overlap(ShapeId shape, const Pose& pose, std::span<const SceneOverlap>& bodies,
-                 const Filter& filter = {});
+  Answer<std::span<const SceneOverlap>> overlap(ShapeId shape, const Pose& pose,
+                                                const Filter& filter = {});
 
   /// Finds the first body that the moving shape touches, by conservative advancement (Mirtich
   /// 1996). The returned t is never later than the true time of impact, and earlier by at most
@@ -183,22 +181,22 @@ class WINNOW_API SceneQueries {
   /// hit. t = 0 if the shapes overlap at the start (but see ShapeCast::touching). For a composite
   /// moving shape, t is the first time over its parts; only parts whose boxes the other body
   /// reaches are tested. `unsupported` for a half-space.
-  Status closest(const ShapeCast& cast, SceneHit& hit, const Filter& filter = {},
-                 double tolerance = 1e-6);
-  /// Finds the first hit on every body, sorted by t. The span is valid until the next query.
-  Status all(const ShapeCast& cast, std::span<const SceneHit>& hits, const Filter& filter = {},
-             double tolerance = 1e-6);
+  Answer<SceneHit> closest(const ShapeCast& cast, const Filter& filter = {},
+                           double tolerance = 1e-6);
+  /// Finds the first hit on every body, sorted by t.
+  Answer<std::span<const SceneHit>> all(const ShapeCast& cast, const Filter& filter = {},
+                                        double tolerance = 1e-6);
 
   /// Finds the first body that the shape touches while it translates and rotates; t is a time in
   /// [0, 1], never later than the true one. At that time the gap is at most `tolerance`, relative
   /// to the size of the shapes as in ImpactOptions; ImpactOptions also covers shapes that touch at
   /// the start or pass close by. A path that is diagonal to the axes is queried in up to eight
   /// pieces. `unsupported` for a half-space; `invalid_pose` for an invalid motion.
-  Status closest(const MotionCast& cast, SceneHit& hit, const Filter& filter = {},
-                 double tolerance = 1e-6);
-  /// Finds the first hit on every body, sorted by t. The span is valid until the next query.
-  Status all(const MotionCast& cast, std::span<const SceneHit>& hits, const Filter& filter = {},
-             double tolerance = 1e-6);
+  Answer<SceneHit> closest(const MotionCast& cast, const Filter& filter = {},
+                           double tolerance = 1e-6);
+  /// Finds the first hit on every body, sorted by t.
+  Answer<std::span<const SceneHit>> all(const MotionCast& cast, const Filter& filter = {},
+                                        double tolerance = 1e-6);
 
   // Two bodies, or sets of bodies. `invalid_key` if a key is not of a live body; `invalid_argument`
   // for a limit that is NaN, a contact margin that is negative or not finite, or an invalid
@@ -208,40 +206,40 @@ class WINNOW_API SceneQueries {
   /// Finds the closest (or deepest) points of two bodies. A null answer if the rules exclude the
   /// pair, or if the distance exceeds `limit`. The limit may be negative; the smaller it is, the
   /// sooner a pair is rejected.
-  Status distance(Key a, Key b, SceneDistance& answer,
-                  double limit = std::numeric_limits<double>::infinity(),
-                  PairRules rules = PairRules::scene);
+  Answer<SceneDistance> distance(Key a, Key b,
+                                 double limit = std::numeric_limits<double>::infinity(),
+                                 PairRules rules = PairRules::scene);
   /// Finds the two bodies of two sets that are closest (or overlap the deepest), such as the links
   /// of a robot against its surroundings or against each other (the same set twice). Among equal
   /// distances, the pair with the least ids is returned. A null answer if the rules exclude all
   /// pairs, or if all distances exceed `limit`. O(a x b) gaps between boxes, and exact distances
   /// only for pairs whose boxes are not farther apart than the closest pair found so far.
-  Status least_distance(std::span<const Key> a, std::span<const Key> b, SetDistance& answer,
-                        double limit = std::numeric_limits<double>::infinity(),
-                        PairRules rules = PairRules::scene);
+  Answer<SetDistance> least_distance(std::span<const Key> a, std::span<const Key> b,
+                                     double limit = std::numeric_limits<double>::infinity(),
+                                     PairRules rules = PairRules::scene);
   /// Finds the pairs (body of a, body of b) that share a point, in the order of the sets, at most
   /// `most` of them: with 1 the search stops at the first pair. O(a x b) gaps between boxes, and an
-  /// exact test for each gap of 0. The span is valid until the next query.
-  Status overlaps(std::span<const Key> a, std::span<const Key> b, std::span<const KeyPair>& pairs,
-                  std::size_t most = std::numeric_limits<std::size_t>::max(),
-                  PairRules rules = PairRules::scene);
+  /// exact test for each gap of 0.
+  Answer<std::span<const KeyPair>> overlaps(
+      std::span<const Key> a, std::span<const Key> b,
+      std::size_t most = std::numeric_limits<std::size_t>::max(),
+      PairRules rules = PairRules::scene);
   /// Finds out if any body of one set touches a body of the other set, or is within
   /// `contact_margin` of one; a null pair if not. Returns the first such pair (body of a, body of
   /// b) in the order of the sets and stops there. If both spans are the same, each pair of the set
   /// is tested once. O(a x b) gaps between boxes; for each gap within the margin an exact overlap
   /// test and, if the margin is above 0, a distance.
-  Status any_contact(std::span<const Key> a, std::span<const Key> b, KeyPair& pair,
-                     double contact_margin = 0.0, PairRules rules = PairRules::scene);
+  Answer<KeyPair> any_contact(std::span<const Key> a, std::span<const Key> b,
+                              double contact_margin = 0.0, PairRules rules = PairRules::scene);
   /// Finds out if any body of the scene has a contact. Returns the body with the least id that has
   /// one (under PairRules::scene, among the dynamic bodies) and, of the bodies that it touches, the
   /// one with the least id. O(n log n), and a test for each pair of boxes within the margin until
   /// the first contact is found.
-  Status any_contact(KeyPair& pair, double contact_margin = 0.0,
-                     PairRules rules = PairRules::scene);
+  Answer<KeyPair> any_contact(double contact_margin = 0.0, PairRules rules = PairRules::scene);
   /// Finds the bodies nearest to a point, at most `count`, within distance `radius`, sorted by
   /// distance. Inside a solid the distance is negative.
-  Status nearest(const Vec3d& point, std::size_t count, double radius,
-                 std::span<const SceneDistance>& bodies, const Filter& filter = {});
+  Answer<std::span<const SceneDistance>> nearest(const Vec3d& point, std::size_t count,
+                                                 double radius, const Filter& filter = {});
 
   /// Returns the bytes of results and scratch; all others under `structure`.
   [[nodiscard]] Footprint footprint() const noexcept;

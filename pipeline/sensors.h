@@ -51,7 +51,7 @@ struct ExitedBody {
 /// not hit them, and they do not sense each other. A scene without sensors pays nothing.
 ///
 ///     winnow::Sensors sensors(scene);
-///     sensors.add({.shape = ball, .pose = winnow::Pose::at(0, 0, 2)}, goal);
+///     winnow::Key goal = sensors.add({.shape = ball, .pose = winnow::Pose::at(0, 0, 2)});
 ///     sensors.sense();
 ///     for (const winnow::SensedBody& in : sensors.sensed()) { ... }
 ///
@@ -70,7 +70,7 @@ class WINNOW_API Sensors {
 
   /// Adds a sensor. `invalid_key` if the scene's pools do not contain the shape; `invalid_pose`;
   /// `too_many_objects` beyond 2^28.
-  Status add(const SensorDefinition& sensor, Key& key);
+  Answer<Key> add(const SensorDefinition& sensor);
   /// Removes a sensor. The bodies that it sensed leave it in the next `sense`.
   Status remove(Key key);
   /// Sets the pose of a sensor.
@@ -78,7 +78,7 @@ class WINNOW_API Sensors {
   /// Replaces the whole definition of a sensor; its key stays. Errors as for `add`.
   Status set(Key key, const SensorDefinition& sensor);
   /// Returns the current definition of a sensor.
-  Status sensor(Key key, SensorDefinition& sensor) const noexcept;
+  Answer<SensorDefinition> sensor(Key key) const noexcept;
 
   /// Finds the bodies inside each sensor, on the threads of the scene; refreshes the scene first.
   /// The result is the same for any number of threads. `out_of_memory` leaves no sensed bodies.

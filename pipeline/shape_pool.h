@@ -43,43 +43,35 @@ class WINNOW_API ShapePool {
   /// Adds a shape. `invalid_shape` for a length that is negative, NaN or infinite, or a half-space
   /// without a normal; `too_many_objects` beyond 2^28 shapes of a kind. O(1).
   /// @{
-  Status add(const SphereShape& shape, ShapeId& id);
-  Status add(const CapsuleShape& shape, ShapeId& id);
-  Status add(const BoxShape& shape, ShapeId& id);
-  Status add(const CylinderShape& shape, ShapeId& id);
-  Status add(const ConeShape& shape, ShapeId& id);
-  Status add(const TriangleShape& shape, ShapeId& id);
-  Status add(const HalfSpaceShape& shape, ShapeId& id);
-  Status add(const EllipsoidShape& shape, ShapeId& id);
-  Status add(const TaperedCapsuleShape& shape, ShapeId& id);
+  Answer<ShapeId> add(const SphereShape& shape);
+  Answer<ShapeId> add(const CapsuleShape& shape);
+  Answer<ShapeId> add(const BoxShape& shape);
+  Answer<ShapeId> add(const CylinderShape& shape);
+  Answer<ShapeId> add(const ConeShape& shape);
+  Answer<ShapeId> add(const TriangleShape& shape);
+  Answer<ShapeId> add(const HalfSpaceShape& shape);
+  Answer<ShapeId> add(const EllipsoidShape& shape);
+  Answer<ShapeId> add(const TaperedCapsuleShape& shape);
   /// @}
   /// Adds a user shape; calls its function along 26 directions. `invalid_shape` also if there is no
   /// function, or a returned point is not finite, beyond the radius, or violates convexity by more
   /// than 1e-9 of the radius.
-  Status add(const SupportShape& shape, ShapeId& id);
-
-  /// As above, but returns the id, or an invalid id (which every call refuses) on failure.
-  template <typename Shape>
-  [[nodiscard]] ShapeId add(const Shape& shape) {
-    ShapeId id;
-    return add(shape, id) == Status::ok ? id : ShapeId{};
-  }
+  Answer<ShapeId> add(const SupportShape& shape);
 
   /// Adds the convex hull of points, computed without rounding; any finite points are valid input.
   /// Faces that are coplanar to 1e-13 of the hull's size are merged; points inside, on faces or on
   /// edges (to the same tolerance) are dropped. A flat set becomes a polygon, a segment or a point.
   /// `invalid_shape` if there is no point or one is not finite. O(points log points) for most
   /// inputs.
-  Status add_hull(const PointView& points, double rounding, ShapeId& id);
+  Answer<ShapeId> add_hull(const PointView& points, double rounding = 0.0);
   /// Adds the hull bounded by `faces`. `invalid_shape` unless they are closed, consistently
   /// oriented and convex to 1e-9 of the hull's size. Coplanar adjacent faces are merged.
-  Status add_hull(const PointView& points, const HullFaces& faces, double rounding, ShapeId& id);
+  Answer<ShapeId> add_hull(const PointView& points, const HullFaces& faces, double rounding = 0.0);
 
   /// Adds a hull that was read from a pool, given by its vertices and its faces in order; the pool
   /// stores it bit for bit. Without faces: a segment or a point. `invalid_shape` if no pool can
   /// contain such a hull.
-  Status add_built_hull(const PointView& points, const HullFaces& faces, double rounding,
-                        ShapeId& id);
+  Answer<ShapeId> add_built_hull(const PointView& points, const HullFaces& faces, double rounding);
 
   /// Removes a shape. Bodies must not use its id any more: a later shape of the same kind gets its
   /// index. Until then the table has the default shape at this index: a point, or for a half-space
@@ -135,9 +127,9 @@ class WINNOW_API ShapePool {
   template <typename Shape, typename Pool>
   static auto& table_of(Pool& pool) noexcept;
   template <typename Shape>
-  Status put(const Shape& shape, ShapeId& id);
+  Answer<ShapeId> put(const Shape& shape);
   template <typename Make>
-  Status put_hull(double rounding, ShapeId& id, Make&& make);
+  Answer<ShapeId> put_hull(double rounding, Make&& make);
   void refresh_tables() noexcept;
 
   std::pmr::memory_resource* memory_;

@@ -78,11 +78,10 @@ struct ShapeHit {
 /// Finds the point at which a ray enters a shape. Shapes are closed sets: a ray that grazes the
 /// surface hits, and so does a ray in the plane of a flat shape, both as far as double resolves.
 /// Triangles are two-sided. `invalid_key` for an id that the tables do not contain,
-/// `invalid_argument` for an invalid ray, `invalid_pose` for an invalid pose; they leave `hit`
-/// unchanged. A distant origin does not reduce the precision: errors of t are a few 1e-16 of the
-/// coordinates relative to the shape, divided by the sine of the angle to the surface. O(1);
-/// O(faces) for hulls.
-WINNOW_API Status cast_ray(const ShapeTables& tables, ShapeId shape, const Pose& pose,
-                           const ShapeRay& ray, ShapeHit& hit) noexcept;
+/// `invalid_argument` for an invalid ray, `invalid_pose` for an invalid pose. A distant origin does
+/// not reduce the precision: errors of t are a few 1e-16 of the coordinates relative to the shape,
+/// divided by the sine of the angle to the surface. O(1); O(faces) for hulls.
+WINNOW_API Answer<ShapeHit> cast_ray(const ShapeTables& tables, ShapeId shape, const Pose& pose,
+                                     const ShapeRay& ray) noexcept;
 
 }  // namespace winnow

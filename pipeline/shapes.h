@@ -97,6 +97,8 @@ struct ShapeId {
   [[nodiscard]] constexpr std::uint32_t index() const noexcept {
     return bits & ((1U << kIndexBits) - 1U);
   }
+  /// True unless this is the default id, which is of no shape.
+  [[nodiscard]] explicit constexpr operator bool() const noexcept { return bits != ~0U; }
   /// True if kind and index are equal.
   friend constexpr bool operator==(const ShapeId&, const ShapeId&) noexcept = default;
 };

@@ -57,10 +57,8 @@ void PartitionQueries::run_each(const QuerySet& set, std::size_t begin, std::siz
       visit(buffers.hits);
       return;
     }
-    need(set.query_type == QueryType::any ? partition.any(cast, buffers.hit)
-                                          : partition.closest(cast, buffers.hit),
-         "a query");
-    visit(buffers.hit);
+    const bool any = set.query_type == QueryType::any;
+    visit(Hit(need(any ? partition.any(cast) : partition.closest(cast), "a query")));
   };
   const auto overlap_one = [&](const Region& region) {
     need(partition.overlap(region, buffers.overlaps), "a query");

@@ -37,7 +37,6 @@ class PartitionQueries final : public QueryEngine {
     explicit Buffers(std::pmr::memory_resource* memory)
         : hits(memory), overlaps(memory), pairs(memory) {}
 
-    Hit hit;
     HitBuffer hits;
     OverlapBuffer overlaps;
     PairBuffer pairs;

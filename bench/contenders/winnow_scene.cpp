@@ -38,9 +38,8 @@ class WinnowScene final : public SceneEngine {
     if (set.mesh.size() == 0) return;
     BodyDefinition terrain;
     terrain.state = BodyState::fixed;
-    need(composites_->add_mesh(set.mesh.points(), set.mesh.indices(), terrain.shape), "the mesh");
-    Key key;
-    need(scene_->add(terrain, key), "the mesh");
+    terrain.shape = need(composites_->add_mesh(set.mesh.points(), set.mesh.indices()), "the mesh");
+    need(scene_->add(terrain), "the mesh");
   }
 
   void frame(std::span<const Pose> poses) override {
@@ -102,8 +101,8 @@ class WinnowMesh final : public MeshEngine {
  private:
   void add_bodies() {
     bodies_.resize(2);
-    need(composites_.add_mesh(triangles_->points(), triangles_->indices(), bodies_[0].shape),
-         "the mesh");
+    bodies_[0].shape =
+        need(composites_.add_mesh(triangles_->points(), triangles_->indices()), "the mesh");
     bodies_[1].shape = bodies_[0].shape;
     keys_.resize(2);
     need(scene_.add(bodies_, keys_), "two bodies");
@@ -125,10 +124,8 @@ class WinnowRays final : public RayEngine {
   [[nodiscard]] std::string name() const override { return "winnow"; }
 
   void start(const Triangles& mesh) override {
-    ShapeId shape;
-    need(composites_.add_mesh(mesh.points(), mesh.indices(), shape), "the mesh");
-    Key key;
-    need(scene_.add({.shape = shape, .state = BodyState::fixed}, key), "the body");
+    const ShapeId shape = need(composites_.add_mesh(mesh.points(), mesh.indices()), "the mesh");
+    need(scene_.add({.shape = shape, .state = BodyState::fixed}), "the body");
     need(scene_.refresh(), "the scene");
   }
 
@@ -164,23 +161,16 @@ class WinnowRays final : public RayEngine {
   }
 
   void run_one(std::size_t i) {
-    SceneHit hit;
-    std::span<const SceneHit> hits;
-    Status status = Status::ok;
     if (query_type_ == RayQueryType::all) {
-      status = queries_.all(rays_[i], hits);
-      if (!hits.empty()) hit = hits.front();
-    } else {
-      status = query_type_ == RayQueryType::any ? queries_.any(rays_[i], hit)
-                                                : queries_.closest(rays_[i], hit);
+      const std::span<const SceneHit> hits = need(queries_.all(rays_[i]), "a ray");
+      return put(i, hits.empty() ? SceneHit{} : hits.front());
     }
-    need(status, "a ray");
-    put(i, hit);
+    const bool any = query_type_ == RayQueryType::any;
+    put(i, need(any ? queries_.any(rays_[i]) : queries_.closest(rays_[i]), "a ray"));
   }
 
   void run_batch() {
     const SceneHitColumns columns{.key = key_.data(), .t = t_.data()};
-    SceneHitLists lists;
     switch (query_type_) {
       case RayQueryType::closest:
         return need(queries_.closest(rays_, columns), "rays");
@@ -189,7 +179,7 @@ class WinnowRays final : public RayEngine {
       case RayQueryType::all:
         break;
     }
-    need(queries_.all(rays_, lists), "rays");
+    const SceneHitLists lists = need(queries_.all(rays_), "rays");
     for (std::size_t i = 0; i < rays_.size(); ++i) {
       put(i, lists.first[i] == lists.first[i + 1] ? SceneHit{} : lists.hits[lists.first[i]]);
     }

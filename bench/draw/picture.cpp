@@ -87,8 +87,7 @@ Json query_rays(const Partition& partition, std::span<const Ray> rays, std::vect
   std::size_t ray_hits = 0;
   HitBuffer hits;
   for (const Ray& ray : rays) {
-    Hit closest;
-    need(partition.closest(Cast(ray), closest), "closest");
+    const Hit closest = need(partition.closest(Cast(ray)), "closest");
     need(partition.all(Cast(ray), hits), "all");
     std::vector<ObjectId> ids;
     std::vector<float> ts;

@@ -58,7 +58,7 @@ struct BodyCluster {
   /// Adds the shapes of new bodies. Every process adds all of them, in the order of rows.
   void see(std::span<const Aabb> boxes) {
     for (std::size_t i = shapes.size(); i < boxes.size(); ++i) {
-      need(pool.add(box_shape_of(boxes[i]), shapes.emplace_back()), "shape");
+      shapes.push_back(need(pool.add(box_shape_of(boxes[i])), "shape"));
     }
   }
 
@@ -206,7 +206,7 @@ class ClusterEngine {
     run.pairs.push_back({statistics.pairs, statistics.pairs, fingerprint});
     run.frame_ms.push_back(static_cast<double>(times[0]) / kNanoseconds);
     run.update_ms.push_back(static_cast<double>(times[1]) / kNanoseconds);
-    need(cluster_.digest(run.digests.emplace_back()), "digest");
+    run.digests.push_back(need(cluster_.digest(), "digest"));
   }
 
   Transport& transport_;

@@ -74,7 +74,7 @@ struct Churned {
       boxes[i].min = random.in(world.min.cast<double>(), highest).cast<float>();
       boxes[i].max = boxes[i].min + edges;
       need(worn.partition.remove(worn.keys[i]), "objects");
-      need(worn.partition.insert(boxes[i], i, worn.keys[i]), "objects");
+      worn.keys[i] = need(worn.partition.insert(boxes[i], i), "objects");
       if ((done + 1) % (kObjects / 10) == 0) need(worn.partition.self_pairs(worn.pairs), "pairs");
     }
     return boxes;
@@ -97,9 +97,8 @@ void add_churn(const std::string& structure, FilledPartition Churned::*one, cons
   });
   add("churn/closest_ray" + path, [=](benchmark::State& state) {
     const Churned& churned = prepared_churn();
-    Hit hit;
     run(state, 1, [&] {
-      for (const Ray& ray : churned.rays) need((churned.*one).partition.closest(ray, hit), "rays");
+      for (const Ray& ray : churned.rays) need((churned.*one).partition.closest(ray), "rays");
     });
     count_ns(state, "ns_per_query", kRays);
   });

@@ -140,8 +140,7 @@ class FilteredPartition {
       case rays:
         hits_.clear();
         for (std::uint32_t i = 0; i < query_count(kRays); ++i) {
-          Hit hit;
-          need(partition_.closest(Cast(ray(i)), hit, filter_), "rays");
+          const Hit hit = need(partition_.closest(Cast(ray(i)), filter_), "rays");
           hits_.emplace_back(i, hit.key.id);
         }
         return;

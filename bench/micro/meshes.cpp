@@ -294,25 +294,22 @@ void add_meshes() {
 
 void add_scenes() {
   add_scene_query("closest_ray", [](const QueryScene& scene, SceneQueries& queries, std::size_t i) {
-    SceneHit hit;
-    need(queries.closest(scene.rays[i], hit), "a ray");
+    const SceneHit hit = need(queries.closest(scene.rays[i]), "a ray");
     return number_of(hit);
   });
   add_scene_query("any_ray", [](const QueryScene& scene, SceneQueries& queries, std::size_t i) {
-    SceneHit hit;
-    need(queries.any(scene.rays[i], hit), "a ray");
+    const SceneHit hit = need(queries.any(scene.rays[i]), "a ray");
     return hit ? 1.0 : 0.0;
   });
   add_scene_query("all_rays", [](const QueryScene& scene, SceneQueries& queries, std::size_t i) {
-    std::span<const SceneHit> hits;
-    need(queries.all(scene.rays[i], hits), "a ray");
+    const std::span<const SceneHit> hits = need(queries.all(scene.rays[i]), "a ray");
     double sum = 0.0;
     for (const SceneHit& hit : hits) sum += number_of(hit);
     return sum;
   });
   add_scene_query("overlap", [](const QueryScene& scene, SceneQueries& queries, std::size_t i) {
-    std::span<const SceneOverlap> bodies;
-    need(queries.overlap(scene.set->shapes[i], scene.starts[i], bodies), "a shape");
+    const std::span<const SceneOverlap> bodies =
+        need(queries.overlap(scene.set->shapes[i], scene.starts[i]), "a shape");
     double sum = 0.0;
     for (const SceneOverlap& body : bodies) sum += 1.0 + body.key.id;
     return sum;
@@ -320,27 +317,24 @@ void add_scenes() {
   add_scene_query("shape_cast", [](const QueryScene& scene, SceneQueries& queries, std::size_t i) {
     ShapeCast cast{.shape = scene.set->shapes[i], .pose = scene.starts[i]};
     cast.direction = scene.rays[i].direction;
-    SceneHit hit;
-    need(queries.closest(cast, hit), "a shape cast");
+    const SceneHit hit = need(queries.closest(cast), "a shape cast");
     return number_of(hit);
   });
   add_scene_query("motion_cast", [](const QueryScene& scene, SceneQueries& queries, std::size_t i) {
     const MotionCast cast{.shape = scene.set->shapes[i],
                           .motion = RigidMotion::between(scene.starts[i], scene.ends[i])};
-    SceneHit hit;
-    need(queries.closest(cast, hit), "a motion cast");
+    const SceneHit hit = need(queries.closest(cast), "a motion cast");
     return number_of(hit);
   });
   add_scene_query("distance", [](const QueryScene& scene, SceneQueries& queries, std::size_t i) {
-    SceneDistance answer;
-    need(queries.distance(scene.keys[i], scene.keys[QueryScene::kBodies - 1 - i], answer),
-         "a distance");
+    const SceneDistance answer = need(
+        queries.distance(scene.keys[i], scene.keys[QueryScene::kBodies - 1 - i]), "a distance");
     return answer.distance;
   });
   add_scene_query("nearest_4", [](const QueryScene& scene, SceneQueries& queries, std::size_t i) {
-    std::span<const SceneDistance> bodies;
     constexpr double kAnyDistance = std::numeric_limits<double>::infinity();
-    need(queries.nearest(scene.starts[i].position, 4, kAnyDistance, bodies), "a point");
+    const std::span<const SceneDistance> bodies =
+        need(queries.nearest(scene.starts[i].position, 4, kAnyDistance), "a point");
     double sum = 0.0;
     for (const SceneDistance& body : bodies) sum += 1.0 + body.distance + body.key.id;
     return sum;

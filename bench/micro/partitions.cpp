@@ -247,8 +247,9 @@ class KeyRounds {
     });
     check(partition_.size() == keys_.size() - batch_, "keys were not removed");
     seconds[0] = timed([&] {
-      return bulk ? partition_.insert(boxes, {}, keys)
-                  : each([&](std::size_t i) { return partition_.insert(boxes[i], 0, keys[i]); });
+      return bulk
+                 ? partition_.insert(boxes, {}, keys)
+                 : each([&](std::size_t i) { return partition_.insert(boxes[i], 0).get(keys[i]); });
     });
     check(partition_.size() == keys_.size(), "keys were not inserted");
     seconds[1] = timed([&] {

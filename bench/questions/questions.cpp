@@ -93,7 +93,7 @@ class QueryBatch {
     Status status = read_ray(question["ray"], ray);
     if (status == Status::ok) status = read_shape(question["target"], pool_, shape, pose);
     ShapeHit hit;
-    if (status == Status::ok) status = cast_ray(pool_.tables(), shape, pose, ray, hit);
+    if (status == Status::ok) status = cast_ray(pool_.tables(), shape, pose, ray).get(hit);
     if (status != Status::ok) return status;
     answer["status"] = to_string(status);
     answer["hit"] = hit.hit;
@@ -111,14 +111,13 @@ class QueryBatch {
     FeatureImpactOptions options;
     static_cast<void>(
         read_exact_number(member(question, "min_separation"), options.min_separation));
-    FeatureImpact impact;
-    const Status status = feature_impact(pair, four_points(motion["start"]),
-                                         four_points(motion["end"]), impact, options);
-    if (status != Status::ok) return status;
-    answer["status"] = to_string(status);
+    const auto impact =
+        feature_impact(pair, four_points(motion["start"]), four_points(motion["end"]), options);
+    if (impact.status != Status::ok) return impact.status;
+    answer["status"] = to_string(impact.status);
     answer["hit"] = impact.hit;
     answer["time"] = number_to_json(impact.time);
-    return status;
+    return Status::ok;
   }
 
   Status compute_impact(const Json& question, Json& answer) {

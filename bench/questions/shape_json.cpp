@@ -55,7 +55,7 @@ Status add_mesh(const Json& mesh, CompositePool& composites, ShapeId& id) {
       corners.push_back(static_cast<std::uint32_t>(index));
     }
   }
-  return composites.add_mesh(PointView(v), IndexView(corners), id);
+  return composites.add_mesh(PointView(v), IndexView(corners)).get(id);
 }
 
 Status add_height_field(const Json& field, CompositePool& composites, ShapeId& id) {
@@ -70,7 +70,7 @@ Status add_height_field(const Json& field, CompositePool& composites, ShapeId& i
     for (const double height : values) heights.push_back(static_cast<float>(height));
   }
   samples.heights = heights;
-  return composites.add_height_field(samples, id);
+  return composites.add_height_field(samples).get(id);
 }
 
 Status add_shape(const Json& value, ShapePool& pool, ShapeId& id) {
@@ -78,39 +78,41 @@ Status add_shape(const Json& value, ShapePool& pool, ShapeId& id) {
   const double rounding = number(value, "rounding");
   const double radius = number(value, "radius");
   const double half_length = number(value, "half_length");
-  if (type == "sphere") return pool.add(SphereShape{rounded(radius, rounding)}, id);
-  if (type == "capsule") return pool.add(CapsuleShape{rounded(radius, rounding), half_length}, id);
-  if (type == "cylinder") return pool.add(CylinderShape{radius, half_length, rounding}, id);
-  if (type == "cone") return pool.add(ConeShape{radius, half_length, rounding}, id);
+  if (type == "sphere") return pool.add(SphereShape{rounded(radius, rounding)}).get(id);
+  if (type == "capsule")
+    return pool.add(CapsuleShape{rounded(radius, rounding), half_length}).get(id);
+  if (type == "cylinder") return pool.add(CylinderShape{radius, half_length, rounding}).get(id);
+  if (type == "cone") return pool.add(ConeShape{radius, half_length, rounding}).get(id);
   if (type == "box") {
     BoxShape shape{{}, rounding};
     numbers(value["half"], shape.half);
-    return pool.add(shape, id);
+    return pool.add(shape).get(id);
   }
   if (type == "ellipsoid") {
     EllipsoidShape shape{{}, rounding};
     numbers(value["radii"], shape.radius);
-    return pool.add(shape, id);
+    return pool.add(shape).get(id);
   }
   if (type == "half_space") {
     HalfSpaceShape shape;
     numbers(value["normal"], shape.normal);
     shape.offset = rounded(number(value, "offset"), rounding);
-    return pool.add(shape, id);
+    return pool.add(shape).get(id);
   }
   if (type == "tapered_capsule") {
     double radii[2] = {};
     numbers(value["radii"], radii);
-    return pool.add(TaperedCapsuleShape{{rounded(radii[0], rounding), rounded(radii[1], rounding)},
-                                        half_length},
-                    id);
+    return pool
+        .add(TaperedCapsuleShape{{rounded(radii[0], rounding), rounded(radii[1], rounding)},
+                                 half_length})
+        .get(id);
   }
   const std::vector<Vec3d> v = vertices(value);
-  if (type == "hull") return pool.add_hull(v, rounding, id);
+  if (type == "hull") return pool.add_hull(v, rounding).get(id);
   TriangleShape shape;
   for (std::size_t i = 0; i < 3; ++i) shape.vertex[i] = v[i];
   shape.rounding = rounding;
-  return pool.add(shape, id);
+  return pool.add(shape).get(id);
 }
 
 /// Overwrites the parts of `pose` that the member `name` contains and keeps the others.
@@ -134,7 +136,7 @@ Status add_any_shape(const Json& value, ShapePool& pool, CompositePool& composit
     if (status == Status::ok) status = add_any_shape(entry, pool, composites, child.shape);
     if (status != Status::ok) return status;
   }
-  return composites.add_compound(children, id);
+  return composites.add_compound(children).get(id);
 }
 
 /// Reads a hexadecimal number such as "0x1.8p+1", with or without a sign, that fills the whole

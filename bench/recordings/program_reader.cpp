@@ -81,9 +81,9 @@ class ProgramReader {
     const Contacts* const contacts = player.contacts(world_);
     if (contacts == nullptr || contacts->level() != ContactLevel::manifold) return found;
     for (std::size_t pair = 0; pair < contacts->size(); ++pair) {
-      BodyDefinition body;
       // Skips bodies that were removed after the contacts were computed.
-      if (player.scene(world_)->body(contacts->a()[pair], body) != Status::ok) continue;
+      const Answer<BodyDefinition> body = player.scene(world_)->body(contacts->a()[pair]);
+      if (body.status != Status::ok) continue;
       const std::uint32_t last = contacts->manifold_first()[pair + 1];
       for (std::uint32_t m = contacts->manifold_first()[pair]; m < last; ++m) {
         take_points(*contacts, m, body.pose, found);
@@ -121,8 +121,8 @@ class ProgramReader {
       Aabb box;
       BodyDefinition body;
       if (partition != nullptr) {
-        (void)partition->bounds(key, box);
-      } else if (scene->body(key, body) == Status::ok) {
+        box = partition->bounds(key);
+      } else if (scene->body(key).get(body) == Status::ok) {
         box = body.shape.is_composite() ? player.composites(world_)->bounds(body.shape, body.pose)
                                         : player.shapes(world_)->bounds(body.shape, body.pose);
       }

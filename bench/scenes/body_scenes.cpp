@@ -40,8 +40,7 @@ Eigen::Vector3d direction(Random& random) {
 ShapeId add_hull(ShapePool& pool, Random& random, std::size_t vertices, double radius) {
   std::vector<Eigen::Vector3d> points;
   for (std::size_t i = 0; i < vertices; ++i) points.push_back(radius * direction(random));
-  ShapeId id;
-  need(pool.add_hull(points, 0.0, id), "a hull");
+  const ShapeId id = need(pool.add_hull(points, 0.0), "a hull");
   return id;
 }
 

@@ -67,7 +67,7 @@ ShapeSource::ShapeSource(ShapePool& pool, const ShapeStyle& style, Random& rando
 template <typename Shape>
 DrawnShape ShapeSource::put(const Shape& shape, double radius) {
   DrawnShape drawn{{}, radius};
-  need(pool_.add(shape, drawn.id), "a shape");
+  drawn.id = need(pool_.add(shape), "a shape");
   return drawn;
 }
 
@@ -118,7 +118,7 @@ DrawnShape ShapeSource::draw_hull() {
   const std::vector<Eigen::Vector3d> points = draw_corners();
   DrawnShape drawn;
   for (const Eigen::Vector3d& point : points) drawn.radius = std::max(drawn.radius, point.norm());
-  need(pool_.add_hull(points, 0.0, drawn.id), "a hull");
+  drawn.id = need(pool_.add_hull(points, 0.0), "a hull");
   return drawn;
 }
 

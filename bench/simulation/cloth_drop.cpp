@@ -57,7 +57,7 @@ class ClothDrop final : public Barrier {
       : options_(options),
         side_(options.size != 0 ? options.size : kVertices),
         mesh_({.execution = options.execution}) {
-    need(shapes_.add(SphereShape{kBall}, ball_), "the ball");
+    ball_ = need(shapes_.add(SphereShape{kBall}), "the ball");
     make_cloth();
     need(mesh_.build(place_, std::span<const std::uint32_t>(corners_)), "the cloth");
   }

@@ -117,15 +117,14 @@ class FastBodies final : public Barrier {
   [[nodiscard]] bool has_funnel() const { return options_.scene == "funnel"; }
 
   [[nodiscard]] Key add(ShapeId shape, const Pose& pose, BodyState state) {
-    Key key;
-    need(scene_.add({.shape = shape, .pose = pose, .state = state}, key), "a body");
+    const Key key = need(scene_.add({.shape = shape, .pose = pose, .state = state}), "a body");
     return key;
   }
 
   void make_funnel_scene() {
     funnel_ = make_funnel(kFunnel);
-    ShapeId mesh;
-    need(composites_.add_mesh(funnel_.points(), funnel_.indices(), mesh), "the funnel");
+    const ShapeId mesh =
+        need(composites_.add_mesh(funnel_.points(), funnel_.indices()), "the funnel");
     static_cast<void>(add(mesh, Pose{}, BodyState::fixed));
     fill(0.6 * kFunnel.radius, 1.0, kFunnel.wall - 1.0, kFunnelSpeed);
   }
@@ -135,13 +134,12 @@ class FastBodies final : public Barrier {
       const double sign = side % 2 == 0 ? 1.0 : -1.0;
       Vec3 normal = Vec3::Zero();
       normal[side / 2] = sign;
-      ShapeId wall;
-      need(shapes_.add(HalfSpaceShape{normal, -kRoom}, wall), "a wall");
+      const ShapeId wall = need(shapes_.add(HalfSpaceShape{normal, -kRoom}), "a wall");
       static_cast<void>(add(wall, Pose{}, BodyState::fixed));
     }
     fill(kRoom - 1.0, 1.5, kRoom - 1.0, 200.0);
-    ShapeId shape;
-    need(shapes_.add(BoxShape{{kBlade[0], kBlade[1], kBlade[2]}}, shape), "the blade");
+    const ShapeId shape =
+        need(shapes_.add(BoxShape{{kBlade[0], kBlade[1], kBlade[2]}}), "the blade");
     Body blade;
     blade.key = add(shape, Pose{}, BodyState::fixed);
     blade.spin = Vec3(0.0, 0.0, 2.0 * std::numbers::pi * kBladeTurns / options_.step);
@@ -162,10 +160,10 @@ class FastBodies final : public Barrier {
       Body body;
       ShapeId shape;
       if (i % 2 == 0) {
-        need(shapes_.add(SphereShape{radius}, shape), "a ball");
+        shape = need(shapes_.add(SphereShape{radius}), "a ball");
       } else {
         const double half = radius / std::sqrt(3.0);
-        need(shapes_.add(BoxShape{{half, half, half}}, shape), "a box");
+        shape = need(shapes_.add(BoxShape{{half, half, half}}), "a box");
       }
       body.radius = radius;
       body.pose = Pose::at(kApart * (row % across - across / 2),

@@ -85,8 +85,8 @@ GranularFlow::GranularFlow(const FlowOptions& options)
 
 void GranularFlow::make_obstacle() {
   mesh_ = make_funnel(funnel_);
-  need(composites_.add_mesh(mesh_.points(), mesh_.indices(), mesh_shape_, {}, options_.execution),
-       "the mesh");
+  mesh_shape_ = need(composites_.add_mesh(mesh_.points(), mesh_.indices(), {}, options_.execution),
+                     "the mesh");
   floor_ = mesh_.vertices.front().z() - kFall;  // the first ring is the outlet
 }
 
@@ -95,10 +95,10 @@ void GranularFlow::make_shapes() {
   ShapeId spheres[kSizes];
   ShapeId boxes[kSizes];
   for (std::size_t i = 0; i < kSizes; ++i) {
-    need(shapes_.add(SphereShape{random.in(0.4, kLargestRadius)}, spheres[i]), "a sphere");
+    spheres[i] = need(shapes_.add(SphereShape{random.in(0.4, kLargestRadius)}), "a sphere");
     const BoxShape box{
         {random.in(0.3, kLargestHalf), random.in(0.3, kLargestHalf), random.in(0.3, kLargestHalf)}};
-    need(shapes_.add(box, boxes[i]), "a box");
+    boxes[i] = need(shapes_.add(box), "a box");
   }
   shape_of_.reserve(objects_);
   for (std::size_t i = 0; i < objects_; ++i) {

@@ -90,13 +90,12 @@ void Standing::step() {
 }
 
 void Standing::add(ShapeId shape, const RigidBody& body) {
-  keys_.emplace_back();
-  need(scene_.add({.shape = shape,
-                   .pose = pose_of(body),
-                   .state = body.inverse_mass == 0.0 ? BodyState::fixed : BodyState::dynamic,
-                   .data = bodies_.size()},
-                  keys_.back()),
-       "body");
+  keys_.push_back(
+      need(scene_.add({.shape = shape,
+                       .pose = pose_of(body),
+                       .state = body.inverse_mass == 0.0 ? BodyState::fixed : BodyState::dynamic,
+                       .data = bodies_.size()}),
+           "body"));
   bodies_.push_back(body);
 }
 
@@ -114,8 +113,7 @@ void Standing::add_solid(ShapeId shape, const Vec3& edges, const Vec3& position,
 }
 
 void Standing::add_floor() {
-  ShapeId floor;
-  need(shapes_.add(BoxShape{{20.0, 20.0, 1.0}}, floor), "floor");
+  const ShapeId floor = need(shapes_.add(BoxShape{{20.0, 20.0, 1.0}}), "floor");
   RigidBody body;
   body.position.z() = -1.0;
   add(floor, body);
@@ -127,8 +125,7 @@ void Standing::build_stack(ShapeId box) {
 
 void Standing::build_box_stack() {
   add_floor();
-  ShapeId box;
-  need(shapes_.add(BoxShape{{0.5, 0.5, 0.5}}, box), "box");
+  const ShapeId box = need(shapes_.add(BoxShape{{0.5, 0.5, 0.5}}), "box");
   build_stack(box);
 }
 
@@ -136,8 +133,7 @@ void Standing::build_hull_stack() {
   add_floor();
   const std::vector<Vec3> corners =
       prism({{-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}}, 1.0);
-  ShapeId box;
-  need(shapes_.add_hull(std::span(corners), 0.0, box), "box");
+  const ShapeId box = need(shapes_.add_hull(std::span(corners), 0.0), "box");
   build_stack(box);
 }
 
@@ -150,8 +146,9 @@ void Standing::build_card_house() {
   const double lying = apart - 0.02;
   ShapeId leaning;
   ShapeId flat;
-  need(shapes_.add(BoxShape{{0.5 * card.x(), 0.5 * card.y(), 0.5 * card.z()}}, leaning), "leaning");
-  need(shapes_.add(BoxShape{{0.5 * lying, 0.5 * card.y(), 0.5 * card.x()}}, flat), "flat");
+  leaning =
+      need(shapes_.add(BoxShape{{0.5 * card.x(), 0.5 * card.y(), 0.5 * card.z()}}), "leaning");
+  flat = need(shapes_.add(BoxShape{{0.5 * lying, 0.5 * card.y(), 0.5 * card.x()}}), "flat");
   const double reach = 0.5 * (card.z() * std::sin(lean) + card.x() * std::cos(lean));
   const double height = 0.5 * (card.z() * std::cos(lean) + card.x() * std::sin(lean));
   double z = 0.0;
@@ -178,14 +175,12 @@ void Standing::build_wheel() {
   flat.edge = 0.7;
   flat.height.assign((flat.cells + 1) * (flat.cells + 1), 0.0);
   const Triangles triangles = make_terrain(flat);
-  ShapeId floor;
-  need(composites_.add_mesh(std::span(triangles.vertices), std::span(triangles.corners), floor),
-       "floor");
+  const ShapeId floor = need(
+      composites_.add_mesh(std::span(triangles.vertices), std::span(triangles.corners)), "floor");
   add(floor, {});
   const double radius = 0.5;
   const double half_width = 0.2;
-  ShapeId wheel;
-  need(shapes_.add(CylinderShape{radius, half_width}, wheel), "wheel");
+  const ShapeId wheel = need(shapes_.add(CylinderShape{radius, half_width}), "wheel");
   RigidBody body;
   body.position = {5.13, 5.37, radius};
   body.turn = Eigen::AngleAxisd(0.5 * std::numbers::pi, Vec3::UnitX());
@@ -213,8 +208,7 @@ void Standing::build_arch() {
     const Eigen::Vector2d centre = centre_of(section);
     for (Eigen::Vector2d& corner : section) corner -= centre;
     const std::vector<Vec3> corners = prism(section, width);
-    ShapeId wedge;
-    need(shapes_.add_hull(std::span(corners), 0.0, wedge), "wedge");
+    const ShapeId wedge = need(shapes_.add_hull(std::span(corners), 0.0), "wedge");
     const double edge =
         std::sqrt(std::numbers::pi / kWedges * (radii[0] + radii[1]) / 2.0 * (radii[1] - radii[0]));
     add_solid(wedge, {edge, width, edge}, {centre.x(), 0.0, centre.y()}, 0.0);

@@ -58,8 +58,9 @@ EXPORTED("drift_start") bool drift_start(std::uint32_t count) {
   };
   d.side = std::cbrt(2.0 * count);
   winnow::ShapeId shape[2];
-  if (d.shapes.add(winnow::SphereShape{0.5}, shape[0]) != winnow::Status::ok) return false;
-  if (d.shapes.add(winnow::BoxShape{{0.5, 0.5, 0.5}}, shape[1]) != winnow::Status::ok) return false;
+  if (d.shapes.add(winnow::SphereShape{0.5}).get(shape[0]) != winnow::Status::ok) return false;
+  if (d.shapes.add(winnow::BoxShape{{0.5, 0.5, 0.5}}).get(shape[1]) != winnow::Status::ok)
+    return false;
   std::vector<winnow::BodyDefinition> bodies(count);
   d.poses.resize(count);
   d.velocities.resize(count);

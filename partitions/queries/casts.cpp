@@ -208,8 +208,8 @@ Hit hit_or_null(const KeyTable& keys, std::uint64_t result) noexcept {
 using FindHits = void (*)(const QueryView&, const KernelCast*, std::uint32_t count,
                           const QueryFilter&, std::uint64_t* found);
 
-Status find_hit(const PartitionState& state, FindHits find, const Cast& cast, Hit& hit,
-                const Filter& filter) {
+Answer<Hit> find_hit(const PartitionState& state, FindHits find, const Cast& cast,
+                     const Filter& filter) {
   const PreparedCast prepared(cast);
   if (!prepared.valid()) return Status::invalid_argument;
   QueryView view;
@@ -217,11 +217,10 @@ Status find_hit(const PartitionState& state, FindHits find, const Cast& cast, Hi
     return status;
   }
   const KernelFilter kernel_filter(filter, view, state.rows.keys());
-  if (kernel_filter.matches_nothing()) return Status::ok;
+  if (kernel_filter.matches_nothing()) return Hit{};
   std::uint64_t found = kNoHit;
   find(view, &prepared.kernel_cast(), 1, kernel_filter.query_filter(), &found);
-  hit = hit_or_null(state.rows.keys(), found);
-  return Status::ok;
+  return hit_or_null(state.rows.keys(), found);
 }
 
 Status find_hits(const PartitionState& state, FindHits find, const RayBatch& rays,
@@ -255,16 +254,16 @@ Status find_hits(const PartitionState& state, FindHits find, const RayBatch& ray
 
 }  // namespace
 
-Status Partition::closest(const Cast& cast, Hit& hit, const Filter& filter) const {
+Answer<Hit> Partition::closest(const Cast& cast, const Filter& filter) const {
   const DefaultFloatEnvironment environment;
-  hit = {};
-  return state_ == nullptr ? status_ : find_hit(*state_, cast_kernels().closest, cast, hit, filter);
+  if (state_ == nullptr) return status_;
+  return find_hit(*state_, cast_kernels().closest, cast, filter);
 }
 
-Status Partition::any(const Cast& cast, Hit& hit, const Filter& filter) const {
+Answer<Hit> Partition::any(const Cast& cast, const Filter& filter) const {
   const DefaultFloatEnvironment environment;
-  hit = {};
-  return state_ == nullptr ? status_ : find_hit(*state_, cast_kernels().any, cast, hit, filter);
+  if (state_ == nullptr) return status_;
+  return find_hit(*state_, cast_kernels().any, cast, filter);
 }
 
 Status Partition::closest(const RayBatch& rays, const HitColumns& hits,

@@ -201,9 +201,13 @@ NamePairs Cluster::pairs(std::uint32_t rank) const noexcept {
   return bodies == nullptr ? NamePairs{} : bodies->pairs();
 }
 
-Status Cluster::digest(ClusterDigest& digest) {
+Answer<ClusterDigest> Cluster::digest() {
   const DefaultFloatEnvironment environment;
-  return collective(state_, CollectiveCall::digest, [&] { return state_->digest(digest); });
+  ClusterDigest digest;
+  const Status status =
+      collective(state_, CollectiveCall::digest, [&] { return state_->digest(digest); });
+  if (status != Status::ok) return status;
+  return digest;
 }
 
 std::size_t Cluster::size(std::uint32_t rank) const noexcept {
@@ -216,8 +220,12 @@ Status Cluster::bodies(std::uint32_t rank, std::span<ClusterBody> bodies,
   return on_rank(state_, rank, [&](RankBodies& one) { return one.bodies(bodies, boxes); });
 }
 
-Status Cluster::key_of(std::uint32_t rank, BodyName name, Key& key) const noexcept {
-  return on_rank(state_, rank, [&](RankBodies& one) { return one.key_of(name, key); });
+Answer<Key> Cluster::key_of(std::uint32_t rank, BodyName name) const noexcept {
+  Key key;
+  const Status status =
+      on_rank(state_, rank, [&](RankBodies& one) { return one.key_of(name, key); });
+  if (status != Status::ok) return status;
+  return key;
 }
 
 std::span<const ClusterBody> Cluster::arrived(std::uint32_t rank) const noexcept {

@@ -70,9 +70,8 @@ struct RayAll {
   template <typename Give>
   static Status answer(RankQueries& scene, std::span<const ShapeRay> rays, const Filter& filter,
                        Give&& give) {
-    SceneHitLists lists;
-    const Status status = scene.queries.all(ShapeRayBatch(rays), lists, filter);
-    if (status != Status::ok) return status;
+    const auto lists = scene.queries.all(ShapeRayBatch(rays), filter);
+    if (lists.status != Status::ok) return lists.status;
     for (std::size_t i = 0; i < rays.size(); ++i) {
       for (std::size_t h = lists.first[i]; h < lists.first[i + 1]; ++h) {
         give(i, hit_of(lists.hits[h]));
@@ -136,9 +135,8 @@ struct RayClosest : RayAll {
       shorter.back().max_t = std::min(rays[i].max_t, table[i].t * kBehind);
       of.push_back(i);
     }
-    SceneHitLists lists;
-    status = scene.queries.all(ShapeRayBatch(shorter), lists, filter);
-    if (status != Status::ok) return status;
+    const auto lists = scene.queries.all(ShapeRayBatch(shorter), filter);
+    if (lists.status != Status::ok) return lists.status;
     std::vector<ShapeRay> tied;
     std::vector<std::size_t> tied_of;
     for (std::size_t k = 0; k < of.size(); ++k) {
@@ -188,9 +186,8 @@ struct ProbeOverlap {
   static Status answer(RankQueries& scene, std::span<const ShapeProbe> probes, const Filter& filter,
                        Give&& give) {
     for (std::size_t i = 0; i < probes.size(); ++i) {
-      std::span<const SceneOverlap> bodies;
-      const Status status = scene.queries.overlap(probes[i].shape, probes[i].pose, bodies, filter);
-      if (status != Status::ok) return status;
+      const auto bodies = scene.queries.overlap(probes[i].shape, probes[i].pose, filter);
+      if (bodies.status != Status::ok) return bodies.status;
       for (const SceneOverlap& body : bodies) give(i, ClusterOverlap{body.data, body.part});
     }
     return Status::ok;
@@ -217,14 +214,13 @@ struct PointNearest {
                        const Filter& filter, Give&& give) {
     for (std::size_t i = 0; i < probes.size(); ++i) {
       const NearestProbe& probe = probes[i];
-      std::span<const SceneDistance> bodies;
-      Status status = scene.queries.nearest(probe.point, probe.count, probe.radius, bodies, filter);
-      if (status == Status::ok && probe.count != 0 && bodies.size() == probe.count) {
+      auto bodies = scene.queries.nearest(probe.point, probe.count, probe.radius, filter);
+      if (bodies.status == Status::ok && probe.count != 0 && bodies.size() == probe.count) {
         // Other bodies may be at the same distance as the last one, with smaller names.
         const double radius = std::max(bodies.back().distance, 0.0);
-        status = scene.queries.nearest(probe.point, ~std::size_t{0}, radius, bodies, filter);
+        bodies = scene.queries.nearest(probe.point, ~std::size_t{0}, radius, filter);
       }
-      if (status != Status::ok) return status;
+      if (bodies.status != Status::ok) return bodies.status;
       for (const SceneDistance& body : bodies) {
         ClusterDistance named{.name = body.data,
                               .distance = body.distance,

@@ -350,9 +350,13 @@ const Contacts& ClusterScene::contacts(std::uint32_t rank) const noexcept {
   return one == nullptr ? kNothing : one->contacts();
 }
 
-Status ClusterScene::digest(ClusterDigest& digest) {
+Answer<ClusterDigest> ClusterScene::digest() {
   const DefaultFloatEnvironment environment;
-  return collective(state_, CollectiveCall::digest, [&] { return state_->digest(digest); });
+  ClusterDigest digest;
+  const Status status =
+      collective(state_, CollectiveCall::digest, [&] { return state_->digest(digest); });
+  if (status != Status::ok) return status;
+  return digest;
 }
 
 Status ClusterScene::save(std::uint32_t rank, std::vector<std::byte>& bytes) const {
@@ -389,16 +393,23 @@ Status ClusterScene::bodies(std::uint32_t rank, std::span<ClusterBody> bodies) c
   return on_rank(state_, rank, [&](RankScene& one) { return one.bodies(bodies); });
 }
 
-Status ClusterScene::key_of(std::uint32_t rank, BodyName name, Key& key) const noexcept {
-  return on_rank(state_, rank, [&](RankScene& one) { return one.key_of(name, key); });
+Answer<Key> ClusterScene::key_of(std::uint32_t rank, BodyName name) const noexcept {
+  Key key;
+  const Status status =
+      on_rank(state_, rank, [&](RankScene& one) { return one.key_of(name, key); });
+  if (status != Status::ok) return status;
+  return key;
 }
 
-Status ClusterScene::body(std::uint32_t rank, BodyName name, BodyDefinition& body) const noexcept {
-  return on_rank(state_, rank, [&](RankScene& one) {
+Answer<BodyDefinition> ClusterScene::body(std::uint32_t rank, BodyName name) const noexcept {
+  BodyDefinition body;
+  const Status status = on_rank(state_, rank, [&](RankScene& one) {
     Key key;
-    const Status status = one.key_of(name, key);
-    return status == Status::ok ? one.scene().body(key, body) : status;
+    const Status found = one.key_of(name, key);
+    return found == Status::ok ? one.scene().body(key).get(body) : found;
   });
+  if (status != Status::ok) return status;
+  return body;
 }
 
 std::span<const ClusterBody> ClusterScene::arrived(std::uint32_t rank) const noexcept {

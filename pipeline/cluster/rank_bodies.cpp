@@ -207,9 +207,7 @@ Status RankBodies::bodies(std::span<ClusterBody> bodies, std::span<Aabb> boxes) 
 // ---- migration
 
 Aabb RankBodies::box_of(Key key) const noexcept {
-  Aabb box;
-  (void)partition_.bounds(key, box);
-  return box;
+  return partition_.bounds(key);
 }
 
 /// Looks up the boxes of the keys in `box_keys_`; false if any is stale.

@@ -49,14 +49,12 @@ void RankMembers::records(std::vector<BodyName>& names, std::vector<BodyRecord>&
 }
 
 Aabb RankMembers::box_of(ObjectId id) const noexcept {
-  Aabb box;
-  (void)state().set(state().body_state[id]).partition->bounds(state().place[id], box);
-  return box;
+  return state().set(state().body_state[id]).partition->bounds(state().place[id]);
 }
 
 BodyRecord RankMembers::record_of(ObjectId id) const noexcept {
   BodyRecord record{state().pose[id], state().shape[id], {}, state().body_state[id]};
-  (void)state().set(record.state).partition->filter(state().place[id], record.filter);
+  record.filter = state().set(record.state).partition->filter(state().place[id]);
   record.is_new = (flags_[id] & kNew) != 0 ? 1 : 0;
   return record;
 }

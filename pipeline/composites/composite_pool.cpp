@@ -259,6 +259,15 @@ constexpr MidPhase kMidPhase = {
     .solid_contains_shape = solid_contains_shape,
 };
 
+/// Puts a surface in a set or takes it out, and increments the revision if that is a change.
+Status set_flag(IdSet& set, ShapeId surface, bool now, std::uint64_t& revision) noexcept {
+  if (set.has(surface) == now) return Status::ok;
+  if (!now) set.remove(surface);
+  if (now && !set.add(surface)) return Status::out_of_memory;
+  ++revision;
+  return Status::ok;
+}
+
 }  // namespace
 }  // namespace mid
 
@@ -276,8 +285,8 @@ mid::Composites* CompositePool::state() noexcept {
   return state_;
 }
 
-Status CompositePool::add_mesh(const PointView& vertices, const IndexView& triangles, ShapeId& id,
-                               const MeshOptions& options, const Execution& execution) {
+Answer<ShapeId> CompositePool::add_mesh(const PointView& vertices, const IndexView& triangles,
+                                        const MeshOptions& options, const Execution& execution) {
   const DefaultFloatEnvironment environment;
   mid::Composites* const s = state();
   if (s == nullptr) return Status::out_of_memory;
@@ -291,11 +300,10 @@ Status CompositePool::add_mesh(const PointView& vertices, const IndexView& trian
     s->release(shared);
     return status;
   }
-  id = ShapeId::of(CompositeKind::mesh, s->meshes.put({shared}));
-  return Status::ok;
+  return ShapeId::of(CompositeKind::mesh, s->meshes.put({shared}));
 }
 
-Status CompositePool::add_scaled(ShapeId mesh, const std::array<double, 3>& scale, ShapeId& id) {
+Answer<ShapeId> CompositePool::add_scaled(ShapeId mesh, const std::array<double, 3>& scale) {
   const DefaultFloatEnvironment environment;
   if (!contains(mesh) || mesh.composite_kind() != CompositeKind::mesh) return Status::invalid_key;
   mid::MeshEntry entry = *state_->mesh(mesh);
@@ -307,8 +315,7 @@ Status CompositePool::add_scaled(ShapeId mesh, const std::array<double, 3>& scal
   const Status status = state_->meshes.prepare();
   if (status != Status::ok) return status;
   ++entry.shared->users;
-  id = ShapeId::of(CompositeKind::mesh, state_->meshes.put(entry));
-  return Status::ok;
+  return ShapeId::of(CompositeKind::mesh, state_->meshes.put(entry));
 }
 
 Status CompositePool::refit_mesh(ShapeId mesh, const PointView& vertices,
@@ -327,7 +334,7 @@ Status CompositePool::refit_mesh(ShapeId mesh, const PointView& vertices,
   return Status::ok;
 }
 
-Status CompositePool::add_height_field(const HeightSamples& samples, ShapeId& id) {
+Answer<ShapeId> CompositePool::add_height_field(const HeightSamples& samples) {
   const DefaultFloatEnvironment environment;
   mid::Composites* const s = state();
   if (s == nullptr) return Status::out_of_memory;
@@ -340,8 +347,7 @@ Status CompositePool::add_height_field(const HeightSamples& samples, ShapeId& id
     delete_in(memory_, field);
     return status;
   }
-  id = ShapeId::of(CompositeKind::height_field, s->fields.put(field));
-  return Status::ok;
+  return ShapeId::of(CompositeKind::height_field, s->fields.put(field));
 }
 
 Status CompositePool::update_height_field(ShapeId field, std::uint32_t column, std::uint32_t row,
@@ -355,10 +361,14 @@ Status CompositePool::update_height_field(ShapeId field, std::uint32_t column, s
   return Status::ok;
 }
 
-Status CompositePool::add_compound(std::span<const CompoundChild> children, ShapeId& id) {
+Answer<ShapeId> CompositePool::add_compound(std::span<const CompoundChild> children) {
   const DefaultFloatEnvironment environment;
   if (children.empty()) return Status::invalid_shape;
   if (children.size() >> ShapeId::kIndexBits != 0) return Status::too_many_objects;
+  const auto can_be_child = [&](ShapeId id) {
+    return id.is_composite() ? contains(id) && id.composite_kind() != CompositeKind::compound
+                             : shapes_.contains(id);
+  };
   std::uint64_t parts = 0;
   for (const CompoundChild& child : children) {
     if (!can_be_child(child.shape)) return Status::invalid_key;
@@ -373,13 +383,7 @@ Status CompositePool::add_compound(std::span<const CompoundChild> children, Shap
   mid::Compound* compound = nullptr;
   status = s->new_compound(children, compound);
   if (status != Status::ok) return status;
-  id = ShapeId::of(CompositeKind::compound, s->compounds.put(compound));
-  return Status::ok;
-}
-
-bool CompositePool::can_be_child(ShapeId id) const noexcept {
-  if (!id.is_composite()) return shapes_.contains(id);
-  return contains(id) && id.composite_kind() != CompositeKind::compound;
+  return ShapeId::of(CompositeKind::compound, s->compounds.put(compound));
 }
 
 std::uint32_t CompositePool::parts(ShapeId id) const noexcept {
@@ -399,15 +403,7 @@ Status CompositePool::set_one_sided(ShapeId surface, bool one_sided) {
   if (!contains(surface) || surface.composite_kind() == CompositeKind::compound) {
     return Status::invalid_key;
   }
-  return set_flag(state_->one_sided, surface, one_sided);
-}
-
-Status CompositePool::set_flag(mid::IdSet& set, ShapeId surface, bool now) noexcept {
-  if (set.has(surface) == now) return Status::ok;
-  if (!now) set.remove(surface);
-  if (now && !set.add(surface)) return Status::out_of_memory;
-  ++revision_;
-  return Status::ok;
+  return mid::set_flag(state_->one_sided, surface, one_sided, revision_);
 }
 
 Status CompositePool::set_solid(ShapeId id, bool solid) {
@@ -417,7 +413,7 @@ Status CompositePool::set_solid(ShapeId id, bool solid) {
     const Status status = mid::check_solid(*state_, id);
     if (status != Status::ok) return status;
   }
-  return set_flag(state_->solid, id, solid);
+  return mid::set_flag(state_->solid, id, solid, revision_);
 }
 
 bool CompositePool::is_solid(ShapeId id) const noexcept {

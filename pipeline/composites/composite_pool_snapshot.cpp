@@ -178,8 +178,8 @@ class CompositesReader {
       child.shape.bits = in_.get<std::uint32_t>();
       (void)in_.get_bytes(&child.pose, sizeof child.pose);
     }
-    ShapeId id;
-    return in_.ok() ? pool_.add_compound({children.data(), children.size()}, id) : status_of(in_);
+    return in_.ok() ? pool_.add_compound({children.data(), children.size()}).status
+                    : status_of(in_);
   }
 
   ByteReader& in_;
@@ -226,9 +226,9 @@ Status CompositePool::load(std::span<const std::byte> saved, const Execution& ex
   return Status::ok;
 }
 
-Status CompositePool::add_saved_mesh(std::span<const std::byte> saved,
-                                     const std::array<double, 3>& scale, ShapeId& id,
-                                     const Execution& execution) {
+Answer<ShapeId> CompositePool::add_saved_mesh(std::span<const std::byte> saved,
+                                              const std::array<double, 3>& scale,
+                                              const Execution& execution) {
   const DefaultFloatEnvironment environment;
   if (!std::all_of(scale.begin(), scale.end(), mid::is_scale)) return Status::invalid_argument;
   mid::Composites* const s = state();
@@ -238,11 +238,11 @@ Status CompositePool::add_saved_mesh(std::span<const std::byte> saved,
   mid::MeshEntry entry;
   std::copy(scale.begin(), scale.end(), entry.scale);
   status = read_shared(saved, execution, *s, entry.shared);
-  if (status == Status::ok) id = ShapeId::of(CompositeKind::mesh, s->meshes.put(entry));
-  return status;
+  if (status != Status::ok) return status;
+  return ShapeId::of(CompositeKind::mesh, s->meshes.put(entry));
 }
 
-Status CompositePool::add_saved_height_field(std::span<const std::byte> saved, ShapeId& id) {
+Answer<ShapeId> CompositePool::add_saved_height_field(std::span<const std::byte> saved) {
   const DefaultFloatEnvironment environment;
   mid::Composites* const s = state();
   if (s == nullptr) return Status::out_of_memory;
@@ -250,8 +250,8 @@ Status CompositePool::add_saved_height_field(std::span<const std::byte> saved, S
   if (status != Status::ok) return status;
   HeightField* field = nullptr;
   status = read_field(saved, *s, field);
-  if (status == Status::ok) id = ShapeId::of(CompositeKind::height_field, s->fields.put(field));
-  return status;
+  if (status != Status::ok) return status;
+  return ShapeId::of(CompositeKind::height_field, s->fields.put(field));
 }
 
 }  // namespace winnow

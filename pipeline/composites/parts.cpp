@@ -65,11 +65,11 @@ mid::Box3 triangle_box(const TriangleShape& triangle, const Pose& pose) noexcept
 }
 
 /// Computes the hit of the exact shape.
-[[nodiscard]] bool cast_on(const ShapePool& shapes, const ShapeRay& ray, const SubShape& part,
-                           ShapeHit& hit) noexcept {
+[[nodiscard]] ShapeHit cast_on(const ShapePool& shapes, const ShapeRay& ray,
+                               const SubShape& part) noexcept {
   PartTables tables(shapes);
   const ShapeId shape = tables.put(0, part);
-  return cast_ray(tables.tables(), shape, part.pose, ray, hit) == Status::ok && hit.hit;
+  return cast_ray(tables.tables(), shape, part.pose, ray);
 }
 
 }  // namespace
@@ -178,11 +178,12 @@ bool enters(const ShapePool& shapes, const ShapeRay& ray, const SubShape& part,
   const Vector3d start = as_eigen(ray.origin);
   if (is_behind_triangle({start, start}, part)) return false;
   // Tests the whole ray: whether the thick triangle is used must not depend on a limit.
-  if (cast_on(shapes, ray, part, hit)) return true;
-  if (thickness == 0.0) return false;
+  hit = cast_on(shapes, ray, part);
+  if (hit.hit || thickness == 0.0) return hit.hit;
   SubShape thick = part;
   thick.thickness = thickness;
-  return cast_on(shapes, ray, thick, hit);
+  hit = cast_on(shapes, ray, thick);
+  return hit.hit;
 }
 
 bool is_unrotated(const SubShape& part) noexcept {

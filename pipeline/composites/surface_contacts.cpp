@@ -9,6 +9,7 @@
 #include "pipeline/composites/composites.h"
 #include "pipeline/composites/convex_patch.h"
 #include "pipeline/composites/surface_cones.h"
+#include "pipeline/narrow/narrow_columns.h"
 #include "pipeline/shapes/extent.h"
 #include "pipeline/solver/manifold.h"
 #include "pipeline/solver/problem.h"

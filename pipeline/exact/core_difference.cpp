@@ -163,8 +163,7 @@ CoreDifference::CoreDifference(const CoreVertices& core_a, const Pose& pose_a,
   turn_b_ = scaled_rotation(pose_b.orientation);
   for (ExactVector& row : turn_a_.row) row = row * square_b;
   for (ExactVector& row : turn_b_.row) row = row * square_a;
-  const ExactVector between =
-      exact_vector(pose_b.position) - exact_vector(pose_a.position);
+  const ExactVector between = exact_vector(pose_b.position) - exact_vector(pose_a.position);
   offset_ = between * scale_;
 
   BitSpan lengths;

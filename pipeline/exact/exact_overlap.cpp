@@ -77,8 +77,7 @@ namespace {
 [[nodiscard]] ExactVerdict half_spaces_verdict(const HalfSpaceShape& a, const Pose& pose_a,
                                                const HalfSpaceShape& b,
                                                const Pose& pose_b) noexcept {
-  const ExactVector between =
-      exact_vector(pose_b.position) - exact_vector(pose_a.position);
+  const ExactVector between = exact_vector(pose_b.position) - exact_vector(pose_a.position);
   BitSpan lengths;
   for (const Dyadic& x : between.x) lengths.include(x);
   lengths.include(a.offset);
@@ -86,10 +85,8 @@ namespace {
   const int directions =
       rotation_bits(pose_a) + rotation_bits(pose_b) + normal_bits(a) + normal_bits(b);
   if (!fits_dyadic(2, directions + lengths.bits())) return ExactVerdict::undecided;
-  const ExactVector normal_a =
-      scaled_rotation(pose_a.orientation) * exact_vector(a.normal);
-  const ExactVector normal_b =
-      scaled_rotation(pose_b.orientation) * exact_vector(b.normal);
+  const ExactVector normal_a = scaled_rotation(pose_a.orientation) * exact_vector(a.normal);
+  const ExactVector normal_b = scaled_rotation(pose_b.orientation) * exact_vector(b.normal);
   const bool opposite = is_zero(cross(normal_a, normal_b)) && dot(normal_a, normal_b).sign() < 0;
   if (!opposite) return ExactVerdict::overlapping;
   // The second offset is multiplied by the ratio of the normals' lengths. For opposite normals this

@@ -10,13 +10,13 @@ namespace winnow {
 WINNOW_DEFINE_LINK(box, WINNOW_PAIRS)
 #undef WINNOW_PAIRS
 
-Status ShapePool::add(const BoxShape& shape, ShapeId& id) {
+Answer<ShapeId> ShapePool::add(const BoxShape& shape) {
   const DefaultFloatEnvironment environment;
   if (!are_lengths({shape.half[0], shape.half[1], shape.half[2], shape.rounding})) {
     return Status::invalid_shape;
   }
   link_kernels_of_box();
-  return put(shape, id);
+  return put(shape);
 }
 
 }  // namespace winnow

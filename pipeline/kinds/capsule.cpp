@@ -12,11 +12,11 @@ namespace winnow {
 WINNOW_DEFINE_LINK(capsule, WINNOW_PAIRS)
 #undef WINNOW_PAIRS
 
-Status ShapePool::add(const CapsuleShape& shape, ShapeId& id) {
+Answer<ShapeId> ShapePool::add(const CapsuleShape& shape) {
   const DefaultFloatEnvironment environment;
   if (!are_lengths({shape.radius, shape.half_length})) return Status::invalid_shape;
   link_kernels_of_capsule();
-  return put(shape, id);
+  return put(shape);
 }
 
 }  // namespace winnow

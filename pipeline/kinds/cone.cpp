@@ -16,11 +16,11 @@ namespace winnow {
 WINNOW_DEFINE_LINK(cone, WINNOW_PAIRS)
 #undef WINNOW_PAIRS
 
-Status ShapePool::add(const ConeShape& shape, ShapeId& id) {
+Answer<ShapeId> ShapePool::add(const ConeShape& shape) {
   const DefaultFloatEnvironment environment;
   if (!are_lengths({shape.radius, shape.half_length, shape.rounding})) return Status::invalid_shape;
   link_kernels_of_cone();
-  return put(shape, id);
+  return put(shape);
 }
 
 }  // namespace winnow

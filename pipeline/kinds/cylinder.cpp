@@ -15,11 +15,11 @@ namespace winnow {
 WINNOW_DEFINE_LINK(cylinder, WINNOW_PAIRS)
 #undef WINNOW_PAIRS
 
-Status ShapePool::add(const CylinderShape& shape, ShapeId& id) {
+Answer<ShapeId> ShapePool::add(const CylinderShape& shape) {
   const DefaultFloatEnvironment environment;
   if (!are_lengths({shape.radius, shape.half_length, shape.rounding})) return Status::invalid_shape;
   link_kernels_of_cylinder();
-  return put(shape, id);
+  return put(shape);
 }
 
 }  // namespace winnow

@@ -17,13 +17,13 @@ namespace winnow {
 WINNOW_DEFINE_LINK(ellipsoid, WINNOW_PAIRS)
 #undef WINNOW_PAIRS
 
-Status ShapePool::add(const EllipsoidShape& shape, ShapeId& id) {
+Answer<ShapeId> ShapePool::add(const EllipsoidShape& shape) {
   const DefaultFloatEnvironment environment;
   if (!are_lengths({shape.radius[0], shape.radius[1], shape.radius[2], shape.rounding})) {
     return Status::invalid_shape;
   }
   link_kernels_of_ellipsoid();
-  return put(shape, id);
+  return put(shape);
 }
 
 }  // namespace winnow

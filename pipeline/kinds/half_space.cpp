@@ -16,7 +16,7 @@ namespace winnow {
 WINNOW_DEFINE_LINK(half_space, WINNOW_PAIRS)
 #undef WINNOW_PAIRS
 
-Status ShapePool::add(const HalfSpaceShape& shape, ShapeId& id) {
+Answer<ShapeId> ShapePool::add(const HalfSpaceShape& shape) {
   const DefaultFloatEnvironment environment;
   const auto normal = as_eigen(shape.normal);
   if (!std::isfinite(shape.offset) || !normal.allFinite()) return Status::invalid_shape;
@@ -28,13 +28,13 @@ Status ShapePool::add(const HalfSpaceShape& shape, ShapeId& id) {
   // are exact.
   constexpr double kRounding = 8.0 * std::numeric_limits<double>::epsilon();
   if (std::abs(normal.squaredNorm() - 1.0) <= kRounding) {
-    return put(shape, id);
+    return put(shape);
   }
   const Eigen::Vector3d scaled = normal / largest;
   const Eigen::Vector3d unit = scaled.normalized();
   const double offset = shape.offset / largest / scaled.norm();
   if (!std::isfinite(offset)) return Status::invalid_shape;
-  return put(HalfSpaceShape{{unit.x(), unit.y(), unit.z()}, offset}, id);
+  return put(HalfSpaceShape{{unit.x(), unit.y(), unit.z()}, offset});
 }
 
 }  // namespace winnow

@@ -17,35 +17,34 @@ WINNOW_DEFINE_LINK(hull, WINNOW_PAIRS)
 
 /// Builds a hull with `make` and adds it, if `rounding` is valid.
 template <typename Make>
-Status ShapePool::put_hull(double rounding, ShapeId& id, Make&& make) {
+Answer<ShapeId> ShapePool::put_hull(double rounding, Make&& make) {
   HullShape hull;
   if (!are_lengths({rounding})) return Status::invalid_shape;
-  Status status = make(hull);
+  const Status status = make(hull);
   if (status != Status::ok) return status;
   hull.rounding = rounding;
   link_kernels_of_hull();
-  status = put(hull, id);
-  if (status != Status::ok) release_hull(hull, memory_);
-  return status;
+  const Answer<ShapeId> id = put(hull);
+  if (id.status != Status::ok) release_hull(hull, memory_);
+  return id;
 }
 
-Status ShapePool::add_hull(const PointView& points, double rounding, ShapeId& id) {
+Answer<ShapeId> ShapePool::add_hull(const PointView& points, double rounding) {
   const DefaultFloatEnvironment environment;
-  return put_hull(rounding, id,
-                  [&](HullShape& hull) { return hull_of_points(points, memory_, hull); });
+  return put_hull(rounding, [&](HullShape& hull) { return hull_of_points(points, memory_, hull); });
 }
 
-Status ShapePool::add_hull(const PointView& points, const HullFaces& faces, double rounding,
-                           ShapeId& id) {
+Answer<ShapeId> ShapePool::add_hull(const PointView& points, const HullFaces& faces,
+                                    double rounding) {
   const DefaultFloatEnvironment environment;
-  return put_hull(rounding, id,
+  return put_hull(rounding,
                   [&](HullShape& hull) { return hull_of_faces(points, faces, memory_, hull); });
 }
 
-Status ShapePool::add_built_hull(const PointView& points, const HullFaces& faces, double rounding,
-                                 ShapeId& id) {
+Answer<ShapeId> ShapePool::add_built_hull(const PointView& points, const HullFaces& faces,
+                                          double rounding) {
   const DefaultFloatEnvironment environment;
-  return put_hull(rounding, id,
+  return put_hull(rounding,
                   [&](HullShape& hull) { return rebuild_hull(points, faces, memory_, hull); });
 }
 

@@ -8,11 +8,11 @@ namespace winnow {
 WINNOW_DEFINE_LINK(sphere, WINNOW_PAIRS)
 #undef WINNOW_PAIRS
 
-Status ShapePool::add(const SphereShape& shape, ShapeId& id) {
+Answer<ShapeId> ShapePool::add(const SphereShape& shape) {
   const DefaultFloatEnvironment environment;
   if (!are_lengths({shape.radius})) return Status::invalid_shape;
   link_kernels_of_sphere();
-  return put(shape, id);
+  return put(shape);
 }
 
 }  // namespace winnow

@@ -62,14 +62,14 @@ class SupportProbe {
 
 }  // namespace
 
-Status ShapePool::add(const SupportShape& shape, ShapeId& id) {
+Answer<ShapeId> ShapePool::add(const SupportShape& shape) {
   const DefaultFloatEnvironment environment;
   if (!are_lengths({shape.radius, shape.rounding}) || shape.function == nullptr ||
       !SupportProbe(shape).is_convex(shape.radius)) {
     return Status::invalid_shape;
   }
   link_kernels_of_support();
-  return put(shape, id);
+  return put(shape);
 }
 
 }  // namespace winnow

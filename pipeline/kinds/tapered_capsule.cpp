@@ -18,13 +18,13 @@ namespace winnow {
 WINNOW_DEFINE_LINK(tapered_capsule, WINNOW_PAIRS)
 #undef WINNOW_PAIRS
 
-Status ShapePool::add(const TaperedCapsuleShape& shape, ShapeId& id) {
+Answer<ShapeId> ShapePool::add(const TaperedCapsuleShape& shape) {
   const DefaultFloatEnvironment environment;
   if (!are_lengths({shape.radius[0], shape.radius[1], shape.half_length})) {
     return Status::invalid_shape;
   }
   link_kernels_of_tapered_capsule();
-  return put(shape, id);
+  return put(shape);
 }
 
 }  // namespace winnow

@@ -16,7 +16,7 @@ namespace winnow {
 WINNOW_DEFINE_LINK(triangle, WINNOW_PAIRS)
 #undef WINNOW_PAIRS
 
-Status ShapePool::add(const TriangleShape& shape, ShapeId& id) {
+Answer<ShapeId> ShapePool::add(const TriangleShape& shape) {
   const DefaultFloatEnvironment environment;
   if (!are_lengths({shape.rounding})) return Status::invalid_shape;
   for (const auto& vertex : shape.vertex) {
@@ -25,7 +25,7 @@ Status ShapePool::add(const TriangleShape& shape, ShapeId& id) {
     }
   }
   link_kernels_of_triangle();
-  return put(shape, id);
+  return put(shape);
 }
 
 void link_triangle_kernels() noexcept {

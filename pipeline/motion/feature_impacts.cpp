@@ -59,15 +59,14 @@ void FeatureStage::find(FeaturePair kind, double (&times)[kFeatureLanes],
   find_eight(kind, columns, 0, size_, times, options);
 }
 
-Status feature_impact(FeaturePair kind, const std::array<Vec3d, 4>& start,
-                      const std::array<Vec3d, 4>& end, FeatureImpact& impact,
-                      const FeatureImpactOptions& options) noexcept {
+Answer<FeatureImpact> feature_impact(FeaturePair kind, const std::array<Vec3d, 4>& start,
+                                     const std::array<Vec3d, 4>& end,
+                                     const FeatureImpactOptions& options) noexcept {
   const DefaultFloatEnvironment environment;
   if (!are_in_range(options)) return Status::invalid_argument;
   FeatureMotion motion;
   if (!read_motion(kind, start, end, options.min_separation, motion)) return Status::invalid_bounds;
-  impact = first_impact(motion, options);
-  return Status::ok;
+  return first_impact(motion, options);
 }
 
 Status feature_impacts(FeaturePair kind, const FeatureColumns& pairs, std::span<double> times,

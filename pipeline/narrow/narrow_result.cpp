@@ -1,5 +1,5 @@
-#include <winnow/pipeline/narrow_result.h>
 #include "pipeline/kernels/kernels.h"
+#include "pipeline/narrow/narrow_columns.h"
 #include "pipeline/narrow/tight_growth.h"
 
 namespace winnow {
@@ -8,10 +8,15 @@ ContactColumns::ContactColumns(std::pmr::memory_resource* memory) noexcept
       depth(memory),
       feature(memory) {}
 
-bool ContactColumns::grow(std::size_t count) noexcept {
+bool ContactColumns::grow(std::size_t count, Pages pages) noexcept {
   const std::size_t room = count + kContactSlack;
-  return position[0].grow(room) && position[1].grow(room) && position[2].grow(room) &&
-         depth.grow(room) && feature.grow(room);
+  const auto grow_one = [&](auto& column) {
+    if (!column.grow(room)) return false;
+    if (pages == Pages::prefaulted) column.touch();
+    return true;
+  };
+  return grow_one(position[0]) && grow_one(position[1]) && grow_one(position[2]) &&
+         grow_one(depth) && grow_one(feature);
 }
 
 void ContactColumns::set_size(std::size_t count) noexcept {

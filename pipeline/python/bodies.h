@@ -111,7 +111,7 @@ template <typename Definition, typename Get>
 [[nodiscard]] inline Status bodies_of(const Scene& scene, std::span<const Key> keys,
                                       std::vector<BodyDefinition>& bodies) {
   return definitions_of(keys, bodies,
-                        [&](Key key, BodyDefinition& body) { return scene.body(key, body); });
+                        [&](Key key, BodyDefinition& body) { return scene.body(key).get(body); });
 }
 
 /// Shapes of bodies or of sensors.

@@ -127,7 +127,7 @@ void remove(SharedCluster& c, py::handle name_array, const Rank& rank) {
 
 [[nodiscard]] std::string digest(SharedCluster& c) {
   ClusterDigest digest;
-  c.call([&] { return c.own().digest(digest); }, "digest");
+  c.call([&] { return c.own().digest().get(digest); }, "digest");
   return digits_of(digest);
 }
 

@@ -80,12 +80,11 @@ class SharedClusterScene : public NeedsInit {
       return true;
     });
   }
-  /// As `call`, for calls that fill contacts; requires that no array of them is alive.
+  /// As `call`, for calls that fill contacts.
   template <typename Body>
   void filling(Body&& body, const char* name) const {
     std::vector<std::unique_lock<std::mutex>> held;
     for (const auto& contacts : contacts_) held.push_back(contacts->hold());
-    for (const auto& contacts : contacts_) contacts->expect_unseen("contacts");
     call(std::forward<Body>(body), name);
   }
 
@@ -176,7 +175,7 @@ void collide(SharedClusterScene& c, const std::string& level_name) {
 
 [[nodiscard]] std::string digest(SharedClusterScene& c) {
   ClusterDigest digest;
-  c.call([&] { return c.own()->digest(digest); }, "digest");
+  c.call([&] { return c.own()->digest().get(digest); }, "digest");
   return digits_of(digest);
 }
 
@@ -191,7 +190,7 @@ void collide(SharedClusterScene& c, const std::string& level_name) {
         for (const ClusterBody& body : own) {
           if (status != Status::ok) break;
           names.push_back(body.name);
-          status = c.cluster().body(on, body.name, bodies.emplace_back());
+          status = c.cluster().body(on, body.name).get(bodies.emplace_back());
         }
         return status;
       },
@@ -268,8 +267,7 @@ void add_answers(ClusterSceneClass& type) {
            "they belong to first. Collective.")
       .def("contacts", &SharedClusterScene::contacts, arg("rank") = py::none(),
            "The contacts that a rank of this process reports; all ranks together report all "
-           "contacts. Client data are names. While an array of these contacts is alive, `collide` "
-           "raises a BufferError; no other call can fill them.")
+           "contacts. Client data are names. No other call can fill them.")
       .def("digest", &digest,
            "A digest, 128 bits as 32 digits, of the contacts of all ranks: the same on any number "
            "of ranks. Collective.")

@@ -36,8 +36,10 @@ namespace {
   ShapeId id;
   accept(changing(shapes.mutex,
                   [&] {
-                    return shapes.composites.add_mesh(
-                        view_of(vertices), IndexView(triangles.values()), id, {active_edge_angle});
+                    return shapes.composites
+                        .add_mesh(view_of(vertices), IndexView(triangles.values()),
+                                  {active_edge_angle})
+                        .get(id);
                   }),
          "add_mesh");
   return id.bits;
@@ -47,7 +49,7 @@ namespace {
                                        const std::array<double, 3>& scale) {
   ShapeId id;
   accept(changing(shapes.mutex,
-                  [&] { return shapes.composites.add_scaled(ShapeId{mesh}, scale, id); }),
+                  [&] { return shapes.composites.add_scaled(ShapeId{mesh}, scale).get(id); }),
          "add_scaled");
   return id.bits;
 }
@@ -101,7 +103,7 @@ class HeightInput {
   const HeightInput input(heights, spacing);
   ShapeId id;
   accept(changing(shapes.mutex,
-                  [&] { return shapes.composites.add_height_field(input.samples(), id); }),
+                  [&] { return shapes.composites.add_height_field(input.samples()).get(id); }),
          "add_height_field");
   return id.bits;
 }
@@ -132,7 +134,7 @@ void update_height_field(SharedShapes& shapes, std::uint32_t field, std::uint32_
   ShapeId id;
   accept(changing(shapes.mutex,
                   [&] {
-                    const Status status = shapes.composites.add_compound(list, id);
+                    const Status status = shapes.composites.add_compound(list).get(id);
                     if (status == Status::ok) shapes.use(used, 1);
                     return status;
                   }),

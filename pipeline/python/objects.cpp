@@ -210,8 +210,10 @@ void query_each(const SharedPartition& p, std::size_t count, const char* call, Q
   const KeyInput keys(key_array);
   auto result = fresh<std::uint64_t>(keys.count());
   std::uint64_t* const to = result.mutable_data();
-  query_each(p, keys.count(), "client_data",
-             [&](std::size_t i) { return p.partition->client_data(keys.keys()[i], to[i]); });
+  query_each(p, keys.count(), "client_data", [&](std::size_t i) {
+    to[i] = p.partition->client_data(keys.keys()[i]);
+    return p.partition->contains(keys.keys()[i]) ? Status::ok : Status::invalid_key;
+  });
   return result;
 }
 
@@ -256,7 +258,7 @@ void set_filter(SharedPartition& p, py::handle key_array, py::handle layers, py:
   const KeyInput keys(key_array);
   std::vector<ObjectFilter> filters(keys.count());
   query_each(p, keys.count(), "filters",
-             [&](std::size_t i) { return p.partition->filter(keys.keys()[i], filters[i]); });
+             [&](std::size_t i) { return p.partition->filter(keys.keys()[i]).get(filters[i]); });
   std::vector<std::uint32_t> columns[3];
   for (const ObjectFilter& filter : filters) {
     columns[0].push_back(filter.layers);

@@ -128,8 +128,8 @@ template <typename CastAt>
   const Outcome outcome = reading(p.mutex, [&] {
     return answer_all(p.execution, count, [&](std::size_t, std::size_t i) {
       Hit hit;
-      const Status status = find == Find::any ? p.partition.any(cast_at(i), hit, filter)
-                                              : p.partition.closest(cast_at(i), hit, filter);
+      const Status status = find == Find::any ? p.partition.any(cast_at(i), filter).get(hit)
+                                              : p.partition.closest(cast_at(i), filter).get(hit);
       found.put(i, hit);
       return status;
     });

@@ -125,23 +125,23 @@ class RecordablePartition : public RecordableWorld<Partition, RecordedPartition>
                          : plain_->pairs_with(*other.plain_, out, options);
   }
   template <typename... Given>
-  Status closest(Given&&... given) const {
+  auto closest(Given&&... given) const {
     return on([&](const auto& p) { return p.closest(given...); });
   }
   template <typename... Given>
-  Status any(Given&&... given) const {
+  auto any(Given&&... given) const {
     return on([&](const auto& p) { return p.any(given...); });
   }
   template <typename... Given>
-  Status all(Given&&... given) const {
+  auto all(Given&&... given) const {
     return on([&](const auto& p) { return p.all(given...); });
   }
   template <typename... Given>
-  Status overlap(Given&&... given) const {
+  auto overlap(Given&&... given) const {
     return on([&](const auto& p) { return p.overlap(given...); });
   }
   template <typename... Given>
-  Status nearest(Given&&... given) const {
+  auto nearest(Given&&... given) const {
     return on([&](const auto& p) { return p.nearest(given...); });
   }
 
@@ -232,39 +232,39 @@ class RecordableQueries : public Recordable<SceneQueries, RecordedQueries> {
   }
 
   template <typename... Given>
-  Status closest(Given&&... given) {
+  auto closest(Given&&... given) {
     return on([&](auto& q) { return q.closest(given...); });
   }
   template <typename... Given>
-  Status any(Given&&... given) {
+  auto any(Given&&... given) {
     return on([&](auto& q) { return q.any(given...); });
   }
   template <typename... Given>
-  Status all(Given&&... given) {
+  auto all(Given&&... given) {
     return on([&](auto& q) { return q.all(given...); });
   }
   template <typename... Given>
-  Status overlap(Given&&... given) {
+  auto overlap(Given&&... given) {
     return on([&](auto& q) { return q.overlap(given...); });
   }
   template <typename... Given>
-  Status distance(Given&&... given) {
+  auto distance(Given&&... given) {
     return on([&](auto& q) { return q.distance(given...); });
   }
   template <typename... Given>
-  Status least_distance(Given&&... given) {
+  auto least_distance(Given&&... given) {
     return on([&](auto& q) { return q.least_distance(given...); });
   }
   template <typename... Given>
-  Status overlaps(Given&&... given) {
+  auto overlaps(Given&&... given) {
     return on([&](auto& q) { return q.overlaps(given...); });
   }
   template <typename... Given>
-  Status any_contact(Given&&... given) {
+  auto any_contact(Given&&... given) {
     return on([&](auto& q) { return q.any_contact(given...); });
   }
   template <typename... Given>
-  Status nearest(Given&&... given) {
+  auto nearest(Given&&... given) {
     return on([&](auto& q) { return q.nearest(given...); });
   }
 };
@@ -305,8 +305,8 @@ class RecordableSensors : public Recordable<Sensors, RecordedSensors> {
     return recorded_ ? **recorded_ : *plain_;
   }
   [[nodiscard]] const Sensors* operator->() const noexcept { return &**this; }
-  Status add(const SensorDefinition& sensor, Key& key) {
-    return on([&](auto& s) { return s.add(sensor, key); });
+  Answer<Key> add(const SensorDefinition& sensor) {
+    return on([&](auto& s) { return s.add(sensor); });
   }
   Status remove(Key key) {
     return on([&](auto& s) { return s.remove(key); });

@@ -227,7 +227,7 @@ class ShapeRayInput {
     const Outcome outcome = run_query(s, [&] {
       const QueryLease lease(s);
       SceneHitLists found;
-      const Status status = lease->all(rays.view(room), found, filter);
+      const Status status = lease->all(rays.view(room), filter).get(found);
       if (status != Status::ok) return Outcome{status, 0};
       lists->entries.assign(found.hits.begin(), found.hits.end());
       if (rays.count() != 0) lists->first.assign(found.first.begin(), found.first.end());
@@ -271,9 +271,9 @@ template <typename CastAt>
   const auto lists = list_all<SceneHit>(
       s, count, call,
       [&](const QueryLease& lease, std::size_t i, std::span<const SceneHit>& found) {
-        if (mode == FindMode::all) return lease->all(cast_at(i), found, filter, tolerance);
+        if (mode == FindMode::all) return lease->all(cast_at(i), filter, tolerance).get(found);
         SceneHit& hit = one[i / kQueriesPerTask] = nothing();
-        const Status status = lease->closest(cast_at(i), hit, filter, tolerance);
+        const Status status = lease->closest(cast_at(i), filter, tolerance).get(hit);
         if (!hit) hit = nothing();
         found = {&hit, 1};
         return status;
@@ -321,7 +321,7 @@ template <typename CastAt>
   const auto lists = list_all<SceneOverlap>(
       s, pose.count(), "overlap",
       [&](const QueryLease& lease, std::size_t i, std::span<const SceneOverlap>& found) {
-        return lease->overlap(shape[i], pose[i], found, filter);
+        return lease->overlap(shape[i], pose[i], filter).get(found);
       });
   const EntryColumns<SceneOverlap> bodies = columns_of(lists);
   return {{},
@@ -345,7 +345,7 @@ template <typename CastAt>
       [&](const QueryLease& lease, std::size_t i, std::span<const SceneDistance>& found) {
         SceneDistance& answer = one[i / kQueriesPerTask];
         const Status status =
-            lease->distance(first.keys()[i], second.keys()[i], answer, limit, taken);
+            lease->distance(first.keys()[i], second.keys()[i], limit, taken).get(answer);
         if (answer) found = {&answer, 1};
         return status;
       }));
@@ -379,7 +379,7 @@ void query_sets(SharedScene& s, py::handle a, py::handle b, const char* call, Qu
   std::vector<KeyPair> pairs;
   query_sets(s, a, b, "overlaps", [&](const QueryLease& lease, auto first, auto second) {
     std::span<const KeyPair> found;
-    const Status status = lease->overlaps(first, second, found, most, taken);
+    const Status status = lease->overlaps(first, second, most, taken).get(found);
     if (status == Status::ok) pairs.assign(found.begin(), found.end());
     return status;
   });
@@ -396,15 +396,16 @@ void query_sets(SharedScene& s, py::handle a, py::handle b, const char* call, Qu
     if (!b.is_none()) throw Refusal(Status::invalid_argument, "any_contact: b without a");
     const Outcome outcome = run_query(s, [&] {
       const QueryLease lease(s);
-      return Outcome{lease->any_contact(pair, contact_margin, taken), 0};
+      return Outcome{lease->any_contact(contact_margin, taken).get(pair), 0};
     });
     accept(outcome.status, "any_contact");
   } else {
     const bool is_one = b.is_none();
-    query_sets(
-        s, a, is_one ? a : b, "any_contact", [&](const QueryLease& lease, auto first, auto second) {
-          return lease->any_contact(first, is_one ? first : second, pair, contact_margin, taken);
-        });
+    query_sets(s, a, is_one ? a : b, "any_contact",
+               [&](const QueryLease& lease, auto first, auto second) {
+                 return lease->any_contact(first, is_one ? first : second, contact_margin, taken)
+                     .get(pair);
+               });
   }
   return rows_of({&pair, pair.first == Key{} ? 0U : 1U});
 }
@@ -414,7 +415,7 @@ void query_sets(SharedScene& s, py::handle a, py::handle b, const char* call, Qu
   const PairRules taken = chosen(kRules, rules, "rules");
   SetDistance answer;
   query_sets(s, a, b, "least_distance", [&](const QueryLease& lease, auto first, auto second) {
-    return lease->least_distance(first, second, answer, limit, taken);
+    return lease->least_distance(first, second, limit, taken).get(answer);
   });
   auto lists = std::make_shared<Lists<SceneDistance>>(1);
   if (answer) lists->put(0, 0, &answer.to, &answer.to + 1);
@@ -433,7 +434,7 @@ void query_sets(SharedScene& s, py::handle a, py::handle b, const char* call, Qu
       s, point.count(), "nearest",
       [&](const QueryLease& lease, std::size_t i, std::span<const SceneDistance>& found) {
         const double at[3] = {point.at(i, 0), point.at(i, 1), point.at(i, 2)};
-        return lease->nearest(at, count, radius.at(i), found, filter);
+        return lease->nearest(at, count, radius.at(i), filter).get(found);
       }));
 }
 

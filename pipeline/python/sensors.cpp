@@ -62,8 +62,9 @@ using Definitions = std::vector<SensorDefinition>;
 
 [[nodiscard]] Status sensors_of(const Sensors& sensors, std::span<const Key> keys,
                                 Definitions& all) {
-  return definitions_of(
-      keys, all, [&](Key key, SensorDefinition& sensor) { return sensors.sensor(key, sensor); });
+  return definitions_of(keys, all, [&](Key key, SensorDefinition& sensor) {
+    return sensors.sensor(key).get(sensor);
+  });
 }
 
 [[nodiscard]] py::array add(SharedSensors& s, py::handle shapes, py::handle poses,
@@ -73,16 +74,17 @@ using Definitions = std::vector<SensorDefinition>;
   auto keys = fresh<std::uint64_t>(sensors.size());
   Key* const out = keys_in(keys);
   const std::vector<ShapeId> used = shapes_of(sensors);
-  accept(changing_sensors(s,
-                          [&] {
-                            const Status status = set_all(
-                                sensors.size(),
-                                [&](std::size_t i) { return s.sensors.add(sensors[i], out[i]); },
-                                [&](std::size_t i) { return s.sensors.remove(out[i]); });
-                            if (status == Status::ok) s.held.use(used, 1);
-                            return status;
-                          }),
-         "add");
+  accept(
+      changing_sensors(s,
+                       [&] {
+                         const Status status = set_all(
+                             sensors.size(),
+                             [&](std::size_t i) { return s.sensors.add(sensors[i]).get(out[i]); },
+                             [&](std::size_t i) { return s.sensors.remove(out[i]); });
+                         if (status == Status::ok) s.held.use(used, 1);
+                         return status;
+                       }),
+      "add");
   return keys;
 }
 

@@ -123,7 +123,7 @@ template <typename Make>
   auto* const to = reinterpret_cast<ShapeId*>(ids.mutable_data());
   const Outcome outcome = changing(shapes.mutex, [&] {
     for (std::size_t i = 0; i < count; ++i) {
-      const Status status = shapes.pool.add(make(i), to[i]);
+      const Status status = shapes.pool.add(make(i)).get(to[i]);
       if (status == Status::ok) continue;
       for (std::size_t k = i; k > 0; --k) static_cast<void>(shapes.pool.remove(to[k - 1]));
       return Outcome{status, i};
@@ -227,15 +227,16 @@ template <typename Shape>
     throw Refusal(Status::invalid_argument, "add_hull: indices and sizes belong together");
   }
   if (indices.is_none()) {
-    accept(changing(shapes.mutex, [&] { return shapes.pool.add_hull(points, rounding, id); }),
+    accept(changing(shapes.mutex, [&] { return shapes.pool.add_hull(points, rounding).get(id); }),
            "add_hull");
     return id.bits;
   }
   const Integers<std::uint32_t> index(indices, "indices");
   const Integers<std::uint32_t> size(sizes, "sizes");
   const HullFaces faces{index.values(), size.values()};
-  accept(changing(shapes.mutex, [&] { return shapes.pool.add_hull(points, faces, rounding, id); }),
-         "add_hull");
+  accept(
+      changing(shapes.mutex, [&] { return shapes.pool.add_hull(points, faces, rounding).get(id); }),
+      "add_hull");
   return id.bits;
 }
 
@@ -344,7 +345,7 @@ struct RayHits : EmptyIfZero {
       ray.max_t = max_t.at(i);
       ShapeHit found;
       if (!shapes.pool.contains(ids[i])) return Status::invalid_key;
-      const Status status = cast_ray(shapes.pool.tables(), ids[i], pose[i], ray, found);
+      const Status status = cast_ray(shapes.pool.tables(), ids[i], pose[i], ray).get(found);
       to_hit[i] = found.hit;
       to_t[i] = found.hit ? found.t : std::numeric_limits<double>::infinity();
       for (std::size_t k = 0; k < 3; ++k) to_normal[3 * i + k] = found.normal[k];

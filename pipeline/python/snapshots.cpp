@@ -63,7 +63,7 @@ void load_scene(SharedScene& s, const py::buffer& data) {
                     std::vector<ShapeId> used;
                     BodyDefinition body;
                     for (ObjectId id = 0; used.size() < s.scene->size(); ++id) {
-                      if (s.scene->body(s.scene->key_of(id), body) == Status::ok) {
+                      if (s.scene->body(s.scene->key_of(id)).get(body) == Status::ok) {
                         used.push_back(body.shape);
                       }
                     }

@@ -38,7 +38,7 @@ namespace {
   try {
     accept(shapes.raised.during([&] {
       return changing(shapes.mutex, [&] {
-        const Status status = shapes.pool.add(shape, id);
+        const Status status = shapes.pool.add(shape).get(id);
         if (status == Status::ok) shapes.supports.emplace(id.bits, std::move(made));
         return status;
       });

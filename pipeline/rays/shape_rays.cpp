@@ -112,16 +112,17 @@ bool is_valid(const ShapeRay& ray) noexcept {
   return rest == 0.0 && moves && ray.max_t >= 0.0;
 }
 
-Status cast_ray(const ShapeTables& tables, ShapeId shape, const Pose& pose, const ShapeRay& ray,
-                ShapeHit& hit) noexcept {
+Answer<ShapeHit> cast_ray(const ShapeTables& tables, ShapeId shape, const Pose& pose,
+                          const ShapeRay& ray) noexcept {
   const DefaultFloatEnvironment environment;
   if (shape.kind_index() >= kShapeKinds || shape.index() >= tables.count[shape.kind_index()]) {
     return Status::invalid_key;
   }
   if (!is_valid(ray)) return Status::invalid_argument;
   if (!pose.is_valid()) return Status::invalid_pose;
+  ShapeHit hit;
   with_shape(tables, shape, [&](const auto& one) { cast(one, pose, ray, hit); });
-  return Status::ok;
+  return hit;
 }
 
 }  // namespace winnow

@@ -53,9 +53,9 @@ inline void add_to(Digest& digest, const KeyPair& pair) noexcept {
   digest.add(std::uint64_t{pair.first.id} << 32U | pair.second.id);
 }
 
-template <typename Answer>
-void add_to(Digest& digest, std::span<const Answer> answers) noexcept {
-  for (const Answer& answer : answers) add_to(digest, answer);
+template <typename T>
+void add_to(Digest& digest, std::span<const T> answers) noexcept {
+  for (const T& answer : answers) add_to(digest, answer);
   digest.add(std::uint64_t{answers.size()});
 }
 

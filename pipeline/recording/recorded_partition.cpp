@@ -156,9 +156,12 @@ Status RecordedPartition::insert(const BoxView& boxes, std::span<const ClientDat
   return status;
 }
 
-Status RecordedPartition::insert(const Aabb& box, ClientData data, Key& key) {
-  return insert(BoxView(std::span<const Aabb>(&box, 1)), std::span<const ClientData>(&data, 1),
-                std::span<Key>(&key, 1));
+Answer<Key> RecordedPartition::insert(const Aabb& box, ClientData data) {
+  Key key;
+  const Status status = insert(BoxView(std::span<const Aabb>(&box, 1)),
+                               std::span<const ClientData>(&data, 1), std::span<Key>(&key, 1));
+  if (status != Status::ok) return status;
+  return key;
 }
 
 Status RecordedPartition::insert(std::span<const Sphere> spheres, std::span<const ClientData> data,
@@ -351,22 +354,22 @@ Status RecordedPartition::pairs_with(const RecordedPartition& other, PairBuffer&
   return status;
 }
 
-Status RecordedPartition::closest(const Cast& cast, Hit& hit, const Filter& filter) const {
-  const Status status = partition_.closest(cast, hit, filter);
-  if (status != Status::ok) return status;
+Answer<Hit> RecordedPartition::closest(const Cast& cast, const Filter& filter) const {
+  const Answer<Hit> hit = partition_.closest(cast, filter);
+  if (hit.status != Status::ok) return hit;
   CallWriter call(recorder_, RecordedCall::closest_cast, world_);
   put_cast(call, cast);
   put_hit(call, filter, hit);
-  return status;
+  return hit;
 }
 
-Status RecordedPartition::any(const Cast& cast, Hit& hit, const Filter& filter) const {
-  const Status status = partition_.any(cast, hit, filter);
-  if (status != Status::ok) return status;
+Answer<Hit> RecordedPartition::any(const Cast& cast, const Filter& filter) const {
+  const Answer<Hit> hit = partition_.any(cast, filter);
+  if (hit.status != Status::ok) return hit;
   CallWriter call(recorder_, RecordedCall::any_cast, world_);
   put_cast(call, cast);
   put_hit(call, filter, hit);
-  return status;
+  return hit;
 }
 
 Status RecordedPartition::all(const Cast& cast, HitBuffer& hits, const Filter& filter) const {

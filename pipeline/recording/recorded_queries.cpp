@@ -43,37 +43,45 @@ static_assert(sizeof(Pose) == 7 * sizeof(double) && sizeof(RigidMotion) == 13 * 
 RecordedQueries::RecordedQueries(RecordedScene& scene, std::pmr::memory_resource* memory) noexcept
     : scene_(scene), queries_(scene.scene_, memory), passed_(memory) {}
 
-/// Runs a query, and records it if it succeeds: write(call) writes the arguments and returns the
-/// digest of the results. The filter follows the arguments.
+[[nodiscard]] Status status_of(Status status) noexcept {
+  return status;
+}
+template <typename T>
+[[nodiscard]] Status status_of(const Answer<T>& answer) noexcept {
+  return answer.status;
+}
+
+/// Runs a query, and records it if it succeeds: write(call, answer) writes the arguments and
+/// returns the digest of the answer. The filter follows the arguments.
 template <typename Query, typename Write>
-Status RecordedQueries::record(RecordedCall kind, const Filter& filter, Query&& query,
-                               Write&& write) {
+auto RecordedQueries::record(RecordedCall kind, const Filter& filter, Query&& query,
+                             Write&& write) {
   AcceptedObjects passed(filter, passed_);
-  const Status status = query(passed.filter());
-  if (status != Status::ok) return status;
+  const auto answer = query(passed.filter());
+  if (status_of(answer) != Status::ok) return answer;
   if (!passed.is_complete()) scene_.stop_recording(Status::out_of_memory);
   CallWriter call(scene_.recorder_, kind, scene_.world_);
-  const Digest digest = write(call);
+  const Digest digest = write(call, answer);
   call.put_filter(filter);
   passed.put(call);
   call.put(digest.value());
-  return status;
+  return answer;
 }
 
 /// As `record`, for a query with a shape, which is recorded first if it is new. Calls
-/// write(call, number of the shape).
+/// write(call, number of the shape, answer).
 template <typename Query, typename Write>
-Status RecordedQueries::record_with(ShapeId shape, RecordedCall kind, const Filter& filter,
-                                    Query&& query, Write&& write) {
+auto RecordedQueries::record_with(ShapeId shape, RecordedCall kind, const Filter& filter,
+                                  Query&& query, Write&& write) {
   std::uint32_t number = 0;
   return record(
       kind, filter,
       [&](const Filter& wrapped) {
-        const Status status = query(wrapped);
-        if (status == Status::ok) number = number_of(shape);
-        return status;
+        const auto answer = query(wrapped);
+        if (answer.status == Status::ok) number = number_of(shape);
+        return answer;
       },
-      [&](CallWriter& call) { return write(call, number); });
+      [&](CallWriter& call, const auto& answer) { return write(call, number, answer); });
 }
 
 std::uint32_t RecordedQueries::number_of(ShapeId shape) noexcept {
@@ -84,34 +92,33 @@ std::uint32_t RecordedQueries::number_of(ShapeId shape) noexcept {
 
 // --- rays --------------------------------------------------------------------------------------
 
-Status RecordedQueries::closest(const ShapeRay& ray, SceneHit& hit, const Filter& filter) {
+Answer<SceneHit> RecordedQueries::closest(const ShapeRay& ray, const Filter& filter) {
   return record(
       RecordedCall::query_ray, filter,
-      [&](const Filter& wrapped) { return queries_.closest(ray, hit, wrapped); },
-      [&](CallWriter& call) {
+      [&](const Filter& wrapped) { return queries_.closest(ray, wrapped); },
+      [&](CallWriter& call, const auto& answer) {
         put_ray(call.put(HitForm::closest), ray);
-        return digest_of_answers(hit);
+        return digest_of_answers(answer);
       });
 }
 
-Status RecordedQueries::any(const ShapeRay& ray, SceneHit& hit, const Filter& filter) {
+Answer<SceneHit> RecordedQueries::any(const ShapeRay& ray, const Filter& filter) {
   return record(
       RecordedCall::query_ray, filter,
-      [&](const Filter& wrapped) { return queries_.any(ray, hit, wrapped); },
-      [&](CallWriter& call) {
+      [&](const Filter& wrapped) { return queries_.any(ray, wrapped); },
+      [&](CallWriter& call, const auto& answer) {
         put_ray(call.put(HitForm::any), ray);
-        return digest_of_answers(hit);
+        return digest_of_answers(answer);
       });
 }
 
-Status RecordedQueries::all(const ShapeRay& ray, std::span<const SceneHit>& hits,
-                            const Filter& filter) {
+Answer<std::span<const SceneHit>> RecordedQueries::all(const ShapeRay& ray, const Filter& filter) {
   return record(
       RecordedCall::query_ray, filter,
-      [&](const Filter& wrapped) { return queries_.all(ray, hits, wrapped); },
-      [&](CallWriter& call) {
+      [&](const Filter& wrapped) { return queries_.all(ray, wrapped); },
+      [&](CallWriter& call, const auto& answer) {
         put_ray(call.put(HitForm::all), ray);
-        return digest_of_answers(hits);
+        return digest_of_answers(answer);
       });
 }
 
@@ -120,7 +127,7 @@ Status RecordedQueries::closest(const ShapeRayBatch& rays, const SceneHitColumns
   return record(
       RecordedCall::query_rays, filter,
       [&](const Filter& wrapped) { return queries_.closest(rays, hits, wrapped); },
-      [&](CallWriter& call) {
+      [&](CallWriter& call, Status) {
         put_rays(call.put(HitForm::closest).put(columns_in(hits)), rays);
         return digest_of_columns(hits, rays.count);
       });
@@ -131,76 +138,76 @@ Status RecordedQueries::any(const ShapeRayBatch& rays, const SceneHitColumns& hi
   return record(
       RecordedCall::query_rays, filter,
       [&](const Filter& wrapped) { return queries_.any(rays, hits, wrapped); },
-      [&](CallWriter& call) {
+      [&](CallWriter& call, Status) {
         put_rays(call.put(HitForm::any).put(columns_in(hits)), rays);
         return digest_of_columns(hits, rays.count);
       });
 }
 
-Status RecordedQueries::all(const ShapeRayBatch& rays, SceneHitLists& hits, const Filter& filter) {
+Answer<SceneHitLists> RecordedQueries::all(const ShapeRayBatch& rays, const Filter& filter) {
   return record(
       RecordedCall::query_rays, filter,
-      [&](const Filter& wrapped) { return queries_.all(rays, hits, wrapped); },
-      [&](CallWriter& call) {
+      [&](const Filter& wrapped) { return queries_.all(rays, wrapped); },
+      [&](CallWriter& call, const auto& answer) {
         put_rays(call.put(HitForm::all).put(columns_in({})), rays);
-        return digest_of_answers(hits);
+        return digest_of_answers(answer);
       });
 }
 
 // --- shapes ------------------------------------------------------------------------------------
 
-Status RecordedQueries::overlap(ShapeId shape, const Pose& pose,
-                                std::span<const SceneOverlap>& bodies, const Filter& filter) {
+Answer<std::span<const SceneOverlap>> RecordedQueries::overlap(ShapeId shape, const Pose& pose,
+                                                               const Filter& filter) {
   return record_with(
       shape, RecordedCall::query_overlap, filter,
-      [&](const Filter& wrapped) { return queries_.overlap(shape, pose, bodies, wrapped); },
-      [&](CallWriter& call, std::uint32_t number) {
+      [&](const Filter& wrapped) { return queries_.overlap(shape, pose, wrapped); },
+      [&](CallWriter& call, std::uint32_t number, const auto& answer) {
         call.put(number).put_bytes(&pose, sizeof pose);
-        return digest_of_answers(bodies);
+        return digest_of_answers(answer);
       });
 }
 
-Status RecordedQueries::closest(const ShapeCast& cast, SceneHit& hit, const Filter& filter,
-                                double tolerance) {
+Answer<SceneHit> RecordedQueries::closest(const ShapeCast& cast, const Filter& filter,
+                                          double tolerance) {
   return record_with(
       cast.shape, RecordedCall::query_shape_cast, filter,
-      [&](const Filter& wrapped) { return queries_.closest(cast, hit, wrapped, tolerance); },
-      [&](CallWriter& call, std::uint32_t number) {
+      [&](const Filter& wrapped) { return queries_.closest(cast, wrapped, tolerance); },
+      [&](CallWriter& call, std::uint32_t number, const auto& answer) {
         put_cast(call.put(form_of(cast, HitForm::closest)).put(number).put(tolerance), cast);
-        return digest_of_answers(hit);
+        return digest_of_answers(answer);
       });
 }
 
-Status RecordedQueries::all(const ShapeCast& cast, std::span<const SceneHit>& hits,
-                            const Filter& filter, double tolerance) {
+Answer<std::span<const SceneHit>> RecordedQueries::all(const ShapeCast& cast, const Filter& filter,
+                                                       double tolerance) {
   return record_with(
       cast.shape, RecordedCall::query_shape_cast, filter,
-      [&](const Filter& wrapped) { return queries_.all(cast, hits, wrapped, tolerance); },
-      [&](CallWriter& call, std::uint32_t number) {
+      [&](const Filter& wrapped) { return queries_.all(cast, wrapped, tolerance); },
+      [&](CallWriter& call, std::uint32_t number, const auto& answer) {
         put_cast(call.put(form_of(cast, HitForm::all)).put(number).put(tolerance), cast);
-        return digest_of_answers(hits);
+        return digest_of_answers(answer);
       });
 }
 
-Status RecordedQueries::closest(const MotionCast& cast, SceneHit& hit, const Filter& filter,
-                                double tolerance) {
+Answer<SceneHit> RecordedQueries::closest(const MotionCast& cast, const Filter& filter,
+                                          double tolerance) {
   return record_with(
       cast.shape, RecordedCall::query_motion_cast, filter,
-      [&](const Filter& wrapped) { return queries_.closest(cast, hit, wrapped, tolerance); },
-      [&](CallWriter& call, std::uint32_t number) {
+      [&](const Filter& wrapped) { return queries_.closest(cast, wrapped, tolerance); },
+      [&](CallWriter& call, std::uint32_t number, const auto& answer) {
         put_motion(call.put(form_of(cast, HitForm::closest)).put(number).put(tolerance), cast);
-        return digest_of_answers(hit);
+        return digest_of_answers(answer);
       });
 }
 
-Status RecordedQueries::all(const MotionCast& cast, std::span<const SceneHit>& hits,
-                            const Filter& filter, double tolerance) {
+Answer<std::span<const SceneHit>> RecordedQueries::all(const MotionCast& cast, const Filter& filter,
+                                                       double tolerance) {
   return record_with(
       cast.shape, RecordedCall::query_motion_cast, filter,
-      [&](const Filter& wrapped) { return queries_.all(cast, hits, wrapped, tolerance); },
-      [&](CallWriter& call, std::uint32_t number) {
+      [&](const Filter& wrapped) { return queries_.all(cast, wrapped, tolerance); },
+      [&](CallWriter& call, std::uint32_t number, const auto& answer) {
         put_motion(call.put(form_of(cast, HitForm::all)).put(number).put(tolerance), cast);
-        return digest_of_answers(hits);
+        return digest_of_answers(answer);
       });
 }
 
@@ -215,10 +222,9 @@ RecordedCall RecordedQueries::call_by_rules(PairRules rules, RecordedCall any_tw
   return by_rules;
 }
 
-Status RecordedQueries::distance(Key a, Key b, SceneDistance& answer, double limit,
-                                 PairRules rules) {
-  const Status status = queries_.distance(a, b, answer, limit, rules);
-  if (status != Status::ok) return status;
+Answer<SceneDistance> RecordedQueries::distance(Key a, Key b, double limit, PairRules rules) {
+  const auto answer = queries_.distance(a, b, limit, rules);
+  if (answer.status != Status::ok) return answer;
   const RecordedCall call =
       call_by_rules(rules, RecordedCall::query_distance, RecordedCall::query_distance_by_rules);
   CallWriter(scene_.recorder_, call, scene_.world_)
@@ -226,13 +232,13 @@ Status RecordedQueries::distance(Key a, Key b, SceneDistance& answer, double lim
       .put(b.id)
       .put(limit)
       .put(digest_of_answers(answer).value());
-  return status;
+  return answer;
 }
 
-Status RecordedQueries::least_distance(std::span<const Key> a, std::span<const Key> b,
-                                       SetDistance& answer, double limit, PairRules rules) {
-  const Status status = queries_.least_distance(a, b, answer, limit, rules);
-  if (status != Status::ok) return status;
+Answer<SetDistance> RecordedQueries::least_distance(std::span<const Key> a, std::span<const Key> b,
+                                                    double limit, PairRules rules) {
+  const auto answer = queries_.least_distance(a, b, limit, rules);
+  if (answer.status != Status::ok) return answer;
   const RecordedCall call = call_by_rules(rules, RecordedCall::query_least_distance,
                                           RecordedCall::query_least_distance_by_rules);
   CallWriter(scene_.recorder_, call, scene_.world_)
@@ -240,59 +246,58 @@ Status RecordedQueries::least_distance(std::span<const Key> a, std::span<const K
       .put_ids(b)
       .put(limit)
       .put(digest_of_answers(answer).value());
-  return status;
+  return answer;
 }
 
-Status RecordedQueries::overlaps(std::span<const Key> a, std::span<const Key> b,
-                                 std::span<const KeyPair>& pairs, std::size_t most,
-                                 PairRules rules) {
-  const Status status = queries_.overlaps(a, b, pairs, most, rules);
-  if (status != Status::ok) return status;
+Answer<std::span<const KeyPair>> RecordedQueries::overlaps(std::span<const Key> a,
+                                                           std::span<const Key> b, std::size_t most,
+                                                           PairRules rules) {
+  const auto answer = queries_.overlaps(a, b, most, rules);
+  if (answer.status != Status::ok) return answer;
   const RecordedCall call =
       call_by_rules(rules, RecordedCall::query_overlaps, RecordedCall::query_overlaps_by_rules);
   CallWriter(scene_.recorder_, call, scene_.world_)
       .put_ids(a)
       .put_ids(b)
       .put(std::uint64_t{most})
-      .put(digest_of_answers(pairs).value());
-  return status;
+      .put(digest_of_answers(answer).value());
+  return answer;
 }
 
-Status RecordedQueries::any_contact(std::span<const Key> a, std::span<const Key> b, KeyPair& pair,
-                                    double contact_margin, PairRules rules) {
-  const Status status = queries_.any_contact(a, b, pair, contact_margin, rules);
-  if (status != Status::ok) return status;
+Answer<KeyPair> RecordedQueries::any_contact(std::span<const Key> a, std::span<const Key> b,
+                                             double contact_margin, PairRules rules) {
+  const auto answer = queries_.any_contact(a, b, contact_margin, rules);
+  if (answer.status != Status::ok) return answer;
   const auto call = RecordedCall::query_any_contact_of_sets;
   CallWriter(scene_.recorder_, call_by_rules(rules, call, call), scene_.world_)
       .put(rules)
       .put(contact_margin)
       .put_ids(a)
       .put_ids(b)
-      .put(digest_of_answers(pair).value());
-  return status;
+      .put(digest_of_answers(answer).value());
+  return answer;
 }
 
-Status RecordedQueries::any_contact(KeyPair& pair, double contact_margin, PairRules rules) {
-  const Status status = queries_.any_contact(pair, contact_margin, rules);
-  if (status != Status::ok) return status;
+Answer<KeyPair> RecordedQueries::any_contact(double contact_margin, PairRules rules) {
+  const auto answer = queries_.any_contact(contact_margin, rules);
+  if (answer.status != Status::ok) return answer;
   const auto call = RecordedCall::query_any_contact;
   CallWriter(scene_.recorder_, call_by_rules(rules, call, call), scene_.world_)
       .put(rules)
       .put(contact_margin)
-      .put(digest_of_answers(pair).value());
-  return status;
+      .put(digest_of_answers(answer).value());
+  return answer;
 }
 
-Status RecordedQueries::nearest(const Vec3d& point, std::size_t count, double radius,
-                                std::span<const SceneDistance>& bodies, const Filter& filter) {
+Answer<std::span<const SceneDistance>> RecordedQueries::nearest(const Vec3d& point,
+                                                                std::size_t count, double radius,
+                                                                const Filter& filter) {
   return record(
       RecordedCall::query_nearest, filter,
-      [&](const Filter& wrapped) {
-        return queries_.nearest(point, count, radius, bodies, wrapped);
-      },
-      [&](CallWriter& call) {
+      [&](const Filter& wrapped) { return queries_.nearest(point, count, radius, wrapped); },
+      [&](CallWriter& call, const auto& answer) {
         call.put_bytes(&point, 3 * sizeof(double)).put(std::uint64_t{count}).put(radius);
-        return digest_of_answers(bodies);
+        return digest_of_answers(answer);
       });
 }
 

@@ -233,8 +233,11 @@ void RecordedScene::record_composite_changes() noexcept {
   if (!has_recorded) CallWriter(recorder_, RecordedCall::composites_changed, world_);
 }
 
-Status RecordedScene::add(const BodyDefinition& body, Key& key) {
-  return add(std::span<const BodyDefinition>(&body, 1), std::span<Key>(&key, 1));
+Answer<Key> RecordedScene::add(const BodyDefinition& body) {
+  Key key;
+  const Status status = add(std::span<const BodyDefinition>(&body, 1), std::span<Key>(&key, 1));
+  if (status != Status::ok) return status;
+  return key;
 }
 
 Status RecordedScene::add(std::span<const BodyDefinition> bodies, std::span<Key> keys) {

@@ -24,10 +24,10 @@ void RecordedSensors::record(RecordedCall kind, Key key, const SensorDefinition&
   call.put(is_carried ? sensor.carrier.id : kNoObject).put(sensor.data);
 }
 
-Status RecordedSensors::add(const SensorDefinition& sensor, Key& key) {
-  const Status status = sensors_.add(sensor, key);
-  if (status == Status::ok) record(RecordedCall::add_sensor, key, sensor);
-  return status;
+Answer<Key> RecordedSensors::add(const SensorDefinition& sensor) {
+  const Answer<Key> key = sensors_.add(sensor);
+  if (key.status == Status::ok) record(RecordedCall::add_sensor, key, sensor);
+  return key;
 }
 
 Status RecordedSensors::set(Key key, const SensorDefinition& sensor) {

@@ -143,11 +143,11 @@ Status cast(ReplayState& replay, RecordedCall call, ReplayedWorld& of) {
   if (call == RecordedCall::all_casts) {
     return replay.compare_if(partition.all(query, of.hits, replay.filter.filter()), of.hits);
   }
-  Hit hit;
-  return replay.compare_if(call == RecordedCall::any_cast
-                               ? partition.any(query, hit, replay.filter.filter())
-                               : partition.closest(query, hit, replay.filter.filter()),
-                           std::span<const Hit>(&hit, 1));
+  const Answer<Hit> hit = call == RecordedCall::any_cast
+                              ? partition.any(query, replay.filter.filter())
+                              : partition.closest(query, replay.filter.filter());
+  const Hit& found = hit;
+  return replay.compare_if(hit.status, std::span<const Hit>(&found, 1));
 }
 
 Status cast_rays(ReplayState& replay, RecordedCall call, ReplayedWorld& of) {

@@ -60,14 +60,10 @@ Status query_ray(ReplayState& replay, ReplayedWorld& of) {
   read(replay.in, ray);
   if (!replay.read_query_filter()) return status_of(replay.in);
   if (form == HitForm::all) {
-    std::span<const SceneHit> hits;
-    return replay.compare_if(of.queries->all(ray, hits, replay.filter.filter()), hits);
+    return replay.compare_if(of.queries->all(ray, replay.filter.filter()));
   }
-  SceneHit hit;
-  return replay.compare_if(form == HitForm::any
-                               ? of.queries->any(ray, hit, replay.filter.filter())
-                               : of.queries->closest(ray, hit, replay.filter.filter()),
-                           hit);
+  return replay.compare_if(form == HitForm::any ? of.queries->any(ray, replay.filter.filter())
+                                                : of.queries->closest(ray, replay.filter.filter()));
 }
 
 Status query_rays(ReplayState& replay, ReplayedWorld& of) {
@@ -82,8 +78,7 @@ Status query_rays(ReplayState& replay, ReplayedWorld& of) {
   const ShapeRayBatch batch(
       std::span<const ShapeRay>(replay.shape_rays.data(), replay.shape_rays.size()));
   if (form == HitForm::all) {
-    SceneHitLists hits;
-    return replay.compare_if(of.queries->all(batch, hits, replay.filter.filter()), hits);
+    return replay.compare_if(of.queries->all(batch, replay.filter.filter()));
   }
   RequestedColumns requested(replay.options.memory);
   if (!requested.resize(batch.count)) return Status::out_of_memory;
@@ -100,8 +95,7 @@ Status query_overlap(ReplayState& replay, ReplayedWorld& of) {
   if (!replay.read_shape(of, shape)) return status_of(replay.in);
   (void)replay.in.get_bytes(&pose, sizeof pose);
   if (!replay.read_query_filter()) return status_of(replay.in);
-  std::span<const SceneOverlap> found;
-  return replay.compare_if(of.queries->overlap(shape, pose, found, replay.filter.filter()), found);
+  return replay.compare_if(of.queries->overlap(shape, pose, replay.filter.filter()));
 }
 
 template <typename Moving>
@@ -115,26 +109,22 @@ Status query_cast(ReplayState& replay, ReplayedWorld& of) {
   if (!replay.read_query_filter()) return status_of(replay.in);
   if (form == HitForm::any) return Status::invalid_argument;
   if (form == HitForm::all || form == HitForm::all_from_touch) {
-    std::span<const SceneHit> hits;
-    return replay.compare_if(of.queries->all(cast, hits, replay.filter.filter(), tolerance), hits);
+    return replay.compare_if(of.queries->all(cast, replay.filter.filter(), tolerance));
   }
-  SceneHit hit;
-  return replay.compare_if(of.queries->closest(cast, hit, replay.filter.filter(), tolerance), hit);
+  return replay.compare_if(of.queries->closest(cast, replay.filter.filter(), tolerance));
 }
 
 /// Plays a call of `any_contact`, for the whole scene or for two sets of bodies.
 Status query_any_contact(ReplayState& replay, RecordedCall call, ReplayedWorld& of) {
   const auto rules = replay.in.get_enum(PairRules::none);
   const auto contact_margin = replay.in.get<double>();
-  KeyPair pair;
   if (call == RecordedCall::query_any_contact) {
     if (!replay.in.ok()) return status_of(replay.in);
-    return replay.compare_if(of.queries->any_contact(pair, contact_margin, rules), pair);
+    return replay.compare_if(of.queries->any_contact(contact_margin, rules));
   }
   if (!replay.read_sets(of)) return status_of(replay.in);
   return replay.compare_if(
-      of.queries->any_contact(replay.first_set(), replay.second_set(), pair, contact_margin, rules),
-      pair);
+      of.queries->any_contact(replay.first_set(), replay.second_set(), contact_margin, rules));
 }
 
 /// Plays calls of `distance`, `least_distance` and `overlaps`.
@@ -147,9 +137,8 @@ Status query_sets(ReplayState& replay, RecordedCall call, ReplayedWorld& of) {
     const Key a = of.scene->key_of(replay.in.get<ObjectId>());
     const Key b = of.scene->key_of(replay.in.get<ObjectId>());
     const auto limit = replay.in.get<double>();
-    SceneDistance answer;
     if (!replay.in.ok()) return status_of(replay.in);
-    return replay.compare_if(of.queries->distance(a, b, answer, limit, rules), answer);
+    return replay.compare_if(of.queries->distance(a, b, limit, rules));
   }
   if (!replay.read_sets(of)) return status_of(replay.in);
   const std::span<const Key> first = replay.first_set();
@@ -157,15 +146,12 @@ Status query_sets(ReplayState& replay, RecordedCall call, ReplayedWorld& of) {
   if (call == RecordedCall::query_least_distance ||
       call == RecordedCall::query_least_distance_by_rules) {
     const auto limit = replay.in.get<double>();
-    SetDistance answer;
     if (!replay.in.ok()) return status_of(replay.in);
-    return replay.compare_if(of.queries->least_distance(first, second, answer, limit, rules),
-                             answer);
+    return replay.compare_if(of.queries->least_distance(first, second, limit, rules));
   }
   const auto most = static_cast<std::size_t>(replay.in.get<std::uint64_t>());
   if (!replay.in.ok()) return status_of(replay.in);
-  std::span<const KeyPair> pairs;
-  return replay.compare_if(of.queries->overlaps(first, second, pairs, most, rules), pairs);
+  return replay.compare_if(of.queries->overlaps(first, second, most, rules));
 }
 
 Status query_nearest(ReplayState& replay, ReplayedWorld& of) {
@@ -174,9 +160,7 @@ Status query_nearest(ReplayState& replay, ReplayedWorld& of) {
   const auto count = static_cast<std::size_t>(replay.in.get<std::uint64_t>());
   const auto radius = replay.in.get<double>();
   if (!replay.read_query_filter()) return status_of(replay.in);
-  std::span<const SceneDistance> found;
-  return replay.compare_if(of.queries->nearest(point, count, radius, found, replay.filter.filter()),
-                           found);
+  return replay.compare_if(of.queries->nearest(point, count, radius, replay.filter.filter()));
 }
 
 }  // namespace

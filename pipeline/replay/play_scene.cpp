@@ -16,22 +16,22 @@ namespace {
 
 /// Reads a shape struct and adds it to the pool. The digest is of the shape in the pool.
 template <typename Shape>
-Status add_plain(ByteReader& in, ShapePool& pool, ShapeId& id, Digest& digest) {
+Answer<ShapeId> add_plain(ByteReader& in, ShapePool& pool, Digest& digest) {
   Shape shape{};
   if (!in.get_bytes(&shape, sizeof shape)) return Status::invalid_argument;
-  const Status status = pool.add(shape, id);
-  if (status != Status::ok) return status;
-  digest.add(std::as_bytes(std::span(KindOf<Shape>::in(pool.tables()) + id.index(), 1)));
-  return status;
+  const Answer<ShapeId> id = pool.add(shape);
+  if (id.status == Status::ok) {
+    digest.add(std::as_bytes(std::span(KindOf<Shape>::in(pool.tables()) + id.index(), 1)));
+  }
+  return id;
 }
 
 /// Increments the revision of the pool without changing its shapes.
 Status change_composites(CompositePool& pool) {
   constexpr float kHeights[4] = {};
-  ShapeId passing;
-  const Status added =
-      pool.add_height_field({.heights = kHeights, .columns = 2, .rows = 2}, passing);
-  return added == Status::ok ? pool.remove(passing) : added;
+  const Answer<ShapeId> passing =
+      pool.add_height_field({.heights = kHeights, .columns = 2, .rows = 2});
+  return passing.status == Status::ok ? pool.remove(passing) : passing.status;
 }
 
 BodyState body_state_of(std::uint32_t number, ByteReader& in) noexcept {
@@ -39,33 +39,32 @@ BodyState body_state_of(std::uint32_t number, ByteReader& in) noexcept {
   return number < kBodyStates ? static_cast<BodyState>(number) : BodyState::fixed;
 }
 
-Status add_hull(ReplayState& replay, ReplayedWorld& of, ShapeId& id, Digest& digest) {
+Answer<ShapeId> add_hull(ReplayState& replay, ReplayedWorld& of, Digest& digest) {
   ReadHull hull(replay.options.memory);
   hull.read(replay.in);
   if (!replay.in.ok()) return status_of(replay.in);
-  const Status taken = of.shapes->add_built_hull(hull.points(), hull.faces(), hull.rounding, id);
-  if (taken == Status::ok) add_to(digest, of.shapes->tables().hulls[id.index()]);
-  return taken;
+  const Answer<ShapeId> id = of.shapes->add_built_hull(hull.points(), hull.faces(), hull.rounding);
+  if (id.status == Status::ok) add_to(digest, of.shapes->tables().hulls[id.index()]);
+  return id;
 }
 
 /// If the shape in the pool differs from the recorded one, this counts as a difference.
 Status add_shape(ReplayState& replay, ReplayedWorld& of) {
-  ShapeId id;
   Digest digest;
   const auto kind = replay.in.get_enum(kLastConvexKind);
   if (!replay.in.ok()) return status_of(replay.in);
   if (ShapeId::of(kind, 0).is_composite()) return Status::invalid_argument;
-  const Status taken = with_kind(kind, [&](auto its) {
+  const Answer<ShapeId> id = with_kind(kind, [&](auto its) -> Answer<ShapeId> {
     using Shape = typename decltype(its)::Shape;
     if constexpr (std::is_same_v<Shape, HullShape>) {
-      return add_hull(replay, of, id, digest);
+      return add_hull(replay, of, digest);
     } else if constexpr (std::is_same_v<Shape, SupportShape>) {
       return Status::invalid_argument;
     } else {
-      return add_plain<Shape>(replay.in, *of.shapes, id, digest);
+      return add_plain<Shape>(replay.in, *of.shapes, digest);
     }
   });
-  if (taken != Status::ok) return taken;
+  if (id.status != Status::ok) return id.status;
   if (!of.shape_ids.push_back(id)) return Status::out_of_memory;
   return replay.compare(digest);
 }
@@ -88,16 +87,15 @@ Status add_composite(ReplayState& replay, ReplayedWorld& of) {
     (void)replay.in.get_bytes(&child.pose, sizeof child.pose);
   }
   if (!replay.in.ok()) return status_of(replay.in);
-  ShapeId id;
-  Status taken = Status::invalid_argument;
+  Answer<ShapeId> id = Status::invalid_argument;
   if (kind == static_cast<std::uint8_t>(CompositeKind::mesh)) {
-    taken = of.composites->add_saved_mesh(saved, scale, id, replay.options.execution);
+    id = of.composites->add_saved_mesh(saved, scale, replay.options.execution);
   } else if (kind == static_cast<std::uint8_t>(CompositeKind::height_field)) {
-    taken = of.composites->add_saved_height_field(saved, id);
+    id = of.composites->add_saved_height_field(saved);
   } else if (kind == static_cast<std::uint8_t>(CompositeKind::compound)) {
-    taken = of.composites->add_compound({children.data(), children.size()}, id);
+    id = of.composites->add_compound({children.data(), children.size()});
   }
-  if (taken != Status::ok) return taken;
+  if (id.status != Status::ok) return id.status;
   if (!of.shape_ids.push_back(id)) return Status::out_of_memory;
   return replay.compare(digests_of(*of.composites, id).all);
 }

@@ -24,9 +24,8 @@ Status change_sensor(ReplayState& replay, RecordedCall call, ReplayedWorld& of,
   sensor.data = replay.in.get<ClientData>();
   if (!replay.in.ok()) return status_of(replay.in);
   if (call == RecordedCall::set_sensor) return all.sensors.set(key, sensor);
-  Key made;
-  const Status added = all.sensors.add(sensor, made);
-  if (added != Status::ok) return added;
+  const Answer<Key> made = all.sensors.add(sensor);
+  if (made.status != Status::ok) return made.status;
   if (made.id != id) return Status::invalid_argument;
   while (all.keys.size() <= id) {
     if (!all.keys.push_back(Key{})) return Status::out_of_memory;

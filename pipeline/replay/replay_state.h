@@ -129,6 +129,10 @@ struct ReplayState {
   [[nodiscard]] Status compare_if(Status answered, const Answer&... answer) noexcept {
     return answered == Status::ok ? compare(answer...) : answered;
   }
+  template <typename T>
+  [[nodiscard]] Status compare_if(const Answer<T>& answer) noexcept {
+    return answer.status == Status::ok ? compare(digest_of_answers(answer)) : answer.status;
+  }
   [[nodiscard]] Status compare(const Digest& digest) noexcept { return compare(digest.value()); }
   [[nodiscard]] Status compare(std::uint64_t digest) noexcept {
     const auto recorded = in.get<std::uint64_t>();

@@ -6,6 +6,7 @@
 #include "core/hooks/log.h"
 #include "core/sort/parallel_ranges.h"
 #include "core/threads/float_environment.h"
+#include "pipeline/narrow/narrow_columns.h"
 #include "pipeline/narrow/tight_growth.h"
 #include "pipeline/scene/collision.h"
 

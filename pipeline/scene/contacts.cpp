@@ -109,13 +109,9 @@ bool ContactFrame::reserve(ContactLevel level, bool parts, std::size_t pair_coun
     return column.reserve(count, pages);
   };
   const std::size_t most_runs = std::min<std::size_t>(pair_count, KindPairs::kCount);
-  if (!runs.reserve(most_runs) ||
-      !make_columns(level, parts, pair_count, manifold_count, reserve_one) ||
-      !points.grow(point_count)) {
-    return false;
-  }
-  if (pages == Pages::prefaulted) points.touch();
-  return true;
+  return runs.reserve(most_runs) &&
+         make_columns(level, parts, pair_count, manifold_count, reserve_one) &&
+         points.grow(point_count, pages);
 }
 
 bool ContactFrame::reserve_as(const ContactFrame& other) noexcept {

@@ -200,9 +200,9 @@ void ContinuousState::name_pieces(std::uint32_t mover, const ContinuousOptions& 
 Status ContinuousState::set_filters() {
   for (std::uint32_t mover = 0; mover < movers.size(); ++mover) {
     const std::uint32_t body = movers[mover];
-    ObjectFilter filter;
-    Status status =
-        bodies.set(bodies.body_state[body]).partition->filter(bodies.place[body], filter);
+    const Answer<ObjectFilter> filter =
+        bodies.set(bodies.body_state[body]).partition->filter(bodies.place[body]);
+    Status status = filter.status;
     for (std::uint32_t i = first_piece[mover];
          status == Status::ok && filter != ObjectFilter{} && i < first_piece[mover + 1]; ++i) {
       status = ways.set_filter(piece_keys[i], filter);

@@ -10,6 +10,17 @@
 #include <bit>
 
 namespace winnow {
+namespace {
+
+void add_to(NarrowStatistics& sum, const NarrowStatistics& statistics) noexcept {
+  sum.pairs += statistics.pairs;
+  sum.recomputed += statistics.recomputed;
+  sum.without_lanes += statistics.without_lanes;
+  sum.exact += statistics.exact;
+  sum.bounded += statistics.bounded;
+}
+
+}  // namespace
 
 // If ghost contacts are suppressed, all pairs are one batch, because the suppression compares all
 // contacts of a body.
@@ -64,7 +75,7 @@ Status FreshContacts::collide_convex() {
       {{scene_.shape.data(), scene_.shape.size()}, {scene_.pose.data(), scene_.pose.size()}},
       {batch_.convex.data(), batch_.convex.size()}, narrow_options(margins), batch_.answers);
   if (status != Status::ok) return status;
-  scene_.statistics.convex += batch_.narrow.statistics();
+  add_to(scene_.statistics.convex, batch_.narrow.statistics());
   filters_.trim_convex();
   return Status::ok;
 }
@@ -104,7 +115,7 @@ Status FreshContacts::collide_composite() {
                                            found.pairs, margins, options.execution, found.answers);
     if (status != Status::ok) return status;
   }
-  scene_.statistics.parts += found.narrow.statistics();
+  add_to(scene_.statistics.parts, found.narrow.statistics());
   scene_.statistics.primitive_pairs += parts.pairs.size();
   if (!resize_tightly(found.slot, found.answers.size())) return Status::out_of_memory;
   find_slots(found.answers, options.execution, found.slot.data());

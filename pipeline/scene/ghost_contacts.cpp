@@ -18,6 +18,7 @@
 // which is not larger. So the contact of lesser depth is dropped. A dropped contact cannot be the
 // floor of another contact, so two contacts never drop each other.
 
+#include "pipeline/narrow/narrow_columns.h"
 #include "pipeline/scene/collision.h"
 #include "pipeline/shapes/extent.h"
 #include "pipeline/shapes/frame.h"

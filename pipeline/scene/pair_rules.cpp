@@ -158,9 +158,7 @@ bool SceneState::accepts_pair(ObjectId a, ObjectId b) const noexcept {
 }
 
 ObjectFilter SceneState::filter_of(ObjectId body) const noexcept {
-  ObjectFilter filter;
-  (void)set(body_state[body]).partition->filter(place[body], filter);
-  return filter;
+  return set(body_state[body]).partition->filter(place[body]);
 }
 
 void BodyPairRules::forget_ignored(std::span<const Key> removed, const KeyTable& keys) noexcept {

@@ -4,6 +4,7 @@
 #include "core/memory/columns.h"
 #include "core/threads/float_environment.h"
 #include "pipeline/kernels/kernels.h"
+#include "pipeline/narrow/narrow_columns.h"
 #include "pipeline/scene/collision.h"
 #include "pipeline/scene/contact_frame.h"
 #include "pipeline/scene/scene_state.h"
@@ -144,11 +145,8 @@ Status PairBatch::reserve(const ShapePool& shapes, const SceneOptions& options,
   // On one thread, a job requires room for the largest number of points it may find.
   ContactColumns& points = answers.columns().contacts;
   const std::size_t found = std::min(room.points, batch * kManifoldPoints);
-  if (!points.grow(found + std::size_t{kJobPairs} * kManifoldPoints + kContactSlack)) {
-    return Status::out_of_memory;
-  }
-  if (pages == Pages::prefaulted) points.touch();
-  return Status::ok;
+  const std::size_t most = found + std::size_t{kJobPairs} * kManifoldPoints + kContactSlack;
+  return points.grow(most, pages) ? Status::ok : Status::out_of_memory;
 }
 
 // Lists `count` pairs; bodies 2 k and 2 k + 1 have kind k. The list begins with one pair for each

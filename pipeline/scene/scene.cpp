@@ -70,8 +70,11 @@ Scene::~Scene() {
   if (state_ != nullptr) delete_in(state_->options.memory, state_);
 }
 
-Status Scene::add(const BodyDefinition& body, Key& key) {
-  return add({&body, 1}, {&key, 1});
+Answer<Key> Scene::add(const BodyDefinition& body) {
+  Key key;
+  const Status status = add({&body, 1}, {&key, 1});
+  if (status != Status::ok) return status;
+  return key;
 }
 
 Status Scene::add(std::span<const BodyDefinition> bodies, std::span<Key> keys) {
@@ -220,17 +223,19 @@ bool Scene::contains(Key key) const noexcept {
   return state_ != nullptr && state_->keys.is_valid(key);
 }
 
-Status Scene::body(Key key, BodyDefinition& body) const noexcept {
+Answer<BodyDefinition> Scene::body(Key key) const noexcept {
   if (state_ == nullptr) return Status::out_of_memory;
   const SceneState& s = *state_;
   if (!s.keys.is_valid(key)) return Status::invalid_key;
+  BodyDefinition body;
   body.shape = s.shape[key.id];
   body.pose = s.pose[key.id];
   body.state = s.body_state[key.id];
   body.data = s.keys.client_data(key.id);
   body.offsets = s.offsets.of(key.id);
   body.layer = s.rules.layer_of(key.id);
-  return s.set(body.state).partition->filter(s.place[key.id], body.filter);
+  body.filter = s.set(body.state).partition->filter(s.place[key.id]);
+  return body;
 }
 
 Key Scene::key_of(ObjectId id) const noexcept {

@@ -90,10 +90,8 @@ void put_set(ByteWriter& out, const SceneState& scene, BodyState which) noexcept
     });
   };
   for_bodies([&](Key place) {
-    Aabb box;
-    ObjectFilter filter;
-    (void)set.partition->bounds(place, box);
-    (void)set.partition->filter(place, filter);
+    const Aabb box = set.partition->bounds(place);
+    const ObjectFilter filter = set.partition->filter(place);
     filtered = filtered || filter != ObjectFilter{};
     out.put_bytes(box.min.data(), 3 * sizeof(float));
     out.put_bytes(box.max.data(), 3 * sizeof(float));
@@ -101,8 +99,7 @@ void put_set(ByteWriter& out, const SceneState& scene, BodyState which) noexcept
   out.put(filtered);
   if (!filtered) return;
   for_bodies([&](Key place) {
-    ObjectFilter filter;
-    (void)set.partition->filter(place, filter);
+    const ObjectFilter filter = set.partition->filter(place);
     out.put_bytes(&filter, sizeof filter);
   });
 }

@@ -382,8 +382,9 @@ Status SceneState::move_to_set(std::span<const Key> given, BodyState to) {
   Status status = place_bodies(to, bodies);
   if (status != Status::ok) return status;
   for (std::size_t i = 0; i < bodies.size() && status == Status::ok; ++i) {
-    ObjectFilter filter;
-    status = set(body_state[bodies[i]]).partition->filter(staged.old_keys[i], filter);
+    const Answer<ObjectFilter> filter =
+        set(body_state[bodies[i]]).partition->filter(staged.old_keys[i]);
+    status = filter.status;
     if (status == Status::ok && filter != ObjectFilter{}) {
       status = set(to).partition->set_filter(place[bodies[i]], filter);
     }

@@ -487,8 +487,7 @@ class Assembly {
 
   [[nodiscard]] Eigen::Vector3d exact_normal_of(const HullFace& face) const {
     const auto edge = [&](std::uint32_t i) {
-      return exact_vector(at(c_.loop[face.first + i])) -
-             exact_vector(at(c_.loop[face.first]));
+      return exact_vector(at(c_.loop[face.first + i])) - exact_vector(at(c_.loop[face.first]));
     };
     ExactVector sum = cross(edge(1), edge(2));
     for (std::uint32_t i = 2; i + 1 < face.count; ++i) sum = sum + cross(edge(i), edge(i + 1));

@@ -31,7 +31,7 @@ auto& ShapePool::table_of(Pool& pool) noexcept {
 }
 
 template <typename Shape>
-Status ShapePool::put(const Shape& shape, ShapeId& id) {
+Answer<ShapeId> ShapePool::put(const Shape& shape) {
   Table<Shape>& table = table_of<Shape>(*this);
   std::uint32_t index = 0;
   if (!table.free.empty()) {
@@ -50,9 +50,8 @@ Status ShapePool::put(const Shape& shape, ShapeId& id) {
     table.live.set_size(index + 1U);
     table.live[index] = 1;
   }
-  id = ShapeId::of(KindOf<Shape>::kKind, index);
   refresh_tables();
-  return Status::ok;
+  return ShapeId::of(KindOf<Shape>::kKind, index);
 }
 
 }  // namespace winnow

@@ -38,17 +38,16 @@ void put_shape(ByteWriter& out, const Shape& shape) noexcept {
 template <typename Shape>
 [[nodiscard]] Status read_shape(ByteReader& in, std::pmr::memory_resource* memory,
                                 ShapePool& pool) {
-  ShapeId id;
   if constexpr (std::is_same_v<Shape, HullShape>) {
     ReadHull hull(memory);
     hull.read(in);
-    return in.ok() ? pool.add_built_hull(hull.points(), hull.faces(), hull.rounding, id)
+    return in.ok() ? pool.add_built_hull(hull.points(), hull.faces(), hull.rounding).status
                    : status_of(in);
   } else if constexpr (std::is_same_v<Shape, SupportShape>) {
     return Status::invalid_argument;
   } else {
     Shape shape;
-    return in.get_bytes(&shape, sizeof shape) ? pool.add(shape, id) : status_of(in);
+    return in.get_bytes(&shape, sizeof shape) ? pool.add(shape).status : status_of(in);
   }
 }
 

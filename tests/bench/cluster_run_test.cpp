@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/answers.h"
 #include "tests/support/random.h"
 
 namespace winnow::bench {
@@ -50,10 +51,8 @@ std::vector<ClusterDigest> digests_of_scene(const std::string& name, std::size_t
         EXPECT_EQ(scene.move(keys[i], pose), Status::ok);
         continue;
       }
-      ShapeId shape;
-      EXPECT_EQ(shapes.add(box_shape_of(boxes[i]), shape), Status::ok);
-      EXPECT_EQ(scene.add({.shape = shape, .pose = pose, .data = i}, keys.emplace_back()),
-                Status::ok);
+      const ShapeId shape = test::expect_ok(shapes.add(box_shape_of(boxes[i])));
+      keys.push_back(test::expect_ok(scene.add({.shape = shape, .pose = pose, .data = i})));
     }
     EXPECT_EQ(scene.collide(level, contacts), Status::ok);
     digests.push_back(digest_of(contacts));

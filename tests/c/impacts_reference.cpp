@@ -39,10 +39,10 @@ void query_impacts(const trace* t) {
   ShapePool shapes;
   CompositePool composites(shapes);
   std::array<ShapeId, 3> ids;
-  (void)shapes.add(SphereShape{0.5}, ids[0]);
-  (void)shapes.add(BoxShape{{0.5, 0.25, 1.0}}, ids[1]);
+  ids[0] = shapes.add(SphereShape{0.5});
+  ids[1] = shapes.add(BoxShape{{0.5, 0.25, 1.0}});
   const CompoundChild children[] = {{ids[0], {}}, {ids[1], {}}};
-  (void)composites.add_compound(children, ids[2]);
+  ids[2] = composites.add_compound(children);
 
   Pose start;
   Pose end = Pose::at(4, 0, 0);

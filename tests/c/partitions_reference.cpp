@@ -74,8 +74,8 @@ void query_objects(const trace* t, Partition& partition, const World& world) {
   for (std::size_t i = 0; i < kObjects; i += 7) {
     Aabb box;
     ClientData value = 0;
-    (void)partition.bounds(world.keys[i], box);
-    (void)partition.client_data(world.keys[i], value);
+    box = partition.bounds(world.keys[i]);
+    value = partition.client_data(world.keys[i]);
     note(t, "contains", partition.contains(world.keys[i]));
     for (int axis = 0; axis < 3; ++axis) {
       note_real(t, "bounds", static_cast<double>(box.min[axis]));
@@ -87,7 +87,7 @@ void query_objects(const trace* t, Partition& partition, const World& world) {
   const std::array filters{ObjectFilter{2, 3, 0}, ObjectFilter{1, 1, 5}};
   ObjectFilter filter;
   (void)partition.set_filter(std::span(world.keys).subspan(3, 2), filters);
-  (void)partition.filter(world.keys[4], filter);
+  filter = partition.filter(world.keys[4]);
   note(t, "filter", filter.environment);
 }
 
@@ -139,11 +139,11 @@ void query_casts(const trace* t, const Partition& partition) {
                         SphereCast{{{-1, 5, 5}, 0.5F}, ahead, 0, 100},
                         CapsuleCast{{{-1, 5, 5}, {-1, 7, 5}, 0.5F}, ahead, 0, 100}};
   for (const Cast& cast : casts) {
-    (void)partition.closest(cast, hit);
+    hit = partition.closest(cast);
     note_hit(t, "closest", hit);
-    (void)partition.closest(cast, hit, kEven);
+    hit = partition.closest(cast, kEven);
     note_hit(t, "closest even", hit);
-    (void)partition.any(cast, hit);
+    hit = partition.any(cast);
     note(t, "any", hit ? 1 : 0);
     (void)partition.all(cast, hits);
     note_hits(t, "all", hits);

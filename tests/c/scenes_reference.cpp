@@ -90,19 +90,19 @@ void query_rays(const trace* t, SceneQueries& queries) {
   const ShapeRay ray{{3.2, 1.3, 5}, {0.1, 0.2, -1}, 20};
   SceneHit hit;
   std::span<const SceneHit> hits;
-  (void)queries.closest(ray, hit);
+  hit = queries.closest(ray);
   note_hit(t, "closest", hit);
-  (void)queries.closest(ray, hit, even);
+  hit = queries.closest(ray, even);
   note_hit(t, "closest even", hit);
-  (void)queries.any(ray, hit);
+  hit = queries.any(ray);
   note(t, "any", hit ? 1 : 0);
-  (void)queries.all(ray, hits);
+  hits = queries.all(ray);
   note_hits(t, "all", hits);
 
   std::vector<ShapeRay> rays;
   for (int i = 0; i < 16; ++i) rays.push_back({{0.5 * i, 0.25 * i, 4}, {0.125, 0, -1}, 10});
   for (const ShapeRay& each : rays) {
-    (void)queries.closest(each, hit);
+    hit = queries.closest(each);
     if (!hit) hit.t = std::numeric_limits<double>::infinity();
     note(t, "closest of rays", hit.key.id);
     note(t, "closest of rays", hit.data);
@@ -112,11 +112,11 @@ void query_rays(const trace* t, SceneQueries& queries) {
     note_real(t, "closest of rays", hit.point[0]);
   }
   for (const ShapeRay& each : rays) {
-    (void)queries.any(each, hit);
+    hit = queries.any(each);
     note(t, "any of rays", hit ? 1 : 0);
   }
   SceneHitLists lists;
-  (void)queries.all(ShapeRayBatch(rays), lists);
+  lists = queries.all(ShapeRayBatch(rays));
   note_hits(t, "all of rays", lists.hits);
 }
 
@@ -128,36 +128,36 @@ void query_shapes_of(const trace* t, SceneQueries& queries, ShapeId ball,
   std::span<const SceneOverlap> bodies;
   std::span<const SceneDistance> near;
   SceneDistance apart;
-  (void)queries.closest(cast, hit);
+  hit = queries.closest(cast);
   note_hit(t, "closest of casts", hit);
-  (void)queries.all(cast, hits);
+  hits = queries.all(cast);
   note_hits(t, "all of casts", hits);
   const ShapeCast leaving{ball, Pose::at(2, 0, 0.6), {0.3, 0.2, 1}, 20, false};
-  (void)queries.closest(leaving, hit);
+  hit = queries.closest(leaving);
   note_hit(t, "closest of casts from a touch", hit);
-  (void)queries.all(leaving, hits);
+  hits = queries.all(leaving);
   note_hits(t, "all of casts from a touch", hits);
   const Pose pose = Pose::at(2.0, 0.0, 0.6);
-  (void)queries.overlap(ball, pose, bodies);
+  bodies = queries.overlap(ball, pose);
   note(t, "overlaps", bodies.size());
   for (const SceneOverlap& body : bodies) {
     note(t, "overlap", body.key.id);
     note(t, "overlap", body.data);
     note(t, "overlap", body.part);
   }
-  (void)queries.distance(keys[1], keys[30], apart, std::numeric_limits<double>::infinity(),
-                         PairRules::none);
+  apart =
+      queries.distance(keys[1], keys[30], std::numeric_limits<double>::infinity(), PairRules::none);
   note_distance(t, "distance", apart);
-  (void)queries.nearest(pose.position, 5, 10.0, near);
+  near = queries.nearest(pose.position, 5, 10.0);
   note(t, "nearest", near.size());
   for (const SceneDistance& one : near) note_distance(t, "nearest", one);
   SetDistance least;
-  (void)queries.least_distance(keys.subspan(4, 6), keys.subspan(16, 8), least, 1e9);
+  least = queries.least_distance(keys.subspan(4, 6), keys.subspan(16, 8), 1e9);
   note(t, "least of sets", least.a.id);
   note(t, "least of sets", least.data_a);
   note_distance(t, "least of sets", least.to);
   std::span<const KeyPair> pairs;
-  (void)queries.overlaps(keys.subspan(4, 6), keys.subspan(16, 12), pairs, 7);
+  pairs = queries.overlaps(keys.subspan(4, 6), keys.subspan(16, 12), 7);
   note(t, "overlaps of sets", pairs.size());
   for (const KeyPair& pair : pairs) {
     note(t, "overlaps of sets", pair.first.id);
@@ -165,10 +165,10 @@ void query_shapes_of(const trace* t, SceneQueries& queries, ShapeId ball,
   }
   for (const PairRules rules : {PairRules::scene, PairRules::none}) {
     KeyPair found;
-    (void)queries.any_contact(keys.subspan(4, 6), keys.subspan(16, 12), found, 0.25, rules);
+    found = queries.any_contact(keys.subspan(4, 6), keys.subspan(16, 12), 0.25, rules);
     note(t, "any contact of sets", found.first.id);
     note(t, "any contact of sets", found.second.id);
-    (void)queries.any_contact(found, 0.0, rules);
+    found = queries.any_contact(0.0, rules);
     note(t, "any contact", found.first.id);
     note(t, "any contact", found.second.id);
   }
@@ -189,7 +189,7 @@ void query_state(const trace* t, const Scene& scene, std::span<const Key> keys) 
   note(t, "fixed", scene.size(BodyState::fixed));
   note(t, "contains", scene.contains(keys[3]));
   BodyDefinition body;
-  (void)scene.body(keys[3], body);
+  body = scene.body(keys[3]);
   note(t, "body", body.shape.bits);
   note(t, "body", static_cast<std::uint64_t>(body.state));
   note(t, "body", body.filter.mask);

@@ -106,29 +106,29 @@ Pose pose_in(std::size_t i, std::size_t frame) {
 
 std::array<ShapeId, 12> make_convex(ShapePool& pool) {
   std::array<ShapeId, 12> ids;
-  (void)pool.add(SphereShape{0.5}, ids[0]);
-  (void)pool.add(CapsuleShape{0.3, 0.4}, ids[1]);
-  (void)pool.add(BoxShape{{0.5, 0.4, 0.3}, 0.05}, ids[2]);
-  (void)pool.add(CylinderShape{0.4, 0.5, 0.0}, ids[3]);
-  (void)pool.add(ConeShape{0.5, 0.5, 0.0}, ids[4]);
-  (void)pool.add(TriangleShape{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, 0.1}, ids[5]);
-  (void)pool.add(HalfSpaceShape{{0, 0, 2}, 0}, ids[6]);
+  ids[0] = pool.add(SphereShape{0.5});
+  ids[1] = pool.add(CapsuleShape{0.3, 0.4});
+  ids[2] = pool.add(BoxShape{{0.5, 0.4, 0.3}, 0.05});
+  ids[3] = pool.add(CylinderShape{0.4, 0.5, 0.0});
+  ids[4] = pool.add(ConeShape{0.5, 0.5, 0.0});
+  ids[5] = pool.add(TriangleShape{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, 0.1});
+  ids[6] = pool.add(HalfSpaceShape{{0, 0, 2}, 0});
   const std::array<Eigen::Vector3d, 4> corners{Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(1, 0, 0),
                                                Eigen::Vector3d(0, 1, 0), Eigen::Vector3d(0, 0, 1)};
   const std::uint32_t indices[] = {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3};
   const std::uint32_t sizes[] = {3, 3, 3, 3};
-  (void)pool.add_hull(corners, HullFaces{indices, sizes}, 0.02, ids[7]);
-  if (pool.add_hull(corners, 0.02, ids[8]) != Status::ok) {
-    (void)pool.add_hull(corners, HullFaces{indices, sizes}, 0.02, ids[8]);
+  ids[7] = pool.add_hull(corners, HullFaces{indices, sizes}, 0.02);
+  if (pool.add_hull(corners, 0.02).get(ids[8]) != Status::ok) {
+    ids[8] = pool.add_hull(corners, HullFaces{indices, sizes}, 0.02);
   }
-  (void)pool.add(EllipsoidShape{{0.5, 0.4, 0.3}, 0.05}, ids[9]);
-  (void)pool.add(TaperedCapsuleShape{{0.4, 0.2}, 0.5}, ids[10]);
+  ids[9] = pool.add(EllipsoidShape{{0.5, 0.4, 0.3}, 0.05});
+  ids[10] = pool.add(TaperedCapsuleShape{{0.4, 0.2}, 0.5});
   static const double half = 0.25;
   const auto farthest = [](const void* context, const double direction[3], double point[3]) {
     const double reach = *static_cast<const double*>(context);
     for (int i = 0; i < 3; ++i) point[i] = direction[i] < 0.0 ? -reach : reach;
   };
-  (void)pool.add(SupportShape{farthest, &half, 0.5, 0.1}, ids[11]);
+  ids[11] = pool.add(SupportShape{farthest, &half, 0.5, 0.1});
   return ids;
 }
 
@@ -138,16 +138,16 @@ std::array<ShapeId, 4> make_composite(CompositePool& pool, const std::array<Shap
       Eigen::Vector3f(-20, -20, 0), Eigen::Vector3f(20, -20, 0), Eigen::Vector3f(20, 20, 0),
       Eigen::Vector3f(-20, 20, 0)};
   const std::uint32_t corners[] = {0, 1, 2, 0, 2, 3};
-  (void)pool.add_mesh(std::span<const Eigen::Vector3f>(vertices),
-                      IndexView(std::span<const std::uint32_t>(corners)), ids[0]);
-  (void)pool.add_scaled(ids[0], {2, 1, 1}, ids[1]);
+  ids[0] = pool.add_mesh(std::span<const Eigen::Vector3f>(vertices),
+                         IndexView(std::span<const std::uint32_t>(corners)));
+  ids[1] = pool.add_scaled(ids[0], {2, 1, 1});
   (void)pool.refit_mesh(ids[0], std::span<const Eigen::Vector3f>(vertices));
   const float heights[] = {0, 0.1F, 0, 0.2F, 0.25F, 0.1F, 0, 0.3F, 0};
-  (void)pool.add_height_field({heights, 3, 3, 0, {4, 4}}, ids[2]);
+  ids[2] = pool.add_height_field({heights, 3, 3, 0, {4, 4}});
   const std::array<CompoundChild, 3> children{CompoundChild{convex[0], {}},
                                               CompoundChild{convex[2], Pose::at(0, 0, 0.4)},
                                               CompoundChild{ids[0], Pose::at(0, 0, -0.3)}};
-  (void)pool.add_compound(children, ids[3]);
+  ids[3] = pool.add_compound(children);
   return ids;
 }
 
@@ -161,7 +161,7 @@ void run_shapes_in_cpp(const trace* t) {
     note(t, "id", id.bits);
     note_box(t, "bounds", pool.bounds(id, pose));
     ShapeHit hit;
-    (void)cast_ray(pool.tables(), id, pose, {{8, 1, 9}, {-0.2, 0.1, -1}, 30}, hit);
+    hit = cast_ray(pool.tables(), id, pose, {{8, 1, 9}, {-0.2, 0.1, -1}, 30});
     note(t, "hit", hit.hit);
     note_real(t, "t", hit.t);
     note_reals(t, "normal", hit.normal.data(), 3);

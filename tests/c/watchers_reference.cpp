@@ -71,7 +71,7 @@ void query_sensors(const trace* t, Scene& scene, ShapeId ball, std::span<const K
   Sensors sensors(scene);
   SensorDefinition goal{.shape = ball, .pose = Pose::at(2, 0, 0), .carrier = keys[2], .data = 77};
   std::array<Key, 2> goals;
-  for (Key& key : goals) (void)sensors.add(goal, key);
+  for (Key& key : goals) key = sensors.add(goal);
   (void)sensors.sense();
   note_sensed(t, sensors);
   goal.pose = Pose::at(3, 0, 0);
@@ -84,7 +84,7 @@ void query_sensors(const trace* t, Scene& scene, ShapeId ball, std::span<const K
   (void)sensors.sense();
   note_sensed(t, sensors);
   SensorDefinition stands;
-  (void)sensors.sensor(goals[1], stands);
+  stands = sensors.sensor(goals[1]);
   note(t, "sensor", stands.data);
   note_reals(t, "sensor", stands.pose.position.data(), 3);
   note(t, "sensors", sensors.size());

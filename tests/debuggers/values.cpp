@@ -34,13 +34,13 @@ int main() {
   winnow::ShapePool shapes;
   winnow::ShapeId shape;
   winnow::ShapeId oval;
-  good = good && shapes.add(winnow::BoxShape{{1, 1, 1}}, shape) == winnow::Status::ok &&
-         shapes.add(winnow::EllipsoidShape{{1, 1, 2}}, oval) == winnow::Status::ok;
+  good = good && shapes.add(winnow::BoxShape{{1, 1, 1}}).get(shape) == winnow::Status::ok &&
+         shapes.add(winnow::EllipsoidShape{{1, 1, 2}}).get(oval) == winnow::Status::ok;
   winnow::Scene scene(shapes);
   winnow::Key body;
   winnow::Contacts contacts;
-  good = good && scene.add({.shape = shape}, body) == winnow::Status::ok &&
-         scene.add({.shape = shape}, body) == winnow::Status::ok &&
+  good = good && scene.add({.shape = shape}).get(body) == winnow::Status::ok &&
+         scene.add({.shape = shape}).get(body) == winnow::Status::ok &&
          scene.collide(winnow::ContactLevel::boolean, contacts) == winnow::Status::ok;
   for (const void* value :
        {static_cast<const void*>(&box), static_cast<const void*>(&empty),

@@ -332,7 +332,7 @@ class Life {
     }
     Aabb box;
     for (const Key key : keys_) {
-      note(partition_.bounds(key, box));
+      note(partition_.bounds(key).get(box));
       digest_.add(static_cast<double>(box.min[0]));
       digest_.add(static_cast<double>(box.max[2]));
     }

@@ -145,37 +145,37 @@ class Bodies {
       loops = {0, 4, 6, 2, 1, 3, 7, 5, 0, 1, 5, 4, 2, 6, 7, 3, 0, 2, 3, 1, 4, 5, 7, 6};
       sizes.assign(6, 4);
     }
-    return pool.add_hull(corners, {loops, sizes}, rounding(), id);
+    return pool.add_hull(corners, {loops, sizes}, rounding()).get(id);
   }
 
   Status add(ShapeKind kind, ShapeId& id) {
     const double size[3] = {length(), length(), length()};
     switch (kind) {
       case ShapeKind::sphere:
-        return pool.add(SphereShape{size[0]}, id);
+        return pool.add(SphereShape{size[0]}).get(id);
       case ShapeKind::capsule:
-        return pool.add(CapsuleShape{size[0], size[1]}, id);
+        return pool.add(CapsuleShape{size[0], size[1]}).get(id);
       case ShapeKind::box:
-        return pool.add(BoxShape{{size[0], size[1], size[2]}, rounding()}, id);
+        return pool.add(BoxShape{{size[0], size[1], size[2]}, rounding()}).get(id);
       case ShapeKind::cylinder:
-        return pool.add(CylinderShape{size[0], size[1], rounding()}, id);
+        return pool.add(CylinderShape{size[0], size[1], rounding()}).get(id);
       case ShapeKind::cone:
-        return pool.add(ConeShape{size[0], size[1], rounding()}, id);
+        return pool.add(ConeShape{size[0], size[1], rounding()}).get(id);
       case ShapeKind::hull:
         return add_hull(id);
       case ShapeKind::triangle:
-        return pool.add(triangle(), id);
+        return pool.add(triangle()).get(id);
       case ShapeKind::half_space: {
         HalfSpaceShape shape{{0.0, 0.0, 1.0}, coordinate()};
         if (style_ != Style::lattice) shape.normal[0] = numbers_.coordinate(1);
-        return pool.add(shape, id);
+        return pool.add(shape).get(id);
       }
       case ShapeKind::ellipsoid:
-        return pool.add(EllipsoidShape{{size[0], size[1], size[2]}, rounding()}, id);
+        return pool.add(EllipsoidShape{{size[0], size[1], size[2]}, rounding()}).get(id);
       case ShapeKind::tapered_capsule:
-        return pool.add(TaperedCapsuleShape{{size[0], size[1]}, size[2]}, id);
+        return pool.add(TaperedCapsuleShape{{size[0], size[1]}, size[2]}).get(id);
       case ShapeKind::support:
-        return pool.add(SupportShape{&corner_of, &kCorner, 1.0, rounding()}, id);
+        return pool.add(SupportShape{&corner_of, &kCorner, 1.0, rounding()}).get(id);
     }
     return Status::invalid_argument;
   }

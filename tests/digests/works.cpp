@@ -100,14 +100,14 @@ std::vector<ShapeId> shapes(ShapePool& pool, Digest& digest) {
                                          2, 0, 5, 1, 2, 5, 3, 1, 5, 0, 3, 5};
   const std::vector<std::uint32_t> sizes(8, 3);
   const Status answers[] = {
-      pool.add(SphereShape{0.5}, ids[0]),
-      pool.add(CapsuleShape{0.25, 0.75}, ids[1]),
-      pool.add(BoxShape{{0.5, 0.75, 1.0}}, ids[2]),
-      pool.add(CylinderShape{0.5, 0.5}, ids[3]),
-      pool.add(ConeShape{0.5, 0.75, 0.125}, ids[4]),
-      pool.add_hull(corners, {loops, sizes}, 0.0, ids[5]),
-      pool.add(TriangleShape{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0.25}}}, ids[6]),
-      pool.add(HalfSpaceShape{{0.25, 0.5, 1}, -1.0}, ids[7]),
+      pool.add(SphereShape{0.5}).get(ids[0]),
+      pool.add(CapsuleShape{0.25, 0.75}).get(ids[1]),
+      pool.add(BoxShape{{0.5, 0.75, 1.0}}).get(ids[2]),
+      pool.add(CylinderShape{0.5, 0.5}).get(ids[3]),
+      pool.add(ConeShape{0.5, 0.75, 0.125}).get(ids[4]),
+      pool.add_hull(corners, {loops, sizes}, 0.0).get(ids[5]),
+      pool.add(TriangleShape{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0.25}}}).get(ids[6]),
+      pool.add(HalfSpaceShape{{0.25, 0.5, 1}, -1.0}).get(ids[7]),
   };
   for (const Status status : answers) digest.add(static_cast<std::uint64_t>(status));
   return ids;
@@ -159,13 +159,13 @@ void query(const Scene& scene, Numbers& numbers, Digest& digest) {
     for (double& x : ray.origin) x = numbers.coordinate(8);
     for (double& x : ray.direction) x = numbers.coordinate(1);
     std::span<const SceneHit> hits;
-    digest.add(static_cast<std::uint64_t>(questions.all(ray, hits)));
+    digest.add(static_cast<std::uint64_t>(questions.all(ray).get(hits)));
     for (const SceneHit& hit : hits) {
       digest.add(hit.data);
       digest.add(hit.t);
     }
     std::span<const SceneDistance> near;
-    digest.add(static_cast<std::uint64_t>(questions.nearest(ray.origin, 5, 10.0, near)));
+    digest.add(static_cast<std::uint64_t>(questions.nearest(ray.origin, 5, 10.0).get(near)));
     for (const SceneDistance& one : near) {
       digest.add(one.data);
       digest.add(one.distance);
@@ -190,8 +190,9 @@ void scene(const Execution& execution, Digest& digest) {
     }
   }
   ids.emplace_back();
-  digest.add(static_cast<std::uint64_t>(composites.add_mesh(
-      std::span(std::as_const(points)), std::span(std::as_const(corners)), ids.back())));
+  digest.add(static_cast<std::uint64_t>(
+      composites.add_mesh(std::span(std::as_const(points)), std::span(std::as_const(corners)))
+          .get(ids.back())));
   Scene world(pool, {.execution = execution, .contact_margin = 0.0625, .composites = &composites});
   std::vector<Key> keys(160);
   for (std::size_t i = 0; i < keys.size(); ++i) {
@@ -199,7 +200,7 @@ void scene(const Execution& execution, Digest& digest) {
                               .pose = numbers.pose(4),
                               .state = static_cast<BodyState>(i % 11 == 0 ? 0 : 1),
                               .data = i};
-    digest.add(static_cast<std::uint64_t>(world.add(body, keys[i])));
+    digest.add(static_cast<std::uint64_t>(world.add(body).get(keys[i])));
   }
   Contacts contacts;
   for (int frame = 0; frame < 3; ++frame) {

@@ -11,7 +11,7 @@ int main() {
   const winnow::ShapeId ball = shapes.add(winnow::SphereShape{0.5});
   const winnow::ShapeId floor = shapes.add(winnow::HalfSpaceShape{});
   winnow::Scene scene(shapes);
-  scene.add({.shape = floor, .state = winnow::BodyState::fixed});
+  if (!scene.add({.shape = floor, .state = winnow::BodyState::fixed})) return 1;
   const winnow::Key body = scene.add({.shape = ball, .pose = winnow::Pose::at(0, 0, 2)});
   winnow::Contacts contacts;
   const double step = 0.005;

@@ -29,9 +29,9 @@ int main() {
 
   // [boxes]
   winnow::Partition partition(winnow::linear_bvh());
-  partition.insert(boxes, names, keys);  // Aabb, or your own columns or structs: see BoxView
-  winnow::PairBuffer pairs;              // keep it from frame to frame
-  partition.self_pairs(pairs);           // pairs of ids: keys[i].id
+  must(partition.insert(boxes, names, keys));  // Aabb, or your own columns or structs: see BoxView
+  winnow::PairBuffer pairs;                    // keep it from frame to frame
+  must(partition.self_pairs(pairs));           // pairs of ids: keys[i].id
   // [end]
   check(pairs.empty(), "boxes that are apart make no pairs");
 
@@ -39,9 +39,11 @@ int main() {
   boxes[3] = {{4, 0, 0}, {5, 1, 1}};
   // [frames]
   winnow::PairEvents events;
-  partition.self_pairs(pairs, events);
-  partition.update(keys, boxes, winnow::IndexSubset::listed(moved));  // or IndexSubset::masked
-  partition.self_pairs(pairs, events);  // if few objects moved, only their pairs are recomputed
+  must(partition.self_pairs(pairs, events));
+  must(
+      partition.update(keys, boxes, winnow::IndexSubset::listed(moved)));  // or IndexSubset::masked
+  must(partition.self_pairs(pairs,
+                            events));  // if few objects moved, only their pairs are recomputed
   for (const winnow::KeyPair& pair : events.begun()) on_begin(pair);
   for (const winnow::KeyPair& pair : events.ended()) on_end(pair);
   // [end]
@@ -50,15 +52,15 @@ int main() {
         "their pair has begun");
 
   // [structures]
-  partition.set_structure(winnow::hierarchical_grid());  // keys, filters and events stay
-  partition.set_structure(winnow::automatic());          // chooses one, and changes it if needed
+  must(partition.set_structure(winnow::hierarchical_grid()));  // keys, filters and events stay
+  must(partition.set_structure(winnow::automatic()));  // chooses one, and changes it if needed
   winnow::Partition bodies(
       winnow::linear_bvh(),
       {.volume = winnow::Volume::kdop14,                     // or aabb, sphere, ...
        .fat_margin = {.distance = 0.02F, .share = 0.05F}});  // moves within it cost nothing
   // [end]
-  partition.self_pairs(pairs);
+  must(partition.self_pairs(pairs));
   check(pairs.size() == 1, "another structure finds the same");
-  bodies.insert(boxes, names, keys);
+  must(bodies.insert(boxes, names, keys));
   check(bodies.size() == boxes.size(), "they hold the same objects");
 }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <winnow/core/status.h>
+
 #include <cstdio>
 #include <cstdlib>
 
@@ -8,4 +10,9 @@ inline void check(bool holds, const char* what) {
   if (holds) return;
   std::printf("not so: %s\n", what);
   std::exit(1);
+}
+
+/// Ends the program unless a call succeeded. Programs have their own error handling in its place.
+inline void must(winnow::Status status) {
+  check(status == winnow::Status::ok, winnow::to_string(status));
 }

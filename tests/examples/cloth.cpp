@@ -25,15 +25,15 @@ int main() {
   const std::vector<std::uint32_t> triangles{0, 1, 2, 1, 3, 2, 4, 5, 6, 5, 7, 6};
   // [cloth]
   winnow::DeformableMesh cloth;
-  cloth.build(before, std::span(triangles));  // once: rest positions, corners
-  cloth.move(before, after);                  // in every step: float or double, columns or structs
+  must(cloth.build(before, std::span(triangles)));  // once: rest positions, corners
+  must(cloth.move(before, after));  // in every step: float or double, columns or structs
   double earliest = 1.0;
   for (const auto kind : {winnow::FeaturePair::vertex_face, winnow::FeaturePair::edge_edge}) {
-    cloth.self_impacts(kind, {}, [&](std::span<const winnow::MeshImpact> impacts) {
+    must(cloth.self_impacts(kind, {}, [&](std::span<const winnow::MeshImpact> impacts) {
       for (const winnow::MeshImpact& impact : impacts) {  // of the two impact.features
         earliest = std::min(earliest, impact.time);       // never late
       }
-    });
+    }));
   }
   // [end]
   check(earliest <= 0.25 && earliest > 0.2499, "the upper square is stopped at the lower one");

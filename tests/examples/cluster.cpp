@@ -32,14 +32,14 @@ int main() {
   // [a cluster]
   winnow::LoopbackTransport transport(4);  // or make_mpi_transport: one rank in each process
   winnow::Cluster cluster(transport);
-  cluster.add(batches, answers);  // for each rank here: 64-bit names and boxes
-  cluster.self_pairs();           // bodies move to the ranks that own their centres
+  must(cluster.add(batches, answers));  // for each rank here: 64-bit names and boxes
+  must(cluster.self_pairs());           // bodies move to the ranks that own their centres
   for (std::uint32_t rank = 0; rank < cluster.hosted(); ++rank) {
     for (const winnow::ClusterBody& body : cluster.arrived(rank)) {
-      if (body.name == 3) cluster.move(rank, std::span(&body.key, 1), std::span(&moved, 1));
+      if (body.name == 3) must(cluster.move(rank, std::span(&body.key, 1), std::span(&moved, 1)));
     }
   }
-  cluster.self_pairs();  // sends only bodies that moved and have ghosts
+  must(cluster.self_pairs());  // sends only bodies that moved and have ghosts
   for (std::uint32_t rank = 0; rank < cluster.hosted(); ++rank) {
     for (const winnow::NamePair pair : cluster.pairs(rank)) report(pair.first, pair.second);
   }

@@ -12,9 +12,8 @@ int main() {
   const auto stop = [&first](std::uint32_t, double time) { first = time; };
   // [impact]
   winnow::ShapePool shapes;
-  winnow::ShapeId blade, bullet;
-  shapes.add(winnow::BoxShape{{2, 0.1, 0.01}}, blade);
-  shapes.add(winnow::SphereShape{0.05}, bullet);
+  const winnow::ShapeId blade = shapes.add(winnow::BoxShape{{2, 0.1, 0.01}});
+  const winnow::ShapeId bullet = shapes.add(winnow::SphereShape{0.05});
 
   using Motion = winnow::RigidMotion;
   const std::vector<winnow::ShapeId> shape_of{blade, bullet};
@@ -23,7 +22,7 @@ int main() {
       Motion::between(winnow::Pose::at(1.5, -40, 0), winnow::Pose::at(1.5, 40, 0))};
   const std::vector<winnow::BodyPair> pairs{{0, 1}};
   winnow::ImpactResult impacts;  // keep it from call to call
-  winnow::time_of_impact(shapes, {shape_of, motion_of}, pairs, {}, impacts);
+  must(winnow::time_of_impact(shapes, {shape_of, motion_of}, pairs, {}, impacts));
   for (std::size_t i = 0; i < impacts.size(); ++i) {
     if (impacts.hits(i)) stop(pairs[i].a, impacts.time()[i]);
     // also gap(), normal(axis), point(axis), error_bound() at that time

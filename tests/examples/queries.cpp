@@ -28,23 +28,26 @@ int main() {
   }
   std::vector<winnow::Key> keys(boxes.size());
   winnow::Partition partition(winnow::linear_bvh());
-  partition.insert(boxes, {}, keys);
+  must(partition.insert(boxes, {}, keys));
 
   // [queries]
-  winnow::Hit hit;
-  partition.closest(winnow::Ray{{-5, 0.5F, 0.5F}, {1, 0, 0}}, hit);  // key, client data, t
-  winnow::HitBuffer hits;                                            // keep it from query to query
-  partition.all(winnow::SphereCast{{{-5, 0, 0}, 0.5F}, {1, 0, 0}}, hits);  // sorted by first touch
+  const winnow::Hit hit =
+      partition.closest(winnow::Ray{{-5, 0.5F, 0.5F}, {1, 0, 0}});  // key, client data, t
+  winnow::HitBuffer hits;                                           // keep it from query to query
+  must(partition.all(winnow::SphereCast{{{-5, 0, 0}, 0.5F}, {1, 0, 0}},
+                     hits));  // sorted by first touch
 
   const winnow::Vec3f eye(0, 0, 50), ahead(0, 0, -1), up(0, 1, 0);
   winnow::OverlapBuffer seen;
-  partition.overlap(winnow::Frustum::perspective(eye, ahead, up, 1.0F, 1.6F, 0.1F, 100.0F), seen);
+  must(partition.overlap(winnow::Frustum::perspective(eye, ahead, up, 1.0F, 1.6F, 0.1F, 100.0F),
+                         seen));
   draw(seen.inside());  // children of these need no test
   test_children(seen.crossing());
 
-  partition.nearest({{7, 3, 0}, {7, 3, 0}}, 8, 50.0F, hits);  // to a point, sorted by distance
+  must(
+      partition.nearest({{7, 3, 0}, {7, 3, 0}}, 8, 50.0F, hits));  // to a point, sorted by distance
   winnow::PairBuffer pairs;
-  partition.overlap(winnow::BoxView(boxes), pairs);  // (index of the box, object)
+  must(partition.overlap(winnow::BoxView(boxes), pairs));  // (index of the box, object)
   // [end]
   check(hit.key == keys[0] && hit.t == 5.0F, "the first box is hit");
   check(drawn == seen.size() && drawn > 10, "the camera sees some of them");

@@ -32,8 +32,8 @@ int main() {
     // [recording]
     winnow::Recorder recorder(file);
     winnow::RecordedPartition partition(recorder, winnow::linear_bvh());  // instead of Partition
-    partition.insert(boxes, names, keys);
-    partition.self_pairs(pairs);
+    must(partition.insert(boxes, names, keys));
+    must(partition.self_pairs(pairs));
     recorder.end_frame();
     // [end]
     check(pairs.size() == 1, "the two boxes overlap");
@@ -42,7 +42,7 @@ int main() {
   const std::string bytes = read(file);
   // [replay]
   winnow::RecordingPlayer player(std::as_bytes(std::span(bytes)));
-  player.play_all();
+  must(player.play_all());
   std::printf("%llu answers differ\n", static_cast<unsigned long long>(player.differences()));
   // [end]
   check(player.is_whole() && player.questions() == 1 && player.differences() == 0,
@@ -50,12 +50,13 @@ int main() {
   std::remove(file);
 
   winnow::Partition partition(winnow::linear_bvh());
-  partition.insert(boxes, names, keys);
+  must(partition.insert(boxes, names, keys));
   // [snapshot]
   winnow::Column<std::byte> saved(std::pmr::get_default_resource());
-  partition.save(saved);
-  partition.remove(keys[0]);
-  partition.load({saved.data(), saved.size()});  // here or in another process; restores keys[0]
+  must(partition.save(saved));
+  must(partition.remove(keys[0]));
+  must(partition.load(
+      {saved.data(), saved.size()}));  // here or in another process; restores keys[0]
   // [end]
   check(partition.contains(keys[0]), "the key is that of the same object again");
 }

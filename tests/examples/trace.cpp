@@ -61,25 +61,23 @@ int main(int argc, char** argv) {
   winnow::set_log_hook(log);
 
   winnow::ShapePool shapes;
-  winnow::ShapeId ball;
-  shapes.add(winnow::SphereShape{0.5}, ball);
+  const winnow::ShapeId ball = shapes.add(winnow::SphereShape{0.5});
   const winnow::StructureKind any = winnow::automatic();
   winnow::Scene scene(shapes, {.structures = {any, any, any}});
   std::mt19937 random(1);
   std::uniform_real_distribution<double> place(0.0, 20.0);
   std::vector<winnow::Key> keys(5'000);
   for (winnow::Key& key : keys) {
-    scene.add(
-        {.shape = ball, .pose = winnow::Pose::at(place(random), place(random), place(random))},
-        key);
+    key = scene.add(
+        {.shape = ball, .pose = winnow::Pose::at(place(random), place(random), place(random))});
   }
-  scene.add({}, keys[0]);  // refused: it has no shape
+  check(!scene.add({}), "a body without a shape is refused");
   winnow::Contacts contacts;
   for (int frame = 0; frame < 5; ++frame) {
     for (const winnow::Key key : keys) {
-      scene.move(key, winnow::Pose::at(place(random), place(random), place(random)));
+      must(scene.move(key, winnow::Pose::at(place(random), place(random), place(random))));
     }
-    scene.collide(winnow::ContactLevel::manifold, contacts);
+    must(scene.collide(winnow::ContactLevel::manifold, contacts));
   }
   check(contacts.size() != 0, "some touch");
   winnow::set_stage_hook(nullptr);

@@ -107,9 +107,10 @@ void Exhibit::take(Bytes& bytes, bool first) {
 void Exhibit::take_mesh(Bytes& bytes) {
   surface_ = some_surface(bytes);
   const MeshOptions options{bytes.chance(16) ? bytes.any<double>() : 0.02};
-  const Status status =
-      composites_.add_mesh(std::span(std::as_const(surface_.vertices)),
-                           std::span(std::as_const(surface_.corners)), id_, options);
+  const Status status = composites_
+                            .add_mesh(std::span(std::as_const(surface_.vertices)),
+                                      std::span(std::as_const(surface_.corners)), options)
+                            .get(id_);
   const bool good_angle = options.active_edge_angle >= 0.0 && options.active_edge_angle <= 3.14;
   if (status != Status::ok) {
     WINNOW_REQUIRE(!surface_.is_good() || !good_angle);
@@ -151,7 +152,7 @@ void Exhibit::take_field(Bytes& bytes) {
   }
   if (bytes.chance(8) && !heights_.empty()) heights_.pop_back();
   samples.heights = heights_;
-  const Status status = composites_.add_height_field(samples, id_);
+  const Status status = composites_.add_height_field(samples).get(id_);
   if (status != Status::ok) {
     WINNOW_REQUIRE(id_ == ShapeId{} && composites_.size(CompositeKind::height_field) == 0);
     return;
@@ -209,14 +210,14 @@ void Exhibit::query_ray(Bytes& bytes, SceneQueries& queries, const Pose& pose) {
   ray.direction[2] += ray.direction[0] == 0.0 && ray.direction[1] == 0.0 ? 100.0 : 0.0;
   ray.max_t = kInfinity;
   SceneHit hit;
-  WINNOW_REQUIRE(queries.closest(ray, hit) == Status::ok);
+  WINNOW_REQUIRE(queries.closest(ray).get(hit) == Status::ok);
   double first = kInfinity;
   for (const TriangleShape& triangle : triangles_) {
     ShapeTables tables = shapes_.tables();
     tables.triangles = &triangle;
     tables.count[static_cast<std::size_t>(ShapeKind::triangle)] = 1;
     ShapeHit one;
-    WINNOW_REQUIRE(cast_ray(tables, ShapeId::of(ShapeKind::triangle, 0), pose, ray, one) ==
+    WINNOW_REQUIRE(cast_ray(tables, ShapeId::of(ShapeKind::triangle, 0), pose, ray).get(one) ==
                    Status::ok);
     if (one.hit) first = std::min(first, one.t);
   }
@@ -229,8 +230,9 @@ void Exhibit::query_ray(Bytes& bytes, SceneQueries& queries, const Pose& pose) {
 
 void Exhibit::query_shape(Bytes& bytes, SceneQueries& queries, Key body, const Pose& pose) {
   ShapeId box;
-  WINNOW_REQUIRE(shapes_.add(BoxShape{{bytes.extent(), bytes.extent(), bytes.extent()}, 0.0},
-                             box) == Status::ok);
+  WINNOW_REQUIRE(
+      shapes_.add(BoxShape{{bytes.extent(), bytes.extent(), bytes.extent()}, 0.0}).get(box) ==
+      Status::ok);
   const Pose at = bytes.pose();
   ShapeTables tables = shapes_.tables();
   tables.triangles = triangles_.data();
@@ -251,7 +253,7 @@ void Exhibit::query_shape(Bytes& bytes, SceneQueries& queries, Key body, const P
   const auto truth = std::any_of(result.distance().begin(), result.distance().end(),
                                  [](double distance) { return distance <= 0.0; });
   std::span<const SceneOverlap> found;
-  WINNOW_REQUIRE(queries.overlap(box, at, found) == Status::ok);
+  WINNOW_REQUIRE(queries.overlap(box, at).get(found) == Status::ok);
   WINNOW_REQUIRE(truth == !found.empty() && (found.empty() || found[0].key == body));
   WINNOW_REQUIRE(shapes_.remove(box) == Status::ok);
 }
@@ -264,7 +266,7 @@ void Exhibit::query(Bytes& bytes) {
   Scene scene(shapes_, {.composites = &composites_});
   const Pose pose = bytes.pose();
   Key body;
-  WINNOW_REQUIRE(scene.add({.shape = id_, .pose = pose}, body) == Status::ok);
+  WINNOW_REQUIRE(scene.add({.shape = id_, .pose = pose}).get(body) == Status::ok);
   WINNOW_REQUIRE(scene.refresh() == Status::ok);
   SceneQueries queries(scene);
   query_ray(bytes, queries, pose);

@@ -166,7 +166,7 @@ void ContactsProgram::add(Bytes& bytes) {
         bytes.chance(3) ? static_cast<BodyState>(bytes.below(3)) : BodyState::dynamic;
     body.definition.data = named_++;
     body.definition.offsets = some_offsets(bytes);
-    WINNOW_REQUIRE(scene_->add(body.definition, body.key) == Status::ok);
+    WINNOW_REQUIRE(scene_->add(body.definition).get(body.key) == Status::ok);
     world_.bodies.emplace(body.definition.data, body);
   }
 }
@@ -329,7 +329,7 @@ void ContactsProgram::load() {
   world_.layers_apart = from.world.layers_apart;
   for (const auto& [data, body] : world_.bodies) {
     BodyDefinition loaded;
-    WINNOW_REQUIRE(scene_->body(body.key, loaded) == Status::ok && loaded.data == data);
+    WINNOW_REQUIRE(scene_->body(body.key).get(loaded) == Status::ok && loaded.data == data);
   }
   for (std::size_t i = 0; i < kContacts; ++i) {
     models_[i] = from.models[i];

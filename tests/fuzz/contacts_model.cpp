@@ -176,7 +176,7 @@ void rest(ModelManifold& manifold, ContactLevel level, double rest_a, double res
     BodyDefinition definition{.shape = body->definition.shape, .pose = body->definition.pose};
     definition.offsets = body->definition.offsets;
     Key key;
-    WINNOW_REQUIRE(scene.add(definition, key) == Status::ok);
+    WINNOW_REQUIRE(scene.add(definition).get(key) == Status::ok);
   }
   Contacts contacts;
   WINNOW_REQUIRE(scene.collide(level, contacts) == Status::ok);
@@ -317,7 +317,7 @@ class WholeScene {
     for (const auto& [data, body] : world.bodies) by_id[body.key.id] = &body;
     for (const auto& [id, body] : by_id) {
       Key key;
-      WINNOW_REQUIRE(scene_.add(body->definition, key) == Status::ok);
+      WINNOW_REQUIRE(scene_.add(body->definition).get(key) == Status::ok);
       keys_[body->definition.data] = key;
     }
     for (const auto& [a, b] : world.layers_apart) {

@@ -31,7 +31,7 @@ inline EveryShape::EveryShape(Bytes& bytes) {
   };
   const auto add = [&](const auto& shape) {
     ShapeId id;
-    const Status status = pool.add(shape, id);
+    const Status status = pool.add(shape).get(id);
     take(status, id);
   };
   add(SphereShape{r});
@@ -46,23 +46,23 @@ inline EveryShape::EveryShape(Bytes& bytes) {
                                          2, 0, 5, 1, 2, 5, 3, 1, 5, 0, 3, 5};
   const std::vector<std::uint32_t> sizes(8, 3);
   ShapeId id;
-  take(pool.add_hull(corners, {loops, sizes}, 0.0, id), id);
+  take(pool.add_hull(corners, {loops, sizes}, 0.0).get(id), id);
   add(TaperedCapsuleShape{{0.5, 0.25}, r});
   convex = ids.size();
   add(HalfSpaceShape{{0, 0, 1}, 0.0});
   const CompoundChild children[] = {{ids[2], Pose::at(0.5, 0, 0)}, {ids[0], Pose::at(-0.5, 0, 0)}};
-  take(composites.add_compound(children, id), id);
+  take(composites.add_compound(children).get(id), id);
   const std::vector<Vec3f> points{{-2, -2, 0}, {2, -2, 0}, {2, 2, 0}, {-2, 2, 0.5F}};
   const std::vector<std::uint32_t> triangles{0, 1, 2, 0, 2, 3};
-  take(composites.add_mesh(std::span(points), std::span(triangles), id), id);
-  take(composites.add_scaled(ids.back(), {1.0, -0.5, 2.0}, id), id);
+  take(composites.add_mesh(std::span(points), std::span(triangles)).get(id), id);
+  take(composites.add_scaled(ids.back(), {1.0, -0.5, 2.0}).get(id), id);
   std::vector<float> heights(9);
   for (float& height : heights) height = static_cast<float>(0.25 * bytes.extent());
-  take(composites.add_height_field({heights, 3, 3, 0, {1.0, 1.0}}, id), id);
+  take(composites.add_height_field({heights, 3, 3, 0, {1.0, 1.0}}).get(id), id);
   const CompoundChild surfaces[] = {{ids.back(), Pose::at(-1, 0, 0.5)},
                                     {ids[1], Pose::at(0, 1, 0)},
                                     {ids[ids.size() - 2], Pose::at(0.5, 0, -0.5)}};
-  take(composites.add_compound(surfaces, id), id);
+  take(composites.add_compound(surfaces).get(id), id);
   WINNOW_REQUIRE(good);
 }
 

@@ -43,7 +43,7 @@ void check_features(Bytes& bytes) {
   FeatureImpactOptions options;
   if (bytes.chance(4)) options.min_separation = 0.25 * bytes.extent();
   FeatureImpact impact;
-  const Status status = feature_impact(kind, start, end, impact, options);
+  const Status status = feature_impact(kind, start, end, options).get(impact);
   WINNOW_REQUIRE(status == Status::ok || status == Status::invalid_bounds);
   WINNOW_REQUIRE(status != Status::ok || (is_finite(start) && is_finite(end)));
   constexpr std::size_t kCount = 9;

@@ -324,12 +324,13 @@ void Model::check_objects() const {
   for (const auto& [id, given] : objects_) {
     WINNOW_REQUIRE(partition_.contains(given.key) && partition_.key_of(id) == given.key);
     Aabb stored;
-    WINNOW_REQUIRE(partition_.bounds(given.key, stored) == Status::ok);
+    WINNOW_REQUIRE(partition_.bounds(given.key).get(stored) == Status::ok);
     WINNOW_REQUIRE(stored.min.min(given.box.min) == stored.min &&
                    stored.max.max(given.box.max) == stored.max);
     WINNOW_REQUIRE(partition_.client_data_of(id) == given.data);
     ObjectFilter filter;
-    WINNOW_REQUIRE(partition_.filter(given.key, filter) == Status::ok && filter == given.filter);
+    WINNOW_REQUIRE(partition_.filter(given.key).get(filter) == Status::ok &&
+                   filter == given.filter);
   }
 }
 
@@ -343,7 +344,7 @@ void Model::check_pairs(std::span<const Pair> got) const {
   const bool prunes =
       partition_.structure() != n_squared() && partition_.volume() != Volume::sphere;
   std::map<ObjectId, Aabb> stored;
-  for (const auto& [id, given] : objects_) (void)partition_.bounds(given.key, stored[id]);
+  for (const auto& [id, given] : objects_) stored[id] = partition_.bounds(given.key);
   for (auto a = objects_.begin(); a != objects_.end(); ++a) {
     for (auto b = std::next(a); b != objects_.end(); ++b) {
       const bool must = must_pair(a->second, b->second);

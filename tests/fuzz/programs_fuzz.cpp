@@ -121,8 +121,8 @@ std::vector<std::string> fuzz_seeds() {
   CompositePool composites(stage.world.pool);
   const std::vector<CompoundChild> children(3, {stage.world.shapes[2], Pose::at(1, 0, 0)});
   ShapeId id;
-  (void)composites.add_compound(children, id);
-  (void)composites.add_mesh(vertices, IndexView(std::span<const std::uint32_t>(corners)), id);
+  id = composites.add_compound(children);
+  id = composites.add_mesh(vertices, IndexView(std::span<const std::uint32_t>(corners)));
   const auto keep = [&](auto&& save) {
     saved.clear();
     (void)save(saved);

@@ -73,8 +73,8 @@ void Pairing::insert(Bytes& bytes) {
   Aabb box = bytes.box();
   for (std::size_t i = 0; i < count; ++i) {
     Key keys[2];
-    const Status status = a_.insert(box, i, keys[0]);
-    WINNOW_REQUIRE(status == b_.insert(box, i, keys[1]));
+    const Status status = a_.insert(box, i).get(keys[0]);
+    WINNOW_REQUIRE(status == b_.insert(box, i).get(keys[1]));
     WINNOW_REQUIRE((status == Status::ok) == box.is_valid());
     if (status != Status::ok) break;
     WINNOW_REQUIRE(keys[0].id == keys[1].id);
@@ -196,9 +196,9 @@ void Pairing::cast(Bytes& bytes) {
   Hit any;
   WINNOW_REQUIRE(a_.all(question, hits, filter) == Status::ok);
   WINNOW_REQUIRE(right_hits(hits.hits(), candidates(question, seen(filter)), a_));
-  WINNOW_REQUIRE(a_.closest(question, first, filter) == Status::ok);
+  WINNOW_REQUIRE(a_.closest(question, filter).get(first) == Status::ok);
   WINNOW_REQUIRE(is_first_of(first, hits.hits()));
-  WINNOW_REQUIRE(a_.any(question, any, filter) == Status::ok);
+  WINNOW_REQUIRE(a_.any(question, filter).get(any) == Status::ok);
   WINNOW_REQUIRE(is_any_of(any, hits.hits()));
   WINNOW_REQUIRE(b_.all(question, others, filter) == Status::ok);
   WINNOW_REQUIRE(std::ranges::equal(hits, others, [](const Hit& x, const Hit& y) {

@@ -263,7 +263,7 @@ void Play::check_fresh(ContactLevel level) {
                              .composites = &shapes_.composites});
   for (const auto& [key, body] : bodies_) {
     Key ignored;
-    WINNOW_REQUIRE(fresh.add(body, ignored) == Status::ok);
+    WINNOW_REQUIRE(fresh.add(body).get(ignored) == Status::ok);
   }
   Contacts contacts;
   WINNOW_REQUIRE(fresh.collide(uses_cache ? ContactLevel::distance : level, contacts) ==
@@ -319,12 +319,12 @@ void Play::query_ray(Bytes& bytes, SceneQueries& queries) {
   ray.max_t = bytes.chance(2) ? kInfinity : bytes.extent();
   SceneHit first;
   std::span<const SceneHit> all;
-  const Status status = queries.closest(ray, first);
+  const Status status = queries.closest(ray).get(first);
   if (ray.direction[0] == 0.0 && ray.direction[1] == 0.0 && ray.direction[2] == 0.0) {
     WINNOW_REQUIRE(status == Status::invalid_argument);
     return;
   }
-  WINNOW_REQUIRE(status == Status::ok && queries.all(ray, all) == Status::ok);
+  WINNOW_REQUIRE(status == Status::ok && queries.all(ray).get(all) == Status::ok);
   WINNOW_REQUIRE(all.empty() ? !first : first.key == all[0].key && first.t == all[0].t);
   std::map<Key, double, KeyOrder> hits;
   double before = 0.0;
@@ -335,7 +335,8 @@ void Play::query_ray(Bytes& bytes, SceneQueries& queries) {
   for (const auto& [key, body] : bodies_) {
     if (body.shape.is_composite()) continue;
     ShapeHit hit;
-    WINNOW_REQUIRE(cast_ray(shapes_.pool.tables(), body.shape, body.pose, ray, hit) == Status::ok);
+    WINNOW_REQUIRE(cast_ray(shapes_.pool.tables(), body.shape, body.pose, ray).get(hit) ==
+                   Status::ok);
     const auto at = hits.find(key);
     WINNOW_REQUIRE(hit.hit == (at != hits.end()));
     WINNOW_REQUIRE(!hit.hit || hit.t == at->second);
@@ -352,7 +353,7 @@ void Play::query_cast(Bytes& bytes, SceneQueries& queries) {
   if (square == 0.0) return;
   constexpr double kTolerance = 1e-6;
   SceneHit hit;
-  WINNOW_REQUIRE(queries.closest(cast, hit, {}, kTolerance) == Status::ok);
+  WINNOW_REQUIRE(queries.closest(cast, {}, kTolerance).get(hit) == Status::ok);
   // No convex body overlaps the moving shape before the hit. At the hit, the hit body, if convex,
   // is at most four tolerances away.
   for (const auto& [key, body] : bodies_) {
@@ -376,7 +377,7 @@ void Play::query_overlap(Bytes& bytes, SceneQueries& queries) {
   const ShapeId shape = shapes_.ids[bytes.below(shapes_.ids.size())];
   const Pose pose = some_pose(bytes);
   std::span<const SceneOverlap> found;
-  WINNOW_REQUIRE(queries.overlap(shape, pose, found) == Status::ok);
+  WINNOW_REQUIRE(queries.overlap(shape, pose).get(found) == Status::ok);
   WINNOW_REQUIRE(std::is_sorted(found.begin(), found.end(),
                                 [](const auto& a, const auto& b) { return a.key.id < b.key.id; }));
   if (shape.is_composite()) return;
@@ -394,7 +395,7 @@ void Play::query_distance(SceneQueries& queries) {
   const auto& [a, body_a] = *bodies_.begin();
   const auto& [b, body_b] = *bodies_.rbegin();
   SceneDistance answer;
-  WINNOW_REQUIRE(queries.distance(a, b, answer, kInfinity, PairRules::none) == Status::ok);
+  WINNOW_REQUIRE(queries.distance(a, b, kInfinity, PairRules::none).get(answer) == Status::ok);
   if (body_a.shape.is_composite() || body_b.shape.is_composite()) return;
   const double truth = distance(body_a.shape, body_a.pose, body_b.shape, body_b.pose);
   WINNOW_REQUIRE(answer.distance == truth ||

@@ -85,7 +85,7 @@ Status Workshop::add_faces(Bytes& bytes, ShapeId& id) {
         if (sizes.size() > 1) sizes.pop_back();
     }
   }
-  return pool_.add_hull(points, {loops, sizes}, size_ * bytes.extent(), id);
+  return pool_.add_hull(points, {loops, sizes}, size_ * bytes.extent()).get(id);
 }
 
 /// Sets `good` to whether the shape must be accepted, if that is clear.
@@ -98,36 +98,36 @@ Status Workshop::add_kind(Bytes& bytes, ShapeId& id, bool& good) {
   switch (bytes.below(11)) {
     case 0:
       good = is_length(a);
-      return pool_.add(SphereShape{a}, id);
+      return pool_.add(SphereShape{a}).get(id);
     case 1:
       good = is_length(a) && is_length(b);
-      return pool_.add(CapsuleShape{a, b}, id);
+      return pool_.add(CapsuleShape{a, b}).get(id);
     case 2:
       good = is_length(a) && is_length(b) && is_length(c) && is_length(r);
-      return pool_.add(BoxShape{{a, b, c}, r}, id);
+      return pool_.add(BoxShape{{a, b, c}, r}).get(id);
     case 3:
       good = is_length(a) && is_length(b) && is_length(r);
-      return pool_.add(CylinderShape{a, b, r}, id);
+      return pool_.add(CylinderShape{a, b, r}).get(id);
     case 4:
       good = is_length(a) && is_length(b) && is_length(r);
-      return pool_.add(ConeShape{a, b, r}, id);
+      return pool_.add(ConeShape{a, b, r}).get(id);
     case 5:
       good = finite && is_length(r);
-      return pool_.add(TriangleShape{{{a, b, c}, {b, -c, a}, {-c, a, 0.0}}, r}, id);
+      return pool_.add(TriangleShape{{{a, b, c}, {b, -c, a}, {-c, a, 0.0}}, r}).get(id);
     case 6:
       good = finite && (a != 0.0 || b != 0.0 || c != 0.0);
-      return pool_.add(HalfSpaceShape{{a, b, c}, 0.0}, id);
+      return pool_.add(HalfSpaceShape{{a, b, c}, 0.0}).get(id);
     case 9:
       good = is_length(a) && is_length(b) && is_length(c) && is_length(r);
-      return pool_.add(EllipsoidShape{{a, b, c}, r}, id);
+      return pool_.add(EllipsoidShape{{a, b, c}, r}).get(id);
     case 10:
       good = is_length(a) && is_length(b) && is_length(c);
-      return pool_.add(TaperedCapsuleShape{{a, b}, c}, id);
+      return pool_.add(TaperedCapsuleShape{{a, b}, c}).get(id);
     case 7: {
       const auto given = points(bytes);
       good = !given.empty() && is_length(r) &&
              std::all_of(given.begin(), given.end(), [](auto& p) { return p.allFinite(); });
-      return pool_.add_hull(given, r, id);
+      return pool_.add_hull(given, r).get(id);
     }
     default:
       const Status status = add_faces(bytes, id);
@@ -235,7 +235,7 @@ void Workshop::check_rays(Bytes& bytes) const {
   for (double& x : ray.direction) x = bytes.grid_value();
   ray.max_t = bytes.chance(2) ? kInfinity : size_ * bytes.extent();
   ShapeHit hit;
-  const Status status = cast_ray(pool_.tables(), id, pose, ray, hit);
+  const Status status = cast_ray(pool_.tables(), id, pose, ray).get(hit);
   const bool moves = ray.direction[0] != 0.0 || ray.direction[1] != 0.0 || ray.direction[2] != 0.0;
   WINNOW_REQUIRE((status == Status::ok) == moves);
   if (status != Status::ok || !hit.hit) return;

@@ -50,7 +50,7 @@ class ClusterPlay {
     call([&] { return move(); });
     call([&] { return cluster_.collide(ContactLevel::manifold); });
     ClusterDigest digest;
-    call([&] { return cluster_.digest(digest); });
+    call([&] { return cluster_.digest().get(digest); });
     return cluster_.status() == Status::ok ? digest : ClusterDigest{};
   }
   [[nodiscard]] Status status() const { return cluster_.status(); }

@@ -8,6 +8,7 @@
 
 #include "tests/memory/refusals.h"
 #include "tests/pipeline/composite_world.h"
+#include "tests/support/answers.h"
 
 namespace winnow::test {
 namespace {
@@ -20,13 +21,11 @@ struct FewShapes {
     ids.push_back(pool.add(CapsuleShape{0.3, 0.4}));
     const Surface hills =
         grid(4, 1.0F, Cut::same, [](float x, float y) { return 0.3F * std::sin(x + 2.0F * y); });
-    ShapeId id;
-    EXPECT_EQ(composites.add_mesh(std::span<const Point>(hills.vertices),
-                                  std::span<const std::uint32_t>(hills.corners), id),
-              Status::ok);
+    ShapeId id = expect_ok(composites.add_mesh(std::span<const Point>(hills.vertices),
+                                               std::span<const std::uint32_t>(hills.corners)));
     ids.push_back(id);
     const std::vector<CompoundChild> children{{ids[0], Pose::at(0.4, 0, 0)}, {ids[1], Pose{}}};
-    EXPECT_EQ(composites.add_compound(children, id), Status::ok);
+    id = expect_ok(composites.add_compound(children));
     ids.push_back(id);
   }
 
@@ -77,7 +76,7 @@ struct MovingWorld {
     digest.insert(digest.end(), {scene.size(), sensors.size()});
     for (const Key key : keys) {
       BodyDefinition body;
-      if (scene.body(key, body) != Status::ok) continue;
+      if (scene.body(key).get(body) != Status::ok) continue;
       digest.insert(digest.end(), {body.shape.bits, body.data, body.layer});
       put(digest, body.offsets.contact);
       put(digest, body.offsets.rest);
@@ -85,7 +84,7 @@ struct MovingWorld {
     }
     for (const Key key : eyes) {
       SensorDefinition sensor;
-      if (sensors.sensor(key, sensor) != Status::ok) continue;
+      if (sensors.sensor(key).get(sensor) != Status::ok) continue;
       digest.insert(digest.end(), {sensor.shape.bits, sensor.data});
       put(digest, sensor.pose.position[0]);
     }
@@ -122,10 +121,11 @@ struct MovingWorld {
   }
   Status add_sensor(std::size_t i) {
     Key key;
-    const Status status = sensors.add({.shape = few_shapes().ids[i],
-                                       .pose = Pose::at(0.5 * static_cast<double>(i), 0, 0),
-                                       .data = i},
-                                      key);
+    const Status status = sensors
+                              .add({.shape = few_shapes().ids[i],
+                                    .pose = Pose::at(0.5 * static_cast<double>(i), 0, 0),
+                                    .data = i})
+                              .get(key);
     if (status == Status::ok) eyes.push_back(key);
     return status;
   }
@@ -187,28 +187,33 @@ void add_ways_and_volumes(MovingCalls& calls) {
   calls.push_back({"refresh", [](auto& w) { return w.scene.refresh(); }});
   calls.push_back({"least distance", [](auto& w) {
                      SetDistance found;
-                     const Status status = w.queries.least_distance(
-                         std::span(w.keys).first(9), std::span(w.keys).last(9), found);
+                     const Status status =
+                         w.queries
+                             .least_distance(std::span(w.keys).first(9), std::span(w.keys).last(9))
+                             .get(found);
                      if (status == Status::ok) put(w.answers, found.to.distance);
                      return status;
                    }});
-  calls.push_back({"overlaps of sets", [](auto& w) {
-                     std::span<const KeyPair> pairs;
-                     const Status status = w.queries.overlaps(std::span(w.keys).first(9),
-                                                              std::span(w.keys).last(9), pairs);
-                     if (status == Status::ok) w.answers.push_back(pairs.size());
-                     return status;
-                   }});
+  calls.push_back(
+      {"overlaps of sets", [](auto& w) {
+         std::span<const KeyPair> pairs;
+         const Status status =
+             w.queries.overlaps(std::span(w.keys).first(9), std::span(w.keys).last(9)).get(pairs);
+         if (status == Status::ok) w.answers.push_back(pairs.size());
+         return status;
+       }});
   calls.push_back({"any contact of sets", [](auto& w) {
                      KeyPair pair;
-                     const Status status = w.queries.any_contact(
-                         std::span(w.keys).first(9), std::span(w.keys).last(9), pair, 0.5);
+                     const Status status = w.queries
+                                               .any_contact(std::span(w.keys).first(9),
+                                                            std::span(w.keys).last(9), 0.5)
+                                               .get(pair);
                      if (status == Status::ok) w.answers.push_back(pair.first.id);
                      return status;
                    }});
   calls.push_back({"any contact", [](auto& w) {
                      KeyPair pair;
-                     const Status status = w.queries.any_contact(pair, 0.5);
+                     const Status status = w.queries.any_contact(0.5).get(pair);
                      if (status == Status::ok) w.answers.push_back(pair.first.id);
                      return status;
                    }});

@@ -55,7 +55,7 @@ struct ShapeWorld {
   }
   template <typename Shape>
   Status add(const Shape& shape) {
-    return keep([&](ShapeId& id) { return shapes.add(shape, id); });
+    return keep([&](ShapeId& id) { return shapes.add(shape).get(id); });
   }
   Status remove(std::size_t i) {
     const ShapeId id = ids[i];
@@ -121,24 +121,26 @@ void add_shapes(ShapeCalls& calls) {
          const std::vector<std::uint32_t> loops{0, 2, 1, 0, 1, 3, 1, 2, 3, 0, 3, 2};
          const std::vector<std::uint32_t> sizes(4, 3);
          return w.keep([&](ShapeId& id) {
-           return w.shapes.add_hull(corners, {loops, sizes}, 0.0, id);
+           return w.shapes.add_hull(corners, {loops, sizes}, 0.0).get(id);
          });
        }});
   calls.push_back({"hull of points", [](auto& w) {
-                     return w.keep(
-                         [&](ShapeId& id) { return w.shapes.add_hull(ball_of_points(), 0.1, id); });
+                     return w.keep([&](ShapeId& id) {
+                       return w.shapes.add_hull(ball_of_points(), 0.1).get(id);
+                     });
                    }});
 }
 
 void add_composites(ShapeCalls& calls) {
-  calls.push_back({"mesh", [](auto& w) {
-                     return w.keep([&](ShapeId& id) {
-                       return w.composites.add_mesh(points_of(hills(0)), corners_of(hills(0)), id);
-                     });
-                   }});
+  calls.push_back(
+      {"mesh", [](auto& w) {
+         return w.keep([&](ShapeId& id) {
+           return w.composites.add_mesh(points_of(hills(0)), corners_of(hills(0))).get(id);
+         });
+       }});
   calls.push_back({"scaled mesh", [](auto& w) {
                      return w.keep([&](ShapeId& id) {
-                       return w.composites.add_scaled(w.ids.back(), {1, -2, 3}, id);
+                       return w.composites.add_scaled(w.ids.back(), {1, -2, 3}).get(id);
                      });
                    }});
   calls.push_back({"refit of a mesh", [](auto& w) {
@@ -148,11 +150,11 @@ void add_composites(ShapeCalls& calls) {
                      std::vector<CompoundChild> children;
                      for (int i = 0; i < 20; ++i) children.push_back({w.ids[2], Pose::at(i, 0, 0)});
                      return w.keep(
-                         [&](ShapeId& id) { return w.composites.add_compound(children, id); });
+                         [&](ShapeId& id) { return w.composites.add_compound(children).get(id); });
                    }});
   calls.push_back({"height field", [](auto& w) {
                      return w.keep([&](ShapeId& id) {
-                       return w.composites.add_height_field({some_heights(), 3, 3}, id);
+                       return w.composites.add_height_field({some_heights(), 3, 3}).get(id);
                      });
                    }});
   calls.push_back(
@@ -326,7 +328,7 @@ struct WholeWorld {
       const Key key = scene.key_of(id);
       BodyDefinition body;
       digest.push_back(key.id);
-      if (scene.body(key, body) != Status::ok) continue;
+      if (scene.body(key).get(body) != Status::ok) continue;
       digest.insert(digest.end(), {body.shape.bits, static_cast<std::uint64_t>(body.state),
                                    body.filter.layers, body.data});
       for (const double x : body.pose.position) put(digest, x);
@@ -418,27 +420,27 @@ void add_scene_queries(SceneCalls& calls) {
   static constexpr ShapeRay kRay{{-6, 0.1, 0.2}, {1, 0.02, 0.01}, 100.0};
   calls.push_back({"closest hit", [](auto& w) {
                      SceneHit hit;
-                     const Status status = w.queries.closest(kRay, hit);
+                     const Status status = w.queries.closest(kRay).get(hit);
                      if (status == Status::ok) w.answer(hit);
                      return status;
                    }});
   calls.push_back({"all hits", [](auto& w) {
                      std::span<const SceneHit> hits;
-                     const Status status = w.queries.all(kRay, hits);
+                     const Status status = w.queries.all(kRay).get(hits);
                      for (const SceneHit& hit : hits) w.answer(hit);
                      return status;
                    }});
   calls.push_back({"hits of many rays", [](auto& w) {
                      const std::vector<ShapeRay> rays(20, kRay);
                      SceneHitLists lists;
-                     const Status status = w.queries.all(ShapeRayBatch(rays), lists);
+                     const Status status = w.queries.all(ShapeRayBatch(rays)).get(lists);
                      for (const SceneHit& hit : lists.hits) w.answer(hit);
                      return status;
                    }});
   calls.push_back({"moving shape", [](auto& w) {
                      std::span<const SceneHit> hits;
                      const ShapeCast cast{w.world.ids[2], Pose::at(-6, 0, 0), {12, 0, 0}, 1.0};
-                     const Status status = w.queries.all(cast, hits);
+                     const Status status = w.queries.all(cast).get(hits);
                      for (const SceneHit& hit : hits) w.answer(hit);
                      return status;
                    }});
@@ -446,26 +448,26 @@ void add_scene_queries(SceneCalls& calls) {
       {"turning shape", [](auto& w) {
          std::span<const SceneHit> hits;
          const MotionCast cast{w.world.ids[2], {Pose::at(-6, 0, 0), {12, 1, 1}, {0, 3, 0}}};
-         const Status status = w.queries.all(cast, hits);
+         const Status status = w.queries.all(cast).get(hits);
          for (const SceneHit& hit : hits) w.answer(hit);
          return status;
        }});
   calls.push_back({"overlap", [](auto& w) {
                      std::span<const SceneOverlap> found;
-                     const Status status = w.queries.overlap(w.world.ids[9], Pose{}, found);
+                     const Status status = w.queries.overlap(w.world.ids[9], Pose{}).get(found);
                      for (const SceneOverlap& one : found) w.answers.push_back(one.key.id);
                      return status;
                    }});
   calls.push_back({"distance", [](auto& w) {
                      SceneDistance gap;
-                     const Status status = w.queries.distance(w.keys[1], w.keys[12], gap);
+                     const Status status = w.queries.distance(w.keys[1], w.keys[12]).get(gap);
                      if (status == Status::ok) put(w.answers, gap.distance);
                      return status;
                    }});
   calls.push_back({"nearest", [](auto& w) {
                      const double from[3] = {0, 0, 0};
                      std::span<const SceneDistance> found;
-                     const Status status = w.queries.nearest(from, 10, 5.0, found);
+                     const Status status = w.queries.nearest(from, 10, 5.0).get(found);
                      for (const SceneDistance& one : found) w.answers.push_back(one.key.id);
                      return status;
                    }});

@@ -70,14 +70,16 @@ struct SavedWorld {
     if (!ids.empty()) return Status::ok;
     ShapeId box;
     ShapeId hills;
-    Status status = one.shapes.add(BoxShape{{0.6, 0.5, 0.4}}, box);
+    Status status = one.shapes.add(BoxShape{{0.6, 0.5, 0.4}}).get(box);
     if (status != Status::ok) return status;
     const std::vector<Vec3d> corners{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     ShapeId hull;
-    status = one.shapes.add_hull(corners, 0.0, hull);
+    status = one.shapes.add_hull(corners, 0.0).get(hull);
     if (status == Status::ok) {
-      status = one.composites.add_mesh(std::span<const Point>(some_hills().vertices),
-                                       std::span<const std::uint32_t>(some_hills().corners), hills);
+      status = one.composites
+                   .add_mesh(std::span<const Point>(some_hills().vertices),
+                             std::span<const std::uint32_t>(some_hills().corners))
+                   .get(hills);
       if (status != Status::ok) {
         EXPECT_EQ(one.shapes.remove(hull), Status::ok);
       }

@@ -293,7 +293,7 @@ TEST_P(AutomaticChoice, concurrent_queries_during_a_switch_are_safe) {
       readers.emplace_back([&, i] {
         Aabb box;
         right[i] = p.size() == count && p.contains(scene.keys[i]) &&
-                   p.bounds(scene.keys[i], box) == Status::ok && !scene.chosen().empty() &&
+                   p.bounds(scene.keys[i]).get(box) == Status::ok && !scene.chosen().empty() &&
                    p.footprint().total().reserved != 0 && p.self_pairs(buffers[i]) == Status::ok &&
                    box == scene.boxes[i] && right_pairs(buffers[i].pairs(), truth, true);
       });

@@ -76,7 +76,7 @@ TEST_P(Concurrency, concurrent_const_calls_are_safe) {
       const Partition& other = i % 2 == 0 ? q : p;
       statuses[i] = queried.pairs_with(other, buffers[i]);
       Aabb box;
-      if (p.bounds(keys_a[i], box) != Status::ok || !p.contains(keys_a[i]) ||
+      if (p.bounds(keys_a[i]).get(box) != Status::ok || !p.contains(keys_a[i]) ||
           p.size() != keys_a.size() || p.statistics().objects != keys_a.size() ||
           p.footprint().total().reserved == 0) {
         statuses[i] = Status::invalid_key;

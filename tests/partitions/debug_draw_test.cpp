@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/answers.h"
 #include "tests/support/counting_memory.h"
 #include "tests/support/hostile_scenes.h"
 #include "tests/support/motion.h"
@@ -102,8 +103,7 @@ class DebugDrawing : public Conformance {
     ASSERT_EQ(objects.boxes.size(), world.entries().size());
     auto drawn = objects.boxes.begin();
     for (const auto& [id, entry] : world.entries()) {
-      Aabb box;
-      ASSERT_EQ(world.partition().bounds(entry.key, box), Status::ok);
+      Aabb box = expect_ok(world.partition().bounds(entry.key));
       ASSERT_EQ(drawn->box, box) << "object " << id;
       ASSERT_EQ(drawn->colour, kObjectColour);
       ++drawn;

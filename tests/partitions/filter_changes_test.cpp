@@ -5,6 +5,7 @@
 #include <array>
 #include <utility>
 
+#include "tests/support/answers.h"
 #include "tests/support/motion.h"
 #include "tests/support/scenes.h"
 #include "tests/support/world.h"
@@ -91,8 +92,8 @@ class FilterChanges : public Conformance {
         Key key;
         Hit hit;
         if (!filters_allow(filter.object(), entry.filter)) continue;
-        ASSERT_EQ(single.insert(entry.box, 0, key), Status::ok);
-        ASSERT_EQ(single.closest(Cast(ray), hit), Status::ok);
+        key = expect_ok(single.insert(entry.box, 0));
+        hit = expect_ok(single.closest(Cast(ray)));
         if (hit) expected.push_back(id);
       }
       ASSERT_EQ(world_.partition().all(Cast(ray), hits, filter), Status::ok);
@@ -100,8 +101,7 @@ class FilterChanges : public Conformance {
       for (const Hit& hit : hits.hits()) found.push_back(hit.key.id);
       std::ranges::sort(found);
       ASSERT_EQ(found, expected);
-      Hit closest;
-      ASSERT_EQ(world_.partition().closest(Cast(ray), closest, filter), Status::ok);
+      Hit closest = expect_ok(world_.partition().closest(Cast(ray), filter));
       ASSERT_EQ(closest, hits.hits().empty() ? Hit{} : hits.hits().front());
     }
   }

@@ -8,6 +8,7 @@
 #include <limits>
 #include <vector>
 
+#include "tests/support/answers.h"
 #include "tests/support/scenes.h"
 
 namespace winnow::test {
@@ -30,7 +31,7 @@ struct PartitionAndReference {
     other_keys.resize(boxes.count);
     ASSERT_EQ(batched.insert(boxes, {}, keys), Status::ok);
     for (std::size_t i = 0; i < boxes.count; ++i) {
-      ASSERT_EQ(single.insert(boxes[i], 0, other_keys[i]), Status::ok);
+      other_keys[i] = expect_ok(single.insert(boxes[i], 0));
     }
   }
 

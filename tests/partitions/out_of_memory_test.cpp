@@ -97,7 +97,7 @@ TEST_P(OutOfMemory, refused_single_insert_changes_nothing) {
   for (const Aabb& box : boxes) {
     Key key;
     memory_.refuse_after(0);
-    const Status status = world_.partition().insert(box, 1, key);
+    const Status status = world_.partition().insert(box, 1).get(key);
     memory_.grant_all();
     if (status == Status::ok) {
       ASSERT_EQ(world_.partition().remove(key), Status::ok);

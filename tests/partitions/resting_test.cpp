@@ -10,6 +10,7 @@
 #include <limits>
 #include <optional>
 
+#include "tests/support/answers.h"
 #include "tests/support/counting_memory.h"
 #include "tests/support/platform.h"
 #include "tests/support/random.h"
@@ -232,7 +233,7 @@ TEST_P(RestingScenes, every_query_reads_the_current_boxes) {
       case 3: {
         Hit hit;
         const Aabb box = world_->entries().at(keys_[3].id).box;
-        ASSERT_EQ(partition.closest(Ray{box.min, {1, 0, 0}}, hit), Status::ok);
+        hit = expect_ok(partition.closest(Ray{box.min, {1, 0, 0}}));
         EXPECT_EQ(hit.t, 0.0F);
         break;
       }
@@ -450,8 +451,7 @@ TEST_P(RestingScenes, steady_frames_with_queries_do_not_allocate) {
   const auto play = [&] {
     jitter_all(1e-5F);
     ASSERT_EQ(world_->self_pairs(buffer), Status::ok);
-    Hit hit;
-    ASSERT_EQ(world_->partition().closest(Ray{{-5, 2, 2}, {1, 0, 0}}, hit), Status::ok);
+    expect_ok(world_->partition().closest(Ray{{-5, 2, 2}, {1, 0, 0}}));
   };
   for (int frame = 0; frame < 12; ++frame) play();
   const std::size_t requests = memory_.requests() + results_.requests();
@@ -472,11 +472,9 @@ TEST_P(RestingScenes, concurrent_queries_are_safe) {
     for (std::size_t i = 0; i < buffers.size(); ++i) {
       readers.emplace_back([&, i] {
         EXPECT_EQ(partition.self_pairs(buffers[i]), Status::ok);
-        Aabb box;
-        EXPECT_EQ(partition.bounds(keys_[i], box), Status::ok);
+        Aabb box = expect_ok(partition.bounds(keys_[i]));
         EXPECT_EQ(box, world_->entries().at(keys_[i].id).box);
-        Hit hit;
-        EXPECT_EQ(partition.closest(Ray{box.min, {1, 0, 0}}, hit), Status::ok);
+        Hit hit = expect_ok(partition.closest(Ray{box.min, {1, 0, 0}}));
         EXPECT_EQ(hit.t, 0.0F);
         (void)partition.footprint();
       });

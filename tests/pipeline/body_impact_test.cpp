@@ -14,6 +14,7 @@
 #include "pipeline/motion/relative_motion_bounds.h"
 #include "pipeline/solver/solver.h"
 #include "tests/pipeline/motion_reference.h"
+#include "tests/support/answers.h"
 #include "tests/support/meshes.h"
 
 namespace winnow::test {
@@ -58,8 +59,7 @@ class ReferenceShapes {
  private:
   template <typename Shape>
   ShapeId added(const Shape& shape) {
-    ShapeId id;
-    EXPECT_EQ(pool.add(shape, id), Status::ok);
+    ShapeId id = expect_ok(pool.add(shape));
     return id;
   }
   void put(ShapeId id, std::vector<ReferencePart> parts) {
@@ -69,8 +69,8 @@ class ReferenceShapes {
   void add_mesh(const MeshData& mesh, const std::array<double, 3>& scale) {
     ShapeId id;
     ShapeId scaled;
-    ASSERT_EQ(composites.add_mesh(mesh.points(), mesh.indices(), id), Status::ok);
-    ASSERT_EQ(composites.add_scaled(id, scale, scaled), Status::ok);
+    id = expect_ok(composites.add_mesh(mesh.points(), mesh.indices()));
+    scaled = expect_ok(composites.add_scaled(id, scale));
     std::vector<ReferencePart> parts;
     for (std::size_t i = 0; i < mesh.triangles(); ++i) {
       TriangleShape triangle;
@@ -88,7 +88,7 @@ class ReferenceShapes {
     const float heights[] = {0, 0.5F, 0, 1, 0.2F, 0, 0.7F, 0, 0, 1, 0.1F, 0.4F, 0, 0, 0.3F, 0};
     ShapeId id;
     const HeightSamples samples{.heights = heights, .columns = 4, .rows = 4};
-    ASSERT_EQ(composites.add_height_field(samples, id), Status::ok);
+    id = expect_ok(composites.add_height_field(samples));
     const HeightField& field = *composites.height_field(id);
     std::vector<ReferencePart> parts;
     for (std::uint32_t i = 0; i < field.triangles(); ++i) {
@@ -110,8 +110,7 @@ class ReferenceShapes {
         {added(CylinderShape{0.3, 0.2}), at(-1, 0.5, 0.3, -2)},
         {added(ConeShape{0.2, 0.4}), at(0, -0.7, 0.9, 0.5)},
         {added(TriangleShape{{{0, 0, 0}, {0, 1, 0}, {0, 0, 1}}}), at(0.5, 0.5, 0.5, 1)}};
-    ShapeId id;
-    ASSERT_EQ(composites.add_compound(children, id), Status::ok);
+    ShapeId id = expect_ok(composites.add_compound(children));
     std::vector<ReferencePart> parts;
     for (const CompoundChild& child : children) parts.push_back({child.shape, child.pose});
     put(id, std::move(parts));
@@ -126,8 +125,7 @@ class ReferenceShapes {
     const ShapeId ball = added(SphereShape{0.3});
     const CompoundChild children[] = {
         {mesh.shape, poses[0]}, {ball, poses[1]}, {field.shape, poses[2]}};
-    ShapeId id;
-    ASSERT_EQ(composites.add_compound(children, id), Status::ok);
+    ShapeId id = expect_ok(composites.add_compound(children));
     std::vector<ReferencePart> parts;
     for (const ReferencePart& part : mesh.parts) parts.push_back({part.shape, poses[0]});
     parts.push_back({ball, poses[1]});
@@ -303,10 +301,10 @@ TEST(BodyImpact, overlapping_parts_hit_at_zero_with_deepest_part) {
   CompositePool composites(pool);
   ShapeId ball;
   ShapeId compound;
-  ASSERT_EQ(pool.add(SphereShape{1.0}, ball), Status::ok);
+  ball = expect_ok(pool.add(SphereShape{1.0}));
   const CompoundChild children[3] = {
       {ball, Pose::at(-3, 0, 0)}, {ball, Pose::at(0, 0, 0)}, {ball, Pose::at(1, 0, 0)}};
-  ASSERT_EQ(composites.add_compound(children, compound), Status::ok);
+  compound = expect_ok(composites.add_compound(children));
   const ShapeId shapes[2] = {compound, ball};
   const RigidMotion motions[2] = {RigidMotion::stationary(Pose::at(0, 0, 0)),
                                   {Pose::at(2.5, 0, 0), {1, 0, 0}, {0, 0, 3}}};
@@ -332,8 +330,8 @@ TEST(BodyImpact, point_at_shared_edge_or_vertex_hits_mesh) {
   const MeshData hills = terrain(6);
   ShapeId mesh;
   ShapeId point;
-  ASSERT_EQ(composites.add_mesh(hills.points(), hills.indices(), mesh), Status::ok);
-  ASSERT_EQ(pool.add(SphereShape{0.0}, point), Status::ok);
+  mesh = expect_ok(composites.add_mesh(hills.points(), hills.indices()));
+  point = expect_ok(pool.add(SphereShape{0.0}));
   const ShapeId shapes[2] = {mesh, point};
   constexpr BodyPair kPair[1] = {{0, 1}};
   Random random(83);

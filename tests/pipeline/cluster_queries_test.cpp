@@ -13,6 +13,7 @@
 #include "pipeline/cluster/regions.h"
 #include "tests/pipeline/cluster_scene_world.h"
 #include "tests/pipeline/cluster_world.h"
+#include "tests/support/answers.h"
 #include "tests/support/random.h"
 
 namespace winnow::test {
@@ -141,8 +142,7 @@ TEST(ClusterRays, hits_match_one_scene) {
     for (std::uint32_t rank = 0; rank < ranks; ++rank) {
       EXPECT_EQ(answers[rank], Status::ok);
       for (std::size_t i = 0; i < rays[rank].size(); ++i) {
-        SceneHit hit;
-        ASSERT_EQ(one.closest(rays[rank][i], hit, batches[rank].filter), Status::ok);
+        SceneHit hit = expect_ok(one.closest(rays[rank][i], batches[rank].filter));
         const std::span<const SceneHit> hits(&hit, hit ? 1 : 0);
         expect_answers(queries.hits(rank), i, flat_of_all(hits));
       }
@@ -151,8 +151,7 @@ TEST(ClusterRays, hits_match_one_scene) {
     ASSERT_EQ(queries.any(batches, answers), Status::ok);
     for (std::uint32_t rank = 0; rank < ranks; ++rank) {
       for (std::size_t i = 0; i < rays[rank].size(); ++i) {
-        std::span<const SceneHit> hits;
-        ASSERT_EQ(one.all(rays[rank][i], hits, batches[rank].filter), Status::ok);
+        std::span<const SceneHit> hits = expect_ok(one.all(rays[rank][i], batches[rank].filter));
         expect_answers(queries.hits(rank), i, flat_of_all(hits));
         EXPECT_EQ(queries.blocked(rank)[i] != 0, !hits.empty());
       }
@@ -208,10 +207,8 @@ TEST(ClusterOverlaps, overlaps_match_one_scene) {
     for (std::uint32_t rank = 0; rank < ranks; ++rank) {
       EXPECT_EQ(answers[rank], Status::ok);
       for (std::size_t i = 0; i < probes[rank].size(); ++i) {
-        std::span<const SceneOverlap> bodies;
-        ASSERT_EQ(
-            one.overlap(probes[rank][i].shape, probes[rank][i].pose, bodies, batches[rank].filter),
-            Status::ok);
+        std::span<const SceneOverlap> bodies = expect_ok(
+            one.overlap(probes[rank][i].shape, probes[rank][i].pose, batches[rank].filter));
         expect_answers(queries.overlaps(rank), i, flat_of_all(bodies));
       }
     }
@@ -237,9 +234,8 @@ TEST(ClusterNeighbours, neighbours_match_one_scene) {
       EXPECT_EQ(answers[rank], Status::ok);
       for (std::size_t i = 0; i < probes[rank].size(); ++i) {
         const NearestProbe& probe = probes[rank][i];
-        std::span<const SceneDistance> bodies;
-        ASSERT_EQ(one.nearest(probe.point, probe.count, probe.radius, bodies, batches[rank].filter),
-                  Status::ok);
+        std::span<const SceneDistance> bodies =
+            expect_ok(one.nearest(probe.point, probe.count, probe.radius, batches[rank].filter));
         expect_answers(queries.neighbours(rank), i, flat_of_all(bodies));
       }
     }
@@ -308,7 +304,7 @@ TEST(ClusterSceneFaults, transport_failure_fails_every_later_call) {
     Status status = cluster.replicate({std::span(&ground_name, 1), std::span(&ground, 1)});
     if (status == Status::ok) status = cluster.add(batches, answers);
     if (status == Status::ok) status = cluster.collide(ContactLevel::manifold);
-    if (status == Status::ok) status = cluster.digest(digest);
+    if (status == Status::ok) status = cluster.digest().get(digest);
     if (status == Status::ok) status = queries.closest(rays, answers);
     if (status == Status::ok) status = cluster.restore(nothing, answers);
     if (status == Status::ok) {

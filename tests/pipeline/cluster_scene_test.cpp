@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tests/pipeline/cluster_scene_world.h"
+#include "tests/support/answers.h"
 #include "tests/support/random.h"
 
 namespace winnow::test {
@@ -73,8 +74,7 @@ TEST(ClusterContacts, digest_matches_one_scene) {
     world.add(scaled(120), 6.0, random);
     world.restart(ranks);
     world.check(ContactLevel::manifold);
-    ClusterDigest digest;
-    ASSERT_EQ(world.cluster().digest(digest), Status::ok);
+    ClusterDigest digest = expect_ok(world.cluster().digest());
     if (ranks == 1) {
       first = digest;
       EXPECT_EQ(digest, digest_of(world.cluster().contacts(0)));
@@ -82,7 +82,7 @@ TEST(ClusterContacts, digest_matches_one_scene) {
     EXPECT_EQ(digest, first);
     world.move(1.0, 1e-6, random);
     world.check(ContactLevel::manifold);
-    ASSERT_EQ(world.cluster().digest(digest), Status::ok);
+    digest = expect_ok(world.cluster().digest());
     EXPECT_NE(digest, first);
   }
 }
@@ -251,8 +251,7 @@ TEST(ClusterSceneInput, bad_input_fails_only_on_its_rank) {
     EXPECT_EQ(cluster.remove(rank, fresh), Status::invalid_key);
     if (rank == owner) continue;
     EXPECT_EQ(cluster.remove(rank, std::span(&there, 1)), Status::invalid_key);
-    Key foreign;
-    ASSERT_EQ(cluster.key_of(owner, there, foreign), Status::ok);
+    Key foreign = expect_ok(cluster.key_of(owner, there));
     EXPECT_EQ(cluster.move(rank, std::span(&foreign, 1), std::span(poses).first(1)),
               Status::invalid_key);
   }

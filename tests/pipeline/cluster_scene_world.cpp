@@ -11,6 +11,7 @@
 #include <memory>
 
 #include "pipeline/shapes/pair_order.h"
+#include "tests/support/answers.h"
 #include "tests/support/meshes.h"
 
 namespace winnow::test {
@@ -30,25 +31,25 @@ WorldShapes::WorldShapes() {
     EXPECT_EQ(status, Status::ok);
     ids.push_back(id);
   };
-  for (const double radius : {0.5, 0.7}) keep(shapes.add(SphereShape{radius}, id), movable);
-  keep(shapes.add(CapsuleShape{0.3, 0.5}, id), movable);
-  keep(shapes.add(BoxShape{{0.5, 0.4, 0.6}}, id), movable);
-  keep(shapes.add(BoxShape{{0.9, 0.2, 0.3}}, id), movable);
-  keep(shapes.add(CylinderShape{0.4, 0.5}, id), movable);
+  for (const double radius : {0.5, 0.7}) keep(shapes.add(SphereShape{radius}).get(id), movable);
+  keep(shapes.add(CapsuleShape{0.3, 0.5}).get(id), movable);
+  keep(shapes.add(BoxShape{{0.5, 0.4, 0.6}}).get(id), movable);
+  keep(shapes.add(BoxShape{{0.9, 0.2, 0.3}}).get(id), movable);
+  keep(shapes.add(CylinderShape{0.4, 0.5}).get(id), movable);
   const std::vector<Vec3d> points{{0.5, 0, 0},  {-0.5, 0, 0}, {0, 0.6, 0},
                                   {0, -0.6, 0}, {0, 0, 0.7},  {0.3, 0.3, -0.5}};
-  keep(shapes.add_hull(PointView(points), 0.0, id), movable);
+  keep(shapes.add_hull(PointView(points), 0.0).get(id), movable);
   const CompoundChild cross[] = {{movable[3], Pose::at(0.4, 0, 0)},
                                  {movable[0], Pose::at(-0.4, 0, 0)}};
-  keep(composites.add_compound(cross, id), movable);
-  keep(shapes.add(HalfSpaceShape{}, id), ground);
+  keep(composites.add_compound(cross).get(id), movable);
+  keep(shapes.add(HalfSpaceShape{}).get(id), ground);
   const MeshData hills = terrain(8);
-  keep(composites.add_mesh(hills.points(), hills.indices(), id), ground);
+  keep(composites.add_mesh(hills.points(), hills.indices()).get(id), ground);
   std::vector<float> heights;
   for (int i = 0; i < 64; ++i) heights.push_back(static_cast<float>(i % 5) * 0.2F);
-  keep(composites.add_height_field({heights, 8, 8}, id), ground);
+  keep(composites.add_height_field({heights, 8, 8}).get(id), ground);
   const CompoundChild fence[] = {{movable[4], Pose::at(0, 0, 1)}, {movable[2], Pose::at(2, 0, 1)}};
-  keep(composites.add_compound(fence, id), ground);
+  keep(composites.add_compound(fence).get(id), ground);
 }
 
 std::vector<FlatContact> flattened(const Contacts& contacts) {
@@ -196,8 +197,7 @@ void ClusterSceneWorld::follow() {
   ASSERT_EQ(bodies, bodies_.size());
   ASSERT_EQ(owners_.size(), bodies_.size());
   for (const auto& [name, rank] : owners_) {
-    BodyDefinition body;
-    ASSERT_EQ(cluster_->body(rank, name, body), Status::ok);
+    BodyDefinition body = expect_ok(cluster_->body(rank, name));
     ASSERT_EQ(body.data, name);
     ASSERT_EQ(body.filter, bodies_.at(name).filter);
   }
@@ -219,8 +219,7 @@ std::unique_ptr<Scene> ClusterSceneWorld::one_scene() const {
   all.insert(ground_.begin(), ground_.end());
   auto scene = std::make_unique<Scene>(shapes_.shapes, options_.scene);
   for (const auto& [name, body] : all) {
-    Key key;
-    EXPECT_EQ(scene->add(body, key), Status::ok);
+    expect_ok(scene->add(body));
   }
   return scene;
 }

@@ -12,6 +12,7 @@
 #include "pipeline/cluster/name_table.h"
 #include "pipeline/cluster/regions.h"
 #include "tests/pipeline/cluster_world.h"
+#include "tests/support/answers.h"
 #include "tests/support/random.h"
 #include "tests/support/scenes.h"
 
@@ -194,7 +195,7 @@ TEST(ClusterInput, keys_wrapping_past_greatest_id_are_refused) {
   ASSERT_EQ(add_on(cluster, 0, names, std::span(boxes).first(3)), Status::ok);
   std::vector<Key> keys(4);  // a null key, then the keys with ids 0, 1 and 2
   for (std::size_t i = 0; i < 3; ++i) {
-    ASSERT_EQ(cluster.key_of(0, names[i], keys[1 + i]), Status::ok);
+    keys[1 + i] = expect_ok(cluster.key_of(0, names[i]));
     ASSERT_EQ(keys[1 + i].id, i);
   }
   EXPECT_EQ(cluster.move(0, std::span<const Key>(keys), BoxView(boxes)), Status::invalid_key);
@@ -253,8 +254,7 @@ TEST(ClusterPairs, adding_bodies_clears_pairs_on_all_ranks) {
     const Aabb box{Vec3f(0, 0, 0), Vec3f(1, 1, 1)};
     ASSERT_EQ(add_on(cluster, 0, std::span(&fresh, 1), std::span(&box, 1)), Status::ok);
     for (std::uint32_t rank = 0; rank < ranks; ++rank) EXPECT_TRUE(cluster.pairs(rank).empty());
-    ClusterDigest digest;
-    ASSERT_EQ(cluster.digest(digest), Status::ok);
+    ClusterDigest digest = expect_ok(cluster.digest());
     EXPECT_EQ(digest, ClusterDigest{});
   }
 }
@@ -291,8 +291,7 @@ TEST(ClusterBodies, bodies_of_three_ranks_continue_on_five) {
     EXPECT_EQ(add_on(restored, rank + 1, names, boxes), Status::ok);
   }
   ASSERT_EQ(restored.self_pairs(), Status::ok);
-  ClusterDigest digest;
-  ASSERT_EQ(restored.digest(digest), Status::ok);
+  ClusterDigest digest = expect_ok(restored.digest());
   EXPECT_EQ(digest, digest_of(world.true_pairs()));
 }
 
@@ -310,7 +309,7 @@ TEST(ClusterFaults, transport_failure_fails_every_later_call) {
     Status status = cluster.add(batches, answers);
     if (status == Status::ok) status = cluster.self_pairs();
     ClusterDigest digest;
-    if (status == Status::ok) status = cluster.digest(digest);
+    if (status == Status::ok) status = cluster.digest().get(digest);
     if (status == Status::ok) {
       ++fine;
       continue;

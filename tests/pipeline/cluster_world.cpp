@@ -1,4 +1,5 @@
 #include "tests/pipeline/cluster_world.h"
+#include "tests/support/answers.h"
 
 #include <gtest/gtest.h>
 
@@ -28,7 +29,7 @@ void ClusterWorld::add(const std::vector<Aabb>& boxes, Random& random) {
   ASSERT_EQ(cluster_.add(batches, answers), Status::ok);
   EXPECT_EQ(std::count(answers.begin(), answers.end(), Status::ok), ranks);
   for (auto& [name, placement] : placements_) {
-    ASSERT_EQ(cluster_.key_of(placement.rank, name, placement.key), Status::ok);
+    placement.key = expect_ok(cluster_.key_of(placement.rank, name));
   }
 }
 
@@ -73,8 +74,7 @@ void ClusterWorld::follow() {
   ASSERT_EQ(bodies, boxes_.size());
   ASSERT_EQ(placements_.size(), boxes_.size());
   for (const auto& [name, placement] : placements_) {
-    Key key;
-    ASSERT_EQ(cluster_.key_of(placement.rank, name, key), Status::ok);
+    Key key = expect_ok(cluster_.key_of(placement.rank, name));
     ASSERT_EQ(key, placement.key);
   }
 }
@@ -86,8 +86,7 @@ void ClusterWorld::check() {
   EXPECT_EQ(found_pairs(), expected) << cluster_.ranks() << " ranks";
   EXPECT_EQ(cluster_.statistics().pairs, expected.size());
   EXPECT_EQ(cluster_.statistics().bodies, boxes_.size());
-  ClusterDigest digest;
-  ASSERT_EQ(cluster_.digest(digest), Status::ok);
+  ClusterDigest digest = expect_ok(cluster_.digest());
   EXPECT_EQ(digest, digest_of(expected));
 }
 

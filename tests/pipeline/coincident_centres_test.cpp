@@ -10,6 +10,7 @@
 
 #include "tests/pipeline/pair_results.h"
 #include "tests/pipeline/pair_scenes.h"
+#include "tests/support/answers.h"
 #include "tests/support/random.h"
 
 namespace winnow::test {
@@ -22,8 +23,8 @@ template <typename A, typename B>
 void add_tilted_pair(const A& a, const B& b, double tilt, Random& random, PairScene& scene) {
   const auto n = static_cast<std::uint32_t>(scene.shapes.size());
   scene.shapes.resize(n + 2);
-  EXPECT_EQ(scene.pool.add(a, scene.shapes[n]), Status::ok);
-  EXPECT_EQ(scene.pool.add(b, scene.shapes[n + 1]), Status::ok);
+  scene.shapes[n] = expect_ok(scene.pool.add(a));
+  scene.shapes[n + 1] = expect_ok(scene.pool.add(b));
   Pose pose;
   scene.poses.push_back(pose);
   const double way = random.uniform(0.0, 2.0 * std::numbers::pi);

@@ -16,6 +16,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "tests/support/answers.h"
 #include "tests/support/random.h"
 
 namespace winnow::test {
@@ -81,17 +82,14 @@ inline Surface soup(Random& random, int triangles, double reach, double size) {
 }
 
 inline ShapeId add(CompositePool& pool, const Surface& surface) {
-  ShapeId id;
-  EXPECT_EQ(pool.add_mesh(std::span<const Point>(surface.vertices),
-                          std::span<const std::uint32_t>(surface.corners), id),
-            Status::ok);
+  ShapeId id = expect_ok(pool.add_mesh(std::span<const Point>(surface.vertices),
+                                       std::span<const std::uint32_t>(surface.corners)));
   return id;
 }
 
 template <typename Shape>
 ShapeId add(ShapePool& pool, const Shape& shape) {
-  ShapeId id;
-  EXPECT_EQ(pool.add(shape, id), Status::ok);
+  ShapeId id = expect_ok(pool.add(shape));
   return id;
 }
 
@@ -104,8 +102,7 @@ inline ShapeId add_octahedron(ShapePool& pool, double size) {
   const std::vector<std::uint32_t> indices{0, 2, 4, 2, 1, 4, 1, 3, 4, 3, 0, 4,
                                            2, 0, 5, 1, 2, 5, 3, 1, 5, 0, 3, 5};
   const std::vector<std::uint32_t> sizes(8, 3);
-  ShapeId id;
-  EXPECT_EQ(pool.add_hull(points, {indices, sizes}, 0.0, id), Status::ok);
+  ShapeId id = expect_ok(pool.add_hull(points, {indices, sizes}, 0.0));
   return id;
 }
 
@@ -146,11 +143,11 @@ struct CompositeWorld {
         list.push_back({ids[random.below(convex - 1)], random_pose(random, 1.5)});
       }
       ids.emplace_back();
-      EXPECT_EQ(composites.add_compound(list, ids.back()), Status::ok);
+      ids.back() = expect_ok(composites.add_compound(list));
     }
     const CompoundChild endless[] = {{ids[0], Pose{}}, {ids[7], random_pose(random, 0.5)}};
     ids.emplace_back();
-    EXPECT_EQ(composites.add_compound(endless, ids.back()), Status::ok);
+    ids.back() = expect_ok(composites.add_compound(endless));
     const ShapeId mesh = add(composites, soup(random, 150, 2.0, 0.5));
     ids.push_back(mesh);
     ids.push_back(add(composites, grid(7, 0.5F, Cut::random, [](float x, float y) {
@@ -159,14 +156,14 @@ struct CompositeWorld {
     for (const std::array<double, 3> scale :
          {std::array{-1.0, 1.0, 1.0}, std::array{0.3, 1.7, -0.9}, std::array{2.0, 2.0, 2.0}}) {
       ids.emplace_back();
-      EXPECT_EQ(composites.add_scaled(mesh, scale, ids.back()), Status::ok);
+      ids.back() = expect_ok(composites.add_scaled(mesh, scale));
     }
     std::vector<float> heights;
     for (int i = 0; i < 9 * 6; ++i)
       heights.push_back(static_cast<float>(random.uniform(-0.3, 0.5)));
     heights[17] = std::nanf("");
     ids.emplace_back();
-    EXPECT_EQ(composites.add_height_field({heights, 9, 6, 0, {0.4, 0.6}}, ids.back()), Status::ok);
+    ids.back() = expect_ok(composites.add_height_field({heights, 9, 6, 0, {0.4, 0.6}}));
     add_compounds_of_surfaces(random, mesh, heights);
   }
 
@@ -174,9 +171,9 @@ struct CompositeWorld {
   /// `ids` can be removed one by one.
   void add_compounds_of_surfaces(Random& random, ShapeId mesh, const std::vector<float>& heights) {
     ShapeId surfaces[3];
-    EXPECT_EQ(composites.add_scaled(mesh, {1.0, 1.0, 1.0}, surfaces[0]), Status::ok);
-    EXPECT_EQ(composites.add_scaled(mesh, {0.5, -0.7, 0.2}, surfaces[1]), Status::ok);
-    EXPECT_EQ(composites.add_height_field({heights, 9, 6, 0, {0.4, 0.6}}, surfaces[2]), Status::ok);
+    surfaces[0] = expect_ok(composites.add_scaled(mesh, {1.0, 1.0, 1.0}));
+    surfaces[1] = expect_ok(composites.add_scaled(mesh, {0.5, -0.7, 0.2}));
+    surfaces[2] = expect_ok(composites.add_height_field({heights, 9, 6, 0, {0.4, 0.6}}));
     for (const int children : {3, 20}) {
       std::vector<CompoundChild> list;
       for (int i = 0; i < children; ++i) {
@@ -185,7 +182,7 @@ struct CompositeWorld {
                         random_pose(random, 1.5)});
       }
       ids.emplace_back();
-      EXPECT_EQ(composites.add_compound(list, ids.back()), Status::ok);
+      ids.back() = expect_ok(composites.add_compound(list));
     }
   }
 

@@ -12,6 +12,7 @@
 
 #include "tests/pipeline/composite_world.h"
 #include "tests/pipeline/scene_world.h"
+#include "tests/support/answers.h"
 #include "tests/support/config.h"
 
 namespace winnow::test {
@@ -22,14 +23,12 @@ constexpr double kCacheTolerance = 0.1;
 /// Pairs of balls, 9 apart.
 struct Balls {
   explicit Balls(std::size_t pairs, double gap) {
-    EXPECT_EQ(shapes.add(SphereShape{0.5}, ball), Status::ok);
+    ball = expect_ok(shapes.add(SphereShape{0.5}));
     for (std::size_t i = 0; i < pairs; ++i) {
       const double y = 9.0 * static_cast<double>(i);
-      Key key;
-      EXPECT_EQ(scene.add({.shape = ball, .pose = Pose::at(-0.5 - gap / 2, y, 0)}, key),
-                Status::ok);
+      Key key = expect_ok(scene.add({.shape = ball, .pose = Pose::at(-0.5 - gap / 2, y, 0)}));
       left.push_back(key);
-      EXPECT_EQ(scene.add({.shape = ball, .pose = Pose::at(0.5 + gap / 2, y, 0)}, key), Status::ok);
+      key = expect_ok(scene.add({.shape = ball, .pose = Pose::at(0.5 + gap / 2, y, 0)}));
       right.push_back(key);
     }
   }
@@ -152,17 +151,16 @@ TEST(ContactCache, ghost_contact_of_dynamic_floor_is_reported) {
   ShapePool shapes;
   ShapeId tile;
   ShapeId ball;
-  ASSERT_EQ(shapes.add(BoxShape{{1, 1, 0.5}, 0.0}, tile), Status::ok);
-  ASSERT_EQ(shapes.add(SphereShape{0.5}, ball), Status::ok);
+  tile = expect_ok(shapes.add(BoxShape{{1, 1, 0.5}, 0.0}));
+  ball = expect_ok(shapes.add(SphereShape{0.5}));
   Scene scene(shapes, {.cache_tolerance = kCacheTolerance, .suppress_ghost_contacts = true});
   Key floor;
   Key beside;
   Key key;
-  ASSERT_EQ(scene.add({.shape = tile, .state = BodyState::fixed}, floor), Status::ok);
-  ASSERT_EQ(
-      scene.add({.shape = tile, .pose = Pose::at(2, 0, 0), .state = BodyState::fixed}, beside),
-      Status::ok);
-  ASSERT_EQ(scene.add({.shape = ball, .pose = Pose::at(0.8, 0, 0.9)}, key), Status::ok);
+  floor = expect_ok(scene.add({.shape = tile, .state = BodyState::fixed}));
+  beside =
+      expect_ok(scene.add({.shape = tile, .pose = Pose::at(2, 0, 0), .state = BodyState::fixed}));
+  key = expect_ok(scene.add({.shape = ball, .pose = Pose::at(0.8, 0, 0.9)}));
   Contacts contacts;
   ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
   ASSERT_EQ(contacts.size(), 1U);

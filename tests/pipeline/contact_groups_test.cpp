@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <set>
 
+#include "tests/support/answers.h"
 #include "tests/support/config.h"
 #include "tests/support/counting_memory.h"
 
@@ -15,8 +16,7 @@ namespace winnow::test {
 namespace {
 
 [[nodiscard]] bool is_movable(const Scene& scene, Key key) {
-  BodyDefinition body;
-  EXPECT_EQ(scene.body(key, body), Status::ok);
+  BodyDefinition body = expect_ok(scene.body(key));
   return body.state != BodyState::fixed;
 }
 
@@ -50,16 +50,15 @@ TEST(ContactGroups, bodies_sharing_only_a_floor_are_separate_islands) {
   ShapePool pool;
   ShapeId ball;
   ShapeId floor;
-  ASSERT_EQ(pool.add(SphereShape{1.0}, ball), Status::ok);
-  ASSERT_EQ(pool.add(HalfSpaceShape{}, floor), Status::ok);
+  ball = expect_ok(pool.add(SphereShape{1.0}));
+  floor = expect_ok(pool.add(HalfSpaceShape{}));
   Scene scene(pool);
   Key key;
   ClientData name = 0;
   for (const double x : {0.0, 1.9, 3.8, 10.0, 20.0, 21.9}) {
-    ASSERT_EQ(scene.add({.shape = ball, .pose = Pose::at(x, 0, 0.9), .data = name++}, key),
-              Status::ok);
+    key = expect_ok(scene.add({.shape = ball, .pose = Pose::at(x, 0, 0.9), .data = name++}));
   }
-  ASSERT_EQ(scene.add({.shape = floor, .state = BodyState::fixed, .data = name}, key), Status::ok);
+  key = expect_ok(scene.add({.shape = floor, .state = BodyState::fixed, .data = name}));
   Contacts contacts;
   ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
   ASSERT_EQ(contacts.size(), 9U);
@@ -92,7 +91,7 @@ TEST(ContactGroups, no_contacts_make_no_groups) {
     expect_in_order(groups, 0);
     ASSERT_EQ(scene.colours(contacts, groups), Status::ok);
     expect_in_order(groups, 0);
-    scene.add({.shape = pool.add(SphereShape{1.0})});
+    expect_ok(scene.add({.shape = pool.add(SphereShape{1.0})}));
     ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
   }
 }
@@ -163,16 +162,15 @@ TEST(ContactGroups, body_with_many_contacts_fills_rest_colour) {
   ShapePool pool;
   ShapeId large;
   ShapeId small;
-  ASSERT_EQ(pool.add(SphereShape{10.0}, large), Status::ok);
-  ASSERT_EQ(pool.add(SphereShape{0.1}, small), Status::ok);
+  large = expect_ok(pool.add(SphereShape{10.0}));
+  small = expect_ok(pool.add(SphereShape{0.1}));
   Scene scene(pool);
-  Key key;
-  ASSERT_EQ(scene.add({.shape = large}, key), Status::ok);
+  Key key = expect_ok(scene.add({.shape = large}));
   constexpr int kSmall = 100;
   for (int i = 0; i < kSmall; ++i) {
     const double turn = 2.0 * 3.14159265358979 * i / kSmall;
     const Pose at = Pose::at(10.0 * std::cos(turn), 10.0 * std::sin(turn), 0.0);
-    ASSERT_EQ(scene.add({.shape = small, .pose = at}, key), Status::ok);
+    key = expect_ok(scene.add({.shape = small, .pose = at}));
   }
   Contacts contacts;
   ASSERT_EQ(scene.collide(ContactLevel::boolean, contacts), Status::ok);

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 
+#include "tests/support/answers.h"
 #include "tests/support/config.h"
 #include "tests/support/counting_memory.h"
 
@@ -119,12 +120,11 @@ TEST(ContactOffsets, rest_offset_of_others_leaves_error_bounds) {
   const ShapeId box = add(world.shapes, BoxShape{{0.5, 0.4, 0.3}, 0.0});
   const auto bounds = [&](bool with_other) {
     Scene scene(world.shapes, {.contact_reduction = true, .composites = &world.composites});
-    Key key;
-    EXPECT_EQ(scene.add({.shape = floor, .state = BodyState::fixed}, key), Status::ok);
-    EXPECT_EQ(scene.add({.shape = box, .pose = Pose::at(0.1, 0.2, 0.2)}, key), Status::ok);
+    Key key = expect_ok(scene.add({.shape = floor, .state = BodyState::fixed}));
+    key = expect_ok(scene.add({.shape = box, .pose = Pose::at(0.1, 0.2, 0.2)}));
     const BodyDefinition other{.shape = box, .pose = Pose::at(9, 9, 9), .offsets = {0.2, 0.1}};
     if (with_other) {
-      EXPECT_EQ(scene.add(other, key), Status::ok);
+      key = expect_ok(scene.add(other));
     }
     Contacts contacts;
     EXPECT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
@@ -160,8 +160,7 @@ TEST(ContactOffsets, zero_offsets_change_no_bit) {
   ASSERT_EQ(scene.set_offsets(world.keys[3], {0.2, 0.1}), Status::ok);
   EXPECT_GT(scene.footprint().total().reserved, without);
   EXPECT_EQ(scene.footprint().total().reserved, memory.outstanding());
-  BodyDefinition body;
-  ASSERT_EQ(scene.body(world.keys[3], body), Status::ok);
+  BodyDefinition body = expect_ok(scene.body(world.keys[3]));
   EXPECT_EQ(body.offsets, (ContactOffsets{0.2, 0.1}));
   ASSERT_EQ(scene.set_offsets(world.keys[3], {}), Status::ok);
   Contacts contacts;
@@ -181,10 +180,9 @@ TEST(ContactOffsets, bad_offsets_are_refused_and_change_nothing) {
     EXPECT_EQ(scene.set_offsets(world.keys[0], bad), Status::invalid_argument);
     BodyDefinition body = world.bodies[0];
     body.offsets = bad;
-    Key key;
-    EXPECT_EQ(scene.add(body, key), Status::invalid_argument);
+    expect_error(scene.add(body), Status::invalid_argument);
     EXPECT_EQ(scene.size(), 8U);
-    ASSERT_EQ(scene.body(world.keys[0], body), Status::ok);
+    body = expect_ok(scene.body(world.keys[0]));
     EXPECT_EQ(body.offsets, ContactOffsets{});
   }
   EXPECT_EQ(scene.set_offsets(Key{}, {}), Status::invalid_key);
@@ -212,14 +210,11 @@ TEST(ContactOffsets, body_on_mesh_rests_at_its_offset) {
     Scene scene(world.shapes, {.contact_reduction = reduced, .composites = &world.composites});
     Key ground;
     Key keys[2];
-    ASSERT_EQ(scene.add({.shape = floor, .state = BodyState::fixed}, ground), Status::ok);
-    ASSERT_EQ(scene.add({.shape = box,
-                         .pose = Pose::at(0.1, 0.2, 0.32),
-                         .offsets = {.contact = 0.05, .rest = 0.03}},
-                        keys[0]),
-              Status::ok);
-    ASSERT_EQ(scene.add({.shape = ball, .pose = Pose::at(-1.3, 0.1, 0.22), .data = 1}, keys[1]),
-              Status::ok);
+    ground = expect_ok(scene.add({.shape = floor, .state = BodyState::fixed}));
+    keys[0] = expect_ok(scene.add({.shape = box,
+                                   .pose = Pose::at(0.1, 0.2, 0.32),
+                                   .offsets = {.contact = 0.05, .rest = 0.03}}));
+    keys[1] = expect_ok(scene.add({.shape = ball, .pose = Pose::at(-1.3, 0.1, 0.22), .data = 1}));
     Contacts contacts;
     ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
     ASSERT_EQ(contacts.size(), 1U);
@@ -266,7 +261,7 @@ TEST(ContactOffsets, changed_offsets_apply_to_next_collide) {
     EXPECT_EQ(shown(contacts), shown(expected));
     const std::size_t gone = world.random.below(world.bodies.size());
     ASSERT_EQ(scene.remove(world.keys[gone]), Status::ok);
-    ASSERT_EQ(scene.add(world.bodies[gone], world.keys[gone]), Status::ok);
+    world.keys[gone] = expect_ok(scene.add(world.bodies[gone]));
   }
 }
 

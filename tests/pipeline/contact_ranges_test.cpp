@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <winnow/pipeline/composite_pool.h>
 #include <winnow/pipeline/scene.h>
+#include "tests/support/answers.h"
 
 #include <array>
 #include <type_traits>
@@ -18,19 +19,16 @@ class MeshFloor {
     const std::vector<std::array<double, 3>> corners{
         {-9, -9, 0}, {9, -9, 0}, {9, 9, 0}, {-9, 9, 0}};
     const std::vector<int> triangles{0, 1, 2, 0, 2, 3};
-    ShapeId floor;
-    EXPECT_EQ(composites.add_mesh(corners, triangles, floor), Status::ok);
+    ShapeId floor = expect_ok(composites.add_mesh(corners, triangles));
     const ShapeId box = shapes.add(BoxShape{{1, 1, 1}});
     const ShapeId ball = shapes.add(SphereShape{1});
-    EXPECT_EQ(scene.add({.shape = floor, .state = BodyState::fixed, .data = 1}, key), Status::ok);
+    key = expect_ok(scene.add({.shape = floor, .state = BodyState::fixed, .data = 1}));
     ClientData data = 2;
     for (const double x : {-5.0, -3.5, 0.0, 5.0}) {
-      EXPECT_EQ(scene.add({.shape = box, .pose = Pose::at(x, 0, 0.9), .data = data++}, key),
-                Status::ok);
-      EXPECT_EQ(scene.add({.shape = ball, .pose = Pose::at(x, 4, 0.9), .data = data++}, key),
-                Status::ok);
+      key = expect_ok(scene.add({.shape = box, .pose = Pose::at(x, 0, 0.9), .data = data++}));
+      key = expect_ok(scene.add({.shape = ball, .pose = Pose::at(x, 4, 0.9), .data = data++}));
     }
-    EXPECT_EQ(scene.add({.shape = ball, .pose = Pose::at(0, 0, 20)}, key), Status::ok);
+    key = expect_ok(scene.add({.shape = ball, .pose = Pose::at(0, 0, 20)}));
   }
 
   ShapePool shapes;
@@ -98,10 +96,9 @@ TEST(ContactRanges, empty_contacts_have_no_pair) {
 
 TEST(Scene, composite_without_pool_is_unsupported) {
   MeshFloor world;
-  BodyDefinition floor;
-  ASSERT_EQ(world.scene.body(world.scene.key_of(0), floor), Status::ok);
+  BodyDefinition floor = expect_ok(world.scene.body(world.scene.key_of(0)));
   Scene scene(world.shapes);
-  EXPECT_EQ(scene.add(floor, world.key), Status::unsupported);
+  expect_error(scene.add(floor), Status::unsupported);
   EXPECT_EQ(scene.size(), 0U);
 }
 

@@ -17,6 +17,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/answers.h"
 #include "tests/support/config.h"
 #include "tests/support/counting_memory.h"
 
@@ -37,8 +38,8 @@ struct Floor {
                        .contact_margin = margin,
                        .contact_reduction = reduced,
                        .composites = &pool}) {
-    EXPECT_EQ(scene.add({.shape = floor, .state = BodyState::fixed}, ground), Status::ok);
-    EXPECT_EQ(scene.add({.shape = body}, key), Status::ok);
+    ground = expect_ok(scene.add({.shape = floor, .state = BodyState::fixed}));
+    key = expect_ok(scene.add({.shape = body}));
   }
 
   void move_body(const Pose& pose) {
@@ -70,7 +71,7 @@ struct Floors {
     large = add(shapes, BoxShape{{4.0, 4.0, 4.0}, 0.0});
     const CompoundChild one[] = {{large, Pose::at(0, 0, -4)}};
     ids.emplace_back();
-    EXPECT_EQ(pool.add_compound(one, ids.back()), Status::ok);
+    ids.back() = expect_ok(pool.add_compound(one));
     Random random(3);
     Surface uneven = grid(16, 0.5F, Cut::random, [](float, float) { return 0.0F; });
     for (Point& v : uneven.vertices) {
@@ -85,8 +86,7 @@ struct Floors {
 
   void add_field() {
     const std::vector<float> heights(41 * 41, 0.0F);
-    ShapeId field;
-    EXPECT_EQ(pool.add_height_field({heights, 41, 41, 0, {0.2, 0.2}}, field), Status::ok);
+    ShapeId field = expect_ok(pool.add_height_field({heights, 41, 41, 0, {0.2, 0.2}}));
     // The origin of a height field is its corner; the origins of the other floors are their
     // centres.
     ids.push_back(field);
@@ -102,7 +102,7 @@ struct Floors {
       }
     }
     ids.emplace_back();
-    EXPECT_EQ(pool.add_compound(tiles, ids.back()), Status::ok);
+    ids.back() = expect_ok(pool.add_compound(tiles));
   }
 
   /// Returns the pose on floor i that corresponds to `pose` on the other floors.
@@ -503,13 +503,11 @@ TEST(ContactReduction, steady_scene_with_meshes_allocates_nothing) {
     Scene scene(floors.shapes,
                 {.memory = &memory, .contact_margin = 0.02, .composites = &floors.pool});
     Contacts contacts(&results);
-    Key key;
-    ASSERT_EQ(scene.add({.shape = floors.ids[1], .state = BodyState::fixed}, key), Status::ok);
+    expect_ok(scene.add({.shape = floors.ids[1], .state = BodyState::fixed}));
     Random random(37);
     std::vector<Key> keys(20);
     for (Key& body : keys) {
-      ASSERT_EQ(scene.add({.shape = floors.body, .pose = resting(random, 0.01, 0.004)}, body),
-                Status::ok);
+      body = expect_ok(scene.add({.shape = floors.body, .pose = resting(random, 0.01, 0.004)}));
     }
     for (int frame = 0; frame < 12; ++frame) {
       const std::size_t requests = memory.requests() + results.requests();

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "tests/pipeline/scene_world.h"
+#include "tests/support/answers.h"
 #include "tests/support/counting_memory.h"
 #include "tests/support/meshes.h"
 
@@ -31,7 +32,7 @@ struct ImpactWorld {
       for (double& x : body.pose.position) x *= spread;
     }
     const MeshData ring = torus(6, 5);
-    EXPECT_EQ(composites.add_mesh(ring.points(), ring.indices(), mesh), Status::ok);
+    mesh = expect_ok(composites.add_mesh(ring.points(), ring.indices()));
     for (std::size_t i = 0; i < count; i += 9) world.bodies[i].shape = mesh;
     for (std::size_t i = 0; i < count; i += 5) world.bodies[i].state = BodyState::fixed;
     for (std::size_t i = 3; i < count; i += 7) world.bodies[i].state = BodyState::sleeping;
@@ -171,7 +172,7 @@ TEST(ContinuousCollisions, first_only_matches_first_of_all) {
 /// Boxes in a cube that all move by nearly the same long vector.
 struct Convoy {
   Convoy(std::size_t count, double way) {
-    EXPECT_EQ(pool.add(BoxShape{{0.5, 0.5, 0.5}}, box), Status::ok);
+    box = expect_ok(pool.add(BoxShape{{0.5, 0.5, 0.5}}));
     const double side = std::cbrt(2.0 * static_cast<double>(count));
     Random random(7);
     for (std::size_t i = 0; i < count; ++i) {
@@ -193,8 +194,7 @@ struct Convoy {
 TEST(ContinuousCollisions, common_motion_adds_no_candidate_pairs) {
   Convoy still(scaled(400), 0.0);
   Convoy fast(scaled(400), 1000.0);
-  ShapeId wall;
-  ASSERT_EQ(fast.pool.add(BoxShape{{1e-3, 1e4, 1e4}}, wall), Status::ok);
+  ShapeId wall = expect_ok(fast.pool.add(BoxShape{{1e-3, 1e4, 1e4}}));
   ASSERT_NE(fast.scene.add({.shape = wall, .pose = Pose::at(500, 0, 0), .state = BodyState::fixed}),
             Key{});
   ContinuousCollision of_still(still.scene);
@@ -227,13 +227,12 @@ TEST(ContinuousCollisions, impacts_match_on_any_thread_count) {
 /// A ball that rests on a floor and flies through a thin wall at x = 0.
 struct Gallery {
   Gallery() {
-    EXPECT_EQ(pool.add(SphereShape{0.5}, ball), Status::ok);
-    EXPECT_EQ(pool.add(BoxShape{{1e-3, 10, 10}}, wall), Status::ok);
-    EXPECT_EQ(pool.add(HalfSpaceShape{{0, 0, 1}, 0}, floor), Status::ok);
-    EXPECT_EQ(scene.add({.shape = floor, .state = BodyState::fixed}, keys[0]), Status::ok);
-    EXPECT_EQ(scene.add({.shape = wall, .state = BodyState::fixed}, keys[1]), Status::ok);
-    EXPECT_EQ(scene.add({.shape = ball, .pose = Pose::at(-50, 0, 0.5), .data = 7}, keys[2]),
-              Status::ok);
+    ball = expect_ok(pool.add(SphereShape{0.5}));
+    wall = expect_ok(pool.add(BoxShape{{1e-3, 10, 10}}));
+    floor = expect_ok(pool.add(HalfSpaceShape{{0, 0, 1}, 0}));
+    keys[0] = expect_ok(scene.add({.shape = floor, .state = BodyState::fixed}));
+    keys[1] = expect_ok(scene.add({.shape = wall, .state = BodyState::fixed}));
+    keys[2] = expect_ok(scene.add({.shape = ball, .pose = Pose::at(-50, 0, 0.5), .data = 7}));
   }
 
   ShapePool pool;
@@ -329,7 +328,7 @@ TEST(MotionCasts, hits_match_single_pairs) {
               Status::ok);
     std::span<const SceneHit> hits;
     const MotionCast cast{shape, impact_world.motions[i]};
-    ASSERT_EQ(queries.all(cast, hits), Status::ok);
+    hits = expect_ok(queries.all(cast));
     EXPECT_EQ(hits.size(), static_cast<std::size_t>(std::ranges::count(truth.hit(), 1)));
     double last = 0.0;
     for (const SceneHit& hit : hits) {
@@ -339,8 +338,7 @@ TEST(MotionCasts, hits_match_single_pairs) {
       EXPECT_LE(last, hit.t);
       last = hit.t;
     }
-    SceneHit closest;
-    ASSERT_EQ(queries.closest(cast, closest), Status::ok);
+    SceneHit closest = expect_ok(queries.closest(cast));
     EXPECT_EQ(static_cast<bool>(closest), !hits.empty());
   }
 }
@@ -351,11 +349,9 @@ TEST(MotionCasts, closest_hit_matches_first_of_all) {
   ASSERT_EQ(impact_world.scene->refresh(), Status::ok);
   for (const RigidMotion& motion : impact_world.motions) {
     const MotionCast cast{impact_world.mesh, motion};
-    std::span<const SceneHit> hits;
-    ASSERT_EQ(queries.all(cast, hits), Status::ok);
+    std::span<const SceneHit> hits = expect_ok(queries.all(cast));
     const SceneHit first = hits.empty() ? SceneHit{} : hits[0];
-    SceneHit closest;
-    ASSERT_EQ(queries.closest(cast, closest), Status::ok);
+    SceneHit closest = expect_ok(queries.closest(cast));
     EXPECT_EQ(closest.key, first.key);
     EXPECT_EQ(closest.part, first.part);
     EXPECT_EQ(closest.t, first.t);
@@ -368,12 +364,10 @@ TEST(MotionCasts, rotation_hits_and_bad_motion_is_refused) {
   Gallery gallery;
   SceneQueries queries(gallery.scene);
   ASSERT_EQ(gallery.scene.refresh(), Status::ok);
-  ShapeId rod;
-  ASSERT_EQ(gallery.pool.add(CapsuleShape{0.1, 3.9}, rod), Status::ok);
+  ShapeId rod = expect_ok(gallery.pool.add(CapsuleShape{0.1, 3.9}));
   // The rod stands upright beside the wall. A quarter turn about y drops it onto the wall.
   MotionCast cast{rod, {Pose::at(2, 0, 5), {0, 0, 0}, {0, -std::acos(0.0), 0}}};
-  SceneHit hit;
-  ASSERT_EQ(queries.closest(cast, hit), Status::ok);
+  SceneHit hit = expect_ok(queries.closest(cast));
   ASSERT_TRUE(hit);
   EXPECT_EQ(hit.key, gallery.keys[1]);
   const double angle = std::asin((2 - 1e-3 - 0.1) / 3.9);
@@ -381,13 +375,13 @@ TEST(MotionCasts, rotation_hits_and_bad_motion_is_refused) {
   EXPECT_LE(hit.t, angle / std::acos(0.0));
   EXPECT_NEAR(hit.normal[0], 1.0, 1e-9);
   EXPECT_NEAR(hit.point[0], 1e-3, 1e-6);
-  EXPECT_EQ(queries.closest(cast, hit, {}, 0.0), Status::invalid_argument);
+  expect_error(queries.closest(cast, {}, 0.0), Status::invalid_argument);
   cast.motion.travel[1] = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(queries.closest(cast, hit), Status::invalid_pose);
+  expect_error(queries.closest(cast), Status::invalid_pose);
   cast.shape = gallery.floor;
-  EXPECT_EQ(queries.closest(cast, hit), Status::unsupported);
+  expect_error(queries.closest(cast), Status::unsupported);
   cast.shape = ShapeId::of(CompositeKind::mesh, 0);
-  EXPECT_EQ(queries.closest(cast, hit), Status::invalid_key);
+  expect_error(queries.closest(cast), Status::invalid_key);
 }
 
 TEST(ContinuousCollisions, repeated_call_allocates_nothing_and_refusals_recover) {

@@ -13,6 +13,7 @@
 
 #include "tests/pipeline/pair_results.h"
 #include "tests/pipeline/pair_scenes.h"
+#include "tests/support/answers.h"
 #include "tests/support/config.h"
 #include "tests/support/random.h"
 
@@ -26,8 +27,8 @@ template <typename A, typename B>
 PairScene pair_of(const A& a, const B& b, const Pose& pose_a, const Pose& pose_b) {
   PairScene scene;
   scene.shapes.resize(2);
-  EXPECT_EQ(scene.pool.add(a, scene.shapes[0]), Status::ok);
-  EXPECT_EQ(scene.pool.add(b, scene.shapes[1]), Status::ok);
+  scene.shapes[0] = expect_ok(scene.pool.add(a));
+  scene.shapes[1] = expect_ok(scene.pool.add(b));
   scene.poses = {pose_a, pose_b};
   scene.pairs = {{0, 1}};
   return scene;
@@ -369,7 +370,7 @@ TEST(CurvedKernels, user_shape_depth_ignores_its_radius) {
   for (ShapeId& id : scene.shapes) {
     SupportShape loose = scene.pool.tables().supports[id.index()];
     loose.radius *= 1000.0;
-    ASSERT_EQ(scene.pool.add(loose, id), Status::ok);
+    id = expect_ok(scene.pool.add(loose));
   }
   const auto wide = compute_results(scene, narrow_options);
   for (std::size_t i = 0; i < close.size(); ++i) {
@@ -484,8 +485,7 @@ TEST_P(CurvedPairs, answers_match_solver) {
 /// Returns the distance of each point from a body of the scene.
 std::vector<double> distances_to_points(PairScene& scene, std::uint32_t body,
                                         const std::vector<Pose>& points) {
-  ShapeId point;
-  EXPECT_EQ(scene.pool.add(SphereShape{0.0}, point), Status::ok);
+  ShapeId point = expect_ok(scene.pool.add(SphereShape{0.0}));
   std::vector<ShapeId> shapes{scene.shapes[body]};
   std::vector<Pose> poses{scene.poses[body]};
   std::vector<BodyPair> pairs;

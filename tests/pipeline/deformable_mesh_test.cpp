@@ -4,6 +4,7 @@
 #include <winnow/core/rounding.h>
 #include <winnow/pipeline/deformable_mesh.h>
 #include "tests/pipeline/feature_oracle.h"
+#include "tests/support/answers.h"
 #include "tests/support/config.h"
 #include "tests/support/counting_memory.h"
 #include "tests/support/meshes.h"
@@ -255,10 +256,9 @@ TEST(DeformableMeshes, self_impacts_match_single_queries) {
         for (const Pair& pair : candidates_by_force(kind, reference, reference, true)) {
           const auto a = reference.feature(kind, false, pair.first);
           const auto b = reference.feature(kind, true, pair.second);
-          FeatureImpact impact;
-          ASSERT_EQ(feature_impact(kind, points_at(step.start, a, step.start, b),
-                                   points_at(step.end, a, step.end, b), impact, options),
-                    Status::ok);
+          FeatureImpact impact =
+              expect_ok(feature_impact(kind, points_at(step.start, a, step.start, b),
+                                       points_at(step.end, a, step.end, b), options));
           while (next < found.size() && found[next].features < pair) ++next;
           const bool listed = next < found.size() && found[next].features == pair;
           EXPECT_EQ(listed, impact.hit);

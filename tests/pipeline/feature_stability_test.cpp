@@ -16,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/answers.h"
 #include "tests/support/config.h"
 #include "tests/support/random.h"
 
@@ -56,8 +57,7 @@ class Stage {
  private:
   template <typename Shape>
   ShapeId made(const Shape& shape) {
-    ShapeId id;
-    EXPECT_EQ(pool.add(shape, id), Status::ok);
+    ShapeId id = expect_ok(pool.add(shape));
     return id;
   }
 
@@ -69,8 +69,7 @@ class Stage {
         points.push_back({radius * std::cos(angle), radius * std::sin(angle), z});
       }
     }
-    ShapeId id;
-    EXPECT_EQ(pool.add_hull(points, 0.0, id), Status::ok);
+    ShapeId id = expect_ok(pool.add_hull(points, 0.0));
     return id;
   }
 
@@ -138,10 +137,8 @@ class Stage {
     // Offsets keep the edges of meshes and tiles away from the edges of standing shapes.
     Surface surface = grid(12, 0.65F, Cut::same, [](float, float) { return 0.0F; });
     for (Point& vertex : surface.vertices) vertex += Point(0.07F, 0.11F, 0.0F);
-    ShapeId mesh;
-    EXPECT_EQ(composites.add_mesh(surface.vertices,
-                                  IndexView(std::span<const std::uint32_t>(surface.corners)), mesh),
-              Status::ok);
+    ShapeId mesh = expect_ok(composites.add_mesh(
+        surface.vertices, IndexView(std::span<const std::uint32_t>(surface.corners))));
     add_ground("mesh", mesh, 0.0);
     grounds.back().has_parts = true;
     const ShapeId tile = made(BoxShape{{0.575, 0.575, 0.5}});
@@ -149,8 +146,7 @@ class Stage {
     for (int i = 0; i < 16; ++i) {
       tiles.push_back({tile, Pose::at(1.15 * (i % 4) - 1.645, 1.15 * (i / 4) - 1.605, -0.5)});
     }
-    ShapeId compound;
-    EXPECT_EQ(composites.add_compound(tiles, compound), Status::ok);
+    ShapeId compound = expect_ok(composites.add_compound(tiles));
     add_ground("tiles", compound, 0.0);
     grounds.back().has_parts = true;
   }
@@ -193,14 +189,12 @@ Kept frames_of(Stage& stage, const RestingShape& body, const RestingShape& groun
   options.warm_start = true;
   options.composites = &stage.composites;
   Scene scene(stage.pool, options);
-  Key key;
-  EXPECT_EQ(scene.add({.shape = ground.shape,
-                       .pose = resting_pose(tremble.world * ground.turn,
-                                            tremble.world * Vector3d(0, 0, ground.height)),
-                       .state = BodyState::fixed},
-                      key),
-            Status::ok);
-  EXPECT_EQ(scene.add({.shape = body.shape}, key), Status::ok);
+  Key key =
+      expect_ok(scene.add({.shape = ground.shape,
+                           .pose = resting_pose(tremble.world * ground.turn,
+                                                tremble.world * Vector3d(0, 0, ground.height)),
+                           .state = BodyState::fixed}));
+  key = expect_ok(scene.add({.shape = body.shape}));
   const auto any = [&] {
     return Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
   };
@@ -217,8 +211,7 @@ Kept frames_of(Stage& stage, const RestingShape& body, const RestingShape& groun
     EXPECT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
     std::vector<Vector3d> now;
     for (std::size_t i = 0; i < contacts.points(); ++i) {
-      BodyDefinition a;
-      EXPECT_EQ(scene.body(contacts.a()[0], a), Status::ok);
+      BodyDefinition a = expect_ok(scene.body(contacts.a()[0]));
       const ContactPoint point = contacts.contact(i);
       now.push_back(Eigen::Vector3f(as_eigen(point.position)).cast<double>() +
                     as_eigen(a.pose.position));

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "tests/pipeline/flat_reference.h"
+#include "tests/support/answers.h"
 #include "tests/support/config.h"
 #include "tests/support/random.h"
 
@@ -29,8 +30,7 @@ struct Scene {
 
   template <typename Shape>
   std::uint32_t add(const Shape& shape, const Pose& pose) {
-    ShapeId id;
-    EXPECT_EQ(pool.add(shape, id), Status::ok);
+    ShapeId id = expect_ok(pool.add(shape));
     shapes.push_back(id);
     poses.push_back(pose);
     return static_cast<std::uint32_t>(shapes.size() - 1);

@@ -2,6 +2,7 @@
 // rounded or not. Used by flat_cores_test.cpp.
 
 #include "tests/pipeline/flat_pairs.h"
+#include "tests/support/answers.h"
 
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
@@ -90,7 +91,7 @@ class FlatMaker {
   template <typename Shape>
   ShapeInPlane added(const Shape& shape, const Turn& turn) {
     ShapeInPlane made{{}, turn};
-    EXPECT_EQ(scene_.pool.add(shape, made.id), Status::ok);
+    made.id = expect_ok(scene_.pool.add(shape));
     return made;
   }
 
@@ -122,7 +123,7 @@ class FlatMaker {
   ShapeInPlane hull(int d, double size, double round) {
     ShapeInPlane made;
     const auto points = corners(d, 1 + random_.below(12), size);
-    EXPECT_EQ(scene_.pool.add_hull(points, round, made.id), Status::ok);
+    made.id = expect_ok(scene_.pool.add_hull(points, round));
     return made;
   }
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 #include <winnow/winnow.h>
+#include "tests/support/answers.h"
 
 #include <vector>
 
@@ -10,8 +11,7 @@ namespace winnow::test {
 /// Returns the contacts of a shape with the floor z <= 0, which is added to the pool.
 inline std::vector<ContactPoint> contacts_on_floor(ShapePool& pool, ShapeId id, const Pose& pose,
                                                    double margin) {
-  ShapeId floor;
-  EXPECT_EQ(pool.add(HalfSpaceShape{}, floor), Status::ok);
+  ShapeId floor = expect_ok(pool.add(HalfSpaceShape{}));
   const std::vector<ShapeId> shapes{id, floor};
   const std::vector<Pose> poses{pose, Pose{}};
   const std::vector<BodyPair> pairs{{0, 1}};

@@ -14,6 +14,7 @@
 #include <limits>
 #include <vector>
 
+#include "tests/support/answers.h"
 #include "tests/support/config.h"
 #include "tests/support/counting_memory.h"
 
@@ -40,9 +41,9 @@ struct SeamWorld {
     block = add(shapes, BoxShape{{2.0, 2.0, 1.0}, 0.0});
     mesh = add(composites, grid(4, 1.0F, Cut::alternating, [](float, float) { return 0.0F; }));
     const std::vector<float> heights(5 * 5, 0.0F);
-    EXPECT_EQ(composites.add_height_field({heights, 5, 5, 0, {1.0, 1.0}}, field), Status::ok);
+    field = expect_ok(composites.add_height_field({heights, 5, 5, 0, {1.0, 1.0}}));
     const CompoundChild child[] = {{block, Pose::at(0, 0, -1)}};
-    EXPECT_EQ(composites.add_compound(child, compound), Status::ok);
+    compound = expect_ok(composites.add_compound(child));
   }
 
   /// Returns the tile with its centre at (x, y) and its top at z.
@@ -109,10 +110,10 @@ TEST(GhostContacts, flush_tiles_hold_sliders_like_one_floor) {
           Key key;
           for (const double x : {-2.0, 2.0}) {
             for (const double y : {-2.0, 2.0}) {
-              ASSERT_EQ(scene.add(world.tile(kind, x, y), key), Status::ok);
+              key = expect_ok(scene.add(world.tile(kind, x, y)));
             }
           }
-          ASSERT_EQ(scene.add({.shape = slider.shape}, key), Status::ok);
+          key = expect_ok(scene.add({.shape = slider.shape}));
           Contacts contacts;
           for (std::size_t i = 0; i < scaled(60); ++i) {
             const double gap = random.uniform(-0.03, 0.02);
@@ -141,9 +142,9 @@ struct TwoTiles {
       : scene(world.shapes, {.contact_margin = kSlidingMargin,
                              .suppress_ghost_contacts = true,
                              .composites = &world.composites}) {
-    EXPECT_EQ(scene.add(world.tile(Tiles::boxes, -2.0, 0.0), tiles[0]), Status::ok);
-    EXPECT_EQ(scene.add(world.tile(Tiles::boxes, second_x, 0.0, second_z), tiles[1]), Status::ok);
-    EXPECT_EQ(scene.add({.shape = slider}, key), Status::ok);
+    tiles[0] = expect_ok(scene.add(world.tile(Tiles::boxes, -2.0, 0.0)));
+    tiles[1] = expect_ok(scene.add(world.tile(Tiles::boxes, second_x, 0.0, second_z)));
+    key = expect_ok(scene.add({.shape = slider}));
   }
   [[nodiscard]] bool touches_second(const Pose& pose) {
     EXPECT_EQ(scene.move(key, pose), Status::ok);
@@ -181,8 +182,7 @@ std::vector<BodyDefinition> standing_bodies(ShapePool& shapes) {
     const double half = i < 4 ? 0.5 : 0.25;
     corners.emplace_back(i % 2 == 0 ? half : -half, i / 2 % 2 == 0 ? half : -half, i < 4 ? 0 : 1);
   }
-  ShapeId frustum;
-  EXPECT_EQ(shapes.add_hull(corners, 0.0, frustum), Status::ok);
+  ShapeId frustum = expect_ok(shapes.add_hull(corners, 0.0));
   const auto leaning = [&](ShapeId shape, double angle) {
     Pose pose;
     pose.orientation[0] = std::cos(0.5 * angle);
@@ -234,8 +234,7 @@ std::vector<FloorCorner> corners_of(SeamWorld& world) {
   sheet.pose.orientation[0] = sheet.pose.orientation[2] = std::sqrt(0.5);
   const CompoundChild courses[] = {{world.block, Pose::at(0, 0, -0.6)},
                                    {world.block, Pose::at(0, 0, 1.4)}};
-  ShapeId bricks;
-  EXPECT_EQ(world.composites.add_compound(courses, bricks), Status::ok);
+  ShapeId bricks = expect_ok(world.composites.add_compound(courses));
   const BodyDefinition walls[] = {
       box(1, -5, -1, 1, 5, 3),
       box(1, -5, 0, 1, 5, 3),
@@ -430,8 +429,7 @@ std::vector<BodyDefinition> plate_on_tiles(const SeamWorld& world, ShapeId plate
 std::vector<ObjectId> kept_floors(const Scene& scene, const Contacts& contacts, double radius) {
   std::vector<FloorManifold> raw;
   for (std::size_t i = 0; i < contacts.size(); ++i) {
-    BodyDefinition body;
-    EXPECT_EQ(scene.body(contacts.a()[i], body), Status::ok);
+    BodyDefinition body = expect_ok(scene.body(contacts.a()[i]));
     raw.emplace_back(contacts, i, body.pose);
   }
   std::vector<ObjectId> kept;
@@ -481,10 +479,9 @@ TEST(GhostContacts, only_fixed_bodies_are_floors) {
                              .composites = &world.composites});
   Key tiles[2];
   Key key;
-  ASSERT_EQ(scene.add(world.tile(Tiles::boxes, -2.0, 0.0), tiles[0]), Status::ok);
-  ASSERT_EQ(scene.add(world.tile(Tiles::boxes, 2.0, 0.0), tiles[1]), Status::ok);
-  ASSERT_EQ(scene.add({.shape = world.sliders[0].shape, .pose = Pose::at(-0.05, 0.0, 0.49)}, key),
-            Status::ok);
+  tiles[0] = expect_ok(scene.add(world.tile(Tiles::boxes, -2.0, 0.0)));
+  tiles[1] = expect_ok(scene.add(world.tile(Tiles::boxes, 2.0, 0.0)));
+  key = expect_ok(scene.add({.shape = world.sliders[0].shape, .pose = Pose::at(-0.05, 0.0, 0.49)}));
   Contacts contacts;
   EXPECT_EQ(summarize(scene, contacts).manifolds, 1U);
   EXPECT_EQ(scene.footprint().total().reserved, memory.outstanding());

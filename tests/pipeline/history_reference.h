@@ -7,6 +7,7 @@
 #include <winnow/core/eigen.h>
 #include <winnow/winnow.h>
 #include <Eigen/Geometry>
+#include "tests/support/answers.h"
 
 #include <algorithm>
 #include <array>
@@ -84,16 +85,16 @@ class HistoryReference {
 
   [[nodiscard]] static PairName name_of(const Scene& scene, Key a, Key b) {
     BodyDefinition body[2];
-    EXPECT_EQ(scene.body(a, body[0]), Status::ok);
-    EXPECT_EQ(scene.body(b, body[1]), Status::ok);
+    body[0] = expect_ok(scene.body(a));
+    body[1] = expect_ok(scene.body(b));
     return {a.id, a.stamp, b.id, b.stamp, body[0].shape.kind_index(), body[1].shape.kind_index()};
   }
 
   [[nodiscard]] static KeptPair keep(const Scene& scene, const Contacts& contacts,
                                      std::uint32_t i) {
     BodyDefinition body[2];
-    EXPECT_EQ(scene.body(contacts.a()[i], body[0]), Status::ok);
-    EXPECT_EQ(scene.body(contacts.b()[i], body[1]), Status::ok);
+    body[0] = expect_ok(scene.body(contacts.a()[i]));
+    body[1] = expect_ok(scene.body(contacts.b()[i]));
     KeptPair kept{i, {}};
     if (contacts.point_first().empty()) return kept;
     for (auto m = contacts.manifold_first()[i]; m < contacts.manifold_first()[i + 1]; ++m) {

@@ -18,6 +18,7 @@
 
 #include "tests/pipeline/hull_brute_force.h"
 #include "tests/pipeline/pair_scenes.h"
+#include "tests/support/answers.h"
 #include "tests/support/config.h"
 #include "tests/support/float_modes.h"
 #include "tests/support/random.h"
@@ -140,8 +141,7 @@ PairScene scene_of(Style style, std::size_t pairs, std::uint64_t seed, Turn turn
   Random random(seed);
   const double rounding = style == Style::rounded ? 0.2 : 0.0;
   for (std::uint32_t i = 0; i < 2 * pairs; ++i) {
-    ShapeId id;
-    EXPECT_EQ(scene.pool.add_hull(points_of(style, random), rounding, id), Status::ok);
+    ShapeId id = expect_ok(scene.pool.add_hull(points_of(style, random), rounding));
     scene.shapes.push_back(id);
     const Eigen::Vector3d origin(1e3 * (i / 2), -50.0, 7.0);
     scene.poses.push_back(pose_near(origin, 0.7, random, turn));
@@ -307,11 +307,10 @@ TEST(UprightPrisms, parallel_features_are_certified) {
 TEST(HullKernel, touching_and_bad_pairs_are_not_certified) {
   PairScene scene;
   Random random(1);
-  ShapeId id;
-  ASSERT_EQ(scene.pool.add_hull(points_of(Style::ball, random), 0.0, id), Status::ok);
+  ShapeId id = expect_ok(scene.pool.add_hull(points_of(Style::ball, random), 0.0));
   Points cube;
   for (int i = 0; i < 8; ++i) cube.emplace_back(i & 1, i >> 1 & 1, i >> 2);
-  ASSERT_EQ(scene.pool.add_hull(cube, 0.0, id), Status::ok);
+  id = expect_ok(scene.pool.add_hull(cube, 0.0));
   Pose nan;
   nan.position[1] = std::nan("");
   Pose zero;

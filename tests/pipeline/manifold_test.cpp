@@ -15,6 +15,7 @@
 
 #include "tests/pipeline/pair_results.h"
 #include "tests/pipeline/pair_scenes.h"
+#include "tests/support/answers.h"
 #include "tests/support/config.h"
 #include "tests/support/random.h"
 
@@ -36,7 +37,7 @@ Pose pose_of(const Eigen::Quaterniond& turn, const Eigen::Vector3d& place) {
 ShapeId box_shape(ShapePool& pool, const Eigen::Vector3d& half, bool as_hull) {
   ShapeId id;
   if (!as_hull) {
-    EXPECT_EQ(pool.add(BoxShape{{half.x(), half.y(), half.z()}, 0.0}, id), Status::ok);
+    id = expect_ok(pool.add(BoxShape{{half.x(), half.y(), half.z()}, 0.0}));
     return id;
   }
   std::vector<Eigen::Vector3d> corners;
@@ -44,7 +45,7 @@ ShapeId box_shape(ShapePool& pool, const Eigen::Vector3d& half, bool as_hull) {
     corners.emplace_back((i & 1) != 0 ? half.x() : -half.x(), (i & 2) != 0 ? half.y() : -half.y(),
                          (i & 4) != 0 ? half.z() : -half.z());
   }
-  EXPECT_EQ(pool.add_hull(corners, 0.0, id), Status::ok);
+  id = expect_ok(pool.add_hull(corners, 0.0));
   return id;
 }
 
@@ -153,8 +154,8 @@ TEST(Manifolds, resting_hulls_rarely_need_solver) {
 TEST(Manifolds, capsule_deep_in_hull_has_deepest_point) {
   PairScene scene;
   scene.shapes.resize(2);
-  ASSERT_EQ(scene.pool.add(CapsuleShape{0.2222824254022642, 0.026282565200887533}, scene.shapes[0]),
-            Status::ok);
+  scene.shapes[0] =
+      expect_ok(scene.pool.add(CapsuleShape{0.2222824254022642, 0.026282565200887533}));
   const std::vector<Eigen::Vector3d> points{
       {-0.19631014625979862, 0.12218800340009678, -0.81374006265294041},
       {0.28154849142473987, 0.038549749736952646, 0.80102849761636152},
@@ -166,7 +167,7 @@ TEST(Manifolds, capsule_deep_in_hull_has_deepest_point) {
       {-0.24831994428858464, 0.194020962072501, -0.67466690563330489},
       {-0.063708071679541955, 0.29053466662447802, -0.55276815185466421},
       {0.4153574480228624, 0.10429567270739504, -0.57972170774647402}};
-  ASSERT_EQ(scene.pool.add_hull(points, 0.0, scene.shapes[1]), Status::ok);
+  scene.shapes[1] = expect_ok(scene.pool.add_hull(points, 0.0));
   const double turn[4] = {-0.085698602130273152, -0.51986299515095569, -0.030135590498817796,
                           0.84940571110093332};
   const double other[4] = {0.36052780060193618, 0.65003809976047455, 0.26109453534335325,
@@ -206,8 +207,7 @@ TEST(Manifolds, ball_on_hull_has_midpoint_and_closest_feature) {
   };
   PairScene scene;
   const ShapeId hull = box_shape(scene.pool, half, true);
-  ShapeId ball;
-  ASSERT_EQ(scene.pool.add(SphereShape{kRadius}, ball), Status::ok);
+  ShapeId ball = expect_ok(scene.pool.add(SphereShape{kRadius}));
   std::vector<Eigen::Vector3d> halfway;
   std::vector<double> depths;
   for (const auto& one : cases) {

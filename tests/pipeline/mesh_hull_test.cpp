@@ -11,6 +11,7 @@
 #include <limits>
 #include <vector>
 
+#include "tests/support/answers.h"
 #include "tests/support/config.h"
 #include "tests/support/meshes.h"
 #include "tests/support/random.h"
@@ -46,7 +47,7 @@ struct HullOnMesh {
     std::vector<Vector3d> points;
     const std::size_t count = random.chance(0.2) ? 3 : 4 + random.below(60);
     for (std::size_t i = 0; i < count; ++i) points.push_back(center + random_vector(random, size));
-    EXPECT_EQ(shapes.add_hull(points, 0.0, hull), Status::ok);
+    hull = expect_ok(shapes.add_hull(points, 0.0));
     Vector3d scale = Vector3d::Ones();
     if (random.chance(0.5)) scale = random_vector(random, 3.0) + Vector3d::Constant(0.1);
     linear = random_turn(random) * scale.asDiagonal();
@@ -98,7 +99,7 @@ struct HullOnMesh {
         as_eigen(triangle.vertex[k]) = linear * corner(mesh, slot, k) + offset;
       }
       ids.emplace_back();
-      EXPECT_EQ(shapes.add(triangle, ids.back()), Status::ok);
+      ids.back() = expect_ok(shapes.add(triangle));
       pairs.push_back({0, slot + 1});
     }
     const std::vector<Pose> poses(ids.size());

@@ -13,6 +13,7 @@
 
 #include "pipeline/solver/solver.h"
 #include "tests/pipeline/motion_reference.h"
+#include "tests/support/answers.h"
 #include "tests/support/config.h"
 #include "tests/support/meshes.h"
 #include "tests/support/random.h"
@@ -140,8 +141,7 @@ class Obstacles {
  private:
   template <typename Shape>
   ShapeId added(const Shape& shape) {
-    ShapeId id;
-    EXPECT_EQ(pool.add(shape, id), Status::ok);
+    ShapeId id = expect_ok(pool.add(shape));
     return id;
   }
   template <typename Shape>
@@ -152,7 +152,7 @@ class Obstacles {
   void put_torus() {
     const MeshData mesh = torus(6, 5);
     Obstacle obstacle;
-    EXPECT_EQ(composites.add_mesh(mesh.points(), mesh.indices(), obstacle.shape), Status::ok);
+    obstacle.shape = expect_ok(composites.add_mesh(mesh.points(), mesh.indices()));
     for (std::size_t i = 0; i < mesh.triangles(); ++i) {
       TriangleShape triangle;
       for (std::size_t k = 0; k < 3; ++k) {

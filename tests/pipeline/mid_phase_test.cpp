@@ -10,6 +10,7 @@
 #include <set>
 #include <tuple>
 
+#include "tests/support/answers.h"
 #include "tests/support/config.h"
 #include "tests/support/counting_memory.h"
 
@@ -209,11 +210,12 @@ TEST(MidPhase, refused_memory_changes_nothing) {
       Status status = Status::ok;
       if (kind == 0) {
         status = pool.add_mesh(std::span<const Point>(surface.vertices),
-                               std::span<const std::uint32_t>(surface.corners), id);
+                               std::span<const std::uint32_t>(surface.corners))
+                     .get(id);
       } else if (kind == 1) {
-        status = pool.add_compound(children, id);
+        status = pool.add_compound(children).get(id);
       } else {
-        status = pool.add_height_field({heights, 4, 3, 0, {1.0, 1.0}}, id);
+        status = pool.add_height_field({heights, 4, 3, 0, {1.0, 1.0}}).get(id);
       }
       EXPECT_EQ(memory.outstanding(), pool.footprint().total().reserved);
       memory.grant_all();
@@ -251,8 +253,8 @@ TEST(MidPhase, extreme_poses_and_scales_give_no_nan) {
   world.add_shapes(random);
   for (const double factor : {1e-100, 1e100}) {
     world.ids.emplace_back();
-    ASSERT_EQ(world.composites.add_scaled(world.ids[14], {factor, 1.0, -factor}, world.ids.back()),
-              Status::ok);
+    world.ids.back() =
+        expect_ok(world.composites.add_scaled(world.ids[14], {factor, 1.0, -factor}));
   }
   world.add_pairs(random, scaled(400), 1.0, {0.0, 0.0, 0.0});
   for (Pose& pose : world.pose) {

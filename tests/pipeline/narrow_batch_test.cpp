@@ -12,6 +12,7 @@
 #include "tests/pipeline/pair_results.h"
 #include "tests/pipeline/pair_scenes.h"
 #include "tests/pipeline/reproduction.h"
+#include "tests/support/answers.h"
 #include "tests/support/config.h"
 #include "tests/support/random.h"
 
@@ -240,8 +241,7 @@ TEST(OnePair, verdict_matches_batch_for_off_centre_shapes) {
   Random random(19);
   PairScene scene;
   const auto add = [&](const auto& shape) {
-    ShapeId id;
-    ASSERT_EQ(scene.pool.add(shape, id), Status::ok);
+    ShapeId id = expect_ok(scene.pool.add(shape));
     scene.shapes.push_back(id);
     scene.poses.push_back({});
   };
@@ -252,10 +252,8 @@ TEST(OnePair, verdict_matches_batch_for_off_centre_shapes) {
   add(CapsuleShape{0.2, 0.4});
   const UserShape& aside = scene.own.emplace_back(UserShape{
       UserShape::corners, {}, {1.0, 0.0, 0.0, 1.2, 0.1, 0.0, 1.1, -0.2, 0.1, 1.0, 0.1, 0.3}});
-  ShapeId own;
-  ASSERT_EQ(scene.pool.add(shape_of(aside, 0.01), own), Status::ok);
-  ShapeId nested;
-  ASSERT_EQ(scene.pool.add(TaperedCapsuleShape{{0.9, 0.1}, 0.3}, nested), Status::ok);
+  ShapeId own = expect_ok(scene.pool.add(shape_of(aside, 0.01)));
+  ShapeId nested = expect_ok(scene.pool.add(TaperedCapsuleShape{{0.9, 0.1}, 0.3}));
   const std::size_t others = scene.shapes.size();
   for (const ShapeId shape : {own, nested}) add_near(scene, shape, others, scaled(2000), random);
   expect_same_verdicts(scene);

@@ -11,6 +11,7 @@
 
 #include "tests/pipeline/pair_results.h"
 #include "tests/pipeline/pair_scenes.h"
+#include "tests/support/answers.h"
 #include "tests/support/config.h"
 #include "tests/support/counting_memory.h"
 #include "tests/support/heap_count.h"
@@ -159,8 +160,7 @@ TEST_F(NarrowInput, missing_pose_is_refused) {
 }
 
 TEST_F(NarrowInput, unknown_shape_is_refused) {
-  ShapeId sphere;
-  ASSERT_EQ(scene_.pool.add(SphereShape{1.0}, sphere), Status::ok);
+  expect_ok(scene_.pool.add(SphereShape{1.0}));
   for (const ShapeId id : {ShapeId{}, ShapeId::of(ShapeKind::cone, 1000), ShapeId{9U << 28U},
                            ShapeId::of(ShapeKind::half_space, (1U << 28U) - 1U)}) {
     ShapeId& shape = scene_.shapes[scene_.pairs[7].b];

@@ -12,6 +12,7 @@
 #include "tests/pipeline/pair_results.h"
 #include "tests/pipeline/pair_scenes.h"
 #include "tests/pipeline/reproduction.h"
+#include "tests/support/answers.h"
 #include "tests/support/random.h"
 
 namespace winnow::test {
@@ -182,8 +183,7 @@ TEST_P(Properties, witness_points_lie_on_shapes) {
   for (const NarrowTier tier : kTiers) {
     const auto answers = compute_results(scene_, distances(tier));
     PairScene points = mixed_scene(GetParam(), scaled(12), 3);
-    ShapeId point;
-    ASSERT_EQ(points.pool.add(SphereShape{0.0}, point), Status::ok);
+    ShapeId point = expect_ok(points.pool.add(SphereShape{0.0}));
     points.pairs.clear();
     for (std::size_t i = 0; i < answers.size(); ++i) {
       const BodyPair pair = scene_.pairs[i];
@@ -231,7 +231,7 @@ PairScene scaled_scene(PairStyle style, int exponent) {
   const auto times = [exponent](double& x) { x = std::ldexp(x, exponent); };
   const auto add = [&](auto shape, auto... members) {
     (times(shape.*members), ...);
-    EXPECT_EQ(result.pool.add(shape, result.shapes.emplace_back()), Status::ok);
+    result.shapes.emplace_back() = expect_ok(result.pool.add(shape));
   };
   const ShapeTables tables = scene.pool.tables();
   for (const ShapeId id : scene.shapes) {
@@ -305,7 +305,7 @@ PairScene boxes_of_any_sizes(int digits, Random& random) {
     BoxShape box;
     for (double& half : box.half) half = std::abs(any());
     if (i % 3 == 0) box.half = Vec3d::constant(box.half[0]);
-    EXPECT_EQ(scene.pool.add(box, scene.shapes.emplace_back()), Status::ok);
+    scene.shapes.emplace_back() = expect_ok(scene.pool.add(box));
     scene.poses.push_back(Pose::at(any(), any(), any()));
     if (i % 2 == 1) scene.pairs.push_back({i - 1, i});
   }

@@ -17,6 +17,7 @@
 #include <span>
 #include <vector>
 
+#include "tests/support/answers.h"
 #include "tests/support/config.h"
 #include "tests/support/counting_memory.h"
 #include "tests/support/meshes.h"
@@ -108,8 +109,7 @@ TEST(OneSided, mid_phase_drops_triangles_seen_from_behind) {
 struct QueriedBody {
   QueriedBody(const FacingWorld& world, ShapeId shape)
       : scene(world.shapes, {.composites = &world.composites}), queries(scene) {
-    Key key;
-    EXPECT_EQ(scene.add({.shape = shape, .pose = Pose::at(-1, 2, 0.5)}, key), Status::ok);
+    expect_ok(scene.add({.shape = shape, .pose = Pose::at(-1, 2, 0.5)}));
     EXPECT_EQ(scene.refresh(), Status::ok);
   }
 
@@ -131,8 +131,7 @@ TEST(OneSided, compound_of_one_surface_matches_surface) {
     std::size_t hit_count = 0;
     for (const ShapeId surface : world.surfaces) {
       const CompoundChild child[] = {{surface, {}}};
-      ShapeId compound;
-      ASSERT_EQ(world.composites.add_compound(child, compound), Status::ok);
+      ShapeId compound = expect_ok(world.composites.add_compound(child));
       ASSERT_EQ(world.composites.parts(compound), world.composites.parts(surface));
       QueriedBody plain(world, surface);
       QueriedBody inside(world, compound);
@@ -146,12 +145,12 @@ TEST(OneSided, compound_of_one_surface_matches_surface) {
               random.uniform(-1.0, 1.0) - (from.position[axis] + (axis == 1 ? -2.0 : 0.0));
         }
         SceneHit hits[2];
-        ASSERT_EQ(plain.queries.closest(ray, hits[0]), Status::ok);
-        ASSERT_EQ(inside.queries.closest(ray, hits[1]), Status::ok);
+        hits[0] = expect_ok(plain.queries.closest(ray));
+        hits[1] = expect_ok(inside.queries.closest(ray));
         expect_same(hits[0], hits[1]);
         hit_count += hits[0] ? 1 : 0;
-        ASSERT_EQ(plain.queries.closest(cast, hits[0]), Status::ok);
-        ASSERT_EQ(inside.queries.closest(cast, hits[1]), Status::ok);
+        hits[0] = expect_ok(plain.queries.closest(cast));
+        hits[1] = expect_ok(inside.queries.closest(cast));
         expect_same(hits[0], hits[1]);
       }
     }
@@ -159,8 +158,7 @@ TEST(OneSided, compound_of_one_surface_matches_surface) {
     for (std::size_t i = 0; i < world.pairs.size(); ++i) {
       const std::set<std::uint32_t> expected = parts_hit(world, i, 0.1);
       const CompoundChild child[] = {{world.body[2 * i], {}}};
-      ShapeId compound;
-      ASSERT_EQ(world.composites.add_compound(child, compound), Status::ok);
+      ShapeId compound = expect_ok(world.composites.add_compound(child));
       world.body[2 * i] = compound;
       EXPECT_EQ(parts_hit(world, i, 0.1), expected);
     }
@@ -181,7 +179,7 @@ TEST(OneSided, normals_never_point_to_the_back) {
       Key keys[2];
       for (std::size_t k = 0; k < 2; ++k) {
         const BodyDefinition body{.shape = world.body[2 * i + k], .pose = world.pose[2 * i + k]};
-        ASSERT_EQ(scene.add(body, keys[k]), Status::ok);
+        keys[k] = expect_ok(scene.add(body));
       }
       Contacts contacts;
       ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
@@ -207,36 +205,34 @@ struct FrontFloor {
   FrontFloor(bool field, bool mirrored) {
     if (field) {
       const std::vector<float> heights(9 * 9, 0.0F);
-      EXPECT_EQ(composites.add_height_field({heights, 9, 9, 0, {0.5, 0.5}}, id), Status::ok);
+      id = expect_ok(composites.add_height_field({heights, 9, 9, 0, {0.5, 0.5}}));
     } else {
       id = add(composites, grid(8, 0.5F, Cut::alternating, [](float, float) { return 0.0F; }));
       const double side = mirrored ? -1.0 : 1.0;
-      EXPECT_EQ(composites.add_scaled(id, {side, 1.0, 1.0}, id), Status::ok);
+      id = expect_ok(composites.add_scaled(id, {side, 1.0, 1.0}));
     }
     EXPECT_EQ(composites.set_one_sided(id), Status::ok);
     ball = add(shapes, SphereShape{0.3});
     const double middle = field ? -2.0 : 0.0;
     const Pose at = Pose::at(middle, middle, 0.0);
-    EXPECT_EQ(scene.add({.shape = id, .pose = at, .state = BodyState::fixed}, floor), Status::ok);
+    floor = expect_ok(scene.add({.shape = id, .pose = at, .state = BodyState::fixed}));
     EXPECT_EQ(scene.refresh(), Status::ok);
   }
 
   [[nodiscard]] double ray(double from, double to) {
     const ShapeRay query{{0.1, 0.2, from}, {0.0, 0.0, to - from}, 1.0};
-    SceneHit hit;
-    EXPECT_EQ(queries.closest(query, hit), Status::ok);
+    SceneHit hit = expect_ok(queries.closest(query));
     return hit.key == floor ? hit.t : -1.0;
   }
   [[nodiscard]] double cast(double from, double to) {
     const ShapeCast query{ball, Pose::at(0.1, 0.2, from), {0.0, 0.0, to - from}, 1.0};
-    SceneHit hit;
-    EXPECT_EQ(queries.closest(query, hit), Status::ok);
+    SceneHit hit = expect_ok(queries.closest(query));
     return hit.key == floor ? hit.t : -1.0;
   }
   [[nodiscard]] bool overlaps(double height) {
     bool any = false;
-    std::span<const SceneOverlap> found;
-    EXPECT_EQ(queries.overlap(ball, Pose::at(0.1, 0.2, height), found), Status::ok);
+    std::span<const SceneOverlap> found =
+        expect_ok(queries.overlap(ball, Pose::at(0.1, 0.2, height)));
     for (const SceneOverlap& one : found) any = any || one.key == floor;
     return any;
   }
@@ -293,8 +289,7 @@ TEST(OneSided, queries_hit_only_from_the_front) {
 struct Scattered {
   Scattered(const MeshData& mesh, bool one_sided, CompositePool& pool, Scene& scene) {
     const auto body = [&](const IndexView& triangles) {
-      ShapeId id;
-      EXPECT_EQ(pool.add_mesh(mesh.points(), triangles, id), Status::ok);
+      ShapeId id = expect_ok(pool.add_mesh(mesh.points(), triangles));
       EXPECT_EQ(pool.set_one_sided(id, one_sided), Status::ok);
       return scene.add({.shape = id});
     };
@@ -325,12 +320,12 @@ TEST(OneSided, mesh_distance_uses_only_facing_triangles) {
     double expected = std::numeric_limits<double>::infinity();
     for (const Key one : a.single) {
       for (const Key other : b.single) {
-        ASSERT_EQ(queries.distance(one, other, nearest), Status::ok);
+        nearest = expect_ok(queries.distance(one, other));
         if (nearest) expected = std::min(expected, nearest.distance);
         with_behind += nearest ? 0 : 1;
       }
     }
-    ASSERT_EQ(queries.distance(a.whole, b.whole, nearest), Status::ok);
+    nearest = expect_ok(queries.distance(a.whole, b.whole));
     ASSERT_EQ(static_cast<bool>(nearest), expected < 100.0) << round;
     if (nearest) {
       EXPECT_NEAR(nearest.distance, expected, 1e-12) << round;
@@ -344,8 +339,7 @@ TEST(OneSided, mesh_distance_uses_only_facing_triangles) {
 TEST(OneSided, sinking_box_is_pushed_until_centre_passes) {
   FrontFloor floor(false, false);
   const ShapeId box = add(floor.shapes, BoxShape{{0.4, 0.3, 0.2}, 0.0});
-  Key key;
-  ASSERT_EQ(floor.scene.add({.shape = box}, key), Status::ok);
+  Key key = expect_ok(floor.scene.add({.shape = box}));
   Contacts contacts;
   for (double height = 0.195; height > -0.21; height -= 0.0299) {
     ASSERT_EQ(floor.scene.move(key, Pose::at(0.13, 0.07, height)), Status::ok);
@@ -363,8 +357,7 @@ TEST(OneSided, each_id_has_its_own_side) {
   ShapePool shapes(&memory);
   CompositePool composites(shapes, &memory);
   const ShapeId mesh = add(composites, grid(2, 1.0F, Cut::same, [](float, float) { return 0.0F; }));
-  ShapeId other;
-  ASSERT_EQ(composites.add_scaled(mesh, {1.0, 1.0, 1.0}, other), Status::ok);
+  ShapeId other = expect_ok(composites.add_scaled(mesh, {1.0, 1.0, 1.0}));
   const std::uint64_t before = composites.revision();
   ASSERT_EQ(composites.set_one_sided(other), Status::ok);
   EXPECT_GT(composites.revision(), before);
@@ -378,8 +371,7 @@ TEST(OneSided, each_id_has_its_own_side) {
   const ShapeId ball = add(shapes, SphereShape{1.0});
   EXPECT_EQ(composites.set_one_sided(ball), Status::invalid_key);
   const CompoundChild child[] = {{ball, {}}};
-  ShapeId compound;
-  ASSERT_EQ(composites.add_compound(child, compound), Status::ok);
+  ShapeId compound = expect_ok(composites.add_compound(child));
   EXPECT_EQ(composites.set_one_sided(compound), Status::invalid_key);
   EXPECT_EQ(composites.footprint().total().reserved + shapes.footprint().total().reserved,
             memory.outstanding());

@@ -7,6 +7,7 @@
 
 #include "bench/oracle/oracle.h"
 #include "tests/pipeline/pair_scenes.h"
+#include "tests/support/answers.h"
 
 namespace winnow::test {
 namespace {
@@ -15,8 +16,7 @@ class Truths : public testing::Test {
  protected:
   template <typename Shape>
   ShapeId add(const Shape& shape) {
-    ShapeId id;
-    EXPECT_EQ(pool_.add(shape, id), Status::ok);
+    ShapeId id = expect_ok(pool_.add(shape));
     return id;
   }
   [[nodiscard]] oracle::Truth solve(ShapeId a, const Pose& pose_a, ShapeId b,

@@ -128,39 +128,39 @@ class Maker {
     reach += std::hypot(half[0], half[1], half[2]) + round;
     switch (kind) {
       case ShapeKind::sphere:
-        status = scene_.pool.add(SphereShape{half[0]}, id);
+        status = scene_.pool.add(SphereShape{half[0]}).get(id);
         break;
       case ShapeKind::capsule:
-        status = scene_.pool.add(CapsuleShape{half[0], half[1]}, id);
+        status = scene_.pool.add(CapsuleShape{half[0], half[1]}).get(id);
         break;
       case ShapeKind::box:
-        status = scene_.pool.add(BoxShape{{half[0], half[1], half[2]}, round}, id);
+        status = scene_.pool.add(BoxShape{{half[0], half[1], half[2]}, round}).get(id);
         break;
       case ShapeKind::cylinder:
-        status = scene_.pool.add(CylinderShape{half[0], half[1], round}, id);
+        status = scene_.pool.add(CylinderShape{half[0], half[1], round}).get(id);
         break;
       case ShapeKind::cone:
-        status = scene_.pool.add(ConeShape{half[0], half[1], round}, id);
+        status = scene_.pool.add(ConeShape{half[0], half[1], round}).get(id);
         break;
       case ShapeKind::triangle:
-        status = scene_.pool.add(triangle(size), id);
+        status = scene_.pool.add(triangle(size)).get(id);
         break;
       case ShapeKind::hull:
-        status = scene_.pool.add_hull(hull_points(size), round, id);
+        status = scene_.pool.add_hull(hull_points(size), round).get(id);
         break;
       case ShapeKind::half_space: {
         const Eigen::Vector3d n = point(1.0) + Eigen::Vector3d(0.0, 0.0, 10.0);
-        status = scene_.pool.add(HalfSpaceShape{{n.x(), n.y(), n.z()}, coordinate(size)}, id);
+        status = scene_.pool.add(HalfSpaceShape{{n.x(), n.y(), n.z()}, coordinate(size)}).get(id);
         break;
       }
       case ShapeKind::ellipsoid:
-        status = scene_.pool.add(EllipsoidShape{{half[0], half[1], half[2]}, round}, id);
+        status = scene_.pool.add(EllipsoidShape{{half[0], half[1], half[2]}, round}).get(id);
         break;
       case ShapeKind::tapered_capsule:
-        status = scene_.pool.add(TaperedCapsuleShape{{half[0], half[1]}, half[2]}, id);
+        status = scene_.pool.add(TaperedCapsuleShape{{half[0], half[1]}, half[2]}).get(id);
         break;
       case ShapeKind::support:
-        status = scene_.pool.add(shape_of(user_shape(size, half), round), id);
+        status = scene_.pool.add(shape_of(user_shape(size, half), round)).get(id);
         break;
       default:
         status = Status::unsupported;

@@ -12,6 +12,7 @@
 #include "tests/pipeline/hull_brute_force.h"
 #include "tests/pipeline/pair_results.h"
 #include "tests/pipeline/pair_scenes.h"
+#include "tests/support/answers.h"
 #include "tests/support/config.h"
 #include "tests/support/random.h"
 
@@ -78,7 +79,7 @@ PairScene nearly_parallel(Form form, std::size_t count, Random& random) {
   PairScene scene;
   std::vector<ShapeId> hulls(20);
   for (ShapeId& id : hulls) {
-    EXPECT_EQ(scene.pool.add_hull(corners_of(form, random), 0.0, id), Status::ok);
+    id = expect_ok(scene.pool.add_hull(corners_of(form, random), 0.0));
   }
   for (std::size_t i = 0; i < count; ++i) {
     const Eigen::Quaterniond turn =
@@ -104,7 +105,7 @@ TEST(ParallelCubes, slightly_turned_cubes_touch_edge_on_edge) {
   PairScene scene;
   scene.shapes.resize(2);
   for (ShapeId& id : scene.shapes) {
-    ASSERT_EQ(scene.pool.add_hull(block(1, 1, 1), 0.0, id), Status::ok);
+    id = expect_ok(scene.pool.add_hull(block(1, 1, 1), 0.0));
   }
   put(Eigen::Quaterniond::Identity(), Eigen::Vector3d::Zero(), scene);
   constexpr double kTurn = 2.886751345948128e-08;

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "tests/pipeline/pair_scenes.h"
+#include "tests/support/answers.h"
 
 namespace winnow::test {
 
@@ -114,7 +115,7 @@ inline ShapeId add_sheet(CompositePool& pool, std::uint32_t n) {
   ShapeId id;
   const std::span<const Vec3f> points(vertices);
   const std::span<const std::uint32_t> triangles(corners);
-  EXPECT_EQ(pool.add_mesh(points, triangles, id), Status::ok);
+  id = expect_ok(pool.add_mesh(points, triangles));
   return id;
 }
 
@@ -136,21 +137,21 @@ inline void fill(QueryWorld& world, std::size_t count, double center, Random& ra
   }
   ShapeId ids[5];
   ids[0] = add_sheet(world.composites, 6);
-  ASSERT_EQ(world.composites.add_scaled(ids[0], {2.0, 0.5, -3.0}, ids[1]), Status::ok);
+  ids[1] = expect_ok(world.composites.add_scaled(ids[0], {2.0, 0.5, -3.0}));
   std::vector<CompoundChild> children;
   for (std::size_t i = 0; i < 20; ++i) {
     children.push_back({world.shapes.shapes[i], random_pose(2.0, random)});
   }
-  ASSERT_EQ(world.composites.add_compound(children, ids[2]), Status::ok);
+  ids[2] = expect_ok(world.composites.add_compound(children));
   std::vector<float> heights(12 * 9);
   for (float& h : heights) h = static_cast<float>(random.unit());
-  ASSERT_EQ(world.composites.add_height_field({heights, 12, 9, 0, {0.4, 0.5}}, ids[3]), Status::ok);
+  ids[3] = expect_ok(world.composites.add_height_field({heights, 12, 9, 0, {0.4, 0.5}}));
   std::vector<CompoundChild> surfaces;
   for (const std::size_t i : {0U, 1U, 3U, 0U}) {
     surfaces.push_back({ids[i], random_pose(2.0, random)});
     surfaces.push_back({world.shapes.shapes[i], random_pose(2.0, random)});
   }
-  ASSERT_EQ(world.composites.add_compound(surfaces, ids[4]), Status::ok);
+  ids[4] = expect_ok(world.composites.add_compound(surfaces));
   for (std::size_t i = 0; i < 15; ++i) {
     world.add(ids[i % 5], random_pose(spread, random), random);
   }

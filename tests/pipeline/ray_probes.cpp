@@ -77,7 +77,7 @@ RayProbes::RayProbes() {
   add_capsule(1.0, 0.0);
   add_half_space({0.0, 0.6, 0.8}, -0.5);
   ShapeId id;
-  const Status status = pool_.add(SphereShape{1.0}, id);
+  const Status status = pool_.add(SphereShape{1.0}).get(id);
   put(status, "sphere", id, [](const Vector3d& p) { return p.norm() - 1.0; });
 }
 
@@ -89,7 +89,7 @@ void RayProbes::put(Status status, const std::string& name, ShapeId id,
 
 void RayProbes::add_box(const Vector3d& half, double r) {
   ShapeId id;
-  const Status status = pool_.add(BoxShape{{half.x(), half.y(), half.z()}, r}, id);
+  const Status status = pool_.add(BoxShape{{half.x(), half.y(), half.z()}, r}).get(id);
   put(status, "box", id, [=](const Vector3d& p) { return distance_to_box(p, half) - r; });
 }
 
@@ -103,7 +103,7 @@ void RayProbes::add_box_hull(const Vector3d& half, double r) {
                                             2, 6, 7, 3, 0, 4, 6, 2, 1, 3, 7, 5};
   const std::vector<std::uint32_t> sizes(6, 4);
   ShapeId id;
-  const Status status = pool_.add_hull(points, HullFaces{loops, sizes}, r, id);
+  const Status status = pool_.add_hull(points, HullFaces{loops, sizes}, r).get(id);
   put(status, "hull", id, [=](const Vector3d& p) { return distance_to_box(p, half) - r; });
 }
 
@@ -113,7 +113,7 @@ void RayProbes::add_triangle(const Vector3d& a, const Vector3d& b, const Vector3
   as_eigen(shape.vertex[1]) = b;
   as_eigen(shape.vertex[2]) = c;
   ShapeId id;
-  const Status status = pool_.add(shape, id);
+  const Status status = pool_.add(shape).get(id);
   put(status, "triangle", id, [=](const Vector3d& p) {
     const Vector3d at[3] = {a, b, c};
     return distance_to_triangle(p, at) - r;
@@ -122,20 +122,20 @@ void RayProbes::add_triangle(const Vector3d& a, const Vector3d& b, const Vector3
 
 void RayProbes::add_cylinder(double radius, double half, double r) {
   ShapeId id;
-  const Status status = pool_.add(CylinderShape{radius, half, r}, id);
+  const Status status = pool_.add(CylinderShape{radius, half, r}).get(id);
   put(status, "cylinder", id,
       [=](const Vector3d& p) { return distance_to_cylinder(p, radius, half) - r; });
 }
 
 void RayProbes::add_cone(double radius, double half, double r) {
   ShapeId id;
-  const Status status = pool_.add(ConeShape{radius, half, r}, id);
+  const Status status = pool_.add(ConeShape{radius, half, r}).get(id);
   put(status, "cone", id, [=](const Vector3d& p) { return distance_to_cone(p, radius, half) - r; });
 }
 
 void RayProbes::add_capsule(double radius, double half) {
   ShapeId id;
-  const Status status = pool_.add(CapsuleShape{radius, half}, id);
+  const Status status = pool_.add(CapsuleShape{radius, half}).get(id);
   put(status, "capsule", id, [=](const Vector3d& p) {
     return distance_to_segment(p, {0.0, 0.0, -half}, {0.0, 0.0, half}) - radius;
   });
@@ -144,7 +144,7 @@ void RayProbes::add_capsule(double radius, double half) {
 void RayProbes::add_half_space(const Vector3d& normal, double offset) {
   ShapeId id;
   const HalfSpaceShape shape{{normal.x(), normal.y(), normal.z()}, offset};
-  const Status status = pool_.add(shape, id);
+  const Status status = pool_.add(shape).get(id);
   put(status, "half-space", id, [=](const Vector3d& p) { return p.dot(normal) - offset; });
 }
 

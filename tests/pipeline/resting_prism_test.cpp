@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tests/pipeline/floor_contacts.h"
+#include "tests/support/answers.h"
 
 namespace winnow::test {
 namespace {
@@ -49,8 +50,7 @@ TEST(RestingPrism, contact_points_span_the_base) {
         SCOPED_TRACE(testing::Message()
                      << sides << " sides, radius " << radius << ", turned by " << turn);
         ShapePool pool;
-        ShapeId hull;
-        ASSERT_EQ(pool.add_hull(prism(sides, turn, radius), 0.0, hull), Status::ok);
+        ShapeId hull = expect_ok(pool.add_hull(prism(sides, turn, radius), 0.0));
         // A small tilt makes the lowest vertex unique.
         Pose pose = Pose::at(0, 0, -1e-4 * radius);
         pose.orientation[1] = 1e-5;

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "tests/pipeline/scene_world.h"
+#include "tests/support/answers.h"
 #include "tests/support/counting_memory.h"
 #include "tests/support/meshes.h"
 
@@ -29,7 +30,7 @@ class DenseWorld {
   DenseWorld() : world_(400, 77), composites_(world_.pool) {
     ShapeId mesh;
     const MeshData data = torus(7, 5);
-    EXPECT_EQ(composites_.add_mesh(data.points(), data.indices(), mesh), Status::ok);
+    mesh = expect_ok(composites_.add_mesh(data.points(), data.indices()));
     for (std::size_t i = 0; i < world_.bodies.size(); ++i) {
       BodyDefinition& body = world_.bodies[i];
       body.state = BodyState::dynamic;
@@ -130,8 +131,7 @@ constexpr BodyState kBodyStateOf[] = {BodyState::fixed, BodyState::dynamic, Body
 class Rows {
  public:
   Rows() {
-    ShapeId ball;
-    EXPECT_EQ(pool.add(SphereShape{0.5}, ball), Status::ok);
+    ShapeId ball = expect_ok(pool.add(SphereShape{0.5}));
     for (std::size_t i = 0; i < kManyBodies; ++i) {
       BodyDefinition body{.shape = ball, .data = 7 * i};
       body.pose =
@@ -201,8 +201,7 @@ TEST(SceneBatches, removing_many_bodies_keeps_the_others) {
 // The remaining bytes belong to bodies, pairs and partitions.
 TEST(SceneBatches, contact_takes_few_bytes) {
   ShapePool pool;
-  ShapeId ball;
-  ASSERT_EQ(pool.add(SphereShape{0.5}, ball), Status::ok);
+  ShapeId ball = expect_ok(pool.add(SphereShape{0.5}));
   Random random(5);
   std::vector<BodyDefinition> bodies(30000, BodyDefinition{.shape = ball});
   const double side = std::cbrt(static_cast<double>(bodies.size()) * 0.29);
@@ -212,8 +211,7 @@ TEST(SceneBatches, contact_takes_few_bytes) {
   bodies.back().pose = Pose::at(-50.0, 0.0, 0.0);
   CompositePool composites(pool);
   const MeshData data = torus(7, 5);
-  ShapeId mesh;
-  ASSERT_EQ(composites.add_mesh(data.points(), data.indices(), mesh), Status::ok);
+  ShapeId mesh = expect_ok(composites.add_mesh(data.points(), data.indices()));
   std::size_t results[2];
   for (int with = 0; with < 2; ++with) {
     CountingMemory memory;
@@ -251,9 +249,9 @@ struct Place {
 [[nodiscard]] std::vector<BodyDefinition> bodies_at(const Place& place, ShapePool& pool,
                                                     Random& random) {
   std::array<ShapeId, 3> shapes;
-  EXPECT_EQ(pool.add(SphereShape{place.size}, shapes[0]), Status::ok);
-  EXPECT_EQ(pool.add(SphereShape{0.25 * place.size}, shapes[1]), Status::ok);
-  EXPECT_EQ(pool.add(CapsuleShape{0.5 * place.size, place.size}, shapes[2]), Status::ok);
+  shapes[0] = expect_ok(pool.add(SphereShape{place.size}));
+  shapes[1] = expect_ok(pool.add(SphereShape{0.25 * place.size}));
+  shapes[2] = expect_ok(pool.add(CapsuleShape{0.5 * place.size, place.size}));
   std::vector<BodyDefinition> bodies(200);
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     bodies[i].shape = shapes[i % shapes.size()];

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 
+#include "tests/support/answers.h"
 #include "tests/support/config.h"
 #include "tests/support/counting_memory.h"
 
@@ -16,12 +17,11 @@ namespace {
 /// Four balls in a row. Each touches the next.
 struct Row {
   Row() {
-    ShapeId ball;
-    EXPECT_EQ(pool.add(SphereShape{1.0}, ball), Status::ok);
+    ShapeId ball = expect_ok(pool.add(SphereShape{1.0}));
     for (int i = 0; i < 4; ++i) {
       const BodyDefinition body{
           .shape = ball, .pose = Pose::at(1.9 * i, 0, 0), .data = static_cast<ClientData>(i)};
-      EXPECT_EQ(scene.add(body, keys[i]), Status::ok);
+      keys[i] = expect_ok(scene.add(body));
     }
   }
   [[nodiscard]] std::set<Names> pairs() {
@@ -54,12 +54,10 @@ TEST(SceneFilters, ignored_pair_ends_until_it_is_restored) {
 TEST(SceneFilters, removed_body_loses_its_ignored_pairs) {
   Row row;
   ASSERT_EQ(row.scene.set_ignored(row.keys[0], row.keys[1]), Status::ok);
-  BodyDefinition body;
-  ASSERT_EQ(row.scene.body(row.keys[0], body), Status::ok);
+  BodyDefinition body = expect_ok(row.scene.body(row.keys[0]));
   ASSERT_EQ(row.scene.remove(row.keys[0]), Status::ok);
   EXPECT_EQ(row.scene.set_ignored(row.keys[0], row.keys[2]), Status::invalid_key);
-  Key fresh;
-  ASSERT_EQ(row.scene.add(body, fresh), Status::ok);
+  Key fresh = expect_ok(row.scene.add(body));
   ASSERT_EQ(fresh.id, row.keys[0].id);
   EXPECT_EQ(row.pairs(), (Pairs{{0, 1}, {1, 2}, {2, 3}}));
   EXPECT_EQ(row.scene.set_ignored(fresh, fresh), Status::invalid_argument);
@@ -70,7 +68,7 @@ struct RandomIgnores {
   static constexpr std::size_t kBodies = 25;
 
   RandomIgnores() {
-    EXPECT_EQ(pool.add(SphereShape{1.0}, ball), Status::ok);
+    ball = expect_ok(pool.add(SphereShape{1.0}));
     for (Key& key : keys) key = scene.add({.shape = ball});
   }
   void set_random(bool ignored) {
@@ -214,8 +212,7 @@ TEST(SceneFilters, contacts_leave_out_pairs_of_excluded_layers) {
     EXPECT_EQ(shown(contacts), expected);
     EXPECT_EQ(scene.footprint().total().reserved, memory.outstanding());
   }
-  BodyDefinition body;
-  ASSERT_EQ(scene.body(world.keys[5], body), Status::ok);
+  BodyDefinition body = expect_ok(scene.body(world.keys[5]));
   EXPECT_EQ(body.layer, world.bodies[5].layer);
 }
 
@@ -228,15 +225,14 @@ TEST(SceneFilters, ray_with_layer_filter_skips_layers) {
   SceneQueries queries(row.scene);
   const ShapeRay ray{{-5, 0, 0}, {1, 0, 0}, 100};
   const LayerFilter seven{row.scene, 7};
-  SceneHit hit;
-  ASSERT_EQ(queries.closest(ray, hit, seven.filter()), Status::ok);
+  SceneHit hit = expect_ok(queries.closest(ray, seven.filter()));
   EXPECT_EQ(hit.key, row.keys[1]);
   LayerFilter other = seven;
   ObjectId never = row.keys[1].id;
   other.also.predicate = {
       [](void* context, Key key, ClientData) { return key.id != *static_cast<ObjectId*>(context); },
       &never};
-  ASSERT_EQ(queries.closest(ray, hit, other.filter()), Status::ok);
+  hit = expect_ok(queries.closest(ray, other.filter()));
   EXPECT_EQ(hit.key, row.keys[2]);
 }
 
@@ -246,18 +242,17 @@ TEST(SceneFilters, layers_out_of_range_are_refused) {
   EXPECT_EQ(row.scene.set_layers_collide(4096, 0), Status::invalid_argument);
   EXPECT_EQ(row.scene.set_layers_collide(0, 65535, false), Status::invalid_argument);
   EXPECT_EQ(row.scene.set_layer(Key{}, 1), Status::invalid_key);
-  BodyDefinition body;
-  ASSERT_EQ(row.scene.body(row.keys[0], body), Status::ok);
+  BodyDefinition body = expect_ok(row.scene.body(row.keys[0]));
   body.layer = 5000;
   Key key;
-  EXPECT_EQ(row.scene.add(body, key), Status::invalid_argument);
+  expect_error(row.scene.add(body), Status::invalid_argument);
   EXPECT_EQ(row.scene.layer(row.keys[0]), 0);
   // A layer can also exclude itself.
   ASSERT_EQ(row.scene.set_layers_collide(0, 0, false), Status::ok);
   EXPECT_TRUE(row.pairs().empty());
   row.scene.clear();
   body.layer = 9;
-  ASSERT_EQ(row.scene.add(body, key), Status::ok);
+  key = expect_ok(row.scene.add(body));
   EXPECT_EQ(row.scene.layer(key), 9);
 }
 
@@ -280,22 +275,20 @@ TEST(SceneFilters, refused_memory_changes_nothing) {
 
 TEST(SceneFilters, move_by_positions_keeps_orientations) {
   ShapePool pool;
-  ShapeId box;
-  ASSERT_EQ(pool.add(BoxShape{{1, 2, 3}}, box), Status::ok);
+  ShapeId box = expect_ok(pool.add(BoxShape{{1, 2, 3}}));
   Scene scene(pool);
   Key keys[2];
   Pose turned = Pose::at(0, 0, 0);
   for (double& q : turned.orientation) q = 0.5;
-  ASSERT_EQ(scene.add({.shape = box, .pose = turned}, keys[0]), Status::ok);
-  ASSERT_EQ(scene.add({.shape = box}, keys[1]), Status::ok);
+  keys[0] = expect_ok(scene.add({.shape = box, .pose = turned}));
+  keys[1] = expect_ok(scene.add({.shape = box}));
   const std::vector<Vec3d> places{{4, 5, 6}, {7, 8, 9}};
   const double x[2] = {1, 2};
   const double y[2] = {3, 4};
   const double z[2] = {5, 6};
   for (const PoseView& view : {PoseView::of_positions(places), PoseView({x, y, z}, 2)}) {
     ASSERT_EQ(scene.move(keys, view), Status::ok);
-    BodyDefinition body;
-    ASSERT_EQ(scene.body(keys[0], body), Status::ok);
+    BodyDefinition body = expect_ok(scene.body(keys[0]));
     for (const double q : body.pose.orientation) EXPECT_EQ(q, 0.5);
     EXPECT_EQ(body.pose.position[0], view[0].position[0]);
     EXPECT_EQ(body.pose.position[2], view[0].position[2]);

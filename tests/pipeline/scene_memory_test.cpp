@@ -8,6 +8,7 @@
 #include <limits>
 #include <vector>
 
+#include "tests/support/answers.h"
 #include "tests/support/config.h"
 #include "tests/support/counting_memory.h"
 
@@ -59,12 +60,11 @@ TEST(ContactCache, touching_pairs_are_reported_within_error_bounds) {
 
 TEST(ContactCache, turning_pair_keeps_contact_that_turns_along) {
   ShapePool pool;
-  ShapeId ball;
-  ASSERT_EQ(pool.add(SphereShape{1}, ball), Status::ok);
+  ShapeId ball = expect_ok(pool.add(SphereShape{1}));
   Scene scene(pool, {.cache_tolerance = 0.01});
   Key keys[2];
-  ASSERT_EQ(scene.add({.shape = ball}, keys[0]), Status::ok);
-  ASSERT_EQ(scene.add({.shape = ball, .pose = Pose::at(1.9, 0, 0)}, keys[1]), Status::ok);
+  keys[0] = expect_ok(scene.add({.shape = ball}));
+  keys[1] = expect_ok(scene.add({.shape = ball, .pose = Pose::at(1.9, 0, 0)}));
   Contacts contacts;
   for (int frame = 0; frame < 60; ++frame) {
     const double angle = 0.05 * frame;
@@ -190,8 +190,7 @@ TEST(SceneBytes, contact_takes_at_most_250_bytes) {
   constexpr std::size_t kBalls = 40000;
   constexpr double kSide = 22.0;
   ShapePool shapes;
-  ShapeId ball;
-  ASSERT_EQ(shapes.add(SphereShape{0.5}, ball), Status::ok);
+  ShapeId ball = expect_ok(shapes.add(SphereShape{0.5}));
   Random random(5);
   std::vector<BodyDefinition> bodies(kBalls);
   for (BodyDefinition& body : bodies) {
@@ -217,15 +216,13 @@ TEST(SceneBytes, small_scene_takes_a_kilobyte_per_body) {
   constexpr std::size_t kBodies = 20;
   CountingMemory memory;
   ShapePool shapes(&memory);
-  ShapeId box;
-  ASSERT_EQ(shapes.add(BoxShape{.half = {0.5, 0.5, 0.5}}, box), Status::ok);
+  ShapeId box = expect_ok(shapes.add(BoxShape{.half = {0.5, 0.5, 0.5}}));
   Scene scene(shapes, {.memory = &memory});
   Contacts contacts(&memory);
   for (std::size_t i = 0; i < kBodies; ++i) {
     BodyDefinition body{.shape = box};
     body.pose.position[0] = 3.0 * static_cast<double>(i);
-    Key key;
-    ASSERT_EQ(scene.add(body, key), Status::ok);
+    expect_ok(scene.add(body));
   }
   for (int frame = 0; frame < 4; ++frame) {
     ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
@@ -325,8 +322,7 @@ TEST(SceneBytes, refused_set_body_state_changes_no_body) {
         const Status status = scene.set_body_state(world.keys, to);
         if (status == Status::ok) return status;
         for (std::size_t i = 0; i < world.bodies.size(); ++i) {
-          BodyDefinition body;
-          EXPECT_EQ(scene.body(world.keys[i], body), Status::ok);
+          BodyDefinition body = expect_ok(scene.body(world.keys[i]));
           EXPECT_EQ(body.state, world.bodies[i].state) << granted;
           EXPECT_EQ(body.filter, world.bodies[i].filter) << granted;
         }
@@ -347,15 +343,14 @@ TEST(SceneBytes, scene_constructed_without_memory_returns_out_of_memory) {
   Scene scene(world.pool, {.memory = &memory});
   memory.grant_all();
   Key key;
-  EXPECT_EQ(scene.add(world.bodies[0], key), Status::out_of_memory);
+  expect_error(scene.add(world.bodies[0]), Status::out_of_memory);
   EXPECT_EQ(scene.remove(key), Status::out_of_memory);
   EXPECT_EQ(scene.move(key, Pose{}), Status::out_of_memory);
   EXPECT_EQ(scene.set_body_state(key, BodyState::fixed), Status::out_of_memory);
   EXPECT_EQ(scene.set_shape(key, world.bodies[0].shape), Status::out_of_memory);
   EXPECT_EQ(scene.set_filter(key, {}), Status::out_of_memory);
   EXPECT_EQ(scene.refresh(), Status::out_of_memory);
-  BodyDefinition body;
-  EXPECT_EQ(scene.body(key, body), Status::out_of_memory);
+  expect_error(scene.body(key), Status::out_of_memory);
   Contacts contacts;
   EXPECT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::out_of_memory);
   scene.clear();
@@ -367,8 +362,7 @@ TEST(SceneBytes, scene_constructed_without_memory_returns_out_of_memory) {
   EXPECT_EQ(scene.statistics().body_pairs, 0U);
   EXPECT_EQ(scene.footprint().total().reserved, 0U);
   SceneQueries queries(scene);
-  SceneDistance distance;
-  EXPECT_EQ(queries.distance(key, key, distance), Status::out_of_memory);
+  expect_error(queries.distance(key, key), Status::out_of_memory);
 }
 
 TEST(SceneBytes, contacts_constructed_without_memory_return_out_of_memory) {
@@ -399,12 +393,12 @@ TEST(SceneInput, bad_input_is_refused_and_changes_nothing) {
   Key key;
   BodyDefinition bad = world.bodies[0];
   bad.shape = {};
-  EXPECT_EQ(scene.add(bad, key), Status::invalid_key);
+  expect_error(scene.add(bad), Status::invalid_key);
   bad.shape = ShapeId::of(CompositeKind::mesh, 0);
-  EXPECT_EQ(scene.add(bad, key), Status::unsupported);
+  expect_error(scene.add(bad), Status::unsupported);
   bad = world.bodies[0];
   bad.pose.position[1] = kNaN;
-  EXPECT_EQ(scene.add(bad, key), Status::invalid_pose);
+  expect_error(scene.add(bad), Status::invalid_pose);
   EXPECT_EQ(scene.move(world.keys[0], bad.pose), Status::invalid_pose);
   EXPECT_EQ(scene.move(Key{}, world.bodies[0].pose), Status::invalid_key);
   const Key twice[] = {world.keys[3], world.keys[3]};
@@ -421,9 +415,9 @@ TEST(SceneInput, bad_input_is_refused_and_changes_nothing) {
   ASSERT_EQ(scene.collide(ContactLevel::manifold, after), Status::ok);
   EXPECT_EQ(after.size(), pairs);
   Scene wrong(world.pool, {.contact_margin = -1});
-  EXPECT_EQ(wrong.add(world.bodies[0], key), Status::invalid_argument);
+  expect_error(wrong.add(world.bodies[0]), Status::invalid_argument);
   Scene unknown(world.pool, {.structures = {linear_bvh(), StructureKind{}, linear_bvh()}});
-  EXPECT_EQ(unknown.add(world.bodies[0], key), Status::invalid_argument);
+  expect_error(unknown.add(world.bodies[0]), Status::invalid_argument);
 }
 
 TEST(SceneInput, random_changes_keep_pairs_right) {
@@ -439,7 +433,7 @@ TEST(SceneInput, random_changes_keep_pairs_right) {
         const std::size_t i = random.below(world.bodies.size());
         BodyDefinition& body = world.bodies[i];
         if (world.removed[i]) {
-          ASSERT_EQ(scene.add(body, world.keys[i]), Status::ok);
+          world.keys[i] = expect_ok(scene.add(body));
           world.removed[i] = false;
         } else if (random.chance(0.2)) {
           ASSERT_EQ(scene.remove(world.keys[i]), Status::ok);

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "tests/pipeline/query_world.h"
+#include "tests/support/answers.h"
 #include "tests/support/config.h"
 #include "tests/support/float_modes.h"
 
@@ -108,22 +109,22 @@ class TinyWorld {
  private:
   std::vector<ShapeId> make_shapes() {
     std::vector<ShapeId> shapes(6);
-    EXPECT_EQ(pool_.add(BoxShape{{size_, size_, size_}}, shapes[0]), Status::ok);
-    EXPECT_EQ(pool_.add(SphereShape{size_}, shapes[1]), Status::ok);
-    EXPECT_EQ(pool_.add(CapsuleShape{0.5 * size_, 0.5 * size_}, shapes[2]), Status::ok);
+    shapes[0] = expect_ok(pool_.add(BoxShape{{size_, size_, size_}}));
+    shapes[1] = expect_ok(pool_.add(SphereShape{size_}));
+    shapes[2] = expect_ok(pool_.add(CapsuleShape{0.5 * size_, 0.5 * size_}));
     TriangleShape triangle;
     const double corners[3][3] = {{-size_, -size_, 0.0}, {size_, -size_, 0.0}, {0.0, size_, 0.0}};
     for (int i = 0; i < 3; ++i) {
       for (int k = 0; k < 3; ++k) triangle.vertex[i][k] = corners[i][k];
     }
-    EXPECT_EQ(pool_.add(triangle, shapes[3]), Status::ok);
-    EXPECT_EQ(pool_.add(BoxShape{{size_, size_, 0.0}}, shapes[4]), Status::ok);
+    shapes[3] = expect_ok(pool_.add(triangle));
+    shapes[4] = expect_ok(pool_.add(BoxShape{{size_, size_, 0.0}}));
     const float s = mesh_size_;
     const std::vector<Vec3f> vertices{{-s, -s, 0}, {s, -s, 0}, {s, s, 0}, {-s, s, 0}};
     const std::vector<std::uint32_t> indices{0, 1, 2, 0, 2, 3};
     const std::span<const Vec3f> points(vertices);
     const std::span<const std::uint32_t> triangles(indices);
-    EXPECT_EQ(composites_.add_mesh(points, triangles, shapes[5]), Status::ok);
+    shapes[5] = expect_ok(composites_.add_mesh(points, triangles));
     box_ = shapes[0];
     return shapes;
   }
@@ -171,31 +172,28 @@ void query_bodies(TinyWorld& world, Bits& bits, SceneTally& tally) {
       const ShapeRay& ray = rays.emplace_back(ray_to(place, axis, 2.0 * world.size()));
       std::span<const SceneHit> hits;
       SceneHit hit;
-      EXPECT_EQ(queries.all(ray, hits), Status::ok);
+      hits = expect_ok(queries.all(ray));
       found(hits);
-      EXPECT_EQ(queries.closest(ray, hit), Status::ok);
+      hit = expect_ok(queries.closest(ray));
       bits.add(hit);
-      EXPECT_EQ(queries.any(ray, hit), Status::ok);
+      hit = expect_ok(queries.any(ray));
       bits.add(hit);
       ShapeCast cast;
       cast.shape = world.box();
       for (int k = 0; k < 3; ++k) cast.pose.position[k] = ray.origin[k];
       for (int k = 0; k < 3; ++k) cast.direction[k] = ray.direction[k];
       cast.max_t = 4.0 * world.size();
-      EXPECT_EQ(queries.all(cast, hits), Status::ok);
+      hits = expect_ok(queries.all(cast));
       found(hits);
     }
     Pose pose;
     for (int k = 0; k < 3; ++k) pose.position[k] = place[k];
-    std::span<const SceneOverlap> overlaps;
-    EXPECT_EQ(queries.overlap(world.box(), pose, overlaps), Status::ok);
+    std::span<const SceneOverlap> overlaps = expect_ok(queries.overlap(world.box(), pose));
     found(overlaps);
-    std::span<const SceneDistance> nearest;
-    EXPECT_EQ(queries.nearest(place, 3, kInfinity, nearest), Status::ok);
+    std::span<const SceneDistance> nearest = expect_ok(queries.nearest(place, 3, kInfinity));
     found(nearest);
   }
-  SceneHitLists lists;
-  EXPECT_EQ(queries.all(ShapeRayBatch(rays), lists), Status::ok);
+  SceneHitLists lists = expect_ok(queries.all(ShapeRayBatch(rays)));
   bits.add_all(lists.hits);
 }
 
@@ -208,17 +206,13 @@ void query_moving(TinyWorld& world, Bits& bits, SceneTally& tally) {
     const double reach = 2.0 * world.size();
     const Pose from = Pose::at(place[0] - reach, place[1], place[2]);
     const Pose to = Pose::at(place[0] + reach, place[1], place[2]);
-    SceneHit hit;
-    EXPECT_EQ(queries.closest(MotionCast{world.box(), RigidMotion::between(from, to)}, hit, {},
-                              1e-3 * world.size()),
-              Status::ok);
+    SceneHit hit = expect_ok(queries.closest(
+        MotionCast{world.box(), RigidMotion::between(from, to)}, {}, 1e-3 * world.size()));
     ++tally.query_count;
     tally.missed += hit.key == Key{} ? 1U : 0U;
     bits.add(hit);
-    SceneDistance distance;
-    EXPECT_EQ(queries.distance(world.keys()[i], world.keys()[(i + 1) % TinyWorld::kBodies],
-                               distance, kInfinity, PairRules::none),
-              Status::ok);
+    SceneDistance distance = expect_ok(queries.distance(
+        world.keys()[i], world.keys()[(i + 1) % TinyWorld::kBodies], kInfinity, PairRules::none));
     bits.add(distance);
   }
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "tests/pipeline/scene_world.h"
+#include "tests/support/answers.h"
 #include "tests/support/config.h"
 #include "tests/support/counting_memory.h"
 
@@ -39,12 +40,10 @@ std::uint64_t body_pairs(Scene& scene) {
 
 TEST(SceneOrigin, far_balls_have_tight_boxes) {
   ShapePool pool;
-  ShapeId ball;
-  ASSERT_EQ(pool.add(SphereShape{0.5}, ball), Status::ok);
+  ShapeId ball = expect_ok(pool.add(SphereShape{0.5}));
   Scene scene(pool);
-  Key key;
-  ASSERT_EQ(scene.add({.shape = ball, .pose = Pose::at(1e8, 0, 0)}, key), Status::ok);
-  ASSERT_EQ(scene.add({.shape = ball, .pose = Pose::at(1e8 + 1.5, 0, 0)}, key), Status::ok);
+  Key key = expect_ok(scene.add({.shape = ball, .pose = Pose::at(1e8, 0, 0)}));
+  key = expect_ok(scene.add({.shape = ball, .pose = Pose::at(1e8 + 1.5, 0, 0)}));
   EXPECT_EQ(body_pairs(scene), 0U);
   ASSERT_EQ(scene.move(key, Pose::at(1e8 + 0.9, 0, 0)), Status::ok);
   EXPECT_EQ(body_pairs(scene), 1U);

@@ -14,6 +14,7 @@
 #include <tuple>
 
 #include "tests/pipeline/scene_world.h"
+#include "tests/support/answers.h"
 #include "tests/support/config.h"
 #include "tests/support/counting_memory.h"
 #include "tests/support/meshes.h"
@@ -43,13 +44,11 @@ class PartsWorld {
   PartsWorld() : pool_(convex_) {
     add_convex();
     for (const MeshData& data : {torus(7, 5), gear(4), degenerate_soup(30, 3)}) {
-      ShapeId id;
-      EXPECT_EQ(pool_.add_mesh(data.points(), data.indices(), id), Status::ok);
+      ShapeId id = expect_ok(pool_.add_mesh(data.points(), data.indices()));
       add_mesh_pieces(data, {1, 1, 1});
       shapes_.push_back(id);
       const std::array<double, 3> scale{0.7, -1.2, 0.5};
-      ShapeId scaled;
-      EXPECT_EQ(pool_.add_scaled(id, scale, scaled), Status::ok);
+      ShapeId scaled = expect_ok(pool_.add_scaled(id, scale));
       add_mesh_pieces(data, scale);
       shapes_.push_back(scaled);
     }
@@ -96,12 +95,11 @@ class PartsWorld {
 
  private:
   void add_convex() {
-    ShapeId id;
-    EXPECT_EQ(convex_.add(SphereShape{0.4}, id), Status::ok);
+    ShapeId id = expect_ok(convex_.add(SphereShape{0.4}));
     add_whole(id);
-    EXPECT_EQ(convex_.add(BoxShape{{0.5, 0.3, 0.2}}, id), Status::ok);
+    id = expect_ok(convex_.add(BoxShape{{0.5, 0.3, 0.2}}));
     add_whole(id);
-    EXPECT_EQ(convex_.add(CapsuleShape{0.2, 0.6}, id), Status::ok);
+    id = expect_ok(convex_.add(CapsuleShape{0.2, 0.6}));
     add_whole(id);
   }
 
@@ -137,8 +135,7 @@ class PartsWorld {
     samples.rows = 5;
     samples.spacing[0] = 0.5;
     samples.spacing[1] = 0.4;
-    ShapeId id;
-    EXPECT_EQ(pool_.add_height_field(samples, id), Status::ok);
+    ShapeId id = expect_ok(pool_.add_height_field(samples));
     std::vector<Piece> pieces;
     for (std::uint32_t t = 0; t < pool_.height_field(id)->triangles(); ++t) {
       Piece piece{ShapeId::of(ShapeKind::triangle, 0), {}, {}, t};
@@ -160,8 +157,7 @@ class PartsWorld {
       children.push_back(child);
       pieces.push_back({child.shape, {}, child.pose, i});
     }
-    ShapeId id;
-    EXPECT_EQ(pool_.add_compound(children, id), Status::ok);
+    ShapeId id = expect_ok(pool_.add_compound(children));
     shapes_.push_back(id);
     pieces_.push_back(std::move(pieces));
   }
@@ -186,8 +182,7 @@ class PartsWorld {
       first +=
           field != nullptr ? field->triangles() : static_cast<std::uint32_t>(pieces_[kind].size());
     }
-    ShapeId id;
-    EXPECT_EQ(pool_.add_compound(children, id), Status::ok);
+    ShapeId id = expect_ok(pool_.add_compound(children));
     shapes_.push_back(id);
     pieces_.push_back(std::move(pieces));
   }
@@ -257,23 +252,20 @@ class PartsWorld {
       corners.insert(corners.end(), {a, a + 1, c, a + 1, c + 1, c});
     }
   }
-  ShapeId id;
-  EXPECT_EQ(pool.add_mesh(std::span<const Eigen::Vector3f>(points),
-                          std::span<const std::uint32_t>(corners), id),
-            Status::ok);
+  ShapeId id = expect_ok(pool.add_mesh(std::span<const Eigen::Vector3f>(points),
+                                       std::span<const std::uint32_t>(corners)));
   return id;
 }
 
 TEST(SceneParts, ball_on_flat_mesh_gets_only_floor_normals) {
   ShapePool convex;
   CompositePool pool(convex);
-  ShapeId ball;
-  ASSERT_EQ(convex.add(SphereShape{0.5}, ball), Status::ok);
+  ShapeId ball = expect_ok(convex.add(SphereShape{0.5}));
   Scene scene(convex, {.composites = &pool});
   Key floor;
   Key body;
-  ASSERT_EQ(scene.add({.shape = flat_floor(pool), .state = BodyState::fixed}, floor), Status::ok);
-  ASSERT_EQ(scene.add({.shape = ball}, body), Status::ok);
+  floor = expect_ok(scene.add({.shape = flat_floor(pool), .state = BodyState::fixed}));
+  body = expect_ok(scene.add({.shape = ball}));
   Contacts contacts;
   for (int step = 0; step < 400; ++step) {
     const double way = 0.043 * step - 8.0;
@@ -306,13 +298,12 @@ TEST(SceneParts, ball_on_flat_mesh_gets_only_floor_normals) {
 TEST(SceneParts, refitted_mesh_collides_at_new_position) {
   ShapePool convex;
   CompositePool pool(convex);
-  ShapeId ball;
-  ASSERT_EQ(convex.add(SphereShape{0.5}, ball), Status::ok);
+  ShapeId ball = expect_ok(convex.add(SphereShape{0.5}));
   const ShapeId floor = flat_floor(pool);
   Scene scene(convex, {.cache_tolerance = 0.01, .composites = &pool});
   Key keys[2];
-  ASSERT_EQ(scene.add({.shape = floor, .state = BodyState::fixed}, keys[0]), Status::ok);
-  ASSERT_EQ(scene.add({.shape = ball, .pose = Pose::at(0, 0, 3)}, keys[1]), Status::ok);
+  keys[0] = expect_ok(scene.add({.shape = floor, .state = BodyState::fixed}));
+  keys[1] = expect_ok(scene.add({.shape = ball, .pose = Pose::at(0, 0, 3)}));
   Contacts contacts;
   ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
   EXPECT_EQ(contacts.size(), 0U);
@@ -347,33 +338,30 @@ TEST(SceneParts, queries_of_compound_test_only_near_children) {
     const double x = 3.0 * static_cast<double>(children.size());
     children.push_back({convex.add(point.ball(0.5)), Pose::at(x, 0, 0)});
   }
-  ShapeId compound;
-  ASSERT_EQ(pool.add_compound(children, compound), Status::ok);
+  ShapeId compound = expect_ok(pool.add_compound(children));
   Scene scene(convex, {.composites = &pool});
   const Key row = scene.add({.shape = compound});
   const Key body = scene.add({.shape = ball, .pose = Pose::at(30, 5, 0)});
   ASSERT_EQ(scene.refresh(), Status::ok);
   SceneQueries queries(scene);
   counted.fill({});
-  SceneDistance distance;
-  ASSERT_EQ(queries.distance(row, body, distance), Status::ok);
+  SceneDistance distance = expect_ok(queries.distance(row, body));
   EXPECT_NEAR(distance.distance, 4.0, 1e-12);
   EXPECT_EQ(distance.part_a, 10U);
-  ASSERT_EQ(queries.distance(body, row, distance), Status::ok);
+  distance = expect_ok(queries.distance(body, row));
   EXPECT_NEAR(distance.distance, 4.0, 1e-12);
   EXPECT_EQ(distance.part, 10U);
   std::span<const SceneDistance> nearest;
   const double point[3] = {6.0, 2.0, 0.0};
-  ASSERT_EQ(queries.nearest(point, 1, 10.0, nearest), Status::ok);
+  nearest = expect_ok(queries.nearest(point, 1, 10.0));
   ASSERT_EQ(nearest.size(), 1U);
   EXPECT_EQ(nearest[0].part, 2U);
-  std::span<const SceneOverlap> overlaps;
-  ASSERT_EQ(queries.overlap(ball, Pose::at(9, 0.5, 0), overlaps), Status::ok);
+  std::span<const SceneOverlap> overlaps = expect_ok(queries.overlap(ball, Pose::at(9, 0.5, 0)));
   ASSERT_EQ(overlaps.size(), 1U);
   EXPECT_EQ(overlaps[0].part, 3U);
   SceneHit hit;
   const ShapeCast cast{ball, Pose::at(12, 5, 0), {0, -1, 0}, 10.0};
-  ASSERT_EQ(queries.closest(cast, hit), Status::ok);
+  hit = expect_ok(queries.closest(cast));
   EXPECT_EQ(hit.part, 4U);
   EXPECT_LE(
       std::ranges::count_if(counted, [](const CountedPoint& child) { return child.calls > 0; }), 8);
@@ -470,11 +458,9 @@ TEST(SceneParts, touching_parts_match_brute_force) {
 TEST(SceneParts, cached_mesh_contacts_miss_nothing_beyond_bound) {
   ShapePool convex;
   CompositePool pool(convex);
-  ShapeId box;
-  ASSERT_EQ(convex.add(BoxShape{{0.6, 0.4, 0.3}}, box), Status::ok);
+  ShapeId box = expect_ok(convex.add(BoxShape{{0.6, 0.4, 0.3}}));
   const MeshData data = terrain(24);
-  ShapeId ground;
-  ASSERT_EQ(pool.add_mesh(data.points(), data.indices(), ground), Status::ok);
+  ShapeId ground = expect_ok(pool.add_mesh(data.points(), data.indices()));
   const double cache_tolerance = 0.01;
   Scene cached(convex, {.cache_tolerance = cache_tolerance, .composites = &pool});
   Scene exact(convex, {.composites = &pool});

@@ -5,6 +5,7 @@
 #include <winnow/pipeline/scene_queries.h>
 
 #include "tests/pipeline/query_world.h"
+#include "tests/support/answers.h"
 #include "tests/support/config.h"
 
 namespace winnow::test {
@@ -12,8 +13,7 @@ namespace {
 
 TEST(ScenePaths, closest_hit_tests_few_bodies) {
   QueryWorld world;
-  ShapeId ball;
-  ASSERT_EQ(world.shapes.pool.add(SphereShape{0.4}, ball), Status::ok);
+  ShapeId ball = expect_ok(world.shapes.pool.add(SphereShape{0.4}));
   Random random(6);
   for (int i = 0; i < 16; ++i) {
     for (int j = 0; j < 16; ++j) {
@@ -37,8 +37,7 @@ TEST(ScenePaths, closest_hit_tests_few_bodies) {
       ray.origin[i] = random.uniform(-4.0, 20.0);
       ray.direction[i] = random.uniform(0.0, 16.0) - ray.origin[i];
     }
-    SceneHit hit;
-    ASSERT_EQ(queries.closest(ray, hit, filter), Status::ok);
+    expect_ok(queries.closest(ray, filter));
   }
   EXPECT_LT(calls, 12 * rays);
 }
@@ -46,8 +45,7 @@ TEST(ScenePaths, closest_hit_tests_few_bodies) {
 TEST(ScenePaths, long_ray_hits_tiny_body) {
   Random random(15);
   QueryWorld world;
-  ShapeId grain;
-  ASSERT_EQ(world.shapes.pool.add(SphereShape{1e-4}, grain), Status::ok);
+  ShapeId grain = expect_ok(world.shapes.pool.add(SphereShape{1e-4}));
   for (int i = 0; i < 100; ++i) world.add(grain, random_pose(100.0, random), random);
   world.add_to_scene();
   SceneQueries queries(*world.scene);
@@ -60,14 +58,13 @@ TEST(ScenePaths, long_ray_hits_tiny_body) {
       ray.origin[i] = world.bodies[target].pose.position[i] - way * ray.direction[i];
     }
     ray.max_t = random.chance(0.5) ? kInfinity : 1.5 * way;
-    SceneHit hit;
-    ASSERT_EQ(queries.closest(ray, hit), Status::ok);
+    SceneHit hit = expect_ok(queries.closest(ray));
     ASSERT_TRUE(hit) << n;
     EXPECT_LE(hit.t, way);
     ShapeCast cast{grain, {}, {}, ray.max_t};
     cast.pose.position = ray.origin;
     cast.direction = ray.direction;
-    ASSERT_EQ(queries.closest(cast, hit), Status::ok);
+    hit = expect_ok(queries.closest(cast));
     ASSERT_TRUE(hit) << n;
     EXPECT_LE(hit.t, way);
   }
@@ -78,9 +75,8 @@ TEST(ScenePaths, unbounded_rays_reach_distant_bodies) {
     QueryWorld world;
     ShapeId ball;
     ShapeId wall;
-    ASSERT_EQ(world.shapes.pool.add(SphereShape{0.01 * far}, ball), Status::ok);
-    ASSERT_EQ(world.shapes.pool.add(HalfSpaceShape{{-1.0, 0.0, 0.0}, -3.0 * far}, wall),
-              Status::ok);
+    ball = expect_ok(world.shapes.pool.add(SphereShape{0.01 * far}));
+    wall = expect_ok(world.shapes.pool.add(HalfSpaceShape{{-1.0, 0.0, 0.0}, -3.0 * far}));
     Random random(7);
     world.add(wall, {}, random);
     world.add(ball, Pose::at(far, 0.5 * far, 0.25 * far), random);
@@ -89,13 +85,13 @@ TEST(ScenePaths, unbounded_rays_reach_distant_bodies) {
     ShapeRay ray{{0.0, 0.0, 0.0}, {4.0, 2.0, 1.0}, kInfinity};
     SceneHit hit;
     std::span<const SceneHit> hits;
-    ASSERT_EQ(queries.closest(ray, hit), Status::ok);
+    hit = expect_ok(queries.closest(ray));
     EXPECT_EQ(hit.key, world.keys[1]) << far;
     EXPECT_NEAR(hit.t / far, 0.25 - 0.01 / std::sqrt(21.0), 1e-12);
-    ASSERT_EQ(queries.all(ray, hits), Status::ok);
+    hits = expect_ok(queries.all(ray));
     EXPECT_EQ(hits.size(), 2U) << far;
     const ShapeCast cast{ball, {}, {4.0, 2.0, 1.0}, kInfinity};
-    ASSERT_EQ(queries.closest(cast, hit, {}, 1e-9 * far), Status::ok);
+    hit = expect_ok(queries.closest(cast, {}, 1e-9 * far));
     EXPECT_EQ(hit.key, world.keys[1]) << far;
     EXPECT_NEAR(hit.t / far, 0.25 - 0.02 / std::sqrt(21.0), 1e-8);
   }
@@ -106,8 +102,7 @@ TEST(ScenePaths, bullet_never_tunnels_through_sheet) {
   for (const double center : kCenters) {
     QueryWorld world;
     world.center = center;
-    ShapeId bullet;
-    ASSERT_EQ(world.shapes.pool.add(SphereShape{1e-3}, bullet), Status::ok);
+    ShapeId bullet = expect_ok(world.shapes.pool.add(SphereShape{1e-3}));
     world.add(add_sheet(world.composites, 40), {}, random);
     world.add_to_scene();
     SceneQueries queries(*world.scene);
@@ -120,8 +115,7 @@ TEST(ScenePaths, bullet_never_tunnels_through_sheet) {
         cast.pose.position[i] = center + (i < 2 ? random.uniform(-0.4, 0.4) : 0.0) - way * slope[i];
         cast.direction[i] = speed * slope[i];
       }
-      SceneHit hit;
-      ASSERT_EQ(queries.closest(cast, hit), Status::ok);
+      SceneHit hit = expect_ok(queries.closest(cast));
       ASSERT_TRUE(hit) << n;
       // The sheet is within 0.2 of its plane.
       EXPECT_NEAR(hit.t * speed, way, 0.21);
@@ -135,11 +129,9 @@ TEST(ScenePaths, rays_at_edges_and_corners_hit_mesh) {
   QueryWorld world;
   constexpr std::uint32_t kCells = 40;
   const ShapeId sheet = add_sheet(world.composites, kCells);
-  ShapeId large;
-  ASSERT_EQ(world.composites.add_scaled(sheet, {100.0, 50.0, 30.0}, large), Status::ok);
+  ShapeId large = expect_ok(world.composites.add_scaled(sheet, {100.0, 50.0, 30.0}));
   world.add(large, random_pose(10.0, random), random);
-  ShapeId point;
-  ASSERT_EQ(world.shapes.pool.add(SphereShape{}, point), Status::ok);
+  ShapeId point = expect_ok(world.shapes.pool.add(SphereShape{}));
   world.add_to_scene();
   SceneQueries queries(*world.scene);
   const std::vector<FlatPart> parts = world.parts(0);
@@ -162,14 +154,13 @@ TEST(ScenePaths, rays_at_edges_and_corners_hit_mesh) {
           base[k] + inner->pose.position[k] + from + along * (to - from) - 4.0 * ray.direction[k];
     }
     ray.max_t = kInfinity;
-    SceneHit hit;
-    ASSERT_EQ(queries.closest(ray, hit), Status::ok);
+    SceneHit hit = expect_ok(queries.closest(ray));
     ASSERT_TRUE(hit) << n;
     EXPECT_LT(hit.t, 4.0 + 1e-6);
     ShapeCast cast{point, {}, {}, kInfinity};
     cast.pose.position = ray.origin;
     cast.direction = ray.direction;
-    ASSERT_EQ(queries.closest(cast, hit), Status::ok);
+    hit = expect_ok(queries.closest(cast));
     ASSERT_TRUE(hit) << n;
     EXPECT_LT(hit.t, 4.0 + 1e-6);
   }

@@ -5,6 +5,7 @@
 #include "pipeline/scene/queries/shape_cast.h"
 
 #include "tests/pipeline/query_world.h"
+#include "tests/support/answers.h"
 #include "tests/support/config.h"
 
 namespace winnow::test {
@@ -13,8 +14,7 @@ namespace {
 TEST(SceneQueries, rays_hit_half_space_beyond_float_range) {
   Random random(23);
   QueryWorld world;
-  ShapeId ground;
-  ASSERT_EQ(world.shapes.pool.add(HalfSpaceShape{{0.0, 0.0, 1.0}, 0.0}, ground), Status::ok);
+  ShapeId ground = expect_ok(world.shapes.pool.add(HalfSpaceShape{{0.0, 0.0, 1.0}, 0.0}));
   world.add(ground, Pose{}, random);
   world.add_to_scene();
   SceneQueries queries(*world.scene);
@@ -25,8 +25,8 @@ TEST(SceneQueries, rays_hit_half_space_beyond_float_range) {
   for (const ShapeRay& ray : rays) {
     SceneHit hit;
     std::span<const SceneHit> all;
-    ASSERT_EQ(queries.closest(ray, hit), Status::ok);
-    ASSERT_EQ(queries.all(ray, all), Status::ok);
+    hit = expect_ok(queries.closest(ray));
+    all = expect_ok(queries.all(ray));
     ASSERT_EQ(all.size(), 1U) << ray.origin[2];
     EXPECT_EQ(hit.key, world.keys[0]);
     EXPECT_EQ(hit.t, all[0].t);
@@ -46,10 +46,10 @@ double any_number(double most, Random& random) {
 void add_any_bodies(QueryWorld& world, double most, Random& random) {
   const auto size = [&] { return std::abs(any_number(most, random)); };
   std::vector<ShapeId> ids(7);
-  EXPECT_EQ(world.shapes.pool.add(SphereShape{size()}, ids[0]), Status::ok);
-  EXPECT_EQ(world.shapes.pool.add(BoxShape{{size(), size(), size()}}, ids[1]), Status::ok);
-  EXPECT_EQ(world.shapes.pool.add(CylinderShape{size(), size()}, ids[2]), Status::ok);
-  EXPECT_EQ(world.shapes.pool.add(ConeShape{size(), size()}, ids[3]), Status::ok);
+  ids[0] = expect_ok(world.shapes.pool.add(SphereShape{size()}));
+  ids[1] = expect_ok(world.shapes.pool.add(BoxShape{{size(), size(), size()}}));
+  ids[2] = expect_ok(world.shapes.pool.add(CylinderShape{size(), size()}));
+  ids[3] = expect_ok(world.shapes.pool.add(ConeShape{size(), size()}));
   std::vector<Vec3d> points(8);
   std::vector<Vec3f> vertices(9);
   std::vector<std::uint32_t> corners(24);
@@ -60,9 +60,10 @@ void add_any_bodies(QueryWorld& world, double most, Random& random) {
     for (int k = 0; k < 3; ++k) p[k] = static_cast<float>(any_number(most, random));
   }
   for (std::uint32_t& corner : corners) corner = static_cast<std::uint32_t>(random.below(9));
-  EXPECT_EQ(world.shapes.pool.add_hull(points, 0.0, ids[4]), Status::ok);
-  if (world.composites.add_mesh(std::span(std::as_const(vertices)),
-                                std::span(std::as_const(corners)), ids[5]) != Status::ok) {
+  ids[4] = expect_ok(world.shapes.pool.add_hull(points, 0.0));
+  if (world.composites
+          .add_mesh(std::span(std::as_const(vertices)), std::span(std::as_const(corners)))
+          .get(ids[5]) != Status::ok) {
     ids[5] = ids[0];
   }
   ids[6] = ids[5];
@@ -90,8 +91,8 @@ TEST(SceneQueries, closest_hit_of_any_sizes_matches_first) {
         ray.max_t = 10.0 * std::abs(any_number(most, random));
         SceneHit closest;
         std::span<const SceneHit> all;
-        const Status status = queries.closest(ray, closest);
-        ASSERT_EQ(queries.all(ray, all), status);
+        const Status status = queries.closest(ray).get(closest);
+        ASSERT_EQ(queries.all(ray).get(all), status);
         if (status != Status::ok) continue;
         ASSERT_EQ(static_cast<bool>(closest), !all.empty()) << i << ' ' << r << ' ' << most;
         if (!closest) continue;
@@ -108,8 +109,7 @@ TEST(SceneQueries, closest_hit_of_any_sizes_matches_first) {
 TEST(SceneQueries, two_balls_in_a_row_give_expected_results) {
   Random random(17);
   QueryWorld world;
-  ShapeId ball;
-  ASSERT_EQ(world.shapes.pool.add(SphereShape{1.0}, ball), Status::ok);
+  ShapeId ball = expect_ok(world.shapes.pool.add(SphereShape{1.0}));
   world.add(ball, Pose::at(10, 0, 0), random);
   world.add(ball, Pose::at(20, 0, 0), random);
   world.add_to_scene();
@@ -118,30 +118,27 @@ TEST(SceneQueries, two_balls_in_a_row_give_expected_results) {
   SceneHit hit;
   std::span<const SceneHit> hits;
   const ShapeRay ray{{0, 0, 0}, {1, 0, 0}, kInfinity};
-  ASSERT_EQ(queries.closest(ray, hit), Status::ok);
+  hit = expect_ok(queries.closest(ray));
   EXPECT_EQ(hit.key, world.keys[0]);
   EXPECT_DOUBLE_EQ(hit.t, 9.0);
   EXPECT_DOUBLE_EQ(hit.normal[0], -1.0);
-  ASSERT_EQ(queries.all(ray, hits), Status::ok);
+  hits = expect_ok(queries.all(ray));
   ASSERT_EQ(hits.size(), 2U);
   EXPECT_DOUBLE_EQ(hits[1].t, 19.0);
 
-  ASSERT_EQ(queries.closest(ShapeCast{ball, {}, {1, 0, 0}, kInfinity}, hit, {}, 1e-9), Status::ok);
+  hit = expect_ok(queries.closest(ShapeCast{ball, {}, {1, 0, 0}, kInfinity}, {}, 1e-9));
   EXPECT_NEAR(hit.t, 8.0, 1e-8);
 
-  std::span<const SceneOverlap> overlaps;
-  ASSERT_EQ(queries.overlap(ball, Pose::at(18.5, 0, 0), overlaps), Status::ok);
+  std::span<const SceneOverlap> overlaps = expect_ok(queries.overlap(ball, Pose::at(18.5, 0, 0)));
   ASSERT_EQ(overlaps.size(), 1U);
   EXPECT_EQ(overlaps[0].key, world.keys[1]);
 
-  SceneDistance apart;
-  ASSERT_EQ(queries.distance(world.keys[0], world.keys[1], apart, kInfinity, PairRules::none),
-            Status::ok);
+  SceneDistance apart =
+      expect_ok(queries.distance(world.keys[0], world.keys[1], kInfinity, PairRules::none));
   EXPECT_DOUBLE_EQ(apart.distance, 8.0);
 
   const double origin[3] = {0, 0, 0};
-  std::span<const SceneDistance> near;
-  ASSERT_EQ(queries.nearest(origin, 1, kInfinity, near), Status::ok);
+  std::span<const SceneDistance> near = expect_ok(queries.nearest(origin, 1, kInfinity));
   ASSERT_EQ(near.size(), 1U);
   EXPECT_EQ(near[0].key, world.keys[0]);
   EXPECT_DOUBLE_EQ(near[0].distance, 9.0);
@@ -164,8 +161,7 @@ std::vector<BodyTime> ray_times(const QueryWorld& world, const ShapeRay& ray) {
     between(ray.origin.data(), world.bodies[i].pose.position.data(), local.origin.data());
     for (const FlatPart& part : world.parts(i)) {
       const PartTable table(world.shapes.pool, part);
-      ShapeHit hit;
-      EXPECT_EQ(cast_ray(table.tables, table.id, part.pose, local, hit), Status::ok);
+      ShapeHit hit = expect_ok(cast_ray(table.tables, table.id, part.pose, local));
       if (hit.hit) times[i] = {true, std::min(times[i].t, hit.t)};
     }
   }
@@ -251,8 +247,7 @@ TEST(SceneQueries, rays_match_brute_force) {
     Random random(1);
     QueryWorld world;
     fill(world, 250, center, random);
-    ShapeId ground;
-    ASSERT_EQ(world.shapes.pool.add(HalfSpaceShape{{0.1, 0.0, 1.0}, -8.0}, ground), Status::ok);
+    ShapeId ground = expect_ok(world.shapes.pool.add(HalfSpaceShape{{0.1, 0.0, 1.0}, -8.0}));
     world.add(ground, {}, random);
     world.add_to_scene();
     SceneQueries queries(*world.scene);
@@ -269,9 +264,9 @@ TEST(SceneQueries, rays_match_brute_force) {
       SceneHit closest;
       SceneHit any;
       std::span<const SceneHit> hits;
-      ASSERT_EQ(queries.closest(ray, closest), Status::ok);
-      ASSERT_EQ(queries.any(ray, any), Status::ok);
-      ASSERT_EQ(queries.all(ray, hits), Status::ok);
+      closest = expect_ok(queries.closest(ray));
+      any = expect_ok(queries.any(ray));
+      hits = expect_ok(queries.all(ray));
       // Positions are exact up to the rounding of their difference.
       const double slack =
           (1e-9 + 1e-15 * std::abs(center) + 1e-14 * way) / length_of(ray.direction.data());
@@ -309,8 +304,7 @@ TEST(SceneQueries, ray_batch_matches_single_rays) {
                                 .point = {nullptr, nullptr, heights.data()}};
   ASSERT_EQ(queries.closest(std::span<const ShapeRay>(rays), columns), Status::ok);
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    SceneHit hit;
-    ASSERT_EQ(queries.closest(rays[i], hit), Status::ok);
+    SceneHit hit = expect_ok(queries.closest(rays[i]));
     EXPECT_EQ(keys[i], hit.key);
     EXPECT_EQ(data[i], hit.data);
     EXPECT_EQ(parts[i], hit.part);
@@ -318,15 +312,13 @@ TEST(SceneQueries, ray_batch_matches_single_rays) {
     EXPECT_EQ(heights[i], hit.point[2]);
   }
   ASSERT_EQ(queries.any(std::span<const ShapeRay>(rays), {.key = keys.data()}), Status::ok);
-  SceneHitLists lists;
-  ASSERT_EQ(queries.all(std::span<const ShapeRay>(rays), lists), Status::ok);
+  SceneHitLists lists = expect_ok(queries.all(std::span<const ShapeRay>(rays)));
   ASSERT_EQ(lists.first.size(), rays.size() + 1);
   const std::vector<SceneHit> hits(lists.hits.begin(), lists.hits.end());
   const std::vector<std::size_t> first(lists.first.begin(), lists.first.end());
   for (std::size_t i = 0; i < rays.size(); ++i) {
     EXPECT_EQ(keys[i].id != kNoObject, times[i] < kInfinity);
-    std::span<const SceneHit> single;
-    ASSERT_EQ(queries.all(rays[i], single), Status::ok);
+    std::span<const SceneHit> single = expect_ok(queries.all(rays[i]));
     ASSERT_EQ(single.size(), first[i + 1] - first[i]);
     for (std::size_t k = 0; k < single.size(); ++k) {
       EXPECT_EQ(hits[first[i] + k].key, single[k].key);
@@ -363,10 +355,8 @@ void expect_casts_hit(bool composite, std::size_t casts) {
     Random random(2);
     QueryWorld world;
     fill(world, 150, center, random);
-    ShapeId point;
-    ASSERT_EQ(world.shapes.pool.add(SphereShape{}, point), Status::ok);
-    ShapeId ground;
-    ASSERT_EQ(world.shapes.pool.add(HalfSpaceShape{{0.1, 0.0, 1.0}, -8.0}, ground), Status::ok);
+    ShapeId point = expect_ok(world.shapes.pool.add(SphereShape{}));
+    ShapeId ground = expect_ok(world.shapes.pool.add(HalfSpaceShape{{0.1, 0.0, 1.0}, -8.0}));
     if (composite) world.add(ground, {}, random);
     world.add_to_scene();
     SceneQueries queries(*world.scene);
@@ -380,8 +370,8 @@ void expect_casts_hit(bool composite, std::size_t casts) {
       cast.max_t = (random.chance(0.3) ? 1e4 : world.size) / length_of(cast.direction.data());
       SceneHit closest;
       std::span<const SceneHit> hits;
-      ASSERT_EQ(queries.closest(cast, closest, {}, 1e-7), Status::ok);
-      ASSERT_EQ(queries.all(cast, hits, {}, 1e-7), Status::ok);
+      closest = expect_ok(queries.closest(cast, {}, 1e-7));
+      hits = expect_ok(queries.all(cast, {}, 1e-7));
       expect_hits(world, cast_times(world, cast), hits, hits.empty() ? closest : hits[0],
                   cast.max_t, 2e-7 / length_of(cast.direction.data()));
       ASSERT_EQ(static_cast<bool>(closest), !hits.empty());
@@ -422,8 +412,7 @@ TEST(SceneQueries, overlaps_match_brute_force) {
           world.bodies[n % 4 == 0 ? 60 + random.below(12) : random.below(60)].shape;
       Pose pose = random_pose(world.size, random);
       for (double& x : pose.position) x += center;
-      std::span<const SceneOverlap> found;
-      ASSERT_EQ(queries.overlap(shape, pose, found), Status::ok);
+      std::span<const SceneOverlap> found = expect_ok(queries.overlap(shape, pose));
       std::size_t k = 0;
       for (std::size_t i = 0; i < world.bodies.size(); ++i) {
         const double distance = brute_distance(world, shape, pose, i).distance;
@@ -469,20 +458,17 @@ TEST(SceneQueries, exact_touches_are_found) {
       }
     } while (length_of(ray.direction.data()) == 0.0);
     ray.max_t = random.chance(0.5) ? kInfinity : static_cast<double>(random.below(20));
-    std::span<const SceneHit> hits;
-    ASSERT_EQ(queries.all(ray, hits), Status::ok);
+    std::span<const SceneHit> hits = expect_ok(queries.all(ray));
     std::vector<const SceneHit*> by_body(world.bodies.size(), nullptr);
     for (const SceneHit& hit : hits) by_body[static_cast<std::size_t>(hit.data - 1000)] = &hit;
     const BodyDefinition& queried = world.bodies[random.below(world.bodies.size())];
     Pose pose = queried.pose;
     for (double& x : pose.position) x = on_lattice(6.0);
-    std::span<const SceneOverlap> overlaps;
-    ASSERT_EQ(queries.overlap(queried.shape, pose, overlaps), Status::ok);
+    std::span<const SceneOverlap> overlaps = expect_ok(queries.overlap(queried.shape, pose));
     std::size_t k = 0;
     for (std::size_t i = 0; i < world.bodies.size(); ++i) {
       const BodyDefinition& body = world.bodies[i];
-      ShapeHit truth;
-      ASSERT_EQ(cast_ray(tables, body.shape, body.pose, ray, truth), Status::ok);
+      ShapeHit truth = expect_ok(cast_ray(tables, body.shape, body.pose, ray));
       ASSERT_EQ(by_body[i] != nullptr, truth.hit) << i;
       if (truth.hit) {
         EXPECT_EQ(by_body[i]->t, truth.t);
@@ -509,9 +495,8 @@ TEST(SceneQueries, distance_matches_closest_parts) {
     for (std::size_t n = 0; n < scaled(40); ++n) {
       const std::size_t a = n % 2 == 0 ? 40 + random.below(12) : random.below(40);
       const std::size_t b = random.below(world.bodies.size());
-      SceneDistance answer;
-      ASSERT_EQ(queries.distance(world.keys[a], world.keys[b], answer, kInfinity, PairRules::none),
-                Status::ok);
+      SceneDistance answer =
+          expect_ok(queries.distance(world.keys[a], world.keys[b], kInfinity, PairRules::none));
       EXPECT_EQ(answer.key, world.keys[b]);
       const PairAnswer truth =
           brute_distance(world, world.bodies[a].shape, world.bodies[a].pose, b);
@@ -535,22 +520,19 @@ TEST(SceneQueries, distance_beyond_limit_is_empty) {
     const std::size_t b = random.below(world.bodies.size());
     SceneDistance free;
     SceneDistance limited;
-    ASSERT_EQ(queries.distance(world.keys[a], world.keys[b], free, kInfinity, PairRules::none),
-              Status::ok);
+    free = expect_ok(queries.distance(world.keys[a], world.keys[b], kInfinity, PairRules::none));
     const double slack = 1e-9 + 0.01 * std::abs(free.distance);
-    ASSERT_EQ(queries.distance(world.keys[a], world.keys[b], limited, free.distance + slack,
-                               PairRules::none),
-              Status::ok);
+    limited = expect_ok(
+        queries.distance(world.keys[a], world.keys[b], free.distance + slack, PairRules::none));
     EXPECT_EQ(limited.key, world.keys[b]);
     EXPECT_NEAR(limited.distance, free.distance, 1e-12);
-    ASSERT_EQ(queries.distance(world.keys[a], world.keys[b], limited, free.distance - slack,
-                               PairRules::none),
-              Status::ok);
+    limited = expect_ok(
+        queries.distance(world.keys[a], world.keys[b], free.distance - slack, PairRules::none));
     EXPECT_FALSE(limited);
   }
   SceneDistance answer;
-  EXPECT_EQ(queries.distance(world.keys[0], world.keys[1], answer, std::nan("")),
-            Status::invalid_argument);
+  expect_error(queries.distance(world.keys[0], world.keys[1], std::nan("")),
+               Status::invalid_argument);
 }
 
 TEST(SceneQueries, set_queries_match_pairs_of_bodies) {
@@ -572,33 +554,27 @@ TEST(SceneQueries, set_queries_match_pairs_of_bodies) {
       for (const Key a : sets[0]) {
         for (const Key b : sets[1]) {
           if (a == b) continue;
-          SceneDistance pair;
-          ASSERT_EQ(queries.distance(a, b, pair, kInfinity, PairRules::none), Status::ok);
+          SceneDistance pair = expect_ok(queries.distance(a, b, kInfinity, PairRules::none));
           least = std::min(least, pair.distance);
           if (pair.distance <= 0.0) overlapping.push_back({a, b});
         }
       }
-      std::span<const KeyPair> found;
-      ASSERT_EQ(queries.overlaps(sets[0], sets[1], found, ~std::size_t{0}, PairRules::none),
-                Status::ok);
+      std::span<const KeyPair> found =
+          expect_ok(queries.overlaps(sets[0], sets[1], ~std::size_t{0}, PairRules::none));
       EXPECT_TRUE(std::ranges::equal(found, overlapping));
-      ASSERT_EQ(queries.overlaps(sets[0], sets[1], found, 1, PairRules::none), Status::ok);
+      found = expect_ok(queries.overlaps(sets[0], sets[1], 1, PairRules::none));
       EXPECT_EQ(found.size(), std::min<std::size_t>(overlapping.size(), 1));
-      SetDistance answer;
-      ASSERT_EQ(queries.least_distance(sets[0], sets[1], answer, kInfinity, PairRules::none),
-                Status::ok);
+      SetDistance answer =
+          expect_ok(queries.least_distance(sets[0], sets[1], kInfinity, PairRules::none));
       ASSERT_EQ(static_cast<bool>(answer), least < kInfinity);
       if (!answer) continue;
       EXPECT_NEAR(answer.to.distance, least, 1e-9);
-      SceneDistance own;
-      ASSERT_EQ(queries.distance(answer.a, answer.to.key, own, kInfinity, PairRules::none),
-                Status::ok);
+      SceneDistance own =
+          expect_ok(queries.distance(answer.a, answer.to.key, kInfinity, PairRules::none));
       EXPECT_NEAR(own.distance, least, 1e-9);
-      BodyDefinition body;
-      ASSERT_EQ(world.scene->body(answer.a, body), Status::ok);
+      BodyDefinition body = expect_ok(world.scene->body(answer.a));
       EXPECT_EQ(answer.data_a, body.data);
-      ASSERT_EQ(queries.least_distance(sets[0], sets[1], answer, least - 1e-6, PairRules::none),
-                Status::ok);
+      answer = expect_ok(queries.least_distance(sets[0], sets[1], least - 1e-6, PairRules::none));
       EXPECT_FALSE(answer);
     }
   }
@@ -610,8 +586,7 @@ TEST(SceneQueries, nearest_bodies_match_brute_force) {
     QueryWorld world;
     fill(world, 200, center, random);
     world.add_to_scene();
-    ShapeId point;
-    ASSERT_EQ(world.shapes.pool.add(SphereShape{}, point), Status::ok);
+    ShapeId point = expect_ok(world.shapes.pool.add(SphereShape{}));
     SceneQueries queries(*world.scene);
     for (std::size_t n = 0; n < scaled(20); ++n) {
       Pose at = random_pose(2.0 * world.size, random);
@@ -624,8 +599,7 @@ TEST(SceneQueries, nearest_bodies_match_brute_force) {
         if (distance <= radius) truth.push_back(distance);
       }
       std::sort(truth.begin(), truth.end());
-      std::span<const SceneDistance> found;
-      ASSERT_EQ(queries.nearest(at.position, count, radius, found), Status::ok);
+      std::span<const SceneDistance> found = expect_ok(queries.nearest(at.position, count, radius));
       ASSERT_EQ(found.size(), std::min(count, truth.size()));
       for (std::size_t k = 0; k < found.size(); ++k) {
         EXPECT_NEAR(found[k].distance, truth[k], 1e-9);

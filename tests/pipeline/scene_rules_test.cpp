@@ -12,6 +12,7 @@
 
 #include "tests/pipeline/query_world.h"
 #include "tests/pipeline/user_shapes.h"
+#include "tests/support/answers.h"
 #include "tests/support/config.h"
 
 namespace winnow::test {
@@ -76,13 +77,11 @@ class RuledWorld {
   void add_own(Random& random) {
     for (const UserShape::Form form : {UserShape::block, UserShape::drum, UserShape::egg}) {
       world_.shapes.own.push_back({form, {0.9, 0.9, 1.4}, {}});
-      ShapeId id;
-      ASSERT_EQ(world_.shapes.pool.add(shape_of(world_.shapes.own.back(), 0.1), id), Status::ok);
+      ShapeId id = expect_ok(world_.shapes.pool.add(shape_of(world_.shapes.own.back(), 0.1)));
       for (int i = 0; i < 2; ++i) world_.add(id, random_pose(world_.size, random), random);
     }
-    ShapeId ground;
-    ASSERT_EQ(world_.shapes.pool.add(HalfSpaceShape{{0.0, 0.0, 1.0}, -0.8 * world_.size}, ground),
-              Status::ok);
+    ShapeId ground =
+        expect_ok(world_.shapes.pool.add(HalfSpaceShape{{0.0, 0.0, 1.0}, -0.8 * world_.size}));
     world_.add(ground, Pose{}, random);
   }
   void set_rules(Random& random) {
@@ -104,9 +103,8 @@ class RuledWorld {
     for (std::size_t i = 0; i < distance_.size(); ++i) {
       SceneDistance found;
       if (i / size() == i % size()) continue;
-      ASSERT_EQ(queries.distance(keys()[i / size()], keys()[i % size()], found, kInfinity,
-                                 PairRules::none),
-                Status::ok);
+      found = expect_ok(
+          queries.distance(keys()[i / size()], keys()[i % size()], kInfinity, PairRules::none));
       distance_[i] = found ? found.distance : kInfinity;
     }
   }
@@ -146,8 +144,8 @@ std::vector<Ids> brute_pairs(const RuledWorld& world, const Chosen& a, const Cho
 void expect_sets(RuledWorld& world, SceneQueries& queries, Random& random, PairRules rules) {
   const Chosen a(world, random.below(9), random);
   const Chosen b(world, random.below(9), random);
-  std::span<const KeyPair> pairs;
-  ASSERT_EQ(queries.overlaps(a.keys, b.keys, pairs, ~std::size_t{0}, rules), Status::ok);
+  std::span<const KeyPair> pairs =
+      expect_ok(queries.overlaps(a.keys, b.keys, ~std::size_t{0}, rules));
   std::vector<Ids> found;
   for (const KeyPair& pair : pairs) found.push_back(ids_of(pair));
   EXPECT_EQ(found, brute_pairs(world, a, b, 0.0, rules));
@@ -158,8 +156,7 @@ void expect_sets(RuledWorld& world, SceneQueries& queries, Random& random, PairR
       if (world.takes(rules, one, other)) least = std::min(least, world.distance(one, other));
     }
   }
-  SetDistance closest;
-  ASSERT_EQ(queries.least_distance(a.keys, b.keys, closest, kInfinity, rules), Status::ok);
+  SetDistance closest = expect_ok(queries.least_distance(a.keys, b.keys, kInfinity, rules));
   ASSERT_EQ(static_cast<bool>(closest), least < kInfinity);
   if (closest) {
     EXPECT_NEAR(closest.to.distance, least, 1e-9);
@@ -168,8 +165,7 @@ void expect_sets(RuledWorld& world, SceneQueries& queries, Random& random, PairR
   for (const double margin : {0.0, random.uniform(0.0, 2.0)}) {
     const auto expect_first = [&](const Chosen& first, const Chosen& second) {
       const std::vector<Ids> all = brute_pairs(world, first, second, margin, rules);
-      KeyPair pair;
-      ASSERT_EQ(queries.any_contact(first.keys, second.keys, pair, margin, rules), Status::ok);
+      KeyPair pair = expect_ok(queries.any_contact(first.keys, second.keys, margin, rules));
       EXPECT_EQ(ids_of(pair), all.empty() ? Ids(kNoObject, kNoObject) : all.front());
     };
     expect_first(a, b);
@@ -180,16 +176,14 @@ void expect_sets(RuledWorld& world, SceneQueries& queries, Random& random, PairR
 void expect_whole_scene(RuledWorld& world, SceneQueries& queries, double margin, PairRules rules) {
   Ids least(kNoObject, kNoObject);
   for (std::size_t a = 0; a < world.size(); ++a) {
-    BodyDefinition body;
-    ASSERT_EQ(world.scene().body(world.keys()[a], body), Status::ok);
+    BodyDefinition body = expect_ok(world.scene().body(world.keys()[a]));
     if (rules == PairRules::scene && body.state != BodyState::dynamic) continue;
     for (std::size_t b = 0; b < world.size(); ++b) {
       if (!world.takes(rules, a, b) || world.distance(a, b) > margin) continue;
       least = std::min(least, {world.keys()[a].id, world.keys()[b].id});
     }
   }
-  KeyPair pair;
-  ASSERT_EQ(queries.any_contact(pair, margin, rules), Status::ok);
+  KeyPair pair = expect_ok(queries.any_contact(margin, rules));
   EXPECT_EQ(ids_of(pair), least);
 }
 
@@ -206,8 +200,7 @@ TEST(SceneRules, distance_considers_pairs_of_collide) {
     SceneQueries queries(world.scene());
     for (std::size_t a = 0; a < world.size(); ++a) {
       for (std::size_t b = 0; b < world.size(); ++b) {
-        SceneDistance found;
-        ASSERT_EQ(queries.distance(world.keys()[a], world.keys()[b], found), Status::ok);
+        SceneDistance found = expect_ok(queries.distance(world.keys()[a], world.keys()[b]));
         ASSERT_EQ(static_cast<bool>(found), world.filters_allow(a, b)) << a << ' ' << b;
         if (!found) continue;
         EXPECT_EQ(found.distance, world.distance(a, b));
@@ -240,8 +233,7 @@ TEST(SceneRules, any_contact_of_scene_matches_brute_force) {
     }
     // Ignores each pair that is returned, until there is none left.
     for (std::size_t n = 0; n < world.size() * world.size(); ++n) {
-      KeyPair pair;
-      ASSERT_EQ(queries.any_contact(pair), Status::ok);
+      KeyPair pair = expect_ok(queries.any_contact());
       if (pair.first == Key{}) break;
       ASSERT_FALSE(world.scene().is_ignored(pair.first, pair.second));
       ASSERT_EQ(world.scene().set_ignored(pair.first, pair.second), Status::ok);
@@ -280,26 +272,23 @@ struct Robot {
 TEST(SceneRules, robot_with_ignored_neighbours_is_free) {
   Robot robot;
   SceneQueries queries(robot.scene);
-  KeyPair pair;
-  ASSERT_EQ(queries.any_contact(robot.links, robot.links, pair), Status::ok);
+  KeyPair pair = expect_ok(queries.any_contact(robot.links, robot.links));
   EXPECT_EQ(pair, (KeyPair{robot.links[0], robot.links[1]}));
   robot.ignore_neighbours();
   for (const double margin : {0.0, 0.09}) {
-    ASSERT_EQ(queries.any_contact(robot.links, robot.links, pair, margin), Status::ok);
+    pair = expect_ok(queries.any_contact(robot.links, robot.links, margin));
     EXPECT_EQ(pair, KeyPair{});
   }
-  ASSERT_EQ(queries.any_contact(robot.links, robot.links, pair, 0.11), Status::ok);
+  pair = expect_ok(queries.any_contact(robot.links, robot.links, 0.11));
   EXPECT_EQ(pair, (KeyPair{robot.links[0], robot.links[2]}));
-  SetDistance least;
-  ASSERT_EQ(queries.least_distance(robot.links, robot.links, least), Status::ok);
+  SetDistance least = expect_ok(queries.least_distance(robot.links, robot.links));
   EXPECT_NEAR(least.to.distance, 0.1, 1e-12);
-  std::span<const KeyPair> pairs;
-  ASSERT_EQ(queries.overlaps(robot.links, robot.links, pairs), Status::ok);
+  std::span<const KeyPair> pairs = expect_ok(queries.overlaps(robot.links, robot.links));
   EXPECT_TRUE(pairs.empty());
-  ASSERT_EQ(queries.overlaps(robot.links, robot.links, pairs, 1, PairRules::none), Status::ok);
+  pairs = expect_ok(queries.overlaps(robot.links, robot.links, 1, PairRules::none));
   EXPECT_EQ(pairs.size(), 1U);
   const Key table[] = {robot.table};
-  ASSERT_EQ(queries.any_contact(robot.links, table, pair, 0.2), Status::ok);
+  pair = expect_ok(queries.any_contact(robot.links, table, 0.2));
   EXPECT_EQ(pair, (KeyPair{robot.links[4], robot.table}));
 }
 
@@ -308,16 +297,13 @@ TEST(SceneRules, two_fixed_bodies_are_no_pair) {
   ASSERT_EQ(robot.scene.set_body_state(robot.links, BodyState::fixed), Status::ok);
   ASSERT_EQ(robot.scene.refresh(), Status::ok);
   SceneQueries queries(robot.scene);
-  KeyPair pair;
-  ASSERT_EQ(queries.any_contact(pair), Status::ok);
+  KeyPair pair = expect_ok(queries.any_contact());
   EXPECT_EQ(pair, KeyPair{});
-  ASSERT_EQ(queries.any_contact(pair, 0.0, PairRules::none), Status::ok);
+  pair = expect_ok(queries.any_contact(0.0, PairRules::none));
   EXPECT_EQ(pair, (KeyPair{robot.links[0], robot.links[1]}));
-  SceneDistance apart;
-  ASSERT_EQ(queries.distance(robot.links[4], robot.table, apart), Status::ok);
+  SceneDistance apart = expect_ok(queries.distance(robot.links[4], robot.table));
   EXPECT_FALSE(apart);
-  ASSERT_EQ(queries.distance(robot.links[4], robot.table, apart, kInfinity, PairRules::none),
-            Status::ok);
+  apart = expect_ok(queries.distance(robot.links[4], robot.table, kInfinity, PairRules::none));
   EXPECT_NEAR(apart.distance, 0.1, 1e-12);
 }
 
@@ -340,8 +326,7 @@ TEST(SceneRules, any_contact_matches_for_every_structure) {
         ASSERT_EQ(scene.add(bodies, keys), Status::ok);
         ASSERT_EQ(scene.refresh(), Status::ok);
         SceneQueries queries(scene);
-        KeyPair pair;
-        ASSERT_EQ(queries.any_contact(pair), Status::ok);
+        KeyPair pair = expect_ok(queries.any_contact());
         answers.insert(ids_of(pair));
       }
     }

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <string>
 
+#include "tests/support/answers.h"
 #include "tests/support/config.h"
 
 namespace winnow::test {
@@ -24,15 +25,14 @@ constexpr ContactLevel kLevels[] = {ContactLevel::boolean, ContactLevel::distanc
 
 TEST(Scene, five_bodies_make_three_pairs) {
   ShapePool pool;
-  ShapeId box;
-  ASSERT_EQ(pool.add(BoxShape{{1, 1, 1}}, box), Status::ok);
+  ShapeId box = expect_ok(pool.add(BoxShape{{1, 1, 1}}));
   const double places[5][2] = {{0, 0}, {4, 0}, {9, 5}, {1.8, 1.2}, {8, 6.5}};
   Scene scene(pool);
   Key key;
   for (ClientData i = 0; i < 5; ++i) {
     const BodyDefinition body{
         .shape = box, .pose = Pose::at(places[i][0], places[i][1], 0), .data = 'A' + i};
-    ASSERT_EQ(scene.add(body, key), Status::ok);
+    key = expect_ok(scene.add(body));
   }
   ASSERT_EQ(scene.move(scene.key_of(1), Pose::at(3.5, 0, 0)), Status::ok);
   Contacts contacts;
@@ -42,14 +42,13 @@ TEST(Scene, five_bodies_make_three_pairs) {
 
 TEST(Scene, pairs_without_dynamic_body_are_not_reported) {
   ShapePool pool;
-  ShapeId ball;
-  ASSERT_EQ(pool.add(SphereShape{1}, ball), Status::ok);
+  ShapeId ball = expect_ok(pool.add(SphereShape{1}));
   Scene scene(pool);
   Key keys[3];
   const BodyState states[] = {BodyState::fixed, BodyState::sleeping, BodyState::dynamic};
   for (ClientData i = 0; i < 3; ++i) {
     for (int copy = 0; copy < 2; ++copy) {
-      ASSERT_EQ(scene.add({.shape = ball, .state = states[i], .data = i}, keys[i]), Status::ok);
+      keys[i] = expect_ok(scene.add({.shape = ball, .state = states[i], .data = i}));
     }
   }
   for (const ContactLevel level :
@@ -100,14 +99,12 @@ TEST(Scene, events_match_sets_of_pairs) {
 TEST(Scene, sleeping_contacts_are_hidden_and_persist_on_waking) {
   for (const double cache_tolerance : {0.0, 0.01}) {
     ShapePool pool;
-    ShapeId ball;
-    ASSERT_EQ(pool.add(SphereShape{1}, ball), Status::ok);
+    ShapeId ball = expect_ok(pool.add(SphereShape{1}));
     Scene scene(pool, {.cache_tolerance = cache_tolerance});
     Key keys[4];
     for (ClientData i = 0; i < 4; ++i) {
       const double x = 1.9 * static_cast<double>(i);
-      ASSERT_EQ(scene.add({.shape = ball, .pose = Pose::at(x, 0, 0), .data = i}, keys[i]),
-                Status::ok);
+      keys[i] = expect_ok(scene.add({.shape = ball, .pose = Pose::at(x, 0, 0), .data = i}));
     }
     Contacts contacts;
     ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
@@ -138,8 +135,7 @@ TEST(Scene, contacts_persist_on_waking_after_other_levels) {
     Key keys[12];
     for (ClientData i = 0; i < 12; ++i) {
       const double x = 1.9 * static_cast<double>(i);
-      ASSERT_EQ(scene.add({.shape = ball, .pose = Pose::at(x, 0, 0), .data = i}, keys[i]),
-                Status::ok);
+      keys[i] = expect_ok(scene.add({.shape = ball, .pose = Pose::at(x, 0, 0), .data = i}));
     }
     Contacts contacts;
     for (const ContactLevel level :

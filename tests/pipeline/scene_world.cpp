@@ -10,19 +10,20 @@ namespace winnow::test {
 SceneWorld::SceneWorld(std::size_t count, std::uint64_t seed)
     : random(seed), side(std::cbrt(static_cast<double>(count) * 0.6)) {
   shapes.resize(7);
-  bool good = pool.add(SphereShape{0.5}, shapes[0]) == Status::ok;
-  good = good && pool.add(CapsuleShape{0.3, 0.4}, shapes[1]) == Status::ok;
-  good = good && pool.add(BoxShape{{0.4, 0.5, 0.3}}, shapes[2]) == Status::ok;
-  good = good && pool.add(CylinderShape{0.4, 0.3}, shapes[3]) == Status::ok;
-  good = good && pool.add(ConeShape{0.4, 0.4}, shapes[4]) == Status::ok;
-  good = good && pool.add(TriangleShape{{{-0.5, -0.4, 0}, {0.5, -0.3, 0.1}, {0, 0.6, 0}}},
-                          shapes[5]) == Status::ok;
+  bool good = pool.add(SphereShape{0.5}).get(shapes[0]) == Status::ok;
+  good = good && pool.add(CapsuleShape{0.3, 0.4}).get(shapes[1]) == Status::ok;
+  good = good && pool.add(BoxShape{{0.4, 0.5, 0.3}}).get(shapes[2]) == Status::ok;
+  good = good && pool.add(CylinderShape{0.4, 0.3}).get(shapes[3]) == Status::ok;
+  good = good && pool.add(ConeShape{0.4, 0.4}).get(shapes[4]) == Status::ok;
+  good = good &&
+         pool.add(TriangleShape{{{-0.5, -0.4, 0}, {0.5, -0.3, 0.1}, {0, 0.6, 0}}}).get(shapes[5]) ==
+             Status::ok;
   const std::vector<Vec3d> corners = {{0.6, 0, 0},  {-0.6, 0, 0}, {0, 0.5, 0},
                                       {0, -0.5, 0}, {0, 0, 0.4},  {0, 0, -0.4}};
   const std::vector<std::uint32_t> loops = {0, 2, 4, 2, 1, 4, 1, 3, 4, 3, 0, 4,
                                             2, 0, 5, 1, 2, 5, 3, 1, 5, 0, 3, 5};
   const std::vector<std::uint32_t> sizes(8, 3);
-  good = good && pool.add_hull(corners, {loops, sizes}, 0.0, shapes[6]) == Status::ok;
+  good = good && pool.add_hull(corners, {loops, sizes}, 0.0).get(shapes[6]) == Status::ok;
   if (!good) shapes.clear();
   for (std::size_t i = 0; i < count; ++i) {
     BodyDefinition body;

@@ -12,6 +12,7 @@
 #include <limits>
 
 #include "tests/pipeline/pair_scenes.h"
+#include "tests/support/answers.h"
 
 namespace winnow::test {
 namespace {
@@ -60,8 +61,8 @@ TEST(ShapeCast, balls_match_closed_form) {
     CastPair pair;
     const double size = random.log_uniform(1e-15, 1e15);
     const double radius[2] = {size * random.unit(), size * random.unit()};
-    ASSERT_EQ(pool.add(SphereShape{radius[0]}, pair.moving), Status::ok);
-    ASSERT_EQ(pool.add(SphereShape{radius[1]}, pair.stationary), Status::ok);
+    pair.moving = expect_ok(pool.add(SphereShape{radius[0]}));
+    pair.stationary = expect_ok(pool.add(SphereShape{radius[1]}));
     for (double& x : pair.pose.position) x = size * random.uniform(-1, 1);
     back_off(pair, unit(random), size * random.log_uniform(1.0, 1e4),
              random.log_uniform(1e-9, 1e9));
@@ -107,12 +108,12 @@ TEST(ShapeCast, bullet_never_tunnels_through_triangle) {
     ShapePool pool;
     CastPair pair;
     const double radius = random.chance(0.2) ? 0.0 : random.log_uniform(1e-9, 0.1);
-    ASSERT_EQ(pool.add(SphereShape{radius}, pair.moving), Status::ok);
+    pair.moving = expect_ok(pool.add(SphereShape{radius}));
     TriangleShape triangle;
     for (auto& corner : triangle.vertex) {
       for (double& x : corner) x = random.uniform(-1, 1);
     }
-    ASSERT_EQ(pool.add(triangle, pair.stationary), Status::ok);
+    pair.stationary = expect_ok(pool.add(triangle));
     // Aimed at a point inside the triangle.
     double weight[3] = {random.unit() + 0.01, random.unit() + 0.01, random.unit() + 0.01};
     const double sum = weight[0] + weight[1] + weight[2];
@@ -126,14 +127,12 @@ TEST(ShapeCast, bullet_never_tunnels_through_triangle) {
     pair.max_t = random.chance(0.5) ? kInfinity : 1e13 * way;
     // Reference: a ray against the triangle with the bullet's radius as rounding.
     triangle.rounding = radius;
-    ShapeId grown;
-    ASSERT_EQ(pool.add(triangle, grown), Status::ok);
+    ShapeId grown = expect_ok(pool.add(triangle));
     ShapeRay ray;
     ray.origin = pair.from.position;
     ray.direction = pair.direction;
     ray.max_t = pair.max_t;
-    ShapeHit truth;
-    ASSERT_EQ(cast_ray(pool.tables(), grown, pair.pose, ray, truth), Status::ok);
+    ShapeHit truth = expect_ok(cast_ray(pool.tables(), grown, pair.pose, ray));
     if (!truth.hit) continue;
     CastTouch touch;
     ASSERT_TRUE(cast_shape(pool.tables(), pair, 1e-6, touch)) << n;
@@ -205,9 +204,9 @@ TEST(ShapeCast, separating_sliding_or_touching_cast_ends_early) {
   ShapeId ball;
   ShapeId floor;
   ShapeId box;
-  ASSERT_EQ(pool.add(SphereShape{1.0}, ball), Status::ok);
-  ASSERT_EQ(pool.add(HalfSpaceShape{}, floor), Status::ok);
-  ASSERT_EQ(pool.add(BoxShape{{4.0, 4.0, 1.0}}, box), Status::ok);
+  ball = expect_ok(pool.add(SphereShape{1.0}));
+  floor = expect_ok(pool.add(HalfSpaceShape{}));
+  box = expect_ok(pool.add(BoxShape{{4.0, 4.0, 1.0}}));
   CastTouch touch;
   for (const double max_t : {1.0, 1e300, kInfinity}) {
     for (const double speed : {1e-300, 1.0, 1e300}) {

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "pipeline/kernels/kernels.h"
+#include "tests/support/answers.h"
 #include "tests/support/counting_memory.h"
 #include "tests/support/heap_count.h"
 #include "tests/support/random.h"
@@ -62,8 +63,7 @@ class Hulls : public testing::Test {
   const HullShape& hull_of(const Points& points, const Eigen::Vector3d& at = {0, 0, 0}) {
     Points moved;
     for (const auto& p : points) moved.push_back(p + at);
-    ShapeId id;
-    EXPECT_EQ(pool_.add_hull(moved, 0.0, id), Status::ok);
+    ShapeId id = expect_ok(pool_.add_hull(moved, 0.0));
     return pool_.tables().hulls[id.index()];
   }
 
@@ -203,7 +203,7 @@ TEST_F(Hulls, hostile_sets_lose_no_points) {
   for (std::size_t i = 0; i < scaled(4000) + kHostileKinds; ++i) {
     const Points points = hostile_points(static_cast<int>(i % kHostileKinds), random);
     ShapeId id;
-    ASSERT_EQ(pool_.add_hull(points, 0.0, id), Status::ok) << i;
+    ASSERT_EQ(pool_.add_hull(points, 0.0).get(id), Status::ok) << i;
     const HullShape& hull = pool_.tables().hulls[id.index()];
     const auto farthest = [](const Eigen::Vector3d& along, std::size_t count, auto&& point) {
       double most = -kInf;
@@ -255,7 +255,7 @@ class Cube : public testing::Test {
   ShapePool pool_;
   ShapeId id_;
 
-  Status add() { return pool_.add_hull(corners_, HullFaces{triangles_, threes_}, 0.0, id_); }
+  Status add() { return pool_.add_hull(corners_, HullFaces{triangles_, threes_}, 0.0).get(id_); }
 };
 
 TEST_F(Cube, twelve_triangles_merge_into_six_faces) {
@@ -282,29 +282,26 @@ TEST_F(Cube, open_inverted_or_badly_indexed_cube_is_refused) {
 TEST_F(Cube, dented_cube_is_refused) {
   Points dented = corners_;
   dented[6] = {0.1, 0.1, 0.1};
-  EXPECT_EQ(pool_.add_hull(dented, HullFaces{triangles_, threes_}, 0.0, id_),
-            Status::invalid_shape);
+  expect_error(pool_.add_hull(dented, HullFaces{triangles_, threes_}, 0.0), Status::invalid_shape);
 }
 
 TEST(ShapePools, bad_shapes_are_refused_and_change_nothing) {
   ShapePool pool;
-  ShapeId id;
   for (const double bad : {-1.0, kNan, kInf}) {
-    EXPECT_EQ(pool.add(SphereShape{bad}, id), Status::invalid_shape);
-    EXPECT_EQ(pool.add(CapsuleShape{1.0, bad}, id), Status::invalid_shape);
-    EXPECT_EQ(pool.add(BoxShape{{1.0, bad, 1.0}}, id), Status::invalid_shape);
-    EXPECT_EQ(pool.add(BoxShape{{1.0, 1.0, 1.0}, bad}, id), Status::invalid_shape);
-    EXPECT_EQ(pool.add(CylinderShape{bad, 1.0}, id), Status::invalid_shape);
-    EXPECT_EQ(pool.add(ConeShape{1.0, bad}, id), Status::invalid_shape);
-    EXPECT_EQ(pool.add_hull(Points{{0, 0, 0}}, bad, id), Status::invalid_shape);
+    expect_error(pool.add(SphereShape{bad}), Status::invalid_shape);
+    expect_error(pool.add(CapsuleShape{1.0, bad}), Status::invalid_shape);
+    expect_error(pool.add(BoxShape{{1.0, bad, 1.0}}), Status::invalid_shape);
+    expect_error(pool.add(BoxShape{{1.0, 1.0, 1.0}, bad}), Status::invalid_shape);
+    expect_error(pool.add(CylinderShape{bad, 1.0}), Status::invalid_shape);
+    expect_error(pool.add(ConeShape{1.0, bad}), Status::invalid_shape);
+    expect_error(pool.add_hull(Points{{0, 0, 0}}, bad), Status::invalid_shape);
   }
-  EXPECT_EQ(pool.add(TriangleShape{{{0, 0, 0}, {1, kNan, 0}, {0, 1, 0}}}, id),
-            Status::invalid_shape);
-  EXPECT_EQ(pool.add(HalfSpaceShape{{0, 0, 0}}, id), Status::invalid_shape);
-  EXPECT_EQ(pool.add(HalfSpaceShape{{0, 0, 1}, kInf}, id), Status::invalid_shape);
-  EXPECT_EQ(pool.add_hull(Points{}, 0.0, id), Status::invalid_shape);
-  EXPECT_EQ(pool.add_hull(Points{{0, kInf, 0}}, 0.0, id), Status::invalid_shape);
-  EXPECT_EQ(id, ShapeId{});
+  expect_error(pool.add(TriangleShape{{{0, 0, 0}, {1, kNan, 0}, {0, 1, 0}}}),
+               Status::invalid_shape);
+  expect_error(pool.add(HalfSpaceShape{{0, 0, 0}}), Status::invalid_shape);
+  expect_error(pool.add(HalfSpaceShape{{0, 0, 1}, kInf}), Status::invalid_shape);
+  expect_error(pool.add_hull(Points{}, 0.0), Status::invalid_shape);
+  expect_error(pool.add_hull(Points{{0, kInf, 0}}, 0.0), Status::invalid_shape);
   EXPECT_EQ(pool.footprint().total().reserved, 0U);
 }
 
@@ -312,13 +309,13 @@ TEST(ShapePools, removed_slot_is_reused_by_next_shape) {
   ShapePool pool;
   ShapeId first;
   ShapeId second;
-  ASSERT_EQ(pool.add_hull(on_a_ball(16, 1), 0.0, first), Status::ok);
+  first = expect_ok(pool.add_hull(on_a_ball(16, 1), 0.0));
   ASSERT_EQ(pool.remove(first), Status::ok);
   EXPECT_FALSE(pool.contains(first));
   EXPECT_EQ(pool.tables().hulls[first.index()].vertex_count, 1U);
   EXPECT_EQ(pool.remove(first), Status::invalid_key);
   EXPECT_EQ(pool.remove(ShapeId{}), Status::invalid_key);
-  ASSERT_EQ(pool.add_hull(on_a_ball(20, 1), 0.5, second), Status::ok);
+  second = expect_ok(pool.add_hull(on_a_ball(20, 1), 0.5));
   EXPECT_EQ(second, first);
   EXPECT_EQ(pool.tables().hulls[second.index()].rounding, 0.5);
 }
@@ -328,14 +325,13 @@ TEST(ShapePools, footprint_is_exact_and_refused_memory_changes_nothing) {
   CountingMemory memory;
   {
     ShapePool pool(&memory);
-    ShapeId id;
-    ASSERT_EQ(pool.add(SphereShape{1.0}, id), Status::ok);
-    ASSERT_EQ(pool.add_hull(on_a_ball(64, 2), 0.0, id), Status::ok);
+    ShapeId id = expect_ok(pool.add(SphereShape{1.0}));
+    id = expect_ok(pool.add_hull(on_a_ball(64, 2), 0.0));
     EXPECT_EQ(pool.footprint().total().reserved, memory.outstanding());
     const std::size_t before = memory.outstanding();
     memory.refuse_after(0);
-    EXPECT_EQ(pool.add(BoxShape{{1, 1, 1}}, id), Status::out_of_memory);
-    EXPECT_EQ(pool.add_hull(on_a_ball(64, 2), 0.0, id), Status::out_of_memory);
+    expect_error(pool.add(BoxShape{{1, 1, 1}}), Status::out_of_memory);
+    expect_error(pool.add_hull(on_a_ball(64, 2), 0.0), Status::out_of_memory);
     EXPECT_EQ(memory.outstanding(), before);
     EXPECT_EQ(pool.size(ShapeKind::hull), 1U);
   }
@@ -346,19 +342,19 @@ TEST(ShapePools, footprint_is_exact_and_refused_memory_changes_nothing) {
 using AddHull = Status (*)(ShapePool& pool, ShapeId& id);
 
 Status add_ball(ShapePool& pool, ShapeId& id) {
-  return pool.add_hull(on_a_ball(64, 2), 0.0, id);
+  return pool.add_hull(on_a_ball(64, 2), 0.0).get(id);
 }
 Status add_polygon(ShapePool& pool, ShapeId& id) {
-  return pool.add_hull(Points{{0, 0, 1}, {2, 0, 1}, {1, 1, 1}, {2, 2, 1}, {0, 2, 1}}, 0.0, id);
+  return pool.add_hull(Points{{0, 0, 1}, {2, 0, 1}, {1, 1, 1}, {2, 2, 1}, {0, 2, 1}}, 0.0).get(id);
 }
 Status add_segment(ShapePool& pool, ShapeId& id) {
-  return pool.add_hull(Points{{0, 0, 0}, {1, 2, 3}, {2, 4, 6}}, 0.0, id);
+  return pool.add_hull(Points{{0, 0, 0}, {1, 2, 3}, {2, 4, 6}}, 0.0).get(id);
 }
 Status add_tetrahedron(ShapePool& pool, ShapeId& id) {
   static const Points corners{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   static const std::vector<std::uint32_t> indices{0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3};
   static const std::vector<std::uint32_t> sizes(4, 3);
-  return pool.add_hull(corners, HullFaces{indices, sizes}, 0.0, id);
+  return pool.add_hull(corners, HullFaces{indices, sizes}, 0.0).get(id);
 }
 
 TEST(ShapePools, refused_memory_of_hull_changes_nothing) {
@@ -366,8 +362,7 @@ TEST(ShapePools, refused_memory_of_hull_changes_nothing) {
   for (const AddHull add : {add_ball, add_polygon, add_segment, add_tetrahedron}) {
     CountingMemory memory;
     ShapePool pool(&memory);
-    ShapeId first;
-    ASSERT_EQ(pool.add_hull(Points{{1, 2, 3}}, 0.0, first), Status::ok);
+    ShapeId first = expect_ok(pool.add_hull(Points{{1, 2, 3}}, 0.0));
     ASSERT_EQ(pool.remove(first),
               Status::ok);  // the table has a free slot: all requests belong to the hull
     const std::size_t before = memory.outstanding();
@@ -399,15 +394,14 @@ TEST(ShapePools, global_heap_is_not_used) {
   const Points ball = on_a_ball(64, 2);
   ASSERT_EQ(add_tetrahedron(pool, id), Status::ok);  // creates its static corners
   const std::size_t before = heap_requests();
-  EXPECT_EQ(pool.add_hull(ball, 0.0, id), Status::ok);
+  id = expect_ok(pool.add_hull(ball, 0.0));
   EXPECT_EQ(add_tetrahedron(pool, id), Status::ok);
   EXPECT_EQ(heap_requests(), before);
 }
 
 TEST(ShapeBounds, bounds_contain_shape_and_are_tight) {
   ShapePool pool;
-  ShapeId box;
-  ASSERT_EQ(pool.add(BoxShape{{1.0, 2.0, 3.0}, 0.5}, box), Status::ok);
+  ShapeId box = expect_ok(pool.add(BoxShape{{1.0, 2.0, 3.0}, 0.5}));
   const double h = std::sqrt(0.5);
   const Aabb bounds = pool.bounds(box, {{10.0, 0.0, 1e9}, {h, 0.0, 0.0, h}});
   EXPECT_NEAR(bounds.max.x(), 12.5F, 1e-5F);
@@ -420,18 +414,17 @@ TEST(ShapeBounds, bounds_contain_shape_and_are_tight) {
 // Adding a shape of a kind registers the kernels of its pairs.
 TEST(NarrowKernels, added_shape_kinds_register_kernels) {
   ShapePool pool;
-  ShapeId id;
-  ASSERT_EQ(pool.add(SphereShape{1.0}, id), Status::ok);
-  ASSERT_EQ(pool.add(CapsuleShape{1.0, 1.0}, id), Status::ok);
-  ASSERT_EQ(pool.add(BoxShape{{1.0, 1.0, 1.0}}, id), Status::ok);
-  ASSERT_EQ(pool.add(CylinderShape{1.0, 1.0}, id), Status::ok);
-  ASSERT_EQ(pool.add(ConeShape{1.0, 1.0}, id), Status::ok);
-  ASSERT_EQ(pool.add(TriangleShape{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}}, id), Status::ok);
-  ASSERT_EQ(pool.add(HalfSpaceShape{}, id), Status::ok);
+  ShapeId id = expect_ok(pool.add(SphereShape{1.0}));
+  id = expect_ok(pool.add(CapsuleShape{1.0, 1.0}));
+  id = expect_ok(pool.add(BoxShape{{1.0, 1.0, 1.0}}));
+  id = expect_ok(pool.add(CylinderShape{1.0, 1.0}));
+  id = expect_ok(pool.add(ConeShape{1.0, 1.0}));
+  id = expect_ok(pool.add(TriangleShape{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}}));
+  id = expect_ok(pool.add(HalfSpaceShape{}));
   const Points tetrahedron{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   const std::vector<std::uint32_t> corners{0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3};
   const std::vector<std::uint32_t> sizes{3, 3, 3, 3};
-  ASSERT_EQ(pool.add_hull(tetrahedron, HullFaces{corners, sizes}, 0.0, id), Status::ok);
+  id = expect_ok(pool.add_hull(tetrahedron, HullFaces{corners, sizes}, 0.0));
   for (const ShapeKind kind_a : kConvexKinds) {
     for (const ShapeKind kind_b : kConvexKinds) {
       if (kind_b < kind_a || kind_b > ShapeKind::half_space) continue;
@@ -444,8 +437,7 @@ TEST(NarrowKernels, added_shape_kinds_register_kernels) {
 
 TEST(ShapeBounds, half_space_bounds_end_only_at_plane) {
   ShapePool pool;
-  ShapeId floor;
-  ASSERT_EQ(pool.add(HalfSpaceShape{{0.0, 0.0, 2.0}, 1.0}, floor), Status::ok);
+  ShapeId floor = expect_ok(pool.add(HalfSpaceShape{{0.0, 0.0, 2.0}, 1.0}));
   const Aabb bounds = pool.bounds(floor, Pose::at(0.0, 0.0, 5.0));
   EXPECT_EQ(bounds.min.z(), -std::numeric_limits<float>::infinity());
   EXPECT_EQ(bounds.max.x(), std::numeric_limits<float>::infinity());

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "tests/pipeline/query_world.h"
+#include "tests/support/answers.h"
 #include "tests/support/config.h"
 #include "tests/support/meshes.h"
 #include "tests/support/random.h"
@@ -82,8 +83,7 @@ MeshData split(const MeshData& mesh) {
 }
 
 ShapeId add(CompositePool& pool, const MeshData& mesh) {
-  ShapeId id;
-  EXPECT_EQ(pool.add_mesh(mesh.points(), mesh.indices(), id), Status::ok);
+  ShapeId id = expect_ok(pool.add_mesh(mesh.points(), mesh.indices()));
   return id;
 }
 
@@ -95,8 +95,7 @@ TEST(Solids, only_closed_outward_meshes_can_be_solid) {
     EXPECT_FALSE(pool.is_solid(id));
     EXPECT_EQ(pool.set_solid(id), Status::ok) << mesh.name;
     EXPECT_TRUE(pool.is_solid(id));
-    ShapeId mirrored;
-    ASSERT_EQ(pool.add_scaled(id, {1.0, -2.0, 3.0}, mirrored), Status::ok);
+    ShapeId mirrored = expect_ok(pool.add_scaled(id, {1.0, -2.0, 3.0}));
     EXPECT_FALSE(pool.is_solid(mirrored)) << "each id has its own flag";
     EXPECT_EQ(pool.set_solid(mirrored), Status::ok);
     EXPECT_EQ(pool.set_solid(id, false), Status::ok);
@@ -131,11 +130,11 @@ TEST(Solids, only_meshes_can_be_solid) {
   ShapeId ball;
   ShapeId field;
   ShapeId compound;
-  ASSERT_EQ(shapes.add(SphereShape{1.0}, ball), Status::ok);
+  ball = expect_ok(shapes.add(SphereShape{1.0}));
   const std::vector<float> heights(4, 0.0F);
-  ASSERT_EQ(pool.add_height_field({heights, 2, 2, 0, {1.0, 1.0}}, field), Status::ok);
+  field = expect_ok(pool.add_height_field({heights, 2, 2, 0, {1.0, 1.0}}));
   const std::array children{CompoundChild{ball, {}}};
-  ASSERT_EQ(pool.add_compound(children, compound), Status::ok);
+  compound = expect_ok(pool.add_compound(children));
   const ShapeId removed = add(pool, cube());
   ASSERT_EQ(pool.set_solid(removed), Status::ok);
   ASSERT_EQ(pool.remove(removed), Status::ok);
@@ -181,12 +180,10 @@ TEST(Solids, inside_test_matches_winding_number) {
     const ShapeId id = add(pool, mesh);
     const std::array<double, 3> scales[] = {{1.0, 1.0, 1.0}, {3.0, -0.5, 2.0}};
     for (const auto& scale : scales) {
-      ShapeId scaled_id;
-      ASSERT_EQ(pool.add_scaled(id, scale, scaled_id), Status::ok);
+      ShapeId scaled_id = expect_ok(pool.add_scaled(id, scale));
       ASSERT_EQ(pool.set_solid(scaled_id), Status::ok);
       const std::array children{CompoundChild{scaled_id, Pose::at(0.5, -2.0, 1.0)}};
-      ShapeId compound;
-      ASSERT_EQ(pool.add_compound(children, compound), Status::ok);
+      ShapeId compound = expect_ok(pool.add_compound(children));
       for (const Vec& own : points_about(mesh, random)) {
         // Skip points so near the surface that the pose may move them across.
         if (is_on_surface(mesh, own)) continue;
@@ -212,14 +209,13 @@ TEST(Solids, inside_test_matches_winding_number) {
 struct SolidWorld {
   explicit SolidWorld(const MeshData& mesh) : composites(shapes) {
     const ShapeId surface = add(composites, mesh);
-    EXPECT_EQ(composites.add_scaled(surface, {1.0, 1.0, 1.0}, solid), Status::ok);
+    solid = expect_ok(composites.add_scaled(surface, {1.0, 1.0, 1.0}));
     EXPECT_EQ(composites.set_solid(solid), Status::ok);
-    EXPECT_EQ(scene.add({.shape = surface, .pose = pose}, plain_key), Status::ok);
-    EXPECT_EQ(scene.add({.shape = solid, .pose = pose}, solid_key), Status::ok);
+    plain_key = expect_ok(scene.add({.shape = surface, .pose = pose}));
+    solid_key = expect_ok(scene.add({.shape = solid, .pose = pose}));
   }
   Key put(ShapeId shape, const Pose& at) {
-    Key key;
-    EXPECT_EQ(scene.add({.shape = shape, .pose = at}, key), Status::ok);
+    Key key = expect_ok(scene.add({.shape = shape, .pose = at}));
     EXPECT_EQ(scene.refresh(), Status::ok);
     return key;
   }
@@ -242,8 +238,7 @@ TEST(Solids, distance_of_inner_points_is_negative) {
   std::size_t inside = 0;
   for (const Vec& own : points_about(mesh, random)) {
     const Vec point = own + as_eigen(world.pose.position);
-    std::span<const SceneDistance> found;
-    ASSERT_EQ(queries.nearest(point, 2, kInfinity, found), Status::ok);
+    std::span<const SceneDistance> found = expect_ok(queries.nearest(point, 2, kInfinity));
     ASSERT_EQ(found.size(), 2U);
     const SceneDistance solid = found[found[0].key == world.solid_key ? 0 : 1];
     const SceneDistance plain = found[found[0].key == world.solid_key ? 1 : 0];
@@ -257,7 +252,7 @@ TEST(Solids, distance_of_inner_points_is_negative) {
     if (!is_contained || plain.distance < 0.01) continue;
     ++inside;
     ASSERT_EQ(found[0].key, world.solid_key);
-    ASSERT_EQ(queries.nearest(point, 2, 0.5 * plain.distance, found), Status::ok);
+    found = expect_ok(queries.nearest(point, 2, 0.5 * plain.distance));
     ASSERT_EQ(found.size(), 1U) << "a point inside is within any radius";
     ASSERT_EQ(found[0].distance, solid.distance);
   }
@@ -267,15 +262,13 @@ TEST(Solids, distance_of_inner_points_is_negative) {
 TEST(Solids, solid_cube_matches_box) {
   Random random(3);
   SolidWorld world(cube());
-  ShapeId box;
-  ASSERT_EQ(world.shapes.add(BoxShape{{1.0, 1.0, 1.0}}, box), Status::ok);
+  ShapeId box = expect_ok(world.shapes.add(BoxShape{{1.0, 1.0, 1.0}}));
   const Key convex = world.put(box, world.pose);
   SceneQueries queries(world.scene);
   for (std::size_t i = 0; i < scaled(200); ++i) {
     const double point[3] = {5.0 + random.uniform(-1.5, 1.5), -3.0 + random.uniform(-1.5, 1.5),
                              2.0 + random.uniform(-1.5, 1.5)};
-    std::span<const SceneDistance> found;
-    ASSERT_EQ(queries.nearest(point, 3, kInfinity, found), Status::ok);
+    std::span<const SceneDistance> found = expect_ok(queries.nearest(point, 3, kInfinity));
     double distance[2] = {1.0, -1.0};
     for (const SceneDistance& one : found) {
       if (one.key == convex) distance[0] = one.distance;
@@ -288,25 +281,23 @@ TEST(Solids, solid_cube_matches_box) {
 TEST(Solids, contained_shapes_overlap_solid) {
   SolidWorld world(cube());
   ShapeId shapes[3];
-  ASSERT_EQ(world.shapes.add(SphereShape{0.25}, shapes[0]), Status::ok);
+  shapes[0] = expect_ok(world.shapes.add(SphereShape{0.25}));
   const std::vector<Vec3d> off_origin{
       {7.0, 0.0, 0.0}, {7.5, 0.0, 0.0}, {7.0, 0.5, 0.0}, {7.0, 0.0, 0.5}};
-  ASSERT_EQ(world.shapes.add_hull(off_origin, 0.0, shapes[1]), Status::ok);
+  shapes[1] = expect_ok(world.shapes.add_hull(off_origin, 0.0));
   MeshData small = cube();
   for (Eigen::Vector3f& vertex : small.vertices) vertex *= 0.25F;
   shapes[2] = add(world.composites, small);
   const std::array children{CompoundChild{shapes[1], Pose::at(-7.0, 0.0, 0.0)},
                             CompoundChild{shapes[2], {}}};
-  ShapeId compound;
-  ASSERT_EQ(world.composites.add_compound(children, compound), Status::ok);
+  ShapeId compound = expect_ok(world.composites.add_compound(children));
   const Pose within[] = {Pose::at(5.0, -3.0, 2.25), Pose::at(-2.25, -3.25, 2.0),
                          Pose::at(5.0, -3.25, 2.0), Pose::at(5.0, -3.0, 2.0)};
   const ShapeId all[] = {shapes[0], shapes[1], shapes[2], compound};
   for (int i = 0; i < 4; ++i) {
     const Key key = world.put(all[i], within[i]);
     SceneQueries queries(world.scene);
-    std::span<const SceneOverlap> overlaps;
-    ASSERT_EQ(queries.overlap(all[i], within[i], overlaps), Status::ok);
+    std::span<const SceneOverlap> overlaps = expect_ok(queries.overlap(all[i], within[i]));
     const auto has_overlap = [&](Key other) {
       return std::any_of(overlaps.begin(), overlaps.end(),
                          [&](const SceneOverlap& one) { return one.key == other; });
@@ -316,22 +307,20 @@ TEST(Solids, contained_shapes_overlap_solid) {
     SceneDistance plain;
     SceneDistance solid;
     SceneDistance back;
-    ASSERT_EQ(queries.distance(key, world.plain_key, plain), Status::ok);
-    ASSERT_EQ(queries.distance(key, world.solid_key, solid), Status::ok);
-    ASSERT_EQ(queries.distance(world.solid_key, key, back), Status::ok);
+    plain = expect_ok(queries.distance(key, world.plain_key));
+    solid = expect_ok(queries.distance(key, world.solid_key));
+    back = expect_ok(queries.distance(world.solid_key, key));
     EXPECT_GT(plain.distance, 0.1) << i;
     EXPECT_EQ(solid.distance, -plain.distance) << i;
     EXPECT_NEAR(back.distance, -plain.distance, 1e-12) << i;
-    ASSERT_EQ(queries.distance(key, world.solid_key, solid, -10.0), Status::ok);
+    solid = expect_ok(queries.distance(key, world.solid_key, -10.0));
     EXPECT_FALSE(solid) << "the limit is below the distance";
     const Key one[] = {key};
     const Key both[] = {world.plain_key, world.solid_key};
-    std::span<const KeyPair> pairs;
-    ASSERT_EQ(queries.overlaps(one, both, pairs), Status::ok);
+    std::span<const KeyPair> pairs = expect_ok(queries.overlaps(one, both));
     ASSERT_EQ(pairs.size(), 1U) << i;
     EXPECT_EQ(pairs[0].second, world.solid_key);
-    SetDistance least;
-    ASSERT_EQ(queries.least_distance(one, both, least), Status::ok);
+    SetDistance least = expect_ok(queries.least_distance(one, both));
     EXPECT_EQ(least.to.key, world.solid_key) << i;
   }
 }
@@ -339,16 +328,13 @@ TEST(Solids, contained_shapes_overlap_solid) {
 TEST(Solids, shapes_outside_do_not_overlap_solid) {
   const MeshData mesh = torus(16, 9);
   SolidWorld world(mesh);
-  ShapeId ball;
-  ASSERT_EQ(world.shapes.add(SphereShape{0.5}, ball), Status::ok);
-  ShapeId ground;
-  ASSERT_EQ(world.shapes.add(HalfSpaceShape{{0.0, 0.0, 1.0}, 0.0}, ground), Status::ok);
+  ShapeId ball = expect_ok(world.shapes.add(SphereShape{0.5}));
+  ShapeId ground = expect_ok(world.shapes.add(HalfSpaceShape{{0.0, 0.0, 1.0}, 0.0}));
   SceneQueries queries(world.scene);
   ASSERT_EQ(world.scene.refresh(), Status::ok);
-  std::span<const SceneOverlap> overlaps;
-  ASSERT_EQ(queries.overlap(ball, world.pose, overlaps), Status::ok);
+  std::span<const SceneOverlap> overlaps = expect_ok(queries.overlap(ball, world.pose));
   EXPECT_TRUE(overlaps.empty()) << "in the hole";
-  ASSERT_EQ(queries.overlap(ground, {}, overlaps), Status::ok);
+  overlaps = expect_ok(queries.overlap(ground, {}));
   EXPECT_TRUE(overlaps.empty()) << "above";
 }
 
@@ -374,11 +360,9 @@ TEST(Solids, changed_solid_flag_requires_refresh) {
   SceneQueries queries(world.scene);
   ASSERT_EQ(world.composites.set_solid(world.solid, false), Status::ok);
   const double point[3] = {5.0, -3.0, 2.0};
-  std::span<const SceneDistance> found;
-  EXPECT_EQ(queries.nearest(point, 1, 10.0, found), Status::invalid_argument);
+  expect_error(queries.nearest(point, 1, 10.0), Status::invalid_argument);
   ASSERT_EQ(world.scene.refresh(), Status::ok);
-  ASSERT_EQ(queries.nearest(point, 1, 10.0, found), Status::ok);
-  EXPECT_EQ(found[0].distance, 1.0);
+  EXPECT_EQ(expect_ok(queries.nearest(point, 1, 10.0))[0].distance, 1.0);
 }
 
 }  // namespace

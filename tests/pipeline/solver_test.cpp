@@ -14,6 +14,7 @@
 
 #include "tests/pipeline/pair_scenes.h"
 #include "tests/pipeline/reproduction.h"
+#include "tests/support/answers.h"
 
 namespace winnow::test {
 namespace {
@@ -92,8 +93,7 @@ class SolverCases : public testing::Test {
  protected:
   template <typename Shape>
   ShapeId add(const Shape& shape) {
-    ShapeId id;
-    EXPECT_EQ(pool_.add(shape, id), Status::ok);
+    ShapeId id = expect_ok(pool_.add(shape));
     return id;
   }
   PairAnswer solve(ShapeId a, const Pose& pose_a, ShapeId b, const Pose& pose_b,
@@ -225,7 +225,7 @@ TEST_F(SolverCases, core_features_are_consistent) {
   const std::vector<std::uint32_t> loops{0, 2, 4, 2, 1, 4, 1, 3, 4, 3, 0, 4,
                                          2, 0, 5, 1, 2, 5, 3, 1, 5, 0, 3, 5};
   const std::vector<std::uint32_t> sizes(8, 3);
-  ASSERT_EQ(pool_.add_hull(corners, {loops, sizes}, 0.0, hull), Status::ok);
+  hull = expect_ok(pool_.add_hull(corners, {loops, sizes}, 0.0));
   const ShapeId triangle = add(TriangleShape{{{1, 0, 0}, {0, 2, 0.5}, {-1, -1, 0}}, 0.0});
   for (const ShapeId shape : {add(BoxShape{{1, 0.5, 0.75}, 0.0}), hull, triangle}) {
     SCOPED_TRACE(to_string(shape.kind()));
@@ -302,8 +302,8 @@ TEST_F(SolverCases, rod_beside_huge_hull_is_apart) {
                                  {283094055835.81445, 66267112995.037109, -742520916180.31445}});
   ShapeId rod;
   ShapeId world;
-  ASSERT_EQ(pool_.add_hull(rod_ends, 0.0, rod), Status::ok);
-  ASSERT_EQ(pool_.add_hull(corners, 0.0, world), Status::ok);
+  rod = expect_ok(pool_.add_hull(rod_ends, 0.0));
+  world = expect_ok(pool_.add_hull(corners, 0.0));
   const Pose at_rod{{-1.125, 1.0330810546875, 3.60107421875},
                     {-0.6171875, -0.35546875, -0.3203125, 0.625}};
   const Pose at_world{
@@ -327,8 +327,7 @@ Pose pose_of(const Eigen::Quaterniond& turn, const Vec& at) {
 
 TEST_F(SolverCases, nearly_parallel_crossing_rods_touch) {
   const std::vector<Vec> ends{{-1, 0, 0}, {1, 0, 0}};
-  ShapeId hull;
-  ASSERT_EQ(pool_.add_hull(ends, 0.0, hull), Status::ok);
+  ShapeId hull = expect_ok(pool_.add_hull(ends, 0.0));
   const ShapeId rods[] = {add(BoxShape{{1, 0, 0}, 0.0}),
                           add(TriangleShape{{{-1, 0, 0}, {1, 0, 0}, {0, 0, 0}}, 0.0}), hull};
   Random random(5);
@@ -511,15 +510,15 @@ TEST_P(Solver, powers_of_two_scale_answers_exactly) {
                     {random.unit(), random.unit(), random.unit(), random.unit()}};
       Pose far_at = at;
       ShapeId ids[4];
-      ASSERT_EQ(scene.pool.add(box, ids[0]), Status::ok);
-      ASSERT_EQ(scene.pool.add(cone, ids[1]), Status::ok);
+      ids[0] = expect_ok(scene.pool.add(box));
+      ids[1] = expect_ok(scene.pool.add(cone));
       for (double* x :
            {&box.half[0], &box.half[1], &box.half[2], &box.rounding, &cone.radius,
             &cone.half_length, &far_at.position[0], &far_at.position[1], &far_at.position[2]}) {
         *x *= scale;
       }
-      ASSERT_EQ(scene.pool.add(box, ids[2]), Status::ok);
-      ASSERT_EQ(scene.pool.add(cone, ids[3]), Status::ok);
+      ids[2] = expect_ok(scene.pool.add(box));
+      ids[3] = expect_ok(scene.pool.add(cone));
       SolverCounts counts;
       const auto solve = [&](int first, const Pose& pose) {
         return solve_pair(scene.pool.tables(), ids[first], Pose{}, ids[first + 1], pose,

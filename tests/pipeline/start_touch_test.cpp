@@ -2,6 +2,7 @@
 // body.
 
 #include "tests/pipeline/composite_world.h"
+#include "tests/support/answers.h"
 
 #include <gtest/gtest.h>
 #include <winnow/core/eigen.h>
@@ -66,8 +67,7 @@ class TouchWorld {
     return add(shapes, BoxShape{{scale_ * x, scale_ * y, scale_ * z}, 0.0});
   }
   [[nodiscard]] ShapeId compound(const std::vector<CompoundChild>& children) {
-    ShapeId id;
-    EXPECT_EQ(composites.add_compound(children, id), Status::ok);
+    ShapeId id = expect_ok(composites.add_compound(children));
     return id;
   }
   [[nodiscard]] ShapeId mesh(const std::vector<Eigen::Vector3d>& corners,
@@ -131,9 +131,8 @@ void TouchWorld::add_levels() {
   for (std::size_t i = 0; i < heights.size(); ++i) {
     heights[i] = i % 41 > 26 ? static_cast<float>(4.0 * scale_) : 0.0F;
   }
-  ShapeId field;
-  EXPECT_EQ(composites.add_height_field({heights, 41, 41, 0, {0.5 * scale_, 0.5 * scale_}}, field),
-            Status::ok);
+  ShapeId field =
+      expect_ok(composites.add_height_field({heights, 41, 41, 0, {0.5 * scale_, 0.5 * scale_}}));
   whole("height field", field, 0.5, at(-10, -10, 0));
 }
 
@@ -146,8 +145,7 @@ void TouchWorld::add_movers() {
     const double half = i & 4 ? 0.5 : 1.0;
     frustum.emplace_back(scale_ * Eigen::Vector3d(half, half, 1.0).cwiseProduct(corner));
   }
-  ShapeId hull;
-  EXPECT_EQ(shapes.add_hull(frustum, 0.0, hull), Status::ok);
+  ShapeId hull = expect_ok(shapes.add_hull(frustum, 0.0));
   const ShapeId block = box(0.5, 0.5, 0.5);
   const ShapeId ball = add(shapes, SphereShape{scale_ * 0.5});
   const ShapeId crate = mesh(cube, {0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4,
@@ -182,7 +180,7 @@ class LevelRun {
     for (const BodyDefinition& fixed : level.bodies) {
       BodyDefinition body = fixed;
       body.pose = placed(body.pose);
-      EXPECT_EQ(scene_.add(body, floor_.emplace_back()), Status::ok);
+      floor_.emplace_back() = expect_ok(scene_.add(body));
     }
     EXPECT_EQ(scene_.refresh(), Status::ok);
     const Pose pose =
@@ -196,28 +194,23 @@ class LevelRun {
     SceneQueries queries(scene_);
     ShapeCast cast{.shape = shape_, .pose = motion_.start, .touching = touching};
     as_eigen(cast.direction) = way_;
-    SceneHit hit;
-    EXPECT_EQ(queries.closest(cast, hit, {}, 1e-6 * scale_), Status::ok);
-    std::span<const SceneHit> all;
-    EXPECT_EQ(queries.all(cast, all, {}, 1e-6 * scale_), Status::ok);
+    SceneHit hit = expect_ok(queries.closest(cast, {}, 1e-6 * scale_));
+    std::span<const SceneHit> all = expect_ok(queries.all(cast, {}, 1e-6 * scale_));
     EXPECT_EQ(all.empty() ? Key{} : all[0].key, hit.key);
     return hit;
   }
   [[nodiscard]] SceneHit motion_cast(bool touching = false) const {
     SceneQueries queries(scene_);
     const MotionCast cast{shape_, motion_, touching};
-    SceneHit hit;
-    EXPECT_EQ(queries.closest(cast, hit, {}, 1e-6), Status::ok);
-    std::span<const SceneHit> all;
-    EXPECT_EQ(queries.all(cast, all, {}, 1e-6), Status::ok);
+    SceneHit hit = expect_ok(queries.closest(cast, {}, 1e-6));
+    std::span<const SceneHit> all = expect_ok(queries.all(cast, {}, 1e-6));
     EXPECT_EQ(all.empty() ? Key{} : all[0].key, hit.key);
     return hit;
   }
   /// Returns the time of the first impact in the scene, without initial touches, or 2 if there is
   /// none.
   [[nodiscard]] double first_impact_time() {
-    Key key;
-    EXPECT_EQ(scene_.add({.shape = shape_, .pose = motion_.start}, key), Status::ok);
+    Key key = expect_ok(scene_.add({.shape = shape_, .pose = motion_.start}));
     ContinuousCollision ccd(scene_);
     EXPECT_EQ(ccd.find_impacts({&key, 1}, {&motion_, 1}, {.touching = false}), Status::ok);
     EXPECT_EQ(scene_.remove(key), Status::ok);

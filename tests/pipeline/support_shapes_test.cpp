@@ -18,6 +18,7 @@
 #include "tests/pipeline/floor_contacts.h"
 #include "tests/pipeline/pair_results.h"
 #include "tests/pipeline/pair_scenes.h"
+#include "tests/support/answers.h"
 #include "tests/support/random.h"
 
 namespace winnow::test {
@@ -89,33 +90,33 @@ std::vector<Same> same_shapes() {
            [](Random& random, ShapePool& pool, ShapeId& id, ShapeId& known) {
              the_block = {{random.uniform(0.2, 1.0), random.uniform(0.2, 1.0), 0.5}, 0.1};
              const SupportShape own{farthest_of_block, &the_block, 2.0, 0.1};
-             ASSERT_EQ(pool.add(own, id), Status::ok);
-             ASSERT_EQ(pool.add(the_block, known), Status::ok);
+             id = expect_ok(pool.add(own));
+             known = expect_ok(pool.add(the_block));
            }},
           {"drum",
            [](Random& random, ShapePool& pool, ShapeId& id, ShapeId& known) {
              the_drum = {random.uniform(0.2, 1.0), random.uniform(0.2, 1.0), 0.0};
              const SupportShape own{farthest_of_drum, &the_drum, 2.0, 0.0};
-             ASSERT_EQ(pool.add(own, id), Status::ok);
-             ASSERT_EQ(pool.add(the_drum, known), Status::ok);
+             id = expect_ok(pool.add(own));
+             known = expect_ok(pool.add(the_drum));
            }},
           {"ball",
            [](Random& random, ShapePool& pool, ShapeId& id, ShapeId& known) {
              const double r = random.uniform(0.2, 1.0);
-             ASSERT_EQ(pool.add(EllipsoidShape{{r, r, r}, 0.125}, id), Status::ok);
-             ASSERT_EQ(pool.add(SphereShape{r + 0.125}, known), Status::ok);
+             id = expect_ok(pool.add(EllipsoidShape{{r, r, r}, 0.125}));
+             known = expect_ok(pool.add(SphereShape{r + 0.125}));
            }},
           {"capsule",
            [](Random& random, ShapePool& pool, ShapeId& id, ShapeId& known) {
              const double r = random.uniform(0.2, 1.0);
-             ASSERT_EQ(pool.add(TaperedCapsuleShape{{r, r}, 0.7}, id), Status::ok);
-             ASSERT_EQ(pool.add(CapsuleShape{r, 0.7}, known), Status::ok);
+             id = expect_ok(pool.add(TaperedCapsuleShape{{r, r}, 0.7}));
+             known = expect_ok(pool.add(CapsuleShape{r, 0.7}));
            }},
           {"ball in a ball", [](Random& random, ShapePool& pool, ShapeId& id, ShapeId& known) {
              const double r = random.uniform(1.0, 2.0);
              const double less = random.uniform(0.0, 0.9);
-             ASSERT_EQ(pool.add(TaperedCapsuleShape{{r, less}, 0.0}, id), Status::ok);
-             ASSERT_EQ(pool.add(SphereShape{r}, known), Status::ok);
+             id = expect_ok(pool.add(TaperedCapsuleShape{{r, less}, 0.0}));
+             known = expect_ok(pool.add(SphereShape{r}));
            }}};
 }
 
@@ -264,8 +265,8 @@ template <typename A, typename B>
 PairResults answer_to(const A& a, const Pose& pose_a, const B& b, const Pose& pose_b) {
   PairScene scene;
   scene.shapes.resize(2);
-  EXPECT_EQ(scene.pool.add(a, scene.shapes[0]), Status::ok);
-  EXPECT_EQ(scene.pool.add(b, scene.shapes[1]), Status::ok);
+  scene.shapes[0] = expect_ok(scene.pool.add(a));
+  scene.shapes[1] = expect_ok(scene.pool.add(b));
   scene.poses = {pose_a, pose_b};
   scene.pairs = {{0, 1}};
   const auto answers = compute_results(scene, {.level = ContactLevel::distance});
@@ -391,10 +392,9 @@ TEST(SupportShapes, overlapping_roundings_need_few_support_calls) {
   CountingDrum drum{{0.5, 1.0}};
   PairScene scene;
   scene.shapes.resize(2);
-  ASSERT_EQ(
-      scene.pool.add(SupportShape{farthest_of_counting_drum, &drum, 2.0, 1.0}, scene.shapes[0]),
-      Status::ok);
-  ASSERT_EQ(scene.pool.add(CapsuleShape{1.0, 1.0}, scene.shapes[1]), Status::ok);
+  scene.shapes[0] =
+      expect_ok(scene.pool.add(SupportShape{farthest_of_counting_drum, &drum, 2.0, 1.0}));
+  scene.shapes[1] = expect_ok(scene.pool.add(CapsuleShape{1.0, 1.0}));
   scene.poses = {Pose{}, Pose::at(1.2, 0.4, 0.3)};
   scene.poses[1].orientation[1] = 0.4;
   scene.pairs = {{0, 1}};
@@ -416,9 +416,9 @@ TEST(SupportShapes, bounds_contain_shapes_and_are_tight) {
     const EllipsoidShape ball{{length(random), length(random), length(random)}, 0.1};
     const TaperedCapsuleShape taper{{length(random), length(random)}, length(random)};
     const BoxShape box{{length(random), length(random), length(random)}, 0.1};
-    ASSERT_EQ(pool.add(ball, id[0]), Status::ok);
-    ASSERT_EQ(pool.add(taper, id[1]), Status::ok);
-    ASSERT_EQ(pool.add(SupportShape{farthest_of_block, &box, 3.0, 0.1}, id[2]), Status::ok);
+    id[0] = expect_ok(pool.add(ball));
+    id[1] = expect_ok(pool.add(taper));
+    id[2] = expect_ok(pool.add(SupportShape{farthest_of_block, &box, 3.0, 0.1}));
     const Pose pose = random_pose(random, 3.0);
     for (int axis = 0; axis < 3; ++axis) {
       const RealVec row = turn_of(pose).row(axis);
@@ -442,8 +442,8 @@ void expect_same_hit(const ShapePool& pool, ShapeId one, ShapeId other, const Po
                      const ShapeRay& ray, double doubt) {
   ShapeHit hit;
   ShapeHit known;
-  ASSERT_EQ(cast_ray(pool.tables(), one, pose, ray, hit), Status::ok);
-  ASSERT_EQ(cast_ray(pool.tables(), other, pose, ray, known), Status::ok);
+  hit = expect_ok(cast_ray(pool.tables(), one, pose, ray));
+  known = expect_ok(cast_ray(pool.tables(), other, pose, ray));
   ASSERT_EQ(hit.hit, known.hit);
   if (!hit.hit) return;
   EXPECT_NEAR(hit.t, known.t, doubt);
@@ -461,10 +461,10 @@ TEST(SupportShapes, rays_hit_at_the_surface) {
     const TaperedCapsuleShape taper{{length(random), length(random)}, length(random)};
     const BoxShape box{{length(random), length(random), length(random)}};
     ShapeId id[4];
-    ASSERT_EQ(pool.add(ball, id[0]), Status::ok);
-    ASSERT_EQ(pool.add(taper, id[1]), Status::ok);
-    ASSERT_EQ(pool.add(SupportShape{farthest_of_block, &box, 3.0, 0.0}, id[2]), Status::ok);
-    ASSERT_EQ(pool.add(box, id[3]), Status::ok);
+    id[0] = expect_ok(pool.add(ball));
+    id[1] = expect_ok(pool.add(taper));
+    id[2] = expect_ok(pool.add(SupportShape{farthest_of_block, &box, 3.0, 0.0}));
+    id[3] = expect_ok(pool.add(box));
     const Pose pose = random_pose(random, 1.0);
     ShapeRay ray{{}, {}, kEndless};
     for (double& x : ray.origin) x = random.uniform(-3.0, 3.0);
@@ -482,8 +482,7 @@ TEST(SupportShapes, rays_hit_at_the_surface) {
       });
     };
     for (std::size_t which = 0; which < 2; ++which) {
-      ShapeHit hit;
-      ASSERT_EQ(cast_ray(pool.tables(), id[which], pose, ray, hit), Status::ok);
+      ShapeHit hit = expect_ok(cast_ray(pool.tables(), id[which], pose, ray));
       const bool begins_inside = height(which, 0.0L) <= 0.0L;
       if (begins_inside) {
         EXPECT_TRUE(hit.hit);
@@ -513,9 +512,9 @@ TEST(SupportShapes, resting_shapes_have_expected_contact_counts) {
   ShapeId block;
   ShapeId ball;
   ShapeId taper;
-  ASSERT_EQ(pool.add(SupportShape{farthest_of_block, &box, 1.0, 0.0}, block), Status::ok);
-  ASSERT_EQ(pool.add(EllipsoidShape{{1.0, 1.0, 0.3}}, ball), Status::ok);
-  ASSERT_EQ(pool.add(TaperedCapsuleShape{{0.3, 0.2}, 1.0}, taper), Status::ok);
+  block = expect_ok(pool.add(SupportShape{farthest_of_block, &box, 1.0, 0.0}));
+  ball = expect_ok(pool.add(EllipsoidShape{{1.0, 1.0, 0.3}}));
+  taper = expect_ok(pool.add(TaperedCapsuleShape{{0.3, 0.2}, 1.0}));
   for (const double tilt : {0.0, 1e-6, 1e-4, 1e-2}) {
     EXPECT_EQ(contacts_on_floor(pool, block, tilted(0.3, tilt), kMargin).size(), 4U) << tilt;
     EXPECT_EQ(contacts_on_floor(pool, ball, tilted(0.3, tilt), kMargin).size(), 1U) << tilt;
@@ -528,8 +527,7 @@ TEST(SupportShapes, resting_shapes_have_expected_contact_counts) {
 
 TEST(SupportShapes, ellipsoid_rests_on_point_below) {
   ShapePool pool;
-  ShapeId ball;
-  ASSERT_EQ(pool.add(EllipsoidShape{{1.0, 0.8, 0.3}}, ball), Status::ok);
+  ShapeId ball = expect_ok(pool.add(EllipsoidShape{{1.0, 0.8, 0.3}}));
   const std::vector<ContactPoint> points = contacts_on_floor(pool, ball, Pose::at(0, 0, 0.3), 0.02);
   ASSERT_EQ(points.size(), 1U);
   for (int axis = 0; axis < 2; ++axis) EXPECT_NEAR(points[0].position[axis], 0.0F, 1e-6F);
@@ -541,25 +539,25 @@ TEST(SupportShapes, invalid_support_functions_are_refused) {
   ShapePool pool;
   ShapeId id;
   FaultyShape faulty;
-  EXPECT_EQ(pool.add(SupportShape{farthest_of_faulty, &faulty, 2.0, 0.0}, id), Status::ok);
-  EXPECT_EQ(pool.add(SupportShape{nullptr, nullptr, 2.0, 0.0}, id), Status::invalid_shape);
-  EXPECT_EQ(pool.add(SupportShape{farthest_of_faulty, &faulty, -2.0, 0.0}, id),
-            Status::invalid_shape);
-  EXPECT_EQ(pool.add(SupportShape{farthest_of_faulty, &faulty, 2.0, kEndless}, id),
-            Status::invalid_shape);
-  EXPECT_EQ(pool.add(SupportShape{farthest_of_faulty, &faulty, 1.0, 0.0}, id),
-            Status::invalid_shape);
+  id = expect_ok(pool.add(SupportShape{farthest_of_faulty, &faulty, 2.0, 0.0}));
+  expect_error(pool.add(SupportShape{nullptr, nullptr, 2.0, 0.0}), Status::invalid_shape);
+  expect_error(pool.add(SupportShape{farthest_of_faulty, &faulty, -2.0, 0.0}),
+               Status::invalid_shape);
+  expect_error(pool.add(SupportShape{farthest_of_faulty, &faulty, 2.0, kEndless}),
+               Status::invalid_shape);
+  expect_error(pool.add(SupportShape{farthest_of_faulty, &faulty, 1.0, 0.0}),
+               Status::invalid_shape);
   for (const auto fault : {FaultyShape::not_a_number, FaultyShape::endless, FaultyShape::far_away,
                            FaultyShape::contradictory}) {
     faulty.fault = fault;
-    EXPECT_EQ(pool.add(SupportShape{farthest_of_faulty, &faulty, 2.0, 0.0}, id),
-              Status::invalid_shape);
+    expect_error(pool.add(SupportShape{farthest_of_faulty, &faulty, 2.0, 0.0}),
+                 Status::invalid_shape);
   }
   EXPECT_EQ(pool.size(ShapeKind::support), 1U);
-  EXPECT_EQ(pool.add(EllipsoidShape{{1.0, -1.0, 1.0}}, id), Status::invalid_shape);
-  EXPECT_EQ(pool.add(EllipsoidShape{{1.0, 1.0, kEndless}}, id), Status::invalid_shape);
-  EXPECT_EQ(pool.add(TaperedCapsuleShape{{1.0, -0.5}, 1.0}, id), Status::invalid_shape);
-  EXPECT_EQ(pool.add(TaperedCapsuleShape{{1.0, 0.5}, std::nan("")}, id), Status::invalid_shape);
+  expect_error(pool.add(EllipsoidShape{{1.0, -1.0, 1.0}}), Status::invalid_shape);
+  expect_error(pool.add(EllipsoidShape{{1.0, 1.0, kEndless}}), Status::invalid_shape);
+  expect_error(pool.add(TaperedCapsuleShape{{1.0, -0.5}, 1.0}), Status::invalid_shape);
+  expect_error(pool.add(TaperedCapsuleShape{{1.0, 0.5}, std::nan("")}), Status::invalid_shape);
 }
 
 TEST(SupportShapes, functions_that_become_invalid_give_finite_results) {
@@ -569,8 +567,7 @@ TEST(SupportShapes, functions_that_become_invalid_give_finite_results) {
     PairScene scene;
     add_pairs(scene, kind, kind, PairStyle::ordinary, scaled(40), random);
     faulty.fault = FaultyShape::good;
-    ShapeId id;
-    ASSERT_EQ(scene.pool.add(SupportShape{farthest_of_faulty, &faulty, 2.0, 0.1}, id), Status::ok);
+    ShapeId id = expect_ok(scene.pool.add(SupportShape{farthest_of_faulty, &faulty, 2.0, 0.1}));
     for (std::size_t i = 0; i < scene.pairs.size(); ++i) scene.shapes[2 * i] = id;
     for (const auto fault : {FaultyShape::not_a_number, FaultyShape::endless, FaultyShape::zero,
                              FaultyShape::far_away, FaultyShape::contradictory}) {
@@ -585,7 +582,7 @@ TEST(SupportShapes, functions_that_become_invalid_give_finite_results) {
       }
       ShapeHit hit;
       const ShapeRay ray{{3, 0.1, 0.2}, {-1, 0, 0}, kEndless};
-      ASSERT_EQ(cast_ray(scene.pool.tables(), id, Pose{}, ray, hit), Status::ok);
+      hit = expect_ok(cast_ray(scene.pool.tables(), id, Pose{}, ray));
       EXPECT_TRUE(std::isfinite(hit.t));
       std::vector<RigidMotion> motions;
       for (const Pose& pose : scene.poses) {
@@ -641,15 +638,14 @@ ShapeId add_floor(CompositePool& pool, ShapePool& shapes, int which) {
   if (which == 0) {
     const std::vector<Vec3d> corners{{-4, -4, 0}, {4, -4, 0}, {4, 4, 0.2}, {-4, 4, 0}};
     const std::vector<std::uint32_t> triangles{0, 1, 2, 0, 2, 3};
-    EXPECT_EQ(pool.add_mesh(std::span(corners), std::span(triangles), id), Status::ok);
+    id = expect_ok(pool.add_mesh(std::span(corners), std::span(triangles)));
   } else if (which == 1) {
     const std::vector<float> heights{0, 0.1F, 0, 0.2F, 0, 0, 0, 0, 0.1F};
-    EXPECT_EQ(pool.add_height_field({heights, 3, 3, 0, {4.0, 4.0}}, id), Status::ok);
+    id = expect_ok(pool.add_height_field({heights, 3, 3, 0, {4.0, 4.0}}));
   } else {
-    ShapeId box;
-    EXPECT_EQ(shapes.add(BoxShape{{4, 4, 0.5}}, box), Status::ok);
+    ShapeId box = expect_ok(shapes.add(BoxShape{{4, 4, 0.5}}));
     const CompoundChild children[1] = {{box, Pose::at(0, 0, -0.5)}};
-    EXPECT_EQ(pool.add_compound(children, id), Status::ok);
+    id = expect_ok(pool.add_compound(children));
   }
   return id;
 }
@@ -676,22 +672,20 @@ TEST(SupportShapes, contacts_with_composites_match_equal_shapes) {
     const ShapeId floor = add_floor(composites, shapes, which);
     const BoxShape block{{0.5, 0.4, 0.3}};
     ShapeId ids[2][3];
-    ASSERT_EQ(shapes.add(EllipsoidShape{{0.3, 0.3, 0.3}}, ids[0][0]), Status::ok);
-    ASSERT_EQ(shapes.add(SphereShape{0.3}, ids[1][0]), Status::ok);
-    ASSERT_EQ(shapes.add(TaperedCapsuleShape{{0.3, 0.3}, 0.5}, ids[0][1]), Status::ok);
-    ASSERT_EQ(shapes.add(CapsuleShape{0.3, 0.5}, ids[1][1]), Status::ok);
-    ASSERT_EQ(shapes.add(SupportShape{farthest_of_block, &block, 1.0, 0.0}, ids[0][2]), Status::ok);
-    ASSERT_EQ(shapes.add(block, ids[1][2]), Status::ok);
+    ids[0][0] = expect_ok(shapes.add(EllipsoidShape{{0.3, 0.3, 0.3}}));
+    ids[1][0] = expect_ok(shapes.add(SphereShape{0.3}));
+    ids[0][1] = expect_ok(shapes.add(TaperedCapsuleShape{{0.3, 0.3}, 0.5}));
+    ids[1][1] = expect_ok(shapes.add(CapsuleShape{0.3, 0.5}));
+    ids[0][2] = expect_ok(shapes.add(SupportShape{farthest_of_block, &block, 1.0, 0.0}));
+    ids[1][2] = expect_ok(shapes.add(block));
     Contacts contacts[2];
     for (std::size_t way = 0; way < 2; ++way) {
       Scene scene(shapes, {.contact_margin = 0.05, .composites = &composites});
-      Key key;
-      ASSERT_EQ(scene.add({.shape = floor, .state = BodyState::fixed}, key), Status::ok);
+      Key key = expect_ok(scene.add({.shape = floor, .state = BodyState::fixed}));
       for (std::size_t i = 0; i < 12; ++i) {
         const double x = 0.3 * static_cast<double>(i);
         const Pose pose = Pose::at(x - 1.0, 1.3 * static_cast<double>(i % 3) + 0.11, 0.28);
-        ASSERT_EQ(scene.add({.shape = ids[way][i % 3], .pose = pose, .data = i + 1}, key),
-                  Status::ok);
+        key = expect_ok(scene.add({.shape = ids[way][i % 3], .pose = pose, .data = i + 1}));
       }
       ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts[way]), Status::ok);
     }
@@ -716,11 +710,9 @@ TEST(SupportShapes, user_shape_ends_recording) {
   Recorder recorder(sink);
   ShapePool shapes;
   FaultyShape faulty;
-  ShapeId id;
-  ASSERT_EQ(shapes.add(SupportShape{farthest_of_faulty, &faulty, 2.0, 0.0}, id), Status::ok);
+  ShapeId id = expect_ok(shapes.add(SupportShape{farthest_of_faulty, &faulty, 2.0, 0.0}));
   RecordedScene scene(recorder, shapes);
-  Key key;
-  EXPECT_EQ(scene.add({.shape = id}, key), Status::ok);
+  expect_ok(scene.add({.shape = id}));
   EXPECT_EQ(recorder.status(), Status::unsupported);
 }
 

@@ -19,6 +19,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/answers.h"
 #include "tests/support/config.h"
 
 namespace winnow::test {
@@ -41,8 +42,8 @@ struct Region {
       {.contact_margin = margin, .contact_reduction = true, .composites = &world.composites});
   Key floor;
   Key key;
-  EXPECT_EQ(scene.add({.shape = fixed, .state = BodyState::fixed}, floor), Status::ok);
-  EXPECT_EQ(scene.add({.shape = body, .pose = pose}, key), Status::ok);
+  floor = expect_ok(scene.add({.shape = fixed, .state = BodyState::fixed}));
+  key = expect_ok(scene.add({.shape = body, .pose = pose}));
   Contacts contacts;
   EXPECT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
   std::vector<Region> regions;
@@ -111,8 +112,7 @@ struct Region {
 }
 
 [[nodiscard]] ShapeId add_hull(ShapePool& pool, const Surface& surface) {
-  ShapeId id;
-  EXPECT_EQ(pool.add_hull(std::span<const Point>(surface.vertices), 0.0, id), Status::ok);
+  ShapeId id = expect_ok(pool.add_hull(std::span<const Point>(surface.vertices), 0.0));
   return id;
 }
 
@@ -239,8 +239,7 @@ TEST(SurfaceContacts, box_that_slides_over_crest_touches_slope) {
   const ShapeId both = add(world.composites, surface);
   const ShapeId inward = add(world.composites, wound_inward(surface));
   const ShapeId apart = add(world.composites, torn(surface));
-  ShapeId facing;
-  ASSERT_EQ(world.composites.add_scaled(both, {1.0, 1.0, 1.0}, facing), Status::ok);
+  ShapeId facing = expect_ok(world.composites.add_scaled(both, {1.0, 1.0, 1.0}));
   ASSERT_EQ(world.composites.set_one_sided(facing), Status::ok);
   for (const double beyond : {-0.002, 0.002, 0.005, 0.009, 0.012, 0.05}) {
     const Vec at = along * (beyond - 0.4) + up * 0.19 + Vec(0.0, 0.1, 0.0);
@@ -279,8 +278,7 @@ TEST(SurfaceContacts, scaled_mesh_touches_like_scaled_vertices) {
       CompositeWorld world;
       const ShapeId ball = add(world.shapes, SphereShape{0.5});
       const ShapeId flat = add(world.composites, roof(slope));
-      ShapeId scaled_roof;
-      ASSERT_EQ(world.composites.add_scaled(flat, {1.0, 1.0, scale}, scaled_roof), Status::ok);
+      ShapeId scaled_roof = expect_ok(world.composites.add_scaled(flat, {1.0, 1.0, scale}));
       const ShapeId direct = add(world.composites, roof(slope * static_cast<float>(scale)));
       const Pose pose = Pose::at(0.02, 0.1, 0.45);
       const std::vector<Region> right = regions_of(world, direct, ball, pose, 0.0);
@@ -329,10 +327,9 @@ struct Floor {
   std::vector<Floor> floors{{"mesh", mesh},
                             {"mesh wound inward", add(pool, wound_inward(even))},
                             {"mesh without shared vertices", add(pool, torn(even))}};
-  ShapeId id;
-  EXPECT_EQ(pool.add_scaled(mesh, {1.3, -0.7, 2.0}, id), Status::ok);
+  ShapeId id = expect_ok(pool.add_scaled(mesh, {1.3, -0.7, 2.0}));
   floors.push_back({"mirrored mesh", id});
-  EXPECT_EQ(pool.add_scaled(mesh, {1.0, 1.0, 1.0}, id), Status::ok);
+  id = expect_ok(pool.add_scaled(mesh, {1.0, 1.0, 1.0}));
   EXPECT_EQ(pool.set_one_sided(id), Status::ok);
   floors.push_back({"one-sided mesh", id});
   // Rows of squares that are shifted against each other.
@@ -367,7 +364,7 @@ TEST(SurfaceContacts, bodies_that_slide_on_flat_surfaces_touch_up) {
     const ShapeId box = add(world.shapes, BoxShape{{x, y, height}, 0.0});
     ShapeId compound;
     const CompoundChild child[] = {{box, Pose{}}};
-    ASSERT_EQ(world.composites.add_compound(child, compound), Status::ok);
+    compound = expect_ok(world.composites.add_compound(child));
     const ShapeId bodies[] = {box,
                               compound,
                               add(world.shapes, CylinderShape{x, height, 0.0}),

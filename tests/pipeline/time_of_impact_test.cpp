@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "tests/pipeline/motion_reference.h"
+#include "tests/support/answers.h"
 #include "tests/support/platform.h"
 
 namespace winnow::test {
@@ -53,8 +54,7 @@ PairImpact impact_of(const ShapePool& pool, const MovingShapes& pair, double tol
 
 template <typename Shape>
 ShapeId added(ShapePool& pool, const Shape& shape) {
-  ShapeId id;
-  EXPECT_EQ(pool.add(shape, id), Status::ok);
+  ShapeId id = expect_ok(pool.add(shape));
   return id;
 }
 

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 
+#include "tests/support/answers.h"
 #include "tests/support/config.h"
 #include "tests/support/counting_memory.h"
 
@@ -33,7 +34,7 @@ class Shuffle {
         {add(shapes_, BoxShape{{0.3, 0.2, 0.1}, 0.0}), Pose::at(kRadius - std::sqrt(0.14), 0, 0)},
         {add(shapes_, SphereShape{0.25}), Pose::at(-0.5, 0, 0)}};
     kinds_.emplace_back();
-    EXPECT_EQ(composites_.add_compound(children, kinds_.back()), Status::ok);
+    kinds_.back() = expect_ok(composites_.add_compound(children));
     for (std::size_t i = 0; i < count; ++i) starts_.push_back(fresh());
   }
 
@@ -43,8 +44,7 @@ class Shuffle {
   [[nodiscard]] const ShapePool& shapes() const { return shapes_; }
 
   void fill(Scene& scene) {
-    Key key;
-    EXPECT_EQ(scene.add({.shape = ground_, .state = BodyState::fixed}, key), Status::ok);
+    expect_ok(scene.add({.shape = ground_, .state = BodyState::fixed}));
     keys_.resize(starts_.size());
     bodies_ = starts_;
     EXPECT_EQ(scene.add(bodies_, keys_), Status::ok);
@@ -63,7 +63,7 @@ class Shuffle {
       case 0:
         EXPECT_EQ(scene.remove(keys_[one]), Status::ok);
         bodies_[one] = fresh();
-        EXPECT_EQ(scene.add(bodies_[one], keys_[one]), Status::ok);
+        keys_[one] = expect_ok(scene.add(bodies_[one]));
         break;
       case 1:
         EXPECT_EQ(scene.set_body_state(keys_[one], BodyState::sleeping), Status::ok);
@@ -102,7 +102,7 @@ TEST(WarmStart, previous_indices_last_as_long_as_contact) {
   Scene scene(pool, {.warm_start = true});
   Key keys[4];
   for (int i = 0; i < 4; ++i) {
-    ASSERT_EQ(scene.add({.shape = ball, .pose = Pose::at(1.9 * i, 0, 0)}, keys[i]), Status::ok);
+    keys[i] = expect_ok(scene.add({.shape = ball, .pose = Pose::at(1.9 * i, 0, 0)}));
   }
   Contacts contacts;
   const auto pairs_before = [&] {
@@ -132,8 +132,8 @@ TEST(WarmStart, sliding_box_keeps_four_points) {
   Scene scene(shapes, {.contact_reduction = true, .warm_start = true, .composites = &composites});
   Key ground;
   Key key;
-  ASSERT_EQ(scene.add({.shape = floor, .state = BodyState::fixed}, ground), Status::ok);
-  ASSERT_EQ(scene.add({.shape = box}, key), Status::ok);
+  ground = expect_ok(scene.add({.shape = floor, .state = BodyState::fixed}));
+  key = expect_ok(scene.add({.shape = box}));
   Contacts contacts;
   for (int frame = 0; frame < 200; ++frame) {
     ASSERT_EQ(scene.move(key, Pose::at(-2.0 + 0.02 * frame, 0.003 * frame, 0.099)), Status::ok);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "tests/queries/questions.h"
+#include "tests/support/answers.h"
 #include "tests/support/hostile_casts.h"
 #include "tests/support/motion.h"
 #include "tests/support/scenes.h"
@@ -27,13 +28,13 @@ Hits all_of(World& world, const Cast& cast, HitBuffer& buffer, const Filter& fil
 
 Hit closest_of(World& world, const Cast& cast, const Filter& filter = {}) {
   Hit hit{{1, 2}, 3, 4.0F};
-  EXPECT_EQ(world.partition().closest(cast, hit, filter), Status::ok);
+  hit = expect_ok(world.partition().closest(cast, filter));
   return hit;
 }
 
 Hit any_of(World& world, const Cast& cast, const Filter& filter = {}) {
   Hit hit{{1, 2}, 3, 4.0F};
-  EXPECT_EQ(world.partition().any(cast, hit, filter), Status::ok);
+  hit = expect_ok(world.partition().any(cast, filter));
   return hit;
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "tests/queries/questions.h"
+#include "tests/support/answers.h"
 #include "tests/support/hostile_casts.h"
 #include "tests/support/motion.h"
 #include "tests/support/platform.h"
@@ -72,9 +73,9 @@ void read(const Partition& p, const Questions& q, std::size_t first, Reader& rea
           reader.expect_ok(p.all(q.casts[i], reader.hits));
           reader.expect(right_hits(reader.hits.hits(), q.cast_truths[i], p));
           Hit hit;
-          reader.expect_ok(p.closest(q.casts[i], hit));
+          reader.expect_ok(p.closest(q.casts[i]).get(hit));
           reader.expect(is_first_of(hit, reader.hits.hits()));
-          reader.expect_ok(p.any(q.casts[i], hit));
+          reader.expect_ok(p.any(q.casts[i]).get(hit));
           reader.expect(is_any_of(hit, reader.hits.hits()));
         }
         break;

@@ -134,12 +134,10 @@ TEST_P(QueryInput, bad_cast_is_refused) {
     fill();
     EXPECT_EQ(partition().all(casts[i], hits_), Status::invalid_argument);
     EXPECT_TRUE(hits_.empty());
-    Hit hit{{1, 2}, 3, 4.0F};
-    EXPECT_EQ(partition().closest(casts[i], hit), Status::invalid_argument);
-    EXPECT_EQ(hit, Hit{});
-    hit = {{1, 2}, 3, 4.0F};
-    EXPECT_EQ(partition().any(casts[i], hit), Status::invalid_argument);
-    EXPECT_EQ(hit, Hit{});
+    for (const Answer<Hit>& hit : {partition().closest(casts[i]), partition().any(casts[i])}) {
+      EXPECT_EQ(hit.status, Status::invalid_argument);
+      EXPECT_EQ(static_cast<const Hit&>(hit), Hit{});
+    }
   }
   EXPECT_TRUE(before.unchanged());
 }

@@ -67,8 +67,8 @@ class QueryMemory : public Conformance {
         [this, &p](Buffers& b) { return p.nearest(boxes_[5], 200, 1e9F, b.hits); },
         [this, &p](Buffers&) {
           Hit hit;
-          const Status status = p.closest(rays_[1], hit);
-          return status == Status::ok ? p.any(rays_[1], hit) : status;
+          const Status status = p.closest(rays_[1]).get(hit);
+          return status == Status::ok ? p.any(rays_[1]).get(hit) : status;
         },
         [this, &p](Buffers&) { return p.closest(RayBatch(rays_), {}); },
     };

@@ -135,9 +135,9 @@ class Play {
       RC_ASSERT(p.all(cast, hits_, filter) == Status::ok);
       RC_ASSERT(right_hits(hits_.hits(), candidates(cast, objects), p));
       Hit hit;
-      RC_ASSERT(p.closest(cast, hit, filter) == Status::ok);
+      RC_ASSERT(p.closest(cast, filter).get(hit) == Status::ok);
       RC_ASSERT(is_first_of(hit, hits_.hits()));
-      RC_ASSERT(p.any(cast, hit, filter) == Status::ok);
+      RC_ASSERT(p.any(cast, filter).get(hit) == Status::ok);
       RC_ASSERT(is_any_of(hit, hits_.hits()));
     } else if (kind == Step::batch) {
       const std::vector<Ray> rays = plain_rays(boxes, 70, random);

@@ -11,6 +11,7 @@
 #include <string>
 
 #include "tests/recording/programs.h"
+#include "tests/support/answers.h"
 
 namespace winnow::test {
 namespace {
@@ -31,13 +32,13 @@ TEST_F(ProgramFrames, frames_have_a_row_for_each_id) {
     Recorder recorder(path_.c_str());
     RecordedPartition partition(recorder, linear_bvh());
     Key keys[3];
-    EXPECT_EQ(partition.insert(unit, 0, keys[0]), Status::ok);
-    EXPECT_EQ(partition.insert(unit, 0, keys[1]), Status::ok);
+    keys[0] = expect_ok(partition.insert(unit, 0));
+    keys[1] = expect_ok(partition.insert(unit, 0));
     recorder.end_frame();
     EXPECT_EQ(partition.remove(keys[0]), Status::ok);
     recorder.end_frame();
-    EXPECT_EQ(partition.insert(far, 0, keys[0]), Status::ok);
-    EXPECT_EQ(partition.insert(far, 0, keys[2]), Status::ok);
+    keys[0] = expect_ok(partition.insert(far, 0));
+    keys[2] = expect_ok(partition.insert(far, 0));
     recorder.end_frame();
   }
   const bench::Recording recording = bench::read_recording(path_);
@@ -59,7 +60,7 @@ TEST_F(ProgramFrames, frames_follow_queries_without_end_frame) {
     PairBuffer pairs;
     Key key;
     for (int frame = 0; frame < 4; ++frame) {
-      EXPECT_EQ(partition.insert({{0, 0, 0}, {1, 1, 1}}, 0, key), Status::ok);
+      key = expect_ok(partition.insert({{0, 0, 0}, {1, 1, 1}}, 0));
       EXPECT_EQ(partition.self_pairs(pairs), Status::ok);
     }
   }
@@ -87,10 +88,8 @@ TEST_F(ProgramFrames, frames_have_contacts_at_the_bodies) {
     ShapePool shapes;
     const ShapeId box = shapes.add(BoxShape{{0.5, 0.5, 0.5}});
     RecordedScene scene(recorder, shapes);
-    Key upper;
-    Key lower;
-    EXPECT_EQ(scene.add({.shape = box, .pose = Pose::at(10, 20, 30)}, lower), Status::ok);
-    EXPECT_EQ(scene.add({.shape = box, .pose = Pose::at(10, 20, 30.9)}, upper), Status::ok);
+    expect_ok(scene.add({.shape = box, .pose = Pose::at(10, 20, 30)}));
+    expect_ok(scene.add({.shape = box, .pose = Pose::at(10, 20, 30.9)}));
     recorder.end_frame();
     Contacts contacts;
     EXPECT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);

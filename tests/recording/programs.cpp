@@ -7,6 +7,7 @@
 
 #include <algorithm>
 
+#include "tests/support/answers.h"
 #include "tests/support/meshes.h"
 
 namespace winnow::test {
@@ -79,13 +80,13 @@ void query_casts(const RecordedPartition& partition, Random& random) {
     ray.direction = {uniform_in(random, -0.3F, 0.3F), uniform_in(random, -0.3F, 0.3F), 1.0F};
   }
   const Filter some{.predicate = {kNotThirds, nullptr}};
-  EXPECT_EQ(partition.closest(rays[0], hit), Status::ok);
-  EXPECT_EQ(partition.any(rays[1], hit), Status::ok);
+  hit = expect_ok(partition.closest(rays[0]));
+  hit = expect_ok(partition.any(rays[1]));
   EXPECT_EQ(partition.all(rays[2], hits), Status::ok);
   EXPECT_EQ(partition.all(rays[2], hits, some), Status::ok);
-  EXPECT_EQ(partition.closest(BoxCast{{{0, 0, -5}, {2, 2, -4}}, {0, 0, 1}}, hit, some), Status::ok);
+  hit = expect_ok(partition.closest(BoxCast{{{0, 0, -5}, {2, 2, -4}}, {0, 0, 1}}, some));
   EXPECT_EQ(partition.all(SphereCast{{{4, 4, -5}, 1}, {0, 0, 1}}, hits), Status::ok);
-  EXPECT_EQ(partition.any(CapsuleCast{{{4, 4, -5}, {5, 5, -5}, 1}, {0, 0, 1}}, hit), Status::ok);
+  hit = expect_ok(partition.any(CapsuleCast{{{4, 4, -5}, {5, 5, -5}, 1}, {0, 0, 1}}));
   std::vector<Key> keys(rays.size());
   std::vector<float> t(rays.size());
   EXPECT_EQ(partition.closest(rays, {.key = keys.data(), .t = t.data()}, some), Status::ok);
@@ -195,16 +196,15 @@ namespace {
 struct Landscape {
   explicit Landscape(const SceneWorld& world)
       : pool(world.pool), land(terrain(5)), heights{0, 1, 0.5F, 0.2F, 0.1F, 0.3F, 1, 0, 0} {
-    EXPECT_EQ(pool.add_mesh(land.points(), std::span<const std::uint32_t>(land.corners),
-                            ids.emplace_back()),
-              Status::ok);
-    EXPECT_EQ(pool.add_scaled(ids[0], {0.5, -1.0, 2.0}, ids.emplace_back()), Status::ok);
-    EXPECT_EQ(pool.add_height_field(samples(), ids.emplace_back()), Status::ok);
+    ids.emplace_back() =
+        expect_ok(pool.add_mesh(land.points(), std::span<const std::uint32_t>(land.corners)));
+    ids.emplace_back() = expect_ok(pool.add_scaled(ids[0], {0.5, -1.0, 2.0}));
+    ids.emplace_back() = expect_ok(pool.add_height_field(samples()));
     add_compound(world, 3);
     const CompoundChild surfaces[] = {{ids[1], Pose::at(0, 0.5, 1)},
                                       {world.shapes[0], Pose::at(0.2, 0, 0)},
                                       {ids[2], Pose::at(-1, 0, 0.3)}};
-    EXPECT_EQ(pool.add_compound(surfaces, ids.emplace_back()), Status::ok);
+    ids.emplace_back() = expect_ok(pool.add_compound(surfaces));
     add_compound(world, 18);
   }
 
@@ -214,7 +214,7 @@ struct Landscape {
       children.push_back(
           {world.shapes[i % world.shapes.size()], Pose::at(0.4 * static_cast<double>(i), 0.1, 0)});
     }
-    EXPECT_EQ(pool.add_compound(children, ids.emplace_back()), Status::ok);
+    ids.emplace_back() = expect_ok(pool.add_compound(children));
   }
   [[nodiscard]] HeightSamples samples() const {
     return {.heights = heights, .columns = 3, .rows = 3};
@@ -222,12 +222,9 @@ struct Landscape {
   void add_to(RecordedScene& scene, SceneWorld& world) const {
     for (const ShapeId id : ids) {
       const bool moves = id.composite_kind() == CompositeKind::compound;
-      Key key;
-      EXPECT_EQ(scene.add({.shape = id,
+      expect_ok(scene.add({.shape = id,
                            .pose = world.random_pose(),
-                           .state = moves ? BodyState::dynamic : BodyState::fixed},
-                          key),
-                Status::ok);
+                           .state = moves ? BodyState::dynamic : BodyState::fixed}));
     }
   }
   void deform() {
@@ -269,9 +266,8 @@ void change_bodies(RecordedScene& scene, SceneWorld& world, Landscape& landscape
     EXPECT_EQ(landscape.pool.remove(rock), Status::ok);
     landscape.ids.pop_back();
     landscape.add_compound(world, 17);
-    EXPECT_EQ(scene.add({.shape = landscape.ids.back(), .pose = world.random_pose()}, key),
-              Status::ok);
-    EXPECT_EQ(scene.add({.shape = world.shapes[1], .pose = world.random_pose()}, key), Status::ok);
+    key = expect_ok(scene.add({.shape = landscape.ids.back(), .pose = world.random_pose()}));
+    key = expect_ok(scene.add({.shape = world.shapes[1], .pose = world.random_pose()}));
   }
 }
 
@@ -309,9 +305,9 @@ void cast_all(RecordedQueries& queries, SceneWorld& world, ShapeId shape, const 
   }
   SceneHit hit;
   std::span<const SceneHit> hits;
-  EXPECT_EQ(queries.closest(rays[0], hit, filter), Status::ok);
-  EXPECT_EQ(queries.any(rays[1], hit, filter), Status::ok);
-  EXPECT_EQ(queries.all(rays[2], hits, filter), Status::ok);
+  hit = expect_ok(queries.closest(rays[0], filter));
+  hit = expect_ok(queries.any(rays[1], filter));
+  hits = expect_ok(queries.all(rays[2], filter));
   std::vector<Key> keys(rays.size());
   std::vector<double> ts(rays.size());
   std::vector<double> heights(rays.size());
@@ -320,49 +316,43 @@ void cast_all(RecordedQueries& queries, SceneWorld& world, ShapeId shape, const 
   EXPECT_EQ(queries.closest(ShapeRayBatch(rays), columns, filter), Status::ok);
   columns.key = nullptr;
   EXPECT_EQ(queries.any(ShapeRayBatch(rays), columns, filter), Status::ok);
-  SceneHitLists lists;
-  EXPECT_EQ(queries.all(ShapeRayBatch(rays), lists, filter), Status::ok);
+  expect_ok(queries.all(ShapeRayBatch(rays), filter));
   ShapeCast cast{shape, world.random_pose()};
   cast.direction = rays[3].direction;
-  EXPECT_EQ(queries.closest(cast, hit, filter), Status::ok);
-  EXPECT_EQ(queries.all(cast, hits, filter, 1e-3), Status::ok);
+  hit = expect_ok(queries.closest(cast, filter));
+  hits = expect_ok(queries.all(cast, filter, 1e-3));
   cast.touching = false;
-  EXPECT_EQ(queries.closest(cast, hit, filter), Status::ok);
-  EXPECT_EQ(queries.all(cast, hits, filter, 1e-3), Status::ok);
+  hit = expect_ok(queries.closest(cast, filter));
+  hits = expect_ok(queries.all(cast, filter, 1e-3));
   MotionCast turning{shape, RigidMotion::between(world.random_pose(), world.random_pose())};
-  EXPECT_EQ(queries.closest(turning, hit, filter), Status::ok);
-  EXPECT_EQ(queries.all(turning, hits, filter, 1e-3), Status::ok);
+  hit = expect_ok(queries.closest(turning, filter));
+  hits = expect_ok(queries.all(turning, filter, 1e-3));
   turning.touching = false;
-  EXPECT_EQ(queries.closest(turning, hit, filter), Status::ok);
-  EXPECT_EQ(queries.all(turning, hits, filter, 1e-3), Status::ok);
+  hit = expect_ok(queries.closest(turning, filter));
+  hits = expect_ok(queries.all(turning, filter, 1e-3));
 }
 
 /// Makes every kind of query of a scene.
 void query_all(RecordedQueries& queries, SceneWorld& world, ShapeId shape, const Filter& filter) {
   cast_all(queries, world, shape, filter);
-  std::span<const SceneOverlap> bodies;
-  EXPECT_EQ(queries.overlap(shape, world.random_pose(), bodies, filter), Status::ok);
+  std::span<const SceneOverlap> bodies =
+      expect_ok(queries.overlap(shape, world.random_pose(), filter));
   const std::span<const Key> keys(world.keys);
-  SceneDistance gap;
-  EXPECT_EQ(queries.distance(keys[0], keys[1], gap), Status::ok);
-  EXPECT_EQ(queries.distance(keys[0], keys[2], gap, 1e-3), Status::ok);
-  SetDistance least;
-  EXPECT_EQ(queries.least_distance(keys.first(5), keys.last(9), least), Status::ok);
-  EXPECT_EQ(queries.least_distance(keys.first(1), keys.subspan(1, 1), least, 1e-3), Status::ok);
-  std::span<const KeyPair> pairs;
-  EXPECT_EQ(queries.overlaps(keys.first(9), keys.last(9), pairs), Status::ok);
-  EXPECT_EQ(queries.overlaps(keys, keys, pairs, 2), Status::ok);
-  EXPECT_EQ(queries.distance(keys[0], keys[1], gap, 9.0, PairRules::none), Status::ok);
-  EXPECT_EQ(queries.least_distance(keys.first(5), keys.last(9), least, 9.0, PairRules::none),
-            Status::ok);
+  SceneDistance gap = expect_ok(queries.distance(keys[0], keys[1]));
+  gap = expect_ok(queries.distance(keys[0], keys[2], 1e-3));
+  SetDistance least = expect_ok(queries.least_distance(keys.first(5), keys.last(9)));
+  least = expect_ok(queries.least_distance(keys.first(1), keys.subspan(1, 1), 1e-3));
+  std::span<const KeyPair> pairs = expect_ok(queries.overlaps(keys.first(9), keys.last(9)));
+  pairs = expect_ok(queries.overlaps(keys, keys, 2));
+  gap = expect_ok(queries.distance(keys[0], keys[1], 9.0, PairRules::none));
+  least = expect_ok(queries.least_distance(keys.first(5), keys.last(9), 9.0, PairRules::none));
   for (const PairRules rules : {PairRules::scene, PairRules::none}) {
-    EXPECT_EQ(queries.overlaps(keys.first(9), keys.last(9), pairs, 9, rules), Status::ok);
-    KeyPair pair;
-    EXPECT_EQ(queries.any_contact(keys.first(9), keys.last(9), pair, 0.5, rules), Status::ok);
-    EXPECT_EQ(queries.any_contact(pair, 0.0, rules), Status::ok);
+    pairs = expect_ok(queries.overlaps(keys.first(9), keys.last(9), 9, rules));
+    KeyPair pair = expect_ok(queries.any_contact(keys.first(9), keys.last(9), 0.5, rules));
+    pair = expect_ok(queries.any_contact(0.0, rules));
   }
-  std::span<const SceneDistance> near;
-  EXPECT_EQ(queries.nearest(world.random_pose().position, 4, 9.0, near, filter), Status::ok);
+  std::span<const SceneDistance> near =
+      expect_ok(queries.nearest(world.random_pose().position, 4, 9.0, filter));
 }
 
 }  // namespace
@@ -382,7 +372,7 @@ class Watch {
         .filter = {1, frame % 2 == 0 ? ~0U : 2U, 0},
         .carrier = world.keys[0],
         .data = static_cast<ClientData>(frame)};
-    EXPECT_EQ(sensors_.add(sensor, key), Status::ok);
+    key = expect_ok(sensors_.add(sensor));
     keys_.push_back(key);
     EXPECT_EQ(sensors_.move(keys_.front(), world.bodies[1].pose), Status::ok);
     if (frame % 3 == 1) {
@@ -438,22 +428,20 @@ void load_again(RecordedScene& scene, Contacts& contacts) {
 void record_scene(Recorder& recorder, std::size_t count, int frames, const SceneOptions& options) {
   SceneWorld world(count);
   const HalfSpaceShape ground{{0.1, -0.2, 0.7}, -1.0};
-  ShapeId ground_id;
-  EXPECT_EQ(world.pool.add(ground, ground_id), Status::ok);
+  ShapeId ground_id = expect_ok(world.pool.add(ground));
   Landscape landscape(world);
   RecordedScene scene(recorder, world.pool, landscape.pool, options);
   landscape.add_to(scene, world);
   world.keys.resize(world.bodies.size());
   EXPECT_EQ(scene.add(world.bodies, world.keys), Status::ok);
   ShapeId round[2];
-  EXPECT_EQ(world.pool.add(EllipsoidShape{{0.8, 0.5, 0.3}}, round[0]), Status::ok);
-  EXPECT_EQ(world.pool.add(TaperedCapsuleShape{{0.5, 0.3}, 0.6}, round[1]), Status::ok);
+  round[0] = expect_ok(world.pool.add(EllipsoidShape{{0.8, 0.5, 0.3}}));
+  round[1] = expect_ok(world.pool.add(TaperedCapsuleShape{{0.5, 0.3}, 0.6}));
   Key ground_key;
   for (const ShapeId shape : round) {
-    EXPECT_EQ(scene.add({.shape = shape, .pose = Pose::at(0.3, 0.2, -0.9)}, ground_key),
-              Status::ok);
+    ground_key = expect_ok(scene.add({.shape = shape, .pose = Pose::at(0.3, 0.2, -0.9)}));
   }
-  EXPECT_EQ(scene.add({.shape = ground_id, .state = BodyState::fixed}, ground_key), Status::ok);
+  ground_key = expect_ok(scene.add({.shape = ground_id, .state = BodyState::fixed}));
   Contacts contacts;
   RecordedQueries queries(scene);
   RecordedContinuousCollision ccd(scene);

@@ -15,6 +15,7 @@
 #include "tests/recording/programs.h"
 #include "tests/recording/version_1.h"
 #include "tests/recording/version_2.h"
+#include "tests/support/answers.h"
 #include "tests/support/config.h"
 #include "tests/support/counting_memory.h"
 
@@ -71,7 +72,7 @@ TEST(ProgramRecordings, scenes_are_replayed_bit_identical) {
 /// Balls in a row, each of which overlaps its neighbours.
 struct Row {
   Row() {
-    EXPECT_EQ(shapes.add(SphereShape{0.6}, ball), Status::ok);
+    ball = expect_ok(shapes.add(SphereShape{0.6}));
     for (int i = 0; i < 30; ++i) bodies.push_back({.shape = ball, .pose = Pose::at(i, 0, 0)});
     keys.resize(bodies.size());
   }
@@ -218,8 +219,7 @@ TEST(ProgramRecordings, predicates_after_a_refused_query_are_replayed) {
       if (then == Then::another_predicate) row.scene.set_predicate(most.predicate());
       if (then == Then::another_body) {
         ASSERT_EQ(row.scene.remove(row.keys[4]), Status::ok);
-        Key key;
-        ASSERT_EQ(row.scene.add(row.bodies[4], key), Status::ok);
+        Key key = expect_ok(row.scene.add(row.bodies[4]));
         all.out[key.id] = true;
       }
       row.step(contacts);
@@ -238,16 +238,14 @@ TEST(ProgramRecordings, composites_without_a_body_are_replayed) {
   ShapeId floor;
   ShapeId unused;
   for (ShapeId* id : {&floor, &unused}) {
-    ASSERT_EQ(composites.add_mesh(corners, std::span<const std::uint32_t>(triangle), *id),
-              Status::ok);
+    *id = expect_ok(composites.add_mesh(corners, triangle));
   }
   Bytes8 bytes;
   Recorder recorder(kept_in(bytes));
   {
     RecordedScene scene(recorder, row.shapes, composites, {.cache_tolerance = 0.01});
-    Key key;
-    ASSERT_EQ(scene.add({.shape = floor, .state = BodyState::fixed}, key), Status::ok);
-    ASSERT_EQ(scene.add({.shape = row.ball, .pose = Pose::at(0, 0, 0.5)}, key), Status::ok);
+    Key key = expect_ok(scene.add({.shape = floor, .state = BodyState::fixed}));
+    key = expect_ok(scene.add({.shape = row.ball, .pose = Pose::at(0, 0, 0.5)}));
     Contacts contacts;
     std::vector<std::size_t> cached_pairs;
     const auto collide = [&] {
@@ -273,7 +271,7 @@ TEST(ProgramRecordings, queries_of_several_threads_are_replayed) {
   Row row;
   std::vector<ShapeId> own(40);
   for (std::size_t i = 0; i < own.size(); ++i) {
-    ASSERT_EQ(row.shapes.add(SphereShape{0.1 + 0.02 * static_cast<double>(i)}, own[i]), Status::ok);
+    own[i] = expect_ok(row.shapes.add(SphereShape{0.1 + 0.02 * static_cast<double>(i)}));
   }
   Bytes8 bytes;
   Recorder recorder(kept_in(bytes));
@@ -288,7 +286,7 @@ TEST(ProgramRecordings, queries_of_several_threads_are_replayed) {
         for (std::size_t i = 0; i < own.size(); ++i) {
           std::span<const SceneOverlap> found;
           const Pose pose = Pose::at(0.7 * static_cast<double>(thread + i), 0.3, 0);
-          EXPECT_EQ(queries.overlap(own[(7 * thread + i) % own.size()], pose, found), Status::ok);
+          found = expect_ok(queries.overlap(own[(7 * thread + i) % own.size()], pose));
         }
       });
     }
@@ -319,11 +317,9 @@ TEST(ProgramRecordings, queries_by_scene_rules_record_the_predicate) {
           RecordedQueries queries(scene);
           for (std::size_t i = 0; i + 4 < row.keys.size(); ++i) {
             const std::span<const Key> some(row.keys.data() + i, thread + 1);
-            std::span<const KeyPair> pairs;
-            EXPECT_EQ(queries.overlaps(some, row.keys, pairs), Status::ok);
-            KeyPair pair;
-            EXPECT_EQ(queries.any_contact(some, row.keys, pair, 0.3), Status::ok);
-            EXPECT_EQ(queries.any_contact(pair), Status::ok);
+            std::span<const KeyPair> pairs = expect_ok(queries.overlaps(some, row.keys));
+            KeyPair pair = expect_ok(queries.any_contact(some, row.keys, 0.3));
+            pair = expect_ok(queries.any_contact());
           }
         });
       }
@@ -348,11 +344,10 @@ TEST(ProgramRecordings, version_3_ignores_scene_rules_in_queries) {
     ASSERT_EQ(scene.set_ignored(row.keys[0], row.keys[1]), Status::ok);
     ASSERT_EQ(scene.refresh(), Status::ok);
     RecordedQueries queries(scene);
-    SceneDistance gap;
-    EXPECT_EQ(queries.distance(row.keys[0], row.keys[1], gap, 9.0, PairRules::none), Status::ok);
+    SceneDistance gap = expect_ok(queries.distance(row.keys[0], row.keys[1], 9.0, PairRules::none));
     EXPECT_TRUE(gap);
-    std::span<const KeyPair> pairs;
-    EXPECT_EQ(queries.overlaps(row.keys, row.keys, pairs, 99, PairRules::none), Status::ok);
+    std::span<const KeyPair> pairs =
+        expect_ok(queries.overlaps(row.keys, row.keys, 99, PairRules::none));
   }
   ASSERT_EQ(recorder.close(), Status::ok);
   expect_same_everywhere(as_version(bytes, 3));
@@ -363,11 +358,8 @@ TEST(ProgramRecordings, queries_allocate_only_in_queries_and_recorder) {
   CompositePool composites(row.shapes);
   const std::vector<Vec3f> corners{{-9, -9, 0}, {90, -9, 0}, {-9, 90, 0}};
   const std::vector<std::uint32_t> triangle{0, 1, 2};
-  ShapeId floor;
-  ASSERT_EQ(composites.add_mesh(corners, std::span<const std::uint32_t>(triangle), floor),
-            Status::ok);
-  ShapeId box;
-  ASSERT_EQ(row.shapes.add(BoxShape{{0.5, 0.5, 0.5}}, box), Status::ok);
+  ShapeId floor = expect_ok(composites.add_mesh(corners, std::span<const std::uint32_t>(triangle)));
+  ShapeId box = expect_ok(row.shapes.add(BoxShape{{0.5, 0.5, 0.5}}));
   Bytes8 bytes;
   CountingMemory of_scene;
   CountingMemory of_recorder;
@@ -380,10 +372,10 @@ TEST(ProgramRecordings, queries_allocate_only_in_queries_and_recorder) {
     RecordedQueries queries(scene, &of_queries);
     std::span<const SceneOverlap> found;
     // The first query allocates the memory that all queries share.
-    ASSERT_EQ(queries.queries().overlap(row.ball, Pose{}, found), Status::ok);
+    found = expect_ok(queries.queries().overlap(row.ball, Pose{}));
     const std::size_t before = of_scene.requests();
     for (const ShapeId shape : {floor, box}) {
-      EXPECT_EQ(queries.overlap(shape, Pose{}, found), Status::ok);
+      found = expect_ok(queries.overlap(shape, Pose{}));
       EXPECT_GT(found.size(), 0U);
     }
     EXPECT_EQ(of_scene.requests(), before);
@@ -403,13 +395,10 @@ TEST(ProgramRecordings, refused_queries_are_not_recorded) {
   ASSERT_EQ(scene.move(row.keys[0], Pose::at(0, 9, 0)), Status::ok);
   RecordedQueries queries(scene);
   const std::uint64_t before = recorder.calls();
-  SceneHit hit;
-  EXPECT_EQ(queries.closest(ShapeRay{}, hit), Status::invalid_argument);  // not refreshed
+  expect_error(queries.closest(ShapeRay{}), Status::invalid_argument);  // not refreshed
   ASSERT_EQ(scene.refresh(), Status::ok);
-  std::span<const SceneOverlap> found;
-  EXPECT_EQ(queries.overlap(ShapeId{}, Pose{}, found), Status::invalid_key);
-  SceneDistance gap;
-  EXPECT_EQ(queries.distance(row.keys[0], Key{}, gap), Status::invalid_key);
+  expect_error(queries.overlap(ShapeId{}, Pose{}), Status::invalid_key);
+  expect_error(queries.distance(row.keys[0], Key{}), Status::invalid_key);
   EXPECT_EQ(recorder.calls(), before + 1);
   EXPECT_EQ(recorder.status(), Status::ok);
   SupportShape egg;
@@ -417,9 +406,8 @@ TEST(ProgramRecordings, refused_queries_are_not_recorded) {
   egg.function = [](const void*, const double direction[3], double point[3]) {
     for (int k = 0; k < 3; ++k) point[k] = direction[k];
   };
-  ShapeId function;
-  ASSERT_EQ(row.shapes.add(egg, function), Status::ok);
-  EXPECT_EQ(queries.overlap(function, Pose{}, found), Status::ok);
+  const ShapeId function = expect_ok(row.shapes.add(egg));
+  expect_ok(queries.overlap(function, Pose{}));
   EXPECT_EQ(recorder.status(), Status::unsupported);
 }
 
@@ -479,8 +467,7 @@ TEST(ProgramRecordings, loaded_scene_is_replayed) {
   Recorder recorder(kept_in(bytes));
   {
     RecordedScene scene(recorder, pile.pool, {.cache_tolerance = 0.05, .warm_start = true});
-    Key key;
-    ASSERT_EQ(scene.add({.shape = pile.ball}, key), Status::ok);
+    expect_ok(scene.add({.shape = pile.ball}));
     Contacts contacts;
     ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
     ASSERT_EQ(scene.load({bodies.data(), bodies.size()}), Status::ok);
@@ -514,8 +501,7 @@ TEST(ProgramRecordings, sensors_and_impacts_are_replayed_bit_identical) {
     RecordedSensors sensors(scene);
     {
       RecordedSensors others(scene);
-      Key key;
-      ASSERT_EQ(others.add({.shape = pile.ball, .carrier = pile.keys[1]}, key), Status::ok);
+      Key key = expect_ok(others.add({.shape = pile.ball, .carrier = pile.keys[1]}));
       EXPECT_EQ(others.move(Key{}, Pose::at(0, 0, 0)), Status::invalid_key);
       ASSERT_EQ(others.sense(), Status::ok);
       EXPECT_EQ(others->sensed().size(), 2U);
@@ -523,8 +509,7 @@ TEST(ProgramRecordings, sensors_and_impacts_are_replayed_bit_identical) {
       ASSERT_EQ(others.sense(), Status::ok);
       EXPECT_EQ(others->left().size(), 2U);
     }
-    Key key;
-    ASSERT_EQ(sensors.add({.shape = pile.box}, key), Status::ok);
+    expect_ok(sensors.add({.shape = pile.box}));
     ASSERT_EQ(sensors.sense(), Status::ok);
     EXPECT_EQ(sensors->sensed().size(), 3U);
   }

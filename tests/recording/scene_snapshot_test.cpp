@@ -9,6 +9,7 @@
 #include "pipeline/recording/contact_digest.h"
 #include "tests/pipeline/scene_world.h"
 #include "tests/recording/mutations.h"
+#include "tests/support/answers.h"
 #include "tests/support/config.h"
 #include "tests/support/meshes.h"
 
@@ -69,25 +70,23 @@ void add_composites(Stage& stage, std::vector<ShapeId>& ids) {
   const MeshData land = terrain(6);
   const std::span<const std::uint32_t> corners(land.corners);
   const std::size_t convex = ids.size();
-  EXPECT_EQ(stage.composites.add_mesh(land.points(), corners, ids.emplace_back()), Status::ok);
-  EXPECT_EQ(stage.composites.add_scaled(ids[convex], {0.5, -1.0, 2.0}, ids.emplace_back()),
-            Status::ok);
+  ids.emplace_back() = expect_ok(stage.composites.add_mesh(land.points(), corners));
+  ids.emplace_back() = expect_ok(stage.composites.add_scaled(ids[convex], {0.5, -1.0, 2.0}));
   EXPECT_EQ(stage.composites.remove(ids[convex]), Status::ok);
   ids.erase(ids.begin() + static_cast<std::ptrdiff_t>(convex));
   const std::vector<float> heights{0, 1, 0.5F, 0.2F, 0.1F, 0.3F, 1, 0, 0};
-  EXPECT_EQ(stage.composites.add_height_field({.heights = heights, .columns = 3, .rows = 3},
-                                              ids.emplace_back()),
-            Status::ok);
+  ids.emplace_back() =
+      expect_ok(stage.composites.add_height_field({.heights = heights, .columns = 3, .rows = 3}));
   EXPECT_EQ(stage.composites.set_one_sided(ids.back()), Status::ok);
   std::vector<CompoundChild> children;
   for (int i = 0; i < 18; ++i) {
     children.push_back({ids[static_cast<std::size_t>(i) % 5], Pose::at(0.3 * i, 0.1, 0)});
     if (i != 1 && i != 17) continue;
-    EXPECT_EQ(stage.composites.add_compound(children, ids.emplace_back()), Status::ok);
+    ids.emplace_back() = expect_ok(stage.composites.add_compound(children));
   }
   const CompoundChild surfaces[] = {
       {ids[convex], Pose::at(1, 0, 0)}, {ids[0], {}}, {ids[convex + 1], Pose::at(0, 2, 0)}};
-  EXPECT_EQ(stage.composites.add_compound(surfaces, ids.emplace_back()), Status::ok);
+  ids.emplace_back() = expect_ok(stage.composites.add_compound(surfaces));
 }
 
 /// Adds shapes of every kind. Some have free slots before them.
@@ -95,7 +94,7 @@ std::vector<ShapeId> add_shapes(Stage& stage) {
   SceneWorld world(1);
   std::vector<ShapeId> ids;
   const auto add = [&](const auto& shape) {
-    EXPECT_EQ(stage.shapes.add(shape, ids.emplace_back()), Status::ok);
+    ids.emplace_back() = expect_ok(stage.shapes.add(shape));
   };
   const ShapeTables& from = world.pool.tables();
   for (const double radius : {0.2, 0.5, 0.4}) add(SphereShape{radius});
@@ -111,10 +110,9 @@ std::vector<ShapeId> add_shapes(Stage& stage) {
   std::vector<std::uint32_t> sizes;
   for (std::uint32_t f = 0; f < hull.face_count; ++f) sizes.push_back(hull.faces[f].count);
   for (int i = 0; i < 2; ++i) {
-    EXPECT_EQ(stage.shapes.add_hull(
-                  PointView({hull.vertex[0], hull.vertex[1], hull.vertex[2]}, hull.vertex_count),
-                  {{hull.loop, 2 * std::size_t{hull.edge_count}}, sizes}, 0.01, ids.emplace_back()),
-              Status::ok);
+    ids.emplace_back() = expect_ok(stage.shapes.add_hull(
+        PointView({hull.vertex[0], hull.vertex[1], hull.vertex[2]}, hull.vertex_count),
+        {{hull.loop, 2 * std::size_t{hull.edge_count}}, sizes}, 0.01));
   }
   for (const std::size_t gone : {std::size_t{0}, ids.size() - 2}) {
     EXPECT_EQ(stage.shapes.remove(ids[gone]), Status::ok);
@@ -155,17 +153,16 @@ void change_scene(Scene& scene, Random& random, int number) {
   BodyDefinition body;
   for (std::size_t i = 0; i < keys.size(); ++i) {
     if (random.below(3) != 0) continue;
-    EXPECT_EQ(scene.body(keys[i], body), Status::ok);
+    body = expect_ok(scene.body(keys[i]));
     const double step = random.below(2) == 0 ? 0.004 : 0.2;
     for (double& p : body.pose.position) p += random.uniform(-step, step);
     EXPECT_EQ(scene.move(keys[i], body.pose), Status::ok);
   }
   const auto n = static_cast<std::size_t>(number);
   EXPECT_EQ(scene.remove(key(n)), Status::ok);
-  EXPECT_EQ(scene.body(key(n + 1), body), Status::ok);
+  body = expect_ok(scene.body(key(n + 1)));
   body.pose = pose_in(random);
-  Key added;
-  EXPECT_EQ(scene.add(body, added), Status::ok);
+  expect_ok(scene.add(body));
   const BodyState states[] = {BodyState::sleeping, BodyState::dynamic, BodyState::fixed};
   for (std::size_t i = 2; i < 8; ++i) {
     EXPECT_EQ(scene.set_body_state(key(n + i), states[(n + i) % 3]), Status::ok);
@@ -175,7 +172,7 @@ void change_scene(Scene& scene, Random& random, int number) {
   EXPECT_EQ(scene.set_offsets(key(n + 14), {.contact = 0.03, .rest = 0.01}), Status::ok);
   EXPECT_EQ(scene.set_layer(key(n + 8), 70), Status::ok);
   EXPECT_EQ(scene.set_layers_collide(70, 0, number % 2 == 0), Status::ok);
-  EXPECT_EQ(scene.body(key(n + 12), body), Status::ok);
+  body = expect_ok(scene.body(key(n + 12)));
   EXPECT_EQ(scene.set_shape(key(n + 13), body.shape), Status::ok);
 }
 
@@ -184,15 +181,14 @@ std::uint64_t frame_digest(Stage& stage, ContactLevel level, SceneQueries& queri
   Digest digest;
   EXPECT_EQ(stage.scene.collide(level, stage.contacts), Status::ok);
   add_to(digest, stage.contacts);
-  std::span<const SceneHit> hits;
-  EXPECT_EQ(queries.all(ShapeRay{{-1, 2, 2}, {1, 0.05, 0.02}}, hits), Status::ok);
+  std::span<const SceneHit> hits = expect_ok(queries.all(ShapeRay{{-1, 2, 2}, {1, 0.05, 0.02}}));
   for (const SceneHit& hit : hits) {
     digest.add(std::uint64_t{hit.key.id});
     digest.add(hit.t);
   }
   std::span<const SceneDistance> near;
   const double middle[3] = {2, 2, 2};
-  EXPECT_EQ(queries.nearest(middle, 5, 3.0, near), Status::ok);
+  near = expect_ok(queries.nearest(middle, 5, 3.0));
   for (const SceneDistance& one : near) digest.add(one.distance);
   return digest.value();
 }
@@ -281,13 +277,11 @@ TEST(SceneSnapshots, loads_never_give_a_key_twice) {
   const std::vector<Key> keys = keys_of(stage.scene);
   const SavedStage saved = stage.save();
   std::vector<Key> given;
-  BodyDefinition body;
-  ASSERT_EQ(stage.scene.body(keys[0], body), Status::ok);
+  BodyDefinition body = expect_ok(stage.scene.body(keys[0]));
   for (int round = 0; round < 3; ++round) {
     for (const Key key : {keys[0], keys[7]}) ASSERT_EQ(stage.scene.remove(key), Status::ok);
     for (int i = 0; i < 20; ++i) {
-      Key key;
-      ASSERT_EQ(stage.scene.add(body, key), Status::ok);
+      Key key = expect_ok(stage.scene.add(body));
       EXPECT_EQ(std::ranges::find(given, key), given.end());
       given.push_back(key);
     }
@@ -327,7 +321,7 @@ void use(Stage& stage) {
     if (stage.scene.size() >= kChangedBodies) change_scene(stage.scene, random, 1);
   }
   std::span<const SceneHit> hits;
-  (void)queries.all(ShapeRay{{-1, 2, 2}, {1, 0.05, 0.02}}, hits);
+  hits = queries.all(ShapeRay{{-1, 2, 2}, {1, 0.05, 0.02}});
 }
 
 TEST(SceneSnapshots, removed_tier_loads_as_robust) {

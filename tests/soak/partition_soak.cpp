@@ -243,7 +243,7 @@ void PartitionSoak::check_boxes() {
   std::vector<ObjectId> truth;
   for (const Object& object : model_) {
     Aabb stored;
-    require(partition_.bounds(partition_.key_of(object.id), stored) == Status::ok &&
+    require(partition_.bounds(partition_.key_of(object.id)).get(stored) == Status::ok &&
                 stored == object.box,
             "another box");
     if (object.box.overlaps(query_box)) truth.push_back(object.id);

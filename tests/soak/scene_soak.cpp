@@ -151,7 +151,7 @@ void SceneSoak::apply_event(const Event& event, Scene& scene, std::size_t which)
   const auto apply = [&] {
     switch (event.kind) {
       case Event::Kind::add:
-        return scene.add(body, key);
+        return scene.add(body).get(key);
       case Event::Kind::remove:
         return scene.remove(key);
       case Event::Kind::move:

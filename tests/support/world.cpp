@@ -2,6 +2,7 @@
 // after each query.
 
 #include "tests/support/world.h"
+#include "tests/support/answers.h"
 
 #include <algorithm>
 #include <cstring>
@@ -76,8 +77,7 @@ std::vector<Key> World::insert(std::span<const Aabb> boxes, std::span<const Clie
 }
 
 Key World::insert(const Aabb& box, ClientData data) {
-  Key key;
-  EXPECT_EQ(partition_.insert(box, data, key), Status::ok);
+  Key key = expect_ok(partition_.insert(box, data));
   EXPECT_FALSE(entries_.contains(key.id)) << "a live object's id was handed out again";
   entries_[key.id] = {key, box, data, {}};
   return key;
@@ -170,19 +170,18 @@ testing::AssertionResult World::holds_its_objects() const {
   }
   for (const auto& [id, entry] : entries_) {
     Aabb box;
-    ClientData data = ~entry.data;
     if (!partition_.contains(entry.key) || partition_.key_of(id) != entry.key) {
       return testing::AssertionFailure() << "the key of object " << id << " is lost";
     }
-    if (partition_.bounds(entry.key, box) != Status::ok || !same_box(box, entry.box)) {
+    if (partition_.bounds(entry.key).get(box) != Status::ok || !same_box(box, entry.box)) {
       return testing::AssertionFailure() << "the box of object " << id << " is another";
     }
-    if (partition_.client_data(entry.key, data) != Status::ok || data != entry.data ||
+    if (partition_.client_data(entry.key) != entry.data ||
         partition_.client_data_of(id) != entry.data) {
       return testing::AssertionFailure() << "the client data of object " << id << " is another";
     }
     ObjectFilter filter{~entry.filter.layers, 0, 0};
-    if (partition_.filter(entry.key, filter) != Status::ok || filter != entry.filter) {
+    if (partition_.filter(entry.key).get(filter) != Status::ok || filter != entry.filter) {
       return testing::AssertionFailure() << "the filter of object " << id << " is another";
     }
   }

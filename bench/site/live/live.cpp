@@ -99,7 +99,7 @@ EXPORTED("live_ray") float live_ray(float x, float y) {
   Live& scene = live();
   winnow::Ray ray{eye, winnow::Vec3f(x, y, 0.5F) - eye};
   ray.max_t = 1.0F;
-  if (scene.partition.closest(ray, scene.hit) != winnow::Status::ok || !scene.hit) return 2.0F;
+  if (scene.partition.closest(ray).get(scene.hit) != winnow::Status::ok || !scene.hit) return 2.0F;
   return scene.hit.t;
 }
 

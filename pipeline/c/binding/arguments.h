@@ -20,6 +20,18 @@ namespace winnow::c {
 [[nodiscard]] inline winnow_status answer(Status status) noexcept {
   return static_cast<winnow_status>(status);
 }
+/// Writes the value of an answer without an error; of a shape's id, its bits.
+template <typename T, typename Out>
+[[nodiscard]] winnow_status answer(const Answer<T>& answer, Out* out) noexcept {
+  if (answer.status == Status::ok) {
+    if constexpr (requires { answer.bits; }) {
+      *out = answer.bits;
+    } else {
+      *out = answer;
+    }
+  }
+  return c::answer(answer.status);
+}
 
 template <typename... Pointers>
 [[nodiscard]] bool are_given(const Pointers*... pointers) noexcept {

@@ -34,11 +34,6 @@ namespace {
 }
 
 /// Writes the id of an added shape unless the call failed.
-[[nodiscard]] winnow_status added(Status status, ShapeId id, winnow_shape_id* out) noexcept {
-  if (status == Status::ok) *out = id.bits;
-  return answer(status);
-}
-
 }  // namespace
 }  // namespace winnow::c
 
@@ -70,18 +65,13 @@ winnow_status winnow_composite_pool_add_mesh(winnow_composite_pool* pool,
       read_triangles(triangles, corners) != winnow::Status::ok) {
     return WINNOW_INVALID_ARGUMENT;
   }
-  winnow::ShapeId made;
-  const winnow::Status status = pool->value.add_mesh(points, corners, made, read, run);
-  return added(status, made, id);
+  return answer(pool->value.add_mesh(points, corners, read, run), id);
 }
 
 winnow_status winnow_composite_pool_add_scaled(winnow_composite_pool* pool, winnow_shape_id mesh,
                                                const double scale[3], winnow_shape_id* id) {
   if (!are_given(pool, scale, id)) return WINNOW_INVALID_ARGUMENT;
-  winnow::ShapeId made;
-  const winnow::Status status =
-      pool->value.add_scaled({mesh}, {scale[0], scale[1], scale[2]}, made);
-  return added(status, made, id);
+  return answer(pool->value.add_scaled({mesh}, {scale[0], scale[1], scale[2]}), id);
 }
 
 winnow_status winnow_composite_pool_refit_mesh(winnow_composite_pool* pool, winnow_shape_id mesh,
@@ -101,9 +91,7 @@ winnow_status winnow_composite_pool_add_height_field(winnow_composite_pool* pool
                                                      winnow_shape_id* id) {
   winnow::HeightSamples read;
   if (!are_given(pool, id) || !read_samples(samples, read)) return WINNOW_INVALID_ARGUMENT;
-  winnow::ShapeId made;
-  const winnow::Status status = pool->value.add_height_field(read, made);
-  return added(status, made, id);
+  return answer(pool->value.add_height_field(read), id);
 }
 
 winnow_status winnow_composite_pool_update_height_field(winnow_composite_pool* pool,
@@ -119,9 +107,7 @@ winnow_status winnow_composite_pool_add_compound(winnow_composite_pool* pool,
                                                  const winnow_compound_child* children,
                                                  size_t count, winnow_shape_id* id) {
   if (!are_given(pool, id) || !is_array(children, count)) return WINNOW_INVALID_ARGUMENT;
-  winnow::ShapeId made;
-  const winnow::Status status = pool->value.add_compound(as_cpp_span(children, count), made);
-  return added(status, made, id);
+  return answer(pool->value.add_compound(as_cpp_span(children, count)), id);
 }
 
 winnow_status winnow_composite_pool_remove(winnow_composite_pool* pool, winnow_shape_id id) {

@@ -295,7 +295,7 @@ winnow_status winnow_partition_contains(const winnow_partition* partition, winno
 winnow_status winnow_partition_bounds(const winnow_partition* partition, winnow_key key,
                                       winnow_aabb* box) {
   if (!are_given(partition, box)) return WINNOW_INVALID_ARGUMENT;
-  return answer(partition->target->bounds(*as_cpp(&key), *as_cpp(box)));
+  return answer(partition->target->bounds(*as_cpp(&key)), as_cpp(box));
 }
 
 winnow_status winnow_partition_bounds_of(const winnow_partition* partition, const winnow_key* keys,
@@ -309,7 +309,9 @@ winnow_status winnow_partition_bounds_of(const winnow_partition* partition, cons
 winnow_status winnow_partition_client_data(const winnow_partition* partition, winnow_key key,
                                            uint64_t* data) {
   if (!are_given(partition, data)) return WINNOW_INVALID_ARGUMENT;
-  return answer(partition->target->client_data(*as_cpp(&key), *data));
+  if (!partition->target->contains(*as_cpp(&key))) return WINNOW_INVALID_KEY;
+  *data = partition->target->client_data(*as_cpp(&key));
+  return WINNOW_OK;
 }
 
 winnow_status winnow_partition_key_of(const winnow_partition* partition, uint32_t id,
@@ -330,7 +332,7 @@ winnow_status winnow_partition_set_filter(winnow_partition* partition, const win
 winnow_status winnow_partition_filter(const winnow_partition* partition, winnow_key key,
                                       winnow_object_filter* filter) {
   if (!are_given(partition, filter)) return WINNOW_INVALID_ARGUMENT;
-  return answer(partition->target->filter(*as_cpp(&key), *as_cpp(filter)));
+  return answer(partition->target->filter(*as_cpp(&key)), as_cpp(filter));
 }
 
 winnow_status winnow_partition_footprint(const winnow_partition* partition,

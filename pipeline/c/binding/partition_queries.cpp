@@ -156,14 +156,14 @@ winnow_status winnow_partition_closest(const winnow_partition* partition, const 
                                        const winnow_filter* filter, winnow_hit* hit) {
   winnow::Cast read;
   if (!are_given(partition, hit) || !read_cast(cast, read)) return WINNOW_INVALID_ARGUMENT;
-  return answer(partition->target->closest(read, *as_cpp(hit), filter_of(filter)));
+  return answer(partition->target->closest(read, filter_of(filter)), as_cpp(hit));
 }
 
 winnow_status winnow_partition_any(const winnow_partition* partition, const winnow_cast* cast,
                                    const winnow_filter* filter, winnow_hit* hit) {
   winnow::Cast read;
   if (!are_given(partition, hit) || !read_cast(cast, read)) return WINNOW_INVALID_ARGUMENT;
-  return answer(partition->target->any(read, *as_cpp(hit), filter_of(filter)));
+  return answer(partition->target->any(read, filter_of(filter)), as_cpp(hit));
 }
 
 winnow_status winnow_partition_all(const winnow_partition* partition, const winnow_cast* cast,

@@ -142,7 +142,7 @@ winnow_status winnow_scene_contains(const winnow_scene* scene, winnow_key key, b
 winnow_status winnow_scene_body(const winnow_scene* scene, winnow_key key,
                                 winnow_body_definition* body) {
   if (!are_given(scene, body)) return WINNOW_INVALID_ARGUMENT;
-  return answer(scene->value.body(*as_cpp(&key), *as_cpp(body)));
+  return answer(scene->value.body(*as_cpp(&key)), as_cpp(body));
 }
 
 winnow_status winnow_scene_key_of(const winnow_scene* scene, uint32_t id, winnow_key* key) {

@@ -19,14 +19,12 @@ namespace {
           {given.point[0], given.point[1], given.point[2]}};
 }
 
-/// Runs a query that fills a span, and returns the span to C if it succeeds.
-template <typename OfCpp, typename OfC, typename Query>
-[[nodiscard]] winnow_status answer_list(const OfC** first, std::size_t* count,
-                                        Query&& query) noexcept {
-  std::span<const OfCpp> found;
-  const Status status = query(found);
-  if (status == Status::ok) return_array(found, first, count);
-  return answer(status);
+/// Writes the list that an answer contains, unless it is an error.
+template <typename OfCpp, typename OfC>
+[[nodiscard]] winnow_status answer_list(const Answer<std::span<const OfCpp>>& list,
+                                        const OfC** first, std::size_t* count) noexcept {
+  if (list.status == Status::ok) return_array<OfCpp>(list, first, count);
+  return answer(list.status);
 }
 
 /// Runs a query with a batch of rays, if the batch is valid.
@@ -56,17 +54,16 @@ template <typename Query>
                                          const winnow_filter* filter, double tolerance,
                                          winnow_scene_hit* hit) noexcept {
   if (!are_given(queries, cast, hit)) return WINNOW_INVALID_ARGUMENT;
-  return answer(
-      queries->value.closest(cast_of(*cast, touching), *as_cpp(hit), filter_of(filter), tolerance));
+  return answer(queries->value.closest(cast_of(*cast, touching), filter_of(filter), tolerance),
+                as_cpp(hit));
 }
 
 [[nodiscard]] winnow_status all_cast(winnow_scene_queries* queries, const winnow_shape_cast* cast,
                                      bool touching, const winnow_filter* filter, double tolerance,
                                      const winnow_scene_hit** hits, std::size_t* count) noexcept {
   if (!are_given(queries, cast, hits, count)) return WINNOW_INVALID_ARGUMENT;
-  return answer_list<SceneHit>(hits, count, [&](auto& found) {
-    return queries->value.all(cast_of(*cast, touching), found, filter_of(filter), tolerance);
-  });
+  return answer_list(queries->value.all(cast_of(*cast, touching), filter_of(filter), tolerance),
+                     hits, count);
 }
 
 }  // namespace
@@ -96,22 +93,20 @@ winnow_status winnow_scene_queries_closest(winnow_scene_queries* queries,
                                            const winnow_shape_ray* ray, const winnow_filter* filter,
                                            winnow_scene_hit* hit) {
   if (!are_given(queries, ray, hit)) return WINNOW_INVALID_ARGUMENT;
-  return answer(queries->value.closest(*as_cpp(ray), *as_cpp(hit), filter_of(filter)));
+  return answer(queries->value.closest(*as_cpp(ray), filter_of(filter)), as_cpp(hit));
 }
 
 winnow_status winnow_scene_queries_any(winnow_scene_queries* queries, const winnow_shape_ray* ray,
                                        const winnow_filter* filter, winnow_scene_hit* hit) {
   if (!are_given(queries, ray, hit)) return WINNOW_INVALID_ARGUMENT;
-  return answer(queries->value.any(*as_cpp(ray), *as_cpp(hit), filter_of(filter)));
+  return answer(queries->value.any(*as_cpp(ray), filter_of(filter)), as_cpp(hit));
 }
 
 winnow_status winnow_scene_queries_all(winnow_scene_queries* queries, const winnow_shape_ray* ray,
                                        const winnow_filter* filter, const winnow_scene_hit** hits,
                                        size_t* count) {
   if (!are_given(queries, ray, hits, count)) return WINNOW_INVALID_ARGUMENT;
-  return answer_list<winnow::SceneHit>(hits, count, [&](auto& found) {
-    return queries->value.all(*as_cpp(ray), found, filter_of(filter));
-  });
+  return answer_list(queries->value.all(*as_cpp(ray), filter_of(filter)), hits, count);
 }
 
 winnow_status winnow_scene_queries_closest_rays(winnow_scene_queries* queries,
@@ -139,9 +134,10 @@ winnow_status winnow_scene_queries_all_rays(winnow_scene_queries* queries,
                                             const winnow_filter* filter,
                                             const winnow_scene_hit** hits, const size_t** first) {
   if (!are_given(queries, hits, first)) return WINNOW_INVALID_ARGUMENT;
-  winnow::SceneHitLists lists;
+  winnow::Answer<winnow::SceneHitLists> lists;
   const winnow_status status = query_rays(queries, rays, [&](const winnow::ShapeRayBatch& batch) {
-    return queries->value.all(batch, lists, filter_of(filter));
+    lists = queries->value.all(batch, filter_of(filter));
+    return lists.status;
   });
   if (status != WINNOW_OK) return status;
   std::size_t count = 0;
@@ -182,9 +178,8 @@ winnow_status winnow_scene_queries_overlap(winnow_scene_queries* queries, winnow
                                            const winnow_pose* pose, const winnow_filter* filter,
                                            const winnow_scene_overlap** bodies, size_t* count) {
   if (!are_given(queries, pose, bodies, count)) return WINNOW_INVALID_ARGUMENT;
-  return answer_list<winnow::SceneOverlap>(bodies, count, [&](auto& found) {
-    return queries->value.overlap({shape}, *as_cpp(pose), found, filter_of(filter));
-  });
+  return answer_list(queries->value.overlap({shape}, *as_cpp(pose), filter_of(filter)), bodies,
+                     count);
 }
 
 winnow_status winnow_scene_queries_distance(winnow_scene_queries* queries, winnow_key a,
@@ -192,17 +187,16 @@ winnow_status winnow_scene_queries_distance(winnow_scene_queries* queries, winno
                                             winnow_scene_distance* answer) {
   winnow::PairRules taken{};
   if (!are_given(queries, answer) || !read_rules(rules, taken)) return WINNOW_INVALID_ARGUMENT;
-  return winnow::c::answer(
-      queries->value.distance(*as_cpp(&a), *as_cpp(&b), *as_cpp(answer), limit, taken));
+  return winnow::c::answer(queries->value.distance(*as_cpp(&a), *as_cpp(&b), limit, taken),
+                           as_cpp(answer));
 }
 
 winnow_status winnow_scene_queries_nearest(winnow_scene_queries* queries, const double point[3],
                                            size_t count, double radius, const winnow_filter* filter,
                                            const winnow_scene_distance** bodies, size_t* found) {
   if (!are_given(queries, point, bodies, found)) return WINNOW_INVALID_ARGUMENT;
-  return answer_list<winnow::SceneDistance>(bodies, found, [&](auto& near) {
-    return queries->value.nearest(winnow::Vec3d(point), count, radius, near, filter_of(filter));
-  });
+  return answer_list(queries->value.nearest(winnow::Vec3d(point), count, radius, filter_of(filter)),
+                     bodies, found);
 }
 
 winnow_status winnow_scene_queries_least_distance(winnow_scene_queries* queries,
@@ -213,8 +207,9 @@ winnow_status winnow_scene_queries_least_distance(winnow_scene_queries* queries,
   winnow::PairRules taken{};
   if (!are_given(queries, answer) || !read_rules(rules, taken)) return WINNOW_INVALID_ARGUMENT;
   if (!is_array(a, count_a) || !is_array(b, count_b)) return WINNOW_INVALID_ARGUMENT;
-  return winnow::c::answer(queries->value.least_distance(
-      as_cpp_span(a, count_a), as_cpp_span(b, count_b), *as_cpp(answer), limit, taken));
+  return winnow::c::answer(
+      queries->value.least_distance(as_cpp_span(a, count_a), as_cpp_span(b, count_b), limit, taken),
+      as_cpp(answer));
 }
 
 winnow_status winnow_scene_queries_overlaps(winnow_scene_queries* queries, const winnow_key* a,
@@ -226,10 +221,9 @@ winnow_status winnow_scene_queries_overlaps(winnow_scene_queries* queries, const
     return WINNOW_INVALID_ARGUMENT;
   }
   if (!is_array(a, count_a) || !is_array(b, count_b)) return WINNOW_INVALID_ARGUMENT;
-  return answer_list<winnow::KeyPair>(pairs, count, [&](auto& found) {
-    return queries->value.overlaps(as_cpp_span(a, count_a), as_cpp_span(b, count_b), found, most,
-                                   taken);
-  });
+  return answer_list(
+      queries->value.overlaps(as_cpp_span(a, count_a), as_cpp_span(b, count_b), most, taken), pairs,
+      count);
 }
 
 winnow_status winnow_scene_queries_any_contact(winnow_scene_queries* queries, const winnow_key* a,
@@ -240,7 +234,8 @@ winnow_status winnow_scene_queries_any_contact(winnow_scene_queries* queries, co
   if (!are_given(queries, pair) || !read_rules(rules, taken)) return WINNOW_INVALID_ARGUMENT;
   if (!is_array(a, count_a) || !is_array(b, count_b)) return WINNOW_INVALID_ARGUMENT;
   return answer(queries->value.any_contact(as_cpp_span(a, count_a), as_cpp_span(b, count_b),
-                                           *as_cpp(pair), contact_margin, taken));
+                                           contact_margin, taken),
+                as_cpp(pair));
 }
 
 winnow_status winnow_scene_queries_any_contact_in_scene(winnow_scene_queries* queries,
@@ -249,7 +244,7 @@ winnow_status winnow_scene_queries_any_contact_in_scene(winnow_scene_queries* qu
                                                         winnow_key_pair* pair) {
   winnow::PairRules taken{};
   if (!are_given(queries, pair) || !read_rules(rules, taken)) return WINNOW_INVALID_ARGUMENT;
-  return answer(queries->value.any_contact(*as_cpp(pair), contact_margin, taken));
+  return answer(queries->value.any_contact(contact_margin, taken), as_cpp(pair));
 }
 
 winnow_status winnow_scene_queries_footprint(const winnow_scene_queries* queries,

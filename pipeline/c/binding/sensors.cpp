@@ -21,7 +21,7 @@ void winnow_sensors_destroy(winnow_sensors* sensors) {
 winnow_status winnow_sensors_add(winnow_sensors* sensors, const winnow_sensor_definition* sensor,
                                  winnow_key* key) {
   if (!are_given(sensors, sensor, key)) return WINNOW_INVALID_ARGUMENT;
-  return answer(sensors->value.add(*as_cpp(sensor), *as_cpp(key)));
+  return answer(sensors->value.add(*as_cpp(sensor)), as_cpp(key));
 }
 
 winnow_status winnow_sensors_remove(winnow_sensors* sensors, winnow_key key) {
@@ -44,7 +44,7 @@ winnow_status winnow_sensors_set(winnow_sensors* sensors, winnow_key key,
 winnow_status winnow_sensors_sensor(const winnow_sensors* sensors, winnow_key key,
                                     winnow_sensor_definition* sensor) {
   if (!are_given(sensors, sensor)) return WINNOW_INVALID_ARGUMENT;
-  return answer(sensors->value.sensor(*as_cpp(&key), *as_cpp(sensor)));
+  return answer(sensors->value.sensor(*as_cpp(&key)), as_cpp(sensor));
 }
 
 winnow_status winnow_sensors_size(const winnow_sensors* sensors, size_t* size) {

@@ -23,10 +23,10 @@ namespace {
 
 // The C structs of all kinds but hulls have the same members as the C++ structs, in the same order.
 
-[[nodiscard]] Status add(ShapePool& pool, const winnow_shape& shape, ShapeId& id) {
+[[nodiscard]] Answer<ShapeId> add(ShapePool& pool, const winnow_shape& shape) {
   ShapeKind kind{};
   if (!read_kind(shape.kind, kind)) return Status::invalid_argument;
-  return with_kind(kind, [&](auto of) {
+  return with_kind(kind, [&](auto of) -> Answer<ShapeId> {
     using Shape = typename decltype(of)::Shape;
     if constexpr (std::is_same_v<Shape, HullShape>) {
       return Status::invalid_argument;
@@ -34,7 +34,7 @@ namespace {
       Shape one;
       static_assert(sizeof one <= sizeof shape.as);
       std::memcpy(static_cast<void*>(&one), &shape.as, sizeof one);
-      return pool.add(one, id);
+      return pool.add(one);
     }
   });
 }
@@ -94,21 +94,16 @@ void winnow_shape_pool_destroy(winnow_shape_pool* pool) {
 winnow_status winnow_shape_pool_add(winnow_shape_pool* pool, const winnow_shape* shape,
                                     winnow_shape_id* id) {
   if (!are_given(pool, shape, id)) return WINNOW_INVALID_ARGUMENT;
-  winnow::ShapeId added;
-  const winnow::Status status = add(pool->value, *shape, added);
-  if (status == winnow::Status::ok) *id = added.bits;
-  return answer(status);
+  return answer(add(pool->value, *shape), id);
 }
 
 winnow_status winnow_shape_pool_add_hull(winnow_shape_pool* pool, const winnow_point_view* points,
                                          double rounding, winnow_shape_id* id) {
   if (!are_given(pool, points, id)) return WINNOW_INVALID_ARGUMENT;
   std::span<const Eigen::Vector3d> corners;
-  winnow::ShapeId added;
-  winnow::Status status = read_points(points, pool->room, corners);
-  if (status == winnow::Status::ok) status = pool->value.add_hull(corners, rounding, added);
-  if (status == winnow::Status::ok) *id = added.bits;
-  return answer(status);
+  const winnow::Status status = read_points(points, pool->room, corners);
+  if (status != winnow::Status::ok) return answer(status);
+  return answer(pool->value.add_hull(corners, rounding), id);
 }
 
 winnow_status winnow_shape_pool_add_hull_faces(winnow_shape_pool* pool,
@@ -122,13 +117,9 @@ winnow_status winnow_shape_pool_add_hull_faces(winnow_shape_pool* pool,
   const winnow::HullFaces surface{{faces->indices, faces->index_count},
                                   {faces->sizes, faces->face_count}};
   std::span<const Eigen::Vector3d> corners;
-  winnow::ShapeId added;
-  winnow::Status status = read_points(points, pool->room, corners);
-  if (status == winnow::Status::ok) {
-    status = pool->value.add_hull(corners, surface, rounding, added);
-  }
-  if (status == winnow::Status::ok) *id = added.bits;
-  return answer(status);
+  const winnow::Status status = read_points(points, pool->room, corners);
+  if (status != winnow::Status::ok) return answer(status);
+  return answer(pool->value.add_hull(corners, surface, rounding), id);
 }
 
 winnow_status winnow_shape_pool_remove(winnow_shape_pool* pool, winnow_shape_id id) {
@@ -193,11 +184,9 @@ winnow_status winnow_cast_ray(const winnow_shape_pool* pool, winnow_shape_id sha
                               winnow_shape_hit* hit) {
   if (!are_given(pool, pose, ray, hit)) return WINNOW_INVALID_ARGUMENT;
   if (!pool->value.contains({shape})) return WINNOW_INVALID_KEY;
-  winnow::ShapeHit found;
-  const winnow::Status status =
-      winnow::cast_ray(pool->value.tables(), {shape}, *as_cpp(pose), *as_cpp(ray), found);
-  if (status == winnow::Status::ok) {
+  const auto found = winnow::cast_ray(pool->value.tables(), {shape}, *as_cpp(pose), *as_cpp(ray));
+  if (found.status == winnow::Status::ok) {
     *hit = {found.hit, found.t, {found.normal[0], found.normal[1], found.normal[2]}};
   }
-  return answer(status);
+  return answer(found.status);
 }

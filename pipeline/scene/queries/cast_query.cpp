@@ -95,14 +95,12 @@ Status CastQuery::closest_in_large_sets() {
   while (path.next() && !(found() && limit_ < path.begin())) {
     const Status status = each_large_set([&](const Partition& partition) {
       if (path.is_rest()) return test_rest(partition, path, test_body);
-      Hit box;
+      const Answer<Hit> box = partition.closest(path.cast(limit_), first.filter());
+      if (!box) return box.status;
       BoxCast cast = path.cast(limit_);
-      Status result = partition.closest(cast, box, first.filter());
-      if (result != Status::ok || !box) return result;
-      cast = path.cast(limit_);
       cast.min_t = box.t;
-      if (cast.max_t >= cast.min_t) result = partition.closest(cast, box, second.filter());
-      return result;
+      if (cast.max_t < cast.min_t) return Status::ok;
+      return partition.closest(cast, second.filter()).status;
     });
     if (status != Status::ok) return status;
   }
@@ -139,8 +137,7 @@ Status CastQuery::any_in_large_sets(SceneHit& hit) {
     const Status status = each_large_set([&](const Partition& partition) {
       if (found()) return Status::ok;
       if (path.is_rest()) return test_rest(partition, path, test_body);
-      Hit box;
-      return partition.any(path.cast(limit_), box, body_filter.filter());
+      return partition.any(path.cast(limit_), body_filter.filter()).status;
     });
     if (status != Status::ok) return status;
   }

@@ -36,7 +36,7 @@ class MotionQuery {
         moving_(impact::whole_shape(state.parts, cast.shape, cast.motion)),
         way_(state.parts, frame_, moving_) {}
 
-  Status closest(SceneHit& hit);
+  Answer<SceneHit> closest();
   Status all();
 
  private:
@@ -103,15 +103,15 @@ SceneHit MotionQuery::hit_of(std::uint32_t body, const impact::Interval& within,
   return hit;
 }
 
-Status MotionQuery::closest(SceneHit& hit) {
+Answer<SceneHit> MotionQuery::closest() {
   SceneHit best;
   best.t = 1.0;
   const Status status = each_piece(best.t, [&](std::uint32_t body, const impact::Interval& within) {
     const SceneHit found = hit_of(body, within, best.t);
     if (found && (!best || by_time(found) < by_time(best))) best = found;
   });
-  if (status == Status::ok) hit = best ? best : SceneHit{};
-  return status;
+  if (status != Status::ok) return status;
+  return best ? best : SceneHit{};
 }
 
 /// A body may be hit in two consecutive pieces; the first hit counts.
@@ -147,21 +147,21 @@ Status check(const QueryState* state, const MotionCast& cast, double tolerance) 
 
 }  // namespace
 
-Status SceneQueries::closest(const MotionCast& cast, SceneHit& hit, const Filter& filter,
-                             double tolerance) {
+Answer<SceneHit> SceneQueries::closest(const MotionCast& cast, const Filter& filter,
+                                       double tolerance) {
   const DefaultFloatEnvironment environment;
   const Status status = check(state_, cast, tolerance);
   if (status != Status::ok) return status;
-  return MotionQuery(*state_, cast, filter, tolerance).closest(hit);
+  return MotionQuery(*state_, cast, filter, tolerance).closest();
 }
 
-Status SceneQueries::all(const MotionCast& cast, std::span<const SceneHit>& hits,
-                         const Filter& filter, double tolerance) {
+Answer<std::span<const SceneHit>> SceneQueries::all(const MotionCast& cast, const Filter& filter,
+                                                    double tolerance) {
   const DefaultFloatEnvironment environment;
   Status status = check(state_, cast, tolerance);
   if (status == Status::ok) status = MotionQuery(*state_, cast, filter, tolerance).all();
-  if (status == Status::ok) hits = {state_->hits.data(), state_->hits.size()};
-  return status;
+  if (status != Status::ok) return status;
+  return std::span<const SceneHit>(state_->hits.data(), state_->hits.size());
 }
 
 }  // namespace winnow

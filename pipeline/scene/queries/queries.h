@@ -134,9 +134,8 @@ class BodyCandidateFilter {
 
   /// Applies the filters to a body without a query of its partition, as if its box were hit.
   void test(const Partition& partition, std::uint32_t body) const {
-    ObjectFilter own;
-    const Status status = partition.filter(scene_.place[body], own);
-    if (status == Status::ok && filters_allow(filter_.object(), own)) (void)accept(body);
+    const Answer<ObjectFilter> own = partition.filter(scene_.place[body]);
+    if (own.status == Status::ok && filters_allow(filter_.object(), own)) (void)accept(body);
   }
 
  private:

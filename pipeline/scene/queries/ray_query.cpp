@@ -214,12 +214,13 @@ void put(const SceneHitColumns& columns, std::size_t row, const SceneHit& hit) n
   }
 }
 
-Status find_one(QueryState* state, const ShapeRay& ray, const Filter& filter, bool any,
-                SceneHit& hit) {
+Answer<SceneHit> find_one(QueryState* state, const ShapeRay& ray, const Filter& filter, bool any) {
   if (const Status status = check(state, ray); status != Status::ok) return status;
   RayGroup<1> group(*state, filter);
   group.start({&ray, 1});
-  return group.find_each(any, [&](std::size_t, const SceneHit& found) { hit = found; });
+  Answer<SceneHit> hit;
+  hit.status = group.find_each(any, [&](std::size_t, const SceneHit& found) { hit = found; });
+  return hit;
 }
 
 Status find_many(QueryState* state, const ShapeRayBatch& rays, const Filter& filter, bool any,
@@ -246,18 +247,17 @@ Status start_all(QueryState& state, std::size_t rays) {
 
 }  // namespace
 
-Status SceneQueries::closest(const ShapeRay& ray, SceneHit& hit, const Filter& filter) {
+Answer<SceneHit> SceneQueries::closest(const ShapeRay& ray, const Filter& filter) {
   const DefaultFloatEnvironment environment;
-  return find_one(state_, ray, filter, false, hit);
+  return find_one(state_, ray, filter, false);
 }
 
-Status SceneQueries::any(const ShapeRay& ray, SceneHit& hit, const Filter& filter) {
+Answer<SceneHit> SceneQueries::any(const ShapeRay& ray, const Filter& filter) {
   const DefaultFloatEnvironment environment;
-  return find_one(state_, ray, filter, true, hit);
+  return find_one(state_, ray, filter, true);
 }
 
-Status SceneQueries::all(const ShapeRay& ray, std::span<const SceneHit>& hits,
-                         const Filter& filter) {
+Answer<std::span<const SceneHit>> SceneQueries::all(const ShapeRay& ray, const Filter& filter) {
   const DefaultFloatEnvironment environment;
   Status status = check(state_, ray);
   if (status == Status::ok) status = start_all(*state_, 1);
@@ -265,8 +265,8 @@ Status SceneQueries::all(const ShapeRay& ray, std::span<const SceneHit>& hits,
   RayGroup<1> group(*state_, filter);
   group.start({&ray, 1});
   status = group.find_all(0);
-  if (status == Status::ok) hits = {state_->hits.data(), state_->hits.size()};
-  return status;
+  if (status != Status::ok) return status;
+  return std::span<const SceneHit>(state_->hits.data(), state_->hits.size());
 }
 
 Status SceneQueries::closest(const ShapeRayBatch& rays, const SceneHitColumns& hits,
@@ -281,7 +281,7 @@ Status SceneQueries::any(const ShapeRayBatch& rays, const SceneHitColumns& hits,
   return find_many(state_, rays, filter, true, hits);
 }
 
-Status SceneQueries::all(const ShapeRayBatch& rays, SceneHitLists& hits, const Filter& filter) {
+Answer<SceneHitLists> SceneQueries::all(const ShapeRayBatch& rays, const Filter& filter) {
   const DefaultFloatEnvironment environment;
   Status status = check(state_, rays);
   if (status == Status::ok) status = start_all(*state_, rays.count);
@@ -294,8 +294,7 @@ Status SceneQueries::all(const ShapeRayBatch& rays, SceneHitLists& hits, const F
     if (status != Status::ok) return status;
   }
   const Column<std::size_t>& first = state_->hits_first;
-  hits = {{state_->hits.data(), state_->hits.size()}, {first.data(), first.size()}};
-  return Status::ok;
+  return SceneHitLists{{state_->hits.data(), state_->hits.size()}, {first.data(), first.size()}};
 }
 
 }  // namespace winnow

@@ -163,8 +163,8 @@ Footprint SceneQueries::footprint() const noexcept {
   return sum;
 }
 
-Status SceneQueries::overlap(ShapeId shape, const Pose& pose, std::span<const SceneOverlap>& bodies,
-                             const Filter& filter) {
+Answer<std::span<const SceneOverlap>> SceneQueries::overlap(ShapeId shape, const Pose& pose,
+                                                            const Filter& filter) {
   const DefaultFloatEnvironment environment;
   if (const Status status = QueryState::check_state(state_); status != Status::ok) return status;
   QueryState& state = *state_;
@@ -192,18 +192,17 @@ Status SceneQueries::overlap(ShapeId shape, const Pose& pose, std::span<const Sc
   if (!has_room) status = Status::out_of_memory;
   if (status != Status::ok) return status;
   std::sort(found.begin(), found.end(), has_lesser_overlap_id);
-  bodies = {found.data(), found.size()};
-  return Status::ok;
+  return std::span<const SceneOverlap>(found.data(), found.size());
 }
 
-Status SceneQueries::nearest(const Vec3d& point, std::size_t count, double radius,
-                             std::span<const SceneDistance>& bodies, const Filter& filter) {
+Answer<std::span<const SceneDistance>> SceneQueries::nearest(const Vec3d& point, std::size_t count,
+                                                             double radius, const Filter& filter) {
   const DefaultFloatEnvironment environment;
   if (const Status status = QueryState::check_state(state_); status != Status::ok) return status;
   if (!is_finite(point) || !(radius >= 0.0)) return Status::invalid_argument;
   const Status status = NearestBodiesQuery(*state_, point, filter).run(count, radius);
-  if (status == Status::ok) bodies = {state_->distances.data(), state_->distances.size()};
-  return status;
+  if (status != Status::ok) return status;
+  return std::span<const SceneDistance>(state_->distances.data(), state_->distances.size());
 }
 
 }  // namespace winnow

@@ -134,10 +134,8 @@ Status SensorsState::find_sensed(ObjectId first, ObjectId end, Watch& watch) con
   for (ObjectId id = first; id < end; ++id) {
     if (!keys.is_live(id)) continue;
     const SensorDefinition& sensor = sensors[id];
-    std::span<const SceneOverlap> found;
-    const Status status =
-        watch.queries.overlap(sensor.shape, sensor.pose, found, filter_of(sensor));
-    if (status != Status::ok) return status;
+    const auto found = watch.queries.overlap(sensor.shape, sensor.pose, filter_of(sensor));
+    if (found.status != Status::ok) return found.status;
     for (const SceneOverlap& body : found) {
       if (!watch.sensed.push_back({keys.key_of(id), body.key, sensor.data, body.data})) {
         return Status::out_of_memory;
@@ -185,7 +183,7 @@ Sensors::~Sensors() {
   delete_in(memory_, state_);
 }
 
-Status Sensors::add(const SensorDefinition& sensor, Key& key) {
+Answer<Key> Sensors::add(const SensorDefinition& sensor) {
   const DefaultFloatEnvironment environment;
   if (state_ == nullptr) return logged(Status::out_of_memory, "Sensors::add");
   SensorsState& s = *state_;
@@ -196,9 +194,9 @@ Status Sensors::add(const SensorDefinition& sensor, Key& key) {
     return logged(Status::out_of_memory, "Sensors::add");
   }
   s.sensors.set_size(slots);
-  key = s.keys.acquire(0, sensor.data);
+  const Key key = s.keys.acquire(0, sensor.data);
   s.sensors[key.id] = sensor;
-  return Status::ok;
+  return key;
 }
 
 Status Sensors::remove(Key key) {
@@ -225,10 +223,9 @@ Status Sensors::set(Key key, const SensorDefinition& sensor) {
   return Status::ok;
 }
 
-Status Sensors::sensor(Key key, SensorDefinition& sensor) const noexcept {
+Answer<SensorDefinition> Sensors::sensor(Key key) const noexcept {
   if (!contains(key)) return Status::invalid_key;
-  sensor = state_->sensors[key.id];
-  return Status::ok;
+  return state_->sensors[key.id];
 }
 
 Status Sensors::sense() {

@@ -20,9 +20,7 @@ namespace {
 constexpr double kSquareSlack = 1e-5;
 
 [[nodiscard]] Aabb box_of(const SceneState& scene, std::uint32_t body) noexcept {
-  Aabb box;
-  (void)scene.set(scene.body_state[body]).partition->bounds(scene.place[body], box);
-  return box;
+  return scene.set(scene.body_state[body]).partition->bounds(scene.place[body]);
 }
 
 /// The boxes of a set of bodies, and their distances from other boxes. Uses the boxes in the
@@ -261,38 +259,35 @@ class ClosestBodies {
 
 }  // namespace
 
-Status SceneQueries::distance(Key a, Key b, SceneDistance& answer, double limit, PairRules rules) {
+Answer<SceneDistance> SceneQueries::distance(Key a, Key b, double limit, PairRules rules) {
   const DefaultFloatEnvironment environment;
   if (const Status status = check_sets(state_, {&a, 1}, {&b, 1}, rules); status != Status::ok) {
     return status;
   }
   if (std::isnan(limit)) return Status::invalid_argument;
   SceneDistance found;
-  ClosestParts parts(state_->parts);
-  if (do_rules_take(state_->scene, rules, a.id, b.id) &&
-      parts.find(state_->placed(a.id), state_->placed(b.id), limit, found)) {
-    found.key = b;
-    found.data = state_->scene.keys.client_data(b.id);
-    answer = found;
-  } else {
-    answer = {};
+  if (!do_rules_take(state_->scene, rules, a.id, b.id) ||
+      !ClosestParts(state_->parts).find(state_->placed(a.id), state_->placed(b.id), limit, found)) {
+    return SceneDistance{};
   }
-  return Status::ok;
+  found.key = b;
+  found.data = state_->scene.keys.client_data(b.id);
+  return found;
 }
 
-Status SceneQueries::least_distance(std::span<const Key> a, std::span<const Key> b,
-                                    SetDistance& answer, double limit, PairRules rules) {
+Answer<SetDistance> SceneQueries::least_distance(std::span<const Key> a, std::span<const Key> b,
+                                                 double limit, PairRules rules) {
   const DefaultFloatEnvironment environment;
   if (const Status status = check_sets(state_, a, b, rules); status != Status::ok) return status;
   if (std::isnan(limit)) return Status::invalid_argument;
   SetPairs pairs(*state_, a, b, rules);
   if (!pairs.find_boxes()) return Status::out_of_memory;
-  answer = ClosestBodies(*state_, limit).find(pairs);
-  return Status::ok;
+  return ClosestBodies(*state_, limit).find(pairs);
 }
 
-Status SceneQueries::overlaps(std::span<const Key> a, std::span<const Key> b,
-                              std::span<const KeyPair>& pairs, std::size_t most, PairRules rules) {
+Answer<std::span<const KeyPair>> SceneQueries::overlaps(std::span<const Key> a,
+                                                        std::span<const Key> b, std::size_t most,
+                                                        PairRules rules) {
   const DefaultFloatEnvironment environment;
   if (const Status status = check_sets(state_, a, b, rules); status != Status::ok) return status;
   Column<KeyPair>& found = state_->overlapping;
@@ -308,12 +303,11 @@ Status SceneQueries::overlaps(std::span<const Key> a, std::span<const Key> b,
   };
   if (has_room && most != 0) all.each_within([] { return 0.0; }, test);
   if (!has_room) return Status::out_of_memory;
-  pairs = {found.data(), found.size()};
-  return Status::ok;
+  return std::span<const KeyPair>(found.data(), found.size());
 }
 
-Status SceneQueries::any_contact(std::span<const Key> a, std::span<const Key> b, KeyPair& pair,
-                                 double contact_margin, PairRules rules) {
+Answer<KeyPair> SceneQueries::any_contact(std::span<const Key> a, std::span<const Key> b,
+                                          double contact_margin, PairRules rules) {
   const DefaultFloatEnvironment environment;
   if (const Status status = check_sets(state_, a, b, rules); status != Status::ok) return status;
   if (!is_contact_margin(contact_margin)) return Status::invalid_argument;
@@ -326,11 +320,10 @@ Status SceneQueries::any_contact(std::span<const Key> a, std::span<const Key> b,
     return false;
   };
   all.each_within([&] { return contact_margin; }, test, true);
-  pair = found;
-  return Status::ok;
+  return found;
 }
 
-Status SceneQueries::any_contact(KeyPair& pair, double contact_margin, PairRules rules) {
+Answer<KeyPair> SceneQueries::any_contact(double contact_margin, PairRules rules) {
   const DefaultFloatEnvironment environment;
   if (const Status status = check_sets(state_, {}, {}, rules); status != Status::ok) return status;
   if (!is_contact_margin(contact_margin)) return Status::invalid_argument;
@@ -341,11 +334,9 @@ Status SceneQueries::any_contact(KeyPair& pair, double contact_margin, PairRules
     std::uint32_t other = kNoObject;
     if (const Status status = contact.find(body, other); status != Status::ok) return status;
     if (other == kNoObject) continue;
-    pair = {scene.keys.key_of(body), scene.keys.key_of(other)};
-    return Status::ok;
+    return KeyPair{scene.keys.key_of(body), scene.keys.key_of(other)};
   }
-  pair = {};
-  return Status::ok;
+  return KeyPair{};
 }
 
 }  // namespace winnow

@@ -35,23 +35,25 @@ Status query_cast(QueryState* state, const ShapeCast& cast, double tolerance, Qu
 
 }  // namespace
 
-Status SceneQueries::closest(const ShapeCast& cast, SceneHit& hit, const Filter& filter,
-                             double tolerance) {
+Answer<SceneHit> SceneQueries::closest(const ShapeCast& cast, const Filter& filter,
+                                       double tolerance) {
   const DefaultFloatEnvironment environment;
-  return query_cast(state_, cast, tolerance, [&](const LinearCast& linear_cast) {
+  Answer<SceneHit> hit;
+  hit.status = query_cast(state_, cast, tolerance, [&](const LinearCast& linear_cast) {
     return CastQuery(*state_, linear_cast, filter).closest(hit);
   });
+  return hit;
 }
 
-Status SceneQueries::all(const ShapeCast& cast, std::span<const SceneHit>& hits,
-                         const Filter& filter, double tolerance) {
+Answer<std::span<const SceneHit>> SceneQueries::all(const ShapeCast& cast, const Filter& filter,
+                                                    double tolerance) {
   const DefaultFloatEnvironment environment;
   const Status status = query_cast(state_, cast, tolerance, [&](const LinearCast& linear_cast) {
     state_->hits.clear();
     return CastQuery(*state_, linear_cast, filter).all();
   });
-  if (status == Status::ok) hits = {state_->hits.data(), state_->hits.size()};
-  return status;
+  if (status != Status::ok) return status;
+  return std::span<const SceneHit>(state_->hits.data(), state_->hits.size());
 }
 
 }  // namespace winnow

@@ -26,7 +26,7 @@ int main(int count, char** arguments) {
       Key& body = bodies[static_cast<std::size_t>(i)];
       const Status status =
           frame == 0
-              ? scene.add({.shape = kinds[static_cast<std::size_t>(i % 2)], .pose = pose}, body)
+              ? scene.add({.shape = kinds[static_cast<std::size_t>(i % 2)], .pose = pose}).get(body)
               : scene.move(body, pose);
       if (status != Status::ok) return 1;
     }

@@ -35,10 +35,9 @@ class WinnowBroadPhase final : public btBroadphaseInterface {
     auto proxy = std::make_unique<Proxy>(low, high, user, group, mask);
     proxy->m_uniqueId = ++last_id_;
     proxy->place = proxies_.size();
-    winnow::Key key;
-    check(partition_.insert(box_of(low, high), reinterpret_cast<std::uintptr_t>(proxy.get()),
-                            key) == winnow::Status::ok,
-          "a proxy is inserted");
+    const winnow::Key key =
+        partition_.insert(box_of(low, high), reinterpret_cast<std::uintptr_t>(proxy.get()));
+    check(bool{key}, "a proxy is inserted");
     // Bullet's rule: the mask of each object has a bit of the other object's group.
     check(partition_.set_filter(key, {.layers = static_cast<std::uint32_t>(group),
                                       .mask = static_cast<std::uint32_t>(mask)}) ==

@@ -152,7 +152,7 @@ class WinnowFinder {
 
  private:
   void add(const Battle& battle, std::uint32_t i) {
-    check(partition_.insert(battle.boxes[i], i, keys_[i]) == winnow::Status::ok, "it is inserted");
+    keys_[i] = partition_.insert(battle.boxes[i], i);
     check(partition_.set_filter(keys_[i], filter_of(battle.layers[i])) == winnow::Status::ok,
           "it gets a filter");
   }

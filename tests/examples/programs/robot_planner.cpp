@@ -76,29 +76,22 @@ class WinnowChecker {
  public:
   WinnowChecker(std::span<const Box> cell, std::size_t batch)
       : scene_(shapes_, {.execution = winnow::Execution::serial()}), poses_(batch * kLinks) {
-    winnow::Key key;
     for (const Box& box : cell) {
-      winnow::ShapeId shape;
-      check(shapes_.add(winnow::BoxShape{{box.half.x(), box.half.y(), box.half.z()}}, shape) ==
-                winnow::Status::ok,
-            "a box is made");
-      check(scene_.add({.shape = shape,
-                        .pose = pose_of(box.pose),
-                        .state = winnow::BodyState::fixed,
-                        .filter = {.layers = kCell, .environment = winnow::kAllEnvironments}},
-                       key) == winnow::Status::ok,
-            "it is added");
+      const winnow::Key obstacle = scene_.add(
+          {.shape = shapes_.add(winnow::BoxShape{{box.half.x(), box.half.y(), box.half.z()}}),
+           .pose = pose_of(box.pose),
+           .state = winnow::BodyState::fixed,
+           .filter = {.layers = kCell, .environment = winnow::kAllEnvironments}});
+      check(bool{obstacle}, "a box is added");
     }
-    winnow::ShapeId link;
-    check(shapes_.add(winnow::CapsuleShape{kLinkRadius, kLinkHalf}, link) == winnow::Status::ok,
-          "a link is made");
+    const winnow::ShapeId link = shapes_.add(winnow::CapsuleShape{kLinkRadius, kLinkHalf});
     for (std::uint32_t i = 0; i < batch * kLinks; ++i) {
       const std::uint32_t configuration = i / kLinks;
-      check(scene_.add({.shape = link,
-                        .filter = {.layers = kArm, .mask = kCell, .environment = configuration},
-                        .data = configuration},
-                       links_.emplace_back()) == winnow::Status::ok,
-            "a link is added");
+      links_.push_back(
+          scene_.add({.shape = link,
+                      .filter = {.layers = kArm, .mask = kCell, .environment = configuration},
+                      .data = configuration}));
+      check(bool{links_.back()}, "a link is added");
     }
   }
 

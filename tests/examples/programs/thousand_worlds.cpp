@@ -55,17 +55,13 @@ class Worlds {
       : first_body_(first * kBodies),
         scene_(shapes_, {.execution = winnow::Execution::serial()}),
         keys_(count * kBodies) {
-    winnow::ShapeId sphere;
-    winnow::ShapeId cube;
-    check(shapes_.add(winnow::SphereShape{kHalf}, sphere) == winnow::Status::ok &&
-              shapes_.add(winnow::BoxShape{{kHalf, kHalf, kHalf}}, cube) == winnow::Status::ok,
-          "shapes are made");
+    const winnow::ShapeId sphere = shapes_.add(winnow::SphereShape{kHalf});
+    const winnow::ShapeId cube = shapes_.add(winnow::BoxShape{{kHalf, kHalf, kHalf}});
     for (std::size_t i = 0; i < keys_.size(); ++i) {
       const auto world = static_cast<std::uint32_t>(i / kBodies);
-      check(scene_.add(
-                {.shape = Heaps::is_sphere(i) ? sphere : cube, .filter = {.environment = world}},
-                keys_[i]) == winnow::Status::ok,
-            "a body is added");
+      keys_[i] = scene_.add(
+          {.shape = Heaps::is_sphere(i) ? sphere : cube, .filter = {.environment = world}});
+      check(bool{keys_[i]}, "a body is added");
     }
   }
 

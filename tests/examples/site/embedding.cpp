@@ -20,10 +20,10 @@ int main() {
   std::pmr::unsynchronized_pool_resource arena;  // or your engine's: a std::pmr::memory_resource
   winnow::Partition partition(winnow::linear_bvh(), {.memory = &arena});
   winnow::PairBuffer pairs(&arena);  // every class takes one
-  partition.reserve(10'000, winnow::Pages::prefaulted);
-  partition.reserve_pairs(pairs, 20'000, winnow::Pages::prefaulted);
-  partition.insert(boxes, {}, keys);                                 // does not allocate
-  partition.self_pairs(pairs);                                       // does not allocate either
+  must(partition.reserve(10'000, winnow::Pages::prefaulted));
+  must(partition.reserve_pairs(pairs, 20'000, winnow::Pages::prefaulted));
+  must(partition.insert(boxes, {}, keys));                           // does not allocate
+  must(partition.self_pairs(pairs));                                 // does not allocate either
   const std::size_t bytes = partition.footprint().total().reserved;  // exact, to the byte
   // [end]
   check(pairs.size() == 9999 && bytes > 10'000 * 24, "pairs are found, boxes are held");

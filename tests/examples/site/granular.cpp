@@ -20,23 +20,22 @@ int main() {
   winnow::Partition partition(winnow::hierarchical_grid(),
                               {.volume = winnow::Volume::sphere,     // instead of bounding boxes
                                .fat_margin = {.distance = 0.05F}});  // the skin of a Verlet list
-  partition.insert(grains, {}, keys);
+  must(partition.insert(grains, {}, keys));
   winnow::PairBuffer neighbours;
-  partition.self_pairs(neighbours);
+  must(partition.self_pairs(neighbours));
   // [end]
   check(neighbours.size() > 3 * 3500, "each grain has three neighbours after it, but at the rim");
 
   const std::size_t before = neighbours.size();
   for (winnow::Sphere& grain : grains) grain.center.x() += 0.02F;
   // [a step]
-  partition.update(keys, grains);    // a move within the skin costs nothing
-  partition.self_pairs(neighbours);  // recomputes pairs of grains that left their skins
+  must(partition.update(keys, grains));    // a move within the skin costs nothing
+  must(partition.self_pairs(neighbours));  // recomputes pairs of grains that left their skins
   // [end]
   check(neighbours.size() == before, "nobody has left");
 
   winnow::ShapePool shapes;
-  winnow::ShapeId grain;
-  shapes.add(winnow::SphereShape{0.5}, grain);
+  const winnow::ShapeId grain = shapes.add(winnow::SphereShape{0.5});
   winnow::Contacts contacts;
   // [contacts of grains]
   winnow::Scene scene(shapes, {.contact_margin = 0.06,      // speculative contacts
@@ -45,8 +44,8 @@ int main() {
   for (const winnow::Sphere& s : grains) {
     bodies.push_back({grain, winnow::Pose::at(s.center.x(), s.center.y(), s.center.z())});
   }
-  scene.add(bodies, keys);
-  scene.collide(winnow::ContactLevel::distance, contacts);  // distance and normal
+  must(scene.add(bodies, keys));
+  must(scene.collide(winnow::ContactLevel::distance, contacts));  // distance and normal
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const double overlap = -contacts.distance()[i];
     check(overlap < 0.0, "they stand a twentieth apart");

@@ -8,13 +8,11 @@
 
 int main() {
   winnow::ShapePool shapes;
-  winnow::ShapeId ball, plate;
-  shapes.add(winnow::SphereShape{0.05}, ball);
-  shapes.add(winnow::BoxShape{{0.005, 2, 2}}, plate);
+  const winnow::ShapeId ball = shapes.add(winnow::SphereShape{0.05});
+  const winnow::ShapeId plate = shapes.add(winnow::BoxShape{{0.005, 2, 2}});
   winnow::Scene scene(shapes);
-  winnow::Key wall, bullet;
-  scene.add({.shape = plate, .state = winnow::BodyState::fixed}, wall);
-  scene.add({.shape = ball, .pose = winnow::Pose::at(-6, 0, 0)}, bullet);
+  must(scene.add({.shape = plate, .state = winnow::BodyState::fixed}).status);
+  const winnow::Key bullet = scene.add({.shape = ball, .pose = winnow::Pose::at(-6, 0, 0)});
   double stopped = 1.0;
   const auto stop = [&](winnow::Key, double time) { stopped = time; };
   // [impacts]
@@ -22,9 +20,10 @@ int main() {
   const std::vector<winnow::Key> moving{bullet};
   const std::vector<winnow::Pose> ends{winnow::Pose::at(9, 0, 0)};
   const std::vector<std::uint8_t> bullets{1};
-  ccd.find_impacts(
-      moving, ends,
-      {.pairs = winnow::ContinuousPairs::bullets_and_fixed, .bullets = bullets, .touching = false});
+  must(ccd.find_impacts(moving, ends,
+                        {.pairs = winnow::ContinuousPairs::bullets_and_fixed,
+                         .bullets = bullets,
+                         .touching = false}));
   for (std::size_t i = 0; i < moving.size(); ++i) {
     if (ccd.first()[i] == winnow::kNoImpact) continue;
     const winnow::SceneImpact& impact = ccd.impacts()[ccd.first()[i]];

@@ -34,9 +34,8 @@ std::array<winnow::Pose, 2> link_poses(const Configuration& q) {
 
 int main() {
   winnow::ShapePool shapes;
-  winnow::ShapeId link, pillar;
-  shapes.add(winnow::BoxShape{{0.5, 0.05, 0.05}}, link);
-  shapes.add(winnow::CylinderShape{0.1, 1.0}, pillar);
+  const winnow::ShapeId link = shapes.add(winnow::BoxShape{{0.5, 0.05, 0.05}});
+  const winnow::ShapeId pillar = shapes.add(winnow::CylinderShape{0.1, 1.0});
 
   // [checker]
   enum Layer : std::uint32_t { obstacles = 1, tools = 2 };
@@ -47,14 +46,14 @@ int main() {
       {pillar, winnow::Pose::at(1.6, 0.8, 0), winnow::BodyState::fixed, {.layers = obstacles}},
       {pillar, winnow::Pose::at(-1, 1, 0), winnow::BodyState::fixed, {.layers = obstacles}},
       {pillar, winnow::Pose::at(0, -1.5, 0), winnow::BodyState::fixed, {.layers = tools}}};
-  world.add(pillars, keys);
-  world.refresh();  // once; then any number of threads may query
+  must(world.add(pillars, keys));
+  must(world.refresh());  // once; then any number of threads may query
 
   winnow::SceneQueries queries(world);  // one per thread
   const auto is_free = [&](const Configuration& q) {
-    std::span<const winnow::SceneOverlap> overlaps;
     for (const winnow::Pose& pose : link_poses(q)) {
-      queries.overlap(link, pose, overlaps, {.mask = obstacles});  // exact, as tier robust
+      const auto overlaps =
+          queries.overlap(link, pose, {.mask = obstacles});  // exact, as tier robust
       if (!overlaps.empty()) return false;
     }
     return true;
@@ -68,9 +67,8 @@ int main() {
   const auto clearance = [&](const Configuration& q, double enough) {
     double least = enough;  // larger distances do not matter
     for (const winnow::Pose& pose : link_poses(q)) {
-      std::span<const winnow::SceneDistance> near;
       const double reach = 0.51 + least;  // radius around the link's centre
-      queries.nearest(pose.position, 8, reach, near, {.mask = obstacles});
+      const auto near = queries.nearest(pose.position, 8, reach, {.mask = obstacles});
       for (const winnow::SceneDistance& body : near) least = std::min(least, body.distance - 0.51);
     }
     return least;  // a lower bound

@@ -24,17 +24,17 @@ void boxes_and_pairs() {
   if (partition.insert(boxes, {}, keys) != winnow::Status::ok) return;
 
   winnow::PairBuffer pairs;
-  partition.self_pairs(pairs);  // each box overlaps the next one
+  must(partition.self_pairs(pairs));  // each box overlaps the next one
   for (const winnow::Pair& pair : pairs) check(pair.first + 1 == pair.second, "neighbours");
   // [end]
   check(pairs.size() == 999, "there are as many pairs as gaps");
 
   // [changes]
   winnow::PairEvents events;
-  partition.self_pairs(pairs, events);      // later calls report changes
-  boxes[500] = {{450, 5, 0}, {451, 6, 1}};  // moves away
-  partition.update(keys[500], boxes[500]);
-  partition.self_pairs(pairs, events);  // cost depends on the moved objects
+  must(partition.self_pairs(pairs, events));  // later calls report changes
+  boxes[500] = {{450, 5, 0}, {451, 6, 1}};    // moves away
+  must(partition.update(keys[500], boxes[500]));
+  must(partition.self_pairs(pairs, events));  // cost depends on the moved objects
   for (const winnow::KeyPair& pair : events.ended()) {
     check(pair.first == keys[500] || pair.second == keys[500], "its two pairs ended");
   }
@@ -49,22 +49,23 @@ void push(winnow::Key, winnow::Key, double, double) {
 void bodies_and_contacts() {
   // [bodies]
   winnow::ShapePool shapes;  // bodies share shapes
-  winnow::ShapeId crate, ball, floor;
-  shapes.add(winnow::BoxShape{{0.5, 0.5, 0.5}}, crate);  // half extents
-  shapes.add(winnow::SphereShape{0.25}, ball);
-  shapes.add(winnow::HalfSpaceShape{}, floor);  // all below z = 0
+  const winnow::ShapeId crate = shapes.add(winnow::BoxShape{{0.5, 0.5, 0.5}});  // half extents
+  const winnow::ShapeId ball = shapes.add(winnow::SphereShape{0.25});
+  const winnow::ShapeId floor = shapes.add(winnow::HalfSpaceShape{});  // all below z = 0
 
   winnow::Scene scene(shapes, {.contact_margin = 0.01});  // contacts within 1 cm
-  winnow::Key ground, lower, upper, rolling;
-  scene.add({.shape = floor, .state = winnow::BodyState::fixed}, ground);
-  scene.add({.shape = crate, .pose = winnow::Pose::at(0, 0, 0.5), .data = 1}, lower);
-  scene.add({.shape = crate, .pose = winnow::Pose::at(0, 0, 1.495), .data = 2}, upper);
-  scene.add({.shape = ball, .pose = winnow::Pose::at(3, 0, 0.25), .data = 3}, rolling);
+  must(scene.add({.shape = floor, .state = winnow::BodyState::fixed}).status);
+  const winnow::Key lower =
+      scene.add({.shape = crate, .pose = winnow::Pose::at(0, 0, 0.5), .data = 1});
+  const winnow::Key upper =
+      scene.add({.shape = crate, .pose = winnow::Pose::at(0, 0, 1.495), .data = 2});
+  const winnow::Key rolling =
+      scene.add({.shape = ball, .pose = winnow::Pose::at(3, 0, 0.25), .data = 3});
   // [end]
 
   // [contacts]
   winnow::Contacts contacts;  // keep it from frame to frame
-  scene.collide(winnow::ContactLevel::manifold, contacts);
+  must(scene.collide(winnow::ContactLevel::manifold, contacts));
   for (const winnow::ContactPair& pair : contacts) {  // pairs of bodies that touch
     for (const winnow::ContactManifold& manifold : pair) {
       for (const winnow::ContactPoint& point : manifold) {
@@ -77,13 +78,13 @@ void bodies_and_contacts() {
   check(pushed == 9, "four corners, four corners, one point");
 
   // [queries]
-  scene.move(rolling, winnow::Pose::at(6, 0, 0.25));
-  scene.refresh();  // updates the partitions
+  must(scene.move(rolling, winnow::Pose::at(6, 0, 0.25)));
+  must(scene.refresh());  // updates the partitions
   winnow::SceneQueries queries(scene);
-  winnow::SceneHit hit;
-  queries.closest(winnow::ShapeRay{{-5, 0, 0.5}, {1, 0, 0}, 100.0}, hit);  // hits the lower crate
-  winnow::SceneDistance gap;
-  queries.distance(upper, rolling, gap);  // closest points, distance, error bound
+  const winnow::SceneHit hit =
+      queries.closest(winnow::ShapeRay{{-5, 0, 0.5}, {1, 0, 0}, 100.0});  // hits the lower crate
+  const winnow::SceneDistance gap =
+      queries.distance(upper, rolling);  // closest points, distance, error bound
   // [end]
   check(hit.key == lower && hit.t == 4.5, "the ray hits the lower crate");
   check(gap.distance > 4.9 && gap.error_bound < 1e-6, "they are apart");

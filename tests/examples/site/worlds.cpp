@@ -22,16 +22,16 @@ int main() {
   }
   std::vector<winnow::Key> keys(boxes.size());
   winnow::Partition partition(winnow::linear_bvh());
-  partition.insert(boxes, {}, keys);
-  partition.set_filter(keys, filters);
+  must(partition.insert(boxes, {}, keys));
+  must(partition.set_filter(keys, filters));
   winnow::PairBuffer pairs;
-  partition.self_pairs(pairs);  // one call, on all threads, for all worlds
+  must(partition.self_pairs(pairs));  // one call, on all threads, for all worlds
   // [end]
   check(pairs.size() == 9 * kWorlds, "each world has its nine pairs and no others");
 
   winnow::HitBuffer hits;
   // [one world]
-  partition.all(winnow::Ray{{-5, 0.5F, 0.5F}, {1, 0, 0}}, hits, {.environment = 7});
+  must(partition.all(winnow::Ray{{-5, 0.5F, 0.5F}, {1, 0, 0}}, hits, {.environment = 7}));
   // [end]
   check(hits.size() == 10, "a ray in one world hits its ten boxes");
 }

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <winnow/pipeline/narrow_result.h>
+
+#include <cstdint>
+#include <span>
+
+namespace winnow {
+
+/// Writable columns of a NarrowResult; see its accessors of the same names. Columns of higher
+/// levels are empty.
+struct NarrowColumns {
+  std::span<double> distance;              ///< one per answer
+  std::span<double> error_bound;           ///< one per answer
+  std::span<double> normal[3];             ///< x, y, z
+  std::span<double> point[3];              ///< x, y, z
+  std::span<std::uint32_t> contact_first;  ///< index into `contacts`
+  std::span<std::uint32_t> contact_count;  ///< at most kManifoldPoints
+  /// Points may be added.
+  ContactColumns& contacts;
+};
+
+}  // namespace winnow
