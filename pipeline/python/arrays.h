@@ -226,6 +226,19 @@ template <typename T, typename... Counts>
   auto [block, owner] = BlockCache::take(bytes);
   return py::array_t<T>(shape, static_cast<T*>(block), owner);
 }
+/// A new array (n, 3) of vectors whose coordinates are columns: column(axis) is a span.
+template <typename Column>
+[[nodiscard]] py::array vectors(Column&& column) {
+  using T = std::remove_cv_t<typename decltype(column(0))::element_type>;
+  py::array_t<T> rows = fresh<T>(column(0).size(), 3);
+  T* const to = rows.mutable_data();
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::span<const T> from = column(axis);
+    for (std::size_t i = 0; i < from.size(); ++i)
+      to[3 * i + static_cast<std::size_t>(axis)] = from[i];
+  }
+  return rows;
+}
 [[nodiscard]] inline Key* keys_in(py::array_t<std::uint64_t>& array) {
   return reinterpret_cast<Key*>(array.mutable_data());
 }

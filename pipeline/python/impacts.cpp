@@ -66,7 +66,7 @@ void add_result(py::module_& module) {
   py::class_<Impacts, HeldImpacts>(
       module, "Impacts",
       "Times of impact of pairs of shapes, in the order of the pairs. Columns are read-only views "
-      "that never change. Vectors are tuples of one array for each axis.")
+      "that never change; vectors are new arrays.")
       .def("__len__", [](const Impacts& held) { return held.result.size(); })
       .def_property_readonly(
           "hit",
@@ -91,20 +91,16 @@ void add_result(py::module_& module) {
       .def_property_readonly(
           "normal",
           [](const Impacts& held) {
-            return py::make_tuple(column(held, held.result.normal(0)),
-                                  column(held, held.result.normal(1)),
-                                  column(held, held.result.normal(2)));
+            return vectors([&](int axis) { return held.result.normal(axis); });
           },
-          "Unit vector from a to b at that time, in world axes: three (n,) float64.")
+          "Unit vector from a to b at that time, in world axes: (n, 3) float64.")
       .def_property_readonly(
           "point",
           [](const Impacts& held) {
-            return py::make_tuple(column(held, held.result.point(0)),
-                                  column(held, held.result.point(1)),
-                                  column(held, held.result.point(2)));
+            return vectors([&](int axis) { return held.result.point(axis); });
           },
           "Point on a, relative to the position of a at that time; the point on b is gap * normal "
-          "farther. Three (n,) float64.")
+          "farther. (n, 3) float64.")
       .def_property_readonly(
           "part_a", [](const Impacts& held) { return column(held, held.result.part_a()); },
           "Triangle or child of a that touches b, WHOLE_SHAPE for convex shapes: (n,) uint32.")

@@ -135,6 +135,7 @@ void add_instruction_sets(py::module_& module) {
 
 PYBIND11_MODULE(_core, module) {
   module.doc() = "The C++ part of winnow; use the package `winnow`.";
+  module.attr("__version__") = WINNOW_PROJECT_VERSION;
   add_errors(module);
   module.attr("NULL_KEY") = ~std::uint64_t{0} >> 32U;
   module.attr("NO_OBJECT") = kNoObject;

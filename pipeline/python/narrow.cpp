@@ -85,8 +85,7 @@ void add_answers(py::module_& module) {
   py::class_<Answers, std::shared_ptr<Answers>>(
       module, "NarrowResult",
       "Results as columns, sorted by the kinds of shapes. They are read-only views that never "
-      "change. Vectors are tuples of one array for each axis: numpy.stack(v, axis=1) makes rows of "
-      "them.")
+      "change; vectors are new arrays.")
       .def("__len__", [](const Answers& a) { return a.result->size(); })
       .def_property_readonly(
           "level", [](const Answers& a) { return name_of(kLevels, a.result->level()); },
@@ -103,18 +102,14 @@ void add_answers(py::module_& module) {
       .def_property_readonly(
           "normal",
           [](const Answers& a) {
-            return py::make_tuple(column(a, a.result->normal(0)), column(a, a.result->normal(1)),
-                                  column(a, a.result->normal(2)));
+            return vectors([&](int axis) { return a.result->normal(axis); });
           },
-          "Unit vector from a to b, in world axes: three (n,) float64.")
+          "Unit vector from a to b, in world axes: (n, 3) float64.")
       .def_property_readonly(
           "point",
-          [](const Answers& a) {
-            return py::make_tuple(column(a, a.result->point(0)), column(a, a.result->point(1)),
-                                  column(a, a.result->point(2)));
-          },
+          [](const Answers& a) { return vectors([&](int axis) { return a.result->point(axis); }); },
           "Level distance: the closest or deepest point of a, relative to its position; the point "
-          "of b is distance * normal farther. Three (n,).")
+          "of b is distance * normal farther. (n, 3) float64.")
       .def_property_readonly(
           "contact_first", [](const Answers& a) { return column(a, a.result->contact_first()); },
           "Level manifold: index of the first contact of each result, which has contact_count "
@@ -126,10 +121,9 @@ void add_answers(py::module_& module) {
           "contact_position",
           [span_of](const Answers& a) {
             const auto& c = a.result->contact_columns().position;
-            return py::make_tuple(column<float>(a, span_of(c[0])), column<float>(a, span_of(c[1])),
-                                  column<float>(a, span_of(c[2])));
+            return vectors([&](int axis) { return span_of(c[axis]); });
           },
-          "Position halfway between the surfaces, relative to the position of a: three (m,) "
+          "Position halfway between the surfaces, relative to the position of a: (m, 3) "
           "float32.")
       .def_property_readonly(
           "contact_depth",

@@ -4,6 +4,7 @@
 #include "pipeline/python/locks.h"
 #include "pipeline/python/partition.h"
 
+#include <cstring>
 #include <optional>
 #include <utility>
 
@@ -118,13 +119,13 @@ void pair_changes(SharedPartition& p, Events& events, const py::object& function
   return shown_pairs(out);
 }
 
-/// Pairs of keys or of client data.
+/// A new array (n, 2) of pairs of keys or of client data.
 template <typename OfTwo>
-[[nodiscard]] py::array shown_twos(const std::shared_ptr<PairEvents>& events,
-                                   std::span<const OfTwo> pairs) {
+[[nodiscard]] py::array twos(std::span<const OfTwo> pairs) {
   static_assert(sizeof(OfTwo) == 2 * sizeof(std::uint64_t));
-  const auto* const words = reinterpret_cast<const std::uint64_t*>(pairs.data());
-  return shown_rows(std::shared_ptr<const void>(events), words, pairs.size(), 2, sizeof(OfTwo));
+  py::array_t<std::uint64_t> rows = fresh<std::uint64_t>(pairs.size(), 2);
+  if (!pairs.empty()) std::memcpy(rows.mutable_data(), pairs.data(), pairs.size_bytes());
+  return rows;
 }
 
 }  // namespace
@@ -132,9 +133,7 @@ template <typename OfTwo>
 void add_pairs(py::module_& module, PartitionClass& partition) {
   using py::arg;
   py::class_<Events, std::shared_ptr<Events>>(
-      module, "PairEvents",
-      "Changes of pairs between two frames. Its arrays are views; while one of them is alive, "
-      "filling the events again raises a BufferError.")
+      module, "PairEvents", "Changes of pairs between two frames. Each access returns a new array.")
       .def(py::init([](bool client_data) { return std::make_shared<Events>(client_data); }),
            py::kw_only(), arg("client_data") = false,
            "Events without a last frame. With `client_data` they include it, for 8 bytes an object "
@@ -143,14 +142,14 @@ void add_pairs(py::module_& module, PartitionClass& partition) {
           "begun",
           [](const Events& e) {
             const auto held = e.hold();
-            return shown_twos(e.value(), e.value()->begun());
+            return twos(e.value()->begun());
           },
           "Pairs of this frame that are not in the last one: (m, 2) uint64 of keys, sorted by id.")
       .def_property_readonly(
           "ended",
           [](const Events& e) {
             const auto held = e.hold();
-            return shown_twos(e.value(), e.value()->ended());
+            return twos(e.value()->ended());
           },
           "Pairs of the last frame that are not in this one: (m, 2) uint64 of keys, sorted by id; "
           "keys of removed objects are stale.")
@@ -158,14 +157,14 @@ void add_pairs(py::module_& module, PartitionClass& partition) {
           "begun_data",
           [](const Events& e) {
             const auto held = e.hold();
-            return shown_twos(e.value(), e.value()->begun_data());
+            return twos(e.value()->begun_data());
           },
           "Client data of the pairs in `begun`: (m, 2) uint64; (0, 2) without `client_data`.")
       .def_property_readonly(
           "ended_data",
           [](const Events& e) {
             const auto held = e.hold();
-            return shown_twos(e.value(), e.value()->ended_data());
+            return twos(e.value()->ended_data());
           },
           "Client data of the pairs in `ended`, including removed objects: (m, 2) uint64; (0, 2) "
           "without `client_data`.")

@@ -36,8 +36,7 @@ inline constexpr Choices<Order, 2> kOrders{
 /// Returns the structure with this name; throws an invalid_argument that lists all names.
 [[nodiscard]] StructureKind structure_of(const std::string& name);
 
-/// A result object that is filled once per frame, and whose data arrays refer to. It cannot be
-/// filled while such arrays are alive.
+/// A result object that is filled once per frame. Arrays of its data are copies.
 template <typename Result>
 class Exported : public NeedsInit {
  public:
@@ -47,20 +46,11 @@ class Exported : public NeedsInit {
       : value_(std::move(value)), is_lent_(lent) {}
 
   [[nodiscard]] const std::shared_ptr<Result>& value() const noexcept { return value_; }
-  /// Throws a BufferError if an array refers to it.
-  void expect_unseen(const char* what) const {
-    if (value_.use_count() <= 1) return;
-    PyErr_Format(PyExc_BufferError,
-                 "arrays of these %s are alive: delete them, or keep copies of them", what);
-    throw py::error_already_set();
-  }
-  /// Returns the value to be filled. Throws a BufferError if an array refers to it, and
-  /// `unsupported` if another object fills it.
+  /// Returns the value to be filled. Throws `unsupported` if another object fills it.
   [[nodiscard]] Result& to_fill(const char* what) const {
     if (is_lent_) {
       throw Refusal(Status::unsupported, std::string(what) + ": what they are of fills them");
     }
-    expect_unseen(what);
     return *value_;
   }
   /// Returns the lock that excludes other threads that fill it or make arrays of it. Waits without

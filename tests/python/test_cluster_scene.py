@@ -176,8 +176,7 @@ def test_contact_arrays_are_constant_and_outlive_the_cluster():
     refused("unsupported", winnow.Scene(shapes).collide, contacts)
     depth = contacts.contact_depth
     before = depth.copy()
-    with pytest.raises(BufferError):
-        cluster.collide()
+    cluster.collide()
     del contacts, cluster
     assert len(depth) and np.array_equal(depth, before)
 

@@ -23,9 +23,9 @@ def test_two_balls_touch_as_computed_by_hand():
     result = narrow.collide(shapes, ids, poses_at([0, 0, 0], [1.25, 0, 0]), [[0, 1]])
     assert len(result) == 1 and result.overlaps.tolist() == [True]
     assert result.distance[0] == pytest.approx(-0.25)
-    assert np.allclose(np.stack(result.normal, axis=1), [[1, 0, 0]])
+    assert np.allclose(result.normal, [[1, 0, 0]])
     assert result.contact_count.tolist() == [1] and result.contact_depth[0] == pytest.approx(0.25)
-    assert np.allclose([x[0] for x in result.contact_position], [0.875, 0, 0])
+    assert np.allclose(result.contact_position, [[0.875, 0, 0]])
 
 
 def test_every_kind_of_shape_has_its_bounds():

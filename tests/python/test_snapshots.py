@@ -11,7 +11,7 @@ RANDOM = np.random.default_rng(4)
 
 def shown(contacts):
     columns = [contacts.data_a, contacts.data_b, contacts.event, contacts.distance]
-    columns += [contacts.contact_depth, *contacts.normal]
+    columns += [contacts.contact_depth, contacts.normal]
     return [column.tolist() for column in columns]
 
 

@@ -37,11 +37,10 @@ def flow(grains=500, steps=300, seed=5):
         world.collide(contacts, "distance")
         pairs = np.repeat(np.arange(len(contacts)), np.diff(contacts.manifold_first))
         a, b = (number[winnow.ids_of(keys)][pairs] for keys in (contacts.a, contacts.b))
-        normal = np.stack(contacts.normal, axis=1)
         # The wall is one more grain, at rest.
         moving = np.vstack([speed, np.zeros(3)])
-        closing = np.einsum("ij,ij->i", moving[a] - moving[b], normal)
-        push = np.maximum(0, DAMP * closing - STIFF * contacts.distance)[:, None] * normal
+        closing = np.einsum("ij,ij->i", moving[a] - moving[b], contacts.normal)
+        push = np.maximum(0, DAMP * closing - STIFF * contacts.distance)[:, None] * contacts.normal
         force = np.zeros_like(moving)
         np.add.at(force, a, -push)
         np.add.at(force, b, push)

@@ -12,7 +12,7 @@ A failed call raises a `StatusError` with the status, and changes nothing. Array
 keep their data alive, and the data do not change.
 """
 
-from typing import Any
+from typing import Any, Optional
 
 import numpy
 import numpy.typing
@@ -58,6 +58,7 @@ from winnow._core import (
     Sensors,
     Shapes,
     StatusError,
+    __version__,
     available_isas,
     boxes_address,
     feature_impacts,
@@ -89,6 +90,7 @@ __all__ = [
     "REST_COLOUR",
     "SLEEPING",
     "WHOLE_SHAPE",
+    "__version__",
     "Advice",
     "Advised",
     "Cluster",
@@ -129,9 +131,11 @@ __all__ = [
     "ids_of",
     "isa_name",
     "kdop_directions",
+    "mesh_distance",
     "motions_between",
     "motions_by_velocities",
     "outward",
+    "pairs",
     "perspective",
     "poses_at",
     "replay",
@@ -148,3 +152,41 @@ def ids_of(keys: "numpy.typing.NDArray[numpy.uint64]") -> "numpy.typing.NDArray[
     if keys.dtype != numpy.uint64:
         raise TypeError("keys: expected uint64, not " + str(keys.dtype))
     return keys.view(numpy.dtype({"names": ["id"], "formats": ["<u4"], "itemsize": 8}))["id"]
+
+
+def pairs(
+    lower: "numpy.typing.ArrayLike", upper: "numpy.typing.ArrayLike", structure: str = "LinearBvh"
+) -> "numpy.typing.NDArray[numpy.uint32]":
+    """Returns the pairs of boxes that overlap, (m, 2) indices: first < second, sorted.
+
+    `lower` and `upper` are (n, 3) corners. For boxes that move, keep a `Partition`.
+    """
+    partition = Partition(structure)
+    partition.insert(lower, upper)
+    return partition.self_pairs(order="canonical")
+
+
+def mesh_distance(
+    points_a: "numpy.typing.ArrayLike",
+    triangles_a: "numpy.typing.ArrayLike",
+    points_b: "numpy.typing.ArrayLike",
+    triangles_b: "numpy.typing.ArrayLike",
+    pose_a: "Optional[numpy.typing.ArrayLike]" = None,
+    pose_b: "Optional[numpy.typing.ArrayLike]" = None,
+) -> SceneDistances:
+    """Returns the closest points of two triangle meshes, and their distance: one row.
+
+    Points are (n, 3), triangles (m, 3) indices; a pose is a position, or seven numbers: x, y, z and
+    a quaternion w, x, y, z. If the meshes overlap, the distance is minus the depth of the deepest
+    pair of triangles. For many queries, keep a `Scene`.
+    """
+    shapes = Shapes()
+    meshes = [shapes.add_mesh(points_a, triangles_a), shapes.add_mesh(points_b, triangles_b)]
+    scene = Scene(shapes)
+    origin = numpy.zeros(3)
+    a, b = (
+        scene.add([mesh], numpy.asarray(origin if pose is None else pose, float)[None])
+        for mesh, pose in zip(meshes, (pose_a, pose_b))
+    )
+    scene.refresh()
+    return scene.distance(a, b)
