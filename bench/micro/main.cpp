@@ -96,6 +96,8 @@ int run_benchmarks(int argc, char** argv) {
   arguments.insert(arguments.begin() + 1,
                    {"--benchmark_enable_random_interleaving=true", "--benchmark_repetitions=3",
                     "--benchmark_min_time=0.1"});
+  constexpr std::string_view kInOrder = "--benchmark_enable_random_interleaving=false";
+  if (std::ranges::find(arguments, kInOrder) != arguments.end()) most_prepared = 16;
   std::vector<char*> pointers;
   for (std::string& argument : arguments) pointers.push_back(argument.data());
   int size = static_cast<int>(pointers.size());

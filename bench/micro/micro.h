@@ -11,9 +11,11 @@
 #include "bench/rows/named_scene.h"
 #include "bench/rows/results.h"
 
+#include <algorithm>
 #include <cstddef>
+#include <deque>
 #include <functional>
-#include <map>
+#include <limits>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -47,15 +49,19 @@ benchmark::internal::Benchmark* add(const std::string& name, int threads, Body b
 /// Throws std::runtime_error with the text unless `right`.
 void check(bool right, const std::string& text);
 
+/// Number of values of each type that `prepared_by` keeps: all while benchmarks run in random order
+/// (about 5 GB for all benchmarks), or as many as one benchmark may use if each runs only once.
+inline std::size_t most_prepared = std::numeric_limits<std::size_t>::max();
+
 /// Returns the value stored under `key`. The first call makes and stores it, so that repetitions of
 /// a benchmark, and benchmarks on the same input, share it.
 template <typename Value, typename Make>
 Value& prepared_by(const std::string& key, Make&& make) {
-  static std::map<std::string, std::unique_ptr<Value>> all;
-  const auto at = all.find(key);
+  static std::deque<std::pair<std::string, std::unique_ptr<Value>>> all;
+  const auto at = std::ranges::find(all, key, [](const auto& one) { return one.first; });
   if (at != all.end()) return *at->second;
-  std::unique_ptr<Value> made = make();
-  return *all.emplace(key, std::move(made)).first->second;
+  if (all.size() >= most_prepared) all.pop_front();
+  return *all.emplace_back(key, make()).second;
 }
 /// As above for a value that is made from the arguments.
 template <typename Value, typename... Arguments>
