@@ -35,14 +35,6 @@ template <typename Cast>
   return form == HitForm::all ? HitForm::all_from_touch : HitForm::closest_from_touch;
 }
 
-/// These structs are written as arrays of double.
-static_assert(sizeof(Pose) == 7 * sizeof(double) && sizeof(RigidMotion) == 13 * sizeof(double));
-
-}  // namespace
-
-RecordedQueries::RecordedQueries(RecordedScene& scene, std::pmr::memory_resource* memory) noexcept
-    : scene_(scene), queries_(scene.scene_, memory), passed_(memory) {}
-
 [[nodiscard]] Status status_of(Status status) noexcept {
   return status;
 }
@@ -50,6 +42,14 @@ template <typename T>
 [[nodiscard]] Status status_of(const Answer<T>& answer) noexcept {
   return answer.status;
 }
+
+/// These structs are written as arrays of double.
+static_assert(sizeof(Pose) == 7 * sizeof(double) && sizeof(RigidMotion) == 13 * sizeof(double));
+
+}  // namespace
+
+RecordedQueries::RecordedQueries(RecordedScene& scene, std::pmr::memory_resource* memory) noexcept
+    : scene_(scene), queries_(scene.scene_, memory), passed_(memory) {}
 
 /// Runs a query, and records it if it succeeds: write(call, answer) writes the arguments and
 /// returns the digest of the answer. The filter follows the arguments.

@@ -20,6 +20,15 @@ def tracked_files(root):
     return sorted(path for path in paths if os.path.isfile(os.path.join(root, path)))
 
 
+def has_ctags():
+    """Returns whether `ctags` is Universal Ctags."""
+    try:
+        version = subprocess.run(["ctags", "--version"], check=False, capture_output=True, text=True).stdout
+    except FileNotFoundError:
+        version = ""
+    return "Universal Ctags" in version
+
+
 def read(root, path):
     """Returns the text of a file; bytes that are not UTF-8 are replaced."""
     with open(os.path.join(root, path), encoding="utf-8", errors="replace") as file:

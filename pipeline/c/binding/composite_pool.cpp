@@ -33,7 +33,6 @@ namespace {
   return true;
 }
 
-/// Writes the id of an added shape unless the call failed.
 }  // namespace
 }  // namespace winnow::c
 
