@@ -52,15 +52,21 @@ template <typename Point>
   }
 }
 
-/// True unless an Eigen matrix of numbers stores the three of a point or triangle apart: three
-/// columns by columns, three rows by rows, or a part of another matrix.
+/// True for Eigen vectors and maps of them without gaps, and for matrices without gaps that have
+/// one point or triangle after the other: three rows by columns, three columns by rows.
+template <typename Elements>
+concept Packed = int{Elements::InnerStrideAtCompileTime} == 1 &&
+                 (static_cast<bool>(Elements::IsVectorAtCompileTime) ||
+                  (int{Elements::OuterStrideAtCompileTime} == 3 &&
+                   int{Elements::IsRowMajor ? Elements::ColsAtCompileTime
+                                            : Elements::RowsAtCompileTime} == 3));
+
+/// True unless an Eigen matrix of numbers stores the three of a point or triangle apart.
 template <typename Elements>
 concept ThreeByThree = !requires {
   Elements::IsRowMajor;
 }
-|| (std::same_as<typename Elements::PlainObject, Elements> &&
-    (Elements::RowsAtCompileTime == (Elements::IsRowMajor ? 1 : 3) ||
-     Elements::ColsAtCompileTime == (Elements::IsRowMajor ? 3 : 1)));
+|| Packed<Elements>;
 
 /// A contiguous container of points, or of their coordinates, in T.
 template <typename Points, typename T>

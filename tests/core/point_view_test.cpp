@@ -21,6 +21,11 @@ static_assert(detail::ArrayOfPoints<Eigen::VectorXf>);
 static_assert(!detail::ArrayOfPoints<Matrix<Eigen::Dynamic, 3, Eigen::ColMajor>>);
 static_assert(!detail::ArrayOfPoints<Matrix<3, Eigen::Dynamic, Eigen::RowMajor>>);
 static_assert(!detail::ArrayOfPoints<Eigen::Block<Eigen::MatrixXd>>);
+static_assert(detail::ArrayOfPoints<Eigen::Map<const Eigen::Matrix3Xf>>);
+static_assert(detail::ArrayOfPoints<Eigen::Map<Eigen::VectorXd>>);
+static_assert(!detail::ArrayOfPoints<Eigen::Map<Eigen::VectorXd, 0, Eigen::InnerStride<2>>>);
+static_assert(!detail::ArrayOfPoints<Eigen::Map<Eigen::Matrix3Xd, 0, Eigen::OuterStride<4>>>);
+static_assert(!detail::ArrayOfPoints<Eigen::Map<Eigen::Matrix4Xd>>);
 static_assert(!detail::ArrayOfPoints<std::vector<int>>);
 
 struct UsersVertex {
@@ -51,6 +56,8 @@ TEST(PointView, numbers_are_viewed_three_by_three) {
   expect_two_points(std::vector<double>{1, 2, 3, 4, 5, 6, 7});
   expect_two_points(Eigen::Matrix3Xd(Eigen::Matrix<double, 3, 2>{{1, 4}, {2, 5}, {3, 6}}));
   expect_two_points(Matrix<2, 3, Eigen::RowMajor>{{1, 2, 3}, {4, 5, 6}});
+  const double numbers[] = {1, 2, 3, 4, 5, 6};
+  expect_two_points(Eigen::Map<const Eigen::Matrix3Xd>(numbers, 3, 2));
 }
 
 TEST(PointView, empty_container_has_no_points) {
