@@ -19,6 +19,8 @@ class Query final : public RowsCommand {
   void add_options(CLI::App& app) {
     app.add_option("file", file_, "JSON: an array of queries, in the format below")->required();
     option(app, "--tier", tier_, "Tier: robust or reference")->check(CLI::IsMember(kTiersByName));
+    app.add_flag("--contacts", contacts_,
+                 "Add the contacts of each pair that does not move: normals, distances, points");
     app.add_flag("--judge", judge_,
                  "For files of hard cases with expected results: count the correct answers of each "
                  "tier and of other libraries, instead of answering");
@@ -30,7 +32,7 @@ class Query final : public RowsCommand {
     const Json queries = read_json(file_);
     if (!queries.is_array()) throw ArgumentError(file_ + ": expected an array of queries");
     if (!judge_) {
-      answers_ = answer(queries, kTiersByName.at(tier_));
+      answers_ = answer(queries, kTiersByName.at(tier_), contacts_);
       explain_refusals(queries);
       if (!is_written()) std::cout << answers_.dump(1) << '\n';
       return;
@@ -59,6 +61,7 @@ class Query final : public RowsCommand {
 
   std::string file_;
   std::string tier_ = "robust";
+  bool contacts_ = false;
   bool judge_ = false;
   Json answers_;
 };

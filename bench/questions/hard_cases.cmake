@@ -1,4 +1,4 @@
-# Compiles tests/hard_cases into the library of questions: an object of the files' arrays by family.
+#Compiles tests / hard_cases into the library of questions : an object of the files' arrays by family.
 file(GLOB hard_cases CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tests/hard_cases/*.json)
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${hard_cases})
 set(families "")

@@ -193,8 +193,8 @@ class FormatCheck {
   bool ranges_;
 };
 
-Fault fault_of_shape(const Json& query, const char* name, Allowed allowed) {
-  if (query.contains(name)) return FormatCheck(true).shape(query[name], allowed, name);
+Fault fault_of_shape(const Json& query, const char* name) {
+  if (query.contains(name)) return FormatCheck(true).shape(query[name], Allowed::any, name);
   return fault_at(name, "a shape, {\"type\": ...}", Json::value_t::discarded);
 }
 
@@ -205,7 +205,7 @@ std::optional<QueryFault> fault_of(const Json& query) {
   if (!query.is_object()) return fault_at("", "an object", query);
   if (query.contains("ray")) {
     if (Fault fault = check.members(query["ray"], "other", "ray", "ray")) return fault;
-    return fault_of_shape(query, "target", Allowed::convex);
+    return fault_of_shape(query, "target");
   }
   if (query.contains("motion")) {
     if (Fault fault = check.members(query["motion"], "other", "motion", "motion")) return fault;
@@ -215,10 +215,9 @@ std::optional<QueryFault> fault_of(const Json& query) {
     return fault_at("", "the members \"a\" and \"b\", \"ray\" and \"target\", or \"motion\"",
                     query);
   }
-  const bool moves = has_end_pose(member(query, "a")) || has_end_pose(member(query, "b"));
-  const Allowed allowed = moves ? Allowed::any : Allowed::convex;
-  if (Fault fault = fault_of_shape(query, "a", allowed)) return fault;
-  return fault_of_shape(query, "b", allowed);
+  if (Fault fault = check.members(query, "other", "pair", "")) return fault;
+  if (Fault fault = fault_of_shape(query, "a")) return fault;
+  return fault_of_shape(query, "b");
 }
 
 bool is_readable(const Json& value, QueryPart part) {
@@ -230,6 +229,8 @@ bool is_readable(const Json& value, QueryPart part) {
       return !check.shape(value, Allowed::any, "");
     case QueryPart::ray:
       return !check.members(value, "other", "ray", "");
+    case QueryPart::pair:
+      return !check.members(value, "other", "pair", "");
     default:
       return !check.members(member(value, "motion"), "other", "motion", "") &&
              !check.members(value, "other", "query", "");
@@ -255,9 +256,8 @@ std::string query_format() {
       "(\"pose\") "
       "to 1\n(\"end_pose\"). Numbers may also be \"inf\", \"-inf\" and \"nan\".\n\n"
       "  id                            any value, which is copied to the answer\n"
-      "  a, b                          two shapes: overlap, signed distance, points; convex unless "
-      "one moves\n"
-      "  ray, target                   a ray on a convex shape\n"
+      "  a, b                          two shapes: overlap, signed distance, points\n"
+      "  ray, target                   a ray on a shape\n"
       "  motion                        features of a mesh that move\n"
       "  pose                          of each shape and child; the identity if missing\n"
       "  end_pose                      of a or b: the answer is the time of impact\n"

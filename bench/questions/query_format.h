@@ -19,8 +19,8 @@ struct QueryFault {
 /// nothing if there is none: the input may still be refused, for example if a result overflows.
 [[nodiscard]] std::optional<QueryFault> fault_of(const Json& query);
 
-/// A part of a query; `motion` is the whole query.
-enum class QueryPart { convex_shape, any_shape, ray, motion };
+/// A part of a query; for `pair` and `motion`, the query without its shapes.
+enum class QueryPart { convex_shape, any_shape, ray, pair, motion };
 
 /// Returns whether a part has all members, each of the right type. Numbers may be out of range.
 [[nodiscard]] bool is_readable(const Json& value, QueryPart part);

@@ -1,12 +1,13 @@
-// Runs the queries of a JSON file (`winnow query`). Queries about rays and motions run one by one
-// as they are read; pairs that do not move are collected and computed together by one
-// NarrowPhase::collide.
+// Runs the queries of a JSON file (`winnow query`). Pairs of convex shapes that do not move are
+// collected and computed together by one NarrowPhase::collide. The other queries run one by one as
+// they are read; those about composite shapes and contacts in a Scene, see scene_questions.h.
 
 #include "bench/questions/questions.h"
 
 #include <winnow/pipeline/feature_impacts.h>
 #include <winnow/pipeline/time_of_impact.h>
 #include "bench/questions/query_format.h"
+#include "bench/questions/scene_questions.h"
 
 #include <array>
 #include <utility>
@@ -14,10 +15,6 @@
 
 namespace winnow::bench {
 namespace {
-
-Json list(double x, double y, double z) {
-  return Json::array({number_to_json(x), number_to_json(y), number_to_json(z)});
-}
 
 std::array<Vec3d, 4> four_points(const Json& value) {
   std::array<Vec3d, 4> points;
@@ -32,7 +29,8 @@ std::array<Vec3d, 4> four_points(const Json& value) {
 /// Collects the bodies and pairs of all questions and stores each answer in its question's row.
 class QueryBatch {
  public:
-  explicit QueryBatch(std::size_t count) : answers_(count) {}
+  QueryBatch(std::size_t count, const SceneQuestions& in_scene)
+      : answers_(count), in_scene_(in_scene) {}
 
   void add(std::size_t row, const Json& question) {
     Json& answer = answers_[row];
@@ -40,12 +38,12 @@ class QueryBatch {
     answer["id"] = is_object && question.contains("id") ? question["id"] : Json();
     Status status = Status::invalid_argument;
     if (is_object && question.contains("ray")) {
-      status = compute_ray(question, answer);
+      status = is_composite(member(question, "target")) ? in_scene_.answer_ray(question, answer)
+                                                        : compute_ray(question, answer);
     } else if (is_object && question.contains("motion")) {
       status = compute_motion(question, answer);
     } else if (is_object && question.contains("a") && question.contains("b")) {
-      const bool moves = has_end_pose(question["a"]) || has_end_pose(question["b"]);
-      status = moves ? compute_impact(question, answer) : add_pair(row, question);
+      status = compute_pair(row, question);
     }
     if (status != Status::ok) refuse(answer, status);
   }
@@ -71,6 +69,17 @@ class QueryBatch {
  private:
   static void refuse(Json& answer, Status status) { answer["status"] = to_string(status); }
 
+  /// Computes the answer, or adds the pair to those that are computed together.
+  Status compute_pair(std::size_t row, const Json& question) {
+    const Json& a = question["a"];
+    const Json& b = question["b"];
+    if (has_end_pose(a) || has_end_pose(b)) return compute_impact(question, answers_[row]);
+    if (in_scene_.with_contacts() || is_composite(a) || is_composite(b)) {
+      return in_scene_.answer_pair(question, answers_[row]);
+    }
+    return add_pair(row, question);
+  }
+
   Status add_pair(std::size_t row, const Json& question) {
     ShapeId shape[2];
     Pose pose[2];
@@ -95,11 +104,7 @@ class QueryBatch {
     ShapeHit hit;
     if (status == Status::ok) status = cast_ray(pool_.tables(), shape, pose, ray).get(hit);
     if (status != Status::ok) return status;
-    answer["status"] = to_string(status);
-    answer["hit"] = hit.hit;
-    answer["t"] = hit.hit ? number_to_json(hit.t) : Json("inf");
-    answer["normal"] =
-        hit.hit ? list(hit.normal[0], hit.normal[1], hit.normal[2]) : list(0.0, 0.0, 0.0);
+    write_ray_hit(hit, answer);
     return Status::ok;
   }
 
@@ -144,8 +149,8 @@ class QueryBatch {
   static void write_impact(const ImpactResult& result, const RigidMotion& of_a, Json& answer) {
     const bool hit = result.hits(0);
     const Pose at = of_a.at(result.time()[0]);
-    double a[3] = {0.0, 0.0, 0.0};
-    double b[3] = {0.0, 0.0, 0.0};
+    Vec3d a{};
+    Vec3d b{};
     for (int axis = 0; hit && axis < 3; ++axis) {
       a[axis] = at.position[axis] + result.point(axis)[0];
       b[axis] = a[axis] + result.gap()[0] * result.normal(axis)[0];
@@ -154,16 +159,17 @@ class QueryBatch {
     answer["hit"] = hit;
     answer["time"] = hit ? number_to_json(result.time()[0]) : Json("inf");
     answer["gap"] = hit ? number_to_json(result.gap()[0]) : Json("inf");
-    answer["normal"] = list(result.normal(0)[0], result.normal(1)[0], result.normal(2)[0]);
-    answer["points"] = Json::array({list(a[0], a[1], a[2]), list(b[0], b[1], b[2])});
+    answer["normal"] =
+        vector_to_json({result.normal(0)[0], result.normal(1)[0], result.normal(2)[0]});
+    answer["points"] = Json::array({vector_to_json(a), vector_to_json(b)});
     answer["error_bound"] = number_to_json(result.error_bound()[0]);
   }
 
   void write(const NarrowResult& result, std::size_t i) {
     const BodyPair pair = pairs_[result.pair_of(i)];
     Json& answer = answers_[rows_[result.pair_of(i)]];
-    double a[3];
-    double b[3];
+    Vec3d a{};
+    Vec3d b{};
     for (int axis = 0; axis < 3; ++axis) {
       a[axis] = poses_[pair.a].position[axis] + result.point(axis)[i];
       b[axis] = a[axis] + result.distance()[i] * result.normal(axis)[i];
@@ -171,12 +177,14 @@ class QueryBatch {
     answer["status"] = to_string(Status::ok);
     answer["overlap"] = result.overlaps(i);
     answer["distance"] = number_to_json(result.distance()[i]);
-    answer["normal"] = list(result.normal(0)[i], result.normal(1)[i], result.normal(2)[i]);
-    answer["points"] = Json::array({list(a[0], a[1], a[2]), list(b[0], b[1], b[2])});
+    answer["normal"] =
+        vector_to_json({result.normal(0)[i], result.normal(1)[i], result.normal(2)[i]});
+    answer["points"] = Json::array({vector_to_json(a), vector_to_json(b)});
     answer["error_bound"] = number_to_json(result.error_bound()[i]);
   }
 
   std::vector<Json> answers_;
+  const SceneQuestions& in_scene_;
   ShapePool pool_;
   std::vector<ShapeId> shapes_;
   std::vector<Pose> poses_;
@@ -186,8 +194,9 @@ class QueryBatch {
 
 }  // namespace
 
-Json answer(const Json& questions, NarrowTier tier) {
-  QueryBatch questionnaire(questions.size());
+Json answer(const Json& questions, NarrowTier tier, bool contacts) {
+  const SceneQuestions in_scene(tier, contacts);
+  QueryBatch questionnaire(questions.size(), in_scene);
   for (std::size_t i = 0; i < questions.size(); ++i) questionnaire.add(i, questions[i]);
   questionnaire.compute_pairs(tier);
   return questionnaire.take();

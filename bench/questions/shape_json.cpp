@@ -27,6 +27,10 @@ double number(const Json& object, const char* name, double otherwise = 0.0) {
   return otherwise;
 }
 
+bool is_true(const Json& object, const char* name) {
+  return member(object, name) == true;
+}
+
 void numbers(const Json& array, std::span<double> out) {
   for (std::size_t i = 0; i < array.size(); ++i) static_cast<void>(read_number(array[i], out[i]));
 }
@@ -55,7 +59,9 @@ Status add_mesh(const Json& mesh, CompositePool& composites, ShapeId& id) {
       corners.push_back(static_cast<std::uint32_t>(index));
     }
   }
-  return composites.add_mesh(PointView(v), IndexView(corners)).get(id);
+  const Status status = composites.add_mesh(PointView(v), IndexView(corners)).get(id);
+  if (status != Status::ok || !is_true(mesh, "solid")) return status;
+  return composites.set_solid(id);
 }
 
 Status add_height_field(const Json& field, CompositePool& composites, ShapeId& id) {
@@ -126,8 +132,12 @@ Status read_pose(const Json& shape, const char* name, Pose& pose) {
 /// Adds a convex or composite shape.
 Status add_any_shape(const Json& value, ShapePool& pool, CompositePool& composites, ShapeId& id) {
   const Json& type = value["type"];
-  if (type == "mesh") return add_mesh(value, composites, id);
-  if (type == "height_field") return add_height_field(value, composites, id);
+  if (type == "mesh" || type == "height_field") {
+    const Status status =
+        type == "mesh" ? add_mesh(value, composites, id) : add_height_field(value, composites, id);
+    if (status != Status::ok || !is_true(value, "one_sided")) return status;
+    return composites.set_one_sided(id);
+  }
   if (type != "compound") return add_shape(value, pool, id);
   std::vector<CompoundChild> children;
   for (const Json& entry : value["children"]) {
@@ -159,17 +169,28 @@ Status read_shape(const Json& value, ShapePool& pool, ShapeId& id, Pose& pose) {
   return status == Status::ok ? pose_status : status;
 }
 
+Status read_any_shape(const Json& value, ShapePool& pool, CompositePool& composites, ShapeId& id,
+                      Pose& pose) {
+  if (!is_readable(value, QueryPart::any_shape)) return Status::invalid_argument;
+  pose = {};
+  const Status pose_status = read_pose(value, "pose", pose);
+  const Status status = add_any_shape(value, pool, composites, id);
+  return status == Status::ok ? pose_status : status;
+}
+
+bool is_composite(const Json& value) {
+  const Json& type = member(value, "type");
+  return type == "mesh" || type == "height_field" || type == "compound";
+}
+
 bool has_end_pose(const Json& value) {
   return value.is_object() && value.contains("end_pose");
 }
 
 Status read_moving_shape(const Json& value, ShapePool& pool, CompositePool& composites, ShapeId& id,
                          RigidMotion& motion) {
-  if (!is_readable(value, QueryPart::any_shape)) return Status::invalid_argument;
   Pose start;
-  const Status start_status = read_pose(value, "pose", start);
-  const Status status = add_any_shape(value, pool, composites, id);
-  if (status != Status::ok) return status;
+  const Status start_status = read_any_shape(value, pool, composites, id, start);
   if (start_status != Status::ok) return start_status;
   Pose end = start;
   const Status end_status = read_pose(value, "end_pose", end);
@@ -209,6 +230,11 @@ Json number_to_json(double value) {
   if (std::isnan(value)) return "nan";
   if (std::isinf(value)) return value > 0.0 ? "inf" : "-inf";
   return value;
+}
+
+Json vector_to_json(const Vec3d& value) {
+  return Json::array(
+      {number_to_json(value[0]), number_to_json(value[1]), number_to_json(value[2])});
 }
 
 }  // namespace winnow::bench
