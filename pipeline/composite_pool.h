@@ -116,18 +116,27 @@ class WINNOW_API CompositePool {
   /// True if the triangles of this surface are one-sided.
   [[nodiscard]] bool is_one_sided(ShapeId surface) const noexcept;
 
-  /// Makes a closed mesh solid, or hollow again. Queries for distances and overlaps
-  /// (SceneQueries::overlap, overlaps, any_contact, distance, least_distance and nearest) and
-  /// sensors then count its interior as part of the shape: for a point or shape inside that does
-  /// not touch the surface, the distance is minus the distance to the surface. Contacts of
-  /// `Scene::collide`, rays and casts still use only the surface.
+  /// Makes a closed mesh solid, or hollow again. The interior of a solid is part of the shape, for
+  /// contacts, overlaps, distances and sensors. Rays hit the surface from both sides: a ray that
+  /// starts inside hits where it leaves.
+  ///
+  /// A convex solid is a convex shape: it has the contacts, depths and casts of the hull of its
+  /// vertices, and no parts. Faces that are coplanar to 2e-7 of its size, as float vertices allow,
+  /// are one.
+  ///
+  /// The depth of other solids is the length of a translation after which the shapes are apart; the
+  /// error bound is the difference to a length below which none parts them. It is found by a search
+  /// (PolyDepth: Je, Tang, Lee, Lee, Kim 2012), so a shorter translation may exist within the
+  /// bound. Contacts of `Scene::collide` are those of the surface, unless moving the bodies along
+  /// them does not part the bodies: then one manifold has the depth of the solid. Casts of shapes
+  /// are stopped only by the surface.
   ///
   /// The flag belongs to the id, as for `set_one_sided`; it also applies if the mesh is a child of
   /// a compound. `invalid_key` if the id is not of a mesh. `invalid_shape` unless every edge
   /// belongs to two triangles that run along it in opposite directions (vertices at the same
   /// position count as one), and vertices run counter-clockwise as seen from outside, in the
   /// unscaled mesh, even if the scale mirrors. A refit keeps the flag; the caller keeps the mesh
-  /// closed. O(n log n).
+  /// closed. O(n log n); a refit too.
   Status set_solid(ShapeId mesh, bool solid = true);
   /// True if this mesh is solid.
   [[nodiscard]] bool is_solid(ShapeId mesh) const noexcept;

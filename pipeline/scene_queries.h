@@ -81,7 +81,7 @@ struct SceneDistance {
   std::uint32_t part_a = kWholeShape;
   std::uint32_t part = kWholeShape;  ///< closest part of the second body
   /// Signed distance: minus the penetration depth if the bodies overlap. For composite shapes, the
-  /// depth of the deepest pair of parts.
+  /// depth of the deepest pair of parts; for solids, of the bodies, see CompositePool::set_solid.
   double distance = 0.0;
   double error_bound = 0.0;  ///< the true distance is within distance +- error_bound
   /// Unit vector from the first body (or the point) to the second body.

@@ -6,10 +6,10 @@
 #include "core/memory/new_in.h"
 #include "core/threads/float_environment.h"
 #include "pipeline/composites/composites.h"
-#include "pipeline/composites/solids.h"
 #include "pipeline/kernels/link.h"
 #include "pipeline/mesh/mesh_view.h"
 #include "pipeline/shapes/extent.h"
+#include "pipeline/shapes/hull_builder.h"
 
 #include <algorithm>
 #include <cmath>
@@ -104,10 +104,12 @@ Composites::Composites(const ShapePool& pool, std::pmr::memory_resource* resourc
       fields(resource),
       compounds(resource),
       one_sided(resource),
-      solid(resource) {}
+      solid(resource),
+      hulls(resource) {}
 
 Composites::~Composites() {
-  for (const MeshEntry& entry : meshes.entries) {
+  for (MeshEntry& entry : meshes.entries) {
+    drop_hull(entry);
     if (entry.shared != nullptr) release(entry.shared);
   }
   for (HeightField* const field : fields.entries) delete_in(memory, field);
@@ -233,6 +235,13 @@ Status Composites::fit(Compound& compound) noexcept {
   return status;
 }
 
+void Composites::drop_hull(MeshEntry& entry) noexcept {
+  if (entry.hull == MeshEntry::kNoHull) return;
+  release_hull(hulls.entries[entry.hull], memory);
+  hulls.take(entry.hull);
+  entry.hull = MeshEntry::kNoHull;
+}
+
 void Composites::release(Compound* compound) noexcept {
   if (compound->has_surfaces()) take_out(first_compound_with_surfaces, compound);
   if (compound->tree != nullptr) compound->tree->~TriangleMesh();
@@ -255,18 +264,10 @@ constexpr MidPhase kMidPhase = {
     .visit_near = visit_near,
     .visit_pairs = visit_pairs,
     .visit_near_pairs = visit_near_pairs,
+    .has_solids = has_solids,
     .solid_contains_point = solid_contains_point,
     .solid_contains_shape = solid_contains_shape,
 };
-
-/// Puts a surface in a set or takes it out, and increments the revision if that is a change.
-Status set_flag(IdSet& set, ShapeId surface, bool now, std::uint64_t& revision) noexcept {
-  if (set.has(surface) == now) return Status::ok;
-  if (!now) set.remove(surface);
-  if (now && !set.add(surface)) return Status::out_of_memory;
-  ++revision;
-  return Status::ok;
-}
 
 }  // namespace
 }  // namespace mid
@@ -307,6 +308,7 @@ Answer<ShapeId> CompositePool::add_scaled(ShapeId mesh, const std::array<double,
   const DefaultFloatEnvironment environment;
   if (!contains(mesh) || mesh.composite_kind() != CompositeKind::mesh) return Status::invalid_key;
   mid::MeshEntry entry = *state_->mesh(mesh);
+  entry.hull = mid::MeshEntry::kNoHull;
   for (std::size_t i = 0; i < 3; ++i) {
     if (!mid::is_scale(scale[i])) return Status::invalid_argument;
     entry.scale[i] *= scale[i];
@@ -326,6 +328,7 @@ Status CompositePool::refit_mesh(ShapeId mesh, const PointView& vertices,
   const Status status = shared.mesh.refit(vertices, execution);
   if (status != Status::ok) return status;
   static_cast<void>(shared.find_corners());
+  if (state_->refit_hulls != nullptr) state_->refit_hulls(*state_, shared);
   state_->fit_users([&](ShapeId id) {
     const mid::MeshEntry* const entry = state_->mesh(id);
     return entry != nullptr && entry->shared == &shared;
@@ -403,17 +406,7 @@ Status CompositePool::set_one_sided(ShapeId surface, bool one_sided) {
   if (!contains(surface) || surface.composite_kind() == CompositeKind::compound) {
     return Status::invalid_key;
   }
-  return mid::set_flag(state_->one_sided, surface, one_sided, revision_);
-}
-
-Status CompositePool::set_solid(ShapeId id, bool solid) {
-  const DefaultFloatEnvironment environment;
-  if (mesh(id) == nullptr) return Status::invalid_key;
-  if (solid && !is_solid(id)) {
-    const Status status = mid::check_solid(*state_, id);
-    if (status != Status::ok) return status;
-  }
-  return mid::set_flag(state_->solid, id, solid, revision_);
+  return state_->one_sided.set(surface, one_sided, revision_);
 }
 
 bool CompositePool::is_solid(ShapeId id) const noexcept {
@@ -431,6 +424,7 @@ Status CompositePool::remove(ShapeId id) {
   if (is_solid(id)) state_->solid.remove(id);
   switch (id.composite_kind()) {
     case CompositeKind::mesh:
+      state_->drop_hull(state_->meshes.entries[id.index()]);
       state_->release(state_->mesh(id)->shared);
       state_->meshes.take(id.index());
       break;
@@ -511,6 +505,9 @@ Footprint CompositePool::footprint() const noexcept {
   footprint.keys += state_->compounds.free.bytes();
   footprint.keys += state_->one_sided.bits().bytes();
   footprint.keys += state_->solid.bits().bytes();
+  footprint.structure += state_->hulls.entries.bytes();
+  footprint.structure += state_->hulls.free.bytes();
+  for (const HullShape& hull : state_->hulls.entries) add(hull_bytes(hull));
   for (const mid::SharedMesh* m = state_->first_mesh; m != nullptr; m = m->next) {
     add(sizeof(mid::SharedMesh));
     add_whole(m->mesh.footprint());

@@ -9,6 +9,7 @@
 #include "core/memory/snapshot_frame.h"
 #include "core/threads/float_environment.h"
 #include "pipeline/composites/composites.h"
+#include "pipeline/composites/solid_hulls.h"
 
 #include <utility>
 
@@ -110,6 +111,7 @@ class CompositesReader {
       read_ids(all_.solid, [](CompositeKind kind) { return kind == CompositeKind::mesh; });
     }
     if (status == Status::ok && !in_.rest().empty()) in_.fail();
+    if (status == Status::ok && in_.ok()) status = mid::make_hulls(all_);
     return in_.ok() ? status : status_of(in_);
   }
 

@@ -156,6 +156,7 @@ template <typename Go>
 void visit(const TransformedShape& body, const MovingBox& moving_box,
            const PrimitiveVisitor& visitor, const ChildVisitor& children) {
   const Guide guide{body, visitor, children};
+  if (body.is_solid_hull()) return static_cast<void>(guide.show(0, moving_box.max_t));
   // A box that is never hit has time infinity, which must be later than any limit.
   const double max_t = std::min(moving_box.max_t, std::numeric_limits<double>::max());
   Box3 box = box_in(body, moving_box, body.to_local);
@@ -245,6 +246,7 @@ namespace {
 void visit_near(const TransformedShape& body, const MovingBox& from, double limit,
                 const PrimitiveVisitor& visitor, const ChildVisitor& children) {
   const Guide guide{body, visitor, children};
+  if (body.is_solid_hull()) return static_cast<void>(guide.show(0, limit));
   // Rotated to the frame of the body, but in world lengths.
   const Box3 box = box_in(body, from, body.rotation.transpose());
   if (body.kind == TransformedShape::Kind::mesh) {

@@ -38,8 +38,12 @@ struct SharedMesh {
 };
 
 struct MeshEntry {
+  static constexpr std::uint32_t kNoHull = ~0U;
+
   SharedMesh* shared = nullptr;
   double scale[3] = {1.0, 1.0, 1.0};
+  /// Index in Composites::hulls of the scaled mesh as a hull, if it is a convex solid.
+  std::uint32_t hull = kNoHull;
 };
 
 /// True if a mesh may be scaled by this factor. The range keeps products of two factors, their
@@ -142,6 +146,15 @@ class IdSet {
     std::rotate(bits_.begin() + place, bits_.end() - 1, bits_.end());
     return true;
   }
+  /// Adds or removes an id, and increments `revision` if that changes the set. `out_of_memory`
+  /// changes nothing.
+  [[nodiscard]] Status set(ShapeId id, bool now, std::uint64_t& revision) noexcept {
+    if (has(id) == now) return Status::ok;
+    if (!now) remove(id);
+    if (now && !add(id)) return Status::out_of_memory;
+    ++revision;
+    return Status::ok;
+  }
   /// Removes an id that is in the set.
   void remove(ShapeId id) noexcept {
     std::uint32_t* const at = bits_.begin() + place_of(id);
@@ -172,6 +185,12 @@ struct Composites {
   [[nodiscard]] const Compound* compound(ShapeId id) const noexcept;
   [[nodiscard]] bool is_one_sided(ShapeId id) const noexcept { return one_sided.has(id); }
   [[nodiscard]] bool is_solid(ShapeId id) const noexcept { return solid.has(id); }
+  /// Returns the tables of convex shapes in which `id` is looked up: `hull_tables` for a convex
+  /// solid, else `convex`.
+  [[nodiscard]] const ShapeTables& tables_of(ShapeId id, const ShapeTables& convex) const noexcept {
+    const MeshEntry* const entry = mesh(id);
+    return entry != nullptr && entry->hull != MeshEntry::kNoHull ? hull_tables : convex;
+  }
   [[nodiscard]] bool contains(ShapeId id) const noexcept {
     return mesh(id) != nullptr || field(id) != nullptr || compound(id) != nullptr;
   }
@@ -204,6 +223,8 @@ struct Composites {
     return compound != nullptr;
   }
   void release(Compound* compound) noexcept;
+  /// Frees the hull of a mesh, if it has one.
+  void drop_hull(MeshEntry& entry) noexcept;
 
   const ShapePool& shapes;
   std::pmr::memory_resource* memory;
@@ -212,6 +233,13 @@ struct Composites {
   SlotTable<Compound*> compounds;
   IdSet one_sided;  ///< surfaces with one-sided triangles
   IdSet solid;      ///< solid meshes
+  /// Convex solids as hulls; see solid_hulls.h. Empty slots are points.
+  SlotTable<HullShape> hulls;
+  /// Tables that contain only `hulls`.
+  ShapeTables hull_tables;
+  /// Makes the hulls anew after a refit of a mesh; null if there was never a solid, because a
+  /// program without solids then links no hulls.
+  void (*refit_hulls)(Composites& all, const SharedMesh& mesh) noexcept = nullptr;
   SharedMesh* first_mesh = nullptr;
   Compound* first_compound_with_surfaces = nullptr;
 

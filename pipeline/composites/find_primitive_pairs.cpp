@@ -40,6 +40,7 @@ class PrimitivePairFinder {
         pairs_(pairs),
         margins_(margins),
         out_(out),
+        pool_hulls_(tables.count[static_cast<std::size_t>(ShapeKind::hull)]),
         chunks_((pairs.size() + kPairsPerTask - 1) / kPairsPerTask),
         head_(BumpAllocator::blocks_for(chunks_ * sizeof(ChunkRecord) / sizeof(std::uint32_t)) +
               BumpAllocator::blocks_for(pairs.size())) {}
@@ -47,6 +48,7 @@ class PrimitivePairFinder {
   [[nodiscard]] Status run(const Execution& execution) noexcept;
 
  private:
+  [[nodiscard]] bool copy_hulls() noexcept;
   [[nodiscard]] bool search_all(const Execution& execution) noexcept;
   void search(std::size_t chunk, BumpAllocator& arena) noexcept;
   [[nodiscard]] Status count() noexcept;
@@ -89,6 +91,7 @@ class PrimitivePairFinder {
   std::span<const BodyPair> pairs_;
   const PairMargins& margins_;
   PrimitivePairs& out_;
+  std::uint32_t pool_hulls_;
   std::size_t chunks_;
   std::uint64_t head_;
 };
@@ -96,11 +99,21 @@ class PrimitivePairFinder {
 Status PrimitivePairFinder::run(const Execution& execution) noexcept {
   if (!out_.first.resize(pairs_.size() + 1)) return Status::out_of_memory;
   out_.first[0] = 0;
-  if (!search_all(execution)) return Status::out_of_memory;
+  if (!copy_hulls() || !search_all(execution)) return Status::out_of_memory;
   const Status status = count();
   if (status != Status::ok) return status;
   execution.for_each(chunks_, [&](std::size_t chunk) { write(chunk); });
   return Status::ok;
+}
+
+// The narrow phase reads the hulls of the pool and of convex solids from one table.
+bool PrimitivePairFinder::copy_hulls() noexcept {
+  const Column<HullShape>& own = all_.hulls.entries;
+  if (own.empty()) return true;
+  if (!out_.hulls.resize(pool_hulls_ + own.size())) return false;
+  std::copy_n(tables_.hulls, pool_hulls_, out_.hulls.begin());
+  std::copy(own.begin(), own.end(), out_.hulls.begin() + pool_hulls_);
+  return true;
 }
 
 bool PrimitivePairFinder::search_all(const Execution& execution) noexcept {
@@ -121,7 +134,7 @@ bool PrimitivePairFinder::search_all(const Execution& execution) noexcept {
 }
 
 void PrimitivePairFinder::search(std::size_t chunk, BumpAllocator& arena) noexcept {
-  PrimitivePairSearch search(tables_, arena);
+  PrimitivePairSearch search(arena);
   const std::size_t end = std::min((chunk + 1) * kPairsPerTask, pairs_.size());
   for (std::size_t i = chunk * kPairsPerTask; i < end; ++i) {
     const std::uint64_t primitives = search.primitives().size();
@@ -204,7 +217,9 @@ void PrimitivePairFinder::write_primitive(const TransformedShape& body, std::uin
   if (body.is_surface()) return write_triangle(body, number, at, triangle++);
   const PlacedPart part = body.part(number);
   ShapeId shape = part.shape;
-  if (shape.kind() == ShapeKind::triangle) {
+  if (body.is_solid_hull()) {
+    shape = ShapeId::of(ShapeKind::hull, pool_hulls_ + shape.index());
+  } else if (shape.kind() == ShapeKind::triangle) {
     out_.triangles[triangle] = tables_.triangles[shape.index()];
     out_.active_edges[triangle] = PrimitivePairs::kAllActive;
     shape = ShapeId::of(ShapeKind::triangle, triangle++);

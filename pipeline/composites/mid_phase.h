@@ -26,7 +26,8 @@ namespace winnow {
 
 /// One primitive of a composite shape.
 struct Primitive {
-  /// For a triangle see `triangle`; all other shapes are in the ShapePool.
+  /// For a triangle see `triangle`, for a convex solid `hull`; all other shapes are in the
+  /// ShapePool.
   ShapeId shape;
   std::uint32_t part = kWholeShape;  ///< part of its body; kWholeShape for a convex body
   Pose pose;                         ///< in the world
@@ -35,6 +36,8 @@ struct Primitive {
   /// if clockwise. 0 for all other primitives. A visitor must ignore objects behind a one-sided
   /// triangle.
   int front = 0;
+  /// The hull of a convex solid; else null.
+  const HullShape* hull = nullptr;
 };
 
 /// Callback for primitives that may be within `limit` (a value of t, or a distance).
@@ -175,6 +178,9 @@ bool visit_pairs(const CompositePool& pool, ShapeId a, const Pose& pose_a, Shape
 bool visit_near_pairs(const CompositePool& pool, ShapeId a, const Pose& pose_a, ShapeId b,
                       const Pose& pose_b, double limit, const NearPairVisitor& visitor);
 
+/// True for a solid that is not convex, and for a compound with such a child. Convex solids are
+/// hulls, see Primitive::hull.
+[[nodiscard]] bool has_solids(const CompositePool& pool, ShapeId id) noexcept;
 /// True if a solid (see CompositePool::set_solid), or a solid child of a compound, contains a point
 /// of the world.
 [[nodiscard]] bool solid_contains_point(const CompositePool& pool, ShapeId id, const Pose& pose,
@@ -199,6 +205,7 @@ struct MidPhase {
   decltype(&mid::visit_near) visit_near;
   decltype(&mid::visit_pairs) visit_pairs;
   decltype(&mid::visit_near_pairs) visit_near_pairs;
+  decltype(&mid::has_solids) has_solids;
   decltype(&mid::solid_contains_point) solid_contains_point;
   decltype(&mid::solid_contains_shape) solid_contains_shape;
 };

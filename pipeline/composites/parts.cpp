@@ -4,6 +4,7 @@
 
 #include <winnow/core/rotation.h>
 #include <winnow/core/rounding.h>
+#include "pipeline/composites/part_tables.h"
 #include "pipeline/shapes/extent.h"
 #include "pipeline/shapes/one_sided.h"
 
@@ -43,6 +44,15 @@ mid::Box3 triangle_box(const TriangleShape& triangle, const Pose& pose) noexcept
   const double slack = triangle.rounding +
                        mid::kSlack * (scale + triangle.rounding + position.cwiseAbs().maxCoeff());
   return box.moved(position).grown(slack);
+}
+
+mid::Box3 hull_box(const HullShape& hull, const Pose& pose) noexcept {
+  ShapeTables tables;
+  tables.hulls = &hull;
+  tables.count[static_cast<std::size_t>(ShapeKind::hull)] = 1;
+  return mid::box_under(tables, ShapeId::of(ShapeKind::hull, 0),
+                        rotation_of_unit(normalized(scale_to_unit_max(pose.orientation))),
+                        as_eigen(pose.position), 0.0);
 }
 
 /// True if the ray certainly misses a triangle, grown by `doubt`, of a body without rotation: the
@@ -85,8 +95,10 @@ PartTables::PartTables(const ShapePool& pool) noexcept
     : pool_(pool.tables()), tables_(pool.tables()) {
   tables_.triangles = triangles_;
   tables_.spheres = balls_;
+  tables_.hulls = hulls_;
   tables_.count[static_cast<std::size_t>(ShapeKind::triangle)] = 2;
   tables_.count[static_cast<std::size_t>(ShapeKind::sphere)] = 2;
+  tables_.count[static_cast<std::size_t>(ShapeKind::hull)] = 2;
 }
 
 ShapeId PartTables::put(std::size_t slot, const SubShape& part) noexcept {
@@ -100,6 +112,11 @@ ShapeId PartTables::put(std::size_t slot, const SubShape& part) noexcept {
   }
   if (kind == ShapeKind::sphere) {
     balls_[slot] = part.ball != nullptr ? *part.ball : pool_.spheres[part.shape.index()];
+    return ShapeId::of(kind, index);
+  }
+  if (kind == ShapeKind::hull) {
+    std::construct_at(&hulls_[slot],
+                      part.hull != nullptr ? *part.hull : pool_.hulls[part.shape.index()]);
     return ShapeId::of(kind, index);
   }
   return part.shape;
@@ -125,6 +142,7 @@ mid::Box3 SubShapeQuery::box(const SubShape& part) const noexcept {
     const Vector3d center = as_eigen(part.pose.position);
     return mid::Box3{center, center}.grown(part.ball->radius);
   }
+  if (part.hull != nullptr) return hull_box(*part.hull, part.pose);
   return box(PlacedShape{part.shape, part.pose});
 }
 

@@ -33,36 +33,22 @@ struct SubShape {
   Pose pose;
   std::uint32_t part = kWholeShape;
   /// Null, or the shape itself if it is not in the pool.
+  /// @{
   const TriangleShape* triangle = nullptr;
   const SphereShape* ball = nullptr;
+  const HullShape* hull = nullptr;
+  /// @}
   /// Added to the rounding of `triangle`.
   double thickness = 0.0;
   /// Facing of `triangle`; see Primitive::front.
   int front = 0;
 };
 
-/// Shape tables in which two parts can be looked up, whether or not they are in the pool.
-class PartTables {
- public:
-  explicit PartTables(const ShapePool& pool) noexcept;
-  PartTables(const PartTables&) = delete;
-  PartTables& operator=(const PartTables&) = delete;
-
-  /// Stores a part in slot 0 or 1 and returns its id in `tables`.
-  [[nodiscard]] ShapeId put(std::size_t slot, const SubShape& part) noexcept;
-  [[nodiscard]] const ShapeTables& tables() const noexcept { return tables_; }
-
- private:
-  const ShapeTables& pool_;
-  ShapeTables tables_;
-  TriangleShape triangles_[2];
-  SphereShape balls_[2];
-};
-
 [[nodiscard]] inline SubShape part_of(const Primitive& primitive) noexcept {
   SubShape part{primitive.shape, primitive.pose, primitive.part};
   if (primitive.shape.kind() == ShapeKind::triangle) part.triangle = &primitive.triangle;
   part.front = primitive.front;
+  part.hull = primitive.hull;
   return part;
 }
 
@@ -89,6 +75,10 @@ class SubShapeQuery {
   [[nodiscard]] bool solid_contains(const PlacedShape& solid, const Vec3d& point) const {
     return solid.shape.is_composite() &&
            mid_phase().solid_contains_point(*composites_, solid.shape, solid.pose, point);
+  }
+  /// See mid::has_solids.
+  [[nodiscard]] bool has_solids(ShapeId shape) const noexcept {
+    return shape.is_composite() && mid_phase().has_solids(*composites_, shape);
   }
   /// Returns a box that contains the shape.
   [[nodiscard]] mid::Box3 box(const PlacedShape& placed) const noexcept;

@@ -4,6 +4,7 @@
 
 #include "pipeline/composites/primitive_pair_search.h"
 
+#include "pipeline/composites/solids.h"
 #include "pipeline/mesh/height_grid.h"
 #include "pipeline/mesh/mesh_traversal.h"
 #include "pipeline/shapes/extent.h"
@@ -88,8 +89,9 @@ struct TrianglePlane {
 
 /// True if one well-chosen axis shows that a part is farther from a triangle than `margin`. Exact
 /// for spheres and half-spaces; conservative for other shapes: false proves nothing.
-[[nodiscard]] bool is_apart(const ShapeTables& tables, const PlacedPart& part,
-                            const Corners& triangle, double margin) noexcept {
+[[nodiscard]] bool is_apart(const PlacedPart& part, const Corners& triangle,
+                            double margin) noexcept {
+  const ShapeTables& tables = *part.tables;
   if (part.shape.kind() == ShapeKind::half_space) {
     return half_space_apart(tables.half_spaces[part.shape.index()], part, triangle, margin);
   }
@@ -127,20 +129,38 @@ struct TrianglePlane {
 
 }  // namespace
 
-PrimitivePairSearch::PrimitivePairSearch(const ShapeTables& tables, BumpAllocator& arena) noexcept
-    : tables_(tables), arena_(arena), primitives_(arena), pairs_(arena) {}
+PrimitivePairSearch::PrimitivePairSearch(BumpAllocator& arena) noexcept
+    : arena_(arena), primitives_(arena), pairs_(arena) {}
 
 void PrimitivePairSearch::run(const TransformedShape& a, const TransformedShape& b,
                               double margin) noexcept {
   margin_ = margin;
   before_ = primitives_.size();
-  if (!a.has_surfaces() && !b.has_surfaces()) return run(a, b);
+  if (!a.has_surfaces() && !b.has_surfaces()) {
+    run(a, b);
+    if (primitives_.size() == before_ && is_either_inside(a, b)) add_any(a, b);
+    return;
+  }
   for (const std::uint32_t of_a : bodies_near(a, b.box_in(a, margin), children_[0])) {
     const TransformedShape child_a = a.has_surfaces() ? a.child(of_a) : a;
     for (const std::uint32_t of_b : bodies_near(b, child_a.box_in(b, margin), children_[1])) {
       run(child_a, b.has_surfaces() ? b.child(of_b) : b);
     }
   }
+  if (primitives_.size() != before_ || !is_either_inside(a, b)) return;
+  add_any(a.has_surfaces() ? a.child(0) : a, b.has_surfaces() ? b.child(0) : b);
+}
+
+// A body within a solid is near none of its triangles. Its contact, which replaces that of the
+// first primitives, is found by correct_solid_contacts.
+void PrimitivePairSearch::add_any(const TransformedShape& a, const TransformedShape& b) noexcept {
+  const auto first_of = [](const TransformedShape& body) {
+    std::uint32_t number = 0;
+    Corners corners;
+    while (body.kind == TransformedShape::Kind::field && !body.corners(number, corners)) ++number;
+    return number;
+  };
+  add(a, first_of(a), b, first_of(b));
 }
 
 /// Returns the nearby children of a compound that has surfaces; any other body is its own only
@@ -183,7 +203,7 @@ void PrimitivePairSearch::parts_surface(const TransformedShape& parts,
     const PlacedPart part = parts.part(number);
     Box3 about;
     if (surface.front != 0)
-      about = box_under(tables_, part.shape, part.rotation, part.position, 0.0);
+      about = box_under(*part.tables, part.shape, part.rotation, part.position, 0.0);
     for (const std::uint32_t triangle : triangles_near(part, surface)) {
       if (is_left_out(part, about, surface, triangle)) continue;
       if (mirrored) {
@@ -204,7 +224,7 @@ bool PrimitivePairSearch::is_left_out(const PlacedPart& part, const Box3& about,
   if (is_tested && surface.front == 0) return false;
   Corners corners;
   if (!surface.corners(triangle, corners)) return true;
-  if (!is_tested && is_apart(tables_, part, corners, margin_)) return true;
+  if (!is_tested && is_apart(part, corners, margin_)) return true;
   return surface.is_behind(corners, about);
 }
 
@@ -296,7 +316,7 @@ std::span<const std::uint32_t> PrimitivePairSearch::triangles_near(
     const PlacedPart& part, const TransformedShape& surface) noexcept {
   if (part.shape.kind() == ShapeKind::half_space && surface.kind == TransformedShape::Kind::mesh) {
     return collect(inner_, [&](SlotSink& out) {
-      find_below(tables_.half_spaces[part.shape.index()], part, surface, margin_, out);
+      find_below(part.tables->half_spaces[part.shape.index()], part, surface, margin_, out);
     });
   }
   const Box3 box = box_of(part, surface, margin_);
@@ -313,7 +333,7 @@ std::span<const std::uint32_t> PrimitivePairSearch::triangles_near(
     });
   };
   if (part.shape.kind() != ShapeKind::hull) return find(nullptr);
-  const HullShape& shape = tables_.hulls[part.shape.index()];
+  const HullShape& shape = part.tables->hulls[part.shape.index()];
   const MeshHull hull{shape, mesh_in(part, surface), margin_ + shape.rounding};
   return find(&hull);
 }

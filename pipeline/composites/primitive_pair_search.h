@@ -15,7 +15,7 @@ namespace winnow::mid {
 /// PrimitivePairs.
 class PrimitivePairSearch {
  public:
-  PrimitivePairSearch(const ShapeTables& tables, BumpAllocator& arena) noexcept;
+  explicit PrimitivePairSearch(BumpAllocator& arena) noexcept;
 
   /// Finds all pairs of primitives that are no farther apart than `margin`, and some that are.
   /// Primitives are appended to `primitives()` by number, with kSecond set for body b; pairs are
@@ -71,12 +71,13 @@ class PrimitivePairSearch {
   [[nodiscard]] static bool any_is_behind(const TransformedShape& a, const Corners& of_a,
                                           const TransformedShape& b, const Corners& of_b) noexcept;
 
+  /// Adds the first primitives of both, which must not be compounds with surfaces.
+  void add_any(const TransformedShape& a, const TransformedShape& b) noexcept;
   void add(const TransformedShape& a, std::uint32_t of_a, const TransformedShape& b,
            std::uint32_t of_b) noexcept;
   [[nodiscard]] std::uint32_t primitive(const TransformedShape& body, std::uint32_t number,
                                         std::uint32_t flag) noexcept;
 
-  const ShapeTables& tables_;
   /// Margin of the current pair of bodies.
   double margin_ = 0.0;
   BumpAllocator& arena_;

@@ -219,7 +219,8 @@ struct RayTarget {
 
   [[nodiscard]] NearBody near(const ShapeRay& ray) const noexcept {
     if (body != nullptr) return {*body, about, ray};
-    const TransformedShape made = TransformedShape::at(all, surface.shape, surface.pose);
+    const TransformedShape made =
+        TransformedShape::at(all, surface.shape, surface.pose, TransformedShape::Solids::triangles);
     return {made, made.position, ray};
   }
 };
@@ -482,7 +483,8 @@ void cast_rays(const CompositePool& pool, ShapeId id, const Pose& pose,
   const bool is_prepared = prepared != nullptr && prepared->shape == id &&
                            prepared->revision == pool.revision() && is_same(prepared->pose, pose);
   if (is_prepared) return cast_on_surface({*all, *prepared}, rays, limits, any, hits);
-  const TransformedShape body = TransformedShape::at(*all, id, pose);
+  const TransformedShape body =
+      TransformedShape::at(*all, id, pose, TransformedShape::Solids::triangles);
   if (!body.is_surface()) return cast_on_compound(body, rays, limits, any, hits);
   RaySurface surface;
   prepare(body, surface);

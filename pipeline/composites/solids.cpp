@@ -45,6 +45,24 @@ class Winding {
     return solid_angle() > 2.0 * std::numbers::pi;
   }
 
+  /// Solid angle of the mesh: 4 pi times the winding number (van Oosterom, Strackee, "The solid
+  /// angle of a plane triangle", 1983). O(n).
+  [[nodiscard]] double solid_angle() const noexcept {
+    double sum = 0.0;
+    for (std::uint32_t slot = 0; slot < body_.mesh->triangle_count; ++slot) {
+      double corner[3][3];
+      (void)body_.own_corners(slot, corner);
+      const Vec a = Vec::Map(corner[0]) - at_;
+      const Vec b = Vec::Map(corner[1]) - at_;
+      const Vec c = Vec::Map(corner[2]) - at_;
+      const double lengths[3] = {a.norm(), b.norm(), c.norm()};
+      const double under = lengths[0] * lengths[1] * lengths[2] + a.dot(b) * lengths[2] +
+                           b.dot(c) * lengths[0] + c.dot(a) * lengths[1];
+      sum += 2.0 * std::atan2(a.dot(b.cross(c)), under);
+    }
+    return sum;
+  }
+
  private:
   void shoot(const Vec3d& direction) noexcept {
     SingleSurfaceRay single;
@@ -69,24 +87,6 @@ class Winding {
                             },
                             this});
   }
-  /// Solid angle of the mesh: 4 pi times the winding number (van Oosterom, Strackee, "The solid
-  /// angle of a plane triangle", 1983). O(n).
-  [[nodiscard]] double solid_angle() const noexcept {
-    double sum = 0.0;
-    for (std::uint32_t slot = 0; slot < body_.mesh->triangle_count; ++slot) {
-      double corner[3][3];
-      (void)body_.own_corners(slot, corner);
-      const Vec a = Vec::Map(corner[0]) - at_;
-      const Vec b = Vec::Map(corner[1]) - at_;
-      const Vec c = Vec::Map(corner[2]) - at_;
-      const double lengths[3] = {a.norm(), b.norm(), c.norm()};
-      const double under = lengths[0] * lengths[1] * lengths[2] + a.dot(b) * lengths[2] +
-                           b.dot(c) * lengths[0] + c.dot(a) * lengths[1];
-      sum += 2.0 * std::atan2(a.dot(b.cross(c)), under);
-    }
-    return sum;
-  }
-
   const TransformedShape& body_;
   const Vec at_;
   double slack_;
@@ -154,10 +154,17 @@ template <typename Visit>
   });
 }
 
+/// True if a solid contains one of the points of another shape.
+[[nodiscard]] bool contains_any(const TransformedShape& solid,
+                                const TransformedShape& other) noexcept {
+  return any_point(other, [&](const Vec& point) { return is_in_solid(solid, point); });
+}
+
 }  // namespace
 
 Status check_solid(const Composites& all, ShapeId id) noexcept {
-  const TransformedShape body = TransformedShape::at(all, id, {});
+  const TransformedShape body =
+      TransformedShape::at(all, id, {}, TransformedShape::Solids::triangles);
   Column<std::uint32_t> neighbours(all.memory);
   if (!find_neighbours(*body.mesh, neighbours)) return Status::out_of_memory;
   Vec about = Vec::Zero();
@@ -176,20 +183,39 @@ Status check_solid(const Composites& all, ShapeId id) noexcept {
   return volume > 0.0 ? Status::ok : Status::invalid_shape;
 }
 
+double winding_number(const Composites& all, ShapeId mesh, const Vec3d& point) noexcept {
+  const TransformedShape body =
+      TransformedShape::at(all, mesh, {}, TransformedShape::Solids::triangles);
+  const Vec own = body.to_local * as_eigen(point);
+  return Winding(body, own).solid_angle() / (4.0 * std::numbers::pi);
+}
+
+bool has_solids(const CompositePool& pool, ShapeId id) noexcept {
+  const Composites* const all = composites_with(pool, id);
+  if (all == nullptr || all->solid.empty()) return false;
+  return any_body(TransformedShape::at(*all, id, {}), [](const TransformedShape& one) {
+    return one.kind == TransformedShape::Kind::mesh && one.all.is_solid(one.id);
+  });
+}
+
 bool solid_contains_point(const CompositePool& pool, ShapeId id, const Pose& pose,
                           const Vec3d& point) noexcept {
   const Composites* const all = composites_with(pool, id);
   return all != nullptr && !all->solid.empty() &&
-         is_in_solid(TransformedShape::at(*all, id, pose), as_eigen(point));
+         is_in_solid(TransformedShape::at(*all, id, pose, TransformedShape::Solids::triangles),
+                     as_eigen(point));
 }
 
 bool solid_contains_shape(const CompositePool& pool, ShapeId id, const Pose& pose, ShapeId other,
                           const Pose& other_pose) noexcept {
   const Composites* const all = composites_with(pool, id);
   if (all == nullptr || all->solid.empty()) return false;
-  const TransformedShape solid = TransformedShape::at(*all, id, pose);
-  return any_point(TransformedShape::at(*all, other, other_pose),
-                   [&](const Vec& point) { return is_in_solid(solid, point); });
+  return contains_any(TransformedShape::at(*all, id, pose),
+                      TransformedShape::at(*all, other, other_pose));
+}
+
+bool is_either_inside(const TransformedShape& a, const TransformedShape& b) noexcept {
+  return !a.all.solid.empty() && (contains_any(a, b) || contains_any(b, a));
 }
 
 }  // namespace winnow::mid

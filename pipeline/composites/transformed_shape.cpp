@@ -31,10 +31,10 @@ Box3 Corners::box() const noexcept {
   return box;
 }
 
-PlacedPart::PlacedPart(const ShapeTables& tables, ShapeId id, std::uint32_t of_body,
-                       const Mat& turned, const Vec& at) noexcept
-    : shape(id), number(of_body), rotation(turned), position(at) {
-  with_shape(tables, id, [&](const auto& one) {
+PlacedPart::PlacedPart(const ShapeTables& of, ShapeId id, std::uint32_t of_body, const Mat& turned,
+                       const Vec& at) noexcept
+    : tables(&of), shape(id), number(of_body), rotation(turned), position(at) {
+  with_shape(of, id, [&](const auto& one) {
     radius = winnow::radius_of(one) * (1.0 + kSlack);
     reach = radius;
     inner = inner_radius_of(one);
@@ -46,17 +46,20 @@ PlacedPart::PlacedPart(const ShapeTables& tables, ShapeId id, std::uint32_t of_b
 }
 
 TransformedShape::TransformedShape(const Composites& composites, const ShapeTables& pool,
-                                   ShapeId shape, const Pose& pose, const Vec& at) noexcept
-    : TransformedShape(composites, pool, shape, Turned(pose.orientation), at) {}
+                                   ShapeId shape, const Pose& pose, const Vec& at,
+                                   Solids form) noexcept
+    : TransformedShape(composites, pool, shape, Turned(pose.orientation), at, form) {}
 
 TransformedShape::Turned::Turned(const Quaternion& orientation) noexcept
     : turn(scale_to_unit_max(orientation)),
       rotation(is_identity(turn) ? Mat(Mat::Identity()) : Mat(rotation_of(turn))) {}
 
 TransformedShape::TransformedShape(const Composites& composites, const ShapeTables& pool,
-                                   ShapeId shape, const Turned& turned, const Vec& at) noexcept
+                                   ShapeId shape, const Turned& turned, const Vec& at,
+                                   Solids form) noexcept
     : all(composites),
-      tables(pool),
+      tables(form == Solids::hulls ? composites.tables_of(shape, pool) : pool),
+      solids(form),
       id(shape),
       turn(turned.turn),
       rotation(turned.rotation),
@@ -64,6 +67,10 @@ TransformedShape::TransformedShape(const Composites& composites, const ShapeTabl
   to_world = rotation;
   to_local = rotation.transpose();
   if (!shape.is_composite()) return;
+  if (is_solid_hull()) {
+    id = ShapeId::of(ShapeKind::hull, all.mesh(shape)->hull);
+    return;
+  }
   if (all.is_one_sided(shape)) front = 1;
   if (const MeshEntry* const entry = all.mesh(shape)) {
     kind = Kind::mesh;
@@ -92,15 +99,15 @@ TransformedShape TransformedShape::child(std::uint32_t number) const noexcept {
   const CompoundChild& one = compound->children[number];
   const Mat turned = rotation_of(scale_to_unit_max(one.pose.orientation));
   TransformedShape body(all, tables, one.shape, Turned(part_turn(number), rotation * turned),
-                        position + rotation * as_eigen(one.pose.position));
+                        position + rotation * as_eigen(one.pose.position), solids);
   body.is_child = true;
   body.first_number = compound->first_part[number];
   return body;
 }
 
-TransformedShape TransformedShape::at(const Composites& all, ShapeId shape,
-                                      const Pose& pose) noexcept {
-  return {all, all.shapes.tables(), shape, pose, as_eigen(pose.position)};
+TransformedShape TransformedShape::at(const Composites& all, ShapeId shape, const Pose& pose,
+                                      Solids solids) noexcept {
+  return {all, all.shapes.tables(), shape, pose, as_eigen(pose.position), solids};
 }
 
 Box3 TransformedShape::box_in(const TransformedShape& other, double margin) const noexcept {
@@ -165,6 +172,7 @@ bool TransformedShape::primitive(std::uint32_t number, Primitive& out) const noe
   if (child.shape.kind() == ShapeKind::triangle) {
     out.triangle = tables.triangles[child.shape.index()];
   }
+  if (is_solid_hull()) out.hull = &tables.hulls[child.shape.index()];
   return true;
 }
 
@@ -223,7 +231,7 @@ PlacedMesh::PlacedMesh(const TransformedShape& a, const TransformedShape& b,
 
 Box3 box_of(const PlacedPart& part, const TransformedShape& other, double margin) noexcept {
   const Vec offset = other.to_local * finite(part.position - other.position);
-  return box_under(other.tables, part.shape, other.to_local * part.rotation, offset, margin);
+  return box_under(*part.tables, part.shape, other.to_local * part.rotation, offset, margin);
 }
 
 }  // namespace winnow::mid

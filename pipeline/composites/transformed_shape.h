@@ -28,6 +28,8 @@ struct Corners {
 
 /// A convex shape at a pose.
 struct PlacedPart {
+  /// The tables that contain the shape.
+  const ShapeTables* tables;
   ShapeId shape;
   /// 0, or the index of the child.
   std::uint32_t number;
@@ -42,7 +44,7 @@ struct PlacedPart {
   double reach = 0.0;
   double inner = 0.0;
 
-  PlacedPart(const ShapeTables& tables, ShapeId id, std::uint32_t number, const Mat& turned,
+  PlacedPart(const ShapeTables& of, ShapeId id, std::uint32_t number, const Mat& turned,
              const Vec& at) noexcept;
 };
 
@@ -50,20 +52,26 @@ struct PlacedPart {
 /// numbers: 0 for a convex shape, the child of a compound, the slot of a mesh, the triangle of a
 /// height field. A compound that has surfaces is handled child by child: each child is a
 /// TransformedShape, whose numbers begin at `first_number` in the compound.
+///
+/// A convex solid is a convex shape, its hull, except for rays, which hit its triangles.
 struct TransformedShape {
   enum class Kind : std::uint8_t { convex, compound, mesh, field };
+  /// The form of convex solids.
+  enum class Solids : bool { hulls, triangles };
 
   /// `at` is the position relative to body a.
   TransformedShape(const Composites& all, const ShapeTables& tables, ShapeId shape,
-                   const Pose& pose, const Vec& at) noexcept;
+                   const Pose& pose, const Vec& at, Solids solids = Solids::hulls) noexcept;
 
   /// Returns a child of a compound that has surfaces.
   [[nodiscard]] TransformedShape child(std::uint32_t number) const noexcept;
   /// Returns the body at its world pose.
-  [[nodiscard]] static TransformedShape at(const Composites& all, ShapeId shape,
-                                           const Pose& pose) noexcept;
+  [[nodiscard]] static TransformedShape at(const Composites& all, ShapeId shape, const Pose& pose,
+                                           Solids solids = Solids::hulls) noexcept;
 
   [[nodiscard]] bool is_surface() const noexcept { return kind >= Kind::mesh; }
+  /// Returns whether this is the hull of a convex solid.
+  [[nodiscard]] bool is_solid_hull() const noexcept { return &tables == &all.hull_tables; }
   [[nodiscard]] bool has_surfaces() const noexcept {
     return kind == Kind::compound && compound->has_surfaces();
   }
@@ -88,8 +96,11 @@ struct TransformedShape {
   }
 
   const Composites& all;
+  /// The tables of `id` or of the parts.
   const ShapeTables& tables;
+  Solids solids = Solids::hulls;
   Kind kind = Kind::convex;
+  /// The shape of the body; for a convex solid, its hull.
   ShapeId id;
   /// True for a child of a compound that has surfaces.
   bool is_child = false;
@@ -121,7 +132,7 @@ struct TransformedShape {
     Mat rotation;
   };
   TransformedShape(const Composites& all, const ShapeTables& tables, ShapeId shape,
-                   const Turned& turned, const Vec& at) noexcept;
+                   const Turned& turned, const Vec& at, Solids solids) noexcept;
 };
 
 /// Finds the children of a compound that has surfaces by part number. Caches the last child,

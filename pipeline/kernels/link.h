@@ -16,6 +16,8 @@ void link_kernels(ShapeKind a, ShapeKind b, const NarrowKernels& (*kernels)() no
 
 /// Links the kernels of triangles, for the primitives of composite shapes, which are in no pool.
 void link_triangle_kernels() noexcept;
+/// Links the kernels of hulls, for convex solids, which are in no pool of convex shapes.
+void link_hull_kernels() noexcept;
 
 }  // namespace winnow
 

@@ -15,6 +15,10 @@ namespace winnow {
 WINNOW_DEFINE_LINK(hull, WINNOW_PAIRS)
 #undef WINNOW_PAIRS
 
+void link_hull_kernels() noexcept {
+  link_kernels_of_hull();
+}
+
 /// Builds a hull with `make` and adds it, if `rounding` is valid.
 template <typename Make>
 Answer<ShapeId> ShapePool::put_hull(double rounding, Make&& make) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "pipeline/composites/part_tables.h"
 #include "pipeline/motion/relative_motion_bounds.h"
 
 namespace winnow::impact {

@@ -49,6 +49,8 @@ MovingShape moving_part(const SubShapeQuery& parts, const SubShape& part,
       radius = std::max(radius, as_eigen(corner).norm());
     }
     radius += part.triangle->rounding;
+  } else if (part.hull != nullptr) {
+    radius = as_eigen(part.hull->center).norm() + part.hull->radius;
   } else {
     radius = parts.radius(part.shape);
   }

@@ -10,6 +10,7 @@ namespace winnow {
 /// Writable columns of a NarrowResult; see its accessors of the same names. Columns of higher
 /// levels are empty.
 struct NarrowColumns {
+  std::span<std::uint8_t> overlap;         ///< one per answer, only at level boolean
   std::span<double> distance;              ///< one per answer
   std::span<double> error_bound;           ///< one per answer
   std::span<double> normal[3];             ///< x, y, z

@@ -72,7 +72,8 @@ void NarrowResult::clear() noexcept {
 
 NarrowColumns NarrowResult::columns() noexcept {
   const auto all = [](auto& column) { return std::span(column.data(), column.size()); };
-  return {all(distance_),
+  return {all(overlap_),
+          all(distance_),
           all(error_bound_),
           {all(normal_[0]), all(normal_[1]), all(normal_[2])},
           {all(point_[0]), all(point_[1]), all(point_[2])},

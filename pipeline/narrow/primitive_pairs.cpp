@@ -8,6 +8,7 @@ PrimitivePairs::PrimitivePairs(std::pmr::memory_resource* memory) noexcept
       part(memory),
       triangles(memory),
       active_edges(memory),
+      hulls(memory),
       pairs(memory),
       first(memory),
       scratch(memory) {}
@@ -18,6 +19,7 @@ void PrimitivePairs::clear() noexcept {
   part.clear();
   triangles.clear();
   active_edges.clear();
+  hulls.clear();
   pairs.clear();
   first.clear();
   scratch.clear();
@@ -30,6 +32,7 @@ Footprint PrimitivePairs::footprint() const noexcept {
   footprint.results += part.bytes();
   footprint.results += triangles.bytes();
   footprint.results += active_edges.bytes();
+  footprint.results += hulls.bytes();
   footprint.results += pairs.bytes();
   footprint.results += first.bytes();
   footprint.scratch += scratch.bytes();
@@ -41,6 +44,10 @@ ShapeTables PrimitivePairs::tables(const ShapePool& pool) const noexcept {
   tables.triangles = triangles.data();
   tables.count[static_cast<std::uint32_t>(ShapeKind::triangle)] =
       static_cast<std::uint32_t>(triangles.size());
+  if (hulls.empty()) return tables;
+  tables.hulls = hulls.data();
+  tables.count[static_cast<std::uint32_t>(ShapeKind::hull)] =
+      static_cast<std::uint32_t>(hulls.size());
   return tables;
 }
 

@@ -46,8 +46,8 @@ class PrimitivePairs {
   /// Returns the bytes of readable columns under `results`, the rest under `scratch`.
   [[nodiscard]] Footprint footprint() const noexcept;
 
-  /// The primitives, one entry per use: shape (triangles are in `triangles`, all others in the
-  /// ShapePool) and pose.
+  /// The primitives, one entry per use: shape (triangles are in `triangles`, hulls may be in
+  /// `hulls`, all others in the ShapePool) and pose.
   Column<ShapeId> shapes;
   Column<Pose> poses;  ///< pose of each primitive
   /// Part of the body: the number of the triangle or child; kWholeShape for a convex body.
@@ -65,6 +65,9 @@ class PrimitivePairs {
   static constexpr std::uint8_t kAllActive = 63;   ///< all edges and vertices are active
   static constexpr std::uint8_t kOneSided = 64;    ///< the triangle is one-sided
   static constexpr std::uint8_t kClockwise = 128;  ///< clockwise vertices as seen from the front
+  /// The hulls of the ShapePool, then those of convex solids. Empty without convex solids: hull ids
+  /// in `shapes` then belong to the ShapePool.
+  Column<HullShape> hulls;
   /// Pairs of primitives, grouped by pair of bodies, in the order of the pairs of bodies; `a`
   /// belongs to body a.
   Column<BodyPair> pairs;
@@ -73,7 +76,7 @@ class PrimitivePairs {
   /// Output of parallel tasks before it is put in order.
   Column<std::uint32_t> scratch;
 
-  /// Returns the tables of the pool with `triangles` in place of the pool's triangles.
+  /// Returns the tables of the pool with `triangles` and `hulls` in place of the pool's.
   [[nodiscard]] ShapeTables tables(const ShapePool& pool) const noexcept;
 };
 

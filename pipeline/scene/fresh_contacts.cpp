@@ -5,6 +5,7 @@
 #include "pipeline/narrow/answer_slots.h"
 #include "pipeline/narrow/tight_growth.h"
 #include "pipeline/scene/collision.h"
+#include "pipeline/scene/solid_contacts.h"
 
 #include <algorithm>
 #include <bit>
@@ -119,6 +120,8 @@ Status FreshContacts::collide_composite() {
   scene_.statistics.primitive_pairs += parts.pairs.size();
   if (!resize_tightly(found.slot, found.answers.size())) return Status::out_of_memory;
   find_slots(found.answers, options.execution, found.slot.data());
+  status = correct_solid_contacts(scene_, batch_.composite, margins, found);
+  if (status != Status::ok) return status;
   filters_.trim_parts();
   if (const Status reduced = reduce_composite(); reduced != Status::ok) return reduced;
   filters_.rest_parts();

@@ -18,9 +18,6 @@
 namespace winnow {
 namespace {
 
-// Faces whose vertices are within this distance of one plane, relative to the hull's size, are
-// merged. A depth error of this size is below the error bound of the tier `reference`.
-constexpr double kCoplanar = 1e-13;
 constexpr std::uint32_t kUnset = ~0U;
 
 struct FacePlane {
@@ -91,10 +88,11 @@ class Merge {
     return vertices - edges + faces == 2 ? Status::ok : Status::invalid_shape;
   }
 
-  Status run() {
+  /// Faces that are coplanar to `relative` of the size of the surface are merged.
+  Status run(double relative) {
     Status status = pair_edges();
     if (status != Status::ok) return status;
-    const double size = extent();
+    const double coplanar = extent() * relative;
     std::pmr::vector<FacePlane> planes(memory_);
     planes.reserve(surface_.faces());
     for (std::size_t f = 0; f < surface_.faces(); ++f) {
@@ -108,9 +106,9 @@ class Merge {
     });
     std::uint32_t groups = 0;
     for (const std::uint32_t seed : by_area) {
-      if (group_[seed] == kUnset) absorb(seed, groups++, planes, size * kCoplanar);
+      if (group_[seed] == kUnset) absorb(seed, groups++, planes, coplanar);
     }
-    return rebuild(groups, size * kCoplanar);
+    return rebuild(groups, coplanar);
   }
 
  private:
@@ -248,15 +246,14 @@ class Merge {
 
 }  // namespace
 
-Status merge_coplanar(std::span<const Eigen::Vector3d> points, HullSurface& surface) {
-  return Merge(points, surface).run();
+Status merge_coplanar(std::span<const Eigen::Vector3d> points, HullSurface& surface,
+                      const HullTolerance& tolerance) {
+  return Merge(points, surface).run(tolerance.coplanar);
 }
 
 namespace {
 
 constexpr std::size_t kLineBytes = 64;
-// Convexity tolerance: how far neighbours may reach beyond a face, relative to the hull's size.
-constexpr double kConvex = 1e-9;
 // Relative error bound of a length.
 constexpr double kRoundings = 1e-15;
 
@@ -332,9 +329,10 @@ class OwnedBlock {
 
 class Assembly {
  public:
-  Assembly(std::span<const Eigen::Vector3d> points, const HullSurface& surface)
+  Assembly(std::span<const Eigen::Vector3d> points, const HullSurface& surface, double convex)
       : points_(points),
         surface_(surface),
+        convex_(convex),
         scratch_(memory_of(surface)),
         used_(surface.loops, scratch_) {}
 
@@ -506,7 +504,7 @@ class Assembly {
         farthest = std::max(farthest, normal.dot(at(c_.loop[other.first + k])));
       }
     }
-    if (farthest > face.offset + kConvex * hull_.radius) return false;
+    if (farthest > face.offset + convex_ * hull_.radius) return false;
     face.offset = farthest;
     return true;
   }
@@ -533,6 +531,7 @@ class Assembly {
 
   std::span<const Eigen::Vector3d> points_;
   const HullSurface& surface_;
+  double convex_;
   Memory scratch_;
   std::pmr::vector<std::uint32_t> used_;
   HullShape hull_;
@@ -542,8 +541,9 @@ class Assembly {
 }  // namespace
 
 Status assemble_hull(std::span<const Eigen::Vector3d> points, const HullSurface& surface,
-                     std::pmr::memory_resource* memory, HullShape& hull) {
-  return Assembly(points, surface).run(memory, hull);
+                     std::pmr::memory_resource* memory, HullShape& hull,
+                     const HullTolerance& tolerance) {
+  return Assembly(points, surface, tolerance.convex).run(memory, hull);
 }
 
 namespace {
@@ -571,14 +571,15 @@ Status take_faces(std::span<const Eigen::Vector3d> points, const HullFaces& face
 }
 
 [[nodiscard]] Status build_of_faces(const PointView& given, const HullFaces& faces,
-                                    std::pmr::memory_resource* memory, HullShape& hull) {
+                                    std::pmr::memory_resource* memory, HullShape& hull,
+                                    const HullTolerance& tolerance) {
   std::pmr::monotonic_buffer_resource scratch(memory);
   const std::pmr::vector<Eigen::Vector3d> points = copied(given, &scratch);
   HullSurface surface(&scratch);
   Status status = take_faces(points, faces, surface);
   if (status == Status::ok && surface.faces() < 2) status = Status::invalid_shape;
-  if (status == Status::ok) status = merge_coplanar(points, surface);
-  return status == Status::ok ? assemble_hull(points, surface, memory, hull) : status;
+  if (status == Status::ok) status = merge_coplanar(points, surface, tolerance);
+  return status == Status::ok ? assemble_hull(points, surface, memory, hull, tolerance) : status;
 }
 
 // Does not merge: merging faces that are already merged could change their order.
@@ -601,8 +602,9 @@ Status take_faces(std::span<const Eigen::Vector3d> points, const HullFaces& face
 }  // namespace
 
 Status hull_of_faces(const PointView& given, const HullFaces& faces,
-                     std::pmr::memory_resource* memory, HullShape& hull) {
-  return catch_bad_alloc([&] { return build_of_faces(given, faces, memory, hull); },
+                     std::pmr::memory_resource* memory, HullShape& hull,
+                     const HullTolerance& tolerance) {
+  return catch_bad_alloc([&] { return build_of_faces(given, faces, memory, hull, tolerance); },
                          Status::out_of_memory);
 }
 

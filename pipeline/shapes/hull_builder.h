@@ -12,12 +12,22 @@
 
 namespace winnow {
 
+/// Distances that count as 0 while a hull is built, relative to its size.
+struct HullTolerance {
+  /// Faces whose vertices are so close to one plane are merged. A depth error of this size is below
+  /// the error bound of the tier `reference`.
+  double coplanar = 1e-13;
+  /// Neighbours may reach this far beyond a face.
+  double convex = 1e-9;
+};
+
 /// Builds a hull from points or faces; see ShapePool::add_hull. All columns of the hull are in one
 /// block of `memory`; free it with release_hull. Scratch also comes from `memory` and is freed
 /// before the functions return.
 Status hull_of_points(const PointView& points, std::pmr::memory_resource* memory, HullShape& hull);
 Status hull_of_faces(const PointView& points, const HullFaces& faces,
-                     std::pmr::memory_resource* memory, HullShape& hull);
+                     std::pmr::memory_resource* memory, HullShape& hull,
+                     const HullTolerance& tolerance = {});
 /// Rebuilds a hull from the vertices and faces of a built hull, without merging faces.
 Status rebuild_hull(const PointView& points, const HullFaces& faces,
                     std::pmr::memory_resource* memory, HullShape& hull);
@@ -53,12 +63,14 @@ struct HullSurface {
 /// `invalid_shape` unless each edge has exactly two faces, which traverse it in opposite
 /// directions, and the surface is connected and has no handles (genus 0). Scratch comes from the
 /// surface's memory.
-Status merge_coplanar(std::span<const Eigen::Vector3d> points, HullSurface& surface);
+Status merge_coplanar(std::span<const Eigen::Vector3d> points, HullSurface& surface,
+                      const HullTolerance& tolerance = {});
 
 /// Allocates the block of columns in `memory` and fills it. The vertices are the points that the
 /// loops use, or all points (one or two) if there are no faces. Returns `invalid_shape` if the
 /// surface is not convex. Scratch comes from the surface's memory.
 Status assemble_hull(std::span<const Eigen::Vector3d> points, const HullSurface& surface,
-                     std::pmr::memory_resource* memory, HullShape& hull);
+                     std::pmr::memory_resource* memory, HullShape& hull,
+                     const HullTolerance& tolerance = {});
 
 }  // namespace winnow

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 #include <winnow/pipeline/scene_queries.h>
-#include "pipeline/scene/queries/shape_cast.h"
+#include "pipeline/composites/shape_cast.h"
 
 #include "tests/pipeline/query_world.h"
 #include "tests/support/answers.h"

@@ -1,7 +1,7 @@
 // Shape casts against a stationary shape: times of impact compared with closed forms, and with
 // distances of the solver just before and after the impact.
 
-#include "pipeline/scene/queries/shape_cast.h"
+#include "pipeline/composites/shape_cast.h"
 #include <gtest/gtest.h>
 #include <winnow/pipeline/shape_pool.h>
 #include <winnow/pipeline/shape_rays.h>

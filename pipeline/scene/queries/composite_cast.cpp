@@ -1,6 +1,7 @@
+#include "pipeline/composites/part_tables.h"
 #include "pipeline/scene/queries/composite_cast.h"
 
-#include "pipeline/scene/queries/shape_distance.h"
+#include "pipeline/composites/shape_distance.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,9 +4,9 @@
 // cast_query.cpp calls BodyContact::find for each candidate body.
 
 #include <winnow/pipeline/scene_queries.h>
-#include "pipeline/composites/parts.h"
+#include "pipeline/composites/part_tables.h"
+#include "pipeline/composites/shape_cast.h"
 #include "pipeline/motion/resting_contacts.h"
-#include "pipeline/scene/queries/shape_cast.h"
 
 namespace winnow {
 

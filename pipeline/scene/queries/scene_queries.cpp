@@ -4,8 +4,8 @@
 #include <winnow/core/rounding.h>
 #include "core/memory/new_in.h"
 #include "core/threads/float_environment.h"
+#include "pipeline/scene/queries/body_distance.h"
 #include "pipeline/scene/queries/queries.h"
-#include "pipeline/scene/queries/shape_distance.h"
 #include "pipeline/shapes/frame.h"
 
 #include <algorithm>
@@ -70,11 +70,9 @@ class NearestBodiesQuery {
 };
 
 void NearestBodiesQuery::test_body(std::uint32_t body) {
-  SceneDistance answer;
-  if (!ClosestParts(state_.parts).find(from_, state_.placed(body), radius_, answer)) return;
-  answer.key = state_.scene.keys.key_of(body);
-  answer.data = state_.scene.keys.client_data(body);
-  has_room_ = state_.distances.push_back(answer) && has_room_;
+  ShapeDistance to;
+  if (!ClosestParts(state_.parts).find(from_, state_.placed(body), radius_, to)) return;
+  has_room_ = state_.distances.push_back(distance_to(state_.scene, body, to)) && has_room_;
 }
 
 /// Returns the radius, enlarged by the error bound of the solver's distance to a box boundary.

@@ -3,9 +3,9 @@
 
 #include <winnow/core/rounding.h>
 #include "core/threads/float_environment.h"
+#include "pipeline/scene/queries/body_distance.h"
 #include "pipeline/scene/queries/box_gaps.kernel.h"
 #include "pipeline/scene/queries/queries.h"
-#include "pipeline/scene/queries/shape_distance.h"
 
 #include <cmath>
 
@@ -141,7 +141,7 @@ class SetPairs {
   const PlacedShape second = state.placed(b);
   std::uint32_t part = kWholeShape;
   if (do_overlap(state.parts, first, second, part)) return true;
-  SceneDistance found;
+  ShapeDistance found;
   return contact_margin > 0.0 &&
          ClosestParts(state.parts).find(first, second, contact_margin, found);
 }
@@ -227,14 +227,12 @@ class ClosestBodies {
 
   /// If distances are equal, the pair that is first in the order of ids is kept.
   void test(Key a, Key b) noexcept {
-    SceneDistance found;
+    ShapeDistance found;
     ClosestParts parts(state_.parts);
     if (!parts.find(state_.placed(a.id), state_.placed(b.id), limit_, found)) return;
     const std::pair ids(a.id, b.id);
     if (best_ && found.distance == limit_ && std::pair(best_.a.id, best_.to.key.id) <= ids) return;
-    found.key = b;
-    found.data = state_.scene.keys.client_data(b.id);
-    best_ = {a, state_.scene.keys.client_data(a.id), found};
+    best_ = {a, state_.scene.keys.client_data(a.id), distance_to(state_.scene, b.id, found)};
     limit_ = found.distance;
   }
 
@@ -265,14 +263,12 @@ Answer<SceneDistance> SceneQueries::distance(Key a, Key b, double limit, PairRul
     return status;
   }
   if (std::isnan(limit)) return Status::invalid_argument;
-  SceneDistance found;
+  ShapeDistance found;
   if (!do_rules_take(state_->scene, rules, a.id, b.id) ||
       !ClosestParts(state_->parts).find(state_->placed(a.id), state_->placed(b.id), limit, found)) {
     return SceneDistance{};
   }
-  found.key = b;
-  found.data = state_->scene.keys.client_data(b.id);
-  return found;
+  return distance_to(state_->scene, b.id, found);
 }
 
 Answer<SetDistance> SceneQueries::least_distance(std::span<const Key> a, std::span<const Key> b,

@@ -7,7 +7,7 @@
 // (planes through closest points are tangents of g), plus a little, so that the last sample is in
 // contact and closes the bracket. The casts in linear_casts.cpp and composite_cast.cpp call this.
 
-#include "pipeline/scene/queries/shape_cast.h"
+#include "pipeline/composites/shape_cast.h"
 
 #include <winnow/core/rounding.h>
 #include "pipeline/composites/parts.h"

@@ -1,17 +1,28 @@
 #pragma once
 
-// Overlap and closest points of two placed shapes, including composite ones. scene_queries.cpp and
-// set_distance.cpp call this; parts are solved by the narrow phase.
+// Overlap and closest points of two placed shapes, including composite ones. Scene queries and
+// contacts of solids call this; parts are solved by the narrow phase.
 
 #include <winnow/pipeline/narrow_phase.h>
-#include <winnow/pipeline/scene_queries.h>
-#include "pipeline/composites/parts.h"
+#include "pipeline/composites/part_tables.h"
 #include "pipeline/shapes/triangle_direction.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <utility>
 
 namespace winnow {
+
+/// Closest points of two shapes, or of a point and a shape, and their distance; see SceneDistance.
+struct ShapeDistance {
+  std::uint32_t part_a = kWholeShape;
+  std::uint32_t part = kWholeShape;
+  double distance = 0.0;
+  double error_bound = 0.0;
+  Vec3d normal{};
+  Vec3d point_a{};
+  Vec3d point_b{};
+};
 
 [[nodiscard]] inline PairAnswer solve_parts(const SubShapeQuery& parts, const SubShape& a,
                                             const SubShape& b, ContactLevel level) noexcept {
@@ -74,29 +85,42 @@ struct Pairing {
   return parts.solid_contains(a, b) || parts.solid_contains(b, a);
 }
 
-/// True if the surfaces overlap; `part` is then a part of b that does.
-[[nodiscard]] inline bool do_parts_overlap(const SubShapeQuery& parts, const Pairing& pair,
-                                           std::uint32_t& part) noexcept {
-  bool found = false;
-  auto test_pair = [&](const SubShape& a, const SubShape& b) {
-    found =
-        !is_either_behind(parts, a, b) && solve_parts(parts, a, b, ContactLevel::boolean).overlap;
-    if (found) part = b.part;
-    return !found;
-  };
-  if (parts.pairs(pair.a, pair.b, test_pair)) return found;
-  auto test_parts_near = [&](const SubShape& a, double) {
-    parts.visit_parts(pair.b, stationary(parts.box(a)),
-                      [&](const SubShape& b, double) { return test_pair(a, b) ? 0.0 : -1.0; });
-    return found ? -1.0 : 0.0;
+/// True if two parts overlap.
+[[nodiscard]] inline bool do_overlap(const SubShapeQuery& parts, const SubShape& a,
+                                     const SubShape& b) noexcept {
+  return !is_either_behind(parts, a, b) && solve_parts(parts, a, b, ContactLevel::boolean).overlap;
+}
+
+/// Calls visit(part of a, part of b) for the parts whose boxes overlap, until it returns false.
+template <typename Visit>
+void each_near_pair(const SubShapeQuery& parts, const Pairing& pair, Visit&& visit) {
+  if (parts.pairs(pair.a, pair.b, visit)) return;
+  bool goes_on = true;
+  auto visit_parts_near = [&](const SubShape& a, double) {
+    parts.visit_parts(pair.b, stationary(parts.box(a)), [&](const SubShape& b, double) {
+      goes_on = visit(a, b);
+      return goes_on ? 0.0 : -1.0;
+    });
+    return goes_on ? 0.0 : -1.0;
   };
   // If a is a single part, the box of b is not needed; for a compound it would visit all
   // children.
   if (!pair.a.shape.is_composite()) {
-    test_parts_near({pair.a.shape, pair.a.pose}, 0.0);
+    visit_parts_near({pair.a.shape, pair.a.pose}, 0.0);
   } else {
-    parts.visit_parts(pair.a, stationary(parts.box(pair.b)), test_parts_near);
+    parts.visit_parts(pair.a, stationary(parts.box(pair.b)), visit_parts_near);
   }
+}
+
+/// True if the surfaces overlap; `part` is then a part of b that does.
+[[nodiscard]] inline bool do_parts_overlap(const SubShapeQuery& parts, const Pairing& pair,
+                                           std::uint32_t& part) noexcept {
+  bool found = false;
+  each_near_pair(parts, pair, [&](const SubShape& a, const SubShape& b) {
+    found = do_overlap(parts, a, b);
+    if (found) part = b.part;
+    return !found;
+  });
   return found;
 }
 
@@ -110,6 +134,18 @@ struct Pairing {
   return is_either_inside(parts, pair.a, pair.b);
 }
 
+/// Returns whether the depth of two overlapping shapes is that of a solid; see find_solid_depth.
+[[nodiscard]] inline bool has_solid_depth(const SubShapeQuery& parts,
+                                          const Pairing& pair) noexcept {
+  const auto is_bounded = [&](const PlacedShape& shape) { return parts.box(shape).is_finite(); };
+  return (parts.has_solids(pair.a.shape) || parts.has_solids(pair.b.shape)) && is_bounded(pair.a) &&
+         is_bounded(pair.b);
+}
+
+// Defined in solid_depth.cpp.
+void find_solid_depth(const SubShapeQuery& parts, const Pairing& pair,
+                      ShapeDistance& answer) noexcept;
+
 /// Finds the closest parts of two shapes, within a limit.
 class ClosestParts {
  public:
@@ -117,14 +153,21 @@ class ClosestParts {
 
   /// Returns false if the distance exceeds the limit.
   bool find(const PlacedShape& first, const PlacedShape& second, double limit,
-            SceneDistance& answer) noexcept {
+            ShapeDistance& answer) noexcept {
     const Pairing pair(first, second);
-    const bool contained = is_either_inside(parts_, pair.a, pair.b);
-    return find_parts(pair, contained ? mid::kInfinity : limit, answer) &&
-           (!contained || is_within(limit, answer));
+    std::uint32_t part = kWholeShape;
+    if (has_solid_depth(parts_, pair) && do_overlap(parts_, first, second, part)) {
+      find_solid_depth(parts_, pair, answer);
+      return answer.distance <= limit;
+    }
+    return find_parts(pair, limit, answer);
+  }
+  /// Finds the closest parts of two surfaces, whether or not one is inside the other.
+  bool find_surfaces(const Pairing& pair, ShapeDistance& answer) noexcept {
+    return find_parts(pair, mid::kInfinity, answer);
   }
   /// As above, for a part that belongs to no shape, such as a point.
-  bool find(SubShape first, PlacedShape second, double limit, SceneDistance& answer) noexcept {
+  bool find(SubShape first, PlacedShape second, double limit, ShapeDistance& answer) noexcept {
     double base[3] = {0.0, 0.0, 0.0};
     if (second.shape.is_composite()) {
       std::copy_n(first.pose.position.data(), 3, base);
@@ -138,7 +181,7 @@ class ClosestParts {
   }
 
  private:
-  bool find_parts(const Pairing& pair, double limit, SceneDistance& answer) noexcept {
+  bool find_parts(const Pairing& pair, double limit, ShapeDistance& answer) noexcept {
     begin(pair.base, limit, answer);
     answer.normal = {};
     auto test_and_limit = [&](const SubShape& a, const SubShape& b, double) {
@@ -157,16 +200,16 @@ class ClosestParts {
     }
     return found_;
   }
-  /// For a shape inside a solid: turns the distance from the surface into a depth. Returns false if
+  /// For a point inside a solid: turns the distance from the surface into a depth. Returns false if
   /// the resulting distance exceeds the limit.
-  [[nodiscard]] static bool is_within(double limit, SceneDistance& answer) noexcept {
+  [[nodiscard]] static bool is_within(double limit, ShapeDistance& answer) noexcept {
     if (answer.distance > 0.0) {
       answer.distance = -answer.distance;
       for (double& component : answer.normal) component = -component;
     }
     return answer.distance <= limit;
   }
-  void begin(const double* base, double limit, SceneDistance& answer) noexcept {
+  void begin(const double* base, double limit, ShapeDistance& answer) noexcept {
     found_ = false;
     limit_ = limit;
     answer_ = &answer;
@@ -186,7 +229,7 @@ class ClosestParts {
     if (a.ball != nullptr && b.triangle != nullptr && is_farther(a, b, limit_)) return;
     const PairAnswer pair = solve_parts(parts_, a, b, ContactLevel::distance);
     if (!(pair.distance <= limit_) || is_either_behind(parts_, a, b)) return;
-    SceneDistance& answer = *answer_;
+    ShapeDistance& answer = *answer_;
     if (found_ && pair.distance == limit_ &&
         std::pair(answer.part, answer.part_a) <= std::pair(b.part, a.part)) {
       return;
@@ -208,7 +251,7 @@ class ClosestParts {
   const SubShapeQuery& parts_;
   double limit_ = 0.0;
   bool found_ = false;
-  SceneDistance* answer_ = nullptr;
+  ShapeDistance* answer_ = nullptr;
   const double* base_ = nullptr;
 };
 
