@@ -1,6 +1,6 @@
-// Public functions of Partition: they set the floating-point environment, call PartitionState, and
-// log refused mutations and self pairs. Casts, regions and nearest queries are in queries/,
-// snapshots in snapshot/snapshot.cpp.
+// Public functions of Partition: they set the floating-point environment, call PartitionState, pass
+// successful calls to the observer, and log refused mutations and self pairs. Casts, regions and
+// nearest queries are in queries/, snapshots in snapshot/snapshot.cpp.
 
 #include <winnow/partitions/partition.h>
 
@@ -10,6 +10,7 @@
 #include "partitions/index/debug_draw.h"
 #include "partitions/rows/row_input.h"
 #include "partitions/state/box_partition.h"
+#include "partitions/state/partition_observer.h"
 #include "partitions/state/partition_state.h"
 
 namespace winnow {
@@ -28,6 +29,19 @@ Status mutate(const char* call, PartitionState* state, Status otherwise, std::si
   return logged(status, call);
 }
 
+Status find_self_pairs(const PartitionState& state, PairForm form, PairBuffer& out,
+                       PairEvents* events, const PairOptions& options) {
+  Lock lock;
+  if (state.observer != nullptr) lock = Lock(state.observer->self_pairs_mutex);
+  const ObservedPairQuery query(form, out, events);
+  PairOptions used = options;
+  // Events are sorted anyway, and the pairs are not returned.
+  if (form == PairForm::events) used.order = Order::fast;
+  const Status status = state.self_pairs(out, used, events);
+  if (is_observed(status, &state)) state.observer->self_pairs(options, query);
+  return logged(status, kSelfPairs);
+}
+
 }  // namespace
 
 Partition make_box_partition(StructureKind structure, const PartitionOptions& options) noexcept {
@@ -42,6 +56,8 @@ Partition::Partition(StructureKind structure, const PartitionOptions& options,
   if (structure.info() == nullptr || input == nullptr) return;
   state_ = PartitionState::make(structure, options, *input);
   status_ = state_ == nullptr ? Status::out_of_memory : Status::ok;
+  if (state_ != nullptr && options.recorder != nullptr)
+    state_->observer = options.recorder->observe_partition(structure, options);
 }
 
 Partition::Partition(StructureKind structure) noexcept
@@ -51,7 +67,9 @@ Partition::Partition(StructureKind structure, const PartitionOptions& options) n
     : Partition(structure, options, RowInput::of(options.volume, options.fat_margin)) {}
 
 Partition::~Partition() {
-  if (state_ != nullptr) delete_in(state_->memory, state_);
+  if (state_ == nullptr) return;
+  if (state_->observer != nullptr) state_->observer->end();
+  delete_in(state_->memory, state_);
 }
 
 StructureKind Partition::structure() const noexcept {
@@ -66,6 +84,7 @@ Status Partition::set_structure(StructureKind structure) {
   } else if (state_ != nullptr) {
     status = state_->set_structure(structure) ? Status::ok : Status::out_of_memory;
   }
+  if (is_observed(status, state_)) state_->observer->set_structure(structure);
   return logged(status, "Partition::set_structure");
 }
 
@@ -88,8 +107,9 @@ FatMargin Partition::fat_margin() const noexcept {
 Status Partition::insert(const BoxView& boxes, std::span<const ClientData> data,
                          std::span<Key> keys) {
   const DefaultFloatEnvironment environment;
-  return logged(state_ == nullptr ? status_ : state_->insert(boxes, data, keys),
-                "Partition::insert");
+  const Status status = state_ == nullptr ? status_ : state_->insert(boxes, data, keys);
+  if (is_observed(status, state_)) state_->observer->insert(GivenVolumes(boxes), data);
+  return logged(status, "Partition::insert");
 }
 
 Answer<Key> Partition::insert(const Aabb& box, ClientData data) {
@@ -102,47 +122,61 @@ Answer<Key> Partition::insert(const Aabb& box, ClientData data) {
 Status Partition::insert(std::span<const Sphere> spheres, std::span<const ClientData> data,
                          std::span<Key> keys) {
   const DefaultFloatEnvironment environment;
-  return mutate("Partition::insert", state_, status_, keys.size(),
-                [&](Rows& rows) { return RowInput(rows).insert(spheres, data, keys); });
+  const Status status = mutate("Partition::insert", state_, status_, keys.size(), [&](Rows& rows) {
+    return RowInput(rows).insert(spheres, data, keys);
+  });
+  if (is_observed(status, state_)) state_->observer->insert({Volume::sphere, spheres}, data);
+  return status;
 }
 
 template <int K>
 Status Partition::insert(std::span<const Kdop<K>> kdops, std::span<const ClientData> data,
                          std::span<Key> keys) {
   const DefaultFloatEnvironment environment;
-  return mutate("Partition::insert", state_, status_, keys.size(),
-                [&](Rows& rows) { return RowInput(rows).insert(kdops, data, keys); });
+  const Status status = mutate("Partition::insert", state_, status_, keys.size(), [&](Rows& rows) {
+    return RowInput(rows).insert(kdops, data, keys);
+  });
+  if (is_observed(status, state_)) state_->observer->insert({volume(), kdops}, data);
+  return status;
 }
 
 Status Partition::update(std::span<const Key> keys, const BoxView& boxes) {
   const DefaultFloatEnvironment environment;
-  return logged(state_ == nullptr ? status_ : state_->update(UpdateSubset(keys), boxes),
-                "Partition::update");
+  const Status status = state_ == nullptr ? status_ : state_->update(UpdateSubset(keys), boxes);
+  if (is_observed(status, state_)) state_->observer->update(keys, GivenVolumes(boxes));
+  return logged(status, "Partition::update");
 }
 
 Status Partition::update(std::span<const Key> keys, const BoxView& boxes,
                          const IndexSubset& entries) {
   const DefaultFloatEnvironment environment;
-  return logged(state_ == nullptr ? status_ : state_->update(keys, boxes, entries),
-                "Partition::update");
+  const Status status = state_ == nullptr ? status_ : state_->update(keys, boxes, entries);
+  if (is_observed(status, state_)) state_->observer->update(keys, boxes, entries);
+  return logged(status, "Partition::update");
 }
 
 Status Partition::update(Key key, const Aabb& box) {
   const DefaultFloatEnvironment environment;
-  return logged(state_ == nullptr ? status_ : state_->update(key, box), "Partition::update");
+  const Status status = state_ == nullptr ? status_ : state_->update(key, box);
+  if (is_observed(status, state_)) state_->observer->update({&key, 1}, GivenVolumes(box));
+  return logged(status, "Partition::update");
 }
 
 Status Partition::update(std::span<const Key> keys, std::span<const Sphere> spheres) {
   const DefaultFloatEnvironment environment;
-  return mutate("Partition::update", state_, status_, keys.size(),
-                [&](Rows& rows) { return RowInput(rows).update(keys, spheres); });
+  const Status status = mutate("Partition::update", state_, status_, keys.size(),
+                               [&](Rows& rows) { return RowInput(rows).update(keys, spheres); });
+  if (is_observed(status, state_)) state_->observer->update(keys, {Volume::sphere, spheres});
+  return status;
 }
 
 template <int K>
 Status Partition::update(std::span<const Key> keys, std::span<const Kdop<K>> kdops) {
   const DefaultFloatEnvironment environment;
-  return mutate("Partition::update", state_, status_, keys.size(),
-                [&](Rows& rows) { return RowInput(rows).update(keys, kdops); });
+  const Status status = mutate("Partition::update", state_, status_, keys.size(),
+                               [&](Rows& rows) { return RowInput(rows).update(keys, kdops); });
+  if (is_observed(status, state_)) state_->observer->update(keys, {volume(), kdops});
+  return status;
 }
 
 template Status Partition::insert(std::span<const Kdop<14>>, std::span<const ClientData>,
@@ -157,20 +191,28 @@ template Status Partition::update(std::span<const Key>, std::span<const Kdop<26>
 
 Status Partition::remove(std::span<const Key> keys) {
   const DefaultFloatEnvironment environment;
-  return logged(state_ == nullptr ? status_ : state_->remove(keys), "Partition::remove");
+  const Status status = state_ == nullptr ? status_ : state_->remove(keys);
+  if (is_observed(status, state_)) state_->observer->remove(keys);
+  return logged(status, "Partition::remove");
 }
 
 Status Partition::remove(Key key) {
   const DefaultFloatEnvironment environment;
-  return logged(state_ == nullptr ? status_ : state_->remove(key), "Partition::remove");
+  const Status status = state_ == nullptr ? status_ : state_->remove(key);
+  if (is_observed(status, state_)) state_->observer->remove({&key, 1});
+  return logged(status, "Partition::remove");
 }
 
 void Partition::clear() noexcept {
-  if (state_ != nullptr) state_->clear();
+  if (state_ == nullptr) return;
+  state_->clear();
+  if (state_->observer != nullptr) state_->observer->clear();
 }
 
 void Partition::release_memory() noexcept {
-  if (state_ != nullptr) state_->release_memory();
+  if (state_ == nullptr) return;
+  state_->release_memory();
+  if (state_->observer != nullptr) state_->observer->release_memory();
 }
 
 Status Partition::reserve(std::size_t objects, Pages pages) {
@@ -213,8 +255,9 @@ ClientData Partition::client_data_of(ObjectId id) const noexcept {
 
 Status Partition::set_filter(std::span<const Key> keys, std::span<const ObjectFilter> filters) {
   const DefaultFloatEnvironment environment;
-  return logged(state_ == nullptr ? status_ : state_->set_filter(keys, filters),
-                "Partition::set_filter");
+  const Status status = state_ == nullptr ? status_ : state_->set_filter(keys, filters);
+  if (is_observed(status, state_)) state_->observer->set_filter(keys, filters);
+  return logged(status, "Partition::set_filter");
 }
 
 Status Partition::set_filter(Key key, const ObjectFilter& filter) {
@@ -228,12 +271,14 @@ Answer<ObjectFilter> Partition::filter(Key key) const noexcept {
 
 Status Partition::refresh() const {
   const DefaultFloatEnvironment environment;
-  return logged(state_ == nullptr ? status_ : state_->refresh_early(), "Partition::refresh");
+  const Status status = state_ == nullptr ? status_ : state_->refresh_early();
+  if (is_observed(status, state_)) state_->observer->refresh();
+  return logged(status, "Partition::refresh");
 }
 
 Status Partition::self_pairs(PairBuffer& out, const PairOptions& options) const {
   const DefaultFloatEnvironment environment;
-  if (state_ != nullptr) return logged(state_->self_pairs(out, options, nullptr), kSelfPairs);
+  if (state_ != nullptr) return find_self_pairs(*state_, PairForm::buffer, out, nullptr, options);
   out.clear();
   return status_;
 }
@@ -241,7 +286,8 @@ Status Partition::self_pairs(PairBuffer& out, const PairOptions& options) const 
 Status Partition::self_pairs(PairBuffer& out, PairEvents& events,
                              const PairOptions& options) const {
   const DefaultFloatEnvironment environment;
-  if (state_ != nullptr) return logged(state_->self_pairs(out, options, &events), kSelfPairs);
+  if (state_ != nullptr)
+    return find_self_pairs(*state_, PairForm::buffer_and_events, out, &events, options);
   out.clear();
   events.clear();
   return status_;
@@ -249,9 +295,11 @@ Status Partition::self_pairs(PairBuffer& out, PairEvents& events,
 
 Status Partition::self_pairs(PairEvents& events, const PairOptions& options) const {
   const DefaultFloatEnvironment environment;
-  // Order::fast: events are sorted anyway, and the pairs are not returned.
-  return self_pairs(EventWriter::own_buffer(events), events,
-                    {Order::fast, options.incremental, options.predicate});
+  PairBuffer& own = EventWriter::own_buffer(events);
+  if (state_ != nullptr) return find_self_pairs(*state_, PairForm::events, own, &events, options);
+  own.clear();
+  events.clear();
+  return status_;
 }
 
 Status Partition::pairs_with(const Partition& other, PairBuffer& out,
@@ -261,7 +309,14 @@ Status Partition::pairs_with(const Partition& other, PairBuffer& out,
   if (state_ == nullptr || other.state_ == nullptr) {
     return state_ == nullptr ? status_ : other.status_;
   }
-  return state_->pairs_with(*other.state_, options, out);
+  const Status status = state_->pairs_with(*other.state_, options, out);
+  PartitionObserver* const observer_of_other = other.state_->observer;
+  if (is_observed(status, state_)) {
+    state_->observer->pairs_with(observer_of_other, options, out);
+  } else if (status == Status::ok && observer_of_other != nullptr) {
+    observer_of_other->give_up();
+  }
+  return status;
 }
 
 Status Partition::reserve_pairs(PairBuffer& out, std::size_t pairs, Pages pages) const {

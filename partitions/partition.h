@@ -36,6 +36,8 @@
 
 namespace winnow {
 
+class PartitionRecorder;
+
 /// Options of a partition, fixed at construction.
 struct PartitionOptions {
   /// Source of every allocation. It must outlive the partition. With parallel execution, only the
@@ -58,6 +60,9 @@ struct PartitionOptions {
   /// build runs at once when it is due. The budget counts rows, never time, so that results are the
   /// same on every machine.
   std::size_t build_budget = 0;
+  /// Records all calls: a Recorder (pipeline/recording.h), which must outlive the partition. Null
+  /// records nothing.
+  PartitionRecorder* recorder = nullptr;
 };
 
 /// Order in which a query writes its results. Both orders are the same for any number of threads
@@ -96,8 +101,22 @@ struct Statistics {
   std::uint64_t last_pairs = 0;           ///< pairs that the last pair query returned
 };
 
+class PartitionObserver;
 class PartitionState;
 struct VolumeInput;
+
+/// Records calls of partitions. Recorder (pipeline/recording.h) is the class to use; a program
+/// without a Recorder links no code for recordings.
+class WINNOW_API PartitionRecorder {
+ protected:
+  ~PartitionRecorder() = default;
+
+ private:
+  friend class Partition;
+  /// Returns the observer of a new partition; null if its calls cannot be recorded.
+  [[nodiscard]] virtual PartitionObserver* observe_partition(
+      StructureKind structure, const PartitionOptions& options) noexcept = 0;
+};
 
 /// The structure that `automatic()` has chosen, and the reason.
 struct StructureChoice {

@@ -33,8 +33,8 @@ struct ClusterSceneBatch {
 /// Options of a cluster of scenes, fixed at construction.
 struct ClusterSceneOptions {
   /// Options of the scene of each rank. `cache_tolerance` must be 0, `warm_start` and
-  /// `suppress_ghost_contacts` must be false; otherwise the status of the cluster is
-  /// `invalid_argument`.
+  /// `suppress_ghost_contacts` must be false, `recorder` must be null; otherwise the status of the
+  /// cluster is `invalid_argument`.
   SceneOptions scene{};
   /// See ClusterOptions::imbalance.
   double imbalance = 1.1;

@@ -263,7 +263,6 @@ class WINNOW_API Contacts {
  private:
   friend class Scene;
   friend class RankScene;
-  friend class RecordedScene;
   /// Returns the state, or an empty one if memory was refused.
   [[nodiscard]] const ContactsState& state() const noexcept;
 

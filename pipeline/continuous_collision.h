@@ -118,10 +118,6 @@ class WINNOW_API ContinuousCollision {
   [[nodiscard]] Footprint footprint() const noexcept;
 
  private:
-  /// Finds the impacts; `take` reads the motions.
-  template <typename Take>
-  Status run(std::span<const Key> keys, const ContinuousOptions& options, Take&& take);
-
   std::pmr::memory_resource* memory_;
   /// Null if memory was refused.
   ContinuousState* state_;

@@ -31,6 +31,7 @@
 namespace winnow {
 
 class CompositePool;
+class Recorder;
 struct SceneState;
 
 /// State of a body: the set of the scene that contains it. Dynamic bodies collide with all others.
@@ -97,6 +98,10 @@ struct SceneOptions {
   /// Pool of meshes, height fields and compounds; null for a scene without composite shapes. It
   /// must outlive the scene.
   const CompositePool* composites = nullptr;
+  /// Records all calls (pipeline/recording.h), with the shapes of bodies and the calls of the
+  /// scene's SceneQueries, Sensors and ContinuousCollision. It must outlive the scene. Null records
+  /// nothing.
+  Recorder* recorder = nullptr;
 };
 
 /// Distances from its surface at which a body gets contacts and at which it rests. The offsets of
@@ -361,7 +366,6 @@ class WINNOW_API Scene {
   friend class ContinuousCollision;
   friend class Sensors;
   friend class RankScene;
-  friend class RecordedScene;
   friend struct ReplayState;
 
   /// Null if memory was refused.

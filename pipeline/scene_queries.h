@@ -245,8 +245,6 @@ class WINNOW_API SceneQueries {
   [[nodiscard]] Footprint footprint() const noexcept;
 
  private:
-  friend struct SensorsState;
-
   std::pmr::memory_resource* memory_;
   /// Null if memory was refused; queries then return `out_of_memory`.
   QueryState* state_ = nullptr;

@@ -8,6 +8,7 @@
 #include "partitions/queries/box_intersection.h"
 #include "partitions/queries/hit_writer.h"
 #include "partitions/queries/kernel_arguments.h"
+#include "partitions/state/partition_observer.h"
 #include "partitions/state/partition_state.h"
 
 #include <algorithm>
@@ -257,25 +258,34 @@ Status find_hits(const PartitionState& state, FindHits find, const RayBatch& ray
 Answer<Hit> Partition::closest(const Cast& cast, const Filter& filter) const {
   const DefaultFloatEnvironment environment;
   if (state_ == nullptr) return status_;
-  return find_hit(*state_, cast_kernels().closest, cast, filter);
+  const Answer<Hit> hit = find_hit(*state_, cast_kernels().closest, cast, filter);
+  if (is_observed(hit.status, state_)) state_->observer->closest(cast, filter, hit);
+  return hit;
 }
 
 Answer<Hit> Partition::any(const Cast& cast, const Filter& filter) const {
   const DefaultFloatEnvironment environment;
   if (state_ == nullptr) return status_;
-  return find_hit(*state_, cast_kernels().any, cast, filter);
+  const Answer<Hit> hit = find_hit(*state_, cast_kernels().any, cast, filter);
+  if (is_observed(hit.status, state_)) state_->observer->any(cast, filter, hit);
+  return hit;
 }
 
 Status Partition::closest(const RayBatch& rays, const HitColumns& hits,
                           const Filter& filter) const {
   const DefaultFloatEnvironment environment;
-  return state_ == nullptr ? status_
-                           : find_hits(*state_, cast_kernels().closest, rays, hits, filter);
+  if (state_ == nullptr) return status_;
+  const Status status = find_hits(*state_, cast_kernels().closest, rays, hits, filter);
+  if (is_observed(status, state_)) state_->observer->closest(rays, filter, hits);
+  return status;
 }
 
 Status Partition::any(const RayBatch& rays, const HitColumns& hits, const Filter& filter) const {
   const DefaultFloatEnvironment environment;
-  return state_ == nullptr ? status_ : find_hits(*state_, cast_kernels().any, rays, hits, filter);
+  if (state_ == nullptr) return status_;
+  const Status status = find_hits(*state_, cast_kernels().any, rays, hits, filter);
+  if (is_observed(status, state_)) state_->observer->any(rays, filter, hits);
+  return status;
 }
 
 Status Partition::all(const Cast& cast, HitBuffer& hits, const Filter& filter) const {
@@ -299,7 +309,10 @@ Status Partition::all(const Cast& cast, HitBuffer& hits, const Filter& filter) c
            cast_kernels().all(view, &prepared.kernel_cast(), 1, &query,
                               kernel_filter.query_filter(), sink);
   });
-  if (status == Status::ok && HitWriter::finish(hits, 0, 1, keys, here)) return Status::ok;
+  if (status == Status::ok && HitWriter::finish(hits, 0, 1, keys, here)) {
+    if (state_->observer != nullptr) state_->observer->all(cast, filter, hits);
+    return Status::ok;
+  }
   hits.clear();
   return Status::out_of_memory;
 }
@@ -339,6 +352,7 @@ Status Partition::all(const RayBatch& rays, HitBuffer& hits, const Filter& filte
       return Status::out_of_memory;
     }
   }
+  if (state_->observer != nullptr) state_->observer->all(rays, filter, hits);
   return Status::ok;
 }
 

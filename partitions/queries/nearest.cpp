@@ -5,6 +5,7 @@
 
 #include "partitions/queries/hit_writer.h"
 #include "partitions/queries/kernel_arguments.h"
+#include "partitions/state/partition_observer.h"
 #include "partitions/state/partition_state.h"
 
 namespace winnow {
@@ -58,7 +59,10 @@ Status Partition::nearest(const Aabb& from, std::size_t count, float radius, Hit
   const bool done = kernel_filter.matches_nothing() || count == 0 ||
                     nearest_kernels().nearest(view, query, kernel_filter.query_filter(), heap);
   entries.set_size(heap.size);
-  if (done && HitWriter::write_heap(hits, keys)) return Status::ok;
+  if (done && HitWriter::write_heap(hits, keys)) {
+    if (state_->observer != nullptr) state_->observer->nearest(from, count, radius, filter, hits);
+    return Status::ok;
+  }
   hits.clear();
   return Status::out_of_memory;
 }

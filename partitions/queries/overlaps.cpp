@@ -8,6 +8,7 @@
 #include "partitions/queries/kernel_arguments.h"
 #include "partitions/queries/regions.h"
 #include "partitions/rows/row_input.h"
+#include "partitions/state/partition_observer.h"
 #include "partitions/state/partition_state.h"
 
 #include <algorithm>
@@ -113,20 +114,16 @@ PairPredicate accepting_second(const QueryFilter*& filter) noexcept {
           &filter};
 }
 
-}  // namespace
-
-Status Partition::overlap(const Region& region, OverlapBuffer& objects, const Filter& filter,
-                          Order order) const {
-  const DefaultFloatEnvironment environment;
-  objects.clear();
-  if (state_ == nullptr) return status_;
+/// `objects` must be empty.
+Status find_in_region(const PartitionState& state, const Region& region, OverlapBuffer& objects,
+                      const Filter& filter, Order order) {
   const PreparedRegion prepared(region);
   if (prepared.status() != Status::ok) return prepared.status();
   QueryView view;
-  if (const Status status = state_->prepare(QueryKind::regions, 1, view); status != Status::ok) {
+  if (const Status status = state.prepare(QueryKind::regions, 1, view); status != Status::ok) {
     return status;
   }
-  const KernelFilter kernel_filter(filter, view, state_->rows.keys());
+  const KernelFilter kernel_filter(filter, view, state.rows.keys());
   if (kernel_filter.matches_nothing()) return Status::ok;
   OverlapWriter writer(objects);
   if (prepared.run(view, kernel_filter.query_filter(), writer.sinks()) && writer.finish(order)) {
@@ -136,23 +133,21 @@ Status Partition::overlap(const Region& region, OverlapBuffer& objects, const Fi
   return Status::out_of_memory;
 }
 
-Status Partition::overlap(const BoxView& boxes, PairBuffer& out, const Filter& filter,
-                          Order order) const {
-  const DefaultFloatEnvironment environment;
-  out.clear();
-  if (state_ == nullptr) return status_;
-  const Execution& execution = state_->rows.execution();
+/// `out` must be empty.
+Status find_in_boxes(const PartitionState& state, const BoxView& boxes, PairBuffer& out,
+                     const Filter& filter, Order order) {
+  const Execution& execution = state.rows.execution();
   const BoxSource source{boxes};
   if (boxes.count > kMaxObjects || !all_valid(source, UpdateSubset(boxes.count), execution)) {
     return Status::invalid_argument;
   }
   QueryView view;
-  if (const Status status = state_->prepare(QueryKind::regions, boxes.count, view);
+  if (const Status status = state.prepare(QueryKind::regions, boxes.count, view);
       status != Status::ok) {
     return status;
   }
-  const SpatialIndex& index = state_->index;
-  const KernelFilter kernel_filter(filter, view, state_->rows.keys());
+  const SpatialIndex& index = state.index;
+  const KernelFilter kernel_filter(filter, view, state.rows.keys());
   if (kernel_filter.matches_nothing()) return Status::ok;
   const ObjectFilter query_object = filter.object();
   const QueryFilter* accepted = &kernel_filter.query_filter();
@@ -171,12 +166,34 @@ Status Partition::overlap(const BoxView& boxes, PairBuffer& out, const Filter& f
     batch.matches_all = !kernel_filter.query_filter().by_object;
     return index.query(batch, sink);
   });
-  const std::size_t slots = std::max(state_->rows.keys().slot_count(), boxes.count);
+  const std::size_t slots = std::max(state.rows.keys().slot_count(), boxes.count);
   if (status == Status::ok && (order == Order::fast || PairTracker::sort(out, slots))) {
     return Status::ok;
   }
   out.clear();
   return Status::out_of_memory;
+}
+
+}  // namespace
+
+Status Partition::overlap(const Region& region, OverlapBuffer& objects, const Filter& filter,
+                          Order order) const {
+  const DefaultFloatEnvironment environment;
+  objects.clear();
+  if (state_ == nullptr) return status_;
+  const Status status = find_in_region(*state_, region, objects, filter, order);
+  if (is_observed(status, state_)) state_->observer->overlap(region, filter, order, objects);
+  return status;
+}
+
+Status Partition::overlap(const BoxView& boxes, PairBuffer& out, const Filter& filter,
+                          Order order) const {
+  const DefaultFloatEnvironment environment;
+  out.clear();
+  if (state_ == nullptr) return status_;
+  const Status status = find_in_boxes(*state_, boxes, out, filter, order);
+  if (is_observed(status, state_)) state_->observer->overlap(boxes, filter, order, out);
+  return status;
 }
 
 }  // namespace winnow

@@ -6,6 +6,7 @@
 #include "core/memory/snapshot_frame.h"
 #include "core/threads/float_environment.h"
 #include "partitions/rows/row_input.h"
+#include "partitions/state/partition_observer.h"
 #include "partitions/state/partition_state.h"
 
 #include <utility>
@@ -84,7 +85,10 @@ Status load_into(PartitionState*& state, std::span<const std::byte> saved) {
       PartitionState::make(structure, options, *RowInput::of(options.volume, options.fat_margin));
   if (fresh == nullptr) return Status::out_of_memory;
   const Status status = fresh->restore(read.rows(options.volume), *state);
-  if (status == Status::ok) std::swap(state, fresh);
+  if (status == Status::ok) {
+    fresh->observer = std::exchange(state->observer, nullptr);
+    std::swap(state, fresh);
+  }
   delete_in(state->memory, fresh);
   return status;
 }
@@ -106,7 +110,9 @@ Status Partition::save(Column<std::byte>& out) const {
 
 Status Partition::load(std::span<const std::byte> saved) {
   const DefaultFloatEnvironment environment;
-  return logged(state_ == nullptr ? status_ : load_into(state_, saved), "Partition::load");
+  const Status status = state_ == nullptr ? status_ : load_into(state_, saved);
+  if (is_observed(status, state_)) state_->observer->give_up();
+  return logged(status, "Partition::load");
 }
 
 }  // namespace winnow

@@ -17,6 +17,7 @@
 
 namespace winnow {
 
+class PartitionObserver;
 struct UpdateSubset;
 
 /// All data of a partition.
@@ -86,7 +87,8 @@ class PartitionState {
   void release_memory() noexcept;
 
   std::pmr::memory_resource* const memory;
-  StructureKind structure;  // as given by the caller
+  StructureKind structure;                // as given by the caller
+  PartitionObserver* observer = nullptr;  // null if the partition is not recorded
   Rows rows;
   SpatialIndex index;
 

@@ -18,7 +18,7 @@ ClusterSceneState::ClusterSceneState(Transport& given, const ShapePool& shapes,
   }
   const SceneOptions& scene = options.scene;
   if (scene.cache_tolerance != 0.0 || scene.warm_start || scene.suppress_ghost_contacts ||
-      !scenes.front().is_good()) {
+      scene.recorder != nullptr || !scenes.front().is_good()) {
     status = Status::invalid_argument;
   }
 }

@@ -88,8 +88,8 @@ template <typename Run>
     if (!s.ccd) s.ccd.emplace(s.scene);
     const Status status = run(*s.ccd);
     if (status != Status::ok) return status;
-    impacts.assign((*s.ccd)->impacts().begin(), (*s.ccd)->impacts().end());
-    first.assign((*s.ccd)->first().begin(), (*s.ccd)->first().end());
+    impacts.assign(s.ccd->impacts().begin(), s.ccd->impacts().end());
+    first.assign(s.ccd->first().begin(), s.ccd->first().end());
     return status;
   };
   accept(s.working(work), call);
@@ -103,7 +103,7 @@ template <typename Run>
   const PoseInput end(ends);
   const ContinuousInput input(keys.count(), pairs, bullets, tolerance, touching, first_only);
   std::vector<Pose> room;
-  return impacts_of_call(s, "find_impacts", [&](RecordableContinuousCollision& ccd) {
+  return impacts_of_call(s, "find_impacts", [&](ContinuousCollision& ccd) {
     return ccd.find_impacts(keys.keys(), end.view(room), input.options());
   });
 }
@@ -116,7 +116,7 @@ template <typename Run>
   const RigidMotionInput motion(motions);
   const ContinuousInput input(keys.count(), pairs, bullets, tolerance, touching, first_only);
   std::vector<RigidMotion> room;
-  return impacts_of_call(s, "find_impacts_of_motions", [&](RecordableContinuousCollision& ccd) {
+  return impacts_of_call(s, "find_impacts_of_motions", [&](ContinuousCollision& ccd) {
     return ccd.find_impacts(keys.keys(), motion.packed(room), input.options());
   });
 }

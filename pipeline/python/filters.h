@@ -58,7 +58,7 @@ class FilterOfCall {
   return nullptr;
 }
 [[nodiscard]] inline const Scene* scene_of(const SharedScene& s) noexcept {
-  return &*s.scene;
+  return &s.scene;
 }
 
 /// The Python form of an argument of a query.

@@ -111,7 +111,7 @@ template <int K>
 /// Calls `body` with k-DOPs of the partition's type.
 template <typename Body>
 auto with_kdops(const SharedPartition& p, py::handle lower, py::handle upper, Body&& body) {
-  switch (p.partition->volume()) {
+  switch (p.partition.volume()) {
     case Volume::kdop14:
       return body(kdops_of<14>(lower, upper));
     case Volume::kdop18:
@@ -184,7 +184,7 @@ void query_each(const SharedPartition& p, std::size_t count, const char* call, Q
   auto result = fresh<bool>(keys.count());
   bool* const to = result.mutable_data();
   reading(p.mutex, [&] {
-    for (std::size_t i = 0; i < keys.count(); ++i) to[i] = p.partition->contains(keys.keys()[i]);
+    for (std::size_t i = 0; i < keys.count(); ++i) to[i] = p.partition.contains(keys.keys()[i]);
   });
   return result;
 }
@@ -196,7 +196,7 @@ void query_each(const SharedPartition& p, std::size_t count, const char* call, Q
   float* const low = lower.mutable_data();
   float* const high = upper.mutable_data();
   std::vector<Aabb> boxes(keys.count());
-  accept(reading(p.mutex, [&] { return p.partition->bounds(keys.keys(), boxes); }), "bounds");
+  accept(reading(p.mutex, [&] { return p.partition.bounds(keys.keys(), boxes); }), "bounds");
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       low[3 * i + axis] = boxes[i].min[axis];
@@ -211,8 +211,8 @@ void query_each(const SharedPartition& p, std::size_t count, const char* call, Q
   auto result = fresh<std::uint64_t>(keys.count());
   std::uint64_t* const to = result.mutable_data();
   query_each(p, keys.count(), "client_data", [&](std::size_t i) {
-    to[i] = p.partition->client_data(keys.keys()[i]);
-    return p.partition->contains(keys.keys()[i]) ? Status::ok : Status::invalid_key;
+    to[i] = p.partition.client_data(keys.keys()[i]);
+    return p.partition.contains(keys.keys()[i]) ? Status::ok : Status::invalid_key;
   });
   return result;
 }
@@ -222,7 +222,7 @@ void query_each(const SharedPartition& p, std::size_t count, const char* call, Q
   auto result = fresh<std::uint64_t>(ids.count());
   Key* const to = keys_in(result);
   reading(p.mutex, [&] {
-    for (std::size_t i = 0; i < ids.count(); ++i) to[i] = p.partition->key_of(ids[i]);
+    for (std::size_t i = 0; i < ids.count(); ++i) to[i] = p.partition.key_of(ids[i]);
   });
   return result;
 }
@@ -232,7 +232,7 @@ void query_each(const SharedPartition& p, std::size_t count, const char* call, Q
   auto result = fresh<std::uint64_t>(ids.count());
   std::uint64_t* const to = result.mutable_data();
   reading(p.mutex, [&] {
-    for (std::size_t i = 0; i < ids.count(); ++i) to[i] = p.partition->client_data_of(ids[i]);
+    for (std::size_t i = 0; i < ids.count(); ++i) to[i] = p.partition.client_data_of(ids[i]);
   });
   return result;
 }
@@ -258,7 +258,7 @@ void set_filter(SharedPartition& p, py::handle key_array, py::handle layers, py:
   const KeyInput keys(key_array);
   std::vector<ObjectFilter> filters(keys.count());
   query_each(p, keys.count(), "filters",
-             [&](std::size_t i) { return p.partition->filter(keys.keys()[i]).get(filters[i]); });
+             [&](std::size_t i) { return p.partition.filter(keys.keys()[i]).get(filters[i]); });
   std::vector<std::uint32_t> columns[3];
   for (const ObjectFilter& filter : filters) {
     columns[0].push_back(filter.layers);
@@ -303,7 +303,7 @@ void add_knowledge(PartitionClass& partition) {
   partition
       .def("__len__",
            [](const SharedPartition& p) {
-             return reading(p.mutex, [&] { return p.partition->size(); });
+             return reading(p.mutex, [&] { return p.partition.size(); });
            })
       .def("contains", &contains, arg("keys"), "True for `keys` (n,) of live objects: (n,) bool.")
       .def("bounds", &bounds, arg("keys"),

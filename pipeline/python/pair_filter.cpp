@@ -17,7 +17,7 @@ void set_of_each(SharedScene& s, std::span<const Key> keys, const char* call, Se
   accept(changing_scene(s,
                         [&] {
                           std::vector<BodyDefinition> before;
-                          const Status status = bodies_of(*s.scene, keys, before);
+                          const Status status = bodies_of(s.scene, keys, before);
                           if (status != Status::ok) return status;
                           return set_all(keys.size(), set,
                                          [&](std::size_t i) { return undo(i, before[i]); });
@@ -88,7 +88,7 @@ void set_layers_collide(SharedScene& s, py::handle pairs, bool collide) {
                               [&](std::size_t i) {
                                 const std::uint16_t a = layers.layer(i, 0);
                                 const std::uint16_t b = layers.layer(i, 1);
-                                before[i] = s.scene->layers_collide(a, b) ? 1 : 0;
+                                before[i] = s.scene.layers_collide(a, b) ? 1 : 0;
                                 return s.scene.set_layers_collide(a, b, collide);
                               },
                               [&](std::size_t i) {
@@ -105,7 +105,7 @@ void set_layers_collide(SharedScene& s, py::handle pairs, bool collide) {
   bool* const to = result.mutable_data();
   reading(s.mutex, [&] {
     for (std::size_t i = 0; i < layers.numbers.count(); ++i) {
-      to[i] = s.scene->layers_collide(layers.layer(i, 0), layers.layer(i, 1));
+      to[i] = s.scene.layers_collide(layers.layer(i, 0), layers.layer(i, 1));
     }
   });
   return result;
@@ -137,7 +137,7 @@ void set_ignored(SharedScene& s, py::handle pair_array, bool ignored) {
   bool* const to = result.mutable_data();
   reading(s.mutex, [&] {
     for (std::size_t i = 0; i < pairs.size(); ++i) {
-      to[i] = s.scene->is_ignored(pairs[i].first, pairs[i].second);
+      to[i] = s.scene.is_ignored(pairs[i].first, pairs[i].second);
     }
   });
   return result;
@@ -172,13 +172,13 @@ template <typename Make>
 
 [[nodiscard]] GroupTable islands(const SharedScene& s, const HeldContacts& contacts) {
   return groups_of(s, contacts, "islands", [&](const Contacts& from, ContactGroups& out) {
-    return s.scene->islands(from, out);
+    return s.scene.islands(from, out);
   });
 }
 
 [[nodiscard]] GroupTable colours(const SharedScene& s, const HeldContacts& contacts) {
   return groups_of(s, contacts, "colours", [&](const Contacts& from, ContactGroups& out) {
-    return s.scene->colours(from, out);
+    return s.scene.colours(from, out);
   });
 }
 

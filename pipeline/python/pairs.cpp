@@ -24,7 +24,7 @@ std::shared_ptr<PairBuffer> SharedPartition::take_pairs(bool incremental, bool w
   std::shared_ptr<PairBuffer> out = pair_pool->take();
   // If a quarter of the objects or more have changed, the last pairs are not copied, and self_pairs
   // finds all pairs again.
-  const bool few = changes < partition->size() / 4;
+  const bool few = changes < partition.size() / 4;
   const bool carries = with_events || (incremental && few);
   if (last && carries && !out->assign(*last)) out->clear();
   return out;
@@ -108,9 +108,6 @@ void pair_changes(SharedPartition& p, Events& events, const py::object& function
   if (!function.is_none()) predicate.emplace(function, "predicate");
   const PairOptions options{chosen(kOrders, order, "order"), !predicate,
                             predicate ? pair_predicate(*predicate) : PairPredicate{}};
-  if (p.recorder != other.recorder) {
-    throw Refusal(Status::unsupported, "pairs_with: of two that are not recorded together");
-  }
   const std::shared_ptr<PairBuffer> out = p.pair_pool->take();
   const auto query = [&] { return p.partition.pairs_with(other.partition, *out, options); };
   const Status status = reading_two(p.mutex, other.mutex, query);

@@ -16,9 +16,9 @@ namespace winnow::python {
 SharedPartition::SharedPartition(StructureKind structure, const PartitionOptions& options,
                                  RecorderPointer recorder_in)
     : recorder(std::move(recorder_in)),
-      partition(recorder.get(), structure, options),
+      partition(structure, recorded_by(recorder, options)),
       execution(options.execution) {
-  accept(partition->status(), "Partition");
+  accept(partition.status(), "Partition");
 }
 
 StructureKind structure_of(const std::string& name) {
@@ -76,7 +76,7 @@ void reserve(SharedPartition& p, std::size_t objects, std::size_t pairs, bool to
                     const Status status = p.partition.reserve(objects, pages);
                     if (status != Status::ok || pairs == 0) return status;
                     const std::shared_ptr<PairBuffer> out = p.take_pairs(true);
-                    const Status reserved = p.partition->reserve_pairs(*out, pairs, pages);
+                    const Status reserved = p.partition.reserve_pairs(*out, pairs, pages);
                     p.keep_pairs(out);
                     return reserved;
                   }),
@@ -84,7 +84,7 @@ void reserve(SharedPartition& p, std::size_t objects, std::size_t pairs, bool to
 }
 
 [[nodiscard]] py::dict statistics_dict(const SharedPartition& p) {
-  const Statistics s = reading(p.mutex, [&] { return p.partition->statistics(); });
+  const Statistics s = reading(p.mutex, [&] { return p.partition.statistics(); });
   py::dict result;
   result["objects"] = s.objects;
   result["regular"] = s.regular;
@@ -103,7 +103,7 @@ void reserve(SharedPartition& p, std::size_t objects, std::size_t pairs, bool to
 }
 
 [[nodiscard]] py::dict choice_dict(const SharedPartition& p) {
-  const StructureChoice c = reading(p.mutex, [&] { return p.partition->choice(); });
+  const StructureChoice c = reading(p.mutex, [&] { return p.partition.choice(); });
   py::dict result;
   result["structure"] = std::string(c.structure.name());
   result["reason"] = std::string(c.reason);
@@ -121,7 +121,7 @@ void reserve(SharedPartition& p, std::size_t objects, std::size_t pairs, bool to
   Drawing drawing;
   accept(reading(p.mutex,
                  [&] {
-                   return p.partition->debug_draw(drawing, {objects, structure, labels, max_depth});
+                   return p.partition.debug_draw(drawing, {objects, structure, labels, max_depth});
                  }),
          "debug_draw");
   return drawing;
@@ -180,24 +180,24 @@ void add_itself(PartitionClass& partition) {
       .def_property_readonly(
           "structure",
           [](const SharedPartition& p) {
-            return reading(p.mutex, [&] { return std::string(p.partition->name()); });
+            return reading(p.mutex, [&] { return std::string(p.partition.name()); });
           },
           "Name of the current structure, as it was set.")
       .def_property_readonly(
           "volume",
-          [](const SharedPartition& p) { return name_of(kVolumes, p.partition->volume()); },
+          [](const SharedPartition& p) { return name_of(kVolumes, p.partition.volume()); },
           "The bounding volume of objects.")
       .def_property_readonly(
           "fat_margin",
           [](const SharedPartition& p) {
-            const FatMargin m = p.partition->fat_margin();
+            const FatMargin m = p.partition.fat_margin();
             return py::make_tuple(m.distance, m.share);
           },
           "Fat margin: (length, share of the longest edge).")
       .def_property_readonly(
           "is_exact",
           [](const SharedPartition& p) {
-            return reading(p.mutex, [&] { return p.partition->is_exact(); });
+            return reading(p.mutex, [&] { return p.partition.is_exact(); });
           },
           "True if `self_pairs` gives exactly the pairs whose given boxes "
           "overlap.")
@@ -208,7 +208,7 @@ void add_itself(PartitionClass& partition) {
       .def(
           "footprint",
           [](const SharedPartition& p) {
-            return footprint_dict(reading(p.mutex, [&] { return p.partition->footprint(); }));
+            return footprint_dict(reading(p.mutex, [&] { return p.partition.footprint(); }));
           },
           "Bytes (used, reserved) by purpose.")
       .def("debug_draw", &draw, py::kw_only(), arg("objects") = true, arg("structure") = true,

@@ -5,7 +5,7 @@
 #include "pipeline/python/choices.h"
 #include "pipeline/python/init_checks.h"
 #include "pipeline/python/pool.h"
-#include "pipeline/python/recordable.h"
+#include "pipeline/python/recordings.h"
 
 #include <winnow/core/filter.h>
 #include <winnow/core/hits.h>
@@ -92,7 +92,7 @@ class SharedPartition : public NeedsInit {
   mutable std::shared_mutex mutex;
   /// Null if it is not recorded.
   const RecorderPointer recorder;
-  RecordablePartition partition;
+  Partition partition;
   Execution execution;
   /// Buffer for boxes that cannot be read in place.
   std::vector<Aabb> room;

@@ -4,7 +4,7 @@
 
 #include "pipeline/python/bytes.h"
 #include "pipeline/python/callbacks.h"
-#include "pipeline/python/recordable.h"
+#include "pipeline/python/refusal.h"
 
 #include <winnow/pipeline/replay.h>
 

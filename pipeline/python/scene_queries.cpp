@@ -58,11 +58,11 @@ class QueryLease {
   ~QueryLease() { scene_.put_queries(std::move(queries_)); }
   QueryLease(const QueryLease&) = delete;
   QueryLease& operator=(const QueryLease&) = delete;
-  RecordableQueries* operator->() const noexcept { return queries_.get(); }
+  SceneQueries* operator->() const noexcept { return queries_.get(); }
 
  private:
   SharedScene& scene_;
-  std::unique_ptr<RecordableQueries> queries_;
+  std::unique_ptr<SceneQueries> queries_;
 };
 
 /// Collects the results of each query as lists.

@@ -22,7 +22,7 @@ struct SharedSensors : NeedsInit {
       : scene(std::move(of)), sensors(scene->scene), held(scene->shapes) {}
 
   const std::shared_ptr<SharedScene> scene;
-  RecordableSensors sensors;
+  Sensors sensors;
   HeldShapes held;
 };
 
@@ -93,7 +93,7 @@ void remove(SharedSensors& s, py::handle key_array) {
   accept(changing_sensors(s,
                           [&] {
                             Definitions before;
-                            Status status = sensors_of(*s.sensors, keys.keys(), before);
+                            Status status = sensors_of(s.sensors, keys.keys(), before);
                             if (status == Status::ok && has_twice(keys.keys())) {
                               status = Status::invalid_key;
                             }
@@ -119,7 +119,7 @@ void move(SharedSensors& s, py::handle key_array, py::handle poses) {
              s,
              [&] {
                Definitions before;
-               const Status status = sensors_of(*s.sensors, keys, before);
+               const Status status = sensors_of(s.sensors, keys, before);
                if (status != Status::ok) return status;
                return set_all(
                    keys.size(), [&](std::size_t i) { return s.sensors.move(keys[i], pose[i]); },
@@ -140,7 +140,7 @@ void set(SharedSensors& s, py::handle key_array, py::handle shapes, py::handle p
   accept(changing_sensors(s,
                           [&] {
                             Definitions before;
-                            Status status = sensors_of(*s.sensors, keys, before);
+                            Status status = sensors_of(s.sensors, keys, before);
                             if (status == Status::ok && has_twice(keys))
                               status = Status::invalid_key;
                             if (status != Status::ok) return status;
@@ -161,7 +161,7 @@ void set(SharedSensors& s, py::handle key_array, py::handle shapes, py::handle p
   auto result = fresh<bool>(keys.count());
   bool* const to = result.mutable_data();
   reading(s.scene->mutex, [&] {
-    for (std::size_t i = 0; i < keys.count(); ++i) to[i] = s.sensors->contains(keys.keys()[i]);
+    for (std::size_t i = 0; i < keys.count(); ++i) to[i] = s.sensors.contains(keys.keys()[i]);
   });
   return result;
 }
@@ -183,8 +183,8 @@ struct SensedTable : EmptyIfZero {
                           [&] {
                             const Status status = s.sensors.sense();
                             if (status != Status::ok) return status;
-                            in.assign(s.sensors->sensed().begin(), s.sensors->sensed().end());
-                            out.assign(s.sensors->left().begin(), s.sensors->left().end());
+                            in.assign(s.sensors.sensed().begin(), s.sensors.sensed().end());
+                            out.assign(s.sensors.left().begin(), s.sensors.left().end());
                             return status;
                           }),
          "sense");
@@ -256,7 +256,7 @@ void add_sensors(py::module_& module) {
   add_changes(type);
   type.def("__len__",
            [](const SharedSensors& s) {
-             return reading(s.scene->mutex, [&] { return s.sensors->size(); });
+             return reading(s.scene->mutex, [&] { return s.sensors.size(); });
            })
       .def("contains", &contains, arg("keys"), "True for `keys` (n,) of live sensors: (n,) bool.")
       .def("sense", &sense,

@@ -20,15 +20,15 @@
 
 namespace winnow::python {
 
-std::unique_ptr<RecordableQueries> SharedScene::take_queries() {
+std::unique_ptr<SceneQueries> SharedScene::take_queries() {
   const std::lock_guard lock(queries_mutex_);
-  if (queries_.empty()) return std::make_unique<RecordableQueries>(scene);
-  std::unique_ptr<RecordableQueries> taken = std::move(queries_.back());
+  if (queries_.empty()) return std::make_unique<SceneQueries>(scene);
+  std::unique_ptr<SceneQueries> taken = std::move(queries_.back());
   queries_.pop_back();
   return taken;
 }
 
-void SharedScene::put_queries(std::unique_ptr<RecordableQueries> queries) noexcept {
+void SharedScene::put_queries(std::unique_ptr<SceneQueries> queries) noexcept {
   const std::lock_guard lock(queries_mutex_);
   try {
     queries_.push_back(std::move(queries));
@@ -95,7 +95,7 @@ void reserve(SharedScene& s, const SceneCapacity& room, HeldContacts* contacts, 
                         [&] {
                           const Status status = s.scene.reserve(room, pages);
                           if (status != Status::ok || out == nullptr) return status;
-                          return s.scene->reserve_contacts(*out, room, pages);
+                          return s.scene.reserve_contacts(*out, room, pages);
                         }),
          "reserve");
 }
@@ -142,7 +142,7 @@ void remove_bodies(SharedScene& s, py::handle key_array) {
   accept(changing_scene(s,
                         [&] {
                           std::vector<BodyDefinition> bodies;
-                          Status status = bodies_of(*s.scene, keys.keys(), bodies);
+                          Status status = bodies_of(s.scene, keys.keys(), bodies);
                           if (status == Status::ok) status = s.scene.remove(keys.keys());
                           if (status == Status::ok) s.held.use(shapes_of(bodies), -1);
                           return status;
@@ -182,7 +182,7 @@ void set_shape(SharedScene& s, py::handle key_array, py::handle shape_array) {
              s,
              [&] {
                std::vector<BodyDefinition> before;
-               Status status = bodies_of(*s.scene, list, before);
+               Status status = bodies_of(s.scene, list, before);
                if (status == Status::ok && has_twice(list)) status = Status::invalid_key;
                if (status != Status::ok) return status;
                status = set_all(
@@ -203,7 +203,7 @@ void set_shape(SharedScene& s, py::handle key_array, py::handle shape_array) {
   auto result = fresh<bool>(keys.count());
   bool* const to = result.mutable_data();
   reading(s.mutex, [&] {
-    for (std::size_t i = 0; i < keys.count(); ++i) to[i] = s.scene->contains(keys.keys()[i]);
+    for (std::size_t i = 0; i < keys.count(); ++i) to[i] = s.scene.contains(keys.keys()[i]);
   });
   return result;
 }
@@ -213,7 +213,7 @@ void set_shape(SharedScene& s, py::handle key_array, py::handle shape_array) {
   auto result = fresh<std::uint64_t>(ids.count());
   Key* const to = keys_in(result);
   reading(s.mutex, [&] {
-    for (std::size_t i = 0; i < ids.count(); ++i) to[i] = s.scene->key_of(ids[i]);
+    for (std::size_t i = 0; i < ids.count(); ++i) to[i] = s.scene.key_of(ids[i]);
   });
   return result;
 }
@@ -221,7 +221,7 @@ void set_shape(SharedScene& s, py::handle key_array, py::handle shape_array) {
 [[nodiscard]] py::dict body_columns(const SharedScene& s, py::handle key_array) {
   const KeyInput keys(key_array);
   std::vector<BodyDefinition> bodies;
-  accept(reading(s.mutex, [&] { return bodies_of(*s.scene, keys.keys(), bodies); }), "bodies");
+  accept(reading(s.mutex, [&] { return bodies_of(s.scene, keys.keys(), bodies); }), "bodies");
   const auto columns = columns_of(std::move(bodies));
   using Body = BodyDefinition;
   static_assert(offsetof(Pose, position) == 0 && sizeof(Pose) == 7 * sizeof(double));
@@ -266,7 +266,7 @@ void set_predicate(SharedScene& s, const py::object& function) {
 }
 
 [[nodiscard]] py::dict statistics_dict(const SharedScene& s) {
-  const SceneStatistics stats = reading(s.mutex, [&] { return s.scene->statistics(); });
+  const SceneStatistics stats = reading(s.mutex, [&] { return s.scene.statistics(); });
   py::dict result;
   result["boxes_updated"] = stats.boxes_updated;
   result["body_pairs"] = stats.body_pairs;
@@ -279,7 +279,7 @@ void set_predicate(SharedScene& s, const py::object& function) {
 }
 
 [[nodiscard]] py::dict scene_footprint(const SharedScene& s) {
-  const SceneFootprint f = reading(s.mutex, [&] { return s.scene->footprint(); });
+  const SceneFootprint f = reading(s.mutex, [&] { return s.scene.footprint(); });
   py::dict result;
   const auto add = [&](const char* name, const Bytes& bytes) {
     result[name] = py::make_tuple(bytes.used, bytes.reserved);
@@ -300,7 +300,7 @@ void set_predicate(SharedScene& s, const py::object& function) {
   Drawing drawing;
   accept(reading(s.mutex,
                  [&] {
-                   return s.scene->debug_draw(drawing, {objects, structure, labels, max_depth});
+                   return s.scene.debug_draw(drawing, {objects, structure, labels, max_depth});
                  }),
          "debug_draw");
   return drawing;
@@ -345,12 +345,12 @@ void add_bodies_to(SceneClass& scene) {
       .def("set_shape", &set_shape, arg("keys"), arg("shapes"),
            "Sets new shapes, (n,) or one for all, of the bodies of `keys` (n,).")
       .def("__len__",
-           [](const SharedScene& s) { return reading(s.mutex, [&] { return s.scene->size(); }); })
+           [](const SharedScene& s) { return reading(s.mutex, [&] { return s.scene.size(); }); })
       .def(
           "size",
           [](const SharedScene& s, const std::string& name) {
             const BodyState state = chosen(kBodyStateNames, name, "state");
-            return reading(s.mutex, [&] { return s.scene->size(state); });
+            return reading(s.mutex, [&] { return s.scene.size(state); });
           },
           arg("state"), "Number of 'fixed', 'dynamic' or 'sleeping' bodies.")
       .def("contains", &contains, arg("keys"), "True for `keys` (n,) of live bodies: (n,) bool.")
@@ -396,7 +396,7 @@ void add_scene(py::module_& module) {
       .def_property_readonly(
           "origin",
           [](const SharedScene& s) {
-            const Vec3d o = reading(s.mutex, [&] { return s.scene->origin(); });
+            const Vec3d o = reading(s.mutex, [&] { return s.scene.origin(); });
             return py::make_tuple(o.x(), o.y(), o.z());
           },
           "The point that boxes are measured from.")

@@ -4,11 +4,13 @@
 #include "pipeline/python/choices.h"
 #include "pipeline/python/locks.h"
 #include "pipeline/python/partition.h"
-#include "pipeline/python/recordable.h"
+#include "pipeline/python/recordings.h"
 #include "pipeline/python/shared_shapes.h"
 
 #include <winnow/pipeline/contacts.h>
+#include <winnow/pipeline/continuous_collision.h>
 #include <winnow/pipeline/scene.h>
+#include <winnow/pipeline/scene_queries.h>
 
 #include <atomic>
 #include <cstdint>
@@ -31,18 +33,19 @@ using HeldContacts = Exported<Contacts>;
 /// A scene that several Python threads may use. Its lock is acquired before the lock of the shapes.
 class SharedScene : public NeedsInit {
  public:
+  /// `options` without composite shapes and recorder.
   SharedScene(std::shared_ptr<SharedShapes> shapes_in, const SceneOptions& options,
               RecorderPointer recorder_in)
       : shapes(std::move(shapes_in)),
         recorder(std::move(recorder_in)),
         execution(options.execution),
-        scene(recorder.get(), shapes->pool, shapes->composites, options),
+        scene(shapes->pool, recorded_by(recorder, with_shapes(options))),
         held(shapes) {}
 
   /// Returns a query object for one thread: an unused one, or a new one.
-  [[nodiscard]] std::unique_ptr<RecordableQueries> take_queries();
+  [[nodiscard]] std::unique_ptr<SceneQueries> take_queries();
   /// Returns a query object for later use; frees it if memory is refused.
-  void put_queries(std::unique_ptr<RecordableQueries> queries) noexcept;
+  void put_queries(std::unique_ptr<SceneQueries> queries) noexcept;
   /// Swaps the predicate of the scene with `other`. The caller holds the mutex, and unlocks it
   /// before the old predicate is destroyed.
   void exchange_predicate(std::shared_ptr<Predicate>& other);
@@ -76,9 +79,9 @@ class SharedScene : public NeedsInit {
   const RecorderPointer recorder;
   Execution execution;
   mutable std::shared_mutex mutex;
-  RecordableScene scene;
+  Scene scene;
   /// Created by the first call that uses it; used with the mutex.
-  std::optional<RecordableContinuousCollision> ccd;
+  std::optional<ContinuousCollision> ccd;
   /// The scene has changed since its last refresh.
   std::atomic<bool> is_stale{true};
   std::atomic<std::uint64_t> shapes_seen{0};
@@ -86,9 +89,14 @@ class SharedScene : public NeedsInit {
   HeldShapes held;
 
  private:
+  [[nodiscard]] SceneOptions with_shapes(SceneOptions options) const noexcept {
+    options.composites = &shapes->composites;
+    return options;
+  }
+
   std::shared_ptr<Predicate> predicate_;
   std::mutex queries_mutex_;
-  std::vector<std::unique_ptr<RecordableQueries>> queries_;
+  std::vector<std::unique_ptr<SceneQueries>> queries_;
 };
 
 /// Options shared by scenes and clusters of scenes.

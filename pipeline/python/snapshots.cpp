@@ -62,8 +62,8 @@ void load_scene(SharedScene& s, const py::buffer& data) {
                     s.held.clear();
                     std::vector<ShapeId> used;
                     BodyDefinition body;
-                    for (ObjectId id = 0; used.size() < s.scene->size(); ++id) {
-                      if (s.scene->body(s.scene->key_of(id)).get(body) == Status::ok) {
+                    for (ObjectId id = 0; used.size() < s.scene.size(); ++id) {
+                      if (s.scene.body(s.scene.key_of(id)).get(body) == Status::ok) {
                         used.push_back(body.shape);
                       }
                     }
@@ -76,7 +76,7 @@ void load_scene(SharedScene& s, const py::buffer& data) {
 [[nodiscard]] py::bytes save_contacts(const SharedScene& s, const HeldContacts& contacts) {
   const std::unique_lock<std::mutex> held = contacts.hold();
   return saved_by(s.mutex, "save_contacts", [&](Column<std::byte>& out) {
-    return s.scene->save_contacts(*contacts.value(), out);
+    return s.scene.save_contacts(*contacts.value(), out);
   });
 }
 
@@ -98,7 +98,7 @@ void add_partition_snapshots(PartitionClass& partition) {
           [](const SharedPartition& p) {
             // Needs exclusive access: deferred updates may have to be written first.
             Column<std::byte> out(default_memory());
-            accept(changing(p.mutex, [&] { return p.partition->save(out); }), "save");
+            accept(changing(p.mutex, [&] { return p.partition.save(out); }), "save");
             return py::bytes(reinterpret_cast<const char*>(out.data()), out.size());
           },
           "Saves all objects, and the structure with its options, as bytes.")
@@ -106,9 +106,8 @@ void add_partition_snapshots(PartitionClass& partition) {
           "load",
           [](SharedPartition& p, const py::buffer& data) {
             const BytesInput input(data);
-            Partition& loaded = p.partition.unrecorded("load");
-            accept(changing(p.mutex, [&] { return loaded.load(input.bytes()); }), "load");
-            p.count_changes(p.partition->size());
+            accept(changing(p.mutex, [&] { return p.partition.load(input.bytes()); }), "load");
+            p.count_changes(p.partition.size());
           },
           arg("data"),
           "Loads a snapshot. Saved keys stay valid, unless another partition of the process has "
@@ -129,7 +128,7 @@ void add_scene_snapshots(SceneClass& scene) {
           "save",
           [](const SharedScene& s) {
             return saved_by(s.mutex, "save",
-                            [&](Column<std::byte>& out) { return s.scene->save(out); });
+                            [&](Column<std::byte>& out) { return s.scene.save(out); });
           },
           "Saves all bodies, and the options of the scene, as bytes. Shapes are saved separately.")
       .def("load", &load_scene, arg("data"),

@@ -9,6 +9,8 @@
 #include <winnow/core/region.h>
 #include <winnow/partitions/partition.h>
 #include "core/memory/byte_stream.h"
+#include "partitions/state/partition_observer.h"
+#include "pipeline/scene/queries/query_observer.h"
 
 #include <cstdint>
 #include <optional>
@@ -125,13 +127,6 @@ struct RecordedPair {
 [[nodiscard]] constexpr Pair lower_first(ObjectId one, ObjectId other) noexcept {
   return one < other ? Pair{one, other} : Pair{other, one};
 }
-
-/// Which hits of a ray or shape cast are requested. `from_touch`: without bodies that are only
-/// touched at the start (ShapeCast::touching is false).
-enum class HitForm : std::uint8_t { closest, any, all, closest_from_touch, all_from_touch };
-
-/// Where a pair query stores its results.
-enum class PairForm : std::uint8_t { buffer, buffer_and_events, events };
 
 /// A body to add, with the number of its shape in the recording.
 struct RecordedBody {

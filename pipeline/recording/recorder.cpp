@@ -1,4 +1,3 @@
-#include "core/memory/new_in.h"
 #include "pipeline/recording/recorder_state.h"
 
 namespace winnow {
@@ -48,13 +47,11 @@ void RecorderState::close() noexcept {
   file = nullptr;
 }
 
-CallWriter::CallWriter(RecorderState* state, RecordedCall call, std::uint32_t world) noexcept
-    : state_(state) {
-  if (state_ == nullptr) return;
-  lock_ = Lock(state_->mutex);
-  if (state_->status != Status::ok || state_->closed) return;
-  begin_ = state_->block.size();
-  writer_.emplace(state_->block);
+CallWriter::CallWriter(RecorderState& state, RecordedCall call, std::uint32_t world) noexcept
+    : state_(state), lock_(state.mutex) {
+  if (state_.status != Status::ok || state_.closed) return;
+  begin_ = state_.block.size();
+  writer_.emplace(state_.block);
   put(call).put(world);
 }
 
@@ -64,27 +61,21 @@ CallWriter::~CallWriter() {
     give_up(Status::out_of_memory);
     return;
   }
-  ++state_->calls;
-  if (state_->block.size() >= kBlockBytes) state_->flush();
+  ++state_.calls;
+  if (state_.block.size() >= kBlockBytes) state_.flush();
 }
 
 void CallWriter::give_up(Status why) noexcept {
   if (!is_open()) return;
   writer_.reset();
-  state_->block.set_size(begin_);
-  state_->fail(why);
+  state_.block.set_size(begin_);
+  state_.fail(why);
 }
 
 CallWriter& CallWriter::put_ids(std::span<const Key> keys) noexcept {
   put(std::uint64_t{keys.size()});
   for (const Key& key : keys) put(key.id);
   return *this;
-}
-
-std::uint32_t new_world(RecorderState* state) noexcept {
-  if (state == nullptr) return kNoWorld;
-  const Lock lock(state->mutex);
-  return state->worlds++;
 }
 
 Recorder::Recorder(const char* path, std::pmr::memory_resource* memory) noexcept
@@ -108,8 +99,8 @@ Recorder::~Recorder() {
 }
 
 void Recorder::end_frame() noexcept {
-  (void)CallWriter(state_, RecordedCall::end_frame, kNoWorld);
   if (state_ == nullptr) return;
+  (void)CallWriter(*state_, RecordedCall::end_frame, kNoWorld);
   const Lock lock(state_->mutex);
   state_->flush();
 }

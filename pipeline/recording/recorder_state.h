@@ -1,14 +1,18 @@
 #pragma once
 
-// State of a Recorder, and CallWriter, with which the recorded classes write their calls.
+// State of a Recorder, and CallWriter, with which the observers of partitions and scenes write
+// their calls.
 
+#include <winnow/core/pose_view.h>
 #include <winnow/pipeline/recording.h>
+#include "core/memory/new_in.h"
 #include "core/threads/mutex.h"
 #include "pipeline/recording/format.h"
 
 #include <cstdio>
 #include <optional>
 #include <span>
+#include <utility>
 
 namespace winnow {
 
@@ -21,15 +25,35 @@ struct RecorderState {
   void write(std::span<const std::byte> bytes) noexcept;
   void begin() noexcept;
   void close() noexcept;
-  /// Ends the recording with an error.
+  /// Ends the recording with an error. The caller holds the mutex.
   void fail(Status why) noexcept {
     if (status == Status::ok) status = why;
   }
+  /// As `fail`, and locks the mutex.
+  void stop(Status why) noexcept {
+    const Lock lock(mutex);
+    fail(why);
+  }
 
+  /// Creates the observer of a new world (partition or scene), with the number of the world as its
+  /// second argument. Null if memory is refused, which ends the recording.
+  template <typename Observer, typename... Arguments>
+  [[nodiscard]] Observer* make_world(Arguments&&... arguments) noexcept {
+    const Lock lock(mutex);
+    auto* const made =
+        new_in<Observer>(block.memory(), *this, worlds++, std::forward<Arguments>(arguments)...);
+    if (made == nullptr) fail(Status::out_of_memory);
+    return made;
+  }
+  /// Destroys an observer, which frees its memory.
+  template <typename Observer>
+  void destroy(Observer* observer) noexcept {
+    const Lock lock(mutex);
+    delete_in(block.memory(), observer);
+  }
+
+  /// Also locked while the memory resource is used.
   Mutex mutex;
-  /// Locked while a scene query numbers its shape, because several threads may query one scene.
-  /// Lock it before `mutex`.
-  Mutex numbering;
   Column<std::byte> block;
   RecordingSink sink;
   std::FILE* file = nullptr;
@@ -44,7 +68,7 @@ struct RecorderState {
 /// nothing if the recording has failed or is closed.
 class CallWriter {
  public:
-  CallWriter(RecorderState* state, RecordedCall call, std::uint32_t world) noexcept;
+  CallWriter(RecorderState& state, RecordedCall call, std::uint32_t world) noexcept;
   ~CallWriter();
   CallWriter(const CallWriter&) = delete;
   CallWriter& operator=(const CallWriter&) = delete;
@@ -91,13 +115,10 @@ class CallWriter {
  private:
   [[nodiscard]] bool is_open() const noexcept { return writer_.has_value(); }
 
-  RecorderState* state_;
-  Lock lock_;
+  RecorderState& state_;
+  const Lock lock_;
   std::optional<ByteWriter> writer_;
   std::size_t begin_ = 0;
 };
-
-/// Returns the number of a new world (partition or scene); kNoWorld without a recording.
-[[nodiscard]] std::uint32_t new_world(RecorderState* state) noexcept;
 
 }  // namespace winnow

@@ -7,6 +7,7 @@
 #include "core/hooks/stage_scope.h"
 #include "core/threads/float_environment.h"
 #include "pipeline/scene/collision.h"
+#include "pipeline/scene/scene_observer.h"
 
 #include <algorithm>
 #include <utility>
@@ -76,6 +77,7 @@ Status Scene::collide(ContactLevel level, Contacts& contacts) {
   if (!state_->options_are_good || level > ContactLevel::manifold) {
     return logged(Status::invalid_argument, "Scene::collide");
   }
+  const ContactsOrigin before = contacts.state_->origin();
   state_->statistics = {};
   Status status = state_->find_pairs(level == ContactLevel::pairs);
   if (status == Status::ok) {
@@ -87,8 +89,11 @@ Status Scene::collide(ContactLevel level, Contacts& contacts) {
     state_->statistics.cached_pairs = contacts.state_->cached_count;
     state_->statistics.boxes_updated = std::exchange(state_->boxes_updated, 0);
     ++state_->clock;
+    if (state_->observer != nullptr)
+      state_->observer->collide(level, before, contacts.state_->origin(), contacts);
   } else {
     contacts.clear();
+    if (state_->observer != nullptr) state_->observer->fail();
   }
   return logged(status, "Scene::collide");
 }

@@ -213,6 +213,15 @@ struct ContactHistory {
                              Pages pages) noexcept;
 };
 
+/// The call of `collide` that filled Contacts.
+struct ContactsOrigin {
+  std::uint64_t scene = 0;  // serial number of the scene; 0: no call
+  std::uint32_t clock = 0;  // of the scene
+  std::uint64_t pairs_serial = 0;
+
+  friend constexpr bool operator==(const ContactsOrigin&, const ContactsOrigin&) noexcept = default;
+};
+
 /// The state of Contacts.
 struct ContactsState {
   explicit ContactsState(std::pmr::memory_resource* memory) noexcept;
@@ -253,6 +262,7 @@ struct ContactsState {
   /// In the last call all pairs persisted and none ended.
   bool is_settled = false;
 
+  [[nodiscard]] ContactsOrigin origin() const noexcept { return {scene, clock, pairs_serial}; }
   void clear() noexcept;
   /// Implements Scene::reserve_contacts (reserve.cpp).
   [[nodiscard]] bool reserve(const SceneCapacity& room, const SceneOptions& options,

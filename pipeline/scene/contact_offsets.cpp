@@ -9,6 +9,7 @@
 #include "pipeline/narrow/narrow_columns.h"
 #include "pipeline/narrow/tight_growth.h"
 #include "pipeline/scene/collision.h"
+#include "pipeline/scene/scene_observer.h"
 
 #include <cmath>
 #include <limits>
@@ -49,12 +50,14 @@ Status Scene::set_offsets(Key key, const ContactOffsets& offsets) {
   SceneState& s = *state_;
   if (!s.keys.is_valid(key)) return logged(Status::invalid_key, "Scene::set_offsets");
   if (!are_good(offsets)) return logged(Status::invalid_argument, "Scene::set_offsets");
-  if (s.offsets.of(key.id) == offsets) return Status::ok;
-  if (!s.offsets.begin(s.shape.size(), s.shape.capacity()))
-    return logged(Status::out_of_memory, "Scene::set_offsets");
-  s.offsets.column[key.id] = offsets;
-  s.shaped_at[key.id] = s.clock;
-  s.stale.mark(key.id);
+  if (s.offsets.of(key.id) != offsets) {
+    if (!s.offsets.begin(s.shape.size(), s.shape.capacity()))
+      return logged(Status::out_of_memory, "Scene::set_offsets");
+    s.offsets.column[key.id] = offsets;
+    s.shaped_at[key.id] = s.clock;
+    s.stale.mark(key.id);
+  }
+  if (s.observer != nullptr) s.observer->set_offsets(key, offsets);
   return Status::ok;
 }
 

@@ -9,6 +9,7 @@
 #include "core/memory/snapshot_frame.h"
 #include "core/threads/float_environment.h"
 #include "pipeline/scene/contact_frame.h"
+#include "pipeline/scene/scene_observer.h"
 #include "pipeline/scene/scene_state.h"
 
 #include <algorithm>
@@ -401,6 +402,8 @@ Status Scene::load_contacts(std::span<const std::byte> saved, Contacts& contacts
   const Status status = ContactsReader(in, *state_, *fresh).run();
   if (status == Status::ok) std::swap(contacts.state_, fresh);
   delete_in(contacts.memory_, fresh);
+  if (is_observed(status, state_))
+    state_->observer->load_contacts(saved, contacts.state_->origin());
   return logged(status, "Scene::load_contacts");
 }
 

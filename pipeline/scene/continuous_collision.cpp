@@ -4,37 +4,17 @@
 #include "core/memory/new_in.h"
 #include "core/threads/float_environment.h"
 #include "pipeline/scene/continuous_state.h"
+#include "pipeline/scene/scene_observer.h"
 
 namespace winnow {
+namespace {
 
-ContinuousCollision::ContinuousCollision(Scene& scene, std::pmr::memory_resource* memory) noexcept
-    : memory_(memory), state_(nullptr) {
-  if (scene.state_ != nullptr)
-    state_ = new_in<ContinuousState>(memory, scene, *scene.state_, memory);
-}
-
-ContinuousCollision::~ContinuousCollision() {
-  delete_in(memory_, state_);
-}
-
-Status ContinuousCollision::find_impacts(std::span<const Key> keys, const PoseView& ends,
-                                         const ContinuousOptions& options) {
-  const DefaultFloatEnvironment environment;
-  return run(keys, options, [&] { return state_->take(keys, ends); });
-}
-
-Status ContinuousCollision::find_impacts(std::span<const Key> keys,
-                                         std::span<const RigidMotion> motions,
-                                         const ContinuousOptions& options) {
-  const DefaultFloatEnvironment environment;
-  return run(keys, options, [&] { return state_->take(keys, motions); });
-}
-
+/// Finds the impacts; `take` reads the motions.
 template <typename Take>
-Status ContinuousCollision::run(std::span<const Key> keys, const ContinuousOptions& options,
-                                Take&& take) {
-  if (state_ == nullptr) return logged(Status::out_of_memory, "ContinuousCollision::find_impacts");
-  ContinuousState& s = *state_;
+Status find(ContinuousState* state, std::span<const Key> keys, const ContinuousOptions& options,
+            Take&& take) {
+  if (state == nullptr) return logged(Status::out_of_memory, "ContinuousCollision::find_impacts");
+  ContinuousState& s = *state;
   Status status = Status::ok;
   if (!options.bullets.empty() && options.bullets.size() != keys.size()) {
     status = Status::size_mismatch;
@@ -42,7 +22,7 @@ Status ContinuousCollision::run(std::span<const Key> keys, const ContinuousOptio
              options.pairs > ContinuousPairs::bullets_and_fixed) {
     status = Status::invalid_argument;
   } else {
-    status = s.scene.refresh();
+    status = s.bodies.refresh();
   }
   if (status == Status::ok) status = take();
   if (status == Status::ok) status = s.find_pairs(options);
@@ -52,7 +32,42 @@ Status ContinuousCollision::run(std::span<const Key> keys, const ContinuousOptio
   }
   if (status == Status::ok && !s.show_impacts()) status = Status::out_of_memory;
   if (status == Status::out_of_memory) s.forget();
+  if (status != Status::ok && s.bodies.observer != nullptr) s.bodies.observer->fail();
   return logged(status, "ContinuousCollision::find_impacts");
+}
+
+[[nodiscard]] bool is_observed(Status status, const ContinuousState* state) noexcept {
+  return status == Status::ok && state->bodies.observer != nullptr;
+}
+
+}  // namespace
+
+ContinuousCollision::ContinuousCollision(Scene& scene, std::pmr::memory_resource* memory) noexcept
+    : memory_(memory), state_(nullptr) {
+  if (scene.state_ != nullptr) state_ = new_in<ContinuousState>(memory, *scene.state_, memory);
+}
+
+ContinuousCollision::~ContinuousCollision() {
+  delete_in(memory_, state_);
+}
+
+Status ContinuousCollision::find_impacts(std::span<const Key> keys, const PoseView& ends,
+                                         const ContinuousOptions& options) {
+  const DefaultFloatEnvironment environment;
+  const Status status = find(state_, keys, options, [&] { return state_->take(keys, ends); });
+  if (is_observed(status, state_))
+    state_->bodies.observer->find_impacts(keys, ends, options, *this);
+  return status;
+}
+
+Status ContinuousCollision::find_impacts(std::span<const Key> keys,
+                                         std::span<const RigidMotion> motions,
+                                         const ContinuousOptions& options) {
+  const DefaultFloatEnvironment environment;
+  const Status status = find(state_, keys, options, [&] { return state_->take(keys, motions); });
+  if (is_observed(status, state_))
+    state_->bodies.observer->find_impacts(keys, motions, options, *this);
+  return status;
 }
 
 std::span<const SceneImpact> ContinuousCollision::impacts() const noexcept {

@@ -57,10 +57,8 @@ struct FoundImpact {
 
 /// State of a call that its steps share.
 struct ContinuousState {
-  ContinuousState(Scene& its_scene, SceneState& its_state,
-                  std::pmr::memory_resource* memory) noexcept
-      : scene(its_scene),
-        bodies(its_state),
+  ContinuousState(SceneState& its_state, std::pmr::memory_resource* memory) noexcept
+      : bodies(its_state),
         parts(its_state.shapes, its_state.options.composites),
         ways(linear_bvh(), {.memory = memory, .execution = its_state.options.execution}),
         motions(memory),
@@ -97,7 +95,6 @@ struct ContinuousState {
     std::fill(first.begin(), first.end(), kNoImpact);
   }
 
-  Scene& scene;
   SceneState& bodies;
   SubShapeQuery parts;
   Partition ways;

@@ -5,6 +5,7 @@
 #include "pipeline/scene/pair_rules.h"
 
 #include "core/hooks/log.h"
+#include "pipeline/scene/scene_observer.h"
 #include "pipeline/scene/scene_state.h"
 
 #include <algorithm>
@@ -34,13 +35,12 @@ Status Scene::set_ignored(std::span<const KeyPair> pairs, bool ignored) {
     if (!s.keys.is_valid(pair.first) || !s.keys.is_valid(pair.second)) return Status::invalid_key;
     if (pair.first == pair.second) return Status::invalid_argument;
   }
-  if (pairs.empty()) return Status::ok;
-  if (ignored) {
-    if (!s.rules.add_ignored(pairs, s.shape.size())) return Status::out_of_memory;
-  } else {
-    s.rules.remove_ignored(pairs);
+  if (!pairs.empty()) {
+    if (ignored && !s.rules.add_ignored(pairs, s.shape.size())) return Status::out_of_memory;
+    if (!ignored) s.rules.remove_ignored(pairs);
+    s.invalidate_pairs();
   }
-  s.invalidate_pairs();
+  if (s.observer != nullptr) s.observer->set_ignored(pairs, ignored);
   return Status::ok;
 }
 
@@ -87,7 +87,8 @@ bool Scene::is_ignored(Key a, Key b) const noexcept {
 
 void Scene::set_predicate(const PairPredicate& predicate) noexcept {
   if (state_ == nullptr) return;
-  state_->rules.predicate = predicate;
+  SceneObserver* const observer = state_->observer;
+  state_->rules.predicate = observer == nullptr ? predicate : observer->set_predicate(predicate);
   state_->invalidate_pairs();
 }
 
@@ -103,12 +104,14 @@ Status Scene::set_layers_collide(std::uint16_t a, std::uint16_t b, bool collide)
     return logged(Status::invalid_argument, "Scene::set_layers_collide");
   }
   SceneState& s = *state_;
-  if (s.rules.layers.collide(a, b) == collide) return Status::ok;
-  if (!s.rules.layers.grow_to(std::max(a, b))) {
-    return logged(Status::out_of_memory, "Scene::set_layers_collide");
+  if (s.rules.layers.collide(a, b) != collide) {
+    if (!s.rules.layers.grow_to(std::max(a, b))) {
+      return logged(Status::out_of_memory, "Scene::set_layers_collide");
+    }
+    s.rules.layers.set(a, b, collide);
+    s.invalidate_pairs();
   }
-  s.rules.layers.set(a, b, collide);
-  s.invalidate_pairs();
+  if (s.observer != nullptr) s.observer->set_layers_collide(a, b, collide);
   return Status::ok;
 }
 
@@ -121,11 +124,13 @@ Status Scene::set_layer(Key key, std::uint16_t layer) {
   SceneState& s = *state_;
   if (!s.keys.is_valid(key)) return logged(Status::invalid_key, "Scene::set_layer");
   if (layer >= kSceneLayers) return logged(Status::invalid_argument, "Scene::set_layer");
-  if (s.rules.layer_of(key.id) == layer) return Status::ok;
-  if (!s.rules.begin_layers(s.shape.size(), s.shape.capacity()))
-    return logged(Status::out_of_memory, "Scene::set_layer");
-  s.rules.layer[key.id] = layer;
-  s.invalidate_pairs();
+  if (s.rules.layer_of(key.id) != layer) {
+    if (!s.rules.begin_layers(s.shape.size(), s.shape.capacity()))
+      return logged(Status::out_of_memory, "Scene::set_layer");
+    s.rules.layer[key.id] = layer;
+    s.invalidate_pairs();
+  }
+  if (s.observer != nullptr) s.observer->set_layer(key, layer);
   return Status::ok;
 }
 

@@ -1,12 +1,15 @@
-// The public interface of Scene: checks arguments and calls SceneState (scene_state.cpp). Other
+// The public interface of Scene: checks arguments, calls SceneState (scene_state.cpp), and passes
+// successful calls to the observer. Other
 // members of Scene are in collide.cpp, pair_rules.cpp, contact_offsets.cpp, contact_groups.cpp,
 // reserve.cpp, scene_snapshot.cpp and contacts_snapshot.cpp.
 
 #include <winnow/pipeline/scene.h>
 
+#include <winnow/pipeline/recording.h>
 #include "core/hooks/log.h"
 #include "core/memory/new_in.h"
 #include "core/threads/float_environment.h"
+#include "pipeline/scene/scene_observer.h"
 #include "pipeline/scene/scene_state.h"
 
 #include <algorithm>
@@ -64,10 +67,15 @@ Bytes PartAnswers::bytes() const noexcept {
 }
 
 Scene::Scene(const ShapePool& shapes, const SceneOptions& options) noexcept
-    : state_(new_in<SceneState>(options.memory, shapes, options)) {}
+    : state_(new_in<SceneState>(options.memory, shapes, options)) {
+  if (state_ != nullptr && options.recorder != nullptr)
+    state_->observer = options.recorder->observe_scene(*state_);
+}
 
 Scene::~Scene() {
-  if (state_ != nullptr) delete_in(state_->options.memory, state_);
+  if (state_ == nullptr) return;
+  if (state_->observer != nullptr) state_->observer->end();
+  delete_in(state_->options.memory, state_);
 }
 
 Answer<Key> Scene::add(const BodyDefinition& body) {
@@ -103,7 +111,10 @@ Status Scene::add(std::span<const BodyDefinition> bodies, std::span<Key> keys) {
   for (std::size_t i = 0; i < bodies.size(); ++i) keys[i] = s.acquire(bodies[i]);
   if (is_first) s.choose_origin();
   const Status status = s.settle(bodies, keys);
-  if (status == Status::ok) return logged(status, "Scene::add");
+  if (status == Status::ok) {
+    if (s.observer != nullptr) s.observer->add(bodies, keys);
+    return status;
+  }
   // In reverse, so that the next bodies get the same ids.
   for (std::size_t i = keys.size(); i-- > 0;) {
     s.keys.release(keys[i].id);
@@ -125,6 +136,7 @@ Status Scene::remove(std::span<const Key> keys) {
   ++s.regroupings;
   s.stale.forget_removed(s.keys);
   s.rules.forget_ignored(keys, s.keys);
+  if (s.observer != nullptr) s.observer->remove(keys);
   return Status::ok;
 }
 
@@ -142,6 +154,7 @@ void Scene::clear() noexcept {
   s.stale.forget_removed(s.keys);
   s.rules.forget_bodies();
   ++s.regroupings;
+  if (s.observer != nullptr) s.observer->clear();
 }
 
 Status Scene::move(Key key, const Pose& pose) {
@@ -150,6 +163,8 @@ Status Scene::move(Key key, const Pose& pose) {
   if (!state_->keys.is_valid(key)) return logged(Status::invalid_key, "Scene::move");
   if (!pose.is_valid()) return logged(Status::invalid_pose, "Scene::move");
   state_->set_pose(key.id, pose);
+  if (state_->observer != nullptr)
+    state_->observer->move({&key, 1}, PoseView(std::span<const Pose>(&pose, 1)));
   return Status::ok;
 }
 
@@ -169,6 +184,7 @@ Status Scene::move(std::span<const Key> keys, const PoseView& poses) {
     }
     s.set_pose(keys[i].id, to);
   }
+  if (s.observer != nullptr) s.observer->move(keys, poses);
   return Status::ok;
 }
 
@@ -183,7 +199,9 @@ Status Scene::set_body_state(std::span<const Key> keys, BodyState state) {
   if (!is_body_state(state)) return logged(Status::invalid_argument, "Scene::set_body_state");
   if (!s.stale.are_distinct(s.keys, keys))
     return logged(Status::invalid_key, "Scene::set_body_state");
-  return logged(s.move_to_set(keys, state), "Scene::set_body_state");
+  const Status status = s.move_to_set(keys, state);
+  if (is_observed(status, state_)) s.observer->set_body_state(keys, state);
+  return logged(status, "Scene::set_body_state");
 }
 
 Status Scene::set_shape(Key key, ShapeId shape) {
@@ -196,6 +214,7 @@ Status Scene::set_shape(Key key, ShapeId shape) {
   s.shape[key.id] = shape;
   s.shaped_at[key.id] = s.clock;
   s.stale.mark(key.id);
+  if (s.observer != nullptr) s.observer->set_shape(key, shape);
   return Status::ok;
 }
 
@@ -207,6 +226,7 @@ Status Scene::set_filter(Key key, const ObjectFilter& filter) {
   SceneSet& set = s.set(s.body_state[key.id]);
   const Status status = set.partition->set_filter(s.place[key.id], filter);
   if (status == Status::ok) ++set.changes;
+  if (is_observed(status, state_)) s.observer->set_filter(key, filter);
   return logged(status, "Scene::set_filter");
 }
 
@@ -244,7 +264,9 @@ Key Scene::key_of(ObjectId id) const noexcept {
 
 Status Scene::refresh() {
   const DefaultFloatEnvironment environment;
-  return logged(state_ != nullptr ? state_->refresh() : Status::out_of_memory, "Scene::refresh");
+  const Status status = state_ != nullptr ? state_->refresh() : Status::out_of_memory;
+  if (is_observed(status, state_)) state_->observer->refresh();
+  return logged(status, "Scene::refresh");
 }
 
 const Partition* Scene::partition(BodyState state) const noexcept {

@@ -10,6 +10,7 @@
 #include "core/memory/snapshot_frame.h"
 #include "core/threads/float_environment.h"
 #include "pipeline/narrow/tier_number.h"
+#include "pipeline/scene/scene_observer.h"
 #include "pipeline/scene/scene_state.h"
 
 #include <algorithm>
@@ -352,8 +353,11 @@ Status Scene::save(Column<std::byte>& out) const {
 
 Status Scene::load(std::span<const std::byte> saved) {
   const DefaultFloatEnvironment environment;
-  return logged(state_ == nullptr ? Status::out_of_memory : load_scene(*state_, saved, nullptr),
-                "Scene::load");
+  if (state_ == nullptr) return logged(Status::out_of_memory, "Scene::load");
+  if (state_->observer != nullptr) state_->observer->before_load();
+  const Status status = load_scene(*state_, saved, nullptr);
+  if (is_observed(status, state_)) state_->observer->load(saved);
+  return logged(status, "Scene::load");
 }
 
 }  // namespace winnow

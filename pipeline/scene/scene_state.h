@@ -22,6 +22,8 @@
 
 namespace winnow {
 
+class SceneObserver;
+
 inline constexpr BodyState kAllBodyStates[kBodyStates] = {BodyState::fixed, BodyState::dynamic,
                                                           BodyState::sleeping};
 
@@ -217,6 +219,8 @@ struct SceneState : BodyColumns {
   SceneState& operator=(const SceneState&) = delete;
 
   const ShapePool& shapes;
+  /// Null if the scene is not recorded.
+  SceneObserver* observer = nullptr;
   SceneOptions options;
   bool options_are_good;
   /// Boxes are grown by this in every direction, in addition to contact offsets.
@@ -311,6 +315,11 @@ struct SceneState : BodyColumns {
   /// Makes the next `collide` find all pairs again.
   void invalidate_pairs() noexcept;
 };
+
+/// True if a call with this status succeeded, and the scene is recorded.
+[[nodiscard]] inline bool is_observed(Status status, const SceneState* scene) noexcept {
+  return status == Status::ok && scene->observer != nullptr;
+}
 
 /// Limits the box columns of a scene on destruction: shrinks the columns that grew beyond one
 /// batch, unless they were larger at construction.

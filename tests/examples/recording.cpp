@@ -31,7 +31,7 @@ int main() {
   {
     // [recording]
     winnow::Recorder recorder(file);
-    winnow::RecordedPartition partition(recorder, winnow::linear_bvh());  // instead of Partition
+    winnow::Partition partition(winnow::linear_bvh(), {.recorder = &recorder});
     must(partition.insert(boxes, names, keys));
     must(partition.self_pairs(pairs));
     recorder.end_frame();

@@ -210,7 +210,7 @@ bool record(std::size_t k, std::vector<std::byte>& recording) {
   memory.refuse_one_after(k);
   {
     Recorder recorder(sink, &memory);
-    RecordedPartition partition(recorder, linear_bvh());
+    Partition partition(linear_bvh(), {.recorder = &recorder});
     const std::vector<Aabb> boxes = mixed_boxes(60, 5);
     std::vector<Key> keys(boxes.size());
     EXPECT_EQ(partition.insert(boxes, {}, keys), Status::ok);

@@ -299,10 +299,13 @@ TEST(ClusterSceneInput, removed_name_can_be_used_again) {
 TEST(ClusterSceneInput, options_out_of_range_fail_every_call) {
   const WorldShapes shapes;
   LoopbackTransport transport(2);
-  for (const ClusterSceneOptions& options : {ClusterSceneOptions{.scene = {.contact_margin = -1.0}},
-                                             ClusterSceneOptions{.imbalance = 0.5},
-                                             ClusterSceneOptions{.scene = {.cache_tolerance = 1.0}},
-                                             ClusterSceneOptions{.scene = {.warm_start = true}}}) {
+  Recorder recorder(RecordingSink{});
+  for (const ClusterSceneOptions& options :
+       {ClusterSceneOptions{.scene = {.contact_margin = -1.0}},
+        ClusterSceneOptions{.imbalance = 0.5},
+        ClusterSceneOptions{.scene = {.cache_tolerance = 1.0}},
+        ClusterSceneOptions{.scene = {.warm_start = true}},
+        ClusterSceneOptions{.scene = {.recorder = &recorder}}}) {
     ClusterScene cluster(transport, shapes.shapes, options);
     EXPECT_EQ(cluster.status(), Status::invalid_argument);
     EXPECT_EQ(cluster.collide(ContactLevel::pairs), Status::invalid_argument);

@@ -711,7 +711,7 @@ TEST(SupportShapes, user_shape_ends_recording) {
   ShapePool shapes;
   FaultyShape faulty;
   ShapeId id = expect_ok(shapes.add(SupportShape{farthest_of_faulty, &faulty, 2.0, 0.0}));
-  RecordedScene scene(recorder, shapes);
+  Scene scene(shapes, {.recorder = &recorder});
   expect_ok(scene.add({.shape = id}));
   EXPECT_EQ(recorder.status(), Status::unsupported);
 }

@@ -65,14 +65,28 @@ def test_partitions_are_recorded_and_replayed(file):
     plain.insert(lower, upper)
     assert pair_set(plain.self_pairs()) == reference_pairs(lower, upper)
     assert len(found) > 0
-    refused("unsupported", partition.pairs_with, plain)
-    refused("unsupported", plain.pairs_with, partition)
-    refused("unsupported", partition.load, plain.save())
     recorder.close()
     assert recorder.status == "ok" and recorder.bytes == len(read(file))
     counts = played(file)
     assert counts["frames"] == 4 and counts["worlds"] == 2 and counts["calls"] == recorder.calls
     assert counts["questions"] == 4 * (4 + 3 * 10 + 1 + 20 + 20) + 1
+
+
+@pytest.mark.parametrize("call", ["load", "with_unrecorded", "of_unrecorded"])
+def test_call_that_cannot_be_recorded_ends_the_recording(file, call):
+    recorder = winnow.Recorder(file)
+    lower, upper = random_boxes(106, 100)
+    partition, plain = winnow.Partition(recorder=recorder), winnow.Partition()
+    for each in (partition, plain):
+        each.insert(lower, upper)
+    assert recorder.status == "ok"
+    if call == "load":
+        partition.load(plain.save())
+        assert len(partition) == 100
+    else:
+        first, second = (partition, plain) if call == "with_unrecorded" else (plain, partition)
+        assert len(first.pairs_with(second)) >= 100
+    assert recorder.status == "unsupported"
 
 
 def test_scenes_are_recorded_and_replayed(file):

@@ -30,7 +30,7 @@ TEST_F(ProgramFrames, frames_have_a_row_for_each_id) {
   const Aabb far{{5, 0, 0}, {6, 1, 1}};
   {
     Recorder recorder(path_.c_str());
-    RecordedPartition partition(recorder, linear_bvh());
+    Partition partition(linear_bvh(), {.recorder = &recorder});
     Key keys[3];
     keys[0] = expect_ok(partition.insert(unit, 0));
     keys[1] = expect_ok(partition.insert(unit, 0));
@@ -56,7 +56,7 @@ TEST_F(ProgramFrames, frames_have_a_row_for_each_id) {
 TEST_F(ProgramFrames, frames_follow_queries_without_end_frame) {
   {
     Recorder recorder(path_.c_str());
-    RecordedPartition partition(recorder, linear_bvh());
+    Partition partition(linear_bvh(), {.recorder = &recorder});
     PairBuffer pairs;
     Key key;
     for (int frame = 0; frame < 4; ++frame) {
@@ -87,7 +87,7 @@ TEST_F(ProgramFrames, frames_have_contacts_at_the_bodies) {
     Recorder recorder(path_.c_str());
     ShapePool shapes;
     const ShapeId box = shapes.add(BoxShape{{0.5, 0.5, 0.5}});
-    RecordedScene scene(recorder, shapes);
+    Scene scene(shapes, {.recorder = &recorder});
     expect_ok(scene.add({.shape = box, .pose = Pose::at(10, 20, 30)}));
     expect_ok(scene.add({.shape = box, .pose = Pose::at(10, 20, 30.9)}));
     recorder.end_frame();

@@ -26,7 +26,7 @@ struct Crowd {
   std::vector<Aabb> boxes;
 };
 
-void spawn(RecordedPartition& partition, Crowd& crowd, std::span<const Aabb> boxes) {
+void spawn(Partition& partition, Crowd& crowd, std::span<const Aabb> boxes) {
   std::vector<Key> keys(boxes.size());
   std::vector<ClientData> data(boxes.size());
   for (std::size_t i = 0; i < data.size(); ++i) data[i] = 1000 + i;
@@ -35,7 +35,7 @@ void spawn(RecordedPartition& partition, Crowd& crowd, std::span<const Aabb> box
   crowd.boxes.insert(crowd.boxes.end(), boxes.begin(), boxes.end());
 }
 
-void kill_some(RecordedPartition& partition, Crowd& crowd, Random& random) {
+void kill_some(Partition& partition, Crowd& crowd, Random& random) {
   std::vector<Key> gone;
   for (std::size_t i = 0; i < crowd.keys.size();) {
     if (random.below(10) == 0) {
@@ -51,7 +51,7 @@ void kill_some(RecordedPartition& partition, Crowd& crowd, Random& random) {
   EXPECT_EQ(partition.remove(gone), Status::ok);
 }
 
-void move_some(RecordedPartition& partition, Crowd& crowd, Random& random, int frame) {
+void move_some(Partition& partition, Crowd& crowd, Random& random, int frame) {
   std::vector<std::uint32_t> moved;
   for (std::size_t i = 0; i < crowd.keys.size(); ++i) {
     if (frame % 3 != 0 && random.below(4) != 0) continue;
@@ -71,7 +71,7 @@ void move_some(RecordedPartition& partition, Crowd& crowd, Random& random, int f
   EXPECT_EQ(partition.update(crowd.keys, boxes, IndexSubset::masked(mask)), Status::ok);
 }
 
-void query_casts(const RecordedPartition& partition, Random& random) {
+void query_casts(const Partition& partition, Random& random) {
   HitBuffer hits;
   Hit hit;
   std::vector<Ray> rays(20);
@@ -96,7 +96,7 @@ void query_casts(const RecordedPartition& partition, Random& random) {
   EXPECT_EQ(partition.nearest({{3, 3, 3}, {4, 4, 4}}, 7, 9.0F, hits, some), Status::ok);
 }
 
-void query_overlaps(const RecordedPartition& partition) {
+void query_overlaps(const Partition& partition) {
   OverlapBuffer objects;
   PairBuffer pairs;
   const Filter some{.predicate = {kNotThirds, nullptr}};
@@ -124,8 +124,8 @@ void query_overlaps(const RecordedPartition& partition) {
 
 void record_partition(Recorder& recorder, StructureKind structure, std::size_t count, int frames) {
   Random random(7);
-  RecordedPartition partition(recorder, structure, {.fat_margin = {0.0F, 0.02F}});
-  RecordedPartition other(recorder, linear_bvh());
+  Partition partition(structure, {.fat_margin = {0.0F, 0.02F}, .recorder = &recorder});
+  Partition other(linear_bvh(), {.recorder = &recorder});
   Crowd crowd;
   Crowd others;
   spawn(partition, crowd, uniform_boxes(count));
@@ -172,7 +172,7 @@ void record_volumes(Recorder& recorder, std::size_t count) {
   const std::vector<Aabb> boxes = uniform_boxes(count);
   std::vector<Key> keys(count);
   PairBuffer pairs;
-  RecordedPartition balls(recorder, flat_grid(), {.volume = Volume::sphere});
+  Partition balls(flat_grid(), {.volume = Volume::sphere, .recorder = &recorder});
   std::vector<Sphere> spheres;
   for (const Aabb& box : boxes) spheres.push_back(Sphere::around(box));
   EXPECT_EQ(balls.insert(std::span<const Sphere>(spheres), {}, keys), Status::ok);
@@ -180,7 +180,7 @@ void record_volumes(Recorder& recorder, std::size_t count) {
   for (Sphere& sphere : spheres) sphere.radius *= 0.5F;
   EXPECT_EQ(balls.update(keys, std::span<const Sphere>(spheres)), Status::ok);
   EXPECT_EQ(balls.self_pairs(pairs), Status::ok);
-  RecordedPartition cut(recorder, loose_octree(3.0F), {.volume = Volume::kdop18});
+  Partition cut(loose_octree(3.0F), {.volume = Volume::kdop18, .recorder = &recorder});
   std::vector<Kdop<18>> kdops;
   for (const Aabb& box : boxes) kdops.push_back(Kdop<18>::around(box));
   EXPECT_EQ(cut.insert(std::span<const Kdop<18>>(kdops), {}, keys), Status::ok);
@@ -219,7 +219,7 @@ struct Landscape {
   [[nodiscard]] HeightSamples samples() const {
     return {.heights = heights, .columns = 3, .rows = 3};
   }
-  void add_to(RecordedScene& scene, SceneWorld& world) const {
+  void add_to(Scene& scene, SceneWorld& world) const {
     for (const ShapeId id : ids) {
       const bool moves = id.composite_kind() == CompositeKind::compound;
       expect_ok(scene.add({.shape = id,
@@ -241,7 +241,7 @@ struct Landscape {
 };
 
 /// Changes of bodies other than poses.
-void change_bodies(RecordedScene& scene, SceneWorld& world, Landscape& landscape, int frame) {
+void change_bodies(Scene& scene, SceneWorld& world, Landscape& landscape, int frame) {
   if (frame == 1) {
     EXPECT_EQ(scene.set_body_state(world.keys[0], BodyState::sleeping), Status::ok);
   }
@@ -262,7 +262,7 @@ void change_bodies(RecordedScene& scene, SceneWorld& world, Landscape& landscape
     // Reuses the id of a body that was removed.
     Key key;
     ShapeId& rock = landscape.ids.back();
-    EXPECT_EQ(scene.set_shape(scene->key_of(5), landscape.ids[3]), Status::ok);
+    EXPECT_EQ(scene.set_shape(scene.key_of(5), landscape.ids[3]), Status::ok);
     EXPECT_EQ(landscape.pool.remove(rock), Status::ok);
     landscape.ids.pop_back();
     landscape.add_compound(world, 17);
@@ -292,7 +292,7 @@ struct ModulusPredicate {
 };
 
 /// Casts rays and moving shapes.
-void cast_all(RecordedQueries& queries, SceneWorld& world, ShapeId shape, const Filter& filter) {
+void cast_all(SceneQueries& queries, SceneWorld& world, ShapeId shape, const Filter& filter) {
   std::vector<ShapeRay> rays;
   for (int i = 0; i < 9; ++i) {
     const Pose from = world.random_pose();
@@ -333,7 +333,7 @@ void cast_all(RecordedQueries& queries, SceneWorld& world, ShapeId shape, const 
 }
 
 /// Makes every kind of query of a scene.
-void query_all(RecordedQueries& queries, SceneWorld& world, ShapeId shape, const Filter& filter) {
+void query_all(SceneQueries& queries, SceneWorld& world, ShapeId shape, const Filter& filter) {
   cast_all(queries, world, shape, filter);
   std::span<const SceneOverlap> bodies =
       expect_ok(queries.overlap(shape, world.random_pose(), filter));
@@ -362,7 +362,7 @@ namespace {
 /// Adds, moves, changes and removes sensors of many shapes, and senses.
 class Watch {
  public:
-  Watch(RecordedScene& scene, std::span<const ShapeId> shapes) : sensors_(scene), shapes_(shapes) {}
+  Watch(Scene& scene, std::span<const ShapeId> shapes) : sensors_(scene), shapes_(shapes) {}
 
   void look(const SceneWorld& world, int frame) {
     Key key;
@@ -383,19 +383,19 @@ class Watch {
       keys_.erase(keys_.begin());
     }
     EXPECT_EQ(sensors_.sense(), Status::ok);
-    sensed += sensors_->sensed().size();
+    sensed += sensors_.sensed().size();
   }
 
   std::size_t sensed = 0;
 
  private:
-  RecordedSensors sensors_;
+  Sensors sensors_;
   std::span<const ShapeId> shapes_;
   std::vector<Key> keys_;
 };
 
 /// Finds impacts of bodies that move along x, by end poses or by motions; some are bullets.
-void find_all_impacts(RecordedContinuousCollision& ccd, const SceneWorld& world, bool by_motions) {
+void find_all_impacts(ContinuousCollision& ccd, const SceneWorld& world, bool by_motions) {
   std::vector<Pose> ends;
   std::vector<RigidMotion> motions;
   std::vector<std::uint8_t> bullets;
@@ -414,11 +414,11 @@ void find_all_impacts(RecordedContinuousCollision& ccd, const SceneWorld& world,
 }
 
 /// Saves the scene and its contacts, and loads them again.
-void load_again(RecordedScene& scene, Contacts& contacts) {
+void load_again(Scene& scene, Contacts& contacts) {
   Column<std::byte> bodies(std::pmr::get_default_resource());
   Column<std::byte> touching(std::pmr::get_default_resource());
-  EXPECT_EQ(scene->save(bodies), Status::ok);
-  EXPECT_EQ(scene->save_contacts(contacts, touching), Status::ok);
+  EXPECT_EQ(scene.save(bodies), Status::ok);
+  EXPECT_EQ(scene.save_contacts(contacts, touching), Status::ok);
   EXPECT_EQ(scene.load({bodies.data(), bodies.size()}), Status::ok);
   EXPECT_EQ(scene.load_contacts({touching.data(), touching.size()}, contacts), Status::ok);
 }
@@ -430,7 +430,9 @@ void record_scene(Recorder& recorder, std::size_t count, int frames, const Scene
   const HalfSpaceShape ground{{0.1, -0.2, 0.7}, -1.0};
   ShapeId ground_id = expect_ok(world.pool.add(ground));
   Landscape landscape(world);
-  RecordedScene scene(recorder, world.pool, landscape.pool, options);
+  SceneOptions with_landscape = options;
+  with_landscape.composites = &landscape.pool;
+  Scene scene(world.pool, recorded_by(recorder, with_landscape));
   landscape.add_to(scene, world);
   world.keys.resize(world.bodies.size());
   EXPECT_EQ(scene.add(world.bodies, world.keys), Status::ok);
@@ -443,8 +445,8 @@ void record_scene(Recorder& recorder, std::size_t count, int frames, const Scene
   }
   ground_key = expect_ok(scene.add({.shape = ground_id, .state = BodyState::fixed}));
   Contacts contacts;
-  RecordedQueries queries(scene);
-  RecordedContinuousCollision ccd(scene);
+  SceneQueries queries(scene);
+  ContinuousCollision ccd(scene);
   const ShapeId watching[] = {world.shapes[0], landscape.ids[0], round[0], landscape.ids[3]};
   Watch watch(scene, watching);
   ModulusPredicate predicate;

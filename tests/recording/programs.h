@@ -25,6 +25,12 @@ using Bytes8 = std::vector<std::byte>;
           &bytes};
 }
 
+/// Returns the options of a scene with a recorder.
+[[nodiscard]] inline SceneOptions recorded_by(Recorder& recorder, SceneOptions options) {
+  options.recorder = &recorder;
+  return options;
+}
+
 /// Inserts, moves and removes boxes, and makes every kind of query, for this number of frames.
 void record_partition(Recorder& recorder, StructureKind structure, std::size_t count, int frames);
 /// As above, for each kind of volume.

@@ -96,7 +96,7 @@ TEST(ProgramRecordings, predicate_results_are_recorded) {
   Recorder recorder(kept_in(bytes));
   Contacts contacts;
   {
-    RecordedScene scene(recorder, row.shapes);
+    Scene scene(row.shapes, {.recorder = &recorder});
     ASSERT_EQ(scene.add(row.bodies, row.keys), Status::ok);
     scene.set_predicate({refuse_even, nullptr});
     for (int frame = 0; frame < 3; ++frame) {
@@ -121,7 +121,7 @@ TEST(ProgramRecordings, predicate_results_are_recorded) {
 /// A recorded row, one pair of which ends and begins in turn.
 struct RecordedRow : Row {
   explicit RecordedRow(Recorder& recorder, const SceneOptions& options = {})
-      : scene(recorder, shapes, options) {
+      : scene(shapes, recorded_by(recorder, options)) {
     EXPECT_EQ(scene.add(bodies, keys), Status::ok);
   }
   void step(Contacts& contacts, Status expected = Status::ok) {
@@ -129,7 +129,7 @@ struct RecordedRow : Row {
     EXPECT_EQ(scene.collide(ContactLevel::manifold, contacts), expected);
   }
 
-  RecordedScene scene;
+  Scene scene;
   int steps = 0;
 };
 
@@ -167,22 +167,24 @@ TEST(ProgramRecordings, change_back_to_earlier_contacts_ends_the_recording) {
   EXPECT_EQ(player.differences(), 0U);
 }
 
-TEST(ProgramRecordings, loaded_contacts_end_the_recording) {
+TEST(ProgramRecordings, loaded_contacts_are_replayed) {
   for (const bool into_others : {false, true}) {
     Bytes8 bytes;
     Recorder recorder(kept_in(bytes));
-    RecordedRow row(recorder);
-    Contacts contacts;
-    Contacts others;
-    Contacts& loaded = into_others ? others : contacts;
-    row.step(contacts);
-    Column<std::byte> saved(std::pmr::get_default_resource());
-    ASSERT_EQ(row.scene->save_contacts(contacts, saved), Status::ok);
-    ASSERT_EQ(row.scene->load_contacts({saved.data(), saved.size()}, loaded), Status::ok);
-    EXPECT_EQ(recorder.status(), Status::ok);
-    row.step(loaded);
-    EXPECT_EQ(loaded.size(), 28U);
-    EXPECT_EQ(recorder.status(), Status::unsupported);
+    {
+      RecordedRow row(recorder);
+      Contacts contacts;
+      Contacts others;
+      Contacts& loaded = into_others ? others : contacts;
+      row.step(contacts);
+      Column<std::byte> saved(std::pmr::get_default_resource());
+      ASSERT_EQ(row.scene.save_contacts(contacts, saved), Status::ok);
+      ASSERT_EQ(row.scene.load_contacts({saved.data(), saved.size()}, loaded), Status::ok);
+      row.step(loaded);
+      EXPECT_EQ(loaded.size(), 28U);
+    }
+    ASSERT_EQ(recorder.close(), Status::ok);
+    expect_same_everywhere(bytes);
   }
 }
 
@@ -243,7 +245,8 @@ TEST(ProgramRecordings, composites_without_a_body_are_replayed) {
   Bytes8 bytes;
   Recorder recorder(kept_in(bytes));
   {
-    RecordedScene scene(recorder, row.shapes, composites, {.cache_tolerance = 0.01});
+    Scene scene(row.shapes,
+                {.cache_tolerance = 0.01, .composites = &composites, .recorder = &recorder});
     Key key = expect_ok(scene.add({.shape = floor, .state = BodyState::fixed}));
     key = expect_ok(scene.add({.shape = row.ball, .pose = Pose::at(0, 0, 0.5)}));
     Contacts contacts;
@@ -276,13 +279,13 @@ TEST(ProgramRecordings, queries_of_several_threads_are_replayed) {
   Bytes8 bytes;
   Recorder recorder(kept_in(bytes));
   {
-    RecordedScene scene(recorder, row.shapes);
+    Scene scene(row.shapes, {.recorder = &recorder});
     ASSERT_EQ(scene.add(row.bodies, row.keys), Status::ok);
     ASSERT_EQ(scene.refresh(), Status::ok);
     std::vector<std::thread> threads;
     for (std::size_t thread = 0; thread < 4; ++thread) {
       threads.emplace_back([&, thread] {
-        RecordedQueries queries(scene);
+        SceneQueries queries(scene);
         for (std::size_t i = 0; i < own.size(); ++i) {
           std::span<const SceneOverlap> found;
           const Pose pose = Pose::at(0.7 * static_cast<double>(thread + i), 0.3, 0);
@@ -305,7 +308,7 @@ TEST(ProgramRecordings, queries_by_scene_rules_record_the_predicate) {
   Bytes8 bytes;
   Recorder recorder(kept_in(bytes));
   {
-    RecordedScene scene(recorder, row.shapes);
+    Scene scene(row.shapes, {.recorder = &recorder});
     ASSERT_EQ(scene.add(row.bodies, row.keys), Status::ok);
     scene.set_predicate({[](void*, ObjectId a, ObjectId b) { return (a + b) % 3 != 0; }});
     ASSERT_EQ(scene.refresh(), Status::ok);
@@ -314,7 +317,7 @@ TEST(ProgramRecordings, queries_by_scene_rules_record_the_predicate) {
       std::vector<std::thread> threads;
       for (std::size_t thread = 0; thread < 4; ++thread) {
         threads.emplace_back([&, thread] {
-          RecordedQueries queries(scene);
+          SceneQueries queries(scene);
           for (std::size_t i = 0; i + 4 < row.keys.size(); ++i) {
             const std::span<const Key> some(row.keys.data() + i, thread + 1);
             std::span<const KeyPair> pairs = expect_ok(queries.overlaps(some, row.keys));
@@ -339,11 +342,11 @@ TEST(ProgramRecordings, version_3_ignores_scene_rules_in_queries) {
   Bytes8 bytes;
   Recorder recorder(kept_in(bytes));
   {
-    RecordedScene scene(recorder, row.shapes);
+    Scene scene(row.shapes, {.recorder = &recorder});
     ASSERT_EQ(scene.add(row.bodies, row.keys), Status::ok);
     ASSERT_EQ(scene.set_ignored(row.keys[0], row.keys[1]), Status::ok);
     ASSERT_EQ(scene.refresh(), Status::ok);
-    RecordedQueries queries(scene);
+    SceneQueries queries(scene);
     SceneDistance gap = expect_ok(queries.distance(row.keys[0], row.keys[1], 9.0, PairRules::none));
     EXPECT_TRUE(gap);
     std::span<const KeyPair> pairs =
@@ -366,13 +369,14 @@ TEST(ProgramRecordings, queries_allocate_only_in_queries_and_recorder) {
   CountingMemory of_queries;
   Recorder recorder(kept_in(bytes), &of_recorder);
   {
-    RecordedScene scene(recorder, row.shapes, composites, {.memory = &of_scene});
+    Scene scene(row.shapes,
+                {.memory = &of_scene, .composites = &composites, .recorder = &recorder});
     ASSERT_EQ(scene.add(row.bodies, row.keys), Status::ok);
     ASSERT_EQ(scene.refresh(), Status::ok);
-    RecordedQueries queries(scene, &of_queries);
+    SceneQueries queries(scene, &of_queries);
     std::span<const SceneOverlap> found;
     // The first query allocates the memory that all queries share.
-    found = expect_ok(queries.queries().overlap(row.ball, Pose{}));
+    found = expect_ok(queries.overlap(row.ball, Pose{}));
     const std::size_t before = of_scene.requests();
     for (const ShapeId shape : {floor, box}) {
       found = expect_ok(queries.overlap(shape, Pose{}));
@@ -389,11 +393,11 @@ TEST(ProgramRecordings, refused_queries_are_not_recorded) {
   Row row;
   Bytes8 bytes;
   Recorder recorder(kept_in(bytes));
-  RecordedScene scene(recorder, row.shapes);
+  Scene scene(row.shapes, {.recorder = &recorder});
   ASSERT_EQ(scene.add(row.bodies, row.keys), Status::ok);
   ASSERT_EQ(scene.refresh(), Status::ok);
   ASSERT_EQ(scene.move(row.keys[0], Pose::at(0, 9, 0)), Status::ok);
-  RecordedQueries queries(scene);
+  SceneQueries queries(scene);
   const std::uint64_t before = recorder.calls();
   expect_error(queries.closest(ShapeRay{}), Status::invalid_argument);  // not refreshed
   ASSERT_EQ(scene.refresh(), Status::ok);
@@ -466,7 +470,7 @@ TEST(ProgramRecordings, loaded_scene_is_replayed) {
   Bytes8 bytes;
   Recorder recorder(kept_in(bytes));
   {
-    RecordedScene scene(recorder, pile.pool, {.cache_tolerance = 0.05, .warm_start = true});
+    Scene scene(pile.pool, {.cache_tolerance = 0.05, .warm_start = true, .recorder = &recorder});
     expect_ok(scene.add({.shape = pile.ball}));
     Contacts contacts;
     ASSERT_EQ(scene.collide(ContactLevel::manifold, contacts), Status::ok);
@@ -491,27 +495,27 @@ TEST(ProgramRecordings, sensors_and_impacts_are_replayed_bit_identical) {
   Bytes8 bytes;
   Recorder recorder(kept_in(bytes));
   {
-    RecordedScene scene(recorder, pile.pool);
+    Scene scene(pile.pool, {.recorder = &recorder});
     pile.add_to(scene);
-    RecordedContinuousCollision ccd(scene);
+    ContinuousCollision ccd(scene);
     const Pose end[] = {Pose::at(0.2, 0, 3.0)};
     ASSERT_EQ(ccd.find_impacts(std::span(pile.keys + 2, 1), end), Status::ok);
-    EXPECT_GT(ccd->impacts().size(), 0U);
+    EXPECT_GT(ccd.impacts().size(), 0U);
     EXPECT_EQ(ccd.find_impacts(pile.keys, end), Status::size_mismatch);
-    RecordedSensors sensors(scene);
+    Sensors sensors(scene);
     {
-      RecordedSensors others(scene);
+      Sensors others(scene);
       Key key = expect_ok(others.add({.shape = pile.ball, .carrier = pile.keys[1]}));
       EXPECT_EQ(others.move(Key{}, Pose::at(0, 0, 0)), Status::invalid_key);
       ASSERT_EQ(others.sense(), Status::ok);
-      EXPECT_EQ(others->sensed().size(), 2U);
+      EXPECT_EQ(others.sensed().size(), 2U);
       ASSERT_EQ(others.move(key, Pose::at(9, 9, 9)), Status::ok);
       ASSERT_EQ(others.sense(), Status::ok);
-      EXPECT_EQ(others->left().size(), 2U);
+      EXPECT_EQ(others.left().size(), 2U);
     }
     expect_ok(sensors.add({.shape = pile.box}));
     ASSERT_EQ(sensors.sense(), Status::ok);
-    EXPECT_EQ(sensors->sensed().size(), 3U);
+    EXPECT_EQ(sensors.sensed().size(), 3U);
   }
   ASSERT_EQ(recorder.close(), Status::ok);
   expect_same_everywhere(bytes);
@@ -582,7 +586,7 @@ TEST(ProgramRecordings, difference_from_the_recording_is_reported) {
   Bytes8 bytes;
   Recorder recorder(kept_in(bytes));
   {
-    RecordedPartition partition(recorder, linear_bvh());
+    Partition partition(linear_bvh(), {.recorder = &recorder});
     std::vector<Key> keys(2);
     EXPECT_EQ(partition.insert(std::vector<Aabb>(2, Aabb{{0, 0, 0}, {1, 1, 1}}), {}, keys),
               Status::ok);

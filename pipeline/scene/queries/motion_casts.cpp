@@ -6,6 +6,7 @@
 #include "core/threads/float_environment.h"
 #include "pipeline/motion/body_impact.h"
 #include "pipeline/motion/relative_motion_bounds.h"
+#include "pipeline/scene/queries/observed_filter.h"
 #include "pipeline/scene/queries/queries.h"
 
 #include <algorithm>
@@ -152,16 +153,24 @@ Answer<SceneHit> SceneQueries::closest(const MotionCast& cast, const Filter& fil
   const DefaultFloatEnvironment environment;
   const Status status = check(state_, cast, tolerance);
   if (status != Status::ok) return status;
-  return MotionQuery(*state_, cast, filter, tolerance).closest();
+  ObservedFilter observed(state_, filter);
+  const Answer<SceneHit> hit = MotionQuery(*state_, cast, observed.used(), tolerance).closest();
+  if (is_observed(hit.status, state_))
+    state_->observer->cast(HitForm::closest, cast, observed, tolerance, one_hit(hit));
+  return hit;
 }
 
 Answer<std::span<const SceneHit>> SceneQueries::all(const MotionCast& cast, const Filter& filter,
                                                     double tolerance) {
   const DefaultFloatEnvironment environment;
+  ObservedFilter observed(state_, filter);
   Status status = check(state_, cast, tolerance);
-  if (status == Status::ok) status = MotionQuery(*state_, cast, filter, tolerance).all();
+  if (status == Status::ok) status = MotionQuery(*state_, cast, observed.used(), tolerance).all();
   if (status != Status::ok) return status;
-  return std::span<const SceneHit>(state_->hits.data(), state_->hits.size());
+  const std::span<const SceneHit> hits(state_->hits.data(), state_->hits.size());
+  if (state_->observer != nullptr)
+    state_->observer->cast(HitForm::all, cast, observed, tolerance, hits);
+  return hits;
 }
 
 }  // namespace winnow

@@ -7,9 +7,12 @@
 #include <winnow/pipeline/scene_queries.h>
 #include "pipeline/composites/mid_phase.h"
 #include "pipeline/composites/parts.h"
+#include "pipeline/scene/scene_observer.h"
 #include "pipeline/scene/scene_state.h"
 
 namespace winnow {
+
+class QueryObserver;
 
 /// A ray's hit on a body; `body` is kNoObject if there is none.
 struct BodyRayHit {
@@ -55,6 +58,7 @@ class RaySurfaces {
 struct QueryState {
   QueryState(const SceneState& queried, std::pmr::memory_resource* memory) noexcept
       : scene(queried),
+        observer(queried.observer == nullptr ? nullptr : &queried.observer->queries()),
         parts(scene.shapes, scene.options.composites),
         boxes(memory),
         objects(memory),
@@ -65,9 +69,12 @@ struct QueryState {
         distances(memory),
         bounds(memory),
         gaps(memory),
-        overlapping(memory) {}
+        overlapping(memory),
+        accepted(memory) {}
 
   const SceneState& scene;
+  /// Null if the scene is not recorded.
+  QueryObserver* const observer;
   SubShapeQuery parts;
   RaySurfaces surfaces;
   /// Results of the partitions. Bodies are tested inside the partition's query, by
@@ -88,7 +95,11 @@ struct QueryState {
   Column<float> bounds;
   Column<float> gaps;
   Column<KeyPair> overlapping;
+  /// Bodies that the predicate of the current query accepted, if the scene is recorded.
+  Column<ObjectId> accepted;
 
+  /// Bytes of results and scratch, without the object itself.
+  [[nodiscard]] Footprint footprint() const noexcept;
   [[nodiscard]] PlacedShape placed(std::uint32_t body) const noexcept {
     return {scene.shape[body], scene.pose[body]};
   }
@@ -111,6 +122,11 @@ struct QueryState {
     return Status::ok;
   }
 };
+
+/// Implements SceneQueries::overlap (scene_queries.cpp).
+[[nodiscard]] Answer<std::span<const SceneOverlap>> find_overlaps(QueryState& state, ShapeId shape,
+                                                                  const Pose& pose,
+                                                                  const Filter& filter);
 
 /// Converts the caller's filter to one for partitions, whose client data are ids of bodies. Calls
 /// `TestBody`, bool(std::uint32_t body), for each body that passes, and returns the result to the

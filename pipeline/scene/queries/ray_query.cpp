@@ -6,6 +6,7 @@
 #include "pipeline/mesh/mesh_rays.kernel.h"
 #include "pipeline/rays/shape_entries.h"
 #include "pipeline/scene/queries/cast_query.h"
+#include "pipeline/scene/queries/observed_filter.h"
 
 #include <algorithm>
 
@@ -249,12 +250,20 @@ Status start_all(QueryState& state, std::size_t rays) {
 
 Answer<SceneHit> SceneQueries::closest(const ShapeRay& ray, const Filter& filter) {
   const DefaultFloatEnvironment environment;
-  return find_one(state_, ray, filter, false);
+  ObservedFilter observed(state_, filter);
+  const Answer<SceneHit> hit = find_one(state_, ray, observed.used(), false);
+  if (is_observed(hit.status, state_))
+    state_->observer->ray(HitForm::closest, ray, observed, one_hit(hit));
+  return hit;
 }
 
 Answer<SceneHit> SceneQueries::any(const ShapeRay& ray, const Filter& filter) {
   const DefaultFloatEnvironment environment;
-  return find_one(state_, ray, filter, true);
+  ObservedFilter observed(state_, filter);
+  const Answer<SceneHit> hit = find_one(state_, ray, observed.used(), true);
+  if (is_observed(hit.status, state_))
+    state_->observer->ray(HitForm::any, ray, observed, one_hit(hit));
+  return hit;
 }
 
 Answer<std::span<const SceneHit>> SceneQueries::all(const ShapeRay& ray, const Filter& filter) {
@@ -262,23 +271,32 @@ Answer<std::span<const SceneHit>> SceneQueries::all(const ShapeRay& ray, const F
   Status status = check(state_, ray);
   if (status == Status::ok) status = start_all(*state_, 1);
   if (status != Status::ok) return status;
-  RayGroup<1> group(*state_, filter);
+  ObservedFilter observed(state_, filter);
+  RayGroup<1> group(*state_, observed.used());
   group.start({&ray, 1});
   status = group.find_all(0);
   if (status != Status::ok) return status;
-  return std::span<const SceneHit>(state_->hits.data(), state_->hits.size());
+  const std::span<const SceneHit> hits(state_->hits.data(), state_->hits.size());
+  if (state_->observer != nullptr) state_->observer->ray(HitForm::all, ray, observed, hits);
+  return hits;
 }
 
 Status SceneQueries::closest(const ShapeRayBatch& rays, const SceneHitColumns& hits,
                              const Filter& filter) {
   const DefaultFloatEnvironment environment;
-  return find_many(state_, rays, filter, false, hits);
+  ObservedFilter observed(state_, filter);
+  const Status status = find_many(state_, rays, observed.used(), false, hits);
+  if (is_observed(status, state_)) state_->observer->rays(HitForm::closest, rays, observed, hits);
+  return status;
 }
 
 Status SceneQueries::any(const ShapeRayBatch& rays, const SceneHitColumns& hits,
                          const Filter& filter) {
   const DefaultFloatEnvironment environment;
-  return find_many(state_, rays, filter, true, hits);
+  ObservedFilter observed(state_, filter);
+  const Status status = find_many(state_, rays, observed.used(), true, hits);
+  if (is_observed(status, state_)) state_->observer->rays(HitForm::any, rays, observed, hits);
+  return status;
 }
 
 Answer<SceneHitLists> SceneQueries::all(const ShapeRayBatch& rays, const Filter& filter) {
@@ -286,15 +304,19 @@ Answer<SceneHitLists> SceneQueries::all(const ShapeRayBatch& rays, const Filter&
   Status status = check(state_, rays);
   if (status == Status::ok) status = start_all(*state_, rays.count);
   if (status != Status::ok) return status;
+  ObservedFilter observed(state_, filter);
   RayGroups groups(rays);
-  RayGroup<kRaysAtOnce> group(*state_, filter);
+  RayGroup<kRaysAtOnce> group(*state_, observed.used());
   for (auto some = groups.next(); !some.empty(); some = groups.next()) {
     group.start(some);
     status = group.find_all(groups.first());
     if (status != Status::ok) return status;
   }
   const Column<std::size_t>& first = state_->hits_first;
-  return SceneHitLists{{state_->hits.data(), state_->hits.size()}, {first.data(), first.size()}};
+  const SceneHitLists lists{{state_->hits.data(), state_->hits.size()},
+                            {first.data(), first.size()}};
+  if (state_->observer != nullptr) state_->observer->rays(rays, observed, lists);
+  return lists;
 }
 
 }  // namespace winnow

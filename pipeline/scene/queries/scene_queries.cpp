@@ -5,6 +5,7 @@
 #include "core/memory/new_in.h"
 #include "core/threads/float_environment.h"
 #include "pipeline/scene/queries/body_distance.h"
+#include "pipeline/scene/queries/observed_filter.h"
 #include "pipeline/scene/queries/queries.h"
 #include "pipeline/shapes/frame.h"
 
@@ -145,17 +146,20 @@ SceneQueries::~SceneQueries() {
 }
 
 Footprint SceneQueries::footprint() const noexcept {
-  Footprint sum;
-  if (state_ == nullptr) return sum;
+  if (state_ == nullptr) return {};
+  Footprint sum = state_->footprint();
   sum.structure = {sizeof(QueryState), sizeof(QueryState)};
-  for (const Bytes& bytes :
-       {state_->boxes.footprint().total(), state_->objects.footprint().total(),
-        state_->bounds.bytes(), state_->gaps.bytes(), state_->small_set_hits.bytes()}) {
+  return sum;
+}
+
+Footprint QueryState::footprint() const noexcept {
+  Footprint sum;
+  for (const Bytes& bytes : {boxes.footprint().total(), objects.footprint().total(), bounds.bytes(),
+                             gaps.bytes(), small_set_hits.bytes(), accepted.bytes()}) {
     sum.scratch += bytes;
   }
-  for (const Bytes& bytes :
-       {state_->hits.bytes(), state_->hits_first.bytes(), state_->overlaps.bytes(),
-        state_->distances.bytes(), state_->overlapping.bytes()}) {
+  for (const Bytes& bytes : {hits.bytes(), hits_first.bytes(), overlaps.bytes(), distances.bytes(),
+                             overlapping.bytes()}) {
     sum.results += bytes;
   }
   return sum;
@@ -163,9 +167,17 @@ Footprint SceneQueries::footprint() const noexcept {
 
 Answer<std::span<const SceneOverlap>> SceneQueries::overlap(ShapeId shape, const Pose& pose,
                                                             const Filter& filter) {
+  if (state_ == nullptr) return Status::out_of_memory;
+  ObservedFilter observed(state_, filter);
+  const auto found = find_overlaps(*state_, shape, pose, observed.used());
+  if (is_observed(found.status, state_)) state_->observer->overlap(shape, pose, observed, found);
+  return found;
+}
+
+Answer<std::span<const SceneOverlap>> find_overlaps(QueryState& state, ShapeId shape,
+                                                    const Pose& pose, const Filter& filter) {
   const DefaultFloatEnvironment environment;
-  if (const Status status = QueryState::check_state(state_); status != Status::ok) return status;
-  QueryState& state = *state_;
+  if (const Status status = QueryState::check_state(&state); status != Status::ok) return status;
   if (!state.parts.contains(shape)) return Status::invalid_key;
   if (!pose.is_valid()) return Status::invalid_pose;
   const PlacedShape query_shape{shape, pose};
@@ -198,9 +210,12 @@ Answer<std::span<const SceneDistance>> SceneQueries::nearest(const Vec3d& point,
   const DefaultFloatEnvironment environment;
   if (const Status status = QueryState::check_state(state_); status != Status::ok) return status;
   if (!is_finite(point) || !(radius >= 0.0)) return Status::invalid_argument;
-  const Status status = NearestBodiesQuery(*state_, point, filter).run(count, radius);
+  ObservedFilter observed(state_, filter);
+  const Status status = NearestBodiesQuery(*state_, point, observed.used()).run(count, radius);
   if (status != Status::ok) return status;
-  return std::span<const SceneDistance>(state_->distances.data(), state_->distances.size());
+  const std::span<const SceneDistance> found(state_->distances.data(), state_->distances.size());
+  if (state_->observer != nullptr) state_->observer->nearest(point, count, radius, observed, found);
+  return found;
 }
 
 }  // namespace winnow

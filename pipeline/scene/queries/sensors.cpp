@@ -1,14 +1,14 @@
-// Sensors: finds the bodies that overlap each sensor, by SceneQueries on several threads, and
-// compares them with the last call to report events.
+// Sensors: finds the bodies that overlap each sensor, on several threads, and compares them with
+// the last call to report events.
 
 #include <winnow/pipeline/sensors.h>
 
-#include <winnow/pipeline/scene_queries.h>
 #include "core/hooks/log.h"
 #include "core/memory/key_table.h"
 #include "core/memory/new_in.h"
 #include "core/threads/float_environment.h"
-#include "pipeline/scene/scene_state.h"
+#include "pipeline/scene/queries/queries.h"
+#include "pipeline/scene/scene_observer.h"
 
 #include <algorithm>
 #include <tuple>
@@ -43,33 +43,39 @@ template <typename Entry>
 }  // namespace
 
 struct SensorsState {
-  SensorsState(Scene& sensed_scene, SceneState* its_state,
-               std::pmr::memory_resource* memory) noexcept
-      : scene(sensed_scene),
-        bodies(its_state),
+  SensorsState(SceneState* scene, std::pmr::memory_resource* memory) noexcept
+      : bodies(scene),
+        observer(scene == nullptr ? nullptr : scene->observer),
+        number(observer == nullptr ? 0 : observer->make_sensors()),
         keys(memory),
         sensors(memory),
         sensed(memory),
         before(memory),
         left(memory),
         watches(memory) {}
-  ~SensorsState() { drop_watches(); }
+  ~SensorsState() {
+    drop_watches();
+    if (observer != nullptr) observer->end_sensors(number);
+  }
   SensorsState(const SensorsState&) = delete;
   SensorsState& operator=(const SensorsState&) = delete;
 
-  /// A thread's query object and the bodies that it found.
+  /// A thread's state of queries and the bodies that it found.
   struct Watch {
-    Watch(const Scene& scene, std::pmr::memory_resource* memory) noexcept
-        : queries(scene, memory), sensed(memory) {}
+    Watch(const SceneState& scene, std::pmr::memory_resource* memory) noexcept
+        : query(scene, memory), sensed(memory) {}
 
-    SceneQueries queries;
+    QueryState query;
     Column<SensedBody> sensed;
     Status status = Status::ok;
   };
 
-  Scene& scene;
   /// Null if the scene has no memory.
   SceneState* bodies;
+  /// Null if the scene is not recorded.
+  SceneObserver* observer;
+  /// Number of this object in the recording.
+  std::uint32_t number;
   KeyTable keys;
   /// By id; with holes for removed sensors.
   Column<SensorDefinition> sensors;
@@ -104,11 +110,8 @@ struct SensorsState {
 bool SensorsState::have_watches(std::size_t count) noexcept {
   while (watches.size() < count) {
     if (!watches.grow(watches.size() + 1)) return false;
-    auto* const watch = new_in<Watch>(watches.memory(), scene, watches.memory());
-    if (watch == nullptr || watch->queries.state_ == nullptr) {
-      delete_in(watches.memory(), watch);
-      return false;
-    }
+    auto* const watch = new_in<Watch>(watches.memory(), *bodies, watches.memory());
+    if (watch == nullptr) return false;
     (void)watches.push_back(watch);
   }
   return true;
@@ -116,7 +119,8 @@ bool SensorsState::have_watches(std::size_t count) noexcept {
 
 /// Fills `sensed`. Each thread tests consecutive sensors, so that the results are in order.
 Status SensorsState::find_sensed() {
-  if (const Status status = scene.refresh(); status != Status::ok) return status;
+  if (bodies == nullptr) return Status::out_of_memory;
+  if (const Status status = bodies->refresh(); status != Status::ok) return status;
   const Execution& execution = bodies->options.execution;
   const std::size_t slots = keys.slot_count();
   const std::size_t count =
@@ -134,7 +138,7 @@ Status SensorsState::find_sensed(ObjectId first, ObjectId end, Watch& watch) con
   for (ObjectId id = first; id < end; ++id) {
     if (!keys.is_live(id)) continue;
     const SensorDefinition& sensor = sensors[id];
-    const auto found = watch.queries.overlap(sensor.shape, sensor.pose, filter_of(sensor));
+    const auto found = find_overlaps(watch.query, sensor.shape, sensor.pose, filter_of(sensor));
     if (found.status != Status::ok) return found.status;
     for (const SceneOverlap& body : found) {
       if (!watch.sensed.push_back({keys.key_of(id), body.key, sensor.data, body.data})) {
@@ -177,7 +181,7 @@ bool SensorsState::compare() noexcept {
 }
 
 Sensors::Sensors(Scene& scene, std::pmr::memory_resource* memory) noexcept
-    : memory_(memory), state_(new_in<SensorsState>(memory, scene, scene.state_, memory)) {}
+    : memory_(memory), state_(new_in<SensorsState>(memory, scene.state_, memory)) {}
 
 Sensors::~Sensors() {
   delete_in(memory_, state_);
@@ -196,12 +200,14 @@ Answer<Key> Sensors::add(const SensorDefinition& sensor) {
   s.sensors.set_size(slots);
   const Key key = s.keys.acquire(0, sensor.data);
   s.sensors[key.id] = sensor;
+  if (s.observer != nullptr) s.observer->add_sensor(s.number, key, sensor);
   return key;
 }
 
 Status Sensors::remove(Key key) {
   if (!contains(key)) return logged(Status::invalid_key, "Sensors::remove");
   state_->keys.release(key.id);
+  if (state_->observer != nullptr) state_->observer->remove_sensor(state_->number, key);
   return Status::ok;
 }
 
@@ -210,6 +216,7 @@ Status Sensors::move(Key key, const Pose& pose) {
   if (!contains(key)) return logged(Status::invalid_key, "Sensors::move");
   if (!pose.is_valid()) return logged(Status::invalid_pose, "Sensors::move");
   state_->sensors[key.id].pose = pose;
+  if (state_->observer != nullptr) state_->observer->move_sensor(state_->number, key, pose);
   return Status::ok;
 }
 
@@ -220,6 +227,7 @@ Status Sensors::set(Key key, const SensorDefinition& sensor) {
     return logged(good, "Sensors::set");
   }
   state_->sensors[key.id] = sensor;
+  if (state_->observer != nullptr) state_->observer->set_sensor(state_->number, key, sensor);
   return Status::ok;
 }
 
@@ -241,6 +249,7 @@ Status Sensors::sense() {
   } else if (status != Status::ok) {
     s.sensed.swap(s.before);
   }
+  if (status == Status::ok && s.observer != nullptr) s.observer->sense(s.number, *this);
   return logged(status, "Sensors::sense");
 }
 
@@ -267,7 +276,7 @@ Footprint Sensors::footprint() const noexcept {
   const SensorsState& s = *state_;
   Footprint sum;
   for (const SensorsState::Watch* const watch : s.watches) {
-    sum.scratch += watch->queries.footprint().total();
+    sum.scratch += watch->query.footprint().total();
     sum.scratch += {sizeof(*watch), sizeof(*watch)};
     sum.scratch += watch->sensed.bytes();
   }

@@ -5,6 +5,7 @@
 #include "core/threads/float_environment.h"
 #include "pipeline/scene/queries/body_distance.h"
 #include "pipeline/scene/queries/box_gaps.kernel.h"
+#include "pipeline/scene/queries/observed_filter.h"
 #include "pipeline/scene/queries/queries.h"
 
 #include <cmath>
@@ -263,12 +264,14 @@ Answer<SceneDistance> SceneQueries::distance(Key a, Key b, double limit, PairRul
     return status;
   }
   if (std::isnan(limit)) return Status::invalid_argument;
-  ShapeDistance found;
-  if (!do_rules_take(state_->scene, rules, a.id, b.id) ||
-      !ClosestParts(state_->parts).find(state_->placed(a.id), state_->placed(b.id), limit, found)) {
-    return SceneDistance{};
+  ShapeDistance shapes;
+  SceneDistance found;
+  if (do_rules_take(state_->scene, rules, a.id, b.id) &&
+      ClosestParts(state_->parts).find(state_->placed(a.id), state_->placed(b.id), limit, shapes)) {
+    found = distance_to(state_->scene, b.id, shapes);
   }
-  return distance_to(state_->scene, b.id, found);
+  if (state_->observer != nullptr) state_->observer->distance(a, b, limit, rules, found);
+  return found;
 }
 
 Answer<SetDistance> SceneQueries::least_distance(std::span<const Key> a, std::span<const Key> b,
@@ -278,7 +281,9 @@ Answer<SetDistance> SceneQueries::least_distance(std::span<const Key> a, std::sp
   if (std::isnan(limit)) return Status::invalid_argument;
   SetPairs pairs(*state_, a, b, rules);
   if (!pairs.find_boxes()) return Status::out_of_memory;
-  return ClosestBodies(*state_, limit).find(pairs);
+  const SetDistance found = ClosestBodies(*state_, limit).find(pairs);
+  if (state_->observer != nullptr) state_->observer->least_distance(a, b, limit, rules, found);
+  return found;
 }
 
 Answer<std::span<const KeyPair>> SceneQueries::overlaps(std::span<const Key> a,
@@ -299,7 +304,9 @@ Answer<std::span<const KeyPair>> SceneQueries::overlaps(std::span<const Key> a,
   };
   if (has_room && most != 0) all.each_within([] { return 0.0; }, test);
   if (!has_room) return Status::out_of_memory;
-  return std::span<const KeyPair>(found.data(), found.size());
+  const std::span<const KeyPair> pairs(found.data(), found.size());
+  if (state_->observer != nullptr) state_->observer->overlaps(a, b, most, rules, pairs);
+  return pairs;
 }
 
 Answer<KeyPair> SceneQueries::any_contact(std::span<const Key> a, std::span<const Key> b,
@@ -316,6 +323,8 @@ Answer<KeyPair> SceneQueries::any_contact(std::span<const Key> a, std::span<cons
     return false;
   };
   all.each_within([&] { return contact_margin; }, test, true);
+  if (state_->observer != nullptr)
+    state_->observer->any_contact(a, b, contact_margin, rules, found);
   return found;
 }
 
@@ -325,14 +334,15 @@ Answer<KeyPair> SceneQueries::any_contact(double contact_margin, PairRules rules
   if (!is_contact_margin(contact_margin)) return Status::invalid_argument;
   const SceneState& scene = state_->scene;
   ContactOfBody contact(*state_, contact_margin, rules);
-  for (std::uint32_t body = 0; body < scene.keys.slot_count(); ++body) {
+  KeyPair found;
+  for (std::uint32_t body = 0; body < scene.keys.slot_count() && !found; ++body) {
     if (!scene.keys.is_live(body) || !contact.is_searched(scene.body_state[body])) continue;
     std::uint32_t other = kNoObject;
     if (const Status status = contact.find(body, other); status != Status::ok) return status;
-    if (other == kNoObject) continue;
-    return KeyPair{scene.keys.key_of(body), scene.keys.key_of(other)};
+    if (other != kNoObject) found = {scene.keys.key_of(body), scene.keys.key_of(other)};
   }
-  return KeyPair{};
+  if (state_->observer != nullptr) state_->observer->any_contact(contact_margin, rules, found);
+  return found;
 }
 
 }  // namespace winnow

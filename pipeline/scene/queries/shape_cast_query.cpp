@@ -3,6 +3,7 @@
 #include "core/threads/float_environment.h"
 #include "pipeline/scene/queries/cast_query.h"
 #include "pipeline/scene/queries/composite_cast.h"
+#include "pipeline/scene/queries/observed_filter.h"
 
 #include <limits>
 
@@ -38,22 +39,29 @@ Status query_cast(QueryState* state, const ShapeCast& cast, double tolerance, Qu
 Answer<SceneHit> SceneQueries::closest(const ShapeCast& cast, const Filter& filter,
                                        double tolerance) {
   const DefaultFloatEnvironment environment;
+  ObservedFilter observed(state_, filter);
   Answer<SceneHit> hit;
   hit.status = query_cast(state_, cast, tolerance, [&](const LinearCast& linear_cast) {
-    return CastQuery(*state_, linear_cast, filter).closest(hit);
+    return CastQuery(*state_, linear_cast, observed.used()).closest(hit);
   });
+  if (is_observed(hit.status, state_))
+    state_->observer->cast(HitForm::closest, cast, observed, tolerance, one_hit(hit));
   return hit;
 }
 
 Answer<std::span<const SceneHit>> SceneQueries::all(const ShapeCast& cast, const Filter& filter,
                                                     double tolerance) {
   const DefaultFloatEnvironment environment;
+  ObservedFilter observed(state_, filter);
   const Status status = query_cast(state_, cast, tolerance, [&](const LinearCast& linear_cast) {
     state_->hits.clear();
-    return CastQuery(*state_, linear_cast, filter).all();
+    return CastQuery(*state_, linear_cast, observed.used()).all();
   });
   if (status != Status::ok) return status;
-  return std::span<const SceneHit>(state_->hits.data(), state_->hits.size());
+  const std::span<const SceneHit> hits(state_->hits.data(), state_->hits.size());
+  if (state_->observer != nullptr)
+    state_->observer->cast(HitForm::all, cast, observed, tolerance, hits);
+  return hits;
 }
 
 }  // namespace winnow

@@ -1,6 +1,7 @@
 // Records some frames of a scene of boxes and balls that rest on each other. Run by pages.cmake.
 
 #include <winnow/pipeline/recording.h>
+#include <winnow/pipeline/scene.h>
 
 #include <array>
 #include <cstdio>
@@ -17,7 +18,7 @@ int main(int count, char** arguments) {
   ShapePool shapes;
   const std::array<ShapeId, 2> kinds{shapes.add(BoxShape{{0.5, 0.5, 0.5}}),
                                      shapes.add(SphereShape{0.5})};
-  RecordedScene scene(recorder, shapes);
+  Scene scene(shapes, {.recorder = &recorder});
   std::array<Key, kBodies> bodies;
   Contacts contacts;
   for (int frame = 0; frame < kFrames; ++frame) {
