@@ -43,10 +43,12 @@ class HostileWorld {
     EXPECT_EQ(winnow_contact_groups_create(nullptr, &groups), WINNOW_OK);
     EXPECT_EQ(winnow_continuous_collision_create(scene, nullptr, &ccd), WINNOW_OK);
     EXPECT_EQ(winnow_sensors_create(scene, nullptr, &sensors), WINNOW_OK);
+    EXPECT_EQ(winnow_deformable_mesh_create(nullptr, &mesh), WINNOW_OK);
   }
   HostileWorld(const HostileWorld&) = delete;
   HostileWorld& operator=(const HostileWorld&) = delete;
   ~HostileWorld() {
+    destroy(mesh);
     destroy(sensors);
     destroy(ccd);
     destroy(groups);
@@ -111,6 +113,7 @@ class HostileWorld {
   winnow_contact_groups* groups = nullptr;
   winnow_continuous_collision* ccd = nullptr;
   winnow_sensors* sensors = nullptr;
+  winnow_deformable_mesh* mesh = nullptr;
 
  private:
 #define WINNOW_THING(type, member)         \
@@ -138,6 +141,7 @@ class HostileWorld {
   WINNOW_THING(winnow_contact_groups, groups)
   WINNOW_THING(winnow_continuous_collision, ccd)
   WINNOW_THING(winnow_sensors, sensors)
+  WINNOW_THING(winnow_deformable_mesh, mesh)
 #undef WINNOW_THING
 
   template <typename To>
