@@ -11,9 +11,7 @@
 #include <winnow/pipeline/feature_impacts.h>
 #include <winnow/pipeline/scene_queries.h>
 #include <winnow/pipeline/sensors.h>
-#include "pipeline/c/binding/arguments.h"
-#include "pipeline/c/binding/layout_compatible.h"
-#include "pipeline/c/binding/options.h"
+#include "pipeline/c/binding/structs.h"
 
 #include <cstdio>
 #include <string>
@@ -253,37 +251,49 @@ void show_options(const char* name, const OfC& macro, Read&& read) {
   show(name, Options{}, {{"zeros", by_zeros}, {"macro", by_macro}, {"null", by_null}});
 }
 
+/// Options that C reads without a number of elements.
+template <typename Options, typename OfC>
+void show_plain_options(const char* name, const OfC& macro) {
+  show_options<Options>(name, macro,
+                        [](const OfC* given, Options& options) { return c::read(given, options); });
+}
+
+/// Options with an array that has as many elements as an argument of the call.
+template <typename Options, typename OfC>
+void show_counted_options(const char* name, const OfC& macro) {
+  show_options<Options>(
+      name, macro, [](const OfC* given, Options& options) { return c::read(given, options, 0); });
+}
+
 void show_all_options() {
-  const auto plain = [](const auto* given, auto& options) {
-    return c::read_options(given, options);
-  };
-  const auto with_memory = [](const auto* given, auto& options) {
-    const winnow_memory* memory = nullptr;
-    return c::read_options(given, memory, options) && memory == nullptr;
-  };
-  const auto read_continuous = [](const winnow_continuous_options* given,
-                                  ContinuousOptions& options) {
-    return c::read_options(given, 0, options);
-  };
-  const auto typed = [](auto read, auto macro) {
-    return [read](const decltype(macro)* given, auto& options) { return read(given, options); };
-  };
   const winnow_partition_options partition = WINNOW_PARTITION_OPTIONS;
-  show_options<PartitionOptions>("PartitionOptions", partition, typed(with_memory, partition));
+  show_plain_options<PartitionOptions>("PartitionOptions", partition);
   const winnow_pair_options pair = WINNOW_PAIR_OPTIONS;
-  show_options<PairOptions>("PairOptions", pair, typed(plain, pair));
+  show_plain_options<PairOptions>("PairOptions", pair);
   const winnow_debug_draw_options draw = WINNOW_DEBUG_DRAW_OPTIONS;
-  show_options<DebugDrawOptions>("DebugDrawOptions", draw, typed(plain, draw));
+  show_plain_options<DebugDrawOptions>("DebugDrawOptions", draw);
   const winnow_scene_options scene = WINNOW_SCENE_OPTIONS;
-  show_options<SceneOptions>("SceneOptions", scene, typed(with_memory, scene));
+  show_plain_options<SceneOptions>("SceneOptions", scene);
   const winnow_narrow_options narrow = WINNOW_NARROW_OPTIONS;
-  show_options<NarrowOptions>("NarrowOptions", narrow, typed(plain, narrow));
+  show_counted_options<NarrowOptions>("NarrowOptions", narrow);
   const winnow_impact_options impact = WINNOW_IMPACT_OPTIONS;
-  show_options<ImpactOptions>("ImpactOptions", impact, typed(plain, impact));
+  show_plain_options<ImpactOptions>("ImpactOptions", impact);
   const winnow_continuous_options continuous = WINNOW_CONTINUOUS_OPTIONS;
-  show_options<ContinuousOptions>("ContinuousOptions", continuous, read_continuous);
+  show_counted_options<ContinuousOptions>("ContinuousOptions", continuous);
   const winnow_mesh_options mesh = WINNOW_MESH_OPTIONS;
-  show_options<MeshOptions>("MeshOptions", mesh, typed(plain, mesh));
+  show_plain_options<MeshOptions>("MeshOptions", mesh);
+  const winnow_feature_impact_options feature = WINNOW_FEATURE_IMPACT_OPTIONS;
+  show_plain_options<FeatureImpactOptions>("FeatureImpactOptions", feature);
+  const winnow_deformable_mesh_options deformable = WINNOW_DEFORMABLE_MESH_OPTIONS;
+  show_plain_options<DeformableMeshOptions>("DeformableMeshOptions", deformable);
+}
+
+/// Returns the struct as C++ reads it.
+template <typename OfCpp, typename OfC>
+[[nodiscard]] OfCpp as_read(const OfC* given) {
+  OfCpp own;
+  if (!c::read(given, own)) ++differences;
+  return own;
 }
 
 /// Structs whose default is not all zeros.
@@ -291,7 +301,8 @@ void show_definitions() {
   const winnow_object_filter object = WINNOW_OBJECT_FILTER;
   show("ObjectFilter", ObjectFilter{}, {{"macro", *c::as_cpp(&object)}});
   const winnow_filter filter = WINNOW_FILTER;
-  show("Filter", Filter{}, {{"macro", c::filter_of(&filter)}, {"null", c::filter_of(nullptr)}});
+  const winnow_filter* const none = nullptr;
+  show("Filter", Filter{}, {{"macro", as_read<Filter>(&filter)}, {"null", as_read<Filter>(none)}});
   const winnow_body_definition body = WINNOW_BODY_DEFINITION;
   show("BodyDefinition", BodyDefinition{}, {{"macro", *c::as_cpp(&body)}});
   const winnow_sensor_definition sensor = WINNOW_SENSOR_DEFINITION;
@@ -299,39 +310,24 @@ void show_definitions() {
   const winnow_shape_ray ray = WINNOW_SHAPE_RAY;
   show("ShapeRay", ShapeRay{}, {{"macro", *c::as_cpp(&ray)}});
   const winnow_scene_room room = WINNOW_SCENE_ROOM;
-  const SceneCapacity of_c{{room.bodies[0], room.bodies[1], room.bodies[2]},
-                           room.pairs,
-                           static_cast<ContactLevel>(room.level),
-                           room.touching,
-                           room.manifolds,
-                           room.points};
-  show("SceneCapacity", SceneCapacity{}, {{"macro", of_c}});
+  show("SceneCapacity", SceneCapacity{}, {{"macro", as_read<SceneCapacity>(&room)}});
   const winnow_shape_cast cast = WINNOW_SHAPE_CAST;
-  show("ShapeCast", ShapeCast{},
-       {{"macro", ShapeCast{{cast.shape},
-                            *c::as_cpp(&cast.pose),
-                            {cast.direction[0], cast.direction[1], cast.direction[2]},
-                            cast.max_t}}});
+  show("ShapeCast", ShapeCast{}, {{"macro", as_read<ShapeCast>(&cast)}});
   const winnow_height_samples heights = WINNOW_HEIGHT_SAMPLES;
-  show("HeightSamples", HeightSamples{},
-       {{"macro", HeightSamples{{heights.heights, heights.count},
-                                heights.columns,
-                                heights.rows,
-                                heights.row_stride,
-                                {heights.spacing[0], heights.spacing[1]}}}});
+  show("HeightSamples", HeightSamples{}, {{"macro", as_read<HeightSamples>(&heights)}});
 }
 
-void show_line(const char* name, double of_cpp, double of_c) {
+template <typename Value>
+void show_line(const char* name, Value of_cpp, Value of_c) {
   std::printf("%s = %s\n", name, text(of_cpp).c_str());
   if (of_cpp == of_c) return;
   ++differences;
-  (void)std::fprintf(stderr, "%s is %g in C++, %g in C\n", name, of_cpp, of_c);
+  (void)std::fprintf(stderr, "%s is %s in C++, %s in C\n", name, text(of_cpp).c_str(),
+                     text(of_c).c_str());
 }
 
 /// Structs that the C interface does not have, or of which it has only some members.
 void show_others() {
-  show("FeatureImpactOptions", FeatureImpactOptions{});
-  show("DeformableMeshOptions", DeformableMeshOptions{});
   show("PairEventsOptions", PairEventsOptions{});
   show("ClusterOptions", ClusterOptions{});
   const ClusterSceneOptions cluster;
@@ -340,7 +336,8 @@ void show_others() {
   const winnow_cast cast = WINNOW_CAST;
   show_line("Ray.min_t", Ray{}.min_t, cast.min_t);
   show_line("Ray.max_t", Ray{}.max_t, cast.max_t);
-  std::printf("MotionCast.touching = %s\n", text(MotionCast{}.touching).c_str());
+  const winnow_motion_cast motion = WINNOW_MOTION_CAST;
+  show_line("MotionCast.touching", MotionCast{}.touching, as_read<MotionCast>(&motion).touching);
   std::printf("WINNOW_CAST_TOLERANCE = %s\n", text(WINNOW_CAST_TOLERANCE).c_str());
 }
 

@@ -1,36 +1,20 @@
 #pragma once
 
-// Reads and checks the arguments of C functions, and converts results. Used by all files of the
-// binding.
+// Checks of the arguments of C functions, and structs that may grow.
 #include <winnow/c/core.h>
-#include <winnow/c/partition.h>
-#include <winnow/core/execution.h>
-#include <winnow/core/filter.h>
-#include <winnow/core/footprint.h>
 #include <winnow/core/status.h>
 
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <span>
 
 namespace winnow::c {
 
 /// C and C++ use the same numbers.
 [[nodiscard]] inline winnow_status answer(Status status) noexcept {
   return static_cast<winnow_status>(status);
-}
-/// Writes the value of an answer without an error; of a shape's id, its bits.
-template <typename T, typename Out>
-[[nodiscard]] winnow_status answer(const Answer<T>& answer, Out* out) noexcept {
-  if (answer.status == Status::ok) {
-    if constexpr (requires { answer.bits; }) {
-      *out = answer.bits;
-    } else {
-      *out = answer;
-    }
-  }
-  return c::answer(answer.status);
 }
 
 template <typename... Pointers>
@@ -44,18 +28,17 @@ template <typename T>
   return first != nullptr || count == 0;
 }
 
-/// Reads an enumerator, whose number may be at most `last`. Returns false if it is out of range.
-template <typename Choice>
-[[nodiscard]] bool read_choice(std::int64_t given, Choice last, Choice& choice) noexcept {
-  if (given < 0 || given > static_cast<std::int64_t>(last)) return false;
-  choice = static_cast<Choice>(given);
-  return true;
+/// Returns an array as a span; null is an empty one.
+template <typename T>
+[[nodiscard]] std::span<T> span_of(T* first, std::size_t count) noexcept {
+  return {first, first == nullptr ? 0 : count};
 }
 
 /// Upper bound on the size of any struct of the interface, in all versions.
 inline constexpr std::size_t kLargestStruct = 4096;
 
-/// Size of a struct in the first version of the interface. Specialize it when a struct grows.
+/// Size of a struct in the first version of the interface; structs.h specializes it for structs
+/// that have grown.
 template <typename T>
 inline constexpr std::size_t kFirstSize = sizeof(T);
 
@@ -88,36 +71,6 @@ void write_sized(T own, T& out) noexcept {
   const std::size_t known = std::min(own.size, sizeof(T));
   std::memcpy(&out, &own, known);
   std::memset(reinterpret_cast<std::uint8_t*>(&out) + known, 0, own.size - known);
-}
-
-[[nodiscard]] inline winnow_bytes bytes_of(const Bytes& bytes) noexcept {
-  return {bytes.used, bytes.reserved};
-}
-
-/// Writes the footprint of a handle: its content, the handle itself, and its scratch memory.
-template <typename Made>
-[[nodiscard]] winnow_status write_footprint(const Made* made, Footprint footprint,
-                                            const Bytes& scratch, winnow_footprint* out) noexcept {
-  if (!is_sized(out)) return WINNOW_INVALID_ARGUMENT;
-  footprint.structure += {sizeof(*made), sizeof(*made)};
-  footprint.scratch += scratch;
-  write_sized(
-      {0, bytes_of(footprint.bounds), bytes_of(footprint.keys), bytes_of(footprint.client_data),
-       bytes_of(footprint.structure), bytes_of(footprint.scratch), bytes_of(footprint.results)},
-      *out);
-  return WINNOW_OK;
-}
-
-/// The returned filter refers to `given` and is valid only during the call.
-[[nodiscard]] Filter filter_of(const winnow_filter* given) noexcept;
-
-/// WINNOW_EXECUTION_DEFAULT leaves `execution` unchanged.
-[[nodiscard]] bool read_execution(const winnow_execution& given, Execution& execution) noexcept;
-
-/// Null leaves `execution` unchanged.
-[[nodiscard]] inline bool read_execution(const winnow_execution* given,
-                                         Execution& execution) noexcept {
-  return given == nullptr || read_execution(*given, execution);
 }
 
 }  // namespace winnow::c

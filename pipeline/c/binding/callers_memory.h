@@ -50,23 +50,4 @@ template <typename Options>
   return options;
 }
 
-/// Allocates a handle and writes it to `out`.
-template <typename Made, typename... Arguments>
-[[nodiscard]] winnow_status create(const winnow_memory* memory, Made** out,
-                                   Arguments&&... arguments) noexcept {
-  if (out == nullptr || !CallersMemory::is_good(memory)) return WINNOW_INVALID_ARGUMENT;
-  CallersMemory source(memory);
-  Made* const made = new_in<Made>(&source, source, std::forward<Arguments>(arguments)...);
-  if (made == nullptr) return WINNOW_OUT_OF_MEMORY;
-  *out = made;
-  return WINNOW_OK;
-}
-
-template <typename Made>
-void destroy(Made* made) noexcept {
-  if (made == nullptr) return;
-  CallersMemory memory = made->memory;
-  delete_in(&memory, made);
-}
-
 }  // namespace winnow::c

@@ -3,7 +3,7 @@
 #include <winnow/c/hooks.h>
 #include <winnow/core/hooks.h>
 
-#include "pipeline/c/binding/arguments.h"
+#include "pipeline/c/binding/structs.h"
 
 #include <atomic>
 #include <string_view>

@@ -1,6 +1,6 @@
-// Conversion of the caller's columns to views of the engine; see views.h.
+// Conversion of the caller's columns to views of the engine; see convert.h.
 
-#include "pipeline/c/binding/views.h"
+#include "pipeline/c/binding/convert.h"
 
 #include <winnow/core/rounding.h>
 
@@ -8,6 +8,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 
 namespace winnow::c {
 namespace {
@@ -81,10 +82,10 @@ void for_entries(const IndexSubset* entries, std::size_t count, Read&& read) noe
                      [](const void* column) { return column != nullptr; });
 }
 
-[[nodiscard]] bool is_good(const winnow_pose_view* given) noexcept {
-  return given != nullptr && is_number(given->position_number) &&
-         is_number(given->orientation_number) && are_columns(given->position, given->count) &&
-         (!turn(*given) || are_columns(given->orientation, given->count));
+[[nodiscard]] bool is_good(const winnow_pose_view& given) noexcept {
+  return is_number(given.position_number) && is_number(given.orientation_number) &&
+         are_columns(given.position, given.count) &&
+         (!turn(given) || are_columns(given.orientation, given.count));
 }
 
 [[nodiscard]] Pose pose_at(const winnow_pose_view& given, std::size_t i) noexcept {
@@ -111,24 +112,24 @@ void for_entries(const IndexSubset* entries, std::size_t count, Read&& read) noe
 
 }  // namespace
 
-Status read_boxes(const winnow_box_view* given, const IndexSubset* entries, Column<float>& room,
-                  BoxView& boxes) noexcept {
-  if (given == nullptr || !is_number(given->number) || !are_columns(given->min, given->count) ||
-      !are_columns(given->max, given->count)) {
+Status read_view(const winnow_box_view& given, Column<float>& room, BoxView& boxes,
+                 const IndexSubset* entries) noexcept {
+  if (!is_number(given.number) || !are_columns(given.min, given.count) ||
+      !are_columns(given.max, given.count)) {
     return Status::invalid_argument;
   }
-  const std::size_t stride = stride_of(given->stride, given->number);
-  const std::size_t count = given->count;
-  if (given->number == WINNOW_FLOAT) {
-    boxes = BoxView(columns_of<float>(given->min), columns_of<float>(given->max), count, stride);
+  const std::size_t stride = stride_of(given.stride, given.number);
+  const std::size_t count = given.count;
+  if (given.number == WINNOW_FLOAT) {
+    boxes = BoxView(columns_of<float>(given.min), columns_of<float>(given.max), count, stride);
     return Status::ok;
   }
   if (count > Column<float>::kMaxSize / 6 || !room.resize(6 * count)) return Status::out_of_memory;
   float* const to = room.data();
   for_entries(entries, count, [&](std::size_t i) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      to[6 * i + axis] = round_down(number_at(given->min[axis], i, stride, WINNOW_DOUBLE));
-      to[6 * i + 3 + axis] = round_up(number_at(given->max[axis], i, stride, WINNOW_DOUBLE));
+      to[6 * i + axis] = round_down(number_at(given.min[axis], i, stride, WINNOW_DOUBLE));
+      to[6 * i + 3 + axis] = round_up(number_at(given.max[axis], i, stride, WINNOW_DOUBLE));
     }
   });
   boxes = count == 0
@@ -137,12 +138,12 @@ Status read_boxes(const winnow_box_view* given, const IndexSubset* entries, Colu
   return Status::ok;
 }
 
-Status read_poses(const winnow_pose_view* given, Column<Pose>& room, PoseView& poses) noexcept {
+Status read_view(const winnow_pose_view& given, Column<Pose>& room, PoseView& poses) noexcept {
   if (!is_good(given)) return Status::invalid_argument;
-  if (given->position_number == WINNOW_FLOAT) {
+  if (given.position_number == WINNOW_FLOAT) {
     std::span<const Pose> packed;
-    const Status status = pack_poses(*given, room, packed);
-    if (status != Status::ok || packed.empty() || turn(*given)) {
+    const Status status = pack_poses(given, room, packed);
+    if (status != Status::ok || packed.empty() || turn(given)) {
       poses = PoseView(packed);
     } else {
       const double* const first = packed.data()->position.data();
@@ -150,88 +151,73 @@ Status read_poses(const winnow_pose_view* given, Column<Pose>& room, PoseView& p
     }
     return status;
   }
-  const std::array position = columns_of<double>(given->position);
-  const std::size_t stride = stride_of(given->position_stride, WINNOW_DOUBLE);
-  const std::size_t turn_stride = stride_of(given->orientation_stride, given->orientation_number);
-  if (given->orientation_number == WINNOW_FLOAT) {
-    poses = PoseView(position, columns_of<float>(given->orientation), given->count, stride,
-                     turn_stride);
+  const std::array position = columns_of<double>(given.position);
+  const std::size_t stride = stride_of(given.position_stride, WINNOW_DOUBLE);
+  const std::size_t turn_stride = stride_of(given.orientation_stride, given.orientation_number);
+  if (given.orientation_number == WINNOW_FLOAT) {
+    poses =
+        PoseView(position, columns_of<float>(given.orientation), given.count, stride, turn_stride);
   } else {
-    poses = PoseView(position, columns_of<double>(given->orientation), given->count, stride,
-                     turn_stride);
+    poses =
+        PoseView(position, columns_of<double>(given.orientation), given.count, stride, turn_stride);
   }
   return Status::ok;
 }
 
-Status read_poses(const winnow_pose_view* given, Column<Pose>& room,
-                  std::span<const Pose>& poses) noexcept {
-  if (!is_good(given)) return Status::invalid_argument;
-  if (!are_packed(*given)) return pack_poses(*given, room, poses);
-  poses = {static_cast<const Pose*>(given->position[0]), given->count};
-  return Status::ok;
-}
-
-Status read_points(const winnow_point_view* given, PointView& points) noexcept {
-  if (given == nullptr || !is_number(given->number) || !are_columns(given->axis, given->count)) {
+Status read_view(const winnow_bodies& given, Column<Pose>& room, Bodies& bodies) noexcept {
+  if (!is_array(given.shapes, given.count) || !is_good(given.poses)) {
     return Status::invalid_argument;
   }
-  const std::size_t stride = stride_of(given->stride, given->number);
-  points = given->number == WINNOW_FLOAT
-               ? PointView(columns_of<float>(given->axis), given->count, stride)
-               : PointView(columns_of<double>(given->axis), given->count, stride);
+  bodies.shapes = shape_ids(given.shapes, given.count);
+  if (!are_packed(given.poses)) return pack_poses(given.poses, room, bodies.poses);
+  bodies.poses = {static_cast<const Pose*>(given.poses.position[0]), given.poses.count};
   return Status::ok;
 }
 
-Status read_points(const winnow_point_view* given, Column<double>& room,
-                   std::span<const Eigen::Vector3d>& points) noexcept {
-  PointView view;
-  if (const Status status = read_points(given, view); status != Status::ok) return status;
-  const std::size_t count = given->count;
-  if (count > Column<double>::kMaxSize / 3 || !room.resize(3 * count)) return Status::out_of_memory;
-  for (std::size_t i = 0; i < count; ++i) {
-    for (std::size_t axis = 0; axis < 3; ++axis) room[3 * i + axis] = view.coordinate(i, axis);
-  }
-  static_assert(sizeof(Eigen::Vector3d) == 3 * sizeof(double));
-  points = {reinterpret_cast<const Eigen::Vector3d*>(room.data()), count};
-  return Status::ok;
-}
-
-Status read_triangles(const winnow_index_view* given, IndexView& triangles) noexcept {
-  if (given == nullptr || (given->corners == nullptr && given->count != 0)) {
+Status read_view(const winnow_point_view& given, PointView& points) noexcept {
+  if (!is_number(given.number) || !are_columns(given.axis, given.count)) {
     return Status::invalid_argument;
   }
-  if (given->index == WINNOW_UINT32) {
-    triangles = IndexView(static_cast<const std::uint32_t*>(given->corners), given->count,
-                          given->stride != 0 ? given->stride : 3 * sizeof(std::uint32_t));
-  } else if (given->index == WINNOW_UINT16) {
-    triangles = IndexView(static_cast<const std::uint16_t*>(given->corners), given->count,
-                          given->stride != 0 ? given->stride : 3 * sizeof(std::uint16_t));
-  } else {
-    return Status::invalid_argument;
-  }
+  const std::size_t stride = stride_of(given.stride, given.number);
+  points = given.number == WINNOW_FLOAT
+               ? PointView(columns_of<float>(given.axis), given.count, stride)
+               : PointView(columns_of<double>(given.axis), given.count, stride);
   return Status::ok;
 }
 
-Status read_rays(const winnow_shape_ray_batch* given, Column<ShapeRay>& room,
+Status read_view(const winnow_index_view& given, IndexView& triangles) noexcept {
+  if (!is_array(static_cast<const std::byte*>(given.corners), given.count)) {
+    return Status::invalid_argument;
+  }
+  const auto read_as = [&]<typename Index>(Index /*one*/) {
+    triangles = IndexView(static_cast<const Index*>(given.corners), given.count,
+                          given.stride != 0 ? given.stride : 3 * sizeof(Index));
+    return Status::ok;
+  };
+  if (given.index == WINNOW_UINT32) return read_as(std::uint32_t{});
+  return given.index == WINNOW_UINT16 ? read_as(std::uint16_t{}) : Status::invalid_argument;
+}
+
+Status read_view(const winnow_shape_ray_batch& given, Column<ShapeRay>& room,
                  ShapeRayBatch& rays) noexcept {
-  if (given == nullptr || !is_number(given->number) || !are_columns(given->origin, given->count) ||
-      !are_columns(given->direction, given->count)) {
+  if (!is_number(given.number) || !are_columns(given.origin, given.count) ||
+      !are_columns(given.direction, given.count)) {
     return Status::invalid_argument;
   }
-  const std::size_t stride = stride_of(given->stride, given->number);
-  if (given->number == WINNOW_DOUBLE) {
-    rays = ShapeRayBatch(columns_of<double>(given->origin), columns_of<double>(given->direction),
-                         given->count, static_cast<const double*>(given->max_t), stride);
+  const std::size_t stride = stride_of(given.stride, given.number);
+  if (given.number == WINNOW_DOUBLE) {
+    rays = ShapeRayBatch(columns_of<double>(given.origin), columns_of<double>(given.direction),
+                         given.count, static_cast<const double*>(given.max_t), stride);
     return Status::ok;
   }
-  if (!room.resize(given->count)) return Status::out_of_memory;
-  for (std::size_t i = 0; i < given->count; ++i) {
+  if (!room.resize(given.count)) return Status::out_of_memory;
+  for (std::size_t i = 0; i < given.count; ++i) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      room[i].origin[axis] = number_at(given->origin[axis], i, stride, WINNOW_FLOAT);
-      room[i].direction[axis] = number_at(given->direction[axis], i, stride, WINNOW_FLOAT);
+      room[i].origin[axis] = number_at(given.origin[axis], i, stride, WINNOW_FLOAT);
+      room[i].direction[axis] = number_at(given.direction[axis], i, stride, WINNOW_FLOAT);
     }
-    room[i].max_t = given->max_t != nullptr ? number_at(given->max_t, i, stride, WINNOW_FLOAT)
-                                            : std::numeric_limits<double>::infinity();
+    room[i].max_t = given.max_t != nullptr ? number_at(given.max_t, i, stride, WINNOW_FLOAT)
+                                           : std::numeric_limits<double>::infinity();
   }
   rays = ShapeRayBatch(std::span<const ShapeRay>(room.data(), room.size()));
   return Status::ok;
