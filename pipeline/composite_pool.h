@@ -132,11 +132,11 @@ class WINNOW_API CompositePool {
   /// are stopped only by the surface.
   ///
   /// The flag belongs to the id, as for `set_one_sided`; it also applies if the mesh is a child of
-  /// a compound. `invalid_key` if the id is not of a mesh. `invalid_shape` unless every edge
-  /// belongs to two triangles that run along it in opposite directions (vertices at the same
-  /// position count as one), and vertices run counter-clockwise as seen from outside, in the
-  /// unscaled mesh, even if the scale mirrors. A refit keeps the flag; the caller keeps the mesh
-  /// closed. O(n log n); a refit too.
+  /// a compound. `invalid_key` if the id is not of a mesh. `invalid_shape` unless as many triangles
+  /// run along each edge in one direction as in the other (vertices at the same position count as
+  /// one), and vertices run counter-clockwise as seen from outside, in the unscaled mesh, even if
+  /// the scale mirrors. Parts of the mesh may touch, overlap or be given twice: the solid is their
+  /// union. A refit keeps the flag; the caller keeps the mesh closed. O(n log n); a refit too.
   Status set_solid(ShapeId mesh, bool solid = true);
   /// True if this mesh is solid.
   [[nodiscard]] bool is_solid(ShapeId mesh) const noexcept;

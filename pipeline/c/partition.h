@@ -10,6 +10,7 @@
 /// destroyed.
 
 #include <winnow/c/core.h>
+#include <winnow/c/recording.h>
 #include <winnow/c/volumes.h>
 #include <math.h>
 
@@ -130,10 +131,11 @@ typedef struct winnow_partition_options {
   /// Number of rows that one refresh may process for a planned rebuild; 0 lets the partition choose
   /// it, SIZE_MAX plans nothing.
   size_t build_budget;
+  winnow_recorder* recorder;  ///< records all calls, or null; must outlive the partition
 } winnow_partition_options;
 #define WINNOW_PARTITION_OPTIONS \
   {sizeof(winnow_partition_options), NULL, {0, {NULL, NULL, 0}}, WINNOW_VOLUME_AABB, {0.0F, 0.0F}, \
-  0}
+  0, NULL}
 
 /// The structure that `automatic` has chosen, the reason, and the measured features of the scene.
 typedef struct winnow_structure_choice {

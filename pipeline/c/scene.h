@@ -67,10 +67,11 @@ typedef struct winnow_scene_options {
   /// 0 or 1: stores for each pair and each point its index in the previous frame; see
   /// winnow_contact_columns.
   uint8_t warm_start;
+  winnow_recorder* recorder;  ///< records all calls and queries, or null; must outlive the scene
 } winnow_scene_options;
 #define WINNOW_SCENE_OPTIONS \
   {sizeof(winnow_scene_options), NULL, {0, {NULL, NULL, 0}}, {{0, 0.0F}, {0, 0.0F}, {0, 0.0F}}, 0.0, \
-  WINNOW_TIER_ROBUST, 0, 0.0, 0, NULL, 0, 0}
+  WINNOW_TIER_ROBUST, 0, 0.0, 0, NULL, 0, 0, NULL}
 
 /// Distances from the surface of a body at which its contacts begin and at which it rests. The
 /// offsets of two bodies are added. They apply at levels distance and manifold.

@@ -32,6 +32,7 @@
 #include <winnow/c/hooks.h>
 #include <winnow/c/narrow_phase.h>
 #include <winnow/c/partition.h>
+#include <winnow/c/recording.h>
 #include <winnow/c/scene.h>
 #include <winnow/c/scene_queries.h>
 #include <winnow/c/sensors.h>

@@ -143,8 +143,8 @@ void each_near_pair(const SubShapeQuery& parts, const Pairing& pair, Visit&& vis
 }
 
 // Defined in solid_depth.cpp.
-void find_solid_depth(const SubShapeQuery& parts, const Pairing& pair,
-                      ShapeDistance& answer) noexcept;
+[[nodiscard]] bool find_solid_depth(const SubShapeQuery& parts, const Pairing& pair,
+                                    ShapeDistance& answer) noexcept;
 
 /// Finds the closest parts of two shapes, within a limit.
 class ClosestParts {
@@ -156,8 +156,8 @@ class ClosestParts {
             ShapeDistance& answer) noexcept {
     const Pairing pair(first, second);
     std::uint32_t part = kWholeShape;
-    if (has_solid_depth(parts_, pair) && do_overlap(parts_, first, second, part)) {
-      find_solid_depth(parts_, pair, answer);
+    if (has_solid_depth(parts_, pair) && do_overlap(parts_, first, second, part) &&
+        find_solid_depth(parts_, pair, answer)) {
       return answer.distance <= limit;
     }
     return find_parts(pair, limit, answer);

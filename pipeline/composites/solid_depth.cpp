@@ -72,11 +72,11 @@ class Directions {
   return turn_of(pose) * one.cross(two);
 }
 
-using Corners = std::array<Vec, 3>;
+using TriangleCorners = std::array<Vec, 3>;
 
-[[nodiscard]] Corners corners_of(const SubShape& part) noexcept {
+[[nodiscard]] TriangleCorners corners_of(const SubShape& part) noexcept {
   const Eigen::Matrix3d turn = turn_of(part.pose);
-  Corners corners;
+  TriangleCorners corners;
   for (std::size_t k = 0; k < 3; ++k) {
     corners[k] = as_eigen(part.pose.position) + turn * as_eigen(part.triangle->vertex[k]);
   }
@@ -85,8 +85,8 @@ using Corners = std::array<Vec, 3>;
 
 /// Shortens the passage of triangle b past triangle a to the lengths at which their projections on
 /// an axis overlap.
-void project(const Corners& a, const Corners& b, const Vec& direction, const Vec& axis,
-             Passage& passage) noexcept {
+void project(const TriangleCorners& a, const TriangleCorners& b, const Vec& direction,
+             const Vec& axis, Passage& passage) noexcept {
   constexpr double kParallel = 1e-12;
   const double length = axis.norm();
   const double speed = axis.dot(direction);
@@ -104,11 +104,13 @@ void project(const Corners& a, const Corners& b, const Vec& direction, const Vec
 
 /// The separating axes of two triangles: their normals, products of their edges, and normals of
 /// edges in their planes.
-[[nodiscard]] Passage passage_of(const Corners& a, const Corners& b,
+[[nodiscard]] Passage passage_of(const TriangleCorners& a, const TriangleCorners& b,
                                  const Vec& direction) noexcept {
   Passage passage;
-  const auto edge = [](const Corners& of, std::size_t k) -> Vec { return of[(k + 1) % 3] - of[k]; };
-  for (const Corners* const own : {&a, &b}) {
+  const auto edge = [](const TriangleCorners& of, std::size_t k) -> Vec {
+    return of[(k + 1) % 3] - of[k];
+  };
+  for (const TriangleCorners* const own : {&a, &b}) {
     const Vec normal = edge(*own, 0).cross(edge(*own, 1));
     project(a, b, direction, normal, passage);
     for (std::size_t k = 0; k < 3; ++k) {
@@ -138,10 +140,13 @@ class SolidDepth {
         box_b_(parts.box(pair.b)),
         size_((box_a_.max - box_a_.min).norm() + (box_b_.max - box_b_.min).norm()) {}
 
-  void find(ShapeDistance& answer) noexcept {
+  /// Returns false if no way out was found, because the numbers are too large.
+  [[nodiscard]] bool find(ShapeDistance& answer) noexcept {
     for (const Vec& direction : candidates()) improve(direction);
+    if (!std::isfinite(best_.length)) return false;
     shorten();
     write(answer);
+    return true;
   }
 
  private:
@@ -182,8 +187,8 @@ class SolidDepth {
   WayOut best_;
 };
 
-// The way to the nearest surface, the way between the centres, the axes of both frames, and the
-// normals of overlapping triangles.
+// The way to the nearest surface, the way between the centres, the axes of both frames, directions
+// to all sides, and the normals of overlapping triangles.
 Directions SolidDepth::candidates() const noexcept {
   Directions found;
   ShapeDistance surfaces;
@@ -220,7 +225,8 @@ void SolidDepth::shorten() noexcept {
     improve(best_.normal);
     if (best_.length == before) break;
   }
-  for (double angle = 0.8; angle > 1e-3;) {
+  double angle = 0.8;
+  for (int turn = 0; turn < 4 * kTurns && angle > 1e-3; ++turn) {
     const double before = best_.length;
     const Vec from = best_.direction;
     for (const Vec& side : tangents_of(from)) {
@@ -239,7 +245,7 @@ WayOut SolidDepth::leave(const Vec& direction, double most) const noexcept {
   constexpr int kSteps = 20;
   WayOut way;
   double apart = std::min(most * (1.0 - kShorter), reach(box_a_, box_b_, direction));
-  if (!(apart > 0.0) || do_overlap_at(apart * direction)) return way;
+  if (!(apart > 0.0) || !std::isfinite(apart) || do_overlap_at(apart * direction)) return way;
   double within = 0.0;
   for (int i = 0; i < kHalvings; ++i) {
     const double middle = 0.5 * (within + apart);
@@ -313,9 +319,9 @@ double SolidDepth::lower_bound(const Vec& touched) const noexcept {
                            Vec(0.5 * (box_b_.min + box_b_.max))}) {
     climb(start);
   }
-  for (double step = 0.5 * best_.length; step > 0.02 * best_.length;) {
-    bool any = bound >= best_.length * (1.0 - kTolerance);
-    if (any) break;
+  const double enough = best_.length * (1.0 - kTolerance);
+  for (double step = 0.5 * best_.length; bound < enough && step > 0.02 * best_.length;) {
+    bool any = false;
     for (int axis = 0; axis < 3; ++axis) {
       any = climb(at + step * Vec::Unit(axis)) || climb(at - step * Vec::Unit(axis)) || any;
     }
@@ -355,9 +361,9 @@ void SolidDepth::write(ShapeDistance& answer) const noexcept {
 
 }  // namespace
 
-void find_solid_depth(const SubShapeQuery& parts, const Pairing& pair,
+bool find_solid_depth(const SubShapeQuery& parts, const Pairing& pair,
                       ShapeDistance& answer) noexcept {
-  SolidDepth(parts, pair).find(answer);
+  return SolidDepth(parts, pair).find(answer);
 }
 
 }  // namespace winnow

@@ -15,8 +15,8 @@ namespace winnow {
 /// signed distance d from the other shape, each translation that parts the shapes is at least r - d
 /// long.
 ///
-/// `pair` must overlap and contain no half-space.
-void find_solid_depth(const SubShapeQuery& parts, const Pairing& pair,
-                      ShapeDistance& answer) noexcept;
+/// `pair` must overlap and contain no half-space. Returns false if sums of coordinates overflow.
+[[nodiscard]] bool find_solid_depth(const SubShapeQuery& parts, const Pairing& pair,
+                                    ShapeDistance& answer) noexcept;
 
 }  // namespace winnow

@@ -11,6 +11,7 @@
 #include "pipeline/shapes/hull_builder.h"
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 namespace winnow::mid {
@@ -60,6 +61,40 @@ struct WeldedMesh {
         std::lower_bound(points.begin(), points.end(), point, is_before) - points.begin());
   }
 };
+
+/// Checks that the triangles of a mesh enclose a volume. `invalid_shape` unless as many triangles
+/// traverse each edge in one direction as in the other, so that the mesh winds a whole number of
+/// times around each point, and the enclosed volume is positive (corners counter-clockwise seen
+/// from outside). Parts of the mesh may touch, overlap or be given twice. O(n log n).
+[[nodiscard]] Status check_solid(const Composites& all, ShapeId id) {
+  const WeldedMesh mesh(all, id);
+  struct Edge {
+    std::uint32_t low, high;
+    int direction;
+  };
+  std::pmr::vector<Edge> edges(all.memory);
+  double volume = 0.0;
+  for (std::size_t t = 0; t < mesh.corners.size(); t += 3) {
+    const std::uint32_t* const corner = mesh.corners.data() + t;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto [low, high] = std::minmax(corner[k], corner[(k + 1) % 3]);
+      edges.push_back({low, high, corner[k] == low ? 1 : -1});
+    }
+    const auto from_first = [&](std::size_t k) -> Vec {
+      return as_eigen(mesh.points[corner[k]]) - as_eigen(mesh.points[0]);
+    };
+    volume += from_first(0).dot(from_first(1).cross(from_first(2)));
+  }
+  const auto ends = [](const Edge& edge) { return std::pair(edge.low, edge.high); };
+  std::ranges::sort(edges, {}, ends);
+  for (auto edge = edges.begin(); edge != edges.end();) {
+    int balance = 0;
+    const auto first = edge;
+    for (; edge != edges.end() && ends(*edge) == ends(*first); ++edge) balance += edge->direction;
+    if (balance != 0) return Status::invalid_shape;
+  }
+  return volume > 0.0 ? Status::ok : Status::invalid_shape;
+}
 
 /// `invalid_shape` if the mesh is not convex.
 [[nodiscard]] Status build_hull(const Composites& all, ShapeId id, HullShape& hull) {
@@ -132,7 +167,8 @@ Status CompositePool::set_solid(ShapeId id, bool solid) {
     state_->drop_hull(state_->meshes.entries[id.index()]);
     return state_->solid.set(id, false, revision_);
   }
-  Status status = mid::check_solid(*state_, id);
+  Status status =
+      catch_bad_alloc([&] { return mid::check_solid(*state_, id); }, Status::out_of_memory);
   if (status == Status::ok) status = mid::make_hull(*state_, id);
   if (status != Status::ok) return status;
   status = state_->solid.set(id, true, revision_);

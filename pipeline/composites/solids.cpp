@@ -2,7 +2,6 @@
 
 #include "pipeline/composites/solids.h"
 
-#include "pipeline/mesh/mesh_edges.h"
 #include "pipeline/mesh/mesh_rays.kernel.h"
 
 #include <cmath>
@@ -11,11 +10,6 @@
 
 namespace winnow::mid {
 namespace {
-
-[[nodiscard]] bool is_segment(const double (&corner)[3][3]) noexcept {
-  const auto same = [&](int i, int k) { return Vec::Map(corner[i]) == Vec::Map(corner[k]); };
-  return same(0, 1) || same(1, 2) || same(2, 0);
-}
 
 /// Computes the winding number of a mesh about a point: 1 inside, 0 outside, larger in regions in
 /// which the mesh overlaps itself. The point is in the frame of the mesh.
@@ -161,27 +155,6 @@ template <typename Visit>
 }
 
 }  // namespace
-
-Status check_solid(const Composites& all, ShapeId id) noexcept {
-  const TransformedShape body =
-      TransformedShape::at(all, id, {}, TransformedShape::Solids::triangles);
-  Column<std::uint32_t> neighbours(all.memory);
-  if (!find_neighbours(*body.mesh, neighbours)) return Status::out_of_memory;
-  Vec about = Vec::Zero();
-  double volume = 0.0;
-  for (std::uint32_t slot = 0; slot < body.mesh->triangle_count; ++slot) {
-    double corner[3][3];
-    (void)body.own_corners(slot, corner);
-    if (is_segment(corner)) continue;
-    for (std::uint32_t edge = 0; edge < 3; ++edge) {
-      if ((neighbours[3 * slot + edge] & kSameDirection) != 0) return Status::invalid_shape;
-    }
-    if (slot == 0) about = Vec::Map(corner[0]);
-    volume += (Vec::Map(corner[0]) - about)
-                  .dot((Vec::Map(corner[1]) - about).cross(Vec::Map(corner[2]) - about));
-  }
-  return volume > 0.0 ? Status::ok : Status::invalid_shape;
-}
 
 double winding_number(const Composites& all, ShapeId mesh, const Vec3d& point) noexcept {
   const TransformedShape body =

@@ -81,8 +81,8 @@ SolidContact SolidPair::find_contact() const noexcept {
   SolidContact contact;
   contact.is_needed = overlaps_at(way + kFarther * size * way.stableNormalized());
   if (!contact.is_needed) return contact;
-  find_solid_depth(parts_, pair_, contact.depth);
-  find_points(contact);
+  contact.is_needed = find_solid_depth(parts_, pair_, contact.depth);
+  if (contact.is_needed) find_points(contact);
   return contact;
 }
 

@@ -43,6 +43,7 @@ class Owned {
   std::unique_ptr<OfC, Destroy> handle_;
 };
 
+using OwnedRecorder = Owned<winnow_recorder, winnow_recorder_destroy>;
 using OwnedThreads = Owned<winnow_threads, winnow_threads_destroy>;
 using OwnedPartition = Owned<winnow_partition, winnow_partition_destroy>;
 using OwnedPairs = Owned<winnow_pair_buffer, winnow_pair_buffer_destroy>;

@@ -279,6 +279,55 @@ TEST(SolidDepth, few_sampled_directions_are_shorter) {
   EXPECT_LE(10 * shorter, overlapping + 10);
 }
 
+/// Appends a mesh, moved along x.
+void append(MeshData& mesh, const MeshData& other, float by) {
+  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+  for (const Eigen::Vector3f& at : other.vertices) {
+    mesh.vertices.emplace_back(at.x() + by, at.y(), at.z());
+  }
+  for (const std::uint32_t corner : other.corners) mesh.corners.push_back(first + corner);
+}
+
+TEST(SolidDepth, parts_of_one_mesh_are_a_union) {
+  Random random(7);
+  SolidPool pool;
+  const MeshData square = prism({{-1, -1}, {1, -1}, {1, 1}, {-1, 1}});
+  const ShapeId others[] = {expect_ok(pool.shapes.add(SphereShape{0.3})),
+                            expect_ok(pool.shapes.add(BoxShape{{0.3, 0.2, 0.4}}))};
+  // Given twice, touching, and overlapping.
+  for (const float by : {0.0F, 2.0F, 1.5F}) {
+    MeshData two = square;
+    append(two, square, by);
+    const ShapeId solid = pool.solid(two);
+    const ShapeId box = expect_ok(pool.shapes.add(BoxShape{{1.0 + 0.5 * by, 1.0, 1.0}}));
+    for (std::size_t i = 0; i < scaled(60); ++i) {
+      const Pose pose = random_pose(1.2, random);
+      const ShapeId other = others[i % 2];
+      const SceneDistance got =
+          distance_of(pool, solid, other, moved(pose, {0.5 * static_cast<double>(by), 0, 0}));
+      const SceneDistance right = distance_of(pool, box, other, pose);
+      ASSERT_LE(-got.distance, -right.distance + 1e-6 + 0.1 * std::abs(right.distance)) << by;
+      ASSERT_GE(-got.distance, -right.distance - 1e-6) << by;
+      ASSERT_LE(-got.distance - got.error_bound, -right.distance + 1e-9);
+    }
+  }
+}
+
+TEST(SolidDepth, cubes_that_share_an_edge_are_solid) {
+  SolidPool pool;
+  const MeshData square = prism({{-1, -1}, {1, -1}, {1, 1}, {-1, 1}});
+  MeshData two = square;
+  append(two, square, 2.0F);
+  for (std::size_t i = square.vertices.size(); i < two.vertices.size(); ++i) {
+    two.vertices[i].y() += 2.0F;
+  }
+  const ShapeId id = pool.solid(two);
+  const ShapeId ball = expect_ok(pool.shapes.add(SphereShape{0.05}));
+  EXPECT_TRUE(do_overlap(pool, id, ball, {}));
+  EXPECT_TRUE(do_overlap(pool, id, ball, Pose::at(1.5, 1.5, 0.0)));
+  EXPECT_FALSE(do_overlap(pool, id, ball, Pose::at(1.1, 0.9, 0.0)));
+}
+
 /// Returns the contacts of two bodies.
 void collide(const SolidPool& pool, ContactLevel level, ShapeId a, ShapeId b, const Pose& pose,
              Contacts& contacts) {

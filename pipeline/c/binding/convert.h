@@ -187,6 +187,8 @@ template <typename Given, typename Option>
     option = to_cpp(given);
   } else if constexpr (std::is_same_v<Given, const winnow_composite_pool*>) {
     if (given != nullptr) option = &of(given);
+  } else if constexpr (std::is_same_v<Given, winnow_recorder*>) {
+    if (given != nullptr) option = &of(given);
   } else if constexpr (std::is_enum_v<Option>) {
     return given == 0 || read(given, option);
   } else if constexpr (std::is_class_v<Given>) {

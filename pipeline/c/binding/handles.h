@@ -9,6 +9,7 @@
 #include <winnow/c/continuous_collision.h>
 #include <winnow/c/deformable_mesh.h>
 #include <winnow/c/partition.h>
+#include <winnow/c/recording.h>
 #include <winnow/c/scene.h>
 #include <winnow/c/scene_queries.h>
 #include <winnow/c/sensors.h>
@@ -29,6 +30,7 @@
 #include <winnow/pipeline/deformable_mesh.h>
 #include <winnow/pipeline/narrow_phase.h>
 #include <winnow/pipeline/narrow_result.h>
+#include <winnow/pipeline/recording.h>
 #include <winnow/pipeline/scene.h>
 #include <winnow/pipeline/scene_queries.h>
 #include <winnow/pipeline/sensors.h>
@@ -63,6 +65,10 @@ struct Holder : Handle {
 };
 
 }  // namespace winnow::c
+
+struct winnow_recorder : winnow::c::Holder<winnow::Recorder> {
+  using Holder::Holder;
+};
 
 struct winnow_pair_buffer : winnow::c::Holder<winnow::PairBuffer, winnow::Column<float>> {
   using Holder::Holder;
@@ -197,6 +203,9 @@ template <typename Of>
 template <typename Made>
 [[nodiscard]] Status standing(Made& /*made*/) noexcept {
   return Status::ok;
+}
+[[nodiscard]] inline Status standing(winnow_recorder& made) noexcept {
+  return made.value.status();
 }
 [[nodiscard]] inline Status standing(winnow_partition& made) noexcept {
   return made.value.status();

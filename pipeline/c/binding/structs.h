@@ -13,6 +13,7 @@
 #include <winnow/c/hooks.h>
 #include <winnow/c/narrow_phase.h>
 #include <winnow/c/partition.h>
+#include <winnow/c/recording.h>
 #include <winnow/c/scene.h>
 #include <winnow/c/scene_queries.h>
 #include <winnow/c/sensors.h>
@@ -61,6 +62,7 @@
 #include <winnow/pipeline/height_field.h>
 #include <winnow/pipeline/narrow_phase.h>
 #include <winnow/pipeline/narrow_result.h>
+#include <winnow/pipeline/recording.h>
 #include <winnow/pipeline/rigid_motion.h>
 #include <winnow/pipeline/scene.h>
 #include <winnow/pipeline/scene_queries.h>
@@ -258,13 +260,17 @@ WINNOW_SAME_LAYOUT(winnow_fat_margin, FatMargin)
 static_assert(offsetof(winnow_fat_margin, distance) == offsetof(FatMargin, distance));
 static_assert(offsetof(winnow_fat_margin, share) == offsetof(FatMargin, share));
 
+template <>
+inline constexpr std::size_t kFirstSize<winnow_partition_options> =
+    offsetof(winnow_partition_options, build_budget) + sizeof(winnow_partition_options::build_budget);
 [[nodiscard]] inline bool read(const winnow_partition_options* given, PartitionOptions& options) noexcept {
   winnow_partition_options own{};
   return read_sized(given, own) &&
          take(own.execution, options.execution) &&
          take(own.volume, options.volume) &&
          take(own.fat_margin, options.fat_margin) &&
-         take(own.build_budget, options.build_budget);
+         take(own.build_budget, options.build_budget) &&
+         take(own.recorder, options.recorder);
 }
 
 inline void show(const StructureChoice& own, winnow_structure_choice& to) noexcept {
@@ -448,7 +454,8 @@ inline constexpr std::size_t kFirstSize<winnow_scene_options> =
          take(own.build_budget, options.build_budget) &&
          take(own.composites, options.composites) &&
          take(own.suppress_ghost_contacts, options.suppress_ghost_contacts) &&
-         take(own.warm_start, options.warm_start);
+         take(own.warm_start, options.warm_start) &&
+         take(own.recorder, options.recorder);
 }
 
 WINNOW_SAME_LAYOUT(winnow_contact_offsets, ContactOffsets)
