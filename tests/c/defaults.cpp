@@ -131,9 +131,9 @@ Members members(const Filter& o) {
   return list("layers mask environment predicate", layers, mask, environment, predicate);
 }
 Members members(const PartitionOptions& o) {
-  const auto& [memory, execution, volume, fat_margin, build_budget] = o;
-  return list("memory execution volume fat_margin fat_margin_share build_budget", memory, execution,
-              volume, fat_margin.distance, fat_margin.share, build_budget);
+  const auto& [memory, execution, volume, fat_margin, build_budget, recorder] = o;
+  return list("memory execution volume fat_margin fat_margin_share build_budget recorder", memory,
+              execution, volume, fat_margin.distance, fat_margin.share, build_budget, recorder);
 }
 Members members(const PairOptions& o) {
   const auto& [order, incremental, predicate] = o;
@@ -145,14 +145,14 @@ Members members(const DebugDrawOptions& o) {
 }
 Members members(const SceneOptions& o) {
   const auto& [memory, execution, structures, contact_margin, tier, cache_tolerance,
-               contact_reduction, suppress_ghost_contacts, warm_start, build_budget, composites] =
-      o;
+               contact_reduction, suppress_ghost_contacts, warm_start, build_budget, composites,
+               recorder] = o;
   return list(
       "memory execution structures contact_margin tier cache_tolerance contact_reduction "
       "suppress_ghost_contacts "
-      "warm_start build_budget composites",
+      "warm_start build_budget composites recorder",
       memory, execution, structures, contact_margin, tier, cache_tolerance, contact_reduction,
-      suppress_ghost_contacts, warm_start, build_budget, composites);
+      suppress_ghost_contacts, warm_start, build_budget, composites, recorder);
 }
 Members members(const NarrowOptions& o) {
   const auto& [level, tier, contact_margin, execution, contact_margins] = o;
