@@ -31,14 +31,15 @@ Status mutate(const char* call, PartitionState* state, Status otherwise, std::si
 
 Status find_self_pairs(const PartitionState& state, PairForm form, PairBuffer& out,
                        PairEvents* events, const PairOptions& options) {
-  Lock lock;
-  if (state.observer != nullptr) lock = Lock(state.observer->self_pairs_mutex);
-  const ObservedPairQuery query(form, out, events);
   PairOptions used = options;
   // Events are sorted anyway, and the pairs are not returned.
   if (form == PairForm::events) used.order = Order::fast;
+  PartitionObserver* const observer = state.observer;
+  if (observer == nullptr) return logged(state.self_pairs(out, used, events), kSelfPairs);
+  const Lock lock(observer->self_pairs_mutex);
+  const ObservedPairQuery query(form, out, events);
   const Status status = state.self_pairs(out, used, events);
-  if (is_observed(status, &state)) state.observer->self_pairs(options, query);
+  if (status == Status::ok) observer->self_pairs(options, query);
   return logged(status, kSelfPairs);
 }
 

@@ -32,20 +32,16 @@ NearestHeap heap_in(Column<std::uint64_t>& entries, std::size_t most) noexcept {
   return heap;
 }
 
-}  // namespace
-
-Status Partition::nearest(const Aabb& from, std::size_t count, float radius, HitBuffer& hits,
-                          const Filter& filter) const {
-  const DefaultFloatEnvironment environment;
-  hits.clear();
-  if (state_ == nullptr) return status_;
+/// `hits` must be empty.
+Status find_nearest(const PartitionState& state, const Aabb& from, std::size_t count, float radius,
+                    HitBuffer& hits, const Filter& filter) {
   const bool finite = from.min.all_finite() && from.max.all_finite() && from.is_valid();
   if (!finite || !(radius >= 0.0F)) return Status::invalid_argument;
   QueryView view;
-  if (const Status status = state_->prepare(QueryKind::nearest, 1, view); status != Status::ok) {
+  if (const Status status = state.prepare(QueryKind::nearest, 1, view); status != Status::ok) {
     return status;
   }
-  const KeyTable& keys = state_->rows.keys();
+  const KeyTable& keys = state.rows.keys();
   const KernelFilter kernel_filter(filter, view, keys);
   NearestQuery query;
   for (int axis = 0; axis < 3; ++axis) {
@@ -59,12 +55,21 @@ Status Partition::nearest(const Aabb& from, std::size_t count, float radius, Hit
   const bool done = kernel_filter.matches_nothing() || count == 0 ||
                     nearest_kernels().nearest(view, query, kernel_filter.query_filter(), heap);
   entries.set_size(heap.size);
-  if (done && HitWriter::write_heap(hits, keys)) {
-    if (state_->observer != nullptr) state_->observer->nearest(from, count, radius, filter, hits);
-    return Status::ok;
-  }
+  if (done && HitWriter::write_heap(hits, keys)) return Status::ok;
   hits.clear();
   return Status::out_of_memory;
+}
+
+}  // namespace
+
+Status Partition::nearest(const Aabb& from, std::size_t count, float radius, HitBuffer& hits,
+                          const Filter& filter) const {
+  const DefaultFloatEnvironment environment;
+  hits.clear();
+  if (state_ == nullptr) return status_;
+  const Status status = find_nearest(*state_, from, count, radius, hits, filter);
+  if (is_observed(status, state_)) state_->observer->nearest(from, count, radius, filter, hits);
+  return status;
 }
 
 }  // namespace winnow
