@@ -20,6 +20,7 @@ typedef struct winnow_contact_groups winnow_contact_groups;
 WINNOW_C_API winnow_status winnow_contact_groups_create(
     const winnow_memory* memory, winnow_contact_groups** groups);
 
+/// Destroys the contact groups; does nothing for null.
 WINNOW_C_API void winnow_contact_groups_destroy(winnow_contact_groups* groups);
 
 /// Returns the number of groups; none of them is empty.
@@ -37,7 +38,7 @@ WINNOW_C_API winnow_status winnow_contact_groups_pairs(
 /// Removes all groups. Memory is kept.
 WINNOW_C_API winnow_status winnow_contact_groups_clear(winnow_contact_groups* groups);
 
-/// Writes the bytes of groups, by purpose.
+/// Writes the bytes of the contact groups, by purpose.
 WINNOW_C_API winnow_status winnow_contact_groups_footprint(
     const winnow_contact_groups* groups, winnow_footprint* footprint);
 

@@ -44,20 +44,20 @@ typedef struct winnow_threads winnow_threads;
 typedef int32_t winnow_status;
 enum {
   WINNOW_OK = 0,  ///< success
-  /// a bounding volume has a NaN, has min > max, or is entirely at infinity
+  /// A bounding volume has a NaN, has min > max, or is entirely at infinity.
   WINNOW_INVALID_BOUNDS = 1,
-  /// a key is null, stale (its object was removed) or of another partition or scene
+  /// A key is null, stale (its object was removed) or of another partition or scene.
   WINNOW_INVALID_KEY = 2,
-  /// an option or argument is out of range; also a null pointer that is not allowed, an invalid
-  /// kind or choice, or a wrong `size`
+  /// An option or argument is out of range; also a null pointer that is not allowed, an invalid
+  /// kind or choice, or a wrong `size`.
   WINNOW_INVALID_ARGUMENT = 3,
-  WINNOW_SIZE_MISMATCH = 4,  ///< arrays that belong together differ in length
-  WINNOW_OUT_OF_MEMORY = 5,  ///< the memory was refused; the object is unchanged
-  WINNOW_TOO_MANY_OBJECTS = 6,  ///< the number of objects would exceed its limit
+  WINNOW_SIZE_MISMATCH = 4,       ///< arrays that belong together differ in length
+  WINNOW_OUT_OF_MEMORY = 5,       ///< the memory was refused; the object is unchanged
+  WINNOW_TOO_MANY_OBJECTS = 6,    ///< the number of objects would exceed its limit
   WINNOW_UNSUPPORTED_VOLUME = 7,  ///< the partition does not store this kind of bounding volume
   WINNOW_INVALID_SHAPE = 8,  ///< a shape has an invalid length, or its points do not define a shape
-  WINNOW_INVALID_POSE = 9,  ///< a pose has a NaN or infinity, or its quaternion is zero
-  WINNOW_UNSUPPORTED = 10,  ///< this build, or the object as it was created, lacks the function
+  WINNOW_INVALID_POSE = 9,   ///< a pose has a NaN or infinity, or its quaternion is zero
+  WINNOW_UNSUPPORTED = 10,   ///< this build, or the object as it was created, lacks the function
   WINNOW_COMMUNICATION_FAILED = 11  ///< a rank of a cluster does not respond; not returned by C
 };
 
@@ -70,17 +70,17 @@ enum {
 
 /// How a call runs its work; results do not depend on it.
 enum {
-  /// C++ default: parallel (narrow phase, impacts, deformable meshes: serial)
+  /// C++ default: parallel (narrow phase, impacts, deformable meshes: serial).
   WINNOW_EXECUTION_DEFAULT = 0,
-  WINNOW_EXECUTION_SERIAL = 1,  ///< on the calling thread
-  WINNOW_EXECUTION_ON = 2,  ///< the host's job system `jobs`
+  WINNOW_EXECUTION_SERIAL = 1,   ///< on the calling thread
+  WINNOW_EXECUTION_ON = 2,       ///< the host's job system `jobs`
   WINNOW_EXECUTION_PARALLEL = 3  ///< all processors, with oneTBB
 };
 
 /// Order of results. Both orders are the same for any number of threads and any instruction set.
 typedef int32_t winnow_order;
 enum {
-  WINNOW_ORDER_FAST = 0,  ///< order in which results are found
+  WINNOW_ORDER_FAST = 0,      ///< order in which results are found
   WINNOW_ORDER_CANONICAL = 1  ///< sorted by ids
 };
 
@@ -89,7 +89,7 @@ enum {
 /// outlive everything created with it.
 typedef struct winnow_memory {
   void* (*allocate)(void* context, size_t bytes, size_t alignment);  ///< returns null on failure
-  /// called with the bytes and the alignment (a power of two) of the allocation
+  /// Called with the bytes and the alignment (a power of two) of the allocation.
   void (*deallocate)(void* context, void* block, size_t bytes, size_t alignment);
   void* context;  ///< passed to both functions
 } winnow_memory;
@@ -103,20 +103,19 @@ typedef struct winnow_job_system {
   void (*parallel_for)(void* context, size_t count, void (*task)(void* tasks, size_t i),
                        void* tasks);
   void* context;  ///< passed to `parallel_for`; must outlive everything created with it
-  /// tasks that may run at the same time, and the largest count; affects only speed
+  /// Tasks that may run at the same time, and the largest count; affects only speed.
   size_t threads;
 } winnow_job_system;
 
 /// How a call runs its work.
 typedef struct winnow_execution {
-  int32_t kind;  ///< WINNOW_EXECUTION_DEFAULT, ..._SERIAL, ..._ON or ..._PARALLEL
+  int32_t kind;            ///< WINNOW_EXECUTION_DEFAULT, ..._SERIAL, ..._ON or ..._PARALLEL
   winnow_job_system jobs;  ///< used if `kind` is WINNOW_EXECUTION_ON
 } winnow_execution;
-#define WINNOW_EXECUTION {0, {NULL, NULL, 0}}
 
 /// Bytes of one purpose.
 typedef struct winnow_bytes {
-  size_t used;  ///< bytes with content
+  size_t used;      ///< bytes with content
   size_t reserved;  ///< bytes allocated, with content or not
 } winnow_bytes;
 
@@ -124,19 +123,19 @@ typedef struct winnow_bytes {
 /// allocated from its winnow_memory. The object behind a handle such as winnow_partition* counts as
 /// `structure`.
 typedef struct winnow_footprint {
-  size_t size;  ///< set by the caller to sizeof(winnow_footprint)
-  winnow_bytes bounds;  ///< bounding volumes
-  winnow_bytes keys;  ///< keys of objects
+  size_t size;               ///< set by the caller to sizeof(winnow_footprint)
+  winnow_bytes bounds;       ///< bounding volumes
+  winnow_bytes keys;         ///< keys of objects
   winnow_bytes client_data;  ///< client data of all objects
-  winnow_bytes structure;  ///< cells, nodes and sort orders; the handle
-  winnow_bytes scratch;  ///< buffers kept from call to call
-  winnow_bytes results;  ///< pairs, hits, contacts and other results
+  winnow_bytes structure;    ///< cells, nodes and sort orders; the handle
+  winnow_bytes scratch;      ///< buffers kept from call to call
+  winnow_bytes results;      ///< pairs, hits, contacts and other results
 } winnow_footprint;
 
 /// Key of an object of a partition, or of a body of a scene. Calls return WINNOW_INVALID_KEY for
 /// the key of a removed object, and for a key of another partition or scene.
 typedef struct winnow_key {
-  uint32_t id;  ///< index of the object
+  uint32_t id;     ///< index of the object
   uint32_t stamp;  ///< distinguishes objects with the same id
 } winnow_key;
 #define WINNOW_NULL_KEY {WINNOW_NO_OBJECT, 0}
@@ -145,16 +144,16 @@ typedef struct winnow_key {
 /// layer that the other accepts, and their environments must be equal, or one of them
 /// WINNOW_EVERY_ENVIRONMENT.
 typedef struct winnow_object_filter {
-  uint32_t layers;  ///< layers that the object is in, one bit each
-  uint32_t mask;  ///< layers of objects that it accepts
+  uint32_t layers;       ///< layers that the object is in, one bit each
+  uint32_t mask;         ///< layers of objects that it accepts
   uint32_t environment;  ///< objects of different environments do not pair
 } winnow_object_filter;
 #define WINNOW_OBJECT_FILTER {1U, 0xFFFFFFFFU, 0U}
 
 /// Filter of a query, as if the query were an object; a null pointer to it accepts all objects.
 typedef struct winnow_filter {
-  uint32_t layers;  ///< layers that the query is in, one bit each
-  uint32_t mask;  ///< layers that it accepts
+  uint32_t layers;       ///< layers that the query is in, one bit each
+  uint32_t mask;         ///< layers that it accepts
   uint32_t environment;  ///< objects of other environments are skipped
   /// Null, or called for objects that pass the rest of the filter: from any thread, from several at
   /// once and in any order. It must return the same value each time for an object.
@@ -167,7 +166,7 @@ typedef struct winnow_filter {
 /// rules.
 typedef struct winnow_pair_predicate {
   bool (*accept)(void* context, uint32_t first, uint32_t second);  ///< null accepts all pairs
-  void* context;  ///< passed to `accept`
+  void* context;                                                   ///< passed to `accept`
 } winnow_pair_predicate;
 
 /// Creates 1 to 4096 threads. WINNOW_UNSUPPORTED if count > 1 and the library was built without

@@ -15,12 +15,12 @@ extern "C" {
 typedef int32_t winnow_work_stage;
 enum {
   WINNOW_STAGE_REFRESH = 0,  ///< structures are updated for changed objects
-  WINNOW_STAGE_BUILD = 1,  ///< a structure is rebuilt
-  WINNOW_STAGE_PAIRS = 2,  ///< overlapping bounding volumes are found
-  /// parts of meshes, height fields and compounds that may touch are found
+  WINNOW_STAGE_BUILD = 1,    ///< a structure is rebuilt
+  WINNOW_STAGE_PAIRS = 2,    ///< overlapping bounding volumes are found
+  /// Parts of meshes, height fields and compounds that may touch are found.
   WINNOW_STAGE_MID_PHASE = 3,
   WINNOW_STAGE_NARROW_PHASE = 4,  ///< pairs of shapes are tested
-  WINNOW_STAGE_CONTACTS = 5  ///< results are written to winnow_contacts
+  WINNOW_STAGE_CONTACTS = 5       ///< results are written to winnow_contacts
 };
 
 /// Kind of a log entry.
@@ -42,17 +42,17 @@ typedef void (*winnow_log_hook)(const struct winnow_log_entry* entry);
 /// Text that is not null-terminated.
 typedef struct winnow_text {
   const char* first;  ///< its first character
-  size_t count;  ///< number of characters
+  size_t count;       ///< number of characters
 } winnow_text;
 
 /// An entry that is passed to the log hook.
 typedef struct winnow_log_entry {
   winnow_log_kind kind;  ///< determines which other members are set
-  winnow_text what;  ///< name of the new structure, or of the refused call, such as Scene::add
-  winnow_text before;  ///< name of the previous structure; empty for a refusal
-  winnow_text reason;  ///< reason in a few words; for a refusal, the name of the status
+  winnow_text what;      ///< name of the new structure, or of the refused call, such as Scene::add
+  winnow_text before;    ///< name of the previous structure; empty for a refusal
+  winnow_text reason;    ///< reason in a few words; for a refusal, the name of the status
   winnow_status status;  ///< status of the refused call
-  size_t objects;  ///< number of objects in the partition; 0 for a refusal
+  size_t objects;        ///< number of objects in the partition; 0 for a refusal
 } winnow_log_entry;
 
 /// Returns the name of a stage; "unknown" for an invalid number. Never null.

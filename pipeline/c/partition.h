@@ -36,16 +36,16 @@ typedef struct winnow_partition winnow_partition;
 /// Data structures of partitions; C++ documents them in <winnow/partitions/structures.h>.
 enum {
   WINNOW_LINEAR_BVH = 0,  ///< BVH that is refitted; the default
-  WINNOW_AUTOMATIC = 1,  ///< chooses one of the others, and may change the choice in any refresh
-  WINNOW_SWEEP_AND_PRUNE = 2,  ///< many moving objects of similar size, long thin worlds
+  WINNOW_AUTOMATIC = 1,   ///< chooses one of the others, and may change the choice in any refresh
+  WINNOW_SWEEP_AND_PRUNE = 2,    ///< many moving objects of similar size, long thin worlds
   WINNOW_HIERARCHICAL_GRID = 3,  ///< many moving objects, of one size or of many
-  WINNOW_FLAT_GRID = 4,  ///< objects of similar size and even density
-  /// slow build and a better tree: objects that rarely move and are queried often
+  WINNOW_FLAT_GRID = 4,          ///< objects of similar size and even density
+  /// Slow build and a better tree: objects that rarely move and are queried often.
   WINNOW_STATIC_BVH = 5,
-  WINNOW_LOOSE_OCTREE = 6,  ///< `parameter` is the edge of a loose cell over the edge of its cell
+  WINNOW_LOOSE_OCTREE = 6,    ///< `parameter` is the edge of a loose cell over the edge of its cell
   WINNOW_LOOSE_QUADTREE = 7,  ///< over the two axes with the largest extent; flat worlds
   WINNOW_BOUNDS_N_SQUARED = 8,  ///< tests every volume against every other; least memory
-  WINNOW_N_SQUARED = 9  ///< every pair, untested; a baseline
+  WINNOW_N_SQUARED = 9          ///< every pair, untested; a baseline
 };
 
 /// Bounding volume of the objects. Every partition prunes by boxes. With spheres and k-DOPs it also
@@ -100,16 +100,16 @@ typedef struct winnow_client_data_pair {
 /// found.
 typedef struct winnow_hit {
   winnow_key key;  ///< the object
-  uint64_t data;  ///< its client data
-  /// where the cast enters the object's box, in units of its direction; the distance of a nearest
-  /// object
+  uint64_t data;   ///< its client data
+  /// Where the cast enters the object's box, in units of its direction; the distance of a nearest
+  /// object.
   float t;
 } winnow_hit;
 
 /// Data structure of a partition. A struct of zeros means linear_bvh.
 typedef struct winnow_structure_kind {
   int32_t structure;  ///< WINNOW_LINEAR_BVH, ...
-  float parameter;  ///< of the loose trees; 0 means the default of the structure
+  float parameter;    ///< of the loose trees; 0 means the default of the structure
 } winnow_structure_kind;
 
 /// Enlarges stored volumes by `distance` plus `share` times the longest edge of the object's box,
@@ -117,15 +117,15 @@ typedef struct winnow_structure_kind {
 /// Negative values count as 0.
 typedef struct winnow_fat_margin {
   float distance;  ///< in units of length
-  float share;  ///< 0.05 is a twentieth of the longest edge
+  float share;     ///< 0.05 is a twentieth of the longest edge
 } winnow_fat_margin;
 
 /// Options of a partition. A null pointer, or zero members after `size`, mean the defaults of C++.
 typedef struct winnow_partition_options {
-  size_t size;  ///< set by the caller to sizeof(winnow_partition_options)
-  const winnow_memory* memory;  ///< source of every allocation; null means the default memory
-  winnow_execution execution;  ///< how builds, refits and queries are run
-  winnow_volume volume;  ///< bounding volume of the objects
+  size_t size;                   ///< set by the caller to sizeof(winnow_partition_options)
+  const winnow_memory* memory;   ///< source of every allocation; null means the default memory
+  winnow_execution execution;    ///< how builds, refits and queries are run
+  winnow_volume volume;          ///< bounding volume of the objects
   winnow_fat_margin fat_margin;  ///< enlarges stored volumes
   /// Number of rows that one refresh may process for a planned rebuild; 0 lets the partition choose
   /// it, SIZE_MAX plans nothing.
@@ -137,29 +137,29 @@ typedef struct winnow_partition_options {
 
 /// The structure that `automatic` has chosen, the reason, and the measured features of the scene.
 typedef struct winnow_structure_choice {
-  size_t size;  ///< set by the caller to sizeof(winnow_structure_choice)
+  size_t size;                      ///< set by the caller to sizeof(winnow_structure_choice)
   winnow_structure_kind structure;  ///< the structure in use
-  const char* reason;  ///< a few words; a constant string
-  uint64_t changes;  ///< changes of structure after the first choice
-  size_t objects;  ///< objects in the scene
-  double room[3];  ///< per axis, the range of most objects divided by their mean edge
+  const char* reason;               ///< a few words; a constant string
+  uint64_t changes;                 ///< changes of structure after the first choice
+  size_t objects;                   ///< objects in the scene
+  double room[3];      ///< per axis, the range of most objects divided by their mean edge
   double size_spread;  ///< log2 of the ratio of edges between a large and a small object
-  double crowding;  ///< how strongly objects cluster: 0 if even, at most 6
-  double pairs;  ///< estimated pairs per object, at most 16
+  double crowding;     ///< how strongly objects cluster: 0 if even, at most 6
+  double pairs;        ///< estimated pairs per object, at most 16
 } winnow_structure_choice;
 
 /// A subset of the entries of the caller's `keys` and `boxes`: a list of indices, or, if `words` is
 /// not null, a bit mask with 64 entries per word.
 typedef struct winnow_entries {
   const uint32_t* numbers;  ///< indices
-  const uint64_t* words;  ///< bit mask
-  size_t count;  ///< number of indices or of words
+  const uint64_t* words;    ///< bit mask
+  size_t count;             ///< number of indices or of words
 } winnow_entries;
 
 /// Options of a query for pairs. A null pointer, or zero members after `size`, mean all pairs in
 /// the fast order, found incrementally.
 typedef struct winnow_pair_options {
-  size_t size;  ///< set by the caller to sizeof(winnow_pair_options)
+  size_t size;         ///< set by the caller to sizeof(winnow_pair_options)
   winnow_order order;  ///< order of the written pairs
   uint8_t anew;  ///< 0 or 1: finds all pairs again instead of updating from the objects that moved
   /// Null, or a callback that accepts or rejects each pair; see winnow_filter for its rules. It is
@@ -173,7 +173,7 @@ typedef struct winnow_pair_options {
 /// a ray of infinite length: set its origin and direction.
 typedef struct winnow_cast {
   int32_t kind;  ///< WINNOW_CAST_RAY, ...
-  /// where it is at t = 0: `origin` of a ray, or the volume
+  /// Where it is at t = 0: `origin` of a ray, or the volume.
   union {
     float origin[3];
     winnow_aabb box;
@@ -181,33 +181,33 @@ typedef struct winnow_cast {
     winnow_capsule capsule;
   } from;
   float direction[3];  ///< finite, not zero
-  float min_t;  ///< >= 0
-  float max_t;  ///< may be infinite
+  float min_t;         ///< >= 0
+  float max_t;         ///< may be infinite
 } winnow_cast;
 #define WINNOW_CAST {WINNOW_CAST_RAY, {{0.0F, 0.0F, 0.0F}}, {0.0F, 0.0F, 0.0F}, 0.0F, INFINITY}
 
 /// Columns of rays in float.
 typedef struct winnow_ray_batch {
-  const float* origin[3];  ///< x, y, z
+  const float* origin[3];     ///< x, y, z
   const float* direction[3];  ///< x, y, z
-  const float* min_t;  ///< null means 0
-  const float* max_t;  ///< null means infinity
-  size_t count;  ///< number of rays
-  size_t stride;  ///< bytes from one ray to the next; 0 means no gaps
+  const float* min_t;         ///< null means 0
+  const float* max_t;         ///< null means infinity
+  size_t count;               ///< number of rays
+  size_t stride;              ///< bytes from one ray to the next; 0 means no gaps
 } winnow_ray_batch;
 
 /// Columns to write, with one entry per ray; each may be null. A ray without a hit gets the null
 /// key, 0 and infinity.
 typedef struct winnow_hit_columns {
   winnow_key* key;  ///< objects
-  uint64_t* data;  ///< their client data
-  float* t;  ///< see winnow_hit
+  uint64_t* data;   ///< their client data
+  float* t;         ///< see winnow_hit
 } winnow_hit_columns;
 
 /// A closed region of space.
 typedef struct winnow_region {
   int32_t kind;  ///< WINNOW_REGION_POINT, ...
-  /// the member of this kind; `planes`: the points inside all planes
+  /// The member of this kind; `planes`: the points inside all planes.
   union {
     float point[3];
     winnow_aabb box;
@@ -224,26 +224,27 @@ typedef struct winnow_region {
 
 /// State of a partition and counters of its work, without times.
 typedef struct winnow_statistics {
-  size_t size;  ///< set by the caller to sizeof(winnow_statistics)
-  size_t objects;  ///< live objects
-  size_t regular;  ///< objects in the cells, strips or leaves of the last build
-  size_t irregular;  ///< objects apart from these: too large, new, or moved away
-  size_t cells;  ///< cells, strips or leaf blocks
-  size_t depth;  ///< levels of the node tree; 0 if there is none
-  size_t levels;  ///< grids of a hierarchical grid, depths of an octree
-  uint64_t builds;  ///< builds since construction
-  uint64_t planned_builds;  ///< builds that were planned before they were due
-  uint64_t refits;  ///< refreshes that did not need a build
-  uint64_t full_queries;  ///< pair queries that tested every object
+  size_t size;                   ///< set by the caller to sizeof(winnow_statistics)
+  size_t objects;                ///< live objects
+  size_t regular;                ///< objects in the cells, strips or leaves of the last build
+  size_t irregular;              ///< objects apart from these: too large, new, or moved away
+  size_t cells;                  ///< cells, strips or leaf blocks
+  size_t depth;                  ///< levels of the node tree; 0 if there is none
+  size_t levels;                 ///< grids of a hierarchical grid, depths of an octree
+  uint64_t builds;               ///< builds since construction
+  uint64_t planned_builds;       ///< builds that were planned before they were due
+  uint64_t refits;               ///< refreshes that did not need a build
+  uint64_t full_queries;         ///< pair queries that tested every object
   uint64_t incremental_queries;  ///< pair queries that tested only objects that moved
-  uint64_t last_tests;  ///< tests of 16 volumes at once, in the last pair query
-  uint64_t last_pairs;  ///< pairs that the last pair query returned
+  uint64_t last_tests;           ///< tests of 16 volumes at once, in the last pair query
+  uint64_t last_pairs;           ///< pairs that the last pair query returned
 } winnow_statistics;
 
 /// Creates an empty buffer.
 WINNOW_C_API winnow_status winnow_pair_buffer_create(
     const winnow_memory* memory, winnow_pair_buffer** buffer);
 
+/// Destroys the pair buffer; does nothing for null.
 WINNOW_C_API void winnow_pair_buffer_destroy(winnow_pair_buffer* buffer);
 
 /// Returns all pairs, in the order that the query requested.
@@ -272,7 +273,7 @@ WINNOW_C_API winnow_status winnow_pair_buffer_clear(winnow_pair_buffer* buffer);
 /// Removes all pairs and frees the memory.
 WINNOW_C_API winnow_status winnow_pair_buffer_release(winnow_pair_buffer* buffer);
 
-/// Writes the bytes of buffer, by purpose.
+/// Writes the bytes of the pair buffer, by purpose.
 WINNOW_C_API winnow_status winnow_pair_buffer_footprint(
     const winnow_pair_buffer* buffer, winnow_footprint* footprint);
 
@@ -280,6 +281,7 @@ WINNOW_C_API winnow_status winnow_pair_buffer_footprint(
 WINNOW_C_API winnow_status winnow_pair_events_create(
     const winnow_memory* memory, winnow_pair_events** events);
 
+/// Destroys the pair events; does nothing for null.
 WINNOW_C_API void winnow_pair_events_destroy(winnow_pair_events* events);
 
 /// Creates events that also report the client data of both objects of each pair.
@@ -313,7 +315,7 @@ WINNOW_C_API winnow_status winnow_pair_events_persisting(
 /// Removes all events: the next query starts anew, and every pair begins. Memory is kept.
 WINNOW_C_API winnow_status winnow_pair_events_clear(winnow_pair_events* events);
 
-/// Writes the bytes of events, by purpose.
+/// Writes the bytes of the pair events, by purpose.
 WINNOW_C_API winnow_status winnow_pair_events_footprint(
     const winnow_pair_events* events, winnow_footprint* footprint);
 
@@ -321,6 +323,7 @@ WINNOW_C_API winnow_status winnow_pair_events_footprint(
 WINNOW_C_API winnow_status winnow_hit_buffer_create(
     const winnow_memory* memory, winnow_hit_buffer** buffer);
 
+/// Destroys the hit buffer; does nothing for null.
 WINNOW_C_API void winnow_hit_buffer_destroy(winnow_hit_buffer* buffer);
 
 /// Returns all hits; for a batch, the hits of each query one after the other.
@@ -341,7 +344,7 @@ WINNOW_C_API winnow_status winnow_hit_buffer_reserve(winnow_hit_buffer* buffer, 
 /// Removes all hits. Memory is kept.
 WINNOW_C_API winnow_status winnow_hit_buffer_clear(winnow_hit_buffer* buffer);
 
-/// Writes the bytes of buffer, by purpose.
+/// Writes the bytes of the hit buffer, by purpose.
 WINNOW_C_API winnow_status winnow_hit_buffer_footprint(
     const winnow_hit_buffer* buffer, winnow_footprint* footprint);
 
@@ -349,6 +352,7 @@ WINNOW_C_API winnow_status winnow_hit_buffer_footprint(
 WINNOW_C_API winnow_status winnow_overlap_buffer_create(
     const winnow_memory* memory, winnow_overlap_buffer** buffer);
 
+/// Destroys the overlap buffer; does nothing for null.
 WINNOW_C_API void winnow_overlap_buffer_destroy(winnow_overlap_buffer* buffer);
 
 /// Returns the ids of the overlapping objects: first `inside` objects whose boxes are contained in
@@ -363,15 +367,16 @@ WINNOW_C_API winnow_status winnow_overlap_buffer_reserve(
 /// Removes all objects. Memory is kept.
 WINNOW_C_API winnow_status winnow_overlap_buffer_clear(winnow_overlap_buffer* buffer);
 
-/// Writes the bytes of buffer, by purpose.
+/// Writes the bytes of the overlap buffer, by purpose.
 WINNOW_C_API winnow_status winnow_overlap_buffer_footprint(
     const winnow_overlap_buffer* buffer, winnow_footprint* footprint);
 
 /// Creates an empty partition. WINNOW_INVALID_ARGUMENT for an invalid structure or volume.
 WINNOW_C_API winnow_status winnow_partition_create(
-    winnow_structure_kind structure, const winnow_partition_options* options, winnow_partition**
-    partition);
+    winnow_structure_kind structure, const winnow_partition_options* options,
+    winnow_partition** partition);
 
+/// Destroys the partition; does nothing for null.
 WINNOW_C_API void winnow_partition_destroy(winnow_partition* partition);
 
 /// Returns the structure given at creation or set later.
@@ -403,8 +408,8 @@ WINNOW_C_API winnow_status winnow_partition_fat_margin(
 /// Adds one object per box and writes its key to `keys`. `data` is null (all zero) or has one value
 /// per box. WINNOW_INVALID_BOUNDS for a box with NaN, min > max or wholly at infinity.
 WINNOW_C_API winnow_status winnow_partition_insert(
-    winnow_partition* partition, const winnow_box_view* boxes, const uint64_t* data, winnow_key*
-    keys);
+    winnow_partition* partition, const winnow_box_view* boxes, const uint64_t* data,
+    winnow_key* keys);
 
 /// Gives new boxes to the listed entries of `keys` and `boxes`, or to all if `entries` is null. If
 /// a key occurs twice, its last box counts. WINNOW_SIZE_MISMATCH, WINNOW_INVALID_KEY and
@@ -421,7 +426,8 @@ WINNOW_C_API winnow_status winnow_partition_insert_spheres(
 /// Gives each object a new sphere. WINNOW_INVALID_BOUNDS for values that are not finite or a
 /// negative radius.
 WINNOW_C_API winnow_status winnow_partition_update_spheres(
-    winnow_partition* partition, const winnow_key* keys, const winnow_sphere* spheres, size_t count);
+    winnow_partition* partition, const winnow_key* keys, const winnow_sphere* spheres,
+    size_t count);
 
 /// Adds one object per k-DOP. Each is k floats: the k/2 lower bounds of its slabs, then the k/2
 /// upper bounds. WINNOW_UNSUPPORTED_VOLUME unless the volume is the one with this k: 14, 18 or 26.
@@ -431,8 +437,8 @@ WINNOW_C_API winnow_status winnow_partition_insert_kdops(
 
 /// Gives each object a new k-DOP.
 WINNOW_C_API winnow_status winnow_partition_update_kdops(
-    winnow_partition* partition, uint32_t k, const winnow_key* keys, const float* kdops, size_t
-    count);
+    winnow_partition* partition, uint32_t k, const winnow_key* keys, const float* kdops,
+    size_t count);
 
 /// Removes the objects. WINNOW_INVALID_KEY also if a key occurs twice.
 WINNOW_C_API winnow_status winnow_partition_remove(
@@ -490,8 +496,8 @@ WINNOW_C_API winnow_status winnow_partition_client_data_of(
 /// Sets the filters that restrict which objects pair. Every object starts with
 /// WINNOW_OBJECT_FILTER.
 WINNOW_C_API winnow_status winnow_partition_set_filter(
-    winnow_partition* partition, const winnow_key* keys, const winnow_object_filter* filters, size_t
-    count);
+    winnow_partition* partition, const winnow_key* keys, const winnow_object_filter* filters,
+    size_t count);
 
 /// Returns the filter of an object.
 WINNOW_C_API winnow_status winnow_partition_filter(
@@ -504,14 +510,14 @@ WINNOW_C_API winnow_status winnow_partition_refresh(const winnow_partition* part
 /// frame whose pairs `out` contains to `events`. One of the two may be null. The cost of events
 /// grows with the number of moved objects.
 WINNOW_C_API winnow_status winnow_partition_self_pairs(
-    const winnow_partition* partition, winnow_pair_buffer* out, winnow_pair_events* events, const
-    winnow_pair_options* options);
+    const winnow_partition* partition, winnow_pair_buffer* out, winnow_pair_events* events,
+    const winnow_pair_options* options);
 
 /// Writes all pairs (object of this partition, object of the other one) whose boxes overlap, each
 /// once.
 WINNOW_C_API winnow_status winnow_partition_pairs_with(
-    const winnow_partition* partition, const winnow_partition* other, winnow_pair_buffer* out, const
-    winnow_pair_options* options);
+    const winnow_partition* partition, const winnow_partition* other, winnow_pair_buffer* out,
+    const winnow_pair_options* options);
 
 /// Finds the hit of least t; a hit with the null key if there is none. A cast that starts inside a
 /// box hits it at min_t. No hit is missed. WINNOW_INVALID_ARGUMENT for an invalid cast. About O(log
@@ -560,19 +566,19 @@ WINNOW_C_API winnow_status winnow_partition_overlap_boxes(
 /// within distance `radius`, which may be infinite; sorted by distance, then by id. Boxes that
 /// touch have distance 0.
 WINNOW_C_API winnow_status winnow_partition_nearest(
-    const winnow_partition* partition, const winnow_aabb* from, size_t count, float radius, const
-    winnow_filter* filter, winnow_hit_buffer* hits);
+    const winnow_partition* partition, const winnow_aabb* from, size_t count, float radius,
+    const winnow_filter* filter, winnow_hit_buffer* hits);
 
 /// Draws the objects and the cells or nodes of the structure. O(n).
 WINNOW_C_API winnow_status winnow_partition_debug_draw(
-    const winnow_partition* partition, const winnow_debug_draw* draw, const
-    winnow_debug_draw_options* options);
+    const winnow_partition* partition, const winnow_debug_draw* draw,
+    const winnow_debug_draw_options* options);
 
 /// Writes the current counters.
 WINNOW_C_API winnow_status winnow_partition_statistics(
     const winnow_partition* partition, winnow_statistics* statistics);
 
-/// Writes the bytes of partition, by purpose.
+/// Writes the bytes of the partition, by purpose.
 WINNOW_C_API winnow_status winnow_partition_footprint(
     const winnow_partition* partition, winnow_footprint* footprint);
 

@@ -33,39 +33,39 @@ typedef struct winnow_contacts winnow_contacts;
 /// The set of a scene that a body belongs to. Fixed and sleeping bodies collide only with dynamic
 /// ones.
 enum {
-  WINNOW_BODY_STATE_FIXED = 0,  ///< never moves by itself: ground, walls
+  WINNOW_BODY_STATE_FIXED = 0,    ///< never moves by itself: ground, walls
   WINNOW_BODY_STATE_DYNAMIC = 1,  ///< collides with every body
   WINNOW_BODY_STATE_SLEEPING = 2  ///< at rest; winnow_scene_set_body_state wakes it
 };
 
 /// State of a pair relative to the previous call that filled the contacts.
 enum {
-  WINNOW_EVENT_BEGUN = 0,  ///< it was not present
+  WINNOW_EVENT_BEGUN = 0,     ///< it was not present
   WINNOW_EVENT_PERSISTED = 1  ///< it was present
 };
 
 /// Options of a scene. A null pointer, or zero members after `size`, mean the defaults of C++.
 typedef struct winnow_scene_options {
-  size_t size;  ///< set by the caller to sizeof(winnow_scene_options)
+  size_t size;                  ///< set by the caller to sizeof(winnow_scene_options)
   const winnow_memory* memory;  ///< source of every allocation; null means the default memory
-  winnow_execution execution;  ///< how work is run in parallel
+  winnow_execution execution;   ///< how work is run in parallel
   winnow_structure_kind structures[WINNOW_BODY_STATES];  ///< structure of the partition of each set
-  double contact_margin;  ///< pairs whose gap is at most this are contacts too. Finite, >= 0.
+  double contact_margin;    ///< pairs whose gap is at most this are contacts too. Finite, >= 0.
   winnow_narrow_tier tier;  ///< how exact contacts must be
   /// 0 or 1: merges the manifolds of all pairs of parts that touch into one manifold per contact
-  /// region, with at most 4 points each
+  /// region, with at most 4 points each.
   uint8_t contact_reduction;
   /// A pair keeps its manifolds while its smaller body has moved by at most this length since they
   /// were computed; `error_bound` grows by it. 0 means that nothing is kept. Finite, >= 0.
   double cache_tolerance;
   size_t build_budget;  ///< of each partition; see winnow_partition_options
-  /// pool of the meshes, compounds and height fields, or null; must outlive the scene
+  /// Pool of the meshes, compounds and height fields, or null; must outlive the scene.
   const winnow_composite_pool* composites;
   /// 0 or 1: drops contacts with sides and edges of seams between fixed bodies with flush surfaces,
-  /// so that bodies slide over them as over one floor
+  /// so that bodies slide over them as over one floor.
   uint8_t suppress_ghost_contacts;
   /// 0 or 1: stores for each pair and each point its index in the previous frame; see
-  /// winnow_contact_columns
+  /// winnow_contact_columns.
   uint8_t warm_start;
 } winnow_scene_options;
 #define WINNOW_SCENE_OPTIONS \
@@ -76,16 +76,16 @@ typedef struct winnow_scene_options {
 /// offsets of two bodies are added. They apply at levels distance and manifold.
 typedef struct winnow_contact_offsets {
   double contact;  ///< finite, >= 0 and >= `rest`
-  double rest;  ///< finite; negative moves the surface inward
+  double rest;     ///< finite; negative moves the surface inward
 } winnow_contact_offsets;
 
 /// A body to add.
 typedef struct winnow_body_definition {
-  winnow_shape_id shape;  ///< from the shape pool, or the composite pool of the options
-  winnow_pose pose;  ///< pose of the shape's frame in the world
-  uint8_t state;  ///< the set that contains it
+  winnow_shape_id shape;        ///< from the shape pool, or the composite pool of the options
+  winnow_pose pose;             ///< pose of the shape's frame in the world
+  uint8_t state;                ///< the set that contains it
   winnow_object_filter filter;  ///< which other bodies it may collide with
-  uint64_t data;  ///< the caller's value, returned with contacts and hits; never read
+  uint64_t data;                ///< the caller's value, returned with contacts and hits; never read
   winnow_contact_offsets offsets;
   uint16_t layer;  ///< below WINNOW_SCENE_LAYERS; see winnow_scene_set_layers_collide
 } winnow_body_definition;
@@ -105,74 +105,74 @@ typedef struct winnow_ended_contact {
 /// Contacts as columns, not copied, valid until the contacts are filled again, cleared or
 /// destroyed. A column that its level does not have is null. An empty column may be null.
 typedef struct winnow_contact_columns {
-  size_t size;  ///< set by the caller to sizeof(winnow_contact_columns)
-  winnow_contact_level level;  ///< level of the call
-  size_t pairs;  ///< pairs of bodies, grouped by the kinds of their shapes
-  const winnow_key* a;  ///< first body of each pair
-  const winnow_key* b;  ///< second body of each pair
-  const uint64_t* data_a;  ///< client data of a
-  const uint64_t* data_b;  ///< client data of b
-  const uint8_t* event;  ///< WINNOW_EVENT_BEGUN or WINNOW_EVENT_PERSISTED
-  const winnow_run* runs;  ///< together all pairs
-  size_t run_count;  ///< number of runs
+  size_t size;                        ///< set by the caller to sizeof(winnow_contact_columns)
+  winnow_contact_level level;         ///< level of the call
+  size_t pairs;                       ///< pairs of bodies, grouped by the kinds of their shapes
+  const winnow_key* a;                ///< first body of each pair
+  const winnow_key* b;                ///< second body of each pair
+  const uint64_t* data_a;             ///< client data of a
+  const uint64_t* data_b;             ///< client data of b
+  const uint8_t* event;               ///< WINNOW_EVENT_BEGUN or WINNOW_EVENT_PERSISTED
+  const winnow_run* runs;             ///< together all pairs
+  size_t run_count;                   ///< number of runs
   const winnow_ended_contact* ended;  ///< pairs that ended
-  size_t ended_count;  ///< number of pairs that ended
-  size_t cached_pairs;  ///< number of pairs that kept their previous manifolds
-  /// the manifolds of pair i are [manifold_first[i], manifold_first[i + 1])
+  size_t ended_count;                 ///< number of pairs that ended
+  size_t cached_pairs;                ///< number of pairs that kept their previous manifolds
+  /// The manifolds of pair i are [manifold_first[i], manifold_first[i + 1]).
   const uint32_t* manifold_first;
   size_t manifolds;  ///< number of manifolds
-  /// triangle or child of a in each manifold; WINNOW_WHOLE_SHAPE for a convex shape
+  /// Triangle or child of a in each manifold; WINNOW_WHOLE_SHAPE for a convex shape.
   const uint32_t* part_a;
-  const uint32_t* part_b;  ///< triangle or child of b
-  const double* distance;  ///< minus the penetration depth if the bodies overlap
+  const uint32_t* part_b;     ///< triangle or child of b
+  const double* distance;     ///< minus the penetration depth if the bodies overlap
   const double* error_bound;  ///< the true distance is within distance +- error_bound
-  const double* normal[3];  ///< unit vector from a to b
-  /// level distance: the closest (or deepest) point of a, relative to the position of a
+  const double* normal[3];    ///< unit vector from a to b
+  /// Level distance: the closest (or deepest) point of a, relative to the position of a.
   const double* point[3];
-  /// level manifold: the points of manifold m are [point_first[m], point_first[m + 1]), relative to
-  /// the position of body a
+  /// Level manifold: the points of manifold m are [point_first[m], point_first[m + 1]), relative to
+  /// the position of body a.
   const uint32_t* point_first;
-  size_t points;  ///< number of points
+  size_t points;             ///< number of points
   const float* position[3];  ///< halfway between the surfaces
-  const float* depth;  ///< positive where the bodies overlap
-  const uint64_t* feature;  ///< equal features in two frames are the same point
-  /// index of each pair in the previous frame, or WINNOW_NO_CONTACT; null unless the scene has
-  /// `warm_start`
+  const float* depth;        ///< positive where the bodies overlap
+  const uint64_t* feature;   ///< equal features in two frames are the same point
+  /// Index of each pair in the previous frame, or WINNOW_NO_CONTACT; null unless the scene has
+  /// `warm_start`.
   const uint32_t* previous_pair;
-  /// index of each point in the previous frame, or WINNOW_NO_CONTACT; null likewise
+  /// Index of each point in the previous frame, or WINNOW_NO_CONTACT; null likewise.
   const uint32_t* previous_point;
 } winnow_contact_columns;
 
 /// Numbers of bodies, pairs and contacts that memory is reserved for.
 typedef struct winnow_scene_room {
-  size_t size;  ///< set by the caller to sizeof(winnow_scene_room)
+  size_t size;                        ///< set by the caller to sizeof(winnow_scene_room)
   size_t bodies[WINNOW_BODY_STATES];  ///< in each set
-  size_t pairs;  ///< pairs found by the broad phase
-  winnow_contact_level level;  ///< level at which contacts will be found
-  size_t touching;  ///< pairs stored in the contacts
+  size_t pairs;                       ///< pairs found by the broad phase
+  winnow_contact_level level;         ///< level at which contacts will be found
+  size_t touching;                    ///< pairs stored in the contacts
   size_t manifolds;  ///< from level boolean on; without composite shapes as many as `touching`
-  size_t points;  ///< at level manifold
+  size_t points;     ///< at level manifold
 } winnow_scene_room;
 #define WINNOW_SCENE_ROOM {sizeof(winnow_scene_room), {0, 0, 0}, 0, WINNOW_LEVEL_MANIFOLD, 0, 0, 0}
 
 /// Bytes by part. The sum of `reserved` equals the bytes allocated from the scene's memory.
 typedef struct winnow_scene_bytes {
-  size_t size;  ///< set by the caller to sizeof(winnow_scene_bytes)
+  size_t size;          ///< set by the caller to sizeof(winnow_scene_bytes)
   winnow_bytes bodies;  ///< shapes, poses, keys, filters, client data, the scene object
   winnow_bytes partitions[WINNOW_BODY_STATES];  ///< of each set
-  winnow_bytes pairs;  ///< pairs found by the broad phase
-  winnow_bytes mid_phase;  ///< pairs of primitives; 0 without composite shapes
-  winnow_bytes narrow_phase;  ///< results and scratch
+  winnow_bytes pairs;                           ///< pairs found by the broad phase
+  winnow_bytes mid_phase;                       ///< pairs of primitives; 0 without composite shapes
+  winnow_bytes narrow_phase;                    ///< results and scratch
 } winnow_scene_bytes;
 
 /// Counters of the last collide, not timings.
 typedef struct winnow_scene_counts {
-  size_t size;  ///< set by the caller to sizeof(winnow_scene_counts)
-  uint64_t boxes_updated;  ///< boxes written to partitions since the previous collide
-  uint64_t body_pairs;  ///< pairs found by the broad phase
-  uint64_t cached_pairs;  ///< body pairs that kept their cached contacts
+  size_t size;               ///< set by the caller to sizeof(winnow_scene_counts)
+  uint64_t boxes_updated;    ///< boxes written to partitions since the previous collide
+  uint64_t body_pairs;       ///< pairs found by the broad phase
+  uint64_t cached_pairs;     ///< body pairs that kept their cached contacts
   uint64_t primitive_pairs;  ///< pairs of parts generated by the mid phase
-  uint64_t convex_pairs;  ///< narrow phase, pairs of convex bodies; see winnow_narrow_statistics
+  uint64_t convex_pairs;     ///< narrow phase, pairs of convex bodies; see winnow_narrow_statistics
   uint64_t convex_recomputed;
   uint64_t convex_exact;
   uint64_t part_pairs;  ///< narrow phase, pairs of parts
@@ -190,6 +190,7 @@ typedef struct winnow_scene_counts {
 WINNOW_C_API winnow_status winnow_scene_create(
     const winnow_shape_pool* shapes, const winnow_scene_options* options, winnow_scene** scene);
 
+/// Destroys the scene; does nothing for null.
 WINNOW_C_API void winnow_scene_destroy(winnow_scene* scene);
 
 /// Adds bodies, all or none, and writes their keys. WINNOW_INVALID_KEY if neither pool contains a
@@ -292,8 +293,8 @@ WINNOW_C_API winnow_status winnow_scene_partition(
 
 /// Draws the partitions of all sets.
 WINNOW_C_API winnow_status winnow_scene_debug_draw(
-    const winnow_scene* scene, const winnow_debug_draw* draw, const winnow_debug_draw_options*
-    options);
+    const winnow_scene* scene, const winnow_debug_draw* draw,
+    const winnow_debug_draw_options* options);
 
 /// Finds all contacts at the given level of detail, and the changes since `contacts` was last
 /// filled. Contacts of two bodies that fell asleep are stored, but neither reported nor ended,
@@ -323,6 +324,7 @@ WINNOW_C_API winnow_status winnow_scene_statistics(
 WINNOW_C_API winnow_status winnow_contacts_create(
     const winnow_memory* memory, winnow_contacts** contacts);
 
+/// Destroys the contacts; does nothing for null.
 WINNOW_C_API void winnow_contacts_destroy(winnow_contacts* contacts);
 
 /// Removes all contents. Memory is kept.
@@ -332,7 +334,7 @@ WINNOW_C_API winnow_status winnow_contacts_clear(winnow_contacts* contacts);
 WINNOW_C_API winnow_status winnow_contacts_columns(
     const winnow_contacts* contacts, winnow_contact_columns* columns);
 
-/// Writes the bytes of contacts, by purpose.
+/// Writes the bytes of the contacts, by purpose.
 WINNOW_C_API winnow_status winnow_contacts_footprint(
     const winnow_contacts* contacts, winnow_footprint* footprint);
 

@@ -26,57 +26,57 @@ typedef struct winnow_scene_queries winnow_scene_queries;
 typedef int32_t winnow_pair_rules;
 enum {
   WINNOW_PAIR_RULES_SCENE = 0,  ///< pairs that winnow_scene_collide would form
-  WINNOW_PAIR_RULES_NONE = 1  ///< any two bodies
+  WINNOW_PAIR_RULES_NONE = 1    ///< any two bodies
 };
 
 /// Hit of a ray or a moving shape with a body; the null key if there is none.
 typedef struct winnow_scene_hit {
   winnow_key key;  ///< the body
-  uint64_t data;  ///< its client data
-  uint32_t part;  ///< triangle or child that is hit; WINNOW_WHOLE_SHAPE for a convex body
-  /// of a ray: where it enters the shape; of a moving shape: the time of impact, never late
+  uint64_t data;   ///< its client data
+  uint32_t part;   ///< triangle or child that is hit; WINNOW_WHOLE_SHAPE for a convex body
+  /// Of a ray: where it enters the shape; of a moving shape: the time of impact, never late.
   double t;
   double normal[3];  ///< unit normal of the body's surface, against the motion
-  double point[3];  ///< point of contact, in the world
+  double point[3];   ///< point of contact, in the world
 } winnow_scene_hit;
 
 /// Columns of rays.
 typedef struct winnow_shape_ray_batch {
-  const void* origin[3];  ///< x, y, z
+  const void* origin[3];     ///< x, y, z
   const void* direction[3];  ///< x, y, z
-  const void* max_t;  ///< null means infinity
-  size_t count;  ///< number of rays
-  size_t stride;  ///< bytes from one ray to the next; 0 means no gaps
-  winnow_number number;  ///< of all columns
+  const void* max_t;         ///< null means infinity
+  size_t count;              ///< number of rays
+  size_t stride;             ///< bytes from one ray to the next; 0 means no gaps
+  winnow_number number;      ///< of all columns
 } winnow_shape_ray_batch;
 
 /// Columns to write, with one entry per ray; each may be null. A ray without a hit gets the null
 /// key, 0, WINNOW_WHOLE_SHAPE, infinity and zeros.
 typedef struct winnow_scene_hit_columns {
-  winnow_key* key;  ///< bodies
-  uint64_t* data;  ///< their client data
-  uint32_t* part;  ///< triangles or children that are hit
-  double* t;  ///< see winnow_scene_hit
+  winnow_key* key;    ///< bodies
+  uint64_t* data;     ///< their client data
+  uint32_t* part;     ///< triangles or children that are hit
+  double* t;          ///< see winnow_scene_hit
   double* normal[3];  ///< x, y, z
-  double* point[3];  ///< x, y, z, in the world
+  double* point[3];   ///< x, y, z, in the world
 } winnow_scene_hit_columns;
 
 /// A shape that moves along a line without turning. Convex or composite, but not a half-space.
 typedef struct winnow_shape_cast {
   winnow_shape_id shape;  ///< from the scene's pools
-  winnow_pose pose;  ///< at t = 0
-  double direction[3];  ///< displacement per unit of t; finite, not zero
-  double max_t;  ///< finite, >= 0
+  winnow_pose pose;       ///< at t = 0
+  double direction[3];    ///< displacement per unit of t; finite, not zero
+  double max_t;           ///< finite, >= 0
 } winnow_shape_cast;
 #define WINNOW_SHAPE_CAST \
   {WINNOW_NO_SHAPE, {{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0, 0.0}}, {1.0, 0.0, 0.0}, 1.0}
 
 /// A shape that translates and rotates. Convex or composite, but not a half-space.
 typedef struct winnow_motion_cast {
-  winnow_shape_id shape;  ///< from the scene's pools
+  winnow_shape_id shape;       ///< from the scene's pools
   winnow_rigid_motion motion;  ///< from time 0 to time 1
   /// 0 or 1: a body that the shape touches at the start is hit at t = 0 only if the shape gets
-  /// deeper into it
+  /// deeper into it.
   uint8_t from_touch;
 } winnow_motion_cast;
 #define WINNOW_MOTION_CAST \
@@ -85,27 +85,27 @@ typedef struct winnow_motion_cast {
 /// A body that a shape overlaps.
 typedef struct winnow_scene_overlap {
   winnow_key key;  ///< the body
-  uint64_t data;  ///< its client data
-  uint32_t part;  ///< one of its parts that overlap
+  uint64_t data;   ///< its client data
+  uint32_t part;   ///< one of its parts that overlap
 } winnow_scene_overlap;
 
 /// The closest (or deepest) points of two bodies, or of a point and a body, and their distance.
 typedef struct winnow_scene_distance {
-  winnow_key key;  ///< the second body
-  uint64_t data;  ///< its client data
-  uint32_t part_a;  ///< closest part of the first body
-  uint32_t part;  ///< closest part of the second body
-  double distance;  ///< minus the penetration depth if the bodies overlap
+  winnow_key key;      ///< the second body
+  uint64_t data;       ///< its client data
+  uint32_t part_a;     ///< closest part of the first body
+  uint32_t part;       ///< closest part of the second body
+  double distance;     ///< minus the penetration depth if the bodies overlap
   double error_bound;  ///< the true distance is within distance +- error_bound
-  double normal[3];  ///< unit vector from the first body (or the point) to the second body
-  double point_a[3];  ///< closest point of the first body, in the world
-  double point_b[3];  ///< closest point of the second body, in the world
+  double normal[3];    ///< unit vector from the first body (or the point) to the second body
+  double point_a[3];   ///< closest point of the first body, in the world
+  double point_b[3];   ///< closest point of the second body, in the world
 } winnow_scene_distance;
 
 /// The closest pair of two sets of bodies. `a` is the null key if there is none.
 typedef struct winnow_set_distance {
-  winnow_key a;  ///< body of the first set
-  uint64_t data_a;  ///< its client data
+  winnow_key a;              ///< body of the first set
+  uint64_t data_a;           ///< its client data
   winnow_scene_distance to;  ///< distance from `a` to the body of the second set
 } winnow_set_distance;
 
@@ -113,6 +113,7 @@ typedef struct winnow_set_distance {
 WINNOW_C_API winnow_status winnow_scene_queries_create(
     const winnow_scene* scene, const winnow_memory* memory, winnow_scene_queries** queries);
 
+/// Destroys the scene queries; does nothing for null.
 WINNOW_C_API void winnow_scene_queries_destroy(winnow_scene_queries* queries);
 
 /// Finds the hit of least t; a hit with the null key if there is none.
@@ -127,8 +128,8 @@ WINNOW_C_API winnow_status winnow_scene_queries_any(
 
 /// Finds the first hit on every body that the ray hits, sorted by t.
 WINNOW_C_API winnow_status winnow_scene_queries_all(
-    winnow_scene_queries* queries, const winnow_shape_ray* ray, const winnow_filter* filter, const
-    winnow_scene_hit** hits, size_t* count);
+    winnow_scene_queries* queries, const winnow_shape_ray* ray, const winnow_filter* filter,
+    const winnow_scene_hit** hits, size_t* count);
 
 /// Finds the hit of least t of each ray. One invalid ray makes the call fail. If memory is refused,
 /// some rays' columns may have been written.
@@ -188,45 +189,46 @@ WINNOW_C_API winnow_status winnow_scene_queries_all_motion(
 /// Finds every body that shares a point with the shape at this pose, sorted by id. The test is
 /// exact.
 WINNOW_C_API winnow_status winnow_scene_queries_overlap(
-    winnow_scene_queries* queries, winnow_shape_id shape, const winnow_pose* pose, const
-    winnow_filter* filter, const winnow_scene_overlap** bodies, size_t* count);
+    winnow_scene_queries* queries, winnow_shape_id shape, const winnow_pose* pose,
+    const winnow_filter* filter, const winnow_scene_overlap** bodies, size_t* count);
 
 /// Finds the closest (or deepest) points of two bodies. The key of the answer is null if the rules
 /// exclude the pair, or if the distance exceeds `limit`. Set `limit` to INFINITY for no limit.
 WINNOW_C_API winnow_status winnow_scene_queries_distance(
-    winnow_scene_queries* queries, winnow_key a, winnow_key b, double limit, winnow_pair_rules
-    rules, winnow_scene_distance* answer);
+    winnow_scene_queries* queries, winnow_key a, winnow_key b, double limit,
+    winnow_pair_rules rules, winnow_scene_distance* answer);
 
 /// Finds the bodies nearest to a point, at most `count`, within distance `radius`, sorted by
 /// distance. Inside a solid the distance is negative.
 WINNOW_C_API winnow_status winnow_scene_queries_nearest(
-    winnow_scene_queries* queries, const double point[3], size_t count, double radius, const
-    winnow_filter* filter, const winnow_scene_distance** bodies, size_t* found);
+    winnow_scene_queries* queries, const double point[3], size_t count, double radius,
+    const winnow_filter* filter, const winnow_scene_distance** bodies, size_t* found);
 
 /// Finds the two bodies of two sets that are closest (or overlap the deepest). The key `a` of the
 /// answer is null if the rules exclude all pairs, or if all distances exceed `limit`.
 WINNOW_C_API winnow_status winnow_scene_queries_least_distance(
-    winnow_scene_queries* queries, const winnow_key* a, size_t count_a, const winnow_key* b, size_t
-    count_b, double limit, winnow_pair_rules rules, winnow_set_distance* answer);
+    winnow_scene_queries* queries, const winnow_key* a, size_t count_a, const winnow_key* b,
+    size_t count_b, double limit, winnow_pair_rules rules, winnow_set_distance* answer);
 
 /// Finds the pairs (body of a, body of b) that share a point, in the order of the sets, at most
 /// `most` of them.
 WINNOW_C_API winnow_status winnow_scene_queries_overlaps(
-    winnow_scene_queries* queries, const winnow_key* a, size_t count_a, const winnow_key* b, size_t
-    count_b, size_t most, winnow_pair_rules rules, const winnow_key_pair** pairs, size_t* count);
+    winnow_scene_queries* queries, const winnow_key* a, size_t count_a, const winnow_key* b,
+    size_t count_b, size_t most, winnow_pair_rules rules, const winnow_key_pair** pairs,
+    size_t* count);
 
 /// Finds the first pair (body of a, body of b) whose distance is at most `contact_margin`; two null
 /// keys if there is none.
 WINNOW_C_API winnow_status winnow_scene_queries_any_contact(
-    winnow_scene_queries* queries, const winnow_key* a, size_t count_a, const winnow_key* b, size_t
-    count_b, double contact_margin, winnow_pair_rules rules, winnow_key_pair* pair);
+    winnow_scene_queries* queries, const winnow_key* a, size_t count_a, const winnow_key* b,
+    size_t count_b, double contact_margin, winnow_pair_rules rules, winnow_key_pair* pair);
 
 /// Finds the first such pair among all bodies of the scene.
 WINNOW_C_API winnow_status winnow_scene_queries_any_contact_in_scene(
-    winnow_scene_queries* queries, double contact_margin, winnow_pair_rules rules, winnow_key_pair*
-    pair);
+    winnow_scene_queries* queries, double contact_margin, winnow_pair_rules rules,
+    winnow_key_pair* pair);
 
-/// Writes the bytes of queries, by purpose.
+/// Writes the bytes of the scene queries, by purpose.
 WINNOW_C_API winnow_status winnow_scene_queries_footprint(
     const winnow_scene_queries* queries, winnow_footprint* footprint);
 

@@ -17,11 +17,11 @@ typedef struct winnow_sensors winnow_sensors;
 
 /// A sensor to add.
 typedef struct winnow_sensor_definition {
-  winnow_shape_id shape;  ///< from the scene's pools, convex or composite
-  winnow_pose pose;  ///< pose of the shape's frame in the world
+  winnow_shape_id shape;        ///< from the scene's pools, convex or composite
+  winnow_pose pose;             ///< pose of the shape's frame in the world
   winnow_object_filter filter;  ///< which bodies it senses
-  winnow_key carrier;  ///< a body that the sensor ignores
-  uint64_t data;  ///< the caller's value, returned with sensed bodies; never read
+  winnow_key carrier;           ///< a body that the sensor ignores
+  uint64_t data;                ///< the caller's value, returned with sensed bodies; never read
 } winnow_sensor_definition;
 #define WINNOW_SENSOR_DEFINITION \
   {WINNOW_NO_SHAPE, {{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0, 0.0}}, {1U, 0xFFFFFFFFU, 0U}, \
@@ -32,8 +32,8 @@ typedef struct winnow_sensed_body {
   winnow_key sensor;
   winnow_key body;
   uint64_t sensor_data;  ///< client data of the sensor
-  uint64_t body_data;  ///< client data of the body
-  uint8_t event;  ///< WINNOW_EVENT_BEGUN or WINNOW_EVENT_PERSISTED
+  uint64_t body_data;    ///< client data of the body
+  uint8_t event;         ///< WINNOW_EVENT_BEGUN or WINNOW_EVENT_PERSISTED
 } winnow_sensed_body;
 
 /// A body that the previous `sense` found and the last one did not. Keys of removed objects are
@@ -42,13 +42,14 @@ typedef struct winnow_left_sensor {
   winnow_key sensor;
   winnow_key body;
   uint64_t sensor_data;  ///< client data of the sensor
-  uint64_t body_data;  ///< client data of the body
+  uint64_t body_data;    ///< client data of the body
 } winnow_left_sensor;
 
 /// Creates sensors on a scene, which must outlive them.
 WINNOW_C_API winnow_status winnow_sensors_create(
     winnow_scene* scene, const winnow_memory* memory, winnow_sensors** sensors);
 
+/// Destroys the sensors; does nothing for null.
 WINNOW_C_API void winnow_sensors_destroy(winnow_sensors* sensors);
 
 /// Adds a sensor. WINNOW_INVALID_KEY if the scene's pools do not contain the shape;
@@ -91,7 +92,7 @@ WINNOW_C_API winnow_status winnow_sensors_sensed(
 WINNOW_C_API winnow_status winnow_sensors_left(
     const winnow_sensors* sensors, const winnow_left_sensor** bodies, size_t* count);
 
-/// Writes the bytes of sensors, by purpose.
+/// Writes the bytes of the sensors, by purpose.
 WINNOW_C_API winnow_status winnow_sensors_footprint(
     const winnow_sensors* sensors, winnow_footprint* footprint);
 

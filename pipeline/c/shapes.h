@@ -56,7 +56,7 @@ typedef void (*winnow_support_function)(const void* context, const double* direc
 /// are finite and >= 0.
 typedef struct winnow_shape {
   winnow_shape_kind kind;  ///< determines the member of `as`
-  /// rounding is a distance by which the surface is moved outward
+  /// Rounding is a distance by which the surface is moved outward.
   union {
     struct {
       double radius;
@@ -109,45 +109,45 @@ typedef struct winnow_shape {
 /// points, counter-clockwise seen from outside. Coplanar faces may be given as several triangles.
 typedef struct winnow_hull_faces {
   const uint32_t* indices;  ///< indices of points, face after face
-  size_t index_count;  ///< number of indices
-  const uint32_t* sizes;  ///< number of vertices of each face, 3 or more
-  size_t face_count;  ///< number of faces
+  size_t index_count;       ///< number of indices
+  const uint32_t* sizes;    ///< number of vertices of each face, 3 or more
+  size_t face_count;        ///< number of faces
 } winnow_hull_faces;
 
 /// A face of a hull that a pool contains.
 typedef struct winnow_hull_face {
   double normal[3];  ///< unit, outward
-  double offset;  ///< distance of the plane from the origin
-  uint32_t first;  ///< the vertices are loop[first] to loop[first + count - 1]
-  uint32_t count;  ///< number of vertices
+  double offset;     ///< distance of the plane from the origin
+  uint32_t first;    ///< the vertices are loop[first] to loop[first + count - 1]
+  uint32_t count;    ///< number of vertices
 } winnow_hull_face;
 
 /// A hull as the pool stores it; valid until the pool is changed.
 typedef struct winnow_hull {
-  size_t size;  ///< set by the caller to sizeof(winnow_hull)
-  size_t vertices;  ///< number of vertices
-  size_t faces;  ///< number of faces
-  uint32_t dimension;  ///< 0 for a point, 1 for a segment, 2 for a polygon, 3
-  double rounding;  ///< distance by which the surface is moved outward
-  double center[3];  ///< centre of a ball that contains the hull
-  double radius;  ///< of this ball
-  const double* vertex[3];  ///< x, y, z of the vertices
+  size_t size;                   ///< set by the caller to sizeof(winnow_hull)
+  size_t vertices;               ///< number of vertices
+  size_t faces;                  ///< number of faces
+  uint32_t dimension;            ///< 0 for a point, 1 for a segment, 2 for a polygon, 3
+  double rounding;               ///< distance by which the surface is moved outward
+  double center[3];              ///< centre of a ball that contains the hull
+  double radius;                 ///< of this ball
+  const double* vertex[3];       ///< x, y, z of the vertices
   const winnow_hull_face* face;  ///< the faces
-  const uint32_t* loop;  ///< vertices of all faces
+  const uint32_t* loop;          ///< vertices of all faces
 } winnow_hull;
 
 /// The points origin + t * direction, 0 <= t <= max_t.
 typedef struct winnow_shape_ray {
-  double origin[3];  ///< finite
+  double origin[3];     ///< finite
   double direction[3];  ///< of any length but 0
-  double max_t;  ///< >= 0; may be infinite
+  double max_t;         ///< >= 0; may be infinite
 } winnow_shape_ray;
 #define WINNOW_SHAPE_RAY {{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, INFINITY}
 
 /// Entry of a ray into a shape.
 typedef struct winnow_shape_hit {
-  bool hit;  ///< false if the ray does not hit the shape; the other members are then 0
-  double t;  ///< the smallest t at which the ray is inside the shape; 0 if it starts inside
+  bool hit;          ///< false if the ray does not hit the shape; the other members are then 0
+  double t;          ///< the smallest t at which the ray is inside the shape; 0 if it starts inside
   double normal[3];  ///< outward unit normal, against the ray
 } winnow_shape_hit;
 
@@ -165,18 +165,18 @@ typedef struct winnow_mesh_options {
 /// Heights: sample (column, row) is heights[row * row_stride + column]. NaN is a hole.
 typedef struct winnow_height_samples {
   const float* heights;  ///< the samples
-  size_t count;  ///< number of heights
-  uint32_t columns;  ///< samples along x, 2 or more
-  uint32_t rows;  ///< samples along y, 2 or more
-  uint32_t row_stride;  ///< 0 means columns
-  double spacing[2];  ///< along x and y; positive, finite
+  size_t count;          ///< number of heights
+  uint32_t columns;      ///< samples along x, 2 or more
+  uint32_t rows;         ///< samples along y, 2 or more
+  uint32_t row_stride;   ///< 0 means columns
+  double spacing[2];     ///< along x and y; positive, finite
 } winnow_height_samples;
 #define WINNOW_HEIGHT_SAMPLES {NULL, 0, 0, 0, 0, {1.0, 1.0}}
 
 /// A convex shape, a mesh or a height field, with its pose in the frame of the compound.
 typedef struct winnow_compound_child {
   winnow_shape_id shape;  ///< from one of the two pools
-  winnow_pose pose;  ///< in the frame of the compound
+  winnow_pose pose;       ///< in the frame of the compound
 } winnow_compound_child;
 #define WINNOW_COMPOUND_CHILD {WINNOW_NO_SHAPE, {{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0, 0.0}}}
 
@@ -184,6 +184,7 @@ typedef struct winnow_compound_child {
 WINNOW_C_API winnow_status winnow_shape_pool_create(
     const winnow_memory* memory, winnow_shape_pool** pool);
 
+/// Destroys the shape pool; does nothing for null.
 WINNOW_C_API void winnow_shape_pool_destroy(winnow_shape_pool* pool);
 
 /// Adds a shape other than a hull. WINNOW_INVALID_SHAPE for a length that is negative, NaN or
@@ -200,15 +201,15 @@ WINNOW_C_API winnow_status winnow_shape_pool_add_hull(
 /// Adds the hull bounded by `faces`. WINNOW_INVALID_SHAPE unless they are closed, consistently
 /// oriented and convex to 1e-9 of the hull's size.
 WINNOW_C_API winnow_status winnow_shape_pool_add_hull_faces(
-    winnow_shape_pool* pool, const winnow_point_view* points, const winnow_hull_faces* faces, double
-    rounding, winnow_shape_id* id);
+    winnow_shape_pool* pool, const winnow_point_view* points, const winnow_hull_faces* faces,
+    double rounding, winnow_shape_id* id);
 
 /// Adds a hull that was read from a pool, given by its vertices and its faces in order; the pool
 /// stores it bit for bit. Without faces: a segment or a point. WINNOW_INVALID_SHAPE if no pool can
 /// contain such a hull.
 WINNOW_C_API winnow_status winnow_shape_pool_add_built_hull(
-    winnow_shape_pool* pool, const winnow_point_view* points, const winnow_hull_faces* faces, double
-    rounding, winnow_shape_id* id);
+    winnow_shape_pool* pool, const winnow_point_view* points, const winnow_hull_faces* faces,
+    double rounding, winnow_shape_id* id);
 
 /// Removes a shape. Bodies must not use its id any more: a later shape of the same kind gets its
 /// index.
@@ -236,7 +237,7 @@ WINNOW_C_API winnow_status winnow_shape_pool_shape(
 WINNOW_C_API winnow_status winnow_shape_pool_hull(
     const winnow_shape_pool* pool, winnow_shape_id id, winnow_hull* hull);
 
-/// Writes the bytes of pool, by purpose.
+/// Writes the bytes of the shape pool, by purpose.
 WINNOW_C_API winnow_status winnow_shape_pool_footprint(
     const winnow_shape_pool* pool, winnow_footprint* footprint);
 
@@ -245,15 +246,16 @@ WINNOW_C_API winnow_status winnow_shape_pool_footprint(
 WINNOW_C_API winnow_status winnow_composite_pool_create(
     const winnow_shape_pool* shapes, const winnow_memory* memory, winnow_composite_pool** pool);
 
+/// Destroys the composite pool; does nothing for null.
 WINNOW_C_API void winnow_composite_pool_destroy(winnow_composite_pool* pool);
 
 /// Copies vertices (rounded to float) and triangles, and builds a tree of boxes over them.
 /// `execution` may be null. WINNOW_INVALID_SHAPE if there is no triangle, a vertex is not finite in
 /// float, or a corner is not a vertex.
 WINNOW_C_API winnow_status winnow_composite_pool_add_mesh(
-    winnow_composite_pool* pool, const winnow_point_view* vertices, const winnow_index_view*
-    triangles, const winnow_mesh_options* options, const winnow_execution* execution,
-    winnow_shape_id* id);
+    winnow_composite_pool* pool, const winnow_point_view* vertices,
+    const winnow_index_view* triangles, const winnow_mesh_options* options,
+    const winnow_execution* execution, winnow_shape_id* id);
 
 /// Adds a scaled instance of a mesh: a new id that shares the triangles, multiplied by `scale`
 /// along the axes of the mesh. Factors are finite and not zero; negative ones mirror.
@@ -263,8 +265,8 @@ WINNOW_C_API winnow_status winnow_composite_pool_add_scaled(
 /// Adds a mesh that winnow_composite_pool_save_mesh saved, with a scale. `execution` may be null.
 /// WINNOW_INVALID_ARGUMENT if the bytes are not a valid mesh. O(bytes).
 WINNOW_C_API winnow_status winnow_composite_pool_add_saved_mesh(
-    winnow_composite_pool* pool, const uint8_t* bytes, size_t count, const double scale[3], const
-    winnow_execution* execution, winnow_shape_id* id);
+    winnow_composite_pool* pool, const uint8_t* bytes, size_t count, const double scale[3],
+    const winnow_execution* execution, winnow_shape_id* id);
 
 /// Adds a height field that winnow_composite_pool_save_height_field saved. WINNOW_INVALID_ARGUMENT
 /// if the bytes are not a valid height field. O(bytes).
@@ -274,8 +276,8 @@ WINNOW_C_API winnow_status winnow_composite_pool_add_saved_height_field(
 /// Moves the vertices of a mesh, for all its scaled instances, and refits the tree. `execution` may
 /// be null. WINNOW_SIZE_MISMATCH for another number of vertices. O(n).
 WINNOW_C_API winnow_status winnow_composite_pool_refit_mesh(
-    winnow_composite_pool* pool, winnow_shape_id mesh, const winnow_point_view* vertices, const
-    winnow_execution* execution);
+    winnow_composite_pool* pool, winnow_shape_id mesh, const winnow_point_view* vertices,
+    const winnow_execution* execution);
 
 /// Adds a height field. WINNOW_INVALID_SHAPE for fewer than 2 x 2 samples, an infinite height, or
 /// an invalid spacing; WINNOW_SIZE_MISMATCH if there are too few heights.
@@ -286,8 +288,8 @@ WINNOW_C_API winnow_status winnow_composite_pool_add_height_field(
 /// samples.rows). WINNOW_INVALID_ARGUMENT if they are not all in the field; WINNOW_INVALID_KEY if
 /// the id is not of a height field.
 WINNOW_C_API winnow_status winnow_composite_pool_update_height_field(
-    winnow_composite_pool* pool, winnow_shape_id field, uint32_t column, uint32_t row, const
-    winnow_height_samples* samples);
+    winnow_composite_pool* pool, winnow_shape_id field, uint32_t column, uint32_t row,
+    const winnow_height_samples* samples);
 
 /// Adds a compound. Its convex children must stay in the shape pool while it exists, and its
 /// surfaces cannot be removed. WINNOW_INVALID_SHAPE if there are no children; WINNOW_INVALID_KEY
@@ -337,7 +339,8 @@ WINNOW_C_API winnow_status winnow_composite_pool_scale(
 /// Writes a float box that contains the shape at the pose, rounded outward. Errors as for shape
 /// pools.
 WINNOW_C_API winnow_status winnow_composite_pool_bounds(
-    const winnow_composite_pool* pool, winnow_shape_id id, const winnow_pose* pose, winnow_aabb* box);
+    const winnow_composite_pool* pool, winnow_shape_id id, const winnow_pose* pose,
+    winnow_aabb* box);
 
 /// Returns an upper bound on the distance of the shape's points from the origin of its frame.
 WINNOW_C_API winnow_status winnow_composite_pool_radius(
@@ -366,7 +369,7 @@ WINNOW_C_API winnow_status winnow_composite_pool_children(
 WINNOW_C_API winnow_status winnow_composite_pool_revision(
     const winnow_composite_pool* pool, uint64_t* revision);
 
-/// Writes the bytes of pool, by purpose.
+/// Writes the bytes of the composite pool, by purpose.
 WINNOW_C_API winnow_status winnow_composite_pool_footprint(
     const winnow_composite_pool* pool, winnow_footprint* footprint);
 
@@ -376,8 +379,8 @@ WINNOW_C_API const char* winnow_shape_kind_name(winnow_shape_kind kind);
 /// Finds the point at which a ray enters a shape. Shapes are closed sets; triangles are two-sided.
 /// WINNOW_INVALID_ARGUMENT for an invalid ray; WINNOW_INVALID_KEY; WINNOW_INVALID_POSE.
 WINNOW_C_API winnow_status winnow_cast_ray(
-    const winnow_shape_pool* pool, winnow_shape_id shape, const winnow_pose* pose, const
-    winnow_shape_ray* ray, winnow_shape_hit* hit);
+    const winnow_shape_pool* pool, winnow_shape_id shape, const winnow_pose* pose,
+    const winnow_shape_ray* ray, winnow_shape_hit* hit);
 
 #ifdef __cplusplus
 }

@@ -20,6 +20,7 @@ typedef struct winnow_snapshot winnow_snapshot;
 WINNOW_C_API winnow_status winnow_snapshot_create(
     const winnow_memory* memory, winnow_snapshot** snapshot);
 
+/// Destroys the snapshot; does nothing for null.
 WINNOW_C_API void winnow_snapshot_destroy(winnow_snapshot* snapshot);
 
 /// Returns the bytes, not copied, valid until the buffer is saved to again.

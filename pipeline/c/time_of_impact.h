@@ -20,27 +20,27 @@ typedef struct winnow_impact_result winnow_impact_result;
 /// fixed axis. At time t the position is start.position + t * travel. At most about 160,000 turns.
 typedef struct winnow_rigid_motion {
   winnow_pose start;  ///< pose at time 0
-  double travel[3];  ///< displacement from time 0 to time 1
-  double turn[3];  ///< rotation axis times angle in radians, in world axes
+  double travel[3];   ///< displacement from time 0 to time 1
+  double turn[3];     ///< rotation axis times angle in radians, in world axes
 } winnow_rigid_motion;
 #define WINNOW_RIGID_MOTION \
   {{{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0, 0.0}}, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}}
 
 /// Body i has shape shapes[i] and moves by motions[i].
 typedef struct winnow_moving_bodies {
-  const winnow_shape_id* shapes;  ///< one per body
+  const winnow_shape_id* shapes;       ///< one per body
   const winnow_rigid_motion* motions;  ///< one per body
-  size_t count;  ///< number of bodies
+  size_t count;                        ///< number of bodies
 } winnow_moving_bodies;
 
 /// Options of times of impact. A null pointer, or zero members after `size`, mean the defaults of
 /// C++.
 typedef struct winnow_impact_options {
   size_t size;  ///< set by the caller to sizeof(winnow_impact_options)
-  /// largest gap at the time of impact, relative to the size of the smaller shape, in (0, 1]; 0
-  /// means 1e-6
+  /// Largest gap at the time of impact, relative to the size of the smaller shape, in (0, 1]; 0
+  /// means 1e-6.
   double tolerance;
-  /// pool of the meshes, height fields and compounds, or null
+  /// Pool of the meshes, height fields and compounds, or null.
   const winnow_composite_pool* composites;
   winnow_execution execution;  ///< how work is run in parallel
 } winnow_impact_options;
@@ -49,16 +49,16 @@ typedef struct winnow_impact_options {
 /// Results as columns, not copied: one entry per pair, in the order of the pairs. Valid until the
 /// result is used again or destroyed. Empty columns are null.
 typedef struct winnow_impact_columns {
-  size_t size;  ///< set by the caller to sizeof(winnow_impact_columns)
+  size_t size;     ///< set by the caller to sizeof(winnow_impact_columns)
   size_t answers;  ///< number of pairs
-  /// winnow_status of each pair; unless it is WINNOW_OK the other columns contain zeros
+  /// Winnow_status of each pair; unless it is WINNOW_OK the other columns contain zeros.
   const uint8_t* status;
   const uint8_t* hit;  ///< not 0 if the pair has an impact
   const double* time;  ///< in [0, 1], never later than the true time; 1 if there is no impact
-  /// distance at that time; minus the penetration depth of shapes that overlap at the start
+  /// Distance at that time; minus the penetration depth of shapes that overlap at the start.
   const double* gap;
   const double* error_bound;  ///< the true distance is within gap +- error_bound
-  const double* normal[3];  ///< unit vector from a to b at that time
+  const double* normal[3];    ///< unit vector from a to b at that time
   const double* point[3];  ///< contact point of a, relative to the position of body a at that time
   const uint32_t* part_a;  ///< triangle or child of a; WINNOW_WHOLE_SHAPE for a convex shape
   const uint32_t* part_b;  ///< triangle or child of b
@@ -68,13 +68,14 @@ typedef struct winnow_impact_columns {
 WINNOW_C_API winnow_status winnow_impact_result_create(
     const winnow_memory* memory, winnow_impact_result** result);
 
+/// Destroys the impact result; does nothing for null.
 WINNOW_C_API void winnow_impact_result_destroy(winnow_impact_result* result);
 
 /// Writes the columns of the last call.
 WINNOW_C_API winnow_status winnow_impact_result_columns(
     const winnow_impact_result* result, winnow_impact_columns* columns);
 
-/// Writes the bytes of result, by purpose.
+/// Writes the bytes of the impact result, by purpose.
 WINNOW_C_API winnow_status winnow_impact_result_footprint(
     const winnow_impact_result* result, winnow_footprint* footprint);
 
@@ -98,8 +99,9 @@ WINNOW_C_API winnow_status winnow_rigid_motion_at(
 /// start touch at time 0. An error of one pair is reported in its status. WINNOW_INVALID_ARGUMENT
 /// for an invalid tolerance or a body index out of range: then `result` is empty.
 WINNOW_C_API winnow_status winnow_time_of_impact(
-    const winnow_shape_pool* shapes, const winnow_moving_bodies* bodies, const winnow_body_pair*
-    pairs, size_t count, const winnow_impact_options* options, winnow_impact_result* result);
+    const winnow_shape_pool* shapes, const winnow_moving_bodies* bodies,
+    const winnow_body_pair* pairs, size_t count, const winnow_impact_options* options,
+    winnow_impact_result* result);
 
 #ifdef __cplusplus
 }

@@ -13,7 +13,7 @@ extern "C" {
 
 /// Depth of the near plane in clip space.
 enum {
-  WINNOW_NEAR_DEPTH_ZERO = 0,  ///< Vulkan, Direct3D and Metal
+  WINNOW_NEAR_DEPTH_ZERO = 0,      ///< Vulkan, Direct3D and Metal
   WINNOW_NEAR_DEPTH_MINUS_ONE = 1  ///< OpenGL
 };
 
@@ -39,38 +39,38 @@ typedef struct winnow_aabb {
 /// Ball.
 typedef struct winnow_sphere {
   float center[3];  ///< its centre
-  float radius;  ///< finite, >= 0
+  float radius;     ///< finite, >= 0
 } winnow_sphere;
 
 /// The points whose distance from a segment is at most the radius.
 typedef struct winnow_capsule {
-  float a[3];  ///< end of the segment
-  float b[3];  ///< other end
+  float a[3];    ///< end of the segment
+  float b[3];    ///< other end
   float radius;  ///< finite, >= 0
 } winnow_capsule;
 
 /// The points center + sum of s_i axes[i] with |s_i| <= half[i].
 typedef struct winnow_oriented_box {
-  float center[3];  ///< its centre
-  float half[3];  ///< half of each edge
+  float center[3];   ///< its centre
+  float half[3];     ///< half of each edge
   float axes[3][3];  ///< three unit vectors
 } winnow_oriented_box;
 
 /// The points p with normal . p + offset >= 0.
 typedef struct winnow_plane {
   float normal[3];  ///< of any length but 0
-  float offset;  ///< signed distance of the origin times the normal's length
+  float offset;     ///< signed distance of the origin times the normal's length
 } winnow_plane;
 
 /// View volume of a camera.
 typedef struct winnow_frustum {
   winnow_plane planes[6];  ///< inward-facing: left, right, bottom, top, near, far
-  winnow_aabb bounds;  ///< contains the volume; infinite if unknown
+  winnow_aabb bounds;      ///< contains the volume; infinite if unknown
 } winnow_frustum;
 
 /// Pose of a body: x -> position + R(orientation) x.
 typedef struct winnow_pose {
-  double position[3];  ///< where the origin of the body is
+  double position[3];     ///< where the origin of the body is
   double orientation[4];  ///< quaternion w, x, y, z of any nonzero length
 } winnow_pose;
 #define WINNOW_POSE {{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0, 0.0}}
@@ -78,39 +78,39 @@ typedef struct winnow_pose {
 /// Boxes in columns, or members of any struct. A stride is the bytes from one entry to the next; 0
 /// means no gaps.
 typedef struct winnow_box_view {
-  const void* min[3];  ///< lower corner of the first box: x, y, z
-  const void* max[3];  ///< upper corner of the first box
-  size_t stride;  ///< bytes from one box to the next
-  size_t count;  ///< number of boxes
+  const void* min[3];    ///< lower corner of the first box: x, y, z
+  const void* max[3];    ///< upper corner of the first box
+  size_t stride;         ///< bytes from one box to the next
+  size_t count;          ///< number of boxes
   winnow_number number;  ///< of all columns
 } winnow_box_view;
 
 /// Points in columns, or members of any struct.
 typedef struct winnow_point_view {
-  const void* axis[3];  ///< x, y and z of the first point
-  size_t stride;  ///< bytes from one point to the next; 0 means no gaps
-  size_t count;  ///< number of points
+  const void* axis[3];   ///< x, y and z of the first point
+  size_t stride;         ///< bytes from one point to the next; 0 means no gaps
+  size_t count;          ///< number of points
   winnow_number number;  ///< of all columns
 } winnow_point_view;
 
 /// Triangles as vertex indices. The three indices of a triangle are contiguous.
 typedef struct winnow_index_view {
   const void* corners;  ///< indices of the first triangle
-  size_t stride;  ///< bytes from one triangle to the next; 0 means no gaps
-  size_t count;  ///< number of triangles
-  int32_t index;  ///< WINNOW_UINT32 or WINNOW_UINT16
+  size_t stride;        ///< bytes from one triangle to the next; 0 means no gaps
+  size_t count;         ///< number of triangles
+  int32_t index;        ///< WINNOW_UINT32 or WINNOW_UINT16
 } winnow_index_view;
 
 /// Poses in columns, or members of any struct. If all four orientation pointers are null, moved
 /// bodies keep their orientation, and poses that are read have the identity. Strides of 0 mean no
 /// gaps.
 typedef struct winnow_pose_view {
-  const void* position[3];  ///< x, y and z of the first position
-  const void* orientation[4];  ///< w, x, y and z of the first orientation
-  size_t position_stride;  ///< bytes from one position to the next
-  size_t orientation_stride;  ///< bytes from one orientation to the next
-  size_t count;  ///< number of poses
-  winnow_number position_number;  ///< of the positions
+  const void* position[3];           ///< x, y and z of the first position
+  const void* orientation[4];        ///< w, x, y and z of the first orientation
+  size_t position_stride;            ///< bytes from one position to the next
+  size_t orientation_stride;         ///< bytes from one orientation to the next
+  size_t count;                      ///< number of poses
+  winnow_number position_number;     ///< of the positions
   winnow_number orientation_number;  ///< of the orientations
 } winnow_pose_view;
 
@@ -124,24 +124,24 @@ typedef struct winnow_colour {
 /// objects in ascending order of their ids.
 typedef struct winnow_debug_draw {
   void* context;  ///< passed to all functions
-  /// draws the edges of a box, which may be infinite
+  /// Draws the edges of a box, which may be infinite.
   void (*box)(void* context, const winnow_aabb* box, winnow_colour colour);
-  /// draws a segment
+  /// Draws a segment.
   void (*line)(void* context, const float from[3], const float to[3], winnow_colour colour);
-  /// draws a ball, or its outline
+  /// Draws a ball, or its outline.
   void (*sphere)(void* context, const winnow_sphere* sphere, winnow_colour colour);
-  /// draws a label; `text` is not null-terminated
+  /// Draws a label; `text` is not null-terminated.
   void (*text)(void* context, const float at[3], const char* text, size_t length,
                winnow_colour colour);
 } winnow_debug_draw;
 
 /// Selects what is drawn. A null pointer, or zero members after `size`, mean the defaults of C++.
 typedef struct winnow_debug_draw_options {
-  size_t size;  ///< set by the caller to sizeof(winnow_debug_draw_options)
-  uint8_t leave_out_objects;  ///< 0 or 1: does not draw the volumes of objects
+  size_t size;                  ///< set by the caller to sizeof(winnow_debug_draw_options)
+  uint8_t leave_out_objects;    ///< 0 or 1: does not draw the volumes of objects
   uint8_t leave_out_structure;  ///< 0 or 1: does not draw cells, strips and nodes
-  uint8_t labels;  ///< 0 or 1: draws the client data of every object as text
-  int32_t max_depth;  ///< levels of the node tree, counted from the root; 0 means 64
+  uint8_t labels;               ///< 0 or 1: draws the client data of every object as text
+  int32_t max_depth;            ///< levels of the node tree, counted from the root; 0 means 64
 } winnow_debug_draw_options;
 #define WINNOW_DEBUG_DRAW_OPTIONS {sizeof(winnow_debug_draw_options), 0, 0, 0, 64}
 

@@ -1,6 +1,7 @@
 // Invalid calls of the C interface return a status: null pointers, one or all; struct sizes of
 // other versions; kinds that do not exist; stale keys; refused memory.
 
+#include "tests/c/handles_of_c.h"
 #include "tests/c/hostile_world.h"
 
 #include <winnow/c/winnow.h>
@@ -184,26 +185,6 @@ TEST(CInterface, partition_of_a_scene_cannot_be_changed) {
   EXPECT_EQ(size, 1U);
 }
 
-/// Memory for C that grants a number of requests and refuses all later ones.
-struct Refusing {
-  [[nodiscard]] winnow_memory memory() noexcept {
-    return {[](void* context, std::size_t bytes, std::size_t alignment) -> void* {
-              auto& own = *static_cast<Refusing*>(context);
-              if (own.requests++ >= own.granted) return nullptr;
-              own.outstanding += bytes;
-              return std::aligned_alloc(alignment, (bytes + alignment - 1) / alignment * alignment);
-            },
-            [](void* context, void* block, std::size_t bytes, std::size_t) {
-              static_cast<Refusing*>(context)->outstanding -= bytes;
-              std::free(block);
-            },
-            this};
-  }
-  std::size_t granted = 0;
-  std::size_t requests = 0;
-  std::size_t outstanding = 0;
-};
-
 /// Creates a partition and finds its pairs; returns the first status that is not ok.
 [[nodiscard]] winnow_status pairs_in(const winnow_memory& memory) {
   const double low[3] = {0.0, 0.5, 4.0};
@@ -227,8 +208,8 @@ TEST(CInterface, refused_memory_gives_a_status_and_no_leak) {
   winnow_status status = WINNOW_OUT_OF_MEMORY;
   std::size_t granted = 0;
   for (; status != WINNOW_OK; ++granted) {
-    Refusing source{granted};
-    status = pairs_in(source.memory());
+    CountedMemory source{granted};
+    status = pairs_in(source.functions());
     EXPECT_EQ(source.outstanding, 0U);
     EXPECT_EQ(status, source.requests > granted ? WINNOW_OUT_OF_MEMORY : WINNOW_OK);
     ASSERT_LT(granted, 1000U);

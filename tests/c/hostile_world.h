@@ -3,6 +3,8 @@
 // Arguments for hostile_test.cpp: an object of every kind of the C interface, and a value of every
 // argument type.
 
+#include "tests/c/handles_of_c.h"
+
 #include <winnow/c/winnow.h>
 
 #include <gtest/gtest.h>
@@ -22,51 +24,9 @@ class HostileWorld {
     const winnow_shape ball = {WINNOW_SHAPE_SPHERE, {.sphere = {0.5}}};
     winnow_body_definition body = WINNOW_BODY_DEFINITION;
     winnow_key key = WINNOW_NULL_KEY;
-    EXPECT_EQ(winnow_threads_create(1, &threads), WINNOW_OK);
-    EXPECT_EQ(winnow_snapshot_create(nullptr, &snapshot), WINNOW_OK);
-    EXPECT_EQ(winnow_partition_create({}, nullptr, &partition), WINNOW_OK);
-    EXPECT_EQ(winnow_pair_buffer_create(nullptr, &pairs), WINNOW_OK);
-    EXPECT_EQ(winnow_pair_events_create(nullptr, &events), WINNOW_OK);
-    EXPECT_EQ(winnow_hit_buffer_create(nullptr, &hits), WINNOW_OK);
-    EXPECT_EQ(winnow_overlap_buffer_create(nullptr, &overlaps), WINNOW_OK);
-    EXPECT_EQ(winnow_shape_pool_create(nullptr, &shapes), WINNOW_OK);
     EXPECT_EQ(winnow_shape_pool_add(shapes, &ball, &body.shape), WINNOW_OK);
-    EXPECT_EQ(winnow_composite_pool_create(shapes, nullptr, &composites), WINNOW_OK);
-    EXPECT_EQ(winnow_narrow_phase_create(nullptr, &narrow), WINNOW_OK);
-    EXPECT_EQ(winnow_narrow_result_create(nullptr, &result), WINNOW_OK);
-    EXPECT_EQ(winnow_impact_result_create(nullptr, &impacts), WINNOW_OK);
-    EXPECT_EQ(winnow_contacts_create(nullptr, &contacts), WINNOW_OK);
-    EXPECT_EQ(winnow_scene_create(shapes, nullptr, &scene), WINNOW_OK);
     EXPECT_EQ(winnow_scene_add(scene, &body, 1, &key), WINNOW_OK);
     EXPECT_EQ(winnow_scene_refresh(scene), WINNOW_OK);
-    EXPECT_EQ(winnow_scene_queries_create(scene, nullptr, &queries), WINNOW_OK);
-    EXPECT_EQ(winnow_contact_groups_create(nullptr, &groups), WINNOW_OK);
-    EXPECT_EQ(winnow_continuous_collision_create(scene, nullptr, &ccd), WINNOW_OK);
-    EXPECT_EQ(winnow_sensors_create(scene, nullptr, &sensors), WINNOW_OK);
-    EXPECT_EQ(winnow_deformable_mesh_create(nullptr, &mesh), WINNOW_OK);
-  }
-  HostileWorld(const HostileWorld&) = delete;
-  HostileWorld& operator=(const HostileWorld&) = delete;
-  ~HostileWorld() {
-    destroy(mesh);
-    destroy(sensors);
-    destroy(ccd);
-    destroy(groups);
-    destroy(queries);
-    destroy(scene);
-    destroy(contacts);
-    destroy(impacts);
-    destroy(result);
-    destroy(narrow);
-    destroy(composites);
-    destroy(shapes);
-    destroy(overlaps);
-    destroy(hits);
-    destroy(events);
-    destroy(pairs);
-    destroy(partition);
-    destroy(snapshot);
-    destroy(threads);
   }
 
   /// Returns the argument of a call at `index`.
@@ -95,25 +55,25 @@ class HostileWorld {
   /// The value of the size members of structs; 1 means the size of this version.
   std::size_t size_of_structs = 1;
 
-  winnow_threads* threads = nullptr;
-  winnow_snapshot* snapshot = nullptr;
-  winnow_partition* partition = nullptr;
-  winnow_pair_buffer* pairs = nullptr;
-  winnow_pair_events* events = nullptr;
-  winnow_hit_buffer* hits = nullptr;
-  winnow_overlap_buffer* overlaps = nullptr;
-  winnow_shape_pool* shapes = nullptr;
-  winnow_composite_pool* composites = nullptr;
-  winnow_narrow_phase* narrow = nullptr;
-  winnow_narrow_result* result = nullptr;
-  winnow_impact_result* impacts = nullptr;
-  winnow_contacts* contacts = nullptr;
-  winnow_scene* scene = nullptr;
-  winnow_scene_queries* queries = nullptr;
-  winnow_contact_groups* groups = nullptr;
-  winnow_continuous_collision* ccd = nullptr;
-  winnow_sensors* sensors = nullptr;
-  winnow_deformable_mesh* mesh = nullptr;
+  OwnedThreads threads{winnow_threads_create, 1U};
+  OwnedSnapshot snapshot{winnow_snapshot_create, nullptr};
+  OwnedPartition partition{winnow_partition_create, winnow_structure_kind{}, nullptr};
+  OwnedPairs pairs{winnow_pair_buffer_create, nullptr};
+  OwnedEvents events{winnow_pair_events_create, nullptr};
+  OwnedHits hits{winnow_hit_buffer_create, nullptr};
+  OwnedOverlaps overlaps{winnow_overlap_buffer_create, nullptr};
+  OwnedShapes shapes{winnow_shape_pool_create, nullptr};
+  OwnedComposites composites{winnow_composite_pool_create, shapes, nullptr};
+  OwnedNarrowPhase narrow{winnow_narrow_phase_create, nullptr};
+  OwnedNarrowResult result{winnow_narrow_result_create, nullptr};
+  OwnedImpactResult impacts{winnow_impact_result_create, nullptr};
+  OwnedContacts contacts{winnow_contacts_create, nullptr};
+  OwnedScene scene{winnow_scene_create, shapes, nullptr};
+  OwnedQueries queries{winnow_scene_queries_create, scene, nullptr};
+  OwnedGroups groups{winnow_contact_groups_create, nullptr};
+  OwnedImpacts ccd{winnow_continuous_collision_create, scene, nullptr};
+  OwnedSensors sensors{winnow_sensors_create, scene, nullptr};
+  OwnedMesh mesh{winnow_deformable_mesh_create, nullptr};
 
  private:
 #define WINNOW_THING(type, member)         \

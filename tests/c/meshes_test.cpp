@@ -87,9 +87,7 @@ TEST(CInterface, counts_of_a_deformable_mesh_equal_cpp) {
   EXPECT_EQ(edge, cloth.mesh->edge(3));
   EXPECT_EQ(winnow_deformable_mesh_edge(cloth.mesh, cloth.mesh->edges(), edge.data()),
             WINNOW_INVALID_ARGUMENT);
-  winnow_footprint bytes{};
-  bytes.size = sizeof bytes;
-  EXPECT_EQ(winnow_deformable_mesh_footprint(cloth.mesh, &bytes), WINNOW_OK);
+  const auto bytes = got<winnow_footprint>(winnow_deformable_mesh_footprint, cloth.mesh);
   EXPECT_EQ(bytes.structure.reserved,
             cloth.mesh->footprint().structure.reserved + sizeof(winnow_deformable_mesh));
 }
@@ -250,9 +248,7 @@ TEST(CInterface, built_hull_is_stored_bit_for_bit) {
   const double corners[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
   const winnow_point_view points = winnow_points(corners, 4);
   const auto hull = got<winnow_shape_id>(winnow_shape_pool_add_hull, surfaces.shapes, &points, 0.1);
-  winnow_hull read{};
-  read.size = sizeof read;
-  ASSERT_EQ(winnow_shape_pool_hull(surfaces.shapes, hull, &read), WINNOW_OK);
+  const auto read = got<winnow_hull>(winnow_shape_pool_hull, surfaces.shapes, hull);
   std::vector<std::uint32_t> sizes;
   std::size_t indices = 0;
   for (std::size_t face = 0; face < read.faces; ++face) {

@@ -40,10 +40,7 @@ class BallsOfC {
     return columns().pairs;
   }
   [[nodiscard]] winnow_contact_columns columns() const {
-    winnow_contact_columns shown{};
-    shown.size = sizeof shown;
-    EXPECT_EQ(winnow_contacts_columns(contacts, &shown), WINNOW_OK);
-    return shown;
+    return got<winnow_contact_columns>(winnow_contacts_columns, contacts);
   }
 
   static constexpr winnow_shape kBall = {WINNOW_SHAPE_SPHERE, {.sphere = {0.5}}};
@@ -157,14 +154,14 @@ TEST(CInterface, motion_casts_give_the_hits_of_cpp) {
   for (cast.from_touch = 0; cast.from_touch <= 1; ++cast.from_touch) {
     const auto hit =
         got<winnow_scene_hit>(winnow_scene_queries_closest_motion, queries, &cast, all, 1e-6);
-    const MotionCast same{{cast.shape}, *c::as_cpp(&cast.motion), cast.from_touch == 0};
+    const MotionCast expected{{cast.shape}, *c::as_cpp(&cast.motion), cast.from_touch == 0};
     SceneQueries others(*world.scene);
-    EXPECT_TRUE(have_same_bits(hit, static_cast<const SceneHit&>(others.closest(same))));
+    EXPECT_TRUE(same(hit, others.closest(expected)));
     EXPECT_EQ(hit.key.id, world.keys[0].id);
     const auto hits =
         got_all<winnow_scene_hit>(winnow_scene_queries_all_motion, queries, &cast, all, 1e-6);
     EXPECT_EQ(hits.size(), BallsOfC::kBalls);
-    EXPECT_EQ(hits.size(), others.all(same).size());
+    EXPECT_EQ(hits.size(), others.all(expected).size());
   }
 }
 
@@ -193,9 +190,8 @@ TEST(CInterface, impacts_of_motions_equal_impacts_of_ends) {
   ASSERT_GT(impacts.size(), 0U);
   EXPECT_EQ(impacts.size(), by_ends->impacts().size());
   EXPECT_TRUE(have_same_bits(impacts[0], by_ends->impacts()[0]));
-  winnow_continuous_statistics counters{};
-  counters.size = sizeof counters;
-  EXPECT_EQ(winnow_continuous_collision_statistics(by_motions, &counters), WINNOW_OK);
+  const auto counters =
+      got<winnow_continuous_statistics>(winnow_continuous_collision_statistics, by_motions);
   EXPECT_GT(counters.boxes, 0U);
   EXPECT_EQ(counters.body_pairs, by_motions->statistics().body_pairs);
 }
@@ -215,26 +211,6 @@ TEST(CInterface, margins_of_pairs_replace_one_margin) {
         WINNOW_OK);
     EXPECT_EQ(answer.contact_count, margins == nullptr ? 0U : 1U);
   }
-}
-
-TEST(CInterface, pair_buffers_shrink_to_their_pairs) {
-  OwnedPairs pairs(winnow_pair_buffer_create, nullptr);
-  EXPECT_EQ(winnow_pair_buffer_reserve(pairs, 5000, WINNOW_PAGES_UNTOUCHED), WINNOW_OK);
-  EXPECT_EQ(got<std::size_t>(winnow_pair_buffer_capacity, pairs), pairs->capacity());
-  EXPECT_GE(pairs->capacity(), 5000U);
-  EXPECT_EQ(winnow_pair_buffer_shrink(pairs, 10), WINNOW_OK);
-  EXPECT_LT(got<std::size_t>(winnow_pair_buffer_capacity, pairs), 5000U);
-}
-
-TEST(CInterface, client_data_of_an_id_is_returned) {
-  OwnedPartition partition(winnow_partition_create, winnow_structure_kind{}, nullptr);
-  const winnow_aabb box = {{0, 0, 0}, {1, 1, 1}};
-  const winnow_box_view boxes = winnow_boxes(&box, 1);
-  const std::uint64_t data = 77;
-  winnow_key key = WINNOW_NULL_KEY;
-  ASSERT_EQ(winnow_partition_insert(partition, &boxes, &data, &key), WINNOW_OK);
-  EXPECT_EQ(got<std::uint64_t>(winnow_partition_client_data_of, partition, key.id), 77U);
-  EXPECT_EQ(got<std::uint64_t>(winnow_partition_client_data_of, partition, key.id + 1), 0U);
 }
 
 }  // namespace

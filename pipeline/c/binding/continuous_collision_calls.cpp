@@ -19,8 +19,8 @@ void winnow_continuous_collision_destroy(winnow_continuous_collision* ccd) {
 }
 
 winnow_status winnow_continuous_collision_find_impacts(
-    winnow_continuous_collision* ccd, const winnow_key* keys, size_t count, const winnow_pose_view*
-    ends, const winnow_continuous_options* options) {
+    winnow_continuous_collision* ccd, const winnow_key* keys, size_t count,
+    const winnow_pose_view* ends, const winnow_continuous_options* options) {
   ContinuousOptions own_options{};
   if (!(are_given(ccd, ends) && is_array(keys, count) && read(options, own_options, count))) return WINNOW_INVALID_ARGUMENT;
   PoseView own_ends;

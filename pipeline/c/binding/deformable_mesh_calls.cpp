@@ -79,8 +79,8 @@ winnow_status winnow_deformable_mesh_self_candidates(
 }
 
 winnow_status winnow_deformable_mesh_candidates_with(
-    const winnow_deformable_mesh* mesh, const winnow_deformable_mesh* other, winnow_feature_pair
-    kind, const winnow_pair_chunks* chunks) {
+    const winnow_deformable_mesh* mesh, const winnow_deformable_mesh* other,
+    winnow_feature_pair kind, const winnow_pair_chunks* chunks) {
   FeaturePair own_kind{};
   Chunks<winnow_pair_chunks> own_chunks{};
   if (!(are_given(mesh, other, chunks) && read(kind, own_kind) && read(chunks, own_chunks))) return WINNOW_INVALID_ARGUMENT;
@@ -88,8 +88,8 @@ winnow_status winnow_deformable_mesh_candidates_with(
 }
 
 winnow_status winnow_deformable_mesh_self_impacts(
-    const winnow_deformable_mesh* mesh, winnow_feature_pair kind, const
-    winnow_feature_impact_options* options, const winnow_mesh_impact_chunks* chunks) {
+    const winnow_deformable_mesh* mesh, winnow_feature_pair kind,
+    const winnow_feature_impact_options* options, const winnow_mesh_impact_chunks* chunks) {
   FeaturePair own_kind{};
   FeatureImpactOptions own_options{};
   Chunks<winnow_mesh_impact_chunks> own_chunks{};
@@ -98,8 +98,9 @@ winnow_status winnow_deformable_mesh_self_impacts(
 }
 
 winnow_status winnow_deformable_mesh_impacts_with(
-    const winnow_deformable_mesh* mesh, const winnow_deformable_mesh* other, winnow_feature_pair
-    kind, const winnow_feature_impact_options* options, const winnow_mesh_impact_chunks* chunks) {
+    const winnow_deformable_mesh* mesh, const winnow_deformable_mesh* other,
+    winnow_feature_pair kind, const winnow_feature_impact_options* options,
+    const winnow_mesh_impact_chunks* chunks) {
   FeaturePair own_kind{};
   FeatureImpactOptions own_options{};
   Chunks<winnow_mesh_impact_chunks> own_chunks{};
@@ -108,8 +109,8 @@ winnow_status winnow_deformable_mesh_impacts_with(
 }
 
 winnow_status winnow_deformable_mesh_impacts_with_shape(
-    const winnow_deformable_mesh* mesh, const winnow_mesh_obstacle* obstacle, const
-    winnow_impact_options* options, const winnow_mesh_shape_impact_chunks* chunks) {
+    const winnow_deformable_mesh* mesh, const winnow_mesh_obstacle* obstacle,
+    const winnow_impact_options* options, const winnow_mesh_shape_impact_chunks* chunks) {
   ImpactOptions own_options{};
   Chunks<winnow_mesh_shape_impact_chunks> own_chunks{};
   if (!(are_given(mesh, obstacle, chunks) && read(options, own_options) && read(chunks, own_chunks))) return WINNOW_INVALID_ARGUMENT;
@@ -118,8 +119,8 @@ winnow_status winnow_deformable_mesh_impacts_with_shape(
 }
 
 winnow_status winnow_deformable_mesh_self_proximity(
-    const winnow_deformable_mesh* mesh, winnow_feature_pair kind, double thickness, const
-    winnow_mesh_proximity_chunks* chunks) {
+    const winnow_deformable_mesh* mesh, winnow_feature_pair kind, double thickness,
+    const winnow_mesh_proximity_chunks* chunks) {
   FeaturePair own_kind{};
   Chunks<winnow_mesh_proximity_chunks> own_chunks{};
   if (!(are_given(mesh, chunks) && read(kind, own_kind) && read(chunks, own_chunks))) return WINNOW_INVALID_ARGUMENT;
@@ -127,8 +128,8 @@ winnow_status winnow_deformable_mesh_self_proximity(
 }
 
 winnow_status winnow_deformable_mesh_proximity_with(
-    const winnow_deformable_mesh* mesh, const winnow_deformable_mesh* other, winnow_feature_pair
-    kind, double thickness, const winnow_mesh_proximity_chunks* chunks) {
+    const winnow_deformable_mesh* mesh, const winnow_deformable_mesh* other,
+    winnow_feature_pair kind, double thickness, const winnow_mesh_proximity_chunks* chunks) {
   FeaturePair own_kind{};
   Chunks<winnow_mesh_proximity_chunks> own_chunks{};
   if (!(are_given(mesh, other, chunks) && read(kind, own_kind) && read(chunks, own_chunks))) return WINNOW_INVALID_ARGUMENT;
@@ -142,8 +143,8 @@ winnow_status winnow_deformable_mesh_footprint(
 }
 
 winnow_status winnow_feature_impact(
-    winnow_feature_pair kind, const double start[12], const double end[12], const
-    winnow_feature_impact_options* options, winnow_feature_hit* hit) {
+    winnow_feature_pair kind, const double start[12], const double end[12],
+    const winnow_feature_impact_options* options, winnow_feature_hit* hit) {
   FeaturePair own_kind{};
   FeatureImpactOptions own_options{};
   if (!(are_given(start, end, hit) && read(kind, own_kind) && read(options, own_options))) return WINNOW_INVALID_ARGUMENT;
@@ -151,8 +152,8 @@ winnow_status winnow_feature_impact(
 }
 
 winnow_status winnow_feature_impacts(
-    winnow_feature_pair kind, const winnow_feature_columns* pairs, double* times, const
-    winnow_feature_impact_options* options) {
+    winnow_feature_pair kind, const winnow_feature_columns* pairs, double* times,
+    const winnow_feature_impact_options* options) {
   FeaturePair own_kind{};
   FeatureColumns own_pairs{};
   FeatureImpactOptions own_options{};

@@ -35,8 +35,8 @@ winnow_status winnow_narrow_result_columns(
 }
 
 winnow_status winnow_narrow_phase_collide(
-    winnow_narrow_phase* narrow, const winnow_shape_pool* shapes, const winnow_bodies* bodies, const
-    winnow_body_pair* pairs, size_t count, const winnow_narrow_options* options,
+    winnow_narrow_phase* narrow, const winnow_shape_pool* shapes, const winnow_bodies* bodies,
+    const winnow_body_pair* pairs, size_t count, const winnow_narrow_options* options,
     winnow_narrow_result* result) {
   NarrowOptions own_options{};
   if (!(are_given(narrow, shapes, bodies, result) && is_array(pairs, count) && read(options, own_options, count))) return WINNOW_INVALID_ARGUMENT;
@@ -71,8 +71,9 @@ winnow_status winnow_narrow_phase_footprint(
 }
 
 winnow_status winnow_collide(
-    const winnow_shape_pool* shapes, winnow_shape_id a, const winnow_pose* pose_a, winnow_shape_id
-    b, const winnow_pose* pose_b, const winnow_narrow_options* options, winnow_pair_answer* answer) {
+    const winnow_shape_pool* shapes, winnow_shape_id a, const winnow_pose* pose_a,
+    winnow_shape_id b, const winnow_pose* pose_b, const winnow_narrow_options* options,
+    winnow_pair_answer* answer) {
   NarrowOptions own_options{};
   if (!(are_given(shapes, pose_a, pose_b, answer) && read(options, own_options, 1))) return WINNOW_INVALID_ARGUMENT;
   return give([&]() -> decltype(auto) { return (collide(of(shapes), ShapeId{a}, (*as_cpp(pose_a)), ShapeId{b}, (*as_cpp(pose_b)), own_options, *as_cpp(answer))); }, answer);

@@ -46,8 +46,8 @@ void winnow_overlap_buffer_destroy(winnow_overlap_buffer* buffer) {
 }
 
 winnow_status winnow_partition_create(
-    winnow_structure_kind structure, const winnow_partition_options* options, winnow_partition**
-    partition) {
+    winnow_structure_kind structure, const winnow_partition_options* options,
+    winnow_partition** partition) {
   PartitionOptions own_options{};
   if (!(are_given(partition) && read(options, own_options))) return WINNOW_INVALID_ARGUMENT;
   return create(memory_of(options), partition, to_cpp(structure), own_options);
@@ -204,8 +204,8 @@ winnow_status winnow_partition_fat_margin(
 }
 
 winnow_status winnow_partition_insert(
-    winnow_partition* partition, const winnow_box_view* boxes, const uint64_t* data, winnow_key*
-    keys) {
+    winnow_partition* partition, const winnow_box_view* boxes, const uint64_t* data,
+    winnow_key* keys) {
   if (!(are_given(partition, boxes) && is_array(keys, boxes->count))) return WINNOW_INVALID_ARGUMENT;
   BoxView own_boxes;
   if (const Status bad = read_view(*boxes, partition->room, own_boxes); bad != Status::ok) {
@@ -235,8 +235,8 @@ winnow_status winnow_partition_insert_kdops(
 }
 
 winnow_status winnow_partition_update_kdops(
-    winnow_partition* partition, uint32_t k, const winnow_key* keys, const float* kdops, size_t
-    count) {
+    winnow_partition* partition, uint32_t k, const winnow_key* keys, const float* kdops,
+    size_t count) {
   if (!(are_given(partition) && is_array(keys, count) && is_array(kdops, count))) return WINNOW_INVALID_ARGUMENT;
   return give([&]() -> decltype(auto) { return (with_kdops(k, span_of(kdops, count), [&](auto given) { return of(partition).update(as_cpp_span(keys, count), given); })); });
 }
@@ -317,8 +317,8 @@ winnow_status winnow_partition_client_data_of(
 }
 
 winnow_status winnow_partition_set_filter(
-    winnow_partition* partition, const winnow_key* keys, const winnow_object_filter* filters, size_t
-    count) {
+    winnow_partition* partition, const winnow_key* keys, const winnow_object_filter* filters,
+    size_t count) {
   if (!(are_given(partition) && is_array(keys, count) && is_array(filters, count))) return WINNOW_INVALID_ARGUMENT;
   return give([&]() -> decltype(auto) { return (of(partition).set_filter(as_cpp_span(keys, count), as_cpp_span(filters, count))); });
 }
@@ -335,8 +335,8 @@ winnow_status winnow_partition_refresh(const winnow_partition* partition) {
 }
 
 winnow_status winnow_partition_pairs_with(
-    const winnow_partition* partition, const winnow_partition* other, winnow_pair_buffer* out, const
-    winnow_pair_options* options) {
+    const winnow_partition* partition, const winnow_partition* other, winnow_pair_buffer* out,
+    const winnow_pair_options* options) {
   PairOptions own_options{};
   if (!(are_given(partition, other, out) && read(options, own_options))) return WINNOW_INVALID_ARGUMENT;
   return give([&]() -> decltype(auto) { return (of(partition).pairs_with(of(other), of(out), own_options)); });
@@ -422,16 +422,16 @@ winnow_status winnow_partition_overlap_boxes(
 }
 
 winnow_status winnow_partition_nearest(
-    const winnow_partition* partition, const winnow_aabb* from, size_t count, float radius, const
-    winnow_filter* filter, winnow_hit_buffer* hits) {
+    const winnow_partition* partition, const winnow_aabb* from, size_t count, float radius,
+    const winnow_filter* filter, winnow_hit_buffer* hits) {
   Filter own_filter{};
   if (!(are_given(partition, from, hits) && read(filter, own_filter))) return WINNOW_INVALID_ARGUMENT;
   return give([&]() -> decltype(auto) { return (of(partition).nearest((*as_cpp(from)), count, radius, of(hits), own_filter)); });
 }
 
 winnow_status winnow_partition_debug_draw(
-    const winnow_partition* partition, const winnow_debug_draw* draw, const
-    winnow_debug_draw_options* options) {
+    const winnow_partition* partition, const winnow_debug_draw* draw,
+    const winnow_debug_draw_options* options) {
   CallbackDraw own_draw{};
   DebugDrawOptions own_options{};
   if (!(are_given(partition, draw) && read(draw, own_draw) && read(options, own_options))) return WINNOW_INVALID_ARGUMENT;

@@ -157,8 +157,8 @@ winnow_status winnow_scene_origin(const winnow_scene* scene, double origin[3]) {
 }
 
 winnow_status winnow_scene_debug_draw(
-    const winnow_scene* scene, const winnow_debug_draw* draw, const winnow_debug_draw_options*
-    options) {
+    const winnow_scene* scene, const winnow_debug_draw* draw,
+    const winnow_debug_draw_options* options) {
   CallbackDraw own_draw{};
   DebugDrawOptions own_options{};
   if (!(are_given(scene, draw) && read(draw, own_draw) && read(options, own_options))) return WINNOW_INVALID_ARGUMENT;

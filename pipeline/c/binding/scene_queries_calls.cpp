@@ -35,8 +35,8 @@ winnow_status winnow_scene_queries_any(
 }
 
 winnow_status winnow_scene_queries_all(
-    winnow_scene_queries* queries, const winnow_shape_ray* ray, const winnow_filter* filter, const
-    winnow_scene_hit** hits, size_t* count) {
+    winnow_scene_queries* queries, const winnow_shape_ray* ray, const winnow_filter* filter,
+    const winnow_scene_hit** hits, size_t* count) {
   Filter own_filter{};
   if (!(are_given(queries, ray, hits, count) && read(filter, own_filter))) return WINNOW_INVALID_ARGUMENT;
   return give([&]() -> decltype(auto) { return (of(queries).all((*as_cpp(ray)), own_filter)); }, hits, count);
@@ -135,56 +135,57 @@ winnow_status winnow_scene_queries_all_motion(
 }
 
 winnow_status winnow_scene_queries_overlap(
-    winnow_scene_queries* queries, winnow_shape_id shape, const winnow_pose* pose, const
-    winnow_filter* filter, const winnow_scene_overlap** bodies, size_t* count) {
+    winnow_scene_queries* queries, winnow_shape_id shape, const winnow_pose* pose,
+    const winnow_filter* filter, const winnow_scene_overlap** bodies, size_t* count) {
   Filter own_filter{};
   if (!(are_given(queries, pose, bodies, count) && read(filter, own_filter))) return WINNOW_INVALID_ARGUMENT;
   return give([&]() -> decltype(auto) { return (of(queries).overlap(ShapeId{shape}, (*as_cpp(pose)), own_filter)); }, bodies, count);
 }
 
 winnow_status winnow_scene_queries_distance(
-    winnow_scene_queries* queries, winnow_key a, winnow_key b, double limit, winnow_pair_rules
-    rules, winnow_scene_distance* answer) {
+    winnow_scene_queries* queries, winnow_key a, winnow_key b, double limit,
+    winnow_pair_rules rules, winnow_scene_distance* answer) {
   PairRules own_rules{};
   if (!(are_given(queries, answer) && read(rules, own_rules))) return WINNOW_INVALID_ARGUMENT;
   return give([&]() -> decltype(auto) { return (of(queries).distance(to_cpp(a), to_cpp(b), limit, own_rules)); }, answer);
 }
 
 winnow_status winnow_scene_queries_nearest(
-    winnow_scene_queries* queries, const double point[3], size_t count, double radius, const
-    winnow_filter* filter, const winnow_scene_distance** bodies, size_t* found) {
+    winnow_scene_queries* queries, const double point[3], size_t count, double radius,
+    const winnow_filter* filter, const winnow_scene_distance** bodies, size_t* found) {
   Filter own_filter{};
   if (!(are_given(queries, point, bodies, found) && read(filter, own_filter))) return WINNOW_INVALID_ARGUMENT;
   return give([&]() -> decltype(auto) { return (of(queries).nearest(Vec3d(point), count, radius, own_filter)); }, bodies, found);
 }
 
 winnow_status winnow_scene_queries_least_distance(
-    winnow_scene_queries* queries, const winnow_key* a, size_t count_a, const winnow_key* b, size_t
-    count_b, double limit, winnow_pair_rules rules, winnow_set_distance* answer) {
+    winnow_scene_queries* queries, const winnow_key* a, size_t count_a, const winnow_key* b,
+    size_t count_b, double limit, winnow_pair_rules rules, winnow_set_distance* answer) {
   PairRules own_rules{};
   if (!(are_given(queries, answer) && is_array(a, count_a) && is_array(b, count_b) && read(rules, own_rules))) return WINNOW_INVALID_ARGUMENT;
   return give([&]() -> decltype(auto) { return (of(queries).least_distance(as_cpp_span(a, count_a), as_cpp_span(b, count_b), limit, own_rules)); }, answer);
 }
 
 winnow_status winnow_scene_queries_overlaps(
-    winnow_scene_queries* queries, const winnow_key* a, size_t count_a, const winnow_key* b, size_t
-    count_b, size_t most, winnow_pair_rules rules, const winnow_key_pair** pairs, size_t* count) {
+    winnow_scene_queries* queries, const winnow_key* a, size_t count_a, const winnow_key* b,
+    size_t count_b, size_t most, winnow_pair_rules rules, const winnow_key_pair** pairs,
+    size_t* count) {
   PairRules own_rules{};
   if (!(are_given(queries, pairs, count) && is_array(a, count_a) && is_array(b, count_b) && read(rules, own_rules))) return WINNOW_INVALID_ARGUMENT;
   return give([&]() -> decltype(auto) { return (of(queries).overlaps(as_cpp_span(a, count_a), as_cpp_span(b, count_b), most, own_rules)); }, pairs, count);
 }
 
 winnow_status winnow_scene_queries_any_contact(
-    winnow_scene_queries* queries, const winnow_key* a, size_t count_a, const winnow_key* b, size_t
-    count_b, double contact_margin, winnow_pair_rules rules, winnow_key_pair* pair) {
+    winnow_scene_queries* queries, const winnow_key* a, size_t count_a, const winnow_key* b,
+    size_t count_b, double contact_margin, winnow_pair_rules rules, winnow_key_pair* pair) {
   PairRules own_rules{};
   if (!(are_given(queries, pair) && is_array(a, count_a) && is_array(b, count_b) && read(rules, own_rules))) return WINNOW_INVALID_ARGUMENT;
   return give([&]() -> decltype(auto) { return (of(queries).any_contact(as_cpp_span(a, count_a), as_cpp_span(b, count_b), contact_margin, own_rules)); }, pair);
 }
 
 winnow_status winnow_scene_queries_any_contact_in_scene(
-    winnow_scene_queries* queries, double contact_margin, winnow_pair_rules rules, winnow_key_pair*
-    pair) {
+    winnow_scene_queries* queries, double contact_margin, winnow_pair_rules rules,
+    winnow_key_pair* pair) {
   PairRules own_rules{};
   if (!(are_given(queries, pair) && read(rules, own_rules))) return WINNOW_INVALID_ARGUMENT;
   return give([&]() -> decltype(auto) { return (of(queries).any_contact(contact_margin, own_rules)); }, pair);

@@ -44,8 +44,8 @@ winnow_status winnow_shape_pool_add_hull(
 }
 
 winnow_status winnow_shape_pool_add_hull_faces(
-    winnow_shape_pool* pool, const winnow_point_view* points, const winnow_hull_faces* faces, double
-    rounding, winnow_shape_id* id) {
+    winnow_shape_pool* pool, const winnow_point_view* points, const winnow_hull_faces* faces,
+    double rounding, winnow_shape_id* id) {
   HullFaces own_faces{};
   if (!(are_given(pool, points, faces, id) && read(faces, own_faces))) return WINNOW_INVALID_ARGUMENT;
   PointView own_points;
@@ -56,8 +56,8 @@ winnow_status winnow_shape_pool_add_hull_faces(
 }
 
 winnow_status winnow_shape_pool_add_built_hull(
-    winnow_shape_pool* pool, const winnow_point_view* points, const winnow_hull_faces* faces, double
-    rounding, winnow_shape_id* id) {
+    winnow_shape_pool* pool, const winnow_point_view* points, const winnow_hull_faces* faces,
+    double rounding, winnow_shape_id* id) {
   HullFaces own_faces{};
   if (!(are_given(pool, points, faces, id) && read(faces, own_faces))) return WINNOW_INVALID_ARGUMENT;
   PointView own_points;
@@ -101,9 +101,9 @@ winnow_status winnow_shape_pool_hull(
 }
 
 winnow_status winnow_composite_pool_add_mesh(
-    winnow_composite_pool* pool, const winnow_point_view* vertices, const winnow_index_view*
-    triangles, const winnow_mesh_options* options, const winnow_execution* execution,
-    winnow_shape_id* id) {
+    winnow_composite_pool* pool, const winnow_point_view* vertices,
+    const winnow_index_view* triangles, const winnow_mesh_options* options,
+    const winnow_execution* execution, winnow_shape_id* id) {
   MeshOptions own_options{};
   Execution own_execution = Execution::parallel();
   if (!(are_given(pool, vertices, triangles, id) && read(options, own_options) && read(execution, own_execution))) return WINNOW_INVALID_ARGUMENT;
@@ -125,8 +125,8 @@ winnow_status winnow_composite_pool_add_scaled(
 }
 
 winnow_status winnow_composite_pool_add_saved_mesh(
-    winnow_composite_pool* pool, const uint8_t* bytes, size_t count, const double scale[3], const
-    winnow_execution* execution, winnow_shape_id* id) {
+    winnow_composite_pool* pool, const uint8_t* bytes, size_t count, const double scale[3],
+    const winnow_execution* execution, winnow_shape_id* id) {
   Execution own_execution = Execution::parallel();
   if (!(are_given(pool, scale, id) && is_array(bytes, count) && read(execution, own_execution))) return WINNOW_INVALID_ARGUMENT;
   return give([&]() -> decltype(auto) { return (of(pool).add_saved_mesh(std::as_bytes(span_of(bytes, count)), {scale[0], scale[1], scale[2]}, own_execution)); }, id);
@@ -139,8 +139,8 @@ winnow_status winnow_composite_pool_add_saved_height_field(
 }
 
 winnow_status winnow_composite_pool_refit_mesh(
-    winnow_composite_pool* pool, winnow_shape_id mesh, const winnow_point_view* vertices, const
-    winnow_execution* execution) {
+    winnow_composite_pool* pool, winnow_shape_id mesh, const winnow_point_view* vertices,
+    const winnow_execution* execution) {
   Execution own_execution = Execution::parallel();
   if (!(are_given(pool, vertices) && read(execution, own_execution))) return WINNOW_INVALID_ARGUMENT;
   PointView own_vertices;
@@ -158,8 +158,8 @@ winnow_status winnow_composite_pool_add_height_field(
 }
 
 winnow_status winnow_composite_pool_update_height_field(
-    winnow_composite_pool* pool, winnow_shape_id field, uint32_t column, uint32_t row, const
-    winnow_height_samples* samples) {
+    winnow_composite_pool* pool, winnow_shape_id field, uint32_t column, uint32_t row,
+    const winnow_height_samples* samples) {
   HeightSamples own_samples{};
   if (!(are_given(pool, samples) && read(samples, own_samples))) return WINNOW_INVALID_ARGUMENT;
   return give([&]() -> decltype(auto) { return (of(pool).update_height_field(ShapeId{field}, column, row, own_samples)); });
@@ -221,7 +221,8 @@ winnow_status winnow_composite_pool_scale(
 }
 
 winnow_status winnow_composite_pool_bounds(
-    const winnow_composite_pool* pool, winnow_shape_id id, const winnow_pose* pose, winnow_aabb* box) {
+    const winnow_composite_pool* pool, winnow_shape_id id, const winnow_pose* pose,
+    winnow_aabb* box) {
   if (!(are_given(pool, pose, box))) return WINNOW_INVALID_ARGUMENT;
   if (!(of(pool).contains(ShapeId{id}))) return WINNOW_INVALID_KEY;
   if (!((*as_cpp(pose)).is_valid())) return WINNOW_INVALID_POSE;
@@ -277,8 +278,8 @@ winnow_status winnow_composite_pool_footprint(
 }
 
 winnow_status winnow_cast_ray(
-    const winnow_shape_pool* pool, winnow_shape_id shape, const winnow_pose* pose, const
-    winnow_shape_ray* ray, winnow_shape_hit* hit) {
+    const winnow_shape_pool* pool, winnow_shape_id shape, const winnow_pose* pose,
+    const winnow_shape_ray* ray, winnow_shape_hit* hit) {
   if (!(are_given(pool, pose, ray, hit))) return WINNOW_INVALID_ARGUMENT;
   if (!(of(pool).contains(ShapeId{shape}))) return WINNOW_INVALID_KEY;
   return give([&]() -> decltype(auto) { return (cast_ray(of(pool).tables(), ShapeId{shape}, (*as_cpp(pose)), (*as_cpp(ray)))); }, hit);

@@ -52,8 +52,9 @@ winnow_status winnow_rigid_motion_at(
 }
 
 winnow_status winnow_time_of_impact(
-    const winnow_shape_pool* shapes, const winnow_moving_bodies* bodies, const winnow_body_pair*
-    pairs, size_t count, const winnow_impact_options* options, winnow_impact_result* result) {
+    const winnow_shape_pool* shapes, const winnow_moving_bodies* bodies,
+    const winnow_body_pair* pairs, size_t count, const winnow_impact_options* options,
+    winnow_impact_result* result) {
   MovingBodies own_bodies{};
   ImpactOptions own_options{};
   if (!(are_given(shapes, bodies, result) && read(bodies, own_bodies) && is_array(pairs, count) && read(options, own_options))) return WINNOW_INVALID_ARGUMENT;
