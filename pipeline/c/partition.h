@@ -156,8 +156,8 @@ typedef struct winnow_entries {
   size_t count;             ///< number of indices or of words
 } winnow_entries;
 
-/// Options of a query for pairs. A null pointer, or zero members after `size`, mean all pairs in
-/// the fast order, found incrementally.
+/// Options of a query for pairs: by default all pairs in the fast order, found incrementally. A
+/// null pointer, or zero members after `size`, mean the defaults of C++.
 typedef struct winnow_pair_options {
   size_t size;         ///< set by the caller to sizeof(winnow_pair_options)
   winnow_order order;  ///< order of the written pairs

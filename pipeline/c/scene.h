@@ -69,8 +69,8 @@ typedef struct winnow_scene_options {
   uint8_t warm_start;
 } winnow_scene_options;
 #define WINNOW_SCENE_OPTIONS \
-  {sizeof(winnow_scene_options), NULL, {0, {NULL, NULL, 0}}, {{0, 0.0F}, {0, 0.0F}, {0, 0.0F}}, 0.0, \
-  WINNOW_TIER_ROBUST, 0, 0.0, 0, NULL, 0, 0}
+  {sizeof(winnow_scene_options), NULL, {0, {NULL, NULL, 0}}, {{0, 0.0F}, {0, 0.0F}, {0, 0.0F}}, \
+  0.0, WINNOW_TIER_ROBUST, 0, 0.0, 0, NULL, 0, 0}
 
 /// Distances from the surface of a body at which its contacts begin and at which it rests. The
 /// offsets of two bodies are added. They apply at levels distance and manifold.

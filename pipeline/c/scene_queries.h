@@ -80,7 +80,8 @@ typedef struct winnow_motion_cast {
   uint8_t from_touch;
 } winnow_motion_cast;
 #define WINNOW_MOTION_CAST \
-  {WINNOW_NO_SHAPE, {{{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0, 0.0}}, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}}, 0}
+  {WINNOW_NO_SHAPE, {{{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0, 0.0}}, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}}, \
+  0}
 
 /// A body that a shape overlaps.
 typedef struct winnow_scene_overlap {

@@ -20,7 +20,8 @@ void winnow_deformable_mesh_destroy(winnow_deformable_mesh* mesh) {
 }
 
 winnow_status winnow_deformable_mesh_build(
-    winnow_deformable_mesh* mesh, const winnow_point_view* rest, const winnow_index_view* triangles) {
+    winnow_deformable_mesh* mesh, const winnow_point_view* rest,
+    const winnow_index_view* triangles) {
   if (!(are_given(mesh, rest, triangles))) return WINNOW_INVALID_ARGUMENT;
   PointView own_rest;
   if (const Status bad = read_view(*rest, own_rest); bad != Status::ok) {
@@ -71,7 +72,8 @@ winnow_status winnow_deformable_mesh_edge(
 }
 
 winnow_status winnow_deformable_mesh_self_candidates(
-    const winnow_deformable_mesh* mesh, winnow_feature_pair kind, const winnow_pair_chunks* chunks) {
+    const winnow_deformable_mesh* mesh, winnow_feature_pair kind,
+    const winnow_pair_chunks* chunks) {
   FeaturePair own_kind{};
   Chunks<winnow_pair_chunks> own_chunks{};
   if (!(are_given(mesh, chunks) && read(kind, own_kind) && read(chunks, own_chunks))) return WINNOW_INVALID_ARGUMENT;

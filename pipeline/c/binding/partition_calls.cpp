@@ -222,7 +222,8 @@ winnow_status winnow_partition_insert_spheres(
 }
 
 winnow_status winnow_partition_update_spheres(
-    winnow_partition* partition, const winnow_key* keys, const winnow_sphere* spheres, size_t count) {
+    winnow_partition* partition, const winnow_key* keys, const winnow_sphere* spheres,
+    size_t count) {
   if (!(are_given(partition) && is_array(keys, count) && is_array(spheres, count))) return WINNOW_INVALID_ARGUMENT;
   return give([&]() -> decltype(auto) { return (of(partition).update(as_cpp_span(keys, count), as_cpp_span(spheres, count))); });
 }

@@ -34,7 +34,8 @@ winnow_status winnow_shape_pool_add(
 }
 
 winnow_status winnow_shape_pool_add_hull(
-    winnow_shape_pool* pool, const winnow_point_view* points, double rounding, winnow_shape_id* id) {
+    winnow_shape_pool* pool, const winnow_point_view* points, double rounding,
+    winnow_shape_id* id) {
   if (!(are_given(pool, points, id))) return WINNOW_INVALID_ARGUMENT;
   PointView own_points;
   if (const Status bad = read_view(*points, own_points); bad != Status::ok) {
@@ -105,7 +106,7 @@ winnow_status winnow_composite_pool_add_mesh(
     const winnow_index_view* triangles, const winnow_mesh_options* options,
     const winnow_execution* execution, winnow_shape_id* id) {
   MeshOptions own_options{};
-  Execution own_execution = Execution::parallel();
+  Execution own_execution{Execution::parallel()};
   if (!(are_given(pool, vertices, triangles, id) && read(options, own_options) && read(execution, own_execution))) return WINNOW_INVALID_ARGUMENT;
   PointView own_vertices;
   if (const Status bad = read_view(*vertices, own_vertices); bad != Status::ok) {
@@ -127,7 +128,7 @@ winnow_status winnow_composite_pool_add_scaled(
 winnow_status winnow_composite_pool_add_saved_mesh(
     winnow_composite_pool* pool, const uint8_t* bytes, size_t count, const double scale[3],
     const winnow_execution* execution, winnow_shape_id* id) {
-  Execution own_execution = Execution::parallel();
+  Execution own_execution{Execution::parallel()};
   if (!(are_given(pool, scale, id) && is_array(bytes, count) && read(execution, own_execution))) return WINNOW_INVALID_ARGUMENT;
   return give([&]() -> decltype(auto) { return (of(pool).add_saved_mesh(std::as_bytes(span_of(bytes, count)), {scale[0], scale[1], scale[2]}, own_execution)); }, id);
 }
@@ -141,7 +142,7 @@ winnow_status winnow_composite_pool_add_saved_height_field(
 winnow_status winnow_composite_pool_refit_mesh(
     winnow_composite_pool* pool, winnow_shape_id mesh, const winnow_point_view* vertices,
     const winnow_execution* execution) {
-  Execution own_execution = Execution::parallel();
+  Execution own_execution{Execution::parallel()};
   if (!(are_given(pool, vertices) && read(execution, own_execution))) return WINNOW_INVALID_ARGUMENT;
   PointView own_vertices;
   if (const Status bad = read_view(*vertices, own_vertices); bad != Status::ok) {
