@@ -327,10 +327,10 @@ TEST(CInterface, shapes_cast_and_overlap_as_in_cpp) {
   const winnow_shape_id ball = all.world.shapes.convex[0];
   winnow_shape_cast cast = WINNOW_SHAPE_CAST;
   cast.shape = ball;
-  cast.pose.position[0] = 3.2;
+  cast.pose.position[0] = 0.2;
   cast.pose.position[1] = 1.3;
   cast.pose.position[2] = 0.8;
-  cast.direction[2] = 0.5;
+  cast.direction[1] = 0.1;
   cast.max_t = 20.0;
   constexpr double kTolerance = WINNOW_CAST_TOLERANCE;
   for (const bool touching : {true, false}) {
