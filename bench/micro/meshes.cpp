@@ -1,8 +1,9 @@
 // Benchmarks of triangle meshes: builds, refits, rays, and collisions of two tori, with other
-// libraries; and of single queries on a heap of bodies.
+// libraries; depths of two solid tori; and of single queries on a heap of bodies.
 
 #include "bench/micro/micro.h"
 
+#include <winnow/pipeline/composite_pool.h>
 #include <winnow/pipeline/scene_queries.h>
 #include <winnow/pipeline/triangle_mesh.h>
 #include "bench/common/need.h"
@@ -214,6 +215,30 @@ void add_tori(const std::string& name, const MakeMesh& make) {
   }
 }
 
+/// The penetration depth of two solid tori at a pose, from `rings` times `rings` quads each.
+void add_solid_depth(std::uint32_t rings, std::size_t pose) {
+  const std::size_t triangles = std::size_t{2} * rings * rings;
+  add("mesh/solid_depth/triangles:" + std::to_string(triangles) +
+          "/pose:" + std::to_string(pose + 1),
+      [=](benchmark::State& state) {
+        const Triangles torus = make_torus(rings, rings, 1.0, 0.4);
+        ShapePool shapes;
+        CompositePool meshes(shapes);
+        const ShapeId id = need(meshes.add_mesh(torus.points(), torus.indices()), "the torus");
+        need(meshes.set_solid(id), "the solid");
+        Scene scene(shapes, {.execution = Execution::serial(), .composites = &meshes});
+        const Key still = need(scene.add({.shape = id}), "a torus");
+        const Key moved = need(scene.add({.shape = id, .pose = kTorusPoses[pose].pose}), "a torus");
+        need(scene.refresh(), "the scene");
+        SceneQueries queries(scene);
+        const SceneDistance depth = need(queries.distance(still, moved), "the depth");
+        check(depth.distance < 0.0, "the tori are apart");
+        run(state, 1, [&] { benchmark::DoNotOptimize(queries.distance(still, moved)); });
+        count_ns(state, "ns_per_pair", 1);
+        state.counters["bound_width"] = depth.error_bound / -depth.distance;
+      });
+}
+
 /// A heap of bodies, and places and shapes of queries.
 struct QueryScene {
   static constexpr std::size_t kBodies = 2'000;
@@ -290,6 +315,9 @@ void add_meshes() {
   add_tori("winnow", make_winnow_mesh);
   each_peer<MeshEngine>(
       [](const MeshEngine& peer, const MakeMesh& make) { add_tori(word_of(peer.name()), make); });
+  for (const std::uint32_t rings : {10U, 100U}) {
+    for (std::size_t pose = 0; pose < kTorusPoses.size(); ++pose) add_solid_depth(rings, pose);
+  }
 }
 
 void add_scenes() {
