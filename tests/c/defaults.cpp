@@ -143,8 +143,8 @@ Members members(const DebugDrawOptions& o) {
 }
 Members members(const SceneOptions& o) {
   const auto& [memory, execution, structures, contact_margin, tier, cache_tolerance,
-               contact_reduction, suppress_ghost_contacts, warm_start, build_budget, composites, recorder] =
-      o;
+               contact_reduction, suppress_ghost_contacts, warm_start, build_budget, composites,
+               recorder] = o;
   return list(
       "memory execution structures contact_margin tier cache_tolerance contact_reduction "
       "suppress_ghost_contacts "

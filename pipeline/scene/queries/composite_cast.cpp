@@ -1,5 +1,5 @@
-#include "pipeline/composites/part_tables.h"
 #include "pipeline/scene/queries/composite_cast.h"
+#include "pipeline/composites/part_tables.h"
 
 #include "pipeline/composites/shape_distance.h"
 
