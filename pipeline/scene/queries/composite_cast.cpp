@@ -1,6 +1,6 @@
 #include "pipeline/scene/queries/composite_cast.h"
-#include "pipeline/composites/part_tables.h"
 
+#include "pipeline/composites/part_tables.h"
 #include "pipeline/composites/shape_distance.h"
 
 #include <algorithm>
