@@ -233,7 +233,7 @@ struct Composites {
   SlotTable<Compound*> compounds;
   IdSet one_sided;  ///< surfaces with one-sided triangles
   IdSet solid;      ///< solid meshes
-  /// Convex solids as hulls; see solid_hulls.h. Empty slots are points.
+  /// Convex solids as hulls; see solid_hulls.h. Free slots have no vertices.
   SlotTable<HullShape> hulls;
   /// Tables that contain only `hulls`.
   ShapeTables hull_tables;

@@ -635,6 +635,7 @@ HullShape point_hull() noexcept {
 }
 
 std::size_t hull_bytes(const HullShape& hull) noexcept {
+  if (hull.vertex_count == 0) return 0;
   if (hull.vertex[0] != nullptr && hull.vertex[0] == point_hull().vertex[0]) return 0;
   HullBlock block(nullptr);
   lay_out(block, hull);

@@ -39,7 +39,7 @@ Status rebuild_hull(const PointView& points, const HullFaces& faces,
 /// A hull of one vertex at the origin that owns no memory.
 [[nodiscard]] HullShape point_hull() noexcept;
 
-/// Size of the hull's block in bytes; 0 for point_hull.
+/// Size of the hull's block in bytes; 0 for point_hull and for a default-constructed hull.
 [[nodiscard]] std::size_t hull_bytes(const HullShape& hull) noexcept;
 void release_hull(const HullShape& hull, std::pmr::memory_resource* memory) noexcept;
 

@@ -17,6 +17,7 @@
 #include "tests/pipeline/query_world.h"
 #include "tests/support/answers.h"
 #include "tests/support/config.h"
+#include "tests/support/counting_memory.h"
 #include "tests/support/meshes.h"
 #include "tests/support/random.h"
 
@@ -181,6 +182,21 @@ TEST(SolidDepth, refit_to_concave_mesh_keeps_solid_right) {
   EXPECT_FALSE(do_overlap(pool, id, ball, in_notch));
   ASSERT_EQ(pool.composites.refit_mesh(id, square.points()), Status::ok);
   EXPECT_TRUE(do_overlap(pool, id, ball, in_notch));
+}
+
+TEST(SolidDepth, footprint_of_hulls_is_exact) {
+  ShapePool shapes;
+  CountingMemory memory;
+  CompositePool pool(shapes, &memory);
+  const MeshData mesh = round_prism(6);
+  const ShapeId solids[] = {expect_ok(pool.add_mesh(mesh.points(), mesh.indices())),
+                            expect_ok(pool.add_mesh(mesh.points(), mesh.indices()))};
+  for (const ShapeId id : solids) ASSERT_EQ(pool.set_solid(id), Status::ok);
+  EXPECT_EQ(pool.footprint().total().reserved, memory.outstanding());
+  ASSERT_EQ(pool.set_solid(solids[0], false), Status::ok);
+  EXPECT_EQ(pool.footprint().total().reserved, memory.outstanding());
+  ASSERT_EQ(pool.remove(solids[1]), Status::ok);
+  EXPECT_EQ(pool.footprint().total().reserved, memory.outstanding());
 }
 
 TEST(SolidDepth, pyramid_that_winds_twice_is_not_convex) {
