@@ -134,6 +134,19 @@ void each_near_pair(const SubShapeQuery& parts, const Pairing& pair, Visit&& vis
   return is_either_inside(parts, pair.a, pair.b);
 }
 
+/// Returns b, moved.
+[[nodiscard]] inline PlacedShape moved_b(const Pairing& pair, const mid::Vec& by) noexcept {
+  PlacedShape moved = pair.b;
+  as_eigen(moved.pose.position) += by;
+  return moved;
+}
+/// True if the shapes overlap after b is moved.
+[[nodiscard]] inline bool do_overlap_at(const SubShapeQuery& parts, const Pairing& pair,
+                                        const mid::Vec& by) noexcept {
+  std::uint32_t part = kWholeShape;
+  return do_overlap(parts, pair.a, moved_b(pair, by), part);
+}
+
 /// Returns whether the depth of two overlapping shapes is that of a solid; see find_solid_depth.
 [[nodiscard]] inline bool has_solid_depth(const SubShapeQuery& parts,
                                           const Pairing& pair) noexcept {

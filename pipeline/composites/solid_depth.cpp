@@ -162,15 +162,8 @@ class SolidDepth {
   [[nodiscard]] double depth_in(const PlacedShape& shape, const Vec& point) const noexcept;
   void write(ShapeDistance& answer) const noexcept;
 
-  [[nodiscard]] PlacedShape moved_b(const Vec& by) const noexcept {
-    PlacedShape moved = pair_.b;
-    as_eigen(moved.pose.position) += by;
-    return moved;
-  }
-
-  [[nodiscard]] bool do_overlap_at(const Vec& by) const noexcept {
-    std::uint32_t part = kWholeShape;
-    return do_overlap(parts_, pair_.a, moved_b(by), part);
+  [[nodiscard]] bool overlaps_at(const Vec& by) const noexcept {
+    return do_overlap_at(parts_, pair_, by);
   }
   /// A length of the way at which the boxes are apart.
   [[nodiscard]] double reach(const Box3& a, const Box3& b, const Vec& direction) const noexcept {
@@ -245,18 +238,18 @@ WayOut SolidDepth::leave(const Vec& direction, double most) const noexcept {
   constexpr int kSteps = 20;
   WayOut way;
   double apart = std::min(most * (1.0 - kShorter), reach(box_a_, box_b_, direction));
-  if (!(apart > 0.0) || !std::isfinite(apart) || do_overlap_at(apart * direction)) return way;
+  if (!(apart > 0.0) || !std::isfinite(apart) || overlaps_at(apart * direction)) return way;
   double within = 0.0;
   for (int i = 0; i < kHalvings; ++i) {
     const double middle = 0.5 * (within + apart);
-    (do_overlap_at(middle * direction) ? within : apart) = middle;
+    (overlaps_at(middle * direction) ? within : apart) = middle;
   }
   way = {direction, within, direction};
   double bump = kTolerance * size_;
   for (int step = 0; step < kSteps && way.length < apart; ++step, bump *= 1.5) {
     leave_parts(way);
     way.length += bump;
-    if (!do_overlap_at(way.length * direction)) return way;
+    if (!overlaps_at(way.length * direction)) return way;
   }
   way.length = apart;
   return way;
@@ -265,7 +258,7 @@ WayOut SolidDepth::leave(const Vec& direction, double most) const noexcept {
 // Moves b beyond all parts that overlap, if any do.
 void SolidDepth::leave_parts(WayOut& way) const noexcept {
   const double from = way.length;
-  each_near_pair(parts_, {pair_.a, moved_b(from * way.direction)},
+  each_near_pair(parts_, {pair_.a, moved_b(pair_, from * way.direction)},
                  [&](const SubShape& a, const SubShape& b) {
                    const double most = reach(parts_.box(a), parts_.box(b), way.direction);
                    if (from + most <= way.length) return true;
@@ -348,7 +341,7 @@ double SolidDepth::depth_in(const PlacedShape& shape, const Vec& point) const no
 void SolidDepth::write(ShapeDistance& answer) const noexcept {
   const Vec out = best_.length * best_.direction;
   // The parts that b leaves last are the nearest ones after it.
-  static_cast<void>(ClosestParts(parts_).find_surfaces({pair_.a, moved_b(out)}, answer));
+  static_cast<void>(ClosestParts(parts_).find_surfaces({pair_.a, moved_b(pair_, out)}, answer));
   const Vec touched = as_eigen(answer.point_a);
   answer.distance = -best_.length;
   answer.error_bound = std::max(best_.length - lower_bound(touched), 0.0) + mid::kSlack * size_;

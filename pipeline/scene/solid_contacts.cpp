@@ -39,10 +39,7 @@ class SolidPair {
     return !slots_.empty() && has_solid_depth(parts_, pair_);
   }
   [[nodiscard]] bool overlaps_at(const Vec& by) const noexcept {
-    PlacedShape moved = pair_.b;
-    as_eigen(moved.pose.position) += by;
-    std::uint32_t part = kWholeShape;
-    return do_overlap(parts_, pair_.a, moved, part);
+    return do_overlap_at(parts_, pair_, by);
   }
   [[nodiscard]] SolidContact find_contact() const noexcept;
 
