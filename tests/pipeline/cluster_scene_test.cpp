@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 #include <winnow/pipeline/cluster_scene.h>
+#include <winnow/pipeline/recording.h>
 
 #include <cmath>
 #include <cstddef>
