@@ -22,13 +22,17 @@ void ConvexPatch::grow(const SurfaceCones& cones, const AnswerGroup& group, std:
     for (std::size_t k = group.first; k < group.end && count_ < kMaxFacets; ++k) {
       const std::uint32_t next = cones.primitive(k, second);
       if (!cones.overlaps(k) || !cones.is_triangle(next) || contains(next)) continue;
-      Facet facet = cones.facet(next);
-      facet.normal *= turn_;
-      if (!accepts(facet)) continue;
-      primitive_[count_] = next;
-      facet_[count_++] = facet;
+      static_cast<void>(add(next, cones.facet(next)));
     }
   }
+}
+
+bool ConvexPatch::add(std::uint32_t primitive, Facet facet) noexcept {
+  facet.normal *= turn_;
+  if (count_ == kMaxFacets || !accepts(facet)) return false;
+  primitive_[count_] = primitive;
+  facet_[count_++] = facet;
+  return true;
 }
 
 // True if the triangle shares a corner with the patch, and neither is in front of the other.

@@ -17,6 +17,9 @@ class ConvexPatch {
   /// towards the other body. O(size of the group x size of the patch).
   void grow(const SurfaceCones& cones, const AnswerGroup& group, std::uint32_t start, bool second,
             const Vec& outward) noexcept;
+  /// Adds a triangle. Returns false, and does not add it, unless the patch stays locally convex and
+  /// has room.
+  [[nodiscard]] bool add(std::uint32_t primitive, Facet facet) noexcept;
   /// Makes the patch empty.
   void clear() noexcept { count_ = 0; }
 

@@ -23,7 +23,6 @@ constexpr double kLevel = 1e-6;
 constexpr double kBeside = 1e-5;
 // Distance, relative to the radius of a part, up to which parts of compounds lie flush.
 constexpr double kFlush = 1e-5;
-constexpr std::uint32_t kNone = ~0U;
 // Triangles around a point that are tested.
 constexpr std::uint64_t kMaxAround = 64;
 
@@ -117,13 +116,14 @@ bool SurfaceCones::has_normal(std::size_t i, const AnswerGroup& group, bool seco
   }
 
   const double slack = kBeside * triangle.size;
+  Blocker blocker;
   const Surroundings near =
-      around(touched, outward, slack, own, second, group, result_.distance()[i]);
+      around(touched, outward, slack, own, second, group, result_.distance()[i], blocker);
   // The touched point of shapes that are apart is within the margin of the other body, and so are
   // all triangles around it.
   const bool is_known = near == Surroundings::above || result_.distance()[i] > 0.0;
   const Surroundings all =
-      is_known ? near : around_in_surface(touched, outward, slack, second, group);
+      is_known ? near : around_in_surface(touched, outward, slack, second, group, blocker);
   switch (all == Surroundings::none ? near : all) {
     case Surroundings::above:
       return false;
@@ -140,10 +140,11 @@ bool SurfaceCones::has_normal(std::size_t i, const AnswerGroup& group, bool seco
   return (active >> edge & 1U) != 0;
 }
 
-bool SurfaceCones::is_blocked(const Vec& point, const Vec& outward, double slack, bool second,
-                              const AnswerGroup& group) const noexcept {
-  return around(point, outward, slack, kNone, second, group, 0.0) == Surroundings::above ||
-         around_in_surface(point, outward, slack, second, group) == Surroundings::above;
+bool SurfaceCones::find_blocker(const Vec& point, const Vec& outward, double slack, bool second,
+                                const AnswerGroup& group, Blocker& blocker) const noexcept {
+  return around(point, outward, slack, kNoPrimitive, second, group, 0.0, blocker) ==
+             Surroundings::above ||
+         around_in_surface(point, outward, slack, second, group, blocker) == Surroundings::above;
 }
 
 // True if the box of a triangle contains the point, and for all turned triangles.
@@ -166,8 +167,8 @@ bool SurfaceCones::is_near(std::uint32_t primitive, const Vec& point, double sla
 // Others of the group are left out, because the group depends on the margin.
 SurfaceCones::Surroundings SurfaceCones::around(const Vec& point, const Vec& outward, double slack,
                                                 std::uint32_t own, bool second,
-                                                const AnswerGroup& group,
-                                                double distance) const noexcept {
+                                                const AnswerGroup& group, double distance,
+                                                Blocker& blocker) const noexcept {
   Surroundings found = Surroundings::none;
   for (std::size_t k = group.first; k < group.end; ++k) {
     const std::uint32_t other = primitive(k, second);
@@ -177,15 +178,18 @@ SurfaceCones::Surroundings SurfaceCones::around(const Vec& point, const Vec& out
     const Facet neighbour = facet(other);
     if (!neighbour.contains(point, slack)) continue;
     found = Surroundings::below;
-    if (rises(neighbour.corner, point, outward, slack)) return Surroundings::above;
+    if (!rises(neighbour.corner, point, outward, slack)) continue;
+    blocker = {neighbour, other};
+    return Surroundings::above;
   }
   return found;
 }
 
 // Finds the triangles around the point in the mesh or height field; none for other shapes.
-SurfaceCones::Surroundings SurfaceCones::around_in_surface(
-    const Vec& point, const Vec& outward, double slack, bool second,
-    const AnswerGroup& group) const noexcept {
+SurfaceCones::Surroundings SurfaceCones::around_in_surface(const Vec& point, const Vec& outward,
+                                                           double slack, bool second,
+                                                           const AnswerGroup& group,
+                                                           Blocker& blocker) const noexcept {
   const BodyPair& pair = collided_.pairs[group.bodies];
   const std::uint32_t body = second ? pair.b : pair.a;
   const ShapeId shape = collided_.bodies.shapes[body];
@@ -214,8 +218,10 @@ SurfaceCones::Surroundings SurfaceCones::around_in_surface(
     if (!surface.corners(slots[k], corners)) continue;
     const Facet neighbour(corners.triangle(), pose_of(corners.first, {1.0, 0.0, 0.0, 0.0}));
     if (!neighbour.contains(point, slack)) continue;
-    if (rises(neighbour.corner, point, outward, slack)) return Surroundings::above;
     found = Surroundings::below;
+    if (!rises(neighbour.corner, point, outward, slack)) continue;
+    blocker = {neighbour, kNoPrimitive};
+    return Surroundings::above;
   }
   return found;
 }

@@ -68,10 +68,18 @@ class SurfaceCones {
   /// O(size of the group).
   [[nodiscard]] bool has_normal(std::size_t i, const AnswerGroup& group) const noexcept;
 
-  /// Returns whether a triangle of the group contains the point, up to `slack`, and rises above it
-  /// along `outward`: then the direction is not in the normal cone at the point.
-  [[nodiscard]] bool is_blocked(const Vec& point, const Vec& outward, double slack, bool second,
-                                const AnswerGroup& group) const noexcept;
+  /// A triangle of a surface, and its primitive if it is in the group, else kNoPrimitive.
+  struct Blocker {
+    Facet facet;
+    std::uint32_t primitive;
+  };
+  static constexpr std::uint32_t kNoPrimitive = ~0U;
+
+  /// Finds a triangle of the surface that contains the point, up to `slack`, and rises above it
+  /// along `outward`: then the direction is not in the normal cone at the point. Returns false if
+  /// there is none.
+  [[nodiscard]] bool find_blocker(const Vec& point, const Vec& outward, double slack, bool second,
+                                  const AnswerGroup& group, Blocker& blocker) const noexcept;
 
   /// Returns whether a translation that parts the primitives of answer s along its normal also
   /// parts those of answer i: the plane through the supporting feature of s has both on their own
@@ -99,12 +107,13 @@ class SurfaceCones {
   /// What the triangles of a group do at a point of another triangle.
   enum class Surroundings : std::uint8_t { none, below, above };
 
+  /// If `above`, both set `blocker` to the triangle that rises.
   [[nodiscard]] Surroundings around_in_surface(const Vec& point, const Vec& outward, double slack,
-                                               bool second,
-                                               const AnswerGroup& group) const noexcept;
+                                               bool second, const AnswerGroup& group,
+                                               Blocker& blocker) const noexcept;
   [[nodiscard]] Surroundings around(const Vec& point, const Vec& outward, double slack,
                                     std::uint32_t own, bool second, const AnswerGroup& group,
-                                    double distance) const noexcept;
+                                    double distance, Blocker& blocker) const noexcept;
   [[nodiscard]] bool has_normal(std::size_t i, const AnswerGroup& group,
                                 bool second) const noexcept;
   [[nodiscard]] bool is_covered(std::size_t i, const AnswerGroup& group,

@@ -57,6 +57,8 @@ constexpr double kSameNormal = 1e-13;
 constexpr double kBackNormal = 1e-9;
 // Cosine of the angle between two normals of a patch that counts as gentle.
 constexpr double kGentleCosine = 0.99;
+// Times that a patch is solved while it grows.
+constexpr int kMaxPatchRounds = 12;
 // Error of a touched point of a patch, relative to the size of the patch.
 constexpr double kPatchSlack = 1e-5;
 
@@ -239,6 +241,8 @@ class SurfaceContacts {
                                   PatchContact& patch) noexcept;
   [[nodiscard]] bool solve_gentle(const BodyPair& bodies, PatchContact& patch) const noexcept;
   void solve_patch(std::size_t i, const AnswerGroup& group, PatchContact& patch) const noexcept;
+  void solve_convex(const BodyPair& bodies, PatchContact& patch) const noexcept;
+  [[nodiscard]] bool grow_to_blockers(const AnswerGroup& group, PatchContact& patch) const noexcept;
   [[nodiscard]] bool is_backside(std::size_t i, const AnswerGroup& group) const noexcept;
   [[nodiscard]] bool is_level_with(std::size_t i, std::size_t s) const noexcept;
   [[nodiscard]] bool points_back(std::size_t i, Vec& front) const noexcept;
@@ -505,6 +509,15 @@ void SurfaceContacts::solve_patch(std::size_t i, const AnswerGroup& group,
     if (is_facet(start)) own.grow(cones_, group, start, second, outward_of(i, second, group));
   }
   if (solve_gentle(bodies, patch)) return;
+  for (int round = 0; round < kMaxPatchRounds; ++round) {
+    solve_convex(bodies, patch);
+    if (!patch.is_valid || !grow_to_blockers(group, patch)) return;
+  }
+  patch.is_valid = false;
+}
+
+// Finds the least translation that parts the convex patches.
+void SurfaceContacts::solve_convex(const BodyPair& bodies, PatchContact& patch) const noexcept {
   const PairAnswer answer =
       solve_patches(tables_, {pairs_.shapes[bodies.a], pairs_.poses[bodies.a], patch.side[0]},
                     {pairs_.shapes[bodies.b], pairs_.poses[bodies.b], patch.side[1]});
@@ -515,13 +528,29 @@ void SurfaceContacts::solve_patch(std::size_t i, const AnswerGroup& group,
   const Pose from = patch.side[0].is_empty() ? pairs_.poses[bodies.a] : patch.side[0].pose();
   patch.touched[0] = as_eigen(from.position) + as_eigen(answer.point);
   patch.touched[1] = patch.touched[0] + patch.distance * patch.normal;
+}
+
+// Adds the triangles at the touched points that rise above the plane of the contact; they may not
+// overlap the other body. Returns whether a patch has grown. A triangle that a patch cannot take
+// makes the contact invalid.
+bool SurfaceContacts::grow_to_blockers(const AnswerGroup& group,
+                                       PatchContact& patch) const noexcept {
+  bool has_grown = false;
   for (const bool second : {false, true}) {
-    const ConvexPatch& own = patch.side[second ? 1 : 0];
-    if (own.is_empty() || !patch.is_valid) continue;
+    ConvexPatch& own = patch.side[second ? 1 : 0];
+    if (own.is_empty()) continue;
     const Vec& touched = patch.touched[second ? 1 : 0];
     const Vec outward = second ? Vec(-patch.normal) : patch.normal;
-    patch.is_valid = !cones_.is_blocked(touched, outward, kPatchSlack * own.size(), second, group);
+    SurfaceCones::Blocker blocker;
+    if (!cones_.find_blocker(touched, outward, kPatchSlack * own.size(), second, group, blocker))
+      continue;
+    if (!own.add(blocker.primitive, blocker.facet)) {
+      patch.is_valid = false;
+      return false;
+    }
+    has_grown = true;
   }
+  return has_grown;
 }
 
 // Solves a patch that bends so little that the best of its face normals is as good as any
