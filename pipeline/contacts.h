@@ -146,8 +146,8 @@ struct PairLookup {
 
 /// Result of `Scene::collide`, in columns: pairs of bodies, sorted by the kinds of their shapes,
 /// then by body; for each pair its manifolds; for each manifold its points. A pair of convex shapes
-/// has one manifold. A pair with a composite shape has one per pair of parts that touch, or one per
-/// contact region (see SceneOptions::contact_reduction). In a pair, a is the body with the smaller
+/// has one manifold. A pair with a composite shape has one per contact region, or one per pair of
+/// parts that touch (see SceneOptions::part_manifolds). In a pair, a is the body with the smaller
 /// kind of shape, or with the smaller id if the kinds are equal.
 ///
 /// Pairs, manifolds and points can also be read as nested ranges:

@@ -66,12 +66,13 @@ struct SceneOptions {
   /// smaller motions need no update there. 0: off, and all results equal the results of a new
   /// scene, bit for bit. Finite, >= 0.
   double cache_tolerance = 0.0;
-  /// At level manifold, for pairs with a mesh, a height field or a compound: merges the manifolds
-  /// of all pairs of parts that touch into one manifold per contact region, with at most
-  /// kManifoldPoints points each (see mid::reduce_contacts). Jolt does this by default; Bullet
-  /// keeps one manifold per pair of bodies. `winnow simulate --standing` measures the cost. False:
-  /// reports one manifold per pair of parts.
-  bool contact_reduction = false;
+  /// At level manifold, for pairs with a mesh, a height field or a compound. False: the manifolds
+  /// of all pairs of parts that touch are merged into one manifold per contact region, with at most
+  /// kManifoldPoints points each (see mid::reduce_contacts), so that a loop over manifolds counts
+  /// each contact once. Jolt does this by default. True: reports one manifold per pair of parts, as
+  /// Bullet's algorithms for concave shapes find them; `collide` then takes less time, and a solver
+  /// has more points. `bench/run micro --benchmark_filter=mesh/contacts` measures both.
+  bool part_manifolds = false;
   /// Suppresses ghost contacts at the seams between fixed bodies with flush surfaces, so that
   /// bodies slide over them as over one floor. At levels distance and manifold, a contact of a
   /// dynamic body with a fixed body is dropped if all of these hold:

@@ -16,10 +16,8 @@ class SmallScene {
  public:
   SmallScene(NarrowTier tier, double contact_margin)
       : composites_(pool_),
-        scene_(pool_, {.contact_margin = contact_margin,
-                       .tier = tier,
-                       .contact_reduction = true,
-                       .composites = &composites_}) {}
+        scene_(pool_,
+               {.contact_margin = contact_margin, .tier = tier, .composites = &composites_}) {}
 
   /// Adds a body with the shape and pose of a query.
   [[nodiscard]] Status add(const Json& shape, Key& key) {

@@ -165,7 +165,7 @@ void add_flow_frames(Results& results, const FlowRowOptions& row_options, std::s
 
 void add_standing(Results& results, const StandingRowOptions& row_options) {
   StandingOptions options;
-  options.contact_reduction = row_options.reduced;
+  options.part_manifolds = !row_options.reduced;
   options.execution = execution_for(row_options.threads);
   Standing standing(row_options.structure, options);
   while (standing.time() < std::min(kSettling, row_options.seconds)) standing.step();

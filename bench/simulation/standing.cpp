@@ -21,7 +21,7 @@ constexpr int kStacked = 20;
 SceneOptions scene_options(const StandingOptions& options, const CompositePool& composites) {
   return {.execution = options.execution,
           .contact_margin = 0.02,
-          .contact_reduction = options.contact_reduction,
+          .part_manifolds = options.part_manifolds,
           .warm_start = true,
           .composites = &composites};
 }

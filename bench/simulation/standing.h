@@ -16,7 +16,7 @@ namespace winnow::bench {
 [[nodiscard]] std::vector<std::string> standing_names();
 
 struct StandingOptions {
-  bool contact_reduction = false;
+  bool part_manifolds = false;
   /// Duration of a frame; contacts are found once per frame.
   double seconds = 1.0 / 60.0;
   Execution execution = Execution::serial();

@@ -53,9 +53,9 @@ typedef struct winnow_scene_options {
   winnow_structure_kind structures[WINNOW_BODY_STATES];  ///< structure of the partition of each set
   double contact_margin;    ///< pairs whose gap is at most this are contacts too. Finite, >= 0.
   winnow_narrow_tier tier;  ///< how exact contacts must be
-  /// 0 or 1: merges the manifolds of all pairs of parts that touch into one manifold per contact
-  /// region, with at most 4 points each.
-  uint8_t contact_reduction;
+  /// 0: merges the manifolds of all pairs of parts that touch into one manifold per contact region,
+  /// with at most 4 points each. 1: reports one manifold for each pair of parts.
+  uint8_t part_manifolds;
   /// A pair keeps its manifolds while its smaller body has moved by at most this length since they
   /// were computed; `error_bound` grows by it. 0 means that nothing is kept. Finite, >= 0.
   double cache_tolerance;

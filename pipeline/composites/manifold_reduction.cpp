@@ -1,7 +1,7 @@
 // Contact reduction (mid::reduce_contacts): merges the manifolds of each pair of bodies into
 // regions of nearly parallel normals, and chooses the points of each region
-// (manifold/region_points.h). Called by the scene after `correct_surface_contacts`, if
-// SceneOptions::contact_reduction is set. In this file, an answer is the narrow-phase result of one
+// (manifold/region_points.h). Called by the scene after `correct_surface_contacts`, unless
+// SceneOptions::part_manifolds is set. In this file, an answer is the narrow-phase result of one
 // pair of primitives.
 
 #include <winnow/core/rounding.h>

@@ -55,7 +55,7 @@ void SceneRecording::begin() noexcept {
     call.put_text(structure.name()).put(structure.parameter());
   }
   call.put(options.contact_margin).put(tier_number(options.tier)).put(options.cache_tolerance);
-  call.put(options.contact_reduction).put(options.warm_start);
+  call.put(!options.part_manifolds).put(options.warm_start);
   call.put(std::uint64_t{options.build_budget});
 }
 

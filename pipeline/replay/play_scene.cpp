@@ -72,7 +72,7 @@ Status add_shape(ReplayState& replay, ReplayedWorld& of) {
 Status add_composite(ReplayState& replay, ReplayedWorld& of) {
   const auto kind = replay.in.get<std::uint8_t>();
   const std::span<const std::byte> saved = replay.in.get_nested();
-  std::array<double, 3> scale{};
+  Vec3d scale{};
   (void)replay.in.get_bytes(scale.data(), sizeof scale);
   const auto count = replay.in.get<std::uint64_t>();
   if (!replay.in.ok() || count > replay.in.rest().size() / sizeof(Pose))
@@ -194,7 +194,7 @@ Status make_scene(ReplayState& replay, ReplayedWorld& of) {
   made.contact_margin = replay.in.get<double>();
   made.tier = read_tier(replay.in);
   made.cache_tolerance = replay.in.get<double>();
-  made.contact_reduction = replay.in.get_bool();
+  made.part_manifolds = !replay.in.get_bool();
   made.warm_start = replay.in.get_bool();
   made.build_budget = static_cast<std::size_t>(replay.in.get<std::uint64_t>());
   if (!replay.in.ok()) return status_of(replay.in);

@@ -31,7 +31,7 @@ struct CollideCall {
         contacts(into),
         level(at),
         uses_cache(of.options.cache_tolerance > 0.0 && at >= ContactLevel::distance),
-        reduces(of.options.contact_reduction && at == ContactLevel::manifold),
+        reduces(!of.options.part_manifolds && at == ContactLevel::manifold),
         stores_positions(of.options.warm_start),
         same_scene(into.scene == of.serial),
         same_level(same_scene && into.level == at) {}

@@ -39,7 +39,7 @@ void put_options(ByteWriter& out, const SceneOptions& options) noexcept {
   out.put(options.contact_margin);
   out.put(tier_number(options.tier));
   out.put(options.cache_tolerance);
-  out.put(options.contact_reduction);
+  out.put(!options.part_manifolds);
   out.put(options.warm_start);
   out.put(options.suppress_ghost_contacts);
 }
@@ -48,7 +48,7 @@ void read_options(ByteReader& in, SceneOptions& options) noexcept {
   options.contact_margin = in.get<double>();
   options.tier = read_tier(in);
   options.cache_tolerance = in.get<double>();
-  options.contact_reduction = in.get_bool();
+  options.part_manifolds = !in.get_bool();
   options.warm_start = in.get_bool();
   options.suppress_ghost_contacts = in.get_bool();
 }

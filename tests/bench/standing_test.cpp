@@ -18,7 +18,7 @@ TEST(Standing, structures_settle_and_stay_in_place) {
     for (const bool reduced : {false, true}) {
       SCOPED_TRACE(structure + (reduced ? ", regions" : ", raw"));
       StandingOptions options;
-      options.contact_reduction = reduced;
+      options.part_manifolds = !reduced;
       Standing standing(structure, options);
       for (int frame = 0; frame < 60; ++frame) standing.step();
       EXPECT_LT(standing.drift(), 0.05);

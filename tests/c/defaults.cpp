@@ -142,14 +142,13 @@ Members members(const DebugDrawOptions& o) {
   return list("objects structure labels max_depth", objects, structure, labels, max_depth);
 }
 Members members(const SceneOptions& o) {
-  const auto& [memory, execution, structures, contact_margin, tier, cache_tolerance,
-               contact_reduction, suppress_ghost_contacts, warm_start, build_budget, composites,
-               recorder] = o;
+  const auto& [memory, execution, structures, contact_margin, tier, cache_tolerance, part_manifolds,
+               suppress_ghost_contacts, warm_start, build_budget, composites, recorder] = o;
   return list(
-      "memory execution structures contact_margin tier cache_tolerance contact_reduction "
+      "memory execution structures contact_margin tier cache_tolerance part_manifolds "
       "suppress_ghost_contacts "
       "warm_start build_budget composites recorder",
-      memory, execution, structures, contact_margin, tier, cache_tolerance, contact_reduction,
+      memory, execution, structures, contact_margin, tier, cache_tolerance, part_manifolds,
       suppress_ghost_contacts, warm_start, build_budget, composites, recorder);
 }
 Members members(const NarrowOptions& o) {

@@ -145,7 +145,6 @@ class SceneOfC {
     options.memory = &memory;
     options.contact_margin = 0.02;
     options.cache_tolerance = 0.001;
-    options.contact_reduction = 1;
     options.composites = shapes.composites;
     options.structures[WINNOW_BODY_STATE_FIXED].structure = WINNOW_STATIC_BVH;
     return OwnedScene(winnow_scene_create, static_cast<const winnow_shape_pool*>(shapes.pool),

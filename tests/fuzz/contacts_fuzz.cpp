@@ -117,7 +117,7 @@ SceneOptions ContactsProgram::some_options(Bytes& bytes, const EveryShape& shape
   if (bytes.chance(2)) options.contact_margin = 0.0625;
   if (!bytes.chance(3)) options.cache_tolerance = 0.0625;
   options.warm_start = bytes.chance(2);
-  options.contact_reduction = bytes.chance(2);
+  options.part_manifolds = !bytes.chance(2);
   options.suppress_ghost_contacts = bytes.chance(4);
   if (bytes.chance(8)) options.tier = NarrowTier::reference;
   return options;

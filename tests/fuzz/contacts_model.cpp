@@ -169,7 +169,7 @@ void rest(ModelManifold& manifold, ContactLevel level, double rest_a, double res
                              .structures = {n_squared(), n_squared(), n_squared()},
                              .contact_margin = world.options.contact_margin,
                              .tier = world.options.tier,
-                             .contact_reduction = world.options.contact_reduction,
+                             .part_manifolds = world.options.part_manifolds,
                              .composites = &world.composites});
   const bool swapped = b.key.id < a.key.id;
   for (const ModelBody* body : {swapped ? &b : &a, swapped ? &a : &b}) {
@@ -546,7 +546,7 @@ void ContactsModel::check_places(const ModelScene& world, const Scene& scene, Co
     WINNOW_REQUIRE(contacts.previous_pair().empty() && contacts.previous_point().empty());
     return;
   }
-  const bool reduces = world.options.contact_reduction && level == ContactLevel::manifold;
+  const bool reduces = !world.options.part_manifolds && level == ContactLevel::manifold;
   std::map<std::uint32_t, double> radius;
   for (const auto& [data, body] : world.bodies) radius[body.key.id] = world.radius(body);
   history_.compare(scene, contacts, reduces,

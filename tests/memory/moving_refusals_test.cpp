@@ -51,7 +51,6 @@ struct MovingWorld {
       : scene(few_shapes().pool, {.memory = memory,
                                   .execution = execution,
                                   .contact_margin = 0.05,
-                                  .contact_reduction = true,
                                   .suppress_ghost_contacts = true,
                                   .warm_start = true,
                                   .composites = &few_shapes().composites}),

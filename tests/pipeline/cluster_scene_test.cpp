@@ -48,8 +48,7 @@ TEST(ClusterContacts, contacts_match_one_scene_for_any_rank_count) {
 TEST(ClusterContacts, margin_and_reduction_match_one_scene) {
   const WorldShapes shapes;
   for (const std::uint32_t ranks : {2U, 7U}) {
-    run_scene_frames(shapes, ranks, ContactLevel::manifold,
-                     {.scene = {.contact_margin = 0.3, .contact_reduction = true}});
+    run_scene_frames(shapes, ranks, ContactLevel::manifold, {.scene = {.contact_margin = 0.3}});
   }
 }
 

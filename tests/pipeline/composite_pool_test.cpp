@@ -140,7 +140,7 @@ TEST(CompositePool, edited_surface_updates_its_compounds) {
     // The compound's tree is updated too: a cast finds the highest sample.
     int visited = 0;
     const MovingBox high{{-10, -10, 89}, {10, 10, 91}};
-    mid::visit(pool, compound, {}, high,
+    mid::visit(pool, compound, {}, high, mid::Solids::hulls,
                {[](void* context, const Primitive&, double limit) {
                   ++*static_cast<int*>(context);
                   return limit;
@@ -425,6 +425,7 @@ std::vector<ContactPoint> points_of_first(const CompositeWorld& world, ShapeId f
                                           ShapeId ground, std::span<const ShapeId> others,
                                           ContactLevel level) {
   Scene scene(world.shapes, {.structures = {n_squared(), n_squared(), n_squared()},
+                             .part_manifolds = true,
                              .composites = &world.composites});
   std::vector<BodyDefinition> bodies(2);
   bodies[0] = {.shape = ground, .state = BodyState::fixed, .data = 1};

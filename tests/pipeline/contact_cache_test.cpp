@@ -135,7 +135,7 @@ TEST(ContactCache, first_frame_matches_scene_without_cache) {
     for (const bool uses_cache : {false, true}) {
       Scene scene(world.shapes, {.contact_margin = 0.05,
                                  .cache_tolerance = uses_cache ? 0.3 : 0.0,
-                                 .contact_reduction = reduced,
+                                 .part_manifolds = !reduced,
                                  .composites = &world.composites});
       std::vector<Key> keys(bodies.size());
       ASSERT_EQ(scene.add(bodies, keys), Status::ok);

@@ -119,7 +119,7 @@ TEST(ContactOffsets, rest_offset_of_others_leaves_error_bounds) {
       add(world.composites, grid(4, 0.5F, Cut::same, [](float, float) { return 0.0F; }));
   const ShapeId box = add(world.shapes, BoxShape{{0.5, 0.4, 0.3}, 0.0});
   const auto bounds = [&](bool with_other) {
-    Scene scene(world.shapes, {.contact_reduction = true, .composites = &world.composites});
+    Scene scene(world.shapes, {.composites = &world.composites});
     Key key = expect_ok(scene.add({.shape = floor, .state = BodyState::fixed}));
     key = expect_ok(scene.add({.shape = box, .pose = Pose::at(0.1, 0.2, 0.2)}));
     const BodyDefinition other{.shape = box, .pose = Pose::at(9, 9, 9), .offsets = {0.2, 0.1}};
@@ -207,7 +207,7 @@ TEST(ContactOffsets, body_on_mesh_rests_at_its_offset) {
   const ShapeId box = add(world.shapes, BoxShape{{0.5, 0.4, 0.3}, 0.0});
   const ShapeId ball = add(world.shapes, SphereShape{0.2});
   for (const bool reduced : {false, true}) {
-    Scene scene(world.shapes, {.contact_reduction = reduced, .composites = &world.composites});
+    Scene scene(world.shapes, {.part_manifolds = !reduced, .composites = &world.composites});
     Key ground;
     Key keys[2];
     ground = expect_ok(scene.add({.shape = floor, .state = BodyState::fixed}));

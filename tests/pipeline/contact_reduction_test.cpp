@@ -1,4 +1,4 @@
-// Contact regions (CompositePool::reduce_contacts, SceneOptions::contact_reduction) compared with
+// Contact regions (CompositePool::reduce_contacts, SceneOptions::part_manifolds) compared with
 // the raw manifolds of all primitives, and with one large box.
 
 #include "pipeline/composites/composites.h"
@@ -36,7 +36,7 @@ struct Floor {
         double margin, bool reduced)
       : scene(shapes, {.execution = Execution::serial(),
                        .contact_margin = margin,
-                       .contact_reduction = reduced,
+                       .part_manifolds = !reduced,
                        .composites = &pool}) {
     ground = expect_ok(scene.add({.shape = floor, .state = BodyState::fixed}));
     key = expect_ok(scene.add({.shape = body}));

@@ -185,7 +185,6 @@ Kept frames_of(Stage& stage, const RestingShape& body, const RestingShape& groun
   SceneOptions options;
   options.execution = Execution::serial();
   options.contact_margin = 0.02;
-  options.contact_reduction = true;
   options.warm_start = true;
   options.composites = &stage.composites;
   Scene scene(stage.pool, options);

@@ -104,7 +104,7 @@ TEST(GhostContacts, flush_tiles_hold_sliders_like_one_floor) {
         for (const bool seamless : {true, false}) {
           Scene scene(world.shapes, {.contact_margin = kSlidingMargin,
                                      .cache_tolerance = 0.001,
-                                     .contact_reduction = reduced,
+                                     .part_manifolds = !reduced,
                                      .suppress_ghost_contacts = seamless,
                                      .composites = &world.composites});
           Key key;
@@ -329,7 +329,7 @@ TEST(GhostContacts, floors_that_are_not_flush_keep_contacts) {
         if (has_offsets) each.offsets = {0.003, random.uniform(-0.001, 0.001)};
       }
       SceneOptions options{.contact_margin = random.chance(0.5) ? 0.005 : 0.0,
-                           .contact_reduction = random.chance(0.5)};
+                           .part_manifolds = random.chance(0.5)};
       for (const ContactLevel level : {ContactLevel::distance, ContactLevel::manifold}) {
         options.suppress_ghost_contacts = false;
         const std::vector<double> all = shown_contacts(world, bodies, level, options);

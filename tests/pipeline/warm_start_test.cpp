@@ -129,7 +129,7 @@ TEST(WarmStart, sliding_box_keeps_four_points) {
   const ShapeId floor =
       add(composites, grid(16, 0.5F, Cut::alternating, [](float, float) { return 0.0F; }));
   const ShapeId box = add(shapes, BoxShape{{0.1, 0.1, 0.1}, 0.0});
-  Scene scene(shapes, {.contact_reduction = true, .warm_start = true, .composites = &composites});
+  Scene scene(shapes, {.warm_start = true, .composites = &composites});
   Key ground;
   Key key;
   ground = expect_ok(scene.add({.shape = floor, .state = BodyState::fixed}));
@@ -149,7 +149,7 @@ TEST(WarmStart, previous_indices_match_reference) {
     for (const double cache_tolerance : {0.0, 0.005}) {
       Shuffle world(std::max<std::size_t>(20, scaled(60)), 3);
       SceneOptions options = world.options();
-      options.contact_reduction = reduced;
+      options.part_manifolds = !reduced;
       options.cache_tolerance = cache_tolerance;
       options.warm_start = true;
       Scene scene(world.shapes(), options);

@@ -231,10 +231,7 @@ void run_frames(Stage& stage, std::size_t count) {
 
 std::vector<SceneOptions> kinds_of_scenes() {
   return {{},
-          {.contact_margin = 0.05,
-           .cache_tolerance = 0.01,
-           .contact_reduction = true,
-           .warm_start = true},
+          {.contact_margin = 0.05, .cache_tolerance = 0.01, .warm_start = true},
           {.suppress_ghost_contacts = true}};
 }
 
