@@ -12,12 +12,12 @@
 #include <winnow/core/point_view.h>
 #include <winnow/core/pose.h>
 #include <winnow/core/status.h>
+#include <winnow/core/vec3.h>
 #include <winnow/pipeline/contact_types.h>
 #include <winnow/pipeline/height_field.h>
 #include <winnow/pipeline/shape_pool.h>
 #include <winnow/pipeline/triangle_mesh.h>
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory_resource>
@@ -70,11 +70,10 @@ class WINNOW_API CompositePool {
   /// along the axes of the mesh. Factors are finite and not zero; negative ones mirror. Scaling a
   /// scaled instance multiplies the factors. The triangles live until the last id is removed.
   /// `invalid_argument` if a factor, or a product, is not between 1e-100 and 1e100.
-  Answer<ShapeId> add_scaled(ShapeId mesh, const std::array<double, 3>& scale);
+  Answer<ShapeId> add_scaled(ShapeId mesh, const Vec3d& scale);
   /// Adds a mesh from a snapshot (TriangleMesh::save), with a scale. Errors as for `load` and
   /// `add_scaled`. O(bytes).
-  Answer<ShapeId> add_saved_mesh(std::span<const std::byte> saved,
-                                 const std::array<double, 3>& scale,
+  Answer<ShapeId> add_saved_mesh(std::span<const std::byte> saved, const Vec3d& scale,
                                  const Execution& execution = Execution::parallel());
   /// Adds a height field from a snapshot (HeightField::save). O(bytes).
   Answer<ShapeId> add_saved_height_field(std::span<const std::byte> saved);
@@ -158,7 +157,7 @@ class WINNOW_API CompositePool {
   /// Returns the mesh of an id; null if the id is not of a mesh in the pool.
   [[nodiscard]] const TriangleMesh* mesh(ShapeId id) const noexcept;
   /// Returns the scale of a mesh along its axes; ones if the id is not of a mesh.
-  [[nodiscard]] std::array<double, 3> scale(ShapeId mesh) const noexcept;
+  [[nodiscard]] Vec3d scale(ShapeId mesh) const noexcept;
   /// Returns the height field of an id; null if the id is not of a height field in the pool. Valid
   /// until the field is removed.
   [[nodiscard]] const HeightField* height_field(ShapeId id) const noexcept;

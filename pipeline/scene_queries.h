@@ -33,7 +33,8 @@ struct SceneHit {
   ClientData data = 0;  ///< client data of the body
   /// Triangle or child that is hit; kWholeShape for a convex body.
   std::uint32_t part = kWholeShape;
-  /// Parameter of the hit, in units of the direction. For a ray: where it enters the body's shape.
+  /// Parameter of the hit, in units of the direction. For a ray: where it enters the body's shape,
+  /// or its min_t if it starts inside.
   /// For a moving shape: the time of impact, never later than the true one.
   double t = 0.0;
   /// Unit normal of the body's surface, against the motion. If a moving shape overlaps the body at
@@ -62,6 +63,24 @@ struct SceneHitColumns {
 struct SceneHitLists {
   std::span<const SceneHit> hits;      ///< hits of all rays, in the order of the rays
   std::span<const std::size_t> first;  ///< number of rays + 1 entries
+};
+
+/// A point at which a ray crosses the surface of a body.
+struct SceneCrossing {
+  Key key{};            ///< the body
+  ClientData data = 0;  ///< client data of the body
+  /// Triangle or child that is crossed; kWholeShape for a convex body.
+  std::uint32_t part = kWholeShape;
+  double t = 0.0;  ///< parameter of the point, in units of the direction
+  /// True if the ray leaves a convex shape there, or comes from the back of a triangle, from which
+  /// its corners are clockwise.
+  bool exits = false;
+  /// Unit normal that points out of a convex shape, or away from the front of a triangle.
+  Vec3d normal{};
+  Vec3d point{};  ///< in the world
+  /// Weights of the corners of a triangle of a mesh or field, to interpolate values of its
+  /// vertices; their sum is 1. Zero for convex shapes.
+  Vec3d barycentric{};
 };
 
 /// A body that overlaps the query shape.
@@ -169,10 +188,22 @@ class WINNOW_API SceneQueries {
   /// Finds the first hit on every body that each ray hits, as lists.
   Answer<SceneHitLists> all(const ShapeRayBatch& rays, const Filter& filter = {});
 
+  /// Finds every point at which the ray crosses the surface of a body, sorted by t, then by body id
+  /// and part: where it enters and leaves convex shapes, and each triangle of a mesh or field, from
+  /// either side (one-sided or not). A ray that starts in a convex shape only leaves it. A ray
+  /// through an edge or a corner crosses each of the triangles there. Exits have the errors of
+  /// entries; see `cast_ray`. Errors are as for `all`.
+  Answer<std::span<const SceneCrossing>> crossings(const ShapeRay& ray, const Filter& filter = {});
+
   /// Finds every body that shares a point with the shape at this pose, sorted by id. The shape may
   /// be composite. The test is exact, as in NarrowTier::robust.
   Answer<std::span<const SceneOverlap>> overlap(ShapeId shape, const Pose& pose,
                                                 const Filter& filter = {});
+  /// Finds every body within distance `limit` of the shape at this pose (finite; 0 finds the bodies
+  /// that overlap it, with their depths), sorted by distance, then by id. The answers are those of
+  /// `distance`, with the shape as the first body.
+  Answer<std::span<const SceneDistance>> distances(ShapeId shape, const Pose& pose,
+                                                   double limit = 0.0, const Filter& filter = {});
 
   /// Finds the first body that the moving shape touches, by conservative advancement (Mirtich
   /// 1996). The returned t is never later than the true time of impact, and earlier by at most

@@ -13,12 +13,14 @@
 
 namespace winnow {
 
-/// A ray: origin + t * direction for 0 <= t <= max_t, in double, in world axes. The direction may
-/// have any length; t is in its units. Without max_t the ray is infinite, also in a batch.
+/// A ray: origin + t * direction for min_t <= t <= max_t, in double, in world axes. The direction
+/// may have any length; t is in its units. Without max_t the ray is infinite, also in a batch. A
+/// min_t above 0 skips what is nearer, such as the surface that the ray starts on.
 struct ShapeRay {
   Vec3d origin{};                                          ///< finite
   Vec3d direction = {1.0, 0.0, 0.0};                       ///< finite, not zero
-  double max_t = std::numeric_limits<double>::infinity();  ///< >= 0
+  double min_t = 0.0;                                      ///< finite, >= 0
+  double max_t = std::numeric_limits<double>::infinity();  ///< >= min_t
 };
 
 /// Rays in the caller's memory: column pointers and one stride in bytes. Nothing is copied, so the
@@ -26,6 +28,7 @@ struct ShapeRay {
 struct ShapeRayBatch {
   std::array<const double*, 3> origin{};     ///< of the first ray; x, y, z
   std::array<const double*, 3> direction{};  ///< of the first ray; x, y, z
+  const double* min_t = nullptr;             ///< null: 0 for all
   const double* max_t = nullptr;             ///< null: infinity for all
   std::size_t count = 0;                     ///< number of rays
   std::size_t stride = sizeof(double);       ///< bytes from one ray to the next
@@ -39,13 +42,19 @@ struct ShapeRayBatch {
       origin[axis] = rays.data()->origin.data() + axis;
       direction[axis] = rays.data()->direction.data() + axis;
     }
+    min_t = &rays.data()->min_t;
     max_t = &rays.data()->max_t;
   }
   /// Views columns of `rays` numbers each.
   ShapeRayBatch(std::array<const double*, 3> origins, std::array<const double*, 3> directions,
-                std::size_t rays, const double* max_ts = nullptr,
+                std::size_t rays, const double* min_ts = nullptr, const double* max_ts = nullptr,
                 std::size_t stride_bytes = sizeof(double)) noexcept
-      : origin(origins), direction(directions), max_t(max_ts), count(rays), stride(stride_bytes) {}
+      : origin(origins),
+        direction(directions),
+        min_t(min_ts),
+        max_t(max_ts),
+        count(rays),
+        stride(stride_bytes) {}
 
   /// Returns a copy of ray i; i is below `count`.
   [[nodiscard]] ShapeRay operator[](std::size_t i) const noexcept {
@@ -54,7 +63,8 @@ struct ShapeRayBatch {
       ray.origin[axis] = at(origin[axis], i);
       ray.direction[axis] = at(direction[axis], i);
     }
-    ray.max_t = max_t != nullptr ? at(max_t, i) : std::numeric_limits<double>::infinity();
+    if (min_t != nullptr) ray.min_t = at(min_t, i);
+    if (max_t != nullptr) ray.max_t = at(max_t, i);
     return ray;
   }
 
@@ -68,7 +78,7 @@ struct ShapeRayBatch {
 /// Entry of a ray into a shape, if there is one.
 struct ShapeHit {
   bool hit = false;  ///< false: the other members keep their defaults
-  /// The smallest t at which the ray is inside the shape; 0 if it starts inside.
+  /// The smallest t at which the ray is inside the shape; min_t if it starts inside.
   double t = 0.0;
   /// Outward unit normal, against the ray. If the ray starts inside: minus its direction,
   /// normalised. On an edge: the normal of one of its faces.

@@ -239,6 +239,73 @@ void add_solid_depth(std::uint32_t rings, std::size_t pose) {
       });
 }
 
+/// Bodies of one shape that lie about in hills, each at a random angle.
+class BodiesOnTerrain {
+ public:
+  static constexpr std::size_t kBodies = 1'000;
+
+  explicit BodiesOnTerrain(const std::string& shape)
+      : shapes_{}, composites_(shapes_), body_(make_body(shape)) {
+    const Heights hills = make_hills(200, 0.5, 2.0, 1);
+    const Triangles terrain = make_terrain(hills);
+    ground_ = need(composites_.add_mesh(terrain.points(), terrain.indices()), "the terrain");
+    Random random(5);
+    for (std::size_t i = 0; i < kBodies; ++i) {
+      const double x = random.uniform(5.0, 95.0);
+      const double y = random.uniform(5.0, 95.0);
+      poses_.push_back(
+          {{x, y, hills.at(x, y) + 0.2},
+           {1.0, random.uniform(-0.2, 0.2), random.uniform(-0.2, 0.2), random.uniform(-1.0, 1.0)}});
+    }
+  }
+  BodiesOnTerrain(const BodiesOnTerrain&) = delete;
+  BodiesOnTerrain& operator=(const BodiesOnTerrain&) = delete;
+
+  /// Calls visit(scene) with a scene of these bodies.
+  template <typename Visit>
+  void with_scene(bool part_manifolds, Visit&& visit) const {
+    Scene scene(shapes_, {.execution = Execution::serial(),
+                          .contact_margin = 0.02,
+                          .part_manifolds = part_manifolds,
+                          .composites = &composites_});
+    need(scene.add({.shape = ground_, .state = BodyState::fixed}), "the ground");
+    for (const Pose& pose : poses_) need(scene.add({.shape = body_, .pose = pose}), "a body");
+    visit(scene);
+  }
+
+ private:
+  [[nodiscard]] ShapeId make_body(const std::string& shape) {
+    if (shape == "capsule") return need(shapes_.add(CapsuleShape{0.3, 0.4}), "the capsule");
+    const ShapeId box = need(shapes_.add(BoxShape{{0.4, 0.4, 0.2}}), "the box");
+    if (shape == "box") return box;
+    std::vector<CompoundChild> children;
+    for (int i = 0; i < 4; ++i) children.push_back({box, Pose::at(0.3 * i - 0.45, 0.0, 0.1 * i)});
+    return need(composites_.add_compound(children), "the compound");
+  }
+
+  ShapePool shapes_;
+  CompositePool composites_;
+  ShapeId body_;
+  ShapeId ground_;
+  std::vector<Pose> poses_;
+};
+
+/// The contacts of bodies with a terrain: of regions, or of all pairs of parts.
+void add_contacts(const std::string& shape, bool part_manifolds) {
+  add("mesh/contacts/body:" + shape + (part_manifolds ? "/parts" : "/regions"),
+      [=](benchmark::State& state) {
+        const auto& bodies = prepared<const BodiesOnTerrain>("terrain " + shape, shape);
+        bodies.with_scene(part_manifolds, [&](Scene& scene) {
+          Contacts contacts;
+          run(state, 1, [&] { need(scene.collide(ContactLevel::manifold, contacts), "contacts"); });
+          check(contacts.points() > 0, "nothing touches");
+          count_ns(state, "ns_per_body", BodiesOnTerrain::kBodies);
+          count(state, "manifolds", contacts.manifolds(), BodiesOnTerrain::kBodies);
+          count(state, "points", contacts.points(), BodiesOnTerrain::kBodies);
+        });
+      });
+}
+
 /// A heap of bodies, and places and shapes of queries.
 struct QueryScene {
   static constexpr std::size_t kBodies = 2'000;
@@ -318,6 +385,9 @@ void add_meshes() {
   for (const std::uint32_t rings : {10U, 100U}) {
     for (std::size_t pose = 0; pose < kTorusPoses.size(); ++pose) add_solid_depth(rings, pose);
   }
+  for (const char* const shape : {"box", "capsule", "compound"}) {
+    for (const bool part_manifolds : {false, true}) add_contacts(shape, part_manifolds);
+  }
 }
 
 void add_scenes() {
@@ -340,6 +410,19 @@ void add_scenes() {
         need(queries.overlap(scene.set->shapes[i], scene.starts[i]), "a shape");
     double sum = 0.0;
     for (const SceneOverlap& body : bodies) sum += 1.0 + body.key.id;
+    return sum;
+  });
+  add_scene_query("crossings", [](const QueryScene& scene, SceneQueries& queries, std::size_t i) {
+    const std::span<const SceneCrossing> points = need(queries.crossings(scene.rays[i]), "a ray");
+    double sum = 0.0;
+    for (const SceneCrossing& point : points) sum += 1.0 + point.t + point.key.id;
+    return sum;
+  });
+  add_scene_query("distances", [](const QueryScene& scene, SceneQueries& queries, std::size_t i) {
+    const std::span<const SceneDistance> bodies =
+        need(queries.distances(scene.set->shapes[i], scene.starts[i]), "a shape");
+    double sum = 0.0;
+    for (const SceneDistance& body : bodies) sum += 1.0 + body.distance + body.key.id;
     return sum;
   });
   add_scene_query("shape_cast", [](const QueryScene& scene, SceneQueries& queries, std::size_t i) {

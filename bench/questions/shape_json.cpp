@@ -202,6 +202,7 @@ Status read_ray(const Json& value, ShapeRay& ray) {
   if (!is_readable(value, QueryPart::ray)) return Status::invalid_argument;
   numbers(value["origin"], ray.origin);
   numbers(value["direction"], ray.direction);
+  ray.min_t = number(value, "min_t");
   ray.max_t = number(value, "max_t", kInfinity);
   return Status::ok;
 }

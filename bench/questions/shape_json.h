@@ -35,7 +35,7 @@ namespace winnow::bench {
 [[nodiscard]] Status read_moving_shape(const Json& value, ShapePool& pool,
                                        CompositePool& composites, ShapeId& id, RigidMotion& motion);
 
-/// Reads {"origin", "direction", "max_t"}; without max_t the ray is infinite. Returns
+/// Reads {"origin", "direction", "min_t", "max_t"}; without max_t the ray is infinite. Returns
 /// `invalid_argument` if a member is missing or of the wrong type.
 [[nodiscard]] Status read_ray(const Json& value, ShapeRay& ray);
 

@@ -45,6 +45,7 @@ typedef struct winnow_scene_hit {
 typedef struct winnow_shape_ray_batch {
   const void* origin[3];     ///< x, y, z
   const void* direction[3];  ///< x, y, z
+  const void* min_t;         ///< null means 0
   const void* max_t;         ///< null means infinity
   size_t count;              ///< number of rays
   size_t stride;             ///< bytes from one ray to the next; 0 means no gaps
@@ -61,6 +62,22 @@ typedef struct winnow_scene_hit_columns {
   double* normal[3];  ///< x, y, z
   double* point[3];   ///< x, y, z, in the world
 } winnow_scene_hit_columns;
+
+/// A point at which a ray crosses the surface of a body.
+typedef struct winnow_scene_crossing {
+  winnow_key key;  ///< the body
+  uint64_t data;   ///< its client data
+  uint32_t part;   ///< triangle or child that is crossed; WINNOW_WHOLE_SHAPE for a convex body
+  double t;        ///< parameter of the point, in units of the direction
+  /// The ray leaves a convex shape, or comes from the back of a triangle, from which its corners
+  /// are clockwise.
+  bool exits;
+  /// Unit normal that points out of a convex shape, or away from the front of a triangle.
+  double normal[3];
+  double point[3];  ///< in the world
+  /// Weights of the corners of a triangle, whose sum is 1; 0 for convex shapes.
+  double barycentric[3];
+} winnow_scene_crossing;
 
 /// A shape that moves along a line without turning. Convex or composite, but not a half-space.
 typedef struct winnow_shape_cast {
@@ -150,6 +167,13 @@ WINNOW_C_API winnow_status winnow_scene_queries_all_rays(
     winnow_scene_queries* queries, const winnow_shape_ray_batch* rays, const winnow_filter* filter,
     const winnow_scene_hit** hits, const size_t** first);
 
+/// Finds every point at which the ray crosses the surface of a body, sorted by t: where it enters
+/// and leaves convex shapes, and each triangle of a mesh or field, from either side. A ray that
+/// starts in a convex shape only leaves it.
+WINNOW_C_API winnow_status winnow_scene_queries_crossings(
+    winnow_scene_queries* queries, const winnow_shape_ray* ray, const winnow_filter* filter,
+    const winnow_scene_crossing** points, size_t* count);
+
 /// Finds the first body that the moving shape touches. t is never later than the true time, and
 /// earlier by at most `tolerance` (a length along the path, finite, >= 0) plus rounding; 0 if the
 /// shapes overlap at the start. WINNOW_UNSUPPORTED for a half-space.
@@ -193,6 +217,13 @@ WINNOW_C_API winnow_status winnow_scene_queries_all_motion(
 WINNOW_C_API winnow_status winnow_scene_queries_overlap(
     winnow_scene_queries* queries, winnow_shape_id shape, const winnow_pose* pose,
     const winnow_filter* filter, const winnow_scene_overlap** bodies, size_t* count);
+
+/// Finds every body within distance `limit` of the shape at this pose (finite; 0 finds the bodies
+/// that overlap it, with their depths), sorted by distance. The shape is the first body of the
+/// answers.
+WINNOW_C_API winnow_status winnow_scene_queries_distances(
+    winnow_scene_queries* queries, winnow_shape_id shape, const winnow_pose* pose, double limit,
+    const winnow_filter* filter, const winnow_scene_distance** bodies, size_t* count);
 
 /// Finds the closest (or deepest) points of two bodies. The key of the answer is null if the rules
 /// exclude the pair, or if the distance exceeds `limit`. Set `limit` to INFINITY for no limit.

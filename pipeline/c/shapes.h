@@ -137,13 +137,14 @@ typedef struct winnow_hull {
   const uint32_t* loop;          ///< vertices of all faces
 } winnow_hull;
 
-/// The points origin + t * direction, 0 <= t <= max_t.
+/// The points origin + t * direction, min_t <= t <= max_t.
 typedef struct winnow_shape_ray {
   double origin[3];     ///< finite
   double direction[3];  ///< of any length but 0
-  double max_t;         ///< >= 0; may be infinite
+  double min_t;         ///< finite, >= 0
+  double max_t;         ///< >= min_t; may be infinite
 } winnow_shape_ray;
-#define WINNOW_SHAPE_RAY {{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, INFINITY}
+#define WINNOW_SHAPE_RAY {{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, 0.0, INFINITY}
 
 /// Entry of a ray into a shape.
 typedef struct winnow_shape_hit {

@@ -304,7 +304,7 @@ Answer<ShapeId> CompositePool::add_mesh(const PointView& vertices, const IndexVi
   return ShapeId::of(CompositeKind::mesh, s->meshes.put({shared}));
 }
 
-Answer<ShapeId> CompositePool::add_scaled(ShapeId mesh, const std::array<double, 3>& scale) {
+Answer<ShapeId> CompositePool::add_scaled(ShapeId mesh, const Vec3d& scale) {
   const DefaultFloatEnvironment environment;
   if (!contains(mesh) || mesh.composite_kind() != CompositeKind::mesh) return Status::invalid_key;
   mid::MeshEntry entry = *state_->mesh(mesh);
@@ -459,7 +459,7 @@ const TriangleMesh* CompositePool::mesh(ShapeId id) const noexcept {
   return entry != nullptr ? &entry->shared->mesh : nullptr;
 }
 
-std::array<double, 3> CompositePool::scale(ShapeId mesh) const noexcept {
+Vec3d CompositePool::scale(ShapeId mesh) const noexcept {
   const mid::MeshEntry* const entry = state_ != nullptr ? state_->mesh(mesh) : nullptr;
   if (entry == nullptr) return {1.0, 1.0, 1.0};
   return {entry->scale[0], entry->scale[1], entry->scale[2]};

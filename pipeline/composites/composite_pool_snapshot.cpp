@@ -228,8 +228,7 @@ Status CompositePool::load(std::span<const std::byte> saved, const Execution& ex
   return Status::ok;
 }
 
-Answer<ShapeId> CompositePool::add_saved_mesh(std::span<const std::byte> saved,
-                                              const std::array<double, 3>& scale,
+Answer<ShapeId> CompositePool::add_saved_mesh(std::span<const std::byte> saved, const Vec3d& scale,
                                               const Execution& execution) {
   const DefaultFloatEnvironment environment;
   if (!std::all_of(scale.begin(), scale.end(), mid::is_scale)) return Status::invalid_argument;

@@ -186,10 +186,10 @@ void visit(const TransformedShape& body, const MovingBox& moving_box,
 }
 
 void visit(const CompositePool& pool, ShapeId id, const Pose& pose, const MovingBox& moving_box,
-           const PrimitiveVisitor& visitor) {
+           Solids solids, const PrimitiveVisitor& visitor) {
   const Composites* const all = composites_with(pool, id);
   if (all == nullptr) return;
-  const TransformedShape body = TransformedShape::at(*all, id, pose);
+  const TransformedShape body = TransformedShape::at(*all, id, pose, solids);
   auto show_child = [&](std::uint32_t number, double limit) {
     const TransformedShape child = body.child(number);
     return visit_child(child, limit, visitor, [&](const PrimitiveVisitor& keeping) {

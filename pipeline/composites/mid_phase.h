@@ -36,6 +36,7 @@ struct Primitive {
   /// if clockwise. 0 for all other primitives. A visitor must ignore objects behind a one-sided
   /// triangle.
   int front = 0;
+  bool is_mirrored = false;  ///< a triangle of a mesh that its scale mirrors
   /// The hull of a convex solid; else null.
   const HullShape* hull = nullptr;
 };
@@ -153,10 +154,13 @@ Status reduce_contacts(const ShapePool& shapes, const PrimitivePairs& pairs,
                        const NarrowResult& answers, const PairMargins& margins,
                        const Execution& execution, ContactRegions& out);
 
+/// The form in which convex solids are visited.
+enum class Solids : bool { hulls, triangles };
+
 /// Visits every primitive whose box the moving box may hit, roughly in order of time. O(log n +
 /// hits). Visits nothing if the shape does not exist, as do the functions below.
 void visit(const CompositePool& pool, ShapeId id, const Pose& pose, const MovingBox& moving_box,
-           const PrimitiveVisitor& visitor);
+           Solids solids, const PrimitiveVisitor& visitor);
 /// Finds the closest hit of each ray on a shape at t up to its limit, which is at most its max_t;
 /// of equal t, the hit on the part with the smallest number. With `any`, finds any hit. A ray with
 /// a negative limit hits nothing. Rays are valid. The closest hit of a ray does not depend on the

@@ -146,35 +146,19 @@ mid::Box3 SubShapeQuery::box(const SubShape& part) const noexcept {
   return box(PlacedShape{part.shape, part.pose});
 }
 
-void SubShapeQuery::traverse(const PlacedShape& placed, MovingBox moving_box, double limit,
-                             bool near, PartVisitor visitor) const {
-  if (!placed.shape.is_composite()) {
-    visitor.visit(visitor.context, SubShape{placed.shape, placed.pose}, limit);
-    return;
-  }
-  // If the box is unbounded, clip it to the box of the shape. The box of the shape is computed only
-  // then, because for a compound this visits all children.
+MovingBox SubShapeQuery::bounded(const PlacedShape& placed, MovingBox moving_box) const noexcept {
   const auto is_infinite = [](double end) { return std::isinf(end); };
-  if (std::any_of(moving_box.min, moving_box.min + 3, is_infinite) ||
-      std::any_of(moving_box.max, moving_box.max + 3, is_infinite)) {
-    const mid::Box3 own = box(placed);
-    for (int i = 0; i < 3; ++i) {
-      if (std::isinf(moving_box.min[i]))
-        moving_box.min[i] = std::min(own.min[i], moving_box.max[i]);
-      if (std::isinf(moving_box.max[i]))
-        moving_box.max[i] = std::max(own.max[i], moving_box.min[i]);
-    }
+  if (std::none_of(moving_box.min, moving_box.min + 3, is_infinite) &&
+      std::none_of(moving_box.max, moving_box.max + 3, is_infinite)) {
+    return moving_box;
   }
-  const PrimitiveVisitor primitives{[](void* context, const Primitive& primitive, double most) {
-                                      const auto& to = *static_cast<const PartVisitor*>(context);
-                                      return to.visit(to.context, part_of(primitive), most);
-                                    },
-                                    &visitor};
-  if (near) {
-    mid_phase().visit_near(*composites_, placed.shape, placed.pose, moving_box, limit, primitives);
-  } else {
-    mid_phase().visit(*composites_, placed.shape, placed.pose, moving_box, primitives);
+  // The box of the shape is computed only here, because for a compound this visits all children.
+  const mid::Box3 own = box(placed);
+  for (int i = 0; i < 3; ++i) {
+    if (std::isinf(moving_box.min[i])) moving_box.min[i] = std::min(own.min[i], moving_box.max[i]);
+    if (std::isinf(moving_box.max[i])) moving_box.max[i] = std::max(own.max[i], moving_box.min[i]);
   }
+  return moving_box;
 }
 
 double corner_error(const SubShape& part) noexcept {
@@ -193,11 +177,17 @@ bool enters(const ShapePool& shapes, const ShapeRay& ray, const SubShape& part,
       passes_by(ray.origin.data(), ray.direction.data(), part, thickness)) {
     return false;
   }
-  const Vector3d start = as_eigen(ray.origin);
+  const Vector3d start = as_eigen(ray.origin) + ray.min_t * as_eigen(ray.direction);
   if (is_behind_triangle({start, start}, part)) return false;
   // Tests the whole ray: whether the thick triangle is used must not depend on a limit.
   hit = cast_on(shapes, ray, part);
   if (hit.hit || thickness == 0.0) return hit.hit;
+  if (ray.min_t > 0.0) {
+    // A triangle that the ray crosses before its start is not crossed again by being thick.
+    ShapeRay whole = ray;
+    whole.min_t = 0.0;
+    if (cast_on(shapes, whole, part).hit) return false;
+  }
   SubShape thick = part;
   thick.thickness = thickness;
   hit = cast_on(shapes, ray, thick);

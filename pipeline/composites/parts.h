@@ -40,14 +40,18 @@ struct SubShape {
   /// @}
   /// Added to the rounding of `triangle`.
   double thickness = 0.0;
-  /// Facing of `triangle`; see Primitive::front.
+  /// Facing of `triangle`; see Primitive.
+  /// @{
   int front = 0;
+  bool is_mirrored = false;
+  /// @}
 };
 
 [[nodiscard]] inline SubShape part_of(const Primitive& primitive) noexcept {
   SubShape part{primitive.shape, primitive.pose, primitive.part};
   if (primitive.shape.kind() == ShapeKind::triangle) part.triangle = &primitive.triangle;
   part.front = primitive.front;
+  part.is_mirrored = primitive.is_mirrored;
   part.hull = primitive.hull;
   return part;
 }
@@ -87,8 +91,15 @@ class SubShapeQuery {
   /// Calls visit(part, limit) for every part that the moving box may hit, roughly in order of time.
   /// `visit` returns the limit of t for the rest of the traversal; a negative limit ends it.
   template <typename Visit>
-  void visit_parts(const PlacedShape& placed, const MovingBox& moving_box, Visit&& visit) const {
-    traverse(placed, moving_box, moving_box.max_t, false, visitor(visit));
+  void visit_parts(const PlacedShape& placed, const MovingBox& moving_box, Visit&& visit,
+                   mid::Solids solids = mid::Solids::hulls) const {
+    if (!placed.shape.is_composite()) {
+      static_cast<void>(visit(SubShape{placed.shape, placed.pose}, moving_box.max_t));
+      return;
+    }
+    const PrimitiveVisitor visitor = primitive_visitor(visit);
+    mid_phase().visit(*composites_, placed.shape, placed.pose, bounded(placed, moving_box), solids,
+                      visitor);
   }
   /// See mid::cast_rays; the shape is composite.
   void cast_rays(const PlacedShape& placed, std::span<const ShapeRay> rays, const double* limits,
@@ -129,23 +140,26 @@ class SubShapeQuery {
   /// the new limit, as in `visit_parts`.
   template <typename Visit>
   void near(const PlacedShape& placed, const mid::Box3& from, double limit, Visit&& visit) const {
-    traverse(placed, stationary(from), limit, true, visitor(visit));
+    if (!placed.shape.is_composite()) {
+      static_cast<void>(visit(SubShape{placed.shape, placed.pose}, limit));
+      return;
+    }
+    const PrimitiveVisitor visitor = primitive_visitor(visit);
+    mid_phase().visit_near(*composites_, placed.shape, placed.pose,
+                           bounded(placed, stationary(from)), limit, visitor);
   }
 
  private:
-  struct PartVisitor {
-    double (*visit)(void* context, const SubShape& part, double limit);
-    void* context;
-  };
   template <typename Visit>
-  static PartVisitor visitor(Visit& visit) noexcept {
-    return {[](void* context, const SubShape& part, double limit) {
-              return (*static_cast<Visit*>(context))(part, limit);
-            },
-            &visit};
+  static PrimitiveVisitor primitive_visitor(Visit& visit) noexcept {
+    return {
+        [](void* context, const Primitive& primitive, double limit) {
+          return static_cast<double>((*static_cast<Visit*>(context))(part_of(primitive), limit));
+        },
+        &visit};
   }
-  void traverse(const PlacedShape& placed, MovingBox moving_box, double limit, bool near,
-                PartVisitor visitor) const;
+  /// Returns the box, clipped to the box of the shape where it is unbounded.
+  [[nodiscard]] MovingBox bounded(const PlacedShape& placed, MovingBox moving_box) const noexcept;
 
   [[nodiscard]] const mid::MidPhase& mid_phase() const noexcept {
     return mid::mid_phase_of(*composites_);

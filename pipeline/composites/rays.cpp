@@ -220,7 +220,7 @@ struct RayTarget {
   [[nodiscard]] NearBody near(const ShapeRay& ray) const noexcept {
     if (body != nullptr) return {*body, about, ray};
     const TransformedShape made =
-        TransformedShape::at(all, surface.shape, surface.pose, TransformedShape::Solids::triangles);
+        TransformedShape::at(all, surface.shape, surface.pose, Solids::triangles);
     return {made, made.position, ray};
   }
 };
@@ -344,7 +344,7 @@ void RayPacket<Room>::trace() {
     const double limit = closest_.limit[i];
     closest_.own_limit[i] =
         limit >= 0.0 ? to_own.first_limit(limit, target_.surface.frame.reach) : -1.0;
-    own_.low[i] = to_own(0.0);
+    own_.low[i] = to_own(rays_[number_[i]].min_t);
     own_.high[i] = to_own(rays_[number_[i]].max_t);
   }
   if (target_.surface.mesh != nullptr) {
@@ -483,8 +483,7 @@ void cast_rays(const CompositePool& pool, ShapeId id, const Pose& pose,
   const bool is_prepared = prepared != nullptr && prepared->shape == id &&
                            prepared->revision == pool.revision() && is_same(prepared->pose, pose);
   if (is_prepared) return cast_on_surface({*all, *prepared}, rays, limits, any, hits);
-  const TransformedShape body =
-      TransformedShape::at(*all, id, pose, TransformedShape::Solids::triangles);
+  const TransformedShape body = TransformedShape::at(*all, id, pose, Solids::triangles);
   if (!body.is_surface()) return cast_on_compound(body, rays, limits, any, hits);
   RaySurface surface;
   prepare(body, surface);

@@ -23,8 +23,7 @@ constexpr HullTolerance kSolidTolerance = {.coplanar = 2e-7, .convex = 2e-7};
 /// The triangles of a mesh with scaled vertices, of which equal ones are one.
 struct WeldedMesh {
   WeldedMesh(const Composites& all, ShapeId id) : points(all.memory), corners(all.memory) {
-    const TransformedShape body =
-        TransformedShape::at(all, id, {}, TransformedShape::Solids::triangles);
+    const TransformedShape body = TransformedShape::at(all, id, {}, Solids::triangles);
     const bool is_mirrored = body.to_world.determinant() < 0.0;
     for (std::uint32_t slot = 0; slot < body.mesh->triangle_count; ++slot) {
       double corner[3][3];

@@ -157,8 +157,7 @@ template <typename Visit>
 }  // namespace
 
 double winding_number(const Composites& all, ShapeId mesh, const Vec3d& point) noexcept {
-  const TransformedShape body =
-      TransformedShape::at(all, mesh, {}, TransformedShape::Solids::triangles);
+  const TransformedShape body = TransformedShape::at(all, mesh, {}, Solids::triangles);
   const Vec own = body.to_local * as_eigen(point);
   return Winding(body, own).solid_angle() / (4.0 * std::numbers::pi);
 }
@@ -175,8 +174,7 @@ bool solid_contains_point(const CompositePool& pool, ShapeId id, const Pose& pos
                           const Vec3d& point) noexcept {
   const Composites* const all = composites_with(pool, id);
   return all != nullptr && !all->solid.empty() &&
-         is_in_solid(TransformedShape::at(*all, id, pose, TransformedShape::Solids::triangles),
-                     as_eigen(point));
+         is_in_solid(TransformedShape::at(*all, id, pose, Solids::triangles), as_eigen(point));
 }
 
 bool solid_contains_shape(const CompositePool& pool, ShapeId id, const Pose& pose, ShapeId other,

@@ -78,7 +78,8 @@ TransformedShape::TransformedShape(const Composites& composites, const ShapeTabl
     mesh = &view_of(shared->mesh);
     bounds = Box3::of(entry->shared->mesh.bounds());
     const Eigen::Map<const Vec> scale(entry->scale);
-    if (scale.prod() < 0.0) front = -front;
+    is_mirrored = scale.prod() < 0.0;
+    if (is_mirrored) front = -front;
     max_inverse_scale = 1.0 + kSlack;
     if (scale == Vec::Ones()) return;
     to_world = rotation * scale.asDiagonal();
@@ -164,6 +165,7 @@ bool TransformedShape::primitive(std::uint32_t number, Primitive& out) const noe
     out.pose = pose_of(placed.first, {1.0, 0.0, 0.0, 0.0});
     out.triangle = placed.triangle();
     out.front = front;
+    out.is_mirrored = is_mirrored;
     return true;
   }
   const PlacedPart child = part(number);

@@ -56,8 +56,6 @@ struct PlacedPart {
 /// A convex solid is a convex shape, its hull, except for rays, which hit its triangles.
 struct TransformedShape {
   enum class Kind : std::uint8_t { convex, compound, mesh, field };
-  /// The form of convex solids.
-  enum class Solids : bool { hulls, triangles };
 
   /// `at` is the position relative to body a.
   TransformedShape(const Composites& all, const ShapeTables& tables, ShapeId shape,
@@ -115,6 +113,8 @@ struct TransformedShape {
   double max_inverse_scale = 1.0;
   /// Facing of one-sided triangles in the world; see Primitive::front.
   int front = 0;
+  /// True for a mesh that its scale mirrors.
+  bool is_mirrored = false;
   const MeshView* mesh = nullptr;
   const SharedMesh* shared = nullptr;
   const HeightField* field = nullptr;

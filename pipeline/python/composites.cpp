@@ -48,9 +48,10 @@ namespace {
 [[nodiscard]] std::uint32_t add_scaled(SharedShapes& shapes, std::uint32_t mesh,
                                        const std::array<double, 3>& scale) {
   ShapeId id;
-  accept(changing(shapes.mutex,
-                  [&] { return shapes.composites.add_scaled(ShapeId{mesh}, scale).get(id); }),
-         "add_scaled");
+  accept(
+      changing(shapes.mutex,
+               [&] { return shapes.composites.add_scaled(ShapeId{mesh}, Vec3d(scale)).get(id); }),
+      "add_scaled");
   return id.bits;
 }
 

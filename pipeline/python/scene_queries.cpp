@@ -190,6 +190,7 @@ class ShapeRayInput {
                direction_.column<double>(2)},
               count(),
               nullptr,
+              nullptr,
               static_cast<std::size_t>(origin_.stride())};
     }
     room.resize(count());

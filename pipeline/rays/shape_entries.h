@@ -17,6 +17,15 @@ namespace winnow {
 /// Returns whether the ray satisfies the constraints of ShapeRay.
 [[nodiscard]] bool is_valid(const ShapeRay& ray) noexcept;
 
+/// As cast_ray, for a valid ray and pose of a shape of the tables. Sets whether the ray starts
+/// inside the shape, not on its surface.
+[[nodiscard]] ShapeHit find_entry(const ShapeTables& tables, ShapeId shape, const Pose& pose,
+                                  const ShapeRay& ray, bool& starts_inside) noexcept;
+/// Finds the point at which the ray leaves the shape for the last time; its normal points out of
+/// the shape. Arguments as above. The exit is the entry of the reversed ray, with the same errors.
+[[nodiscard]] ShapeHit find_exit(const ShapeTables& tables, ShapeId shape, const Pose& pose,
+                                 const ShapeRay& ray) noexcept;
+
 /// A ray in the frame of a shape, scaled by a power of two: the larger of the shape's size and the
 /// largest coordinate of `origin` (in world axes) is in [1/2, 1). `origin` may have been moved
 /// along the ray: the ray begins at t = low.

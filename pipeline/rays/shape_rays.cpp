@@ -1,13 +1,16 @@
 // cast_ray: moves a ray into a shape's frame, scales both into the range of double, calls `enter`
-// (shape_entries.h) and transforms the hit back.
+// (shape_entries.h) and transforms the hit back. find_exit casts the reversed ray.
 
 #include <winnow/core/rotation.h>
 #include <winnow/pipeline/shape_rays.h>
 #include "core/threads/float_environment.h"
 #include "pipeline/rays/shape_entries.h"
+#include "pipeline/shapes/extent.h"
+#include "pipeline/shapes/two_diff.h"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace winnow {
 namespace {
@@ -75,7 +78,8 @@ struct RelativeRay {
 }
 
 template <typename Shape>
-void cast(const Shape& shape, const Pose& pose, const ShapeRay& ray, ShapeHit& hit) noexcept {
+[[nodiscard]] ShapeHit cast(const Shape& shape, const Pose& pose, const ShapeRay& ray,
+                            bool& starts_inside) noexcept {
   constexpr bool kBounded = !std::is_same_v<Shape, HalfSpaceShape>;
   const RelativeRay relative = approach(ray, pose, size_of(shape), kBounded);
   const Eigen::Matrix3d turn = rotation_of_unit(normalized(scale_to_unit_max(pose.orientation)));
@@ -83,20 +87,50 @@ void cast(const Shape& shape, const Pose& pose, const ShapeRay& ray, ShapeHit& h
   local.origin = turn.transpose() * relative.origin;
   local.direction = turn.transpose() * relative.direction;
   local.speed = local.direction.norm();
-  local.low = std::ldexp(-relative.shift, -relative.t_exponent);
+  // A start beyond the range of double is a start at its end.
+  local.low = std::min(
+      std::ldexp(std::ldexp(ray.min_t, -relative.exponent) - relative.shift, -relative.t_exponent),
+      std::numeric_limits<double>::max());
   const FirstEntry entry = enter(local, shape, std::ldexp(1.0, -relative.lengths));
-  hit = {};
-  if (!entry.found) return;
+  starts_inside = entry.found && entry.inside;
+  if (!entry.found) return {};
   const double t = entry.inside
-                       ? 0.0
+                       ? ray.min_t
                        : std::ldexp(relative.shift + std::ldexp(entry.t, relative.t_exponent),
                                     relative.exponent);
-  if (!(t <= ray.max_t) || t < 0.0 || std::isinf(t)) return;
+  if (!(t <= ray.max_t) || t < 0.0 || std::isinf(t)) return {};
+  ShapeHit hit;
   hit.hit = true;
-  hit.t = t;
+  hit.t = std::max(t, ray.min_t);
   Vector3d normal = turn * entry.normal;
   if (entry.inside || normal.isZero(0.0)) normal = -relative.direction;
   as_eigen(hit.normal) = normal.normalized();
+  return hit;
+}
+
+/// Returns the ray from a point behind the shape, which is at the origin, back to the start of a
+/// ray. `end` is the parameter of that point: t of the reversed ray is `end` - t.
+[[nodiscard]] ShapeRay reversed(const ShapeRay& ray, const Vec3d& position, double radius,
+                                double& end) noexcept {
+  const TwoDiff from = difference(ray.origin.data(), position.data());
+  const Vector3d start = Vector3d::Map(from.difference);
+  const double speed = as_eigen(ray.direction).stableNorm();
+  const Vector3d way = as_eigen(ray.direction) / speed;
+  // The shape is not beyond this point, whose rounding the slack covers.
+  constexpr double kSlack = 1e-12;
+  end = (radius - way.dot(start)) / speed + kSlack * (radius + start.norm()) / speed;
+  ShapeRay back;
+  for (int i = 0; i < 3; ++i) {
+    const double step = end * ray.direction[i];
+    const double step_error = std::fma(end, ray.direction[i], -step);
+    const double sum = from.difference[i] + step;
+    const double half = sum - step;
+    const double sum_error = (from.difference[i] - half) + (step - (sum - half));
+    back.origin[i] = sum + (sum_error + step_error + from.rest[i]);
+    back.direction[i] = -ray.direction[i];
+  }
+  back.max_t = end - ray.min_t;
+  return back;
 }
 
 }  // namespace
@@ -109,7 +143,8 @@ bool is_valid(const ShapeRay& ray) noexcept {
     rest += (ray.origin[axis] - ray.origin[axis]) + (ray.direction[axis] - ray.direction[axis]);
     moves |= ray.direction[axis] != 0.0;
   }
-  return rest == 0.0 && moves && ray.max_t >= 0.0;
+  rest += ray.min_t - ray.min_t;
+  return rest == 0.0 && moves && ray.min_t >= 0.0 && ray.max_t >= ray.min_t;
 }
 
 Answer<ShapeHit> cast_ray(const ShapeTables& tables, ShapeId shape, const Pose& pose,
@@ -120,9 +155,36 @@ Answer<ShapeHit> cast_ray(const ShapeTables& tables, ShapeId shape, const Pose& 
   }
   if (!is_valid(ray)) return Status::invalid_argument;
   if (!pose.is_valid()) return Status::invalid_pose;
+  bool starts_inside = false;
+  return find_entry(tables, shape, pose, ray, starts_inside);
+}
+
+ShapeHit find_entry(const ShapeTables& tables, ShapeId shape, const Pose& pose, const ShapeRay& ray,
+                    bool& starts_inside) noexcept {
   ShapeHit hit;
-  with_shape(tables, shape, [&](const auto& one) { cast(one, pose, ray, hit); });
+  with_shape(tables, shape, [&](const auto& one) { hit = cast(one, pose, ray, starts_inside); });
   return hit;
+}
+
+ShapeHit find_exit(const ShapeTables& tables, ShapeId shape, const Pose& pose,
+                   const ShapeRay& ray) noexcept {
+  bool starts_inside = false;
+  if (shape.kind() == ShapeKind::half_space) {
+    // The ray leaves the half-space where it enters the opposite one.
+    HalfSpaceShape opposite = tables.half_spaces[shape.index()];
+    opposite.normal = -opposite.normal;
+    opposite.offset = -opposite.offset;
+    ShapeHit hit = cast(opposite, pose, ray, starts_inside);
+    if (starts_inside) return {};
+    hit.normal = -hit.normal;
+    return hit;
+  }
+  double end = 0.0;
+  const ShapeRay back = reversed(ray, pose.position, mid::radius_of(tables, shape), end);
+  if (!is_valid(back)) return {};
+  ShapeHit hit = find_entry(tables, shape, {.orientation = pose.orientation}, back, starts_inside);
+  hit.t = std::max(end - hit.t, ray.min_t);
+  return hit.hit && hit.t <= ray.max_t ? hit : ShapeHit{};
 }
 
 }  // namespace winnow

@@ -21,7 +21,7 @@ namespace winnow {
 
 inline constexpr std::string_view kRecordingMagic = "WINNOWRC";
 /// Version that is written. All versions from 1 on can be read.
-inline constexpr std::uint32_t kRecordingVersion = 4;
+inline constexpr std::uint32_t kRecordingVersion = 5;
 /// Size of magic, version, and 4 bytes of 0.
 inline constexpr std::size_t kRecordingHeader = 16;
 /// Size of the header of a block: number of bytes, and their digest.
@@ -105,6 +105,10 @@ enum class RecordedCall : std::uint8_t {
   query_overlaps_by_rules,
   query_any_contact,
   query_any_contact_of_sets,
+
+  // Since version 5. Rays have a min_t; see HitForm.
+  query_crossings,
+  query_distances,
 };
 
 /// Returns the last call of a version; nullopt for an unknown version.
@@ -113,7 +117,8 @@ enum class RecordedCall : std::uint8_t {
   if (version == 2) return RecordedCall::query_nearest;
   if (version == 3) return RecordedCall::find_impacts_of_motions;
   if (version == 4) return RecordedCall::query_any_contact_of_sets;
-  static_assert(kRecordingVersion == 4);
+  if (version == 5) return RecordedCall::query_distances;
+  static_assert(kRecordingVersion == 5);
   return std::nullopt;
 }
 

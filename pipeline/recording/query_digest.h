@@ -25,6 +25,16 @@ inline void add_to(Digest& digest, const SceneHit& hit) noexcept {
   add_to(digest, hit.point);
 }
 
+inline void add_to(Digest& digest, const SceneCrossing& crossing) noexcept {
+  digest.add(std::uint64_t{crossing.key.id} << 32U | crossing.part);
+  digest.add(crossing.data);
+  digest.add(crossing.t);
+  digest.add(std::uint64_t{crossing.exits ? 1U : 0U});
+  add_to(digest, crossing.normal);
+  add_to(digest, crossing.point);
+  add_to(digest, crossing.barycentric);
+}
+
 inline void add_to(Digest& digest, const SceneOverlap& body) noexcept {
   digest.add(std::uint64_t{body.key.id} << 32U | body.part);
   digest.add(body.data);

@@ -14,7 +14,13 @@ static_assert(sizeof(Pose) == 7 * sizeof(double) && sizeof(RigidMotion) == 13 * 
 void put_ray(CallWriter& call, const ShapeRay& ray) {
   call.put_bytes(&ray.origin, sizeof ray.origin)
       .put_bytes(&ray.direction, sizeof ray.direction)
+      .put(ray.min_t)
       .put(ray.max_t);
+}
+
+[[nodiscard]] HitForm with_min_t(HitForm form) noexcept {
+  if (form == HitForm::all) return HitForm::all_with_min_t;
+  return form == HitForm::any ? HitForm::any_with_min_t : HitForm::closest_with_min_t;
 }
 
 void put_rays(CallWriter& call, const ShapeRayBatch& rays) {
@@ -51,22 +57,29 @@ void QueryRecording::put_end(CallWriter& call, ObservedFilter& filter,
 void QueryRecording::ray(HitForm form, const ShapeRay& ray, ObservedFilter& filter,
                          std::span<const SceneHit> hits) noexcept {
   CallWriter call(recorder_, RecordedCall::query_ray, world_);
-  put_ray(call.put(form), ray);
+  put_ray(call.put(with_min_t(form)), ray);
   put_end(call, filter, digest_of(form, hits));
 }
 
 void QueryRecording::rays(HitForm form, const ShapeRayBatch& rays, ObservedFilter& filter,
                           const SceneHitColumns& hits) noexcept {
   CallWriter call(recorder_, RecordedCall::query_rays, world_);
-  put_rays(call.put(form).put(columns_in(hits)), rays);
+  put_rays(call.put(with_min_t(form)).put(columns_in(hits)), rays);
   put_end(call, filter, digest_of_columns(hits, rays.count));
 }
 
 void QueryRecording::rays(const ShapeRayBatch& rays, ObservedFilter& filter,
                           const SceneHitLists& lists) noexcept {
   CallWriter call(recorder_, RecordedCall::query_rays, world_);
-  put_rays(call.put(HitForm::all).put(columns_in({})), rays);
+  put_rays(call.put(with_min_t(HitForm::all)).put(columns_in({})), rays);
   put_end(call, filter, digest_of_answers(lists));
+}
+
+void QueryRecording::crossings(const ShapeRay& ray, ObservedFilter& filter,
+                               std::span<const SceneCrossing> points) noexcept {
+  CallWriter call(recorder_, RecordedCall::query_crossings, world_);
+  put_ray(call, ray);
+  put_end(call, filter, digest_of_answers(points));
 }
 
 // --- shapes ------------------------------------------------------------------------------------
@@ -100,6 +113,15 @@ void QueryRecording::overlap(ShapeId shape, const Pose& pose, ObservedFilter& fi
   const std::uint32_t number = shapes_.number_in_query(shape);
   CallWriter call(recorder_, RecordedCall::query_overlap, world_);
   call.put(number).put_bytes(&pose, sizeof pose);
+  put_end(call, filter, digest_of_answers(bodies));
+}
+
+void QueryRecording::distances(ShapeId shape, const Pose& pose, double limit,
+                               ObservedFilter& filter,
+                               std::span<const SceneDistance> bodies) noexcept {
+  const std::uint32_t number = shapes_.number_in_query(shape);
+  CallWriter call(recorder_, RecordedCall::query_distances, world_);
+  call.put(number).put_bytes(&pose, sizeof pose).put(limit);
   put_end(call, filter, digest_of_answers(bodies));
 }
 

@@ -19,12 +19,16 @@ class QueryRecording final : public QueryObserver {
             const SceneHitColumns& hits) noexcept override;
   void rays(const ShapeRayBatch& rays, ObservedFilter& filter,
             const SceneHitLists& lists) noexcept override;
+  void crossings(const ShapeRay& ray, ObservedFilter& filter,
+                 std::span<const SceneCrossing> points) noexcept override;
   void cast(HitForm form, const ShapeCast& cast, ObservedFilter& filter, double tolerance,
             std::span<const SceneHit> hits) noexcept override;
   void cast(HitForm form, const MotionCast& cast, ObservedFilter& filter, double tolerance,
             std::span<const SceneHit> hits) noexcept override;
   void overlap(ShapeId shape, const Pose& pose, ObservedFilter& filter,
                std::span<const SceneOverlap> bodies) noexcept override;
+  void distances(ShapeId shape, const Pose& pose, double limit, ObservedFilter& filter,
+                 std::span<const SceneDistance> bodies) noexcept override;
   void nearest(const Vec3d& point, std::size_t count, double radius, ObservedFilter& filter,
                std::span<const SceneDistance> bodies) noexcept override;
   void distance(Key a, Key b, double limit, PairRules rules,

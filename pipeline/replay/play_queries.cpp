@@ -6,6 +6,9 @@
 namespace winnow {
 namespace {
 
+/// Bytes of a ray without min_t.
+constexpr std::size_t kRayBytes = 7 * sizeof(double);
+
 /// The columns that the program requested for the results of a batch of rays.
 class RequestedColumns {
  public:
@@ -38,10 +41,29 @@ class RequestedColumns {
   Column<double> numbers_;
 };
 
-void read(ByteReader& in, ShapeRay& ray) noexcept {
+/// Rays of recordings before version 5 have no min_t.
+void read(ByteReader& in, bool with_min_t, ShapeRay& ray) noexcept {
   (void)in.get_bytes(&ray.origin, sizeof ray.origin);
   (void)in.get_bytes(&ray.direction, sizeof ray.direction);
+  if (with_min_t) ray.min_t = in.get<double>();
   ray.max_t = in.get<double>();
+}
+
+/// Reads the form of rays. `with_min_t` is set to whether they have a min_t. Returns an
+/// invalid form if it is not one of rays.
+[[nodiscard]] HitForm read_ray_form(ByteReader& in, bool& with_min_t) noexcept {
+  const auto form = in.get_enum(HitForm::all_with_min_t);
+  with_min_t = form >= HitForm::closest_with_min_t;
+  switch (form) {
+    case HitForm::closest_with_min_t:
+      return HitForm::closest;
+    case HitForm::any_with_min_t:
+      return HitForm::any;
+    case HitForm::all_with_min_t:
+      return HitForm::all;
+    default:
+      return form;
+  }
 }
 
 void read(ByteReader& in, ShapeCast& cast) noexcept {
@@ -55,9 +77,11 @@ void read(ByteReader& in, MotionCast& cast) noexcept {
 }
 
 Status query_ray(ReplayState& replay, ReplayedWorld& of) {
-  const auto form = replay.in.get_enum(HitForm::all);
+  bool with_min_t = false;
+  const HitForm form = read_ray_form(replay.in, with_min_t);
+  if (form > HitForm::all) return Status::invalid_argument;
   ShapeRay ray;
-  read(replay.in, ray);
+  read(replay.in, with_min_t, ray);
   if (!replay.read_query_filter()) return status_of(replay.in);
   if (form == HitForm::all) {
     return replay.compare_if(of.queries->all(ray, replay.filter.filter()));
@@ -67,13 +91,15 @@ Status query_ray(ReplayState& replay, ReplayedWorld& of) {
 }
 
 Status query_rays(ReplayState& replay, ReplayedWorld& of) {
-  const auto form = replay.in.get_enum(HitForm::all);
+  bool with_min_t = false;
+  const HitForm form = read_ray_form(replay.in, with_min_t);
+  if (form > HitForm::all) return Status::invalid_argument;
   const auto which = replay.in.get<std::uint16_t>();
   const auto count = replay.in.get<std::uint64_t>();
-  if (!replay.in.ok() || count > replay.in.rest().size() / sizeof(ShapeRay))
+  if (!replay.in.ok() || count > replay.in.rest().size() / kRayBytes)
     return Status::invalid_argument;
   if (!replay.shape_rays.resize(static_cast<std::size_t>(count))) return Status::out_of_memory;
-  for (ShapeRay& ray : replay.shape_rays) read(replay.in, ray);
+  for (ShapeRay& ray : replay.shape_rays) read(replay.in, with_min_t, ray);
   if (!replay.read_query_filter()) return status_of(replay.in);
   const ShapeRayBatch batch(
       std::span<const ShapeRay>(replay.shape_rays.data(), replay.shape_rays.size()));
@@ -87,6 +113,23 @@ Status query_rays(ReplayState& replay, ReplayedWorld& of) {
                               ? of.queries->any(batch, hits, replay.filter.filter())
                               : of.queries->closest(batch, hits, replay.filter.filter());
   return answered == Status::ok ? replay.compare(digest_of_columns(hits, batch.count)) : answered;
+}
+
+Status query_crossings(ReplayState& replay, ReplayedWorld& of) {
+  ShapeRay ray;
+  read(replay.in, true, ray);
+  if (!replay.read_query_filter()) return status_of(replay.in);
+  return replay.compare_if(of.queries->crossings(ray, replay.filter.filter()));
+}
+
+Status query_distances(ReplayState& replay, ReplayedWorld& of) {
+  ShapeId shape;
+  Pose pose;
+  if (!replay.read_shape(of, shape)) return status_of(replay.in);
+  (void)replay.in.get_bytes(&pose, sizeof pose);
+  const auto limit = replay.in.get<double>();
+  if (!replay.read_query_filter()) return status_of(replay.in);
+  return replay.compare_if(of.queries->distances(shape, pose, limit, replay.filter.filter()));
 }
 
 Status query_overlap(ReplayState& replay, ReplayedWorld& of) {
@@ -172,6 +215,10 @@ Status query_scene(ReplayState& replay, RecordedCall call, ReplayedWorld& of) {
       return query_ray(replay, of);
     case RecordedCall::query_rays:
       return query_rays(replay, of);
+    case RecordedCall::query_crossings:
+      return query_crossings(replay, of);
+    case RecordedCall::query_distances:
+      return query_distances(replay, of);
     case RecordedCall::query_overlap:
       return query_overlap(replay, of);
     case RecordedCall::query_shape_cast:

@@ -252,7 +252,7 @@ struct QueriesOfC {
 TEST(CInterface, rays_hit_the_bodies_of_cpp) {
   QueriesOfC all;
   const OwnedQueries& queries = all.queries;
-  const winnow_shape_ray ray = {{3.2, 1.3, 5}, {0.1, 0.2, -1}, 20};
+  const winnow_shape_ray ray = {{3.2, 1.3, 5}, {0.1, 0.2, -1}, 0.5, 20};
   const ShapeRay& same_ray = *c::as_cpp(&ray);
   winnow_filter even = WINNOW_FILTER;
   even.accept = [](void*, winnow_key key, std::uint64_t) { return key.id % 2 == 0; };
@@ -269,20 +269,22 @@ TEST(CInterface, rays_hit_the_bodies_of_cpp) {
 TEST(CInterface, columns_of_float_rays_hit_bodies) {
   QueriesOfC all;
   constexpr std::size_t kRays = 16;
-  std::array<std::array<float, kRays>, 7> rays{};
+  std::array<std::array<float, kRays>, 8> rays{};
   std::vector<ShapeRay> single;
   for (std::size_t i = 0; i < kRays; ++i) {
     const auto x = static_cast<double>(i);
-    single.push_back({{0.5 * x, 0.25 * x, 4}, {0.125, 0, -1}, 10});
+    single.push_back({{0.5 * x, 0.25 * x, 4}, {0.125, 0, -1}, 0.25, 10});
     for (std::size_t k = 0; k < 3; ++k) {
       rays[k][i] = static_cast<float>(single[i].origin[k]);
       rays[3 + k][i] = static_cast<float>(single[i].direction[k]);
     }
-    rays[6][i] = 10.0F;
+    rays[6][i] = 0.25F;
+    rays[7][i] = 10.0F;
   }
   const winnow_shape_ray_batch batch = {{rays[0].data(), rays[1].data(), rays[2].data()},
                                         {rays[3].data(), rays[4].data(), rays[5].data()},
                                         rays[6].data(),
+                                        rays[7].data(),
                                         kRays,
                                         0,
                                         WINNOW_FLOAT};

@@ -40,7 +40,7 @@ TEST(CInterface, convex_shapes_are_stored_as_given) {
   EXPECT_EQ(winnow_shape_pool_shape(pool, world.convex[10], &none), WINNOW_INVALID_KEY);
 
   const winnow_pose pose = pose_of_c(13);
-  const winnow_shape_ray ray = {{8, 1, 9}, {-0.2, 0.1, -1}, 30};
+  const winnow_shape_ray ray = {{8, 1, 9}, {-0.2, 0.1, -1}, 0.5, 30};
   for (const winnow_shape_id id : world.convex) {
     EXPECT_TRUE(same(got<winnow_aabb>(winnow_shape_pool_bounds, pool, id, &pose),
                      pool->bounds({id}, *c::as_cpp(&pose))));

@@ -72,7 +72,7 @@ int main() {
   // [scene queries]
   must(scene.refresh());                // after changes; then any number of threads may query
   winnow::SceneQueries queries(scene);  // one per thread
-  winnow::SceneHit hit = queries.closest(winnow::ShapeRay{{20, 0, 9}, {0, 0, -1}, 100.0});
+  winnow::SceneHit hit = queries.closest(winnow::ShapeRay{{20, 0, 9}, {0, 0, -1}});
   hit = queries.closest(winnow::ShapeCast{ball, winnow::Pose::at(0, 0, 9), {0, 0, -20}, 1.0});
   // hit: body, triangle or child, t, normal, point; false if there is none
   const auto bodies = queries.overlap(chair, winnow::Pose::at(0.5, 0, 0.4));

@@ -66,7 +66,7 @@ class ReferenceShapes {
     const SubShapeQuery traversal(pool, &composites);
     shapes.push_back({id, std::move(parts), traversal.radius(id)});
   }
-  void add_mesh(const MeshData& mesh, const std::array<double, 3>& scale) {
+  void add_mesh(const MeshData& mesh, const Vec3d& scale) {
     ShapeId id;
     ShapeId scaled;
     id = expect_ok(composites.add_mesh(mesh.points(), mesh.indices()));

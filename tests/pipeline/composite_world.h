@@ -153,7 +153,7 @@ struct CompositeWorld {
     ids.push_back(add(composites, grid(7, 0.5F, Cut::random, [](float x, float y) {
                         return 0.5F * std::sin(3.0F * x) * std::cos(2.0F * y);
                       })));
-    for (const std::array<double, 3> scale :
+    for (const Vec3d scale :
          {std::array{-1.0, 1.0, 1.0}, std::array{0.3, 1.7, -0.9}, std::array{2.0, 2.0, 2.0}}) {
       ids.emplace_back();
       ids.back() = expect_ok(composites.add_scaled(mesh, scale));
@@ -215,7 +215,7 @@ inline std::vector<Primitive> parts_of(const CompositeWorld& world, ShapeId id, 
     return {whole};
   }
   MovingBox all{{-1e30, -1e30, -1e30}, {1e30, 1e30, 1e30}};
-  mid::visit(world.composites, id, pose, all,
+  mid::visit(world.composites, id, pose, all, mid::Solids::hulls,
              {[](void* context, const Primitive& primitive, double limit) {
                 static_cast<std::vector<Primitive>*>(context)->push_back(primitive);
                 return limit;

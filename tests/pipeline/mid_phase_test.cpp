@@ -306,7 +306,7 @@ TEST(Visits, visits_find_all_primitives_in_reach) {
         static_cast<std::set<std::uint32_t>*>(context)->insert(primitive.part);
         return limit;
       };
-      mid::visit(world.composites, id, pose, box, {note, &visited});
+      mid::visit(world.composites, id, pose, box, mid::Solids::hulls, {note, &visited});
       mid::visit_near(world.composites, id, pose, box, 0.7, {note, &near});
       // Compares with the narrow phase: a box against each primitive.
       CompositeWorld probe;
@@ -360,7 +360,7 @@ TEST(Visits, negative_limit_ends_visit) {
       return -1.0;
     };
     const MovingBox all{{-1e9, -1e9, -1e9}, {1e9, 1e9, 1e9}};
-    mid::visit(world.composites, id, Pose{}, all, {once, &shown});
+    mid::visit(world.composites, id, Pose{}, all, mid::Solids::hulls, {once, &shown});
     EXPECT_EQ(shown, 1);
     mid::visit_near(world.composites, id, Pose{}, all, 1.0, {once, &shown});
     EXPECT_EQ(shown, 2);

@@ -174,7 +174,7 @@ TEST(OneSided, normals_never_point_to_the_back) {
     for (const bool reduced : {false, true}) {
       Scene scene(world.shapes, {.execution = Execution::serial(),
                                  .contact_margin = 0.05,
-                                 .contact_reduction = reduced,
+                                 .part_manifolds = !reduced,
                                  .composites = &world.composites});
       Key keys[2];
       for (std::size_t k = 0; k < 2; ++k) {
@@ -220,7 +220,7 @@ struct FrontFloor {
   }
 
   [[nodiscard]] double ray(double from, double to) {
-    const ShapeRay query{{0.1, 0.2, from}, {0.0, 0.0, to - from}, 1.0};
+    const ShapeRay query{{0.1, 0.2, from}, {0.0, 0.0, to - from}, 0.0, 1.0};
     SceneHit hit = expect_ok(queries.closest(query));
     return hit.key == floor ? hit.t : -1.0;
   }

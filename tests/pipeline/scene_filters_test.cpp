@@ -223,7 +223,7 @@ TEST(SceneFilters, ray_with_layer_filter_skips_layers) {
   ASSERT_EQ(row.scene.set_layers_collide(300, 7, false), Status::ok);
   ASSERT_EQ(row.scene.refresh(), Status::ok);
   SceneQueries queries(row.scene);
-  const ShapeRay ray{{-5, 0, 0}, {1, 0, 0}, 100};
+  const ShapeRay ray{{-5, 0, 0}, {1, 0, 0}, 0, 100};
   const LayerFilter seven{row.scene, 7};
   SceneHit hit = expect_ok(queries.closest(ray, seven.filter()));
   EXPECT_EQ(hit.key, row.keys[1]);

@@ -47,7 +47,7 @@ class PartsWorld {
       ShapeId id = expect_ok(pool_.add_mesh(data.points(), data.indices()));
       add_mesh_pieces(data, {1, 1, 1});
       shapes_.push_back(id);
-      const std::array<double, 3> scale{0.7, -1.2, 0.5};
+      const Vec3d scale{0.7, -1.2, 0.5};
       ShapeId scaled = expect_ok(pool_.add_scaled(id, scale));
       add_mesh_pieces(data, scale);
       shapes_.push_back(scaled);
@@ -108,7 +108,7 @@ class PartsWorld {
     pieces_.push_back({{id, {}, {}, kWholeShape}});
   }
 
-  void add_mesh_pieces(const MeshData& data, const std::array<double, 3>& scale) {
+  void add_mesh_pieces(const MeshData& data, const Vec3d& scale) {
     std::vector<Piece> pieces;
     for (std::uint32_t t = 0; t < data.triangles(); ++t) {
       Piece piece{ShapeId::of(ShapeKind::triangle, 0), {}, {}, t};

@@ -82,7 +82,7 @@ TEST(ScenePaths, unbounded_rays_reach_distant_bodies) {
     world.add(ball, Pose::at(far, 0.5 * far, 0.25 * far), random);
     world.add_to_scene();
     SceneQueries queries(*world.scene);
-    ShapeRay ray{{0.0, 0.0, 0.0}, {4.0, 2.0, 1.0}, kInfinity};
+    ShapeRay ray{.direction = {4.0, 2.0, 1.0}};
     SceneHit hit;
     std::span<const SceneHit> hits;
     hit = expect_ok(queries.closest(ray));

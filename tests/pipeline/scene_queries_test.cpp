@@ -18,10 +18,10 @@ TEST(SceneQueries, rays_hit_half_space_beyond_float_range) {
   world.add(ground, Pose{}, random);
   world.add_to_scene();
   SceneQueries queries(*world.scene);
-  const ShapeRay rays[] = {{{0, 0, 1e39}, {0, 0, -1}, 1e40},
-                           {{1e39, -1e39, 5}, {0, 0, -1}, 100.0},
-                           {{-1e200, 0, 5}, {1, 0, -1e-200}, kInfinity},
-                           {{0, 0, 1e300}, {0, 1, -1}, kInfinity}};
+  const ShapeRay rays[] = {{{0, 0, 1e39}, {0, 0, -1}, 0.0, 1e40},
+                           {{1e39, -1e39, 5}, {0, 0, -1}, 0.0, 100.0},
+                           {{-1e200, 0, 5}, {1, 0, -1e-200}},
+                           {{0, 0, 1e300}, {0, 1, -1}}};
   for (const ShapeRay& ray : rays) {
     SceneHit hit;
     std::span<const SceneHit> all;
@@ -117,7 +117,7 @@ TEST(SceneQueries, two_balls_in_a_row_give_expected_results) {
 
   SceneHit hit;
   std::span<const SceneHit> hits;
-  const ShapeRay ray{{0, 0, 0}, {1, 0, 0}, kInfinity};
+  const ShapeRay ray{.direction = {1, 0, 0}};
   hit = expect_ok(queries.closest(ray));
   EXPECT_EQ(hit.key, world.keys[0]);
   EXPECT_DOUBLE_EQ(hit.t, 9.0);

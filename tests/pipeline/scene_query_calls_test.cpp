@@ -84,11 +84,14 @@ TEST(SceneQueryCalls, bad_queries_are_refused_and_change_nothing) {
   SceneQueries queries(*world.scene);
   const double nan = std::nan("");
   for (const ShapeRay& ray :
-       {ShapeRay{{nan, 0, 0}, {1, 0, 0}, 1.0}, ShapeRay{{0, 0, 0}, {0, 0, 0}, 1.0},
-        ShapeRay{{0, 0, 0}, {1, kInfinity, 0}, 1.0}, ShapeRay{{0, 0, 0}, {1, 0, 0}, -1.0},
-        ShapeRay{{0, 0, 0}, {1, 0, 0}, nan}}) {
+       {ShapeRay{.origin = {nan, 0, 0}}, ShapeRay{.direction = {0, 0, 0}},
+        ShapeRay{.direction = {1, kInfinity, 0}}, ShapeRay{.max_t = -1.0}, ShapeRay{.max_t = nan},
+        ShapeRay{.min_t = -1.0}, ShapeRay{.min_t = nan}, ShapeRay{.min_t = kInfinity},
+        ShapeRay{.min_t = 2.0, .max_t = 1.0}}) {
     expect_error(queries.closest(ray), Status::invalid_argument);
     expect_error(queries.any(ray), Status::invalid_argument);
+    expect_error(queries.all(ray), Status::invalid_argument);
+    expect_error(queries.crossings(ray), Status::invalid_argument);
   }
   const ShapeCast good{world.shapes.shapes[0], {}};
   ShapeCast cast = good;

@@ -68,13 +68,13 @@ MeshData turned(MeshData mesh, Random& random) {
 }
 
 struct SolidPool {
-  ShapeId solid(const MeshData& mesh, const std::array<double, 3>& scale = {1.0, 1.0, 1.0}) {
+  ShapeId solid(const MeshData& mesh, const Vec3d& scale = {1.0, 1.0, 1.0}) {
     const ShapeId id = expect_ok(composites.add_scaled(
         expect_ok(composites.add_mesh(mesh.points(), mesh.indices())), scale));
     EXPECT_EQ(composites.set_solid(id), Status::ok) << mesh.name;
     return id;
   }
-  ShapeId hull(const MeshData& mesh, const std::array<double, 3>& scale = {1.0, 1.0, 1.0}) {
+  ShapeId hull(const MeshData& mesh, const Vec3d& scale = {1.0, 1.0, 1.0}) {
     std::vector<Vec3d> points;
     for (const Eigen::Vector3f& vertex : mesh.vertices) {
       points.emplace_back(Vec(vertex.cast<double>().cwiseProduct(Vec::Map(scale.data()))));
@@ -111,7 +111,7 @@ TEST(SolidDepth, convex_solid_equals_its_hull) {
   Random random(1);
   SolidPool pool;
   const MeshData box = round_prism(4);
-  const std::array<double, 3> scales[] = {{1.0, 1.0, 1.0}, {0.5, -2.0, 1.5}};
+  const Vec3d scales[] = {{1.0, 1.0, 1.0}, {0.5, -2.0, 1.5}};
   const ShapeId others[] = {expect_ok(pool.shapes.add(SphereShape{0.4})),
                             expect_ok(pool.shapes.add(BoxShape{{0.5, 0.3, 0.7}})),
                             pool.hull(round_prism(5)), pool.solid(round_prism(6))};
@@ -347,7 +347,7 @@ TEST(SolidDepth, cubes_that_share_an_edge_are_solid) {
 /// Returns the contacts of two bodies.
 void collide(const SolidPool& pool, ContactLevel level, ShapeId a, ShapeId b, const Pose& pose,
              Contacts& contacts) {
-  Scene scene(pool.shapes, {.contact_reduction = true, .composites = &pool.composites});
+  Scene scene(pool.shapes, {.composites = &pool.composites});
   expect_ok(scene.add({.shape = a}));
   expect_ok(scene.add({.shape = b, .pose = pose}));
   ASSERT_EQ(scene.collide(level, contacts), Status::ok);

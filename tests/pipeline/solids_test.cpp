@@ -178,7 +178,7 @@ TEST(Solids, inside_test_matches_winding_number) {
   std::size_t outside = 0;
   for (const MeshData& mesh : {cube(), torus(16, 9), gear(11)}) {
     const ShapeId id = add(pool, mesh);
-    const std::array<double, 3> scales[] = {{1.0, 1.0, 1.0}, {3.0, -0.5, 2.0}};
+    const Vec3d scales[] = {{1.0, 1.0, 1.0}, {3.0, -0.5, 2.0}};
     for (const auto& scale : scales) {
       ShapeId scaled_id = expect_ok(pool.add_scaled(id, scale));
       ASSERT_EQ(pool.set_solid(scaled_id), Status::ok);

@@ -466,7 +466,7 @@ TEST(SupportShapes, rays_hit_at_the_surface) {
     id[2] = expect_ok(pool.add(SupportShape{farthest_of_block, &box, 3.0, 0.0}));
     id[3] = expect_ok(pool.add(box));
     const Pose pose = random_pose(random, 1.0);
-    ShapeRay ray{{}, {}, kEndless};
+    ShapeRay ray;
     for (double& x : ray.origin) x = random.uniform(-3.0, 3.0);
     for (int i = 0; i < 3; ++i) {
       ray.direction[i] = pose.position[i] + random.uniform(-1.2, 1.2) - ray.origin[i];
@@ -581,7 +581,7 @@ TEST(SupportShapes, functions_that_become_invalid_give_finite_results) {
         }
       }
       ShapeHit hit;
-      const ShapeRay ray{{3, 0.1, 0.2}, {-1, 0, 0}, kEndless};
+      const ShapeRay ray{{3, 0.1, 0.2}, {-1, 0, 0}};
       hit = expect_ok(cast_ray(scene.pool.tables(), id, Pose{}, ray));
       EXPECT_TRUE(std::isfinite(hit.t));
       std::vector<RigidMotion> motions;

@@ -80,6 +80,14 @@ winnow_status winnow_scene_queries_all_rays(
   return give([&]() -> decltype(auto) { return (of(queries).all(own_rays, own_filter)); }, hits, first);
 }
 
+winnow_status winnow_scene_queries_crossings(
+    winnow_scene_queries* queries, const winnow_shape_ray* ray, const winnow_filter* filter,
+    const winnow_scene_crossing** points, size_t* count) {
+  Filter own_filter{};
+  if (!(are_given(queries, ray, points, count) && read(filter, own_filter))) return WINNOW_INVALID_ARGUMENT;
+  return give([&]() -> decltype(auto) { return (of(queries).crossings((*as_cpp(ray)), own_filter)); }, points, count);
+}
+
 winnow_status winnow_scene_queries_closest_cast(
     winnow_scene_queries* queries, const winnow_shape_cast* cast, const winnow_filter* filter,
     double tolerance, winnow_scene_hit* hit) {
@@ -140,6 +148,14 @@ winnow_status winnow_scene_queries_overlap(
   Filter own_filter{};
   if (!(are_given(queries, pose, bodies, count) && read(filter, own_filter))) return WINNOW_INVALID_ARGUMENT;
   return give([&]() -> decltype(auto) { return (of(queries).overlap(ShapeId{shape}, (*as_cpp(pose)), own_filter)); }, bodies, count);
+}
+
+winnow_status winnow_scene_queries_distances(
+    winnow_scene_queries* queries, winnow_shape_id shape, const winnow_pose* pose, double limit,
+    const winnow_filter* filter, const winnow_scene_distance** bodies, size_t* count) {
+  Filter own_filter{};
+  if (!(are_given(queries, pose, bodies, count) && read(filter, own_filter))) return WINNOW_INVALID_ARGUMENT;
+  return give([&]() -> decltype(auto) { return (of(queries).distances(ShapeId{shape}, (*as_cpp(pose)), limit, own_filter)); }, bodies, count);
 }
 
 winnow_status winnow_scene_queries_distance(

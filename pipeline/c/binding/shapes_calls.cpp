@@ -122,7 +122,7 @@ winnow_status winnow_composite_pool_add_mesh(
 winnow_status winnow_composite_pool_add_scaled(
     winnow_composite_pool* pool, winnow_shape_id mesh, const double scale[3], winnow_shape_id* id) {
   if (!(are_given(pool, scale, id))) return WINNOW_INVALID_ARGUMENT;
-  return give([&]() -> decltype(auto) { return (of(pool).add_scaled(ShapeId{mesh}, {scale[0], scale[1], scale[2]})); }, id);
+  return give([&]() -> decltype(auto) { return (of(pool).add_scaled(ShapeId{mesh}, Vec3d(scale))); }, id);
 }
 
 winnow_status winnow_composite_pool_add_saved_mesh(

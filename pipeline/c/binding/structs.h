@@ -330,6 +330,7 @@ inline void show(const HullShape& own, winnow_hull& to) noexcept {
 WINNOW_SAME_LAYOUT(winnow_shape_ray, ShapeRay)
 static_assert(offsetof(winnow_shape_ray, origin) == offsetof(ShapeRay, origin));
 static_assert(offsetof(winnow_shape_ray, direction) == offsetof(ShapeRay, direction));
+static_assert(offsetof(winnow_shape_ray, min_t) == offsetof(ShapeRay, min_t));
 static_assert(offsetof(winnow_shape_ray, max_t) == offsetof(ShapeRay, max_t));
 
 inline void show(const ShapeHit& own, winnow_shape_hit& to) noexcept {
@@ -449,7 +450,7 @@ inline constexpr std::size_t kFirstSize<winnow_scene_options> =
          take(own.structures, options.structures) &&
          take(own.contact_margin, options.contact_margin) &&
          take(own.tier, options.tier) &&
-         take(own.contact_reduction, options.contact_reduction) &&
+         take(own.part_manifolds, options.part_manifolds) &&
          take(own.cache_tolerance, options.cache_tolerance) &&
          take(own.build_budget, options.build_budget) &&
          take(own.composites, options.composites) &&
@@ -557,6 +558,16 @@ static_assert(offsetof(winnow_scene_hit, part) == offsetof(SceneHit, part));
 static_assert(offsetof(winnow_scene_hit, t) == offsetof(SceneHit, t));
 static_assert(offsetof(winnow_scene_hit, normal) == offsetof(SceneHit, normal));
 static_assert(offsetof(winnow_scene_hit, point) == offsetof(SceneHit, point));
+
+WINNOW_SAME_LAYOUT(winnow_scene_crossing, SceneCrossing)
+static_assert(offsetof(winnow_scene_crossing, key) == offsetof(SceneCrossing, key));
+static_assert(offsetof(winnow_scene_crossing, data) == offsetof(SceneCrossing, data));
+static_assert(offsetof(winnow_scene_crossing, part) == offsetof(SceneCrossing, part));
+static_assert(offsetof(winnow_scene_crossing, t) == offsetof(SceneCrossing, t));
+static_assert(offsetof(winnow_scene_crossing, exits) == offsetof(SceneCrossing, exits));
+static_assert(offsetof(winnow_scene_crossing, normal) == offsetof(SceneCrossing, normal));
+static_assert(offsetof(winnow_scene_crossing, point) == offsetof(SceneCrossing, point));
+static_assert(offsetof(winnow_scene_crossing, barycentric) == offsetof(SceneCrossing, barycentric));
 
 WINNOW_SAME_LAYOUT(winnow_scene_overlap, SceneOverlap)
 static_assert(offsetof(winnow_scene_overlap, key) == offsetof(SceneOverlap, key));

@@ -207,17 +207,19 @@ Status read_view(const winnow_shape_ray_batch& given, Column<ShapeRay>& room,
   const std::size_t stride = stride_of(given.stride, given.number);
   if (given.number == WINNOW_DOUBLE) {
     rays = ShapeRayBatch(columns_of<double>(given.origin), columns_of<double>(given.direction),
-                         given.count, static_cast<const double*>(given.max_t), stride);
+                         given.count, static_cast<const double*>(given.min_t),
+                         static_cast<const double*>(given.max_t), stride);
     return Status::ok;
   }
   if (!room.resize(given.count)) return Status::out_of_memory;
   for (std::size_t i = 0; i < given.count; ++i) {
+    room[i] = {};
     for (std::size_t axis = 0; axis < 3; ++axis) {
       room[i].origin[axis] = number_at(given.origin[axis], i, stride, WINNOW_FLOAT);
       room[i].direction[axis] = number_at(given.direction[axis], i, stride, WINNOW_FLOAT);
     }
-    room[i].max_t = given.max_t != nullptr ? number_at(given.max_t, i, stride, WINNOW_FLOAT)
-                                           : std::numeric_limits<double>::infinity();
+    if (given.min_t != nullptr) room[i].min_t = number_at(given.min_t, i, stride, WINNOW_FLOAT);
+    if (given.max_t != nullptr) room[i].max_t = number_at(given.max_t, i, stride, WINNOW_FLOAT);
   }
   rays = ShapeRayBatch(std::span<const ShapeRay>(room.data(), room.size()));
   return Status::ok;

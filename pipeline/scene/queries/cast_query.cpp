@@ -145,32 +145,9 @@ Status CastQuery::any_in_large_sets(SceneHit& hit) {
   return Status::ok;
 }
 
-Status CastQuery::all() {
-  const std::size_t before = state_.hits.size();
-  bool has_room = true;
+Status CastQuery::visit_large_sets(const BodyVisitor& visitor) {
   auto test_body = [&](std::uint32_t body) {
-    has_room = adds(body) && has_room;
-    return false;
-  };
-  const bool has_large_set = test_small_sets(state_.scene, filter_, test_body);
-  if (!has_room) return Status::out_of_memory;
-  if (has_large_set) return all_in_large_sets(before);
-  order_hits(state_.hits, before);
-  return Status::ok;
-}
-
-bool CastQuery::adds(std::uint32_t body) {
-  if (tested_.find(body) != nullptr) return true;
-  tested_.note(body, false);
-  BodyContact contact;
-  return !find_contact(body, linear_cast_.max_t(), false, contact) ||
-         state_.hits.push_back(hit_of(body, contact));
-}
-
-Status CastQuery::all_in_large_sets(std::size_t before) {
-  bool has_room = true;
-  auto test_body = [&](std::uint32_t body) {
-    has_room = adds(body) && has_room;
+    visitor.visit(visitor.context, body);
     return false;
   };
   BoxPath path = box_path();
@@ -182,7 +159,41 @@ Status CastQuery::all_in_large_sets(std::size_t before) {
     });
     if (status != Status::ok) return status;
   }
-  if (!has_room) return Status::out_of_memory;
+  return Status::ok;
+}
+
+Status CastQuery::visit_all(const BodyVisitor& visitor) {
+  auto visit_body = [&](std::uint32_t body) {
+    visitor.visit(visitor.context, body);
+    return false;
+  };
+  const bool has_large_set = test_small_sets(state_.scene, filter_, visit_body);
+  return has_large_set ? visit_large_sets(visitor) : Status::ok;
+}
+
+bool CastQuery::adds(std::uint32_t body) {
+  if (tested_.find(body) != nullptr) return true;
+  tested_.note(body, false);
+  BodyContact contact;
+  return !find_contact(body, linear_cast_.max_t(), false, contact) ||
+         state_.hits.push_back(hit_of(body, contact));
+}
+
+Status CastQuery::all() {
+  const std::size_t before = state_.hits.size();
+  bool has_room = true;
+  auto add = [&](std::uint32_t body) { has_room = adds(body) && has_room; };
+  const Status status = visit_all(BodyVisitor::of(add));
+  if (status != Status::ok || !has_room) return has_room ? status : Status::out_of_memory;
+  order_hits(state_.hits, before);
+  return Status::ok;
+}
+
+Status CastQuery::all_in_large_sets(std::size_t before) {
+  bool has_room = true;
+  auto add = [&](std::uint32_t body) { has_room = adds(body) && has_room; };
+  const Status status = visit_large_sets(BodyVisitor::of(add));
+  if (status != Status::ok || !has_room) return has_room ? status : Status::out_of_memory;
   order_hits(state_.hits, before);
   return Status::ok;
 }

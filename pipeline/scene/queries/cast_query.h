@@ -70,6 +70,18 @@ class ResultCache {
   Entry entries_[kEntries];
 };
 
+/// Callback for the bodies whose boxes a cast hits.
+struct BodyVisitor {
+  void (*visit)(void* context, std::uint32_t body) = nullptr;
+  void* context = nullptr;
+
+  /// Makes a visitor that calls visit(body).
+  template <typename Visit>
+  [[nodiscard]] static BodyVisitor of(Visit& visit) noexcept {
+    return {[](void* called, std::uint32_t body) { (*static_cast<Visit*>(called))(body); }, &visit};
+  }
+};
+
 /// One query: a linear cast in the scene.
 class CastQuery {
  public:
@@ -80,6 +92,9 @@ class CastQuery {
   Status closest(SceneHit& hit);
   /// Appends the hits to the results.
   Status all();
+  /// Calls the visitor for all bodies that pass the filter and whose boxes the cast hits; in large
+  /// sets maybe more than once.
+  Status visit_all(const BodyVisitor& visitor);
 
   // For rays, which are tested on small sets in groups (ray_query.cpp): only large sets.
   /// Small sets contain the hits from `before` on.
@@ -98,6 +113,7 @@ class CastQuery {
   }
   [[nodiscard]] SceneHit hit_of(std::uint32_t body, const BodyContact& contact) const noexcept;
   Status closest_in_large_sets();
+  Status visit_large_sets(const BodyVisitor& visitor);
   /// Returns true if this body becomes the closest hit.
   bool improves(std::uint32_t body) noexcept;
   /// Appends the body's hit if there is one and the body was not tested before; returns false if

@@ -16,18 +16,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Returns the moving box of the cast, grown by `more` in all directions.
-MovingBox moving_box_from(const LinearCast& linear_cast, const double from[3], double limit,
-                          double more = 0.0) noexcept {
-  const Vector3d start = Vector3d::Map(from);
-  const mid::Box3& extent = linear_cast.extent();
-  const double reach = start.cwiseAbs().maxCoeff() + extent.largest();
-  MovingBox moving_box = stationary(extent.moved(start).grown(kCastBoxGrowth * reach + more));
-  moving_box.direction = Vec3d(linear_cast.direction());
-  moving_box.max_t = limit;
-  return moving_box;
-}
-
 CastContact contact_at(const ShapeRay& ray, double t, const Vec3d& normal) noexcept {
   CastContact contact;
   contact.t = t;
@@ -39,6 +27,17 @@ CastContact contact_at(const ShapeRay& ray, double t, const Vec3d& normal) noexc
 }
 
 }  // namespace
+
+MovingBox moving_box_from(const LinearCast& linear_cast, const double from[3], double limit,
+                          double more) noexcept {
+  const Vector3d start = Vector3d::Map(from);
+  const mid::Box3& extent = linear_cast.extent();
+  const double reach = start.cwiseAbs().maxCoeff() + extent.largest();
+  MovingBox moving_box = stationary(extent.moved(start).grown(kCastBoxGrowth * reach + more));
+  moving_box.direction = Vec3d(linear_cast.direction());
+  moving_box.max_t = limit;
+  return moving_box;
+}
 
 CastContact contact_of(const CastTouch& touch) noexcept {
   CastContact contact;

@@ -112,6 +112,11 @@ class LinearCast {
   bool hits_at_start_ = true;
 };
 
+/// Returns the moving box of a cast that starts at `from`, grown by `more` in all directions, up to
+/// t = limit.
+[[nodiscard]] MovingBox moving_box_from(const LinearCast& linear_cast, const double from[3],
+                                        double limit, double more = 0.0) noexcept;
+
 /// A ray, which must outlive this object.
 class RayCast final : public LinearCast {
  public:

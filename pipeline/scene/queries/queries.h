@@ -1,8 +1,8 @@
 #pragma once
 
 // Shared by the queries of a scene: the state of SceneQueries, filters and ray hits.
-// ray_query.cpp, shape_cast_query.cpp, scene_queries.cpp, motion_casts.cpp and set_distance.cpp
-// implement the queries.
+// ray_query.cpp, crossings.cpp, shape_cast_query.cpp, scene_queries.cpp, motion_casts.cpp and
+// set_distance.cpp implement the queries.
 
 #include <winnow/pipeline/scene_queries.h>
 #include "pipeline/composites/mid_phase.h"
@@ -65,6 +65,7 @@ struct QueryState {
         hits(memory),
         hits_first(memory),
         small_set_hits(memory),
+        crossings(memory),
         overlaps(memory),
         distances(memory),
         bounds(memory),
@@ -88,6 +89,7 @@ struct QueryState {
   /// Hits of a group of rays on the bodies of small sets (cast_query.h), before they are sorted by
   /// ray.
   Column<RayHit> small_set_hits;
+  Column<SceneCrossing> crossings;
   Column<SceneOverlap> overlaps;
   Column<SceneDistance> distances;
   /// Boxes of the second set of bodies, one column for each bound, and their squared distances from

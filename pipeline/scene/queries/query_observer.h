@@ -11,8 +11,18 @@ namespace winnow {
 class ObservedFilter;
 
 /// Which hits of a ray or shape cast are requested. `from_touch`: without bodies that are only
-/// touched at the start (ShapeCast::touching is false). Recordings contain the values.
-enum class HitForm : std::uint8_t { closest, any, all, closest_from_touch, all_from_touch };
+/// touched at the start (ShapeCast::touching is false). Recordings contain the values;
+/// `with_min_t`: recorded rays that have a min_t.
+enum class HitForm : std::uint8_t {
+  closest,
+  any,
+  all,
+  closest_from_touch,
+  all_from_touch,
+  closest_with_min_t,
+  any_with_min_t,
+  all_with_min_t,
+};
 
 [[nodiscard]] inline std::span<const SceneHit> one_hit(const SceneHit& hit) noexcept {
   return {&hit, 1};
@@ -33,12 +43,16 @@ class QueryObserver {
                     const SceneHitColumns& hits) noexcept = 0;
   virtual void rays(const ShapeRayBatch& rays, ObservedFilter& filter,
                     const SceneHitLists& lists) noexcept = 0;
+  virtual void crossings(const ShapeRay& ray, ObservedFilter& filter,
+                         std::span<const SceneCrossing> points) noexcept = 0;
   virtual void cast(HitForm form, const ShapeCast& cast, ObservedFilter& filter, double tolerance,
                     std::span<const SceneHit> hits) noexcept = 0;
   virtual void cast(HitForm form, const MotionCast& cast, ObservedFilter& filter, double tolerance,
                     std::span<const SceneHit> hits) noexcept = 0;
   virtual void overlap(ShapeId shape, const Pose& pose, ObservedFilter& filter,
                        std::span<const SceneOverlap> bodies) noexcept = 0;
+  virtual void distances(ShapeId shape, const Pose& pose, double limit, ObservedFilter& filter,
+                         std::span<const SceneDistance> bodies) noexcept = 0;
   virtual void nearest(const Vec3d& point, std::size_t count, double radius, ObservedFilter& filter,
                        std::span<const SceneDistance> bodies) noexcept = 0;
 

@@ -1,5 +1,5 @@
-// SceneQueries: bodies that overlap a shape, and bodies nearest to a point. shape_distance.h tests
-// the candidates that the partitions find.
+// SceneQueries: bodies that overlap a shape or are near it, and bodies nearest to a point.
+// shape_distance.h tests the candidates that the partitions find.
 
 #include <winnow/core/rounding.h>
 #include "core/memory/new_in.h"
@@ -10,6 +10,7 @@
 #include "pipeline/shapes/frame.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace winnow {
@@ -158,8 +159,8 @@ Footprint QueryState::footprint() const noexcept {
                              gaps.bytes(), small_set_hits.bytes(), accepted.bytes()}) {
     sum.scratch += bytes;
   }
-  for (const Bytes& bytes : {hits.bytes(), hits_first.bytes(), overlaps.bytes(), distances.bytes(),
-                             overlapping.bytes()}) {
+  for (const Bytes& bytes : {hits.bytes(), hits_first.bytes(), crossings.bytes(), overlaps.bytes(),
+                             distances.bytes(), overlapping.bytes()}) {
     sum.results += bytes;
   }
   return sum;
@@ -203,6 +204,43 @@ Answer<std::span<const SceneOverlap>> find_overlaps(QueryState& state, ShapeId s
   if (status != Status::ok) return status;
   std::sort(found.begin(), found.end(), has_lesser_overlap_id);
   return std::span<const SceneOverlap>(found.data(), found.size());
+}
+
+Answer<std::span<const SceneDistance>> SceneQueries::distances(ShapeId shape, const Pose& pose,
+                                                               double limit, const Filter& filter) {
+  const DefaultFloatEnvironment environment;
+  if (const Status status = QueryState::check_state(state_); status != Status::ok) return status;
+  if (!state_->parts.contains(shape)) return Status::invalid_key;
+  if (!pose.is_valid()) return Status::invalid_pose;
+  if (!std::isfinite(limit)) return Status::invalid_argument;
+  ObservedFilter observed(state_, filter);
+  const PlacedShape query_shape{shape, pose};
+  Column<SceneDistance>& found = state_->distances;
+  found.clear();
+  bool has_room = true;
+  auto test_body = [&](std::uint32_t body) {
+    ShapeDistance to;
+    if (ClosestParts(state_->parts).find(query_shape, state_->placed(body), limit, to)) {
+      has_room = found.push_back(distance_to(state_->scene, body, to)) && has_room;
+    }
+    return false;
+  };
+  BodyCandidateFilter body_filter(state_->scene, observed.used(), test_body);
+  // Covers the error of the solver's distance to a box boundary.
+  const double reach = std::max(limit, 0.0) * (1.0 + 1e-9);
+  const PlainBox around = state_->scene.bounds_from(state_->scene.origin, shape, pose, reach);
+  const Aabb box{Eigen::Vector3f::Map(around.min), Eigen::Vector3f::Map(around.max)};
+  Status status = state_->each_partition([&](const Partition& partition) {
+    return partition.overlap(box, state_->objects, body_filter.filter());
+  });
+  if (!has_room) status = Status::out_of_memory;
+  if (status != Status::ok) return status;
+  std::sort(found.begin(), found.end(), is_nearer);
+  const std::span<const SceneDistance> bodies(found.data(), found.size());
+  if (state_->observer != nullptr) {
+    state_->observer->distances(shape, pose, limit, observed, bodies);
+  }
+  return bodies;
 }
 
 Answer<std::span<const SceneDistance>> SceneQueries::nearest(const Vec3d& point, std::size_t count,

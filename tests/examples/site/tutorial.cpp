@@ -82,7 +82,7 @@ void bodies_and_contacts() {
   must(scene.refresh());  // updates the partitions
   winnow::SceneQueries queries(scene);
   const winnow::SceneHit hit =
-      queries.closest(winnow::ShapeRay{{-5, 0, 0.5}, {1, 0, 0}, 100.0});  // hits the lower crate
+      queries.closest(winnow::ShapeRay{{-5, 0, 0.5}, {1, 0, 0}});  // hits the lower crate
   const winnow::SceneDistance gap =
       queries.distance(upper, rolling);  // closest points, distance, error bound
   // [end]
