@@ -7,7 +7,7 @@
 #include <winnow/core/rounding.h>
 #include <winnow/pipeline/contact_types.h>
 #include "pipeline/composites/composites.h"
-#include "pipeline/composites/convex_patch.h"
+#include "pipeline/composites/patch_contact.h"
 #include "pipeline/composites/surface_cones.h"
 #include "pipeline/narrow/narrow_columns.h"
 #include "pipeline/shapes/extent.h"
@@ -55,12 +55,6 @@ constexpr double kSameNormal = 1e-13;
 // A normal whose component towards the back of a triangle is smaller counts as parallel to the
 // triangle.
 constexpr double kBackNormal = 1e-9;
-// Cosine of the angle between two normals of a patch that counts as gentle.
-constexpr double kGentleCosine = 0.99;
-// Times that a patch is solved while it grows.
-constexpr int kMaxPatchRounds = 12;
-// Error of a touched point of a patch, relative to the size of the patch.
-constexpr double kPatchSlack = 1e-5;
 
 /// An overlapping pair of a mesh triangle and another shape.
 struct FacePair {
@@ -203,28 +197,6 @@ class SurfaceContacts {
     bool has_room = false;
   };
 
-  /// The contact of the patches around the triangles of an answer.
-  struct PatchContact {
-    ConvexPatch side[2];
-    /// The primitives that are no triangles of surfaces.
-    std::uint32_t other[2] = {};
-    Vec normal;
-    double distance = 0.0;
-    double error = 0.0;
-    /// The deepest points of a and b.
-    Vec touched[2];
-    /// The normal is in the normal cones of both patches.
-    bool is_valid = false;
-
-    [[nodiscard]] bool is_of(const BodyPair& bodies) const noexcept {
-      const std::uint32_t own[2] = {bodies.a, bodies.b};
-      for (std::size_t k = 0; k < 2; ++k) {
-        if (side[k].is_empty() ? other[k] != own[k] : !side[k].contains(own[k])) return false;
-      }
-      return !side[0].is_empty() || !side[1].is_empty();
-    }
-  };
-
   void run_wave(const Execution& execution, std::span<AnswerChunk> wave) noexcept;
   void align(AnswerChunk& chunk) const noexcept;
   [[nodiscard]] AnswerGroup group_from(std::size_t i) const noexcept;
@@ -239,10 +211,7 @@ class SurfaceContacts {
   [[nodiscard]] bool follow_valid(std::size_t i, const AnswerGroup& group) noexcept;
   [[nodiscard]] bool follow_patch(std::size_t i, const AnswerGroup& group,
                                   PatchContact& patch) noexcept;
-  [[nodiscard]] bool solve_gentle(const BodyPair& bodies, PatchContact& patch) const noexcept;
   void solve_patch(std::size_t i, const AnswerGroup& group, PatchContact& patch) const noexcept;
-  void solve_convex(const BodyPair& bodies, PatchContact& patch) const noexcept;
-  [[nodiscard]] bool grow_to_blockers(const AnswerGroup& group, PatchContact& patch) const noexcept;
   [[nodiscard]] bool is_backside(std::size_t i, const AnswerGroup& group) const noexcept;
   [[nodiscard]] bool is_level_with(std::size_t i, std::size_t s) const noexcept;
   [[nodiscard]] bool points_back(std::size_t i, Vec& front) const noexcept;
@@ -508,88 +477,7 @@ void SurfaceContacts::solve_patch(std::size_t i, const AnswerGroup& group,
     const std::uint32_t start = second ? bodies.b : bodies.a;
     if (is_facet(start)) own.grow(cones_, group, start, second, outward_of(i, second, group));
   }
-  if (solve_gentle(bodies, patch)) return;
-  for (int round = 0; round < kMaxPatchRounds; ++round) {
-    solve_convex(bodies, patch);
-    if (!patch.is_valid || !grow_to_blockers(group, patch)) return;
-  }
-  patch.is_valid = false;
-}
-
-// Finds the least translation that parts the convex patches.
-void SurfaceContacts::solve_convex(const BodyPair& bodies, PatchContact& patch) const noexcept {
-  const PairAnswer answer =
-      solve_patches(tables_, {pairs_.shapes[bodies.a], pairs_.poses[bodies.a], patch.side[0]},
-                    {pairs_.shapes[bodies.b], pairs_.poses[bodies.b], patch.side[1]});
-  patch.normal = as_eigen(answer.normal);
-  patch.distance = answer.distance;
-  patch.error = answer.error_bound;
-  patch.is_valid = answer.distance <= 0.0 && std::isfinite(answer.distance);
-  const Pose from = patch.side[0].is_empty() ? pairs_.poses[bodies.a] : patch.side[0].pose();
-  patch.touched[0] = as_eigen(from.position) + as_eigen(answer.point);
-  patch.touched[1] = patch.touched[0] + patch.distance * patch.normal;
-}
-
-// Adds the triangles at the touched points that rise above the plane of the contact; they may not
-// overlap the other body. Returns whether a patch has grown. A triangle that a patch cannot take
-// makes the contact invalid.
-bool SurfaceContacts::grow_to_blockers(const AnswerGroup& group,
-                                       PatchContact& patch) const noexcept {
-  bool has_grown = false;
-  for (const bool second : {false, true}) {
-    ConvexPatch& own = patch.side[second ? 1 : 0];
-    if (own.is_empty()) continue;
-    const Vec& touched = patch.touched[second ? 1 : 0];
-    const Vec outward = second ? Vec(-patch.normal) : patch.normal;
-    SurfaceCones::Blocker blocker;
-    if (!cones_.find_blocker(touched, outward, kPatchSlack * own.size(), second, group, blocker))
-      continue;
-    if (!own.add(blocker.primitive, blocker.facet)) {
-      patch.is_valid = false;
-      return false;
-    }
-    has_grown = true;
-  }
-  return has_grown;
-}
-
-// Solves a patch that bends so little that the best of its face normals is as good as any
-// direction, if the other shape is deepest over the patch: then the depth along any normal between
-// those of the faces is at least kGentleCosine of that depth.
-bool SurfaceContacts::solve_gentle(const BodyPair& bodies, PatchContact& patch) const noexcept {
-  const bool second = patch.side[0].is_empty();
-  const ConvexPatch& own = patch.side[second ? 1 : 0];
-  if (!patch.side[second ? 0 : 1].is_empty()) return false;
-  const std::span<const Facet> facets = own.facets();
-  const Vec& middle = facets[0].normal;
-  const auto is_bent = [&](const Facet& one) { return one.normal.dot(middle) < kGentleCosine; };
-  if (std::ranges::any_of(facets, is_bent)) return false;
-  const std::uint32_t other = second ? bodies.a : bodies.b;
-  const Mat rotation = rotation_of(scale_to_unit_max(pairs_.poses[other].orientation));
-  const auto at = as_eigen(pairs_.poses[other].position);
-  patch.distance = -kInfinity;
-  for (const Facet& facet : facets) {
-    const SupportExtent reach =
-        extent(tables_, pairs_.shapes[other], rotation.transpose() * facet.normal);
-    const double gap = facet.normal.dot(at - facet.corner[0]) + reach.low;
-    if (gap <= patch.distance) continue;
-    patch.distance = gap;
-    patch.normal = second ? Vec(-facet.normal) : facet.normal;
-    patch.error = kSlack * (reach.scale + at.lpNorm<1>() + facet.corner[0].lpNorm<1>());
-  }
-  solver::Problem problem;
-  prepare(tables_, pairs_.shapes[bodies.a], pairs_.poses[bodies.a], pairs_.shapes[bodies.b],
-          pairs_.poses[bodies.b], false, problem);
-  const Vec deepest =
-      solver::support(second ? problem.a : problem.b, second ? patch.normal : Vec(-patch.normal));
-  if (!own.is_under(as_eigen(pairs_.poses[bodies.a].position) + unscaled(problem, 1.0) * deepest)) {
-    return false;
-  }
-  patch.error += (1.0 - kGentleCosine) * std::abs(patch.distance);
-  // Each triangle that reaches the plane is clipped against it.
-  patch.touched[0] = patch.touched[1] = Vec::Constant(kInfinity);
-  patch.is_valid = patch.distance <= 0.0;
-  return true;
+  PatchSolver(tables_, pairs_, cones_).solve(group, patch);
 }
 
 // Returns the normal of a triangle towards its front; else to the side to which the other body, as
