@@ -1,4 +1,4 @@
-#include <winnow/core/hits.h>
+#include <winnow/core/results.h>
 
 namespace winnow {
 

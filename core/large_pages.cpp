@@ -1,9 +1,8 @@
 // LargePages, a best-fit allocator of large blocks on slabs of 2 MB pages, and `default_memory`.
 // Slabs and free ranges are sorted arrays under one mutex.
 
-#include <winnow/core/large_pages.h>
+#include <winnow/core/memory.h>
 
-#include <winnow/core/column.h>
 #include "core/memory/catch_bad_alloc.h"
 #include "core/memory/new_in.h"
 #include "core/memory/prefault_each_page.h"

@@ -1,4 +1,4 @@
-#include <winnow/core/pair_buffer.h>
+#include <winnow/core/results.h>
 
 #include <cstring>
 

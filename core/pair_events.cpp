@@ -1,4 +1,4 @@
-#include <winnow/core/pair_events.h>
+#include <winnow/core/results.h>
 
 namespace winnow {
 

@@ -4,14 +4,13 @@
 // a Transport (cluster_transport.h); ClusterScene (cluster_scene.h) adds shapes and contacts. The
 // implementation is in cluster/.
 
-#include <winnow/core/box_view.h>
 #include <winnow/core/execution.h>
 #include <winnow/core/export.h>
-#include <winnow/core/footprint.h>
 #include <winnow/core/key.h>
-#include <winnow/core/large_pages.h>
-#include <winnow/core/pair_buffer.h>
+#include <winnow/core/memory.h>
+#include <winnow/core/results.h>
 #include <winnow/core/status.h>
+#include <winnow/core/volumes.h>
 #include <winnow/partitions/partition.h>
 #include <winnow/partitions/structures.h>
 #include <winnow/pipeline/cluster_transport.h>
@@ -177,8 +176,7 @@ class WINNOW_API Cluster {
   /// Creates an empty cluster on the ranks of `transport`, which must outlive it. Collective.
   explicit Cluster(Transport& transport, const ClusterOptions& options = {}) noexcept;
   ~Cluster();
-  Cluster(const Cluster&) = delete;
-  Cluster& operator=(const Cluster&) = delete;
+  Cluster& operator=(Cluster&&) = delete;  // neither copied nor moved
 
   /// Returns `ok`; `invalid_argument` for options out of range; or the error that ended the
   /// cluster.

@@ -1,9 +1,7 @@
 #pragma once
 
-#include <winnow/core/column.h>
 #include <winnow/core/export.h>
-#include <winnow/core/footprint.h>
-#include <winnow/core/large_pages.h>
+#include <winnow/core/memory.h>
 
 #include <cstddef>
 #include <cstdint>

@@ -4,17 +4,15 @@
 // of features are tested by `feature_impact`, rigid shapes as in `time_of_impact`. The
 // implementation is in motion/.
 
-#include <winnow/core/aabb.h>
 #include <winnow/core/execution.h>
 #include <winnow/core/export.h>
-#include <winnow/core/footprint.h>
-#include <winnow/core/large_pages.h>
-#include <winnow/core/pair_buffer.h>
+#include <winnow/core/memory.h>
 #include <winnow/core/point_view.h>
+#include <winnow/core/results.h>
 #include <winnow/core/status.h>
-#include <winnow/core/vec3.h>
-#include <winnow/pipeline/feature_impacts.h>
-#include <winnow/pipeline/time_of_impact.h>
+#include <winnow/core/vectors.h>
+#include <winnow/core/volumes.h>
+#include <winnow/pipeline/impacts.h>
 
 #include <array>
 #include <cstddef>
@@ -120,8 +118,6 @@ class WINNOW_API DeformableMesh {
   /// Takes the contents of `other`, which is then without triangles.
   DeformableMesh(DeformableMesh&& other) noexcept;
   ~DeformableMesh();
-  DeformableMesh(const DeformableMesh&) = delete;
-  DeformableMesh& operator=(const DeformableMesh&) = delete;
 
   /// Copies the triangles and sorts them by the rest positions of their vertices. Call `move`
   /// before any query. Calling `build` again replaces the mesh, for example after triangles or

@@ -1,13 +1,11 @@
 #pragma once
 
-#include <winnow/core/aabb.h>
-#include <winnow/core/column.h>
 #include <winnow/core/export.h>
-#include <winnow/core/footprint.h>
-#include <winnow/core/large_pages.h>
+#include <winnow/core/memory.h>
 #include <winnow/core/point_view.h>
 #include <winnow/core/pose.h>
 #include <winnow/core/status.h>
+#include <winnow/core/volumes.h>
 #include <winnow/pipeline/shapes.h>
 
 #include <cstddef>
@@ -36,9 +34,6 @@ class WINNOW_API ShapePool {
   /// Takes the shapes of another pool, with their ids, and its resource. The other pool is then
   /// empty.
   ShapePool(ShapePool&&) noexcept;
-  ShapePool(const ShapePool&) = delete;
-  ShapePool& operator=(const ShapePool&) = delete;
-  ShapePool& operator=(ShapePool&&) = delete;
 
   /// Adds a shape. `invalid_shape` for a length that is negative, NaN or infinite, or a half-space
   /// without a normal; `too_many_objects` beyond 2^28 shapes of a kind. O(1).

@@ -1,9 +1,10 @@
 #pragma once
 
 #include <winnow/core/export.h>
+#include <winnow/core/point_view.h>
 #include <winnow/core/pose.h>
 #include <winnow/core/status.h>
-#include <winnow/core/vec3.h>
+#include <winnow/core/vectors.h>
 #include <winnow/pipeline/shapes.h>
 
 #include <array>
@@ -51,17 +52,12 @@ struct ShapeRayBatch {
   [[nodiscard]] ShapeRay operator[](std::size_t i) const noexcept {
     ShapeRay ray;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      ray.origin[axis] = at(origin[axis], i);
-      ray.direction[axis] = at(direction[axis], i);
+      ray.origin[axis] = detail::strided(origin[axis], i, stride);
+      ray.direction[axis] = detail::strided(direction[axis], i, stride);
     }
-    ray.max_t = max_t != nullptr ? at(max_t, i) : std::numeric_limits<double>::infinity();
+    ray.max_t = max_t != nullptr ? detail::strided(max_t, i, stride)
+                                 : std::numeric_limits<double>::infinity();
     return ray;
-  }
-
- private:
-  [[nodiscard]] double at(const double* column, std::size_t i) const noexcept {
-    return *reinterpret_cast<const double*>(reinterpret_cast<const std::byte*>(column) +
-                                            i * stride);
   }
 };
 

@@ -2,7 +2,7 @@
 // read_recording() in aabbs.cpp calls it. The calls are played twice: first to find the partition
 // or scene with the most objects, then to read its boxes at each frame's end.
 
-#include <winnow/pipeline/replay.h>
+#include <winnow/pipeline/recording.h>
 #include "bench/recordings/recording.h"
 
 #include <algorithm>

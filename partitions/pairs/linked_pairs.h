@@ -1,6 +1,6 @@
 #pragma once
 
-#include <winnow/core/pair_buffer.h>
+#include <winnow/core/results.h>
 
 #include <cstddef>
 #include <cstdint>

@@ -1,7 +1,7 @@
 // Overlap queries of a partition: one region (regions.h) or a batch of boxes. Results go to an
 // OverlapBuffer or, as pairs, through PairWriter.
 
-#include <winnow/core/hits.h>
+#include <winnow/core/results.h>
 #include "core/threads/float_environment.h"
 #include "partitions/pairs/pair_tracker.h"
 #include "partitions/pairs/pair_writer.h"

@@ -3,11 +3,10 @@
 // The objects of a partition as rows of columns. PartitionState owns the rows, SpatialIndex orders
 // them, and kernels read them through RowView.
 
-#include <winnow/core/aabb.h>
 #include <winnow/core/execution.h>
-#include <winnow/core/fat_margin.h>
-#include <winnow/core/footprint.h>
+#include <winnow/core/memory.h>
 #include <winnow/core/status.h>
+#include <winnow/core/volumes.h>
 #include "core/memory/bounds_pool.h"
 #include "core/memory/key_table.h"
 #include "partitions/rows/change_list.h"

@@ -2,7 +2,7 @@
 
 // Storage of a CompositePool.
 
-#include <winnow/core/column.h>
+#include <winnow/core/memory.h>
 #include <winnow/pipeline/composite_pool.h>
 #include "pipeline/composites/mid_phase.h"
 #include "pipeline/shapes/frame.h"

@@ -2,6 +2,7 @@
 
 #include "pipeline/composites/surface_cones.h"
 
+#include "core/numbers/rotation.h"
 #include "pipeline/composites/mid_phase.h"
 #include "pipeline/composites/transformed_shape.h"
 #include "pipeline/mesh/height_grid.h"

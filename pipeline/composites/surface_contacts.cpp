@@ -4,8 +4,10 @@
 // before `reduce_contacts`. In this file, an answer is the narrow-phase result of one pair of
 // primitives.
 
-#include <winnow/core/rounding.h>
+#include <winnow/core/volumes.h>
 #include <winnow/pipeline/contact_types.h>
+#include "core/numbers/rotation.h"
+#include "core/numbers/rounding.h"
 #include "pipeline/composites/composites.h"
 #include "pipeline/composites/convex_patch.h"
 #include "pipeline/composites/surface_cones.h"

@@ -2,12 +2,13 @@
 // streams the pairs of features whose boxes overlap, their impacts (feature_impacts.cpp) and
 // proximities (feature_proximity.cpp).
 
-#include <winnow/core/rounding.h>
+#include <winnow/core/volumes.h>
 #include <winnow/pipeline/deformable_mesh.h>
 
 #include "core/memory/bounds_pool.h"
 #include "core/memory/columns.h"
 #include "core/memory/new_in.h"
+#include "core/numbers/rounding.h"
 #include "core/sort/parallel_ranges.h"
 #include "core/threads/float_environment.h"
 #include "partitions/tree/block_tree.h"

@@ -1,7 +1,7 @@
 // time_of_impact: checks each pair and distributes pairs of convex shapes to ImpactBatch, pairs
 // with composite shapes to find_body_impact.
 
-#include <winnow/pipeline/time_of_impact.h>
+#include <winnow/pipeline/impacts.h>
 #include "core/sort/parallel_ranges.h"
 #include "core/threads/float_environment.h"
 #include "pipeline/motion/body_impact.h"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <winnow/pipeline/narrow_result.h>
+#include <winnow/pipeline/narrow_phase.h>
 
 #include <cstdint>
 #include <span>

@@ -6,7 +6,7 @@
 #include "pipeline/python/callbacks.h"
 #include "pipeline/python/refusal.h"
 
-#include <winnow/pipeline/replay.h>
+#include <winnow/pipeline/recording.h>
 
 #include <cstddef>
 #include <cstdint>

@@ -4,7 +4,7 @@
 // calls are read. Each play_*.cpp file implements one group of calls.
 
 #include <winnow/pipeline/continuous_collision.h>
-#include <winnow/pipeline/replay.h>
+#include <winnow/pipeline/recording.h>
 #include <winnow/pipeline/scene_queries.h>
 #include <winnow/pipeline/sensors.h>
 #include "core/memory/new_in.h"

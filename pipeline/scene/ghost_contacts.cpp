@@ -18,13 +18,14 @@
 // which is not larger. So the contact of lesser depth is dropped. A dropped contact cannot be the
 // floor of another contact, so two contacts never drop each other.
 
+#include "core/numbers/rotation.h"
 #include "pipeline/narrow/narrow_columns.h"
 #include "pipeline/scene/collision.h"
 #include "pipeline/shapes/extent.h"
 #include "pipeline/shapes/frame.h"
 
 #include <winnow/core/eigen.h>
-#include <winnow/core/rotation.h>
+#include <winnow/core/pose.h>
 
 #include <algorithm>
 #include <cmath>

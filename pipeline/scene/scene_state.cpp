@@ -5,6 +5,7 @@
 #include "pipeline/scene/scene_state.h"
 
 #include "core/hooks/stage_scope.h"
+#include "core/numbers/rounding.h"
 #include "core/sort/parallel_ranges.h"
 #include "partitions/state/box_partition.h"
 #include "pipeline/composites/parts.h"

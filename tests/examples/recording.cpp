@@ -1,7 +1,6 @@
 // A program records its calls and replays them; it also saves its objects and loads them again.
 
 #include <winnow/pipeline/recording.h>
-#include <winnow/pipeline/replay.h>
 
 #include <cstddef>
 #include <cstdio>

@@ -2,7 +2,6 @@
 // the loop over requests for snapshots).
 
 #include <winnow/pipeline/recording.h>
-#include <winnow/pipeline/replay.h>
 #include <winnow/winnow.h>
 
 #include <algorithm>
