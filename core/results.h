@@ -27,6 +27,20 @@ struct Pair {
   friend constexpr auto operator<=>(const Pair&, const Pair&) noexcept = default;
 };
 
+namespace detail {
+
+/// Whether objects are linked to their pairs, or will be linked if few objects move in the next
+/// frame too; see LinkedPairs.
+enum class LinkState : std::uint8_t { unlinked, few_moved, linked };
+
+/// The next and the previous pair of each of the two objects of a pair.
+struct PairLink {
+  std::uint32_t next[2];
+  std::uint32_t before[2];
+};
+
+}  // namespace detail
+
 /// The caller's array of pairs, reused from frame to frame. If the buffer is passed to the same
 /// partition again, the query starts from the previous frame's pairs. If few objects moved, only
 /// their pairs are recomputed. If at most one object in 48 moved in each of two consecutive frames,
@@ -65,7 +79,7 @@ class WINNOW_API PairBuffer {
         provenance_(std::exchange(other.provenance_, {})) {}
 
   /// Returns all pairs, in the order that the query requested.
-  [[nodiscard]] std::span<const Pair> pairs() const noexcept { return {pairs_.data(), size()}; }
+  [[nodiscard]] std::span<const Pair> pairs() const noexcept { return pairs_; }
   /// Returns the number of pairs.
   [[nodiscard]] std::size_t size() const noexcept { return pairs_.size(); }
   /// True if there are no pairs.
@@ -137,19 +151,13 @@ class WINNOW_API PairBuffer {
   friend class PairTracker;
   friend class LinkedPairs;
 
-  /// Whether objects are linked to their pairs, or will be linked if few objects move in the next
-  /// frame too; see LinkedPairs.
-  enum class LinkState : std::uint8_t { unlinked, few_moved, linked };
-  struct Link {
-    std::uint32_t next[2];
-    std::uint32_t before[2];
-  };
+  using LinkState = detail::LinkState;
 
   Column<Pair> pairs_;
   // Output of tasks before it is put in order; see PairWriter.
   Column<Pair> pages_;
   Column<std::uint64_t> page_table_;
-  Column<Link> links_;
+  Column<detail::PairLink> links_;
   Column<std::uint32_t> heads_;
   Column<std::uint32_t> places_;
   LinkState state_ = LinkState::unlinked;
@@ -233,24 +241,16 @@ class WINNOW_API PairEvents {
         provenance_(std::exchange(other.provenance_, {})) {}
 
   /// Returns the pairs of this frame that were not in the previous one, sorted by ids.
-  [[nodiscard]] std::span<const KeyPair> begun() const noexcept {
-    return {begun_.data(), begun_.size()};
-  }
+  [[nodiscard]] std::span<const KeyPair> begun() const noexcept { return begun_; }
   /// Returns the pairs of the previous frame that are not in this one, sorted by ids. The key of a
   /// removed object is stale.
-  [[nodiscard]] std::span<const KeyPair> ended() const noexcept {
-    return {ended_.data(), ended_.size()};
-  }
+  [[nodiscard]] std::span<const KeyPair> ended() const noexcept { return ended_; }
   /// Returns the client data of the pairs in `begun()`, in the same order; empty without the
   /// `client_data` option.
-  [[nodiscard]] std::span<const ClientDataPair> begun_data() const noexcept {
-    return {begun_data_.data(), begun_data_.size()};
-  }
+  [[nodiscard]] std::span<const ClientDataPair> begun_data() const noexcept { return begun_data_; }
   /// Returns the client data of the pairs in `ended()`, in the same order; empty without the
   /// `client_data` option. Data of a removed object are its own, even if its id was reused.
-  [[nodiscard]] std::span<const ClientDataPair> ended_data() const noexcept {
-    return {ended_data_.data(), ended_data_.size()};
-  }
+  [[nodiscard]] std::span<const ClientDataPair> ended_data() const noexcept { return ended_data_; }
   /// Returns the number of pairs that are in both frames. They come first in the PairBuffer; the
   /// pairs that began follow, in the order of `begun()`.
   [[nodiscard]] std::size_t persisting() const noexcept { return persisting_; }
@@ -323,7 +323,7 @@ class WINNOW_API HitBuffer {
       : hits_(memory), start_(memory), found_(memory), keys_(memory) {}
 
   /// Returns all hits; for a batch, the hits of each query one after the other.
-  [[nodiscard]] std::span<const Hit> hits() const noexcept { return {hits_.data(), size()}; }
+  [[nodiscard]] std::span<const Hit> hits() const noexcept { return hits_; }
   /// Returns the number of hits of all queries.
   [[nodiscard]] std::size_t size() const noexcept { return hits_.size(); }
   /// True if there are no hits.
@@ -383,7 +383,7 @@ class WINNOW_API OverlapBuffer {
 
   /// Returns every object whose box overlaps the region: first the inside ones, then the crossing
   /// ones.
-  [[nodiscard]] std::span<const ObjectId> ids() const noexcept { return {ids_.data(), size()}; }
+  [[nodiscard]] std::span<const ObjectId> ids() const noexcept { return ids_; }
   /// Returns the objects whose boxes are entirely inside the region. A box that is inside by less
   /// than the rounding error may be returned as crossing.
   [[nodiscard]] std::span<const ObjectId> inside() const noexcept { return ids().first(inside_); }

@@ -28,8 +28,7 @@ class CompositePool;
 namespace mid {
 struct Composites;
 struct MidPhase;
-const Composites* composites_of(const CompositePool& pool) noexcept;
-const MidPhase& mid_phase_of(const CompositePool& pool) noexcept;
+struct PoolAccess;
 }  // namespace mid
 
 /// A shape and its pose in a compound.
@@ -181,8 +180,7 @@ class WINNOW_API CompositePool {
   [[nodiscard]] Footprint footprint() const noexcept;
 
  private:
-  friend const mid::Composites* mid::composites_of(const CompositePool& pool) noexcept;
-  friend const mid::MidPhase& mid::mid_phase_of(const CompositePool& pool) noexcept;
+  friend struct mid::PoolAccess;
 
   /// Returns the state, which is created for the first shape: a pool without shapes takes no
   /// memory. Null if memory is refused.

@@ -22,12 +22,6 @@
 
 namespace winnow {
 
-/// Internal types.
-namespace impact {
-struct Impact;
-}  // namespace impact
-class SubShapeQuery;
-
 class CompositePool;
 
 /// Moving bodies: body i has shape shapes[i] and moves by motions[i].
@@ -66,60 +60,37 @@ class WINNOW_API ImpactResult {
   /// `ok`, the other columns contain zeros.
   [[nodiscard]] Status status(std::size_t i) const noexcept { return status_[i]; }
   /// Returns the status of all pairs.
-  [[nodiscard]] std::span<const Status> status() const noexcept {
-    return {status_.data(), status_.size()};
-  }
+  [[nodiscard]] std::span<const Status> status() const noexcept { return status_; }
   /// True if the shapes of pair i touch. False is certain: they are apart at all times.
   [[nodiscard]] bool hits(std::size_t i) const noexcept { return hit_[i] != 0; }
   /// Returns for all pairs whether they touch; nonzero if they do.
-  [[nodiscard]] std::span<const std::uint8_t> hit() const noexcept {
-    return {hit_.data(), hit_.size()};
-  }
+  [[nodiscard]] std::span<const std::uint8_t> hit() const noexcept { return hit_; }
   /// Returns the times of impact, in [0, 1]; 1 if the shapes do not touch. At every earlier time
   /// they are apart.
-  [[nodiscard]] std::span<const double> time() const noexcept { return span(time_); }
+  [[nodiscard]] std::span<const double> time() const noexcept { return time_; }
   /// Returns the distances at these times, within the tolerance; 0 if the shapes do not touch. For
   /// shapes that share a point at the start (time 0): minus the penetration depth.
-  [[nodiscard]] std::span<const double> gap() const noexcept { return span(gap_); }
+  [[nodiscard]] std::span<const double> gap() const noexcept { return gap_; }
   /// Returns the error bounds: the true distance at that time is within gap +- error_bound.
-  [[nodiscard]] std::span<const double> error_bound() const noexcept { return span(error_bound_); }
+  [[nodiscard]] std::span<const double> error_bound() const noexcept { return error_bound_; }
   /// Returns the unit normals from a to b at these times, in world axes; 0 if the shapes do not
   /// touch.
-  [[nodiscard]] std::span<const double> normal(int axis) const noexcept {
-    return span(normal_[axis]);
-  }
+  [[nodiscard]] std::span<const double> normal(int axis) const noexcept { return normal_[axis]; }
   /// Returns the contact points of a, relative to the position of body a at that time, in world
   /// axes. The point of b is point + gap * normal.
-  [[nodiscard]] std::span<const double> point(int axis) const noexcept {
-    return span(point_[axis]);
-  }
+  [[nodiscard]] std::span<const double> point(int axis) const noexcept { return point_[axis]; }
 
   /// Returns the triangle or child of a that touches b, the same one in each run. kWholeShape for a
   /// convex shape, or if the shapes do not touch.
-  [[nodiscard]] std::span<const std::uint32_t> part_a() const noexcept {
-    return {part_a_.data(), part_a_.size()};
-  }
+  [[nodiscard]] std::span<const std::uint32_t> part_a() const noexcept { return part_a_; }
   /// Returns the triangle or child of b.
-  [[nodiscard]] std::span<const std::uint32_t> part_b() const noexcept {
-    return {part_b_.data(), part_b_.size()};
-  }
+  [[nodiscard]] std::span<const std::uint32_t> part_b() const noexcept { return part_b_; }
 
   /// Returns the bytes of all columns under `results`: exactly what is allocated from the resource.
   [[nodiscard]] Footprint footprint() const noexcept;
 
  private:
-  friend WINNOW_API Status time_of_impact(const ShapePool& shapes, const MovingBodies& bodies,
-                                          std::span<const BodyPair> pairs,
-                                          const ImpactOptions& options, ImpactResult& result);
-  [[nodiscard]] bool resize(std::size_t count) noexcept;
-  void find_range(const SubShapeQuery& parts, const MovingBodies& bodies,
-                  std::span<const BodyPair> pairs, const ImpactOptions& options, std::size_t first,
-                  std::size_t end);
-  void write(std::size_t i, const impact::Impact& impact, std::uint32_t part_a,
-             std::uint32_t part_b) noexcept;
-  [[nodiscard]] static std::span<const double> span(const Column<double>& c) noexcept {
-    return {c.data(), c.size()};
-  }
+  friend struct ImpactWriter;
 
   Column<Status> status_;
   Column<std::uint8_t> hit_;

@@ -47,8 +47,6 @@ struct ContactColumns {
   Column<std::uint64_t> feature;  ///< see ContactPoint
 };
 
-struct NarrowColumns;
-
 /// Results of the narrow phase in columns, grouped by the kinds of the shapes; within a group in
 /// the order of the input. The caller keeps the object from frame to frame.
 class WINNOW_API NarrowResult {
@@ -67,13 +65,9 @@ class WINNOW_API NarrowResult {
   /// (a, b) of that pair, not of the kinds.
   [[nodiscard]] std::uint32_t pair_of(std::size_t i) const noexcept { return order_[i]; }
   /// Returns the input pair of every answer.
-  [[nodiscard]] std::span<const std::uint32_t> order() const noexcept {
-    return {order_.data(), order_.size()};
-  }
+  [[nodiscard]] std::span<const std::uint32_t> order() const noexcept { return order_; }
   /// Returns the runs of answers with the same two kinds of shapes; together they are all answers.
-  [[nodiscard]] std::span<const NarrowRun> runs() const noexcept {
-    return {runs_.data(), runs_.size()};
-  }
+  [[nodiscard]] std::span<const NarrowRun> runs() const noexcept { return runs_; }
 
   /// True if the shapes share a point. Available at every level.
   [[nodiscard]] bool overlaps(std::size_t i) const noexcept {
@@ -81,32 +75,26 @@ class WINNOW_API NarrowResult {
   }
   /// Returns, at level boolean, for each answer whether the shapes share a point; nonzero if they
   /// do.
-  [[nodiscard]] std::span<const std::uint8_t> overlap() const noexcept {
-    return {overlap_.data(), overlap_.size()};
-  }
+  [[nodiscard]] std::span<const std::uint8_t> overlap() const noexcept { return overlap_; }
   /// Returns the signed distances, minus the penetration depth if the shapes overlap; <= 0 exactly
   /// if they share a point. At level manifold, for a pair whose gap exceeds the margin, it may be
   /// any lower bound of the distance above the margin. Levels distance and manifold.
-  [[nodiscard]] std::span<const double> distance() const noexcept { return span(distance_); }
+  [[nodiscard]] std::span<const double> distance() const noexcept { return distance_; }
   /// Returns the error bounds: the true distance is within distance +- error_bound.
-  [[nodiscard]] std::span<const double> error_bound() const noexcept { return span(error_bound_); }
+  [[nodiscard]] std::span<const double> error_bound() const noexcept { return error_bound_; }
   /// Returns the unit normals from a to b, in world axes.
-  [[nodiscard]] std::span<const double> normal(int axis) const noexcept {
-    return span(normal_[axis]);
-  }
+  [[nodiscard]] std::span<const double> normal(int axis) const noexcept { return normal_[axis]; }
   /// Returns, at level distance, the closest (or deepest) point of a, relative to the position of
   /// body a, in world axes. The point of b is point + distance * normal.
-  [[nodiscard]] std::span<const double> point(int axis) const noexcept {
-    return span(point_[axis]);
-  }
+  [[nodiscard]] std::span<const double> point(int axis) const noexcept { return point_[axis]; }
   /// Returns, at level manifold, the first point of each answer: its points are elements
   /// [contact_first()[i], contact_first()[i] + contact_count()[i]) of the contact columns.
   [[nodiscard]] std::span<const std::uint32_t> contact_first() const noexcept {
-    return {contact_first_.data(), contact_first_.size()};
+    return contact_first_;
   }
   /// Returns the number of points of each answer, 0 to kManifoldPoints.
   [[nodiscard]] std::span<const std::uint32_t> contact_count() const noexcept {
-    return {contact_count_.data(), contact_count_.size()};
+    return contact_count_;
   }
   /// Returns the number of points of all answers.
   [[nodiscard]] std::size_t contacts() const noexcept { return contacts_.size(); }
@@ -120,22 +108,13 @@ class WINNOW_API NarrowResult {
   /// Returns the points as columns.
   [[nodiscard]] const ContactColumns& contact_columns() const noexcept { return contacts_; }
 
-  /// Returns the columns for corrections in place, by the library. Written values must agree with
-  /// what the accessors guarantee.
-  [[nodiscard]] NarrowColumns columns() noexcept;
-
   /// Returns the memory of all columns. `results.reserved` is exactly the number of bytes that are
   /// allocated from the resource; all other purposes are 0.
   [[nodiscard]] Footprint footprint() const noexcept;
 
  private:
   friend class NarrowPhase;
-  /// Allocates the columns of a level, and no others. False if memory is refused.
-  [[nodiscard]] bool resize(std::size_t count, ContactLevel level) noexcept;
-  void clear() noexcept;
-  [[nodiscard]] static std::span<const double> span(const Column<double>& c) noexcept {
-    return {c.data(), c.size()};
-  }
+  friend struct NarrowColumns;
 
   ContactLevel level_ = ContactLevel::boolean;
   Column<std::uint32_t> order_;

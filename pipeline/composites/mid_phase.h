@@ -210,13 +210,23 @@ struct MidPhase {
   decltype(&mid::solid_contains_shape) solid_contains_shape;
 };
 
+/// Reads private members of a pool.
+struct PoolAccess {
+  [[nodiscard]] static const MidPhase& mid_phase(const CompositePool& pool) noexcept {
+    return *pool.mid_phase_;
+  }
+  [[nodiscard]] static const Composites* composites(const CompositePool& pool) noexcept {
+    return pool.state_;
+  }
+};
+
 /// Returns the functions for the shapes of a pool.
 [[nodiscard]] inline const MidPhase& mid_phase_of(const CompositePool& pool) noexcept {
-  return *pool.mid_phase_;
+  return PoolAccess::mid_phase(pool);
 }
 /// Returns the shapes of a pool; null if it never had one.
 [[nodiscard]] inline const Composites* composites_of(const CompositePool& pool) noexcept {
-  return pool.state_;
+  return PoolAccess::composites(pool);
 }
 
 }  // namespace mid

@@ -186,7 +186,7 @@ class SurfaceContacts {
         pairs_(pairs),
         margins_(margins),
         result_(result),
-        columns_(result.columns()),
+        columns_(NarrowColumns::of(result)),
         cones_(collided, tables_, pairs, result),
         changes_(changes) {}
 

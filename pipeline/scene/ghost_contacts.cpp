@@ -316,9 +316,9 @@ bool ContactFilters::list_floor_regions(std::uint32_t pair, FloorWriter& writer)
 void ContactFilters::drop(const FloorContact& contact) noexcept {
   const double beyond = std::nextafter(call_.limit, std::numeric_limits<double>::max());
   if (contact.source == FloorContact::Source::convex) {
-    scene_.batch.answers.columns().distance[contact.answer] = beyond;
+    NarrowColumns::of(scene_.batch.answers).distance[contact.answer] = beyond;
   } else if (contact.source == FloorContact::Source::part) {
-    scene_.batch.parts->answers.columns().distance[contact.answer] = beyond;
+    NarrowColumns::of(scene_.batch.parts->answers).distance[contact.answer] = beyond;
   } else {
     scene_.batch.parts->regions.regions[contact.answer].count = 0;
   }
