@@ -28,7 +28,7 @@ struct Colour {
 /// calls it on the calling thread. An implementation should draw boxes and spheres as outlines.
 /// Infinite coordinates are passed on unchanged. An exception that leaves an implementation ends
 /// the process. The structure comes first, then the objects in ascending order of their ids.
-/// partitions/debug_colours.h lists the colours of each kind of item.
+/// The colours of each kind of item are below.
 class DebugDraw {
  public:
   virtual ~DebugDraw() = default;

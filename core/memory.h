@@ -88,7 +88,6 @@ class WINNOW_API LargePages final : public std::pmr::memory_resource {
  private:
   class Slabs;
 
-  [[nodiscard]] bool is_large(std::size_t bytes, std::size_t alignment) const noexcept;
   void* do_allocate(std::size_t bytes, std::size_t alignment) override;
   void do_deallocate(void* block, std::size_t bytes, std::size_t alignment) override;
   [[nodiscard]] bool do_is_equal(const memory_resource& other) const noexcept override {

@@ -222,6 +222,17 @@ template <int K>
   return result;
 }
 
+namespace detail {
+
+template <std::size_t Size>
+[[nodiscard]] constexpr std::array<float, Size> filled(float value) noexcept {
+  std::array<float, Size> result{};
+  for (float& f : result) f = value;
+  return result;
+}
+
+}  // namespace detail
+
 /// Discrete oriented polytope: K/2 slabs [min, max] along `kdop_directions<K>()`; closed. A
 /// default-constructed k-DOP is empty. Overlap of all slabs is necessary, but not sufficient, for
 /// the polytopes to intersect.
@@ -231,9 +242,9 @@ struct Kdop {
   static constexpr std::size_t kSlabs = K / 2;
 
   /// Lower ends of the slabs; +infinity if the k-DOP is empty.
-  std::array<float, kSlabs> min = filled(std::numeric_limits<float>::infinity());
+  std::array<float, kSlabs> min = detail::filled<kSlabs>(std::numeric_limits<float>::infinity());
   /// Upper ends of the slabs; -infinity if the k-DOP is empty.
-  std::array<float, kSlabs> max = filled(-std::numeric_limits<float>::infinity());
+  std::array<float, kSlabs> max = detail::filled<kSlabs>(-std::numeric_limits<float>::infinity());
 
   /// Returns the tightest k-DOP of a box, rounded outward.
   [[nodiscard]] static Kdop around(const Aabb& box) noexcept {
@@ -296,13 +307,6 @@ struct Kdop {
       if (!(min[s] <= other.max[s] && other.min[s] <= max[s])) return false;
     }
     return true;
-  }
-
- private:
-  static constexpr std::array<float, kSlabs> filled(float value) noexcept {
-    std::array<float, kSlabs> result{};
-    for (float& f : result) f = value;
-    return result;
   }
 };
 

@@ -90,7 +90,7 @@ class WINNOW_API ImpactResult {
   [[nodiscard]] Footprint footprint() const noexcept;
 
  private:
-  friend struct ImpactWriter;
+  friend struct ImpactColumns;
 
   Column<Status> status_;
   Column<std::uint8_t> hit_;

@@ -5,7 +5,6 @@
 
 #include "partitions/pairs/linked_pairs.h"
 #include "partitions/pairs/pair_tracker.h"
-#include "partitions/rows/fat_volumes.h"
 #include "partitions/structures/costs.h"
 
 namespace winnow {
@@ -221,7 +220,7 @@ void PairFinder::undo(SelfPairsQuery& query) noexcept {
 }
 
 bool PairFinder::is_exact() const noexcept {
-  return rows_.pool().volume() == Volume::aabb && is_none(rows_.fat_margin()) &&
+  return rows_.pool().volume() == Volume::aabb && !rows_.has_margin() &&
          index_.structure().tests_volumes();
 }
 

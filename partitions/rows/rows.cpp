@@ -84,6 +84,10 @@ void Rows::remove_row(ObjectId id) noexcept {
   keys_.release(id);
 }
 
+bool Rows::has_margin() const noexcept {
+  return !is_none(fat_margin_);
+}
+
 Status Rows::remove(Key key) {
   if (!keys_.is_valid(key)) return Status::invalid_key;
   remove_row(key.id);

@@ -83,6 +83,8 @@ class Rows {
   [[nodiscard]] const FilterTable& filters() const noexcept { return filters_; }
   [[nodiscard]] const Execution& execution() const noexcept { return execution_; }
   [[nodiscard]] const FatMargin& fat_margin() const noexcept { return fat_margin_; }
+  /// True if volumes are stored enlarged.
+  [[nodiscard]] bool has_margin() const noexcept;
   [[nodiscard]] const RowRegions& regions() const noexcept { return regions_; }
   [[nodiscard]] const RowChanges& changes() const noexcept { return changes_; }
   [[nodiscard]] RowChanges& changes() noexcept { return changes_; }

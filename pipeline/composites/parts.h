@@ -148,7 +148,7 @@ class SubShapeQuery {
                 PartVisitor visitor) const;
 
   [[nodiscard]] const mid::MidPhase& mid_phase() const noexcept {
-    return mid::mid_phase_of(*composites_);
+    return mid::PoolAccess::mid_phase(*composites_);
   }
 
   const ShapePool& shapes_;

@@ -190,7 +190,7 @@ SurfaceCones::Surroundings SurfaceCones::around_in_surface(
   const BodyPair& pair = collided_.pairs[group.bodies];
   const std::uint32_t body = second ? pair.b : pair.a;
   const ShapeId shape = collided_.bodies.shapes[body];
-  const Composites* const all = composites_of(collided_.pool);
+  const Composites* const all = PoolAccess::composites(collided_.pool);
   if (!shape.is_composite() || all == nullptr || all->compound(shape) != nullptr) {
     return Surroundings::none;
   }

@@ -75,7 +75,7 @@ Footprint ImpactResult::footprint() const noexcept {
 }
 
 /// Writes to the columns of a result.
-struct ImpactWriter {
+struct ImpactColumns {
   bool resize(std::size_t count) noexcept {
     bool ok = to.status_.resize(count) && to.hit_.resize(count) && to.part_a_.resize(count) &&
               to.part_b_.resize(count);
@@ -137,7 +137,7 @@ Status time_of_impact(const ShapePool& shapes, const MovingBodies& bodies,
                       std::span<const BodyPair> pairs, const ImpactOptions& options,
                       ImpactResult& result) {
   const DefaultFloatEnvironment environment;
-  ImpactWriter writer{result};
+  ImpactColumns writer{result};
   const auto refuse = [&writer](Status status) {
     static_cast<void>(writer.resize(0));
     return status;

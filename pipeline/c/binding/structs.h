@@ -21,21 +21,19 @@
 #include <winnow/c/snapshots.h>
 #include <winnow/c/time_of_impact.h>
 #include <winnow/c/volumes.h>
-#include <winnow/core/volumes.h>
-#include <winnow/core/regions.h>
-#include <winnow/core/rays.h>
 #include <winnow/core/debug_draw.h>
 #include <winnow/core/execution.h>
-#include <winnow/partitions/partition.h>
 #include <winnow/core/filter.h>
-#include <winnow/core/memory.h>
-#include <winnow/core/results.h>
 #include <winnow/core/hooks.h>
-#include <winnow/partitions/partition.h>
 #include <winnow/core/key.h>
+#include <winnow/core/memory.h>
 #include <winnow/core/point_view.h>
 #include <winnow/core/pose.h>
+#include <winnow/core/rays.h>
+#include <winnow/core/regions.h>
+#include <winnow/core/results.h>
 #include <winnow/core/status.h>
+#include <winnow/core/volumes.h>
 #include <winnow/partitions/partition.h>
 #include <winnow/partitions/structures.h>
 #include <winnow/pipeline/composite_pool.h>
@@ -45,7 +43,6 @@
 #include <winnow/pipeline/continuous_collision.h>
 #include <winnow/pipeline/deformable_mesh.h>
 #include <winnow/pipeline/impacts.h>
-#include <winnow/pipeline/surfaces.h>
 #include <winnow/pipeline/narrow_phase.h>
 #include <winnow/pipeline/recording.h>
 #include <winnow/pipeline/rigid_motion.h>
@@ -55,6 +52,7 @@
 #include <winnow/pipeline/shape_pool.h>
 #include <winnow/pipeline/shape_rays.h>
 #include <winnow/pipeline/shapes.h>
+#include <winnow/pipeline/surfaces.h>
 
 namespace winnow::c {
 
