@@ -8,10 +8,6 @@
 #include <winnow/core/memory.h>
 #include <winnow/core/status.h>
 #include <winnow/partitions/partition.h>
-#include <winnow/pipeline/composite_pool.h>
-#include <winnow/pipeline/contacts.h>
-#include <winnow/pipeline/scene.h>
-#include <winnow/pipeline/shape_pool.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -20,7 +16,11 @@
 
 namespace winnow {
 
+class CompositePool;
+class Contacts;
+class Scene;
 class SceneObserver;
+class ShapePool;
 struct RecorderState;
 struct SceneState;
 

@@ -2,7 +2,9 @@
 // read_recording() in aabbs.cpp calls it. The calls are played twice: first to find the partition
 // or scene with the most objects, then to read its boxes at each frame's end.
 
+#include <winnow/pipeline/composite_pool.h>
 #include <winnow/pipeline/recording.h>
+#include <winnow/pipeline/scene.h>
 #include "bench/recordings/recording.h"
 
 #include <algorithm>

@@ -5,6 +5,7 @@
 
 #include <winnow/pipeline/continuous_collision.h>
 #include <winnow/pipeline/recording.h>
+#include <winnow/pipeline/scene.h>
 #include <winnow/pipeline/scene_queries.h>
 #include <winnow/pipeline/sensors.h>
 #include "core/memory/new_in.h"
