@@ -14,7 +14,7 @@ function(winnow_public_name out header)
   set(${out} ${public} PARENT_SCOPE)
 endfunction()
 
-# The headers directly in a room's folder are public. Sources include them as <winnow/core/aabb.h>,
+# The headers directly in a room's folder are public. Sources include them as <winnow/core/volumes.h>,
 # as users do after installation: for each public header the build tree has a file that includes it.
 # All other headers are included by their path from the root of the tree.
 set(WINNOW_INCLUDE_DIR ${PROJECT_BINARY_DIR}/include)

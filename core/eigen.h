@@ -3,8 +3,7 @@
 // The only public header that includes Eigen, for programs that compute with Eigen. Others do not
 // need it: winnow's vectors and matrices convert from and to Eigen types without it.
 
-#include <winnow/core/matrix.h>
-#include <winnow/core/vec3.h>
+#include <winnow/core/vectors.h>
 
 #include <Eigen/Core>
 

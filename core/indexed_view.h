@@ -9,6 +9,66 @@
 
 namespace winnow {
 
+namespace detail {
+
+/// Random-access iterator that returns elements by value.
+template <typename Lookup>
+class IndexIterator {
+ public:
+  using iterator_concept = std::random_access_iterator_tag;  ///< category for std::ranges
+  /// Category before C++20: an input iterator, because elements are not stored.
+  using iterator_category = std::input_iterator_tag;
+  /// Type of an element.
+  using value_type = decltype(std::declval<const Lookup&>()(std::size_t{0}));
+  using difference_type = std::ptrdiff_t;  ///< number of elements between two iterators
+  using pointer = void;                    ///< elements have no address
+  using reference = value_type;            ///< elements are returned by value
+
+  IndexIterator() = default;
+  /// Points to element `at` of a column.
+  IndexIterator(const Lookup& lookup, std::size_t at) noexcept : lookup_(lookup), at_(at) {}
+
+  /// Operations of a random-access iterator.
+  /// @{
+  [[nodiscard]] value_type operator*() const noexcept { return lookup_(at_); }
+  [[nodiscard]] value_type operator[](difference_type i) const noexcept { return *(*this + i); }
+  IndexIterator& operator++() noexcept { return *this += 1; }
+  IndexIterator& operator--() noexcept { return *this -= 1; }
+  IndexIterator operator++(int) noexcept { return std::exchange(*this, *this + 1); }
+  IndexIterator operator--(int) noexcept { return std::exchange(*this, *this - 1); }
+  IndexIterator& operator+=(difference_type by) noexcept {
+    at_ += static_cast<std::size_t>(by);
+    return *this;
+  }
+  IndexIterator& operator-=(difference_type by) noexcept { return *this += -by; }
+  [[nodiscard]] friend IndexIterator operator+(IndexIterator at, difference_type by) noexcept {
+    return at += by;
+  }
+  [[nodiscard]] friend IndexIterator operator+(difference_type by, IndexIterator at) noexcept {
+    return at += by;
+  }
+  [[nodiscard]] friend IndexIterator operator-(IndexIterator at, difference_type by) noexcept {
+    return at -= by;
+  }
+  [[nodiscard]] friend difference_type operator-(const IndexIterator& a,
+                                                 const IndexIterator& b) noexcept {
+    return static_cast<difference_type>(a.at_) - static_cast<difference_type>(b.at_);
+  }
+  [[nodiscard]] friend bool operator==(const IndexIterator& a, const IndexIterator& b) noexcept {
+    return a.at_ == b.at_;
+  }
+  [[nodiscard]] friend auto operator<=>(const IndexIterator& a, const IndexIterator& b) noexcept {
+    return a.at_ <=> b.at_;
+  }
+  /// @}
+
+ private:
+  Lookup lookup_{};
+  std::size_t at_ = 0;
+};
+
+}  // namespace detail
+
 /// A computed column: element i is lookup(i) and is not stored. It is read like a span and is valid
 /// as long as the data behind `lookup` is.
 template <typename Lookup>
@@ -18,57 +78,7 @@ class IndexedView {
   using value_type = decltype(std::declval<const Lookup&>()(std::size_t{0}));
 
   /// Random-access iterator that returns elements by value.
-  class iterator {
-   public:
-    using iterator_concept = std::random_access_iterator_tag;  ///< category for std::ranges
-    /// Category before C++20: an input iterator, because elements are not stored.
-    using iterator_category = std::input_iterator_tag;
-    using value_type = IndexedView::value_type;  ///< type of an element
-    using difference_type = std::ptrdiff_t;      ///< number of elements between two iterators
-    using pointer = void;                        ///< elements have no address
-    using reference = value_type;                ///< elements are returned by value
-
-    iterator() = default;
-    /// Points to element `at` of a column.
-    iterator(const Lookup& lookup, std::size_t at) noexcept : lookup_(lookup), at_(at) {}
-
-    /// Operations of a random-access iterator.
-    /// @{
-    [[nodiscard]] value_type operator*() const noexcept { return lookup_(at_); }
-    [[nodiscard]] value_type operator[](difference_type i) const noexcept { return *(*this + i); }
-    iterator& operator++() noexcept { return *this += 1; }
-    iterator& operator--() noexcept { return *this -= 1; }
-    iterator operator++(int) noexcept { return std::exchange(*this, *this + 1); }
-    iterator operator--(int) noexcept { return std::exchange(*this, *this - 1); }
-    iterator& operator+=(difference_type by) noexcept {
-      at_ += static_cast<std::size_t>(by);
-      return *this;
-    }
-    iterator& operator-=(difference_type by) noexcept { return *this += -by; }
-    [[nodiscard]] friend iterator operator+(iterator at, difference_type by) noexcept {
-      return at += by;
-    }
-    [[nodiscard]] friend iterator operator+(difference_type by, iterator at) noexcept {
-      return at += by;
-    }
-    [[nodiscard]] friend iterator operator-(iterator at, difference_type by) noexcept {
-      return at -= by;
-    }
-    [[nodiscard]] friend difference_type operator-(const iterator& a, const iterator& b) noexcept {
-      return static_cast<difference_type>(a.at_) - static_cast<difference_type>(b.at_);
-    }
-    [[nodiscard]] friend bool operator==(const iterator& a, const iterator& b) noexcept {
-      return a.at_ == b.at_;
-    }
-    [[nodiscard]] friend auto operator<=>(const iterator& a, const iterator& b) noexcept {
-      return a.at_ <=> b.at_;
-    }
-    /// @}
-
-   private:
-    Lookup lookup_{};
-    std::size_t at_ = 0;
-  };
+  using iterator = detail::IndexIterator<Lookup>;
 
   /// Creates a column of elements 0 to `size` - 1.
   IndexedView(const Lookup& lookup, std::size_t size) noexcept : lookup_(lookup), size_(size) {}

@@ -1,9 +1,8 @@
 // LargePages, a best-fit allocator of large blocks on slabs of 2 MB pages, and `default_memory`.
 // Slabs and free ranges are sorted arrays under one mutex.
 
-#include <winnow/core/large_pages.h>
+#include <winnow/core/memory.h>
 
-#include <winnow/core/column.h>
 #include "core/memory/catch_bad_alloc.h"
 #include "core/memory/new_in.h"
 #include "core/memory/prefault_each_page.h"
@@ -277,12 +276,18 @@ std::size_t LargePages::used_bytes() const noexcept {
   return slabs_ == nullptr ? 0 : slabs_->used_bytes();
 }
 
-bool LargePages::is_large(std::size_t bytes, std::size_t alignment) const noexcept {
-  return slabs_ != nullptr && bytes >= kLargeBlock && alignment <= kPage;
+namespace {
+
+/// True if slabs, if there are any, have room for such a block.
+[[nodiscard]] bool is_large(std::size_t bytes, std::size_t alignment) noexcept {
+  return bytes >= LargePages::kLargeBlock && alignment <= LargePages::kPage;
 }
 
+}  // namespace
+
 void* LargePages::do_allocate(std::size_t bytes, std::size_t alignment) {
-  if (!is_large(bytes, alignment)) return small_blocks_->allocate(bytes, alignment);
+  if (slabs_ == nullptr || !is_large(bytes, alignment))
+    return small_blocks_->allocate(bytes, alignment);
   // No system has that much memory, and rounding the size up could overflow.
   void* const block = bytes > ~std::size_t{0} / 2 ? nullptr : slabs_->take(bytes, alignment);
   if (block == nullptr) throw_bad_alloc();
@@ -293,7 +298,8 @@ void* LargePages::do_allocate(std::size_t bytes, std::size_t alignment) {
 }
 
 void LargePages::do_deallocate(void* block, std::size_t bytes, std::size_t alignment) {
-  if (!is_large(bytes, alignment)) return small_blocks_->deallocate(block, bytes, alignment);
+  if (slabs_ == nullptr || !is_large(bytes, alignment))
+    return small_blocks_->deallocate(block, bytes, alignment);
   slabs_->give_back(block, bytes);
 }
 

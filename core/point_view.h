@@ -1,7 +1,6 @@
 #pragma once
 
-#include <winnow/core/rounding.h>
-#include <winnow/core/vec3.h>
+#include <winnow/core/vectors.h>
 
 #include <array>
 #include <concepts>
@@ -14,6 +13,12 @@
 namespace winnow {
 
 namespace detail {
+
+/// Returns element `i` of a column whose elements are `stride` bytes apart.
+template <typename T>
+[[nodiscard]] inline T strided(const T* column, std::size_t i, std::size_t stride) noexcept {
+  return *reinterpret_cast<const T*>(reinterpret_cast<const std::byte*>(column) + i * stride);
+}
 
 /// A contiguous container.
 template <typename Elements>
@@ -112,7 +117,11 @@ struct PointView {
       count = static_cast<std::size_t>(std::size(points)) / kElements;
       stride = kElements * sizeof(Point);
       for (std::size_t axis = 0; axis < 3 && count != 0; ++axis) {
-        set_column(axis, detail::coordinate_of(std::data(points), axis));
+        if constexpr (detail::PointsOf<Points, float>) {
+          single[axis] = detail::coordinate_of(std::data(points), axis);
+        } else {
+          precise[axis] = detail::coordinate_of(std::data(points), axis);
+        }
       }
     }
   }
@@ -131,23 +140,8 @@ struct PointView {
   }
   /// Returns coordinate `axis` of point `i`.
   [[nodiscard]] double coordinate(std::size_t i, std::size_t axis) const noexcept {
-    if (single[axis] != nullptr) return to_double(at(single[axis], i));
-    return at(precise[axis], i);
-  }
-
- private:
-  template <typename T>
-  void set_column(std::size_t axis, const T* column) noexcept {
-    if constexpr (std::same_as<T, float>) {
-      single[axis] = column;
-    } else {
-      precise[axis] = column;
-    }
-  }
-
-  template <typename T>
-  [[nodiscard]] T at(const T* column, std::size_t i) const noexcept {
-    return *reinterpret_cast<const T*>(reinterpret_cast<const std::byte*>(column) + i * stride);
+    if (single[axis] != nullptr) return detail::to_double(detail::strided(single[axis], i, stride));
+    return detail::strided(precise[axis], i, stride);
   }
 };
 
@@ -197,13 +191,8 @@ struct IndexView {
 
   /// Returns the vertex index of corner k, 0 to 2, of a triangle below `count`.
   [[nodiscard]] std::uint32_t corner(std::size_t triangle, std::size_t k) const noexcept {
-    const std::size_t offset = triangle * stride;
-    if (wide != nullptr) {
-      return reinterpret_cast<const std::uint32_t*>(reinterpret_cast<const std::byte*>(wide) +
-                                                    offset)[k];
-    }
-    return reinterpret_cast<const std::uint16_t*>(reinterpret_cast<const std::byte*>(narrow) +
-                                                  offset)[k];
+    if (wide != nullptr) return detail::strided(wide + k, triangle, stride);
+    return detail::strided(narrow + k, triangle, stride);
   }
 };
 

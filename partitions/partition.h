@@ -3,28 +3,17 @@
 // The public interface of a spatial partition. Results go to a PairBuffer, PairEvents, HitBuffer or
 // OverlapBuffer of the caller (core/).
 
-#include <winnow/core/aabb.h>
-#include <winnow/core/box_view.h>
-#include <winnow/core/cast.h>
-#include <winnow/core/column.h>
 #include <winnow/core/debug_draw.h>
 #include <winnow/core/execution.h>
 #include <winnow/core/export.h>
-#include <winnow/core/fat_margin.h>
 #include <winnow/core/filter.h>
-#include <winnow/core/footprint.h>
-#include <winnow/core/hits.h>
-#include <winnow/core/index_subset.h>
-#include <winnow/core/kdop.h>
 #include <winnow/core/key.h>
-#include <winnow/core/large_pages.h>
-#include <winnow/core/pair_buffer.h>
-#include <winnow/core/pair_events.h>
-#include <winnow/core/region.h>
-#include <winnow/core/sphere.h>
+#include <winnow/core/memory.h>
+#include <winnow/core/rays.h>
+#include <winnow/core/regions.h>
+#include <winnow/core/results.h>
 #include <winnow/core/status.h>
-#include <winnow/core/volume.h>
-#include <winnow/partitions/scene_features.h>
+#include <winnow/core/volumes.h>
 #include <winnow/partitions/structures.h>
 
 #include <cstddef>
@@ -116,14 +105,6 @@ class WINNOW_API PartitionRecorder {
   /// Returns the observer of a new partition; null if its calls cannot be recorded.
   [[nodiscard]] virtual PartitionObserver* observe_partition(
       StructureKind structure, const PartitionOptions& options) noexcept = 0;
-};
-
-/// The structure that `automatic()` has chosen, and the reason.
-struct StructureChoice {
-  StructureKind structure;    ///< the structure in use
-  std::string_view reason;    ///< a few words
-  std::uint64_t changes = 0;  ///< changes of structure after the first choice
-  SceneFeatures features;     ///< features of the scene that the choice is based on
 };
 
 /// A set of bounding volumes, each with 64 bits of client data and a key, that finds the pairs that

@@ -1,7 +1,12 @@
 #pragma once
 
+// The structures of a partition, and the choice among them.
+
 #include <winnow/core/export.h>
 
+#include <array>
+#include <cstddef>
+#include <cstdint>
 #include <span>
 #include <string_view>
 
@@ -75,5 +80,32 @@ WINNOW_STRUCTURES(WINNOW_DECLARE_STRUCTURE)
 
 /// Returns the structure of this name, or a kind without a structure. Links them all.
 [[nodiscard]] WINNOW_API StructureKind structure_named(std::string_view name) noexcept;
+
+/// Features of a scene, estimated from a sample of its boxes: input for the prediction of a
+/// structure's cost. Equal on every machine.
+struct SceneFeatures {
+  std::size_t objects = 0;  ///< objects in the scene
+  /// Per axis, the range of the middle 96 % of the objects divided by their mean edge on this axis.
+  /// An axis with a small value prunes nothing.
+  std::array<double, 3> room{};
+  /// log2 of the ratio of longest edges between a large and a small object (95th and 5th
+  /// percentile); 0 if all sizes are equal.
+  double size_spread = 0.0;
+  /// How strongly objects cluster: log2 of (probability that two sampled objects are in the same of
+  /// 64 cells) / (the same probability in an even scene). 0 if even, at most 6. The probability is
+  /// Simpson's index without pairs of an object with itself.
+  double crowding = 0.0;
+  /// Estimated pairs per object: the number in an even distribution times the factor by which
+  /// objects cluster; at most 16.
+  double pairs = 0.0;
+};
+
+/// The structure that `automatic()` has chosen, and the reason.
+struct StructureChoice {
+  StructureKind structure;    ///< the structure in use
+  std::string_view reason;    ///< a few words
+  std::uint64_t changes = 0;  ///< changes of structure after the first choice
+  SceneFeatures features;     ///< features of the scene that the choice is based on
+};
 
 }  // namespace winnow

@@ -4,14 +4,14 @@
 // a Transport (cluster_transport.h); ClusterScene (cluster_scene.h) adds shapes and contacts. The
 // implementation is in cluster/.
 
-#include <winnow/core/box_view.h>
 #include <winnow/core/execution.h>
 #include <winnow/core/export.h>
-#include <winnow/core/footprint.h>
+#include <winnow/core/indexed_view.h>
 #include <winnow/core/key.h>
-#include <winnow/core/large_pages.h>
-#include <winnow/core/pair_buffer.h>
+#include <winnow/core/memory.h>
+#include <winnow/core/results.h>
 #include <winnow/core/status.h>
+#include <winnow/core/volumes.h>
 #include <winnow/partitions/partition.h>
 #include <winnow/partitions/structures.h>
 #include <winnow/pipeline/cluster_transport.h>
@@ -20,7 +20,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory_resource>
-#include <span>  // for iterator tags; <iterator> would include streams
+#include <span>
 
 namespace winnow {
 
@@ -38,67 +38,25 @@ struct NamePair {
   friend constexpr auto operator<=>(const NamePair&, const NamePair&) noexcept = default;
 };
 
-/// Pairs that a rank reports; read-only, with iterators and random access. The rank stores a pair
-/// as two local body numbers (8 bytes); names are looked up only when a pair is read.
-class NamePairs {
- public:
-  /// Iterates over the pairs.
-  class Iterator {
-   public:
-    using iterator_category = std::input_iterator_tag;   ///< a dereference creates a pair
-    using iterator_concept = std::forward_iterator_tag;  ///< multi-pass
-    using value_type = NamePair;                         ///< type of a pair
-    using difference_type = std::ptrdiff_t;              ///< type of iterator differences
-    using pointer = const NamePair*;                     ///< unused: pairs are not stored
-    using reference = NamePair;                          ///< a pair by value
+namespace detail {
 
-    /// Creates an iterator over no pairs.
-    Iterator() noexcept = default;
-    /// Creates an iterator at a pair of body numbers; `names` maps body numbers to names.
-    Iterator(const Pair* at, const BodyName* names) noexcept : at_(at), names_(names) {}
-    /// Returns the pair, its smaller name first.
-    [[nodiscard]] NamePair operator*() const noexcept {
-      const BodyName a = names_[at_->first];
-      const BodyName b = names_[at_->second];
-      return a < b ? NamePair{a, b} : NamePair{b, a};
-    }
-    /// Advances to the next pair.
-    Iterator& operator++() noexcept {
-      ++at_;
-      return *this;
-    }
-    /// Advances to the next pair and returns the previous position.
-    Iterator operator++(int) noexcept { return {at_++, names_}; }
-    /// True if both are at the same pair.
-    friend bool operator==(const Iterator& a, const Iterator& b) noexcept { return a.at_ == b.at_; }
+/// Function that returns the names of a pair of local body numbers, the smaller one first.
+struct NamePairLookup {
+  const Pair* pairs = nullptr;      ///< pairs of body numbers
+  const BodyName* names = nullptr;  ///< by body number
 
-   private:
-    const Pair* at_ = nullptr;
-    const BodyName* names_ = nullptr;
-  };
-
-  /// Creates an empty range.
-  NamePairs() noexcept = default;
-  /// Creates a range of pairs of body numbers; `names` maps body numbers to names.
-  NamePairs(std::span<const Pair> pairs, const BodyName* names) noexcept
-      : pairs_(pairs), names_(names) {}
-  /// Returns the number of pairs.
-  [[nodiscard]] std::size_t size() const noexcept { return pairs_.size(); }
-  /// True if there are no pairs.
-  [[nodiscard]] bool empty() const noexcept { return pairs_.empty(); }
-  /// Returns an iterator at the first pair.
-  [[nodiscard]] Iterator begin() const noexcept { return {pairs_.data(), names_}; }
-  /// Returns an iterator past the last pair.
-  [[nodiscard]] Iterator end() const noexcept { return {pairs_.data() + size(), names_}; }
-  /// Returns pair i; i must be below `size()` (not checked).
-  [[nodiscard]] NamePair operator[](std::size_t i) const noexcept {
-    return *Iterator(pairs_.data() + i, names_);
+  [[nodiscard]] NamePair operator()(std::size_t i) const noexcept {
+    const BodyName a = names[pairs[i].first];
+    const BodyName b = names[pairs[i].second];
+    return a < b ? NamePair{a, b} : NamePair{b, a};
   }
-
- private:
-  std::span<const Pair> pairs_;
-  const BodyName* names_ = nullptr;
 };
+
+}  // namespace detail
+
+/// Pairs that a rank reports. Used like a span. The rank stores a pair as two local body numbers (8
+/// bytes); names are looked up only when a pair is read.
+using NamePairs = IndexedView<detail::NamePairLookup>;
 
 /// A body on the rank that owns it.
 struct ClusterBody {
@@ -177,8 +135,7 @@ class WINNOW_API Cluster {
   /// Creates an empty cluster on the ranks of `transport`, which must outlive it. Collective.
   explicit Cluster(Transport& transport, const ClusterOptions& options = {}) noexcept;
   ~Cluster();
-  Cluster(const Cluster&) = delete;
-  Cluster& operator=(const Cluster&) = delete;
+  Cluster& operator=(Cluster&&) = delete;  // neither copied nor moved
 
   /// Returns `ok`; `invalid_argument` for options out of range; or the error that ended the
   /// cluster.

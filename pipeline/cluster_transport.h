@@ -1,8 +1,8 @@
 #pragma once
 
-#include <winnow/core/aabb.h>
 #include <winnow/core/export.h>
 #include <winnow/core/status.h>
+#include <winnow/core/volumes.h>
 
 #include <array>
 #include <cstddef>
@@ -61,8 +61,7 @@ struct OverlappedWork {
 class WINNOW_API Transport {
  public:
   virtual ~Transport() = default;
-  Transport(const Transport&) = delete;
-  Transport& operator=(const Transport&) = delete;
+  Transport& operator=(Transport&&) = delete;  // neither copied nor moved
 
   /// Returns the number of ranks of all processes; at least 1.
   [[nodiscard]] virtual std::uint32_t ranks() const noexcept = 0;

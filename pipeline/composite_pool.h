@@ -3,20 +3,17 @@
 // Storage of meshes, height fields and compounds. The implementation is in composites/, with the
 // functions that a Scene uses in composites/mid_phase.h; the trees of meshes are in mesh/.
 
-#include <winnow/core/aabb.h>
-#include <winnow/core/column.h>
 #include <winnow/core/execution.h>
 #include <winnow/core/export.h>
-#include <winnow/core/footprint.h>
-#include <winnow/core/large_pages.h>
+#include <winnow/core/memory.h>
 #include <winnow/core/point_view.h>
 #include <winnow/core/pose.h>
 #include <winnow/core/status.h>
-#include <winnow/core/vec3.h>
+#include <winnow/core/vectors.h>
+#include <winnow/core/volumes.h>
 #include <winnow/pipeline/contact_types.h>
-#include <winnow/pipeline/height_field.h>
 #include <winnow/pipeline/shape_pool.h>
-#include <winnow/pipeline/triangle_mesh.h>
+#include <winnow/pipeline/surfaces.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -31,8 +28,7 @@ class CompositePool;
 namespace mid {
 struct Composites;
 struct MidPhase;
-const Composites* composites_of(const CompositePool& pool) noexcept;
-const MidPhase& mid_phase_of(const CompositePool& pool) noexcept;
+struct PoolAccess;
 }  // namespace mid
 
 /// A shape and its pose in a compound.
@@ -59,8 +55,7 @@ class WINNOW_API CompositePool {
                          std::pmr::memory_resource* memory = default_memory()) noexcept;
   explicit CompositePool(ShapePool&& shapes, std::pmr::memory_resource* memory = nullptr) = delete;
   ~CompositePool();
-  CompositePool(const CompositePool&) = delete;
-  CompositePool& operator=(const CompositePool&) = delete;
+  CompositePool& operator=(CompositePool&&) = delete;  // neither copied nor moved
 
   /// Adds a mesh; see TriangleMesh::build for parameters and errors.
   Answer<ShapeId> add_mesh(const PointView& vertices, const IndexView& triangles,
@@ -184,8 +179,7 @@ class WINNOW_API CompositePool {
   [[nodiscard]] Footprint footprint() const noexcept;
 
  private:
-  friend const mid::Composites* mid::composites_of(const CompositePool& pool) noexcept;
-  friend const mid::MidPhase& mid::mid_phase_of(const CompositePool& pool) noexcept;
+  friend struct mid::PoolAccess;
 
   /// Returns the state, which is created for the first shape: a pool without shapes takes no
   /// memory. Null if memory is refused.

@@ -1,9 +1,7 @@
 #pragma once
 
-#include <winnow/core/column.h>
 #include <winnow/core/export.h>
-#include <winnow/core/footprint.h>
-#include <winnow/core/large_pages.h>
+#include <winnow/core/memory.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -31,9 +29,7 @@ class WINNOW_API ContactGroups {
   /// Returns the number of groups; none of them is empty.
   [[nodiscard]] std::size_t size() const noexcept { return first_.empty() ? 0 : first_.size() - 1; }
   /// Returns the group of each pair of the contacts.
-  [[nodiscard]] std::span<const std::uint32_t> group() const noexcept {
-    return {group_.data(), group_.size()};
-  }
+  [[nodiscard]] std::span<const std::uint32_t> group() const noexcept { return group_; }
   /// Returns the pairs of a group, ascending.
   [[nodiscard]] std::span<const std::uint32_t> pairs(std::size_t group) const noexcept {
     return {order_.data() + first_[group], first_[group + 1] - first_[group]};

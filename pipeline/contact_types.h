@@ -4,7 +4,7 @@
 // include this header.
 
 #include <winnow/core/export.h>
-#include <winnow/core/vec3.h>
+#include <winnow/core/vectors.h>
 
 #include <cstdint>
 

@@ -4,13 +4,11 @@
 // store what events, the contact cache and warm starts need of the previous frame. See
 // scene/contacts.cpp.
 
-#include <winnow/core/column.h>
 #include <winnow/core/export.h>
-#include <winnow/core/footprint.h>
 #include <winnow/core/indexed_view.h>
 #include <winnow/core/key.h>
-#include <winnow/core/large_pages.h>
-#include <winnow/core/vec3.h>
+#include <winnow/core/memory.h>
+#include <winnow/core/vectors.h>
 #include <winnow/pipeline/contact_types.h>
 
 #include <cstdint>

@@ -1,12 +1,11 @@
 #pragma once
 
 #include <winnow/core/export.h>
-#include <winnow/core/footprint.h>
 #include <winnow/core/key.h>
-#include <winnow/core/large_pages.h>
-#include <winnow/core/pose_view.h>
+#include <winnow/core/memory.h>
+#include <winnow/core/pose.h>
 #include <winnow/core/status.h>
-#include <winnow/core/vec3.h>
+#include <winnow/core/vectors.h>
 #include <winnow/pipeline/rigid_motion.h>
 #include <winnow/pipeline/scene.h>
 
@@ -86,8 +85,7 @@ class WINNOW_API ContinuousCollision {
   explicit ContinuousCollision(Scene& scene,
                                std::pmr::memory_resource* memory = default_memory()) noexcept;
   ~ContinuousCollision();
-  ContinuousCollision(const ContinuousCollision&) = delete;
-  ContinuousCollision& operator=(const ContinuousCollision&) = delete;
+  ContinuousCollision& operator=(ContinuousCollision&&) = delete;  // neither copied nor moved
 
   /// Moves bodies from their poses in the scene, which is refreshed first, to the given ends,
   /// along RigidMotion::between; without orientations they do not rotate. All other bodies are at

@@ -4,19 +4,18 @@
 // of features are tested by `feature_impact`, rigid shapes as in `time_of_impact`. The
 // implementation is in motion/.
 
-#include <winnow/core/aabb.h>
 #include <winnow/core/execution.h>
 #include <winnow/core/export.h>
-#include <winnow/core/footprint.h>
-#include <winnow/core/large_pages.h>
-#include <winnow/core/pair_buffer.h>
+#include <winnow/core/memory.h>
 #include <winnow/core/point_view.h>
+#include <winnow/core/results.h>
 #include <winnow/core/status.h>
-#include <winnow/core/vec3.h>
-#include <winnow/pipeline/feature_impacts.h>
-#include <winnow/pipeline/time_of_impact.h>
+#include <winnow/core/vectors.h>
+#include <winnow/core/volumes.h>
+#include <winnow/pipeline/impacts.h>
 
 #include <array>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <memory_resource>
@@ -82,7 +81,8 @@ struct MeshShapeImpact {
   Vec3d point{};             ///< contact point on the shape at that time, in the world
 };
 
-/// Callback of the caller that receives chunks of results.
+/// A function of the caller that takes chunks of results: any function object that can be called
+/// with a `std::span<const Result>`. It is used only during the call that it is passed to.
 template <typename Result>
 struct ResultChunks {
   void* context;                                               ///< the function object
@@ -90,7 +90,9 @@ struct ResultChunks {
 
   /// Refers to `function`, which must outlive this object.
   template <typename Take>
-  explicit ResultChunks(Take& function) noexcept
+  requires(!std::same_as<std::remove_cvref_t<Take>, ResultChunks> &&
+           std::invocable<Take&, std::span<const Result>>) ResultChunks(Take&& function)
+  noexcept  // NOLINT(google-explicit-constructor)
       : context(const_cast<void*>(static_cast<const void*>(&function))),
         take([](void* to, std::span<const Result> chunk) {
           (*static_cast<std::remove_reference_t<Take>*>(to))(chunk);
@@ -120,8 +122,6 @@ class WINNOW_API DeformableMesh {
   /// Takes the contents of `other`, which is then without triangles.
   DeformableMesh(DeformableMesh&& other) noexcept;
   ~DeformableMesh();
-  DeformableMesh(const DeformableMesh&) = delete;
-  DeformableMesh& operator=(const DeformableMesh&) = delete;
 
   /// Copies the triangles and sorts them by the rest positions of their vertices. Call `move`
   /// before any query. Calling `build` again replaces the mesh, for example after triangles or
@@ -146,91 +146,51 @@ class WINNOW_API DeformableMesh {
   /// their vertices.
   [[nodiscard]] std::array<std::uint32_t, 2> edge(std::size_t i) const noexcept;
 
-  /// Calls `take(std::span<const Pair>)` with chunks of all pairs of features whose boxes overlap,
-  /// each once: (vertex, face), or (edge, edge) with the lower one first. `invalid_argument` before
-  /// the first `move`; `out_of_memory` if a chunk cannot be allocated.
-  template <typename Take>
-  Status self_candidates(FeaturePair kind, Take&& take) const noexcept {
-    return find_self(kind, ResultChunks<Pair>(take));
-  }
+  /// Calls `take` with chunks of all pairs of features whose boxes overlap, each once: (vertex,
+  /// face), or (edge, edge) with the lower one first. `invalid_argument` before the first `move`;
+  /// `out_of_memory` if a chunk cannot be allocated.
+  Status self_candidates(FeaturePair kind, ResultChunks<Pair> take) const noexcept;
   /// As above, for pairs of a feature of this mesh (first) and one of another mesh: vertices of
   /// this mesh with faces of the other, or edges. `invalid_argument` also if the origins differ.
-  template <typename Take>
   Status candidates_with(const DeformableMesh& other, FeaturePair kind,
-                         Take&& take) const noexcept {
-    return find_with(other, kind, ResultChunks<Pair>(take));
-  }
+                         ResultChunks<Pair> take) const noexcept;
 
-  /// Calls `take(std::span<const MeshImpact>)` with chunks of all candidates that touch during the
-  /// step; see `feature_impact`. Errors as for `self_candidates`; `invalid_argument` also for
-  /// invalid options or a separation that exceeds the distance given to `move`.
-  template <typename Take>
+  /// Calls `take` with chunks of all candidates that touch during the step; see `feature_impact`.
+  /// Errors as for `self_candidates`; `invalid_argument` also for invalid options or a separation
+  /// that exceeds the distance given to `move`.
   Status self_impacts(FeaturePair kind, const FeatureImpactOptions& options,
-                      Take&& take) const noexcept {
-    return find_impacts(nullptr, kind, options, ResultChunks<MeshImpact>(take));
-  }
+                      ResultChunks<MeshImpact> take) const noexcept;
   /// As above, with another mesh. The separation is at most half the sum of the distances given to
   /// `move` of the two meshes.
-  template <typename Take>
   Status impacts_with(const DeformableMesh& other, FeaturePair kind,
-                      const FeatureImpactOptions& options, Take&& take) const noexcept {
-    return find_impacts(&other, kind, options, ResultChunks<MeshImpact>(take));
-  }
+                      const FeatureImpactOptions& options,
+                      ResultChunks<MeshImpact> take) const noexcept;
 
-  /// Calls `take(std::span<const MeshShapeImpact>)` with chunks of all faces that a rigid shape
-  /// touches during the step, each with its first impact, in the spatial order of the faces.
-  /// Impacts are certified as in `time_of_impact`, with linear motion of the corners and rotation
-  /// of the shape. `options` are used as in `time_of_impact`, but the mesh's own execution is used.
-  /// `invalid_argument` also for invalid options or separation; `invalid_key` if the shape does not
-  /// exist; `unsupported` for a composite shape without a pool of them; `invalid_pose` for an
-  /// invalid motion.
-  template <typename Take>
+  /// Calls `take` with chunks of all faces that a rigid shape touches during the step, each with
+  /// its first impact, in the spatial order of the faces. Impacts are certified as in
+  /// `time_of_impact`, with linear motion of the corners and rotation of the shape. `options` are
+  /// used as in `time_of_impact`, but the mesh's own execution is used. `invalid_argument` also for
+  /// invalid options or separation; `invalid_key` if the shape does not exist; `unsupported` for a
+  /// composite shape without a pool of them; `invalid_pose` for an invalid motion.
   Status impacts_with(const MeshObstacle& obstacle, const ImpactOptions& options,
-                      Take&& take) const noexcept {
-    return find_shape_impacts(obstacle, options, ResultChunks<MeshShapeImpact>(take));
-  }
+                      ResultChunks<MeshShapeImpact> take) const noexcept;
 
-  /// Calls `take(std::span<const MeshProximity>)` with chunks of all pairs whose distance at the
-  /// end of the step is at most `thickness`. `invalid_argument` also if it is negative, not finite,
-  /// or exceeds the distance given to `move`.
-  template <typename Take>
-  Status self_proximity(FeaturePair kind, double thickness, Take&& take) const noexcept {
-    return find_near(nullptr, kind, thickness, ResultChunks<MeshProximity>(take));
-  }
+  /// Calls `take` with chunks of all pairs whose distance at the end of the step is at most
+  /// `thickness`. `invalid_argument` also if it is negative, not finite, or exceeds the distance
+  /// given to `move`.
+  Status self_proximity(FeaturePair kind, double thickness,
+                        ResultChunks<MeshProximity> take) const noexcept;
   /// As above, with another mesh. The thickness is at most half the sum of the distances given to
   /// `move` of the two meshes.
-  template <typename Take>
   Status proximity_with(const DeformableMesh& other, FeaturePair kind, double thickness,
-                        Take&& take) const noexcept {
-    return find_near(&other, kind, thickness, ResultChunks<MeshProximity>(take));
-  }
+                        ResultChunks<MeshProximity> take) const noexcept;
 
   /// Returns every byte that is allocated from the memory resource.
   [[nodiscard]] Footprint footprint() const noexcept;
 
  private:
   struct State;
-
-  Status find_self(FeaturePair kind, const ResultChunks<Pair>& chunks) const noexcept;
-  Status find_with(const DeformableMesh& other, FeaturePair kind,
-                   const ResultChunks<Pair>& chunks) const noexcept;
-  Status find_impacts(const DeformableMesh* other, FeaturePair kind,
-                      const FeatureImpactOptions& options,
-                      const ResultChunks<MeshImpact>& chunks) const noexcept;
-  Status find_near(const DeformableMesh* other, FeaturePair kind, double thickness,
-                   const ResultChunks<MeshProximity>& chunks) const noexcept;
-
-  Status find_shape_impacts(const MeshObstacle& obstacle, const ImpactOptions& options,
-                            const ResultChunks<MeshShapeImpact>& chunks) const noexcept;
-  /// Reports the faces whose boxes overlap a box (relative to the origin), as second elements of
-  /// pairs.
-  Status find_faces(const Aabb& box, const ResultChunks<Pair>& chunks) const noexcept;
-  /// Writes the corners of a face at the start and the end of the step.
-  void place_face(std::uint32_t face, std::array<Vec3d, 3>& start,
-                  std::array<Vec3d, 3>& end) const noexcept;
-  [[nodiscard]] bool is_moved() const noexcept;
-  /// Returns the distance given to `move`.
-  [[nodiscard]] double reach() const noexcept;
+  struct Faces;
 
   DeformableMeshOptions options_;
   /// Null until something is built.

@@ -1,10 +1,11 @@
 #pragma once
 
-// Recording of the calls that a program makes to partitions and scenes. RecordingPlayer (replay.h)
-// replays the result. The implementation is in recording/.
+// Recording of the calls that a program makes to partitions and scenes, and their replay. The
+// implementation is in recording/ and replay/.
 
+#include <winnow/core/execution.h>
 #include <winnow/core/export.h>
-#include <winnow/core/large_pages.h>
+#include <winnow/core/memory.h>
 #include <winnow/core/status.h>
 #include <winnow/partitions/partition.h>
 
@@ -15,7 +16,11 @@
 
 namespace winnow {
 
+class CompositePool;
+class Contacts;
+class Scene;
 class SceneObserver;
+class ShapePool;
 struct RecorderState;
 struct SceneState;
 
@@ -69,8 +74,7 @@ class WINNOW_API Recorder : public PartitionRecorder {
                     std::pmr::memory_resource* memory = default_memory()) noexcept;
   /// Closes the recording. Recorded objects must be destroyed first.
   virtual ~Recorder();
-  Recorder(const Recorder&) = delete;
-  Recorder& operator=(const Recorder&) = delete;
+  Recorder& operator=(Recorder&&) = delete;  // neither copied nor moved
 
   /// Marks the end of a frame and writes buffered data. If a program marks no frames, tools count
   /// each query for all pairs or contacts as the end of a frame.
@@ -97,6 +101,85 @@ class WINNOW_API Recorder : public PartitionRecorder {
   std::pmr::memory_resource* memory_;
   /// Null if memory was refused.
   RecorderState* state_;
+};
+
+struct ReplayState;
+
+/// Options of a replay.
+struct ReplayOptions {
+  /// Source of every allocation. For untrusted recordings, use a resource with a limit: a small
+  /// recording may generate many pairs.
+  std::pmr::memory_resource* memory = default_memory();
+  /// How work is run in parallel; results do not depend on it.
+  Execution execution = Execution::parallel();
+};
+
+/// Kind of a replayed call.
+enum class Played : std::uint8_t {
+  change,    ///< a change of a partition or scene
+  question,  ///< a query; its results were compared with the recorded ones
+  pairs,     ///< as `question`, for all pairs or contacts
+  frame,     ///< the end of a frame of the program
+  end,       ///< nothing: the recording has ended, or `status` is not ok
+};
+
+/// Counters of a replay.
+struct PlayedCounts {
+  std::uint64_t calls = 0;        ///< calls replayed
+  std::uint64_t frames = 0;       ///< frames that ended, if the program marked frames
+  std::uint64_t questions = 0;    ///< queries replayed
+  std::uint64_t differences = 0;  ///< queries whose results differ from the recorded ones
+};
+
+/// A partition or a scene of a replay.
+struct PlayedWorld {
+  const Partition* partition = nullptr;       ///< null for a scene
+  const Scene* scene = nullptr;               ///< null for a partition
+  const ShapePool* shapes = nullptr;          ///< convex shapes of the scene
+  const CompositePool* composites = nullptr;  ///< composite shapes of the scene
+  const Contacts* contacts = nullptr;         ///< contacts of the last `collide` of the scene
+};
+
+/// Replays a recording, call by call, and compares a digest of the results of each query with the
+/// recorded digest. Results are the same, bit for bit, on every instruction set and for any number
+/// of threads. Untrusted input is safe: invalid data is rejected by checksums and by the argument
+/// checks of the calls.
+///
+///     winnow::RecordingPlayer player(bytes);
+///     player.play_all();
+///     player.counts().differences;
+class WINNOW_API RecordingPlayer {
+ public:
+  /// Opens a recording, which must outlive the player, and verifies all checksums: O(bytes).
+  explicit RecordingPlayer(std::span<const std::byte> recording,
+                           const ReplayOptions& options = {}) noexcept;
+  ~RecordingPlayer();
+  RecordingPlayer& operator=(RecordingPlayer&&) = delete;  // neither copied nor moved
+
+  /// Returns `invalid_argument` if the bytes are not a recording, have an unknown version, are
+  /// damaged, or contain a call that fails; `out_of_memory`; otherwise `ok`.
+  [[nodiscard]] Status status() const noexcept;
+  /// False if the recording was not closed, because the program ended first.
+  [[nodiscard]] bool is_whole() const noexcept;
+
+  /// Replays the next call.
+  Played step() noexcept;
+  /// Replays to the end. Returns `status()`.
+  Status play_all() noexcept;
+
+  /// Returns what was replayed so far.
+  [[nodiscard]] PlayedCounts counts() const noexcept;
+
+  /// Returns the number of partitions and scenes created so far, including destroyed ones.
+  [[nodiscard]] std::size_t worlds() const noexcept;
+  /// Returns the partition or the scene with this number, which is below `worlds()`; all null if it
+  /// was destroyed.
+  [[nodiscard]] PlayedWorld world(std::size_t number) const noexcept;
+
+ private:
+  std::pmr::memory_resource* memory_;
+  /// Null if memory was refused.
+  ReplayState* state_;
 };
 
 }  // namespace winnow

@@ -2,7 +2,7 @@
 
 #include <winnow/core/export.h>
 #include <winnow/core/pose.h>
-#include <winnow/core/vec3.h>
+#include <winnow/core/vectors.h>
 
 namespace winnow {
 

@@ -4,20 +4,17 @@
 // writes to Contacts. Each set of bodies has a Partition (broad phase); pairs with composite shapes
 // go through a CompositePool; NarrowPhase computes the contacts. The implementation is in scene/.
 
-#include <winnow/core/aabb.h>
-#include <winnow/core/column.h>
 #include <winnow/core/debug_draw.h>
 #include <winnow/core/execution.h>
 #include <winnow/core/export.h>
 #include <winnow/core/filter.h>
-#include <winnow/core/footprint.h>
 #include <winnow/core/key.h>
-#include <winnow/core/large_pages.h>
-#include <winnow/core/pair_events.h>
+#include <winnow/core/memory.h>
 #include <winnow/core/pose.h>
-#include <winnow/core/pose_view.h>
+#include <winnow/core/results.h>
 #include <winnow/core/status.h>
-#include <winnow/core/vec3.h>
+#include <winnow/core/vectors.h>
+#include <winnow/core/volumes.h>
 #include <winnow/partitions/partition.h>
 #include <winnow/pipeline/contact_groups.h>
 #include <winnow/pipeline/contacts.h>

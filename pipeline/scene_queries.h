@@ -5,13 +5,12 @@
 
 #include <winnow/core/export.h>
 #include <winnow/core/filter.h>
-#include <winnow/core/footprint.h>
 #include <winnow/core/key.h>
-#include <winnow/core/large_pages.h>
-#include <winnow/core/pair_events.h>
+#include <winnow/core/memory.h>
 #include <winnow/core/pose.h>
+#include <winnow/core/results.h>
 #include <winnow/core/status.h>
-#include <winnow/core/vec3.h>
+#include <winnow/core/vectors.h>
 #include <winnow/pipeline/rigid_motion.h>
 #include <winnow/pipeline/scene.h>
 #include <winnow/pipeline/shape_rays.h>

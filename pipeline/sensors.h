@@ -1,10 +1,9 @@
 #pragma once
 
 #include <winnow/core/export.h>
-#include <winnow/core/footprint.h>
+#include <winnow/core/filter.h>
 #include <winnow/core/key.h>
-#include <winnow/core/large_pages.h>
-#include <winnow/core/object_filter.h>
+#include <winnow/core/memory.h>
 #include <winnow/core/pose.h>
 #include <winnow/core/status.h>
 #include <winnow/pipeline/contacts.h>

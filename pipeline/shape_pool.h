@@ -1,13 +1,11 @@
 #pragma once
 
-#include <winnow/core/aabb.h>
-#include <winnow/core/column.h>
 #include <winnow/core/export.h>
-#include <winnow/core/footprint.h>
-#include <winnow/core/large_pages.h>
+#include <winnow/core/memory.h>
 #include <winnow/core/point_view.h>
 #include <winnow/core/pose.h>
 #include <winnow/core/status.h>
+#include <winnow/core/volumes.h>
 #include <winnow/pipeline/shapes.h>
 
 #include <cstddef>
@@ -25,6 +23,26 @@ struct HullFaces {
   std::span<const std::uint32_t> sizes;    ///< number of vertices of each face, 3 or more
 };
 
+namespace detail {
+
+/// The shapes of one kind in a pool, by index.
+template <typename Shape>
+struct ShapeRows {
+  explicit ShapeRows(std::pmr::memory_resource* memory) noexcept
+      : shapes(memory), live(memory), free(memory) {}
+  void swap(ShapeRows& other) noexcept {
+    shapes.swap(other.shapes);
+    live.swap(other.live);
+    free.swap(other.free);
+  }
+
+  Column<Shape> shapes;
+  Column<std::uint8_t> live;
+  Column<std::uint32_t> free;
+};
+
+}  // namespace detail
+
 /// The convex shapes of a simulation, each kind in its own table. Bodies refer to shapes by id and
 /// may share them. A kind that is not used takes no memory. While a thread changes a pool, no other
 /// thread may use it.
@@ -36,9 +54,6 @@ class WINNOW_API ShapePool {
   /// Takes the shapes of another pool, with their ids, and its resource. The other pool is then
   /// empty.
   ShapePool(ShapePool&&) noexcept;
-  ShapePool(const ShapePool&) = delete;
-  ShapePool& operator=(const ShapePool&) = delete;
-  ShapePool& operator=(ShapePool&&) = delete;
 
   /// Adds a shape. `invalid_shape` for a length that is negative, NaN or infinite, or a half-space
   /// without a normal; `too_many_objects` beyond 2^28 shapes of a kind. O(1).
@@ -107,34 +122,11 @@ class WINNOW_API ShapePool {
   [[nodiscard]] Footprint footprint() const noexcept;
 
  private:
-  /// @cond Doxygen lists private classes, too.
-  template <typename Shape>
-  struct Table {
-    explicit Table(std::pmr::memory_resource* memory) noexcept
-        : shapes(memory), live(memory), free(memory) {}
-    Column<Shape> shapes;
-    Column<std::uint8_t> live;
-    Column<std::uint32_t> free;
-    void swap(Table& other) noexcept {
-      shapes.swap(other.shapes);
-      live.swap(other.live);
-      free.swap(other.free);
-    }
-  };
-  /// @endcond
-
-  /// Returns the table of a kind of shape.
-  template <typename Shape, typename Pool>
-  static auto& table_of(Pool& pool) noexcept;
-  template <typename Shape>
-  Answer<ShapeId> put(const Shape& shape);
-  template <typename Make>
-  Answer<ShapeId> put_hull(double rounding, Make&& make);
-  void refresh_tables() noexcept;
+  friend struct PoolRows;
 
   std::pmr::memory_resource* memory_;
   /// @cond The tables: spheres_, capsules_ and so on.
-#define WINNOW_TABLE(kind, Shape, table) Table<Shape> table##_{memory_};
+#define WINNOW_TABLE(kind, Shape, table) detail::ShapeRows<Shape> table##_{memory_};
   WINNOW_CONVEX_SHAPES(WINNOW_TABLE)
 #undef WINNOW_TABLE
   /// @endcond

@@ -1,9 +1,10 @@
 #pragma once
 
 #include <winnow/core/export.h>
+#include <winnow/core/point_view.h>
 #include <winnow/core/pose.h>
 #include <winnow/core/status.h>
-#include <winnow/core/vec3.h>
+#include <winnow/core/vectors.h>
 #include <winnow/pipeline/shapes.h>
 
 #include <array>
@@ -60,18 +61,12 @@ struct ShapeRayBatch {
   [[nodiscard]] ShapeRay operator[](std::size_t i) const noexcept {
     ShapeRay ray;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      ray.origin[axis] = at(origin[axis], i);
-      ray.direction[axis] = at(direction[axis], i);
+      ray.origin[axis] = detail::strided(origin[axis], i, stride);
+      ray.direction[axis] = detail::strided(direction[axis], i, stride);
     }
-    if (min_t != nullptr) ray.min_t = at(min_t, i);
-    if (max_t != nullptr) ray.max_t = at(max_t, i);
+    if (min_t != nullptr) ray.min_t = detail::strided(min_t, i, stride);
+    if (max_t != nullptr) ray.max_t = detail::strided(max_t, i, stride);
     return ray;
-  }
-
- private:
-  [[nodiscard]] double at(const double* column, std::size_t i) const noexcept {
-    return *reinterpret_cast<const double*>(reinterpret_cast<const std::byte*>(column) +
-                                            i * stride);
   }
 };
 

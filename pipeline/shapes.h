@@ -5,7 +5,7 @@
 // ShapePool.
 
 #include <winnow/core/export.h>
-#include <winnow/core/vec3.h>
+#include <winnow/core/vectors.h>
 
 #include <cstdint>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <winnow/core/large_pages.h>
+#include <winnow/core/memory.h>
 
 #include <cstddef>
 #include <memory_resource>

@@ -7,8 +7,8 @@
 
 #pragma once
 
-#include <winnow/core/aabb.h>
-#include <winnow/core/pair_buffer.h>
+#include <winnow/core/results.h>
+#include <winnow/core/volumes.h>
 #include <winnow/pipeline/shape_rays.h>
 #include "bench/common/interface.h"
 #include "bench/scenes/body_scenes.h"

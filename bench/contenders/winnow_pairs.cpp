@@ -1,7 +1,7 @@
 // winnow's engines for pairs of shapes.
 
+#include <winnow/pipeline/impacts.h>
 #include <winnow/pipeline/narrow_phase.h>
-#include <winnow/pipeline/time_of_impact.h>
 #include "bench/common/need.h"
 #include "bench/contenders/partitions.h"
 #include "bench/contenders/winnow_engines.h"

@@ -6,7 +6,7 @@
 #include <winnow/pipeline/contacts.h>
 #include <winnow/pipeline/scene.h>
 #include <winnow/pipeline/scene_queries.h>
-#include <winnow/pipeline/triangle_mesh.h>
+#include <winnow/pipeline/surfaces.h>
 #include "bench/common/need.h"
 #include "bench/contenders/partitions.h"
 

@@ -3,7 +3,7 @@
 
 #include "bench/draw/picture.h"
 
-#include <winnow/partitions/debug_colours.h>
+#include <winnow/core/debug_draw.h>
 #include "bench/common/need.h"
 
 #include <algorithm>

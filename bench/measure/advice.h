@@ -1,6 +1,6 @@
 #pragma once
 
-#include <winnow/partitions/scene_features.h>
+#include <winnow/partitions/structures.h>
 #include "bench/measure/race.h"
 #include "bench/scenes/frame_source.h"
 

@@ -3,7 +3,7 @@
 
 #include "bench/measure/cold_frames.h"
 
-#include <winnow/core/large_pages.h>
+#include <winnow/core/memory.h>
 #include "bench/common/address_range.h"
 #include "bench/common/arena.h"
 #include "bench/common/need.h"
@@ -75,7 +75,7 @@ struct FirstFrames {
   [[nodiscard]] double write_to_pages(std::size_t bytes) {
     fresh.forget();
     const Stopwatch clock;
-    prefault_pages(fresh.begin(), std::min(bytes, fresh.bytes()));
+    detail::prefault_pages(fresh.begin(), std::min(bytes, fresh.bytes()));
     return clock.ms();
   }
   /// As `run`, but reserves room for the objects and `count` pairs before the frame.

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <winnow/partitions/scene_features.h>
+#include <winnow/partitions/structures.h>
 #include "bench/scenes/frame_source.h"
 #include "partitions/choice/predicted_costs.h"
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include <winnow/core/aabb.h>
-#include <winnow/core/pair_buffer.h>
+#include <winnow/core/results.h>
+#include <winnow/core/volumes.h>
 
 #include <cstdint>
 #include <span>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <winnow/core/footprint.h>
+#include <winnow/core/memory.h>
 #include "bench/scenes/frame_source.h"
 
 #include <array>

@@ -3,8 +3,8 @@
 
 #include "bench/measure/machine_limits.h"
 
-#include <winnow/core/aabb.h>
-#include <winnow/core/pair_buffer.h>
+#include <winnow/core/results.h>
+#include <winnow/core/volumes.h>
 #include "bench/common/random.h"
 #include "bench/common/sample.h"
 #include "core/sort/radix_sort.h"

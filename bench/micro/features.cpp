@@ -3,7 +3,7 @@
 
 #include "bench/micro/micro.h"
 
-#include <winnow/pipeline/feature_impacts.h>
+#include <winnow/pipeline/impacts.h>
 #include "bench/common/exact_math.h"
 #include "bench/common/need.h"
 #include "bench/scenes/random_shapes.h"

@@ -3,6 +3,7 @@
 // All sets must find the same pairs in the same order.
 
 #include "bench/micro/micro.h"
+#include "core/memory/volume_columns.h"
 
 #include "bench/measure/column_read.h"
 #include "bench/scenes/query_set.h"

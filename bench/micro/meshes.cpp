@@ -5,7 +5,7 @@
 
 #include <winnow/pipeline/composite_pool.h>
 #include <winnow/pipeline/scene_queries.h>
-#include <winnow/pipeline/triangle_mesh.h>
+#include <winnow/pipeline/surfaces.h>
 #include "bench/common/need.h"
 #include "bench/common/random.h"
 #include "bench/contenders/engines.h"

@@ -4,7 +4,7 @@
 
 #include "bench/micro/micro.h"
 
-#include <winnow/core/kdop_around.h>
+#include <winnow/core/regions.h>
 #include "bench/common/need.h"
 #include "bench/common/sample.h"
 #include "bench/contenders/partitions.h"

@@ -4,8 +4,7 @@
 
 #include "bench/questions/questions.h"
 
-#include <winnow/pipeline/feature_impacts.h>
-#include <winnow/pipeline/time_of_impact.h>
+#include <winnow/pipeline/impacts.h>
 #include "bench/questions/query_format.h"
 #include "bench/questions/scene_questions.h"
 

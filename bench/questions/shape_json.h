@@ -2,7 +2,7 @@
 
 #include <winnow/core/pose.h>
 #include <winnow/core/status.h>
-#include <winnow/core/vec3.h>
+#include <winnow/core/vectors.h>
 #include <winnow/pipeline/composite_pool.h>
 #include <winnow/pipeline/rigid_motion.h>
 #include <winnow/pipeline/shape_pool.h>

@@ -1,9 +1,8 @@
 #pragma once
 
-#include <winnow/core/aabb.h>
-#include <winnow/core/cast.h>
-#include <winnow/core/ray.h>
-#include <winnow/core/region.h>
+#include <winnow/core/rays.h>
+#include <winnow/core/regions.h>
+#include <winnow/core/volumes.h>
 
 #include <cstddef>
 #include <cstdint>

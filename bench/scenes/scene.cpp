@@ -3,7 +3,7 @@
 
 #include "bench/scenes/scene.h"
 
-#include <winnow/core/vec3.h>
+#include <winnow/core/vectors.h>
 #include "bench/common/errors.h"
 #include "bench/common/exact_math.h"
 #include "bench/common/random.h"

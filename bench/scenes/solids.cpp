@@ -1,9 +1,10 @@
 #include "bench/scenes/solids.h"
 
 #include <winnow/core/eigen.h>
-#include <winnow/core/rotation.h>
+#include <winnow/core/pose.h>
 #include "bench/common/random.h"
 #include "bench/scenes/random_shapes.h"
+#include "core/numbers/rotation.h"
 
 #include <cmath>
 

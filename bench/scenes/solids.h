@@ -1,8 +1,8 @@
 #pragma once
 
-#include <winnow/core/aabb.h>
-#include <winnow/core/oriented_box.h>
 #include <winnow/core/pose.h>
+#include <winnow/core/regions.h>
+#include <winnow/core/volumes.h>
 #include <winnow/pipeline/narrow_phase.h>
 #include <winnow/pipeline/shape_pool.h>
 

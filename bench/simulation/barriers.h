@@ -1,7 +1,7 @@
 #pragma once
 
 #include <winnow/core/execution.h>
-#include <winnow/core/vec3.h>
+#include <winnow/core/vectors.h>
 #include "bench/common/interface.h"
 
 #include <cstddef>

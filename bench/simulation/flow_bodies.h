@@ -1,8 +1,8 @@
 #pragma once
 
 #include <winnow/core/execution.h>
-#include <winnow/core/pose_view.h>
-#include <winnow/core/vec3.h>
+#include <winnow/core/pose.h>
+#include <winnow/core/vectors.h>
 #include <winnow/pipeline/contacts.h>
 
 #include <array>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <winnow/core/aabb.h>
+#include <winnow/core/volumes.h>
 #include <winnow/pipeline/composite_pool.h>
 #include <winnow/pipeline/contacts.h>
 #include <winnow/pipeline/scene.h>

@@ -1,11 +1,12 @@
 #pragma once
 
-#include <winnow/core/column.h>
 #include <winnow/core/execution.h>
+#include <winnow/core/filter.h>
 #include <winnow/core/key.h>
-#include <winnow/core/object_filter.h>
-#include <winnow/core/volume.h>
+#include <winnow/core/memory.h>
+#include <winnow/core/volumes.h>
 #include "core/memory/filter_columns.h"
+#include "core/memory/volume_columns.h"
 
 #include <array>
 #include <cstddef>

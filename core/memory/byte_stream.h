@@ -2,7 +2,7 @@
 
 // Serialisation of numbers: ByteWriter appends them, ByteReader reads them from untrusted bytes,
 // Digest detects damage. Snapshots (snapshot_frame.h) and recordings use these classes.
-#include <winnow/core/column.h>
+#include <winnow/core/memory.h>
 #include <winnow/core/status.h>
 #include "core/memory/scattered.h"
 

@@ -2,7 +2,7 @@
 
 // Operations on several columns of an object at once.
 
-#include <winnow/core/column.h>
+#include <winnow/core/memory.h>
 
 namespace winnow {
 

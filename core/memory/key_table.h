@@ -2,9 +2,9 @@
 
 // KeyTable maps keys of a partition or scene to rows and client data, and detects stale keys. Rows
 // (partitions/rows/) and SceneState own one each; saved_keys.h saves and reads it.
-#include <winnow/core/column.h>
 #include <winnow/core/execution.h>
 #include <winnow/core/key.h>
+#include <winnow/core/memory.h>
 #include "core/memory/partition_tag_pool.h"
 
 #include <cstddef>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <winnow/core/column.h>
+#include <winnow/core/memory.h>
 
 #include <memory_resource>
 #include <new>
@@ -12,7 +12,7 @@ namespace winnow {
 /// must not throw.
 template <typename T, typename... Arguments>
 [[nodiscard]] T* new_in(std::pmr::memory_resource* memory, Arguments&&... arguments) noexcept {
-  void* const place = try_allocate(*memory, sizeof(T), alignof(T));
+  void* const place = detail::try_allocate(*memory, sizeof(T), alignof(T));
   return place == nullptr ? nullptr : ::new (place) T(std::forward<Arguments>(arguments)...);
 }
 

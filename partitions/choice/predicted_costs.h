@@ -1,6 +1,5 @@
 #pragma once
 
-#include <winnow/partitions/scene_features.h>
 #include <winnow/partitions/structures.h>
 #include "partitions/structures/costs.h"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <winnow/partitions/scene_features.h>
+#include <winnow/partitions/structures.h>
 #include "core/memory/bounds_pool.h"
 
 #include <cstddef>

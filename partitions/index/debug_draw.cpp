@@ -1,12 +1,14 @@
 #include "partitions/index/debug_draw.h"
 
-#include <winnow/core/sphere.h>
-#include <winnow/partitions/debug_colours.h>
+#include <winnow/core/debug_draw.h>
+#include <winnow/core/volumes.h>
 
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
+
+#include "core/memory/volume_columns.h"
 
 namespace winnow {
 namespace {

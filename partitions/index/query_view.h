@@ -1,6 +1,6 @@
 #pragma once
 
-#include <winnow/core/object_filter.h>
+#include <winnow/core/filter.h>
 #include "core/memory/filter_columns.h"
 #include "partitions/rows/filter_span.h"
 #include "partitions/tree/block_tree.kernel.h"

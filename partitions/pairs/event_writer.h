@@ -1,7 +1,7 @@
 #pragma once
 
 #include <winnow/core/execution.h>
-#include <winnow/core/pair_events.h>
+#include <winnow/core/results.h>
 #include "core/memory/key_table.h"
 #include "partitions/pairs/pair_tracker.h"
 

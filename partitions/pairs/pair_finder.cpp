@@ -220,7 +220,7 @@ void PairFinder::undo(SelfPairsQuery& query) noexcept {
 }
 
 bool PairFinder::is_exact() const noexcept {
-  return rows_.pool().volume() == Volume::aabb && rows_.fat_margin().is_none() &&
+  return rows_.pool().volume() == Volume::aabb && !rows_.has_margin() &&
          index_.structure().tests_volumes();
 }
 

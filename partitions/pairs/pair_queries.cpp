@@ -1,6 +1,7 @@
 // Pair queries of PairFinder: of all objects, of moved objects, and of the objects of one partition
 // with another. Each runs tasks that call kernels, and PairWriter joins their pairs.
 
+#include "core/memory/volume_columns.h"
 #include "partitions/pairs/pair_finder.h"
 #include "partitions/pairs/pair_writer.h"
 #include "partitions/structures/tasks.h"

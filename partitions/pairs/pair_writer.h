@@ -2,7 +2,7 @@
 
 #include <winnow/core/execution.h>
 #include <winnow/core/filter.h>
-#include <winnow/core/pair_buffer.h>
+#include <winnow/core/results.h>
 #include <winnow/core/status.h>
 #include "partitions/rows/row_view.h"
 

@@ -4,8 +4,9 @@
 
 #include "partitions/pairs/resting_pairs.h"
 
-#include <winnow/core/rounding.h>
+#include <winnow/core/volumes.h>
 #include "core/memory/columns.h"
+#include "core/numbers/rounding.h"
 #include "partitions/index/spatial_index.h"
 #include "partitions/pairs/linked_pairs.h"
 #include "partitions/pairs/pair_tracker.h"

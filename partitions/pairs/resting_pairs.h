@@ -3,13 +3,11 @@
 // Pairs of resting scenes: a Verlet list. PairFinder owns it and queries it; PartitionState passes
 // it the boxes of updates while it is active.
 
-#include <winnow/core/aabb.h>
-#include <winnow/core/box_view.h>
-#include <winnow/core/column.h>
-#include <winnow/core/footprint.h>
 #include <winnow/core/key.h>
-#include <winnow/core/pair_buffer.h>
+#include <winnow/core/memory.h>
+#include <winnow/core/results.h>
 #include <winnow/core/status.h>
+#include <winnow/core/volumes.h>
 #include "partitions/rows/rows.h"
 
 #include <algorithm>

@@ -2,7 +2,7 @@
 
 #include "partitions/queries/box_intersection.h"
 
-#include <winnow/core/plane.h>
+#include <winnow/core/regions.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>

@@ -1,8 +1,7 @@
 #pragma once
 
-#include <winnow/core/capsule.h>
-#include <winnow/core/oriented_box.h>
-#include <winnow/core/sphere.h>
+#include <winnow/core/regions.h>
+#include <winnow/core/volumes.h>
 #include "partitions/queries/region.kernel.h"
 
 #include <Eigen/Core>

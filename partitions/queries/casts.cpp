@@ -2,7 +2,8 @@
 // (casts.kernel.cpp) and convert its results; hit_writer.h sorts all hits. Batches of rays run in
 // parallel.
 
-#include <winnow/core/rounding.h>
+#include <winnow/core/volumes.h>
+#include "core/numbers/rounding.h"
 #include "core/threads/float_environment.h"
 #include "partitions/pairs/pair_writer.h"
 #include "partitions/queries/box_intersection.h"

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <winnow/core/execution.h>
-#include <winnow/core/hits.h>
+#include <winnow/core/results.h>
 #include "core/memory/key_table.h"
 
 #include <cstddef>

@@ -3,9 +3,9 @@
 // Arguments and results of the kernels of queries: the prepared cast, the caller's filter, and
 // hits.
 
-#include <winnow/core/cast.h>
 #include <winnow/core/filter.h>
-#include <winnow/core/hits.h>
+#include <winnow/core/rays.h>
+#include <winnow/core/results.h>
 #include "core/memory/key_table.h"
 #include "partitions/index/query_view.h"
 #include "partitions/queries/cast.kernel.h"

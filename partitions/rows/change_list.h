@@ -1,7 +1,7 @@
 #pragma once
 
-#include <winnow/core/column.h>
 #include <winnow/core/key.h>
+#include <winnow/core/memory.h>
 
 #include <cstddef>
 #include <cstdint>

@@ -4,9 +4,8 @@
 // volume unchanged. FatSource wraps a source of volume_source.h; volume_update.cpp uses it.
 // Included by source files, not by headers.
 
-#include <winnow/core/fat_margin.h>
-#include <winnow/core/rounding.h>
-#include <winnow/core/volume.h>
+#include <winnow/core/volumes.h>
+#include "core/memory/volume_columns.h"
 #include "partitions/rows/box_compare.kernel.h"
 #include "partitions/rows/row_input.h"
 #include "partitions/rows/volume_source.h"
@@ -23,6 +22,23 @@ namespace winnow {
 /// Rows whose given boxes are gathered before they are compared: 16 cache lines per column.
 inline constexpr std::size_t kRowsAtOnce = 256;
 
+/// True if a margin leaves volumes as given.
+[[nodiscard]] inline bool is_none(const FatMargin& margin) noexcept {
+  return !(margin.distance > 0.0F) && !(margin.share > 0.0F);
+}
+
+/// Returns the margin with each member replaced by a finite value that is not negative.
+[[nodiscard]] inline FatMargin legal(const FatMargin& margin) noexcept {
+  const auto of = [](float value) { return value > 0.0F ? std::min(value, FLT_MAX) : 0.0F; };
+  return {of(margin.distance), of(margin.share)};
+}
+
+/// Returns the margin of an object whose longest finite edge is `edge`; may be infinite. Requires a
+/// result of `legal`.
+[[nodiscard]] inline float margin_at(const FatMargin& margin, float edge) noexcept {
+  return margin.distance + margin.share * edge;
+}
+
 /// Growth of boxes and k-DOPs by a margin.
 template <Volume V>
 struct FatSlabs {
@@ -38,7 +54,7 @@ struct FatSlabs {
       const bool finite = (low > -FLT_MAX) & (high < FLT_MAX) & (high - low <= FLT_MAX);
       edge = std::max(edge, finite ? high - low : 0.0F);
     }
-    return margin.of(edge);
+    return margin_at(margin, edge);
   }
 
   /// True if the stored volume contains the given one, and each slab is at most four margins
@@ -80,7 +96,7 @@ struct FatSphere {
   static constexpr std::size_t kColumns = column_count(Volume::sphere);
 
   static float margin_of(const float* given, const FatMargin& margin) noexcept {
-    return std::min(margin.of(std::min(2.0F * given[kRadiusColumn], FLT_MAX)), FLT_MAX);
+    return std::min(margin_at(margin, std::min(2.0F * given[kRadiusColumn], FLT_MAX)), FLT_MAX);
   }
   static bool still_fits(const float* given, float margin, const float* stored) noexcept {
     const double room =

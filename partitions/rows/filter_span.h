@@ -1,6 +1,6 @@
 #pragma once
 
-#include <winnow/core/object_filter.h>
+#include <winnow/core/filter.h>
 
 #include <cstdint>
 

@@ -1,8 +1,8 @@
 #pragma once
 
-#include <winnow/core/column.h>
+#include <winnow/core/filter.h>
 #include <winnow/core/key.h>
-#include <winnow/core/object_filter.h>
+#include <winnow/core/memory.h>
 #include "partitions/rows/filter_span.h"
 
 #include <cstddef>

@@ -4,11 +4,11 @@
 // (BoxSource), and the steps (RowInput). PartitionState calls RowInput. Infinite ends become
 // +-FLT_MAX (see BoundsPool). Included by source files, not by headers.
 
-#include <winnow/core/box_view.h>
 #include <winnow/core/execution.h>
 #include <winnow/core/key.h>
-#include <winnow/core/volume.h>
+#include <winnow/core/volumes.h>
 #include "core/memory/bounds_pool.h"
+#include "core/memory/volume_columns.h"
 #include "core/sort/parallel_ranges.h"
 #include "partitions/rows/box_input.kernel.h"
 #include "partitions/rows/rows.h"

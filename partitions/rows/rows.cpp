@@ -3,7 +3,9 @@
 
 #include "partitions/rows/rows.h"
 
+#include "core/memory/volume_columns.h"
 #include "core/sort/scatter_by_owner.h"
+#include "partitions/rows/fat_volumes.h"
 #include "partitions/rows/row_input.h"
 
 #include <algorithm>
@@ -16,7 +18,7 @@ namespace winnow {
 Rows::Rows(std::pmr::memory_resource* memory, const Execution& execution, const VolumeInput& input,
            const FatMargin& fat_margin) noexcept
     : execution_(execution),
-      fat_margin_(fat_margin.legal()),
+      fat_margin_(legal(fat_margin)),
       input_(input),
       pool_(memory, input.volume),
       keys_(memory),
@@ -80,6 +82,10 @@ void Rows::remove_row(ObjectId id) noexcept {
   changes_.add(id);
   filters_.reset(id);
   keys_.release(id);
+}
+
+bool Rows::has_margin() const noexcept {
+  return !is_none(fat_margin_);
 }
 
 Status Rows::remove(Key key) {

@@ -3,11 +3,10 @@
 // The objects of a partition as rows of columns. PartitionState owns the rows, SpatialIndex orders
 // them, and kernels read them through RowView.
 
-#include <winnow/core/aabb.h>
 #include <winnow/core/execution.h>
-#include <winnow/core/fat_margin.h>
-#include <winnow/core/footprint.h>
+#include <winnow/core/memory.h>
 #include <winnow/core/status.h>
+#include <winnow/core/volumes.h>
 #include "core/memory/bounds_pool.h"
 #include "core/memory/key_table.h"
 #include "partitions/rows/change_list.h"
@@ -84,6 +83,8 @@ class Rows {
   [[nodiscard]] const FilterTable& filters() const noexcept { return filters_; }
   [[nodiscard]] const Execution& execution() const noexcept { return execution_; }
   [[nodiscard]] const FatMargin& fat_margin() const noexcept { return fat_margin_; }
+  /// True if volumes are stored enlarged.
+  [[nodiscard]] bool has_margin() const noexcept;
   [[nodiscard]] const RowRegions& regions() const noexcept { return regions_; }
   [[nodiscard]] const RowChanges& changes() const noexcept { return changes_; }
   [[nodiscard]] RowChanges& changes() noexcept { return changes_; }

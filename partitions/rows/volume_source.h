@@ -3,11 +3,9 @@
 // Sources of spheres and k-DOPs for inserts and updates: each validates entry i and writes it into
 // the columns of a row, like BoxSource. Included by source files, not by headers.
 
-#include <winnow/core/box_view.h>
-#include <winnow/core/kdop.h>
-#include <winnow/core/sphere.h>
-#include <winnow/core/volume.h>
+#include <winnow/core/volumes.h>
 #include "core/memory/bounds_pool.h"
+#include "core/memory/volume_columns.h"
 #include "partitions/rows/row_input.h"
 
 #include <cstddef>

@@ -23,7 +23,7 @@ KdopSource<K> source_of(std::span<const Kdop<K>> kdops) noexcept {
 /// Calls use(source), with the source enlarged by the margin if there is one.
 template <typename Source, typename Use>
 auto with_margin(const Source& source, const FatMargin& margin, Use&& use) {
-  return margin.is_none() ? use(source) : use(FatSource<Source>{source, margin});
+  return is_none(margin) ? use(source) : use(FatSource<Source>{source, margin});
 }
 
 }  // namespace
@@ -163,7 +163,7 @@ Status RowInput::update(std::span<const Key> keys, std::span<const V> volumes) {
 const VolumeInput* RowInput::of(Volume volume, const FatMargin& fat_margin) noexcept {
   switch (volume) {
     case Volume::aabb:
-      return fat_margin.legal().is_none() ? &boxes_as_given() : &kVolumeInput<BoxSource>;
+      return is_none(legal(fat_margin)) ? &boxes_as_given() : &kVolumeInput<BoxSource>;
     case Volume::sphere:
       return &kVolumeInput<SphereAroundBoxSource>;
     case Volume::kdop14:

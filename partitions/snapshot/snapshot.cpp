@@ -4,6 +4,7 @@
 #include "core/memory/new_in.h"
 #include "core/memory/saved_keys.h"
 #include "core/memory/snapshot_frame.h"
+#include "core/memory/volume_columns.h"
 #include "core/threads/float_environment.h"
 #include "partitions/rows/row_input.h"
 #include "partitions/state/partition_observer.h"

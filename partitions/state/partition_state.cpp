@@ -124,16 +124,16 @@ Status PartitionState::update(const UpdateSubset& entries, const BoxView& boxes)
 
 Status PartitionState::update(std::span<const Key> keys, const BoxView& boxes,
                               const IndexSubset& entries) {
-  if (!entries.is_mask()) {
+  if (!entries.is_mask) {
     const auto is_one = [&](std::uint32_t number) { return number < keys.size(); };
-    if (!std::ranges::all_of(entries.indices(), is_one)) return Status::invalid_argument;
-    return update(UpdateSubset(keys, entries.indices()), boxes);
+    if (!std::ranges::all_of(entries.indices, is_one)) return Status::invalid_argument;
+    return update(UpdateSubset(keys, entries.indices), boxes);
   }
-  if (entries.words().size() != (keys.size() + 63) / 64) return Status::size_mismatch;
+  if (entries.words.size() != (keys.size() + 63) / 64) return Status::size_mismatch;
   listed_.clear();
   if (!listed_.reserve(keys.size())) return Status::out_of_memory;
-  for (std::size_t w = 0; w < entries.words().size(); ++w) {
-    for (std::uint64_t bits = entries.words()[w]; bits != 0; bits &= bits - 1) {
+  for (std::size_t w = 0; w < entries.words.size(); ++w) {
+    for (std::uint64_t bits = entries.words[w]; bits != 0; bits &= bits - 1) {
       const std::size_t i = 64 * w + static_cast<std::size_t>(std::countr_zero(bits));
       if (i < keys.size()) (void)listed_.push_back(static_cast<std::uint32_t>(i));
     }

@@ -5,7 +5,7 @@
 // (index/spatial_index.h) calls the structure.
 
 #include <winnow/core/debug_draw.h>
-#include <winnow/core/footprint.h>
+#include <winnow/core/memory.h>
 #include <winnow/partitions/structures.h>
 #include "core/memory/bounds_pool.h"
 #include "core/memory/new_in.h"

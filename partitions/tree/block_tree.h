@@ -1,7 +1,7 @@
 #pragma once
 
-#include <winnow/core/column.h>
 #include <winnow/core/execution.h>
+#include <winnow/core/memory.h>
 #include "partitions/tree/block_tree.kernel.h"
 #include "partitions/tree/node_filters.h"
 

@@ -1,8 +1,8 @@
 #pragma once
 
-#include <winnow/core/column.h>
 #include <winnow/core/execution.h>
-#include <winnow/core/object_filter.h>
+#include <winnow/core/filter.h>
+#include <winnow/core/memory.h>
 #include "core/memory/bounds_pool.h"
 
 #include <cstdint>

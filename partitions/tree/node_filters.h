@@ -1,6 +1,6 @@
 #pragma once
 
-#include <winnow/core/column.h>
+#include <winnow/core/memory.h>
 #include "partitions/tree/block_tree.kernel.h"
 
 #include <cstddef>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include <winnow/core/column.h>
 #include <winnow/core/execution.h>
+#include <winnow/core/memory.h>
 #include "core/memory/bounds_pool.h"
 
 #include <cstdint>

@@ -1,5 +1,5 @@
 #include "pipeline/cluster/checkpoint.h"
-#include <winnow/core/large_pages.h>
+#include <winnow/core/memory.h>
 
 #include "core/memory/byte_stream.h"
 #include "pipeline/shapes/pair_order.h"

@@ -198,7 +198,7 @@ Status Cluster::self_pairs(Order order) {
 
 NamePairs Cluster::pairs(std::uint32_t rank) const noexcept {
   const RankBodies* const bodies = state_ == nullptr ? nullptr : state_->find(rank);
-  return bodies == nullptr ? NamePairs{} : bodies->pairs();
+  return bodies == nullptr ? NamePairs({}, 0) : bodies->pairs();
 }
 
 Answer<ClusterDigest> Cluster::digest() {

@@ -2,7 +2,7 @@
 // have results, and receives their results. Each kind of query (RayAll, ProbeOverlap, ...) defines
 // these ranks, the query of one scene, and the order in which results are merged.
 
-#include <winnow/pipeline/cluster_queries.h>
+#include <winnow/pipeline/cluster_scene.h>
 
 #include <winnow/pipeline/scene_queries.h>
 #include "core/threads/float_environment.h"

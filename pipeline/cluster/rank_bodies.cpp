@@ -373,7 +373,7 @@ std::size_t RankBodies::put_reported_first() noexcept {
 
 void RankBodies::sort_by_names() {
   const auto names_of = [this](const Pair& pair) {
-    return *NamePairs::Iterator(&pair, names_.data());
+    return detail::NamePairLookup{&pair, names_.data()}(0);
   };
   std::ranges::sort(sorted_, {}, names_of);
 }

@@ -48,7 +48,9 @@ class RankBodies {
   /// Finds the pairs that this rank reports.
   [[nodiscard]] Status find_pairs(Order order);
   /// Pairs of the last `find_pairs`; valid until rows are added or `forget_pairs` is called.
-  [[nodiscard]] NamePairs pairs() const noexcept { return {reported_, names_.data()}; }
+  [[nodiscard]] NamePairs pairs() const noexcept {
+    return {{reported_.data(), names_.data()}, reported_.size()};
+  }
   void forget_pairs() noexcept { reported_ = {}; }
   /// Number of boxes plus number of pairs found, in the last `find_pairs`.
   [[nodiscard]] std::uint64_t work() const noexcept { return partition_.size() + found_.size(); }

@@ -3,7 +3,7 @@
 // The bodies of one rank of a ClusterScene, with their names and records. RankScene derives from
 // it.
 
-#include <winnow/core/object_filter.h>
+#include <winnow/core/filter.h>
 #include <winnow/pipeline/cluster_scene.h>
 #include "pipeline/cluster/name_table.h"
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include <winnow/core/aabb.h>
-#include <winnow/core/vec3.h>
+#include <winnow/core/vectors.h>
+#include <winnow/core/volumes.h>
 #include <winnow/pipeline/cluster_transport.h>
 #include <winnow/pipeline/shape_rays.h>
 

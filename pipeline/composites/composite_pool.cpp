@@ -4,6 +4,7 @@
 #include <winnow/pipeline/composite_pool.h>
 
 #include "core/memory/new_in.h"
+#include "core/numbers/rotation.h"
 #include "core/threads/float_environment.h"
 #include "pipeline/composites/composites.h"
 #include "pipeline/kernels/link.h"
@@ -181,7 +182,7 @@ Status Composites::new_compound(std::span<const CompoundChild> children, Compoun
   const std::size_t parts_at = boxes_at + count * sizeof(Aabb);
   const std::size_t bytes = parts_at + (has_surfaces ? (count + 1) * sizeof(std::uint32_t) : 0);
   auto* const block =
-      static_cast<std::byte*>(try_allocate(*memory, bytes, alignof(std::max_align_t)));
+      static_cast<std::byte*>(detail::try_allocate(*memory, bytes, alignof(std::max_align_t)));
   if (block == nullptr) return Status::out_of_memory;
   auto* const compound = new (block) Compound;
   compound->count = static_cast<std::uint32_t>(count);

@@ -2,7 +2,7 @@
 
 // Storage of a CompositePool.
 
-#include <winnow/core/column.h>
+#include <winnow/core/memory.h>
 #include <winnow/pipeline/composite_pool.h>
 #include "pipeline/composites/mid_phase.h"
 #include "pipeline/shapes/frame.h"
@@ -255,7 +255,7 @@ struct Composites {
 /// Returns the shapes of a pool if they contain `id`, else null.
 [[nodiscard]] inline const Composites* composites_with(const CompositePool& pool,
                                                        ShapeId id) noexcept {
-  const Composites* const all = composites_of(pool);
+  const Composites* const all = PoolAccess::composites(pool);
   return all != nullptr && all->contains(id) ? all : nullptr;
 }
 

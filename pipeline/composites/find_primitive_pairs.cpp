@@ -250,7 +250,7 @@ Status find_primitive_pairs(const CompositePool& pool, const ShapePool& shapes,
                             const PairMargins& margins, const Execution& execution,
                             PrimitivePairs& out) {
   const StageScope stage(WorkStage::mid_phase);
-  const Composites* const all = composites_of(pool);
+  const Composites* const all = PoolAccess::composites(pool);
   out.clear();
   if (pairs.empty() || all == nullptr) {
     if (!out.first.resize(pairs.size() + 1)) return Status::out_of_memory;

@@ -4,7 +4,9 @@
 // SceneOptions::part_manifolds is set. In this file, an answer is the narrow-phase result of one
 // pair of primitives.
 
-#include <winnow/core/rounding.h>
+#include <winnow/core/volumes.h>
+#include "core/numbers/rotation.h"
+#include "core/numbers/rounding.h"
 #include "core/sort/parallel_ranges.h"
 #include "pipeline/composites/composites.h"
 #include "pipeline/manifold/region_points.h"

@@ -214,14 +214,17 @@ struct MidPhase {
   decltype(&mid::solid_contains_shape) solid_contains_shape;
 };
 
-/// Returns the functions for the shapes of a pool.
-[[nodiscard]] inline const MidPhase& mid_phase_of(const CompositePool& pool) noexcept {
-  return *pool.mid_phase_;
-}
-/// Returns the shapes of a pool; null if it never had one.
-[[nodiscard]] inline const Composites* composites_of(const CompositePool& pool) noexcept {
-  return pool.state_;
-}
+/// Reads private members of a pool.
+struct PoolAccess {
+  /// Returns the functions for the shapes of a pool.
+  [[nodiscard]] static const MidPhase& mid_phase(const CompositePool& pool) noexcept {
+    return *pool.mid_phase_;
+  }
+  /// Returns the shapes of a pool; null if it never had one.
+  [[nodiscard]] static const Composites* composites(const CompositePool& pool) noexcept {
+    return pool.state_;
+  }
+};
 
 }  // namespace mid
 }  // namespace winnow

@@ -2,8 +2,10 @@
 
 #include "pipeline/composites/parts.h"
 
-#include <winnow/core/rotation.h>
-#include <winnow/core/rounding.h>
+#include <winnow/core/pose.h>
+#include <winnow/core/volumes.h>
+#include "core/numbers/rotation.h"
+#include "core/numbers/rounding.h"
 #include "pipeline/composites/part_tables.h"
 #include "pipeline/shapes/extent.h"
 #include "pipeline/shapes/one_sided.h"

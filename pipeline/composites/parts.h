@@ -162,7 +162,7 @@ class SubShapeQuery {
   [[nodiscard]] MovingBox bounded(const PlacedShape& placed, MovingBox moving_box) const noexcept;
 
   [[nodiscard]] const mid::MidPhase& mid_phase() const noexcept {
-    return mid::mid_phase_of(*composites_);
+    return mid::PoolAccess::mid_phase(*composites_);
   }
 
   const ShapePool& shapes_;

@@ -9,7 +9,8 @@
 
 #include "pipeline/composites/shape_cast.h"
 
-#include <winnow/core/rounding.h>
+#include <winnow/core/volumes.h>
+#include "core/numbers/rounding.h"
 #include "pipeline/composites/parts.h"
 #include "pipeline/shapes/frame.h"
 #include "pipeline/solver/core_distance.h"

@@ -2,6 +2,7 @@
 
 #include "pipeline/composites/solid_depth.h"
 
+#include "core/numbers/rotation.h"
 #include "pipeline/composites/shape_cast.h"
 
 #include <algorithm>

@@ -2,6 +2,7 @@
 
 #include "pipeline/composites/surface_cones.h"
 
+#include "core/numbers/rotation.h"
 #include "pipeline/composites/mid_phase.h"
 #include "pipeline/composites/transformed_shape.h"
 #include "pipeline/mesh/height_grid.h"
@@ -193,7 +194,7 @@ SurfaceCones::Surroundings SurfaceCones::around_in_surface(const Vec& point, con
   const BodyPair& pair = collided_.pairs[group.bodies];
   const std::uint32_t body = second ? pair.b : pair.a;
   const ShapeId shape = collided_.bodies.shapes[body];
-  const Composites* const all = composites_of(collided_.pool);
+  const Composites* const all = PoolAccess::composites(collided_.pool);
   if (!shape.is_composite() || all == nullptr || all->compound(shape) != nullptr) {
     return Surroundings::none;
   }

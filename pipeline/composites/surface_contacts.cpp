@@ -4,8 +4,10 @@
 // before `reduce_contacts`. In this file, an answer is the narrow-phase result of one pair of
 // primitives.
 
-#include <winnow/core/rounding.h>
+#include <winnow/core/volumes.h>
 #include <winnow/pipeline/contact_types.h>
+#include "core/numbers/rotation.h"
+#include "core/numbers/rounding.h"
 #include "pipeline/composites/composites.h"
 #include "pipeline/composites/patch_contact.h"
 #include "pipeline/composites/surface_cones.h"
@@ -180,7 +182,7 @@ class SurfaceContacts {
         pairs_(pairs),
         margins_(margins),
         result_(result),
-        columns_(result.columns()),
+        columns_(NarrowColumns::of(result)),
         cones_(collided, tables_, pairs, result),
         changes_(changes) {}
 

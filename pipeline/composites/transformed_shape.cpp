@@ -2,6 +2,7 @@
 
 #include "pipeline/composites/transformed_shape.h"
 
+#include "core/numbers/rotation.h"
 #include "pipeline/kinds/kinds.h"
 #include "pipeline/shapes/extent.h"
 

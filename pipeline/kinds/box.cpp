@@ -16,7 +16,7 @@ Answer<ShapeId> ShapePool::add(const BoxShape& shape) {
     return Status::invalid_shape;
   }
   link_kernels_of_box();
-  return put(shape);
+  return PoolRows::put(*this, shape);
 }
 
 }  // namespace winnow

@@ -16,7 +16,7 @@ Answer<ShapeId> ShapePool::add(const CapsuleShape& shape) {
   const DefaultFloatEnvironment environment;
   if (!are_lengths({shape.radius, shape.half_length})) return Status::invalid_shape;
   link_kernels_of_capsule();
-  return put(shape);
+  return PoolRows::put(*this, shape);
 }
 
 }  // namespace winnow

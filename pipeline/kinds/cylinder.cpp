@@ -19,7 +19,7 @@ Answer<ShapeId> ShapePool::add(const CylinderShape& shape) {
   const DefaultFloatEnvironment environment;
   if (!are_lengths({shape.radius, shape.half_length, shape.rounding})) return Status::invalid_shape;
   link_kernels_of_cylinder();
-  return put(shape);
+  return PoolRows::put(*this, shape);
 }
 
 }  // namespace winnow

@@ -23,7 +23,7 @@ Answer<ShapeId> ShapePool::add(const EllipsoidShape& shape) {
     return Status::invalid_shape;
   }
   link_kernels_of_ellipsoid();
-  return put(shape);
+  return PoolRows::put(*this, shape);
 }
 
 }  // namespace winnow

@@ -28,13 +28,13 @@ Answer<ShapeId> ShapePool::add(const HalfSpaceShape& shape) {
   // are exact.
   constexpr double kRounding = 8.0 * std::numeric_limits<double>::epsilon();
   if (std::abs(normal.squaredNorm() - 1.0) <= kRounding) {
-    return put(shape);
+    return PoolRows::put(*this, shape);
   }
   const Eigen::Vector3d scaled = normal / largest;
   const Eigen::Vector3d unit = scaled.normalized();
   const double offset = shape.offset / largest / scaled.norm();
   if (!std::isfinite(offset)) return Status::invalid_shape;
-  return put(HalfSpaceShape{{unit.x(), unit.y(), unit.z()}, offset});
+  return PoolRows::put(*this, HalfSpaceShape{{unit.x(), unit.y(), unit.z()}, offset});
 }
 
 }  // namespace winnow

@@ -19,36 +19,42 @@ void link_hull_kernels() noexcept {
   link_kernels_of_hull();
 }
 
+namespace {
+
 /// Builds a hull with `make` and adds it, if `rounding` is valid.
 template <typename Make>
-Answer<ShapeId> ShapePool::put_hull(double rounding, Make&& make) {
+Answer<ShapeId> put_hull(ShapePool& pool, std::pmr::memory_resource* memory, double rounding,
+                         Make&& make) {
   HullShape hull;
   if (!are_lengths({rounding})) return Status::invalid_shape;
   const Status status = make(hull);
   if (status != Status::ok) return status;
   hull.rounding = rounding;
   link_kernels_of_hull();
-  const Answer<ShapeId> id = put(hull);
-  if (id.status != Status::ok) release_hull(hull, memory_);
+  const Answer<ShapeId> id = PoolRows::put(pool, hull);
+  if (id.status != Status::ok) release_hull(hull, memory);
   return id;
 }
 
+}  // namespace
+
 Answer<ShapeId> ShapePool::add_hull(const PointView& points, double rounding) {
   const DefaultFloatEnvironment environment;
-  return put_hull(rounding, [&](HullShape& hull) { return hull_of_points(points, memory_, hull); });
+  return put_hull(*this, memory_, rounding,
+                  [&](HullShape& hull) { return hull_of_points(points, memory_, hull); });
 }
 
 Answer<ShapeId> ShapePool::add_hull(const PointView& points, const HullFaces& faces,
                                     double rounding) {
   const DefaultFloatEnvironment environment;
-  return put_hull(rounding,
+  return put_hull(*this, memory_, rounding,
                   [&](HullShape& hull) { return hull_of_faces(points, faces, memory_, hull); });
 }
 
 Answer<ShapeId> ShapePool::add_built_hull(const PointView& points, const HullFaces& faces,
                                           double rounding) {
   const DefaultFloatEnvironment environment;
-  return put_hull(rounding,
+  return put_hull(*this, memory_, rounding,
                   [&](HullShape& hull) { return rebuild_hull(points, faces, memory_, hull); });
 }
 

@@ -12,7 +12,7 @@ Answer<ShapeId> ShapePool::add(const SphereShape& shape) {
   const DefaultFloatEnvironment environment;
   if (!are_lengths({shape.radius})) return Status::invalid_shape;
   link_kernels_of_sphere();
-  return put(shape);
+  return PoolRows::put(*this, shape);
 }
 
 }  // namespace winnow

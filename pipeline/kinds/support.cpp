@@ -69,7 +69,7 @@ Answer<ShapeId> ShapePool::add(const SupportShape& shape) {
     return Status::invalid_shape;
   }
   link_kernels_of_support();
-  return put(shape);
+  return PoolRows::put(*this, shape);
 }
 
 }  // namespace winnow

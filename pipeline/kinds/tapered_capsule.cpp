@@ -24,7 +24,7 @@ Answer<ShapeId> ShapePool::add(const TaperedCapsuleShape& shape) {
     return Status::invalid_shape;
   }
   link_kernels_of_tapered_capsule();
-  return put(shape);
+  return PoolRows::put(*this, shape);
 }
 
 }  // namespace winnow

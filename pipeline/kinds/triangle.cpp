@@ -25,7 +25,7 @@ Answer<ShapeId> ShapePool::add(const TriangleShape& shape) {
     }
   }
   link_kernels_of_triangle();
-  return put(shape);
+  return PoolRows::put(*this, shape);
 }
 
 void link_triangle_kernels() noexcept {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <winnow/core/vec3.h>
+#include <winnow/core/vectors.h>
 
 #include <cmath>
 

@@ -1,12 +1,11 @@
 // HeightField: validation, storage, active edges, snapshots, and the pyramid of minimum and maximum
 // heights over tiles. height_traversal.cpp searches the pyramid.
 
-#include <winnow/pipeline/height_field.h>
+#include <winnow/pipeline/surfaces.h>
 
-#include <winnow/core/column.h>
 #include <winnow/core/eigen.h>
-#include <winnow/core/rounding.h>
-#include <winnow/pipeline/triangle_mesh.h>
+#include <winnow/core/memory.h>
+#include <winnow/core/volumes.h>
 #include "core/memory/new_in.h"
 #include "core/memory/snapshot_frame.h"
 #include "core/threads/float_environment.h"

@@ -1,7 +1,6 @@
 #pragma once
 
-#include <winnow/core/column.h>
-#include <winnow/core/footprint.h>
+#include <winnow/core/memory.h>
 #include "pipeline/mesh/mesh_view.h"
 
 #include <cstdint>

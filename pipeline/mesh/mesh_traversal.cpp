@@ -5,7 +5,7 @@
 
 #include "pipeline/mesh/mesh_rays.kernel.h"
 
-#include <winnow/core/rounding.h>
+#include <winnow/core/volumes.h>
 #include "pipeline/mesh/mesh_tree.h"
 #include "pipeline/shapes/frame.h"
 

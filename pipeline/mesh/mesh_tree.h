@@ -1,7 +1,7 @@
 #pragma once
 
-#include <winnow/core/column.h>
 #include <winnow/core/execution.h>
+#include <winnow/core/memory.h>
 #include "pipeline/mesh/mesh_view.h"
 
 #include <cstddef>

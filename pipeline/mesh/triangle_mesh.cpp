@@ -1,7 +1,7 @@
 // TriangleMesh: validation, build, refit and snapshots. The tree is in mesh_tree.cpp, active edges
 // in mesh_edges.cpp, vertex lists of leaves in leaf_corners.cpp; traversals read the MeshView.
 
-#include <winnow/pipeline/triangle_mesh.h>
+#include <winnow/pipeline/surfaces.h>
 
 #include "core/memory/new_in.h"
 #include "core/memory/snapshot_frame.h"

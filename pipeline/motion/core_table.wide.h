@@ -3,6 +3,7 @@
 // A core of a moving shape in each lane, all of one kind, and its rotation about an axis through
 // the body's position. kind_lanes.wide.h computes with it for each kind.
 
+#include "core/numbers/rotation.h"
 #include "pipeline/kernels/pair_lanes.wide.h"
 #include "pipeline/kernels/user_support.wide.h"
 #include "pipeline/motion/impact_lanes.kernel.h"

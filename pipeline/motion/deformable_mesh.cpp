@@ -2,16 +2,18 @@
 // streams the pairs of features whose boxes overlap, their impacts (feature_impacts.cpp) and
 // proximities (feature_proximity.cpp).
 
-#include <winnow/core/rounding.h>
+#include <winnow/core/volumes.h>
 #include <winnow/pipeline/deformable_mesh.h>
 
 #include "core/memory/bounds_pool.h"
 #include "core/memory/columns.h"
 #include "core/memory/new_in.h"
+#include "core/numbers/rounding.h"
 #include "core/sort/parallel_ranges.h"
 #include "core/threads/float_environment.h"
 #include "partitions/tree/block_tree.h"
 #include "partitions/tree/kd_order.h"
+#include "pipeline/motion/deformable_faces.h"
 #include "pipeline/motion/feature_proximity.h"
 #include "pipeline/motion/feature_stage.h"
 #include "pipeline/motion/pair_stream.h"
@@ -201,6 +203,15 @@ struct DeformableMesh::State {
     return corner[0] == pair.first || corner[1] == pair.first || corner[2] == pair.first;
   }
 
+  /// Finds the impacts of a mesh with another one, or with itself if that is null.
+  static Status find_impacts(const DeformableMesh& first, const DeformableMesh* other,
+                             FeaturePair kind, const FeatureImpactOptions& options,
+                             ResultChunks<MeshImpact> chunks) noexcept;
+  /// As above, for features that are near at the end of the step.
+  static Status find_near(const DeformableMesh& first, const DeformableMesh* other,
+                          FeaturePair kind, double thickness,
+                          ResultChunks<MeshProximity> chunks) noexcept;
+
   // Rows of vertices stay in the order of their numbers, by which faces and edges index them, and
   // have no tree.
   FeatureRows vertices;
@@ -343,8 +354,7 @@ std::array<std::uint32_t, 2> DeformableMesh::edge(std::size_t i) const noexcept 
   return state_->ends_of(static_cast<std::uint32_t>(i));
 }
 
-Status DeformableMesh::find_self(FeaturePair kind,
-                                 const ResultChunks<Pair>& chunks) const noexcept {
+Status DeformableMesh::self_candidates(FeaturePair kind, ResultChunks<Pair> chunks) const noexcept {
   const DefaultFloatEnvironment environment;
   if (state_ == nullptr || !state_->moved) return Status::invalid_argument;
   // Removes the pairs that share a vertex, in place and without branches: a branch would often be
@@ -368,8 +378,8 @@ Status DeformableMesh::find_self(FeaturePair kind,
   return query_tree(options_, state_->faces, state_->vertices, state_->vertex_order.data(), take);
 }
 
-Status DeformableMesh::find_with(const DeformableMesh& other, FeaturePair kind,
-                                 const ResultChunks<Pair>& chunks) const noexcept {
+Status DeformableMesh::candidates_with(const DeformableMesh& other, FeaturePair kind,
+                                       ResultChunks<Pair> chunks) const noexcept {
   const DefaultFloatEnvironment environment;
   if (state_ == nullptr || !state_->moved || other.state_ == nullptr || !other.state_->moved ||
       !(options_.origin == other.options_.origin)) {
@@ -383,36 +393,32 @@ Status DeformableMesh::find_with(const DeformableMesh& other, FeaturePair kind,
                     take);
 }
 
-bool DeformableMesh::is_moved() const noexcept {
-  return state_ != nullptr && state_->moved;
+bool DeformableMesh::Faces::are_moved() const noexcept {
+  return mesh.state_ != nullptr && mesh.state_->moved;
 }
 
-double DeformableMesh::reach() const noexcept {
-  const DefaultFloatEnvironment environment;
-  return state_->distance;
+double DeformableMesh::Faces::reach() const noexcept {
+  return mesh.state_->distance;
 }
 
-void DeformableMesh::place_face(std::uint32_t face, std::array<Vec3d, 3>& start,
-                                std::array<Vec3d, 3>& end) const noexcept {
-  const DefaultFloatEnvironment environment;
-  const std::uint32_t* const corner = state_->corners_of(face);
+void DeformableMesh::Faces::place(std::uint32_t face, std::array<Vec3d, 3>& start,
+                                  std::array<Vec3d, 3>& end) const noexcept {
+  const std::uint32_t* const corner = mesh.state_->corners_of(face);
   for (std::size_t i = 0; i < 3; ++i) {
-    start[i] = state_->start[corner[i]];
-    end[i] = state_->end[corner[i]];
+    start[i] = mesh.state_->start[corner[i]];
+    end[i] = mesh.state_->end[corner[i]];
   }
 }
 
-Status DeformableMesh::find_faces(const Aabb& box,
-                                  const ResultChunks<Pair>& chunks) const noexcept {
-  const DefaultFloatEnvironment environment;
+Status DeformableMesh::Faces::find(const Aabb& box, ResultChunks<Pair> chunks) const noexcept {
   const auto take = [&](std::span<Pair> pairs) { chunks.take(chunks.context, pairs); };
-  FeatureRows query_rows(options_.memory);
+  FeatureRows query_rows(mesh.options_.memory);
   if (!query_rows.make(1)) return Status::out_of_memory;
   for (int axis = 0; axis < 3; ++axis) {
     query_rows.boxes.column(static_cast<std::size_t>(axis))[0] = bound(box.min[axis]);
     query_rows.boxes.column(static_cast<std::size_t>(axis) + 3)[0] = bound(box.max[axis]);
   }
-  return query_tree(options_, state_->faces, query_rows, nullptr, take);
+  return query_tree(mesh.options_, mesh.state_->faces, query_rows, nullptr, take);
 }
 
 namespace {
@@ -461,71 +467,96 @@ void find_times(FeaturePair kind, std::span<const Pair> pairs, const State& a, c
 
 }  // namespace
 
-Status DeformableMesh::find_impacts(const DeformableMesh* other, FeaturePair kind,
-                                    const FeatureImpactOptions& options,
-                                    const ResultChunks<MeshImpact>& chunks) const noexcept {
+Status DeformableMesh::State::find_impacts(const DeformableMesh& first, const DeformableMesh* other,
+                                           FeaturePair kind, const FeatureImpactOptions& options,
+                                           ResultChunks<MeshImpact> chunks) noexcept {
   const DefaultFloatEnvironment environment;
-  const DeformableMesh& second = other == nullptr ? *this : *other;
-  if (state_ == nullptr || second.state_ == nullptr || !are_in_range(options) ||
-      !(options.min_separation <= 0.5 * state_->distance + 0.5 * second.state_->distance)) {
+  const DeformableMesh& second = other == nullptr ? first : *other;
+  if (first.state_ == nullptr || second.state_ == nullptr || !are_in_range(options) ||
+      !(options.min_separation <= 0.5 * first.state_->distance + 0.5 * second.state_->distance)) {
     return Status::invalid_argument;
   }
-  ResultChunk<MeshImpact, ResultChunks<MeshImpact>> results(options_.memory, chunks);
-  Column<double> times(options_.memory);
-  if (!results.reserve(options_.chunk) || !times.resize(options_.chunk)) {
+  ResultChunk<MeshImpact> results(first.options_.memory, chunks);
+  Column<double> times(first.options_.memory);
+  if (!results.reserve(first.options_.chunk) || !times.resize(first.options_.chunk)) {
     return Status::out_of_memory;
   }
-  const State& a = *state_;
+  const State& a = *first.state_;
   const State& b = *second.state_;
   const auto take = [&](std::span<const Pair> pairs) {
-    for_each_range(
-        options_.execution, pairs.size(), kPairsPerRange, [&](std::size_t begin, std::size_t end) {
-          find_times(kind, pairs.subspan(begin, end - begin), a, b, options, times.data() + begin);
-        });
+    for_each_range(first.options_.execution, pairs.size(), kPairsPerRange,
+                   [&](std::size_t begin, std::size_t end) {
+                     find_times(kind, pairs.subspan(begin, end - begin), a, b, options,
+                                times.data() + begin);
+                   });
     for (std::size_t i = 0; i < pairs.size(); ++i) {
       if (times[i] <= 1.0) results.add({pairs[i], times[i]});
     }
   };
-  const Status status =
-      other == nullptr ? self_candidates(kind, take) : candidates_with(*other, kind, take);
+  const Status status = other == nullptr ? first.self_candidates(kind, take)
+                                         : first.candidates_with(*other, kind, take);
   if (status != Status::ok) return status;
   results.flush();
   return Status::ok;
 }
 
-Status DeformableMesh::find_near(const DeformableMesh* other, FeaturePair kind, double thickness,
-                                 const ResultChunks<MeshProximity>& chunks) const noexcept {
+Status DeformableMesh::State::find_near(const DeformableMesh& first, const DeformableMesh* other,
+                                        FeaturePair kind, double thickness,
+                                        ResultChunks<MeshProximity> chunks) noexcept {
   const DefaultFloatEnvironment environment;
-  const DeformableMesh& second = other == nullptr ? *this : *other;
-  if (state_ == nullptr || second.state_ == nullptr || !(thickness >= 0.0) ||
-      !(thickness <= 0.5 * state_->distance + 0.5 * second.state_->distance)) {
+  const DeformableMesh& second = other == nullptr ? first : *other;
+  if (first.state_ == nullptr || second.state_ == nullptr || !(thickness >= 0.0) ||
+      !(thickness <= 0.5 * first.state_->distance + 0.5 * second.state_->distance)) {
     return Status::invalid_argument;
   }
-  ResultChunk<MeshProximity, ResultChunks<MeshProximity>> results(options_.memory, chunks);
-  Column<MeshProximity> near(options_.memory);
-  if (!results.reserve(options_.chunk) || !near.resize(options_.chunk)) {
+  ResultChunk<MeshProximity> results(first.options_.memory, chunks);
+  Column<MeshProximity> near(first.options_.memory);
+  if (!results.reserve(first.options_.chunk) || !near.resize(first.options_.chunk)) {
     return Status::out_of_memory;
   }
   const auto take = [&](std::span<const Pair> pairs) {
-    for_each_range(options_.execution, pairs.size(), kPairsPerRange,
-                   [&](std::size_t begin, std::size_t end) {
-                     for (std::size_t i = begin; i < end; ++i) {
-                       const auto vertex = vertices_of(kind, pairs[i], *state_, *second.state_);
-                       near[i] = {};
-                       near[i].features = pairs[i];
-                       find_nearest_points(
-                           kind, points_of(kind, vertex, state_->end, second.state_->end), near[i]);
-                     }
-                   });
+    for_each_range(
+        first.options_.execution, pairs.size(), kPairsPerRange,
+        [&](std::size_t begin, std::size_t end) {
+          for (std::size_t i = begin; i < end; ++i) {
+            const auto vertex = vertices_of(kind, pairs[i], *first.state_, *second.state_);
+            near[i] = {};
+            near[i].features = pairs[i];
+            find_nearest_points(
+                kind, points_of(kind, vertex, first.state_->end, second.state_->end), near[i]);
+          }
+        });
     for (std::size_t i = 0; i < pairs.size(); ++i) {
       if (near[i].distance <= thickness) results.add(near[i]);
     }
   };
-  const Status status =
-      other == nullptr ? self_candidates(kind, take) : candidates_with(*other, kind, take);
+  const Status status = other == nullptr ? first.self_candidates(kind, take)
+                                         : first.candidates_with(*other, kind, take);
   if (status != Status::ok) return status;
   results.flush();
   return Status::ok;
+}
+
+Status DeformableMesh::self_impacts(FeaturePair kind, const FeatureImpactOptions& options,
+                                    ResultChunks<MeshImpact> take) const noexcept {
+  return State::find_impacts(*this, nullptr, kind, options, take);
+}
+
+Status DeformableMesh::impacts_with(const DeformableMesh& other, FeaturePair kind,
+                                    const FeatureImpactOptions& options,
+                                    ResultChunks<MeshImpact> take) const noexcept {
+  return State::find_impacts(*this, &other, kind, options, take);
+}
+
+Status DeformableMesh::self_proximity(FeaturePair kind, double thickness,
+                                      ResultChunks<MeshProximity> take) const noexcept {
+  return State::find_near(*this, nullptr, kind, thickness, take);
+}
+
+Status DeformableMesh::proximity_with(const DeformableMesh& other, FeaturePair kind,
+                                      double thickness,
+                                      ResultChunks<MeshProximity> take) const noexcept {
+  return State::find_near(*this, &other, kind, thickness, take);
 }
 
 Footprint DeformableMesh::footprint() const noexcept {

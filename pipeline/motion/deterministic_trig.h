@@ -1,6 +1,6 @@
 #pragma once
 
-#include <winnow/core/rotation.h>
+#include <winnow/core/pose.h>
 
 #include <cmath>
 

@@ -1,5 +1,6 @@
 #include "pipeline/motion/face_impact.h"
 
+#include "core/numbers/rotation.h"
 #include "pipeline/motion/deterministic_trig.h"
 #include "pipeline/motion/part_pair.h"
 #include "pipeline/shapes/frame.h"

@@ -1,4 +1,4 @@
-#include <winnow/pipeline/feature_impacts.h>
+#include <winnow/pipeline/impacts.h>
 #include "core/threads/float_environment.h"
 #include "pipeline/motion/feature_stage.h"
 

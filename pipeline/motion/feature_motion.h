@@ -1,6 +1,6 @@
 #pragma once
 
-#include <winnow/pipeline/feature_impacts.h>
+#include <winnow/pipeline/impacts.h>
 
 namespace winnow {
 

@@ -5,6 +5,7 @@
 
 #include "core/sort/parallel_ranges.h"
 #include "core/threads/float_environment.h"
+#include "pipeline/motion/deformable_faces.h"
 #include "pipeline/motion/face_impact.h"
 #include "pipeline/motion/relative_motion_bounds.h"
 #include "pipeline/motion/result_chunk.h"
@@ -52,18 +53,19 @@ constexpr std::size_t kFacesPerRange = 16;
 
 }  // namespace
 
-Status DeformableMesh::find_shape_impacts(
-    const MeshObstacle& obstacle, const ImpactOptions& options,
-    const ResultChunks<MeshShapeImpact>& chunks) const noexcept {
+Status DeformableMesh::impacts_with(const MeshObstacle& obstacle, const ImpactOptions& options,
+                                    ResultChunks<MeshShapeImpact> chunks) const noexcept {
   const DefaultFloatEnvironment environment;
   const SubShapeQuery parts(obstacle.shapes, options.composites);
-  if (!is_moved() || !(obstacle.separation >= 0.0 && obstacle.separation <= 0.5 * reach())) {
+  const Faces faces_of_mesh{*this};
+  if (!faces_of_mesh.are_moved() ||
+      !(obstacle.separation >= 0.0 && obstacle.separation <= 0.5 * faces_of_mesh.reach())) {
     return Status::invalid_argument;
   }
   if (const Status status = status_of(parts, obstacle, options); status != Status::ok) {
     return status;
   }
-  ResultChunk<MeshShapeImpact, ResultChunks<MeshShapeImpact>> results(options_.memory, chunks);
+  ResultChunk<MeshShapeImpact> results(options_.memory, chunks);
   Column<impact::BodyImpact> found(options_.memory);
   if (!results.reserve(options_.chunk) || !found.resize(options_.chunk)) {
     return Status::out_of_memory;
@@ -71,7 +73,7 @@ Status DeformableMesh::find_shape_impacts(
   const auto impact_of = [&](std::uint32_t number) {
     std::array<Vec3d, 3> start;
     std::array<Vec3d, 3> end;
-    place_face(number, start, end);
+    faces_of_mesh.place(number, start, end);
     impact::MovingFace face;
     face.rounding = obstacle.separation;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -91,8 +93,7 @@ Status DeformableMesh::find_shape_impacts(
       if (found[i].impact.hit) results.add(shown(faces[i].second, obstacle, found[i]));
     }
   };
-  const Status status =
-      find_faces(swept_box(parts, obstacle, options_.origin), ResultChunks<Pair>(take));
+  const Status status = faces_of_mesh.find(swept_box(parts, obstacle, options_.origin), take);
   if (status != Status::ok) return status;
   results.flush();
   return Status::ok;

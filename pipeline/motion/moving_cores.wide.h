@@ -3,6 +3,7 @@
 // Cores of moving shapes, one per lane, all of one kind: loading, placement at a time, and support
 // points. Used by all impact kernels of this folder.
 
+#include "core/numbers/rotation.h"
 #include "pipeline/kinds/with_shape.h"
 #include "pipeline/motion/kind_lanes.wide.h"
 

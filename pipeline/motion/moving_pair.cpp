@@ -3,6 +3,7 @@
 
 #include "pipeline/motion/moving_pair.h"
 
+#include "core/numbers/rotation.h"
 #include "pipeline/motion/core_reach.h"
 #include "pipeline/motion/deterministic_trig.h"
 #include "pipeline/shapes/two_diff.h"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <winnow/core/rotation.h>
+#include <winnow/core/pose.h>
 #include <winnow/pipeline/rigid_motion.h>
 #include <winnow/pipeline/shapes.h>
 #include "pipeline/solver/problem.h"

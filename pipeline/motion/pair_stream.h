@@ -1,8 +1,8 @@
 #pragma once
 
-#include <winnow/core/column.h>
 #include <winnow/core/execution.h>
-#include <winnow/core/pair_buffer.h>
+#include <winnow/core/memory.h>
+#include <winnow/core/results.h>
 #include "partitions/rows/row_view.h"
 
 #include <algorithm>

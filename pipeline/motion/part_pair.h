@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/numbers/rotation.h"
 #include "pipeline/composites/part_tables.h"
 #include "pipeline/motion/relative_motion_bounds.h"
 

@@ -4,6 +4,7 @@
 
 #include "pipeline/motion/relative_motion_bounds.h"
 
+#include "core/numbers/rotation.h"
 #include "pipeline/motion/deterministic_trig.h"
 #include "pipeline/shapes/frame.h"
 

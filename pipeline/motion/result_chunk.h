@@ -1,6 +1,7 @@
 #pragma once
 
-#include <winnow/core/column.h>
+#include <winnow/core/memory.h>
+#include <winnow/pipeline/deformable_mesh.h>
 
 #include <cstddef>
 #include <memory_resource>
@@ -8,10 +9,10 @@
 namespace winnow {
 
 /// Collects results and passes them to the caller whenever a chunk is full.
-template <typename Result, typename Chunks>
+template <typename Result>
 class ResultChunk {
  public:
-  ResultChunk(std::pmr::memory_resource* memory, const Chunks& chunks) noexcept
+  ResultChunk(std::pmr::memory_resource* memory, ResultChunks<Result> chunks) noexcept
       : results_(memory), chunks_(chunks) {}
   [[nodiscard]] bool reserve(std::size_t most) noexcept {
     most_ = most;
@@ -28,7 +29,7 @@ class ResultChunk {
 
  private:
   Column<Result> results_;
-  const Chunks& chunks_;
+  ResultChunks<Result> chunks_;
   std::size_t most_ = 0;
 };
 

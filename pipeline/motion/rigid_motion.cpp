@@ -1,5 +1,6 @@
-#include <winnow/core/rotation.h>
+#include <winnow/core/pose.h>
 #include <winnow/pipeline/rigid_motion.h>
+#include "core/numbers/rotation.h"
 #include "core/threads/float_environment.h"
 #include "pipeline/motion/deterministic_trig.h"
 

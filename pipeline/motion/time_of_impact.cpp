@@ -1,7 +1,7 @@
 // time_of_impact: checks each pair and distributes pairs of convex shapes to ImpactBatch, pairs
 // with composite shapes to find_body_impact.
 
-#include <winnow/pipeline/time_of_impact.h>
+#include <winnow/pipeline/impacts.h>
 #include "core/sort/parallel_ranges.h"
 #include "core/threads/float_environment.h"
 #include "pipeline/motion/body_impact.h"
@@ -59,29 +59,6 @@ ImpactResult::ImpactResult(std::pmr::memory_resource* memory) noexcept
       part_a_(memory),
       part_b_(memory) {}
 
-bool ImpactResult::resize(std::size_t count) noexcept {
-  bool ok =
-      status_.resize(count) && hit_.resize(count) && part_a_.resize(count) && part_b_.resize(count);
-  for (Column<double>* column : {&time_, &gap_, &error_bound_}) ok = ok && column->resize(count);
-  for (Column<double>& column : normal_) ok = ok && column.resize(count);
-  for (Column<double>& column : point_) ok = ok && column.resize(count);
-  return ok;
-}
-
-void ImpactResult::write(std::size_t i, const impact::Impact& impact, std::uint32_t part_a,
-                         std::uint32_t part_b) noexcept {
-  hit_[i] = impact.hit ? 1 : 0;
-  time_[i] = impact.time;
-  gap_[i] = impact.gap;
-  error_bound_[i] = impact.error_bound;
-  for (int axis = 0; axis < 3; ++axis) {
-    normal_[axis][i] = impact.normal[axis];
-    point_[axis][i] = impact.point[axis];
-  }
-  part_a_[i] = part_a;
-  part_b_[i] = part_b;
-}
-
 Footprint ImpactResult::footprint() const noexcept {
   Footprint footprint;
   Bytes& bytes = footprint.results;
@@ -97,42 +74,72 @@ Footprint ImpactResult::footprint() const noexcept {
   return footprint;
 }
 
-/// Solves pairs [first, end), at most as many as fit a batch.
-void ImpactResult::find_range(const SubShapeQuery& parts, const MovingBodies& bodies,
-                              std::span<const BodyPair> pairs, const ImpactOptions& options,
-                              std::size_t first, std::size_t end) {
-  impact::ImpactBatch batch(parts.shapes().tables(), options.tolerance);
-  const KnownShapes known(parts.shapes());
-  impact::Impact none;
-  none.time = 0.0;
-  for (std::size_t i = first; i < end; ++i) {
-    const auto [a, b] = pairs[i];
-    const bool known_both =
-        known.surely_contain(bodies.shapes[a]) && known.surely_contain(bodies.shapes[b]);
-    status_[i] = known_both ? Status::ok : status_of(parts, bodies, options, pairs[i]);
-    if (status_[i] != Status::ok) {
-      write(i, none, kWholeShape, kWholeShape);
-    } else if (impact::ImpactBatch::takes(bodies.shapes[a], bodies.shapes[b])) {
-      batch.add(i, bodies.shapes[a], bodies.motions[a], bodies.shapes[b], bodies.motions[b]);
-    } else {
-      const impact::BodyImpact found =
-          impact::find_body_impact(parts, {bodies.shapes[a], bodies.motions[a]},
-                                   {bodies.shapes[b], bodies.motions[b]}, {options.tolerance});
-      write(i, found.impact, found.part_a, found.part_b);
-    }
+/// Writes to the columns of a result.
+struct ImpactColumns {
+  bool resize(std::size_t count) noexcept {
+    bool ok = to.status_.resize(count) && to.hit_.resize(count) && to.part_a_.resize(count) &&
+              to.part_b_.resize(count);
+    for (Column<double>* column : {&to.time_, &to.gap_, &to.error_bound_})
+      ok = ok && column->resize(count);
+    for (Column<double>& column : to.normal_) ok = ok && column.resize(count);
+    for (Column<double>& column : to.point_) ok = ok && column.resize(count);
+    return ok;
   }
-  batch.run([&](std::size_t i, const impact::Impact& found, bool valid) {
-    if (!valid) status_[i] = Status::invalid_pose;
-    write(i, valid ? found : none, kWholeShape, kWholeShape);
-  });
-}
+
+  void write(std::size_t i, const impact::Impact& impact, std::uint32_t part_a,
+             std::uint32_t part_b) noexcept {
+    to.hit_[i] = impact.hit ? 1 : 0;
+    to.time_[i] = impact.time;
+    to.gap_[i] = impact.gap;
+    to.error_bound_[i] = impact.error_bound;
+    for (int axis = 0; axis < 3; ++axis) {
+      to.normal_[axis][i] = impact.normal[axis];
+      to.point_[axis][i] = impact.point[axis];
+    }
+    to.part_a_[i] = part_a;
+    to.part_b_[i] = part_b;
+  }
+
+  /// Solves pairs [first, end), at most as many as fit a batch.
+  void find_range(const SubShapeQuery& parts, const MovingBodies& bodies,
+                  std::span<const BodyPair> pairs, const ImpactOptions& options, std::size_t first,
+                  std::size_t end) {
+    impact::ImpactBatch batch(parts.shapes().tables(), options.tolerance);
+    const KnownShapes known(parts.shapes());
+    impact::Impact none;
+    none.time = 0.0;
+    for (std::size_t i = first; i < end; ++i) {
+      const auto [a, b] = pairs[i];
+      const bool known_both =
+          known.surely_contain(bodies.shapes[a]) && known.surely_contain(bodies.shapes[b]);
+      to.status_[i] = known_both ? Status::ok : status_of(parts, bodies, options, pairs[i]);
+      if (to.status_[i] != Status::ok) {
+        write(i, none, kWholeShape, kWholeShape);
+      } else if (impact::ImpactBatch::takes(bodies.shapes[a], bodies.shapes[b])) {
+        batch.add(i, bodies.shapes[a], bodies.motions[a], bodies.shapes[b], bodies.motions[b]);
+      } else {
+        const impact::BodyImpact found =
+            impact::find_body_impact(parts, {bodies.shapes[a], bodies.motions[a]},
+                                     {bodies.shapes[b], bodies.motions[b]}, {options.tolerance});
+        write(i, found.impact, found.part_a, found.part_b);
+      }
+    }
+    batch.run([&](std::size_t i, const impact::Impact& found, bool valid) {
+      if (!valid) to.status_[i] = Status::invalid_pose;
+      write(i, valid ? found : none, kWholeShape, kWholeShape);
+    });
+  }
+
+  ImpactResult& to;
+};
 
 Status time_of_impact(const ShapePool& shapes, const MovingBodies& bodies,
                       std::span<const BodyPair> pairs, const ImpactOptions& options,
                       ImpactResult& result) {
   const DefaultFloatEnvironment environment;
-  const auto refuse = [&result](Status status) {
-    static_cast<void>(result.resize(0));
+  ImpactColumns writer{result};
+  const auto refuse = [&writer](Status status) {
+    static_cast<void>(writer.resize(0));
     return status;
   };
   const std::size_t count = bodies.shapes.size();
@@ -143,11 +150,11 @@ Status time_of_impact(const ShapePool& shapes, const MovingBodies& bodies,
   const bool exist = std::ranges::all_of(
       pairs, [count](const BodyPair& pair) { return pair.a < count && pair.b < count; });
   if (!exist) return refuse(Status::invalid_argument);
-  if (!result.resize(pairs.size())) return refuse(Status::out_of_memory);
+  if (!writer.resize(pairs.size())) return refuse(Status::out_of_memory);
   const SubShapeQuery parts(shapes, options.composites);
   for_each_range(options.execution, pairs.size(), impact::ImpactBatch::kRoom,
                  [&](std::size_t first, std::size_t end) {
-                   result.find_range(parts, bodies, pairs, options, first, end);
+                   writer.find_range(parts, bodies, pairs, options, first, end);
                  });
   return Status::ok;
 }

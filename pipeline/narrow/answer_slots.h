@@ -1,7 +1,7 @@
 #pragma once
 
 #include <winnow/core/execution.h>
-#include <winnow/pipeline/narrow_result.h>
+#include <winnow/pipeline/narrow_phase.h>
 #include "core/sort/parallel_ranges.h"
 
 #include <cstddef>

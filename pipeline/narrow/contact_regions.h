@@ -1,8 +1,6 @@
 #pragma once
 
-#include <winnow/core/column.h>
-#include <winnow/core/footprint.h>
-#include <winnow/core/large_pages.h>
+#include <winnow/core/memory.h>
 #include <winnow/pipeline/contact_types.h>
 
 #include <cstdint>

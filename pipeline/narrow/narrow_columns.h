@@ -1,6 +1,6 @@
 #pragma once
 
-#include <winnow/pipeline/narrow_result.h>
+#include <winnow/pipeline/narrow_phase.h>
 
 #include <cstdint>
 #include <span>
@@ -19,6 +19,13 @@ struct NarrowColumns {
   std::span<std::uint32_t> contact_count;  ///< at most kManifoldPoints
   /// Points may be added.
   ContactColumns& contacts;
+
+  /// Returns the columns of a result. Written values must agree with what its accessors guarantee.
+  [[nodiscard]] static NarrowColumns of(NarrowResult& result) noexcept;
+  /// Allocates the columns of a level, and no others. False if memory is refused.
+  [[nodiscard]] static bool resize(NarrowResult& result, std::size_t count,
+                                   ContactLevel level) noexcept;
+  static void clear(NarrowResult& result) noexcept;
 };
 
 }  // namespace winnow

@@ -12,6 +12,7 @@
 #include "core/memory/new_in.h"
 #include "core/threads/float_environment.h"
 #include "pipeline/kernels/kernels.h"
+#include "pipeline/narrow/narrow_columns.h"
 #include "pipeline/narrow/pair_buckets.h"
 #include "pipeline/narrow/validate_options.h"
 #include "pipeline/solver/solver.h"
@@ -255,7 +256,7 @@ Status NarrowPhase::collide(const ShapeTables& tables, const Bodies& bodies,
     const Call call{tables, bodies, pairs, options, statistics_, bad_body_};
     status = state_->collide(call, result);
   }
-  if (status != Status::ok) result.clear();
+  if (status != Status::ok) NarrowColumns::clear(result);
   return status;
 }
 
@@ -269,8 +270,8 @@ Status NarrowPhase::State::collide(const Call& call, NarrowResult& result) {
   const Status status = buckets.sort(call.tables, call.bodies.shapes, call.pairs, options.execution,
                                      result.order_, result.runs_, call.bad_body);
   if (status != Status::ok) return status;
-  return result.resize(call.pairs.size(), options.level) ? run(call, result)
-                                                         : Status::out_of_memory;
+  return NarrowColumns::resize(result, call.pairs.size(), options.level) ? run(call, result)
+                                                                         : Status::out_of_memory;
 }
 
 Status NarrowPhase::State::run(const Call& call, NarrowResult& result) {

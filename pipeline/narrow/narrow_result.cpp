@@ -44,42 +44,43 @@ NarrowResult::NarrowResult(std::pmr::memory_resource* memory) noexcept
       contact_count_(memory),
       contacts_(memory) {}
 
-bool NarrowResult::resize(std::size_t count, ContactLevel level) noexcept {
-  contacts_.set_size(0);
+bool NarrowColumns::resize(NarrowResult& result, std::size_t count, ContactLevel level) noexcept {
+  result.contacts_.set_size(0);
   // The size is 0 after a call that failed.
-  if (count != 0 && count == size() && level == level_) return true;
+  if (count != 0 && count == result.size() && level == result.level_) return true;
   const bool distances = level != ContactLevel::boolean;
   const auto size_of = [count](bool has) { return has ? count : 0; };
-  bool ok = resize_tightly(overlap_, size_of(!distances)) &&
-            resize_tightly(distance_, size_of(distances)) &&
-            resize_tightly(error_bound_, size_of(distances));
-  for (Column<double>& column : normal_) ok = ok && resize_tightly(column, size_of(distances));
-  for (Column<double>& column : point_) {
+  bool ok = resize_tightly(result.overlap_, size_of(!distances)) &&
+            resize_tightly(result.distance_, size_of(distances)) &&
+            resize_tightly(result.error_bound_, size_of(distances));
+  for (Column<double>& column : result.normal_)
+    ok = ok && resize_tightly(column, size_of(distances));
+  for (Column<double>& column : result.point_) {
     ok = ok && resize_tightly(column, size_of(level == ContactLevel::distance));
   }
   const bool manifolds = level == ContactLevel::manifold;
-  ok = ok && resize_tightly(contact_first_, size_of(manifolds)) &&
-       resize_tightly(contact_count_, size_of(manifolds));
-  level_ = level;
+  ok = ok && resize_tightly(result.contact_first_, size_of(manifolds)) &&
+       resize_tightly(result.contact_count_, size_of(manifolds));
+  result.level_ = level;
   return ok;
 }
 
-void NarrowResult::clear() noexcept {
-  order_.clear();
-  runs_.clear();
-  static_cast<void>(resize(0, ContactLevel::boolean));
+void NarrowColumns::clear(NarrowResult& result) noexcept {
+  result.order_.clear();
+  result.runs_.clear();
+  static_cast<void>(resize(result, 0, ContactLevel::boolean));
 }
 
-NarrowColumns NarrowResult::columns() noexcept {
+NarrowColumns NarrowColumns::of(NarrowResult& result) noexcept {
   const auto all = [](auto& column) { return std::span(column.data(), column.size()); };
-  return {all(overlap_),
-          all(distance_),
-          all(error_bound_),
-          {all(normal_[0]), all(normal_[1]), all(normal_[2])},
-          {all(point_[0]), all(point_[1]), all(point_[2])},
-          all(contact_first_),
-          all(contact_count_),
-          contacts_};
+  return {all(result.overlap_),
+          all(result.distance_),
+          all(result.error_bound_),
+          {all(result.normal_[0]), all(result.normal_[1]), all(result.normal_[2])},
+          {all(result.point_[0]), all(result.point_[1]), all(result.point_[2])},
+          all(result.contact_first_),
+          all(result.contact_count_),
+          result.contacts_};
 }
 
 Footprint NarrowResult::footprint() const noexcept {

@@ -3,10 +3,10 @@
 // The first step of NarrowPhase: pairs sorted by the kinds of their shapes. pair_buckets.cpp
 // implements it.
 
-#include <winnow/core/column.h>
 #include <winnow/core/execution.h>
+#include <winnow/core/memory.h>
 #include <winnow/core/status.h>
-#include <winnow/pipeline/narrow_result.h>
+#include <winnow/pipeline/narrow_phase.h>
 #include <winnow/pipeline/shapes.h>
 #include "core/memory/columns.h"
 #include "pipeline/shapes/pair_order.h"

@@ -5,7 +5,7 @@
 
 #include "pipeline/python/refusal.h"
 
-#include <winnow/core/rounding.h>
+#include <winnow/core/volumes.h>
 
 #include <bit>
 #include <cstdlib>

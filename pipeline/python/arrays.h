@@ -7,11 +7,10 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
-#include <winnow/core/aabb.h>
-#include <winnow/core/box_view.h>
 #include <winnow/core/key.h>
-#include <winnow/core/pair_buffer.h>
-#include <winnow/core/pose_view.h>
+#include <winnow/core/pose.h>
+#include <winnow/core/results.h>
+#include <winnow/core/volumes.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -20,6 +19,8 @@
 #include <span>
 #include <utility>
 #include <vector>
+
+#include "core/numbers/rounding.h"
 
 namespace winnow::python {
 

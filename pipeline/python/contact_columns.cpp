@@ -4,7 +4,7 @@
 #include "pipeline/python/contact_choices.h"
 #include "pipeline/python/shared_scene.h"
 
-#include <winnow/pipeline/narrow_result.h>
+#include <winnow/pipeline/narrow_phase.h>
 
 #include <algorithm>
 #include <bit>

@@ -6,7 +6,7 @@
 #include "pipeline/python/motions.h"
 #include "pipeline/python/shared_shapes.h"
 
-#include <winnow/pipeline/time_of_impact.h>
+#include <winnow/pipeline/impacts.h>
 
 #include <algorithm>
 #include <memory>

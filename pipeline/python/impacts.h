@@ -3,7 +3,7 @@
 #include "pipeline/python/arrays.h"
 #include "pipeline/python/choices.h"
 
-#include <winnow/pipeline/feature_impacts.h>
+#include <winnow/pipeline/impacts.h>
 
 namespace winnow::python {
 

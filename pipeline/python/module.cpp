@@ -16,7 +16,7 @@
 #include "pipeline/python/shared_shapes.h"
 #include "pipeline/python/snapshots.h"
 
-#include <winnow/core/aabb.h>
+#include <winnow/core/volumes.h>
 #include <winnow/simd/isa.h>
 
 namespace winnow::python {

@@ -4,8 +4,7 @@
 #include "pipeline/python/partition.h"
 #include "pipeline/python/volumes.h"
 
-#include <winnow/core/kdop.h>
-#include <winnow/core/rounding.h>
+#include <winnow/core/volumes.h>
 
 #include <limits>
 #include <type_traits>

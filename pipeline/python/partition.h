@@ -8,10 +8,8 @@
 #include "pipeline/python/recordings.h"
 
 #include <winnow/core/filter.h>
-#include <winnow/core/hits.h>
-#include <winnow/core/large_pages.h>
-#include <winnow/core/pair_buffer.h>
-#include <winnow/core/pair_events.h>
+#include <winnow/core/memory.h>
+#include <winnow/core/results.h>
 #include <winnow/partitions/partition.h>
 
 #include <atomic>

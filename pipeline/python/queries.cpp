@@ -6,9 +6,8 @@
 #include "pipeline/python/partition.h"
 #include "pipeline/python/volumes.h"
 
-#include <winnow/core/cast.h>
-#include <winnow/core/frustum.h>
-#include <winnow/core/region.h>
+#include <winnow/core/rays.h>
+#include <winnow/core/regions.h>
 
 #include <cstring>
 #include <limits>

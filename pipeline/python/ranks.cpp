@@ -2,7 +2,7 @@
 
 #include "pipeline/python/ranks.h"
 
-#include <winnow/core/aabb.h>
+#include <winnow/core/volumes.h>
 
 #include <algorithm>
 #include <cstddef>

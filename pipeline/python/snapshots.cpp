@@ -1,7 +1,7 @@
 // Snapshots of partitions, shapes, scenes and contacts as bytes.
 
 #include "pipeline/python/snapshots.h"
-#include <winnow/core/large_pages.h>
+#include <winnow/core/memory.h>
 
 #include "pipeline/python/bytes.h"
 #include "pipeline/python/locks.h"

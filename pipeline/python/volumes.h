@@ -1,11 +1,10 @@
 #pragma once
 
+#include "core/numbers/rounding.h"
 #include "pipeline/python/arrays.h"
 
-#include <winnow/core/aabb.h>
-#include <winnow/core/capsule.h>
-#include <winnow/core/rounding.h>
-#include <winnow/core/sphere.h>
+#include <winnow/core/regions.h>
+#include <winnow/core/volumes.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,9 @@
 // cast_ray: moves a ray into a shape's frame, scales both into the range of double, calls `enter`
 // (shape_entries.h) and transforms the hit back. find_exit casts the reversed ray.
 
-#include <winnow/core/rotation.h>
+#include <winnow/core/pose.h>
 #include <winnow/pipeline/shape_rays.h>
+#include "core/numbers/rotation.h"
 #include "core/threads/float_environment.h"
 #include "pipeline/rays/shape_entries.h"
 #include "pipeline/shapes/extent.h"

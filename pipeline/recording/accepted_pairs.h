@@ -3,8 +3,8 @@
 // Records which pairs and bodies the program's predicates accept. The predicates of a player accept
 // the recorded ones.
 
-#include <winnow/core/column.h>
 #include <winnow/core/filter.h>
+#include <winnow/core/memory.h>
 #include "pipeline/recording/recorder_state.h"
 
 #include <algorithm>

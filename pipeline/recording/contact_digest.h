@@ -1,7 +1,7 @@
 #pragma once
 
 #include <winnow/pipeline/contacts.h>
-#include <winnow/pipeline/narrow_result.h>
+#include <winnow/pipeline/narrow_phase.h>
 #include <winnow/pipeline/shapes.h>
 #include "core/memory/byte_stream.h"
 

@@ -3,10 +3,9 @@
 // Format of recordings; pipeline/FORMATS.md describes it. Used by the recorder and by
 // pipeline/replay. The functions at the end compute digests of results.
 
-#include <winnow/core/cast.h>
-#include <winnow/core/hits.h>
-#include <winnow/core/pair_events.h>
-#include <winnow/core/region.h>
+#include <winnow/core/rays.h>
+#include <winnow/core/regions.h>
+#include <winnow/core/results.h>
 #include <winnow/partitions/partition.h>
 #include "core/memory/byte_stream.h"
 #include "partitions/state/partition_observer.h"

@@ -27,12 +27,12 @@ CallWriter& put_volumes(CallWriter& call, const GivenVolumes& volumes) {
 /// Calls visit(index) for each of `count` entries that is in the subset.
 template <typename Visit>
 void for_each_in(const IndexSubset& entries, std::size_t count, Visit&& visit) {
-  if (!entries.is_mask()) {
-    for (const std::uint32_t index : entries.indices()) visit(index);
+  if (!entries.is_mask) {
+    for (const std::uint32_t index : entries.indices) visit(index);
     return;
   }
   for (std::size_t i = 0; i < count; ++i) {
-    if ((entries.words()[i / 64] >> i % 64 & 1U) != 0) visit(i);
+    if ((entries.words[i / 64] >> i % 64 & 1U) != 0) visit(i);
   }
 }
 

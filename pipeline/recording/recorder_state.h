@@ -3,7 +3,7 @@
 // State of a Recorder, and CallWriter, with which the observers of partitions and scenes write
 // their calls.
 
-#include <winnow/core/pose_view.h>
+#include <winnow/core/pose.h>
 #include <winnow/pipeline/recording.h>
 #include "core/memory/new_in.h"
 #include "core/threads/mutex.h"

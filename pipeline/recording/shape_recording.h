@@ -1,6 +1,6 @@
 #pragma once
 
-#include <winnow/core/column.h>
+#include <winnow/core/memory.h>
 #include <winnow/pipeline/composite_pool.h>
 #include <winnow/pipeline/shape_pool.h>
 #include "core/threads/mutex.h"

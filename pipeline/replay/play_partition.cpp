@@ -1,5 +1,6 @@
 // Plays calls of partitions.
 
+#include "core/memory/volume_columns.h"
 #include "pipeline/replay/replay_state.h"
 
 namespace winnow {

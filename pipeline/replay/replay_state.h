@@ -3,8 +3,10 @@
 // State of a RecordingPlayer: the partitions and scenes that it plays, and the memory into which
 // calls are read. Each play_*.cpp file implements one group of calls.
 
+#include <winnow/pipeline/composite_pool.h>
 #include <winnow/pipeline/continuous_collision.h>
-#include <winnow/pipeline/replay.h>
+#include <winnow/pipeline/recording.h>
+#include <winnow/pipeline/scene.h>
 #include <winnow/pipeline/scene_queries.h>
 #include <winnow/pipeline/sensors.h>
 #include "core/memory/new_in.h"

@@ -3,10 +3,9 @@
 // The sorted list of a scene's pairs of bodies, made from the pairs that its partitions find.
 // SceneState::find_pairs fills it; Collision (collide.cpp) reads it.
 
-#include <winnow/core/column.h>
 #include <winnow/core/execution.h>
-#include <winnow/core/footprint.h>
-#include <winnow/core/pair_buffer.h>
+#include <winnow/core/memory.h>
+#include <winnow/core/results.h>
 #include <winnow/core/status.h>
 #include <winnow/pipeline/contact_types.h>
 #include <winnow/pipeline/shapes.h>

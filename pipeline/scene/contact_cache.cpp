@@ -4,7 +4,8 @@
 // `remember` stores how far each pair may move, `decide` compares. Collision (collide.cpp) calls
 // this, and the tasks in contact_frame_writer.cpp call `remember`.
 
-#include <winnow/core/rotation.h>
+#include <winnow/core/pose.h>
+#include "core/numbers/rotation.h"
 #include "core/sort/parallel_ranges.h"
 #include "pipeline/narrow/tight_growth.h"
 #include "pipeline/scene/collision.h"

@@ -3,10 +3,10 @@
 // Storage of Contacts: the columns of one frame, and the records that `collide` keeps from one call
 // to the next. contacts.cpp implements it; Collision (collision.h) fills it.
 
-#include <winnow/core/column.h>
+#include <winnow/core/memory.h>
 #include <winnow/core/pose.h>
 #include <winnow/pipeline/contacts.h>
-#include <winnow/pipeline/narrow_result.h>
+#include <winnow/pipeline/narrow_phase.h>
 #include "pipeline/scene/body_pairs.h"
 
 #include <cstddef>

@@ -3,7 +3,8 @@
 // (collide.cpp) and ContactFrameWriter (contact_frame_writer.cpp) call this.
 
 #include <winnow/core/eigen.h>
-#include <winnow/core/rotation.h>
+#include <winnow/core/pose.h>
+#include "core/numbers/rotation.h"
 #include "core/sort/parallel_ranges.h"
 #include "pipeline/scene/collision.h"
 

@@ -131,7 +131,7 @@ void ContactFilters::trim(double gap, std::uint32_t at, const NarrowColumns& ans
 
 void ContactFilters::trim_convex() noexcept {
   if (call_.level < ContactLevel::distance || !scene_.offsets.any) return;
-  const NarrowColumns answers = scene_.batch.answers.columns();
+  const NarrowColumns answers = NarrowColumns::of(scene_.batch.answers);
   for_each_range(scene_.options.execution, scene_.batch.convex.size(), kOffsetPairsPerRange,
                  [&](std::size_t first, std::size_t end) {
                    for (auto i = static_cast<std::uint32_t>(first); i < end; ++i) {
@@ -144,7 +144,7 @@ void ContactFilters::trim_convex() noexcept {
 void ContactFilters::trim_parts() noexcept {
   if (call_.level < ContactLevel::distance || !scene_.offsets.any) return;
   const PartAnswers& parts = *scene_.batch.parts;
-  const NarrowColumns answers = scene_.batch.parts->answers.columns();
+  const NarrowColumns answers = NarrowColumns::of(scene_.batch.parts->answers);
   for_each_range(scene_.options.execution, parts.gaps.size(), kOffsetPairsPerRange,
                  [&](std::size_t first, std::size_t end) {
                    for (std::size_t k = first; k < end; ++k) {
@@ -176,7 +176,7 @@ void ContactFilters::rest(const BodyPair& bodies, std::uint32_t at,
 
 void ContactFilters::rest_parts() noexcept {
   if (call_.level < ContactLevel::distance || !scene_.offsets.any) return;
-  const NarrowColumns answers = scene_.batch.parts->answers.columns();
+  const NarrowColumns answers = NarrowColumns::of(scene_.batch.parts->answers);
   for_each_range(scene_.options.execution, scene_.batch.composite.size(), kOffsetPairsPerRange,
                  [&](std::size_t first, std::size_t end) {
                    for (std::size_t i = first; i < end; ++i) {

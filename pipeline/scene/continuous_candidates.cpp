@@ -4,7 +4,7 @@
 
 #include "pipeline/scene/continuous_state.h"
 
-#include <winnow/core/aabb.h>
+#include <winnow/core/volumes.h>
 #include "core/sort/radix_sort.h"
 
 #include <algorithm>

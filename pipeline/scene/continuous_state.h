@@ -4,7 +4,7 @@
 // computes boxes of the moving bodies' paths and finds candidate pairs, continuous_impacts.cpp
 // finds their first impacts.
 
-#include <winnow/core/column.h>
+#include <winnow/core/memory.h>
 #include <winnow/core/pose.h>
 #include <winnow/partitions/partition.h>
 #include <winnow/pipeline/continuous_collision.h>

@@ -87,7 +87,7 @@ Status FreshContacts::collide_composite() {
   if (batch_.parts == nullptr) batch_.parts = new_in<PartAnswers>(options.memory, options.memory);
   if (batch_.parts == nullptr) return Status::out_of_memory;
   PartAnswers& found = *batch_.parts;
-  const mid::MidPhase& mid_phase = mid::mid_phase_of(*options.composites);
+  const mid::MidPhase& mid_phase = mid::PoolAccess::mid_phase(*options.composites);
 
   // Primitives farther apart than this cannot touch before the pair's contacts are computed again.
   PairMargins margins = 0.0;
@@ -133,7 +133,7 @@ Status FreshContacts::reduce_composite() {
   PairMargins margins = 0.0;
   if (!filters_.find_margins(batch_.composite, 0.0, margins)) return Status::out_of_memory;
   PartAnswers& found = *batch_.parts;
-  return mid::mid_phase_of(*scene_.options.composites)
+  return mid::PoolAccess::mid_phase(*scene_.options.composites)
       .reduce_contacts(scene_.shapes, found.pairs, found.answers, margins, scene_.options.execution,
                        found.regions);
 }

@@ -18,13 +18,14 @@
 // which is not larger. So the contact of lesser depth is dropped. A dropped contact cannot be the
 // floor of another contact, so two contacts never drop each other.
 
+#include "core/numbers/rotation.h"
 #include "pipeline/narrow/narrow_columns.h"
 #include "pipeline/scene/collision.h"
 #include "pipeline/shapes/extent.h"
 #include "pipeline/shapes/frame.h"
 
 #include <winnow/core/eigen.h>
-#include <winnow/core/rotation.h>
+#include <winnow/core/pose.h>
 
 #include <algorithm>
 #include <cmath>
@@ -315,9 +316,9 @@ bool ContactFilters::list_floor_regions(std::uint32_t pair, FloorWriter& writer)
 void ContactFilters::drop(const FloorContact& contact) noexcept {
   const double beyond = std::nextafter(call_.limit, std::numeric_limits<double>::max());
   if (contact.source == FloorContact::Source::convex) {
-    scene_.batch.answers.columns().distance[contact.answer] = beyond;
+    NarrowColumns::of(scene_.batch.answers).distance[contact.answer] = beyond;
   } else if (contact.source == FloorContact::Source::part) {
-    scene_.batch.parts->answers.columns().distance[contact.answer] = beyond;
+    NarrowColumns::of(scene_.batch.parts->answers).distance[contact.answer] = beyond;
   } else {
     scene_.batch.parts->regions.regions[contact.answer].count = 0;
   }

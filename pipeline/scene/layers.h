@@ -1,7 +1,6 @@
 #pragma once
 
-#include <winnow/core/column.h>
-#include <winnow/core/footprint.h>
+#include <winnow/core/memory.h>
 #include <winnow/pipeline/scene.h>
 
 #include <algorithm>

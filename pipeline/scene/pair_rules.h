@@ -3,8 +3,8 @@
 // Rules about pairs of bodies beyond sets and object filters: layers, ignored pairs and the
 // caller's predicate. pair_rules.cpp implements them.
 
-#include <winnow/core/column.h>
 #include <winnow/core/key.h>
+#include <winnow/core/memory.h>
 #include <winnow/pipeline/scene.h>
 #include "core/memory/key_table.h"
 #include "pipeline/scene/layers.h"

@@ -143,7 +143,7 @@ Status PairBatch::reserve(const ShapePool& shapes, const SceneOptions& options,
   convex.clear();
   if (status != Status::ok || room.level != ContactLevel::manifold) return status;
   // On one thread, a job requires room for the largest number of points it may find.
-  ContactColumns& points = answers.columns().contacts;
+  ContactColumns& points = NarrowColumns::of(answers).contacts;
   const std::size_t found = std::min(room.points, batch * kManifoldPoints);
   const std::size_t most = found + std::size_t{kJobPairs} * kManifoldPoints + kContactSlack;
   return points.grow(most, pages) ? Status::ok : Status::out_of_memory;

@@ -5,6 +5,7 @@
 #include "pipeline/scene/scene_state.h"
 
 #include "core/hooks/stage_scope.h"
+#include "core/numbers/rounding.h"
 #include "core/sort/parallel_ranges.h"
 #include "partitions/state/box_partition.h"
 #include "pipeline/composites/parts.h"
@@ -122,9 +123,10 @@ BoxRoom::~BoxRoom() {
 
 Status SceneState::check(ShapeId id, const Pose& at) const noexcept {
   if (id.is_composite() && options.composites == nullptr) return Status::unsupported;
-  const bool known = id.is_composite()
-                         ? mid::mid_phase_of(*options.composites).contains(*options.composites, id)
-                         : shapes.contains(id);
+  const bool known =
+      id.is_composite()
+          ? mid::PoolAccess::mid_phase(*options.composites).contains(*options.composites, id)
+          : shapes.contains(id);
   if (!known) return Status::invalid_key;
   return at.is_valid() ? Status::ok : Status::invalid_pose;
 }
@@ -163,7 +165,7 @@ PlainBox SceneState::bounds_from(const Eigen::Vector3d& from, ShapeId id, const 
   }
   const Aabb box =
       id.is_composite()
-          ? mid::mid_phase_of(*options.composites).bounds(*options.composites, id, moved)
+          ? mid::PoolAccess::mid_phase(*options.composites).bounds(*options.composites, id, moved)
           : shapes.bounds(id, moved);
   PlainBox grown;
   for (int axis = 0; axis < 3; ++axis) {

@@ -137,7 +137,7 @@ bool SolidPair::touch_plane(const SolidContact& contact, PairAnswer& answer) con
 class SolidAnswers {
  public:
   SolidAnswers(PartAnswers& found, std::span<const std::uint32_t> slots, double margin) noexcept
-      : found_(found), columns_(found.answers.columns()), slots_(slots), margin_(margin) {}
+      : found_(found), columns_(NarrowColumns::of(found.answers)), slots_(slots), margin_(margin) {}
 
   void set_overlap() noexcept { columns_.overlap[slots_[0]] = 1; }
   /// Returns false if memory is refused.

@@ -3,9 +3,11 @@
 // motion.
 
 #include "pipeline/shapes/extent.h"
-#include <winnow/core/rotation.h>
-#include <winnow/core/rounding.h>
+#include <winnow/core/pose.h>
+#include <winnow/core/volumes.h>
 #include <winnow/pipeline/shape_pool.h>
+#include "core/numbers/rotation.h"
+#include "core/numbers/rounding.h"
 #include "core/threads/float_environment.h"
 #include "pipeline/kinds/kinds.h"
 

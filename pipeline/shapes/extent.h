@@ -1,6 +1,6 @@
 #pragma once
 
-#include <winnow/core/aabb.h>
+#include <winnow/core/volumes.h>
 #include <winnow/pipeline/shapes.h>
 #include "pipeline/kinds/support_extent.h"
 #include "pipeline/shapes/frame.h"

@@ -1,9 +1,8 @@
 #pragma once
 
-#include <winnow/core/aabb.h>
 #include <winnow/core/eigen.h>
 #include <winnow/core/pose.h>
-#include <winnow/core/rotation.h>
+#include <winnow/core/volumes.h>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>

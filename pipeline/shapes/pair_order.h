@@ -3,12 +3,14 @@
 // The order of the two shapes of a pair, the index of a pair of kinds, and the conversion of a
 // result for (b, a) into one for (a, b).
 
-#include <winnow/core/rounding.h>
+#include <winnow/core/volumes.h>
 #include <winnow/pipeline/shapes.h>
 
 #include <algorithm>
 #include <cstdint>
 #include <limits>
+
+#include "core/numbers/rounding.h"
 
 namespace winnow {
 

@@ -22,7 +22,7 @@ ShapePool::ShapePool(ShapePool&& other) noexcept
     : memory_(other.memory_), tables_(std::exchange(other.tables_, {})) {
   for_each_kind([&](auto of) {
     using Shape = typename decltype(of)::Shape;
-    table_of<Shape>(*this).swap(table_of<Shape>(other));
+    PoolRows::of<Shape>(*this).swap(PoolRows::of<Shape>(other));
   });
 }
 
@@ -33,14 +33,14 @@ ShapePool::~ShapePool() {
 bool ShapePool::contains(ShapeId id) const noexcept {
   if (id.kind_index() >= kShapeKinds || id.is_composite()) return false;
   return with_kind(id.kind(), [&](auto of) {
-    const auto& live = table_of<typename decltype(of)::Shape>(*this).live;
+    const auto& live = PoolRows::of<typename decltype(of)::Shape>(*this).live;
     return id.index() < live.size() && live[id.index()] != 0;
   });
 }
 
 std::size_t ShapePool::size(ShapeKind kind) const noexcept {
   return with_kind(kind, [&](auto of) {
-    const auto& table = table_of<typename decltype(of)::Shape>(*this);
+    const auto& table = PoolRows::of<typename decltype(of)::Shape>(*this);
     return table.shapes.size() - table.free.size();
   });
 }
@@ -49,7 +49,7 @@ Status ShapePool::remove(ShapeId id) {
   if (!contains(id)) return Status::invalid_key;
   with_kind(id.kind(), [&](auto of) {
     using Shape = typename decltype(of)::Shape;
-    auto& table = table_of<Shape>(*this);
+    auto& table = PoolRows::of<Shape>(*this);
     Shape& shape = table.shapes[id.index()];
     if constexpr (std::is_same_v<Shape, HullShape>) {
       release_hull(shape, memory_);
@@ -64,11 +64,11 @@ Status ShapePool::remove(ShapeId id) {
   return Status::ok;
 }
 
-void ShapePool::refresh_tables() noexcept {
-#define WINNOW_TABLE(kind, Shape, table)                     \
-  tables_.table = table##_.shapes.data();                    \
-  tables_.count[static_cast<std::size_t>(ShapeKind::kind)] = \
-      static_cast<std::uint32_t>(table##_.shapes.size());
+void PoolRows::refresh(ShapePool& pool) noexcept {
+#define WINNOW_TABLE(kind, Shape, table)                          \
+  pool.tables_.table = pool.table##_.shapes.data();               \
+  pool.tables_.count[static_cast<std::size_t>(ShapeKind::kind)] = \
+      static_cast<std::uint32_t>(pool.table##_.shapes.size());
   WINNOW_CONVEX_SHAPES(WINNOW_TABLE)
 #undef WINNOW_TABLE
 }
@@ -76,7 +76,7 @@ void ShapePool::refresh_tables() noexcept {
 Footprint ShapePool::footprint() const noexcept {
   Footprint footprint;
   for_each_kind([&](auto of) {
-    const auto& table = table_of<typename decltype(of)::Shape>(*this);
+    const auto& table = PoolRows::of<typename decltype(of)::Shape>(*this);
     footprint.structure += table.shapes.bytes();
     footprint.keys += table.live.bytes();
     footprint.keys += table.free.bytes();

@@ -1,6 +1,6 @@
 #pragma once
 
-// Defines ShapePool::put, which adds a shape to the table of its kind, and ShapePool::table_of.
+// PoolRows, by which the sources of ShapePool change its rows.
 
 #include <winnow/pipeline/shape_pool.h>
 #include "pipeline/kinds/with_shape.h"
@@ -18,40 +18,47 @@ namespace winnow {
   return true;
 }
 
-template <typename Shape, typename Pool>
-auto& ShapePool::table_of(Pool& pool) noexcept {
+/// Changes the rows of a pool.
+struct PoolRows {
+  /// Returns the rows of a kind of shape.
+  template <typename Shape, typename Pool>
+  [[nodiscard]] static auto& of(Pool& pool) noexcept {
 #define WINNOW_TABLE(kind, Other, table)        \
   if constexpr (std::is_same_v<Shape, Other>) { \
     return pool.table##_;                       \
   } else
-  WINNOW_CONVEX_SHAPES(WINNOW_TABLE) {
-    static_assert(sizeof(Shape) == 0, "not a convex shape");
-  }
-#undef WINNOW_TABLE
-}
-
-template <typename Shape>
-Answer<ShapeId> ShapePool::put(const Shape& shape) {
-  Table<Shape>& table = table_of<Shape>(*this);
-  std::uint32_t index = 0;
-  if (!table.free.empty()) {
-    index = table.free[table.free.size() - 1];
-    table.free.set_size(table.free.size() - 1);
-    table.shapes[index] = shape;
-    table.live[index] = 1;
-  } else {
-    if (table.shapes.size() >> ShapeId::kIndexBits != 0) return Status::too_many_objects;
-    index = static_cast<std::uint32_t>(table.shapes.size());
-    // Reserve room in the free list now, so that removal never allocates.
-    if (!table.free.grow(index + 1U) || !table.live.grow(index + 1U) ||
-        !table.shapes.push_back(shape)) {
-      return Status::out_of_memory;
+    WINNOW_CONVEX_SHAPES(WINNOW_TABLE) {
+      static_assert(sizeof(Shape) == 0, "not a convex shape");
     }
-    table.live.set_size(index + 1U);
-    table.live[index] = 1;
+#undef WINNOW_TABLE
   }
-  refresh_tables();
-  return ShapeId::of(KindOf<Shape>::kKind, index);
-}
+
+  /// Adds a shape that was checked.
+  template <typename Shape>
+  static Answer<ShapeId> put(ShapePool& pool, const Shape& shape) {
+    detail::ShapeRows<Shape>& table = of<Shape>(pool);
+    std::uint32_t index = 0;
+    if (!table.free.empty()) {
+      index = table.free[table.free.size() - 1];
+      table.free.set_size(table.free.size() - 1);
+      table.shapes[index] = shape;
+      table.live[index] = 1;
+    } else {
+      if (table.shapes.size() >> ShapeId::kIndexBits != 0) return Status::too_many_objects;
+      index = static_cast<std::uint32_t>(table.shapes.size());
+      // Reserve room in the free list now, so that removal never allocates.
+      if (!table.free.grow(index + 1U) || !table.live.grow(index + 1U) ||
+          !table.shapes.push_back(shape)) {
+        return Status::out_of_memory;
+      }
+      table.live.set_size(index + 1U);
+      table.live[index] = 1;
+    }
+    refresh(pool);
+    return ShapeId::of(KindOf<Shape>::kKind, index);
+  }
+  /// Points the tables of a pool to its rows.
+  static void refresh(ShapePool& pool) noexcept;
+};
 
 }  // namespace winnow

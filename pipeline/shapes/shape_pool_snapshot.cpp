@@ -59,7 +59,7 @@ Status ShapePool::save(Column<std::byte>& out) const {
   const Status status = write_snapshot(out, kShapesMagic, kShapesVersion, [&](ByteWriter& writer) {
     writer.put(kShapeKinds);
     for_each_kind([&](auto of) {
-      const auto& table = table_of<typename decltype(of)::Shape>(*this);
+      const auto& table = PoolRows::of<typename decltype(of)::Shape>(*this);
       write_slots(writer, table.shapes.size(), table.free);
       for (std::size_t i = 0; i < table.shapes.size(); ++i) {
         if (table.live[i] != 0) put_shape(writer, table.shapes[i]);
@@ -78,7 +78,7 @@ Status ShapePool::load(std::span<const std::byte> saved) {
   Status status = in.get<std::uint32_t>() == kShapeKinds ? Status::ok : Status::invalid_argument;
   for_each_kind([&](auto of) {
     using Shape = typename decltype(of)::Shape;
-    auto& table = table_of<Shape>(fresh);
+    auto& table = PoolRows::of<Shape>(fresh);
     SlotReader places(memory_);
     if (status != Status::ok || !places.read(in)) return;
     if (!places.open(in, table.shapes, table.free, nothing<Shape>())) return;
@@ -96,9 +96,9 @@ Status ShapePool::load(std::span<const std::byte> saved) {
   if (status != Status::ok) return logged(snapshot_status(status), "ShapePool::load");
   for_each_kind([&](auto of) {
     using Shape = typename decltype(of)::Shape;
-    table_of<Shape>(*this).swap(table_of<Shape>(fresh));
+    PoolRows::of<Shape>(*this).swap(PoolRows::of<Shape>(fresh));
   });
-  refresh_tables();
+  PoolRows::refresh(*this);
   return Status::ok;
 }
 

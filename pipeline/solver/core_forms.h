@@ -4,7 +4,7 @@
 // (vertices, edges, faces) and supporting feature. Called through with_form by core.cpp and
 // manifold.cpp.
 
-#include <winnow/core/rounding.h>
+#include <winnow/core/volumes.h>
 #include "pipeline/kinds/hypotenuse.h"
 #include "pipeline/kinds/with_shape.h"
 #include "pipeline/manifold/feature_rules.h"

@@ -3,7 +3,8 @@
 
 #include "pipeline/solver/manifold.h"
 
-#include <winnow/core/rounding.h>
+#include <winnow/core/volumes.h>
+#include "core/numbers/rounding.h"
 #include "pipeline/manifold/contact_patch.h"
 #include "pipeline/manifold/feature_rules.h"
 #include "pipeline/manifold/polygon_clip.h"

@@ -2,7 +2,8 @@
 // results back to the caller's units.
 
 #include "pipeline/solver/problem.h"
-#include <winnow/core/rotation.h>
+#include <winnow/core/pose.h>
+#include "core/numbers/rotation.h"
 #include "pipeline/kinds/kinds.h"
 
 #include <algorithm>

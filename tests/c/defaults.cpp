@@ -4,11 +4,11 @@
 // struct gets a member that is not listed here.
 
 #include <winnow/c/winnow.h>
-#include <winnow/core/ray.h>
+#include <winnow/core/rays.h>
 #include <winnow/pipeline/cluster.h>
 #include <winnow/pipeline/cluster_scene.h>
 #include <winnow/pipeline/deformable_mesh.h>
-#include <winnow/pipeline/feature_impacts.h>
+#include <winnow/pipeline/impacts.h>
 #include <winnow/pipeline/scene_queries.h>
 #include <winnow/pipeline/sensors.h>
 #include "pipeline/c/binding/structs.h"

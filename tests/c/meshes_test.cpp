@@ -4,7 +4,7 @@
 #include "tests/c/handles_of_c.h"
 
 #include <winnow/pipeline/deformable_mesh.h>
-#include <winnow/pipeline/feature_impacts.h>
+#include <winnow/pipeline/impacts.h>
 
 #include <array>
 #include <cmath>

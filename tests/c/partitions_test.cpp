@@ -2,7 +2,7 @@
 
 #include "tests/c/handles_of_c.h"
 
-#include <winnow/core/kdop_around.h>
+#include <winnow/core/regions.h>
 
 #include <array>
 #include <cmath>

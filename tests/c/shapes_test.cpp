@@ -3,8 +3,8 @@
 
 #include "tests/c/world_of_c.h"
 
+#include <winnow/pipeline/impacts.h>
 #include <winnow/pipeline/narrow_phase.h>
-#include <winnow/pipeline/time_of_impact.h>
 
 #include <array>
 #include <limits>

@@ -1,8 +1,7 @@
 // Aabb: overlap, validity, conversion from doubles and origins, and the layouts that BoxView reads.
 
 #include <gtest/gtest.h>
-#include <winnow/core/aabb.h>
-#include <winnow/core/box_view.h>
+#include <winnow/core/volumes.h>
 #include <Eigen/Core>
 
 #include <array>
@@ -11,6 +10,8 @@
 #include <limits>
 #include <random>
 #include <vector>
+
+#include "core/numbers/rounding.h"
 
 namespace winnow::test {
 namespace {

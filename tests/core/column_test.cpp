@@ -1,7 +1,7 @@
 // Column: alignment, growth, prefaulted pages, refused memory, and sizes that overflow.
 
 #include <gtest/gtest.h>
-#include <winnow/core/column.h>
+#include <winnow/core/memory.h>
 
 #include <algorithm>
 #include <array>

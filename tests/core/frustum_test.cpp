@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 #include <winnow/core/eigen.h>
-#include <winnow/core/frustum.h>
+#include <winnow/core/regions.h>
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>

@@ -1,8 +1,8 @@
 // Kdop for 14, 18 and 26 faces: bounds of points, boxes and rotated boxes, overlap and validity.
 
 #include <gtest/gtest.h>
-#include <winnow/core/kdop.h>
-#include <winnow/core/kdop_around.h>
+#include <winnow/core/regions.h>
+#include <winnow/core/volumes.h>
 
 #include <Eigen/Geometry>
 

@@ -2,7 +2,7 @@
 // concurrent threads; and the default memory resource.
 
 #include <gtest/gtest.h>
-#include <winnow/core/large_pages.h>
+#include <winnow/core/memory.h>
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
 #include <gtest/gtest.h>
-#include <winnow/core/pair_buffer.h>
+#include <winnow/core/results.h>
 
 #include <algorithm>
 #include <vector>

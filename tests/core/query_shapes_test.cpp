@@ -1,8 +1,8 @@
 // Query shapes: their bounds, their validity, and rays in arrays of the caller.
 
 #include <gtest/gtest.h>
-#include <winnow/core/cast.h>
-#include <winnow/core/oriented_box.h>
+#include <winnow/core/rays.h>
+#include <winnow/core/regions.h>
 
 #include <Eigen/Geometry>
 #include <array>

@@ -2,7 +2,7 @@
 // floating-point mode.
 
 #include <gtest/gtest.h>
-#include <winnow/core/rounding.h>
+#include <winnow/core/volumes.h>
 
 #include <bit>
 #include <cfloat>
@@ -12,6 +12,7 @@
 #include <limits>
 #include <vector>
 
+#include "core/numbers/rounding.h"
 #include "tests/support/exact.h"
 #include "tests/support/float_modes.h"
 #include "tests/support/random.h"

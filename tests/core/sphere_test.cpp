@@ -1,5 +1,5 @@
 #include <gtest/gtest.h>
-#include <winnow/core/sphere.h>
+#include <winnow/core/volumes.h>
 
 #include <cfloat>
 #include <limits>

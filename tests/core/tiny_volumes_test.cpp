@@ -2,11 +2,8 @@
 // program may set: each rounding direction, with and without flushing of denormal numbers.
 
 #include <gtest/gtest.h>
-#include <winnow/core/capsule.h>
-#include <winnow/core/kdop.h>
-#include <winnow/core/kdop_around.h>
-#include <winnow/core/oriented_box.h>
-#include <winnow/core/sphere.h>
+#include <winnow/core/regions.h>
+#include <winnow/core/volumes.h>
 
 #include <array>
 #include <bit>

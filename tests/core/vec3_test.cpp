@@ -1,8 +1,7 @@
 #include <gtest/gtest.h>
-#include <winnow/core/aabb.h>
 #include <winnow/core/eigen.h>
-#include <winnow/core/matrix.h>
-#include <winnow/core/vec3.h>
+#include <winnow/core/vectors.h>
+#include <winnow/core/volumes.h>
 
 #include <Eigen/Geometry>
 #include <array>

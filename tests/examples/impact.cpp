@@ -1,6 +1,6 @@
 // Times of impact of bodies that move and rotate.
 
-#include <winnow/pipeline/time_of_impact.h>
+#include <winnow/pipeline/impacts.h>
 
 #include <cstddef>
 #include <vector>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include <winnow/core/aabb.h>
 #include <winnow/core/pose.h>
+#include <winnow/core/volumes.h>
 
 #include <array>
 #include <cstddef>

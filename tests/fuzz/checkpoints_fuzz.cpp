@@ -2,7 +2,7 @@
 // refused. Their digests are made to fit, so that the code behind the digest check is reached.
 
 #include <winnow/pipeline/cluster_scene.h>
-#include <winnow/pipeline/height_field.h>
+#include <winnow/pipeline/surfaces.h>
 #include <winnow/winnow.h>
 
 #include <array>

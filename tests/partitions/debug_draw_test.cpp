@@ -1,8 +1,8 @@
 // Debug drawing of a partition: every object once, a structure that encloses all objects, and
 // nothing that was not requested.
 
+#include <winnow/core/debug_draw.h>
 #include <winnow/core/eigen.h>
-#include <winnow/partitions/debug_colours.h>
 
 #include <algorithm>
 #include <string>

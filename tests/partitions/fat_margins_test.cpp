@@ -2,7 +2,7 @@
 // moved.
 
 #include <winnow/core/eigen.h>
-#include <winnow/core/hits.h>
+#include <winnow/core/results.h>
 
 #include <cmath>
 #include <limits>

@@ -2,7 +2,7 @@
 // rows, which callers can notice only by the amount of work.
 
 #include <winnow/core/eigen.h>
-#include <winnow/core/hits.h>
+#include <winnow/core/results.h>
 
 #include <algorithm>
 #include <array>

@@ -1,8 +1,7 @@
 // Partitions of spheres and k-DOPs, compared with a brute-force test of the volumes.
 
 #include <winnow/core/eigen.h>
-#include <winnow/core/kdop.h>
-#include <winnow/core/sphere.h>
+#include <winnow/core/volumes.h>
 
 #include <cmath>
 #include <limits>

@@ -4,13 +4,14 @@
 #include <gtest/gtest.h>
 #include <winnow/core/eigen.h>
 #include <winnow/pipeline/composite_pool.h>
-#include <winnow/pipeline/time_of_impact.h>
+#include <winnow/pipeline/impacts.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
 
+#include "core/numbers/rotation.h"
 #include "pipeline/motion/relative_motion_bounds.h"
 #include "pipeline/solver/solver.h"
 #include "tests/pipeline/motion_reference.h"

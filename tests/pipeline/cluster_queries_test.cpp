@@ -1,7 +1,7 @@
 // Collective queries of all ranks, which must give the answers of one scene bit for bit.
 
 #include <gtest/gtest.h>
-#include <winnow/pipeline/cluster_queries.h>
+#include <winnow/pipeline/cluster_scene.h>
 #include <winnow/pipeline/scene_queries.h>
 
 #include <bit>

@@ -2,12 +2,13 @@
 // are nearly optimal, and the error bounds must still be narrow.
 
 #include <gtest/gtest.h>
-#include <winnow/core/rotation.h>
+#include <winnow/core/pose.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "core/numbers/rotation.h"
 #include "tests/pipeline/pair_results.h"
 #include "tests/pipeline/pair_scenes.h"
 #include "tests/support/answers.h"

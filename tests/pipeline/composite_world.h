@@ -4,7 +4,7 @@
 // a body into primitives. Used by tests of the mid phase, composites and scenes.
 
 #include <gtest/gtest.h>
-#include <winnow/core/pose_view.h>
+#include <winnow/core/pose.h>
 #include <winnow/pipeline/composite_pool.h>
 #include <winnow/pipeline/narrow_phase.h>
 #include "pipeline/composites/mid_phase.h"

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 #include <winnow/pipeline/composite_pool.h>
 #include <winnow/pipeline/continuous_collision.h>
+#include <winnow/pipeline/impacts.h>
 #include <winnow/pipeline/scene_queries.h>
-#include <winnow/pipeline/time_of_impact.h>
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,7 @@
 // the origin and at other positions of a batch.
 
 #include <gtest/gtest.h>
-#include <winnow/core/rotation.h>
+#include <winnow/core/pose.h>
 #include <winnow/simd/isa.h>
 
 #include <algorithm>

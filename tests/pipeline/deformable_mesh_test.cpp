@@ -1,8 +1,9 @@
 // DeformableMesh: candidates are exactly the features with overlapping boxes, and no impact is
 // missed.
 
-#include <winnow/core/rounding.h>
+#include <winnow/core/volumes.h>
 #include <winnow/pipeline/deformable_mesh.h>
+#include "core/numbers/rounding.h"
 #include "tests/pipeline/feature_oracle.h"
 #include "tests/support/answers.h"
 #include "tests/support/config.h"

@@ -1,6 +1,6 @@
 // Impacts of vertices with faces and of edges with edges: no impact is missed, and no time is late.
 
-#include <winnow/pipeline/feature_impacts.h>
+#include <winnow/pipeline/impacts.h>
 #include "tests/pipeline/feature_oracle.h"
 #include "tests/support/answers.h"
 #include "tests/support/config.h"

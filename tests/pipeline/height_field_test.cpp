@@ -2,7 +2,7 @@
 // compared with a mesh of the same triangles, refused input and memory.
 
 #include <gtest/gtest.h>
-#include <winnow/pipeline/height_field.h>
+#include <winnow/pipeline/surfaces.h>
 #include "pipeline/mesh/height_grid.h"
 
 #include <algorithm>

@@ -2,7 +2,7 @@
 // the scalar search for one pair.
 
 #include <gtest/gtest.h>
-#include <winnow/pipeline/time_of_impact.h>
+#include <winnow/pipeline/impacts.h>
 #include <winnow/simd/isa.h>
 
 #include <cmath>

@@ -2,7 +2,7 @@
 // (non-internal) edges.
 
 #include <gtest/gtest.h>
-#include <winnow/pipeline/triangle_mesh.h>
+#include <winnow/pipeline/surfaces.h>
 #include "pipeline/mesh/mesh_traversal.h"
 #include "pipeline/mesh/mesh_tree.h"
 

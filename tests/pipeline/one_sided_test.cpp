@@ -2,11 +2,12 @@
 // none, and no normal points to the back.
 
 #include "pipeline/shapes/one_sided.h"
+#include "core/numbers/rotation.h"
 #include "tests/pipeline/composite_world.h"
 
 #include <gtest/gtest.h>
 #include <winnow/core/eigen.h>
-#include <winnow/core/rotation.h>
+#include <winnow/core/pose.h>
 #include <winnow/pipeline/scene.h>
 #include <winnow/pipeline/scene_queries.h>
 #include <Eigen/Geometry>

@@ -3,9 +3,9 @@
 
 #include <gtest/gtest.h>
 #include <winnow/core/eigen.h>
-#include <winnow/core/rotation.h>
 #include <winnow/pipeline/narrow_phase.h>
 #include <winnow/pipeline/scene_queries.h>
+#include "core/numbers/rotation.h"
 
 #include <Eigen/Core>
 

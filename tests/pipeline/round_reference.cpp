@@ -10,6 +10,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/numbers/rotation.h"
+
 namespace winnow::test {
 namespace {
 

@@ -13,6 +13,7 @@
 #include <iterator>
 #include <limits>
 
+#include "core/numbers/rotation.h"
 #include "tests/pipeline/ray_probes.h"
 #include "tests/support/answers.h"
 #include "tests/support/random.h"

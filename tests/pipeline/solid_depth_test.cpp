@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 #include <winnow/core/eigen.h>
-#include <winnow/core/rotation.h>
+#include <winnow/core/pose.h>
 #include <winnow/pipeline/composite_pool.h>
 #include <winnow/pipeline/contacts.h>
 #include <winnow/pipeline/scene_queries.h>
@@ -14,6 +14,7 @@
 #include <numbers>
 #include <vector>
 
+#include "core/numbers/rotation.h"
 #include "tests/pipeline/query_world.h"
 #include "tests/support/answers.h"
 #include "tests/support/config.h"

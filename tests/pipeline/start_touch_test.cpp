@@ -7,8 +7,8 @@
 #include <gtest/gtest.h>
 #include <winnow/core/eigen.h>
 #include <winnow/pipeline/continuous_collision.h>
+#include <winnow/pipeline/impacts.h>
 #include <winnow/pipeline/scene_queries.h>
-#include <winnow/pipeline/time_of_impact.h>
 
 #include <Eigen/Geometry>
 

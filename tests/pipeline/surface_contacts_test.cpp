@@ -3,9 +3,10 @@
 // same surface with other windings, scales and triangles.
 
 #include <winnow/core/eigen.h>
-#include <winnow/core/rotation.h>
+#include <winnow/core/pose.h>
 #include <winnow/pipeline/scene.h>
 #include <winnow/pipeline/scene_queries.h>
+#include "core/numbers/rotation.h"
 #include "pipeline/shapes/extent.h"
 #include "tests/pipeline/composite_world.h"
 

@@ -2,7 +2,7 @@
 // the shapes are apart at every earlier time (motion_reference.h).
 
 #include <gtest/gtest.h>
-#include <winnow/pipeline/time_of_impact.h>
+#include <winnow/pipeline/impacts.h>
 
 #include <algorithm>
 #include <cmath>

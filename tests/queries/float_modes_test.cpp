@@ -2,8 +2,7 @@
 // equal the results in the default mode. The expected results are computed in the default mode, in
 // exact arithmetic.
 
-#include <winnow/core/kdop.h>
-#include <winnow/core/sphere.h>
+#include <winnow/core/volumes.h>
 
 #include <algorithm>
 #include <bit>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <winnow/core/cast.h>
+#include <winnow/core/rays.h>
 
 #include <span>
 #include <vector>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <winnow/pipeline/triangle_mesh.h>
+#include <winnow/pipeline/surfaces.h>
 #include <Eigen/Core>
 
 #include <cstddef>

@@ -1,8 +1,8 @@
 #pragma once
 
-#include <winnow/core/aabb.h>
 #include <winnow/core/filter.h>
-#include <winnow/core/pair_buffer.h>
+#include <winnow/core/results.h>
+#include <winnow/core/volumes.h>
 
 #include <ostream>
 #include <span>

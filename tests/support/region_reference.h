@@ -1,6 +1,6 @@
 #pragma once
 
-#include <winnow/core/region.h>
+#include <winnow/core/regions.h>
 
 namespace winnow::test {
 

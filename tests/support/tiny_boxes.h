@@ -1,6 +1,6 @@
 #pragma once
 
-#include <winnow/core/aabb.h>
+#include <winnow/core/volumes.h>
 
 #include <cstddef>
 #include <string>

@@ -1,7 +1,7 @@
 // Builds the layers of the picture, which the legend switches on and off.
 
 // The palette of Okabe and Ito, which is safe for colour-blind readers; also used by
-// partitions/debug_colours.h.
+// core/debug_draw.h.
 const kColours = {
   object: [160, 168, 178],
   paired: [230, 159, 0],

@@ -1,6 +1,6 @@
 #include "partitions/structures/cells/cell_drawing.h"
 
-#include <winnow/partitions/debug_colours.h>
+#include <winnow/core/debug_draw.h>
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include <winnow/core/column.h>
 #include <winnow/core/debug_draw.h>
+#include <winnow/core/memory.h>
 #include "partitions/rows/rows.h"
 #include "partitions/structures/cells/cell_layout.h"
 

@@ -1,7 +1,7 @@
 // HierarchicalGrid: plans levels (size_classes.h, level_layout.h), sorts the rows of each level by
 // line and cell, and dispatches to the kernels of hierarchical_grid.kernel.cpp.
 
-#include <winnow/partitions/debug_colours.h>
+#include <winnow/core/debug_draw.h>
 #include "core/sort/parallel_ranges.h"
 #include "core/sort/radix_sort.h"
 #include "partitions/structures/cells/cell_structure.h"

@@ -1,7 +1,7 @@
 // LooseOctree and LooseQuadtree: plan the order of rows by keys (loose_octree_cells.h) and the
 // nodes over them. Queries run on the block tree over the regular rows (tree/block_tree.h).
 
-#include <winnow/partitions/debug_colours.h>
+#include <winnow/core/debug_draw.h>
 #include "core/sort/parallel_ranges.h"
 #include "core/sort/radix_sort.h"
 #include "partitions/structures/cells/cell_structure.h"

@@ -4,7 +4,7 @@
 #include "core/memory/columns.h"
 #include "pipeline/c/binding/results.h"
 
-#include <winnow/core/kdop_around.h>
+#include <winnow/core/regions.h>
 
 #include <algorithm>
 

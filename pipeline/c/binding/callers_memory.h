@@ -3,7 +3,7 @@
 #include "core/memory/new_in.h"
 
 #include <winnow/c/core.h>
-#include <winnow/core/large_pages.h>
+#include <winnow/core/memory.h>
 
 #include <memory_resource>
 #include <utility>

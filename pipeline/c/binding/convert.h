@@ -6,25 +6,21 @@
 #include "pipeline/c/binding/arguments.h"
 #include "pipeline/c/binding/handles.h"
 
-#include <winnow/core/aabb.h>
-#include <winnow/core/box_view.h>
-#include <winnow/core/cast.h>
 #include <winnow/core/debug_draw.h>
 #include <winnow/core/execution.h>
 #include <winnow/core/filter.h>
-#include <winnow/core/frustum.h>
-#include <winnow/core/index_subset.h>
 #include <winnow/core/key.h>
-#include <winnow/core/oriented_box.h>
 #include <winnow/core/point_view.h>
-#include <winnow/core/pose_view.h>
-#include <winnow/core/region.h>
-#include <winnow/core/vec3.h>
+#include <winnow/core/pose.h>
+#include <winnow/core/rays.h>
+#include <winnow/core/regions.h>
+#include <winnow/core/vectors.h>
+#include <winnow/core/volumes.h>
 #include <winnow/partitions/structures.h>
-#include <winnow/pipeline/feature_impacts.h>
-#include <winnow/pipeline/height_field.h>
+#include <winnow/pipeline/impacts.h>
 #include <winnow/pipeline/scene_queries.h>
 #include <winnow/pipeline/shapes.h>
+#include <winnow/pipeline/surfaces.h>
 
 #include <array>
 #include <cstddef>

@@ -21,35 +21,19 @@
 #include <winnow/c/snapshots.h>
 #include <winnow/c/time_of_impact.h>
 #include <winnow/c/volumes.h>
-#include <winnow/core/aabb.h>
-#include <winnow/core/box_view.h>
-#include <winnow/core/capsule.h>
-#include <winnow/core/cast.h>
 #include <winnow/core/debug_draw.h>
 #include <winnow/core/execution.h>
-#include <winnow/core/fat_margin.h>
 #include <winnow/core/filter.h>
-#include <winnow/core/footprint.h>
-#include <winnow/core/frustum.h>
-#include <winnow/core/hits.h>
 #include <winnow/core/hooks.h>
-#include <winnow/core/index_subset.h>
-#include <winnow/core/kdop.h>
-#include <winnow/core/kdop_around.h>
 #include <winnow/core/key.h>
-#include <winnow/core/large_pages.h>
-#include <winnow/core/object_filter.h>
-#include <winnow/core/oriented_box.h>
-#include <winnow/core/pair_buffer.h>
-#include <winnow/core/pair_events.h>
-#include <winnow/core/plane.h>
+#include <winnow/core/memory.h>
 #include <winnow/core/point_view.h>
 #include <winnow/core/pose.h>
-#include <winnow/core/pose_view.h>
-#include <winnow/core/region.h>
-#include <winnow/core/sphere.h>
+#include <winnow/core/rays.h>
+#include <winnow/core/regions.h>
+#include <winnow/core/results.h>
 #include <winnow/core/status.h>
-#include <winnow/core/volume.h>
+#include <winnow/core/volumes.h>
 #include <winnow/partitions/partition.h>
 #include <winnow/partitions/structures.h>
 #include <winnow/pipeline/composite_pool.h>
@@ -58,10 +42,8 @@
 #include <winnow/pipeline/contacts.h>
 #include <winnow/pipeline/continuous_collision.h>
 #include <winnow/pipeline/deformable_mesh.h>
-#include <winnow/pipeline/feature_impacts.h>
-#include <winnow/pipeline/height_field.h>
+#include <winnow/pipeline/impacts.h>
 #include <winnow/pipeline/narrow_phase.h>
-#include <winnow/pipeline/narrow_result.h>
 #include <winnow/pipeline/recording.h>
 #include <winnow/pipeline/rigid_motion.h>
 #include <winnow/pipeline/scene.h>
@@ -70,8 +52,7 @@
 #include <winnow/pipeline/shape_pool.h>
 #include <winnow/pipeline/shape_rays.h>
 #include <winnow/pipeline/shapes.h>
-#include <winnow/pipeline/time_of_impact.h>
-#include <winnow/pipeline/triangle_mesh.h>
+#include <winnow/pipeline/surfaces.h>
 
 namespace winnow::c {
 

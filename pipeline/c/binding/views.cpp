@@ -1,8 +1,9 @@
 // Conversion of the caller's columns to views of the engine; see convert.h.
 
+#include "core/numbers/rounding.h"
 #include "pipeline/c/binding/convert.h"
 
-#include <winnow/core/rounding.h>
+#include <winnow/core/volumes.h>
 
 #include <algorithm>
 #include <array>
@@ -49,14 +50,14 @@ template <typename Read>
 void for_entries(const IndexSubset* entries, std::size_t count, Read&& read) noexcept {
   if (entries == nullptr) {
     for (std::size_t i = 0; i < count; ++i) read(i);
-  } else if (!entries->is_mask()) {
-    for (const std::uint32_t i : entries->indices()) {
+  } else if (!entries->is_mask) {
+    for (const std::uint32_t i : entries->indices) {
       if (i < count) read(i);
     }
   } else {
-    const std::size_t end = std::min(count, entries->words().size() * 64);
+    const std::size_t end = std::min(count, entries->words.size() * 64);
     for (std::size_t i = 0; i < end; ++i) {
-      if ((entries->words()[i / 64] >> (i % 64) & 1U) != 0) read(i);
+      if ((entries->words[i / 64] >> (i % 64) & 1U) != 0) read(i);
     }
   }
 }

@@ -7,6 +7,7 @@
 
 #include <winnow/core/pose.h>
 #include <winnow/pipeline/shapes.h>
+#include "core/numbers/rotation.h"
 #include "pipeline/kernels/single_vectors.wide.h"
 #include "pipeline/manifold/feature_rules.h"
 #include "simd/lanes/rows.h"

@@ -1,6 +1,6 @@
 #include "pipeline/scene/queries/box_path.h"
 
-#include <winnow/core/rounding.h>
+#include <winnow/core/volumes.h>
 
 #include <algorithm>
 #include <cmath>

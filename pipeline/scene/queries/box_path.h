@@ -1,7 +1,7 @@
 #pragma once
 
-#include <winnow/core/aabb.h>
-#include <winnow/core/cast.h>
+#include <winnow/core/rays.h>
+#include <winnow/core/volumes.h>
 #include "pipeline/composites/parts.h"
 
 #include <Eigen/Core>

@@ -4,7 +4,8 @@
 #include "pipeline/scene/queries/linear_casts.h"
 
 #include <winnow/core/eigen.h>
-#include <winnow/core/rotation.h>
+#include <winnow/core/pose.h>
+#include "core/numbers/rotation.h"
 #include "pipeline/shapes/extent.h"
 #include "pipeline/shapes/triangle_direction.h"
 

@@ -2,7 +2,7 @@
 // bounded by a box; partitions find the bodies whose boxes overlap the box of a piece and call a
 // predicate (BodyCandidateFilter), which tests the exact shapes (motion/body_impact.h).
 
-#include <winnow/core/aabb.h>
+#include <winnow/core/volumes.h>
 #include "core/threads/float_environment.h"
 #include "pipeline/motion/body_impact.h"
 #include "pipeline/motion/relative_motion_bounds.h"

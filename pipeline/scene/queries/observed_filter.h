@@ -2,8 +2,8 @@
 
 // How the queries of a recorded scene call the QueryObserver.
 
-#include <winnow/core/column.h>
 #include <winnow/core/filter.h>
+#include <winnow/core/memory.h>
 #include "pipeline/scene/queries/queries.h"
 #include "pipeline/scene/queries/query_observer.h"
 

@@ -1,8 +1,9 @@
 // SceneQueries: bodies that overlap a shape or are near it, and bodies nearest to a point.
 // shape_distance.h tests the candidates that the partitions find.
 
-#include <winnow/core/rounding.h>
+#include <winnow/core/volumes.h>
 #include "core/memory/new_in.h"
+#include "core/numbers/rounding.h"
 #include "core/threads/float_environment.h"
 #include "pipeline/scene/queries/body_distance.h"
 #include "pipeline/scene/queries/observed_filter.h"

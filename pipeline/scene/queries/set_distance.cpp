@@ -1,7 +1,8 @@
 // SceneQueries on two bodies or two sets of bodies: distance, overlaps and any_contact. The boxes
 // in the partitions select pairs; shape_distance.h tests them.
 
-#include <winnow/core/rounding.h>
+#include <winnow/core/volumes.h>
+#include "core/numbers/rounding.h"
 #include "core/threads/float_environment.h"
 #include "pipeline/scene/queries/body_distance.h"
 #include "pipeline/scene/queries/box_gaps.kernel.h"

@@ -1,30 +1,26 @@
 #pragma once
 
-// Continuous collision detection of pairs of moving shapes. ContinuousCollision
-// (continuous_collision.h) finds such pairs in a scene. The implementation is in motion/.
+// Continuous collision detection: times at which moving shapes, or features of meshes, touch.
+// ContinuousCollision (continuous_collision.h) finds moving pairs in a scene. The implementation is
+// in motion/.
 
-#include <winnow/core/column.h>
 #include <winnow/core/execution.h>
 #include <winnow/core/export.h>
-#include <winnow/core/footprint.h>
-#include <winnow/core/large_pages.h>
+#include <winnow/core/memory.h>
 #include <winnow/core/status.h>
+#include <winnow/core/vectors.h>
 #include <winnow/pipeline/contact_types.h>
 #include <winnow/pipeline/rigid_motion.h>
 #include <winnow/pipeline/shape_pool.h>
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory_resource>
 #include <span>
 
 namespace winnow {
-
-/// Internal types.
-namespace impact {
-struct Impact;
-}  // namespace impact
-class SubShapeQuery;
 
 class CompositePool;
 
@@ -64,60 +60,37 @@ class WINNOW_API ImpactResult {
   /// `ok`, the other columns contain zeros.
   [[nodiscard]] Status status(std::size_t i) const noexcept { return status_[i]; }
   /// Returns the status of all pairs.
-  [[nodiscard]] std::span<const Status> status() const noexcept {
-    return {status_.data(), status_.size()};
-  }
+  [[nodiscard]] std::span<const Status> status() const noexcept { return status_; }
   /// True if the shapes of pair i touch. False is certain: they are apart at all times.
   [[nodiscard]] bool hits(std::size_t i) const noexcept { return hit_[i] != 0; }
   /// Returns for all pairs whether they touch; nonzero if they do.
-  [[nodiscard]] std::span<const std::uint8_t> hit() const noexcept {
-    return {hit_.data(), hit_.size()};
-  }
+  [[nodiscard]] std::span<const std::uint8_t> hit() const noexcept { return hit_; }
   /// Returns the times of impact, in [0, 1]; 1 if the shapes do not touch. At every earlier time
   /// they are apart.
-  [[nodiscard]] std::span<const double> time() const noexcept { return span(time_); }
+  [[nodiscard]] std::span<const double> time() const noexcept { return time_; }
   /// Returns the distances at these times, within the tolerance; 0 if the shapes do not touch. For
   /// shapes that share a point at the start (time 0): minus the penetration depth.
-  [[nodiscard]] std::span<const double> gap() const noexcept { return span(gap_); }
+  [[nodiscard]] std::span<const double> gap() const noexcept { return gap_; }
   /// Returns the error bounds: the true distance at that time is within gap +- error_bound.
-  [[nodiscard]] std::span<const double> error_bound() const noexcept { return span(error_bound_); }
+  [[nodiscard]] std::span<const double> error_bound() const noexcept { return error_bound_; }
   /// Returns the unit normals from a to b at these times, in world axes; 0 if the shapes do not
   /// touch.
-  [[nodiscard]] std::span<const double> normal(int axis) const noexcept {
-    return span(normal_[axis]);
-  }
+  [[nodiscard]] std::span<const double> normal(int axis) const noexcept { return normal_[axis]; }
   /// Returns the contact points of a, relative to the position of body a at that time, in world
   /// axes. The point of b is point + gap * normal.
-  [[nodiscard]] std::span<const double> point(int axis) const noexcept {
-    return span(point_[axis]);
-  }
+  [[nodiscard]] std::span<const double> point(int axis) const noexcept { return point_[axis]; }
 
   /// Returns the triangle or child of a that touches b, the same one in each run. kWholeShape for a
   /// convex shape, or if the shapes do not touch.
-  [[nodiscard]] std::span<const std::uint32_t> part_a() const noexcept {
-    return {part_a_.data(), part_a_.size()};
-  }
+  [[nodiscard]] std::span<const std::uint32_t> part_a() const noexcept { return part_a_; }
   /// Returns the triangle or child of b.
-  [[nodiscard]] std::span<const std::uint32_t> part_b() const noexcept {
-    return {part_b_.data(), part_b_.size()};
-  }
+  [[nodiscard]] std::span<const std::uint32_t> part_b() const noexcept { return part_b_; }
 
   /// Returns the bytes of all columns under `results`: exactly what is allocated from the resource.
   [[nodiscard]] Footprint footprint() const noexcept;
 
  private:
-  friend WINNOW_API Status time_of_impact(const ShapePool& shapes, const MovingBodies& bodies,
-                                          std::span<const BodyPair> pairs,
-                                          const ImpactOptions& options, ImpactResult& result);
-  [[nodiscard]] bool resize(std::size_t count) noexcept;
-  void find_range(const SubShapeQuery& parts, const MovingBodies& bodies,
-                  std::span<const BodyPair> pairs, const ImpactOptions& options, std::size_t first,
-                  std::size_t end);
-  void write(std::size_t i, const impact::Impact& impact, std::uint32_t part_a,
-             std::uint32_t part_b) noexcept;
-  [[nodiscard]] static std::span<const double> span(const Column<double>& c) noexcept {
-    return {c.data(), c.size()};
-  }
+  friend struct ImpactColumns;
 
   Column<Status> status_;
   Column<std::uint8_t> hit_;
@@ -164,5 +137,72 @@ class WINNOW_API ImpactResult {
 WINNOW_API Status time_of_impact(const ShapePool& shapes, const MovingBodies& bodies,
                                  std::span<const BodyPair> pairs, const ImpactOptions& options,
                                  ImpactResult& result);
+
+/// Kinds of feature pairs of meshes, each given by four points.
+enum class FeaturePair : std::uint8_t {
+  vertex_face,  ///< point 0 and the triangle of points 1, 2 and 3
+  edge_edge,    ///< the edge from point 0 to 1 and the edge from point 2 to 3
+};
+
+/// When features count as touching, and the limit of work.
+struct FeatureImpactOptions {
+  /// Distance at which features touch: finite, >= 0, in units of the points.
+  double min_separation = 0.0;
+  /// How early the returned time may be before the first touch, in (0, 1], apart from rounding.
+  /// Features that stay apart, but come closer than the distance that they move in a time of
+  /// `tolerance`, may be reported as touching.
+  double tolerance = 0x1p-40;
+  /// Largest number of time intervals to examine, at least 1. If they do not settle the result, an
+  /// impact at the first unsettled time is returned: early, never late.
+  std::uint32_t max_intervals = 2048;
+};
+
+/// Result for one pair of features.
+struct FeatureImpact {
+  bool hit = false;  ///< false: they do not touch in [0, 1]
+  /// Time of the first touch, in [0, 1], never late; infinite if there is none.
+  double time = std::numeric_limits<double>::infinity();
+};
+
+/// Finds the time at which two features first touch, while each of their points moves linearly from
+/// `start` at time 0 to `end` at time 1. Degenerate features count as the segment or point that
+/// they are. The result is certified: no touch is missed and no time is late, rounding included;
+/// coordinates are taken as exact. A hit without a touch is possible only if the gap is at most
+/// about 1e-14 of the size and motion of the features, or at most the distance that they move in a
+/// time of `tolerance`, or if `max_intervals` is reached.
+///
+/// The differences of the points of the two features span a polygon whose corners move linearly;
+/// the features touch when this polygon contains the origin. Two tests rule out time intervals. The
+/// first test: the volume spanned by the points, a cubic polynomial in time, has no zero in the
+/// interval (shown by the hull of its Bernstein coefficients, as in Bezier clipping: Sederberg and
+/// Nishita, "Curve intersection using Bezier clipping", 1990). The second test: a fixed plane
+/// separates the polygon from the origin at both ends of the interval. Because the corners move
+/// linearly, the plane then separates them during the whole interval. Compare the three-dimensional
+/// inclusion of Wang et al., "A large-scale benchmark and an inclusion-based algorithm for
+/// continuous collision detection", 2021.
+///
+/// `invalid_bounds` if a coordinate is not finite or a difference of two overflows;
+/// `invalid_argument` for options out of range.
+[[nodiscard]] WINNOW_API Answer<FeatureImpact> feature_impact(
+    FeaturePair kind, const std::array<Vec3d, 4>& start, const std::array<Vec3d, 4>& end,
+    const FeatureImpactOptions& options = {}) noexcept;
+
+/// Many pairs of features, in columns in the caller's memory: coordinate `axis` of point k of pair
+/// i at the start is start[k][axis][i]. Nothing is copied, so the object must not outlive the
+/// memory.
+struct FeatureColumns {
+  std::array<std::array<const double*, 3>, 4> start{};  ///< at time 0
+  std::array<std::array<const double*, 3>, 4> end{};    ///< at time 1
+  std::size_t count = 0;                                ///< number of pairs
+};
+
+/// As `feature_impact`, for many pairs: times[i] is the time of pair i, infinite if there is no
+/// impact, NaN if its coordinates are invalid. Results equal single calls bit for bit, on any
+/// instruction set; a cheap test that rules out most pairs runs on several at a time.
+/// `size_mismatch` if `times` and the pairs differ in number; `invalid_argument` for invalid
+/// options or missing columns.
+[[nodiscard]] WINNOW_API Status feature_impacts(FeaturePair kind, const FeatureColumns& pairs,
+                                                std::span<double> times,
+                                                const FeatureImpactOptions& options = {}) noexcept;
 
 }  // namespace winnow

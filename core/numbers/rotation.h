@@ -1,32 +1,15 @@
 #pragma once
 
-#include <winnow/core/export.h>
-#include <winnow/core/matrix.h>
-#include <winnow/core/quaternion.h>
+// Rotations of the library: `Quaternion::normalized` and `Quaternion::matrix` in steps, so that a
+// step is not repeated.
+
+#include <winnow/core/pose.h>
 
 #include <cmath>
 
 namespace winnow {
 
-namespace detail {
-
-/// Returns the rotation matrix of `q`; `scale` must be 2 / |q|^2.
-[[nodiscard]] inline Mat3d scaled_rotation(const Quaternion& q, double scale) noexcept {
-  const double w = q.w();
-  const double x = q.x();
-  const double y = q.y();
-  const double z = q.z();
-  return {
-      1.0 - scale * (y * y + z * z), scale * (x * y - w * z),       scale * (x * z + w * y),  //
-      scale * (x * y + w * z),       1.0 - scale * (x * x + z * z), scale * (y * z - w * x),  //
-      scale * (x * z - w * y),       scale * (y * z + w * x),       1.0 - scale * (x * x + y * y)};
-}
-
-[[nodiscard]] inline double squared_length(const Quaternion& q) noexcept {
-  return (q[0] * q[0] + q[2] * q[2]) + (q[1] * q[1] + q[3] * q[3]);
-}
-
-}  // namespace detail
+using detail::scale_to_unit_max;
 
 /// Returns a quaternion of length 1, up to rounding, with the same rotation. `q` is a result of
 /// `scale_to_unit_max`.

@@ -1,5 +1,5 @@
 #include <winnow/core/eigen.h>
-#include <winnow/core/frustum.h>
+#include <winnow/core/regions.h>
 #include "core/threads/float_environment.h"
 
 #include <Eigen/Geometry>

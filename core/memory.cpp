@@ -1,4 +1,4 @@
-#include <winnow/core/column.h>
+#include <winnow/core/memory.h>
 
 #include "core/memory/catch_bad_alloc.h"
 #include "core/memory/prefault_each_page.h"
@@ -16,6 +16,8 @@ std::size_t whole_lines(std::size_t count, std::size_t element) noexcept {
 }
 
 }  // namespace
+
+namespace detail {
 
 void* try_allocate(std::pmr::memory_resource& memory, std::size_t bytes,
                    std::size_t alignment) noexcept {
@@ -53,5 +55,7 @@ void free_block(std::pmr::memory_resource& memory, ColumnBlock room, std::size_t
   if (room.data == nullptr) return;
   memory.deallocate(room.data, whole_lines(room.capacity, element), kLine);
 }
+
+}  // namespace detail
 
 }  // namespace winnow

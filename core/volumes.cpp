@@ -1,5 +1,6 @@
-#include <winnow/core/aabb.h>
+#include <winnow/core/volumes.h>
 
+#include "core/numbers/rounding.h"
 #include "core/threads/float_environment.h"
 
 namespace winnow {

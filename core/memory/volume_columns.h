@@ -1,20 +1,12 @@
 #pragma once
 
-#include <winnow/core/export.h>
+// The columns in which a partition stores bounding volumes.
+
+#include <winnow/core/volumes.h>
 
 #include <cstddef>
-#include <cstdint>
 
 namespace winnow {
-
-/// Kind of bounding volume that a partition stores and tests.
-enum class Volume : std::uint8_t {
-  aabb,    ///< axis-aligned box: Aabb
-  sphere,  ///< ball: Sphere
-  kdop14,  ///< Kdop<14>: a box with cut corners
-  kdop18,  ///< Kdop<18>: a box with cut edges
-  kdop26,  ///< Kdop<26>: a box with cut corners and edges
-};
 
 /// Returns the number of float columns of a volume: the lower and the upper ends of its box, then
 /// the lower and the upper ends of the other slabs of a k-DOP, or the centre and radius of a
