@@ -206,11 +206,12 @@ struct NearestProbe {
   double radius = std::numeric_limits<double>::infinity();  ///< largest distance; >= 0
 };
 
-/// Queries of one rank. The filter must not have a predicate (`unsupported`).
+/// Queries of one rank. The filter must not have a layer, an ignored body or a predicate
+/// (`unsupported`).
 template <typename Query>
 struct ClusterQueryBatch {
   std::span<const Query> queries;  ///< queries of that rank
-  Filter filter{};                 ///< filter of all of them
+  SceneFilter filter{};            ///< filter of all of them
 };
 
 /// Results of one rank: answers [first[i], first[i + 1]) belong to query i.

@@ -122,6 +122,31 @@ struct ContactOffsets {
 /// Number of layers; see Scene::set_layers_collide.
 inline constexpr std::uint32_t kSceneLayers = 4096;
 
+/// Layer of a query or sensor that considers bodies of all layers.
+inline constexpr std::uint16_t kEveryLayer = 0xFFFF;
+
+/// Which bodies a query of a scene considers, as if the query were a body. Filters are tested
+/// during the search for bodies; layer, ignored body and predicate for each body whose box is
+/// found. Ignored pairs and the pair predicate of the scene are rules for pairs of bodies; see
+/// PairRules.
+///
+///     queries.closest(ray, {.layer = kBullets, .ignored = shooter});
+struct SceneFilter {
+  std::uint32_t layers = ~0U;  ///< layers that the query is in, one bit each; all by default
+  std::uint32_t mask = ~0U;    ///< layers of bodies that it considers; 0 for none
+  std::uint32_t environment = kAllEnvironments;  ///< bodies of other environments are skipped
+  /// Layer, below kSceneLayers; bodies whose layer does not collide with it are skipped. See
+  /// Scene::set_layers_collide.
+  std::uint16_t layer = kEveryLayer;
+  Key ignored{};                ///< a body that is skipped, such as the one that casts the ray
+  ObjectPredicate predicate{};  ///< called last, for bodies that pass the rest of the filter
+
+  /// Returns the layers, mask and environment as an ObjectFilter.
+  [[nodiscard]] constexpr ObjectFilter object() const noexcept {
+    return {layers, mask, environment};
+  }
+};
+
 /// A body to be added to a scene.
 struct BodyDefinition {
   ShapeId shape{};  ///< from the ShapePool, or from `SceneOptions::composites`
@@ -368,29 +393,6 @@ class WINNOW_API Scene {
 
   /// Null if memory was refused.
   SceneState* state_;
-};
-
-/// Filter for SceneQueries that lets pass the bodies whose layer collides with a given layer.
-///
-///     const winnow::LayerFilter bullet{scene, kBullets};
-///     queries.closest(ray, hit, bullet.filter());
-struct LayerFilter {
-  const Scene& scene;       ///< scene whose layers are tested
-  std::uint16_t layer = 0;  ///< layer of the querying object
-  Filter also{};            ///< further filter that a body must pass
-
-  /// Returns a filter that points to this object; this object must outlive the query.
-  [[nodiscard]] Filter filter() const noexcept {
-    Filter both = also;
-    both.predicate = {[](void* context, Key key, ClientData data) {
-                        const auto& self = *static_cast<const LayerFilter*>(context);
-                        const ObjectPredicate& other = self.also.predicate;
-                        return self.scene.layers_collide(self.layer, self.scene.layer(key)) &&
-                               (other.accept == nullptr || other.accept(other.context, key, data));
-                      },
-                      const_cast<LayerFilter*>(this)};
-    return both;
-  }
 };
 
 }  // namespace winnow

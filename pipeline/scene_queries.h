@@ -174,35 +174,39 @@ class WINNOW_API SceneQueries {
   // body id, then by part.
 
   /// Finds the hit of least t; a null hit if there is none.
-  Answer<SceneHit> closest(const ShapeRay& ray, const Filter& filter = {});
+  Answer<SceneHit> closest(const ShapeRay& ray, const SceneFilter& filter = {});
   /// Finds any one hit; a null hit if there is none.
-  Answer<SceneHit> any(const ShapeRay& ray, const Filter& filter = {});
+  Answer<SceneHit> any(const ShapeRay& ray, const SceneFilter& filter = {});
   /// Finds the first hit on every body that the ray hits, sorted by t.
-  Answer<std::span<const SceneHit>> all(const ShapeRay& ray, const Filter& filter = {});
+  Answer<std::span<const SceneHit>> all(const ShapeRay& ray, const SceneFilter& filter = {});
   /// Finds the hit of least t of each ray; results equal the single query. One invalid ray makes
   /// any call with a batch fail. If memory is refused, some rays' columns may have been written.
-  Status closest(const ShapeRayBatch& rays, const SceneHitColumns& hits, const Filter& filter = {});
+  Status closest(const ShapeRayBatch& rays, const SceneHitColumns& hits,
+                 const SceneFilter& filter = {});
   /// Finds any one hit of each ray.
-  Status any(const ShapeRayBatch& rays, const SceneHitColumns& hits, const Filter& filter = {});
+  Status any(const ShapeRayBatch& rays, const SceneHitColumns& hits,
+             const SceneFilter& filter = {});
   /// Finds the first hit on every body that each ray hits, as lists.
-  Answer<SceneHitLists> all(const ShapeRayBatch& rays, const Filter& filter = {});
+  Answer<SceneHitLists> all(const ShapeRayBatch& rays, const SceneFilter& filter = {});
 
   /// Finds every point at which the ray crosses the surface of a body, sorted by t, then by body id
   /// and part: where it enters and leaves convex shapes, and each triangle of a mesh or field, from
   /// either side (one-sided or not). A ray that starts in a convex shape only leaves it. A ray
   /// through an edge or a corner crosses each of the triangles there. Exits have the errors of
   /// entries; see `cast_ray`. Errors are as for `all`.
-  Answer<std::span<const SceneCrossing>> crossings(const ShapeRay& ray, const Filter& filter = {});
+  Answer<std::span<const SceneCrossing>> crossings(const ShapeRay& ray,
+                                                   const SceneFilter& filter = {});
 
   /// Finds every body that shares a point with the shape at this pose, sorted by id. The shape may
   /// be composite. The test is exact, as in NarrowTier::robust.
   Answer<std::span<const SceneOverlap>> overlap(ShapeId shape, const Pose& pose,
-                                                const Filter& filter = {});
+                                                const SceneFilter& filter = {});
   /// Finds every body within distance `limit` of the shape at this pose (finite; 0 finds the bodies
   /// that overlap it, with their depths), sorted by distance, then by id. The answers are those of
   /// `distance`, with the shape as the first body.
   Answer<std::span<const SceneDistance>> distances(ShapeId shape, const Pose& pose,
-                                                   double limit = 0.0, const Filter& filter = {});
+                                                   double limit = 0.0,
+                                                   const SceneFilter& filter = {});
 
   /// Finds the first body that the moving shape touches, by conservative advancement (Mirtich
   /// 1996). The returned t is never later than the true time of impact, and earlier by at most
@@ -211,10 +215,10 @@ class WINNOW_API SceneQueries {
   /// hit. t = 0 if the shapes overlap at the start (but see ShapeCast::touching). For a composite
   /// moving shape, t is the first time over its parts; only parts whose boxes the other body
   /// reaches are tested. `unsupported` for a half-space.
-  Answer<SceneHit> closest(const ShapeCast& cast, const Filter& filter = {},
+  Answer<SceneHit> closest(const ShapeCast& cast, const SceneFilter& filter = {},
                            double tolerance = 1e-6);
   /// Finds the first hit on every body, sorted by t.
-  Answer<std::span<const SceneHit>> all(const ShapeCast& cast, const Filter& filter = {},
+  Answer<std::span<const SceneHit>> all(const ShapeCast& cast, const SceneFilter& filter = {},
                                         double tolerance = 1e-6);
 
   /// Finds the first body that the shape touches while it translates and rotates; t is a time in
@@ -222,10 +226,10 @@ class WINNOW_API SceneQueries {
   /// to the size of the shapes as in ImpactOptions; ImpactOptions also covers shapes that touch at
   /// the start or pass close by. A path that is diagonal to the axes is queried in up to eight
   /// pieces. `unsupported` for a half-space; `invalid_pose` for an invalid motion.
-  Answer<SceneHit> closest(const MotionCast& cast, const Filter& filter = {},
+  Answer<SceneHit> closest(const MotionCast& cast, const SceneFilter& filter = {},
                            double tolerance = 1e-6);
   /// Finds the first hit on every body, sorted by t.
-  Answer<std::span<const SceneHit>> all(const MotionCast& cast, const Filter& filter = {},
+  Answer<std::span<const SceneHit>> all(const MotionCast& cast, const SceneFilter& filter = {},
                                         double tolerance = 1e-6);
 
   // Two bodies, or sets of bodies. `invalid_key` if a key is not of a live body; `invalid_argument`
@@ -269,7 +273,7 @@ class WINNOW_API SceneQueries {
   /// Finds the bodies nearest to a point, at most `count`, within distance `radius`, sorted by
   /// distance. Inside a solid the distance is negative.
   Answer<std::span<const SceneDistance>> nearest(const Vec3d& point, std::size_t count,
-                                                 double radius, const Filter& filter = {});
+                                                 double radius, const SceneFilter& filter = {});
 
   /// Returns the bytes of results and scratch; all others under `structure`.
   [[nodiscard]] Footprint footprint() const noexcept;

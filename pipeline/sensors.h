@@ -24,7 +24,9 @@ struct SensorDefinition {
   Pose pose{};            ///< pose of the shape's frame in the world
   ObjectFilter filter{};  ///< which bodies it senses
   Key carrier{};          ///< a body that it does not sense, such as the body it is attached to
-  ClientData data = 0;    ///< the caller's value, returned with sensed bodies; never read
+  /// Layer, below kSceneLayers; bodies whose layer does not collide with it are not sensed.
+  std::uint16_t layer = kEveryLayer;
+  ClientData data = 0;  ///< the caller's value, returned with sensed bodies; never read
 };
 
 /// A body that shares a point with a sensor.
@@ -68,7 +70,7 @@ class WINNOW_API Sensors {
   Sensors& operator=(const Sensors&) = delete;
 
   /// Adds a sensor. `invalid_key` if the scene's pools do not contain the shape; `invalid_pose`;
-  /// `too_many_objects` beyond 2^28.
+  /// `invalid_argument` for a layer out of range; `too_many_objects` beyond 2^28.
   Answer<Key> add(const SensorDefinition& sensor);
   /// Removes a sensor. The bodies that it sensed leave it in the next `sense`.
   Status remove(Key key);

@@ -28,6 +28,9 @@ typedef struct winnow_contacts winnow_contacts;
 /// Number of layers.
 #define WINNOW_SCENE_LAYERS 4096U
 
+/// Layer of a query or sensor that considers bodies of all layers.
+#define WINNOW_EVERY_LAYER 0xFFFFU
+
 /// Index of no pair or point: the contact did not exist in the previous frame.
 #define WINNOW_NO_CONTACT 0xFFFFFFFFU
 
@@ -80,6 +83,24 @@ typedef struct winnow_contact_offsets {
   double contact;  ///< finite, >= 0 and >= `rest`
   double rest;     ///< finite; negative moves the surface inward
 } winnow_contact_offsets;
+
+/// Which bodies a query of a scene considers, as if the query were a body; a null pointer to it
+/// accepts all bodies.
+typedef struct winnow_scene_filter {
+  uint32_t layers;       ///< layers that the query is in, one bit each
+  uint32_t mask;         ///< layers of bodies that it considers
+  uint32_t environment;  ///< bodies of other environments are skipped
+  /// Bodies whose layer does not collide with this one are skipped; see
+  /// winnow_scene_set_layers_collide.
+  uint16_t layer;
+  winnow_key ignored;  ///< a body that is skipped, such as the one that casts the ray
+  /// Null, or called for bodies that pass the rest of the filter; see winnow_filter for its rules.
+  bool (*accept)(void* context, winnow_key key, uint64_t data);
+  void* context;  ///< passed to `accept`
+} winnow_scene_filter;
+#define WINNOW_SCENE_FILTER \
+  {0xFFFFFFFFU, 0xFFFFFFFFU, WINNOW_EVERY_ENVIRONMENT, WINNOW_EVERY_LAYER, {WINNOW_NO_OBJECT, 0}, \
+  NULL, NULL}
 
 /// A body to add.
 typedef struct winnow_body_definition {

@@ -137,66 +137,66 @@ WINNOW_C_API void winnow_scene_queries_destroy(winnow_scene_queries* queries);
 
 /// Finds the hit of least t; a hit with the null key if there is none.
 WINNOW_C_API winnow_status winnow_scene_queries_closest(
-    winnow_scene_queries* queries, const winnow_shape_ray* ray, const winnow_filter* filter,
+    winnow_scene_queries* queries, const winnow_shape_ray* ray, const winnow_scene_filter* filter,
     winnow_scene_hit* hit);
 
 /// Finds any one hit; a hit with the null key if there is none.
 WINNOW_C_API winnow_status winnow_scene_queries_any(
-    winnow_scene_queries* queries, const winnow_shape_ray* ray, const winnow_filter* filter,
+    winnow_scene_queries* queries, const winnow_shape_ray* ray, const winnow_scene_filter* filter,
     winnow_scene_hit* hit);
 
 /// Finds the first hit on every body that the ray hits, sorted by t.
 WINNOW_C_API winnow_status winnow_scene_queries_all(
-    winnow_scene_queries* queries, const winnow_shape_ray* ray, const winnow_filter* filter,
+    winnow_scene_queries* queries, const winnow_shape_ray* ray, const winnow_scene_filter* filter,
     const winnow_scene_hit** hits, size_t* count);
 
 /// Finds the hit of least t of each ray. One invalid ray makes the call fail. If memory is refused,
 /// some rays' columns may have been written.
 WINNOW_C_API winnow_status winnow_scene_queries_closest_rays(
-    winnow_scene_queries* queries, const winnow_shape_ray_batch* rays, const winnow_filter* filter,
-    const winnow_scene_hit_columns* hits);
+    winnow_scene_queries* queries, const winnow_shape_ray_batch* rays,
+    const winnow_scene_filter* filter, const winnow_scene_hit_columns* hits);
 
 /// Finds any one hit of each ray.
 WINNOW_C_API winnow_status winnow_scene_queries_any_rays(
-    winnow_scene_queries* queries, const winnow_shape_ray_batch* rays, const winnow_filter* filter,
-    const winnow_scene_hit_columns* hits);
+    winnow_scene_queries* queries, const winnow_shape_ray_batch* rays,
+    const winnow_scene_filter* filter, const winnow_scene_hit_columns* hits);
 
 /// Finds the first hit on every body that each ray hits. The hits of ray i are hits[first[i]] up
 /// to, but not including, hits[first[i + 1]].
 WINNOW_C_API winnow_status winnow_scene_queries_all_rays(
-    winnow_scene_queries* queries, const winnow_shape_ray_batch* rays, const winnow_filter* filter,
-    const winnow_scene_hit** hits, const size_t** first);
+    winnow_scene_queries* queries, const winnow_shape_ray_batch* rays,
+    const winnow_scene_filter* filter, const winnow_scene_hit** hits, const size_t** first);
 
 /// Finds every point at which the ray crosses the surface of a body, sorted by t: where it enters
 /// and leaves convex shapes, and each triangle of a mesh or field, from either side. A ray that
 /// starts in a convex shape only leaves it.
 WINNOW_C_API winnow_status winnow_scene_queries_crossings(
-    winnow_scene_queries* queries, const winnow_shape_ray* ray, const winnow_filter* filter,
+    winnow_scene_queries* queries, const winnow_shape_ray* ray, const winnow_scene_filter* filter,
     const winnow_scene_crossing** points, size_t* count);
 
 /// Finds the first body that the moving shape touches. t is never later than the true time, and
 /// earlier by at most `tolerance` (a length along the path, finite, >= 0) plus rounding; 0 if the
 /// shapes overlap at the start. WINNOW_UNSUPPORTED for a half-space.
 WINNOW_C_API winnow_status winnow_scene_queries_closest_cast(
-    winnow_scene_queries* queries, const winnow_shape_cast* cast, const winnow_filter* filter,
+    winnow_scene_queries* queries, const winnow_shape_cast* cast, const winnow_scene_filter* filter,
     double tolerance, winnow_scene_hit* hit);
 
 /// Finds the first hit on every body, sorted by t.
 WINNOW_C_API winnow_status winnow_scene_queries_all_cast(
-    winnow_scene_queries* queries, const winnow_shape_cast* cast, const winnow_filter* filter,
+    winnow_scene_queries* queries, const winnow_shape_cast* cast, const winnow_scene_filter* filter,
     double tolerance, const winnow_scene_hit** hits, size_t* count);
 
 /// Like winnow_scene_queries_closest_cast, but a body that the shape touches at the start is hit at
 /// t = 0 only if the shape gets deeper into it. If the shape slides along the body or leaves it,
 /// the hit is with whatever the shape hits later.
 WINNOW_C_API winnow_status winnow_scene_queries_closest_cast_from_touch(
-    winnow_scene_queries* queries, const winnow_shape_cast* cast, const winnow_filter* filter,
+    winnow_scene_queries* queries, const winnow_shape_cast* cast, const winnow_scene_filter* filter,
     double tolerance, winnow_scene_hit* hit);
 
 /// Like winnow_scene_queries_all_cast, for the hits of
 /// winnow_scene_queries_closest_cast_from_touch.
 WINNOW_C_API winnow_status winnow_scene_queries_all_cast_from_touch(
-    winnow_scene_queries* queries, const winnow_shape_cast* cast, const winnow_filter* filter,
+    winnow_scene_queries* queries, const winnow_shape_cast* cast, const winnow_scene_filter* filter,
     double tolerance, const winnow_scene_hit** hits, size_t* count);
 
 /// Finds the first body that the shape touches while it translates and rotates; t is a time in [0,
@@ -204,26 +204,27 @@ WINNOW_C_API winnow_status winnow_scene_queries_all_cast_from_touch(
 /// size of the shapes. WINNOW_UNSUPPORTED for a half-space; WINNOW_INVALID_POSE for an invalid
 /// motion.
 WINNOW_C_API winnow_status winnow_scene_queries_closest_motion(
-    winnow_scene_queries* queries, const winnow_motion_cast* cast, const winnow_filter* filter,
-    double tolerance, winnow_scene_hit* hit);
+    winnow_scene_queries* queries, const winnow_motion_cast* cast,
+    const winnow_scene_filter* filter, double tolerance, winnow_scene_hit* hit);
 
 /// Finds the first hit of the translating and rotating shape on every body, sorted by t.
 WINNOW_C_API winnow_status winnow_scene_queries_all_motion(
-    winnow_scene_queries* queries, const winnow_motion_cast* cast, const winnow_filter* filter,
-    double tolerance, const winnow_scene_hit** hits, size_t* count);
+    winnow_scene_queries* queries, const winnow_motion_cast* cast,
+    const winnow_scene_filter* filter, double tolerance, const winnow_scene_hit** hits,
+    size_t* count);
 
 /// Finds every body that shares a point with the shape at this pose, sorted by id. The test is
 /// exact.
 WINNOW_C_API winnow_status winnow_scene_queries_overlap(
     winnow_scene_queries* queries, winnow_shape_id shape, const winnow_pose* pose,
-    const winnow_filter* filter, const winnow_scene_overlap** bodies, size_t* count);
+    const winnow_scene_filter* filter, const winnow_scene_overlap** bodies, size_t* count);
 
 /// Finds every body within distance `limit` of the shape at this pose (finite; 0 finds the bodies
 /// that overlap it, with their depths), sorted by distance. The shape is the first body of the
 /// answers.
 WINNOW_C_API winnow_status winnow_scene_queries_distances(
     winnow_scene_queries* queries, winnow_shape_id shape, const winnow_pose* pose, double limit,
-    const winnow_filter* filter, const winnow_scene_distance** bodies, size_t* count);
+    const winnow_scene_filter* filter, const winnow_scene_distance** bodies, size_t* count);
 
 /// Finds the closest (or deepest) points of two bodies. The key of the answer is null if the rules
 /// exclude the pair, or if the distance exceeds `limit`. Set `limit` to INFINITY for no limit.
@@ -235,7 +236,7 @@ WINNOW_C_API winnow_status winnow_scene_queries_distance(
 /// distance. Inside a solid the distance is negative.
 WINNOW_C_API winnow_status winnow_scene_queries_nearest(
     winnow_scene_queries* queries, const double point[3], size_t count, double radius,
-    const winnow_filter* filter, const winnow_scene_distance** bodies, size_t* found);
+    const winnow_scene_filter* filter, const winnow_scene_distance** bodies, size_t* found);
 
 /// Finds the two bodies of two sets that are closest (or overlap the deepest). The key `a` of the
 /// answer is null if the rules exclude all pairs, or if all distances exceed `limit`.

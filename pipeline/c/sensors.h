@@ -22,11 +22,13 @@ typedef struct winnow_sensor_definition {
   winnow_pose pose;             ///< pose of the shape's frame in the world
   winnow_object_filter filter;  ///< which bodies it senses
   winnow_key carrier;           ///< a body that the sensor ignores
-  uint64_t data;                ///< the caller's value, returned with sensed bodies; never read
+  /// Layer of the sensor; bodies whose layer does not collide with it are not sensed.
+  uint16_t layer;
+  uint64_t data;  ///< the caller's value, returned with sensed bodies; never read
 } winnow_sensor_definition;
 #define WINNOW_SENSOR_DEFINITION \
   {WINNOW_NO_SHAPE, {{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0, 0.0}}, {1U, 0xFFFFFFFFU, 0U}, \
-  {WINNOW_NO_OBJECT, 0}, 0}
+  {WINNOW_NO_OBJECT, 0}, WINNOW_EVERY_LAYER, 0}
 
 /// A body that shares a point with a sensor.
 typedef struct winnow_sensed_body {

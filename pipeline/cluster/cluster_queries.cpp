@@ -68,8 +68,8 @@ struct RayAll {
     group.regions.ranks_of(ray, ranks);
   }
   template <typename Give>
-  static Status answer(RankQueries& scene, std::span<const ShapeRay> rays, const Filter& filter,
-                       Give&& give) {
+  static Status answer(RankQueries& scene, std::span<const ShapeRay> rays,
+                       const SceneFilter& filter, Give&& give) {
     const auto lists = scene.queries.all(ShapeRayBatch(rays), filter);
     if (lists.status != Status::ok) return lists.status;
     for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -119,8 +119,8 @@ struct HitColumnsOfRays {
 struct RayClosest : RayAll {
   static constexpr CollectiveCall kCall = CollectiveCall::closest;
   template <typename Give>
-  static Status answer(RankQueries& scene, std::span<const ShapeRay> rays, const Filter& filter,
-                       Give&& give) {
+  static Status answer(RankQueries& scene, std::span<const ShapeRay> rays,
+                       const SceneFilter& filter, Give&& give) {
     // Hits of the shorter rays are not sent: the last digits of a hit depend on the ray's maximal
     // t.
     constexpr double kBehind = 1.0 + 1e-6;
@@ -157,8 +157,8 @@ struct RayClosest : RayAll {
 struct RayAny : RayAll {
   static constexpr CollectiveCall kCall = CollectiveCall::any;
   template <typename Give>
-  static Status answer(RankQueries& scene, std::span<const ShapeRay> rays, const Filter& filter,
-                       Give&& give) {
+  static Status answer(RankQueries& scene, std::span<const ShapeRay> rays,
+                       const SceneFilter& filter, Give&& give) {
     std::vector<double> ts(rays.size());
     const Status status =
         scene.queries.any(ShapeRayBatch(rays), SceneHitColumns{.t = ts.data()}, filter);
@@ -183,8 +183,8 @@ struct ProbeOverlap {
     group.regions.ranks_of(rank.box_around(probe.shape, probe.pose), ranks);
   }
   template <typename Give>
-  static Status answer(RankQueries& scene, std::span<const ShapeProbe> probes, const Filter& filter,
-                       Give&& give) {
+  static Status answer(RankQueries& scene, std::span<const ShapeProbe> probes,
+                       const SceneFilter& filter, Give&& give) {
     for (std::size_t i = 0; i < probes.size(); ++i) {
       const auto bodies = scene.queries.overlap(probes[i].shape, probes[i].pose, filter);
       if (bodies.status != Status::ok) return bodies.status;
@@ -211,7 +211,7 @@ struct PointNearest {
   }
   template <typename Give>
   static Status answer(RankQueries& scene, std::span<const NearestProbe> probes,
-                       const Filter& filter, Give&& give) {
+                       const SceneFilter& filter, Give&& give) {
     for (std::size_t i = 0; i < probes.size(); ++i) {
       const NearestProbe& probe = probes[i];
       auto bodies = scene.queries.nearest(probe.point, probe.count, probe.radius, filter);
@@ -291,7 +291,11 @@ class CollectiveQuery {
   }
 
   [[nodiscard]] Status check(std::size_t i) const noexcept {
-    if (batches_[i].filter.predicate.accept != nullptr) return Status::unsupported;
+    const SceneFilter& filter = batches_[i].filter;
+    if (filter.predicate.accept != nullptr || filter.layer != kEveryLayer ||
+        filter.ignored != Key{}) {
+      return Status::unsupported;
+    }
     for (const Query& query : batches_[i].queries) {
       const Status good = Kind::check(cluster_.scenes[i], query);
       if (good != Status::ok) return good;

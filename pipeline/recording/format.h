@@ -108,6 +108,8 @@ enum class RecordedCall : std::uint8_t {
   // Since version 5. Rays have a min_t; see HitForm.
   query_crossings,
   query_distances,
+  add_sensor_in_layer,
+  set_sensor_in_layer,
 };
 
 /// Returns the last call of a version; nullopt for an unknown version.
@@ -116,7 +118,7 @@ enum class RecordedCall : std::uint8_t {
   if (version == 2) return RecordedCall::query_nearest;
   if (version == 3) return RecordedCall::find_impacts_of_motions;
   if (version == 4) return RecordedCall::query_any_contact_of_sets;
-  if (version == 5) return RecordedCall::query_distances;
+  if (version == 5) return RecordedCall::set_sensor_in_layer;
   static_assert(kRecordingVersion == 5);
   return std::nullopt;
 }

@@ -91,7 +91,7 @@ void put_digest(CallWriter& call, const Results& results) {
 template <typename Results>
 void put_hits(CallWriter& call, const Filter& filter, std::span<const Hit> hits,
               const Results& results) {
-  call.put_filter(filter);
+  call.put_filter(filter.object());
   put_passed(call, filter.predicate, hits.size(), [&](std::size_t i) { return hits[i].key.id; });
   put_digest(call, results);
 }
@@ -258,7 +258,7 @@ void PartitionRecording::write_rays(RecordedCall kind, const RayBatch& rays, con
                                     const HitColumns& hits) noexcept {
   if (filter.predicate.accept != nullptr && hits.key == nullptr) return;
   CallWriter call = write(kind);
-  put_rays(call, rays).put_filter(filter);
+  put_rays(call, rays).put_filter(filter.object());
   put_passed(call, filter.predicate, rays.count, [&](std::size_t i) { return hits.key[i].id; });
   call.put(hits.key != nullptr).put(hits.data != nullptr).put(hits.t != nullptr);
   call.put(digest_of_columns(hits, rays.count).value());
@@ -267,7 +267,7 @@ void PartitionRecording::write_rays(RecordedCall kind, const RayBatch& rays, con
 void PartitionRecording::overlap(const Region& region, const Filter& filter, Order order,
                                  const OverlapBuffer& objects) noexcept {
   CallWriter call = write(RecordedCall::overlap_region);
-  put_region(call, region).put_filter(filter).put(order);
+  put_region(call, region).put_filter(filter.object()).put(order);
   const std::span<const ObjectId> ids = objects.ids();
   put_passed(call, filter.predicate, ids.size(), [&](std::size_t i) { return ids[i]; });
   put_digest(call, objects);
@@ -276,7 +276,7 @@ void PartitionRecording::overlap(const Region& region, const Filter& filter, Ord
 void PartitionRecording::overlap(const BoxView& boxes, const Filter& filter, Order order,
                                  const PairBuffer& out) noexcept {
   CallWriter call = write(RecordedCall::overlap_boxes);
-  put_volumes(call, GivenVolumes(boxes)).put_filter(filter).put(order);
+  put_volumes(call, GivenVolumes(boxes)).put_filter(filter.object()).put(order);
   put_passed(call, filter.predicate, out.size(), [&](std::size_t i) { return out[i].second; });
   put_digest(call, out);
 }

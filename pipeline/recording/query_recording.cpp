@@ -44,7 +44,7 @@ template <typename Cast>
 /// Writes the filter, the bodies that its predicate accepted, and the digest of the results.
 void QueryRecording::put_end(CallWriter& call, ObservedFilter& filter,
                              const Digest& digest) noexcept {
-  call.put_filter(filter.given());
+  call.put_filter(filter.given().object());
   Column<ObjectId>* const accepted = filter.accepted();
   call.put(accepted != nullptr);
   if (accepted != nullptr) call.put_array(sorted_unique(*accepted));

@@ -108,7 +108,7 @@ class CallWriter {
   /// Removes the call, and ends the recording with an error.
   void give_up(Status why) noexcept;
   /// Writes a filter without its predicate.
-  CallWriter& put_filter(const Filter& filter) noexcept {
+  CallWriter& put_filter(const ObjectFilter& filter) noexcept {
     return put(filter.layers).put(filter.mask).put(filter.environment);
   }
 

@@ -51,17 +51,17 @@ void SceneRecording::write_sensor(RecordedCall kind, std::uint32_t number, Key k
   call.put(number).put(key.id).put(shape);
   call.put_bytes(&sensor.pose, sizeof sensor.pose);
   call.put_bytes(&sensor.filter, sizeof sensor.filter);
-  call.put(is_carried ? sensor.carrier.id : kNoObject).put(sensor.data);
+  call.put(is_carried ? sensor.carrier.id : kNoObject).put(sensor.data).put(sensor.layer);
 }
 
 void SceneRecording::add_sensor(std::uint32_t number, Key key,
                                 const SensorDefinition& sensor) noexcept {
-  write_sensor(RecordedCall::add_sensor, number, key, sensor);
+  write_sensor(RecordedCall::add_sensor_in_layer, number, key, sensor);
 }
 
 void SceneRecording::set_sensor(std::uint32_t number, Key key,
                                 const SensorDefinition& sensor) noexcept {
-  write_sensor(RecordedCall::set_sensor, number, key, sensor);
+  write_sensor(RecordedCall::set_sensor_in_layer, number, key, sensor);
 }
 
 void SceneRecording::remove_sensor(std::uint32_t number, Key key) noexcept {

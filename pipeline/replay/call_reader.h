@@ -52,6 +52,12 @@ class RecordedFilter {
     return among<in_order>(pairs_);
   }
   [[nodiscard]] const Filter& filter() const noexcept { return filter_; }
+  [[nodiscard]] SceneFilter scene_filter() const noexcept {
+    return {.layers = filter_.layers,
+            .mask = filter_.mask,
+            .environment = filter_.environment,
+            .predicate = filter_.predicate};
+  }
 
  private:
   Filter filter_;

@@ -84,10 +84,11 @@ Status query_ray(ReplayState& replay, ReplayedWorld& of) {
   read(replay.in, with_min_t, ray);
   if (!replay.read_query_filter()) return status_of(replay.in);
   if (form == HitForm::all) {
-    return replay.compare_if(of.queries->all(ray, replay.filter.filter()));
+    return replay.compare_if(of.queries->all(ray, replay.filter.scene_filter()));
   }
-  return replay.compare_if(form == HitForm::any ? of.queries->any(ray, replay.filter.filter())
-                                                : of.queries->closest(ray, replay.filter.filter()));
+  return replay.compare_if(form == HitForm::any
+                               ? of.queries->any(ray, replay.filter.scene_filter())
+                               : of.queries->closest(ray, replay.filter.scene_filter()));
 }
 
 Status query_rays(ReplayState& replay, ReplayedWorld& of) {
@@ -104,14 +105,14 @@ Status query_rays(ReplayState& replay, ReplayedWorld& of) {
   const ShapeRayBatch batch(
       std::span<const ShapeRay>(replay.shape_rays.data(), replay.shape_rays.size()));
   if (form == HitForm::all) {
-    return replay.compare_if(of.queries->all(batch, replay.filter.filter()));
+    return replay.compare_if(of.queries->all(batch, replay.filter.scene_filter()));
   }
   RequestedColumns requested(replay.options.memory);
   if (!requested.resize(batch.count)) return Status::out_of_memory;
   const SceneHitColumns hits = requested.columns(which);
   const Status answered = form == HitForm::any
-                              ? of.queries->any(batch, hits, replay.filter.filter())
-                              : of.queries->closest(batch, hits, replay.filter.filter());
+                              ? of.queries->any(batch, hits, replay.filter.scene_filter())
+                              : of.queries->closest(batch, hits, replay.filter.scene_filter());
   return answered == Status::ok ? replay.compare(digest_of_columns(hits, batch.count)) : answered;
 }
 
@@ -119,7 +120,7 @@ Status query_crossings(ReplayState& replay, ReplayedWorld& of) {
   ShapeRay ray;
   read(replay.in, true, ray);
   if (!replay.read_query_filter()) return status_of(replay.in);
-  return replay.compare_if(of.queries->crossings(ray, replay.filter.filter()));
+  return replay.compare_if(of.queries->crossings(ray, replay.filter.scene_filter()));
 }
 
 Status query_distances(ReplayState& replay, ReplayedWorld& of) {
@@ -129,7 +130,7 @@ Status query_distances(ReplayState& replay, ReplayedWorld& of) {
   (void)replay.in.get_bytes(&pose, sizeof pose);
   const auto limit = replay.in.get<double>();
   if (!replay.read_query_filter()) return status_of(replay.in);
-  return replay.compare_if(of.queries->distances(shape, pose, limit, replay.filter.filter()));
+  return replay.compare_if(of.queries->distances(shape, pose, limit, replay.filter.scene_filter()));
 }
 
 Status query_overlap(ReplayState& replay, ReplayedWorld& of) {
@@ -138,7 +139,7 @@ Status query_overlap(ReplayState& replay, ReplayedWorld& of) {
   if (!replay.read_shape(of, shape)) return status_of(replay.in);
   (void)replay.in.get_bytes(&pose, sizeof pose);
   if (!replay.read_query_filter()) return status_of(replay.in);
-  return replay.compare_if(of.queries->overlap(shape, pose, replay.filter.filter()));
+  return replay.compare_if(of.queries->overlap(shape, pose, replay.filter.scene_filter()));
 }
 
 template <typename Moving>
@@ -152,9 +153,9 @@ Status query_cast(ReplayState& replay, ReplayedWorld& of) {
   if (!replay.read_query_filter()) return status_of(replay.in);
   if (form == HitForm::any) return Status::invalid_argument;
   if (form == HitForm::all || form == HitForm::all_from_touch) {
-    return replay.compare_if(of.queries->all(cast, replay.filter.filter(), tolerance));
+    return replay.compare_if(of.queries->all(cast, replay.filter.scene_filter(), tolerance));
   }
-  return replay.compare_if(of.queries->closest(cast, replay.filter.filter(), tolerance));
+  return replay.compare_if(of.queries->closest(cast, replay.filter.scene_filter(), tolerance));
 }
 
 /// Plays a call of `any_contact`, for the whole scene or for two sets of bodies.
@@ -203,7 +204,7 @@ Status query_nearest(ReplayState& replay, ReplayedWorld& of) {
   const auto count = static_cast<std::size_t>(replay.in.get<std::uint64_t>());
   const auto radius = replay.in.get<double>();
   if (!replay.read_query_filter()) return status_of(replay.in);
-  return replay.compare_if(of.queries->nearest(point, count, radius, replay.filter.filter()));
+  return replay.compare_if(of.queries->nearest(point, count, radius, replay.filter.scene_filter()));
 }
 
 }  // namespace

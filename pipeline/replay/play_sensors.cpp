@@ -22,8 +22,13 @@ Status change_sensor(ReplayState& replay, RecordedCall call, ReplayedWorld& of,
   (void)replay.in.get_bytes(&sensor.filter, sizeof sensor.filter);
   sensor.carrier = of.scene->key_of(replay.in.get<ObjectId>());
   sensor.data = replay.in.get<ClientData>();
+  const bool is_set = call == RecordedCall::set_sensor || call == RecordedCall::set_sensor_in_layer;
+  // Sensors of recordings before version 5 have no layer.
+  const bool has_layer =
+      call == RecordedCall::add_sensor_in_layer || call == RecordedCall::set_sensor_in_layer;
+  if (has_layer) sensor.layer = replay.in.get<std::uint16_t>();
   if (!replay.in.ok()) return status_of(replay.in);
-  if (call == RecordedCall::set_sensor) return all.sensors.set(key, sensor);
+  if (is_set) return all.sensors.set(key, sensor);
   const Answer<Key> made = all.sensors.add(sensor);
   if (made.status != Status::ok) return made.status;
   if (made.id != id) return Status::invalid_argument;

@@ -127,6 +127,7 @@ Status ReplayState::play_world(RecordedCall call, std::uint32_t number) {
   if (call == RecordedCall::make_scene) return make_scene(*this, *of);
   if (call > RecordedCall::make_scene) {
     if (!of->scene) return Status::invalid_argument;
+    if (call >= RecordedCall::add_sensor_in_layer) return play_sensors(*this, call, *of);
     if (call >= RecordedCall::query_distance_by_rules) return query_scene(*this, call, *of);
     if (call >= RecordedCall::find_impacts) return find_impacts(*this, call, *of);
     if (call >= RecordedCall::make_sensors) return play_sensors(*this, call, *of);

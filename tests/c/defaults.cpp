@@ -128,6 +128,11 @@ Members members(const Filter& o) {
   const auto& [layers, mask, environment, predicate] = o;
   return list("layers mask environment predicate", layers, mask, environment, predicate);
 }
+Members members(const SceneFilter& o) {
+  const auto& [layers, mask, environment, layer, ignored, predicate] = o;
+  return list("layers mask environment layer ignored predicate", layers, mask, environment, layer,
+              ignored, predicate);
+}
 Members members(const PartitionOptions& o) {
   const auto& [memory, execution, volume, fat_margin, build_budget, recorder] = o;
   return list("memory execution volume fat_margin fat_margin_share build_budget recorder", memory,
@@ -192,9 +197,9 @@ Members members(const BodyDefinition& o) {
               offsets.rest, layer);
 }
 Members members(const SensorDefinition& o) {
-  const auto& [shape, pose, filter, carrier, data] = o;
-  return list("shape pose layers mask environment carrier data", shape, pose, filter.layers,
-              filter.mask, filter.environment, carrier, data);
+  const auto& [shape, pose, filter, carrier, layer, data] = o;
+  return list("shape pose layers mask environment carrier layer data", shape, pose, filter.layers,
+              filter.mask, filter.environment, carrier, layer, data);
 }
 Members members(const SceneCapacity& o) {
   const auto& [bodies, pairs, level, touching, manifolds, points] = o;
@@ -202,8 +207,8 @@ Members members(const SceneCapacity& o) {
               manifolds, points);
 }
 Members members(const ShapeRay& o) {
-  const auto& [origin, direction, max_t] = o;
-  return list("origin direction max_t", origin, direction, max_t);
+  const auto& [origin, direction, min_t, max_t] = o;
+  return list("origin direction min_t max_t", origin, direction, min_t, max_t);
 }
 Members members(const ShapeCast& o) {
   const auto& [shape, pose, direction, max_t, touching] = o;
@@ -302,6 +307,10 @@ void show_definitions() {
   const winnow_filter filter = WINNOW_FILTER;
   const winnow_filter* const none = nullptr;
   show("Filter", Filter{}, {{"macro", as_read<Filter>(&filter)}, {"null", as_read<Filter>(none)}});
+  const winnow_scene_filter bodies = WINNOW_SCENE_FILTER;
+  const winnow_scene_filter* const any = nullptr;
+  show("SceneFilter", SceneFilter{},
+       {{"macro", as_read<SceneFilter>(&bodies)}, {"null", as_read<SceneFilter>(any)}});
   const winnow_body_definition body = WINNOW_BODY_DEFINITION;
   show("BodyDefinition", BodyDefinition{}, {{"macro", *c::as_cpp(&body)}});
   const winnow_sensor_definition sensor = WINNOW_SENSOR_DEFINITION;

@@ -150,7 +150,7 @@ TEST(CInterface, motion_casts_give_the_hits_of_cpp) {
   cast.motion.start.position[2] = 0.75;
   cast.motion.travel[0] = 9.0;
   cast.motion.turn[2] = 1.0;
-  const winnow_filter* const all = nullptr;
+  const winnow_scene_filter* const all = nullptr;
   for (cast.from_touch = 0; cast.from_touch <= 1; ++cast.from_touch) {
     const auto hit =
         got<winnow_scene_hit>(winnow_scene_queries_closest_motion, queries, &cast, all, 1e-6);

@@ -15,8 +15,8 @@ namespace winnow::test {
 namespace {
 
 constexpr std::size_t kBodies = SceneOfC::kBodies;
-constexpr winnow_filter* kAll = nullptr;
-const Filter kEven{.predicate = {[](void*, Key key, ClientData) { return key.id % 2 == 0; }}};
+constexpr winnow_scene_filter* kAll = nullptr;
+const SceneFilter kEven{.predicate = {[](void*, Key key, ClientData) { return key.id % 2 == 0; }}};
 
 void expect_columns(const winnow_contact_columns& of_c, const Contacts& of_cpp) {
   EXPECT_EQ(of_c.level, static_cast<winnow_contact_level>(of_cpp.level()));
@@ -254,7 +254,7 @@ TEST(CInterface, rays_hit_the_bodies_of_cpp) {
   const OwnedQueries& queries = all.queries;
   const winnow_shape_ray ray = {{3.2, 1.3, 5}, {0.1, 0.2, -1}, 0.5, 20};
   const ShapeRay& same_ray = *c::as_cpp(&ray);
-  winnow_filter even = WINNOW_FILTER;
+  winnow_scene_filter even = WINNOW_SCENE_FILTER;
   even.accept = [](void*, winnow_key key, std::uint64_t) { return key.id % 2 == 0; };
   EXPECT_TRUE(same(got<winnow_scene_hit>(winnow_scene_queries_closest, queries, &ray, &even),
                    all.others.closest(same_ray, kEven)));

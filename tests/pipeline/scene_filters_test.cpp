@@ -4,6 +4,7 @@
 #include "tests/pipeline/scene_world.h"
 
 #include <gtest/gtest.h>
+#include <winnow/pipeline/sensors.h>
 
 #include <algorithm>
 
@@ -216,7 +217,7 @@ TEST(SceneFilters, contacts_leave_out_pairs_of_excluded_layers) {
   EXPECT_EQ(body.layer, world.bodies[5].layer);
 }
 
-TEST(SceneFilters, ray_with_layer_filter_skips_layers) {
+TEST(SceneFilters, ray_skips_layers_and_ignored_body) {
   Row row;
   ASSERT_EQ(row.scene.set_layer(row.keys[0], 300), Status::ok);
   ASSERT_EQ(row.scene.set_layer(row.keys[1], 4095), Status::ok);
@@ -224,16 +225,40 @@ TEST(SceneFilters, ray_with_layer_filter_skips_layers) {
   ASSERT_EQ(row.scene.refresh(), Status::ok);
   SceneQueries queries(row.scene);
   const ShapeRay ray{{-5, 0, 0}, {1, 0, 0}, 0, 100};
-  const LayerFilter seven{row.scene, 7};
-  SceneHit hit = expect_ok(queries.closest(ray, seven.filter()));
-  EXPECT_EQ(hit.key, row.keys[1]);
-  LayerFilter other = seven;
-  ObjectId never = row.keys[1].id;
-  other.also.predicate = {
+  EXPECT_EQ(expect_ok(queries.closest(ray)).key, row.keys[0]);
+  SceneFilter filter{.layer = 7};
+  EXPECT_EQ(expect_ok(queries.closest(ray, filter)).key, row.keys[1]);
+  filter.ignored = row.keys[1];
+  EXPECT_EQ(expect_ok(queries.closest(ray, filter)).key, row.keys[2]);
+  ObjectId never = row.keys[2].id;
+  filter.predicate = {
       [](void* context, Key key, ClientData) { return key.id != *static_cast<ObjectId*>(context); },
       &never};
-  hit = expect_ok(queries.closest(ray, other.filter()));
-  EXPECT_EQ(hit.key, row.keys[2]);
+  EXPECT_FALSE(expect_ok(queries.closest(ray, filter)).key == row.keys[2]);
+  // A stale key ignores nothing.
+  EXPECT_EQ(expect_ok(queries.closest(ray, {.ignored = {row.keys[0].id, 1}})).key, row.keys[0]);
+}
+
+TEST(SceneFilters, sensors_skip_layers) {
+  Row row;
+  ASSERT_EQ(row.scene.set_layer(row.keys[0], 300), Status::ok);
+  ASSERT_EQ(row.scene.set_layers_collide(300, 7, false), Status::ok);
+  const BodyDefinition body = expect_ok(row.scene.body(row.keys[0]));
+  Sensors sensors(row.scene);
+  SensorDefinition sensor{.shape = body.shape, .pose = body.pose};
+  const auto senses = [&](Key key) {
+    return std::ranges::any_of(sensors.sensed(), [&](const auto& in) { return in.body == key; });
+  };
+  const Key any = expect_ok(sensors.add(sensor));
+  ASSERT_EQ(sensors.sense(), Status::ok);
+  EXPECT_TRUE(senses(row.keys[0]));
+  sensor.layer = 7;
+  ASSERT_EQ(sensors.set(any, sensor), Status::ok);
+  ASSERT_EQ(sensors.sense(), Status::ok);
+  EXPECT_FALSE(senses(row.keys[0]));
+  sensor.layer = 4096;
+  EXPECT_EQ(sensors.set(any, sensor), Status::invalid_argument);
+  expect_error(sensors.add(sensor), Status::invalid_argument);
 }
 
 TEST(SceneFilters, layers_out_of_range_are_refused) {

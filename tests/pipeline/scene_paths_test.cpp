@@ -23,7 +23,7 @@ TEST(ScenePaths, closest_hit_tests_few_bodies) {
   world.add_to_scene();
   SceneQueries queries(*world.scene);
   std::size_t calls = 0;
-  Filter filter;
+  SceneFilter filter;
   filter.predicate = {[](void* count, Key, ClientData) {
                         ++*static_cast<std::size_t*>(count);
                         return true;

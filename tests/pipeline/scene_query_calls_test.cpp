@@ -32,7 +32,7 @@ TEST(SceneQueryCalls, filters_and_predicates_select_bodies) {
     const QueryWorld& world;
     bool right = true;
   } context{world};
-  Filter filter;
+  SceneFilter filter;
   filter.mask = 0b101;
   filter.predicate = {[](void* given, Key key, ClientData data) {
                         auto& c = *static_cast<Context*>(given);

@@ -281,8 +281,8 @@ struct ModulusPredicate {
             },
             this};
   }
-  [[nodiscard]] Filter bodies() {
-    Filter filter;
+  [[nodiscard]] SceneFilter bodies() {
+    SceneFilter filter;
     filter.predicate = {[](void* context, Key key, ClientData) {
                           return key.id % static_cast<ModulusPredicate*>(context)->modulus != 0;
                         },
@@ -292,7 +292,7 @@ struct ModulusPredicate {
 };
 
 /// Casts rays and moving shapes.
-void cast_all(SceneQueries& queries, SceneWorld& world, ShapeId shape, const Filter& filter) {
+void cast_all(SceneQueries& queries, SceneWorld& world, ShapeId shape, const SceneFilter& filter) {
   std::vector<ShapeRay> rays;
   for (int i = 0; i < 9; ++i) {
     const Pose from = world.random_pose();
@@ -333,7 +333,7 @@ void cast_all(SceneQueries& queries, SceneWorld& world, ShapeId shape, const Fil
 }
 
 /// Makes every kind of query of a scene.
-void query_all(SceneQueries& queries, SceneWorld& world, ShapeId shape, const Filter& filter) {
+void query_all(SceneQueries& queries, SceneWorld& world, ShapeId shape, const SceneFilter& filter) {
   cast_all(queries, world, shape, filter);
   std::span<const SceneOverlap> bodies =
       expect_ok(queries.overlap(shape, world.random_pose(), filter));
@@ -461,7 +461,8 @@ void record_scene(Recorder& recorder, std::size_t count, int frames, const Scene
     if (frame == 2 || frame == 4) scene.set_predicate(predicate.pairs());
     if (frame == 6) scene.set_predicate({});
     const ShapeId by_frame[] = {world.shapes[1], round[1], landscape.ids[3], landscape.ids[0]};
-    query_all(queries, world, by_frame[frame % 4], frame % 2 == 0 ? Filter{} : predicate.bodies());
+    query_all(queries, world, by_frame[frame % 4],
+              frame % 2 == 0 ? SceneFilter{} : predicate.bodies());
     const auto level = frame == 6 ? ContactLevel::distance : ContactLevel::manifold;
     find_all_impacts(ccd, world, frame % 2 == 1);
     EXPECT_EQ(scene.collide(level, contacts), Status::ok);

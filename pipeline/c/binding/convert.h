@@ -135,6 +135,7 @@ template <typename OfC>
 [[nodiscard]] bool read(const winnow_execution* given, Execution& execution) noexcept;
 /// The filter refers to `given` and is valid only during the call.
 [[nodiscard]] bool read(const winnow_filter* given, Filter& filter) noexcept;
+[[nodiscard]] bool read(const winnow_scene_filter* given, SceneFilter& filter) noexcept;
 [[nodiscard]] bool read(const winnow_pair_predicate* given, PairPredicate& predicate) noexcept;
 [[nodiscard]] bool read(const winnow_debug_draw* given, CallbackDraw& drawing) noexcept;
 [[nodiscard]] bool read(const winnow_oriented_box* given, OrientedBox& box) noexcept;

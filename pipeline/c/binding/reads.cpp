@@ -41,15 +41,31 @@ bool read(const winnow_execution* given, Execution& execution) noexcept {
   }
 }
 
+namespace {
+
+/// Returns a predicate that calls the one of a C filter, which must outlive it.
+template <typename OfC>
+[[nodiscard]] ObjectPredicate predicate_of(const OfC* given) noexcept {
+  if (given->accept == nullptr) return {};
+  return {[](void* context, Key key, ClientData data) {
+            const auto& c_filter = *static_cast<const OfC*>(context);
+            return c_filter.accept(c_filter.context, {key.id, key.stamp}, data);
+          },
+          const_cast<OfC*>(given)};
+}
+
+}  // namespace
+
 bool read(const winnow_filter* given, Filter& filter) noexcept {
   if (given == nullptr) return true;
-  filter = {given->layers, given->mask, given->environment, {}};
-  if (given->accept == nullptr) return true;
-  filter.predicate.context = const_cast<winnow_filter*>(given);
-  filter.predicate.accept = [](void* context, Key key, ClientData data) {
-    const auto& c_filter = *static_cast<const winnow_filter*>(context);
-    return c_filter.accept(c_filter.context, {key.id, key.stamp}, data);
-  };
+  filter = {given->layers, given->mask, given->environment, predicate_of(given)};
+  return true;
+}
+
+bool read(const winnow_scene_filter* given, SceneFilter& filter) noexcept {
+  if (given == nullptr) return true;
+  filter = {given->layers,          given->mask,        given->environment, given->layer,
+            to_cpp(given->ignored), predicate_of(given)};
   return true;
 }
 

@@ -19,33 +19,33 @@ void winnow_scene_queries_destroy(winnow_scene_queries* queries) {
 }
 
 winnow_status winnow_scene_queries_closest(
-    winnow_scene_queries* queries, const winnow_shape_ray* ray, const winnow_filter* filter,
+    winnow_scene_queries* queries, const winnow_shape_ray* ray, const winnow_scene_filter* filter,
     winnow_scene_hit* hit) {
-  Filter own_filter{};
+  SceneFilter own_filter{};
   if (!(are_given(queries, ray, hit) && read(filter, own_filter))) return WINNOW_INVALID_ARGUMENT;
   return give([&]() -> decltype(auto) { return (of(queries).closest((*as_cpp(ray)), own_filter)); }, hit);
 }
 
 winnow_status winnow_scene_queries_any(
-    winnow_scene_queries* queries, const winnow_shape_ray* ray, const winnow_filter* filter,
+    winnow_scene_queries* queries, const winnow_shape_ray* ray, const winnow_scene_filter* filter,
     winnow_scene_hit* hit) {
-  Filter own_filter{};
+  SceneFilter own_filter{};
   if (!(are_given(queries, ray, hit) && read(filter, own_filter))) return WINNOW_INVALID_ARGUMENT;
   return give([&]() -> decltype(auto) { return (of(queries).any((*as_cpp(ray)), own_filter)); }, hit);
 }
 
 winnow_status winnow_scene_queries_all(
-    winnow_scene_queries* queries, const winnow_shape_ray* ray, const winnow_filter* filter,
+    winnow_scene_queries* queries, const winnow_shape_ray* ray, const winnow_scene_filter* filter,
     const winnow_scene_hit** hits, size_t* count) {
-  Filter own_filter{};
+  SceneFilter own_filter{};
   if (!(are_given(queries, ray, hits, count) && read(filter, own_filter))) return WINNOW_INVALID_ARGUMENT;
   return give([&]() -> decltype(auto) { return (of(queries).all((*as_cpp(ray)), own_filter)); }, hits, count);
 }
 
 winnow_status winnow_scene_queries_closest_rays(
-    winnow_scene_queries* queries, const winnow_shape_ray_batch* rays, const winnow_filter* filter,
-    const winnow_scene_hit_columns* hits) {
-  Filter own_filter{};
+    winnow_scene_queries* queries, const winnow_shape_ray_batch* rays,
+    const winnow_scene_filter* filter, const winnow_scene_hit_columns* hits) {
+  SceneFilter own_filter{};
   SceneHitColumns own_hits{};
   if (!(are_given(queries, rays, hits) && read(filter, own_filter) && read(hits, own_hits))) return WINNOW_INVALID_ARGUMENT;
   ShapeRayBatch own_rays;
@@ -56,9 +56,9 @@ winnow_status winnow_scene_queries_closest_rays(
 }
 
 winnow_status winnow_scene_queries_any_rays(
-    winnow_scene_queries* queries, const winnow_shape_ray_batch* rays, const winnow_filter* filter,
-    const winnow_scene_hit_columns* hits) {
-  Filter own_filter{};
+    winnow_scene_queries* queries, const winnow_shape_ray_batch* rays,
+    const winnow_scene_filter* filter, const winnow_scene_hit_columns* hits) {
+  SceneFilter own_filter{};
   SceneHitColumns own_hits{};
   if (!(are_given(queries, rays, hits) && read(filter, own_filter) && read(hits, own_hits))) return WINNOW_INVALID_ARGUMENT;
   ShapeRayBatch own_rays;
@@ -69,9 +69,9 @@ winnow_status winnow_scene_queries_any_rays(
 }
 
 winnow_status winnow_scene_queries_all_rays(
-    winnow_scene_queries* queries, const winnow_shape_ray_batch* rays, const winnow_filter* filter,
-    const winnow_scene_hit** hits, const size_t** first) {
-  Filter own_filter{};
+    winnow_scene_queries* queries, const winnow_shape_ray_batch* rays,
+    const winnow_scene_filter* filter, const winnow_scene_hit** hits, const size_t** first) {
+  SceneFilter own_filter{};
   if (!(are_given(queries, rays, hits, first) && read(filter, own_filter))) return WINNOW_INVALID_ARGUMENT;
   ShapeRayBatch own_rays;
   if (const Status bad = read_view(*rays, queries->room, own_rays); bad != Status::ok) {
@@ -81,79 +81,80 @@ winnow_status winnow_scene_queries_all_rays(
 }
 
 winnow_status winnow_scene_queries_crossings(
-    winnow_scene_queries* queries, const winnow_shape_ray* ray, const winnow_filter* filter,
+    winnow_scene_queries* queries, const winnow_shape_ray* ray, const winnow_scene_filter* filter,
     const winnow_scene_crossing** points, size_t* count) {
-  Filter own_filter{};
+  SceneFilter own_filter{};
   if (!(are_given(queries, ray, points, count) && read(filter, own_filter))) return WINNOW_INVALID_ARGUMENT;
   return give([&]() -> decltype(auto) { return (of(queries).crossings((*as_cpp(ray)), own_filter)); }, points, count);
 }
 
 winnow_status winnow_scene_queries_closest_cast(
-    winnow_scene_queries* queries, const winnow_shape_cast* cast, const winnow_filter* filter,
+    winnow_scene_queries* queries, const winnow_shape_cast* cast, const winnow_scene_filter* filter,
     double tolerance, winnow_scene_hit* hit) {
   ShapeCast own_cast{};
-  Filter own_filter{};
+  SceneFilter own_filter{};
   if (!(are_given(queries, cast, hit) && read(cast, own_cast) && read(filter, own_filter))) return WINNOW_INVALID_ARGUMENT;
   return give([&]() -> decltype(auto) { return (of(queries).closest(own_cast, own_filter, tolerance)); }, hit);
 }
 
 winnow_status winnow_scene_queries_all_cast(
-    winnow_scene_queries* queries, const winnow_shape_cast* cast, const winnow_filter* filter,
+    winnow_scene_queries* queries, const winnow_shape_cast* cast, const winnow_scene_filter* filter,
     double tolerance, const winnow_scene_hit** hits, size_t* count) {
   ShapeCast own_cast{};
-  Filter own_filter{};
+  SceneFilter own_filter{};
   if (!(are_given(queries, cast, hits, count) && read(cast, own_cast) && read(filter, own_filter))) return WINNOW_INVALID_ARGUMENT;
   return give([&]() -> decltype(auto) { return (of(queries).all(own_cast, own_filter, tolerance)); }, hits, count);
 }
 
 winnow_status winnow_scene_queries_closest_cast_from_touch(
-    winnow_scene_queries* queries, const winnow_shape_cast* cast, const winnow_filter* filter,
+    winnow_scene_queries* queries, const winnow_shape_cast* cast, const winnow_scene_filter* filter,
     double tolerance, winnow_scene_hit* hit) {
   ShapeCast own_cast{};
-  Filter own_filter{};
+  SceneFilter own_filter{};
   if (!(are_given(queries, cast, hit) && read(cast, own_cast) && read(filter, own_filter))) return WINNOW_INVALID_ARGUMENT;
   return give([&]() -> decltype(auto) { return (of(queries).closest(from_touch(own_cast), own_filter, tolerance)); }, hit);
 }
 
 winnow_status winnow_scene_queries_all_cast_from_touch(
-    winnow_scene_queries* queries, const winnow_shape_cast* cast, const winnow_filter* filter,
+    winnow_scene_queries* queries, const winnow_shape_cast* cast, const winnow_scene_filter* filter,
     double tolerance, const winnow_scene_hit** hits, size_t* count) {
   ShapeCast own_cast{};
-  Filter own_filter{};
+  SceneFilter own_filter{};
   if (!(are_given(queries, cast, hits, count) && read(cast, own_cast) && read(filter, own_filter))) return WINNOW_INVALID_ARGUMENT;
   return give([&]() -> decltype(auto) { return (of(queries).all(from_touch(own_cast), own_filter, tolerance)); }, hits, count);
 }
 
 winnow_status winnow_scene_queries_closest_motion(
-    winnow_scene_queries* queries, const winnow_motion_cast* cast, const winnow_filter* filter,
-    double tolerance, winnow_scene_hit* hit) {
+    winnow_scene_queries* queries, const winnow_motion_cast* cast,
+    const winnow_scene_filter* filter, double tolerance, winnow_scene_hit* hit) {
   MotionCast own_cast{};
-  Filter own_filter{};
+  SceneFilter own_filter{};
   if (!(are_given(queries, cast, hit) && read(cast, own_cast) && read(filter, own_filter))) return WINNOW_INVALID_ARGUMENT;
   return give([&]() -> decltype(auto) { return (of(queries).closest(own_cast, own_filter, tolerance)); }, hit);
 }
 
 winnow_status winnow_scene_queries_all_motion(
-    winnow_scene_queries* queries, const winnow_motion_cast* cast, const winnow_filter* filter,
-    double tolerance, const winnow_scene_hit** hits, size_t* count) {
+    winnow_scene_queries* queries, const winnow_motion_cast* cast,
+    const winnow_scene_filter* filter, double tolerance, const winnow_scene_hit** hits,
+    size_t* count) {
   MotionCast own_cast{};
-  Filter own_filter{};
+  SceneFilter own_filter{};
   if (!(are_given(queries, cast, hits, count) && read(cast, own_cast) && read(filter, own_filter))) return WINNOW_INVALID_ARGUMENT;
   return give([&]() -> decltype(auto) { return (of(queries).all(own_cast, own_filter, tolerance)); }, hits, count);
 }
 
 winnow_status winnow_scene_queries_overlap(
     winnow_scene_queries* queries, winnow_shape_id shape, const winnow_pose* pose,
-    const winnow_filter* filter, const winnow_scene_overlap** bodies, size_t* count) {
-  Filter own_filter{};
+    const winnow_scene_filter* filter, const winnow_scene_overlap** bodies, size_t* count) {
+  SceneFilter own_filter{};
   if (!(are_given(queries, pose, bodies, count) && read(filter, own_filter))) return WINNOW_INVALID_ARGUMENT;
   return give([&]() -> decltype(auto) { return (of(queries).overlap(ShapeId{shape}, (*as_cpp(pose)), own_filter)); }, bodies, count);
 }
 
 winnow_status winnow_scene_queries_distances(
     winnow_scene_queries* queries, winnow_shape_id shape, const winnow_pose* pose, double limit,
-    const winnow_filter* filter, const winnow_scene_distance** bodies, size_t* count) {
-  Filter own_filter{};
+    const winnow_scene_filter* filter, const winnow_scene_distance** bodies, size_t* count) {
+  SceneFilter own_filter{};
   if (!(are_given(queries, pose, bodies, count) && read(filter, own_filter))) return WINNOW_INVALID_ARGUMENT;
   return give([&]() -> decltype(auto) { return (of(queries).distances(ShapeId{shape}, (*as_cpp(pose)), limit, own_filter)); }, bodies, count);
 }
@@ -168,8 +169,8 @@ winnow_status winnow_scene_queries_distance(
 
 winnow_status winnow_scene_queries_nearest(
     winnow_scene_queries* queries, const double point[3], size_t count, double radius,
-    const winnow_filter* filter, const winnow_scene_distance** bodies, size_t* found) {
-  Filter own_filter{};
+    const winnow_scene_filter* filter, const winnow_scene_distance** bodies, size_t* found) {
+  SceneFilter own_filter{};
   if (!(are_given(queries, point, bodies, found) && read(filter, own_filter))) return WINNOW_INVALID_ARGUMENT;
   return give([&]() -> decltype(auto) { return (of(queries).nearest(Vec3d(point), count, radius, own_filter)); }, bodies, found);
 }

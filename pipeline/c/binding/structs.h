@@ -158,6 +158,8 @@ static_assert(kBodyStates == WINNOW_BODY_STATES);
 
 static_assert(kSceneLayers == WINNOW_SCENE_LAYERS);
 
+static_assert(kEveryLayer == WINNOW_EVERY_LAYER);
+
 static_assert(kNoContact == WINNOW_NO_CONTACT);
 
 static_assert(kRestColour == WINNOW_REST_COLOUR);
@@ -604,6 +606,7 @@ static_assert(offsetof(winnow_sensor_definition, shape) == offsetof(SensorDefini
 static_assert(offsetof(winnow_sensor_definition, pose) == offsetof(SensorDefinition, pose));
 static_assert(offsetof(winnow_sensor_definition, filter) == offsetof(SensorDefinition, filter));
 static_assert(offsetof(winnow_sensor_definition, carrier) == offsetof(SensorDefinition, carrier));
+static_assert(offsetof(winnow_sensor_definition, layer) == offsetof(SensorDefinition, layer));
 static_assert(offsetof(winnow_sensor_definition, data) == offsetof(SensorDefinition, data));
 
 WINNOW_SAME_LAYOUT(winnow_sensed_body, SensedBody)

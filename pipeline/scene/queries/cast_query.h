@@ -21,7 +21,7 @@ inline constexpr std::size_t kMaxSmallSet = 4;
 /// Calls test_body(body), whose result is ignored, for all bodies of small sets that pass the
 /// filter. Returns true if there are large sets, whose partitions must be queried.
 template <typename TestBody>
-[[nodiscard]] bool test_small_sets(const SceneState& scene, const Filter& filter,
+[[nodiscard]] bool test_small_sets(const SceneState& scene, const SceneFilter& filter,
                                    TestBody& test_body) {
   const BodyCandidateFilter body_filter(scene, filter, test_body);
   bool has_large_set = false;
@@ -85,7 +85,7 @@ struct BodyVisitor {
 /// One query: a linear cast in the scene.
 class CastQuery {
  public:
-  CastQuery(QueryState& state, const LinearCast& linear_cast, const Filter& filter) noexcept
+  CastQuery(QueryState& state, const LinearCast& linear_cast, const SceneFilter& filter) noexcept
       : state_(state), linear_cast_(linear_cast), filter_(filter), limit_(linear_cast.max_t()) {}
 
   // For moving shapes: small and large sets.
@@ -128,7 +128,7 @@ class CastQuery {
 
   QueryState& state_;
   const LinearCast& linear_cast_;
-  const Filter& filter_;
+  const SceneFilter& filter_;
   /// The body of the earliest hit so far, or kNoObject; and the largest t that still counts, which
   /// is the time of that hit or, at first, the end of the path.
   std::uint32_t body_ = kNoObject;

@@ -56,7 +56,7 @@ using Eigen::Vector3d;
 /// The crossings of one ray with bodies, which it appends to the state's `crossings`.
 class CrossingQuery {
  public:
-  CrossingQuery(QueryState& state, const ShapeRay& ray, const Filter& filter) noexcept
+  CrossingQuery(QueryState& state, const ShapeRay& ray, const SceneFilter& filter) noexcept
       : state_(state), ray_(ray), cast_(state.scene.shapes, ray), filter_(filter) {}
   CrossingQuery(const CrossingQuery&) = delete;
   CrossingQuery& operator=(const CrossingQuery&) = delete;
@@ -73,7 +73,7 @@ class CrossingQuery {
   QueryState& state_;
   const ShapeRay& ray_;
   const RayCast cast_;
-  const Filter& filter_;
+  const SceneFilter& filter_;
   std::uint32_t body_ = kNoObject;
   bool has_room_ = true;
 };
@@ -164,7 +164,7 @@ void CrossingQuery::add(const ShapeRay& near, const SubShape& part, const SceneC
 }  // namespace
 
 Answer<std::span<const SceneCrossing>> SceneQueries::crossings(const ShapeRay& ray,
-                                                               const Filter& filter) {
+                                                               const SceneFilter& filter) {
   const DefaultFloatEnvironment environment;
   if (const Status status = QueryState::check_state(state_); status != Status::ok) return status;
   if (!is_valid(ray)) return Status::invalid_argument;

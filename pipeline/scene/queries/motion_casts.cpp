@@ -26,7 +26,7 @@ namespace {
 /// One query: a shape that moves and turns through the scene.
 class MotionQuery {
  public:
-  MotionQuery(QueryState& state, const MotionCast& cast, const Filter& filter,
+  MotionQuery(QueryState& state, const MotionCast& cast, const SceneFilter& filter,
               double tolerance) noexcept
       : state_(state),
         cast_(cast),
@@ -52,7 +52,7 @@ class MotionQuery {
 
   QueryState& state_;
   const MotionCast& cast_;
-  const Filter& filter_;
+  const SceneFilter& filter_;
   const double tolerance_;
   const RigidMotion frame_;
   const impact::MovingShape moving_;
@@ -148,7 +148,7 @@ Status check(const QueryState* state, const MotionCast& cast, double tolerance) 
 
 }  // namespace
 
-Answer<SceneHit> SceneQueries::closest(const MotionCast& cast, const Filter& filter,
+Answer<SceneHit> SceneQueries::closest(const MotionCast& cast, const SceneFilter& filter,
                                        double tolerance) {
   const DefaultFloatEnvironment environment;
   const Status status = check(state_, cast, tolerance);
@@ -160,8 +160,8 @@ Answer<SceneHit> SceneQueries::closest(const MotionCast& cast, const Filter& fil
   return hit;
 }
 
-Answer<std::span<const SceneHit>> SceneQueries::all(const MotionCast& cast, const Filter& filter,
-                                                    double tolerance) {
+Answer<std::span<const SceneHit>> SceneQueries::all(const MotionCast& cast,
+                                                    const SceneFilter& filter, double tolerance) {
   const DefaultFloatEnvironment environment;
   ObservedFilter observed(state_, filter);
   Status status = check(state_, cast, tolerance);

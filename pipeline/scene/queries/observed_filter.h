@@ -2,7 +2,6 @@
 
 // How the queries of a recorded scene call the QueryObserver.
 
-#include <winnow/core/filter.h>
 #include <winnow/core/memory.h>
 #include "pipeline/scene/queries/queries.h"
 #include "pipeline/scene/queries/query_observer.h"
@@ -16,18 +15,20 @@ namespace winnow {
   return status == Status::ok && state->observer != nullptr;
 }
 
-/// The filter of a query. If the scene is recorded, it stores the bodies that the predicate
-/// accepts. Only the querying thread calls it.
+/// The filter of a query. If the scene is recorded, it stores the bodies that layer, ignored body
+/// and predicate let pass. Only the querying thread calls it.
 class ObservedFilter {
  public:
   /// `given` must outlive this object. `state` may be null.
-  ObservedFilter(QueryState* state, const Filter& given) noexcept : given_(given) {
-    if (given.predicate.accept == nullptr || state == nullptr || state->observer == nullptr) return;
-    accepted_ = &state->accepted;
-    accepted_->clear();
-    storing_ = given;
-    storing_->predicate = {[](void* context, Key key, ClientData data) {
-                             return static_cast<ObservedFilter*>(context)->accept(key, data);
+  ObservedFilter(QueryState* state, const SceneFilter& given) noexcept : given_(given) {
+    const bool is_tested =
+        given.predicate.accept != nullptr || given.layer != kEveryLayer || given.ignored != Key{};
+    if (!is_tested || state == nullptr || state->observer == nullptr) return;
+    state_ = state;
+    state->accepted.clear();
+    storing_ = {.layers = given.layers, .mask = given.mask, .environment = given.environment};
+    storing_->predicate = {[](void* context, Key key, ClientData) {
+                             return static_cast<ObservedFilter*>(context)->accept(key.id);
                            },
                            this};
   }
@@ -35,24 +36,26 @@ class ObservedFilter {
   ObservedFilter& operator=(const ObservedFilter&) = delete;
 
   /// Returns the filter to use in the query.
-  [[nodiscard]] const Filter& used() const noexcept { return storing_ ? *storing_ : given_; }
-  [[nodiscard]] const Filter& given() const noexcept { return given_; }
-  /// Returns the ids of accepted bodies, in any order and possibly repeated; null without a
-  /// predicate.
-  [[nodiscard]] Column<ObjectId>* accepted() noexcept { return accepted_; }
+  [[nodiscard]] const SceneFilter& used() const noexcept { return storing_ ? *storing_ : given_; }
+  [[nodiscard]] const SceneFilter& given() const noexcept { return given_; }
+  /// Returns the ids of accepted bodies, in any order and possibly repeated; null if only layers,
+  /// mask and environment decide.
+  [[nodiscard]] Column<ObjectId>* accepted() noexcept {
+    return state_ != nullptr ? &state_->accepted : nullptr;
+  }
   /// Returns false if memory for an id was refused.
   [[nodiscard]] bool is_complete() const noexcept { return is_complete_; }
 
  private:
-  [[nodiscard]] bool accept(Key key, ClientData data) noexcept {
-    const bool accepts = given_.predicate.accept(given_.predicate.context, key, data);
-    if (accepts) is_complete_ = accepted_->push_back(key.id) && is_complete_;
+  [[nodiscard]] bool accept(std::uint32_t body) noexcept {
+    const bool accepts = passes(state_->scene, given_, body);
+    if (accepts) is_complete_ = state_->accepted.push_back(body) && is_complete_;
     return accepts;
   }
 
-  const Filter& given_;
-  std::optional<Filter> storing_;
-  Column<ObjectId>* accepted_ = nullptr;
+  const SceneFilter& given_;
+  std::optional<SceneFilter> storing_;
+  QueryState* state_ = nullptr;
   bool is_complete_ = true;
 };
 

@@ -128,7 +128,20 @@ struct QueryState {
 /// Implements SceneQueries::overlap (scene_queries.cpp).
 [[nodiscard]] Answer<std::span<const SceneOverlap>> find_overlaps(QueryState& state, ShapeId shape,
                                                                   const Pose& pose,
-                                                                  const Filter& filter);
+                                                                  const SceneFilter& filter);
+
+/// Returns whether the layer, the ignored body and the predicate of a filter let a body pass.
+[[nodiscard]] inline bool passes(const SceneState& scene, const SceneFilter& filter,
+                                 std::uint32_t body) noexcept {
+  if (filter.layer != kEveryLayer &&
+      !scene.rules.layers.collide(filter.layer, scene.rules.layer_of(body)))
+    return false;
+  const Key key = scene.keys.key_of(body);
+  const ObjectPredicate& predicate = filter.predicate;
+  return key != filter.ignored &&
+         (predicate.accept == nullptr ||
+          predicate.accept(predicate.context, key, scene.keys.client_data(body)));
+}
 
 /// Converts the caller's filter to one for partitions, whose client data are ids of bodies. Calls
 /// `TestBody`, bool(std::uint32_t body), for each body that passes, and returns the result to the
@@ -136,18 +149,21 @@ struct QueryState {
 template <typename TestBody>
 class BodyCandidateFilter {
  public:
-  BodyCandidateFilter(const SceneState& scene, const Filter& filter, TestBody& test_body) noexcept
+  BodyCandidateFilter(const SceneState& scene, const SceneFilter& filter,
+                      TestBody& test_body) noexcept
       : scene_(scene), filter_(filter), test_body_(test_body) {}
   BodyCandidateFilter(const BodyCandidateFilter&) = delete;
   BodyCandidateFilter& operator=(const BodyCandidateFilter&) = delete;
 
   [[nodiscard]] Filter filter() noexcept {
-    Filter result = filter_;
-    result.predicate.context = this;
-    result.predicate.accept = [](void* context, Key, ClientData body) {
-      return static_cast<BodyCandidateFilter*>(context)->accept(static_cast<std::uint32_t>(body));
-    };
-    return result;
+    return {filter_.layers,
+            filter_.mask,
+            filter_.environment,
+            {[](void* context, Key, ClientData body) {
+               return static_cast<BodyCandidateFilter*>(context)->accept(
+                   static_cast<std::uint32_t>(body));
+             },
+             this}};
   }
 
   /// Applies the filters to a body without a query of its partition, as if its box were hit.
@@ -158,17 +174,11 @@ class BodyCandidateFilter {
 
  private:
   [[nodiscard]] bool accept(std::uint32_t body) const noexcept {
-    const ObjectPredicate& predicate = filter_.predicate;
-    if (predicate.accept != nullptr &&
-        !predicate.accept(predicate.context, scene_.keys.key_of(body),
-                          scene_.keys.client_data(body))) {
-      return false;
-    }
-    return test_body_(body);
+    return passes(scene_, filter_, body) && test_body_(body);
   }
 
   const SceneState& scene_;
-  const Filter& filter_;
+  const SceneFilter& filter_;
   TestBody& test_body_;
 };
 

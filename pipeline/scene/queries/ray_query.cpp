@@ -21,7 +21,8 @@ using mid::kInfinity;
 template <std::size_t Room>
 class RayGroup {
  public:
-  RayGroup(QueryState& state, const Filter& filter) noexcept : state_(state), filter_(filter) {}
+  RayGroup(QueryState& state, const SceneFilter& filter) noexcept
+      : state_(state), filter_(filter) {}
   RayGroup(const RayGroup&) = delete;
   RayGroup& operator=(const RayGroup&) = delete;
 
@@ -49,7 +50,7 @@ class RayGroup {
                                       SceneHit& hit) const noexcept;
 
   QueryState& state_;
-  const Filter& filter_;
+  const SceneFilter& filter_;
   std::span<const ShapeRay> rays_;
   /// t of the first hit so far, or max_t; with `any`, negative after a hit.
   double limit_[Room];
@@ -215,7 +216,8 @@ void put(const SceneHitColumns& columns, std::size_t row, const SceneHit& hit) n
   }
 }
 
-Answer<SceneHit> find_one(QueryState* state, const ShapeRay& ray, const Filter& filter, bool any) {
+Answer<SceneHit> find_one(QueryState* state, const ShapeRay& ray, const SceneFilter& filter,
+                          bool any) {
   if (const Status status = check(state, ray); status != Status::ok) return status;
   RayGroup<1> group(*state, filter);
   group.start({&ray, 1});
@@ -224,7 +226,7 @@ Answer<SceneHit> find_one(QueryState* state, const ShapeRay& ray, const Filter& 
   return hit;
 }
 
-Status find_many(QueryState* state, const ShapeRayBatch& rays, const Filter& filter, bool any,
+Status find_many(QueryState* state, const ShapeRayBatch& rays, const SceneFilter& filter, bool any,
                  const SceneHitColumns& hits) {
   if (const Status status = check(state, rays); status != Status::ok) return status;
   RayGroups groups(rays);
@@ -248,7 +250,7 @@ Status start_all(QueryState& state, std::size_t rays) {
 
 }  // namespace
 
-Answer<SceneHit> SceneQueries::closest(const ShapeRay& ray, const Filter& filter) {
+Answer<SceneHit> SceneQueries::closest(const ShapeRay& ray, const SceneFilter& filter) {
   const DefaultFloatEnvironment environment;
   ObservedFilter observed(state_, filter);
   const Answer<SceneHit> hit = find_one(state_, ray, observed.used(), false);
@@ -257,7 +259,7 @@ Answer<SceneHit> SceneQueries::closest(const ShapeRay& ray, const Filter& filter
   return hit;
 }
 
-Answer<SceneHit> SceneQueries::any(const ShapeRay& ray, const Filter& filter) {
+Answer<SceneHit> SceneQueries::any(const ShapeRay& ray, const SceneFilter& filter) {
   const DefaultFloatEnvironment environment;
   ObservedFilter observed(state_, filter);
   const Answer<SceneHit> hit = find_one(state_, ray, observed.used(), true);
@@ -266,7 +268,8 @@ Answer<SceneHit> SceneQueries::any(const ShapeRay& ray, const Filter& filter) {
   return hit;
 }
 
-Answer<std::span<const SceneHit>> SceneQueries::all(const ShapeRay& ray, const Filter& filter) {
+Answer<std::span<const SceneHit>> SceneQueries::all(const ShapeRay& ray,
+                                                    const SceneFilter& filter) {
   const DefaultFloatEnvironment environment;
   Status status = check(state_, ray);
   if (status == Status::ok) status = start_all(*state_, 1);
@@ -282,7 +285,7 @@ Answer<std::span<const SceneHit>> SceneQueries::all(const ShapeRay& ray, const F
 }
 
 Status SceneQueries::closest(const ShapeRayBatch& rays, const SceneHitColumns& hits,
-                             const Filter& filter) {
+                             const SceneFilter& filter) {
   const DefaultFloatEnvironment environment;
   ObservedFilter observed(state_, filter);
   const Status status = find_many(state_, rays, observed.used(), false, hits);
@@ -291,7 +294,7 @@ Status SceneQueries::closest(const ShapeRayBatch& rays, const SceneHitColumns& h
 }
 
 Status SceneQueries::any(const ShapeRayBatch& rays, const SceneHitColumns& hits,
-                         const Filter& filter) {
+                         const SceneFilter& filter) {
   const DefaultFloatEnvironment environment;
   ObservedFilter observed(state_, filter);
   const Status status = find_many(state_, rays, observed.used(), true, hits);
@@ -299,7 +302,7 @@ Status SceneQueries::any(const ShapeRayBatch& rays, const SceneHitColumns& hits,
   return status;
 }
 
-Answer<SceneHitLists> SceneQueries::all(const ShapeRayBatch& rays, const Filter& filter) {
+Answer<SceneHitLists> SceneQueries::all(const ShapeRayBatch& rays, const SceneFilter& filter) {
   const DefaultFloatEnvironment environment;
   Status status = check(state_, rays);
   if (status == Status::ok) status = start_all(*state_, rays.count);

@@ -33,7 +33,7 @@ bool has_lesser_id(const SceneDistance& a, const SceneDistance& b) noexcept {
 /// within this distance are tested.
 class NearestBodiesQuery {
  public:
-  NearestBodiesQuery(QueryState& state, const Vec3d& point, const Filter& filter) noexcept
+  NearestBodiesQuery(QueryState& state, const Vec3d& point, const SceneFilter& filter) noexcept
       : state_(state), filter_(filter) {
     from_.pose.position = point;
     // Clamping to the range of float makes no box farther away.
@@ -61,7 +61,7 @@ class NearestBodiesQuery {
   [[nodiscard]] float reach() const noexcept;
 
   QueryState& state_;
-  const Filter& filter_;
+  const SceneFilter& filter_;
   const SphereShape point_;
   SubShape from_{ShapeId::of(ShapeKind::sphere, 0), {}, kWholeShape, nullptr, &point_};
   Aabb box_;
@@ -168,7 +168,7 @@ Footprint QueryState::footprint() const noexcept {
 }
 
 Answer<std::span<const SceneOverlap>> SceneQueries::overlap(ShapeId shape, const Pose& pose,
-                                                            const Filter& filter) {
+                                                            const SceneFilter& filter) {
   if (state_ == nullptr) return Status::out_of_memory;
   ObservedFilter observed(state_, filter);
   const auto found = find_overlaps(*state_, shape, pose, observed.used());
@@ -177,7 +177,7 @@ Answer<std::span<const SceneOverlap>> SceneQueries::overlap(ShapeId shape, const
 }
 
 Answer<std::span<const SceneOverlap>> find_overlaps(QueryState& state, ShapeId shape,
-                                                    const Pose& pose, const Filter& filter) {
+                                                    const Pose& pose, const SceneFilter& filter) {
   const DefaultFloatEnvironment environment;
   if (const Status status = QueryState::check_state(&state); status != Status::ok) return status;
   if (!state.parts.contains(shape)) return Status::invalid_key;
@@ -208,7 +208,8 @@ Answer<std::span<const SceneOverlap>> find_overlaps(QueryState& state, ShapeId s
 }
 
 Answer<std::span<const SceneDistance>> SceneQueries::distances(ShapeId shape, const Pose& pose,
-                                                               double limit, const Filter& filter) {
+                                                               double limit,
+                                                               const SceneFilter& filter) {
   const DefaultFloatEnvironment environment;
   if (const Status status = QueryState::check_state(state_); status != Status::ok) return status;
   if (!state_->parts.contains(shape)) return Status::invalid_key;
@@ -245,7 +246,8 @@ Answer<std::span<const SceneDistance>> SceneQueries::distances(ShapeId shape, co
 }
 
 Answer<std::span<const SceneDistance>> SceneQueries::nearest(const Vec3d& point, std::size_t count,
-                                                             double radius, const Filter& filter) {
+                                                             double radius,
+                                                             const SceneFilter& filter) {
   const DefaultFloatEnvironment environment;
   if (const Status status = QueryState::check_state(state_); status != Status::ok) return status;
   if (!is_finite(point) || !(radius >= 0.0)) return Status::invalid_argument;

@@ -29,15 +29,13 @@ template <typename Entry>
   return a.sensor == b.sensor && a.body == b.body;
 }
 
-/// Returns a filter for all bodies that the sensor detects, except its carrier.
-[[nodiscard]] Filter filter_of(const SensorDefinition& sensor) noexcept {
-  Filter filter{sensor.filter.layers, sensor.filter.mask, sensor.filter.environment};
-  if (sensor.carrier == Key{}) return filter;
-  filter.predicate.context = const_cast<SensorDefinition*>(&sensor);
-  filter.predicate.accept = [](void* context, Key body, ClientData) {
-    return static_cast<const SensorDefinition*>(context)->carrier != body;
-  };
-  return filter;
+/// Returns a filter for the bodies that the sensor detects.
+[[nodiscard]] SceneFilter filter_of(const SensorDefinition& sensor) noexcept {
+  return {.layers = sensor.filter.layers,
+          .mask = sensor.filter.mask,
+          .environment = sensor.filter.environment,
+          .layer = sensor.layer,
+          .ignored = sensor.carrier};
 }
 
 }  // namespace
@@ -87,7 +85,9 @@ struct SensorsState {
 
   [[nodiscard]] Status check(const SensorDefinition& sensor) const noexcept {
     if (bodies == nullptr) return Status::out_of_memory;
-    return bodies->check(sensor.shape, sensor.pose);
+    const Status status = bodies->check(sensor.shape, sensor.pose);
+    const bool has_layer = sensor.layer < kSceneLayers || sensor.layer == kEveryLayer;
+    return status != Status::ok || has_layer ? status : Status::invalid_argument;
   }
   [[nodiscard]] Status find_sensed();
   [[nodiscard]] bool have_watches(std::size_t count) noexcept;

@@ -171,7 +171,7 @@ class ContactOfBody {
       if (are_near(state_, body, next, contact_margin_)) least = next;
       return false;
     };
-    Filter filter;
+    SceneFilter filter;
     if (rules_ == PairRules::scene) {
       // Lets the partitions skip subtrees of bodies that the filters exclude.
       const ObjectFilter own = scene.filter_of(body);

@@ -36,7 +36,7 @@ Status query_cast(QueryState* state, const ShapeCast& cast, double tolerance, Qu
 
 }  // namespace
 
-Answer<SceneHit> SceneQueries::closest(const ShapeCast& cast, const Filter& filter,
+Answer<SceneHit> SceneQueries::closest(const ShapeCast& cast, const SceneFilter& filter,
                                        double tolerance) {
   const DefaultFloatEnvironment environment;
   ObservedFilter observed(state_, filter);
@@ -49,8 +49,8 @@ Answer<SceneHit> SceneQueries::closest(const ShapeCast& cast, const Filter& filt
   return hit;
 }
 
-Answer<std::span<const SceneHit>> SceneQueries::all(const ShapeCast& cast, const Filter& filter,
-                                                    double tolerance) {
+Answer<std::span<const SceneHit>> SceneQueries::all(const ShapeCast& cast,
+                                                    const SceneFilter& filter, double tolerance) {
   const DefaultFloatEnvironment environment;
   ObservedFilter observed(state_, filter);
   const Status status = query_cast(state_, cast, tolerance, [&](const LinearCast& linear_cast) {
