@@ -97,6 +97,11 @@ template <typename OfC, typename OfCpp>
   return a.key == b.key && a.data == b.data && a.part == b.part && a.t == b.t &&
          a.normal == b.normal && a.point == b.point;
 }
+[[nodiscard]] inline bool same(const SceneCrossing& a, const SceneCrossing& b) {
+  return a.key == b.key && a.data == b.data && a.part == b.part && a.t == b.t &&
+         a.exits == b.exits && a.normal == b.normal && a.point == b.point &&
+         a.barycentric == b.barycentric;
+}
 [[nodiscard]] inline bool same(const SceneOverlap& a, const SceneOverlap& b) {
   return a.key == b.key && a.data == b.data && a.part == b.part;
 }

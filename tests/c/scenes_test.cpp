@@ -263,6 +263,15 @@ TEST(CInterface, rays_hit_the_bodies_of_cpp) {
   const std::span<const SceneHit> expected = all.others.all(same_ray);
   EXPECT_TRUE(
       same_all(got_all<winnow_scene_hit>(winnow_scene_queries_all, queries, &ray, kAll), expected));
+  EXPECT_TRUE(
+      same_all(got_all<winnow_scene_crossing>(winnow_scene_queries_crossings, queries, &ray, kAll),
+               std::span<const SceneCrossing>(all.others.crossings(same_ray))));
+  winnow_scene_filter others = WINNOW_SCENE_FILTER;
+  others.layer = 5;
+  others.ignored = {first.id, first.stamp};
+  const SceneFilter same_others{.layer = 5, .ignored = first};
+  EXPECT_TRUE(same(got<winnow_scene_hit>(winnow_scene_queries_closest, queries, &ray, &others),
+                   all.others.closest(same_ray, same_others)));
   EXPECT_GT(got<winnow_footprint>(winnow_scene_queries_footprint, queries).structure.used, 0U);
 }
 
@@ -352,6 +361,11 @@ TEST(CInterface, shapes_cast_and_overlap_as_in_cpp) {
   EXPECT_TRUE(same_all(
       got_all<winnow_scene_overlap>(winnow_scene_queries_overlap, queries, ball, &cast.pose, kAll),
       expected));
+  const std::span<const SceneDistance> near =
+      all.others.distances({ball}, *c::as_cpp(&cast.pose), 0.5);
+  EXPECT_TRUE(same_all(got_all<winnow_scene_distance>(winnow_scene_queries_distances, queries, ball,
+                                                      &cast.pose, 0.5, kAll),
+                       near));
 }
 
 TEST(CInterface, distances_and_sets_of_bodies_equal_cpp) {
