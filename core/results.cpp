@@ -6,9 +6,9 @@ namespace winnow {
 
 bool PairBuffer::assign(const PairBuffer& other) noexcept {
   if (&other == this) return true;
-  if (!pairs_.reserve(other.size())) return false;
-  if (!other.empty()) std::memcpy(pairs_.data(), other.pairs_.data(), other.size() * sizeof(Pair));
-  pairs_.set_size(other.size());
+  if (!rows_.reserve(other.size())) return false;
+  if (!other.empty()) std::memcpy(rows_.data(), other.rows_.data(), other.size() * sizeof(Pair));
+  rows_.set_size(other.size());
   state_ = LinkState::unlinked;
   provenance_ = other.provenance_;
   return true;
@@ -16,7 +16,7 @@ bool PairBuffer::assign(const PairBuffer& other) noexcept {
 
 void PairBuffer::release() noexcept {
   clear();
-  pairs_.release();
+  rows_.release();
   pages_.release();
   page_table_.release();
   links_.release();
@@ -26,7 +26,7 @@ void PairBuffer::release() noexcept {
 
 Footprint PairBuffer::footprint() const noexcept {
   Footprint result;
-  result.results = pairs_.bytes();
+  result.results = rows_.bytes();
   result.scratch = pages_.bytes();
   result.scratch += page_table_.bytes();
   result.scratch += links_.bytes();
@@ -56,14 +56,14 @@ Footprint HitBuffer::footprint() const noexcept {
   Footprint result = found_.footprint();
   result.scratch += result.results;
   result.scratch += keys_.bytes();
-  result.results = hits_.bytes();
+  result.results = rows_.bytes();
   result.results += start_.bytes();
   return result;
 }
 
 Footprint OverlapBuffer::footprint() const noexcept {
   Footprint result;
-  result.results = ids_.bytes();
+  result.results = rows_.bytes();
   result.scratch = crossing_.bytes();
   return result;
 }

@@ -17,6 +17,39 @@
 
 namespace winnow {
 
+/// An array of results in the caller's memory resource, reused from query to query: a query with no
+/// more results than an earlier one allocates nothing. It can be used like a span. Not thread-safe.
+template <typename Result>
+class ResultArray {
+ public:
+  /// Returns the number of results.
+  [[nodiscard]] std::size_t size() const noexcept { return rows_.size(); }
+  /// True if there are no results.
+  [[nodiscard]] bool empty() const noexcept { return rows_.empty(); }
+  /// Result i; i must be below `size()`.
+  [[nodiscard]] const Result& operator[](std::size_t i) const noexcept { return rows_[i]; }
+  /// Iterators over all results.
+  /// @{
+  [[nodiscard]] const Result* begin() const noexcept { return rows_.begin(); }
+  [[nodiscard]] const Result* end() const noexcept { return rows_.end(); }
+  /// @}
+
+  /// Ensures room for `count` results. Returns false, and changes nothing, if memory is refused.
+  [[nodiscard]] bool reserve(std::size_t count, Pages pages = Pages::untouched) noexcept {
+    return rows_.reserve(count, pages);
+  }
+  /// Returns the number of results that fit in the allocated memory.
+  [[nodiscard]] std::size_t capacity() const noexcept { return rows_.capacity(); }
+  /// Frees the room for more than `count` results, or for more than `size()` if that is larger.
+  /// Returns false, and changes nothing, if memory is refused. O(results).
+  [[nodiscard]] bool shrink(std::size_t count) noexcept { return rows_.shrink(count); }
+
+ protected:
+  explicit ResultArray(std::pmr::memory_resource* memory) noexcept : rows_(memory) {}
+
+  Column<Result> rows_;
+};
+
 /// Two objects that may touch. `self_pairs` writes first < second. `pairs_with` writes first an
 /// object of the partition that it is called on, then an object of the other one.
 struct Pair {
@@ -48,7 +81,7 @@ struct PairLink {
 /// that moved. Links take 16 bytes per pair and 4 per object. Any other use (another partition,
 /// `clear`, `edit`) makes the next query a full one. The set of pairs is the same in all cases. Not
 /// thread-safe.
-class WINNOW_API PairBuffer {
+class WINNOW_API PairBuffer : public ResultArray<Pair> {
  public:
   /// Identifies the complete query that wrote the content; 0 is none.
   struct Provenance {
@@ -60,7 +93,7 @@ class WINNOW_API PairBuffer {
 
   /// Creates an empty buffer. Every allocation comes from `memory`, which must outlive it.
   explicit PairBuffer(std::pmr::memory_resource* memory = default_memory()) noexcept
-      : pairs_(memory),
+      : ResultArray(memory),
         pages_(memory),
         page_table_(memory),
         links_(memory),
@@ -68,7 +101,7 @@ class WINNOW_API PairBuffer {
         places_(memory) {}
   /// Takes the content of `other`, which becomes empty: its next query is a full one.
   PairBuffer(PairBuffer&& other) noexcept
-      : pairs_(std::move(other.pairs_)),
+      : ResultArray(std::move(other)),
         pages_(std::move(other.pages_)),
         page_table_(std::move(other.page_table_)),
         links_(std::move(other.links_)),
@@ -78,31 +111,9 @@ class WINNOW_API PairBuffer {
         may_link_(other.may_link_),
         provenance_(std::exchange(other.provenance_, {})) {}
 
-  /// Returns all pairs, in the order that the query requested.
-  [[nodiscard]] std::span<const Pair> pairs() const noexcept { return pairs_; }
-  /// Returns the number of pairs.
-  [[nodiscard]] std::size_t size() const noexcept { return pairs_.size(); }
-  /// True if there are no pairs.
-  [[nodiscard]] bool empty() const noexcept { return pairs_.empty(); }
-  /// Pair i; i must be below `size()`.
-  [[nodiscard]] const Pair& operator[](std::size_t i) const noexcept { return pairs_[i]; }
-  /// Iterators over all pairs.
-  /// @{
-  [[nodiscard]] const Pair* begin() const noexcept { return pairs_.begin(); }
-  [[nodiscard]] const Pair* end() const noexcept { return pairs_.end(); }
-  /// @}
-
-  /// Ensures room for `count` pairs. Returns false if memory is refused. `Partition::reserve_pairs`
-  /// reserves the other memory that finding them takes.
-  [[nodiscard]] bool reserve(std::size_t count, Pages pages = Pages::untouched) noexcept {
-    return pairs_.reserve(count, pages);
-  }
-
-  /// Returns the number of pairs that fit in the allocated memory.
-  [[nodiscard]] std::size_t capacity() const noexcept { return pairs_.capacity(); }
-  /// Frees the room for more than `count` pairs, or for more than `size()` if that is larger.
-  /// Returns false, and changes nothing, if memory is refused. O(pairs).
-  [[nodiscard]] bool shrink(std::size_t count) noexcept { return pairs_.shrink(count); }
+  /// Returns all pairs, in the order that the query requested. `Partition::reserve_pairs` reserves
+  /// memory for them, and the other memory that finding them takes.
+  [[nodiscard]] std::span<const Pair> pairs() const noexcept { return rows_; }
 
   /// Copies the pairs of another buffer; the next query can start from either of the two. Returns
   /// false, and changes nothing, if memory is refused. O(pairs).
@@ -110,7 +121,7 @@ class WINNOW_API PairBuffer {
 
   /// Removes all pairs: the next query is a full one. Memory is kept.
   void clear() noexcept {
-    pairs_.clear();
+    rows_.clear();
     state_ = LinkState::unlinked;
     provenance_ = {};
   }
@@ -122,7 +133,7 @@ class WINNOW_API PairBuffer {
   [[nodiscard]] Column<Pair>& edit() noexcept {
     state_ = LinkState::unlinked;
     provenance_ = {};
-    return pairs_;
+    return rows_;
   }
 
   /// Moves all pairs for which `is_first(pair)` is true before all others, and returns their
@@ -133,10 +144,10 @@ class WINNOW_API PairBuffer {
     state_ = LinkState::unlinked;
     std::size_t end = size();
     for (std::size_t i = 0; i < end;) {
-      if (is_first(std::as_const(pairs_[i]))) {
+      if (is_first(std::as_const(rows_[i]))) {
         ++i;
       } else {
-        std::swap(pairs_[i], pairs_[--end]);
+        std::swap(rows_[i], rows_[--end]);
       }
     }
     return end;
@@ -153,7 +164,6 @@ class WINNOW_API PairBuffer {
 
   using LinkState = detail::LinkState;
 
-  Column<Pair> pairs_;
   // Output of tasks before it is put in order; see PairWriter.
   Column<Pair> pages_;
   Column<std::uint64_t> page_table_;
@@ -316,25 +326,14 @@ struct HitColumns {
 
 /// The caller's array of hits, reused from query to query: a query with no more hits than an
 /// earlier one allocates nothing. Not thread-safe.
-class WINNOW_API HitBuffer {
+class WINNOW_API HitBuffer : public ResultArray<Hit> {
  public:
   /// Creates an empty buffer. Every allocation comes from `memory`, which must outlive it.
   explicit HitBuffer(std::pmr::memory_resource* memory = default_memory()) noexcept
-      : hits_(memory), start_(memory), found_(memory), keys_(memory) {}
+      : ResultArray(memory), start_(memory), found_(memory), keys_(memory) {}
 
   /// Returns all hits; for a batch, the hits of each query one after the other.
-  [[nodiscard]] std::span<const Hit> hits() const noexcept { return hits_; }
-  /// Returns the number of hits of all queries.
-  [[nodiscard]] std::size_t size() const noexcept { return hits_.size(); }
-  /// True if there are no hits.
-  [[nodiscard]] bool empty() const noexcept { return hits_.empty(); }
-  /// Hit i; i must be below `size()`.
-  [[nodiscard]] const Hit& operator[](std::size_t i) const noexcept { return hits_[i]; }
-  /// Iterators over all hits.
-  /// @{
-  [[nodiscard]] const Hit* begin() const noexcept { return hits_.begin(); }
-  [[nodiscard]] const Hit* end() const noexcept { return hits_.end(); }
-  /// @}
+  [[nodiscard]] std::span<const Hit> hits() const noexcept { return rows_; }
 
   /// Returns the number of queries in the last call: 1, or the size of the batch; 0 before the
   /// first call and after `clear`.
@@ -343,17 +342,15 @@ class WINNOW_API HitBuffer {
   }
   /// Returns the hits of query i of a batch.
   [[nodiscard]] std::span<const Hit> of(std::size_t i) const noexcept {
-    return {hits_.data() + start_[i], start_[i + 1] - start_[i]};
+    return {rows_.data() + start_[i], start_[i + 1] - start_[i]};
   }
 
   /// Removes all hits; memory is kept.
   void clear() noexcept {
-    hits_.clear();
+    rows_.clear();
     start_.clear();
     found_.clear();
   }
-  /// Ensures room for `count` hits. Returns false if memory is refused.
-  [[nodiscard]] bool reserve(std::size_t count) noexcept { return hits_.reserve(count); }
 
   /// Returns the bytes of the buffer: hits as `results`, and the buffers that tasks fill before
   /// hits are sorted as `scratch`.
@@ -362,7 +359,6 @@ class WINNOW_API HitBuffer {
  private:
   friend class HitWriter;
 
-  Column<Hit> hits_;
   Column<std::size_t> start_;
   PairBuffer found_;            // hits of casts before they are sorted
   Column<std::uint64_t> keys_;  // sort keys: bits of t << 32 | id
@@ -370,20 +366,20 @@ class WINNOW_API HitBuffer {
 
 /// The caller's array of objects that overlap a region, reused from query to query. Not
 /// thread-safe.
-class WINNOW_API OverlapBuffer {
+class WINNOW_API OverlapBuffer : public ResultArray<ObjectId> {
  public:
   /// Creates an empty buffer. Every allocation comes from `memory`, which must outlive it.
   explicit OverlapBuffer(std::pmr::memory_resource* memory = default_memory()) noexcept
-      : ids_(memory), crossing_(memory) {}
+      : ResultArray(memory), crossing_(memory) {}
   /// Takes the content of `other`, which becomes empty.
   OverlapBuffer(OverlapBuffer&& other) noexcept
-      : ids_(std::move(other.ids_)),
+      : ResultArray(std::move(other)),
         crossing_(std::move(other.crossing_)),
         inside_(std::exchange(other.inside_, 0)) {}
 
   /// Returns every object whose box overlaps the region: first the inside ones, then the crossing
   /// ones.
-  [[nodiscard]] std::span<const ObjectId> ids() const noexcept { return ids_; }
+  [[nodiscard]] std::span<const ObjectId> ids() const noexcept { return rows_; }
   /// Returns the objects whose boxes are entirely inside the region. A box that is inside by less
   /// than the rounding error may be returned as crossing.
   [[nodiscard]] std::span<const ObjectId> inside() const noexcept { return ids().first(inside_); }
@@ -391,18 +387,11 @@ class WINNOW_API OverlapBuffer {
   [[nodiscard]] std::span<const ObjectId> crossing() const noexcept {
     return ids().subspan(inside_);
   }
-  /// Returns the number of objects, inside or crossing.
-  [[nodiscard]] std::size_t size() const noexcept { return ids_.size(); }
-  /// True if no object overlaps the region.
-  [[nodiscard]] bool empty() const noexcept { return ids_.empty(); }
-
   /// Removes all objects; memory is kept.
   void clear() noexcept {
-    ids_.clear();
+    rows_.clear();
     inside_ = 0;
   }
-  /// Ensures room for `count` objects. Returns false if memory is refused.
-  [[nodiscard]] bool reserve(std::size_t count) noexcept { return ids_.reserve(count); }
 
   /// Returns the bytes of the buffer: objects as `results`, and the temporary list of crossing
   /// objects as `scratch`.
@@ -411,7 +400,6 @@ class WINNOW_API OverlapBuffer {
  private:
   friend class OverlapWriter;
 
-  Column<ObjectId> ids_;
   Column<ObjectId> crossing_;
   std::size_t inside_ = 0;
 };

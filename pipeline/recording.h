@@ -123,6 +123,23 @@ enum class Played : std::uint8_t {
   end,       ///< nothing: the recording has ended, or `status` is not ok
 };
 
+/// Counters of a replay.
+struct PlayedCounts {
+  std::uint64_t calls = 0;        ///< calls replayed
+  std::uint64_t frames = 0;       ///< frames that ended, if the program marked frames
+  std::uint64_t questions = 0;    ///< queries replayed
+  std::uint64_t differences = 0;  ///< queries whose results differ from the recorded ones
+};
+
+/// A partition or a scene of a replay.
+struct PlayedWorld {
+  const Partition* partition = nullptr;       ///< null for a scene
+  const Scene* scene = nullptr;               ///< null for a partition
+  const ShapePool* shapes = nullptr;          ///< convex shapes of the scene
+  const CompositePool* composites = nullptr;  ///< composite shapes of the scene
+  const Contacts* contacts = nullptr;         ///< contacts of the last `collide` of the scene
+};
+
 /// Replays a recording, call by call, and compares a digest of the results of each query with the
 /// recorded digest. Results are the same, bit for bit, on every instruction set and for any number
 /// of threads. Untrusted input is safe: invalid data is rejected by checksums and by the argument
@@ -130,7 +147,7 @@ enum class Played : std::uint8_t {
 ///
 ///     winnow::RecordingPlayer player(bytes);
 ///     player.play_all();
-///     player.differences();
+///     player.counts().differences;
 class WINNOW_API RecordingPlayer {
  public:
   /// Opens a recording, which must outlive the player, and verifies all checksums: O(bytes).
@@ -150,27 +167,14 @@ class WINNOW_API RecordingPlayer {
   /// Replays to the end. Returns `status()`.
   Status play_all() noexcept;
 
-  /// Returns the number of calls replayed so far.
-  [[nodiscard]] std::uint64_t calls() const noexcept;
-  /// Returns the number of frames that ended so far, if the program marked frames.
-  [[nodiscard]] std::uint64_t frames() const noexcept;
-  /// Returns the number of queries replayed so far.
-  [[nodiscard]] std::uint64_t questions() const noexcept;
-  /// Returns the number of queries whose results differ from the recorded ones.
-  [[nodiscard]] std::uint64_t differences() const noexcept;
+  /// Returns what was replayed so far.
+  [[nodiscard]] PlayedCounts counts() const noexcept;
 
   /// Returns the number of partitions and scenes created so far, including destroyed ones.
   [[nodiscard]] std::size_t worlds() const noexcept;
-  /// Returns a partition; null if `world` is a scene or was destroyed. `world` is below `worlds()`.
-  [[nodiscard]] const Partition* partition(std::size_t world) const noexcept;
-  /// Returns a scene; null if `world` is a partition or was destroyed.
-  [[nodiscard]] const Scene* scene(std::size_t world) const noexcept;
-  /// Returns the shapes of a scene; null if there is no scene.
-  [[nodiscard]] const ShapePool* shapes(std::size_t world) const noexcept;
-  /// Returns the composite shapes of a scene; null if there is no scene.
-  [[nodiscard]] const CompositePool* composites(std::size_t world) const noexcept;
-  /// Returns the contacts of the last `collide` of a scene; null if there is no scene.
-  [[nodiscard]] const Contacts* contacts(std::size_t world) const noexcept;
+  /// Returns the partition or the scene with this number, which is below `worlds()`; all null if it
+  /// was destroyed.
+  [[nodiscard]] PlayedWorld world(std::size_t number) const noexcept;
 
  private:
   std::pmr::memory_resource* memory_;

@@ -50,18 +50,18 @@ class ProgramReader {
     }
     if (player.status() != Status::ok) {
       fail(std::string("is no recording, or damaged: ") + to_string(player.status()) + " after " +
-           std::to_string(player.calls()) + " calls");
+           std::to_string(player.counts().calls) + " calls");
     }
-    frame_end_ = player.frames() != 0 ? Played::frame : Played::pairs;
-    recording_.program = Recording::Program{.calls = player.calls(),
-                                            .questions = player.questions(),
-                                            .differences = player.differences(),
+    frame_end_ = player.counts().frames != 0 ? Played::frame : Played::pairs;
+    recording_.program = Recording::Program{.calls = player.counts().calls,
+                                            .questions = player.counts().questions,
+                                            .differences = player.counts().differences,
                                             .is_whole = player.is_whole()};
   }
 
   static std::size_t size_of(const RecordingPlayer& player, std::size_t world) {
-    if (const Partition* const partition = player.partition(world)) return partition->size();
-    if (const Scene* const scene = player.scene(world)) return scene->size();
+    if (const Partition* const partition = player.world(world).partition) return partition->size();
+    if (const Scene* const scene = player.world(world).scene) return scene->size();
     return 0;
   }
 
@@ -80,11 +80,11 @@ class ProgramReader {
 
   [[nodiscard]] std::vector<RecordedContact> contacts_of(const RecordingPlayer& player) const {
     std::vector<RecordedContact> found;
-    const Contacts* const contacts = player.contacts(world_);
+    const Contacts* const contacts = player.world(world_).contacts;
     if (contacts == nullptr || contacts->level() != ContactLevel::manifold) return found;
     for (std::size_t pair = 0; pair < contacts->size(); ++pair) {
       // Skips bodies that were removed after the contacts were computed.
-      const Answer<BodyDefinition> body = player.scene(world_)->body(contacts->a()[pair]);
+      const Answer<BodyDefinition> body = player.world(world_).scene->body(contacts->a()[pair]);
       if (body.status != Status::ok) continue;
       const std::uint32_t last = contacts->manifold_first()[pair + 1];
       for (std::uint32_t m = contacts->manifold_first()[pair]; m < last; ++m) {
@@ -113,8 +113,8 @@ class ProgramReader {
       if (frame.size() <= id) frame.resize(id + std::size_t{1});
       frame[id] = box;
     };
-    const Partition* const partition = player.partition(world_);
-    const Scene* const scene = player.scene(world_);
+    const Partition* const partition = player.world(world_).partition;
+    const Scene* const scene = player.world(world_).scene;
     std::size_t left = size_of(player, world_);
     for (ObjectId id = 0; left != 0; ++id) {
       const Key key = partition != nullptr ? partition->key_of(id) : scene->key_of(id);
@@ -125,8 +125,9 @@ class ProgramReader {
       if (partition != nullptr) {
         box = partition->bounds(key);
       } else if (scene->body(key).get(body) == Status::ok) {
-        box = body.shape.is_composite() ? player.composites(world_)->bounds(body.shape, body.pose)
-                                        : player.shapes(world_)->bounds(body.shape, body.pose);
+        box = body.shape.is_composite()
+                  ? player.world(world_).composites->bounds(body.shape, body.pose)
+                  : player.world(world_).shapes->bounds(body.shape, body.pose);
       }
       put(id, box);
     }

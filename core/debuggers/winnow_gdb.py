@@ -153,10 +153,10 @@ class PoseView(List):
 
 class PairBuffer(List):
     def text(self, buffer):
-        return "%d pairs" % int(buffer["pairs_"]["size_"])
+        return "%d pairs" % int(buffer["rows_"]["size_"])
 
     def elements(self, buffer):
-        return column(buffer["pairs_"])
+        return column(buffer["rows_"])
 
 
 class PairEvents(Text):
@@ -172,19 +172,19 @@ class PairEvents(Text):
 
 class HitBuffer(List):
     def text(self, buffer):
-        return "%d hits" % int(buffer["hits_"]["size_"])
+        return "%d hits" % int(buffer["rows_"]["size_"])
 
     def elements(self, buffer):
-        return column(buffer["hits_"])
+        return column(buffer["rows_"])
 
 
 class OverlapBuffer(List):
     def text(self, buffer):
         return "%d objects, the first %d inside" % (
-            int(buffer["ids_"]["size_"]), int(buffer["inside_"]))
+            int(buffer["rows_"]["size_"]), int(buffer["inside_"]))
 
     def elements(self, buffer):
-        return column(buffer["ids_"])
+        return column(buffer["rows_"])
 
 
 def objects_of(state):

@@ -81,7 +81,7 @@ void LinkedPairs::link_next(std::size_t count) noexcept {
 
 void LinkedPairs::insert_links(std::uint32_t index) noexcept {
   for (std::uint32_t side = 0; side < 2; ++side) {
-    std::uint32_t& head = out_.heads_[object_at(out_.pairs_[index], side)];
+    std::uint32_t& head = out_.heads_[object_at(out_.rows_[index], side)];
     const std::uint32_t place = 2 * index + side;
     out_.links_[index].next[side] = head;
     out_.links_[index].before[side] = kNoPlace;
@@ -94,7 +94,7 @@ void LinkedPairs::remove_links(std::uint32_t index) noexcept {
   for (std::uint32_t side = 0; side < 2; ++side) {
     const std::uint32_t next = out_.links_[index].next[side];
     const std::uint32_t before = out_.links_[index].before[side];
-    std::uint32_t& from = before == kNoPlace ? out_.heads_[object_at(out_.pairs_[index], side)]
+    std::uint32_t& from = before == kNoPlace ? out_.heads_[object_at(out_.rows_[index], side)]
                                              : out_.links_[before >> 1U].next[before & 1U];
     from = next;
     if (next != kNoPlace) out_.links_[next >> 1U].before[next & 1U] = before;
@@ -102,14 +102,14 @@ void LinkedPairs::remove_links(std::uint32_t index) noexcept {
 }
 
 void LinkedPairs::move(std::uint32_t from, std::uint32_t to) noexcept {
-  out_.pairs_[to] = out_.pairs_[from];
+  out_.rows_[to] = out_.rows_[from];
   out_.links_[to] = out_.links_[from];
   for (std::uint32_t side = 0; side < 2; ++side) {
     const std::uint32_t place = 2 * to + side;
     const std::uint32_t next = out_.links_[to].next[side];
     const std::uint32_t before = out_.links_[to].before[side];
     if (before == kNoPlace) {
-      out_.heads_[object_at(out_.pairs_[to], side)] = place;
+      out_.heads_[object_at(out_.rows_[to], side)] = place;
     } else {
       out_.links_[before >> 1U].next[before & 1U] = place;
     }
@@ -140,9 +140,9 @@ void LinkedPairs::append_begun() noexcept {
   std::size_t size = kept_;
   for (const std::uint64_t entry : out_.page_table_) {
     if (entry == 0 || entry == kMatched) continue;
-    out_.pairs_[size++] = {static_cast<ObjectId>(entry >> 32U), static_cast<ObjectId>(entry)};
+    out_.rows_[size++] = {static_cast<ObjectId>(entry >> 32U), static_cast<ObjectId>(entry)};
   }
-  out_.pairs_.set_size(size);
+  out_.rows_.set_size(size);
 }
 
 // Follows the lists of both objects alternately, so that the shorter list determines the cost.
@@ -150,7 +150,7 @@ bool LinkedPairs::end(const Pair& pair) noexcept {
   std::uint32_t place[2] = {out_.heads_[pair.first], out_.heads_[pair.second]};
   for (std::uint32_t side = 0;; side ^= 1U) {
     const std::uint32_t index = place[side] >> 1U;
-    if (out_.pairs_[index] == pair) return out_.places_.push_back(index);
+    if (out_.rows_[index] == pair) return out_.places_.push_back(index);
     place[side] = out_.links_[index].next[place[side] & 1U];
   }
 }
@@ -169,7 +169,7 @@ void LinkedPairs::replace(std::uint32_t index, std::uint32_t last) noexcept {
     if (index != last) move(last, index);
     return out_.links_.set_size(last);
   }
-  out_.pairs_[index] = out_.pairs_[last];
+  out_.rows_[index] = out_.rows_[last];
   if (index < linked) insert_links(index);
 }
 
@@ -178,8 +178,8 @@ void LinkedPairs::apply() noexcept {
   const std::size_t persisting = kept_ - out_.places_.size();
   auto last = static_cast<std::uint32_t>(kept_);
   for (const std::uint32_t index : out_.places_) replace(index, --last);
-  std::copy_n(out_.pairs_.begin() + kept_, begun_count, out_.pairs_.begin() + last);
-  out_.pairs_.set_size(persisting + begun_count);
+  std::copy_n(out_.rows_.begin() + kept_, begun_count, out_.rows_.begin() + last);
+  out_.rows_.set_size(persisting + begun_count);
   link_next(begun_count + out_.size() / kLinkFrames + 1);
 }
 

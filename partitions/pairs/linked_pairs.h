@@ -59,7 +59,7 @@ class LinkedPairs {
   [[nodiscard]] bool compare(std::size_t kept, std::span<const std::uint32_t> moved,
                              const std::uint64_t* is_moved, Reused&& reused) noexcept;
   /// Adds a begun or ended pair of objects that did not move. All pairs must be linked.
-  [[nodiscard]] bool begin(const Pair& pair) noexcept { return out_.pairs_.push_back(pair); }
+  [[nodiscard]] bool begin(const Pair& pair) noexcept { return out_.rows_.push_back(pair); }
   [[nodiscard]] bool end(const Pair& pair) noexcept;
   /// Sorts begun and ended pairs and reserves their links. False if memory is refused.
   [[nodiscard]] bool sort() noexcept;
@@ -103,7 +103,7 @@ bool LinkedPairs::compare(std::size_t kept, std::span<const std::uint32_t> moved
   if (!hash_found()) return false;
   const auto has_moved = [&](ObjectId id) { return (is_moved[id >> 6U] >> (id & 63U) & 1U) != 0; };
   const auto compare_pair = [&](std::uint32_t index) {
-    const Pair pair = out_.pairs_[index];
+    const Pair pair = out_.rows_[index];
     const bool persists = !reused(pair.first) && !reused(pair.second) && mark_found(pair);
     return persists || out_.places_.push_back(index);
   };
@@ -113,13 +113,13 @@ bool LinkedPairs::compare(std::size_t kept, std::span<const std::uint32_t> moved
       const std::uint32_t index = place >> 1U;
       const std::uint32_t side = place & 1U;
       // If both objects moved, the pair is compared from the smaller id.
-      const ObjectId other = object_at(out_.pairs_[index], side ^ 1U);
+      const ObjectId other = object_at(out_.rows_[index], side ^ 1U);
       if (!(other < id && has_moved(other)) && !compare_pair(index)) return false;
       place = out_.links_[index].next[side];
     }
   }
   for (std::size_t i = out_.links_.size(); i < kept; ++i) {
-    const Pair& pair = out_.pairs_[i];
+    const Pair& pair = out_.rows_[i];
     if ((has_moved(pair.first) || has_moved(pair.second)) &&
         !compare_pair(static_cast<std::uint32_t>(i))) {
       return false;

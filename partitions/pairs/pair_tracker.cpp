@@ -36,21 +36,21 @@ void pass(const Pair* from, Pair* to, std::size_t count, unsigned shift) {
 }  // namespace
 
 void PairTracker::drop(PairBuffer& out, const std::uint64_t* moved) noexcept {
-  auto* const ids = reinterpret_cast<std::uint32_t*>(out.pairs_.data());
-  out.pairs_.set_size(pair_drop_kernels().drop(ids, out.pairs_.size(), moved));
+  auto* const ids = reinterpret_cast<std::uint32_t*>(out.rows_.data());
+  out.rows_.set_size(pair_drop_kernels().drop(ids, out.rows_.size(), moved));
 }
 
 bool PairTracker::drop(PairBuffer& out, const std::uint64_t* moved,
                        Column<Pair>& dropped) noexcept {
   // Pairs are dropped in pieces, so that `dropped` need not have room for all pairs.
   constexpr std::size_t kPiece = 4096;
-  const std::size_t count = out.pairs_.size();
-  auto* const ids = reinterpret_cast<std::uint32_t*>(out.pairs_.data());
+  const std::size_t count = out.rows_.size();
+  auto* const ids = reinterpret_cast<std::uint32_t*>(out.rows_.data());
   std::size_t kept = 0;
   for (std::size_t begin = 0; begin < count; begin += kPiece) {
     const std::size_t piece = std::min(kPiece, count - begin);
     if (!dropped.grow(dropped.size() + piece)) {
-      std::copy(dropped.begin(), dropped.end(), out.pairs_.begin() + kept);
+      std::copy(dropped.begin(), dropped.end(), out.rows_.begin() + kept);
       return false;
     }
     auto* const to = reinterpret_cast<std::uint32_t*>(dropped.data() + dropped.size());
@@ -59,7 +59,7 @@ bool PairTracker::drop(PairBuffer& out, const std::uint64_t* moved,
     kept += stayed;
     dropped.set_size(dropped.size() + piece - stayed);
   }
-  out.pairs_.set_size(kept);
+  out.rows_.set_size(kept);
   return true;
 }
 
@@ -67,12 +67,12 @@ bool PairTracker::sort(PairBuffer& out, std::size_t slots, std::size_t begin,
                        std::size_t end) noexcept {
   const std::size_t count = end - begin;
   if (count < kFew) {
-    std::sort(out.pairs_.begin() + begin, out.pairs_.begin() + end);
+    std::sort(out.rows_.begin() + begin, out.rows_.begin() + end);
     return true;
   }
   if (!out.pages_.reserve(count)) return false;
   const auto bits = static_cast<unsigned>(std::bit_width(slots));
-  Pair* from = out.pairs_.data() + begin;
+  Pair* from = out.rows_.data() + begin;
   Pair* to = out.pages_.data();
   for (unsigned shift = 0; shift < bits; shift += kDigitBits) {
     pass<&Pair::second>(from, to, count, shift);

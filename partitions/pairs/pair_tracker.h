@@ -39,10 +39,10 @@ class PairTracker {
                                  std::size_t end) noexcept;
 
   /// Sets the number of pairs in the array; the memory must be reserved.
-  static void set_size(PairBuffer& out, std::size_t size) noexcept { out.pairs_.set_size(size); }
+  static void set_size(PairBuffer& out, std::size_t size) noexcept { out.rows_.set_size(size); }
 
   /// Returns the pairs for editing; provenance stays.
-  [[nodiscard]] static Pair* data(PairBuffer& out) noexcept { return out.pairs_.data(); }
+  [[nodiscard]] static Pair* data(PairBuffer& out) noexcept { return out.rows_.data(); }
 };
 
 }  // namespace winnow

@@ -66,13 +66,13 @@ Status PairWriter::append(std::size_t tasks, void* context, WriteTask run) {
 
 // Returns the number of pages for that many tasks: each task fills all of its pages but one.
 std::size_t PairWriter::pages_for(const PairBuffer& out, std::size_t tasks) noexcept {
-  const std::size_t pages = out.pairs_.capacity() / kPageContent + tasks + 16;
+  const std::size_t pages = out.rows_.capacity() / kPageContent + tasks + 16;
   return std::max(pages, out.pages_.capacity() / kPage);
 }
 
 bool PairWriter::reserve(PairBuffer& out, std::size_t pairs, std::size_t tasks,
                          const Execution& execution, Pages pages) noexcept {
-  if (!out.pairs_.reserve(pairs + 2 * kSinkSlack, pages)) return false;
+  if (!out.rows_.reserve(pairs + 2 * kSinkSlack, pages)) return false;
   if (execution == Execution::serial() || tasks <= 1) return true;
   const std::size_t count = pages_for(out, tasks);
   return out.pages_.reserve(count * kPage, pages) &&
@@ -129,7 +129,7 @@ std::size_t PairWriter::keep_accepted(Pair* begin, std::size_t checked,
 }
 
 Status PairWriter::append_serial(std::size_t tasks, void* context, WriteTask run) {
-  Column<Pair>& pairs = out_.pairs_;
+  Column<Pair>& pairs = out_.rows_;
   const std::size_t before = pairs.size();
   // The slack that kernels need (kSinkSlack) is many times the number of pairs of a small scene.
   // The first pairs are therefore written beside the array, which then grows to the actual number.
@@ -167,7 +167,7 @@ Status PairWriter::append_serial(std::size_t tasks, void* context, WriteTask run
 
 Status PairWriter::append_parallel(std::size_t tasks, void* context, WriteTask run) {
   PageClaims claims;
-  claims.led = out_.pairs_.size();
+  claims.led = out_.rows_.size();
   // Initial guess: the pages for as many pairs as the buffer has room for.
   std::size_t pages = pages_for(out_, tasks);
   while (make_pages(claims, pages, tasks)) {
@@ -233,8 +233,8 @@ struct PairWriter::TaskOutput {
       return static_cast<TaskOutput*>(full.owner)->next_destination(full);
     };
     if (leads) {
-      begin = writer.out_.pairs_.data() + claims.led;
-      end = writer.out_.pairs_.data() + writer.out_.pairs_.capacity();
+      begin = writer.out_.rows_.data() + claims.led;
+      end = writer.out_.rows_.data() + writer.out_.rows_.capacity();
     }
     if (has_room()) {
       aim(sink, begin, end);
@@ -307,7 +307,7 @@ Status PairWriter::gather_pages(std::size_t tasks, PageClaims& claims) {
     offset[task_of(claims.entries[p]) + 1] += count_of(claims.entries[p]);
   }
   for (std::size_t t = 0; t < tasks; ++t) offset[t + 1] += offset[t];
-  Column<Pair>& pairs = out_.pairs_;
+  Column<Pair>& pairs = out_.rows_;
   const std::size_t before = pairs.size();
   pairs.set_size(claims.led);
   // All pages may be empty, and then the array may be unallocated.

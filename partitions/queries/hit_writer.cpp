@@ -59,8 +59,8 @@ bool HitWriter::start(HitBuffer& out, std::size_t queries) noexcept {
 bool HitWriter::finish(HitBuffer& out, std::size_t first, std::size_t last, const KeyTable& keys,
                        const Execution& execution) noexcept {
   const std::size_t found = out.found_.size() / 2;
-  const std::size_t before = out.hits_.size();
-  if (!out.keys_.resize(found) || !out.hits_.resize(before + found)) return false;
+  const std::size_t before = out.rows_.size();
+  if (!out.keys_.resize(found) || !out.rows_.resize(before + found)) return false;
   execution.for_each((last - first + kGroup - 1) / kGroup, [&](std::size_t group) {
     const std::size_t begin = first + group * kGroup;
     finish_group(out, begin, std::min(last, begin + kGroup), before, keys);
@@ -102,13 +102,13 @@ void HitWriter::write(HitBuffer& out, std::size_t begin, std::size_t end, std::s
   constexpr std::size_t kAhead = 16;
   for (std::size_t i = begin; i < end; ++i) {
     if (i + kAhead < end) keys.fetch(static_cast<ObjectId>(out.keys_[i + kAhead]));
-    out.hits_[hits_before + i] = to_hit(keys, out.keys_[i]);
+    out.rows_[hits_before + i] = to_hit(keys, out.keys_[i]);
   }
 }
 
 bool HitWriter::write_heap(HitBuffer& out, const KeyTable& keys) noexcept {
   Column<std::uint64_t>& heap = out.keys_;
-  if (!out.start_.resize(2) || !out.hits_.resize(heap.size())) return false;
+  if (!out.start_.resize(2) || !out.rows_.resize(heap.size())) return false;
   sort(heap.begin(), heap.end());
   out.start_[0] = 0;
   out.start_[1] = heap.size();

@@ -22,7 +22,7 @@ class OverlapWriter {
   explicit OverlapWriter(OverlapBuffer& out) noexcept : out_(out) {
     out_.clear();
     out_.crossing_.clear();
-    aim(sinks_.inside, out_.ids_);
+    aim(sinks_.inside, out_.rows_);
     aim(sinks_.crossing, out_.crossing_);
   }
 
@@ -30,14 +30,14 @@ class OverlapWriter {
 
   /// Appends the crossing objects to the objects inside. False if memory is refused.
   [[nodiscard]] bool finish(Order order) noexcept {
-    out_.ids_.set_size(written(sinks_.inside, out_.ids_));
+    out_.rows_.set_size(written(sinks_.inside, out_.rows_));
     out_.crossing_.set_size(written(sinks_.crossing, out_.crossing_));
-    out_.inside_ = out_.ids_.size();
-    if (!out_.ids_.resize(out_.inside_ + out_.crossing_.size())) return false;
-    std::copy(out_.crossing_.begin(), out_.crossing_.end(), out_.ids_.begin() + out_.inside_);
+    out_.inside_ = out_.rows_.size();
+    if (!out_.rows_.resize(out_.inside_ + out_.crossing_.size())) return false;
+    std::copy(out_.crossing_.begin(), out_.crossing_.end(), out_.rows_.begin() + out_.inside_);
     if (order == Order::canonical) {
-      std::sort(out_.ids_.begin(), out_.ids_.begin() + out_.inside_);
-      std::sort(out_.ids_.begin() + out_.inside_, out_.ids_.end());
+      std::sort(out_.rows_.begin(), out_.rows_.begin() + out_.inside_);
+      std::sort(out_.rows_.begin() + out_.inside_, out_.rows_.end());
     }
     return true;
   }

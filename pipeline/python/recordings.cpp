@@ -58,10 +58,10 @@ struct ReplayCounts {
   RecordingPlayer player(bytes, {.execution = execution});
   ReplayCounts played;
   played.status = player.play_all();
-  played.calls = player.calls();
-  played.frames = player.frames();
-  played.questions = player.questions();
-  played.differences = player.differences();
+  played.calls = player.counts().calls;
+  played.frames = player.counts().frames;
+  played.questions = player.counts().questions;
+  played.differences = player.counts().differences;
   played.worlds = player.worlds();
   played.is_whole = player.is_whole();
   return played;

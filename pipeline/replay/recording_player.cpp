@@ -212,49 +212,21 @@ Status RecordingPlayer::play_all() noexcept {
   return status();
 }
 
-std::uint64_t RecordingPlayer::calls() const noexcept {
-  return state_ == nullptr ? 0 : state_->calls;
-}
-
-std::uint64_t RecordingPlayer::frames() const noexcept {
-  return state_ == nullptr ? 0 : state_->frames;
-}
-
-std::uint64_t RecordingPlayer::questions() const noexcept {
-  return state_ == nullptr ? 0 : state_->queries;
-}
-
-std::uint64_t RecordingPlayer::differences() const noexcept {
-  return state_ == nullptr ? 0 : state_->differences;
+PlayedCounts RecordingPlayer::counts() const noexcept {
+  if (state_ == nullptr) return {};
+  return {state_->calls, state_->frames, state_->queries, state_->differences};
 }
 
 std::size_t RecordingPlayer::worlds() const noexcept {
   return state_ == nullptr ? 0 : state_->worlds.size();
 }
 
-const Partition* RecordingPlayer::partition(std::size_t world) const noexcept {
-  const ReplayedWorld* const one = world < worlds() ? state_->worlds[world] : nullptr;
-  return one != nullptr && one->partition ? &*one->partition : nullptr;
-}
-
-const Scene* RecordingPlayer::scene(std::size_t world) const noexcept {
-  const ReplayedWorld* const one = world < worlds() ? state_->worlds[world] : nullptr;
-  return one != nullptr && one->scene ? &*one->scene : nullptr;
-}
-
-const CompositePool* RecordingPlayer::composites(std::size_t world) const noexcept {
-  const ReplayedWorld* const one = world < worlds() ? state_->worlds[world] : nullptr;
-  return one != nullptr && one->composites ? &*one->composites : nullptr;
-}
-
-const Contacts* RecordingPlayer::contacts(std::size_t world) const noexcept {
-  const ReplayedWorld* const one = world < worlds() ? state_->worlds[world] : nullptr;
-  return one != nullptr && one->scene ? &one->contacts : nullptr;
-}
-
-const ShapePool* RecordingPlayer::shapes(std::size_t world) const noexcept {
-  const ReplayedWorld* const one = world < worlds() ? state_->worlds[world] : nullptr;
-  return one != nullptr && one->shapes ? &*one->shapes : nullptr;
+PlayedWorld RecordingPlayer::world(std::size_t number) const noexcept {
+  const ReplayedWorld* const one = number < worlds() ? state_->worlds[number] : nullptr;
+  if (one == nullptr) return {};
+  const auto if_any = [](const auto& object) { return object ? &*object : nullptr; };
+  return {if_any(one->partition), if_any(one->scene), if_any(one->shapes), if_any(one->composites),
+          one->scene ? &one->contacts : nullptr};
 }
 
 }  // namespace winnow

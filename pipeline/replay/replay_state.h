@@ -3,6 +3,7 @@
 // State of a RecordingPlayer: the partitions and scenes that it plays, and the memory into which
 // calls are read. Each play_*.cpp file implements one group of calls.
 
+#include <winnow/pipeline/composite_pool.h>
 #include <winnow/pipeline/continuous_collision.h>
 #include <winnow/pipeline/recording.h>
 #include <winnow/pipeline/scene.h>

@@ -16,6 +16,8 @@
 
 namespace winnow {
 
+struct NarrowColumns;
+
 /// Where a pair's contacts come from: the last frame, or the results of a new test.
 enum class ContactSource : std::uint8_t { cached, convex, composite };
 

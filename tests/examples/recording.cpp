@@ -42,9 +42,10 @@ int main() {
   // [replay]
   winnow::RecordingPlayer player(std::as_bytes(std::span(bytes)));
   must(player.play_all());
-  std::printf("%llu answers differ\n", static_cast<unsigned long long>(player.differences()));
+  std::printf("%llu answers differ\n",
+              static_cast<unsigned long long>(player.counts().differences));
   // [end]
-  check(player.is_whole() && player.questions() == 1 && player.differences() == 0,
+  check(player.is_whole() && player.counts().questions == 1 && player.counts().differences == 0,
         "the answer is the recorded one");
   std::remove(file);
 

@@ -21,7 +21,7 @@ void play(Bytes8 bytes) {
   LimitedMemory memory(kMaxMemory);
   RecordingPlayer player(bytes, {.memory = &memory, .execution = Execution::serial()});
   const Status status = player.play_all();
-  WINNOW_REQUIRE(status != Status::ok || player.differences() <= player.questions());
+  WINNOW_REQUIRE(status != Status::ok || player.counts().differences <= player.counts().questions);
 }
 
 void load(Bytes8 bytes) {

@@ -249,9 +249,9 @@ bool play(std::span<const std::byte> recording, std::size_t k) {
     EXPECT_TRUE(status == Status::ok ||
                 (status == Status::out_of_memory && memory.refusals() != 0));
     if (status == Status::ok) {
-      EXPECT_EQ(player.frames(), 3U);
+      EXPECT_EQ(player.counts().frames, 3U);
     }
-    EXPECT_EQ(player.differences(), 0U);
+    EXPECT_EQ(player.counts().differences, 0U);
   }
   EXPECT_EQ(memory.outstanding(), 0U);
   return memory.refusals() != 0;

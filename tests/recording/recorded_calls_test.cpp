@@ -36,8 +36,8 @@ void expect_replayed(const Bytes8& bytes, std::uint64_t calls) {
   RecordingPlayer player(bytes);
   EXPECT_EQ(player.play_all(), Status::ok);
   EXPECT_TRUE(player.is_whole());
-  EXPECT_EQ(player.calls(), calls);
-  EXPECT_EQ(player.differences(), 0U);
+  EXPECT_EQ(player.counts().calls, calls);
+  EXPECT_EQ(player.counts().differences, 0U);
 }
 
 TEST(RecordedCalls, moved_partition_stays_recorded) {

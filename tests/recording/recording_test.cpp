@@ -32,8 +32,9 @@ void expect_same_everywhere(const Bytes8& bytes, std::uint64_t differences = 0) 
       Threads threads(workers.threads);
       EXPECT_EQ(threads.run([&] { return player.play_all(); }), Status::ok) << to_string(isa);
       EXPECT_TRUE(player.is_whole());
-      EXPECT_GT(player.questions(), 0U);
-      EXPECT_EQ(player.differences(), differences) << to_string(isa) << " " << to_string(workers);
+      EXPECT_GT(player.counts().questions, 0U);
+      EXPECT_EQ(player.counts().differences, differences)
+          << to_string(isa) << " " << to_string(workers);
     }
   }
 }
@@ -113,7 +114,7 @@ TEST(ProgramRecordings, predicate_results_are_recorded) {
   RecordingPlayer player(bytes);
   std::vector<std::size_t> touching;
   for (Played played = player.step(); played != Played::end; played = player.step()) {
-    if (played == Played::pairs) touching.push_back(player.contacts(0)->size());
+    if (played == Played::pairs) touching.push_back(player.world(0).contacts->size());
   }
   EXPECT_EQ(touching, (std::vector<std::size_t>{14, 14, 14, 29}));
 }
@@ -164,7 +165,7 @@ TEST(ProgramRecordings, change_back_to_earlier_contacts_ends_the_recording) {
   EXPECT_EQ(recorder.close(), Status::unsupported);
   RecordingPlayer player(bytes);
   EXPECT_EQ(player.play_all(), Status::ok);
-  EXPECT_EQ(player.differences(), 0U);
+  EXPECT_EQ(player.counts().differences, 0U);
 }
 
 TEST(ProgramRecordings, loaded_contacts_are_replayed) {
@@ -299,8 +300,8 @@ TEST(ProgramRecordings, queries_of_several_threads_are_replayed) {
   RecordingPlayer player(bytes);
   EXPECT_EQ(player.play_all(), Status::ok);
   // Shapes are compared as well.
-  EXPECT_EQ(player.questions(), 4 * own.size() + own.size() + 1);
-  EXPECT_EQ(player.differences(), 0U);
+  EXPECT_EQ(player.counts().questions, 4 * own.size() + own.size() + 1);
+  EXPECT_EQ(player.counts().differences, 0U);
 }
 
 TEST(ProgramRecordings, queries_by_scene_rules_record_the_predicate) {
@@ -422,8 +423,8 @@ void expect_played(std::span<const unsigned char> recording, std::uint64_t calls
   expect_same_everywhere(old, differences);
   RecordingPlayer player(old);
   EXPECT_EQ(player.play_all(), Status::ok);
-  EXPECT_EQ(player.calls(), calls);
-  EXPECT_EQ(player.frames(), frames);
+  EXPECT_EQ(player.counts().calls, calls);
+  EXPECT_EQ(player.counts().frames, frames);
 }
 
 TEST(ProgramRecordings, older_versions_are_replayed) {
@@ -521,7 +522,7 @@ TEST(ProgramRecordings, sensors_and_impacts_are_replayed_bit_identical) {
   expect_same_everywhere(bytes);
   RecordingPlayer player(bytes);
   EXPECT_EQ(player.play_all(), Status::ok);
-  EXPECT_EQ(player.questions(), 4U + 2U);  // including the two shapes
+  EXPECT_EQ(player.counts().questions, 4U + 2U);  // including the two shapes
 }
 
 TEST(ProgramRecordings, unknown_versions_and_newer_calls_are_refused) {
@@ -538,7 +539,7 @@ TEST(ProgramRecordings, unknown_versions_and_newer_calls_are_refused) {
     const Bytes8 bytes = as_version(newest, too_old);
     RecordingPlayer player(bytes);
     EXPECT_EQ(player.play_all(), Status::invalid_argument);
-    EXPECT_GT(player.calls(), 0U);
+    EXPECT_GT(player.counts().calls, 0U);
   }
 }
 
@@ -555,7 +556,7 @@ TEST(ProgramRecordings, recording_in_a_file_is_replayed) {
   const std::string text((std::istreambuf_iterator<char>(file)), {});
   RecordingPlayer player(std::as_bytes(std::span(text)));
   EXPECT_EQ(player.play_all(), Status::ok);
-  EXPECT_EQ(player.differences(), 0U);
+  EXPECT_EQ(player.counts().differences, 0U);
   std::filesystem::remove(path);
 }
 
@@ -568,8 +569,8 @@ TEST(ProgramRecordings, truncated_recording_is_replayed_to_its_end) {
   RecordingPlayer player(bytes);
   EXPECT_EQ(player.play_all(), Status::ok);
   EXPECT_FALSE(player.is_whole());
-  EXPECT_EQ(player.differences(), 0U);
-  EXPECT_EQ(player.frames(), 3U);
+  EXPECT_EQ(player.counts().differences, 0U);
+  EXPECT_EQ(player.counts().frames, 3U);
 }
 
 TEST(ProgramRecordings, recorder_without_a_sink_returns_an_error) {
@@ -612,7 +613,7 @@ TEST(ProgramRecordings, difference_from_the_recording_is_reported) {
   seal(bytes);
   RecordingPlayer player(bytes);
   EXPECT_EQ(player.play_all(), Status::ok);
-  EXPECT_EQ(player.differences(), 1U);
+  EXPECT_EQ(player.counts().differences, 1U);
 }
 
 /// Replays mutated recordings; half of them have a valid digest.
