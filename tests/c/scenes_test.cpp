@@ -263,6 +263,8 @@ TEST(CInterface, rays_hit_the_bodies_of_cpp) {
   const std::span<const SceneHit> expected = all.others.all(same_ray);
   EXPECT_TRUE(
       same_all(got_all<winnow_scene_hit>(winnow_scene_queries_all, queries, &ray, kAll), expected));
+  ASSERT_FALSE(expected.empty());
+  const Key first = expected[0].key;
   EXPECT_TRUE(
       same_all(got_all<winnow_scene_crossing>(winnow_scene_queries_crossings, queries, &ray, kAll),
                std::span<const SceneCrossing>(all.others.crossings(same_ray))));
