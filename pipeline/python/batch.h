@@ -1,11 +1,17 @@
 #pragma once
 
+#include "pipeline/python/arrays.h"
+#include "pipeline/python/locks.h"
+
 #include <winnow/core/execution.h>
 #include <winnow/core/status.h>
 
 #include <algorithm>
+#include <bit>
 #include <cstddef>
+#include <cstdint>
 #include <new>
+#include <shared_mutex>
 #include <string>
 #include <vector>
 
@@ -53,6 +59,23 @@ template <typename Answer>
     if (outcome.status != Status::ok) return outcome;
   }
   return {};
+}
+
+/// Returns an array (n,) of answer(i), with shared access.
+template <typename T, typename Answer>
+[[nodiscard]] py::array each_answer(std::shared_mutex& mutex, std::size_t count, Answer&& answer) {
+  auto result = fresh<T>(count);
+  T* const to = result.mutable_data();
+  reading(mutex, [&] {
+    for (std::size_t i = 0; i < count; ++i) to[i] = answer(i);
+  });
+  return result;
+}
+/// Returns an array (n,) uint64 of keys.
+template <typename Answer>
+[[nodiscard]] py::array each_key(std::shared_mutex& mutex, std::size_t count, Answer&& answer) {
+  return each_answer<std::uint64_t>(
+      mutex, count, [&](std::size_t i) { return std::bit_cast<std::uint64_t>(answer(i)); });
 }
 
 /// The lists of results of all queries, and the index at which each of them begins. Tasks fill

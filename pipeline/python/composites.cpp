@@ -31,8 +31,9 @@ namespace {
 
 [[nodiscard]] std::uint32_t add_mesh(SharedShapes& shapes, py::handle vertex_array,
                                      py::handle triangle_array, double active_edge_angle) {
-  const Numbers vertices(vertex_array, "vertices", {3});
-  const Integers<std::uint32_t> triangles(triangle_array, "triangles", 3);
+  const Numbers vertices(vertex_array, "vertices", {3}, Valid::finite);
+  Integers<std::uint32_t> triangles(triangle_array, "triangles", 3);
+  triangles.limit(vertices.count());
   ShapeId id;
   accept(changing(shapes.mutex,
                   [&] {
@@ -55,7 +56,7 @@ namespace {
 }
 
 void refit_mesh(SharedShapes& shapes, std::uint32_t mesh, py::handle vertex_array) {
-  const Numbers vertices(vertex_array, "vertices", {3});
+  const Numbers vertices(vertex_array, "vertices", {3}, Valid::finite);
   accept(changing(shapes.mutex,
                   [&] {
                     ++shapes.revision;
@@ -122,15 +123,11 @@ void update_height_field(SharedShapes& shapes, std::uint32_t field, std::uint32_
 
 [[nodiscard]] std::uint32_t add_compound(SharedShapes& shapes, py::handle children,
                                          py::handle poses) {
-  const PoseInput pose(poses);
-  const ShapeInput shape(children, "children");
-  shape.expect(pose.count());
-  std::vector<CompoundChild> list(pose.count());
-  std::vector<ShapeId> used(pose.count());
-  for (std::size_t i = 0; i < list.size(); ++i) {
-    list[i] = {shape[i], pose[i]};
-    used[i] = shape[i];
-  }
+  PoseInput pose(poses);
+  ShapeInput shape(shapes, children, "children");
+  std::vector<CompoundChild> list(agree({&pose, &shape}));
+  const std::vector<ShapeId> used(shape.list().begin(), shape.list().end());
+  for (std::size_t i = 0; i < list.size(); ++i) list[i] = {shape[i], pose[i]};
   ShapeId id;
   accept(changing(shapes.mutex,
                   [&] {
@@ -167,16 +164,16 @@ void update_height_field(SharedShapes& shapes, std::uint32_t field, std::uint32_
 template <typename Set, typename Is>
 void set_each(SharedShapes& shapes, py::handle surface_array, bool now, const char* call, Set&& set,
               Is&& is) {
-  const Integers<std::uint32_t> surfaces(surface_array, "surfaces");
+  const ShapeInput surfaces(shapes, surface_array, "surfaces");
   std::vector<std::uint8_t> was(surfaces.count());
   const Outcome outcome = changing(shapes.mutex, [&] {
     ++shapes.revision;
     for (std::size_t i = 0; i < was.size(); ++i) {
-      was[i] = is(ShapeId{surfaces[i]}) ? 1 : 0;
-      const Status status = set(ShapeId{surfaces[i]}, now);
+      was[i] = is(surfaces[i]) ? 1 : 0;
+      const Status status = set(surfaces[i], now);
       if (status == Status::ok) continue;
       for (std::size_t k = i; k > 0; --k) {
-        static_cast<void>(set(ShapeId{surfaces[k - 1]}, was[k - 1] != 0));
+        static_cast<void>(set(surfaces[k - 1], was[k - 1] != 0));
       }
       return Outcome{status, i};
     }
@@ -205,12 +202,12 @@ void set_solid(SharedShapes& shapes, py::handle meshes, bool solid) {
 template <typename T, typename Answer>
 [[nodiscard]] py::array of_composites(const SharedShapes& shapes, py::handle id_array,
                                       const char* call, Answer&& answer) {
-  const Integers<std::uint32_t> ids(id_array, "shapes");
+  const ShapeInput ids(shapes, id_array);
   auto result = fresh<T>(ids.count());
   T* const to = result.mutable_data();
   const Outcome outcome = reading(shapes.mutex, [&] {
     for (std::size_t i = 0; i < ids.count(); ++i) {
-      const ShapeId id{ids[i]};
+      const ShapeId id = ids[i];
       if (!id.is_composite() || !shapes.composites.contains(id)) {
         return Outcome{Status::invalid_key, i};
       }
@@ -240,62 +237,31 @@ template <typename T, typename Answer>
 }  // namespace
 
 void add_composites(ShapesClass& type) {
-  using py::arg;
-  type.def("add_mesh", &add_mesh, arg("vertices"), arg("triangles"),
-           arg("active_edge_angle") = 0.02,
-           "Adds a triangle mesh, vertices (n, 3) and corners (m, 3), and returns its id. Edges at "
-           "which the surface bends by more than the angle, in radians, are active: contacts at "
-           "them have normals of their own.")
-      .def("add_scaled", &add_scaled, arg("mesh"), arg("scale"),
-           "Adds a copy of a mesh that is scaled by three factors and shares its triangles; "
-           "returns the new id.")
-      .def("refit_mesh", &refit_mesh, arg("mesh"), arg("vertices"),
-           "Sets new positions (n, 3) of the vertices of a mesh.")
-      .def("add_height_field", &add_height_field, arg("heights"),
-           arg("spacing") = std::array<double, 2>{1.0, 1.0},
-           "Adds a height field (rows, columns), NaN for holes, with sample (row, column) at "
-           "(column * spacing[0], row * spacing[1], height), and returns its id.")
-      .def("update_height_field", &update_height_field, arg("field"), arg("column"), arg("row"),
-           arg("heights"), "Sets new heights (rows, columns) from (column, row) on.")
-      .def("add_compound", &add_compound, arg("children"), arg("poses"),
-           "Adds a compound of n children, ids (n,) of convex shapes, meshes and height fields, at "
-           "poses (n, 7), and returns its id. Parts are numbered child by child: a convex child is "
-           "one part, a surface has one part for each triangle.")
-      .def("compound_parts", &compound_parts, arg("compound"), arg("parts"),
-           "Child and part of child of the parts (n,) of a compound: (child, part), (n,) uint32 "
-           "each; part is WHOLE_SHAPE for convex children.")
-      .def("compound_children", &compound_children, arg("compound"),
-           "The children of a compound: (ids (n,) uint32, poses (n, 7) float64).")
-      .def(
-          "parts",
-          [](const SharedShapes& shapes, py::handle ids) {
-            return of_composites<std::uint32_t>(
-                shapes, ids, "parts", [&](ShapeId id) { return shapes.composites.parts(id); });
-          },
-          arg("shapes"), "Number of parts of composite shapes (n,): (n,) uint32.")
-      .def("set_one_sided", &set_one_sided, arg("surfaces"), arg("one_sided") = true,
-           "Makes meshes and height fields (n,) one-sided, or two-sided again. The front is the "
-           "side from which corners are counter-clockwise; for height fields it is up. Anything "
-           "behind a one-sided triangle does not collide with it.")
-      .def(
-          "is_one_sided",
-          [](const SharedShapes& shapes, py::handle ids) {
-            return of_composites<bool>(shapes, ids, "is_one_sided", [&](ShapeId id) {
-              return shapes.composites.is_one_sided(id);
-            });
-          },
-          arg("shapes"), "True for composite shapes (n,) that are one-sided: (n,) bool.")
-      .def("set_solid", &set_solid, arg("surfaces"), arg("solid") = true,
-           "Makes meshes (n,) solid, or surfaces again. Solid meshes must be closed, with corners "
-           "counter-clockwise as seen from outside, else invalid_shape. Distance and overlap "
-           "queries of a scene then include the inside.")
-      .def(
-          "is_solid",
-          [](const SharedShapes& shapes, py::handle ids) {
-            return of_composites<bool>(shapes, ids, "is_solid",
-                                       [&](ShapeId id) { return shapes.composites.is_solid(id); });
-          },
-          arg("shapes"), "True for composite shapes (n,) that are solid: (n,) bool.");
+  type.def("add_mesh", &add_mesh)
+      .def("add_scaled", &add_scaled)
+      .def("refit_mesh", &refit_mesh)
+      .def("add_height_field", &add_height_field)
+      .def("update_height_field", &update_height_field)
+      .def("add_compound", &add_compound)
+      .def("compound_parts", &compound_parts)
+      .def("compound_children", &compound_children)
+      .def("parts",
+           [](const SharedShapes& shapes, py::handle ids) {
+             return of_composites<std::uint32_t>(
+                 shapes, ids, "parts", [&](ShapeId id) { return shapes.composites.parts(id); });
+           })
+      .def("set_one_sided", &set_one_sided)
+      .def("is_one_sided",
+           [](const SharedShapes& shapes, py::handle ids) {
+             return of_composites<bool>(shapes, ids, "is_one_sided", [&](ShapeId id) {
+               return shapes.composites.is_one_sided(id);
+             });
+           })
+      .def("set_solid", &set_solid)
+      .def("is_solid", [](const SharedShapes& shapes, py::handle ids) {
+        return of_composites<bool>(shapes, ids, "is_solid",
+                                   [&](ShapeId id) { return shapes.composites.is_solid(id); });
+      });
 }
 
 }  // namespace winnow::python

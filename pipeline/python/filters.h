@@ -34,7 +34,8 @@ class FilterOfCall {
   FilterOfCall(const FilterOfCall&) = delete;
   FilterOfCall& operator=(const FilterOfCall&) = delete;
 
-  [[nodiscard]] const Filter& of(const PythonFilter& input);
+  /// Null selects all.
+  [[nodiscard]] const Filter& of(const PythonFilter* input);
   template <typename Query>
   auto during(Query&& query) {
     try {
@@ -64,7 +65,7 @@ class FilterOfCall {
 /// The Python form of an argument of a query.
 template <typename Argument>
 using PythonArgument =
-    std::conditional_t<std::is_same_v<Argument, const Filter&>, const PythonFilter&, Argument>;
+    std::conditional_t<std::is_same_v<Argument, const Filter&>, const PythonFilter*, Argument>;
 
 /// Converts a query that takes a Filter to one that takes a PythonFilter.
 template <typename Answer, typename Owner, typename... Arguments>

@@ -91,54 +91,35 @@ void load_contacts(SharedScene& s, const py::buffer& data, HeldContacts& contact
 }  // namespace
 
 void add_partition_snapshots(PartitionClass& partition) {
-  using py::arg;
   partition
-      .def(
-          "save",
-          [](const SharedPartition& p) {
-            // Needs exclusive access: deferred updates may have to be written first.
-            Column<std::byte> out(default_memory());
-            accept(changing(p.mutex, [&] { return p.partition.save(out); }), "save");
-            return py::bytes(reinterpret_cast<const char*>(out.data()), out.size());
-          },
-          "Saves all objects, and the structure with its options, as bytes.")
-      .def(
-          "load",
-          [](SharedPartition& p, const py::buffer& data) {
-            const BytesInput input(data);
-            accept(changing(p.mutex, [&] { return p.partition.load(input.bytes()); }), "load");
-            p.count_changes(p.partition.size());
-          },
-          arg("data"),
-          "Loads a snapshot. Saved keys stay valid, unless another partition of the process has "
-          "them: see `keys_of`.");
+      .def("save",
+           [](const SharedPartition& p) {
+             // Needs exclusive access: deferred updates may have to be written first.
+             Column<std::byte> out(default_memory());
+             accept(changing(p.mutex, [&] { return p.partition.save(out); }), "save");
+             return py::bytes(reinterpret_cast<const char*>(out.data()), out.size());
+           })
+      .def("load", [](SharedPartition& p, const py::buffer& data) {
+        const BytesInput input(data);
+        accept(changing(p.mutex, [&] { return p.partition.load(input.bytes()); }), "load");
+        p.count_changes(p.partition.size());
+      });
 }
 
 void add_shape_snapshots(ShapesClass& shapes) {
-  shapes.def("save", &save_shapes, "Saves all shapes and the free ids, as bytes.")
-      .def("load", &load_shapes, py::arg("data"),
-           "Loads a snapshot, with the same ids. invalid_key while bodies of a scene use shapes of "
-           "this pool: clear the scene, load both.");
+  shapes.def("save", &save_shapes).def("load", &load_shapes);
 }
 
 void add_scene_snapshots(SceneClass& scene) {
-  using py::arg;
   scene
-      .def(
-          "save",
-          [](const SharedScene& s) {
-            return saved_by(s.mutex, "save",
-                            [&](Column<std::byte>& out) { return s.scene.save(out); });
-          },
-          "Saves all bodies, and the options of the scene, as bytes. Shapes are saved separately.")
-      .def("load", &load_scene, arg("data"),
-           "Loads a snapshot, after its shapes were loaded; results then continue bit for bit. "
-           "Contacts that were filled before belong to another scene from then on.")
-      .def("save_contacts", &save_contacts, arg("contacts"),
-           "Saves the results and records of contacts that this scene filled last, as bytes.")
-      .def("load_contacts", &load_contacts, arg("data"), arg("contacts"),
-           "Loads saved contacts into `contacts`; the scene must be in the state in which they "
-           "were saved.");
+      .def("save",
+           [](const SharedScene& s) {
+             return saved_by(s.mutex, "save",
+                             [&](Column<std::byte>& out) { return s.scene.save(out); });
+           })
+      .def("load", &load_scene)
+      .def("save_contacts", &save_contacts)
+      .def("load_contacts", &load_contacts);
 }
 
 }  // namespace winnow::python
