@@ -28,11 +28,12 @@ inline constexpr std::size_t kQueriesPerTask = 256;
 struct Outcome {
   Status status = Status::ok;
   std::size_t entry = 0;
-
-  [[nodiscard]] std::string text(const char* call) const {
-    return std::string(call) + ", entry " + std::to_string(entry);
-  }
 };
+
+/// Throws unless the status is ok.
+inline void accept(const Outcome& outcome, const char* call) {
+  accept(outcome.status, std::string(call) + ", entry " + std::to_string(outcome.entry));
+}
 
 /// Calls `answer(task, query)` for each query. The queries of a task run in sequence on one thread
 /// until one fails. Returns the failure of the first query that failed; the result does not depend

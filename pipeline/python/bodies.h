@@ -12,6 +12,7 @@
 #include <limits>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace winnow::python {
@@ -24,6 +25,12 @@ auto changing_scene(SharedScene& s, Body&& body) {
     s.is_stale = true;
     return body();
   });
+}
+
+/// As changing_scene; throws unless the status is ok. `call` is for messages.
+template <typename Body>
+void change_scene_or_throw(SharedScene& s, const char* call, Body&& body) {
+  accept(changing_scene(s, std::forward<Body>(body)), call);
 }
 
 /// A state by name for all bodies, or numbers as in FIXED, DYNAMIC, SLEEPING.

@@ -204,9 +204,9 @@ void collide(SharedClusterScene& c, const std::string& level_name) {
   const auto columns = columns_of(std::move(bodies));
   py::dict result;
   result["name"] = given(std::move(names));
-  result["shape"] = columns.column<std::uint32_t>(offsetof(BodyDefinition, shape));
-  result["pose"] = columns.rows<double>(offsetof(BodyDefinition, pose), 7);
-  result["state"] = columns.column<std::uint8_t>(offsetof(BodyDefinition, state));
+  result["shape"] = columns.of(&BodyDefinition::shape);
+  result["pose"] = columns.of(&BodyDefinition::pose);
+  result["state"] = columns.of(&BodyDefinition::state);
   return result;
 }
 

@@ -35,34 +35,28 @@ namespace {
   Integers<std::uint32_t> triangles(triangle_array, "triangles", 3);
   triangles.limit(vertices.count());
   ShapeId id;
-  accept(changing(shapes.mutex,
-                  [&] {
-                    return shapes.composites
-                        .add_mesh(view_of(vertices), IndexView(triangles.values()),
-                                  {active_edge_angle})
-                        .get(id);
-                  }),
-         "add_mesh");
+  change_or_throw(shapes.mutex, "add_mesh", [&] {
+    return shapes.composites
+        .add_mesh(view_of(vertices), IndexView(triangles.values()), {active_edge_angle})
+        .get(id);
+  });
   return id.bits;
 }
 
 [[nodiscard]] std::uint32_t add_scaled(SharedShapes& shapes, std::uint32_t mesh,
                                        const std::array<double, 3>& scale) {
   ShapeId id;
-  accept(changing(shapes.mutex,
-                  [&] { return shapes.composites.add_scaled(ShapeId{mesh}, scale).get(id); }),
-         "add_scaled");
+  change_or_throw(shapes.mutex, "add_scaled",
+                  [&] { return shapes.composites.add_scaled(ShapeId{mesh}, scale).get(id); });
   return id.bits;
 }
 
 void refit_mesh(SharedShapes& shapes, std::uint32_t mesh, py::handle vertex_array) {
   const Numbers vertices(vertex_array, "vertices", {3}, Valid::finite);
-  accept(changing(shapes.mutex,
-                  [&] {
-                    ++shapes.revision;
-                    return shapes.composites.refit_mesh(ShapeId{mesh}, view_of(vertices));
-                  }),
-         "refit_mesh");
+  change_or_throw(shapes.mutex, "refit_mesh", [&] {
+    ++shapes.revision;
+    return shapes.composites.refit_mesh(ShapeId{mesh}, view_of(vertices));
+  });
 }
 
 /// Heights (rows, columns); copied unless each row is contiguous.
@@ -103,22 +97,18 @@ class HeightInput {
                                              const std::array<double, 2>& spacing) {
   const HeightInput input(heights, spacing);
   ShapeId id;
-  accept(changing(shapes.mutex,
-                  [&] { return shapes.composites.add_height_field(input.samples()).get(id); }),
-         "add_height_field");
+  change_or_throw(shapes.mutex, "add_height_field",
+                  [&] { return shapes.composites.add_height_field(input.samples()).get(id); });
   return id.bits;
 }
 
 void update_height_field(SharedShapes& shapes, std::uint32_t field, std::uint32_t column,
                          std::uint32_t row, const py::array& heights) {
   const HeightInput input(heights, {1.0, 1.0});
-  accept(changing(shapes.mutex,
-                  [&] {
-                    ++shapes.revision;
-                    return shapes.composites.update_height_field(ShapeId{field}, column, row,
-                                                                 input.samples());
-                  }),
-         "update_height_field");
+  change_or_throw(shapes.mutex, "update_height_field", [&] {
+    ++shapes.revision;
+    return shapes.composites.update_height_field(ShapeId{field}, column, row, input.samples());
+  });
 }
 
 [[nodiscard]] std::uint32_t add_compound(SharedShapes& shapes, py::handle children,
@@ -129,13 +119,11 @@ void update_height_field(SharedShapes& shapes, std::uint32_t field, std::uint32_
   const std::vector<ShapeId> used(shape.list().begin(), shape.list().end());
   for (std::size_t i = 0; i < list.size(); ++i) list[i] = {shape[i], pose[i]};
   ShapeId id;
-  accept(changing(shapes.mutex,
-                  [&] {
-                    const Status status = shapes.composites.add_compound(list).get(id);
-                    if (status == Status::ok) shapes.use(used, 1);
-                    return status;
-                  }),
-         "add_compound");
+  change_or_throw(shapes.mutex, "add_compound", [&] {
+    const Status status = shapes.composites.add_compound(list).get(id);
+    if (status == Status::ok) shapes.use(used, 1);
+    return status;
+  });
   return id.bits;
 }
 
@@ -146,7 +134,7 @@ void update_height_field(SharedShapes& shapes, std::uint32_t field, std::uint32_
   auto own = fresh<std::uint32_t>(part.count());
   std::uint32_t* const to_child = child.mutable_data();
   std::uint32_t* const to_own = own.mutable_data();
-  const Outcome outcome = reading(shapes.mutex, [&] {
+  read_or_throw(shapes.mutex, "compound_parts", [&] {
     for (std::size_t i = 0; i < part.count(); ++i) {
       const CompoundPart found = shapes.composites.part(ShapeId{compound}, part[i]);
       if (found.child == kWholeShape) return Outcome{Status::invalid_key, i};
@@ -155,7 +143,6 @@ void update_height_field(SharedShapes& shapes, std::uint32_t field, std::uint32_
     }
     return Outcome{};
   });
-  accept(outcome.status, outcome.text("compound_parts"));
   return py::make_tuple(child, own);
 }
 
@@ -166,7 +153,7 @@ void set_each(SharedShapes& shapes, py::handle surface_array, bool now, const ch
               Is&& is) {
   const ShapeInput surfaces(shapes, surface_array, "surfaces");
   std::vector<std::uint8_t> was(surfaces.count());
-  const Outcome outcome = changing(shapes.mutex, [&] {
+  change_or_throw(shapes.mutex, call, [&] {
     ++shapes.revision;
     for (std::size_t i = 0; i < was.size(); ++i) {
       was[i] = is(surfaces[i]) ? 1 : 0;
@@ -179,7 +166,6 @@ void set_each(SharedShapes& shapes, py::handle surface_array, bool now, const ch
     }
     return Outcome{};
   });
-  accept(outcome.status, outcome.text(call));
 }
 
 void set_one_sided(SharedShapes& shapes, py::handle surfaces, bool one_sided) {
@@ -205,7 +191,7 @@ template <typename T, typename Answer>
   const ShapeInput ids(shapes, id_array);
   auto result = fresh<T>(ids.count());
   T* const to = result.mutable_data();
-  const Outcome outcome = reading(shapes.mutex, [&] {
+  read_or_throw(shapes.mutex, call, [&] {
     for (std::size_t i = 0; i < ids.count(); ++i) {
       const ShapeId id = ids[i];
       if (!id.is_composite() || !shapes.composites.contains(id)) {
@@ -215,23 +201,19 @@ template <typename T, typename Answer>
     }
     return Outcome{};
   });
-  accept(outcome.status, outcome.text(call));
   return result;
 }
 
 [[nodiscard]] py::tuple compound_children(const SharedShapes& shapes, std::uint32_t compound) {
   std::vector<CompoundChild> children;
   const ShapeId id{compound};
-  accept(reading(shapes.mutex,
-                 [&] {
-                   const std::span<const CompoundChild> all = shapes.composites.children(id);
-                   children.assign(all.begin(), all.end());
-                   return all.empty() ? Status::invalid_key : Status::ok;
-                 }),
-         "compound_children");
+  read_or_throw(shapes.mutex, "compound_children", [&] {
+    const std::span<const CompoundChild> all = shapes.composites.children(id);
+    children.assign(all.begin(), all.end());
+    return all.empty() ? Status::invalid_key : Status::ok;
+  });
   const auto columns = columns_of(std::move(children));
-  return py::make_tuple(columns.column<std::uint32_t>(offsetof(CompoundChild, shape)),
-                        columns.rows<double>(offsetof(CompoundChild, pose), 7));
+  return py::make_tuple(columns.of(&CompoundChild::shape), columns.of(&CompoundChild::pose));
 }
 
 }  // namespace

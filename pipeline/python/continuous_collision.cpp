@@ -47,16 +47,9 @@ class ContinuousInput {
                                        std::vector<std::uint32_t>&& first) {
   const auto columns = columns_of(std::move(impacts));
   using I = SceneImpact;
-  return table("SceneImpacts", columns.column<std::uint64_t>(offsetof(I, a)),
-               columns.column<std::uint64_t>(offsetof(I, b)),
-               columns.column<std::uint64_t>(offsetof(I, data_a)),
-               columns.column<std::uint64_t>(offsetof(I, data_b)),
-               columns.column<std::uint32_t>(offsetof(I, part_a)),
-               columns.column<std::uint32_t>(offsetof(I, part_b)),
-               columns.column<double>(offsetof(I, time)), columns.column<double>(offsetof(I, gap)),
-               columns.column<double>(offsetof(I, error_bound)),
-               columns.rows<double>(offsetof(I, normal), 3),
-               columns.rows<double>(offsetof(I, point), 3), given(std::move(first)));
+  return columns.table("SceneImpacts", &I::a, &I::b, &I::data_a, &I::data_b, &I::part_a, &I::part_b,
+                       &I::time, &I::gap, &I::error_bound, &I::normal, &I::point,
+                       given(std::move(first)));
 }
 
 /// Returns the impacts that run(ccd) finds.

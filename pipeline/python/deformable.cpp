@@ -55,30 +55,26 @@ void build(SharedDeformable& s, py::handle rest, py::handle triangle_array) {
   const Numbers vertices(rest, "rest", {3}, Valid::finite);
   Integers<std::uint32_t> triangles(triangle_array, "triangles", 3);
   triangles.limit(vertices.count());
-  accept(changing(s.mutex,
-                  [&] {
-                    copy_places(vertices, s.next_start);
-                    const Status status = s.mesh.build(s.next_start, IndexView(triangles.values()));
-                    if (status == Status::ok) std::swap(s.start, s.next_start);
-                    return status;
-                  }),
-         "build");
+  change_or_throw(s.mutex, "build", [&] {
+    copy_places(vertices, s.next_start);
+    const Status status = s.mesh.build(s.next_start, IndexView(triangles.values()));
+    if (status == Status::ok) std::swap(s.start, s.next_start);
+    return status;
+  });
 }
 
 void move(SharedDeformable& s, py::handle starts, py::handle ends, double distance) {
   const Numbers start(starts, "start", {3}, Valid::finite);
   const Numbers end(ends, "end", {3}, Valid::finite);
-  accept(changing(s.mutex,
-                  [&] {
-                    copy_places(start, s.next_start);
-                    copy_places(end, s.next_end);
-                    const Status status = s.mesh.move(s.next_start, s.next_end, distance);
-                    if (status != Status::ok) return status;
-                    std::swap(s.start, s.next_start);
-                    std::swap(s.end, s.next_end);
-                    return status;
-                  }),
-         "move");
+  change_or_throw(s.mutex, "move", [&] {
+    copy_places(start, s.next_start);
+    copy_places(end, s.next_end);
+    const Status status = s.mesh.move(s.next_start, s.next_end, distance);
+    if (status != Status::ok) return status;
+    std::swap(s.start, s.next_start);
+    std::swap(s.end, s.next_end);
+    return status;
+  });
 }
 
 [[nodiscard]] py::array edges(const SharedDeformable& s) {
@@ -155,8 +151,7 @@ template <typename Result, typename Query>
 
 [[nodiscard]] py::object shown_impacts(std::vector<MeshImpact>&& impacts) {
   const auto columns = columns_of(std::move(impacts));
-  return table("MeshImpacts", columns.rows<std::uint32_t>(offsetof(MeshImpact, features), 2),
-               columns.column<double>(offsetof(MeshImpact, time)));
+  return columns.table("MeshImpacts", &MeshImpact::features, &MeshImpact::time);
 }
 
 [[nodiscard]] py::object self_impacts(const SharedDeformable& s, const std::string& kind,
@@ -181,10 +176,9 @@ template <typename Result, typename Query>
 [[nodiscard]] py::object shown_near(std::vector<MeshProximity>&& near) {
   const auto columns = columns_of(std::move(near));
   constexpr std::size_t points = offsetof(MeshProximity, point);
-  return table("MeshProximities", columns.rows<std::uint32_t>(offsetof(MeshProximity, features), 2),
-               columns.column<double>(offsetof(MeshProximity, distance)),
-               columns.rows<double>(points, 3), columns.rows<double>(points + sizeof(Vec3d), 3),
-               columns.rows<double>(offsetof(MeshProximity, weight), 4));
+  return columns.table("MeshProximities", &MeshProximity::features, &MeshProximity::distance,
+                       columns.rows<double>(points, 3),
+                       columns.rows<double>(points + sizeof(Vec3d), 3), &MeshProximity::weight);
 }
 
 [[nodiscard]] py::object self_proximity(const SharedDeformable& s, const std::string& kind,
@@ -219,13 +213,8 @@ template <typename Result, typename Query>
     });
   }));
   using Impact = MeshShapeImpact;
-  return table("MeshShapeImpacts", columns.column<std::uint32_t>(offsetof(Impact, face)),
-               columns.column<std::uint32_t>(offsetof(Impact, part)),
-               columns.column<double>(offsetof(Impact, time)),
-               columns.column<double>(offsetof(Impact, gap)),
-               columns.column<double>(offsetof(Impact, error_bound)),
-               columns.rows<double>(offsetof(Impact, normal), 3),
-               columns.rows<double>(offsetof(Impact, point), 3));
+  return columns.table("MeshShapeImpacts", &Impact::face, &Impact::part, &Impact::time,
+                       &Impact::gap, &Impact::error_bound, &Impact::normal, &Impact::point);
 }
 
 }  // namespace

@@ -161,6 +161,9 @@ std::string Numbers::fault(Status status) const {
     }
     if (valid_ != Valid::any && std::isinf(greatest)) return place(i) + " is not finite";
     if (valid_ == Valid::length && least < 0.0) return place(i) + " is negative";
+    if (valid_ == Valid::fraction && (least < 0.0 || greatest > 1.0)) {
+      return place(i) + " is not in [0, 1]";
+    }
     if (valid_ == Valid::direction && greatest == 0.0) return place(i) + " is zero";
   }
   return {};

@@ -72,7 +72,7 @@ inline std::size_t agree(std::initializer_list<Input*> inputs) {
 }
 
 /// Valid values of numbers; messages name the first number that has none. No number may be NaN.
-enum class Valid { any, finite, length, direction };
+enum class Valid { any, finite, length, direction, fraction };
 
 /// An array of float or double numbers, read in place: any strides, but aligned entries in native
 /// byte order. Other types that convert to double without loss are converted.

@@ -74,7 +74,7 @@ void raise(const Refusal& refusal) {
 
 void add_errors(py::module_& module) {
   py::dict members;
-  members["status"] = "";
+  members["status"] = to_string(Status::ok);
   status_error = PyErr_NewExceptionWithDoc("winnow.StatusError", described({}, "StatusError").text,
                                            PyExc_ValueError, members.ptr());
   if (status_error == nullptr) throw py::error_already_set();

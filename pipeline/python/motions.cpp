@@ -94,7 +94,7 @@ template <typename Make>
 
 [[nodiscard]] py::array poses_at(py::handle motions, py::handle times) {
   RigidMotionInput motion(motions);
-  Numbers time(times, "times", {});
+  Numbers time(times, "times", {}, Valid::fraction);
   const std::size_t count = agree({&motion, &time});
   auto rows = fresh<double>(count, 7);
   double* const to = rows.mutable_data();

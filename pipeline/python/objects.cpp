@@ -192,7 +192,7 @@ void query_each(const SharedPartition& p, std::size_t count, const char* call, Q
   float* const low = lower.mutable_data();
   float* const high = upper.mutable_data();
   std::vector<Aabb> boxes(keys.count());
-  accept(reading(p.mutex, [&] { return p.partition.bounds(keys.keys(), boxes); }), "bounds");
+  read_or_throw(p.mutex, "bounds", [&] { return p.partition.bounds(keys.keys(), boxes); });
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       low[3 * i + axis] = boxes[i].min[axis];
@@ -220,8 +220,8 @@ void set_filter(SharedPartition& p, py::handle key_array, py::handle layers, py:
   filter.expect(keys.count());
   std::vector<ObjectFilter> filters(keys.count());
   for (std::size_t i = 0; i < filters.size(); ++i) filters[i] = filter[i];
-  accept(changing(p.mutex, [&] { return p.partition.set_filter(keys.keys(), filters); }),
-         "set_filter");
+  change_or_throw(p.mutex, "set_filter",
+                  [&] { return p.partition.set_filter(keys.keys(), filters); });
 }
 
 [[nodiscard]] py::tuple filters_of(const SharedPartition& p, py::handle key_array) {

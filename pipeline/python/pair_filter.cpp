@@ -82,22 +82,19 @@ struct LayerPairs {
 void set_layers_collide(SharedScene& s, py::handle pairs, bool collide) {
   const LayerPairs layers(pairs);
   std::vector<std::uint8_t> before(layers.numbers.count());
-  accept(changing_scene(s,
-                        [&] {
-                          return set_all(
-                              before.size(),
-                              [&](std::size_t i) {
-                                const std::uint16_t a = layers.layer(i, 0);
-                                const std::uint16_t b = layers.layer(i, 1);
-                                before[i] = s.scene.layers_collide(a, b) ? 1 : 0;
-                                return s.scene.set_layers_collide(a, b, collide);
-                              },
-                              [&](std::size_t i) {
-                                return s.scene.set_layers_collide(
-                                    layers.layer(i, 0), layers.layer(i, 1), before[i] != 0);
-                              });
-                        }),
-         "set_layers_collide");
+  change_scene_or_throw(s, "set_layers_collide", [&] {
+    return set_all(
+        before.size(),
+        [&](std::size_t i) {
+          const std::uint16_t a = layers.layer(i, 0);
+          const std::uint16_t b = layers.layer(i, 1);
+          before[i] = s.scene.layers_collide(a, b) ? 1 : 0;
+          return s.scene.set_layers_collide(a, b, collide);
+        },
+        [&](std::size_t i) {
+          return s.scene.set_layers_collide(layers.layer(i, 0), layers.layer(i, 1), before[i] != 0);
+        });
+  });
 }
 
 [[nodiscard]] py::array layers_collide(const SharedScene& s, py::handle pairs) {
@@ -122,8 +119,8 @@ class KeyPairInput {
 
 void set_ignored(SharedScene& s, py::handle pair_array, bool ignored) {
   const KeyPairInput pairs(pair_array);
-  accept(changing_scene(s, [&] { return s.scene.set_ignored(pairs.pairs(), ignored); }),
-         "set_ignored");
+  change_scene_or_throw(s, "set_ignored",
+                        [&] { return s.scene.set_ignored(pairs.pairs(), ignored); });
 }
 
 [[nodiscard]] py::array is_ignored(const SharedScene& s, py::handle pair_array) {

@@ -69,16 +69,13 @@ namespace {
     changes = &events->to_fill("events");
   }
   std::shared_ptr<PairBuffer> out;
-  accept(reading(p.mutex,
-                 [&] {
-                   out = p.take_pairs(incremental, changes != nullptr);
-                   const Status status = changes == nullptr
-                                             ? p.partition.self_pairs(*out, options)
+  read_or_throw(p.mutex, "self_pairs", [&] {
+    out = p.take_pairs(incremental, changes != nullptr);
+    const Status status = changes == nullptr ? p.partition.self_pairs(*out, options)
                                              : p.partition.self_pairs(*out, *changes, options);
-                   if (status == Status::ok) p.keep_pairs(out);
-                   return status;
-                 }),
-         "self_pairs");
+    if (status == Status::ok) p.keep_pairs(out);
+    return status;
+  });
   return shown_pairs(out);
 }
 

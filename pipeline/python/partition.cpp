@@ -71,16 +71,14 @@ namespace {
 
 void reserve(SharedPartition& p, std::size_t objects, std::size_t pairs, bool touch) {
   const Pages pages = touch ? Pages::prefaulted : Pages::untouched;
-  accept(changing(p.mutex,
-                  [&] {
-                    const Status status = p.partition.reserve(objects, pages);
-                    if (status != Status::ok || pairs == 0) return status;
-                    const std::shared_ptr<PairBuffer> out = p.take_pairs(true);
-                    const Status reserved = p.partition.reserve_pairs(*out, pairs, pages);
-                    p.keep_pairs(out);
-                    return reserved;
-                  }),
-         "reserve");
+  change_or_throw(p.mutex, "reserve", [&] {
+    const Status status = p.partition.reserve(objects, pages);
+    if (status != Status::ok || pairs == 0) return status;
+    const std::shared_ptr<PairBuffer> out = p.take_pairs(true);
+    const Status reserved = p.partition.reserve_pairs(*out, pairs, pages);
+    p.keep_pairs(out);
+    return reserved;
+  });
 }
 
 [[nodiscard]] py::dict statistics_dict(const SharedPartition& p) {
@@ -119,11 +117,9 @@ void reserve(SharedPartition& p, std::size_t objects, std::size_t pairs, bool to
 [[nodiscard]] py::object draw(const SharedPartition& p, bool objects, bool structure, bool labels,
                               int max_depth) {
   Drawing drawing;
-  accept(reading(p.mutex,
-                 [&] {
-                   return p.partition.debug_draw(drawing, {objects, structure, labels, max_depth});
-                 }),
-         "debug_draw");
+  read_or_throw(p.mutex, "debug_draw", [&] {
+    return p.partition.debug_draw(drawing, {objects, structure, labels, max_depth});
+  });
   return drawing.shown();
 }
 
@@ -149,13 +145,13 @@ void add_partition(py::module_& module, PartitionClass& partition) {
       .def("reserve", &reserve)
       .def("refresh",
            [](const SharedPartition& p) {
-             accept(reading(p.mutex, [&] { return p.partition.refresh(); }), "refresh");
+             read_or_throw(p.mutex, "refresh", [&] { return p.partition.refresh(); });
            })
       .def("set_structure",
            [](SharedPartition& p, const std::string& name, std::optional<float> loose) {
              const StructureKind kind = structure_with(name, loose);
-             accept(changing(p.mutex, [&] { return p.partition.set_structure(kind); }),
-                    "set_structure");
+             change_or_throw(p.mutex, "set_structure",
+                             [&] { return p.partition.set_structure(kind); });
            })
       .property("structure",
                 [](const SharedPartition& p) {

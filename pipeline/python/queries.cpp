@@ -50,9 +50,7 @@ class FreshHits {
 [[nodiscard]] py::object shown_hits(const std::shared_ptr<const void>& owner,
                                     std::span<const Hit> hits, std::vector<std::uint64_t>&& first) {
   const EntryColumns<Hit> columns(owner, hits);
-  return table("HitLists", columns.column<std::uint64_t>(offsetof(Hit, key)),
-               columns.column<std::uint64_t>(offsetof(Hit, data)),
-               columns.column<float>(offsetof(Hit, t)), given(std::move(first)));
+  return columns.table("HitLists", &Hit::key, &Hit::data, &Hit::t, given(std::move(first)));
 }
 
 /// Directions and ranges of t of swept volumes.
@@ -87,7 +85,7 @@ template <typename CastAt>
                                    const Filter& filter, const char* call, CastAt&& cast_at) {
   if (find == Find::all) {
     auto lists = std::make_shared<Lists<Hit>>(count);
-    const Outcome outcome = reading(p.mutex, [&] {
+    read_or_throw(p.mutex, call, [&] {
       std::vector<HitBuffer> buffers(tasks_for(count));
       const Outcome done = answer_all(p.execution, count, [&](std::size_t task, std::size_t i) {
         const Status status = p.partition.all(cast_at(i), buffers[task], filter);
@@ -97,11 +95,10 @@ template <typename CastAt>
       if (done.status == Status::ok) lists->join();
       return done;
     });
-    accept(outcome.status, outcome.text(call));
     return shown_hits(lists, lists->entries, std::vector(lists->first));
   }
   FreshHits found(count);
-  const Outcome outcome = reading(p.mutex, [&] {
+  read_or_throw(p.mutex, call, [&] {
     return answer_all(p.execution, count, [&](std::size_t, std::size_t i) {
       Hit hit;
       const Status status = find == Find::any ? p.partition.any(cast_at(i), filter).get(hit)
@@ -110,7 +107,6 @@ template <typename CastAt>
       return status;
     });
   });
-  accept(outcome.status, outcome.text(call));
   return found.shown();
 }
 
@@ -160,21 +156,19 @@ class RayInput {
   if (find == Find::all) {
     const std::shared_ptr<HitBuffer> hits = p.hit_pool->take();
     std::vector<std::uint64_t> first(rays.count() + 1);
-    accept(reading(p.mutex, [&] { return p.partition.all(rays.view(room), *hits, filter); }),
-           "cast_rays");
+    read_or_throw(p.mutex, "cast_rays",
+                  [&] { return p.partition.all(rays.view(room), *hits, filter); });
     for (std::size_t i = 0; i < rays.count(); ++i) {
       first[i + 1] = first[i] + hits->of(i).size();
     }
     return shown_hits(hits, hits->hits(), std::move(first));
   }
   FreshHits found(rays.count());
-  accept(reading(p.mutex,
-                 [&] {
-                   const RayBatch batch = rays.view(room);
-                   return find == Find::any ? p.partition.any(batch, found.columns(), filter)
-                                            : p.partition.closest(batch, found.columns(), filter);
-                 }),
-         "cast_rays");
+  read_or_throw(p.mutex, "cast_rays", [&] {
+    const RayBatch batch = rays.view(room);
+    return find == Find::any ? p.partition.any(batch, found.columns(), filter)
+                             : p.partition.closest(batch, found.columns(), filter);
+  });
   return found.shown();
 }
 
@@ -219,7 +213,7 @@ template <typename RegionAt>
   const Order order = chosen(kOrders, order_name, "order");
   auto lists = std::make_shared<Lists<ObjectId>>(count);
   std::vector<std::uint64_t> crossing(count);
-  const Outcome outcome = reading(p.mutex, [&] {
+  read_or_throw(p.mutex, call, [&] {
     std::vector<OverlapBuffer> buffers(tasks_for(count));
     const Outcome done = answer_all(p.execution, count, [&](std::size_t task, std::size_t i) {
       OverlapBuffer& found = buffers[task];
@@ -232,7 +226,6 @@ template <typename RegionAt>
     if (done.status == Status::ok) lists->join();
     return done;
   });
-  accept(outcome.status, outcome.text(call));
   for (std::size_t i = 0; i < count; ++i) crossing[i] += lists->first[i];
   const ObjectId* const ids = lists->entries.data();
   return table("Overlaps", given(std::vector(lists->first)), given(std::move(crossing)),
@@ -332,9 +325,8 @@ constexpr std::size_t kFrustumFloats = sizeof(Frustum) / sizeof(float);
   const BoxInput boxes(lower, upper);
   const std::shared_ptr<PairBuffer> out = p.pair_pool->take();
   std::vector<Aabb> room;
-  accept(
-      reading(p.mutex, [&] { return p.partition.overlap(boxes.view(room), *out, filter, order); }),
-      "overlap_boxes");
+  read_or_throw(p.mutex, "overlap_boxes",
+                [&] { return p.partition.overlap(boxes.view(room), *out, filter, order); });
   return shown_pairs(out);
 }
 
@@ -394,7 +386,7 @@ constexpr Choices<Frustum::NearDepth, 2> kNearDepths{
     throw Refusal(Status::out_of_memory, "nearest");
   }
   FreshHits found(queries, count);
-  const Outcome outcome = reading(p.mutex, [&] {
+  read_or_throw(p.mutex, "nearest", [&] {
     std::vector<HitBuffer> buffers(tasks_for(queries));
     return answer_all(p.execution, queries, [&](std::size_t task, std::size_t i) {
       HitBuffer& hits = buffers[task];
@@ -407,7 +399,6 @@ constexpr Choices<Frustum::NearDepth, 2> kNearDepths{
       return status;
     });
   });
-  accept(outcome.status, outcome.text("nearest"));
   return found.shown();
 }
 

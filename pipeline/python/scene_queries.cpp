@@ -70,18 +70,21 @@ template <typename Entry, typename Query>
 [[nodiscard]] std::shared_ptr<Lists<Entry>> list_all(SharedScene& s, std::size_t count,
                                                      const char* call, Query&& query) {
   auto lists = std::make_shared<Lists<Entry>>(count);
-  const Outcome outcome = run_query(s, [&] {
-    const Outcome done = answer_all(s.execution, count, [&](std::size_t task, std::size_t i) {
-      const QueryLease lease(s);
-      std::span<const Entry> found;
-      const Status status = query(lease, i, found);
-      if (status == Status::ok) lists->put(task, i, found.data(), found.data() + found.size());
-      return status;
-    });
-    if (done.status == Status::ok) lists->join();
-    return done;
-  });
-  accept(outcome.status, outcome.text(call));
+  accept(run_query(s,
+                   [&] {
+                     const Outcome done =
+                         answer_all(s.execution, count, [&](std::size_t task, std::size_t i) {
+                           const QueryLease lease(s);
+                           std::span<const Entry> found;
+                           const Status status = query(lease, i, found);
+                           if (status == Status::ok)
+                             lists->put(task, i, found.data(), found.data() + found.size());
+                           return status;
+                         });
+                     if (done.status == Status::ok) lists->join();
+                     return done;
+                   }),
+         call);
   return lists;
 }
 
@@ -93,12 +96,8 @@ template <typename Entry>
 [[nodiscard]] py::object shown_lists(const std::shared_ptr<Lists<SceneHit>>& lists, FindMode mode) {
   const EntryColumns<SceneHit> hits = columns_of(lists);
   const auto made = [&](const char* name, auto&&... first) {
-    return table(name, hits.column<std::uint64_t>(offsetof(SceneHit, key)),
-                 hits.column<std::uint64_t>(offsetof(SceneHit, data)),
-                 hits.column<std::uint32_t>(offsetof(SceneHit, part)),
-                 hits.column<double>(offsetof(SceneHit, t)),
-                 hits.rows<double>(offsetof(SceneHit, normal), 3),
-                 hits.rows<double>(offsetof(SceneHit, point), 3), first...);
+    return hits.table(name, &SceneHit::key, &SceneHit::data, &SceneHit::part, &SceneHit::t,
+                      &SceneHit::normal, &SceneHit::point, first...);
   };
   if (mode != FindMode::all) return made("SceneHits");
   return made("SceneHitLists", given(std::vector(lists->first)));
@@ -107,16 +106,9 @@ template <typename Entry>
 [[nodiscard]] py::object shown_distances(const std::shared_ptr<Lists<SceneDistance>>& lists) {
   using D = SceneDistance;
   const EntryColumns<D> answers = columns_of(lists);
-  return table("SceneDistances", given(std::vector(lists->first)),
-               answers.column<std::uint64_t>(offsetof(D, key)),
-               answers.column<std::uint64_t>(offsetof(D, data)),
-               answers.column<std::uint32_t>(offsetof(D, part_a)),
-               answers.column<std::uint32_t>(offsetof(D, part)),
-               answers.column<double>(offsetof(D, distance)),
-               answers.column<double>(offsetof(D, error_bound)),
-               answers.rows<double>(offsetof(D, normal), 3),
-               answers.rows<double>(offsetof(D, point_a), 3),
-               answers.rows<double>(offsetof(D, point_b), 3));
+  return answers.table("SceneDistances", given(std::vector(lists->first)), &D::key, &D::data,
+                       &D::part_a, &D::part, &D::distance, &D::error_bound, &D::normal, &D::point_a,
+                       &D::point_b);
 }
 
 /// The result of a query without a hit.
@@ -182,16 +174,18 @@ class ShapeRayInput {
   std::vector<ShapeRay> room;
   if (mode == FindMode::all) {
     auto lists = std::make_shared<Lists<SceneHit>>(rays.count());
-    const Outcome outcome = run_query(s, [&] {
-      const QueryLease lease(s);
-      SceneHitLists found;
-      const Status status = lease->all(rays.view(room), filter).get(found);
-      if (status != Status::ok) return Outcome{status, 0};
-      lists->entries.assign(found.hits.begin(), found.hits.end());
-      if (rays.count() != 0) lists->first.assign(found.first.begin(), found.first.end());
-      return Outcome{};
-    });
-    accept(outcome.status, "cast_rays");
+    accept(run_query(s,
+                     [&] {
+                       const QueryLease lease(s);
+                       SceneHitLists found;
+                       const Status status = lease->all(rays.view(room), filter).get(found);
+                       if (status != Status::ok) return Outcome{status, 0};
+                       lists->entries.assign(found.hits.begin(), found.hits.end());
+                       if (rays.count() != 0)
+                         lists->first.assign(found.first.begin(), found.first.end());
+                       return Outcome{};
+                     }),
+           "cast_rays");
     return shown_lists(lists, mode);
   }
   auto key = fresh<std::uint64_t>(rays.count());
@@ -202,14 +196,15 @@ class ShapeRayInput {
   const auto [point, points] = vectors(rays.count());
   const SceneHitColumns out{
       keys_in(key), data.mutable_data(), part.mutable_data(), t.mutable_data(), normal, point};
-  const Outcome outcome = run_query(s, [&] {
-    const QueryLease lease(s);
-    const ShapeRayBatch batch = rays.view(room);
-    return Outcome{
-        mode == FindMode::any ? lease->any(batch, out, filter) : lease->closest(batch, out, filter),
-        0};
-  });
-  accept(outcome.status, "cast_rays");
+  accept(run_query(s,
+                   [&] {
+                     const QueryLease lease(s);
+                     const ShapeRayBatch batch = rays.view(room);
+                     return Outcome{mode == FindMode::any ? lease->any(batch, out, filter)
+                                                          : lease->closest(batch, out, filter),
+                                    0};
+                   }),
+         "cast_rays");
   return table("SceneHits", key, data, part, t, normals, points);
 }
 
@@ -273,10 +268,8 @@ template <typename CastAt>
         return lease->overlap(shape[i], pose[i], filter).get(found);
       });
   const EntryColumns<SceneOverlap> bodies = columns_of(lists);
-  return table("SceneOverlaps", given(std::vector(lists->first)),
-               bodies.column<std::uint64_t>(offsetof(SceneOverlap, key)),
-               bodies.column<std::uint64_t>(offsetof(SceneOverlap, data)),
-               bodies.column<std::uint32_t>(offsetof(SceneOverlap, part)));
+  return bodies.table("SceneOverlaps", given(std::vector(lists->first)), &SceneOverlap::key,
+                      &SceneOverlap::data, &SceneOverlap::part);
 }
 
 [[nodiscard]] py::object distance(SharedScene& s, py::handle a, py::handle b, double limit,
@@ -302,11 +295,12 @@ template <typename Query>
 void query_sets(SharedScene& s, py::handle a, py::handle b, const char* call, Query&& query) {
   const KeyInput first(s, a, "a");
   const KeyInput second(s, b, "b");
-  const Outcome outcome = run_query(s, [&] {
-    const QueryLease lease(s);
-    return Outcome{query(lease, first.keys(), second.keys()), 0};
-  });
-  accept(outcome.status, call);
+  accept(run_query(s,
+                   [&] {
+                     const QueryLease lease(s);
+                     return Outcome{query(lease, first.keys(), second.keys()), 0};
+                   }),
+         call);
 }
 
 [[nodiscard]] py::array_t<std::uint64_t> rows_of(std::span<const KeyPair> pairs) {
@@ -340,11 +334,12 @@ void query_sets(SharedScene& s, py::handle a, py::handle b, const char* call, Qu
   KeyPair pair;
   if (a.is_none()) {
     if (!b.is_none()) throw Refusal(Status::invalid_argument, "any_contact: b without a");
-    const Outcome outcome = run_query(s, [&] {
-      const QueryLease lease(s);
-      return Outcome{lease->any_contact(contact_margin, taken).get(pair), 0};
-    });
-    accept(outcome.status, "any_contact");
+    accept(run_query(s,
+                     [&] {
+                       const QueryLease lease(s);
+                       return Outcome{lease->any_contact(contact_margin, taken).get(pair), 0};
+                     }),
+           "any_contact");
   } else {
     const bool is_one = b.is_none();
     query_sets(s, a, is_one ? a : b, "any_contact",

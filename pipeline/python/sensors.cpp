@@ -27,10 +27,11 @@ struct SharedSensors : NeedsInit {
   HeldShapes held;
 };
 
-/// Runs body() with exclusive access to the sensors, while shapes do not change.
+/// Runs body() with exclusive access to the sensors, while shapes do not change; throws unless its
+/// status is ok.
 template <typename Body>
-auto changing_sensors(SharedSensors& s, Body&& body) {
-  return s.scene->working(std::forward<Body>(body));
+void change_sensors_or_throw(SharedSensors& s, const char* call, Body&& body) {
+  accept(s.scene->working(std::forward<Body>(body)), call);
 }
 
 using Definitions = std::vector<SensorDefinition>;
@@ -78,38 +79,32 @@ struct SensorInput {
   auto keys = fresh<std::uint64_t>(sensors.size());
   Key* const out = keys_in(keys);
   const std::vector<ShapeId> used = shapes_of(sensors);
-  accept(
-      changing_sensors(s,
-                       [&] {
-                         const Status status = set_all(
-                             sensors.size(),
-                             [&](std::size_t i) { return s.sensors.add(sensors[i]).get(out[i]); },
-                             [&](std::size_t i) { return s.sensors.remove(out[i]); });
-                         if (status == Status::ok) s.held.use(used, 1);
-                         return status;
-                       }),
-      "add");
+  change_sensors_or_throw(s, "add", [&] {
+    const Status status = set_all(
+        sensors.size(), [&](std::size_t i) { return s.sensors.add(sensors[i]).get(out[i]); },
+        [&](std::size_t i) { return s.sensors.remove(out[i]); });
+    if (status == Status::ok) s.held.use(used, 1);
+    return status;
+  });
   return keys;
 }
 
 void remove(SharedSensors& s, py::handle key_array) {
   const KeyInput keys(s, key_array);
-  accept(changing_sensors(s,
-                          [&] {
-                            Definitions before;
-                            Status status = sensors_of(s.sensors, keys.keys(), before);
-                            if (status == Status::ok && has_twice(keys.keys())) {
-                              status = Status::invalid_key;
-                            }
-                            if (status != Status::ok) return status;
-                            for (const Key key : keys.keys()) {
-                              status = s.sensors.remove(key);
-                              if (status != Status::ok) return status;
-                            }
-                            s.held.use(shapes_of(before), -1);
-                            return status;
-                          }),
-         "remove");
+  change_sensors_or_throw(s, "remove", [&] {
+    Definitions before;
+    Status status = sensors_of(s.sensors, keys.keys(), before);
+    if (status == Status::ok && has_twice(keys.keys())) {
+      status = Status::invalid_key;
+    }
+    if (status != Status::ok) return status;
+    for (const Key key : keys.keys()) {
+      status = s.sensors.remove(key);
+      if (status != Status::ok) return status;
+    }
+    s.held.use(shapes_of(before), -1);
+    return status;
+  });
 }
 
 void move(SharedSensors& s, py::handle key_array, py::handle poses) {
@@ -117,17 +112,14 @@ void move(SharedSensors& s, py::handle key_array, py::handle poses) {
   const std::span<const Key> keys = input.keys();
   PoseInput pose(poses);
   pose.expect(keys.size());
-  accept(changing_sensors(
-             s,
-             [&] {
-               Definitions before;
-               const Status status = sensors_of(s.sensors, keys, before);
-               if (status != Status::ok) return status;
-               return set_all(
-                   keys.size(), [&](std::size_t i) { return s.sensors.move(keys[i], pose[i]); },
-                   [&](std::size_t i) { return s.sensors.move(keys[i], before[i].pose); });
-             }),
-         "move");
+  change_sensors_or_throw(s, "move", [&] {
+    Definitions before;
+    const Status status = sensors_of(s.sensors, keys, before);
+    if (status != Status::ok) return status;
+    return set_all(
+        keys.size(), [&](std::size_t i) { return s.sensors.move(keys[i], pose[i]); },
+        [&](std::size_t i) { return s.sensors.move(keys[i], before[i].pose); });
+  });
 }
 
 void set(SharedSensors& s, py::handle key_array, py::handle shapes, py::handle poses,
@@ -140,46 +132,37 @@ void set(SharedSensors& s, py::handle key_array, py::handle shapes, py::handle p
   if (after.size() != keys.size()) {
     throw Refusal(Status::size_mismatch, "poses: expected one for each key");
   }
-  accept(changing_sensors(s,
-                          [&] {
-                            Definitions before;
-                            Status status = sensors_of(s.sensors, keys, before);
-                            if (status == Status::ok && has_twice(keys))
-                              status = Status::invalid_key;
-                            if (status != Status::ok) return status;
-                            status = set_all(
-                                keys.size(),
-                                [&](std::size_t i) { return s.sensors.set(keys[i], after[i]); },
-                                [&](std::size_t i) { return s.sensors.set(keys[i], before[i]); });
-                            if (status != Status::ok) return status;
-                            s.held.use(shapes_of(after), 1);
-                            s.held.use(shapes_of(before), -1);
-                            return status;
-                          }),
-         "set");
+  change_sensors_or_throw(s, "set", [&] {
+    Definitions before;
+    Status status = sensors_of(s.sensors, keys, before);
+    if (status == Status::ok && has_twice(keys)) status = Status::invalid_key;
+    if (status != Status::ok) return status;
+    status = set_all(
+        keys.size(), [&](std::size_t i) { return s.sensors.set(keys[i], after[i]); },
+        [&](std::size_t i) { return s.sensors.set(keys[i], before[i]); });
+    if (status != Status::ok) return status;
+    s.held.use(shapes_of(after), 1);
+    s.held.use(shapes_of(before), -1);
+    return status;
+  });
 }
 
 [[nodiscard]] py::object sense(SharedSensors& s) {
   std::vector<SensedBody> in;
   std::vector<ExitedBody> out;
-  accept(changing_sensors(s,
-                          [&] {
-                            const Status status = s.sensors.sense();
-                            if (status != Status::ok) return status;
-                            in.assign(s.sensors.sensed().begin(), s.sensors.sensed().end());
-                            out.assign(s.sensors.left().begin(), s.sensors.left().end());
-                            return status;
-                          }),
-         "sense");
+  change_sensors_or_throw(s, "sense", [&] {
+    const Status status = s.sensors.sense();
+    if (status != Status::ok) return status;
+    in.assign(s.sensors.sensed().begin(), s.sensors.sensed().end());
+    out.assign(s.sensors.left().begin(), s.sensors.left().end());
+    return status;
+  });
   const auto sensed = columns_of(std::move(in));
   const auto left = columns_of(std::move(out));
-  return table("Sensed", sensed.column<std::uint64_t>(offsetof(SensedBody, sensor)),
-               sensed.column<std::uint64_t>(offsetof(SensedBody, body)),
-               sensed.column<std::uint64_t>(offsetof(SensedBody, sensor_data)),
-               sensed.column<std::uint64_t>(offsetof(SensedBody, body_data)),
-               sensed.column<std::uint8_t>(offsetof(SensedBody, event)),
-               left.rows<std::uint64_t>(offsetof(ExitedBody, sensor), 2),
-               left.rows<std::uint64_t>(offsetof(ExitedBody, sensor_data), 2));
+  return sensed.table("Sensed", &SensedBody::sensor, &SensedBody::body, &SensedBody::sensor_data,
+                      &SensedBody::body_data, &SensedBody::event,
+                      left.rows<std::uint64_t>(offsetof(ExitedBody, sensor), 2),
+                      left.rows<std::uint64_t>(offsetof(ExitedBody, sensor_data), 2));
 }
 
 }  // namespace

@@ -92,13 +92,11 @@ void reserve(SharedScene& s, const SceneCapacity& room, HeldContacts* contacts, 
     filling = contacts->hold();
     out = &contacts->to_fill("contacts");
   }
-  accept(changing_scene(s,
-                        [&] {
-                          const Status status = s.scene.reserve(room, pages);
-                          if (status != Status::ok || out == nullptr) return status;
-                          return s.scene.reserve_contacts(*out, room, pages);
-                        }),
-         "reserve");
+  change_scene_or_throw(s, "reserve", [&] {
+    const Status status = s.scene.reserve(room, pages);
+    if (status != Status::ok || out == nullptr) return status;
+    return s.scene.reserve_contacts(*out, room, pages);
+  });
 }
 
 // --- bodies ------------------------------------------------------------------------------------
@@ -127,27 +125,23 @@ void reserve(SharedScene& s, const SceneCapacity& room, HeldContacts* contacts, 
   const std::vector<ShapeId> used = shapes_of(bodies);
   auto keys = fresh<std::uint64_t>(count);
   const std::span<Key> out(keys_in(keys), count);
-  accept(changing_scene(s,
-                        [&] {
-                          const Status status = s.scene.add(bodies, out);
-                          if (status == Status::ok) s.held.use(used, 1);
-                          return status;
-                        }),
-         "add");
+  change_scene_or_throw(s, "add", [&] {
+    const Status status = s.scene.add(bodies, out);
+    if (status == Status::ok) s.held.use(used, 1);
+    return status;
+  });
   return keys;
 }
 
 void remove_bodies(SharedScene& s, py::handle key_array) {
   const KeyInput keys(s, key_array);
-  accept(changing_scene(s,
-                        [&] {
-                          std::vector<BodyDefinition> bodies;
-                          Status status = bodies_of(s.scene, keys.keys(), bodies);
-                          if (status == Status::ok) status = s.scene.remove(keys.keys());
-                          if (status == Status::ok) s.held.use(shapes_of(bodies), -1);
-                          return status;
-                        }),
-         "remove");
+  change_scene_or_throw(s, "remove", [&] {
+    std::vector<BodyDefinition> bodies;
+    Status status = bodies_of(s.scene, keys.keys(), bodies);
+    if (status == Status::ok) status = s.scene.remove(keys.keys());
+    if (status == Status::ok) s.held.use(shapes_of(bodies), -1);
+    return status;
+  });
 }
 
 void clear(SharedScene& s) {
@@ -162,14 +156,14 @@ void move_bodies(SharedScene& s, py::handle key_array, py::handle poses) {
   PoseInput pose(poses);
   pose.expect(keys.count());
   std::vector<Pose> room;
-  accept(changing_scene(s, [&] { return s.scene.move(keys.keys(), pose.view(room)); }), "move");
+  change_scene_or_throw(s, "move", [&] { return s.scene.move(keys.keys(), pose.view(room)); });
 }
 
 void set_body_state(SharedScene& s, py::handle key_array, const std::string& name) {
   const KeyInput keys(s, key_array);
   const BodyState state = chosen(kBodyStateNames, name, "state");
-  accept(changing_scene(s, [&] { return s.scene.set_body_state(keys.keys(), state); }),
-         "set_body_state");
+  change_scene_or_throw(s, "set_body_state",
+                        [&] { return s.scene.set_body_state(keys.keys(), state); });
 }
 
 void set_shape(SharedScene& s, py::handle key_array, py::handle shape_array) {
@@ -178,22 +172,19 @@ void set_shape(SharedScene& s, py::handle key_array, py::handle shape_array) {
   shape.expect(keys.count());
   const std::span<const Key> list = keys.keys();
   const std::span<const ShapeId> after = shape.list();
-  accept(changing_scene(
-             s,
-             [&] {
-               std::vector<BodyDefinition> before;
-               Status status = bodies_of(s.scene, list, before);
-               if (status == Status::ok && has_twice(list)) status = Status::invalid_key;
-               if (status != Status::ok) return status;
-               status = set_all(
-                   list.size(), [&](std::size_t i) { return s.scene.set_shape(list[i], after[i]); },
-                   [&](std::size_t i) { return s.scene.set_shape(list[i], before[i].shape); });
-               if (status != Status::ok) return status;
-               s.held.use(after, 1);
-               s.held.use(shapes_of(before), -1);
-               return Status::ok;
-             }),
-         "set_shape");
+  change_scene_or_throw(s, "set_shape", [&] {
+    std::vector<BodyDefinition> before;
+    Status status = bodies_of(s.scene, list, before);
+    if (status == Status::ok && has_twice(list)) status = Status::invalid_key;
+    if (status != Status::ok) return status;
+    status = set_all(
+        list.size(), [&](std::size_t i) { return s.scene.set_shape(list[i], after[i]); },
+        [&](std::size_t i) { return s.scene.set_shape(list[i], before[i].shape); });
+    if (status != Status::ok) return status;
+    s.held.use(after, 1);
+    s.held.use(shapes_of(before), -1);
+    return Status::ok;
+  });
 }
 
 // --- properties of bodies ----------------------------------------------------------------------
@@ -201,24 +192,24 @@ void set_shape(SharedScene& s, py::handle key_array, py::handle shape_array) {
 [[nodiscard]] py::dict body_columns(const SharedScene& s, py::handle key_array) {
   const KeyInput keys(s, key_array);
   std::vector<BodyDefinition> bodies;
-  accept(reading(s.mutex, [&] { return bodies_of(s.scene, keys.keys(), bodies); }), "bodies");
+  read_or_throw(s.mutex, "bodies", [&] { return bodies_of(s.scene, keys.keys(), bodies); });
   const auto columns = columns_of(std::move(bodies));
   using Body = BodyDefinition;
   static_assert(offsetof(Pose, position) == 0 && sizeof(Pose) == 7 * sizeof(double));
   py::dict result;
-  result["shape"] = columns.column<std::uint32_t>(offsetof(Body, shape));
-  result["pose"] = columns.rows<double>(offsetof(Body, pose), 7);
-  result["state"] = columns.column<std::uint8_t>(offsetof(Body, state));
+  result["shape"] = columns.of(&Body::shape);
+  result["pose"] = columns.of(&Body::pose);
+  result["state"] = columns.of(&Body::state);
   constexpr std::size_t filter = offsetof(Body, filter);
   result["layers"] = columns.column<std::uint32_t>(filter + offsetof(ObjectFilter, layers));
   result["mask"] = columns.column<std::uint32_t>(filter + offsetof(ObjectFilter, mask));
   result["environment"] =
       columns.column<std::uint32_t>(filter + offsetof(ObjectFilter, environment));
-  result["data"] = columns.column<std::uint64_t>(offsetof(Body, data));
+  result["data"] = columns.of(&Body::data);
   constexpr std::size_t offsets = offsetof(Body, offsets);
   result["contact"] = columns.column<double>(offsets + offsetof(ContactOffsets, contact));
   result["rest"] = columns.column<double>(offsets + offsetof(ContactOffsets, rest));
-  result["layer"] = columns.column<std::uint16_t>(offsetof(Body, layer));
+  result["layer"] = columns.of(&Body::layer);
   return result;
 }
 
@@ -278,11 +269,9 @@ void set_predicate(SharedScene& s, const py::object& function) {
 [[nodiscard]] py::object draw(const SharedScene& s, bool objects, bool structure, bool labels,
                               int max_depth) {
   Drawing drawing;
-  accept(reading(s.mutex,
-                 [&] {
-                   return s.scene.debug_draw(drawing, {objects, structure, labels, max_depth});
-                 }),
-         "debug_draw");
+  read_or_throw(s.mutex, "debug_draw", [&] {
+    return s.scene.debug_draw(drawing, {objects, structure, labels, max_depth});
+  });
   return drawing.shown();
 }
 

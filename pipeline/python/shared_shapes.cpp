@@ -103,7 +103,7 @@ template <typename Make>
 [[nodiscard]] py::array add_all(Shapes& shapes, std::size_t count, const char* call, Make&& make) {
   auto ids = fresh<std::uint32_t>(count);
   auto* const to = reinterpret_cast<ShapeId*>(ids.mutable_data());
-  const Outcome outcome = changing(shapes.mutex, [&] {
+  change_or_throw(shapes.mutex, call, [&] {
     for (std::size_t i = 0; i < count; ++i) {
       const Status status = shapes.pool.add(make(i)).get(to[i]);
       if (status == Status::ok) continue;
@@ -112,7 +112,6 @@ template <typename Make>
     }
     return Outcome{};
   });
-  accept(outcome.status, outcome.text(call));
   return ids;
 }
 
@@ -197,16 +196,15 @@ template <typename Shape>
     throw Refusal(Status::invalid_argument, "add_hull: indices and sizes belong together");
   }
   if (indices.is_none()) {
-    accept(changing(shapes.mutex, [&] { return shapes.pool.add_hull(points, rounding).get(id); }),
-           "add_hull");
+    change_or_throw(shapes.mutex, "add_hull",
+                    [&] { return shapes.pool.add_hull(points, rounding).get(id); });
     return id.bits;
   }
   const Integers<std::uint32_t> index(indices, "indices");
   const Integers<std::uint32_t> size(sizes, "sizes");
   const HullFaces faces{index.values(), size.values()};
-  accept(
-      changing(shapes.mutex, [&] { return shapes.pool.add_hull(points, faces, rounding).get(id); }),
-      "add_hull");
+  change_or_throw(shapes.mutex, "add_hull",
+                  [&] { return shapes.pool.add_hull(points, faces, rounding).get(id); });
   return id.bits;
 }
 
@@ -229,7 +227,7 @@ void remove_shapes(Shapes& shapes, py::handle id_array) {
   const ShapeInput ids(shapes, id_array);
   ++shapes.revision;
   std::vector<SupportFunctions::node_type> gone;
-  const Outcome outcome = changing(shapes.mutex, [&] {
+  change_or_throw(shapes.mutex, "remove (shapes may be in use)", [&] {
     std::vector<std::uint32_t> sorted(ids.values().begin(), ids.values().end());
     std::sort(sorted.begin(), sorted.end());
     if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end()) {
@@ -246,7 +244,6 @@ void remove_shapes(Shapes& shapes, py::handle id_array) {
     }
     return Outcome{};
   });
-  accept(outcome.status, outcome.text("remove (shapes may be in use)"));
 }
 
 [[nodiscard]] py::tuple bounds(const Shapes& shapes, py::handle id_array, py::handle poses) {
@@ -257,19 +254,20 @@ void remove_shapes(Shapes& shapes, py::handle id_array) {
   auto upper = fresh<float>(count, 3);
   float* const low = lower.mutable_data();
   float* const high = upper.mutable_data();
-  const Outcome outcome = reading_shapes(shapes, [&] {
-    for (std::size_t i = 0; i < pose.count(); ++i) {
-      if (!shapes.contains(ids[i])) return Outcome{Status::invalid_key, i};
-      if (!pose[i].is_valid()) return Outcome{Status::invalid_pose, i};
-      const Aabb box = shapes.bounds(ids[i], pose[i]);
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        low[3 * i + axis] = box.min[axis];
-        high[3 * i + axis] = box.max[axis];
-      }
-    }
-    return Outcome{};
-  });
-  accept(outcome.status, outcome.text("bounds"));
+  accept(reading_shapes(shapes,
+                        [&] {
+                          for (std::size_t i = 0; i < pose.count(); ++i) {
+                            if (!shapes.contains(ids[i])) return Outcome{Status::invalid_key, i};
+                            if (!pose[i].is_valid()) return Outcome{Status::invalid_pose, i};
+                            const Aabb box = shapes.bounds(ids[i], pose[i]);
+                            for (std::size_t axis = 0; axis < 3; ++axis) {
+                              low[3 * i + axis] = box.min[axis];
+                              high[3 * i + axis] = box.max[axis];
+                            }
+                          }
+                          return Outcome{};
+                        }),
+         "bounds");
   return py::make_tuple(lower, upper);
 }
 
@@ -287,24 +285,27 @@ void remove_shapes(Shapes& shapes, py::handle id_array) {
   bool* const to_hit = hit.mutable_data();
   double* const to_t = t.mutable_data();
   double* const to_normal = normal.mutable_data();
-  const Outcome outcome = reading_shapes(shapes, [&] {
-    return answer_all(Execution::parallel(), count, [&](std::size_t, std::size_t i) {
-      ShapeRay ray;
-      for (std::size_t k = 0; k < 3; ++k) {
-        ray.origin[k] = origin.at(i, k);
-        ray.direction[k] = direction.at(i, k);
-      }
-      ray.max_t = max_t.at(i);
-      ShapeHit found;
-      if (!shapes.pool.contains(ids[i])) return Status::invalid_key;
-      const Status status = cast_ray(shapes.pool.tables(), ids[i], pose[i], ray).get(found);
-      to_hit[i] = found.hit;
-      to_t[i] = found.hit ? found.t : std::numeric_limits<double>::infinity();
-      for (std::size_t k = 0; k < 3; ++k) to_normal[3 * i + k] = found.normal[k];
-      return status;
-    });
-  });
-  accept(outcome.status, outcome.text("cast_rays"));
+  accept(reading_shapes(
+             shapes,
+             [&] {
+               return answer_all(Execution::parallel(), count, [&](std::size_t, std::size_t i) {
+                 ShapeRay ray;
+                 for (std::size_t k = 0; k < 3; ++k) {
+                   ray.origin[k] = origin.at(i, k);
+                   ray.direction[k] = direction.at(i, k);
+                 }
+                 ray.max_t = max_t.at(i);
+                 ShapeHit found;
+                 if (!shapes.pool.contains(ids[i])) return Status::invalid_key;
+                 const Status status =
+                     cast_ray(shapes.pool.tables(), ids[i], pose[i], ray).get(found);
+                 to_hit[i] = found.hit;
+                 to_t[i] = found.hit ? found.t : std::numeric_limits<double>::infinity();
+                 for (std::size_t k = 0; k < 3; ++k) to_normal[3 * i + k] = found.normal[k];
+                 return status;
+               });
+             }),
+         "cast_rays");
   return table("RayHits", hit, t, normal);
 }
 

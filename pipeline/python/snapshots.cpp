@@ -42,35 +42,31 @@ void load_shapes(SharedShapes& shapes, const py::buffer& data) {
   const std::size_t middle = end_of_first(all);
   ++shapes.revision;
   SupportFunctions gone;
-  accept(changing(shapes.mutex,
-                  [&] {
-                    const Status status = shapes.load(all.first(middle), all.subspan(middle));
-                    if (status == Status::ok) gone.swap(shapes.supports);
-                    return status;
-                  }),
-         "load (of shapes that no scene uses)");
+  change_or_throw(shapes.mutex, "load (of shapes that no scene uses)", [&] {
+    const Status status = shapes.load(all.first(middle), all.subspan(middle));
+    if (status == Status::ok) gone.swap(shapes.supports);
+    return status;
+  });
 }
 
 void load_scene(SharedScene& s, const py::buffer& data) {
   const BytesInput input(data);
-  accept(changing(s.mutex,
-                  [&] {
-                    const std::shared_lock lock(s.shapes->mutex);
-                    s.is_stale = true;
-                    const Status status = s.scene.load(input.bytes());
-                    if (status != Status::ok) return status;
-                    s.held.clear();
-                    std::vector<ShapeId> used;
-                    BodyDefinition body;
-                    for (ObjectId id = 0; used.size() < s.scene.size(); ++id) {
-                      if (s.scene.body(s.scene.key_of(id)).get(body) == Status::ok) {
-                        used.push_back(body.shape);
-                      }
-                    }
-                    s.held.use(used, 1);
-                    return Status::ok;
-                  }),
-         "load");
+  change_or_throw(s.mutex, "load", [&] {
+    const std::shared_lock lock(s.shapes->mutex);
+    s.is_stale = true;
+    const Status status = s.scene.load(input.bytes());
+    if (status != Status::ok) return status;
+    s.held.clear();
+    std::vector<ShapeId> used;
+    BodyDefinition body;
+    for (ObjectId id = 0; used.size() < s.scene.size(); ++id) {
+      if (s.scene.body(s.scene.key_of(id)).get(body) == Status::ok) {
+        used.push_back(body.shape);
+      }
+    }
+    s.held.use(used, 1);
+    return Status::ok;
+  });
 }
 
 [[nodiscard]] py::bytes save_contacts(const SharedScene& s, const HeldContacts& contacts) {
@@ -84,8 +80,8 @@ void load_contacts(SharedScene& s, const py::buffer& data, HeldContacts& contact
   const BytesInput input(data);
   const std::unique_lock<std::mutex> filling = contacts.hold();
   Contacts& out = contacts.to_fill("contacts");
-  accept(changing(s.mutex, [&] { return s.scene.load_contacts(input.bytes(), out); }),
-         "load_contacts");
+  change_or_throw(s.mutex, "load_contacts",
+                  [&] { return s.scene.load_contacts(input.bytes(), out); });
 }
 
 }  // namespace
@@ -96,12 +92,12 @@ void add_partition_snapshots(PartitionClass& partition) {
            [](const SharedPartition& p) {
              // Needs exclusive access: deferred updates may have to be written first.
              Column<std::byte> out(default_memory());
-             accept(changing(p.mutex, [&] { return p.partition.save(out); }), "save");
+             change_or_throw(p.mutex, "save", [&] { return p.partition.save(out); });
              return py::bytes(reinterpret_cast<const char*>(out.data()), out.size());
            })
       .def("load", [](SharedPartition& p, const py::buffer& data) {
         const BytesInput input(data);
-        accept(changing(p.mutex, [&] { return p.partition.load(input.bytes()); }), "load");
+        change_or_throw(p.mutex, "load", [&] { return p.partition.load(input.bytes()); });
         p.count_changes(p.partition.size());
       });
 }

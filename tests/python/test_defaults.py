@@ -66,7 +66,8 @@ SAME = [
 
 def value(text):
     """Returns the value of a literal, or of inf and nan."""
-    return ast.literal_eval(re.sub(r"\binf\b", "1e999", text.strip()))
+    literal = ast.literal_eval(re.sub(r"\binf\b", "1e999", text.strip()))
+    return tuple(literal) if isinstance(literal, list) else literal
 
 
 def python_defaults(name):

@@ -9,7 +9,7 @@ from winnow.tables import (
     Overlaps, RayHits, SceneDistances, SceneHitLists, SceneHits, SceneImpacts, SceneOverlaps, Sensed,
 )
 from winnow.types import (
-    BodyState, Bools, ContinuousPairs, Doubles, FeatureKind, Find, Floats, Isa, Keys, Level,
+    BodyState, Bools, Bytes, ContinuousPairs, Doubles, FeatureKind, Floats, Isa, Keys, Level,
     LogHook, Longs, NearDepth, Numbers, Order, PairFunction, Poses, Rules, Saved, StageHook, Status,
     Structure, SupportFunction, Tier, Volume, Words,
 )
