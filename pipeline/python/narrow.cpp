@@ -28,13 +28,18 @@ struct NarrowAnswers : NeedsInit {
 [[nodiscard]] std::shared_ptr<NarrowAnswers> collide(
     SharedNarrowPhase& phase, const SharedShapes& shapes, py::handle shape_of, py::handle poses,
     py::handle pair_array, const std::string& level, const std::string& tier,
-    double contact_margin) {
-  const NarrowOptions options{chosen(kLevels, level, "level"), chosen(kTiers, tier, "tier"),
-                              contact_margin, phase.execution};
+    py::handle contact_margin) {
   PoseInput pose(poses);
   ShapeInput shape(shapes, shape_of, "shape_of");
   Integers<std::uint32_t> pairs(pair_array, "pairs", 2);
   pairs.limit(agree({&pose, &shape}));
+  Numbers margin(contact_margin, "contact_margin", {}, Valid::length);
+  std::vector<double> margins;
+  for (std::size_t i = 0; !margin.is_one() && i < margin.count(); ++i)
+    margins.push_back(margin.at(i));
+  margin.expect(pairs.count());
+  const NarrowOptions options{chosen(kLevels, level, "level"), chosen(kTiers, tier, "tier"),
+                              margin.is_one() ? margin.at(0) : 0.0, phase.execution, margins};
   static_assert(sizeof(BodyPair) == 2 * sizeof(std::uint32_t));
   const std::span<const BodyPair> list(reinterpret_cast<const BodyPair*>(pairs.values().data()),
                                        pairs.count());

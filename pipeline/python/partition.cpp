@@ -69,15 +69,23 @@ namespace {
   return std::make_shared<SharedPartition>(structure_with(structure, loose), options, recorder);
 }
 
-void reserve(SharedPartition& p, std::size_t objects, std::size_t pairs, bool touch) {
+void reserve(SharedPartition& p, std::size_t objects, std::size_t pairs, bool touch,
+             Events* events) {
   const Pages pages = touch ? Pages::prefaulted : Pages::untouched;
+  std::unique_lock<std::mutex> filling;
+  PairEvents* changes = nullptr;
+  if (events != nullptr) {
+    filling = events->hold();
+    changes = &events->to_fill("events");
+  }
   change_or_throw(p.mutex, "reserve", [&] {
     const Status status = p.partition.reserve(objects, pages);
     if (status != Status::ok || pairs == 0) return status;
     const std::shared_ptr<PairBuffer> out = p.take_pairs(true);
     const Status reserved = p.partition.reserve_pairs(*out, pairs, pages);
     p.keep_pairs(out);
-    return reserved;
+    if (reserved != Status::ok || changes == nullptr) return reserved;
+    return p.partition.reserve_events(*changes, pairs, false, pages);
   });
 }
 

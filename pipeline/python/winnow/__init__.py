@@ -8,7 +8,9 @@ All calls take numpy arrays of many objects and return arrays; they release the 
     pairs = partition.self_pairs()             # (m, 2) uint32 of ids
     ids = winnow.ids_of(keys)
 
-A failed call raises a `StatusError` with the status, and changes nothing. Arrays that are returned
+An argument (n,) may be one number, and an argument (n, 3) one point, for all n; a single object may
+be given without a list. A failed call raises a `StatusError` with the status, which names the
+argument and the row, and changes nothing. Arrays that are returned
 keep their data alive, and the data do not change.
 """
 

@@ -29,7 +29,8 @@ SLEEPING: int
 class StatusError(ValueError):
     """A call failed and has changed nothing. `status` is the reason: invalid_bounds, invalid_key,
     invalid_argument, size_mismatch, too_many_objects, unsupported_volume, invalid_shape,
-    invalid_pose or unsupported. out_of_memory raises a MemoryError.
+    invalid_pose or unsupported; the message names the argument and the row, if one row is the
+    cause: "invalid_pose: poses[17] has a NaN". out_of_memory raises a MemoryError.
     """
     status: Status
 
@@ -47,15 +48,20 @@ class Filter:
         bodies in layers that collide with this layer, see Scene.set_layers_collide.
         """
     @property
-    def accept(self) -> Optional[PairFunction]: ...
+    def accept(self) -> Optional[PairFunction]:
+        """The function that decides, if there is one."""
     @property
-    def layer(self) -> Optional[int]: ...
+    def layer(self) -> Optional[int]:
+        """The layer of a scene that the query belongs to."""
     @property
-    def layers(self) -> int: ...
+    def layers(self) -> int:
+        """Layers of the query, a bit each."""
     @property
-    def mask(self) -> int: ...
+    def mask(self) -> int:
+        """Layers that it may find, a bit each."""
     @property
-    def environment(self) -> int: ...
+    def environment(self) -> int:
+        """The environment of the query."""
 
 class Recorder:
     """Records the calls of partitions and scenes that are made with it, so that they can be
@@ -166,9 +172,11 @@ class Partition:
         """Removes every object and keeps the memory."""
     def release_memory(self) -> None:
         """Frees memory that an empty partition, or scratch, holds."""
-    def reserve(self, objects: int, pairs: int = 0, touch: bool = False) -> None:
-        """Reserves the memory for a first frame with this many objects and pairs; `touch` writes to
-        each page of it.
+    def reserve(
+        self, objects: int, pairs: int = 0, touch: bool = False, events: Optional[PairEvents] = None
+    ) -> None:
+        """Reserves the memory for a first frame with this many objects and pairs, and for `events`
+        of the pairs; `touch` writes to each page of it.
         """
     def __len__(self) -> int: ...
     def contains(self, keys: ArrayLike) -> Bools:
@@ -537,13 +545,13 @@ class NarrowPhase:
         """`parallel` uses all cores."""
     def collide(
         self, shapes: Shapes, shape_of: ArrayLike, poses: Poses, pairs: ArrayLike, *,
-        level: Level = "manifold", tier: Tier = "robust", contact_margin: float = 0.0
+        level: Level = "manifold", tier: Tier = "robust", contact_margin: ArrayLike = 0.0
     ) -> NarrowResult:
         """Computes results for pairs (m, 2) uint32 of bodies: body i has the shape shape_of[i],
         (n,) or one for all, at poses (n, 7) of x, y, z and a quaternion w, x, y, z, (n, 3), or a
         tuple of both. `level`: 'boolean', 'distance' or 'manifold'; `tier`: 'robust' or
-        'reference'. Pairs at most `contact_margin` apart get contacts too. Contiguous pairs of
-        uint32 and poses (n, 7) of double are read in place.
+        'reference'. Pairs at most `contact_margin` apart, (m,) or one for all, get contacts too.
+        Contiguous pairs of uint32 and poses (n, 7) of double are read in place.
         """
     def statistics(self) -> Dict[str, int]:
         """Counters of the last call."""
