@@ -69,7 +69,7 @@ def repository():
     return re.sub(r"\.git$", "", address) if address.startswith("https:") else ""
 
 
-def say(text):
+def report(text):
     """Prints to the terminal, because pip hides the output of builds; without one, to stderr."""
     try:
         with open("/dev/tty", "w") as terminal:
@@ -97,7 +97,7 @@ def run(*command):
             done = 10 * int(step[1]) // int(step[2] or 100) if step else 0
             if done > tenth:
                 tenth = done
-                say("winnow: %d %%" % (10 * done))
+                report("winnow: %d %%" % (10 * done))
     if process.returncode != 0:
         sys.stderr.write("".join(output))
         raise SystemExit("winnow: failed: " + shlex.join(command))
@@ -126,7 +126,7 @@ def expect_packages():
     if lacks:
         why = "winnow: missing packages. On Debian: apt-get install %s\n%s" % (" ".join(lacks), why)
     if why:
-        say(why.rstrip())
+        report(why.rstrip())
         raise SystemExit(why.rstrip())
 
 
@@ -138,7 +138,7 @@ def build_module(folder, isas):
     """Builds the module and returns the folder of the package that contains it."""
     expect_packages()
     options = shlex.split(os.environ.get("WINNOW_PYTHON_OPTIONS", ""))
-    say("winnow: building the module, which takes some minutes")
+    report("winnow: building the module, which takes some minutes")
     run(
         "cmake", "-S", str(ROOT), "-B", str(folder), *generator(), "-DCMAKE_BUILD_TYPE=Release",
         "-DWINNOW_PYTHON=ON", "-DWINNOW_TESTS=OFF", "-DWINNOW_BENCH=OFF", "-DWINNOW_INSTALL=OFF",
