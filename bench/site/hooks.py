@@ -8,6 +8,7 @@
   the first whose headings or first cell contain these words (several, separated by slashes).
 - `<!-- architecture -->` becomes .github/ARCHITECTURE.md without its title; its pictures are in pages/.
 - `<!-- ledger -->` becomes the contents of bench/trust/ledger.json.
+- `<!-- python -->` becomes the reference of the Python package, from its stubs and sources.
 - `<!-- live -->` becomes the scene that runs in the page, or a picture if it was not built.
 
 A missing passage, name or figure ends the build.
@@ -15,6 +16,7 @@ A missing passage, name or figure ends the build.
 After the build, search_index.js contains the sections of all pages and the names of the reference.
 """
 
+import ast
 import json
 import os
 import pathlib
@@ -128,6 +130,53 @@ def ledger(_):
     return "\n".join(ledger_row(row) for row in rows)
 
 
+def python_call(node):
+    """Returns the signature of a Python function, without the types of its arguments."""
+    arguments = node.args
+    values = [None] * (len(arguments.args) - len(arguments.defaults)) + arguments.defaults
+    pairs = list(zip(arguments.args, values)) + [(ast.arg("*"), None)] * bool(arguments.kwonlyargs)
+    pairs += zip(arguments.kwonlyargs, arguments.kw_defaults)
+    texts = [a.arg + (f"={ast.unparse(value)}" if value else "") for a, value in pairs if a.arg != "self"]
+    return f"({', '.join(texts)})"
+
+
+def python_entries(node, owner):
+    """Yields the headings and texts of a Python function, or of a class and its members."""
+    text = ast.get_docstring(node) or ""
+    name = f"{owner}.{node.name}" if owner else node.name
+    if isinstance(node, ast.ClassDef):
+        yield f"## {name}\n\n{text}"
+        columns = [part for part in node.body if isinstance(part, ast.AnnAssign)]
+        yield "\n".join(
+            f"- `{part.target.id}`: {part.annotation.slice.elts[1].value}"
+            for part in columns if isinstance(part.annotation, ast.Subscript)
+            and ast.unparse(part.annotation.value) == "Annotated"
+        )
+        for part in node.body:
+            if isinstance(part, ast.FunctionDef) and (ast.get_docstring(part) or not part.name.startswith("_")):
+                yield from python_entries(part, name)
+        return
+    is_property = any(ast.unparse(mark) == "property" for mark in node.decorator_list)
+    returned = "" if node.returns is None or ast.unparse(node.returns) == "None" else ast.unparse(node.returns)
+    if text:  # only one of overloads has a text
+        call = name.replace(".__init__", "") + ("" if is_property else python_call(node))
+        yield f"### `{call}`\n\n{text}" + (f"\n\nReturns `{returned}`." if returned else "")
+
+
+def python_reference(_):
+    """Returns the reference of the classes, then of the other functions, of the Python package."""
+    nodes = [
+        node
+        for file in ("_core.pyi", "tables.py", "calls.py", "advice.py")
+        for node in ast.parse((ROOT / "pipeline/python/winnow" / file).read_text()).body
+        if isinstance(node, (ast.ClassDef, ast.FunctionDef)) and not node.name.startswith("_")
+    ]
+    classes = [node for node in nodes if isinstance(node, ast.ClassDef) and node.name != "Table"]
+    functions = [node for node in nodes if isinstance(node, ast.FunctionDef) and node.name != "shown"]
+    entries = [entry for node in classes for entry in python_entries(node, "")] + ["## Functions"]
+    return "\n\n".join(entries + [entry for node in functions for entry in python_entries(node, "")])
+
+
 def live_scene(_):
     docs = pathlib.Path(os.environ["WINNOW_SITE_DOCS"])
     if not (docs / "live_wasm.js").exists():
@@ -142,6 +191,7 @@ def on_page_markdown(markdown, page, **_):
     markdown = re.sub(r"^<!-- live -->$", live_scene, markdown, flags=re.M)
     markdown = re.sub(r"\{figure:([^}]*)\}", figure, markdown)
     markdown = re.sub(r"^<!-- ledger -->$", ledger, markdown, flags=re.M)
+    markdown = re.sub(r"^<!-- python -->$", python_reference, markdown, flags=re.M)
     markdown = re.sub(r"^<!-- results -->$", lambda _: results_text(), markdown, flags=re.M)
     return re.sub(r"\]\(api:([\w:]+)\)", reference_link, markdown)
 

@@ -1,16 +1,12 @@
 #pragma once
 
-// Conversion between numpy arrays and winnow's views, in both directions. All other files of the
-// module use this; arrays.cpp implements it.
+// Arrays that calls return. See inputs.h for arguments.
 
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
 #include <winnow/core/key.h>
-#include <winnow/core/pose.h>
-#include <winnow/core/results.h>
-#include <winnow/core/volumes.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -25,143 +21,6 @@
 namespace winnow::python {
 
 namespace py = pybind11;
-
-/// An array of float or double numbers, read in place: any strides, but aligned entries in native
-/// byte order. Other types that convert to double without loss are converted.
-class Numbers {
- public:
-  /// Expects any number of entries of `shape`: an array with one dimension more than `shape`.
-  /// `name` is for messages. If `one`, a single entry, an array of `shape`, is accepted for all
-  /// entries: its stride is 0, and `repeat` sets its count.
-  Numbers(py::handle object, const char* name, const std::vector<std::size_t>& shape,
-          bool one = false);
-
-  [[nodiscard]] std::size_t count() const noexcept { return count_; }
-  [[nodiscard]] bool is_single() const noexcept { return single_; }
-  /// True if a single entry is used for all.
-  [[nodiscard]] bool is_one() const noexcept { return one_; }
-  /// Throws a size_mismatch unless there are `count` entries; repeats a single entry.
-  void expect(std::size_t count);
-
-  [[nodiscard]] std::ptrdiff_t stride() const noexcept { return stride_; }
-  /// Component (j, k) of the first entry. T must be float if `is_single`, else double.
-  template <typename T>
-  [[nodiscard]] const T* column(std::size_t j, std::size_t k = 0) const noexcept {
-    return reinterpret_cast<const T*>(data_ + static_cast<std::ptrdiff_t>(j) * inner_[0] +
-                                      static_cast<std::ptrdiff_t>(k) * inner_[1]);
-  }
-  /// Component (j, k) of entry i.
-  [[nodiscard]] double at(std::size_t i, std::size_t j = 0, std::size_t k = 0) const noexcept {
-    const std::byte* const p = data_ + static_cast<std::ptrdiff_t>(i) * stride_ +
-                               static_cast<std::ptrdiff_t>(j) * inner_[0] +
-                               static_cast<std::ptrdiff_t>(k) * inner_[1];
-    if (single_) return to_double(*reinterpret_cast<const float*>(p));
-    return *reinterpret_cast<const double*>(p);
-  }
-  /// True if entries and components are contiguous.
-  [[nodiscard]] bool is_dense(std::size_t components) const noexcept;
-
- private:
-  py::array array_;
-  const char* name_;
-  const std::byte* data_ = nullptr;
-  std::ptrdiff_t stride_ = 0;
-  std::ptrdiff_t inner_[2] = {0, 0};
-  std::size_t count_ = 0;
-  bool single_ = false;
-  bool one_ = false;
-};
-
-/// Boxes given as lower and upper corners, (n, 3) each.
-class BoxInput {
- public:
-  BoxInput(py::handle lower, py::handle upper);
-
-  [[nodiscard]] std::size_t count() const noexcept { return lower_.count(); }
-  /// True if the arrays can be used without a copy: both of float, with one stride.
-  [[nodiscard]] bool is_in_place() const noexcept;
-  /// Returns a view; other arrays are rounded outward into `room`. Needs no GIL.
-  [[nodiscard]] BoxView view(std::vector<Aabb>& room) const;
-
- private:
-  Numbers lower_;
-  Numbers upper_;
-};
-
-/// A contiguous array of integers of type T, with one dimension, or with two and `columns` in each
-/// row. Other integers are copied if they are in the range of T.
-template <typename T>
-class Integers {
- public:
-  Integers(py::handle object, const char* name, std::size_t columns = 1);
-
-  [[nodiscard]] std::size_t count() const noexcept { return count_; }
-  /// Count times columns numbers.
-  [[nodiscard]] std::span<const T> values() const noexcept { return values_; }
-  [[nodiscard]] T operator[](std::size_t i) const noexcept { return values_[i]; }
-
- private:
-  py::array array_;
-  std::size_t count_ = 0;
-  std::span<const T> values_;
-};
-extern template class Integers<std::uint8_t>;
-extern template class Integers<std::uint32_t>;
-extern template class Integers<std::uint64_t>;
-
-/// Keys as uint64: the id in the lower half, the stamp in the upper half.
-class KeyInput {
- public:
-  explicit KeyInput(py::handle object, const char* name = "keys") : words_(object, name) {}
-  [[nodiscard]] std::size_t count() const noexcept { return words_.count(); }
-  [[nodiscard]] std::span<const Key> keys() const noexcept {
-    return {reinterpret_cast<const Key*>(words_.values().data()), words_.count()};
-  }
-
- private:
-  Integers<std::uint64_t> words_;
-};
-
-/// An integer for each of n entries: an array, or one number for all.
-class EachInteger {
- public:
-  EachInteger(py::handle object, const char* name, std::uint64_t most);
-  /// Throws a size_mismatch unless there is one number for all or `count` numbers.
-  void expect(std::size_t count) const;
-  [[nodiscard]] std::uint64_t operator[](std::size_t i) const noexcept {
-    return words_.empty() ? all_ : words_[i];
-  }
-
- private:
-  const char* name_;
-  std::vector<std::uint64_t> words_;
-  bool one_ = false;
-  std::uint64_t all_ = 0;
-};
-
-/// Poses: (n, 7) with x, y, z and a quaternion w, x, y, z; (n, 3) positions only; or a tuple of
-/// positions (n, 3) and quaternions (n, 4).
-class PoseInput {
- public:
-  explicit PoseInput(py::handle object);
-
-  [[nodiscard]] std::size_t count() const noexcept { return position_.count(); }
-  [[nodiscard]] Pose operator[](std::size_t i) const noexcept;
-  /// Returns a view of the arrays if positions are of double, else of copies in `room`.
-  [[nodiscard]] PoseView view(std::vector<Pose>& room) const;
-  /// Returns the array itself if it is (n, 7), of double and contiguous, else copies in `room`.
-  [[nodiscard]] std::span<const Pose> packed(std::vector<Pose>& room) const;
-
- private:
-  Numbers position_;
-  /// Quaternions are columns 3 to 6 of `position_`; otherwise they are in `turn_`, or there are
-  /// none.
-  bool is_joined_ = false;
-  std::optional<Numbers> turn_;
-};
-
-/// Client data: none, or a number for each object.
-[[nodiscard]] std::vector<ClientData> data_of(py::handle object, std::size_t count);
 
 // Arrays that are returned own their data, either directly or through `owner`, which lives as long
 // as the array. Arrays with an owner are read-only.
@@ -239,6 +98,12 @@ template <typename Column>
       to[3 * i + static_cast<std::size_t>(axis)] = from[i];
   }
   return rows;
+}
+/// Returns an object of a class of winnow/tables.py with these columns, in the order of its
+/// members.
+template <typename... Columns>
+[[nodiscard]] py::object table(const char* name, Columns&&... columns) {
+  return py::module_::import("winnow.tables").attr(name)(std::forward<Columns>(columns)...);
 }
 [[nodiscard]] inline Key* keys_in(py::array_t<std::uint64_t>& array) {
   return reinterpret_cast<Key*>(array.mutable_data());

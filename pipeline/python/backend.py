@@ -6,6 +6,7 @@ WINNOW_PYTHON_BUILD names a folder to build in and keep; otherwise that is a tem
 WINNOW_PYTHON_OPTIONS are further options for CMake.
 """
 
+import ast
 import base64
 import hashlib
 import os
@@ -21,12 +22,60 @@ import zipfile
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
-PACKAGES = "cmake ninja-build g++ libeigen3-dev libxsimd-dev libtbb-dev pybind11-dev"
+PACKAGES = "cmake ninja-build g++ libeigen3-dev libxsimd-dev libtbb-dev pybind11-dev python3-dev"
+
+# A project that prints the Debian packages which the build lacks.
+CHECK = """
+cmake_minimum_required(VERSION 3.25)
+project(check CXX)
+macro(need package found)
+  if(NOT ${found})
+    message(NOTICE "lacks ${package}")
+  endif()
+endmacro()
+find_package(Eigen3 3.4 QUIET NO_MODULE)
+need(libeigen3-dev Eigen3_FOUND)
+find_path(xsimd xsimd/xsimd.hpp)
+need(libxsimd-dev xsimd)
+find_package(TBB 2021 QUIET CONFIG)
+need(libtbb-dev TBB_FOUND)
+find_package(Python 3.9 QUIET COMPONENTS Interpreter Development.Module)
+need(python3-dev Python_Development.Module_FOUND)
+find_package(pybind11 2.10 QUIET CONFIG)
+need(pybind11-dev pybind11_FOUND)
+"""
+
+
+def project():
+    """Returns the fields of pyproject.toml that are strings or lists of strings."""
+    text = (HERE / "pyproject.toml").read_text()
+    fields = re.findall(r'^([\w-]+) = ("[^"]*"|\["[^]]*\]|\[\n[^]]*\])', text, re.MULTILINE)
+    fields += re.findall(r'^([\w-]+) = \[?\{ \w+ = ("[^"]*") \}', text, re.MULTILINE)
+    return {name: ast.literal_eval(value) for name, value in fields}
 
 
 def version():
-    text = (HERE / "pyproject.toml").read_text()
-    return re.search(r'^version = "(.*)"$', text, re.MULTILINE).group(1)
+    return project()["version"]
+
+
+def repository():
+    """Returns the address of the repository, if it is on the web, else nothing."""
+    command = ["git", "-C", str(ROOT), "remote", "get-url", "origin"]
+    try:
+        found = subprocess.run(command, check=False, capture_output=True, text=True).stdout.strip()
+    except FileNotFoundError:
+        found = ""
+    address = os.environ.get("WINNOW_REPOSITORY") or re.sub(r"^git@([^:]*):", r"https://\1/", found)
+    return re.sub(r"\.git$", "", address) if address.startswith("https:") else ""
+
+
+def report(text):
+    """Prints to the terminal, because pip hides the output of builds; without one, to stderr."""
+    try:
+        with open("/dev/tty", "w") as terminal:
+            terminal.write("\r" + text + "\n")
+    except OSError:
+        print(text, file=sys.stderr, flush=True)
 
 
 def tag():
@@ -48,24 +97,50 @@ def run(*command):
             done = 10 * int(step[1]) // int(step[2] or 100) if step else 0
             if done > tenth:
                 tenth = done
-                print("winnow: %d %%" % (10 * done), file=sys.stderr, flush=True)
+                report("winnow: %d %%" % (10 * done))
     if process.returncode != 0:
         sys.stderr.write("".join(output))
-        raise SystemExit(
-            "winnow: failed: %s\nOn Debian it needs: apt-get install %s"
-            % (shlex.join(command), PACKAGES)
-        )
+        raise SystemExit("winnow: failed: " + shlex.join(command))
+
+
+def missing():
+    """Returns the Debian packages that the build lacks, and an explanation if that is unknown."""
+    compilers = [os.environ.get("CXX", "c++").split()[0], "g++", "clang++"]
+    tools = {"cmake": ["cmake"], "ninja-build": ["ninja", "make"], "g++": compilers}
+    lacks = [name for name, any_of in tools.items() if not any(map(shutil.which, any_of))]
+    if lacks:
+        return lacks, "Other packages may be missing too; a build needs: " + PACKAGES
+    with tempfile.TemporaryDirectory() as folder:
+        pathlib.Path(folder, "CMakeLists.txt").write_text(CHECK)
+        options = shlex.split(os.environ.get("WINNOW_PYTHON_OPTIONS", ""))
+        command = ["cmake", "-S", folder, "-B", folder + "/build", *generator(), *options,
+                   "-DPython_EXECUTABLE=" + sys.executable]  # fmt: skip
+        checked = subprocess.run(command, check=False, capture_output=True, text=True)
+    output = checked.stdout + checked.stderr
+    return re.findall(r"^lacks (.*)", output, re.MULTILINE), output if checked.returncode else ""
+
+
+def expect_packages():
+    """Ends the build at once, with the names of missing packages, if it cannot succeed."""
+    lacks, why = missing()
+    if lacks:
+        why = "winnow: missing packages. On Debian: apt-get install %s\n%s" % (" ".join(lacks), why)
+    if why:
+        report(why.rstrip())
+        raise SystemExit(why.rstrip())
+
+
+def generator():
+    return ["-G", "Ninja"] if shutil.which("ninja") else []
 
 
 def build_module(folder, isas):
     """Builds the module and returns the folder of the package that contains it."""
-    if shutil.which("cmake") is None:
-        raise SystemExit("winnow: there is no cmake\nOn Debian: apt-get install " + PACKAGES)
-    generator = ["-G", "Ninja"] if shutil.which("ninja") else []
+    expect_packages()
     options = shlex.split(os.environ.get("WINNOW_PYTHON_OPTIONS", ""))
-    print("winnow: building the module, which takes some minutes", file=sys.stderr, flush=True)
+    report("winnow: building the module, which takes some minutes")
     run(
-        "cmake", "-S", str(ROOT), "-B", str(folder), *generator, "-DCMAKE_BUILD_TYPE=Release",
+        "cmake", "-S", str(ROOT), "-B", str(folder), *generator(), "-DCMAKE_BUILD_TYPE=Release",
         "-DWINNOW_PYTHON=ON", "-DWINNOW_TESTS=OFF", "-DWINNOW_BENCH=OFF", "-DWINNOW_INSTALL=OFF",
         "-DPython_EXECUTABLE=" + sys.executable, *isas, *options,
     )  # fmt: skip
@@ -77,10 +152,23 @@ def build_module(folder, isas):
 
 
 def metadata():
-    return "Metadata-Version: 2.1\nName: winnow\nVersion: %s\nLicense: MIT\n%s" % (
-        version(),
-        "Requires-Python: >=3.9\nRequires-Dist: numpy\n",
-    )
+    fields = project()
+    rows = [
+        ("Metadata-Version", "2.1"),
+        ("Name", fields["name"]),
+        ("Version", fields["version"]),
+        ("Summary", fields["description"]),
+        ("Author", fields["authors"]),
+        ("License", fields["license"]),
+        ("Keywords", ",".join(fields["keywords"])),
+        ("Requires-Python", fields["requires-python"]),
+        ("Description-Content-Type", "text/markdown"),
+        *(("Classifier", name) for name in fields["classifiers"]),
+        *(("Requires-Dist", name) for name in fields["dependencies"]),
+        *(("Project-URL", "Repository, " + address) for address in [repository()] if address),
+    ]
+    text = "".join("%s: %s\n" % row for row in rows)
+    return text + "\n" + (HERE / fields["readme"]).read_text(encoding="utf-8")
 
 
 def write_wheel(package, directory):
@@ -120,6 +208,15 @@ def make_wheel(directory, isas):
 
 
 NATIVE = ["-DWINNOW_ISAS=native"]
+
+
+def prepare_metadata_for_build_wheel(metadata_directory, config_settings=None):
+    expect_packages()
+    info = "winnow-%s.dist-info" % version()
+    folder = pathlib.Path(metadata_directory, info)
+    folder.mkdir(parents=True)
+    (folder / "METADATA").write_text(metadata(), encoding="utf-8")
+    return info
 
 
 def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):

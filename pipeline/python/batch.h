@@ -1,11 +1,17 @@
 #pragma once
 
+#include "pipeline/python/arrays.h"
+#include "pipeline/python/locks.h"
+
 #include <winnow/core/execution.h>
 #include <winnow/core/status.h>
 
 #include <algorithm>
+#include <bit>
 #include <cstddef>
+#include <cstdint>
 #include <new>
+#include <shared_mutex>
 #include <string>
 #include <vector>
 
@@ -22,11 +28,12 @@ inline constexpr std::size_t kQueriesPerTask = 256;
 struct Outcome {
   Status status = Status::ok;
   std::size_t entry = 0;
-
-  [[nodiscard]] std::string text(const char* call) const {
-    return std::string(call) + ", entry " + std::to_string(entry);
-  }
 };
+
+/// Throws unless the status is ok.
+inline void accept(const Outcome& outcome, const char* call) {
+  accept(outcome.status, std::string(call) + ", entry " + std::to_string(outcome.entry));
+}
 
 /// Calls `answer(task, query)` for each query. The queries of a task run in sequence on one thread
 /// until one fails. Returns the failure of the first query that failed; the result does not depend
@@ -53,6 +60,23 @@ template <typename Answer>
     if (outcome.status != Status::ok) return outcome;
   }
   return {};
+}
+
+/// Returns an array (n,) of answer(i), with shared access.
+template <typename T, typename Answer>
+[[nodiscard]] py::array each_answer(std::shared_mutex& mutex, std::size_t count, Answer&& answer) {
+  auto result = fresh<T>(count);
+  T* const to = result.mutable_data();
+  reading(mutex, [&] {
+    for (std::size_t i = 0; i < count; ++i) to[i] = answer(i);
+  });
+  return result;
+}
+/// Returns an array (n,) uint64 of keys.
+template <typename Answer>
+[[nodiscard]] py::array each_key(std::shared_mutex& mutex, std::size_t count, Answer&& answer) {
+  return each_answer<std::uint64_t>(
+      mutex, count, [&](std::size_t i) { return std::bit_cast<std::uint64_t>(answer(i)); });
 }
 
 /// The lists of results of all queries, and the index at which each of them begins. Tasks fill

@@ -12,6 +12,7 @@
 #include <limits>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace winnow::python {
@@ -26,6 +27,12 @@ auto changing_scene(SharedScene& s, Body&& body) {
   });
 }
 
+/// As changing_scene; throws unless the status is ok. `call` is for messages.
+template <typename Body>
+void change_scene_or_throw(SharedScene& s, const char* call, Body&& body) {
+  accept(changing_scene(s, std::forward<Body>(body)), call);
+}
+
 /// A state by name for all bodies, or numbers as in FIXED, DYNAMIC, SLEEPING.
 class BodyStateInput {
  public:
@@ -35,7 +42,7 @@ class BodyStateInput {
                                        kBodyStateNames, py::cast<std::string>(object), "state"))),
                                    "state", kBodyStates - 1)
                      : EachInteger(object, "state", kBodyStates - 1)) {}
-  void expect(std::size_t count) const { numbers_.expect(count); }
+  void expect(std::size_t count) { numbers_.expect(count); }
   [[nodiscard]] BodyState operator[](std::size_t i) const noexcept {
     return static_cast<BodyState>(numbers_[i]);
   }
@@ -44,33 +51,11 @@ class BodyStateInput {
   EachInteger numbers_;
 };
 
-/// Filters of bodies as three columns.
-class FilterInput {
- public:
-  FilterInput(py::handle layers, py::handle mask, py::handle environment)
-      : layers_(layers, "layers", kMaxMask),
-        mask_(mask, "mask", kMaxMask),
-        environment_(environment, "environment", kMaxMask) {}
-  void expect(std::size_t count) const {
-    for (const EachInteger* each : {&layers_, &mask_, &environment_}) each->expect(count);
-  }
-  [[nodiscard]] ObjectFilter operator[](std::size_t i) const noexcept {
-    return {static_cast<std::uint32_t>(layers_[i]), static_cast<std::uint32_t>(mask_[i]),
-            static_cast<std::uint32_t>(environment_[i])};
-  }
-
- private:
-  static constexpr std::uint64_t kMaxMask = std::numeric_limits<std::uint32_t>::max();
-  EachInteger layers_;
-  EachInteger mask_;
-  EachInteger environment_;
-};
-
 /// Contact and rest offsets of bodies as two columns.
 class OffsetInput {
  public:
   OffsetInput(py::handle contact, py::handle rest)
-      : contact_(contact, "contact", {}, true), rest_(rest, "rest", {}, true) {}
+      : contact_(contact, "contact", {}, Valid::length), rest_(rest, "rest", {}, Valid::finite) {}
   void expect(std::size_t count) {
     for (Numbers* each : {&contact_, &rest_}) each->expect(count);
   }
@@ -86,8 +71,9 @@ class OffsetInput {
 /// Layers of a scene.
 class LayerInput {
  public:
-  LayerInput(py::handle object, const char* name) : numbers_(object, name, kSceneLayers - 1) {}
-  void expect(std::size_t count) const { numbers_.expect(count); }
+  LayerInput(py::handle object, const char* name, std::uint64_t most = kSceneLayers - 1)
+      : numbers_(object, name, most) {}
+  void expect(std::size_t count) { numbers_.expect(count); }
   [[nodiscard]] std::uint16_t operator[](std::size_t i) const noexcept {
     return static_cast<std::uint16_t>(numbers_[i]);
   }

@@ -53,7 +53,8 @@ class SharedCluster : public NeedsInit {
 void add(SharedCluster& c, py::handle name_array, py::handle lower, py::handle upper,
          const Rank& rank) {
   const Integers<std::uint64_t> names(name_array, "names");
-  const BoxInput boxes(lower, upper);
+  BoxInput boxes(lower, upper);
+  boxes.expect(names.count());
   const std::uint32_t to = c.hosted(rank) - c.cluster().first_hosted();
   std::vector<ClusterBatch> batches(c.cluster().hosted());
   std::vector<Status> answers(batches.size(), Status::ok);
@@ -70,7 +71,8 @@ void add(SharedCluster& c, py::handle name_array, py::handle lower, py::handle u
 void move(SharedCluster& c, py::handle name_array, py::handle lower, py::handle upper,
           const Rank& rank) {
   const Integers<std::uint64_t> names(name_array, "names");
-  const BoxInput boxes(lower, upper);
+  BoxInput boxes(lower, upper);
+  boxes.expect(names.count());
   const std::uint32_t on = c.hosted(rank);
   std::vector<Aabb> room;
   c.call([&] { return c.own().move(on, names.values(), boxes.view(room)); }, "move");
@@ -138,42 +140,19 @@ void remove(SharedCluster& c, py::handle name_array, const Rank& rank) {
 }  // namespace
 
 void add_cluster(py::module_& module) {
-  using py::arg;
-  py::class_<SharedCluster, std::shared_ptr<SharedCluster>> type(
-      module, "Cluster",
-      "Boxes on any number of ranks and their overlapping pairs: the pairs of one partition of all "
-      "boxes, each once, whatever the number of ranks. A body has a name, uint64, and belongs to "
-      "the rank whose region contains its centre; that rank moves and removes it. The constructor, "
-      "add, self_pairs and digest are collective: every process calls them, in the same order.");
+  Class<SharedCluster> type(module, "Cluster");
   add_ranks(type);
   type.def(py::init([](const py::object& comm, std::uint32_t ranks, const std::string& structure,
                        double imbalance) {
-             return std::make_shared<SharedCluster>(comm, ranks, structure, imbalance);
-           }),
-           arg("comm") = py::none(), arg("ranks") = 1, arg("structure") = "LinearBvh",
-           arg("imbalance") = 1.1,
-           "`comm`: an mpi4py communicator, whose processes are the ranks, or an object with the "
-           "same rank, size, alltoall and allgather. None: `ranks` virtual ranks in this process. "
-           "Space is divided again once a rank has more than `imbalance` times the mean work.")
-      .def("add", &add, arg("names"), arg("lower"), arg("upper"), arg("rank") = py::none(),
-           "Adds n bodies: names (n,) that no other body has, boxes (n, 3) each. A process that "
-           "adds nothing passes empty arrays. `rank`: a rank of this process, by default its "
-           "first. Collective.")
-      .def("move", &move, arg("names"), arg("lower"), arg("upper"), arg("rank") = py::none(),
-           "New boxes (n, 3) for bodies (n,) of a rank.")
-      .def("remove", &remove, arg("names"), arg("rank") = py::none(), "Removes bodies of a rank.")
-      .def("self_pairs", &self_pairs, arg("order") = "fast",
-           "Pairs of names, the smaller first, that ranks of this process report: (m, 2) uint64. "
-           "Moves bodies to the ranks that they belong to first. Collective.")
-      .def("bodies", &bodies, arg("rank") = py::none(),
-           "(names, lower, upper) of the bodies of a rank: (n,) uint64 and (n, 3) float32 each.")
-      .def("digest", &digest,
-           "A digest, 128 bits as 32 digits, of the pairs of all ranks: the same on any number of "
-           "ranks. Collective.")
-      .def_property_readonly(
-          "statistics", &statistics,
-          "Counters of all ranks, the same on each: bodies, ghosts, pairs, bytes, "
-          "messages, migrated, cuts, imbalance.");
+        return std::make_shared<SharedCluster>(comm, ranks, structure, imbalance);
+      }))
+      .def("add", &add)
+      .def("move", &move)
+      .def("remove", &remove)
+      .def("self_pairs", &self_pairs)
+      .def("bodies", &bodies)
+      .def("digest", &digest)
+      .property("statistics", &statistics);
 }
 
 }  // namespace winnow::python

@@ -60,6 +60,7 @@ class SharedClusterScene : public NeedsInit {
     }
   }
 
+  [[nodiscard]] const SharedShapes& shapes() const noexcept { return *state_->shapes; }
   [[nodiscard]] const ClusterScene& cluster() const noexcept { return *state_->cluster; }
   [[nodiscard]] std::optional<ClusterScene>& own() noexcept { return state_->cluster; }
   [[nodiscard]] std::uint32_t hosted(const Rank& rank) const { return state_->ranks.hosted(rank); }
@@ -95,27 +96,27 @@ class SharedClusterScene : public NeedsInit {
 
 [[nodiscard]] std::shared_ptr<SharedClusterScene> make_cluster(
     const std::shared_ptr<SharedShapes>& shapes, const py::object& comm, std::uint32_t ranks,
-    double contact_margin, const std::string& tier, bool contact_reduction,
+    double contact_margin, const std::string& tier, bool part_manifolds,
     const std::vector<std::string>& structures, bool parallel, double imbalance) {
   ClusterSceneOptions options;
   options.scene = scene_options(contact_margin, tier, structures, parallel);
   options.scene.composites = &shapes->composites;
-  options.scene.contact_reduction = contact_reduction;
+  options.scene.part_manifolds = part_manifolds;
   options.imbalance = imbalance;
   return std::make_shared<SharedClusterScene>(shapes, comm, ranks, options);
 }
 
 /// Bodies with their names.
 struct NamedBodies {
-  NamedBodies(py::handle name_array, py::handle shape_array, py::handle poses, py::handle states,
-              py::handle layers, py::handle mask, py::handle environment)
-      : names(name_array, "names") {
-    const PoseInput pose(poses);
-    const ShapeInput shape(shape_array);
-    const BodyStateInput state(states);
-    const FilterInput filter(layers, mask, environment);
-    bodies.resize(pose.count());
-    shape.expect(bodies.size());
+  NamedBodies(const SharedShapes& shapes, py::handle name_array, py::handle shape_array,
+              py::handle poses, py::handle states, py::handle layers, py::handle mask,
+              py::handle environment)
+      : names(name_array, "names"), pose(poses), shape(shapes, shape_array) {
+    BodyStateInput state(states);
+    FilterInput filter(layers, mask, environment);
+    pose.expect(names.count());
+    shape.expect(names.count());
+    bodies.resize(names.count());
     state.expect(bodies.size());
     filter.expect(bodies.size());
     for (std::size_t i = 0; i < bodies.size(); ++i) {
@@ -125,13 +126,15 @@ struct NamedBodies {
   [[nodiscard]] ClusterSceneBatch batch() const noexcept { return {names.values(), bodies}; }
 
   Integers<std::uint64_t> names;
+  PoseInput pose;
+  ShapeInput shape;
   std::vector<BodyDefinition> bodies;
 };
 
 void add(SharedClusterScene& c, py::handle names, py::handle shapes, py::handle poses,
          py::handle states, py::handle layers, py::handle mask, py::handle environment,
          const Rank& rank) {
-  const NamedBodies bodies(names, shapes, poses, states, layers, mask, environment);
+  const NamedBodies bodies(c.shapes(), names, shapes, poses, states, layers, mask, environment);
   const std::uint32_t to = c.hosted(rank) - c.cluster().first_hosted();
   std::vector<ClusterSceneBatch> batches(c.cluster().hosted());
   std::vector<Status> answers(batches.size(), Status::ok);
@@ -142,13 +145,15 @@ void add(SharedClusterScene& c, py::handle names, py::handle shapes, py::handle 
 
 void replicate(SharedClusterScene& c, py::handle names, py::handle shapes, py::handle poses,
                py::handle layers, py::handle mask, py::handle environment) {
-  const NamedBodies bodies(names, shapes, poses, py::str("fixed"), layers, mask, environment);
+  const NamedBodies bodies(c.shapes(), names, shapes, poses, py::str("fixed"), layers, mask,
+                           environment);
   c.call([&] { return c.own()->replicate(bodies.batch()); }, "replicate");
 }
 
 void move_replicated(SharedClusterScene& c, py::handle name_array, py::handle poses) {
   const Integers<std::uint64_t> names(name_array, "names");
-  const PoseInput pose(poses);
+  PoseInput pose(poses);
+  pose.expect(names.count());
   std::vector<Pose> room;
   c.call([&] { return c.own()->move_replicated(names.values(), pose.packed(room)); },
          "move_replicated");
@@ -156,7 +161,8 @@ void move_replicated(SharedClusterScene& c, py::handle name_array, py::handle po
 
 void move(SharedClusterScene& c, py::handle name_array, py::handle poses, const Rank& rank) {
   const Integers<std::uint64_t> names(name_array, "names");
-  const PoseInput pose(poses);
+  PoseInput pose(poses);
+  pose.expect(names.count());
   const std::uint32_t on = c.hosted(rank);
   std::vector<Pose> room;
   c.call([&] { return c.own()->move(on, names.values(), pose.view(room)); }, "move");
@@ -198,9 +204,9 @@ void collide(SharedClusterScene& c, const std::string& level_name) {
   const auto columns = columns_of(std::move(bodies));
   py::dict result;
   result["name"] = given(std::move(names));
-  result["shape"] = columns.column<std::uint32_t>(offsetof(BodyDefinition, shape));
-  result["pose"] = columns.rows<double>(offsetof(BodyDefinition, pose), 7);
-  result["state"] = columns.column<std::uint8_t>(offsetof(BodyDefinition, state));
+  result["shape"] = columns.of(&BodyDefinition::shape);
+  result["pose"] = columns.of(&BodyDefinition::pose);
+  result["state"] = columns.of(&BodyDefinition::state);
   return result;
 }
 
@@ -237,87 +243,35 @@ void restore(SharedClusterScene& c, const std::vector<py::buffer>& saved) {
   for (const Status answer : answers) accept(answer, "restore");
 }
 
-using ClusterSceneClass = py::class_<SharedClusterScene, std::shared_ptr<SharedClusterScene>>;
-
-void add_changes(ClusterSceneClass& type) {
-  using py::arg;
-  constexpr std::uint32_t every = ~0U;
-  type.def("add", &add, arg("names"), arg("shapes"), arg("poses"), arg("state") = "dynamic",
-           arg("layers") = 1, arg("mask") = every, arg("environment") = 0, py::kw_only(),
-           arg("rank") = py::none(),
-           "Adds n bodies: names (n,) uint64 that no other body has, otherwise as Scene.add. A "
-           "process that adds nothing passes empty arrays. Bodies are fixed or dynamic. `rank`: a "
-           "rank of this process, by default its first. Collective.")
-      .def("replicate", &replicate, arg("names"), arg("shapes"), arg("poses"), arg("layers") = 1,
-           arg("mask") = every, arg("environment") = 0,
-           "Adds fixed bodies that are on every rank, such as a ground. Every process passes the "
-           "same bodies. They cannot be removed. Collective.")
-      .def("move_replicated", &move_replicated, arg("names"), arg("poses"),
-           "Sets new poses of replicated bodies, the same on every process. Collective.")
-      .def("move", &move, arg("names"), arg("poses"), py::kw_only(), arg("rank") = py::none(),
-           "Sets new poses of bodies (n,) that belong to a rank, as in Scene.move.")
-      .def("remove", &remove, arg("names"), py::kw_only(), arg("rank") = py::none(),
-           "Removes bodies that belong to a rank.");
-}
-
-void add_answers(ClusterSceneClass& type) {
-  using py::arg;
-  type.def("collide", &collide, arg("level") = "manifold",
-           "Finds all contacts, as Scene.collide; see `contacts`. Moves bodies to the ranks that "
-           "they belong to first. Collective.")
-      .def("contacts", &SharedClusterScene::contacts, arg("rank") = py::none(),
-           "The contacts that a rank of this process reports; all ranks together report all "
-           "contacts. Client data are names. No other call can fill them.")
-      .def("digest", &digest,
-           "A digest, 128 bits as 32 digits, of the contacts of all ranks: the same on any number "
-           "of ranks. Collective.")
-      .def("bodies", &body_columns, arg("rank") = py::none(),
-           "The bodies of a rank: columns name, shape, pose (n, 7), state.")
-      .def("migrated", &migrated, arg("rank") = py::none(),
-           "Names of bodies that the last `collide` moved to this rank, and of bodies that it "
-           "moved to others: (n,) and (m,) uint64.")
-      .def("save", &save, arg("rank") = py::none(),
-           "The state of a rank, without replicated bodies, as bytes.")
-      .def("restore", &restore, arg("saved"),
-           "Adds the bodies that any number of ranks saved: bytes for each rank of this process "
-           "(several concatenated, or none). Replicated bodies must be added again before the "
-           "first `collide`. Collective.");
-}
-
 }  // namespace
 
 void add_cluster_scene(py::module_& module) {
-  using py::arg;
-  ClusterSceneClass type(
-      module, "ClusterScene",
-      "Bodies with shapes on any number of ranks and their contacts: the contacts of one Scene of "
-      "all bodies, to the bit, each on one rank. A body has a name, uint64, and belongs to the "
-      "rank whose region contains it; that rank moves and removes it. Every process must have "
-      "added the same shapes in the same order; no shape can be removed while the cluster exists. "
-      "Collective calls are made by every process, in the same order.");
-  type.def(py::init(&make_cluster), arg("shapes").none(false), arg("comm") = py::none(),
-           arg("ranks") = 1, py::kw_only(), arg("contact_margin") = 0.0, arg("tier") = "robust",
-           arg("contact_reduction") = false,
-           arg("structures") = std::vector<std::string>(kBodyStates, "LinearBvh"),
-           arg("parallel") = true, arg("imbalance") = 1.1,
-           "`comm`, `ranks` and `imbalance` as for Cluster, the others as for Scene.")
-      .def_property_readonly(
-          "statistics",
-          [](const SharedClusterScene& c) {
-            ClusterStatistics found;
-            c.call(
-                [&] {
-                  found = c.cluster().statistics();
-                  return Status::ok;
-                },
-                "statistics");
-            return counters_of(found);
-          },
-          "Counters of all ranks: bodies, ghosts (copies of bodies), pairs, bytes, messages, "
-          "migrated, cuts, imbalance.");
+  Class<SharedClusterScene> type(module, "ClusterScene");
   add_ranks(type);
-  add_changes(type);
-  add_answers(type);
+  type.def(py::init(&make_cluster))
+      .property("statistics",
+                [](const SharedClusterScene& c) {
+                  ClusterStatistics found;
+                  c.call(
+                      [&] {
+                        found = c.cluster().statistics();
+                        return Status::ok;
+                      },
+                      "statistics");
+                  return counters_of(found);
+                })
+      .def("add", &add)
+      .def("replicate", &replicate)
+      .def("move_replicated", &move_replicated)
+      .def("move", &move)
+      .def("remove", &remove)
+      .def("collide", &collide)
+      .def("contacts", &SharedClusterScene::contacts)
+      .def("digest", &digest)
+      .def("bodies", &body_columns)
+      .def("migrated", &migrated)
+      .def("save", &save)
+      .def("restore", &restore);
 }
 
 }  // namespace winnow::python

@@ -31,38 +31,33 @@ namespace {
 
 [[nodiscard]] std::uint32_t add_mesh(SharedShapes& shapes, py::handle vertex_array,
                                      py::handle triangle_array, double active_edge_angle) {
-  const Numbers vertices(vertex_array, "vertices", {3});
-  const Integers<std::uint32_t> triangles(triangle_array, "triangles", 3);
+  const Numbers vertices(vertex_array, "vertices", {3}, Valid::finite);
+  Integers<std::uint32_t> triangles(triangle_array, "triangles", 3);
+  triangles.limit(vertices.count());
   ShapeId id;
-  accept(changing(shapes.mutex,
-                  [&] {
-                    return shapes.composites
-                        .add_mesh(view_of(vertices), IndexView(triangles.values()),
-                                  {active_edge_angle})
-                        .get(id);
-                  }),
-         "add_mesh");
+  change_or_throw(shapes.mutex, "add_mesh", [&] {
+    return shapes.composites
+        .add_mesh(view_of(vertices), IndexView(triangles.values()), {active_edge_angle})
+        .get(id);
+  });
   return id.bits;
 }
 
 [[nodiscard]] std::uint32_t add_scaled(SharedShapes& shapes, std::uint32_t mesh,
                                        const std::array<double, 3>& scale) {
   ShapeId id;
-  accept(
-      changing(shapes.mutex,
-               [&] { return shapes.composites.add_scaled(ShapeId{mesh}, Vec3d(scale)).get(id); }),
-      "add_scaled");
+  change_or_throw(shapes.mutex, "add_scaled", [&] {
+    return shapes.composites.add_scaled(ShapeId{mesh}, Vec3d(scale)).get(id);
+  });
   return id.bits;
 }
 
 void refit_mesh(SharedShapes& shapes, std::uint32_t mesh, py::handle vertex_array) {
-  const Numbers vertices(vertex_array, "vertices", {3});
-  accept(changing(shapes.mutex,
-                  [&] {
-                    ++shapes.revision;
-                    return shapes.composites.refit_mesh(ShapeId{mesh}, view_of(vertices));
-                  }),
-         "refit_mesh");
+  const Numbers vertices(vertex_array, "vertices", {3}, Valid::finite);
+  change_or_throw(shapes.mutex, "refit_mesh", [&] {
+    ++shapes.revision;
+    return shapes.composites.refit_mesh(ShapeId{mesh}, view_of(vertices));
+  });
 }
 
 /// Heights (rows, columns); copied unless each row is contiguous.
@@ -103,43 +98,33 @@ class HeightInput {
                                              const std::array<double, 2>& spacing) {
   const HeightInput input(heights, spacing);
   ShapeId id;
-  accept(changing(shapes.mutex,
-                  [&] { return shapes.composites.add_height_field(input.samples()).get(id); }),
-         "add_height_field");
+  change_or_throw(shapes.mutex, "add_height_field",
+                  [&] { return shapes.composites.add_height_field(input.samples()).get(id); });
   return id.bits;
 }
 
 void update_height_field(SharedShapes& shapes, std::uint32_t field, std::uint32_t column,
                          std::uint32_t row, const py::array& heights) {
   const HeightInput input(heights, {1.0, 1.0});
-  accept(changing(shapes.mutex,
-                  [&] {
-                    ++shapes.revision;
-                    return shapes.composites.update_height_field(ShapeId{field}, column, row,
-                                                                 input.samples());
-                  }),
-         "update_height_field");
+  change_or_throw(shapes.mutex, "update_height_field", [&] {
+    ++shapes.revision;
+    return shapes.composites.update_height_field(ShapeId{field}, column, row, input.samples());
+  });
 }
 
 [[nodiscard]] std::uint32_t add_compound(SharedShapes& shapes, py::handle children,
                                          py::handle poses) {
-  const PoseInput pose(poses);
-  const ShapeInput shape(children, "children");
-  shape.expect(pose.count());
-  std::vector<CompoundChild> list(pose.count());
-  std::vector<ShapeId> used(pose.count());
-  for (std::size_t i = 0; i < list.size(); ++i) {
-    list[i] = {shape[i], pose[i]};
-    used[i] = shape[i];
-  }
+  PoseInput pose(poses);
+  ShapeInput shape(shapes, children, "children");
+  std::vector<CompoundChild> list(agree({&pose, &shape}));
+  const std::vector<ShapeId> used(shape.list().begin(), shape.list().end());
+  for (std::size_t i = 0; i < list.size(); ++i) list[i] = {shape[i], pose[i]};
   ShapeId id;
-  accept(changing(shapes.mutex,
-                  [&] {
-                    const Status status = shapes.composites.add_compound(list).get(id);
-                    if (status == Status::ok) shapes.use(used, 1);
-                    return status;
-                  }),
-         "add_compound");
+  change_or_throw(shapes.mutex, "add_compound", [&] {
+    const Status status = shapes.composites.add_compound(list).get(id);
+    if (status == Status::ok) shapes.use(used, 1);
+    return status;
+  });
   return id.bits;
 }
 
@@ -150,7 +135,7 @@ void update_height_field(SharedShapes& shapes, std::uint32_t field, std::uint32_
   auto own = fresh<std::uint32_t>(part.count());
   std::uint32_t* const to_child = child.mutable_data();
   std::uint32_t* const to_own = own.mutable_data();
-  const Outcome outcome = reading(shapes.mutex, [&] {
+  read_or_throw(shapes.mutex, "compound_parts", [&] {
     for (std::size_t i = 0; i < part.count(); ++i) {
       const CompoundPart found = shapes.composites.part(ShapeId{compound}, part[i]);
       if (found.child == kWholeShape) return Outcome{Status::invalid_key, i};
@@ -159,7 +144,6 @@ void update_height_field(SharedShapes& shapes, std::uint32_t field, std::uint32_
     }
     return Outcome{};
   });
-  accept(outcome.status, outcome.text("compound_parts"));
   return py::make_tuple(child, own);
 }
 
@@ -168,22 +152,21 @@ void update_height_field(SharedShapes& shapes, std::uint32_t field, std::uint32_
 template <typename Set, typename Is>
 void set_each(SharedShapes& shapes, py::handle surface_array, bool now, const char* call, Set&& set,
               Is&& is) {
-  const Integers<std::uint32_t> surfaces(surface_array, "surfaces");
+  const ShapeInput surfaces(shapes, surface_array, "surfaces");
   std::vector<std::uint8_t> was(surfaces.count());
-  const Outcome outcome = changing(shapes.mutex, [&] {
+  change_or_throw(shapes.mutex, call, [&] {
     ++shapes.revision;
     for (std::size_t i = 0; i < was.size(); ++i) {
-      was[i] = is(ShapeId{surfaces[i]}) ? 1 : 0;
-      const Status status = set(ShapeId{surfaces[i]}, now);
+      was[i] = is(surfaces[i]) ? 1 : 0;
+      const Status status = set(surfaces[i], now);
       if (status == Status::ok) continue;
       for (std::size_t k = i; k > 0; --k) {
-        static_cast<void>(set(ShapeId{surfaces[k - 1]}, was[k - 1] != 0));
+        static_cast<void>(set(surfaces[k - 1], was[k - 1] != 0));
       }
       return Outcome{status, i};
     }
     return Outcome{};
   });
-  accept(outcome.status, outcome.text(call));
 }
 
 void set_one_sided(SharedShapes& shapes, py::handle surfaces, bool one_sided) {
@@ -206,12 +189,12 @@ void set_solid(SharedShapes& shapes, py::handle meshes, bool solid) {
 template <typename T, typename Answer>
 [[nodiscard]] py::array of_composites(const SharedShapes& shapes, py::handle id_array,
                                       const char* call, Answer&& answer) {
-  const Integers<std::uint32_t> ids(id_array, "shapes");
+  const ShapeInput ids(shapes, id_array);
   auto result = fresh<T>(ids.count());
   T* const to = result.mutable_data();
-  const Outcome outcome = reading(shapes.mutex, [&] {
+  read_or_throw(shapes.mutex, call, [&] {
     for (std::size_t i = 0; i < ids.count(); ++i) {
-      const ShapeId id{ids[i]};
+      const ShapeId id = ids[i];
       if (!id.is_composite() || !shapes.composites.contains(id)) {
         return Outcome{Status::invalid_key, i};
       }
@@ -219,84 +202,49 @@ template <typename T, typename Answer>
     }
     return Outcome{};
   });
-  accept(outcome.status, outcome.text(call));
   return result;
 }
 
 [[nodiscard]] py::tuple compound_children(const SharedShapes& shapes, std::uint32_t compound) {
   std::vector<CompoundChild> children;
   const ShapeId id{compound};
-  accept(reading(shapes.mutex,
-                 [&] {
-                   const std::span<const CompoundChild> all = shapes.composites.children(id);
-                   children.assign(all.begin(), all.end());
-                   return all.empty() ? Status::invalid_key : Status::ok;
-                 }),
-         "compound_children");
+  read_or_throw(shapes.mutex, "compound_children", [&] {
+    const std::span<const CompoundChild> all = shapes.composites.children(id);
+    children.assign(all.begin(), all.end());
+    return all.empty() ? Status::invalid_key : Status::ok;
+  });
   const auto columns = columns_of(std::move(children));
-  return py::make_tuple(columns.column<std::uint32_t>(offsetof(CompoundChild, shape)),
-                        columns.rows<double>(offsetof(CompoundChild, pose), 7));
+  return py::make_tuple(columns.of(&CompoundChild::shape), columns.of(&CompoundChild::pose));
 }
 
 }  // namespace
 
 void add_composites(ShapesClass& type) {
-  using py::arg;
-  type.def("add_mesh", &add_mesh, arg("vertices"), arg("triangles"),
-           arg("active_edge_angle") = 0.02,
-           "Adds a triangle mesh, vertices (n, 3) and corners (m, 3), and returns its id. Edges at "
-           "which the surface bends by more than the angle, in radians, are active: contacts at "
-           "them have normals of their own.")
-      .def("add_scaled", &add_scaled, arg("mesh"), arg("scale"),
-           "Adds a copy of a mesh that is scaled by three factors and shares its triangles; "
-           "returns the new id.")
-      .def("refit_mesh", &refit_mesh, arg("mesh"), arg("vertices"),
-           "Sets new positions (n, 3) of the vertices of a mesh.")
-      .def("add_height_field", &add_height_field, arg("heights"),
-           arg("spacing") = std::array<double, 2>{1.0, 1.0},
-           "Adds a height field (rows, columns), NaN for holes, with sample (row, column) at "
-           "(column * spacing[0], row * spacing[1], height), and returns its id.")
-      .def("update_height_field", &update_height_field, arg("field"), arg("column"), arg("row"),
-           arg("heights"), "Sets new heights (rows, columns) from (column, row) on.")
-      .def("add_compound", &add_compound, arg("children"), arg("poses"),
-           "Adds a compound of n children, ids (n,) of convex shapes, meshes and height fields, at "
-           "poses (n, 7), and returns its id. Parts are numbered child by child: a convex child is "
-           "one part, a surface has one part for each triangle.")
-      .def("compound_parts", &compound_parts, arg("compound"), arg("parts"),
-           "Child and part of child of the parts (n,) of a compound: (child, part), (n,) uint32 "
-           "each; part is WHOLE_SHAPE for convex children.")
-      .def("compound_children", &compound_children, arg("compound"),
-           "The children of a compound: (ids (n,) uint32, poses (n, 7) float64).")
-      .def(
-          "parts",
-          [](const SharedShapes& shapes, py::handle ids) {
-            return of_composites<std::uint32_t>(
-                shapes, ids, "parts", [&](ShapeId id) { return shapes.composites.parts(id); });
-          },
-          arg("shapes"), "Number of parts of composite shapes (n,): (n,) uint32.")
-      .def("set_one_sided", &set_one_sided, arg("surfaces"), arg("one_sided") = true,
-           "Makes meshes and height fields (n,) one-sided, or two-sided again. The front is the "
-           "side from which corners are counter-clockwise; for height fields it is up. Anything "
-           "behind a one-sided triangle does not collide with it.")
-      .def(
-          "is_one_sided",
-          [](const SharedShapes& shapes, py::handle ids) {
-            return of_composites<bool>(shapes, ids, "is_one_sided", [&](ShapeId id) {
-              return shapes.composites.is_one_sided(id);
-            });
-          },
-          arg("shapes"), "True for composite shapes (n,) that are one-sided: (n,) bool.")
-      .def("set_solid", &set_solid, arg("surfaces"), arg("solid") = true,
-           "Makes meshes (n,) solid, or surfaces again. Solid meshes must be closed, with corners "
-           "counter-clockwise as seen from outside, else invalid_shape. Distance and overlap "
-           "queries of a scene then include the inside.")
-      .def(
-          "is_solid",
-          [](const SharedShapes& shapes, py::handle ids) {
-            return of_composites<bool>(shapes, ids, "is_solid",
-                                       [&](ShapeId id) { return shapes.composites.is_solid(id); });
-          },
-          arg("shapes"), "True for composite shapes (n,) that are solid: (n,) bool.");
+  type.def("add_mesh", &add_mesh)
+      .def("add_scaled", &add_scaled)
+      .def("refit_mesh", &refit_mesh)
+      .def("add_height_field", &add_height_field)
+      .def("update_height_field", &update_height_field)
+      .def("add_compound", &add_compound)
+      .def("compound_parts", &compound_parts)
+      .def("compound_children", &compound_children)
+      .def("parts",
+           [](const SharedShapes& shapes, py::handle ids) {
+             return of_composites<std::uint32_t>(
+                 shapes, ids, "parts", [&](ShapeId id) { return shapes.composites.parts(id); });
+           })
+      .def("set_one_sided", &set_one_sided)
+      .def("is_one_sided",
+           [](const SharedShapes& shapes, py::handle ids) {
+             return of_composites<bool>(shapes, ids, "is_one_sided", [&](ShapeId id) {
+               return shapes.composites.is_one_sided(id);
+             });
+           })
+      .def("set_solid", &set_solid)
+      .def("is_solid", [](const SharedShapes& shapes, py::handle ids) {
+        return of_composites<bool>(shapes, ids, "is_solid",
+                                   [&](ShapeId id) { return shapes.composites.is_solid(id); });
+      });
 }
 
 }  // namespace winnow::python

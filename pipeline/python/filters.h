@@ -5,12 +5,10 @@
 #include "pipeline/python/callbacks.h"
 #include "pipeline/python/init_checks.h"
 #include "pipeline/python/partition.h"
-#include "pipeline/python/shared_scene.h"
 
 #include <winnow/core/filter.h>
 #include <winnow/pipeline/scene.h>
 
-#include <cstdint>
 #include <optional>
 #include <type_traits>
 #include <utility>
@@ -19,22 +17,30 @@ namespace winnow::python {
 
 /// A filter with its Python parts.
 struct PythonFilter : EmptyIfZero {
-  Filter filter;
+  /// Layer and ignored body are for queries of a scene.
+  SceneFilter filter;
   /// A predicate; null accepts all.
   py::object accept;
-  /// For queries of a scene: the layer that the query belongs to.
-  std::optional<std::uint16_t> layer;
 };
 
-/// The filter of one call. `during` raises the exception of the filter's Python function.
+/// The filter of one call, a Filter or a SceneFilter. `during` raises the exception of the filter's
+/// Python function.
 class FilterOfCall {
  public:
-  /// `scene` is the scene that is queried; null for a partition.
-  explicit FilterOfCall(const Scene* scene) noexcept : scene_(scene) {}
+  FilterOfCall() = default;
   FilterOfCall(const FilterOfCall&) = delete;
   FilterOfCall& operator=(const FilterOfCall&) = delete;
 
-  [[nodiscard]] const Filter& of(const PythonFilter& input);
+  /// Null selects all.
+  template <typename F>
+  [[nodiscard]] const F& of(const PythonFilter* input) {
+    if (input != nullptr) take(*input);
+    if constexpr (std::is_same_v<F, Filter>) {
+      return in_partition();
+    } else {
+      return filter_;
+    }
+  }
   template <typename Query>
   auto during(Query&& query) {
     try {
@@ -48,33 +54,32 @@ class FilterOfCall {
   }
 
  private:
-  const Scene* scene_;
-  Filter filter_;
+  void take(const PythonFilter& input);
+  /// Throws if the filter has a layer or an ignored body.
+  [[nodiscard]] const Filter& in_partition();
+
+  SceneFilter filter_;
+  Filter in_partition_;
   std::optional<Predicate> accept_;
-  std::optional<LayerFilter> layer_;
 };
 
-[[nodiscard]] inline const Scene* scene_of(const SharedPartition&) noexcept {
-  return nullptr;
-}
-[[nodiscard]] inline const Scene* scene_of(const SharedScene& s) noexcept {
-  return &s.scene;
-}
+template <typename Argument>
+inline constexpr bool kIsFilter =
+    std::is_same_v<Argument, const Filter&> || std::is_same_v<Argument, const SceneFilter&>;
 
 /// The Python form of an argument of a query.
 template <typename Argument>
-using PythonArgument =
-    std::conditional_t<std::is_same_v<Argument, const Filter&>, const PythonFilter&, Argument>;
+using PythonArgument = std::conditional_t<kIsFilter<Argument>, const PythonFilter*, Argument>;
 
-/// Converts a query that takes a Filter to one that takes a PythonFilter.
+/// Converts a query that takes a Filter or SceneFilter to one that takes a PythonFilter.
 template <typename Answer, typename Owner, typename... Arguments>
 [[nodiscard]] auto filtered(Answer (*query)(Owner, Arguments...)) {
   return [query](Owner owner, PythonArgument<Arguments>... given) -> Answer {
-    FilterOfCall call(scene_of(owner));
+    FilterOfCall call;
     const auto pass = [&call]<typename Argument>(PythonArgument<Argument>& one,
                                                  std::type_identity<Argument>) -> Argument {
-      if constexpr (std::is_same_v<Argument, const Filter&>) {
-        return call.of(one);
+      if constexpr (kIsFilter<Argument>) {
+        return call.of<std::remove_cvref_t<Argument>>(one);
       } else {
         return static_cast<Argument>(one);
       }

@@ -89,18 +89,8 @@ void call_log_hook(const LogEntry& entry) {
 }  // namespace
 
 void add_hooks(py::module_& module) {
-  using py::arg;
-  module.def(
-      "set_stage_hook", &exchange_stage_hook, arg("hook"),
-      "Sets a process-wide hook: `hook(stage, begins)` is called at the begin and end of each "
-      "stage of work, by the thread that called winnow: 'refresh', 'build', 'pairs', 'mid_phase', "
-      "'narrow_phase' or 'contacts'. Stages nest. None removes the hook; returns the old one. A "
-      "hook must not call winnow (unsupported); its exceptions go to sys.unraisablehook.");
-  module.def(
-      "set_log_hook", &exchange_log_hook, arg("hook"),
-      "Sets a process-wide hook: `hook(entry)` is called, as the stage hook, with a dict: kind "
-      "'choice' if AutoPartition changed its structure (what, before, reason, objects), kind "
-      "'refusal' if a call of a partition or scene failed (what, reason, status).");
+  add_function(module, "set_stage_hook", &exchange_stage_hook);
+  add_function(module, "set_log_hook", &exchange_log_hook);
   py::module_::import("atexit").attr("register")(py::cpp_function([] {
     set_stage_hook(nullptr);
     set_log_hook(nullptr);

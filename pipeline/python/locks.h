@@ -46,4 +46,16 @@ auto changing(std::shared_mutex& mutex, Body&& body) {
   return std::forward<Body>(body)();
 }
 
+/// Runs body() with shared access; throws unless its status is ok. `call` is for messages.
+template <typename Body>
+void read_or_throw(std::shared_mutex& mutex, const char* call, Body&& body) {
+  accept(reading(mutex, std::forward<Body>(body)), call);
+}
+
+/// Runs body() with exclusive access; throws unless its status is ok.
+template <typename Body>
+void change_or_throw(std::shared_mutex& mutex, const char* call, Body&& body) {
+  accept(changing(mutex, std::forward<Body>(body)), call);
+}
+
 }  // namespace winnow::python

@@ -5,7 +5,6 @@
 
 #include "pipeline/python/cluster.h"
 #include "pipeline/python/deformable.h"
-#include "pipeline/python/drawing.h"
 #include "pipeline/python/filters.h"
 #include "pipeline/python/hooks.h"
 #include "pipeline/python/impacts.h"
@@ -52,7 +51,9 @@ const char* meaning(Status status) noexcept {
 }
 
 void accept(Status status, const std::string& what) {
-  if (status != Status::ok) throw Refusal(status, what + ": " + meaning(status));
+  if (status == Status::ok) return;
+  const std::string fault = Input::first_fault(status);
+  throw Refusal(status, fault.empty() ? what + ": " + meaning(status) : fault);
 }
 
 namespace {
@@ -73,13 +74,9 @@ void raise(const Refusal& refusal) {
 
 void add_errors(py::module_& module) {
   py::dict members;
-  members["status"] = "";
-  status_error = PyErr_NewExceptionWithDoc(
-      "winnow.StatusError",
-      "A call failed and has changed nothing. `status` is the reason: invalid_bounds, invalid_key, "
-      "invalid_argument, size_mismatch, too_many_objects, unsupported_volume, invalid_shape, "
-      "invalid_pose or unsupported. out_of_memory raises a MemoryError.",
-      PyExc_ValueError, members.ptr());
+  members["status"] = to_string(Status::ok);
+  status_error = PyErr_NewExceptionWithDoc("winnow.StatusError", described({}, "StatusError").text,
+                                           PyExc_ValueError, members.ptr());
   if (status_error == nullptr) throw py::error_already_set();
   module.add_object("StatusError", py::reinterpret_borrow<py::object>(status_error));
   py::register_exception_translator([](std::exception_ptr thrown) {
@@ -92,19 +89,15 @@ void add_errors(py::module_& module) {
 }
 
 [[nodiscard]] py::tuple outward(py::handle lower, py::handle upper, py::handle origin) {
-  const Numbers low(lower, "lower", {3});
+  Numbers low(lower, "lower", {3});
   Numbers high(upper, "upper", {3});
-  high.expect(low.count());
-  Numbers from(origin, "origin", {3}, true);
-  from.expect(low.count());
-  auto down = fresh<float>(low.count(), 3);
-  auto up = fresh<float>(low.count(), 3);
+  Numbers from(origin, "origin", {3});
+  const std::size_t count = agree({&low, &high, &from});
+  auto down = fresh<float>(count, 3);
+  auto up = fresh<float>(count, 3);
   float* to[2] = {down.mutable_data(), up.mutable_data()};
-  const auto place = [](const Numbers& numbers, std::size_t i) {
-    return Vec3d(numbers.at(i, 0), numbers.at(i, 1), numbers.at(i, 2));
-  };
-  for (std::size_t i = 0; i < low.count(); ++i) {
-    const Aabb box = Aabb::outward(place(low, i), place(high, i), place(from, i));
+  for (std::size_t i = 0; i < count; ++i) {
+    const Aabb box = Aabb::outward(low.vector(i), high.vector(i), from.vector(i));
     for (int axis = 0; axis < 3; ++axis) {
       *to[0]++ = box.min[axis];
       *to[1]++ = box.max[axis];
@@ -114,26 +107,21 @@ void add_errors(py::module_& module) {
 }
 
 void add_instruction_sets(py::module_& module) {
-  module.def(
-      "isa_name", [] { return std::string(isa_name()); },
-      "The instruction set in use: sse42, avx2, avx512 or neon64.");
-  module.def(
-      "available_isas",
-      [] {
-        std::vector<std::string> names;
-        for (const Isa isa : available_isas()) names.emplace_back(to_string(isa));
-        return names;
-      },
-      "Instruction sets of this build that the machine supports, narrowest first.");
-  module.def(
-      "set_isa",
-      [](const std::string& name) { accept(set_isa(std::string_view(name)), "set_isa"); },
-      py::arg("name"), "Chooses an instruction set for the whole process.");
+  add_function(module, "isa_name", [] { return std::string(isa_name()); });
+  add_function(module, "available_isas", [] {
+    std::vector<std::string> names;
+    for (const Isa isa : available_isas()) names.emplace_back(to_string(isa));
+    return names;
+  });
+  add_function(module, "set_isa",
+               [](const std::string& name) { accept(set_isa(std::string_view(name)), "set_isa"); });
 }
 
 }  // namespace
 
 PYBIND11_MODULE(_core, module) {
+  py::options texts;
+  texts.disable_function_signatures();  // the stubs state them
   module.doc() = "The C++ part of winnow; use the package `winnow`.";
   module.attr("__version__") = WINNOW_PROJECT_VERSION;
   add_errors(module);
@@ -141,17 +129,10 @@ PYBIND11_MODULE(_core, module) {
   module.attr("NO_OBJECT") = kNoObject;
   module.attr("WHOLE_SHAPE") = kWholeShape;
   module.attr("EVERY_ENVIRONMENT") = kAllEnvironments;
-  module.def("outward", &outward, py::arg("lower"), py::arg("upper"), py::arg("origin"),
-             "The smallest float boxes, (n, 3) float32 each, that contain boxes in double, "
-             "measured from `origin`, (n, 3) or (3,): for worlds far from 0.");
+  add_function(module, "outward", &outward);
   add_instruction_sets(module);
-  add_drawing(module);
   add_recordings(module);
-  PartitionClass partition(
-      module, "Partition",
-      "Stores boxes, returns keys, and finds pairs that may touch; it never misses a pair. Any "
-      "number of threads may call it. A call that raises changes nothing. Other threads must not "
-      "write to arrays while a call reads them.");
+  PartitionClass partition(module, "Partition");
   add_filters(module);
   add_hooks(module);
   add_queries(module, partition);

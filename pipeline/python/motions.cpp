@@ -2,9 +2,12 @@
 
 #include "pipeline/python/motions.h"
 
+#include "pipeline/python/arrays.h"
+#include "pipeline/python/described.h"
 #include "pipeline/python/gil.h"
 #include "pipeline/python/refusal.h"
 
+#include <cmath>
 #include <cstddef>
 #include <cstring>
 #include <string>
@@ -27,6 +30,16 @@ std::span<const RigidMotion> RigidMotionInput::packed(std::vector<RigidMotion>& 
   room.resize(count());
   for (std::size_t i = 0; i < room.size(); ++i) room[i] = (*this)[i];
   return room;
+}
+
+std::string RigidMotionInput::fault(Status status) const {
+  for (std::size_t i = 0; status == Status::invalid_pose && i < count(); ++i) {
+    double sum = 0.0;
+    for (std::size_t k = 0; k < kMotionNumbers; ++k) sum += numbers_.at(i, k);
+    if (std::isnan(sum)) return place(i) + " has a NaN";
+    if (!(*this)[i].is_valid()) return place(i) + " is not finite, or turns too far";
+  }
+  return {};
 }
 
 namespace {
@@ -61,36 +74,31 @@ template <typename Make>
 }
 
 [[nodiscard]] py::array between(py::handle starts, py::handle ends) {
-  const PoseInput start(starts);
-  const PoseInput end(ends);
-  if (start.count() != end.count()) {
-    throw Refusal(Status::size_mismatch, "motions_between: start and end differ in length");
-  }
-  return motion_rows(start.count(), "motions_between",
+  PoseInput start(starts, "start");
+  PoseInput end(ends, "end");
+  return motion_rows(agree({&start, &end}), "motions_between",
                      [&](std::size_t i) { return RigidMotion::between(start[i], end[i]); });
 }
 
 [[nodiscard]] py::array by_velocities(py::handle poses, py::handle linears, py::handle angulars,
                                       py::handle durations) {
-  const PoseInput pose(poses);
-  Numbers linear(linears, "linear", {3}, true);
-  Numbers angular(angulars, "angular", {3}, true);
-  Numbers duration(durations, "duration", {}, true);
-  for (Numbers* each : {&linear, &angular, &duration}) each->expect(pose.count());
-  return motion_rows(pose.count(), "motions_by_velocities", [&](std::size_t i) {
-    return RigidMotion::by_velocities(pose[i], {linear.at(i, 0), linear.at(i, 1), linear.at(i, 2)},
-                                      {angular.at(i, 0), angular.at(i, 1), angular.at(i, 2)},
-                                      duration.at(i));
+  PoseInput pose(poses);
+  Numbers linear(linears, "linear", {3}, Valid::finite);
+  Numbers angular(angulars, "angular", {3}, Valid::finite);
+  Numbers duration(durations, "duration", {}, Valid::finite);
+  const std::size_t count = agree({&pose, &linear, &angular, &duration});
+  return motion_rows(count, "motions_by_velocities", [&](std::size_t i) {
+    return RigidMotion::by_velocities(pose[i], linear.vector(i), angular.vector(i), duration.at(i));
   });
 }
 
 [[nodiscard]] py::array poses_at(py::handle motions, py::handle times) {
-  const RigidMotionInput motion(motions);
-  Numbers time(times, "times", {}, true);
-  time.expect(motion.count());
-  auto rows = fresh<double>(motion.count(), 7);
+  RigidMotionInput motion(motions);
+  Numbers time(times, "times", {}, Valid::fraction);
+  const std::size_t count = agree({&motion, &time});
+  auto rows = fresh<double>(count, 7);
   double* const to = rows.mutable_data();
-  write_each(motion.count(), "poses_at", [&](std::size_t i) {
+  write_each(count, "poses_at", [&](std::size_t i) {
     const RigidMotion one = motion[i];
     const double t = time.at(i);
     if (!one.is_valid()) return Status::invalid_pose;
@@ -106,19 +114,9 @@ template <typename Make>
 }  // namespace
 
 void add_motions(py::module_& module) {
-  using py::arg;
-  module.def("motions_between", &between, arg("start"), arg("end"),
-             "Motions between poses (n, 7), (n, 3) or tuples, from time 0 to 1: (n, 13) float64 of "
-             "the pose at the start (x, y, z and a quaternion w, x, y, z), the translation, and "
-             "the rotation, an axis in the world times an angle in radians; both at constant "
-             "speed. The rotation is the shorter one.");
-  module.def("motions_by_velocities", &by_velocities, arg("poses"), arg("linear"), arg("angular"),
-             arg("duration") = 1.0,
-             "Motions of bodies at poses (n, 7) with velocities, linear and angular (n, 3) or "
-             "(3,), in lengths and radians per unit of time, during `duration` units, (n,) or one "
-             "for all. At most 1e6 radians.");
-  module.def("poses_at", &poses_at, arg("motions"), arg("times"),
-             "Poses of motions (n, 13) at times in [0, 1], (n,) or one for all: (n, 7) float64.");
+  add_function(module, "motions_between", &between);
+  add_function(module, "motions_by_velocities", &by_velocities);
+  add_function(module, "poses_at", &poses_at);
 }
 
 }  // namespace winnow::python

@@ -1,6 +1,7 @@
 // Pair filters of a scene (filters, layers, ignored pairs, predicate), offsets of bodies, and
 // groups of contacts.
 
+#include "pipeline/python/batch.h"
 #include "pipeline/python/bodies.h"
 #include "pipeline/python/contact_choices.h"
 
@@ -27,8 +28,8 @@ void set_of_each(SharedScene& s, std::span<const Key> keys, const char* call, Se
 
 void set_filter(SharedScene& s, py::handle key_array, py::handle layers, py::handle mask,
                 py::handle environment) {
-  const KeyInput keys(key_array);
-  const FilterInput filter(layers, mask, environment);
+  const KeyInput keys(s, key_array);
+  FilterInput filter(layers, mask, environment);
   filter.expect(keys.count());
   const std::span<const Key> list = keys.keys();
   set_of_each(
@@ -39,7 +40,7 @@ void set_filter(SharedScene& s, py::handle key_array, py::handle layers, py::han
 }
 
 void set_offsets(SharedScene& s, py::handle key_array, py::handle contact, py::handle rest) {
-  const KeyInput keys(key_array);
+  const KeyInput keys(s, key_array);
   OffsetInput offsets(contact, rest);
   offsets.expect(keys.count());
   const std::span<const Key> list = keys.keys();
@@ -52,8 +53,8 @@ void set_offsets(SharedScene& s, py::handle key_array, py::handle contact, py::h
 }
 
 void set_layer(SharedScene& s, py::handle key_array, py::handle layer_array) {
-  const KeyInput keys(key_array);
-  const LayerInput layer(layer_array, "layer");
+  const KeyInput keys(s, key_array);
+  LayerInput layer(layer_array, "layer");
   layer.expect(keys.count());
   const std::span<const Key> list = keys.keys();
   set_of_each(
@@ -81,34 +82,26 @@ struct LayerPairs {
 void set_layers_collide(SharedScene& s, py::handle pairs, bool collide) {
   const LayerPairs layers(pairs);
   std::vector<std::uint8_t> before(layers.numbers.count());
-  accept(changing_scene(s,
-                        [&] {
-                          return set_all(
-                              before.size(),
-                              [&](std::size_t i) {
-                                const std::uint16_t a = layers.layer(i, 0);
-                                const std::uint16_t b = layers.layer(i, 1);
-                                before[i] = s.scene.layers_collide(a, b) ? 1 : 0;
-                                return s.scene.set_layers_collide(a, b, collide);
-                              },
-                              [&](std::size_t i) {
-                                return s.scene.set_layers_collide(
-                                    layers.layer(i, 0), layers.layer(i, 1), before[i] != 0);
-                              });
-                        }),
-         "set_layers_collide");
+  change_scene_or_throw(s, "set_layers_collide", [&] {
+    return set_all(
+        before.size(),
+        [&](std::size_t i) {
+          const std::uint16_t a = layers.layer(i, 0);
+          const std::uint16_t b = layers.layer(i, 1);
+          before[i] = s.scene.layers_collide(a, b) ? 1 : 0;
+          return s.scene.set_layers_collide(a, b, collide);
+        },
+        [&](std::size_t i) {
+          return s.scene.set_layers_collide(layers.layer(i, 0), layers.layer(i, 1), before[i] != 0);
+        });
+  });
 }
 
 [[nodiscard]] py::array layers_collide(const SharedScene& s, py::handle pairs) {
   const LayerPairs layers(pairs);
-  auto result = fresh<bool>(layers.numbers.count());
-  bool* const to = result.mutable_data();
-  reading(s.mutex, [&] {
-    for (std::size_t i = 0; i < layers.numbers.count(); ++i) {
-      to[i] = s.scene.layers_collide(layers.layer(i, 0), layers.layer(i, 1));
-    }
+  return each_answer<bool>(s.mutex, layers.numbers.count(), [&](std::size_t i) {
+    return s.scene.layers_collide(layers.layer(i, 0), layers.layer(i, 1));
   });
-  return result;
 }
 
 /// Pairs of keys, read in place.
@@ -126,33 +119,22 @@ class KeyPairInput {
 
 void set_ignored(SharedScene& s, py::handle pair_array, bool ignored) {
   const KeyPairInput pairs(pair_array);
-  accept(changing_scene(s, [&] { return s.scene.set_ignored(pairs.pairs(), ignored); }),
-         "set_ignored");
+  change_scene_or_throw(s, "set_ignored",
+                        [&] { return s.scene.set_ignored(pairs.pairs(), ignored); });
 }
 
 [[nodiscard]] py::array is_ignored(const SharedScene& s, py::handle pair_array) {
   const KeyPairInput input(pair_array);
   const std::span<const KeyPair> pairs = input.pairs();
-  auto result = fresh<bool>(pairs.size());
-  bool* const to = result.mutable_data();
-  reading(s.mutex, [&] {
-    for (std::size_t i = 0; i < pairs.size(); ++i) {
-      to[i] = s.scene.is_ignored(pairs[i].first, pairs[i].second);
-    }
+  return each_answer<bool>(s.mutex, pairs.size(), [&](std::size_t i) {
+    return s.scene.is_ignored(pairs[i].first, pairs[i].second);
   });
-  return result;
 }
 
 // --- groups of contacts ------------------------------------------------------------------------
 
-struct GroupTable : EmptyIfZero {
-  py::array group;
-  py::array first;
-  py::array order;
-};
-
 template <typename Make>
-[[nodiscard]] GroupTable groups_of(const SharedScene& s, const HeldContacts& contacts,
+[[nodiscard]] py::object groups_of(const SharedScene& s, const HeldContacts& contacts,
                                    const char* call, Make&& make) {
   const std::unique_lock<std::mutex> held = contacts.hold();
   ContactGroups groups;
@@ -164,70 +146,35 @@ template <typename Make>
     order.insert(order.end(), pairs.begin(), pairs.end());
     first.push_back(static_cast<std::uint32_t>(order.size()));
   }
-  return {{},
-          given(std::vector(groups.group().begin(), groups.group().end())),
-          given(std::move(first)),
-          given(std::move(order))};
+  return table("ContactGroups", given(std::vector(groups.group().begin(), groups.group().end())),
+               given(std::move(first)), given(std::move(order)));
 }
 
-[[nodiscard]] GroupTable islands(const SharedScene& s, const HeldContacts& contacts) {
+[[nodiscard]] py::object islands(const SharedScene& s, const HeldContacts& contacts) {
   return groups_of(s, contacts, "islands", [&](const Contacts& from, ContactGroups& out) {
     return s.scene.islands(from, out);
   });
 }
 
-[[nodiscard]] GroupTable colours(const SharedScene& s, const HeldContacts& contacts) {
+[[nodiscard]] py::object colours(const SharedScene& s, const HeldContacts& contacts) {
   return groups_of(s, contacts, "colours", [&](const Contacts& from, ContactGroups& out) {
     return s.scene.colours(from, out);
   });
 }
 
-void add_groups(py::module_& module, SceneClass& scene) {
-  using py::arg;
-  module.attr("REST_COLOUR") = kRestColour;
-  py::class_<GroupTable>(module, "ContactGroups", "Groups of contact pairs, none of them empty.")
-      .def_readonly("group", &GroupTable::group, "Group of each pair of the contacts: (n,) uint32.")
-      .def_readonly(
-          "first", &GroupTable::first,
-          "The pairs of group g are order[first[g]] to order[first[g + 1]]: (g + 1,) uint32.")
-      .def_readonly("order", &GroupTable::order,
-                    "Pairs sorted by group, ascending in each: (n,) uint32.");
-  scene
-      .def("islands", &islands, arg("contacts"),
-           "Islands of the pairs in contacts that this scene filled last: pairs connected by "
-           "bodies that are not fixed. invalid_key for other contacts.")
-      .def("colours", &colours, arg("contacts"),
-           "Groups in which no two pairs share a body that is not fixed, so that they can be "
-           "solved in parallel; except group REST_COLOUR, the pairs that got no colour.");
-}
-
 }  // namespace
 
 void add_pair_filter(py::module_& module, SceneClass& scene) {
-  using py::arg;
-  constexpr std::uint32_t every = ~0U;
-  scene
-      .def("set_filter", &set_filter, arg("keys"), arg("layers") = 1, arg("mask") = every,
-           arg("environment") = 0, "As Partition.set_filter.")
-      .def("set_offsets", &set_offsets, arg("keys"), arg("contact"), arg("rest") = 0.0,
-           "Sets contact and rest offsets. Two bodies are in contact from a gap of the sum of "
-           "their `contact` on, in addition to the scene's contact margin, and rest at a distance "
-           "of the "
-           "sum of their `rest`: (n,) lengths, or one for all, contact >= 0 and >= rest.")
-      .def("set_layer", &set_layer, arg("keys"), arg("layer"),
-           "Puts bodies into layers, (n,) below 4096 or one for all: see `set_layers_collide`. "
-           "These "
-           "are independent of the 32 layers of a filter.")
-      .def("set_layers_collide", &set_layers_collide, arg("layers"), arg("collide") = true,
-           "Sets whether bodies of two layers, pairs (n, 2), collide. By default all do.")
-      .def("layers_collide", &layers_collide, arg("layers"),
-           "True for pairs of layers (n, 2) that collide.")
-      .def("set_ignored", &set_ignored, arg("pairs"), arg("ignored") = true,
-           "Makes pairs of bodies, keys (n, 2), never collide, whatever their filters are; or "
-           "collide again. All or none.")
-      .def("is_ignored", &is_ignored, arg("pairs"),
-           "True for pairs of keys (n, 2) that are ignored: (n,) bool.");
-  add_groups(module, scene);
+  module.attr("REST_COLOUR") = kRestColour;
+  scene.def("set_filter", &set_filter)
+      .def("set_offsets", &set_offsets)
+      .def("set_layer", &set_layer)
+      .def("set_layers_collide", &set_layers_collide)
+      .def("layers_collide", &layers_collide)
+      .def("set_ignored", &set_ignored)
+      .def("is_ignored", &is_ignored)
+      .def("islands", &islands)
+      .def("colours", &colours);
 }
 
 }  // namespace winnow::python

@@ -69,16 +69,13 @@ namespace {
     changes = &events->to_fill("events");
   }
   std::shared_ptr<PairBuffer> out;
-  accept(reading(p.mutex,
-                 [&] {
-                   out = p.take_pairs(incremental, changes != nullptr);
-                   const Status status = changes == nullptr
-                                             ? p.partition.self_pairs(*out, options)
+  read_or_throw(p.mutex, "self_pairs", [&] {
+    out = p.take_pairs(incremental, changes != nullptr);
+    const Status status = changes == nullptr ? p.partition.self_pairs(*out, options)
                                              : p.partition.self_pairs(*out, *changes, options);
-                   if (status == Status::ok) p.keep_pairs(out);
-                   return status;
-                 }),
-         "self_pairs");
+    if (status == Status::ok) p.keep_pairs(out);
+    return status;
+  });
   return shown_pairs(out);
 }
 
@@ -128,78 +125,40 @@ template <typename OfTwo>
 }  // namespace
 
 void add_pairs(py::module_& module, PartitionClass& partition) {
-  using py::arg;
-  py::class_<Events, std::shared_ptr<Events>>(
-      module, "PairEvents", "Changes of pairs between two frames. Each access returns a new array.")
-      .def(py::init([](bool client_data) { return std::make_shared<Events>(client_data); }),
-           py::kw_only(), arg("client_data") = false,
-           "Events without a last frame. With `client_data` they include it, for 8 bytes an object "
-           "and 16 a pair that begins or ends.")
-      .def_property_readonly(
-          "begun",
-          [](const Events& e) {
-            const auto held = e.hold();
-            return twos(e.value()->begun());
-          },
-          "Pairs of this frame that are not in the last one: (m, 2) uint64 of keys, sorted by id.")
-      .def_property_readonly(
-          "ended",
-          [](const Events& e) {
-            const auto held = e.hold();
-            return twos(e.value()->ended());
-          },
-          "Pairs of the last frame that are not in this one: (m, 2) uint64 of keys, sorted by id; "
-          "keys of removed objects are stale.")
-      .def_property_readonly(
-          "begun_data",
-          [](const Events& e) {
-            const auto held = e.hold();
-            return twos(e.value()->begun_data());
-          },
-          "Client data of the pairs in `begun`: (m, 2) uint64; (0, 2) without `client_data`.")
-      .def_property_readonly(
-          "ended_data",
-          [](const Events& e) {
-            const auto held = e.hold();
-            return twos(e.value()->ended_data());
-          },
-          "Client data of the pairs in `ended`, including removed objects: (m, 2) uint64; (0, 2) "
-          "without `client_data`.")
-      .def_property_readonly(
-          "persisting",
-          [](const Events& e) {
-            const auto held = e.hold();
-            return e.value()->persisting();
-          },
-          "Number of pairs that are in both frames.")
-      .def(
-          "clear",
-          [](const Events& e) {
-            const auto held = e.hold();
-            e.to_fill("events").clear();
-          },
-          "Forgets everything.");
-  partition
-      .def("self_pairs", &self_pairs, arg("events") = py::none(), py::kw_only(),
-           arg("order") = "fast", arg("incremental") = true, arg("predicate") = py::none(),
-           "Finds all pairs of objects whose volumes overlap: (m, 2) uint32 of ids, first < "
-           "second. The array is a read-only view that never changes. Drop it before the next "
-           "call, which then updates it in place if few objects moved; else pairs are written to "
-           "another buffer. `order`: 'fast' or 'canonical' (sorted). With `events`, the changes "
-           "since the last call are written there. `predicate(first, second)`, which cannot be "
-           "combined with events (unsupported), is called for each pair of ids and decides. Calls "
-           "come from any working thread, one at a time, because each needs the GIL; filters, or a "
-           "test of the resulting array of pairs, are much faster. It must not call winnow "
-           "(unsupported); this call raises its exceptions.")
-      .def("pair_changes", &pair_changes, arg("events"), py::kw_only(),
-           arg("predicate") = py::none(),
-           "Finds only the changes of all pairs since the last call with these events, in time "
-           "proportional to the objects that moved, or with a `predicate`, as in `self_pairs`, in "
-           "the time of all pairs. If the predicate raises, the events are cleared.")
-      .def("pairs_with", &pairs_with, arg("other"), py::kw_only(), arg("order") = "fast",
-           arg("predicate") = py::none(),
-           "All pairs (object of this, object of `other`) whose boxes overlap: (m, 2) uint32 of "
-           "ids. `predicate` as in `self_pairs`.");
+  Class<Events>(module, "PairEvents")
+      .def(py::init([](bool client_data) { return std::make_shared<Events>(client_data); }))
+      .property("begun",
+                [](const Events& e) {
+                  const auto held = e.hold();
+                  return twos(e.value()->begun());
+                })
+      .property("ended",
+                [](const Events& e) {
+                  const auto held = e.hold();
+                  return twos(e.value()->ended());
+                })
+      .property("begun_data",
+                [](const Events& e) {
+                  const auto held = e.hold();
+                  return twos(e.value()->begun_data());
+                })
+      .property("ended_data",
+                [](const Events& e) {
+                  const auto held = e.hold();
+                  return twos(e.value()->ended_data());
+                })
+      .property("persisting",
+                [](const Events& e) {
+                  const auto held = e.hold();
+                  return e.value()->persisting();
+                })
+      .def("clear", [](const Events& e) {
+        const auto held = e.hold();
+        e.to_fill("events").clear();
+      });
+  partition.def("self_pairs", &self_pairs)
+      .def("pair_changes", &pair_changes)
+      .def("pairs_with", &pairs_with);
 }
 
 }  // namespace winnow::python

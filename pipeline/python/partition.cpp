@@ -69,18 +69,24 @@ namespace {
   return std::make_shared<SharedPartition>(structure_with(structure, loose), options, recorder);
 }
 
-void reserve(SharedPartition& p, std::size_t objects, std::size_t pairs, bool touch) {
+void reserve(SharedPartition& p, std::size_t objects, std::size_t pairs, bool touch,
+             Events* events) {
   const Pages pages = touch ? Pages::prefaulted : Pages::untouched;
-  accept(changing(p.mutex,
-                  [&] {
-                    const Status status = p.partition.reserve(objects, pages);
-                    if (status != Status::ok || pairs == 0) return status;
-                    const std::shared_ptr<PairBuffer> out = p.take_pairs(true);
-                    const Status reserved = p.partition.reserve_pairs(*out, pairs, pages);
-                    p.keep_pairs(out);
-                    return reserved;
-                  }),
-         "reserve");
+  std::unique_lock<std::mutex> filling;
+  PairEvents* changes = nullptr;
+  if (events != nullptr) {
+    filling = events->hold();
+    changes = &events->to_fill("events");
+  }
+  change_or_throw(p.mutex, "reserve", [&] {
+    const Status status = p.partition.reserve(objects, pages);
+    if (status != Status::ok || pairs == 0) return status;
+    const std::shared_ptr<PairBuffer> out = p.take_pairs(true);
+    const Status reserved = p.partition.reserve_pairs(*out, pairs, pages);
+    p.keep_pairs(out);
+    if (reserved != Status::ok || changes == nullptr) return reserved;
+    return p.partition.reserve_events(*changes, pairs, false, pages);
+  });
 }
 
 [[nodiscard]] py::dict statistics_dict(const SharedPartition& p) {
@@ -116,118 +122,72 @@ void reserve(SharedPartition& p, std::size_t objects, std::size_t pairs, bool to
   return result;
 }
 
-[[nodiscard]] Drawing draw(const SharedPartition& p, bool objects, bool structure, bool labels,
-                           int max_depth) {
+[[nodiscard]] py::object draw(const SharedPartition& p, bool objects, bool structure, bool labels,
+                              int max_depth) {
   Drawing drawing;
-  accept(reading(p.mutex,
-                 [&] {
-                   return p.partition.debug_draw(drawing, {objects, structure, labels, max_depth});
-                 }),
-         "debug_draw");
-  return drawing;
-}
-
-void add_itself(PartitionClass& partition) {
-  using py::arg;
-  partition
-      .def(py::init(&make_partition), arg("structure") = "LinearBvh", py::kw_only(),
-           arg("volume") = "aabb", arg("fat_margin") = 0.0F, arg("fat_margin_share") = 0.0F,
-           arg("parallel") = true, arg("build_budget") = 0, arg("loose") = py::none(),
-           arg("recorder") = py::none(),
-           "An empty partition. `structure`: the spatial structure (see `structures`). `volume`: "
-           "the bounding volume of objects: 'aabb', 'sphere', 'kdop14', 'kdop18' or 'kdop26'. "
-           "Volumes are stored larger by `fat_margin` (a length) + `fat_margin_share` * longest "
-           "edge: "
-           "moves within this margin are free. `loose`: parameter of LooseOctree and "
-           "LooseQuadtree. `recorder`: records all calls.")
-      .def(
-          "clear",
-          [](SharedPartition& p) {
-            changing(p.mutex, [&] { p.partition.clear(); });
-            p.count_changes(~std::size_t{0} / 8);
-          },
-          "Removes every object and keeps the memory.")
-      .def(
-          "release_memory",
-          [](SharedPartition& p) {
-            changing(p.mutex, [&] {
-              p.partition.release_memory();
-              p.room = {};
-              p.keep_pairs(nullptr);
-              p.pair_pool->release();
-              p.hit_pool->release();
-            });
-          },
-          "Frees memory that an empty partition, or scratch, holds.")
-      .def("reserve", &reserve, arg("objects"), arg("pairs") = 0, arg("touch") = false,
-           "Reserves the memory for a first frame with this many objects and pairs; `touch` writes "
-           "to each page of it.")
-      .def(
-          "refresh",
-          [](const SharedPartition& p) {
-            accept(reading(p.mutex, [&] { return p.partition.refresh(); }), "refresh");
-          },
-          "Brings the structure up to date now rather than in the next query.")
-      .def(
-          "set_structure",
-          [](SharedPartition& p, const std::string& name, std::optional<float> loose) {
-            const StructureKind kind = structure_with(name, loose);
-            accept(changing(p.mutex, [&] { return p.partition.set_structure(kind); }),
-                   "set_structure");
-          },
-          arg("structure"), arg("loose") = py::none(),
-          "Replaces the structure; objects, keys, filters and events stay.")
-      .def_property_readonly(
-          "structure",
-          [](const SharedPartition& p) {
-            return reading(p.mutex, [&] { return std::string(p.partition.name()); });
-          },
-          "Name of the current structure, as it was set.")
-      .def_property_readonly(
-          "volume",
-          [](const SharedPartition& p) { return name_of(kVolumes, p.partition.volume()); },
-          "The bounding volume of objects.")
-      .def_property_readonly(
-          "fat_margin",
-          [](const SharedPartition& p) {
-            const FatMargin m = p.partition.fat_margin();
-            return py::make_tuple(m.distance, m.share);
-          },
-          "Fat margin: (length, share of the longest edge).")
-      .def_property_readonly(
-          "is_exact",
-          [](const SharedPartition& p) {
-            return reading(p.mutex, [&] { return p.partition.is_exact(); });
-          },
-          "True if `self_pairs` gives exactly the pairs whose given boxes "
-          "overlap.")
-      .def("choice", &choice_dict,
-           "The structure that AutoPartition uses and the reason, with the properties of the "
-           "scene; for any other structure that structure itself.")
-      .def("statistics", &statistics_dict, "Counters of its state and work, no timings.")
-      .def(
-          "footprint",
-          [](const SharedPartition& p) {
-            return footprint_dict(reading(p.mutex, [&] { return p.partition.footprint(); }));
-          },
-          "Bytes (used, reserved) by purpose.")
-      .def("debug_draw", &draw, py::kw_only(), arg("objects") = true, arg("structure") = true,
-           arg("labels") = false, arg("max_depth") = 64,
-           "The objects and the structure as boxes, lines, spheres and texts. O(n).");
+  read_or_throw(p.mutex, "debug_draw", [&] {
+    return p.partition.debug_draw(drawing, {objects, structure, labels, max_depth});
+  });
+  return drawing.shown();
 }
 
 }  // namespace
 
 void add_partition(py::module_& module, PartitionClass& partition) {
-  add_itself(partition);
-  module.def(
-      "structures",
-      [] {
-        std::vector<std::string> names;
-        for (const StructureKind& kind : all_structures()) names.emplace_back(kind.name());
-        return names;
-      },
-      "Names of all structures.");
+  partition.def(py::init(&make_partition))
+      .def("clear",
+           [](SharedPartition& p) {
+             changing(p.mutex, [&] { p.partition.clear(); });
+             p.count_changes(~std::size_t{0} / 8);
+           })
+      .def("release_memory",
+           [](SharedPartition& p) {
+             changing(p.mutex, [&] {
+               p.partition.release_memory();
+               p.room = {};
+               p.keep_pairs(nullptr);
+               p.pair_pool->release();
+               p.hit_pool->release();
+             });
+           })
+      .def("reserve", &reserve)
+      .def("refresh",
+           [](const SharedPartition& p) {
+             read_or_throw(p.mutex, "refresh", [&] { return p.partition.refresh(); });
+           })
+      .def("set_structure",
+           [](SharedPartition& p, const std::string& name, std::optional<float> loose) {
+             const StructureKind kind = structure_with(name, loose);
+             change_or_throw(p.mutex, "set_structure",
+                             [&] { return p.partition.set_structure(kind); });
+           })
+      .property("structure",
+                [](const SharedPartition& p) {
+                  return reading(p.mutex, [&] { return std::string(p.partition.name()); });
+                })
+      .property("volume",
+                [](const SharedPartition& p) { return name_of(kVolumes, p.partition.volume()); })
+      .property("fat_margin",
+                [](const SharedPartition& p) {
+                  const FatMargin m = p.partition.fat_margin();
+                  return py::make_tuple(m.distance, m.share);
+                })
+      .property("is_exact",
+                [](const SharedPartition& p) {
+                  return reading(p.mutex, [&] { return p.partition.is_exact(); });
+                })
+      .def("choice", &choice_dict)
+      .def("statistics", &statistics_dict)
+      .def("footprint",
+           [](const SharedPartition& p) {
+             return footprint_dict(reading(p.mutex, [&] { return p.partition.footprint(); }));
+           })
+      .def("debug_draw", &draw);
+  add_function(module, "structures", [] {
+    std::vector<std::string> names;
+    for (const StructureKind& kind : all_structures()) names.emplace_back(kind.name());
+    return names;
+  });
 }
 
 }  // namespace winnow::python

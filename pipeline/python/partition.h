@@ -3,7 +3,10 @@
 #include "pipeline/python/arrays.h"
 #include "pipeline/python/callbacks.h"
 #include "pipeline/python/choices.h"
+#include "pipeline/python/described.h"
 #include "pipeline/python/init_checks.h"
+#include "pipeline/python/inputs.h"
+#include "pipeline/python/locks.h"
 #include "pipeline/python/pool.h"
 #include "pipeline/python/recordings.h"
 
@@ -103,12 +106,16 @@ class SharedPartition : public NeedsInit {
   std::atomic<std::size_t> changes_{0};
 };
 
+/// True if a key is of an object of the partition.
+[[nodiscard]] inline bool has_key(const SharedPartition& p, Key key) {
+  return reading(p.mutex, [&] { return p.partition.contains(key); });
+}
 /// Pairs as an (m, 2) array.
 [[nodiscard]] py::array shown_pairs(const std::shared_ptr<PairBuffer>& pairs);
 /// Bytes by purpose.
 [[nodiscard]] py::dict footprint_dict(const Footprint& footprint);
 
-using PartitionClass = py::class_<SharedPartition, std::shared_ptr<SharedPartition>>;
+using PartitionClass = Class<SharedPartition>;
 
 // Each function adds the contents of the source file of the same name.
 void add_partition(py::module_& module, PartitionClass& partition);

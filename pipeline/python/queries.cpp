@@ -1,6 +1,7 @@
 // Queries of a partition, in batches: rays, swept volumes, regions and nearest objects.
 
 #include "pipeline/python/batch.h"
+#include "pipeline/python/entry_columns.h"
 #include "pipeline/python/filters.h"
 #include "pipeline/python/locks.h"
 #include "pipeline/python/partition.h"
@@ -20,26 +21,7 @@ enum class Find { closest, any, all };
 constexpr Choices<Find, 3> kFinds{
     {{"closest", Find::closest}, {"any", Find::any}, {"all", Find::all}}};
 
-/// At most one hit for each query, as columns.
-struct HitTable : EmptyIfZero {
-  py::array key;
-  py::array data;
-  py::array t;
-};
-/// All hits of each query, concatenated.
-struct HitTables : EmptyIfZero {
-  py::array first;
-  py::array key;
-  py::array data;
-  py::array t;
-};
-struct OverlapTables : EmptyIfZero {
-  py::array first;
-  py::array crossing;
-  py::array ids;
-};
-
-/// A HitTable with columns that are not written yet. Usable without the GIL.
+/// A table `Hits` whose columns are not written yet. Usable without the GIL.
 class FreshHits {
  public:
   template <typename... Shape>
@@ -55,9 +37,7 @@ class FreshHits {
     columns_.data[i] = hit.data;
     columns_.t[i] = hit.t;
   }
-  [[nodiscard]] HitTable table() && {
-    return {{}, std::move(key_), std::move(data_), std::move(t_)};
-  }
+  [[nodiscard]] py::object shown() const { return table("Hits", key_, data_, t_); }
 
  private:
   py::array_t<std::uint64_t> key_;
@@ -66,35 +46,29 @@ class FreshHits {
   HitColumns columns_;
 };
 
-[[nodiscard]] HitTables shown_hits(const std::shared_ptr<const void>& owner,
-                                   std::span<const Hit> hits, std::vector<std::uint64_t>&& first) {
-  const Hit* const begin = hits.data();
-  const auto* const key = reinterpret_cast<const std::uint64_t*>(begin);
-  const auto* const data = reinterpret_cast<const std::uint64_t*>(
-      reinterpret_cast<const std::byte*>(begin) + offsetof(Hit, data));
-  const auto* const t =
-      reinterpret_cast<const float*>(reinterpret_cast<const std::byte*>(begin) + offsetof(Hit, t));
-  return {{},
-          given(std::move(first)),
-          shown(owner, key, hits.size(), sizeof(Hit)),
-          shown(owner, data, hits.size(), sizeof(Hit)),
-          shown(owner, t, hits.size(), sizeof(Hit))};
+[[nodiscard]] py::object shown_hits(const std::shared_ptr<const void>& owner,
+                                    std::span<const Hit> hits, std::vector<std::uint64_t>&& first) {
+  const EntryColumns<Hit> columns(owner, hits);
+  return columns.table("HitLists", &Hit::key, &Hit::data, &Hit::t, given(std::move(first)));
 }
 
 /// Directions and ranges of t of swept volumes.
 struct CastBatch {
-  CastBatch(py::handle directions, py::handle least, py::handle most)
-      : direction(directions, "directions", {3}),
-        min_t(least, "min_t", {}, true),
-        max_t(most, "max_t", {}, true) {
-    min_t.expect(direction.count());
-    max_t.expect(direction.count());
+  /// `volumes` are the arguments that state the volumes.
+  CastBatch(std::initializer_list<Input*> volumes, py::handle directions, py::handle least,
+            py::handle most)
+      : direction(directions, "directions", {3}, Valid::direction),
+        min_t(least, "min_t", {}),
+        max_t(most, "max_t", {}) {
+    std::vector<Input*> all(volumes);
+    all.insert(all.end(), {&direction, &min_t, &max_t});
+    count = agree(all);
   }
   Numbers direction;
   Numbers min_t;
   Numbers max_t;
+  std::size_t count;
 
-  [[nodiscard]] std::size_t count() const { return direction.count(); }
   template <typename Moving>
   [[nodiscard]] Cast cast(Moving moving, std::size_t i) const {
     moving.direction = point_at(direction, i);
@@ -110,7 +84,7 @@ template <typename CastAt>
                                    const Filter& filter, const char* call, CastAt&& cast_at) {
   if (find == Find::all) {
     auto lists = std::make_shared<Lists<Hit>>(count);
-    const Outcome outcome = reading(p.mutex, [&] {
+    read_or_throw(p.mutex, call, [&] {
       std::vector<HitBuffer> buffers(tasks_for(count));
       const Outcome done = answer_all(p.execution, count, [&](std::size_t task, std::size_t i) {
         const Status status = p.partition.all(cast_at(i), buffers[task], filter);
@@ -120,11 +94,10 @@ template <typename CastAt>
       if (done.status == Status::ok) lists->join();
       return done;
     });
-    accept(outcome.status, outcome.text(call));
-    return py::cast(shown_hits(lists, lists->entries, std::vector(lists->first)));
+    return shown_hits(lists, lists->entries, std::vector(lists->first));
   }
   FreshHits found(count);
-  const Outcome outcome = reading(p.mutex, [&] {
+  read_or_throw(p.mutex, call, [&] {
     return answer_all(p.execution, count, [&](std::size_t, std::size_t i) {
       Hit hit;
       const Status status = find == Find::any ? p.partition.any(cast_at(i), filter).get(hit)
@@ -133,8 +106,7 @@ template <typename CastAt>
       return status;
     });
   });
-  accept(outcome.status, outcome.text(call));
-  return py::cast(std::move(found).table());
+  return found.shown();
 }
 
 // --- rays --------------------------------------------------------------------------------------
@@ -143,17 +115,16 @@ template <typename CastAt>
 class RayInput {
  public:
   RayInput(py::handle origins, py::handle directions, py::handle least, py::handle most)
-      : origin_(origins, "origins", {3}), casts_(directions, least, most) {
-    origin_.expect(casts_.count());
-  }
-  [[nodiscard]] std::size_t count() const { return casts_.count(); }
+      : origin_(origins, "origins", {3}, Valid::finite),
+        casts_({&origin_}, directions, least, most) {}
+  [[nodiscard]] std::size_t count() const { return casts_.count; }
 
   [[nodiscard]] RayBatch view(std::vector<Ray>& room) const {
     const Numbers& direction = casts_.direction;
     const bool plain = casts_.min_t.is_one() && casts_.max_t.is_one() &&
                        casts_.min_t.at(0) == 0.0 &&
                        casts_.max_t.at(0) == std::numeric_limits<double>::infinity();
-    if (plain && origin_.is_single() && direction.is_single() &&
+    if (plain && !origin_.is_one() && origin_.is_single() && direction.is_single() &&
         origin_.stride() == direction.stride()) {
       return {{origin_.column<float>(0), origin_.column<float>(1), origin_.column<float>(2)},
               {direction.column<float>(0), direction.column<float>(1), direction.column<float>(2)},
@@ -184,22 +155,20 @@ class RayInput {
   if (find == Find::all) {
     const std::shared_ptr<HitBuffer> hits = p.hit_pool->take();
     std::vector<std::uint64_t> first(rays.count() + 1);
-    accept(reading(p.mutex, [&] { return p.partition.all(rays.view(room), *hits, filter); }),
-           "cast_rays");
+    read_or_throw(p.mutex, "cast_rays",
+                  [&] { return p.partition.all(rays.view(room), *hits, filter); });
     for (std::size_t i = 0; i < rays.count(); ++i) {
       first[i + 1] = first[i] + hits->of(i).size();
     }
-    return py::cast(shown_hits(hits, hits->hits(), std::move(first)));
+    return shown_hits(hits, hits->hits(), std::move(first));
   }
   FreshHits found(rays.count());
-  accept(reading(p.mutex,
-                 [&] {
-                   const RayBatch batch = rays.view(room);
-                   return find == Find::any ? p.partition.any(batch, found.columns(), filter)
-                                            : p.partition.closest(batch, found.columns(), filter);
-                 }),
-         "cast_rays");
-  return py::cast(std::move(found).table());
+  read_or_throw(p.mutex, "cast_rays", [&] {
+    const RayBatch batch = rays.view(room);
+    return find == Find::any ? p.partition.any(batch, found.columns(), filter)
+                             : p.partition.closest(batch, found.columns(), filter);
+  });
+  return found.shown();
 }
 
 // --- swept volumes -----------------------------------------------------------------------------
@@ -207,54 +176,43 @@ class RayInput {
 [[nodiscard]] py::object cast_boxes(const SharedPartition& p, py::handle lower, py::handle upper,
                                     py::handle directions, const std::string& find,
                                     py::handle min_t, py::handle max_t, const Filter& filter) {
-  const CastBatch casts(directions, min_t, max_t);
-  Numbers low(lower, "lower", {3});
-  Numbers high(upper, "upper", {3});
-  low.expect(casts.count());
-  high.expect(casts.count());
-  return cast_many(p, casts.count(), chosen(kFinds, find, "find"), filter, "cast_boxes",
-                   [&](std::size_t i) { return casts.cast(BoxCast{box_at(low, high, i)}, i); });
+  BoxInput boxes(lower, upper);
+  const CastBatch casts({&boxes}, directions, min_t, max_t);
+  return cast_many(p, casts.count, chosen(kFinds, find, "find"), filter, "cast_boxes",
+                   [&](std::size_t i) { return casts.cast(BoxCast{boxes[i]}, i); });
 }
 
 [[nodiscard]] py::object cast_spheres(const SharedPartition& p, py::handle centers,
                                       py::handle radii, py::handle directions,
                                       const std::string& find, py::handle min_t, py::handle max_t,
                                       const Filter& filter) {
-  const CastBatch casts(directions, min_t, max_t);
-  Numbers center(centers, "centers", {3});
-  Numbers radius(radii, "radii", {}, true);
-  center.expect(casts.count());
-  radius.expect(casts.count());
-  return cast_many(
-      p, casts.count(), chosen(kFinds, find, "find"), filter, "cast_spheres",
-      [&](std::size_t i) { return casts.cast(SphereCast{sphere_at(center, radius, i)}, i); });
+  SphereInput spheres(centers, radii);
+  const CastBatch casts({&spheres}, directions, min_t, max_t);
+  return cast_many(p, casts.count, chosen(kFinds, find, "find"), filter, "cast_spheres",
+                   [&](std::size_t i) { return casts.cast(SphereCast{spheres[i]}, i); });
 }
 
 [[nodiscard]] py::object cast_capsules(const SharedPartition& p, py::handle a, py::handle b,
                                        py::handle radii, py::handle directions,
                                        const std::string& find, py::handle min_t, py::handle max_t,
                                        const Filter& filter) {
-  const CastBatch casts(directions, min_t, max_t);
-  Numbers from(a, "a", {3});
-  Numbers to(b, "b", {3});
-  Numbers radius(radii, "radii", {}, true);
-  for (Numbers* each : {&from, &to, &radius}) each->expect(casts.count());
-  return cast_many(
-      p, casts.count(), chosen(kFinds, find, "find"), filter, "cast_capsules",
-      [&](std::size_t i) { return casts.cast(CapsuleCast{capsule_at(from, to, radius, i)}, i); });
+  CapsuleInput capsules(a, b, radii);
+  const CastBatch casts({&capsules}, directions, min_t, max_t);
+  return cast_many(p, casts.count, chosen(kFinds, find, "find"), filter, "cast_capsules",
+                   [&](std::size_t i) { return casts.cast(CapsuleCast{capsules[i]}, i); });
 }
 
 // --- regions -----------------------------------------------------------------------------------
 
 /// Runs `count` region queries; region_at(i) makes the i-th.
 template <typename RegionAt>
-[[nodiscard]] OverlapTables overlap_many(const SharedPartition& p, std::size_t count,
-                                         const std::string& order_name, const Filter& filter,
-                                         const char* call, RegionAt&& region_at) {
+[[nodiscard]] py::object overlap_many(const SharedPartition& p, std::size_t count,
+                                      const std::string& order_name, const Filter& filter,
+                                      const char* call, RegionAt&& region_at) {
   const Order order = chosen(kOrders, order_name, "order");
   auto lists = std::make_shared<Lists<ObjectId>>(count);
   std::vector<std::uint64_t> crossing(count);
-  const Outcome outcome = reading(p.mutex, [&] {
+  read_or_throw(p.mutex, call, [&] {
     std::vector<OverlapBuffer> buffers(tasks_for(count));
     const Outcome done = answer_all(p.execution, count, [&](std::size_t task, std::size_t i) {
       OverlapBuffer& found = buffers[task];
@@ -267,76 +225,65 @@ template <typename RegionAt>
     if (done.status == Status::ok) lists->join();
     return done;
   });
-  accept(outcome.status, outcome.text(call));
   for (std::size_t i = 0; i < count; ++i) crossing[i] += lists->first[i];
   const ObjectId* const ids = lists->entries.data();
-  return {{},
-          given(std::vector(lists->first)),
-          given(std::move(crossing)),
-          shown(std::shared_ptr<const void>(lists), ids, lists->entries.size())};
+  return table("Overlaps", given(std::vector(lists->first)), given(std::move(crossing)),
+               shown(std::shared_ptr<const void>(lists), ids, lists->entries.size()));
 }
 
-[[nodiscard]] OverlapTables overlap_points(const SharedPartition& p, py::handle points,
-                                           const std::string& order, const Filter& filter) {
+[[nodiscard]] py::object overlap_points(const SharedPartition& p, py::handle points,
+                                        const std::string& order, const Filter& filter) {
   const Numbers point(points, "points", {3});
   return overlap_many(p, point.count(), order, filter, "overlap_points", [&](std::size_t i) {
     // A point in double is replaced by the box of its float neighbours.
-    return point.is_single() ? Region(point_at(point, i)) : Region(box_at(point, point, i));
+    return point.is_single() ? Region(point_at(point, i)) : Region(box_at(point, i));
   });
 }
 
-[[nodiscard]] OverlapTables overlap_spheres(const SharedPartition& p, py::handle centers,
-                                            py::handle radii, const std::string& order,
-                                            const Filter& filter) {
-  const Numbers center(centers, "centers", {3});
-  Numbers radius(radii, "radii", {}, true);
-  radius.expect(center.count());
-  return overlap_many(p, center.count(), order, filter, "overlap_spheres",
-                      [&](std::size_t i) { return Region(sphere_at(center, radius, i)); });
+[[nodiscard]] py::object overlap_spheres(const SharedPartition& p, py::handle centers,
+                                         py::handle radii, const std::string& order,
+                                         const Filter& filter) {
+  const SphereInput spheres(centers, radii);
+  return overlap_many(p, spheres.count(), order, filter, "overlap_spheres",
+                      [&](std::size_t i) { return Region(spheres[i]); });
 }
 
-[[nodiscard]] OverlapTables overlap_capsules(const SharedPartition& p, py::handle a, py::handle b,
-                                             py::handle radii, const std::string& order,
-                                             const Filter& filter) {
-  const Numbers from(a, "a", {3});
-  Numbers to(b, "b", {3});
-  Numbers radius(radii, "radii", {}, true);
-  to.expect(from.count());
-  radius.expect(from.count());
-  return overlap_many(p, from.count(), order, filter, "overlap_capsules",
-                      [&](std::size_t i) { return Region(capsule_at(from, to, radius, i)); });
+[[nodiscard]] py::object overlap_capsules(const SharedPartition& p, py::handle a, py::handle b,
+                                          py::handle radii, const std::string& order,
+                                          const Filter& filter) {
+  const CapsuleInput capsules(a, b, radii);
+  return overlap_many(p, capsules.count(), order, filter, "overlap_capsules",
+                      [&](std::size_t i) { return Region(capsules[i]); });
 }
 
-[[nodiscard]] OverlapTables overlap_oriented_boxes(const SharedPartition& p, py::handle centers,
-                                                   py::handle halves, py::handle axes,
-                                                   const std::string& order, const Filter& filter) {
-  const Numbers center(centers, "centers", {3});
-  Numbers half(halves, "half", {3}, true);
-  Numbers turn(axes, "axes", {3, 3}, true);
-  half.expect(center.count());
-  turn.expect(center.count());
-  return overlap_many(
-      p, center.count(), order, filter, "overlap_oriented_boxes", [&](std::size_t i) {
-        OrientedBox box{point_at(center, i), {}, Mat3f::identity()};
-        // Upper bound on the displacement of corners by the rounding of the axes.
-        double reach = 0.0;
-        for (std::size_t axis = 0; axis < 3; ++axis) reach += half.at(i, axis);
-        const double off =
-            off_point_at(center, i) + (turn.is_single() ? 0.0 : 0x1p-23 * std::abs(reach));
-        for (std::size_t row = 0; row < 3; ++row) {
-          box.half[row] = grown(half.at(i, row), off);
-          for (std::size_t column = 0; column < 3; ++column) {
-            box.axes(row, column) = static_cast<float>(turn.at(i, row, column));
-          }
-        }
-        return Region(box);
-      });
+[[nodiscard]] py::object overlap_oriented_boxes(const SharedPartition& p, py::handle centers,
+                                                py::handle halves, py::handle axes,
+                                                const std::string& order, const Filter& filter) {
+  Numbers center(centers, "centers", {3}, Valid::finite);
+  Numbers half(halves, "half", {3}, Valid::length);
+  Numbers turn(axes, "axes", {3, 3}, Valid::finite);
+  const std::size_t count = agree({&center, &half, &turn});
+  return overlap_many(p, count, order, filter, "overlap_oriented_boxes", [&](std::size_t i) {
+    OrientedBox box{point_at(center, i), {}, Mat3f::identity()};
+    // Upper bound on the displacement of corners by the rounding of the axes.
+    double reach = 0.0;
+    for (std::size_t axis = 0; axis < 3; ++axis) reach += half.at(i, axis);
+    const double off =
+        off_point_at(center, i) + (turn.is_single() ? 0.0 : 0x1p-23 * std::abs(reach));
+    for (std::size_t row = 0; row < 3; ++row) {
+      box.half[row] = grown(half.at(i, row), off);
+      for (std::size_t column = 0; column < 3; ++column) {
+        box.axes(row, column) = static_cast<float>(turn.at(i, row, column));
+      }
+    }
+    return Region(box);
+  });
 }
 
 constexpr std::size_t kFrustumFloats = sizeof(Frustum) / sizeof(float);
 
-[[nodiscard]] OverlapTables overlap_frusta(const SharedPartition& p, py::handle frusta,
-                                           const std::string& order, const Filter& filter) {
+[[nodiscard]] py::object overlap_frusta(const SharedPartition& p, py::handle frusta,
+                                        const std::string& order, const Filter& filter) {
   const Numbers numbers(frusta, "frusta", {kFrustumFloats});
   return overlap_many(p, numbers.count(), order, filter, "overlap_frusta", [&](std::size_t i) {
     float values[kFrustumFloats];
@@ -349,8 +296,8 @@ constexpr std::size_t kFrustumFloats = sizeof(Frustum) / sizeof(float);
   });
 }
 
-[[nodiscard]] OverlapTables overlap_planes(const SharedPartition& p, py::handle planes,
-                                           const std::string& order, const Filter& filter) {
+[[nodiscard]] py::object overlap_planes(const SharedPartition& p, py::handle planes,
+                                        const std::string& order, const Filter& filter) {
   const py::array array = py::array::ensure(planes);
   if (!array || array.ndim() != 3) {
     PyErr_Clear();
@@ -377,9 +324,8 @@ constexpr std::size_t kFrustumFloats = sizeof(Frustum) / sizeof(float);
   const BoxInput boxes(lower, upper);
   const std::shared_ptr<PairBuffer> out = p.pair_pool->take();
   std::vector<Aabb> room;
-  accept(
-      reading(p.mutex, [&] { return p.partition.overlap(boxes.view(room), *out, filter, order); }),
-      "overlap_boxes");
+  read_or_throw(p.mutex, "overlap_boxes",
+                [&] { return p.partition.overlap(boxes.view(room), *out, filter, order); });
   return shown_pairs(out);
 }
 
@@ -393,7 +339,7 @@ template <typename Make>
   for (std::size_t i = 0; i < count; ++i, to += kFrustumFloats) {
     const Frustum frustum = make(i);
     if (!frustum.is_valid()) {
-      throw Refusal(Status::invalid_argument, "frustum " + std::to_string(i));
+      accept(Status::invalid_argument, "frustum " + std::to_string(i));
     }
     std::memcpy(to, static_cast<const void*>(&frustum), sizeof(Frustum));
   }
@@ -402,12 +348,10 @@ template <typename Make>
 
 [[nodiscard]] py::array perspective(py::handle eyes, py::handle forwards, py::handle ups,
                                     float vertical_fov, float aspect, float near_t, float far_t) {
-  const Numbers eye(eyes, "eye", {3});
-  Numbers forward(forwards, "forward", {3}, true);
-  Numbers up(ups, "up", {3}, true);
-  forward.expect(eye.count());
-  up.expect(eye.count());
-  return frustum_rows(eye.count(), [&](std::size_t i) {
+  Numbers eye(eyes, "eye", {3}, Valid::finite);
+  Numbers forward(forwards, "forward", {3}, Valid::direction);
+  Numbers up(ups, "up", {3}, Valid::direction);
+  return frustum_rows(agree({&eye, &forward, &up}), [&](std::size_t i) {
     return Frustum::perspective(point_at(eye, i), point_at(forward, i), point_at(up, i),
                                 vertical_fov, aspect, near_t, far_t);
   });
@@ -432,24 +376,21 @@ constexpr Choices<Frustum::NearDepth, 2> kNearDepths{
 
 // --- nearest -----------------------------------------------------------------------------------
 
-[[nodiscard]] HitTable nearest(const SharedPartition& p, py::handle lower, std::size_t count,
-                               py::handle upper, py::handle radii, const Filter& filter) {
-  const Numbers low(lower, "lower", {3});
-  Numbers high(upper.is_none() ? lower : upper, "upper", {3});
-  Numbers radius(radii, "radius", {}, true);
-  high.expect(low.count());
-  radius.expect(low.count());
-  const std::size_t queries = low.count();
+[[nodiscard]] py::object nearest(const SharedPartition& p, py::handle lower, std::size_t count,
+                                 py::handle upper, py::handle radii, const Filter& filter) {
+  BoxInput boxes(lower, upper.is_none() ? lower : upper);
+  Numbers radius(radii, "radius", {});
+  const std::size_t queries = agree({&boxes, &radius});
   if (count != 0 && queries > (std::size_t{1} << 40U) / count) {
     throw Refusal(Status::out_of_memory, "nearest");
   }
   FreshHits found(queries, count);
-  const Outcome outcome = reading(p.mutex, [&] {
+  read_or_throw(p.mutex, "nearest", [&] {
     std::vector<HitBuffer> buffers(tasks_for(queries));
     return answer_all(p.execution, queries, [&](std::size_t task, std::size_t i) {
       HitBuffer& hits = buffers[task];
-      const Status status = p.partition.nearest(box_at(low, high, i), count,
-                                                static_cast<float>(radius.at(i)), hits, filter);
+      const Status status =
+          p.partition.nearest(boxes[i], count, static_cast<float>(radius.at(i)), hits, filter);
       if (status != Status::ok) return status;
       for (std::size_t k = 0; k < count; ++k) {
         found.put(i * count + k, k < hits.size() ? hits[k] : Hit{});
@@ -457,105 +398,26 @@ constexpr Choices<Frustum::NearDepth, 2> kNearDepths{
       return status;
     });
   });
-  accept(outcome.status, outcome.text("nearest"));
-  return std::move(found).table();
-}
-
-constexpr float kForever = std::numeric_limits<float>::infinity();
-
-void add_casts(PartitionClass& partition) {
-  using py::arg;
-  partition
-      .def("cast_rays", filtered(&cast_rays), arg("origins"), arg("directions"),
-           arg("find") = "closest", py::kw_only(), arg("min_t") = 0.0F, arg("max_t") = kForever,
-           arg("filter") = PythonFilter{},
-           "Finds the objects whose boxes the rays origins + t * directions, (n, 3) each, min_t <= "
-           "t <= max_t, (n,) or one for all, hit. `find`: 'closest' or 'any', returning Hits, or "
-           "'all', returning HitLists sorted by t. Floats with one stride are read in place.")
-      .def("cast_boxes", filtered(&cast_boxes), arg("lower"), arg("upper"), arg("directions"),
-           arg("find") = "closest", py::kw_only(), arg("min_t") = 0.0F, arg("max_t") = kForever,
-           arg("filter") = PythonFilter{},
-           "As cast_rays, for boxes (n, 3), (n, 3) that move by t * directions (n, 3).")
-      .def("cast_spheres", filtered(&cast_spheres), arg("centers"), arg("radii"), arg("directions"),
-           arg("find") = "closest", py::kw_only(), arg("min_t") = 0.0F, arg("max_t") = kForever,
-           arg("filter") = PythonFilter{},
-           "As cast_rays, for spheres: centres (n, 3), radii (n,) or one for all.")
-      .def("cast_capsules", filtered(&cast_capsules), arg("a"), arg("b"), arg("radii"),
-           arg("directions"), arg("find") = "closest", py::kw_only(), arg("min_t") = 0.0F,
-           arg("max_t") = kForever, arg("filter") = PythonFilter{},
-           "As cast_rays, for capsules: ends a and b (n, 3), radii (n,) or one for all.");
-}
-
-void add_regions(PartitionClass& partition) {
-  using py::arg;
-  partition
-      .def("overlap_boxes", filtered(&overlap_boxes), arg("lower"), arg("upper"), py::kw_only(),
-           arg("order") = "fast", arg("filter") = PythonFilter{},
-           "All overlapping pairs (number of the box, id of the object): (m, 2) uint32. Boxes (n, "
-           "3), (n, 3) as in `insert`.")
-      .def("overlap_points", filtered(&overlap_points), arg("points"), py::kw_only(),
-           arg("order") = "fast", arg("filter") = PythonFilter{},
-           "Objects whose boxes contain the points (n, 3), as Overlaps.")
-      .def("overlap_spheres", filtered(&overlap_spheres), arg("centers"), arg("radii"),
-           py::kw_only(), arg("order") = "fast", arg("filter") = PythonFilter{},
-           "Objects whose boxes overlap the spheres: centres (n, 3), radii (n,) or one for all.")
-      .def("overlap_capsules", filtered(&overlap_capsules), arg("a"), arg("b"), arg("radii"),
-           py::kw_only(), arg("order") = "fast", arg("filter") = PythonFilter{},
-           "Objects whose boxes overlap the capsules: ends (n, 3), radii (n,) or one for all.")
-      .def("overlap_oriented_boxes", filtered(&overlap_oriented_boxes), arg("centers"), arg("half"),
-           arg("axes"), py::kw_only(), arg("order") = "fast", arg("filter") = PythonFilter{},
-           "Objects whose boxes overlap oriented boxes: centres (n, 3), half extents (n, 3) or "
-           "(3,), axes as columns of (n, 3, 3) or (3, 3).")
-      .def("overlap_frusta", filtered(&overlap_frusta), arg("frusta"), py::kw_only(),
-           arg("order") = "fast", arg("filter") = PythonFilter{},
-           "Objects whose boxes overlap frusta of cameras: (n, 30), as returned by `perspective` "
-           "and `frusta_of`.")
-      .def("overlap_planes", filtered(&overlap_planes), arg("planes"), py::kw_only(),
-           arg("order") = "fast", arg("filter") = PythonFilter{},
-           "Objects whose boxes are not entirely outside of one of p planes: (n, p, 4), an inward "
-           "normal and an offset each, normal . x + offset >= 0 inside.")
-      .def("nearest", filtered(&nearest), arg("lower"), arg("count") = 1, py::kw_only(),
-           arg("upper") = py::none(), arg("radius") = kForever, arg("filter") = PythonFilter{},
-           "The `count` objects whose boxes are nearest to each point `lower` (n, 3), or to each "
-           "box up to `upper` (n, 3), within `radius`, (n,) or one for all. Hits of shape (n, "
-           "count), sorted by distance, which is t; NULL_KEY and infinity if there are fewer.");
+  return found.shown();
 }
 
 }  // namespace
 
 void add_queries(py::module_& module, PartitionClass& partition) {
-  using py::arg;
-  py::class_<HitTable>(module, "Hits",
-                       "One hit for each query; NULL_KEY, 0 and infinity if there is none.")
-      .def_readonly("key", &HitTable::key, "Keys, uint64.")
-      .def_readonly("data", &HitTable::data, "Client data, uint64.")
-      .def_readonly("t", &HitTable::t,
-                    "The t at which the cast first touches the object's box, in units of its "
-                    "direction, or the distance: float32.");
-  py::class_<HitTables>(module, "HitLists",
-                        "Hits of each query: the hits of query i are first[i] to first[i + 1].")
-      .def_readonly("first", &HitTables::first, "(n + 1,) uint64.")
-      .def_readonly("key", &HitTables::key, "Keys, (m,) uint64.")
-      .def_readonly("data", &HitTables::data, "Client data, (m,) uint64.")
-      .def_readonly("t", &HitTables::t, "As of Hits, (m,) float32.");
-  py::class_<OverlapTables>(
-      module, "Overlaps",
-      "Objects that overlap each region: ids[first[i]:crossing[i]] are entirely inside region i, "
-      "ids[crossing[i]:first[i + 1]] cross its boundary.")
-      .def_readonly("first", &OverlapTables::first, "(n + 1,) uint64.")
-      .def_readonly("crossing", &OverlapTables::crossing, "(n,) uint64.")
-      .def_readonly("ids", &OverlapTables::ids, "Ids of objects, (m,) uint32.");
-  add_casts(partition);
-  add_regions(partition);
-  module.def(
-      "perspective", &perspective, arg("eye"), arg("forward"), arg("up"), arg("vertical_fov"),
-      arg("aspect"), arg("near"), arg("far"),
-      "Frusta of cameras at eye (n, 3) with view direction `forward` and approximate up direction "
-      "`up`, (n, 3) or (3,) each; vertical field of view in radians, in (0, pi); distances of the "
-      "near and far plane. (n, 30) float32: six inward planes, then a box.");
-  module.def("frusta_of", &frusta_of, arg("clip_from_world"), arg("near_depth") = "zero",
-             "Frusta of matrices (n, 4, 4) that transform column vectors from world to clip space, "
-             "with the near plane at depth 'zero' or 'minus_one'. (n, 30) float32.");
+  partition.def("cast_rays", filtered(&cast_rays))
+      .def("cast_boxes", filtered(&cast_boxes))
+      .def("cast_spheres", filtered(&cast_spheres))
+      .def("cast_capsules", filtered(&cast_capsules))
+      .def("overlap_boxes", filtered(&overlap_boxes))
+      .def("overlap_points", filtered(&overlap_points))
+      .def("overlap_spheres", filtered(&overlap_spheres))
+      .def("overlap_capsules", filtered(&overlap_capsules))
+      .def("overlap_oriented_boxes", filtered(&overlap_oriented_boxes))
+      .def("overlap_frusta", filtered(&overlap_frusta))
+      .def("overlap_planes", filtered(&overlap_planes))
+      .def("nearest", filtered(&nearest));
+  add_function(module, "perspective", &perspective);
+  add_function(module, "frusta_of", &frusta_of);
 }
 
 }  // namespace winnow::python

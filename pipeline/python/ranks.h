@@ -4,6 +4,7 @@
 // process.
 
 #include "pipeline/python/callbacks.h"
+#include "pipeline/python/described.h"
 #include "pipeline/python/gil.h"
 #include "pipeline/python/refusal.h"
 
@@ -61,17 +62,12 @@ class Ranks {
 
 /// Adds the properties `ranks` and `hosted` to a class.
 template <typename Shared>
-void add_ranks(py::class_<Shared, std::shared_ptr<Shared>>& type) {
-  type.def_property_readonly(
-          "ranks", [](const Shared& c) { return c.cluster().ranks(); },
-          "Number of ranks of all processes.")
-      .def_property_readonly(
-          "hosted",
-          [](const Shared& c) {
-            const std::uint32_t first = c.cluster().first_hosted();
-            return py::make_tuple(first, first + c.cluster().hosted());
-          },
-          "Ranks of this process: the first, and one past the last.");
+void add_ranks(Class<Shared>& type) {
+  type.property("ranks", [](const Shared& c) { return c.cluster().ranks(); })
+      .property("hosted", [](const Shared& c) {
+        const std::uint32_t first = c.cluster().first_hosted();
+        return py::make_tuple(first, first + c.cluster().hosted());
+      });
 }
 
 /// A digest as 32 digits.

@@ -85,41 +85,19 @@ struct ReplayCounts {
 }  // namespace
 
 void add_recordings(py::module_& module) {
-  using py::arg;
-  py::class_<SharedRecorder, RecorderPointer>(
-      module, "Recorder",
-      "Records the calls of partitions and scenes that are made with it, so that they can be "
-      "replayed and measured elsewhere: `winnow advise FILE`. Failed calls are not recorded. "
-      "Recorded partitions cannot load snapshots (unsupported). A recorded scene must be used with "
-      "one Contacts, which may be loaded: `status` is 'unsupported' after one that was filled in "
-      "an earlier call than the last. If anything fails, the recording ends and the program "
-      "continues: see `status`.")
-      .def(
-          py::init(&make_recorder), arg("path"),
-          "Records into the file at a path, as `open` accepts it, which is created or overwritten.")
-      .def(
-          "end_frame",
-          [](SharedRecorder& r) {
-            InCallback::forbid();
-            const WithoutGil release;
-            r.recorder.end_frame();
-          },
-          "Marks the end of a frame, and writes buffered data.")
-      .def("close", &close, "Ends the recording. Raises the error that occurred, if any.")
-      .def_property_readonly(
-          "status", [](const SharedRecorder& r) { return to_string(r.recorder.status()); },
-          "'ok'; 'out_of_memory', also if the disk is full; 'unsupported' after a call that cannot "
-          "be recorded.")
-      .def_property_readonly(
-          "calls", [](const SharedRecorder& r) { return r.recorder.calls(); },
-          "Number of calls recorded.")
-      .def_property_readonly(
-          "bytes", [](const SharedRecorder& r) { return r.recorder.bytes(); }, "Bytes written.");
-  module.def("replay", &replay, arg("data"), arg("parallel") = true,
-             "Replays a recording, the bytes of a file, and compares each result with the recorded "
-             "one, bit for bit: counts of calls, frames, questions, differences and worlds "
-             "(partitions and scenes), and is_whole if the recording is complete. invalid_argument "
-             "for bytes that are not a valid recording.");
+  Class<SharedRecorder>(module, "Recorder")
+      .def(py::init(&make_recorder))
+      .def("end_frame",
+           [](SharedRecorder& r) {
+             InCallback::forbid();
+             const WithoutGil release;
+             r.recorder.end_frame();
+           })
+      .def("close", &close)
+      .property("status", [](const SharedRecorder& r) { return to_string(r.recorder.status()); })
+      .property("calls", [](const SharedRecorder& r) { return r.recorder.calls(); })
+      .property("bytes", [](const SharedRecorder& r) { return r.recorder.bytes(); });
+  add_function(module, "replay", &replay);
 }
 
 }  // namespace winnow::python

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "pipeline/python/arrays.h"
+#include "pipeline/python/described.h"
 #include "pipeline/python/init_checks.h"
 
 #include <winnow/pipeline/recording.h>

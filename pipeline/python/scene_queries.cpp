@@ -70,18 +70,21 @@ template <typename Entry, typename Query>
 [[nodiscard]] std::shared_ptr<Lists<Entry>> list_all(SharedScene& s, std::size_t count,
                                                      const char* call, Query&& query) {
   auto lists = std::make_shared<Lists<Entry>>(count);
-  const Outcome outcome = run_query(s, [&] {
-    const Outcome done = answer_all(s.execution, count, [&](std::size_t task, std::size_t i) {
-      const QueryLease lease(s);
-      std::span<const Entry> found;
-      const Status status = query(lease, i, found);
-      if (status == Status::ok) lists->put(task, i, found.data(), found.data() + found.size());
-      return status;
-    });
-    if (done.status == Status::ok) lists->join();
-    return done;
-  });
-  accept(outcome.status, outcome.text(call));
+  accept(run_query(s,
+                   [&] {
+                     const Outcome done =
+                         answer_all(s.execution, count, [&](std::size_t task, std::size_t i) {
+                           const QueryLease lease(s);
+                           std::span<const Entry> found;
+                           const Status status = query(lease, i, found);
+                           if (status == Status::ok)
+                             lists->put(task, i, found.data(), found.data() + found.size());
+                           return status;
+                         });
+                     if (done.status == Status::ok) lists->join();
+                     return done;
+                   }),
+         call);
   return lists;
 }
 
@@ -90,74 +93,22 @@ template <typename Entry>
   return {lists, lists->entries};
 }
 
-struct SceneHitTable : EmptyIfZero {
-  py::array key;
-  py::array data;
-  py::array part;
-  py::array t;
-  py::array normal;
-  py::array point;
-};
-struct SceneHitTables : SceneHitTable {
-  py::array first;
-};
-struct SceneOverlapTables : EmptyIfZero {
-  py::array first;
-  py::array key;
-  py::array data;
-  py::array part;
-};
-struct SceneDistanceTables : EmptyIfZero {
-  py::array first;
-  py::array key;
-  py::array data;
-  py::array part_a;
-  py::array part;
-  py::array distance;
-  py::array error_bound;
-  py::array normal;
-  py::array point_a;
-  py::array point_b;
-};
-
-void show_hits(const std::shared_ptr<Lists<SceneHit>>& lists, SceneHitTable& table) {
-  const EntryColumns<SceneHit> hits = columns_of(lists);
-  table.key = hits.column<std::uint64_t>(offsetof(SceneHit, key));
-  table.data = hits.column<std::uint64_t>(offsetof(SceneHit, data));
-  table.part = hits.column<std::uint32_t>(offsetof(SceneHit, part));
-  table.t = hits.column<double>(offsetof(SceneHit, t));
-  table.normal = hits.rows<double>(offsetof(SceneHit, normal), 3);
-  table.point = hits.rows<double>(offsetof(SceneHit, point), 3);
-}
-
 [[nodiscard]] py::object shown_lists(const std::shared_ptr<Lists<SceneHit>>& lists, FindMode mode) {
-  if (mode != FindMode::all) {
-    SceneHitTable table;
-    show_hits(lists, table);
-    return py::cast(std::move(table));
-  }
-  SceneHitTables table;
-  show_hits(lists, table);
-  table.first = given(std::vector(lists->first));
-  return py::cast(std::move(table));
+  const EntryColumns<SceneHit> hits = columns_of(lists);
+  const auto made = [&](const char* name, auto&&... first) {
+    return hits.table(name, &SceneHit::key, &SceneHit::data, &SceneHit::part, &SceneHit::t,
+                      &SceneHit::normal, &SceneHit::point, first...);
+  };
+  if (mode != FindMode::all) return made("SceneHits");
+  return made("SceneHitLists", given(std::vector(lists->first)));
 }
 
-[[nodiscard]] SceneDistanceTables shown_distances(
-    const std::shared_ptr<Lists<SceneDistance>>& lists) {
+[[nodiscard]] py::object shown_distances(const std::shared_ptr<Lists<SceneDistance>>& lists) {
   using D = SceneDistance;
   const EntryColumns<D> answers = columns_of(lists);
-  SceneDistanceTables table;
-  table.first = given(std::vector(lists->first));
-  table.key = answers.column<std::uint64_t>(offsetof(D, key));
-  table.data = answers.column<std::uint64_t>(offsetof(D, data));
-  table.part_a = answers.column<std::uint32_t>(offsetof(D, part_a));
-  table.part = answers.column<std::uint32_t>(offsetof(D, part));
-  table.distance = answers.column<double>(offsetof(D, distance));
-  table.error_bound = answers.column<double>(offsetof(D, error_bound));
-  table.normal = answers.rows<double>(offsetof(D, normal), 3);
-  table.point_a = answers.rows<double>(offsetof(D, point_a), 3);
-  table.point_b = answers.rows<double>(offsetof(D, point_b), 3);
-  return table;
+  return answers.table("SceneDistances", given(std::vector(lists->first)), &D::key, &D::data,
+                       &D::part_a, &D::part, &D::distance, &D::error_bound, &D::normal, &D::point_a,
+                       &D::point_b);
 }
 
 /// The result of a query without a hit.
@@ -169,21 +120,24 @@ void show_hits(const std::shared_ptr<Lists<SceneHit>>& lists, SceneHitTable& tab
 
 // --- rays --------------------------------------------------------------------------------------
 
-/// Rays of a batch. They are read in place if they are of double and have one stride, and if
-/// `max_t` is a single infinity; else they are copied.
+/// Rays of a batch. They are read in place if they are of double and have one stride, and if they
+/// are endless; else they are copied.
 class ShapeRayInput {
  public:
-  ShapeRayInput(py::handle origins, py::handle directions, py::handle max_ts)
-      : origin_(origins, "origins", {3}),
-        direction_(directions, "directions", {3}),
-        max_t_(max_ts, "max_t", {}, true) {
-    direction_.expect(origin_.count());
-    max_t_.expect(origin_.count());
+  ShapeRayInput(py::handle origins, py::handle directions, py::handle min_ts, py::handle max_ts)
+      : origin_(origins, "origins", {3}, Valid::finite),
+        direction_(directions, "directions", {3}, Valid::direction),
+        min_t_(min_ts, "min_t", {}),
+        max_t_(max_ts, "max_t", {}),
+        count_(agree({&origin_, &direction_, &min_t_, &max_t_})) {}
+  [[nodiscard]] std::size_t count() const noexcept { return count_; }
+  [[nodiscard]] ShapeRay operator[](std::size_t i) const {
+    return {origin_.vector(i), direction_.vector(i), min_t_.at(i), max_t_.at(i)};
   }
-  [[nodiscard]] std::size_t count() const noexcept { return origin_.count(); }
   [[nodiscard]] ShapeRayBatch view(std::vector<ShapeRay>& room) const {
-    const bool endless = max_t_.is_one() && max_t_.at(0) == std::numeric_limits<double>::infinity();
-    if (endless && !origin_.is_single() && !direction_.is_single() &&
+    const bool endless = min_t_.is_one() && min_t_.at(0) == 0.0 && max_t_.is_one() &&
+                         max_t_.at(0) == std::numeric_limits<double>::infinity();
+    if (endless && !origin_.is_one() && !origin_.is_single() && !direction_.is_single() &&
         origin_.stride() == direction_.stride()) {
       return {{origin_.column<double>(0), origin_.column<double>(1), origin_.column<double>(2)},
               {direction_.column<double>(0), direction_.column<double>(1),
@@ -194,20 +148,16 @@ class ShapeRayInput {
               static_cast<std::size_t>(origin_.stride())};
     }
     room.resize(count());
-    for (std::size_t i = 0; i < room.size(); ++i) {
-      for (std::size_t k = 0; k < 3; ++k) {
-        room[i].origin[k] = origin_.at(i, k);
-        room[i].direction[k] = direction_.at(i, k);
-      }
-      room[i].max_t = max_t_.at(i);
-    }
+    for (std::size_t i = 0; i < room.size(); ++i) room[i] = (*this)[i];
     return ShapeRayBatch(std::span<const ShapeRay>(room));
   }
 
  private:
   Numbers origin_;
   Numbers direction_;
+  Numbers min_t_;
   Numbers max_t_;
+  std::size_t count_;
 };
 
 /// Three columns in one array, and that array transposed to rows.
@@ -218,26 +168,27 @@ class ShapeRayInput {
 }
 
 [[nodiscard]] py::object cast_rays(SharedScene& s, py::handle origins, py::handle directions,
-                                   const std::string& find, py::handle max_ts,
-                                   const Filter& filter) {
+                                   const std::string& find, py::handle min_ts, py::handle max_ts,
+                                   const SceneFilter& filter) {
   const FindMode mode = chosen(kFindModes, find, "find");
-  const ShapeRayInput rays(origins, directions, max_ts);
+  const ShapeRayInput rays(origins, directions, min_ts, max_ts);
   std::vector<ShapeRay> room;
   if (mode == FindMode::all) {
     auto lists = std::make_shared<Lists<SceneHit>>(rays.count());
-    const Outcome outcome = run_query(s, [&] {
-      const QueryLease lease(s);
-      SceneHitLists found;
-      const Status status = lease->all(rays.view(room), filter).get(found);
-      if (status != Status::ok) return Outcome{status, 0};
-      lists->entries.assign(found.hits.begin(), found.hits.end());
-      if (rays.count() != 0) lists->first.assign(found.first.begin(), found.first.end());
-      return Outcome{};
-    });
-    accept(outcome.status, "cast_rays");
+    accept(run_query(s,
+                     [&] {
+                       const QueryLease lease(s);
+                       SceneHitLists found;
+                       const Status status = lease->all(rays.view(room), filter).get(found);
+                       if (status != Status::ok) return Outcome{status, 0};
+                       lists->entries.assign(found.hits.begin(), found.hits.end());
+                       if (rays.count() != 0)
+                         lists->first.assign(found.first.begin(), found.first.end());
+                       return Outcome{};
+                     }),
+           "cast_rays");
     return shown_lists(lists, mode);
   }
-  SceneHitTable table;
   auto key = fresh<std::uint64_t>(rays.count());
   auto data = fresh<std::uint64_t>(rays.count());
   auto part = fresh<std::uint32_t>(rays.count());
@@ -246,15 +197,31 @@ class ShapeRayInput {
   const auto [point, points] = vectors(rays.count());
   const SceneHitColumns out{
       keys_in(key), data.mutable_data(), part.mutable_data(), t.mutable_data(), normal, point};
-  const Outcome outcome = run_query(s, [&] {
-    const QueryLease lease(s);
-    const ShapeRayBatch batch = rays.view(room);
-    return Outcome{
-        mode == FindMode::any ? lease->any(batch, out, filter) : lease->closest(batch, out, filter),
-        0};
-  });
-  accept(outcome.status, "cast_rays");
-  return py::cast(SceneHitTable{{}, key, data, part, t, normals, points});
+  accept(run_query(s,
+                   [&] {
+                     const QueryLease lease(s);
+                     const ShapeRayBatch batch = rays.view(room);
+                     return Outcome{mode == FindMode::any ? lease->any(batch, out, filter)
+                                                          : lease->closest(batch, out, filter),
+                                    0};
+                   }),
+         "cast_rays");
+  return table("SceneHits", key, data, part, t, normals, points);
+}
+
+[[nodiscard]] py::object crossings(SharedScene& s, py::handle origins, py::handle directions,
+                                   py::handle min_ts, py::handle max_ts,
+                                   const SceneFilter& filter) {
+  using C = SceneCrossing;
+  const ShapeRayInput rays(origins, directions, min_ts, max_ts);
+  const auto lists =
+      list_all<C>(s, rays.count(), "crossings",
+                  [&](const QueryLease& lease, std::size_t i, std::span<const C>& found) {
+                    return lease->crossings(rays[i], filter).get(found);
+                  });
+  return columns_of(lists).table("SceneCrossings", given(std::vector(lists->first)), &C::key,
+                                 &C::data, &C::part, &C::t, &C::exits, &C::normal, &C::point,
+                                 &C::barycentric);
 }
 
 // --- other queries -----------------------------------------------------------------------------
@@ -262,7 +229,7 @@ class ShapeRayInput {
 /// Casts `count` moving shapes; cast_at(i) returns the i-th.
 template <typename CastAt>
 [[nodiscard]] py::object cast_moving(SharedScene& s, std::size_t count, const std::string& find,
-                                     const char* call, const Filter& filter, double tolerance,
+                                     const char* call, const SceneFilter& filter, double tolerance,
                                      CastAt&& cast_at) {
   const FindMode mode = chosen(kFindModes, find, "find");
   if (mode == FindMode::any) {
@@ -285,64 +252,63 @@ template <typename CastAt>
 [[nodiscard]] py::object cast_shapes(SharedScene& s, py::handle shape_array, py::handle poses,
                                      py::handle directions, const std::string& find,
                                      py::handle max_ts, double tolerance, bool touching,
-                                     const Filter& filter) {
-  const PoseInput pose(poses);
-  const ShapeInput shape(shape_array);
-  Numbers direction(directions, "directions", {3}, true);
-  Numbers max_t(max_ts, "max_t", {}, true);
-  shape.expect(pose.count());
-  direction.expect(pose.count());
-  max_t.expect(pose.count());
-  return cast_moving(s, pose.count(), find, "cast_shapes", filter, tolerance, [&](std::size_t i) {
-    return ShapeCast{shape[i],
-                     pose[i],
-                     {direction.at(i, 0), direction.at(i, 1), direction.at(i, 2)},
-                     max_t.at(i),
-                     touching};
+                                     const SceneFilter& filter) {
+  PoseInput pose(poses);
+  ShapeInput shape(*s.shapes, shape_array);
+  Numbers direction(directions, "directions", {3}, Valid::finite);
+  Numbers max_t(max_ts, "max_t", {});
+  const std::size_t count = agree({&pose, &shape, &direction, &max_t});
+  return cast_moving(s, count, find, "cast_shapes", filter, tolerance, [&](std::size_t i) {
+    return ShapeCast{shape[i], pose[i], direction.vector(i), max_t.at(i), touching};
   });
 }
 
 [[nodiscard]] py::object cast_motions(SharedScene& s, py::handle shape_array, py::handle motions,
                                       const std::string& find, double tolerance, bool touching,
-                                      const Filter& filter) {
-  const RigidMotionInput motion(motions);
-  const ShapeInput shape(shape_array);
-  shape.expect(motion.count());
-  return cast_moving(s, motion.count(), find, "cast_motions", filter, tolerance,
+                                      const SceneFilter& filter) {
+  RigidMotionInput motion(motions);
+  ShapeInput shape(*s.shapes, shape_array);
+  return cast_moving(s, agree({&motion, &shape}), find, "cast_motions", filter, tolerance,
                      [&](std::size_t i) {
                        return MotionCast{shape[i], motion[i], touching};
                      });
 }
 
-[[nodiscard]] SceneOverlapTables overlap(SharedScene& s, py::handle shape_array, py::handle poses,
-                                         const Filter& filter) {
-  const PoseInput pose(poses);
-  const ShapeInput shape(shape_array);
-  shape.expect(pose.count());
+[[nodiscard]] py::object overlap(SharedScene& s, py::handle shape_array, py::handle poses,
+                                 const SceneFilter& filter) {
+  PoseInput pose(poses);
+  ShapeInput shape(*s.shapes, shape_array);
   const auto lists = list_all<SceneOverlap>(
-      s, pose.count(), "overlap",
+      s, agree({&pose, &shape}), "overlap",
       [&](const QueryLease& lease, std::size_t i, std::span<const SceneOverlap>& found) {
         return lease->overlap(shape[i], pose[i], filter).get(found);
       });
   const EntryColumns<SceneOverlap> bodies = columns_of(lists);
-  return {{},
-          given(std::vector(lists->first)),
-          bodies.column<std::uint64_t>(offsetof(SceneOverlap, key)),
-          bodies.column<std::uint64_t>(offsetof(SceneOverlap, data)),
-          bodies.column<std::uint32_t>(offsetof(SceneOverlap, part))};
+  return bodies.table("SceneOverlaps", given(std::vector(lists->first)), &SceneOverlap::key,
+                      &SceneOverlap::data, &SceneOverlap::part);
 }
 
-[[nodiscard]] SceneDistanceTables distance(SharedScene& s, py::handle a, py::handle b, double limit,
-                                           const std::string& rules) {
-  const PairRules taken = chosen(kRules, rules, "rules");
-  const KeyInput first(a, "a");
-  const KeyInput second(b, "b");
-  if (first.count() != second.count()) {
-    throw Refusal(Status::size_mismatch, "distance: a and b differ in length");
-  }
-  std::vector<SceneDistance> one(tasks_for(first.count()));
+[[nodiscard]] py::object distances(SharedScene& s, py::handle shape_array, py::handle poses,
+                                   py::handle limits, const SceneFilter& filter) {
+  PoseInput pose(poses);
+  ShapeInput shape(*s.shapes, shape_array);
+  Numbers limit(limits, "limit", {}, Valid::finite);
   return shown_distances(list_all<SceneDistance>(
-      s, first.count(), "distance",
+      s, agree({&pose, &shape, &limit}), "distances",
+      [&](const QueryLease& lease, std::size_t i, std::span<const SceneDistance>& found) {
+        return lease->distances(shape[i], pose[i], limit.at(i), filter).get(found);
+      }));
+}
+
+[[nodiscard]] py::object distance(SharedScene& s, py::handle a, py::handle b, double limit,
+                                  const std::string& rules) {
+  const PairRules taken = chosen(kRules, rules, "rules");
+  KeyInput first(s, a, "a");
+  KeyInput second(s, b, "b");
+  const std::size_t count = agree({&first, &second});
+  std::vector<SceneDistance> one(tasks_for(count));
+  return shown_distances(list_all<SceneDistance>(
+      s, count, "distance",
       [&](const QueryLease& lease, std::size_t i, std::span<const SceneDistance>& found) {
         SceneDistance& answer = one[i / kQueriesPerTask];
         const Status status =
@@ -355,13 +321,14 @@ template <typename CastAt>
 /// Queries two sets of bodies.
 template <typename Query>
 void query_sets(SharedScene& s, py::handle a, py::handle b, const char* call, Query&& query) {
-  const KeyInput first(a, "a");
-  const KeyInput second(b, "b");
-  const Outcome outcome = run_query(s, [&] {
-    const QueryLease lease(s);
-    return Outcome{query(lease, first.keys(), second.keys()), 0};
-  });
-  accept(outcome.status, call);
+  const KeyInput first(s, a, "a");
+  const KeyInput second(s, b, "b");
+  accept(run_query(s,
+                   [&] {
+                     const QueryLease lease(s);
+                     return Outcome{query(lease, first.keys(), second.keys()), 0};
+                   }),
+         call);
 }
 
 [[nodiscard]] py::array_t<std::uint64_t> rows_of(std::span<const KeyPair> pairs) {
@@ -395,11 +362,12 @@ void query_sets(SharedScene& s, py::handle a, py::handle b, const char* call, Qu
   KeyPair pair;
   if (a.is_none()) {
     if (!b.is_none()) throw Refusal(Status::invalid_argument, "any_contact: b without a");
-    const Outcome outcome = run_query(s, [&] {
-      const QueryLease lease(s);
-      return Outcome{lease->any_contact(contact_margin, taken).get(pair), 0};
-    });
-    accept(outcome.status, "any_contact");
+    accept(run_query(s,
+                     [&] {
+                       const QueryLease lease(s);
+                       return Outcome{lease->any_contact(contact_margin, taken).get(pair), 0};
+                     }),
+           "any_contact");
   } else {
     const bool is_one = b.is_none();
     query_sets(s, a, is_one ? a : b, "any_contact",
@@ -411,7 +379,7 @@ void query_sets(SharedScene& s, py::handle a, py::handle b, const char* call, Qu
   return rows_of({&pair, pair.first == Key{} ? 0U : 1U});
 }
 
-[[nodiscard]] std::pair<py::array_t<std::uint64_t>, SceneDistanceTables> least_distance(
+[[nodiscard]] std::pair<py::array_t<std::uint64_t>, py::object> least_distance(
     SharedScene& s, py::handle a, py::handle b, double limit, const std::string& rules) {
   const PairRules taken = chosen(kRules, rules, "rules");
   SetDistance answer;
@@ -426,122 +394,32 @@ void query_sets(SharedScene& s, py::handle a, py::handle b, const char* call, Qu
   return {nearest_a, shown_distances(lists)};
 }
 
-[[nodiscard]] SceneDistanceTables nearest(SharedScene& s, py::handle points, std::size_t count,
-                                          py::handle radii, const Filter& filter) {
-  const Numbers point(points, "points", {3});
-  Numbers radius(radii, "radius", {}, true);
-  radius.expect(point.count());
+[[nodiscard]] py::object nearest(SharedScene& s, py::handle points, std::size_t count,
+                                 py::handle radii, const SceneFilter& filter) {
+  Numbers point(points, "points", {3}, Valid::finite);
+  Numbers radius(radii, "radius", {});
   return shown_distances(list_all<SceneDistance>(
-      s, point.count(), "nearest",
+      s, agree({&point, &radius}), "nearest",
       [&](const QueryLease& lease, std::size_t i, std::span<const SceneDistance>& found) {
         const double at[3] = {point.at(i, 0), point.at(i, 1), point.at(i, 2)};
         return lease->nearest(at, count, radius.at(i), filter).get(found);
       }));
 }
 
-template <typename Table, typename Class>
-void add_hit_columns(Class& type) {
-  type.def_readonly("key", &Table::key, "Keys of bodies, uint64.")
-      .def_readonly("data", &Table::data, "Client data, uint64.")
-      .def_readonly("part", &Table::part, "Triangle or child, WHOLE_SHAPE for convex bodies.")
-      .def_readonly("t", &Table::t, "t in units of the direction, float64.")
-      .def_readonly("normal", &Table::normal, "Unit normal of the surface, (n, 3) float64.")
-      .def_readonly("point", &Table::point, "Point of the hit, in the world, (n, 3) float64.");
-}
-
-void add_answers(py::module_& module) {
-  py::class_<SceneHitTable> hits(
-      module, "SceneHits",
-      "One hit for each query; NULL_KEY, 0, WHOLE_SHAPE, infinity and zeros if there is none.");
-  add_hit_columns<SceneHitTable>(hits);
-  py::class_<SceneHitTables> lists(module, "SceneHitLists",
-                                   "The hits of query i are first[i] to first[i + 1].");
-  add_hit_columns<SceneHitTables>(lists);
-  lists.def_readonly("first", &SceneHitTables::first, "(n + 1,) uint64.");
-  using Overlap = SceneOverlapTables;
-  py::class_<Overlap>(module, "SceneOverlaps",
-                      "The bodies that shape i overlaps are first[i] to first[i + 1].")
-      .def_readonly("first", &Overlap::first, "(n + 1,) uint64.")
-      .def_readonly("key", &Overlap::key, "Keys of bodies, (m,) uint64.")
-      .def_readonly("data", &Overlap::data, "Client data, (m,) uint64.")
-      .def_readonly("part", &Overlap::part, "A part of the body that it overlaps, (m,) uint32.");
-  using Distance = SceneDistanceTables;
-  py::class_<Distance>(module, "SceneDistances",
-                       "The results of query i are first[i] to first[i + 1].")
-      .def_readonly("first", &Distance::first, "(n + 1,) uint64.")
-      .def_readonly("key", &Distance::key, "Keys of the second bodies, (m,) uint64.")
-      .def_readonly("data", &Distance::data, "Their client data, (m,) uint64.")
-      .def_readonly("part_a", &Distance::part_a, "Closest part of the first, (m,) uint32.")
-      .def_readonly("part", &Distance::part, "Closest part of the second, (m,) uint32.")
-      .def_readonly("distance", &Distance::distance,
-                    "Distance, negative if they overlap, (m,) float64.")
-      .def_readonly("error_bound", &Distance::error_bound,
-                    "Error bound of the distance, (m,) float64.")
-      .def_readonly("normal", &Distance::normal,
-                    "Unit vector from first to second, (m, 3) float64.")
-      .def_readonly("point_a", &Distance::point_a,
-                    "Point on the first, in the world, (m, 3) float64.")
-      .def_readonly("point_b", &Distance::point_b,
-                    "Point on the second, in the world, (m, 3) float64.");
-}
-
 }  // namespace
 
-void add_scene_queries(py::module_& module, SceneClass& scene) {
-  using py::arg;
-  constexpr double forever = std::numeric_limits<double>::infinity();
-  add_answers(module);
-  scene
-      .def("cast_rays", filtered(&cast_rays), arg("origins"), arg("directions"),
-           arg("find") = "closest", py::kw_only(), arg("max_t") = forever,
-           arg("filter") = PythonFilter{},
-           "Finds the bodies whose shapes the rays origins + t * directions, (n, 3) each, 0 <= t "
-           "<= max_t, (n,) or one for all, hit. `find`: 'closest' or 'any', returning SceneHits, "
-           "or 'all', returning SceneHitLists. Doubles of one stride are read in place.")
-      .def("cast_shapes", filtered(&cast_shapes), arg("shapes"), arg("poses"), arg("directions"),
-           arg("find") = "closest", py::kw_only(), arg("max_t") = 1.0, arg("tolerance") = 1e-6,
-           arg("touching") = true, arg("filter") = PythonFilter{},
-           "Finds the first contacts with bodies of shapes (n,), or one, at poses (n, 7), that "
-           "move by t * directions, (n, 3) or (3,), without turning. t is never later than the "
-           "true time, and at most `tolerance` (a length) earlier. No half-spaces. `find`: "
-           "'closest' or 'all'. `touching` false: contacts at the start along which the shape "
-           "slides or separates are no hits.")
-      .def("cast_motions", filtered(&cast_motions), arg("shapes"), arg("motions"),
-           arg("find") = "closest", py::kw_only(), arg("tolerance") = 1e-6, arg("touching") = true,
-           arg("filter") = PythonFilter{},
-           "Finds the first contacts with bodies of shapes (n,), or one, that move and turn by "
-           "motions (n, 13), as returned by `motions_between`; t is the time in [0, 1], never "
-           "late. The gap then is at most `tolerance` as in `time_of_impact`. `find`: 'closest' or "
-           "'all'. `touching` as in `cast_shapes`. size_mismatch, invalid_key; invalid_pose for an "
-           "invalid motion; unsupported for half-spaces; invalid_argument for a bad tolerance. A "
-           "path that is diagonal to the axes is queried in up to eight pieces.")
-      .def("overlap", filtered(&overlap), arg("shapes"), arg("poses"), py::kw_only(),
-           arg("filter") = PythonFilter{},
-           "Bodies that overlap shapes (n,), or one, at poses (n, 7), sorted by id.")
-      .def("distance", &distance, arg("a"), arg("b"), py::kw_only(), arg("limit") = forever,
-           arg("rules") = "scene",
-           "Closest or deepest points of bodies a (n,) and b (n,): one result for each pair, and "
-           "none if the bodies are farther apart than `limit`. `rules`, here and below: 'scene' "
-           "tests only pairs that `collide` would make, by their sets (one is dynamic), filters, "
-           "layers, ignored pairs and the predicate; 'none' tests any two bodies.")
-      .def("least_distance", &least_distance, arg("a"), arg("b"), py::kw_only(),
-           arg("limit") = forever, arg("rules") = "scene",
-           "The closest, or deepest, bodies of two sets a (n,) and b (m,): the key of the first, "
-           "(1,), and one result; both are empty if all are farther apart than `limit`.")
-      .def("overlaps", &overlaps, arg("a"), arg("b"), py::kw_only(),
-           arg("most") = std::numeric_limits<std::size_t>::max(), arg("rules") = "scene",
-           "Overlapping bodies of two sets a (n,) and b (m,): keys (k, 2), at most `most` pairs; 1 "
-           "stops at the first pair.")
-      .def("any_contact", &any_contact, arg("a") = py::none(), arg("b") = py::none(), py::kw_only(),
-           arg("contact_margin") = 0.0, arg("rules") = "scene",
-           "The first pair of bodies of two sets a (n,) and b (m,) that touch or are at most "
-           "`contact_margin` apart: keys (1, 2), or (0, 2) if there is none. Without b, of bodies "
-           "of a "
-           "with each other; without both, of all bodies of the scene.")
-      .def("nearest", filtered(&nearest), arg("points"), arg("count") = 1, py::kw_only(),
-           arg("radius") = forever, arg("filter") = PythonFilter{},
-           "The bodies nearest to each point (n, 3), at most `count`, within `radius`, (n,) or one "
-           "for all, sorted by distance.");
+void add_scene_queries(SceneClass& scene) {
+  scene.def("cast_rays", filtered(&cast_rays))
+      .def("cast_shapes", filtered(&cast_shapes))
+      .def("cast_motions", filtered(&cast_motions))
+      .def("crossings", filtered(&crossings))
+      .def("overlap", filtered(&overlap))
+      .def("distances", filtered(&distances))
+      .def("distance", &distance)
+      .def("least_distance", &least_distance)
+      .def("overlaps", &overlaps)
+      .def("any_contact", &any_contact)
+      .def("nearest", filtered(&nearest));
 }
 
 }  // namespace winnow::python

@@ -99,11 +99,16 @@ class SharedScene : public NeedsInit {
   std::vector<std::unique_ptr<SceneQueries>> queries_;
 };
 
+/// True if a key is of a body of the scene.
+[[nodiscard]] inline bool has_key(const SharedScene& s, Key key) {
+  return reading(s.mutex, [&] { return s.scene.contains(key); });
+}
+
 /// Options shared by scenes and clusters of scenes.
 [[nodiscard]] SceneOptions scene_options(double contact_margin, const std::string& tier,
                                          const std::vector<std::string>& structures, bool parallel);
 
-using SceneClass = py::class_<SharedScene, std::shared_ptr<SharedScene>>;
+using SceneClass = Class<SharedScene>;
 
 /// Adds Contacts.
 void add_contacts(py::module_& module);
@@ -114,6 +119,6 @@ void add_continuous_collision(py::module_& module, SceneClass& scene);
 /// Adds Sensors.
 void add_sensors(py::module_& module);
 /// Adds queries of the exact shapes.
-void add_scene_queries(py::module_& module, SceneClass& scene);
+void add_scene_queries(SceneClass& scene);
 
 }  // namespace winnow::python

@@ -78,36 +78,18 @@ bool SharedShapes::is_used(ShapeId id) const {
   return found != uses_.end() && found->second != 0;
 }
 
-namespace {
-
-[[nodiscard]] bool is_scalar(py::handle object) {
-  const py::array array = py::array::ensure(object);
-  PyErr_Clear();
-  return array && array.ndim() == 0;
+ShapeInput::ShapeInput(const SharedShapes& shapes, py::handle object, const char* name)
+    : Integers(object, name), shapes_(shapes) {
+  // Calls that add shapes return arrays, also of one id.
+  if (count() == 1) set(1, true);
 }
 
-[[nodiscard]] py::object as_list(py::handle object, bool is_one) {
-  if (!is_one) return py::reinterpret_borrow<py::object>(object);
-  return py::array::ensure(object).attr("reshape")(1);
-}
-
-}  // namespace
-
-ShapeInput::ShapeInput(py::handle object, const char* name)
-    : name_(name), is_one_(is_scalar(object)), ids_(as_list(object, is_one_), name) {
-  is_one_ = ids_.count() == 1;
-}
-
-void ShapeInput::expect(std::size_t count) const {
-  if (is_one_ || ids_.count() == count) return;
-  throw Refusal(Status::size_mismatch, std::string(name_) + " has " + std::to_string(ids_.count()) +
-                                           " entries, not " + std::to_string(count));
-}
-
-std::span<const ShapeId> ShapeInput::list(std::size_t count, std::vector<ShapeId>& room) const {
-  if (!is_one_) return {reinterpret_cast<const ShapeId*>(ids_.values().data()), ids_.count()};
-  room.assign(count, ShapeId{ids_[0]});
-  return room;
+std::string ShapeInput::fault(Status status) const {
+  for (std::size_t i = 0; status == Status::invalid_key && i < count(); ++i) {
+    const bool exists = reading(shapes_.mutex, [&] { return shapes_.contains((*this)[i]); });
+    if (!exists) return place(i) + " is of no shape: " + std::to_string((*this)[i].bits);
+  }
+  return {};
 }
 
 namespace {
@@ -121,7 +103,7 @@ template <typename Make>
 [[nodiscard]] py::array add_all(Shapes& shapes, std::size_t count, const char* call, Make&& make) {
   auto ids = fresh<std::uint32_t>(count);
   auto* const to = reinterpret_cast<ShapeId*>(ids.mutable_data());
-  const Outcome outcome = changing(shapes.mutex, [&] {
+  change_or_throw(shapes.mutex, call, [&] {
     for (std::size_t i = 0; i < count; ++i) {
       const Status status = shapes.pool.add(make(i)).get(to[i]);
       if (status == Status::ok) continue;
@@ -130,39 +112,28 @@ template <typename Make>
     }
     return Outcome{};
   });
-  accept(outcome.status, outcome.text(call));
   return ids;
 }
 
-/// Returns the common number of entries; columns that have a single entry are repeated.
-[[nodiscard]] std::size_t agree(std::initializer_list<Numbers*> columns) {
-  std::size_t count = 1;
-  for (const Numbers* column : columns) {
-    if (!column->is_one()) count = column->count();
-  }
-  for (Numbers* column : columns) column->expect(count);
-  return count;
-}
-
 [[nodiscard]] py::array add_spheres(Shapes& shapes, py::handle radii) {
-  Numbers radius(radii, "radius", {}, true);
+  Numbers radius(radii, "radius", {}, Valid::length);
   return add_all(shapes, agree({&radius}), "add_spheres",
                  [&](std::size_t i) { return SphereShape{radius.at(i)}; });
 }
 
 [[nodiscard]] py::array add_capsules(Shapes& shapes, py::handle radii, py::handle halves) {
-  Numbers radius(radii, "radius", {}, true);
-  Numbers half(halves, "half_length", {}, true);
+  Numbers radius(radii, "radius", {}, Valid::length);
+  Numbers half(halves, "half_length", {}, Valid::length);
   return add_all(shapes, agree({&radius, &half}), "add_capsules", [&](std::size_t i) {
     return CapsuleShape{radius.at(i), half.at(i)};
   });
 }
 
 [[nodiscard]] py::array add_boxes(Shapes& shapes, py::handle halves, py::handle roundings) {
-  Numbers half(halves, "half", {3}, true);
-  Numbers rounding(roundings, "rounding", {}, true);
+  Numbers half(halves, "half", {3}, Valid::length);
+  Numbers rounding(roundings, "rounding", {}, Valid::length);
   return add_all(shapes, agree({&half, &rounding}), "add_boxes", [&](std::size_t i) {
-    return BoxShape{{half.at(i, 0), half.at(i, 1), half.at(i, 2)}, rounding.at(i)};
+    return BoxShape{half.vector(i), rounding.at(i)};
   });
 }
 
@@ -170,17 +141,17 @@ template <typename Make>
 template <typename Shape>
 [[nodiscard]] py::array add_turned(Shapes& shapes, py::handle radii, py::handle halves,
                                    py::handle roundings) {
-  Numbers radius(radii, "radius", {}, true);
-  Numbers half(halves, "half_length", {}, true);
-  Numbers rounding(roundings, "rounding", {}, true);
+  Numbers radius(radii, "radius", {}, Valid::length);
+  Numbers half(halves, "half_length", {}, Valid::length);
+  Numbers rounding(roundings, "rounding", {}, Valid::length);
   return add_all(shapes, agree({&radius, &half, &rounding}), "shapes", [&](std::size_t i) {
     return Shape{radius.at(i), half.at(i), rounding.at(i)};
   });
 }
 
 [[nodiscard]] py::array add_triangles(Shapes& shapes, py::handle corners, py::handle roundings) {
-  Numbers vertex(corners, "vertices", {3, 3}, true);
-  Numbers rounding(roundings, "rounding", {}, true);
+  Numbers vertex(corners, "vertices", {3, 3}, Valid::finite);
+  Numbers rounding(roundings, "rounding", {}, Valid::length);
   return add_all(shapes, agree({&vertex, &rounding}), "add_triangles", [&](std::size_t i) {
     TriangleShape shape;
     for (std::size_t j = 0; j < 3; ++j) {
@@ -192,24 +163,24 @@ template <typename Shape>
 }
 
 [[nodiscard]] py::array add_half_spaces(Shapes& shapes, py::handle normals, py::handle offsets) {
-  Numbers normal(normals, "normal", {3}, true);
-  Numbers offset(offsets, "offset", {}, true);
+  Numbers normal(normals, "normal", {3}, Valid::direction);
+  Numbers offset(offsets, "offset", {}, Valid::finite);
   return add_all(shapes, agree({&normal, &offset}), "add_half_spaces", [&](std::size_t i) {
-    return HalfSpaceShape{{normal.at(i, 0), normal.at(i, 1), normal.at(i, 2)}, offset.at(i)};
+    return HalfSpaceShape{normal.vector(i), offset.at(i)};
   });
 }
 
 [[nodiscard]] py::array add_ellipsoids(Shapes& shapes, py::handle radii, py::handle roundings) {
-  Numbers radius(radii, "radius", {3}, true);
-  Numbers rounding(roundings, "rounding", {}, true);
+  Numbers radius(radii, "radius", {3}, Valid::length);
+  Numbers rounding(roundings, "rounding", {}, Valid::length);
   return add_all(shapes, agree({&radius, &rounding}), "add_ellipsoids", [&](std::size_t i) {
-    return EllipsoidShape{{radius.at(i, 0), radius.at(i, 1), radius.at(i, 2)}, rounding.at(i)};
+    return EllipsoidShape{radius.vector(i), rounding.at(i)};
   });
 }
 
 [[nodiscard]] py::array add_tapered_capsules(Shapes& shapes, py::handle radii, py::handle halves) {
-  Numbers radius(radii, "radius", {2}, true);
-  Numbers half(halves, "half_length", {}, true);
+  Numbers radius(radii, "radius", {2}, Valid::length);
+  Numbers half(halves, "half_length", {}, Valid::length);
   return add_all(shapes, agree({&radius, &half}), "add_tapered_capsules", [&](std::size_t i) {
     return TaperedCapsuleShape{{radius.at(i, 0), radius.at(i, 1)}, half.at(i)};
   });
@@ -217,26 +188,23 @@ template <typename Shape>
 
 [[nodiscard]] std::uint32_t add_hull(Shapes& shapes, py::handle point_array, double rounding,
                                      py::handle indices, py::handle sizes) {
-  const Numbers numbers(point_array, "points", {3});
+  const Numbers numbers(point_array, "points", {3}, Valid::finite);
   std::vector<Vec3d> points(numbers.count());
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    points[i] = {numbers.at(i, 0), numbers.at(i, 1), numbers.at(i, 2)};
-  }
+  for (std::size_t i = 0; i < points.size(); ++i) points[i] = numbers.vector(i);
   ShapeId id;
   if (indices.is_none() != sizes.is_none()) {
     throw Refusal(Status::invalid_argument, "add_hull: indices and sizes belong together");
   }
   if (indices.is_none()) {
-    accept(changing(shapes.mutex, [&] { return shapes.pool.add_hull(points, rounding).get(id); }),
-           "add_hull");
+    change_or_throw(shapes.mutex, "add_hull",
+                    [&] { return shapes.pool.add_hull(points, rounding).get(id); });
     return id.bits;
   }
   const Integers<std::uint32_t> index(indices, "indices");
   const Integers<std::uint32_t> size(sizes, "sizes");
   const HullFaces faces{index.values(), size.values()};
-  accept(
-      changing(shapes.mutex, [&] { return shapes.pool.add_hull(points, faces, rounding).get(id); }),
-      "add_hull");
+  change_or_throw(shapes.mutex, "add_hull",
+                  [&] { return shapes.pool.add_hull(points, faces, rounding).get(id); });
   return id.bits;
 }
 
@@ -256,181 +224,126 @@ template <typename Shape>
 }
 
 void remove_shapes(Shapes& shapes, py::handle id_array) {
-  const Integers<std::uint32_t> ids(id_array, "shapes");
+  const ShapeInput ids(shapes, id_array);
   ++shapes.revision;
   std::vector<SupportFunctions::node_type> gone;
-  const Outcome outcome = changing(shapes.mutex, [&] {
+  change_or_throw(shapes.mutex, "remove (shapes may be in use)", [&] {
     std::vector<std::uint32_t> sorted(ids.values().begin(), ids.values().end());
     std::sort(sorted.begin(), sorted.end());
     if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end()) {
       return Outcome{Status::invalid_key, 0};
     }
     for (std::size_t i = 0; i < ids.count(); ++i) {
-      const ShapeId id{ids[i]};
+      const ShapeId id = ids[i];
       if (!shapes.contains(id) || shapes.is_used(id)) return Outcome{Status::invalid_key, i};
     }
     for (std::size_t i = 0; i < ids.count(); ++i) {
-      const Status status = remove_one(shapes, ShapeId{ids[i]});
+      const Status status = remove_one(shapes, ids[i]);
       if (status != Status::ok) return Outcome{status, i};
-      gone.push_back(shapes.supports.extract(ids[i]));
+      gone.push_back(shapes.supports.extract(ids[i].bits));
     }
     return Outcome{};
   });
-  accept(outcome.status, outcome.text("remove (shapes may be in use)"));
-}
-
-[[nodiscard]] py::array contains(const Shapes& shapes, py::handle id_array) {
-  const Integers<std::uint32_t> ids(id_array, "shapes");
-  auto result = fresh<bool>(ids.count());
-  bool* const to = result.mutable_data();
-  reading(shapes.mutex, [&] {
-    for (std::size_t i = 0; i < ids.count(); ++i) to[i] = shapes.contains(ShapeId{ids[i]});
-  });
-  return result;
 }
 
 [[nodiscard]] py::tuple bounds(const Shapes& shapes, py::handle id_array, py::handle poses) {
-  const PoseInput pose(poses);
-  const ShapeInput ids(id_array);
-  ids.expect(pose.count());
-  auto lower = fresh<float>(pose.count(), 3);
-  auto upper = fresh<float>(pose.count(), 3);
+  PoseInput pose(poses);
+  ShapeInput ids(shapes, id_array);
+  const std::size_t count = agree({&pose, &ids});
+  auto lower = fresh<float>(count, 3);
+  auto upper = fresh<float>(count, 3);
   float* const low = lower.mutable_data();
   float* const high = upper.mutable_data();
-  const Outcome outcome = reading_shapes(shapes, [&] {
-    for (std::size_t i = 0; i < pose.count(); ++i) {
-      if (!shapes.contains(ids[i])) return Outcome{Status::invalid_key, i};
-      if (!pose[i].is_valid()) return Outcome{Status::invalid_pose, i};
-      const Aabb box = shapes.bounds(ids[i], pose[i]);
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        low[3 * i + axis] = box.min[axis];
-        high[3 * i + axis] = box.max[axis];
-      }
-    }
-    return Outcome{};
-  });
-  accept(outcome.status, outcome.text("bounds"));
+  accept(reading_shapes(shapes,
+                        [&] {
+                          for (std::size_t i = 0; i < pose.count(); ++i) {
+                            if (!shapes.contains(ids[i])) return Outcome{Status::invalid_key, i};
+                            if (!pose[i].is_valid()) return Outcome{Status::invalid_pose, i};
+                            const Aabb box = shapes.bounds(ids[i], pose[i]);
+                            for (std::size_t axis = 0; axis < 3; ++axis) {
+                              low[3 * i + axis] = box.min[axis];
+                              high[3 * i + axis] = box.max[axis];
+                            }
+                          }
+                          return Outcome{};
+                        }),
+         "bounds");
   return py::make_tuple(lower, upper);
 }
 
-/// The point at which each ray enters its shape.
-struct RayHits : EmptyIfZero {
-  py::array hit;
-  py::array t;
-  py::array normal;
-};
-
-[[nodiscard]] RayHits cast_rays(const Shapes& shapes, py::handle id_array, py::handle poses,
-                                py::handle origins, py::handle directions, py::handle max_ts) {
-  const PoseInput pose(poses);
-  const ShapeInput ids(id_array);
-  Numbers origin(origins, "origins", {3}, true);
-  Numbers direction(directions, "directions", {3}, true);
-  Numbers max_t(max_ts, "max_t", {}, true);
-  ids.expect(pose.count());
-  for (Numbers* each : {&origin, &direction, &max_t}) each->expect(pose.count());
-  auto hit = fresh<bool>(pose.count());
-  auto t = fresh<double>(pose.count());
-  auto normal = fresh<double>(pose.count(), 3);
+[[nodiscard]] py::object cast_rays(const Shapes& shapes, py::handle id_array, py::handle poses,
+                                   py::handle origins, py::handle directions, py::handle max_ts) {
+  PoseInput pose(poses);
+  ShapeInput ids(shapes, id_array);
+  Numbers origin(origins, "origins", {3}, Valid::finite);
+  Numbers direction(directions, "directions", {3}, Valid::direction);
+  Numbers max_t(max_ts, "max_t", {});
+  const std::size_t count = agree({&pose, &ids, &origin, &direction, &max_t});
+  auto hit = fresh<bool>(count);
+  auto t = fresh<double>(count);
+  auto normal = fresh<double>(count, 3);
   bool* const to_hit = hit.mutable_data();
   double* const to_t = t.mutable_data();
   double* const to_normal = normal.mutable_data();
-  const Outcome outcome = reading_shapes(shapes, [&] {
-    return answer_all(Execution::parallel(), pose.count(), [&](std::size_t, std::size_t i) {
-      ShapeRay ray;
-      for (std::size_t k = 0; k < 3; ++k) {
-        ray.origin[k] = origin.at(i, k);
-        ray.direction[k] = direction.at(i, k);
-      }
-      ray.max_t = max_t.at(i);
-      ShapeHit found;
-      if (!shapes.pool.contains(ids[i])) return Status::invalid_key;
-      const Status status = cast_ray(shapes.pool.tables(), ids[i], pose[i], ray).get(found);
-      to_hit[i] = found.hit;
-      to_t[i] = found.hit ? found.t : std::numeric_limits<double>::infinity();
-      for (std::size_t k = 0; k < 3; ++k) to_normal[3 * i + k] = found.normal[k];
-      return status;
-    });
-  });
-  accept(outcome.status, outcome.text("cast_rays"));
-  return {{}, hit, t, normal};
-}
-
-void add_convex(ShapesClass& type) {
-  using py::arg;
-  type.def("add_spheres", &add_spheres, arg("radius"),
-           "Adds n spheres: radii (n,), or one. Returns their ids, (n,) uint32, as all of these "
-           "do. Lengths are finite and >= 0.")
-      .def("add_capsules", &add_capsules, arg("radius"), arg("half_length"),
-           "Adds n capsules about segments |z| <= half_length: (n,) each, or one for all.")
-      .def("add_boxes", &add_boxes, arg("half"), arg("rounding") = 0.0,
-           "Adds n boxes |x_i| <= half_i: half extents (n, 3), or (3,) for all, and the radius of "
-           "their rounding, (n,) or one for all.")
-      .def("add_cylinders", &add_turned<CylinderShape>, arg("radius"), arg("half_length"),
-           arg("rounding") = 0.0,
-           "Adds n cylinders about z, |z| <= half_length: (n,) each, or one for all.")
-      .def("add_cones", &add_turned<ConeShape>, arg("radius"), arg("half_length"),
-           arg("rounding") = 0.0,
-           "Adds n cones with the apex at z = half_length and the disc at -half_length: (n,) "
-           "each, or one for all.")
-      .def("add_triangles", &add_triangles, arg("vertices"), arg("rounding") = 0.0,
-           "Adds n two-sided triangles: corners (n, 3, 3), rounding (n,) or one for all.")
-      .def("add_half_spaces", &add_half_spaces, arg("normal"), arg("offset") = 0.0,
-           "Adds n half-spaces normal . x <= offset: (n, 3) and (n,), or one for all.")
-      .def("add_ellipsoids", &add_ellipsoids, arg("radius"), arg("rounding") = 0.0,
-           "Adds n ellipsoids: half of their lengths along x, y, z, (n, 3), or (3,) for all, and "
-           "the radius of their rounding, (n,) or one for all.")
-      .def("add_tapered_capsules", &add_tapered_capsules, arg("radius"), arg("half_length"),
-           "Adds n convex hulls of two balls at z = -half_length and z = half_length: their radii "
-           "(n, 2), or (2,) for all, and half lengths (n,) or one for all.")
-      .def("add_hull", &add_hull, arg("points"), arg("rounding") = 0.0, arg("indices") = py::none(),
-           arg("sizes") = py::none(),
-           "Adds the convex hull of points (n, 3) and returns its id. With `indices` (m,) and "
-           "`sizes` (f,), face i is the next sizes[i] of the indices, counter-clockwise as seen "
-           "from outside; without them, the hull is computed.");
+  accept(reading_shapes(
+             shapes,
+             [&] {
+               return answer_all(Execution::parallel(), count, [&](std::size_t, std::size_t i) {
+                 ShapeRay ray;
+                 for (std::size_t k = 0; k < 3; ++k) {
+                   ray.origin[k] = origin.at(i, k);
+                   ray.direction[k] = direction.at(i, k);
+                 }
+                 ray.max_t = max_t.at(i);
+                 ShapeHit found;
+                 if (!shapes.pool.contains(ids[i])) return Status::invalid_key;
+                 const Status status =
+                     cast_ray(shapes.pool.tables(), ids[i], pose[i], ray).get(found);
+                 to_hit[i] = found.hit;
+                 to_t[i] = found.hit ? found.t : std::numeric_limits<double>::infinity();
+                 for (std::size_t k = 0; k < 3; ++k) to_normal[3 * i + k] = found.normal[k];
+                 return status;
+               });
+             }),
+         "cast_rays");
+  return table("RayHits", hit, t, normal);
 }
 
 }  // namespace
 
 void add_shapes(py::module_& module) {
-  using py::arg;
-  py::class_<RayHits>(module, "RayHits", "Points at which rays enter their shapes.")
-      .def_readonly("hit", &RayHits::hit, "True if the ray hits, (n,) bool.")
-      .def_readonly("t", &RayHits::t,
-                    "t in units of the direction, 0 inside, infinity without a hit: (n,) float64.")
-      .def_readonly("normal", &RayHits::normal,
-                    "Unit normal, outward, against the ray: (n, 3) float64.");
-  ShapesClass type(module, "Shapes",
-                   "Shapes by id, for scenes and the narrow phase: convex ones, added many at a "
-                   "time, and meshes, height fields and compounds. Any number of threads and "
-                   "scenes may use it.");
-  type.def(py::init([] { return std::make_shared<Shapes>(); }), "An empty pool.");
-  add_convex(type);
+  ShapesClass type(module, "Shapes");
+  type.def(py::init([] { return std::make_shared<Shapes>(); }))
+      .def("add_spheres", &add_spheres)
+      .def("add_capsules", &add_capsules)
+      .def("add_boxes", &add_boxes)
+      .def("add_cylinders", &add_turned<CylinderShape>)
+      .def("add_cones", &add_turned<ConeShape>)
+      .def("add_triangles", &add_triangles)
+      .def("add_half_spaces", &add_half_spaces)
+      .def("add_ellipsoids", &add_ellipsoids)
+      .def("add_tapered_capsules", &add_tapered_capsules)
+      .def("add_hull", &add_hull);
   add_support(type);
   add_composites(type);
-  type.def("remove", &remove_shapes, arg("shapes"),
-           "Removes shapes (n,), all or none: invalid_key for shapes that bodies of a scene or "
-           "compounds use.")
-      .def("contains", &contains, arg("shapes"), "True for ids (n,) of existing shapes: (n,) bool.")
-      .def("bounds", &bounds, arg("shapes"), arg("poses"),
-           "Boxes (lower, upper), (n, 3) float32 each, of shapes (n,), or one for all, at poses: "
-           "(n, 7) of x, y, z and a quaternion w, x, y, z; (n, 3); or a tuple of both.")
-      .def("cast_rays", &cast_rays, arg("shapes"), arg("poses"), arg("origins"), arg("directions"),
-           arg("max_t") = std::numeric_limits<double>::infinity(),
-           "Casts n rays against n convex shapes (n,) at poses (n, 7): origins and directions (n, "
-           "3) or (3,), max_t (n,) or one for all.")
-      .def(
-          "footprint",
-          [](const Shapes& shapes) {
-            const Footprint sum[2] = {shapes.pool.footprint(), shapes.composites.footprint()};
-            const Bytes convex = sum[0].total();
-            const Bytes composite = sum[1].total();
-            py::dict result;
-            result["convex"] = py::make_tuple(convex.used, convex.reserved);
-            result["composite"] = py::make_tuple(composite.used, composite.reserved);
-            return result;
-          },
-          "Bytes (used, reserved) of convex and composite shapes.");
+  type.def("remove", &remove_shapes)
+      .def("contains",
+           [](const Shapes& shapes, py::handle id_array) {
+             const ShapeInput ids(shapes, id_array);
+             return each_answer<bool>(shapes.mutex, ids.count(),
+                                      [&](std::size_t i) { return shapes.contains(ids[i]); });
+           })
+      .def("bounds", &bounds)
+      .def("cast_rays", &cast_rays)
+      .def("footprint", [](const Shapes& shapes) {
+        const Footprint sum[2] = {shapes.pool.footprint(), shapes.composites.footprint()};
+        const Bytes convex = sum[0].total();
+        const Bytes composite = sum[1].total();
+        py::dict result;
+        result["convex"] = py::make_tuple(convex.used, convex.reserved);
+        result["composite"] = py::make_tuple(composite.used, composite.reserved);
+        return result;
+      });
   add_shape_snapshots(type);
 }
 

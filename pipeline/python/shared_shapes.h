@@ -2,7 +2,9 @@
 
 #include "pipeline/python/arrays.h"
 #include "pipeline/python/callbacks.h"
+#include "pipeline/python/described.h"
 #include "pipeline/python/init_checks.h"
+#include "pipeline/python/inputs.h"
 #include "pipeline/python/locks.h"
 
 #include <winnow/pipeline/composite_pool.h>
@@ -15,6 +17,7 @@
 #include <mutex>
 #include <shared_mutex>
 #include <span>
+#include <string>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -106,22 +109,21 @@ class HeldShapes {
   ShapeUses uses_;
 };
 
-using ShapesClass = py::class_<SharedShapes, std::shared_ptr<SharedShapes>>;
+using ShapesClass = Class<SharedShapes>;
 
 /// Ids of shapes: an array, read in place if it is of uint32 and contiguous, or one id for all.
-class ShapeInput {
+class ShapeInput : public Integers<std::uint32_t> {
  public:
-  explicit ShapeInput(py::handle object, const char* name = "shapes");
-  /// Throws a size_mismatch unless there is one id for all or `count` ids.
-  void expect(std::size_t count) const;
-  [[nodiscard]] ShapeId operator[](std::size_t i) const noexcept { return {ids_[is_one_ ? 0 : i]}; }
-  /// Returns `count` ids; repeats a single id in `room`.
-  [[nodiscard]] std::span<const ShapeId> list(std::size_t count, std::vector<ShapeId>& room) const;
+  ShapeInput(const SharedShapes& shapes, py::handle object, const char* name = "shapes");
+  [[nodiscard]] ShapeId operator[](std::size_t i) const noexcept { return {values()[i]}; }
+  [[nodiscard]] std::span<const ShapeId> list() const noexcept {
+    return {reinterpret_cast<const ShapeId*>(values().data()), count()};
+  }
 
  private:
-  const char* name_;
-  bool is_one_;
-  Integers<std::uint32_t> ids_;
+  [[nodiscard]] std::string fault(Status status) const override;
+
+  const SharedShapes& shapes_;
 };
 
 void add_shapes(py::module_& module);

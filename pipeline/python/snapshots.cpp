@@ -42,35 +42,31 @@ void load_shapes(SharedShapes& shapes, const py::buffer& data) {
   const std::size_t middle = end_of_first(all);
   ++shapes.revision;
   SupportFunctions gone;
-  accept(changing(shapes.mutex,
-                  [&] {
-                    const Status status = shapes.load(all.first(middle), all.subspan(middle));
-                    if (status == Status::ok) gone.swap(shapes.supports);
-                    return status;
-                  }),
-         "load (of shapes that no scene uses)");
+  change_or_throw(shapes.mutex, "load (of shapes that no scene uses)", [&] {
+    const Status status = shapes.load(all.first(middle), all.subspan(middle));
+    if (status == Status::ok) gone.swap(shapes.supports);
+    return status;
+  });
 }
 
 void load_scene(SharedScene& s, const py::buffer& data) {
   const BytesInput input(data);
-  accept(changing(s.mutex,
-                  [&] {
-                    const std::shared_lock lock(s.shapes->mutex);
-                    s.is_stale = true;
-                    const Status status = s.scene.load(input.bytes());
-                    if (status != Status::ok) return status;
-                    s.held.clear();
-                    std::vector<ShapeId> used;
-                    BodyDefinition body;
-                    for (ObjectId id = 0; used.size() < s.scene.size(); ++id) {
-                      if (s.scene.body(s.scene.key_of(id)).get(body) == Status::ok) {
-                        used.push_back(body.shape);
-                      }
-                    }
-                    s.held.use(used, 1);
-                    return Status::ok;
-                  }),
-         "load");
+  change_or_throw(s.mutex, "load", [&] {
+    const std::shared_lock lock(s.shapes->mutex);
+    s.is_stale = true;
+    const Status status = s.scene.load(input.bytes());
+    if (status != Status::ok) return status;
+    s.held.clear();
+    std::vector<ShapeId> used;
+    BodyDefinition body;
+    for (ObjectId id = 0; used.size() < s.scene.size(); ++id) {
+      if (s.scene.body(s.scene.key_of(id)).get(body) == Status::ok) {
+        used.push_back(body.shape);
+      }
+    }
+    s.held.use(used, 1);
+    return Status::ok;
+  });
 }
 
 [[nodiscard]] py::bytes save_contacts(const SharedScene& s, const HeldContacts& contacts) {
@@ -84,61 +80,42 @@ void load_contacts(SharedScene& s, const py::buffer& data, HeldContacts& contact
   const BytesInput input(data);
   const std::unique_lock<std::mutex> filling = contacts.hold();
   Contacts& out = contacts.to_fill("contacts");
-  accept(changing(s.mutex, [&] { return s.scene.load_contacts(input.bytes(), out); }),
-         "load_contacts");
+  change_or_throw(s.mutex, "load_contacts",
+                  [&] { return s.scene.load_contacts(input.bytes(), out); });
 }
 
 }  // namespace
 
 void add_partition_snapshots(PartitionClass& partition) {
-  using py::arg;
   partition
-      .def(
-          "save",
-          [](const SharedPartition& p) {
-            // Needs exclusive access: deferred updates may have to be written first.
-            Column<std::byte> out(default_memory());
-            accept(changing(p.mutex, [&] { return p.partition.save(out); }), "save");
-            return py::bytes(reinterpret_cast<const char*>(out.data()), out.size());
-          },
-          "Saves all objects, and the structure with its options, as bytes.")
-      .def(
-          "load",
-          [](SharedPartition& p, const py::buffer& data) {
-            const BytesInput input(data);
-            accept(changing(p.mutex, [&] { return p.partition.load(input.bytes()); }), "load");
-            p.count_changes(p.partition.size());
-          },
-          arg("data"),
-          "Loads a snapshot. Saved keys stay valid, unless another partition of the process has "
-          "them: see `keys_of`.");
+      .def("save",
+           [](const SharedPartition& p) {
+             // Needs exclusive access: deferred updates may have to be written first.
+             Column<std::byte> out(default_memory());
+             change_or_throw(p.mutex, "save", [&] { return p.partition.save(out); });
+             return py::bytes(reinterpret_cast<const char*>(out.data()), out.size());
+           })
+      .def("load", [](SharedPartition& p, const py::buffer& data) {
+        const BytesInput input(data);
+        change_or_throw(p.mutex, "load", [&] { return p.partition.load(input.bytes()); });
+        p.count_changes(p.partition.size());
+      });
 }
 
 void add_shape_snapshots(ShapesClass& shapes) {
-  shapes.def("save", &save_shapes, "Saves all shapes and the free ids, as bytes.")
-      .def("load", &load_shapes, py::arg("data"),
-           "Loads a snapshot, with the same ids. invalid_key while bodies of a scene use shapes of "
-           "this pool: clear the scene, load both.");
+  shapes.def("save", &save_shapes).def("load", &load_shapes);
 }
 
 void add_scene_snapshots(SceneClass& scene) {
-  using py::arg;
   scene
-      .def(
-          "save",
-          [](const SharedScene& s) {
-            return saved_by(s.mutex, "save",
-                            [&](Column<std::byte>& out) { return s.scene.save(out); });
-          },
-          "Saves all bodies, and the options of the scene, as bytes. Shapes are saved separately.")
-      .def("load", &load_scene, arg("data"),
-           "Loads a snapshot, after its shapes were loaded; results then continue bit for bit. "
-           "Contacts that were filled before belong to another scene from then on.")
-      .def("save_contacts", &save_contacts, arg("contacts"),
-           "Saves the results and records of contacts that this scene filled last, as bytes.")
-      .def("load_contacts", &load_contacts, arg("data"), arg("contacts"),
-           "Loads saved contacts into `contacts`; the scene must be in the state in which they "
-           "were saved.");
+      .def("save",
+           [](const SharedScene& s) {
+             return saved_by(s.mutex, "save",
+                             [&](Column<std::byte>& out) { return s.scene.save(out); });
+           })
+      .def("load", &load_scene)
+      .def("save_contacts", &save_contacts)
+      .def("load_contacts", &load_contacts);
 }
 
 }  // namespace winnow::python

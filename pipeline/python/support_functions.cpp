@@ -57,17 +57,7 @@ namespace {
 }  // namespace
 
 void add_support(ShapesClass& type) {
-  using py::arg;
-  type.def("add_support", &add_one, arg("function"), arg("radius"), arg("rounding") = 0.0,
-           "Adds a convex user shape and returns its id. `function(direction)` is the support "
-           "function: it takes a unit vector, (3,) float64, and returns a point of the shape, "
-           "three numbers, that is farthest in this direction, at most `radius` from the origin; "
-           "`rounding` is added outside. The same direction must give the same point. Calls come "
-           "from any working thread, one at a time, because each needs the GIL: some microseconds "
-           "a call, and about ten calls a pair. It must not call winnow (unsupported). Its "
-           "exceptions are raised by all calls in progress that use such shapes; contacts that "
-           "they were to fill are cleared. invalid_shape if a result is not finite, beyond the "
-           "radius or not convex. Pools with such shapes cannot be saved (unsupported).");
+  type.def("add_support", &add_one);
 }
 
 }  // namespace winnow::python

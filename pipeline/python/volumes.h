@@ -1,13 +1,13 @@
 #pragma once
 
-#include "core/numbers/rounding.h"
-#include "pipeline/python/arrays.h"
+#include "pipeline/python/inputs.h"
 
 #include <winnow/core/regions.h>
 #include <winnow/core/volumes.h>
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace winnow::python {
 
@@ -37,23 +37,64 @@ namespace winnow::python {
   return round_up(length >= 0.0 && by > 0.0 ? add_up(length, by) : length);
 }
 
-[[nodiscard]] inline Aabb box_at(const Numbers& lower, const Numbers& upper, std::size_t i) {
+[[nodiscard]] inline Aabb box_at(const Numbers& point, std::size_t i) {
   Aabb box;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    box.min[axis] = round_down(lower.at(i, axis));
-    box.max[axis] = round_up(upper.at(i, axis));
+    box.min[axis] = round_down(point.at(i, axis));
+    box.max[axis] = round_up(point.at(i, axis));
   }
   return box;
 }
 
-[[nodiscard]] inline Sphere sphere_at(const Numbers& center, const Numbers& radius, std::size_t i) {
-  return {point_at(center, i), grown(radius.at(i), off_point_at(center, i))};
-}
+/// Spheres as `centers` and `radii`.
+class SphereInput : public Input {
+ public:
+  SphereInput(py::handle centers, py::handle radii)
+      : Input("centers"),
+        center_(centers, "centers", {3}, Valid::finite),
+        radius_(radii, "radii", {}, Valid::length) {
+    set(agree({&center_, &radius_}), center_.is_one() && radius_.is_one());
+  }
+  [[nodiscard]] Sphere operator[](std::size_t i) const {
+    return {point_at(center_, i), grown(radius_.at(i), off_point_at(center_, i))};
+  }
+  [[nodiscard]] std::vector<Sphere> list() const {
+    std::vector<Sphere> spheres(count());
+    for (std::size_t i = 0; i < spheres.size(); ++i) spheres[i] = (*this)[i];
+    return spheres;
+  }
 
-[[nodiscard]] inline Capsule capsule_at(const Numbers& a, const Numbers& b, const Numbers& radius,
-                                        std::size_t i) {
-  return {point_at(a, i), point_at(b, i),
-          grown(radius.at(i), std::max(off_point_at(a, i), off_point_at(b, i)))};
-}
+ private:
+  void repeat() override {
+    center_.expect(count());
+    radius_.expect(count());
+  }
+  Numbers center_;
+  Numbers radius_;
+};
+
+/// Capsules as the ends `a` and `b` of their segments, and `radii`.
+class CapsuleInput : public Input {
+ public:
+  CapsuleInput(py::handle a, py::handle b, py::handle radii)
+      : Input("a"),
+        a_(a, "a", {3}, Valid::finite),
+        b_(b, "b", {3}, Valid::finite),
+        radius_(radii, "radii", {}, Valid::length) {
+    set(agree({&a_, &b_, &radius_}), a_.is_one() && b_.is_one() && radius_.is_one());
+  }
+  [[nodiscard]] Capsule operator[](std::size_t i) const {
+    return {point_at(a_, i), point_at(b_, i),
+            grown(radius_.at(i), std::max(off_point_at(a_, i), off_point_at(b_, i)))};
+  }
+
+ private:
+  void repeat() override {
+    for (Numbers* const each : {&a_, &b_, &radius_}) each->expect(count());
+  }
+  Numbers a_;
+  Numbers b_;
+  Numbers radius_;
+};
 
 }  // namespace winnow::python

@@ -175,8 +175,8 @@ def floor_of_tiles(**options):
     return contacts
 
 
-def test_contact_reduction_leaves_one_manifold_for_each_region():
-    raw, reduced = floor_of_tiles(), floor_of_tiles(contact_reduction=True)
+def test_contacts_have_one_manifold_for_each_region():
+    raw, reduced = floor_of_tiles(part_manifolds=True), floor_of_tiles()
     assert len(raw) == len(reduced) == 1
     assert len(raw.distance) > 1 and len(reduced.distance) == 1
     assert len(reduced.contact_depth) == 4

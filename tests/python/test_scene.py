@@ -127,6 +127,59 @@ def test_rays_hit_exact_shapes(world):
     assert len(scene.cast_rays(np.empty((0, 3)), np.empty((0, 3)), "all").t) == 0
 
 
+def test_rays_enter_and_leave_bodies(world):
+    _, scene, ground, balls, _ = world
+    down = [[9, 0, 5], [0, 0, 5]]
+    found = scene.crossings(down, [0, 0, -1])
+    assert found.first.tolist() == [0, 3, 6]
+    assert found.key[:3].tolist() == [balls[1], balls[1], ground[0]]
+    assert found.t[:3] == pytest.approx([4, 5, 5])
+    assert found.exits[:3].tolist() == [False, True, False]
+    assert found.normal[:2, 2] == pytest.approx([1, -1])
+    assert found.barycentric.shape == (6, 3) and not found.barycentric.any()
+    assert len(scene.crossings(down, [0, 0, -1], min_t=4.5, max_t=4.9).t) == 1
+    # The same ball from its middle on, and without it.
+    hits = scene.cast_rays(down, [0, 0, -1], min_t=4.5)
+    assert hits.key[0] == balls[1] and hits.t[0] == 4.5
+    without = winnow.Filter(ignored=int(balls[1]))
+    assert without.ignored == balls[1] and winnow.Filter().ignored is None
+    assert scene.cast_rays(down[0], [0, 0, -1], filter=without).key.tolist() == ground.tolist()
+
+
+def test_crossings_of_meshes_have_barycentric_weights():
+    shapes = winnow.Shapes()
+    corners = np.array([[0, 0, 0], [2, 0, 0], [0, 2, 0]], np.float32)
+    scene = winnow.Scene(shapes)
+    scene.add(shapes.add_mesh(corners, [[0, 1, 2]]), [[0, 0, 1]], "fixed")
+    found = scene.crossings([[0.5, 1, 5], [0.5, 1, -5]], [[0, 0, -1], [0, 0, 1]])
+    assert found.exits.tolist() == [False, True]
+    assert found.barycentric == pytest.approx(np.array([[0.25, 0.25, 0.5]] * 2))
+    assert found.barycentric @ corners + [0, 0, 1] == pytest.approx(found.point)
+
+
+def test_distances_of_a_shape_find_depths(world):
+    _, scene, ground, balls, ball = world
+    near = scene.distances(ball, poses_at([0, 0, 0.3], [0, 0, 3]), [0.0, 10.0])
+    assert near.first[1] == 2
+    assert near.key[:2].tolist() == [balls[0], ground[0]]
+    assert near.distance[:2] == pytest.approx([-0.9, -0.2])
+    refused("invalid_argument", scene.distances, ball, poses_at([0, 0, 0]), np.nan)
+
+
+def test_sensors_and_queries_skip_layers(world):
+    _, scene, ground, balls, ball = world
+    scene.set_layer(balls, 300)
+    scene.set_layers_collide([[300, 7]], False)
+    sensors = winnow.Sensors(scene)
+    sensors.add(ball, poses_at([0, 0, 0.4]), layer=7)
+    assert sensors.sense().body.tolist() == ground.tolist()
+    sensors.add(ball, poses_at([0, 0, 0.4]))
+    assert balls[0] in sensors.sense().body
+    refused("invalid_argument", sensors.add, ball, poses_at([0, 0, 0]), layer=4096)
+    hits = scene.cast_rays([0, 0, 5], [0, 0, -1], filter=winnow.Filter(layer=7))
+    assert hits.key.tolist() == ground.tolist()
+
+
 def test_shapes_are_cast_overlapped_and_measured(world):
     shapes, scene, ground, balls, ball = world
     hits = scene.cast_shapes(ball, poses_at([0, 0, 5], [30, 0, 5]), [0, 0, -10])

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from winnow._core import Partition, StatusError
 from winnow._core import structures as all_structures
+from winnow.types import Status, Structure
 
 __all__ = ["Advice", "Advised", "advise"]
 
@@ -19,7 +20,7 @@ Boxes = Tuple[NDArray[numpy.float32], NDArray[numpy.float32]]
 class Advised:
     """Measurements of one structure."""
 
-    structure: str
+    structure: Structure
     first_ms: float
     """Time of the frame in which all objects are inserted."""
     median_ms: float
@@ -47,7 +48,7 @@ class Advice:
     """Mean number of pairs per frame."""
 
     @property
-    def best(self) -> str:
+    def best(self) -> Structure:
         """The fastest structure."""
         return self.ranking[0].structure
 
@@ -55,7 +56,7 @@ class Advice:
 class _Runner:
     """A partition that is measured frame by frame."""
 
-    def __init__(self, structure: str, first: Boxes, parallel: bool) -> None:
+    def __init__(self, structure: Structure, first: Boxes, parallel: bool) -> None:
         self.partition = Partition(structure, parallel=parallel)
         self.milliseconds: List[float] = []
         start = time.perf_counter()
@@ -87,7 +88,7 @@ def _boxes(frame: Tuple[ArrayLike, ArrayLike]) -> Boxes:
     return numpy.array(lower, numpy.float32), numpy.array(upper, numpy.float32)
 
 
-def _structures(names: Optional[Sequence[str]], objects: int) -> List[str]:
+def _structures(names: Optional[Sequence[Structure]], objects: int) -> List[Structure]:
     if names is not None:
         return list(names)
     # Structures that test all pairs take time quadratic in the number of objects.
@@ -97,7 +98,7 @@ def _structures(names: Optional[Sequence[str]], objects: int) -> List[str]:
 
 def advise(
     frames: Iterable[Tuple[ArrayLike, ArrayLike]],
-    structures: Optional[Sequence[str]] = None,
+    structures: Optional[Sequence[Structure]] = None,
     *,
     parallel: bool = True,
 ) -> Advice:
@@ -109,7 +110,7 @@ def advise(
     invalid_argument without frames or structures, size_mismatch if a frame has another number of
     objects. To measure a whole program, record it (`Recorder`) and run `winnow advise FILE`.
     """
-    of: Dict[str, _Runner] = {}
+    of: Dict[Structure, _Runner] = {}
     last: Optional[Boxes] = None
     pairs = 0
     count = 0
@@ -141,7 +142,7 @@ def advise(
     )
 
 
-def _refusal(status: str, what: str) -> StatusError:
+def _refusal(status: Status, what: str) -> StatusError:
     error = StatusError("%s: advise: %s" % (status, what))
     error.status = status
     return error
