@@ -33,54 +33,12 @@ void change_scene_or_throw(SharedScene& s, const char* call, Body&& body) {
   accept(changing_scene(s, std::forward<Body>(body)), call);
 }
 
-/// A state by name for all bodies, or numbers as in FIXED, DYNAMIC, SLEEPING.
-class BodyStateInput {
- public:
-  explicit BodyStateInput(py::handle object)
-      : numbers_(py::isinstance<py::str>(object)
-                     ? EachInteger(py::int_(static_cast<int>(chosen(
-                                       kBodyStateNames, py::cast<std::string>(object), "state"))),
-                                   "state", kBodyStates - 1)
-                     : EachInteger(object, "state", kBodyStates - 1)) {}
-  void expect(std::size_t count) { numbers_.expect(count); }
-  [[nodiscard]] BodyState operator[](std::size_t i) const noexcept {
-    return static_cast<BodyState>(numbers_[i]);
-  }
-
- private:
-  EachInteger numbers_;
-};
-
-/// Contact and rest offsets of bodies as two columns.
-class OffsetInput {
- public:
-  OffsetInput(py::handle contact, py::handle rest)
-      : contact_(contact, "contact", {}, Valid::length), rest_(rest, "rest", {}, Valid::finite) {}
-  void expect(std::size_t count) {
-    for (Numbers* each : {&contact_, &rest_}) each->expect(count);
-  }
-  [[nodiscard]] ContactOffsets operator[](std::size_t i) const noexcept {
-    return {contact_.at(i), rest_.at(i)};
-  }
-
- private:
-  Numbers contact_;
-  Numbers rest_;
-};
-
-/// Layers of a scene.
-class LayerInput {
- public:
-  LayerInput(py::handle object, const char* name, std::uint64_t most = kSceneLayers - 1)
-      : numbers_(object, name, most) {}
-  void expect(std::size_t count) { numbers_.expect(count); }
-  [[nodiscard]] std::uint16_t operator[](std::size_t i) const noexcept {
-    return static_cast<std::uint16_t>(numbers_[i]);
-  }
-
- private:
-  EachInteger numbers_;
-};
+/// States: a name for all bodies, or numbers as in FIXED, DYNAMIC, SLEEPING.
+[[nodiscard]] inline EachInteger body_states(py::handle object) {
+  if (!py::isinstance<py::str>(object)) return {object, "state", kBodyStates - 1};
+  const BodyState state = chosen(kBodyStateNames, py::cast<std::string>(object), "state");
+  return {py::int_(static_cast<int>(state)), "state", kBodyStates - 1};
+}
 
 /// Calls get(key, one) for each key, in order; returns the first status that is not ok.
 template <typename Definition, typename Get>

@@ -112,15 +112,13 @@ struct NamedBodies {
               py::handle poses, py::handle states, py::handle layers, py::handle mask,
               py::handle environment)
       : names(name_array, "names"), pose(poses), shape(shapes, shape_array) {
-    BodyStateInput state(states);
+    EachInteger state = body_states(states);
     FilterInput filter(layers, mask, environment);
-    pose.expect(names.count());
-    shape.expect(names.count());
     bodies.resize(names.count());
-    state.expect(bodies.size());
-    filter.expect(bodies.size());
+    expect_all(names.count(), {&pose, &shape, &state});
+    filter.expect(names.count());
     for (std::size_t i = 0; i < bodies.size(); ++i) {
-      bodies[i] = {shape[i], pose[i], state[i], filter[i], 0, {}, 0};
+      bodies[i] = {shape[i], pose[i], static_cast<BodyState>(state[i]), filter[i], 0, {}, 0};
     }
   }
   [[nodiscard]] ClusterSceneBatch batch() const noexcept { return {names.values(), bodies}; }
@@ -202,12 +200,10 @@ void collide(SharedClusterScene& c, const std::string& level_name) {
       },
       "bodies");
   const auto columns = columns_of(std::move(bodies));
-  py::dict result;
-  result["name"] = given(std::move(names));
-  result["shape"] = columns.of(&BodyDefinition::shape);
-  result["pose"] = columns.of(&BodyDefinition::pose);
-  result["state"] = columns.of(&BodyDefinition::state);
-  return result;
+  return py::dict(py::arg("name") = given(std::move(names)),
+                  py::arg("shape") = columns.of(&BodyDefinition::shape),
+                  py::arg("pose") = columns.of(&BodyDefinition::pose),
+                  py::arg("state") = columns.of(&BodyDefinition::state));
 }
 
 [[nodiscard]] py::tuple migrated(const SharedClusterScene& c, const Rank& rank) {

@@ -17,13 +17,10 @@ inline constexpr Choices<NarrowTier, 2> kTiers{
     {{"robust", NarrowTier::robust}, {"reference", NarrowTier::reference}}};
 
 [[nodiscard]] inline pybind11::dict narrow_statistics(const NarrowStatistics& s) {
-  pybind11::dict result;
-  result["pairs"] = s.pairs;
-  result["recomputed"] = s.recomputed;
-  result["without_lanes"] = s.without_lanes;
-  result["exact"] = s.exact;
-  result["bounded"] = s.bounded;
-  return result;
+  return pybind11::dict(pybind11::arg("pairs") = s.pairs,
+                        pybind11::arg("recomputed") = s.recomputed,
+                        pybind11::arg("without_lanes") = s.without_lanes,
+                        pybind11::arg("exact") = s.exact, pybind11::arg("bounded") = s.bounded);
 }
 
 }  // namespace winnow::python

@@ -108,6 +108,10 @@ void Input::refuse(const py::array& array, std::span<const std::size_t> shape) c
                                            py::cast<std::string>(py::str(array.attr("shape"))));
 }
 
+void expect_all(std::size_t count, std::initializer_list<Input*> inputs) {
+  for (Input* const input : inputs) input->expect(count);
+}
+
 std::size_t agree(std::span<Input* const> inputs) {
   std::size_t count = 1;
   for (auto at = inputs.end(); at != inputs.begin();) {
@@ -177,8 +181,7 @@ BoxInput::BoxInput(py::handle lower, py::handle upper)
 }
 
 void BoxInput::repeat() {
-  lower_.expect(count());
-  upper_.expect(count());
+  expect_all(count(), {&lower_, &upper_});
 }
 
 Aabb BoxInput::operator[](std::size_t i) const noexcept {

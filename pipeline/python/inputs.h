@@ -64,6 +64,8 @@ class Input {
   bool one_ = false;
 };
 
+/// Expects `count` entries in each of these: see Input::expect.
+void expect_all(std::size_t count, std::initializer_list<Input*> inputs);
 /// Expects the same number of entries in all of these and returns it; repeats single entries.
 std::size_t agree(std::span<Input* const> inputs);
 inline std::size_t agree(std::initializer_list<Input*> inputs) {
@@ -204,9 +206,7 @@ class FilterInput {
       : layers_(layers, "layers", kMaxMask),
         mask_(mask, "mask", kMaxMask),
         environment_(environment, "environment", kMaxMask) {}
-  void expect(std::size_t count) {
-    for (EachInteger* each : {&layers_, &mask_, &environment_}) each->expect(count);
-  }
+  void expect(std::size_t count) { expect_all(count, {&layers_, &mask_, &environment_}); }
   [[nodiscard]] ObjectFilter operator[](std::size_t i) const noexcept {
     return {static_cast<std::uint32_t>(layers_[i]), static_cast<std::uint32_t>(mask_[i]),
             static_cast<std::uint32_t>(environment_[i])};

@@ -95,8 +95,7 @@ class KdopInput {
   [[nodiscard]] std::vector<Kdop<K>> list(std::optional<std::size_t> count = {}) {
     std::vector<Kdop<K>> kdops(agree({&lower_, &upper_}));
     if (count) {
-      lower_.expect(*count);
-      upper_.expect(*count);
+      expect_all(*count, {&lower_, &upper_});
       kdops.resize(*count);
     }
     for (std::size_t i = 0; i < kdops.size(); ++i) {

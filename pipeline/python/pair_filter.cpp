@@ -41,12 +41,15 @@ void set_filter(SharedScene& s, py::handle key_array, py::handle layers, py::han
 
 void set_offsets(SharedScene& s, py::handle key_array, py::handle contact, py::handle rest) {
   const KeyInput keys(s, key_array);
-  OffsetInput offsets(contact, rest);
-  offsets.expect(keys.count());
+  Numbers gap(contact, "contact", {}, Valid::length);
+  Numbers distance(rest, "rest", {}, Valid::finite);
+  expect_all(keys.count(), {&gap, &distance});
   const std::span<const Key> list = keys.keys();
   set_of_each(
       s, list, "set_offsets",
-      [&](std::size_t i) { return s.scene.set_offsets(list[i], offsets[i]); },
+      [&](std::size_t i) {
+        return s.scene.set_offsets(list[i], {gap.at(i), distance.at(i)});
+      },
       [&](std::size_t i, const BodyDefinition& was) {
         return s.scene.set_offsets(list[i], was.offsets);
       });
@@ -54,11 +57,14 @@ void set_offsets(SharedScene& s, py::handle key_array, py::handle contact, py::h
 
 void set_layer(SharedScene& s, py::handle key_array, py::handle layer_array) {
   const KeyInput keys(s, key_array);
-  LayerInput layer(layer_array, "layer");
+  EachInteger layer(layer_array, "layer", kSceneLayers - 1);
   layer.expect(keys.count());
   const std::span<const Key> list = keys.keys();
   set_of_each(
-      s, list, "set_layer", [&](std::size_t i) { return s.scene.set_layer(list[i], layer[i]); },
+      s, list, "set_layer",
+      [&](std::size_t i) {
+        return s.scene.set_layer(list[i], static_cast<std::uint16_t>(layer[i]));
+      },
       [&](std::size_t i, const BodyDefinition& was) {
         return s.scene.set_layer(list[i], was.layer);
       });

@@ -91,35 +91,24 @@ void reserve(SharedPartition& p, std::size_t objects, std::size_t pairs, bool to
 
 [[nodiscard]] py::dict statistics_dict(const SharedPartition& p) {
   const Statistics s = reading(p.mutex, [&] { return p.partition.statistics(); });
-  py::dict result;
-  result["objects"] = s.objects;
-  result["regular"] = s.regular;
-  result["irregular"] = s.irregular;
-  result["cells"] = s.cells;
-  result["depth"] = s.depth;
-  result["levels"] = s.levels;
-  result["builds"] = s.builds;
-  result["planned_builds"] = s.planned_builds;
-  result["refits"] = s.refits;
-  result["full_queries"] = s.full_queries;
-  result["incremental_queries"] = s.incremental_queries;
-  result["last_tests"] = s.last_tests;
-  result["last_pairs"] = s.last_pairs;
-  return result;
+  return py::dict(py::arg("objects") = s.objects, py::arg("regular") = s.regular,
+                  py::arg("irregular") = s.irregular, py::arg("cells") = s.cells,
+                  py::arg("depth") = s.depth, py::arg("levels") = s.levels,
+                  py::arg("builds") = s.builds, py::arg("planned_builds") = s.planned_builds,
+                  py::arg("refits") = s.refits, py::arg("full_queries") = s.full_queries,
+                  py::arg("incremental_queries") = s.incremental_queries,
+                  py::arg("last_tests") = s.last_tests, py::arg("last_pairs") = s.last_pairs);
 }
 
 [[nodiscard]] py::dict choice_dict(const SharedPartition& p) {
   const StructureChoice c = reading(p.mutex, [&] { return p.partition.choice(); });
-  py::dict result;
-  result["structure"] = std::string(c.structure.name());
-  result["reason"] = std::string(c.reason);
-  result["changes"] = c.changes;
-  result["objects"] = c.features.objects;
-  result["room"] = py::make_tuple(c.features.room[0], c.features.room[1], c.features.room[2]);
-  result["size_spread"] = c.features.size_spread;
-  result["crowding"] = c.features.crowding;
-  result["pairs"] = c.features.pairs;
-  return result;
+  return py::dict(
+      py::arg("structure") = std::string(c.structure.name()),
+      py::arg("reason") = std::string(c.reason), py::arg("changes") = c.changes,
+      py::arg("objects") = c.features.objects,
+      py::arg("room") = py::make_tuple(c.features.room[0], c.features.room[1], c.features.room[2]),
+      py::arg("size_spread") = c.features.size_spread, py::arg("crowding") = c.features.crowding,
+      py::arg("pairs") = c.features.pairs);
 }
 
 [[nodiscard]] py::object draw(const SharedPartition& p, bool objects, bool structure, bool labels,

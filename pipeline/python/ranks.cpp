@@ -203,16 +203,10 @@ std::string digits_of(const ClusterDigest& digest) {
 }
 
 py::dict counters_of(const ClusterStatistics& found) {
-  py::dict result;
-  result["bodies"] = found.bodies;
-  result["ghosts"] = found.ghosts;
-  result["pairs"] = found.pairs;
-  result["bytes"] = found.bytes;
-  result["messages"] = found.messages;
-  result["migrated"] = found.migrated;
-  result["cuts"] = found.cuts;
-  result["imbalance"] = found.imbalance;
-  return result;
+  return py::dict(py::arg("bodies") = found.bodies, py::arg("ghosts") = found.ghosts,
+                  py::arg("pairs") = found.pairs, py::arg("bytes") = found.bytes,
+                  py::arg("messages") = found.messages, py::arg("migrated") = found.migrated,
+                  py::arg("cuts") = found.cuts, py::arg("imbalance") = found.imbalance);
 }
 
 }  // namespace winnow::python

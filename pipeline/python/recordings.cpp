@@ -72,14 +72,10 @@ struct ReplayCounts {
   const ReplayCounts played =
       play(input.bytes(), parallel ? Execution::parallel() : Execution::serial());
   accept(played.status, "replay, call " + std::to_string(played.calls));
-  py::dict result;
-  result["calls"] = played.calls;
-  result["frames"] = played.frames;
-  result["questions"] = played.questions;
-  result["differences"] = played.differences;
-  result["worlds"] = played.worlds;
-  result["is_whole"] = played.is_whole;
-  return result;
+  return py::dict(py::arg("calls") = played.calls, py::arg("frames") = played.frames,
+                  py::arg("questions") = played.questions,
+                  py::arg("differences") = played.differences, py::arg("worlds") = played.worlds,
+                  py::arg("is_whole") = played.is_whole);
 }
 
 }  // namespace

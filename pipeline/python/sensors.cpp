@@ -45,7 +45,7 @@ struct SensorInput {
     FilterInput filter(layers, mask, environment);
     const std::size_t count = agree({&pose, &shape});
     filter.expect(count);
-    LayerInput layer(scene_layer, "layer", kEveryLayer);
+    EachInteger layer(scene_layer, "layer", kEveryLayer);
     layer.expect(count);
     const std::vector<ClientData> values = data_of(data, count);
     if (!carriers.is_none()) carrier.emplace(*s.scene, carriers, "carrier").expect(count);

@@ -107,20 +107,24 @@ void reserve(SharedScene& s, const SceneCapacity& room, HeldContacts* contacts, 
                                    py::handle rest, py::handle scene_layer) {
   PoseInput pose(poses);
   ShapeInput shape(*s.shapes, shape_array);
-  BodyStateInput state(states);
+  EachInteger state = body_states(states);
   FilterInput filter(layers, mask, environment);
-  OffsetInput offsets(contact, rest);
-  LayerInput layer(scene_layer, "layer");
+  Numbers contact_offset(contact, "contact", {}, Valid::length);
+  Numbers rest_offset(rest, "rest", {}, Valid::finite);
+  EachInteger layer(scene_layer, "layer", kSceneLayers - 1);
   const std::size_t count = agree({&pose, &shape});
-  state.expect(count);
   filter.expect(count);
-  offsets.expect(count);
-  layer.expect(count);
+  expect_all(count, {&state, &contact_offset, &rest_offset, &layer});
   const std::vector<ClientData> values = data_of(data, count);
   std::vector<BodyDefinition> bodies(count);
   for (std::size_t i = 0; i < count; ++i) {
-    bodies[i] = {shape[i],   pose[i], state[i], filter[i], values.empty() ? 0 : values[i],
-                 offsets[i], layer[i]};
+    bodies[i] = {shape[i],
+                 pose[i],
+                 static_cast<BodyState>(state[i]),
+                 filter[i],
+                 values.empty() ? 0 : values[i],
+                 {contact_offset.at(i), rest_offset.at(i)},
+                 static_cast<std::uint16_t>(layer[i])};
   }
   const std::vector<ShapeId> used = shapes_of(bodies);
   auto keys = fresh<std::uint64_t>(count);
@@ -238,15 +242,13 @@ void set_predicate(SharedScene& s, const py::object& function) {
 
 [[nodiscard]] py::dict statistics_dict(const SharedScene& s) {
   const SceneStatistics stats = reading(s.mutex, [&] { return s.scene.statistics(); });
-  py::dict result;
-  result["boxes_updated"] = stats.boxes_updated;
-  result["body_pairs"] = stats.body_pairs;
-  result["rejected_by_spheres"] = stats.rejected_by_spheres;
-  result["cached_pairs"] = stats.cached_pairs;
-  result["primitive_pairs"] = stats.primitive_pairs;
-  result["convex"] = narrow_statistics(stats.convex);
-  result["parts"] = narrow_statistics(stats.parts);
-  return result;
+  return py::dict(py::arg("boxes_updated") = stats.boxes_updated,
+                  py::arg("body_pairs") = stats.body_pairs,
+                  py::arg("rejected_by_spheres") = stats.rejected_by_spheres,
+                  py::arg("cached_pairs") = stats.cached_pairs,
+                  py::arg("primitive_pairs") = stats.primitive_pairs,
+                  py::arg("convex") = narrow_statistics(stats.convex),
+                  py::arg("parts") = narrow_statistics(stats.parts));
 }
 
 [[nodiscard]] py::dict scene_footprint(const SharedScene& s) {

@@ -339,10 +339,8 @@ void add_shapes(py::module_& module) {
         const Footprint sum[2] = {shapes.pool.footprint(), shapes.composites.footprint()};
         const Bytes convex = sum[0].total();
         const Bytes composite = sum[1].total();
-        py::dict result;
-        result["convex"] = py::make_tuple(convex.used, convex.reserved);
-        result["composite"] = py::make_tuple(composite.used, composite.reserved);
-        return result;
+        return py::dict(py::arg("convex") = py::make_tuple(convex.used, convex.reserved),
+                        py::arg("composite") = py::make_tuple(composite.used, composite.reserved));
       });
   add_shape_snapshots(type);
 }

@@ -65,10 +65,7 @@ class SphereInput : public Input {
   }
 
  private:
-  void repeat() override {
-    center_.expect(count());
-    radius_.expect(count());
-  }
+  void repeat() override { expect_all(count(), {&center_, &radius_}); }
   Numbers center_;
   Numbers radius_;
 };
@@ -89,9 +86,7 @@ class CapsuleInput : public Input {
   }
 
  private:
-  void repeat() override {
-    for (Numbers* const each : {&a_, &b_, &radius_}) each->expect(count());
-  }
+  void repeat() override { expect_all(count(), {&a_, &b_, &radius_}); }
   Numbers a_;
   Numbers b_;
   Numbers radius_;

@@ -3,6 +3,7 @@
 // rays are.
 
 #include <winnow/core/eigen.h>
+#include "core/numbers/rotation.h"
 #include "core/threads/float_environment.h"
 #include "pipeline/rays/shape_entries.h"
 #include "pipeline/scene/queries/cast_query.h"
