@@ -45,6 +45,8 @@ struct EndedContact {
   ClientData data_b = 0;  ///< client data of b
 };
 
+namespace detail {
+
 /// Function that returns the client data of a pair's body; see DataColumn.
 struct DataLookup {
   const Key* bodies;       ///< body of each pair
@@ -64,10 +66,14 @@ struct PartLookup {
   }
 };
 
+}  // namespace detail
+
 /// Client data of one body of each pair. Used like a span: size(), [i], begin(), end().
-using DataColumn = IndexedView<DataLookup>;
+using DataColumn = IndexedView<detail::DataLookup>;
 /// Part of one shape in each manifold. Used like a span.
-using PartColumn = IndexedView<PartLookup>;
+using PartColumn = IndexedView<detail::PartLookup>;
+
+namespace detail {
 
 /// Function that returns a point of a manifold.
 struct PointLookup {
@@ -78,9 +84,11 @@ struct PointLookup {
   [[nodiscard]] ContactPoint operator()(std::size_t i) const noexcept;
 };
 
+}  // namespace detail
+
 /// A manifold of Contacts, and the range of its points, which is empty below level manifold. Valid
 /// until the contacts change.
-class WINNOW_API ContactManifold : public IndexedView<PointLookup> {
+class WINNOW_API ContactManifold : public IndexedView<detail::PointLookup> {
  public:
   /// Reads manifold `index` of the contacts.
   ContactManifold(const Contacts& contacts, std::uint32_t index) noexcept;
@@ -104,6 +112,8 @@ class WINNOW_API ContactManifold : public IndexedView<PointLookup> {
   std::uint32_t index_;
 };
 
+namespace detail {
+
 /// Function that returns a manifold of a pair.
 struct ManifoldLookup {
   const Contacts* contacts;  ///< contacts that contain the manifold
@@ -115,9 +125,11 @@ struct ManifoldLookup {
   }
 };
 
+}  // namespace detail
+
 /// A pair of bodies of Contacts, and the range of its manifolds, which is empty at level pairs.
 /// Valid until the contacts change.
-class WINNOW_API ContactPair : public IndexedView<ManifoldLookup> {
+class WINNOW_API ContactPair : public IndexedView<detail::ManifoldLookup> {
  public:
   /// Reads pair `index` of the contacts.
   ContactPair(const Contacts& contacts, std::size_t index) noexcept;
@@ -134,6 +146,8 @@ class WINNOW_API ContactPair : public IndexedView<ManifoldLookup> {
   std::size_t index_;
 };
 
+namespace detail {
+
 /// Function that returns a pair of Contacts.
 struct PairLookup {
   const Contacts* contacts;  ///< contacts that contain the pair
@@ -141,6 +155,8 @@ struct PairLookup {
   /// Returns pair i.
   [[nodiscard]] ContactPair operator()(std::size_t i) const noexcept { return {*contacts, i}; }
 };
+
+}  // namespace detail
 
 /// Result of `Scene::collide`, in columns: pairs of bodies, sorted by the kinds of their shapes,
 /// then by body; for each pair its manifolds; for each manifold its points. A pair of convex shapes
@@ -176,11 +192,11 @@ class WINNOW_API Contacts {
   [[nodiscard]] ContactPair operator[](std::size_t i) const noexcept { return {*this, i}; }
   /// Iterators over the pairs.
   /// @{
-  [[nodiscard]] IndexedView<PairLookup>::iterator begin() const noexcept {
-    return {PairLookup{this}, 0};
+  [[nodiscard]] IndexedView<detail::PairLookup>::iterator begin() const noexcept {
+    return {detail::PairLookup{this}, 0};
   }
-  [[nodiscard]] IndexedView<PairLookup>::iterator end() const noexcept {
-    return {PairLookup{this}, size()};
+  [[nodiscard]] IndexedView<detail::PairLookup>::iterator end() const noexcept {
+    return {detail::PairLookup{this}, size()};
   }
   /// @}
   /// Returns the runs of pairs with the same two kinds of shapes; together they are all pairs.

@@ -371,7 +371,7 @@ Footprint Contacts::footprint() const noexcept {
   return footprint;
 }
 
-ContactPoint PointLookup::operator()(std::size_t i) const noexcept {
+ContactPoint detail::PointLookup::operator()(std::size_t i) const noexcept {
   return contacts->contact(first + i);
 }
 
@@ -394,7 +394,8 @@ template <typename Lookup>
 }  // namespace
 
 ContactManifold::ContactManifold(const Contacts& contacts, std::uint32_t index) noexcept
-    : IndexedView(range_of<PointLookup>(contacts, contacts.point_first(), index)), index_(index) {}
+    : IndexedView(range_of<detail::PointLookup>(contacts, contacts.point_first(), index)),
+      index_(index) {}
 
 double ContactManifold::distance() const noexcept {
   return entry(lookup().contacts->distance(), index_);
@@ -420,7 +421,7 @@ std::uint32_t ContactManifold::part_b() const noexcept {
 }
 
 ContactPair::ContactPair(const Contacts& contacts, std::size_t index) noexcept
-    : IndexedView(range_of<ManifoldLookup>(contacts, contacts.manifold_first(), index)),
+    : IndexedView(range_of<detail::ManifoldLookup>(contacts, contacts.manifold_first(), index)),
       index_(index) {}
 
 Key ContactPair::a() const noexcept {
