@@ -5,31 +5,20 @@
 #include "pipeline/python/arrays.h"
 #include "pipeline/python/refusal.h"
 
+#include <bit>
 #include <cstdint>
-#include <cstring>
 #include <memory>
 #include <optional>
 
 namespace winnow::python {
-
-namespace {
-
-static_assert(sizeof(Key) == sizeof(std::uint64_t));
-
-[[nodiscard]] std::uint64_t number_of(Key key) noexcept {
-  std::uint64_t number = 0;
-  std::memcpy(&number, &key, sizeof number);
-  return number;
-}
-
-}  // namespace
 
 void FilterOfCall::take(const PythonFilter& input) {
   filter_ = input.filter;
   if (!input.accept || input.accept.is_none()) return;
   accept_.emplace(input.accept, "accept");
   filter_.predicate = {[](void* context, Key key, ClientData data) {
-                         return static_cast<Predicate*>(context)->passes(number_of(key), data);
+                         return static_cast<Predicate*>(context)->passes(
+                             std::bit_cast<std::uint64_t>(key), data);
                        },
                        &*accept_};
 }
@@ -58,7 +47,7 @@ namespace {
                   .mask = mask,
                   .environment = environment,
                   .layer = layer.value_or(kEveryLayer)};
-  if (ignored) std::memcpy(&made->filter.ignored, &*ignored, sizeof *ignored);
+  if (ignored) made->filter.ignored = std::bit_cast<Key>(*ignored);
   made->accept = accept;
   return made;
 }
@@ -70,7 +59,7 @@ namespace {
 
 [[nodiscard]] std::optional<std::uint64_t> ignored_by(const PythonFilter& f) {
   if (f.filter.ignored == Key{}) return std::nullopt;
-  return number_of(f.filter.ignored);
+  return std::bit_cast<std::uint64_t>(f.filter.ignored);
 }
 
 }  // namespace
