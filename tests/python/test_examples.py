@@ -1,9 +1,11 @@
 """The examples run and show the effect that they are about."""
 
 import os
+import runpy
 import sys
 
 import numpy as np
+import pytest
 
 sys.path.insert(
     0, os.path.join(os.path.dirname(__file__), "..", "..", "pipeline", "python", "examples")
@@ -14,6 +16,12 @@ import culling  # noqa: E402
 import granular_flow  # noqa: E402
 import lidar  # noqa: E402
 import robot_self_collision  # noqa: E402
+
+
+@pytest.mark.parametrize("name", ["spheres", "boxes", "meshes", "arm"])
+def test_first_program_runs(name, monkeypatch):
+    monkeypatch.setattr(sys, "argv", [name])
+    runpy.run_path(os.path.join(os.path.dirname(__file__), "..", "examples", "first", name + ".py"))
 
 
 def test_boids_align():
