@@ -251,11 +251,10 @@ class BodiesOnTerrain {
     ground_ = need(composites_.add_mesh(terrain.points(), terrain.indices()), "the terrain");
     Random random(5);
     for (std::size_t i = 0; i < kBodies; ++i) {
-      const double x = random.uniform(5.0, 95.0);
-      const double y = random.uniform(5.0, 95.0);
-      poses_.push_back(
-          {{x, y, hills.at(x, y) + 0.2},
-           {1.0, random.uniform(-0.2, 0.2), random.uniform(-0.2, 0.2), random.uniform(-1.0, 1.0)}});
+      const double x = random.in(5.0, 95.0);
+      const double y = random.in(5.0, 95.0);
+      const Quaternion turn{1.0, random.in(-0.2, 0.2), random.in(-0.2, 0.2), random.in(-1.0, 1.0)};
+      poses_.push_back({{x, y, hills.at(x, y) + 0.2}, turn});
     }
   }
   BodiesOnTerrain(const BodiesOnTerrain&) = delete;

@@ -126,7 +126,6 @@ def expect_packages():
     if lacks:
         why = "winnow: missing packages. On Debian: apt-get install %s\n%s" % (" ".join(lacks), why)
     if why:
-        report(why.rstrip())
         raise SystemExit(why.rstrip())
 
 

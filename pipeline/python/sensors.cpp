@@ -51,9 +51,12 @@ struct SensorInput {
     if (!carriers.is_none()) carrier.emplace(*s.scene, carriers, "carrier").expect(count);
     list.resize(count);
     for (std::size_t i = 0; i < count; ++i) {
-      list[i] = {shape[i],  pose[i],
-                 filter[i], carrier ? carrier->keys()[i] : Key{},
-                 layer[i],  values.empty() ? 0 : values[i]};
+      list[i] = {shape[i],
+                 pose[i],
+                 filter[i],
+                 carrier ? carrier->keys()[i] : Key{},
+                 static_cast<std::uint16_t>(layer[i]),
+                 values.empty() ? 0 : values[i]};
     }
   }
 

@@ -163,7 +163,8 @@ void Game::query_box(Bytes& bytes) {
   all_return([&](Player& player) {
     PairBuffer found;
     std::vector<Pair> result;
-    const Status status = player.partition.overlap(BoxView({&box, 1}), found, {}, Order::canonical);
+    const Status status =
+        player.partition.overlap(BoxView(std::span(&box, 1)), found, {}, Order::canonical);
     WINNOW_REQUIRE((status == Status::ok) == box.is_valid());
     result.assign(found.begin(), found.end());
     return result;

@@ -307,10 +307,10 @@ void Model::misuse(Bytes& bytes, const Model& other) {
   if (live == Key{}) return;
   const Key twice[] = {live, live};
   WINNOW_REQUIRE(partition_.remove(twice) == Status::invalid_key);
-  WINNOW_REQUIRE(partition_.update(twice, BoxView({boxes, 1})) == Status::size_mismatch);
+  WINNOW_REQUIRE(partition_.update(twice, BoxView(std::span(boxes, 1))) == Status::size_mismatch);
   const std::uint32_t none[] = {1};
-  WINNOW_REQUIRE(partition_.update({&live, 1}, BoxView({boxes, 1}), IndexSubset::listed(none)) ==
-                 Status::invalid_argument);
+  WINNOW_REQUIRE(partition_.update({&live, 1}, BoxView(std::span(boxes, 1)),
+                                   IndexSubset::listed(none)) == Status::invalid_argument);
   Aabb wild{{bytes.wild(), bytes.wild(), bytes.wild()}, {bytes.wild(), bytes.wild(), bytes.wild()}};
   if (wild.is_valid()) return;
   const Aabb mixed[] = {box, wild};

@@ -4,14 +4,13 @@ from the call, and they can neither crash nor block the interpreter."""
 import subprocess
 import sys
 import textwrap
-import threading
 
 import numpy as np
 import pytest
 import winnow
 from test_hostile import refused
 from test_narrow import poses_at
-from worlds import pair_set, random_boxes, reference_pairs
+from worlds import at_once, pair_set, random_boxes, reference_pairs
 
 
 class Odd(Exception):
@@ -345,31 +344,19 @@ def test_callbacks_on_several_threads_are_safe():
     places = np.random.default_rng(53).uniform(0, 3, (30, 3))
     scene.add(own, places, data=np.arange(30))
     expected = pairs_of(scene)
-    bad, failures = winnow.Filter(accept=raises), []
+    bad = winnow.Filter(accept=raises)
 
-    def run(work):
-        try:
-            for _ in range(5):
-                work()
-        except BaseException as error:  # reported by the test
-            failures.append(error)
-
-    def right():
+    def right(_):
         assert pair_set(partition.self_pairs(predicate=lambda a, b: True)) == truth
         assert pairs_of(scene) == expected
 
-    def wrong():
+    def wrong(_):
         with pytest.raises(Odd):
             partition.nearest(lower, filter=bad)
         with pytest.raises(Odd):
             partition.self_pairs(predicate=raises)
 
-    threads = [threading.Thread(target=run, args=(w,)) for w in (right, wrong, right, wrong)]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
-    assert not failures
+    at_once(right, wrong, right, wrong, times=5)
 
 
 def test_hooks_receive_stages_and_refusals():

@@ -1,14 +1,14 @@
 """Cloth: features that may touch, touch, or are near each other, compared with brute force."""
 
-import threading
 
 import numpy as np
 import pytest
 import winnow
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from test_hostile import REFUSALS, any_array, refused
+from test_hostile import any_array, refused
 from test_narrow import poses_at
+from worlds import answered_or_refused, at_once
 
 KINDS = ("vertex_face", "edge_edge")
 
@@ -252,7 +252,7 @@ def test_any_arrays_are_accepted_or_refused(first, second, third, number, kind):
     ball = int(shapes.add_spheres(1.0)[0])
     mesh = winnow.DeformableMesh()
     mesh.build(rest, triangles)
-    for call in [
+    answered_or_refused([
         lambda: winnow.feature_impacts(kind, first, second),
         lambda: winnow.feature_impacts(kind, np.zeros((1, 4, 3)), first, max_intervals=number),
         lambda: mesh.move(first, second),
@@ -265,11 +265,7 @@ def test_any_arrays_are_accepted_or_refused(first, second, third, number, kind):
         lambda: mesh.build(rest, third),
         lambda: mesh.move(first, first),
         lambda: mesh.self_candidates(kind),
-    ]:
-        try:
-            call()
-        except REFUSALS:
-            pass
+    ])
 
 
 def test_threads_may_query_and_move_at_once():
@@ -281,14 +277,6 @@ def test_threads_may_query_and_move_at_once():
         mesh.move(start, end, distance=0.1)
         meshes.append((mesh, start, end))
     (one, start, end), (two, _, _) = meshes
-    failures = []
-
-    def run(work):
-        try:
-            for i in range(30):
-                work(i)
-        except BaseException as error:  # noqa: B902
-            failures.append(error)
 
     def query(i):
         one.candidates_with(two, KINDS[i % 2])
@@ -300,9 +288,4 @@ def test_threads_may_query_and_move_at_once():
         for mesh in (one, two):
             mesh.move(start + i, end + i, distance=0.1)
 
-    threads = [threading.Thread(target=run, args=(work,)) for work in (query, change, query, change)]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
-    assert not failures
+    at_once(query, change, query, change)

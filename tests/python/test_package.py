@@ -16,7 +16,6 @@ import pytest
 import winnow
 import winnow.types
 from test_hostile import callables_of, refused
-from worlds import random_boxes
 
 SOURCES = pathlib.Path(__file__).resolve().parents[2] / "pipeline" / "python"
 

@@ -2,16 +2,15 @@
 
 import os
 import pathlib
-import threading
 
 import numpy as np
 import pytest
 import winnow
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from test_hostile import REFUSALS, any_array, refused
+from test_hostile import any_array, refused
 from test_narrow import CUBE, poses_at
-from worlds import pair_set, random_boxes, reference_pairs
+from worlds import REFUSALS, at_once, pair_set, random_boxes, reference_pairs
 
 
 @pytest.fixture
@@ -262,14 +261,6 @@ def test_calls_of_several_threads_are_recorded(file):
     ids = shapes.add_spheres(np.linspace(0.1, 0.5, 40))
     scene = winnow.Scene(shapes, recorder=recorder)
     scene.add(ids[0], lower)
-    failures = []
-
-    def run(work):
-        try:
-            for i in range(10):
-                work(i)
-        except BaseException as error:  # noqa: B902
-            failures.append(error)
 
     def query(i):
         partition.self_pairs()
@@ -280,11 +271,6 @@ def test_calls_of_several_threads_are_recorded(file):
     def change(i):
         partition.update(keys, lower + np.float32(i), upper + np.float32(i))
 
-    threads = [threading.Thread(target=run, args=(work,)) for work in (query, change, query, query)]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
-    assert not failures
+    at_once(query, change, query, query, times=10)
     recorder.close()
     played(file)

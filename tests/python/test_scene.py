@@ -1,12 +1,12 @@
 """Bodies, contacts, and queries of exact shapes."""
 
-import threading
 
 import numpy as np
 import pytest
 import winnow
 from test_hostile import refused
 from test_narrow import CUBE, poses_at
+from worlds import at_once
 
 
 @pytest.fixture
@@ -315,14 +315,6 @@ def test_exceptions_name_their_status(world):
 def test_threads_may_query_and_change_at_once(world):
     shapes, scene, _, balls, ball = world
     contacts = winnow.Contacts()
-    failures = []
-
-    def run(work):
-        try:
-            for i in range(30):
-                work(i)
-        except BaseException as error:  # noqa: B902
-            failures.append(error)
 
     def collide(i):
         scene.collide(contacts)
@@ -340,11 +332,5 @@ def test_threads_may_query_and_change_at_once(world):
         scene.nearest(np.zeros((9, 3)), 2)
         scene.distance(balls, balls[::-1])
 
-    threads = [
-        threading.Thread(target=run, args=(work,)) for work in (collide, collide, change, query, query)
-    ]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
-    assert not failures and len(scene) == 4
+    at_once(collide, collide, change, query, query)
+    assert len(scene) == 4

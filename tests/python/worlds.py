@@ -1,6 +1,38 @@
 """Scenes of random boxes, and brute-force references for queries."""
 
+import contextlib
+import threading
+
 import numpy as np
+import winnow
+
+REFUSALS = (winnow.StatusError, TypeError, MemoryError)
+
+
+def answered_or_refused(calls):
+    """Calls functions; each returns, or raises an exception of winnow."""
+    for call in calls:
+        with contextlib.suppress(*REFUSALS):
+            call()
+
+
+def at_once(*works, times=30):
+    """Calls each function for the numbers from 0 to `times`, on a thread of its own; they raise nothing."""
+    failures = []
+
+    def run(work):
+        try:
+            for i in range(times):
+                work(i)
+        except BaseException as error:  # noqa: B902
+            failures.append(error)
+
+    threads = [threading.Thread(target=run, args=(work,)) for work in works]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert not failures
 
 
 def random_boxes(seed, count, side=None):

@@ -238,7 +238,8 @@ void PartitionSoak::check() {
 void PartitionSoak::check_boxes() {
   const Aabb query_box = some_box();
   PairBuffer found;
-  require(partition_.overlap(BoxView({&query_box, 1}), found, {}, Order::canonical) == Status::ok,
+  require(partition_.overlap(BoxView(std::span(&query_box, 1)), found, {}, Order::canonical) ==
+              Status::ok,
           "a box was refused");
   std::vector<ObjectId> truth;
   for (const Object& object : model_) {

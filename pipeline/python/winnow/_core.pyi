@@ -6,7 +6,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from winnow.tables import (
     ContactGroups, Drawing, HitLists, Hits, Impacts, MeshImpacts, MeshProximities, MeshShapeImpacts,
-    Overlaps, RayHits, SceneDistances, SceneHitLists, SceneHits, SceneCrossings, SceneImpacts, SceneOverlaps, Sensed,
+    Overlaps, RayHits, SceneCrossings, SceneDistances, SceneHitLists, SceneHits, SceneImpacts,
+    SceneOverlaps, Sensed,
 )
 from winnow.types import (
     BodyState, Bools, Bytes, ContinuousPairs, Doubles, FeatureKind, Floats, Isa, Keys, Level,
@@ -128,7 +129,8 @@ class Partition:
     to arrays while a call reads them.
     """
     def __init__(
-        self, structure: Structure = "LinearBvh", *, volume: Volume = "aabb", fat_margin: float = 0.0,
+        self, structure: Structure = "LinearBvh", *, volume: Volume = "aabb",
+        fat_margin: float = 0.0,
         fat_margin_share: float = 0.0, parallel: bool = True, build_budget: int = 0,
         loose: Optional[float] = None, recorder: Optional[Recorder] = None
     ) -> None:
@@ -142,7 +144,7 @@ class Partition:
         """Adds n boxes and returns their keys, (n,) uint64. `lower`, `upper`: (n, 3), in units of
         the scene; lower <= upper, may be infinite. Floats of any strides are read in place if both
         arrays have the same stride from box to box; all others are rounded outward to float.
-        `data`: (n,) uint64, returned by queries.
+        `data`: (n,) uint64, or one for all, returned by queries.
         """
     def update(
         self, keys: ArrayLike, lower: ArrayLike, upper: ArrayLike,
@@ -265,9 +267,9 @@ class Partition:
         find: Literal["closest", "any"] = "closest", *, min_t: ArrayLike = 0.0,
         max_t: ArrayLike = inf, filter: Optional[Filter] = None
     ) -> Hits:
-        """Finds the objects whose boxes the rays origins + t * directions, (n, 3) each, min_t <= t
-        <= max_t, (n,) or one for all, hit. `find`: 'closest' or 'any', returning Hits, or 'all',
-        returning HitLists sorted by t. Floats with one stride are read in place.
+        """Finds the objects whose boxes the rays origins + t * directions, (n, 3) each or (3,) for
+        all, min_t <= t <= max_t, (n,) or one for all, hit. `find`: 'closest' or 'any', returning
+        Hits, or 'all', returning HitLists sorted by t. Floats with one stride are read in place.
         """
     @overload
     def cast_rays(
@@ -721,7 +723,8 @@ class Scene:
         self, shapes: Shapes, *, contact_margin: float = 0.0, tier: Tier = "robust",
         cache_tolerance: float = 0.0, part_manifolds: bool = False,
         suppress_ghost_contacts: bool = False, warm_start: bool = False,
-        structures: Sequence[Structure] = ("LinearBvh", "LinearBvh", "LinearBvh"), parallel: bool = True,
+        structures: Sequence[Structure] = ("LinearBvh", "LinearBvh", "LinearBvh"),
+        parallel: bool = True,
         build_budget: int = 0, recorder: Optional[Recorder] = None
     ) -> None:
         """An empty scene. Pairs at most `contact_margin` apart are contacts too; a pair that has
@@ -742,8 +745,8 @@ class Scene:
         """Adds n bodies and returns their keys, (n,) uint64: shapes (n,), or one for all, at poses
         (n, 7) of x, y, z and a quaternion w, x, y, z, (n, 3), or a tuple of both. `state`: 'fixed',
         'dynamic' or 'sleeping', or (n,) of FIXED, DYNAMIC, SLEEPING. Filters (n,) or one for all,
-        as in Partition.set_filter. `data`: (n,) uint64. `contact` and `rest` as in `set_offsets`,
-        `layer` as in `set_layer`.
+        as in Partition.set_filter. `data`: (n,) uint64, or one for all. `contact` and `rest` as in
+        `set_offsets`, `layer` as in `set_layer`.
         """
     @property
     def shapes(self) -> Shapes:
@@ -871,9 +874,9 @@ class Scene:
         find: Literal["closest", "any"] = "closest", *, min_t: ArrayLike = 0.0,
         max_t: ArrayLike = inf, filter: Optional[Filter] = None
     ) -> SceneHits:
-        """Finds the bodies whose shapes the rays origins + t * directions, (n, 3) each, min_t <= t
-        <= max_t, (n,) or one for all, hit. `find`: 'closest' or 'any', returning SceneHits, or 'all',
-        returning SceneHitLists. Doubles of one stride are read in place.
+        """Finds the bodies whose shapes the rays origins + t * directions, (n, 3) each or (3,) for
+        all, min_t <= t <= max_t, (n,) or one for all, hit. `find`: 'closest' or 'any', returning
+        SceneHits, or 'all', returning SceneHitLists. Doubles of one stride are read in place.
         """
     @overload
     def cast_rays(
@@ -997,9 +1000,9 @@ class Sensors:
     ) -> Keys:
         """Adds n sensors and returns their keys, (n,) uint64: shapes (n,), or one for all, with
         poses and filters as in Scene.add. `carrier`: keys (n,) of bodies that they ignore, NULL_KEY
-        for none. `data`: (n,) uint64. `layer`: see Scene.set_layers_collide; 65535 senses bodies of
-        all layers. All or none: size_mismatch, invalid_key for an unknown shape,
-        invalid_pose, too_many_objects beyond 2^28.
+        for none. `data`: (n,) uint64, or one for all. `layer`: see Scene.set_layers_collide; 65535
+        senses bodies of all layers. All or none: size_mismatch, invalid_key for an unknown shape,
+        invalid_pose, invalid_argument for a layer out of range, too_many_objects beyond 2^28.
         """
     def set(
         self, keys: ArrayLike, shapes: ArrayLike, poses: Poses, layers: ArrayLike = 1,
@@ -1083,7 +1086,8 @@ class ClusterScene:
     def __init__(
         self, shapes: Shapes, comm: Optional[Any] = None, ranks: int = 1, *,
         contact_margin: float = 0.0, tier: Tier = "robust", part_manifolds: bool = False,
-        structures: Sequence[Structure] = ("LinearBvh", "LinearBvh", "LinearBvh"), parallel: bool = True,
+        structures: Sequence[Structure] = ("LinearBvh", "LinearBvh", "LinearBvh"),
+        parallel: bool = True,
         imbalance: float = 1.1
     ) -> None:
         """`comm`, `ranks` and `imbalance` as for Cluster, the others as for Scene."""
