@@ -30,8 +30,8 @@ class ResultArray {
   [[nodiscard]] const Result& operator[](std::size_t i) const noexcept { return rows_[i]; }
   /// Iterators over all results.
   /// @{
-  [[nodiscard]] const Result* begin() const noexcept { return rows_.begin(); }
-  [[nodiscard]] const Result* end() const noexcept { return rows_.end(); }
+  [[nodiscard]] const Result* begin() const noexcept { return rows_.begin(); }  ///< first result
+  [[nodiscard]] const Result* end() const noexcept { return rows_.end(); }      ///< behind the last
   /// @}
 
   /// Ensures room for `count` results. Returns false, and changes nothing, if memory is refused.
@@ -45,9 +45,10 @@ class ResultArray {
   [[nodiscard]] bool shrink(std::size_t count) noexcept { return rows_.shrink(count); }
 
  protected:
+  /// Creates an empty array, all of whose memory comes from `memory`.
   explicit ResultArray(std::pmr::memory_resource* memory) noexcept : rows_(memory) {}
 
-  Column<Result> rows_;
+  Column<Result> rows_;  ///< the results
 };
 
 /// Two objects that may touch. `self_pairs` writes first < second. `pairs_with` writes first an

@@ -179,8 +179,10 @@ bool enters(const ShapePool& shapes, const ShapeRay& ray, const SubShape& part,
       passes_by(ray.origin.data(), ray.direction.data(), part, thickness)) {
     return false;
   }
-  const Vector3d start = as_eigen(ray.origin) + ray.min_t * as_eigen(ray.direction);
-  if (is_behind_triangle({start, start}, part)) return false;
+  if (part.front != 0) {
+    const Vector3d start = as_eigen(ray.origin) + ray.min_t * as_eigen(ray.direction);
+    if (is_behind_triangle({start, start}, part)) return false;
+  }
   // Tests the whole ray: whether the thick triangle is used must not depend on a limit.
   hit = cast_on(shapes, ray, part);
   if (hit.hit || thickness == 0.0) return hit.hit;

@@ -78,9 +78,16 @@ struct RelativeRay {
   return result;
 }
 
+/// Returns the local t of a t of the caller, limited to the largest double.
+[[nodiscard, gnu::noinline]] double local_time(const RelativeRay& relative, double t) noexcept {
+  return std::min(
+      std::ldexp(std::ldexp(t, -relative.exponent) - relative.shift, -relative.t_exponent),
+      std::numeric_limits<double>::max());
+}
+
 template <typename Shape>
-[[nodiscard]] ShapeHit cast(const Shape& shape, const Pose& pose, const ShapeRay& ray,
-                            bool& starts_inside) noexcept {
+void cast(const Shape& shape, const Pose& pose, const ShapeRay& ray, ShapeHit& hit,
+          bool& starts_inside) noexcept {
   constexpr bool kBounded = !std::is_same_v<Shape, HalfSpaceShape>;
   const RelativeRay relative = approach(ray, pose, size_of(shape), kBounded);
   const Eigen::Matrix3d turn = rotation_of_unit(normalized(scale_to_unit_max(pose.orientation)));
@@ -88,25 +95,23 @@ template <typename Shape>
   local.origin = turn.transpose() * relative.origin;
   local.direction = turn.transpose() * relative.direction;
   local.speed = local.direction.norm();
-  // A start beyond the range of double is a start at its end.
-  local.low = std::min(
-      std::ldexp(std::ldexp(ray.min_t, -relative.exponent) - relative.shift, -relative.t_exponent),
-      std::numeric_limits<double>::max());
+  local.low = std::ldexp(-relative.shift, -relative.t_exponent);
+  if (ray.min_t > 0.0) [[unlikely]]
+    local.low = local_time(relative, ray.min_t);
   const FirstEntry entry = enter(local, shape, std::ldexp(1.0, -relative.lengths));
   starts_inside = entry.found && entry.inside;
-  if (!entry.found) return {};
+  hit = {};
+  if (!entry.found) return;
   const double t = entry.inside
                        ? ray.min_t
                        : std::ldexp(relative.shift + std::ldexp(entry.t, relative.t_exponent),
                                     relative.exponent);
-  if (!(t <= ray.max_t) || t < 0.0 || std::isinf(t)) return {};
-  ShapeHit hit;
+  if (!(t <= ray.max_t) || t < 0.0 || std::isinf(t)) return;
   hit.hit = true;
   hit.t = std::max(t, ray.min_t);
   Vector3d normal = turn * entry.normal;
   if (entry.inside || normal.isZero(0.0)) normal = -relative.direction;
   as_eigen(hit.normal) = normal.normalized();
-  return hit;
 }
 
 /// Returns the ray from a point behind the shape, which is at the origin, back to the start of a
@@ -156,14 +161,16 @@ Answer<ShapeHit> cast_ray(const ShapeTables& tables, ShapeId shape, const Pose& 
   }
   if (!is_valid(ray)) return Status::invalid_argument;
   if (!pose.is_valid()) return Status::invalid_pose;
+  ShapeHit hit;
   bool starts_inside = false;
-  return find_entry(tables, shape, pose, ray, starts_inside);
+  with_shape(tables, shape, [&](const auto& one) { cast(one, pose, ray, hit, starts_inside); });
+  return hit;
 }
 
 ShapeHit find_entry(const ShapeTables& tables, ShapeId shape, const Pose& pose, const ShapeRay& ray,
                     bool& starts_inside) noexcept {
   ShapeHit hit;
-  with_shape(tables, shape, [&](const auto& one) { hit = cast(one, pose, ray, starts_inside); });
+  with_shape(tables, shape, [&](const auto& one) { cast(one, pose, ray, hit, starts_inside); });
   return hit;
 }
 
@@ -175,7 +182,8 @@ ShapeHit find_exit(const ShapeTables& tables, ShapeId shape, const Pose& pose,
     HalfSpaceShape opposite = tables.half_spaces[shape.index()];
     opposite.normal = -opposite.normal;
     opposite.offset = -opposite.offset;
-    ShapeHit hit = cast(opposite, pose, ray, starts_inside);
+    ShapeHit hit;
+    cast(opposite, pose, ray, hit, starts_inside);
     if (starts_inside) return {};
     hit.normal = -hit.normal;
     return hit;

@@ -45,7 +45,7 @@ class RequestedColumns {
 void read(ByteReader& in, bool with_min_t, ShapeRay& ray) noexcept {
   (void)in.get_bytes(&ray.origin, sizeof ray.origin);
   (void)in.get_bytes(&ray.direction, sizeof ray.direction);
-  if (with_min_t) ray.min_t = in.get<double>();
+  ray.min_t = with_min_t ? in.get<double>() : 0.0;
   ray.max_t = in.get<double>();
 }
 

@@ -193,7 +193,10 @@ void scene(const Execution& execution, Digest& digest) {
   digest.add(static_cast<std::uint64_t>(
       composites.add_mesh(std::span(std::as_const(points)), std::span(std::as_const(corners)))
           .get(ids.back())));
-  Scene world(pool, {.execution = execution, .contact_margin = 0.0625, .composites = &composites});
+  Scene world(pool, {.execution = execution,
+                     .contact_margin = 0.0625,
+                     .part_manifolds = true,
+                     .composites = &composites});
   std::vector<Key> keys(160);
   for (std::size_t i = 0; i < keys.size(); ++i) {
     const BodyDefinition body{.shape = ids[i % ids.size()],

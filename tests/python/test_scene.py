@@ -132,12 +132,12 @@ def test_rays_enter_and_leave_bodies(world):
     down = [[9, 0, 5], [0, 0, 5]]
     found = scene.crossings(down, [0, 0, -1])
     assert found.first.tolist() == [0, 3, 6]
-    assert found.key[:3].tolist() == [balls[1], balls[1], ground[0]]
+    assert found.key[:3].tolist() == [balls[1], ground[0], balls[1]]
     assert found.t[:3] == pytest.approx([4, 5, 5])
-    assert found.exits[:3].tolist() == [False, True, False]
-    assert found.normal[:2, 2] == pytest.approx([1, -1])
+    assert found.exits[:3].tolist() == [False, False, True]
+    assert found.normal[:3, 2] == pytest.approx([1, 1, -1])
     assert found.barycentric.shape == (6, 3) and not found.barycentric.any()
-    assert len(scene.crossings(down, [0, 0, -1], min_t=4.5, max_t=4.9).t) == 1
+    assert scene.crossings(down, [0, 0, -1], min_t=4.5, max_t=5.05).first.tolist() == [0, 2, 3]
     # The same ball from its middle on, and without it.
     hits = scene.cast_rays(down, [0, 0, -1], min_t=4.5)
     assert hits.key[0] == balls[1] and hits.t[0] == 4.5

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <span>
 
 #include "tests/soak/soak.h"
 #include "tests/support/config.h"

@@ -136,11 +136,10 @@ struct QueryState {
   if (filter.layer != kEveryLayer &&
       !scene.rules.layers.collide(filter.layer, scene.rules.layer_of(body)))
     return false;
-  const Key key = scene.keys.key_of(body);
+  if (filter.ignored.id == body && filter.ignored == scene.keys.key_of(body)) return false;
   const ObjectPredicate& predicate = filter.predicate;
-  return key != filter.ignored &&
-         (predicate.accept == nullptr ||
-          predicate.accept(predicate.context, key, scene.keys.client_data(body)));
+  return predicate.accept == nullptr ||
+         predicate.accept(predicate.context, scene.keys.key_of(body), scene.keys.client_data(body));
 }
 
 /// Converts the caller's filter to one for partitions, whose client data are ids of bodies. Calls

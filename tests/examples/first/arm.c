@@ -13,7 +13,7 @@ static winnow_pose poses[kLinks];
 static void place(int configuration) {
   double x = 0.0, z = 0.0, angle = 0.0;
   for (int i = 0; i < kLinks; ++i) {
-    angle += 2.5 * sin(0.37 * configuration + 1.7 * i);
+    angle += 2.5 * sin(0.37 * configuration * (i + 1));
     poses[i] = (winnow_pose)WINNOW_POSE;
     poses[i].position[0] = x + 0.5 * sin(angle);
     poses[i].position[2] = z + 0.5 * cos(angle);

@@ -23,7 +23,7 @@ int main() {
   for (int configuration = 0; configuration < 1000; ++configuration) {
     winnow::Pose joint;
     for (int i = 0; i < kLinks; ++i) {
-      const double angle = 2.5 * std::sin(0.37 * configuration + 1.7 * i);
+      const double angle = 2.5 * std::sin(0.37 * configuration * (i + 1));
       joint = joint * winnow::Pose{{}, winnow::Quaternion::about({0, 1, 0}, angle)};
       poses[i] = joint * winnow::Pose::at(0, 0, 0.5);
       joint = joint * winnow::Pose::at(0, 0, 1);

@@ -13,7 +13,7 @@ arm.set_ignored(np.stack([links[:-1], links[1:]], axis=1))
 
 def poses_of(configuration):
     """Returns poses of the links (n, 7); all joints turn about y."""
-    angle = np.cumsum(2.5 * np.sin(0.37 * configuration + 1.7 * np.arange(LINKS)))
+    angle = np.cumsum(2.5 * np.sin(0.37 * configuration * np.arange(1, LINKS + 1)))
     zero = np.zeros(LINKS)
     along = np.stack([np.sin(angle), zero, np.cos(angle)], axis=1)
     middle = np.cumsum(along, axis=0) - 0.5 * along

@@ -4,10 +4,10 @@
 #include <stdlib.h>
 #include <winnow/c/winnow.h>
 
-enum { kMost = 100000 };
+enum { kMax = 100000 };
 
-static float points[kMost][3];
-static uint32_t corners[kMost][3];
+static float points[kMax][3];
+static uint32_t corners[kMax][3];
 
 static const char kPyramid[] =
     "v 1 1 0\nv -1 1 0\nv -1 -1 0\nv 1 -1 0\nv 0 0 2\n"
@@ -16,7 +16,7 @@ static const char kPyramid[] =
 /* Reads the vertices and the triangles of a Wavefront OBJ file. */
 static void read_obj(FILE* file, size_t* vertices, size_t* triangles) {
   char line[256];
-  while (fgets(line, sizeof line, file) != NULL && *vertices < kMost && *triangles < kMost) {
+  while (fgets(line, sizeof line, file) != NULL && *vertices < kMax && *triangles < kMax) {
     float* const p = points[*vertices];
     uint32_t* const t = corners[*triangles];
     if (sscanf(line, "v %f %f %f", &p[0], &p[1], &p[2]) == 3) ++*vertices;

@@ -26,7 +26,7 @@ near, far = scene.add(mesh, [[0, 0, 0], [5, 0, 0]])
 
 hit = scene.cast_rays([0.1, 0.2, 9], [0, 0, -1])
 print("the ray hits triangle %d at height %.3f" % (hit.part[0], hit.point[0, 2]))
-closest = scene.nearest([0, 0, 0.5], 1, 10.0)
+closest = scene.nearest([0, 0, 0.5], radius=10.0)
 print("the point is %.3f from a surface" % closest.distance[0])
 apart = scene.distance([near], [far], rules="none")
 print("the meshes are %.3f apart" % apart.distance[0])
