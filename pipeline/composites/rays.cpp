@@ -39,18 +39,11 @@ namespace {
   return std::ldexp(1.0, -power);
 }
 
-/// Returns a - b + t * d with compensated sums: the rounding error is relative to the result, not
-/// to the terms.
-[[nodiscard]] double moved(double a, double b, double t, double d) noexcept {
+/// Returns a - b + t * d with compensated sums.
+[[nodiscard]] double moved_from(double a, double b, double t, double d) noexcept {
   const double between = a - b;
   const double back = between - a;
-  const double lost = (a - (between - back)) + (-b - back);
-  const double step = t * d;
-  const double step_error = std::fma(t, d, -step);
-  const double sum = between + step;
-  const double half = sum - step;
-  const double sum_error = (between - half) + (step - (sum - half));
-  return sum + (sum_error + step_error + lost);
+  return moved(between, (a - (between - back)) + (-b - back), t, d);
 }
 
 /// A body and a ray, both relative to `about`. The rounding error of the ray's origin is subtracted
@@ -108,7 +101,7 @@ template <std::uint32_t Room>
   if (towards > kFarSizes * frame.size * (square / fastest)) [[unlikely]] {
     shift = std::max(0.0, towards / square - kFarSizes * frame.size / fastest);
     for (int i = 0; i < 3; ++i) {
-      start[i] = moved(ray.origin[i], frame.position[i], shift, ray.direction[i]);
+      start[i] = moved_from(ray.origin[i], frame.position[i], shift, ray.direction[i]);
     }
   }
   double way[3];

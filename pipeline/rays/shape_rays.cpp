@@ -62,12 +62,7 @@ struct RelativeRay {
     for (int k = 0; k < 3; ++k) {
       const double back = between[k] - to[k];
       const double lost = (to[k] - (between[k] - back)) + (-from[k] - back);
-      const double step = nearest * result.direction[k];
-      const double step_error = std::fma(nearest, result.direction[k], -step);
-      const double sum = result.origin[k] + step;
-      const double half = sum - step;
-      const double sum_error = (result.origin[k] - half) + (step - (sum - half));
-      result.origin[k] = sum + (sum_error + step_error + unit * lost);
+      result.origin[k] = moved(result.origin[k], unit * lost, nearest, result.direction[k]);
     }
     result.shift = nearest;
   }
@@ -127,12 +122,7 @@ void cast(const Shape& shape, const Pose& pose, const ShapeRay& ray, ShapeHit& h
   end = (radius - way.dot(start)) / speed + kSlack * (radius + start.norm()) / speed;
   ShapeRay back;
   for (int i = 0; i < 3; ++i) {
-    const double step = end * ray.direction[i];
-    const double step_error = std::fma(end, ray.direction[i], -step);
-    const double sum = from.difference[i] + step;
-    const double half = sum - step;
-    const double sum_error = (from.difference[i] - half) + (step - (sum - half));
-    back.origin[i] = sum + (sum_error + step_error + from.rest[i]);
+    back.origin[i] = moved(from.difference[i], from.rest[i], end, ray.direction[i]);
     back.direction[i] = -ray.direction[i];
   }
   back.max_t = end - ray.min_t;

@@ -28,4 +28,15 @@ struct TwoDiff {
   return result;
 }
 
+/// Returns between + rest + t * d with compensated sums, for a difference and its rounding error:
+/// the error is relative to the result, not to the terms.
+[[nodiscard]] inline double moved(double between, double rest, double t, double d) noexcept {
+  const double step = t * d;
+  const double step_error = std::fma(t, d, -step);
+  const double sum = between + step;
+  const double half = sum - step;
+  const double sum_error = (between - half) + (step - (sum - half));
+  return sum + (sum_error + step_error + rest);
+}
+
 }  // namespace winnow

@@ -87,12 +87,9 @@ Status CrossingQuery::run() {
   if (!has_room_) return Status::out_of_memory;
   // A body that is found in two pieces of a path is tested twice.
   Column<SceneCrossing>& found = state_.crossings;
-  std::sort(found.begin(), found.end(),
-            [](const auto& a, const auto& b) { return order_of(a) < order_of(b); });
-  const SceneCrossing* const end =
-      std::unique(found.begin(), found.end(),
-                  [](const auto& a, const auto& b) { return order_of(a) == order_of(b); });
-  found.set_size(static_cast<std::size_t>(end - found.begin()));
+  std::ranges::sort(found.begin(), found.end(), {}, order_of);
+  const auto rest = std::ranges::unique(found.begin(), found.end(), {}, order_of);
+  found.set_size(static_cast<std::size_t>(rest.begin() - found.begin()));
   return Status::ok;
 }
 

@@ -132,6 +132,20 @@ Status NearestBodiesQuery::run(std::size_t count, double radius) {
   return Status::ok;
 }
 
+/// Calls test_body(body), whose result is ignored, for each body that passes the filter and whose
+/// box is within `reach` of the shape.
+template <typename TestBody>
+[[nodiscard]] Status test_near(QueryState& state, const PlacedShape& shape, double reach,
+                               const SceneFilter& filter, TestBody& test_body) {
+  BodyCandidateFilter body_filter(state.scene, filter, test_body);
+  const PlainBox around =
+      state.scene.bounds_from(state.scene.origin, shape.shape, shape.pose, reach);
+  const Aabb box{Eigen::Vector3f::Map(around.min), Eigen::Vector3f::Map(around.max)};
+  return state.each_partition([&](const Partition& partition) {
+    return partition.overlap(box, state.objects, body_filter.filter());
+  });
+}
+
 bool has_lesser_overlap_id(const SceneOverlap& a, const SceneOverlap& b) noexcept {
   return a.key.id < b.key.id;
 }
@@ -195,12 +209,7 @@ Answer<std::span<const SceneOverlap>> find_overlaps(QueryState& state, ShapeId s
     }
     return false;
   };
-  BodyCandidateFilter body_filter(state.scene, filter, test_body);
-  const PlainBox around = state.scene.bounds_from(state.scene.origin, shape, pose, 0.0);
-  const Aabb box{Eigen::Vector3f::Map(around.min), Eigen::Vector3f::Map(around.max)};
-  Status status = state.each_partition([&](const Partition& partition) {
-    return partition.overlap(box, state.objects, body_filter.filter());
-  });
+  Status status = test_near(state, query_shape, 0.0, filter, test_body);
   if (!has_room) status = Status::out_of_memory;
   if (status != Status::ok) return status;
   std::sort(found.begin(), found.end(), has_lesser_overlap_id);
@@ -227,14 +236,9 @@ Answer<std::span<const SceneDistance>> SceneQueries::distances(ShapeId shape, co
     }
     return false;
   };
-  BodyCandidateFilter body_filter(state_->scene, observed.used(), test_body);
   // Covers the error of the solver's distance to a box boundary.
   const double reach = std::max(limit, 0.0) * (1.0 + 1e-9);
-  const PlainBox around = state_->scene.bounds_from(state_->scene.origin, shape, pose, reach);
-  const Aabb box{Eigen::Vector3f::Map(around.min), Eigen::Vector3f::Map(around.max)};
-  Status status = state_->each_partition([&](const Partition& partition) {
-    return partition.overlap(box, state_->objects, body_filter.filter());
-  });
+  Status status = test_near(*state_, query_shape, reach, observed.used(), test_body);
   if (!has_room) status = Status::out_of_memory;
   if (status != Status::ok) return status;
   std::sort(found.begin(), found.end(), is_nearer);
